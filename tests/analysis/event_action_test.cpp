@@ -154,4 +154,161 @@ TEST(EventAction, MustLeaveFiniteNumbers) {
   EXPECT_GT(ball.x.q[1], 0.0);
 }
 
+/// A ball on the floor, or above it, that keeps e of its speed.
+template <class I>
+State bounce(I const& integrator, double e, double height, RunOptions options, RunReport* report = nullptr) {
+  Model<Bodies<planar::Rigid>, Joints<>> model{Gravity{0, -g, 0}};
+  model.add(planar::Rigid(2.0, 1.0, Placement::at({0, height, 0})), "ball");
+  State x = model.reference_state();
+  options.events.insert(options.events.begin(), Event{.name = "floor",
+                                                      .value = [](State const& now) { return now.q[1]; },
+                                                      .then = [e](State& now) { now.v[1] *= -e; },
+                                                      .rests = options.events.empty() || options.events[0].rests});
+  auto run = simulate(model, x, integrator, options);
+  run.run();
+  if (report) *report = run.report();
+  return x;
+}
+
+TEST(EventAction, ALongStepAfterAnImpactMeetsTheNextOne) {
+  // in free flight the error asks for no end of a step
+  RunReport report;
+  bounce(DormandPrince<>{}, 0.8, 1.0, {.until = 2.0, .step = 1e-3}, &report);
+  ASSERT_EQ(report.events.size(), 3u);
+  double const t1 = std::sqrt(2.0 / g);
+  EXPECT_NEAR(report.events[0].time, t1, 1e-8);
+  EXPECT_NEAR(report.events[1].time, 2.6 * t1, 1e-8);
+  EXPECT_NEAR(report.events[2].time, 3.88 * t1, 1e-8);
+}
+
+TEST(EventAction, AnActionThatLetsTheValuePassIsMetOnTheWayBack) {
+  Model<Bodies<planar::Rigid>, Joints<>> model{Gravity{0, -g, 0}};
+  model.add(planar::Rigid(2.0, 1.0), "ball");
+  State x = model.reference_state();
+  x.v[1] = 4.0;
+  std::vector<double> speeds;
+  Event const net{.name = "net",
+                  .value = [](State const& now) { return now.q[1] - 0.3; },
+                  .then =
+                      [&](State& now) {
+                        speeds.push_back(now.v[1]);
+                        now.v[1] *= 0.5;
+                      }};
+  simulate(model, x, GeneralizedAlpha{}, {.until = 1.0, .step = 1e-2, .events = {net}}).run();
+  double const v = std::sqrt(16.0 - 2.0 * g * 0.3);
+  ASSERT_EQ(speeds.size(), 2u);
+  EXPECT_NEAR(speeds[0], v, 1e-8);
+  EXPECT_NEAR(speeds[1], -0.5 * v, 1e-8);
+}
+
+TEST(EventAction, ImpactsThatAccumulateAreRefusedUnlessTheValueMayRest) {
+  Event const only_time{.name = "late", .value = [](State const& now) { return 100.0 - now.t; }, .rests = false};
+  double const t1 = std::sqrt(2.0 / g);
+  for (double const e : {0.0, 0.5}) {
+    std::string const said =
+        refusal([&] { bounce(GeneralizedAlpha{}, e, 1.0, {.until = 10.0, .step = 1e-2, .events = {only_time}}); });
+    EXPECT_TRUE(has(said, "The event \"floor\" is met again within its tolerance of 1e-10 s after its action at t = " +
+                              number(t1 * (1.0 + e) / (1.0 - e)).substr(0, 6)));
+    EXPECT_TRUE(has(said, "Set `rests` of the event"));
+  }
+  // at rest from the start, also where rounding puts the ball below the floor
+  for (double const height : {0.0, 0.3 - 0.1 - 0.2}) {
+    EXPECT_TRUE(
+        has(refusal([&] { bounce(RungeKutta4<>{}, 0.5, height, {.until = 1.0, .step = 1e-2, .events = {only_time}}); }),
+            "The event \"floor\" is met again"));
+    State const rested = bounce(RungeKutta4<>{}, 0.5, height, {.until = 1.0, .step = 1e-2});
+    EXPECT_NEAR(rested.q[1], 0.0, 1e-12);
+    EXPECT_NEAR(rested.v[1], 0.0, 1e-12);
+  }
+}
+
+TEST(EventAction, AValueThatRestsLeavesWhereItIsDrivenBack) {
+  Event const kick{.name = "kick",
+                   .value = [](State const& now) { return now.t - 1.0; },
+                   .then = [](State& now) { now.v[1] = 3.0; },
+                   .rests = true};
+  RunReport report;
+  State const x = bounce(GeneralizedAlpha{}, 0.0, 0.2, {.until = 1.2, .step = 1e-2, .events = {kick}}, &report);
+  EXPECT_NEAR(x.q[1], 3.0 * 0.2 - 0.5 * g * 0.04, 1e-8);
+  EXPECT_NEAR(x.v[1], 3.0 - g * 0.2, 1e-8);
+  ASSERT_EQ(report.events.size(), 3u);
+  EXPECT_EQ(report.events[1].name, "floor comes to rest");
+  EXPECT_EQ(report.events[2].name, "kick");
+}
+
+/// A rod on a pin that falls onto a stop at −45° and rests there.
+template <class Policy, class I>
+void expect_rest_of_rod(I const& integrator) {
+  using Pin = Joint<planar::Revolute, Policy>;
+  Model<Bodies<planar::Rigid>, Joints<Pin>> model{Gravity{0, -g, 0}};
+  auto const rod = model.add(
+      planar::Rigid::from(Bar{.length = 1.0, .constants = BarConstants{.EA = 1.0, .EI = 1.0, .mass_per_length = 1.0}}),
+      "rod");
+  model.connect(Pin{}, model.ground().at({0, 0, 0}), rod.at(0.0), "pin");
+  State x = model.reference_state();
+  Event const stop{.name = "stop",
+                   .value = [](State const& now) { return now.q[2] + 0.25 * std::numbers::pi; },
+                   .then = [](State& now) { now.v *= -0.3; },
+                   .rests = true};
+  auto run = simulate(model, x, integrator, {.until = 2.0, .step = 1e-3, .events = {stop}});
+  double worst = 0.0, open = 0.0;
+  System whole(model, with<Entries::motion>);
+  VecX gaps(whole.rows());
+  bool rests = false;
+  while (!run.done()) {
+    run.advance();
+    whole.evaluate(x.q, x.v, x.t);
+    whole.violation(gaps);
+    open = std::max(open, gaps.lpNorm<Eigen::Infinity>());
+    rests = rests || (!run.report().events.empty() && run.report().events.back().name == "stop comes to rest");
+    if (rests) worst = std::max(worst, std::abs(x.q[2] + 0.25 * std::numbers::pi));
+  }
+  EXPECT_TRUE(rests);
+  EXPECT_LT(worst, 1e-9);
+  EXPECT_LT(open, 1e-9);
+  EXPECT_LT(x.v.norm(), 1e-9);
+}
+TEST(EventAction, APartOfAMechanismRests) {
+  expect_rest_of_rod<Constraint>(GeneralizedAlpha{});
+  expect_rest_of_rod<Recursive>(RungeKutta4<Projection>{});
+}
+
+TEST(EventAction, MustKeepJointsClosed) {
+  Stopped<Constraint> s;
+  auto const opened = [&](double by) {
+    State x = s.x;
+    Event const event{.name = "push",
+                      .value = [](State const& now) { return now.t - 0.1503; },
+                      .then = [by](State& now) { now.q[0] += by; }};
+    auto run = simulate(s.model, x, GeneralizedAlpha{}, {.until = 0.3, .step = 1e-3, .events = {event}});
+    State before = x;
+    try {
+      for (; !run.done(); run.advance()) before = x;
+    } catch (InvalidInput const& error) {
+      EXPECT_EQ(x.q, before.q);
+      EXPECT_EQ(x.t, before.t);
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_TRUE(has(opened(1e-3), "The action of the event \"push\" at t = 0.1503"));
+  EXPECT_TRUE(has(opened(1e-3), "opens joint \""));
+  EXPECT_TRUE(has(opened(1e-6), "opens joint \""));
+  EXPECT_EQ(opened(1e-10), "");
+}
+
+TEST(EventAction, MustKeepTheSizesOfTheState) {
+  Ball ball;
+  Event bad = ball.floor;
+  bad.then = [](State& now) { now.q.resize(0); };
+  auto run = simulate(ball.model, ball.x, GeneralizedAlpha{}, {.until = 1.0, .step = 1e-2, .events = {bad}});
+  EXPECT_TRUE(has(refusal([&] { run.run(); }), "The action of the event \"floor\" at t = 0.4515"));
+  EXPECT_EQ(ball.x.q.size(), 3);
+  Ball other;
+  auto steps = simulate(other.model, other.x, GeneralizedAlpha{}, {.until = 1.0, .step = 1e-2});
+  steps.advance();
+  other.x.q.resize(0);
+  EXPECT_TRUE(has(refusal([&] { steps.advance(); }), "The sizes of the state were changed since the last step"));
+}
+
 }  // namespace event_action_test

@@ -15,9 +15,12 @@ struct Clock {
   EventWatch watch;
   int steps = 0;
 
-  explicit Clock(std::vector<Event> what) : events(std::move(what)) { watch.start(events, x, seen()); }
-  static EventWatch::Seen seen() {
+  explicit Clock(std::vector<Event> what) : events(std::move(what)) { watch.start(events, x, {0.1, seen(), drift()}); }
+  static std::function<State const&(State const&)> seen() {
     return [](State const& s) -> State const& { return s; };
+  }
+  static std::function<void(State&, double)> drift() {
+    return [](State& s, double h) { s.t += h; };
   }
   /// One step of h; whether an event ended it.
   bool step(double h) {
@@ -28,8 +31,7 @@ struct Clock {
       s.t += length;
       return length;
     };
-    EventWatch::Seen const same = seen();
-    return watch.meet(events, {before, h, same, again}, x, report);
+    return watch.meet(events, {before, h, again, {h, seen(), drift()}}, x, report);
   }
 };
 
@@ -79,12 +81,13 @@ TEST(EventWatch, ShowsEventsWhatTheUserSees) {
   State shown{};
   std::vector<Event> const events{{.name = "double", .value = [](State const& x) { return 1.0 - x.t; }}};
   EventWatch watch;
-  EventWatch::Seen const twice = [&](State const& x) -> State const& {
+  std::function<State const&(State const&)> const twice = [&](State const& x) -> State const& {
     shown.t = 2.0 * x.t;
     return shown;
   };
   State x{};
-  watch.start(events, x, twice);
+  std::function<void(State&, double)> const on = Clock::drift();
+  watch.start(events, x, {0.8, twice, on});
   RunReport report;
   State const before = x;
   x.t = 0.8;
@@ -92,7 +95,7 @@ TEST(EventWatch, ShowsEventsWhatTheUserSees) {
     s.t += h;
     return h;
   };
-  EXPECT_TRUE(watch.meet(events, {before, 0.8, twice, again}, x, report));
+  EXPECT_TRUE(watch.meet(events, {before, 0.8, again, {0.8, twice, on}}, x, report));
   EXPECT_NEAR(x.t, 0.5, 1e-10);
 }
 
@@ -102,12 +105,13 @@ TEST(EventWatch, MakesTheUsersStateOnceForAllEvents) {
                                   {.name = "b", .value = [](State const& x) { return 2.0 - x.t; }},
                                   {.name = "c", .value = [](State const& x) { return 3.0 - x.t; }}};
   EventWatch watch;
-  EventWatch::Seen const counted = [&](State const& x) -> State const& {
+  std::function<State const&(State const&)> const counted = [&](State const& x) -> State const& {
     ++made;
     return x;
   };
   State x{};
-  watch.start(events, x, counted);
+  std::function<void(State&, double)> const on = Clock::drift();
+  watch.start(events, x, {0.5, counted, on});
   EXPECT_EQ(made, 1);
   RunReport report;
   State const before = x;
@@ -116,8 +120,78 @@ TEST(EventWatch, MakesTheUsersStateOnceForAllEvents) {
     s.t += h;
     return h;
   };
-  EXPECT_FALSE(watch.meet(events, {before, 0.5, counted, again}, x, report));
-  EXPECT_EQ(made, 2);
+  EXPECT_FALSE(watch.meet(events, {before, 0.5, again, {0.5, counted, on}}, x, report));  // which asks for rates
+  made = 0;
+  State const middle = x;
+  x.t = 0.9;
+  EXPECT_FALSE(watch.meet(events, {middle, 0.4, again, {0.5, counted, on}}, x, report));
+  EXPECT_EQ(made, 1);
+}
+
+/// A point that flies: height q, speed v.
+struct Flight {
+  std::vector<Event> events;
+  State x{};
+  RunReport report;
+  EventWatch watch;
+  std::function<State const&(State const&)> seen = [](State const& s) -> State const& { return s; };
+  std::function<void(State&, double)> fly = [](State& s, double h) {
+    s.q[0] += h * s.v[0] + 0.5 * h * h * s.a[0];
+    s.v[0] += h * s.a[0];
+    s.t += h;
+  };
+  EventWatch::Step again = [this](State& s, double h) {
+    fly(s, h);
+    return h;
+  };
+
+  Flight(double speed, Event event) : events{std::move(event)} {
+    x.q = VecX::Zero(1);
+    x.v = VecX::Constant(1, speed);
+    x.a = VecX::Constant(1, -9.81);
+    watch.start(events, x, {0.1, seen, fly});
+  }
+  bool step(double h) {
+    State const before = x;
+    fly(x, h);
+    return watch.meet(events, {before, h, again, {h, seen, fly}}, x, report);
+  }
+};
+Event above(double height) {
+  return {.name = "height", .value = [height](State const& s) { return s.q[0] - height; }};
+}
+
+TEST(EventWatch, FindsTwoZerosInOneStep) {
+  // thrown up at 0.4 m/s: 0.008155 m high at most, after 0.0408 s
+  double const first = (0.4 - std::sqrt(0.16 - 2.0 * 9.81 * 0.008)) / 9.81,
+               second = (0.4 + std::sqrt(0.16 - 2.0 * 9.81 * 0.008)) / 9.81;
+  Flight flight(0.4, above(0.008));
+  EXPECT_TRUE(flight.step(0.1));
+  EXPECT_NEAR(flight.x.t, first, 1e-9);
+  EXPECT_TRUE(flight.step(0.1));
+  EXPECT_NEAR(flight.x.t, second, 1e-9);
+  EXPECT_EQ(flight.report.events.size(), 2u);
+  Flight short_steps(0.4, above(0.00815));  // with steps before the one in which the value turns round
+  bool met = false;
+  for (int k = 0; k < 5 && !met; ++k) met = short_steps.step(0.013);
+  EXPECT_TRUE(met);
+  EXPECT_LT(short_steps.x.t, 0.4 / 9.81);
+  Flight too_low(0.4, above(0.0082));
+  EXPECT_FALSE(too_low.step(0.1));
+  EXPECT_TRUE(too_low.report.events.empty());
+}
+
+TEST(EventWatch, PutsBackWhatAStepHasChanged) {
+  Flight flight(1.0, above(0.04));
+  flight.events[0].stops = true;
+  flight.step(0.02);
+  Sequence<int> const sides = flight.watch.sides();
+  EXPECT_TRUE(flight.step(0.06));
+  EXPECT_TRUE(flight.report.stopped);
+  flight.watch.put_back(flight.report);
+  EXPECT_EQ(flight.watch.sides(), sides);
+  EXPECT_TRUE(flight.report.events.empty());
+  EXPECT_FALSE(flight.report.stopped);
 }
 
 }  // namespace event_watch_test

@@ -159,7 +159,7 @@ inline constexpr auto words_of<AdamsBashforthMoulton<S>> =
 template <>
 inline constexpr auto words_of<StepLimits> = words("violation", "energy");
 template <>
-inline constexpr auto words_of<Event> = words("name", "value", "stops", "tolerance", "then");
+inline constexpr auto words_of<Event> = words("name", "value", "stops", "tolerance", "then", "rests");
 template <>
 inline constexpr auto words_of<RunOptions> =
     words("end", "step", "largest step", "corner", "event", "assembly_tolerance", "halve", "minimum_norm", "limits",

@@ -66,8 +66,8 @@ class DirectDifferentiation {
       step_slope_.push_back(chooses ? 0.0 : beside_.of_number(j, [](V const& v) { return v.length(); }));
       until_slope_.push_back(beside_.of_number(j, [](V const& v) { return double(v.scenario.options.until); }));
     }
-    if (!options().events.empty()) watch_.start(options().events, x_, seen());
     start([&](std::size_t j, double h, double dh, auto const& f) { return beside_.of_start(j, h, dh, f); }, {});
+    if (!options().events.empty()) watch_.start(options().events, x_, motion());
   }
   /// Makes x_ a start, after some events act on it, with all tangents. \param differenced (parameter, length of the
   /// next step, its slope, map) gives the derivative of the map
@@ -77,8 +77,7 @@ class DirectDifferentiation {
     State fresh = x_;
     if (!acting.empty()) {
       fresh = whole_.shown(x_);
-      watch_.act(options().events, fresh);
-      fresh = stepped_state(whole_, std::move(fresh));
+      fresh = acted_state(whole_, watch_, std::move(fresh));
     }
     whole_.start(fresh, next.h);
     auto const map = [&](V& v, State& y, double h) {
@@ -139,6 +138,7 @@ class DirectDifferentiation {
     start([&](std::size_t j, double h, double dh,
               auto const& f) { return beside_.of_map(j, x, tangents_[j], {h, dh}, f); },
           acting);
+    if (!acting.empty()) watch_.settle(options().events, x_, motion());
   }
   /// A corner at the end of the run ends it for nearby parameters too.
   void require_one_end() const {
@@ -148,8 +148,9 @@ class DirectDifferentiation {
         refuse_corner_at_end(x_.t, parameters_[j].name, "sensitivities");
   }
 
-  EventWatch::Seen seen() {
-    return [this](State const& x) -> State const& { return whole_.shown(x); };
+  EventMotion motion() {
+    return {whole_.length(), [this](State const& x) -> State const& { return whole_.shown(x); },
+            drift_of(whole_.system)};
   }
   void choose_step(StepReport const& report, bool landed) {
     if constexpr (chooses)
@@ -171,7 +172,8 @@ class DirectDifferentiation {
       return taken;
     };
     double const far = x_.t;
-    bool const met = watch_.meet(options().events, {before_, lengths_.front(), seen(), again}, x_, out_.run);
+    bool const met = watch_.meet(options().events, {before_, lengths_.front(), again, motion()}, x_, out_.run);
+    require_moving(options().events, watch_, x_.t, "sensitivities");
     if (met && x_.t != far)
       lengths_ =
           std::find_if(trials.begin(), trials.end(), [&](Trial const& trial) { return trial.end == x_.t; })->lengths;

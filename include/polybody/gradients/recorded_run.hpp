@@ -8,7 +8,7 @@
 #include <polybody/gradients/refused_times.hpp>
 #include <polybody/gradients/run_tangent.hpp>
 #include <polybody/gradients/shown_states.hpp>
-#include <polybody/run/event_watch.hpp>
+#include <polybody/run/event_action.hpp>
 #include <polybody/run/step_plan.hpp>
 
 namespace polybody::detail {
@@ -41,9 +41,9 @@ class RecordedRun {
     x.t = plan_.pass(x.t);
     if (!(x.t < options().until))
       throw InvalidInput("gradient: the run has no step. Let it go on until after its start.");
-    if (!options().events.empty()) watch_.start(options().events, x, seen());
     next_ = plan_.next(x.t, h_);
     whole_->start(x, next_.h);
+    if (!options().events.empty()) watch_.start(options().events, x, motion());
     first_ = x;
     while (!report.stopped && x.t < options().until) step(x, report);
   }
@@ -88,8 +88,8 @@ class RecordedRun {
 
  private:
   RunOptions const& options() const { return whole_->scenario.options; }
-  EventWatch::Seen seen() {
-    return [this](State const& x) -> State const& { return whole_->shown(x); };
+  EventMotion motion() {
+    return {h_, [this](State const& x) -> State const& { return whole_->shown(x); }, drift_of(whole_->system)};
   }
 
   void step(State& x, RunReport& report) {
@@ -109,11 +109,9 @@ class RecordedRun {
     if (s.restarts) {
       bool const done = report.stopped || x.t >= options().until;
       s.next = done ? StepPlan::Next{x.t, h_, false, false} : plan_.next(x.t, h_);
-      if (!s.acting.empty()) {
-        State shown = whole_->shown(x);
-        watch_.act(options().events, shown);
-      }
+      if (!s.acting.empty()) (void)acted_state(*whole_, watch_, State(whole_->shown(x)));  // refuses what cannot be
       restart(s, x);
+      if (!s.acting.empty()) watch_.settle(options().events, x, motion());
     }
     report.add(taken);
     all_.push_back(std::move(s));
@@ -130,7 +128,8 @@ class RecordedRun {
       return taken;
     };
     State const far = x;
-    if (!watch_.meet(options().events, {before, s.h, seen(), again}, x, report)) return false;
+    if (!watch_.meet(options().events, {before, s.h, again, motion()}, x, report)) return false;
+    require_moving(options().events, watch_, x.t, "gradient");
     s.far = s.h;
     if (x.t != far.t)
       s.h = std::find_if(trials.begin(), trials.end(), [&](Trial const& trial) { return trial.end == x.t; })->length;

@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include <polybody/math/errors.hpp>
+#include <polybody/run/event_watch.hpp>
 
 namespace polybody::detail {
 
@@ -31,6 +31,20 @@ template <class = void>
   throw InvalidInput{who,  ": the event \"",
                      name, "\" only touches zero at t = ",
                      t,    " s, so its time has no derivative. Look for a value that passes through zero at a rate."};
+}
+
+/// \throws InvalidInput, beginning with `who`: one of the `events` is held at zero from t [s] on.
+template <class = void>
+[[gnu::cold]] void require_moving(std::vector<Event> const& events, EventWatch const& watch, double t,
+                                  char const* who) {
+  std::size_t const i = watch.first_held();
+  if (i < events.size())
+    throw InvalidInput{who,
+                       ": the event \"",
+                       events[i].name,
+                       "\" comes to rest at t = ",
+                       t,
+                       " s. Impacts that accumulate have no derivative there. End the run before."};
 }
 
 }  // namespace polybody::detail

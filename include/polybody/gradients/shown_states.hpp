@@ -6,6 +6,7 @@
 /// Not in polybody.hpp: few programs ask for derivatives of whole runs.
 
 #include <polybody/integrators/forward_dynamics.hpp>
+#include <polybody/run/event_action.hpp>
 #include <polybody/run/initial_conditions.hpp>
 #include <polybody/solvers/reduced_coordinates.hpp>
 
@@ -51,6 +52,20 @@ template <class V>
   } else {
     return x;
   }
+}
+
+/// The state that a variant steps after the events that were met last have acted on the whole one x. \throws
+/// InvalidInput as `act`.
+template <class V>
+[[gnu::cold]] State acted_state(V& v, EventWatch const& watch, State x) {
+  RunOptions const& o = v.scenario.options;
+  if constexpr (V::Model::eliminates) {
+    System whole(v.scenario.model, with<Entries::motion>);
+    act(watch, o.events, x, whole, o.assembly_tolerance);
+  } else {
+    act(watch, o.events, x, v.system, o.assembly_tolerance);
+  }
+  return stepped_state(v, std::move(x));
 }
 
 /// \throws InconsistentStart where a joint is open at the start of a variant's scenario, eliminated or not.

@@ -25,42 +25,43 @@ class AxialWatch {
   /// Some body of the model says what its axial forces are.
   bool asks() const { return asks_; }
 
-  /// A state at the end of a step, with accelerations and multipliers; a finding is added to `warnings`. \param last of
-  /// the run
-  void look(System& system, State const& x, bool last, std::vector<std::string>& warnings) {
-    if (asks_ && (last || x.t >= next_)) ask(system, x, warnings);
-  }
+  /// The state at the end of a step at t [s] is to be looked at. \param last of the run
+  bool is_due(double t, bool last) const { return asks_ && (last || t >= next_); }
 
- private:
+  /// Adds a finding in x to `warnings`; x has accelerations and multipliers. When a question throws, nothing changes.
   template <class = void>  // compiled where it is used
-  [[gnu::cold]] void ask(System& system, State const& x, std::vector<std::string>& warnings) {
-    next_ = x.t + every_;
+  [[gnu::cold]] void look(System& system, State const& x, std::vector<std::string>& warnings) {
     collect(system, x);
+    Sequence<double> shares(loads_.size(), 0.0);  // all of them first: one that throws leaves the rest as it was
     for (std::size_t i = 0; i < loads_.size(); ++i) {
       BodyPlace const& body = system.layout().bodies[i];
       if (!body.axial_share) continue;
       auto const part = [&](VecX const& all, Index first, Index count) {
         return std::span<double const>(all.data() + first, std::size_t(count));
       };
-      double share = 0.0;
       try {
-        share = body.axial_share(body.body, part(x.q, body.q0, body.coordinates), part(x.v, body.v0, body.speeds),
-                                 part(x.a, body.v0, body.speeds), system.layout().gravity,
-                                 {loads_[i].data(), loads_[i].size()});
+        shares[i] = body.axial_share(body.body, part(x.q, body.q0, body.coordinates), part(x.v, body.v0, body.speeds),
+                                     part(x.a, body.v0, body.speeds), system.layout().gravity,
+                                     {loads_[i].data(), loads_[i].size()});
       } catch (InvalidInput const&) {  // NOLINT(bugprone-empty-catch): the welds do not determine axial forces
       }
+    }
+    next_ = x.t + every_;
+    for (std::size_t i = 0; i < shares.size(); ++i) {
+      double const share = shares[i];
       if (!(std::abs(share) >= worth_warning && std::abs(share) > largest_)) continue;
       largest_ = std::abs(share);
       std::erase(warnings, said_);
       said_ = sentence_of(
-          {"The beams of \"", body.name, "\" are ", (share < 0.0 ? "pressed" : "pulled"), " at t = ", x.t, " s with ",
-           100.0 * largest_,
+          {"The beams of \"", system.layout().bodies[i].name, "\" are ", (share < 0.0 ? "pressed" : "pulled"),
+           " at t = ", x.t, " s with ", 100.0 * largest_,
            " % of the load that buckles them, which its deflection leaves out: it is off by about that part. Make "
            "the body with .stiffening = true."});
       warnings.push_back(said_);
     }
   }
 
+ private:
   /// What joints and forces do to each body.
   template <class = void>  // compiled where it is used
   [[gnu::cold]] void collect(System& system, State const& x) {

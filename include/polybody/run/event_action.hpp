@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What events do to a state that is stepped.
+/// Actions of events, and values that are held at zero.
 
 #include <array>
 
@@ -9,14 +9,128 @@
 
 namespace polybody {
 
+/// Continues states of `system`, which must outlive the function, along their speeds and accelerations.
+inline std::function<void(State&, double)> drift_of(System& system) {
+  return [&system](State& x, double h) {
+    VecX const turned = h * x.v + (0.5 * h * h) * x.a;
+    VecX const q = x.q;
+    system.plus(q, turned, x.q);
+    x.v += h * x.a;
+    x.t += h;
+  };
+}
+
+namespace detail {
+
+/// The largest |Φ| at x, and its equation.
+template <class = void>
+std::pair<double, Index> opening(System& whole, State const& x) {
+  whole.evaluate(x.q, x.v, x.t);
+  VecX phi = VecX::Zero(whole.rows());
+  whole.violation(phi);
+  Index worst = 0;
+  for (Index i = 1; i < phi.size(); ++i)
+    if (std::abs(phi[i]) > std::abs(phi[worst])) worst = i;
+  return {phi.size() == 0 ? 0.0 : std::abs(phi[worst]), worst};
+}
+
+/// Checks the state `after` the action of an event. \throws InvalidInput if its sizes differ from `before`, if a number
+/// is not finite, or if a joint is open by more than `tolerance` and by more than twice its opening before.
+template <class = void>
+[[gnu::cold]] void require_closed(System& whole, Event const& event, State const& before, State const& after,
+                                  double tolerance) {
+  auto const same = [&](VecX State::* part) { return (after.*part).size() == (before.*part).size(); };
+  if (!same(&State::q) || !same(&State::v) || !same(&State::a) || !same(&State::lambda))
+    throw InvalidInput{"The action of the event \"", event.name, "\" at t = ", before.t,
+                       " s changes the sizes of the state. Change the entries of q and v only."};
+  require_finite(after.q, "The coordinates after the event \"" + event.name + "\"");
+  require_finite(after.v, "The speeds after the event \"" + event.name + "\"");
+  if (whole.rows() == 0 || after.q == before.q) return;
+  auto const [open, row] = opening(whole, after);
+  if (open <= tolerance || open <= 2.0 * opening(whole, before).first) return;
+  throw InvalidInput{
+      "The action of the event \"",
+      event.name,
+      "\" at t = ",
+      before.t,
+      " s opens ",
+      whole.name_of(whole.speeds() + row),
+      " by ",
+      open,
+      ", where ",
+      tolerance,
+      " is allowed (`assembly_tolerance`). Let it change speeds alone, or call assemble(model, x) in it."};
+}
+
+/// Moves coordinates and speeds of x to where the event's value and its rate by the speeds are zero, by the smallest
+/// change in the norm of M that keeps the joints closed. \throws InvalidInput if the value does not depend on what can
+/// move.
+template <LinearSolver Solver>
+[[gnu::cold]] void hold(Event const& event, System& whole, ForwardDynamics<Solver>& forward, State& x) {
+  Index const n = whole.speeds();
+  VecX along = VecX::Zero(n), move = along, mu;
+  for (int k = 0; k < 3; ++k) {
+    State y = x;
+    VecX turned = VecX::Zero(n);
+    double const by = 1e-6;
+    for (Index i = 0; i < n; ++i) {
+      turned[i] = by;
+      whole.plus(x.q, turned, y.q);
+      double const later = event.value(y);
+      turned[i] = -by;
+      whole.plus(x.q, turned, y.q);
+      along[i] = (later - event.value(y)) / (2.0 * by);
+      turned[i] = 0.0;
+    }
+    forward.hold(whole, x.q, x.v, x.t);
+    forward.response(whole, along, move, mu);
+    double const mobility = along.dot(move);
+    if (!(mobility > 1e-12 * along.norm() * move.norm()))
+      throw InvalidInput{"The event \"", event.name, "\" cannot be held at zero at t = ", x.t,
+                         " s: its value does not change with coordinates that can move. Leave out `rests`."};
+    double const value = event.value(x);
+    if (k > 0 && value == 0.0) break;
+    State next = x;
+    whole.plus(x.q, VecX(-value / mobility * move), next.q);
+    next.v -= along.dot(x.v) / mobility * move;
+    (void)forward.project_positions_once(whole, next.q, next.v, next.t);
+    x = std::move(next);
+  }
+  require_finite(x.q, "The coordinates at rest in the event \"" + event.name + "\"");
+  require_finite(x.v, "The speeds at rest in the event \"" + event.name + "\"");
+}
+
+}  // namespace detail
+
+/// Holds the values of the events that rest at zero in x, a state of the `whole` model. Then those that were met last
+/// change it, one after the other. \param tolerance by which an action may open a joint \throws InvalidInput for an
+/// action that leaves other sizes, numbers that are not finite or an open joint.
+template <LinearSolver Solver = DefaultSolver>
+[[gnu::cold]] void act(EventWatch const& watch, std::vector<Event> const& events, State& x, System& whole,
+                       double tolerance) {
+  if (watch.first_held() < events.size()) {
+    ForwardDynamics<Solver> forward(whole);
+    for (int sweep = 0; sweep < 3; ++sweep)  // events that rest at once push each other
+      for (std::size_t i = 0; i < events.size(); ++i)
+        if (watch.held(i)) detail::hold(events[i], whole, forward, x);
+  }
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    if (!watch.met(i) || !events[i].then) continue;
+    State const before = x;
+    events[i].then(x);
+    x.t = before.t;
+    detail::require_closed(whole, events[i], before, x, tolerance);
+  }
+}
+
 /// The stepped state after those of the `events` that were met last have changed the user's state x. \param systems the
 /// stepped one, and the whole one where that eliminates joints: then speeds are brought onto these before they are left
 /// out
 template <LinearSolver Solver>
-[[gnu::cold]] State after_action(EventWatch& watch, std::vector<Event> const& events, State x,
-                                 std::array<System*, 2> systems) {
-  watch.act(events, x);
+[[gnu::cold]] State after_action(EventWatch const& watch, std::vector<Event> const& events, State x,
+                                 std::array<System*, 2> systems, double tolerance) {
   auto const [stepped, whole] = systems;
+  act<Solver>(watch, events, x, whole ? *whole : *stepped, tolerance);
   if (!whole) return x;
   ForwardDynamics<Solver> forward(*whole);
   forward.project_velocities(*whole, x.q, x.v, x.t);

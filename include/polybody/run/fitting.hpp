@@ -58,6 +58,17 @@ template <class = void>
                      how_not_finite(in_v < 0 ? x.q[in_q] : x.v[in_v]), " in the state. Give a smaller one."};
 }
 
+/// \throws NonFinite naming a joint of `system` whose reaction in x is not finite.
+inline void require_finite_reactions(System const& system, State const& x) {
+  if (Index const i = first_not_finite(x.lambda); i >= 0)
+    throw NonFinite{"The reaction of ",
+                    system.layout().name_of(system.layout().speeds + i),
+                    how_not_finite(x.lambda[i]),
+                    " at t = ",
+                    x.t,
+                    " s. Look at the forces on the bodies that it carries."};
+}
+
 /// \throws InvalidInput unless something can be computed from x: as the three above, and for multipliers that are not
 /// finite. \param x of the whole model
 template <class = void>

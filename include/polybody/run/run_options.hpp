@@ -42,6 +42,16 @@ struct RunOptions {
     require_positive(assembly_tolerance, "simulate: assembly_tolerance");
     if (!(until >= start) || !std::isfinite(until))
       throw InvalidInput{"simulate: the end ", until, " s lies before the start ", start, " s."};
+    double const latest = std::max(std::abs(start), std::abs(until)),
+                 resolved = std::nextafter(latest, std::numeric_limits<double>::infinity()) - latest;
+    if (step < 32.0 * resolved)
+      throw InvalidInput{"simulate: the clock resolves ",
+                         resolved,
+                         " s at t = ",
+                         until,
+                         " s, too coarse for steps of ",
+                         step,
+                         " s. Count the time of the run from a start near zero."};
     if (halvings < 0 || halvings > 30)
       throw InvalidInput{"simulate: a step can be halved 0 to 30 times, but ", halvings, " is asked for."};
     if (!(limits.violation > 0.0) || !(limits.energy >= 1.0))
@@ -57,8 +67,8 @@ struct RunOptions {
   }
 };
 
-/// The cost of a run so far, and the events that it met.
-struct RunReport {
+/// The cost of a run so far in numbers.
+struct RunCounts {
   long steps = 0;           ///< taken
   long iterations = 0;      ///< of Newton's method
   long factorisations = 0;  ///< of tangents and masses
@@ -67,6 +77,22 @@ struct RunReport {
   long cut_short = 0;       ///< steps that ended at Newton's budget
   double left = 0.0;        ///< the largest correction that one of them ended with, relative to what is tolerated
   StepReport last = {};     ///< the last step's
+
+  /// Counts the cost of a step.
+  void add(StepReport const& step) {
+    ++steps;
+    iterations += step.iterations;
+    factorisations += step.factorisations;
+    evaluations += step.evaluations;
+    rejected += step.rejected;
+    if (step.left > 0.0) ++cut_short;
+    left = std::max(left, step.left);
+    last = step;
+  }
+};
+
+/// The cost of a run so far, and the events that it met.
+struct RunReport : RunCounts {
   /// An event that the run met, and when.
   struct Met {
     std::string name;  ///< the event's
@@ -108,17 +134,6 @@ struct RunReport {
                        found.energy > 0.0 ? "gains " : "loses ", std::abs(found.energy), " J that no work explains, ",
                        std::abs(found.energy) / found.scale, " of the energy that moved (", found.scale, " J); ",
                        run.halved, " steps were halved. Compare the run with one of half the step."}));
-  }
-  /// Counts the cost of a step.
-  void add(StepReport const& step) {
-    ++steps;
-    iterations += step.iterations;
-    factorisations += step.factorisations;
-    evaluations += step.evaluations;
-    rejected += step.rejected;
-    if (step.left > 0.0) ++cut_short;
-    left = std::max(left, step.left);
-    last = step;
   }
 };
 

@@ -43,6 +43,15 @@ struct RunSnapshot {
   Sequence<int> sides;     ///< of zero on which the events stand
   RunReport report;        ///< of the run so far
 
+  /// \throws InvalidInput if a number of the state is NaN or infinite.
+  template <class = void>
+  void require_finite_state() const {
+    polybody::require_finite(state.q, "resume: the coordinates of the snapshot");
+    polybody::require_finite(state.v, "resume: the speeds of the snapshot");
+    polybody::require_finite(state.a, "resume: the accelerations of the snapshot");
+    polybody::require_finite(state.lambda, "resume: the multipliers of the snapshot");
+    polybody::require_finite(state.memory, "resume: the integrator's memory in the snapshot");
+  }
   /// \throws InvalidInput unless model, integrator (`by` its name) and count of events are these.
   template <class = void>
   void require(ModelIdentity const& of, std::string const& by, std::size_t events) const {

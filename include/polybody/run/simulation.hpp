@@ -5,12 +5,15 @@
 
 #include <polybody/math/sequence.hpp>
 #include <polybody/run/axial_watch.hpp>
+#include <polybody/run/branch_watch.hpp>
 #include <polybody/run/event_action.hpp>
 #include <polybody/run/minimum_norm.hpp>
+#include <polybody/run/run_iterator.hpp>
 #include <polybody/run/run_snapshot.hpp>
 #include <polybody/run/run_systems.hpp>
 #include <polybody/run/stable_step.hpp>
 #include <polybody/run/step_plan.hpp>
+#include <polybody/run/step_undo.hpp>
 
 namespace polybody {
 
@@ -45,30 +48,10 @@ class Simulation {
   /// \throws InvalidInput where the model has changed since the run was made.
   void advance() { advance(true); }
 
-  struct Sentinel {};
-  /// Runs through the states of a simulation, one a step: `for (State const& now : simulate(…))`.
-  class Iterator {
-   public:
-    using value_type = State;                                 ///< for std::input_iterator
-    using difference_type = std::ptrdiff_t;                   ///< for std::input_iterator
-    explicit Iterator(Simulation* run) : run_(run) {}         ///< of this run
-    State const& operator*() const { return run_->state(); }  ///< as the last step left it
-    /** Takes a step, or ends where the run is done. */ Iterator& operator++() {
-      if (run_->done())
-        finished_ = true;
-      else
-        run_->advance();
-      return *this;
-    }
-    void operator++(int) { ++*this; }                      ///< a step further
-    bool operator==(Sentinel) const { return finished_; }  ///< the run is done
-
-   private:
-    Simulation* run_;
-    bool finished_ = false;
-  };
-  Iterator begin() { return Iterator(this); }  ///< takes steps as it goes on
-  Sentinel end() const { return {}; }          ///< where the run is done
+  using Iterator = RunIterator<Simulation>;      ///< takes a step where it moves on
+  using Sentinel = typename Iterator::Sentinel;  ///< the end
+  Iterator begin() { return Iterator(this); }    ///< takes steps as it goes on
+  Sentinel end() const { return {}; }            ///< where the run is done
 
   /// To the end. Returns the report, as a copy of its own from a simulation that ends with the statement.
   RunReport const& run() &;
@@ -86,23 +69,24 @@ class Simulation {
         workspace_(method_.template workspace<Solver>(*system_)),
         norm_(whole()),
         axial_forces_(whole(), start, options_.until),
-        speeds_before_(VecX::Zero(system_->speeds())),
         start_(start) {
     options_.check(start);
     if (options_.threads != 1) system_->use_threads(options_.threads);
-    h_ = std::min<double>(options_.step, largest_step());
+    h_ = asked();
+    keeps_ = eliminates() || system_->rows() > 0 || !options_.events.empty() || bool(options_.progress) ||
+             options_.minimum_norm || axial_forces_.asks();
   }
   /// A narrow state is stepped, of which `show` makes the user's; else that itself.
   bool eliminates() const { return bool(whole_); }
   void advance(bool shown);  ///< shown: the user's state follows
 
-  /// A workspace that knows no earlier step, and is ready for the next one.
+  /// A workspace that knows no earlier step, and is ready for the next one. When that fails, all stays as it was.
   [[gnu::cold]] void renew() {
-    StepBounds bounds = std::move(workspace_.forward.bounds);
-    workspace_ = method_.template workspace<Solver>(*system_);
-    workspace_.forward.bounds = std::move(bounds);
+    auto fresh = method_.template workspace<Solver>(*system_);
     State ready = stepped();  // whose memory `start` clears
-    method_.start(*system_, ready, done() ? h_ : plan_.next(ready.t, h_).h, workspace_);
+    method_.start(*system_, ready, done() ? h_ : plan_.next(ready.t, h_).h, fresh);
+    fresh.forward.bounds = std::move(workspace_.forward.bounds);
+    workspace_ = std::move(fresh);
   }
 
   /// The limits of steps hold from this state on.
@@ -115,19 +99,14 @@ class Simulation {
   }
   State& stepped() { return eliminates() ? narrow_ : *x_; }
   State const& stepped() const { return eliminates() ? narrow_ : *x_; }
-  /// The user's state follows the narrow one, but where a force fails as reactions are worked out. \param seen events
-  /// have been shown this one
-  void show(bool seen = false) {
-    if (!eliminates()) return;
+  /// Makes the user's state of the narrow one, in `seen_`. \throws NonFinite if a force fails as reactions are worked
+  /// out. \param seen events have been shown this one
+  void make_shown(bool seen) {
     if (!seen) expand(*system_, narrow_, seen_, scratch_);
-    if (Index const i = first_not_finite(seen_.lambda); i >= 0)
-      throw NonFinite{"The reaction of ",
-                      system_->layout().name_of(system_->layout().speeds + i),
-                      how_not_finite(seen_.lambda[i]),
-                      " at t = ",
-                      seen_.t,
-                      " s. Look at the forces on the bodies that it carries."};
-    *x_ = seen_;
+    require_finite_reactions(*system_, seen_);
+  }
+  void show() {  // the user's state follows the narrow one
+    if (eliminates()) make_shown(false), *x_ = seen_;
   }
 
   /// The narrow start, of speeds that keep to the joints, with the questions that only the whole model answers.
@@ -138,38 +117,12 @@ class Simulation {
     if constexpr (NamesStableStep<I>) report_.add_warning(warn_of_step<I>(whole(), forward, x, h_));
   }
 
-  /// The rows of x repeat each other far more nearly than those of the start.
-  [[gnu::cold]] bool is_singular(State const& x) {
-    try {
-      return workspace_.forward.row_gain(*system_, x.q, x.v, x.t).far_above(usual_gain_);
-    } catch (LinearSolverSingular const&) {  // of a solver that drops no rows
-      return true;
-    }
-  }
-  /// Tells the first step, of those in which the speeds turned by more than a tenth and a matrix was factored anew,
-  /// that ends next to a singular position: there the motion may have gone over to another branch.
-  void warn_of_branch(StepReport const& taken) {
-    if (taken.factorisations == 0 || system_->rows() == 0) return;
-    State const& x = stepped();
-    PackSum change;
-    for_packs(x.v.size(), [&](auto at) {
-      auto const by = at(x.v) - at(speeds_before_);
-      change.add(by * by);
-    });
-    if (!(change.total() > 0.01 * squares(speeds_before_))) return;
-    char const* const what = "The joints' rows lose rank next to t = ";
-    if (report_.warns(what) || !is_singular(x)) return;
-    report_.warnings.push_back(what + number(x.t) +
-                               " s, and the speeds jump in the step that ends there: at this singular position the "
-                               "motion can go over to another branch, and on which one it goes on is up to the step "
-                               "and the integrator. Compare the run with one of another step.");
-  }
-
   /// One step of h, or where it stalls two of h/2 from a fresh start, and so on. When it throws, the state is as it
   /// was.
   StepReport step(double h, int halvings);
 
   double largest_step() const { return options_.largest_step.value_or(std::numeric_limits<double>::infinity()); }
+  double asked() const { return std::min<double>(options_.step, largest_step()); }  // length of steps [s]
 
   /// Times at which the user, a drive or a load wants a step to end.
   Sequence<double> corners() const {
@@ -187,24 +140,26 @@ class Simulation {
       h_ = std::min(shortened ? std::max(r.next, h_) : r.next, largest_step());
   }
 
-  /// The state that events are shown.
-  EventWatch::Seen seen() {
-    return [this](State const& x) -> State const& {
+  EventMotion motion() {
+    auto const seen = [this](State const& x) -> State const& {
       if (!eliminates()) return x;
       expand(*system_, x, seen_, scratch_);
       return seen_;
     };
+    return {asked(), seen, drift_of(*system_)};
   }
+  /// Ends the step that was `taken` at the first event. Returns whether the run begins anew there.
   bool meet_events(double taken) {
+    undo_.events = true;
     EventWatch::Step const again = [this](State& x, double h) {
       return method_.step(*system_, x, h, workspace_).taken;
     };
-    bool const met = watch_.meet(options_.events, {before_, taken, seen(), again}, stepped(), report_);
-    if (met) settle();
-    if (met && watch_.acts(options_.events))
-      stepped() = after_action<Solver>(watch_, options_.events, seen()(stepped()), {system_.get(), whole_.get()});
-    return met;
+    return watch_.meet(options_.events, {before_, taken, again, motion()}, stepped(), report_);
   }
+  /// All that follows the end of a step, and may fail.
+  void follow(StepReport const& report, bool at_corner, bool crumb, bool shown);
+  [[gnu::cold]] void undo();  // what a step that failed in `follow` has changed
+  [[gnu::cold]] void tell_progress(StepReport const& report, bool shown);  // counts the step before
 
   std::unique_ptr<System> system_, whole_;  // workspaces refer to it
   State* x_;
@@ -214,12 +169,14 @@ class Simulation {
   decltype(std::declval<MethodOf<I> const&>().template workspace<Solver>(std::declval<System&>())) workspace_;
   MinimumNormOf<> norm_;
   AxialWatch axial_forces_;
-  long halved_ = 0;               // steps
-  VecX speeds_before_, scratch_;  // the first of a step
-  RowGain usual_gain_;            // at the start
+  long halved_ = 0;  // steps
+  VecX scratch_;
+  BranchWatch branches_;
+  StepUndo undo_;
   StepPlan plan_;
   StepRow row_;
   EventWatch watch_;
+  bool keeps_ = false;      // every step keeps the state before it
   double h_ = 0.0, start_;  // [s]
   RunReport report_;
 };
@@ -234,13 +191,14 @@ Simulation<I, Solver>::Simulation(RunSystems systems, State& x, I const& integra
   require_assembled(whole(), x, options_.assembly_tolerance);
   if (eliminates()) narrow_start();
   stepped().t = plan_.pass(stepped().t);
-  if (!options_.events.empty()) watch_.start(options_.events, stepped(), seen());
   restart(true);
+  if (!options_.events.empty()) watch_.start(options_.events, stepped(), motion());
   if (!eliminates()) {
     if (options_.minimum_norm) norm_.apply(*system_, workspace_.forward, x);
     warn(workspace_.forward, x);
   }
   show();
+  undo_.end(stepped());
 }
 
 template <Integrator I, class Solver>
@@ -248,6 +206,7 @@ Simulation<I, Solver>::Simulation(RunSystems systems, State& x, I const& integra
                                   RunSnapshot const& from)
     : Simulation(Prepared{}, std::move(systems), x, integrator, std::move(options), from.state.t) {
   from.require(identity_of(*system_), I::name, options_.events.size());
+  from.require_finite_state();
   if (eliminates()) x = {};
   stepped() = from.state;
   show();
@@ -256,9 +215,10 @@ Simulation<I, Solver>::Simulation(RunSystems systems, State& x, I const& integra
   row_ = from.row;
   watch_ = EventWatch(from.sides);
   report_ = from.report;
-  if (system_->rows() > 0) usual_gain_ = workspace_.forward.row_gain(*system_, stepped().q, stepped().v, stepped().t);
+  branches_.begin(*system_, workspace_.forward, stepped());
   renew();
   bound();
+  undo_.end(stepped());
 }
 
 template <Integrator I, class Solver>
@@ -268,45 +228,83 @@ template <Integrator I, class Solver>
 RunSnapshot Simulation<I, Solver>::snapshot() {
   system_->layout().watch.require_unchanged();
   renew();
+  watch_.forget();
   return {identity_of(*system_), I::name, stepped(), h_, row_, watch_.sides(), report_};
 }
 
 template <Integrator I, class Solver>
 void Simulation<I, Solver>::advance(bool shown) {
   system_->layout().watch.require_unchanged();
-  auto const [target, h, lands, jumps] = plan_.next(stepped().t, h_);
-  bool const crumb = h < 0.01 * h_;  // a tiny step, left over after a corner or an event
-  if (eliminates() || jumps || crumb || options_.minimum_norm || !options_.events.empty()) before_ = stepped();
-  double const from = stepped().t, h_before = h_;
-  StepRow const row_before = row_;
+  double const from = stepped().t, length = watch_.rests() ? std::min(h_, asked()) : h_;
+  auto const [target, h, lands, jumps] = plan_.next(from, length);
+  if (!(from + h > from) || !undo_.fits(stepped())) undo_.refuse_step(stepped(), options_.until, h);
+  bool const crumb = h < 0.01 * length;  // a tiny step, left over after a corner or an event
+  bool const keeps = keeps_ || lands || crumb;
+  if (keeps) before_ = stepped();
+  undo_.begin(row_, h_, plan_, report_);
   auto trial = workspace_.forward.attempt();
-  speeds_before_ = stepped().v;
+  long const halved = halved_;
   StepReport const report = step(h, options_.halvings);
   bool const reached = lands && report.taken == h;
   stepped().t = reached ? target : row_.after(from, report.taken);
   choose_step(report, reached);
   try {
-    warn_of_branch(report);
-    bool const met = !options_.events.empty() && meet_events(report.taken);
-    bool const at_corner = jumps && stepped().t == target;
-    if (at_corner) stepped().t = plan_.pass(stepped().t);
-    bool const anew = met || at_corner || crumb;
-    if (!met && (done() || anew)) settle();
-    if (anew) restart();
-    if (!eliminates() && options_.minimum_norm) norm_.apply(*system_, workspace_.forward, *x_);
-    if (shown) {
-      show(!options_.events.empty() && !anew);
-      axial_forces_.look(whole(), *x_, done(), report_.warnings);
-    }
+    follow(report, jumps && reached, crumb, shown);
   } catch (...) {
-    stepped() = before_;
-    row_ = row_before;
-    h_ = h_before;
+    if (keeps) undo();
+    halved_ = halved;
     throw;
   }
   trial.keep();
+  undo_.end(stepped());
+}
+
+template <Integrator I, class Solver>
+void Simulation<I, Solver>::follow(StepReport const& report, bool at_corner, bool crumb, bool shown) {
+  double const end = stepped().t;
+  if (system_->rows() > 0) branches_.look(*system_, workspace_.forward, report, before_.v, stepped(), report_.warnings);
+  bool const met = !options_.events.empty() && meet_events(report.taken);
+  if (met) settle();
+  bool const acts = met && watch_.acts(options_.events);
+  if (acts)
+    stepped() = after_action<Solver>(watch_, options_.events, motion().seen(stepped()), {system_.get(), whole_.get()},
+                                     options_.assembly_tolerance);
+  at_corner = at_corner && stepped().t == end;
+  if (at_corner) stepped().t = plan_.pass(stepped().t);
+  bool const anew = met || at_corner || crumb;
+  if (!met && (done() || anew)) settle();
+  if (anew) restart();
+  if (acts) watch_.settle(options_.events, stepped(), motion());
+  if (!eliminates() && options_.minimum_norm) norm_.apply(*system_, workspace_.forward, *x_);
+  if (shown) {
+    if (eliminates()) make_shown(!options_.events.empty() && !anew);
+    if (State const& x = eliminates() ? seen_ : *x_; axial_forces_.is_due(x.t, done())) {
+      if (options_.progress) undo_.keep_axial(axial_forces_, report_);
+      axial_forces_.look(whole(), x, report_.warnings);
+    }
+  }
+  if (options_.progress) return tell_progress(report, shown);
   report_.add(report);
-  if (options_.progress) options_.progress({start_, options_.until, stepped().t, done()});
+  if (shown && eliminates()) *x_ = seen_;
+}
+
+template <Integrator I, class Solver>
+void Simulation<I, Solver>::undo() {
+  if (undo_.shown) *x_ = undo_.user;
+  stepped() = before_;
+  if (undo_.events) watch_.put_back(report_);
+  undo_.put_back(row_, h_, plan_, report_, axial_forces_);
+}
+
+template <Integrator I, class Solver>
+void Simulation<I, Solver>::tell_progress(StepReport const& report, bool shown) {
+  undo_.keep_counts(report_);
+  report_.add(report);
+  if (shown && eliminates()) {
+    undo_.keep_shown(*x_);
+    *x_ = seen_;
+  }
+  options_.progress({start_, options_.until, stepped().t, done()});
 }
 
 template <Integrator I, class Solver>
@@ -369,8 +367,10 @@ void Simulation<I, Solver>::restart(bool first) {
   if (first && !eliminates()) require_consistent_rows(*system_, workspace_.forward, fresh);
   stepped() = std::move(fresh);
   bound();
-  if (first && system_->rows() > 0)
-    usual_gain_ = workspace_.forward.row_gain(*system_, stepped().q, stepped().v, stepped().t);
+  if (first)
+    branches_.begin(*system_, workspace_.forward, stepped());
+  else
+    undo_.keep_redundant(report_);
   report_.redundant = workspace_.forward.redundant(*system_);
   if (eliminates())
     for (std::string const& name : system_->step_coordinates().narrow->redundant)

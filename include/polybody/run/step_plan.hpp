@@ -49,6 +49,9 @@ class StepPlan {
     return until_ - t <= crumb ? until_ : t;
   }
 
+  std::size_t passed() const { return next_; }          ///< how many corners were passed
+  void go_back(std::size_t passed) { next_ = passed; }  ///< to where that many corners were passed
+
   /// The step from t that would best be h long.
   Next next(double t, double h) const {
     bool const corner = next_ < corners_.size();

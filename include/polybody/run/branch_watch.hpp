@@ -1,0 +1,61 @@
+#pragma once
+/// \file
+/// Warns of singular positions at which the motion may have gone over to another branch.
+
+#include <string>
+#include <vector>
+
+#include <polybody/integrators/forward_dynamics.hpp>
+
+namespace polybody {
+
+/// Compares the constraint equations at the ends of steps with those at the start of the run.
+class BranchWatch {
+ public:
+  /// Notes how nearly the constraint equations repeat each other at x, a usual position.
+  template <class Solver>
+  [[gnu::cold]] void begin(System& system, ForwardDynamics<Solver>& forward, State const& x) {
+    if (system.rows() > 0) usual_ = forward.row_gain(system, x.q, x.v, x.t);
+  }
+
+  /// Adds a warning for the first step that ends at x next to a singular position, of those in which the velocities v
+  /// turned by more than a tenth and a matrix was factorised.
+  template <class Solver>
+  void look(System& system, ForwardDynamics<Solver>& forward, StepReport const& taken, VecX const& v, State const& x,
+            std::vector<std::string>& warnings) {
+    if (taken.factorisations == 0 || system.rows() == 0) return;
+    PackSum change;
+    for_packs(x.v.size(), [&](auto at) {
+      auto const by = at(x.v) - at(v);
+      change.add(by * by);
+    });
+    if (change.total() > 0.01 * squares(v)) ask(system, forward, x, warnings);
+  }
+
+ private:
+  template <class Solver>
+  [[gnu::cold]] void ask(System& system, ForwardDynamics<Solver>& forward, State const& x,
+                         std::vector<std::string>& warnings) {
+    char const* const what = "The joints' rows lose rank next to t = ";
+    for (std::string const& warning : warnings)
+      if (warning.starts_with(what)) return;
+    if (!is_singular(system, forward, x)) return;
+    warnings.push_back(what + number(x.t) +
+                       " s, and the speeds jump in the step that ends there: at this singular position the motion can "
+                       "go over to another branch, and on which one it goes on is up to the step and the integrator. "
+                       "Compare the run with one of another step.");
+  }
+  /// The constraint equations at x repeat each other far more nearly than those of the start.
+  template <class Solver>
+  bool is_singular(System& system, ForwardDynamics<Solver>& forward, State const& x) {
+    try {
+      return forward.row_gain(system, x.q, x.v, x.t).far_above(usual_);
+    } catch (LinearSolverSingular const&) {  // of a solver that drops no equations
+      return true;
+    }
+  }
+
+  RowGain usual_;
+};
+
+}  // namespace polybody

@@ -1,0 +1,77 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <polybody/math/errors.hpp>
+#include <polybody/run/event.hpp>
+
+namespace polybody {
+
+/// One event of a run: the sign of its value, its values in the last steps, and its actions.
+struct EventPlace {
+  static constexpr int repeats_allowed = 10;    ///< actions of one event, each within its tolerance of the last one
+  static constexpr int actions_allowed = 1000;  ///< actions of one event within the length of one step
+  static constexpr double never = std::numeric_limits<double>::infinity();  ///< no time [s]
+
+  int side = 0;           ///< −1, 0 (not known) or 1; −2 and 2: held at zero, negative or positive before
+  bool known = false;     ///< `value` is that at the end of the last step
+  double value = 0.0;     ///< there
+  double rate = 0.0;      ///< mean over the last step [1/s]
+  double span = 0.0;      ///< length of that step; 0: none since the last start [s]
+  double acted = -never;  ///< time of the last action [s]
+  double since = -never;  ///< from when actions are counted [s]
+  int actions = 0;        ///< since then
+  int repeats = 0;        ///< actions, each within the tolerance of the last one
+  bool stays = false;     ///< the last action left the value without a rate
+  double scale = 0.0;     ///< size of the rate at the last meeting [1/s]
+  double off = 0.0;       ///< |value| there
+
+  bool rests() const { return side == 2 || side == -2; }       ///< the value is held at zero
+  static int sign(double y) { return (y > 0.0) - (y < 0.0); }  ///< −1, 0 or 1
+  /// The value y has left the stored side. Without a known side there is no zero to find.
+  bool passed(double y) const { return side != 0 && sign(y) != (rests() ? side / 2 : side); }
+  /// The value may have been beyond zero within a step of h [s] to `now`, though it is not at the end: the parabola
+  /// through the last three values turns round within the step, at less than half of them.
+  bool may_turn(double now, double h) const {
+    if (side != 1 && side != -1) return false;
+    if (!(span > 0.0)) return true;
+    double const w0 = side * value, w1 = side * now, mean = (w1 - w0) / h, bend = (mean - side * rate) / (h + span);
+    double const r0 = mean - bend * h, r1 = mean + bend * h;
+    return r0 < 0.0 && r1 > 0.0 && w0 - 0.25 * r0 * r0 / bend < 0.5 * std::min(w0, w1);
+  }
+  /// Stores the value at the end of a step.
+  void stand(double now) {
+    value = now;
+    known = true;
+    side = sign(now);
+  }
+  /// Counts an action at t [s] in a run with steps of `length` [s]. If actions accumulate, the value is held from now
+  /// on. \throws InvalidInput unless it may be.
+  [[gnu::cold]] void count(Event const& event, double length, double t) {
+    double const within = event.tolerance + 4.0 * std::numeric_limits<double>::epsilon() * std::abs(t);
+    repeats = t - acted <= within ? repeats + 1 : 0;
+    acted = t;
+    if (t - since > length) {
+      since = t;
+      actions = 0;
+    }
+    ++actions;
+    bool const repeated = repeats >= repeats_allowed || (repeats > 0 && stays);
+    if (!repeated && actions < actions_allowed) return;
+    side = side > 0 ? 2 : -2;
+    if (event.rests) return;
+    std::string const why = repeated ? sentence_of({"within its tolerance of ", event.tolerance, " s after its action"})
+                                     : sentence_of({actions, " times within the length of one step"});
+    throw InvalidInput{"The event \"",
+                       event.name,
+                       "\" is met again ",
+                       why,
+                       " at t = ",
+                       t,
+                       " s: the impacts accumulate, and the body comes to rest. Set `rests` of the event to hold its "
+                       "value at zero from there on, or end the run before."};
+  }
+};
+
+}  // namespace polybody

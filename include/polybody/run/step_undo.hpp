@@ -1,0 +1,96 @@
+#pragma once
+/// \file
+/// The parts of a run that a failed step restores.
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <polybody/run/axial_watch.hpp>
+#include <polybody/run/step_plan.hpp>
+
+namespace polybody {
+
+/// The run before a step, beside its state and events. Every step stores numbers. Texts are stored just before they
+/// change.
+struct StepUndo {
+  bool events = false;  ///< events were looked for in this step
+  bool shown = false;   ///< `user` is of this step
+  State user;           ///< the user's state before it followed this step
+
+  void end(State const& x) { sizes_ = sizes_of(x); }                 ///< notes the state at the end of a step
+  bool fits(State const& x) const { return sizes_ == sizes_of(x); }  ///< x has the sizes of that state
+  /// \throws InvalidInput for a step of h [s] from x: the sizes of x were changed, the run has ended at `until` [s], or
+  /// the clock does not resolve h.
+  [[noreturn, gnu::cold]] void refuse_step(State const& x, double until, double h) const {
+    if (!fits(x))
+      throw InvalidInput{"The sizes of the state were changed since the last step, which ended at t = ", x.t,
+                         " s. A run moves its state along: change entries of q and v in the `then` of an event."};
+    if (!(x.t < until))
+      throw InvalidInput{"advance: the run has ended at t = ", x.t, " s. Ask done() before, or give a later `until`."};
+    throw InvalidInput{"The clock does not resolve a step of ", h, " s at t = ", x.t,
+                       " s. Count the time of the run from a start near zero."};
+  }
+  /// Notes the run before a step.
+  void begin(StepRow const& row, double h, StepPlan const& plan, RunReport const& report) {
+    row_ = row;
+    h_ = h;
+    passed_ = plan.passed();
+    warnings_ = report.warnings.size();
+    events = shown = counted_ = restarted_ = false;
+    axial_.reset();
+  }
+  /// Notes the user's state before it follows this step.
+  [[gnu::cold]] void keep_shown(State const& x) {
+    user = x;
+    shown = true;
+  }
+  /// Notes the counts before this step is counted.
+  [[gnu::cold]] void keep_counts(RunCounts const& counts) {
+    counts_ = counts;
+    counted_ = true;
+  }
+  /// Notes the redundant joints before a restart.
+  [[gnu::cold]] void keep_redundant(RunReport const& report) {
+    redundant_ = report.redundant;
+    restarted_ = true;
+  }
+  /// Notes the warnings before axial forces are looked at.
+  [[gnu::cold]] void keep_axial(AxialWatch const& axial, RunReport const& report) {
+    if (axial_) return;
+    said_.assign(report.warnings.begin(), report.warnings.begin() + std::ptrdiff_t(warnings_));
+    axial_ = axial;
+  }
+  /// Puts the run back as it was.
+  [[gnu::cold]] void put_back(StepRow& row, double& h, StepPlan& plan, RunReport& report, AxialWatch& axial) {
+    row = row_;
+    h = h_;
+    plan.go_back(passed_);
+    if (axial_) {
+      axial = std::move(*axial_);
+      report.warnings.swap(said_);
+    } else {
+      report.warnings.resize(warnings_);
+    }
+    if (restarted_) report.redundant.swap(redundant_);
+    if (counted_) static_cast<RunCounts&>(report) = counts_;
+  }
+
+ private:
+  using Sizes = std::array<Index, 5>;
+  static Sizes sizes_of(State const& x) {
+    return {x.q.size(), x.v.size(), x.a.size(), x.lambda.size(), x.memory.size()};
+  }
+
+  Sizes sizes_{};  // of q, v, a, λ and memory at the end of the last step
+  StepRow row_;
+  double h_ = 0.0;
+  std::size_t passed_ = 0, warnings_ = 0;
+  RunCounts counts_;
+  bool counted_ = false, restarted_ = false;
+  std::vector<std::string> redundant_, said_;
+  std::optional<AxialWatch> axial_;
+};
+
+}  // namespace polybody
