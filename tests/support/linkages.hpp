@@ -22,7 +22,8 @@ struct FourBars {
   std::vector<BodyHandle<Body>> upright, across;
   State x;
 
-  explicit FourBars(int n, typename Where::PolicyType const& policy = {}) {
+  /// \param each how often every pin is connected
+  explicit FourBars(int n, typename Where::PolicyType const& policy = {}, int each = 1) {
     Link const link = bar_link();
     for (int i = 0; i <= n; ++i)
       upright.push_back(model.add(Where::body(link, Placement::planar(i, 0.5, 0.5 * std::numbers::pi))));
@@ -34,11 +35,14 @@ struct FourBars {
       else
         return Loop::hinge({});
     }();
+    auto const connect = [&](auto const& joint, auto const& from, auto const& to) {
+      for (int k = 0; k < each; ++k) model.connect(joint, from, to);
+    };
     for (int i = 0; i <= n; ++i)
-      model.connect(pin, model.ground().at({double(i), 0, 0}), Where::at(upright[std::size_t(i)], -0.5));
+      connect(pin, model.ground().at({double(i), 0, 0}), Where::at(upright[std::size_t(i)], -0.5));
     for (int i = 0; i < n; ++i) {
-      model.connect(pin, Where::at(upright[std::size_t(i)], 0.5), Where::at(across[std::size_t(i)], -0.5));
-      model.connect(last, Where::at(across[std::size_t(i)], 0.5), Where::at(upright[std::size_t(i) + 1], 0.5));
+      connect(pin, Where::at(upright[std::size_t(i)], 0.5), Where::at(across[std::size_t(i)], -0.5));
+      connect(last, Where::at(across[std::size_t(i)], 0.5), Where::at(upright[std::size_t(i) + 1], 0.5));
     }
     x = model.reference_state();
     for (int i = 0; i <= n; ++i) model.set_velocity(x, upright[std::size_t(i)], {0, double(i), 0}, {0, 0, -1});
@@ -71,7 +75,8 @@ struct Bricard {
   State x;
 
   explicit Bricard(double h, Policy const& policy = {}) : Bricard(h, policy, policy) {}
-  Bricard(double h, Policy const& policy, Closing const& closing) {
+  /// \param each how often every pin is connected
+  Bricard(double h, Policy const& policy, Closing const& closing, int each = 1) {
     Vec3 const points[] = {{0, 0, 0}, {1, 0, 0}, {1, -1, 0}, {1, -1, 1}, {0, -1, 1}, {0, 0, 1}};
     Vec3 const axes[] = {Vec3::UnitY(), Vec3::UnitZ(), Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ(), Vec3::UnitX()};
     double const own = h * h / 6.0, across = (1.0 + h * h) / 12.0;
@@ -85,9 +90,10 @@ struct Bricard {
     auto const end = [&](int rod, int point) {
       return rods[std::size_t(rod)].at(Vec3(points[point] - 0.5 * (points[rod] + points[rod + 1])));
     };
-    for (int i = 0; i < 6; ++i) {
+    for (int k = 0; k < 6 * each; ++k) {
+      int const i = k / each;
       Pin const pin{Revolute{.axis = axes[i]}, policy};
-      std::string const name = "pin " + std::to_string(i);
+      std::string const name = "pin " + std::to_string(i) + (k % each == 0 ? "" : ", once more");
       if (i == 0)
         model.connect(pin, model.ground().at(points[0]), end(0, 0), name);
       else if (i == 5)

@@ -68,6 +68,7 @@ struct AlphaMethod {
   template <class Solver>
   void start(System& system, State& x, double h, Workspace<Solver>& w) const {
     begin(system, x, h, w);
+    w.tangent.leave_out(w.forward.left_out());
     // once here, so that a solver that changes its order does not do so within a step
     w.solver().evaluate(system, {x.q, x.v, x.t});
     (void)refactor(system, h, {{x.q, x.v, x.t}, x.a, x.lambda}, w);
@@ -318,6 +319,8 @@ struct AlphaMethod {
     system.plus(x.q, w.dq, w.q);
     w.forward.require_end(system, {w.q, w.v, w.lambda, x.t + h, h});
     if (w.solver().lost_rank() || w.tangent.end_step()) w.kept_factor.usable = false;
+    if (w.forward.leaves_out() && w.solver().is_doubtful()) [[unlikely]]
+      w.forward.note_doubt();
     history.push(x, h, w.a);
     x.q.swap(w.q);
     x.v.swap(w.v);

@@ -70,6 +70,7 @@ struct ConservingStep {
     StepHistory::reset(x);
     w.secants.evaluate(system, {&x.q, &x.q, x.t, h, chi, &x.v, &x.a});
     w.solver.analyse(system, 1, [&](BlockSink& sink) { w.secants.tangent(system, scale(h), sink); });
+    if (w.forward.leaves_out()) w.solver.leave_out(w.forward.left_out());
     w.kept_factor.usable = false;
     (void)refactor(system, h, w);  // so that a solver that changes its order does not do so within a step
   }
@@ -121,6 +122,7 @@ struct ConservingStep {
     bool refactor() {
       auto const write = [&](BlockSink& sink) { w.secants.exact_tangent(system, secant(), s, w.lambda, sink); };
       if (exact && !w.has_exact) w.exact.analyse(system, 1, write);
+      if (exact && !w.has_exact && w.forward.leaves_out()) w.exact.leave_out(w.forward.left_out());
       w.has_exact = w.has_exact || exact;
       bad = exact ? w.exact.factor(write) : method.refactor(system, h, w);
       return bad < 0;

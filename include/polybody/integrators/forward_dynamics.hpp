@@ -262,12 +262,19 @@ class ForwardDynamics {
     return {largest_size(delta_), redundant_rows().size()};
   }
 
+  /// Whether the rows are much nearer to losing rank at `there` than at a place of `usual` gain.
+  bool is_singular(System& system, At<double> const& there, RowGain const& usual) {
+    try {
+      return row_gain(system, there.q, there.v, there.t).far_above(usual);
+    } catch (LinearSolverSingular const&) {  // of a solver that drops no rows
+      return true;
+    }
+  }
   /// Whether the rows are much nearer to losing rank at `there` than at `here`.
   bool loses_rank(System& system, At<double> const& here, At<double> const& there) {
     try {
-      RowGain const usual = row_gain(system, here.q, here.v, here.t);
-      return row_gain(system, there.q, there.v, there.t).far_above(usual);
-    } catch (LinearSolverSingular const&) {  // of a solver that drops no rows
+      return is_singular(system, there, row_gain(system, here.q, here.v, here.t));
+    } catch (LinearSolverSingular const&) {
       return true;
     }
   }
@@ -296,6 +303,20 @@ class ForwardDynamics {
   /// Equations that repeat others (see `name_of_equation`), as of the last factorisation: their multipliers are
   /// not unique and are taken as zero. Empty for solvers that do not tell.
   std::span<Index const> redundant_rows() const { return solver_.dropped(); }
+  /// Every later factorisation drops these equations, which are redundant (`leave_out_redundant` chooses them).
+  [[gnu::cold]] void leave_out(Sequence<Index> equations) {
+    left_out_ = std::move(equations);
+    solver_.leave_out(left_out());
+  }
+  bool leaves_out() const { return !left_out_.empty(); }                                    ///< any equation
+  std::span<Index const> left_out() const { return {left_out_.data(), left_out_.size()}; }  ///< the last ones
+  /// Whether the choice of `leave_out` must be checked: the last factorisation dropped other equations or found a small
+  /// pivot, or `note_doubt` was called.
+  bool is_doubtful() const { return doubtful_ || solver_.is_doubtful(); }
+  void note_doubt() { doubtful_ = true; }    ///< `is_doubtful` until `clear_doubt`
+  void clear_doubt() { doubtful_ = false; }  ///< a choice is made
+  /// See `BlockFactor::null_vector`; by equations, as of the last factorisation.
+  bool null_vector(Index dropped, VecX& n) { return solver_.null_vector(dropped, n); }
   /// Names of the joints and bodies that they belong to.
   std::vector<std::string> redundant(System const& system) const {
     std::vector<std::string> names;
@@ -345,7 +366,8 @@ class ForwardDynamics {
 
   TangentSolver<KeptParts<SolverOfSteps<Solver>>> solver_;
   bool factored_ = false;
-  bool by_tree_ = false, only_weight_ = false;
+  bool by_tree_ = false, only_weight_ = false, doubtful_ = false;
+  Sequence<Index> left_out_;
   VecX zero_a_, zero_lambda_, r_, phi_, open_, rhs_, x_, delta_, next_;
 };
 

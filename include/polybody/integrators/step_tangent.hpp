@@ -15,6 +15,7 @@ class StepTangent {
     begins_with_ = terms == SecondOrder::included;
     has_second_ = false;
     first_.analyse(system, 1, [&](BlockSink& sink) { system.tangent({1.0, 1.0, 1.0}, terms, lambda, sink); });
+    left_out_.clear();
     forget();
   }
   /// A start: no step has called for anything yet.
@@ -22,6 +23,14 @@ class StepTangent {
     included_ = went_ = false;
     left_ = since_ = 0;
     stay_ = shortest_stay;
+  }
+
+  /// Every later factorisation drops these equations, which are redundant.
+  void leave_out(std::span<Index const> equations) {
+    if (std::equal(equations.begin(), equations.end(), left_out_.begin(), left_out_.end())) return;
+    left_out_ = Sequence<Index>(equations.begin(), equations.end());
+    first_.leave_out(equations);
+    if (has_second_) second_.leave_out(equations);
   }
 
   /// The solver of the tangent as it is now.
@@ -32,9 +41,11 @@ class StepTangent {
   /// A step calls for second-order terms; \param lambda of any values.
   [[gnu::cold]] void include(System& system, VecX const& lambda) {
     if (begins_with_ || included_) return;
-    if (!has_second_)
+    if (!has_second_) {
       second_.analyse(system, 1,
                       [&](BlockSink& sink) { system.tangent({1.0, 1.0, 1.0}, SecondOrder::included, lambda, sink); });
+      second_.leave_out({left_out_.data(), left_out_.size()});
+    }
     has_second_ = included_ = true;
     stay_ = went_ && since_ <= stay_ ? std::min(2 * stay_, longest_stay) : shortest_stay;
     left_ = stay_;
@@ -53,6 +64,7 @@ class StepTangent {
   static constexpr long shortest_stay = 8, longest_stay = 1L << 20;
 
   TangentSolver<Solver> first_, second_;
+  Sequence<Index> left_out_;
   bool begins_with_ = false, has_second_ = false, included_ = false, went_ = false;
   long stay_ = shortest_stay;  ///< steps for which they stay
   long left_ = 0;              ///< of these

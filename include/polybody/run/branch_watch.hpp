@@ -39,20 +39,11 @@ class BranchWatch {
     char const* const what = "The joints' rows lose rank next to t = ";
     for (std::string const& warning : warnings)
       if (warning.starts_with(what)) return;
-    if (!is_singular(system, forward, x)) return;
+    if (!forward.is_singular(system, {x.q, x.v, x.t}, usual_)) return;
     warnings.push_back(what + number(x.t) +
                        " s, and the speeds jump in the step that ends there: at this singular position the motion can "
                        "go over to another branch, and on which one it goes on is up to the step and the integrator. "
                        "Compare the run with one of another step.");
-  }
-  /// The constraint equations at x repeat each other far more nearly than those of the start.
-  template <class Solver>
-  bool is_singular(System& system, ForwardDynamics<Solver>& forward, State const& x) {
-    try {
-      return forward.row_gain(system, x.q, x.v, x.t).far_above(usual_);
-    } catch (LinearSolverSingular const&) {  // of a solver that drops no equations
-      return true;
-    }
   }
 
   RowGain usual_;

@@ -1,6 +1,7 @@
 #pragma once
 #include <polybody/math/sequence.hpp>
 #include <polybody/run/initial_conditions.hpp>
+#include <polybody/run/redundant_rows.hpp>
 
 namespace polybody {
 
@@ -90,6 +91,7 @@ VecX minimum_norm_multipliers(System& system, State const& x) {
   require_fitting(system, x);
   ForwardDynamics<Solver> forward(system);
   State shared = x;
+  if (system.rows() > 0) leave_out_redundant(system, forward, x);
   MinimumNormOf<>(system).apply(system, forward, shared);
   return shared.lambda;
 }

@@ -6,6 +6,7 @@
 
 #include <polybody/run/initial_conditions.hpp>
 #include <polybody/run/private_rows.hpp>
+#include <polybody/run/redundant_rows.hpp>
 
 namespace polybody {
 
@@ -89,6 +90,11 @@ class RowFactor {
   Index factored() const { return Index(stays_.size()); }  ///< rows that are not private
   /// The k-th row that repeats others.
   Index row(Index k) const { return original(rank_ + k); }
+  /// c times the sizes of the rows.
+  VecX scaled(VecX c) const {
+    for (Index i = 0; i < c.size(); ++i) c[i] /= scale_[std::size_t(i)];
+    return c;
+  }
   /// c (rows) of it.
   VecX relation(Index k) const {
     VecX x = VecX::Zero(rank_), c = VecX::Zero(Index(scale_.size()));
@@ -126,7 +132,7 @@ class RowFactor {
 }  // namespace detail
 
 /// Counts and names the rows of `model` that repeat others at x (its place, speeds and time), by a factorisation of its
-/// own. A run finds such rows by itself, too, but may name another joint of the same loop (`RunReport::redundant`). A
+/// own. A run chooses the rows that it leaves out by the same rule (`leave_out_redundant`). A
 /// contradiction in positions is found to first order: ask at the state where `assemble` stopped.
 /// \throws InvalidInput for a state of another model.
 template <class = void>
@@ -146,13 +152,13 @@ Redundancy redundancy(System& system, State const& x) {
   Redundancy out{.rows = system.rows(),
                  .rank = factor.rank(),
                  .degrees_of_freedom = system.layout().body_speeds() - factor.rank()};
-  std::vector<Index> repeated;
+  Sequence<VecX> null_vectors;
   detail::ContradictionLimits const limits;
   double const in_speeds = limits.relative * (1.0 + largest_size(x.v)),
                in_accelerations = limits.relative * (1.0 + largest_size(gamma));
   for (Index k = 0; k < factor.repeated(); ++k) {
-    repeated.push_back(factor.row(k));
     VecX const c = factor.relation(k);
+    null_vectors.push_back(factor.scaled(c));
     auto const compare = [&](VecX const& b, double limit, std::vector<std::string>& found) {
       if (std::abs(c.dot(b)) > limit * largest_size(c)) found.push_back(detail::names_in(system, c));
     };
@@ -160,8 +166,7 @@ Redundancy redundancy(System& system, State const& x) {
     compare(rate, in_speeds, out.in_speeds);
     compare(gamma, in_accelerations, out.in_accelerations);
   }
-  std::sort(repeated.begin(), repeated.end());
-  for (Index const row : repeated) {
+  for (Index const row : detail::choose_redundant(null_vectors, {})) {
     std::string const name = system.name_of(system.speeds() + row);
     if (out.repeated.empty() || out.repeated.back().name != name) out.repeated.push_back({name, 0});
     ++out.repeated.back().rows;

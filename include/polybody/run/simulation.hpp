@@ -8,6 +8,7 @@
 #include <polybody/run/branch_watch.hpp>
 #include <polybody/run/event_action.hpp>
 #include <polybody/run/minimum_norm.hpp>
+#include <polybody/run/redundancy_watch.hpp>
 #include <polybody/run/run_iterator.hpp>
 #include <polybody/run/run_snapshot.hpp>
 #include <polybody/run/run_systems.hpp>
@@ -84,6 +85,7 @@ class Simulation {
   [[gnu::cold]] void renew() {
     auto fresh = method_.template workspace<Solver>(*system_);
     State ready = stepped();  // whose memory `start` clears
+    if (system_->rows() > 0) leave_out_redundant(*system_, fresh.forward, ready, &ready.lambda);
     method_.start(*system_, ready, done() ? h_ : plan_.next(ready.t, h_).h, fresh);
     fresh.forward.bounds = std::move(workspace_.forward.bounds);
     workspace_ = std::move(fresh);
@@ -176,6 +178,7 @@ class Simulation {
   StepPlan plan_;
   StepRow row_;
   EventWatch watch_;
+  RedundancyWatch<> redundancy_;
   bool keeps_ = false;      // every step keeps the state before it
   double h_ = 0.0, start_;  // [s]
   RunReport report_;
@@ -244,11 +247,13 @@ void Simulation<I, Solver>::advance(bool shown) {
   undo_.begin(row_, h_, plan_, report_);
   auto trial = workspace_.forward.attempt();
   long const halved = halved_;
-  StepReport const report = step(h, options_.halvings);
-  bool const reached = lands && report.taken == h;
-  stepped().t = reached ? target : row_.after(from, report.taken);
-  choose_step(report, reached);
+  auto const take = [&] { return step(h, options_.halvings); };
   try {
+    StepReport const report =
+        redundancy_.step(*system_, workspace_.forward, stepped(), before_, take, [&] { restart(); });
+    bool const reached = lands && report.taken == h;
+    stepped().t = reached ? target : row_.after(from, report.taken);
+    choose_step(report, reached);
     follow(report, jumps && reached, crumb, shown);
   } catch (...) {
     if (keeps) undo();
@@ -271,7 +276,7 @@ void Simulation<I, Solver>::follow(StepReport const& report, bool at_corner, boo
                                      options_.assembly_tolerance);
   at_corner = at_corner && stepped().t == end;
   if (at_corner) stepped().t = plan_.pass(stepped().t);
-  bool const anew = met || at_corner || crumb;
+  bool const anew = met || at_corner || crumb || redundancy_.changes(*system_, workspace_.forward, stepped());
   if (!met && (done() || anew)) settle();
   if (anew) restart();
   if (acts) watch_.settle(options_.events, stepped(), motion());
@@ -363,6 +368,7 @@ template <Integrator I, class Solver>
 void Simulation<I, Solver>::restart(bool first) {
   State fresh = stepped();  // which stays as it is when the start fails
   workspace_.forward.project_velocities(*system_, fresh.q, fresh.v, fresh.t);
+  redundancy_.start(*system_, workspace_.forward, fresh);
   method_.start(*system_, fresh, done() ? h_ : plan_.next(fresh.t, h_).h, workspace_);
   if (first && !eliminates()) require_consistent_rows(*system_, workspace_.forward, fresh);
   stepped() = std::move(fresh);
@@ -371,7 +377,7 @@ void Simulation<I, Solver>::restart(bool first) {
     branches_.begin(*system_, workspace_.forward, stepped());
   else
     undo_.keep_redundant(report_);
-  report_.redundant = workspace_.forward.redundant(*system_);
+  redundancy_.name(workspace_.forward.redundant(*system_), workspace_.forward.leaves_out(), report_.redundant);
   if (eliminates())
     for (std::string const& name : system_->step_coordinates().narrow->redundant)
       if (report_.redundant.empty() || report_.redundant.back() != name) report_.redundant.push_back(name);

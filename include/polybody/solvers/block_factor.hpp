@@ -48,10 +48,12 @@ class BlockFactor {
     size_ = size;
     blocks_ = Sequence<Block>(blocks.begin(), blocks.end());
     pattern_.analyse(size, blocks);
-    hints_ = {Sequence<char>(pattern_.segments().size(), 0), Sequence<char>(pattern_.segments().size(), 0)};
+    hints_ = {Sequence<char>(pattern_.segments().size(), 0), Sequence<char>(pattern_.segments().size(), 0), false,
+              false};
     reordered_ = false;
     earlier_.clear();
     kept_ = no_limit;
+    left_out_.clear();
     compile();
   }
 
@@ -81,6 +83,7 @@ class BlockFactor {
     bool const symmetric = symmetry == Symmetry::assumed || (symmetry == Symmetry::measured && is_symmetric());
     symmetric_ = symmetric;
     scales_.zero();
+    for (int const p : left_out_places_) scales_.data()[p] = std::numeric_limits<double>::infinity();
     for (Node const& node : layout_.nodes) {
       int const bad = with_constant(node.pivoted ? 0 : node.size, [&](auto n) {
         int const lost = eliminate<n>(node, symmetric);
@@ -104,6 +107,18 @@ class BlockFactor {
   void keep_reorderings(std::size_t count) noexcept { kept_ = std::min(count, kept_); }
   /// Unknowns (rows of joints) that repeat others; their multipliers are zero.
   std::span<Index const> dropped() const { return {dropped_.data(), dropped_count_}; }
+  /// Every later factorisation drops these unknowns (rows of joints), whatever their pivots. `analyse` forgets them.
+  /// Rows that were eliminated together with a singular body stay.
+  [[gnu::cold]] void leave_out(std::span<Index const> unknowns) {
+    left_out_ = Sequence<Index>(unknowns.begin(), unknowns.end());
+    place_left_out();
+  }
+  /// Whether the last factorisation dropped more rows than `leave_out` names, or has a pivot below `share` of its parts
+  /// in a row that closes a loop.
+  [[gnu::cold]] bool is_doubtful(double share) const;
+  /// The vector n with n = 1 at a dropped unknown, 0 at all others dropped, and A n = 0 in all other rows, as of the
+  /// last factorisation: a null vector of A where the row of that unknown repeats others.
+  [[gnu::cold]] void null_vector(Index dropped, VecX& n) const;
   /// Whether the last factorisation did the half of the work.
   bool was_symmetric() const { return symmetric_; }
 
@@ -152,6 +167,20 @@ class BlockFactor {
       double* const to = (p.lower ? l_.data() : u_.data()) + (read ? p.to : 0);
       slots_.push_back({to, p.row, p.col, read ? p.rows : 0, read ? p.cols : 0, p.stride, p.lower});
     }
+    place_left_out();
+  }
+  Node const& node_at(int place) const {
+    Node const* n = layout_.nodes.begin();
+    while (std::size_t(place) >= n->x + std::size_t(n->pad)) ++n;
+    return *n;
+  }
+  [[gnu::cold]] void place_left_out() {
+    left_out_places_.clear();
+    for (Index const i : left_out_)
+      if (int const p = layout_.place[std::size_t(i)]; !node_at(p).pivoted) left_out_places_.push_back(p);
+  }
+  [[gnu::cold]] bool is_left_out(int place) const {
+    return std::find(left_out_places_.begin(), left_out_places_.end(), place) != left_out_places_.end();
   }
   bool is_symmetric() const;
 
@@ -209,6 +238,20 @@ class BlockFactor {
     }
   };
 
+  Solution solution(double* w) const {
+    return {u_.data(),
+            l_.data(),
+            f_.data(),
+            inverse_.data(),
+            w,
+            scaled_.data(),
+            direct_.data(),
+            layout_.nodes.data(),
+            layout_.neighbours.data(),
+            swaps_.data(),
+            symmetric_};
+  }
+
   template <int N>
   int eliminate(Node const& n, bool symmetric) {
     double* const scale = scales_.data() + n.x;  // what eliminations have added to the diagonal
@@ -216,7 +259,8 @@ class BlockFactor {
     return detail::eliminate_node<N>(storage(n), symmetric, n.joint ? row_threshold : body_threshold, scale,
                                      [&](int r, double pivot) {
                                        // only a joint that waits for its whole loop may be redundant
-                                       if (!n.droppable || !std::isfinite(pivot)) return true;
+                                       if (!std::isfinite(pivot)) return true;
+                                       if (!n.droppable && !is_left_out(int(n.x) + r)) return true;
                                        dropped_[dropped_count_++] = layout_.unknown[n.x + std::size_t(r)];
                                        return false;
                                      });
@@ -269,7 +313,8 @@ class BlockFactor {
   Sequence<BlockPiece> slots_;  // of the pieces of all blocks
   Sequence<int> swaps_;
   mutable Sequence<char> direct_;  // of each node: its size, or 0 where it has no multipliers
-  Sequence<Index> dropped_;
+  Sequence<Index> dropped_, left_out_;
+  Sequence<int> left_out_places_;  // of those in nodes without pivoting
   std::size_t dropped_count_ = 0;
   mutable detail::AlignedDoubles u_, l_, f_, inverse_, scaled_, work_;  // a solve changes the last two only
   detail::AlignedDoubles scales_;
@@ -291,58 +336,11 @@ bool BlockFactor<symmetry>::is_symmetric() const {
 }
 
 template <Symmetry symmetry>
-[[gnu::cold]] Index BlockFactor<symmetry>::failed(Node const& n, int r) {
-  Index const unknown = layout_.unknown[n.x + std::size_t(r)];
-  double const pivot = u_.data()[n.u + std::size_t(r * n.stride() + r)];
-  if (!std::isfinite(pivot) || hints_.dense) return unknown;
-  detail::BlockLayout::NodeHints const before = hints_;
-  auto const& segments = pattern_.segments();
-  auto const& segment = segments[std::size_t(pattern_.of(unknown))];
-  bool changed = false;
-  if (!n.pivoted && n.joint) {  // what hangs on it cannot carry it alone: it waits for all others
-    for (std::size_t s = 0; s < segments.size(); ++s)
-      if (segments[s].first == segment.first && !hints_.late[s]) {
-        hints_.late[s] = 1;
-        changed = true;
-      }
-  } else if (!n.pivoted) {  // a singular body: it and its joint become one; so do those like it
-    auto const rows = [&](int body) {
-      int const primary = pattern_.primary(body);
-      return primary < 0 ? 0 : segments[std::size_t(primary)].size;
-    };
-    for (std::size_t s = 0; s < segments.size(); ++s)
-      if (!segments[s].joint && !hints_.merged[s] && segments[s].size == segment.size &&
-          rows(segments[s].body) == rows(segment.body)) {
-        hints_.merged[s] = 1;
-        changed = true;
-      }
-  }
-  if (!changed) {
-    if (size_ > dense_limit) return unknown;
-    hints_.dense = true;
-  }
-  earlier_.push_back(before);
-  compile();
-  reordered_ = true;
-  return unknown;
-}
-
-template <Symmetry symmetry>
 void BlockFactor<symmetry>::solve(double const* b, double* x) const {
   double* const w = work_.data();
   int const* const place = layout_.place.data();
   for (Index i = 0; i < size_; ++i) w[place[i]] = b[i];
-  Solution const solution{u_.data(),
-                          l_.data(),
-                          f_.data(),
-                          inverse_.data(),
-                          w,
-                          scaled_.data(),
-                          direct_.data(),
-                          layout_.nodes.data(),
-                          layout_.neighbours.data(),
-                          swaps_.data(),
-                          symmetric_};
+  Solution const solution = this->solution(w);
   char const* direct = direct_.data();
   for (Node const& n : layout_.nodes) with_constant(*direct++, [&](auto size) { solution.template descend<size>(n); });
   for (Node const* n = layout_.nodes.end(); n != layout_.nodes.begin();) {
@@ -352,27 +350,6 @@ void BlockFactor<symmetry>::solve(double const* b, double* x) const {
   for (Index i = 0; i < size_; ++i) x[i] = w[place[i]];
 }
 
-template <Symmetry symmetry>
-double BlockFactor<symmetry>::flops() const {
-  double count = 0.0;
-  for (Node const& n : layout_.nodes) {
-    double later = 0.0;
-    for (int a = 0; a < n.neighbours; ++a) later += layout_.neighbours[std::size_t(n.first_neighbour + a)].size;
-    for (int r = 1; r < n.size; ++r) count += r * (r + 4.0 * later);  // the node's own half, and its row twice
-    count += n.size * later * (later + 2.0);
-  }
-  return count;
-}
-
-template <Symmetry symmetry>
-Index BlockFactor<symmetry>::fill() const {
-  Index count = 0;
-  for (Node const& n : layout_.nodes) {
-    count += n.size * (n.size + 1) / 2;
-    for (int a = 0; a < n.neighbours; ++a)
-      count += n.size * layout_.neighbours[std::size_t(n.first_neighbour + a)].size;
-  }
-  return count;
-}
-
 }  // namespace polybody
+
+#include <polybody/solvers/block_factor_cold.hpp>

@@ -34,10 +34,11 @@ class BlockLayout {
     int stride;                ///< of what it is added to
     bool lower;                ///< into Lt, transposed
   };
-  /// What numeric trouble has taught: segments whose body and joint are one node, joints that wait for all others, all
-  /// in one node.
+  /// What numeric trouble has taught: segments whose body and joint are one node, joints that wait for all others,
+  /// further joints of such a body in nodes of their own (they may be redundant), all in one node.
   struct NodeHints {
     Sequence<char> merged, late;
+    bool apart = false;
     bool dense = false;
   };
 
@@ -79,7 +80,8 @@ class BlockLayout {
         for (int const t : segments[std::size_t(primary)].child) take(t);
         take(primary);
       }
-      for (int const t : pattern.secondary(body)) take(t);
+      for (int const t : pattern.secondary(body))
+        if (!hints.apart || segments[std::size_t(t)].size == 1) take(t);
       ++count;
     }
     join_alike(pattern, blocks, node_of, count);

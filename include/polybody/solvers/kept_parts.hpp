@@ -99,6 +99,30 @@ class KeptParts {
   /// Unknowns in parts that are factored once.
   Index kept() const { return kept_size_; }
   std::span<Index const> dropped() const { return {dropped_.data(), dropped_.size()}; }
+  /// As `BlockFactor`; rows of parts that are factored once stay.
+  [[gnu::cold]] void leave_out(std::span<Index const> unknowns) {
+    if constexpr (requires { rest_.leave_out(unknowns); }) {
+      Sequence<Index> rows;
+      for (Index const i : unknowns)
+        if (kept_size_ == 0 || !kept_[std::size_t(i)]) rows.push_back(kept_size_ == 0 ? i : place_[std::size_t(i)]);
+      rest_.leave_out(std::span<Index const>(rows.data(), rows.size()));
+    }
+  }
+  /// As `BlockFactor`.
+  [[gnu::cold]] bool is_doubtful(double share) const {
+    if constexpr (requires { rest_.is_doubtful(share); }) return rest_.is_doubtful(share);
+    return false;
+  }
+  /// As `BlockFactor`. False where the solver finds none.
+  [[gnu::cold]] bool null_vector(Index dropped, VecX& n) {
+    if constexpr (requires { rest_.null_vector(dropped, n); }) {
+      if (kept_size_ == 0) return rest_.null_vector(dropped, n), true;
+      rest_.null_vector(place_[std::size_t(dropped)], rest_x_);
+      for (std::size_t i = 0; i < place_.size(); ++i) n[Index(i)] = kept_[i] ? 0.0 : rest_x_[place_[i]];
+      return true;
+    }
+    return false;
+  }
   bool reordered() const {
     if constexpr (requires { rest_.reordered(); }) return rest_.reordered() || kept_solver_.reordered();
     return false;

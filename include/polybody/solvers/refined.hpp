@@ -66,6 +66,21 @@ class Refined {
   {
     solver_.keep_reorderings(count);
   }
+  void leave_out(std::span<Index const> unknowns)
+    requires requires(Solver s) { s.leave_out(unknowns); }
+  {
+    solver_.leave_out(unknowns);
+  }
+  bool is_doubtful(double share) const
+    requires requires(Solver const s) { s.is_doubtful(share); }
+  {
+    return solver_.is_doubtful(share);
+  }
+  void null_vector(Index dropped, VecX& n) const
+    requires requires(Solver const s) { s.null_vector(dropped, n); }
+  {
+    solver_.null_vector(dropped, n);
+  }
   std::span<Index const> dropped() const
     requires requires(Solver const s) { s.dropped(); }
   {

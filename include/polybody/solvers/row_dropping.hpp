@@ -36,6 +36,7 @@ class RowDropping {
     values_.assign(first_.back(), 0.0);
     out_.assign(std::size_t(size), char(0));
     dropped_.clear();
+    left_out_.clear();
     judges_ = false;
     rhs_.setZero(size);
     solver_.analyse(size, blocks);
@@ -71,6 +72,17 @@ class RowDropping {
   }
   std::span<Index const> dropped() const { return {dropped_.data(), dropped_.size()}; }
 
+  /// As `BlockFactor`, by the block solver.
+  [[gnu::cold]] void leave_out(std::span<Index const> unknowns) {
+    left_out_ = Sequence<Index>(unknowns.begin(), unknowns.end());
+    if (judges_) judge_.leave_out(unknowns);
+    drop(unknowns);
+  }
+  /// As `BlockFactor`, if rows are dropped.
+  bool is_doubtful(double share) const { return !dropped_.empty() && judge_.is_doubtful(share); }
+  /// As `BlockFactor`, if rows are dropped.
+  void null_vector(Index dropped, VecX& n) const { judge_.null_vector(dropped, n); }
+
  private:
   bool is_weak() const {
     if constexpr (requires { solver_.least_pivot(); })
@@ -84,7 +96,10 @@ class RowDropping {
 
   /// Asks the block solver which rows repeat others. False where it does not know.
   [[gnu::cold]] bool judge() {
-    if (!judges_) judge_.analyse(rhs_.size(), blocks_);
+    if (!judges_) {
+      judge_.analyse(rhs_.size(), blocks_);
+      judge_.leave_out({left_out_.data(), left_out_.size()});
+    }
     judges_ = true;
     Index const bad = write_and_factor(judge_, [this](BlockSink& sink) {
       for (std::size_t k = 0; k < blocks_.size(); ++k) sink.add(blocks_[k].row, blocks_[k].col, view(k));
@@ -140,7 +155,7 @@ class RowDropping {
   Sequence<std::size_t> first_;  // of each block's values, and one past the last
   Sequence<double> values_, part_;
   Sequence<char> out_;  // by unknowns
-  Sequence<Index> dropped_;
+  Sequence<Index> dropped_, left_out_;
   std::size_t next_ = 0;
   mutable VecX rhs_;
 };

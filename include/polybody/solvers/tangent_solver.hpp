@@ -127,6 +127,25 @@ class TangentSolver {
   /// rows hold again, and it would leave them open.
   bool lost_rank() const { return dropped().size() > fewest_dropped_; }
 
+  /// Every later factorisation drops these equations (rows of joints). Solvers without `leave_out` ignore it.
+  [[gnu::cold]] void leave_out(std::span<Index const> equations) {
+    if constexpr (requires { solver_.leave_out(equations); }) {
+      if (solves_by_bodies() || copies_ != 1) return;
+      solver_.leave_out(equations);
+      fewest_dropped_ = std::numeric_limits<std::size_t>::max();
+    }
+  }
+  /// Whether the last factorisation dropped more rows than `leave_out` names, or has small pivots (`BlockFactor`).
+  [[gnu::cold]] bool is_doubtful() const {
+    if constexpr (requires { solver_.is_doubtful(1e-3); }) return !solves_by_bodies() && solver_.is_doubtful(1e-3);
+    return false;
+  }
+  /// As `BlockFactor`, by equations. False where there is none.
+  [[gnu::cold]] bool null_vector(Index dropped, VecX& n) {
+    if constexpr (requires { bool(solver_.null_vector(dropped, n)); }) return solver_.null_vector(dropped, n);
+    return false;
+  }
+
   /// x for the right-hand side `rhs`, both by the unknowns of the time step.
   void solve(VecX const& rhs, VecX& x) {
     if (!coordinates_) return solver_.solve(rhs, x);

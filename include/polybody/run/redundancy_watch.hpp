@@ -1,0 +1,73 @@
+#pragma once
+#include <polybody/run/redundant_rows.hpp>
+
+namespace polybody {
+
+/// Follows a run: which redundant equations it leaves out.
+template <class = void>
+class RedundancyWatch {
+ public:
+  /// A start at x, where `forward` has been factored.
+  template <class Solver>
+  void start(System& system, ForwardDynamics<Solver>& forward, State const& x) {
+    if (!forward.redundant_rows().empty() && !keeps_all_) leave_out_redundant(system, forward, x);
+  }
+  /// After a step to x: replaces a choice that is no longer valid. Returns whether the choice has changed.
+  template <class Solver>
+  bool changes(System& system, ForwardDynamics<Solver>& forward, State const& x) {
+    return forward.leaves_out() && forward.is_doubtful() && leave_out_redundant(system, forward, x);
+  }
+  /// The joints of the last start, `now`, into `names`, beside those of earlier choices.
+  static void name(std::vector<std::string> now, bool beside, std::vector<std::string>& names) {
+    if (beside)
+      for (std::string& earlier : names)
+        if (std::find(now.begin(), now.end(), earlier) == now.end()) now.push_back(std::move(earlier));
+    names = std::move(now);
+  }
+  /// A step of a run, step() from x. \param before state before it, if equations are dropped  \param restart()
+  /// of the run
+  template <class Solver, class Step, class Restart>
+  StepReport step(System& system, ForwardDynamics<Solver>& forward, State& x, State const& before, Step&& step,
+                  Restart&& restart) {
+    return forward.leaves_out() ? watched(system, forward, x, before, step, restart) : step();
+  }
+
+ private:
+  /// A step with dropped equations. If the step fails, or violates a dropped equation (it was redundant only at a
+  /// singular position), the step is repeated with all equations, and later steps drop none.
+  template <class Solver, class Step, class Restart>
+  [[gnu::cold]] StepReport watched(System& system, ForwardDynamics<Solver>& forward, State& x, State const& before,
+                                   Step& step, Restart& restart) {
+    try {
+      StepReport const report = step();
+      if (!is_open(system, forward.left_out(), x)) return report;
+      x = before;
+    } catch (NewtonStalled const&) {  // the second attempt reports it if the dropped equations are not the cause
+    }
+    try {
+      keeps_all_ = true;
+      forward.leave_out({});
+      restart();
+      return step();
+    } catch (...) {
+      x = before;
+      throw;
+    }
+  }
+  /// Whether the violation of a dropped equation is much larger than the violation of all others.
+  static bool is_open(System& system, std::span<Index const> left_out, State const& x) {
+    VecX phi = VecX::Zero(system.rows());
+    system.evaluate(x.q, x.v, x.t);
+    system.violation(phi);
+    double open = 0.0;
+    for (Index const i : left_out) {
+      open = std::max(open, std::abs(phi[i - system.speeds()]));
+      phi[i - system.speeds()] = 0.0;
+    }
+    return open > 1e-8 * (1.0 + largest_size(x.q)) + 100.0 * largest_size(phi);
+  }
+
+  bool keeps_all_ = false;
+};
+
+}  // namespace polybody

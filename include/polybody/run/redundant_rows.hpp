@@ -1,0 +1,239 @@
+#pragma once
+/// \file
+/// Choice of the redundant constraint equations that a run leaves out. The null space of Gᵀ decides: an equation may be
+/// dropped if its coefficient in a null vector is large enough relative to the other coefficients. With the
+/// coefficients of all other equations at most f times as large, the smallest singular value of the equations that stay
+/// is within a factor of about f of its largest possible value [Gu & Eisenstat 1996, SIAM J. Sci. Comput. 17(4),
+/// 848–869]. A factorisation that drops rows in a fixed order has no such bound: it divides by the coefficient of its
+/// last row, which may pass zero during a motion.
+
+#include <polybody/run/repeated_rows.hpp>
+
+namespace polybody {
+namespace detail {
+
+/// Smallest coefficients of dropped equations in null vectors, relative to the largest coefficient.
+struct RedundantLimits {
+  double chosen = 0.1;       ///< for a new choice
+  double kept = 1.0 / 30.0;  ///< for a choice that is kept
+  double dependent = 1e-6;  ///< |Gᵀc| below which c is a null vector, for equations and velocities scaled to the size 1
+};
+
+/// For each null vector the last equation with a coefficient that is not small, so that joints connected later are
+/// named. \param c null vectors with scaled coefficients; afterwards each is 0 at the equations chosen for the other
+/// vectors
+/// \param preferred for each equation: chosen first if its coefficient is above the limit `kept`; or empty
+template <class = void>
+[[gnu::cold]] Sequence<Index> choose_redundant(Sequence<VecX>& c, Sequence<char> const& preferred) {
+  RedundantLimits const limits;
+  Sequence<Index> chosen;
+  for (std::size_t k = 0; k < c.size(); ++k) {
+    double const largest = largest_size(c[k]);
+    Index best = -1;
+    for (Index i = c[k].size(); i-- > 0 && best < 0;)
+      if (!preferred.empty() && preferred[std::size_t(i)] && std::abs(c[k][i]) >= limits.kept * largest) best = i;
+    for (Index i = c[k].size(); i-- > 0 && best < 0;)
+      if (std::abs(c[k][i]) >= limits.chosen * largest) best = i;
+    chosen.push_back(best);
+    c[k] /= c[k][best];
+    for (std::size_t j = 0; j < c.size(); ++j)
+      if (double const part = c[j][best]; j != k && part != 0.0) c[j] -= part * c[k];
+  }
+  sort_once(chosen);
+  return chosen;
+}
+
+/// Sizes of velocities and constraint equations: velocities are scaled first and equations then, so that every row of G
+/// has the norm 1 whatever its units.
+template <class = void>  // compiled where it is used
+struct RowSizes {
+  VecX of_speed, of_row;  ///< (nv), (rows); 1 where an equation or a velocity is alone
+
+  explicit RowSizes(System& system) : of_speed(VecX::Zero(system.speeds())), of_row(VecX::Zero(system.rows())) {
+    for (int pass = 0; pass < 2; ++pass) {
+      Sink sink{system.speeds(), pass == 1, *this};
+      system.masses(sink);
+      VecX& sizes = pass == 0 ? of_speed : of_row;
+      for (Index i = 0; i < sizes.size(); ++i) sizes[i] = sizes[i] > 0.0 ? std::sqrt(sizes[i]) : 1.0;
+    }
+  }
+
+ private:
+  struct Sink {
+    Index speeds;
+    bool rows;
+    RowSizes& sizes;
+    void add(Index row, Index col, BlockView const& b) {
+      if (row >= speeds || col < speeds) return;
+      for (Index j = 0; j < b.cols; ++j)
+        for (Index i = 0; i < b.rows; ++i) {
+          double const by = sizes.of_speed[row + i], g = b(i, j);
+          if (rows)
+            sizes.of_row[col - speeds + j] += g * g / (by * by);
+          else
+            sizes.of_speed[row + i] += g * g;
+        }
+    }
+  };
+};
+
+/// Null vectors of Gᵀ at a state, from a factorisation that drops the redundant equations.
+template <class Solver>
+class NullVectors {
+ public:
+  NullVectors(System& system, ForwardDynamics<Solver>& forward, State const& x)
+      : system_(system), forward_(forward), x_(x), sizes_(held()) {}
+
+  /// By the last factorisation of `forward`: scaled coefficients, 1 at a dropped equation and 0 at the other dropped
+  /// ones. False for solvers that find none.
+  bool find() {
+    Sequence<VecX> found;
+    VecX n = VecX::Zero(system_.size());
+    for (Index const i : forward_.redundant_rows()) {
+      if (i < system_.speeds() || !forward_.null_vector(i, n)) return false;
+      VecX c = n.tail(system_.rows());
+      for (Index k = 0; k < c.size(); ++k) c[k] *= sizes_.of_row[k] / sizes_.of_row[i - system_.speeds()];
+      found.push_back(std::move(c));
+    }
+    vectors = std::move(found);
+    return true;
+  }
+  /// Leaves those combinations of the vectors with Gᵀc = 0.
+  void keep_dependent() {
+    Sequence<VecX> left;
+    for (VecX const& c : vectors) {
+      VecX w = VecX::Zero(system_.speeds());
+      system_.rows_transposed_times(unscaled(c), w);
+      for (Index i = 0; i < w.size(); ++i) w[i] /= sizes_.of_speed[i];
+      left.push_back(std::move(w));
+    }
+    keep_null(left);
+  }
+  /// Leaves those combinations that are null vectors beside this state as well: c·γ(v) does not depend on velocities v
+  /// that satisfy the constraints (`RowBending`). The rank of G falls at a singular position by the others.
+  void keep_permanent() {
+    VecX const rest_v = VecX::Zero(system_.speeds());
+    VecX rest = VecX::Zero(system_.rows()), gamma = rest, w = rest_v, moved = rest_v;
+    for (Index round = 0, tests = Index(vectors.size()); round <= tests && !vectors.empty(); ++round) {
+      for (Index i = 0; i < w.size(); ++i)
+        moved[i] = scattered_sign(i + round * w.size()) * (1.0 + 1.0 / double(i + round + 2));
+      bias(moved, gamma);
+      double const rounding = 1e-6 * largest_size(gamma);  // for constraints without free velocities
+      forward_.hold(system_, x_.q, x_.v, x_.t);
+      system_.rows_times(moved, gamma);
+      forward_.least_change(system_, gamma, w);
+      for (Index i = 0; i < w.size(); ++i) w[i] += moved[i];
+      bias(rest_v, rest);
+      bias(w, gamma);
+      double const scale = std::max({largest_size(gamma), largest_size(rest), rounding, 1e-300});
+      Sequence<VecX> left;
+      for (VecX const& c : vectors) {
+        VecX bent = VecX::Zero(1);
+        for (Index k = 0; k < c.size(); ++k) bent[0] += c[k] * (gamma[k] - rest[k]) / scale;
+        left.push_back(std::move(bent));
+      }
+      std::size_t const before = vectors.size();
+      keep_null(left);
+      if (vectors.size() == before) return;
+    }
+  }
+
+  Sequence<VecX> vectors;  ///< c, times the sizes of the equations
+
+ private:
+  RowSizes<> held() {
+    forward_.hold(system_, x_.q, x_.v, x_.t);
+    return RowSizes<>(system_);
+  }
+  VecX unscaled(VecX c) const {
+    for (Index k = 0; k < c.size(); ++k) c[k] /= sizes_.of_row[k];
+    return c;
+  }
+  void bias(VecX const& v, VecX& gamma) {
+    system_.evaluate(x_.q, v, x_.t);
+    system_.acceleration_bias(gamma);
+    for (Index k = 0; k < gamma.size(); ++k) gamma[k] /= sizes_.of_row[k];
+  }
+  /// Leaves the combinations of vectors for which the same combinations of `left` vanish, by Gram–Schmidt with
+  /// pivoting.
+  void keep_null(Sequence<VecX>& left) {
+    while (!vectors.empty()) {
+      std::size_t worst = 0;
+      double most = -1.0;
+      for (std::size_t k = 0; k < vectors.size(); ++k) {
+        double const size = 1.0 / largest_size(vectors[k]);
+        vectors[k] *= size;
+        left[k] *= size;
+        if (double const of = largest_size(left[k]); of > most) most = of, worst = k;
+      }
+      if (!(most > RedundantLimits{}.dependent)) return;
+      std::swap(vectors[worst], vectors.back());
+      std::swap(left[worst], left.back());
+      VecX const by = vectors.back(), of = left.back();
+      vectors.pop_back();
+      left.pop_back();
+      double const squared = squares(of);
+      for (std::size_t k = 0; k < vectors.size(); ++k) {
+        double const part = left[k].dot(of) / squared;
+        vectors[k] -= part * by;
+        left[k] -= part * of;
+      }
+    }
+  }
+
+  System& system_;
+  ForwardDynamics<Solver>& forward_;
+  State const& x_;
+  RowSizes<> sizes_;
+};
+
+/// Whether the present choice of `forward` remains valid: it contains all dropped equations, and all coefficients of
+/// their null vectors are bounded.
+template <class Solver>
+bool choice_serves(ForwardDynamics<Solver> const& forward, Sequence<VecX> const& null_vectors) {
+  if (forward.redundant_rows().size() != forward.left_out().size()) return false;
+  for (VecX const& c : null_vectors)
+    if (largest_size(c) * RedundantLimits{}.kept > 1.0) return false;
+  return true;
+}
+
+}  // namespace detail
+
+/// Chooses the redundant constraint equations at x for `ForwardDynamics::leave_out`, or keeps a present choice that
+/// remains valid. Equations that are redundant only at x, a singular position, are not chosen. Returns whether the
+/// choice has changed. For models whose policies eliminate no bodies. \param lambda multipliers that an earlier choice
+/// left zero, which is made again; or null
+template <class Solver>
+[[gnu::cold]] bool leave_out_redundant(System& system, ForwardDynamics<Solver>& forward, State const& x,
+                                       VecX const* lambda = nullptr) {
+  forward.clear_doubt();
+  if (system.rows() == 0 || equations_of(system) != system.size()) return false;
+  Sequence<Index> const before(forward.left_out().begin(), forward.left_out().end());
+  detail::NullVectors<Solver> space(system, forward, x);
+  if (forward.redundant_rows().empty() || !space.find()) return false;
+  if (!before.empty() && detail::choice_serves(forward, space.vectors)) return false;
+  Sequence<char> preferred;
+  if (lambda && lambda->size() == system.rows())
+    for (Index i = 0; i < lambda->size(); ++i) preferred.push_back((*lambda)[i] == 0.0);
+  auto const choose = [&] {
+    Sequence<Index> rows = detail::choose_redundant(space.vectors, preferred);
+    for (Index& i : rows) i += system.speeds();
+    forward.leave_out(rows);
+    forward.hold(system, x.q, x.v, x.t);
+  };
+  space.keep_dependent();
+  choose();  // a factorisation that has dropped too many rows for small pivots now finds the rank
+  if (!space.find()) return true;
+  space.keep_dependent();
+  space.keep_permanent();
+  choose();
+  auto const dropped = forward.redundant_rows();
+  for (Index const i : forward.left_out())  // some stay where they are eliminated with a singular body
+    if (std::find(dropped.begin(), dropped.end(), i) == dropped.end()) {
+      forward.leave_out({});
+      break;
+    }
+  return !std::equal(before.begin(), before.end(), forward.left_out().begin(), forward.left_out().end());
+}
+
+}  // namespace polybody
