@@ -1,4 +1,5 @@
-// Balls that meet what is on their way, each pair by a law of its own or all of them in a group: the same derivatives.
+// Derivatives of runs with contact in two versions: one contact law per pair of balls, and one contact group of all
+// balls.
 #include <polybody/forces/contact_group.hpp>
 
 #include <gtest/gtest.h>
@@ -24,7 +25,7 @@ std::vector<Parameter> const parameters{{"mass of a ball [kg]", 0.5},
                                         {"friction [1]", 0.4},
                                         {"first height [m]", 0.12}};
 
-// Three balls fall upon a floor and against a heavier one.
+// Three balls fall onto a floor and against a heavier ball.
 template <bool grouped>
 auto heap(std::span<double const> p) {
   using M = Model<Bodies<Rigid<>>, Joints<>, std::conditional_t<grouped, Forces<Group>, Forces<OnPlane, OnBall>>>;
@@ -86,7 +87,7 @@ TEST(GradientsOfContactGroups, AreThoseOfTheirPairs) {
     EXPECT_GT(sizes[j] * std::abs(expected[j]), 1e-5) << name;
     EXPECT_NEAR(sizes[j] * direct[j], sizes[j] * expected[j], 1e-10 * largest) << name;
     EXPECT_NEAR(sizes[j] * adjoint[j], sizes[j] * direct[j], 1e-11 * largest) << name;
-    // the distance of differences moves touches from step to step
+    // the difference in the parameter moves contacts from one step to another
     EXPECT_NEAR(sizes[j] * differences(0, j), sizes[j] * expected[j], 3e-5 * largest) << name;
   }
 }

@@ -1,4 +1,4 @@
-// What a correction leaves, by a probe, beside what it leaves.
+// Estimates of the remaining error of a correction by a random probe, against the exact error.
 #include <polybody/gradients/correction_probe.hpp>
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ double relative(CorrectionProbe::Parts const& bound, VecX const& left, Index nv)
   return std::max(left.head(nv).norm() / bound.a, left.tail(left.size() - nv).norm() / bound.lambda);
 }
 
-// E of rank two, as where a contact's blocks are missing; E small and full, as rounding is.
+// E of rank two, as if a contact's blocks were missing; E small and of full rank, like round-off.
 std::vector<MatX> errors(Index n) {
   std::vector<MatX> all;
   all.push_back(0.3 * numbers(n, 0.7) * numbers(n, 0.2).transpose() +
@@ -51,13 +51,14 @@ TEST(CorrectionProbe, EstimatesWhatCorrectionsLeave) {
       above += part > 1.0;
       probe.add(numbers(n, 0.4 + 0.02 * step), 1.0);
     }
-    EXPECT_LE(above, 2);  // of 50: one probe may lie across what is missing
+    EXPECT_LE(above, 2);  // in 50 draws: one probe may be nearly orthogonal to the missing blocks
     EXPECT_LT(most, 2.0);
-    EXPECT_GT(most, 1e-4);  // not for being far from it
+    EXPECT_GT(most, 1e-4);  // the bound is not far above the error
   }
 }
 
-// Unknowns that no direction has moved and no correction moves stay out of it, however badly factors answer them.
+// Unknowns that neither a direction nor a correction moves are left out of the estimate, even if the factors give
+// them large errors.
 TEST(CorrectionProbe, LeavesAloneWhatDirectionsLeaveAlone) {
   Index const n = 30;
   VecX weights = numbers(n, 0.4), correction = 0.1 * weights, z(n);
@@ -70,11 +71,11 @@ TEST(CorrectionProbe, LeavesAloneWhatDirectionsLeaveAlone) {
   ASSERT_TRUE(probe.draw(z));
   probe.measure(e * z);
   EXPECT_LT(probe.bound(correction).a, 1e-11);
-  correction[n - 1] = 0.01;  // moved for the first time
+  correction[n - 1] = 0.01;  // first movement of an ignored unknown
   EXPECT_GT(probe.bound(correction).a, (e * correction).norm());
 }
 
-// What a step adds to the weights tells nothing of the probe that went before.
+// Weights that a step adds after a probe do not change the estimate by this probe.
 TEST(CorrectionProbe, MeasuresByTheWeightsOfItsProbe) {
   CorrectionProbe probe(2, 0);
   VecX z(2);

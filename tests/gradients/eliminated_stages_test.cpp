@@ -1,4 +1,4 @@
-// Derivatives of runs by methods of several stages whose joints eliminate coordinates.
+// Derivatives of runs with multi-stage methods whose joints eliminate coordinates.
 #include <polybody/gradients/radau_step_adjoint.hpp>
 #include <polybody/gradients/radau_step_slope.hpp>
 #include <polybody/gradients/runge_kutta_step_adjoint.hpp>

@@ -27,15 +27,15 @@ TEST(Eliminated, SlopesAreThoseOfWholeRuns) {
   expect_slopes_of_runs(hung_cables<AncfLinear, true>(), parameters, integrator, 1e-8);
 }
 
-/// Joints that are linear in coordinates move by the same steps, whether rows hold them or they are eliminated.
+/// Joints that are linear in the coordinates give the same steps by constraint equations and by elimination.
 template <bool held>
 void expect_slopes_on_rows() {
   Sensitivities const free = sensitivities(hung_cables<AncfLinear, held>(), parameters, HhtAlpha{}),
                       on_rows = sensitivities(hung_cables<Constraint, held>(), parameters, HhtAlpha{});
   for (std::size_t const k : {std::size_t(0), free.times.size() / 2, free.times.size() - 1}) {
-    // 2e-9 is how far these scatter as the density moves by a millionth
+    // 2e-9: scatter of these derivatives when the density changes by 1e-6 of its value
     expect_same_slopes(free.slopes[k].topRows(4), on_rows.slopes[k].topRows(4), parameters, 4e-9);
-    // the rounding of rows over βh² is in the reaction
+    // the reaction contains the round-off of the constraint equations over βh²
     expect_same_slopes(free.slopes[k].bottomRows(1), on_rows.slopes[k].bottomRows(1), parameters, 1e-7);
   }
 }
@@ -82,7 +82,8 @@ TEST(Eliminated, BodiesThatParametersTouchAreFoundAmongWhatIsLeft) {
 TEST(Eliminated, EventsSeeAndChangeWholeStates) { expect_impact_of_cables(2e-3, GeneralizedAlpha{.rho_inf = 0.7}); }
 
 TEST(Eliminated, OtherUnknownsUnderAParameterAreRefused) {
-  // midway between two nodes both have the same part in a row, and a little off the nearer one is eliminated
+  // midway between two nodes both have equal coefficients in the constraint equation; slightly off the middle the
+  // nearer node is eliminated
   auto const make = [](std::span<double const> p) {
     using Pin = Joint<Spherical, AncfLinear>;
     using M = Model<Bodies<AncfCable<>>, Joints<Pin>>;

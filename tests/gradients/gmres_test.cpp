@@ -1,4 +1,4 @@
-// GMRES on systems whose solutions are known, and how many products it takes.
+// GMRES on systems with known solutions, and its number of matrix products.
 #include <polybody/gradients/gmres.hpp>
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@ using namespace polybody;
 
 namespace gmres_test {
 
-// Solves B x = b; returns how many products it took.
+// Solves B x = b; returns the number of matrix products.
 int solve(MatX const& b_matrix, VecX const& b, VecX& x, Index most = 100) {
   detail::Gmres gmres;
   gmres.begin(b, 1e-14 * b.norm(), most);
@@ -38,7 +38,7 @@ TEST(Gmres, TakesOneProductForTheIdentity) {
   EXPECT_LT((3.0 * x - b).norm(), 1e-14 * b.norm());
 }
 
-// I + U Vᵀ of rank r has a minimal polynomial of degree r + 1, so as many products are enough, however large U Vᵀ is.
+// I + U Vᵀ of rank r has a minimal polynomial of degree r + 1. Hence r + 1 products are enough for any size of U Vᵀ.
 TEST(Gmres, TakesOneProductMoreThanWhatIsMissingHasRanks) {
   Index const n = 40;
   for (int const rank : {1, 2, 5}) {
@@ -51,7 +51,7 @@ TEST(Gmres, TakesOneProductMoreThanWhatIsMissingHasRanks) {
   }
 }
 
-// Where corrections by the identity alone diverge: eigenvalues 1 ± 2i.
+// Corrections with the identity as the approximate inverse diverge: the eigenvalues are 1 ± 2i.
 TEST(Gmres, ConvergesWhereCorrectionsDiverge) {
   MatX m = identity(10);
   for (Index i = 0; i < 10; i += 2) {
@@ -64,7 +64,8 @@ TEST(Gmres, ConvergesWhereCorrectionsDiverge) {
   EXPECT_LT((x - expected).norm(), 1e-13 * expected.norm());
 }
 
-// The shift's first n − 1 products leave everything [Saad 2003, §6.5]; the n-th one solves.
+// A cyclic shift: the first n − 1 products do not reduce the residual [Saad 2003, §6.5]; the n-th product solves the
+// system.
 TEST(Gmres, StopsAtTheMostProducts) {
   Index const n = 8;
   MatX shift = MatX::Zero(n, n);

@@ -1,4 +1,5 @@
-// The adjoint of runs through corners of drives and loads and through events, beside direct differentiation.
+// The adjoint gradient of runs with breakpoints of driving constraints and loads and with events, against forward
+// sensitivities.
 #include <polybody/gradients/gradient.hpp>
 
 #include <gtest/gtest.h>
@@ -15,7 +16,8 @@ namespace gradient_events_test {
 
 using namespace moving_times;
 
-/// A scenario rated by all of its outputs at the end, and by the first one's integral where it does not jump.
+/// A scenario whose objective function contains all outputs at the end, and the integral of the first output if this
+/// output does not jump.
 template <bool integrates = true, class Make>
 auto rated_by_outputs(Make const& make) {
   return [make](P p) {
@@ -35,7 +37,7 @@ auto rated_by_outputs(Make const& make) {
   };
 }
 
-/// The same by direct differentiation: the integral's terms stand over steps whose lengths move.
+/// The same objective function by forward sensitivities. The integral includes the derivatives of the step lengths.
 inline std::pair<double, VecX> by_direct_differentiation(Sensitivities const& s, bool integrates) {
   double value = 0.0;
   VecX slopes = VecX::Zero(s.slopes[0].cols());
@@ -78,7 +80,8 @@ TEST(GradientThroughCorners, APushFollowsDirectDifferentiation) {
 }
 TEST(GradientThroughCorners, ARampOfADriveFollowsDirectDifferentiation) {
   expect_direct_slopes(driven<Constraint>, of_drive, GeneralizedAlpha{.rho_inf = 0.7});
-  // on stiff pins direct differentiation itself is known to 1e-8: so much it changes with the distance of differences
+  // on stiff pins the forward sensitivities are accurate to 1e-8 only: they change by this amount with the size of
+  // the difference
   expect_direct_slopes(driven<Penalty>, of_drive, Trapezoidal{}, 1e-8);
 }
 TEST(GradientThroughEvents, ImpactsOfAMechanismFollowDirectDifferentiation) {
@@ -94,7 +97,8 @@ TEST(GradientThroughEvents, AnEventMayChangeTheStateByItsForces) {
     scenario.options.events[0].then = [k = p[2]](State& x) { x.v *= -k * (0.01 * x.lambda.norm() + 0.02 * x.a[2]); };
     return scenario;
   };
-  // in multipliers is the rounding of rows over βh²: from solver to solver both slopes change by 1.4e-7
+  // multipliers contain the round-off of the constraint equations over βh²: both derivatives change by 1.4e-7 from
+  // solver to solver
   expect_direct_slopes(pulled, {{"gravity [m/s²]", 9.81}, {"angle [rad]", 1.4}, {"factor [1]", 0.3}},
                        GeneralizedAlpha{.rho_inf = 0.7}, 1e-6);
 }
@@ -110,7 +114,8 @@ TEST(GradientThroughEvents, LengthsOfStepsAndOfTheRunAreParameters) {
     scenario.start.t = p[2];
     return scenario;
   };
-  // what a start corrects for the jerk is differenced over a part of a step, and rounds: by 1e-10 of the speeds
+  // the start correction for the jerk uses a finite difference over a part of a step; its round-off is 1e-10 of the
+  // generalised velocities
   expect_direct_slopes(swung, {{"until [s]", 0.508}, {"step [s]", 0.01, 0.1}, {"start [s]", 0.0, 0.1}},
                        GeneralizedAlpha{}, 1e-9);
   expect_direct_slopes(swung, {{"until [s]", 0.508}, {"step [s]", 0.01, 0.1}, {"start [s]", 0.0, 0.1}},
@@ -126,7 +131,8 @@ TEST(GradientThroughEvents, CornersOfOptionsAtFixedTimesFollowDirectDifferentiat
 }
 TEST(GradientThroughEvents, ImpactsOfWholeStatesFollowDirectDifferentiation) {
   expect_direct_slopes(nut_on_thread, of_nut, GeneralizedAlpha{});
-  // where cables begin anew, stiff terms dominate what their accelerations change by: these round
+  // after the impact of cables stiff terms dominate the change of the accelerations; these derivatives contain
+  // round-off
   expect_direct_slopes<false>(impact_of_cables(2e-3), of_impact, GeneralizedAlpha{.rho_inf = 0.6}, 1e-9);
 }
 
@@ -140,7 +146,7 @@ TEST(GradientThroughEvents, ABounceIsThatOfTheClosedForm) {
   };
   Gradient const g = gradient(rated_ball, of_ball, GeneralizedAlpha{});
   std::vector<double> const p{9.81, 1.0, 0.8};
-  // v is linear between impacts, so that the sum over steps is exact: ∫v dt = y − h, though v jumps
+  // v is linear between impacts, so the sum over steps is exact: ∫v dt = y − h, although v jumps
   EXPECT_NEAR(g.value, 2.0 * flight(p, 2, 1.7)[0] - p[1], 1e-11);
   for (std::size_t j = 0; j < 3; ++j)
     EXPECT_NEAR(g.slopes[Index(j)], slope_of([](auto const& q) { return 2.0 * flight(q, 2, 1.7)[0] - q[1]; }, p, j),
@@ -149,7 +155,7 @@ TEST(GradientThroughEvents, ABounceIsThatOfTheClosedForm) {
   EXPECT_EQ(g.run.events.size(), 2u);
 }
 TEST(GradientThroughEvents, TheTimeOfAFallIsThatOfTheClosedForm) {
-  // the integral of one is the time at which the floor ends the run
+  // the integral of one is the time at which the contact with the floor ends the run
   auto const timed = [](P p) {
     auto scenario = ball<false>(p);
     using M = std::remove_cvref_t<decltype(scenario.model)>;
@@ -160,7 +166,7 @@ TEST(GradientThroughEvents, TheTimeOfAFallIsThatOfTheClosedForm) {
   EXPECT_NEAR(g.value, t, 1e-13);
   EXPECT_NEAR(g.slopes[0], -0.5 * t / 9.81, 1e-11);
   EXPECT_NEAR(g.slopes[1], 0.5 * t, 1e-11);
-  EXPECT_EQ(g.run.warnings.size(), 1u);  // of the restitution, which comes too late
+  EXPECT_EQ(g.run.warnings.size(), 1u);  // about the restitution, whose impact comes after the end of the run
 }
 
 TEST(GradientThroughEvents, EverySnapshotCountGivesTheSameBits) {

@@ -1,4 +1,4 @@
-// Bodies × policies × integrators by pairs: the adjoint of a run beside its direct differentiation.
+// Pairs of bodies, policies and integrators: the adjoint gradient of a run against its forward sensitivities.
 #include <polybody/gradients/gradient.hpp>
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ namespace gradient_pairs_test {
 template <class B, class Policy, class I>
 void expect_direct_slopes(I const& integrator) {
   expect_direct_slopes(rated_links<B, Policy>(0.0), integrator, 1e-11);
-  // in accelerations and multipliers is the rounding of rows over βh²
+  // accelerations and multipliers contain the round-off of the constraint equations over βh²
   expect_direct_slopes(rated_links<B, Policy>(1.0), integrator, 1e-9);
 }
 

@@ -1,4 +1,4 @@
-// Adjoints of runs by Runge–Kutta methods and Radau beside their direct differentiation.
+// Adjoint gradients of runs with Runge–Kutta methods and Radau against their forward sensitivities.
 #include <polybody/gradients/radau_step_adjoint.hpp>
 #include <polybody/gradients/radau_step_slope.hpp>
 #include <polybody/gradients/runge_kutta_step_adjoint.hpp>

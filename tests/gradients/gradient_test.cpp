@@ -24,7 +24,7 @@ namespace gradient_test {
 
 using namespace touched_chain;
 
-/// A mass of 2 kg on a spring k and a damper c along x, drawn out by 1 m. J = x(T) + ∫ x dt.
+/// A mass of 2 kg on a spring k and a damper c along x, with the spring stretched by 1 m. J = x(T) + ∫ x dt.
 auto oscillator(double until, double step) {
   return [until, step](P p) {
     using M = Model<Bodies<planar::Rigid>, Joints<>, Forces<SpringDamper>>;
@@ -39,8 +39,8 @@ auto oscillator(double until, double step) {
 }
 std::vector<Parameter> const of_oscillator{{"k [N/m]", 50.0}, {"c [N s/m]", 3.0}};
 
-/// Of x = 2 + e^(−δt) (cos ωt + δ/ω sin ωt) the value x(t) + ∫₀ᵗ x dt, where ∫ e^(−δt)(cos + δ/ω sin) dt = [e^(−δt)
-/// (−2δ cos ωt + (ω² − δ²)/ω sin ωt) + 2δ]/(δ² + ω²).
+/// The value of x(t) + ∫₀ᵗ x dt for x = 2 + e^(−δt) (cos ωt + δ/ω sin ωt), with ∫ e^(−δt)(cos + δ/ω sin) dt =
+/// [e^(−δt) (−2δ cos ωt + (ω² − δ²)/ω sin ωt) + 2δ]/(δ² + ω²).
 double closed_form(double k, double c, double t) {
   double const m = 2.0, delta = 0.5 * c / m, w2 = k / m - delta * delta, w = std::sqrt(w2);
   double const e = std::exp(-delta * t), cosine = std::cos(w * t), sine = std::sin(w * t);
@@ -100,7 +100,8 @@ TEST(Gradient, TakesAFunctionOfStatesInDoublesByDifferences) {
   EXPECT_LT((a.slopes - b.slopes).norm(), 1e-11 * a.slopes.norm());
 }
 
-/// A ball that falls on a plane, slides and begins to roll: radius, modulus, friction, height, speed of the start.
+/// A ball that falls on a plane, slides and begins to roll. Parameters: radius, modulus, friction, height, initial
+/// speed.
 auto const ball = [](P p) {
   using Law = Contact<SphereOnPlane, HertzContact>;
   using M = Model<Bodies<Rigid<>>, Joints<>, Forces<Law>>;
@@ -129,13 +130,14 @@ TEST(Gradient, GoesThroughAContactWithFriction) {
   for (Index j = 0; j < direct.size(); ++j) {
     double const size = of_ball[std::size_t(j)].size();
     EXPECT_NEAR(size * g.slopes[j], size * direct[j], 1e-11 * (1.0 + std::abs(size * direct[j]))) << j;
-    // the force begins as d^(3/2), with no second derivative
+    // the force is d^(3/2) at first contact, which has no second derivative there
     EXPECT_NEAR(size * g.slopes[j], size * expected[j], 1e-5 * (1.0 + std::abs(size * expected[j]))) << j;
     EXPECT_GT(std::abs(size * g.slopes[j]), 1e-5) << j;
   }
 }
 
-/// A disc that rolls and wobbles: mass, an inertia, the spin of the start. Its rows are of both levels.
+/// A disc that rolls and wobbles. Parameters: mass, an inertia, initial spin. It has holonomic and nonholonomic
+/// constraint equations.
 auto const disc = [](P p) {
   using Wheel = Joint<RollingDisc, Constraint>;
   using M = Model<Bodies<Rigid<>>, Joints<Wheel>>;
@@ -186,7 +188,7 @@ TEST(Gradient, DirectDifferentiationRefusesParametersThatTouchMoreThanTheySay) {
   };
   EXPECT_TRUE(has(said(3, {"rod 7"}), "touches \"rod 7\", but the model has no body, joint or force of that name"));
   EXPECT_TRUE(has(said(3, {"pin 1"}), "\"length 1 [m]\" changes the equations of body \"rod 2\""));
-  // at the start no pin is strained, so that this shows at the end only
+  // no pin is strained at the start, so the dependence appears at the end only
   EXPECT_TRUE(has(said(5, {"rod 0"}), "\"stiffness 1 [N/m]\" changes the equations of body \"rod 1\""));
 }
 
@@ -197,7 +199,8 @@ TEST(Gradient, ParametersThatTouchNothingInCommonShareTheirModels) {
     return detail::EquationSlopes<V>(chain, parameters, model).groups();
   };
   EXPECT_EQ(groups(of_chain(false)), 15u);
-  // a length touches both neighbours, which takes three groups; densities and stiffnesses of others fill up two more
+  // a length touches both neighbours and needs three groups; densities and stiffnesses of other bodies fill two more
+  // groups
   EXPECT_LE(groups(of_chain(true)), 6u);
   EXPECT_GE(groups(of_chain(true)), 5u);
 }
@@ -205,7 +208,7 @@ TEST(Gradient, ParametersThatTouchNothingInCommonShareTheirModels) {
 TEST(Gradient, RefusesParametersThatTouchMoreThanTheySay) {
   auto const said = [](std::vector<std::string> touches) {
     auto parameters = of_chain(true);
-    parameters[3].touches = std::move(touches);  // a length
+    parameters[3].touches = std::move(touches);  // the parameter is a length
     return refusal([&] { gradient(chain, parameters, GeneralizedAlpha{}); });
   };
   EXPECT_TRUE(has(said({"rod 7"}), "touches \"rod 7\", but the model has no body, joint or force of that name"));

@@ -1,4 +1,4 @@
-// Derivatives of runs in joint coordinates by methods of several stages.
+// Derivatives of runs in joint coordinates with multi-stage methods.
 #include <polybody/gradients/radau_step_adjoint.hpp>
 #include <polybody/gradients/radau_step_slope.hpp>
 #include <polybody/gradients/runge_kutta_step_adjoint.hpp>

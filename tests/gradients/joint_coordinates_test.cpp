@@ -26,7 +26,8 @@ void expect_slopes() {
   auto parameters = parameters_of_carried_arm;
   if (!what.flexible) parameters.pop_back();
   auto const make = carried_arm<Policy, what>(2e-3);
-  // the rounding of rows over βh² is in what the rod holds, and differences of runs divide it by their distance
+  // the force in the rod contains the round-off of the constraint equations over βh²; differences of runs divide it
+  // by the change of the parameter
   expect_slopes_of_runs(make, parameters, integrator, what.loop ? 1e-7 : 1e-8);
   expect_slopes_backwards(make, parameters, integrator, 1e-11);
 }
@@ -47,7 +48,7 @@ TEST(JointCoordinatesUnderParameters, OfATreeWithABeamThatFloatsOnAFrame) {
 }
 
 /// In the plane: a beam on a pin with a slider at its end, and two bodies on a pin that fly. Parameters: Young's
-/// modulus, where the slider sits, a mass, a spin.
+/// modulus, position of the slider, a mass, a spin.
 auto const in_the_plane = [](std::span<double const> p) {
   using Turn = Joint<planar::Revolute, Recursive>;
   using Slide = Joint<planar::Prismatic, Recursive>;
@@ -71,7 +72,7 @@ auto const in_the_plane = [](std::span<double const> p) {
   State start = model.reference_state();
   System const system(model, with<Entries::rigid_speeds>);
   system.entries().first.rigid_speeds(system.entries().second, start.q, Vec3::Zero(), {0, 0, p[3]}, start.v);
-  start.v[8] += 1.0;  // of the second body that flies
+  start.v[8] += 1.0;  // of the second flying body
   auto const end = [slider, second](auto const& m, auto const& x) {
     auto const a = position(m, x, slider.at(Vec2(0.05, 0.02))), b = position(m, x, second.at(Vec2(0.0, 0.1)));
     auto sum = a[0] + 2.0 * a[1] + b[0] - b[1];
@@ -85,7 +86,7 @@ auto const in_the_plane = [](std::span<double const> p) {
 TEST(JointCoordinatesUnderParameters, InThePlane) {
   std::vector<Parameter> const parameters{
       {"young [Pa]", 1e9}, {"place [m]", 0.1}, {"mass [kg]", 0.2}, {"spin [rad/s]", 3.0}};
-  expect_slopes_of_runs(in_the_plane, parameters, integrator, 1e-7);  // of a beam that swings many times
+  expect_slopes_of_runs(in_the_plane, parameters, integrator, 1e-7);  // tolerance for a beam that swings many times
   expect_slopes_backwards(in_the_plane, parameters, integrator, 1e-11);
 }
 

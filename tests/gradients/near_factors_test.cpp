@@ -1,4 +1,4 @@
-// Which factors are taken where they need given numbers of passes.
+// Choice between kinds of approximate factors, for given numbers of refinement passes.
 #include <polybody/gradients/near_factors.hpp>
 
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@ using namespace polybody;
 
 namespace near_factors_test {
 
-// How often each kind is taken in so many steps where a direction takes passes[kind].
+// Number of uses of each kind in `steps` steps if a direction needs passes[kind] passes.
 std::vector<int> taken(std::vector<int> const& passes, int steps) {
   NearFactorsChoice choice({{NearFactors::of_step, 0.0}, {NearFactors::of_end, 0.7}, {NearFactors::exact, 2.0}});
   std::vector<int> count(passes.size(), 0);
@@ -25,12 +25,12 @@ TEST(NearFactors, KeepsThoseThatCostLeast) {
   EXPECT_EQ(taken({6, 2, 1}, 100), (std::vector<int>{1, 98, 1}));
   EXPECT_EQ(taken({2, 2, 1}, 100), (std::vector<int>{98, 1, 1}));
 }
-// What needs one pass leaves nothing to save: nothing else is tried.
+// A kind that needs one pass cannot be improved: no other kind is tried.
 TEST(NearFactors, TriesNoOthersWhereOnePassIsEnough) {
   EXPECT_EQ(taken({1, 1, 1}, 100), (std::vector<int>{100, 0, 0}));
   EXPECT_EQ(taken({4, 1, 1}, 100), (std::vector<int>{1, 99, 0}));
 }
-// Passes by cheap factors do not count as cheap where dear ones had to follow within the step.
+// The cost of cheap factors includes the expensive factors that had to follow within the same step.
 TEST(NearFactors, CountsWhatOthersCostThatFollowed) {
   NearFactorsChoice choice({{NearFactors::of_step, 0.0}, {NearFactors::exact, 2.0}});
   int cheap = 0;
@@ -38,7 +38,7 @@ TEST(NearFactors, CountsWhatOthersCostThatFollowed) {
     bool const of_step = choice.next() == NearFactors::of_step;
     cheap += of_step;
     if (of_step) choice.make(NearFactors::exact);
-    choice.add(of_step ? 3 : 2);  // 5 and 4 with what they cost
+    choice.add(of_step ? 3 : 2);  // 5 and 4 with the cost of the factors
   }
   EXPECT_EQ(cheap, 1);
 }

@@ -1,4 +1,4 @@
-// Derivatives of Radau's steps beside differences of the same steps.
+// Derivatives of Radau steps against finite differences of the same steps.
 #include <polybody/gradients/radau_step_slope.hpp>
 
 #include <gtest/gtest.h>

@@ -8,7 +8,8 @@ using namespace polybody;
 
 namespace reversal_test {
 
-/// The least steps that going back takes with s snapshots, by trying every place of the next one.
+/// Smallest number of steps of a backward sweep with s snapshots, found by trial of every position of the next
+/// snapshot.
 std::size_t fewest(std::size_t steps, std::size_t snapshots) {
   static std::map<std::pair<std::size_t, std::size_t>, std::size_t> known;
   if (steps <= 1) return 0;
@@ -21,7 +22,7 @@ std::size_t fewest(std::size_t steps, std::size_t snapshots) {
   return known[{steps, snapshots}] = best;
 }
 
-/// Goes back over so many steps of x → 3x + 1 modulo a prime; checks each of them.
+/// Runs a backward sweep over the steps x → 3x + 1 modulo a prime; checks each step.
 ReversalReport go_back(std::size_t steps, std::size_t snapshots) {
   auto const next = [](unsigned x) { return (3u * x + 1u) % 65521u; };
   std::vector<unsigned> x{7};
@@ -53,7 +54,7 @@ TEST(Reversal, TakesTheFewestStepsForEveryCountOfSnapshots) {
 TEST(Reversal, WithASnapshotOfEachStepTakesNoneAgain) { EXPECT_EQ(go_back(100, 100).taken, 100u); }
 
 TEST(Reversal, OfTenThousandStepsWithFiftySnapshotsFollowsTheBinomialSchedule) {
-  // r n − C(s + r, r − 1) of r = 3 repetitions: C(52, 50) < 10⁴ ≤ C(53, 50) [Griewank & Walther 2000, Eq. 2.2]
+  // r n − C(s + r, r − 1) for r = 3 repetitions: C(52, 50) < 10⁴ ≤ C(53, 50) [Griewank & Walther 2000, Eq. 2.2]
   EXPECT_EQ(steps_within(50, 2), 1326u);
   EXPECT_EQ(steps_within(50, 3), 23426u);
   ReversalReport const report = go_back(10000, 50);

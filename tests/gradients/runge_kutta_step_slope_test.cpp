@@ -1,4 +1,4 @@
-// Derivatives of steps of explicit Runge–Kutta methods beside differences of the same steps.
+// Derivatives of steps of explicit Runge–Kutta methods against finite differences of the same steps.
 #include <polybody/gradients/runge_kutta_step_slope.hpp>
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ template <class Stabilisation>
 RungeKutta4<Stabilisation> classical(Stabilisation const& s) {
   return {.stabilisation = s};
 }
-/// Tolerances so wide that each step has the length that is asked for.
+/// The tolerances are so wide that each step has the requested length.
 template <class Stabilisation>
 DormandPrince<Stabilisation> pair(Stabilisation const& s) {
   return {.relative_tolerance = 1.0, .absolute_tolerance = 1.0, .stabilisation = s};

@@ -1,4 +1,4 @@
-// The derivative of a vibration by a stiffness beside that of its modal sum.
+// The derivative of a vibration with respect to a stiffness, against the derivative of its modal sum.
 #include <polybody/gradients/sensitivities.hpp>
 
 #include <gtest/gtest.h>
@@ -18,8 +18,8 @@ using P = std::span<double const>;
 
 constexpr double load = 1e-4, frequency = 4.0, end = 1.0;  ///< [N], [rad/s], [s]
 
-/// ((1 − cos Ωt)/2)² = 3/8 − cos Ωt/2 + cos 2Ωt/8: it begins so smoothly that modes which steps do not resolve stay
-/// at rest.
+/// ((1 − cos Ωt)/2)² = 3/8 − cos Ωt/2 + cos 2Ωt/8: it begins so smoothly that it does not excite modes above the
+/// resolution of the steps.
 struct Raised {
   Motion operator()(double t) const {
     double const x = 0.5 * (1.0 - std::cos(frequency * t));
@@ -27,7 +27,7 @@ struct Raised {
   }
 };
 
-/// A cantilever of 1 m and 1 kg under a load across its tip, of stiffness EI.
+/// A cantilever of 1 m, 1 kg and bending stiffness EI under a transverse load at its tip.
 auto cantilever(double step) {
   return [step](P p) {
     using Clamp = Joint<planar::Weld, Constraint>;
@@ -76,7 +76,7 @@ TEST(SensitivitiesOfACantilever, TheSlopeByItsStiffnessTendsToThatOfTheModalSum)
   }
   EXPECT_NEAR((4.0 * value[2] - value[1]) / 3.0, tip(1.0, end), 1e-5 * tip(1.0, end));
   EXPECT_NEAR((by[0] - by[1]) / (by[1] - by[2]), 4.0, 0.4);
-  EXPECT_NEAR((4.0 * by[2] - by[1]) / 3.0, exact, 3e-5 * std::abs(exact));  // of eight elements
+  EXPECT_NEAR((4.0 * by[2] - by[1]) / 3.0, exact, 3e-5 * std::abs(exact));  // eight elements
 }
 
 }  // namespace sensitivities_cantilever_test

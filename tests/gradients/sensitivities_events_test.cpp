@@ -1,4 +1,4 @@
-// Derivatives of runs through corners of drives and loads, events, and what events do to a state.
+// Derivatives of runs with breakpoints of driving constraints and loads, with events and with event actions.
 #include <polybody/gradients/sensitivities.hpp>
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ using namespace moving_times;
 TEST(SensitivitiesThroughEvents, TheTimeOfAFallIsThatOfTheClosedForm) { expect_fall(GeneralizedAlpha{.rho_inf = 0.6}); }
 TEST(SensitivitiesThroughEvents, BouncesFollowTheClosedForm) { expect_bounces(GeneralizedAlpha{}); }
 
-// --- corners -----------------------------------------------------------------------------------------------------
+// --- breakpoints -------------------------------------------------------------------------------------------------
 
 TEST(SensitivitiesThroughCorners, APushThatEndsAtAParameterIsExact) { expect_push(GeneralizedAlpha{.rho_inf = 0.7}); }
 TEST(SensitivitiesThroughCorners, ARampOfADriveIsThatOfItsRuns) {
@@ -66,7 +66,7 @@ TEST(SensitivitiesThroughEvents, LengthsOfStepsAndOfTheRunAreParameters) {
 
 // --- smooth laws of contact --------------------------------------------------------------------------------------
 
-/// A ball on the floor under Hertz's law, without events: modulus, height, mass.
+/// A ball on the floor under Hertz's law, without events. Parameters: modulus, height, mass.
 auto const on_floor = [](P p) {
   using Law = Contact<SphereOnPlane, HertzContact>;
   using M = Model<Bodies<Rigid<>>, Joints<>, Forces<Law>>;
@@ -85,7 +85,7 @@ TEST(SensitivitiesThroughContact, ASmoothLawNeedsNoEvents) {
                                GeneralizedAlpha{.rho_inf = 0.8}, 1e-7, {2.5e4, 2.5e-3, 2.5e-2});
 }
 
-// --- what is refused ---------------------------------------------------------------------------------------------
+// --- refusals ----------------------------------------------------------------------------------------------------
 
 TEST(SensitivitiesThroughEvents, RefuseWhatHasNoDerivative) { expect_refusals(GeneralizedAlpha{}); }
 

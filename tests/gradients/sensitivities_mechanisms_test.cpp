@@ -1,7 +1,7 @@
-// Derivatives of runs of mechanisms beside those of their equations of motion, written by hand in as few coordinates as
-// there are freedoms and integrated with their variational equations: dual numbers through an extrapolation method
-// whose error is below 1e-12. Slopes of runs approach them with the square of the step; extrapolated over three steps
-// they agree within 1e-7 and better.
+// Derivatives of runs of mechanisms against reference derivatives. The reference integrates the equations of motion
+// in minimal coordinates, written by hand, together with their variational equations. It uses dual numbers in an
+// extrapolation method with an error below 1e-12. Derivatives of runs converge to it with the square of the step.
+// Extrapolated over three steps they agree to 1e-7 or better.
 #include <polybody/gradients/sensitivities.hpp>
 
 #include <gtest/gtest.h>
@@ -29,8 +29,8 @@ using D = Dual<3>;
 
 // --- an independent integrator -----------------------------------------------------------------------------------
 
-/// From 0 to `end` in `steps` steps, each by the modified midpoint rule with 2, 4, … 16 parts, extrapolated to none
-/// [Hairer, Nørsett & Wanner 1993, §II.9]: order 16.
+/// Integrates from 0 to `end` in `steps` steps. Each step uses the modified midpoint rule with 2, 4, … 16 substeps,
+/// extrapolated to zero substep length [Hairer, Nørsett & Wanner 1993, §II.9]: order 16.
 template <std::size_t n, class F>
 std::array<D, n> extrapolated(F const& f, std::array<D, n> y, double end, int steps) {
   constexpr std::size_t columns = 8;
@@ -62,7 +62,8 @@ std::array<D, n> extrapolated(F const& f, std::array<D, n> y, double end, int st
   return y;
 }
 
-/// The derivatives at the end of runs with steps h, h/2 and h/4, and what they tend to: errors of h² and h³ taken off.
+/// The derivatives at the end of runs with steps h, h/2 and h/4, and their limit after elimination of the errors of
+/// h² and h³.
 template <class Make>
 struct Tending {
   std::array<MatX, 3> by;
@@ -93,9 +94,9 @@ void expect_tending(Make const& make_with, std::vector<Parameter> const& paramet
     }
 }
 
-// --- Andrews' squeezing mechanism (CASES R3) ---------------------------------------------------------------------
+// --- Andrews' squeezing mechanism (R3, IVP Test Set "andrews") ---------------------------------------------------
 
-/// A quantity with its first and second derivatives by β.
+/// A quantity with its first and second derivatives with respect to β.
 struct Jet {
   D v, a = 0.0, b = 0.0;
 
@@ -125,19 +126,19 @@ struct Point {
 };
 Jet squared(Point const& p) { return p.x * p.x + p.y * p.y; }
 
-/// The place at distances r from p and s from q; `side` of the line from p to q.
+/// The point at distances r from p and s from q; `side` selects the side of the line from p to q.
 Point crossing(Point const& p, double r, Point const& q, double s, double side) {
   Point const d = q - p;
   Jet const l2 = squared(d), along = (Jet(r * r - s * s) + l2) / (l2 + l2);
   return p + along * d + (Jet(side) * sqrt(Jet(r * r) / l2 - along * along)) * d.across();
 }
 
-/// Masses, and what drives them: stiffness of the spring, moment, mass of AG.
+/// Parameters: masses, stiffness of the spring, driving moment, mass of AG.
 struct SqueezerEquations {
   D stiffness, moment, mass;
 
   struct Shape {
-    Jet inertia;    ///< Σ m |c_β|² + I φ_β²; its second derivative is not there
+    Jet inertia;    ///< Σ m |c_β|² + I φ_β²; its second derivative is not stored
     Jet potential;  ///< of the spring
     D gamma;
   };
@@ -152,7 +153,7 @@ struct SqueezerEquations {
                 G = crossing(A, 0.04, E, 0.02, side_g), H = crossing(A, 0.04, E, 0.02, side_h);
     Shape out;
     Jet j(0.0);
-    // a body whose first axis is u, that has its mass centre at (x, y) from p
+    // a body with its first axis along u and its mass centre at (x, y) from p
     auto const body = [&](D const& m, double inertia, Point const& p, Point const& u, double x, double y) {
       Point const centre = p + Jet(x) * u + Jet(y) * u.across();
       D const turn = u.x.v * u.y.a - u.y.v * u.x.a, turn_b = u.x.v * u.y.b - u.y.v * u.x.b;
@@ -183,7 +184,7 @@ struct SqueezerEquations {
   static constexpr double side_e = 1.0, side_g = 1.0, side_h = -1.0;
 };
 
-/// The same by bodies and pins; names and numbers as in the test set. Parameters as above.
+/// The same mechanism with bodies and pins; names and numbers are those of the test set. Parameters as above.
 auto squeezer(double end, double step) {
   return [=](P p) {
     using Pin = Joint<planar::Revolute, Constraint>;
@@ -240,7 +241,7 @@ TEST(SensitivitiesOfMechanisms, AndrewsSqueezerTendsToItsEquationInBeta) {
   SqueezerEquations const equations{D::variable(4530.0, 0), D::variable(0.033, 1), D::variable(0.0705, 2)};
   double const end = 0.005;
   std::array<D, 2> const start{-0.0617138900142764496, 0.0};
-  // the equation itself: published β¨ and β(0.01)
+  // check of the equation itself: published β¨ and β(0.01)
   EXPECT_NEAR(equations(0.0, start)[1].v, 14222.4439199541138706, 1e-6);
   EXPECT_NEAR(extrapolated(equations, start, 0.01, 200)[0].v, 2.1601131315315, 1e-11);
   auto const y = extrapolated(equations, start, end, 100), check = extrapolated(equations, start, end, 150);
@@ -251,11 +252,11 @@ TEST(SensitivitiesOfMechanisms, AndrewsSqueezerTendsToItsEquationInBeta) {
   expect_tending(make_with, parameters, 1e-5, {y[0], equations.at(y[0]).gamma, y[1]});
 }
 
-// --- the flyball governor (CASES R5) -----------------------------------------------------------------------------
+// --- flyball governor (R5, IFToMM A05) ---------------------------------------------------------------------------
 
-/// In the turn of the shaft, the angle of both rods below the horizontal and the height of the slider. Springs and
-/// dampers are 0.005 of those of the benchmark, so that steps resolve them. Parameters: their stiffness, the mass of
-/// the slider, the spin of the start.
+/// Coordinates: rotation of the shaft, angle of both rods below the horizontal, height of the slider. Springs and
+/// dampers are 0.005 of those of the benchmark, so that the steps resolve them. Parameters: stiffness of the springs,
+/// mass of the slider, initial spin.
 struct GovernorEquations {
   D stiffness, slider;
   double damping = 200.0;
@@ -338,7 +339,8 @@ TEST(SensitivitiesOfMechanisms, TheFlyballGovernorTendsToItsEquationsInThreeFree
   GovernorEquations equations{D::variable(4e3, 0), D::variable(3.0, 1)};
   std::array<D, 6> const start{
       D(0.0), D(std::numbers::pi / 6.0), D(0.5), D::variable(2.0 * std::numbers::pi, 2), D(0.0), D(0.0)};
-  // the equations themselves, with the benchmark's own springs: CASES R5
+  // check of the equations themselves with the springs of the benchmark: reference solution of the IFToMM benchmark
+  // A05 (R5)
   GovernorEquations stiff{D(8e5), D(3.0), 4e4};
   auto const published = extrapolated(stiff, start, 0.1, 2000);
   EXPECT_NEAR(published[2].v, 0.5238364756, 2e-10);
@@ -352,13 +354,14 @@ TEST(SensitivitiesOfMechanisms, TheFlyballGovernorTendsToItsEquationsInThreeFree
                  1e-3, {y[2], y[1], y[0]});
 }
 
-// --- the flexible slider-crank (CASES D7) ------------------------------------------------------------------------
+// --- flexible slider-crank (D7, IVP Test Set "crank") ------------------------------------------------------------
 
 namespace crank {
 
 constexpr double pi = 3.1415927, m1 = 0.36, m2 = 0.151104, l1 = 0.15, l2 = 0.30, j1 = 0.002727, j2 = 0.0045339259,
                  height = 0.0080, density = 7870.0, b = height * height * l2;
-/// The test set's numbers: two sine modes across, quadratic displacements along (middle and end).
+/// Data of the test set: two lateral sine modes, quadratic longitudinal displacements (nodes at the middle and the
+/// end).
 constexpr double b13 = -16 * b / (pi * pi * pi), b14 = b * (8 / (pi * pi * pi) - 1 / pi), b24 = b / (2 * pi);
 
 planar::FfrIntegrals rod(double young) {
@@ -387,7 +390,8 @@ struct Steady {
   Motion operator()(double t) const { return {omega * t, omega, 0.0}; }
 };
 
-/// φ₂ and q of the rod, whose end carries the slider; the crank turns at ω. Parameters: E, the slider's mass, ω.
+/// Coordinates φ₂ and q of the rod, whose end carries the slider; the crank rotates at ω. Parameters: E, the slider's
+/// mass, ω.
 struct Equations {
   D young, m3, omega;
 
@@ -399,7 +403,7 @@ struct Equations {
     D const phi1 = omega * t, ax = -omega * omega * l1 * cos(phi1), ay = -omega * omega * l1 * sin(phi1);
     D const c = cos(y[0]), s = sin(y[0]), w = y[5], length = y[4] + l2, rate = y[9];
     D const bx = c * ax + s * ay, by = c * ay - s * ax;  // of the crank pin, in axes of the rod
-    // [mass, row of the joint] (φ̈₂, q̈, λ) = forces
+    // [mass matrix, constraint equation of the joint] (φ̈₂, q̈, λ) = forces
     constexpr std::size_t n = 6;
     std::array<std::array<D, n + 1>, n> A{};
     D inertia = j2, inertia_rate = 0.0, sx = one.first[0], sy = one.first[1];
@@ -498,7 +502,8 @@ auto made(double end, double step) {
 
 TEST(SensitivitiesOfMechanisms, TheFlexibleSliderCrankTendsToItsEquations) {
   using namespace crank;
-  // the equations themselves: published values at the start of the smooth solution, at t = 0.025 [CASES D7]
+  // check of the equations themselves: published initial values on the smooth solution, at t = 0.025 [Simeon, IVP
+  // Test Set "crank"] (D7)
   std::array<D, 10> start{D(0.0),
                           D(0.0),
                           D(0.0),
@@ -513,7 +518,7 @@ TEST(SensitivitiesOfMechanisms, TheFlexibleSliderCrankTendsToItsEquations) {
   EXPECT_NEAR(published[0].v, 0.28982893967, 2e-11);
   EXPECT_NEAR(published[1].v, -1.9477824541e-4, 2e-11);
   EXPECT_NEAR(published[4].v, -8.0241594207e-6, 2e-12);
-  // a rod of a hundredth of that modulus, so that steps resolve its vibration along itself
+  // a rod with a hundredth of that modulus, so that the steps resolve its longitudinal vibration
   D const young = D::variable(0.2e10, 0), m3 = D::variable(0.075552, 1), omega = D::variable(150.0, 2);
   start = {D(0.0), D(0.0), D(0.0), D(q3_start), D(q4_start), -omega * l1 / (l2 + q4_start),
            D(0.0), D(0.0), D(0.0), D(0.0)};

@@ -1,4 +1,4 @@
-// Bodies × policies × integrators by pairs: derivatives of runs beside differences of runs.
+// Pairs of bodies, policies and integrators: derivatives of runs against finite differences of runs.
 #include <polybody/gradients/sensitivities.hpp>
 
 #include <gtest/gtest.h>

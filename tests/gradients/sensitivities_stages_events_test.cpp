@@ -1,4 +1,4 @@
-// Derivatives of runs by methods of several stages through corners of drives and loads, and events.
+// Derivatives of runs with multi-stage methods, with breakpoints of driving constraints and loads, and with events.
 #include <polybody/gradients/radau_step_slope.hpp>
 #include <polybody/gradients/runge_kutta_step_slope.hpp>
 #include <polybody/gradients/sensitivities.hpp>
@@ -42,7 +42,7 @@ TEST(SensitivitiesOfStagesThroughEvents, JumpsInSpaceAreThoseOfTheirRuns) {
 TEST(SensitivitiesOfStagesThroughEvents, AnEventUnderADriveIsThatOfItsRuns) {
   auto const s = sensitivities(braked, of_brake, RungeKutta4<Projection>{});
   ASSERT_GE(s.run.events.size(), 1u);
-  EXPECT_LT(s.run.events[0].time, 0.2);  // the ramp goes on
+  EXPECT_LT(s.run.events[0].time, 0.2);  // the ramp continues
   expect_slopes_of_moving_runs(braked, of_brake, RungeKutta4<Projection>{}, 3e-8, {0.025, 0.25, 2.5, 0.4});
   expect_slopes_of_moving_runs(braked, of_brake, Radau{}, 3e-8, {0.025, 0.25, 2.5, 0.4});
 }
@@ -51,8 +51,8 @@ TEST(SensitivitiesOfStagesThroughEvents, LengthsOfStepsAndOfTheRunAreParameters)
   expect_lengths_as_parameters(Radau{}, 0.1);
 }
 
-/// The outputs of `stopped` at the end of a run by steps of the lengths that a run for other parameters chose, `times`
-/// apart; one that ended at an event ends at its own.
+/// The outputs of `stopped` at the end of a run with prescribed step lengths: those of a run for other parameters,
+/// multiplied by `times`. A run that ended at an event ends at its own event time.
 template <class I>
 VecX end_of_frozen_run(std::span<double const> p, I const& integrator, Sensitivities const& chosen) {
   auto scenario = stopped<Constraint>(p);
@@ -112,7 +112,7 @@ TEST(SensitivitiesOfStagesThroughEvents, ChosenStepsAreFrozenButForThoseThatEndA
   }
 }
 
-/// A push within a few hundredths of a second, about t = 0.5 s.
+/// A force pulse of a few hundredths of a second, about t = 0.5 s.
 struct Bump {
   void check(std::string const&) const {}
   Motion operator()(double t) const {
@@ -120,7 +120,8 @@ struct Bump {
     return {std::exp(-s * s), 0.0, 0.0};
   }
 };
-/// A mass of 2 kg that is thrown at 1 m/s and pushed on its way: speed, push, and the place where it is stopped.
+/// A mass of 2 kg that is thrown at 1 m/s and pushed in flight. Parameters: speed, push, and the position at which it
+/// is stopped.
 auto const bumped = [](P p) {
   using M = Model<Bodies<planar::Rigid>, Joints<>, Forces<PointForce<Bump>>>;
   M model;
@@ -133,7 +134,7 @@ auto const bumped = [](P p) {
   return Scenario<M>{std::move(model), start, {.until = 2.0, .step = 1.0, .events = {there}}, std::move(outputs)};
 };
 TEST(SensitivitiesOfStagesThroughEvents, GoOverAllStepsThatLeadToAnEvent) {
-  // none of the stages of the first step meets the push, but those of shorter ones do, which are taken in parts
+  // no stage of the first step meets the pulse; shorter steps meet it and are divided
   double const v = 1.0, push = 20.0, at = 0.7, impulse = push * 0.02 * std::sqrt(std::numbers::pi) / 2.0;
   Sensitivities const s = sensitivities(bumped, {{"v [m/s]", v}, {"push [N]", push}, {"at [m]", at}},
                                         DormandPrince<>{.relative_tolerance = 1e-10, .absolute_tolerance = 1e-12});
@@ -160,7 +161,7 @@ TEST(SensitivitiesOfStagesThroughCorners, ARampOfADriveIsThatOfItsRuns) {
   expect_slopes_of_moving_runs(driven<Penalty>, of_drive, Radau{}, 3e-8, {0.025, 0.25, 0.25, 2.5});
 }
 
-/// Times and outputs are those of `simulate`.
+/// Times and outputs equal those of `simulate`.
 template <class Make, class I>
 void expect_run_of_simulation(Make const& make, std::vector<Parameter> const& parameters, I const& integrator) {
   Sensitivities const s = sensitivities(make, parameters, integrator);

@@ -1,4 +1,4 @@
-// Derivatives of runs by methods of several stages beside differences of the same runs.
+// Derivatives of runs with multi-stage methods against finite differences of the same runs.
 #include <polybody/gradients/radau_step_slope.hpp>
 #include <polybody/gradients/runge_kutta_step_slope.hpp>
 #include <polybody/gradients/sensitivities.hpp>
@@ -19,7 +19,7 @@ using namespace polybody;
 
 namespace sensitivities_stages_test {
 
-/// The outputs at the end of a run of these steps.
+/// The outputs at the end of a run with these steps.
 template <class Make, class I>
 VecX end_of_steps(Make const& make, std::span<double const> p, I const& integrator, std::vector<double> const& times) {
   auto scenario = make(p);
@@ -36,7 +36,7 @@ VecX end_of_steps(Make const& make, std::span<double const> p, I const& integrat
   }
   return detail::values_of_outputs(scenario, x);
 }
-/// By differences of runs of fourth order whose steps have the same lengths.
+/// Fourth-order finite differences of runs whose steps have the same lengths.
 template <class Make, class I>
 MatX by_frozen_differences(Make const& make, std::vector<Parameter> const& parameters, I const& integrator,
                            std::vector<double> const& times) {
@@ -70,7 +70,7 @@ TEST(SensitivitiesOfStages, RigidOnConstraintByRungeKuttaWithProjection) {
   Sensitivities const s = sensitivities(two_links<Rigid<>, Constraint>, parameters, integrator);
   ASSERT_EQ(s.times.size(), 31u);
   expect_near(s.slopes.back(), by_differences(two_links<Rigid<>, Constraint>, parameters, integrator), parameters);
-  // rods that do not bend know nothing of Young's modulus, ideal pins nothing of a stiffness
+  // rigid rods do not depend on Young's modulus, ideal pins do not depend on a stiffness
   EXPECT_EQ(s.run.warnings.size(), 2u);
 }
 TEST(SensitivitiesOfStages, LrvfOnBushingByRadau) {
@@ -85,7 +85,7 @@ TEST(SensitivitiesOfStages, RigidOnConstraintByDormandPrinceWithItsChoiceOfSteps
   auto const make = two_links<Rigid<>, Constraint>;
   Sensitivities const s = sensitivities(make, parameters, integrator);
   double const first = s.times[1] - s.times[0], last = s.times.back() - s.times[s.times.size() - 2];
-  EXPECT_GT(std::abs(first - last), 1e-3 * first);  // it chose
+  EXPECT_GT(std::abs(first - last), 1e-3 * first);  // the method chose the step length
   integrator.relative_tolerance = integrator.absolute_tolerance = 1e6;
   expect_near(s.slopes.back(), by_frozen_differences(make, parameters, integrator, s.times), parameters);
 }

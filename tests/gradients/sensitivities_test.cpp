@@ -20,7 +20,7 @@ namespace sensitivities_test {
 using Pin = Joint<planar::Revolute, Constraint>;
 using P = std::span<double const>;
 
-/// A rod on a pin, let go from the side: length, density, gravity.
+/// A rod on a pin, released horizontally. Parameters: length, density, gravity.
 auto const pendulum = [](P p) {
   using M = Model<Bodies<planar::Rigid>, Joints<Pin>>;
   M model{Gravity{0, -p[2], 0}};
@@ -46,17 +46,18 @@ TEST(Sensitivities, OfAPendulumAreThoseOfItsRuns) {
   MatX const expected = by_differences(pendulum, of_pendulum, integrator);
   ASSERT_EQ(s.times.size(), 51u);
   EXPECT_LT(s.left, 1e-10);
-  // the rows' rounding over βh² is in the force, and differences of runs divide it by their distance
+  // the force contains the round-off of the constraint equations over βh²; differences of runs divide it by the
+  // change of the parameter
   for (Index i = 0; i < 3; ++i)
     for (Index j = 0; j < 3; ++j)
       EXPECT_NEAR(s.slopes.back()(i, j), expected(i, j), (i == 2 ? 1e-8 : 1e-9) * (1.0 + std::abs(expected(i, j))))
           << i << ' ' << j;
-  // mass does not change how it swings
+  // the motion does not depend on the mass
   EXPECT_NEAR(s.slopes.back()(0, 1), 0.0, 1e-12);
   EXPECT_GT(s.slopes.back()(2, 1), 1e-4);
 }
 
-/// A mass on a spring and a damper along x, drawn out by 1 m, [r(t), ṙ(t)].
+/// A mass on a spring and a damper along x, with the spring stretched by 1 m, [r(t), ṙ(t)].
 template <int spare = 0>
 auto oscillator(double until, double step) {
   return [until, step](P p) {
@@ -108,7 +109,7 @@ TEST(Sensitivities, AShorterLastStepIsDifferentiatedToo) {
 }
 
 TEST(Sensitivities, BeginAtTheStart) {
-  // x₀ of a mass on a spring is a parameter itself
+  // the initial position x₀ of a mass on a spring is a parameter itself
   auto const make = [](P p) {
     auto scenario = oscillator(0.2, 1e-2)(std::array{50.0, 3.0});
     scenario.start.q[0] += p[0];

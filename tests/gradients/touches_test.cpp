@@ -1,5 +1,5 @@
-// Parameters that leave out of `touches` what depends on them later in the run: a contact that does not touch yet, a
-// load that has not begun.
+// Parameters whose `touches` omit an object that depends on them later in the run: a contact before its first touch,
+// a load before its start.
 #include <polybody/gradients/gradient.hpp>
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ using Touch = Contact<SphereOnPlane>;
 using Push = PointForce<Window>;
 using Balls = Model<Bodies<Rigid<>>, Joints<>, Forces<Touch, Push>>;
 
-/// A ball drops on a floor at 0.064 s, and a push acts on it from 0.1 s on. Another ball falls freely. Parameters:
+/// A ball falls on a floor at 0.064 s, and a push acts on it from 0.1 s. Another ball falls freely. Parameters:
 /// stiffness of the floor, push, radius of the ball.
 auto balls(std::span<double const> p) {
   Balls m{Gravity{0, 0, -9.81}};
@@ -62,13 +62,13 @@ void expect_refusals(I const& by, auto const& differentiate) {
   auto const said = [&](Names k, Names push, Names radius) {
     return refusal([&] { (void)differentiate(balls, of_balls(std::move(k), std::move(push), std::move(radius)), by); });
   };
-  // the ball is named by the push, with which the stiffness shares its models
+  // the push names the ball; the stiffness shares its perturbed models
   std::string const of_k = said({"other"}, {"push"}, {});
   EXPECT_TRUE(has(of_k, "The parameter \"k [N/m]\" changes the equations of body \"ball\" at t = 0.06"));
   EXPECT_TRUE(has(of_k, "Add the object that depends on it (body \"ball\", force \"floor\", force \"push\")"));
   EXPECT_TRUE(has(said({"floor"}, {"other"}, {}), "\"push [N]\" changes the equations of body \"ball\" at t = 0.1"));
   EXPECT_TRUE(has(said({"floor"}, {"push"}, {"other"}), "\"radius [m]\" changes the equations of body \"ball\""));
-  // nobody names the ball
+  // no parameter names the ball
   EXPECT_TRUE(has(said({"other"}, {"other"}, {}), "\"k [N/m]\" changes the equations of body \"ball\" at t = 0.06"));
 }
 
@@ -85,7 +85,7 @@ TEST(Touches, LeftOutAreFoundByTheAdjointThroughEvents) {
   EXPECT_TRUE(has(said({"floor"}, {"other"}), "\"push [N]\" changes the equations of body \"ball\" at t = 0.1"));
 }
 
-/// The same without the push, whose beginning is a breakpoint.
+/// The same model without the push, whose beginning is a breakpoint.
 auto without_push(std::span<double const> p) {
   auto scenario = balls(std::array{p[0], 0.0, p[1]});
   scenario.options.until = 0.09;
@@ -101,8 +101,8 @@ TEST(Touches, LeftOutAreFoundByTheAdjoint) {
   EXPECT_TRUE(has(said({"other"}, {"floor"}, RungeKutta4<>{}), sentence));
 }
 
-/// Complete names give the same derivatives as no names. The beginning of the contact makes a kink within the
-/// difference by the radius, which must not be refused.
+/// Complete names give the same derivatives as no names. The beginning of contact causes a kink within the finite
+/// difference in the radius. This kink must not be refused.
 TEST(Touches, CompleteNamesGiveTheSameDerivatives) {
   auto const named = of_balls({"floor"}, {"push"}, {"floor"}), all = of_balls({}, {}, {});
   Sensitivities const a = sensitivities(balls, named, integrator), b = sensitivities(balls, all, integrator);
@@ -114,8 +114,8 @@ TEST(Touches, CompleteNamesGiveTheSameDerivatives) {
   }
 }
 
-/// Bodies in a row, each pushed by its own parameter; the last parameter also acts on the first body, from 0.1 s on, by
-/// `share`.
+/// Bodies in a row, each pushed by its own parameter. The last parameter also acts on the first body from 0.1 s,
+/// scaled by `share`.
 template <int count>
 auto row_of_bodies(double share) {
   return [share](std::span<double const> p) {
@@ -135,7 +135,8 @@ auto row_of_bodies(double share) {
     return Scenario<M>{std::move(m), x, {.until = 0.2, .step = 1e-2}, std::move(outputs)};
   };
 }
-/// One group of all, in which the orders of two models do not tell the first from the last of thirteen.
+/// One group of all parameters. The orders of the parameters in two models do not distinguish the first from the last
+/// of thirteen.
 template <int count>
 void expect_late_found(double share) {
   std::vector<Parameter> parameters;
@@ -156,7 +157,7 @@ TEST(Touches, LeftOutAreFoundAmongManyThatShareModels) {
   expect_late_found<14>(1e-3);
 }
 
-/// In joint coordinates a parameter touches all equations, so that incomplete names change nothing.
+/// In joint coordinates a parameter touches all equations, so incomplete names have no effect.
 TEST(Touches, ChangeNothingInJointCoordinates) {
   auto const make = [](std::span<double const> p) {
     using Rod = planar::Rigid;

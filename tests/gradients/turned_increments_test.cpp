@@ -1,4 +1,5 @@
-// The derivative of a step's equations by the unknowns, ⊞ among it, beside differences of these equations.
+// The derivative of the equations of a step with respect to the unknowns, including ⊞, against finite differences of
+// these equations.
 #include <polybody/gradients/turned_increments.hpp>
 
 #include <gtest/gtest.h>
@@ -12,7 +13,7 @@ using namespace polybody;
 
 namespace turned_increments_test {
 
-/// Blocks added up in a dense matrix.
+/// Sink that adds blocks to a dense matrix.
 struct DenseSink {
   MatX m;
   void add(Index row, Index col, BlockView const& b) {
@@ -26,12 +27,12 @@ VecX numbers(Index n, double size, double seed) {
   return x;
 }
 
-/// Sizes of speeds [m/s], [rad/s] and accelerations.
+/// Magnitudes of velocities [m/s], [rad/s] and of accelerations.
 struct Motion {
   double speed = 2.0, acceleration = 20.0;
 };
-/// A step of h from q₀ by y = (a, λ), with v̇ = a, v = v₀ + γh a, δ = δ₀ + βh² a: what its equations leave, velocity
-/// rows over γh, others over βh².
+/// A step of length h from q₀ with the unknowns y = (a, λ): v̇ = a, v = v₀ + γh a, δ = δ₀ + βh² a. The residual has
+/// nonholonomic constraints over γh and other constraints over βh².
 struct Step {
   System& system;
   VecX q, v, delta, a, lambda;
@@ -63,8 +64,8 @@ struct Step {
 };
 
 struct Matrices {
-  MatX by_differences;  // of the step's equations by its unknowns
-  MatX plain, turned;   // tangent with second-order terms; with what ⊞ does, in the same unknowns
+  MatX by_differences;  // of the equations of the step with respect to its unknowns
+  MatX plain, turned;   // tangent with second-order terms; tangent with the derivative of ⊞, in the same unknowns
 };
 Matrices matrices_of(System& system, State const& x, Motion const& motion, bool exact) {
   Step const step(system, x, motion);
@@ -82,7 +83,7 @@ Matrices matrices_of(System& system, State const& x, Motion const& motion, bool 
   system.tangent(step.coefficients(exact), SecondOrder::included, step.lambda, sink);
   out.plain = sink.m;
   turned.write(system, step.coefficients(exact), sink);
-  // sink.m has columns by u, y = u + W u
+  // columns of sink.m belong to u, with y = u + W u
   MatX to_y(n, n);
   for (Index j = 0; j < n; ++j) {
     VecX u = VecX::Zero(n);
@@ -121,12 +122,12 @@ TEST(TurnedIncrements, CompleteTheTangentOfRigidBodies) {
 TEST(TurnedIncrements, CompleteTheTangentOfNodesWithRotationVectors) {
   expect_exact(pair_of(Lrvf<>::from(bar(), 2), Lrvf<>::from(bar(), 2)));
 }
-// Their tangent leaves out how inertia forces and weight change with the coordinates.
+// The tangent of these bodies omits the derivatives of inertia forces and weight with respect to the coordinates.
 TEST(TurnedIncrements, CompleteTheTangentOfFloatingFrames) {
   expect_exact(pair_of(Ffr::from(bar(), 2), Ffr::from(bar(), 2)), {0.0, 0.0});
 }
 
-/// Two bodies that turn, and what acts between them off their middles.
+/// Two rotating bodies, and force elements between points away from their mass centres.
 template <class M>
 struct TwoThatTurn {
   M model{Gravity{0, 0, -9.81}};
@@ -141,7 +142,7 @@ struct TwoThatTurn {
   Marker<Rigid<>> of_a() const { return a.at(Vec3(0.1, 0.05, -0.02)); }
   Marker<Rigid<>> of_b() const { return b.at(Vec3(-0.15, 0.02, 0.04)); }
 };
-/// Steps leave out what positions do to rates: exact tangents do not.
+/// Tangents of steps omit the dependence of constraint rates on positions; exact tangents include it.
 template <class M>
 void expect_exact_with_rates(M const& model) {
   System system(model, with<Entries::implicit_step>);
@@ -187,7 +188,7 @@ TEST(ExactTangents, AreThoseOfRowsOfSpeeds) {
                       rolls.model.ground().at({0, 0, 0}), rolls.b.at(Vec3(0, 0, 0)));
   expect_exact_with_rates(rolls.model);
 }
-// Of a group that steps write without the blocks between two bodies.
+// Tangents of a contact group that steps write without the blocks between two bodies.
 TEST(ExactTangents, AreThoseOfGroupsWithBlocksBetweenTheirBodies) {
   using OnBall = Contact<SphereOnSphere>;
   using Group = ContactGroup<OnBall>;
@@ -201,7 +202,7 @@ TEST(ExactTangents, AreThoseOfGroupsWithBlocksBetweenTheirBodies) {
   expect_exact_with_rates(two.model);
 }
 
-/// Springs between markers that follow each other, a group whose law does not tell when it acts.
+/// Springs between consecutive markers: a force group whose law does not report when it acts.
 struct Net {
   static constexpr int markers = any_number;
   static constexpr bool is_load = false;
@@ -227,8 +228,8 @@ TEST(ExactTangents, AreThoseOfGroupsThatUsersWrite) {
   expect_exact_with_rates(two.model);
 }
 
-// A row of balls over two others: blocks are written for pairs that touch and for those beside them; the matrix is that
-// with blocks for all pairs, and tells where a pair that touches has none.
+// A row of balls over two others. Blocks are written for pairs in contact and for their neighbours. The matrix equals
+// the one with blocks for all pairs, and it reports a contact pair without a block.
 TEST(ActingPairs, HaveAllBlocksThatAct) {
   using OnBall = Contact<SphereOnSphere>;
   using Group = ContactGroup<OnBall>;
@@ -266,18 +267,19 @@ TEST(ActingPairs, HaveAllBlocksThatAct) {
   pairs.hold();
   EXPECT_EQ(written(&pairs, of_some), all);
   EXPECT_FALSE(pairs.lacks());
-  // 0 and 7 touch: 0 to 2 and 5 to 7 are held, four blocks a pair, of 16 pairs
+  // 0 and 7 touch: 0 to 2 and 5 to 7 are kept, with four blocks per pair, out of 16 pairs
   EXPECT_EQ(of_some - of_none, 4 * 6);
   EXPECT_EQ(of_all - of_none, 4 * 16);
-  x.q[7] = 0.15;  // the ball beside the first one comes over the same ball below, as is foreseen
+  x.q[7] = 0.15;  // the neighbour of the first ball comes over the same ball below, as predicted
   (void)written(&pairs, of_some);
   EXPECT_FALSE(pairs.lacks());
-  x.q[0] = 3.35;  // the first one over the other
+  x.q[0] = 3.35;  // the first ball over the other ball
   (void)written(&pairs, of_some);
   EXPECT_TRUE(pairs.lacks());
   pairs.hold();
   EXPECT_EQ(written(&pairs, of_some), written(nullptr, of_all));
-  // back and forth, both places are held; after fifty writings at one of them the other one is left
+  // back and forth: blocks of both positions are kept; after fifty assemblies at one position the other position's
+  // blocks are dropped
   for (int again = 0; again < 3; ++again) {
     x.q[0] = again % 2 == 0 ? 0.0 : 3.35;
     (void)written(&pairs, of_some);
@@ -292,7 +294,7 @@ TEST(ActingPairs, HaveAllBlocksThatAct) {
   EXPECT_LT(of_some, of_both);
 }
 
-// A velocity row, at rest, as tangents of steps leave out ∂Φ̇/∂q.
+// A nonholonomic constraint at rest, because tangents of steps omit ∂Φ̇/∂q.
 TEST(TurnedIncrements, CompleteVelocityRows) {
   Model<Bodies<Rigid<>>, Joints<Joint<KnifeEdge, Constraint>>> model;
   auto const sledge = model.add(Rigid<>::from(bar()), "sledge");

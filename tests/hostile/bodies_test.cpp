@@ -1,4 +1,4 @@
-// Bars and bodies with numbers that nobody means.
+// Bars and bodies with invalid or extreme parameters.
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/ffr/ffr.hpp>
@@ -33,10 +33,10 @@ Bar const square{.length = 1.0,
                  .material = Material{.density = 1000, .young = 1e8, .poisson = 0.3},
                  .shear_factor = 0.9};
 
-/// A share that is no divisor of the number of hostile values, so that all of them are met.
+/// A stride that does not divide the number of hostile values, so that all values are tested.
 Share const some{.every = 40};
 
-/// A pendulum of what `made()` makes.
+/// A pendulum with the body that `made()` makes.
 template <class B, class Made>
 void swing(Made const& made) {
   constexpr bool planar = B::world == World::plane;

@@ -1,5 +1,5 @@
-// Forces and joints with parameters that nobody means: refused by name, or ten steps and an equilibrium of finite
-// numbers.
+// Forces and joints with invalid or extreme parameters: an error names the parameter, or ten steps and an equilibrium
+// give finite numbers.
 #include <gtest/gtest.h>
 
 #include <polybody/polybody.hpp>
@@ -37,7 +37,7 @@ using Mechanism =
 SpringDamperContact const pads{.stiffness = 1e4, .damping = 10.0, .onset = 1e-3};
 Friction const rough{.coefficient = 0.3, .slip_speed = 0.01};
 
-/// A body 0.4 above the ground's marker, free.
+/// A free body, 0.4 above the marker of the ground.
 struct Stage {
   Mechanism model{Gravity{0, 0, -9.81}};
   BodyHandle<Rigid<>> body =
@@ -105,7 +105,7 @@ TEST(HostileParameters, OfContacts) {
   std::cout << tried << " parameters of contacts\n";
 }
 
-/// A joint between the ground and the body, whose markers are `arm` below and above each other.
+/// A joint between the ground and the body, with markers `arm` below and above each other.
 template <class J>
 void join(J const& joint, double arm, double height = 0.0) {
   Stage s;

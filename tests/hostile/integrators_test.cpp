@@ -1,4 +1,4 @@
-// Integrators, runs, statics and modes with options that nobody means.
+// Integrators, runs, statics and modes with invalid or extreme options.
 #include <gtest/gtest.h>
 
 #include <polybody/polybody.hpp>
@@ -11,7 +11,7 @@ namespace {
 
 using Hinge = Joint<planar::Revolute, Constraint>;
 
-/// Two links on a pin at an angle [rad] from the horizontal, and a push.
+/// Two links on a pin at an angle [rad] from the horizontal, with a push.
 struct Pendulum {
   Model<Bodies<planar::Rigid>, Joints<Hinge>, Forces<PointForce<>>> model{Gravity{0, -9.81, 0}};
 

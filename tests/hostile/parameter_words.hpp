@@ -1,6 +1,5 @@
 #pragma once
-/// \file
-/// How refusals call the parameters of each type.
+/// \file Names of the parameters of each type in error messages.
 
 #include <polybody/bodies/ffr/ffr_integrals.hpp>
 #include <polybody/bodies/ffr/ffr_options.hpp>
@@ -14,7 +13,7 @@
 
 namespace polybody {
 
-// laws of time
+// functions of time
 template <>
 inline constexpr auto words_of<Constant> = words("value");
 template <>
@@ -108,7 +107,7 @@ inline constexpr auto words_of<Bushing> = words("stiffness", "damping");
 template <>
 inline constexpr auto words_of<LinearLaw> = words("stiffness", "damping");
 
-/// Its constructor refuses what it cannot mean: tests/math/monotone_table_test.cpp.
+/// The constructor refuses invalid tables: tests/math/monotone_table_test.cpp.
 inline void each_hostile(MonotoneTable&, std::string const&, Changed const&) {}
 template <>
 inline constexpr auto words_of<TabulatedLaw> = words("force", "damping");

@@ -1,6 +1,5 @@
 #pragma once
-/// \file
-/// Short runs that may be asked anything: every state that they show is finite.
+/// \file Short runs for hostile parameters: every state of a run is finite.
 
 #include <polybody/polybody.hpp>
 

@@ -83,7 +83,7 @@ struct Count {
   int runs = 0, refused = 0, warned = 0, wrong = 0;
 };
 
-/// One run of 10 periods, or of 100 steps where these are more. `limit` is the largest stable ωh.
+/// One run of 10 periods, or of 100 steps if these are longer. `limit` is the largest stable ωh.
 template <class Case, class I>
 void run_one(I const& integrator, int kind, double factor, double limit, Count& count) {
   Case setup(kind);
@@ -120,7 +120,8 @@ void sweep(I const& integrator, Count& count, double limit = 2.0) {
   for (int kind = 0; kind < Case::kinds; ++kind)
     for (double const factor : factors) {
       // An implicit step of ωh = 6 throws the mass through both ends of a Maxwell element. The model has no potential
-      // of that element, so its balance does not show it: only in the complete sweep.
+      // of that element, so the energy balance does not show it. Therefore this case belongs to the complete sweep
+      // only.
       if (!all && std::is_same_v<Case, InPlane> && kind == InPlane::maxwell && factor == 3.0) continue;
       run_one<Case>(integrator, kind, factor, limit, count);
     }
