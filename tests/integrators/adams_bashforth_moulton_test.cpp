@@ -47,7 +47,7 @@ auto force_along_x(F f) {
 /// x¨ = −x.
 constexpr auto spring = [](auto const& x, auto const&, double) { return -x; };
 
-/// Largest error of the angle of the exact pendulum over every step of 2 s; the report of the run.
+/// Largest error of the angle of the exact pendulum over every step of 2 s, and the report of the run.
 template <class I>
 std::pair<double, RunReport> pendulum(I const& integrator) {
   SwingingBar bar;
@@ -59,7 +59,7 @@ std::pair<double, RunReport> pendulum(I const& integrator) {
   return {worst, run.report()};
 }
 
-// At every step, not only at the end.
+// The bound holds at every step, not only at the end.
 TEST(AdamsBashforthMoulton, ErrorOfAPendulumIsProportionalToTheTolerance) {
   std::vector<double> errors;
   for (double const tolerance : {1e-4, 1e-6, 1e-8, 1e-10}) {
@@ -78,7 +78,7 @@ TEST(AdamsBashforthMoulton, ErrorOfAPendulumIsProportionalToTheTolerance) {
     EXPECT_GT(std::log10(errors[i - 1] / errors[i]), 1.0) << testing::PrintToString(errors);
 }
 
-// CASES R6b, x of the centre of mass: a body that turns, with rows.
+// x of the centre of mass of the heavy top (R6b, Géradin & Cardona 2001): a rotating body with constraint equations.
 TEST(AdamsBashforthMoulton, FollowsATop) {
   SlowTop top;
   State x = top.start;
@@ -96,7 +96,8 @@ TEST(AdamsBashforthMoulton, FollowsATop) {
   }
 }
 
-// CASES R7: the intermediate axis turns over; no rows, no forces.
+// Torque-free rigid body (R7, Dzhanibekov): the rotation about the intermediate axis flips. There are no constraint
+// equations and no forces.
 TEST(AdamsBashforthMoulton, FollowsATorqueFreeBody) {
   Model<Bodies<Rigid<>>, Joints<>> model;
   auto const body = model.add(Rigid<>(1.0, Vec3(1, 2, 3).asDiagonal().toDenseMatrix()), "body");
@@ -124,8 +125,8 @@ TEST(AdamsBashforthMoulton, FollowsATorqueFreeBody) {
   }
 }
 
-// Of fixed order k at fixed steps: local extrapolation makes it k + 1; the first step, of order one, has the error h³
-// at most.
+// Fixed order k with fixed steps: local extrapolation raises the order to k + 1. The first step, of order one, has an
+// error of at most h³.
 TEST(AdamsBashforthMoulton, HasTheOrderAboveThatOfItsPredictor) {
   for (int const k : {1, 2}) {
     double error[2];
@@ -144,7 +145,7 @@ TEST(AdamsBashforthMoulton, HasTheOrderAboveThatOfItsPredictor) {
   }
 }
 
-// From order one up, and no higher than allowed.
+// The order rises from one and does not exceed the allowed order.
 TEST(AdamsBashforthMoulton, RaisesItsOrderFromOne) {
   for (int const most : {12, 4}) {
     AdamsPoint point(force_along_x(spring), 1.0, 0.0);
@@ -165,7 +166,7 @@ TEST(AdamsBashforthMoulton, RaisesItsOrderFromOne) {
   }
 }
 
-// What the method is for: at a tight tolerance it evaluates the forces less often.
+// At a tight tolerance the method evaluates the forces less often than Dormand–Prince.
 TEST(AdamsBashforthMoulton, NeedsFewerEvaluationsThanDormandPrince) {
   DormandPrince<Projection> const one_step{.relative_tolerance = 1e-11, .absolute_tolerance = 1e-11};
   auto const [error, adams] = pendulum(with_tolerance<Projection>(1e-11));
@@ -175,7 +176,7 @@ TEST(AdamsBashforthMoulton, NeedsFewerEvaluationsThanDormandPrince) {
   EXPECT_LT(other, 1e-9);
 }
 
-// x˙˙ = 6 x² with x(0) = 1, x˙(0) = 2 is x = 1/(1 − t)²: no step reaches t = 1.
+// The solution of x˙˙ = 6 x² with x(0) = 1, x˙(0) = 2 is x = 1/(1 − t)²: no step reaches t = 1.
 TEST(AdamsBashforthMoulton, StopsBeforeABlowUp) {
   AdamsPoint point(force_along_x([](auto const& x, auto const&, double) { return 6.0 * x * x; }), 1.0, 2.0);
   auto run = simulate(point.model, point.x, AdamsBashforthMoulton<>{}, {.until = 2.0, .step = 0.01});
@@ -187,7 +188,7 @@ TEST(AdamsBashforthMoulton, StopsBeforeABlowUp) {
   EXPECT_TRUE(point.x.q.allFinite());
 }
 
-// x¨ = −x, and 10 more from t = ½ on: x = cos t + 10 − 10 cos(t − ½).
+// x¨ = −x, with an additional force of 10 from t = ½: x = cos t + 10 − 10 cos(t − ½).
 TEST(AdamsBashforthMoulton, RefusesStepsOverAJump) {
   auto const jump = force_along_x([](auto const& x, auto const&, double t) { return -x + (t < 0.5 ? 0.0 : 10.0); });
   double const exact = std::cos(1.0) + 10.0 - 10.0 * std::cos(0.5);
@@ -206,7 +207,8 @@ TEST(AdamsBashforthMoulton, RefusesStepsOverAJump) {
   EXPECT_LT(reports[1].evaluations, reports[0].evaluations);
 }
 
-// x = cos t passes zero at π/2: the past travels with the state, so trial steps from the same state repeat.
+// x = cos t passes through zero at π/2. The state contains the history, so trial steps from the same state are
+// repeatable.
 TEST(AdamsBashforthMoulton, FindsEvents) {
   AdamsPoint point(force_along_x(spring), 1.0, 0.0);
   Event const zero{.name = "zero", .value = [](State const& x) { return x.q[0]; }, .stops = true};
@@ -240,7 +242,7 @@ TEST(AdamsBashforthMoulton, FailedStepLeavesTheStateAsItWas) {
   integrator.step(system, again, 1e-3, workspace);
   EXPECT_EQ(x.q, again.q);
   EXPECT_EQ(x.memory, again.memory);
-  // rows after a step
+  // constraint violation after a step
   Violation const open = violation(system, x);
   EXPECT_LT(open.position, 1e-11);
   EXPECT_LT(open.velocity, 1e-11);
@@ -264,7 +266,7 @@ TEST(AdamsBashforthMoulton, RefusesOptionsThatCannotBeMeant) {
   EXPECT_TRUE(has(refusal([&] { integrator.step(system, x, 0.1, workspace); }), "call start before step"));
 }
 
-// f = t³ on an uneven grid: its divided differences are those of a cubic, and Σ c_j D_j its integral.
+// f = t³ on an uneven grid: the divided differences are those of a cubic, and Σ c_j D_j is its integral.
 TEST(AdamsHistory, IntegratesACubicExactly) {
   VecX memory, f(1);
   double t = 0.0;

@@ -26,14 +26,14 @@ struct CentralDifferenceOnBar {
   static auto integrators() { return std::vector<CentralDifference<Projection>>(1); }
   static constexpr double until = 0.5;
   static constexpr int steps = 32;
-  static constexpr bool keeps_accelerations = false;  // they belong to the predicted speeds
+  static constexpr bool keeps_accelerations = false;  // the accelerations belong to the predicted velocities
 };
 struct CentralDifferenceOnTop {
   using Model = SlowTop;
   static auto integrators() { return std::vector<CentralDifference<Projection>>(1); }
   static constexpr double until = 0.5;
   static constexpr int steps = 64;
-  static constexpr bool keeps_accelerations = false;  // they belong to the predicted speeds
+  static constexpr bool keeps_accelerations = false;  // the accelerations belong to the predicted velocities
 };
 
 }  // namespace central_difference_test
@@ -47,11 +47,12 @@ bool const central_difference_obey[] = {
 
 namespace central_difference_test {
 
-/// A free ANCF cable of n elements of 0.25 m, steel of 1 cm: its highest mode is a stretch.
+/// A free ANCF cable of n elements of 0.25 m, made of steel with a thickness of 1 cm. Its highest mode is a
+/// longitudinal mode.
 struct FreeCable {
   Model<Bodies<planar::AncfCable<>>, Joints<>> model;
-  VecX mode;           ///< of the largest frequency, of unit mass
-  double omega = 0.0;  ///< that frequency [rad/s]
+  VecX mode;           ///< of the highest frequency, normalised to unit mass
+  double omega = 0.0;  ///< the highest frequency [rad/s]
   State start;
 
   explicit FreeCable(Index n) {
@@ -74,7 +75,7 @@ struct FreeCable {
     mode = pencil.eigenvectors().rightCols<1>();
   }
 
-  /// Amplitude of the highest mode after each of `steps` steps of h from 1e-10 of it.
+  /// Amplitude of the highest mode after each of `steps` steps of length h, from an initial amplitude of 1e-10.
   std::vector<double> amplitudes(double h, int steps) const {
     System system(model);
     CentralDifference<> const integrator;
@@ -91,8 +92,8 @@ struct FreeCable {
   }
 };
 
-// CASES I2: stable iff h < 2/ω_max. Beyond it, at h = 1.01 · 2/ω, the mode grows by the root of
-// μ² − 2 (1 − ½ (ωh)²) μ + 1 = 0 in every step [Hughes 2000, §9.1].
+// Stability limit (I2): stable if and only if h < 2/ω_max. At h = 1.01 · 2/ω the mode grows in every step by a root
+// of μ² − 2 (1 − ½ (ωh)²) μ + 1 = 0 [Hughes 2000, §9.1].
 TEST(CentralDifference, IsStableUpToTwoOverTheHighestFrequency) {
   for (Index const n : {1, 4}) {
     FreeCable const cable(n);
@@ -104,7 +105,7 @@ TEST(CentralDifference, IsStableUpToTwoOverTheHighestFrequency) {
     held({"I2", "growth of a mode in a step of 1.01 · 2/ω", By::closed_form, "μ² − 2 (1 − ½ (ωh)²) μ + 1 = 0",
           "CentralDifference, AncfCable"},
          std::pow(a[39] / a[19], 1.0 / 20.0), growth, 0.01 * growth, {equals("elements", double(n))});
-    // … until nothing finite is left
+    // the growth ends in numbers that are not finite
     EXPECT_THROW(cable.amplitudes(1.01 * limit, 2000), NonFinite);
   }
 }

@@ -1,4 +1,4 @@
-// Steps that only ever lose energy.
+// Steps that never increase the energy.
 
 #include <polybody/integrators/energy_momentum.hpp>
 
@@ -22,8 +22,9 @@ namespace energy_decaying_test {
 
 using Cable = planar::AncfCable<>;
 
-// A mass on a linear spring, x = ωh. With θ = ½ + χ = 1/(1 + ρ): Δq = h (v₀ + θ Δv), Δv = −hω² (q₀ + θ Δq), so ω q + i
-// v is multiplied by (1 − i (1 − θ) x)/(1 + i θ x), and energy by (1 + (1 − θ)² x²)/(1 + θ² x²): by ρ² as x → ∞.
+// A mass on a linear spring, x = ωh. With θ = ½ + χ = 1/(1 + ρ): Δq = h (v₀ + θ Δv), Δv = −hω² (q₀ + θ Δq). Hence a
+// step multiplies ω q + i v by (1 − i (1 − θ) x)/(1 + i θ x), and the energy by (1 + (1 − θ)² x²)/(1 + θ² x²). This
+// factor tends to ρ² as x → ∞.
 TEST(EnergyDecaying, LinearModeLosesTheShareOfItsTheory) {
   using Spring = Joint<planar::Revolute, Penalty>;
   Model<Bodies<planar::Rigid>, Joints<Spring>> model;
@@ -52,7 +53,7 @@ TEST(EnergyDecaying, LinearModeLosesTheShareOfItsTheory) {
     }
 }
 
-/// A rod of 10 m and 1 kg/m in free flight that turns, bends and stretches.
+/// A rod of 10 m and 1 kg/m in free flight that rotates, bends and stretches.
 struct Flight {
   Model<Bodies<Cable>, Joints<>> model;
   State x;
@@ -64,8 +65,9 @@ struct Flight {
   }
 };
 
-// High modes: speeds of the slopes r′ that alternate from node to node along the axis. They hold most of the energy,
-// and are gone; what the rod must keep for its momenta stays. Energy falls in every step; linear momentum stays.
+// High modes: rates of the gradients r′ that alternate from node to node along the axis. These modes contain most of
+// the energy, and the method dissipates them. The energy that the momenta require remains. Energy falls in every
+// step; linear momentum is constant.
 TEST(EnergyDecaying, HighModesDieAndEnergyFallsInEveryStep) {
   Flight flight(1e6, 500.0, 8);
   double const smooth = energy(flight.model, flight.x).kinetic;
@@ -81,7 +83,8 @@ TEST(EnergyDecaying, HighModesDieAndEnergyFallsInEveryStep) {
   EXPECT_GT(energy(flight.model, flight.x).total(), 0.5 * smooth);
 }
 
-// Small vibrations of a clamped cable, along it and across: hω > 1000 for all modes, so energy falls to ρ² of itself.
+// Small longitudinal and transverse vibrations of a clamped cable. hω > 1000 for all modes, so each step multiplies
+// the energy by ρ².
 TEST(EnergyDecaying, StiffModesOfACableLoseTheShareOfTheirTheory) {
   using Clamp = Joint<planar::Weld, Constraint>;
   Model<Bodies<Cable>, Joints<Clamp>> model;

@@ -1,4 +1,4 @@
-// Energy and both momenta of a fully parameterised beam in free flight.
+// Conservation of energy and both momenta of a fully parameterised beam in free flight.
 
 #include <polybody/integrators/energy_momentum.hpp>
 
@@ -13,7 +13,7 @@ using namespace polybody;
 
 namespace energy_momentum_beam_test {
 
-// Green strains are scalar products of the columns of F: both momenta stay.
+// Green strains are scalar products of the columns of F. Therefore both momenta are constant.
 TEST(EnergyMomentumOfBeams, KeepsEnergyAndMomentaOfTheContinuum) {
   Model<Bodies<AncfBeam<Continuum<>>>, Joints<>> model;
   Bar const bar{.length = 5.0,

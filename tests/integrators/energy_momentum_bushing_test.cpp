@@ -1,4 +1,4 @@
-// A bushing in a step that conserves energy: secants of turns.
+// A bushing in an energy-conserving step: discrete gradients of rotations.
 
 #include <polybody/integrators/energy_momentum.hpp>
 
@@ -18,7 +18,7 @@ namespace energy_momentum_bushing_test {
 
 using Mount = Joint<planar::Weld, Bushing>;
 
-// A body on a bushing of all six coordinates, far from its place and turned by 0.5 rad.
+// A body on a bushing with stiffness in all six coordinates, far from its rest position and rotated by 0.5 rad.
 TEST(EnergyMomentumOfBushings, StoreWhatTheyTake) {
   Model<Bodies<planar::Rigid>, Joints<Mount>> model;
   auto const body = model.add(planar::Rigid(1.0, 0.1), "body");

@@ -1,4 +1,4 @@
-// Joints, springs and bushings in a step that conserves energy.
+// Joints, springs and bushings in an energy-conserving step.
 
 #include <polybody/integrators/energy_momentum.hpp>
 
@@ -37,14 +37,15 @@ TEST(EnergyMomentumOfJoints, PinsDoNoWorkInAChainOfCables) {
   model.set_velocity(x, first, Vec3::Zero(), Vec3(0, 0, 1.0));
   model.set_velocity(x, second, Vec3::Zero(), Vec3(0, 0, 1.0));
   Drift const drift =
-      drift_of(model, x, EnergyMomentum{}, 0.002, 5000);  // later the motion is wild, and Newton stalls by rounding
+      // later the motion is irregular, and Newton's method does not converge because of round-off
+      drift_of(model, x, EnergyMomentum{}, 0.002, 5000);
   EXPECT_LT(drift.energy, 1e-7);
   EXPECT_LT(drift.violation, 1e-11);
 }
 
-// Angles as coordinates: rows of sines and cosines do no work either. Position is of order two. λ belongs to the middle
-// of the step, and alternates by O(h) about what it should be: the mean of two steps is the reaction of the exact
-// pendulum between them but for O(h²).
+// Angles as coordinates: constraint equations of sines and cosines do no work either. Position has order two. λ
+// belongs to the middle of the step and alternates by O(h) about the exact value. The mean of two steps equals the
+// reaction of the exact pendulum between them up to O(h²).
 TEST(EnergyMomentumOfJoints, PinDoesNoWorkOnARigidPendulum) {
   std::vector<double> angles, reactions;
   for (double const h : {0.02, 0.01}) {
@@ -62,7 +63,7 @@ TEST(EnergyMomentumOfJoints, PinDoesNoWorkOnARigidPendulum) {
   EXPECT_NEAR(std::log2(reactions[0] / reactions[1]), 2.0, 0.2) << testing::PrintToString(reactions);
 }
 
-/// Two cables and a bar in free flight, held together by a pin, a soft pin and a spring.
+/// Two cables and a bar in free flight, connected by a pin, a compliant pin and a spring.
 struct Flock {
   Model<Bodies<Cable, planar::Rigid>, Joints<Pin, SoftPin>, Forces<SpringDamper>> model;
   State x;
@@ -90,7 +91,7 @@ TEST(EnergyMomentumOfJoints, JointsOfPointsAndSpringsKeepBothMomenta) {
   EXPECT_LT(drift.violation, 1e-11);
 }
 
-// Dampers take energy in every step; the momenta stay.
+// Dampers reduce the energy in every step; the momenta are constant.
 TEST(EnergyMomentumOfJoints, DampersOnlyTakeEnergy) {
   Flock flock(2.0);
   Drift const drift = drift_of(flock.model, flock.x, EnergyMomentum{}, 0.005, 1000);
@@ -100,8 +101,9 @@ TEST(EnergyMomentumOfJoints, DampersOnlyTakeEnergy) {
   EXPECT_LT(drift.angular, 1e-8);
 }
 
-// A point mass whirls on a spring with hω = 10 along it and turns by 0.3 rad in a step: the trapezoidal rule, stable
-// for linear models only, doubles its energy [Gonzalez & Simo 1996]; this step keeps energy and the moment of momentum.
+// A point mass moves around on a spring, with hω = 10 along the spring and a rotation of 0.3 rad per step. The
+// trapezoidal rule is stable for linear models only and doubles the energy [Gonzalez & Simo 1996]. The
+// energy-momentum step conserves the energy and the moment of momentum.
 TEST(EnergyMomentumOfJoints, StaysWhereTheTrapezoidalRuleGainsEnergy) {
   Model<Bodies<planar::Rigid>, Joints<>, Forces<SpringDamper>> model;
   auto const mass = model.add(planar::Rigid(1.0, 1.0, Placement::planar(1.0, 0.0)), "mass");
@@ -129,7 +131,7 @@ TEST(EnergyMomentumOfJoints, StaysWhereTheTrapezoidalRuleGainsEnergy) {
   };
   EXPECT_GT(worst_of_trapezoidal(), 2.0);
   State x = start;
-  // what Newton's method leaves adds up over the steps: 1e-7 with the usual tolerance
+  // the remaining errors of Newton's method add up over the steps: 1e-7 with the usual tolerance
   Drift const drift = drift_of(model, x, EnergyMomentum{.tolerance = 1e-12}, h, 10000);
   EXPECT_LT(drift.energy, 1e-8);
   EXPECT_LT(drift.angular, 1e-9);

@@ -1,4 +1,4 @@
-// Energy and both momenta of what flies in space, over long runs [CASES I3, D4].
+// Conservation of energy and both momenta of flexible rods in free flight in space, over long runs (I3, D4).
 
 #include <polybody/integrators/energy_momentum.hpp>
 
@@ -17,13 +17,14 @@ using namespace polybody;
 
 namespace energy_momentum_space_test {
 
-/// From 0 to 1 at 2.5 s, back to 0 at 5 s.
+/// Rises from 0 to 1 at 2.5 s and falls back to 0 at 5 s.
 struct Triangle {
   Motion operator()(double t) const { return {std::max(0.0, 1.0 - std::abs(t / 2.5 - 1.0)), 0.0, 0.0}; }
   std::vector<double> corners() const { return {0.0, 2.5, 5.0}; }
 };
 
-/// CASES D4: from (6, 0, 0) to (0, 8, 0), thrown by a force and a moment at the first end in 5 s.
+/// Free flight in space (D4, AeroBeams, "flyingSpaghetti3D"): a rod from (6, 0, 0) to (0, 8, 0), thrown by a force
+/// and a moment at its first end for 5 s.
 template <class B>
 struct Thrown {
   Model<Bodies<B>, Joints<>, Forces<PointForce<Triangle>, PointMoment<Triangle>>> model;
@@ -46,7 +47,7 @@ struct Thrown {
   }
 };
 
-// P = (50, 0, 0) after 5 s [A].
+// P = (50, 0, 0) after 5 s, the integral of the force.
 TEST(EnergyMomentumInSpace, KeepsEnergyAndMomentaOfAThrownCableOverTenThousandSteps) {
   Thrown<AncfCable<>> cable(6);
   EXPECT_LT((momentum(cable.model, cable.x).linear - Vec3(50, 0, 0)).norm(), 1e-9);
@@ -54,7 +55,8 @@ TEST(EnergyMomentumInSpace, KeepsEnergyAndMomentaOfAThrownCableOverTenThousandSt
   held_drift(drift, "D4's loads on an AncfCable, 6 elements, EnergyMomentum, 1e4 steps of 10 ms");
 }
 
-// Kelvin–Voigt damping of a bent cable's curvature takes what it takes by another method, from a bend that lets go.
+// Kelvin–Voigt damping of the curvature of a bent cable after its release. It dissipates the same energy as in
+// another method.
 TEST(EnergyMomentumInSpace, DampsABentCableAsRadauDoes) {
   Model<Bodies<AncfCable<>>, Joints<>> model;
   model.add(AncfCable<>::from({.length = 1.0,
@@ -64,7 +66,7 @@ TEST(EnergyMomentumInSpace, DampsABentCableAsRadauDoes) {
             "cable");
   auto const left = [&](auto const& integrator, double step) {
     State x = model.reference_state();
-    for (Index node = 0; node <= 4; ++node) {  // an arc
+    for (Index node = 0; node <= 4; ++node) {  // a circular arc
       double const angle = 0.25 * double(node);
       x.q.segment<3>(6 * node) = Vec3(std::sin(angle), 0.0, 1.0 - std::cos(angle));
       x.q.segment<3>(6 * node + 3) = Vec3(std::cos(angle), 0.0, std::sin(angle));

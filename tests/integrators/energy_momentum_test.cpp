@@ -1,4 +1,4 @@
-// Energy and both momenta of what flies in the plane, over long runs [CASES I3, D3].
+// Conservation of energy and both momenta of flexible rods in free flight in the plane, over long runs (I3, D3).
 
 #include <polybody/integrators/energy_momentum.hpp>
 
@@ -20,8 +20,8 @@ namespace energy_momentum_test {
 
 using Cable = planar::AncfCable<>;
 
-/// CASES D3: 8 N and −80 N m for 2.5 s at the end that starts at (6, 0), the other one at (0, 8). EA = 1e4 N, 1 kg/m,
-/// 10 m.
+/// Flying flexible rod (D3, Simo & Vu-Quoc 1986): 8 N and −80 N m for 2.5 s at the end that starts at (6, 0); the
+/// other end is at (0, 8). EA = 1e4 N, 1 kg/m, 10 m.
 struct Thrown {
   Model<Bodies<Cable>, Joints<>, Forces<PointForce<Window>, PointMoment<Window>>> model;
   BodyHandle<Cable> rod;
@@ -49,7 +49,7 @@ struct Thrown {
   }
 };
 
-// 1e4 steps after the load. The impulse 8 N · 2.5 s gives P = (20, 0), x_c = 5.5 + 2 (t − 2.5), y_c = 4 [A].
+// 1e4 steps after the end of the load. The impulse 8 N · 2.5 s gives P = (20, 0), x_c = 5.5 + 2 (t − 2.5), y_c = 4.
 TEST(EnergyMomentum, KeepsEnergyAndMomentaOfAThrownRodOverTenThousandSteps) {
   for (double const ei : {500.0, 100.0}) {
     double const h = ei / 5e4;
@@ -64,7 +64,7 @@ TEST(EnergyMomentum, KeepsEnergyAndMomentaOfAThrownRodOverTenThousandSteps) {
   }
 }
 
-/// slopes: log₂ of the ratio of neighbouring differences between runs at h, h/2, h/4, ….
+/// Orders of convergence: log₂ of the ratio of successive differences between runs at h, h/2, h/4, ….
 std::vector<double> orders_of(std::vector<VecX> const& ends) {
   std::vector<double> differences, slopes;
   for (std::size_t i = 1; i < ends.size(); ++i) differences.push_back((ends[i] - ends[i - 1]).norm());
@@ -72,12 +72,12 @@ std::vector<double> orders_of(std::vector<VecX> const& ends) {
   return slopes;
 }
 
-// A soft rod that turns, bends and stretches smoothly: neighbouring refinements differ by a quarter as much each time.
+// A soft rod that rotates, bends and stretches smoothly. Each refinement reduces the difference to a quarter.
 TEST(EnergyMomentum, IsOfOrderTwo) {
   std::vector<VecX> ends;
   for (int k = 1; k <= 8; k *= 2) {
     Thrown rod(100.0, 2, 1e3);
-    rod.x.t = 10.0;  // after the load
+    rod.x.t = 10.0;  // after the end of the load
     rod.model.set_velocity(rod.x, rod.rod, Vec3(1, 0, 0), Vec3(0, 0, 1));
     rod.x.v[8] += 0.5;
     simulate(rod.model, rod.x, EnergyMomentum{}, {.until = 10.5, .step = 0.005 / k}).run();
@@ -89,7 +89,7 @@ TEST(EnergyMomentum, IsOfOrderTwo) {
   EXPECT_NEAR(orders.back(), 2.0, 0.1) << testing::PrintToString(orders);
 }
 
-// The work of a dead force at a point of the axis is F·Δr, to rounding, however large the step.
+// The work of a dead force at a point of the axis is F·Δr up to round-off, for any step length.
 TEST(EnergyMomentum, EnergyGrowsByTheWorkOfADeadForce) {
   Model<Bodies<Cable>, Joints<>, Forces<PointForce<>>> model{Gravity{0, -9.81, 0}};
   auto const rod = model.add(
@@ -106,12 +106,12 @@ TEST(EnergyMomentum, EnergyGrowsByTheWorkOfADeadForce) {
   EXPECT_NEAR(energy(model, x).total() - start, work, 1e-9);
 }
 
-// EA = 1e6 N, so that the fastest mode turns by more than 50 rad in a step (of an element's |r′|, ω ≈ √12 √(EA/ρA)/l =
-// 2800 rad/s): the trapezoidal rule, stable for linear models only, ends at once in steps that Newton's method cannot
-// solve. This one goes on.
+// EA = 1e6 N, so that the fastest mode rotates by more than 50 rad per step (|r′| of an element: ω ≈ √12 √(EA/ρA)/l =
+// 2800 rad/s). The trapezoidal rule is stable for linear models only: its steps soon have no convergence of Newton's
+// method. The energy-momentum method continues.
 TEST(EnergyMomentum, GoesOnWhereTheTrapezoidalRuleFails) {
   auto const flying = [](Thrown& rod) {
-    rod.x.t = 10.0;  // after the load
+    rod.x.t = 10.0;  // after the end of the load
     rod.model.set_velocity(rod.x, rod.rod, Vec3(2, 0, 0), Vec3(0, 0, 3));
     for (Index i = 1; i < rod.x.v.size(); i += 4) rod.x.v[i] += std::cos(0.3 * double(i));
   };

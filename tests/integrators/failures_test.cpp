@@ -1,4 +1,4 @@
-// What a run says when it cannot go on, and what it leaves behind.
+// Errors of runs that cannot continue, and the state after such an error.
 
 #include <gtest/gtest.h>
 
@@ -44,12 +44,12 @@ TEST(Failures, AbsurdStepStallsNewtonAndLeavesTheState) {
   EXPECT_TRUE(has(message, "did not converge at t = 3.1"));
   EXPECT_TRUE(has(message, "Take a smaller step"));
   expect_same(x, before);
-  // and a sound step goes on from there
+  // a valid step continues from this state
   EXPECT_NO_THROW(method.step(system, x, 1e-3, workspace));
   EXPECT_NEAR(x.t, 0.101, 1e-12);
 }
 
-/// A force that is no number once t exceeds 0.05.
+/// A force that is not a number if t exceeds 0.05.
 constexpr auto poison = [](auto const& frames, double t) {
   using T = std::decay_t<decltype(frames[0].r[0])>;
   Wrench<T> w;
@@ -57,7 +57,7 @@ constexpr auto poison = [](auto const& frames, double t) {
   return std::array{w};
 };
 
-/// Two bodies; the second is pushed by it.
+/// Two bodies; the force `poison` acts on the second.
 struct Poisoned {
   using Push = UserForce<1, std::remove_const_t<decltype(poison)>>;
   using Pin = Joint<planar::Revolute, Constraint>;
@@ -84,7 +84,7 @@ struct Poisoned {
     EXPECT_TRUE(has(message, "\"pushed one\""));
     EXPECT_TRUE(has(message, "is not finite at t = 0.0"));
     EXPECT_GT(x.t, 0.0);
-    EXPECT_LE(x.t, 0.0501);  // steps that grow get less far
+    EXPECT_LE(x.t, 0.0501);  // growing steps end earlier
     expect_same(x, before);
     EXPECT_TRUE(x.q.allFinite() && x.v.allFinite());
   }
@@ -99,7 +99,7 @@ TEST(Failures, ForceThatIsNoNumberNamesItsBody) {
   Poisoned().expect_named(Rattle{});
 }
 
-/// A force that fails at its call number `at`: it throws, or is no number.
+/// A force that fails at its call number `at`: it throws, or returns NaN.
 struct Faulty {
   int at = -1, calls = 0;
   bool throws = true;
@@ -116,8 +116,8 @@ inline auto fails_at(Faulty* fault) {
   });
 }
 
-// Joints of `Recursive` ask the forces once more after a step, for their reactions. A force that fails there is a
-// failure of the step like any other: the state stays, and the step taken again is the same to the last bit.
+// Joints in joint coordinates evaluate the forces again after a step, for their reactions. If a force fails in this
+// evaluation, the step fails: the state is unchanged, and a repeated step is bitwise identical.
 TEST(Failures, ForceThatFailsAfterTheStepLeavesTheState) {
   using Pin = Joint<planar::Revolute, Recursive>;
   using Push = decltype(fails_at(nullptr));
@@ -144,14 +144,15 @@ TEST(Failures, ForceThatFailsAfterTheStepLeavesTheState) {
     return std::pair(fault.calls, x);
   };
   auto const [calls, sound] = calls_of_a_step(-1, true, {});
-  EXPECT_EQ(calls, 5);  // three stages, the end and the reactions
+  EXPECT_EQ(calls, 5);  // three stages, the end of the step and the reactions
   for (int at = 0; at < calls; ++at)
     for (bool const throws : {true, false}) calls_of_a_step(at, throws, sound);
 }
 
-// The mass of Euler parameters is singular along them, so that the last pivot of a body is rounding: from the first one
-// on that is small enough to be noticed, here as a body tilts by some hundredths, the solver eliminates it with its
-// joint. A step that fails after that is taken again in the order that it began with.
+// The mass matrix of Euler parameters is singular along them, so the last pivot of a body is round-off. Here the body
+// tilts by some hundredths of a radian, and the pivot falls below the solver's threshold. The solver then eliminates
+// it together with the joint. If a step fails after that, the repeated step begins with the original elimination
+// order.
 TEST(Failures, StepTakenAgainHasTheOrderOfEliminationThatItBeganWith) {
   using Push = decltype(fails_at(nullptr));
   using Ball = Joint<Spherical, Constraint>;
@@ -183,8 +184,8 @@ TEST(Failures, StepTakenAgainHasTheOrderOfEliminationThatItBeganWith) {
   }
 }
 
-// A joint that repeats another is left out under solvers that find no pivot for its rows, and the report names it; the
-// motion is that of one pin.
+// A redundant joint is omitted under solvers that find no pivot for its constraint equations. The report names the
+// joint; the motion is that of one pin.
 TEST(Failures, DoubledJointIsLeftOutAndNamed) {
   using Pin = Joint<Revolute, Constraint>;
   auto const swing = [](auto solver, std::vector<char const*> const& pins, std::vector<std::string>& redundant) {
@@ -209,7 +210,7 @@ TEST(Failures, DoubledJointIsLeftOutAndNamed) {
   expect_left_out(EigenSparseLu{});
 }
 
-// A point mass on a ball joint may spin about its own axis without inertia.
+// A point mass on a ball joint can spin about its own axis without inertia.
 TEST(Failures, BodyWithoutInertiaIsNamed) {
   Chain<OnBallJoints<Constraint>> chain(1, point_link());
   State x = chain.model.reference_state();

@@ -48,7 +48,8 @@ bool const generalized_alpha_obey[] = {
 
 namespace generalized_alpha_test {
 
-// CASES I1 [C]: 50 steps of ωh = 0.2 with a₀ = q̈₀.
+// Linear oscillator (I1): 50 steps of ωh = 0.2 with a₀ = q̈₀, computed independently with the parameters of Chung &
+// Hulbert 1993.
 TEST(GeneralizedAlpha, GivesThePublishedDigitsOfTheOscillator) {
   struct {
     double rho, q, hv;
@@ -71,7 +72,7 @@ TEST(GeneralizedAlpha, GivesThePublishedDigitsOfTheOscillator) {
   }
 }
 
-// CASES I1 [A]: for ρ∞ = 1 the phase advances by 2 atan(ωh/2) a step, whatever h.
+// Trapezoidal rule (I1): for ρ∞ = 1 the phase advances by 2 atan(ωh/2) per step, for any h.
 TEST(GeneralizedAlpha, WithoutDampingIsTheTrapezoidalRule) {
   for (auto const& p : trapezoidal_periods) {
     int const n = 100;
@@ -81,8 +82,7 @@ TEST(GeneralizedAlpha, WithoutDampingIsTheTrapezoidalRule) {
   }
 }
 
-// ρ∞ is the spectral radius for ωh → ∞: a double root −ρ∞, so that |q| falls like n ρ∞ⁿ
-// [Chung & Hulbert 1993].
+// ρ∞ is the spectral radius for ωh → ∞. The root −ρ∞ is double, so |q| falls like n ρ∞ⁿ [Chung & Hulbert 1993].
 TEST(GeneralizedAlpha, DampsTheUnresolvedByItsSpectralRadius) {
   for (double const rho : {0.9, 0.5, 0.2}) {
     double const per_step =
@@ -114,7 +114,7 @@ TEST(GeneralizedAlpha, RefusesAStepWithoutAStart) {
   EXPECT_TRUE(has(refusal([&] { method.step(system, o.x, 0.1, workspace); }), "call start before step"));
 }
 
-// The memory of the run stands in the state: a copy goes on exactly as the original does.
+// The state contains the integrator history: a copy continues exactly like the original.
 TEST(GeneralizedAlpha, CopyOfAStateGoesOnAsTheOriginal) {
   SwingingBar bar;
   System system(bar.model);

@@ -39,11 +39,11 @@ bool const hht_alpha_obey[] = {obeys<hht_alpha_test::HhtAlphaOnBar, IntegratorLa
 
 namespace hht_alpha_test {
 
-// As first published: a₁ + (1 + α) q₁ − α q₀ = 0 for ω = 1, with Newmark's q₁ and v₁; a₁ follows by hand
+// The equation as first published: a₁ + (1 + α) q₁ − α q₀ = 0 for ω = 1, with Newmark's q₁ and v₁. a₁ follows by hand
 // [Hilber, Hughes & Taylor 1977, Eq. 1–4]. Damping and period of every step follow from it.
 TEST(HhtAlpha, SolvesThePublishedEquationsOfAnOscillator) {
   for (double const alpha : {-1.0 / 3.0, -0.1, -0.05}) {
-    double const beta = 0.25 * (1.0 - alpha) * (1.0 - alpha), gamma = 0.5 - alpha;  // CASES I1
+    double const beta = 0.25 * (1.0 - alpha) * (1.0 - alpha), gamma = 0.5 - alpha;  // linear oscillator (I1)
     double const h = 0.2;
     double q = 1.0, v = 0.0, a = -1.0;
     for (int i = 0; i < 50; ++i) {
@@ -63,7 +63,7 @@ TEST(HhtAlpha, SolvesThePublishedEquationsOfAnOscillator) {
   }
 }
 
-// CASES I1 [A].
+// Trapezoidal rule of the linear oscillator (I1), in closed form.
 TEST(HhtAlpha, AtZeroIsTheTrapezoidalRule) {
   for (auto const& p : trapezoidal_periods) {
     Oscillator o;
@@ -72,8 +72,8 @@ TEST(HhtAlpha, AtZeroIsTheTrapezoidalRule) {
   }
 }
 
-// CASES I1: spectral radius (1 + α)/(1 − α) for ωh → ∞, of a double root, so that |q| falls like n ρⁿ. At α = −1/3 the
-// third root α/(1 + α) comes to the same −1/2, and |q| falls like n² ρⁿ.
+// The spectral radius is (1 + α)/(1 − α) for ωh → ∞ (I1) with a double root, so |q| falls like n ρⁿ. At α = −1/3 the
+// third root α/(1 + α) also equals −1/2, and |q| falls like n² ρⁿ.
 TEST(HhtAlpha, DampsTheUnresolvedByItsSpectralRadius) {
   for (double const alpha : {-0.05, -0.1, -0.2}) {
     double const rho = (1.0 + alpha) / (1.0 - alpha);
@@ -84,8 +84,9 @@ TEST(HhtAlpha, DampsTheUnresolvedByItsSpectralRadius) {
   }
 }
 
-// CASES I3: the energy decays. Within a swing the energy of q and v stands off that which the method takes away from by
-// O((ωh)²), to and fro with kinetic and potential energy; so each state is compared with that half a period earlier.
+// The energy decays (I3). Within a swing the energy of q and v differs by O((ωh)²) from the energy that the method
+// dissipates. This difference alternates with the kinetic and potential energy, so each state is compared with the
+// state half a period earlier.
 template <class Setup>
 void expect_decay(Setup const& setup, State x, double period) {
   int const half = 64;

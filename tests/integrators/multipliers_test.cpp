@@ -1,4 +1,4 @@
-// CASES I2: the multipliers of generalised-α in the form of index 3 [Arnold & Brüls 2007].
+// Convergence of the multipliers of generalised-α in index-3 form (I2) [Arnold & Brüls 2007].
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ using namespace polybody::laws;
 
 namespace multipliers_test {
 
-/// Steps a model by h for 1 s, then by another step for 0.2 s.
+/// Runs a model with steps of h for 1 s, then with another step for 0.2 s.
 template <class M, class I>
 struct Stepper {
   System system;
@@ -28,8 +28,8 @@ struct Stepper {
   void step(double h) { method.step(system, x, h, workspace); }
 };
 
-/// Largest errors of λ: in the first step, over all steps of h, and after the change to `then`; the largest |λ| and
-/// angular speed.
+/// Largest errors of λ: in the first step, over all steps of h, and after the change to `then`. Also the largest |λ|
+/// and the angular velocity.
 struct Errors {
   double first = 0.0, before = 0.0, after = 0.0, largest = 0.0, rate = 0.0;
 };
@@ -57,7 +57,7 @@ Errors in_the_plane(GeneralizedAlpha const& integrator, double h, double then) {
   return e;
 }
 
-/// Against Runge–Kutta of order four on the same steps.
+/// The reference is Runge–Kutta of order four with the same steps.
 Errors on_se3(GeneralizedAlpha const& integrator, double h, double then) {
   SlowTop top;
   Stepper run(top.model, top.start, integrator, h);
@@ -88,7 +88,7 @@ void expect_second_order(F const& errors_of, double rho) {
     before.push_back(e.before);
     after.push_back(e.after);
     back.push_back(errors_of(method(rho, true), h, 2.0 * h).after);
-    double const natural = std::pow(e.rate * h, 2) * e.largest;  // of a method of order two
+    double const natural = std::pow(e.rate * h, 2) * e.largest;  // expected error of a method of order two
     EXPECT_LT(e.before, natural) << h;
     EXPECT_LT(e.after, 2.0 * natural) << h;
   }
@@ -110,7 +110,7 @@ void expect_first_order_without(F const& errors_of, double rho) {
     EXPECT_GT(slopes(*errors).back(), 0.8) << testing::PrintToString(*errors);
     EXPECT_LT(slopes(*errors).back(), 1.2) << testing::PrintToString(*errors);
   }
-  // … and that is much: the first step of 0.01 with the correction is five times as good
+  // the start correction has a large effect: the first step of 0.01 is five times as accurate with it
   EXPECT_GT(first[1], 5.0 * errors_of(method(rho, true), steps[1], steps[1]).first);
 }
 
@@ -127,7 +127,7 @@ TEST(Multipliers, WithoutTheCorrectionAreOfFirstOrder) {
   expect_first_order_without(on_se3, 0.8);
 }
 
-// Without algorithmic damping nothing forgets a disturbance, but the start is still of second order.
+// Without algorithmic damping a disturbance does not decay, but the start still has second order.
 TEST(Multipliers, WithoutDampingConvergeAtSecondOrderFromTheStart) {
   std::vector<double> before;
   for (double const h : steps) before.push_back(in_the_plane(method(1.0, true), h, h).before);

@@ -45,7 +45,7 @@ bool const newmark_obey[] = {obeys<newmark_test::NewmarkOnBar, IntegratorLaws>("
 
 namespace newmark_test {
 
-// CASES I1 [A].
+// Linear oscillator (I1) in closed form.
 template <class I>
 void expect_published_periods(I const& integrator) {
   for (auto const& p : trapezoidal_periods) {
@@ -59,14 +59,15 @@ TEST(Trapezoidal, HasThePublishedPeriod) { expect_published_periods(Trapezoidal{
 
 TEST(Newmark, UnlessToldOtherwiseIsTheTrapezoidalRule) { expect_published_periods(Newmark{}); }
 
-/// What γ = ½ keeps of the oscillator with ω = 1: v² + q² + (β − γ/2) h² a².
+/// The invariant of Newmark's method with γ = ½ for the oscillator with ω = 1: v² + q² + (β − γ/2) h² a².
 double kept(Newmark const& integrator, double h, State const& x) {
   double const q = x.q[0], v = x.v[0], a = x.a[0];
   return v * v + q * q + (integrator.beta - 0.5 * integrator.gamma) * h * h * a * a;
 }
 
-// For γ = ½ and ω = 1, v taken out of two steps leaves q₂ − 2 q₁ + q₀ = −h² (β q₂ + (1 − 2β) q₁ + β q₀): the phase
-// advances by φ, cos φ = 1 − ½h²/(1 + βh²), a step. By what is kept (see there), v/√(1 + (β − ¼)h²) goes with it.
+// For γ = ½ and ω = 1, elimination of v from two steps gives q₂ − 2 q₁ + q₀ = −h² (β q₂ + (1 − 2β) q₁ + β q₀). The
+// phase advances by φ per step, cos φ = 1 − ½h²/(1 + βh²). By the invariant of `kept`, v/√(1 + (β − ¼)h²) has the
+// same phase.
 TEST(Newmark, OscillatesInClosedFormWithoutDamping) {
   double const h = 0.7;
   for (double const beta : {1.0 / 12.0, 1.0 / 6.0, 0.25, 0.5}) {
@@ -85,7 +86,7 @@ TEST(Newmark, OscillatesInClosedFormWithoutDamping) {
 
 // With κ = β − γ/2, v₁ − v₀ = h(ā + (γ − ½)Δa) and q₁ − q₀ = h v̄ + κh²Δa (bars: means of the ends). Then
 //   v̄ Δv + q̄ Δq + κh² ā Δa = −(γ − ½)(Δq² + κh² Δa²)      for a = −q:
-// what is kept without damping falls by twice that in every step [Hughes 2000, §9.3].
+// the invariant of the undamped case falls by twice this amount in every step [Hughes 2000, §9.3].
 TEST(Newmark, LosesEnergyInEveryStepAsDerived) {
   double const h = 0.3;
   for (double const gamma : {0.55, 0.8}) {
@@ -109,7 +110,7 @@ TEST(Newmark, LosesEnergyInEveryStepAsDerived) {
   }
 }
 
-// The loss of the test above is (γ − ½)h of the kinetic energy, twice over, in a time of one: of first order.
+// The loss of the previous test is (γ − ½)h of twice the kinetic energy in unit time: it has first order.
 TEST(Newmark, DampedIsOfFirstOrderOnly) {
   std::vector<double> errors;
   for (int const n : {100, 200, 400}) {

@@ -1,4 +1,4 @@
-// What Newton's method costs in a step of generalised-α.
+// Cost of Newton's method in a step of generalised-α.
 
 #include <gtest/gtest.h>
 
@@ -19,19 +19,19 @@ RunReport fall(int links, GeneralizedAlpha const& integrator, double until) {
 
 double per_step(long count, RunReport const& r) { return double(count) / double(r.steps); }
 
-// 64 links of 0.1 m, 1 kg, 1e-3 kg m² released horizontally, h = 1 ms, 1 s, with the tolerance of the next test.
+// 64 links of 0.1 m, 1 kg, 1e-3 kg m², released horizontally, h = 1 ms, 1 s, with the tolerance of the next test.
 TEST(NewtonReports, LongChainKeepsItsFactorisation) {
   RunReport const report = fall(64, {.tolerance = 1e-5}, 1.0);
   RecordProperty("iterations_per_step", std::to_string(per_step(report.iterations, report)));
   RecordProperty("factorisations_per_step", std::to_string(per_step(report.factorisations, report)));
   EXPECT_EQ(report.steps, 1000);
-  // no more than 2.5 and 0.2 together: Newton's method weighs one against the other
+  // at most 2.5 and 0.2 together: Newton's method balances iterations against factorisations
   EXPECT_LE(per_step(report.iterations, report) + 3.0 * per_step(report.factorisations, report), 3.1);
   EXPECT_LE(per_step(report.factorisations, report), 0.22);
   EXPECT_LT(report.last.contraction, 1.0);
 }
 
-// What Newton leaves over at that tolerance stands far below the error of the step itself.
+// At this tolerance the remaining error of Newton's method is far below the error of the step.
 TEST(NewtonReports, WhatNewtonLeavesIsSmallBesideTheStepsError) {
   auto const tip = [](GeneralizedAlpha const& integrator, double step) {
     Chain<InSpace<Constraint>> chain(64, bar_link(0.1));
@@ -59,7 +59,7 @@ TEST(NewtonReports, ChainAtRestCostsOneIterationAndNoFactorisation) {
   State x = chain.model.reference_state();
   auto run = simulate(chain.model, x, GeneralizedAlpha{}, {.until = 0.1, .step = 1e-3});
   RunReport const& report = run.run();
-  EXPECT_LT(report.iterations, 1.1 * report.steps);  // but for a rounding error now and then
+  EXPECT_LT(report.iterations, 1.1 * report.steps);  // except for occasional round-off errors
   EXPECT_EQ(report.factorisations, 1);
   EXPECT_EQ(report.evaluations, report.iterations);
 }
@@ -79,7 +79,8 @@ TEST(NewtonReports, ReportOfAStepIsThatOfTheSum) {
   EXPECT_EQ(run.report().factorisations, factorisations);
 }
 
-// At Newton's budget a step ends before it has converged, within a hundredth of its motion, and is counted.
+// If Newton's method reaches its limit of iterations, the step ends unconverged, within a hundredth of its motion,
+// and is counted.
 TEST(NewtonReports, BudgetBoundsAStepAndTellsWhatItLeft) {
   Chain<InSpace<Constraint>> chain(16, bar_link(0.1));
   State x = chain.model.reference_state(), exact = x;

@@ -1,5 +1,5 @@
-// No step takes memory from the heap. A program of its own: it puts its own malloc and operator new in the place
-// of the library's (malloc itself on glibc and without a sanitizer, which has its own).
+// No step allocates heap memory. This test is a separate program: it replaces malloc and operator new of the library.
+// It replaces malloc on glibc only and without a sanitizer, which has its own malloc.
 
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@
 #include "support/chain.hpp"
 
 namespace {
-long taken = 0;  // pieces of memory
+long taken = 0;  // number of allocations
 }
 
 #if defined(__has_feature)
@@ -61,7 +61,7 @@ int posix_memalign(void** p, std::size_t alignment, std::size_t n) {
 }
 #endif
 
-// malloc and new are both replaced here, so pairing free with new is right.
+// malloc and new are both replaced here, so the pairing of free with new is correct.
 #pragma GCC diagnostic ignored "-Wmismatched-new-delete"
 void* operator new(std::size_t n) {
   ++taken;
@@ -78,19 +78,19 @@ using namespace polybody;
 
 namespace {
 
-/// Five links pinned in space.
+/// Five links on pins in space.
 struct RigidChain {
   Chain<InSpace<Constraint>> chain{5, bar_link(0.3)};
   auto const& model() const { return chain.model; }
 };
 
-/// The same in the plane.
+/// The chain of five links in the plane.
 struct PlanarChain {
   Chain<InPlane<Constraint>> chain{5, bar_link(0.3)};
   auto const& model() const { return chain.model; }
 };
 
-/// An arm of Lrvf elements on a pin, its root turned by a drive.
+/// An arm of Lrvf elements on a pin, with a driving constraint at its root.
 struct DrivenArm {
   using Pin = Joint<planar::Revolute, Constraint>;
   using Drive = Joint<PrescribedAngle<SpinUp>, Constraint>;
@@ -108,7 +108,7 @@ struct DrivenArm {
   auto const& model() const { return arm; }
 };
 
-/// An ANCF cable on a compliant pin, its end on a damped spring.
+/// An ANCF cable on a compliant pin, with a damped spring at its end.
 struct SprungCable {
   using Pin = Joint<planar::Revolute, Penalty>;
   Model<Bodies<planar::AncfCable<>>, Joints<Pin>, Forces<SpringDamper>> cable{Gravity{0, -9.81, 0}};
@@ -123,7 +123,7 @@ struct SprungCable {
   auto const& model() const { return cable; }
 };
 
-/// A body on a bushing with laws, a second one that hangs from it on a linear bushing.
+/// A body on a nonlinear bushing, and a second body that hangs from it on a linear bushing.
 struct BushedBodies {
   using Pin = Joint<Revolute, Bushing>;
   using Mount = Joint<Revolute, NonlinearBushing<TabulatedLaw, LinearLaw, LinearLaw, LinearLaw, LinearLaw, LinearLaw>>;
@@ -143,7 +143,7 @@ struct BushedBodies {
   auto const& model() const { return bodies; }
 };
 
-/// Balls in a group of contacts that fall onto the floor and onto one of them, with friction.
+/// Balls in a contact group that fall onto the floor and onto one of them, with friction.
 struct FallingBalls {
   using OnFloor = Contact<SphereOnPlane>;
   using OnBall = Contact<SphereOnSphere>;
@@ -165,8 +165,8 @@ struct FallingBalls {
   auto const& model() const { return balls; }
 };
 
-/// A floating frame of six modes with geometric stiffening on a pin, a second one on the end of the first: bodies whose
-/// size is known at run time.
+/// A floating frame of six modes with geometric stiffening on a pin, and a second one at the end of the first. The
+/// size of these bodies is known at run time.
 template <class Policy>
 struct HungFrames {
   using Pin = Joint<Revolute, Policy>;
@@ -185,7 +185,7 @@ struct HungFrames {
   auto const& model() const { return frame; }
 };
 
-/// An ANCF cable whose end hangs on a Maxwell element: a force with a first-order state.
+/// An ANCF cable with a Maxwell element at its end: a force with a first-order state.
 struct CreepingCable {
   using Pin = Joint<planar::Revolute, Constraint>;
   Model<Bodies<planar::AncfCable<>>, Joints<Pin>, Forces<MaxwellElement>> cable{Gravity{0, -9.81, 0}};
@@ -200,7 +200,8 @@ struct CreepingCable {
   auto const& model() const { return cable; }
 };
 
-/// A chain in joint coordinates that is its own solver, under weight and with a spring at its end.
+/// A chain in joint coordinates, solved by the articulated-body algorithm, under its weight and with a spring at its
+/// end.
 template <bool sprung>
 struct TreeOfLinks {
   using Pin = Joint<Revolute, RecursiveBy<recursive::ArticulatedBody>>;
@@ -227,7 +228,7 @@ struct TreeOfLinks {
   auto const& model() const { return tree; }
 };
 
-/// Pieces of memory taken by 40 steps, from the first one, with a change of length in mid-run.
+/// Number of allocations in 40 steps, from the first step, with a change of the step length in mid-run.
 template <class Case, class Solver = BlockSolver, class I>
 long in_steps(I const& integrator) {
   Case const setup;
@@ -237,7 +238,7 @@ long in_steps(I const& integrator) {
   if (system.step_coordinates()) x = reduce(system, x);
   auto const method = method_of(integrator);
   auto workspace = method.template workspace<Solver>(system);
-  double const h = 1e-5;  // stable for the explicit ones
+  double const h = 1e-5;  // stable for explicit methods
   method.start(system, x, h, workspace);
   workspace.forward.bounds.begin(system, {}, {x.q, x.v, x.lambda, x.t, 1e-3});
   long const before = taken;
@@ -272,7 +273,7 @@ TEST(NoAllocation, TheCountersCount) {
   EXPECT_GT(taken, before);
 #if defined(__GLIBC__) && !defined(POLYBODY_TEST_SANITIZED)
   before = taken;
-  VecX const x = VecX::Zero(100);  // Eigen asks malloc
+  VecX const x = VecX::Zero(100);  // Eigen calls malloc
   EXPECT_GT(taken, before);
 #endif
 }

@@ -46,12 +46,12 @@ bool const radau_obey[] = {obeys<radau_test::RadauOnBar, IntegratorLaws>("RadauO
 
 namespace radau_test {
 
-/// The stability function [Hairer & Wanner 1996, §IV.5: the Padé approximation of exp with degrees 2 and 3].
+/// The stability function: the Padé approximation of exp with degrees 2 and 3 [Hairer & Wanner 1996, §IV.5].
 std::complex<double> growth(std::complex<double> z) {
   return (1.0 + 0.4 * z + z * z / 20.0) / (1.0 - 0.6 * z + 3.0 * z * z / 20.0 - z * z * z / 60.0);
 }
 
-// (q + i v)˙ = −i (q + i v): a step multiplies q + i v by R(−ih), whatever h.
+// (q + i v)˙ = −i (q + i v): a step multiplies q + i v by R(−ih), for any h.
 TEST(Radau, GivesItsStabilityFunctionOnAnOscillator) {
   for (double const h : {0.2, 1.0, 5.0, 1e3}) {
     Oscillator o;
@@ -66,7 +66,7 @@ TEST(Radau, GivesItsStabilityFunctionOnAnOscillator) {
   }
 }
 
-/// A unit mass that a spring of k holds to a point moving as cos t: x˙˙ = −k (x − cos t).
+/// A unit mass on a spring of stiffness k whose other end moves as cos t: x˙˙ = −k (x − cos t).
 struct Led {
   static constexpr double k = 1e10;
   static constexpr auto law = [](auto const& frames, double t) {
@@ -86,9 +86,9 @@ struct Led {
   }
 };
 
-// Stiff accuracy [Prothero & Robinson 1974]: from x = cos t · k/(k − 1) on, the third stage's own force balance holds x
-// to (error of v̇)/k, and v, which is then the derivative of a cubic through x, converges at the order three of the
-// stages.
+// Stiff accuracy [Prothero & Robinson 1974]: the initial condition is x = cos t · k/(k − 1). The force balance of the
+// third stage determines x to (error of v̇)/k. Then v is the derivative of a cubic through x and converges with the
+// order three of the stages.
 TEST(Radau, FollowsAStiffSpringWithoutResolvingIt) {
   std::vector<double> errors;
   for (double const h : {0.2, 0.1, 0.05}) {
@@ -105,7 +105,7 @@ TEST(Radau, FollowsAStiffSpringWithoutResolvingIt) {
               errors.back(), 1e-5, {.scale = 1.0});
 }
 
-// CASES R1: the exact motion, its reaction at the pivot and its acceleration.
+// Simple pendulum (R1, IFToMM A01): the exact motion, its reaction at the pivot and its acceleration.
 TEST(Radau, PendulumAgreesWithTheExactMotion) {
   SwingingBar bar;
   State x = bar.start;
@@ -121,7 +121,7 @@ TEST(Radau, PendulumAgreesWithTheExactMotion) {
               {.scale = bar.reaction(2.0).norm()});
 }
 
-// Rounding of positions divided by h² is no allowance for accelerations: at h = 2e-5 it would be 2e-6.
+// The round-off of positions divided by h² is not a tolerance for accelerations: at h = 2e-5 it would be 2e-6.
 TEST(Radau, PendulumAgreesWithTheExactMotionBySmallSteps) {
   SwingingBar bar;
   State x = bar.start;
@@ -132,8 +132,8 @@ TEST(Radau, PendulumAgreesWithTheExactMotionBySmallSteps) {
   EXPECT_NEAR(x.a[2], acceleration, 1e-8);
 }
 
-// Lagrange's polynomials of the nodes: one at their own, zero at the others, and their integrals by Simpson's rule,
-// which is exact.
+// Lagrange polynomials of the nodes: one at their own node, zero at the others. Simpson's rule integrates them
+// exactly.
 TEST(RadauTableau, InterpolatesBetweenItsNodes) {
   using Tableau = detail::RadauTableau;
   for (std::size_t j = 0; j < 3; ++j) {

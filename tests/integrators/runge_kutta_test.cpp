@@ -47,7 +47,7 @@ DormandPrince<Stabilisation> with_tolerance(double tolerance) {
   return {.relative_tolerance = tolerance, .absolute_tolerance = tolerance};
 }
 
-/// Errors of a run to 1 s for tolerances 1e-4, 1e-6, 1e-8, 1e-10, against `exact`.
+/// Errors of a run to 1 s with tolerances 1e-4, 1e-6, 1e-8, 1e-10, relative to `exact`.
 template <class I, class M>
 std::vector<double> errors_by_tolerance(M const& model, State const& start, VecX const& exact) {
   std::vector<double> errors;
@@ -62,7 +62,8 @@ std::vector<double> errors_by_tolerance(M const& model, State const& start, VecX
   return errors;
 }
 
-/// Six decades of tolerance take six decades of error, give or take one, and each pair of them at least one.
+/// Over six decades of tolerance the error falls by six decades, within one decade, and by at least one decade
+/// between successive tolerances.
 void expect_proportional(std::vector<double> const& errors) {
   EXPECT_NEAR(std::log10(errors.front() / errors.back()), 6.0, 1.0) << testing::PrintToString(errors);
   for (std::size_t i = 1; i < errors.size(); ++i)
@@ -83,7 +84,7 @@ TEST(DormandPrince, ErrorOfAFreeBodyIsProportionalToTheTolerance) {
   expect_proportional(errors_by_tolerance<DormandPrince<>>(body.model, body.start, fine.q));
 }
 
-/// A point of mass 1 on the x axis under the force law(x, v, t); the plane's rotation stays at rest.
+/// A point of mass 1 on the x axis under the force law(x, v, t); the rotation in the plane stays at rest.
 template <class Law>
 struct Point {
   using Force = UserForce<1, Law>;
@@ -98,7 +99,7 @@ struct Point {
   }
 };
 
-/// As a law over frames, from a function of x and v.
+/// Converts a function of x and v to a force law over frames.
 template <class F>
 auto along_x(F f) {
   return [f](auto const& frames, double t) {
@@ -109,19 +110,19 @@ auto along_x(F f) {
   };
 }
 
-// x˙˙ = 6 x² with x(0) = 1, x˙(0) = 2 is x = 1/(1 − t)²: no step reaches t = 1.
+// The solution of x˙˙ = 6 x² with x(0) = 1, x˙(0) = 2 is x = 1/(1 − t)²: no step reaches t = 1.
 TEST(DormandPrince, StopsBeforeABlowUp) {
   Point point(along_x([](auto const& x, auto const&, double) { return 6.0 * x * x; }), 1.0, 2.0);
   auto run = simulate(point.model, point.x, DormandPrince<>{}, {.until = 2.0, .step = 0.01});
   EXPECT_THROW(run.run(), StepTooSmall);
   EXPECT_NEAR(point.x.t, 1.0, 1e-6);
-  // the state is the last one accepted: finite, with the first integral x˙² = 4 x³
+  // the state is the last accepted one: finite, with the first integral x˙² = 4 x³
   double const x = point.x.q[0], v = point.x.v[0];
   EXPECT_GT(x, 1e10);
   EXPECT_NEAR(v * v / (4.0 * x * x * x), 1.0, 1e-3);
 }
 
-// A stiff model: stability, not accuracy, sets the step; a smallest step above it is refused.
+// A stiff model: stability limits the step, not accuracy. A smallest step above this limit is refused.
 TEST(DormandPrince, SaysThatAStiffModelNeedsAnImplicitMethod) {
   auto const stiff = along_x([](auto const& x, auto const& v, double) { return -1e8 * x - 1e5 * v; });
   Point point(stiff, 0.1, 0.0);
@@ -138,11 +139,11 @@ TEST(DormandPrince, SaysThatAStiffModelNeedsAnImplicitMethod) {
   EXPECT_EQ(point.x.t, before.t);
 }
 
-// A force that jumps at t = 0.5 unannounced: the control refuses steps over it and comes through with the
-// accuracy asked for; announced as a corner it costs next to nothing.
+// A force that jumps at t = 0.5. Without a breakpoint the step-size control refuses steps over the jump and still
+// reaches the requested accuracy. With a breakpoint the jump costs almost nothing.
 TEST(DormandPrince, RefusesStepsOverAJump) {
   auto const jump = along_x([](auto const& x, auto const&, double t) { return -x + (t < 0.5 ? 0.0 : 10.0); });
-  // x = cos t, then 10 − 10 cos(t − ½) beside it
+  // x = cos t, with the additional term 10 − 10 cos(t − ½)
   double const exact = std::cos(1.0) + 10.0 - 10.0 * std::cos(0.5);
   RunReport reports[2];
   for (int announced : {0, 1}) {
@@ -189,7 +190,7 @@ TEST(DormandPrince, RefusesTolerancesThatCannotBeMeant) {
   EXPECT_TRUE(has(try_with({.smallest_step = 0.0}), "the smallest step must be positive"));
 }
 
-// A start off the rows by more than a step can repair.
+// A start with a constraint violation that is too large for the correction in a step.
 TEST(Projection, SaysThatThePositionsCannotBeBroughtBack) {
   SwingingBar bar;
   System system(bar.model);

@@ -1,4 +1,4 @@
-// Coordinate partitioning by sparse factors: the split by itself, and mechanisms beside the dense elimination.
+// Coordinate partitioning by sparse factors: the partition itself, and mechanisms against the dense elimination.
 #include <gtest/gtest.h>
 
 #include <polybody/integrators/coordinate_partitioning.hpp>
@@ -21,7 +21,7 @@ void write(SparsePartitionOf<>& rows, MatX const& g) {
   rows.add(g.cols(), 0, g);
 }
 
-// The third row is the sum of the others: rank 2, until it no longer is.
+// The third row is the sum of the others, so the rank is 2. Then the row changes and the rank is 3.
 TEST(SparsePartition, FindsTheRankAndSolves) {
   MatX g(3, 4);
   g << 1, 2, 0, 4, 3, -1, 5, 0, 4, 1, 5, 4;
@@ -44,8 +44,8 @@ TEST(SparsePartition, FindsTheRankAndSolves) {
   EXPECT_LT((g * b - r).norm(), 1e-9);
 }
 
-// Columns that differ by little more than what counts as a repetition, and one that stands across them, last or first:
-// it is among the dependent ones, as G_d would hardly have an inverse without it.
+// Columns that differ by little more than the rank tolerance, and one nearly orthogonal column, last or first. This
+// column must be among the dependent ones: without it G_d is almost singular.
 TEST(SparsePartition, TakesNoColumnThatHardlyAddsAnything) {
   for (Index const across : {0, 5, 11}) {
     MatX g(2, 12);
@@ -63,7 +63,7 @@ TEST(SparsePartition, TakesNoColumnThatHardlyAddsAnything) {
   }
 }
 
-// One row (1, s): the first column stays the dependent one until the second would move it by more than the limit.
+// One row (1, s): the first column remains dependent until its ratio to the second exceeds the limit.
 TEST(SparsePartition, ChangesPlacesWhereADependentSpeedMovesTooMuch) {
   SparsePartitionOf<> rows(1, 2);
   MatX g(1, 2);
@@ -85,7 +85,8 @@ TEST(SparsePartition, ChangesPlacesWhereADependentSpeedMovesTooMuch) {
   EXPECT_EQ(rows.choices, first + 1);
 }
 
-// Random rows of low rank: after the exchanges no dependent column moves more than the limit for one of the others.
+// Random rows of low rank: after the exchanges no dependent column moves by more than the limit per unit of another
+// column.
 TEST(SparsePartition, ExchangesBoundTheRatios) {
   std::srand(7);
   for (int trial = 0; trial < 50; ++trial) {
@@ -105,7 +106,7 @@ TEST(SparsePartition, ExchangesBoundTheRatios) {
   }
 }
 
-// Without rows, and with rows that do not act, nothing is dependent.
+// Without constraint equations, and with constraint equations of zeros, no coordinate is dependent.
 TEST(SparsePartition, TakesNoRowsAndRowsOfZeros) {
   for (Index const m : {0, 2}) {
     SparsePartitionOf<> rows(m, 3);
@@ -123,7 +124,7 @@ TEST(SparsePartition, TakesNoRowsAndRowsOfZeros) {
   EXPECT_EQ(independent_speeds(system, bars.x, sparse).size(), 18u);
 }
 
-/// Largest violations of four-bars over a run.
+/// Largest constraint violations of four-bar linkages over a run.
 template <class M, class I>
 Violation worst_of(M const& model, State& x, I const& integrator, RunOptions const& options) {
   Violation worst;
@@ -146,14 +147,15 @@ TEST(SparsePartitioning, MovesLinkagesAsTheDenseOneDoes) {
     EXPECT_LT(open.position, 1e-11) << bars;
     EXPECT_LT(open.velocity, 1e-10) << bars;
     EXPECT_LT(open.acceleration, 1e-8) << bars;
-    if (bars > 3) continue;  // the dense elimination would take minutes
+    if (bars > 3) continue;  // the dense elimination would need minutes
     simulate(dense.model, dense.x, RungeKutta4<CoordinatePartitioning>{.stabilisation = {.dense_up_to = 1000}}, options)
         .run();
     EXPECT_LT((kept.x.q - dense.x.q).norm(), 1e-9) << bars;
   }
 }
 
-// Windows have one freedom. Both ways name one independent speed, and the report counts the choices.
+// The windows have one degree of freedom. Both methods name one independent velocity, and the report counts the
+// choices.
 TEST(SparsePartitioning, NamesTheIndependentSpeedsAndCountsChoices) {
   FourBars<InSpace<Constraint>> bars(2);
   System system(bars.model);
@@ -168,8 +170,8 @@ TEST(SparsePartitioning, NamesTheIndependentSpeedsAndCountsChoices) {
   EXPECT_GE(run.run().last.choices, 1);
 }
 
-// A rod that turns over, 2 m from its pin: as x and y may not move more than 1.5 times as fast as the turn, in metres
-// and radians, they take turns as the independent coordinate.
+// A rod rotates through a full circle, with its centre 2 m from the pin. x and y may move at most 1.5 times as fast
+// as the rotation, in metres and radians. Therefore x and y alternate as the independent coordinate.
 TEST(SparsePartitioning, ChangesItsChoiceAsARodTurnsOver) {
   using Pin = Joint<planar::Revolute, Constraint>;
   Model<Bodies<planar::Rigid>, Joints<Pin>> model{Gravity{0, -9.81, 0}};

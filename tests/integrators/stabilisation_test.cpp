@@ -1,4 +1,4 @@
-// How explicit steps keep to the rows, and what becomes of these where nothing keeps them.
+// Constraint stabilisation in explicit steps, and the drift of constraint equations without it.
 
 #include <polybody/integrators/coordinate_partitioning.hpp>
 
@@ -34,7 +34,7 @@ struct PartitionedDifferences {
   static auto integrators() { return std::vector<CentralDifference<CoordinatePartitioning>>(1); }
   static constexpr double until = 0.5;
   static constexpr int steps = 32;
-  static constexpr bool keeps_accelerations = false;  // they belong to the predicted speeds
+  static constexpr bool keeps_accelerations = false;  // the accelerations belong to the predicted velocities
 };
 
 }  // namespace stabilisation_test
@@ -48,8 +48,8 @@ bool const stabilisation_obey[] = {
 
 namespace stabilisation_test {
 
-/// Largest difference over 1 s, relative to its start, between Φ of a bar that starts off its pin and `expected(t, Φ₀,
-/// Φ̇₀)`.
+/// Largest difference over 1 s between Φ of a bar that starts off its pin and `expected(t, Φ₀, Φ̇₀)`, relative to the
+/// initial value.
 template <class I, class Expected>
 double worst_of_open_pin(I const& integrator, Expected expected) {
   SwingingBar bar;
@@ -75,7 +75,7 @@ double worst_of_open_pin(I const& integrator, Expected expected) {
   return worst / (phi0.norm() + rate0.norm());
 }
 
-// Φ̈ = 0: Φ = Φ₀ + Φ̇₀ t.
+// The solution of Φ̈ = 0 is Φ = Φ₀ + Φ̇₀ t.
 TEST(NoStabilisation, LeavesTheRowsToThemselves) {
   auto const straight = [](double t, VecX const& phi, VecX const& rate) { return VecX(phi + t * rate); };
   held_within({"closed forms", "violation of a pin that starts open, over 1 s, of its start", By::closed_form,
@@ -83,7 +83,7 @@ TEST(NoStabilisation, LeavesTheRowsToThemselves) {
               worst_of_open_pin(RungeKutta4<NoStabilisation>{}, straight), 1e-7, {.scale = 1.0});
 }
 
-// Φ̈ + 2α Φ̇ + β² Φ = 0: Φ = e^{−αt} (Φ₀ cos ωt + (Φ̇₀ + α Φ₀) sin ωt / ω), ω² = β² − α².
+// The solution of Φ̈ + 2α Φ̇ + β² Φ = 0 is Φ = e^{−αt} (Φ₀ cos ωt + (Φ̇₀ + α Φ₀) sin ωt / ω), ω² = β² − α².
 TEST(Baumgarte, LetsAViolationDieAwayAsItsEquationSays) {
   double const alpha = 3.0, beta = 5.0, omega = 4.0;
   auto const damped = [&](double t, VecX const& phi, VecX const& rate) {
@@ -96,7 +96,7 @@ TEST(Baumgarte, LetsAViolationDieAwayAsItsEquationSays) {
               worst_of_open_pin(RungeKutta4<Baumgarte>{.stabilisation = given}, damped), 1e-7, {.scale = 1.0});
 }
 
-// Against the exact pendulum: the order of the method is untouched.
+// The reference is the exact pendulum: stabilisation does not change the order of the method.
 template <class I>
 double order_on_the_pendulum(I const& integrator, int steps) {
   SwingingBar bar;
@@ -119,8 +119,8 @@ TEST(Stabilisation, KeepsTheOrderOfTheMethod) {
   EXPECT_GT(order_on_the_pendulum(CentralDifference<Baumgarte>{.stabilisation = given}, 64), 1.9);
 }
 
-/// A crank of 1 m, a coupler of 3.5 m and a rocker of 3 m over a base of 4 m: 1 + 4 < 3.5 + 3, so the crank may turn
-/// and no position is singular [Grashof]. The crank starts upright at 3 rad/s, under gravity.
+/// A crank of 1 m, a coupler of 3.5 m and a rocker of 3 m over a base of 4 m. 1 + 4 < 3.5 + 3, so the crank rotates
+/// fully and no configuration is singular [Grashof]. The crank starts upright at 3 rad/s, under gravity.
 struct CrankRocker {
   using Pin = Joint<planar::Revolute, Constraint>;
   Model<Bodies<planar::Rigid>, Joints<Pin>> model{Gravity{0, -9.81, 0}};
@@ -128,7 +128,7 @@ struct CrankRocker {
 
   CrankRocker() {
     Vec2 const a(0, 0), b(0, 1), d(4, 0);
-    // C at 3.5 m from B and 3 m from D, above
+    // C is 3.5 m from B and 3 m from D, above the base
     Vec2 const along = (d - b).normalized();
     double const bd = (d - b).norm(), s = (bd * bd + 3.5 * 3.5 - 9.0) / (2.0 * bd);
     Vec2 const c = b + s * along + std::sqrt(3.5 * 3.5 - s * s) * Vec2(-along[1], along[0]);
@@ -143,12 +143,13 @@ struct CrankRocker {
     model.connect(Pin{}, coupler.at(Vec2(1.75, 0)), rocker.at(Vec2(-1.5, 0)), "C");
     model.connect(Pin{}, rocker.at(Vec2(1.5, 0)), model.ground().at({4, 0, 0}), "D");
     x = model.reference_state();
-    model.set_velocity(x, crank, Vec3::Zero(), Vec3(0, 0, 3));  // simulate brings the others to the rows
+    // simulate makes the other velocities consistent with the constraint equations
+    model.set_velocity(x, crank, Vec3::Zero(), Vec3(0, 0, 3));
   }
 };
 
-/// Largest violations over [0, 10 s] and over [0, 100 s], and the largest change of energy, relative to the weight
-/// times 1 m.
+/// Largest constraint violations over [0, 10 s] and over [0, 100 s], and the largest change of energy relative to the
+/// weight times 1 m.
 struct LongRun {
   Violation early, all;
   double energy = 0.0;
@@ -172,8 +173,7 @@ struct LongRun {
   }
 };
 
-// 1e4 steps. Solver tolerance: of Φ the one of the policy, of Φ̇ and Φ̈ what rounding leaves of terms of 10 m/s and
-// 100 m/s².
+// 1e4 steps. Tolerance of Φ: that of the policy. Tolerance of Φ̇ and Φ̈: round-off of terms of 10 m/s and 100 m/s².
 TEST(CoordinatePartitioning, KeepsEveryLevelOfAFourBarFor100Seconds) {
   LongRun const kept(RungeKutta4<CoordinatePartitioning>{});
   auto const claim = [](char const* what, char const* source) {
@@ -193,17 +193,17 @@ TEST(NoStabilisation, DriftsOffAFourBar) {
   EXPECT_GT(drifting.all.position, 1e-4);
   EXPECT_GT(drifting.all.position, 5.0 * drifting.early.position);
   EXPECT_GT(drifting.all.velocity, 1e-6);
-  EXPECT_LT(drifting.all.acceleration, 1e-11);  // this is all that the augmented form looks after
+  EXPECT_LT(drifting.all.acceleration, 1e-11);  // the augmented form enforces the accelerations only
 }
 
 TEST(Baumgarte, HoldsAFourBarWithinASmallGap) {
   LongRun const held(RungeKutta4<Baumgarte>{.stabilisation = {.alpha = 10.0, .beta = 10.0}});
   EXPECT_LT(held.all.position, 1e-5);
-  EXPECT_LT(held.all.position, 3.0 * held.early.position);  // it does not grow
-  EXPECT_GT(held.all.position, 1e-11);                      // nor does it go away
+  EXPECT_LT(held.all.position, 3.0 * held.early.position);  // the violation does not grow
+  EXPECT_GT(held.all.position, 1e-11);                      // the violation does not decay
 }
 
-/// Steps of a partitioned run to `until`; how often the independent speeds were chosen.
+/// Steps of a partitioned run to `until`, and the number of choices of independent velocities.
 template <class M>
 long choices(M const& model, State& x, double h, double until) {
   System system(model);
@@ -215,9 +215,9 @@ long choices(M const& model, State& x, double h, double until) {
   return workspace.scratch.rows.choices;
 }
 
-// The middle of a rod 2 m from its pin at the angle θ from the vertical is at (2 sin θ, −2 cos θ). The turn is
-// dependent, as its lever is the largest entry; y is independent while |cot θ| < 10, x while |tan θ| < 10. So a rod
-// that starts level on y changes to x and back by atan 0.1 before each quarter of a turn.
+// The middle of a rod 2 m from its pin is at (2 sin θ, −2 cos θ) at the angle θ from the vertical. The rotation is
+// dependent because its moment arm is the largest entry. y is independent if |cot θ| < 10, x if |tan θ| < 10. So a
+// rod that starts level with y changes to x and back, by atan 0.1 before each quarter rotation.
 TEST(CoordinatePartitioning, ChangesItsChoiceAsARodTurnsOver) {
   using Pin = Joint<planar::Revolute, Constraint>;
   Model<Bodies<planar::Rigid>, Joints<Pin>> model{Gravity{0, -9.81, 0}};
@@ -234,8 +234,8 @@ TEST(CoordinatePartitioning, ChangesItsChoiceAsARodTurnsOver) {
   EXPECT_LT(violation(system, x).position, 1e-11);
 }
 
-// CASES J2: three swings in 5 s, released level; the third is within 1° of its end. At each the choice passes to x and
-// back.
+// Revolute joint test of Chrono against ADAMS (J2): three swings in 5 s, released level. The third swing is within 1°
+// of its end. In each swing the choice changes to x and back.
 TEST(CoordinatePartitioning, FollowsTheAdamsCase) {
   using Pin = Joint<Revolute, Constraint>;
   Model<Bodies<Rigid<>>, Joints<Pin>> model{Gravity{0, 0, -9.80665}};
@@ -263,7 +263,8 @@ TEST(CoordinatePartitioning, StartForgetsTheChoice) {
   }
 }
 
-// A pin's rows are linear in the place of its rod, and one iteration is enough; those of a loop are not.
+// The constraint equations of a pin are linear in the position of its rod, so one iteration is enough. Those of a
+// loop are nonlinear.
 TEST(CoordinatePartitioning, SaysThatThePositionsCannotBeBroughtBack) {
   CrankRocker mechanism;
   assemble(mechanism.model, mechanism.x);
@@ -295,7 +296,7 @@ TEST(Stabilisation, RefusesOptionsThatCannotBeMeant) {
       has(told(Partitioned{.stabilisation = {.largest_ratio = 0.5}}), "largest_ratio must be at least 1, but is 0.5"));
 }
 
-/// G as the rows of a tangent, r and 2r as right-hand sides.
+/// Writes G as constraint equations of a tangent, and r and 2r as right-hand sides.
 void write(PartitionedRows& rows, MatX const& g, VecX const& r) {
   rows.begin();
   rows.add(g.cols(), 0, g);
@@ -305,14 +306,14 @@ void write(PartitionedRows& rows, MatX const& g, VecX const& r) {
   }
 }
 
-// The third row is the sum of the others: rank 2, until it no longer is.
+// The third row is the sum of the others, so the rank is 2. Then the row changes and the rank is 3.
 TEST(PartitionedRows, FindTheRankAndSolve) {
   MatX g(3, 4);
   g << 1, 2, 0, 4, 3, -1, 5, 0, 4, 1, 5, 4;
   Vec3 const r(1, 2, 3);
   PartitionedRows rows(3, 4);
   write(rows, g, r);
-  EXPECT_FALSE(rows.reduce(10.0));  // nothing was chosen
+  EXPECT_FALSE(rows.reduce(10.0));  // no new choice
   write(rows, g, r);
   rows.choose();
   EXPECT_EQ(rows.rank(), 2);
@@ -338,7 +339,7 @@ TEST(PartitionedRows, FindTheRankAndSolve) {
   EXPECT_EQ(rows.choices, 2);
 }
 
-// One row (1, s): the first column stays the dependent one until the second would move it by more than the limit.
+// One row (1, s): the first column remains dependent until its ratio to the second exceeds the limit.
 TEST(PartitionedRows, ChooseAnewWhereADependentSpeedMovesTooMuch) {
   PartitionedRows rows(1, 2);
   MatX g(1, 2);

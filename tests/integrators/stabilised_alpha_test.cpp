@@ -1,4 +1,4 @@
-// The rows of positions and speeds together, under generalised-α and HHT-α.
+// Constraint equations of positions and velocities enforced together, under generalised-α and HHT-α.
 
 #include <gtest/gtest.h>
 
@@ -41,7 +41,7 @@ bool const stabilised_alpha_obey[] = {
 
 namespace stabilised_alpha_test {
 
-/// The largest violations over a run of 1 s by 0.01 s.
+/// The largest constraint violations over a run of 1 s with steps of 0.01 s.
 template <class Setup, class I>
 Violation worst(Setup const& setup, I const& integrator) {
   State x = setup.start;
@@ -62,7 +62,7 @@ void expect_both_rows_kept(char const* setup_is, Setup const& setup, I integrato
   integrator.stabilised = true;
   Violation const with = worst(setup, integrator);
   EXPECT_LT(without.position, 1e-12);
-  EXPECT_GT(without.velocity, 1e-6);  // else there is nothing to show
+  EXPECT_GT(without.velocity, 1e-6);  // the comparison requires a violation without stabilisation
   auto const claim = [&](std::string const& what) {
     return Claim{"I1", what + setup_is, By::closed_form, "rows hold",
                  std::string(I::name) + ", stabilised, h = 0.01 s"};
@@ -80,7 +80,7 @@ TEST(StabilisedAlpha, KeepsPositionsAndSpeedsOfATopInEveryStep) {
   expect_both_rows_kept("slow top", SlowTop(), GeneralizedAlpha{.tolerance = 1e-12});
 }
 
-// CASES I2, without a correction of the speeds at the start.
+// Second order of the multipliers (I2) without a correction of the initial velocities.
 TEST(StabilisedAlpha, MultipliersConvergeAtSecondOrderFromTheFirstStep) {
   std::vector<double> errors;
   for (double const h : {0.02, 0.01, 0.005, 0.0025}) {

@@ -1,5 +1,5 @@
-// Steps that converge and yet are wrong: open joints, and energy that no work explains. And motions that gain much
-// energy by right.
+// Bounds on converged but wrong steps: open joints, and energy without the work of a force. Motions whose energy
+// grows by work are accepted.
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/ffr/planar_ffr.hpp>
@@ -48,7 +48,7 @@ void expect_same(State const& a, State const& b) {
   EXPECT_EQ(a.t, b.t);
 }
 
-/// Runs until a step is refused as Diverged, which must leave the state as it was. Returns the message.
+/// Runs until a step throws Diverged, which must leave the state unchanged. Returns the message.
 template <class Run>
 std::string message_of_divergence(Run&& run, State const& x) {
   State before = x;
@@ -62,7 +62,7 @@ std::string message_of_divergence(Run&& run, State const& x) {
   return message;
 }
 
-/// A rod of steel on a pin of stiffness 1e16, released from the horizontal: ω h is about 1e6 at h = 0.01 s.
+/// A steel rod on a pin of stiffness 1e16, released from the horizontal: ω h is about 1e6 at h = 0.01 s.
 struct StiffPendulum {
   using Pin = Joint<Revolute, Penalty>;
   Model<Bodies<Rigid<>>, Joints<Pin>> model{Gravity{0, 0, -9.81}};
@@ -76,8 +76,8 @@ struct StiffPendulum {
   }
 };
 
-// How an explosion goes depends on the last bits: it may stall first. These two name their solver, as their tangents
-// are not symmetric.
+// The course of a divergence depends on round-off: the run may fail to converge first. These two runs name their
+// solver because their tangents are not symmetric.
 TEST(StepBounds, EnergyThatNoWorkExplainsEndsTheRun) {
   StiffPendulum wild, p;
   try {
@@ -94,7 +94,7 @@ TEST(StepBounds, EnergyThatNoWorkExplainsEndsTheRun) {
   EXPECT_LT(energy(p.model, p.x).total(), 1e4);
 }
 
-/// Two cranks at 60 rad/s and a coupler that yields like rubber and buckles.
+/// Two cranks at 60 rad/s and a soft coupler, like rubber, that buckles.
 struct BucklingCoupler {
   using Pin = Joint<planar::Revolute, Constraint>;
   Model<Bodies<planar::Rigid, planar::Ffr>, Joints<Pin>> model{Gravity{0, -9.81, 0}};
@@ -118,8 +118,8 @@ struct BucklingCoupler {
   }
 };
 
-// With a tolerance of 1 m/s² and as much more as the accelerations are, rows may stay open, and what closes them in the
-// next step lets more of them open.
+// The tolerance is 1 m/s² plus a share of the accelerations, so constraint equations may remain violated. Their
+// correction in the next step increases the violation further.
 TEST(StepBounds, AnOpenJointEndsTheRun) {
   BucklingCoupler wild, m;
   GeneralizedAlpha const loose{.tolerance = 1.0};
@@ -163,14 +163,14 @@ void expect_spun_up(I const& integrator) {
   EXPECT_NEAR(x.v[2], 100.0, 1e-6);
 }
 
-// From nothing to 5 kJ: the drive's work.
+// The energy rises from zero to 5 kJ by the work of the driving constraint.
 TEST(StepBounds, ADriveExplainsEnergy) {
   expect_spun_up(GeneralizedAlpha{});
   expect_spun_up(RungeKutta4<Projection>{});
   expect_spun_up(EnergyMomentum{});
 }
 
-// θ¨ = θ˙ from θ˙ = 1e-3: the kinetic energy grows by e²⁰, the work of the force.
+// θ¨ = θ˙ from θ˙ = 1e-3: the work of the force multiplies the kinetic energy by e²⁰.
 TEST(StepBounds, AForceWithoutPotentialExplainsEnergy) {
   auto const push = user_force<1>([](auto const& frames, double) {
     using T = std::decay_t<decltype(frames[0].r[0])>;
@@ -184,21 +184,22 @@ TEST(StepBounds, AForceWithoutPotentialExplainsEnergy) {
   State x = model.reference_state();
   x.v[2] = 1e-3;
   simulate(model, x, GeneralizedAlpha{}, {.until = 10.0, .step = 0.01}).run();
-  EXPECT_NEAR(x.v[2], 1e-3 * std::exp(10.0), 3e-3);  // the method's error is h² t/12 = 8e-5 of it
+  EXPECT_NEAR(x.v[2], 1e-3 * std::exp(10.0), 3e-3);  // the relative error of the method is h² t/12 = 8e-5
 }
 
-// A spring that is stretched at the start gives ½ k (1 m)² = 50 J to a mass at rest.
+// A spring that is stretched at the start transfers ½ k (1 m)² = 50 J to a mass at rest.
 TEST(StepBounds, WhatASpringHeldExplainsEnergy) {
   Model<Bodies<planar::Rigid>, Joints<>, Forces<SpringDamper>> model;
   auto const mass = model.add(planar::Rigid(1.0, 1.0, Placement::planar(2.0, 0.0)), "mass");
   model.apply(SpringDamper{.stiffness = 100.0, .damping = 0.0, .free_length = 1.0}, model.ground().at({0, 0, 0}),
               mass.at(Vec2(0, 0)), "spring");
   State x = model.reference_state();
-  simulate(model, x, RungeKutta4<>{}, {.until = 0.05 * std::numbers::pi, .step = 1e-3}).run();  // a quarter: ω = 10
+  // a quarter of a period: ω = 10
+  simulate(model, x, RungeKutta4<>{}, {.until = 0.05 * std::numbers::pi, .step = 1e-3}).run();
   EXPECT_NEAR(x.v[0], -10.0, 1e-6);
 }
 
-/// A spring to a point that moves off along x: its potential knows time, and time works on it.
+/// A spring to a point that moves along x: its potential depends on time, and the moving point does work.
 struct Tow {
   static constexpr int markers = 1;
   static constexpr bool is_load = false;
@@ -222,10 +223,10 @@ TEST(StepBounds, APotentialThatDependsOnTimeIsNotJudged) {
   model.apply(Tow{}, mass.at(Vec2(0, 0)), "tow");
   State x = model.reference_state();
   simulate(model, x, RungeKutta4<>{}, {.until = 0.1 * std::numbers::pi, .step = 1e-3}).run();
-  EXPECT_NEAR(x.v[0], 4.0, 1e-6);  // x = u (t − sin ωt/ω), ω = 10, half a period on
+  EXPECT_NEAR(x.v[0], 4.0, 1e-6);  // x = u (t − sin ωt/ω), ω = 10, after half a period
 }
 
-/// Pushes along x without a potential, or keeps silent about the potential that it has.
+/// Force along x that has no potential, or does not report its potential.
 struct Push {
   static constexpr int markers = 1;
   static constexpr bool is_load = true;
@@ -245,7 +246,7 @@ struct SecretPush : Push {
   double potential(std::array<Frame<double>, 1> const&, double) const { return 0.0; }
 };
 
-// A step that its event refuses did 1e18 J of work, which is no reason to let later ones gain 100 kJ from nowhere.
+// An event refuses a step with 1e18 J of work. This work must not justify a later energy gain of 100 kJ without work.
 TEST(StepBounds, AStepThatFailsExplainsNoEnergy) {
   double push = 0.0, secret = 0.0;
   Model<Bodies<planar::Rigid>, Joints<>, Forces<Push, SecretPush>> model;
@@ -270,8 +271,8 @@ TEST(StepBounds, AStepThatFailsExplainsNoEnergy) {
   EXPECT_LT(x.v[0], 50.0);
 }
 
-// A force that is NaN for one step, on a body that cannot move, is seen in its reaction only. What comes after is
-// judged as if it had not been: a spring gives 50 J to a mass at rest.
+// A force on a fixed body is NaN for one step and appears in the reaction only. Later steps are judged independently
+// of it: a spring transfers 50 J to a mass at rest.
 TEST(StepBounds, AForceThatIsNaNInAStepThatFailsIsForgotten) {
   using Held = Joint<Weld, Recursive>;
   double push = 0.0;
@@ -314,7 +315,7 @@ void expect_refused(I const& integrator, double k, double d, double h) {
   EXPECT_TRUE(has(message_of_divergence(run, x), "body \"mass\" moves fastest")) << I::name << k << ' ' << d;
   EXPECT_NEAR(x.q[0], 1.0, 0.01) << I::name;
 }
-// A force without a potential does not explain the explosion that it drives.
+// A force without a potential does not justify the divergence that it drives.
 TEST(StepBounds, AUserForceBeyondTheStabilityLimitIsRefused) {
   expect_refused(RungeKutta4<>{}, 1e6, 0.0, 1e-2);
   expect_refused(RungeKutta4<>{}, 1e6, 0.0, 2.9e-3);
@@ -323,7 +324,7 @@ TEST(StepBounds, AUserForceBeyondTheStabilityLimitIsRefused) {
   expect_refused(SymplecticEuler{}, 1e6, 0.0, 1e-2);
 }
 
-// Constant torque on a rotor that turns by more than half a turn in a step: the quadrature counts whole turns.
+// Constant torque on a rotor that rotates by more than half a turn per step: the quadrature counts whole turns.
 TEST(StepBounds, ATorqueExplainsEnergyAtManyTurnsAStep) {
   auto const drive = user_force<1>([](auto const& frames, double) {
     using T = std::decay_t<decltype(frames[0].r[0])>;
@@ -340,7 +341,7 @@ TEST(StepBounds, ATorqueExplainsEnergyAtManyTurnsAStep) {
   EXPECT_TRUE(report.warnings.empty()) << report.warnings.front();
 }
 
-// A force that oscillates ten times a second and one that is switched each 0.05 s, under coarse steps and fine ones.
+// A force that oscillates ten times per second and a force that is switched every 0.05 s, with coarse and fine steps.
 TEST(StepBounds, ForcesOfTimeAreNeitherRefusedNorWarnedOf) {
   for (bool const switched : {false, true})
     for (double const h : {1e-2, 1e-3}) {
@@ -361,7 +362,8 @@ TEST(StepBounds, ForcesOfTimeAreNeitherRefusedNorWarnedOf) {
     }
 }
 
-// RungeKutta4 at ωh = 2.84 beyond its 2.828: slow growth is refused at order one, and warned of before.
+// RungeKutta4 at ωh = 2.84, above its limit of 2.828. Slow growth causes a warning first, and is refused when the
+// gain reaches order one.
 TEST(StepBounds, SlowGrowthIsWarnedOfAndThenRefused) {
   for (double const until : {0.06, 1.0}) {
     Model<Bodies<Rigid<>>, Joints<>, Forces<SpringDamper>> model;
@@ -373,7 +375,7 @@ TEST(StepBounds, SlowGrowthIsWarnedOfAndThenRefused) {
     auto run = simulate(model, x, RungeKutta4<Projection>{}, {.until = until, .step = 0.0284});
     if (until == 1.0) {
       message_of_divergence(run, x);
-      EXPECT_LT(energy(model, x).total(), 400.0);  // of 50 J
+      EXPECT_LT(energy(model, x).total(), 400.0);  // from 50 J
     } else {
       auto slow = simulate(model, x, RungeKutta4<Projection>{}, {.until = 0.2, .step = 0.0284});
       auto const warnings = slow.run().warnings;

@@ -6,7 +6,7 @@ namespace step_history_test {
 
 using namespace polybody;
 
-/// Powers of t: entry k of v̇ is tᵏ, entry k of λ is tᵏ⁺¹. Five points determine those up to t⁴.
+/// Powers of t: entry k of v̇ is tᵏ, entry k of λ is tᵏ⁺¹. Five points determine the powers up to t⁴.
 struct Powers {
   State x;
   Powers(Index speeds, Index rows) {
@@ -41,11 +41,11 @@ TEST(StepHistory, FivePointsContinuePolynomialsOfDegreeFour) {
 
 TEST(StepHistory, AsManyPointsAsThereAreCountAtFirst) {
   for (int steps = 0; steps < 5; ++steps) {
-    Powers p(steps + 1, 1);  // up to t to the power of the steps
+    Powers p(steps + 1, 1);  // powers of t up to the number of steps
     for (int i = 0; i < steps; ++i) p.step(uneven[std::size_t(i)]);
     VecX a(steps + 1), lambda(1);
     StepHistory(p.x).extrapolate(p.x, 0.1, a, lambda);
-    bool const looked_back = steps >= 2;  // one step tells of one point only that it was the last
+    bool const looked_back = steps >= 2;  // after one step the history has only the last point
     for (int k = 0; k <= (looked_back ? steps - 1 : 0); ++k)
       EXPECT_NEAR(a[k], std::pow(p.x.t + 0.1, k), 1e-14) << steps << " steps, power " << k;
   }

@@ -1,4 +1,4 @@
-// How long second-order terms stay in the tangent of a step after one has called for them.
+// Number of steps for which second-order terms remain in the tangent after a step has required them.
 #include <polybody/integrators/step_tangent.hpp>
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ struct StepTangents : testing::Test {
     system.evaluate(x.q, x.v, 0.0);
     tangent.analyse(system, SecondOrder::omitted, lambda);
   }
-  /// Steps until they go.
+  /// Counts the steps until the second-order terms are omitted.
   int stay() {
     int steps = 1;
     while (!tangent.end_step()) ++steps;
@@ -62,7 +62,7 @@ TEST_F(StepTangents, StayTwiceAsLongWhereTheyAreCalledForAgainSoon) {
   }
   for (int k = 0; k < 100; ++k) tangent.end_step();
   tangent.include(system, lambda);
-  EXPECT_EQ(stay(), 8);  // it was long ago
+  EXPECT_EQ(stay(), 8);  // the last request was long ago
 }
 
 TEST_F(StepTangents, StartForgetsThem) {

@@ -24,14 +24,14 @@ struct RattleOnBar {
   static auto integrators() { return std::vector<Rattle>(1); }
   static constexpr double until = 0.5;
   static constexpr int steps = 32;
-  static constexpr bool keeps_accelerations = false;  // they belong to the predicted speeds
+  static constexpr bool keeps_accelerations = false;  // the accelerations belong to the predicted velocities
 };
 struct RattleOnTop {
   using Model = SlowTop;
   static auto integrators() { return std::vector<Rattle>(1); }
   static constexpr double until = 0.5;
   static constexpr int steps = 64;
-  static constexpr bool keeps_accelerations = false;  // they belong to the predicted speeds
+  static constexpr bool keeps_accelerations = false;  // the accelerations belong to the predicted velocities
 };
 
 }  // namespace symplectic_test
@@ -45,7 +45,7 @@ bool const symplectic_obey[] = {
 
 namespace symplectic_test {
 
-// A mass on a spring, x¨ = −ω² x. With v₁ = v₀ − hω² x₀, x₁ = x₀ + h v₁ the form v² + ω² x² − hω² x v stays what it is:
+// A mass on a spring, x¨ = −ω² x. With v₁ = v₀ − hω² x₀, x₁ = x₀ + h v₁ the form v² + ω² x² − hω² x v is constant:
 // v₁² + ω² x₁² − hω² x₁ v₁ = v₁² + ω² x₀² + hω² x₀ v₁ = v₁ v₀ + ω² x₀² = v₀² + ω² x₀² − hω² x₀ v₀.
 TEST(SymplecticEuler, KeepsTheQuadraticFormOfAnOscillator) {
   Model<Bodies<planar::Rigid>, Joints<>, Forces<SpringDamper>> model;
@@ -94,8 +94,8 @@ std::vector<double> energy_errors(I const& integrator, int count) {
   return errors;
 }
 
-// In the sixth hundred periods the energy errs no more than in the first. The bar swings through m g l (1 − cos 2) ≈ 7
-// J.
+// The energy error in the sixth hundred periods is not larger than in the first. The bar swings through m g l (1 −
+// cos 2) ≈ 7 J.
 TEST(Rattle, EnergyErrorStaysBounded) {
   auto const errors = energy_errors(Rattle{}, 6);
   held_within({"I3", "change of energy of the swinging bar in 100 periods [J]", By::closed_form, "invariant",
@@ -105,7 +105,7 @@ TEST(Rattle, EnergyErrorStaysBounded) {
   EXPECT_NEAR(errors.back() / errors.front(), 1.0, 0.01) << testing::PrintToString(errors);
 }
 
-// A method is symmetric when a step back undoes a step: Rattle with −h returns to the start.
+// A method is symmetric if a step of −h reverses a step of h: Rattle with −h returns to the start.
 TEST(Rattle, IsItsOwnInverse) {
   SwingingBar bar;
   System system(bar.model);

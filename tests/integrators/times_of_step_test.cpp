@@ -1,4 +1,5 @@
-// The times at which a step asks loads and driven rows, by answers that it meets to rounding.
+// The times at which a step evaluates loads and driving constraints, checked by results that are exact up to
+// round-off.
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/ancf/planar_ancf_cable.hpp>
@@ -19,12 +20,12 @@ using namespace polybody;
 struct Rising {
   Motion operator()(double t) const { return {t, 1.0, 0.0}; }
 };
-/// s = t³: no step takes the wrong time for the right one.
+/// s = t³: a wrong time in the step changes the result.
 struct Cubic {
   Motion operator()(double t) const { return {t * t * t, 3.0 * t * t, 6.0 * t}; }
 };
 
-/// The speed of a mass of 1 kg under F = t after 10 steps of 0.1 s from t = 0.
+/// The velocity of a mass of 1 kg under F = t after 10 steps of 0.1 s from t = 0.
 template <class I>
 double speed_under_a_rising_force(I const& integrator) {
   Model<Bodies<planar::Rigid>, Joints<>, Forces<PointForce<Rising>>> model;
@@ -35,7 +36,8 @@ double speed_under_a_rising_force(I const& integrator) {
   return x.v[0];
 }
 
-// Euler sums the forces at the beginnings of steps, h Σ t = h² N (N − 1)/2; the trapezium and the midpoint are exact.
+// Euler's method sums the forces at the beginnings of steps, h Σ t = h² N (N − 1)/2. The trapezoidal and midpoint
+// rules are exact.
 TEST(TimesOfAStep, OfLoads) {
   EXPECT_NEAR(speed_under_a_rising_force(SymplecticEuler{}), 0.45, 1e-13);
   EXPECT_NEAR(speed_under_a_rising_force(Rattle{}), 0.5, 1e-13);
@@ -50,7 +52,7 @@ TEST(TimesOfAStep, OfLoads) {
   EXPECT_NEAR(p[1], 1.5, 1e-9);
 }
 
-// Rattle ends each step on the rows of its end, in places and speeds.
+// Rattle satisfies the constraint equations at the end of each step, in positions and velocities.
 TEST(TimesOfAStep, OfDrivenRows) {
   using Slide = Joint<PrescribedSlide<Cubic>, Constraint>;
   Model<Bodies<planar::Rigid>, Joints<Slide>> model;

@@ -1,4 +1,5 @@
-// The laws of integrators on a model with rows of both levels: one of positions, two of speeds.
+// The requirements on integrators, for a model with both kinds of constraint equations: one holonomic, two
+// nonholonomic.
 
 #include <polybody/integrators/coordinate_partitioning.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
@@ -17,7 +18,7 @@ namespace polybody {
 using namespace laws;
 namespace velocity_rows_test {
 
-/// A disc of 0.4 m that rolls and wobbles; its axis leans by 0.35 rad.
+/// A disc of 0.4 m that rolls and wobbles; its axis is inclined by 0.35 rad.
 struct WobblingDisc {
   using Wheel = Joint<RollingDisc, Constraint>;
   using ModelType = Model<Bodies<Rigid<>>, Joints<Wheel>>;
@@ -55,7 +56,8 @@ struct PartitionedDisc {
 bool const velocity_rows_obey[] = {obeys<AlphaOnTheDisc, IntegratorLaws>("VelocityRows"),
                                    obeys<PartitionedDisc, IntegratorLaws>("PartitionedVelocityRows")};
 
-// Nine coordinates' worth of rows: the touching row makes one coordinate dependent, all rows three speeds.
+// The contact constraint makes one coordinate dependent; all constraint equations together make three velocities
+// dependent.
 TEST(CoordinatePartitioning, SplitsCoordinatesBySurfacesAndSpeedsByAllRows) {
   WobblingDisc disc;
   System system(disc.model);
@@ -69,8 +71,8 @@ TEST(CoordinatePartitioning, SplitsCoordinatesBySurfacesAndSpeedsByAllRows) {
   EXPECT_EQ(scratch.all_rows.rank(), 3);
 }
 
-// A position off the plane is brought back, speeds that slip are brought to roll, and no position is asked to roll
-// back.
+// The projection returns a position to the plane and makes slipping velocities roll. It does not change positions to
+// satisfy the rolling constraint.
 TEST(VelocityRows, AreLeftAloneByProjectionsOfPositions) {
   WobblingDisc disc;
   State x = disc.start;
