@@ -78,7 +78,8 @@ TEST(AdamsBashforthMoulton, ErrorOfAPendulumIsProportionalToTheTolerance) {
     EXPECT_GT(std::log10(errors[i - 1] / errors[i]), 1.0) << testing::PrintToString(errors);
 }
 
-// x of the centre of mass of the heavy top (R6b, Géradin & Cardona 2001): a rotating body with constraint equations.
+// x of the centre of mass of a slow asymmetric top (R6b, independent solution by DOP853): a rotating body with
+// constraint equations.
 TEST(AdamsBashforthMoulton, FollowsATop) {
   SlowTop top;
   State x = top.start;

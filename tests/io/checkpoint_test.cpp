@@ -1,5 +1,5 @@
-// Snapshots of runs in files: read back as they were, and refused where they cannot be used. Runs that are taken up
-// again: tests/cases/rigid_integrators_test.cpp, rigid_recursive_test.cpp.
+// Snapshots of runs in files: they are read back unchanged, and refused if they cannot be used. Continuation of runs:
+// tests/cases/rigid_integrators_test.cpp, rigid_recursive_test.cpp.
 #include <polybody/io/checkpoint.hpp>
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ struct Checkpoints : testing::Test {
   ~Checkpoints() override { fs::remove_all(folder); }
 };
 
-/// A snapshot with every kind of content, numbers that are hard to write among it.
+/// A snapshot with every kind of content, including numbers that are difficult to write.
 RunSnapshot rich() {
   RunSnapshot s{.model = {3, 2, 1, 0, 0xfedcba9876543210u},
                 .integrator = "Some method",
@@ -67,11 +67,11 @@ TEST_F(Checkpoints, ReadBackAsTheyWere) {
   EXPECT_EQ(back.row.end(), s.row.end());
   EXPECT_EQ(back.row.count, 7.0);
   expect_same(back.report, s.report);
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1);  // no temporary
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1);  // no temporary file
 }
 
-// FNV-1a of "", "a" and "foobar": test vectors of draft-eastlake-fnv.
-// Bytes of texts are numbers from 0 to 255 in the file, whether char has a sign on the machine or not.
+// FNV-1a of "", "a" and "foobar": test vectors of draft-eastlake-fnv. The file contains bytes of texts as numbers
+// from 0 to 255, for signed and unsigned char.
 TEST_F(Checkpoints, KeepTextsWithoutSigns) {
   write_checkpoint(file, rich());
   EXPECT_NE(text_of(file).find(std::string("\xCF\0\0\0\0\0\0\0\x81\0\0\0\0\0\0\0", 16)), std::string::npos);  // ρ
@@ -126,8 +126,8 @@ TEST_F(Checkpoints, EveryDamageIsNoticed) {
   EXPECT_TRUE(has(message_of<IoError>([&] { read_checkpoint(file); }), "cannot be read"));
 }
 
-// The checkpoint of a run in its middle, with an event: each byte set to other values, and the file cut at every
-// length.
+// The checkpoint of a run with an event, in the middle of the run. Each byte is set to other values, and the file is
+// cut at every length.
 TEST_F(Checkpoints, OfARunNoticeEveryDamage) {
   Chain<InPlane<Constraint>> const chain(2, bar_link());
   auto const height = [&](State const& x) {
@@ -156,7 +156,7 @@ TEST_F(Checkpoints, OfARunNoticeEveryDamage) {
   }
 }
 
-// Head and checksum are right, what stands between them is not.
+// Head and checksum are correct, the content between them is not.
 TEST_F(Checkpoints, OfInconsistentContentAreRefused) {
   write_checkpoint(file, rich());
   std::string const good = text_of(file);
@@ -177,7 +177,7 @@ TEST_F(Checkpoints, OfInconsistentContentAreRefused) {
   EXPECT_TRUE(has(number(begin, 4), inconsistent + "it has 3 coordinates in place of the model's 4. Write it anew."));
   EXPECT_TRUE(has(number(begin + 8, 1), inconsistent + "it has 2 speeds in place of the model's 1."));
   EXPECT_TRUE(has(number(begin + 16, 0), inconsistent + "it has 1 multipliers in place of the model's 0."));
-  // estimates for eliminated rows behind those of its own: for all of them, or none
+  // estimates of eliminated constraint equations follow those of the state: for all equations, or for none
   EXPECT_TRUE(has(told([&](std::string& bad) {
                     std::int64_t const rows[2] = {0, 2};
                     std::memcpy(bad.data() + begin + 16, rows, sizeof rows);
@@ -190,7 +190,7 @@ TEST_F(Checkpoints, OfInconsistentContentAreRefused) {
   EXPECT_TRUE(has(told([](std::string& bad) { bad.resize(bad.size() - 8); }), "ends before its content does"));
 }
 
-// Chains of four and of three links in the plane: 3 coordinates and 2 rows each.
+// Chains of four and of three links in the plane: 3 coordinates and 2 constraint equations each.
 TEST_F(Checkpoints, OfAnotherRunAreRefused) {
   Chain<InPlane<Constraint>> const chain(4, bar_link()), shorter(3, bar_link());
   Chain<InPlane<Constraint>>::ModelType renamed;

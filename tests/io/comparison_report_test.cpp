@@ -23,8 +23,8 @@ std::string text_of(fs::path const& file) {
   return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 
-/// Two runs as `compare` would give them: x = cos t in steps of 0.1 s with rows, and in steps of 0.25 s a little off
-/// and without.
+/// Two runs in the form of results of `compare`. The first is x = cos t in steps of 0.1 s with constraint equations.
+/// The second has steps of 0.25 s, a small error and no constraint equations.
 Comparison oscillators() {
   Comparison c;
   for (int i = 0; i < 2; ++i) {
@@ -65,12 +65,12 @@ WorkPrecision work() {
   return w;
 }
 
-/// Each test has its own folder, not made yet, with a blank in its name.
+/// Each test has its own folder, which does not exist yet, with a blank in its name.
 struct ComparisonReport : testing::Test {
   fs::path const folder = fs::path(testing::TempDir()) / ("polybody report " + std::to_string(std::random_device{}()));
   ~ComparisonReport() override { fs::remove_all(folder); }
 
-  /// Lines of a table, cut into fields.
+  /// Lines of a table, split into fields.
   std::vector<std::vector<std::string>> fields_of(fs::path const& file) const {
     std::string const text = text_of(file);
     detail::CsvReader reader{text, file.string()};
@@ -161,7 +161,7 @@ TEST_F(ComparisonReport, WritesAllOfIt) {
       EXPECT_TRUE(text.starts_with("\x89PNG\r\n\x1a\n") && text.ends_with("IEND\xAE\x42\x60\x82")) << file;
     }
   }
-  // and leaves no crumbs
+  // no temporary file remains
   EXPECT_EQ(std::distance(fs::directory_iterator(folder / "deep"), fs::directory_iterator()),
             std::ptrdiff_t(files.size()));
   EXPECT_EQ(write_report(c, folder / "drafts", false).size(), 3u + 5u * 2u);
@@ -175,7 +175,7 @@ TEST_F(ComparisonReport, FiguresShowEveryRunThatHasSomethingToShow) {
   EXPECT_TRUE(has(violations, "set logscale y"));
   EXPECT_TRUE(has(violations, "'Violation of accelerations'"));
   EXPECT_TRUE(has(violations, "'ideal, \"1\"'"));
-  EXPECT_FALSE(has(violations, "'stiff/ρ'"));  // without rows
+  EXPECT_FALSE(has(violations, "'stiff/ρ'"));  // without constraint equations
   EXPECT_TRUE(has(force, "'force [N]'") && has(force, "'t [s]'") && has(force, "'stiff/ρ'"));
   EXPECT_TRUE(has(outputs, "'x [m]'") && has(outputs, "'v [m/s]'"));
   EXPECT_TRUE(has(energies, "Total energy, change since the start | stiff/ρ\n0 0\n"));
@@ -184,7 +184,7 @@ TEST_F(ComparisonReport, FiguresShowEveryRunThatHasSomethingToShow) {
   EXPECT_FALSE(fs::exists(folder / "free" / "violations.gp"));
 }
 
-/// Blocks of a data file by their remarks, as times and values.
+/// Blocks of a data file by their comments, as times and values.
 std::map<std::string, std::vector<std::array<double, 2>>> blocks_of(fs::path const& file) {
   std::map<std::string, std::vector<std::array<double, 2>>> blocks;
   std::istringstream lines(text_of(file));
@@ -203,7 +203,7 @@ TEST_F(ComparisonReport, DifferencesFromTheFirstRunStandBesideTheCurves) {
   write_figures(c, folder, false);
   auto const blocks = blocks_of(folder / "outputs.dat");
   EXPECT_EQ(blocks.size(), 6u);
-  // x is off by 1e-3 t, but for what cubics through steps of 0.1 s are off cos t: 0.1⁴ 9/384
+  // x differs by 1e-3 t, apart from the error of cubics through steps of 0.1 s of cos t: 0.1⁴ 9/384
   auto const& off = blocks.at("x [m], off \"ideal, \"1\"\" | stiff/ρ");
   ASSERT_EQ(off.size(), 41u);
   for (auto const& [t, difference] : off) EXPECT_NEAR(difference, 1e-3 * t, 3e-6) << t;
@@ -212,8 +212,8 @@ TEST_F(ComparisonReport, DifferencesFromTheFirstRunStandBesideTheCurves) {
 
 TEST_F(ComparisonReport, OutputsThatDifferMostComeFirstSixPanelsAPage) {
   Comparison c = oscillators();
-  // beside their spans of about 2 the outputs differ by 0, 0.005, 0.5; a constant by anything counts most where no
-  // other output has its unit, by nothing least
+  // relative to their spans of about 2 the outputs differ by 0, 0.005, 0.5. A constant output counts most if no other
+  // output has its unit and its difference is not zero; it counts least if its difference is zero.
   for (std::size_t i = 0; i < c.runs.size(); ++i) {
     ComparedRun& run = c.runs[i];
     run.output_names = {"same [m]", "near [m]", "far [m]", "flat [rad]", "still [m]"};
@@ -233,7 +233,7 @@ TEST_F(ComparisonReport, OutputsThatDifferMostComeFirstSixPanelsAPage) {
   EXPECT_NE(second.find("'still [m]'"), std::string::npos);
 }
 
-// What rounding opens in the first run does not count by its own span where other outputs have its unit.
+// An output that is only round-off in the first run is not scaled by its own span if other outputs have its unit.
 TEST_F(ComparisonReport, DifferencesCountByLengthsThatMatter) {
   Comparison c = oscillators();
   for (std::size_t i = 0; i < c.runs.size(); ++i) {
@@ -245,9 +245,11 @@ TEST_F(ComparisonReport, DifferencesCountByLengthsThatMatter) {
     run.outputs = {gap, wave, gap};
     run.difference = {1e-5 * double(i), 0.02 * double(i), 1e-5 * double(i)};
   }
-  EXPECT_NEAR(detail::relative_difference(c, c.runs[1], 0), 1e-5 / (1e-2 * 2.0), 1e-6);  // of a hundredth of the way
+  // of a hundredth of the length
+  EXPECT_NEAR(detail::relative_difference(c, c.runs[1], 0), 1e-5 / (1e-2 * 2.0), 1e-6);
   EXPECT_NEAR(detail::relative_difference(c, c.runs[1], 1), 0.02 / 2.0, 1e-4);
-  EXPECT_NEAR(detail::relative_difference(c, c.runs[1], 2), 1e-5 / 2e-12, 1e-2 * 1e-5 / 2e-12);  // by its own span
+  // relative to its own span
+  EXPECT_NEAR(detail::relative_difference(c, c.runs[1], 2), 1e-5 / 2e-12, 1e-2 * 1e-5 / 2e-12);
   EXPECT_EQ(detail::outputs_by_difference(c), (std::vector<std::size_t>{2, 1, 0}));
 }
 
@@ -266,8 +268,8 @@ TEST_F(ComparisonReport, LargeDifferencesDoNotHideSmallOnes) {
   };
   Figure const far = detail::difference_figure(c, 0);
   EXPECT_EQ(labels(far), (std::vector<std::string>{"off by -0.005", "off by 0.001", "off by 2e-05"}));
-  EXPECT_EQ(far.curves[0].color, 2);  // that of the run in every figure
-  EXPECT_TRUE(far.log_y);             // 250 times
+  EXPECT_EQ(far.curves[0].color, 2);  // the colour of this run in every figure
+  EXPECT_TRUE(far.log_y);             // a ratio of 250
   EXPECT_EQ(far.y_label, "amount of the difference [m]");
   EXPECT_NEAR(far.curves[0].y[7], 5e-3, 1e-12);
   EXPECT_NEAR(far.curves[2].y[7], 2e-5, 1e-12);
@@ -287,7 +289,7 @@ TEST_F(ComparisonReport, CostShowsDifferenceOverTimeOfComputing) {
   auto const& point = blocks.at(title + "stiff/ρ");
   ASSERT_EQ(point.size(), 1u);
   EXPECT_EQ(point[0][0], 0.25);                // s
-  EXPECT_NEAR(point[0][1], 0.01 / 2.0, 1e-5);  // cos t spans 2 but for its steps
+  EXPECT_NEAR(point[0][1], 0.01 / 2.0, 1e-5);  // cos t spans 2 except for its time steps
   // the first run is a line across the points, at its own time
   auto const& first = blocks.at(title + "ideal, \"1\"");
   ASSERT_EQ(first.size(), 2u);
@@ -295,7 +297,7 @@ TEST_F(ComparisonReport, CostShowsDifferenceOverTimeOfComputing) {
   EXPECT_EQ(first[1][0], 0.125);
   EXPECT_LT(first[0][1], point[0][1]);
   EXPECT_GT(first[1][1], point[0][1]);
-  // times of one magnitude begin at zero, others are on a logarithmic axis
+  // times of one magnitude begin at zero; other times have a logarithmic axis
   EXPECT_TRUE(has(text_of(folder / "cost.gp"), "set xrange [0:0.275"));
   EXPECT_FALSE(has(text_of(folder / "cost.gp"), "set logscale x"));
   c.runs[1].cpu = 2.5;

@@ -126,7 +126,7 @@ TEST_F(CsvFiles, CreatesParentFoldersAndReplacesAnOldFile) {
     Csv csv(deep, {"x"});
     csv.row(x);
     csv.close();
-    csv.close();  // a second time does nothing
+    csv.close();  // a second close has no effect
     EXPECT_EQ(read_csv(deep).column("x"), std::vector<double>{x});
   }
 }
@@ -175,7 +175,7 @@ TEST_F(CsvFiles, NothingUnderTheFinalNameUntilClosed) {
   Csv csv(file, {"x"});
   for (int i = 0; i < 5000; ++i) csv.row(i);
   EXPECT_EQ(text_of(file), "old");
-  EXPECT_LE(files(), 2u);  // Linux makes the temporary file without a name
+  EXPECT_LE(files(), 2u);  // on Linux the temporary file has no name
   csv.close();
   EXPECT_EQ(read_csv(file).rows.size(), 5000u);
   EXPECT_EQ(files(), 1u);
@@ -232,7 +232,7 @@ TEST_F(CsvFiles, MovesTakeTheFileAlong) {
   Csv b(std::move(a));
   EXPECT_THROW(a.row(2), InvalidInput);  // NOLINT: what a moved-from writer does
   b.row(2);
-  b = Csv(second, {"y"});  // finishes the first file
+  b = Csv(second, {"y"});  // closes the first file
   EXPECT_EQ(text_of(file), "x\n1\n2\n");
   b.row(3);
   b.close();
@@ -255,7 +255,7 @@ TEST_F(CsvFiles, SystemRefusalsNameTheFileAndTheReason) {
     fs::create_directories(file / "in the way");
     EXPECT_TRUE(has(message_of<IoError>([&] { csv.close(); }), "cannot be put in place: "));
   }
-  EXPECT_EQ(files(), 3u);  // plain, taken, run.csv/: no temporary
+  EXPECT_EQ(files(), 3u);  // plain, taken, run.csv/: no temporary file
 }
 
 TEST_F(CsvFiles, AFullDiskLeavesNothing) {
@@ -347,7 +347,7 @@ TEST_F(CsvFiles, KeepsThePermissionsOfAFileThatItReplaces) {
   };
   auto const old_mask = ::umask(022);
   write("first");
-  EXPECT_EQ(fs::status(file).permissions(), fs::perms(0644));  // as any new file
+  EXPECT_EQ(fs::status(file).permissions(), fs::perms(0644));  // as for any new file
   for (int const mode : {0600, 0640, 0666, 0755, 0400}) {
     fs::permissions(file, fs::perms(mode));
     write("secret");
@@ -413,7 +413,7 @@ TEST_F(CsvFiles, ReadsWhatOtherProgramsWrite) {
   put(file, "t");
   EXPECT_EQ(read_csv(file).columns, std::vector<std::string>{"t"});
   EXPECT_TRUE(read_csv(file).rows.empty());
-  put(file, "t\n7");  // no end of line at the end
+  put(file, "t\n7");  // no line feed at the end
   EXPECT_EQ(read_csv(file).column("t"), std::vector<double>{7});
 }
 

@@ -1,5 +1,5 @@
-// Films: what a reader finds in the data that a Film writes, and how the page plays in a browser. The viewer's own
-// decoder reads them in node (film_decode.mjs), and chromium plays them (film_browser.mjs).
+// Films: the data that a Film writes, and their playback in a browser. The viewer's own decoder reads the data in
+// node (film_decode.mjs), and chromium plays the film (film_browser.mjs).
 #include <polybody/io/film.hpp>
 
 #include <gtest/gtest.h>
@@ -24,13 +24,14 @@ namespace fs = std::filesystem;
 using namespace polybody;
 using Cable = AncfCable<EngineeringStrain>;
 
-/// The viewer of this build, or a path where none is.
+/// The viewer of this build, or a path that does not exist.
 fs::path viewer() {
   char const* const given = std::getenv("POLYBODY_VIEWER");
   return given ? given : POLYBODY_VIEWER;
 }
 
-/// Exit code of a script beside this test, which may write to `out`; 77 where it cannot run here.
+/// Exit code of a script in this test's folder, which may write to `out`; 77 if the script cannot run on this
+/// machine.
 int run_node(std::string const& script, fs::path const& out,
              std::source_location const& test = std::source_location::current()) {
   fs::path const folder = fs::path(test.file_name()).parent_path();
@@ -46,11 +47,11 @@ std::string text_of(fs::path const& file) {
   return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 
-/// A brick with two boxes, and a cable that bends and twists, in eleven frames over a second.
+/// A brick with two boxes, and a cable that bends and twists, in eleven frames over one second.
 struct FilmFiles : testing::Test {
   static constexpr int frames = 11;
   fs::path const folder = fs::path(testing::TempDir()) / ("polybody film & co " + std::to_string(::getpid()));
-  fs::path const bare_viewer = folder / "viewer.html";  // takes a film and cannot play it
+  fs::path const bare_viewer = folder / "viewer.html";  // accepts a film and cannot play it
   Bar const bar{.length = 2.0,
                 .section = Rectangle{.height = 0.1, .width = 0.06},
                 .material = Material{.density = 1000.0, .young = 1e9, .poisson = 0.3}};
@@ -59,7 +60,7 @@ struct FilmFiles : testing::Test {
   BodyHandle<Cable> cable = model.add(Cable::from(bar, 5), "cable");
   Visual visual{model};
   State x = model.reference_state();
-  double bend = 0.1;  // how far the cable's coordinates go [m]
+  double bend = 0.1;  // amplitude of the cable's coordinates [m]
 
   FilmFiles() {
     visual.attach(brick.at({1, 0, 0}), box({0.2, 0.4, 0.6}), "box 1");
@@ -79,7 +80,7 @@ struct FilmFiles : testing::Test {
     model.set_velocity(x, brick, Vec3(1, 0, 2), Vec3(0, 0, 3));
   }
 
-  /// One scene with all that there is; and the same states for ParaView, where a collection is named.
+  /// One scene with all kinds of content; also the same states for ParaView, if a collection is named.
   void record(Film& film, std::string const& name, fs::path const& collection = {}) {
     FilmScene& scene = film.scene(name);
     scene.colour(axial_stress_colours());
@@ -99,8 +100,8 @@ struct FilmFiles : testing::Test {
   }
 };
 
-// Points are off by half a step of the deviations and by what rotations and float32 leave; arrows by half a step.
-// Deviations of the second scene are so small that a byte is enough.
+// The error of points is half a step of the deviations plus the errors of rotations and float32; the error of arrows
+// is half a step. Deviations of the second scene are so small that one byte is enough.
 TEST_F(FilmFiles, HoldWhatWasRecordedAndAreRefusedWhereverTheyAreDamaged) {
   Film film = film_with(bare_viewer);
   std::array<double, 2> const bends{0.1, 0.002};
@@ -161,7 +162,7 @@ TEST_F(FilmFiles, HoldWhatWasRecordedAndAreRefusedWhereverTheyAreDamaged) {
   EXPECT_EQ(plots, 2 * frames);
 }
 
-// Ten pictures a second while other tests take the processors; alone it draws 45.
+// Ten pictures per second while other tests use the processors; alone it draws 45.
 TEST_F(FilmFiles, PlayInABrowser) {
   if (!fs::exists(viewer())) GTEST_SKIP() << "there is no viewer " << viewer() << ": it needs npm";
   Film film = film_with(viewer());
@@ -169,7 +170,7 @@ TEST_F(FilmFiles, PlayInABrowser) {
   record(film, "two", folder / "two.pvd");
   film.write(folder / "film.html");
   auto const quoted = [&](char const* name) { return " '" + (folder / name).string() + "'"; };
-  char const* const pictures = std::getenv("POLYBODY_PICTURES");  // a folder that is to keep them
+  char const* const pictures = std::getenv("POLYBODY_PICTURES");  // a folder for the pictures
   int const code = run_node("film_browser.mjs" + (pictures ? " --pictures '" + std::string(pictures) + "'" : "") +
                                 quoted("film.html") + " --damage --rate 10 --places" + quoted("one.pvd") + " --places" +
                                 quoted("two.pvd"),
@@ -257,7 +258,7 @@ TEST(FilmBytes, AreWhatTheStandardsSay) {
   FilmArrays arrays;
   EXPECT_EQ(arrays.add(std::vector<std::int8_t>{-1, 2, 3}), "[\"i1\",0,3]");
   EXPECT_EQ(arrays.add(std::vector<float>{1.0f}), "[\"f4\",8,1]");
-  EXPECT_EQ(arrays.add(std::vector<float>{1.0f}), "[\"f4\",8,1]");  // there once
+  EXPECT_EQ(arrays.add(std::vector<float>{1.0f}), "[\"f4\",8,1]");  // stored once
   EXPECT_EQ(arrays.bytes(), std::string("\xff\2\3\0\0\0\0\0\0\0\x80\x3f\0\0\0\0", 16));
   EXPECT_EQ(base64(""), "");
   EXPECT_EQ(base64("f"), "Zg==");  // RFC 4648, §10

@@ -1,4 +1,4 @@
-// Texts and files are the same under a locale with decimal commas.
+// Texts and files do not change under a locale with decimal commas.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -43,7 +43,7 @@ std::string text_of(fs::path const& file) {
   return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 
-/// Everything that the library prints of the pendulum, and the text of the files it writes.
+/// All text that the library prints for the pendulum, and the text of the files it writes.
 std::string all_texts(fs::path const& folder) {
   fs::create_directories(folder);
   M const model = pendulum();

@@ -26,7 +26,7 @@ bool is_png(fs::path const& file) {
   return text_of(file).starts_with("\x89PNG\r\n\x1a\n") && fs::file_size(file) > 500;
 }
 
-/// Width and height as the PNG's own header states them [px].
+/// Width and height in the header of the PNG file [px].
 std::array<int, 2> png_size(fs::path const& file) {
   std::string const text = text_of(file);
   auto const number = [&](std::size_t at) {
@@ -74,7 +74,7 @@ struct Plots : testing::Test {
   fs::path with(char const* ending) const { return stem.string() + ending; }
 };
 
-/// PATH set to `value` while it lives.
+/// Sets PATH to `value` during its lifetime.
 struct Path {
   std::string const before = std::getenv("PATH") ? std::getenv("PATH") : "";
   explicit Path(std::string const& value) { setenv("PATH", value.c_str(), 1); }
@@ -84,7 +84,7 @@ struct Path {
 TEST_F(Plots, WritesDataScriptAndPicture) {
   Drawn const drawn = write_figure(waves(), stem);
   EXPECT_EQ(drawn, have_gnuplot ? Drawn::png : Drawn::script_only);
-  EXPECT_EQ(files(), have_gnuplot ? 3u : 2u);  // and no temporary
+  EXPECT_EQ(files(), have_gnuplot ? 3u : 2u);  // and no temporary file
   if (!have_gnuplot) GTEST_SKIP() << "gnuplot is not on PATH";
   EXPECT_TRUE(is_png(with(".png")));
   EXPECT_EQ(png_size(with(".png")), (std::array{1000, 700}));
@@ -128,7 +128,7 @@ TEST_F(Plots, ScriptSaysWhatTheFigureSays) {
   EXPECT_TRUE(has(second, "set size ratio -1"));
   EXPECT_TRUE(has(second, "unset key"));
   EXPECT_TRUE(has(second, "set xrange [0:2.5]"));
-  EXPECT_TRUE(has(second, "#D55E00"));  // nine is one, beyond eight colours
+  EXPECT_TRUE(has(second, "#D55E00"));  // colour 9 is colour 1 again: there are eight colours
   EXPECT_EQ(text_of(with(".dat")), "#  | a\n1 3\n2 4\n");
 }
 
@@ -254,7 +254,7 @@ TEST_F(Plots, AFileThatCannotRunIsNotGnuplot) {
 TEST_F(Plots, GnuplotFailureNamesTheScriptAndKeepsTheOldPicture) {
   std::ofstream(with(".png")) << "old";
   fs::create_directories(folder / "bin");
-  for (std::string const body : {"echo strange >&2; exit 3", "echo strange"}) {  // fails; draws nothing
+  for (std::string const body : {"echo strange >&2; exit 3", "echo strange"}) {  // fails, or draws nothing
     std::ofstream(folder / "bin" / "gnuplot") << "#!/bin/sh\n" << body << '\n';
     fs::permissions(folder / "bin" / "gnuplot", fs::perms::owner_all);
     Path const first((folder / "bin").string() + ':' + std::getenv("PATH"));
@@ -268,7 +268,8 @@ TEST_F(Plots, GnuplotFailureNamesTheScriptAndKeepsTheOldPicture) {
 
 TEST(PlotMarks, HaveDigitsEnoughToTellThemApart) {
   EXPECT_EQ(detail::tick_digits(0.0, 2.0), "6");
-  EXPECT_EQ(detail::tick_digits(1e5, 1e5 + 1.0), "9");  // six before the point, three behind the span's first
+  // six digits before the point, three after the first digit of the span
+  EXPECT_EQ(detail::tick_digits(1e5, 1e5 + 1.0), "9");
   EXPECT_EQ(detail::tick_digits(1.0, 1.0), "6");
 }
 
@@ -277,7 +278,7 @@ TEST_F(Plots, AnUnwritablePlaceIsAnIoError) {
   EXPECT_THROW(write_figure(waves(), folder / "plain" / "f"), IoError);
   fs::create_directories(with(".gp"));
   EXPECT_TRUE(has(message_of<IoError>([&] { write_figure(waves(), stem); }), ".gp"));
-  EXPECT_EQ(files(), 2u);  // neither a data file without a script nor a temporary
+  EXPECT_EQ(files(), 2u);  // neither a data file without a script nor a temporary file
 }
 
 }  // namespace plot_test

@@ -16,7 +16,7 @@ namespace progress_test {
 
 static_assert(!std::is_copy_constructible_v<Progress> && !std::is_copy_assignable_v<Progress>);
 
-/// A terminal in memory and a clock set by hand [s].
+/// A terminal in memory and a clock with a prescribed time [s].
 struct ProgressBar : testing::Test {
   std::ostringstream out;
   double time = 1000.0;
@@ -26,7 +26,7 @@ struct ProgressBar : testing::Test {
     return [this] { return ++asked, time; };
   }
 
-  /// What was drawn, line by line as the terminal would show it one after the other.
+  /// The drawn lines, in the order in which a terminal would show them.
   std::vector<std::string> lines() const {
     std::vector<std::string> drawn;
     std::string const text = out.str();
@@ -43,7 +43,7 @@ TEST_F(ProgressBar, ShowsShareElapsedAndTimeLeft) {
   Progress bar(2.0, 6.0, "pendulum", out, true, clock());
   EXPECT_TRUE(out.str().empty());
   time += 20.4;
-  bar.update(3.0);  // a quarter in 20.4 s: 61.2 s are left
+  bar.update(3.0);  // a quarter in 20.4 s: 61.2 s remain
   EXPECT_EQ(lines().back(), "pendulum  25% [==========>" + std::string(30, ' ') + "]  0:00:20  ETA 0:01:01");
   time = 1000.0 + 5400.0;
   bar.update(5.0);
@@ -120,7 +120,7 @@ TEST_F(ProgressBar, DestructorLeavesTheShareThatWasReached) {
     Progress bar(0.0, 1.0, "", out, true, clock());
     bar.update(0.1);
     time += 0.05;
-    bar.update(0.42);  // too soon to be drawn
+    bar.update(0.42);  // too early for the next drawing
     throw std::runtime_error("stop");
   } catch (std::runtime_error const&) {
   }

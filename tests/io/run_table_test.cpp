@@ -21,7 +21,7 @@ namespace run_table_test {
 
 using Pin = Joint<planar::Revolute, Constraint>;
 
-/// A rod of 1 m, let go from the side.
+/// A rod of 1 m, released horizontally.
 struct RunTable : testing::Test {
   Model<Bodies<planar::Rigid>, Joints<Pin>> model{Gravity{0, -9.81, 0}};
   BodyHandle<planar::Rigid> rod = model.add(
@@ -65,7 +65,8 @@ TEST_F(RunTable, SamplesTheFirstStateOnOrAfterEachMultiple) {
   ASSERT_EQ(times.size(), 5u);
   for (std::size_t k = 0; k < 5; ++k) EXPECT_NEAR(times[k], (std::array{0.0, 0.03, 0.05, 0.08, 0.1})[k], 1e-12);
   x = model.reference_state();
-  EXPECT_EQ(tabulate(run({.until = 0.1, .step = 1e-2}), columns(), 7.0).rows.size(), 2u);  // the first, the last
+  // the first row and the last row
+  EXPECT_EQ(tabulate(run({.until = 0.1, .step = 1e-2}), columns(), 7.0).rows.size(), 2u);
 }
 
 TEST_F(RunTable, RefusesColumnsThatCannotBeTold) {
@@ -106,7 +107,7 @@ TEST_F(RunTable, ColumnsOfOneUnitShareAPanel) {
   EXPECT_EQ(figures[1].y_label, "speed [m/s]");
   EXPECT_FALSE(figures[1].legend);
   EXPECT_EQ(figures[1].x_label, "t [s]");
-  // without units each has its own
+  // without units each column has its own figure
   EXPECT_EQ(detail::figures_of({{"t [s]", "a", "b"}, {{0.0, 1.0, 2.0}}}).size(), 2u);
 }
 
@@ -135,7 +136,7 @@ TEST_F(RunTable, ARunTellsItsProgress) {
       .run();
   ASSERT_EQ(times.size(), 5u);
   EXPECT_EQ(times.back(), x.t);
-  // from where it begins, to where an event stops it
+  // from the start of the run to the end at an event
   bool done = false;
   Event const stop{.name = "low", .value = [](State const& now) { return now.t - 0.071; }, .stops = true};
   run({.until = 1.0,

@@ -32,7 +32,8 @@ namespace state_table_test {
 
 using Pin = Joint<Revolute, Constraint>;
 
-/// Two rods of different types on pins and a Maxwell element: q, v, z, and rows of joints and of a body.
+/// Two rods of different types on pins and a Maxwell element: q, v, z, and constraint equations of joints and of a
+/// body.
 struct StateTable : testing::Test {
   Model<Bodies<Rigid<>, Rigid<EulerParameters>>, Joints<Pin>, Forces<MaxwellElement>> model{Gravity{0, 0, -9.81}};
   StateTable() {
@@ -61,12 +62,12 @@ TEST_F(StateTable, ColumnsAreNamedByTheirOwners) {
   EXPECT_EQ(table.columns, heads);
   auto const value = [&](char const* head) { return table.column(head).at(0); };
   EXPECT_EQ(value("t [s]"), 0.0);
-  EXPECT_NEAR(value("upper q[0] [m]"), 0.5, 1e-15);  // the centre's place
+  EXPECT_NEAR(value("upper q[0] [m]"), 0.5, 1e-15);  // position of the centre
   EXPECT_NEAR(value("lower q[0] [m]"), 1.5, 1e-15);
   EXPECT_EQ(value("lower q[3] [1]"), 1.0);
   EXPECT_EQ(value("valve z[0]"), 0.0);
   EXPECT_EQ(value("elbow lambda[4]"), 0.0);
-  EXPECT_EQ(value("lower lambda[0]"), 0.0);  // of its norm
+  EXPECT_EQ(value("lower lambda[0]"), 0.0);  // constraint of the unit norm
   EXPECT_EQ(std::ranges::count(heads, "lower v[6] [1/s]"), 1);
   EXPECT_EQ(std::ranges::count(heads, "upper v[5] [rad/s]"), 1);
   EXPECT_EQ(std::ranges::count_if(heads, [](std::string const& head) { return head.starts_with("upper v[6]"); }), 0);
@@ -85,7 +86,7 @@ TEST_F(StateTable, StatesComeBackTheSame) {
     EXPECT_EQ(back.lambda, states[k].lambda);
     EXPECT_EQ(back.a, VecX(VecX::Zero(model.speeds())));
   }
-  // and a run goes on from there
+  // a run continues from this state
   State from = state_from(model, table, 3);
   simulate(model, from, GeneralizedAlpha{}, {.until = 0.05, .step = 1e-3}).run();
   EXPECT_LT((from.q - x.q).norm(), 1e-4);
@@ -107,7 +108,7 @@ TEST_F(StateTable, ColumnsMayComeInAnyOrderAndMultipliersMayLack) {
   EXPECT_EQ(back.lambda, VecX(VecX::Zero(model.rows())));
 }
 
-/// A table as other programs wrote it before heads had units.
+/// A table from other programs, with heads without units.
 Table without_units(Table table) {
   for (std::string& head : table.columns)
     if (std::size_t const unit = head.find("] ["); unit != head.npos) head.resize(unit + 1);
@@ -121,7 +122,7 @@ TEST_F(StateTable, HeadsMayLackTheirUnits) {
   Table const bare = without_units(table);
   ASSERT_EQ(std::ranges::count(bare.columns, "lower v[6]"), 1);
   ASSERT_EQ(std::ranges::count(bare.columns, "lower v[6] [1/s]"), 0);
-  Table some = table;  // some with, some without
+  Table some = table;  // some heads with units, some without
   for (std::size_t j = 0; j < some.columns.size(); j += 2) some.columns[j] = bare.columns[j];
   for (Table const* const read : {&bare, &std::as_const(some)}) {
     State const back = state_from(model, *read, 0);
@@ -145,8 +146,8 @@ TEST_F(StateTable, RefusesAnotherUnitAndOneNumberTwice) {
       has(refusal([&] { state_from(model, twice, 0); }), "\"upper q[0]\" and \"upper q[0] [m]\" are of one number"));
 }
 
-/// Of every body, coordinates and speeds [m], [m/s], and no others, grow with the lengths of the body and of its
-/// motion.
+/// For every body, the coordinates and velocities in [m], [m/s], and no others, scale with the lengths of the body
+/// and of its motion.
 template <class Made>
 void expect_units(Made const& made, std::string const& coordinates, std::string const& speeds) {
   auto const of_size = [&](double size) {
@@ -222,7 +223,7 @@ TEST(UnitsOfStates, OfBeamsByRotationsAndOfFloatingFrames) {
   expect_units([](Bar const& bar) { return planar::Ffr::from(bar, 1); }, "m m rad 1 1 1", "m/s m/s rad/s 1/s 1/s 1/s");
 }
 
-/// A body that names no units.
+/// A body without names of units.
 TEST(UnitsOfStates, AreLeftOutWhereABodyNamesNone) {
   Bar const bar{.length = 1.0,
                 .section = Rectangle{.height = 0.1, .width = 0.1},

@@ -1,5 +1,5 @@
-// Files of a VtkWriter, read back by VTK's own reader (vtk_read.py), and what they leave behind when a run is broken
-// off.
+// Files of a VtkWriter, read back by VTK's own reader (vtk_read.py), and the files that remain after a run is
+// interrupted.
 #include <polybody/io/vtk.hpp>
 
 #include <gtest/gtest.h>
@@ -35,8 +35,8 @@ int count(std::string const& text, std::string const& part) {
   return n;
 }
 
-/// A box of 0.2 × 0.4 × 0.6 m at (1, 0, 0) of a rigid body, and a cable of 2 m along x with a section of 0.1 × 0.06 m
-/// in five pieces.
+/// A box of 0.2 × 0.4 × 0.6 m at (1, 0, 0) of a rigid body. A cable of 2 m along x with a section of 0.1 × 0.06 m, in
+/// five pieces.
 struct VtkFiles : testing::Test {
   fs::path const folder = fs::path(testing::TempDir()) / ("polybody vtk & co " + std::to_string(::getpid()));
   Bar const bar{.length = 2.0,
@@ -55,8 +55,8 @@ struct VtkFiles : testing::Test {
   }
   ~VtkFiles() override { fs::remove_all(folder); }
 
-  /// The brick at (4, 5, 6) a quarter turn about z, turning at 3 rad/s about the world's z and rising at 2 m/s; the
-  /// cable stretched by a thousandth.
+  /// The brick at (4, 5, 6) is rotated by a quarter turn about z, rotates at 3 rad/s about the world's z and rises at
+  /// 2 m/s. The cable is stretched by a thousandth.
   void move() {
     x.t = 0.25;
     x.q.head(7) << 4, 5, 6, std::sqrt(0.5), 0, 0, std::sqrt(0.5);
@@ -84,7 +84,7 @@ TEST_F(VtkFiles, AreReadByVtk) {
   }
   ASSERT_EQ(states, 2);
   double const section = 0.1 * 0.06, brick_volume = 0.2 * 0.4 * 0.6;
-  // the corner (1.1, -0.2, z) goes furthest: by (3.1, 6.3, 6); the fastest corner is at (4.2, 6.1, z)
+  // the corner (1.1, -0.2, z) moves furthest, by (3.1, 6.3, 6); the fastest corner is at (4.2, 6.1, z)
   std::map<std::string, std::vector<double>> const expected{
       {"1 state", {0.0, 32, 28, brick_volume + 2.0 * section, 0, 2, -0.2, 0.2, -0.3, 0.3}},
       {"1 point displacement", {3, 0, 0}},
@@ -143,7 +143,8 @@ TEST_F(VtkFiles, AStateThatCannotBeWrittenLeavesTheOthers) {
   EXPECT_EQ(count(text_of(file), "<DataSet"), 2);
 }
 
-// A program that writes without pause is killed at some time: what is there can be read, and nothing else is there.
+// A program that writes without pause is killed at a random time. The files that exist can be read, and no other file
+// exists.
 TEST_F(VtkFiles, AKillLeavesNoTemporaryFile) {
   fs::path const file = folder / "run.pvd";
   for (int i = 0; i < 50; ++i) {

@@ -20,7 +20,7 @@ namespace bushing_test {
 
 using Matrix = Bushing::Matrix;
 
-/// Symmetric and positive definite: BᵀB of a random B, and more on the diagonal.
+/// Symmetric and positive definite: BᵀB of a random B, with an addition on the diagonal.
 Matrix coupled(unsigned seed, double size) {
   Numbers number(seed);
   Mat<double, 6, 6> b;
@@ -41,13 +41,13 @@ NonlinearBushing const rubber{TabulatedLaw{MonotoneTable{{{-1.0, -9.0}, {-0.2, -
 
 Vec6 const x = Numbers(3).vec<6>(0.8), rate = Numbers(4).vec<6>(2.0);
 
-// [thesis Eq. 3.15]
+// Multiplier of the linear bushing [Wallin 2016, Eq. 3.15].
 TEST(Bushing, MultiplierIsStiffnessTimesPlacePlusDampingTimesRate) {
   Vec6 const expected = bushing.stiffness.value * x + bushing.damping.value * rate;
   EXPECT_LT((bushing.multiplier<6, double>(x, rate) - expected).norm(), 1e-12);
 }
 
-// slope(ck, cd) = ck ∂λ/∂x + cd ∂λ/∂ẋ: x seeded with ck, ẋ with cd.
+// slope(ck, cd) = ck ∂λ/∂x + cd ∂λ/∂ẋ: x is seeded with ck, ẋ with cd.
 template <class P>
 void expect_slope(P const& policy) {
   for (auto const& [ck, cd] : {std::pair{1.0, 0.0}, {0.0, 1.0}, {0.7, 31.0}})
@@ -99,7 +99,7 @@ TEST(NonlinearBushing, OfLinearLawsIsADiagonalBushing) {
   EXPECT_NEAR(laws.potential<6>(x), same.potential<6>(x), 1e-14);
 }
 
-// --- numbers that cannot be meant -----------------------------------------------------------------------------------
+// --- invalid parameters ---------------------------------------------------------------------------------------------
 
 std::string said(Matrix const& k, Matrix const& c = Matrix::Zero()) {
   return refusal([&] { Bushing{.stiffness = k, .damping = c}.check("\"mount\""); });
@@ -124,7 +124,7 @@ TEST(Bushing, RefusesAMatrixThatIsNotSymmetric) {
   EXPECT_TRUE(has(said(k), "its entry (2, 5) is 0.5 and its mirror is 0"));
 }
 
-// [1, c; c, 1] has the eigenvalues 1 ± c, in whatever units the two are given; a zero on the diagonal allows no
+// [1, c; c, 1] has the eigenvalues 1 ± c, for any units of the two entries. A zero on the diagonal permits no
 // coupling.
 TEST(Bushing, RefusesCouplingThatMakesTheStiffnessNegative) {
   for (double const unit : {1.0, 1e-4, 1e4}) {
@@ -136,7 +136,7 @@ TEST(Bushing, RefusesCouplingThatMakesTheStiffnessNegative) {
     EXPECT_NO_THROW((Bushing{.stiffness = k, .damping = k}.check("mount")));
     k(0, 4) = k(4, 0) = unit;  // semidefinite: it leaves one direction free
     EXPECT_NO_THROW((Bushing{.stiffness = k, .damping = k}.check("mount")));
-    k(4, 5) = k(5, 4) = 0.1 * unit;  // … which nothing may couple to
+    k(4, 5) = k(5, 4) = 0.1 * unit;  // … a free direction permits no coupling
     EXPECT_TRUE(has(said(k), "the coupling of its row 5 with the others is too strong"));
   }
   Matrix k = Bushing::diagonal({1, 1, 1}, {0, 0, 0});
@@ -145,7 +145,7 @@ TEST(Bushing, RefusesCouplingThatMakesTheStiffnessNegative) {
   EXPECT_TRUE(has(said(k), "its entry (1, 6) is 0.001 beside a zero on the diagonal"));
 }
 
-// K − s v vᵀ is definite as long as s vᵀK⁻¹v < 1: its determinant is that of K times 1 − s vᵀK⁻¹v.
+// K − s v vᵀ is definite if s vᵀK⁻¹v < 1: its determinant is that of K times 1 − s vᵀK⁻¹v.
 TEST(Bushing, TellsDefiniteMatricesFromOthers) {
   for (unsigned seed = 1; seed < 40; ++seed) {
     Matrix const k = coupled(seed, 1e5);
@@ -168,14 +168,14 @@ TEST(NonlinearBushing, RefusesNumbersOfItsLawsByNameAndComponent) {
   EXPECT_NO_THROW(rubber.check("mount"));
 }
 
-// --- the concepts ---------------------------------------------------------------------------------------------------
+// --- concepts -------------------------------------------------------------------------------------------------------
 
 static_assert(Policy<Bushing> && AddsForce<Bushing> && !AddsRows<Bushing>);
 static_assert(Policy<decltype(rubber)> && AnswersRows<decltype(rubber), 6> && !AnswersRows<decltype(rubber), 5>);
 static_assert(Joint<Revolute, Bushing>::rows == 6 && Joint<Weld, Bushing>::rows == 6);
 static_assert(std::is_same_v<Joint<Revolute, Bushing>::Measured, HeldCoordinates<Revolute>>);
 static_assert(std::is_same_v<Joint<Revolute, Penalty>::Measured, Revolute>);
-static_assert(!std::is_default_constructible_v<Bushing>);  // its numbers decide physics
+static_assert(!std::is_default_constructible_v<Bushing>);  // its stiffness and damping have no default
 static_assert(ForceLaw<LinearLaw> && ForceLaw<TabulatedLaw> && !ForceLaw<double>);
 
 }  // namespace bushing_test

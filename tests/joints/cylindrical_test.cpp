@@ -23,7 +23,7 @@ struct CylindricalCase {
   }
 };
 
-// b stands off the axis by (0.3, −0.4) and is tilted about a₁ by φ, b₃ = (0, −sin φ, cos φ).
+// b has the offset (0.3, −0.4) from the axis and is tilted about a₁ by φ, b₃ = (0, −sin φ, cos φ).
 TEST(Cylindrical, RowsAreTheOffsetAndTheTilt) {
   Frame<double> const b{.r = {0.3, -0.4, 7.0}, .A = exp_so3<double>(Vec3(0.2, 0, 0))};
   Vec4 const expected(0.3, -0.4, 0.0, -std::sin(0.2));

@@ -14,7 +14,7 @@ namespace distance_test {
 
 constexpr double length = 0.8;
 
-/// b anywhere at a distance from a, turned anyhow: free but along d.
+/// b is anywhere at a given distance from a, with any rotation. All motions except that along d are free.
 Mate at_distance(Numbers& number, double distance) {
   Vec3 const e = number.vec<3>().normalized(), f = e.unitOrthogonal();
   Mate mate{.d = distance * e, .R = exp_so3<double>(number.vec<3>(3.0)), .freedoms = MatX::Zero(6, 5)};
@@ -57,7 +57,7 @@ struct PlanarActuatorCase : ActuatorCase {
   static Mate mate(Numbers& number, double t) { return at_distance_in_plane(number, length + actuator.law(t).value); }
 };
 
-// The multiplier is a force: pulled apart, the points are drawn together by it, along d = (3, 4, 0)/5.
+// The multiplier is a force: it pulls separated points together, along d = (3, 4, 0)/5.
 TEST(Distance, GapIsALengthAndItsMultiplierATension) {
   Frame<double> const a{.r = {1, 1, 1}}, b{.r = {4, 5, 1}};
   Gap<1> const gap = Distance{.length = 2.0}.gap<double>(a, b, 0.0);
@@ -66,7 +66,7 @@ TEST(Distance, GapIsALengthAndItsMultiplierATension) {
   EXPECT_EQ(gap.Gb.tail<3>().norm() + gap.Ga.tail<3>().norm(), 0.0);
 }
 
-// b circles a at ω: the points keep their distance while g̈ without accelerations is ω² L.
+// b moves around a at ω: the points keep their distance, and g̈ without accelerations is ω² L.
 TEST(Distance, GammaIsTheCentripetalAcceleration) {
   Frame<double> const b{.r = {2, 0, 0}, .v = {5, 3, 0}};
   EXPECT_DOUBLE_EQ((Distance{.length = 2.0}.gamma<double>({}, b, 0.0)[0]), 9.0 / 2.0);

@@ -69,7 +69,7 @@ TEST(Relative, DoesNotSeeARigidMotionOfBothFrames) {
   EXPECT_LT((after.v - before.v).norm() + (after.w - before.w).norm(), 1e-13);
 }
 
-// --- the concept: what is asked of a geometry, and that each of it is asked -----------------------------------
+// --- concept of a joint geometry, and each of its requirements ------------------------------------------------
 
 struct Whole {
   static constexpr char const* name = "Whole";

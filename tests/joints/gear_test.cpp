@@ -13,7 +13,7 @@ using namespace polybody::laws;
 
 namespace gear_test {
 
-/// The centres stand apart along a line turned by `line`; the wheels are turned by `of_a` and `of_b`.
+/// The line of centres is rotated by `line`, the wheels by `of_a` and `of_b`.
 struct Wheels {
   Frame<double> a, b;
 };
@@ -22,7 +22,7 @@ Wheels wheels(double line, double of_a, double of_b, double apart = 1.5) {
   return {{.A = turned(of_a)}, {.r = turned(line) * Vec3(apart, 0, 0), .A = turned(of_b)}};
 }
 
-/// Turned against the line of centres by α, wheel a takes wheel b back by α N_a/N_b.
+/// A rotation of wheel a by α relative to the line of centres rotates wheel b back by α N_a/N_b.
 template <int N_a, int N_b>
 struct PlanarGearCase {
   static constexpr bool planar = true;
@@ -32,8 +32,8 @@ struct PlanarGearCase {
     double const line = number(3.0), alpha = number(9.0);
     Wheels const w = wheels(line, line + alpha, line - alpha * N_a / N_b);
     Mate mate{.d = w.a.A.transpose() * w.b.r, .R = w.a.A.transpose() * w.b.A, .freedoms = MatX::Zero(6, 2)};
-    // b moves from a along d; and on a circle about it at 1 rad/s, whereby b turns by 1 + N_a/N_b, as the planet of a
-    // fixed sun
+    // b moves away from a along d. It also moves on a circle about a at 1 rad/s and rotates by 1 + N_a/N_b, like a
+    // planet of a fixed sun
     mate.freedoms.col(0).head<3>() = mate.d;
     mate.freedoms.col(1).head<3>() = Vec3::UnitZ().cross(mate.d);
     mate.freedoms(5, 1) = 1.0 + double(N_a) / N_b;
@@ -41,7 +41,7 @@ struct PlanarGearCase {
   }
 };
 
-// In space the centres may also stand apart along the axis, and nothing holds the tilt of b.
+// In space the centres may have an offset along the axis, and the tilt of b is free.
 struct GearCase {
   static constexpr bool planar = false;
   static constexpr int world_rows = 0;
@@ -63,19 +63,19 @@ TEST(Gear, IsClosedAfterAnyNumberOfTurns) {
   for (double const alpha : {0.0, 1.0, -3.2, 50.0, 1000.0}) {
     EXPECT_NEAR(gap_of(gear, wheels(0.0, alpha, -0.4 * alpha)), 0.0, 1e-12) << alpha;
     EXPECT_NEAR(gap_of(ring, wheels(0.0, alpha, 0.4 * alpha)), 0.0, 1e-12) << alpha;
-    // open: what b lacks, against its turn
+    // violation: missing rotation of b, with the opposite sign
     EXPECT_NEAR(gap_of(gear, wheels(0.0, alpha, -0.4 * alpha + 0.1)), -0.1, 1e-12) << alpha;
   }
 }
 
-// A planet on a fixed sun: while the line of centres turns by θ, the planet turns by (1 + N_a/N_b) θ.
+// A planet on a fixed sun: if the line of centres rotates by θ, the planet rotates by (1 + N_a/N_b) θ.
 TEST(Gear, RollsAPlanetAboutItsSun) {
   Gear const gear{.teeth_a = 30, .teeth_b = 12};
   for (double const theta : {0.3, 2.0, -7.0}) EXPECT_NEAR(gap_of(gear, wheels(theta, 0.0, 3.5 * theta)), 0.0, 1e-14);
 }
 
-// The multiplier is a moment on b; the tooth's force on it, tangential at the pitch circle of b, holds a at the same
-// force: with d the distance of the centres r_b = d N_b/(N_a + N_b), so f = 1/r_b for the moment 1.
+// The multiplier is a moment on b. The tooth force, tangential at the pitch circle of b, acts on a with the same
+// magnitude. With the distance d of the centres r_b = d N_b/(N_a + N_b), so f = 1/r_b for the moment 1.
 TEST(Gear, PushesTheTeethWhereThePitchCirclesTouch) {
   Wheels const w = wheels(0.0, 0.0, 0.0, 2.0);
   Gap<1> const gap = Gear{.teeth_a = 30, .teeth_b = 10}.gap<double>(w.a, w.b, 0.0);

@@ -28,7 +28,8 @@ TEST(Joint, NeedsNoNumbersUnlessItsPolicyDoes) {
   static_assert(std::is_default_constructible_v<Joint<Revolute, Constraint>>);
 }
 
-// What makes no joint is refused in a sentence (tests/refused): a geometry in place of a policy, or numbers.
+// Types that do not form a joint are refused with a message (tests/refused): a geometry instead of a policy, or
+// numbers.
 static_assert(JointGeometry<Revolute> && Policy<Constraint> && Policy<Penalty>);
 static_assert(!JointGeometry<Constraint> && !Policy<Revolute> && !JointGeometry<double> && !Policy<double>);
 

@@ -13,7 +13,7 @@ using namespace polybody::laws;
 
 namespace knife_edge_test {
 
-// Anywhere and turned anyhow; free are the velocities along b₁ and b₂ and every turn.
+// Any position and any rotation. The velocities along b₁ and b₂ and all rotations are free.
 struct KnifeEdgeCase {
   static constexpr bool planar = false;
   static constexpr int world_rows = 0;
@@ -26,8 +26,8 @@ struct KnifeEdgeCase {
   }
 };
 
-// On a turntable (2 rad/s about z) the table under a blade at (3, 0, 0) moves at 6 m/s along y: a blade that stands
-// still there and points along x is crossed by −6 m/s.
+// On a turntable (2 rad/s about z) the table below a blade at (3, 0, 0) moves at 6 m/s along y. A blade at rest there
+// that points along x moves across its edge at −6 m/s relative to the table.
 TEST(KnifeEdge, RowIsTheVelocityAcrossSeenFromTheOtherBody) {
   Frame<double> const table{.w = {0, 0, 2}};
   Frame<double> blade{.r = {3, 0, 0}};
@@ -35,7 +35,7 @@ TEST(KnifeEdge, RowIsTheVelocityAcrossSeenFromTheOtherBody) {
   blade.A = edge.triad();
   auto const gap = edge.gap<double>(table, blade, 0.0);
   EXPECT_NEAR((gap.Ga * twist(table) + gap.Gb * twist(blade))[0], -6.0, 1e-14);
-  blade.v = {7, 6, 1};  // carried along, and gliding
+  blade.v = {7, 6, 1};  // moved along with the table, and gliding
   EXPECT_NEAR((gap.Ga * twist(table) + gap.Gb * twist(blade))[0], 0.0, 1e-14);
 }
 

@@ -13,7 +13,7 @@ using namespace polybody::laws;
 
 namespace points_test {
 
-/// b at d, turned anyhow; its point moves freely along the axes of `free`.
+/// b at d, with any rotation; its point moves freely along the axes of `free`.
 Mate at(Numbers& number, Vec3 const& d, std::vector<Index> const& free) {
   Index const n = Index(free.size());
   Mate mate{.d = d, .R = exp_so3<double>(number.vec<3>(3.0)), .freedoms = MatX::Zero(6, n + 3)};

@@ -24,7 +24,7 @@ TEST(Penalty, MultiplierIsSpringPlusDamper) {
   EXPECT_LT((penalty.multiplier<3, double>(g, rate) - Vec3(2 + 3, -4, -6)).norm(), 1e-13);
 }
 
-// slope(ck, cd) = ck ∂λ/∂g + cd ∂λ/∂ġ: g seeded with ck, ġ with cd.
+// slope(ck, cd) = ck ∂λ/∂g + cd ∂λ/∂ġ: g is seeded with ck, ġ with cd.
 TEST(Penalty, SlopeIsTheDerivativeOfTheMultiplier) {
   using D = Dual<1>;
   for (auto const& [ck, cd] : {std::pair{1.0, 0.0}, {0.0, 1.0}, {0.7, 31.0}}) {
@@ -52,7 +52,8 @@ TEST(Penalty, DamperTakesPowerOut) {
   }
 }
 
-// The rows of coincident points are in world axes, yet a spring along d makes no moment: d × k d = 0.
+// The constraint equations of coincident points are in world axes. A spring along d nevertheless has no moment: d × k
+// d = 0.
 TEST(Penalty, ElasticForcesOfAnOpenPinBalanceInMoment) {
   Numbers number;
   for (int k = 0; k < 3; ++k) {
@@ -102,7 +103,7 @@ TEST(PenaltyPerRow, RefusesNumbersThatCannotBeMeantByNameAndRow) {
                   "\"hinge\": the penalty damping of row 1 must be zero or positive"));
 }
 
-// --- the concepts: exactly one kind ---------------------------------------------------------------------------
+// --- concepts: a policy is of exactly one kind ----------------------------------------------------------------
 
 struct Neither {};
 struct Both : Penalty {
@@ -127,7 +128,7 @@ static_assert(Policy<Penalty> && AddsForce<Penalty> && !AddsRows<Penalty>);
 static_assert(!Policy<Neither> && !Policy<Both> && !Policy<RowsDenied> && !Policy<NoPotential> && !Policy<int>);
 static_assert(AddsRows<Both> && AddsForce<Both>);
 static_assert(Policy<PenaltyPerRow<2>> && AnswersRows<PenaltyPerRow<2>, 2> && !AnswersRows<PenaltyPerRow<2>, 3>);
-// their numbers decide physics
+// their parameters have no default
 static_assert(!std::is_default_constructible_v<Penalty> && !std::is_default_constructible_v<PenaltyPerRow<2>>);
 
 }  // namespace policies_test

@@ -1,4 +1,4 @@
-// The laws of policies that answer rows by a force, of those of the library.
+// The requirements on policies with a force law, applied to the policies of the library.
 #include <polybody/joints/policies/bushing.hpp>
 #include <polybody/joints/policies/nonlinear_bushing.hpp>
 #include <polybody/joints/policies/penalty.hpp>

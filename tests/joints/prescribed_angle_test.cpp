@@ -34,7 +34,7 @@ struct DriveCase {
   static Mate mate(Numbers& number, double t) {
     Mate mate = PlanarDriveCase::mate(number, t);
     mate.d = number.vec<3>();
-    mate.freedoms = Mat<double, 6, 5>::Identity();  // all but the turn about the third axis
+    mate.freedoms = Mat<double, 6, 5>::Identity();  // all motions except the rotation about the third axis
     return mate;
   }
 };
@@ -46,7 +46,8 @@ struct Steady {
   Motion operator()(double t) const { return {speed * t, speed, 0.0}; }
 };
 
-// The angle is wrapped, so a drive that has turned many times is still closed, and opens by what it lacks.
+// The angle is wrapped. A driving constraint is satisfied after many rotations, and its violation is the missing
+// angle.
 TEST(PrescribedAngle, HoldsBeyondManyTurns) {
   PrescribedAngle<Steady> const steady{};
   for (double const t : {0.5, 3.1, 3.2, 40.0, -17.0, 1000.0}) {
@@ -62,7 +63,7 @@ TEST(PrescribedAngle, MeasuresTheTurnAboutTheThirdAxis) {
         1e-15);
 }
 
-// ġ = a₃ · (ω_b − ω_a) − ψ̇ while b₁ stays in the plane of a₁, a₂.
+// ġ = a₃ · (ω_b − ω_a) − ψ̇ if b₁ is in the plane of a₁, a₂.
 TEST(PrescribedAngle, RateIsTheRelativeAngularVelocityLessTheDrives) {
   PrescribedAngle<Steady> const steady{.law = {.speed = 2.0}};
   Gap<1> const gap = steady.gap<double>(turned(0.4), turned(1.7), 0.3);

@@ -16,8 +16,8 @@ template <class Law>
 concept CanDriveARate = requires { typename PrescribedRate<Law>; };
 static_assert(CanDriveARate<SmoothRamp> && !CanDriveARate<SpinUp> && !CanDriveARate<int>);
 
-// [CASES C8] The sprocket's run-up: still for a second, 25 rad/s after eight. A ramp that is symmetric about its middle
-// turns by half of 25 · 7 while it lasts, so ψ(8) = 87.5, ψ(10) = 137.5.
+// Run-up of the sprocket [Wallin 2016] (C8): at rest for one second, 25 rad/s after eight. A ramp that is
+// symmetric about its middle covers half of 25 · 7, so ψ(8) = 87.5, ψ(10) = 137.5.
 TEST(PrescribedRate, HoldsTheAngleOfTheSprocket) {
   PrescribedRate<SmoothRamp> const drive{.law = {{.target = 25.0, .duration = 7.0, .start = 1.0}}};
   for (auto const& [t, psi, omega] :
@@ -28,7 +28,7 @@ TEST(PrescribedRate, HoldsTheAngleOfTheSprocket) {
   }
 }
 
-// A jump of the speed is a corner of the angle, and allowed.
+// A jump of the angular velocity is a breakpoint of the angle, and permitted.
 TEST(PrescribedRate, BeginsAtZeroAndTellsTheCornersOfItsLaw) {
   PrescribedRate<Ramp> const drive{.law = {{.target = 6.0, .duration = 2.0, .start = -1.0}}};
   EXPECT_EQ(drive.corners(), (std::vector{-1.0, 1.0}));

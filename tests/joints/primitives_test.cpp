@@ -41,7 +41,7 @@ struct ParallelAxesCase {
   }
 };
 
-// b turns about a₁ by φ, then about its own third axis by ψ.
+// b rotates about a₁ by φ, then about its own third axis by ψ.
 struct PerpendicularAxesCase {
   static constexpr bool planar = false;
   static constexpr int world_rows = 0;
@@ -55,8 +55,8 @@ struct PerpendicularAxesCase {
   }
 };
 
-/// The frames of another geometry between the same two points, as `Model::connect` sets them up: both markers stand
-/// along its triad when they stand along `from` at the reference configuration.
+/// The frames of another geometry between the same two points, as `Model::connect` defines them. If the markers are
+/// aligned with `from` in the reference configuration, both are aligned with the triad of this geometry.
 template <JointGeometry G>
 MatX maps(G const& geometry, Mat3 const& from, Frame<double> a, Frame<double> b) {
   Mat3 const turn = from.transpose() * geometry.triad();
@@ -69,7 +69,7 @@ MatX maps(G const& geometry, Mat3 const& from, Frame<double> a, Frame<double> b)
   return g;
 }
 
-/// An orthonormal basis of the rows (Gram–Schmidt, twice); a dependent row fails.
+/// An orthonormal basis of the rows (Gram–Schmidt, twice); a dependent row is a failure.
 MatX basis(MatX g) {
   for (Index i = 0; i < g.rows(); ++i) {
     double const before = g.row(i).norm();
@@ -81,14 +81,14 @@ MatX basis(MatX g) {
   return g;
 }
 
-/// A place of b against a where a joint is closed, in a's axes.
+/// A pose of b relative to a that satisfies the joint, in a's axes.
 struct Pose {
   Vec3 d = Vec3::Zero();
   Mat3 R = Mat3::Identity();
 };
 
-/// Where the joint is closed, it and its primitives have as many rows, and these span the same space of wrenches: equal
-/// projectors Bᵀ B.
+/// If the joint is satisfied, it and its primitives have equally many constraint equations. These span the same space
+/// of wrenches: the projectors Bᵀ B are equal.
 template <JointGeometry G, JointGeometry... Primitives>
 void expect_equal(G const& joint, Pose (*pose)(Numbers&), Primitives const&... primitives) {
   static_assert((Primitives::rows + ...) == G::rows);
@@ -148,7 +148,7 @@ TEST(Primitives, MakeUpAWeld) {
   expect_equal(Weld{}, [](Numbers&) { return Pose{}; }, CoincidentPoints{}, Orientation{});
 }
 
-// Down to single rows.
+// Decomposition into single constraint equations.
 TEST(Primitives, MakeUpALineOfTwoPlanesAndAnOrientationOfThreeRightAngles) {
   expect_equal(
       PointOnLine{.axis = axis},

@@ -12,7 +12,7 @@ using namespace polybody::laws;
 
 namespace prismatic_test {
 
-// The slide is the third axis in space, the first in the plane.
+// The sliding axis is the third axis in space, the first in the plane.
 template <int slide>
 Mate slid(Numbers& number) {
   Mate mate{.d = Vec3::Unit(slide) * number(2.0), .freedoms = MatX::Zero(6, 1)};

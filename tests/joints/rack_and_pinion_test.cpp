@@ -17,7 +17,7 @@ Frame<double> pinion(double slide, double height, double angle) {
   return {.r = {slide, height, 0}, .A = exp_so3<double>(Vec3(0, 0, angle))};
 }
 
-// The pinion rolls along, and may leave the rack across it.
+// The pinion rolls along the rack and may move away from it.
 struct PlanarRackCase {
   static constexpr bool planar = true;
   static constexpr int world_rows = 0;
@@ -33,7 +33,7 @@ struct PlanarRackCase {
   }
 };
 
-// In space it may also move along its axis; nothing holds its tilt.
+// In space it may also move along its axis, and its tilt is free.
 struct RackCase {
   static constexpr bool planar = false;
   static constexpr int world_rows = 0;
@@ -46,7 +46,7 @@ struct RackCase {
   }
 };
 
-// A wheel of radius 0.5 on a floor under it: forward by s, it has turned by −s/R about z.
+// A wheel of radius 0.5 on a floor below it: after a distance s it has rotated by −s/R about z.
 TEST(RackAndPinion, RollsOnAFloorByANegativeRadius) {
   RackAndPinion const floor{.radius = -0.5};
   for (double const s : {0.0, 1.0, -40.0, 500.0}) {

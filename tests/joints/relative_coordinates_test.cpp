@@ -34,7 +34,7 @@ Frame<double> const a{.r = {0.2, -1, 3}, .A = exp_so3<double>(Vec3(0.3, 1, -2)),
 Frame<double> beside(Vec3 const& d, Mat3 const& turn) { return {.r = a.r + a.A * d, .A = a.A * turn}; }
 Vec6 coordinates(Mat3 const& turn) { return RelativeCoordinates{}.gap<double>(a, beside({0, 0, 0}, turn), 0.0).g; }
 
-// d, then b turned by ψ about a₃ and swung by the vector (s₁, s₂, 0).
+// The pose consists of d, then a rotation of b by ψ about a₃ and a swing by the vector (s₁, s₂, 0).
 TEST(RelativeCoordinates, AreTheSlideTheSwingAndTheTwist) {
   for (double const size : {1e-8, 1e-4, 1e-2, 0.4, 0.6, 2.0, 3.0})
     for (double const psi : {0.0, 1e-6, -1.0, 3.1}) {
@@ -47,7 +47,8 @@ TEST(RelativeCoordinates, AreTheSlideTheSwingAndTheTwist) {
     }
 }
 
-// A turn about one of the axes is its angle, and for small turns the coordinates are those of the rotation vector.
+// For a rotation about one of the axes the coordinate is its angle. For small rotations the coordinates are those of
+// the rotation vector.
 TEST(RelativeCoordinates, AreAnglesAboutTheAxes) {
   for (int i = 0; i < 3; ++i)
     for (double const angle : {1e-8, -1e-4, 1e-2, 1.0, -3.0}) {
@@ -55,10 +56,10 @@ TEST(RelativeCoordinates, AreAnglesAboutTheAxes) {
       EXPECT_LT((coordinates(exp_so3<double>(phi)).tail<3>() - phi).norm(), 1e-13) << i << ' ' << angle;
     }
   Vec3 const phi = Vec3(1, -2, 3) * 1e-5;
-  EXPECT_LT((coordinates(exp_so3<double>(phi)).tail<3>() - phi).norm(), 10 * 1e-10);  // products of them
+  EXPECT_LT((coordinates(exp_so3<double>(phi)).tail<3>() - phi).norm(), 10 * 1e-10);  // products of the small angles
 }
 
-// Past half a turn the twist begins again at −π; slides and swings do not notice.
+// Beyond half a turn the twist restarts at −π; slides and swings are continuous.
 TEST(RelativeCoordinates, TwistIsWithinHalfATurn) {
   Mat3 const swing = exp_so3<double>(Vec3(0.01, -0.02, 0));
   for (double const psi : {4.0, 7.0, 40.0, -40.0}) {
@@ -68,7 +69,7 @@ TEST(RelativeCoordinates, TwistIsWithinHalfATurn) {
   }
 }
 
-// ẋ by the maps is the motion of the coordinates, whatever the axes of a do.
+// The maps give ẋ equal to the rate of the coordinates, for any motion of the axes of a.
 TEST(RelativeCoordinates, RateOfTheTwistAloneIsTheSpinAboutTheAxis) {
   Frame<double> b = beside({0, 0, 0}, exp_so3<double>(Vec3(0, 0, 2.0)));
   b.v = a.v;
@@ -79,7 +80,7 @@ TEST(RelativeCoordinates, RateOfTheTwistAloneIsTheSpinAboutTheAxis) {
   EXPECT_LT(rate.norm(), 1e-14);
 }
 
-/// How much the held coordinates of a geometry feel of each of the six motions of b, in a's axes.
+/// Dependence of the constrained coordinates of a geometry on each of the six motions of b, in a's axes.
 template <class G>
 Vec6 felt() {
   Gap<6> const gap = HeldCoordinates<G>{}.template gap<double>(a, beside({0, 0, 0}, Mat3::Identity()), 0.0);
@@ -107,8 +108,8 @@ TEST(HeldCoordinates, LeaveFreeWhatTheGeometryLeavesFree) {
   expect(felt<planar::Revolute>(), {1, 1, 1, 1, 1, 0});
 }
 
-// The freedoms that a geometry names are those of its rows: what is free in the six coordinates moves no row, and each
-// motion that is held moves one.
+// The free directions that a geometry names agree with its constraint equations. A free motion in the six coordinates
+// changes no constraint function, and each constrained motion changes one.
 template <class G>
 void expect_freedoms_of_the_rows() {
   Gap<G::rows> const gap = G{}.template gap<double>(a, beside({0, 0, 0}, Mat3::Identity()), 0.0);
@@ -138,8 +139,8 @@ TEST(HeldCoordinates, FreedomsAreThoseOfTheRows) {
   expect_freedoms_of_the_rows<RelativeCoordinates>();
 }
 
-// However far the free directions have gone, their multipliers make no wrench: the gradient is that of the others
-// (JointLaws).
+// For any displacement along the free directions their multipliers have no wrench: the gradient is that of the other
+// coordinates (JointLaws).
 template <class G>
 void expect_gradient_of_the_others() {
   Numbers number;
@@ -160,7 +161,7 @@ TEST(HeldCoordinates, WrenchGradientLeavesTheFreedomsFree) {
   expect_gradient_of_the_others<Prismatic>();
 }
 
-// A ball may turn until its axis is against where it was, where swing and twist have no meaning.
+// A ball joint may rotate until its axis is opposite to its initial direction. There swing and twist are undefined.
 TEST(HeldCoordinates, OfABallJointHoldAtEveryTurn) {
   Frame<double> const b = beside({0.1, 0, 0}, Vec3(1, -1, -1).asDiagonal().toDenseMatrix());
   Gap<6> const gap = HeldCoordinates<Spherical>{}.gap<double>(a, b, 0.0);

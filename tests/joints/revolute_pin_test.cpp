@@ -22,7 +22,8 @@ struct RevolutePinCase {
   }
 };
 
-// Thesis Eq. 3.8 by hand: b tilted about a₁ by φ, b₃ = (0, −sin φ, cos φ), d = (0.1, 0.2, 0.3).
+// Constraint equations of the revolute joint [Wallin 2016, Eq. 3.8] by hand: b is tilted about a₁ by φ, b₃ = (0, −sin
+// φ, cos φ), d = (0.1, 0.2, 0.3).
 TEST(RevolutePin, RowsAreThoseOfTheThesis) {
   Frame<double> const b{.r = {0.1, 0.2, 0.3}, .A = exp_so3<double>(Vec3(0.25, 0, 0))};
   Vec<double, 5> expected;
@@ -30,7 +31,7 @@ TEST(RevolutePin, RowsAreThoseOfTheThesis) {
   EXPECT_LT((RevolutePin{.distance = 0.5}.gap<double>({}, b, 0.0).g - expected).norm(), 1e-15);
 }
 
-// What L > 0 is asked for: with the points together the fifth row is empty.
+// The requirement L > 0: at coincident points the fifth row of the Jacobian is zero.
 TEST(RevolutePin, WouldHaveRankFourAtOnePoint) {
   EXPECT_EQ((RevolutePin{.distance = 0.0}.gap<double>({}, {}, 0.0).Gb.row(4).norm()), 0.0);
   for (double const l : {0.0, -0.1, double(NAN)})

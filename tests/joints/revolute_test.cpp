@@ -44,7 +44,7 @@ TEST(Revolute, RefusesAnAxisThatIsNotAUnitVector) {
   EXPECT_TRUE(has(refusal([] { (void)Revolute{.axis = {0, NAN, 1}}.triad(); }), "Revolute: the axis must be finite"));
 }
 
-// A pin closed the wrong way round has no gap either: b₃ = −a₃.
+// A pin assembled in the opposite direction also satisfies the constraint equations: b₃ = −a₃.
 TEST(Revolute, TakesNoAccountOfWhichWayTheAxisPoints) {
   Frame<double> const a;
   Frame<double> const b{.A = exp_so3<double>(Vec3(std::numbers::pi, 0, 0))};

@@ -13,11 +13,11 @@ namespace rolling_disc_test {
 
 constexpr double radius = 0.7;
 
-/// Axis and normal at an angle of 1.2 rad at the reference configuration.
+/// Axis and normal at an angle of 1.2 rad in the reference configuration.
 RollingDisc leaning() { return {.radius = radius, .axis = {std::sin(1.2), 0, std::cos(1.2)}, .normal = {0, 0, 1}}; }
 
-// A disc that touches somewhere, turned anyhow: free are the turns about the contact point, ω with ṙ = −ω × ρ. In the
-// joint's axes the normal is (0, sin 1.2, cos 1.2).
+// A disc that touches the plane anywhere, with any rotation. The rotations about the contact point are free, ω with ṙ
+// = −ω × ρ. In the joint's axes the normal is (0, sin 1.2, cos 1.2).
 struct RollingDiscCase {
   static constexpr bool planar = false;
   static constexpr int world_rows = 0;
@@ -25,7 +25,7 @@ struct RollingDiscCase {
   static Mate mate(Numbers& number, double) {
     Vec3 const n(0, std::sin(1.2), std::cos(1.2)), along = n.unitOrthogonal(), other = n.cross(along);
     Mate mate{.R = exp_so3<double>(number.vec<3>(3.0)), .freedoms = MatX::Zero(6, 3)};
-    // the lowest point of the rim, by the angle of its slope: r = R (b₁ cos a + b₂ sin a)
+    // the lowest point of the rim from the angle of the steepest direction: r = R (b₁ cos a + b₂ sin a)
     double const a = std::atan2(-n.dot(mate.R.col(1)), -n.dot(mate.R.col(0)));
     Vec3 const rho = radius * (mate.R.col(0) * std::cos(a) + mate.R.col(1) * std::sin(a));
     mate.d = -n * n.dot(rho) + along * number(2.0) + other * number(2.0);
@@ -35,8 +35,8 @@ struct RollingDiscCase {
   }
 };
 
-// Upright over the plane z = 0 in travel along x: the centre at 3 m/s, the disc at ω about y; the rim's lowest point
-// moves at 3 − ω R.
+// Upright disc on the plane z = 0 that moves along x: the centre at 3 m/s, the disc at ω about y. The lowest point of
+// the rim moves at 3 − ω R.
 TEST(RollingDisc, RowsAreTheHeightOfTheRimAndTheVelocityOfTheContactPoint) {
   RollingDisc const disc{.radius = 0.5, .axis = {0, 1, 0}, .normal = {0, 0, 1}};
   Mat3 const axes = disc.triad();

@@ -22,7 +22,7 @@ Gap<6> full() {
   return gap;
 }
 
-// Rows [first, first + n) of a gap of six are written, the others left alone.
+// Only rows [first, first + n) of a gap of six are written.
 void expect_only(Gap<6> const& gap, int first, int n) {
   for (int i = 0; i < 6; ++i) {
     bool const inside = i >= first && i < first + n;
@@ -58,7 +58,7 @@ TEST(Rows, GapsAreTheirFormulas) {
   EXPECT_NEAR(gap.g[0], a.A.col(2).dot(b.r - a.r), 1e-15);
 }
 
-// u turns with ω_a, w with ω_b about one axis: g = cos(β + (ω_b − ω_a) t), so g̈ = −(ω_b − ω_a)² cos β.
+// u rotates with ω_a, w with ω_b about one axis: g = cos(β + (ω_b − ω_a) t), so g̈ = −(ω_b − ω_a)² cos β.
 TEST(Rows, PerpendicularGammaOfTwoTurningAxes) {
   double const beta = 0.7;
   Frame<double> const a{.w = {0, 0, 0.4}}, b{.w = {0, 0, -1.1}};
@@ -66,8 +66,8 @@ TEST(Rows, PerpendicularGammaOfTwoTurningAxes) {
               -1.5 * 1.5 * std::cos(beta), 1e-15);
 }
 
-// a turns with ω about z, b leaves along world x with speed s from (x, 0, 0):
-// g = −sin(ωt) (x + s t) for u = a₂, so g̈ = −2 ω s (Coriolis), and −ω² x for u = a₁ (centripetal).
+// a rotates with ω about z; b moves along world x with speed s from (x, 0, 0). For u = a₂, g = −sin(ωt) (x + s t), so
+// g̈ = −2 ω s (Coriolis). For u = a₁, g̈ = −ω² x (centripetal).
 TEST(Rows, NoSlideGammaOfARadialMotion) {
   double const omega = 0.7, s = 1.3, x = 2.0;
   Frame<double> const a{.w = {0, 0, omega}}, b{.r = {x, 0, 0}, .v = {s, 0, 0}};
@@ -99,7 +99,7 @@ TEST(Wrapped, LeavesLessThanHalfATurn) {
   EXPECT_NEAR(rows::wrapped(-200.0 * pi + 0.25), 0.25, 1e-12);
 }
 
-// At constant speeds about a common axis θ = ω_rel t grows evenly: no γ, and θ̇ = ω_rel.
+// At constant angular velocities about a common axis θ = ω_rel t grows linearly: no γ, and θ̇ = ω_rel.
 TEST(Turn, GrowsEvenlyAboutAFixedAxis) {
   Frame<double> const a{.A = exp_so3<double>(Vec3(0, 0, 0.4)), .w = {0, 0, 1.0}};
   Frame<double> const b{.A = exp_so3<double>(Vec3(0, 0, 3.0)), .w = {0, 0, 3.5}};
@@ -110,8 +110,8 @@ TEST(Turn, GrowsEvenlyAboutAFixedAxis) {
   EXPECT_NEAR(rows::turn_gamma(xy, a, b), 0.0, 1e-14);
 }
 
-// A point that passes at speed v along y, x away: θ = atan(y/x), θ˙ = x v/(x² + y²), θ¨ = −2 x y v²/(x² + y²)², which
-// is −v²/(2 x²) where y = x.
+// A point passes at velocity v along y, at the distance x: θ = atan(y/x), θ˙ = x v/(x² + y²), θ¨ = −2 x y v²/(x² +
+// y²)². If y = x, θ¨ = −v²/(2 x²).
 TEST(Turn, GammaOfThePassingPoint) {
   double const x = 2.0, v = 3.0;
   Frame<double> const a, b{.r = {x, x, 0}, .v = {0, v, 0}};
@@ -151,7 +151,7 @@ TEST(TriadAbout, RefusesWhatIsNoUnitVector) {
     EXPECT_TRUE(has(refusal([&] { (void)rows::triad_about(axis, "pin"); }), "pin must be a unit vector"));
   for (Vec3 const& axis : {Vec3(nan, 0, 1), Vec3(0, 0, infinite)})
     EXPECT_TRUE(has(refusal([&] { (void)rows::triad_about(axis, "pin"); }), "pin must be finite"));
-  EXPECT_NO_THROW((void)rows::triad_about(Vec3(0, 1 + 1e-10, 0), "pin"));  // rounding is forgiven
+  EXPECT_NO_THROW((void)rows::triad_about(Vec3(0, 1 + 1e-10, 0), "pin"));  // round-off is accepted
 }
 
 }  // namespace rows_test

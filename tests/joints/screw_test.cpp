@@ -16,7 +16,7 @@ constexpr double p = 0.7;
 
 Frame<double> nut(double slide, double angle) { return {.r = {0, 0, slide}, .A = exp_so3<double>(Vec3(0, 0, angle))}; }
 
-// Turns of up to ±9 rad, more than one around.
+// Rotations of up to ±9 rad, more than one turn.
 struct ScrewCase {
   static constexpr bool planar = false;
   static constexpr int world_rows = 0;
@@ -40,7 +40,7 @@ TEST(Screw, CountsItsTurnsByTheSlide) {
     }
 }
 
-// A slide by one lead 2π p without a turn is the next thread.
+// A translation by one lead 2π p without rotation leads to the next thread.
 TEST(Screw, IsClosedOnEveryThread) {
   EXPECT_NEAR((Screw{.pitch = p}.gap<double>({}, nut(2.0 * pi * p, 0.0), 0.0).g[4]), 0.0, 1e-14);
   EXPECT_NEAR((Screw{.pitch = p}.gap<double>({}, nut(0.9 * pi * p, 0.0), 0.0).g[4]), 0.9 * pi * p, 1e-14);

@@ -11,7 +11,7 @@ using namespace polybody::laws;
 
 namespace universal_test {
 
-// b turns about a₁ by φ, then about its own third axis by ψ: b₃ stays perpendicular to a₁.
+// b rotates about a₁ by φ, then about its own third axis by ψ: b₃ stays perpendicular to a₁.
 struct UniversalCase {
   static constexpr bool planar = false;
   static constexpr int world_rows = 3;
@@ -33,7 +33,8 @@ TEST(Universal, TakesBothArmsOfTheCross) {
   EXPECT_GT(e.determinant(), 0.0);
 }
 
-// The fourth row is the cosine between the arms: b turned about a₂ by φ, b₃ = (sin φ, 0, cos φ).
+// The fourth constraint function is the cosine of the angle between the arms: b is rotated about a₂ by φ, b₃ = (sin
+// φ, 0, cos φ).
 TEST(Universal, FourthRowIsTheCosineBetweenTheArms) {
   Frame<double> const b{.A = exp_so3<double>(Vec3(0, 0.3, 0))};
   EXPECT_NEAR((Universal{}.gap<double>({}, b, 0.0).g[3]), std::sin(0.3), 1e-15);

@@ -24,7 +24,7 @@ struct PlanarWeldCase {
   static Mate mate(Numbers& number, double t) { return WeldCase::mate(number, t); }
 };
 
-// For a small turn φ of b the rows a₁·b₂, a₂·b₃, a₃·b₁ are −φ₃, −φ₁, −φ₂ in a's axes.
+// For a small rotation φ of b the constraint functions a₁·b₂, a₂·b₃, a₃·b₁ are −φ₃, −φ₁, −φ₂ in a's axes.
 TEST(Weld, RotationalRowsMeasureTheTurn) {
   Vec3 const phi = Vec3(1, -2, 3) * 1e-7;
   Frame<double> const a{.A = exp_so3<double>(Vec3(0.3, 1, -2))};

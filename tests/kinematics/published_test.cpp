@@ -41,11 +41,11 @@ TEST(Published, GroundHasNoColumns) {
   EXPECT_EQ(ground.shape, JacobianShape::ground);
   EXPECT_EQ(ground.full().cols(), 0);
   MatX out(0, 3);
-  ground.pull(wrenches, out);  // nothing to write
+  ground.pull(wrenches, out);  // no columns to write
   EXPECT_EQ(out.size(), 0);
 }
 
-// twist = [ṙ + ω × ρ; ω] for speeds (ṙ, Ω), ω = A Ω.
+// twist = [ṙ + ω × ρ; ω] for the velocities (ṙ, Ω), ω = A Ω.
 TEST(Published, RigidJacobianIsTheTwistOfARigidBody) {
   Vec3 const rate(1.0, -2.0, 0.5), omega(0.3, 0.8, -1.2);
   Vec6 v, twist;

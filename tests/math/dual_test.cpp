@@ -209,7 +209,8 @@ TEST(Dual, MinAndMaxTakeTheBranchWithItsDerivative) {
   expect_dual(max(x, D(5.0)), 5.0, 0, 0);
 }
 
-// The slope of √ is infinite there, but a constant has none: the norm of a vector that stays zero is no NaN.
+// The derivative of √ at zero is infinite, but a constant has derivative zero: the norm of a vector that remains zero
+// is not NaN.
 TEST(Dual, RootOfAConstantZeroIsAConstantZero) {
   EXPECT_EQ(sqrt(Dual<2>(0.0)).d[0], 0.0);
   EXPECT_EQ(sqrt(Dual<2>::variable(0.0, 1)).d[0], 0.0);
@@ -325,7 +326,7 @@ TEST(DualInEigen, SolvesLinearSystems) {
   EXPECT_LT((slope_of(s) + a0.partialPivLu().solve(a1 * solution)).norm(), 1e-13);
 }
 
-// Eigen compares, and duals compare by value; only isfinite(x) looks at the partials.
+// Comparisons of Eigen and of duals use the values; only isfinite(x) checks the partials.
 TEST(DualInEigen, AllFiniteLooksAtValues) {
   Vec3D u = a_dual.col(0);
   EXPECT_TRUE(u.allFinite());

@@ -12,7 +12,7 @@ template <template <class...> class List>
 using All =
     List<InvalidInput, InconsistentStart, NewtonStalled, StepTooSmall, NonFinite, LinearSolverSingular, IoError>;
 
-/// From how many of Es does E derive (a class from itself too)?
+/// Number of types Es that E derives from, itself included.
 template <class... Es>
 struct Kinds {
   template <class E>
@@ -34,7 +34,7 @@ TYPED_TEST(EveryError, IsCaughtAsErrorAndKeepsItsMessage) {
 
 TYPED_TEST(EveryError, IsAStandardRuntimeError) { EXPECT_THROW(throw TypeParam("x"), std::runtime_error); }
 
-// A handler of one kind never swallows another.
+// A handler of one kind never catches another.
 TYPED_TEST(EveryError, DerivesFromNoOtherKind) { EXPECT_EQ(All<Kinds>::template of<TypeParam>, 1); }
 
 TEST(Number, IsReadableAtAnySize) {

@@ -1,4 +1,4 @@
-// Values by an index: in the order of the indices, one for each, whatever the order in which they come.
+// Values by an index: sorted by index, one value per index, for any order of insertion.
 #include <gtest/gtest.h>
 
 #include <map>

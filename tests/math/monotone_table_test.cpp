@@ -13,7 +13,7 @@ using namespace polybody::laws;
 
 namespace monotone_table_test {
 
-// A rubber: soft in the middle, stiff at the ends, abscissae not evenly spaced.
+// A rubber: soft in the middle, stiff at the ends, with uneven abscissae.
 MonotoneTable const rubber{{{-3.0, -9.0}, {-1.0, -1.0}, {-0.5, -0.4}, {0.5, 0.2}, {1.5, 2.0}, {2.0, 7.0}}};
 
 TEST(MonotoneTable, GoesThroughItsPoints) {
@@ -31,7 +31,8 @@ TEST(MonotoneTable, OfPointsOnALineIsTheLine) {
     }
 }
 
-// Where the points rise it rises, so a spring stays a spring; a plateau stays one, and a peak is the highest point.
+// The interpolant rises if the points rise, so a spring stays a spring. A plateau remains a plateau, and a peak is
+// the highest point.
 TEST(MonotoneTable, NeverOvershoots) {
   for (double x = -5.0; x < 4.0; x += 1e-3) EXPECT_GE(rubber.slope(x), 0.0) << x;
   MonotoneTable const stop{{{0.0, 0.0}, {1.0, 0.0}, {1.1, 5.0}, {2.0, 100.0}, {3.0, 60.0}, {4.0, 60.0}}};
@@ -70,13 +71,13 @@ TEST(MonotoneTable, SlopeIsTheDerivativeOfTheValueAndTheValueOfTheIntegral) {
 
 TEST(MonotoneTable, IntegralBeginsAtZero) {
   EXPECT_NEAR(rubber.integral(0.0), 0.0, 1e-15);
-  MonotoneTable const aside{{{2.0, 3.0}, {4.0, 3.0}}};  // zero lies before the first point
+  MonotoneTable const aside{{{2.0, 3.0}, {4.0, 3.0}}};  // zero is below the first point
   EXPECT_NEAR(aside.integral(0.0), 0.0, 1e-15);
   EXPECT_NEAR(aside.integral(3.0), 9.0, 1e-14);
 }
 
-// Slopes by secants err with h², so the values between err with h³ at least: halved steps leave an eighth of the error
-// of a smooth rising function, sinh over [−1, 2].
+// Derivatives from secants have an error of h², so the values have an error of at most h³. A step of half the length
+// leaves an eighth of the error for a smooth rising function, sinh over [−1, 2].
 TEST(MonotoneTable, ConvergesToASmoothFunction) {
   auto const error = [](int n) {
     std::vector<MonotoneTable::Point> points;
@@ -114,7 +115,7 @@ TEST(MonotoneTable, RefusesPointsWhoseSlopesOverflow) {
                   "\"mount\": a value, slope or area of the table between its points 2 and 3 is beyond 1e+150"));
   EXPECT_TRUE(has(said({{0.0, 0.0}, {1e-200, 1.0}}), "between its points 1 and 2 is beyond"));
   EXPECT_TRUE(has(said({{0.0, 1.0}, {1e-158, 1.0}}), "is beyond"));     // 1/h² overflows
-  EXPECT_TRUE(has(said({{1e140, 0.0}, {2e140, 1e140}}), "is beyond"));  // the area from 0
+  EXPECT_TRUE(has(said({{1e140, 0.0}, {2e140, 1e140}}), "is beyond"));  // the integral from 0
   EXPECT_TRUE(has(said({{0.0, -1e308}, {1.0, 1e308}}), "is beyond"));
   EXPECT_TRUE(has(said({{0.0, 1e308}, {1e10, 1e308}}), "is beyond"));
 }

@@ -21,7 +21,7 @@ Pack<N> some(double first) {
   return p;
 }
 
-/// f on a pack is f on each of its numbers.
+/// f of a SIMD vector is f of each of its numbers.
 template <int N, class F>
 void expect_each(F&& f) {
   Pack<N> const a = some<N>(0.6), b = some<N>(1.9), c = f(a, b);
@@ -53,7 +53,7 @@ TEST(Pack, IsZeroOrConstantWhenMade) {
   }
 }
 
-/// Rows of a matrix, N × N with (i, j) = 10 i + j, become its columns.
+/// The rows of an N × N matrix with (i, j) = 10 i + j become its columns.
 template <int N>
 void expect_transposed() {
   std::array<double, 2 * N> memory{};

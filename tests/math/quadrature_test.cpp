@@ -55,19 +55,19 @@ TEST(Quadrature, IsExactUpToDegreeTwiceNMinusOne) {
   });
 }
 
-// The first degree that fails, by exactly E = (n!)⁴/((2n + 1) (2n)!²)
-// [Abramowitz & Stegun 1964, 25.4.30, on an interval of length one].
+// The first degree that fails has the exact error E = (n!)⁴/((2n + 1) (2n)!²) [Abramowitz & Stegun 1964, 25.4.30, on
+// an interval of length one].
 TEST(Quadrature, MissesDegreeTwiceNByTheKnownRemainder) {
   for_each_rule([](auto n) {
     double const ratio = std::exp(2.0 * std::lgamma(n() + 1.0) - std::lgamma(2.0 * n() + 1.0));
     double const remainder = ratio * ratio / (2 * n() + 1);
     double const missed = 1.0 / (2 * n() + 1) - integral_of_power<n()>(2 * n());
-    EXPECT_GT(remainder, 1e-12);  // far above rounding
+    EXPECT_GT(remainder, 1e-12);  // far above round-off
     EXPECT_NEAR(missed, remainder, 1e-3 * remainder + 1e-15) << n();
   });
 }
 
-// [Abramowitz & Stegun 1964, Table 25.4], moved from [−1, 1] to [0, 1].
+// Points of [Abramowitz & Stegun 1964, Table 25.4], transformed from [−1, 1] to [0, 1].
 TEST(Quadrature, HasTheKnownPoints) {
   EXPECT_EQ(gauss<1>[0].xi, 0.5);
   EXPECT_EQ(gauss<1>[0].weight, 1.0);

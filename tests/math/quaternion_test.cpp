@@ -71,7 +71,7 @@ TEST(Quaternion, LogOfExpIsIdentityThroughZeroAndToPi) {
 }
 
 TEST(Quaternion, LogHasNoStepWhereItsSeriesEnds) {
-  // |v| = 1e-4: the angle is 2 asin(1e-4); on both sides of it and slightly apart
+  // |v| = 1e-4: the angle is 2 asin(1e-4); tests on both sides of it and slightly apart
   double const edge = 2.0 * std::asin(1e-4);
   for (double const angle : {edge * (1 - 1e-9), edge * (1 + 1e-9)})
     EXPECT_NEAR(quaternion_log<double>(quaternion_exp<double>(Vec3(0, angle, 0)))[1] / angle, 1.0, 4e-16);
@@ -110,7 +110,7 @@ TEST(Quaternion, PlusActsInBodyAxes) {
   EXPECT_LT((matrix(quaternion_plus<double>(p, delta)) - matrix(p) * exp_so3<double>(delta)).norm(), 2e-15);
 }
 
-// The norm does not drift, whatever it was before.
+// The result has unit norm for any norm of the argument.
 TEST(Quaternion, PlusNormalises) {
   Q moved = p * (1.0 + 1e-6);
   moved = quaternion_plus<double>(moved, Vec3(1e-3, 0, 0));
@@ -127,7 +127,7 @@ auto derivative_at_zero(F&& f, int i) {
   return f(delta).unaryExpr([](Dual<1> const& x) { return x.d[0]; }).eval();
 }
 
-// q ⊞ δ = q + ½ q (0, δ) to first order: the kinematic equation q˙ = ½ q ∘ (0, Ω).
+// To first order q ⊞ δ = q + ½ q (0, δ): the kinematic equation q˙ = ½ q ∘ (0, Ω).
 TEST(Quaternion, DerivativeOfPlusAtZeroIsHalfTheProduct) {
   Q const i_axes[] = {Q(0, 1, 0, 0), Q(0, 0, 1, 0), Q(0, 0, 0, 1)};
   for (int i = 0; i < 3; ++i) {
@@ -144,7 +144,7 @@ TEST(Quaternion, MatrixTurnsWithBodyAngularVelocity) {
   }
 }
 
-// log is the inverse of exp also to first order, at zero and away from it: d(q ⊟ q) = δ.
+// log is the inverse of exp to first order as well, at zero and away from it: d(q ⊟ q) = δ.
 TEST(Quaternion, DerivativeOfMinusAtZeroIsTheIdentity) {
   for (int i = 0; i < 3; ++i) {
     Vec3 const slope = derivative_at_zero(

@@ -10,7 +10,7 @@ using namespace polybody;
 
 namespace recorded_test {
 
-/// Every operation once or more, of three numbers.
+/// Every operation at least once, for three numbers.
 template <class T>
 T everything(T const& x, T const& y, T const& z) {
   T sum = x * y / z + 2.0 * x - y * 3.0 + 1.0 / z - (x - 0.5) + (0.5 - y) + x * 1.0 + y * 0.0;

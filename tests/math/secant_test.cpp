@@ -11,8 +11,9 @@ namespace secant_test {
 
 static_assert(StateScalar<Secant<3>> && KernelScalar<Secant<3>>);
 
-/// What a formula of two variables owes on secants: its values at both ends; s·Δx = Δf; the same slope from end to
-/// start; and the gradient of the middle, as dual numbers have it, up to O(|Δx|²).
+/// Requirements on the discrete gradient s of a function of two variables. Its values are exact at both ends; s·Δx =
+/// Δf; s is symmetric in start and end. s equals the gradient at the middle, computed by dual numbers, up to
+/// O(|Δx|²).
 template <class F>
 void expect_slope(F&& f) {
   double const x = 0.7, y = 1.3;
@@ -45,7 +46,7 @@ TEST(Secant, SlopesGiveTheChangeAndTendToTheGradient) {
   expect_slope([](auto const& x, auto const& y) { return -(x * x) + sqrt(y); });
 }
 
-// Half a turn less a little, across the negative axis: the angle goes on where atan2 jumps.
+// Slightly less than half a turn, across the negative axis: the angle is continuous at the jump of atan2.
 TEST(Secant, AngleGoesOnAcrossTheNegativeAxis) {
   using S = Secant<2>;
   S const x = S::variable(-1.0, -1.0, 0), y = S::variable(0.1, -0.1, 1), angle = atan2(y, x);
@@ -53,7 +54,8 @@ TEST(Secant, AngleGoesOnAcrossTheNegativeAxis) {
   EXPECT_NEAR(angle.d[1] * -0.2, angle.change(), 1e-15);
 }
 
-// |p| and any function of it: the slope is along p̄, at right angles to ω × p̄, though p turns by 1 rad and stretches.
+// For |p| and any function of it the discrete gradient is along p̄ and perpendicular to ω × p̄, although p rotates by
+// 1 rad and stretches.
 TEST(Secant, SlopeOfALengthHasNoMoment) {
   using S = Secant<3>;
   Vec3 const from(1.0, 0.2, -0.3), to(0.4, 1.3, 0.5), middle = 0.5 * (from + to);

@@ -1,4 +1,4 @@
-// A Sequence behaves as a std::vector: what it holds, what it copies and moves, what is alive when a copy throws.
+// A Sequence behaves like a std::vector: its content, its copies and moves, and its living values if a copy throws.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 namespace sequence_test {
 using namespace polybody;
 
-/// Counts the values that are alive, and refuses the copy that is asked for.
+/// Counts the living values, and refuses the requested copy.
 struct Counted {
   inline static int alive = 0, copies_until_refusal = -1;
   int value = 0;

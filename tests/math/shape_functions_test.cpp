@@ -21,7 +21,7 @@ TEST(LinearShape, IsAPartitionOfUnity) {
   }
 }
 
-// Nodal values of x itself must come back as x, with slope one.
+// Nodal values of x itself must give x, with derivative one.
 TEST(LinearShape, ReproducesStraightLines) {
   for (double const xi : places) {
     ShapeValues<2> const n = linear_shape(xi, length);
@@ -49,8 +49,8 @@ TEST(HermiteShape, IsAPartitionOfUnity) {
   }
 }
 
-// Values and slopes of a cubic at the nodes determine it; so every polynomial xᵏ, k ≤ 3, comes back with its
-// first and second derivative.
+// Values and derivatives of a cubic at the nodes determine it. Hence every polynomial xᵏ, k ≤ 3, is reproduced with
+// its first and second derivative.
 TEST(HermiteShape, ReproducesCubicsWithBothDerivatives) {
   double const l = length;
   for (int k = 0; k <= 3; ++k)
@@ -70,8 +70,8 @@ TEST(HermiteShape, ReproducesCubicsWithBothDerivatives) {
     }
 }
 
-// Central differences of a cubic: first derivative exact up to h² s‴/6, so ask of the second shape's derivatives
-// what the values say.
+// Central differences of a cubic are exact up to h² s‴/6. Hence they check the derivatives of the second shape
+// function against its values.
 TEST(HermiteShape, DerivativesFollowFromTheValues) {
   double const h = 1e-4;
   for (double const xi : {0.2, 0.5, 0.9}) {

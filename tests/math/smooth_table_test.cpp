@@ -16,7 +16,7 @@ double cubic_rate(double t) { return 2.0 + t * (-6.0 + t * 1.5); }
 
 SmoothTable const bumpy({{0.0, 1.0}, {0.7, -2.0}, {1.0, 0.5}, {2.5, 0.0}});
 
-// A clamped spline reproduces every cubic [de Boor 1978, ch. IV], whatever the points are.
+// A clamped spline reproduces every cubic [de Boor 1978, ch. IV], for any points.
 TEST(SmoothTable, ReproducesACubicByItsEnds) {
   std::vector<SmoothTable::Point> points;
   for (double const t : {-1.0, 0.2, 0.5, 2.0, 3.0}) points.push_back({t, cubic(t)});
@@ -30,8 +30,8 @@ TEST(SmoothTable, ReproducesACubicByItsEnds) {
   }
 }
 
-// By hand: three points (0, 0), (1, 1), (2, 0), natural: 2 (1 + 1) m₁ = 6 (−1 − 1), so m₁ = −3; the rate at the middle
-// is 0 by symmetry and 1.5 at the start, and the value half-way 11/16.
+// Natural spline by hand through (0, 0), (1, 1), (2, 0): 2 (1 + 1) m₁ = 6 (−1 − 1), so m₁ = −3. The rate is 0 at the
+// middle by symmetry and 1.5 at the start; the value half-way is 11/16.
 TEST(SmoothTable, IsNaturalUnlessToldOtherwise) {
   SmoothTable const hat({{0.0, 0.0}, {1.0, 1.0}, {2.0, 0.0}});
   EXPECT_DOUBLE_EQ(hat(1.0).acceleration, -3.0);
@@ -61,7 +61,7 @@ TEST(SmoothTable, RateAccelerationAndIntegralBelongToTheValue) {
   }
 }
 
-// Beyond its ends it goes on evenly; where it is clamped the acceleration jumps there, and a step ends.
+// Beyond its ends it continues linearly. If an end is clamped, the acceleration jumps there: a breakpoint.
 TEST(SmoothTable, GoesOnAtTheRateOfItsEnds) {
   SmoothTable const lift({{1.0, 2.0}, {3.0, 5.0}}, {.first_rate = 0.0, .last_rate = 0.5});
   EXPECT_EQ(lift(-4.0).value, 2.0);
@@ -72,8 +72,8 @@ TEST(SmoothTable, GoesOnAtTheRateOfItsEnds) {
   EXPECT_EQ(lift.corners(), (std::vector{1.0, 3.0}));
 }
 
-// One end given, the other natural: two points of distance 1, slope s of the chord 0, rate 1 given at the start, m at
-// the end 0: 2 m₀ = 6 (0 − 1), so m₀ = −3, and the rate at the end is 1 − 3/2.
+// One end clamped, the other natural: two points at distance 1, chord slope s = 0, rate 1 at the start, m = 0 at the
+// end. 2 m₀ = 6 (0 − 1), so m₀ = −3, and the rate at the end is 1 − 3/2.
 TEST(SmoothTable, TakesOneRateAlone) {
   SmoothTable const one({{0.0, 4.0}, {1.0, 4.0}}, {.first_rate = 1.0});
   EXPECT_DOUBLE_EQ(one(0.0).rate, 1.0);

@@ -14,11 +14,11 @@ namespace so3_test {
 
 double const pi = std::numbers::pi;
 
-/// Some directions, none of them special but the last.
+/// Directions in general position, except the last.
 std::vector<Vec3> const directions = {Vec3(0.6, -0.3, 0.5).normalized(), Vec3(-0.1, 0.9, 0.2).normalized(),
                                       Vec3(-0.5, -0.5, -0.7).normalized(), Vec3(0, 0, 1)};
 
-/// Around zero, around the switch from series to closed form at |φ| = 0.5, and up to π.
+/// Angles around zero, around the switch from series to closed form at |φ| = 0.5, and up to π.
 std::vector<double> const angles = {0.0,  1e-12, 1e-8, 1e-4, 1e-2, 0.1,       0.49,
                                     0.51, 1.0,   2.0,  3.0,  3.14, pi - 1e-7, pi - 1e-12};
 
@@ -66,7 +66,7 @@ TEST(So3, CoefficientsHaveNoStepWhereTheSeriesEnds) {
   EXPECT_NEAR(below.c, above.c, 1e-15);
 }
 
-// Their derivatives by x neither; with dual numbers.
+// The derivatives of the coefficients with respect to x are continuous as well; with dual numbers.
 TEST(So3, SlopesOfTheCoefficientsHaveNoStepEither) {
   using D = Dual<1>;
   RotationSeries<D> const below(D::variable(std::nextafter(0.25, 0.0), 0)), above(D::variable(0.25, 0));
@@ -90,7 +90,7 @@ TEST(So3, ExpTurnsByTheAngleAboutTheAxis) {
       EXPECT_LT((exp_so3<double>(angle * n) - Eigen::AngleAxisd(angle, n).toRotationMatrix()).norm(), 4e-15) << angle;
 }
 
-// Small parts keep their relative accuracy: A − 1 = a φ̃ + b φ̃² from long double.
+// Small contributions keep their relative accuracy: A − 1 = a φ̃ + b φ̃² from long double.
 TEST(So3, ExpIsSmoothThroughZero) {
   Vec3 const n = directions[0];
   for (double const angle : {1e-8, 1e-4, 1e-2}) {
@@ -109,7 +109,7 @@ TEST(So3, LogOfExpIsIdentityThroughZero) {
     }
 }
 
-// Tiny rotations are not lost in rounding: relative, not absolute.
+// Small rotations keep their relative accuracy.
 TEST(So3, LogKeepsTinyAngles) {
   for (double const angle : {1e-12, 1e-8, 1e-4})
     EXPECT_LT((log_so3(exp_so3<double>(angle * directions[0])) - angle * directions[0]).norm(), 1e-15 * angle);
@@ -128,7 +128,7 @@ TEST(So3, LogOfMoreThanAHalfTurnIsTheShortWay) {
   EXPECT_LT((log_so3(exp_so3<double>(4.0 * n)) - (4.0 - 2.0 * pi) * n).norm(), 1e-14);
 }
 
-/// The direction derivative of `f` at φ along δ, by dual numbers.
+/// The directional derivative of `f` at φ along δ, by dual numbers.
 template <class F>
 Mat3 derivative(F&& f, Vec3 const& phi, Vec3 const& delta) {
   using D = Dual<1>;
@@ -181,7 +181,7 @@ TEST(So3, InverseJacobianHasNoStepWhereTheSeriesEnds) {
   EXPECT_LT((right_jacobian_inverse<double>(below) - right_jacobian_inverse<double>(above)).norm(), 1e-15);
 }
 
-// d/dε Jr⁻¹(φ + εδ) = −Jr⁻¹ (d/dε Jr) Jr⁻¹: the two have independent series.
+// d/dε Jr⁻¹(φ + εδ) = −Jr⁻¹ (d/dε Jr) Jr⁻¹: both sides use independent series.
 TEST(So3, DerivativeOfTheInverseJacobianMatchesThatOfTheJacobian) {
   auto const forward = [](auto const& phi) { return right_jacobian<Dual<1>>(phi); };
   auto const backward = [](auto const& phi) { return right_jacobian_inverse<Dual<1>>(phi); };
@@ -213,7 +213,7 @@ TEST(So3, SlopesAreThoseOfHighPrecision) {
   }
 }
 
-/// m = (1 − atan t/t)/t² in long double: by Σ (−z)ᵏ/(2k + 3) for z ≤ 0.3, else as it stands.
+/// m = (1 − atan t/t)/t² in long double: by Σ (−z)ᵏ/(2k + 3) for z ≤ 0.3, else by the formula.
 long double arctan_rest(long double z) {
   if (z > 0.3L) return (1.0L - std::atan(std::sqrt(z)) / std::sqrt(z)) / z;
   long double sum = 0.0L, power = 1.0L;
@@ -224,7 +224,7 @@ long double arctan_rest(long double z) {
   return sum;
 }
 
-// The slopes by the differential equation 2 z a′ + a = 1/(1 + z), with a = 1 − z m.
+// The derivatives follow from the differential equation 2 z a′ + a = 1/(1 + z), with a = 1 − z m.
 TEST(So3, ArctanIsThatOfHighPrecision) {
   for (double const t :
        {0.0, 1e-12, 1e-8, 1e-4, 1e-2, 0.1, 0.3, 0.316, 0.3163, 0.5, 0.99}) {  // the series ends at √0.1
@@ -236,7 +236,7 @@ TEST(So3, ArctanIsThatOfHighPrecision) {
     if (t > 0.0) {
       EXPECT_NEAR(s.a * t, std::atan(t), 2e-16 * t) << t;
     }
-    if (t < 0.05) continue;  // there the quotients below lose their digits
+    if (t < 0.05) continue;  // below 0.05 the quotients lose their digits
     long double const da = (1.0L / (1.0L + z) - (1.0L - z * m)) / (2.0L * z);
     EXPECT_NEAR(s.da, double(da), 1e-14) << t;
     EXPECT_NEAR(s.dm, double(-(da + m) / z), 1e-13) << t;
@@ -255,7 +255,7 @@ TEST(So3, SlopesOfTheArctanAreItsDerivatives) {
   }
 }
 
-// Jr(φ + εy) x, for x and y in general position to φ.
+// Jr(φ + εy) x, for x and y in general position relative to φ.
 TEST(So3, DerivativeOfTheJacobianIsWhatItSays) {
   Vec3 const x(0.7, -1.3, 0.4);
   auto const applied = [&](auto const& phi) -> Mat<Dual<1>, 3, 3> {

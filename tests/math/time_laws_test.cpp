@@ -29,7 +29,7 @@ void expect_consistent(L const& law, double t) {
   EXPECT_NEAR(law(t).acceleration, slope(&Motion::rate), 1e-10) << "t = " << t;
 }
 
-/// All three numbers just before and at t agree.
+/// Value, rate and acceleration agree just before t and at t.
 template <TimeLaw L>
 void expect_smooth(L const& law, double t) {
   Motion const before = law(t - 1e-9), at = law(t);
@@ -50,7 +50,7 @@ TEST(Ramp, RateAndAccelerationFollowTheValue) {
   EXPECT_DOUBLE_EQ(law(1.5).value, -1.5);
 }
 
-// A corner takes the piece that begins there.
+// At a breakpoint the piece that begins there applies.
 TEST(Ramp, CornerBelongsToThePieceThatBegins) {
   Ramp const law{.target = -3.0, .duration = 2.0, .start = 0.5};
   expect_motion(law(0.5), 0.0, -1.5, 0.0);
@@ -60,8 +60,8 @@ TEST(Ramp, CornerBelongsToThePieceThatBegins) {
   EXPECT_EQ(law.corners(), (std::vector{0.5, 2.5}));
 }
 
-// The parabola of a corner has covered (w/2)²/(2w) = w/8 of the ramp's rise per second at the corner itself; it cuts
-// off at the end what it adds at the start, so the value and ∫ value dt afterwards are those of the sharp ramp.
+// At a breakpoint the rounding parabola has covered (w/2)²/(2w) = w/8 of the ramp's rise per second. It removes at
+// the end what it adds at the start. Hence the value and ∫ value dt after the ramp equal those of the sharp ramp.
 TEST(Ramp, RoundedCornersLeaveTheRestAsItWas) {
   Ramp const sharp{.target = -3.0, .duration = 2.0, .start = 0.5},
       law{.target = -3.0, .duration = 2.0, .start = 0.5, .rounding = 0.2};
@@ -85,7 +85,7 @@ TEST(Ramp, RoundedCornersLeaveTheRestAsItWas) {
 TEST(SmoothRamp, RateAndAccelerationFollowTheValue) {
   SmoothRamp const law{.target = 0.7, .duration = 2.0, .start = 0.5};
   for (double const t : {0.0, 0.6, 1.1, 1.5, 2.4, 3.0}) expect_consistent(law, t);
-  EXPECT_DOUBLE_EQ(law(1.5).value, 0.35);  // half-way by symmetry
+  EXPECT_DOUBLE_EQ(law(1.5).value, 0.35);  // half of the rise, by symmetry
 }
 
 TEST(SmoothRamp, StartsAndEndsAtRestWithoutAJump) {
@@ -96,15 +96,15 @@ TEST(SmoothRamp, StartsAndEndsAtRestWithoutAJump) {
   expect_motion(law(2.5), 0.7, 0.0, 0.0);
 }
 
-// Without a duration a ramp is a step, never 0/0.
+// A ramp without duration is a step, never 0/0.
 TEST(SmoothRamp, OfNoDurationIsAStep) {
   SmoothRamp const law{.target = 0.7, .duration = 0.0, .start = 0.5};
   expect_motion(law(0.4), 0.0, 0.0, 0.0);
   expect_motion(law(0.5), 0.7, 0.0, 0.0);
 }
 
-// [Kane, Ryan & Banerjee 1987; Simo & Vu-Quoc 1986, spin-up manoeuvre]
-// ψ = (6/15)[t²/2 + (15/2π)²(cos(2πt/15) − 1)] for t ≤ 15 s, then 6t − 45.
+// Spin-up manoeuvre [Kane, Ryan & Banerjee 1987; Simo & Vu-Quoc 1986]: ψ = (6/15)[t²/2 + (15/2π)²(cos(2πt/15) − 1)]
+// for t ≤ 15 s, then 6t − 45.
 TEST(SpinUp, IsTheManoeuvreOfKaneRyanAndBanerjee) {
   SpinUp const law{.speed = 6.0, .duration = 15.0};
   double const pi = std::numbers::pi, k = 15.0 / (2.0 * pi);
@@ -141,7 +141,7 @@ TEST(Window, IsOpenForeverUnlessToldOtherwise) {
   EXPECT_EQ(Window{}(-1e-300).value, 0.0);
 }
 
-// ∫ value dt by differences of the integral, and its value at rest after the ramp by symmetry.
+// ∫ value dt by finite differences of the integral, and by symmetry its value at rest after the ramp.
 template <HasIntegral L>
 void expect_integral(L const& law, std::initializer_list<double> times) {
   double const h = 1e-3;

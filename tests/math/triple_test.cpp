@@ -8,7 +8,7 @@ using namespace polybody;
 
 namespace triple_test {
 
-/// The three numbers, written between two that must stay.
+/// The three numbers are written between two numbers that must not change.
 template <int lanes>
 std::array<double, 3> numbers(Triple<lanes> const& x) {
   std::array<double, 5> to;

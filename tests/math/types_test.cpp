@@ -13,7 +13,7 @@ namespace types_test {
 double const nan_ = std::numeric_limits<double>::quiet_NaN();
 double const infinity = std::numeric_limits<double>::infinity();
 
-// A number that decides physics cannot be forgotten, and reads as a plain number.
+// A required number has no default, and reads as a plain number.
 static_assert(!std::is_default_constructible_v<Required<double>>);
 static_assert(std::is_convertible_v<double, Required<double>>);
 static_assert(std::is_convertible_v<Required<double>, double>);
@@ -59,7 +59,7 @@ TEST(Checks, UnitAllowsRoundingOnly) {
   EXPECT_NO_THROW(require_unit(Vec3(1 + 1e-10, 0, 0), "axis"));
   for (Vec3 const& axis : {Vec3(1 + 1e-8, 0, 0), Vec3(0, 0, 0), Vec3(1, 1, 0), Vec3(nan_, 0, 1)})
     EXPECT_TRUE(has(refusal([&] { require_unit(axis, "pin: the axis"); }), "pin: the axis"));
-  EXPECT_TRUE(has(refusal([] { require_unit(Vec3(2, 0, 0), "axis"); }), "has length 2."));  // and says how long
+  EXPECT_TRUE(has(refusal([] { require_unit(Vec3(2, 0, 0), "axis"); }), "has length 2."));  // and gives the length
 }
 
 TEST(Checks, FindTheLargestEntry) {
@@ -68,7 +68,7 @@ TEST(Checks, FindTheLargestEntry) {
   EXPECT_EQ(largest_size(x), 3.0);
   x[0] = -infinity;
   EXPECT_EQ(largest_size(x), infinity);
-  for (Index i = 0; i < 3; ++i) {  // a NaN is not lost, wherever it stands
+  for (Index i = 0; i < 3; ++i) {  // a NaN in any entry is kept
     x << 1.0, -3.0, 2.0;
     x[i] = nan_;
     EXPECT_TRUE(std::isnan(largest_size(x))) << i;

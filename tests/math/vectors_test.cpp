@@ -26,7 +26,7 @@ TEST(AllFinite, SeesOneEntryWhereverItStands) {
   double const nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
   for (Index i = 0; i < beyond_packs; ++i) {
     VecX x = VecX::Constant(beyond_packs, 1e150);
-    EXPECT_TRUE(all_finite(x));  // the sum of squares lies beyond that of the largest number
+    EXPECT_TRUE(all_finite(x));  // the sum of squares exceeds the largest number
     for (double const bad : {nan, infinity, -infinity, 1.1e150, -1.1e150}) {
       x[i] = bad;
       EXPECT_FALSE(all_finite(x)) << i << ", " << bad;

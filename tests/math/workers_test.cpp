@@ -60,7 +60,7 @@ TEST(Workers, AnExceptionReachesTheCallerAndLeavesThemUsable) {
       });
     });
   };
-  EXPECT_TRUE(has(failing(0), "part 0"));  // the first part's, where both throw
+  EXPECT_TRUE(has(failing(0), "part 0"));  // the error of the first part, if both throw
   EXPECT_TRUE(has(failing(1), "part 48"));
   std::atomic<Index> sum{0};
   workers.over(100, 10, [&](Index begin, Index end) { sum += end - begin; });

@@ -1,7 +1,8 @@
-// The checks of a random model. Derivatives in time are differences along the motion that the accelerations give,
+// The checks of a random model. Time derivatives are finite differences along the motion with the computed
+// accelerations,
 //   q(h) = q ⊞ (h v + ½ h² a),  v(h) = v + h a,
-// whose error is even in h: central differences at h, 2h and 4h, extrapolated twice, err by O(h⁶) and by rounding,
-// which is some 1e-16/h of the quantity.
+// whose error is even in h: central differences at h, 2h and 4h, extrapolated twice, have an error of O(h⁶) plus
+// round-off of about 1e-16/h of the quantity.
 #include "random_models/checks.hpp"
 
 #include <algorithm>
@@ -11,7 +12,7 @@ namespace polybody::random_models {
 
 namespace {
 
-constexpr double step_of_differences = 1e-6;  // [s]; light cross-sections on stiff joints turn at some 10⁴ 1/s
+constexpr double step_of_differences = 1e-6;  // [s]; light cross-sections on stiff joints rotate at about 10⁴ 1/s
 
 bool same_bits(VecX const& a, VecX const& b) {
   if (a.size() != b.size()) return false;
@@ -37,7 +38,7 @@ class Examination {
         built = type_.realise(plan_, trap_);
       } catch (InvalidInput const&) {
         if (!has_linear_joints()) throw;
-        out_.refused = true;  // AncfLinear asks for gradients, and pins across cables
+        out_.refused = true;  // AncfLinear requires gradients, and pins across cables
         return out_;
       }
       State const x = start(built);
@@ -49,7 +50,7 @@ class Examination {
       if (which == 2) run(AdamsBashforthMoulton<Projection>{}, built, x, h);
       if (which == 3) run(CentralDifference<Projection>{}, built, x, h);
     } catch (InconsistentStart const&) {
-      out_.refused = true;  // a loop that its drive cannot close
+      out_.refused = true;  // a loop that its driving constraint cannot close
     } catch (LinearSolverSingular const& error) {
       if (!out_.redundant && !out_.singular) out_.error = error.what();
     } catch (std::exception const& error) {
@@ -73,7 +74,7 @@ class Examination {
     out_.residuals.push_back({check, value, tolerance});
   }
 
-  /// Somewhere near the reference, where all joints close, in motion.
+  /// A state near the reference that satisfies all joints, in motion.
   State start(Built& b) {
     System& whole = *b.whole;
     for (double const size : {0.05, 0.01}) {
@@ -96,8 +97,8 @@ class Examination {
     return x;
   }
 
-  /// How nearly the rows repeat each other: the least column that is left in an orthogonalisation of M^(−1/2) Gᵀ with
-  /// pivoting, M taken by its diagonal and the columns as unit vectors.
+  /// Degree of independence of the constraint equations: the smallest column that remains in an orthogonalisation of
+  /// M^(−1/2) Gᵀ with pivoting. M is taken by its diagonal and the columns as unit vectors.
   double independence(System& s) {
     struct Diagonal {
       VecX& d;
@@ -148,7 +149,7 @@ class Examination {
     check_momentum(whole, x);
   }
 
-  /// The state h later.
+  /// The state after the time h.
   static State later(System const& s, State const& x, double h) {
     State out = x;
     VecX const delta = h * x.v + 0.5 * h * h * x.a;
@@ -157,7 +158,7 @@ class Examination {
     out.t = x.t + h;
     return out;
   }
-  /// d/dt of what `quantity` tells of a state.
+  /// d/dt of the function `quantity` of a state.
   template <class F>
   static VecX rate(System const& s, State const& x, F&& quantity) {
     double const h = step_of_differences;
@@ -167,7 +168,7 @@ class Examination {
     return (64.0 * central(h) - 20.0 * central(2.0 * h) + central(4.0 * h)) / 45.0;
   }
 
-  /// d/dt (T + V) = power of drives and loads − dissipation.
+  /// d/dt (T + V) = power of driving constraints and loads − dissipation.
   void check_power(System& s, State const& x) {
     VecX const rates = rate(s, x, [&](State const& y) {
       s.evaluate(y.q, y.v, y.t);
@@ -184,7 +185,7 @@ class Examination {
     note("power", std::abs(rates.sum() - p.drives - p.loads + p.dissipated) / (scale + 1e-6), 1e-7);
   }
 
-  /// Force and moment about the world's origin, and the sum of their sizes.
+  /// Force and moment about the world's origin, and the sum of their absolute values.
   struct Total {
     Vec6 sum = Vec6::Zero();
     double size = 0.0;
@@ -203,7 +204,7 @@ class Examination {
     return type_.kinds.bodies[std::size_t(plan_.bodies[std::size_t(body)].kind)];
   }
 
-  /// From the ground and from loads on all bodies: reactions and actions, as records tell them.
+  /// Wrenches from the ground and from loads on all bodies: reactions and loads as recorded.
   Total from_outside(System& s, State const& x) {
     s.evaluate(x.q, x.v, x.t);
     s.push_forces();
@@ -227,7 +228,7 @@ class Examination {
       Vec3 const f(action.w[0], action.w[1], action.w[2]), m(action.w[3], action.w[4], action.w[5]);
       if (alone) total.add(f, m, at.r);
       if (!alone && on < 0) total.add(-f, -m, at.r);
-      if (on >= 0 && axis_only(s, on)) {  // nothing there takes a moment about the tangent
+      if (on >= 0 && axis_only(s, on)) {  // this marker takes no moment about the tangent
         Vec3 const tangent = at.A.col(0);
         total.add(Vec3::Zero(), -tangent.dot(m) * tangent, at.r);
       }
@@ -235,7 +236,7 @@ class Examination {
     return total;
   }
 
-  /// The force of gravity and its moment: the slope of its potential along rigid motions.
+  /// The force of gravity and its moment: the derivatives of its potential along rigid motions.
   Vec6 weight(System& s, State const& x) {
     Vec6 w;
     auto const rigid = s.entries().first.rigid_speeds;
@@ -255,7 +256,7 @@ class Examination {
     return w;
   }
 
-  /// d/dt of the momentum and of the moment of momentum = weight + what the ground and loads do.
+  /// d/dt of the momentum and of the moment of momentum = weight + wrenches of the ground and of loads.
   void check_momentum(System& s, State const& x) {
     VecX const rates = rate(s, x, [&](State const& y) {
       Momentum const p = momentum(s, y);
@@ -271,9 +272,9 @@ class Examination {
     for (std::size_t i = 0; i < plan_.bodies.size(); ++i) balanced = balanced && kind_of(int(i)).objective;
     for (JointPlan const& j : plan_.joints) {
       JointKind const& kind = type_.kinds.joints[std::size_t(j.kind)];
-      // λ of rows in world axes acts at two points, which an open gap sets apart
+      // λ of constraint equations in world axes acts at two points, which a constraint violation separates
       bool const open = std::string_view(kind.policy).starts_with("Penalty");
-      // the axis of a linear pin between cables is fixed in the world, which takes a moment
+      // the axis of a linear pin between cables is fixed in the world and takes a moment
       bool const between = j.a.body != ground && j.b.body != ground;
       bool const world_axis = kind.linear && between && kind_of(j.b.body).tells_axis_only;
       balanced = balanced && !open && !world_axis;
@@ -283,7 +284,7 @@ class Examination {
     if (balanced) note("moment of momentum", off.tail<3>().norm() / scale, 1e-7);
   }
 
-  /// The same model by `Constraint`: accelerations, multipliers, reactions.
+  /// The same model with `Constraint`: accelerations, multipliers, reactions.
   void check_twin(Built& b, State const& x) {
     RunSystems run = b.systems_of_run();
     System& stepped = *run.stepped;
@@ -316,7 +317,7 @@ class Examination {
     note("twin: reactions", off / size, 1e-9);
   }
 
-  /// Some steps, the checks where they end, the same bits in a model made anew, and steps that fail.
+  /// Several steps with the checks at their end, a bitwise identical repetition in a new model, and steps that fail.
   template <class I>
   void run(I const& integrator, Built& built, State const& start, double h) {
     auto const options = [&](double step) { return RunOptions{.until = start.t + 1e3 * step, .step = step}; };
@@ -344,7 +345,7 @@ class Examination {
     fail(run, x, Trap::Mode::quiet, 0);
   }
 
-  /// One step in which the trap springs; a step that throws leaves the state as it was.
+  /// One step in which the force fails; a step that throws leaves the state unchanged.
   template <class I>
   void fail(Simulation<I>& run, State const& x, Trap::Mode mode, int after) {
     State const before = x;

@@ -1,5 +1,5 @@
-// The drawing of a model: the bodies' places first, joint by joint along a tree; then loops, closed at points that
-// coincide already.
+// The drawing of a model. First the bodies are placed, joint by joint along a tree. Then loops are closed at points
+// that coincide already.
 #include "random_models/plan.hpp"
 
 #include <algorithm>
@@ -101,7 +101,8 @@ class Drawing {
       if (here(p)) out.push_back(p);
     return out;
   }
-  /// The i-th of this model. A stride that shares no factor with the number of pairings takes each i past all of them.
+  /// The i-th pairing of this model. A stride that shares no factor with the number of pairings makes each i pass all
+  /// of them.
   Pairing next(std::vector<Pairing> const& list, int i) const {
     std::size_t stride = most_joints;
     while (std::gcd(stride, list.size()) > 1) ++stride;
@@ -117,7 +118,7 @@ class Drawing {
       if (kinds_.bodies[k].planar == plan_.planar) return int(k);
     return 0;
   }
-  /// Of all bodies, without what joints hold; of bars no more than of a rigid body.
+  /// Degrees of freedom of all bodies without those that joints remove; a bar counts no more than a rigid body.
   int freedoms() const {
     int sum = int(plan_.bodies.size()) * (plan_.planar ? 3 : 6);
     for (JointPlan const& j : plan_.joints) sum -= kinds_.joints[std::size_t(j.kind)].rows;
@@ -132,7 +133,7 @@ class Drawing {
     plan_.bodies.push_back({kind, place, dice_.between(0.8, 1.4), dice_.between(0.5, 3.0)});
     return int(plan_.bodies.size()) - 1;
   }
-  /// A body of this kind that is there already, or none; the ground is always there.
+  /// An existing body of this kind, or none; the ground always exists.
   bool find(int kind, int& body) {
     std::vector<int> all;
     for (std::size_t i = 0; i < plan_.bodies.size(); ++i)
@@ -141,7 +142,7 @@ class Drawing {
     return kind == ground || !all.empty();
   }
 
-  /// A point of a body that is placed.
+  /// A point of a placed body.
   End end_on(int body) {
     End e{.body = body};
     if (body == ground) {
@@ -161,7 +162,7 @@ class Drawing {
     int const which = dice_.below(3);
     return which == 0 ? 0.0 : which == 1 ? length : dice_.between(0.2, 0.8) * length;
   }
-  /// Puts a body so that a point of it is at `point`.
+  /// Places a body such that a point of it is at `point`.
   End put(int body, Vec3 const& point) {
     BodyPlan& b = plan_.bodies[std::size_t(body)];
     End e{body, point, 0.0};
@@ -174,7 +175,7 @@ class Drawing {
     return e;
   }
 
-  /// Directions and numbers of a joint between bodies that are turned already.
+  /// Directions and numbers of a joint between bodies with given rotations.
   JointPlan joint(int kind, int a, int b) {
     JointKind const& k = kinds_.joints[std::size_t(kind)];
     JointPlan j{.kind = kind,
@@ -198,7 +199,7 @@ class Drawing {
     return o == Offset::none ? Vec3(Vec3::Zero()) : Vec3(j.size * (o == Offset::along_axis ? j.axis : j.side));
   }
 
-  /// One more body on the tree, by a joint of this pairing.
+  /// Adds one body to the tree, by a joint of this pairing.
   void hang(Pairing const& p) {
     int a = ground, b = ground;
     bool has_a = find(p.a, a), has_b = find(p.b, b);
@@ -225,7 +226,7 @@ class Drawing {
       return (j.a.body == a && j.b.body == b) || (j.a.body == b && j.b.body == a);
     });
   }
-  /// A joint that closes a loop, where one of its bodies has a point wherever it is needed.
+  /// A joint that closes a loop, if one of its bodies has a point at every required position.
   void close(Pairing const& p) {
     int a = ground, b = ground;
     JointKind const& kind = kinds_.joints[std::size_t(p.kind)];

@@ -1,6 +1,5 @@
 #pragma once
-/// \file
-/// Lists of joints and forces of the wide model types, with the names that the tables print.
+/// \file Lists of joints and forces of the wide model types, with the names that the tables print.
 
 #include "random_models/realise.hpp"
 
@@ -51,7 +50,7 @@ constexpr char const* policy_name() {
     return P::name;
 }
 
-/// Stands for `PenaltyPerRow` with as many numbers as the geometry has rows.
+/// Placeholder for `PenaltyPerRow` with as many numbers as the geometry has constraint equations.
 struct PerRow {};
 template <class P, class G>
 using PolicyFor = std::conditional_t<std::is_same_v<P, PerRow>, PenaltyPerRow<G::rows>, P>;
@@ -97,7 +96,7 @@ using AllInSpace =
     JointsBy<P, Spherical, Revolute, RevolutePin, Universal, Cylindrical, Prismatic, Screw, PlaneOnPlane, PointOnLine,
              PointInPlane, Orientation, ParallelAxes, PerpendicularAxes, Weld, RelativeCoordinates, Distance, Gear,
              RackAndPinion, RollingDisc, KnifeEdge, Turn, Rate, Stroke, Slide>;
-/// Those that leave joint coordinates; the last three of the plane.
+/// Geometries that leave joint coordinates; the last three are planar.
 template <class P>
 using AllWithMotions =
     JointsBy<P, Spherical, Revolute, Universal, Cylindrical, Prismatic, Screw, PlaneOnPlane, PointOnLine, PointInPlane,

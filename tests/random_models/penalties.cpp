@@ -3,7 +3,7 @@
 
 namespace polybody::random_models {
 
-/// All geometries with gaps.
+/// All geometries with constraint functions.
 template <class P>
 using WithGaps = JointsBy<P, Spherical, Revolute, RevolutePin, Universal, Cylindrical, Prismatic, Screw, PlaneOnPlane,
                           PointOnLine, PointInPlane, Orientation, ParallelAxes, PerpendicularAxes, Weld,

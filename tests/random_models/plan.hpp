@@ -1,6 +1,6 @@
 #pragma once
-/// \file
-/// A random model as data, before it has a type: what a wide model type offers, and what a seed draws from it.
+/// \file A random model as data, before it has a type: the kinds that a wide model type offers, and the choice of a
+/// seed among them.
 
 #include <cstdint>
 #include <random>
@@ -11,19 +11,19 @@
 
 namespace polybody::random_models {
 
-inline constexpr int ground = -1;  ///< in place of a kind or a body
+inline constexpr int ground = -1;  ///< replaces a kind or a body
 
 /// A body of a wide type.
 struct BodyKind {
   char const* name;
   bool planar;
-  bool is_bar;           ///< made of elements along a line; else rigid, with a point wherever one is asked for
-  bool tells_axis_only;  ///< its markers know their tangent and no more
-  bool objective;        ///< its strain energy does not feel a rotation
+  bool is_bar;           ///< made of elements along a line; otherwise rigid, with a point at any position
+  bool tells_axis_only;  ///< its markers have a tangent but no axes
+  bool objective;        ///< a rotation does not change its strain energy
   bool linear;           ///< its points are linear in its coordinates
 };
 
-/// Where the point of b stands against that of a in the reference configuration.
+/// Offset between the points of a and b in the reference configuration.
 enum class Offset { none, along_axis, across };
 
 struct JointKind {
@@ -32,9 +32,9 @@ struct JointKind {
   int rows;  ///< with multipliers
   Offset offset;
   bool asks_axis;     ///< of its second marker: the joint's axis is then the tangent of a cable
-  bool eliminates;    ///< coordinates from a time step
-  bool linear;        ///< rows that are linear in coordinates: axes are lines of the material
-  int twin = ground;  ///< the same geometry by `Constraint`, of one that eliminates
+  bool eliminates;    ///< eliminates coordinates from a time step
+  bool linear;        ///< constraint equations that are linear in coordinates: axes are material lines
+  int twin = ground;  ///< the same geometry with `Constraint`, for a policy that eliminates
 };
 
 struct ForceKind {
@@ -42,7 +42,7 @@ struct ForceKind {
   int markers;
 };
 
-/// A joint or a force of this kind may stand between bodies of kinds a and b.
+/// A joint or a force of this kind is permitted between bodies of kinds a and b.
 struct Pairing {
   int kind, a, b;
 };
@@ -63,7 +63,7 @@ struct BodyPlan {
 struct End {
   int body = ground;
   Vec3 point = Vec3::Zero();  ///< (3) world axes, in the reference configuration [m]
-  double s = 0.0;             ///< of a bar: from its first end [m]
+  double s = 0.0;             ///< distance of the point from the first end of a bar [m]
 };
 
 struct JointPlan {
@@ -78,7 +78,7 @@ struct ForcePlan {
   int kind;
   End a, b;
   Vec3 vector;   ///< (3)
-  bool follows;  ///< the axes of its marker
+  bool follows;  ///< follows the axes of its marker
   double stiffness, damping, distance;
 };
 
@@ -90,14 +90,14 @@ struct Plan {
   std::vector<JointPlan> joints;
   std::vector<ForcePlan> forces;
 
-  /// Some joint is one of `Recursive`.
+  /// Checks for joints with `Recursive`.
   bool has_joint_coordinates(Kinds const& kinds) const;
-  /// The same model with `Constraint` in its place.
+  /// The same model with `Constraint` as the policy.
   Plan twin(Kinds const& kinds) const;
   std::string text(Kinds const& kinds) const;
 };
 
-/// Numbers that are the same with every standard library.
+/// Random numbers that do not depend on the standard library.
 class Dice {
  public:
   explicit Dice(std::uint64_t seed) : generator_(seed * 0x9e3779b97f4a7c15ull + 1) {}
@@ -112,8 +112,9 @@ class Dice {
   std::mt19937_64 generator_;
 };
 
-/// The model of a seed. Pairings are taken in turn: seed s of a program of `types` types begins at number s/types of
-/// the list, so that a run of seeds meets all alike often, and yet one seed says all of its model.
+/// The model of a seed. Pairings are taken in sequence: seed s of a program of `types` types begins at number s/types
+/// of the list. Hence a range of seeds contains all pairings equally often, and one seed still determines its whole
+/// model.
 Plan draw(std::uint64_t seed, int types, Kinds const& kinds);
 
 }  // namespace polybody::random_models

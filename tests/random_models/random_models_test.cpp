@@ -1,5 +1,5 @@
-// 200 random models of one wide type: trees of joint coordinates and loops beside their twins by Constraint, with every
-// kind of force. Others: POLYBODY_SEED=n. All wide types: tests/random_models/run.
+// 200 random models of one wide type: trees in joint coordinates and loops against the same models with Constraint,
+// with every kind of force. Other models: POLYBODY_SEED=n. All wide types: tests/random_models/run.
 #include <gtest/gtest.h>
 
 #include <cstdlib>

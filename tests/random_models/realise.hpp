@@ -1,6 +1,5 @@
 #pragma once
-/// \file
-/// From a plan to a model of a wide type, and what such a type offers.
+/// \file From a plan to a model of a wide type, and the kinds that such a type offers.
 
 #include <functional>
 #include <limits>
@@ -14,7 +13,7 @@
 
 namespace polybody::random_models {
 
-/// When the force that fails does so.
+/// Call number at which the failing force throws.
 struct Trap {
   enum class Mode { quiet, throws, not_a_number };
   Mode mode = Mode::quiet;
@@ -22,7 +21,7 @@ struct Trap {
 };
 struct TrapSprung : std::exception {};
 
-/// A small dead force that fails from some call on.
+/// A small dead force that fails from a given call on.
 struct FailingForce {
   static constexpr int markers = 1;
   static constexpr bool is_load = true;
@@ -46,7 +45,7 @@ struct FailingForce {
 
 using SmallContact = Contact<SphereOnSphere>;
 
-/// A model without its type.
+/// A type-erased model.
 struct Built {
   std::shared_ptr<void const> model;
   std::unique_ptr<System> whole;               ///< with energies and rigid motions
@@ -69,7 +68,8 @@ constexpr bool is_rigid =
 template <class B>
 constexpr bool is_hub = std::is_same_v<B, Rigid<>> || std::is_same_v<B, polybody::planar::Rigid>;
 
-/// A joint J may be drawn between A and B: one of them is a rigid body that stands as others ask, or the ground.
+/// A joint J may be drawn between A and B: one of them is the ground, or a rigid body that is placed as the other
+/// body requires.
 template <class J, class A, class B>
 constexpr bool may_join() {
   using G = typename J::Geometry;
@@ -225,7 +225,7 @@ F force_of(ForcePlan const& f, [[maybe_unused]] bool planar, [[maybe_unused]] bo
 
 }  // namespace detail
 
-/// What a model of a wide type offers, and how a plan becomes one.
+/// The kinds of a wide type, and the construction of a model from a plan.
 template <class M>
 struct Realiser;
 template <class... Bs, class... Js, class... Fs>
@@ -238,9 +238,9 @@ struct Realiser<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>> {
   M model;
   Plan const& plan;
   std::tuple<std::vector<BodyHandle<Bs>>...> handles = {};
-  std::vector<std::size_t> index = {};  ///< of each body, among those of its type
+  std::vector<std::size_t> index = {};  ///< of each body, within the list of its type
 
-  /// Calls f<T>(i) for the types of a list, numbered from `first` on.
+  /// Calls f<T>(i) for the types of a list, numbered from `first`.
   template <class... Ts, class F>
   static void for_each(List<Ts...>, int first, F&& f) {
     (f.template operator()<Ts>(first++), ...);
@@ -321,7 +321,7 @@ struct Realiser<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>> {
   }
   int kind_of(End const& e) const { return e.body == ground ? ground : plan.bodies[std::size_t(e.body)].kind; }
 
-  /// Calls f<A, B>() for the types of the ends where the pairing may be.
+  /// Calls f<A, B>() for the end types that the pairing permits.
   template <template <class, class> class May, class K, class F>
   void with_ends(End const& first, End const& second, F&& f) const {
     int const kind_a = kind_of(first), kind_b = kind_of(second);
@@ -374,7 +374,7 @@ struct Realiser<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>> {
     }
   }
 
-  /// What any explicit method steps.
+  /// The equations that any explicit method integrates.
   static RunSystems systems_of_run(M const& model) {
     constexpr auto asked = with < Entries::compliance | Entries::coordinate_rates > ;
     RunSystems out{std::make_unique<System>(stepped_system(model, asked)), nullptr};

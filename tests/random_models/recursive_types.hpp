@@ -3,7 +3,7 @@
 
 namespace polybody::random_models {
 
-/// Trees of these bodies by one way to solve for joint coordinates, with twins by `Constraint`.
+/// Trees of these bodies with one solution method for joint coordinates, and the same models with `Constraint`.
 template <class Path, class F, class Bs>
 WideType recursive_type(char const* name, std::vector<char const*> const& bodies,
                         std::vector<char const*> const& forces) {

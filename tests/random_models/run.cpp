@@ -1,6 +1,6 @@
-// Random models, many of them: the worst residual of each check with its seed, and how often each pair is met.
+// Many random models: the largest residual of each check with its seed, and the number of occurrences of each pair.
 //   run_random_models [--models N] [--seed S] [--type K]    N models from seed S on; K: only those of one wide type
-// A seed tells its model alone: --models 1 --seed S prints it and all its residuals.
+// A seed determines its model: --models 1 --seed S prints it and all its residuals.
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -50,7 +50,7 @@ struct Sums {
   }
 };
 
-/// Prints each table; returns the pairs that the types offer and that were met less than 20 times.
+/// Prints each table; returns the number of pairs that the types offer and that occurred less than 20 times.
 long print(Pairs const& pairs) {
   long rare = 0;
   for (auto const& [table, cells] : pairs) {
@@ -67,7 +67,7 @@ long print(Pairs const& pairs) {
   return rare;
 }
 
-/// All pairs that the types offer, not met yet.
+/// Adds all pairs that the types offer, with zero occurrences.
 void add_offered(WideType const& type, Pairs& pairs) {
   Kinds const& k = type.kinds;
   auto const name = [&](int body) -> std::string {

@@ -1,4 +1,4 @@
-// Anderson's acceleration: what theory says of linear maps, and what it does to Newton's method with an incomplete
+// Anderson acceleration: theoretical results for linear maps, and its effect on Newton's method with an incomplete
 // tangent.
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ VecX random_vector(Index n, unsigned seed) {
   return VecX::NullaryExpr(n, [&](Index) { return normal(random); });
 }
 
-// f(x) = (J − 1)(x − 1) with J of a rank, whose first numbers alone are measured.
+// f(x) = (J − 1)(x − 1) with J of a given rank; the norm contains only the first entries.
 struct LinearMap {
   MatX J;
   VecX x;
@@ -32,7 +32,7 @@ struct LinearMap {
   }
 };
 
-// Norms of corrections, the first one as 1.
+// Norms of corrections, relative to the first.
 std::vector<double> corrections(LinearMap map, int count) {
   AndersonAcceleration acceleration(map.x.size(), map.x.size());
   std::vector<double> norms;
@@ -47,18 +47,18 @@ std::vector<double> corrections(LinearMap map, int count) {
   return norms;
 }
 
-// From the second on corrections lie in the range of J. As many differences as it has dimensions, up to two, leave
-// nothing of the one at hand, and the one after it is zero [Walker & Ni 2011, Theorem 2.2].
+// Corrections from the second on are in the range of J. If as many differences as its dimensions are used, up to two,
+// the present correction vanishes, and the next one is zero [Walker & Ni 2011, Theorem 2.2].
 TEST(Anderson, EndsForMapsOfRankOneAndTwo) {
   for (int const rank : {1, 2}) {
     std::vector<double> const norms = corrections(LinearMap(30, rank), rank + 3);
     EXPECT_GT(norms[std::size_t(rank) + 1], 1e-6) << rank;
     EXPECT_LT(norms[std::size_t(rank) + 2], 1e-13) << rank;
   }
-  EXPECT_GT(corrections(LinearMap(30, 3), 6).back(), 1e-9);  // for rank three two do not do
+  EXPECT_GT(corrections(LinearMap(30, 3), 6).back(), 1e-9);  // for rank three, two differences are not enough
 }
 
-// The fit tells ‖J s‖/‖s‖ of the last step s, a combined one, and what least squares leave of the correction.
+// The fit returns ‖J s‖/‖s‖ of the last combined step s, and the least-squares residual of the correction.
 TEST(Anderson, FitTellsHowTheMapContracts) {
   LinearMap map(20, 3);
   AndersonAcceleration acceleration(20, 20);
@@ -84,12 +84,13 @@ TEST(Anderson, FitTellsHowTheMapContracts) {
   }
 }
 
-// K x + x³ = b, whose tangent leaves out what is beside the diagonal of K, as a step's does between bodies in contact.
+// K x + x³ = b. The tangent omits the off-diagonal entries of K, as the tangent of a step omits terms between bodies
+// in contact.
 struct Incomplete {
   MatX K;
   VecX solution, b, x, y, diagonal;
   double tolerance = 1e-10, beside = 1.0;
-  bool complete = false;  // the tangent, from the second factorisation on
+  bool complete = false;  // a complete tangent from the second factorisation on
   int factorisations = 0;
 
   explicit Incomplete(Index n, double off_diagonal, unsigned seed)
@@ -139,8 +140,8 @@ TEST(Anderson, SavesIterationsOfNewtonsMethodWithAnIncompleteTangent) {
   }
 }
 
-// With a tangent that is complete from then on the correction after a renewal is the last but one: what was found with
-// the old one is forgotten.
+// After a renewal the tangent is complete, and the correction after it is the last but one. Differences with the old
+// tangent are discarded.
 TEST(Anderson, ForgetsWhatAnotherFactorisationFound) {
   Accelerated problem(25, -1.2, 3);
   problem.complete = true;
@@ -151,7 +152,7 @@ TEST(Anderson, ForgetsWhatAnotherFactorisationFound) {
   EXPECT_LE(problem.off(), 1.0);
 }
 
-// Full Newton's corrections, and those of which the last one itself is to be small, are taken as they are.
+// Corrections of full Newton, and corrections that must be small themselves, are not accelerated.
 TEST(Anderson, LeavesFullNewtonAlone) {
   for (NewtonOptions const& options : {NewtonOptions{.max_iterations = 60, .always_refactor = true},
                                        NewtonOptions{.max_iterations = 60, .predictive_stop = false}}) {

@@ -6,7 +6,7 @@
 
 using namespace polybody;
 
-// On both sides of the limit the answer is that of the solver chosen, to the last bit.
+// On both sides of the limit the result is bitwise identical to that of the chosen solver.
 TEST(AutoLu, ChoosesBySize) {
   for (Index const size : {AutoLu::limit - 1, AutoLu::limit, AutoLu::limit + 1}) {
     MatX const a = MatX::Random(size, size) + 10.0 * MatX::Identity(size, size);

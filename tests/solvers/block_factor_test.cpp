@@ -1,4 +1,4 @@
-// The block solvers against full pivoting, on what is singular in parts, and on what repeats itself.
+// The block solvers against full pivoting, for partly singular matrices and for redundant constraints.
 #include <polybody/solvers/block_factor.hpp>
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ struct Draw {
   }
 };
 
-/// Bodies of n columns in a chain that hangs from the ground, on joints of m rows.
+/// A chain of bodies with n columns that hangs from the ground, on joints with m constraint equations.
 Blocks chain(Index bodies, Index n, Index m, Draw& draw) {
   Blocks b;
   for (Index i = 0; i < bodies; ++i) b.add(n * i, n * i, draw.definite(n));
@@ -38,7 +38,7 @@ Blocks chain(Index bodies, Index n, Index m, Draw& draw) {
   return b;
 }
 
-/// Largest |A x − b| against |b| for a random b.
+/// Largest |A x − b| relative to |b| for a random b.
 template <class Solver>
 double residual(Blocks const& blocks, Solver const& solver, Draw& draw) {
   MatX const a = blocks.dense();
@@ -51,7 +51,7 @@ double residual(Blocks const& blocks, Solver const& solver, Draw& draw) {
 template <class Solver>
 struct BlockSolvers : testing::Test {
   Draw draw;
-  /// Analyses, factors, expects success and a small residual.
+  /// Analyses, factorises, and expects success and a small residual.
   Solver solved(Blocks const& blocks, double tolerance = 1e-13) {
     Solver solver = blocks.analysed<Solver>();
     EXPECT_EQ(write_and_factor(solver, [&](BlockSink& s) { blocks.write(s); }), -1);
@@ -67,8 +67,8 @@ TYPED_TEST(BlockSolvers, SolveChainsOfEveryBlockSize) {
     for (Index const bodies : {1, 2, 9}) this->solved(chain(bodies, n, m, this->draw));
 }
 
-// Two rows of each joint nearly repeat one another, as beside a singular position. What the solution makes of a
-// right-hand side that has a moderate one is off by a tenth of what multipliers of such joints would leave (8e-11).
+// Two constraint equations of each joint are nearly redundant, as near a singular configuration. The error of a
+// moderate solution is a tenth of the error that multipliers of such joints would cause (8e-11).
 TYPED_TEST(BlockSolvers, LoseNothingToRowsThatNearlyRepeatOthers) {
   Draw& draw = this->draw;
   Blocks b;
@@ -88,16 +88,16 @@ TYPED_TEST(BlockSolvers, LoseNothingToRowsThatNearlyRepeatOthers) {
   EXPECT_LT((a * x - rhs).norm(), 1e-11 * (rhs.norm() + a.norm() * x.norm()));
 }
 
-// Elements share nodes; joints hold the ends and stand within an element.
+// Elements share nodes; joints are at the ends and within an element.
 TYPED_TEST(BlockSolvers, SolveFlexibleBodies) {
   Draw& draw = this->draw;
   Blocks b;
   for (Index e = 0; e < 5; ++e) b.add(4 * e, 4 * e, draw.definite(8));            // 24 columns
-  for (Index e = 0; e < 3; ++e) b.add(24 + 3 * e, 24 + 3 * e, draw.definite(6));  // 12 more
+  for (Index e = 0; e < 3; ++e) b.add(24 + 3 * e, 24 + 3 * e, draw.definite(6));  // 12 more columns
   MatX at_start = draw.matrix(2, 8);
-  at_start.rightCols(4).setZero();  // a marker on a node: its element's other node does not move it
+  at_start.rightCols(4).setZero();  // a marker on a node: the other node of its element does not move it
   b.join(36, 0, at_start);
-  b.join(38, 16, draw.matrix(3, 8));  // both bodies
+  b.join(38, 16, draw.matrix(3, 8));  // a joint of both bodies
   b.join(38, 24, draw.matrix(3, 6));
   MatX at_end = draw.matrix(2, 6);
   at_end.leftCols(3).setZero();
@@ -105,13 +105,15 @@ TYPED_TEST(BlockSolvers, SolveFlexibleBodies) {
   this->solved(b);
 }
 
-// A body on a weld cannot move beside the body that carries it; a row that holds it against the ground holds them both.
+// A welded body cannot move relative to the body that carries it. A constraint equation between it and the ground
+// constrains both bodies.
 TYPED_TEST(BlockSolvers, KeepARowOfTheGroundOnABodyThatHangsOnAnother) {
   Draw& draw = this->draw;
   Blocks b;
   for (Index i = 0; i < 5; ++i) b.add(6 * i, 6 * i, draw.definite(6));
   Index row = 30;
-  for (auto const& [from, to] : {std::pair{0, 1}, {0, 3}, {0, 4}, {1, 2}}) {  // the first has most joints: the root
+  // the first body has the most joints: it is the root
+  for (auto const& [from, to] : {std::pair{0, 1}, {0, 3}, {0, 4}, {1, 2}}) {
     b.join(row, 6 * from, draw.matrix(6, 6));
     b.join(row, 6 * to, draw.matrix(6, 6));
     row += 6;
@@ -120,8 +122,8 @@ TYPED_TEST(BlockSolvers, KeepARowOfTheGroundOnABodyThatHangsOnAnother) {
   EXPECT_TRUE(this->solved(b, 1e-11).dropped().empty());
 }
 
-// Nor can it move beside the point of a bar that carries it, but the bar's other points do. Both ends of the bar are
-// held.
+// It cannot move relative to the point of the bar that carries it, but the other points of the bar can. Both ends of
+// the bar are fixed.
 TYPED_TEST(BlockSolvers, KeepASecondJointToAnotherPointOfABar) {
   Draw& draw = this->draw;
   Blocks b;
@@ -136,7 +138,7 @@ TYPED_TEST(BlockSolvers, KeepASecondJointToAnotherPointOfABar) {
   EXPECT_TRUE(this->solved(b, 1e-11).dropped().empty());
 }
 
-// A marker on the node that its element counts second: the first node alone cannot carry the joint.
+// A marker on the second node of its element: the first node alone cannot carry the joint.
 TYPED_TEST(BlockSolvers, FindThePivotOfAJointOnTheOtherNode) {
   Draw& draw = this->draw;
   Blocks b;
@@ -147,7 +149,7 @@ TYPED_TEST(BlockSolvers, FindThePivotOfAJointOnTheOtherNode) {
   this->solved(b);
 }
 
-// Springs tie bodies across the tree: more fill, the same answer.
+// Springs connect bodies across the tree: more fill, the same solution.
 TYPED_TEST(BlockSolvers, SolveWithSpringsBetweenBodies) {
   Draw& draw = this->draw;
   Blocks b = chain(12, 6, 5, draw);
@@ -160,7 +162,7 @@ TYPED_TEST(BlockSolvers, SolveWithSpringsBetweenBodies) {
   this->solved(b);
 }
 
-// Nothing holds the chain: the tree starts at one of its own bodies.
+// The chain is not connected to the ground: the tree starts at one of its own bodies.
 TYPED_TEST(BlockSolvers, SolveWhatDoesNotTouchTheGround) {
   Draw& draw = this->draw;
   Blocks b;
@@ -172,7 +174,7 @@ TYPED_TEST(BlockSolvers, SolveWhatDoesNotTouchTheGround) {
   this->solved(b);
 }
 
-// Thin rods (no inertia about their axis) and point masses: the joint's rows hold what the mass does not.
+// Thin rods (no inertia about their axis) and point masses: constraint equations constrain the motions without mass.
 TYPED_TEST(BlockSolvers, SolveSingularMasses) {
   Draw& draw = this->draw;
   for (Index const bodies : {1, 3, 40}) {
@@ -183,9 +185,9 @@ TYPED_TEST(BlockSolvers, SolveSingularMasses) {
       b.all[std::size_t(i)].second = thin.asDiagonal();
     }
     TypeParam const solver = this->solved(b);
-    EXPECT_LT(solver.nodes(), 2 * bodies);  // body and joint have become one
+    EXPECT_LT(solver.nodes(), 2 * bodies);  // body and joint are merged
   }
-  // Euler parameters: seven columns, the mass singular along p, and the row pᵀ of the norm
+  // Euler parameters: seven columns, a mass matrix that is singular along p, and the constraint row pᵀ of the norm
   Blocks b;
   VecX const p = draw.matrix(4, 1).normalized();
   MatX const q = draw.matrix(4, 4);
@@ -205,13 +207,13 @@ TYPED_TEST(BlockSolvers, SolveSingularMasses) {
   this->solved(b);
 }
 
-// A joint doubled: its rows are dropped, and the speeds and forces are right all the same.
+// A doubled joint: its constraint equations are dropped, and the velocities and forces remain correct.
 TYPED_TEST(BlockSolvers, DropRowsThatRepeatOthers) {
   Draw& draw = this->draw;
   for (Index const bodies : {2, 30}) {
     Blocks b = chain(bodies, 6, 5, draw);
     Index const row = b.size;
-    // the joint that closes the loop is the chain's last one once more, its rows combined
+    // the joint that closes the loop repeats the last joint of the chain, with its constraint equations combined
     MatX const dense = b.dense(), mix = draw.matrix(5, 5);
     Index const last = 6 * bodies + 5 * (bodies - 1);
     b.join(row, 6 * (bodies - 1), mix * dense.block(last, 6 * (bodies - 1), 5, 6));
@@ -220,12 +222,12 @@ TYPED_TEST(BlockSolvers, DropRowsThatRepeatOthers) {
     ASSERT_EQ(write_and_factor(solver, [&](BlockSink& s) { b.write(s); }), -1);
     ASSERT_EQ(solver.dropped().size(), 5u);
     for (Index const i : solver.dropped()) EXPECT_GE(i, row);
-    // a right-hand side that the repeated rows do not contradict
+    // a right-hand side that is consistent with the redundant constraints
     MatX const a = b.dense();
     VecX const y = draw.matrix(b.size, 1), rhs = a * y;
     VecX x = VecX::Zero(b.size);
     solver.solve(rhs, x);
-    EXPECT_LT((x - y).head(6 * bodies).norm(), 1e-9 * y.norm());  // speeds
+    EXPECT_LT((x - y).head(6 * bodies).norm(), 1e-9 * y.norm());  // velocities
     EXPECT_LT((a * x - rhs).norm(), 1e-9 * rhs.norm());           // and Gᵀλ
     for (Index const i : solver.dropped()) EXPECT_EQ(x[i], 0.0);
   }
@@ -255,7 +257,7 @@ TYPED_TEST(BlockSolvers, RepeatToTheLastBit) {
   EXPECT_EQ(first, second);
 }
 
-// Work and fill for each link are the same however long the chain is.
+// Operations and fill per link are independent of the length of the chain.
 TYPED_TEST(BlockSolvers, GrowLinearlyWithAChain) {
   auto const solver_of = [&](Index bodies) { return chain(bodies, 6, 5, this->draw).template analysed<TypeParam>(); };
   auto const short_one = solver_of(64), long_one = solver_of(1024);
@@ -270,7 +272,7 @@ TYPED_TEST(BlockSolvers, CloseALoopAtTheCostOfABorder) {
   EXPECT_LT(closed.analysed<TypeParam>().flops(), 2.0 * open.analysed<TypeParam>().flops());
 }
 
-// What a matrix has taught the solver can be taken back: then others have the bits that they had before.
+// The elimination order that a matrix has caused can be restored. Then other matrices have bitwise identical results.
 TYPED_TEST(BlockSolvers, GoBackToAnEarlierOrder) {
   Blocks const sound = chain(5, 6, 5, this->draw);
   Blocks thin = sound;
@@ -292,12 +294,12 @@ TYPED_TEST(BlockSolvers, GoBackToAnEarlierOrder) {
   solver.keep_reorderings(0);
   EXPECT_EQ(solver.reorderings(), 0u);
   solver.solve(side, x);
-  EXPECT_EQ(x, thinned);  // the factor stays until the next one is begun
+  EXPECT_EQ(x, thinned);  // the factor remains until the next one is begun
   write_and_factor(solver, [&](BlockSink& s) { sound.write(s); });
   EXPECT_EQ(solver.order(), order);
   solver.solve(side, x);
   EXPECT_EQ(x, first);
-  // and it learns it once more
+  // and the solver changes its order again
   write_and_factor(solver, [&](BlockSink& s) { thin.write(s); });
   solver.solve(side, x);
   EXPECT_EQ(x, thinned);
@@ -341,8 +343,8 @@ TEST(BlockLu, SolvesUnsymmetricTangents) {
   }
 }
 
-/// Elements of twelve unknowns in a row: of each link four are those at its end, which the next one shares, out of
-/// order among its own eight.
+/// A row of elements with twelve unknowns each. The next element shares the four unknowns at the end of a link, which
+/// are not in sequence among its own eight.
 Blocks cables(Index links, Draw& draw) {
   Blocks b;
   for (Index i = 0; i < links; ++i) {
@@ -351,7 +353,7 @@ Blocks cables(Index links, Draw& draw) {
       b.add(row, col, k.block(from_row, from_col, rows, cols));
     };
     bool const last = i + 1 == links;
-    std::vector<std::array<Index, 3>> parts{{8 * i, 8, 0}};  // first, size, place in k
+    std::vector<std::array<Index, 3>> parts{{8 * i, 8, 0}};  // first, size, position in k
     if (!last) parts.push_back({8 * (i + 1), 3, 8});
     if (!last) parts.push_back({8 * (i + 1) + 4, 1, 11});
     for (auto const& r : parts)
@@ -360,14 +362,14 @@ Blocks cables(Index links, Draw& draw) {
   return b;
 }
 
-// Unknowns of a body that touch the same others go at once: two nodes a link, not five.
+// Unknowns of a body that touch the same unknowns are eliminated together: two nodes per link, not five.
 TYPED_TEST(BlockSolvers, JoinsWhatTouchesTheSame) {
   Blocks const b = cables(9, this->draw);
   TypeParam const solver = this->solved(b);
   EXPECT_LE(solver.nodes(), 18);
 }
 
-// A body of 24 unknowns goes in four nodes of six, which kernels with constants take.
+// A body of 24 unknowns is divided into four nodes of six, for kernels with constant sizes.
 TYPED_TEST(BlockSolvers, DividesLargeBodies) {
   Blocks const b = chain(5, 24, 5, this->draw);
   TypeParam const solver = this->solved(b);

@@ -34,7 +34,7 @@ TEST(DenseLu, NamesTheFirstColumnWithoutAPivot) {
   EXPECT_EQ(holding(a).factor(), 2);
 }
 
-// Each pivot is judged against its own column, so units that differ by 1e20 are no singularity.
+// Each pivot is compared with its own column, so units that differ by 1e20 do not cause a singularity.
 TEST(DenseLu, JudgesAPivotByItsColumn) {
   Mat3 const a = Vec3(1e10, 1.0, 1e-10).asDiagonal();
   EXPECT_EQ(holding(a).factor(), -1);

@@ -1,4 +1,4 @@
-// Eigen's sparse LDLᵀ on symmetric tangents with rows.
+// Eigen's sparse LDLᵀ on symmetric tangents with constraint equations.
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@ using namespace polybody;
 
 namespace eigen_ldlt_test {
 
-/// A chain of bodies on pins, [M, Gᵀ; G, 0], and a skew part of body 0.
+/// A chain of bodies on pins, [M, Gᵀ; G, 0], and a skew-symmetric block of body 0.
 struct Chain {
   Index bodies;
   double skew = 0.0;
@@ -61,7 +61,7 @@ TEST(EigenLdlt, SolvesSymmetricTangentsWithRows) {
 
 TEST(EigenLdlt, RefinesSlightAsymmetryAway) { EXPECT_LT(error({.bodies = 8, .skew = 0.3}), 1e-9); }
 
-// Refinement by the factors of one half alone diverges: I − A B⁻¹ has an eigenvalue of −3.6.
+// Iterative refinement by the factors of one half alone diverges: I − A B⁻¹ has an eigenvalue of −3.6.
 TEST(EigenLdlt, IteratesAsymmetryOfALightPartAway) {
   Mat<double, 2, 2> const light{{1.0, -0.8}, {0.8, 1.0}}, heavy{{100.0, 1.0}, {1.0, 100.0}};
   std::vector<Block> const blocks{{0, 0, 2, 2}, {2, 2, 2, 2}};
@@ -88,7 +88,7 @@ TEST(EigenLdlt, RefusesWhatIsFarFromSymmetric) {
 TEST(EigenLdlt, NamesAnUnknownOfASingularMatrix) {
   Chain const chain{.bodies = 3};
   EigenLdlt solver = analysed(chain);
-  solver.begin();  // zero throughout
+  solver.begin();  // all entries are zero
   Index const bad = solver.factor();
   EXPECT_GE(bad, 0);
   EXPECT_LT(bad, chain.size());

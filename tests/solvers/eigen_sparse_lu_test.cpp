@@ -6,7 +6,7 @@ using namespace polybody;
 
 namespace eigen_sparse_lu_test {
 
-/// Blocks on the diagonal, one after another, of the sizes of `parts`; the first two overlap in one column.
+/// Diagonal blocks in sequence with the sizes of `parts`; the first two overlap in one column.
 std::vector<Block> const pattern{{0, 0, 3, 3}, {2, 2, 3, 3}, {5, 0, 1, 3}, {0, 5, 3, 1}, {5, 5, 1, 1}};
 
 struct Parts {

@@ -16,7 +16,7 @@ MatX random_symmetric(Index n) {
   return a * a.transpose() + double(n) * MatX::Identity(n, n);
 }
 
-/// Unknowns 0–1 and 5–7 are a part, 2–4 one by itself, 8–9 another one.
+/// Unknowns 0–1 and 5–7 are one part, 2–4 another, 8–9 a third.
 struct Parts {
   Blocks blocks;
   MatX a = random_symmetric(2), b = random_symmetric(3), coupling = MatX::Random(2, 3), c = random_symmetric(3),
@@ -48,7 +48,7 @@ VecX solution(Solver& solver, Blocks const& blocks, VecX const& rhs) {
 TEST(KeptParts, SolveAsTheWholeDoes) {
   Parts parts;
   KeptParts<BlockSolver> kept;
-  kept.keep(constant({0, 1, 5, 6, 7, 8}));  // of the last part 9 is not
+  kept.keep(constant({0, 1, 5, 6, 7, 8}));  // 9, in the last part, is not constant
   auto solver = parts.blocks.analysed(std::move(kept));
   EXPECT_EQ(solver.kept(), 5);
   VecX const rhs = VecX::LinSpaced(10, -1.0, 2.0);
@@ -67,7 +67,7 @@ TEST(KeptParts, AreFactoredOnce) {
   kept.keep(constant({0, 1, 5, 6, 7}));
   auto solver = parts.blocks.analysed(std::move(kept));
   VecX const rhs = VecX::Ones(10), before = solution(solver, parts.blocks, rhs);
-  parts.a *= 2.0;  // which it was told does not happen
+  parts.a *= 2.0;  // although it was declared constant
   parts.c *= 2.0;
   parts.build();
   VecX const after = solution(solver, parts.blocks, rhs);

@@ -1,4 +1,4 @@
-// SuiteSparse's KLU; this file is built where it is installed.
+// SuiteSparse's KLU; this file is built if KLU is installed.
 
 #include <polybody/solvers/block_ldlt.hpp>
 #include <polybody/solvers/klu.hpp>
@@ -44,7 +44,7 @@ TEST(Klu, RefusesAnOrderThatIsNone) {
   EXPECT_THROW(analysed(Klu(std::vector<int>(88, 3)), laws::Blocks{8}), InvalidInput);
 }
 
-// Kept pivots that have become tiny: they are chosen anew.
+// Reused pivots that have become tiny are chosen again.
 TEST(Klu, ChoosesPivotsAnewWhenTheyNoLongerServe) {
   Mat<double, 2, 2> first, second;
   first << 1.0, 0.5, 0.5, 1.0;

@@ -1,4 +1,4 @@
-// Every linear solver, on the same matrices, and what they are filled through.
+// All linear solvers on the same matrices, and the sinks that fill them.
 
 #include <polybody/solvers/auto_lu.hpp>
 #include <polybody/solvers/block_lu.hpp>
@@ -18,7 +18,7 @@ bool const linear_solver_obey[] = {
 
 }  // namespace polybody::test
 
-// Masses of 1 and 1e9 beside each other, known solution: refinement leaves a residual of rounding size.
+// Masses of 1 and 1e9 in one matrix, known solution: refinement leaves a residual of the size of round-off.
 TEST(Refined, LeavesLessThanTheSolverAlone) {
   laws::Blocks const blocks{12};
   Eigen::VectorXd scale(blocks.size());

@@ -8,7 +8,7 @@ using namespace polybody;
 
 namespace newton_test {
 
-/// f(x) = 0 in one unknown; a correction of `tolerance` has the norm one. Records what it is asked.
+/// f(x) = 0 in one unknown; a correction of `tolerance` has the norm one. Records the calls.
 struct Scalar {
   std::function<double(double)> f, slope;
   double x = 0.0;
@@ -34,7 +34,7 @@ struct Scalar {
   void apply() { x += correction; }
 };
 
-/// Takes parts of corrections.
+/// Accepts damped corrections.
 struct Damped : Scalar {
   double least_part = 1.0;
   void apply(double part) {
@@ -64,7 +64,8 @@ TEST(Newton, SolvesAndReportsWhatItCost) {
   EXPECT_NEAR(problem.x, std::sqrt(2.0), 1e-10);
   EXPECT_EQ(o.report.iterations, problem.evaluations);
   EXPECT_EQ(o.report.factorisations, problem.factorisations);
-  EXPECT_EQ(problem.solutions, problem.evaluations + problem.factorisations - 1);  // what each renewal solves anew
+  // each renewal is followed by another solution
+  EXPECT_EQ(problem.solutions, problem.evaluations + problem.factorisations - 1);
   EXPECT_LT(o.report.theta, 1.0);
   EXPECT_TRUE(o.kept.usable);
 }
@@ -78,7 +79,7 @@ TEST(Newton, FullNewtonFactorsAtEveryIterate) {
   EXPECT_NEAR(problem.x, std::sqrt(2.0), 1e-15);
 }
 
-// From 1.4 the slope there contracts by |1 − x/1.4|, about 0.01: it is kept to the end and for the next solve.
+// At 1.4 the derivative contracts by |1 − x/1.4|, about 0.01: it is reused to the end and in the next solve.
 TEST(Newton, KeepsAFactorisationThatContracts) {
   Scalar problem = square_root_of_two();
   problem.x = 1.4;
@@ -95,8 +96,7 @@ TEST(Newton, KeepsAFactorisationThatContracts) {
   EXPECT_NEAR(problem.x, std::sqrt(2.0), 1e-10);
 }
 
-// With the slope at 1 in place of that at √2 the rate is √2 − 1 = 0.41, and a correction of 0.1 is followed by 23
-// others.
+// With the derivative at 1 instead of at √2 the rate is √2 − 1 = 0.41, and 23 corrections follow a correction of 0.1.
 TEST(Newton, RenewsAFactorisationWhereThatSavesWhatItCosts) {
   Scalar eager = square_root_of_two(), patient = square_root_of_two();
   EXPECT_GE(solve(eager).report.factorisations, 2);
@@ -105,7 +105,8 @@ TEST(Newton, RenewsAFactorisationWhereThatSavesWhatItCosts) {
   EXPECT_NEAR(patient.x, std::sqrt(2.0), 1e-10);
 }
 
-// A rate of 0.2 with 1e3 to go takes four iterations, a new factorisation two: over ten solves it saves twenty.
+// A rate of 0.2 with a factor of 1e3 to reduce needs four iterations, a new factorisation two. Over ten solves it
+// saves twenty iterations.
 TEST(Newton, RenewsSoonerWhatServesForLong) {
   auto const factorisations_after = [](int solves) {
     Scalar problem{[](double x) { return x - 1.0; }, [](double) { return 1.0; }};
@@ -117,8 +118,7 @@ TEST(Newton, RenewsSoonerWhatServesForLong) {
   EXPECT_EQ(factorisations_after(10), 1);
 }
 
-// A factorisation that is of no use from the first correction on is not tried in the next solve; one that is comes
-// back.
+// A factorisation that fails at the first correction is not tried in the next solve; a successful one is reused.
 TEST(Newton, BeginsAnewWhereTheLastFactorisationWasOfNoUse) {
   Scalar problem{[](double x) { return x - 1.0; }, [](double) { return 1.0; }};
   problem.factored_slope = -1.0;
@@ -128,14 +128,14 @@ TEST(Newton, BeginsAnewWhereTheLastFactorisationWasOfNoUse) {
   EXPECT_TRUE(kept.stale);
   problem.x = 5.0;
   NewtonReport const second = newton(problem, {}, kept);
-  EXPECT_EQ(second.factorisations, 1);  // at once
+  EXPECT_EQ(second.factorisations, 1);  // immediately
   EXPECT_EQ(second.iterations, first.iterations - 1);
   EXPECT_FALSE(kept.stale);
   problem.x = 9.0;
   EXPECT_EQ(newton(problem, {}, kept).factorisations, 0);
 }
 
-// Where new factorisations contract no faster than the one at hand, few are made: now and then it is tried again.
+// If new factorisations contract no faster than the reused one, few are made. Occasionally one is tried again.
 TEST(Newton, LearnsWhatANewFactorisationIsWorth) {
   Scalar problem{[](double x) { return x - 1.0; }, [](double) { return 1.0 / 0.7; }};
   KeptFactor kept;
@@ -149,21 +149,21 @@ TEST(Newton, LearnsWhatANewFactorisationIsWorth) {
   EXPECT_GT(kept.fresh, 0.1);
 }
 
-// A slope of the wrong sign: the first correction leads away, the second one is not taken, and the tangent of that
-// place ends it.
+// A derivative of the wrong sign: the first correction increases the residual, and the second is not applied. The
+// tangent at this point completes the solve.
 TEST(Newton, CorrectionThatAsksForANewFactorisationIsNotTaken) {
   Scalar problem{[](double x) { return x - 1.0; }, [](double) { return 1.0; }};
   problem.factored_slope = -1.0;
   Outcome const o = solve(problem, {}, {.usable = true, .theta = 0.1});
   EXPECT_EQ(o.report.result, NewtonResult::converged);
   EXPECT_EQ(problem.x, 1.0);
-  EXPECT_EQ(problem.evaluations, 3);  // at 0, at −1, and where it ends
+  EXPECT_EQ(problem.evaluations, 3);  // at 0, at −1, and at the solution
   EXPECT_EQ(problem.factorisations, 1);
   EXPECT_EQ(problem.solutions, 4);
 }
 
-// A linear contraction of rate θ: what is left after the last correction is θ/(1 − θ) of it, and below the
-// tolerance. The slope is wrong by a known factor.
+// A linear contraction of rate θ: the remaining error after the last correction is θ/(1 − θ) of it, and below the
+// tolerance. The derivative is wrong by a known factor.
 TEST(Newton, StopsWhereTheErrorLeftIsBelowTheTolerance) {
   for (double const rate : {0.1, 0.25}) {
     Scalar problem{[](double x) { return x - 1.0; }, [&](double) { return 1.0 / (1.0 - rate); }};
@@ -171,7 +171,7 @@ TEST(Newton, StopsWhereTheErrorLeftIsBelowTheTolerance) {
     ASSERT_EQ(o.report.result, NewtonResult::converged);
     EXPECT_NEAR(o.report.theta, rate, 1e-6);
     EXPECT_LE(std::abs(problem.x - 1.0), problem.tolerance * (1.0 + 1e-5));
-    EXPECT_GT(std::abs(problem.x - 1.0), 0.9 * rate * problem.tolerance);  // one correction fewer would not do
+    EXPECT_GT(std::abs(problem.x - 1.0), 0.9 * rate * problem.tolerance);  // one correction fewer would not be enough
   }
 }
 
@@ -183,7 +183,7 @@ TEST(Newton, CorrectionBelowTheToleranceEndsItAtOnce) {
   EXPECT_EQ(o.report.iterations, 1);
 }
 
-// A rate known from the solve before lets a single correction do.
+// A known rate from the previous solve makes a single correction sufficient.
 TEST(Newton, OldRateSavesTheSecondCorrection) {
   Scalar with = square_root_of_two(), without = square_root_of_two();
   with.x = without.x = std::sqrt(2.0) + 1e-10;
@@ -192,7 +192,7 @@ TEST(Newton, OldRateSavesTheSecondCorrection) {
   EXPECT_EQ(solve(without, {}, {.usable = true, .theta = 0.9}).report.iterations, 2);
 }
 
-/// Two roots, of which the one at 10.5 is further away than the solution may be.
+/// Two roots. The root at 10.5 is farther away than the solution may be.
 struct TwoRoots : Scalar {
   int restarts = 0;
   TwoRoots() : Scalar{[](double y) { return (y - 1.0) * (y - 10.5); }, [](double y) { return 2.0 * y - 11.5; }} {
@@ -217,7 +217,7 @@ TEST(Newton, BeginsAgainWhereAnEarlierFactorisationLedFar) {
   kept = {.usable = true, .theta = 0.1};
   EXPECT_EQ(newton(without, {}, kept).result, NewtonResult::converged);
   EXPECT_NEAR(without.x, 10.5, 1e-10);
-  TwoRoots near;  // from here the same slope is not so wrong
+  TwoRoots near;  // from this start the same derivative is more accurate
   near.x = 0.9;
   near.factored_slope = -4.0;
   kept = {.usable = true, .theta = 0.1};
@@ -230,7 +230,7 @@ TEST(Newton, EndsAtItsBudgetAndSaysWhatItLeft) {
   Scalar p{[](double y) { return y - 1.0; }, [](double) { return 2.0; }};
   NewtonOptions const options{.max_iterations = 100, .budget = 13.0};
   p.factored_slope = 2.0;
-  KeptFactor kept{.usable = true, .theta = 0.5, .fresh = 0.5};  // a new one is no better
+  KeptFactor kept{.usable = true, .theta = 0.5, .fresh = 0.5};  // a new factorisation is no better
   NewtonReport const report = newton(p, options, kept);
   EXPECT_EQ(report.result, NewtonResult::converged);
   EXPECT_EQ(report.iterations, 13);
@@ -240,17 +240,18 @@ TEST(Newton, EndsAtItsBudgetAndSaysWhatItLeft) {
   p.x = 0.0;
   EXPECT_EQ(newton(p, {.max_iterations = 100}, kept).left, 0.0);
   EXPECT_NEAR(p.x, 1.0, 1e-10);
-  p.x = 0.0;  // two iterations make no hundredth of the first correction: it goes on to where one is
+  // two iterations do not reach a hundredth of the first correction: the iteration continues until it is reached
+  p.x = 0.0;
   kept = {};
   NewtonReport const longer = newton(p, {.max_iterations = 100, .factorisation_cost = 1.0, .budget = 2.0}, kept);
   EXPECT_EQ(longer.result, NewtonResult::converged);
   EXPECT_LE(std::abs(p.correction), 0.005);
   EXPECT_GT(std::abs(p.correction), 0.0025);
-  EXPECT_EQ(longer.factorisations, 1);  // it affords no other
+  EXPECT_EQ(longer.factorisations, 1);  // the budget permits no other factorisation
 }
 
 TEST(Newton, GivesUpWhenCorrectionsGrow) {
-  // x^(1/3): every Newton correction throws x to −2 x
+  // x^(1/3): every Newton correction moves x to −2 x
   Scalar problem{[](double x) { return std::cbrt(x); }, [](double x) { return std::cbrt(x) / (3.0 * x); }, 1.0};
   Outcome const o = solve(problem);
   EXPECT_EQ(o.report.result, NewtonResult::diverged);
@@ -259,7 +260,7 @@ TEST(Newton, GivesUpWhenCorrectionsGrow) {
   EXPECT_LE(o.report.iterations, 5);
 }
 
-// atan x from 1.5: undamped, −1.69, 2.32, −5.11, … ever farther to either side.
+// atan x from 1.5: undamped iterates are −1.69, 2.32, −5.11, … and diverge on alternating sides.
 TEST(Newton, FullNewtonDampsWhatGoesBackAndForth) {
   auto const arc = [](double x) { return std::atan(x); };
   auto const slope = [](double x) { return 1.0 / (1.0 + x * x); };
@@ -271,7 +272,7 @@ TEST(Newton, FullNewtonDampsWhatGoesBackAndForth) {
   EXPECT_EQ(newton(damped, full, kept).result, NewtonResult::converged);
   EXPECT_NEAR(damped.x, 0.0, 1e-9);
   EXPECT_LT(damped.least_part, 1.0);
-  // where full steps converge they stay full
+  // full steps that converge are not damped
   Damped easy{{[](double x) { return x * x - 2.0; }, [](double x) { return 2.0 * x; }, 1.0}};
   EXPECT_EQ(newton(easy, full, kept).result, NewtonResult::converged);
   EXPECT_EQ(easy.least_part, 1.0);
@@ -301,20 +302,22 @@ TEST(Newton, SaysWhenTheRightHandSideIsNoNumber) {
   EXPECT_EQ(solve(outside).report.result, NewtonResult::not_finite);
   EXPECT_EQ(outside.solutions, 0);
   Scalar leaves{f, slope,
-                1.0};  // the first correction leaves the domain: Newton's doing, a smaller step may stay inside
+                // the first correction leaves the domain: this is due to Newton's method, and a smaller step may stay
+                // inside
+                1.0};
   EXPECT_EQ(solve(leaves).report.result, NewtonResult::diverged);
   EXPECT_EQ(leaves.solutions, 1);
 }
 
-// x² + 1 has no root: from 1 the first correction leads to the flat place.
+// x² + 1 has no root: the first correction from 1 leads to the point with zero derivative.
 TEST(Newton, TangentThatIsSingularLaterOnIsNewtonsDoing) {
   Scalar problem{[](double x) { return x * x + 1.0; }, [](double x) { return 2.0 * x; }, 1.0};
   EXPECT_EQ(solve(problem, {.always_refactor = true}).report.result, NewtonResult::diverged);
   EXPECT_EQ(problem.x, 0.0);
 }
 
-// A wrong slope throws x far away, where the next factorisation makes small corrections: small beside those before,
-// which tells nothing, but not beside the tolerance.
+// A wrong derivative moves x far away, and the next factorisation makes small corrections. They are small compared
+// with the previous corrections, which gives no contraction rate, but not compared with the tolerance.
 TEST(Newton, SmallCorrectionAfterOneThatGrewTellsNoRate) {
   Scalar problem{[](double x) { return x / (1.0 + std::abs(x)) - 0.1; },
                  [](double x) { return x == 0.0 ? 1e-6 : 1e9; }};
@@ -322,8 +325,8 @@ TEST(Newton, SmallCorrectionAfterOneThatGrewTellsNoRate) {
   EXPECT_GT(problem.solutions, 3);
 }
 
-// Corrections that shrink to a fifth at a time while what is tolerated shrinks faster: they do contract, and are taken
-// whole.
+// Corrections that shrink to a fifth per iteration while the tolerance shrinks faster: they contract, and are not
+// damped.
 TEST(Newton, FullNewtonDampsByCorrectionsThemselves) {
   struct Moving : Damped {
     double tolerated = 1.0;
@@ -340,9 +343,9 @@ TEST(Newton, FullNewtonDampsByCorrectionsThemselves) {
   EXPECT_NEAR(problem.x, 1.0, 1e-6);
 }
 
-// Corrections that shrink as slowly as the damping lets them are no reason to damp more.
+// Corrections that shrink slowly because of damping do not cause more damping.
 TEST(Newton, DampingEnds) {
-  // a first correction that falls into the way of a much smaller one
+  // the first correction is opposite to a much smaller second one
   Damped problem{
       {[](double x) { return std::atan(x); }, [](double x) { return x == 3.0 ? 1.0 : 1.0 / (1.0 + x * x); }, 3.0}};
   KeptFactor kept;
@@ -361,7 +364,7 @@ TEST(Newton, CorrectionThatIsNoNumberIsNotApplied) {
   EXPECT_FALSE(o.kept.usable);
 }
 
-/// f comes with noise of either sign, far above the tolerance.
+/// f contains noise of either sign, far above the tolerance.
 struct Noisy : Scalar {
   double noise = 1e-8;
   bool evaluate() {
@@ -370,7 +373,7 @@ struct Noisy : Scalar {
     return finite;
   }
 };
-/// Knows its noise.
+/// Reports its noise.
 struct AwareOfNoise : Noisy {
   int asked = 0;
   bool is_rounding(double norm) {
@@ -379,7 +382,8 @@ struct AwareOfNoise : Noisy {
   }
 };
 
-// Corrections that noise keeps alive fail unless the problem says that they are noise; the last one is then left out.
+// Corrections due to noise cause a failure unless the problem reports that they are noise. Then the last one is not
+// applied.
 TEST(Newton, StopsWhereCorrectionsAreRounding) {
   auto const f = [](double x) { return x - 2.0; };
   auto const slope = [](double) { return 1.0; };

@@ -1,4 +1,4 @@
-// Rows that repeat others, under the solvers that do not drop them by themselves.
+// Redundant constraints under solvers that do not drop them by themselves.
 
 #include <polybody/solvers/row_dropping.hpp>
 
@@ -21,7 +21,8 @@ namespace row_dropping_test {
 static_assert(std::same_as<SolverOfSteps<BlockLu>, BlockLu>);
 static_assert(std::same_as<SolverOfSteps<DenseLu>, RowDropping<DenseLu>>);
 
-/// Two bodies of two speeds and three rows, of which the last one is `lean` off the sum of the others.
+/// Two bodies with two velocities and three constraint equations. The last differs by `lean` from the sum of the
+/// others.
 template <class Sink>
 void write(Sink& sink, double lean) {
   using Row = Mat<double, 1, 2>;
@@ -49,8 +50,8 @@ class EachSolver : public ::testing::Test {};
 using Solvers = ::testing::Types<DenseLu, EigenSparseLu, EigenLdlt>;
 TYPED_TEST_SUITE(EachSolver, Solvers);
 
-// What holds of the other rows holds of the dropped one as well, and its multiplier is zero; a row that does not repeat
-// others comes back.
+// A dropped constraint equation is satisfied if the others are, and its multiplier is zero. A constraint equation
+// that becomes independent is included again.
 TYPED_TEST(EachSolver, LeavesOutARowOnlyWhileItRepeatsOthers) {
   PatternSink pattern;
   write(pattern, 0.0);
@@ -72,7 +73,7 @@ TYPED_TEST(EachSolver, LeavesOutARowOnlyWhileItRepeatsOthers) {
   }
 }
 
-/// Bars with inertia about their own axis, too; `InSpace` has thin rods, whose M has no pivot of its own.
+/// Bars with inertia about their own axis; `InSpace` has thin rods, whose M has no pivot of its own.
 struct SquareBars : InSpace<Constraint> {
   static Body body(Link const& l, Placement const& place) {
     return {l.mass, Vec3(0.01, l.inertia, l.inertia).asDiagonal().toDenseMatrix(), place};
@@ -90,7 +91,7 @@ void expect_moves_as_in_the_plane() {
   EXPECT_EQ(report.redundant.size(), 2u);
   EXPECT_TRUE(space.x.lambda.allFinite());
 }
-// Four parallel pins in space repeat three rows of each loop.
+// Four parallel pins in space have three redundant constraint equations per loop.
 TYPED_TEST(EachSolver, MovesAPlanarFourBarOfSpatialPins) { expect_moves_as_in_the_plane<TypeParam, SquareBars>(); }
 TYPED_TEST(EachSolver, MovesOneOfThinRods) { expect_moves_as_in_the_plane<TypeParam, InSpace<Constraint>>(); }
 

@@ -42,7 +42,7 @@ TEST(StudyPoints, ScalesHaveTheirEndsAndRoundNumbersBetween) {
   EXPECT_EQ(logarithmic(1e6, 1e10, 5), (std::vector{1e6, 1e7, 1e8, 1e9, 1e10}));
   EXPECT_EQ(logarithmic(1e-2, 1e-5, 4), (std::vector{1e-2, 1e-3, 1e-4, 1e-5}));
   EXPECT_EQ(linear(0.0, 1.0, 11), (std::vector{0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0}));
-  EXPECT_EQ(linear(-1.0 / 3.0, 1.0 / 3.0, 2), (std::vector{-1.0 / 3.0, 1.0 / 3.0}));  // ends are not rounded
+  EXPECT_EQ(linear(-1.0 / 3.0, 1.0 / 3.0, 2), (std::vector{-1.0 / 3.0, 1.0 / 3.0}));  // end values have no round-off
 }
 
 TEST(StudyPoints, WhatCannotBeMeantIsRefused) {
@@ -77,7 +77,7 @@ TEST(StudySampling, TheGeneratorIsThatOfTheStandard) {
   EXPECT_EQ(points.at(9999, 0), (double(std::uint64_t{9981545732273789042u} / 4096u) + 0.5) / 4503599627370496.0);
 }
 
-// Sums of bits of samples, as every machine must find them: x86-64, by g++ 12 and clang 16, -O0 … -O3, with and without
+// Sums of the bits of samples, equal on every machine: x86-64, with g++ 12 and clang 16, -O0 … -O3, with and without
 // fma.
 std::uint64_t bits_of(Points const& points) {
   std::uint64_t sum = 0;
@@ -110,7 +110,8 @@ TEST(StudySampling, ALatinHypercubeHasOnePointInEachStratumOfEachAxis) {
   }
 }
 
-// Strata of the axes are paired at random: each of the 3! pairings of three has a sixth, within five deviations of it.
+// Strata of the axes are paired at random. Each of the 3! pairings of three has a probability of one sixth, within
+// five standard deviations.
 TEST(StudySampling, PairingsOfStrataAreEquallyProbable) {
   std::vector<int> count(6, 0);
   int const runs = 6000;
@@ -134,7 +135,8 @@ TEST(StudySampling, DistributionsHaveTheirMoments) {
       mean[j] += x / double(n);
       square[j] += x * x / double(n);
     }
-  // Means of stratified samples err by a stratum at most; so do squares, but for the two outermost ones of the normal.
+  // Means of stratified samples have an error of at most one stratum. So have squares, except for the two outermost
+  // strata of the normal distribution.
   EXPECT_NEAR(mean[0], 4.0, 4.0 / double(n));
   EXPECT_NEAR(square[0] - mean[0] * mean[0], 16.0 / 12.0, 0.01);
   EXPECT_NEAR(mean[1], 1.0, 6.0 / double(n));

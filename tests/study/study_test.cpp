@@ -30,14 +30,14 @@ void put(fs::path const& file, std::string_view text) { std::ofstream(file, std:
 
 StudyOptions with_threads(int threads) { return {.threads = threads, .progress = false}; }
 
-/// Numbers of many digits; the second output differs from call to call, as a time does. Point 4 of each six fails.
+/// Numbers with many digits; the second output differs between calls, like a time. Point 4 of each six fails.
 std::array<double, 2> values_at(Point const& p) {
   static std::atomic<int> calls = 0;
   if (p.index() % 6 == 4) throw NewtonStalled{"step ", p["step"], "\nis too long"};
   return {std::sqrt(p["stiffness"]) / (3.0 + double(p.choice("integrator"))) + std::sin(p["step"]), double(++calls)};
 }
 
-/// In memory where the machine has such a place: a test of a thousand files would wait for the disk.
+/// In memory if the machine has such a folder: a test with a thousand files would wait for the disk.
 fs::path parent() { return ::access("/dev/shm", W_OK) == 0 ? "/dev/shm" : testing::TempDir(); }
 
 /// Each test has its own empty folder, and one study.
@@ -54,7 +54,7 @@ struct StudyFiles : testing::Test {
   Study make(Points const& of, std::string const& about = "a sum of functions") const {
     return {{file, about}, of, outputs("sum [m]", measured("calls"))};
   }
-  /// The table that is the same bit for bit.
+  /// The text of the table, for bitwise comparisons.
   std::string table_of(StudyResults const& found) const {
     write_table(found, table);
     return text_of(table);
@@ -106,7 +106,7 @@ TEST_F(StudyFiles, FailedPointsAreTriedAgainOnDemand) {
   StudyResults const found = study.run(good, {.retry_failed = true, .progress = false});
   EXPECT_EQ(tried, (std::vector<std::size_t>{4, 10}));
   EXPECT_EQ(found.failed(), 0u);
-  EXPECT_EQ(table_of(study.recorded()), table_of(found));  // the later line counts
+  EXPECT_EQ(table_of(study.recorded()), table_of(found));  // the later line is used
 }
 
 TEST_F(StudyFiles, AnOutputThatIsNotFiniteIsAFailure) {
@@ -116,7 +116,7 @@ TEST_F(StudyFiles, AnOutputThatIsNotFiniteIsAFailure) {
   EXPECT_EQ(found.outcomes[1]->values, std::vector{1.0});
 }
 
-// What is no failure of a point ends the study; what is finished stays.
+// An exception that is not a failure of a point ends the study; finished points remain.
 TEST_F(StudyFiles, OtherExceptionsEndTheStudy) {
   auto const stops_at = [](std::size_t at, auto const& how) {
     return [at, how](Point const& p) {
@@ -164,7 +164,7 @@ TEST_F(StudyFiles, AProcessThatIsKilledLosesAndRepeatsNothing) {
   EXPECT_EQ(finished, many.size());
   StudyResults const found = killed.run(values_at, with_threads(2));
   EXPECT_EQ(table_of(found), whole);
-  std::string const record = text_of(file);  // a line for each point, and the head
+  std::string const record = text_of(file);  // a line per point, and the head
   EXPECT_EQ(std::size_t(std::ranges::count(record, '\n')), many.size() + killed.kind().head.size());
 }
 
@@ -198,13 +198,13 @@ TEST_F(StudyFiles, AChangedByteIsRefusedWithItsLine) {
     std::size_t const line = 1 + std::size_t(std::count(record.begin(), record.begin() + std::ptrdiff_t(at), '\n'));
     std::string const message = message_of<IoError>([&] { study.run(values_at, with_threads(1)); });
     ASSERT_TRUE(has(message, "file '" + file.string() + "', line " + std::to_string(line) + ": ")) << at << message;
-    ASSERT_EQ(text_of(file), changed);  // left as it is
+    ASSERT_EQ(text_of(file), changed);  // unchanged
   }
-  std::string cut = record;  // a line that is gone, in the middle
+  std::string cut = record;  // a missing line in the middle
   std::size_t const from = cut.find("\n3: ") + 1;
   put(file, cut.erase(from, cut.find('\n', from) + 1 - from));
   EXPECT_TRUE(has(message_of<IoError>([&] { study.recorded(); }), "a line before it is missing"));
-  put(file, record.substr(0, record.size() - 1) + "x");  // the end of the last line: torn
+  put(file, record.substr(0, record.size() - 1) + "x");  // the end of the last line is damaged: an incomplete line
   EXPECT_EQ(study.recorded().finished(), 11u);
 }
 
@@ -281,7 +281,8 @@ TEST_F(StudyFiles, WhatCannotBeWrittenIsRefusedAndLeavesNothing) {
   EXPECT_EQ(files(), 1u);
 }
 
-// A full disk takes a part of a line: the record ends with the line before, and the study goes on when there is room.
+// A full disk accepts a part of a line. The record ends with the previous line, and the study continues if space is
+// available again.
 TEST_F(StudyFiles, AFullDiskLosesTheLineThatItDoesNotTake) {
   std::string const whole = table_of(study.run(values_at, with_threads(1))), record = text_of(file);
   rlimit old{};
@@ -296,7 +297,7 @@ TEST_F(StudyFiles, AFullDiskLosesTheLineThatItDoesNotTake) {
     std::string const message = message_of<IoError>([&] { study.run(values_at, with_threads(2)); });
     setrlimit(RLIMIT_FSIZE, &old);
     EXPECT_TRUE(has(message, "file '" + file.string() + "' cannot be written: File too large"));
-    EXPECT_EQ(fs::exists(file), room >= head);  // a file without a line is not left
+    EXPECT_EQ(fs::exists(file), room >= head);  // a file without a line is removed
     EXPECT_TRUE(!fs::exists(file) || text_of(file).ends_with("\n"));
     EXPECT_EQ(table_of(study.run(values_at, with_threads(2))), whole);
   }
@@ -309,7 +310,7 @@ TEST_F(StudyFiles, TwoRunsAtOnceAreRefused) {
       [&](Point const& p) {
         if (p.index() == 3) {
           message = message_of<IoError>([&] { study.run(values_at, with_threads(1)); });
-          EXPECT_EQ(study.recorded().finished(), 3u);  // reading is free
+          EXPECT_EQ(study.recorded().finished(), 3u);  // reading needs no space
         }
         return values_at(p);
       },
@@ -431,7 +432,7 @@ TEST_F(StudyFiles, ATimeLimitIsPositiveOrZero) {
   EXPECT_FALSE(fs::exists(file));
 }
 
-// A second thread that works does not count, nor does a wait.
+// The time of a second working thread does not count, nor does a wait.
 TEST(StudyTime, IsThatOfTheThread) {
   std::atomic<bool> done = false;
   std::thread other([&] {

@@ -1,4 +1,4 @@
-// The helper by which cases compare: it fails as EXPECT_NEAR does, and records what it compared.
+// The comparison helper of the cases: it fails like EXPECT_NEAR, and records the comparison.
 
 #include "support/held.hpp"
 
@@ -13,7 +13,7 @@
 namespace polybody {
 namespace held_test {
 
-/// POLYBODY_CLAIMS for the time of a test; nothing of it comes into the records of the run.
+/// Sets POLYBODY_CLAIMS during a test, so that nothing is added to the records of the run.
 class ClaimsIn {
  public:
   explicit ClaimsIn(std::string const& file) {

@@ -1,4 +1,4 @@
-// The suites tell what is wrong: a type with one mistake breaks the law that names it.
+// The test suites detect errors: a type with one mistake breaks the requirement that names it.
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/forces/spring_damper.hpp>
 #include <polybody/integrators/symplectic.hpp>
@@ -21,7 +21,7 @@ namespace polybody {
 using namespace laws;
 namespace laws_test {
 
-/// The laws of a suite that a case breaks, by name.
+/// The requirements of a suite that a case breaks, by name.
 template <class Laws>
 std::vector<std::string> broken() {
   std::vector<std::string> names;
@@ -179,7 +179,7 @@ TEST(IntegratorLaws, TellWhatIsWrong) {
             (Names{"StateConvergesAtTheDeclaredOrder", "EnergyErrorFallsAtTheDeclaredOrder"}));
 }
 
-/// A point of mass 3 on a circle whose radius grows, Φ = ½ (x² + y² − (1 + t)²), on a spring.
+/// A point of mass 3 on a circle with growing radius, Φ = ½ (x² + y² − (1 + t)²), on a spring.
 struct Circle {
   Index speeds() const { return 2; }
   Index rows() const { return 1; }
@@ -198,7 +198,7 @@ struct OnTheCircle {
 };
 bool const circle_obeys = obeys<OnTheCircle, UserSystemLaws>("PointOnACircle");
 
-struct AddingCircle : Circle {  // adds to M where it is to write over it
+struct AddingCircle : Circle {  // adds to M instead of overwriting it
   void mass(VecX const&, MatX& m) const { m += MatX::Identity(2, 2); }
   void gamma(VecX const&, VecX const& v, double, VecX& gamma) const { gamma[0] = v.squaredNorm(); }
 };

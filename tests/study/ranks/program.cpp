@@ -1,6 +1,7 @@
-// A study over the ranks of MPI, which run.py starts, kills and compares:
+// A study over MPI ranks, which run.py starts, kills and compares:
 //   study_ranks FOLDER [--threads N] [--pause MS] [--alone] [--limit S] [--fail KIND]
-// Writes FOLDER/a.csv, and beside the record a line "point rank" to FOLDER/calls for each call of the point's function.
+// Writes FOLDER/a.csv. In addition to the record it writes a line "point rank" to FOLDER/calls for each call of the
+// point's function.
 #include <unistd.h>
 
 #include <array>
@@ -20,10 +21,10 @@ struct Options {
   std::string folder, fail;
   int threads = 1, pause = 0;
   bool alone = false;  // without MPI
-  double limit = 0.0;  // s for a point
+  double limit = 0.0;  // time limit per point [s]
 };
 
-/// Numbers of many digits, and a point in seven that fails.
+/// Numbers with many digits; one point of seven fails.
 std::array<double, 2> values_at(Options const& o, int rank, Point const& p) {
   std::string const call =
       std::to_string(p.index()) + ' ' + std::to_string(rank) + ' ' + std::to_string(::getpid()) + '\n';

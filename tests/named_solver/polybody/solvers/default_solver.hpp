@@ -1,8 +1,8 @@
 #pragma once
-// Found before the library's own header of this name: tests that name no solver take the one that the environment
-// names,
+// This header hides the library's header of the same name. Tests that name no solver use the solver of the
+// environment variable,
 //   POLYBODY_SOLVER=EigenSparseLu ctest ...
-// and the library's default when it names none. `DenseLu` is taken up to 400 unknowns.
+// or the library's default if the variable is not set. `DenseLu` is used up to 400 unknowns.
 
 #include <memory>
 #include <span>
@@ -27,14 +27,15 @@ struct SolverInTests {
   virtual void solve(VecX const& b, VecX& x) const = 0;
 };
 
-/// What a solver is for: one that needs symmetry, or pivots within blocks, does not serve all.
+/// Use of a solver: a solver that requires symmetry, or pivots within blocks only, is not valid for all uses.
 enum class SolverFor { steps, unsymmetric_steps, statics };
 
-/// The one that the environment names, for a matrix of this size; none when it names none, or one that does not serve.
-/// \throws InvalidInput for a name that is not known. Defined in support/solver_instances.cpp.
+/// The solver that the environment variable names, for a matrix of this size. Returns none if the variable is not
+/// set, or if the solver is not valid for this use.
+/// \throws InvalidInput for an unknown name. Defined in support/solver_instances.cpp.
 std::unique_ptr<SolverInTests> solver_named_by_environment(Index size, SolverFor use);
 
-/// `Default`, unless the environment names another.
+/// `Default`, unless the environment variable names another solver.
 template <class Default, SolverFor use>
 class NamedSolver {
  public:
