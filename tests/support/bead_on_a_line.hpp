@@ -14,7 +14,8 @@
 
 namespace polybody {
 
-/// A line from the origin, pinned at its first end, and a bead that slides on it; or that is held by the point s of it.
+/// A line from the origin, pinned at its first end, with a sliding bead, or with a bead that is fixed to the point s
+/// of the line.
 struct BeadOnALine {
   using Line = planar::AncfCable<EngineeringStrain>;
   using Pin = Joint<planar::Revolute, Constraint>;
@@ -36,8 +37,8 @@ struct BeadOnALine {
   ElementHandle<Pin> pin_right(Vec3 const& to) {
     return model.connect(Pin{}, model.ground().at(to), line.at(line.body().length()), "right");
   }
-  /// For statics: the bead does not turn, and bears on the line with its weight from the beginning (no load, no
-  /// direction to go).
+  /// For statics: the bead does not rotate, and its weight acts on the line from the beginning. Without a load the
+  /// direction of sliding is undefined.
   State resting(double weight) {
     model.connect(Motor{{.law = {{.value = 0.0}}}, {}}, model.ground().at({0, 0, 0}), bead.at({0, 0}), "upright");
     State x = model.reference_state();

@@ -1,6 +1,5 @@
 #pragma once
-/// \file
-/// A matrix by its blocks, for the tests and benchmarks of solvers.
+/// \file A matrix in blocks, for the tests and benchmarks of solvers.
 
 #include <algorithm>
 #include <utility>
@@ -10,7 +9,7 @@
 
 namespace polybody {
 
-/// A matrix of blocks that are written again and again in the same order.
+/// A matrix of blocks that are written repeatedly in the same order.
 struct Blocks {
   std::vector<std::pair<Block, MatX>> all;
   Index size = 0;
@@ -33,7 +32,7 @@ struct Blocks {
     for (auto const& [b, m] : all) a.block(b.row, b.col, b.rows, b.cols) += m;
     return a;
   }
-  /// The solver, told where the blocks lie.
+  /// The solver after the analysis of the block pattern.
   template <class Solver>
   Solver analysed(Solver solver = {}) const {
     PatternSink pattern;

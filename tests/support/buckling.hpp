@@ -1,6 +1,6 @@
 #pragma once
-/// \file
-/// CASES S9c: a right-angle frame of two flat strips (Argyris), and the force at which a structure buckles.
+/// \file Right-angle frame of two flat strips (S9c, Argyris; data of Exudyn's rightAngleFrame.py), and the buckling
+/// force of a structure.
 
 #include <gtest/gtest.h>
 
@@ -16,15 +16,15 @@
 namespace polybody {
 namespace buckling {
 
-/// The lowest squared frequency about x, negative where x is unstable.
+/// The lowest squared frequency about x, negative if x is unstable.
 template <class M>
 double lowest(M const& model, State const& x) {
   double const w = modes(model, x, 1).frequency[0];
   return w * std::abs(w);
 }
 
-/// Where `lowest(force)` passes through zero, between a, stable, and b, unstable, by secants. The last one is not
-/// followed: there the stiffness is singular.
+/// Zero of `lowest(force)` between a, stable, and b, unstable, by the secant method. The function is not evaluated at
+/// the last iterate, where the stiffness is singular.
 template <class F>
 double critical_force(F&& lowest, double a, double b) {
   double at_a = lowest(a), at_b = lowest(b);
@@ -42,8 +42,9 @@ double critical_force(F&& lowest, double a, double b) {
   return b;
 }
 
-/// Two legs of 240 mm, 30 mm high in the plane and 0.6 mm thick (N, mm, and any mass: it decides no stability), in
-/// equilibrium under `force` at the tip. S9c's numbers are those of a frame without shear: GA is ten times EA.
+/// Two legs of 240 mm, 30 mm high in the plane and 0.6 mm thick, in equilibrium under `force` at the tip. Units are N
+/// and mm; the mass is arbitrary, as it does not affect stability. The reference values are for a frame without
+/// shear: GA is ten times EA.
 template <class B>
 struct FlatFrame {
   using Clamp = Joint<Weld, Constraint>;
@@ -75,7 +76,7 @@ struct FlatFrame {
   }
 };
 
-/// Sought between 1 and 1.2 N.
+/// Searches between 1 and 1.2 N.
 template <class B>
 double critical_force_of_the_frame(Index n, double J) {
   return critical_force(
@@ -86,7 +87,7 @@ double critical_force_of_the_frame(Index n, double J) {
       1.0, 1.2);
 }
 inline double const thin_strip = 30 * 0.6 * 0.6 * 0.6 / 3;               ///< J = b t³/3
-inline double const thick_strip = thin_strip * (1.0 - 0.63 * 0.6 / 30);  ///< of a strip that is not infinitely thin
+inline double const thick_strip = thin_strip * (1.0 - 0.63 * 0.6 / 30);  ///< for a strip of finite thickness
 
 }  // namespace buckling
 }  // namespace polybody

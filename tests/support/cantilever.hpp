@@ -1,7 +1,6 @@
 #pragma once
-/// \file
-/// A planar bar clamped at its first end, loaded at the second and by gravity, in static equilibrium: the
-/// frame of the static reference cases.
+/// \file A planar bar, clamped at its first end, loaded at the second and by gravity, in static equilibrium. It is
+/// the model of the static reference cases.
 
 #include <polybody/forces/point_load.hpp>
 #include <polybody/joints/planar/weld.hpp>
@@ -11,7 +10,7 @@
 
 namespace polybody {
 
-/// What bends the cantilever.
+/// Loads of the cantilever.
 struct CantileverLoad {
   Vec2 force = Vec2::Zero();  ///< (2) at the tip [N]
   LoadAxes axes = LoadAxes::world;

@@ -1,5 +1,5 @@
 #pragma once
-// Bodies that joints of all kinds carry one after the other: a factory of runs that are differentiated.
+// Serial chain of bodies with joints of all kinds: a scenario for differentiated runs.
 
 #include <polybody/bodies/ffr/ffr.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
@@ -16,16 +16,16 @@
 
 namespace polybody {
 
-/// What is on the arm beside its four bodies.
+/// Additions to the four bodies of the arm.
 struct CarriedArm {
-  bool loop = false;      ///< a rod from the ground to its tip, on a row that stays
-  bool flexible = false;  ///< a beam that hangs on it, with a body at its end
+  bool loop = false;      ///< a rod from the ground to the tip, whose constraint equation remains
+  bool flexible = false;  ///< a beam that hangs on the arm, with a body at its end
 };
 
-/// An arm that turns, on it a slider on a spring, on this a body on a ball, on this one a body that slides and turns.
-/// Parameters: stiffness of the spring, mass of the slider, place of the ball on it, gravity, a speed before the start
-/// is brought onto the joints, Young's modulus of the beam. The run is rated by its end, and by the way of the tip to
-/// there. Steps are of h [s].
+/// An arm that rotates. It carries a slider on a spring, which carries a body on a ball joint. This body carries
+/// another one that slides and rotates. Parameters: stiffness of the spring, mass of the slider, position of the ball
+/// on it, gravity, an initial velocity before the projection onto the joints, Young's modulus of the beam. The
+/// objective function contains the final state and the path of the tip. Steps have the length h [s].
 template <class Policy, CarriedArm with_what>
 auto carried_arm(double h) {
   return [h](std::span<double const> p) {
@@ -69,7 +69,7 @@ auto carried_arm(double h) {
     model.apply(SpringDamper{.stiffness = p[0], .damping = 1.0, .free_length = 0.4}, arm.at({-0.1, 0, 0.1}),
                 slider.at({0, 0, 0}), "spring");
     State start = model.reference_state();
-    start.v[3 * 6 + 1] = p[4];  // of the tool, across the arm
+    start.v[3 * 6 + 1] = p[4];  // of the tool, transverse to the arm
     start.v[0 * 6 + 4] = 0.5 * p[4];
     auto const tip = tool.at({0, 0, 0});
     auto const end = [tip](auto const& m, auto const& x) {
@@ -91,7 +91,7 @@ auto carried_arm(double h) {
     return rated(Scenario<M>{std::move(model), start, {.until = 0.1, .step = h}, std::move(outputs)}, end, way);
   };
 }
-/// What `carried_arm` is made of.
+/// The parameters of `carried_arm`.
 inline std::vector<Parameter> const parameters_of_carried_arm{{"stiffness [N/m]", 300.0}, {"mass [kg]", 0.8},
                                                               {"place [m]", 0.1},         {"gravity [m/s²]", 9.81},
                                                               {"speed [m/s]", 2.0},       {"young [Pa]", 1e9}};

@@ -1,6 +1,5 @@
 #pragma once
-/// \file
-/// Pendulums: links hinged in a row, at rest in one line, under gravity along −y; in the plane or in space.
+/// \file Pendulums: links hinged in a row, at rest in one line, under gravity along −y, in the plane or in space.
 
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
@@ -12,11 +11,11 @@
 
 namespace polybody {
 
-/// One link. Zero inertia and `com` at its end make a point mass on a massless bar.
+/// One link. Zero inertia and `com` at its end give a point mass on a massless bar.
 struct Link {
   double length = 1.0;
   double mass = 1.0;
-  double inertia = 0.0;  ///< about the centre of mass, across the link
+  double inertia = 0.0;  ///< about the centre of mass, transverse to the link
   double com = 0.5;      ///< distance of the centre of mass from the first end
 };
 
@@ -37,7 +36,8 @@ struct InPlane {
   static Marker<Body> at(BodyHandle<Body> const& link, double x) { return link.at(Vec2(x, 0.0)); }
 };
 
-/// The same with pins along z; where rows hold the links, these have no inertia about their own axis.
+/// The chain in space with pins along z. If constraint equations guide the links, the links have no inertia about
+/// their own axis.
 template <class Policy>
 struct InSpace {
   using Body = Rigid<>;
@@ -51,7 +51,7 @@ struct InSpace {
   static Marker<Body> at(BodyHandle<Body> const& link, double x) { return link.at(Vec3(x, 0.0, 0.0)); }
 };
 
-/// On ball joints, and every link a ball: the same inertia about every axis.
+/// Chain on ball joints; every link has the same inertia about every axis.
 template <class Policy>
 struct OnBallJoints {
   using Body = Rigid<>;

@@ -1,7 +1,6 @@
 #pragma once
-/// \file
-/// Tracks of ANCF cables, their dependents eliminated by linear joints, in ordinary and in Cholesky coordinates [thesis
-/// §4.4].
+/// \file Tracks of ANCF cables in ordinary and in Cholesky coordinates, with dependent coordinates eliminated by
+/// linear joints [Wallin 2016, §4.4].
 
 #include <gtest/gtest.h>
 
@@ -17,7 +16,7 @@ using Cholesky = CholeskyCoordinates<AncfCable<>>;
 template <class Link>
 using Tracks = m113::Vehicle<Link, AncfLinear>;
 
-/// That set out within this time [s].
+/// Tracks that reach their speed within this time [s].
 template <class Link>
 Tracks<Link> vehicle(double until) {
   Ramp const drive{.target = 2.0, .duration = until};
@@ -32,7 +31,7 @@ std::vector<Vec3> middles(V const& vehicle, State const& x) {
   return places;
 }
 
-/// Where the middles of all links are after `until` [s], by explicit steps of 1 µs.
+/// Positions of the middles of all links after `until` [s], with explicit steps of 1 µs.
 template <class Link>
 std::vector<Vec3> driven(double until) {
   auto const tracks = vehicle<Link>(until);
@@ -43,11 +42,11 @@ std::vector<Vec3> driven(double until) {
   double pressed = 0.0;
   for (m113::Track const& track : tracks.tracks)
     track.contacts(system, [&](TouchingPoint const& p) { pressed += p.force.norm(); });
-  EXPECT_GT(pressed, 1e4);  // wheels and ground bear on them
+  EXPECT_GT(pressed, 1e4);  // wheels and ground are in contact with them
   return middles(tracks, x);
 }
 
-/// The same motion in both, within `tolerance` [m].
+/// Both versions have the same motion, within `tolerance` [m].
 inline void expect_the_same_motion(double until, double tolerance) {
   auto const at_start = vehicle<AncfCable<>>(until);
   std::vector<Vec3> const start = middles(at_start, at_start.model.reference_state()), own = driven<AncfCable<>>(until),

@@ -1,7 +1,6 @@
 #pragma once
-/// \file
-/// CASES S9e, Euler's columns, and S9d, a strip under a force in its stiff plane: where rods buckle, and what becomes
-/// of one.
+/// \file Euler's columns (S9e) and a strip under a force in its stiff plane (S9d): buckling loads of rods, and the
+/// motion after buckling.
 
 #include <polybody/joints/point_on_line.hpp>
 #include <polybody/joints/prismatic.hpp>
@@ -13,12 +12,12 @@
 namespace polybody {
 namespace columns {
 
-/// How the ends of a column along x are held. The second one slides along x.
+/// End conditions of a column along x. The second end slides along x.
 enum class Ends { clamped_free, pinned_pinned, clamped_pinned, clamped_clamped };
 
-/// L = EI = 1 (any mass: it decides no stability), four times as stiff out of the x–y plane. With GA = EA stretch and
-/// shear, which make of Euler's equation EI θ″ + P (1 − P/EA + P/GA) θ = 0, cancel; the force across the column that a
-/// held end adds shears it by 1/GA.
+/// L = EI = 1, four times as stiff out of the x–y plane. The mass is arbitrary, as it does not affect stability.
+/// Stretch and shear change Euler's equation to EI θ″ + P (1 − P/EA + P/GA) θ = 0; with GA = EA they cancel. A
+/// constrained end adds a transverse force that shears the column by 1/GA.
 template <class B>
 struct Column {
   using Clamp = Joint<Weld, Constraint>;
@@ -77,7 +76,7 @@ double critical_load(Index n, Ends ends, double near) {
       0.98 * near, 1.15 * near);
 }
 
-/// P = π²EI/4L², π²EI/L², 20.190728556426629 EI/L², 4π²EI/L².
+/// Critical loads P = π²EI/4L², π²EI/L², 20.190728556426629 EI/L², 4π²EI/L².
 template <class B>
 void buckles_at_eulers_loads(Index n, char const* formulation) {
   double const pi2 = std::numbers::pi * std::numbers::pi;
@@ -92,8 +91,8 @@ void buckles_at_eulers_loads(Index n, char const* formulation) {
          1e-4 * load, {names[int(ends)]});
 }
 
-/// Beyond: the clamped–free column stands bent, P/P_cr = (2 K(sin ½θ)/π)² for θ = 20°, 40°, 60° at its tip. A force
-/// across it bends it, and is taken away.
+/// Post-buckling: the clamped–free column is bent in equilibrium, P/P_cr = (2 K(sin ½θ)/π)² for θ = 20°, 40°, 60° at
+/// its tip. A transverse force bends it first, and is then removed.
 template <class B>
 void stands_bent_beyond(Index n, char const* formulation) {
   double const critical = 0.25 * std::numbers::pi * std::numbers::pi;
@@ -114,8 +113,8 @@ void stands_bent_beyond(Index n, char const* formulation) {
   }
 }
 
-/// S9d: L = 1, b = 0.1, t = 0.01, J = b t³/3 (1 − 0.63 t/b). It is a rod without shear that S9d means: GA is a hundred
-/// times that of k = 1. Rotary inertia is any: it decides no stability.
+/// S9d: L = 1, b = 0.1, t = 0.01, J = b t³/3 (1 − 0.63 t/b). The reference is a rod without shear: GA is a hundred
+/// times that of k = 1. The rotary inertia is arbitrary, as it does not affect stability.
 inline Bar strip() {
   double const e = 2.1e11, g = e / 2.6, b = 0.1, t = 0.01, a = b * t;
   return {.length = 1.0,

@@ -1,5 +1,5 @@
 #pragma once
-// Points of contact between two frames, collected and checked.
+// Contact points between two frames, collected and checked.
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -17,8 +17,8 @@ std::vector<ContactPoint<double>> contact_points(G const& geometry, Frame<double
   return found;
 }
 
-/// Points by dual numbers against differences, as the link moves by `motion`: place, normal, depth and share. \return
-/// their number
+/// Derivatives of contact points by dual numbers against differences, for a link with the velocity `motion`:
+/// position, normal, depth and share. \return their number
 template <class G>
 int expect_contact_duals(G const& geometry, Frame<double> const& link, Frame<double> const& other, Vec6 const& motion) {
   using D = Dual<1>;

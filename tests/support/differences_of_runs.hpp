@@ -1,5 +1,5 @@
 #pragma once
-// Derivatives of whole runs by differences of runs.
+// Derivatives of runs by finite differences of runs.
 
 #include <polybody/gradients/parameter.hpp>
 #include <polybody/run/simulate.hpp>
@@ -9,7 +9,7 @@
 
 namespace polybody {
 
-/// The outputs of a whole run at its end, by its own steps.
+/// The outputs of a complete run at its end, with its own steps.
 template <class Make, class I>
 VecX end_of(Make const& make, std::span<double const> p, I integrator) {
   auto scenario = make(p);
@@ -20,7 +20,7 @@ VecX end_of(Make const& make, std::span<double const> p, I integrator) {
   for (Index i = 0; i < out.size(); ++i) out[i] = scenario.outputs[std::size_t(i)].value(scenario.model, x);
   return out;
 }
-/// By differences of whole runs of fourth order.
+/// Fourth-order finite differences of complete runs.
 template <class Make, class I>
 MatX by_differences(Make const& make, std::vector<Parameter> const& parameters, I const& integrator) {
   MatX out;

@@ -1,6 +1,5 @@
 #pragma once
-/// \file
-/// What a run without loads keeps: the largest departures of energy and momenta on the way.
+/// \file Invariants of a run without loads: the largest deviations of energy and momenta during the run.
 
 #include <polybody/integrators/integrator.hpp>
 #include <polybody/run/energy.hpp>
@@ -10,12 +9,12 @@
 namespace polybody {
 
 struct Drift {
-  double energy = 0.0, linear = 0.0, angular = 0.0;  ///< relative to the start's
-  double largest_gain = -1.0;  ///< of energy in one step, relative; negative when every step loses some
+  double energy = 0.0, linear = 0.0, angular = 0.0;  ///< relative to the initial values
+  double largest_gain = -1.0;  ///< of energy in one step, relative; negative if every step loses energy
   double violation = 0.0;      ///< |Φ|, largest
 };
 
-/// `steps` steps of length h from x, which is moved along.
+/// Runs `steps` steps of length h from x, which it changes.
 template <class M, class I>
 Drift drift_of(M const& model, State& x, I const& integrator, double h, int steps) {
   System system = system_for<I, Entries::energy>(model);
@@ -44,7 +43,7 @@ Drift drift_of(M const& model, State& x, I const& integrator, double h, int step
   return drift;
 }
 
-/// What a run without loads keeps, relative: energy and angular momentum to 1e-8, linear momentum to 1e-10.
+/// Invariants of a run without loads, relative: energy and angular momentum to 1e-8, linear momentum to 1e-10.
 inline void held_drift(Drift const& drift, char const* formulation) {
   auto const claim = [&](char const* what) { return Claim{"I3", what, By::closed_form, "invariant", formulation}; };
   held_within(claim("energy after the loads, drift of itself"), drift.energy, 1e-8, {.scale = 1.0});

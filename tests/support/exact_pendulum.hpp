@@ -9,7 +9,7 @@
 namespace polybody {
 
 /// θ¨ = −n² sin θ from rest at θ₀ (θ from the downward vertical): with k = sin(θ₀/2), u = n t,
-///   sin(θ/2) = k cd u,   θ˙ = −2 k k′ n sd u      [CASES R1; Abramowitz & Stegun 1964, 16.3, 16.4].
+///   sin(θ/2) = k cd u,   θ˙ = −2 k k′ n sd u      [R1; Abramowitz & Stegun 1964, 16.3, 16.4].
 class ExactPendulum {
  public:
   struct Motion {
@@ -20,7 +20,7 @@ class ExactPendulum {
 
   /// \param release θ₀ [rad]  \param n2 n² [1/s²], for a rigid body m g l/(J + m l²)
   ExactPendulum(double release, double n2) : n_(std::sqrt(n2)), k_(std::sin(0.5 * release)) {
-    // The scale of the arithmetic-geometric mean.
+    // The arithmetic-geometric mean.
     double a = 1.0, b = std::sqrt(1.0 - k_ * k_);
     for (double& ratio : ratio_) {
       double const c = 0.5 * (a - b), mean = 0.5 * (a + b);

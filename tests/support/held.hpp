@@ -1,6 +1,6 @@
 #pragma once
-/// \file
-/// A number that a case compares: asserted as EXPECT_NEAR does, and recorded for the tables of docs/validation.md.
+/// \file A number that a case compares. It is asserted like EXPECT_NEAR, and recorded for the tables of
+/// docs/validation.md.
 ///
 ///     Claim const tip{"S1", "x of the tip [m]", By::closed_form, "(L/θ) sin θ", "Lrvf, 10 elements"};
 ///     held(tip, x, 0.0, 1e-10, {.at = "full circle", .scale = 2.0});
@@ -17,15 +17,15 @@
 
 namespace polybody {
 
-/// Where a reference value comes from.
+/// Source of a reference value.
 enum class By {
-  published,    ///< printed by others
+  published,    ///< printed in a publication
   closed_form,  ///< exact to its last digit
   independent,  ///< computed by a method that shares no code with this project
-  itself        ///< another way of polybody: they agree, which is no proof of either
+  itself        ///< another method of polybody; agreement proves neither result
 };
 
-/// What is claimed; comparisons of one claim make one row of the tables.
+/// Claim of a case. Comparisons of one claim form one row of the tables.
 struct Claim {
   std::string case_id;  ///< as in the tables: "S1"
   std::string what;     ///< the quantity, with its unit
@@ -34,13 +34,13 @@ struct Claim {
   std::string formulation;  ///< body, mesh, integrator, step
 };
 
-/// Which comparison of a claim this is.
+/// Identification of one comparison of a claim.
 struct Instance {
   std::string at = {};  ///< the time, the load, the mesh
-  double scale = 0.0;   ///< size of the quantity where the reference passes zero
+  double scale = 0.0;   ///< size of the quantity, if the reference passes through zero
 };
 
-/// "t = 2.5", to name an instance.
+/// "t = 2.5", a name for an instance.
 inline std::string equals(char const* name, double value) {
   char text[64];
   std::snprintf(text, sizeof text, "%s = %g", name, value);
@@ -76,7 +76,7 @@ inline void held(Claim const& claim, double value, double reference, double tole
         << " is " << error << " off " << reference << ", above the tolerance " << tolerance;
 }
 
-/// error ≤ tolerance, where the error is a distance from a reference of the size `instance.scale`.
+/// error ≤ tolerance. The error is a distance from a reference of size `instance.scale`.
 inline void held_within(Claim const& claim, double error, double tolerance, Instance const& instance,
                         std::source_location const& where = std::source_location::current()) {
   detail::record(claim, instance, "distance", 0.0, error, tolerance);

@@ -1,5 +1,5 @@
 #pragma once
-// Two cables, the second hung on a place of the first that is no node: a factory of runs that are differentiated.
+// Two cables. The second hangs on a point of the first that is not a node: a scenario for differentiated runs.
 
 #include <polybody/bodies/ancf/ancf_cable.hpp>
 #include <polybody/gradients/objective.hpp>
@@ -11,9 +11,10 @@
 
 namespace polybody {
 
-/// Two cables that fall about pins of a policy, and a rod from the ground to the end of the second one where it is
-/// `held`: a joint whose row stays. Parameters: Young's modulus, density, the place of the pin on the first cable,
-/// gravity, spin of the start. The run is rated by its end, and by the way of the tip to there. Steps are of h [s].
+/// Two cables that fall about pins of a policy. If `held` is true, a rod connects the ground to the end of the second
+/// cable: a joint whose constraint equation remains. Parameters: Young's modulus, density, the position of the pin on
+/// the first cable, gravity, initial spin. The objective function contains the final state and the path of the tip.
+/// Steps have the length h [s].
 template <class Policy, bool held>
 auto hung_cables(double h = 2e-3) {
   return [h](std::span<double const> p) {
@@ -55,7 +56,7 @@ auto hung_cables(double h = 2e-3) {
     return rated(Scenario<M>{std::move(model), start, {.until = 0.1, .step = h}, std::move(outputs)}, end, way);
   };
 }
-/// What `hung_cables` are made of.
+/// The parameters of `hung_cables`.
 inline std::vector<Parameter> const parameters_of_hung_cables{{"young [Pa]", 1e7},
                                                               {"density [kg/m³]", 1000.0},
                                                               {"place [m]", 0.31},

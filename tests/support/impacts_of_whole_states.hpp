@@ -14,12 +14,12 @@
 
 namespace polybody {
 
-/// A floor that the tip of cables on AncfLinear pins meets: the event sees and changes whole states. Steps are of h
-/// [s].
+/// The tip of cables on AncfLinear pins hits a floor: the event function and the event action use full states. Steps
+/// have the length h [s].
 inline auto impact_of_cables(double h) {
   return [h](std::span<double const> p) {
     auto scenario = hung_cables<AncfLinear, false>(h)(std::array{1e7, p[0], p[1], p[2], 2.0});
-    Index const z = scenario.start.q.size() - 4;  // of the tip, before its slope
+    Index const z = scenario.start.q.size() - 4;  // of the tip, ahead of its gradient
     Event const floor{.name = "floor",
                       .value = [z, height = p[3]](State const& x) { return x.q[z] - height; },
                       .tolerance = 1e-15,
@@ -44,7 +44,7 @@ void expect_impact_of_cables(double h, I const& integrator) {
   }
 }
 
-/// A nut on a thread: z = p θ. Parameters: pitch, mass, spin; and where an event turns it back.
+/// A nut on a thread: z = p θ. Parameters: pitch, mass, spin, and the position at which an event reverses it.
 inline auto const nut_on_thread = [](std::span<double const> p) {
   using Thread = Joint<Screw, Recursive>;
   using M = Model<Bodies<Rigid<>>, Joints<Thread>>;
@@ -65,10 +65,10 @@ inline auto const nut_on_thread = [](std::span<double const> p) {
 };
 inline std::vector<Parameter> const of_nut{
     {"pitch [m/rad]", 0.02}, {"mass [kg]", 2.0}, {"spin [rad/s]", 20.0}, {"stop [m]", 0.03}};
-/// Its slopes are those of the closed form.
+/// The derivatives equal those of the closed form.
 template <class I>
 void expect_slopes_of_nut(I const& integrator) {
-  // J ω˙ + m p² ω˙ = −m g p, once from ω₀ and once from −ω/2 where p θ = z₁
+  // J ω˙ + m p² ω˙ = −m g p, first from ω₀ and then, at p θ = z₁, from −ω/2
   auto const closed_form = [](std::vector<double> const& p) {
     double const rate = -p[1] * 9.81 * p[0] / (0.01 + p[1] * p[0] * p[0]);
     double const turned = p[3] / p[0], t = (-p[2] + std::sqrt(p[2] * p[2] + 2.0 * rate * turned)) / rate;

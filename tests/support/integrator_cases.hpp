@@ -1,6 +1,5 @@
 #pragma once
-/// \file
-/// Small conservative models on which integrators are measured.
+/// \file Small conservative models for tests of integrators.
 
 #include <polybody/forces/spring_damper.hpp>
 
@@ -9,8 +8,8 @@
 
 namespace polybody {
 
-/// A compound pendulum in the plane (rows, no manifold) with an exact motion: it starts at `phase` seconds after
-/// its release from rest.
+/// A compound pendulum in the plane with an exact motion (constraint equations, no manifold). It starts `phase`
+/// seconds after its release from rest.
 struct SwingingBar {
   static constexpr double g = 9.81, phase = 0.3;
   using ModelType = Chain<InPlane<Constraint>>::ModelType;
@@ -20,8 +19,8 @@ struct SwingingBar {
   State start = model.reference_state();
 
   SwingingBar() { model.set_velocity(start, chain.links[0], Vec3::Zero(), Vec3(0, 0, exact(phase).rate)); }
-  SwingingBar(SwingingBar const&) = delete;  // refers to itself
-  /// The force on the bar at the pivot at time t, m (a − g) with a the acceleration of the middle; λ = −R.
+  SwingingBar(SwingingBar const&) = delete;  // contains references to itself
+  /// The force on the bar at the pivot at time t, m (a − g) with the acceleration a of the middle; λ = −R.
   Vec2 reaction(double t) const {
     auto const [angle, rate, acceleration] = exact(phase + t);
     Vec2 const out(std::sin(angle), -std::cos(angle)), across(std::cos(angle), std::sin(angle));
@@ -29,7 +28,8 @@ struct SwingingBar {
   }
 };
 
-/// A body on a ball joint (rows and a manifold): CASES R6b, ω₀ in body axes, R(0) = 1.
+/// A body on a ball joint (constraint equations and a manifold): slow asymmetric top (R6b), ω₀ in body axes, R(0) =
+/// 1.
 struct SlowTop {
   using Ball = Joint<Spherical, Constraint>;
   using ModelType = Model<Bodies<Rigid<>>, Joints<Ball>>;
@@ -43,7 +43,7 @@ struct SlowTop {
   SlowTop() { model.set_velocity(start, body, Vec3::Zero(), Vec3(1, 2, 5)); }
 };
 
-/// A free body between two springs (a manifold, no rows).
+/// A free body between two springs (a manifold, no constraint equations).
 struct SprungBody {
   using ModelType = Model<Bodies<Rigid<>>, Joints<>, Forces<SpringDamper>>;
   ModelType model{Gravity{0, 0, -9.81}};

@@ -1,6 +1,5 @@
 #pragma once
-/// \file
-/// Mechanisms of the IFToMM benchmark with closed loops.
+/// \file Mechanisms of the IFToMM benchmark with closed loops.
 
 #include <numbers>
 #include <vector>
@@ -13,8 +12,8 @@ namespace polybody {
 template <class J, class K>
 using JointsOf = std::conditional_t<std::is_same_v<J, K>, Joints<J>, Joints<J, K>>;
 
-/// N windows of uniform rods of 1 m and 1 kg; upright, θ˙ = 1 rad/s [IFToMM A02, CASES R2]. \tparam Where as for
-/// `Chain`; `Loop`, the same for the pins that close loops
+/// N windows of uniform rods of 1 m and 1 kg; upright, θ˙ = 1 rad/s [IFToMM A02] (R2). \tparam Where as for `Chain`;
+/// `Loop` is the same for the pins that close loops
 template <class Where, class Loop = Where>
 struct FourBars {
   using Body = typename Where::Body;
@@ -51,7 +50,7 @@ struct FourBars {
   Vec3 corner() const { return position(model, x, Where::at(upright[0], 0.5)); }
 };
 
-/// Where the corner of n windows is at t: CASES R2.
+/// Position of the corner of n windows at t: reference solution of the IFToMM benchmark A02 (R2).
 struct Corner {
   int n;
   double t, x, y;
@@ -63,9 +62,9 @@ inline constexpr Corner corners[] = {
     {40, 1, -0.1153568806321099, -0.9933241113004502}, {40, 4, 0.0693420322279992, 0.9975929443247336},
     {40, 10, 0.1805122266867284, 0.9835727405823116}};
 
-/// The Bricard mechanism [IFToMM A04, CASES R4]: five rods of 1 m and 1 kg of width h, six pins, one degree of freedom,
-/// of which no count of rows knows. h = 0 are thin rods: their mass is singular as well. \tparam Closing the policy of
-/// the last pin
+/// The Bricard mechanism [IFToMM A04] (R4): five rods of 1 m and 1 kg of width h, six pins, and one degree of freedom
+/// that a count of constraint equations does not give. h = 0 gives thin rods, whose mass matrix is singular as well.
+/// \tparam Closing the policy of the last pin
 template <class Policy = Constraint, class B = Rigid<>, class Closing = Policy>
 struct Bricard {
   using Pin = Joint<Revolute, Policy>;

@@ -1,7 +1,7 @@
 #pragma once
-/// \file
-/// One model of space and one of the plane in which everything meets: bodies of several kinds, joints with rows
-/// and compliant ones, springs, dead and follower loads, the ground; in a state that obeys nothing.
+/// \file One model in space and one in the plane with all kinds of parts. They have bodies of several kinds, joints
+/// with constraint equations, compliant joints, springs, dead and follower loads, and the ground. The state satisfies
+/// no equations.
 
 #include <polybody/bodies/ancf/planar_ancf_cable.hpp>
 #include <polybody/bodies/lrvf/planar_lrvf.hpp>
@@ -116,8 +116,8 @@ struct MixedPlane {
   }
 };
 
-/// A pull along the line between two markers with two first-order states, which enter it as a product and follow the
-/// markers' places and, by `damping`, their speeds.
+/// A force along the line between two markers with two first-order states. The states enter it as a product. They
+/// depend on the positions of the markers and, by `damping`, on their velocities.
 struct LaggingPull {
   static constexpr int markers = 2, states = 2;
   static constexpr bool is_load = true;
@@ -144,7 +144,7 @@ struct LaggingPull {
   std::array<double, 2> initial_states() const { return {0.25, -0.5}; }
 };
 
-/// A rigid body on a pin and a cable in the plane, and pulls with first-order states among them and the ground.
+/// A rigid body on a pin and a cable in the plane, and forces with first-order states between them and the ground.
 struct MixedStates {
   using Pin = Joint<planar::Revolute, Constraint>;
   using M = Model<Bodies<planar::Rigid, planar::AncfCable<>>, Joints<Pin>, Forces<LaggingPull, PointForce<>>>;
@@ -165,7 +165,7 @@ struct MixedStates {
   }
 };
 
-/// A state away from the reference: coordinates, speeds, accelerations, multipliers, t = 1.3.
+/// A state away from the reference: coordinates, velocities, accelerations, multipliers, t = 1.3.
 template <class M>
 State scrambled(M const& model, unsigned seed = 1) {
   laws::Numbers number(seed);

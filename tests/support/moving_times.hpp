@@ -1,6 +1,6 @@
 #pragma once
-// Scenarios of runs whose times move with their parameters: falls on the floor, pushes that end, drives that ramp,
-// stops.
+// Scenarios of runs whose times depend on their parameters: impacts on the floor, pushes that end, driving
+// constraints with ramps, stops.
 
 #include <polybody/gradients/sensitivities.hpp>
 
@@ -23,7 +23,7 @@ namespace polybody::moving_times {
 
 using P = std::span<double const>;
 
-/// f′ of a closed form by the j-th number, of fourth order.
+/// Derivative f′ of a closed form with respect to the j-th parameter, by fourth-order differences.
 template <class F>
 double slope_of(F const& f, std::vector<double> p, std::size_t j) {
   double const at = p[j], e = 1e-3 * std::abs(at);
@@ -37,7 +37,7 @@ double slope_of(F const& f, std::vector<double> p, std::size_t j) {
 
 // --- a mass that falls on the floor ------------------------------------------------------------------------------
 
-/// Of gravity, height and the share of the speed that an impact leaves.
+/// Parameters: gravity, height, and the share of the velocity that remains after an impact.
 template <bool bounces>
 inline auto const ball = [](P p) {
   using M = Model<Bodies<planar::Rigid>, Joints<>>;
@@ -55,19 +55,19 @@ inline auto const ball = [](P p) {
 };
 inline std::vector<Parameter> const of_ball{{"gravity [m/s²]", 9.81}, {"height [m]", 1.0}, {"restitution [1]", 0.8}};
 
-/// When the ball comes down for the n-th time.
+/// Time of the n-th impact of the ball.
 inline double time_of_bounce(std::vector<double> const& p, int n) {
   double t = std::sqrt(2.0 * p[1] / p[0]), next = 2.0 * t;
   for (int i = 1; i < n; ++i) t += next *= p[2];
   return t;
 }
-/// Its height, and its speed, at t between the n-th and the next time.
+/// Height and velocity at a time t between the n-th and the next impact.
 inline std::array<double, 2> flight(std::vector<double> const& p, int n, double t) {
   double const after = t - time_of_bounce(p, n), v = std::pow(p[2], n) * std::sqrt(2.0 * p[0] * p[1]);
   return {v * after - 0.5 * p[0] * after * after, v - p[0] * after};
 }
 
-/// The time of a fall is that of the closed form.
+/// The time of a fall equals that of the closed form.
 template <class I>
 void expect_fall(I const& integrator) {
   Sensitivities const s = sensitivities(ball<false>, of_ball, integrator);
@@ -78,16 +78,16 @@ void expect_fall(I const& integrator) {
   EXPECT_NEAR(by[0], -0.5 * t / g, 1e-11);
   EXPECT_NEAR(by[1], 0.5 * t, 1e-11);
   EXPECT_EQ(by[2], 0.0);
-  // where it stops, it is on the floor whatever the parameters, at √(2gh)
+  // at the end of the run the ball is on the floor for all parameters, with the speed √(2gh)
   EXPECT_NEAR(s.slopes.back()(0, 0), 0.0, 1e-11);
   EXPECT_NEAR(s.slopes.back()(0, 1), 0.0, 1e-11);
   EXPECT_NEAR(s.slopes.back()(1, 0), -1.0 / std::sqrt(2.0 * g), 1e-11);
   EXPECT_NEAR(s.slopes.back()(1, 1), -g / std::sqrt(2.0 * g), 1e-11);
-  // on the way there times stay
+  // times before the impact do not depend on the parameters
   EXPECT_TRUE(s.time_slopes[s.times.size() / 2].isZero(0.0));
 }
 
-/// Bounces follow the closed form.
+/// Bounces agree with the closed form.
 template <class I>
 void expect_bounces(I const& integrator) {
   std::vector<double> const p{9.81, 1.0, 0.8};
@@ -113,7 +113,7 @@ void expect_bounces(I const& integrator) {
   }
 }
 
-// --- corners -----------------------------------------------------------------------------------------------------
+// --- breakpoints -------------------------------------------------------------------------------------------------
 
 template <class Policy>
 Policy policy_of_pins() {
@@ -136,11 +136,11 @@ inline auto const pushed = [](P p) {
   return Scenario<M>{std::move(model), start, {.until = 0.8, .step = 1e-2}, std::move(outputs)};
 };
 
-/// A push that ends at a parameter is exact.
+/// The derivative with respect to the end time of a push is exact.
 template <class I>
 void expect_push(I const& integrator) {
   double const T = 0.3137, F = 3.0, m = 2.0, end = 0.8;
-  // as it is differenced the corner moves by 0.06 steps, or by 6
+  // the finite difference moves the breakpoint by 0.06 steps, or by 6
   for (double const scale : {0.75, 75.0}) {
     Sensitivities const s = sensitivities(pushed, {{"T [s]", T, scale}, {"F [N]", F}, {"m [kg]", m}}, integrator);
     MatX const& by = s.slopes.back();
@@ -154,12 +154,12 @@ void expect_push(I const& integrator) {
     ASSERT_LT(at, s.times.size());
     EXPECT_NEAR(s.time_slopes[at][0], 1.0, 1e-12);
     EXPECT_NEAR(s.slopes[at](0, 0), F * T / m, 1e-11);
-    EXPECT_NEAR(s.slopes[at](2, 0), 0.0, 1e-11);  // the push is over
+    EXPECT_NEAR(s.slopes[at](2, 0), 0.0, 1e-11);  // after the end of the push
     EXPECT_NEAR(s.time_slopes.back()[0], 0.0, 1e-12);
   }
 }
 
-/// A crank that is turned by a ramp, and a rod that swings on it. Parameters: the ramp's duration, its angle, the rod's
+/// A crank that a ramp rotates, and a rod that swings on it. Parameters: the ramp's duration, its angle, the rod's
 /// length, gravity.
 template <class Policy>
 inline auto const driven = [](P p) {
@@ -189,7 +189,8 @@ inline auto const driven = [](P p) {
 inline std::vector<Parameter> const of_drive{
     {"duration [s]", 0.1531}, {"angle [rad]", 0.5}, {"length [m]", 0.4}, {"gravity [m/s²]", 9.81}};
 
-/// Beside differences of runs, over distances that keep each corner and event within its step: `scales` of them.
+/// Comparison with finite differences of runs. The differences, scaled by `scales`, keep each breakpoint and event
+/// within its step.
 template <class Make, class I>
 void expect_slopes_of_moving_runs(Make const& make, std::vector<Parameter> const& parameters, I const& integrator,
                                   double tolerance, std::vector<double> const& scales) {
@@ -205,7 +206,8 @@ void expect_slopes_of_moving_runs(Make const& make, std::vector<Parameter> const
 
 // --- events of mechanisms ----------------------------------------------------------------------------------------
 
-/// A rod on a pin, let go from the side, that hits a stop: length, gravity, angle of the stop, restitution.
+/// A rod on a pin, released horizontally, that hits a stop. Parameters: length, gravity, angle of the stop,
+/// restitution.
 template <class Policy>
 inline auto const stopped = [](P p) {
   using Pin = Joint<planar::Revolute, Policy>;
@@ -233,8 +235,8 @@ inline auto const stopped = [](P p) {
 inline std::vector<Parameter> const of_stop{
     {"length [m]", 1.2}, {"gravity [m/s²]", 9.81}, {"angle [rad]", 1.4}, {"restitution [1]", 0.6}};
 
-/// The driven crank, whose rod loses half its speed as it passes an angle while the ramp goes on: the ramp's duration,
-/// its angle, gravity, and the angle where the rod passes.
+/// The driven crank. The rod loses half its velocity at a given angle during the ramp. Parameters: the ramp's
+/// duration, its angle, gravity, and the given angle.
 inline auto const braked = [](P p) {
   auto scenario = driven<Constraint>(std::array{p[0], p[1], 0.4, p[2]});
   scenario.options.events = {{.name = "passes",
@@ -246,7 +248,8 @@ inline auto const braked = [](P p) {
 inline std::vector<Parameter> const of_brake{
     {"duration [s]", 0.1531}, {"angle [rad]", 0.5}, {"gravity [m/s²]", 9.81}, {"place [rad]", 0.3}};
 
-/// A rod that spins as it falls in space, and loses a part of its spin as it passes a height: spin, height, gravity.
+/// A rod that spins as it falls in space, and loses a part of its spin at a given height. Parameters: spin, height,
+/// gravity.
 inline auto const spun = [](P p) {
   using M = Model<Bodies<Rigid<>>, Joints<>>;
   M model{Gravity{0, 0, -p[2]}};
@@ -263,10 +266,10 @@ inline auto const spun = [](P p) {
   return Scenario<M>{std::move(model), start, {.until = 0.5, .step = 5e-3, .events = {passes}}, std::move(outputs)};
 };
 
-/// Lengths of steps and of the run are parameters. \param step of the rod: long enough for its error to be seen [s]
+/// The lengths of steps and of the run are parameters. \param step of the rod: long enough for a measurable error [s]
 template <class I>
 void expect_lengths_as_parameters(I const& integrator, double step) {
-  // x(T) of a mass that is thrown: the method is exact whatever the step
+  // x(T) of a mass that is thrown: the method is exact for any step length
   auto const thrown = [](P p) {
     auto scenario = ball<false>(std::array{9.81, 100.0, 0.0});
     scenario.options.until = p[0];
@@ -280,11 +283,11 @@ void expect_lengths_as_parameters(I const& integrator, double step) {
   EXPECT_NEAR(s.time_slopes.back()[0], 1.0, 1e-12);
   EXPECT_NEAR(s.time_slopes[1][2], 1.0, 1e-12);
   EXPECT_NEAR(s.time_slopes[2][1], 2.0, 1e-12);
-  // what rounds is a place of 100 m, over the distance of the differences
+  // the round-off is one unit in the last place of 100 m, over the size of the differences
   EXPECT_NEAR(s.slopes.back()(0, 0), v, 1e-9);
   EXPECT_NEAR(s.slopes.back()(0, 1), 0.0, 1e-9);
   EXPECT_NEAR(s.slopes.back()(0, 2), -v, 1e-9);
-  // and of a rod, whose steps have an error that their length changes; differences of its runs scatter by 2e-7
+  // also of a rod, whose error depends on the step length; finite differences of its runs scatter by 2e-7
   auto const swung = [](P p) {
     auto scenario = stopped<Constraint>(std::array{1.2, 9.81, 10.0, 0.5});
     scenario.options.until = p[0];
@@ -295,9 +298,9 @@ void expect_lengths_as_parameters(I const& integrator, double step) {
                                {0.025, 0.5 * step});
 }
 
-// --- what is refused ---------------------------------------------------------------------------------------------
+// --- refusals ----------------------------------------------------------------------------------------------------
 
-/// What has no derivative is refused.
+/// Quantities without a derivative are refused.
 template <class I>
 void expect_refusals(I const& integrator) {
   auto const said = [&](auto const& value_of_p, std::vector<Event> const& more = {}) {

@@ -1,6 +1,5 @@
 #pragma once
-/// \file
-/// Reference numbers that are kept in a text file: a row for each line, # begins a comment.
+/// \file Reference numbers in a text file: one row per line, # begins a comment.
 
 #include <fstream>
 #include <sstream>
@@ -21,7 +20,7 @@ inline std::vector<std::vector<double>> number_rows(std::string const& file) {
   return rows;
 }
 
-/// All of them, one row after the other.
+/// All numbers, one row after the other.
 inline std::vector<double> numbers_of(std::string const& file) {
   std::vector<double> numbers;
   for (auto const& row : number_rows(file)) numbers.insert(numbers.end(), row.begin(), row.end());

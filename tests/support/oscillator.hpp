@@ -10,7 +10,7 @@
 
 namespace polybody {
 
-/// A unit mass on a slide, held by a spring of 1 N/m without free length: ω = 1, released from x = 1 at rest.
+/// A unit mass on a prismatic joint with a spring of 1 N/m and zero free length: ω = 1, released from x = 1 at rest.
 struct Oscillator {
   using Slide = Joint<planar::Prismatic, Constraint>;
   Model<Bodies<planar::Rigid>, Joints<Slide>, Forces<SpringDamper>> model;
@@ -27,7 +27,7 @@ struct Oscillator {
   RunReport run(I const& integrator, double h, int steps) {
     return simulate(model, x, integrator, {.until = h * steps, .step = h}).run();
   }
-  /// By how much a step of h ≫ 1/ω scales the speed, over steps 21 to 30.
+  /// Factor by which a step of h ≫ 1/ω scales the velocity, over steps 21 to 30.
   template <class I>
   double scale_of_a_long_step(I const& integrator) {
     double const h = 1e5;
@@ -42,14 +42,14 @@ struct Oscillator {
   }
 };
 
-/// CASES I1 [A]: the phase of the trapezoidal rule advances by 2 atan(ωh/2) a step; `ratio` is T_num/T.
+/// Linear oscillator (I1): the phase of the trapezoidal rule advances by 2 atan(ωh/2) per step; `ratio` is T_num/T.
 struct TrapezoidalPeriod {
   double h, ratio;
 };
 inline constexpr TrapezoidalPeriod trapezoidal_periods[] = {
     {0.1, 1.00083277850411}, {0.5, 1.02049703761562}, {1.0, 1.07840521614581}};
 
-/// After 100 steps of h.
+/// After 100 steps of length h.
 inline void held_trapezoidal(Oscillator const& o, TrapezoidalPeriod const& p, std::string const& integrator) {
   char const* const source = "T_num/T = (ωh/2)/atan(ωh/2)";
   Instance const at{equals("h", p.h), 1.0};

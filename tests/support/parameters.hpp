@@ -1,6 +1,5 @@
 #pragma once
-/// \file
-/// Every number in a type's parameters, set to what nobody means.
+/// \file Sets every number among a type's parameters to invalid or extreme values.
 
 #include <gtest/gtest.h>
 
@@ -19,9 +18,9 @@
 
 namespace polybody {
 
-/// The words of a refusal for each field of an aggregate T, in order; alternatives are separated by '|', and a nested
-/// aggregate has words of its own. `tests/house/check_parameters.py` asks for an entry for every type with a check, and
-/// an entry that has not as many words as the type has fields does not compile.
+/// The words of an error message for each field of an aggregate T, in order. '|' separates alternatives, and a nested
+/// aggregate has its own words. `tests/house/check_parameters.py` requires an entry for every type with a check. An
+/// entry whose number of words differs from the type's number of fields does not compile.
 template <class T>
 inline constexpr auto words_of = nullptr;
 
@@ -73,7 +72,7 @@ auto fields_of(T& x) {
   }
 }
 
-/// Called after a number was changed, with its words and its value.
+/// Callback after the change of a number, with its words and its value.
 using Changed = std::function<void(std::string const& words, std::string const& value)>;
 
 inline void each_hostile(double& x, std::string const& words, Changed const& changed) {
@@ -96,7 +95,7 @@ void each_hostile(I& x, std::string const& words, Changed const& changed) {
   }
   x = sane;
 }
-/// Every entry; of a matrix whose size is known at run time the first and the last one.
+/// Every entry; for a matrix whose size is known at run time only the first and the last entry.
 template <class T, int n, int m>
 void each_hostile(Eigen::Matrix<T, n, m>& x, std::string const& words, Changed const& changed) {
   bool const every = n != Eigen::Dynamic && m != Eigen::Dynamic;
@@ -118,7 +117,7 @@ void each_hostile(T& x, std::string const& words, Changed const& changed) {
   });
   x = sane;
 }
-/// Flags, names, kinds and functions are no numbers.
+/// Flags, names, kinds and functions are skipped.
 template <class T>
   requires(std::is_same_v<T, bool> || std::is_enum_v<T> || std::is_same_v<T, std::string>)
 void each_hostile(T&, std::string const&, Changed const&) {}
@@ -163,7 +162,7 @@ void each_hostile(T& x, std::string const&, Changed const& changed) {
   }(std::make_index_sequence<std::tuple_size_v<std::remove_cvref_t<decltype(word)>>>{});
 }
 
-/// Whether `message` contains one of `words`, whatever the case.
+/// Checks that `message` contains one of `words`, without regard to case.
 inline bool names_one_of(std::string message, std::string const& words) {
   for (char& c : message) c = char(std::tolower(static_cast<unsigned char>(c)));
   std::stringstream list(words);
@@ -174,7 +173,7 @@ inline bool names_one_of(std::string message, std::string const& words) {
   return false;
 }
 
-/// Every one, or one in `every` where POLYBODY_HOSTILE is not "all".
+/// Selects one number in `every`, or every number if POLYBODY_HOSTILE is "all".
 struct Share {
   int every = 1;
   bool takes(int i) const {
@@ -183,9 +182,9 @@ struct Share {
   }
 };
 
-/// Each number of `sane` in turn is what nobody means, and `run(x)` either goes well, which it judges itself, or
-/// throws: an InvalidInput that has one of the words of the parameter, or from within a run another Error that names
-/// time or load. Returns how many were tried.
+/// Replaces each number of `sane` in turn by an invalid or extreme value and calls `run(x)`. The run either succeeds
+/// and checks its own result, or it throws. The exception must be an InvalidInput with one of the words of the
+/// parameter, or another Error from within a run that names time or load. Returns the number of values tried.
 template <class T, class Run>
 int try_hostile(T sane, std::string const& type, Run const& run, Share share = {}) {
   int tried = 0, met = 0;

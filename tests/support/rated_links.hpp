@@ -1,5 +1,5 @@
 #pragma once
-// Two links whose run is rated; its adjoint beside its direct differentiation.
+// A run of two links with an objective function; its adjoint gradient against its forward sensitivities.
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 
 namespace polybody {
 
-/// Two links, rated by where the tip ends, how the bodies move and, by a factor, how they are held then; and by the
-/// tip's way to there.
+/// Two links. The objective function contains the final position of the tip, the motion of the bodies, the path of
+/// the tip and, multiplied by a factor, the final reactions.
 template <class B, class Policy>
 auto rated_links(double held) {
   return [held](std::span<double const> p) {

@@ -1,6 +1,5 @@
 #pragma once
-/// \file
-/// What an input that must be refused is told.
+/// \file Messages of errors for refused input.
 
 #include <gtest/gtest.h>
 
@@ -11,7 +10,7 @@
 
 namespace polybody {
 
-/// The message of the E that `act` throws; a test failure where it throws none or another.
+/// The message of the E that `act` throws; a test failure if it throws no exception or another one.
 template <class E, class Act>
 std::string message_of(Act&& act) {
   try {

@@ -1,6 +1,5 @@
 #pragma once
-/// \file
-/// Runs that are put away in a file and taken up again, compared bit by bit with the run that went on.
+/// \file Runs that are saved in a file and continued, compared bit by bit with the uninterrupted run.
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -44,9 +43,9 @@ inline void expect_same(RunReport const& a, RunReport const& b) {
   }
 }
 
-/// Four rods that fall from the horizontal for 1.5 s, with an event whenever the first one passes the vertical, and
-/// corners on and off the grid. Both the run and those that take it up make checkpoints at their start and after 60 and
-/// 100 steps.
+/// Four rods that fall from the horizontal for 1.5 s. An event occurs whenever the first rod passes the vertical, and
+/// breakpoints are on and off the time grid. The run and its continuations write checkpoints at their start and after
+/// 60 and 100 steps.
 template <class World, class I>
 void expect_resumes(I const& integrator) {
   Chain<World> const chain(4, bar_link());
@@ -69,7 +68,7 @@ void expect_resumes(I const& integrator) {
     if (!is_due(run.report().steps)) continue;
     write_checkpoint(file, run.snapshot());
     snapshots.push_back(read_checkpoint(file));
-    EXPECT_EQ(bits(now), path.back());  // which leaves the state alone
+    EXPECT_EQ(bits(now), path.back());  // which does not change the state
   }
   std::filesystem::remove(file);
   ASSERT_EQ(snapshots.size(), 3u);

@@ -1,7 +1,6 @@
 #pragma once
-/// \file
-/// CASES D5: the right-angle cantilever of Simo & Vu-Quoc 1988, pulled out of its plane at the elbow and let go, and
-/// where an independent spectral beam [C] finds it.
+/// \file The right-angle cantilever of Simo & Vu-Quoc 1988 (D5), loaded out of its plane at the elbow and released.
+/// The reference positions are those of an independent spectral beam computation.
 
 #include <gtest/gtest.h>
 
@@ -20,7 +19,7 @@
 namespace polybody {
 namespace right_angle_cantilever {
 
-/// From 0 to 1 in one second, back to 0 in the next.
+/// Rises from 0 to 1 in one second, and falls back to 0 in the next.
 struct Triangle {
   Motion operator()(double t) const { return {std::max(0.0, 1.0 - std::abs(t - 1.0)), 0.0, 0.0}; }
   std::vector<double> corners() const { return {0.0, 1.0, 2.0}; }
@@ -33,7 +32,7 @@ inline Bar leg(Placement const& placement) {
           .placement = placement};
 }
 
-/// Two bodies of n elements each, welded to one another and to the ground. The model may know further joints.
+/// Two bodies of n elements each, welded to each other and to the ground. The model may have further joint types.
 template <class B, class... MoreJoints>
 struct RightAngle {
   using Clamp = Joint<Weld, Constraint>;
@@ -83,7 +82,7 @@ inline std::vector<Row> const table{{1.0, six(-0.054196, 0.022882, 0.951314, -0.
 
 inline double const elbow_peak = 5.51285, tip_peak = 8.25210, plateau = 114.880346;
 
-/// Errors at elbow and tip as parts of the largest displacement.
+/// Errors at elbow and tip relative to the largest displacement.
 inline double miss(Vec6 const& u, Vec6 const& exact) {
   return std::max((u - exact).head<3>().norm() / elbow_peak, (u - exact).tail<3>().norm() / tip_peak);
 }
@@ -99,7 +98,7 @@ inline void held_energy(double found, double tolerance, double t, std::string co
   held(exact_frame("energy after the pull [J]", formulation), found, plateau, tolerance * plateau, {equals("t", t)});
 }
 
-/// The rows up to 10 s.
+/// The reference rows up to 10 s.
 template <class Cantilever>
 void follows(Index n, double h, double tolerance, std::string const& formulation) {
   Cantilever frame(n, h);

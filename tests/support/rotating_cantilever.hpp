@@ -1,6 +1,5 @@
 #pragma once
-/// \file
-/// CASES E3: a cantilever of unit ρA, EI and L, clamped at the axis to a hub that turns steadily.
+/// \file A cantilever of unit ρA, EI and L, clamped at the axis to a hub in steady rotation (E3; Wright et al. 1982).
 
 #include <gtest/gtest.h>
 
@@ -15,7 +14,7 @@
 
 namespace polybody {
 
-/// Frequencies of flap and chord together, ascending, for nine speeds; inextensible Euler–Bernoulli.
+/// Frequencies of flap and chord together, ascending, for nine angular velocities; inextensible Euler–Bernoulli beam.
 struct RotatingCantilever {
   double omega;
   double frequency[6];
@@ -31,14 +30,14 @@ inline constexpr RotatingCantilever rotating_cantilevers[] = {
     {10.0, {5.048975, 11.202328, 32.119686, 33.640366, 73.976464, 74.649295}},
     {12.0, {5.427049, 13.170150, 35.636976, 37.603112, 78.704925, 79.614478}}};
 
-/// The frequency `found` against the table, within a share of it; i counts flap and chord together.
+/// Compares the frequency `found` with the table, within a relative tolerance; i counts flap and chord together.
 inline void held_frequency(RotatingCantilever const& row, int i, double found, double share, char const* formulation) {
   held({"E3", "flap and chord frequencies of a rotating cantilever, ω √(ρA L⁴/EI)", By::independent,
         "collocation; Wright et al. 1982 at Ω = 12", formulation},
        found, row.frequency[i], share * row.frequency[i], {equals("Ω", row.omega) + ", mode " + std::to_string(i + 1)});
 }
 
-/// Stretch and shear so stiff that they do not show: what a frequency loses by them is of the order of Ω²/EA and ω
+/// Stretch and shear stiffnesses are so high that their effect is negligible: a frequency loses about Ω²/EA and ω
 /// EI/GA.
 inline Bar blade() {
   return {.length = 1.0,
@@ -47,7 +46,7 @@ inline Bar blade() {
           .placement = Placement::at({1, 2, 3}, {0.4, -0.9, 1.7})};
 }
 
-/// The six lowest frequencies of the body made of `blade()`, turning steadily about an axis askew.
+/// The six lowest frequencies of the body made of `blade()`, in steady rotation about a general axis.
 template <class B>
 Vec6 frequencies_in_rotation(B const& body, double omega) {
   using Pin = Joint<Revolute, Constraint>;

@@ -1,5 +1,5 @@
 #pragma once
-// Derivatives of runs beside others of the same runs.
+// Derivatives of runs against other derivatives of the same runs.
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 
 namespace polybody {
 
-/// Both are the same within a share of them and of one, by the sizes of the parameters. The outputs are of the size of
-/// one.
+/// Both derivatives agree within a relative tolerance and one unit, scaled by the sizes of the parameters. The
+/// outputs are of order one.
 inline void expect_same_slopes(MatX const& slopes, MatX const& expected, std::vector<Parameter> const& parameters,
                                double within) {
   ASSERT_EQ(slopes.rows(), expected.rows());
@@ -23,7 +23,8 @@ inline void expect_same_slopes(MatX const& slopes, MatX const& expected, std::ve
   }
 }
 
-/// Forwards beside differences of whole runs. No parameter leaves everything as it is, so that zeros are not compared.
+/// Forward sensitivities against finite differences of complete runs. Every parameter has an effect, so zeros are not
+/// compared.
 template <class Make, class I>
 void expect_slopes_of_runs(Make const& make, std::vector<Parameter> const& parameters, I const& integrator,
                            double within) {
@@ -34,8 +35,8 @@ void expect_slopes_of_runs(Make const& make, std::vector<Parameter> const& param
     EXPECT_GT(parameters[j].size() * s.slopes.back().col(Index(j)).norm(), 1e-4) << parameters[j].name;
 }
 
-/// Those of a rating, its end and the integral of its way, backwards beside those forwards of the first two outputs,
-/// which are the end and the way.
+/// Adjoint gradients of an objective function, which contains the final state and the integral of the path. They are
+/// compared with forward sensitivities of the first two outputs, which are the final state and the path.
 template <class Make, class I>
 void expect_slopes_backwards(Make const& make, std::vector<Parameter> const& parameters, I const& integrator,
                              double within) {

@@ -46,7 +46,7 @@ class Behind final : public SolverInTests {
   Solver solver_;
 };
 
-/// As a user's solver reaches time steps, or statics.
+/// Uses a solver in time steps or in statics, as a user's solver is used.
 template <class Solver>
 std::unique_ptr<SolverInTests> behind(SolverFor use) {
   if (use == SolverFor::statics) return std::make_unique<Behind<Solver>>();
@@ -68,7 +68,7 @@ std::unique_ptr<SolverInTests> solver_named_by_environment(Index size, SolverFor
 #ifdef POLYBODY_WITH_KLU
   if (name == "Klu") return behind<Klu>(use);
 #endif
-  // these need pivots within blocks, or symmetry: statics keeps its default
+  // these solvers need pivots within blocks, or symmetry: statics keeps its default
   bool const for_steps =
       name == "BlockLdlt" || name == "BlockLu" || name == "EigenLdlt" || name == "RefinedBlockSolver";
   if (!for_steps) throw InvalidInput("POLYBODY_SOLVER=" + name + " is not a solver that the tests know.");

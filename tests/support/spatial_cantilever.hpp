@@ -1,7 +1,6 @@
 #pragma once
-/// \file
-/// A bar in space clamped at its first end and loaded at the second, in static equilibrium: `Cantilever` with a third
-/// dimension.
+/// \file A bar in space, clamped at its first end and loaded at the second, in static equilibrium: `Cantilever` with
+/// a third dimension.
 
 #include <polybody/forces/point_load.hpp>
 #include <polybody/joints/policies/constraint.hpp>
@@ -11,7 +10,7 @@
 
 namespace polybody {
 
-/// What acts on the tip; `axes` are those of both. A moment in world axes keeps its direction while the section turns.
+/// Loads at the tip; `axes` apply to both. A moment in world axes keeps its direction while the section rotates.
 struct TipLoad {
   Vec3 force = Vec3::Zero();   ///< (3) [N]
   Vec3 moment = Vec3::Zero();  ///< (3) [N m]
@@ -46,7 +45,7 @@ struct SpatialCantilever {
   Frame<double> section(double s) const { return frame(model, x, bar.at(s)); }
   Vec3 tip() const { return position(model, x, end()); }
   Vec3 tip_displacement() const { return tip() - position(model, model.reference_state(), end()); }
-  /// How the tip section has turned, from its axes in the reference to those now (world components).
+  /// Rotation of the tip section from its reference axes to its current axes (world components).
   Mat3 tip_turn() const {
     return frame(model, x, end()).A * frame(model, model.reference_state(), end()).A.transpose();
   }

@@ -1,7 +1,6 @@
 #pragma once
-/// \file
-/// What the tests of the spatial Lrvf share: a bar in which every constant differs from every other, and states given
-/// section by section.
+/// \file Common parts of the tests of the spatial Lrvf: a bar with different values of all constants, and states
+/// given section by section.
 
 #include <gtest/gtest.h>
 
@@ -24,7 +23,7 @@ inline Bar spatial_lrvf_bar() {
           .damping = {.axial = 0.01, .shear = 0.02, .bending = 0.03}};
 }
 
-/// FlexibleBodyLaws ask about elastic and damping forces; without rotary inertia no gyroscopic ones stand beside them.
+/// FlexibleBodyLaws test elastic and damping forces; without rotary inertia there are no gyroscopic forces.
 inline Bar without_rotary_inertia(Bar bar) {
   bar.constants->rotary_inertia = 0.0;
   bar.constants->rotary_inertia_y = 0.0;
@@ -33,7 +32,7 @@ inline Bar without_rotary_inertia(Bar bar) {
 
 inline std::span<double const> numbers(VecX const& x) { return {x.data(), std::size_t(x.size())}; }
 
-/// q of the sections given node by node as `section(i)`, i the node's number.
+/// q of the sections given node by node as `section(i)`, with the node number i.
 template <class F>
 VecX nodes_of(Index elements, F&& section) {
   VecX q(7 * (elements + 1));
@@ -45,7 +44,7 @@ VecX nodes_of(Index elements, F&& section) {
   return q;
 }
 
-/// All nodes moved by the rigid motion x → origin + axes x.
+/// All nodes, moved by the rigid motion x → origin + axes x.
 inline VecX carried(Placement const& motion, VecX const& q) {
   return nodes_of(q.size() / 7 - 1, [&](double i) {
     Index const first = 7 * Index(i);

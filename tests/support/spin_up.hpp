@@ -1,6 +1,6 @@
 #pragma once
-/// \file
-/// CASES D2: the spin-up of Kane, Ryan & Banerjee 1987, and where an independent spectral beam [C] finds the tip.
+/// \file The spin-up of Kane, Ryan & Banerjee 1987 (D2), with tip positions of an independent spectral beam
+/// computation.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ namespace spin_up {
 using Drive = Joint<PrescribedAngle<SpinUp>, Constraint>;
 inline Drive drive() { return {{{.speed = 6.0, .duration = 15.0}, Vec3::UnitZ()}, {}}; }
 
-/// D2's constants; EI_y and GJ are any: nothing leaves the plane.
+/// Constants of D2. EI_y and GJ are arbitrary: the motion is planar.
 inline Bar arm() {
   return {
       .length = 10.0,
@@ -38,13 +38,14 @@ inline double const largest_lag = -0.573835;   ///< at t = 6.762 s
 inline double const steady = 5.139493e-4;      ///< mean of u₁ from 15 s on
 inline double const swing_at_speed = 0.00364;  ///< largest |u₂| from 15 s on
 
-/// What u₂ may be off, as a share of the largest lag up to 15 s and of what is left of the swing from then on.
+/// Tolerance of u₂, relative to the largest lag up to 15 s and to the amplitude of the remaining swing after 15 s.
 struct Share {
   double lag, swing;
 };
 
-/// Spins up the model whose arm ends in `tip`; u is the tip's displacement in the hub's axes. The tip draws back by
-/// u₁ = −½ ∫ w′² ds, as the square of w: an error δ of u₂ makes 2 u₁ δ/u₂. The steady stretch to a thousandth.
+/// Spins up the model whose arm ends in `tip`; u is the tip's displacement in the hub's axes. The foreshortening of
+/// the tip is u₁ = −½ ∫ w′² ds, of second order in w: an error δ of u₂ causes 2 u₁ δ/u₂. The steady stretch is
+/// compared to a thousandth.
 template <class M, class Tip>
 void follows(M const& model, Marker<Tip> const& tip, Share const& share, char const* formulation) {
   SpinUp const law = drive().geometry.law;

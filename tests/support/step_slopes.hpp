@@ -1,5 +1,5 @@
 #pragma once
-// Slopes of steps of several stages beside differences of the same steps.
+// Derivatives of multi-stage steps against finite differences of the same steps.
 
 #include <polybody/bodies/ancf/ancf_cable.hpp>
 #include <polybody/bodies/lrvf/lrvf.hpp>
@@ -26,16 +26,16 @@
 
 namespace polybody {
 
-/// A model for some values of its parameters, with the state in which it is let go.
+/// A model for given values of its parameters, with its initial state.
 template <class M>
 struct ModelAndStart {
   M model;
   State start;
 };
 
-/// Two links, the second across the first, on pins which are not parallel. They turn, and each speed is moved by a part
-/// of its own, so that soft links swing at once. Parameters: Young's modulus, density, stiffness of the pins, length of
-/// the second link, speed and angle of the start.
+/// Two links, the second transverse to the first, on pins that are not parallel. They rotate, and each velocity has
+/// its own disturbance, so that soft links vibrate immediately. Parameters: Young's modulus, density, stiffness of
+/// the pins, length of the second link, initial speed and angle.
 template <class B, class Policy>
 struct TwoLinks {
   static constexpr bool knows_frames = B::observes == Observes::frame;
@@ -89,8 +89,8 @@ struct TwoLinks {
   }
 };
 
-/// A bar that a drive turns on two hinges of one axis, five rows too many, and a rod that hangs on its end. Parameters:
-/// density, length of the rod, amplitude and frequency of the drive.
+/// A bar that a driving constraint rotates on two hinges of one axis, with five redundant constraints, and a rod that
+/// hangs on its end. Parameters: density, length of the rod, amplitude and frequency of the drive.
 struct DrivenDoor {
   struct Wave {
     double amplitude, frequency;  // [rad], [rad/s]
@@ -126,7 +126,8 @@ struct DrivenDoor {
 inline std::vector<Parameter> const parameters_of_door{
     {"density [kg/m³]", 2000.0, 600.0}, {"length [m]", 0.4, 0.1}, {"amplitude [rad]", 0.5}, {"frequency [rad/s]", 6.0}};
 
-/// A mass on a spring and a damper along x, drawn out by 1 m from 2 m: its stiffness and damping are the parameters.
+/// A mass on a spring and a damper along x, released 1 m from its equilibrium at 2 m. The stiffness and the damping
+/// are the parameters.
 struct DampedMass {
   using M = Model<Bodies<planar::Rigid>, Joints<>, Forces<SpringDamper>>;
   static constexpr double mass = 2.0;
@@ -143,7 +144,7 @@ struct DampedMass {
     double const delta = 0.5 * c / mass, w = std::sqrt(k / mass - delta * delta);
     return 2.0 + std::exp(-delta * t) * (std::cos(w * t) + delta / w * std::sin(w * t));
   }
-  /// ∂x/∂k and ∂x/∂c, by differences of fourth order of the closed form.
+  /// ∂x/∂k and ∂x/∂c, by fourth-order differences of the closed form.
   static std::array<double, 2> slopes(double k, double c, double t) {
     std::array<double, 2> out{};
     double const e = 1e-3;
@@ -156,7 +157,7 @@ struct DampedMass {
   }
 };
 
-/// Steps of `integrator` by a model for some values of the parameters. It stays where it is.
+/// Steps of `integrator` with a model for given values of the parameters. The object is not movable.
 template <class Made, class I>
 struct Steps {
   Made made;
@@ -175,11 +176,11 @@ struct Steps {
     work.forward.project_velocities(system, x.q, x.v, x.t);
     method.start(system, x, h, work);
   }
-  /// \returns whether it took the whole h
+  /// \returns true if the step covered the whole h
   bool step(double h) { return method.step(system, x, h, work).taken == h; }
 };
 
-/// The state after a step of h from x, with factors of its own.
+/// The state after a step of h from x, with its own factorisations.
 template <class S>
 State stepped(S& whole, State x, double h) {
   if constexpr (requires { whole.work.kept_factor; }) whole.work.kept_factor = {};
@@ -187,14 +188,14 @@ State stepped(S& whole, State x, double h) {
   return x;
 }
 
-/// A run of steps of one length, with its derivatives by slopes of its steps and by differences of the run.
+/// A run of steps of one length, with its derivatives by linearised steps and by finite differences of the run.
 struct DerivedSteps {
   State end;
-  std::vector<State> slopes, differences;  // by parameters
+  std::vector<State> slopes, differences;  // with respect to the parameters
   double left = 0.0;                       // by the last corrections of the steps
 };
 
-/// The distance of the differences.
+/// The increment of the differences.
 inline double thousandth_of(Parameter const& p) { return 1e-3 * p.size(); }
 
 template <class Slope, class Make, class I>
@@ -251,9 +252,9 @@ DerivedSteps derive_steps(Make const& make, std::vector<Parameter> const& parame
   return out;
 }
 
-/// Slopes and differences agree within 1e-8 of themselves, and as far as differences know them. \param rounding of the
-/// speeds, accelerations and multipliers of a state, sums of large forces, over a thousandth: differences divide by a
-/// thousandth of the size of the parameter. Coordinates have 5e-12.
+/// Derivatives and differences agree within 1e-8, and within the accuracy of the differences. \param rounding
+/// round-off of the velocities, accelerations and multipliers of a state, which are sums of large forces, over a
+/// thousandth. Differences divide by a thousandth of the size of the parameter. Coordinates have 5e-12.
 inline void expect_slopes_of_steps(DerivedSteps const& run, std::vector<Parameter> const& parameters, double rounding) {
   EXPECT_LT(run.left, 1e-9);
   for (std::size_t j = 0; j < parameters.size(); ++j)
@@ -268,7 +269,7 @@ inline void expect_slopes_of_steps(DerivedSteps const& run, std::vector<Paramete
     }
 }
 
-/// The derivative of a step from x by its length h, under laws that are smooth in time.
+/// The derivative of a step from x with respect to its length h, with functions that are smooth in time.
 template <class Slope, class S>
 State slope_by_length(S& whole, Slope& slope, State const& x, double h) {
   State const after = stepped(whole, x, h);
@@ -293,8 +294,8 @@ State slope_by_length(S& whole, Slope& slope, State const& x, double h) {
   EXPECT_LT(slope.advance(step, directions, by_time, {&later, 1}), 1e-9);
   return dx;
 }
-/// The slope by the length of the third step is that of differences of steps of nearby lengths, within 1e-8 of itself
-/// and `rounding` of the state over the distance of the differences.
+/// The derivative with respect to the length of the third step equals that of differences of steps of nearby lengths.
+/// The tolerance is 1e-8 relative, plus `rounding` of the state over the increment of the differences.
 template <class Slope, class Make, class I>
 void expect_slopes_by_length(Make const& make, std::vector<Parameter> const& parameters, I const& integrator, double h,
                              double rounding) {
@@ -316,7 +317,7 @@ void expect_slopes_by_length(Make const& make, std::vector<Parameter> const& par
   }
 }
 
-/// The error of (k ∂x/∂k, c ∂x/∂c) at t = 1 s by steps of one length.
+/// The error of (k ∂x/∂k, c ∂x/∂c) at t = 1 s with steps of one length.
 template <class Slope, class I>
 double error_of_slopes(I const& integrator, int steps) {
   double const k = 50.0, c = 3.0;
@@ -332,8 +333,9 @@ void expect_order_of_slopes(I const& integrator, int steps) {
   EXPECT_NEAR(std::log2(coarse / fine), I::order, 0.2) << coarse << ", " << fine;
 }
 
-/// The parameters of `TwoLinks`, for pins of that stiffness [N/m] and links of that modulus [Pa]. A length and what
-/// changes frequencies have a scale on which differences of fourth order still know the phases.
+/// The parameters of `TwoLinks`, for pins of the given stiffness [N/m] and links of the given modulus [Pa]. The
+/// scales of lengths and of parameters that affect frequencies are chosen such that fourth-order differences resolve
+/// the phases.
 inline std::vector<Parameter> parameters_of_links(double young, double stiffness) {
   return {{"young [Pa]", young, 0.3 * young},
           {"density [kg/m³]", 2000.0, 600.0},

@@ -1,5 +1,5 @@
 #pragma once
-// A chain whose parameters say what they touch.
+// A chain whose parameters name the objects that depend on them.
 
 #include <polybody/gradients/objective.hpp>
 #include <polybody/gradients/sensitivities.hpp>
@@ -15,7 +15,7 @@ namespace polybody::touched_chain {
 
 using P = std::span<double const>;
 
-/// A chain of five rods on springy pins: their lengths, densities and the stiffness of each pin.
+/// A chain of five rods on compliant pins. Parameters: lengths, densities and the stiffness of each pin.
 inline auto const chain = [](P p) {
   using Rod = planar::Rigid;
   using Pin = Joint<planar::Revolute, Penalty>;
@@ -64,7 +64,7 @@ inline auto chain_with_angle(P p) {
   return scenario;
 }
 
-/// Slopes of runs of the chain are the same whether parameters say what they touch.
+/// Derivatives of runs of the chain do not depend on the names in `touches`.
 template <class I>
 void expect_same_slopes_with_touches(I const& integrator) {
   Sensitivities const a = sensitivities(chain_with_angle, of_chain(true), integrator),

@@ -1,5 +1,5 @@
 #pragma once
-// Two links of any body on pins of any policy: a factory of runs that are differentiated.
+// Two links with any body type on pins of any policy: a scenario for differentiated runs.
 
 #include <span>
 
@@ -36,8 +36,8 @@ struct RunOfTwoLinks : Scenario<M> {
   Marker<B> tip;
 };
 
-/// Two links of soft rods, the second across the first, that fall about pins which are not parallel. Parameters:
-/// Young's modulus, density, stiffness of the pins, length of the second link, speed of the start.
+/// Two links of soft rods, the second transverse to the first, that fall about pins which are not parallel.
+/// Parameters: Young's modulus, density, stiffness of the pins, length of the second link, initial speed.
 template <class B, class Policy>
 auto const two_links = [](std::span<double const> p) {
   constexpr bool knows_frames = B::observes == Observes::frame;
@@ -71,7 +71,7 @@ auto const two_links = [](std::span<double const> p) {
   return RunOfTwoLinks<M, B>{{std::move(model), start, {.until = 0.06, .step = 2e-3}, std::move(outputs)},
                              second.at(end)};
 };
-/// What `two_links` is made of.
+/// The parameters of `two_links`.
 inline std::vector<Parameter> const parameters_of_two_links{{"young [Pa]", 2e8},
                                                             {"density [kg/m³]", 2000.0},
                                                             {"stiffness of pins [N/m]", 1e6},

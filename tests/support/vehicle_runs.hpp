@@ -1,23 +1,23 @@
 #pragma once
-// The vehicle of m113_vehicle.hpp, set going.
+// The vehicle of m113_vehicle.hpp in motion.
 #include <polybody/polybody.hpp>
 #include <polybody/vehicle/settled_track.hpp>
 #include <polybody/vehicle/track_watch.hpp>
 
 namespace polybody {
 
-// Tracks at rest, found once.
+// Tracks at rest, computed once.
 inline m113::TrackStart const& track_at_rest() {
   static m113::TrackStart const start = m113::settled_track();
   return start;
 }
 
-// From standstill at 0.1 s to `speed` at 0.6 s.
+// Ramp from standstill at 0.1 s to `speed` at 0.6 s.
 inline Ramp quick_drive(double speed) { return {.target = speed, .duration = 0.5, .start = 0.1, .rounding = 0.1}; }
 
 inline GeneralizedAlpha vehicle_integrator() { return {.rho_inf = 0.8, .tolerance = 1e-5}; }
 
-// Calls see(state, system evaluated there) after each step.
+// Calls see(state, system evaluated in this state) after each step.
 template <class M, class See>
 RunReport run_vehicle(M const& model, State& x, double until, double step, See&& see) {
   auto run = simulate(model, x, vehicle_integrator(), {.until = until, .step = step, .halvings = 6});

@@ -1,6 +1,5 @@
 #pragma once
-/// \file
-/// Runs of models with rows of velocity level, under each way to keep such rows.
+/// \file Runs of models with nonholonomic constraints, under each method of constraint stabilisation.
 
 #include <gtest/gtest.h>
 
@@ -15,8 +14,8 @@
 
 namespace polybody {
 
-/// Runs to time `until` and returns the state; the rows must hold on the way, those of speeds also where a method keeps
-/// positions only.
+/// Runs to time `until` and returns the state. The constraint equations must be satisfied during the run, the
+/// nonholonomic ones also if a method stabilises positions only.
 template <class M, class I>
 State rolled(M const& model, State x, I const& integrator, double until, double step) {
   System system(model);
@@ -40,7 +39,7 @@ State rolled(M const& model, State x, I const& integrator, double until, double 
   return x;
 }
 
-/// The integrator's name, and whether it holds rows of speeds as well.
+/// The integrator's name, with ", stabilised" if it also stabilises velocities.
 template <class I>
 std::string named(I const& integrator) {
   std::string name(integrator.name);
@@ -49,8 +48,8 @@ std::string named(I const& integrator) {
   return name;
 }
 
-/// Calls f(integrator, step, tolerance): of order two with 2 000 steps a second, of order four with 500, of order five
-/// with 100.
+/// Calls f(integrator, step, tolerance): order two with 2 000 steps per second, order four with 500, order five with
+/// 100.
 template <class F>
 void with_each_integrator(F&& f) {
   f(GeneralizedAlpha{.rho_inf = 0.8}, 5e-4, 1.0);

@@ -1,5 +1,5 @@
 #pragma once
-// Files of a VtkWriter as VTK's own reader finds them.
+// Files of a VtkWriter, read by VTK's own reader.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -14,8 +14,8 @@
 
 namespace polybody {
 
-/// What `vtk_read.py` tells, by the words before the numbers; empty where no python has VTK.
-/// The script is found from the test that asks, in a folder beside its own.
+/// Output of `vtk_read.py`, by the words before the numbers; empty if no python has VTK. The path of the script is
+/// relative to the calling test, in a folder next to its own.
 inline std::vector<std::vector<std::string>> read_by_vtk(
     std::filesystem::path const& collection, std::source_location const& test = std::source_location::current()) {
   namespace fs = std::filesystem;

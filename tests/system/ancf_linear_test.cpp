@@ -1,4 +1,5 @@
-// Linear joints of ANCF bodies [thesis §3.5.4]: the same motion and reactions as with multipliers, without them.
+// Linear joints of ANCF bodies [Wallin 2016, §3.5.4]: the same motion and reactions as with multipliers, but without
+// multipliers.
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/ancf/ancf_beam.hpp>
@@ -30,7 +31,7 @@ Bar bar(Placement const& placement, double poisson = 0.3) {
           .placement = placement};
 }
 
-/// n bars in a row on a support, joined by G; they fall.
+/// A chain of n bars on a support, connected by G; they fall.
 template <class B, class G, class Policy>
 struct Chain {
   using Pin = Joint<G, Policy>;
@@ -93,7 +94,7 @@ TEST(AncfLinear, PinsACableInSpace) {
   free.fall(0.2);
   pinned.fall(0.2);
   expect_same("AncfCable, Spherical", held, free, 1e-6);
-  // the fourth equation of a pin holds the chain in its plane, where it moves anyhow
+  // the fourth equation of a pin keeps the chain in its plane, in which it moves without this equation too
   expect_same("AncfCable, Revolute", held, pinned, 1e-6);
   EXPECT_EQ(census(pinned.model).coordinates, 3 * 18 - 3 * 4);
 }
@@ -105,14 +106,14 @@ TEST(AncfLinear, PinsAFullyParameterisedBeamBySixEquations) {
   EXPECT_EQ(census(free.model).coordinates, 2 * 36 - 2 * 6);
   held.fall(0.2);
   free.fall(0.2);
-  // the elastic line does not stretch the pin's line as it moves in the plane: the sixth equation changes nothing
+  // the elastic line does not stretch the pin's line in planar motion: the sixth equation has no effect
   expect_same("AncfBeam, Revolute", held, free, 1e-6);
 }
 
 TEST(AncfLinear, OnlyTheStrainAlongThePinIsContinuous) {
-  // Two beams with Poisson's ratio 0.3 that swing about z and are bent and twisted by a pull along z: strains ε_αβ = ½
-  // (r_α·r_β − δ) at both sides of the pin about z. r_z is shared, r_x and r_y are not: ε_zz is one, the other five are
-  // two each.
+  // Two beams with Poisson's ratio 0.3 that swing about z; a force along z bends and twists them. Strains ε_αβ = ½
+  // (r_α·r_β − δ) on both sides of the pin about z. r_z is common, r_x and r_y are not: ε_zz has one value, the other
+  // five have two each.
   using Pin = Joint<Revolute, AncfLinear>;
   Model<Bodies<AncfBeam<Continuum<>>>, Joints<Pin>, Forces<>> model{Gravity{0, -9.81, 4.0}};
   auto const a = model.add(AncfBeam<Continuum<>>::from(bar(Placement::at({0, 0, 0})), 2));
@@ -141,7 +142,7 @@ TEST(AncfLinear, OnlyTheStrainAlongThePinIsContinuous) {
 }
 
 TEST(AncfLinear, WeldedBodiesAreOne) {
-  // 3 × 2 elements welded, against one body of 6: the same mesh
+  // 3 × 2 welded elements, against one body of 6 elements: the same mesh
   Chain<planar::AncfCable<>, planar::Weld, AncfLinear> welded({}, 3);
   using Clamp = Joint<planar::Weld, AncfLinear>;
   Model<Bodies<planar::AncfCable<>>, Joints<Clamp>> whole{Gravity{0, -9.81, 0}};
@@ -187,7 +188,7 @@ TEST(AncfLinear, HoldsInStaticsWhatABalanceSays) {
 }
 
 TEST(AncfLinear, APinHoldsWhatBendsAcrossIt) {
-  // the second beam hangs on a pin about z and is loaded along z at its end: the pin bears −r × P, about y
+  // the second beam hangs on a pin about z and is loaded along z at its end: the pin carries −r × P, about y
   using Clamp = Joint<Weld, AncfLinear>;
   using Pin = Joint<Revolute, AncfLinear>;
   Model<Bodies<AncfBeam<Continuum<>>>, Joints<Clamp, Pin>, Forces<PointForce<>>> model;
@@ -204,7 +205,7 @@ TEST(AncfLinear, APinHoldsWhatBendsAcrossIt) {
   EXPECT_LT((at_pin.m - Vec3(0, 0.5 * p, 0)).norm(), 1e-4 * p);
 }
 
-// A cable that has turned about its pin: what the joint gives it does not depend on which body is named second.
+// A cable that has rotated about its pin: the reaction of the joint does not depend on the order of the two bodies.
 TEST(AncfLinear, TheGroundTakesWhatACablesPinGives) {
   using Pin = Joint<Revolute, AncfLinear>;
   auto const pulled = [](bool ground_first) {
@@ -254,7 +255,7 @@ TEST(AncfLinear, RefusesWhatIsNotLinear) {
   EXPECT_TRUE(
       has(refusal([&] { model.connect(Pin{}, a.at(0.5, 0.01), b.at(0.0), "hinge"); }),
           "\"hinge\": planar::AncfCable: a point off the axis is not linear in the coordinates. Use Constraint here."));
-  EXPECT_EQ(model.markers(), 0);  // it leaves nothing behind
+  EXPECT_EQ(model.markers(), 0);  // the refused joint adds no marker
   using Clamp = Joint<Weld, AncfLinear>;
   Model<Bodies<AncfCable<>>, Joints<Clamp, Joint<Revolute, AncfLinear>>> space;
   auto const c = space.add(AncfCable<>::from(bar({}), 2));

@@ -1,4 +1,4 @@
-// A model whose type is forgotten, and a model seen by some of its types: the same motion as of the model itself.
+// A type-erased model, and a view of a model with some of its types: the same motion as that of the model itself.
 
 #include <polybody/polybody.hpp>
 
@@ -14,7 +14,7 @@ using Double = Model<Bodies<Rigid<>, AncfCable<>>, Joints<Pin, Slide>, Forces<Sp
 Rigid<> rod() { return Rigid<>(2.0, Vec3(0.01, 0.2, 0.2).asDiagonal(), Placement::at(Vec3(0.5, 0, 0), Vec3(0, 0, 0))); }
 Pin pin() { return {Revolute{.axis = Vec3::UnitY()}, {}}; }
 
-/// A pendulum on a spring, built by the model itself or by one of its parts.
+/// A pendulum on a spring, built by the model itself or through a view of it.
 template <class Builder>
 BodyHandle<Rigid<>> hang(Builder& builder) {
   auto const body = builder.add(rod(), "rod");
@@ -54,7 +54,7 @@ TEST(Subassembly, RefusesWhatTheModelRefuses) {
   Double one, other;
   Subassembly<Bodies<Rigid<>>, Joints<Pin>> part(one);
   auto const body = part.add(rod(), "rod"), foreign = other.add(rod(), "rod");
-  EXPECT_THROW(part.add(rod(), "rod"), InvalidInput);  // the name is taken
+  EXPECT_THROW(part.add(rod(), "rod"), InvalidInput);  // the name is in use
   EXPECT_NE(refusal([&] { part.connect(pin(), body.at(Vec3(0, 0, 0)), foreign.at(Vec3(0, 0, 0)), "pin"); }).find("pin"),
             std::string::npos);
   EXPECT_EQ(one.rows(), 0);

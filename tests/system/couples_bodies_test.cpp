@@ -1,5 +1,5 @@
-// A force element may keep its coupling between bodies out of the matrix of a time step: same motion, and statics sees
-// all of it.
+// A force element may omit its coupling between bodies from the matrix of a time step. The motion does not change,
+// and statics uses the full coupling.
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/rigid/planar_rigid.hpp>
@@ -25,7 +25,7 @@ Spring spring() {
     return Spring{s};
 }
 
-/// Two masses in a row on two springs, pulled along by gravity.
+/// Two masses in a row on two springs, under gravity along the row.
 template <class Spring>
 struct Row {
   Model<Bodies<planar::Rigid>, Joints<>, Forces<Spring>> model{Gravity{1, 0, 0}};
@@ -38,7 +38,7 @@ struct Row {
     model.apply(spring<Spring>(), a.at(Vec2(0, 0)), b.at(Vec2(0, 0)), "second");
     x = model.reference_state();
   }
-  /// Blocks of the tangent between the two bodies.
+  /// Number of tangent blocks between the two bodies.
   int couplings(SecondOrder second) {
     System system(model);
     system.evaluate(x.q, x.v, x.t);

@@ -1,5 +1,5 @@
 // Force elements with first-order states, such as controllers, under every kind of integrator, joint policy and
-// analysis. A mass on a servo is linear: its motion is known by a matrix exponential, its modes by a 4×4 matrix.
+// analysis. A mass on a servo is linear. Its motion follows from a matrix exponential, its modes from a 4×4 matrix.
 #include <polybody/io/checkpoint.hpp>
 #include <polybody/polybody.hpp>
 #include <polybody/run/redundancy.hpp>
@@ -18,7 +18,7 @@ using namespace polybody;
 
 namespace first_order_states_test {
 
-/// Pulls its second marker along x to `target` by a current that lags behind a proportional–integral controller:
+/// Pulls its second marker along x to `target`, by the delayed current of a proportional–integral controller:
 ///   f = k i,  τ i˙ = p (x₀ − x) + s − i − e ẋ,  ṡ = r (x₀ − x),  z = (i, s)/unit.
 struct Servo {
   static constexpr int markers = 2, states = 2;
@@ -55,7 +55,7 @@ static_assert(ForceElement<Servo> && HasStates<Servo> && !GivesWrenches<Servo> &
 
 constexpr double mass = 2.0, until = 1.5;
 
-/// A free body of the plane; the servo pulls at its centre.
+/// A free body in the plane; the servo pulls at its centre.
 struct Plane {
   Model<Bodies<planar::Rigid>, Joints<>, Forces<Servo>> model;
   ElementHandle<Servo> servo;
@@ -121,7 +121,7 @@ TEST(FirstOrderStates, KeepToTheToleranceOfStepControl) {
   controlled(AdamsBashforthMoulton<>{.relative_tolerance = 1e-10, .absolute_tolerance = 1e-12});
 }
 
-// In units that make them as large as pressures in pascals, states do not spoil the accuracy of the motion.
+// States in units that make them as large as pressures in pascals do not reduce the accuracy of the motion.
 TEST(FirstOrderStates, MayHaveAnyUnit) {
   for (double const unit : {1e-7, 1e4}) {
     EXPECT_NEAR(error_of(GeneralizedAlpha{}, 0.01, unit), error_of(GeneralizedAlpha{}, 0.01), 1e-9) << unit;
@@ -134,7 +134,7 @@ TEST(FirstOrderStates, MayHaveAnyUnit) {
   EXPECT_LT(error_of(adams, 0.1, 1e-7), 1e-8);
 }
 
-/// A double pendulum of rods that a servo pulls, under one policy for its pins.
+/// A double pendulum of rods with a servo, with one policy for its pins.
 template <class B, class P>
 State swing(B const& rod, B const& second, P policy, auto const& integrator, double h) {
   using Pin = Joint<Revolute, P>;
@@ -187,7 +187,7 @@ TEST(FirstOrderStates, StandBesideEliminatedLinearJoints) {
   EXPECT_LT((y.v.tail(2) - x.v.tail(2)).norm(), 1e-7);
 }
 
-// An integrating controller holds a weight at its target beside a spring: k i = m g + c x, s = i.
+// An integrating controller keeps a weight at its target next to a spring: k i = m g + c x, s = i.
 TEST(FirstOrderStates, FindTheirEquilibrium) {
   using Spring = Joint<planar::Weld, Penalty>;
   Model<Bodies<planar::Rigid>, Joints<Spring>, Forces<Servo>> model{Gravity{-9.81, 0, 0}};
@@ -205,18 +205,18 @@ TEST(FirstOrderStates, FindTheirEquilibrium) {
   held(claim("force of a servo that holds a weight [N]", "m g + c x"), 8.0 * z[0], mass * 9.81 + 100.0 * 0.4, 1e-6);
   EXPECT_NEAR(z[1], z[0], 1e-8);
   EXPECT_EQ(x.v.head(3).norm(), 0.0);
-  Servo const without_integral{.target = 0.4, .r = 0.0};  // s may be anything
+  Servo const without_integral{.target = 0.4, .r = 0.0};  // s is arbitrary
   Model<Bodies<planar::Rigid>, Joints<Spring>, Forces<Servo>> undetermined = model;
   undetermined.apply(without_integral, model.ground().at({0, 0, 0}), body.at(Vec2(0, 0)), "lazy servo");
   State y = undetermined.reference_state();
   EquilibriumReport const report = equilibrium(undetermined, y);
   ASSERT_EQ(report.neutral.size(), 1u);
   EXPECT_NE(report.neutral[0].find("servo"), std::string::npos)
-      << report.neutral[0];  // either can make up for the other
+      << report.neutral[0];  // either state can balance the other
   EXPECT_NEAR(y.q[0], 0.4, 1e-9);
 }
 
-/// A mass on a slide; a servo pulls it.
+/// A mass on a prismatic joint, with a servo.
 struct Slide {
   using Guide = Joint<Prismatic, Constraint>;
   Model<Bodies<Rigid<>>, Joints<Guide>, Forces<Servo>> model;
@@ -263,7 +263,7 @@ TEST(FirstOrderStates, AreNoFreedoms) {
   EXPECT_EQ(p.linear.norm() + p.angular.norm(), 0.0);
 }
 
-// Held at a length, the tension of spring and damper in series relaxes; and a weight that hangs on them creeps down.
+// At a constant length, the tension of spring and damper in series relaxes. A weight that hangs on them creeps down.
 TEST(FirstOrderStates, RelaxAndCreep) {
   MaxwellElement const element{.stiffness = 50.0, .damping = 20.0, .free_length = 0.4};
   auto const elongation = [&](auto joint, Gravity const& gravity) {
@@ -282,14 +282,14 @@ TEST(FirstOrderStates, RelaxAndCreep) {
   };
   held(claim("elongation of the damper of a Maxwell element held at a length [m]", "u (1 − exp(−k t/c))"), relaxed,
        0.6 * (1.0 - std::exp(-50.0 / 20.0 * 2.0)), 1e-9);
-  // c z˙ = N, so that the momentum is m g t less c z at any time
+  // c z˙ = N, so the momentum is m g t − c z at any time
   using Slider = Joint<Prismatic, Constraint>;
   auto const [z, x] = elongation(Slider{Prismatic{.axis = {0, 0, 1}}, {}}, Gravity{0, 0, -9.81});
   held(claim("momentum of a weight that creeps, and c z of its damper [N s]", "m g t"), 20.0 * z - mass * x.v[2],
        mass * 9.81 * 2.0, 1e-7);
 }
 
-// What the servo does is the work of a load.
+// The work of the servo counts as the work of a load.
 TEST(FirstOrderStates, WorkAsLoads) {
   Plane plane;
   State x = plane.start();

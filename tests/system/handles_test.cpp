@@ -29,7 +29,7 @@ Ffr rod(double length) {
       {.length = length, .section = Circle{.radius = 0.02}, .material = {{.density = 7800, .young = 2e11}}}, 2);
 }
 
-/// A user's struct whose handles are set after it is made, though its bodies have no default constructor.
+/// A user's struct whose handles are set after its construction, although its bodies have no default constructor.
 struct Rig {
   BodyHandle<Rigid<>> hub;
   std::vector<BodyHandle<Ffr>> arms = std::vector<BodyHandle<Ffr>>(3);
@@ -70,7 +70,7 @@ TEST(Handles, RefuseToBeUsedBeforeTheyAreAssigned) {
   EXPECT_TRUE(has(refusal([&] { (void)reaction(model, x, rig.ball); }), empty));
 }
 
-// A marker may be made on a copy of the handle when the handle itself is gone, and when the model stands elsewhere.
+// A copy of a handle makes markers even if the handle itself is destroyed and the model has moved.
 TEST(Handles, MakeMarkersWhenTheModelHasMoved) {
   std::optional<M> first(M{});
   auto handle = std::make_unique<BodyHandle<Ffr>>(first->add(rod(1.5), "rod"));
@@ -106,7 +106,7 @@ TEST(Handles, KeepTheBodyWhenTheModelIsGone) {
   EXPECT_EQ(handle.body().mass(), 3.0);
 }
 
-// The copy gets bodies of its own: what is added to it does not reach the original, and the other way round.
+// The copy has its own bodies: additions to the copy do not affect the original, and vice versa.
 TEST(Handles, OfAModelServeItsCopyToo) {
   M model;
   auto const hub = model.add(cube(1.0), "hub");
@@ -124,7 +124,7 @@ TEST(Handles, OfAModelServeItsCopyToo) {
   EXPECT_EQ(only_in_copy.body().mass(), 5.0);
 }
 
-/// What every use of a body's handle in `model` says.
+/// Error messages of every use of a body's handle in `model`.
 void expect_foreign(M& model, BodyHandle<Rigid<>> const& handle) {
   State x = model.reference_state();
   State const before = x;
@@ -180,7 +180,8 @@ TEST(Handles, OfJointsAndForcesAddedToACopyAreRefusedByTheOriginal) {
   EXPECT_EQ(gap(copy, copy.reference_state(), ball), Vec3(0, 0, 0));
 }
 
-// Copies of copies accept what each ancestor had when it was copied; the ground is that of all descendants.
+// Copies of copies accept the handles that each ancestor had at the time of copying; all descendants share the
+// ground.
 TEST(Handles, PassDownALineOfCopies) {
   M first;
   auto const a = first.add(cube(1.0));
@@ -200,7 +201,7 @@ TEST(Handles, PassDownALineOfCopies) {
       has(refusal([&] { first.connect(Ball{}, third.ground().at({0, 0, 0}), a.at({0, 0, 0})); }), "of another model"));
 }
 
-// A move takes the handles along and leaves an empty model, which may be filled again.
+// A move transfers the handles and leaves an empty model, which may be filled again.
 TEST(Handles, OfAMovedModelAreRefusedByWhatItLeaves) {
   M model;
   auto const hub = model.add(cube(1.0, {3, 0, 0}), "hub");
@@ -222,7 +223,7 @@ TEST(Handles, OfAModelWhoseVectorGrowsStayValid) {
   std::vector<M> models(1);
   auto const hub = models[0].add(cube(1.0, {3, 0, 0}), "hub");
   std::uint64_t const serial = models[0].serial();
-  models.resize(5);  // which moves, and does not copy
+  models.resize(5);  // which moves the models and does not copy them
   EXPECT_EQ(models[0].serial(), serial);
   EXPECT_EQ(position(models[0], models[0].reference_state(), hub.at({0, 0, 0})), Vec3(3, 0, 0));
 }
@@ -242,7 +243,7 @@ TEST(Handles, RefuseStatesThatAreTooShort) {
   EXPECT_TRUE(has(refusal([&] { model.set_velocity(x, wheel, {1, 0, 0}, {0, 0, 0}); }), unfitting));
 }
 
-// A body taken from the model's own array is copied before the array grows.
+// A body from the model's own array is copied before the array grows.
 TEST(Handles, GiveABodyThatMayBeAddedAgain) {
   M model;
   auto const first = model.add(rod(1.0));

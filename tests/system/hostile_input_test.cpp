@@ -1,4 +1,4 @@
-// What cannot be meant is refused in a sentence, and not by a crash or an exception of the standard library.
+// Invalid input is refused with a message, and not with a crash or an exception of the standard library.
 #include <gtest/gtest.h>
 
 #include <polybody/polybody.hpp>
@@ -34,7 +34,7 @@ TEST(HostileInput, ARigidBodyAndTheGroundAreNotJoinedToThemselves) {
   EXPECT_TRUE(
       has(refusal([&] { model.connect(pin, model.ground().at({0, 0, 0}), model.ground().at({0, 0, 1}), "fixed"); }),
           "\"fixed\" joins the ground to itself"));
-  EXPECT_EQ(model.rows(), 0);  // a refusal leaves the model as it was
+  EXPECT_EQ(model.rows(), 0);  // a refusal leaves the model unchanged
   EXPECT_EQ(model.markers(), 0);
   model.connect(pin, one.at(0.0), other.at(1.0));
   model.connect(Ball{Spherical{}, Constraint{}}, cable.at(0.0), cable.at(1.0));  // a ring
@@ -51,7 +51,7 @@ TEST(HostileInput, MoreElementsThanMemoryHoldsAreRefused) {
   EXPECT_TRUE(has(refusal([&] { AncfCable<>::from(bar, 0); }), "AncfCable: at least one element is needed"));
 }
 
-// A quaternion of another norm would be a body of another size.
+// A quaternion with another norm would change the size of the body.
 TEST(HostileInput, QuaternionsOfAnotherNormAreRefused) {
   Model<Bodies<Rigid<>>, Joints<Pin>> model;
   model.add(Rigid<>::from(bar), "first");
@@ -64,7 +64,7 @@ TEST(HostileInput, QuaternionsOfAnotherNormAreRefused) {
   }
 }
 
-// Between coincident points a spring has no direction: 0/0.
+// A spring between coincident points has no direction: 0/0.
 TEST(HostileInput, ASpringBetweenCoincidentPointsIsNamed) {
   Model<Bodies<Rigid<>>, Joints<>, Forces<SpringDamper>> model;
   auto const rod = model.add(Rigid<>::from(bar), "rod");
@@ -122,7 +122,7 @@ struct Pushed {
     model.apply(PointForce<>{.force = {0, force, 0}}, rod.at(Vec2(0.5, 0)), "push");
     x = model.reference_state();
   }
-  /// What a run says that cannot go well.
+  /// Error message of a run with invalid input.
   template <class I>
   std::string message(I const& integrator) {
     std::string said;
@@ -151,7 +151,7 @@ void expect_refused(I const& integrator) {
       Pushed(pinned, 1.0, size).message(integrator);
     }
 }
-// A sum that overflows is no joint that repeats another.
+// A sum that overflows is not a redundant joint.
 TEST(HostileInput, ForcesThatOverflowAreNamedAndNotCalledSingular) {
   expect_refused(GeneralizedAlpha{});
   expect_refused(Radau{});

@@ -1,5 +1,5 @@
-// What `connect` says of joints that cannot be meant: a sentence that names the joint, and nothing is left behind. A
-// tree of joint coordinates with a cycle is known when a run begins: recursive_loop_test.cpp.
+// Messages of `connect` for invalid joints: a message names the joint, and the model stays unchanged. A cycle in a
+// tree of joint coordinates is detected at the start of a run: recursive_loop_test.cpp.
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/rigid/rigid.hpp>
@@ -65,7 +65,7 @@ TEST(RefusedJoint, IsDrivenThroughAJump) {
   EXPECT_TRUE(has(refused(Ram{{.law = window, .length = 1.0}, {}}), why));
 }
 
-// A table is made before the joint; it is told whose it is.
+// A table is constructed before the joint; its last argument names the joint.
 TEST(RefusedJoint, HasATableThatGoesBack) {
   EXPECT_TRUE(
       has(refusal([] { (void)TabulatedLaw{MonotoneTable({{0.0, 0.0}, {0.2, 1.0}, {0.1, 2.0}}, "\"elbow\""), 0.0}; }),
@@ -80,14 +80,14 @@ using Motor = PrescribedAngle<Ramp>;
 using Ramming = PrescribedSlide<Ramp>;
 Ramp const ramp{.target = 1.0, .duration = 1.0};
 
-/// A rigid body beside the ground, and what joins them.
+/// A rigid body, the ground, and joints between them.
 template <class B, class... Gs>
 struct Joined {
   using Place = std::conditional_t<B::world == World::plane, Vec2, Vec3>;
   Model<Bodies<B>, Joints<Ideal<Gs>...>> model;
   BodyHandle<B> body;
   explicit Joined(B const& b) : body(model.add(b, "body")) {}
-  /// What `connect` says; nothing where it takes the joint.
+  /// The message of `connect`; empty if it accepts the joint.
   template <class G>
   std::string operator()(G const& geometry, std::string const& name) {
     Index const before = model.rows() + model.markers();
@@ -132,7 +132,7 @@ TEST(RefusedJoint, LeavesItsAxisOut) {
     EXPECT_TRUE(has(said, hint)) << said;
 }
 
-// In the plane a turn is about the normal; a direction within it is asked for.
+// In the plane a rotation is about the normal. A direction within the plane is required.
 TEST(RefusedJoint, NeedsNoAxisOfATurnInThePlane) {
   Joined<planar::Rigid, Motor, RelativeCoordinates, Ramming, PointInPlane> plane(planar::Rigid(1.0, 1.0));
   EXPECT_EQ(plane(Motor{.law = ramp}, "drive"), "");

@@ -1,4 +1,4 @@
-// Prescribed motions whose values do not fit their derivatives, and such as only seem not to.
+// Prescribed motions whose values do not match their derivatives, and valid ones that only appear not to match.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -23,7 +23,7 @@ namespace law_watch_test {
 
 constexpr double pi = std::numbers::pi;
 
-/// Any function of time, with breakpoints that are declared.
+/// Any function of time, with declared breakpoints.
 struct Any {
   std::function<Motion(double)> motion;
   std::vector<double> breakpoints = {};
@@ -36,7 +36,7 @@ Any step_to(double value) {
 }
 Any const kink{[](double t) { return t < 0.5 ? Motion{} : Motion{t - 0.5, 1.0, 0.0}; }};
 
-/// A rod on a pin, driven by a law.
+/// A rod on a pin with a prescribed motion.
 struct Driven {
   using Pin = Joint<planar::Revolute, Constraint>;
   using Drive = Joint<PrescribedAngle<Any>, Constraint>;
@@ -114,7 +114,7 @@ TEST(LawWatch, AcceptsABreakpointThatIsDeclared) {
   EXPECT_NEAR(s.angle, 0.5, 1e-9);
 }
 
-// The value may not jump there either.
+// A jump of the value is refused at a breakpoint of the run too.
 TEST(LawWatch, RefusesAJumpOfTheValueAtABreakpointOfTheRun) {
   Said const s = said(RungeKutta4<Projection>{}, step_to(0.1), 1e-3, {0.5});
   EXPECT_TRUE(has(s.message, "joint \"drive\": the prescribed value jumps by 0.1 at the breakpoint t = 0.5 s"))
@@ -122,13 +122,13 @@ TEST(LawWatch, RefusesAJumpOfTheValueAtABreakpointOfTheRun) {
   EXPECT_NEAR(s.angle, 0.0, 1e-9);
 }
 
-// An angle may begin again at zero after a turn.
+// An angle may restart at zero after a full turn.
 TEST(LawWatch, AcceptsWholeTurns) {
   Any const turns{[](double t) { return Motion{std::fmod(40.0 * t, 2.0 * pi), 40.0, 0.0}; }};
   EXPECT_EQ(said(GeneralizedAlpha{}, turns).message, "");
 }
 
-// Laws that oscillate within a step, and laws whose second derivative jumps.
+// Functions of time that oscillate within a step, and functions whose second derivative jumps.
 TEST(LawWatch, AcceptsLawsThatStepsDoNotResolve) {
   for (double const phase : {0.0, 1.0, pi}) {
     Any const fast{[=](double t) {

@@ -1,5 +1,4 @@
-// Blocks of a whole tangent on their way into a reduced system: PᵀBP, whatever P does with the unknowns that a block
-// touches.
+// Blocks of a full tangent that are added to a reduced system: PᵀBP, for any action of P on the unknowns of a block.
 #include <gtest/gtest.h>
 
 #include <polybody/solvers/block_ldlt.hpp>
@@ -15,7 +14,7 @@ namespace mapped_sink_test {
 
 using Targets = Sequence<Sequence<UnknownMap::Target>>;
 
-/// Adds blocks in place, and remembers what came.
+/// Adds blocks in place, and records their positions.
 struct Plain {
   MatX a;
   std::vector<std::array<Index, 4>> calls = {};
@@ -35,8 +34,8 @@ MatX matrix_of(Targets const& targets, Index size) {
   return p;
 }
 
-/// Twelve unknowns of which 3 … 5 go where 0 … 2 of their neighbour went, one is left out, and one depends on two
-/// others.
+/// Twelve unknowns. 3 … 5 are mapped to the same unknowns as 0 … 2 of their neighbour, one is omitted, and one
+/// depends on two others.
 Targets by_choice() {
   return {{{4, 1.0}}, {{5, 1.0}}, {{6, 1.0}}, {{0, 1.0}}, {{1, 1.0}}, {{2, 1.0}},
           {{4, 1.0}}, {},         {{3, 1.0}}, {{7, 1.0}}, {{8, 1.0}}, {{9, 1.0}}};
@@ -54,7 +53,7 @@ void expect_pulled(Targets const& targets) {
   MappedBlocks kept;
   MatX const p = matrix_of(targets, size);
   std::mt19937 random(3);
-  for (int pass = 0; pass < 2; ++pass) {  // the second finds its ranges
+  for (int pass = 0; pass < 2; ++pass) {  // the second pass finds its ranges
     MatX all = MatX::Zero(whole, whole);
     Plain sink{MatX::Zero(size, size)};
     BlockSink receiver(sink);
@@ -93,7 +92,7 @@ TEST(MappedSink, SkipsWhatItWouldAdd) {
   }
 }
 
-/// Four bodies in a row, one link between them without stiffness: told so, or added as zeros.
+/// Four bodies in a row. One link between them has no stiffness: its blocks are skipped, or added as zeros.
 template <class Sink>
 void write_chain(Sink& sink, bool skips) {
   std::srand(7);

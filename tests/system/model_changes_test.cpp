@@ -19,7 +19,7 @@
 using namespace polybody;
 
 // A run, a system or a recorder keeps a reference to its model. Each use of it after a change of the model throws
-// InvalidInput. Under the address sanitizer these tests also show that no use reads memory that was freed.
+// InvalidInput. Under the address sanitizer these tests also show that no use reads freed memory.
 namespace model_changes_test {
 
 template <class Policy>
@@ -44,7 +44,7 @@ void grow(M& model) {
   for (int i = 0; i < 50; ++i) model.add(planar::Rigid(1, 0.1, Placement::planar(1.5 + i, 0)));
 }
 
-/// A run stops with `sentence` after `change`, and its state stays as the last step left it.
+/// A run stops with `sentence` after `change`, and its state remains that of the last step.
 template <class Policy, class I>
 void expect_stop(I const& integrator, std::function<void(std::unique_ptr<Bars<Policy>>&)> const& change,
                  char const* sentence) {
@@ -107,7 +107,7 @@ TEST(ModelChanges, StopARunOfATreeThatIsItsOwnSolver) {
   expect_stops<ByBodies>(RungeKutta4<>{});
 }
 
-// A copy that is changed or destroyed does not concern the runs of its original.
+// A change or destruction of a copy does not affect the runs of its original.
 TEST(ModelChanges, OfACopyLeaveARunAlone) {
   auto const last = [](bool copied) {
     auto model = bar();
@@ -176,7 +176,7 @@ TEST(ModelChanges, OfAnEmptiedModelAreAsOfANewOne) {
   EXPECT_EQ(x.q, y.q);
 }
 
-// A temporary model is refused when it is compiled: tests/refused holds the sentences of `simulate` and `resume`.
+// A temporary model is refused at compile time: tests/refused contains the messages of `simulate` and `resume`.
 template <class M>
 concept TakesTemporaries = std::constructible_from<System, M> || std::constructible_from<EnergyAudit, M> ||
                            std::constructible_from<LoadRecorder, M> || std::constructible_from<Visual, M> ||

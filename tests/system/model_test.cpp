@@ -54,26 +54,26 @@ TEST(Model, NamesWhatHasNoName) {
   EXPECT_EQ(system.name_of(12), "joint \"" + second.name + "\"");
 }
 
-// Records, files and messages tell parts apart by their names.
+// Records, files and messages distinguish parts by their names.
 TEST(Model, RefusesANameThatIsTaken) {
   using Soft = Joint<planar::Revolute, Penalty>;
   Model<Bodies<planar::Rigid>, Joints<Pin, Soft>, Forces<PointForce<>, PointMoment<>>> model;
   auto const boom = model.add(bar(), "boom");
   auto const ground = model.ground().at({0, 0, 0});
   EXPECT_TRUE(has(refusal([&] { model.add(bar(), "boom"); }), "There is a body \"boom\" already"));
-  model.connect(Pin{}, ground, boom.at(Vec2(0, 0)), "boom");  // a joint may be called as a body
+  model.connect(Pin{}, ground, boom.at(Vec2(0, 0)), "boom");  // a joint may have the same name as a body
   Soft const soft{{}, Penalty{.stiffness = 1.0, .damping = 0.0}};
   EXPECT_TRUE(has(refusal([&] { model.connect(soft, ground, boom.at(Vec2(0, 0)), "boom"); }), "a joint \"boom\""));
   model.apply(PointForce<>{.force = {1, 0, 0}}, boom.at(Vec2(0, 0)), "push");
   EXPECT_TRUE(has(refusal([&] { model.apply(PointMoment<>{.moment = {0, 0, 1}}, boom.at(Vec2(0, 0)), "push"); }),
                   "a force \"push\""));
-  EXPECT_EQ(model.body_count(), 1);  // a refusal leaves the model as it was
+  EXPECT_EQ(model.body_count(), 1);  // a refusal leaves the model unchanged
   EXPECT_EQ(model.markers(), 3);
   EXPECT_EQ(model.rows(), 2);
   EXPECT_EQ(model.add(bar(), "jib").name, "jib");
 }
 
-// Types have pools of their own, but names are those of the whole model; and what is given comes first.
+// Every type has its own pool, but names are unique in the whole model. Given names have priority.
 TEST(Model, GivesNamesThatAreFree) {
   using Soft = Joint<planar::Revolute, Penalty>;
   Model<Bodies<planar::Rigid>, Joints<Pin, Soft>, Forces<PointForce<>, PointMoment<>>> model;
@@ -90,7 +90,7 @@ TEST(Model, GivesNamesThatAreFree) {
   EXPECT_EQ(turn.name, "force 2");
 }
 
-// The reference state puts every joint's markers where the user placed the bodies.
+// In the reference state the markers of every joint are at the positions where the user placed the bodies.
 TEST(Model, ReferenceStateIsThatOfThePlacements) {
   Plane model;
   auto const turned = model.add(planar::Rigid(1.0, 1.0, Placement::planar(2.0, -1.0, 0.5)));
@@ -127,10 +127,10 @@ TEST(Model, RefusesMarkersAndHandlesOfAnotherModel) {
       refusal([&] { model.apply(SpringDamper{.stiffness = 1.0, .free_length = 1.0}, own.at(Vec2(0, 0)), at); }), said));
   EXPECT_TRUE(has(refusal([&] { model.set_velocity(x, foreign, {0, 0, 0}, {0, 0, 1}); }), "\"foreign\""));
   EXPECT_TRUE(has(refusal([&] { (void)position(model, x, at); }), said));
-  // a refused joint leaves nothing behind
+  // a refused joint leaves the model unchanged
   EXPECT_EQ(model.rows(), 0);
   EXPECT_EQ(model.markers(), 0);
-  // nor does a copy pass for the original
+  // a copy is not accepted as the original either
   Plane const copy = model;
   EXPECT_NO_THROW((void)position(copy, x, own.at(Vec2(0, 0))));
 }
@@ -146,7 +146,7 @@ TEST(Model, NamesTheJointWhoseParametersCannotBeMeant) {
   EXPECT_EQ(model.rows(), 0);
 }
 
-// A model copied is a model of its own with the same content.
+// A copy of a model is a separate model with the same content.
 TEST(Model, ACopyMovesAsTheOriginal) {
   Plane model{Gravity{0, -9.81, 0}};
   auto const a = model.add(bar(0.5));

@@ -19,8 +19,8 @@ namespace opposite_ends_test {
 static_assert(has_opposite_ends<Joint<Revolute, Constraint>::Measured>());
 static_assert(!has_opposite_ends<Joint<Revolute, Bushing>::Measured>(), "It measures other rows.");
 
-// One wrench serves both ends of most joints here, of the RevolutePin two: for any rates b and multipliers λ the power
-// b·(Gᵀλ) is λ·(G b), which reads the maps of both ends. Frames stand anywhere, joints are open.
+// Most joints here apply one wrench to both ends, RevolutePin applies two. For any rates b and multipliers λ the
+// power b·(Gᵀλ) equals λ·(G b), which uses the maps of both ends. Frames are arbitrary and the joints are violated.
 template <class G>
 void expect_power_of_rates(G const& geometry) {
   static constexpr double rounding = 1e-13;

@@ -1,4 +1,4 @@
-// Elements of several bodies in one pack.
+// Elements of several bodies in one SIMD vector.
 #include <polybody/system/pool_batches.hpp>
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ detail::PoolBatches batches(std::vector<B> const& all) {
   return detail::batches_of(std::get<0>(model.body_pools()));
 }
 
-// Bodies with fewer elements than a pack has lanes share packs, those with as many do not.
+// Bodies with fewer elements than the lanes of a SIMD vector share SIMD vectors; bodies with as many do not.
 TEST(PoolBatches, FillPacksFromBodiesThatAreAlike) {
   using B = AncfCable<>;
   std::vector<B> all;
@@ -49,7 +49,7 @@ TEST(PoolBatches, FillPacksFromBodiesThatAreAlike) {
   EXPECT_EQ(found.bodies[0], 2 * pack_size + 1);
 }
 
-// Another material, another length of the elements: another pack.
+// Elements with another material or another length are in another SIMD vector.
 TEST(PoolBatches, KeepBodiesApartThatDiffer) {
   using B = AncfCable<>;
   std::vector<B> all;
@@ -65,7 +65,7 @@ TEST(PoolBatches, KeepBodiesApartThatDiffer) {
   EXPECT_EQ(batches(lengths).packs.size(), 0u);
 }
 
-/// q, v and v̇ that bend and turn all bodies.
+/// q, v and v̇ that bend and rotate all bodies.
 State swaying(State x) {
   for (Index i = 0; i < x.q.size(); ++i) x.q[i] += 0.01 * std::sin(3.0 * double(i));
   for (Index i = 0; i < x.v.size(); ++i) {
@@ -115,8 +115,8 @@ void expect_sums_of_bodies(std::vector<B> const& all) {
   }
 }
 
-// Whatever goes side by side, each body feels what it feels alone: one element and more, of two materials, in an order
-// that fills packs, leaves some over and cuts bodies.
+// Each body has the forces and the tangent that it has alone, for any grouping of elements. The bodies have one or
+// more elements, of two materials. Their order fills SIMD vectors, leaves a remainder and divides bodies.
 TEST(PoolBatches, GiveEachBodyItsForcesAndTangent) {
   std::vector<AncfCable<>> cables;
   std::vector<AncfBeam<ElasticLine>> beams;

@@ -1,5 +1,5 @@
 #pragma once
-// Trees of rigid bodies that a seed draws, with every geometry that has joint coordinates.
+// Random trees of rigid bodies from a seed, with every geometry that has joint coordinates.
 #include <random>
 
 #include <polybody/bodies/rigid/rigid.hpp>
@@ -28,11 +28,12 @@ struct Draws {
   double number(double from, double to) { return std::uniform_real_distribution<>(from, to)(engine); }
   int below(int n) { return std::uniform_int_distribution<>(0, n - 1)(engine); }
   Vec3 vector(double size) { return {number(-size, size), number(-size, size), number(-size, size)}; }
-  /// Of three orthogonal axes, which may be the world's.
+  /// One of three orthogonal axes, which may be the world's.
   Vec3 axis() { return below(2) == 0 ? Vec3(Vec3::Unit(below(3))) : Vec3(vector(1.0).normalized()); }
 };
 
-/// A tree that a seed draws: bodies, whose joints hang them on the ground, on bodies before or, as roots, on nothing.
+/// A random tree from a seed: the joints connect each body to the ground, to an earlier body or, as roots, to
+/// nothing.
 template <class Body, class Policy, bool sprung>
 struct Tree {
   template <class G>
@@ -92,7 +93,7 @@ struct Tree {
         return connect(J<Weld>{}, draw, carrier, carried);
     }
   }
-  /// At a drawn point of the carried body, one time as frame b and one time as frame a.
+  /// At a random point of the carried body, which is sometimes frame b and sometimes frame a.
   template <class Joint>
   void connect(Joint const& joint, Draws& draw, int carrier, int carried) {
     Vec3 const off = draw.vector(0.3);
@@ -115,7 +116,7 @@ struct Tree {
   }
 };
 
-/// Positions and speeds that a seed draws, with their accelerations and multipliers, whole.
+/// Random coordinates and velocities from a seed, with their accelerations and multipliers, as full states.
 template <class T>
 State moving(T const& tree, unsigned seed) {
   Draws draw{std::mt19937(seed + 7)};

@@ -1,5 +1,5 @@
-// Bodies that float on a frame in trees of joint coordinates: what is carried by a point that deforms, and what hangs
-// by one, against the same models with multipliers.
+// Bodies with a floating frame in trees of joint coordinates, against the same models with multipliers. Some joints
+// are at a deforming point of the carrying body, some at one of the carried body.
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/ffr/ffr.hpp>
@@ -30,7 +30,8 @@ Bar const bar{
         BarConstants{.EA = 2e4, .EI = 4.0, .mass_per_length = 0.8, .GJ = 3.0, .rotary_inertia = 5e-4, .EI_y = 6.0},
     .placement = {}};
 
-/// Rigid bodies and floating ones that a seed draws, each of which hangs on the ground, on one before it or on nothing.
+/// Random rigid bodies and floating frames from a seed. Each is connected to the ground, to an earlier body or to
+/// nothing.
 template <class Policy, class Rigid, class Floating, class... Gs>
 struct Mixed {
   Model<Bodies<Rigid, Floating>, Joints<Joint<Gs, Policy>...>> model{Gravity{1.0, -2.0, -9.81}};
@@ -43,7 +44,7 @@ struct Mixed {
   std::vector<BodyHandle<Floating>> floating;
   std::vector<Place> places;
 
-  /// A marker at a place on the body: along the bar where it floats.
+  /// A marker at a point of the body; along the bar if the body has a floating frame.
   template <class F>
   void at(std::size_t i, Vec3 const& u, F&& f) {
     if (places[i].floats)
@@ -146,8 +147,8 @@ struct InPlane : Mixed<Policy, planar::Rigid, planar::Ffr, planar::Revolute, pla
   }
 };
 
-/// Accelerations and multipliers of trees that move and are deformed; each state keeps to the joints, and is found
-/// again from its joint coordinates.
+/// Accelerations and multipliers of trees in motion and in deformation. Each state satisfies the joints, and is
+/// reproduced from its joint coordinates.
 template <template <class> class Tree, class Policy>
 void expect_as_multipliers(char const* world, char const* way, double bound) {
   double worst_a = 0.0, worst_lambda = 0.0, worst_state = 0.0;
@@ -183,8 +184,8 @@ void expect_as_multipliers(char const* world, char const* way, double bound) {
   EXPECT_LT(worst_state, 1e-9);
 }
 
-// Deformed at random, the bodies accelerate by 1e7 m/s². Reduced carries the forces of all bodies to the roots before
-// they cancel: another order of the sums moves its error a hundredfold, up to 1.5e-9.
+// With random deformations the bodies accelerate by 1e7 m/s². `Reduced` adds the forces of all bodies at the roots,
+// where they cancel. Another order of summation changes its error by a factor of a hundred, up to 1.5e-9.
 TEST(RecursiveFfr, TreesInSpaceAccelerateAsMultipliersSay) {
   expect_as_multipliers<InSpace, Recursive>("in space", "Recursive", 1e-9);
   expect_as_multipliers<InSpace, Reduced>("in space", "RecursiveBy<Reduced>", 1e-8);
@@ -194,7 +195,7 @@ TEST(RecursiveFfr, TreesInThePlaneAccelerateAsMultipliersSay) {
   expect_as_multipliers<InPlane, Reduced>("in the plane", "RecursiveBy<Reduced>", 1e-9);
 }
 
-/// Three bars in a row that fall from the level, each on the flexible end of the one before.
+/// Three bars in a row that fall from the horizontal, each on the flexible end of the previous one.
 template <class Policy>
 struct Row {
   using Pin = Joint<Spherical, Policy>;

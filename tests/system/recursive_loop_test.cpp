@@ -1,4 +1,5 @@
-// Joint coordinates in the plane: loops closed by another policy, implicit steps, flexible bodies on a tree, refusals.
+// Joint coordinates in the plane: loops closed by another policy, implicit steps, flexible bodies in a tree,
+// refusals.
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/ancf/planar_ancf_cable.hpp>
@@ -25,7 +26,7 @@ namespace recursive_loop_test {
 using Reduced = RecursiveBy<recursive::Reduced>;
 using ByBodies = RecursiveBy<recursive::ArticulatedBody>;
 
-/// A four-bar in the plane, the last pin by a policy of its own.
+/// A planar four-bar linkage, with a separate policy for the last pin.
 template <class Policy>
 struct FourBar {
   using Pin = Joint<planar::Revolute, Policy>;
@@ -104,8 +105,8 @@ TEST(RecursiveLoop, LoopsCloseByAnotherPolicy) {
   expect_same("body by body", bodies);
 }
 
-// A joint of both worlds leaves three turns and two slides in space; in the plane one of each. The normal of the plane
-// is any of the joint's axes, this way or that.
+// A joint for both space and plane has three rotations and two translations in space, one of each in the plane. The
+// normal of the plane is any of the joint's axes, in either direction.
 template <class Policy>
 State run_on_lines() {
   using Foot = Joint<PointInPlane, Policy>;
@@ -177,11 +178,11 @@ TEST(RecursiveLoop, FlexibleBodiesHangOnATreeByAnotherPolicy) {
   EXPECT_GT(std::abs(tied[1]), 0.1);
   held_within({"closed forms", "tip of a cable on a rigid arm [m]", By::itself, "Constraint",
                "joint coordinates and Constraint"},
-              (tied - free).norm(), 1e-5, {.scale = 1.0});  // both are off by h²
+              (tied - free).norm(), 1e-5, {.scale = 1.0});  // both have an error of h²
 }
 
-// CASES S11: ten links of 0.1 m and 1 kg hang over 0.8 m; tan θᵢ = (V − m g (i + ½))/H. They stay so, and what the
-// tree's pins carry is worked out.
+// Discrete catenary (S11), in equilibrium: ten links of 0.1 m and 1 kg hang over 0.8 m; tan θᵢ = (V − m g (i + ½))/H.
+// The links stay at rest, and the reactions of the tree's pins are computed.
 TEST(RecursiveLoop, ChainHangsWithThePublishedForces) {
   using Loop = FourBar<Recursive>;
   Loop::ModelType model{Gravity{0, -9.81, 0}};
@@ -260,7 +261,8 @@ TEST(RecursiveLoop, EliminationByBodiesNamesAForceThatItCannotTake) {
   model.apply(SpringDamper{.stiffness = 1.0, .damping = 0.0, .free_length = 1.0}, a.at(Vec2(1, 0)), c.at(Vec2(0, 1)));
   State x = model.reference_state();
   EXPECT_NO_THROW(
-      simulate(model, x, RungeKutta4<Projection>{}, {.until = 1e-2, .step = 1e-3}).run());  // M alone has no such block
+      // M alone has no such block
+      simulate(model, x, RungeKutta4<Projection>{}, {.until = 1e-2, .step = 1e-3}).run());
   std::string const why = refusal([&] { simulate(model, x, GeneralizedAlpha{}, {.until = 1.0, .step = 1e-3}).run(); });
   EXPECT_TRUE(has(why, "\"c\""));
   EXPECT_TRUE(has(why, "Augmented"));
@@ -272,14 +274,14 @@ RunReport fall_of_a_chain() {
   State x = chain.model.reference_state();
   return simulate(chain.model, x, GeneralizedAlpha{.rho_inf = 0.8}, {.until = 1.0, .step = 1e-3}).run();
 }
-// With −Tᵀr answered in place of the bodies' own r, 419 factorisations for 295.
+// With −Tᵀr as the residual instead of the r of the bodies, 419 factorisations instead of 295.
 TEST(RecursiveLoop, KeepsAFactorisationAsLongAsItsBodiesWouldDo) {
   RunReport const narrow = fall_of_a_chain<Recursive>(), whole = fall_of_a_chain<Constraint>();
   EXPECT_LT(double(narrow.factorisations), 1.25 * double(whole.factorisations));
   EXPECT_LT(double(narrow.iterations), 1.1 * double(whole.iterations));
 }
 
-/// The largest part of the forces that the states of a falling chain leave out of balance.
+/// The largest unbalanced force in the states of a falling chain.
 template <class Policy>
 double out_of_balance() {
   Chain<InPlane<Policy>> chain(16, bar_link(0.1));
@@ -299,7 +301,7 @@ double out_of_balance() {
   }
   return worst;
 }
-// States that are looked at take the multipliers of the step, of which the balance of each body says what they are off.
+// Recorded states use the multipliers of the step. The balance of each body shows the error of the state.
 TEST(RecursiveLoop, StatesAreInBalanceWithTheMultipliersOfTheStep) {
   double const narrow = out_of_balance<Recursive>(), whole = out_of_balance<Constraint>();
   EXPECT_LT(whole, 1e-7);

@@ -1,5 +1,5 @@
-// Joint coordinates of trees against the same models with multipliers: motion, reactions, violation, counts, three ways
-// to solve.
+// Joint coordinates of trees against the same models with multipliers: motion, reactions, violation, counts, three
+// solution methods.
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/rigid/rigid.hpp>
@@ -45,7 +45,7 @@ struct Branched {
   ModelType model{Gravity{1, -2, -9.81}};
   std::vector<BodyHandle<Rigid<>>> links;
 
-  /// All joints in a tree with two branches; in every other one the carried body is the first marker.
+  /// All joints in a tree with two branches; in every second joint the carried body is the first marker.
   Branched() {
     for (int i = 0; i < 11; ++i) links.push_back(model.add(link(0.3 * i, 0.05 * i)));
     hang(J<Revolute>{{.axis = Vec3::UnitY()}}, -1, 0);
@@ -64,7 +64,7 @@ struct Branched {
   void hang(Joint const& joint, int carrier, int carried) {
     Vec3 const off(0.1, -0.05, 0.02);
     auto const b = links[std::size_t(carried)].at(off);
-    // the joint point in the world, on both bodies
+    // the joint's point in the world, on both bodies
     Rigid<> const& body = links[std::size_t(carried)].body();
     std::vector<double> q(7);
     body.reference(q);
@@ -100,7 +100,7 @@ TEST(Recursive, MovesEveryJointAsMultipliersDo) {
   Branched<Recursive> const free;
   State const x = moved(tied, RungeKutta4<Projection>{}, 0.3, 1e-3),
               y = moved(free, RungeKutta4<Projection>{}, 0.3, 1e-3);
-  // Both are off by h⁴: Richardson's difference to twice the step shows how much.
+  // Both have an error of h⁴: the difference to twice the step gives its size (Richardson).
   State const coarse = moved(tied, RungeKutta4<Projection>{}, 0.3, 2e-3);
   double const off = (x.q - coarse.q).norm();
   EXPECT_LT(off, 1e-7);
@@ -148,7 +148,7 @@ TEST(Recursive, ThreeWaysToSolveAreOne) {
   }
 }
 
-/// Accelerations of a tree under loads on its freedoms.
+/// Accelerations of a tree under loads on its joint coordinates.
 template <class Policy>
 VecX answer(Branched<Policy> const& tree) {
   System system = stepped_system(tree.model);
@@ -171,7 +171,8 @@ TEST(Recursive, AnswersLoadsAlikeWhicheverWayItSolves) {
 }
 
 TEST(Recursive, CountsJointCoordinates) {
-  // 1 + 1 + 2 + 3 + 2 + 1 + 3 + 4 + 5 + 3 + 0 degrees of freedom; four balls have a coordinate more than speeds
+  // 1 + 1 + 2 + 3 + 2 + 1 + 3 + 4 + 5 + 3 + 0 degrees of freedom; each of four balls has one coordinate more than
+  // velocities
   Census const c = census(Branched<Recursive>().model);
   auto const count = [](char const* what, Index found, Index counted) {
     held({"closed forms", what, By::closed_form, "counted", "joint coordinates"}, double(found), double(counted), 0.0);
@@ -207,7 +208,7 @@ TEST(Recursive, FreeTreesKeepTheirMomentum) {
   State x = model.reference_state();
   model.set_velocity(x, a, {0, 1, 0}, {0, 0, 2});
   model.set_velocity(x, b, {0, 1, 0}, {0, 0, 2});
-  x.v.segment<3>(model.entry(b).v0 + 3) += Vec3(3, -1, 0.5);  // b turns against a
+  x.v.segment<3>(model.entry(b).v0 + 3) += Vec3(3, -1, 0.5);  // b rotates relative to a
   x.v.segment<3>(model.entry(b).v0) += Vec3(3, -1, 0.5).cross(Vec3(0.25, 0, 0));
   EXPECT_EQ(census(model).degrees_of_freedom, 9);
   auto const momenta = [&] {

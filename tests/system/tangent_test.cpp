@@ -1,5 +1,5 @@
-// The tangent and the row derivatives of whole models against dual numbers and differences of the residual and
-// the rows themselves.
+// The tangent and the derivatives of constraint functions of full models, against dual numbers and against
+// differences of the residual and the constraint functions.
 #include <polybody/solvers/dense_lu.hpp>
 #include <polybody/system/system.hpp>
 
@@ -23,7 +23,7 @@ VecXOf<D> along(VecX const& x, VecX const& d) {
   return out;
 }
 
-/// What the laws ask of a model of any type.
+/// Inputs of the tests, for a model of any type.
 struct Asked {
   std::function<State(unsigned)> state;
   std::function<VecX(VecX const& q, VecX const& delta)> plus;
@@ -34,7 +34,7 @@ struct Asked {
   std::function<VecX(State const&, VecX const& dq, VecX const& dv)> slope;
 };
 
-/// Loads and gravity are on at seven tenths.
+/// Loads and gravity are on at 0.7 of their values.
 template <class M>
 Asked ask(M const& m) {
   auto const model = std::make_shared<M const>(m);
@@ -121,7 +121,7 @@ struct Tangent : testing::TestWithParam<Asked (*)(double damping)> {
   MatX G(Asked const& a, State const& at) const {
     return a.tangent(at, {}, SecondOrder::omitted).bottomLeftCorner(rows, nv);
   }
-  /// The state after time h at constant speeds: exact for h v small or large, as v is constant in body axes.
+  /// The state after time h at constant velocities: exact for small and large h v, as v is constant in body axes.
   State later(State const& at, double h) const {
     State y = at;
     y.q = damped.plus(at.q, at.v * h);
@@ -132,8 +132,8 @@ struct Tangent : testing::TestWithParam<Asked (*)(double damping)> {
 
 double mismatch(MatX const& a, MatX const& b) { return (a - b).norm() / std::max(1.0, b.norm()); }
 
-// K = ∂r/∂q of everything together: elastic forces, followers, springs, Gᵀλ and Jᵀw. At rest, as the tangent
-// leaves out ∂ġ/∂q of dampers.
+// K = ∂r/∂q of all terms together: elastic forces, followers, springs, Gᵀλ and Jᵀw. The model is at rest because the
+// tangent omits ∂ġ/∂q of dampers.
 TEST_P(Tangent, StiffnessIsTheDerivativeOfTheResidualByPosition) {
   for (unsigned seed : {1u, 2u}) {
     State const y = at_rest(damped.state(seed));
@@ -141,12 +141,12 @@ TEST_P(Tangent, StiffnessIsTheDerivativeOfTheResidualByPosition) {
   }
 }
 
-// Without dampers between markers it is exact in motion too, the damping of the material included.
+// Without dampers between markers the tangent is exact in motion as well, with material damping.
 TEST_P(Tangent, StiffnessIsExactInMotionWithoutDampers) {
   EXPECT_LT(mismatch(stiffness(undamped, x), by_position(undamped, x)), 1e-13);
 }
 
-// The same once more without dual numbers.
+// The same comparison without dual numbers.
 TEST_P(Tangent, StiffnessAgreesWithDifferencesOfTheResidual) {
   MatX k(nv, nv);
   for (Index j = 0; j < nv; ++j)
@@ -171,7 +171,7 @@ TEST_P(Tangent, MassIsTheDerivativeOfTheResidualByAcceleration) {
   MatX expected(nv, nv);
   for (Index j = 0; j < nv; ++j) {
     State y = x;
-    y.a[j] += 1000.0;  // linear in a: a large step leaves little rounding
+    y.a[j] += 1000.0;  // linear in a: a large difference has little round-off
     expected.col(j) = (damped.residual(y) - damped.residual(x)) / 1000.0;
   }
   EXPECT_LT(mismatch(m, expected), 1e-12);
@@ -200,7 +200,7 @@ TEST_P(Tangent, ColumnsOfMultipliersAreTheTransposedRows) {
   MatX const t = damped.tangent(x, {.mass = 2.0, .damping = 3.0, .stiffness = 5.0}, SecondOrder::included);
   EXPECT_EQ(t.topRightCorner(nv, rows), t.bottomLeftCorner(rows, nv).transpose());
   EXPECT_EQ(t.bottomRightCorner(rows, rows).norm(), 0.0);
-  for (Index i = 0; i < rows; ++i) {  // Gᵀ is what a multiplier does to the residual
+  for (Index i = 0; i < rows; ++i) {  // Gᵀ is the derivative of the residual with respect to a multiplier
     State y = x;
     y.lambda[i] += 1.0;
     EXPECT_LT((damped.residual(y) - damped.residual(x) - t.col(nv + i).head(nv)).norm(), 1e-12);
@@ -222,7 +222,7 @@ TEST_P(Tangent, AccelerationBiasIsTheRateOfTheViolationRate) {
   EXPECT_LT(mismatch(damped.acceleration_bias(x), expected), 1e-10);
 }
 
-// Solvers count on it: the pattern depends on `second` alone.
+// Solvers require that the pattern depends on `second` alone.
 TEST_P(Tangent, BlocksComeInTheSameOrderEveryTime) {
   auto const same = [](Block const& a, Block const& b) {
     return a.row == b.row && a.col == b.col && a.rows == b.rows && a.cols == b.cols;
@@ -239,7 +239,7 @@ TEST_P(Tangent, BlocksComeInTheSameOrderEveryTime) {
   }
 }
 
-// What `omitted` leaves out is not small here, and without it the tangent is not the derivative.
+// The terms that `omitted` omits are not small here. Without them the tangent is not the derivative.
 TEST_P(Tangent, SecondOrderTermsCount) {
   MatX const with = damped.tangent(x, {.stiffness = 1.0}, SecondOrder::included);
   MatX const without = damped.tangent(x, {.stiffness = 1.0}, SecondOrder::omitted);

@@ -1,4 +1,4 @@
-// Threads share the loops of an evaluation; nothing that is computed depends on their number.
+// Threads share the loops of an evaluation; no result depends on their number.
 
 #include <gtest/gtest.h>
 
@@ -55,7 +55,7 @@ TEST(Threads, GiveTheSameBitsForManyBodies) {
   expect_same_bits(chain.model, 0.02);
 }
 
-/// Hanging chains of as many bodies of one element each.
+/// Hanging chains with the same number of bodies, of one element each.
 template <class B, class Policy>
 auto chain_of(Index count) {
   using Pin = Joint<planar::Revolute, Policy>;
@@ -81,7 +81,7 @@ TEST(Threads, GiveTheSameBitsForManyFlexibleBodies) {
   expect_same_bits(chain_of<planar::Lrvf, Constraint>(203), 0.02);
 }
 
-// Balls that fall on the ground and on a drum, at different times: what both get is added in order.
+// Balls that fall on the ground and on a drum, at different times: the forces on both are added in a fixed order.
 TEST(Threads, GiveTheSameBitsForContacts) {
   using OnGround = Contact<SphereOnPlane>;
   using OnDrum = Contact<SphereOnCylinder>;

@@ -1,5 +1,6 @@
-// Accelerations of trees by articulated bodies: random trees of every geometry that has joint coordinates beside
-// multipliers, with and without forces; roots that float; derivatives by dual numbers; a pendulum in closed form.
+// Accelerations of trees by the articulated-body algorithm. Random trees of every geometry with joint coordinates are
+// compared with multipliers, with and without forces. Further tests: floating roots, derivatives by dual numbers, a
+// pendulum in closed form.
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/rigid/planar_rigid.hpp>
@@ -16,7 +17,7 @@ namespace tree_dynamics_test {
 
 using namespace random_tree;
 
-/// A rigid body on which the air pulls, as a user writes one.
+/// A rigid body with air drag, written as a user would write it.
 class RigidInAir : public Rigid<> {
  public:
   using Rigid<>::Rigid;
@@ -44,7 +45,7 @@ void expect_trees_as_multipliers(unsigned first, unsigned last) {
     system.evaluate(x.q, x.v, 0.0);
     system.violation(open);
     EXPECT_LT(open.size() == 0 ? 0.0 : open.cwiseAbs().maxCoeff(), 1e-12) << "seed " << seed;
-    worst_a = std::max(worst_a, (x.a - a).norm() / (1.0 + a.norm()));  // which a weld to the ground has zero
+    worst_a = std::max(worst_a, (x.a - a).norm() / (1.0 + a.norm()));  // zero for a weld to the ground
     if (lambda.size() > 0) worst_lambda = std::max(worst_lambda, (x.lambda - lambda).norm() / (1.0 + lambda.norm()));
   }
   std::string const of =
@@ -104,7 +105,7 @@ TEST(TreeDynamics, PlanarTreesAccelerateAsMultipliersSay) {
               worst, 1e-10, {.scale = 1.0});
 }
 
-// The derivative along a direction is the limit of differences: by Richardson of central ones.
+// The derivative along a direction is the limit of central differences, by Richardson extrapolation.
 TEST(TreeDynamics, DualNumbersGiveTheDerivative) {
   for (unsigned seed = 1; seed < 30; ++seed) {
     Tree<Rigid<>, ByBodies, false> const tree(seed);
@@ -140,7 +141,7 @@ TEST(TreeDynamics, DualNumbersGiveTheDerivative) {
   }
 }
 
-// ϑ¨ = −m g c cos ϑ/(J + m c²) about a pin at c from the centre of mass.
+// ϑ¨ = −m g c cos ϑ/(J + m c²) about a pin at the distance c from the centre of mass.
 TEST(TreeDynamics, PendulumStartsAsItsClosedFormSays) {
   using Pin = Joint<Revolute, ByBodies>;
   Model<Bodies<Rigid<>>, Joints<Pin>> model{Gravity{0, 0, -9.81}};
@@ -150,7 +151,7 @@ TEST(TreeDynamics, PendulumStartsAsItsClosedFormSays) {
   State x = reduce(system, model.reference_state());
   for (double const angle : {0.0, 0.7, 2.0}) {
     x.q[0] = angle;
-    x.v[0] = 3.0;  // does not matter
+    x.v[0] = 3.0;  // has no influence
     ForwardDynamics<>(system).accelerations(system, {x.q, x.v, 0.0}, x.a, x.lambda);
     held({"closed forms", "angular acceleration of a pendulum [rad/s²]", By::closed_form,
           "m g c cos ϑ/(J + m c²), positive downwards", "RecursiveBy<ArticulatedBody>"},
@@ -158,7 +159,7 @@ TEST(TreeDynamics, PendulumStartsAsItsClosedFormSays) {
   }
 }
 
-// A rod without inertia about the pin through its centre of mass: nothing says how it turns.
+// A rod without inertia about the pin through its centre of mass: its angular acceleration is undetermined.
 TEST(TreeDynamics, FreedomWithoutInertiaIsNamed) {
   using Pin = Joint<Revolute, ByBodies>;
   Model<Bodies<Rigid<>>, Joints<Pin>> model{Gravity{0, 0, -9.81}};

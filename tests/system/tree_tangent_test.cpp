@@ -1,5 +1,6 @@
-// The tangent of an implicit step of a tree: beside differences of what the motion wants, on random trees of every
-// geometry that has joint coordinates; and that balance beside the whole model's residual.
+// The tangent of an implicit step of a tree, against differences of the residual of the equations of motion. The
+// random trees contain every geometry with joint coordinates. This residual is also compared with the residual of the
+// full model.
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/rigid/planar_rigid.hpp>
@@ -17,7 +18,7 @@ namespace tree_tangent_test {
 
 using namespace random_tree;
 
-/// A state and accelerations that a seed draws, in the unknowns of a time step.
+/// A random state and accelerations from a seed, in the unknowns of a time step.
 struct Drawn {
   VecX q, v, a, given;
   Drawn(System& system, State const& x, Draws& draw) : q(x.q), v(x.v), a(x.v), given(x.v) {
@@ -28,7 +29,8 @@ struct Drawn {
   }
 };
 
-/// How far K y is from `given` for y = K⁻¹ given, K y being the limit of differences: by Richardson of central ones.
+/// Error of K y relative to `given`, for y = K⁻¹ given. K y is the limit of central differences by Richardson
+/// extrapolation.
 template <class M>
 double tangent_off(M const& model, Draws& draw) {
   System system = stepped_system(model);
@@ -71,7 +73,7 @@ TEST(TreeTangent, IsTheDerivativeOfTheBalance) {
   for (unsigned seed = 1; seed < 200; ++seed) {
     Tree<Rigid<>, ByBodies, false> const tree(seed);
     Draws draw{std::mt19937(seed + 11)};
-    if (stepped_system(tree.model).speeds() == 0) continue;  // all is welded to the ground
+    if (stepped_system(tree.model).speeds() == 0) continue;  // all bodies are welded to the ground
     double const off = tangent_off(tree.model, draw);
     EXPECT_LT(off, 1e-7) << "seed " << seed;
     worst = std::max(worst, off);
@@ -119,7 +121,7 @@ TEST(TreeTangent, HoldsInThePlane) {
   EXPECT_LT(worst_balance, 1e-12);
 }
 
-/// Mean count of Newton's iterations while a chain on pins falls from a horizontal start.
+/// Mean number of Newton iterations while a chain on pins falls from a horizontal start.
 double iterations(int links, NewtonOptions const& newton) {
   using Pin = Joint<Revolute, ByBodies>;
   Model<Bodies<Rigid<>>, Joints<Pin>> model{Gravity{0, -9.81, 0}};
@@ -138,12 +140,12 @@ double iterations(int links, NewtonOptions const& newton) {
   return double(run.run().iterations) / double(run.report().steps);
 }
 
-// A tangent that leaves out what tension and the joints' rates do contracts the less the longer the chain.
+// Newton's method with a tangent that omits the terms of tension and of joint rates contracts less for longer chains.
 TEST(TreeTangent, NewtonsCountDoesNotGrowWithTheChain) {
   double const few = iterations(16, {.always_refactor = true}), many = iterations(512, {.always_refactor = true});
   EXPECT_NEAR(few, many, 0.3);
   EXPECT_LT(many, 2.5);
-  EXPECT_LT(iterations(512, {}), 4.0);  // factors kept
+  EXPECT_LT(iterations(512, {}), 4.0);  // reused factorisations
 }
 
 }  // namespace tree_tangent_test

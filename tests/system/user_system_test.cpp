@@ -1,4 +1,4 @@
-// A system of a user's own equations, without bodies and joints, under the integrators of the library.
+// A system of user-defined equations, without bodies and joints, under the integrators of the library.
 #include <gtest/gtest.h>
 
 #include <polybody/polybody.hpp>
@@ -13,7 +13,7 @@ namespace {
 
 using namespace polybody;
 
-/// x¨ = −ω² x: x = cos ωt.
+/// The solution of x¨ = −ω² x is x = cos ωt.
 struct Oscillator {
   double omega = 3.0;
   Index speeds() const { return 1; }
@@ -75,7 +75,8 @@ TEST(UserSystem, OscillatesUnderEveryKindOfIntegrator) {
   expect_cosine(Rattle{}, 1e-3, 3e-6);
 }
 
-// Energy is kept to the method's accuracy, and the multiplier is the pull of the thread: |λ| q = m (v² + g·down).
+// Energy is constant within the accuracy of the method. The multiplier is the tension of the thread: |λ| q = m (v² +
+// g·down).
 TEST(UserSystem, SwingsOnItsRow) {
   System system = system_of(Pendulum{});
   State const start = at(system, Vec2(1.0, 0.0));
@@ -109,12 +110,13 @@ TEST(UserSystem, NamesItselfInErrors) {
   }
 }
 
-/// z˙ = A z: a spiral, in first-order states alone.
+/// The solution of z˙ = A z is a spiral, with first-order states only.
 struct Spiral {
   Index states() const { return 2; }
   void rates(VecX const& z, double, VecX& h) const { h << -0.5 * z[0] - 3.0 * z[1], 3.0 * z[0] - 0.5 * z[1]; }
 };
-/// The oscillator whose spring force lags behind: 2 ẍ = −18 u − x, τ u̇ = x − u. With u = x it would be the one above.
+/// The oscillator with a delayed spring force: 2 ẍ = −18 u − x, τ u̇ = x − u. With u = x it would be the previous
+/// oscillator.
 struct LaggingSpring {
   double lag = 0.05;
   Index speeds() const { return 1; }
@@ -130,7 +132,7 @@ struct LaggingSpring {
     return a;
   }
 };
-/// Three reactions of very different speeds [Robertson 1966; Hairer & Wanner 1996, §IV.1].
+/// Three chemical reactions with very different rates [Robertson 1966; Hairer & Wanner 1996, §IV.1].
 struct Robertson {
   Index states() const { return 3; }
   void rates(VecX const& z, double, VecX& h) const {
@@ -174,7 +176,7 @@ TEST(UserSystem, MayBeOfFirstOrder) {
   expect_states(SymplecticEuler{}, 1e-4, 2e-3);
 }
 
-// The concentrations at t = 40, to the digits that the documentation of CVODE prints of its example cvRoberts.
+// The concentrations at t = 40, with the digits that the documentation of CVODE prints for its example cvRoberts.
 TEST(UserSystem, FollowsStiffReactions) {
   System system = system_of(Robertson{}, "reactor");
   State x = at(system, VecX(0));
@@ -203,8 +205,8 @@ TEST(System, RefusesWhatItWasMadeWithout) {
   EXPECT_THROW((void)powers(system, x), InvalidInput);
 }
 
-/// G by columns and Gᵀ by columns are each other's transpose, of every source of rows: frames, Euler parameters, linear
-/// joints.
+/// The columns of G and of Gᵀ form transposes of each other, for every source of constraint equations: frames, Euler
+/// parameters, linear joints.
 TEST(System, ProductsWithRowsAndTheirTransposeAgree) {
   using Pin = Joint<Revolute, Constraint>;
   using Ball = Joint<Spherical, AncfLinear>;

@@ -1,4 +1,4 @@
-// Work of a force and a moment over a step: turns of any size, springs of any stiffness.
+// Work of a force and a moment over a step: rotations of any size, springs of any stiffness.
 #include <gtest/gtest.h>
 
 #include <polybody/system/work_of_wrench.hpp>
@@ -13,14 +13,14 @@ Mat3 turned(Vec3 const& axis, double angle) {
   return Mat3::Identity() + std::sin(angle) * k + (1.0 - std::cos(angle)) * k * k;
 }
 
-// The angular velocity chooses the number of whole turns, and the side of a half turn.
+// The angular velocity determines the number of whole turns, and the side of a half turn.
 TEST(WorkOfWrench, CountsWholeTurns) {
   Vec3 const axis(2.0 / 3.0, -1.0 / 3.0, 2.0 / 3.0);
   Mat3 const first = turned(Vec3::UnitX(), 0.7);
   for (double const angle : {1e-12, 0.3, 3.0, 3.3, -3.3, 6.0, 20.0, -100.0, 4.0 * std::numbers::pi}) {
     Mat3 const second = turned(axis, angle) * first;
     Vec3 const turn = detail::turn_between(first.data(), second.data(), axis * (angle + 0.5));
-    if (std::abs(angle) == 4.0 * std::numbers::pi) {  // the axes have no direction of their own
+    if (std::abs(angle) == 4.0 * std::numbers::pi) {  // the axes have no unique direction
       EXPECT_NEAR(turn.dot(axis), angle, 1.0);
       continue;
     }
@@ -28,7 +28,7 @@ TEST(WorkOfWrench, CountsWholeTurns) {
   }
 }
 
-// ½ k (x₀² − x₁²) for any two places.
+// ½ k (x₀² − x₁²) for any two positions.
 TEST(WorkOfWrench, IsExactForALinearSpring) {
   double const k = 1e6;
   for (double const to : {0.1, -2.0, 1e6}) {
