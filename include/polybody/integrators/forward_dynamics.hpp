@@ -315,7 +315,7 @@ class ForwardDynamics {
   bool is_doubtful() const { return doubtful_ || solver_.is_doubtful(); }
   void note_doubt() { doubtful_ = true; }    ///< `is_doubtful` until `clear_doubt`
   void clear_doubt() { doubtful_ = false; }  ///< a choice is made
-  /// See `BlockFactor::null_vector`; by equations, as of the last factorisation.
+  /// Null vector `n` of the `dropped` equation of the last factorisation, by equations. See `BlockFactor::null_vector`.
   bool null_vector(Index dropped, VecX& n) { return solver_.null_vector(dropped, n); }
   /// Names of the joints and bodies that they belong to.
   std::vector<std::string> redundant(System const& system) const {

@@ -27,8 +27,8 @@ namespace polybody {
 
 /// Solutions of K x = λ M x by a shift.
 struct ShiftedPencil {
-  bool found = false;
-  double shift = 0.0;  ///< τ
+  bool found = false;  ///< a shift was found
+  double shift = 0.0;  ///< τ, unit of λ
   VecX values = {};    ///< λ ascending; the last ones, of motions without inertia, are infinite
   MatX vectors = {};   ///< (n×n) xᵀMx = 1
 };

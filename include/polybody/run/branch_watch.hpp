@@ -19,7 +19,7 @@ class BranchWatch {
   }
 
   /// Adds a warning for the first step that ends at x next to a singular position, of those in which the velocities v
-  /// turned by more than a tenth and a matrix was factorised.
+  /// turned by more than a tenth and a matrix was factorised. \param warnings of the run
   template <class Solver>
   void look(System& system, ForwardDynamics<Solver>& forward, StepReport const& taken, VecX const& v, State const& x,
             std::vector<std::string>& warnings) {

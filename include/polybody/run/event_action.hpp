@@ -125,7 +125,7 @@ template <LinearSolver Solver = DefaultSolver>
 
 /// The stepped state after those of the `events` that were met last have changed the user's state x. \param systems the
 /// stepped one, and the whole one where that eliminates joints: then speeds are brought onto these before they are left
-/// out
+/// out \param tolerance of constraint violations [m]
 template <LinearSolver Solver>
 [[gnu::cold]] State after_action(EventWatch const& watch, std::vector<Event> const& events, State x,
                                  std::array<System*, 2> systems, double tolerance) {

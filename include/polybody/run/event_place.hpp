@@ -16,7 +16,7 @@ struct EventPlace {
 
   int side = 0;           ///< −1, 0 (not known) or 1; −2 and 2: held at zero, negative or positive before
   bool known = false;     ///< `value` is that at the end of the last step
-  double value = 0.0;     ///< there
+  double value = 0.0;     ///< there, unit of the event
   double rate = 0.0;      ///< mean over the last step [1/s]
   double span = 0.0;      ///< length of that step; 0: none since the last start [s]
   double acted = -never;  ///< time of the last action [s]
@@ -25,10 +25,11 @@ struct EventPlace {
   int repeats = 0;        ///< actions, each within the tolerance of the last one
   bool stays = false;     ///< the last action left the value without a rate
   double scale = 0.0;     ///< size of the rate at the last meeting [1/s]
-  double off = 0.0;       ///< |value| there
+  double off = 0.0;       ///< |value| there, unit of the event
 
-  bool rests() const { return side == 2 || side == -2; }       ///< the value is held at zero
-  static int sign(double y) { return (y > 0.0) - (y < 0.0); }  ///< −1, 0 or 1
+  bool rests() const { return side == 2 || side == -2; }  ///< the value is held at zero
+  /// Sign of the value `y`: −1, 0 or 1.
+  static int sign(double y) { return (y > 0.0) - (y < 0.0); }
   /// The value y has left the stored side. Without a known side there is no zero to find.
   bool passed(double y) const { return side != 0 && sign(y) != (rests() ? side / 2 : side); }
   /// The value may have been beyond zero within a step of h [s] to `now`, though it is not at the end: the parabola
@@ -40,7 +41,7 @@ struct EventPlace {
     double const r0 = mean - bend * h, r1 = mean + bend * h;
     return r0 < 0.0 && r1 > 0.0 && w0 - 0.25 * r0 * r0 / bend < 0.5 * std::min(w0, w1);
   }
-  /// Stores the value at the end of a step.
+  /// Stores the value `now` at the end of a step.
   void stand(double now) {
     value = now;
     known = true;

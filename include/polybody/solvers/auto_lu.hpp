@@ -23,6 +23,7 @@ class SolverBySize {
   void begin() { small_ ? few_.begin() : many_.begin(); }
   void add(Index row, Index col, BlockView const& b) { small_ ? few_.add(row, col, b) : many_.add(row, col, b); }
   Index factor() { return small_ ? few_.factor() : many_.factor(); }
+  /// Sign of the determinant of the last factorisation: −1, 0 or 1.
   double sign_of_determinant() const { return small_ ? few_.sign_of_determinant() : many_.sign_of_determinant(); }
   double least_pivot() const { return small_ ? few_.least_pivot() : many_.least_pivot(); }
   void solve(VecX const& b, VecX& x) const { small_ ? few_.solve(b, x) : many_.solve(b, x); }

@@ -99,7 +99,8 @@ class KeptParts {
   /// Unknowns in parts that are factored once.
   Index kept() const { return kept_size_; }
   std::span<Index const> dropped() const { return {dropped_.data(), dropped_.size()}; }
-  /// As `BlockFactor`; rows of parts that are factored once stay.
+  /// Drops these `unknowns` in every later factorisation, as `BlockFactor`, except rows of parts that are factored
+  /// once.
   [[gnu::cold]] void leave_out(std::span<Index const> unknowns) {
     if constexpr (requires { rest_.leave_out(unknowns); }) {
       Sequence<Index> rows;
@@ -108,12 +109,12 @@ class KeptParts {
       rest_.leave_out(std::span<Index const>(rows.data(), rows.size()));
     }
   }
-  /// As `BlockFactor`.
+  /// True if a pivot is below `share`, as in `BlockFactor`.
   [[gnu::cold]] bool is_doubtful(double share) const {
     if constexpr (requires { rest_.is_doubtful(share); }) return rest_.is_doubtful(share);
     return false;
   }
-  /// As `BlockFactor`. False where the solver finds none.
+  /// Null vector `n` of the `dropped` equation, as in `BlockFactor`. Returns false if the solver finds none.
   [[gnu::cold]] bool null_vector(Index dropped, VecX& n) {
     if constexpr (requires { rest_.null_vector(dropped, n); }) {
       if (kept_size_ == 0) return rest_.null_vector(dropped, n), true;

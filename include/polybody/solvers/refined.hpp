@@ -66,16 +66,19 @@ class Refined {
   {
     solver_.keep_reorderings(count);
   }
+  /// Drops these `unknowns` in every later factorisation.
   void leave_out(std::span<Index const> unknowns)
     requires requires(Solver s) { s.leave_out(unknowns); }
   {
     solver_.leave_out(unknowns);
   }
+  /// True if a pivot is below `share`, as in `BlockFactor`.
   bool is_doubtful(double share) const
     requires requires(Solver const s) { s.is_doubtful(share); }
   {
     return solver_.is_doubtful(share);
   }
+  /// Null vector `n` of the `dropped` equation, as in `BlockFactor`.
   void null_vector(Index dropped, VecX& n) const
     requires requires(Solver const s) { s.null_vector(dropped, n); }
   {

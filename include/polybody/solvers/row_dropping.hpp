@@ -72,15 +72,15 @@ class RowDropping {
   }
   std::span<Index const> dropped() const { return {dropped_.data(), dropped_.size()}; }
 
-  /// As `BlockFactor`, by the block solver.
+  /// Drops these `unknowns` in every later factorisation, as `BlockFactor`, by the block solver.
   [[gnu::cold]] void leave_out(std::span<Index const> unknowns) {
     left_out_ = Sequence<Index>(unknowns.begin(), unknowns.end());
     if (judges_) judge_.leave_out(unknowns);
     drop(unknowns);
   }
-  /// As `BlockFactor`, if rows are dropped.
+  /// True if equations are dropped and a pivot is below `share`, as in `BlockFactor`.
   bool is_doubtful(double share) const { return !dropped_.empty() && judge_.is_doubtful(share); }
-  /// As `BlockFactor`, if rows are dropped.
+  /// Null vector `n` of the `dropped` equation, as in `BlockFactor`.
   void null_vector(Index dropped, VecX& n) const { judge_.null_vector(dropped, n); }
 
  private:

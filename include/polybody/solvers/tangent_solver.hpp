@@ -140,7 +140,7 @@ class TangentSolver {
     if constexpr (requires { solver_.is_doubtful(1e-3); }) return !solves_by_bodies() && solver_.is_doubtful(1e-3);
     return false;
   }
-  /// As `BlockFactor`, by equations. False where there is none.
+  /// Null vector `n` of the `dropped` equation, as in `BlockFactor`, by equations. Returns false if there is none.
   [[gnu::cold]] bool null_vector(Index dropped, VecX& n) {
     if constexpr (requires { bool(solver_.null_vector(dropped, n)); }) return solver_.null_vector(dropped, n);
     return false;

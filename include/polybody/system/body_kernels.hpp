@@ -48,8 +48,8 @@ struct BodyKernels {
 
   /// First coordinate, first speed and first own row of a body, and the serial number of its model.
   struct Places {
-    Index q0, v0, row;
-    std::uint64_t made_in;
+    Index q0, v0, row;      ///< indices of the first coordinate, velocity and own constraint equation
+    std::uint64_t made_in;  ///< serial number of the model
   };
   /// Puts a body into the pool.
   [[gnu::cold]] static void add(Pool& pool, B const& body, std::string const& name, Places const& at);

@@ -41,7 +41,7 @@ class LawWatch {
   struct Watched {
     std::size_t joint;
     Motion last, marked;
-    double rate = 0.0, acceleration = 0.0;  ///< largest sizes so far
+    double rate = 0.0, acceleration = 0.0;  ///< largest absolute values so far, unit of the value per s, per s²
   };
   static Motion at(JointPlace const& joint, double t) { return joint.law(joint.joint, t); }
   /// The difference of two values, less whole periods.
@@ -50,8 +50,9 @@ class LawWatch {
   }
   /// Changes of value and rate over a step, minus the changes that the derivatives predict.
   struct Misfit {
-    double value, rate, by_rate, by_acceleration;
-    bool of_value, of_rate;  ///< beyond the bound
+    double value, rate;               ///< misfits, unit of the value, and per s
+    double by_rate, by_acceleration;  ///< predicted changes, unit of the value, and per s
+    bool of_value, of_rate;           ///< beyond the bound
   };
   static Misfit misfit(JointPlace const& joint, Watched& law, Motion const& from, Motion const& to, double h) {
     law.rate = std::max({law.rate, std::abs(from.rate), std::abs(to.rate)});

@@ -47,8 +47,8 @@ class StepBounds {
   struct Account {
     double open = never;    ///< the limit for |Φ|, in the unit of the constraint equation: [m], or a cosine
     double energy = never;  ///< the limit, a factor
-    double judged = never;  ///< Σ v² beyond which the energy is looked at
-    double fastest = 0.0;   ///< largest Σ v² that was looked at
+    double judged = never;  ///< Σ v² beyond which the energy is looked at, mixed units
+    double fastest = 0.0;   ///< largest Σ v² that was looked at, mixed units
     double scale = 0.0;     ///< S, at most since the start [J]
     double moved = 0.0;     ///< T₀ + what potentials released + 2 W, at most since the start [J]
     Energy start;           ///< E₀
@@ -129,7 +129,7 @@ class StepBounds {
   struct Passing {
     std::size_t force;
     Frame<double> last[2], now[2];
-    double t = 0.0;
+    double t = 0.0;  ///< time of `last` [s]
   };
   static void read_frames(System const& system, ForcePlace const& force, Frame<double> (&out)[2]) {
     for (std::size_t k = 0; k < 2; ++k) {

@@ -51,7 +51,7 @@ class Vehicle : public TrackedVehicle {
 
   SideParts const& side(Side s) const { return sides[s == Side::left ? 0 : 1]; }  ///< the parts of a side
 
-  /// With the policy `pin` for its pins. \throws InvalidInput.
+  /// With the policy `pin` for its pins. \param drives of the left and the right sprocket \throws InvalidInput.
   [[gnu::cold]] Vehicle(PinPolicy const& pin, std::array<Drive, 2> const& drives, VehicleOptions const& options = {},
                         Ground const& ground = {}, LinkOf<Link> const& of_links = {}) {
     check(options);
