@@ -1,0 +1,68 @@
+"""Sentences that prose.py reports, sentences that it accepts, and its list of allowed findings."""
+
+import sys
+import tempfile
+from pathlib import Path
+
+import prose
+
+REPORTED = [
+    "What the derivatives of a run are told in.",
+    "Whether any unknown turns.",
+    "The same, for who keeps it.",
+    "The history is kept where it is needed.",
+    "It is solved by factors of a matrix near it, and written anew.",
+    "The file stands beside the others.",
+    "The event is asked whether it acts.",
+    "Steps are taken by turns, beside those of the other solver.",
+    "This form is no longer used.",
+]
+ACCEPTED = [
+    "Constraint Jacobian of the joint, 6 × nv.",
+    "Checks that the sizes of a state match a model.",
+    "G is the constraint Jacobian, where Φ = 0 on the manifold.",
+    "The file is compared with the reference of `what it stands beside`.",
+]
+HEADER = """#pragma once
+/// Mass of a body [kg].
+double mass;  ///< What it weighs is asked of it.
+inline void require(double x) {
+  if (x < 0.0) throw InvalidInput{"The mass is told by \\"", x, "\\" kg."};
+}
+///     formula = what is it
+"""
+
+
+def require(holds, what):
+    if not holds:
+        sys.exit(f"prose_self: {what}")
+
+
+for sentence in REPORTED:
+    require(prose.faults(sentence), f"not reported: {sentence}")
+for sentence in ACCEPTED:
+    require(not prose.faults(sentence), f"reported: {sentence}: {prose.faults(sentence)}")
+require(not prose.faults("Measured on 2026-11-25."), "a date is reported outside of pages")
+require(prose.faults("Measured on 2026-11-25.", page=True), "a date in a page is not reported")
+
+with tempfile.TemporaryDirectory() as folder:
+    root = Path(folder)
+    (root / "a.hpp").write_text(HEADER, encoding="utf-8")
+    (root / "README.md").write_text("# What it is\n\nA sentence.\nIt stands here.\n\n```sh\nwhat stands\n```\n")
+    found = prose.findings(root, "a.hpp")
+    require([f.split(":")[1] for f in found] == ["3", "5"], f"a header: {found}")
+    require([f.split(":")[1] for f in prose.findings(root, "README.md")] == ["4"], "a page")
+
+    prose.files = lambda _: ["a.hpp", "README.md"]
+    prose.LIST = root / "allowed.txt"
+    for entries, faults in {
+        "a.hpp 2\n": "README.md: 1 sentences to rewrite, 0 allowed",
+        "a.hpp 3\n": "a.hpp: only 2 findings left of 3",
+        "README.md 1\na.hpp 2\n": "README.md: this page may have no entry",
+        "b.hpp 1\n": "b.hpp: listed",
+    }.items():
+        prose.LIST.write_text(entries)
+        require(any(line.startswith(faults) for line in prose.check(root)), f"{entries!r}: {list(prose.check(root))}")
+    prose.LIST.write_text("# head\na.hpp 3\n")
+    prose.shrink(root)
+    require(prose.LIST.read_text() == "# head\na.hpp 2\n", "--shrink")
