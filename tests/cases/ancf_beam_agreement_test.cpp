@@ -1,5 +1,5 @@
-// The thesis' check of its ANCF elements: two elastic forces of different origin, elastic line and cured continuum,
-// agree in the limit of fine meshes, up to the strain.
+// Comparison of the elastic forces of the ANCF beam after Wallin 2016. The elastic line and the continuum without
+// locking agree in the limit of fine meshes, up to the size of the strain.
 
 #include <polybody/bodies/ancf/ancf_beam.hpp>
 
@@ -18,13 +18,13 @@ using Line = AncfBeam<ElasticLine>;
 using Cured = AncfBeam<Continuum<>>;
 using std::numbers::pi;
 
-/// What meshes of order 2 converge to.
+/// Richardson extrapolation of two meshes of order 2.
 template <class Tip>
 Vec3 limit(Tip&& tip) {
   return (4.0 * tip(32) - tip(16)) / 3.0;
 }
 
-// A bar that bends about both axes and twists: tip force and moment, strains of 2e-3 at the most.
+// Bar that bends about both axes and twists under a tip force and a tip moment. The strains are at most 2e-3.
 TEST(AncfElasticForces, AgreeOnABarBentAndTwisted) {
   Bar const bar{.length = 0.508,
                 .section = Rectangle{.height = 12.3777e-3, .width = 3.2024e-3},
@@ -41,7 +41,7 @@ TEST(AncfElasticForces, AgreeOnABarBentAndTwisted) {
               (cured - line).norm(), 2e-3 * line.norm(), {.scale = line.norm()});
 }
 
-// S2, α = 1, EA = 1e6 EI/L²: a square section with side √12e-6 L, strains of 1.7e-3.
+// Elastica (S2) with α = 1 and EA = 1e6 EI/L²: a square section with side √12e-6 L. The strains are 1.7e-3.
 TEST(AncfElasticForces, CuredContinuumMeetsTheElastica) {
   double const side = std::sqrt(12e-6);
   Bar const bar{.length = 1.0,
@@ -56,7 +56,8 @@ TEST(AncfElasticForces, CuredContinuumMeetsTheElastica) {
               (u - Vec3(-0.05643323628337688, 0.3017207737998135, 0)).cwiseAbs().maxCoeff(), 1e-5, {.scale = 0.3});
 }
 
-// S7 with Saint-Venant's GJ and GA = 5/6 · 5e6, those of the square section; strains reach 1e-2.
+// 45° bend of Bathe & Bolourchi (S7) with Saint-Venant's GJ and GA = 5/6 · 5e6, the constants of the square section.
+// Strains reach 1e-2.
 TEST(AncfElasticForces, CuredContinuumMeetsTheCurvedRod) {
   Bar const bar{.length = 25 * pi,
                 .section = Rectangle{.height = 1, .width = 1},

@@ -1,5 +1,5 @@
-// CASES S9c, S9d, S9e with the fully parameterised ANCF beam on its elastic line: what is pulled in its stiff plane
-// leaves it.
+// Buckling of the fully parameterised ANCF beam with an elastic line: right-angle frame of Argyris (S9c), cantilever
+// strip (S9d) and Euler's columns (S9e). The beams are loaded in their stiff plane and buckle out of it.
 
 #include <polybody/bodies/ancf/ancf_beam.hpp>
 
@@ -14,8 +14,9 @@ namespace ancf_beam_buckling_test {
 using namespace buckling;
 using Beam = AncfBeam<>;
 
-// 1.08751842 N and 1.08408817 N [C]; published 1.088 [P]. Elements are of order 2: three a leg come to 2.2 %, six to a
-// quarter of that, both together to the exact frame.
+// The independent computation gives 1.08751842 N and 1.08408817 N. The published value is 1.088 N. The elements are
+// of order 2: three per leg have an error of 2.2 %, six a quarter of it. Their extrapolation agrees with the exact
+// frame.
 TEST(AncfRightAngleFrame, BucklesAtTheExactForce) {
   struct Case {
     double J, force;
@@ -34,7 +35,7 @@ TEST(AncfRightAngleFrame, BucklesAtTheExactForce) {
   }
 }
 
-// 8554.9932 N [C], with the deflection before buckling.
+// The independent computation gives 8554.9932 N, including the deflection before buckling.
 TEST(AncfStrip, BucklesSidewaysAtTheExactForce) {
   held({"S9d", "tip force at which the strip buckles [N]", By::independent, "rod linearised about its exact bent state",
         "AncfBeam, 8 to 32 elements extrapolated"},

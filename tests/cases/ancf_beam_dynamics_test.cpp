@@ -1,6 +1,8 @@
-// CASES D5 and D2 with the fully parameterised ANCF beam on its elastic line, against the exact rod [C]. Its sections
-// may stretch: one that spins at ω does so by Iρ ω²/EA, in D5 1e-5 ω² s², in D2 1e-9. That apart it is the rod, and of
-// order 2 as the Lrvf is.
+// Right-angle cantilever of Simo & Vu-Quoc 1988 (D5) and spin-up of Kane, Ryan & Banerjee 1987 (D2) with the fully
+// parameterised ANCF beam on its elastic line. The reference is an independent computation of the exact rod. The
+// sections of the ANCF beam can stretch. A section with angular velocity ω stretches by Iρ ω²/EA: 1e-5 ω² s² in D5,
+// 1e-9 ω² s² in D2. Apart from this stretch the beam agrees with the rod. Its order is 2, equal to the order of the
+// Lrvf.
 
 #include <polybody/bodies/ancf/ancf_beam.hpp>
 
@@ -16,15 +18,15 @@ namespace ancf_beam_dynamics_test {
 
 using namespace right_angle_cantilever;
 using Pin = Joint<Revolute, Constraint>;
-/// One type of model for both cases: it is compiled once.
+/// Model type for both cases, which is compiled once.
 using Beams = RightAngle<AncfBeam<>, Pin, spin_up::Drive>;
 
 TEST(AncfRightAngleCantilever, TenElementsPerLegStayWithinOnePercent) {
   follows<Beams>(10, 0.05, 0.01, "AncfBeam, 10 elements a leg, h = 0.05 s");
 }
 
-// (4 fine − coarse)/3 has no error of second order left; what remains grows with the time. The corner is a weld: of
-// both sections' frames.
+// (4 fine − coarse)/3 has no error of second order. The remaining error grows with time. The right angle is a weld
+// between the frames of both sections.
 TEST(AncfRightAngleCantilever, TwoMeshesExtrapolateToTheExactFrame) {
   Beams coarse(12, 0.02), fine(24, 0.01);
   for (Row const& row : table) {
@@ -38,8 +40,8 @@ TEST(AncfRightAngleCantilever, TwoMeshesExtrapolateToTheExactFrame) {
   }
 }
 
-// D2's tolerance of the lag for elements of order 2; the error of a frequency moves the swing that is left by its
-// phase.
+// Tolerance of the lag in D2 for elements of order 2. The error of a frequency shifts the phase of the remaining
+// vibration.
 TEST(AncfSpinUp, SixteenElements) {
   Beams::ModelType model;
   auto const arm = model.add(AncfBeam<>::from(spin_up::arm(), 16), "arm");

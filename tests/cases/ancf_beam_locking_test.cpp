@@ -1,4 +1,5 @@
-// CASES S10 and S4 with the ANCF beam by continuum mechanics: what locks, by how much, and that the cure removes it.
+// Locking of the ANCF beam by continuum mechanics: S10 (derived in closed form) and the cantilever of Nachbagauer et
+// al. 2011 (S4). The tests measure the size of the locking and check that the corrected element has none.
 
 #include <polybody/bodies/ancf/ancf_beam.hpp>
 
@@ -19,15 +20,15 @@ Vec3 tip(Bar const& bar, Index n, Vec3 const& force, int steps = 1) {
   return SpatialCantilever<B>(B::from(bar, n), {.force = force}, {.load_steps = steps}).tip_displacement();
 }
 
-/// 1 m × 1 cm × 1 cm.
+/// Bar of 1 m × 1 cm × 1 cm.
 Bar slender(double poisson) {
   return {.length = 1.0,
           .section = Rectangle{.height = 0.01, .width = 0.01},
           .material = Material{.density = 7850, .young = 2e11, .poisson = poisson}};
 }
 
-/// Small tip deflection by P L³/3EI: of n elements, and the limit of 16 and 32. To linear theory the first has
-/// bending (1 − 1/4n²), piecewise linear sections, and shear 3EI/(L² GA).
+/// Ratio of a small tip deflection to P L³/3EI, for n elements and for the limit from 16 and 32. In linear theory n
+/// elements have the bending part 1 − 1/4n², due to piecewise linear sections, and the shear part 3EI/(L² GA).
 template <class B>
 double ratio(Bar const& bar, Index n) {
   double const unit = 1e-4;  // [m]
@@ -38,7 +39,7 @@ double limit_ratio(Bar const& bar) {
   return (4 * ratio<B>(bar, 32) - ratio<B>(bar, 16)) / 3;
 }
 
-// S10 [A]: (1 + ν)(1 − 2ν)/(1 − ν) of the bending and shear with k = 1.
+// Factor (1 + ν)(1 − 2ν)/(1 − ν) of the deflection in bending and in shear with k = 1 (S10, closed form).
 TEST(AncfLocking, FullHookesLawBendsWithTheConstrainedModulus) {
   double const shear = 3.0 / 12 * 1e-4;  // 3I/(L² A)
   auto const locked = [](char const* source, char const* formulation) {
@@ -52,7 +53,7 @@ TEST(AncfLocking, FullHookesLawBendsWithTheConstrainedModulus) {
        ratio<Plain>(slender(0.3), 8), 0.742857142857 * (1 - 1.0 / 256) + shear * 2.6, 1e-6);
 }
 
-// S10's criterion: 1.00 ± 0.01.
+// Criterion of S10: 1.00 ± 0.01.
 TEST(AncfLocking, CureBringsTheDeflectionBack) {
   for (double const nu : {0.0, 0.3, 0.45}) {
     BarConstants const c = constants(slender(nu));
@@ -66,7 +67,7 @@ TEST(AncfLocking, CureBringsTheDeflectionBack) {
   }
 }
 
-// S10: axial stretch is not affected; neither is contraction, −ν.
+// The axial stretch is not affected (S10). The contraction −ν is not affected either.
 template <class B>
 void stretches_freely() {
   Bar const bar = slender(0.3);
@@ -93,8 +94,8 @@ Bar thick() {
           .material = Material{.density = 7850, .young = 2.07e11, .poisson = 0.3}};
 }
 
-// S4, small load: the published deflections of elements with linear sections, mesh by mesh, to the size of the strain,
-// 1e-4 (in the quadratic terms of E: far less).
+// Small load of Nachbagauer et al. 2011 (S4): published deflections of elements with linear sections, for each mesh.
+// The tolerance is the size of the strain, 1e-4. The quadratic terms of E are far smaller.
 TEST(AncfLocking, CuredMeshesHaveThePublishedDeflections) {
   struct {
     Index n;
@@ -107,8 +108,8 @@ TEST(AncfLocking, CuredMeshesHaveThePublishedDeflections) {
          tip<Cured>(thick(), m.n, {0, 62500, 0})[1], m.u, 1e-6 * m.u, {equals("n", double(m.n))});
 }
 
-// S4, large load: strains of the outer fibres reach F L h/2EI = 0.14, of which St. Venant–Kirchhoff's law and the rod
-// make different things: they agree to a part of that.
+// Large load of S4: strains of the outer fibres reach F L h/2EI = 0.14. The law of St. Venant–Kirchhoff and the rod
+// model differ at such strains. The results agree to a fraction of the strain.
 TEST(AncfLocking, CuredBeamUnderALargeLoadIsTheRodUpToTheStrain) {
   Vec3 const exact(-0.1509711442396, 0.7105685978542, 0);
   held_within({"S4", "u_x and u_y under 62.5 MN [m]", By::independent, "shooting on the rod's equations",

@@ -1,5 +1,7 @@
-// CASES S2, S4, S5, S6, S7 with the fully parameterised ANCF beam on its elastic line, whose limit is the exact rod
-// [C]. The element bends with piecewise linear sections: order 2, and the extrapolation of two meshes meets the rod.
+// Statics of the fully parameterised ANCF beam on its elastic line: elastica (S2), Nachbagauer et al. 2011 (S4), end
+// moments (S5), Princeton beam (S6), 45° bend (S7). The limit of fine meshes is the exact rod, which an independent
+// computation gives. The element bends with piecewise linear sections and has order 2. The extrapolation of two
+// meshes agrees with the rod.
 
 #include <polybody/bodies/ancf/ancf_beam.hpp>
 
@@ -20,7 +22,7 @@ using std::numbers::pi;
 SpatialCantilever<Beam> cantilever(Bar const& bar, Index n, TipLoad const& load, int steps = 1) {
   return {Beam::from(bar, n), load, {.load_steps = steps}};
 }
-/// What meshes of order 2 converge to.
+/// Richardson extrapolation of two meshes of order 2.
 Vec3 limit(Vec3 const& coarse, Vec3 const& fine) { return (4.0 * fine - coarse) / 3.0; }
 
 Claim shooting(char const* case_id, char const* what, char const* formulation) {
@@ -29,7 +31,7 @@ Claim shooting(char const* case_id, char const* what, char const* formulation) {
 char const* const extrapolated = "AncfBeam, 32 and 64 elements extrapolated";
 char const* const coarser = "AncfBeam, 16 and 32 elements extrapolated";
 
-// ---- S2: slender elastica, α = 1; 16 and 64 elements as S2 asks of linear elements, 1e-3 and 1e-4
+// ---- S2: slender elastica, α = 1; tolerances of linear elements: 1e-3 with 16 elements, 1e-4 with 64
 
 TEST(AncfElastica, DeadTipForce) {
   Bar const bar{.length = 1.0,
@@ -45,7 +47,7 @@ TEST(AncfElastica, DeadTipForce) {
   Instance const at{.scale = 0.3};
   held_within(elastica("AncfBeam, 16 elements"), (tip(16) - exact).cwiseAbs().maxCoeff(), 1e-3, at);
   held_within(elastica("AncfBeam, 64 elements"), (fine - exact).cwiseAbs().maxCoeff(), 1e-4, at);
-  // stretch α/EA + what order 4 leaves
+  // stretch α/EA plus the remaining error of order 4
   held_within(elastica(extrapolated), (limit(coarse, fine) - exact).cwiseAbs().maxCoeff(), 1e-6 + 1e-6, at);
 }
 
@@ -58,8 +60,8 @@ Bar thick() {
 }
 double const small = 62500, large = 6.25e7;
 
-// [P] the paper and Exudyn print deflections of elements with linear sections; with linear strains ours are the same,
-// up to the square of the rotation, θ² = 3.4e-7.
+// The paper and Exudyn print deflections of elements with linear sections. With linear strains the deflections here
+// are equal, up to the square of the rotation, θ² = 3.4e-7.
 TEST(AncfNachbagauer, SmallLoadGivesThePublishedDeflectionOfEveryMesh) {
   struct {
     Index n;
@@ -90,9 +92,9 @@ TEST(AncfNachbagauer, LargeLoadConvergesToTheExactRodWithOrderTwo) {
               {.scale = 0.7});
 }
 
-// The weld holds place and frame of the section at the clamp and nothing else: the axis may leave it at an angle, by
-// the shear F/GA, as the rod's does, and the section's own strains vanish as everywhere. Section forces there: F and
-// the moment F L.
+// The weld constrains the position and the frame of the section at the clamp, and nothing else. The angle between
+// axis and section is F/GA at the clamp, as in the rod. The strains of the section itself vanish there, as in every
+// section. The section forces at the clamp are F and the moment F L.
 TEST(AncfNachbagauer, WeldIsTheClampOfTheRod) {
   auto const c = cantilever(thick(), 32, {.force = {0, small, 0}});
   Beam const& body = c.bar.body();
@@ -103,7 +105,7 @@ TEST(AncfNachbagauer, WeldIsTheClampOfTheRod) {
   EXPECT_NEAR(body.section_forces(inside, c.coordinates())[5], small * 2.0 * (1 - 0.5 / 32), 1e-3 * small * 2.0);
 }
 
-// ---- S5: moments fixed in space, and following
+// ---- S5: moments fixed in space, and follower moments
 
 Bar general() {
   double const e = 2.07e11, g = e / 2.6, h = 0.2, w = 0.4, a = h * w, iz = w * h * h * h / 12, iy = h * w * w * w / 12;
@@ -140,7 +142,7 @@ TEST(AncfEndMoments, Following) {
               1e-9 * 1.8e-2, {.scale = 1.8e-2});
 }
 
-// ---- S6: the Princeton beam, deflections and twist
+// ---- S6: the Princeton beam of Dowell & Traybar 1975, deflections and twist
 
 TEST(AncfPrinceton, MeetsTheExactRod) {
   double const e = 71.7e9, g = e / 2.62, h = 12.3777e-3, w = 3.2024e-3, a = h * w;
@@ -207,7 +209,8 @@ TEST(AncfBatheBolourchi, MeetsTheExactRod) {
   for (auto const& row : rows) {
     Bar const bar{.length = 1.0, .constants = with(row.ga, row.gj)};
     Vec3 const coarse = bathe(bar, 32, row.force), fine = bathe(bar, 64, row.force);
-    // S7 has about 3e-3 and 2e-4 for straight elements at 600 N. Ours: 4.3e-3, 2.5e-4 there, 7.5e-3, 3.8e-4 at 3000 N.
+    // Straight elements have errors of about 3e-3 and 2e-4 at 600 N (S7). The errors here are 4.3e-3 and 2.5e-4 at
+    // 600 N, and 7.5e-3 and 3.8e-4 at 3000 N.
     char const* const what = "tip of the 45° bend [m]";
     double const size = row.tip.norm();
     Instance const at{equals("F", row.force) + ", " + equals("GA", row.ga), size};
@@ -218,8 +221,8 @@ TEST(AncfBatheBolourchi, MeetsTheExactRod) {
   }
 }
 
-// S7's Saint-Venant constants, GJ = 0.1405770150·5e6 and GA = 5/6·5e6, are those of the bar's square section with ν =
-// 0.
+// Saint-Venant's constants of S7, GJ = 0.1405770150·5e6 and GA = 5/6·5e6, are the constants of the bar's square
+// section with ν = 0.
 TEST(AncfBatheBolourchi, SectionGivesTheSaintVenantConstants) {
   Bar const square{.length = 1.0,
                    .section = Rectangle{.height = 1, .width = 1},

@@ -1,4 +1,5 @@
-// Torsion of thin sections by the continuum beam: the ends twist as the middle, however the section lies.
+// Torsion of thin sections by the continuum beam. The ends twist as much as the middle, for both orientations of the
+// section.
 
 #include <polybody/bodies/ancf/ancf_beam.hpp>
 
@@ -15,7 +16,7 @@ namespace ancf_beam_torsion_test {
 using Cured = AncfBeam<Continuum<>>;
 using std::numbers::pi;
 
-/// The bar of S8. The long side is along y or along z.
+/// Bar of the pre-twisted cantilever of MacNeal & Harder 1985 (S8). The long side is along y or along z.
 Bar thin(bool along_y) {
   return {.length = 12,
           .section = Rectangle{.height = along_y ? 1.1 : 0.32, .width = along_y ? 0.32 : 1.1},
@@ -31,8 +32,8 @@ double turn(SpatialCantilever<B> const& c) {
   return log_so3(c.tip_turn())[0] / angle;
 }
 
-// Saint-Venant's T L/GJ, by any mesh. Where the ends held r_y alone, they turned by ℓ (1 − p)/p · T/GJ more, each: the
-// long side along z gave 1.005, 1.020, 1.061 for these meshes and went to 1.088.
+// Saint-Venant's T L/GJ holds for every mesh. End conditions on r_y alone would add ℓ (1 − p)/p · T/GJ at each end.
+// With the long side along z these meshes would then give 1.005, 1.020 and 1.061, with the limit 1.088.
 TEST(ContinuumTorsion, IsSaintVenantsHoweverTheSectionLies) {
   for (bool const along_y : {false, true})
     for (Index const n : {8, 32, 128}) {
@@ -59,9 +60,10 @@ TEST(ContinuumTorsion, OfTheElementThatLocksIsOfThePolarMoment) {
   }
 }
 
-// A bar that is twisted by τ turns its stretches, too: with e = E₂₂ − E₃₃ and E₂₂ + E₃₃ = 0, the shears are
+// A bar with the twist τ couples torsion with transverse strains. With e = E₂₂ − E₃₃ and E₂₂ + E₃₃ = 0, the shears
+// are
 //   2E₁₃ = y (α′ + τ e),  2E₁₂ = −z (α′ − τ e),  and the energy  ½ [D_y (α′ + τe)² + D_z (α′ − τe)² + μA e²],
-// of which the least over e is ½ GJ α′² (1 − τ² GJ (1 − 2p)²/(μA + τ² GJ)), D_y = p GJ.
+// whose minimum over e is ½ GJ α′² (1 − τ² GJ (1 − 2p)²/(μA + τ² GJ)), D_y = p GJ.
 TEST(ContinuumTorsion, OfATwistedBarTendsToOneNumberHoweverTheSectionLies) {
   BarConstants const c = constants(thin(true));
   double const area = 1.1 * 0.32, mu = 29e6 / 2.44, share = 1.1 * 1.1 / (1.1 * 1.1 + 0.32 * 0.32),

@@ -1,4 +1,4 @@
-// CASES R3: Andrews' squeezing mechanism (IFToMM A03, IVP Test Set "andrews"), its seven bodies in the plane.
+// Andrews' squeezing mechanism (R3: IFToMM benchmark A03, IVP Test Set "andrews"), its seven bodies in the plane.
 
 #include <gtest/gtest.h>
 
@@ -27,8 +27,9 @@ using Angles = Vec<double, 7>;
 
 Angles angles(std::array<double, 7> const& q) { return Eigen::Map<Angles const>(q.data()); }
 
-/// Names of points and lengths as in the test set. The bodies are OF, FE, BDE, EG, AG, HE, AH; their angles, which the
-/// axes of the table belong to, are β, β + Θ, γ, Φ + δ, δ, Ω + ε, ε. \tparam Tree the policy of all pins but those at E
+/// The names of points and the lengths are those of the test set. The bodies are OF, FE, BDE, EG, AG, HE, AH. The
+/// angles of their axes in the table are β, β + Θ, γ, Φ + δ, δ, Ω + ε, ε. \tparam Tree policy of all pins except
+/// those at E
 template <class Tree = Constraint>
 struct Squeezer {
   using Pin = Joint<planar::Revolute, Constraint>;
@@ -43,7 +44,8 @@ struct Squeezer {
 
   explicit Squeezer(Angles const& q) {
     Vec2 const O(0, 0), A(-0.06934, -0.00227), B(-0.03635, 0.03273), C(0.014, 0.072);
-    // mass, inertia, angle, and in body axes: the mass centre, and the point that is known in the world
+    // Mass, inertia, angle, and two points in body axes: the mass centre, and a point with a known position in the
+    // world.
     struct Part {
       double mass, inertia, angle;
       Vec2 centre, known, place;
@@ -85,25 +87,25 @@ struct Squeezer {
   }
   Squeezer(Squeezer const&) = delete;
 
-  /// q, q˙ or q¨ of the test set from those of the bodies.
+  /// Computes q, q˙ or q¨ of the test set from the coordinates of the bodies.
   Angles read(VecX const& y) const {
     double const b = y[2], bt = y[5], c = y[8], pd = y[11], d = y[14], oe = y[17], e = y[20];
     return angles({b, bt - b, c, pd - d, d, oe - e, e});
   }
-  /// λ₁ … λ₆.
+  /// Multipliers λ₁ … λ₆.
   Vec6 multipliers() const {
     Vec6 l;
     for (std::size_t i = 0; i < 3; ++i) l.segment<2>(2 * Index(i)) = x.lambda.segment<2>(model.entry(at_e[i]).row);
     return l;
   }
-  /// The drive's work comes off: T + V − M β is constant.
+  /// Invariant T + V − M β: the energy less the work of the drive.
   double invariant() const { return energy(model, x).total() - drive * x.q[2]; }
 };
 
 Angles const start = angles({-0.0617138900142764496, 0, 0.455279819163070380, 0.222668390165885885,
                              0.487364979543842550, -0.222668390165885885, 1.23054744454982119});
 
-// PSIDE at a tolerance of 1e-14, t = 0.03.
+// Published reference: PSIDE at a tolerance of 1e-14, t = 0.03.
 Angles const end = angles({15.81077119629904, -15.75637105984298, 0.04082224013073101, -0.5347301163226948,
                            0.5244099658805304, 0.5347301163226948, 1.048080741042263});
 Angles const end_rate = angles({1139.920302151208, -1424.379294994111, 11.03291221937134, 19.29337464421385,
@@ -132,7 +134,7 @@ TEST(Andrews, StartsAsPublished) {
   EXPECT_LT(l.tail<4>().norm(), 1e-9);
 }
 
-/// At t = 0.01, 0.02 and 0.03.
+/// Comparison at t = 0.01, 0.02 and 0.03.
 template <class Tree = Constraint, class I>
 void expect_published(I const& integrator, double step, double tolerance, char const* formulation) {
   Squeezer<Tree> s(start);
@@ -152,7 +154,7 @@ void expect_published(I const& integrator, double step, double tolerance, char c
               {.scale = end.norm()});
   held_within(published("rates at 0.03 s [rad/s]", formulation), (s.read(s.x.v) - end_rate).norm(), 1e3 * tolerance,
               {.scale = end_rate.norm()});
-  // near a dead point, where errors of q come out many times larger
+  // near a dead point, which amplifies errors of q many times
   held_within(published("accelerations at 0.03 s [rad/s²]", formulation), (s.read(s.x.a) - end_acceleration).norm(),
               1e2 * tolerance * end_acceleration.norm(), {.scale = end_acceleration.norm()});
   held({"R3", "energy less the drive's work [J]", By::closed_form, "invariant T + V − M β", formulation}, s.invariant(),
@@ -184,8 +186,8 @@ TEST(Andrews, IsMetByAlphaMethodsWithinAThousandth) {
   expect_published(HhtAlpha{}, 1e-5, 1e-3, "HHT-α, h = 1e-5 s");
 }
 
-// Small steps keep order two: what Newton's method may leave for rounding follows the sizes of all coordinates, not the
-// angle that has turned farthest, and so stays below the error of the step.
+// Small steps keep order two. Newton's tolerance for round-off is scaled with each coordinate, not with the largest
+// angle of rotation. It therefore stays below the error of the step.
 TEST(Andrews, SmallStepsOfAlphaMethodsKeepTheirOrder) {
   auto const error = [](double step) {
     Squeezer<> s(start);
@@ -197,7 +199,7 @@ TEST(Andrews, SmallStepsOfAlphaMethodsKeepTheirOrder) {
   EXPECT_NEAR(coarse / fine, 4.0, 0.4);
 }
 
-// The variant of the multibody benchmark: β(0) = −0.062, F at four times.
+// Variant of the multibody benchmark: β(0) = −0.062, position of F at four times.
 TEST(Andrews, OfTheBenchmarkCarriesFWhereItIsPublished) {
   Squeezer<> s(angles({-0.062, 0.000214586853799, 0.455279812100370, 0.222668375903028, 0.487364981140633,
                        -0.222668375903027, 1.230547439156601}));

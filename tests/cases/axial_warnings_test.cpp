@@ -1,6 +1,6 @@
-// Axial forces that a floating frame without geometric stiffening leaves out, beside those that buckle it: Euler's
-// columns and Greenhill's, which falls under its own weight at q L³/EI = 7.8373 (the first zero of J₋₁⸝₃); and what
-// runs say of them.
+// Axial forces that a floating frame without geometric stiffening neglects, compared with the buckling loads. The
+// references are Euler's columns and Greenhill's column, which buckles under its own weight at q L³/EI = 7.8373
+// (first zero of J₋₁⸝₃). The warnings of runs are checked.
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/ffr/ffr.hpp>
@@ -21,7 +21,7 @@ Bar column() {
       .constants = BarConstants{.EA = 1e7, .EI = EI, .mass_per_length = density, .GJ = 1.0, .rotary_inertia = 1e-4}};
 }
 
-/// Of a body at rest at the origin, under loads and gravity.
+/// Ratio for a body at rest at the origin, under loads and gravity.
 double share(Ffr const& body, Vec3 const& gravity, std::vector<PlacedWrench> const& loads) {
   std::vector<double> q(std::size_t(body.coordinates())), zero(std::size_t(body.speeds()), 0.0);
   body.reference(q);
@@ -40,18 +40,18 @@ TEST(AxialForces, ShareOfEulersLoads) {
     EXPECT_NEAR(share(cantilever, Vec3::Zero(), pressed_with(0.25 * part * euler)), -part, 2e-3 * part);
     EXPECT_NEAR(share(pinned, Vec3::Zero(), pressed_with(part * euler)), -part, 2e-3 * part);
   }
-  EXPECT_NEAR(share(cantilever, Vec3::Zero(), pressed_with(-0.05 * euler)), 0.2, 1e-3);  // pulled
+  EXPECT_NEAR(share(cantilever, Vec3::Zero(), pressed_with(-0.05 * euler)), 0.2, 1e-3);  // in tension
   EXPECT_EQ(share(Ffr::from(column(), 8, {.stiffening = true}), Vec3::Zero(), pressed_with(euler)), 0.0);
 }
 
 TEST(AxialForces, ShareOfGreenhillsWeight) {
   double const falls = 7.83734 * EI / (density * length * length * length);
   EXPECT_NEAR(share(Ffr::from(column(), 12), Vec3(-0.3 * falls, 0, 0), {}), -0.3, 1e-3);
-  EXPECT_NEAR(share(Ffr::from(column(), 12), Vec3(0, -falls, 0), {}), 0.0, 1e-9);  // it lies
+  EXPECT_NEAR(share(Ffr::from(column(), 12), Vec3(0, -falls, 0), {}), 0.0, 1e-9);  // horizontal
 }
 
-// A beam that spins with Ω about its root has N = ½ ρA Ω² (L² − x²): the largest ∫N w′² dx / ∫EI w″² dx is
-// 0.0976244 ρA Ω² L⁴/EI (Ritz's method with x² to x⁸).
+// A beam that rotates with Ω about its root has N = ½ ρA Ω² (L² − x²). The largest ∫N w′² dx / ∫EI w″² dx is
+// 0.0976244 ρA Ω² L⁴/EI (Ritz method with x² to x⁸).
 template <class Body>
 double spun(Body const& body, double omega) {
   std::vector<double> q(std::size_t(body.coordinates())), v(std::size_t(body.speeds()), 0.0), a = v;
@@ -97,7 +97,7 @@ TEST(AxialForces, ARunWarnsOfThem) {
   EXPECT_EQ(InPlane(planar::Ffr::from(column(), 4), 0.17 * buckles).warnings().size(), 1u);
 }
 
-// A free end draws back by N L/EA under the tension N of its reference.
+// The tension N of the reference state displaces a free end inwards by N L/EA.
 TEST(AxialForces, OfAPretensionShortenTheBody) {
   Bar bar = column();
   bar.constants->EA = 500.0;

@@ -1,4 +1,4 @@
-// Blades in the plane: motions in closed form under each way to keep rows of velocity level.
+// Knife edges in the plane: motions in closed form under each method that enforces nonholonomic constraints.
 
 #include <gtest/gtest.h>
 
@@ -18,18 +18,18 @@ constexpr double g = 9.81;
 using Blade = Joint<KnifeEdge, Constraint>;
 using InPlane = Model<Bodies<planar::Rigid>, Joints<Blade>>;
 
-/// A distance from a closed form, by an integrator of with_each_integrator.
+/// Checks a distance from a closed form under one integrator of with_each_integrator.
 template <class I>
 void within(char const* what, char const* source, I const& integrator, double error, double tolerance, double scale) {
   held_within({"Neimark & Fufaev", what, By::closed_form, source, named(integrator)}, error, tolerance,
               {.scale = scale});
 }
 
-// A blade under the centre of mass on an incline, pull p along x, starts at rest along x while it turns at ω. The turn
-// is free, θ = ωt; along the blade u̇ = p cos θ, so u = (p/ω) sin ωt and
+// A knife edge is under the centre of mass of a body on an incline. The pull p acts along x. The body starts at rest
+// along x and rotates with ω. The rotation is free, θ = ωt. Along the blade u̇ = p cos θ, so u = (p/ω) sin ωt and
 //   x = p/(2ω²) sin² ωt,  y = p/(2ω) (t − sin(2ωt)/(2ω)):
-// a cycloid across the incline, not down [Neimark & Fufaev 1972, ch. III]. Across it needs m (u ω + p sin θ) = 2 m p
-// sin θ.
+// The path is a cycloid across the incline, not down [Neimark & Fufaev 1972, ch. III]. The force across the blade is
+// m (u ω + p sin θ) = 2 m p sin θ.
 TEST(KnifeEdge, GoesAlongACycloidAcrossAnIncline) {
   double const m = 3.0, omega = 2.0, p = g * std::sin(0.4), t = 2.3;
   InPlane model{Gravity{p, 0, 0}};
@@ -55,10 +55,10 @@ TEST(KnifeEdge, GoesAlongACycloidAcrossAnIncline) {
   });
 }
 
-// Chaplygin's sleigh: the centre of mass is a ahead of the blade. With J = I + m a², u̇ = a ω² and J ω̇ = −m a u ω; as
-// m u² + J ω² = m U² stays,
+// Chaplygin's sleigh: the centre of mass is a ahead of the blade. With J = I + m a², u̇ = a ω² and J ω̇ = −m a u ω.
+// The energy m u² + J ω² = m U² is constant, so
 //   u = U tanh(k t + c),  ω = U √(m/J) / cosh(k t + c),  k = a m U/J:
-// it comes to go straight, though no energy is lost [Neimark & Fufaev 1972, ch. III; Bloch 2003, §1.7].
+// The motion tends to a straight line, although no energy is lost [Neimark & Fufaev 1972, ch. III; Bloch 2003, §1.7].
 TEST(KnifeEdge, LetsChaplyginsSleighGoStraight) {
   double const m = 2.0, inertia = 0.5, a = 0.6, J = inertia + m * a * a, U = 1.5, k = a * m * U / J, c = -2.0, t = 3.0;
   auto const along = [&](double time) { return U * std::tanh(k * time + c); };

@@ -1,4 +1,5 @@
-// A rod on a bushing in place of its pin: CASES J1, and against the ideal pin through several turns.
+// Rod on a bushing instead of a pin: the uniform rod pendulum (J1), and a comparison with the ideal pin over several
+// revolutions.
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/joints/joint.hpp>
@@ -19,13 +20,13 @@ namespace bushing_motion_test {
 using Ideal = Joint<Revolute, Constraint>;
 using Soft = Joint<Revolute, Bushing>;
 
-/// Of one size in all that a pin holds, well damped.
+/// Well damped bushing with one stiffness in every direction that a pin constrains.
 Bushing stiff(double k) {
   Bushing::Matrix const one = Bushing::diagonal({1, 1, 1}, {1, 1, 1});
   return {.stiffness = k * one, .damping = 0.7 * std::sqrt(k) * one};
 }
 
-/// A rod of 1 kg and 1 m from the origin along x, pinned about z with its end, or beside it.
+/// Rod of 1 kg and 1 m, initially along x. A pin about z is at its end, or at a distance from it along z.
 template <class J>
 struct Rod {
   Model<Bodies<Rigid<>>, Joints<Ideal, Soft>> model{Gravity{0, -9.81, 0}};
@@ -38,20 +39,20 @@ struct Rod {
     pin = model.connect(J{{.axis = Vec3::UnitZ()}, policy}, model.ground().at(at), rod.at(Vec3(at - Vec3(0.5, 0, 0))),
                         "pin");
   }
-  /// Released, spinning about the pin.
+  /// State at the release with an angular velocity about the pin.
   State start(double spin) const {
     State x = model.reference_state();
     model.set_velocity(x, rod, {0, 0, 0}, {0, 0, spin});
     return x;
   }
-  /// The angle from the downward vertical, in (−π, π].
+  /// Angle from the downward vertical, in (−π, π].
   double angle(State const& x) const {
     Vec3 const along = frame(model, x, rod.at(Vec3(0, 0, 0))).A.col(0);
     return std::atan2(along[0], -along[1]);
   }
 };
 
-/// CASES J1: R on the rod at the pivot.
+/// Uniform rod pendulum (J1): R acts on the rod at the pivot.
 struct Swing {
   double t, angle, rx, ry;
 };
@@ -70,7 +71,7 @@ TEST(RodOnABushing, HasThePublishedMotionAndReactions) {
     };
     std::string const at = equals("t", s.t);
     held(claim("angle of the rod [rad]", By::closed_form, "elliptic functions"), rod.angle(x), s.angle, 2e-5,
-         {at, 1.0});  // of the step, and R/k
+         {at, 1.0});  // error of the step, and R/k
     held_within(claim("reaction at the pin [N]", By::closed_form, "elliptic functions, ideal joint"),
                 (reaction(rod.model, x, rod.pin).f - force).norm(), 2e-3 * force.norm(), {at, force.norm()});
     held(claim("gap of the pin [m]", By::closed_form, "reaction of the ideal pin over k"),
@@ -78,7 +79,8 @@ TEST(RodOnABushing, HasThePublishedMotionAndReactions) {
   }
 }
 
-// The compliant pin lets the middle of the rod go outward by about R/k: the swing differs from the ideal one by 1/k.
+// The compliant pin moves the middle of the rod outward by about R/k. The motion differs from the ideal one by a term
+// in 1/k.
 TEST(RodOnABushing, ComesNearToTheIdealPinAsItsStiffnessGrows) {
   auto const off = [](double k) {
     Rod<Soft> const rod(stiff(k));
@@ -91,9 +93,10 @@ TEST(RodOnABushing, ComesNearToTheIdealPinAsItsStiffnessGrows) {
   EXPECT_NEAR(soft / firm, 10.0, 1.0);
 }
 
-// Turn after turn about the free axis, with a moment on the pin, which is beside the rod: as the ideal one, to 1/k.
+// Several revolutions about the free axis, with a moment on the pin, which is at a distance from the rod. The motion
+// agrees with the ideal one up to 1/k.
 TEST(RodOnABushing, TurnsAsOftenAsItLikes) {
-  double const spin = 25.0, until = 1.0, beside = 0.3;  // kinetic energy 104 J: it keeps turning, four times
+  double const spin = 25.0, until = 1.0, beside = 0.3;  // kinetic energy 104 J: four full revolutions
   auto const run = [&](auto const& rod) {
     State x = rod.start(spin);
     simulate(rod.model, x, GeneralizedAlpha{}, {.until = until, .step = 2.5e-4}).run();
@@ -117,11 +120,11 @@ TEST(RodOnABushing, TurnsAsOftenAsItLikes) {
   apart("wrench of the pin, of its size", std::abs(firm[1]), 1.0);
   apart("energy of the rod [J]", std::abs(firm[2]), 104.0);
   for (int i = 0; i < 2; ++i) EXPECT_NEAR(soft[i] / firm[i], 10.0, 1.5) << i;
-  EXPECT_GT(soft[2] / firm[2], 9.0);  // stored and lost in the first swings with 1/k, lost in turning with k^(−3/2)
+  EXPECT_GT(soft[2] / firm[2], 9.0);  // first oscillations: energy falls with 1/k; rotation: with k^(−3/2)
 }
 
-// An undamped bushing that couples slides and turns stores what it takes; the trapezoidal rule errs in the energy with
-// h².
+// An undamped bushing that couples translations and rotations conserves energy. The energy error of the trapezoidal
+// rule is of order h².
 TEST(RodOnABushing, KeepsTheEnergyWithoutDamping) {
   Bushing::Matrix k = Bushing::diagonal({900, 700, 800}, {60, 50, 0});
   k(0, 3) = k(3, 0) = 120.0;

@@ -1,4 +1,4 @@
-// A body on a bushing against closed forms: CASES J3.
+// Body on a bushing compared with closed forms (J3).
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/forces/point_load.hpp>
@@ -28,7 +28,7 @@ Matrix const none = Matrix::Zero();
 using Mount = Joint<Weld, Bushing>;
 using Sprung = Joint<RelativeCoordinates, Bushing>;
 
-/// f = 1000 u + 1e6 u³.
+/// Nonlinear force law f = 1000 u + 1e6 u³.
 struct Hardening {
   template <class T>
   T operator()(T const& u, T const&) const {
@@ -37,7 +37,7 @@ struct Hardening {
 };
 using Rubber = NonlinearBushing<Hardening, TabulatedLaw, TabulatedLaw, LinearLaw, LinearLaw, LinearLaw>;
 
-/// One rigid body on one joint from the ground, with a force and a moment.
+/// One rigid body on one joint to the ground, with a force and a moment.
 struct Mounted {
   Model<Bodies<Rigid<>>, Joints<Mount, Sprung, Joint<Weld, Rubber>>, Forces<PointForce<>, PointMoment<>>> model;
   static constexpr double mass = 2.0;
@@ -68,7 +68,8 @@ Claim mount(char const* what, char const* source) {
   return {"J3", what, By::closed_form, source, "Rigid on a bushing"};
 }
 
-// CASES J3: u = F/k and θ = M/k_θ along and about each axis; about one axis for a moment of any size.
+// Static deflections (J3, closed form): u = F/k and θ = M/k_θ along and about each axis. About one axis the moment
+// may have any size.
 TEST(BushingMount, GivesWayAsTheLoadOverTheStiffness) {
   for (int i = 0; i < 3; ++i)
     for (double const size : {1.0, 60.0}) {
@@ -84,7 +85,7 @@ TEST(BushingMount, GivesWayAsTheLoadOverTheStiffness) {
     }
 }
 
-// CASES J3: ω = √(k/m) and √(k_θ/I).
+// Natural frequencies (J3, closed form): ω = √(k/m) and √(k_θ/I).
 TEST(BushingMount, SwingsWithItsSixFrequencies) {
   Mounted const m{Mount{{}, diagonal}};
   VecX expected(6);
@@ -97,8 +98,8 @@ TEST(BushingMount, SwingsWithItsSixFrequencies) {
          {equals("mode", double(i + 1))});
 }
 
-// CASES J3, the lever: θ = F a/k_θ and u = F/k + a θ. In full, with a dead load at the end of a lever that turns:
-// k_θ θ = F a cos θ, u = F/k + a sin θ.
+// Force with a moment arm (J3, closed form): θ = F a/k_θ and u = F/k + a θ. For large rotations, with a dead load at
+// the end of a rotating arm: k_θ θ = F a cos θ, u = F/k + a sin θ.
 TEST(BushingMount, GivesWayUnderALever) {
   double const a = 0.7;
   for (double const force : {1e-3, 1.0, 80.0}) {
@@ -119,9 +120,9 @@ TEST(BushingMount, GivesWayUnderALever) {
   }
 }
 
-// The same lever inside the bushing, whose marker is where the force acts: with u_c = u − a θ the energy ½ k u_c² + ½
-// k_θ θ² has the coupling −k a. The force acts along the coordinate u alone, so θ = F a/k_θ and u = F/k + a θ hold for
-// every size.
+// Moment arm within the bushing: its marker is at the point of the force. With u_c = u − a θ the energy ½ k
+// u_c² + ½ k_θ θ² has the coupling −k a. The force acts along the coordinate u alone, so θ = F a/k_θ and u = F/k + a
+// θ hold for every size.
 TEST(BushingMount, CouplesForceAndTurn) {
   double const a = 0.7;
   Matrix coupled = diagonal.stiffness;
@@ -139,7 +140,7 @@ TEST(BushingMount, CouplesForceAndTurn) {
   }
 }
 
-// A spring about an axis, which a Revolute would leave free: ω = √(k_θ/I) about it, and half a turn of reach.
+// Spring about the axis that a Revolute leaves free: ω = √(k_θ/I) about it. The spring works up to half a revolution.
 TEST(BushingMount, MayHoldTheFreeDirectionToo) {
   Bushing const spring{.stiffness = Bushing::diagonal({1e8, 1e8, 1e8}, {1e8, 1e8, 12.0}), .damping = none};
   Mounted sprung{Sprung{{.axis = Vec3::UnitX()}, spring}};
@@ -149,7 +150,7 @@ TEST(BushingMount, MayHoldTheFreeDirectionToo) {
               (sprung.moved(sprung.at_rest()).A - exp_so3<double>(Vec3(2.5, 0, 0))).norm(), 1e-9, {.scale = 1.0});
 }
 
-// A nonlinear law: u with f(u) = F, and tables at their points.
+// Nonlinear force laws: u with f(u) = F, and tables at their points.
 TEST(BushingMount, FollowsItsLaws) {
   TabulatedLaw const stop{MonotoneTable{{{-0.02, -400.0}, {-0.01, -20.0}, {0.0, 0.0}, {0.01, 20.0}, {0.02, 400.0}}},
                           0.0};
@@ -169,7 +170,8 @@ TEST(BushingMount, AddsNoRows) {
   static_assert(!decltype(m.model)::may_have_rows);
 }
 
-// Markers apart by d at the reference state: K d on the body, and what stands without a gap bears nothing.
+// Preloads of markers at the distance d in the reference state. The force on the body is K d, and zero if the markers
+// coincide.
 TEST(Preloads, AreWhatTheReferenceStateStores) {
   Vec3 const d(0.001, -0.002, 0.003);
   Mounted const tight{Mount{{}, diagonal}}, apart{Mount{{}, diagonal}, Vec3(0.1, 0.2, 0.3), Vec3(0.1, 0.2, 0.3) - d};
@@ -182,7 +184,8 @@ TEST(Preloads, AreWhatTheReferenceStateStores) {
   EXPECT_NEAR(energy(apart.model, apart.model.reference_state()).joints, 0.5 * d.dot(k.cwiseProduct(d)), 1e-15);
 }
 
-// In the plane: K d on the body, and its moment about the middle of mass; the pin is free to turn.
+// In the plane: the force on the body is K d, with its moment about the centre of mass. The pin leaves the rotation
+// free.
 TEST(BushingMount, HoldsAPlanarPinToo) {
   using Pin = Joint<planar::Revolute, Bushing>;
   Model<Bodies<planar::Rigid>, Joints<Pin>> model;
@@ -198,7 +201,7 @@ TEST(BushingMount, HoldsAPlanarPinToo) {
   double const fx = -k[0] * 0.01, fy = k[1] * 0.02;
   EXPECT_LT((r + Vec3(fx, fy, 0.3 * fy - 0.1 * fx)).norm(), 1e-12);
   x = model.reference_state();
-  x.q[2] = 0.5;  // turned about the middle of mass, and put back to the pin
+  x.q[2] = 0.5;  // rotated about the centre of mass, then moved back to the pin
   x.q.head<2>() = Vec2(0.3, 0.1) - Eigen::Rotation2Dd(0.5) * Vec2(0.3, 0.1);
   EXPECT_LT(reaction(model, x, pin).f.norm(), 1e-12);
   EXPECT_LT(reaction(model, x, pin).m.norm(), 1e-12);

@@ -1,4 +1,4 @@
-// A cabin that hangs from a trolley on a cable in space.
+// Cabin that hangs from a trolley on a cable in space.
 
 #include <gtest/gtest.h>
 
@@ -24,8 +24,8 @@ constexpr double g = 9.81;
 using Ball = Joint<Spherical, Constraint>;
 using InSpace = Model<Bodies<Sliding<AncfCable<>>, Rigid<>>, Joints<Ball>>;
 
-/// A cable of 4 m, taut between two anchors, the right one 0.5 m lower; a cabin hung 0.3 m under a slider, and swinging
-/// sideways.
+/// A cable of 4 m is taut between two anchors. The right anchor is 0.5 m lower. A cabin hangs 0.3 m under a slider
+/// and swings sideways.
 struct Cableway {
   InSpace model{Gravity{0, 0, -g}};
   Bar const bar{.length = 4.0,
@@ -46,11 +46,11 @@ struct Cableway {
     hanger = model.connect(Ball{}, cable.at(Slider{}), cabin.at(Vec3(0, 0, 0.3)), "hanger");
     start = model.reference_state();
     Vec3 const spin(1.0, 0.3, 0.0), hook = 0.7 * along;
-    model.set_velocity(start, cabin, -spin.cross(hook), spin);  // about the hook, which stands
+    model.set_velocity(start, cabin, -spin.cross(hook), spin);  // about the hook, which is at rest
   }
 };
 
-/// What a run does to the energy, what it leaves of the rows, and the state at its end.
+/// Changes of energy and constraint violations during a run, and the state at its end.
 struct Ride {
   State x;
   double energy = 0.0;
@@ -72,8 +72,8 @@ struct Ride {
   }
 };
 
-// The cabin goes from the second element of the cable into the third. Nothing takes energy; the rows hold in place,
-// speed and acceleration; two methods agree.
+// The cabin moves from the second element of the cable into the third. No force dissipates energy. The constraint
+// equations hold in position, velocity and acceleration. Two methods agree.
 TEST(Cableway, RidesDownTheCableWithItsEnergy) {
   Cableway const way;
   double const until = 0.8, weight = 2.0 * g;  // times 1 m
@@ -96,7 +96,7 @@ TEST(Cableway, RidesDownTheCableWithItsEnergy) {
   held_within({"sliders", "place of a cabin on a cable [m]", By::itself, "Radau IIA", by_alpha},
               std::abs(place(way.model, alpha.x, way.cable) - place(way.model, radau.x, way.cable)), 5e-5,
               {.scale = 1.0});
-  // the hook pulls across the cable: f · r′ = 0, r′ from the places beside it
+  // the hook pulls across the cable: f · r′ = 0, with r′ from positions on both sides
   double const s = place(way.model, radau.x, way.cable), e = 1e-4;
   auto const point = [&](double at) { return position(way.model, radau.x, way.cable.at(at)); };
   Vec3 const slope = (point(s + e) - point(s - e)) / (2.0 * e);

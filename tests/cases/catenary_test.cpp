@@ -1,5 +1,5 @@
-// CASES S11 in the plane: a cable and a chain of rigid links, hung at equal heights. Links on ideal pins, on springs,
-// and on joint coordinates.
+// Catenary (S11) in the plane: a cable and a chain of rigid links, supported at equal heights. The links have ideal
+// pins, springs, or joint coordinates.
 
 #include <gtest/gtest.h>
 
@@ -20,12 +20,12 @@ namespace catenary_test {
 using Cable = planar::AncfCable<EngineeringStrain>;
 template <class Policy>
 using Pin = Joint<planar::Revolute, Policy>;
-/// One type of model for all, which is compiled once.
+/// Model type for all tests, which is compiled once.
 using Hanging =
     Model<Bodies<planar::Rigid, Cable>, Joints<Pin<Constraint>, Pin<Penalty>, Pin<Bushing>, Pin<Recursive>>>;
 
-/// By how much a chord is steeper than the one before where n chords of length l, ends on a circle, span s:
-/// Σ l cos δ(i − (n − 1)/2) = s.
+/// Angle between successive chords of n chords of length l with their ends on a circle, span s: Σ l cos δ(i − (n −
+/// 1)/2) = s.
 double turn_of_chords(int n, double l, double s) {
   double low = 0.0, high = 2.0 * std::numbers::pi / n;
   for (int k = 0; k < 60; ++k) {
@@ -37,8 +37,9 @@ double turn_of_chords(int n, double l, double s) {
   return low;
 }
 
-// 10 m of 10 N/m with supports 8 m apart; 20 elements, EI = 1e-3 N m². Laid along an arc, then left to itself; the
-// stiffer cable starts where the softer one hangs. EA = 1e9 stands for the inextensible cable: H differs by 5e-6.
+// Cable of 10 m and 10 N/m with supports 8 m apart; 20 elements, EI = 1e-3 N m². The initial shape is an arc. The
+// stiffer cable starts from the equilibrium of the softer one. EA = 1e9 approximates the inextensible cable: H
+// differs by 5e-6.
 TEST(PlanarCatenary, HangsWithThePublishedForceAndSag) {
   struct Row {
     double EA, H, sag;
@@ -85,9 +86,9 @@ struct Hang {
   double H, V, sag, slope;
 };
 
-/// A link turns until its weight, at its middle, is in balance with the forces at its ends: tan θᵢ = (V − m g (i +
-/// ½))/H. Pins of stiffness k open along their forces, (H, V − m g i)/k, and the span closes: Σ l cos θᵢ + (N + 1) H/k
-/// = s; N is even.
+/// Equilibrium of a link under its weight, at its middle, and the forces at its ends: tan θᵢ = (V − m g (i + ½))/H.
+/// Pins of stiffness k deflect along their forces by (H, V − m g i)/k. The span gives Σ l cos θᵢ + (N + 1) H/k = s. N
+/// is even.
 Hang closed_form(Links const& c, double k) {
   double const w = c.m * 9.81, v = 0.5 * c.n * w;
   Hang out{};
@@ -106,8 +107,8 @@ Hang closed_form(Links const& c, double k) {
   return out;
 }
 
-/// Links laid along an arc, each on the one before. Pins start open by `open` along the arc: springs that do not pull
-/// cannot hold a chain. The far support may hold by another policy.
+/// Links along an arc, one after the other. The pins have an initial deflection of `open` along the arc, because
+/// springs without tension cannot support a chain. The far support may have another policy.
 template <class Policy>
 struct Chain {
   Hanging model{Gravity{0, -9.81, 0}};
@@ -143,7 +144,7 @@ struct Chain {
   }
 };
 
-/// A chain beside its balance, link by link, to 1e-9 of each quantity.
+/// Compares a chain with its equilibrium, link by link, to 1e-9 of each quantity.
 void held_chain(Hang const& found, Hang const& exact, std::string const& formulation, std::string const& at = {}) {
   auto const expect = [&](char const* what, double value, double reference) {
     held({"S11", what, By::closed_form, "balance of each link", formulation}, value, reference, 1e-9 * reference, {at});
@@ -160,7 +161,7 @@ Hang const of_ten{33.0892370968, 49.05, 0.2668644258, 0.9275781698};
 TEST(HangingChain, HasThePublishedForcesAndShape) {
   double const rigid = std::numeric_limits<double>::infinity();
   Hang const exact_ten = closed_form(ten, rigid), exact_twenty = closed_form(twenty, rigid);
-  EXPECT_NEAR(exact_ten.H, of_ten.H, 1e-9);  // CASES' digits are those of the balance
+  EXPECT_NEAR(exact_ten.H, of_ten.H, 1e-9);  // the published digits satisfy the equilibrium
   EXPECT_NEAR(exact_ten.sag, of_ten.sag, 1e-10);
   EXPECT_NEAR(exact_ten.slope, of_ten.slope, 1e-10);
   EXPECT_NEAR(exact_twenty.H, 33.1554563512, 1e-9);
@@ -169,12 +170,14 @@ TEST(HangingChain, HasThePublishedForcesAndShape) {
   held_chain(Chain(twenty, Constraint{}, Constraint{}).hang(), exact_twenty, "20 rigid links on ideal pins");
 }
 
-// A tree from the first support, closed by a pin at the far one; its steps: tests/system/recursive_loop_test.cpp.
+// The tree starts at the first support and a pin at the far one closes the loop. The time steps are tested in
+// tests/system/recursive_loop_test.cpp.
 TEST(HangingChain, HangsAlikeOnJointCoordinates) {
   held_chain(Chain(ten, Recursive{}, Constraint{}).hang(), of_ten, "10 rigid links on joint coordinates");
 }
 
-// Springs in place of pins: their closed form at every stiffness, and the published force with an error of 1/k.
+// Springs instead of pins: they agree with their closed form at every stiffness, and with the published force up to
+// 1/k.
 void expect_springs(char const* pins, auto&& of_stiffness) {
   double last = 0.0;
   for (double const k : {1e7, 1e8, 1e9}) {

@@ -1,4 +1,4 @@
-// A closed chain of 64 links on two wheels: its pins repeat three rows, whatever the shape.
+// Closed chain of 64 links on two wheels. Its pins have three redundant constraint equations in every shape.
 
 #include <gtest/gtest.h>
 
@@ -53,10 +53,11 @@ struct Distinctly<J, J> {
   using Type = Joints<J>;
 };
 
-/// The pins lie on half regular 24-gons around the wheels, whose circles of radius l/(2 sin(π/24)) are their pitch
-/// circles, and on the two tangents between: 12 links around each wheel, 20 on each span, all taut. Wheels turn about
-/// pins on the ground. Where the chain is farthest out it is held to the left wheel by a pin, to the right one by a
-/// point on a line along z, which takes the plane's two rows and no more.
+/// The pins lie on half regular 24-gons around the wheels and on the two tangents between them. The circles of the
+/// 24-gons, of radius l/(2 sin(π/24)), are the pitch circles. 12 links lie around each wheel and 20 on each span, all
+/// taut. The wheels rotate about pins on the ground. The outermost point of the chain on the left wheel is joined to
+/// the wheel by a pin. On the right wheel it is a point on a line along z, which has only the two constraint
+/// equations of the plane.
 template <class World>
 struct ClosedChain {
   using Body = typename World::Body;
@@ -103,9 +104,10 @@ struct ClosedChain {
 using Space = ClosedChain<OfSpace>;
 using Plane = ClosedChain<OfThePlane>;
 
-// A loop of N parallel pins has 5 N rows, but its links keep six motions as a whole and N − 3 against each other: 6 N −
-// (N + 3) = 5 N − 3 rows hold. Axles, tooth and point add 5 + 5 + 5 + 2: 337 rows of rank 334 on 6·66 speeds, and N − 2
-// degrees of freedom as in the plane, 3·66 − 2·(64 + 2 + 2).
+// A loop of N parallel pins has 5 N constraint equations. Its links have six rigid motions and N − 3 relative
+// motions: 6 N − (N + 3) = 5 N − 3 equations are independent. Axles, tooth and point add 5 + 5 + 5 + 2. The result is
+// 337 equations of rank 334 for 6·66 generalised velocities. The degrees of freedom are N − 2 as in the plane, 3·66 −
+// 2·(64 + 2 + 2).
 TEST(ClosedChain, RepeatsThreeRows) {
   Space const space;
   Plane const plane;
@@ -127,7 +129,7 @@ TEST(ClosedChain, RepeatsThreeRows) {
   EXPECT_EQ(r.repeated[0].rows, 3);
 }
 
-/// The forces of all pins, space beside plane.
+/// Forces of all pins in space and in the plane.
 struct PinForces {
   double difference = 0.0, largest = 0.0, out_of_plane = 0.0;
 };
@@ -147,8 +149,9 @@ PinForces compare(Space const& space, Plane const& plane) {
   return out;
 }
 
-// Released at rest the chain falls off the wheels. The plane's chain repeats no rows, so its forces are unique: those
-// in space are the same at every step, and nothing acts out of the plane though three rows could bear anything there.
+// Chain that falls off the wheels after its release. The planar chain has no redundant constraints, so its forces are
+// unique. The forces of the spatial chain are equal at every step. The forces out of the plane are zero, although
+// three constraint equations could transmit them.
 template <class I>
 void expect_the_plane(char const* formulation, I const& integrator, double step, double until, double tolerance,
                       double energy_tolerance) {
@@ -173,7 +176,7 @@ void expect_the_plane(char const* formulation, I const& integrator, double step,
     ASSERT_LT(f.out_of_plane, tolerance * (1.0 + f.largest)) << space.x.t;
     ASSERT_LT(space.x.lambda.cwiseAbs().maxCoeff(), (1.0 + tolerance) * (1.0 + f.largest)) << space.x.t;
   }
-  EXPECT_GT(largest, 20.0 * 9.81);  // an axle bears its wheel, and what the chain pulls
+  EXPECT_GT(largest, 20.0 * 9.81);  // an axle carries its wheel and the tension of the chain
   EXPECT_NEAR(energy(space.model, space.x).total(), start, energy_tolerance);
   held_within({"closed forms", "pin forces of a closed chain that falls, of the largest", By::itself,
                "the chain in the plane", formulation},

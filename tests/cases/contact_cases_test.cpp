@@ -1,4 +1,4 @@
-// CASES part 5: impacts, sliding, rolling, the spinning ring and the belt around a drum, against closed forms.
+// Contact cases C1 to C7 in closed form: impacts, sliding, rolling, the spinning ring and the belt around a drum.
 
 #include <gtest/gtest.h>
 
@@ -39,14 +39,14 @@ Claim closed_form(char const* case_id, char const* what, char const* source, cha
   return {case_id, what, By::closed_form, source, formulation};
 }
 
-/// A point mass above a floor, or on it.
+/// Point mass above a floor, or on it.
 template <class N>
 struct Drop {
   using Law = Contact<SphereOnPlane, N>;
   Model<Bodies<Rigid<>>, Joints<>, Forces<Law>> model;
   BodyHandle<Rigid<>> body;
 
-  /// \param pull gravity, world axes
+  /// \param pull gravity in world axes
   Drop(N const& normal, double mass, double height, Vec3 const& pull, Friction const& friction = {})
       : model(Gravity{pull.x(), pull.y(), pull.z()}),
         body(model.add(Rigid<>(mass, Mat3(Mat3::Identity()), Placement::at({0, 0, height})))) {
@@ -60,7 +60,7 @@ struct Drop {
 };
 Vec3 const down(0, 0, -g);
 
-/// A run, and the states in which it met events.
+/// Run with the states at its events.
 struct Met {
   std::string name;
   State x;
@@ -81,7 +81,7 @@ State const& first(std::vector<Met> const& met, std::string const& name) {
 
 // --- C1: the bouncing ball ------------------------------------------------------------------------------------
 
-/// Times at which a ball that keeps 0.8 of its speed comes down to the floor, and heights of the apexes after them.
+/// Impact times of a ball with the restitution 0.8, and the heights of the apexes after them.
 struct Bounces {
   std::vector<double> impact, apex;
 
@@ -98,8 +98,8 @@ struct Bounces {
   }
 };
 
-// CASES C1: t₁ = √(2h/g), t_{n+1} − t_n = 2 t₁ eⁿ, apexes e^{2n} h. A contact of stiffness k lasts for some √(m/k), at
-// most π of them, and in it the ball dips by at most v₁√(m/k); both vanish with 1/√k.
+// Bouncing ball (C1): t₁ = √(2h/g), t_{n+1} − t_n = 2 t₁ eⁿ, apexes e^{2n} h. A contact of stiffness k lasts some
+// √(m/k), at most π of them. The penetration is at most v₁√(m/k). Both vanish with 1/√k.
 TEST(BouncingBall, ComesDownAndRisesAsByRestitution) {
   double const t1 = 0.451523640986;
   char const* const stiffnesses = "SpringDamperContact of 1e6, 1e8 and 1e10 N/m, Dormand–Prince";
@@ -144,7 +144,7 @@ struct Impact {
   }
 };
 
-// The numbers of CASES C2 have ten digits or more.
+// The values of the penalty impact (C2, closed form) have ten digits or more.
 TEST(ImpactOnASpring, HasTheDepthAndDurationOfTheClosedForm) {
   Drop<SpringDamperContact> const drop({.stiffness = 1e5}, 1.0, 0.0, down);
   Impact const impact(drop, touching, [](State const& s) { return s.q[z]; });
@@ -153,7 +153,7 @@ TEST(ImpactOnASpring, HasTheDepthAndDurationOfTheClosedForm) {
   };
   held(spring("largest depth [m]"), impact.deepest.q[z], -0.01410558455684, 1e-13);
   held(spring("duration of the contact [s]"), impact.free.t, 9.978882010784e-3, 1e-14);
-  // it keeps its energy, but for some hundred steps' 1e-12
+  // energy is conserved, except for the errors of some hundred steps, 1e-12 each
   held(spring("speed of the rebound [m/s]"), impact.free.v[z], touching, 1e-10);
 }
 TEST(ImpactOnASpring, WithADamperHasTheNumbersOfTheCase) {
@@ -169,7 +169,7 @@ TEST(ImpactOnASpring, WithADamperHasTheNumbersOfTheCase) {
   held(damped("duration of the contact [s]"), impact.free.t, 9.3999275596e-3, 1e-13);
   held(damped("speed of the rebound [m/s]"), impact.free.v[z], 3.2911781211, 1e-9);
   held(damped("restitution"), impact.free.v[z] / touching, 0.74302236, 1e-8);
-  EXPECT_NEAR(impact.after.v[z], impact.free.v[z] - g * (0.015 - impact.free.t), 1e-10);  // nothing holds it back
+  EXPECT_NEAR(impact.after.v[z], impact.free.v[z] - g * (0.015 - impact.free.t), 1e-10);  // no force but gravity
 }
 TEST(ImpactOnASpring, RestsWhereTheSpringBearsItsWeight) {
   Drop<SpringDamperContact> const drop({.stiffness = 1e5, .damping = 300.0}, 1.0, 0.0, down);
@@ -179,7 +179,7 @@ TEST(ImpactOnASpring, RestsWhereTheSpringBearsItsWeight) {
        -9.81e-5, 1e-12);
 }
 
-// Within the contact, from 1 ms to 8 ms, in closed form with ω² = k/m, σ = c/2m, ν² = ω² − σ²:
+// Contact between 1 ms and 8 ms in closed form with ω² = k/m, σ = c/2m, ν² = ω² − σ²:
 //   d = g/ω² + e^(−σt)(A cos νt + B sin νt),  A = −g/ω²,  B = (v₁ + σA)/ν.
 struct Within {
   double k = 1e5, c = 0.0;
@@ -211,8 +211,8 @@ TEST(ImpactOnASpring, IsIntegratedAtTheOrderOfTheMethod) {
 
 // --- C3: Coulomb sliding --------------------------------------------------------------------------------------
 
-/// What friction μN v/√(v² + s²) does to v̇ = −b v/√(v² + s²):  time and way from u to v are (F(u) − F(v))/b, (W(u) −
-/// W(v))/b with
+/// Sliding under the friction force μN v/√(v² + s²), v̇ = −b v/√(v² + s²). Time and distance from u to v are (F(u) −
+/// F(v))/b and (W(u) − W(v))/b with
 ///   F = ∫√(v² + s²)/v dv = √(v² + s²) − s asinh(s/v),   W = ∫√(v² + s²) dv = ½ (v√(v² + s²) + s² asinh(v/s)).
 struct Slip {
   double s;
@@ -221,8 +221,8 @@ struct Slip {
 };
 constexpr double k_floor = 1e6;
 
-// CASES C3: μ = 0.3, from 3 m/s; ideally it stops after 1.0194 s and 1.5291 m, and the regularised law errs by at most
-// v_s v₀/(μg).
+// Coulomb sliding (C3): μ = 0.3, v₀ = 3 m/s. The ideal block stops after 1.0194 s and 1.5291 m. The error of the
+// regularised law is at most v_s v₀/(μg).
 TEST(SlidingBlock, StopsWithinTheBoundOfTheRegularisation) {
   double const mu = 0.3, v0 = 3.0, b = mu * g;
   for (double const s : {1e-2, 1e-3}) {
@@ -244,7 +244,7 @@ TEST(SlidingBlock, StopsWithinTheBoundOfTheRegularisation) {
     held(slides("time to slow down to v_s [s]", regularised), at.t, (slip.F(v0) - slip.F(s)) / b, 1e-8, when);
     held(slides("way to slow down to v_s [m]", regularised), at.q[0], (slip.W(v0) - slip.W(s)) / b, 1e-8, when);
     held(slides("time to slow down to v_s [s]", "Coulomb, within v_s/(μg)"), at.t, 1.019367991845, s / b, when);
-    // v has then fallen by e^(−b·0.28 s/v_s) from v_s: all of the way
+    // v has then fallen by e^(−b·0.28 s/v_s) from v_s: the distance is complete
     held(slides("way to the stop [m]", regularised), x.q[0], slip.W(v0) / b, 1e-8, when);
     EXPECT_GT(x.q[0], 1.529051987768);
     held(slides("way to the stop [m]", "Coulomb, within v_s v₀/(μg)"), x.q[0], 1.529051987768, s * v0 / b, when);
@@ -252,7 +252,7 @@ TEST(SlidingBlock, StopsWithinTheBoundOfTheRegularisation) {
   }
 }
 
-/// A block on a slope tan α = t, down which it is pulled.
+/// Block that slides down a slope tan α = t.
 State slid(double t, double mu, double s, double until) {
   double const alpha = std::atan(t);
   Placement const slope = Placement::at({0.2, 0.1, 0.3}, {0, alpha, 0});
@@ -268,8 +268,8 @@ State slid(double t, double mu, double s, double until) {
   x.v.head<3>() = (slope.axes.transpose() * x.v.head<3>()).eval();  // along the slope
   return x;
 }
-// CASES C3: below the friction angle it creeps at v_s t/√(μ² − t²). It settles like e^(−t/τ), 1/τ = (μ g cos α/v_s)(1 −
-// t²/μ²)^(3/2), and is given 25 τ.
+// Below the friction angle the block creeps at v_s t/√(μ² − t²) (C3). The transient decays like e^(−t/τ), 1/τ = (μ g
+// cos α/v_s)(1 − t²/μ²)^(3/2). The test waits 25 τ.
 TEST(SlidingBlock, CreepsDownASlopeAtTheSpeedOfTheFormula) {
   double const mu = 0.3, s = 1e-2;
   for (double const t : {0.05, 0.15, 0.27}) {
@@ -281,8 +281,8 @@ TEST(SlidingBlock, CreepsDownASlopeAtTheSpeedOfTheFormula) {
     EXPECT_LT(std::hypot(x.v[1], x.v[2]), 1e-9) << t;
   }
 }
-// Above it, v̇ = g (sin α − μ cos α) + μ g cos α (1 − v/√(v² + v_s²)), and the last term adds up to at most v_s μ cos
-// α/(sin α − μ cos α).
+// Above the friction angle, v̇ = g (sin α − μ cos α) + μ g cos α (1 − v/√(v² + v_s²)). The integral of the last term
+// is at most v_s μ cos α/(sin α − μ cos α).
 TEST(SlidingBlock, SlidesDownASteeperSlope) {
   double const mu = 0.3, s = 1e-2, t = 0.5, alpha = std::atan(t), until = 0.5;
   double const v = slid(t, mu, s, until).v[0], ideal = g * (std::sin(alpha) - mu * std::cos(alpha)) * until;
@@ -292,8 +292,8 @@ TEST(SlidingBlock, SlidesDownASteeperSlope) {
 
 // --- C4: from slip to roll ------------------------------------------------------------------------------------
 
-/// A ball in space (J = 2/5 m R²) or a disc in the plane (1/2) on the floor, pulled by `pull` along x and by g cos α
-/// down.
+/// A ball in space (J = 2/5 m R²) or a disc in the plane (1/2) on the floor, under `pull` along x and g cos α
+/// downwards.
 template <class Body>
 struct Roller {
   static constexpr bool plane = std::is_same_v<Body, planar::Rigid>;
@@ -303,7 +303,7 @@ struct Roller {
   BodyHandle<Body> body;
 
   Roller(Friction const& friction, double alpha) : model(gravity(alpha)), body(model.add(shape(alpha))) {
-    Mat3 axes;  // the floor's z upwards
+    Mat3 axes;  // the floor's z points upwards
     axes << 0, 1, 0, 0, 0, 1, 1, 0, 0;
     Law const law{{.radius = radius}, {.stiffness = k_floor}, friction};
     model.apply(law, centre(), model.ground().at(plane ? Placement{Vec3::Zero(), axes} : Placement{}));
@@ -330,8 +330,8 @@ struct Roller {
     model.set_velocity(x, body, {v0, 0, 0}, {0, 0, 0});
     return x;
   }
-  /// Its speed, and the velocity of its lowest point: a wheel that rolls along x turns by −R ω about z in the plane, by
-  /// R ω about y in space.
+  /// Velocity of the centre, and velocity of the lowest point. A wheel that rolls along x has the angular velocity −ω
+  /// about z in the plane, and ω about y in space.
   double speed(State const& x) const { return frame(model, x, centre()).v.x(); }
   double slip(State const& x) const {
     Frame<double> const f = frame(model, x, centre());
@@ -339,7 +339,8 @@ struct Roller {
   }
 };
 
-// CASES C4. With u = v − ωR the slip: u̇ = −μ g (1 + 1/c) u/√(u² + v_s²) and v = (v₀ + c u)/(1 + c), so that the way is
+// Transition from slip to roll (C4, closed form). With the slip u = v − ωR: u̇ = −μ g (1 + 1/c) u/√(u² + v_s²) and v
+// = (v₀ + c u)/(1 + c). The distance is
 //   x(t) = (v₀ t + c ∫u dt)/(1 + c),  ∫u dt = (W(v₀) − W(u))/(μ g (1 + 1/c)).
 template <class Body>
 void expect_slip_then_roll(double t_roll, double x_roll, double v_roll) {
@@ -364,7 +365,7 @@ void expect_slip_then_roll(double t_roll, double x_roll, double v_roll) {
     held(rolling("time to a slip of v_s [s]", regularised), slow.t, (slip.F(v0) - slip.F(s)) / b, 1e-8, when);
     held(rolling("time to a slip of v_s [s]", "Coulomb, within v_s/b"), slow.t, t_roll, s / b, when);
     State const& then =
-        first(met, "ideal");  // when Coulomb's law would have it roll, at most some v_s of slip are left
+        first(met, "ideal");  // when Coulomb's law gives rolling, the remaining slip is at most some v_s
     double const left = roller.slip(then);
     EXPECT_GT(left, 0.0);
     EXPECT_LT(left, 2.0 * s);
@@ -387,9 +388,9 @@ TEST(SlipToRoll, DiscRollsAtTwoThirdsOfItsSpeed) {
   expect_slip_then_roll<planar::Rigid>(0.509683995923, 1.274209989806, 2.0);
 }
 
-// Down an incline: rolling needs friction N q, q = tan α c/(1 + c). Where μ > q it slips at u = v_s q/√(μ² − q²) only,
-// and v + c ω R = g sin α t gives v = (g sin α t + c u)/(1 + c). Where μ < q slip grows at g sin α (1 − μ/q), and by
-// less than v_s (μ/q)/(1 − μ/q) more.
+// Incline: rolling requires the friction N q, q = tan α c/(1 + c). If μ > q, the slip is only u = v_s q/√(μ² − q²),
+// and v + c ω R = g sin α t gives v = (g sin α t + c u)/(1 + c). If μ < q, the slip grows at g sin α (1 − μ/q), with
+// an additional part below v_s (μ/q)/(1 − μ/q).
 template <class Body>
 void expect_rolls_down() {
   double const alpha = 0.5, s = 1e-3, until = 0.6, pull = g * std::sin(alpha);
@@ -425,7 +426,8 @@ TEST(SlipToRoll, DiscRollsDownAnInclineWhereFrictionReachesForIt) { expect_rolls
 
 // --- C4b: elastic spheres -------------------------------------------------------------------------------------
 
-// CASES C4b: δ_max = (15 m v²/(16 E* √R))^(2/5), and the duration (4/5)√π Γ(2/5)/Γ(9/10) = 2.943275… times δ_max/v.
+// Elastic impact after Hertz (C4b): δ_max = (15 m v²/(16 E* √R))^(2/5). The duration is (4/5)√π Γ(2/5)/Γ(9/10) =
+// 2.943275… times δ_max/v.
 TEST(HertzImpact, HasTheDepthAndDurationOfTheClosedForm) {
   Drop<HertzContact> const drop({.modulus = 1e8, .radius = 0.1}, 1.0, 0.0, Vec3::Zero());
   Impact const impact(drop, 1.0, [](State const& s) { return s.q[z]; });
@@ -439,8 +441,8 @@ TEST(HertzImpact, HasTheDepthAndDurationOfTheClosedForm) {
   held(hertz("speed of the rebound [m/s]", "invariant energy"), impact.free.v[z], 1.0, 1e-9);
 }
 
-/// Two free balls of masses m₁, m₂ in space, ends of their radii a millimetre apart, the first at rest, the second
-/// coming obliquely.
+/// Two free balls of masses m₁, m₂ in space. The gap between them is one millimetre. The first is at rest and the
+/// second approaches obliquely.
 template <class N>
 struct Pair {
   static constexpr double m1 = 3.0, m2 = 1.5, radius = 0.2;  ///< reduced mass 1 kg, 1/R = 1/0.2 + 1/0.2
@@ -467,8 +469,8 @@ struct Pair {
   Vec3 relative() const { return x.v.segment<3>(model.entry(two).v0) - x.v.segment<3>(model.entry(one).v0); }
 };
 
-// Two spheres that meet centrally do as one of the reduced mass does on a wall; a step of 1e-5 s sees the depth to ½ a
-// h² = 4e-8 m.
+// Two spheres in central impact behave as one of the reduced mass against a wall. A step of 1e-5 s resolves the depth
+// to ½ a h² = 4e-8 m.
 TEST(HertzImpact, OfTwoFreeSpheresIsThatOfTheReducedMass) {
   Pair<HertzContact> const pair({.modulus = 1e8, .radius = 0.1}, 1.0);
   auto const spheres = [](char const* what, char const* source) {
@@ -494,8 +496,8 @@ TEST(HuntCrossleyImpact, LeavesWithItsRestitution) {
 
 // --- C5: the spinning ring ------------------------------------------------------------------------------------
 
-/// 64 links in the plane that spin about the centre of the ring they make; the last pin closes it, of the same policy
-/// as the others.
+/// Ring of 64 links in the plane that spins about its centre. The last pin closes the ring and has the policy of the
+/// other pins.
 template <class Policy>
 struct Ring {
   static constexpr int n = 64;
@@ -521,10 +523,11 @@ struct Ring {
   }
 };
 
-// CASES C5: F = m ω² l cos(π/N)/(4 sin²(π/N)) in every pin, tangential, also in the closing one. A pin of stiffness k
-// opens by g where the links go outward by g/(2 sin π/N) each: k g = F (1 + g/(2 R sin π/N)). Over a tenth of a turn in
-// steps of ωh = 5e-3. Constrained, the second-order method errs by less than (ωh)² of the force; rounding, over h²,
-// forbids much smaller steps. Compliant, its error of the start lets the ring ring: ten times that.
+// Spinning ring (C5): F = m ω² l cos(π/N)/(4 sin²(π/N)), tangential, in every pin including the closing one. A pin of
+// stiffness k deflects by g if each link moves outward by g/(2 sin π/N): k g = F (1 + g/(2 R sin π/N)). The run
+// covers a tenth of a revolution in steps of ωh = 5e-3. With constraints the error of the second-order method is
+// below (ωh)² of the force. Round-off, divided by h², forbids much smaller steps. With compliance the start error
+// excites vibrations of the ring, ten times as large.
 template <class Policy>
 void expect_ring(Policy const& policy, double stiffness, char const* pins) {
   Ring<Policy> const ring(policy);
@@ -547,7 +550,7 @@ void expect_ring(Policy const& policy, double stiffness, char const* pins) {
     if (steps++ % 10 != 0) continue;
     for (int const i : {0, 20, ring.n - 1}) {
       double const angle = ring.half * (2 * i + 1) + ring.omega * now.t;
-      Vec3 const f = reaction(ring.model, now, ring.pins[std::size_t(i)]).f;  // on the link ahead: back, along its end
+      Vec3 const f = reaction(ring.model, now, ring.pins[std::size_t(i)]).f;  // on the next link, along its end
       worst = std::max(worst, (f - force * Vec3(std::sin(angle), -std::cos(angle), 0)).norm());
       worst_gap = std::max(worst_gap, std::abs(gap(ring.model, now, ring.pins[std::size_t(i)]).norm() - open));
     }
@@ -573,22 +576,23 @@ TEST(SpinningRingOf64, OpensBushingsByTheForceOverTheStiffness) {
 
 // --- C7: the belt around a drum -------------------------------------------------------------------------------
 
-/// A belt of point masses on rods that is drawn over a fixed drum at a steady speed: `links` rods lie on it around the
-/// angle `wrap`, a few more come and go along its tangents. It starts as it is to run, so that nothing has to settle
-/// but what the start leaves out.
+/// Belt of point masses on rods that is drawn over a fixed drum at a steady speed. `links` rods lie on the drum
+/// around the angle `wrap`. A few more rods arrive and leave along its tangents. The initial state is the steady
+/// motion, except for the terms that the start neglects.
 ///
-/// Where rods come to a point at the angle a from the tangent there and go on at b, they press N = T sin a + T′ sin b,
-/// and T′ cos b = T cos a + μN holds them against friction:
+/// At a point between two rods with angles a and b from the tangent, the contact force is N = T sin a + T′ sin b. The
+/// balance along the drum is T′ cos b = T cos a + μN:
 ///   T′/T = (cos a + μ sin a)/(cos b − μ sin b).
-/// The first and the last point meet their free rods along the tangent; a rod on the drum stands at half its angle φ
-/// from the tangents at both ends. So each rod brings its tension from one point to the next with the factor
+/// The first and the last point join their free rods along the tangent. The angle between a rod on the drum and the
+/// tangents at its ends is half of its angle φ. So the tension changes from one point to the next by the factor
 ///   f = (1 + μ tan φ/2)/(1 − μ tan φ/2) = e^(2 artanh(μ tan φ/2)) = e^(μφ + (μ + μ³)φ³/12 + …)
-/// and T₂/T₁ = fⁿ, nφ = β, goes to e^(μβ) as φ². [derived; the limit: Euler 1769, Eytelwein 1808]
+/// and T₂/T₁ = fⁿ, nφ = β, tends to e^(μβ) with an error of order φ². [derived; the limit: Euler 1769, Eytelwein
+/// 1808]
 struct Capstan {
   static constexpr double radius = 0.5, mu = 0.3, slack = 10.0, speed = 0.05, slip_speed = 1e-3;
-  /// Of Coulomb's friction, what the regularised one has at this speed.
+  /// Effective friction coefficient of the regularised law at this speed.
   static double effective() { return mu * speed / std::hypot(speed, slip_speed); }
-  /// f of a rod around this angle.
+  /// Factor f of a rod that spans this angle.
   static double rod_factor(double angle) {
     double const x = effective() * std::tan(0.5 * angle);
     return (1.0 + x) / (1.0 - x);
@@ -608,7 +612,7 @@ struct Capstan {
     auto const tangent = [](double at) { return Vec3(-std::sin(at), std::cos(at), 0); };
     std::vector<Vec3> places, ways;
     double tension = slack;
-    for (int i = 0; i <= links; ++i) {  // as deep as it is pressed
+    for (int i = 0; i <= links; ++i) {  // penetration of the pressed points
       double const s = std::sin(0.5 * angle), into = i == 0 ? 0.0 : s, out = i == links ? 0.0 : s;
       double const mean = i == 0 || i == links ? 0.25 * angle : 0.5 * angle, x_mean = effective() * std::tan(mean);
       double const next = tension * (1.0 + x_mean) / (1.0 - x_mean), at = i * angle;
@@ -631,7 +635,7 @@ struct Capstan {
     }
     for (std::size_t i = 0; i + 1 < points.size(); ++i)
       model.connect(Rod{{.length = (places[i + 1] - places[i]).norm()}, {}}, points[i], points[i + 1]);
-    // a line of 3 m that has been hauled in for 50 s, and will be for as long again
+    // a line of 3 m, hauled in since 50 s ago and for 50 s more
     Ramp const haul{.target = -100.0 * speed, .duration = 100.0, .start = -50.0};
     winch = model.connect(Winch{{.law = haul, .length = line + 50.0 * speed}, {}}, points.back(),
                           model.ground().at(Vec3(places.back() + line * tangent(wrap))), "winch");
@@ -647,7 +651,7 @@ struct Capstan {
   }
 
   double tight(State const& now) const { return reaction(model, now, winch).f.norm(); }
-  /// T₂/T₁ by the balance of all points on the drum as they stand.
+  /// T₂/T₁ from the balance of all points on the drum at their positions.
   double balance(State const& now) const {
     double ratio = 1.0;
     for (std::size_t i = 1; i + 1 < points.size(); ++i) {
@@ -661,14 +665,14 @@ struct Capstan {
   }
 };
 
-// CASES C7. Beside the balance of the points as they stand there is their inertia, m v²/ℓ = 5e-5 N, and what points
-// that come and go shake. How long is chance: with the slack force changed ten times by 1e-9, nine tenths of the states
-// are within 1.4e-5 to 1.5e-2. At 0.05 s none has; the belt has moved by 0.005 rad, and of what this does to the rule
-// its square is left, 2.5e-5.
+// Capstan (C7). Two effects are added to the balance of the points at their positions. The inertia of the points is m
+// v²/ℓ = 5e-5 N. Points that arrive and leave excite vibrations. The duration of the vibrations is random: with ten
+// changes of the slack force by 1e-9, nine tenths of the states are within 1.4e-5 to 1.5e-2. At 0.05 s no vibration
+// has begun. The belt has moved by 0.005 rad, whose square, 2.5e-5, is its effect on the rule.
 TEST(Capstan, HoldsAsItsPointsBalanceAndTendsToTheExponential) {
   for (double const wrap : {0.5 * std::numbers::pi, std::numbers::pi}) {
     double const exponential = std::exp(Capstan::effective() * wrap);
-    EXPECT_NEAR(exponential, wrap < 2.0 ? 1.601976 : 2.566332, 5e-4);  // that of μ itself
+    EXPECT_NEAR(exponential, wrap < 2.0 ? 1.601976 : 2.566332, 5e-4);  // value for μ itself
     std::vector<double> off;
     for (int const links : {4, 8, 16, 32}) {
       Capstan capstan(wrap, links);
@@ -688,7 +692,7 @@ TEST(Capstan, HoldsAsItsPointsBalanceAndTendsToTheExponential) {
                        "point masses on 4 to 32 rods, generalised-α, h = 1e-3 s"),
            ratios[0], rods, 2.5e-5 * rods, {equals("β", wrap) + ", " + equals("n", links)});
       off.push_back(std::log(ratios[0] / exponential));
-      // β (μ + μ³)φ²/12, and a little of the next order for φ = 45°
+      // β (μ + μ³)φ²/12, and a small term of the next order for φ = 45°
       double const square = capstan.angle * capstan.angle, mu = Capstan::effective();
       double const first_term = wrap * mu * (1.0 + mu * mu) * square / 12.0;
       EXPECT_NEAR(off.back(), first_term, 0.15 * square * first_term + 2.5e-5);
@@ -697,8 +701,9 @@ TEST(Capstan, HoldsAsItsPointsBalanceAndTendsToTheExponential) {
   }
 }
 
-/// The same with a cable that is nearly limp: EI/(R² T₁) = 4e-4, stretched by T/EA = 1e-3, points of contact four to an
-/// element. It starts stretched as T₁ e^(μ s/R) stretches it, |r′|² = 1 + 2T/EA, and as deep in the drum.
+/// Belt that is a cable of nearly no bending stiffness: EI/(R² T₁) = 4e-4, stretch T/EA = 1e-3, four contact points
+/// per element. The initial stretch is that of T₁ e^(μ s/R), |r′|² = 1 + 2T/EA, with the matching penetration into
+/// the drum.
 struct CableCapstan {
   static constexpr double radius = 0.5, mu = 0.3, slack = 10.0, speed = 0.05, slip_speed = 1e-2, EA = 1e4, end = 0.2;
   static double effective() { return mu * speed / std::hypot(speed, slip_speed); }
@@ -750,7 +755,7 @@ struct CableCapstan {
     x.lambda = VecX::Zero(model.rows());
   }
 };
-// Its stiffness in bending and its stretch change the ratio by parts of 4e-4 and 1e-3.
+// Bending stiffness and stretch change the ratio by 4e-4 and 1e-3 relative.
 TEST(Capstan, OfACableHoldsByTheExponential) {
   for (double const wrap : {0.5 * std::numbers::pi, std::numbers::pi}) {
     CableCapstan capstan(wrap, 32);

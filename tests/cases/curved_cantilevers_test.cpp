@@ -1,5 +1,5 @@
-// CASES S1, S4b, S8, S8b with beams in space: bars that are rolled up, and MacNeal & Harder's, which are twisted and
-// curved from the start.
+// Beams in space: roll-up by a tip moment (S1), inclined cantilever (S4b), and the twisted (S8) and curved (S8b)
+// beams of MacNeal & Harder 1985.
 
 #include <polybody/bodies/ancf/ancf_beam.hpp>
 #include <polybody/bodies/lrvf/lrvf.hpp>
@@ -18,10 +18,10 @@ namespace curved_cantilevers_test {
 
 using std::numbers::pi;
 
-// ---- S1: rolled up by a moment about any axis across the bar, θ = M L/EI
+// ---- S1: roll-up by a moment about any axis across the bar, θ = M L/EI
 
-/// L = EI = 1. \return the tip along the bar, across it and out of the plane of bending, and how far its turn is from
-/// θ.
+/// L = EI = 1. \return the tip along the bar, across it and out of the plane of bending, and the error of its
+/// rotation θ
 template <class B>
 Vec4 rolled(Index n, double theta, double axis) {
   Bar const bar{.length = 1.0,
@@ -33,8 +33,8 @@ Vec4 rolled(Index n, double theta, double axis) {
   return {c.tip()[0], c.tip().dot(across), c.tip().dot(about), log_so3(beyond).norm()};
 }
 
-// The nodes of n elements are those of a regular polygon with sides of length 1/n, each turned by θ/n against the last:
-// half a circle ends at 1/(n sin(π/2n)), above the root; a full one at the root.
+// The nodes of n elements form a regular polygon with sides of length 1/n. The angle between adjacent sides is θ/n. A
+// half circle ends at 1/(n sin(π/2n)) above the root, a full one at the root.
 TEST(RollUpInSpace, LrvfBecomesAPolygon) {
   for (double const axis : {0.0, 1.3}) {
     Claim const polygon{"S1", "tip of the bar rolled up about any axis, and its turn", By::closed_form,
@@ -46,8 +46,8 @@ TEST(RollUpInSpace, LrvfBecomesAPolygon) {
   }
 }
 
-// To the exact half circle, which ends at (0, 2/π). Sections follow r_y: an element that bends about another axis than
-// y or z also leaves the plane a little.
+// Convergence to the exact half circle, which ends at (0, 2/π). Sections follow r_y. An element that bends about an
+// axis other than y or z also leaves the plane slightly.
 TEST(RollUpInSpace, AncfBeamConvergesToTheCircle) {
   Vec4 const exact(0, 2 / pi, 0, 0), coarse = rolled<AncfBeam<>>(16, pi, 0.7), fine = rolled<AncfBeam<>>(32, pi, 0.7);
   EXPECT_NEAR((coarse - exact).norm() / (fine - exact).norm(), 4.0, 0.2);
@@ -70,7 +70,7 @@ Vec3 inclined(Index n, Mat3& turn) {
   return c.tip_displacement();
 }
 
-// The exact rod [C]; sixteen elements are 0.1 % off [P].
+// The reference is an independent computation of the exact rod. Sixteen elements have a published error of 0.1 %.
 TEST(InclinedBeamInSpace, LrvfConvergesToTheExactRod) {
   Mat3 turn;
   Vec3 const exact(-1.197374069, -2.209408446, 0);
@@ -103,7 +103,8 @@ Vec3 twisted_tip(Index n, Vec3 const& force) {
   return SpatialCantilever<AncfBeam<>>(AncfBeam<>::from(bar, n, twist), {.force = force}, {}).tip_displacement();
 }
 
-// The table's digits: eight, three along x. From three meshes: errors in h² and h⁴ are extrapolated away.
+// The tolerance is the digits of the table: eight, along x three. Three meshes remove the errors in h² and h⁴ by
+// extrapolation.
 TEST(AncfPreTwistedCantilever, MeetsTheExactRod) {
   auto const limit = [](Vec3 const& force) {
     Vec3 const a = twisted_tip(16, force), b = twisted_tip(32, force), c = twisted_tip(64, force);
@@ -130,7 +131,7 @@ Bar quarter() {
           .section = Rectangle{.height = 0.2, .width = 0.1},
           .material = Material{.density = 1.0, .young = 1e7, .poisson = 0.25}};
 }
-/// Displacement of the tip for a unit force, linear in it: half the difference under opposite small ones.
+/// Displacement of the tip per unit force in linear theory: half of the difference under opposite small forces.
 template <class B>
 Vec3 arc_tip(Index n, Vec3 const& force) {
   auto const arc = [](double s) {
@@ -144,11 +145,11 @@ Vec3 arc_tip(Index n, Vec3 const& force) {
   return (tip(small) - tip(-small)) / (2.0 * small);
 }
 
-// Castigliano, with θ from the tip: M = R sin θ, N = sin θ, Q = cos θ in the plane; M = R sin θ, T = R (1 − cos θ), Q =
-// 1 out of it:
+// Castigliano's theorem with θ from the tip: M = R sin θ, N = sin θ, Q = cos θ in the plane; M = R sin θ, T = R (1 −
+// cos θ), Q = 1 out of it:
 //   u = π R³/4EI + π R/4EA + π R/4GA,   w = π R³/4EI_y + (3π/4 − 2) R³/GJ + π R/2GA_z.
-// The axis has no law of a curved beam, which couples N and M: the published 0.08734 and 0.5022 are met to 1.5 % and
-// 0.4 %.
+// The material law of the axis has no coupling between N and M as in a curved beam. The published 0.08734 and 0.5022
+// are reproduced to 1.5 % and 0.4 %.
 template <class B>
 void bends(char const* formulation) {
   BarConstants const c = constants(quarter());

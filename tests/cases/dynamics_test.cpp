@@ -1,4 +1,4 @@
-// Planar flexible dynamics against independent computations (CASES D1, D2, D3, D6; parameters as published).
+// Planar flexible dynamics compared with independent computations: D1, D2, D3 and D6 with published parameters.
 #include <gtest/gtest.h>
 
 #include <polybody/polybody.hpp>
@@ -12,7 +12,7 @@ using planar::EngineeringStrain;
 using planar::Lrvf;
 using Cable = planar::AncfCable<EngineeringStrain>;
 
-// D1: Simo & Vu-Quoc 1986. Pinned at the origin along x, no gravity.
+// D1: robot arm of Simo & Vu-Quoc 1986. Pinned at the origin along x, no gravity.
 Bar svq_arm() {
   return {.length = 10.0,
           .constants = BarConstants{.EA = 1e4, .EI = 1e3, .mass_per_length = 1.0, .GA = 1e4, .rotary_inertia = 10.0}};
@@ -81,7 +81,7 @@ TEST(SimoVuQuocArm, TenElementsAsInThePaperStayWithinFivePercentOfTheLength) {
   EXPECT_EQ(next, rows.size());
 }
 
-// τ = 5, all rows.
+// τ = 5, all rows of the table.
 TEST(SimoVuQuocArm, SlowlyDrivenConvergesToTheIndependentSolution) {
   DrivenArm<Lrvf, Ramp> arm(Lrvf::from(svq_arm(), 40), Ramp{.target = 1.5, .duration = 5.0});
   State x = arm.model.reference_state();
@@ -127,7 +127,7 @@ TEST(SimoVuQuocArm, TorqueDrivenKeepsTheImpulseExactly) {
   held(spectral("D1", "energy after the torque [J]", forty), energy(model, x).total(), 55.463, 0.01 * 55.463);
 }
 
-// D2: Kane, Ryan & Banerjee 1987; the base is clamped to a hub of zero radius.
+// D2: spin-up of Kane, Ryan & Banerjee 1987. The base is clamped to a hub of zero radius.
 template <class B>
 void spins_up(B const& body, spin_up::Share const& share, char const* formulation) {
   DrivenArm<B, SpinUp> const arm(body, spin_up::drive().geometry.law);
@@ -139,7 +139,7 @@ TEST(SpinUp, CableOfEightElements) {
 }
 TEST(SpinUp, LrvfOfTenElements) { spins_up(Lrvf::from(spin_up::arm(), 10), {1e-2, 0.03}, "planar Lrvf, 10 elements"); }
 
-// D3: the flying rod of Simo & Vu-Quoc 1986, free in the plane.
+// D3: flying rod of Simo & Vu-Quoc 1986, free in the plane.
 template <class B>
 void flying_rod(double EI, int elements, Vec2 const& loaded, Vec2 const& free, double plateau, double tolerance) {
   Bar const bar{
@@ -157,7 +157,7 @@ void flying_rod(double EI, int elements, Vec2 const& loaded, Vec2 const& free, d
       "planar Lrvf, EI = " + std::to_string(int(EI)) + ", " + std::to_string(elements) + " elements, h = 2.5e-3 s";
   held_within({"D3", "momentum after the loads [N s]", By::closed_form, "8 N for 2.5 s", mesh},
               (p.linear - Vec3(20, 0, 0)).norm(), 1e-6, {.scale = 20.0});
-  Vec3 centre = Vec3::Zero();  // of mass: exact for the linear field by the mid-points
+  Vec3 centre = Vec3::Zero();  // centre of mass: the mid-points are exact for the linear field
   for (int i = 0; i < elements; ++i)
     centre += 0.5 / elements *
               (position(model, x, rod.at(10.0 * i / elements)) + position(model, x, rod.at(10.0 * (i + 1) / elements)));
@@ -175,7 +175,7 @@ void flying_rod(double EI, int elements, Vec2 const& loaded, Vec2 const& free, d
 TEST(FlyingRod, Stiff) { flying_rod<Lrvf>(500.0, 40, {5.6202, 4.7642}, {15.4085, 4.2645}, 90.2, 0.05); }
 TEST(FlyingRod, Flexible) { flying_rod<Lrvf>(100.0, 40, {9.7838, 8.2039}, {8.0742, 1.7588}, 380.0, 0.1); }
 
-// D6b, D6c: pendulums released horizontally.
+// D6b, D6c: pendulums released from the horizontal.
 template <class B>
 void pendulum(Claim const& claim, B const& body, std::vector<std::array<double, 3>> const& rows, double step,
               double tolerance, double g = 9.81) {
@@ -201,7 +201,7 @@ Bar stiff() {  // D6c
           .constants = BarConstants{
               .EA = 5.25e7, .EI = 10937.5, .mass_per_length = 10.0, .GA = 1.68269e7, .rotary_inertia = 2.08333e-3}};
 }
-// the cable has no shear: the values of the run with GA = 1e6
+// the cable has no shear: reference values with GA = 1e6
 TEST(FlexiblePendulum, ModerateCable) {
   pendulum(spectral("D6b", "tip, GA = 1e6 N [m]", "planar AncfCable, 8 elements, h = 1e-3 s"),
            Cable::from(moderate(), 8),
@@ -222,8 +222,9 @@ TEST(FlexiblePendulum, StiffLrvf) {
   pendulum(spectral("D6c", "tip [m]", "planar Lrvf, 16 elements, h = 1e-3 s"), Lrvf::from(stiff(), 16), d6c, 1e-3,
            1e-4);
 }
-// The published run has a rotary inertia, which adds 6.25e-4 to the rod's moment of inertia about the pin and moves
-// the tip by 8e-4 m at 0.5 s. The cable has none: in so stiff a rod a gravity smaller in that ratio is the same.
+// The published run has a rotary inertia, which adds 6.25e-4 to the rod's moment of inertia about the pin. It moves
+// the tip by 8e-4 m at 0.5 s. The cable has no rotary inertia. For so stiff a rod, gravity reduced in the same ratio
+// is equivalent.
 TEST(FlexiblePendulum, StiffCable) {
   double const ratio = 1.0 + 2.08333e-3 / (10.0 / 3.0);
   pendulum(

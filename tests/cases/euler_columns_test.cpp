@@ -1,4 +1,4 @@
-// CASES S9e by Lrvf: Euler's columns with all four ends, and the bent column beyond.
+// Euler's columns (S9e) by Lrvf with all four end conditions, and the column bent beyond its buckling load.
 
 #include <polybody/bodies/lrvf/lrvf.hpp>
 

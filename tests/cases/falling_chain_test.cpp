@@ -1,5 +1,6 @@
-// An open chain of links that falls from the horizontal, its first link pinned to the ground, by five joint policies:
-// where the tip is, how far the pins open, and what is counted. CASES R8d, thesis §3.5 and Table 3.4.
+// Open chain of links that falls from the horizontal, with its first link pinned to the ground, by five joint
+// policies. Compared are the tip position, the constraint violations of the pins and the counts of unknowns. Sources:
+// pendulum of N bars (R8d, independent computation), Wallin 2016, §3.5 and Table 3.4.
 
 #include <gtest/gtest.h>
 
@@ -21,7 +22,7 @@ namespace falling_chain_test {
 template <class Policy>
 using Pin = Joint<Revolute, Policy>;
 
-/// What a policy joins: rigid links, in one model for the policies that keep their coordinates, or cables of one
+/// Bodies of a policy: rigid links, in one model for the policies that keep their coordinates, or cables of one
 /// element.
 template <class Policy>
 struct Kind {
@@ -40,7 +41,8 @@ struct Kind<AncfLinear> {
   static Link link(Bar const& bar) { return Link::from(bar, 1); }
 };
 
-/// Of k in every row; damped, so that the pins, closed at the start, do not ring long.
+/// Stiffness k in every constraint equation. The damping ends the vibrations of the pins, which are closed at the
+/// start.
 template <class Policy>
 Policy policy_of(double k) {
   double const c = std::sqrt(k);
@@ -54,14 +56,13 @@ Policy policy_of(double k) {
   }
 }
 
-/// 16 m and 64 kg in n links. Lengths scale as g t²: after 1 s the chain is shaped as one of 1 m is after 0.25 s, of
-/// which CASES R8d has the tip. That is before the whip: the wave from the pin is under way, and the tip still falls
-/// freely.
+/// Chain of 16 m and 64 kg in n links. Lengths scale as g t²: after 1 s the shape is that of a chain of 1 m after
+/// 0.25 s, whose tip R8d gives. At this time the wave from the pin has not reached the tip, which still falls freely.
 constexpr double length = 16.0, stiff = 1e8;
 
-/// A rod of the chain: thin (rotary inertia adds 5e-4 to m l²/12 of 0.25 m, and a cable has none); 0.25 m of it stretch
-/// as a spring `stiff`. A cable of one element that neither stretches nor bends is r = r₀ + s t, with the kinetic
-/// energy of a rigid rod.
+/// Rod of the chain. Its rotary inertia adds 5e-4 to m l²/12 of a rod of 0.25 m. A cable has none. The axial
+/// stiffness of 0.25 m is `stiff`. A cable of one element without stretch and bending is r = r₀ + s t, with the
+/// kinetic energy of a rigid rod.
 Bar rod(double l, double from) {
   return {
       .length = l,
@@ -69,7 +70,7 @@ Bar rod(double l, double from) {
       .placement = Placement::at({from, 0, 0})};
 }
 
-/// The chain: one source for all policies.
+/// Chain from one source for all policies.
 template <class Policy>
 struct Chain {
   typename Kind<Policy>::ModelType model{Gravity{0, -9.81, 0}};
@@ -77,7 +78,7 @@ struct Chain {
   std::vector<ElementHandle<Pin<Policy>>> pins;
   State x;
   double l;
-  Violation worst;  ///< over the steps
+  Violation worst;  ///< maximum over the steps
 
   explicit Chain(int n, double k = stiff) : l(length / n) {
     Pin<Policy> const pin{Revolute{.axis = Vec3::UnitZ()}, policy_of<Policy>(k)};
@@ -89,7 +90,7 @@ struct Chain {
     }
     x = model.reference_state();
   }
-  /// For one second.
+  /// Integrates for one second.
   void fall(double h = 2e-3) {
     System system(model);
     for (State const& now : simulate(model, x, GeneralizedAlpha{}, {.until = 1.0, .step = h})) {
@@ -99,7 +100,7 @@ struct Chain {
     }
   }
   Vec3 tip() const { return position(model, x, links.back().at(l)); }
-  /// The forces in all pins, √Σ F² [N], and how far the pins are open, √Σ g² [m].
+  /// Norm of the forces in all pins, √Σ F² [N], and norm of their constraint violations, √Σ g² [m].
   double force() const {
     double sum = 0.0;
     for (auto const& pin : pins) sum += reaction(model, x, pin).f.squaredNorm();
@@ -123,8 +124,8 @@ Chain<Constraint> const& ideal() {
   return chain;
 }
 
-// CASES R8d: ten links, sixteen times the tip of 1 m at 0.25 s. Ideal joints are off by h² alone, the others by F/k
-// too.
+// Tip of ten links: sixteen times the tip of the 1 m chain at 0.25 s (R8d). Ideal joints have an error of order h²,
+// compliant joints an additional error of order F/k.
 TEST(FallingChain, OfTenLinksHasThePublishedTip) {
   Vec3 const exact = length * Vec3(0.877462524775, -0.306656671158, 0.0);
   auto const expect = [&](char const* policy, Vec3 const& tip, double tolerance) {
@@ -140,11 +141,11 @@ TEST(FallingChain, OfTenLinksHasThePublishedTip) {
   expect("cables, AncfLinear", fallen<AncfLinear>(10).tip(), 5e-4);
 }
 
-// All within 1 % of the tip's way, and of its 5 m within 0.5 mm.
+// All policies agree within 1 % of the displacement of the tip, and within 0.5 mm of its 5 m.
 TEST(FallingChain, HasOneTipByFivePolicies) {
   Vec3 const tip = ideal().tip();
   double const way = (tip - Vec3(length, 0, 0)).norm();
-  // what the pin does falls by a factor from link to link: 64 links away the tip falls freely, −½ g t²
+  // the influence of the pin falls by a constant factor per link: 64 links away the tip falls freely, −½ g t²
   held({"thesis §3.5", "fall of the tip after 1 s, whip under way [m]", By::closed_form, "−½ g t²",
         "64 links, Constraint, generalised-α, h = 2 ms"},
        tip[1], -0.5 * 9.81, 1e-5);
@@ -162,7 +163,8 @@ TEST(FallingChain, HasOneTipByFivePolicies) {
   expect("cables, AncfLinear, h = 2 ms", fallen<AncfLinear>(64).tip(), 1e-4);
 }
 
-/// g = F/k, F the ideal chain's; and so the tip's distance from where it ideally is.
+/// Constraint violation g = F/k with the force F of the ideal chain. The position error of the tip has the same
+/// origin.
 template <class Policy>
 void expect_one_over_k() {
   double opening = 0.0, off = 0.0;
@@ -184,7 +186,7 @@ void expect_one_over_k() {
 TEST(FallingChain, OpensPenaltiesAsOneOverTheStiffness) { expect_one_over_k<Penalty>(); }
 TEST(FallingChain, OpensBushingsAsOneOverTheStiffness) { expect_one_over_k<Bushing>(); }
 
-// A cable of one element stretches as a spring EA/l in series with an ideal pin.
+// A cable of one element is equivalent to a spring EA/l in series with an ideal pin.
 TEST(FallingChain, OfCablesIsThatOfSpringsAsStiff) {
   Vec3 const spring = fallen<Penalty>(64).tip() - ideal().tip(), cable = fallen<AncfLinear>(64).tip() - ideal().tip();
   EXPECT_GT(spring.norm(), 1e-4);
@@ -193,7 +195,8 @@ TEST(FallingChain, OfCablesIsThatOfSpringsAsStiff) {
               (cable - spring).norm(), 0.03 * spring.norm(), {.scale = spring.norm()});
 }
 
-// A step of generalised-α holds the rows of `Constraint`, not their rates; joint coordinates hold both.
+// A step of generalised-α satisfies the constraint equations of `Constraint`, not their rates. Joint coordinates
+// satisfy both.
 TEST(FallingChain, PinsWithoutSpringsStayClosed) {
   Chain<Recursive> const joints = fallen<Recursive>(64);
   auto const expect = [](char const* what, char const* policy, double gap, double tolerance) {
@@ -206,8 +209,9 @@ TEST(FallingChain, PinsWithoutSpringsStayClosed) {
   expect("largest gap of a pin in 1 s [m]", "Constraint", ideal().worst.position, 1e-10);
 }
 
-// Coordinates, constraints and degrees of freedom as Table 3.4 counts: of a rigid link seven and the norm of its
-// parameters, of a cable twelve. A pin has five rows, between cables four; to penalties and bushings none.
+// Coordinates, constraints and degrees of freedom counted as in Table 3.4 of Wallin 2016. A rigid link has seven
+// coordinates and the norm of its parameters, a cable twelve coordinates. A pin has five constraint equations, or
+// four between cables. Penalties and bushings have none.
 TEST(FallingChain, IsCountedAsInTheThesis) {
   constexpr Index n = 64;
   auto const expect = [](char const* policy, Census const& c, Index coordinates, Index constraints, Index freedoms,

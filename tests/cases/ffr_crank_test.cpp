@@ -1,5 +1,5 @@
-// CASES D7: the flexible slider-crank of the IVP Test Set (Simeon), its rod a floating frame with the test set's own
-// modal matrices.
+// Flexible slider-crank of the IVP Test Set (D7, "crank" by Simeon). Its rod is a floating frame with the modal
+// matrices of the test set.
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/ffr/planar_ffr.hpp>
@@ -25,7 +25,8 @@ double const pi = 3.1415927, m1 = 0.36, m2 = 0.151104, m3 = 0.075552, l1 = 0.15,
              j2 = 0.0045339259;
 double const young = 0.20e12, height = 0.0080, density = 7870.0, omega = 150.0;
 
-/// Two sine modes across, quadratic displacements along (middle and end); the test set's numbers, its M_q included.
+/// Two sine modes for the transverse deflection, quadratic shapes for the axial one (middle and end). All values are
+/// those of the test set, including its M_q.
 planar::FfrIntegrals rod_integrals() {
   double const b = height * height * l2, m = density * b, k = young * height * height / l2,
                slender = (height / l2) * (height / l2);
@@ -49,9 +50,10 @@ planar::FfrIntegrals rod_integrals() {
   return x;
 }
 
-/// The rod with the test set's nonlinear stiffness (its switch `ipar(1)`): a stretch of the rod stiffens it across, by
+/// Rod with the nonlinear stiffness of the test set (its switch `ipar(1)`). A stretch of the rod increases its
+/// transverse stiffness by
 ///   U₃ = f [½ q₁² q₄ + 2 q₂² q₄ − 2 g q₁ q₂ (q₄ − 2 q₃)],  f = E B H π²/(2 l₂²),  g = 80/(9π²).
-/// A user's own body: what it adds to `planar::Ffr` hides the members of the same name.
+/// User-defined body: its own members hide the members of `planar::Ffr` with the same name.
 class StiffeningRod : public planar::Ffr {
  public:
   using planar::Ffr::Ffr;
@@ -89,10 +91,10 @@ struct Steady {
   Motion operator()(double t) const { return {omega * t, omega, 0.0}; }
 };
 
-/// Crank, rod and slider, on the smooth solution. The test set's slider starts at 0.450016933 m, which nine digits
-/// leave 2.03e-10 m off the rod's end; here it starts at the end: brought there together with the rod, it would excite
-/// the rod's axial vibration, 2e4 rad/s, by 3e-11 m, which shows in φ¨ and λ with 1e-6 of them. Order of coordinates:
-/// crank (x, y, θ), slider, rod (x, y, θ, q).
+/// Crank, rod and slider on the smooth solution. The test set gives the slider at 0.450016933 m, nine digits, which
+/// is 2.03e-10 m from the end of the rod. Here the slider starts at the end of the rod. A projection of both would
+/// excite the axial vibration of the rod, 2e4 rad/s, by 3e-11 m, which changes φ¨ and λ by 1e-6. Order of
+/// coordinates: crank (x, y, θ), slider, rod (x, y, θ, q).
 template <class Rod = planar::Ffr, class Pins = Constraint>
 struct SliderCrank {
   using Pin = Joint<planar::Revolute, Pins>;
@@ -159,7 +161,7 @@ TEST(FlexibleSliderCrank, ReproducesTheTestSetWithItsOwnMatrices) {
     Instance const at{equals("t", now.t)};
     held(claim("angle of the rod [rad]"), now.q[8], row.phi2, 1e-5, at);
     held(claim("place of the slider [m]"), now.q[3], row.x3, 1e-5, at);
-    double const size = 1.27e-3;  // of q1 over the run
+    double const size = 1.27e-3;  // amplitude of q1 over the run
     held(claim("q₁, first sine across [m]"), now.q[9], row.q[0], 0.01 * std::max(std::abs(row.q[0]), 0.1 * size), at);
     held(claim("q₂, second sine across [m]"), now.q[10], row.q[1], 0.02 * 4.2e-5, {at.at, 4.2e-5});
     held(claim("q₃, stretch of the middle [m]"), now.q[11], row.q[2], 0.02 * 1e-5, {at.at, 1e-5});
@@ -168,8 +170,9 @@ TEST(FlexibleSliderCrank, ReproducesTheTestSetWithItsOwnMatrices) {
   EXPECT_EQ(next, rows.size());
 }
 
-// The columns at the published digits. The test set's solvers keep the start's error of 2.03e-10 m in x₃ (their index
-// is 2: rows of speeds only), so that the published place is that far off the rod's end, too.
+// Columns of the table at the published digits. The solvers of the test set keep the initial error of 2.03e-10 m in
+// x₃, because their index-2 form has constraint equations on velocities only. The published position has therefore
+// the same error.
 template <class Pins>
 void expect_the_test_set_by(char const* pins) {
   SliderCrank<planar::Ffr, Pins> set;
@@ -183,7 +186,7 @@ void expect_the_test_set_by(char const* pins) {
   struct {
     char const* of;
     Index at;
-    double q, v, a, of_q, of_v, of_a;  // published, and tolerances
+    double q, v, a, of_q, of_v, of_a;  // published values, and tolerances
   } const rows[] = {{"φ₂", 8, -0.3311734988256260, 60.25346755138369, 6488.737541276957, 1e-10, 1e-6, 5e-3},
                     {"x₃", 3, 0.1697373328427860 - 2.03e-10, -8.753116326670527, 2167.938629509884, 1e-10, 1e-6, 5e-3},
                     {"q₁", 9, 0.1893192899613509e-3, -0.03005541400289738, 33.91137060286523, 1e-11, 1e-7, 1e-3},
@@ -195,7 +198,7 @@ void expect_the_test_set_by(char const* pins) {
     check(std::string("rate of ") + row.of, set.x.v[row.at], row.v, row.of_v);
     check(std::string("second derivative of ") + row.of, set.x.a[row.at], row.a, row.of_a);
   }
-  // −Gᵀλ is what the rows exert: λ₁ at the guide, λ₂ on the slider, λ₃ by the drive
+  // −Gᵀλ is the force of the constraints: λ₁ at the guide, λ₂ on the slider, λ₃ by the drive
   check("λ₁ [N]", -reaction(set.model, set.x, set.guide).f[1], -62.32935833287916, 1e-4);
   check("λ₂ [N]", -reaction(set.model, set.x, set.wrist).f[0], -163.7920993367306, 2e-4);
   check("λ₃ [N m]", -reaction(set.model, set.x, set.drive).m[2], 25.29857947066878, 1e-5);
@@ -203,7 +206,8 @@ void expect_the_test_set_by(char const* pins) {
 TEST(FlexibleSliderCrank, HasTheVelocitiesAccelerationsAndMultipliersOfTheTestSet) {
   expect_the_test_set_by<Constraint>("");
 }
-// The crank carries the rod's frame, the rod's end, which stretches, the slider; drive and guide stay as rows.
+// Joint coordinates of the crank carry the rod's frame, and the rod's end, which stretches, carries the slider. Drive
+// and guide remain constraint equations.
 TEST(FlexibleSliderCrank, HasThemInJointCoordinates) { expect_the_test_set_by<Recursive>("joint coordinates, "); }
 
 TEST(FlexibleSliderCrank, AsksForACouplingThatIsSkew) {
@@ -212,7 +216,7 @@ TEST(FlexibleSliderCrank, AsksForACouplingThatIsSkew) {
   EXPECT_TRUE(has(refusal([&] { planar::Ffr(bad, {}); }), "must be skew"));
 }
 
-// The force is the slope of the energy, the tangent that of the force.
+// The force is the derivative of the energy, and the tangent is the derivative of the force.
 TEST(FlexibleSliderCrank, HasAUsersRodThatAgreesWithItsEnergy) {
   StiffeningRod const rod(rod_integrals(), {});
   VecX q(7), v = VecX::Zero(7), force(7), up(7), down(7);
@@ -238,7 +242,7 @@ TEST(FlexibleSliderCrank, HasAUsersRodThatAgreesWithItsEnergy) {
   }
 }
 
-// q₁ tells this variant from the linear one, whose q₁ is 1.893e-4; φ₂ and x₃ hardly do.
+// q₁ distinguishes this variant from the linear one, whose q₁ is 1.893e-4. φ₂ and x₃ hardly differ.
 TEST(FlexibleSliderCrank, ReproducesTheNonlinearVariantByAUsersRod) {
   SliderCrank<StiffeningRod> set;
   simulate(set.model, set.x, Radau{.tolerance = 1e-12}, {.until = 0.1, .step = 1e-5}).run();

@@ -1,6 +1,6 @@
-// CASES D3 with a floating frame that nothing holds: mean axes and free–free modes. At rest the moment would bend the
-// rod by 80·10/500 = 1.6 rad, far more than a linear structure is for: it can show the motion as a whole, and how it
-// begins.
+// Flying rod of Simo & Vu-Quoc 1986 (D3) by a free floating frame with mean axes and free–free modes. A static moment
+// would bend the rod by 80·10/500 = 1.6 rad, far beyond the range of a linear structure. The tests therefore check
+// the overall motion and its beginning.
 
 #include <polybody/bodies/ffr/ffr.hpp>
 
@@ -19,7 +19,8 @@ using namespace polybody;
 
 namespace ffr_flying_rod_test {
 
-/// EI = 500, from (6, 0) to (0, 8), by `modes` free–free modes; for 2.5 s a force and a moment pull at the first end.
+/// Rod with EI = 500 from (6, 0) to (0, 8) with `modes` free–free modes. A force and a moment act on the first end
+/// for 2.5 s.
 struct Flight {
   Model<Bodies<Ffr>, Joints<>, Forces<PointForce<Window>, PointMoment<Window>>> model;
   BodyHandle<Ffr> body;
@@ -39,15 +40,16 @@ struct Flight {
                {.placement = Placement::planar(6.0, 0.0, std::atan2(8.0, -6.0)), .stiffening = stiffening});
   }
   void fly_until(double t) { simulate(model, x, GeneralizedAlpha{.rho_inf = 0.9}, {.until = t, .step = 2e-3}).run(); }
-  /// The larger of the two ends' distances from where they ought to be [m].
+  /// Larger position error of the two ends [m].
   double miss(Vec3 const& loaded, Vec3 const& free) const {
     return std::max((position(model, x, body.at(0.0)) - loaded).norm(),
                     (position(model, x, body.at(10.0)) - free).norm());
   }
 };
 
-// D3 [A]: the impulse, 8·min(t, 2.5), and the centre of mass, 3 + 0.4 t² and then 5.5 + 2 (t − 2.5) on the line y = 4;
-// after the loads also the energy and the moment of momentum. M depends on q here: all four to the integrator's order.
+// Conserved quantities of D3 in closed form: the impulse 8·min(t, 2.5), and the centre of mass, 3 + 0.4 t² and then
+// 5.5 + 2 (t − 2.5) on the line y = 4. After the loads the energy and the angular momentum are constant. M depends on
+// q here, so all four hold to the order of the integrator.
 TEST(FreeFloatingFrame, KeepsTheMomentaAndTheEnergyOfTheRod) {
   for (bool const stiffening : {false, true}) {
     Flight flight(8, stiffening);
@@ -58,7 +60,7 @@ TEST(FreeFloatingFrame, KeepsTheMomentaAndTheEnergyOfTheRod) {
       Momentum const p = momentum(flight.model, flight.x);
       held_within({"D3", "momentum of the rod in space [N s]", By::closed_form, "8 N for 2.5 s", frame_is},
                   (p.linear - Vec3(8 * std::min(t, 2.5), 0, 0)).norm(), 2e-4, {equals("t", t), 8 * std::min(t, 2.5)});
-      Vec3 centre = Vec3::Zero();  // −m x_c is the energy in a field of 1 m/s², m = 10 kg
+      Vec3 centre = Vec3::Zero();  // −m x_c is the potential energy in a field of 1 m/s², m = 10 kg
       auto const q = coordinates_of(flight.model, flight.x, flight.body);
       for (int k = 0; k < 3; ++k) centre[k] = -flight.body.body().gravity_energy(0, q, Vec3::Unit(k)) / 10.0;
       held_within({"D3", "centre of mass of the rod in space [m]", By::closed_form,
@@ -79,8 +81,8 @@ TEST(FreeFloatingFrame, KeepsTheMomentaAndTheEnergyOfTheRod) {
   }
 }
 
-// D3 asks for a likeness only. With points drawn along the rod as it bends (`stiffening`) the ends are within 0.3 % of
-// the length after one second and 4 % after five; without, they are 2.5 % off after one already.
+// D3 requires qualitative agreement only. With axial foreshortening (`stiffening`) the errors of the ends are 0.3 %
+// of the length after one second and 4 % after five. Without it they are 2.5 % after one second.
 TEST(FreeFloatingFrame, FollowsTheRodWhileItBendsLittle) {
   Flight flight(8, true), linear(8, false);
   flight.fly_until(1.0);

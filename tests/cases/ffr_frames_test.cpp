@@ -1,5 +1,5 @@
-// Floating frames made of several bars, in static equilibrium: CASES S8, S8b; several of them welded in a row, S7; and
-// a cantilever whose tip force buckles it (S9e).
+// Static equilibrium of floating frames made of several bars: the beams of MacNeal & Harder 1985 (S8, S8b), several
+// frames welded in a row (S7), and a cantilever that buckles under its tip force (S9e).
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -19,10 +19,10 @@ using namespace polybody;
 using std::numbers::pi;
 
 using Clamp = Joint<Weld, Constraint>;
-/// One type of model for all, which is compiled once.
+/// Model type for all tests, which is compiled once.
 using Frames = Model<Bodies<Ffr>, Joints<Clamp>, Forces<PointForce<>>>;
 
-/// Displacement of the last node of a structure welded to the ground at node 0, under a force there.
+/// Displacement of the last node of a structure under a force at this node. Node 0 is welded to the ground.
 Vec3 tip_displacement(Structure const& s, Vec3 const& force) {
   Frames model;
   auto const body = model.add(Ffr(s, nodal_coordinates(s)), "frame");
@@ -35,7 +35,7 @@ Vec3 tip_displacement(Structure const& s, Vec3 const& force) {
   return position(model, x, tip) - start;
 }
 
-// S8: MacNeal & Harder's beam, twisted by 90 degrees, as 32 straight bars with turned sections; without shear.
+// S8: beam of MacNeal & Harder 1985, twisted by 90 degrees, as 32 straight bars with rotated sections, without shear.
 TEST(FloatingFrame, PreTwistedCantilever) {
   Index const n = 32;
   double const length = 12.0, young = 29e6, shear = young / (2 * 1.22), b = 1.1, h = 0.32;
@@ -57,8 +57,8 @@ TEST(FloatingFrame, PreTwistedCantilever) {
   held(tip, tip_displacement(s, {0, 0, 1})[2], 1.7461814e-3, 1e-3 * 1.7461814e-3, {"F along z"});
 }
 
-// S8b: a quarter circle with inner radius 4.12 and depth 0.2, axis at R = 4.22. Castigliano with M = R sin θ, N = sin θ
-// in the plane, M = R sin θ, T = R (1 − cos θ) out of it:
+// S8b: quarter circle with inner radius 4.12 and depth 0.2, axis at R = 4.22. Castigliano's theorem with M = R sin θ,
+// N = sin θ in the plane, M = R sin θ, T = R (1 − cos θ) out of it:
 //   u = π R³/4EI + π R/4EA = 0.0886 (published, with the curved beam's correction: 0.08734),
 //   u = π R³/4EI + (3π/4 − 2) R³/GJ = 0.5002 (published: 0.5022).
 TEST(FloatingFrame, CurvedCantilever) {
@@ -90,11 +90,11 @@ TEST(FloatingFrame, CurvedCantilever) {
   held(published, w, 0.5022, 0.01 * 0.5022, {"out of the plane"});
 }
 
-// ---- S7: the 45° bend of Bathe & Bolourchi in sub-structures
+// ---- S7: the 45° bend of Bathe & Bolourchi in substructures
 
-/// Tip of the arc of radius 100 under a force along z. So many equal pieces, each of so many bars along chords, with a
-/// floating frame of its own that is tied to its first node or to its mean motion; the shapes are Craig & Bampton's
-/// with two modes.
+/// Tip of the arc of radius 100 under a force along z. The arc consists of `pieces` equal substructures, each of
+/// `bars_of_each` bars along chords. Each has its own floating frame, fixed to its first node or to its mean motion.
+/// Its shapes are those of Craig & Bampton with two modes.
 Vec3 bend_tip(Index pieces, Index bars_of_each, BarConstants const& constants, double force, bool mean_axes) {
   auto const on_arc = [](double a) { return Placement::at(100.0 * Vec3(std::sin(a), 1 - std::cos(a), 0), {0, 0, a}); };
   double const chord = 0.25 * pi / double(pieces * bars_of_each), length = 200.0 * std::sin(0.5 * chord);
@@ -122,8 +122,9 @@ Vec3 bend_tip(Index pieces, Index bars_of_each, BarConstants const& constants, d
   return position(model, x, tips.back());
 }
 
-// Within a piece turns are small: what is left out falls with the square of its length, and is a quarter where the
-// frame is in the middle of them. Beams here have no shear; so stiff a bar does not stretch.
+// The rotations within a substructure are small. The neglected terms fall with the square of its length. They fall to
+// a quarter if the frame is in the middle. The beams have no shear here, and the stretch of so stiff a bar is
+// negligible.
 TEST(FloatingFrames, SubStructuresConvergeToTheExactRod) {
   BarConstants const c{.EA = 1e10, .EI = 1e7 / 12, .mass_per_length = 1.0, .GJ = 1e7 / 12, .rotary_inertia = 1.0 / 12};
   Vec3 const exact(47.1512944003, 15.6850781622, 53.4685984423), straight(70.7106781187, 29.2893218813, 0);
@@ -143,7 +144,7 @@ TEST(FloatingFrames, SubStructuresConvergeToTheExactRod) {
   }
 }
 
-// Chrono's utest_MOD_curved_beam [P]: 40 elements in five sub-assemblies, to 5 %.
+// Chrono's utest_MOD_curved_beam: 40 elements in five sub-assemblies, tolerance 5 %.
 TEST(FloatingFrames, FiveSubStructuresMeetThePublishedTolerance) {
   BarConstants const c{
       .EA = 1e7, .EI = 1e7 / 12, .mass_per_length = 1.0, .GJ = 0.1405770150 * 5e6, .rotary_inertia = 1.0 / 12};
@@ -164,12 +165,12 @@ TEST(FloatingFrames, FiveSubStructuresMeetThePublishedTolerance) {
     }
 }
 
-/// L = EI = 1, all but inextensible.
+/// L = EI = 1, practically inextensible.
 Bar column() {
   return {.length = 1.0,
           .constants = BarConstants{.EA = 1e6, .EI = 1.0, .mass_per_length = 1.0, .GJ = 1.0, .rotary_inertia = 1e-3}};
 }
-/// A cantilever pressed at its tip with p and pushed across with `lateral`, in equilibrium.
+/// Cantilever in equilibrium under the axial tip force p (compression) and the transverse tip force `lateral`.
 struct Pressed {
   Frames model;
   BodyHandle<Ffr> body;
@@ -184,8 +185,8 @@ struct Pressed {
   double deflection() const { return position(model, x, body.at(1.0))[1]; }
 };
 
-// Geometric stiffening knows every axial force: the lateral stiffness of a cantilever pressed at its tip with
-// P is lost at Euler's load π²EI/4L² (S9e, clamped–free). Under P it is P/(tan(κL)/κ − L), κ² = P/EI.
+// Geometric stiffening includes every axial force. A cantilever under the compressive tip force P loses its lateral
+// stiffness at Euler's load π²EI/4L² (S9e, clamped–free). Under P it is P/(tan(κL)/κ − L), κ² = P/EI.
 TEST(FloatingFrame, StiffeningKnowsForcesAtItsMarkers) {
   for (double const part : {0.0, 0.17, 0.5, 0.9}) {
     double const p = part * pi * pi / 4, kappa = std::sqrt(p), lateral = 1e-5;
@@ -203,7 +204,8 @@ TEST(FloatingFrame, StiffeningKnowsForcesAtItsMarkers) {
   }
 }
 
-// Without it the deflection is P L³/3EI however hard the tip is pressed, 17 % too little at 0.17 of Euler's load.
+// Without geometric stiffening the deflection is P L³/3EI for every axial force, 17 % too small at 0.17 of Euler's
+// load.
 TEST(FloatingFrame, WithoutStiffeningNoForceBuckles) {
   double const p = 0.17 * 0.25 * std::numbers::pi * std::numbers::pi, kappa = std::sqrt(p);
   double const unpressed = 1e-5 / 3, pressed = 1e-5 * (std::tan(kappa) / kappa - 1.0) / p;

@@ -1,4 +1,5 @@
-// Beams that spin, by the floating frame of reference: CASES D2 and E3, and what each part of the coupling does.
+// Rotating beams by the floating frame of reference: spin-up (D2) and rotating cantilever (E3), and the effect of
+// each coupling term.
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
@@ -17,7 +18,7 @@ namespace ffr_rotating_test {
 
 using namespace polybody;
 
-// D2: Kane, Ryan & Banerjee 1987.
+// D2: beam of Kane, Ryan & Banerjee 1987.
 Bar kane_bar() {
   return {.length = 10.0,
           .constants = BarConstants{.EA = 2.8e7, .EI = 1.4e4, .mass_per_length = 1.2, .rotary_inertia = 6e-4}};
@@ -43,7 +44,7 @@ struct SpinningArm {
     model.connect(Drive{{law}, {}}, model.ground().at({0, 0, 0}), arm.at(0.0), "drive");
     x = model.reference_state();
   }
-  /// Displacement of the tip in the frame of the hub, which follows the drive.
+  /// Displacement of the tip in the frame of the hub, which follows the driving constraint.
   Vec2 tip(State const& now) const {
     Vec3 const r = position(model, now, arm.at(10.0));
     double const psi = law(now.t).value, c = std::cos(psi), s = std::sin(psi);
@@ -58,9 +59,9 @@ Claim spin_up(char const* what, char const* formulation) {
   return {"D2", what, By::independent, "spectral geometrically exact beam, two meshes", formulation};
 }
 
-// With stiffening, three bending modes: within 2 % of the largest deflection, as asked, and the swing that is left
-// after 15 s within 5 % of itself. Bending modes do not stretch: what the exact tip has in u₁ by the centrifugal force,
-// ρA ψ˙² L³/3EA [A], is not in the arm's.
+// With geometric stiffening and three bending modes the tolerance is 2 % of the largest deflection. The remaining
+// vibration after 15 s agrees within 5 % of itself. Bending modes do not stretch. The exact u₁ contains the
+// centrifugal stretch ρA ψ˙² L³/3EA (closed form), which this arm does not have.
 TEST(SpinUp, StiffenedFrameFollowsTheIndependentSolution) {
   SpinningArm arm(kane_arm(3, true));
   char const* const modes = "planar Ffr with stiffening, 3 bending modes";
@@ -72,7 +73,7 @@ TEST(SpinUp, StiffenedFrameFollowsTheIndependentSolution) {
                               {6.5, -0.01860342132, -0.56994836841},
                               {7.5, -0.01774186447, -0.55908345896},
                               {10.0, -0.00707233630, -0.36281451565}};
-  double const swing = 0.00364;  // of the independent solution from 15 s on [m]
+  double const swing = 0.00364;  // remaining vibration of the independent solution from 15 s on [m]
   std::size_t next = 0;
   double largest = 0.0;
   for (State const& now : arm.run(18.0)) {
@@ -93,7 +94,7 @@ TEST(SpinUp, StiffenedFrameFollowsTheIndependentSolution) {
   held(spin_up("largest swing from 15 s on [m]", modes), largest, swing, 0.05 * swing);
 }
 
-// The steady stretch ω² ρA L³/3EA is a matter of axial coordinates: all of four elements'.
+// The steady stretch ω² ρA L³/3EA requires axial coordinates: all coordinates of four elements.
 TEST(SpinUp, AxialCoordinatesGiveTheSteadyStretch) {
   Structure const s = planar::Ffr::structure_in_plane(kane_bar(), 4);
   ReferenceConditions frame = ReferenceConditions::clamped();
@@ -109,11 +110,11 @@ TEST(SpinUp, AxialCoordinatesGiveTheSteadyStretch) {
        5.139493e-4, 1e-4 * 5.139493e-4);
 }
 
-// The negative control: the first frequency, 3.798 rad/s, is below the spin of 6 rad/s, so that without stiffening
+// Negative control: the first frequency, 3.798 rad/s, is below the angular velocity of 6 rad/s. Without stiffening,
 // centrifugal forces bend the arm away: u grows as exp(√(36 − 3.798²) t).
 TEST(SpinUp, WithoutStiffeningTheDeflectionRunsAway) {
   SpinningArm arm(kane_arm(3, false));
-  double const twice = 2.0 * 0.573835;  // what the arm with stiffening lags at most [m]
+  double const twice = 2.0 * 0.573835;  // largest lag of the arm with stiffening [m]
   double largest = 0.0, reached = 0.0;
   try {
     for (State const& now : arm.run(18.0)) {
@@ -121,25 +122,25 @@ TEST(SpinUp, WithoutStiffeningTheDeflectionRunsAway) {
       reached = now.t;
       if (largest > 10.0) break;
     }
-  } catch (Error const&) {  // on its way to infinity
+  } catch (Error const&) {  // diverges
   }
   EXPECT_GT(largest, twice) << "at " << reached;
 }
 
-// m_rf is what excites the arm: without it the hub's acceleration never reaches the deformation.
+// m_rf excites the arm. Without it the hub's acceleration does not excite the deformation.
 TEST(SpinUp, WithoutCouplingTheArmDoesNotBend) {
   SpinningArm arm(kane_arm(3, true, {.coupling = false}));
   for (State const& now : arm.run(5.0)) EXPECT_LT(std::abs(arm.tip(now)[1]), 1e-9) << now.t;
 }
 
-/// Frequencies of a cantilever of unit EI, ρA and L that turns steadily about z at the clamp: M q̈ + G q̇ + K q = 0 with
-/// the body's own matrices, made dimensionless.
+/// Frequencies of a cantilever of unit EI, ρA and L that rotates steadily about z at the clamp: M q̈ + G q̇ + K q = 0
+/// with the body's own matrices, dimensionless.
 VecX spinning_frequencies(Ffr const& body, double omega) {
   Index const n = body.deformations();
   VecX q(body.coordinates()), v = VecX::Zero(body.speeds());
   body.reference({q.data(), std::size_t(q.size())});
   v[5] = omega;
-  // about the stretch at which centrifugal and elastic forces balance
+  // about the stretch at which centrifugal and elastic forces are in balance
   std::span<double const> const qs(q.data(), std::size_t(q.size())), vs(v.data(), std::size_t(v.size()));
   VecX f(body.speeds());
   MatX k, g, m;
@@ -171,8 +172,8 @@ Ffr unit_blade(FfrTerms terms = {}, bool stiffening = true) {
   return Ffr::from(bar, 10, {.terms = terms, .stiffening = stiffening});
 }
 
-// E3: first three flap and chord frequencies of an inextensible cantilever; here EA = 1e6 EI/L²,
-// and a rotary inertia of 1e-6 ρA L².
+// E3: first three flap and chord frequencies of an inextensible cantilever. Here EA = 1e6 EI/L², with a rotary
+// inertia of 1e-6 ρA L².
 TEST(RotatingCantilever, HasTheFrequenciesOfTheTable) {
   struct Row {
     double omega, flap[3], chord[3];
@@ -192,9 +193,9 @@ TEST(RotatingCantilever, HasTheFrequenciesOfTheTable) {
   }
 }
 
-// Without stiffening the flap does not know the spin, and the chord softens: ω² − Ω² [e.g. Kane, Ryan & Banerjee 1987].
-// S̃₂ is that softening: without it, too, the chord keeps its frequency (S̃₁ couples it to the axial motion only, far
-// away).
+// Without stiffening the flap frequencies do not depend on the angular velocity, and the chord softens: ω² − Ω² [e.g.
+// Kane, Ryan & Banerjee 1987]. S̃₂ causes this softening: without S̃₂ the chord keeps its frequency. S̃₁ couples the
+// chord to the axial motion only, whose frequencies are far away.
 TEST(RotatingCantilever, EachTermDoesWhatItIsSaidToDo) {
   double const omega = 3.0, first = 3.516015;
   VecX const soft = spinning_frequencies(unit_blade({}, false), omega);

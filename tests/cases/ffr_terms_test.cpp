@@ -1,5 +1,5 @@
-// The simplifications of thesis §4.3 one by one: what each switch of `FfrTerms` leaves out, term by term; the tangent
-// of each variant; and which of them conserve energy.
+// Simplifications of Wallin 2016, §4.3, one by one. The tests check the terms that each switch of `FfrTerms` omits,
+// the tangent of each variant, and the conservation of energy.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -52,7 +52,7 @@ B body(FfrTerms const& terms, bool stiffening = true) {
   return B::from(bar, 2, {.terms = terms, .stiffening = stiffening});
 }
 
-/// A body that moves and is deformed: coordinates, speeds and accelerations.
+/// Moving and deformed body: coordinates, velocities and accelerations.
 template <class B>
 struct Moved {
   static constexpr int frame = B::world == World::plane ? 3 : 7, speeds = B::world == World::plane ? 3 : 6;
@@ -74,7 +74,7 @@ struct Moved {
 };
 std::span<double const> span(VecX const& x) { return {x.data(), std::size_t(x.size())}; }
 
-/// M a − f without elastic forces, rows of the frame first.
+/// M a − f without elastic forces; the equations of the frame come first.
 template <class B>
 VecX inertia_forces(FfrTerms const& terms, Moved<B> const& at) {
   B const b = body<B>(terms);
@@ -88,7 +88,7 @@ VecX inertia_forces(FfrTerms const& terms, Moved<B> const& at) {
   return ma - (f - elastic);
 }
 
-/// The terms by their definition, from the integrals at q: thesis Eqs. 4.1 and 4.2 with what they leave out.
+/// Terms by their definition, from the integrals at q: Wallin 2016, Eqs. 4.1 and 4.2 with the omissions.
 struct Terms {
   Mat3 A, J, J0, spin, j_rate = Mat3::Zero();
   Vec3 omega, c, c0, cd = Vec3::Zero(), cdd = cd, hd = cd, h = cd, rr, alpha;
@@ -123,7 +123,7 @@ struct Terms {
       cdd[p] = -xd.dot(i.first_second[std::size_t(p)] * xd);
       hd[p] = xd.dot(i.coupling_by[std::size_t(p)] * xd);
     }
-    // J˙ by a central difference along the motion: J is quadratic in q, so it is exact
+    // J˙ by a central difference along the motion, which is exact because J is quadratic in q
     FfrIntegrals::Moments<double> up, down;
     VecX const ahead = x + xd, behind = x - xd;
     i.moments<double>(ahead.data(), up);
@@ -181,7 +181,7 @@ TEST(FfrTerms, EachSwitchLeavesOutItsTerms) {
   }
 }
 
-// The body of the plane is that of space with the same motion in it.
+// The planar body agrees with the spatial body in the same motion.
 TEST(FfrTerms, LeaveOutTheSameInThePlane) {
   for (Switch const& s : switches) {
     Moved<planar::Ffr> const flat(3);
@@ -243,7 +243,7 @@ TEST(FfrTerms, TangentsAreThoseOfTheVariants) {
   expect_tangents<planar::Ffr>();
 }
 
-/// Energy that a free spinning body loses or gains within 0.2 s, of its kinetic energy at the start.
+/// Change of the energy of a free rotating body within 0.2 s, relative to its initial kinetic energy.
 double defect(FfrTerms const& terms) {
   Bar stiff = bar;
   BarConstants c = *stiff.constants;
@@ -275,13 +275,13 @@ TEST(FfrTerms, WhatFollowsFromALagrangianConservesEnergy) {
     double const lost = defect(without(s.of));
     std::printf("  %-17s %+.2e\n", s.name, lost);
     if (s.of == &FfrTerms::coriolis)
-      EXPECT_LT(std::abs(lost), 1e-8);  // W is skew: these forces do no work
+      EXPECT_LT(std::abs(lost), 1e-8);  // W is skew-symmetric: these forces do no work
     else
       EXPECT_GT(std::abs(lost), 1e-7) << s.name;
   }
 }
 
-// Without any coupling the frame is a rigid body, and the deformation vibrates as if it stood still.
+// Without any coupling the frame is a rigid body, and the deformation vibrates as in a frame at rest.
 TEST(FfrTerms, WithoutCouplingTheFrameIsARigidBody) {
   Model<Bodies<Ffr>, Joints<>> model;
   auto const free = model.add(body<Ffr>(none));

@@ -1,4 +1,4 @@
-// CASES D4: a flexible rod thrown through space, free of any support, against an independent spectral beam [C].
+// Flexible rod in free flight through space (D4), compared with an independent spectral beam.
 
 #include <polybody/bodies/lrvf/lrvf.hpp>
 
@@ -21,14 +21,14 @@ using namespace polybody;
 
 namespace flying_rod_test {
 
-/// From 0 to 1 at `peak`, back to 0 at twice that.
+/// Triangular function of time: from 0 to 1 at `peak`, back to 0 at twice `peak`.
 struct Triangle {
   double peak = 2.5;  ///< [s]
   Motion operator()(double t) const { return {std::max(0.0, 1.0 - std::abs(t / peak - 1.0)), 0.0, 0.0}; }
   std::vector<double> corners() const { return {0.0, peak, 2.0 * peak}; }
 };
 
-/// From (6, 0, 0) to (0, 8, 0); the section's inertia about its own x is the sum of the two others, 20.
+/// Rod from (6, 0, 0) to (0, 8, 0). The section's inertia about its own x is the sum of the two others, 20.
 Bar rod(double rotary_share = 1.0) {
   return {.length = 10.0,
           .constants = BarConstants{.EA = 1e4,
@@ -41,7 +41,7 @@ Bar rod(double rotary_share = 1.0) {
 }
 
 using Weldment = Joint<Weld, Constraint>;
-/// One type of model for all bodies: it is compiled once.
+/// Model type for all bodies, which is compiled once.
 using Sky =
     Model<Bodies<Lrvf<>, AncfBeam<>, Rigid<>>, Joints<Weldment>, Forces<PointForce<Triangle>, PointMoment<Triangle>>>;
 
@@ -51,7 +51,7 @@ struct Flight {
   BodyHandle<B> body;
   State x;
   double step;
-  /// A share of the rotary inertia may be in rigid discs, welded to the nodes, of next to no mass.
+  /// A fraction of the rotary inertia can be in rigid discs of negligible mass, which are welded to the nodes.
   Flight(Index n, double h, double in_discs = 0.0) : body(model.add(B::from(rod(1.0 - in_discs), n), "rod")), step(h) {
     model.apply(PointForce<Triangle>{.force = {20, 0, 0}}, body.at(0.0), "force");
     model.apply(PointMoment<Triangle>{.moment = {0, -100, -200}}, body.at(0.0), "moment");
@@ -71,14 +71,14 @@ struct Flight {
     return out;
   }
 };
-/// The larger of the two ends' distances from where they ought to be [m].
+/// Larger position error of the two ends [m].
 double miss(Vec6 const& ends, Vec6 const& exact) {
   return std::max((ends - exact).head<3>().norm(), (ends - exact).tail<3>().norm());
 }
 
 struct Row {
   double t;
-  Vec6 ends;  ///< the loaded and the free one
+  Vec6 ends;  ///< loaded and free end
 };
 Vec6 six(double a, double b, double c, double d, double e, double f) { return (Vec6() << a, b, c, d, e, f).finished(); }
 std::vector<Row> const rows{{1.0, six(5.580527, -0.283531, 0.185061, 0.118806, 7.975041, -0.015997)},
@@ -94,7 +94,7 @@ Claim exact_rod(char const* what, char const* formulation) {
 }
 double const energy_after = 724.4361;  ///< from 5 s on [J]
 
-// 0.5 % of the length up to 7.5 s and 1 % up to 10 s.
+// Tolerances: 0.5 % of the length up to 7.5 s, 1 % up to 10 s.
 template <class B>
 void follows(Flight<B> flight, char const* formulation) {
   for (Row const& row : rows) {
@@ -113,8 +113,8 @@ TEST(FlyingRodInSpace, SixteenElementsFollowTheExactRod) {
 struct Tolerance {
   double ends, ratio, energy;
 };
-// Element and integrator are of order 2: with half the element and half the step the error is a quarter, and
-// (4 fine − coarse)/3 has none of second order left. The energy of the end of the load, 724.4361, stays.
+// Element and integrator are of order 2. Half of the element length and half of the step give a quarter of the error.
+// (4 fine − coarse)/3 has no error of second order. After the load the energy is constant, 724.4361 J.
 template <class B>
 void extrapolates(Index n, double h, double in_discs, Tolerance const& tolerance, char const* formulation) {
   Flight<B> coarse(n, h, in_discs), fine(2 * n, 0.5 * h, in_discs);
@@ -136,8 +136,8 @@ TEST(FlyingRodInSpace, TwoMeshesExtrapolateToTheExactRod) {
   extrapolates<Lrvf<>>(32, 0.01, 0.0, {3e-4, 0.1, 1e-3}, "Lrvf, 32 and 64 elements extrapolated");
 }
 
-/// The impulse of the triangle, 20 N · 2.5 s, and the centre of mass it gives: x_c(5) = 3 + 50 · 2.5/10, then 5 m/s.
-/// The moment of momentum stays as well, by the integrator to its order.
+/// The impulse of the triangle is 20 N · 2.5 s. The centre of mass follows from it: x_c(5) = 3 + 50 · 2.5/10, then 5
+/// m/s. The angular momentum is also constant, to the order of the integrator.
 template <class B>
 void moves_its_centre(Index n, double tolerance, char const* formulation) {
   Flight<B> flight(n, 0.01);
@@ -149,7 +149,7 @@ void moves_its_centre(Index n, double tolerance, char const* formulation) {
     held_within(invariant, (p.linear - Vec3(50, 0, 0)).norm(), 1e-10, {equals("t", t), 50.0});
     Vec3 centre = Vec3::Zero();
     auto const q = coordinates_of(flight.model, flight.x, flight.body);
-    for (int k = 0; k < 3; ++k)  // −m x_c is the energy in a field of 1 m/s², m = 10 kg
+    for (int k = 0; k < 3; ++k)  // −m x_c is the potential energy in a field of 1 m/s², m = 10 kg
       for (Index e = 0; e < n; ++e) centre[k] -= flight.body.body().gravity_energy(e, q, Vec3::Unit(k)) / 10.0;
     held_within({"D4", "centre of mass [m]", By::closed_form, "integral of the impulse over the mass", formulation},
                 (centre - Vec3(15.5 + 5.0 * (t - 5.0), 4.0, 0.0)).norm(), tolerance, {equals("t", t), 10.0});
@@ -166,9 +166,9 @@ TEST(FlyingRodInSpace, ImpulseGivesMomentumAndCentreOfMassOfTheAncfBeam) {
   moves_its_centre<AncfBeam<>>(8, 1e-6, "AncfBeam, 8 elements, h = 0.01 s");
 }
 
-// The fully parameterised beam carries diag(20, 10, 10), but in sections that can stretch: one that spins at ω does so
-// by Iρ ω²/EA = 1e-3 ω² s². It is another rod then, near the one with rigid sections only at first: 1 % of the length
-// up to 5 s.
+// The fully parameterised beam has the section inertia diag(20, 10, 10), but its sections can stretch. A section with
+// angular velocity ω stretches by Iρ ω²/EA = 1e-3 ω² s². The beam is close to the rod with rigid sections only at the
+// beginning: 1 % of the length up to 5 s.
 TEST(FlyingRodInSpace, AncfBeamHasStretchingSectionsAndFollowsForAWhile) {
   Flight<AncfBeam<>> flight(16, 0.01);
   for (Row const& row : rows) {
@@ -181,8 +181,8 @@ TEST(FlyingRodInSpace, AncfBeamHasStretchingSectionsAndFollowsForAWhile) {
        energy(flight.model, flight.x).total(), energy_after, 0.005 * energy_after);
 }
 
-// What sets it off is the inertia in its own sections. With all but a ten-thousandth of it in rigid discs it is the rod
-// with rigid sections, and follows as the Lrvf does.
+// The difference is due to the inertia of its own sections. With all rotary inertia except 1e-4 in rigid discs it is
+// the rod with rigid sections, and agrees with the reference like the Lrvf.
 TEST(FlyingRodInSpace, AncfBeamWithRigidSectionsFollowsTheExactRod) {
   follows(Flight<AncfBeam<>>(16, 0.02, 0.9999), "AncfBeam with rigid sections, 16 elements, h = 0.02 s");
 }

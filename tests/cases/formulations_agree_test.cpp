@@ -1,5 +1,5 @@
-// One bar, every formulation: a cantilever of steel under a small tip force, the stiff pendulum of CASES D6c and the
-// moderately flexible one of D6b.
+// One bar in every formulation: a steel cantilever under a small tip force, the stiff pendulum D6c and the moderately
+// flexible pendulum D6b.
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/ancf/ancf_beam.hpp>
@@ -28,7 +28,8 @@ using namespace polybody;
 
 template <class B>
 constexpr bool plane = B::world == World::plane;
-/// A cable knows its tangent only: a Revolute about it clamps it, a Spherical joint hangs it.
+/// A cable has no section orientation except its tangent. A Revolute about the tangent clamps it, and a Spherical
+/// joint hangs it.
 template <class B>
 using Clamp = Joint<
     std::conditional_t<plane<B>, planar::Weld, std::conditional_t<B::observes == Observes::frame, Weld, Revolute>>,
@@ -38,11 +39,11 @@ using Pin = Joint<std::conditional_t<plane<B>, planar::Revolute,
                                      std::conditional_t<B::observes == Observes::frame, Revolute, Spherical>>,
                   Constraint>;
 
-/// One type of model for both, which is compiled once.
+/// Model type for both cases, which is compiled once.
 template <class B>
 using ModelOf = Model<Bodies<B>, Joints<Clamp<B>, Pin<B>>, Forces<PointForce<>>>;
 
-/// The others have a bending theory: their shear force is the slope of the moment.
+/// The other formulations have a bending theory: their shear force is the derivative of the moment.
 template <class B>
 constexpr bool knows_shear = !std::same_as<B, AncfCable<>> && !std::same_as<B, Ffr> && !std::same_as<B, planar::Ffr>;
 
@@ -81,7 +82,7 @@ TYPED_TEST(EveryFormulation, SteelCantileverBendsAlike) {
   EXPECT_NEAR(tip[1], expected, 0.01 * expected);
   EXPECT_LT(std::abs(tip[2]), 1e-9);
 
-  // what the section in the middle of the ninth element feels balances the load, for small angles
+  // the section force in the middle of the ninth element is in balance with the load, for small angles
   double const s = 8.5 / 16, moment = force * (1.0 - s);
   Vec6 const n = section_forces(model, x, beam.at(s)), e = section_strains(model, x, beam.at(s));
   EXPECT_NEAR(n[5], moment, 0.01 * moment);
@@ -95,13 +96,13 @@ TYPED_TEST(EveryFormulation, SteelCantileverBendsAlike) {
   } else {
     EXPECT_EQ(n[1], 0.0);
   }
-  if constexpr (requires { beam.at(s, 0.01); }) {  // the upper fibre is pressed
+  if constexpr (requires { beam.at(s, 0.01); }) {  // the upper fibre is in compression
     EXPECT_NEAR(axial_strain(model, x, beam.at(s, 0.01)), -0.01 * moment / c.EI, 1e-4 * moment / c.EI);
     EXPECT_NEAR(axial_stress(model, x, beam.at(s, 0.01), bar), -0.01 * moment * 2e11 / c.EI, 2e7 * moment / c.EI);
   }
 }
 
-// D6c: 1e-4 m. Cables have no rotary inertia, which is worth 8e-4 m at 0.5 s.
+// D6c: tolerance 1e-4 m. Cables have no rotary inertia, whose effect is 8e-4 m at 0.5 s.
 TYPED_TEST(EveryFormulation, StiffPendulumSwingsAlike) {
   Bar const bar{.length = 1.0,
                 .section = Rectangle{.height = 0.05, .width = 0.05},
@@ -130,8 +131,8 @@ TYPED_TEST(EveryFormulation, StiffPendulumSwingsAlike) {
   EXPECT_EQ(next, rows.size());
 }
 
-// D6b, 3 s: 5e-4 for cables of 8 elements and for beams of order two with enough of them, 2 % for floating frames.
-// Cables have no shear.
+// D6b, 3 s. The tolerance is 5e-4 for cables of 8 elements and for beams of order two with enough elements. It is 2 %
+// for floating frames. Cables have no shear.
 TYPED_TEST(EveryFormulation, FlexiblePendulumSwingsAlike) {
   using B = TypeParam;
   Bar const bar{.length = 1.0,

@@ -1,4 +1,5 @@
-// CASES E1, E2 and S9e: vibrations of straight beams, and where a pressed one buckles.
+// Vibrations of straight beams by Euler–Bernoulli (E1) and Timoshenko (E2) theory, and buckling of a beam in
+// compression (S9e).
 
 #include <polybody/vibration/modes.hpp>
 
@@ -28,7 +29,7 @@ char const* name_of(Ends ends) {
   return ends == Ends::clamped_free ? "clamped–free" : ends == Ends::pinned_pinned ? "pinned–pinned" : "free–free";
 }
 
-/// Frequencies of a planar beam along x with these ends; rigid motions are left out.
+/// Frequencies of a planar beam along x with these end conditions, without rigid motions.
 template <class B>
 VecX frequencies(Bar const& bar, Index n, Ends ends) {
   Model<Bodies<B>, Joints<Clamp, Pin>> model;
@@ -45,12 +46,12 @@ VecX frequencies(Bar const& bar, Index n, Ends ends) {
   return m.frequency.tail(m.frequency.size() - rigid);
 }
 
-/// A stiff EA keeps axial modes out of the way.
+/// A large EA moves the axial modes to high frequencies.
 Bar slender() { return {.length = 1.0, .constants = BarConstants{.EA = 1e6, .EI = 1.0, .mass_per_length = 1.0}}; }
 
-// E1: 8 elements, clamped–free: modes 1 and 2 to 1e-4, mode 3 to 1e-3. With other ends the error is that of cubic
-// elements with consistent mass, ω_h/ω = 1 + (β l)⁴/1440 for an element of length l to leading order (the dispersion of
-// a wave in a row of them).
+// E1: 8 elements, clamped–free: modes 1 and 2 to 1e-4, mode 3 to 1e-3. With other end conditions the error is that of
+// cubic elements with consistent mass. For an element of length l it is ω_h/ω = 1 + (β l)⁴/1440 to leading order
+// (dispersion of a wave in a row of elements).
 TEST(EulerBernoulli, CableHasTheFrequenciesOfTheBeam) {
   struct Row {
     Ends ends;
@@ -78,7 +79,7 @@ TEST(EulerBernoulli, CableHasTheFrequenciesOfTheBeam) {
   }
 }
 
-// In space every bending mode comes twice, once in each plane.
+// In space every bending mode occurs twice, once in each plane.
 TEST(EulerBernoulli, SpatialCableBendsInTwoPlanes) {
   using Cable = AncfCable<>;
   using Hold = Joint<Revolute, Constraint>;
@@ -97,8 +98,8 @@ TEST(EulerBernoulli, SpatialCableBendsInTwoPlanes) {
            w[2 * i + twin], beta[i] * beta[i], (i < 2 ? 1e-4 : 1e-3) * beta[i] * beta[i], {equals("mode", i + 1)});
 }
 
-/// E2: rotary inertia and shear count. Square sections of width h; a stiff EA keeps axial modes out of the way (one of
-/// the thick beam with free ends lies by 4e-4 beside its fourth in bending).
+/// E2: effects of rotary inertia and shear. Square sections of width h. A large EA moves the axial modes to high
+/// frequencies. (One axial mode of the thick free beam would differ by 4e-4 from its fourth bending mode.)
 Bar square(double length, double h, double e, double k) {
   double const rho = 7850, a = h * h, i = h * h * h * h / 12.0;
   return {.length = length,
@@ -111,7 +112,7 @@ Bar square(double length, double h, double e, double k) {
 Bar thick() { return square(2.0, 0.4, 1e9, 0.849673202614); }
 Bar steel() { return square(1.0, 0.05, 2.1e11, 5.0 / 6.0); }
 
-// Linear elements converge at second order: from 32 and 64 of them the limit by Richardson.
+// Linear elements converge with order two: Richardson extrapolation of 32 and 64 elements gives the limit.
 TEST(Timoshenko, LrvfConvergesToThickAndSlenderBeams) {
   struct Row {
     Bar bar;
@@ -139,7 +140,8 @@ TEST(Timoshenko, LrvfConvergesToThickAndSlenderBeams) {
   }
 }
 
-// S9e: clamped–free, P = π²EI/4L²: the lowest frequency vanishes there and the straight state is unstable beyond.
+// S9e: clamped–free, P = π²EI/4L². The lowest frequency vanishes at this load. The straight state is unstable above
+// it.
 TEST(Buckling, FrequencyVanishesAtEulersLoad) {
   using Cable = planar::AncfCable<planar::EngineeringStrain>;
   double const critical = 0.25 * std::numbers::pi * std::numbers::pi;

@@ -1,5 +1,5 @@
-// Generalised and Cartesian moments [thesis §3.4]: a spatial double pendulum under a follower moment, with Euler
-// parameters, with a quaternion and body-axes angular velocity, and with joint coordinates.
+// Generalised and Cartesian moments [Wallin 2016, §3.4] of a spatial double pendulum under a follower moment. The
+// rotations are Euler parameters, a quaternion with body-axes angular velocity, or joint coordinates.
 
 #include <gtest/gtest.h>
 
@@ -19,16 +19,16 @@
 namespace polybody {
 namespace generalised_moments_test {
 
-/// The applied moment in the axes of body b, which tumbles: it keeps no direction in the world [N m].
+/// Applied moment in the axes of body b, which tumbles. Its direction in the world changes [N m].
 Vec3 const applied(0.8, -0.5, 0.6);
 
-/// The ground, a Cardan joint, body a, a ball joint, body b.
+/// Chain: ground, Cardan joint, body a, ball joint, body b.
 template <class Rotation, class Policy>
 struct Pendulum {
   using Cardan = Joint<Universal, Policy>;
   using Ball = Joint<Spherical, Policy>;
   using ModelType = Model<Bodies<Rigid<Rotation>>, Joints<Cardan, Ball>, Forces<PointMoment<>>>;
-  /// The ball's place from the centres of mass.
+  /// Position of the ball from the centres of mass.
   static inline Vec3 const elbow{0.5, 0.1, -0.1}, on_a{0.2, 0.05, -0.1}, on_b{-0.2, 0.0, 0.05};
 
   ModelType model{Gravity{0, 0, -9.81}};
@@ -44,7 +44,7 @@ struct Pendulum {
   explicit Pendulum(double h = 5e-4) {
     model.apply(PointMoment<>{.moment = applied, .axes = LoadAxes::marker}, b.at(Vec3(0, 0, 0)));
     x = model.reference_state();
-    Vec3 const spin_a(1, 2, 0), spin_b(2, -1, 3);  // a about both arms of the cross
+    Vec3 const spin_a(1, 2, 0), spin_b(2, -1, 3);  // rotation of a about both arms of the cross
     model.set_velocity(x, a, Vec3::Zero(), spin_a);
     model.set_velocity(x, b, (spin_a - spin_b).cross(elbow), spin_b);
     simulate(model, x, RungeKutta4<Projection>{}, {.until = 1.0, .step = h}).run();
@@ -54,7 +54,7 @@ struct Pendulum {
     return frame(model, x, body.at(Vec3(0, 0, 0)));
   }
 
-  /// What the speeds of a body feel of the joints whose multipliers stand in lambda: −Gᵀλ [thesis Eq. 3.3].
+  /// Generalised force −Gᵀλ on a body of the joints whose multipliers are in lambda [Wallin 2016, Eq. 3.3].
   VecX joint_force(BodyHandle<Rigid<Rotation>> const& body, VecX const& lambda) const {
     System system(model);
     system.evaluate(x.q, x.v, x.t);
@@ -63,7 +63,7 @@ struct Pendulum {
     system.residual(x.a, VecX::Zero(model.rows()), without);
     return (without - with).segment(model.entry(body).v0, body.body().speeds());
   }
-  /// The multipliers of one joint, zero elsewhere.
+  /// Multipliers of one joint, zero elsewhere.
   template <class J>
   VecX only(J const& joint) const {
     VecX lambda = VecX::Zero(model.rows());
@@ -71,7 +71,7 @@ struct Pendulum {
     lambda.segment(e.row, e.rows) = x.lambda.segment(e.row, e.rows);
     return lambda;
   }
-  /// What the turns of b feel of the applied moment; gravity has no part in them.
+  /// Generalised force of the applied moment on the rotations of b, without gravity.
   VecX applied_force() const {
     System system(model);
     system.evaluate(x.q, x.v, x.t);
@@ -87,7 +87,7 @@ using Parameters = Pendulum<EulerParameters, Constraint>;
 using Cartesian = Pendulum<UnitQuaternion, Constraint>;
 using Relative = Pendulum<UnitQuaternion, Recursive>;
 
-/// The three after one second.
+/// The three models after one second.
 struct Runs {
   Parameters parameters;
   Cartesian cartesian;
@@ -120,8 +120,8 @@ Vec4 theta_of(Parameters const& p, BodyHandle<Rigid<EulerParameters>> const& bod
   return p.x.q.segment<4>(p.model.entry(body).q0 + 3);
 }
 
-// Each way is off by C h⁴: Richardson's difference to twice the step says how much, and no two are further apart than
-// that.
+// Each model has an error C h⁴. Richardson's difference to the result of twice the step estimates the error. The
+// distance of any two models is below this estimate.
 TEST(EulerParameterMoments, MakeOneMotionToTheAccuracyOfTheSteps) {
   auto const& [p, c, r] = runs();
   double const of_p = apart(Parameters(1e-3), p) / 15.0, of_c = apart(Cartesian(1e-3), c) / 15.0;
@@ -142,7 +142,7 @@ TEST(EulerParameterMoments, MakeOneMotionToTheAccuracyOfTheSteps) {
   EXPECT_GT((c.of(c.b).A - Mat3::Identity()).norm(), 1.0);  // it has tumbled
 }
 
-// A cross bears a moment square to both its arms, a ball none.
+// A cross carries a moment perpendicular to both its arms, a ball none.
 TEST(EulerParameterMoments, JointsHoldTheSameForcesAndMoments) {
   auto const& [p, c, r] = runs();
   auto const expect = [&c = c](char const* formulation, auto const& other) {
@@ -169,9 +169,9 @@ TEST(EulerParameterMoments, JointsHoldTheSameForcesAndMoments) {
   expect("joint coordinates", r);
 }
 
-// −Gᵀλ of a joint on a body, against its Cartesian force F and moment M at the point u from the centre of mass: F, and
-// Ḡᵀ Aᵀ(M + u × F) for the four rates of the parameters, Aᵀ(M + u × F) for the three of the angular velocity [thesis
-// Eq. 3.7].
+// −Gᵀλ of a joint on a body, compared with its Cartesian force F and moment M at the point u from the centre of mass.
+// The translational part is F. The rotational part is Ḡᵀ Aᵀ(M + u × F) for the four rates of the parameters, and Aᵀ(M
+// + u × F) for the three components of the angular velocity [Wallin 2016, Eq. 3.7].
 TEST(EulerParameterMoments, OfAJointAreTheCartesianOnesByG) {
   auto const& [p, c, r] = runs();
   auto const expect = [&p = p, &c = c](auto const& joint_p, auto const& joint_c, auto const& body_p, auto const& body_c,
@@ -211,7 +211,7 @@ TEST(EulerParameterMoments, OfAJointAreTheCartesianOnesByG) {
   expect(p.ball, c.ball, p.b, c.b, p.on_b, 1.0);
 }
 
-// Moments have no part along θ, so nothing is left to the rows of the norms.
+// Moments have no component along θ, so the constraint forces of the norms are zero.
 TEST(EulerParameterMoments, LeaveNothingToTheNormsOfTheParameters) {
   Parameters const& p = runs().parameters;
   for (auto const& body : {p.a, p.b}) {
@@ -223,8 +223,8 @@ TEST(EulerParameterMoments, LeaveNothingToTheNormsOfTheParameters) {
   }
 }
 
-// The applied moment M (axes of b): Ḡᵀ M, M, and with joint coordinates its parts along the axes of the joints, beside
-// those of the weights there. All have the power M·Ω.
+// The applied moment M (axes of b) gives Ḡᵀ M, M, and with joint coordinates its components along the axes of the
+// joints in addition to those of the weights. All have the power M·Ω.
 TEST(EulerParameterMoments, OfALoadHaveItsPower) {
   auto const& [p, c, r] = runs();
   VecX const four = p.applied_force(), three = c.applied_force();
@@ -267,8 +267,8 @@ TEST(EulerParameterMoments, OfALoadHaveItsPower) {
               std::abs(five.dot(narrow.v) - power - falling), 1e-6, {.scale = std::abs(power)});
 }
 
-// Table 3.4's way of counting: seven coordinates and one constraint a body; four rows of the cross, three of the ball.
-// A ball's joint coordinates are four parameters with their norm.
+// Counts as in Table 3.4 of Wallin 2016: seven coordinates and one constraint per body, four constraint equations of
+// the cross, three of the ball. The joint coordinates of a ball are four parameters with their norm.
 TEST(EulerParameterMoments, AreCountedAsInTheThesis) {
   auto const& [p, c, r] = runs();
   auto const expect = [](char const* formulation, Census const& census, Index coordinates, Index constraints,

@@ -1,4 +1,4 @@
-// CASES R5: the stiff flyball governor (IFToMM A05), four bodies in space with stiff spring-dampers.
+// Stiff flyball governor (R5: IFToMM benchmark A05): four bodies in space with stiff spring-dampers.
 
 #include <gtest/gtest.h>
 
@@ -20,8 +20,9 @@
 namespace polybody {
 namespace governor_test {
 
-/// A shaft that turns about z, a slider of 3 kg on it, and two rods, 30° below the horizontal, with 5 kg at their ends;
-/// from the middle of each a spring-damper to the slider. All spin at 2π.
+/// A shaft rotates about z and carries a slider of 3 kg and two rods. The rods are 30° below the horizontal and have
+/// 5 kg at their ends. A spring-damper connects the middle of each rod with the slider. All bodies rotate at 2π
+/// rad/s.
 template <class Policy = Constraint>
 struct Governor {
   using Pin = Joint<Revolute, Policy>;
@@ -32,12 +33,12 @@ struct Governor {
   std::vector<BodyHandle<Body>> rods;
   State x;
 
-  /// Of 1 m along z, 0.01 m square.
+  /// Prism of 1 m along z, 0.01 m square.
   static Body prism(double mass) {
     double const across = mass * (1.0 + 1e-4) / 12.0;
     return {mass, Vec3(across, across, mass * 2e-4 / 12.0).asDiagonal().toDenseMatrix(), Placement::at({0, 0, 0.5})};
   }
-  /// Of 0.1 m.
+  /// Cube of 0.1 m.
   static Body cube(double mass) { return {mass, Mat3::Identity() * (mass * 0.02 / 12.0), Placement::at({0, 0, 0.5})}; }
 
   explicit Governor(Policy const& policy = {}) {
@@ -69,9 +70,9 @@ struct Governor {
     for (auto const& rod_handle : rods) model.set_velocity(x, rod_handle, Vec3::Zero(), spin);
   }
   double height() const { return position(model, x, slider.at(Vec3(0, 0, 0)))[2]; }
-  /// Of rod i below the horizontal.
+  /// Angle of rod i below the horizontal.
   double angle(std::size_t i) const { return std::asin(-frame(model, x, rods[i].at(Vec3(0, 0, 0))).A(2, 0)); }
-  /// Of the shaft, within a turn.
+  /// Angle of the shaft, within one revolution.
   double turn() const {
     Mat3 const A = frame(model, x, shaft.at(Vec3(0, 0, 0))).A;
     return std::atan2(A(1, 0), A(0, 0));
@@ -106,7 +107,7 @@ void expect_r5(I const& integrator, double step, double tolerance, double moment
     held(claim("turn of the shaft [rad]"), p.turn + turns, p.turn, 10.0 * tolerance, at);
     drift = std::max(drift, std::abs(momentum(governor.model, governor.x).angular[2] - before) / before);
   }
-  // nothing turns the governor about z
+  // no moment about z acts on the governor
   held_within({"R5", "angular momentum about z, drift of itself", By::closed_form, "invariant", formulation}, drift,
               momentum_tolerance, {.scale = 1.0});
 }
@@ -120,7 +121,7 @@ TEST(Governor, MovesAsPublishedToTheDigitsWithRadau) { expect_r5(Radau{}, 5e-3, 
 TEST(Governor, MovesAsPublishedInJointCoordinates) {
   expect_r5<Recursive>(GeneralizedAlpha{}, 1e-3, 1e-4, 1e-5, "joint coordinates, generalised-α, h = 1e-3 s");
 }
-// Pins and slide give way by F/k, some 200 N/1e9 N/m.
+// Pins and slide have deflections F/k, some 200 N/1e9 N/m.
 TEST(Governor, MovesAsPublishedOnPenalties) {
   expect_r5(GeneralizedAlpha{}, 1e-3, 1e-4, 2e-5, "penalties of 1e9 N/m, generalised-α, h = 1e-3 s",
             Penalty{.stiffness = 1e9, .damping = 1e4});

@@ -1,4 +1,4 @@
-// CASES2 M6b: a 5×5 grid of four-bar loops, 55 bars and 80 hinges (data of MBDyn's multibarmech).
+// 5×5 grid of four-bar loops (M6b), 55 bars and 80 hinges, with the data of MBDyn's multibarmech benchmark.
 
 #include <gtest/gtest.h>
 
@@ -14,10 +14,10 @@
 namespace polybody {
 namespace grid_of_loops_test {
 
-constexpr int rows = 5, columns = 5;  ///< of loops
+constexpr int rows = 5, columns = 5;  ///< number of loops
 
-/// Bars of 1 m and 1 kg hang straight and turn at 2π/3 rad/s as rigid columns do. \tparam Tree of the hinges that close
-/// no loop
+/// Bars of 1 m and 1 kg hang straight and rotate at 2π/3 rad/s like rigid columns. \tparam Tree policy of the hinges
+/// that close no loop
 template <class Tree, class Loop = Tree>
 struct Grid {
   using Where = InPlane<Tree>;
@@ -66,7 +66,7 @@ struct Grid {
   Marker<Body> end(int row, int i, double along) const {
     return Where::at(verticals[std::size_t(row * (columns + 1) + i)], along);
   }
-  /// Of the bars of each row from the downward vertical.
+  /// Angles of the bars of each row from the downward vertical.
   Vec<double, 5> angles() const {
     Vec<double, 5> out;
     for (int row = 0; row < rows; ++row)
@@ -97,7 +97,7 @@ Claim reduced(char const* what, std::string const& formulation) {
   return {"M6b", what, By::independent, "chain of five angles, DOP853", formulation};
 }
 
-/// \param late tolerance after 4 s: the lowest bars stand nearly upright at 5 s, which multiplies an error by ten
+/// \param late tolerance after 4 s: the lowest bars are nearly upright at 5 s, which multiplies an error by ten
 template <class Tree, class Loop, class I>
 void follows(I const& integrator, double step, double early, double late, std::string const& formulation) {
   Grid<Tree, Loop> grid;
@@ -117,7 +117,7 @@ void follows(I const& integrator, double step, double early, double late, std::s
   }
 }
 
-// Every row is a line of bars as it passes 90°, first the lowest at 0.76 s.
+// The bars of every row of the grid are collinear when they pass 90°. The lowest row is the first, at 0.76 s.
 TEST(GridOfLoops, FallsAsFiveAnglesDo) {
   follows<Constraint, Constraint>(GeneralizedAlpha{.rho_inf = 0.9}, 1e-3, 1.6e-4, 2e-3,
                                   "planar::Rigid, Constraint, generalised-α, h = 1 ms");

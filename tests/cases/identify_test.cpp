@@ -1,5 +1,6 @@
-// What examples/identify computes: the method of least squares by NIST's certified numbers, derivatives beside
-// differences of whole runs, intervals beside the scatter of many records, and what a rigid arm takes for the mount.
+// Results of examples/identify: the least-squares method with NIST's certified values, derivatives compared with
+// finite differences of complete runs, confidence intervals compared with the scatter of many records, and the error
+// of the mount's stiffness under the assumption of a rigid arm.
 #include <gtest/gtest.h>
 
 #include "../../examples/identify/arm.hpp"
@@ -45,7 +46,7 @@ template <class B>
 void expect_slopes_of_runs(Index elements) {
   Candidate const arm = candidate<B>("arm", {.until = 0.2}, elements);
   MatX const exact = arm.slopes(truth);
-  double const rounding = 1e-12 * std::sqrt(double(exact.rows()));  // of the runs that are differenced [m]
+  double const rounding = 1e-12 * std::sqrt(double(exact.rows()));  // of the runs in the finite differences [m]
   for (std::size_t j = 0; j < truth.size(); ++j) {
     VecX sum = VecX::Zero(exact.rows());
     double const e = 2e-3 * truth[j];
@@ -62,7 +63,7 @@ TEST(Identify, DerivativesAreThoseOfRuns) {
   expect_slopes_of_runs<planar::Lrvf>(4);
 }
 
-// Of its own record without noise a formulation finds the numbers themselves.
+// A formulation identifies the exact parameters from its own record without noise.
 TEST(Identify, FindsTheNumbersOfItsOwnRecord) {
   Candidate const arm = candidate<planar::AncfCable<>>("cable", {.until = 0.4, .step = 5e-3}, 2);
   Estimate const found = estimate(arm, arm.tip(truth), {3000.0, 8.0, 37.5, 0.16});
@@ -70,7 +71,7 @@ TEST(Identify, FindsTheNumbersOfItsOwnRecord) {
   for (std::size_t j = 0; j < truth.size(); ++j) EXPECT_NEAR(found.value[j], truth[j], 1e-6 * truth[j]) << names[j];
 }
 
-// With d = p̂ − p and its covariance C, dᵀC⁻¹d has the mean 4 and the variance 8 where C is right.
+// For d = p̂ − p with its covariance C, dᵀC⁻¹d has the mean 4 and the variance 8 if C is correct.
 TEST(Identify, IntervalsAreTheScatterOfManyRecords) {
   Candidate const arm = candidate<planar::Rigid>("rigid", {.until = 0.8, .step = 5e-3});
   VecX const record = arm.tip(truth);
@@ -90,13 +91,14 @@ TEST(Identify, IntervalsAreTheScatterOfManyRecords) {
   for (int const in : inside) EXPECT_GE(in, records - 8);  // 57 are expected, 49 or less have a probability of 2e-4
 }
 
-// A rigid arm puts the arm's own compliance into the mount; a flexible one does not.
+// A rigid arm adds the arm's own compliance to the mount. A flexible arm does not add it.
 TEST(Identify, ARigidArmTakesItsOwnComplianceForTheMounts) {
   Experiment const experiment{.until = 1.0, .step = 4e-3, .sampling = 2e-2};
   VecX const record = with_noise(exact_record(experiment, truth), 5e-4, 7);
   Estimate const rigid = estimate(candidate<planar::Rigid>("rigid", experiment), record, truth),
                  flexible = estimate(candidate<planar::Lrvf>("Lrvf", experiment, 10), record, truth);
-  // at rest the tip of the clamped arm sinks by w l⁴/8EI under its weight w l, and turns with the mount by w l³/2k_t
+  // at rest the tip of the clamped arm sinks by w l⁴/8EI under its weight w l, and the mount rotates by w l³/2k_t at
+  // the tip
   double const ei = constants(strip()).EI, own = 1.0 / (8.0 * ei), mounts = 1.0 / (2.0 * truth[2]),
                expected = truth[2] * mounts / (mounts + own);
   EXPECT_NEAR(rigid.value[2], expected, 0.06 * truth[2]);

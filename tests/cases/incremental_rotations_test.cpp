@@ -1,5 +1,5 @@
-// A beam of interpolated increments beside one of `Objective`: what a closed way of the loads leaves [after Romero
-// 2004], and what remains in motion as steps and elements become finer.
+// Beam with interpolated increments compared with a beam with `Objective`: the remaining tip displacement after a
+// closed load path [after Romero 2004], and the difference in motion as steps and elements become finer.
 
 #include <polybody/bodies/lrvf/incremental_interpolation.hpp>
 #include <polybody/bodies/lrvf/lrvf.hpp>
@@ -28,7 +28,7 @@ struct Wave {
   Motion operator()(double t) const { return {factor(t), 0.0, 0.0}; }
 };
 using Clamp = Joint<Weld, Constraint>;
-/// One type of model for both bodies: it is compiled once.
+/// Model type for both bodies, which is compiled once.
 using Beams = Model<Bodies<Lrvf<Objective>, Lrvf<Incremental>>, Joints<Clamp>, Forces<PointMoment<Wave>>>;
 
 Bar bar() {
@@ -52,13 +52,13 @@ struct Beam {
   double total_energy() const { return energy(model, x).total(); }
 };
 
-/// How far the tip is off once a moment in the world's axes has grown about y, come round by z and gone, and the strain
-/// energy then.
+/// Displacement of the tip and strain energy after a load cycle. A moment in world axes grows about y, rotates by z
+/// and vanishes.
 struct Left {
   double tip;
   Mat3 turn;
   double energy;
-  double farthest;  ///< that the tip was off on the way
+  double farthest;  ///< largest tip displacement during the cycle
 };
 template <class I>
 Left after_a_round(Index elements, int steps) {
@@ -79,8 +79,9 @@ Left after_a_round(Index elements, int steps) {
   return left;
 }
 
-// Without a load no element is strained, but the sections in the middle no longer stand between their nodes: the beam
-// rests bent. Finer steps do not help. Finer elements do, with l²: a spin across the curvature is off by φ²/8.
+// After the cycle no element is strained. The sections in the middle of the elements have rotated against their
+// nodes, so the beam stays bent. Finer steps do not reduce this error. Finer elements reduce it with l²: a rotation
+// across the curvature has an error of φ²/8.
 TEST(IncrementalRotations, ARoundOfTheLoadLeavesTheTipOff) {
   Left const objective = after_a_round<Objective>(8, 32);
   EXPECT_GT(objective.farthest, 0.9);
@@ -95,17 +96,17 @@ TEST(IncrementalRotations, ARoundOfTheLoadLeavesTheTipOff) {
   EXPECT_NEAR((middle.turn - Mat3::Identity()).norm() / std::sqrt(2.0), 5.2e-3, 5e-5);
   for (Left const& left : {coarse, middle, fine}) EXPECT_LT(left.energy, 1e-20);
 
-  // each of Newton's corrections is an increment: how many there are shows, too
+  // each Newton correction is an increment, so the number of corrections also has an influence
   double const few = after_a_round<Incremental>(8, 16).tip, many = after_a_round<Incremental>(8, 64).tip;
   EXPECT_NEAR(few, many, 0.01 * many);
   EXPECT_GT(std::abs(few - many), 1e-3 * many);
 }
 
-/// A free beam, turned at both ends for 0.35 s: bent and twisted by moments about all axes.
+/// Moment on both ends of a free beam for 0.35 s, which bends and twists it about all axes.
 double pulse(double t) { return t < 0.0 || t > 0.25 ? 0.0 : std::pow(std::sin(4.0 * pi * t), 2); }
 struct Flight {
   Vec3 tip;      ///< [m]
-  double drift;  ///< of the energy after the loads, relative
+  double drift;  ///< relative energy drift after the loads
 };
 template <class I, class Integrator>
 Flight flown(Index elements, double h, Integrator const& integrator) {
@@ -121,8 +122,8 @@ Flight flown(Index elements, double h, Integrator const& integrator) {
 
 GeneralizedAlpha const conserving{.rho_inf = 1.0};
 
-// Steps do not explain the difference to `Objective`, which stays while both converge. It is that of another element,
-// and small beside what finer elements change.
+// The difference to `Objective` is not due to the steps. It remains while both converge. It is the difference between
+// two elements, and small compared with the effect of finer elements.
 TEST(IncrementalRotations, InMotionItConvergesBesideObjective) {
   auto const off = [](Index elements, double h) {
     return (flown<Incremental>(elements, h, conserving).tip - flown<Objective>(elements, h, conserving).tip).norm();
@@ -137,9 +138,9 @@ TEST(IncrementalRotations, InMotionItConvergesBesideObjective) {
   EXPECT_LT(off(4, 5e-4), 0.01 * by_mesh);
 }
 
-// Forces are gradients of the energy along the spins of the nodes, so that the energy stays to the order with which a
-// step follows these spins. The method's own error is of order two: `GeneralizedAlpha` shows none beside its own,
-// `RungeKutta4` loses its fourth order.
+// Forces are gradients of the energy along the rotations of the nodes, so the energy is conserved to the order with
+// which a step follows these rotations. The error of the interpolation is of order two. It is hidden in the error of
+// `GeneralizedAlpha`. `RungeKutta4` loses its fourth order.
 TEST(IncrementalRotations, EnergyStaysToTheSecondOrder) {
   auto const ratio = [](auto const* policy, double h, auto const& integrator) {
     using I = std::remove_cvref_t<decltype(*policy)>;
@@ -154,7 +155,7 @@ TEST(IncrementalRotations, EnergyStaysToTheSecondOrder) {
   EXPECT_GT(ratio(objective, 5e-4, fourth), 15.0);
 }
 
-// About one axis increments add, and so they do in a run.
+// About one axis the increments add up, and they do so in a run.
 TEST(IncrementalRotations, InThePlaneTheRunIsThatOfObjective) {
   auto const tip = [](auto const* policy) {
     using I = std::remove_cvref_t<decltype(*policy)>;

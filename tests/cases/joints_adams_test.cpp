@@ -1,4 +1,5 @@
-// CASES J2 and J4 and thesis Eq. 3.8: pins, balls and crosses in space.
+// Chrono's joint tests against ADAMS (J2), the Cardan joint (J4, closed form) and Wallin 2016, Eq. 3.8: pins, balls
+// and crosses in space.
 
 #include <gtest/gtest.h>
 
@@ -26,7 +27,7 @@ using Space = Model<Bodies<Rigid<>>, Joints<Ideal<Revolute>, Ideal<RevolutePin>,
 
 DormandPrince<Projection> precise() { return {.relative_tolerance = 1e-11, .absolute_tolerance = 1e-11}; }
 
-/// CASES J2 [C]: how far out and up the middle of the bar is; released level at (2, 0).
+/// Horizontal and vertical position of the middle of the bar, released at (2, 0) (J2, independent computation).
 struct Swing {
   double t, out, up;
 };
@@ -35,10 +36,11 @@ constexpr std::array<Swing, 5> swings{{{1, -0.892381486, -1.789875773},
                                        {3, 1.869169564, -0.711480948},
                                        {4, 1.296964691, -1.522459388},
                                        {5, -1.999683869, -0.035558748}}};
-/// CASES J2 [P]: Spherical_Case01 and Universal_Case01 of ADAMS at t = 5; the peer's tolerance is 2e-3.
+/// J2: Spherical_Case01 and Universal_Case01 of ADAMS at t = 5, printed values. The tolerance of Chrono's test is
+/// 2e-3.
 constexpr double adams_out = -1.99967, adams_up = -0.0361929, adams_tolerance = 2e-3;
 
-/// A bar of 4 m that hangs from the origin by one joint; `out` and `up` are the axes of its swing.
+/// Bar of 4 m that hangs from the origin by one joint. `out` and `up` are the axes of its motion.
 template <class J>
 struct Swinging {
   Space model{Gravity{0, 0, -9.80665}};
@@ -72,8 +74,8 @@ TEST(AdamsCases, SphericalSwingsInThePlaneOfItsRelease) {
       .expect_the_swings(Vec3::UnitX(), "Spherical, Dormand–Prince");
 }
 
-// The bar lies along its own z, which points along the world's y. It swings about x, the one arm, which stays with the
-// ground or with the bar; the other is the upright or the bar itself.
+// The bar lies along its own z, which is the world's y. It swings about x, one arm of the cross, which is fixed to
+// the ground or to the bar. The other arm is vertical or along the bar.
 TEST(AdamsCases, UniversalSwingsAboutEitherArm) {
   Placement const level = Placement::at({0, 2, 0}, {-0.5 * std::numbers::pi, 0, 0});
   for (auto const& [first, second] : {std::pair{Vec3(1, 0, 0), Vec3(0, 0, 1)},
@@ -84,8 +86,8 @@ TEST(AdamsCases, UniversalSwingsAboutEitherArm) {
         .expect_the_swings(Vec3::UnitY(), "Universal, Dormand–Prince");
 }
 
-// Thesis Eq. 3.8, its points half a metre apart along the pin, and the spherical form of §3.5.1: one motion, and one
-// wrench on the bar.
+// Wallin 2016, Eq. 3.8, with points half a metre apart along the pin, and the spherical form of §3.5.1: both give one
+// motion and one wrench on the bar.
 TEST(RevolutePin, IsTheRevoluteOfTheSphericalForm) {
   Placement const level = Placement::at({2, 0, 0});
   Swinging one(Ideal<Revolute>{{.axis = Vec3::UnitY()}, {}}, along_x, level, {-2, 0.3, 0}, {0, 0.3, 0});
@@ -99,15 +101,15 @@ TEST(RevolutePin, IsTheRevoluteOfTheSphericalForm) {
   };
   alike("place and turn of the bar at 5 s", (one.x.q - other.x.q).norm(), 1e-8, 2.0);
   Wrench<> const by_one = reaction(one.model, one.x, one.joint), by_other = reaction(other.model, other.x, other.joint);
-  EXPECT_NEAR(by_one.m.norm(), 0.3 * by_one.f.norm(), 1e-7);  // the pin's point is 0.3 m beside the bar's plane
+  EXPECT_NEAR(by_one.m.norm(), 0.3 * by_one.f.norm(), 1e-7);  // the pin's point is 0.3 m from the plane of the bar
   EXPECT_GT(by_one.m.norm(), 0.1);
   alike("force of the pin at 5 s [N]", (by_one.f - by_other.f).norm(), 1e-6, by_one.f.norm());
   alike("moment of the pin at 5 s [N m]", (by_one.m - by_other.m).norm(), 1e-6, by_one.m.norm());
 }
 
-// CASES J4 [A]: two shafts at β = 30°, the first at 1 rad/s: ω₂/ω₁ = cos β/(1 − sin²β cos²φ), φ the angle of the first
-// shaft's arm from the plane of both: between cos β and 1/cos β. The second is held along its axis only; its place is
-// the cross.
+// J4, closed form: two shafts at β = 30°, the first at 1 rad/s. ω₂/ω₁ = cos β/(1 − sin²β cos²φ), where φ is the angle
+// between the arm of the first shaft and the plane of both shafts. The ratio is between cos β and 1/cos β. The second
+// shaft is constrained along its axis only, and the cross constrains its position.
 TEST(CardanJoint, HasTheRatioOfSpeeds) {
   double const beta = std::numbers::pi / 6.0, c = std::cos(beta), s2 = 0.25;
   Vec3 const n(c, 0.5, 0);

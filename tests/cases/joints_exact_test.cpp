@@ -1,4 +1,5 @@
-// Joints of space against motions in closed form, and CASES R1 and J2.
+// Spatial joints compared with motions in closed form, the point pendulum of IFToMM A01 (R1) and a joint test of
+// Chrono (J2).
 
 #include <gtest/gtest.h>
 
@@ -36,15 +37,15 @@ void run_to(Space const& model, State& x, double t) { simulate(model, x, precise
 
 Mat3 diagonal(double x, double y, double z) { return Vec3(x, y, z).asDiagonal(); }
 
-/// Held to its closed form in vectors: what, by which formula, the joint.
+/// Checks a vector against its closed form. The arguments are the quantity, the formula and the joint.
 void within(char const* case_id, char const* what, char const* source, char const* joint, double error,
             double tolerance, double t, double scale) {
   held_within({case_id, what, By::closed_form, source, std::string(joint) + ", Dormand–Prince"}, error, tolerance,
               {equals("t", t), scale});
 }
 
-// A nut on an upright, frictionless thread: m s̈ = −m g − N, I θ̈ = p N with s = p θ, so s̈ = −g m/(m + I/p²). In 3 s it
-// turns twenty times round.
+// Nut on a vertical thread without friction: m s̈ = −m g − N, I θ̈ = p N with s = p θ, so s̈ = −g m/(m + I/p²). It
+// makes twenty revolutions in 3 s.
 TEST(Screw, LowersANutAtTheExactRate) {
   double const m = 2.0, inertia = 0.05, p = 0.1, fall = g * m / (m + inertia / (p * p));
   Space model{Gravity{0, 0, -g}};
@@ -70,7 +71,8 @@ TEST(Screw, LowersANutAtTheExactRate) {
   }
 }
 
-// Generalised-α is exact for an even acceleration, and Newton's method follows the turns past every half one.
+// Generalised-α is exact for a constant acceleration. Newton's method follows the rotation past every half
+// revolution.
 TEST(Screw, LowersANutByImplicitSteps) {
   Space model{Gravity{0, 0, -g}};
   auto const nut = model.add(Rigid<>(2.0, diagonal(0.1, 0.1, 0.05)), "nut");
@@ -83,7 +85,8 @@ TEST(Screw, LowersANutByImplicitSteps) {
        position(model, x, nut.at(Vec3(0, 0, 0)))[2], -0.5 * g * 2.0 / 7.0 * 9.0, 1e-8);
 }
 
-// The bar of CASES J2 on a pin along y that it may slide on: it swings as on a Revolute [C], and drifts at 0.3 m/s.
+// Bar of J2 on a pin along y with free sliding along it. It swings as on a Revolute (independent computation) and
+// drifts at 0.3 m/s.
 TEST(Cylindrical, SwingsAsARevoluteAndDriftsEvenly) {
   struct {
     double t, x, z;
@@ -103,7 +106,8 @@ TEST(Cylindrical, SwingsAsARevoluteAndDriftsEvenly) {
   }
 }
 
-// On a plane inclined by asin 0.6 about y a block flies a parabola in the plane, and spins on evenly.
+// Block on a plane inclined by asin 0.6 about y. It moves along a parabola in the plane and rotates at a constant
+// rate.
 TEST(PlaneOnPlane, LetsABlockFlyAParabola) {
   Vec3 const n(0.6, 0, 0.8), down(0.8, 0, -0.6), start(0.2, 0, -0.15);
   Space model{Gravity{0, 0, -g}};
@@ -125,7 +129,7 @@ TEST(PlaneOnPlane, LetsABlockFlyAParabola) {
   }
 }
 
-/// CASES R1 [A]: a point mass, released at (−1, 0), gravity along −y.
+/// R1 (IFToMM A01), closed form: a point mass, released at (−1, 0), gravity along −y.
 struct Place {
   double t, x, y;
 };
@@ -134,7 +138,7 @@ constexpr std::array<Place, 4> r1{{{0.5, -0.3910487915505464, -0.920369948785192
                                    {2, -0.7935661953433217, -0.6084839304437915},
                                    {10, -0.2750874625761169, -0.9614192050991251}}};
 
-/// A ball held by its middle at the end of a rod of 1 m moves as a point.
+/// A ball at the end of a rod of 1 m, joined at its centre, moves as a point.
 struct OnARod {
   Space model{Gravity{0, -g, 0}};
   BodyHandle<Rigid<>> ball;
@@ -172,8 +176,8 @@ TEST(Distance, CarriesAConicalPendulum) {
   }
 }
 
-// A ball of radius of gyration 0.4 m, 0.8 m from its pivot and without spin about the line to it, swings in any
-// direction as a point at (0.4² + 0.8²)/0.8 = 1 m: J ω + m r × v = (J + m l²) n × ṅ.
+// A ball with the radius of gyration 0.4 m hangs 0.8 m from its pivot. Without spin about the line to the pivot it
+// swings in any direction as a point at (0.4² + 0.8²)/0.8 = 1 m: J ω + m r × v = (J + m l²) n × ṅ.
 TEST(Distance, SwingsAsABallOnABallJoint) {
   Vec3 const n(0.6, -0.48, 0.64), rate = Vec3(0.8, 0.36, -0.48) * 2.5;  // n · ṅ = 0
   OnARod point(n);
@@ -193,8 +197,9 @@ TEST(Distance, SwingsAsABallOnABallJoint) {
   EXPECT_GT((point.place() - n).norm(), 0.1);
 }
 
-// A block pushed up a slope of sin = 0.6 along a table from rest to rest: the push is m (s̈ + 0.6 g), the rail's force
-// 0.8 m g across. One metre in two seconds, both ends clamped, is the cubic s = 3 x² − 2 x³, x = t/2.
+// Block pushed up a slope of sin = 0.6 along a table from rest to rest. The pushing force is m (s̈ + 0.6 g), the
+// force of the rail 0.8 m g across. One metre in two seconds with both ends clamped is the cubic s = 3 x² − 2 x³, x =
+// t/2.
 TEST(PrescribedSlide, PushesABlockUpASlope) {
   Vec3 const up(0.8, 0, 0.6), across(-0.6, 0, 0.8);
   double const m = 1.5;

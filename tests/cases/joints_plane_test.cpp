@@ -1,4 +1,5 @@
-// Rods, gears and drives in the plane: CASES R1 and C8, and motions in closed form.
+// Rods, gears and driving constraints in the plane: point pendulum of IFToMM A01 (R1), the vehicle's sprocket of
+// Wallin 2016 (C8), and motions in closed form.
 
 #include <gtest/gtest.h>
 
@@ -36,7 +37,7 @@ constexpr double g = 9.81;
 DormandPrince<Projection> precise() { return {.relative_tolerance = 1e-11, .absolute_tolerance = 1e-11}; }
 void run_to(Plane const& model, State& x, double t) { simulate(model, x, precise(), {.until = t, .step = 0.01}).run(); }
 
-/// A number and a vector in closed form.
+/// Checks for a number and a vector in closed form.
 void exact(char const* case_id, char const* what, char const* source, char const* joint, double value, double reference,
            double tolerance, double t) {
   held({case_id, what, By::closed_form, source, std::string(joint) + ", Dormand–Prince"}, value, reference, tolerance,
@@ -65,7 +66,7 @@ TEST(DistanceInThePlane, SwingsAPointWhereThePublishedSolutionIs) {
   }
 }
 
-// Points that coincide are refused by the name of the rod, and `assemble` parts them.
+// A rod between coincident points is refused, and the error names the rod. `assemble` separates the points.
 TEST(DistanceInThePlane, OfPointsThatCoincideDoesNotStart) {
   Plane model{Gravity{0, -g, 0}};
   auto const mass = model.add(planar::Rigid(2.0, 0.1), "mass");
@@ -79,7 +80,7 @@ TEST(DistanceInThePlane, OfPointsThatCoincideDoesNotStart) {
                   "\"short\": the length must be positive"));
 }
 
-// A weight let down on a ram, SmoothRamp's stroke: the ram carries m (g − ẍ).
+// Weight lowered on a ram with the stroke of SmoothRamp. The ram carries m (g − ẍ).
 TEST(PrescribedDistanceInThePlane, LetsDownAWeight) {
   double const m = 3.0;
   SmoothRamp const stroke{.target = 0.8, .duration = 2.0};
@@ -99,7 +100,7 @@ TEST(PrescribedDistanceInThePlane, LetsDownAWeight) {
   }
 }
 
-/// CASES C8: the sprocket stands still for a second and runs up to 25 rad/s at 8 s.
+/// Sprocket of Wallin 2016 (C8): at rest for one second, then accelerated to 25 rad/s at 8 s.
 Motor const motor{{.law = {{.target = 25.0, .duration = 7.0, .start = 1.0}}}, {}};
 double speed(double t) {
   double const y = std::clamp((t - 1.0) / 7.0, 0.0, 1.0);
@@ -110,8 +111,8 @@ double growth(double t) {
   return 25.0 * 30.0 * y * y * (1.0 - 2.0 * y + y * y) / 7.0;
 }
 
-// A wheel of 20 teeth drives one of 50: ω_b = −0.4 ω_a through 20 turns, and the motor's moment is (J_a + 0.4² J_b) ω̇.
-// Inside a ring of 50 it turns the same way.
+// A wheel of 20 teeth drives one of 50: ω_b = −0.4 ω_a through 20 revolutions. The moment of the motor is (J_a + 0.4²
+// J_b) ω̇. Inside a ring of 50 teeth both rotate in the same direction.
 TEST(Gear, HandsOnTheSprocketsRunUp) {
   double const of_a = 0.2, of_b = 0.9;
   for (int const sign : {1, -1}) {
@@ -134,15 +135,15 @@ TEST(Gear, HandsOnTheSprocketsRunUp) {
       exact("C8", "moment of the motor [N m]", "(J_a + (20/50)² J_b) ω̇", pair, reaction(model, x, drive).m[2],
             (of_a + 0.16 * of_b) * growth(t), 1e-8, t);
       if (t < 10.0) continue;
-      double const angle = 87.5 + 25.0 * (t - 8.0);  // half of 25 · 7, and what comes after
+      double const angle = 87.5 + 25.0 * (t - 8.0);  // half of 25 · 7, plus the steady part
       exact("C8", "angle of the sprocket [rad]", law, pair, x.q[2], angle, 1e-7, t);
       exact("C8", "angle of the driven wheel [rad]", "ratio of the teeth", pair, x.q[5], -0.4 * sign * angle, 1e-7, t);
     }
   }
 }
 
-// A planet of 12 teeth on the pin of an arm rolls on a fixed sun of 30: ω_planet = (1 + 30/12) ω_arm. The ground is the
-// sun.
+// Planet of 12 teeth on the pin of an arm. It rolls on a fixed sun of 30: ω_planet = (1 + 30/12) ω_arm. The ground is
+// the sun.
 TEST(Gear, RollsAPlanetOnAFixedSun) {
   Plane model{};
   auto const arm = model.add(planar::Rigid(1.0, 0.3, Placement::planar(0.7, 0.0)), "arm");
@@ -163,8 +164,8 @@ TEST(Gear, RollsAPlanetOnAFixedSun) {
         1e-6, 9.0);
 }
 
-// A ladder of 2 m from the wall x = 0 to the floor y = 0, held by two points on lines, its foot pushed to x = 1.2: its
-// head comes down from 2 to 1.6.
+// Ladder of 2 m from the wall x = 0 to the floor y = 0, constrained by two points on lines. The lower end is pushed
+// to x = 1.2. The upper end moves from 2 to 1.6.
 TEST(PointInPlane, HoldsALadderToWallAndFloor) {
   double const quarter = 0.5 * std::numbers::pi;
   SmoothRamp const push{.target = 1.2, .duration = 1.0};
@@ -181,7 +182,7 @@ TEST(PointInPlane, HoldsALadderToWallAndFloor) {
          (position(model, x, head) - Vec3(0, 1.6, 0)).norm(), 1e-9, 2.0, 1.6);
   within("closed forms", "foot of a ladder pushed to the wall [m]", "1.2", "PrescribedSlide",
          (position(model, x, foot) - Vec3(1.2, 0, 0)).norm(), 1e-9, 2.0, 1.2);
-  // at rest: the floor carries m g, the hand holds m g · 0.6/1.6 against the wall
+  // at rest: the floor carries m g, and the force of the hand against the wall is m g · 0.6/1.6
   within("closed forms", "force of the floor on a ladder [N]", "m g", "PointInPlane",
          (reaction(model, x, floor).f - Vec3(0, 4.0 * g, 0)).norm(), 1e-7, 2.0, 4.0 * g);
   within("closed forms", "force of the hand on a ladder [N]", "m g · 0.6/1.6", "PrescribedSlide",

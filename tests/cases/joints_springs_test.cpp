@@ -1,6 +1,7 @@
-// CASES J2, spring cases of Chrono's joint tests against ADAMS: a mass under an upright spring, a mass swung by a
-// spring, and a bar on a pin with a torsional spring. Parameters of the last one as in utest_JOINT_rotspring.cpp, k =
-// 200 and c = 10: with these the printed digits are met, with 50 they are not.
+// Spring cases of Chrono's joint tests against ADAMS (J2): a mass under a vertical spring, a mass swinging on a
+// spring, and a bar on a pin with a torsional spring. The parameters of the last case are those of
+// utest_JOINT_rotspring.cpp, k = 200 and c = 10. They reproduce the printed digits. The value 50 does not reproduce
+// them.
 
 #include <gtest/gtest.h>
 
@@ -29,7 +30,7 @@ using Space = Model<Bodies<Rigid<>>, Joints<Pin, Rail, Torsion>, Forces<AxialSpr
 
 constexpr double g = 9.80665;
 
-/// The case: a body at `place`, the middle of a bar of inertia (0.04, 0.1, 0.1).
+/// Body at `place`, the middle of a bar of inertia (0.04, 0.1, 0.1).
 struct Case {
   Space model{Gravity{0, 0, -g}};
   BodyHandle<Rigid<>> body;
@@ -49,7 +50,7 @@ struct Case {
 
 DormandPrince<Projection> precise() { return {.relative_tolerance = 1e-11, .absolute_tolerance = 1e-11}; }
 
-/// Against the digits that are printed, and against an exact solution; the peer's tolerance in position is 1e-3.
+/// Compares with the printed digits and with an exact solution. The position tolerance of Chrono's test is 1e-3.
 void expect(Case const& c, char const* which, std::optional<Vec3> const& printed, Vec3 const& exact,
             char const* solution, By by) {
   Vec3 const fine = c.after_five_seconds(precise(), 0.01), coarse = c.after_five_seconds(GeneralizedAlpha{}, 5e-4);
@@ -62,7 +63,7 @@ void expect(Case const& c, char const* which, std::optional<Vec3> const& printed
                 (fine - *printed).norm(), 1e-5, at);
 }
 
-// TranSpring_Case01: k = 10, c = 0.5, no free length, along the upright:
+// TranSpring_Case01: k = 10, c = 0.5, no free length, vertical:
 //   z = (g m/k)(e^(−σt)(cos νt + σ/ν sin νt) − 1),  σ = c/2m,  ν² = k/m − σ².
 TEST(AdamsSprings, MassSinksOnAnUprightSpring) {
   Case c({0, 0, 0});
@@ -74,7 +75,8 @@ TEST(AdamsSprings, MassSinksOnAnUprightSpring) {
   expect(c, "TranSpring_Case01", Vec3(0, 0, -1.26242), Vec3(0, 0, z), "damped oscillator", By::closed_form);
 }
 
-// TranSpring_Case02: k = 100, c = 5, released 2 m beside the anchor, which is the free length.
+// TranSpring_Case02: k = 100, c = 5, released at a horizontal distance of 2 m from the anchor, which is the free
+// length.
 TEST(AdamsSprings, MassSwingsOnASpring) {
   Case c({0, 2, 0});
   c.model.apply(SpringDamper{.stiffness = 100.0, .damping = 5.0, .free_length = 2.0}, c.ground(),
@@ -83,7 +85,7 @@ TEST(AdamsSprings, MassSwingsOnASpring) {
          By::independent);
 }
 
-// RotSpring_Case01: 4.1 θ¨ = 2 m g cos θ − k θ − c θ˙, the bar's middle at 2 (cos θ, 0, −sin θ).
+// RotSpring_Case01: 4.1 θ¨ = 2 m g cos θ − k θ − c θ˙, the middle of the bar at 2 (cos θ, 0, −sin θ).
 TEST(AdamsSprings, BarTurnsAgainstATorsionalSpring) {
   Case c({2, 0, 0});
   auto const end = c.body.at(Vec3(-2, 0, 0));

@@ -1,4 +1,4 @@
-// CASES S9a: Lee's frame up to its upper limit load, against the exact frame [C].
+// Lee's frame (S9a) up to its upper limit load, compared with an independent computation of the exact frame.
 
 #include <polybody/bodies/ancf/planar_ancf_cable.hpp>
 #include <polybody/bodies/lrvf/planar_lrvf.hpp>
@@ -26,8 +26,8 @@ using Cable = planar::AncfCable<planar::EngineeringStrain>;
 double const EA = 7.2e6 * 6, EI = 7.2e6 * 2;
 double const with_shear = 1.3846154e7;  ///< GA for ν = 0.3, k = 5/6
 
-/// Two legs of 120, welded at a right angle and pinned at their other ends; P presses down 24 from the corner. A slider
-/// may hold the loaded point at a certain u and leaves it free to move up and down and to turn.
+/// Two legs of 120, welded at a right angle and pinned at their other ends. P presses down at 24 from the right
+/// angle. A slider can constrain the loaded point to a given u. Its vertical motion and its rotation remain free.
 template <class B>
 struct LeeFrame {
   using Pin = Joint<planar::Revolute, Constraint>;
@@ -57,7 +57,7 @@ struct LeeFrame {
             .constants = BarConstants{.EA = EA, .EI = EI, .mass_per_length = 1.0, .GA = GA},
             .placement = placement};
   }
-  /// (u, v) under the load: to the right and up.
+  /// Displacement (u, v) under the load: to the right and upwards.
   Vec2 displacement(State const& x) const {
     return (position(model, x, beam.at(24.0)) - Vec3(24, 120, 0)).template head<2>();
   }
@@ -76,7 +76,7 @@ std::vector<Row> const shear{
 
 EquilibriumOptions const options{.tolerance = 1e-9};
 
-/// Displacements by load control, each of `legs` in so many elements.
+/// Displacements by load control; each leg has `legs` elements.
 template <class B>
 std::vector<Vec2> pushed(Index legs, double GA, std::vector<Row> const& rows) {
   std::vector<Vec2> out;
@@ -93,8 +93,8 @@ Claim exact_frame(char const* what, char const* formulation) {
 }
 double miss(Vec2 const& u, Row const& row) { return (u - row.u).norm() / row.u.norm(); }
 
-// Twenty cable elements come to 3e-3 of the displacement; close to the limit the load's small error counts most. Forty
-// to 1e-4.
+// Twenty cable elements have an error of 3e-3 of the displacement. Close to the limit load the small error of the
+// load dominates. Forty elements have 1e-4.
 TEST(LeeFrame, CableFollowsTheExactFrameUpToTheLimit) {
   std::vector<Vec2> const coarse = pushed<Cable>(10, 0.0, no_shear), fine = pushed<Cable>(20, 0.0, no_shear);
   for (std::size_t i = 0; i < no_shear.size(); ++i) {
@@ -105,7 +105,7 @@ TEST(LeeFrame, CableFollowsTheExactFrameUpToTheLimit) {
   }
 }
 
-// Two-node elements of order 2, with shear; two meshes extrapolated.
+// Two-node elements of order 2, with shear. Two meshes are extrapolated.
 TEST(LeeFrame, LrvfExtrapolatesToTheExactFrameWithShear) {
   std::vector<Vec2> const coarse = pushed<planar::Lrvf>(40, with_shear, shear);
   std::vector<Vec2> const fine = pushed<planar::Lrvf>(80, with_shear, shear);
@@ -118,8 +118,8 @@ TEST(LeeFrame, LrvfExtrapolatesToTheExactFrameWithShear) {
   }
 }
 
-// Without shear: GA a thousand times EA leaves 1e-6 of the displacement. From one load to the next Newton's method
-// needs parts.
+// Without shear: GA of a thousand times EA causes an error of 1e-6 of the displacement. Newton's method requires
+// substeps between the loads.
 TEST(LeeFrame, LrvfExtrapolatesToTheExactFrameWithoutShear) {
   std::vector<Vec2> const coarse = pushed<planar::Lrvf>(40, 1e3 * EA, no_shear);
   std::vector<Vec2> const fine = pushed<planar::Lrvf>(80, 1e3 * EA, no_shear);
@@ -132,9 +132,8 @@ TEST(LeeFrame, LrvfExtrapolatesToTheExactFrameWithoutShear) {
   }
 }
 
-/// Where the path turns: the upper limit load, by the parabola through three points of the path near u₀. Load control
-/// ends there; with the loaded point on the rail at u it does not, and the load is sought, by secants, that needs no
-/// force of the rail.
+/// Upper limit load from the parabola through three points of the path near u₀. Load control fails at the limit load.
+/// With the loaded point on the rail at u the method continues. Secants find the load with zero force of the rail.
 template <class B>
 struct UpperLimit {
   Index legs;
@@ -150,7 +149,7 @@ struct UpperLimit {
     v = frame.displacement(x)[1];
     return reaction(frame.model, x, *frame.hold).f[0];
   }
-  /// The load of the path at u.
+  /// Load of the path at u.
   double load(double near, double u) {
     double a = near, b = near + 100.0, at_a = hold(a, u), at_b = hold(b, u);
     for (int i = 0; i < 20 && std::abs(b - a) > 1e-4; ++i) {
@@ -163,7 +162,7 @@ struct UpperLimit {
     EXPECT_LT(std::abs(at_b), 1e-3);
     return b;
   }
-  /// (P, u, v) at the top.
+  /// Limit point (P, u, v).
   Vec3 find(double u0) {
     for (Row const& row : no_shear) load(row.P, row.u[0]);
     double const d = 0.5;
@@ -174,9 +173,9 @@ struct UpperLimit {
   }
 };
 
-// 18556.7275 at (26.880571, −48.735135) without shear and 18544.5271 at (26.878328, −48.754241) with it [C]. The 0.3 %
-// that S9a asks of twenty elements are those of a higher order: twenty of the cable come to 0.08 %, of the two-node
-// Lrvf it takes more than forty.
+// The independent computation gives 18556.7275 at (26.880571, −48.735135) without shear and 18544.5271 at (26.878328,
+// −48.754241) with shear. The tolerance of S9a, 0.3 % with twenty elements, is that of elements of a higher order.
+// Twenty cable elements have an error of 0.08 %. The two-node Lrvf requires more than forty elements.
 TEST(LeeFrame, UpperLimitLoadIsThatOfTheExactFrame) {
   double const cable = 18556.7275, lrvf = 18544.5271;
   Vec3 const coarse_cable = UpperLimit<Cable>(10, 0.0).find(26.9), fine_cable = UpperLimit<Cable>(20, 0.0).find(26.9);

@@ -1,5 +1,6 @@
-// What examples/lighter_link computes: the method by a published design, stresses by a formula, derivatives beside
-// differences of whole runs, and the design of a rigid link by the rule of equal stress.
+// Results of examples/lighter_link: the optimisation method with a published design, stresses with a formula,
+// derivatives compared with finite differences of complete runs, and the design of a rigid link by the rule of equal
+// stress.
 #include <gtest/gtest.h>
 
 #include "../../examples/lighter_link/search.hpp"
@@ -8,8 +9,8 @@ namespace lighter_link_test {
 
 using namespace lighter_link;
 
-// Five square tubes, one behind the other, under a load at the tip: the least weight for a bounded deflection is 1.340
-// at 6.016, 5.309, 4.494, 3.502, 2.153 [Svanberg 1987, §6].
+// Five square tubes in a row, loaded at the tip. The least weight for a bounded deflection is 1.340 at 6.016, 5.309,
+// 4.494, 3.502, 2.153 [Svanberg 1987, §6].
 TEST(LighterLinkMethod, FindsSvanbergsCantilever) {
   std::array<double, 5> const share{61.0, 37.0, 19.0, 7.0, 1.0}, published{6.016, 5.309, 4.494, 3.502, 2.153};
   Design cantilever{.start = std::vector<double>(5, 5.0),
@@ -36,7 +37,7 @@ TEST(LighterLinkMethod, FindsSvanbergsCantilever) {
   for (std::size_t i = 0; i < 5; ++i) EXPECT_NEAR(best.x[i], published[i], 2e-3);
 }
 
-// What a function throws comes out of a method that is written in C.
+// An exception of the user's function passes through the optimiser, which is written in C.
 TEST(LighterLinkMethod, LetsErrorsThrough) {
   Design broken{.start = {1.0}, .least = {0.0}, .most = {2.0}};
   broken.objective = [](std::span<double const> x) { return ValueAndSlopes{x[0], {1.0}}; };
@@ -44,8 +45,8 @@ TEST(LighterLinkMethod, LetsErrorsThrough) {
   EXPECT_THROW(best_design(broken), InvalidInput);
 }
 
-// Of a rigid link: M(s) = −θ̈ ∫_s (x − s) x dm, with what each section and the mass have about their own middles, and
-// N(s) = θ̇² ∫_s x dm.
+// Section forces of a rigid link: M(s) = −θ̈ ∫_s (x − s) x dm, including the rotary inertia of each section and of
+// the mass, and N(s) = θ̇² ∫_s x dm.
 double formula(Task const& task, std::span<double const> heights, std::size_t i, double side, double t) {
   Motion const turn = task.turn(t);
   double const l = task.section_length(), s = l * double(i);
@@ -69,13 +70,13 @@ TEST(LighterLink, StressOfARigidLinkIsThatOfItsInertia) {
     for (Index k = 50; k < s.rows(); k += 50) {
       double const upper = s(k, Index(2 * i)), lower = s(k, Index(2 * i + 1)), t = task.step * double(k);
       double const one = formula(task, heights, i, 1.0, t), other = formula(task, heights, i, -1.0, t);
-      // either side may bear the pressure of the bend
+      // the compressive side of the bend can be either side
       EXPECT_NEAR(std::max(upper, lower), std::max(one, other), 1e-3 * most) << i << ' ' << t;
       EXPECT_NEAR(std::min(upper, lower), std::min(one, other), 1e-3 * most) << i << ' ' << t;
     }
 }
 
-// Turned slowly, a flexible link bears what a rigid one does.
+// In slow motion the stresses of a flexible link are those of a rigid one.
 template <class B>
 void expect_stress_of_inertia(Index elements) {
   Task const task{.turn = {1.5, 0.5, 2.0}, .until = 4.5, .step = 1e-2};
@@ -117,12 +118,12 @@ TEST(LighterLink, SlopesOfTheAggregateAreThoseOfRuns) {
 TEST(LighterLink, TheAggregateIsALittleAboveTheLargest) {
   MatX s(2, 3);
   s << 0.2, 0.9, 1.0, -1.0, 0.5, 1.0;
-  EXPECT_NEAR(Aggregate{200.0}(s), 1.0 + std::log(2.0) / 200.0, 1e-9);  // two largest
+  EXPECT_NEAR(Aggregate{200.0}(s), 1.0 + std::log(2.0) / 200.0, 1e-9);  // two equal largest values
   EXPECT_GT(Aggregate{20.0}(s), Aggregate{200.0}(s));
   EXPECT_LT(Aggregate{20.0}(s), 1.0 + std::log(6.0) / 20.0);
 }
 
-// The search leaves its start under a flexible formulation as well, and ends at the bound.
+// With a flexible formulation the search also leaves its start and ends at the bound.
 TEST(LighterLink, TheLightestFlexibleLinkIsAtTheBound) {
   Task const task{.step = 9e-3, .sections = 2};
   Lightest const found = lightest(candidate<planar::Lrvf>("Lrvf", task, {200.0}, 3), task, {});
@@ -131,8 +132,8 @@ TEST(LighterLink, TheLightestFlexibleLinkIsAtTheBound) {
   EXPECT_LT(found.mass, 0.8 * found.masses.front());
 }
 
-// Without vibration the lightest link is the one whose sections are all stressed as far as is allowed, found from the
-// tip to the root: 6 θ̈ moment(h)/(w h²) = allowed. (Where θ̈ is largest, θ̇² pulls by a tenth of a percent.)
+// Without vibration all sections of the lightest link have the allowed stress. They are computed from the tip to the
+// root: 6 θ̈ moment(h)/(w h²) = allowed. (At the largest θ̈ the tension due to θ̇² is a tenth of a percent.)
 TEST(LighterLink, TheLightestRigidLinkIsStressedEvenly) {
   Task const task{.step = 4e-3, .sections = 3};
   Lightest const found = lightest(candidate<planar::Rigid>("rigid", task, {400.0}), task, {});
@@ -145,7 +146,7 @@ TEST(LighterLink, TheLightestRigidLinkIsStressedEvenly) {
       even[i] *= std::sqrt(std::max(formula(task, even, i, 1.0, most), formula(task, even, i, -1.0, most)));
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(found.heights[i], even[i], 0.015 * even[i]) << i;
   EXPECT_NEAR(found.mass, task.mass(even), 0.012 * task.mass(even));
-  EXPECT_GT(found.mass, task.mass(even));  // the aggregate is above the largest
+  EXPECT_GT(found.mass, task.mass(even));  // the aggregate is above the maximum
 }
 
 }  // namespace lighter_link_test

@@ -1,5 +1,5 @@
-// The steel link of examples/link_from_fe: matrices that CalculiX 2.20 wrote, against its own mass, moments of inertia
-// and frequencies (link.reference.txt, made by make_matrices.sh), and against the plate with two holes.
+// Steel link of examples/link_from_fe. Matrices of CalculiX 2.20 are compared with its own mass, moments of inertia
+// and frequencies (link.reference.txt, made by make_matrices.sh), and with the plate with two holes.
 
 #include <gtest/gtest.h>
 
@@ -22,11 +22,11 @@ Structure const& link() {
   static Structure const s = read_structure(file("mass.mtx"), file("stiffness.mtx"), file("nodes.txt"));
   return s;
 }
-/// Mass, three moments of inertia; then frequencies.
+/// Mass, three moments of inertia, then frequencies.
 std::vector<double> reference() { return numbers_of(file("reference.txt")); }
 
-/// ∫1, ∫x², ∫y² about the middle of a hole whose edge is eight parabolas through the circle, as the elements have it:
-/// by Green's theorem ½∮(x dy − y dx), ⅓∮x³ dy, −⅓∮y³ dx; four Gauss points are exact.
+/// ∫1, ∫x², ∫y² about the centre of a hole. As in the elements, its edge consists of eight parabolas through the
+/// circle. Green's theorem: ½∮(x dy − y dx), ⅓∮x³ dy, −⅓∮y³ dx. Four Gauss points are exact.
 Vec3 hole(double radius) {
   Vec3 sum = Vec3::Zero();
   double const turn = std::numbers::pi / 4.0;
@@ -48,7 +48,7 @@ Vec3 hole(double radius) {
 
 double const length = 0.15, width = 0.05, thickness = 0.02, off = 0.05, radius = 0.0125, density = 7850.0;
 
-/// Mass and moments of inertia about x, y, z of the plate less two holes of these ∫1, ∫x², ∫y².
+/// Mass and moments of inertia about x, y, z of the plate minus two holes with these ∫1, ∫x², ∫y².
 Vec4 plate(Vec3 const& hole) {
   double const area = length * width - 2.0 * hole[0],
                xx = std::pow(length, 3) * width / 12.0 - 2.0 * (hole[1] + off * off * hole[0]),
@@ -56,8 +56,8 @@ Vec4 plate(Vec3 const& hole) {
   return density * thickness * Vec4(area, yy + zz, xx + zz, xx + yy);
 }
 
-// Mass and centre are integrated exactly; in the moments of inertia the elements' three Gauss points leave out a term
-// of degree seven around the holes.
+// Mass and centre of mass are integrated exactly. The three Gauss points of the elements neglect a term of degree
+// seven around the holes in the moments of inertia.
 TEST(LinkFromFe, HasTheMassPropertiesOfThePlate) {
   Structure const& s = link();
   Mat3 const inertia = s.second.trace() * Mat3::Identity() - s.second;
@@ -71,8 +71,8 @@ TEST(LinkFromFe, HasTheMassPropertiesOfThePlate) {
     held({"CalculiX 2.20", "moments of inertia of the steel link [kg m²]", By::closed_form, green, mesh}, inertia(k, k),
          meshed[1 + k], 1e-5 * meshed[1 + k], {equals("axis", k + 1)});
   EXPECT_LT(MatX(inertia - Mat3(inertia.diagonal().asDiagonal())).norm(), 1e-9 * inertia.norm());
-  // Round holes are larger by π/8 − sin α cos α − ⁴⁄₃ sin α (1 − cos α), α = π/8, of their radius squared for each
-  // side.
+  // The area of a round hole is larger, for each side, by π/8 − sin α cos α − ⁴⁄₃ sin α (1 − cos α), α = π/8, times
+  // the radius squared.
   double const circle = std::numbers::pi * radius * radius, moment = 0.25 * circle * radius * radius;
   double const alpha = std::numbers::pi / 8.0, missing = 8.0 * radius * radius *
                                                          (alpha - std::sin(alpha) * std::cos(alpha) -
@@ -109,13 +109,13 @@ TEST(LinkFromFe, HasTheFrequenciesThatCalculixPrints) {
           "what CalculiX prints, 7 digits", "its CalculiX matrices, free-interface modes"},
          omega, expected[std::size_t(10 + i)], 1e-6 * omega, {equals("mode", double(i + 1))});
   }
-  // Mean axes: no momentum in the deformation.
+  // Mean axes: the deformation has no momentum.
   EXPECT_LT(body.integrals().first_by.norm(), 1e-8);
   EXPECT_LT(body.integrals().coupling.norm(), 1e-8);
 }
 
-// Static shapes of four nodes at each hole, and modes between them. By Rayleigh's principle no frequency is too low,
-// and each falls as modes are added; sixteen find the first four to 1e-3.
+// Static shapes of four nodes at each hole, and fixed-interface modes. By Rayleigh's principle every frequency is an
+// upper bound and decreases with more modes. Sixteen modes give the first four frequencies to 1e-3.
 TEST(LinkFromFe, CraigBamptonFindsItsFirstFrequencies) {
   std::vector<double> const expected = reference();
   ASSERT_EQ(expected.size(), 4u + 14u);

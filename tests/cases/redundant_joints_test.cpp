@@ -1,4 +1,5 @@
-// Closed loops whose joints repeat each other, and loops that pass through a singular position: CASES R2, R4.
+// Closed loops with redundant joints and loops that pass through a singular configuration: IFToMM A02, N four-bar
+// mechanism (R2), and A04, Bricard's mechanism (R4).
 
 #include <gtest/gtest.h>
 
@@ -20,10 +21,10 @@ namespace redundant_joints_test {
 using Plane = FourBars<InPlane<Constraint>>;
 using Space = FourBars<InSpace<Constraint>>;
 
-/// What a run of four-bars ends with.
+/// Result of a run of four-bars.
 struct Turned {
-  double error;   ///< of the corner [m]
-  double energy;  ///< that was lost or gained [J]
+  double error;   ///< of the corner point B₀ [m]
+  double energy;  ///< gained or lost energy [J]
 };
 template <class I>
 Turned turn(Corner const& e, I const& integrator, double step) {
@@ -40,10 +41,10 @@ Claim closed_form(char const* what, std::string const& formulation) {
 }
 GeneralizedAlpha const light{.rho_inf = 0.95}, stabilised{.rho_inf = 0.95, .stabilised = true};
 
-// R2: through the flat position, where the rows lose a rank for each window, ten times in 10 s; the peer's error with
-// two windows at this step is 5e-5, and 0.1 J is what the benchmark allows. What is left is the methods' own error of
-// order two: with two windows 5.0e-5, 1.2e-5 and 3.3e-6 for ρ∞ = 0.8, 4.7e-5, 1.2e-5 and 2.5e-6 for 0.95, and 7.4e-5,
-// 1.8e-5 and 4.0e-6 for HHT, at h = 1e-3, 5e-4 and 2.5e-4 s.
+// R2: the motion passes ten times in 10 s through the flat configuration, in which the constraint Jacobian loses one
+// rank per window. Exudyn's error with two windows at this step is 5e-5. The benchmark allows 0.1 J. The remaining
+// errors are those of the methods, of order two. With two windows and h = 1e-3, 5e-4 and 2.5e-4 s they are 5.0e-5,
+// 1.2e-5 and 3.3e-6 for ρ∞ = 0.8, 4.7e-5, 1.2e-5 and 2.5e-6 for 0.95, and 7.4e-5, 1.8e-5 and 4.0e-6 for HHT.
 TEST(FourBar, PassesItsSingularPosition) {
   for (int const n : {1, 2, 40}) {
     Corner const end = corner(n, n == 40 ? 4 : 10);
@@ -56,7 +57,7 @@ TEST(FourBar, PassesItsSingularPosition) {
     };
     expect("generalised-α", turn(end, GeneralizedAlpha{}, 1e-3));
     expect("generalised-α, ρ∞ = 0.95", turn(end, light, 1e-3));
-    if (n < 40) expect("stabilised", turn(end, stabilised, 1e-3));  // forty: not under every linear solver
+    if (n < 40) expect("stabilised", turn(end, stabilised, 1e-3));  // forty windows do not run with every linear solver
     expect("HHT", turn(end, HhtAlpha{}, 1e-3));
   }
   held_within({"R2", "corner of 2 four-bars after 10 s, the peer's error [m]", By::closed_form,
@@ -64,7 +65,7 @@ TEST(FourBar, PassesItsSingularPosition) {
               turn(corner(2, 10), light, 1e-3).error, 5e-5, {.scale = 1.0});
 }
 
-// The benchmark's forty windows to its 10 s; the error of order two falls to a quarter with half of the step.
+// The benchmark's forty windows to its 10 s. The error of order two falls to a quarter with half of the step.
 TEST(FourBar, TurnsFortyWindowsForTenSeconds) {
   auto const expect = [](char const* formulation, double step, double tolerance) {
     Turned const r = turn(corner(40, 10), GeneralizedAlpha{}, step);
@@ -76,8 +77,8 @@ TEST(FourBar, TurnsFortyWindowsForTenSeconds) {
   expect("N = 40, generalised-α, h = 1e-3 s", 1e-3, 5e-5);
 }
 
-// Steps come as near to the flat position as they are small; there corrections are rounding that a nearly singular
-// matrix blows up.
+// Small steps come close to the flat configuration. There the nearly singular matrix amplifies the round-off of the
+// corrections.
 TEST(FourBar, PassesItsSingularPositionInSmallSteps) {
   auto const expect = [](char const* who, Turned const& r) {
     std::string const formulation = std::string("N = 2, ") + who + ", h = 1.25e-4 s";
@@ -96,8 +97,8 @@ TEST(FourBar, PassesItsSingularPositionInSmallSteps) {
               turn(corner(40, 1), GeneralizedAlpha{}, 2.5e-4).error, 3e-6, {.scale = 1.0});
 }
 
-// In space the four parallel pins repeat three rows. Which joint is named is the solver's choice; the accelerations,
-// the motion and the sum of the joints' forces on each body are those of the plane.
+// In space the four parallel pins have three redundant constraint equations. The solver chooses the joint that is
+// reported. The accelerations, the motion and the sum of the joint forces on each body are those of the plane.
 TEST(RedundantFourBar, InSpaceMovesAsInThePlane) {
   Plane plane(1);
   Space space(1);
@@ -131,8 +132,8 @@ TEST(RedundantFourBar, ExplicitMethodsTakeItToo) {
   expect_same(RungeKutta4<CoordinatePartitioning>{});
 }
 
-// R2: an explicit method with partitioned coordinates goes through the flat position, where the rank of the rows falls,
-// as well.
+// R2: an explicit method with coordinate partitioning also passes the flat configuration, in which the rank of the
+// constraint Jacobian falls.
 TEST(FourBar, PartitionedCoordinatesPassItsSingularPosition) {
   Plane bars(1);
   simulate(bars.model, bars.x, RungeKutta4<CoordinatePartitioning>{}, {.until = 1.0, .step = 1e-3}).run();
@@ -159,7 +160,7 @@ void bricard(double h, std::vector<std::pair<double, Vec3>> const& exact) {
   }
 }
 
-// R4; the published tolerance of the energy is 1e-3 J.
+// R4: the published tolerance of the energy is 1e-3 J.
 TEST(Bricard, SquareRodsMoveAsPublished) {
   bricard(0.1, {{0.5, {0.968283679, -1.224625159, 0.750146609}},
                 {1, {0.510501461, -1.649167599, 0.140123115}},
@@ -180,7 +181,7 @@ TEST(Bricard, ThinRodsMoveAsPublished) {
                 {6, {0.484302769, -1.658252374, 0.125099532}}});
 }
 
-// A joint made twice: named, and nothing else changes.
+// A duplicate joint is reported as redundant, and nothing else changes.
 TEST(RedundantJoint, IsNamedAndHarmless) {
   using Pin = Joint<Revolute, Constraint>;
   auto const swing = [](std::vector<char const*> const& pins, std::vector<std::string>& redundant) {

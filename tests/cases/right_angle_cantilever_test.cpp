@@ -1,4 +1,4 @@
-// CASES D5: the right-angle cantilever of Simo & Vu-Quoc 1988 by Lrvf.
+// Right-angle cantilever of Simo & Vu-Quoc 1988 (D5) by Lrvf.
 
 #include <polybody/bodies/lrvf/lrvf.hpp>
 
@@ -19,8 +19,8 @@ TEST(RightAngleCantilever, TenElementsPerLegStayWithinHalfAPercent) {
   follows<Rods>(10, 0.05, 0.005, "Lrvf, 10 elements a leg, h = 0.05 s");
 }
 
-// Element and integrator are of order 2; (4 fine − coarse)/3 has no error of second order left. What remains grows with
-// the time: to 5e-5 of the peaks at 15 s and 3e-4 at 30 s.
+// Element and integrator are of order 2. (4 fine − coarse)/3 has no error of second order. The remaining error grows
+// with time: to 5e-5 of the peaks at 15 s and 3e-4 at 30 s.
 TEST(RightAngleCantilever, TwoMeshesExtrapolateToTheExactFrame) {
   Rods coarse(16, 0.02), fine(32, 0.01);
   for (Row const& row : table) {
@@ -33,7 +33,7 @@ TEST(RightAngleCantilever, TwoMeshesExtrapolateToTheExactFrame) {
   }
 }
 
-// Extremes of the motion, height and time.
+// Extreme values of the motion and their times.
 TEST(RightAngleCantilever, PeaksHaveTheirHeightsAndTimes) {
   struct Peak {
     int component;

@@ -1,4 +1,5 @@
-// CASES S9c: a right-angle frame of two flat strips, pulled in its plane, buckles sideways (Argyris); by Lrvf.
+// Right-angle frame of two flat strips (S9c, Argyris). Under a load in its plane it buckles sideways. The elements
+// are Lrvf.
 
 #include <polybody/bodies/lrvf/lrvf.hpp>
 
@@ -12,8 +13,9 @@ namespace right_angle_frame_test {
 
 using namespace buckling;
 
-// 1.08751842 N and 1.08408817 N [C]; published 1.088 [P]. Elements are of order 2: eight a leg come to 0.25 %, sixteen
-// to a quarter of that; both together to the exact frame.
+// The independent computation gives 1.08751842 N and 1.08408817 N. The published value is 1.088 N. Elements are of
+// order 2: eight per leg have an error of 0.25 %, sixteen a quarter of it. Their extrapolation agrees with the exact
+// frame.
 TEST(RightAngleFrame, BucklesAtTheExactForce) {
   struct Case {
     double J, force;
@@ -37,7 +39,7 @@ TEST(RightAngleFrame, BucklesAtTheExactForce) {
   }
 }
 
-// Below that force the frame is stable everywhere, and it never leaves its plane unasked.
+// Below that force the frame is stable, and it stays in its plane without a disturbance.
 TEST(RightAngleFrame, IsStableBelowAndUnstableAbove) {
   for (double const part : {0.0, 0.2, 0.4, 0.6, 0.8, 0.99}) {
     FlatFrame<Lrvf<>> const frame(8, thin_strip, 1.08751842 * part);

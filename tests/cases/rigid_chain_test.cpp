@@ -1,4 +1,5 @@
-// CASES R8: pendulums of several links, released horizontally [C, an ordinary solver of order eight].
+// Pendulums of several links, released from the horizontal (R8). The reference is an independent ODE solver of order
+// eight (DOP853).
 
 #include <gtest/gtest.h>
 
@@ -27,7 +28,7 @@ struct Angles {
   double t, first, second;
 };
 
-/// Published angles count full turns, measured ones do not.
+/// Published angles include full revolutions, measured ones do not.
 double wrapped(double angle) { return std::remainder(angle, 2.0 * std::numbers::pi); }
 
 template <class C, class I>
@@ -71,7 +72,7 @@ TEST(DoublePendulum, OfBarsFollowsThePublishedAngles) {
   expect_angles(Space(2, bar_link()), precise(), 0.01, bars, 1e-7, "(b) two bars in space, Dormand–Prince");
 }
 
-// Implicit steps converge to the same angles, at second order.
+// Implicit steps converge to the same angles with order two.
 TEST(DoublePendulum, OfBarsConvergesAtSecondOrderWithGeneralizedAlpha) {
   Plane const chain(2, bar_link());
   std::vector<double> errors;
@@ -84,7 +85,7 @@ TEST(DoublePendulum, OfBarsConvergesAtSecondOrderWithGeneralizedAlpha) {
   EXPECT_GT(std::log2(errors[1] / errors[2]), 1.9) << testing::PrintToString(errors);
 }
 
-// The peer's own tolerances: 1e-3 in states, 1e-6 in the rows, at h = 2e-4.
+// Tolerances of Chrono's double pendulum test: 1e-3 in states, 1e-6 in the constraint equations, at h = 2e-4.
 TEST(DoublePendulum, OfThePeerKeepsItsTolerances) {
   Space const chain(2, chrono_link, 10.0);
   expect_angles(chain, precise(), 0.01, chrono, 1e-7, "(c) the peer's two links in space, Dormand–Prince");

@@ -1,5 +1,5 @@
-// CASES R1, R2, R4, R6 and R8 with compliant joints: stiff penalties and bushings move as ideal joints, with an error
-// of about 1/k.
+// Benchmarks R1, R2, R4, R6 and R8 with compliant joints. Stiff penalties and bushings reproduce the motion of ideal
+// joints with an error of about 1/k.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ namespace rigid_compliant_test {
 
 constexpr double g = 9.81;
 
-/// Of k in every row, well damped.
+/// Stiffness k in every constraint equation, well damped.
 template <class Policy>
 Policy stiff(double k) {
   double const c = 0.7 * std::sqrt(k);
@@ -37,7 +37,8 @@ Claim solver(char const* case_id, char const* what, std::string const& formulati
   return {case_id, what, By::independent, "ordinary solver of order eight, ideal joints", formulation};
 }
 
-/// R1: a ball of radius of gyration 0.4 m, 0.8 m from the pivot, swings as a point at 1 m. R8b: two bars.
+/// R1: a ball with the radius of gyration 0.4 m hangs 0.8 m from the pivot and swings as a point at 1 m. R8b: two
+/// bars.
 template <class Policy>
 void expect_swings(double tolerance) {
   Link const heavy{.length = 1.0, .mass = 2.0, .inertia = 2.0 * 0.16, .com = 0.8};
@@ -64,8 +65,8 @@ void expect_swings(double tolerance) {
 TEST(CompliantJoints, PenaltiesSwingAsPublished) { expect_swings<Penalty>(2e-5); }
 TEST(CompliantJoints, BushingsSwingAsPublished) { expect_swings<Bushing>(2e-5); }
 
-// R2: in the flat position rows would lose their rank; springs there have nothing to push against, and what each pass
-// leaves ringing falls as 1/√k only. The benchmark allows 0.1 J.
+// R2: in the flat configuration the constraint Jacobian would lose rank. Springs have no effect there. The vibrations
+// after each passage fall only as 1/√k. The benchmark allows 0.1 J.
 template <class Policy>
 void expect_windows(double k, double tolerance) {
   FourBars<InPlane<Policy>> bars(2, stiff<Policy>(k));
@@ -90,7 +91,7 @@ TEST(CompliantJoints, BushingsTurnFourBarsAsPublished) {
   expect_windows<Bushing>(1e10, 1e-4);
 }
 
-// R4: compliant pins have no rows to repeat each other.
+// R4: compliant pins have no constraint equations, so none are redundant.
 template <class Policy>
 void expect_bricard(double tolerance) {
   Bricard<Policy> b(0.1, stiff<Policy>(1e8));

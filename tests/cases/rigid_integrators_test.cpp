@@ -1,5 +1,5 @@
-// CASES R1, R2, R4, R6, R7 and R8 under HHT-α, Radau IIA and Adams' methods; generalised-α and the Runge–Kutta methods
-// stand in rigid_pendulum_test.cpp, rigid_chain_test.cpp, rigid_top_test.cpp and redundant_joints_test.cpp.
+// Benchmarks R1, R2, R4, R6, R7 and R8 under HHT-α, Radau IIA and Adams methods. Generalised-α and the Runge–Kutta
+// methods are in rigid_pendulum_test.cpp, rigid_chain_test.cpp, rigid_top_test.cpp and redundant_joints_test.cpp.
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ constexpr double g = 9.81, half_pi = 0.5 * std::numbers::pi;
 using Plane = Chain<InPlane<Constraint>>;
 using Windows = FourBars<InPlane<Constraint>>;
 
-/// An integrator with the step and the error that each case allows it.
+/// Integrator with its step and its tolerance for each case.
 template <class I>
 struct Way {
   I integrator = {};
@@ -51,7 +51,7 @@ Way<AdamsBashforthMoulton<Projection>> adams() {
           1e-8};
 }
 
-/// "HHT-α, h = 0.00025 s"; Adams' method chooses its own.
+/// Label such as "HHT-α, h = 0.00025 s". The Adams method chooses its own step.
 template <class W>
 std::string described(W const& way, double part = 1.0) {
   std::string const name = way.name;
@@ -179,8 +179,8 @@ TEST(AResumedRun, GoesOnWithTheSameBitsByAMultistepMethod) {
   expect_resumes<InPlane<Constraint>>(AdamsBashforthMoulton<Projection>{});
 }
 
-// What snapshots throw away changes the run by what Newton's method tolerates: 1e-8 of accelerations of some 30 m/s²
-// (rad/s²) over 0.5 s are ½ · 3e-7 · 0.5² = 4e-8.
+// The difference between a resumed run and a run without snapshots is due to the tolerance of Newton's method. An
+// error of 1e-8 of accelerations of some 30 m/s² (rad/s²) over 0.5 s gives ½ · 3e-7 · 0.5² = 4e-8.
 TEST(AResumedRun, DiffersFromOneWithoutSnapshotsWithinNewtonsTolerance) {
   Plane const chain(4, bar_link());
   State with = chain.model.reference_state(), without = with;

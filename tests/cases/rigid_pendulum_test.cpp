@@ -1,4 +1,5 @@
-// CASES R1, J1 and J2: pendulums of one body, by every joint and policy that makes one.
+// Pendulums of one body by every suitable joint and policy: point pendulum of IFToMM A01 (R1), uniform rod (J1) and
+// Chrono's joint test against ADAMS (J2).
 
 #include <gtest/gtest.h>
 
@@ -23,7 +24,7 @@ using Ball = Chain<OnBallJoints<Constraint>>;
 
 DormandPrince<Projection> precise() { return {.relative_tolerance = 1e-11, .absolute_tolerance = 1e-11}; }
 
-/// CASES R1 [A]: a point mass, released at (−1, 0).
+/// R1, closed form: a point mass, released at (−1, 0).
 struct Place {
   double t, x, y;
 };
@@ -71,14 +72,14 @@ TEST(PointMassPendulum, IsWhereThePublishedSolutionIs) {
   expect_r1(space, space.end(0), precise(), 0.01, 1e-8, "in space, Dormand–Prince");
 }
 
-// A ball of radius of gyration 0.4 m, 0.8 m from the pivot, swings as a point at 1 m: (0.4² + 0.8²)/0.8 = 1.
+// A ball with the radius of gyration 0.4 m, 0.8 m from the pivot, swings as a point at 1 m: (0.4² + 0.8²)/0.8 = 1.
 TEST(PointMassPendulum, IsThatOfABallOnABallJoint) {
   Ball const chain(1, {.length = 1.0, .mass = 2.0, .inertia = 2.0 * 0.16, .com = 0.8}, g, -half_pi);
   expect_r1(chain, chain.end(0), precise(), 0.01, 1e-8, "a ball on a ball joint, Dormand–Prince");
 }
 
-// CASES R1 [P]: the benchmark asks for 5e-5 J over 10 s; the index-2 trapezoidal rule of a peer needs
-// h = 0.8e-3 for it.
+// R1: the benchmark requires an energy error below 5e-5 J over 10 s. Exudyn's index-2 trapezoidal rule needs h =
+// 0.8e-3 for it.
 TEST(PointMassPendulum, KeepsItsEnergyAsTheBenchmarkAsks) {
   Plane const chain(1, point_link(), g, -half_pi);
   State x = chain.model.reference_state();
@@ -89,7 +90,7 @@ TEST(PointMassPendulum, KeepsItsEnergyAsTheBenchmarkAsks) {
   EXPECT_NEAR(x.q[0], r1.back().x, 1e-4);
 }
 
-// A rotation about a fixed axis: generalised-α on SE(3) takes the very steps of the plane.
+// Rotation about a fixed axis: the steps of generalised-α on SE(3) agree with those of the plane.
 TEST(PointMassPendulum, InSpaceTakesTheStepsOfThePlane) {
   Plane const plane(1, point_link(), g, -half_pi);
   Space const space(1, point_link(), g, -half_pi);
@@ -104,7 +105,7 @@ TEST(PointMassPendulum, InSpaceTakesTheStepsOfThePlane) {
   EXPECT_NEAR(std::sin(plane.angle(in_plane)), r1[1].x, 2e-3);  // h = 0.01
 }
 
-/// CASES J1: a uniform rod released horizontally; R on the rod at the pivot.
+/// J1: uniform rod released from the horizontal. R acts on the rod at the pivot.
 struct Swing {
   double t, angle, rate, rx, ry;
 };
@@ -123,11 +124,11 @@ void expect_j1(C const& chain, double tolerance, char const* formulation) {
     held_within(elliptic("J1", "reaction of the pin [N]", formulation),
                 (reaction(chain.model, x, chain.hinges[0]).f - force).norm(), 30.0 * tolerance,
                 {equals("t", s.t), force.norm()});
-    // The joint's axes are those of the world at the start and turn with the rod.
+    // The joint's axes are those of the world at the start and rotate with the rod.
     Mat3 const turned = exp_so3<double>(Vec3(0, 0, s.angle - half_pi));
     Wrench<> const local = reaction(chain.model, x, chain.hinges[0], ReactionAxes::joint);
     EXPECT_LT((local.f - turned.transpose() * force).norm(), 30.0 * tolerance) << s.t;
-    EXPECT_NEAR(local.m.norm(), 0.0, 1e-9);  // the pin's plane holds the rod
+    EXPECT_NEAR(local.m.norm(), 0.0, 1e-9);  // the pin constrains the plane of the rod
   }
   simulate(chain.model, x, precise(), {.until = 2.0, .step = 0.01}).run();
   held(elliptic("J1", "angle of the rod [rad]", formulation), chain.angle(x), 1.538098984222, tolerance, {"t = 2"});
@@ -139,8 +140,8 @@ TEST(RodPendulum, HasThePublishedReactionsInSpace) {
   expect_j1(Space(1, bar_link()), 1e-9, "in space, Dormand–Prince");
 }
 
-// The pin carried a distance d along its axis from the rod's plane: the same motion, and the moment
-// d e_z × R on the rod about the point of the pin. In the joint's axes, turned.
+// The pin is at the distance d along its axis from the plane of the rod. The motion is the same. The moment on the
+// rod about the point of the pin is d e_z × R, here in the rotated axes of the joint.
 TEST(RodPendulum, PinBesideTheRodCarriesAMoment) {
   using Pin = Joint<Revolute, Constraint>;
   double const d = 0.3;
@@ -159,14 +160,15 @@ TEST(RodPendulum, PinBesideTheRodCarriesAMoment) {
                 {equals("t", s.t), force.norm()});
     held_within(elliptic("J1", "moment of the pin [N m]", beside), (world.m - moment).norm(), 1e-7,
                 {equals("t", s.t), moment.norm()});
-    // the third axis is the pin's, whatever the other two are
+    // the third axis is that of the pin; the two others are arbitrary
     EXPECT_NEAR(local.m.norm(), moment.norm(), 1e-7);
     EXPECT_NEAR(local.m[2], 0.0, 1e-9);
   }
 }
 
-// CASES J2, Revolute_Case01 [C]: a bar of inertia (0.04, 0.1, 0.1) along X on a pin along Y, 2 m from its
-// middle, g along −z; x and z of the middle. The peer's tolerance in position is 2e-3 at h = 5e-4.
+// J2, Revolute_Case01 (independent computation): a bar of inertia (0.04, 0.1, 0.1) along X on a pin along Y, 2 m from
+// its middle, g along −z. Compared are x and z of the middle. The position tolerance of Chrono's test is 2e-3 at h =
+// 5e-4.
 TEST(RodPendulum, FollowsTheAdamsCase) {
   struct {
     double t, x, z;
@@ -192,11 +194,11 @@ TEST(RodPendulum, FollowsTheAdamsCase) {
   }
 }
 
-/// The time after which a rod, released horizontally, is at rest again at the side of its release [s].
+/// Time from a release at the horizontal until the rod is again at rest on the same side [s].
 template <class C>
 double period(C const& chain, double h = 1e-3) {
   State x = chain.model.reference_state();
-  Index const spin = x.v.size() - 1;  // about z, the last speed in the plane and in space
+  Index const spin = x.v.size() - 1;  // about z, the last velocity in the plane and in space
   auto run = simulate(chain.model, x, GeneralizedAlpha{.rho_inf = 0.9},
                       {.until = 3.0, .step = h, .events = {{.name = "at rest", .value = [spin](State const& s) {
                                                               return s.v[spin];
@@ -217,7 +219,7 @@ TEST(RodPendulum, HasTheAnalyticPeriod) {
        period(Space(1, bar_link()), 2.5e-4), exact, 5e-7);
 }
 
-// Compliant joints approach the ideal one as 1/k.
+// Compliant joints approach the ideal one with 1/k.
 TEST(RodPendulum, PeriodOfAStiffPenaltyTendsToThatOfTheConstraint) {
   double const ideal = period(Plane(1, bar_link()));
   double const soft = period(Chain<InPlane<Penalty>>(1, bar_link(), g, half_pi, stiff(1e4))) - ideal;
@@ -228,7 +230,7 @@ TEST(RodPendulum, PeriodOfAStiffPenaltyTendsToThatOfTheConstraint) {
   EXPECT_NEAR(period(Chain<InSpace<Penalty>>(1, bar_link(), g, half_pi, stiff(1e8))), ideal, 2e-6);
 }
 
-// CASES J1: the gap of a compliant pin is |R|/k, R from the ideal one.
+// J1: the constraint violation of a compliant pin is |R|/k with R of the ideal pin.
 TEST(RodPendulum, GapOfAPenaltyIsTheReactionOverItsStiffness) {
   auto const expect_gap = [](auto const& chain, double k, char const* formulation) {
     State x = chain.model.reference_state();

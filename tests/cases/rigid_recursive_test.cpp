@@ -1,4 +1,4 @@
-// CASES R1, R2, R4, R6, R8 and J1 in joint coordinates; R3 and R5 are in andrews_test.cpp, governor_test.cpp.
+// Benchmarks R1, R2, R4, R6, R8 and J1 in joint coordinates. R3 and R5 are in andrews_test.cpp and governor_test.cpp.
 
 #include <gtest/gtest.h>
 
@@ -75,7 +75,8 @@ TEST(JointCoordinates, SwingManyBars) {  // R8d
   }
 }
 
-// R2: the loops are closed by rows. After the flat position, where these lose a rank.
+// R2: constraint equations close the loops. The comparison is after the flat configuration, in which the constraint
+// Jacobian loses rank.
 TEST(JointCoordinates, TurnFourBars) {
   for (Corner const& e : {corners[0], corners[3]}) {
     FourBars<InPlane<Recursive>, InPlane<Constraint>> bars(e.n);
@@ -86,7 +87,7 @@ TEST(JointCoordinates, TurnFourBars) {
   }
 }
 
-// R4: five pins in joint coordinates, the sixth by five rows, of which one repeats the others.
+// R4: five pins in joint coordinates, the sixth by five constraint equations, one of them redundant.
 TEST(JointCoordinates, FoldBricard) {
   Bricard<Recursive, Rigid<>, Constraint> b(0.1, {}, {});
   double const before = energy(b.model, b.x).total();

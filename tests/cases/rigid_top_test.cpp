@@ -1,4 +1,4 @@
-// CASES R6 and R7: the heavy top and the torque-free body, rotations that leave every plane.
+// Heavy top (R6) and torque-free body (R7): spatial rotations.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ namespace rigid_top_test {
 
 DormandPrince<Projection> precise() { return {.relative_tolerance = 1e-11, .absolute_tolerance = 1e-11}; }
 
-/// The heavy top of Géradin & Cardona: 15 kg at 1 m from the fixed point, spinning at 150 rad/s.
+/// Heavy top of Géradin & Cardona: 15 kg at 1 m from the fixed point, with a spin of 150 rad/s.
 struct HeavyTop {
   using Ball = Joint<Spherical, Constraint>;
   Model<Bodies<Rigid<>>, Joints<Ball>> model{Gravity{0, 0, -9.81}};
@@ -36,7 +36,7 @@ Claim claim(char const* case_id, char const* what, char const* formulation) {
 }
 char const* const by_orders = "Rigid, Dormand–Prince";
 
-/// Euler parameters up to their common sign.
+/// Distance of Euler parameters up to their common sign.
 double distance(Vec4 const& a, Vec4 const& b) { return std::min((a - b).norm(), (a + b).norm()); }
 
 TEST(HeavyTop, IsWhereThePublishedSolutionIs) {
@@ -75,7 +75,7 @@ TEST(HeavyTop, IsWhereThePublishedSolutionIs) {
   }
 }
 
-// CASES R6: second order in the place of the centre of mass, h = 1e-3 … 1e-4.
+// R6: order two in the position of the centre of mass, h = 1e-3 … 1e-4.
 TEST(HeavyTop, ConvergesAtSecondOrderWithGeneralizedAlpha) {
   HeavyTop const top;
   std::vector<double> early, late;
@@ -113,7 +113,7 @@ TEST(SlowTop, IsWhereThePublishedSolutionIs) {
   }
 }
 
-/// CASES R7 (Dzhanibekov): I = (1, 2, 3), spun about the middle axis.
+/// Torque-free body (R7, Dzhanibekov effect): I = (1, 2, 3), rotating about the middle axis.
 struct FreeBody {
   Model<Bodies<Rigid<>>, Joints<>> model;
   State x;

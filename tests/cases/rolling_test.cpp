@@ -1,4 +1,4 @@
-// Rolling discs: motions in closed form under each way to keep rows of velocity level.
+// Rolling discs: motions in closed form under each method that enforces nonholonomic constraints.
 
 #include <gtest/gtest.h>
 
@@ -18,24 +18,24 @@ constexpr double g = 9.81;
 using Wheel = Joint<RollingDisc, Constraint>;
 using InSpace = Model<Bodies<Rigid<>>, Joints<Wheel>>;
 
-/// A uniform disc about z of its own axes.
+/// Uniform disc about z of its own axes.
 Rigid<> disc(double m, double radius, Placement const& place) {
   double const j = 0.25 * m * radius * radius;
   return Rigid<>(m, Vec3(j, j, 2.0 * j).asDiagonal().toDenseMatrix(), place);
 }
 
-/// A distance from a closed form, by an integrator of with_each_integrator.
+/// Checks a distance from a closed form under one integrator of with_each_integrator.
 template <class I>
 void within(char const* case_id, char const* what, char const* source, I const& integrator, double error,
             double tolerance, double scale) {
   held_within({case_id, what, By::closed_form, source, named(integrator)}, error, tolerance, {.scale = scale});
 }
 
-// CASES C4: from rest straight down an incline at (2/3) g sin α, held back by a third of the pull.
+// C4: from rest straight down an incline at (2/3) g sin α. The friction force is a third of the downhill force.
 TEST(RollingDisc, RollsDownAnInclineAtTwoThirdsOfThePull) {
   double const m = 4.0, radius = 0.5, alpha = 0.3, t = 1.5, s = std::sin(alpha), c = std::cos(alpha);
   InSpace model{Gravity{g * s, 0, -g * c}};
-  Placement const place = Placement::at({0, 0, radius}, {-0.5 * std::numbers::pi, 0, 0});  // its z along world y
+  Placement const place = Placement::at({0, 0, radius}, {-0.5 * std::numbers::pi, 0, 0});  // its z along the world's y
   auto const wheel = model.add(disc(m, radius, place), "wheel");
   auto const contact = model.connect(Wheel{{.radius = radius, .axis = Vec3::UnitY(), .normal = Vec3::UnitZ()}, {}},
                                      model.ground().at({0, 0, 0}), wheel.at(Vec3::Zero()), "contact");
@@ -52,11 +52,11 @@ TEST(RollingDisc, RollsDownAnInclineAtTwoThirdsOfThePull) {
   });
 }
 
-/// Steady rolling in a circle: the centre at distance r from a vertical axis, the disc leaning in by β, all turning at
-/// Ω. With e_r outwards and e_t onwards, the disc's axis b = cos β e_r + sin β e_z, ρ = R (sin β e_r − cos β e_z) and ω
-/// = Ω e_z + σ b, rolling Ω r e_t + ω × ρ = 0 asks for σ = −Ω (r/R + sin β). The ground gives F = −m Ω² r e_r + m g
-/// e_z, whose moment ρ × F = m R (Ω² r cos β − g sin β) e_t is Ω e_z × H = Ω² cos β (−C r/R − A sin β) e_t with C = ½ m
-/// R², A = ¼ m R²:
+/// Steady rolling in a circle. The centre is at the distance r from a vertical axis, the disc leans inwards by β, and
+/// the motion rotates at Ω. With e_r outwards and e_t forwards, the disc's axis is b = cos β e_r + sin β e_z. Also ρ
+/// = R (sin β e_r − cos β e_z) and ω = Ω e_z + σ b. The rolling condition Ω r e_t + ω × ρ = 0 requires σ = −Ω (r/R +
+/// sin β). The ground force is F = −m Ω² r e_r + m g e_z. Its moment ρ × F = m R (Ω² r cos β − g sin β) e_t equals Ω
+/// e_z × H = Ω² cos β (−C r/R − A sin β) e_t with C = ½ m R², A = ¼ m R²:
 ///   Ω² = g tan β/(3/2 r + ¼ R sin β)       [Neimark & Fufaev 1972, ch. II, for a uniform disc].
 struct Circle {
   double m = 2.0, radius = 0.4, r = 1.2, lean = 0.35;
@@ -68,7 +68,7 @@ struct Circle {
                                                model.ground().at({0, 0, 0}), wheel.at(Vec3::Zero()), "contact");
   State start = model.reference_state();
 
-  /// \param extra angular velocity about the contact point beside that of the steady motion
+  /// \param extra angular velocity about the contact point, added to that of the steady motion
   explicit Circle(Vec3 const& extra = Vec3::Zero()) {
     Vec3 const w = omega * Vec3::UnitZ() - omega * (r / radius + std::sin(lean)) * axis + extra;
     Vec3 const contact_point = Vec3(r + radius * std::sin(lean), 0, 0);
@@ -100,7 +100,7 @@ TEST(RollingDisc, RollsSteadilyInACircle) {
   });
 }
 
-// Off the steady motion the disc wobbles; rolling takes no energy.
+// After a deviation from the steady motion the disc wobbles. Rolling conserves energy.
 TEST(RollingDisc, KeepsItsEnergyWhileItWobbles) {
   Circle const circle(Vec3(0.5, 0.4, 0.3));
   double const before = energy(circle.model, circle.start).total();
@@ -112,7 +112,7 @@ TEST(RollingDisc, KeepsItsEnergyWhileItWobbles) {
     lowest = std::min(lowest, steep);
     highest = std::max(highest, steep);
   }
-  EXPECT_GT(highest - lowest, 0.05);  // it does wobble
+  EXPECT_GT(highest - lowest, 0.05);  // the disc wobbles
   held_within({"Neimark & Fufaev", "relative change of energy of a disc that wobbles for 20 s", By::closed_form,
                "invariant", "Runge–Kutta 4, CoordinatePartitioning, h = 2e-3 s"},
               std::abs(energy(circle.model, x).total() / before - 1.0), 1e-7, {.scale = 1.0});

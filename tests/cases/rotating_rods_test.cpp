@@ -1,5 +1,5 @@
-// CASES E3 by the geometrically exact rods, of second order in the elements' length: the limit by Richardson from two
-// meshes.
+// Frequencies of rotating cantilevers (E3) by geometrically exact rods of second order in the element length.
+// Richardson extrapolation of two meshes gives the limit.
 
 #include <polybody/bodies/ancf/ancf_beam.hpp>
 #include <polybody/bodies/lrvf/lrvf.hpp>
@@ -26,7 +26,7 @@ TEST(RotatingCantilever, LargeRotationVectorConvergesToTheTable) {
   converges<Lrvf<>>({std::begin(rotating_cantilevers), std::end(rotating_cantilevers)}, 12, 5e-4,
                     "Lrvf, 12 and 24 elements extrapolated");
 }
-// Ω = 2, 6 and 12: its frequencies take a second for each speed.
+// Ω = 2, 6 and 12: the frequencies of each angular velocity take one second of computation.
 TEST(RotatingCantilever, FullAncfBeamConvergesToTheTable) {
   converges<AncfBeam<>>({rotating_cantilevers[2], rotating_cantilevers[5], rotating_cantilevers[8]}, 8, 8e-4,
                         "AncfBeam, 8 and 16 elements extrapolated");

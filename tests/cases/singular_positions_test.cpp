@@ -1,5 +1,5 @@
-// R2: four-bars through their singular position by the methods whose matrix must follow how the rows turn there; the
-// α-methods stand in redundant_joints_test.cpp.
+// Four-bars (R2) pass their singular configuration with the methods whose matrix must include the change of the
+// constraint Jacobian there. The α-methods are in redundant_joints_test.cpp.
 
 #include <gtest/gtest.h>
 
@@ -17,9 +17,9 @@
 namespace polybody {
 namespace singular_positions_test {
 
-/// What a run of four-bars ends with.
+/// Result of a run of four-bars.
 struct Turned {
-  double off = 0.0, gained = 0.0;  ///< of the corner [m]; energy [J]
+  double off = 0.0, gained = 0.0;  ///< error of the corner B₀ [m]; energy gained [J]
   std::vector<std::string> warnings;
 };
 template <class Solver = DefaultSolver, class I>
@@ -33,14 +33,16 @@ Turned turn(int n, double until, I const& integrator, double step) {
   return out;
 }
 
-// The mean of G over the step and G at its end differ by as much as G does from one that has lost a rank.
+// The mean of G over the step differs from G at its end. The difference is as large as the distance of G from a
+// rank-deficient matrix.
 TEST(SingularPosition, IsPassedByStepsThatConserveEnergy) {
   Turned const r = turn(2, 1, EnergyMomentum{}, 1e-3);
   EXPECT_LT(r.off, 1e-5);
   EXPECT_LT(std::abs(r.gained), 1e-7);
   EXPECT_TRUE(r.warnings.empty());
 }
-// A step there has an end on the kite's branch as well, to which full Newton may find first.
+// A step at this configuration also has a solution on the kite's branch, and full Newton iterations may converge to
+// it.
 TEST(SingularPosition, IsPassedOnTheBranchThatChangesSpeedsLeast) {
   for (double const step : {1e-3, 5e-4}) {
     Turned const r = turn(1, 4, EnergyMomentum{}, step);
@@ -49,7 +51,7 @@ TEST(SingularPosition, IsPassedOnTheBranchThatChangesSpeedsLeast) {
     EXPECT_TRUE(r.warnings.empty()) << step;
   }
 }
-// The tangent that such a step needs is not symmetric: it goes to `BlockLdlt::Unsymmetric`.
+// The tangent of such a step is not symmetric. `BlockLdlt::Unsymmetric` factorises it.
 TEST(SingularPosition, IsPassedBySolversThatReadOneHalfOfAMatrix) {
   static_assert(std::is_same_v<UnsymmetricSolver<BlockLdlt>, BlockLu>);
   Turned const r = turn<BlockLdlt>(1, 4, EnergyMomentum{}, 1e-3);
@@ -70,17 +72,18 @@ TEST(SingularPosition, IsPassedByRadau) {
   EXPECT_TRUE(r.warnings.empty());
 }
 
-// Forty windows: a step ends at 3 % of its way from the singular position, where corrections of 3e-4 m/s² are rounding
-// that four last places do not tell.
+// Forty windows. The distance of a step's end from the singular configuration is 3 % of its length. There corrections
+// of 3e-4 m/s² are round-off, which exceeds the tolerance of four last digits.
 TEST(SingularPosition, MayBePassedWithoutTheMultipliersOfStabilisedSteps) {
   Turned const r = turn(40, 10, GeneralizedAlpha{.rho_inf = 0.95, .stabilised = true}, 2e-3);
   EXPECT_LT(r.off, 1.5e-4);
-  EXPECT_LT(std::abs(r.gained), 1e-3);  // of 620 J; rounding in the passages decides, 1.7e-4 to 6.6e-4 J by the solver
+  EXPECT_LT(std::abs(r.gained), 1e-3);  // of 620 J; round-off: 1.7e-4 to 6.6e-4 J, by the solver
   EXPECT_TRUE(r.warnings.empty());
 }
 
-// A step that ends 1.5e-6 rad from the singular position: there the equations of its stages are singular too, as
-// Radau's nodes make ∫ (1 − t)(t − c₁)(t − c₂)(t − 1) dt vanish, and rounding fills what the lost rows ask for.
+// A step ends 1.5e-6 rad from the singular configuration. The equations of its stages are also singular there,
+// because Radau's nodes make ∫ (1 − t)(t − c₁)(t − c₂)(t − 1) dt zero. Round-off then determines the multipliers of
+// the lost constraint equations.
 TEST(SingularPosition, MayBeWhereAStepOfRadauEnds) {
   FourBars<InPlane<Constraint>> bars(3);
   double const before = energy(bars.model, bars.x).total();
@@ -90,11 +93,12 @@ TEST(SingularPosition, MayBeWhereAStepOfRadauEnds) {
   for (int i = 1; i <= 3; ++i) EXPECT_NEAR(bars.x.q[3 * i + 2], bars.x.q[2], 1e-8);
 }
 
-/// Two windows to 0.7 s, and from there in steps of which the k-th is at the flat position after `share` of it.
+/// Two windows to 0.7 s. The next steps are such that the k-th one is at the flat configuration after the fraction
+/// `share` of its length.
 void expect_passes_with_node_at(double share) {
   for (int const k : {12, 50, 230}) {
     FourBars<InPlane<Constraint>> bars(2);
-    double const before = energy(bars.model, bars.x).total(), flat = 0.7143555292929605;  // CASES R2
+    double const before = energy(bars.model, bars.x).total(), flat = 0.7143555292929605;  // R2
     simulate(bars.model, bars.x, Radau{}, {.until = 0.7, .step = 1e-3}).run();
     double const step = (flat - bars.x.t) / (k - 1 + share);
     simulate(bars.model, bars.x, Radau{}, {.until = flat + 8.0 * step, .step = step}).run();
@@ -102,8 +106,8 @@ void expect_passes_with_node_at(double share) {
     for (int i = 1; i <= 2; ++i) EXPECT_NEAR(bars.x.q[3 * i + 2], bars.x.q[2], 1e-11) << k;
   }
 }
-// At an end there three equations of the stages are one; at another node the multipliers of lost rows are free, and
-// full Newton flies away, which is not rounding.
+// If a step ends there, three equations of the stages coincide. At another node the multipliers of the lost
+// constraint equations are undetermined, and full Newton iterations diverge. The cause is not round-off.
 TEST(SingularPosition, MayBeAnEndOfAStepOfRadau) {
   for (double const beside : {0.0, 1e-9, -1e-6, 1e-4}) expect_passes_with_node_at(1.0 + beside);
 }
@@ -112,8 +116,8 @@ TEST(SingularPosition, MayBeAnyNodeOfRadau) {
     expect_passes_with_node_at(node);
 }
 
-/// One window in its flat position. \param crank, coupler rates [rad/s] of the first crank and of the coupler; those of
-/// the parallelogram have no rate of the coupler, those of the kite no rate of the crank
+/// One window in its flat configuration. \param crank, coupler angular velocities [rad/s] of the first crank and of
+/// the coupler; the coupler's is zero on the parallelogram's branch, the crank's is zero on the kite's branch
 FourBars<InPlane<Constraint>> flat_window(double crank, double coupler) {
   FourBars<InPlane<Constraint>> bars(1);
   auto const lay = [&](int link, double x, double speed, double rate) {
@@ -134,7 +138,7 @@ std::vector<std::string> warnings_of_flat_start(I const& integrator, double cran
 TEST(SingularPosition, IsReportedWhereARunStartsInItWithoutABranch) {
   auto const expect = [](auto const& integrator) {
     std::vector<std::string> const rest = warnings_of_flat_start(integrator, 0.0, 0.0);
-    ASSERT_FALSE(rest.empty());  // the jump to a branch, some steps later, is told as well
+    ASSERT_FALSE(rest.empty());  // the change of branch, some steps later, is also reported
     EXPECT_TRUE(has(rest[0], "The run starts in a singular position at t = 0 s: the rows of joint \""));
     EXPECT_TRUE(has(rest[0], "Start beside this position, or with speeds of one branch"));
     EXPECT_TRUE(warnings_of_flat_start(integrator, -4.0, 0.0).empty());
@@ -144,20 +148,20 @@ TEST(SingularPosition, IsReportedWhereARunStartsInItWithoutABranch) {
   expect(RungeKutta4<Projection>{});
   EXPECT_TRUE(warnings_of_flat_start(Radau{}, 0.0, -4.0).empty());  // the kite
 }
-// ω₀ and ω_c of crank and coupler must have ω₀ ω_c = 0.
+// The angular velocities ω₀ and ω_c of crank and coupler must satisfy ω₀ ω_c = 0.
 TEST(SingularPosition, RefusesSpeedsOfNoBranch) {
   std::string const told = message_of<InconsistentStart>([] { warnings_of_flat_start(Radau{}, -4.0, 4.0); });
   EXPECT_TRUE(has(told, "contradict by"));
   EXPECT_TRUE(has(told, "in a singular position, start with the speeds of one branch"));
 }
-// In space the pins of the loop repeat three rows in every position.
+// In space the pins of the loop have three redundant constraint equations in every configuration.
 TEST(SingularPosition, IsNotTakenForRowsThatAlwaysRepeat) {
   FourBars<InSpace<Constraint>> bars(1);
   bars.x.v.setZero();
   EXPECT_TRUE(simulate(bars.model, bars.x, GeneralizedAlpha{}, {.until = 0.01, .step = 1e-3}).run().warnings.empty());
 }
 
-// The rows that are lost at the start hold from then on.
+// The constraint equations that lose rank at the start are satisfied afterwards.
 TEST(SingularPosition, MayBeWhereARunOfRadauStarts) {
   for (int const n : {1, 3}) {
     FourBars<InPlane<Constraint>> bars(n);
@@ -174,8 +178,8 @@ TEST(SingularPosition, MayBeWhereARunOfRadauStarts) {
   }
 }
 
-/// Turns the motion round in the step that reaches a time: a jump of the speeds that satisfies the rows and keeps
-/// energy, as a change of branch does.
+/// Reverses the motion in the step that reaches a given time. The jump of the velocities satisfies the constraint
+/// equations and conserves energy, like a change of branch.
 struct TurningRound : RungeKutta4<Projection> {
   double at = 0.0;  ///< [s]
   template <class W>
@@ -186,8 +190,8 @@ struct TurningRound : RungeKutta4<Projection> {
   }
 };
 
-// One window is flat at 0.7085 s; there the kite, in which B₀(1) stays at (1, 0), is as good a way to go on as the
-// parallelogram. At 0.3 s there is one way only.
+// One window is flat at 0.7085 s. There the motion can continue as the parallelogram or as the kite, in which B₀(1)
+// stays at (1, 0). At 0.3 s the continuation is unique.
 TEST(SingularPosition, IsReportedWhereTheSpeedsJumpThere) {
   auto const warnings = [](double at) {
     TurningRound integrator;

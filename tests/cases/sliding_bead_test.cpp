@@ -1,4 +1,4 @@
-// Beads on flexible lines in the plane: motions with known answers.
+// Beads on flexible lines in the plane: motions with known solutions.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ Claim bead(char const* what, char const* source) {
   return {"sliders", what, By::closed_form, source, "planar AncfCable, generalised-α"};
 }
 
-// Down a straight line that hangs along gravity: s = ½ g t², through every element.
+// Bead on a straight vertical line under gravity: s = ½ g t², through every element.
 TEST(BeadOnAStraightLine, FallsFreelyAlongIt) {
   BeadOnALine rig({g, 0, 0}, upright, 5, 3.0, 0.1);
   rig.pin_right({2.0, 0, 0});
@@ -35,7 +35,7 @@ TEST(BeadOnAStraightLine, FallsFreelyAlongIt) {
               1e-9, {.scale = 3.0 * g});
 }
 
-// … and the run ends where it leaves: ½ g t² = 1.9. Without the event an error says so.
+// The run ends when the bead reaches the end of the line: ½ g t² = 1.9. Without the event an error is thrown.
 TEST(BeadOnAStraightLine, LeavesItsEnd) {
   BeadOnALine rig({g, 0, 0}, upright, 5, 3.0, 0.1);
   rig.pin_right({2.0, 0, 0});
@@ -52,11 +52,11 @@ TEST(BeadOnAStraightLine, LeavesItsEnd) {
                     simulate(rig.model, y, GeneralizedAlpha{.rho_inf = 0.8}, {.until = 2.0, .step = 1e-2}).run();
                   }),
                   "End the run there by the event reaches_an_end"));
-  EXPECT_GT(place(rig.model, y, rig.line), 2.0);  // the last state before is kept
+  EXPECT_GT(place(rig.model, y, rig.line), 2.0);  // the last state within the line is kept
   EXPECT_LT(place(rig.model, y, rig.line), 2.4);
 }
 
-// On a stiff rod that turns at ω: r̈ = ω² r, r = r₀ cosh ωt, and the rod pushes across by 2 m ω ṙ.
+// Bead on a stiff rod that rotates at ω: r̈ = ω² r, r = r₀ cosh ωt. The transverse force of the rod is 2 m ω ṙ.
 TEST(BeadOnATurningRod, IsThrownOut) {
   double const omega = 3.0, r0 = 0.2, mass = 0.5, t = 0.7;
   BeadOnALine rig({}, {.length = 1.0, .constants = BarConstants{.EA = 1e9, .EI = 1e7, .mass_per_length = 0.1}}, 4, mass,
@@ -77,11 +77,11 @@ TEST(BeadOnATurningRod, IsThrownOut) {
               {.scale = 2.0 * mass * omega * rate});
 }
 
-/// A mass M at x = v t on a simply supported Euler–Bernoulli beam that starts straight and at rest under its own
-/// weight, by modes φ_i = sin(iπx/L), w downwards: with μ = ½ ρA L and ω_i = (iπ/L)² √(EI/ρA)
+/// Mass M at x = v t on a simply supported Euler–Bernoulli beam, by modes φ_i = sin(iπx/L), w downwards. The beam
+/// starts straight and at rest under its own weight. With μ = ½ ρA L and ω_i = (iπ/L)² √(EI/ρA)
 ///   μ (q̈_i + ω_i² q_i) = φ_i M (g − ẅ) + ρA g L (1 − cos iπ)/(iπ),  ẅ = Σ φ_j q̈_j + 2 v φ_j′ q̇_j + v² φ_j″ q_j
-/// [Frýba 1999, ch. 1, with the inertia of the mass]; solved for q̈ by Sherman & Morrison's formula, in time by Runge &
-/// Kutta.
+/// [Frýba 1999, ch. 1, with the inertia of the mass]. The Sherman–Morrison formula solves for q̈, and a Runge–Kutta
+/// method integrates in time.
 struct MovingMass {
   static constexpr int modes = 16;
   double length, bending, density, mass, v;
@@ -106,7 +106,7 @@ struct MovingMass {
     }
     for (std::size_t i = 0; i < modes; ++i) out[i] = (out[i] - phi[i] * mass * pushed / (mu + mass * squares)) / mu;
   }
-  /// Deflection under the mass at the end of each of n equal steps of h, taken in `parts` each.
+  /// Deflection under the mass at the end of each of n equal steps of h, each divided into `parts`.
   std::vector<double> deflections(double h, int n, int parts) const {
     Modes q{}, qd{};
     std::vector<double> out;
@@ -133,8 +133,8 @@ struct MovingMass {
   }
 };
 
-// A quarter of the beam's mass crosses it in five of its periods. Deflections are 3e-5 of the span, so that the mass
-// keeps its speed.
+// A mass of a quarter of the beam's mass crosses it in five of its periods. Deflections are 3e-5 of the span, so the
+// mass keeps its velocity.
 TEST(MovingMassOnABeam, BendsItAsTheModesSay) {
   MovingMass const exact{.length = 10.0, .bending = 2e8, .density = 20.0, .mass = 50.0, .v = 100.0};
   BeadOnALine rig({0, -g, 0},

@@ -1,4 +1,4 @@
-// Weights that find their place on flexible lines.
+// Equilibrium of weights that slide on flexible lines.
 
 #include <gtest/gtest.h>
 
@@ -13,9 +13,9 @@ namespace sliding_statics_test {
 
 constexpr double g = 9.81;
 
-// A cable under tension T with bending stiffness, pinned at both ends, and a weight P that finds its own way: to the
-// middle,
-//   w = P L/(4 T) (1 − tanh u/u),  u = ½ L √(T/EI)      [Timoshenko & Gere 1961, §1.11; of small deflections].
+// Cable under tension T with bending stiffness, pinned at both ends, with a sliding weight P. The equilibrium is in
+// the middle:
+//   w = P L/(4 T) (1 − tanh u/u),  u = ½ L √(T/EI)      [Timoshenko & Gere 1961, §1.11; for small deflections].
 TEST(BeadOnATautCable, ComesToTheMiddle) {
   double const length = 2.0, tension = 1e5, mass = 0.5, u = 6.0, bending = tension * length * length / (4.0 * u * u);
   BeadOnALine rig({0, -g, 0},
@@ -37,11 +37,11 @@ TEST(BeadOnATautCable, ComesToTheMiddle) {
               (reaction(rig.model, x, rig.contact).f - Vec3(0, mass * g, 0)).norm(), 1e-7, {.scale = mass * g});
 }
 
-// A rope with a heavy bead between pins D apart and H different in height. Its tension is the same on both sides of the
-// bead, which hangs where both make the same angle φ with the vertical: W = 2 T cos φ, D = L(1 + T/EA) sin φ. Bending
-// stiffness rounds the corner over √(EI/T), which must be as long as an element: on a coarser mesh each element holds
-// the bead where it is best for it. Then the pins carry half the weight each, whatever EI. Exact on any mesh: the
-// reactions balance.
+// Rope with a heavy bead between pins at the horizontal distance D and the height difference H. Its tension is equal
+// on both sides of the bead, and both sides have the same angle φ to the vertical: W = 2 T cos φ, D = L(1 + T/EA) sin
+// φ. Bending stiffness rounds the bend over √(EI/T), which must be as long as an element. On a coarser mesh the bead
+// has an equilibrium in each element. Each pin carries half of the weight for every EI. The balance of the reactions
+// is exact on any mesh.
 TEST(BeadOnARope, HangsWhereBothSidesAreEquallySteep) {
   double const D = 1.0, H = 0.25, length = std::hypot(D, H), EA = 60.0, W = 20.0;
   double t = W, phi = 0.0;
@@ -49,13 +49,13 @@ TEST(BeadOnARope, HangsWhereBothSidesAreEquallySteep) {
     phi = std::asin(D / (length * (1.0 + t / EA)));
     t = 0.5 * (t + 0.5 * W / std::cos(phi));
   }
-  // the sides a + b = D/sin φ, (a − b) cos φ = H: the depth below the first pin is the shorter side's
+  // the sides a + b = D/sin φ, (a − b) cos φ = H: the shorter side gives the depth below the first pin
   double const depth = 0.5 * (D / std::sin(phi) - H / std::cos(phi)) * std::cos(phi), aside = depth * std::tan(phi);
   Bar const rope{.length = length,
                  .constants = BarConstants{.EA = EA, .EI = 0.02, .mass_per_length = 1e-9},
                  .placement = Placement::planar(0, 0, std::atan2(H, D))};
-  double const from_left = depth / std::cos(phi) / (1.0 + t / EA);  // of the rope without load
-  // first tied to the rope, some way off, then let go
+  double const from_left = depth / std::cos(phi) / (1.0 + t / EA);  // of the unloaded rope
+  // the bead is fixed to the rope near its equilibrium, then released
   BeadOnALine tied({0, -g, 0}, rope, 60, W / g, from_left + 0.02, false),
       rig({0, -g, 0}, rope, 60, W / g, from_left + 0.02);
   tied.pin_right({D, H, 0});

@@ -1,4 +1,5 @@
-// The linear solver is a policy: it must not show in the motion. Each one against dense LU, and against itself.
+// Independence of the motion from the linear solver, which is a policy. Each solver is compared with dense LU and
+// with itself.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +17,7 @@ using namespace polybody;
 
 namespace solver_policies_test {
 
-/// In the plane: a rigid link on an ideal pin, a cable on it, and another link hung on the cable by a stiff pin. Its
+/// Planar model: a rigid link on an ideal pin, a cable on it, and another link on the cable by a stiff pin. Its
 /// tangents are symmetric.
 struct Mixed {
   using Cable = planar::AncfCable<planar::EngineeringStrain>;
@@ -44,8 +45,8 @@ State moved(M const& model) {
   return x;
 }
 
-/// How far two motions are apart, beside their size; with λ, which shows more: positions rounded to 1e-16 are
-/// accelerations and forces rounded to 1e-16/(βh²), here 1e-10, and Newton's method stops a hundred of these before.
+/// Relative difference of two motions, including λ, which is more sensitive. Positions rounded to 1e-16 give
+/// accelerations and forces rounded to 1e-16/(βh²), here 1e-10. Newton's method stops at a hundred times this value.
 double apart(State const& x, State const& y) {
   return std::max({(x.q - y.q).norm() / y.q.norm(), (x.v - y.v).norm() / y.v.norm(),
                    (x.lambda - y.lambda).norm() / y.lambda.norm()});
@@ -57,7 +58,7 @@ using AnySolver =
     testing::Types<EigenSparseLu, EigenLdlt, AutoLu, BlockLdlt, BlockLu, BlockSolver, Refined<BlockSolver>>;
 TYPED_TEST_SUITE(SolverPolicies, AnySolver);
 
-/// Those that take any tangent.
+/// Solvers for general tangents.
 template <class Solver>
 struct GeneralSolverPolicies : testing::Test {};
 using GeneralSolver = testing::Types<EigenSparseLu, BlockLu, BlockSolver>;

@@ -1,5 +1,6 @@
-// CASES S2, S3, S11 and D6a for the ANCF cable in space: the plane's numbers in a plane that stands askew, a hanging
-// cable, and a very flexible pendulum that spins, as Lrvf too.
+// ANCF cable in space: elastica (S2) and the cantilever of Gerstmayr & Irschik 2008 (S3) in an inclined plane, a
+// hanging cable (S11), and the very flexible spinning pendulum of Gerstmayr and of Chrono's utest_FEA_ANCFCable
+// (D6a), also by Lrvf.
 
 #include <polybody/bodies/ancf/ancf_cable.hpp>
 #include <polybody/bodies/lrvf/lrvf.hpp>
@@ -26,12 +27,12 @@ namespace spatial_cable_test {
 using Cable = AncfCable<EngineeringStrain>;
 using Clamp = Joint<Revolute, Constraint>;
 using Ball = Joint<Spherical, Constraint>;
-/// One type of model for what hangs on balls: it is compiled once.
+/// Model type for bodies on ball joints, which is compiled once.
 using Hung = Model<Bodies<Cable, Lrvf<>>, Joints<Ball>>;
 
 Placement const askew = Placement::at({0.3, -0.2, 0.7}, {0.8, -1.1, 0.4});
 
-/// Displacement of the tip in the placement's axes under a dead tip force and moment given there.
+/// Displacement of the tip in the placement's axes under a dead tip force and moment in these axes.
 Vec3 tip(Bar bar, Index n, Vec3 const& force, Vec3 const& moment = Vec3::Zero()) {
   bar.placement = askew;
   Model<Bodies<Cable>, Joints<Clamp>, Forces<PointForce<>, PointMoment<>>> model;
@@ -47,7 +48,7 @@ Vec3 tip(Bar bar, Index n, Vec3 const& force, Vec3 const& moment = Vec3::Zero())
 
 Bar slender() { return {.length = 1.0, .constants = BarConstants{.EA = 1e6, .EI = 1.0, .mass_per_length = 1.0}}; }
 
-// S2, w/L and u/L of the elastica; tolerances as those of the planar cable.
+// S2, w/L and u/L of the elastica, with the tolerances of the planar cable.
 TEST(SpatialElastica, BendsInAnyPlane) {
   for (double const angle : {0.0, 0.7, 2.5}) {
     Vec3 const across(0.0, std::cos(angle), std::sin(angle));
@@ -61,11 +62,11 @@ TEST(SpatialElastica, BendsInAnyPlane) {
     held(elastica("u/L of the tip"), -one[0], 0.05643323628337688, 1e-5, at_one);
     held(elastica("w/L of the tip"), ten.dot(across), 0.8106090248802965, 2.5e-4, at_ten);
     held(elastica("u/L of the tip"), -ten[0], 0.5549955977537513, 5e-4, at_ten);
-    EXPECT_LT(one.cross(across)[0] * one.cross(across)[0], 1e-18);  // nothing leaves the plane
+    EXPECT_LT(one.cross(across)[0] * one.cross(across)[0], 1e-18);  // the tip stays in the plane
   }
 }
 
-// S3 [P], mesh by mesh.
+// S3, published digits for each mesh.
 TEST(SpatialGerstmayrIrschik, GivesThePublishedDigits) {
   Bar const bar{.length = 2.0,
                 .section = Rectangle{.height = 0.1, .width = 0.1},
@@ -90,9 +91,9 @@ TEST(SpatialGerstmayrIrschik, GivesThePublishedDigits) {
   }
 }
 
-// S1: an arc of 1.2 rad under a tip moment about any axis across the cable, x = sin θ/θ, y = (1 − cos θ)/θ. (With
-// nothing that resists torsion the arc could turn about its clamp: a dead moment holds it in its plane up to a quarter
-// of a circle only.)
+// S1: an arc of 1.2 rad under a tip moment about any axis across the cable, x = sin θ/θ, y = (1 − cos θ)/θ. (Without
+// torsional stiffness the arc can rotate about its clamp. A dead moment stabilises it only up to a quarter of a
+// circle.)
 TEST(SpatialRollUp, TakesAMomentAcrossItsTangent) {
   double const turn = 1.2;
   for (double const angle : {0.0, 1.3}) {
@@ -105,7 +106,7 @@ TEST(SpatialRollUp, TakesAMomentAcrossItsTangent) {
     held(arc("x of the tip, turned by 1.2 rad [L]", "sin θ/θ"), u[0] + 1.0, std::sin(turn) / turn, 1e-6, at);
     held(arc("y of the tip, turned by 1.2 rad [L]", "(1 − cos θ)/θ"), u.dot(across), (1.0 - std::cos(turn)) / turn,
          1e-6, at);
-    // the tangent's own part of a moment has no effect
+    // the component of a moment along the tangent has no effect
     Vec3 const tangent = std::cos(turn) * Vec3::UnitX() + std::sin(turn) * across;
     EXPECT_LT((tip(slender(), 16, Vec3::Zero(), turn * about + 0.3 * tangent) - u).norm(), 1e-6);
   }
@@ -121,13 +122,14 @@ TEST(SpatialClamp, RefusesAPinAcrossTheTangent) {
                   "\"pin\": its second marker knows its tangent only"));
 }
 
-// S11: elastic catenary, 10 m of 10 N/m hung at equal heights 8 m apart; 20 elements, EI = 1e-3 N m². The stiffer cable
-// starts where the softer one hangs. EA = 1e9 stands for the inextensible cable: H differs by 5e-6.
+// S11: elastic catenary, 10 m of 10 N/m with supports at equal heights 8 m apart; 20 elements, EI = 1e-3 N m². The
+// stiffer cable starts from the equilibrium of the softer one. EA = 1e9 approximates the inextensible cable: H
+// differs by 5e-6.
 TEST(SpatialCatenary, HangsWithThePublishedForceAndSag) {
   struct Row {
     double EA, H, sag;
   };
-  // laid along an arc of 10 m over a chord of 8 m, then left to itself: sin u = 0.8 u for half of its angle
+  // initial shape: an arc of 10 m over a chord of 8 m, sin u = 0.8 u for half of its angle
   double half = 1.0;
   for (int i = 0; i < 50; ++i) half -= (std::sin(half) - 0.8 * half) / (std::cos(half) - 0.8);
   double const radius = 5.0 / half;
@@ -163,8 +165,9 @@ TEST(SpatialCatenary, HangsWithThePublishedForceAndSag) {
   }
 }
 
-// D6a: hinged at the origin along +x, gravity along −y, spinning at 4 rad/s about +y; h = 1 ms: 2e-3 to t = 1 s and
-// 1e-2 at 2 s are asked of 16 cable elements. GA, GJ and Iρ are those of the reference, to which they do not matter.
+// D6a: hinged at the origin along +x, gravity along −y, spinning at 4 rad/s about +y, h = 1 ms. The tolerance for 16
+// cable elements is 2e-3 to t = 1 s and 1e-2 at 2 s. GA, GJ and Iρ are those of the reference, which does not depend
+// on them.
 Bar pendulum() {
   return {.length = 1.0,
           .constants = BarConstants{.EA = 40.0,
@@ -206,8 +209,9 @@ TEST(SpinningPendulum, CableFollowsTheConvergedMotion) {
   spins<Cable>(16, "AncfCable, 16 elements, generalised-α, h = 1e-3 s");
 }
 
-// Many elements, small steps: what Newton's method has to settle is the rounding of stretches, which light nodes turn
-// into accelerations beyond the tolerance. Large steps: corrections contract by turns.
+// With many elements and small steps Newton's method must resolve the round-off of stretches. The small masses of the
+// nodes convert it into accelerations beyond the tolerance. With large steps the corrections alternate between good
+// and poor contraction.
 TEST(SpinningPendulum, CableFollowsTheConvergedMotionWithRadau) {
   struct Run {
     Index n;

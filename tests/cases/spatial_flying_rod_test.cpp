@@ -1,5 +1,5 @@
-// CASES D3: the flexible rod of Simo & Vu-Quoc 1986, thrown in a plane, by bodies that live in space, against an
-// independent spectral beam [C]. Its loads are steps, so digits converge slowly; the table's last ones are good to ±1.
+// Flying rod of Simo & Vu-Quoc 1986 in a plane (D3) by spatial bodies, compared with an independent spectral beam.
+// The loads are step functions, so digits converge slowly. The last digits of the table are accurate to ±1.
 
 #include <polybody/bodies/ancf/ancf_cable.hpp>
 #include <polybody/bodies/lrvf/lrvf.hpp>
@@ -24,12 +24,12 @@ namespace spatial_flying_rod_test {
 
 using Cable = AncfCable<EngineeringStrain>;
 using Pin = Joint<Revolute, Constraint>;
-/// One type of model for all bodies: it is compiled once.
+/// Model type for all bodies, which is compiled once.
 using Sky = Model<Bodies<Lrvf<>, Cable, Rigid<>>, Joints<Pin>, Forces<PointForce<Window>, PointMoment<Window>>>;
 
 struct Row {
   double t;
-  Vec4 ends;  ///< x, y of the loaded end and of the free one
+  Vec4 ends;  ///< x, y of the loaded end and of the free end
 };
 std::vector<Row> const stiff{{1.0, {4.9997, -0.52223, 0.42397, 7.91306}}, {2.5, {4.43007, -0.78515, 5.9453, 8.9708}},
                              {5.0, {5.6202, 4.7642, 15.4085, 4.2645}},    {7.5, {15.5415, 8.9949, 15.7557, -0.9722}},
@@ -38,7 +38,7 @@ std::vector<Row> const flexible{{1.0, {4.3268, 0.4078, 0.37024, 7.79601}}, {2.5,
                                 {5.0, {9.7838, 8.2039, 8.0742, 1.7588}},   {7.5, {16.268, -0.2834, 17.240, 8.2531}},
                                 {10.0, {22.971, 6.4116, 21.3245, 3.6098}}, {15.0, {29.064, 6.6091, 33.937, 5.235}}};
 
-/// From (6, 0) to (0, 8). What bends it out of the plane and twists it stays at rest.
+/// Rod from (6, 0) to (0, 8). Bending out of the plane and torsion remain zero.
 Bar rod(double EI) {
   return {.length = 10.0,
           .constants = BarConstants{.EA = 1e4,
@@ -51,7 +51,7 @@ Bar rod(double EI) {
           .placement = Placement::planar(6.0, 0.0, std::atan2(8.0, -6.0))};
 }
 
-/// For 2.5 s a force and a moment pull at the first end.
+/// A force and a moment act on the first end for 2.5 s.
 template <class B>
 struct Flight {
   Sky model;
@@ -70,12 +70,12 @@ struct Flight {
   void fly_until(double t) { simulate(model, x, GeneralizedAlpha{.rho_inf = 0.9}, {.until = t, .step = step}).run(); }
 
   Vec3 end(double s) const { return position(model, x, body.at(s)); }
-  /// The larger of the two ends' distances from where they ought to be [m].
+  /// Larger position error of the two ends [m].
   double miss(Row const& row) const {
     Vec3 const a(row.ends[0], row.ends[1], 0), b(row.ends[2], row.ends[3], 0);
     return std::max((end(0.0) - a).norm(), (end(10.0) - b).norm());
   }
-  /// Of the rod: −m x_c is its energy in a field of 1 m/s², m = 10 kg.
+  /// Centre of mass of the rod: −m x_c is its energy in a field of 1 m/s², m = 10 kg.
   Vec3 centre() const {
     Vec3 sum = Vec3::Zero();
     auto const q = coordinates_of(model, x, body);
@@ -88,8 +88,8 @@ struct Flight {
   Momentum total_momentum() const { return momentum(model, x); }
 };
 
-/// What D3 calls exact: the impulse 8·min(t, 2.5), and the centre of mass, 3 + 0.4 t² and then 5.5 + 2 (t − 2.5) on the
-/// line y = 4.
+/// Closed forms of D3: the impulse 8·min(t, 2.5), and the centre of mass, 3 + 0.4 t² and then 5.5 + 2 (t − 2.5) on
+/// the line y = 4.
 template <class B>
 void moves_as_a_whole(Flight<B> const& flight, char const* formulation) {
   double const t = flight.x.t, x = t < 2.5 ? 3.0 + 0.4 * t * t : 5.5 + 2.0 * (t - 2.5);
@@ -101,8 +101,8 @@ void moves_as_a_whole(Flight<B> const& flight, char const* formulation) {
               (flight.centre() - Vec3(x, 4.0, 0.0)).norm(), 1e-5, {equals("t", t), 5.0});
 }
 
-/// Meets the rows. After the loads energy and moment of momentum stay, to the integrator's order; D3 gives the energy
-/// by about.
+/// Compares the run with the rows of the table. After the loads energy and angular momentum are constant to the order
+/// of the integrator. D3 gives the energy approximately.
 template <class B>
 void follows(Flight<B> flight, std::vector<Row> const& rows, double tolerance, double plateau,
              char const* formulation) {
@@ -136,7 +136,8 @@ Flight<B> thrown(double EI, Index n, double h) {
   return flight;
 }
 
-// A thousandth of the length up to 15 s; of the flexible rod, by twice as many elements, two.
+// Tolerances up to 15 s: a thousandth of the length for the stiff rod, two thousandths for the flexible rod with
+// twice as many elements.
 TEST(FlyingRodOfThePlane, StiffLrvfFollowsTheExactRod) {
   follows(thrown<Lrvf<>>(500, 40, 5e-3), stiff, 0.01, 90.2, "Lrvf, 40 elements, EI = 500, h = 5 ms");
 }
@@ -144,8 +145,9 @@ TEST(FlyingRodOfThePlane, FlexibleLrvfFollowsTheExactRod) {
   follows(thrown<Lrvf<>>(100, 80, 2.5e-3), flexible, 0.02, 380.0, "Lrvf, 80 elements, EI = 100, h = 2.5 ms");
 }
 
-/// A cable has no rotary inertia, and here that is as large as the rest: 10·10 against 10·10²/12 kg m². Discs on the
-/// nodes bring it, each pinned along the tangent and so turning with it. Their own mass is next to nothing.
+/// A cable has no rotary inertia. Here the rotary inertia is as large as the other terms: 10·10 against 10·10²/12 kg
+/// m². Discs on the nodes provide it. Each disc is pinned along the tangent, so it rotates with the tangent. Its own
+/// mass is negligible.
 Flight<Cable> strung(double EI, Index n, double h) {
   Bar const bar = rod(EI);
   Flight<Cable> flight(bar, n, h);
@@ -161,12 +163,13 @@ Flight<Cable> strung(double EI, Index n, double h) {
   return flight;
 }
 
-// The cable has no shear either. The rod's is slight: of the order of 80 N m/(10 m GA) = 8e-4.
+// The cable also has no shear. The shear of the rod is of the order of 80 N m/(10 m GA) = 8e-4.
 TEST(FlyingRodOfThePlane, CableWithDiscsFollowsTheExactRod) {
   follows(strung(500, 40, 5e-3), stiff, 0.01, 90.2, "AncfCable with discs, 40 elements, EI = 500, h = 5 ms");
 }
 
-// Without discs it is another rod, half a metre away and more after one second; it moves as a whole all the same.
+// Without discs the cable is a different rod, half a metre or more away after one second. Its overall motion is still
+// correct.
 TEST(FlyingRodOfThePlane, CableAloneHasTheMotionOfItsCentreOnly) {
   Flight<Cable> flight = thrown<Cable>(500, 16, 1e-3);
   flight.fly_until(1.0);

@@ -1,4 +1,5 @@
-// CASES S9a: Lee's frame by the spatial Lrvf, which stays in its plane, against the exact frame with shear [C].
+// Lee's frame (S9a) by the spatial Lrvf, which stays in its plane, compared with an independent computation of the
+// exact frame with shear.
 
 #include <polybody/bodies/lrvf/lrvf.hpp>
 
@@ -21,7 +22,8 @@ using namespace polybody;
 
 namespace spatial_lee_frame_test {
 
-/// Two legs of 120, welded at a right angle and pinned at their other ends; P presses down 24 from the corner.
+/// Two legs of 120, welded at a right angle and pinned at their other ends. P presses down at 24 from the right
+/// angle.
 struct LeeFrame {
   using Pin = Joint<Revolute, Constraint>;
   using Corner = Joint<Weld, Constraint>;
@@ -36,7 +38,7 @@ struct LeeFrame {
     model.connect(Pin{{.axis = Vec3::UnitZ()}, {}}, model.ground().at({120, 120, 0}), beam.at(120.0), "support");
     model.apply(PointForce<>{.force = {0, -P, 0}}, beam.at(24.0), "P");
   }
-  /// GA for ν = 0.3, k = 5/6; what stands against torsion and bending out of the plane is any.
+  /// GA for ν = 0.3, k = 5/6. The stiffness against torsion and bending out of the plane is arbitrary.
   static Bar leg(Placement const& placement) {
     return {
         .length = 120.0,
@@ -45,7 +47,7 @@ struct LeeFrame {
                 .EA = 7.2e6 * 6, .EI = 7.2e6 * 2, .mass_per_length = 1.0, .GA = 1.3846154e7, .GJ = 8e6, .EI_y = 4e7},
         .placement = placement};
   }
-  /// Under the load.
+  /// Displacement under the load.
   Vec3 displacement(State const& x) const { return position(model, x, beam.at(24.0)) - Vec3(24, 120, 0); }
 };
 
@@ -69,7 +71,7 @@ std::vector<Vec3> pushed(Index n) {
   return out;
 }
 
-// Elements are of order 2; two meshes extrapolated.
+// Elements are of order 2. Two meshes are extrapolated.
 TEST(LeeFrameInSpace, ExtrapolatesToTheExactFrame) {
   std::vector<Vec3> const coarse = pushed(40), fine = pushed(80);
   for (std::size_t i = 0; i < stable.size(); ++i) {
@@ -84,8 +86,8 @@ TEST(LeeFrameInSpace, ExtrapolatesToTheExactFrame) {
   }
 }
 
-// Both limit loads, 18544.5271 and −9392.4896, to the 0.3 % that S9a asks; each by the parabola through three points of
-// the path.
+// Both limit loads, 18544.5271 and −9392.4896, to the tolerance 0.3 % of S9a. Each is computed by the parabola
+// through three points of the path.
 TEST(LeeFrameInSpace, HasItsLimitLoads) {
   double const unit = 1e4;
   LeeFrame const frame(48, unit);

@@ -1,4 +1,4 @@
-// CASES S9f, Ibrahimbegović 1997: a cantilever wound into a helix by a space-fixed moment and a force along its axis.
+// Cantilever of Ibrahimbegović 1997 (S9f), wound into a helix by a space-fixed moment and a force along its axis.
 
 #include <polybody/bodies/lrvf/lrvf.hpp>
 
@@ -19,7 +19,7 @@ using Rod = SpatialCantilever<Lrvf<>>;
 struct Winding {
   double lambda;
   Vec3 tip;
-  double turns;  ///< of the tip section if the moment alone acted, M L/EI / 2π
+  double turns;  ///< of the tip section under the moment alone, M L/EI / 2π
 };
 Winding const windings[] = {{0.05, {0.711481029, 6.285664431, 2.750736205}, 0.5},
                             {0.1, {0.410203353, 0.053770903, -1.091729019}, 1.0},
@@ -33,8 +33,8 @@ Rod wound(Index n, Winding const& h) {
              {.load_steps = int(200 * h.lambda)});
 }
 
-// CASES states no tolerance. With φ the turn from node to node (λ = 0.5: φ = 0.31), lengths of a winding are wrong by
-// φ²/24 of themselves, 4e-3 of a metre or less; two meshes extrapolated leave the order φ⁴.
+// The tolerance is derived. With the angle φ between adjacent nodes (λ = 0.5: φ = 0.31) the relative error of the
+// length of a winding is φ²/24, at most 4e-3 m. The extrapolation of two meshes leaves an error of order φ⁴.
 TEST(CantileverToHelix, MeetsTheExactRodThroughFiveTurns) {
   for (Winding const& h : windings) {
     Rod const coarse = wound(50, h), fine = wound(100, h);

@@ -1,4 +1,5 @@
-// CASES S2, S2c, S4, S9d: the plane's problems, and numbers, with the spatial Lrvf, and how a strip leaves its plane.
+// Planar problems with the spatial Lrvf and their planar values: elastica (S2), follower force (S2c), Nachbagauer et
+// al. 2011 (S4). Lateral buckling of a strip out of its plane (S9d).
 
 #include <polybody/bodies/lrvf/lrvf.hpp>
 #include <polybody/bodies/lrvf/planar_lrvf.hpp>
@@ -27,8 +28,8 @@ BarConstants thick() {
                     .material = Material{.density = 7850, .young = 2.07e11, .poisson = 0.3}});
 }
 
-/// A bar bent in its own x–y plane, standing anywhere in space, is the planar one: the two share strains, quadrature
-/// and mesh.
+/// A bar that bends in its own x–y plane, with any orientation in space, agrees with the planar one. Both have the
+/// same strains, quadrature and mesh.
 template <class Interpolation>
 void is_planar(char const* case_id, BarConstants const& c, double length, double force, LoadAxes axes) {
   Index const n = 8;
@@ -55,10 +56,10 @@ TEST(PlaneInSpace, ElasticaAndThickCantileverAreThoseOfThePlane) {
   is_planar<Objective>("S2c", slender(), 1.0, 10.0, LoadAxes::marker);
   is_planar<Objective>("S4", thick(), 2.0, 5e8 * 0.125, LoadAxes::world);
   is_planar<Direct>("S2", slender(), 1.0, 10.0,
-                    LoadAxes::world);  // turns about one axis of the placement: exact for it too
+                    LoadAxes::world);  // rotations about one axis of the placement: also exact for this interpolation
 }
 
-// The same bar bent about y by a force along z: what stands for z there stands for y here.
+// The bar bends about y under a force along z. The constants of y and z are interchanged.
 TEST(PlaneInSpace, BendingAboutYUsesTheConstantsOfY) {
   BarConstants const z = thick();
   BarConstants y = z;
@@ -88,8 +89,8 @@ Bar strip() {
                                     .EI_y = e * b * t * t * t / 12}};
 }
 
-/// The smallest pivot of the tangent without the clamped node, in the plane's equilibrium under `force` taken into
-/// space. A dead force at a node adds nothing to the tangent.
+/// Smallest pivot of the tangent without the clamped node, at the planar equilibrium under `force`, in spatial
+/// coordinates. A dead force at a node adds nothing to the tangent.
 double smallest_pivot(Index n, double force) {
   Cantilever<planar::Lrvf> const plane(planar::Lrvf::from(strip(), n), {.force = {0, force}}, {});
   Lrvf<> const rod = Lrvf<>::from(strip(), n);
@@ -107,7 +108,7 @@ double smallest_pivot(Index n, double force) {
     k.block<12, 12>(6 * e, 6 * e) += element;
   }
   MatX free = k.bottomRightCorner(6 * n, 6 * n);
-  EXPECT_LT((free - free.transpose()).norm(), 1e-9 * free.norm());  // in equilibrium it is symmetric
+  EXPECT_LT((free - free.transpose()).norm(), 1e-9 * free.norm());  // symmetric in equilibrium
   double smallest = free(0, 0);
   for (Index i = 0; i < free.rows(); ++i) {
     smallest = std::min(smallest, free(i, i));
@@ -119,7 +120,7 @@ double smallest_pivot(Index n, double force) {
   return smallest;
 }
 
-/// The force at which it is lost, by bisection.
+/// Force at which the pivot vanishes, by bisection.
 double critical_force(Index n) {
   double low = 7000, high = 11000;
   EXPECT_GT(smallest_pivot(n, low), 0.0);
@@ -131,9 +132,10 @@ double critical_force(Index n) {
   return 0.5 * (low + high);
 }
 
-// 8554.9932 N [C], with the deflection before buckling; the classical 8430.96 N leaves that out. The number is that of
-// a rod without shear, which S9d does not say: with k = 5/6 the same meshes tend to 8555.0165. Here GA is a hundred
-// times that of k = 1, so 2e-4 N remain. Errors in h² and h⁴ are extrapolated away.
+// The independent computation gives 8554.9932 N, including the deflection before buckling. The classical value,
+// 8430.96 N, neglects it. The rod of the reference has no shear (derived: with k = 5/6 the same meshes tend to
+// 8555.0165). Here GA is a hundred times that of k = 1, so 2e-4 N remain. Extrapolation removes the errors in h² and
+// h⁴.
 TEST(LateralBuckling, StripBucklesAtTheExactForce) {
   double const a = critical_force(8), b = critical_force(16), c = critical_force(32);
   double const exact = 8554.9932;

@@ -1,5 +1,6 @@
-// CASES S5 to S8: cantilevers in space, against the exact rod [C] with the same constants. Elements are of order 2: two
-// meshes extrapolated, (4 u₂ₙ − uₙ)/3, meet the exact numbers to their printed digits.
+// Cantilevers in space compared with an independent computation of the exact rod with the same constants: end moments
+// (S5), Princeton beam (S6), 45° bend (S7), pre-twisted cantilever (S8). Elements are of order 2. The extrapolation
+// of two meshes, (4 u₂ₙ − uₙ)/3, agrees with the exact values to their printed digits.
 
 #include <polybody/bodies/lrvf/lrvf.hpp>
 
@@ -21,7 +22,7 @@ Claim exact_rod(char const* case_id, char const* what, std::string const& formul
   return {case_id, what, By::independent, "shooting on the rod's equations", formulation};
 }
 
-/// u(n) and u(2n), extrapolated.
+/// Extrapolation of u(n) and u(2n).
 template <class F>
 Vec3 extrapolated(F&& u, Index n) {
   return (4.0 * u(2 * n) - u(n)) / 3.0;
@@ -66,7 +67,7 @@ TEST(EndMoments, FollowerMomentsGiveAnotherAnswer) {
               (extrapolated(u, 16) - exact).norm(), 1e-11, {.scale = exact.norm()});
 }
 
-// ---- S6: the Princeton beam
+// ---- S6: the Princeton beam of Dowell & Traybar 1975
 
 struct Princeton {
   double force, degrees, x, y, z, twist;
@@ -110,8 +111,8 @@ PrincetonTip princeton_tip(Index n, Princeton const& row) {
   return {rod.tip_displacement(), std::atan2(turn(2, 1), turn(1, 1))};
 }
 
-// S6: 8 elements 5e-3 of the deflection, 32 elements 3e-4, by which 5e-3/16 is meant (order 2; 13.345 N at 15°
-// needs 3.11e-4). Extrapolated, to the table's last digit.
+// Tolerances of S6: 5e-3 of the deflection with 8 elements, 3e-4 with 32. The second is taken as 5e-3/16 (order 2;
+// 13.345 N at 15° needs 3.11e-4). The extrapolation agrees to the last digit of the table.
 TEST(PrincetonBeam, MeetsTheExactRod) {
   for (Princeton const& row : princeton) {
     Vec3 const exact(row.x, row.y, row.z);
@@ -128,7 +129,7 @@ TEST(PrincetonBeam, MeetsTheExactRod) {
   }
 }
 
-// ---- S7: Bathe & Bolourchi's 45° bend, a curved reference
+// ---- S7: the 45° bend of Bathe & Bolourchi, a curved reference configuration
 
 struct Bend {
   double GA, GJ, force;
@@ -156,7 +157,7 @@ Vec3 bend_tip(Index n, Bend const& b) {
   return Rod(Lrvf<>::from(bar, n, arc), {.force = {0, 0, b.force}}, {.load_steps = b.force > 1000 ? 8 : 2}).tip();
 }
 
-// S7: 8 elements 0.3 %, 32 elements 2e-4, of the displacement.
+// Tolerances of S7 relative to the displacement: 0.3 % with 8 elements, 2e-4 with 32.
 TEST(FortyFiveDegreeBend, MeetsTheExactRod) {
   Vec3 const start = 100.0 * Vec3(std::sin(pi / 4), 1 - std::cos(pi / 4), 0);
   for (Bend const& b : bends) {
@@ -171,7 +172,7 @@ TEST(FortyFiveDegreeBend, MeetsTheExactRod) {
   }
 }
 
-// ---- S8: MacNeal & Harder's pre-twisted cantilever, linear
+// ---- S8: the pre-twisted cantilever of MacNeal & Harder 1985, linear
 
 Vec3 twisted_tip(Index n, Vec3 const& force) {
   double const e = 29e6, g = e / 2.44, length = 12, width = 1.1, depth = 0.32, a = width * depth;
@@ -186,7 +187,7 @@ Vec3 twisted_tip(Index n, Vec3 const& force) {
   return Rod(Lrvf<>::from(bar, n, twist), {.force = force}, {}).tip_displacement();
 }
 
-// The table's digits: eight, three along x.
+// The tolerance is the digits of the table: eight, along x three.
 TEST(PreTwistedCantilever, MeetsTheExactRod) {
   Vec3 const y = extrapolated([](Index n) { return twisted_tip(n, {0, 1, 0}); }, 64);
   Vec3 const z = extrapolated([](Index n) { return twisted_tip(n, {0, 0, 1}); }, 64);

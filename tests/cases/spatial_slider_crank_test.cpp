@@ -1,5 +1,5 @@
-// CASES2 M5: the spatial rigid slider-crank of the IFToMM library, with either place of the crank's mass centre that
-// the published data have.
+// Spatial rigid slider-crank of the IFToMM library (M5; data of MBDyn and Exudyn) with both published positions of
+// the crank's mass centre.
 
 #include <gtest/gtest.h>
 
@@ -23,8 +23,8 @@
 namespace polybody {
 namespace spatial_slider_crank_test {
 
-/// Crank A–B turns about x, rod B–C, slider C along x. \tparam Tree policy of hinge, ball and slide; the universal
-/// joint closes the loop by rows
+/// Crank A–B rotates about x, rod B–C, slider C along x. \tparam Tree policy of hinge, ball and slide; the universal
+/// joint closes the loop by constraint equations
 template <class Body, class Tree>
 struct SliderCrank {
   using Hinge = Joint<Revolute, Tree>;
@@ -61,7 +61,7 @@ struct SliderCrank {
     Mat3 const along = d * d.transpose();
     return 0.004 * (Mat3::Identity() - along) + 0.0004 * along;
   }
-  /// Of the crank, within a turn of `near`.
+  /// Angle of the crank, within one revolution of `near`.
   double angle(double near) const {
     Vec3 const b = position(model, x, pin_b) - A;
     return near + std::remainder(std::atan2(-b[1], b[2]) - near, 2.0 * std::numbers::pi);
@@ -86,7 +86,7 @@ Claim independent(char const* what, bool mid_arm, std::string const& formulation
           By::independent, "energy integral of one coordinate, DOP853", formulation};
 }
 
-/// Both variants to 5 s. \param tolerance of θ per second [rad/s]; x moves by at most 0.078 m/rad of it
+/// Both variants to 5 s. \param tolerance of θ per second [rad/s]; dx/dθ is at most 0.078 m/rad
 template <class Body, class Tree, class I>
 void follows(I const& integrator, double step, double tolerance, std::string const& formulation) {
   for (bool const mid_arm : {true, false}) {

@@ -1,4 +1,4 @@
-// CASES D2 by bodies that live in space.
+// Spin-up of Kane, Ryan & Banerjee 1987 (D2) by spatial bodies.
 
 #include <polybody/bodies/ancf/ancf_cable.hpp>
 #include <polybody/bodies/lrvf/lrvf.hpp>
@@ -18,7 +18,7 @@ using Cable = AncfCable<EngineeringStrain>;
 using Pin = Joint<Revolute, Constraint>;
 using Fixed = Joint<Weld, Constraint>;
 
-/// The arm on a driven hub of zero radius, whose own mass plays no part; a cable is clamped by a pin along its tangent.
+/// Arm on a driven hub of zero radius, whose mass has no effect. A pin along the tangent clamps a cable.
 template <class B>
 void spins_up(Index n, spin_up::Share const& share, char const* formulation) {
   Model<Bodies<Rigid<>, Cable, Lrvf<>>, Joints<Pin, Fixed, spin_up::Drive>> model;  // one type for both bodies
@@ -34,7 +34,7 @@ void spins_up(Index n, spin_up::Share const& share, char const* formulation) {
   spin_up::follows(model, arm.at(10.0), share, formulation);
 }
 
-// D2's tolerances of the lag; the swing that is left carries the error of a frequency as phase.
+// Tolerances of the lag in D2. The error of a frequency appears as a phase error of the remaining vibration.
 TEST(SpinUpInSpace, CableOfEightElements) { spins_up<Cable>(8, {1e-3, 0.02}, "AncfCable, 8 elements"); }
 TEST(SpinUpInSpace, LrvfOfTenElements) { spins_up<Lrvf<>>(10, {1e-2, 0.03}, "Lrvf, 10 elements"); }
 

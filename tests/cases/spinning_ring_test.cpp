@@ -1,4 +1,4 @@
-// CASES C5: the force in the joints of a spinning ring, and how far it opens compliant joints.
+// Joint forces of a spinning ring, and deflections of compliant joints (C5).
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/joint.hpp>
@@ -15,7 +15,7 @@ using namespace polybody;
 
 namespace spinning_ring_test {
 
-/// CASES C5: a closed ring of N links that spins about its centre, links tangential.
+/// Closed ring of N links that spins about its centre, links tangential (C5, closed form).
 template <class Policy>
 struct Ring {
   using Pin = Joint<Revolute, Policy>;
@@ -39,7 +39,8 @@ struct Ring {
                                    links[std::size_t(i)].at(Vec3(0.5 * length, 0, 0)),
                                    links[std::size_t((i + 1) % n)].at(Vec3(-0.5 * length, 0, 0))));
   }
-  /// Spinning, links moved outward so that every joint opens by `gap`: two ends by `gap`/(2 sin π/N) each.
+  /// Steady state with links moved outward such that every joint opens by `gap`: its two ends move by `gap`/(2 sin
+  /// π/N) each.
   State spinning(double omega, double gap) const {
     State x = model.reference_state();
     for (auto const& link : links) {
@@ -49,8 +50,8 @@ struct Ring {
     }
     return x;
   }
-  /// The force of joint i on the link behind it is tangential: along (sin, −cos) of the joint's place, turned by
-  /// `turned`.
+  /// Direction of the force of joint i on the previous link: tangential, along (sin, −cos) of the joint's polar
+  /// angle, rotated by `turned`.
   Vec3 direction(int i, double turned) const {
     double const angle = half_angle * (2 * i + 1) + turned;
     return {std::sin(angle), -std::cos(angle), 0.0};
@@ -63,15 +64,15 @@ struct Spin {
 };
 constexpr Spin spins[] = {{10, 1.0, 0.1, 10.0, 24.8989828488}, {40, 2.0, 0.15, 5.0, 303.650375515}};
 
-/// A hundred steps from the steady state, which stays: force and gap of the joints, relative. The stages of the stepper
-/// open stiff joints by a part of R (ω h)², which they answer; in gaps of 2e-6 m this error of fourth order is still
-/// 1e-6 at ω h = 5e-4.
+/// Relative errors of joint forces and deflections after a hundred steps from the steady state, which is constant.
+/// The stages of the integrator deflect stiff joints by a fraction of R (ω h)², and the joints respond. In
+/// deflections of 2e-6 m this error of fourth order is still 1e-6 at ω h = 5e-4.
 template <class Integrator, class Policy>
 void expect_ring(Spin const& s, Policy const& policy, double stiffness, std::string const& pins) {
   double const h = 1e-4 / s.omega, tolerance = std::isinf(stiffness) ? 1e-10 : 1e-8;
   Ring<Policy> const ring(s.links, s.mass, s.length, policy);
-  // k g = F (1 + u/R), u = g/(2 sin π/N) the way outward, F at the middle radius R of the closed ring:
-  // g = F/(k − m ω²/(4 sin² π/N))
+  // k g = F (1 + u/R) with the outward displacement u = g/(2 sin π/N) and F at the middle radius R of the closed
+  // ring: g = F/(k − m ω²/(4 sin² π/N))
   double const sine = std::sin(ring.half_angle), softening = s.mass * s.omega * s.omega / (4.0 * sine * sine);
   double const open = std::isinf(stiffness) ? 0.0 : s.force / (stiffness - softening);
   double const force = std::isinf(stiffness) ? s.force : stiffness * open;

@@ -1,4 +1,4 @@
-// Two balls on top of each other on a floor, m ẍ₁ = −k x₁ + k (x₂ − x₁), m ẍ₂ = −k (x₂ − x₁): ω² = (3 ∓ √5)/2 k/m.
+// Two stacked balls on a floor, m ẍ₁ = −k x₁ + k (x₂ − x₁), m ẍ₂ = −k (x₂ − x₁): ω² = (3 ∓ √5)/2 k/m.
 #include <gtest/gtest.h>
 
 #include <polybody/polybody.hpp>
@@ -31,7 +31,7 @@ struct Stack {
   }
 };
 
-// Statics and linearisation ask for what couples two bodies that touch, which a time step leaves out.
+// Statics and linearisation require the coupling of two bodies in contact, which a time step neglects.
 TEST(StackedBalls, OfAGroupRestAndSwingAsThoseOneByOne) {
   OnFloor const floor{{radius}, {.stiffness = k}};
   OnBall const ball{{radius, radius}, {.stiffness = k}};

@@ -1,5 +1,6 @@
-// CASES S3, S4, S4b: short cantilevers with stretch and shear, against published numbers mesh by mesh and against the
-// exact rod [C].
+// Short cantilevers with stretch and shear: Gerstmayr & Irschik 2008 (S3), Nachbagauer et al. 2011 (S4) and the
+// inclined cantilever S4b. References are published values for each mesh and an independent computation of the exact
+// rod.
 
 #include <polybody/bodies/ancf/planar_ancf_cable.hpp>
 #include <polybody/bodies/lrvf/planar_lrvf.hpp>
@@ -33,7 +34,7 @@ Vec3 gerstmayr_irschik(Index n) {
   return Cantilever<Cable>(Cable::from(bar, n), {.force = {0, -force}}, {.load_steps = 5}).tip_displacement();
 }
 
-// [P] Exudyn, ANCFcantileverTest.py, full integration.
+// Published values: Exudyn, ANCFcantileverTest.py, full integration.
 TEST(GerstmayrIrschik, EveryMeshGivesThePublishedDigits) {
   constexpr Mesh published[] = {
       {1, -0.36224472989050654, -0.9941447587249747}, {2, -0.4889263086109102, -1.1752228652637502},
@@ -51,12 +52,12 @@ TEST(GerstmayrIrschik, EveryMeshGivesThePublishedDigits) {
   }
 }
 
-/// A claim about the exact rod, that of the dictionary of CASES.
+/// Claim about the exact rod of the independent computation.
 Claim exact_rod(char const* case_id, char const* what, char const* formulation) {
   return {case_id, what, By::independent, "shooting on the rod's equations", formulation};
 }
 
-// Extensible rod [C static_cases.py B].
+// Extensible rod (independent computation).
 TEST(GerstmayrIrschik, MeshesConvergeToTheExactRod) {
   Vec3 const exact(-0.508537304325871, -1.207239854549803, -0.986237330266), coarse = gerstmayr_irschik(64),
                                                                              fine = gerstmayr_irschik(128);
@@ -65,8 +66,8 @@ TEST(GerstmayrIrschik, MeshesConvergeToTheExactRod) {
   EXPECT_GT((coarse - exact).norm() / (fine - exact).norm(), 14.0);  // order 4
 }
 
-// The same rod [C] by Lrvf, which does not lock in its thin limit: with GA = 1e6 EA shear adds F L/GA, 1e-9. Errors in
-// h² and h⁴ are extrapolated away.
+// Rod by Lrvf, which does not lock in its thin limit. With GA = 1e6 EA, shear adds F L/GA, 1e-9.
+// Extrapolation removes the errors in h² and h⁴.
 TEST(GerstmayrIrschik, LrvfWithoutShearConvergesToTheExactRod) {
   Bar const bar{.length = 2.0,
                 .constants = BarConstants{.EA = 2.07e9, .EI = 1.725e6, .mass_per_length = 78.5, .GA = 2.07e15}};
@@ -95,8 +96,9 @@ Cantilever<Lrvf> nachbagauer(Index n, double force) {
   return {Lrvf::from(thick(), n), {.force = {0, force}}, {.load_steps = 5}};
 }
 
-// The paper's element interpolates slope vectors, ours the angle (S4 takes them for one): equal in linear theory only,
-// so the published digits hold up to the square of the rotation, θ² = 3.4e-7. [P] the paper (1, 2, 4) and Exudyn.
+// The element of the paper interpolates slope vectors, the one here the angle. S4 does not distinguish them. They are
+// equal in linear theory only, so the published digits hold up to the square of the rotation, θ² = 3.4e-7. Sources:
+// the paper (1, 2, 4 elements) and Exudyn.
 TEST(Nachbagauer, SmallLoadGivesThePublishedMeshesUpToTheSquareOfTheRotation) {
   constexpr Mesh published[] = {
       {1, 9.122730637578513e-08, 6.166665660910789e-04},   {2, 1.612930911054633e-07, 7.615940599560586e-04},
@@ -114,7 +116,8 @@ TEST(Nachbagauer, SmallLoadGivesThePublishedMeshesUpToTheSquareOfTheRotation) {
   }
 }
 
-// Linear theory with one Gauss point [A]: bending F L³/3EI falls short by 1/(4n²), shear F L/GA is exact.
+// Linear theory with one Gauss point (closed form): the bending part F L³/3EI is smaller by the factor 1 − 1/(4n²),
+// and the shear part F L/GA is exact.
 TEST(Nachbagauer, SmallLoadFollowsLinearTheory) {
   BarConstants const k = constants(thick());
   double const f = 5e5 * h3;
@@ -126,13 +129,13 @@ TEST(Nachbagauer, SmallLoadFollowsLinearTheory) {
   }
 }
 
-// What an Lrvf mesh must satisfy under a tip force, node by node, without matrices [A]: the section force is F in
-// every element, which stretches and shears its chord, and the moments balance at each node,
+// Conditions on an Lrvf mesh under a tip force, node by node, without matrices (derived). The section force is F in
+// every element and causes stretch and shear of its chord. The moments are in balance at each node:
 //   EI (κ_k − κ_{k+1}) = ½ l (s_k + s_{k+1}),  s = F·[(1 + ε) t₂ − γ t₁],  κ_{n+1} = s_{n+1} = 0.
 void balances(Cantilever<Lrvf> const& c, Index n, Vec2 const& force) {
   BarConstants const k = c.bar.body().constants();
   double const l = c.bar.body().element_length();
-  double curvature = 0.0, pull = 0.0;  // of the element beyond
+  double curvature = 0.0, pull = 0.0;  // of the next element
   for (Index e = n; e-- > 0;) {
     Vec3 const a = c.at(double(e) * l), b = c.at(double(e + 1) * l);
     double const angle = 0.5 * (a[2] + b[2]), bend = (b[2] - a[2]) / l;
@@ -150,7 +153,7 @@ TEST(Nachbagauer, LargeLoadBalancesAtEveryNodeOfEveryMesh) {
   for (Index const n : {1, 2, 4, 8, 16, 32, 64}) balances(nachbagauer(n, 5e8 * h3), n, {0, 5e8 * h3});
 }
 
-// Exact rod [C]: shortening, deflection, rotation. The meshes converge with order 2.
+// Shortening, deflection and rotation of the exact rod (independent computation). The meshes converge with order 2.
 TEST(Nachbagauer, MeshesConvergeToTheExactRod) {
   Vec3 const large(-0.1509711442396, 0.7105685978542, 0.520173166012);
   Vec3 const a = nachbagauer(128, 5e8 * h3).tip_displacement(), b = nachbagauer(256, 5e8 * h3).tip_displacement();
@@ -173,7 +176,7 @@ Vec3 inclined(Index n, Bar const& bar) {
       .tip_displacement();
 }
 
-// [P] geometricallyExactBeam2Dtest.py, whose element is this one; it rounds G to 7.9615e10.
+// Published values: Exudyn, geometricallyExactBeam2Dtest.py, with the same element. It rounds G to 7.9615e10.
 TEST(InclinedBeam, SixteenElementsGiveExudynsDigits) {
   Bar const bar{.length = 2.0,
                 .constants = BarConstants{.EA = 2.07e11 * 0.05,

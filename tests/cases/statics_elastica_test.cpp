@@ -1,6 +1,6 @@
-// CASES S2, S2b, S2c: the elastica, a slender cantilever under a dead tip force, its own weight, and a tip force that
-// follows the section. References: inextensible, unshearable rod [C], elliptic integrals and shooting; S2 agrees with
-// the five decimals of Mattiasson 1981 [M]. Here EA = GA = 1e6 EI/L², L = EI = 1.
+// Elastica: a slender cantilever under a dead tip force (S2), its own weight (S2b) and a follower tip force (S2c).
+// The reference is the inextensible, unshearable rod by elliptic integrals and shooting, an independent computation.
+// S2 agrees with the five decimals of Mattiasson 1981. Here EA = GA = 1e6 EI/L², L = EI = 1.
 
 #include <polybody/bodies/ancf/planar_ancf_cable.hpp>
 #include <polybody/bodies/lrvf/planar_lrvf.hpp>
@@ -27,7 +27,7 @@ Vec3 tip(Index n, CantileverLoad const& load) {
   return Cantilever<B>(B::from(slender(), n), load, {.load_steps = 10}).tip();
 }
 
-/// A claim about the inextensible, unshearable rod.
+/// Claim about the inextensible, unshearable rod.
 Claim rod(char const* case_id, char const* what, char const* formulation) {
   return {case_id, what, By::independent,
           std::string(case_id) == "S2" ? "elliptic integrals, 40 digits; the decimals of Mattiasson 1981"
@@ -58,9 +58,10 @@ constexpr Elastica elastica[] = {{0.1, 0.04995425575475314, 0.03329531926817433,
                                  {20, 1.532934956297041, 0.8686958982854378, 0.6838855675664751},
                                  {50, 1.567981901571437, 0.9171554473035875, 0.8000003960495976}};
 
-/// Tolerance of the deflection by 8 and 16 cable elements. S2 prints errors of the same element at PL²/EI = 1, 5, 10
-/// and 50; they grow with the load, so those of a load hold for all below. For 8 elements it prints 3e-4, 1.5e-3,
-/// 2.3e-3, 6e-3 where this element's are 3.04e-4, 1.54e-3, 2.31e-3, 6.09e-3: a further digit is given to them.
+/// Tolerance of the deflection with 8 and 16 cable elements. S2 gives errors of the same element at PL²/EI = 1, 5, 10
+/// and 50. Errors grow with the load, so the tolerance of a load is valid for all smaller loads. For 8 elements S2
+/// gives 3e-4, 1.5e-3, 2.3e-3, 6e-3. The errors here are 3.04e-4, 1.54e-3, 2.31e-3, 6.09e-3, so the tolerances have a
+/// further digit.
 struct CableError {
   double alpha, of8, of16;
 };
@@ -95,7 +96,7 @@ TEST(Elastica, LrvfUnderADeadTipForce) {
   }
 }
 
-// Both theories on fine meshes meet the table, up to stretch and shear of a bar with EA = GA = 1e6: α/EA.
+// Both formulations on fine meshes agree with the table, up to stretch and shear of a bar with EA = GA = 1e6: α/EA.
 TEST(Elastica, FineMeshesMeetTheInextensibleRod) {
   for (Elastica const& e : elastica) {
     CantileverLoad const load{.force = {0, e.alpha}};
@@ -127,8 +128,9 @@ constexpr Tip follower[] = {{1, 0.9356456695, 0.3206419947, 0.4958846424},
                             {5, 0.1722778754, 0.7806901428, 2.0981572399},
                             {10, -0.0921231812, 0.5469832646, 2.9927148162}};
 
-/// CASES states no tolerance here: the cable's own order (4 at least) makes 64 elements exact to stretch + 2e-6,
-/// Lrvf's order 2 makes 64 elements 4e-4 and the extrapolation of 64 and 128 exact to stretch + 2e-6.
+/// The tolerance follows from the orders. The cable has an order of at least 4: with 64 elements the error is the
+/// stretch + 2e-6. The Lrvf has order 2: its error is 4e-4 with 64 elements, and the stretch + 2e-6 after
+/// extrapolation of 64 and 128.
 template <class Load>
 void meets(char const* case_id, Tip const& t, Load const& load) {
   Vec3 const exact(t.x, t.y, t.theta);
@@ -147,7 +149,7 @@ TEST(Elastica, UnderItsOwnWeight) {
   for (Tip const& t : own_weight) meets("S2b", t, CantileverLoad{.gravity = Gravity{0, t.load, 0}});
 }
 
-// The force turns with the section: its tangent is not symmetric.
+// The force rotates with the section, so its tangent is not symmetric.
 TEST(Elastica, UnderAFollowingTipForce) {
   for (Tip const& t : follower) meets("S2c", t, CantileverLoad{.force = {0, t.load}, .axes = LoadAxes::marker});
 }

@@ -1,5 +1,5 @@
-// CASES S1: a cantilever rolled up by a tip moment. Pure bending, so the exact answer is [A] an arc of curvature
-// M/EI without stretch or shear: x = (L/θ) sin θ, y = (L/θ)(1 − cos θ), θ = ML/EI.
+// Roll-up of a cantilever by a tip moment (S1). The exact solution for pure bending is an arc of curvature M/EI
+// without stretch or shear: x = (L/θ) sin θ, y = (L/θ)(1 − cos θ), θ = ML/EI.
 
 #include <polybody/bodies/ancf/planar_ancf_cable.hpp>
 #include <polybody/bodies/lrvf/planar_lrvf.hpp>
@@ -18,7 +18,8 @@ namespace statics_roll_up_test {
 using planar::EngineeringStrain, planar::GreenStrain, planar::Lrvf;
 using std::numbers::pi;
 
-/// Thesis Fig. 2.9, length "as Simo & Vu-Quoc" (S1); EA and GA of their robot arm's order, without influence.
+/// Beam of Wallin 2016, Fig. 2.9, with the length of Simo & Vu-Quoc (S1). EA and GA have the order of their robot
+/// arm, without influence.
 Bar thesis() {
   return {.length = 10.0, .constants = BarConstants{.EA = 1e6, .EI = 8.33e4, .mass_per_length = 1.0, .GA = 1e6}};
 }
@@ -42,8 +43,9 @@ Cantilever<B> rolled(Bar const& bar, Index n, double theta, int load_steps = 10)
   return {B::from(bar, n), {.moment = moment_of_turn(bar, theta)}, {.load_steps = load_steps}};
 }
 
-// With one Gauss point the elements of a 2-node beam in pure bending are chords of equal length h whose directions
-// step by θ/n: the first stands at θ/2n. So θ is exact, and node k lies at h Σ_{j ≤ k} (cos, sin)((2j − 1) θ/2n).
+// With one Gauss point the elements of a 2-node beam in pure bending are chords of equal length h. Their directions
+// differ by θ/n, and the first is at θ/2n. So θ is exact, and the position of node k is h Σ_{j ≤ k} (cos, sin)((2j −
+// 1) θ/2n).
 TEST(RollUp, LrvfNodesLieOnARegularPolygon) {
   Bar const bar = half_circle();
   for (Index const n : {1, 2, 3, 4, 10, 16})
@@ -60,7 +62,7 @@ TEST(RollUp, LrvfNodesLieOnARegularPolygon) {
     }
 }
 
-// A polygon of two or more chords closes; the single chord of n = 1 cannot, it points at −x.
+// A polygon of two or more chords closes. The single chord of n = 1 points at −x.
 TEST(RollUp, LrvfFullCircleClosesForAnyNumberOfElementsAboveOne) {
   Bar const bar = half_circle();
   for (Index const n : {2, 3, 4, 10, 16, 40}) {
@@ -73,8 +75,8 @@ TEST(RollUp, LrvfFullCircleClosesForAnyNumberOfElementsAboveOne) {
   EXPECT_LT((rolled<Lrvf>(bar, 1, 2 * pi).tip() - Vec3(-bar.length, 0, 2 * pi)).norm(), 1e-10);
 }
 
-// [A] κ = M/EI = 0.360144058 1/m and θ_tip = 3.601440576 for M = 30 kN m. The chords end on the arc's ray, farther
-// out by (θ/2n)/sin(θ/2n); the exact tip is (−1.232317522, 5.264893204).
+// Closed form: κ = M/EI = 0.360144058 1/m and θ_tip = 3.601440576 for M = 30 kN m. The chords end on the arc's ray,
+// farther out by the factor (θ/2n)/sin(θ/2n). The exact tip is (−1.232317522, 5.264893204).
 TEST(RollUp, ThesisFigure29StaticValues) {
   Index const n = 10;
   Cantilever<Lrvf> const c(Lrvf::from(thesis(), n), {.moment = 3e4}, {});
@@ -97,8 +99,9 @@ double cable_error(Index n, double theta) {
   return (tip.head<2>() - bar.length / theta * Vec2(std::sin(theta), 1.0 - std::cos(theta))).norm() / bar.length;
 }
 
-// Tolerances of S1 for the closed circle: n = 32 ≤ 1e-4 L, and 1e-3 L at n = 16. Its 3.6e-3 L at n = 8 is of four or
-// more bending points (3.63e-3 with 4, 5 or 10); the three points that the per-mesh digits of S3 need give 3.78e-3.
+// Tolerances of S1 for the closed circle: 1e-4 L for n = 32, and 1e-3 L for n = 16. Its 3.6e-3 L for n = 8 requires
+// four or more Gauss points of bending (3.63e-3 with 4, 5 or 10). The three points that give the digits of S3 for
+// each mesh result in 3.78e-3.
 TEST(RollUp, AncfCableClosesTheCircle) {
   double const coarse = cable_error<EngineeringStrain>(8, 2 * pi), middle = cable_error<EngineeringStrain>(16, 2 * pi),
                fine = cable_error<EngineeringStrain>(32, 2 * pi);
@@ -116,9 +119,9 @@ TEST(RollUp, AncfCableQuarterAndHalfCircle) {
                 cable_error<EngineeringStrain>(16, theta), 1e-4, {equals("θ", theta), 1.0});
 }
 
-// GreenStrain's curvature c/|r′|³, c = r′ × r″, couples bending and stretch. Minimising ½ EA ε² + ½ EI θ′²/n² − M θ′
-// over n = |r′| and θ′ = c/n² gives ε = ½ (n² − 1) = M²/(EI EA) and θ′ = M n²/EI: an arc of radius n/θ′ that turns by
-// 2ε of a circle too far, 1.6e-4 L here (S1). That is the limit of the meshes.
+// The curvature of GreenStrain, c/|r′|³ with c = r′ × r″, couples bending and stretch. The minimum of ½ EA ε² + ½ EI
+// θ′²/n² − M θ′ over n = |r′| and θ′ = c/n² is at ε = ½ (n² − 1) = M²/(EI EA) and θ′ = M n²/EI. The arc has the
+// radius n/θ′ and an excess rotation of 2ε of a circle, 1.6e-4 L here (S1). This is the limit of fine meshes.
 TEST(RollUp, GreenCableTurnsFartherByTheStretchOfItsCurvature) {
   Bar const bar = half_circle();
   BarConstants const k = constants(bar);

@@ -1,5 +1,5 @@
-// Chapter 2 of M. Wallin's thesis (2016): the two meshes of the large rotation vector formulation. The numbers come
-// from an independent computation with 10 elements, rho_inf = 0.8 and a step of 5 ms.
+// Wallin 2016, Chapter 2: the two meshes of the large rotation vector formulation. The reference is an independent
+// computation with 10 elements, rho_inf = 0.8 and a step of 5 ms.
 #include <gtest/gtest.h>
 
 #include "../../examples/chapter2_energy.hpp"
@@ -14,12 +14,12 @@ using planar::Lrvf;
 Claim independent(char const* what, char const* formulation) {
   return {"thesis, ch. 2", what, By::independent, "another code with the same mesh and step", formulation};
 }
-/// What docs/chapter2.md says of polybody's own runs.
+/// Claim about polybody's own runs in docs/chapter2.md.
 Claim measured(char const* what, char const* formulation) {
   return {"thesis, ch. 2", what, By::itself, "docs/chapter2.md", formulation};
 }
 
-// Largest gap between the nodes of the two meshes during the ramp.
+// Largest distance between the nodes of the two meshes during the ramp.
 double largest_gap(Stiffness const& stiffness, double ramp, Index elements = 10) {
   RobotArm<Lrvf> arm(bar(stiffness, 7850.0), elements, ramp);
   State x = arm.model.reference_state();
@@ -46,8 +46,8 @@ TEST(ThesisChapter2, NodeGapOfLowStiffnessFastRamp) {
   held(independent("largest gap of the meshes [m]", "Lrvf, low stiffness, 4.5 s"), largest_gap(low, 4.5), 0.22, 5e-3);
 }
 
-// Without stretch and shear, which EA and GA of 1e4 times the amount keep away as a constraint would, the gap is one of
-// interpolation: l (1 - sin(phi/2)/(phi/2)) an element, of second order in l.
+// EA and GA of 1e4 times the normal value suppress stretch and shear like constraints. The remaining distance is due
+// to interpolation: l (1 - sin(phi/2)/(phi/2)) per element, of second order in l.
 TEST(ThesisChapter2, NodeGapWithoutStrainsVanishesWithTheElements) {
   Stiffness const unstrained{"low", 1e4 * low.EA, 1e4 * low.GA, low.EI};
   double const coarse = largest_gap(unstrained, 4.5, 10), fine = largest_gap(unstrained, 4.5, 20);
@@ -57,7 +57,8 @@ TEST(ThesisChapter2, NodeGapWithoutStrainsVanishesWithTheElements) {
        std::log2(coarse / fine), 2.0, 0.05);
 }
 
-/// Length of the polygon through points of a curve; an arc of curvature κ in steps of h is longer by (κ h)²/24 of it.
+/// Length of the polygon through points of a curve. An arc of curvature κ in steps of h is longer by the factor 1 +
+/// (κ h)²/24.
 double polygon_length(std::vector<Vec2> const& points) {
   double length = 0.0;
   for (std::size_t i = 1; i < points.size(); ++i) length += (points[i] - points[i - 1]).norm();
@@ -88,7 +89,7 @@ TEST(ThesisChapter2, TipMomentBringsTheMeshesApart) {
   held(independent("y of the tip at 2 s, position mesh [m]", body), d.position_nodes.back()[1], 1.874, 1e-3);
   held(independent("x of the tip at 2 s, rotation mesh [m]", body), d.rotation_nodes.back()[0], 8.789, 1e-3);
   held(independent("y of the tip at 2 s, rotation mesh [m]", body), d.rotation_nodes.back()[1], 1.955, 1e-3);
-  // Figure 2.10: no curvature on the position mesh; on the rotation mesh constant in each element, with jumps
+  // Figure 2.10: zero curvature on the position mesh; piecewise constant curvature with jumps on the rotation mesh
   for (double const curvature : d.position_curvature) EXPECT_EQ(curvature, 0.0);
   simulate(beam.model, x, GeneralizedAlpha{.rho_inf = 0.8}, {.until = 20.0, .step = 5e-3}).run();
   MeshDiagnostics const late = mesh_diagnostics(beam.beam.body(), coordinates_of(beam.model, x, beam.beam));
@@ -98,8 +99,8 @@ TEST(ThesisChapter2, TipMomentBringsTheMeshesApart) {
   held(measured("largest jump of the curvature at 20 s [1/m]", "Lrvf, low stiffness, 30 kN m"), jump, 0.21, 5e-3);
 }
 
-// The drive stands still and the pin does no work: the strain energy is a potential whatever the two curves look like,
-// so that a method that conserves energy leaves what Newton's method leaves.
+// The drive is at rest and the pin does no work. The strain energy is a potential for any shape of the two curves.
+// The energy error of a conserving method is therefore that of Newton's tolerance.
 template <class B>
 double conserving_drift() {
   return energy_drift<B>({}, 10, EnergyMomentum{}).largest;
@@ -128,7 +129,7 @@ TEST(ThesisChapter2, EnergyDriftOfGeneralizedAlphaIsOfSecondOrder) {
        std::log2(coarse / fine), 2.0, 0.2);
 }
 
-/// Distance of the tip from the root where M = 2πEI/L closes the beam of low stiffness to a circle.
+/// Distance of the tip from the root for M = 2πEI/L, which closes the beam of low stiffness to a circle.
 template <class B>
 double opening() {
   chapter2::Cantilever<B> beam(bar(low, 7850.0), 16, 2.0 * std::numbers::pi * low.EI / length);

@@ -1,5 +1,5 @@
-// Chapter 2 of M. Wallin's thesis (2016), sections 2.5.1 and 2.7: the two meshes "differ by an arbitrary rigid body
-// displacement". What a rigid displacement takes away, and what it leaves, in closed form.
+// Wallin 2016, sections 2.5.1 and 2.7: the two meshes "differ by an arbitrary rigid body displacement". The tests
+// compute in closed form the parts of the difference that a rigid displacement removes, and the remaining parts.
 #include <gtest/gtest.h>
 
 #include "../../examples/chapter2_meshes.hpp"
@@ -16,7 +16,7 @@ Claim closed(char const* what, char const* source, char const* formulation) {
 
 planar::Lrvf beam(Index n) { return planar::Lrvf::from(bar(low, 7850.0), n); }
 
-/// q of nodes given by their number as (x, y, theta).
+/// Coordinates q of nodes that a function of their number gives as (x, y, theta).
 template <class F>
 std::vector<double> nodes(Index n, F&& node) {
   std::vector<double> q;
@@ -48,7 +48,7 @@ TEST(ThesisMeshes, ARigidDisplacementIsFound) {
   EXPECT_TRUE(has(refusal([&] { (void)rigid_fit(from, {}); }), "the same number of points"));
 }
 
-// No other turn or shift comes nearer: the sum of squares is least.
+// The rigid displacement has the least sum of squares of all rotations and translations.
 TEST(ThesisMeshes, TheRigidDisplacementIsTheBest) {
   std::vector<Vec2> const from{{0.0, 0.0}, {1.0, 0.2}, {1.7, -0.4}}, to{{0.1, 0.3}, {0.8, 0.9}, {1.9, 0.4}};
   RigidFit const best = rigid_fit(from, to);
@@ -66,8 +66,9 @@ TEST(ThesisMeshes, TheRigidDisplacementIsTheBest) {
   }
 }
 
-// Uniform strains on straight sections: r = s ((1 + eps) t1 + gamma t2) against s t1. The best rigid displacement turns
-// by the angle of the shear, atan(gamma/(1 + eps)); the stretch lambda = |r'| stays, whatever is turned or shifted.
+// Uniform strains on straight sections: r = s ((1 + eps) t1 + gamma t2) compared with s t1. The best rigid
+// displacement rotates by the angle of the shear, atan(gamma/(1 + eps)). The stretch lambda = |r'| remains for every
+// rotation and translation.
 TEST(ThesisMeshes, UniformStrainsDifferByATurnAndAStretch) {
   Index const n = 10;
   planar::Lrvf const b = beam(n);
@@ -81,13 +82,14 @@ TEST(ThesisMeshes, UniformStrainsDifferByATurnAndAStretch) {
   EXPECT_LT(a.interpolation.norm(), 1e-14);
   held(closed("turn of the best rigid displacement [rad]", "angle of the shear", body), a.rigid.turn,
        std::atan2(gamma, 1.0 + eps), 1e-14);
-  double const straight = std::sqrt(10.0);  // of 0, 1, ..., 10 m about 5 m: (n + 1)^2 - 1 over 12
+  double const straight = std::sqrt(10.0);  // of 0, 1, ..., 10 m about 5 m: ((n + 1)^2 - 1)/12
   held(closed("rms gap left by the best rigid displacement [m]", "(lambda - 1) spread", body), a.rigid.left,
        (lambda - 1.0) * straight, 1e-13);
   EXPECT_NEAR(a.element, lambda - 1.0, 1e-14);
 }
 
-// A turn alone, lambda = 1: here the two meshes do differ by a rigid displacement. It is the shear, which costs energy.
+// Pure rotation, lambda = 1: in this case the two meshes differ by a rigid displacement. It is the shear, which has
+// strain energy.
 TEST(ThesisMeshes, AShearWithoutStretchIsARigidTurn) {
   planar::Lrvf const b = beam(10);
   double const psi = 0.1;
@@ -101,9 +103,9 @@ TEST(ThesisMeshes, AShearWithoutStretchIsARigidTurn) {
   EXPECT_NEAR(energy, 5.0 * (low.EA * c * c + low.GA * std::sin(psi) * std::sin(psi)), 1e-9);
 }
 
-// Pure bending has no strain in the middle of the elements. The position mesh has chords of l, the implied arc chords
-// of l s in the same directions: similar figures about the first node, and no constraint on strains has anything to
-// remove.
+// Pure bending has no strain in the middle of the elements. The chords of the position mesh have the length l, those
+// of the implied arc l s in the same directions. The figures are similar about the first node. A constraint on
+// strains would have no effect.
 TEST(ThesisMeshes, PureBendingDiffersByASimilarFigure) {
   for (Index const n : {10, 20, 40}) {
     chapter2::Cantilever<planar::Lrvf> beam(bar(low, 7850.0), n, 30e3);
@@ -112,7 +114,7 @@ TEST(ThesisMeshes, PureBendingDiffersByASimilarFigure) {
     auto const q = coordinates_of(beam.model, x, beam.beam);
     Apart const a = meshes_apart(beam.beam.body(), q);
     double const kappa = 30e3 / low.EI, half = 0.5 * kappa * length / double(n), s = std::sin(half) / half;
-    double chord = 0.0;  // the longest from the first node on the implied circle
+    double chord = 0.0;  // longest chord from the first node on the implied circle
     std::vector<Vec2> circle;
     for (Index i = 0; i <= n; ++i) {
       double const turned = kappa * length * double(i) / double(n);
@@ -130,8 +132,8 @@ TEST(ThesisMeshes, PureBendingDiffersByASimilarFigure) {
   }
 }
 
-// Gap = strains + interpolation, in any state. The implied curve is summed at five Gauss points, which are off by
-// 4e-13 phi^10 of an element turned by phi.
+// The difference is the sum of strains and interpolation in any state. The implied curve is integrated with five
+// Gauss points, with an error of 4e-13 phi^10 for an element that rotates by phi.
 TEST(ThesisMeshes, StrainsAndInterpolationMakeTheGap) {
   planar::Lrvf const b = beam(10);
   std::vector<double> const q = nodes(10, [](double i) {

@@ -1,6 +1,6 @@
-// CASES E2: frequencies of a thick beam and of a slender one in space, in which shear and rotary inertia count [C; some
-// meshes P]. In a square section every bending mode comes twice and no other does, so pairs are told from single modes:
-// torsion and stretch.
+// Frequencies of a thick beam and of a slender one in space with shear and rotary inertia (E2). References are an
+// independent computation and, for some meshes, published values. In a square section every bending mode occurs twice
+// and other modes occur once. This distinguishes bending from torsion and stretch.
 
 #include <polybody/vibration/modes.hpp>
 
@@ -24,7 +24,7 @@ using Clamp = Joint<Weld, Constraint>;
 using Ball = Joint<Spherical, Constraint>;
 using Line = AncfBeam<ElasticLine>;
 using Cured = AncfBeam<Continuum<>>;
-/// One type of model for all bodies: it is compiled once.
+/// Model type for all bodies, which is compiled once.
 using Beams = Model<Bodies<Lrvf<>, Line, Cured>, Joints<Clamp, Ball>>;
 
 enum class Ends { pinned_pinned, clamped_free, free_free };
@@ -40,7 +40,7 @@ std::string name_of(Index n) {
 }
 char const* const timoshenko = "roots of Timoshenko's characteristic equation";
 
-/// Cowper's shear factor for ν = 0.3 is E2's k, and J is Saint-Venant's.
+/// Cowper's shear factor for ν = 0.3 is the k of E2, and J is Saint-Venant's.
 Bar thick() {
   return {.length = 2.0,
           .section = Rectangle{.height = 0.4, .width = 0.4},
@@ -48,7 +48,7 @@ Bar thick() {
           .placement = Placement::at({1, 2, 3}, {0.4, -0.9, 1.7})};
 }
 
-/// E2 (b) with its own k = 5/6; J as above.
+/// E2 (b) with its own k = 5/6 and the same J.
 Bar slender() {
   double const e = 2.1e11, rho = 7850, h = 0.05, a = h * h, i = a * a / 12.0;
   return {.length = 1.0,
@@ -62,11 +62,12 @@ Bar slender() {
 }
 
 struct Frequencies {
-  std::vector<double> bending;  ///< each once
+  std::vector<double> bending;  ///< each listed once
   std::vector<double> single;   ///< torsion and stretch
 };
 
-/// Ascending [rad/s], without those of rigid motions: all six, or the spin between balls.
+/// Frequencies in ascending order [rad/s] without rigid motions: all six, or the rotation about the axis between
+/// balls.
 template <class B>
 Frequencies frequencies(Index n, Ends ends, Bar const& bar = thick()) {
   Beams model;
@@ -98,7 +99,7 @@ Row const rows[] = {{Ends::pinned_pinned, {95.6339808811, 332.234513637}},
                     {Ends::clamped_free, {35.1471170634, 189.630725571}},
                     {Ends::free_free, {204.165814718, 477.907465926}}};
 
-/// Elements are of order 2: what n and 2n extrapolate to.
+/// Richardson extrapolation of n and 2n elements of order 2.
 double limit(double coarse, double fine) { return (4.0 * fine - coarse) / 3.0; }
 
 template <class B>
@@ -147,9 +148,10 @@ void bends_slender(Index n) {
 TEST(SlenderBeamInSpace, LrvfConvergesToTimoshenkosFrequencies) { bends_slender<Lrvf<>>(24); }
 TEST(SlenderBeamInSpace, AncfElasticLineConvergesToTimoshenkosFrequencies) { bends_slender<Line>(16); }
 
-// Exudyn's ANCFBeam [P], mesh by mesh. Its rotary inertia is spread over the element, ours is lumped at the nodes: of a
-// wave of k h = iπ/n that has 1 and (2 + cos kh)/3 of the rotary energy, which is s to 1 in the kinetic, s = (I/A)
-// k²/(1 + k² EI/GA)². So our ω is lower by s/(1 + s) (1 − cos kh)/6, to leading order.
+// Published values of Exudyn's ANCFBeam for each mesh. Its rotary inertia is distributed over the element, here it is
+// lumped at the nodes. For a wave of k h = iπ/n the distributed rotary energy is (2 + cos kh)/3 of the lumped one.
+// The ratio of rotary to translational kinetic energy is s = (I/A) k²/(1 + k² EI/GA)². So ω is lower here by s/(1 +
+// s) (1 − cos kh)/6, to leading order.
 TEST(ThickBeamInSpace, LrvfHasThePublishedFrequenciesOfEveryMesh) {
   BarConstants const c = constants(thick());
   struct {
@@ -170,14 +172,14 @@ TEST(ThickBeamInSpace, LrvfHasThePublishedFrequenciesOfEveryMesh) {
   }
 }
 
-// Torsion of a clamped beam is half of a free one's, by symmetry.
+// By symmetry the torsion of a clamped beam is half of that of a free beam.
 double const axial = 280.320625133;  ///< clamped–free
-/// Free–free: E2 rounds J to 0.8436·2I; the square's is 0.1405770150 h⁴ (S7).
+/// Free–free: E2 rounds J to 0.8436·2I. The exact J of the square is 0.1405770150 h⁴ (S7).
 double const torsion = 319.349808602 * std::sqrt(6 * 0.1405770150 / 0.8436);
 
 char const* const rod = "rod of constant section, J of Saint-Venant";
 
-/// Of the free beam, by n and 2n elements.
+/// Frequency of the free beam with n and 2n elements.
 template <class B>
 double free_torsion(Index n) {
   return limit(frequencies<B>(n, Ends::free_free).single[0], frequencies<B>(2 * n, Ends::free_free).single[0]);
@@ -194,9 +196,9 @@ TEST(ThickBeamInSpace, LrvfTwistsAndStretches) {
        torsion, 1e-6 * torsion);
 }
 
-/// The frame of a section follows r_y, which carries Iρ, and r_z with its own Iρ hangs on it by the section's shear
-/// stiffness GA: where ω₀ is the rod's, ½ ω² (1 + 1/(1 − Iρ ω²/GA)) = ω₀². With a = Iρ ω₀²/GA, that is ω²/ω₀² = (1 + a
-/// − √(1 + a²))/a, less than 1 by a/2.
+/// The frame of a section follows r_y, which carries Iρ. The vector r_z with its own Iρ is coupled to it by the
+/// section's shear stiffness GA. With the rod's frequency ω₀: ½ ω² (1 + 1/(1 − Iρ ω²/GA)) = ω₀². With a = Iρ ω₀²/GA
+/// it follows ω²/ω₀² = (1 + a − √(1 + a²))/a, less than 1 by a/2.
 double twisting(double omega0) {
   BarConstants const c = constants(thick());
   double const a = c.rotary_inertia * omega0 * omega0 / c.GA;
@@ -214,9 +216,9 @@ TEST(ThickBeamInSpace, AncfElasticLineTwistsAndStretches) {
        twisting(torsion), 1e-5 * torsion);
 }
 
-// A solid's sections contract where it stretches: their inertia slows it down, by (1 + ν² r² k²)^(−1/2) if nothing
-// resists a contraction that varies along the beam [Rayleigh & Love], r² = 2I/A, k = π/2L; shear does resist it [Bishop
-// 1952].
+// The sections of a solid contract when it stretches, and their inertia lowers the frequency. The factor is (1 + ν²
+// r² k²)^(−1/2), r² = 2I/A, k = π/2L, if no stiffness resists a contraction that varies along the beam [Rayleigh &
+// Love]. Shear resists it [Bishop 1952].
 TEST(ThickBeamInSpace, AncfContinuumTwistsAndStretches) {
   BarConstants const c = constants(thick());
   double const k = 0.25 * std::numbers::pi, love = axial / std::sqrt(1.0 + 0.09 * 2.0 * c.EI / c.EA * k * k);

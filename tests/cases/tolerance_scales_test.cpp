@@ -1,5 +1,6 @@
-// CASES3 17 and its neighbourhood: the accuracy of a body does not depend on bodies that do not act on it, on a common
-// velocity, on the distance from the origin, or on accumulated turns.
+// Independence of the accuracy of a body from bodies that do not act on it, from a common velocity, from the distance
+// to the origin, and from accumulated rotations. The case is from issue 1392 of Basilisk: step control by one norm
+// over orbital velocity and attitude.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +19,7 @@ using namespace polybody;
 
 namespace tolerance_scales_test {
 
-/// Attraction by 1/r² between two markers.
+/// Attraction proportional to 1/r² between two markers.
 struct Attraction {
   static constexpr int markers = 2;
   static constexpr Observes needs = Observes::point;
@@ -66,7 +67,7 @@ I with_tolerance(double tolerance) {
   return integrator;
 }
 
-/// Kepler's ellipse of half axis 1 m and excentricity ½ around `centre` under μ = 1, from its far end at t = 0.
+/// Kepler ellipse of semi-major axis 1 m and eccentricity ½ around `centre` under μ = 1, from its far end at t = 0.
 Vec2 ellipse(double t, double centre) {
   double e = t;  // eccentric anomaly from the far end: E + ½ sin E = t
   for (int i = 0; i < 100; ++i) e -= (e + 0.5 * std::sin(e) - t) / (1.0 + 0.5 * std::cos(e));
@@ -74,11 +75,11 @@ Vec2 ellipse(double t, double centre) {
 }
 
 struct Outcome {
-  double error;  ///< of the planet's place at 20 s [m]
+  double error;  ///< of the planet's position at 20 s [m]
   long steps;
 };
 
-/// A planet at `centre`, beside a wheel and a body in flight that do not act on it.
+/// Planet at `centre`, with a wheel and a flying body that do not act on it.
 template <class I>
 Outcome planet(double tolerance, double rotor, double flight, double centre = 0.0) {
   Model<Bodies<planar::Rigid>, Joints<>, Forces<Attraction>> model;
@@ -118,7 +119,8 @@ TEST(ToleranceScales, AnOrbitFarFromTheOriginIsAsExact) {
   EXPECT_NEAR(double(far.steps), double(here.steps), 0.02 * double(here.steps));
 }
 
-/// Error of the planet at 20 s beside a rotor in space, whose quaternion and rates have their own scales [m].
+/// Error of the planet's position at 20 s in a model with a spatial rotor, whose quaternion and velocities have their
+/// own scales [m].
 template <class I>
 double beside_a_rotor_in_space(double rotor) {
   Model<Bodies<planar::Rigid, Rigid<>>, Joints<>, Forces<Attraction>> model;
@@ -138,7 +140,7 @@ TEST(ToleranceScales, AnOrbitIsAsExactBesideARotorInSpace) {
     EXPECT_LT(beside_a_rotor_in_space<AdamsBashforthMoulton<>>(rotor), 5e-5) << rotor;
 }
 
-/// A hub with a panel on a pin and a torsion spring, in flight at a common velocity.
+/// Hub with a panel on a pin and a torsion spring, in flight at a common velocity.
 template <class Policy>
 struct Spacecraft {
   using Pin = Joint<planar::Revolute, Policy>;
@@ -161,7 +163,7 @@ struct Spacecraft {
   double opening() const { return x.q[5] - x.q[2]; }
 };
 
-// By DOP853 at a tolerance of 1e-13 [CASES3 17].
+// Independent computation by DOP853 at a tolerance of 1e-13 with the data of Basilisk's issue 1392.
 struct {
   double t, x, y, angle, opening;
 } constexpr exact[] = {{5.0, 0.10859823, 0.08353374, 1.56762583, 0.01727412},
@@ -211,10 +213,11 @@ void is_invariant_at_fixed_steps(I const& integrator, double bound) {
 TEST(ToleranceScales, FixedStepsAreInvariantUnderACommonVelocity) {
   is_invariant_at_fixed_steps(RungeKutta4<Projection>{}, 1e-9);
   is_invariant_at_fixed_steps(CentralDifference<Projection>{}, 1e-9);
-  is_invariant_at_fixed_steps(GeneralizedAlpha{}, 2e-6);  // index 3: 6e-11 m, round-off of 4e5 m, over h²
+  is_invariant_at_fixed_steps(GeneralizedAlpha{}, 2e-6);  // index 3: 6e-11 m, the round-off of 4e5 m, divided by h²
 }
 
-// The satellite's attitude is as exact beside its own wheel as without it: both turn about one axis in the plane.
+// The accuracy of the satellite's attitude is the same with and without a wheel. Both rotate about one axis in the
+// plane.
 TEST(ToleranceScales, AccumulatedTurnsOfAWheelDoNotCount) {
   for (double const rate : {0.0, 1e3, 1e5}) {
     Model<Bodies<planar::Rigid>, Joints<Joint<planar::Revolute, Constraint>>, Forces<TorsionSpring>> model;
@@ -223,7 +226,7 @@ TEST(ToleranceScales, AccumulatedTurnsOfAWheelDoNotCount) {
     model.connect(Joint<planar::Revolute, Constraint>{}, hub.at(Vec2(0, 0)), wheel.at(Vec2(0, 0)), "bearing");
     model.apply(TorsionSpring{20.0}, hub.at(Vec2(0, 0)), model.ground().at({0, 0, 0}), "spring");
     State x = model.reference_state();
-    x.v[2] = 0.5;  // about the ground: φ¨ = −φ, for the bearing takes no moment
+    x.v[2] = 0.5;  // about the ground: φ¨ = −φ, because the bearing has no moment
     x.v[5] = rate;
     simulate(model, x, with_tolerance<DormandPrince<Projection>>(1e-8), {.until = 20.0, .step = 1e-3}).run();
     EXPECT_NEAR(x.q[2], 0.5 * std::sin(20.0), 1e-6) << rate;
