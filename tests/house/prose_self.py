@@ -1,9 +1,10 @@
-"""Sentences that prose.py reports, sentences that it accepts, and its list of allowed findings."""
+"""Tests of prose.py: reported and accepted sentences, and the list of allowed findings; tests of changelog.py."""
 
 import sys
 import tempfile
 from pathlib import Path
 
+import changelog
 import prose
 
 REPORTED = [
@@ -66,3 +67,14 @@ with tempfile.TemporaryDirectory() as folder:
     prose.LIST.write_text("# head\na.hpp 3\n")
     prose.shrink(root)
     require(prose.LIST.read_text() == "# head\na.hpp 2\n", "--shrink")
+
+CHANGES = "# Changelog\n\n## Unreleased\n\n> **Breaking, migration**\n>\n> - A.\n\n### Added\n\n- {}\n\n## 0.2.0 - 2026-11-27\n\n### Fixed\n\n- B.\n"
+require(not list(changelog.faults(CHANGES.format("Forty words. " * 20))), "a correct changelog is reported")
+for wrong in (
+    CHANGES.format("word " * 41),
+    CHANGES.replace("Added", "Speed").format("A."),
+    CHANGES.replace("0.2.0 - 2026-11-27", "0.2.0").format("A."),
+    CHANGES.replace("### Fixed\n", "").format("A."),
+    CHANGES.format("A bullet\n  of two lines."),
+):
+    require(len(list(changelog.faults(wrong))) == 1, f"changelog: {list(changelog.faults(wrong))}")
