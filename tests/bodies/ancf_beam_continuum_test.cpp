@@ -8,7 +8,7 @@ namespace polybody {
 using namespace laws;
 namespace ancf_beam_continuum_test {
 
-/// Different axial and shear times, a section that is not square.
+/// Bar with different damping times for stretch and shear and with a section that is not square.
 template <Locking locking>
 struct ContinuumCase {
   static Bar bar() {
@@ -25,7 +25,8 @@ using CuredCase = ContinuumCase<Locking::cured>;
 bool const ancf_beam_continuum_obey[] = {obeys<LockingCase, BodyLaws, FlexibleBodyLaws>("AncfContinuum"),
                                          obeys<CuredCase, BodyLaws, FlexibleBodyLaws>("AncfCuredContinuum")};
 
-// A homogeneous deformation r = F X, in the bar's axes: E = ½ (FᵀF − 1) everywhere, S and the energy by Hooke's law.
+// Homogeneous deformation r = F X in the axes of the bar: E = ½ (FᵀF − 1) everywhere. S and the energy follow from
+// Hooke's law.
 struct Homogeneous {
   Mat3 f, e;
   double volume = 1.3 * 0.25 * 0.18, mu = 2e4 / 2.6, lambda = 0.3 * 2e4 / (1.3 * 0.4);
@@ -35,7 +36,7 @@ struct Homogeneous {
     f << 1.1, 0.05, -0.02, 0.1, 0.92, 0.07, -0.03, 0.04, 1.06;
     e = 0.5 * (f.transpose() * f - Mat3::Identity());
   }
-  /// Hooke's law in full, the stresses S₁₂ and S₁₃ times `shear`.
+  /// Full Hooke's law, with the stresses S₁₂ and S₁₃ multiplied by `shear`.
   Mat3 stress(double shear) const {
     Mat3 s = lambda * e.trace() * Mat3::Identity() + 2 * mu * e;
     for (int j = 1; j < 3; ++j) s(0, j) = s(j, 0) = shear * s(0, j);
@@ -69,15 +70,15 @@ TEST(AncfContinuum, HomogeneousDeformationObeysHookesLaw) {
   h.check(LockingCase::body(along_x()), h.stress(1.0));
 }
 
-// The cure leaves Hooke's law as it is, but for the shear correction.
+// The continuum element without locking keeps Hooke's law, except for the shear correction.
 TEST(AncfCuredContinuum, HomogeneousDeformationObeysHookesLawWithCorrectedShear) {
   Homogeneous const h;
   h.check(CuredCase::body(along_x()), h.stress(h.k));
 }
 
-// Curved by κ and twisted by τ to first order: r_y = e₂ − κ s e₁ + τ s e₃, r_z = e₃ − τ s e₂ at the nodes, r_x along
-// the normal. At rest in y, z, so stretch, shear and E₂₂ are of second order in δ: the energy is ½ L (EI κ² + GJ τ²) to
-// fourth.
+// Curvature κ and twist τ to first order: r_y = e₂ − κ s e₁ + τ s e₃, r_z = e₃ − τ s e₂ at the nodes, r_x along the
+// normal. Velocities in y and z are zero. Stretch, shear and E₂₂ are of second order in δ, so the energy is ½ L (EI
+// κ² + GJ τ²) to fourth order.
 template <class B>
 double energy_of(B const& body, double kappa, double tau) {
   VecX q(body.coordinates());
@@ -93,7 +94,7 @@ double energy_of(B const& body, double kappa, double tau) {
   return sum;
 }
 
-// The cured element bends with EI and twists with GJ of the bar.
+// The element without locking has the bending stiffness EI and the torsional stiffness GJ of the bar.
 TEST(AncfCuredContinuum, BendsAndTwistsWithTheBarsStiffnesses) {
   BarConstants const c = constants(along_x());
   auto const body = CuredCase::body(along_x());
@@ -102,8 +103,8 @@ TEST(AncfCuredContinuum, BendsAndTwistsWithTheBarsStiffnesses) {
   EXPECT_NEAR(energy_of(body, 0, d), 0.5 * 1.3 * c.GJ * d * d, 1e-5 * c.GJ * d * d);
 }
 
-// The element that locks bends with the constrained modulus, EI (1 − ν)/((1 + ν)(1 − 2ν)) [CASES S10], and twists with
-// the polar moment, G (I_y + I_z): it knows no warping.
+// The locking element bends with the constrained modulus, EI (1 − ν)/((1 + ν)(1 − 2ν)) (S10, derived in closed form).
+// It twists with the polar moment, G (I_y + I_z), because it has no warping.
 TEST(AncfContinuum, BendsWithTheConstrainedModulusAndTwistsWithThePolarMoment) {
   BarConstants const c = constants(along_x());
   auto const body = LockingCase::body(along_x());

@@ -1,4 +1,4 @@
-// Curved references, pretension, packs of elements, and bars that are refused.
+// Curved reference configurations, pretension, SIMD batches of elements, and refused bars.
 
 #include <polybody/bodies/ancf/ancf_beam.hpp>
 #include <polybody/bodies/shared/element_batches.hpp>
@@ -24,7 +24,7 @@ auto as_span(V const& x) {
 std::span<double> mutable_view(VecX& x) { return {x.data(), std::size_t(x.size())}; }
 
 double const radius = 2.0, twist = 0.4;  // [m], [rad/m]
-/// An arc in the x–y plane whose sections turn about its tangent.
+/// Arc in the x–y plane whose sections rotate about its tangent.
 Placement curve(double s) {
   double const a = s / radius;
   return {radius * Vec3(std::sin(a), 1 - std::cos(a), 0),
@@ -44,7 +44,7 @@ VecX reference_of(B const& body) {
   body.reference(mutable_view(q));
   return q;
 }
-/// Some far deformation: the number of its seed.
+/// Large random deformation; its number is the seed.
 VecX deformed(VecX const& q, unsigned seed) {
   std::mt19937 random{seed};
   std::uniform_real_distribution<double> number(-0.3, 0.3);
@@ -109,7 +109,7 @@ TYPED_TEST(AncfReference, CurvedElementsHaveTheirOwnForceAndTangent) {
   }
 }
 
-// Straight and without twist, a curve gives the straight bar again, by the other way through the code.
+// A straight curve without twist gives the straight bar, through the code of curves.
 TYPED_TEST(AncfReference, StraightCurveIsTheStraightBar) {
   TypeParam const straight = TypeParam::from(bar(), 3),
                   curved = TypeParam::from(bar(), 3, [](double s) { return Placement{Vec3(s, 0, 0)}; });
@@ -127,7 +127,7 @@ TYPED_TEST(AncfReference, StraightCurveIsTheStraightBar) {
   }
 }
 
-// A section whose centroid stays on the axis sweeps the volume A L of the straight bar (Pappus).
+// A section with its centroid on the axis sweeps the volume A L of the straight bar (Pappus).
 TYPED_TEST(AncfReference, CurvedBarHasTheMassOfTheStraightOne) {
   TypeParam const body = TypeParam::from(bar(), 6, curve);
   VecX const q = reference_of(body);
@@ -138,9 +138,9 @@ TYPED_TEST(AncfReference, CurvedBarHasTheMassOfTheStraightOne) {
   EXPECT_NEAR(energy, 0.5 * 45 * 1.3 * 0.25 * 0.18, 1e-13 * energy);
 }
 
-// In the reference the section force is the pretension N along the axis. So the ends of the straight bar are pulled by
-// it and nothing else is; and while the axis stretches by the rate 1 at constant sections, r˙ = r, the force has the
-// power −N L (of a curve: as the cubic meets its tangent).
+// In the reference state the section force is the pretension N along the axis. The ends of the straight bar have the
+// force N, and the other forces are zero. If the axis stretches at the rate 1 with constant sections, r˙ = r, the
+// power of the force is −N L. (On a curve this holds to the accuracy of the cubic's tangent.)
 TYPED_TEST(AncfReference, PretensionIsTheSectionForceOfTheReference) {
   Bar tight = bar();
   tight.pretension = 30.0;
@@ -164,7 +164,8 @@ TYPED_TEST(AncfReference, PretensionIsTheSectionForceOfTheReference) {
   }
 }
 
-// Packs and the few elements left over give what the elements give one by one; curved elements go one by one.
+// SIMD vectors of elements and the remaining elements give the results of single elements. Curved elements are
+// computed one by one.
 TYPED_TEST(AncfReference, BatchesEqualElementsOneByOne) {
   for (bool const bent : {false, true}) {
     Index const n = 7;
@@ -192,7 +193,7 @@ TYPED_TEST(AncfReference, BatchesEqualElementsOneByOne) {
   }
 }
 
-// --- what is refused
+// --- refused input
 
 Bar by_constants() {
   return {.length = 1.0,
@@ -239,14 +240,14 @@ TEST(AncfBeam, RefusesCurvesThatNoBarFollows) {
   auto const refused_curve = [](Bar const& b, Index n, ReferenceCurve const& c) {
     return refusal([&] { (void)AncfBeam<>::from(b, n, c); });
   };
-  // half height 0.125 m is more than a radius of curvature of 0.1 m
+  // half height 0.125 m exceeds the radius of curvature of 0.1 m
   auto const sharp = [](double s) {
     return Placement{0.1 * Vec3(std::sin(s / 0.1), 1 - std::cos(s / 0.1), 0), exp_so3<double>(Vec3(0, 0, s / 0.1))};
   };
   Bar b = bar();
   b.length = 0.3;
   EXPECT_TRUE(has(refused_curve(b, 12, sharp), "element 0 is turned inside out"));
-  b.section = Rectangle{.height = 0.05, .width = 0.3};  // … but not across
+  b.section = Rectangle{.height = 0.05, .width = 0.3};  // width across the plane of curvature is allowed
   EXPECT_NO_THROW((void)AncfBeam<>::from(b, 12, sharp));
   b.section = Circle{.radius = 0.11};
   EXPECT_TRUE(has(refused_curve(b, 12, sharp), "element 0 is turned inside out"));

@@ -35,7 +35,7 @@ AncfBeam<> straight() {
   return AncfBeam<>::from(bar, elements);
 }
 
-/// q of a deformation given node by node as the 3×4 matrix [r r_x r_y r_z] of the node's arc length.
+/// Coordinates q of a deformation, given at each node as the 3×4 matrix [r r_x r_y r_z] of the node's arc length.
 template <class F>
 VecX nodes(F&& node) {
   VecX q(12 * (elements + 1));
@@ -54,7 +54,7 @@ double energy(VecX const& q) {
   return sum;
 }
 
-/// Γ, K and the section's strains in the middle of each element, their resultants, and the energy.
+/// Γ, K and the strains of the section in the middle of each element, their resultants, and the energy.
 void expect_strains(VecX const& q, Vec3 const& gamma, Vec3 const& kappa, Vec3 const& section) {
   AncfBeam<> const beam = straight();
   Vec3 const ga(900, 300, 200), ei(25, 60, 40), s(900, 900, 300);
@@ -84,7 +84,7 @@ TEST(AncfElasticLine, ShearsAreGammaTwoAndThree) {
                  Vec3::Zero());
 }
 
-// Sections that stretch and shear in themselves do so alone: the frame's strains do not notice.
+// Stretch and shear within a section have no effect on the strains of its frame.
 TEST(AncfElasticLine, SectionStrainsAreOfTheSectionAlone) {
   Mat3 gradients = Mat3::Identity();
   gradients.col(1) = Vec3(0, 1.1, 0);
@@ -93,9 +93,9 @@ TEST(AncfElasticLine, SectionStrainsAreOfTheSectionAlone) {
                  {0.5 * (1.21 - 1), 0.5 * (0.85 - 1), 0.22});
 }
 
-// r_y and r_z turn by θ an element and are linear in between, so they point along atan((2ξ − 1) T), T = tan(θ/2), from
-// the middle; their rate is 2T/l/(1 + (2ξ − 1)² T²). With (2ξ − 1)² = 1/3 at the two Gauss points: θ/l (1 − θ⁴/180 +
-// …).
+// r_y and r_z rotate by θ per element and are linear in between. They point along atan((2ξ − 1) T), T = tan(θ/2),
+// from the middle. Their rotation per length is 2T/l/(1 + (2ξ − 1)² T²). With (2ξ − 1)² = 1/3 at the two Gauss
+// points: θ/l (1 − θ⁴/180 + …).
 TEST(AncfElasticLine, TurningSectionsAreCurvatureAndTwist) {
   double const theta = 0.3, t = std::tan(0.5 * theta), middle = 2.0 * t / l, gauss = middle / (1.0 + t * t / 3.0);
   EXPECT_NEAR(gauss * l / theta, 1.0 - std::pow(theta, 4) / 180, std::pow(theta, 6) / 100);
@@ -117,8 +117,9 @@ TEST(AncfElasticLine, TurningSectionsAreCurvatureAndTwist) {
   }
 }
 
-// The nodes of a circle in pure bending: r_x along the tangent, sections across it. What the cubic misses of the circle
-// is stretch of order θ³: compared with bending in energy, EA l² θ⁴/EI times a small number.
+// Nodes of a circle in pure bending: r_x along the tangent, sections normal to it. The difference between the cubic
+// and the circle is a stretch of order θ³. Its energy compared with that of bending is EA l² θ⁴/EI times a small
+// number.
 TEST(AncfElasticLine, ArcHasTheEnergyOfPureBending) {
   double const theta = 0.1, radius = l / theta;
   VecX const q = nodes([&](double s) {
@@ -128,7 +129,8 @@ TEST(AncfElasticLine, ArcHasTheEnergyOfPureBending) {
   EXPECT_NEAR(energy(q), 0.5 * 40 / (radius * radius) * 1.3, 1e-5 * energy(q));
 }
 
-// Aρ times the Hermite mass (thesis Eq. 3.18) for r and r_x, Iρ l/6 [2 1; 1 2] for r_y (about z) and r_z (about y).
+// Aρ times the Hermite mass matrix [Wallin 2016, Eq. 3.18] for r and r_x, Iρ l/6 [2 1; 1 2] for r_y (about z) and r_z
+// (about y).
 TEST(AncfElasticLine, MassIsTheConsistentOne) {
   Mat<double, 24, 24> m, expected = Mat<double, 24, 24>::Zero();
   std::vector<double> const q(60);
@@ -149,7 +151,8 @@ TEST(AncfElasticLine, MassIsTheConsistentOne) {
   EXPECT_LT((m - expected).norm(), 1e-14);
 }
 
-// The stress of a bar that is stretched at the rate ε̇ is EA (ε + τ ε̇); of one that twists, GJ τ κ̇.
+// The axial force of a bar with the strain rate ε̇ is EA (ε + τ ε̇). The torque of a twisting bar has the viscous
+// part GJ τ κ̇.
 TEST(AncfElasticLine, DampingIsKelvinVoigt) {
   AncfBeam<> const beam = straight();
   VecX const q = nodes([](double s) { return node({1.02 * s, 0, 0}, Vec3(1.02, 1, 1).asDiagonal()); });
@@ -173,8 +176,8 @@ TEST(AncfElasticLine, DampingIsKelvinVoigt) {
   EXPECT_NEAR(power(twisting), -1.3 * 25 * 0.02 * 0.5 * 0.5, 1e-10);
 }
 
-// A marker off the axis is the material point r + y r_y + z r_z; its axes are r_y made a unit vector, the section's
-// normal, and what completes them.
+// A marker off the axis is the material point r + y r_y + z r_z. Its axes are the normalised r_y, the normal of the
+// section, and the vector that completes the right-handed frame.
 TEST(AncfElasticLine, MarkerIsTheMaterialPointAndTheSectionsFrame) {
   AncfBeam<> const beam = straight();
   Mat3 gradients;

@@ -28,7 +28,7 @@ bool const ancf_cable_obey[] = {
 
 static_assert(AlikeElements<AncfCable<>>);
 
-// A bar in the plane z = 0 moves as the planar cable: mass, force and tangent of the same numbers.
+// A bar in the plane z = 0 agrees with the planar cable in mass, force and tangent.
 template <class Strain>
 void expect_planar_numbers() {
   Bar bar = SpatialCableCase<Strain>::bar();
@@ -66,7 +66,7 @@ void expect_planar_numbers() {
         EXPECT_NEAR(n(lifted(i), lifted(j)), m(i, j), 1e-15 * m.norm());
       }
     }
-    for (Index i = 0; i < 4; ++i) EXPECT_NEAR(g[3 * i + 2], 0.0, 1e-12 * f.norm());  // nothing leaves the plane
+    for (Index i = 0; i < 4; ++i) EXPECT_NEAR(g[3 * i + 2], 0.0, 1e-12 * f.norm());  // no component out of the plane
   }
 }
 TEST(SpatialCable, InAPlaneEqualsThePlanarCable) {
@@ -80,7 +80,7 @@ VecX of(AncfCable<> const& cable) {
   return q;
 }
 
-// The thesis' Eq. 3.18, (ρA l/420) [156, 22l, 54, −13l; …] for each component.
+// Mass matrix of Wallin 2016, Eq. 3.18, (ρA l/420) [156, 22l, 54, −13l; …] for each component.
 TEST(SpatialCable, MassIsThatOfTheThesis) {
   AncfCable<> const cable =
       AncfCable<>::from({.length = 1.4, .constants = BarConstants{.EA = 900, .EI = 40, .mass_per_length = 3.0}}, 2);
@@ -95,7 +95,8 @@ TEST(SpatialCable, MassIsThatOfTheThesis) {
     for (int j = 0; j < 12; ++j) EXPECT_NEAR(m(i, j), i % 3 == j % 3 ? expected(i / 3, j / 3) : 0.0, 1e-15);
 }
 
-// A helix of radius a and rise 2πb a turn has curvature a/(a² + b²); its tangent is a unit vector of arc length.
+// A helix of radius a and rise 2πb per revolution has the curvature a/(a² + b²). Its derivative by arc length is a
+// unit tangent.
 TEST(SpatialCable, KnowsTheCurvatureOfAHelix) {
   double const a = 2.0, b = 0.5, c = std::hypot(a, b), length = 4.0;
   auto const helix = [&](double s) {
@@ -111,7 +112,7 @@ TEST(SpatialCable, KnowsTheCurvatureOfAHelix) {
       {.length = length, .constants = BarConstants{.EA = 900, .EI = 40, .mass_per_length = 1.0}}, 16, helix);
   VecX const q = of(cable);
   double const bound =
-      std::pow(length / 16, 2) / 12.0 * a / std::pow(c, 4);  // of r″ of a cubic Hermite interpolant: l²/12 |r⁗|
+      std::pow(length / 16, 2) / 12.0 * a / std::pow(c, 4);  // error of r″ of a cubic Hermite interpolant: l²/12 |r⁗|
   for (double const s : {0.3, 1.1, 2.7, 3.9}) {
     Vec6 const strains = cable.section_strains(cable.at(s), view(q)),
                forces = cable.section_forces(cable.at(s), view(q));
@@ -134,13 +135,13 @@ TEST(SpatialCable, PretensionPullsAtTheEnds) {
   VecX const q = of(cable), rest = VecX::Zero(q.size());
   Vec<double, 12> f;
   cable.force<double>(0, view(q), view(rest), f);
-  EXPECT_NEAR(f[0], 30.0, 1e-12);  // it wants to be shorter
+  EXPECT_NEAR(f[0], 30.0, 1e-12);  // the pretension shortens the cable
   EXPECT_NEAR(f[6], -30.0, 1e-12);
   EXPECT_NEAR(cable.section_forces(cable.at(0.7), view(q))[0], 30.0, 1e-12);
 }
 
-// Spinning about its own axis a bent cable is not damped, whatever it cannot know of its roll; nor is a straight one,
-// whose κ = 0.
+// A bent cable that spins about its own axis has no damping, although it has no coordinate of roll. A straight cable
+// with κ = 0 has none either.
 TEST(SpatialCable, SpinAboutItselfIsNotDamped) {
   Bar const bar{.length = 2.0,
                 .constants = BarConstants{.EA = 900, .EI = 40, .mass_per_length = 1.0},

@@ -21,7 +21,7 @@ MatX unit_loads(Structure const& s, std::vector<Index> const& places) {
   return loads;
 }
 
-/// The static answer of the whole free model and of the basis, both with the inertia that balances the load.
+/// Static response of the complete free model and of the basis, both with the inertia that balances the load.
 TEST(AttachmentModes, AnswerTheirLoadsAsTheWholeModelDoes) {
   Structure const s = bar();
   MatX const loads = unit_loads(s, {0, 2, 20, 4}), basis = attachment_modes(s, loads, 1), rigid = rigid_motions(s),
@@ -52,7 +52,7 @@ TEST(AttachmentModes, HoldTheFreeModesThatAreAskedFor) {
   }
 }
 
-TEST(AttachmentModes, LeaveOutWhatRepeats) {  // two equal loads; forces at both ends along a free bar with the inertia
+TEST(AttachmentModes, LeaveOutWhatRepeats) {  // two equal loads; forces at both ends along a free bar, with the inertia
   Structure const s = bar(1);
   EXPECT_EQ(attachment_modes(s, unit_loads(s, {1, 1, 2}), 0).cols(), 2);
 }

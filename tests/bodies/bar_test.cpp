@@ -26,12 +26,12 @@ Bar rectangular(double height, double width) {
 }
 Bar given() { return {.length = 10.0, .constants = BarConstants{.EA = 2.8e7, .EI = 1.4e4, .mass_per_length = 1.2}}; }
 
-/// GJ/G of a rectangle.
+/// J = GJ/G of a rectangle.
 double torsion_constant(double height, double width) {
   return constants(rectangular(height, width)).GJ / (2.1e11 / 2.5);
 }
 
-// A number that decides physics cannot be left out.
+// Physical constants have no default.
 static_assert(!std::is_default_constructible_v<Bar>);
 static_assert(!std::is_default_constructible_v<Circle>);
 static_assert(!std::is_default_constructible_v<Rectangle>);
@@ -58,7 +58,7 @@ TEST(Bar, ShearCoefficientsAreThoseOfCowper) {
   EXPECT_DOUBLE_EQ(c.GA_z.value(), c.GA);
 }
 
-// `height` lies along y, so it counts with its third power in the plane's EI, about z.
+// `height` is the dimension along y. It enters EI about z, the bending stiffness of the plane, with its third power.
 TEST(Bar, RectangleBendsAboutZOverItsHeight) {
   double const h = 0.03, w = 0.02;
   BarConstants const c = constants(rectangular(h, w));
@@ -70,13 +70,13 @@ TEST(Bar, RectangleBendsAboutZOverItsHeight) {
   EXPECT_DOUBLE_EQ(c.rotary_inertia_y.value(), 7800 * h * w * w * w / 12.0);
 }
 
-// 0.1406 a⁴, and for sides 2 : 1 0.229, 10 : 1 0.312 a b³  [Timoshenko & Goodier 1970, §109, Table]; more digits
-// from its series.
+// Torsion constant 0.1406 a⁴ of a square, and 0.229 (sides 2 : 1) and 0.312 (10 : 1) times a b³  [Timoshenko &
+// Goodier 1970, §109, Table]; further digits from the series.
 TEST(Bar, RectangleTwistsAsSaintVenantSays) {
   EXPECT_NEAR(torsion_constant(1.0, 1.0), 0.1405770, 1e-7);
   EXPECT_NEAR(torsion_constant(2.0, 1.0) / 2.0, 0.2287, 5e-5);
   EXPECT_NEAR(torsion_constant(10.0, 1.0) / 10.0, 0.3123, 5e-5);
-  EXPECT_DOUBLE_EQ(torsion_constant(2.0, 1.0), torsion_constant(1.0, 2.0));  // whichever side is the longer
+  EXPECT_DOUBLE_EQ(torsion_constant(2.0, 1.0), torsion_constant(1.0, 2.0));  // independent of the order of the sides
   double const b = 100.0, t = 1.0;                                           // a thin strip: b t³/3 (1 − 0.630 t/b)
   EXPECT_NEAR(torsion_constant(b, t), b * t * t * t / 3.0 * (1.0 - 0.630248 * t / b), 1e-5);
 }
@@ -98,7 +98,7 @@ TEST(Bar, GivenConstantsPassThrough) {
   EXPECT_FALSE(c.GA_z.has_value());
 }
 
-// Each number that cannot be meant is refused, and the message says which.
+// Each number outside its range is refused, and the message names it.
 struct BadBar {
   char const* quantity;
   std::function<Bar(double)> make;

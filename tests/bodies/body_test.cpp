@@ -20,7 +20,7 @@ static_assert(Body<planar::AncfCable<planar::EngineeringStrain>>);
 
 static_assert(!Body<int> && !Body<Bar> && !Body<Published<double>> && !Body<planar::SimoVuQuoc>);
 
-// Whatever is missing, it is no body any more.
+// A type that lacks any required member is not a body.
 struct Weightless : planar::Rigid {
   void gravity() = delete;
 };
@@ -45,7 +45,8 @@ TEST(Part, IsAWindowIntoTheNumbers) {
   EXPECT_EQ(x, (std::vector<double>{0, 1, 2, -1, -2, 5}));
 }
 
-// The default for a body without a closed form against differences of Jᵀw, which know nothing of dual numbers.
+// The default load stiffness of a body without a closed form uses dual numbers. It is compared with finite
+// differences of Jᵀw.
 TEST(LoadStiffness, ByDualsIsTheDerivativeOfThePulledWrench) {
   Bar const bar{.length = 1.2, .constants = BarConstants{.EA = 900, .EI = 40, .mass_per_length = 2.0}};
   auto const cable = planar::AncfCable<>::from(bar, 3);
@@ -75,7 +76,7 @@ TEST(LoadStiffness, ByDualsIsTheDerivativeOfThePulledWrench) {
   }
 }
 
-/// The frame of at(s, y) in the undeformed body.
+/// Frame of at(s, y) in the undeformed body.
 template <Body B>
 Frame<double> reference_frame(B const& body, double s, double y) {
   std::vector<double> q(std::size_t(body.coordinates())), v(std::size_t(body.speeds()));
@@ -88,7 +89,7 @@ Frame<double> reference_frame(B const& body, double s, double y) {
   return out.frame;
 }
 
-// One bar, one material point, whatever the formulation.
+// `at` gives the same material point of a bar in all formulations.
 TEST(Bodies, AtIsTheSameMaterialPointInAll) {
   Bar const bar{.length = 1.2,
                 .section = Rectangle{.height = 0.05, .width = 0.03},

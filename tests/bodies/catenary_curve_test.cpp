@@ -11,9 +11,9 @@
 namespace polybody {
 namespace catenary_curve_test {
 
-// A uniform cable balances its weight: the vertical part of the tension grows by the weight per length while the
-// horizontal part stays, so the slope dz/dx grows by the same amount in each metre of arc length. Slack from 2e-6 to
-// 1e3 times the span, with the end above and below.
+// Equilibrium of a uniform cable. The vertical component of the tension grows by the weight per length, and the
+// horizontal component is constant. So the slope dz/dx grows by a constant amount per metre of arc length. Slack from
+// 2e-6 to 1e3 times the span, with the end above and below.
 TEST(Catenary, EndsAtTheEndWithASlopeThatGrowsWithTheArcLength) {
   for (double const slack : {2e-6, 1e-2, 1.0, 1e3})
     for (double const rise : {-0.7, 0.0, 2.0}) {
@@ -34,7 +34,7 @@ TEST(Catenary, EndsAtTheEndWithASlopeThatGrowsWithTheArcLength) {
         Placement const at = curve(s);
         EXPECT_LT((at.axes.transpose() * at.axes - Mat3::Identity()).norm(), 1e-12);
         EXPECT_NEAR(at.axes.determinant(), 1.0, 1e-12);
-        if (slack > 10.0) continue;  // too curved at its lowest point for this difference
+        if (slack > 10.0) continue;  // the curvature at the lowest point is too large for this difference
         Vec3 const tangent = (curve(s + h).origin - curve(s - h).origin) / (2.0 * h);
         EXPECT_LT((tangent - at.axes.col(0)).norm(), 1e-5) << slack << ' ' << rise;
       }
@@ -48,7 +48,7 @@ TEST(Catenary, RefusesWhatHangsInNoCatenary) {
   EXPECT_TRUE(has(refusal([&] { catenary({3, 4, 0}, 6.0, Vec3::Zero()); }), "direction of the weight is zero"));
 }
 
-/// Coordinates of the reference state of a body.
+/// Coordinates of a body in its reference state.
 template <class B>
 VecX reference(B const& body) {
   Model<Bodies<B>, Joints<>> model;
@@ -56,8 +56,8 @@ VecX reference(B const& body) {
   return model.reference_state().q;
 }
 
-// Laid along the curve, nodes lie on it; strains are those of a straight natural shape: the arc is bent, the chain of a
-// natural shape is not.
+// The nodes of a cable along the curve lie on it. `from` has a straight natural shape, so the arc is bent.
+// `naturally_curved` has no bending moment.
 TEST(Catenary, IsWhereCablesLie) {
   using Flat = planar::AncfCable<EngineeringStrain>;
   Bar const bar{.length = 3.0,

@@ -26,7 +26,7 @@ using Space = Changing<Rigid<>>;
 
 Placement const placed = Placement::at({0.3, -0.2, 0.0});
 
-/// 5 kg that lose 2 kg/s.
+/// Body of 5 kg that loses 2 kg/s.
 Plane leaking() {
   return Plane([](double t) { return planar::Rigid(5.0 - 2.0 * t, 0.4 - 0.1 * t, placed); });
 }
@@ -52,8 +52,8 @@ bool const space_obeys = laws::obeys<SpaceCase, laws::BodyLaws>("ChangingInSpace
 using Push = PointForce<>;
 using Pin = Joint<planar::Revolute, Constraint>;
 
-/// Error of height and speed of a rocket after a second beside [Tsiolkovsky 1903]: v = u ln(m₀/m) − g t, and its
-/// integral.
+/// Errors of height and velocity of a rocket after one second relative to [Tsiolkovsky 1903]: v = u ln(m₀/m) − g t,
+/// and its integral.
 template <class I>
 double error_of_rocket(I const& integrator, double h) {
   constexpr double m0 = 5.0, rate = 2.0, u = 40.0, g = 9.81;
@@ -88,7 +88,7 @@ TEST(Changing, ATorqueTurnsWhatIsLeft) {
   EXPECT_NEAR(energy(model, x).kinetic, 0.5 * 0.3 * x.v[2] * x.v[2], 1e-9);
 }
 
-/// A rod on a pin whose mass is m₀ (1 − t/2), or stays: angle after a second, and force in the pin.
+/// Rod on a pin with the mass m₀ (1 − t/2) or a constant mass: angle after one second, and force in the pin.
 template <class Rod, class Policy>
 std::array<double, 2> swing(Rod const& body) {
   using Hinge = Joint<planar::Revolute, Policy>;
@@ -106,7 +106,7 @@ TEST(Changing, APendulumSwingsAsOneWhoseMassStays) {
   auto const by_rows = swing<Plane, Constraint>(leaks), by_angle = swing<Plane, Recursive>(leaks);
   EXPECT_NEAR(by_rows[0], stays[0], 1e-9);
   EXPECT_NEAR(by_rows[1], 0.5 * stays[1], 1e-8);
-  EXPECT_NEAR(by_angle[0], stays[0], 1e-3);  // of another discretisation
+  EXPECT_NEAR(by_angle[0], stays[0], 1e-3);  // with another discretisation
   EXPECT_NEAR(by_angle[1], 0.5 * stays[1], 1e-2);
 }
 

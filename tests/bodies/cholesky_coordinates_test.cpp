@@ -1,4 +1,4 @@
-// Cholesky coordinates: identity mass, the laws of every body, the same motion.
+// Cholesky coordinates: identity mass matrix, law tests of bodies, and the same motion.
 #include <polybody/bodies/ancf/cholesky_coordinates.hpp>
 
 #include <polybody/bodies/ancf/ancf_cable.hpp>
@@ -22,7 +22,7 @@ using PlanarCable = CholeskyCoordinates<planar::AncfCable<>>;
 static_assert(Body<Cable> && Body<PlanarCable>);
 
 struct CholeskyCase {
-  static constexpr double rounding = 100.0;  // e = L⁻ᵀ (Lᵀ e): the condition of L
+  static constexpr double rounding = 100.0;  // e = L⁻ᵀ (Lᵀ e): condition number of L
   static Bar bar() {
     return {.length = 1.3,
             .constants = BarConstants{.EA = 40.0, .EI = 3.0, .mass_per_length = 0.7},

@@ -45,7 +45,7 @@ struct ElementBatches : testing::Test {};
 using Bodies_ = testing::Types<planar::AncfCable<>, planar::AncfCable<planar::EngineeringStrain>, planar::Lrvf>;
 TYPED_TEST_SUITE(ElementBatches, Bodies_);
 
-// Packs and the few elements left over give what the elements give one by one, in order.
+// SIMD vectors of elements and the remaining elements give the results of single elements, in order.
 TYPED_TEST(ElementBatches, EqualElementsOneByOne) {
   constexpr int n = TypeParam::element_columns;
   for (Index const elements : {1, 2, 3, 4, 5, 7, 8, 11}) {
@@ -74,7 +74,7 @@ TYPED_TEST(ElementBatches, EqualElementsOneByOne) {
   }
 }
 
-// However a loop is cut at multiples of the pack, each element gives the same bits.
+// A loop may be divided at any multiple of the SIMD vector. The results of each element are bitwise identical.
 TYPED_TEST(ElementBatches, DoNotDependOnHowALoopIsCut) {
   constexpr int n = TypeParam::element_columns;
   Index const elements = 4 * 5 + 3;

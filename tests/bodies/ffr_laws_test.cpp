@@ -1,4 +1,4 @@
-// The floating frame of reference in space obeys the laws of every body: nodal coordinates, with and without geometric
+// Law tests of bodies for the spatial floating frame of reference: nodal coordinates, with and without geometric
 // stiffening, modes, mean axes, and a frame of two bars.
 #include <polybody/bodies/ffr/ffr.hpp>
 
@@ -27,7 +27,7 @@ struct StiffenedFfrCase : NodalFfrCase {
   static constexpr double deformation = 0.03;  // second-order theory
   static Ffr body(Bar const& bar) { return Ffr::from(bar, 2, {.stiffening = true}); }
 };
-// Modes of the free bar: the frame follows the mean motion.
+// Modes of the free bar. The frame follows the mean motion.
 struct MeanAxesFfrCase : StiffenedFfrCase {
   static Ffr body(Bar const& bar) {
     Structure const s = structure_of(bar, 3);

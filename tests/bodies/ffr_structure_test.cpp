@@ -1,5 +1,5 @@
-// What a floating frame's body is made of: inertia shape integrals, intermediate element frames, bases; and what is
-// refused.
+// Components of a floating frame body: inertia shape integrals, intermediate element frames, bases, and refused
+// input.
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/ffr/ffr.hpp>
@@ -20,7 +20,8 @@ Bar steel(double length, Placement const& place = {}) {
 }
 Placement along(Vec3 const& from, Vec3 const& direction) { return {from, intermediate_axes(direction)}; }
 
-/// Mass, ∫ρ u₀ and the inertia tensor about the origin of bars, each by `Rigid` and the parallel-axis theorem.
+/// Mass, ∫ρ u₀ and the inertia tensor about the origin of bars. Each is computed by `Rigid` and the parallel-axis
+/// theorem.
 struct Expected {
   double mass = 0.0;
   Vec3 first = Vec3::Zero();
@@ -37,7 +38,8 @@ struct Expected {
   }
 };
 
-/// A frame whose bars point along x, along and against the axis y that makes Eq. A.2 singular, and anywhere.
+/// Frame with bars along x, parallel and antiparallel to the axis y that makes Eq. A.2 singular, and in general
+/// directions.
 std::vector<Bar> crooked() {
   return {steel(0.7), steel(0.4, along({0.7, 0, 0}, {0, 1, 0})), steel(0.3, along({0.7, 0.4, 0}, {0.3, -0.4, 0.6})),
           steel(0.5, along({0, 0, 0}, {0, -1, 0}))};
@@ -60,8 +62,8 @@ TEST(Structure, InertiaOfARigidFrameIsExactWhateverTheMesh) {
   }
 }
 
-// A rigid motion of all nodes is a rigid motion of every material point, off-axis ones, too: with Φ the six
-// infinitesimal rigid motions ΦᵀMΦ is the inertia of the rigid frame, KΦ = 0, and first- and second-order integrals
+// A rigid motion of all nodes is a rigid motion of every material point, including points off the axis. With the six
+// infinitesimal rigid motions Φ, ΦᵀMΦ is the inertia of the rigid frame and KΦ = 0. First- and second-order integrals
 // follow from it.
 TEST(Structure, RigidMotionsOfTheNodesCarryTheBody) {
   Structure const s = structure_of(crooked(), {2, 1, 2, 1});
@@ -84,7 +86,7 @@ TEST(Structure, RigidMotionsOfTheNodesCarryTheBody) {
     for (std::size_t p = 0; p < 6; ++p)
       EXPECT_NEAR(x.inertia_by[p][3 + k], change(symmetric_row[p], symmetric_column[p]), 1e-12 * e.inertia.norm())
           << k << ' ' << p;
-    // H = ∫ρ ũ S: for rotations it is J, for translations that of ∫ρ u₀
+    // H = ∫ρ ũ S: for rotations it is J, for translations it is the matrix of ∫ρ u₀
     EXPECT_LT((x.coupling.col(3 + k) - e.inertia.col(k)).norm(), 1e-12 * e.inertia.norm());
     EXPECT_LT((x.coupling.col(k) - e.first.cross(Vec3::Unit(k))).norm(), 1e-12 * e.first.norm());
   }
@@ -100,13 +102,13 @@ TEST(Structure, IntermediateAxesAreOrthonormalWherePointsEvenAlongY) {
   }
 }
 
-/// Frequencies of small vibrations in a frame that is held: those of (K, M) of the deformation alone.
+/// Frequencies of small vibrations in a fixed frame: those of (K, M) of the deformation alone.
 VecX held_frequencies(Ffr const& body) {
   return Eigen::GeneralizedSelfAdjointEigenSolver<MatX>(body.integrals().stiffness, body.integrals().mass_matrix)
       .eigenvalues()
       .cwiseSqrt();
 }
-/// … of the free body: of the whole mass matrix, less the rigid motions.
+/// Frequencies of the free body: those of the complete mass matrix, without rigid motions.
 VecX free_frequencies(Ffr const& body) {
   VecX q(body.coordinates());
   body.reference({q.data(), std::size_t(q.size())});
@@ -119,7 +121,7 @@ VecX free_frequencies(Ffr const& body) {
       .cwiseMax(0.0)
       .cwiseSqrt();
 }
-// E1, with EI = ρA = L = 1, other motions far away.
+// Beam of E1 with EI = ρA = L = 1; the frequencies of other motions are far away.
 Bar unit() {
   return {.length = 1.0,
           .constants = BarConstants{
@@ -127,7 +129,7 @@ Bar unit() {
 }
 double const clamped_free[3] = {3.516015268, 22.03449156, 61.69721441}, free_free[2] = {22.37328545, 61.67282287};
 
-// CASES E1: Craig–Bampton with five fixed-interface modes to 1e-3.
+// Euler–Bernoulli frequencies (E1): Craig–Bampton with five fixed-interface modes, tolerance 1e-3.
 TEST(Bases, GiveTheFrequenciesOfTheBeam) {
   Structure const s = structure_of(unit(), 16);
   Ffr const nodal(s, nodal_coordinates(s)), tied(s, held_modes(s, 4)), cb(s, craig_bampton(s, {0, 16}, 5));
@@ -148,7 +150,7 @@ TEST(Bases, GiveTheFrequenciesOfTheBeam) {
   expect("free–free", "Craig–Bampton, mean axes", free_frequencies(cb_mean), free_free);
 }
 
-// Mean axes: momentum and moment of momentum of the deformation vanish.
+// Mean axes: momentum and angular momentum of the deformation are zero.
 TEST(Bases, MeanAxesDecoupleTheFrame) {
   Structure const s = structure_of(crooked(), {2, 2, 2, 2});
   for (MatX const& basis : {free_interface_modes(s, 6), craig_bampton(s, {0, 4}, 2, true)}) {
@@ -159,7 +161,7 @@ TEST(Bases, MeanAxesDecoupleTheFrame) {
   }
 }
 
-// Statics does not depend on the frame: a free tip force on a clamped bar, from a frame tied to either end or simply
+// Statics is independent of the frame: a tip force on a clamped bar, with a frame fixed to either end or simply
 // supported.
 TEST(Bases, SimplySupportedFrameHasTheSameFrequencies) {
   Structure const s = structure_of(unit(), 8);
@@ -169,7 +171,8 @@ TEST(Bases, SimplySupportedFrameHasTheSameFrequencies) {
   for (int i = 0; i < 6; ++i) EXPECT_NEAR(fa[i] / fb[i], 1.0, 1e-7);
 }
 
-// A section is rigid: what a mode moves at (y, z) is what it moves on the axis, and its turn across the arm.
+// A section is rigid. The displacement of a mode at (y, z) is the displacement on the axis plus the rotation times
+// the offset.
 TEST(Ffr, PointsOffTheAxisMoveWithTheirSection) {
   Structure const s = structure_of(unit(), 3);
   Ffr const body(s, held_modes(s, 6));

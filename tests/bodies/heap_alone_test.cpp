@@ -1,5 +1,5 @@
-// No heap memory in a step: every call of every body, with Eigen watching its own allocations.
-// A program of its own, since the macros must stand before Eigen's first header.
+// Absence of heap allocations in a step: every function of every body, with Eigen's check of its own allocations.
+// This is a separate program, because the macros must be defined before the first header of Eigen.
 #undef NDEBUG
 #define EIGEN_RUNTIME_NO_MALLOC
 #include <stdexcept>
@@ -71,7 +71,7 @@ Bar const bar{.length = 1.2,
               .material = Material{.density = 7800, .young = 2e11},
               .damping = {.axial = 1e-3, .shear = 1e-3, .bending = 1e-3}};
 
-// The watch itself must bark.
+// Check of the check: an allocation is detected.
 TEST(Heap, TheWatchSeesAnAllocation) {
   NoHeap const watch;
   EXPECT_THROW(VecX(100).setZero(), std::logic_error);

@@ -1,4 +1,4 @@
-// The spatial Lrvf on a curved and twisted reference.
+// Spatial Lrvf with a curved and twisted reference configuration.
 
 #include <polybody/bodies/lrvf/lrvf.hpp>
 
@@ -11,7 +11,7 @@ using namespace laws;
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(BodyLaws);
 namespace lrvf_curved_test {
 
-/// A helix of curvature κ and torsion τ in its Frenet axes: R = exp(s (τ, 0, κ)), r = ∫ R e₁ ds = s Jl(s k) e₁.
+/// Helix of curvature κ and torsion τ in its Frenet axes: R = exp(s (τ, 0, κ)), r = ∫ R e₁ ds = s Jl(s k) e₁.
 ReferenceCurve helix(double curvature, double torsion) {
   return [=](double s) {
     Vec3 const k = s * Vec3(torsion, 0, curvature);
@@ -27,7 +27,7 @@ struct CurvedCase {
   }
   static Lrvf<> body(Bar const& bar) { return Lrvf<>::from(bar, 3, helix(1.5, 0.8)); }
 };
-/// The means of the laws, for a body that is not the straight bar of the laws themselves.
+/// Functions of the law tests for a body other than their straight bar.
 struct CurvedLrvf : testing::Test, BodyLaws<CurvedCase> {};
 
 TEST_F(CurvedLrvf, NodesStandOnTheCurveWithoutStrain) {
@@ -44,7 +44,7 @@ TEST_F(CurvedLrvf, NodesStandOnTheCurveWithoutStrain) {
   }
 }
 
-// Where the chord is not the arc, the laws of force, tangent and weight hold as on the straight bar.
+// The chord differs from the arc. The laws of force, tangent and weight hold as on the straight bar.
 TEST_F(CurvedLrvf, ForceIsTheGradientOfTheEnergyAndTheTangentThatOfTheForce) {
   VecX const q = configuration(), v = speeds();
   VecX const slope = gradient([&](VecX const& at) { return strain_energy(at); }, q);
@@ -60,7 +60,8 @@ TEST_F(CurvedLrvf, ForceIsTheGradientOfTheEnergyAndTheTangentThatOfTheForce) {
   EXPECT_NEAR(kinetic_energy(q, rigid_velocity(q, Vec3(1, 2, 3), Vec3::Zero())), 0.5 * 2.6 * 14.0, 1e-12);
 }
 
-// An arc stretched by ε about its centre, and one bent uniformly: the strain is ε, or the change of curvature, alone.
+// An arc with a radial stretch ε about its centre, and an arc with uniform bending. The only strain is ε, or the
+// change of curvature.
 TEST_F(CurvedLrvf, UniformStretchAndBendOfAnArcAreMeasuredExactly) {
   Bar arc = spatial_lrvf_bar();
   arc.placement = {};

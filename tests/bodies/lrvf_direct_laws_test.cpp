@@ -1,5 +1,5 @@
-// The laws of all bodies and of flexible ones for the spatial Lrvf with rotation vectors interpolated as they are.
-// Three of them speak of rigid motions of a bent body, which it fails: lrvf_direct_test.cpp measures by how much.
+// Law tests of all bodies and of flexible bodies for the spatial Lrvf with direct interpolation of rotation vectors.
+// Three of them concern rigid motions of a bent body and fail. lrvf_direct_test.cpp measures the errors.
 
 #include <polybody/bodies/lrvf/lrvf.hpp>
 

@@ -1,4 +1,4 @@
-// The spatial Lrvf with rotation vectors interpolated as they are: by how much it fails to be objective.
+// Error of objectivity of the spatial Lrvf with direct interpolation of rotation vectors.
 
 #include <polybody/bodies/lrvf/lrvf.hpp>
 
@@ -14,7 +14,7 @@ namespace lrvf_direct_test {
 
 double const pi = std::numbers::pi;
 
-/// One element of length 1.3 with EI about y as about z; standing along x, so that Ψ counts from the world's axes.
+/// One element of length 1.3 with equal EI about y and z. Its axis is x, so Ψ is measured from the world's axes.
 template <class I>
 Lrvf<I> element() {
   Bar bar = spatial_lrvf_bar();
@@ -25,17 +25,18 @@ Lrvf<I> element() {
 }
 double const l = 1.3, EI = 40;
 
-/// Bent by φ about z to either side of its middle, then carried by the turn a about x.
+/// Bent by φ about z symmetrically to its middle, then rotated by the angle a about x.
 VecX bent(double phi, double a) {
   VecX const q =
       nodes_of(1, [&](double i) { return Placement::at(Vec3((i - 0.5) * l, 0, 0), Vec3(0, 0, (i - 0.5) * phi)); });
   return carried(Placement::at(Vec3::Zero(), Vec3(a, 0, 0)), q);
 }
 
-/// What `Direct` makes of it. By the product of quaternions Ψ₂,₁ = A/sin(A/2) [cos(φ/4) sin(a/2) x ± sin(φ/4) p], where
-/// p = cos(a/2) z − sin(a/2) y and cos(A/2) = cos(a/2) cos(φ/4). Hence Ψ = a′ x in the middle, a′ = A cos(φ/4)
-/// sin(a/2)/sin(A/2), and Jr(Ψ), which turns by −a′/2 and scales by 2 sin(a′/2)/a′ across x, makes of Ψ₂ − Ψ₁ the turn
-/// l K of size 4 tan(φ/4) sin(a′/2)/sin(a/2), about z leaning by β = (a − a′)/2 towards −y. Here |a| < π.
+/// Strain of `Direct`. By the product of quaternions Ψ₂,₁ = A/sin(A/2) [cos(φ/4) sin(a/2) x ± sin(φ/4) p], with p =
+/// cos(a/2) z − sin(a/2) y and cos(A/2) = cos(a/2) cos(φ/4). Hence Ψ = a′ x in the middle, a′ = A cos(φ/4)
+/// sin(a/2)/sin(A/2). Across x, Jr(Ψ) rotates by −a′/2 and scales by 2 sin(a′/2)/a′. It maps Ψ₂ − Ψ₁ to the rotation
+/// l K. Its size is 4 tan(φ/4) sin(a′/2)/sin(a/2), and its axis is z inclined by β = (a − a′)/2 towards −y. Here |a|
+/// < π.
 struct Turn {
   double size, beta;
   Vec3 curvature() const { return size / l * Vec3(0, -std::sin(beta), std::cos(beta)); }
@@ -53,7 +54,7 @@ Vec6 strain(VecX const& q) {
   return beam.section_strains(beam.at(0.5), numbers(q));
 }
 
-// While every node turns about one axis from the placement, Ψ is that angle and both policies agree.
+// If every node rotates about one common axis from the placement, Ψ is that angle and both interpolations agree.
 TEST(DirectLrvf, TurnsAboutOneAxisAreMeasuredExactly) {
   for (double const turned : {0.0, 0.7, 2.0})
     for (double const phi : {0.1, 1.0}) {
@@ -64,7 +65,8 @@ TEST(DirectLrvf, TurnsAboutOneAxisAreMeasuredExactly) {
     }
 }
 
-// The failure [thesis §2.5]: a rigid turn changes the curvature, by exactly this much; `Objective` feels nothing.
+// Error of objectivity [Wallin 2016, §2.5]: a rigid rotation changes the curvature by exactly this amount.
+// `Objective` has no change.
 TEST(DirectLrvf, ARigidTurnAfterABendStrainsByTheDerivedAmount) {
   for (double const phi : {0.1, 1.0, 2.0}) {
     double const energy = 0.5 * EI * phi * phi / l;
@@ -80,7 +82,7 @@ TEST(DirectLrvf, ARigidTurnAfterABendStrainsByTheDerivedAmount) {
   }
 }
 
-// The same for small φ: U/U₀ − 1 = φ² [1/24 + a cot(a/2)/32 (2 cot(a/2)/a − 1/sin²(a/2))] + O(φ⁴); 1 % of φ² at a = 2.
+// Small φ: U/U₀ − 1 = φ² [1/24 + a cot(a/2)/32 (2 cot(a/2)/a − 1/sin²(a/2))] + O(φ⁴), which is 1 % of φ² at a = 2.
 TEST(DirectLrvf, SpuriousEnergyFallsWithTheSquareOfTheTurnOfAnElement) {
   double const a = 2.0, c = 1.0 / std::tan(0.5 * a), s = std::sin(0.5 * a);
   double const series = 1.0 / 24.0 + a * c / 32.0 * (2.0 * c / a - 1.0 / (s * s));
@@ -92,7 +94,7 @@ TEST(DirectLrvf, SpuriousEnergyFallsWithTheSquareOfTheTurnOfAnElement) {
   }
 }
 
-// So a rigid rotation meets a resistance: the power of the forces is −dU/da.
+// A rigid rotation meets a resistance: the power of the forces is −dU/da.
 TEST(DirectLrvf, ItsForcesDoWorkInARigidTurn) {
   double const phi = 1.0, a = 2.0;
   VecX const q = bent(phi, a), rest = VecX::Zero(12);
@@ -107,7 +109,8 @@ TEST(DirectLrvf, ItsForcesDoWorkInARigidTurn) {
   EXPECT_NEAR(objective.dot(v), 0.0, 1e-13);
 }
 
-// At a = π the nodes' vectors change to their complements: β changes sign, the curvature about y jumps by 2 K sin β.
+// At a = π the rotation vectors of the nodes change to their complements: β changes sign, and the curvature about y
+// jumps by 2 K sin β.
 TEST(DirectLrvf, CurvatureJumpsWhereTheNodesPassAHalfTurn) {
   double const phi = 1.0, step = 1e-9;
   Vec3 const before = strain<Direct>(bent(phi, pi - step)).tail<3>(),
@@ -116,15 +119,15 @@ TEST(DirectLrvf, CurvatureJumpsWhereTheNodesPassAHalfTurn) {
   double const jump = 2.0 * expected.size / l * std::sin(expected.beta);
   EXPECT_GT(jump, 0.07);
   EXPECT_LT((after - before - Vec3(0, jump, 0)).norm(), 1e-8);
-  // beyond, a counts from the other side
+  // beyond π, a is measured from the other side
   EXPECT_LT((strain<Direct>(bent(phi, 4.0)).tail<3>() - turn(phi, 4.0 - 2 * pi).curvature()).norm(), 1e-13);
-  // the other policy: nothing
+  // the other interpolation has no jump
   Vec6 const jumpless = strain<Objective>(bent(phi, pi + step)) - strain<Objective>(bent(phi, pi - step));
   EXPECT_LT(jumpless.norm(), 1e-14);
 }
 
-// Only one node beyond π: its vector is continued on the sheet of the other, |Ψ₂| > π, so the short way is
-// interpolated.
+// If only one node is beyond π, its vector is continued on the sheet of the other, |Ψ₂| > π. The interpolation
+// follows the shorter rotation.
 TEST(DirectLrvf, AnElementAcrossAHalfTurnTakesTheShortWay) {
   VecX const q = nodes_of(1, [&](double i) { return Placement::at(Vec3(i * l, 0, 0), Vec3(3.0 + 0.4 * i, 0, 0)); });
   EXPECT_NEAR(strain<Direct>(q)[3], 0.4 / l, 1e-13);

@@ -1,4 +1,4 @@
-// The laws of all bodies and of flexible ones for the spatial Lrvf with directors interpolated as they are.
+// Law tests of all bodies and of flexible bodies for the spatial Lrvf with direct interpolation of directors.
 
 #include <polybody/bodies/lrvf/director_interpolation.hpp>
 #include <polybody/bodies/lrvf/lrvf.hpp>

@@ -1,5 +1,5 @@
-// The laws of all bodies and of flexible ones for the spatial Lrvf with interpolated increments, and the equations that
-// hold in place of those that cannot.
+// Law tests of all bodies and of flexible bodies for the spatial Lrvf with interpolated increments. Separate tests
+// replace the laws that do not apply.
 
 #include <polybody/bodies/lrvf/incremental_interpolation.hpp>
 #include <polybody/bodies/lrvf/lrvf.hpp>
@@ -15,7 +15,7 @@ namespace lrvf_incremental_laws_test {
 using Beam = Lrvf<Incremental>;
 Index const n = 3;
 
-/// No case of a bar: the laws would put markers where no rotation is known.
+/// Not a case of a bar: the law tests would place markers at sections without a known rotation.
 struct Spinning {
   static Bar bar() { return spatial_lrvf_bar(); }
   static Bar at_rest(Bar bar) {
@@ -43,14 +43,14 @@ struct Elastic : Spinning {
   static Beam body() { return Beam::from(bar(), n); }
   static Beam undamped() { return Beam::from(at_rest(bar()), n); }
 };
-/// Markers on the sections that the elements carry along.
+/// Markers on the sections whose rotation the elements store.
 struct Middles : Spinning {
   static std::vector<Beam::Point> points() {
     double const length = bar().length;
     return {body().at(0.5 * length), body().at(length / 6.0, 0.07), body().at(5.0 * length / 6.0, 0.03, -0.05)};
   }
 };
-/// A circular arc, whose elements carry its curvature from the start.
+/// Circular arc, whose elements have its curvature from the start.
 struct Curved : Spinning {
   static Beam arc(Bar const& bar) {
     return Beam::from(bar, n, [](double s) {
@@ -72,7 +72,7 @@ bool const spinning = obeys<Spinning, BodyLaws>("IncrementalLrvf");
 bool const elastic = obeys<Elastic, FlexibleBodyLaws>("IncrementalLrvf");
 bool const curved = obeys<Curved, BodyLaws>("CurvedIncrementalLrvf");
 
-/// All that markers owe but `LocalRateMovesTheBodyWithItsSpeeds`, which is of bodies whose markers follow from the
+/// All laws of markers except `LocalRateMovesTheBodyWithItsSpeeds`, which requires markers that are functions of the
 /// nodes.
 template <class Case>
 struct MiddleLaws : BodyLaws<Case> {
@@ -86,8 +86,9 @@ struct MiddleLaws : BodyLaws<Case> {
        &MiddleLaws::load_stiffness_is_the_derivative_of_the_pulled_wrench},
       {"SpeedsOfTheMiddleWithinAStep", &MiddleLaws::speeds_of_the_middle_within_a_step}};
 
-  /// While q ⊞ δ(t) moves with δ˙ = `local_rate`(δ, v), the middle turns with R_m Jr(δ_m) δ˙_m, δ_m = ½ (δ₁ + δ₂). That
-  /// is the marker's R_m ½ (Ω₁ + Ω₂) at δ = 0 only: by the series of Jr it is off by ⅛ (δ₂ − δ₁) × (Ω₂ − Ω₁) first.
+  /// During the motion q ⊞ δ(t) with δ˙ = `local_rate`(δ, v), the angular velocity of the middle is R_m Jr(δ_m) δ˙_m,
+  /// δ_m = ½ (δ₁ + δ₂). It equals the marker's R_m ½ (Ω₁ + Ω₂) at δ = 0 only. By the series of Jr the leading term of
+  /// the difference is ⅛ (δ₂ − δ₁) × (Ω₂ − Ω₁).
   void speeds_of_the_middle_within_a_step() {
     VecX const q = this->configuration(), v = this->speeds(), whole = this->vector(this->nv, 0.8);
     double first = 0.0;
@@ -119,9 +120,9 @@ bool const middles = obeys<Middles, MiddleLaws>("IncrementalLrvf");
 
 using Bodily = BodyLaws<Elastic>;
 
-// What laws about rigid motions ask of objective bodies cannot hold, as a rigid spin bends an element (see below):
-// forces then do work in it, and damping takes energy. A translation is felt by nothing: forces are in equilibrium,
-// moments are not.
+// The laws about rigid motions of objective bodies do not hold, because a rigid rotation bends an element (see
+// below). Forces do work in it, and damping dissipates energy. A translation causes no strain: forces are in
+// equilibrium, moments are not.
 TEST(IncrementalLrvf, ATranslationIsNotFelt) {
   FlexibleBodyLaws<Elastic> of;
   VecX const q = of.configuration(), v = of.speeds(), shift = of.rigid_velocity(q, of.velocity(), Vec3::Zero());
@@ -132,7 +133,7 @@ TEST(IncrementalLrvf, ATranslationIsNotFelt) {
   EXPECT_GT(std::abs(f.dot(spin)), 1e-3 * f.norm() * spin.norm());
 }
 
-// Nodes move rigidly.
+// The nodes move rigidly.
 TEST(IncrementalLrvf, RigidVelocityIsTheFieldOfARigidMotionAtTheNodes) {
   Bodily of;
   VecX const q = of.configuration();
@@ -145,7 +146,7 @@ TEST(IncrementalLrvf, RigidVelocityIsTheFieldOfARigidMotionAtTheNodes) {
   }
 }
 
-// R₁, R₂ = R_m exp(∓φ/2): ½ (R₁ᵀ + R₂ᵀ) ω and (R₂ᵀ − R₁ᵀ) ω + φ × of it, for ω across φ.
+// R₁, R₂ = R_m exp(∓φ/2): ½ (R₁ᵀ + R₂ᵀ) ω, and (R₂ᵀ − R₁ᵀ) ω plus φ × this vector, for ω across φ.
 TEST(IncrementalLrvf, ARigidSpinBendsByTheThirdPowerOfTheAngle) {
   Beam const beam = Beam::from({.length = 1.3, .constants = spatial_lrvf_bar().constants}, 1);
   Bodily const of;

@@ -1,4 +1,4 @@
-// The interpolations of rotations side by side, as Romero [2004] compares them: objectivity, paths, fields.
+// Comparison of the interpolations of rotations after Romero [2004]: objectivity, path dependence, fields.
 
 #include <polybody/bodies/lrvf/director_interpolation.hpp>
 #include <polybody/bodies/lrvf/incremental_interpolation.hpp>
@@ -17,7 +17,7 @@ double const pi = std::numbers::pi;
 
 Quaternion<double> quaternion(Vec3 const& turn) { return quaternion_of(exp_so3<double>(turn)); }
 
-/// An element whose nodes turn by φ against each other, about an axis across the one that both have turned about.
+/// Element whose nodes have the relative rotation φ. Its axis is normal to the axis of their common rotation.
 Quaternions turned_apart(double phi, double carriage = 1.1) {
   Quaternion<double> const first = quaternion(Vec3(carriage, 0.2, 0.0)),
                            half = quaternion(Vec3(0.0, 0.6 * phi, 0.8 * phi));
@@ -27,11 +27,11 @@ template <class I>
 SectionTurn field(double xi, Quaternions const& nodes) {
   return I(Placement{}).turn(xi, 1.0, nodes[0], nodes[1]);
 }
-/// Angle between two rotations, for small ones.
+/// Angle between two rotations, for small angles.
 double angle(Mat3 const& a, Mat3 const& b) { return (a - b).norm() / std::sqrt(2.0); }
 
-// sin((1 − ξ) φ/2) a + sin(ξ φ/2) b over sin(φ/2) [Shoemake 1985]: the great circle from quaternion to quaternion turns
-// at constant speed about one axis, as `Objective` does.
+// sin((1 − ξ) φ/2) a + sin(ξ φ/2) b over sin(φ/2) [Shoemake 1985]. The great circle between the quaternions rotates
+// at a constant rate about one axis, like `Objective`.
 TEST(LrvfInterpolations, SphericalLinearInterpolationIsObjective) {
   for (double const phi : {0.01, 0.5, 2.0, 3.0}) {
     Quaternions const nodes = turned_apart(phi);
@@ -45,7 +45,7 @@ TEST(LrvfInterpolations, SphericalLinearInterpolationIsObjective) {
   }
 }
 
-// The mean of the directors, made orthonormal by the polar decomposition, Λ (ΛᵀΛ)^(−½), is the rotation of `Polar`.
+// The polar decomposition Λ (ΛᵀΛ)^(−½) of the mean of the directors is the rotation of `Polar`.
 TEST(LrvfInterpolations, PolarIsTheNearestRotationToTheDirectors) {
   for (double const phi : {0.01, 0.5, 2.0, 3.0})
     for (double const xi : {0.2, 0.5, 0.9}) {
@@ -57,8 +57,9 @@ TEST(LrvfInterpolations, PolarIsTheNearestRotationToTheDirectors) {
     }
 }
 
-// α − ξφ = −ξ (1 − ξ) (1 − 2ξ) φ³/6: the third cumulant of a choice of 0 or 1 with chance ξ, log(1 − ξ + ξ e^{iφ}). Of
-// rotation vectors the difference is of the second order, once the nodes are carried away from the placement.
+// α − ξφ = −ξ (1 − ξ) (1 − 2ξ) φ³/6. This is the third cumulant of a variable that is 1 with the probability ξ and 0
+// otherwise, log(1 − ξ + ξ e^{iφ}). For rotation vectors the difference is of second order if the nodes are rotated
+// from the placement.
 TEST(LrvfInterpolations, FieldsDifferByTheThirdOrTheSecondOrder) {
   double const xi = 0.25;
   auto const off = [&](auto const* policy, double phi) {
@@ -77,7 +78,8 @@ TEST(LrvfInterpolations, FieldsDifferByTheThirdOrTheSecondOrder) {
   EXPECT_LT(angle(field<Polar>(0.5, nodes).R, field<Objective>(0.5, nodes).R), 1e-15);
 }
 
-// K is how the field turns, and K′ how K changes, by differences along the element.
+// K is the rotation of the field per length, and K′ its derivative. Both are compared with finite differences along
+// the element.
 TEST(LrvfInterpolations, CurvatureOfPolarIsTheDerivativeOfItsField) {
   Quaternions const nodes = turned_apart(1.5);
   double const xi = 0.3, h = 1e-5;
@@ -96,7 +98,7 @@ Lrvf<I> element() {
   bar.damping = {};
   return Lrvf<I>::from(bar, 1);
 }
-/// Nodes l apart, bent by φ about z to either side of the middle.
+/// Nodes at the distance l, bent by φ about z symmetrically to the middle.
 VecX bent(double phi) {
   return nodes_of(1, [&](double i) { return Placement::at(Vec3((i - 0.5) * l, 0, 0), Vec3(0, 0, (i - 0.5) * phi)); });
 }
@@ -112,11 +114,11 @@ TEST(LrvfInterpolations, CurvatureInTheMiddleIsAsDerived) {
     EXPECT_NEAR(strains<Polar>(bent(phi))[5], 2.0 * std::tan(0.5 * phi) / l, 1e-13);
     EXPECT_NEAR(strains<Directors>(bent(phi))[5], std::sin(phi) / l, 1e-14);
     EXPECT_NEAR(strains<Polar>(bent(phi))[0], 0.0, 1e-14);
-    EXPECT_NEAR(strains<Directors>(bent(phi))[0], std::cos(0.5 * phi) - 1.0, 1e-14);  // a director of that length
+    EXPECT_NEAR(strains<Directors>(bent(phi))[0], std::cos(0.5 * phi) - 1.0, 1e-14);  // director with this length
   }
 }
 
-// What is left of the energy of bending at half a turn, with the nodes far enough apart that Γ₁ = 0 there: none.
+// The bending energy at half a revolution is zero if the distance of the nodes gives Γ₁ = 0.
 TEST(LrvfInterpolations, DirectorsSnapThroughBeyondAQuarterOfATurn) {
   auto const energy = [](double phi) { return strain_energy_of(element<Directors>(), bent(phi)); };
   auto const of_bending = [&](double phi) {
@@ -142,9 +144,9 @@ TEST(LrvfInterpolations, ARigidMotionStrainsNoneButRotationVectors) {
   }
 }
 
-/// The rotations of both nodes of `element`.
+/// Rotations of both nodes of `element`.
 Quaternions nodes_at(VecX const& q) { return {q.segment<4>(3), q.segment<4>(10)}; }
-/// q ⊞ δ with the δ that brings the nodes to `next`.
+/// q ⊞ δ with the δ that moves the nodes to `next`.
 template <class I>
 VecX gone_to(Lrvf<I> const& beam, VecX const& q, Quaternions const& next) {
   VecX delta = VecX::Zero(12), out = q;
@@ -163,7 +165,7 @@ template <class I>
 Vec3 turn_of(Lrvf<I> const& beam, VecX const& q) {
   return l * beam.section_strains(beam.at(0.5 * l), numbers(q)).template tail<3>();
 }
-/// l K after node 2 went out by y, came round to z and back, in n steps; node 1 rests.
+/// l K after a closed path of node 2 in n steps: rotation about y, then towards z and back. Node 1 is at rest.
 template <class I>
 Vec3 after_a_round(int n) {
   Lrvf<I> const beam = element<I>();
@@ -175,8 +177,9 @@ Vec3 after_a_round(int n) {
   return turn_of(beam, q);
 }
 
-// Strains of the other policies are functions of the nodes: after a closed path they are those before. Increments leave
-// a curvature, and finer steps do not take it away: ½ (δθ₁ + δθ₂) is no spin that a field of the nodes has.
+// The strains of the other interpolations are functions of the nodes, so a closed path does not change them.
+// Increments leave a curvature, which finer steps do not remove. The field of the nodes does not contain the rotation
+// ½ (δθ₁ + δθ₂).
 TEST(LrvfInterpolations, IncrementsLeaveACurvatureAfterAClosedPath) {
   double const coarse = after_a_round<Incremental>(200).norm(), fine = after_a_round<Incremental>(400).norm();
   EXPECT_NEAR(fine, 0.78, 0.005);
@@ -187,7 +190,7 @@ TEST(LrvfInterpolations, IncrementsLeaveACurvatureAfterAClosedPath) {
   EXPECT_LT(after_a_round<Directors>(200).norm(), 1e-13);
 }
 
-// And a rigid turn of a bent element changes its curvature, as with `Direct`.
+// A rigid rotation of a bent element changes its curvature, as with `Direct`.
 TEST(LrvfInterpolations, IncrementsAreNotObjective) {
   Lrvf<Incremental> const beam = element<Incremental>();
   Quaternions const nodes = {quaternion(Vec3(0, 0, -0.5)), quaternion(Vec3(0, 0, 0.5))};
@@ -199,7 +202,7 @@ TEST(LrvfInterpolations, IncrementsAreNotObjective) {
   EXPECT_NEAR((turn_of(beam, turned) - Vec3(0, 0, 1)).norm(), 0.08, 0.005);
 }
 
-// About one axis increments add: nothing is left of the path, and all strains are those of `Objective`.
+// About one axis increments add up: the result is independent of the path, and all strains are those of `Objective`.
 TEST(LrvfInterpolations, IncrementsInThePlaneAreObjective) {
   Lrvf<Incremental> const beam = element<Incremental>();
   Lrvf<Objective> const other = element<Objective>();
@@ -212,7 +215,7 @@ TEST(LrvfInterpolations, IncrementsInThePlaneAreObjective) {
       Vec6 const strains = beam.section_strains(beam.at(0.5 * l), numbers(q));
       EXPECT_LT((strains - other.section_strains(other.at(0.5 * l), numbers(p))).norm(), 1e-14) << turn << ' ' << phi;
       EXPECT_NEAR(strains[5], phi / l, 1e-14);
-      EXPECT_GT(strains.head<3>().norm(), 0.1);  // Γ, too
+      EXPECT_GT(strains.head<3>().norm(), 0.1);  // Γ is also nonzero
     }
 }
 

@@ -1,4 +1,4 @@
-// The laws of all bodies and of flexible ones for the spatial Lrvf.
+// Law tests of all bodies and of flexible bodies for the spatial Lrvf.
 
 #include <polybody/bodies/lrvf/lrvf.hpp>
 

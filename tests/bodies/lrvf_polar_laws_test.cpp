@@ -1,4 +1,4 @@
-// The laws of all bodies and of flexible ones for the spatial Lrvf with directors made orthonormal again.
+// Law tests of all bodies and of flexible bodies for the spatial Lrvf with orthonormalised directors.
 
 #include <polybody/bodies/lrvf/lrvf.hpp>
 #include <polybody/bodies/lrvf/polar_interpolation.hpp>

@@ -1,4 +1,4 @@
-// The laws of all bodies and of flexible ones for the quadratures of the spatial Lrvf that are not its default.
+// Law tests of all bodies and of flexible bodies for the quadratures of the spatial Lrvf other than the default.
 
 #include <polybody/bodies/lrvf/lrvf.hpp>
 

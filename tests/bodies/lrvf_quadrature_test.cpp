@@ -1,4 +1,4 @@
-// The quadratures of the spatial Lrvf: what locks, and what does not.
+// Locking of the spatial Lrvf with each quadrature.
 
 #include <polybody/bodies/lrvf/lrvf.hpp>
 
@@ -7,12 +7,12 @@
 namespace polybody {
 namespace lrvf_quadrature_test {
 
-/// Γ₁ in both Gauss points, Γ₂, Γ₃ in the middle: what `Selective` does not do.
+/// Quadrature with Γ₁ at both Gauss points and Γ₂, Γ₃ in the middle. `Selective` evaluates Γ₁ in the middle.
 struct AxialInBoth {
   static constexpr std::array<StrainPoint, 3> points = {
       {{gauss<2>[0].xi, 0.5, 0.0, 0.5}, {0.5, 0.0, 1.0, 0.0}, {gauss<2>[1].xi, 0.5, 0.0, 0.5}}};
 };
-/// Weights of the shear that add up to more than one, and a section at a node: no rules.
+/// Invalid rules: the weights of the shear sum to more than one, or a section is at a node.
 struct TooMuch {
   static constexpr std::array<StrainPoint, 1> points = {{{0.5, 1.0, 1.1, 1.0}}};
 };
@@ -28,7 +28,7 @@ Bar slender() {
           .constants = BarConstants{.EA = EA, .EI = EI, .mass_per_length = 1.0, .GA = GA, .GJ = 15.0, .EI_y = 30.0}};
 }
 
-/// −∂f/∂δ of the whole beam at q.
+/// −∂f/∂δ of the complete beam at q.
 template <class B>
 MatX stiffness(B const& beam, VecX const& q) {
   MatX k = MatX::Zero(beam.speeds(), beam.speeds());
@@ -46,15 +46,16 @@ VecX standing(B const& beam) {
   beam.reference({q.data(), std::size_t(q.size())});
   return q;
 }
-/// Deflection per force at the tip of the cantilever, both in the direction `axis`, in linear theory.
+/// Deflection per force at the tip of the cantilever in linear theory. Both are along `axis`.
 template <class Quadrature>
 double flexibility(Bar const& bar, Index n, int axis) {
   auto const beam = Lrvf<Objective, Quadrature>::from(bar, n);
   MatX const k = stiffness(beam, standing(beam)).bottomRightCorner(6 * n, 6 * n);
   return k.lu().solve(VecX::Unit(6 * n, 6 * (n - 1) + axis))[6 * (n - 1) + axis];
 }
-/// Of n elements with one point: the bending moment is a step function, so L³/(3EI) (1 − 1/(4n²)) + L/GA. In element i
-/// from the tip, κ = P (i − ½) l/EI and its deflection adds κ l (i − ½) l: Σ (i − ½)² = n³/3 − n/12.
+/// Flexibility of n elements with one point. The bending moment is a step function, so L³/(3EI) (1 − 1/(4n²)) + L/GA.
+/// In element i from the tip, κ = P (i − ½) l/EI, and its contribution to the deflection is κ l (i − ½) l: Σ (i − ½)²
+/// = n³/3 − n/12.
 double one_point(Index n, double ei, bool locks = false) {
   double const l = length / double(n);
   return length * length * length / (3.0 * ei) * (1.0 - 0.25 / double(n * n)) /
@@ -62,9 +63,9 @@ double one_point(Index n, double ei, bool locks = false) {
          length / GA;
 }
 
-// Linear theory of the fully integrated element: with u_y′ = Δ/l and θ = θ_m + (ξ − ½) φ the two points add
-// ½ GA φ² l (ξ_g − ½)² 2/2 = ½ (GA l/12) φ² to ½ (EI/l) φ²: EI becomes EI (1 + GA l²/(12 EI)), and nothing else changes
-// [Hughes, Taylor & Kanoknukulchai 1977]. The deflection by bending falls by that factor.
+// Linear theory of the fully integrated element. With u_y′ = Δ/l and θ = θ_m + (ξ − ½) φ the two points add ½ GA φ² l
+// (ξ_g − ½)² 2/2 = ½ (GA l/12) φ² to ½ (EI/l) φ². EI becomes EI (1 + GA l²/(12 EI)), and nothing else changes
+// [Hughes, Taylor & Kanoknukulchai 1977]. The bending deflection falls by that factor.
 TEST(LrvfQuadrature, FullLocksByTheKnownFactor) {
   for (Index const n : {1, 2, 8, 64}) {
     EXPECT_NEAR(flexibility<Full>(slender(), n, 1) / one_point(n, EI, true), 1.0, 1e-8) << n;
@@ -84,7 +85,7 @@ TEST(LrvfQuadrature, ReducedAndSelectiveDoNotLock) {
     }
 }
 
-/// Some state far from the reference.
+/// State far from the reference.
 template <class B>
 VecX bent(B const& beam) {
   VecX q(beam.coordinates());
@@ -94,7 +95,8 @@ VecX bent(B const& beam) {
   return q;
 }
 
-// `Objective` has one curvature in an element, so that its energy asks for one point; that of `Direct` varies.
+// `Objective` has a constant curvature in an element, so one point is sufficient for its energy. The curvature of
+// `Direct` varies.
 TEST(LrvfQuadrature, SelectiveIsReducedWhereTheCurvatureIsConstant) {
   Bar const bar = spatial_lrvf_bar();
   auto const one = Lrvf<>::from(bar, 3);
@@ -107,7 +109,7 @@ TEST(LrvfQuadrature, SelectiveIsReducedWhereTheCurvatureIsConstant) {
   EXPECT_GT(std::abs(strain_energy_of(Lrvf<Direct, Selective>::from(bar, 3), q) - direct), 1e-6 * direct);
 }
 
-// The strains that are told are those of the middle for every quadrature.
+// The reported strains are those of the middle for every quadrature.
 TEST(LrvfQuadrature, StrainsAreToldInTheMiddle) {
   Bar const bar = spatial_lrvf_bar();
   auto const one = Lrvf<>::from(bar, 3);
@@ -117,9 +119,10 @@ TEST(LrvfQuadrature, StrainsAreToldInTheMiddle) {
             1e-14);
 }
 
-// Why `Selective` takes Γ₁ in the middle. An element bent by φ, its ends turned by ±φ/2 off a chord of c: two points
-// see Γ₁ = c/l cos(φ/√12) − 1, so the least energy of Γ₁ is at c = l/cos(φ/√12) = l (1 + φ²/24); that of an arc is l
-// sin(φ/2)/(φ/2) = l (1 − φ²/24). The middle takes c = l, half as far off.
+// Reason for Γ₁ in the middle in `Selective`. An element is bent by φ. Its ends are rotated by ±φ/2 relative to a
+// chord of length c. At two points Γ₁ = c/l cos(φ/√12) − 1, so the minimum energy of Γ₁ is at c = l/cos(φ/√12) = l (1
+// + φ²/24). The chord of an arc is l sin(φ/2)/(φ/2) = l (1 − φ²/24). With Γ₁ in the middle c = l, which halves the
+// error.
 TEST(LrvfQuadrature, AxialStrainInBothPointsStretchesTheChordOfABentElement) {
   double const phi = 0.3;
   auto const state = [&](double chord) {
@@ -133,15 +136,15 @@ TEST(LrvfQuadrature, AxialStrainInBothPointsStretchesTheChordOfABentElement) {
   EXPECT_NEAR(strain_energy_of(middle, state(1.0)), bending, 1e-9 * bending);
 }
 
-// And on a curved reference of φ₀ an element, in linear theory: a shear ψ, which turns the chord against both sections,
-// strains the two points by Γ₁ = ± sin(φ₀/√12) ψ, so that EA sin²(φ₀/√12) stands beside GA.
+// Curved reference of φ₀ per element in linear theory. A shear ψ rotates the chord against both sections and strains
+// the two points by Γ₁ = ± sin(φ₀/√12) ψ. The term EA sin²(φ₀/√12) is therefore added to GA.
 TEST(LrvfQuadrature, AxialStrainInBothPointsOfAnArcStiffensItsShear) {
   double const phi = 0.5, c = 2.0 / phi * std::sin(0.5 * phi), lean = phi / std::sqrt(12.0);
   ReferenceCurve const arc = [&](double s) {
     double const a = phi * (s - 0.5);
     return Placement::at(Vec3(std::sin(a) / phi, -std::cos(a) / phi, 0), Vec3(0, 0, a));
   };
-  auto const shear = [&](auto const& beam) {  // both sections turned by ψ = 1 against the chord, along which r′ = 1
+  auto const shear = [&](auto const& beam) {  // both sections rotated by ψ = 1 against the chord, along which r′ = 1
     VecX turned = VecX::Zero(12);
     turned[5] = turned[11] = 1.0;
     return turned.dot(stiffness(beam, standing(beam)) * turned);

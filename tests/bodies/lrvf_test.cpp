@@ -23,7 +23,7 @@ Bar straight_bar() {
 }
 Lrvf<> straight() { return Lrvf<>::from(straight_bar(), elements); }
 
-/// Strains, section forces and energy of one and the same strain everywhere.
+/// Checks strains, section forces and energy for a uniform strain.
 void expect_strains(VecX const& q, Vec6 const& expected, double tolerance = 1e-14) {
   Lrvf<> const beam = straight();
   for (int e = 0; e < elements; ++e) {
@@ -34,8 +34,8 @@ void expect_strains(VecX const& q, Vec6 const& expected, double tolerance = 1e-1
   EXPECT_NEAR(strain_energy_of(beam, q), 0.65 * expected.cwiseAbs2().dot(stiffness), 1e3 * tolerance);
 }
 
-/// Sections that step by the rotation φ of their own axes, on chords of length l along the x axis of the sections
-/// between.
+/// Sections with the relative rotation φ in their own axes. The chords of length l are along the x axes of the
+/// sections between them.
 VecX stepped(Vec3 const& phi) {
   Placement at;
   Mat3 const half = exp_so3<double>(phi * 0.5);
@@ -55,7 +55,8 @@ TEST(SpatialLrvf, StretchAndShearAreMeasuredOneByOne) {
   expect_strains(q, expected);
 }
 
-// Sections turned by α about z against a straight axis: Γ = Rᵀe₁ − e₁ = (cos α − 1, −sin α, 0); about y the other sign.
+// Sections rotated by α about z on a straight axis: Γ = Rᵀe₁ − e₁ = (cos α − 1, −sin α, 0); about y with the opposite
+// sign.
 TEST(SpatialLrvf, TurnedSectionsShear) {
   auto const turned = [](Vec3 const& rotation) {
     return nodes_of(elements, [&](double i) { return Placement::at(Vec3(l * i, 0, 0), rotation); });
@@ -67,7 +68,8 @@ TEST(SpatialLrvf, TurnedSectionsShear) {
   expect_strains(turned(Vec3(0, 0.3, 0)), expected);
 }
 
-// K = φ/l for twist, both bends and any mixture of them, up to nearly half a turn between nodes; no stretch, no shear.
+// K = φ/l for twist, both bending directions and any combination, up to nearly half a revolution between nodes.
+// Stretch and shear are zero.
 TEST(SpatialLrvf, CurvatureIsTheTurnFromNodeToNode) {
   for (Vec3 const& axis : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(0.6, -0.48, 0.64)})
     for (double const angle : {1e-9, 0.3, 1.0, 1.3, 2.5, 3.1}) {  // the series of atan ends at 1.22
@@ -77,7 +79,8 @@ TEST(SpatialLrvf, CurvatureIsTheTurnFromNodeToNode) {
     }
 }
 
-// R = R₁ exp(ξ φ) of `section` (markers) against the algebraic middle section (strains): two formulas for one field.
+// R = R₁ exp(ξ φ) of `section` (markers) compared with the algebraic middle section (strains): two formulas for one
+// field.
 TEST(SpatialLrvf, StrainSectionLiesOnTheRotationField) {
   Quaternion<double> const a = quaternion_exp<double>(Vec3(0.4, -2.0, 1.1));
   for (double const angle : {1e-9, 0.3, 1.3, 3.1}) {
@@ -86,7 +89,7 @@ TEST(SpatialLrvf, StrainSectionLiesOnTheRotationField) {
     StrainSection<double> middle;
     Objective::Section<double> section;
     Objective const field{Placement{}};
-    field.middle<double>(a, -b, middle);  // q and −q are one rotation
+    field.middle<double>(a, -b, middle);  // q and −q are the same rotation
     field.section<double>(0.5, a, b, section);
     EXPECT_LT((middle.R - section.R).norm(), 1e-14) << angle;
     EXPECT_LT((middle.R - rotation_matrix<double>(a) * exp_so3<double>(0.5 * phi)).norm(), 1e-14) << angle;
@@ -98,7 +101,8 @@ TEST(SpatialLrvf, StrainSectionLiesOnTheRotationField) {
   }
 }
 
-// A bent and twisted beam carried through five full turns: strains stay, nothing jumps at π, 2π, ...
+// Bent and twisted beam in a rigid rotation through five full revolutions. The strains are constant, without jumps at
+// π, 2π, ...
 TEST(SpatialLrvf, StrainsDoNotFeelARigidMotionThroughManyTurns) {
   VecX const q = stepped(Vec3(0.2, -0.3, 0.5));
   Vec6 expected = Vec6::Zero();
@@ -108,15 +112,15 @@ TEST(SpatialLrvf, StrainsDoNotFeelARigidMotionThroughManyTurns) {
     expect_strains(carried(Placement::at(Vec3(0.1 * k, -3, 2), k * pi / 40.0 * axis), q), expected, 2e-13);
 }
 
-// The same by its own coordinates, step by step with ⊞, so that quaternions change sign on the way; only the last node
-// turns.
+// The rotation of the tip in the beam's own coordinates, step by step with ⊞, so quaternions change sign. Only the
+// last node rotates.
 TEST(SpatialLrvf, ATurningTipTwistsTheLastElementWithoutAJumpOfTheOthers) {
   Lrvf<> const beam = straight();
   VecX q(beam.coordinates()), delta = VecX::Zero(beam.speeds()), next = q;
   beam.reference(std::span<double>(q.data(), std::size_t(q.size())));
-  for (Index i = 0; i <= elements; ++i) delta[6 * i + 3] = 0.05 * double(i);  // about x, in proportion to s
+  for (Index i = 0; i <= elements; ++i) delta[6 * i + 3] = 0.05 * double(i);  // about x, proportional to s
   for (int k = 1; k <= 240;
-       ++k) {  // until the tip has turned by 48 rad, each element by 12: past its half turn and back
+       ++k) {  // until the tip has rotated by 48 rad, each element by 12: past half a revolution and back
     beam.plus<double>(numbers(q), numbers(delta), std::span<double>(next.data(), std::size_t(next.size())));
     q = next;
     double const turn = 0.05 * k, shortest = std::remainder(turn, 2 * pi);
@@ -135,7 +139,7 @@ TEST(SpatialLrvf, MassIsConsistentInTranslationAndLumpedInRotation) {
   EXPECT_LT((m - expected).norm(), 1e-15);
 }
 
-// Each element brings −Ω × JΩ of half its own length at either node.
+// The contribution of each element to either node is −Ω × JΩ of half of its length.
 TEST(SpatialLrvf, SpinningSectionsFeelGyroscopicMoments) {
   VecX const q = nodes_of(1, [](double i) { return Placement{.origin = Vec3(1.3 * i, 0, 0)}; });
   Bar bar = straight_bar();
@@ -151,7 +155,7 @@ TEST(SpatialLrvf, SpinningSectionsFeelGyroscopicMoments) {
   EXPECT_LT((f - expected).norm(), 1e-14);
 }
 
-// A taut bar pulls its ends together; stretched, it stores T Γ₁ l beside the elastic energy.
+// A bar under tension pulls its ends together. Its stretch stores T Γ₁ l in addition to the elastic energy.
 TEST(SpatialLrvf, PretensionPullsTheEndsAndStoresItsWork) {
   Bar bar = straight_bar();
   bar.pretension = 70.0;
@@ -168,7 +172,7 @@ TEST(SpatialLrvf, PretensionPullsTheEndsAndStoresItsWork) {
   EXPECT_NEAR(strain_energy_of(beam, q), 1.3 * (0.5 * 900 * 0.02 * 0.02 + 70.0 * 0.02), 1e-12);
 }
 
-// Points off the axis stay on their section, in the middle of an element and at a node.
+// Points off the axis move with their section, in the middle of an element and at a node.
 TEST(SpatialLrvf, PointsOffTheAxisTurnWithTheSection) {
   Lrvf<> const beam = straight();
   VecX const q = stepped(Vec3(0.2, -0.3, 0.5)), v = VecX::Zero(30);

@@ -1,4 +1,4 @@
-// A structure from matrices: a block of 8-node bricks made here by Gauss quadrature; and what is refused.
+// Structure from matrices: a block of 8-node bricks, assembled here by Gauss quadrature. Refused input.
 #include <polybody/bodies/ffr/matrix_structure.hpp>
 
 #include <filesystem>
@@ -12,8 +12,8 @@ namespace polybody {
 using namespace laws;
 namespace matrix_structure_test {
 
-/// n equal trilinear bricks in a row along x, from `corner`; isotropic, of the total size `size`. Nodes: four of x = 0,
-/// and so on.
+/// n equal trilinear bricks in a row along x, from `corner`, isotropic, with the total dimensions `size`. Nodes: four
+/// at x = 0, four at the next x, and so on.
 struct Block {
   Index n = 2;
   Vec3 size{1.2, 0.3, 0.2}, corner{-0.4, 0.1, 0.3};
@@ -63,7 +63,7 @@ struct Block {
   }
   double total() const { return density * size.prod(); }
   Vec3 centre() const { return corner + 0.5 * size; }
-  /// About its centre: m/12 (b² + c²), …
+  /// Inertia tensor about its centre: m/12 (b² + c²), …
   Mat3 inertia() const {
     Vec3 const squares = size.cwiseAbs2();
     return total() / 12.0 *
@@ -88,7 +88,7 @@ TEST(MatrixStructure, HasTheMassPropertiesOfTheBlock) {
   EXPECT_LT((MatX(s.stiffness) - block.stiffness).norm(), 1e-14 * block.stiffness.norm());
 }
 
-// With e = x of the nodes (S e = u₀) or a translation, each integral is a moment of the block.
+// For e = x of the nodes (S e = u₀) or a translation, each integral is a moment of the block.
 TEST(MatrixStructure, IntegralsOfKnownFieldsAreMomentsOfTheBlock) {
   Block const block(2, 0.3);
   Structure const s = block.structure();
@@ -103,8 +103,8 @@ TEST(MatrixStructure, IntegralsOfKnownFieldsAreMomentsOfTheBlock) {
     EXPECT_NEAR(place.dot(s.inertia[p] * place), s.second(symmetric_row[p], symmetric_column[p]), 1e-14 * m);
 }
 
-// Steel (5100 m/s) in kilograms and N/m. Nodes in millimetres have the same rigid motions; waves are 1000 times as
-// fast.
+// ν = 0: the face x = 0 is fixed, and F is distributed over the opposite face. The solution u_x = F x/EA is in the
+// span of the elements.
 TEST(MatrixStructure, RefusesNodesInMillimetresBesideAStiffnessInMetres) {
   Block block(3, 0.3);
   block.mass *= 7850.0 / block.density;
@@ -117,7 +117,8 @@ TEST(MatrixStructure, RefusesNodesInMillimetresBesideAStiffnessInMetres) {
   EXPECT_NO_THROW(structure_of(block.mass.sparseView(), block.stiffness.sparseView(), block.nodes, 1e8));
 }
 
-// ν = 0: the face x = 0 held and F spread over the other, u_x = F x/EA is in the elements' span.
+// Static shapes of Craig & Bampton for both faces contain the stretch exactly. In mean axes the distance of the ends
+// grows by F L/EA.
 TEST(MatrixStructure, StretchesAsABar) {
   Block const block(3, 0.0);
   Structure const s = block.structure();
@@ -136,7 +137,7 @@ TEST(MatrixStructure, StretchesAsABar) {
   tip(Ffr(s, held_modes(s, 36, face)));
 }
 
-// Craig & Bampton's static shapes of both faces hold the stretch exactly; in mean axes the ends move apart by F L/EA.
+// --- law tests of bodies that require no Bar ---------------------------------------------------------------
 TEST(MatrixStructure, CraigBamptonStretchesAsABar) {
   Block const block(3, 0.0);
   Structure const s = block.structure();
@@ -156,7 +157,7 @@ TEST(MatrixStructure, AFrameIsNotTiedToANodeWithoutRotations) {
   EXPECT_TRUE(has(refusal([&] { held_modes(s, 2); }), "Fix enough coordinates"));
 }
 
-// --- the laws of bodies that ask for no Bar ----------------------------------------------------------------
+// Kinetic energy ½ m v_c² + ½ Ωᵀ J Ω of a rigid motion of the undeformed block.
 
 struct BlockCase {
   static Bar bar() {
@@ -199,7 +200,7 @@ TEST_F(MatrixBody, TangentIsTheDerivativeOfTheForce) {
   EXPECT_LT(mismatch(tangent(q, v, 0.0, 1.0), -by_speed), 1e-12);
 }
 
-// ½ m v_c² + ½ Ωᵀ J Ω of a rigid motion of the undeformed block.
+// p · v₀ + l · ω of the free body is constant in any deformation, including damping: (rigid motion)ᵀ M v.
 TEST_F(MatrixBody, MovesRigidlyAsTheBlock) {
   VecX const q = reference();
   Vec3 const v0 = vector3(), omega = vector3();
@@ -210,7 +211,7 @@ TEST_F(MatrixBody, MovesRigidlyAsTheBlock) {
   EXPECT_NEAR(kinetic_energy(q, rigid_velocity(q, v0, omega)), expected, 1e-13 * expected);
 }
 
-// p · v₀ + l · ω of the free body, in any deformation, damping included: (rigid motion)ᵀ M v stays.
+// --- refused input -------------------------------------------------------------------------------------------
 TEST_F(MatrixBody, KeepsItsMomentum) {
   VecX const q = configuration(), v = speeds();
   VecX const a = mass(q).ldlt().solve(force<double>(q, v));
@@ -224,9 +225,9 @@ TEST_F(MatrixBody, KeepsItsMomentum) {
   EXPECT_LT(std::abs(rate), 1e-9 * size);
 }
 
-// --- refused -------------------------------------------------------------------------------------------------
+// Error message for the block's matrices after a change by `spoil`.
 
-/// What the block's matrices are told after `spoil` has been at them.
+/// Error message for the block's matrices after a change by `spoil`.
 template <class Spoil>
 std::string told(Spoil&& spoil) {
   Block block(2, 0.3);
@@ -275,9 +276,9 @@ TEST(MatrixStructure, RefusesAStiffnessThatResistsRigidMotions) {
                   "a rigid displacement along x strains the structure, most in row 21 (x of node 7)"));
 }
 
-// --- files -----------------------------------------------------------------------------------------------------
+// Files of the block. A symmetric matrix is stored as its lower triangle.
 
-/// The block in files of its own; lines of a symmetric matrix, its lower triangle.
+/// Lines 1 to 3: banner, comment, dimensions.
 struct MatrixFiles : testing::Test {
   Block const block{1, 0.3};
   std::filesystem::path const folder =
@@ -307,7 +308,7 @@ struct MatrixFiles : testing::Test {
     std::ofstream out(file);
     for (std::string const& line : lines) out << line << '\n';
   }
-  /// Lines 1 to 3: banner, comment, sizes.
+  /// Error message for a mass file with another text in line `at` (from 1).
   static std::vector<std::string> lines_of(MatX const& m, bool symmetric) {
     std::vector<std::string> lines = {
         std::string("%%MatrixMarket matrix coordinate real ") + (symmetric ? "symmetric" : "General"), "% a block", ""};
@@ -317,7 +318,7 @@ struct MatrixFiles : testing::Test {
     lines[2] = std::to_string(m.rows()) + " " + std::to_string(m.cols()) + " " + std::to_string(lines.size() - 3);
     return lines;
   }
-  /// What is told when line `at` (from 1) of the mass file reads otherwise.
+  /// a blank ends a number
   std::string told(std::size_t at, std::string const& line) {
     std::vector<std::string> lines = lines_of(block.mass, true);
     lines[at - 1] = line;

@@ -9,7 +9,7 @@ namespace mean_section_frame_test {
 
 using D = Dual<1>;
 
-/// Two directors far from orthonormal and of unlike lengths, and changes of both.
+/// Two directors that are far from orthonormal and have different lengths, with increments of both.
 struct Section {
   Vec3 b, c, db, dc;
   explicit Section(unsigned seed) {
@@ -29,7 +29,7 @@ Vec<D, 3> moving(Vec3 const& x, Vec3 const& rate) {
 }
 double const shares[] = {0.0, 0.08, 0.5, 1.0};
 
-// Among the turns about the normal it is the nearest to the directors.
+// The mean frame has the least distance to the directors of all rotations about the normal.
 TEST(MeanSectionFrame, IsTheNearestFrameNormalToBothDirectors) {
   for (unsigned seed = 0; seed < 20; ++seed)
     for (double const p : shares) {
@@ -56,7 +56,7 @@ TEST(MeanSectionFrame, WithTheWholeShareFollowsTheFirstDirector) {
   EXPECT_LT((mean.acceleration(w) - first.acceleration(v)).norm(), 1e-14);
 }
 
-/// The axial vector of RᵀR˙.
+/// Axial vector of RᵀR˙.
 Vec3 turning(MeanSectionFrame<D> const& f) {
   Mat3 rate;
   for (int i = 0; i < 3; ++i)
@@ -83,7 +83,7 @@ TEST(MeanSectionFrame, SpinAndItsRateAreTheDerivativesOfTheFrame) {
     }
 }
 
-// m·δ̂φ for all pairs of changes.
+// m·δ̂φ for all pairs of increments.
 TEST(MeanSectionFrame, SecondDerivativesAreThoseOfTheSpin) {
   Vec3 const m(0.3, -1.1, 0.7);
   for (double const p : shares) {

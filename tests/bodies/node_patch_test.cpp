@@ -8,7 +8,7 @@ using namespace polybody;
 
 namespace node_patch_test {
 
-/// Seven nodes that lie in no plane, without stiffness or mass.
+/// Seven non-coplanar nodes without stiffness or mass.
 Structure cloud(int per_node) {
   Structure s;
   s.per_node = per_node;
@@ -31,7 +31,7 @@ TEST(NodePatch, SharesAWrenchWithItsResultant) {
   EXPECT_LT((moment - m).norm(), 1e-13);
 }
 
-TEST(NodePatch, TakesTheLeastForces) {  // any others with this resultant, as two that pull on each other, add to them
+TEST(NodePatch, TakesTheLeastForces) {  // adds self-balanced pairs of forces
   Structure const s = cloud(3);
   NodePatch const patch(s, {0, 1, 4, 5}, "test");
   Vec3 const f(1.0, -2.0, 3.0), m(-0.5, 0.7, 0.2), along = s.nodes[1] - s.nodes[0];
@@ -40,7 +40,7 @@ TEST(NodePatch, TakesTheLeastForces) {  // any others with this resultant, as tw
   EXPECT_NEAR(product, 0.0, 1e-13);
 }
 
-TEST(NodePatch, MovesAsItsForcesWork) {  // also where nodes have rotations, which it does not ask
+TEST(NodePatch, MovesAsItsForcesWork) {  // also for nodes with rotations, which are not used
   for (int const per_node : {3, 6}) {
     Structure const s = cloud(per_node);
     NodePatch const patch(s, {1, 2, 5, 6}, "test");
@@ -63,7 +63,7 @@ TEST(NodePatch, FollowsARigidMotion) {
   EXPECT_LT((motion.rotation - turn).norm(), 1e-14);
 }
 
-TEST(NodePatch, SharesByWeights) {  // and still has the resultant, and moves as its forces work
+TEST(NodePatch, SharesByWeights) {  // also the resultant and the virtual work
   Structure const s = cloud(3);
   std::vector<double> const weights{3.0, 1.0, 2.0, 2.0};
   NodePatch const patch(s, {0, 2, 3, 6}, "test", weights);

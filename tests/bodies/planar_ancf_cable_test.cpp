@@ -34,7 +34,7 @@ AncfCable<Strain> straight() {
   return AncfCable<Strain>::from(bar, elements);
 }
 
-/// q of a curve r(s) with slope r′(s), each a Vec2.
+/// Coordinates q of a curve r(s) with derivative r′(s), each a Vec2.
 template <class R, class Slope>
 VecX curve(R&& r, Slope&& slope) {
   VecX q(4 * (elements + 1));
@@ -65,7 +65,8 @@ TEST(AncfCable, PureStretchIsAxialStrainAlone) {
   }
 }
 
-// The parabola r = (s, k s²/2) is a cubic, so the element holds it exactly: r′ = (1, k s), r″ = (0, k).
+// The parabola r = (s, k s²/2) is a polynomial of at most third degree, so the element represents it exactly: r′ =
+// (1, k s), r″ = (0, k).
 TEST(AncfCable, ParabolaHasItsExactStrains) {
   double const k = 0.8;
   VecX const q = curve([](double s) { return Vec2(s, 0.4 * s * s); }, [](double s) { return Vec2(1, 0.8 * s); });
@@ -78,14 +79,14 @@ TEST(AncfCable, ParabolaHasItsExactStrains) {
   }
 }
 
-// Bending to the other side changes the sign.
+// Bending to the opposite side changes the sign.
 TEST(AncfCable, CurvatureIsPositiveTowardsTheLeft) {
   VecX const q = curve([](double s) { return Vec2(s, -0.4 * s * s); }, [](double s) { return Vec2(1, -0.8 * s); });
   EXPECT_NEAR(bending<GreenStrain>(q, 0.0), -0.8, 1e-13);
   EXPECT_NEAR(bending<EngineeringStrain>(q, 0.0), -0.8, 1e-13);
 }
 
-// The strain energies of the stretched cable: EA/2 ∫ ε² and nothing else.
+// Strain energy of the stretched cable: EA/2 ∫ ε² only.
 TEST(AncfCable, EnergyIsTheIntegralOfItsStrains) {
   VecX const q = curve([](double s) { return Vec2(1.2 * s, 0); }, [](double) { return Vec2(1.2, 0); });
   double green = 0.0, engineering = 0.0;
@@ -97,8 +98,8 @@ TEST(AncfCable, EnergyIsTheIntegralOfItsStrains) {
   EXPECT_NEAR(engineering, 0.5 * 900 * 0.2 * 0.2 * 1.3, 1e-12);
 }
 
-// Five points integrate the squared Green strain, of degree eight, exactly: a finer Gauss rule finds no more.
-// EI is made too small to matter.
+// Five points integrate the squared Green strain, of degree eight, exactly. A finer Gauss rule gives the same value.
+// EI is negligibly small.
 TEST(AncfCable, GreenEnergyIsIntegratedExactly) {
   Bar bar = CableCase<GreenStrain>::bar();
   bar.placement = {};
@@ -114,7 +115,7 @@ TEST(AncfCable, GreenEnergyIsIntegratedExactly) {
   EXPECT_NEAR(cable.strain_energy(0, view(q)), expected, 1e-9);
 }
 
-// The consistent mass of cubic shapes, Aρ l/420 [156 22l 54 −13l; … 4l² 13l −3l²; …]  [Przemieniecki 1968, §11.4].
+// Consistent mass matrix of cubic shapes, Aρ l/420 [156 22l 54 −13l; … 4l² 13l −3l²; …]  [Przemieniecki 1968, §11.4].
 TEST(AncfCable, MassIsTheConsistentOneOfCubicShapes) {
   Mat<double, 4, 4> shape;
   shape << 156, 22 * l, 54, -13 * l,          //
@@ -130,8 +131,8 @@ TEST(AncfCable, MassIsTheConsistentOneOfCubicShapes) {
   EXPECT_LT((m - expected).norm(), 1e-15);
 }
 
-// Small deflections of one clamped element are those of the classical beam: stiffness 12 EI/l³ against a
-// sideways shift, 4 EI/l against a turn, for both strains.
+// Small deflections of one clamped element are those of the classical beam for both strain measures: stiffness 12
+// EI/l³ for a transverse displacement, 4 EI/l for a rotation.
 template <class Strain>
 void expect_classical_stiffness() {
   auto const cable = straight<Strain>();
@@ -142,14 +143,14 @@ void expect_classical_stiffness() {
   EXPECT_NEAR(k(5, 5), 12 * 40 / (l * l * l), 1e-9);
   EXPECT_NEAR(k(7, 7), 4 * 40 / l, 1e-9);
   EXPECT_NEAR(k(5, 7), -6 * 40 / (l * l), 1e-9);
-  EXPECT_NEAR(k(0, 0) + k(0, 4), 0.0, 1e-9);  // pushing both ends alike costs nothing
+  EXPECT_NEAR(k(0, 0) + k(0, 4), 0.0, 1e-9);  // equal displacements of both ends cost no energy
 }
 TEST(AncfCable, SmallBendingIsThatOfTheClassicalBeam) {
   expect_classical_stiffness<GreenStrain>();
   expect_classical_stiffness<EngineeringStrain>();
 }
 
-// Normal to the centre line: r = r₀ + y (−sin θ, cos θ), θ the angle of r′, whatever its length.
+// Normal to the centre line: r = r₀ + y (−sin θ, cos θ) with the angle θ of r′, independent of the length of r′.
 TEST(AncfCable, PointsOffTheAxisStandOnTheNormal) {
   auto const cable = straight<GreenStrain>();
   VecX const q = curve([](double s) { return Vec2(s, 0.4 * s * s); }, [](double s) { return Vec2(1, 0.8 * s); });
@@ -163,7 +164,7 @@ TEST(AncfCable, PointsOffTheAxisStandOnTheNormal) {
   EXPECT_LT((out.frame.A - exp_so3<double>(Vec3(0, 0, angle))).norm(), 1e-14);
 }
 
-// A cable resists neither shear nor torsion and asks for no such constant.
+// A cable has neither shear nor torsional stiffness and requires no such constant.
 TEST(AncfCable, NeedsNoShearStiffness) { EXPECT_NO_THROW((void)AncfCable<>::from(CableCase<GreenStrain>::bar(), 1)); }
 
 }  // namespace planar_ancf_cable_test

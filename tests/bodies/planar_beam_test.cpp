@@ -11,7 +11,7 @@
 namespace polybody {
 namespace planar_beam_test {
 
-// What the template itself does, whatever its theory; the theories' own numbers are in their own tests.
+// Functions of the beam template that are independent of the beam theory. The theories have their own tests.
 template <class B>
 struct PlanarBeam : testing::Test {
   static Bar bar() {
@@ -45,11 +45,11 @@ TYPED_TEST(PlanarBeam, FindsTheElementOfAPoint) {
     EXPECT_LE(p.xi, 1.0 + 1e-15);
   }
   EXPECT_EQ(beam.at(0.41).element, 1);
-  EXPECT_EQ(beam.at(1.2).element, 2);  // the end belongs to the last
+  EXPECT_EQ(beam.at(1.2).element, 2);  // the end belongs to the last element
   EXPECT_EQ(beam.first_column(beam.at(0.41)), TypeParam::node_columns);
 }
 
-// A node is the same point seen from either side, also in a deformed beam.
+// The position of a node is equal from both adjacent elements, also in a deformed beam.
 TYPED_TEST(PlanarBeam, IsContinuousAcrossANode) {
   TypeParam const beam = TypeParam::from(this->bar(), 3);
   std::vector<double> q(std::size_t(beam.coordinates())), v(q.size());
@@ -66,7 +66,7 @@ TYPED_TEST(PlanarBeam, IsContinuousAcrossANode) {
   EXPECT_NEAR(left.rate, right.rate, 1e-14);
 }
 
-// centre_line and publish tell the same story.
+// centre_line and publish agree.
 TYPED_TEST(PlanarBeam, CentreLineIsWhatAMarkerPublishes) {
   TypeParam const beam = TypeParam::from(this->bar(), 3);
   std::vector<double> q(std::size_t(beam.coordinates())), v(q.size());
@@ -89,7 +89,7 @@ TYPED_TEST(PlanarBeam, CentreLineIsWhatAMarkerPublishes) {
   EXPECT_DOUBLE_EQ(out.bias[5], c.rate_bias);
 }
 
-// Finer or coarser, it is the same bar.
+// The mass is independent of the mesh.
 TYPED_TEST(PlanarBeam, KeepsItsMassWhateverTheMesh) {
   for (Index const n : {1, 2, 7}) {
     TypeParam const beam = TypeParam::from(this->bar(), n);

@@ -1,4 +1,4 @@
-// The floating frame of reference in the plane obeys the laws of every body.
+// Law tests of bodies for the planar floating frame of reference.
 #include <polybody/bodies/ffr/planar_ffr.hpp>
 
 #include <polybody/testing/flexible_body_laws.hpp>

@@ -1,4 +1,4 @@
-// The quadratures of the planar Lrvf: their laws, what locks and by how much, and what does not.
+// Quadratures of the planar Lrvf: law tests and the amount of locking.
 
 #include <polybody/bodies/lrvf/planar_lrvf.hpp>
 
@@ -10,7 +10,8 @@ namespace polybody {
 using namespace laws;
 namespace planar_lrvf_quadrature_test {
 
-/// ε in both Gauss points, γ in the middle: what `Selective` does not do. Its strains make three groups.
+/// Quadrature with ε at both Gauss points and γ in the middle. `Selective` evaluates ε in the middle. The strains
+/// form three groups.
 struct AxialInBoth {
   static constexpr std::array<StrainPoint, 3> points = {
       {{gauss<2>[0].xi, 0.5, 0.0, 0.5}, {0.5, 0.0, 1.0, 0.0}, {gauss<2>[1].xi, 0.5, 0.0, 0.5}}};
@@ -50,8 +51,8 @@ double flexibility(Index n) {
   return held.lu().solve(VecX::Unit(3 * n, 3 * n - 2))[3 * n - 2];
 }
 
-// The formulas are derived in lrvf_quadrature_test.cpp: L³/(3 EI) (1 − 1/(4n²))/(1 + GA l²/(12 EI)) + L/GA, and the
-// same without the last factor.
+// The formulas are derived in lrvf_quadrature_test.cpp: L³/(3 EI) (1 − 1/(4n²))/(1 + GA l²/(12 EI)) + L/GA with full
+// integration, and without the divisor otherwise.
 TEST(PlanarLrvfQuadrature, FullLocksByTheKnownFactor) {
   for (Index const n : {1, 2, 8, 64}) {
     double const l = length / double(n), bending = length * length * length / (3.0 * EI) * (1.0 - 0.25 / double(n * n)),
@@ -62,19 +63,20 @@ TEST(PlanarLrvfQuadrature, FullLocksByTheKnownFactor) {
   }
 }
 
-/// Energy of a beam in a state q.
+/// Energy of a beam in the state q.
 template <class B>
 double energy_of(B const& beam, VecX const& q) {
   double sum = 0.0;
   for (Index e = 0; e < beam.elements(); ++e) sum += beam.strain_energy(e, view(q));
   return sum;
 }
-/// Some state far from the reference.
+/// State far from the reference.
 VecX bent() {
   return VecX::NullaryExpr(12, [](Index i) { return 0.5 * double(i / 3) + 0.4 * std::sin(1.0 + 3.0 * double(i)); });
 }
 
-// θ is linear, so that κ is the same in the whole element and asks for one point: energy, tangent, section forces.
+// θ is linear, so κ is constant in the element and one point is sufficient. Compared are energy, tangent and section
+// forces.
 TEST(PlanarLrvfQuadrature, SelectiveIsReduced) {
   auto const one = Case<Reduced>::body(Case<Reduced>::bar());
   auto const selective = Case<Selective>::body(Case<Reduced>::bar());
@@ -93,8 +95,8 @@ TEST(PlanarLrvfQuadrature, SelectiveIsReduced) {
   EXPECT_GT(std::abs(energy_of(Case<AxialInBoth>::body(Case<Reduced>::bar()), q) - energy), 1e-3 * energy);
 }
 
-// Why ε is taken in the middle, as derived in lrvf_quadrature_test.cpp: an element bent by φ sees in two points
-// ε = c/l cos(φ/√12) − 1 of its chord c, so that it stores the bending alone at c = l/cos(φ/√12), and not at c = l.
+// Reason for ε in the middle, derived in lrvf_quadrature_test.cpp. An element bent by φ has ε = c/l cos(φ/√12) − 1 at
+// two points with its chord c. The energy is that of bending alone at c = l/cos(φ/√12), not at c = l.
 TEST(PlanarLrvfQuadrature, AxialStrainInBothPointsStretchesTheChordOfABentElement) {
   double const phi = 0.3, bending = 0.5 * EI * phi * phi / length;
   Bar const bar{.length = length, .constants = BarConstants{.EA = 1e7, .EI = EI, .mass_per_length = 1.0, .GA = GA}};

@@ -29,7 +29,7 @@ planar::Lrvf straight() {
 }
 double const l = 1.3 / elements;
 
-/// q of a deformation given node by node as (x, y, θ) of the node's number.
+/// Coordinates q of a deformation, given as (x, y, θ) of the node's number.
 template <class F>
 VecX nodes(F&& node) {
   VecX q(3 * (elements + 1));
@@ -69,12 +69,13 @@ TEST(Lrvf, PureShearIsShearStrainAlone) {
   EXPECT_NEAR(energy(q), 0.5 * 300 * 0.1 * 0.1 * 1.3, 1e-14);
 }
 
-// Sections turned by α against a straight axis: ε = cos α − 1, γ = −sin α.
+// Sections rotated by α on a straight axis: ε = cos α − 1, γ = −sin α.
 TEST(Lrvf, TurnedSectionsShear) {
   expect_strains(nodes([](double i) { return Vec3(l * i, 0, 0.3); }), Vec3(std::cos(0.3) - 1, -std::sin(0.3), 0));
 }
 
-// Sides of length l whose direction is θ in their middle, θ = κ s: bending alone, also for more than a full turn.
+// Polygon with sides of length l in the direction θ of their middle, θ = κ s. The only strain is the curvature, also
+// beyond a full revolution.
 TEST(Lrvf, PureBendIsCurvatureAlone) {
   double const turn = 2.5;  // from node to node [rad]
   Vec2 end = Vec2::Zero();
@@ -87,7 +88,7 @@ TEST(Lrvf, PureBendIsCurvatureAlone) {
   EXPECT_NEAR(energy(q), 0.5 * 40 * turn * turn / (l * l) * 1.3, 1e-10);
 }
 
-// Strains do not feel where the beam is and how it is turned.
+// Strains are independent of position and rotation of the beam.
 TEST(Lrvf, StrainsAreObjective) {
   double const c = std::cos(2.1), s = std::sin(2.1);
   expect_strains(nodes([&](double i) {
@@ -97,7 +98,7 @@ TEST(Lrvf, StrainsAreObjective) {
                  Vec3(0.02, 0.1, 0));
 }
 
-// Aρ l/6 [2 1; 1 2] for x and y, Iρ l/6 [2 1; 1 2] for θ: the consistent mass of linear shapes.
+// Consistent mass matrix of linear shapes: Aρ l/6 [2 1; 1 2] for x and y, Iρ l/6 [2 1; 1 2] for θ.
 TEST(Lrvf, MassIsTheConsistentOneOfLinearShapes) {
   Mat<double, 6, 6> m, expected = Mat<double, 6, 6>::Zero();
   std::vector<double> const q(15);
@@ -109,7 +110,7 @@ TEST(Lrvf, MassIsTheConsistentOneOfLinearShapes) {
   EXPECT_LT((m - expected).norm(), 1e-15);
 }
 
-// A point off the axis stays on its section: r = r₀ + y (−sin θ, cos θ).
+// A point off the axis moves with its section: r = r₀ + y (−sin θ, cos θ).
 TEST(Lrvf, PointsOffTheAxisTurnWithTheSection) {
   planar::Lrvf const beam = straight();
   VecX const q = nodes([](double i) { return Vec3(l * i, 0.2 * i, 0.3 * i); }), v = VecX::Zero(q.size());

@@ -1,4 +1,4 @@
-// Planar bars and cables whose natural shape is curved: quarter circles.
+// Planar bars and cables with a curved natural shape: quarter circles.
 
 #include <gtest/gtest.h>
 
@@ -16,13 +16,13 @@ namespace planar_natural_shape_test {
 
 constexpr double radius = 0.8, quarter = 0.5 * std::numbers::pi, EA = 4e5, GA = 3e5, EI = 90.0;
 
-/// Stands anywhere in the plane; its axes are turned by 0.7 rad.
+/// Bar with an arbitrary position in the plane. Its axes are rotated by 0.7 rad.
 Bar bar() {
   return {.length = radius * quarter,
           .constants = BarConstants{.EA = EA, .EI = EI, .mass_per_length = 2.0, .GA = GA},
           .placement = Placement::planar(0.4, -0.3, 0.7)};
 }
-/// Bends to the left, or to the right where `sign` is −1.
+/// Arc to the left, or to the right if `sign` is −1.
 ReferenceCurve arc(double sign = 1.0) {
   return [sign](double s) {
     double const a = s / radius;
@@ -61,11 +61,11 @@ TYPED_TEST(NaturalShape, IsFreeOfStress) {
     EXPECT_LT(section_forces(c.model, c.x, c.bar.at(s)).norm(), 1e-10 * EI);
     Placement const there = arc(-1.0)(s);
     Vec3 const place = Vec3(0.4, -0.3, 0) + bar().placement.axes * there.origin;
-    EXPECT_LT((position(c.model, c.x, c.bar.at(s)) - place).norm(), s == 0.3 ? 1e-2 : 1e-14);  // between nodes a chord
+    EXPECT_LT((position(c.model, c.x, c.bar.at(s)) - place).norm(), s == 0.3 ? 1e-2 : 1e-14);  // a chord between nodes
   }
 }
 
-// A turn and a half: angles go on through π.
+// One and a half revolutions: angles are continuous through π.
 TYPED_TEST(NaturalShape, CountsTurns) {
   Bar round = bar();
   round.length = 3.0 * std::numbers::pi * radius;
@@ -74,7 +74,7 @@ TYPED_TEST(NaturalShape, CountsTurns) {
   EXPECT_EQ(energy(c.model, c.x).strain, 0.0);
 }
 
-// M = −EI/R all along takes the curvature away, N = Q = 0.
+// M = −EI/R along the bar straightens it, N = Q = 0.
 TYPED_TEST(NaturalShape, IsStraightUnderTheMomentOfItsCurvature) {
   auto const c = arc_under<TypeParam>(16, {.moment = -EI / radius});
   char const* const name = TestFixture::name;
@@ -88,10 +88,10 @@ TYPED_TEST(NaturalShape, IsStraightUnderTheMomentOfItsCurvature) {
        section_forces(c.model, c.x, c.bar.at(0.4 * radius))[5], -EI / radius, 1e-3 * EI);
 }
 
-// The tip of the quarter circle under P, towards the centre or away from it. By Castigliano, with M = P R sin φ,
-// N = −P sin φ, Q = P cos φ at φ from the tip: u = (π/4) P R (R²/EI + 1/EA + 1/GA)  [Timoshenko, Strength of
-// Materials]. Green strain comes with the curvature per deformed length, θ′/(1 + ε): EA then resists N + M/R, which is
-// zero here. The chords of Lrvf err by (l/R)²/4.
+// Tip of the quarter circle under P, towards the centre or away from it. Castigliano's theorem with M = P R sin φ, N
+// = −P sin φ, Q = P cos φ at φ from the tip: u = (π/4) P R (R²/EI + 1/EA + 1/GA)  [Timoshenko, Strength of
+// Materials]. The curvature of Green strain is per deformed length, θ′/(1 + ε). EA then resists N + M/R, which is
+// zero here. The chords of Lrvf have an error of (l/R)²/4.
 TYPED_TEST(NaturalShape, YieldsToARadialForceAsCastiglianoSays) {
   double const force = 1e-3;
   Vec3 const along = bar().placement.axes * Vec3(1, 0, 0);
@@ -110,7 +110,7 @@ TYPED_TEST(NaturalShape, YieldsToARadialForceAsCastiglianoSays) {
 
 TYPED_TEST(NaturalShape, IsRefusedWhereItIsNoCurve) {
   EXPECT_TRUE(has(refusal([] { TypeParam::naturally_curved(bar(), 4, {}); }), "the curve is empty"));
-  auto const twice = [](double s) { return arc()(2.0 * s); };  // not by its arc length
+  auto const twice = [](double s) { return arc()(2.0 * s); };  // not a function of its arc length
   EXPECT_TRUE(has(refusal([&] { TypeParam::naturally_curved(bar(), 4, twice); }), "Give the curve by its arc length"));
   auto const rising = [](double s) { return Placement::at({s, 0, 0.1 * s}); };
   EXPECT_TRUE(has(refusal([&] { TypeParam::naturally_curved(bar(), 4, rising); }), "plane"));

@@ -30,7 +30,7 @@ TEST(PlanarRigid, SpinningBarHasItsKineticEnergy) {
   EXPECT_NEAR(rod.kinetic_energy(0, q, v), 0.5 * inertia * omega * omega, 1e-14);
 }
 
-// The angle is a coordinate like any other: a second turn is not the first.
+// The angle counts revolutions: the second revolution differs from the first.
 TEST(PlanarRigid, CountsItsTurns) {
   planar::Rigid const body(1.0, 0.5, Placement::planar(1.0, 2.0, 3.0));
   std::array<double, 3> q, moved;

@@ -1,4 +1,4 @@
-// A section whose polar inertia is not the sum of the other two.
+// Section whose polar inertia is not the sum of the other two inertias.
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/ancf/ancf_beam.hpp>
@@ -35,8 +35,8 @@ TEST(PolarInertia, OfARigidBarStandsAlone) {
   EXPECT_EQ(own(2, 2), sum(2, 2));
 }
 
-// A clamped bar of n elements twists as n discs on n springs GJ/h, the last disc a half one:
-// ω = (2/h) √(GJ/Iρ) sin(π/4n), h = L/n.
+// A clamped bar of n elements in torsion is equivalent to n discs on n springs GJ/h, with half a disc at the end: ω =
+// (2/h) √(GJ/Iρ) sin(π/4n), h = L/n.
 TEST(PolarInertia, SetsTheTorsionalFrequency) {
   Index const n = 8;
   double const h = 2.0 / double(n);

@@ -28,7 +28,7 @@ struct EulerCase {
 };
 bool const rigid_euler_parameters_obeys = obeys<EulerCase, BodyLaws>("RigidEulerParameters");
 
-// Ω = Ḡ θ̇ is the angular velocity that turns A; a moment does the same work in either description.
+// Ω = Ḡ θ̇ is the angular velocity of A. The work of a moment is equal in both descriptions.
 TEST(EulerParameterMap, RelatesCartesianAndGeneralisedMoments) {
   using Body = Rigid<EulerParameters>;
   using D = Dual<1>;
@@ -44,7 +44,7 @@ TEST(EulerParameterMap, RelatesCartesianAndGeneralisedMoments) {
   EXPECT_NEAR((Body::map<double>(view(at)).transpose() * moment).dot(rate), moment.dot(omega), 1e-14);
 }
 
-/// The same mechanism with either rotation: a top on a ball joint and a swinging link pinned to it.
+/// One mechanism with either description of rotation: a top on a ball joint with a swinging link pinned to it.
 template <class Rotation>
 struct Mechanism {
   using Body = Rigid<Rotation>;
@@ -89,7 +89,8 @@ void expect_same_motion(Integrator const& integrator, double step, double tolera
 
 TEST(EulerParameterMotion, IsThatOfTheUnitQuaternion) {
   expect_same_motion(RungeKutta4<Projection>{}, 1e-3, 1e-8);
-  // each method is wrong by its own O(h²): 1 ms of Lie group against 1 ms of a vector space with a row
+  // each method has its own error of order h²: 1 ms of a Lie group method against 1 ms of a vector space with a
+  // constraint equation
   expect_same_motion(GeneralizedAlpha{}, 2.5e-4, 2e-5);
 }
 
@@ -101,7 +102,7 @@ TEST(EulerParameterMotion, KeepsTheNormAndTheEnergy) {
   for (Index const at : {3, 10}) EXPECT_NEAR(m.x.q.segment<4>(at).norm(), 1.0, 1e-10);
 }
 
-// Table 3.4's way of counting: seven coordinates and one constraint a body.
+// Counts as in Table 3.4 of Wallin 2016: seven coordinates and one constraint per body.
 TEST(EulerParameterCensus, CountsAsTheThesis) {
   Mechanism<EulerParameters> const m;
   Census const c = census(m.model);
@@ -110,7 +111,7 @@ TEST(EulerParameterCensus, CountsAsTheThesis) {
   EXPECT_EQ(c.degrees_of_freedom, 4);
   EXPECT_EQ(c.speeds, 14);
   EXPECT_EQ(c.rows, 10);
-  EXPECT_EQ(census(Mechanism<UnitQuaternion>().model).constraints, 10);  // one of each quaternion included
+  EXPECT_EQ(census(Mechanism<UnitQuaternion>().model).constraints, 10);  // including one for each quaternion
 }
 
 TEST(EulerParameterNames, OwnRowIsNamedByItsBody) {

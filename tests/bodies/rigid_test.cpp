@@ -39,8 +39,8 @@ Mat3 const tilted = [] {
   return Mat3(turn * Vec3(0.3, 0.5, 0.7).asDiagonal() * turn.transpose());
 }();
 
-// Thin rod of length l: m l²/12 about its middle; a cylinder adds its rotary inertia ρ I l, ρ (I_y + I_z) l about
-// its own axis  [Goldstein, Poole & Safko 2002, ch. 5].
+// Thin rod of length l: m l²/12 about its middle. A cylinder has in addition its rotary inertia ρ I l, and ρ (I_y +
+// I_z) l about its own axis  [Goldstein, Poole & Safko 2002, ch. 5].
 TEST(Rigid, BarHasTheInertiaOfACylinder) {
   double const l = 1.3, r = 0.04, rho = 7800, m = rho * std::numbers::pi * r * r * l;
   Bar const bar{.length = l, .section = Circle{.radius = r}, .material = Material{.density = rho, .young = 2e11}};
@@ -50,7 +50,7 @@ TEST(Rigid, BarHasTheInertiaOfACylinder) {
   EXPECT_LT((rod.inertia() - Mat3(expected.asDiagonal())).norm(), 1e-13 * expected.norm());
 }
 
-// A cuboid: m (b² + c²)/12 about each axis; height along y, width along z.
+// Cuboid: m (b² + c²)/12 about each axis; height along y, width along z.
 TEST(Rigid, BarHasTheInertiaOfACuboid) {
   double const l = 1.3, h = 0.2, w = 0.1, m = 500 * l * h * w;
   Bar const bar{
@@ -59,7 +59,7 @@ TEST(Rigid, BarHasTheInertiaOfACuboid) {
   EXPECT_LT((Rigid<>::from(bar).inertia() - Mat3(expected.asDiagonal())).norm(), 1e-13);
 }
 
-// Iρ about y is that about z unless given.
+// The default of Iρ about y is Iρ about z.
 TEST(Rigid, BarOfOneRotaryInertiaIsRound) {
   Bar bar = RigidCase::bar();
   bar.constants->rotary_inertia_y.reset();
@@ -74,7 +74,7 @@ TEST(Rigid, SpinningBarHasItsKineticEnergy) {
   std::array<double, 7> q;
   rod.reference(q);
   double const omega = 4.0;
-  // about its middle ½ (m l²/12) ω², about its first end ½ (m l²/3) ω², about its own axis nothing
+  // about its middle ½ (m l²/12) ω², about its first end ½ (m l²/3) ω², about its own axis zero
   EXPECT_DOUBLE_EQ(rod.kinetic_energy(0, q, std::array{0.0, 0.0, 0.0, 0.0, 0.0, omega}), 0.5 * 6.0 * 9.0 / 12.0 * 16.0);
   std::array<double, 6> v;
   rod.rigid_velocity(q, Vec3::Zero(), Vec3(0, omega, 0), v);
@@ -82,7 +82,7 @@ TEST(Rigid, SpinningBarHasItsKineticEnergy) {
   EXPECT_EQ(rod.kinetic_energy(0, q, std::array{0.0, 0.0, 0.0, omega, 0.0, 0.0}), 0.0);
 }
 
-// Euler's equations J₁ Ω₁˙ = (J₂ − J₃) Ω₂ Ω₃ and so on in turn.
+// Euler's equations J₁ Ω₁˙ = (J₂ − J₃) Ω₂ Ω₃, with cyclic permutations.
 TEST(Rigid, GyroscopicForceIsEulers) {
   Rigid<> const body(2.0, Vec3(0.3, 0.5, 0.7).asDiagonal());
   auto const f = force_of(body, {9.0, 8.0, 7.0, 1.0, 2.0, 3.0});
@@ -92,7 +92,7 @@ TEST(Rigid, GyroscopicForceIsEulers) {
   EXPECT_NEAR(f[5], (0.3 - 0.5) * 1.0 * 2.0, 1e-15);
 }
 
-// What the body adds to its rows at once is what its parts say.
+// The combined contribution of the body to its equations equals the sum of its separate functions.
 TEST(Rigid, AddsInertiaLessForceAndWeight) {
   Mat3 inertia;
   inertia << 2.0, 0.3, -0.2, 0.3, 2.5, 0.4, -0.2, 0.4, 3.0;
@@ -109,7 +109,7 @@ TEST(Rigid, AddsInertiaLessForceAndWeight) {
   EXPECT_LT((rows - expected).norm(), 1e-14 * expected.norm());
 }
 
-// A full tensor: mass matrix, work-free gyroscopic force, tangent against differences.
+// Full inertia tensor: mass matrix, gyroscopic force without work, tangent compared with finite differences.
 TEST(Rigid, FullInertiaTensorIsKept) {
   Rigid<> const body(2.0, tilted);
   std::array<double, 7> q;
@@ -162,7 +162,7 @@ TEST(Rigid, RefusesAnInertiaThatNoBodyHas) {
   EXPECT_TRUE(has(said(broken), "the inertia"));
   EXPECT_TRUE(has(said(Vec3(1, 1, -0.1).asDiagonal()), "negative"));
   EXPECT_TRUE(has(said(Vec3(1, 1, 2.01).asDiagonal()), "triangle inequality"));
-  // the triangle holds for principal moments: here they hide behind turned axes
+  // the triangle inequality applies to principal moments, here in rotated axes
   Mat3 const turn = exp_so3<double>(Vec3(0.4, -0.8, 0.3));
   EXPECT_TRUE(has(said(turn * Vec3(1, 1, 2.01).asDiagonal() * turn.transpose()), "triangle inequality"));
   Mat3 const negative = turn * Vec3(2, 1.5, -0.25).asDiagonal() * turn.transpose();
@@ -170,11 +170,11 @@ TEST(Rigid, RefusesAnInertiaThatNoBodyHas) {
 }
 
 TEST(Rigid, AllowsThinRodsPlatesAndPoints) {
-  EXPECT_NO_THROW(Rigid<>(1.0, Vec3(0, 1, 1).asDiagonal()));  // rod: nothing about its axis
-  EXPECT_NO_THROW(Rigid<>(1.0, Vec3(1, 1, 2).asDiagonal()));  // plate: the triangle is flat
+  EXPECT_NO_THROW(Rigid<>(1.0, Vec3(0, 1, 1).asDiagonal()));  // rod: zero about its axis
+  EXPECT_NO_THROW(Rigid<>(1.0, Vec3(1, 1, 2).asDiagonal()));  // plate: equality in the triangle inequality
   EXPECT_NO_THROW(Rigid<>(1.0, Mat3::Zero()));
   Mat3 const turn = exp_so3<double>(Vec3(0.4, -0.8, 0.3));
-  EXPECT_NO_THROW(Rigid<>(1.0, turn * Vec3(0, 1, 1).asDiagonal() * turn.transpose()));  // up to rounding
+  EXPECT_NO_THROW(Rigid<>(1.0, turn * Vec3(0, 1, 1).asDiagonal() * turn.transpose()));  // up to round-off
 }
 
 TEST(Rigid, RefusesAPlacementThatIsNone) {
@@ -196,7 +196,8 @@ TEST(Rigid, NamesThePrincipalMomentsOfAnInertiaInTurnedAxes) {
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(found[std::size_t(i)], given[i], 1e-7);
 }
 
-/// A quarter turn about z, the marker's axes a quarter turn about x against the body's: all numbers by hand.
+/// Rotation of 90° about z. The marker's axes are rotated by 90° about x relative to the body. All expected numbers
+/// are computed by hand.
 template <class T>
 void publishes_by_hand() {
   double const half = std::sqrt(0.5);

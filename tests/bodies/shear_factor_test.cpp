@@ -1,4 +1,4 @@
-// A section with a shear factor of its own: every formulation with shear takes k G A of it.
+// Section with its own shear factor k: every formulation with shear uses its k G A.
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 namespace polybody {
 namespace shear_factor_test {
 
-/// A thick cantilever, L/h = 4.
+/// Thick cantilever, L/h = 4.
 Bar thick(std::optional<double> factor) {
   return {.length = 2.0,
           .section = Rectangle{.height = 0.5, .width = 0.1},
@@ -23,10 +23,10 @@ Bar thick(std::optional<double> factor) {
 }
 constexpr double force = 1.0, shear_area = 2e8 / 2.5 * 0.05, bending = 2e8 * 0.1 * 0.125 / 12.0;
 
-/// F L³/(3 EI) + F L/(k G A) [Timoshenko].
+/// Deflection F L³/(3 EI) + F L/(k G A) [Timoshenko].
 double deflection(double k) { return force * 8.0 / (3.0 * bending) + force * 2.0 / (k * shear_area); }
 
-/// \param deflect the tip's deflection of a bar under `force`; \param mesh relative error of bending on its mesh
+/// \param deflect tip deflection of a bar under `force`; \param mesh relative error of bending on its mesh
 template <class F>
 void follows_timoshenko(F&& deflect, double mesh, std::string const& formulation) {
   Claim const claim{"shear factor", "deflection of a thick cantilever [m]", By::closed_form,
@@ -40,7 +40,7 @@ void follows_timoshenko(F&& deflect, double mesh, std::string const& formulation
     held(shear, found - whole, deflection(k) - deflection(1.0), 1e-4 * (deflection(k) - deflection(1.0)),
          {equals("k", k)});
   }
-  EXPECT_EQ(deflect(thick({})), deflect(thick(10.0 * 1.25 / (12.0 + 11.0 * 0.25))));  // Cowper's
+  EXPECT_EQ(deflect(thick({})), deflect(thick(10.0 * 1.25 / (12.0 + 11.0 * 0.25))));  // Cowper's factor
 }
 
 TEST(ShearFactor, SetsTheDeflectionOfAThickCantilever) {

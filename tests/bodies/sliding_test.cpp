@@ -32,7 +32,7 @@ std::span<T const> span_of(std::vector<T> const& x) {
   return x;
 }
 
-/// A body of three elements with two sliders, bent anyhow, and its slider in the middle element.
+/// Body of three elements with two sliders in an arbitrary deformation, and its slider in the middle element.
 template <class B>
 struct Bent {
   using D = Dual<1>;
@@ -50,7 +50,7 @@ struct Bent {
       v[i] = number(2.0);
     }
   }
-  /// Published at q + ε dq with speeds v; `jacobian` gets J.
+  /// Marker kinematics at q + ε dq with the velocities v; `jacobian` receives J.
   template <class T>
   Published<T> at(std::vector<T> const& place, std::vector<T>& jacobian) const {
     jacobian.assign(6 * n, T(0.0));
@@ -75,7 +75,8 @@ struct SlidingLaws : testing::Test, Bent<B> {};
 using Lines = testing::Types<planar::AncfCable<>, AncfCable<>, AncfBeam<>>;
 TYPED_TEST_SUITE(SlidingLaws, Lines);
 
-// J is the derivative of r by every coordinate, s among them, ṙ = J v, and the bias is J̇ v, all by dual numbers.
+// J is the derivative of r by every coordinate including s, ṙ = J v, and the bias is J̇ v. All are compared with dual
+// numbers.
 TYPED_TEST(SlidingLaws, JacobianVelocityAndBiasAreTheDerivativesOfThePlace) {
   using D = Dual<1>;
   std::vector<double> jacobian;
@@ -115,7 +116,7 @@ TYPED_TEST(SlidingLaws, LoadStiffnessIsTheDerivativeOfTheForce) {
   }
 }
 
-// At a node the axis, its slope and what they do to the force are those of either element.
+// At a node both adjacent elements give the same axis, slope and contribution to the force.
 TYPED_TEST(SlidingLaws, PassesNodesWithoutACorner) {
   double const node = this->body.element_length();
   std::vector<double> before, after;
@@ -127,7 +128,7 @@ TYPED_TEST(SlidingLaws, PassesNodesWithoutACorner) {
   for (std::size_t i = 0; i < before.size(); ++i) EXPECT_NEAR(before[i], after[i], 1e-6) << i;
 }
 
-// A slider that stands still is the material point there, and material points are as they were.
+// A slider at rest is the material point at its position. Material points are unaffected.
 TYPED_TEST(SlidingLaws, StandingStillIsAMaterialPoint) {
   this->v[this->n - 1] = 0.0;
   std::vector<double> of_slider, of_point(6 * this->n);
@@ -151,7 +152,7 @@ TEST(Sliding, RefusesPlacesAndSlidersThatItHasNot) {
   EXPECT_TRUE(has(refusal([&] { (void)body.at(Slider{1}); }), "there is no slider 1; the body has 1"));
 }
 
-// One element beyond its ends the line goes on, then no more.
+// The line continues for one element beyond its ends, and an error follows beyond that.
 TEST(Sliding, SaysThatAPointHasGoneOffTheEnd) {
   Bent<AncfCable<>> bent;
   std::vector<double> jacobian;

@@ -12,7 +12,7 @@ using namespace polybody;
 
 namespace strain_group_test {
 
-// The energy law itself, against dual numbers: for every group of every theory.
+// Law test of the strain energy by dual numbers, for every strain group of every theory.
 template <class Law_, int columns>
 struct Group {
   using Law = Law_;
@@ -47,7 +47,7 @@ struct StrainGroupLaws : testing::Test {
   }
   Vec<double, np> parameters() {
     Vec<double, np> p = numbers<np>();
-    p[0] += 1.1;  // r′ is about a unit vector along x
+    p[0] += 1.1;  // r′ is near a unit vector along x
     return p;
   }
   Vec<double, n> coordinates() {
@@ -101,7 +101,7 @@ TYPED_TEST(StrainGroupLaws, ForceIsTheEnergysSlopeAndTangentItsGradient) {
       EXPECT_NEAR(stiffness(i, j), -force[i].d[j], 1e-12 * stiffness.norm());
       EXPECT_NEAR(damping(i, j), -force[i].d[n + j], 1e-12 * damping.norm());
     }
-  // at rest f = −∂U/∂x, by central differences of the energy
+  // without velocities f = −∂U/∂x, by central differences of the energy
   Vec<double, n> const rest = Vec<double, n>::Zero();
   Vec<double, n> still = rest;
   this->group.template add_force<double>(x, rest, still);
@@ -114,7 +114,7 @@ TYPED_TEST(StrainGroupLaws, ForceIsTheEnergysSlopeAndTangentItsGradient) {
   }
 }
 
-// Packs take four elements through the same arithmetic.
+// SIMD vectors evaluate four elements with the same arithmetic.
 TYPED_TEST(StrainGroupLaws, PacksCalculateWithEachElement) {
   constexpr int n = TypeParam::n;
   Vec<Pack<>, n> x, xd, force = Vec<Pack<>, n>::Zero();

@@ -19,7 +19,7 @@ Bar bar(Damping const& damping) {
           .pretension = 3.0};
 }
 
-/// A body of nine elements, two packs and one, away from its reference and moving.
+/// Moving body of nine elements, two SIMD vectors and one, away from its reference.
 template <class B>
 struct Swaying {
   B body;
@@ -42,8 +42,7 @@ struct Swaying {
 
 template <class B>
 struct StrainTangent : testing::Test {
-  /// Undamped the tangent comes from its lower half; where one group is damped it has none of that, neither for the
-  /// others.
+  /// The undamped tangent is computed from its lower half. If one group is damped, no group uses this symmetry.
   std::array<Damping, 4> const dampings = {Damping{}, Damping{.axial = 0.01}, Damping{.bending = 0.03},
                                            Damping{.axial = 0.01, .shear = 0.02, .bending = 0.03}};
 };
@@ -51,8 +50,9 @@ using Bodies_ = testing::Types<planar::AncfCable<>, AncfCable<>, AncfCable<Engin
                                AncfBeam<Continuum<>>>;
 TYPED_TEST_SUITE(StrainTangent, Bodies_);
 
-// Differences of fourth order: (8 (f(h) − f(−h)) − f(2h) + f(−2h))/12h, with steps h of a thousandth of an element's
-// length exact but for some 1e-12 and the rounding of some 1e-13/1e-3 in the forces. The force is linear in the speeds.
+// Differences of fourth order: (8 (f(h) − f(−h)) − f(2h) + f(−2h))/12h with steps h of a thousandth of an element's
+// length. The truncation error is some 1e-12, and the round-off of the forces contributes some 1e-13/1e-3. The force
+// is linear in the velocities.
 TYPED_TEST(StrainTangent, IsTheForcesGradientWhicheverGroupsAreDamped) {
   constexpr int n = TypeParam::element_columns;
   for (Damping const& damping : this->dampings) {
@@ -73,7 +73,8 @@ TYPED_TEST(StrainTangent, IsTheForcesGradientWhicheverGroupsAreDamped) {
   }
 }
 
-// A displacement of both ends does no work on any other, to the last bit: the factors of the two places are opposite.
+// A displacement of both ends does exactly no work on any other displacement. The factors of the two positions are
+// opposite.
 TYPED_TEST(StrainTangent, DoesNotFeelWhereAnElementIs) {
   constexpr int n = TypeParam::element_columns, half = n / 2, d = TypeParam::world == World::plane ? 2 : 3;
   for (Damping const& damping : this->dampings) {
@@ -86,7 +87,7 @@ TYPED_TEST(StrainTangent, DoesNotFeelWhereAnElementIs) {
   }
 }
 
-// In packs as one by one, with the mass.
+// SIMD evaluation of the tangent with the mass, compared with the evaluation of single elements.
 TYPED_TEST(StrainTangent, InPacksIsThatOfEachElement) {
   constexpr int n = TypeParam::element_columns;
   static_assert(AlikeElements<TypeParam>);

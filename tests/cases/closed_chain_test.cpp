@@ -105,9 +105,9 @@ using Space = ClosedChain<OfSpace>;
 using Plane = ClosedChain<OfThePlane>;
 
 // A loop of N parallel pins has 5 N constraint equations. Its links have six rigid motions and N − 3 relative
-// motions: 6 N − (N + 3) = 5 N − 3 equations are independent. Axles, tooth and point add 5 + 5 + 5 + 2. The result is
-// 337 equations of rank 334 for 6·66 generalised velocities. The degrees of freedom are N − 2 as in the plane, 3·66 −
-// 2·(64 + 2 + 2).
+// motions: 6 N − (N + 3) = 5 N − 3 equations are independent. Axles, tooth and point add 5 + 5 + 5 + 2. The rank of
+// the 337 equations is 334. There are 6·66 generalised velocities. The degrees of freedom are N − 2 as in the plane,
+// 3·66 − 2·(64 + 2 + 2).
 TEST(ClosedChain, RepeatsThreeRows) {
   Space const space;
   Plane const plane;
