@@ -1,6 +1,6 @@
 # cmake -DWAY=<way> -DBUILD=... (see CMakeLists.txt) -P check.cmake
-# Installs polybody, or builds and runs consumer.cpp against it in one of several ways; `extensions` builds types of a
-# user's own, runs them and their laws.
+# Installs polybody, or builds and runs consumer.cpp against it in one of several ways. `extensions` builds
+# user-defined types, and runs them and their requirement suites.
 
 set(here ${CMAKE_CURRENT_LIST_DIR})
 set(dir ${WORK}/${WAY})
@@ -19,7 +19,7 @@ function(build_and_run project)
 endfunction()
 
 if(WAY STREQUAL "install")
-  # Installed in one place, then moved: nothing in it may remember where it was made.
+  # Installed in one folder, then moved: the installation must not depend on its original path.
   file(REMOVE_RECURSE ${WORK}/staged ${prefix})
   run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/staged)
   file(RENAME ${WORK}/staged ${prefix})
@@ -31,7 +31,7 @@ elseif(WAY STREQUAL "build_tree")
   build_and_run(find_package -Dpolybody_DIR=${BUILD} -DEXPECT=${BUILD} -DVERSION=${VERSION})
 
 elseif(WAY STREQUAL "components")
-  # The headers alone serve a program; what is not there is named, and how to get it.
+  # A program needs the headers only. If a component is missing, the error message names it and its source.
   set(root ${dir}_root)
   file(REMOVE_RECURSE ${root})
   run(${CMAKE_COMMAND} --install ${BUILD} --component headers --prefix ${root})
@@ -56,7 +56,7 @@ elseif(WAY STREQUAL "fetch_content")
 
 elseif(WAY STREQUAL "precompiled")
   set(common -DCMAKE_PREFIX_PATH=${prefix} -DVERSION=${VERSION})
-  # what is no target of the build is refused in a sentence
+  # a name that is not a target of the build is refused with a message
   foreach(wrong IN ITEMS nothing polybody::polybody)
     execute_process(
       COMMAND ${CMAKE_COMMAND} -S ${here}/precompiled -B ${dir}_refused --fresh -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${COMPILER}
@@ -71,7 +71,7 @@ elseif(WAY STREQUAL "precompiled")
   build_and_run(precompiled ${common})
 
 elseif(WAY STREQUAL "compiled")
-  # Flags for another machine than FLAGS are for: longer packs, or shorter ones.
+  # Flags for another processor than that of FLAGS: longer SIMD vectors, or shorter ones.
   set(other "")
   cmake_host_system_information(RESULT processor QUERY OS_PLATFORM)
   if(processor STREQUAL "x86_64")
@@ -108,7 +108,7 @@ elseif(WAY STREQUAL "extensions")
   run(${CMAKE_CTEST_COMMAND} --test-dir ${dir} --output-on-failure)
 
 elseif(WAY STREQUAL "pkg_config")
-  # No CMake at all: c++ -std=c++20 consumer.cpp $(pkg-config --cflags polybody)
+  # Without CMake: c++ -std=c++20 consumer.cpp $(pkg-config --cflags polybody)
   find_program(PKG_CONFIG NAMES pkg-config pkgconf REQUIRED)
   set(ENV{PKG_CONFIG_PATH} ${prefix}/share/pkgconfig:$ENV{PKG_CONFIG_PATH})
   execute_process(
@@ -120,14 +120,14 @@ elseif(WAY STREQUAL "pkg_config")
   file(MAKE_DIRECTORY ${dir})
   run(${COMPILER} -std=c++20 ${FLAGS} ${cflags} ${here}/consumer.cpp -o ${dir}/consumer)
   run(${dir}/consumer)
-  # the law suites, where GoogleTest tells pkg-config of itself
+  # the requirement suites, if pkg-config finds GoogleTest
   execute_process(COMMAND ${PKG_CONFIG} --exists gtest_main RESULT_VARIABLE without_gtest)
   if(NOT without_gtest)
     run(${PKG_CONFIG} --exists --print-errors "polybody-testing = ${VERSION}")
   endif()
 
 elseif(WAY STREQUAL "deb")
-  # The package, unpacked: what it says of itself, and a program against it.
+  # The unpacked package: its metadata, and a program against it.
   file(REMOVE_RECURSE ${dir}_made ${dir}_root)
   run(${CMAKE_COMMAND} -S ${SOURCE} -B ${dir}_made -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${COMPILER} -DPOLYBODY_BUILD_TESTS=OFF
       -DPOLYBODY_BUILD_EXAMPLES=OFF -DPOLYBODY_BUILD_BENCH=OFF)
@@ -141,7 +141,7 @@ elseif(WAY STREQUAL "deb")
   build_and_run(find_package -DCMAKE_PREFIX_PATH=${dir}_root/usr -DEXPECT=${dir}_root/usr -DVERSION=${VERSION})
 
 elseif(WAY STREQUAL "single_header")
-  # One file beside two others that include it, and nothing else.
+  # One file, together with two others that include it, and nothing else.
   file(REMOVE_RECURSE ${dir})
   file(MAKE_DIRECTORY ${dir}/polybody)
   run(${PYTHON} ${SOURCE}/cmake/packages/single_header.py -o ${dir}/polybody/polybody.hpp)
@@ -163,7 +163,7 @@ elseif(WAY STREQUAL "single_header")
   endif()
 
 elseif(WAY STREQUAL "recipes")
-  # As far as they can be read without their managers: recipes.py stands in for them.
+  # The recipes are checked without their package managers: recipes.py simulates these.
   run(${PYTHON} -B ${here}/recipes.py ${SOURCE} ${VERSION})
 
 else()

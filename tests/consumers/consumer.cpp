@@ -1,5 +1,5 @@
-// The program that most consumer projects build: one header, as these projects are about where the headers are found.
-// Those that include all of the installed ones are `precompiled` and `compiled`.
+// The program of most consumer projects. It includes one header, because these projects test the location of the
+// headers. The projects `precompiled` and `compiled` include all installed headers.
 #include <polybody/kinematics/frame.hpp>
 
 #include <iostream>

@@ -1,5 +1,5 @@
 // refused: AncfLinear knows Spherical, Revolute and Weld
-// It says nothing of what it leaves free.
+// Distance does not name its free directions.
 #include <polybody/bodies/ancf/ancf_beam.hpp>
 #include <polybody/joints/distance.hpp>
 #include <polybody/joints/policies/ancf_linear.hpp>

@@ -6,7 +6,7 @@ using namespace polybody;
 
 struct Crate : planar::Rigid {
   using planar::Rigid::Rigid;
-  void tangent() const {}  // hides the one with its arguments
+  void tangent() const {}  // hides the overload with arguments
 };
 
 void add(Model<Bodies<Crate>, Joints<>>& model) { model.add(Crate(1.0, 1.0)); }

@@ -1,5 +1,5 @@
 // refused: A bushing stands in for a joint of bodies
-// A drive prescribes a motion; it has no coordinates that are free or held.
+// A driving constraint prescribes a motion; it has no free or constrained coordinates.
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/policies/bushing.hpp>
 #include <polybody/joints/prescribed_angle.hpp>

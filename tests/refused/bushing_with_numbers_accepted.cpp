@@ -1,5 +1,5 @@
 // accepted
-// The same with all its numbers, on a pin.
+// A bushing with stiffness and damping, on a pin.
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/policies/bushing.hpp>
 #include <polybody/joints/revolute.hpp>

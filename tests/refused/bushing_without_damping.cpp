@@ -1,5 +1,5 @@
 // refused: Required
-// Numbers that decide physics have no default.
+// Physical parameters have no default.
 #include <polybody/joints/policies/bushing.hpp>
 
 polybody::Bushing const mount{.stiffness = polybody::Bushing::diagonal({1, 1, 1}, {1, 1, 1})};

@@ -1,6 +1,7 @@
-# cmake -DCOMPILER=<c++> -DSOURCE=<file.cpp> -DINCLUDES=<dir|dir|...> -DPRECOMPILED=<header or nothing> -DLINES=<n> -P check.cmake
-# Succeeds when the compiler accepts SOURCE, or refuses it with the sentence of its first line among the first n lines of
-# the message.
+# cmake -DCOMPILER=<c++> -DSOURCE=<file.cpp> -DINCLUDES=<dir|dir|...> -DPRECOMPILED=<header or nothing> -DLINES=<n> -P
+# check.cmake
+# Succeeds if the compiler accepts SOURCE, or refuses it with the sentence of its first line among the first n lines
+# of the message.
 
 file(STRINGS ${SOURCE} first_line LIMIT_COUNT 1)
 if(first_line MATCHES "^// refused: (.+)$")
@@ -15,7 +16,7 @@ if(PRECOMPILED) # as <header>.gch, for g++ and for clang++
   list(APPEND include_flags -include ${PRECOMPILED})
 endif()
 
-# No option but what a program needs, so the message is the one that a user reads; LC_ALL: plain ASCII quotes.
+# Only the options that a program needs, so the message is that of a user's build. LC_ALL gives plain ASCII quotes.
 execute_process(
   COMMAND ${CMAKE_COMMAND} -E env LC_ALL=C ${COMPILER} -std=c++20 -fsyntax-only ${include_flags} ${SOURCE}
   RESULT_VARIABLE result
@@ -31,7 +32,7 @@ elseif(result EQUAL 0)
   message(FATAL_ERROR "${SOURCE} compiles, but must be refused with: ${expected}")
 endif()
 
-# Errors and notes count, not the lines of source that the compiler shows with them.
+# Only errors and notes count, not the source lines that the compiler prints with them.
 set(rest "${message}\n")
 foreach(line RANGE 1 ${LINES})
   string(FIND "${rest}" "\n" end)

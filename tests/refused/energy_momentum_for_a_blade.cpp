@@ -1,5 +1,5 @@
 // refused: RollingDisc and KnifeEdge have none
-// A blade holds a speed: there is no gap whose change over a step could be known.
+// A blade constrains a velocity: there is no constraint function whose change over a step could be computed.
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/integrators/energy_momentum.hpp>
 #include <polybody/joints/knife_edge.hpp>

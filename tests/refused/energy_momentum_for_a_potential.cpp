@@ -1,5 +1,5 @@
 // refused: asks a force's potential on secants
-// Its potential is a function of numbers only.
+// Its potential accepts doubles only.
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/integrators/energy_momentum.hpp>
 #include <polybody/run/simulate.hpp>

@@ -6,7 +6,7 @@
 using namespace polybody;
 
 struct Spring : SpringDamper {
-  void check() const {}  // hides the one with its argument
+  void check() const {}  // hides the overload with an argument
 };
 
 Model<Bodies<planar::Rigid>, Joints<>, Forces<Spring>> model;

@@ -5,7 +5,7 @@
 using namespace polybody;
 
 struct Wire : PointOnLine {
-  void gamma() const {}  // hides the one with its arguments
+  void gamma() const {}  // hides the overload with arguments
 };
 
 Joint<Wire, Constraint> const joint{};

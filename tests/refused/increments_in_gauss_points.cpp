@@ -1,5 +1,5 @@
 // refused: carries one section along, in the middle
-// Between the nodes and the middle no rotation is known, and no strain.
+// Rotation and strain are undefined between the nodes and the middle.
 #include <polybody/bodies/lrvf/incremental_interpolation.hpp>
 #include <polybody/bodies/lrvf/lrvf.hpp>
 

@@ -1,5 +1,5 @@
 // refused: there is no gap that a force could
-// A penalty on a speed would be a damper.
+// A penalty on a velocity would be a damper.
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/knife_edge.hpp>
 #include <polybody/joints/policies/penalty.hpp>

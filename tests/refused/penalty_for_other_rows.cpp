@@ -1,5 +1,5 @@
 // refused: numbers for another number of rows
-// A ball joint has three rows.
+// A ball joint has three constraint equations.
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/spherical.hpp>
 

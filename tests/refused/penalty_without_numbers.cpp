@@ -1,5 +1,5 @@
 // refused: Required
-// Numbers that decide physics have no default.
+// Physical parameters have no default.
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/spherical.hpp>
 

@@ -6,7 +6,7 @@
 using namespace polybody;
 using OnPlane = Contact<SphereOnPlane>;
 
-// A cable does not know how it turns about its tangent, so it has no plane.
+// A cable has no rotation about its tangent, so it does not define a plane.
 void apply(Model<Bodies<AncfCable<>>, Joints<>, Forces<OnPlane>>& model, BodyHandle<AncfCable<>> const& cable,
            OnPlane const& contact) {
   model.apply(contact, model.ground().at({0, 0, 0}), cable.at(0.5));

@@ -5,7 +5,7 @@
 using namespace polybody;
 
 struct Mount : Penalty {
-  void potential() const {}  // hides the one with its argument
+  void potential() const {}  // hides the overload with an argument
 };
 
 Joint<Spherical, Mount> const joint{{}, {{.stiffness = 1.0, .damping = 0.0}}};

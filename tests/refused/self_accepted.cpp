@@ -1,5 +1,5 @@
 // accepted
-// The positive twin of self_refused.cpp.
+// The accepted counterpart of self_refused.cpp.
 template <int sides>
 struct Square {
   static_assert(sides == 4, "a square has four sides, not 3");

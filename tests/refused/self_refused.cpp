@@ -1,5 +1,5 @@
 // refused: a square has four sides, not 3
-// The mechanism's own test: the message of a static_assert in a template is found.
+// Test of the mechanism: the message of a static_assert in a template is found.
 template <int sides>
 struct Square {
   static_assert(sides == 4, "a square has four sides, not 3");

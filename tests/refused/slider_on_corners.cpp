@@ -1,5 +1,5 @@
 // refused: has corners at its nodes
-// Linear elements: the axis is a chain of straight pieces.
+// The axis of linear elements is a chain of straight pieces.
 #include <polybody/bodies/lrvf/planar_lrvf.hpp>
 #include <polybody/bodies/shared/sliding.hpp>
 

@@ -1,5 +1,5 @@
 // refused: A joint of the plane joins planar bodies
-// With the umbrella a compiler's message may begin with a long list of what includes what.
+// With the umbrella header a compiler's message may begin with a long list of includes.
 #include <polybody/polybody.hpp>
 
 using namespace polybody;

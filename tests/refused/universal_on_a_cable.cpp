@@ -6,7 +6,7 @@
 using namespace polybody;
 using Cross = Joint<Universal, Constraint>;
 
-// A cable knows its tangent, which serves the second arm of a cross, not the first.
+// A cable provides its tangent, which can be the second arm of a universal joint, but not the first.
 void connect(Model<Bodies<AncfCable<>>, Joints<Cross>>& model, BodyHandle<AncfCable<>> const& cable) {
   model.connect(Cross{}, cable.at(0.0), model.ground().at({0, 0, 0}));
 }

@@ -1,4 +1,5 @@
-// A program that links polybody::compiled: runs by an implicit and an explicit integrator, and in joint coordinates.
+// A program that links polybody::compiled: runs with an implicit and an explicit integrator, and in joint
+// coordinates.
 #ifdef INCLUDE_COMPILED
 #include <polybody/compiled.hpp>
 #else
@@ -9,7 +10,7 @@
 #include <cstdio>
 using namespace polybody;
 
-// A rod of 1 m, released horizontally: how far its tip has come after 0.3 s.
+// Displacement of the tip of a rod of 1 m, 0.3 s after a horizontal release.
 template <class Policy, class I>
 double drop(Policy policy, I integrator) {
   using Pin = Joint<Revolute, Policy>;
@@ -27,7 +28,7 @@ int main() {
   double const implicit = drop(Constraint{}, GeneralizedAlpha{}),
                stages = drop(Constraint{}, RungeKutta4<Projection>{});
   double const joint = drop(Recursive{}, GeneralizedAlpha{});
-  // θ¨ = 1.5 g cos θ from rest by a series in t²: θ = w t²/2 − w³ t⁶/240 + …, w = 1.5 g
+  // θ¨ = 1.5 g cos θ from rest, by a series in t²: θ = w t²/2 − w³ t⁶/240 + …, w = 1.5 g
   double const w = 1.5 * 9.81, t2 = 0.09;
   double const theta = w * t2 / 2 - std::pow(w * t2, 3) / 240.0;
   std::printf("the tip fell %.6f, %.6f, %.6f m; series %.6f m\n", implicit, stages, joint, std::sin(theta));

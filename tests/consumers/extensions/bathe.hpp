@@ -1,29 +1,30 @@
 #pragma once
-// A user's own integrator: what the concept `polybody::Integrator` asks, written on `System` alone.
+// User-defined integrator: the requirements of the concept `polybody::Integrator`, with `System` alone.
 #include <polybody/polybody.hpp>
 
 namespace own {
 
 using namespace polybody;
 
-/// Bathe's method of two sub-steps, of order two and L-stable [Bank et al. 1985; Bathe & Baig 2005]: the trapezoidal
-/// rule to t + (2 − √2) h, then the backward formula of second order, on q₀ ⊞ δ with δ˙ = local_rate(δ, v):
+/// Bathe's method of two sub-steps, of order two and L-stable [Bank et al. 1985; Bathe & Baig 2005]. It uses the
+/// trapezoidal rule to t + (2 − √2) h, then the second-order backward difference formula, on q₀ ⊞ δ with δ˙ =
+/// local_rate(δ, v):
 ///   y₁ = y₀ + b (y˙₀ + y˙₁),  y₂ = c₁ y₁ − c₀ y₀ + b y˙₂,  y = (δ, v),  b = (1 − √½) h,  2 c₁ = √2 + 1,  2 c₀ = √2 −
 ///   1,
-/// each with M v̇ + Gᵀλ = f and Φ = 0 at its end. The step ends with speeds on the rows and accelerations that belong to
-/// them.
+/// each with M v̇ + Gᵀλ = f and Φ = 0 at its end. At the end of the step the velocities satisfy the constraint
+/// equations, and the accelerations are consistent with them.
 struct Bathe {
   static constexpr char const* name = "Bathe";
   static constexpr int order = 2;
   static constexpr bool accepts_rows = true;
-  static constexpr Entries entries = Entries::tangent;  ///< what it calls beside `Entries::motion`
+  static constexpr Entries entries = Entries::tangent;  ///< entries that it calls in addition to `Entries::motion`
 
   double tolerance = 1e-13;  ///< of Newton's corrections of δ, relative to 1 + max |q|
   int max_iterations = 30;
 
   void check() const { require_positive(tolerance, "Bathe: the tolerance"); }
 
-  /// Everything that a step needs, allocated once. Simulations ask `forward` for consistent starts.
+  /// Workspace of a step, allocated once. Simulations use `forward` for consistent initial conditions.
   template <class Solver>
   struct Workspace {
     VecX q, v, a, lambda, delta, rate, known_delta, known_v, r, phi, phi_rate, rhs, y;
@@ -53,13 +54,13 @@ struct Bathe {
     return Workspace<Solver>(system);
   }
 
-  /// Consistent accelerations; q and v stay.
+  /// Consistent accelerations; q and v do not change.
   template <class W>
   void start(System& system, State& x, double, W& w) const {
     w.forward.accelerations(system, {x.q, x.v, x.t}, x.a, x.lambda);
   }
 
-  /// x changes only at the end, when nothing throws any more.
+  /// x changes only at the end, after all operations that can throw.
   template <class W>
   StepReport step(System& system, State& x, double h, W& w) const {
     double const root = std::sqrt(2.0), b = (1.0 - 0.5 * root) * h;
@@ -84,8 +85,8 @@ struct Bathe {
   }
 
  private:
-  /// v = known_v + b v̇ and δ = known_delta + b δ˙ with the balance and the rows at time t. Newton's unknowns are Δv̇ and
-  /// Δλ: Δv = b Δv̇, Δδ = b² Δv̇, and the rows are divided by b².
+  /// v = known_v + b v̇ and δ = known_delta + b δ˙ with the balance and the constraint equations at time t. Newton's
+  /// unknowns are Δv̇ and Δλ: Δv = b Δv̇, Δδ = b² Δv̇. The constraint equations are divided by b².
   template <class W>
   void solve(System& system, State const& x, double t, double b, W& w, StepReport& report) const {
     Index const nv = system.speeds(), rows = system.rows();
@@ -99,7 +100,7 @@ struct Bathe {
       system.violation(w.phi);
       w.rhs.head(nv) = -w.r;
       w.rhs.tail(rows) = w.phi / -(b * b);
-      if (!system.velocity_rows().empty()) {  // these have a rate only
+      if (!system.velocity_rows().empty()) {  // these constraint equations have a rate only
         system.violation_rate(w.phi_rate);
         for (Index const i : system.velocity_rows()) w.rhs[nv + i] = w.phi_rate[i] / -b;
       }
@@ -128,7 +129,7 @@ struct Bathe {
     }
     throw NewtonStalled("Bathe: Newton's method does not converge at t = " + number(t) + " s. Take a smaller step.");
   }
-  /// δ and q that belong to v.
+  /// δ and q of the velocity v.
   template <class W>
   void move(System& system, State const& x, double b, W& w) const {
     system.local_rate(w.delta, w.v, w.rate);

@@ -1,5 +1,5 @@
 #pragma once
-// A user's own equations as a `System`: what the concept `polybody::UserMechanics` asks.
+// User-defined equations as a `System`: the requirements of the concept `polybody::UserMechanics`.
 #include <polybody/polybody.hpp>
 #include <polybody/system/user_system.hpp>
 
@@ -7,7 +7,7 @@ namespace own {
 
 using namespace polybody;
 
-/// Two uniform rods in a chain, by their angles from the vertical, φ = θ₁ − θ₂, k = ½ m₂ l₁ l₂:
+/// Two uniform rods in a chain, with their angles from the vertical, φ = θ₁ − θ₂, k = ½ m₂ l₁ l₂:
 ///   M = [m₁ l₁²/3 + m₂ l₁², k cos φ; k cos φ, m₂ l₂²/3],
 ///   f = [−k sin φ θ̇₂² − (½ m₁ + m₂) g l₁ sin θ₁;  k sin φ θ̇₁² − ½ m₂ g l₂ sin θ₂].
 struct DoublePendulum {
@@ -26,7 +26,7 @@ struct DoublePendulum {
     f[0] = -s * v[1] * v[1] - weight_1() * std::sin(q[0]);
     f[1] = s * v[0] * v[0] - weight_2() * std::sin(q[1]);
   }
-  /// −(ck ∂f/∂q + cd ∂f/∂v). Not asked for: without it, implicit steps take differences.
+  /// −(ck ∂f/∂q + cd ∂f/∂v). Optional: without it, implicit steps use finite differences.
   void tangent(VecX const& q, VecX const& v, double, double ck, double cd, MatX& k) const {
     double const s = coupling() * std::sin(q[0] - q[1]), c = coupling() * std::cos(q[0] - q[1]);
     k(0, 0) = ck * (c * v[1] * v[1] + weight_1() * std::cos(q[0]));

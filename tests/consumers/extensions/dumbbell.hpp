@@ -1,22 +1,22 @@
 #pragma once
-// A user's own body: what the concept `polybody::Body` asks, and nothing else.
+// User-defined body: the requirements of the concept `polybody::Body`, and nothing else.
 #include <polybody/polybody.hpp>
 
 namespace own {
 
 using namespace polybody;
 
-/// Two point masses at the ends of an elastic rod without mass, in space: a diatomic molecule, a tether.
+/// Two point masses at the ends of a massless elastic rod in space: a diatomic molecule, a tether.
 ///   q = [r₁; r₂],  M = diag(m₁, m₁, m₁, m₂, m₂, m₂),  N = k (l − l₀) + c l˙,  f₁ = N e = −f₂,  e = (r₂ − r₁)/l.
 class Dumbbell : public AddingCoordinates {  // q ⊞ δ = q + δ: `plus` and `local_rate`
  public:
   static constexpr World world = World::space;
   static constexpr Observes observes = Observes::point;  ///< its markers have no axes
   static constexpr bool constant_mass = true;
-  static constexpr int element_columns = 6;  ///< one element of six speeds
+  static constexpr int element_columns = 6;  ///< one element of six velocities
   static constexpr int point_columns = 3;    ///< a marker moves with three of them
 
-  /// A marker stands at one of the ends.
+  /// A marker is at one of the ends.
   struct Point {
     int end = 0;
   };
@@ -24,7 +24,7 @@ class Dumbbell : public AddingCoordinates {  // q ⊞ δ = q + δ: `plus` and `l
     Required<double> mass_1, mass_2;  ///< [kg]
     Required<double> stiffness;       ///< k [N/m]
     double damping = 0.0;             ///< c [N s/m]
-    Required<Vec3> r_1, r_2;          ///< (3) where the ends stand unstressed, world axes [m]
+    Required<Vec3> r_1, r_2;          ///< (3) positions of the ends in the unstressed state, world axes [m]
   };
 
   explicit Dumbbell(Parameters const& p)
@@ -36,7 +36,7 @@ class Dumbbell : public AddingCoordinates {  // q ⊞ δ = q + δ: `plus` and `l
     require_positive(length_, "Dumbbell: the length");
   }
 
-  /// The first end or the second: handle.at(1), handle.at(2).
+  /// Point at the first or the second end: handle.at(1), handle.at(2).
   Point at(int end) const {
     if (end != 1 && end != 2) throw InvalidInput("Dumbbell: an end is 1 or 2, but is " + std::to_string(end) + ".");
     return {end - 1};
@@ -102,7 +102,7 @@ class Dumbbell : public AddingCoordinates {  // q ⊞ δ = q + δ: `plus` and `l
     return -mass_[0] * g.dot(part<3>(q, 0)) - mass_[1] * g.dot(part<3>(q, 3));
   }
 
-  /// The end's place and velocity. J = [1; 0] (6×3) goes into the memory that `out` points at.
+  /// Position and velocity of the end. J = [1; 0] (6×3) is written to the memory that `out` points to.
   template <StateScalar T>
   void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v, Published<T>& out) const {
     out.frame.r = part<3>(q, 3 * p.end);

@@ -1,12 +1,13 @@
 #pragma once
-// A user's own policy: what the concept `polybody::AnswersRows` asks, for any number of rows.
+// User-defined policy: the requirements of the concept `polybody::AnswersRows`, for any number of constraint
+// equations.
 #include <polybody/polybody.hpp>
 
 namespace own {
 
 using namespace polybody;
 
-/// A rubber mount that hardens, row by row: λ = k g + κ g³ + c ġ (Duffing).
+/// Rubber mount with hardening, for each constraint equation: λ = k g + κ g³ + c ġ (Duffing).
 struct HardeningPenalty {
   static constexpr char const* name = "HardeningPenalty";
 

@@ -1,4 +1,5 @@
-// A user's own types under the law suites of polybody::testing: a case says how the type is made, a line tests it.
+// User-defined types under the requirement suites of polybody::testing: a case constructs the type, one line tests
+// it.
 #include <polybody/testing/flexible_body_laws.hpp>
 #include <polybody/testing/force_laws.hpp>
 #include <polybody/testing/integrator_laws.hpp>
@@ -24,7 +25,7 @@ struct DumbbellCase {
   }
   static Dumbbell body() { return made(3.0); }
   static Dumbbell undamped() { return made(0.0); }
-  static Dumbbell elsewhere() { return made(3.0, {-7.0, 3.0, 5.0}, {-7.6, 3.6, 5.6}); }  // as long, turned
+  static Dumbbell elsewhere() { return made(3.0, {-7.0, 3.0, 5.0}, {-7.6, 3.6, 5.6}); }  // same length, rotated
   static std::vector<Dumbbell::Point> points() { return {{0}, {1}}; }
   static double mass() { return 3.0; }
   static Vec3 centre() { return {0.5, 0.0, 0.7}; }
@@ -40,7 +41,7 @@ struct PointOnParabolaCase {
     double const x = number();
     Mate mate{.d = {x, 0.0, x * x / 2.4}, .R = exp_so3<double>(number.vec<3>(3.0)), .freedoms = MatX::Zero(6, 4)};
     mate.freedoms.col(0) << 1.0, 0.0, x / 1.2, 0.0, 0.0, 0.0;  // along the wire
-    mate.freedoms.bottomRightCorner<3, 3>().setIdentity();     // turns
+    mate.freedoms.bottomRightCorner<3, 3>().setIdentity();     // rotations
     return mate;
   }
 };
@@ -70,7 +71,7 @@ struct DoublePendulumCase {
 };
 bool const double_pendulum_obeys = obeys<DoublePendulumCase, UserSystemLaws>("DoublePendulum");
 
-/// A heavy top on the user's own joint: rows, rotations, a conservative model.
+/// A heavy top on the user-defined joint: constraint equations, rotations, a conservative model.
 struct TopOnTheWire {
   using Wire = Joint<PointOnParabola, Constraint>;
   Model<Bodies<Rigid<>>, Joints<Wire>> model{Gravity{0, 0, -9.81}};
@@ -81,7 +82,7 @@ struct TopOnTheWire {
         Rigid<>(1.0, Vec3(0.02, 0.01, 0.03).asDiagonal().toDenseMatrix(), Placement::at({0.5, 0.1, 0.325})), "top");
     model.connect(Wire{{.focal_length = 0.5}, {}}, model.ground().at({0, 0, 0}), top.at(Vec3(0.0, -0.1, -0.2)), "wire");
     start = model.reference_state();
-    // ω × (r − r_p) about the point on the wire, which stands still
+    // ω × (r − r_p) about the point on the wire, which is at rest
     model.set_velocity(start, top, -Vec3(1, 2, 5).cross(Vec3(0.5, 0.0, 0.125)), Vec3(1, 2, 5));
   }
 };

@@ -1,12 +1,13 @@
 #pragma once
-// A user's own force element: what the concept `polybody::ForceElement` asks, and a potential.
+// User-defined force element: the requirements of the concept `polybody::ForceElement`, and a potential.
 #include <polybody/polybody.hpp>
 
 namespace own {
 
 using namespace polybody;
 
-/// Two atoms that attract and repel each other: U = 4ε ((σ/r)¹² − (σ/r)⁶), least at r = 2^⅙ σ [Lennard-Jones 1924].
+/// Two atoms that attract and repel each other: U = 4ε ((σ/r)¹² − (σ/r)⁶), with its minimum at r = 2^⅙ σ
+/// [Lennard-Jones 1924].
 struct LennardJones {
   static constexpr int markers = 2;
   static constexpr Observes needs = Observes::point;
@@ -20,7 +21,7 @@ struct LennardJones {
     require_positive(depth, name + ": the depth of the well");
     require_positive(diameter, name + ": the diameter");
   }
-  /// f_a = U′ d/r = −f_b with d = r_b − r_a; written for any scalar, so that the tangent comes from dual numbers.
+  /// f_a = U′ d/r = −f_b with d = r_b − r_a; written for any scalar, so that the tangent follows from dual numbers.
   template <StateScalar T>
   std::array<Wrench<T>, 2> wrenches(std::array<Frame<T>, 2> const& frames, double) const {
     Vec<T, 3> const d = frames[1].r - frames[0].r;
@@ -31,7 +32,7 @@ struct LennardJones {
     w[1].f = -w[0].f;
     return w;
   }
-  /// Not asked for; with it `energy` counts the force, and the law suite compares both.
+  /// Optional: with it `energy` includes the force, and the requirement suite compares both.
   template <StateScalar T>
   T potential(std::array<Frame<T>, 2> const& frames, double) const {
     Vec<T, 3> const d = frames[1].r - frames[0].r;

@@ -1,4 +1,4 @@
-// Types of a user's own, with each other and with those of the library, against closed forms and balances.
+// User-defined types, combined with each other and with those of the library, against closed forms and balances.
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
@@ -17,7 +17,7 @@ extern template struct polybody::BodyKernels<own::Dumbbell, double>;  // compile
 namespace own {
 namespace {
 
-/// Prints what was found, and counts what is too large.
+/// Prints the errors, and counts those above their tolerance.
 class Checks {
  public:
   void small(std::string const& what, double error, double tolerance) {
@@ -31,8 +31,8 @@ class Checks {
   int failures_ = 0;
 };
 
-/// Two molecules in free flight, and a rigid body that hangs on one by a joint of the library: body, force, integrator.
-/// E, p and the angular momentum stay.
+/// Two molecules in free flight, and a rigid body that hangs on one by a joint of the library: user-defined body,
+/// force and integrator. E, p and the angular momentum are constant.
 void molecules(Checks& checks) {
   using Ball = Joint<Spherical, Constraint>;
   Model<Bodies<Dumbbell, Rigid<>>, Joints<Ball>, Forces<LennardJones>> model;
@@ -61,7 +61,8 @@ void molecules(Checks& checks) {
   checks.small("molecules: angular momentum", (after.angular - before.angular).norm(), 1e-6);
 }
 
-/// A bead on the wire z = x²/4f: joint with the rows of the library, and with the user's policy.
+/// A bead on the wire z = x²/4f: the user-defined joint with constraint equations of the library, and with the
+/// user-defined policy.
 template <class Policy>
 double bead(Policy const& policy, double x0, double until, double* energy_change = nullptr) {
   using Wire = Joint<PointOnParabola, Policy>;
@@ -78,7 +79,7 @@ double bead(Policy const& policy, double x0, double until, double* energy_change
 
 void wire(Checks& checks) {
   double const x0 = 0.01, omega = std::sqrt(9.81);  // √(g/2f) with f = ½
-  // x = x₀ cos ωt but for terms of x₀³
+  // x = x₀ cos ωt up to terms of x₀³
   checks.small("wire: small swing", bead(Constraint{}, x0, 2.0) - x0 * std::cos(2.0 * omega), 1e-6);
   double change = 0.0;
   double const rigid = bead(Constraint{}, 0.8, 1.5, &change);
@@ -87,7 +88,7 @@ void wire(Checks& checks) {
   checks.small("wire: stiff mount against rows", soft - rigid, 1e-3);
 }
 
-/// A weight on a hardening mount rests where k g + κ g³ = m g.
+/// A weight on a hardening mount is in equilibrium at k g + κ g³ = m g.
 void mount(Checks& checks) {
   using Mount = Joint<Weld, HardeningPenalty>;
   Model<Bodies<Rigid<>>, Joints<Mount>> model{Gravity{0, 0, -9.81}};
@@ -100,7 +101,7 @@ void mount(Checks& checks) {
   checks.small("mount: balance of the sag", sag * (300.0 + 4e4 * sag * sag) - weight, 1e-8 * weight);
 }
 
-/// A second of a system in steps of a millisecond.
+/// A run of one second of a system with steps of one millisecond.
 template <class I>
 State after_a_second(System& system, State x, I const& integrator) {
   auto const method = method_of(integrator);
@@ -110,7 +111,8 @@ State after_a_second(System& system, State x, I const& integrator) {
   return x;
 }
 
-/// The user's equations under the user's integrator and the library's, and as the library's bodies and joints.
+/// The user-defined equations under the user-defined integrator and those of the library, and as bodies and joints of
+/// the library.
 void pendulum(Checks& checks) {
   DoublePendulum const equations{.mass_1 = 2.0, .mass_2 = 1.0, .length_1 = 0.8, .length_2 = 0.5, .g = 9.81};
   VecX const start = Vec2(1.2, -0.4), none = VecX::Zero(2);
@@ -125,7 +127,7 @@ void pendulum(Checks& checks) {
   using Pin = Joint<planar::Revolute, Constraint>;
   Model<Bodies<planar::Rigid>, Joints<Pin>> model{Gravity{0, -9.81, 0}};
   auto const rod = [&](double mass, double length, Vec2 const& from, double angle) {
-    double const direction = angle - 0.5 * std::numbers::pi;  // of a rod that hangs
+    double const direction = angle - 0.5 * std::numbers::pi;  // of a hanging rod
     Vec2 const middle = from + 0.5 * length * Vec2(std::cos(direction), std::sin(direction));
     return model.add(
         planar::Rigid(mass, mass * length * length / 12.0, Placement::planar(middle.x(), middle.y(), direction)));

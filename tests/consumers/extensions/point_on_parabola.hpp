@@ -1,12 +1,13 @@
 #pragma once
-// A user's own joint geometry: what the concept `polybody::JointGeometry` asks, with the rows of the library.
+// User-defined joint geometry: the requirements of the concept `polybody::JointGeometry`, with constraint functions
+// of the library.
 #include <polybody/polybody.hpp>
 
 namespace own {
 
 using namespace polybody;
 
-/// A bead on a parabolic wire that is fixed in a: with sᵢ = aᵢ·(r_b − r_a), 2 rows
+/// A bead on a parabolic wire that is fixed in a: with sᵢ = aᵢ·(r_b − r_a), 2 constraint functions
 ///   g = [s₂; s₃ − s₁²/4f],  γ = [γ₂; γ₃ − s₁/2f γ₁ − ṡ₁²/2f],  γᵢ that of sᵢ.
 struct PointOnParabola {
   static constexpr char const* name = "PointOnParabola";
@@ -17,7 +18,7 @@ struct PointOnParabola {
 
   Required<double> focal_length;  ///< f [m]
   Vec3 along = Vec3::UnitX();     ///< (3) unit tangent at the vertex, world axes at the reference configuration
-  Vec3 axis = Vec3::UnitZ();      ///< (3) unit vector of the parabola's axis, across it
+  Vec3 axis = Vec3::UnitZ();      ///< (3) unit vector of the parabola's axis, perpendicular to it
 
   /// Called by `connect` with the joint's name.
   void check(std::string const& what) const { require_positive(focal_length, what + ": the focal length"); }

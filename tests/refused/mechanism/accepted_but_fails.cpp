@@ -1,5 +1,5 @@
 // accepted
-// Must be reported: it does not compile, and only when its template is instantiated.
+// Must be reported: it does not compile, but only if its template is instantiated.
 template <class T>
 int sides(T t) {
   return t.sides;
