@@ -1,6 +1,6 @@
 # cmake -DWAY=<way> -DBUILD=... (see CMakeLists.txt) -P check.cmake
 # Installs polybody, or builds and runs consumer.cpp against it in one of several ways. `extensions` builds
-# user-defined types, and runs them and their requirement suites.
+# user-defined types, and runs them and their law suites.
 
 set(here ${CMAKE_CURRENT_LIST_DIR})
 set(dir ${WORK}/${WAY})
@@ -120,7 +120,7 @@ elseif(WAY STREQUAL "pkg_config")
   file(MAKE_DIRECTORY ${dir})
   run(${COMPILER} -std=c++20 ${FLAGS} ${cflags} ${here}/consumer.cpp -o ${dir}/consumer)
   run(${dir}/consumer)
-  # the requirement suites, if pkg-config finds GoogleTest
+  # the law suites, if pkg-config finds GoogleTest
   execute_process(COMMAND ${PKG_CONFIG} --exists gtest_main RESULT_VARIABLE without_gtest)
   if(NOT without_gtest)
     run(${PKG_CONFIG} --exists --print-errors "polybody-testing = ${VERSION}")

@@ -1,4 +1,4 @@
-// The test suites detect errors: a type with one mistake breaks the requirement that names it.
+// The law suites detect errors: a type with one mistake breaks the law that describes it.
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/forces/spring_damper.hpp>
 #include <polybody/integrators/symplectic.hpp>
@@ -21,7 +21,7 @@ namespace polybody {
 using namespace laws;
 namespace laws_test {
 
-/// The requirements of a suite that a case breaks, by name.
+/// Names of the laws of a suite that a case breaks.
 template <class Laws>
 std::vector<std::string> broken() {
   std::vector<std::string> names;

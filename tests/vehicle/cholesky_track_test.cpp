@@ -1,11 +1,11 @@
-// Tracks of ANCF cables in Cholesky coordinates; for 0.05 s: tests/long_cases/cholesky_tracks_case.cpp.
+// Tracks of ANCF cables in Cholesky coordinates. A run of 0.05 s is in tests/long_cases/cholesky_tracks_case.cpp.
 #include "support/cholesky_tracks.hpp"
 
 namespace polybody {
 namespace cholesky_track_test {
 using namespace cholesky_tracks;
 
-/// How many unknowns explicit steps factor once, and how many they have.
+/// Number of unknowns that explicit steps factorise once, and total number of unknowns.
 template <class Link>
 std::pair<Index, Index> kept_unknowns() {
   auto const tracks = vehicle<Link>(1.0);
@@ -16,11 +16,12 @@ std::pair<Index, Index> kept_unknowns() {
   return {tangent.linear_solver().kept(), equations_of(system)};
 }
 
-TEST(CholeskyTracks, AreFactoredOnce) {  // a link has eight speeds, a pin takes four; one pin of a closed track repeats
-                                         // the lateral slope that all share
+// a link has eight velocities, a pin removes four; one pin of a closed track is redundant
+TEST(CholeskyTracks, AreFactoredOnce) {
+  // the lateral gradient that all links share
   for (auto const& [kept, all] : {kept_unknowns<AncfCable<>>(), kept_unknowns<Cholesky>()}) {
     EXPECT_GE(kept, 2 * 64 * 8 - 2 * 64 * 4);
-    EXPECT_LT(kept, all);  // the hull has joints that turn
+    EXPECT_LT(kept, all);  // the hull has rotational joints
   }
 }
 

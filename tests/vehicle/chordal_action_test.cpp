@@ -1,20 +1,20 @@
-// CASES C6, chordal action: a chain of pitch p on a sprocket of N teeth is a polygon around it, so its strand runs
-// unevenly.
+// Chordal action (C6, closed form): a chain of pitch p on a sprocket of N teeth is a polygon, so the velocity of its
+// strand varies.
 //
-// Pins at the bottoms of the valleys lie on the pitch circle R = p/(2 sin π/N). Let ψ be the angle of the pin that the
-// strand leads to, from the place where the circle's tangent is along the strand. A strand that stays parallel to
-// itself has the speed of that pin along it,
+// Pins at the bottoms of the valleys are on the pitch circle R = p/(2 sin π/N). ψ is the angle of the pin at the end
+// of the strand, measured from the point with the circle's tangent parallel to the strand. If the strand stays
+// parallel to itself, its velocity is the component of the pin's velocity along the strand,
 //   v = ω R cos ψ,  −π/N ≤ ψ ≤ π/N:  v_min/v_max = cos π/N,  x(ψ) = R sin ψ and a pitch more for every tooth,  mean v =
 //   N p n.
-// So it is where the strand's end feels a force of constant direction and nothing else, as here: then a strand at rest
-// is straight and along the force, wherever its other end is. (One of length L whose end is held on the line z = R − s
-// leans by β, L sin β = s − R (1 − cos ψ); its end has v = ω R (cos ψ − sin ψ tan β), and a ratio that depends on L and
-// s.)
+// The strand stays parallel if the force at its end has a constant direction and is the only force, as here. A strand
+// at rest is then straight and along the force, for any position of its other end. (A strand of length L with its end
+// on the line z = R − s is inclined by β, L sin β = s − R (1 − cos ψ). The velocity of its end is v = ω R (cos ψ −
+// sin ψ tan β), and the velocity ratio depends on L and s.)
 //
-// Both strands lie on the same side of the sprocket and pull with the same force T. Then all pins at the bottoms of
-// frictionless valleys are in equilibrium at every ψ: the strands pull with T cos ψ along the tangent on both ends of
-// the row of seated pins, which turned by 180° have the same ψ, and every link between them bears T cos ψ/cos π/N. No
-// pin climbs its arc. What is left are the depths to which pins are pressed in, of the order T/k.
+// Both strands are on the same side of the sprocket, under the same force T. All pins at the bottoms of frictionless
+// valleys are then in equilibrium at every ψ. The strands pull with T cos ψ along the tangent on both ends of the row
+// of seated pins. These ends have the same ψ after a rotation by 180°. The tension of every link between them is T
+// cos ψ/cos π/N. No pin climbs its arc. The remaining difference is the penetration of the pins, of the order T/k.
 
 #include <gtest/gtest.h>
 
@@ -41,9 +41,9 @@ constexpr double pi = std::numbers::pi, degree = pi / 180.0, p = m113::pitch, to
 double const pitch_radius = 0.5 * p / std::sin(0.5 * tooth);
 constexpr double tension = 2000.0;  // [N]
 
-/// Degrees from one place of rest to the next.
+/// Degrees from one position of rest to the next.
 constexpr double stride = 2.0;
-/// From rest to rest: a turn in 0.4 s, then 1.6 s of rest, from t = `start` on.
+/// Rotation in steps from rest to rest from t = `start`: each step rotates for 0.4 s and rests for 1.6 s.
 struct Steps {
   static constexpr double start = 1.0, turn = 0.4, each = 2.0;
 
@@ -56,9 +56,9 @@ struct Steps {
   }
 };
 
-/// Fourteen links of the M113 over its sprocket: pins 4 … 9 in the valleys from the top to the bottom, both strands to
-/// the rear. Friction of pins that move in their valleys, and dampers across the strands' ends, bring it to rest; at
-/// rest they do nothing.
+/// Fourteen links of the M113 over its sprocket. Pins 4 … 9 are in the valleys from the top to the bottom, both
+/// strands point to the rear. Friction of moving pins in their valleys and dampers across the ends of the strands
+/// damp the motion. At rest they have no force.
 template <class Drive>
 struct Chain {
   using Hinge = Joint<Revolute, Constraint>;
@@ -119,12 +119,12 @@ struct Chain {
         sprocket.at(Vec3(0, 0, 0)), "sprocket");
   }
 
-  /// The pin at the end of the strand that comes in.
+  /// The pin at the end of the incoming strand.
   Marker<Rigid<>> end() const { return links.front().at(Vec3(0.5 * p, 0, 0)); }
   double travel(State const& x) const { return position(model, x, end()).x() + 4.0 * p; }
 };
 
-/// Of a rigid chain after the sprocket has turned by `angle`.
+/// Travel of a rigid chain after a rotation of the sprocket by `angle`.
 double rigid_travel(double angle) {
   double const teeth = std::round(angle / tooth);
   return teeth * p + pitch_radius * std::sin(angle - teeth * tooth);
@@ -144,12 +144,13 @@ std::vector<double> travels(double k) {
   return at_rest;
 }
 
-/// How deep tension and contact press a pin into its valley: two links pull with 2 T sin π/N, two rings bear it.
+/// Penetration of a pin in its valley due to tension: two links pull with 2 T sin π/N, and two rings carry it.
 double depth(double k) { return 2.0 * tension * std::sin(0.5 * tooth) / (2.0 * k); }
 
-// CASES C6. The speed is slowest as a pin comes in, 18°, and fastest half a tooth later, 36°: v/ω = dx/dψ there, by
-// differences of places at rest, up to the pin that comes in on one side only, (11 x₀ − 18 x₁ + 9 x₂ − 2 x₃)/6h, with
-// an error of h³ x⁗/4 = 3e-6 of R. Pins that are sunk by d make a wheel smaller by no more than that.
+// Velocity ratio of chordal action (C6, closed form). The velocity is smallest as a pin engages, at 18°, and largest
+// half a tooth later, at 36°. There v/ω = dx/dψ follows from finite differences of positions at rest. At the engaging
+// pin the difference is one-sided: (11 x₀ − 18 x₁ + 9 x₂ − 2 x₃)/6h, with an error of h³ x⁗/4 = 3e-6 of R. A
+// penetration d of the pins reduces the radius by at most d.
 TEST(ChordalAction, StrandRunsAsUnevenlyAsAPolygon) {
   double const h = stride * degree;
   double error_before = 0.0, place_before = 0.0;
@@ -171,21 +172,22 @@ TEST(ChordalAction, StrandRunsAsUnevenlyAsAPolygon) {
     held(claim("slowest speed over fastest", "cos π/N"), slowest / fastest, std::cos(pi / m113::teeth), sunk, at);
     held(claim("fastest speed over ω R", "1"), fastest / pitch_radius, 1.0, sunk, at);
     held(claim("travel in a tooth, of a pitch", "1"), (x[18] - x[0]) / p, 1.0, 1e-6,
-         at);  // what is left is how well it rests
+         at);  // the remaining error is due to the residual motion at rest
     if (error_before > 0.0) {
-      EXPECT_LT(error, error_before / 3.0) << k;  // of the order 1/k, and k has grown fourfold
+      EXPECT_LT(error, error_before / 3.0) << k;  // of the order 1/k, and k is four times as large
       EXPECT_LT(place, place_before / 3.0) << k;
     }
     error_before = error;
     place_before = place;
   }
-  EXPECT_LT(error_before, 1e-4);  // of 1 − cos π/N = 0.049
+  EXPECT_LT(error_before, 1e-4);  // compared with 1 − cos π/N = 0.049
 }
 
-// At constant speed a pin comes in with 2 ω R sin π/N towards its valley and hits it. The part u = 2 ω R sin² π/N of
-// that is along the chain; if all of the chain took it on, it would rock in its valleys by u/Ω, Ω² = ΣN/((r_a − r_p)
-// M): its pins hang in arcs of r_a − r_p, the seated ones with ΣN ≥ 5 · 2 T sin π/N between them, and M is the mass of
-// all links. By no more does its travel differ from that of a rigid chain.
+// At constant angular velocity a pin hits its valley with 2 ω R sin π/N. The component u = 2 ω R sin² π/N of this
+// velocity is along the chain. If the whole chain had this velocity, it would oscillate in its valleys with the
+// amplitude u/Ω, Ω² = ΣN/((r_a − r_p) M). Its pins move like pendulums in arcs of r_a − r_p. The seated pins carry ΣN
+// ≥ 5 · 2 T sin π/N together, and M is the mass of all links. Hence u/Ω bounds the difference between its travel and
+// that of a rigid chain.
 TEST(ChordalAction, MeanSpeedIsAPitchForEachTooth) {
   double const omega = 0.1, start = 1.0, rise = 0.5;
   using Drive = PrescribedRate<Ramp>;

@@ -1,4 +1,5 @@
-// Where on a link contacts act: all in its middle, or at their places; and links of a finite element model.
+// Points of action of contacts on a link: all in its middle, or at the contact points. Also links of a finite element
+// model.
 #include <polybody/bodies/ffr/matrix_structure.hpp>
 #include <polybody/vehicle/m113_vehicle.hpp>
 #include <polybody/vehicle/modal_links.hpp>
@@ -15,10 +16,10 @@ m113::VehicleOptions options(m113::ContactsAct contacts) {
 }
 std::array<Ramp, 2> const at_rest{m113::drive(0.0, 0.1), m113::drive(0.0, 0.1)};
 
-/// What presses on the links of the left track where its wheels are `deeper` into them than at the start.
+/// Contact loads on the links of the left track, for wheels that are `deeper` into them than at the start.
 struct Pressed {
   Vec3 force = Vec3::Zero(), moment = Vec3::Zero();  ///< about the world's origin
-  double farthest = 0.0;  ///< of a point from the middle of the link that it is said to be on
+  double farthest = 0.0;  ///< distance of a point from the middle of the link that the contact names
   int points = 0;
 };
 template <class V>
@@ -39,7 +40,7 @@ Pressed pressed(V const& vehicle, double deeper) {
   return sum;
 }
 
-TEST(ContactPlaces, HaveTheSameResultant) {  // links of one face and of three share what presses on them
+TEST(ContactPlaces, HaveTheSameResultant) {  // links of one face and of three faces share the contact force
   using Track = m113::Vehicle<>;
   Pressed const one = pressed(Track(Constraint{}, at_rest, options(m113::ContactsAct::in_the_middle)), 2e-3);
   Pressed const three = pressed(Track(Constraint{}, at_rest, options(m113::ContactsAct::at_their_places)), 2e-3);
@@ -50,7 +51,7 @@ TEST(ContactPlaces, HaveTheSameResultant) {  // links of one face and of three s
   for (Pressed const& p : {one, three}) EXPECT_LT(p.farthest, 0.5 * m113::pitch + 0.05);
 }
 
-TEST(ContactPlaces, AreTheSameOnALinkOfFiniteElements) {  // as long as it is not deformed
+TEST(ContactPlaces, AreTheSameOnALinkOfFiniteElements) {  // if the link is not deformed
   using Rigids = m113::Vehicle<>;
   using Modal = m113::Vehicle<Ffr, Constraint>;
   std::string const files = POLYBODY_FE_LINK_FILES;
@@ -64,13 +65,13 @@ TEST(ContactPlaces, AreTheSameOnALinkOfFiniteElements) {  // as long as it is no
   EXPECT_LT((modal.moment - rigid.moment).norm(), 1e-9 * rigid.moment.norm());
 }
 
-TEST(FiniteElementLink, StretchesAsABar) {  // pulled at its pins
+TEST(FiniteElementLink, StretchesAsABar) {  // loaded in tension at its pins
   std::string const files = POLYBODY_FE_LINK_FILES;
   auto const link = m113::finite_element_link(
       read_structure(files + "/link.mass.mtx", files + "/link.stiffness.mtx", files + "/link.nodes.txt"));
   Structure const& s = link->structure;
   MatX const& shapes = link->shapes;
-  ASSERT_EQ(shapes.cols(), 18);  // of 15 loads and three modes; none repeats the others
+  ASSERT_EQ(shapes.cols(), 18);  // 15 loads and three modes; none is redundant
   Vec3 const pin = 0.5 * m113::pitch * Vec3::UnitX();
   VecX const pull = link->pin(1.0).loads(pin, s.size()).col(0) - link->pin(-1.0).loads(Vec3(-pin), s.size()).col(0);
   MatX const k = shapes.transpose() * s.stiffness * shapes;

@@ -12,7 +12,7 @@
 namespace polybody {
 namespace distance_to_path_test {
 
-// A corner at the origin; one leg along x, 4 m long, the other along z, 3 m.
+// A corner at the origin, with one leg along x, 4 m long, and the other along z, 3 m.
 std::array<Vec2, 3> const corner{Vec2(4.0, 0.0), Vec2(0.0, 0.0), Vec2(0.0, 3.0)};
 
 TEST(DistanceToPath, IsAcrossALineBesideIt) {
@@ -24,7 +24,7 @@ TEST(DistanceToPath, IsAcrossALineBesideIt) {
 TEST(DistanceToPath, IsThatOfTheCornerBeyondALine) {
   EXPECT_DOUBLE_EQ(distance_to_path(Vec2(-3.0, -4.0), corner), 5.0);
   EXPECT_DOUBLE_EQ(distance_to_path(Vec2(7.0, 4.0), corner), 5.0);     // an end
-  EXPECT_DOUBLE_EQ(distance_to_path(Vec2(-5.0, 15.0), corner), 13.0);  // the other
+  EXPECT_DOUBLE_EQ(distance_to_path(Vec2(-5.0, 15.0), corner), 13.0);  // the other end
 }
 
 TEST(DistanceToPath, IsZeroOnThePath) {

@@ -1,4 +1,4 @@
-// The lowest modes of a track's link, far above what its strain is filtered to (docs/track_stress.md).
+// The lowest modes of a track link, far above the filter frequency of its strain (docs/track_stress.md).
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ Claim mode(char const* what, char const* formula) {
   return {"M113 link", what, By::closed_form, formula, "Structure of 16 beam elements"};
 }
 
-/// Frequencies of the link [kHz] in these coordinates of its nodes, others held.
+/// Frequencies of the link [kHz] with the given free coordinates of its nodes; the other coordinates are fixed.
 VecX frequencies(Structure const& s, std::vector<Index> const& free) {
   MatX const stiffness = s.stiffness, inertia = s.mass_matrix();
   VecX const squares =
@@ -28,8 +28,8 @@ VecX frequencies(Structure const& s, std::vector<Index> const& free) {
   return squares.cwiseMax(0.0).cwiseSqrt() / (2e3 * pi);
 }
 
-// Bending up and down between the pins, with the section's rotary inertia (Rayleigh's beam), and stretch of the free
-// link.
+// Vertical bending between the pins, with the section's rotary inertia (Rayleigh's beam), and longitudinal modes of
+// the free link.
 TEST(TrackLink, ModesBeginFarAboveTheFilteredStrain) {
   Bar const bar = m113::link_bar();
   Structure const s = structure_of(bar, 16);

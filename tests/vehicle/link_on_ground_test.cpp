@@ -48,7 +48,7 @@ TEST(LinkOnGround, StandsOnItsFourCorners) {
   EXPECT_TRUE(contact_points(flat, at({0, 0, 0.03 + 1e-9}), {}).empty());
 }
 
-// Nose down by α it stands on its front: 0.055 sin α lower.
+// Inclined nose down by α, the link rests on its front corners: 0.055 sin α lower.
 TEST(LinkOnGround, StandsOnTheCornersThatAreLow) {
   double const alpha = 0.1, low = 0.03 * std::cos(alpha) + 0.055 * std::sin(alpha);
   auto const found = contact_points(flat, at({0, 0, low - 0.002}, {0, alpha, 0}), {});
@@ -69,13 +69,15 @@ TEST(LinkOnGround, KnowsHowHighTheGroundIs) {
   EXPECT_NEAR(found[0].depth, 0.005, 1e-15);
 }
 
-/// A link anywhere over the course, near its surface and turned by up to about `tilt`, in the ground's axes.
+/// A link at a random position over the course, near its surface and inclined by up to about `tilt`, in the ground's
+/// axes.
 Frame<double> near_ground(Numbers& number, double tilt) {
   double const x = number(1.5), y = number(1.0), z = course.height<double>(x, y).z;
   return at({x, y, z + 0.03 + number(0.03)}, number.vec<3>(tilt));
 }
 
-// On slopes: e below h along z, the surface's tangent plane is e n_z away, and n is across both of its tangents.
+// On slopes: at the vertical depth e below h, the distance to the tangent plane of the surface is e n_z. n is
+// perpendicular to both tangents of the surface.
 TEST(LinkOnGround, PressesAcrossTheSlope) {
   Numbers number;
   int compared = 0;
@@ -93,7 +95,8 @@ TEST(LinkOnGround, PressesAcrossTheSlope) {
       Vec3 const& n = found[i].normal;
       EXPECT_NEAR(n.norm(), 1.0, 1e-15);
       EXPECT_GT(n[2], 0.0);
-      // Differences across a foot, where the curvature jumps by 2π²H/L² < 2 per metre, err by as much times h/5.
+      // Finite differences across the foot of a bump have an error of h/5 times the jump of the curvature, 2π²H/L² <
+      // 2 per metre.
       EXPECT_NEAR(n.dot(Vec3(1, 0, hx)), 0.0, 5e-6);
       EXPECT_NEAR(n.dot(Vec3(0, 1, hy)), 0.0, 5e-6);
       held_within(
@@ -108,7 +111,7 @@ TEST(LinkOnGround, PressesAcrossTheSlope) {
   EXPECT_GT(compared, 300);
 }
 
-// A marker of the ground that is tilted and moved carries the terrain with it: the two seen from anywhere are the same.
+// A tilted and displaced marker of the ground moves the terrain with it: the contact is the same in any axes.
 TEST(LinkOnGround, IsTheSameOnGroundThatIsTilted) {
   Numbers number;
   int compared = 0;
@@ -133,8 +136,8 @@ TEST(LinkOnGround, IsTheSameOnGroundThatIsTilted) {
   EXPECT_GT(compared, 500);
 }
 
-// On a plane ∂d/∂r = −n exactly; on a curved one up to d times the curvature (|h″| ≤ 2π²H/L² + … < 2.5 per metre here,
-// d ≤ 0.05 m).
+// On a plane ∂d/∂r = −n exactly. On a curved surface the error is up to d times the curvature (|h″| ≤ 2π²H/L² + … <
+// 2.5 per metre here, d ≤ 0.05 m).
 TEST(LinkOnGround, NormalIsTheSlopeOfTheDepth) {
   Numbers number;
   int compared = 0;
@@ -173,8 +176,8 @@ TEST(LinkOnGround, PassesDualNumbersOn) {
   EXPECT_GT(compared, 100);
 }
 
-// A cable has no z of its own: its pad hangs below the tangent, whichever way that runs and however the cable's frame
-// has rolled.
+// A cable has no z axis: its pad is below the tangent, for any direction of the tangent and any roll of the cable's
+// frame.
 TEST(LinkOnGround, HangsThePadOfACableBelowIt) {
   Numbers number;
   for (int k = 0; k < 200; ++k) {
@@ -225,7 +228,7 @@ TEST(LinkOnGround, OnACableIsThatOnALinkThatDoesNotRoll) {
   EXPECT_GT(compared, 200);
 }
 
-// One that stands upright leaves its z open: no point rather than one that is not a number.
+// The z direction of an upright cable is undefined: there is no contact point, instead of one with NaN.
 TEST(LinkOnGround, OfACableThatStandsUprightIsNone) {
   Frame<double> link = at({0, 0, 0.05});
   link.A << Vec3::UnitZ(), Vec3::UnitY(), -Vec3::UnitX();
@@ -249,7 +252,7 @@ TEST(LinkOnGround, IsNeverMissedByItsBound) {
       beyond += !within;
     }
     EXPECT_GT(touching, 500);
-    EXPECT_GT(far, 500);  // they are of use
+    EXPECT_GT(far, 500);  // the bound excludes many poses
     EXPECT_GT(beyond, 500);
     return found;
   };

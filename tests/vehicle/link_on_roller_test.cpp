@@ -25,13 +25,13 @@ HornOnRims<> const horn{.tip = Vec3(0.045, 0.0, 0.075), .play = play, .radius = 
 
 Frame<double> at(Vec3 const& r, Vec3 const& turn = Vec3::Zero()) { return {.r = r, .A = exp_so3<double>(turn)}; }
 
-/// A roller whose middle stands at (s, y, R + h − d) in the axes of a link, its axle turned away from the link's y by
+/// A roller with its middle at (s, y, R + h − d) in the axes of a link, and its axle rotated from the link's y by
 /// `turn`.
 Frame<double> over(Frame<double> const& link, double s, double y, double d, Vec3 const& turn = Vec3::Zero()) {
   return {.r = link.r + link.A * Vec3(s, y, radius + thick - d), .A = link.A * exp_so3<double>(turn)};
 }
 
-/// A link anywhere and a roller near it, mostly one that touches.
+/// A link at random and a roller near it, mostly in contact.
 std::pair<Frame<double>, Frame<double>> near_pose(Numbers& number) {
   Frame<double> const link = number.frame();
   return {link, over(link, number(0.1), number(0.25), 0.04 + number(0.06), number.vec<3>(0.4))};
@@ -48,15 +48,15 @@ TEST(LinkOnRoller, PressesOnAFlatLinkUnderItsMiddle) {
   EXPECT_EQ(found[0].handover.share, 1.0);
 }
 
-// The law in words: the rim's centre at (s, y, R + h − d) in the link's axes meets the face at (s, y, h), d deep, along
-// the face's normal; so it is in whatever axes the two are seen.
+// The contact law: if the rim's centre is at (s, y, R + h − d) in the link's axes, it touches the face at (s, y, h)
+// with the depth d along the face's normal. This holds in any axes.
 TEST(LinkOnRoller, FollowsALinkThatIsTilted) {
   Numbers number;
   for (int k = 0; k < 20; ++k) {
     Frame<double> const link = number.frame();
     double const s = number(0.06), y = number(0.1), d = 0.005 + number(0.004);
     auto const found = contact_points(
-        one_rim, link, over(link, s, y, d, Vec3(0, number(3.0), 0)));  // a roller that has turned is the same
+        one_rim, link, over(link, s, y, d, Vec3(0, number(3.0), 0)));  // a rotated roller gives the same contact
     ASSERT_EQ(found.size(), 1u);
     Claim const tilted{"M113.md §5", "depth, normal and place of a rim on a link that is tilted", By::closed_form,
                        "those of the link's axes, carried along", "LinkOnRoller"};
@@ -66,7 +66,7 @@ TEST(LinkOnRoller, FollowsALinkThatIsTilted) {
   }
 }
 
-// A roller whose axle leans by α about x: its rims at ±b along the axle are b sin α higher and lower.
+// A roller whose axle is inclined by α about x: its rims at ±b along the axle are b sin α higher and lower.
 TEST(LinkOnRoller, TouchesWithBothRims) {
   double const alpha = 0.01, b = 0.06, d = 0.002;
   auto const found = contact_points(two_rims, at({0, 0, 0}), over(at({0, 0, 0}), 0.0, 0.0, d, Vec3(alpha, 0, 0)));
@@ -91,7 +91,8 @@ TEST(LinkOnRoller, LeavesAloneWhatIsAboveBelowAndBeside) {
   EXPECT_EQ(contact_points(one_rim, link, over(link, 0, 0, -1e-9)).size(), 0u);          // just above
   EXPECT_EQ(contact_points(one_rim, link, over(link, 0, 0, radius - 1e-9)).size(), 1u);  // the axle just above the face
   EXPECT_EQ(contact_points(one_rim, link, over(link, 0, 0, radius + 1e-9)).size(), 0u);  // just below it
-  EXPECT_EQ(contact_points(one_rim, link, at({0, 0, -radius - thick + 0.001})).size(), 0u);  // into the outer face
+  // on the side of the outer face
+  EXPECT_EQ(contact_points(one_rim, link, at({0, 0, -radius - thick + 0.001})).size(), 0u);
   for (double const side : {-1.0, 1.0}) {
     EXPECT_EQ(contact_points(one_rim, link, over(link, side * (end - 1e-9), 0, 0.001)).size(), 1u);
     EXPECT_EQ(contact_points(one_rim, link, over(link, side * (end + 1e-9), 0, 0.001)).size(), 0u);
@@ -100,8 +101,8 @@ TEST(LinkOnRoller, LeavesAloneWhatIsAboveBelowAndBeside) {
   }
 }
 
-// Across the seam between two links in one line a wheel feels k d, no less and no more, and no moment about its axle;
-// both links have a share for 2ε.
+// Across the seam between two aligned links the force on a wheel is exactly k d, without a moment about its axle.
+// Both links have a share over a length of 2ε.
 TEST(LinkOnRoller, HandsOverToTheNextLinkWithoutABump) {
   Contact<LinkOnRoller<>> const law{one_rim, {.stiffness = 2e6}};
   Numbers number;
@@ -111,7 +112,7 @@ TEST(LinkOnRoller, HandsOverToTheNextLinkWithoutABump) {
   double const d = 0.0013, e = one_rim.handover;
   int both = 0;
   for (int i = 0; i <= 400; ++i) {
-    double const s = pitch * i / 400.0;  // from the middle of one to the middle of the next
+    double const s = pitch * i / 400.0;  // from the middle of one link to the middle of the next
     Frame<double> const wheel = over(first, s, 0.0, d);
     Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
     double shares = 0.0;
@@ -140,8 +141,8 @@ TEST(LinkOnRoller, HandsOverToTheNextLinkWithoutABump) {
   EXPECT_GT(both, 20);
 }
 
-// Without damper and friction the wrenches are the gradient of what the contact stores, also where two faces share it:
-// so a wheel that crosses a bend gains nothing.
+// Without damper and friction the wrenches are the gradient of the contact's energy, also if two faces share the
+// contact. Hence a wheel that crosses a bend gains no energy.
 TEST(LinkOnRoller, IsConservativeAlsoInTheHandover) {
   Contact<LinkOnRoller<>> const law{one_rim, {.stiffness = 2e6}};
   Numbers number;
@@ -168,7 +169,8 @@ TEST(LinkOnRoller, IsConservativeAlsoInTheHandover) {
   EXPECT_GT(handing_over, 30);
 }
 
-// Beyond a face its chamfered edge meets the rim along the radius, and begins to do so from zero where the face ends.
+// Beyond a face its chamfered edge touches the rim in radial direction. The depth increases continuously from zero at
+// the end of the face.
 TEST(LinkOnRoller, EdgeMeetsTheRimBeyondTheFace) {
   Frame<double> const link = at({0, 0, 0});
   double const reach = radius - one_rim.chamfer, e = 0.1;
@@ -181,7 +183,8 @@ TEST(LinkOnRoller, EdgeMeetsTheRimBeyondTheFace) {
          found[0].depth, 0.002, 1e-13, {equals("side", side)});
     EXPECT_LT((found[0].place - edge).norm(), 1e-15);
     EXPECT_LT((found[0].normal - (edge - axle).normalized()).norm(), 1e-13);
-    // 20 mm deep in what would be the rim, but just beyond the face: no deeper than that
+    // 20 mm deep in the extension of the rim, but just beyond the face: the depth is no larger than the distance from
+    // the face
     auto const just = [&](double beyond) {
       return contact_points(one_rim, link, at({side * (0.5 * pitch + beyond), 0, thick + reach - 0.02}));
     };
@@ -195,13 +198,14 @@ TEST(LinkOnRoller, EdgeMeetsTheRimBeyondTheFace) {
   }
 }
 
-// Around a bend towards the wheel the strips above the faces overlap: on its way from the middle of one link to that of
-// the next, up to the bend 2 atan(p/2/(R + h)) = 0.4523 at which it touches both there, a wheel is borne by the nearer
-// face, half of it at least.
+// At a bend towards the wheel the strips above the faces overlap. The wheel moves from the middle of one link to that
+// of the next. Up to the bend 2 atan(p/2/(R + h)) = 0.4523, at which it touches both middles, the nearer face carries
+// at least half of the force.
 TEST(LinkOnRoller, IsNeverLostInABend) {
-  double const reach = radius + thick - 0.001;  // of the axle above either pins' line, 1 mm deep in the face
+  // of the axle above the line of either link's pins, 1 mm deep in the face
+  double const reach = radius + thick - 0.001;
   for (double const bend : {0.01, 0.1, 0.45}) {
-    Vec3 const turn(0, -bend, 0);  // the next link rises
+    Vec3 const turn(0, -bend, 0);  // the next link points upwards
     Frame<double> const first = at({-0.5 * pitch, 0, 0}),
                         next = at(exp_so3<double>(turn) * Vec3(0.5 * pitch, 0, 0), turn);
     int both = 0;
@@ -239,11 +243,11 @@ void expect_may_touch(G const& geometry, Pose const& pose) {
   }
   EXPECT_EQ(missed, 0);
   EXPECT_GT(touching, 1000);
-  EXPECT_GT(far, 1000);  // they are of use
+  EXPECT_GT(far, 1000);  // the bound excludes many poses
   EXPECT_GT(beyond, 1000);
 }
 
-/// Either near to each other or anywhere.
+/// Both close to each other, or both at random.
 std::pair<Frame<double>, Frame<double>> any_pose(Numbers& number) {
   if (number() > 0.0) return near_pose(number);
   return {number.frame(), number.frame()};
@@ -255,7 +259,7 @@ TEST(LinkOnRoller, IsNeverMissedByItsBound) {
   expect_may_touch(on_cable, any_pose);
 }
 
-// … nor with rims far from the roller's middle, or with a wide zone of the handover.
+// The bound is also valid for rims far from the roller's middle, and for a wide transition zone.
 TEST(LinkOnRoller, IsNeverMissedByItsBoundWhateverItsNumbers) {
   LinkOnRoller<> wide = one_rim;
   wide.handover = 0.07;
@@ -269,7 +273,7 @@ TEST(LinkOnRoller, IsNeverMissedByItsBoundWhateverItsNumbers) {
   });
 }
 
-/// ∂d/∂r of the link against −n, at a pose with a point.
+/// Compares ∂d/∂r of the link with −n, in a pose with a contact point.
 template <class G>
 void expect_normal_is_slope(G const& geometry, Frame<double> const& link, Frame<double> const& roller) {
   auto const found = contact_points(geometry, link, roller);
@@ -313,14 +317,15 @@ TEST(LinkOnRoller, PassesDualNumbersOn) {
   EXPECT_GT(compared, 100);
 }
 
-/// A frame of a link with this tangent that does not roll against the axle: y as near to it as may be.
+/// A frame of a link with this tangent and without roll relative to the axle: y is as close to the axle as possible.
 Frame<double> upright(Frame<double> link, Vec3 const& axle) {
   Vec3 const x = link.A.col(0), y = (axle - x * x.dot(axle)).normalized();
   link.A << x, y, x.cross(y);
   return link;
 }
 
-// A cable tells its tangent only; with the same tangent a link that does not roll about it has the same points.
+// A cable provides its tangent only. A link with the same tangent and without roll about it has the same contact
+// points.
 TEST(LinkOnRoller, OnACableIsThatOnALinkThatDoesNotRoll) {
   Numbers number;
   int compared = 0;
@@ -359,8 +364,8 @@ TEST(LinkOnRoller, RefusesNumbersThatCannotBeMeantByName) {
   EXPECT_NO_THROW(two_rims.check("\"wheel 1\""));
 }
 
-/// A link turned about its pins' line by `bow` whose horn has its tip `within` the rims of a roller at the origin,
-/// `across` its middle.
+/// A link rotated about the line of its pins by `bow`. The tip of its horn is `within` the rims of a roller at the
+/// origin, and `across` its middle.
 std::pair<Frame<double>, Frame<double>> guided(double across, double within) {
   Frame<double> const roller = at({0, 0, 0});
   Frame<double> link = at({0, 0, 0}, Vec3(0, 0.4, 0));
@@ -390,7 +395,7 @@ TEST(HornOnRims, IsPushedBackAlongTheAxle) {
   }
 }
 
-// By how far it is beyond its play, but by no more than how far its tip is within the rims.
+// The penetration is the displacement beyond the play, limited by the depth of the tip within the rims.
 TEST(HornOnRims, ComesInContinuouslyFromTheGapAndFromOutside) {
   for (double within = -0.01; within <= 0.05; within += 0.001)
     for (double across = -0.06; across <= 0.06; across += 0.001)
@@ -425,7 +430,7 @@ TEST(HornOnRims, OnACableIsThatOnALinkThatDoesNotRoll) {
   EXPECT_GT(compared, 500);
 }
 
-// A horn beside its rims, however far, is pushed back; so none is too far along the axle.
+// A horn beside its rims is pushed back at any distance, so the bound excludes none along the axle.
 TEST(HornOnRims, IsNeverMissedByItsBound) {
   expect_may_touch(horn, any_pose);
   expect_may_touch(horn, [](Numbers& number) {

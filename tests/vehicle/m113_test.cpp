@@ -1,5 +1,6 @@
-// The data of vehicle/m113.hpp against shared/reference/m113: the bodies and joints in tests/vehicle/data are those of
-// its bodies.csv and joints.csv without the links (places to nine digits), totals and conventions are of M113.md.
+// The data of vehicle/m113.hpp against an independent data sheet of the vehicle of Wallin 2016. The bodies and joints
+// in tests/vehicle/data are those of this data sheet without the links (positions to nine digits). Totals and
+// conventions are its own as well.
 
 #include <gtest/gtest.h>
 
@@ -23,7 +24,7 @@ namespace m113_test {
 
 using m113::Side;
 
-/// The numbers of each row of a file of tests/vehicle/data behind its first `names` fields, by these fields.
+/// The numbers of each row of a file of tests/vehicle/data after its first `names` fields, by these fields.
 std::map<std::string, std::vector<double>> rows(char const* file, int names) {
   std::ifstream in(std::filesystem::path(__FILE__).parent_path() / "data" / file);
   std::map<std::string, std::vector<double>> found;
@@ -40,7 +41,7 @@ std::map<std::string, std::vector<double>> rows(char const* file, int names) {
 
 char const* letter(Side side) { return side == Side::left ? "_L" : "_R"; }
 
-/// A body's mass, moments of inertia, place and angle about y against its row.
+/// Compares a body's mass, moments of inertia, position and angle about y with its row.
 void expect_body(std::vector<double> const& row, m113::Solid const& body, Vec3 const& place, double angle) {
   ASSERT_EQ(row.size(), 11u);
   EXPECT_DOUBLE_EQ(row[0], body.mass);
@@ -59,7 +60,7 @@ void expect_point(std::vector<double> const& row, Vec3 const& place, Vec3 const&
   EXPECT_EQ(Vec3(row[3], row[4], row[5]), axis);
 }
 
-/// The kinetic energy of a link that moves along at 2 m/s is 2 m.
+/// The kinetic energy of a link that moves at 2 m/s is 2 m.
 template <class B>
 void expect_mass(m113::LinkOf<B> const& links, double mass) {
   Model<Bodies<B>, Joints<>> model;
@@ -103,7 +104,7 @@ TEST(M113, JointsAndSpringsAreWhereTheReferenceHasThem) {
     for (int i = 0; i < m113::wheels; ++i) {
       std::string const n = std::to_string(i + 1) + s;
       expect_point(joints.at("revolute,chassis,arm" + n), m113::arm_pivot(i, side), y);
-      // The row has the wheel's centre; the arm's end lies in the arm's plane, on the same axis.
+      // The row contains the wheel's centre. The arm's end is in the plane of the arm, on the same axis.
       expect_point(joints.at("revolute,arm" + n + ",wheel" + n), m113::wheel(i, side), y);
       Vec3 const end = m113::arm_point(i, side, m113::arm_length);
       EXPECT_LT((end - Vec3(m113::wheel(i, side))).cross(y).norm(), 1e-12);
@@ -119,7 +120,8 @@ TEST(M113, JointsAndSpringsAreWhereTheReferenceHasThem) {
   EXPECT_EQ(m113::preload, 20000.0);
 }
 
-// M113.md section 3 and 10.1: 15 912.1 kg with the tensioners; the real vehicle 11.36 t.
+// Sum of the masses of Wallin 2016, Table 3.1: 15 912.1 kg with the tensioners. The mass of the real vehicle is 11.36
+// t.
 TEST(M113, WeighsWhatTheReferenceSays) {
   held({"M113 data", "mass of the vehicle of the thesis [kg]", By::independent, "M113.md §3, added up by hand",
         "vehicle/m113.hpp"},
@@ -128,9 +130,9 @@ TEST(M113, WeighsWhatTheReferenceSays) {
        m113::public_data.total(), 11.36e3, 5.0);
 }
 
-// M113.md section 1.1: every row of T3.1 is a homogeneous solid's. About its axis a cylinder has m R²/2, across it
-// m (3R² + w²)/12; a box a × b × c has m (b² + c²)/12 about the edge a. So the axes and dimensions here are the
-// table's. Table values have three to five digits.
+// Every row of Wallin 2016, Table 3.1, is that of a homogeneous solid. A cylinder has m R²/2 about its axis and m
+// (3R² + w²)/12 about a transverse axis. A box a × b × c has m (b² + c²)/12 about the edge a. So the axes and
+// dimensions here are those of the table. Table values have three to five digits.
 TEST(M113, InertiasAreThoseOfSolidsOfItsDimensions) {
   double const width = 2.0 * m113::half_width;
   auto const solid = [](char const* what, char const* source) {
@@ -158,7 +160,8 @@ TEST(M113, InertiasAreThoseOfSolidsOfItsDimensions) {
   box(chassis, {4.603, 1.500, 1.287});
 }
 
-// M113.md sections 2, 6 and 8: the sprocket's radii, the speeds of Figures 3.6 and 4.3, a cable 0.0398 m high.
+// The sprocket's radii, the speeds of Wallin 2016, Figures 3.6 and 4.3, and a cable with a height of 0.0398 m, worked
+// out by hand.
 TEST(M113, FollowsFromPitchAndTeeth) {
   TrackLayout const track = m113::track();
   auto const derived = [](char const* what, double value, double reference, double tolerance, char const* at = "") {
@@ -176,7 +179,8 @@ TEST(M113, FollowsFromPitchAndTeeth) {
   EXPECT_NEAR(m113::density * m113::cable_width * m113::cable_height * m113::pitch, 18.024, 1e-12);
 }
 
-// M113.md section 5.4: the valley's arc is centred on the radius 0.261588, its root is at 0.226588.
+// The arc of the valley is centred on the radius 0.261588, its root is at 0.226588; worked out by hand from the pitch
+// radius.
 TEST(M113, PinsSitOnThePitchCircle) {
   double const centre = m113::track().pitch_radius() + m113::valley_radius - m113::pin_radius;
   EXPECT_NEAR(centre, 0.261588, 5e-7);
@@ -184,7 +188,8 @@ TEST(M113, PinsSitOnThePitchCircle) {
   EXPECT_LT(centre, m113::tip_radius);
 }
 
-// M113.md section 8: x(10 s) = 33.35, 40.02 and 106.7 m are the distances of a linear ramp, with rounded corners too.
+// x(10 s) = 33.35, 40.02 and 106.7 m are the distances of a linear ramp, in closed form. Rounded corners of the ramp
+// give the same distances.
 TEST(M113, DriveRestsForOneSecondAndRampsForSeven) {
   for (auto const& [speed, distance] : {std::pair{25.0, 33.35}, {30.0, 40.02}, {80.0, 106.7}})
     for (double const rounding : {0.0, 0.1}) {
@@ -200,7 +205,7 @@ TEST(M113, DriveRestsForOneSecondAndRampsForSeven) {
   EXPECT_EQ(m113::drive(25.0).corners(), (std::vector{1.0, 8.0}));
 }
 
-// The horn's box is 75 mm high; what meets a rim is the middle of its upper face, as the links are to either side.
+// The horn's box is 75 mm high. The middle of its upper face touches a rim, as the links are on both sides of it.
 TEST(M113, HornReachesToTheTopOfItsBox) {
   Vec3 const tip = m113::LinkContacts<Observes::frame>().on_rims(0.3).geometry.tip;
   EXPECT_LT((tip - Vec3(0.045, 0.0, 0.0375 + 0.5 * 0.075)).norm(), 1e-15);
@@ -212,8 +217,8 @@ TEST(M113, LinkBendsAsARectangleDoes) {
   EXPECT_NEAR(m113::bending_by_moment() * young * b * h * h, 6.0, 1e-12);
 }
 
-// A link of another height: its mass is ρ b h p, its stretch by a force N/(E b h), its bending strain by a moment
-// 6 M/(E b h²). As a body it has that mass, m v²/2 when it is pushed along.
+// A link of another height: its mass is ρ b h p, its strain N/(E b h) for a force N, its bending strain 6 M/(E b h²)
+// for a moment M. As a body it has that mass, and the kinetic energy m v²/2 in translation.
 TEST(M113, LinksMayHaveAnotherSection) {
   double const young = m113::youngs_modulus, b = m113::cable_width, p = m113::pitch;
   for (double const h : {m113::cable_height / 3.0, 1.7 * m113::cable_height}) {
@@ -228,7 +233,7 @@ TEST(M113, LinksMayHaveAnotherSection) {
   }
 }
 
-// Every corner of the drawn sprocket lies between root and tip.
+// Every corner of the sprocket's picture is between root and tip.
 TEST(M113, DrawsItsSprocketBetweenRootAndTip) {
   SprocketProfile const profile = m113::sprocket_profile();
   double least = 1.0, most = 0.0;

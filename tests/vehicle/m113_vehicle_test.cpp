@@ -21,7 +21,7 @@ Car car(Drives const& drives, m113::VehicleOptions options = {}) {
   return Car(Constraint{}, drives, options);
 }
 
-// Lowest place of the hull on its way [m], below the start.
+// Lowest position of the hull during the run [m], below the start.
 double dip_of(m113::VehicleOptions const& options, double until) {
   Car const vehicle = car(still(), options);
   State x = vehicle.model.reference_state();
@@ -32,7 +32,7 @@ double dip_of(m113::VehicleOptions const& options, double until) {
   return -lowest;
 }
 
-// M113.md §1.3 decodes Table 3.4: 155 bodies and the ground with seven coordinates each.
+// Wallin 2016, Table 3.4, counts 155 bodies and the ground with seven coordinates each.
 TEST(M113Vehicle, CountsAsTheThesisDoes) {
   m113::VehicleOptions const options{.ground_body = true};
   Vec<double, 5> const ones = Vec<double, 5>::Ones();
@@ -49,11 +49,11 @@ TEST(M113Vehicle, CountsAsTheThesisDoes) {
   Census const penalty =
       census(m113::Vehicle<Rigid<EulerParameters>, PenaltyPerRow<5>>({1e9 * ones, 1e5 * ones}, still(), options).model);
   counts("Rigid<EulerParameters>, Penalty", penalty, 1092, 294, 798);
-  // unit quaternions count the same
+  // unit quaternions have the same counts
   EXPECT_EQ(census(m113::Vehicle<>(Constraint{}, still(), options).model).degrees_of_freedom, 168);
-  // loops that close in their plane by two rows have the freedoms that are really there
+  // loops that are closed in their plane by two constraint equations have the actual degrees of freedom
   EXPECT_EQ(census(Car(Constraint{}, still(), {.closure = m113::Closure::in_plane}).model).degrees_of_freedom, 164);
-  // 128 links of 8 coordinates beside 28 bodies of 7 (the ground among them); the thesis has a 29th: 1227, 1060, 167
+  // 128 links of 8 coordinates and 28 bodies of 7 (including the ground); the thesis has a 29th body: 1227, 1060, 167
   Census const cable = census(m113::Vehicle<AncfCable<>, AncfLinear>({}, still(), options).model);
   EXPECT_EQ(cable.coordinates, 1220);
   EXPECT_EQ(cable.constraints, 166);
@@ -79,8 +79,8 @@ TEST(M113Vehicle, AnswersOfItsTracksAreThoseOfItsModel) {
   }
 }
 
-// Thesis Figure 3.7: 7 cm with suspension, to which the attachment of the springs is fitted (m113::shock_on_arm), so
-// this is a check of the fit and no claim. 0.64 cm without suspension, where nothing is fitted.
+// Wallin 2016, Figure 3.7: 7 cm with suspension. The attachment of the springs is fitted to this value
+// (m113::shock_on_arm), so the test checks the fit and is not a claim. 0.64 cm without suspension is not fitted.
 TEST(M113Vehicle, DropsOntoItsSpringsByTheFittedSevenCentimetres) {
   double const sprung = dip_of({}, 0.3), bare = dip_of({.suspension = false}, 0.15);
   EXPECT_NEAR(sprung, 0.07, 0.007);
@@ -111,17 +111,17 @@ TEST(M113Vehicle, StandsOnItsWeightAfterSettling) {
   held({"M113 vehicle", "force of the ground on the vehicle that stands [N]", By::closed_form, "its weight",
         "Rigid, Constraint"},
        up / samples, 9.81 * m113::thesis.total(), 0.01 * 9.81 * m113::thesis.total());
-  // the heaviest load at rest is that of a wheel, 15.9 t/10 on two rims: 2 mm; three times as much in the first dip
+  // the largest load at rest is that of a wheel, 15.9 t/10 on two rims: 2 mm; the first dip has three times as much
   EXPECT_LT(deepest, 0.0062);
   EXPECT_LT(stray, 1e-6);
-  EXPECT_LT(off_path, 0.1);  // links hang and wheels rise by less than that
+  EXPECT_LT(off_path, 0.1);  // the sag of links and the rise of wheels are smaller
   EXPECT_GT(off_path, 1e-4);
   EXPECT_LT(hull_of(vehicle, x).v.norm(), 0.05);
 }
 
 TEST(M113Vehicle, AcceleratesWithItsTracksWhereTheyBelongAndNoEnergyUnaccounted) {
   Ramp const drive{
-      .target = 6.0, .duration = 1.0, .start = 0.1, .rounding = 0.1};  // 1.5 m/s², 0.7 of what friction gives
+      .target = 6.0, .duration = 1.0, .start = 0.1, .rounding = 0.1};  // 1.5 m/s², 0.7 of the limit of friction
   Car const vehicle = car({drive, drive});
   State x = vehicle.model.reference_state();
   EnergyAudit audit(vehicle.model);
@@ -141,15 +141,14 @@ TEST(M113Vehicle, AcceleratesWithItsTracksWhereTheyBelongAndNoEnergyUnaccounted)
     }
   });
   EXPECT_TRUE(held);
-  // the way of the chain over the sprocket, ∫ω dt N p/2π, and on top of it what an idler that yields by s gives or
-  // takes, 2s
+  // the travel of the chain over the sprocket, ∫ω dt N p/2π, plus the change 2s due to a displacement s of the idler
   double const way = drive.integral(x.t) * m113::rolling_radius;
   EXPECT_NEAR(hull_of(vehicle, x).r.x() - m113::chassis.x, way, 2.0 * yielded);
   EXPECT_LT(yielded, 0.05);
   held_within({"M113 vehicle", "unaccounted energy of the vehicle that sets out, of the largest", By::closed_form, "0",
                "Rigid, Constraint, h = 5e-4 s"},
               audit.relative(), 0.01, {.scale = 1.0});
-  EXPECT_GT(audit.work_of_drives(), 0.5 * m113::thesis.total() * 2.0);  // of some 1.45 m/s
+  EXPECT_GT(audit.work_of_drives(), 0.5 * m113::thesis.total() * 2.0);  // at about 1.45 m/s
   EXPECT_LT(depth, 0.010);
   EXPECT_LT(off, 1e-3);
   EXPECT_LT(std::abs(hull_of(vehicle, x).r.y()), 1e-4);
@@ -165,7 +164,7 @@ TEST(M113Vehicle, MovesTheSameWhereverItsTracksAreCut) {
     run_vehicle(vehicle.model, x, 0.7, 5e-4, [](auto&...) {});
     ends.push_back(hull_of(vehicle, x).r);
   }
-  // what a spring of 1e9 N/m gives, some 1e-5 m under 10 kN, is all that may differ
+  // only the deformation of a spring of 1e9 N/m may differ, about 1e-5 m under 10 kN
   Claim const cut{"M113 vehicle", "place of the hull after 0.7 s [m]", By::itself,
                   "loop cut at pin 0 by a stiff spring", "Rigid, Constraint"};
   held_within(cut, (ends[1] - ends[0]).norm(), 1e-4, {"pin 17, stiff spring", 1.0});
@@ -178,13 +177,13 @@ TEST(M113Vehicle, TurnsToTheSideOfTheSlowerTrack) {
   run_vehicle(pivot.model, x, 1.2, 1e-3, [](auto&...) {});
   Frame<double> const f = hull_of(pivot, x);
   double const track_speed = 5.0 * m113::rolling_radius;
-  EXPECT_LT(f.w.z(), -0.2 * track_speed / m113::track_y);    // to the right, and tracks that skid
-  EXPECT_GT(f.w.z(), -1.0 * track_speed / m113::track_y);    // turn it by less than if they rolled
+  EXPECT_LT(f.w.z(), -0.2 * track_speed / m113::track_y);    // turns to the right, with tracks that skid
+  EXPECT_GT(f.w.z(), -1.0 * track_speed / m113::track_y);    // turns more slowly than with rolling tracks
   EXPECT_LT(Vec3(f.v).head<2>().norm(), 0.3 * track_speed);  // about its own middle
   for (auto const s : {m113::Side::left, m113::Side::right}) EXPECT_TRUE(seating(pivot, x, s).holds());
 }
 
-// A slack track and a drive that snatches: the teeth pass under the pins.
+// A slack track and a driving constraint with a high acceleration: the teeth pass under the pins.
 TEST(M113Vehicle, TrackThatJumpsIsAnEventWithTimeAndLink) {
   m113::VehicleOptions options{.preload = -20.0e3};
   options.start = track_at_rest();
@@ -209,7 +208,7 @@ TEST(M113Vehicle, TrackThatJumpsIsAnEventWithTimeAndLink) {
 TEST(M113Vehicle, SpeedThatStepsDoNotResolveIsWarnedOf) {
   EXPECT_EQ(m113::drive_warning(25.0, 1e-3), "");
   EXPECT_EQ(m113::drive_warning(80.0, 1e-3), "");
-  // a tenth of 2π/80 s is 7.85 ms; a sixth of that 1.31 ms
+  // a tenth of 2π/80 s is 7.85 ms; a sixth of that is 1.31 ms
   EXPECT_TRUE(
       has(m113::drive_warning(80.0, 2e-3), "a tooth passes in 7.85398163 ms, which steps of 2 ms do not resolve"));
   EXPECT_TRUE(has(m113::drive_warning(-80.0, 2e-3), "Take steps of 1.3089969"));

@@ -1,5 +1,5 @@
-// Pins between a sprocket's teeth. Numbers are of the M113 (shared/reference/m113/M113.md section 5.4, an independent
-// computation).
+// Pins between a sprocket's teeth. Numbers are those of the M113, from an independent computation of the sprocket's
+// profile.
 
 #include <polybody/vehicle/pin_on_sprocket.hpp>
 
@@ -32,8 +32,8 @@ PinOnSprocket<> const two_rings{
 PinOnSprocket<Observes::axis> const on_cable{
     .profile = profile, .valley = m113::first_valley, .rings = {-m113::tooth_y, m113::tooth_y}};
 
-/// A link whose front pin is at (radial, tangential) of the valley `middle` of a sprocket, `axial` along its axle, with
-/// its y along the axle and its x at `angle` to the radius.
+/// A link whose front pin is at (radial, tangential) of the valley `middle` of a sprocket, `axial` along its axle.
+/// Its y is along the axle and its x at `angle` to the radius.
 Frame<double> seated(Frame<double> const& sprocket, double middle, Vec2 const& pin, double axial = 0.0,
                      double angle = 1.9) {
   Vec3 const out(std::sin(middle), 0, std::cos(middle)), side(std::cos(middle), 0, -std::sin(middle)),
@@ -45,7 +45,7 @@ Frame<double> seated(Frame<double> const& sprocket, double middle, Vec2 const& p
   return {.r = sprocket.r + sprocket.A * centre, .A = sprocket.A * axes};
 }
 
-/// d and n of a pin at `pin`, radial and tangential of the middle of a valley; without depth where it does not touch.
+/// d and n of a pin at `pin`, radial and tangential relative to the middle of a valley; no depth without contact.
 struct Touch {
   double depth;
   Vec2 normal;
@@ -73,13 +73,13 @@ TEST(SprocketProfile, SeatsPinsOnThePitchCircle) {
   Touch const pressed = touch(Vec2(profile.pitch_radius() - 1e-4, 0.0));
   EXPECT_NEAR(pressed.depth, 1e-4, 1e-16);
   EXPECT_LT((pressed.normal - Vec2(1, 0)).norm(), 1e-15);
-  // Pins a pitch apart sit in neighbouring valleys.
+  // Pins one pitch apart are in neighbouring valleys.
   EXPECT_NEAR((polar(profile.pitch_radius(), 36.0 * degree) - polar(profile.pitch_radius(), 0.0)).norm(), m113::pitch,
               1e-16);
 }
 
-// The corner lies on the tip circle and on the flank's line, which touches the arc at f = (0.244088, 0.030311), 60 deg
-// from the bottom; between two corners the tip is 0.086 m thick.
+// The corner is on the tip circle and on the flank's line. This line touches the arc at f = (0.244088, 0.030311), 60
+// deg from the bottom. The tip is 0.086 m thick between its two corners.
 TEST(SprocketProfile, FlankMeetsTheTipAtItsCorner) {
   Vec2 const k = profile.corner(), f(0.244088, 0.030311);
   EXPECT_NEAR(k.norm(), profile.tip_radius, 1e-15);
@@ -88,21 +88,22 @@ TEST(SprocketProfile, FlankMeetsTheTipAtItsCorner) {
                 .norm(),
             1e-6);
   Vec2 const up = (k - f).normalized();
-  EXPECT_NEAR(std::atan2(up[1], up[0]), 30.0 * degree, 1e-4);  // leans 30 deg from the radius of the valley
+  // inclined by 30 deg relative to the radius of the valley
+  EXPECT_NEAR(std::atan2(up[1], up[0]), 30.0 * degree, 1e-4);
   double const half = pi / 10.0 - std::atan2(k[1], k[0]);
   held({"M113.md §5", "thickness of a tooth's tip [m]", By::independent, "M113.md §5.4, worked out by hand",
         "SprocketProfile"},
        2.0 * profile.tip_radius * std::sin(half), 0.086, 5e-4);
-  // A pin that leans on the flank's end touches the corner: on the flank's normal, r_p from it.
+  // A pin at the end of the flank touches the corner: on the flank's normal, at the distance r_p.
   Vec2 const n(std::cos(m113::flank), -std::sin(m113::flank));
   EXPECT_NEAR(profile.overlap<double>(k[0] + n[0] * 0.0199, k[1] + n[1] * 0.0199).depth, 1e-4, 1e-15);
 }
 
-// "A pin rotating about its seated neighbour clears the tooth by 9.7 / 10.7 / 17 mm at 5 / 10 / 20 deg (no interference
-// at any angle)."
+// Clearance of a pin that rotates about its seated neighbour, by an independent computation: 9.7, 10.7 and 17 mm at
+// 5, 10 and 20 deg, without contact at any angle.
 TEST(SprocketProfile, LetsGoOfAPinThatTurnsAboutItsNeighbour) {
   double const step = 2.0 * pi / 10.0;
-  Vec2 const neighbour = polar(profile.pitch_radius(), -step);  // seated a valley before
+  Vec2 const neighbour = polar(profile.pitch_radius(), -step);  // seated in the previous valley
   Vec2 const chord = polar(profile.pitch_radius(), 0.0) - neighbour;
   auto const clearance = [&](double turn) {
     Vec2 const pin = neighbour + Eigen::Rotation2D<double>(-turn) * chord;  // away from the sprocket
@@ -131,9 +132,10 @@ void along_lines(F const& f) {
   }
 }
 
-// As a pin goes by arc, flank, corner and tip its depth changes by no more than it moves, and n turns by no more than
-// that over the smallest distance from a centre of curvature: r_p − 15 mm from the corner, so 200 per metre; pins
-// deeper than that are left out, as from r_p on the centre is within the tooth. Depth grows against n.
+// As a pin moves along arc, flank, corner and tip, its depth changes by at most its displacement. n rotates by at
+// most that displacement over the smallest distance from a centre of curvature. This distance is r_p − 15 mm at the
+// corner, which gives 200 per metre. Deeper pins are omitted, because at a depth of r_p the centre is within the
+// tooth. The depth grows against n.
 TEST(SprocketProfile, DepthAndNormalAreContinuous) {
   int touching = 0, began = 0;
   double most = 0.0, turned = 0.0, slope = 0.0;
@@ -152,12 +154,13 @@ TEST(SprocketProfile, DepthAndNormalAreContinuous) {
   });
   EXPECT_LT(most, 1e-15);
   EXPECT_LT(turned, 200.0);
-  EXPECT_LT(slope, 200.0 * 1e-6);  // the chord's slope against the mean normal: that over which n turns in a step
+  // angle between the chord's direction and the mean normal: at most the rotation of n in a step
+  EXPECT_LT(slope, 200.0 * 1e-6);
   EXPECT_GT(touching, 100000);
   EXPECT_GT(began, 20);
 }
 
-// The same with dual numbers, exactly, in every piece.
+// The same test with dual numbers, exact in every piece.
 TEST(SprocketProfile, NormalIsTheSlopeOfTheDepth) {
   Numbers number;
   std::array<int, 4> pieces{};  // arc, flank, corner, tip
@@ -177,17 +180,17 @@ TEST(SprocketProfile, NormalIsTheSlopeOfTheDepth) {
   for (int const count : pieces) EXPECT_GT(count, 50);
 }
 
-// Pins that press on their valleys where the normal leans by φ against their own radius: with links at π/N to the
-// tangent on both sides,
+// Pins press on their valleys. The normal has the angle φ to the pin's own radius, and the links on both sides have
+// the angle π/N to the tangent:
 //   (T − t) cos π/N = N sin φ,  (T + t) sin π/N = N cos φ,  so  t/T = (1 − K)/(1 + K),  K = tan φ tan π/N:
-// "0.79 at 20 deg, 0.57 at 40, 0.28 at 60".
+// Independent values are 0.79 at 20 deg, 0.57 at 40 and 0.28 at 60.
 TEST(SprocketProfile, SharesTheLoadAmongItsTeeth) {
   struct Case {
     double angle, ratio;
   };
   for (Case const c : {Case{20.0, 0.79}, {40.0, 0.57}, {60.0, 0.28}}) {
-    // The place on the arc, a hair deep, where it is so: the normal leans by the arc's angle and the pin's own polar
-    // angle.
+    // The position on the arc with this angle, at a very small depth. The angle of the normal is the arc's angle plus
+    // the pin's own polar angle.
     double low = 0.0, high = c.angle * degree;
     auto const place = [&](double phi) {
       double const r = m113::valley_radius - m113::pin_radius + 1e-9;
@@ -199,7 +202,7 @@ TEST(SprocketProfile, SharesTheLoadAmongItsTeeth) {
       (phi + std::atan2(p[1], p[0]) < c.angle * degree ? low : high) = phi;
     }
     Vec2 const pin = place(low), n = touch(pin).normal, out = pin.normalized(), side(-out[1], out[0]);
-    // Unit vectors along the links: t pulls back, away from the flank's side, T on.
+    // Unit vectors along the links: t pulls back, away from the flank's side, T forward.
     double const s = std::sin(pi / 10.0), co = std::cos(pi / 10.0);
     Vec2 const slack = -co * side - s * out, tight = co * side - s * out;
     Mat<double, 2, 2> both;
@@ -236,7 +239,7 @@ TEST(PinOnSprocket, IsTheProfileInAnyValleyOfASprocketTurnedAnyhow) {
       Vec3 const centre = sprocket.r + sprocket.A * (pin[0] * out + side * pin[1] * across + ring * Vec3::UnitY());
       EXPECT_NEAR(found[i].depth, o.depth, 1e-14);
       EXPECT_EQ(found[i].handover.share, 1.0);
-      EXPECT_LT((found[i].normal - n).norm(), 1e-12);  // n turns by 1/r, r as small as some mm
+      EXPECT_LT((found[i].normal - n).norm(), 1e-12);  // n rotates by 1/r, with r of only a few mm
       EXPECT_LT((found[i].place - (centre - m113::pin_radius * n)).norm(), 1e-13);
     }
   }
@@ -262,7 +265,7 @@ TEST(PinOnSprocket, IsTheSameAfterWholeTeeth) {
   EXPECT_GT(compared, 200);
 }
 
-/// A sprocket anywhere and a link whose pin is near the teeth, and askew by up to about `askew`.
+/// A sprocket at random and a link whose pin is near the teeth, misaligned by up to about `askew`.
 std::pair<Frame<double>, Frame<double>> near_pose(Numbers& number, double askew) {
   Frame<double> const sprocket = number.frame();
   Frame<double> link =
@@ -273,7 +276,7 @@ std::pair<Frame<double>, Frame<double>> near_pose(Numbers& number, double askew)
   return {link, sprocket};
 }
 
-// A pin that is askew dips into one ring more than into the other; ∂d/∂r of the link is −n.
+// A misaligned pin is deeper in one ring than in the other; ∂d/∂r of the link is −n.
 TEST(PinOnSprocket, NormalIsTheSlopeOfTheDepth) {
   Numbers number;
   int compared = 0;
@@ -291,7 +294,7 @@ TEST(PinOnSprocket, NormalIsTheSlopeOfTheDepth) {
               return p.size() == found.size() ? p[i].depth : nan;
             },
             1e-7);
-        EXPECT_NEAR(slope, -found[i].normal[j], 2e-5);  // 200 per metre times h where a piece ends within it
+        EXPECT_NEAR(slope, -found[i].normal[j], 2e-5);  // 200 per metre times h if a piece ends within the difference
       }
       ++compared;
     }
@@ -345,19 +348,20 @@ int missed(G const& geometry, double askew) {
     beyond += !within;
   }
   EXPECT_GT(touching, 1000);
-  EXPECT_GT(far, 1000);  // they are of use
+  EXPECT_GT(far, 1000);  // the bound excludes many poses
   EXPECT_GT(beyond, 1000);
   return found;
 }
 
-// However far askew the pin, as that of a link that has come off.
+// The bound is valid for any misalignment of the pin, as after a link has come off.
 TEST(PinOnSprocket, IsNeverMissedByItsBound) {
   EXPECT_EQ(missed(one_ring, 3.0), 0);
   EXPECT_EQ(missed(two_rings, 3.0), 0);
   EXPECT_EQ(missed(on_cable, 3.0), 0);
 }
 
-// A tangent along the axle leaves a cable's y open: no point rather than one that is not a number.
+// If the tangent is along the axle, the y direction of a cable is undefined: there is no contact point, instead of
+// one with NaN.
 TEST(PinOnSprocket, OfACableAlongTheAxleIsNone) {
   Frame<double> link;
   link.A << Vec3::UnitY(), -Vec3::UnitX(), Vec3::UnitZ();
@@ -383,7 +387,7 @@ TEST(PinOnSprocket, RefusesNumbersThatCannotBeMeantByName) {
   EXPECT_TRUE(has(told([](auto& g) { g.profile.valley_radius = m113::pin_radius; }), "must be larger than the pins'"));
   EXPECT_TRUE(has(told([](auto& g) { g.profile.flank = 0.5 * pi; }), "a right angle"));
   EXPECT_TRUE(has(told([](auto& g) { g.profile.tip_radius = 0.2459; }),
-                  "0.24596"));  // f of M113.md: |(0.244088, 0.030311)| = 0.24596
+                  "0.24596"));  // f of the independent computation: |(0.244088, 0.030311)| = 0.24596
   EXPECT_TRUE(has(told([](auto& g) { g.profile.tip_radius = 0.5; }), "leave nothing of the teeth"));
   EXPECT_TRUE(has(told([](auto& g) { g.valley = nan; }), "\"sprocket\": the angle of a valley"));
   EXPECT_TRUE(has(told([](auto& g) { g.rings.clear(); }), "\"sprocket\": a sprocket needs at least one ring"));

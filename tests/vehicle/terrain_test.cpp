@@ -18,7 +18,8 @@ constexpr double pi = std::numbers::pi;
 double const nan = std::numeric_limits<double>::quiet_NaN();
 double const infinity = std::numeric_limits<double>::infinity();
 
-// A terrain of one's own costs three functions; a height without slopes is none, nor one that duals cannot ask.
+// A user-defined terrain needs three functions. A height without slopes is not a terrain, nor is one that does not
+// accept dual numbers.
 struct Slope {
   double rise;
   void check(std::string const&) const {}
@@ -48,7 +49,7 @@ BumpCourse const bumps({{.x = 2.0, .length = 2.0, .height = 0.2},
 
 RoadProfile const road({{-1.0, 0.0}, {0.5, 0.3}, {1.0, 0.1}, {3.0, 0.25}, {3.5, -0.2}});
 
-/// Heights from −0.5 to 0.5 m without any order, the same on every machine.
+/// Random heights from −0.5 to 0.5 m, the same on every machine.
 MatX rough(Index nx, Index ny) {
   std::mt19937 random(7);
   MatX z(nx, ny);
@@ -58,7 +59,7 @@ MatX rough(Index nx, Index ny) {
 }
 HeightField const field({.x0 = -1.0, .y0 = 2.0, .dx = 0.5, .dy = 0.8, .heights = rough(9, 7)});
 
-/// A function's values on a grid of nx × ny points from (−1, 2).
+/// Values of a function on a grid of nx × ny points from (−1, 2).
 template <class F>
 HeightField sampled(F const& f, Index nx, Index ny, double dx, double dy) {
   MatX z(nx, ny);
@@ -67,9 +68,9 @@ HeightField sampled(F const& f, Index nx, Index ny, double dx, double dy) {
   return HeightField({.x0 = -1.0, .y0 = 2.0, .dx = dx, .dy = dy, .heights = z});
 }
 
-/// Slopes against differences of heights, and derivatives by dual numbers of heights and slopes against differences of
-/// those. With h = 1e-3 m differences err by h⁴ f⁽⁵⁾/30: less than 1e-9 for slopes of waves of 1 m, 0.2 m high; by
-/// rounding for cubics.
+/// Slopes against finite differences of heights, and dual-number derivatives of heights and slopes against finite
+/// differences of these. With h = 1e-3 m differences have an error of h⁴ f⁽⁵⁾/30: less than 1e-9 for slopes of waves
+/// of 1 m, 0.2 m high. For cubics the error is round-off only.
 template <Terrain G>
 void expect_exact_slopes(G const& ground, double x, double y) {
   SCOPED_TRACE("at " + number(x) + ", " + number(y));
@@ -95,8 +96,8 @@ void expect_exact_slopes(G const& ground, double x, double y) {
   EXPECT_NEAR(by_y[2], d.slope_y.d[1], 1e-9);
 }
 
-/// Neither height nor slopes jump from one side of a point to the other. Over 2e-9 m they change by 2e-9 of the
-/// curvature, which is below 100/m here.
+/// Height and slope are continuous at a point. Over 2e-9 m they change by 2e-9 of the curvature, which is below 100/m
+/// here.
 template <Terrain G>
 void expect_no_jump(G const& ground, Vec2 const& at, Vec2 const& across) {
   Vec2 const a = at - 1e-9 * across, b = at + 1e-9 * across;
@@ -119,7 +120,7 @@ double highest_seen(G const& ground, Vec2 const& from, Vec2 const& to) {
   return most;
 }
 
-// Away from feet and lines, where the curvature jumps.
+// Points away from feet and grid lines, because the curvature jumps there.
 TEST(Terrain, SlopesAreTheDerivativesOfTheHeight) {
   for (double const x : {-3.0, -1.2, -0.7, 0.1, 0.9, 1.7, 2.3, 2.9, 3.3, 4.1, 6.7, 7.2, 20.0})
     for (double const y : {-1.7, -0.6, 0.1, 0.9, 2.2, 3.0, 4.9, 7.3, 9.0}) {
@@ -131,7 +132,7 @@ TEST(Terrain, SlopesAreTheDerivativesOfTheHeight) {
     }
 }
 
-// What moves along (x(t), y(t)) climbs at ż = h,x ẋ + h,y ẏ.
+// A point that moves along (x(t), y(t)) climbs at ż = h,x ẋ + h,y ẏ.
 TEST(Terrain, DualNumbersMayCarryAnyDerivative) {
   Dual<1> const x(1.7, Dual<1>::Partials::Constant(3.0)), y(2.9, Dual<1>::Partials::Constant(-0.5));
   Height<double> const h = field.height(1.7, 2.9);
@@ -164,8 +165,8 @@ TEST(Terrain, AWashboardRisesFirstAndIsHighAQuarterWaveOn) {
   EXPECT_EQ(board.highest(), 0.03);
 }
 
-// By hand: H in the middle, half of it a quarter of the length away with the slope ∓ πH/L, the steepest, zero from the
-// feet on.
+// By hand: H in the middle. At a quarter of the length from the middle the height is half of it and the slope is
+// steepest, ∓ πH/L. Both are zero outside the feet.
 TEST(BumpCourse, ABumpIsARaisedCosine) {
   BumpCourse const one({{.x = 4.0, .length = 2.0, .height = 0.1}});
   for (double const y : {-100.0, 0.0, 3.0}) {
@@ -185,7 +186,7 @@ TEST(BumpCourse, ABumpIsARaisedCosine) {
   }
 }
 
-// Across it has the same shape: half way to the side half the height.
+// The transverse profile has the same shape: half of the height half way to the side.
 TEST(BumpCourse, ABumpOfFiniteWidthTapersToItsSides) {
   BumpCourse const one({{.x = 4.0, .length = 2.0, .height = 0.1, .y = 1.0, .width = 3.0}});
   EXPECT_EQ(one.height(4.0, 1.0).z, 0.1);
@@ -217,7 +218,7 @@ TEST(BumpCourse, DoesNotJumpAtTheFeet) {
   }
 }
 
-// Alone a bump bounds the height by its own; only those that overlap count together; holes do not.
+// The bound of a single bump is its own height. Only overlapping bumps are added; holes do not count.
 TEST(BumpCourse, IsNowhereHigherThanItSays) {
   EXPECT_EQ(BumpCourse({}).highest(), 0.0);
   EXPECT_EQ(BumpCourse({{.x = 4.0, .length = 2.0, .height = 0.1}}).highest(), 0.1);
@@ -245,8 +246,8 @@ TEST(RoadProfile, GoesThroughItsPointsAndIsConstantBeyondThem) {
   }
 }
 
-// By hand: level at the ends and, after Fritsch & Butland, of slope 6/(3/1 + 3/2) = 4/3 at the middle point between
-// chords of slope 1 and 2. Half-way between points a cubic is (z₀ + z₁)/2 + h (z₀′ − z₁′)/8.
+// By hand: the slope is zero at the ends and, after Fritsch & Butland, 6/(3/1 + 3/2) = 4/3 at the middle point
+// between chords of slope 1 and 2. Half-way between points a cubic is (z₀ + z₁)/2 + h (z₀′ − z₁′)/8.
 TEST(RoadProfile, IsTheMonotoneCubicThatIsLevelAtItsEnds) {
   RoadProfile const hill({{0.0, 0.0}, {1.0, 1.0}, {2.0, 3.0}});
   EXPECT_NEAR(hill.height(1.0, 0.0).slope_x, 4.0 / 3.0, 1e-15);
@@ -269,8 +270,8 @@ TEST(RoadProfile, DoesNotJumpAtItsPoints) {
   for (double const x : {-1.0, 0.5, 1.0, 3.0, 3.5}) expect_no_jump(road, Vec2(x, 0.0), Vec2(1.0, 0.0));
 }
 
-// A kerb rises without a hump before or behind it, and the plane there stays one. Rounding does not lift it, neither of
-// points of ordinary size nor of points among the smallest doubles.
+// A kerb rises without a hump in front of or behind it, and plane parts remain plane. Round-off does not raise it,
+// for points of ordinary size and for denormal ones.
 TEST(RoadProfile, IsNowhereHigherThanItsPoints) {
   RoadProfile const kerb({{0.0, 0.0}, {1.0, 0.0}, {1.1, 0.15}, {3.0, 0.15}});
   for (double x = -1.0; x < 4.0; x += 1e-3) {
@@ -284,7 +285,8 @@ TEST(RoadProfile, IsNowhereHigherThanItsPoints) {
   }
   EXPECT_EQ(kerb.highest(), 0.15);
   EXPECT_EQ(road.highest(), 0.3);
-  EXPECT_NEAR(highest_seen(road, {-3.5, 0.0}, {4.5, 1.0}), 0.3, 1e-15);  // at x = 0.5, which is among the places
+  // at x = 0.5, which is among the points tested
+  EXPECT_NEAR(highest_seen(road, {-3.5, 0.0}, {4.5, 1.0}), 0.3, 1e-15);
   EXPECT_EQ(RoadProfile({{0.0, -0.2}, {1.0, -0.2}}).highest(), -0.2);
   for (double const low : {-0.7, -2.4e-319})
     for (RoadProfile const& level :
@@ -299,7 +301,7 @@ TEST(HeightField, GoesThroughItsPoints) {
       EXPECT_NEAR(field.height(-1.0 + 0.5 * double(i), 2.0 + 0.8 * double(j)).z, z(i, j), 1e-14);
 }
 
-// A curve of Catmull and Rom passes the middle between its second and third point at (−z₀ + 9z₁ + 9z₂ − z₃)/16.
+// A Catmull–Rom curve has the value (−z₀ + 9z₁ + 9z₂ − z₃)/16 midway between its second and third point.
 TEST(HeightField, IsOfCatmullAndRomBetweenFourPoints) {
   MatX const z = rough(9, 7);
   Vec4 const w = Vec4(-1.0, 9.0, 9.0, -1.0) / 16.0;
@@ -310,7 +312,7 @@ TEST(HeightField, IsOfCatmullAndRomBetweenFourPoints) {
     }
 }
 
-// With two points a way as with many, and up to the border.
+// With two points per direction or more, and up to the border.
 TEST(HeightField, ReproducesPlanesAndTheirTwist) {
   auto const f = [](double x, double y) { return 0.7 - 0.3 * x + 0.2 * y + 0.1 * x * y; };
   for (Index const n : {2, 3, 4, 6}) {
@@ -333,8 +335,9 @@ TEST(HeightField, ReproducesParabolasAwayFromItsBorder) {
     for (double y = 2.25; y <= 2.5; y += 0.03125) EXPECT_NEAR(ground.height(x, y).z, f(x, y), 1e-14) << x << ", " << y;
 }
 
-// Slopes at the points err with h², at the border with h; so away from the border heights err with h³ and slopes with
-// h²: halved spacings leave an eighth and a quarter. In the cells along the border it is one order less.
+// Slopes at the points have an error of h², at the border of h. So away from the border heights have an error of h³
+// and slopes of h²: half the spacing leaves an eighth and a quarter. In the cells along the border the order is one
+// less.
 TEST(HeightField, ConvergesToASmoothGround) {
   auto const f = [](double x, double y) { return std::sin(2.0 * x) * std::cos(1.5 * y); };
   auto const errors = [&](Index n, double margin) {
@@ -361,7 +364,7 @@ TEST(HeightField, ConvergesToASmoothGround) {
   }
 }
 
-// The lines of the grid, its border, and where the slope has fallen to zero beyond it.
+// The grid lines, the border, and the line beyond it at which the slope reaches zero.
 TEST(HeightField, DoesNotJumpAtItsLines) {
   for (int i = -1; i <= 9; ++i)
     for (double const y : {0.0, 1.5, 2.0, 2.3, 3.6, 5.1, 6.8, 7.1, 7.6, 9.0})
@@ -371,10 +374,10 @@ TEST(HeightField, DoesNotJumpAtItsLines) {
       expect_no_jump(field, Vec2(x, 2.0 + 0.8 * j), Vec2(0.0, 1.0));
 }
 
-// By hand for the plane h = 1 + 0.3x − 0.2y on [0, 2] × [0, 3] with spacings 1 and 1.5: beyond x = 2 the slope is 0.3
-// (1 − u), the height grows by 0.3 (u − u²/2), u = x − 2, and from u = 1 on it is 0.15 more than at the border; beyond
-// y = 3 the height falls by 0.2 (v − v²/3), v = y − 3, by 0.15 in the end; beyond x = 0 and y = 0 likewise, and at the
-// corners both.
+// By hand for the plane h = 1 + 0.3x − 0.2y on [0, 2] × [0, 3] with spacings 1 and 1.5. Beyond x = 2 the slope is 0.3
+// (1 − u) and the height grows by 0.3 (u − u²/2), u = x − 2. From u = 1 on it is 0.15 more than at the border. Beyond
+// y = 3 the height falls by 0.2 (v − v²/3), v = y − 3, finally by 0.15. Beyond x = 0 and y = 0 the rules are the
+// same, and at the corners both apply.
 TEST(HeightField, LevelsOutBeyondItsBorder) {
   MatX z(3, 3);
   for (Index i = 0; i < 3; ++i)
@@ -401,13 +404,13 @@ TEST(HeightField, LevelsOutBeyondItsBorder) {
     EXPECT_EQ(plane.height(1.0, -1.5 * far).slope_y, 0.0);
   }
   EXPECT_NEAR(plane.highest(), 1.9,
-              1e-14);  // reached beyond the corner x = 2, y = 0: the bound is no higher than the ground
+              1e-14);  // attained beyond the corner x = 2, y = 0: the bound equals the highest point of the ground
 }
 
-// Between its points the ground is higher than at any of them, and may be higher still beyond the border: points are no
-// bound.
+// Between its points the ground is higher than at any of them, and it may be higher still beyond the border. Hence
+// the points are not a bound.
 TEST(HeightField, IsNowhereHigherThanItSays) {
-  // A ridge that is highest close before its steep side, 1.078 where its points are 1, looking all four ways.
+  // A ridge that is highest just before its steep side, 1.078 with points of 1, in all four orientations.
   Vec4 const ridge(0.9, 1.0, 1.0, 0.0);
   MatX const up = ridge.replicate(1, 3), down = ridge.reverse().replicate(1, 3);
   for (MatX const& z : {up, down, MatX(up.transpose()), MatX(down.transpose())}) {

@@ -1,4 +1,4 @@
-// One vehicle, tracks under five formulations.
+// One vehicle with tracks of five formulations.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -17,7 +17,7 @@ struct Ride {
   Vec3 place, velocity;                 ///< of the hull at the end
   double dip = 0.0;                     ///< [m]
   double pull = 0.0;                    ///< mean force in pin 40 of the left track, over the last fifth [N]
-  double gap = 0.0, largest_gap = 0.0;  ///< between the points of that pin at the end, and of any at any time [m]
+  double gap = 0.0, largest_gap = 0.0;  ///< between the points of that pin at the end, and of any pin at any time [m]
   bool held = true;
 };
 
@@ -51,8 +51,8 @@ Ride ride(P const& policy, double until, double speed, bool hold = false) {
   return r;
 }
 
-// Forward positions of all formulations within 0.15 m of each other after 10 s is what M113.md §9 expects of the
-// thesis' claim; over the first metre they agree to millimetres, as none of them is softer than contacts of 2e6 N/m.
+// The forward positions of all formulations agree within 0.15 m after 10 s (tolerance chosen for the claim of Wallin
+// 2016). Over the first metre they agree to millimetres, as no formulation is softer than contacts of 2e6 N/m.
 TEST(TrackFormulations, MoveTheVehicleAlike) {
   Ride const ideal = ride<Rigid<>>(Constraint{}, 0.6, 8.0);
   EXPECT_TRUE(ideal.held);
@@ -75,9 +75,9 @@ TEST(TrackFormulations, MoveTheVehicleAlike) {
   alike(ride<Rigid<>>(Recursive{}, 0.6, 8.0), "recursive");
 }
 
-// Thesis Figure 3.15: penalties open by less than 0.075 mm at 1e9 N/m and by more than 1.5 mm at 1e7 N/m under driving
-// loads. At rest they open by force over stiffness, a hundred times as far for a hundredth of it; the loop of soft pins
-// is longer, and its tension lower.
+// Wallin 2016, Figure 3.15: the constraint violation of penalties is less than 0.075 mm at 1e9 N/m and more than 1.5
+// mm at 1e7 N/m under driving loads. At rest it equals force over stiffness, a hundred times as much for a hundredth
+// of the stiffness. The loop of soft pins is longer, and its tension lower.
 TEST(TrackFormulations, PenaltiesOpenByForceOverStiffness) {
   Ride const stiff = ride<Rigid<>>(m113::penalty_pin(m113::pin_stiffness), 0.6, 0.0, true),
              soft = ride<Rigid<>>(m113::penalty_pin(m113::soft_pin_stiffness), 0.6, 0.0, true);
@@ -90,7 +90,7 @@ TEST(TrackFormulations, PenaltiesOpenByForceOverStiffness) {
   EXPECT_LT(ride<Rigid<>>(m113::penalty_pin(m113::pin_stiffness), 0.5, 8.0).largest_gap, 0.075e-3);
 }
 
-// What ParaView shows, as VTK reads it: hull, wheels, sprockets and links where they are, nothing inside out.
+// The ParaView files as VTK reads them: hull, wheels, sprockets and links at their positions, with outward normals.
 TEST(TrackFormulations, AnimationIsReadByVtk) {
   namespace fs = std::filesystem;
   fs::path const folder = fs::path(testing::TempDir()) / ("polybody vehicle " + std::to_string(::getpid()));

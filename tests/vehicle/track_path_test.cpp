@@ -1,6 +1,5 @@
-// The track of an M113-like vehicle against shared/reference/m113 (links_taut.csv, links.csv: an independent
-// computation, M113.md section 2.1; places rounded to 1e-9 m), chains of short links against strings, and vehicles made
-// up here.
+// The track of an M113-like vehicle against an independent computation of its taut track and of its equilibrium
+// (positions rounded to 1e-9 m). Further tests: chains of short links against strings, and invented vehicles.
 
 #include <gtest/gtest.h>
 
@@ -29,8 +28,9 @@ std::vector<Vec2> pins_of(Table const& table) {
   return pins;
 }
 
-/// A battle tank: rear sprocket, rollers under the upper run, seven wheels, and an idler in front that tightens
-/// upwards, too. `pressed`: a roller on the upper run's outer face between the second and the third roller beneath it.
+/// A battle tank: rear sprocket, rollers under the upper run, seven wheels, and a front idler that also tightens
+/// upwards. `pressed` adds a roller on the outer face of the upper run between the second and the third roller
+/// beneath it.
 TrackLayout tank(bool pressed) {
   TrackLayout t{.links = 77,
                 .pitch = 0.18,
@@ -45,7 +45,7 @@ TrackLayout tank(bool pressed) {
   return t;
 }
 
-/// The layout turned by `angle` about y and moved.
+/// The layout rotated by `angle` about y and displaced.
 TrackLayout carried(TrackLayout t, double angle, Vec2 const& by) {
   auto const turned = [&](Vec2 const& r) {
     return Vec2(std::cos(angle) * r[0] + std::sin(angle) * r[1], -std::sin(angle) * r[0] + std::cos(angle) * r[1]);
@@ -57,7 +57,7 @@ TrackLayout carried(TrackLayout t, double angle, Vec2 const& by) {
   return t;
 }
 
-/// The names of what is touched, in the order in which the track meets it.
+/// The names of the touched parts, in the order in which the track meets them.
 std::string touched(TrackPath const& path) {
   std::string names;
   int before = TrackLink::none;
@@ -69,7 +69,7 @@ std::string touched(TrackPath const& path) {
   return names;
 }
 
-// M113.md section 2.1: 64 links of 0.1524 m close at x = −3.963784 (links.csv's zero-stretch place to twelve digits).
+// Independent computation: 64 links of 0.1524 m close at x = −3.963784 (position without stretch, to twelve digits).
 TEST(TrackPath, OfTheM113ClosesWhereTheReferenceDoes) {
   TrackPath const path = wrap_track(m113::track());
   auto const claim = [](char const* what) {
@@ -97,8 +97,8 @@ TEST(TrackPath, OfTheM113ClosesWhereTheReferenceDoes) {
   }
 }
 
-// Links 9 and 27 meet wheels 1 and 5, links 32 to 37 the idler; the upper run clears all wheels (M113.md, figure "stage
-// 1").
+// Links 9 and 27 touch wheels 1 and 5, links 32 to 37 the idler. The upper run clears all wheels in the independent
+// computation of straight runs.
 TEST(TrackPath, TellsWhatEachLinkAndPinRestsOn) {
   TrackPath const path = wrap_track(m113::track());
   EXPECT_EQ(touched(path), "wheel 1, wheel 5, idler");
@@ -109,7 +109,7 @@ TEST(TrackPath, TellsWhatEachLinkAndPinRestsOn) {
   }
 }
 
-// M113.md section 2.1: p = 0.154 m gives −4.0120.
+// Independent computation: p = 0.154 m gives −4.0120.
 TEST(TrackPath, OfALongerPitchClosesFurtherBack) {
   TrackLayout layout = m113::track();
   layout.pitch = 0.154;
@@ -118,15 +118,15 @@ TEST(TrackPath, OfALongerPitchClosesFurtherBack) {
        wrap_track(layout).layout.circles[5].centre[0], -4.0120, 5e-5);
 }
 
-// M113.md section 2.1: "unique root". The loop grows all along the idler's travel.
+// The independent computation has a unique root. The length of the loop increases over the whole travel of the idler.
 TEST(TrackPath, OfTheM113HasOneRoot) {
   TrackLayout const layout = m113::track();
   for (double travel = -0.02; travel < 0.0995; travel += 5e-4)
     EXPECT_LT(track_length(layout, travel), track_length(layout, travel + 5e-4)) << "travel " << travel;
 }
 
-// M113.md section 2.1: in equilibrium with a preload the tensioner's spring carries 28.3 kN at tensions of 13.6 to 14.6
-// kN in the two runs, and 47.4 kN at 23.1 to 24.3 kN. The tauter the track, the straighter its runs.
+// Independent computation of the equilibrium with a preload: the tensioner's spring carries 28.3 kN at tensions of
+// 13.6 to 14.6 kN in the two runs, and 47.4 kN at 23.1 to 24.3 kN. A higher tension gives straighter runs.
 TEST(TrackPath, PullsTheTensionerWithBothRuns) {
   TrackPath const path = wrap_track(m113::track());
   double const share = -path.pull.dot(path.layout.tensioner.direction);
@@ -139,8 +139,8 @@ TEST(TrackPath, PullsTheTensionerWithBothRuns) {
   EXPECT_NEAR(path.pull[1], std::sin(3.031794984) - std::sin(0.233036280), 1e-8);
 }
 
-// Whatever the vehicle, links have their length, faces touch rims and pass through none, pins lie on the pitch circle
-// or outside, and the chain turns once.
+// For every vehicle, links have their length, faces touch rims without penetration, pins are on the pitch circle or
+// outside, and the chain makes one full turn.
 TEST(TrackPath, ClosesWithoutStretchOrPenetration) {
   TrackLayout moved = m113::track();
   moved.sprocket.valley = moved.sprocket.valley + 0.11;
@@ -164,7 +164,7 @@ TEST(TrackPath, GoesOverReturnRollersToARearSprocket) {
   TrackPath const path = wrap_track(tank(false));
   EXPECT_EQ(touched(path), "roller 1, roller 2, roller 3, idler, wheel 1, wheel 7");
   EXPECT_GE(path.seated, 5);
-  EXPECT_LT(path.pins[0][1], 0.75);  // the track meets the rear sprocket from below
+  EXPECT_LT(path.pins[0][1], 0.75);  // the track reaches the rear sprocket from below
   EXPECT_GT(path.pull.dot(Vec2(-0.9, -0.2)), 1.5);
   EXPECT_LT((path.layout.circles[3].centre - Vec2(0.2, 0.7) - path.travel * Vec2(0.9, 0.2).normalized()).norm(), 1e-15);
 }
@@ -172,20 +172,20 @@ TEST(TrackPath, GoesOverReturnRollersToARearSprocket) {
 TEST(TrackPath, PassesBelowARollerOnItsOuterFace) {
   TrackPath const path = wrap_track(tank(true));
   EXPECT_EQ(touched(path), "roller 1, roller 2, presser, roller 3, idler, wheel 1, wheel 7");
-  double inward = 0.0;  // the chain bends back at the presser by the turns of the two runs beside it
+  double inward = 0.0;  // the chain bends back at the presser by the rotations of the two adjacent runs
   for (std::size_t i = 1; i < path.links.size(); ++i)
     inward = std::min(inward, std::remainder(path.links[i].angle - path.links[i - 1].angle, 2.0 * pi));
   EXPECT_LT(inward, -0.1);
 }
 
-/// Largest excess over a string of a chain on tangents to a circle of radius r: at a corner, no further than p from the
-/// points where its links touch, 2 (t − r atan(t/r)) ≤ 2p³/(3r²); there are at most wrap r/p + 2 corners. It bounds the
-/// chords that the sprocket's seats cut off as well, p³/(24r²) each.
+/// Largest excess length of a chain over a string, on tangents to a circle of radius r. At a corner no further than p
+/// from the points of contact of its links, the excess is 2 (t − r atan(t/r)) ≤ 2p³/(3r²). There are at most wrap r/p
+/// + 2 corners. The bound includes the chords of the sprocket's seats, p³/(24r²) each.
 double excess(double pitch, double radius, double wrap) {
   return 2.0 * std::pow(pitch, 3) / (3.0 * radius * radius) * (wrap * radius / pitch + 2.0);
 }
 
-/// Two circles of radii r₁ (the pitch circle) and r₂ = R + h, d apart.
+/// Two circles of radii r₁ (the pitch circle) and r₂ = R + h, at the distance d.
 TrackLayout belt(int teeth, double r1, double r2, double d, double h) {
   return {.links = 100,
           .pitch = 2.0 * r1 * std::sin(pi / teeth),
@@ -209,9 +209,9 @@ TEST(TrackPath, OfShortLinksIsAsLongAsAString) {
   }
 }
 
-// Between equal circles a presser at (−d/2, z) makes of the upper run two tangents that cross the lines of centres, of
-// length D: sin γ = (r + ρ)/D, tan δ = 2z/d. Each is D cos γ long; both circles gain the arc γ − δ, and the presser
-// takes twice that.
+// A presser at (−d/2, z) between equal circles divides the upper run into two tangents. They cross the lines of
+// centres, of length D: sin γ = (r + ρ)/D, tan δ = 2z/d. Each is D cos γ long. Both circles gain the arc γ − δ, and
+// the presser takes twice that arc.
 TEST(TrackPath, OfShortLinksBendsAroundBothFacesAsAStringDoes) {
   double const d = 3.0, r = 0.5, rho = 0.2, z = 0.55, between = std::hypot(0.5 * d, z);
   double const gamma = std::asin((r + rho) / between), delta = std::atan2(z, 0.5 * d), bend = gamma - delta;
@@ -240,7 +240,7 @@ TEST(TrackPath, DoesNotDependOnWhereTheVehicleStands) {
   }
 }
 
-// Which valley gives the sprocket's angle is of no account.
+// The choice of the valley for the sprocket's angle does not affect the path.
 TEST(TrackPath, DoesNotDependOnTheValleyThatIsNamed) {
   TrackLayout other = m113::track();
   other.sprocket.valley = other.sprocket.valley + 7.0 * 2.0 * pi / 10.0;
@@ -250,8 +250,8 @@ TEST(TrackPath, DoesNotDependOnTheValleyThatIsNamed) {
     EXPECT_LT((path.pins[i] - same.pins[i]).norm(), 1e-13) << "pin " << i;
 }
 
-// The M113's taut track does not know the ground. Its lowest pin is number 10, at z = 0.010440856 in links_taut.csv;
-// the lowest corner is that of link 10 there, h cos(0.008430089) below.
+// The taut track of the M113 is computed without the ground. Its lowest pin is number 10, at z = 0.010440856 in
+// links_taut.csv. The lowest corner is that of link 10 at this pin, h cos(0.008430089) below it.
 TEST(TrackClearances, SeeTheGround) {
   TrackPath const path = wrap_track(m113::track());
   EXPECT_NEAR(clearances(path, 0.0).ground, 0.010440856 - 0.03315 * std::cos(0.008430089), 2e-9);
@@ -259,7 +259,7 @@ TEST(TrackClearances, SeeTheGround) {
   EXPECT_EQ(clearances(path).ground, std::numeric_limits<double>::infinity());
 }
 
-// M113.md section 2.1: gaps ≥ −5e-15, lengths exact, all before rounding to 1e-9 m.
+// Independent computation: gaps ≥ −5e-15, lengths exact, all before rounding to 1e-9 m.
 TEST(TrackClearances, OfTheReferenceInEquilibriumAreNotNegative) {
   TrackLayout layout = m113::track();
   layout.circles[5].centre[0] = m113::idler_start_x;
@@ -275,8 +275,8 @@ TEST(TrackClearances, OfTheReferenceInEquilibriumAreNotNegative) {
               std::abs(gaps.ground), 2e-9, {.scale = m113::pitch});
 }
 
-// Links 32 to 37 touch the idler; 1 mm further back it reaches 1 mm · sin b into each, most into link 34 (b = 1.2146,
-// the next is link 35 with 2.0502).
+// Links 32 to 37 touch the idler. 1 mm further back it penetrates each by 1 mm · sin b, most link 34 (b = 1.2146; the
+// next is link 35 with 2.0502).
 TEST(TrackClearances, NameTheDeepestPenetration) {
   TrackPath path = wrap_track(m113::track());
   path.layout.circles[5].centre[0] -= 1e-3;
@@ -311,7 +311,7 @@ TEST(TrackPath, RefusesWheelsThatOverlap) {
   layout.circles[0].radius = 0.31;
   EXPECT_TRUE(has(refusal([&] { wrap_track(layout); }), "two circles are called 'wheel 1'"));
   layout = m113::track();
-  layout.tensioner.least = -0.2;  // forward of −3.95 m + 0.025 m the idler meets wheel 5
+  layout.tensioner.least = -0.2;  // forward of −3.95 m + 0.025 m the idler touches wheel 5
   layout.links = 62;
   EXPECT_TRUE(has(refusal([&] { wrap_track(layout); }), "'wheel 5' and 'idler' overlap"));
   layout = m113::track();
@@ -335,19 +335,19 @@ TEST(TrackPath, RefusesCirclesOutOfOrder) {
   EXPECT_TRUE(has(refusal([&] { wrap_track(layout); }), "does not touch 'idler'"));
   layout = m113::track();
   layout.circles.erase(layout.circles.begin() + 6, layout.circles.end());
-  layout.circles[2].centre[1] = 0.6;  // wheel 3 reaches into the upper run, for which it is not listed
+  layout.circles[2].centre[1] = 0.6;  // wheel 3 penetrates the upper run, for which it is not listed
   EXPECT_TRUE(has(refusal([&] { wrap_track(layout); }), "deep through 'wheel 3'"));
 }
 
 TEST(TrackPath, RefusesAWheelOnItsWrongSide) {
   TrackLayout layout = m113::track();
-  // In front of all, but the track turns down at the sprocket.
+  // In front of all other circles, but the track turns down at the sprocket.
   layout.circles.insert(layout.circles.begin(), {"nose", Vec2(1.0, 0.6), 0.3});
   layout.sprocket.centre[1] = 0.4;
   EXPECT_TRUE(has(refusal([&] { wrap_track(layout); }), "'nose' is to lie inside the track"));
 }
 
-// Its highest seat is at z = 0.4, below the tangent to two wheels of 0.5 m on both of its sides.
+// The highest seat of the sprocket is at z = 0.4, below the tangent to two wheels of 0.5 m on both of its sides.
 TEST(TrackPath, RefusesASprocketWithinTheRun) {
   TrackLayout layout = belt(10, 0.3, 0.5, 2.0, 0.02);
   layout.sprocket.centre = Vec2(0.0, 0.1);
@@ -364,7 +364,7 @@ TEST(TrackPath, RefusesATensionerThatDoesNotTighten) {
   layout.tensioner.circle = "wheel 3";
   layout.tensioner.direction = Vec2(0.0, 1.0);
   layout.tensioner.least = 0.0;
-  layout.tensioner.most = 0.05;  // the ground run lies 11 mm below it, the upper run 89 mm above
+  layout.tensioner.most = 0.05;  // the ground run is 11 mm below it, the upper run 89 mm above
   EXPECT_TRUE(has(refusal([&] { wrap_track(layout); }), "does not touch 'wheel 3'"));
   layout.tensioner.direction = Vec2(0.0, 0.0);
   EXPECT_TRUE(has(refusal([&] { wrap_track(layout); }), "needs a direction"));

@@ -1,6 +1,5 @@
-// The M113's tracks at rest on the held vehicle against the independent computation of shared/reference/m113 (links.csv
-// and M113.md section 2.1), whose contacts are rigid. Here a pin or link that is pressed with N sinks N/2k into two
-// rings or rims, so the track is a little longer.
+// The M113's tracks at rest on the fixed vehicle, against an independent computation with rigid contacts. Here a pin
+// or link with the contact force N penetrates two rings or rims by N/2k, so the track is slightly longer.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +17,7 @@ namespace track_start_test {
 
 constexpr double pi = std::numbers::pi;
 
-/// A row of the table in M113.md section 2.1.
+/// A row of the table of the independent computation.
 struct Reference {
   double preload, idler_x, spring, ground_run, upper_run;  ///< [N], [m], [N], [N], [N]
 };
@@ -48,26 +47,28 @@ TrackLayout layout_of(m113::TrackStart const& start) {
   return layout;
 }
 
-double const weight = m113::thesis.link.mass * 9.81 / m113::pitch;  ///< of a metre of track [N/m]
+double const weight = m113::thesis.link.mass * 9.81 / m113::pitch;  ///< of one metre of track [N/m]
 
-/// The highest tension in a row's equilibrium: that of the upper run, and what hangs from the top of the sprocket at
-/// most.
+/// The highest tension in a row's equilibrium: that of the upper run, plus at most the weight that hangs from the top
+/// of the sprocket.
 double highest_tension(Reference const& row) { return row.upper_run + weight * (m113::sprocket_z + 0.28); }
-/// The depth at which two points bear N [m].
+/// The depth at which two points carry N [m].
 double depth(double normal) { return normal / (2.0 * m113::on_sprocket.stiffness); }
 
-/// What the idler takes up of a longer track: it moves by the length over this  [TrackPath::pull].
+/// Change of the track's length per displacement of the idler, from `TrackPath::pull`.
 double share() {
   TrackPath const path = wrap_track(m113::track());
   return -path.pull.dot(path.layout.tensioner.direction);
 }
-/// How far the idler is pushed out, from above: contacts yield by ΔL with T ΔL = ΣN d, and ΣN ≤ 2π T around a convex
-/// loop, so with no mean depth above that of the sprocket, where links turn most and N = 2 T sin π/10, ΔL ≤ 2π d. The
-/// tension is that of the reference; what yields has less, as the spring gives way with the idler.
+/// Upper bound of the displacement of the idler. Contacts yield by ΔL with T ΔL = ΣN d, and ΣN ≤ 2π T around a convex
+/// loop. The mean depth is at most that of the sprocket, at which links rotate most and N = 2 T sin π/10. Hence ΔL ≤
+/// 2π d. The tension is that of the reference; with yielding contacts it is lower, as the spring relaxes with the
+/// idler.
 double given_way(Reference const& row) { return 2.0 * pi * depth(2.0 * row.upper_run * std::sin(pi / 10.0)) / share(); }
 
-/// How far pins may be from the reference's: as far as the idler, and as far as the upper run hangs lower for the
-/// tension that the spring lost, w L²/8T between the sprocket and wheel 2, and as far as what it lies on yields.
+/// Upper bound of the distance of pins from the reference. It is the sum of the displacement of the idler, the
+/// additional sag w L²/8T of the upper run between the sprocket and wheel 2 due to the lower tension, and the yield
+/// of the supporting contacts.
 double out_of_place(Reference const& row) {
   double const span = -m113::wheel(1, m113::Side::left).x, sag = weight * span * span / (8.0 * row.upper_run);
   double const spring =
@@ -75,7 +76,7 @@ double out_of_place(Reference const& row) {
   return given_way(row) + sag * (row.spring / spring - 1.0) + depth(highest_tension(row));
 }
 
-/// The least gap between wheel i and the upper run.
+/// The smallest gap between wheel i and the upper run.
 double gap_above(m113::TrackStart const& start, int wheel) {
   TrackLayout const layout = layout_of(start);
   std::vector<Vec2> const pins = pins_of(start);
@@ -98,9 +99,9 @@ TEST(SettledTrack, Closes) {
   }
 }
 
-// What is pressed sinks in by what the tension explains: pins on the sprocket bear 2 T sin π/10, and links, which turn
-// by less than 60° where they touch, less than T. At 20 kN that is 1.8 mm. On the ground a link's front corners are two
-// points, too.
+// Penetrations agree with the tension. Pins on the sprocket carry 2 T sin π/10, and links, which rotate by less than
+// 60° at their contacts, less than T. At 20 kN that is 1.8 mm. On the ground the front corners of a link are also two
+// points.
 TEST(SettledTrack, SinksNoDeeperThanItsTensionPresses) {
   for (Reference const& row : table) {
     TrackClearances const gaps = clearances(layout_of(settled(row.preload)), pins_of(settled(row.preload)), 0.0);
@@ -114,7 +115,8 @@ TEST(SettledTrack, SinksNoDeeperThanItsTensionPresses) {
   }
 }
 
-// Further out than the reference's, but by no more than contacts give way: 3.0 mm at 20 kN, 7.2 mm at 40 kN.
+// The idler is further out than the reference's, but by at most the yield of the contacts: 3.0 mm at 20 kN, 7.2 mm at
+// 40 kN.
 TEST(SettledTrack, HasItsIdlerWhereTheReferenceHas) {
   for (Reference const& row : table) {
     double const out = row.idler_x - settled(row.preload).idler_x;
@@ -140,8 +142,8 @@ TEST(SettledTrack, HasItsPinsWhereTheReferenceHas) {
               farthest, 15e-3, {.scale = m113::pitch});
 }
 
-// M113.md section 2.1: how far the upper run is above the wheels, in millimetres. With less tension it also lies where
-// the reference does.
+// Independent computation of the gaps between the upper run and the wheels, in millimetres. With less tension the
+// upper run also rests on the same wheels as the reference.
 TEST(SettledTrack, LiesOnTheWheelsThatTheReferenceLiesOn) {
   constexpr std::array<std::array<double, 5>, 4> gaps{
       {{0, 0, 0, 0, 0}, {17, 0, 0, 0, 0}, {44, 5, 0, 0, 16}, {58, 19, 0, 1, 23}}};
@@ -153,7 +155,7 @@ TEST(SettledTrack, LiesOnTheWheelsThatTheReferenceLiesOn) {
     }
 }
 
-// A vehicle built on it starts closed, whichever pin is cut.
+// A vehicle built with this start satisfies its constraint equations, for any choice of the cut pin.
 TEST(SettledTrack, IsAStartForTheVehicle) {
   for (int const cut : {0, 17}) {
     m113::Vehicle<> const vehicle(Constraint{}, {m113::drive(25.0), m113::drive(25.0)},
@@ -184,7 +186,7 @@ TEST(SettledTrack, RefusesWhatCannotBeMeant) {
                   "needs the places of 64 links, but has 63"));
 }
 
-// A preload that pulls the track through its wheels, or pushes the idler into the last one, is none.
+// A preload is refused if it pulls the track through its wheels, or pushes the idler into the last wheel.
 TEST(SettledTrack, RefusesAPreloadBeyondTheTensionersTravel) {
   for (double const bad : {1e6, -100e3})
     EXPECT_TRUE(has(refusal([&] { m113::settled_track({.preload = bad}); }), "preload")) << bad;

@@ -1,5 +1,5 @@
-// Strain of a track's link: after a run of rigid links, decoupled, and in runs of flexible links of every formulation
-// (thesis Chapter 4).
+// Strain of a track link: decoupled after a run of rigid links, and in runs of flexible links of every formulation
+// (Wallin 2016, Chapter 4).
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -21,7 +21,7 @@ namespace track_stress_test {
 
 GeneralizedAlpha integrator() { return {.rho_inf = 0.5, .tolerance = 1e-5}; }
 
-/// What the watched link of the left track bore.
+/// Loads and strains of the watched link of the left track.
 struct Ride {
   std::vector<double> times, strain, bending;
   std::vector<double> pull;                            ///< half of the force of the tensioner's spring [N]
@@ -89,7 +89,7 @@ Ride ride(Ramp const& drive, double until, double step, bool held = false, int e
   return r;
 }
 
-/// Root mean square of filtered strains' difference beside that of b, after the first tenth of a second.
+/// Root mean square of the difference of filtered strains, relative to that of b, after the first tenth of a second.
 double off(Ride const& a, Ride const& b) {
   std::vector<double> const x = a.filtered(), y = b.filtered();
   RmsDifference d(0.1, b.times.back());
@@ -99,9 +99,9 @@ double off(Ride const& a, Ride const& b) {
 
 Ramp setting_out() { return {.target = 8.0, .duration = 0.6, .start = 0.1, .rounding = 0.1}; }
 
-// Steel links at h = 1 ms. EA/p is five thousand times as stiff as a contact: whatever the formulation, a link bears
-// the same tension, and its strain is that over EA. 10 % between decoupled and ANCF, 5 % between coupled floating
-// frames and ANCF is what Chapter 4's question asks; the thesis found factors of 2 and 3.
+// Steel links at h = 1 ms. EA/p is five thousand times as stiff as a contact. Hence a link has the same tension in
+// every formulation, and its strain is the tension over EA. The tolerance is 10 % between decoupled and ANCF, and 5 %
+// between coupled floating frames and ANCF. Wallin 2016, Chapter 4, reports factors of 2 and 3.
 TEST(TrackStress, IsTheSameDecoupledAndCoupledInEveryFormulation) {
   double const until = 0.8;
   Ride const cable = ride<AncfCable<>, AncfLinear>(setting_out(), until, 1e-3);
@@ -133,9 +133,10 @@ TEST(TrackStress, IsTheSameDecoupledAndCoupledInEveryFormulation) {
               off(ride<AncfCable<>, AncfLinear>(setting_out(), until, 0.5e-3), cable), 0.05, {.scale = 1.0});
 }
 
-// A wheel that rolls over a link bends it, by −3 and 3 MPa here. One cubic element has a linear curvature and shows
-// half of what a force in its middle does; two have a node there and show the moment of the decoupled analysis (bending
-// modes begin at 3.8 kHz). What is left are jumps as the wheel comes and goes, in another step.
+// A wheel that rolls over a link bends it, by −3 and 3 MPa here. One cubic element has a linear curvature and gives
+// half of the moment of a force in its middle. Two elements have a node there and give the moment of the decoupled
+// analysis (bending modes begin at 3.8 kHz). The remaining differences are jumps as the wheel enters and leaves the
+// link, in different steps.
 TEST(TrackStress, TwoElementsBendAsTheDecoupledAnalysisSays) {
   double const until = 0.8;
   Ride const rigid = ride<Rigid<>, Constraint>(setting_out(), until, 1e-3);
@@ -155,8 +156,8 @@ TEST(TrackStress, RefusesLessThanOneElement) {
                   "one element or more"));
 }
 
-// Tracks that run around a held vehicle, with nothing to drive: the tensioner pulls by T₀ at either run, and the chain
-// bears m v²/p on top of it. Over the time in which a link goes round, its strain is (T₀ + m v²/p)/EA; the runs leave
+// Tracks that run around a fixed vehicle without driving resistance. The tensioner applies T₀ to either run, and the
+// chain carries m v²/p in addition. The mean strain over one revolution of a link is (T₀ + m v²/p)/EA. The runs leave
 // the idler at up to 15° from its guide (2 % of T₀).
 TEST(TrackStress, FollowsTensionOverEA) {
   for (double const speed : {30.0, 80.0}) {
@@ -179,7 +180,7 @@ TEST(TrackStress, FollowsTensionOverEA) {
   }
 }
 
-/// 130 steps, put away, 30 steps more; and the latter once again from the file.
+/// 130 steps, a checkpoint, and 30 further steps; the latter again from the file.
 template <class Link, class Pin>
 void restarts_with_the_same_bits(char const* name) {
   m113::Vehicle<Link, Pin> const vehicle(Pin{}, {setting_out(), setting_out()}, options());

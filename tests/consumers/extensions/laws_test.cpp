@@ -1,4 +1,4 @@
-// User-defined types under the requirement suites of polybody::testing: a case constructs the type, one line tests
+// User-defined types under the law suites of polybody::testing: a case constructs the type, one line tests
 // it.
 #include <polybody/testing/flexible_body_laws.hpp>
 #include <polybody/testing/force_laws.hpp>

@@ -32,7 +32,7 @@ struct LennardJones {
     w[1].f = -w[0].f;
     return w;
   }
-  /// Optional: with it `energy` includes the force, and the requirement suite compares both.
+  /// Optional: with it `energy` includes the force, and the law suite compares both.
   template <StateScalar T>
   T potential(std::array<Frame<T>, 2> const& frames, double) const {
     Vec<T, 3> const d = frames[1].r - frames[0].r;
