@@ -1,4 +1,5 @@
-// Paths of equilibria past limit points: a toggle of two springs in closed form, and CASES S9a (Lee's frame).
+// Equilibrium paths past limit points: a toggle of two springs in closed form, and Lee's frame (S9a, independent
+// computation).
 #include <polybody/statics/arc_length.hpp>
 
 #include <gtest/gtest.h>
@@ -21,8 +22,8 @@ namespace arc_length_test {
 
 using namespace polybody;
 
-// A slider between two springs (k, free length l₀) at height y, anchors at ±w: P = −2 k (l − l₀) y/l downwards, l² = w²
-// + y². The path snaps through: every point of it must lie on the curve, past both limit points.
+// Slider between two springs (k, free length l₀) at height y, anchors at ±w: P = −2 k (l − l₀) y/l downwards, l² = w²
+// + y². The path snaps through. Every point of it must be on the curve, past both limit points.
 struct Toggle {
   using Guide = Joint<planar::Prismatic, Constraint>;
   static constexpr double k = 100.0, w = 1.0, height = 0.5;
@@ -37,7 +38,7 @@ struct Toggle {
                   slider.at(Vec2(0, 0)));
     model.apply(PointForce<>{.force = {0, -10, 0}}, slider.at(Vec2(0, 0)));
   }
-  /// Load factor that holds the slider at height y.
+  /// Load factor at the equilibrium of height y.
   double exact(double y) const {
     double const l = std::hypot(w, y);
     return -2.0 * k * (l - l0) * y / l / 10.0;
@@ -60,12 +61,12 @@ TEST(EquilibriumPath, FollowsAToggleThroughBothLimitPoints) {
   held_within({"closed forms", "load factor of a toggle of two springs, through both limit points", By::closed_form,
                "−2 k (l − l₀) y/l, l² = w² + y²", "rigid slider, arc length"},
               worst, 1e-7, {.scale = highest});
-  // the curve is odd in y: the limit points lie opposite each other
+  // the curve is odd in y, so the limit points are symmetric
   EXPECT_GT(highest, 0.3);
   EXPECT_NEAR(highest, -lowest, 0.02 * highest);
 }
 
-/// Lee's frame: column and beam of length 120 hinged at their far ends, load at a fifth of the beam.
+/// Lee's frame: column and beam of length 120, hinged at their far ends, with the load at a fifth of the beam.
 template <class B>
 struct LeeFrame {
   using Corner = Joint<planar::Weld, Constraint>;
@@ -87,7 +88,7 @@ struct LeeFrame {
             .constants = BarConstants{.EA = 7.2e6 * 6, .EI = 7.2e6 * 2, .mass_per_length = 1.0, .GA = shear},
             .placement = place};
   }
-  /// Largest and smallest load on the path past both limit points, by the parabola through three points around each.
+  /// Largest and smallest load on the path past both limit points, each by the parabola through three points.
   std::pair<double, double> limits() {
     std::vector<PathPoint> const path = equilibrium_path(
         model, model.reference_state(), {.step = 0.02, .largest = 0.02, .points = 2000},
@@ -103,9 +104,9 @@ struct LeeFrame {
   }
 };
 
-// CASES S9a without shear: 18556.7275 and −9414.4316; with it (GA = 1.3846154e7): 18544.5271 and −9392.4896; to 0.3 %.
-// Lrvf is of order 2: with 20 elements a leg it is 0.33 % off at the upper limit and 1.2 % at the lower, with 60 a
-// ninth of that.
+// Limit loads of S9a without shear: 18556.7275 and −9414.4316. With shear (GA = 1.3846154e7): 18544.5271 and
+// −9392.4896. Tolerance 0.3 %. Lrvf is of order 2. With 20 elements per leg its errors are 0.33 % at the upper limit
+// and 1.2 % at the lower one, with 60 a ninth of them.
 TEST(LeesFrame, HasItsLimitLoads) {
   auto const [high, low] = LeeFrame<planar::AncfCable<planar::EngineeringStrain>>(20, 0.0).limits();
   auto const limit = [](char const* what, char const* formulation, double value, double exact) {

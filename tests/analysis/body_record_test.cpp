@@ -1,4 +1,4 @@
-// What a run leaves of a rigid body: with every wrench on it at its point, Newton's and Euler's equations hold.
+// Balance of the recorded loads of a rigid body: the wrenches at their points satisfy Newton's and Euler's equations.
 #include <polybody/run/body_record.hpp>
 
 #include <gtest/gtest.h>
@@ -31,8 +31,8 @@ Bar rod(Placement const& placement = {}) {
           .placement = placement};
 }
 
-/// What is left of m a = Σ F, and of J Ω˙ + Ω × J Ω = Σ (u × f + m) about the centre of mass, beside the largest of
-/// their sums of sizes.
+/// Residuals of m a = Σ F, and of J Ω˙ + Ω × J Ω = Σ (u × f + m) about the centre of mass. They are divided by the
+/// largest sum of magnitudes.
 Vec2 left_over(BodyRecord const& record, double mass, Mat3 const& inertia) {
   Vec2 left = Vec2::Zero(), size = left;
   for (BodySample const& s : record.samples) {
@@ -52,7 +52,7 @@ Vec2 left_over(BodyRecord const& record, double mass, Mat3 const& inertia) {
   return left.cwiseQuotient(size);
 }
 
-/// A point pressed back over z = −2.2, by a law of two markers for a group of contacts.
+/// Contact law of two markers for a contact group. It presses a point back above z = −2.2.
 struct Press {
   static constexpr int markers = 2;
   static constexpr bool is_load = false;
@@ -76,9 +76,9 @@ struct Press {
   }
 };
 
-// Joints by multipliers and by a bushing, a spring-damper, a follower, a dead moment, a contact that comes late,
-// gravity. Newton's method is told to go on to 1e-12 of an acceleration, and the rows of the speeds are kept, too, for
-// the rate of the norm of Euler parameters.
+// Joints by multipliers and by a bushing, a spring-damper, a follower load, a dead moment, a late contact, gravity.
+// The Newton tolerance is 1e-12 of an acceleration. The velocity constraint equations are also satisfied, for the
+// rate of the norm of Euler parameters.
 template <class Body>
 void balances() {
   using Ball = Joint<Spherical, Constraint>;
@@ -104,7 +104,7 @@ void balances() {
   LoadRecorder recorder(model);
   recorder.add(b);
   recorder.add(a);
-  recorder.add(a);  // once is enough
+  recorder.add(a);  // a second call has no effect
   State x = model.reference_state();
   for (State const& now :
        simulate(model, x, GeneralizedAlpha{.tolerance = 1e-12, .stabilised = true}, {.until = 0.6, .step = 2e-3}))
@@ -131,10 +131,10 @@ void balances() {
 TEST(BodyRecord, BalancesWhateverActsOnTheBody) { balances<Rigid<>>(); }
 TEST(BodyRecord, BalancesABodyOfEulerParameters) { balances<Rigid<EulerParameters>>(); }
 
-// Uniform motion on a circle: the pin bears m ω² L/2 along the rod, at the rod's end.
+// Uniform motion on a circle: the pin carries m ω² L/2 along the rod, at the end of the rod.
 TEST(BodyRecord, HoldsThePinForceAtItsPointInTheBodysAxes) {
   using Pin = Joint<planar::Revolute, Constraint>;
-  Model<Bodies<planar::Rigid>, Joints<Pin>> model{Gravity{0, 0, -9.81}};  // across the plane: nothing
+  Model<Bodies<planar::Rigid>, Joints<Pin>> model{Gravity{0, 0, -9.81}};  // no force normal to the plane
   auto const arm = model.add(planar::Rigid::from(rod()), "arm");
   model.connect(Pin{}, model.ground().at({0, 0, 0}), arm.at(0.0), "pin");
   State x = model.reference_state();
@@ -149,14 +149,14 @@ TEST(BodyRecord, HoldsThePinForceAtItsPointInTheBodysAxes) {
   for (BodySample const& s : record.samples) {
     ASSERT_EQ(s.loads.size(), 1u);
     EXPECT_LT((s.loads[0].at - Vec3(-1, 0, 0)).norm(), 1e-12);
-    // the projection leaves 1e-10 of the pin's gap and its rate
+    // the projection leaves 1e-10 of the pin's constraint violation and of its rate
     held_within(
         {"thesis §4.3", "recorded force of the pin of a turning rod, of it", By::closed_form, "m ω² r", "Rigid"},
         (s.loads[0].f - Vec3(-mass * 25.0, 0, 0)).norm() / (mass * 25.0), 1e-8, {.scale = 1.0});
   }
 }
 
-// Joints that eliminate coordinates bear as those with multipliers do.
+// Loads of joints that eliminate coordinates agree with those of joints with multipliers.
 TEST(BodyRecord, BalancesWithRecursiveJoints) {
   using Turn = Joint<Revolute, Recursive>;
   Model<Bodies<Rigid<>>, Joints<Turn>> model{Gravity{0, 0, -9.81}};

@@ -1,4 +1,4 @@
-// What a model is like before it runs: found beside closed forms, and said.
+// Diagnosis of a model before a run: values compared with closed forms, and messages.
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/ancf/planar_ancf_cable.hpp>
@@ -51,7 +51,7 @@ TEST(Check, FindsTheStiffestMotion) {
   EXPECT_TRUE(c.most_violated.empty());
 }
 
-TEST(Check, FindsTheStiffestModeOfACable) {  // beside the dense eigenproblem
+TEST(Check, FindsTheStiffestModeOfACable) {  // compared with the dense eigenproblem
   using Clamp = Joint<planar::Weld, Constraint>;
   Model<Bodies<planar::AncfCable<>>, Joints<Clamp>> model;
   Bar const bar{.length = 1.0, .constants = BarConstants{.EA = 1e4, .EI = 1.0, .mass_per_length = 1.0}};
@@ -89,7 +89,7 @@ TEST(Check, SaysWhatItFinds) {
 
 TEST(Check, TellsWhenNoAccelerationsFollow) {
   Flat model;
-  auto const bar = model.add(planar::Rigid(1.0, 0.0), "bar");  // no inertia, and free to turn
+  auto const bar = model.add(planar::Rigid(1.0, 0.0), "bar");  // without inertia, and free to rotate
   model.connect(Pin{}, model.ground().at({0, 0, 0}), bar.at(Vec2(0, 0)), "pin");
   ModelCheck const c = check(model, model.reference_state());
   EXPECT_NE(c.unsolved.find("\"bar\""), std::string::npos) << c.unsolved;

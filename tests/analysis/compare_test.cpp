@@ -18,9 +18,9 @@ namespace compare_test {
 
 using namespace polybody;
 
-// A rod of 1 m and 1 kg on a pin, released horizontally.
+// Rod of 1 m and 1 kg on a pin, released from the horizontal.
 struct Pendulum {
-  std::vector<std::string> outputs = {"tip y [m]"};  ///< all of them the same
+  std::vector<std::string> outputs = {"tip y [m]"};  ///< equal for all of them
   double sampling = 0.0;
 
   template <class F>
@@ -43,7 +43,7 @@ struct Pendulum {
   }
 };
 
-// CASES.md J1 (Chrono/ADAMS-type rod pendulum): phi(0.5) from the downward vertical
+// Uniform rod pendulum (J1, independent computation): phi(0.5) from the downward vertical
 constexpr double end_angle = -0.090352089956;
 // θ¨ = −(3 g/2 L) sin θ from θ = 90°
 double exact_tip(double t) {
@@ -62,13 +62,13 @@ TEST(Compare, RunsOneCaseUnderSeveralFormulations) {
       compare(Pendulum{}, Ideal{"ideal", {}, {.rho_inf = 0.9}},
               Stiff{"penalty", {.stiffness = 1e7, .damping = 1e3}, {.rho_inf = 0.9}}, Explicit{"explicit", {}, {}});
   ASSERT_EQ(c.runs.size(), 3u);
-  // Table 3.4's way of counting: the penalty takes no degree of freedom away.
+  // Counts as in Table 3.4 of Wallin 2016: the penalty does not reduce the degrees of freedom.
   EXPECT_EQ(c.runs[0].census.degrees_of_freedom, 1);
   EXPECT_EQ(c.runs[1].census.degrees_of_freedom, 3);
   EXPECT_EQ(c.runs[0].census.rows, 2);
   EXPECT_EQ(c.runs[1].census.rows, 0);
-  // The pin carries 5/2 m g cos φ along the rod and 1/4 m g sin φ across it: m g/4 at the start, but nothing yet by a
-  // penalty.
+  // The pin carries 5/2 m g cos φ along the rod and 1/4 m g sin φ across it, so m g/4 at the start. A penalty carries
+  // no force at the start.
   double const mg = 9.81, held = mg * std::hypot(2.5 * std::cos(end_angle), 0.25 * std::sin(end_angle));
   for (ComparedRun const& run : c.runs) {
     EXPECT_EQ(run.run.steps, 500);
@@ -104,7 +104,7 @@ TEST(Compare, AsksTheFirstStateAfterEachSample) {
   for (auto const& [run, whole] : {std::pair(compare(sampled, Controlled{"own steps", {}, short_steps}).runs[0],
                                              compare(all, Controlled{"own steps", {}, short_steps}).runs[0]),
                                    {compare(sampled, Ideal{"ideal"}).runs[0], compare(all, Ideal{"ideal"}).runs[0]}}) {
-    EXPECT_EQ(run.run.steps, whole.run.steps) << run.name;  // the steps are not touched
+    EXPECT_EQ(run.run.steps, whole.run.steps) << run.name;  // the steps are unchanged
     ASSERT_EQ(run.times.size(), 11u) << run.name;
     ASSERT_EQ(run.outputs[0].size(), run.times.size());
     ASSERT_EQ(run.energies.size(), run.times.size());
@@ -116,7 +116,7 @@ TEST(Compare, AsksTheFirstStateAfterEachSample) {
       EXPECT_EQ(run.outputs[0][k], whole.outputs[0][std::size_t(after - whole.times.begin())]);
     }
   }
-  // 0, 4, 7, 11, 14 ms …, and the end, which is no multiple
+  // 0, 4, 7, 11, 14 ms …, and the end, which is not a multiple
   ComparedRun const run = compare(within, Ideal{"ideal"}).runs[0];
   ASSERT_EQ(run.times.size(), 144u);
   EXPECT_NEAR(run.times[1], 0.004, 1e-12);
@@ -139,7 +139,7 @@ TEST(Compare, JoinsRunsThatWereMadeApart) {
     EXPECT_EQ(joined.runs[k].difference, at_once.runs[k].difference);
   }
   EXPECT_GT(joined.runs[1].difference[0], 1e-5);
-  // A name that stands twice, and outputs that are others.
+  // A duplicate name, and different outputs.
   EXPECT_EQ(join({at_once, at_once}).runs[3].name, "stiff (2)");
   Comparison const other = compare(Pendulum{.outputs = {"y [m]"}}, ideal);
   EXPECT_TRUE(has(refusal([&] { join({at_once, other}); }), "\"ideal (2)\" has other outputs than \"ideal\""));
@@ -171,7 +171,8 @@ TEST(Compare, RefusesOutputsThatCannotBePutSideBySide) {
                   "\"of its own mind\" has other outputs than \"ideal\""));
 }
 
-// A penalty of 1e16 under steps of 0.1 s explodes; the others' results are kept, beside the first that came to its end.
+// A penalty of 1e16 with steps of 0.1 s diverges. The results of the other runs are kept. The first complete run is
+// the reference.
 TEST(Compare, NamesTheRunThatFailedAndKeepsTheOthers) {
   auto const coarse = [](auto const& f) {
     auto scenario = Pendulum{}(f);
@@ -203,7 +204,8 @@ TEST(Compare, InterpolatesHistories) {
   EXPECT_EQ(detail::interpolate({2.0}, {7.0}, 2.0), 7.0);
 }
 
-// A cubic is met exactly, also where two times nearly coincide and one of the values there is wrong by rounding.
+// Interpolation is exact for a cubic, also if two times nearly coincide and one of their values has a round-off
+// error.
 TEST(Compare, InterpolatesByCubicsThatSkipCrumbs) {
   auto const cubic = [](double t) { return 1.0 + t * (2.0 - t * (3.0 - t)); };
   std::vector<double> const t{0.0, 0.4, 1.0, 1.0 + 1e-12, 2.0, 2.5, 3.5};
@@ -232,14 +234,14 @@ TEST(WorkPrecision, ErrorOfASecondOrderMethodFallsWithTheSquareOfTheStep) {
       EXPECT_NEAR(std::log2(end.points[i - 1].error / end.points[i].error), 2.0, 0.2) << steps[i];
     }
   }
-  // CPU time counts in ticks of the clock, but eight times the steps cannot be free
+  // CPU time is measured in clock ticks, but eight times the steps take more than zero
   EXPECT_GT(whole.points[3].cpu, 0.0);
 }
 
 TEST(WorkPrecision, TakesTheRunOfAnotherIntegratorForTheTruth) {
   Ideal const ideal{"ideal", {}, {.rho_inf = 0.9}};
   RecordedOutput const fine = reference_run(Pendulum{}, Explicit{}, 1.1e-3);
-  EXPECT_EQ(fine.times.size(), 456u);  // 0.5 s/1.1 ms, and the start
+  EXPECT_EQ(fine.times.size(), 456u);  // 0.5 s/1.1 ms, plus the start
   double const by_run = work_precision(Pendulum{}, ideal, {7e-3}, fine).points[0].error;
   double const exact = work_precision(Pendulum{}, ideal, {7e-3}, exact_tip).points[0].error;
   EXPECT_NEAR(by_run, exact, 1e-5 * exact);

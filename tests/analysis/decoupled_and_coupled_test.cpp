@@ -1,6 +1,6 @@
-// Stress after a rigid run beside that of flexible bodies: where the two agree, and how they part as speed² where the
-// deformation acts back: on the arm of centrifugal forces, and on the motion of the body (its mass to the deformation,
-// m_rf).
+// Decoupled stress after a rigid run compared with the stress of flexible bodies. Both agree for small velocities.
+// The difference grows with velocity² if the deformation acts back on the moment arm of centrifugal forces, or on the
+// motion of the body (its mass coupled to the deformation, m_rf).
 #include <polybody/stress/decoupled_stress.hpp>
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ using namespace polybody;
 
 namespace decoupled_and_coupled_test {
 
-/// Turns with `speed` [rad/s] from the start, or up to it as SpinUp does in `ramp` seconds.
+/// Rotation at `speed` [rad/s] from the start, or accelerated to it by SpinUp in `ramp` seconds.
 struct Turn {
   double speed = 0.0, ramp = 0.0;
   Motion operator()(double t) const {
@@ -35,7 +35,7 @@ struct Turn {
   }
 };
 
-// Flexible bodies are not recorded: they know their stress.
+// Flexible bodies are not recorded, because their stress is part of the run.
 static_assert(HasRigidPoints<Rigid<>> && !HasRigidPoints<Ffr> && !HasRigidPoints<AncfCable<>> &&
               !HasRigidPoints<Lrvf<>>);
 
@@ -53,7 +53,7 @@ struct Types<Rigid<>> {
   using Held = Bodies<Rigid<>>;
 };
 
-/// A hub that turns about z at the origin, an arm along x clamped to it there, and a force at the arm's tip.
+/// Hub that rotates about z at the origin. An arm along x is clamped to it there. A force acts at the tip of the arm.
 template <class B>
 struct OnHub {
   Model<typename Types<B>::Held, Joints<Pin, Drive, Clamp>, Forces<PointForce<>, Push>> model;
@@ -77,7 +77,7 @@ struct OnHub {
   }
 };
 
-/// Of a rigid arm that turns steadily, forces included: one state for two times.
+/// Record of a rigid arm in steady rotation, including forces: one state at two times.
 BodyRecord steady_record(OnHub<Rigid<>>& rigid, double speed) {
   relative_equilibrium(rigid.model, rigid.x, {.angular_velocity = {0, 0, speed}});
   LoadRecorder recorder(rigid.model);
@@ -92,8 +92,8 @@ Bar steel() {
   return {.length = 1.0, .section = Circle{.radius = 0.01}, .material = Material{.density = 7800, .young = 2e11}};
 }
 
-/// σ = ½ ρω²(L² − x²) of the coupled formulation, in the middles of its elements: the floating frame's linear shapes
-/// have the mean of an element there, (h/L)²/12 of the largest stress too little.
+/// σ = ½ ρω²(L² − x²) of the coupled formulation, in the middles of its elements. The linear shapes of the floating
+/// frame give the mean over an element, which is too small by (h/L)²/12 of the largest stress.
 template <class B>
 void is_centrifugal(B const& body, double omega) {
   OnHub<B> flexible(body, {.speed = omega});
@@ -127,10 +127,10 @@ Bar blade(double axial = 1e8) {
               .EA = axial, .EI = 1.0, .mass_per_length = 1.0, .GA = 1e8, .GJ = 1.0, .rotary_inertia = 1e-6}};
 }
 
-// A force P along the axis of rotation bends the blade by w = P x²(3L − x)/6EI, and centrifugal forces ρAΩ² x pull at
-// the arm w against it:
+// A force P along the axis of rotation bends the blade by w = P x²(3L − x)/6EI. The centrifugal forces ρAΩ² x have
+// the moment arm w and reduce the bending:
 //   root moment = P L − ρAΩ² ∫ x w dx + O(Ω⁴) = P L (1 − 11/120 η),   η = ρAΩ²L⁴/EI,
-// for the coupled body; it stays P L for the decoupled one. δ/η = 11/120 − c η + …, from η and 4η to none.
+// for the coupled body. For the decoupled body it is P L. δ/η = 11/120 − c η + …, extrapolated from η and 4η to zero.
 TEST(DecoupledAndCoupled, PartByTheArmOfCentrifugalForcesAsTheSpeedSquared) {
   double const push = 1e-3;
   auto const part = [&](double omega) {
@@ -154,7 +154,7 @@ TEST(DecoupledAndCoupled, PartByTheArmOfCentrifugalForcesAsTheSpeedSquared) {
        at_low + (at_low - at_high) / 3.0, 11.0 / 120.0, 2e-3 * 11.0 / 120.0);
 }
 
-/// Tip displacement across the arm, in the arm's axes, of a run of three seconds in steps of 5 ms.
+/// Tip displacement across the arm, in the arm's axes, for a run of three seconds in steps of 5 ms.
 std::vector<double> coupled_tip(Turn const& turn, Push const& push) {
   OnHub<Ffr> flexible(Ffr::from(blade(1e4), 3), turn);
   flexible.model.apply(push, flexible.arm.at(1.0), "tip");
@@ -188,8 +188,9 @@ double parting(Turn const& turn, bool follows, double force = 1e-3) {
   return worst / most;
 }
 
-// A ramp of force across a turning arm. The hub's motion is given, so nothing of the arm acts back on it: the thesis'
-// equations lack only what is linear in the deformation and quadratic in the speed; with it, nothing.
+// Ramp of a force across a rotating arm. The hub's motion is prescribed, so the arm does not act back on it. The
+// decoupled equations of Wallin 2016 lack only the terms linear in the deformation and quadratic in the velocity.
+// With these terms they lack nothing.
 TEST(DecoupledAndCoupled, AgreeAtLowSpeedAndPartAsItsSquare) {
   double const slow = parting({.speed = 1e-3}, false), one = parting({.speed = 0.2}, false),
                two = parting({.speed = 0.4}, false);
@@ -201,12 +202,13 @@ TEST(DecoupledAndCoupled, AgreeAtLowSpeedAndPartAsItsSquare) {
   parts("Rigid, vibrating, loads follow, Ω = 0.4", parting({.speed = 0.4}, true), 1e-5);
   parts("Rigid, vibrating, Ω = 1e-3", slow, 1e-5);
   EXPECT_NEAR(std::log2(two / one), 2.0, 0.1);
-  // up to speed: Ω˙ bends the arm, and that, too, is met; without a force that would turn with the tip
+  // acceleration: Ω˙ bends the arm, which is also reproduced, without a force that would rotate with the tip
   parts("Rigid, vibrating, loads follow, up to Ω = 1", parting({.speed = 1.0, .ramp = 2.0}, true, 0.0), 1e-4);
   EXPECT_GT(parting({.speed = 1.0, .ramp = 2.0}, false, 0.0), 0.1);
 }
 
-/// Half a period: the time of the first turning point of what begins as 1 − cos, by a parabola through three samples.
+/// Half a period: the time of the first turning point of a motion that starts as 1 − cos, by a parabola through three
+/// samples.
 double half_period(std::vector<double> const& times, std::vector<double> const& x) {
   for (std::size_t i = 2; i + 1 < x.size(); ++i) {
     double const before = x[i] - x[i - 1], after = x[i + 1] - x[i];
@@ -216,11 +218,11 @@ double half_period(std::vector<double> const& times, std::vector<double> const& 
   return 0.0;
 }
 
-// A free rod that is pushed at one end, at once. Of unit EA, ρA and L its axial vibrations have the free frequency π. A
-// frame tied to the end (one mode, sin πx/2, of frequency π/2) recoils when the rod vibrates, coupled: its mass takes
-// c² = 8/π² of the mode's off, and the frequency is π/2 / √(1 − 8/π²), 15 % above π (one mode is not more). Decoupled,
-// the frame goes its way: π/2 remains. In the frame of the mean motion the two do not act on each other, and one mode
-// has π itself.
+// Free rod with a sudden force at one end. With unit EA, ρA and L the lowest free axial frequency is π. A frame fixed
+// to the end has one mode, sin πx/2, of frequency π/2. In the coupled equations the frame recoils when the rod
+// vibrates. Its mass reduces that of the mode by c² = 8/π², so the frequency is π/2 / √(1 − 8/π²), 15 % above π, the
+// accuracy of one mode. In the decoupled equations the frame does not recoil, and π/2 remains. In the frame of the
+// mean motion frame and mode do not interact, and one mode has the frequency π.
 TEST(DecoupledAndCoupled, OnlyTheCoupledFrameRecoils) {
   Bar const rod{
       .length = 1.0,
@@ -256,7 +258,7 @@ TEST(DecoupledAndCoupled, OnlyTheCoupledFrameRecoils) {
     least = *std::min_element(n.begin(), n.end());
     return pi / half_period(stress.times(), n);
   };
-  // 16 elements: (πh/2)²/24 = 4e-4 of π/2, four times that of π; steps of ωh = 0.016: 2e-5
+  // 16 elements: (πh/2)²/24 = 4e-4 of π/2, four times that for π; steps of ωh = 0.016: 2e-5
   auto const of_rod = [](char const* source, char const* formulation, double value, double exact, double part) {
     held({"thesis §4.3", "frequency of a free rod pushed at its end [rad/s]", By::closed_form, source, formulation},
          value, exact, part * std::numbers::pi);
@@ -267,8 +269,8 @@ TEST(DecoupledAndCoupled, OnlyTheCoupledFrameRecoils) {
          0.5 * pi, 5e-4);
   of_rod("π", "Rigid, vibrating, 1 mode of mean axes",
          frequency({.frame = ReferenceConditions::none(), .shapes = mean, .settled = false}), pi, 2e-3);
-  // Static, the middle bears −F/2, whole at once. Of the mode √2 cos πx, q¨ = √2 F cos πt, the part before it needs ∫
-  // √2 cos πx q¨ dx = 2F/π cos πt, of which the mesh gets (πh)²/12 = 3e-3 wrong.
+  // The static force in the middle is −F/2, applied at once. For the mode √2 cos πx, q¨ = √2 F cos πt. The part on
+  // one side of the middle requires ∫ √2 cos πx q¨ dx = 2F/π cos πt. The error of the mesh is (πh)²/12 = 3e-3.
   held({"thesis §4.3", "least force in the middle of a free rod pushed at its end [N]", By::closed_form, "−F (½ + 2/π)",
         "Rigid, vibrating, 1 mode of mean axes"},
        least, -1e-3 * (0.5 + 2.0 / pi), 3e-6);

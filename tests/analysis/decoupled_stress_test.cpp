@@ -1,5 +1,6 @@
-// Stress after a rigid run against known answers: textbook formulas of rigid rods in motion, and what a cut-off part of
-// a body needs for its own motion. The coupled formulations are met in decoupled_and_coupled_test.cpp.
+// Stress after a rigid run compared with known solutions: textbook formulas of rigid rods in motion, and the
+// equations of motion of a part cut from a body. The comparison with the coupled formulations is in
+// decoupled_and_coupled_test.cpp.
 #include <polybody/stress/decoupled_stress.hpp>
 
 #include <gtest/gtest.h>
@@ -43,9 +44,9 @@ using Pin = Joint<Revolute, Constraint>;
 using Ball = Joint<Spherical, Constraint>;
 using Clamp = Joint<Weld, Constraint>;
 using Arms = Model<Bodies<Rigid<>>, Joints<Pin, Ball, Clamp>, Forces<PointForce<>, PointForce<Ramp>>>;
-using Exact = RungeKutta4<Projection>;  // its accelerations satisfy the rows to rounding
+using Exact = RungeKutta4<Projection>;  // its accelerations satisfy the constraint equations to round-off
 
-/// A run of `model` from x, of which `body` is recorded.
+/// Record of `body` in a run of `model` from x.
 template <class M, class B, class I>
 BodyRecord record(M const& model, BodyHandle<B> const& body, State x, I const& integrator, RunOptions const& options) {
   LoadRecorder recorder(model);
@@ -61,7 +62,7 @@ double largest(std::vector<Vec6> const& a, std::vector<Vec6> const& b) {
   return most;
 }
 
-// σ(x) = ½ ρ ω² (L² − x²), whatever the number of elements, and nothing else.
+// σ(x) = ½ ρ ω² (L² − x²) for any number of elements, and no other stress.
 TEST(DecoupledStress, OfARotatingRodIsTheCentrifugalOne) {
   Placement const askew = Placement::at({1, 2, 3}, {0.4, -0.9, 1.7});
   Arms model;
@@ -71,7 +72,8 @@ TEST(DecoupledStress, OfARotatingRodIsTheCentrifugalOne) {
   double const omega = 80.0;
   Vec3 const spin = omega * askew.axes.col(2);
   model.set_velocity(x, arm, -spin.cross(askew.origin), spin);
-  BodyRecord const run = record(model, arm, x, Exact{}, {.until = 0.01, .step = 5e-4});  // ωh = 0.04: (ωh)⁶/144 a step
+  BodyRecord const run =
+      record(model, arm, x, Exact{}, {.until = 0.01, .step = 5e-4});  // ωh = 0.04: (ωh)⁶/144 per step
   double const whole = 0.5 * density * omega * omega * length * length;
   for (Index const n : {1, 3, 8}) {
     auto const stress = DecoupledStress::quasi_static(structure_of(rod(), n), run);
@@ -86,13 +88,13 @@ TEST(DecoupledStress, OfARotatingRodIsTheCentrifugalOne) {
   }
 }
 
-/// A rod hinged at its first end, swinging from the horizontal. With φ from the downward vertical, J φ¨ = −½ m g L sin
-/// φ about the hinge, J = mL²/3 + ρI L, and the part beyond the section at x, of mass m′ = ρA(L − x), needs along the
-/// rod, across it and about its own middle
+/// Rod hinged at its first end, swinging from the horizontal. With φ from the downward vertical, J φ¨ = −½ m g L sin
+/// φ about the hinge, J = mL²/3 + ρI L. The part beyond the section at x has the mass m′ = ρA(L − x). Along the rod,
+/// across it and about its own middle it requires
 ///   N = m′ (φ˙² (L + x)/2 + g cos φ),   F = m′ (φ¨ (L + x)/2 + g sin φ),   M = ½ (L − x) F + (m′ (L − x)²/12 + ρI (L −
 ///   x)) φ¨.
-/// Without ρI: F = ρA g sin φ (L − x)(L − 3x)/4L and M = −ρA g sin φ x (L − x)²/4L, largest at L/3,
-/// where falling chimneys break.
+/// Without ρI: F = ρA g sin φ (L − x)(L − 3x)/4L and M = −ρA g sin φ x (L − x)²/4L. The moment is largest at L/3, the
+/// section at which falling chimneys break.
 struct Swing {
   double axial, across, bending;
   Swing(double x, double phi, double rate, double rotary) {
@@ -105,8 +107,8 @@ struct Swing {
   }
 };
 
-// In the plane x–y: the rod's x axis at angle φ − π/2; turning by φ takes x towards y. What the part beyond exerts is
-// the opposite.
+// In the plane x–y the rod's x axis is at the angle φ − π/2, and a positive rotation φ is from x to y. The force of
+// the part beyond has the opposite sign.
 template <class M, class B>
 void swings(M const& model, BodyHandle<B> const& arm) {
   BodyRecord const run = record(model, arm, model.reference_state(), Exact{}, {.until = 1.5, .step = 2e-3});
@@ -130,7 +132,7 @@ void swings(M const& model, BodyHandle<B> const& arm) {
                  std::is_same_v<B, Rigid<>> ? "Rigid, quasi-static" : "planar Rigid, quasi-static"},
                 worst, 1e-8, {equals("x/L", part), 1.0});
   }
-  EXPECT_GT(most, 2.4);  // at the lowest point the hinge bears (1 + 3/2) m g
+  EXPECT_GT(most, 2.4);  // at the lowest point the hinge carries (1 + 3/2) m g
   EXPECT_LT(least, 1e-3);
 }
 
@@ -158,10 +160,10 @@ TEST(DecoupledStress, OfAFallingBodyIsNone) {
                 n.norm() / (mass * g), 1e-12, {.scale = 1.0});
 }
 
-// A cantilever under its weight w per length: Q = w (L − x), M = w (L − x)²/2, the upper side in tension. It stays so
-// when it may vibrate but has settled. Loaded at once, in one mode φ with λ = 1.8751041, σ = 0.7340955, ω = (λ/L)²
-// √(EI/ρA) and ∫φ²dx = L: from q¨ = w/ρA · ∫φdx/L · cos ωt, ∫φdx = 2σL/λ and ∫xφdx = 2L²/λ² (twice in parts, φ'''' =
-// (λ/L)⁴φ), the root bears
+// Cantilever under its weight w per length: Q = w (L − x), M = w (L − x)²/2, with the upper side in tension. A
+// vibrating cantilever that has settled has the same stress. A sudden load is solved in one mode φ with λ =
+// 1.8751041, σ = 0.7340955, ω = (λ/L)² √(EI/ρA) and ∫φ²dx = L. From q¨ = w/ρA · ∫φdx/L · cos ωt, ∫φdx = 2σL/λ and
+// ∫xφdx = 2L²/λ² (two integrations by parts, φ'''' = (λ/L)⁴φ), the root moment is
 //   ½ wL² − ∫ρA xφ q¨ dx = ½ wL² (1 − 8σ/λ³ cos ωt).
 TEST(DecoupledStress, OfACantileverIsThatOfStatics) {
   Arms model{Gravity{0, -g, 0}};
@@ -193,7 +195,7 @@ TEST(DecoupledStress, OfACantileverIsThatOfStatics) {
          still.stress(rod(), x, 0.0, 0.0)[0].shear[0], -1.5 * w * rest / area, 1e-9 * w * length / area,
          {equals("x", x)});
   }
-  // the body's own damping and that of the option are one
+  // the damping of the body and the damping of the option are equivalent
   Bar slow = rod();
   slow.damping = {.axial = 2e-3, .shear = 2e-3, .bending = 2e-3};
   Vibration const from_rest{.settled = false};
@@ -212,7 +214,7 @@ TEST(DecoupledStress, OfACantileverIsThatOfStatics) {
          {equals("t", run.samples[i].t), 1.0});
 }
 
-// The same across the width: the side at −z is in tension, with the modulus of the other axis.
+// Bending in the direction of the width: the side at −z is in tension, with the modulus of the other axis.
 TEST(DecoupledStress, OfACantileverThatBendsAcross) {
   Arms model{Gravity{0, 0, g}};
   auto const arm = model.add(Rigid<>::from(rod()), "arm");
@@ -233,14 +235,14 @@ TEST(DecoupledStress, OfACantileverThatBendsAcross) {
   }
 }
 
-// ε − y κ_z + z κ_y, the strains in the order ε, γ_y, γ_z, κ_x, κ_y, κ_z.
+// ε − y κ_z + z κ_y with the strains in the order ε, γ_y, γ_z, κ_x, κ_y, κ_z.
 TEST(FibreStrain, OfASectionThatStaysPlane) {
   Vec6 const strains = (Vec6() << 1.0, 20.0, 30.0, 40.0, 0.5, 0.25).finished();
   EXPECT_DOUBLE_EQ(fibre_strain(strains, 2.0, 3.0), 1.0 - 2.0 * 0.25 + 3.0 * 0.5);
 }
 
-// A rod that spins and shakes: where loads follow its deformation, what it bears at its free end is nothing. Without
-// ω² u, a part of some 1e-4 of the centrifugal force here, 5e-3 of it would be left of the root's.
+// Rod that rotates and vibrates. If loads follow its deformation, the section force at its free end is zero. Without
+// ω² u, some 1e-4 of the centrifugal force here, an error of 5e-3 of it would remain relative to the root.
 TEST(DecoupledStress, OfAVibratingRodEndsInNothing) {
   Arms model;
   auto const arm = model.add(Rigid<>::from(rod()), "arm");
@@ -258,8 +260,9 @@ TEST(DecoupledStress, OfAVibratingRodEndsInNothing) {
   EXPECT_NEAR(stress.section_forces(0.0).back()[0], root, 5e-3 * root);
 }
 
-// Cut anywhere, the part beyond needs for its own motion what the section and the loads on it give. Ball joint,
-// follower at the tip, askew, gyroscopic: all six components, rotary inertia of the section included.
+// Equilibrium of the part beyond any section: its inertia is the sum of the section forces and of its loads. The
+// model has a ball joint, an oblique follower load at the tip and gyroscopic terms. All six components are compared,
+// including the rotary inertia of the section.
 TEST(DecoupledStress, GivesWhatTheCutOffPartNeeds) {
   Arms model{Gravity{1, -2, -g}};
   Placement const askew = Placement::at({0, 0, 0}, {0.3, 0.2, -0.4});
@@ -275,7 +278,7 @@ TEST(DecoupledStress, GivesWhatTheCutOffPartNeeds) {
   State start = x;
   assemble(model, start);
   BodyRecord const run = record(model, arm, start, Exact{}, {.until = 0.4, .step = 1e-3});
-  Structure const structure = structure_of(rod(), 4);  // the load midway is within an element
+  Structure const structure = structure_of(rod(), 4);  // the intermediate load is within an element
   auto const stress = DecoupledStress::quasi_static(structure, run);
   BarConstants const c = constants(rod());
   double size = 0.0;
@@ -294,7 +297,7 @@ TEST(DecoupledStress, GivesWhatTheCutOffPartNeeds) {
       Vec3 const a = to_body * (at.acceleration - run.gravity) + alpha.cross(middle) + omega.cross(omega.cross(middle));
       Vec3 force = beyond * a,
            moment = inertia * alpha + omega.cross(inertia * omega) + Vec3(0.5 * rest, 0, 0).cross(force);
-      if (s < length) {  // at the last end the tip's load counts as beyond
+      if (s < length) {  // at the last end the load of the tip is part of the remainder
         force -= push;
         moment -= Vec3(rest, off_y, off_z).cross(push);
       } else {
@@ -313,7 +316,7 @@ TEST(DecoupledStress, GivesWhatTheCutOffPartNeeds) {
                  "what the part beyond the section needs", "Rigid, quasi-static"},
                 worst, 1e-9, {equals("x", s), 1.0});
   }
-  // loads that balance leave the stress the same whatever holds the structure
+  // the stress of self-balanced loads is independent of the reference conditions
   for (ReferenceConditions const& frame :
        {ReferenceConditions::clamped(4), ReferenceConditions::clamped(2), ReferenceConditions::simply_supported(0, 4)})
     EXPECT_LT(largest(stress.section_forces(0.7),
@@ -321,8 +324,8 @@ TEST(DecoupledStress, GivesWhatTheCutOffPartNeeds) {
               1e-9 * size);
 }
 
-// Any body: an angle of two rods, given to the rigid model by its integrals. The second rod, cut anywhere, is known as
-// above; the corner hands its forces on to the first.
+// General body: two rods at an angle, given to the rigid model by its integrals. Section forces of the second rod are
+// known as above. The corner transmits its forces to the first rod.
 TEST(DecoupledStress, OfABodyOfSeveralBarsIsThatOfEach) {
   Bar const first = rod(Placement::at({0.2, 0, 0}));
   Bar const second = rod(Placement::at({0.2 + length, 0, 0}, {0, 0, 0.5 * pi}));
@@ -365,8 +368,8 @@ TEST(DecoupledStress, OfABodyOfSeveralBarsIsThatOfEach) {
   }
 }
 
-// A block of eight masses without rotations, all joined by springs, driven askew by a force and a moment at its upper
-// face: the springs between the faces give the lower one what it needs for its motion.
+// Block of eight masses without rotations, all joined by springs. A force and a moment in a general direction act on
+// its upper face. The springs between the faces carry the inertia of the lower face.
 TEST(DecoupledStress, OfNodesWithoutRotationsIsCarriedByAPatch) {
   double const stiff = 1e6, node_mass = 0.5;
   std::vector<Vec3> nodes;
@@ -411,7 +414,7 @@ TEST(DecoupledStress, OfNodesWithoutRotationsIsCarriedByAPatch) {
     held_within(faces, force.norm() / 400.0, 1e-9, {"force", 1.0});
     held_within(faces, moment.norm() / 400.0, 1e-9, {"moment", 1.0});
   }
-  // A stiffness from files resists rigid motions by its rounding, which holds nothing.
+  // The stiffness against rigid motions of a matrix from a file is round-off, and constrains nothing.
   Structure rounded = block;
   rounded.stiffness += (1e-9 * stiff * MatX::Identity(24, 24)).sparseView();
   MatX const again = DecoupledStress::quasi_static(rounded, run, {.patch = 0.3}).displacements();
@@ -422,8 +425,8 @@ TEST(DecoupledStress, OfNodesWithoutRotationsIsCarriedByAPatch) {
           "Widen the patch."));
 }
 
-/// A clamped rod whose tip force grows by `rate` a second, in one mode φ with φᵀMφ = 1 and ω² = φᵀKφ: q¨ + ω²q = φ_tip
-/// · rate · t from rest,
+/// Clamped rod whose tip force grows by `rate` per second, in one mode φ with φᵀMφ = 1 and ω² = φᵀKφ: q¨ + ω²q =
+/// φ_tip · rate · t from rest,
 ///   q = φ_tip · rate/ω² (t − sin ωt/ω).   It is read off the displacements e: K e = f − Mφ q¨ makes φᵀM e = (φᵀf −
 ///   q¨)/ω² = q.
 struct Ramped {
@@ -440,7 +443,7 @@ struct Ramped {
                 "tip");
     run = record(model, arm, model.reference_state(), GeneralizedAlpha{}, {.until = 0.5, .step = 0.01});
   }
-  /// The largest error beside the largest q.
+  /// Largest error relative to the largest q.
   template <class I>
   double error(I const& integrator, int substeps) const {
     auto const stress = DecoupledStress::vibrating(structure, run, integrator, {.shapes = shape, .substeps = substeps});
@@ -457,7 +460,7 @@ struct Ramped {
   }
 };
 
-// The load is a straight line between samples, so each integrator shows its own order: half the step, a quarter or a
+// The load is linear between samples, so each integrator has its own order: half of the step gives a quarter or a
 // 16th of the error.
 TEST(DecoupledStress, VibratesByAnyIntegrator) {
   Ramped const r;

@@ -1,5 +1,4 @@
-// Where the energy of a run comes from and where it goes: powers in any state, work against exact numbers, what
-// integrators lose.
+// Energy balance of a run: powers in any state, work compared with exact values, energy errors of integrators.
 #include <polybody/run/energy_audit.hpp>
 
 #include <gtest/gtest.h>
@@ -37,8 +36,8 @@ Claim work(char const* what, By by, char const* source, char const* formulation)
   return {"energy", what, by, source, formulation};
 }
 
-/// M a − f + Gᵀλ = 0 for any λ: x.a as the equations of motion have it, whether the rows hold or not. M column by
-/// column.
+/// Accelerations x.a that satisfy M a − f + Gᵀλ = 0 for any λ, also if the constraint equations are violated. M is
+/// computed column by column.
 void obey(System& system, State& x) {
   Index const n = system.speeds();
   VecX at_rest(n), r(n), a = VecX::Zero(n);
@@ -53,13 +52,14 @@ void obey(System& system, State& x) {
   }
   auto const lu = mass.partialPivLu();
   x.a = lu.solve(-at_rest);
-  for (int k = 0; k < 2; ++k) {  // the columns are differences, and a scrambled mesh has accelerations of 1e7
+  for (int k = 0; k < 2; ++k) {  // the columns are differences, and a distorted mesh has accelerations of 1e7
     system.residual(x.a, x.lambda, r);
     x.a -= lu.solve(r);
   }
 }
 
-/// Ė by differences along the motion, less drives + loads − dissipated, relative to the largest of these.
+/// Rate Ė by finite differences along the motion, minus drives + loads − dissipated, relative to the largest of
+/// these.
 template <class M>
 double rate_mismatch(M const& model, State x) {
   System system(model);
@@ -79,8 +79,8 @@ double rate_mismatch(M const& model, State x) {
          std::max({std::abs(p.drives), std::abs(p.loads), std::abs(p.dissipated)});
 }
 
-// Bodies of several kinds, joints with rows that do not hold and with multipliers that nothing asks for, compliant
-// ones, springs, loads. The differences are good to h⁴ E⁽⁵⁾/30 and to 1e-16 E/h: 1e-10 or so of powers of some hundred
+// Bodies of several kinds, joints with violated constraint equations and arbitrary multipliers, compliant joints,
+// springs, loads. The differences have the errors h⁴ E⁽⁵⁾/30 and 1e-16 E/h, some 1e-10 of powers of some hundred
 // watts.
 TEST(Powers, AreTheRateOfTheEnergyInAnyState) {
   for (unsigned const seed : {1u, 2u, 3u}) {
@@ -95,7 +95,7 @@ TEST(Powers, AreTheRateOfTheEnergyInAnyState) {
   }
 }
 
-/// What damping takes from a body alone, in a state of any kind.
+/// Dissipated power of a single body in an arbitrary state.
 template <class B>
 double dissipated_alone(B const& body) {
   Model<Bodies<B>, Joints<>> model;
@@ -105,7 +105,7 @@ double dissipated_alone(B const& body) {
   system.evaluate(x.q, x.v, x.t);
   return powers(system, x).dissipated;
 }
-/// The damping force as the difference between the body and one without damping: v·(f(undamped) − f).
+/// Damping force as the difference between the body and one without damping: v·(f(undamped) − f).
 template <class B>
 double expected_alone(B const& body, B const& undamped) {
   Model<Bodies<B>, Joints<>> model, other;
@@ -142,7 +142,7 @@ void expect_lost_in(Make const& make) {
   EXPECT_NEAR(dissipated_alone(undamped), 0.0, 1e-12 * expected);
 }
 
-// Sums of some hundred terms, none of which is much larger than the sum.
+// Sums of some hundred terms, none of them much larger than the sum.
 TEST(Powers, OfDampingInBodiesOfEveryKind) {
   expect_lost_in([](Bar const& bar) { return planar::AncfCable<>::from(bar, 2); });
   expect_lost_in([](Bar const& bar) { return planar::Lrvf::from(bar, 2); });
@@ -155,8 +155,8 @@ TEST(Powers, OfDampingInBodiesOfEveryKind) {
   EXPECT_EQ(dissipated_alone(Rigid<EulerParameters>(2.0, inertia, {})), 0.0);
 }
 
-/// A rod of 2 kg and 1 m, pinned at its end by Policy and raised from hanging by ψ(t); a moment of inertia of 2/3 kg m²
-/// about the pin.
+/// Rod of 2 kg and 1 m, pinned at its end by Policy and raised from hanging by ψ(t). The moment of inertia about the
+/// pin is 2/3 kg m².
 template <class Policy, class DrivePolicy = Constraint>
 struct Crane {
   using Pin = Joint<planar::Revolute, Policy>;
@@ -171,7 +171,7 @@ struct Crane {
     model.connect(Pin{}, home, rod.at(Vec2(0, 0.5)), "pin");
     model.connect(Drive{{.law = law}, policy}, home, rod.at(Vec2(0, 0.5)), "drive");
   }
-  /// The audit of a run that ends while the drive still works.
+  /// Energy audit of a run that ends while the drive is active.
   template <class I>
   auto run(I const& integrator, double h, double until = 0.6) const {
     EnergyAudit audit(model);
@@ -181,9 +181,9 @@ struct Crane {
   }
 };
 
-// The drive leaves no freedom: ½ J ψ̇² + m g l/2 (1 − cos ψ) is what it has put in. The trapezoidal rule adds h²/12 of
-// what the slope of the power P = (J ψ̈ + m g l/2 sin ψ) ψ̇ grows by, from zero [Euler and Maclaurin], and h⁴ terms: with
-// ψ = 2 x³ (10 − 15 x + 6 x²), P˙ = −130.9 W/s at x = 0.6.
+// The drive prescribes the motion: its work is ½ J ψ̇² + m g l/2 (1 − cos ψ). The trapezoidal rule adds h²/12 of the
+// increase of Ṗ, P = (J ψ̈ + m g l/2 sin ψ) ψ̇, from zero [Euler and Maclaurin], and terms of h⁴. With ψ = 2 x³ (10 −
+// 15 x + 6 x²), P˙ = −130.9 W/s at x = 0.6.
 TEST(EnergyAudit, OfADrivenPendulumFindsTheWorkOfItsDrive) {
   Crane<Constraint> const crane;
   Motion const psi = crane.law(0.6);
@@ -213,7 +213,7 @@ TEST(EnergyAudit, OfAnImplicitRunConvergesLikeTheIntegrator) {
   Motion const psi = crane.law(0.6);
   double const spent = crane.weight * (1.0 - std::cos(psi.value)) + 0.5 * crane.inertia * psi.rate * psi.rate;
   GeneralizedAlpha const alpha{.tolerance =
-                                   1e-11};  // what Newton's method leaves counts for nothing beside what the step does
+                                   1e-11};  // Newton's tolerance is negligible compared with the error of the step
   auto const coarse = crane.run(alpha, 5e-3), fine = crane.run(alpha, 2.5e-3);
   held({"energy", "work of the drive of a pendulum [J]", By::closed_form, "½ J ψ̇² + ½ m g l (1 − cos ψ)",
         "planar Rigid, generalised-α, h = 2.5e-3 s"},
@@ -221,7 +221,7 @@ TEST(EnergyAudit, OfAnImplicitRunConvergesLikeTheIntegrator) {
   EXPECT_NEAR(coarse.unaccounted() / fine.unaccounted(), 4.0, 0.4);
 }
 
-// The same joints without their rows in a step: `simulate` says what they hold.
+// Joints without constraint equations in a step: `simulate` computes their forces.
 TEST(EnergyAudit, OfJointCoordinatesIsThatOfRows) {
   auto const rows = Crane<Constraint>{}.run(RungeKutta4<Projection>{}, 2.5e-3);
   auto const joint_coordinates = Crane<Recursive>{}.run(RungeKutta4<Projection>{}, 2.5e-3);
@@ -231,13 +231,14 @@ TEST(EnergyAudit, OfJointCoordinatesIsThatOfRows) {
   EXPECT_GT(rows.work_of_drives(), 1.0);
 }
 
-// k = 2e3 N m and c = 10 N m s hold the angle: the drive pays for what these store and lose, besides what the rod gets.
+// A compliant drive with k = 2e3 N m and c = 10 N m s prescribes the angle. Its work includes the energy of the rod
+// and the energy that spring and damper store and dissipate.
 TEST(EnergyAudit, OfACompliantDrivePaysForWhatItLosesAndStores) {
   Crane<Constraint, Penalty> const crane({.stiffness = 2e3, .damping = 10.0});
   auto const coarse = crane.run(RungeKutta4<Projection>{}, 5e-4), fine = crane.run(RungeKutta4<Projection>{}, 2.5e-4);
   EXPECT_GT(fine.dissipated(), 1e-4);
   EXPECT_GT(fine.stored(), 1e-4);
-  EXPECT_LT(std::abs(fine.unaccounted()), 1e-2 * std::min(fine.dissipated(), fine.stored()));  // which are small
+  EXPECT_LT(std::abs(fine.unaccounted()), 1e-2 * std::min(fine.dissipated(), fine.stored()));  // both are small
   EXPECT_NEAR(coarse.unaccounted() / fine.unaccounted(), 4.0, 0.2);
 }
 
@@ -249,8 +250,8 @@ double left_after(double t) {
   return 0.5 * (v * v + 100.0 * x * x);
 }
 
-// The same oscillator made of a spring along a slide and of a compliant pin: both lose what the formula says, no more
-// is unaccounted than the trapezoidal rule misses, and that falls with h².
+// The oscillator as a spring along a slide, and as a compliant pin. Both dissipate the energy of the formula. The
+// unaccounted part is at most the error of the trapezoidal rule, and falls with h².
 template <class M>
 void expect_damped(char const* formulation, M const& model, State const& from) {
   double const until = 0.35;
@@ -298,8 +299,8 @@ TEST(EnergyAudit, OfADampedCompliantPinLosesWhatTheFormulaSays) {
   expect_damped("Penalty, Runge–Kutta 4", model, x);
 }
 
-// A bushing's component whose law has no potential: what it does at rest is the work of a load, what a rate adds is
-// lost.
+// Component of a bushing whose law has no potential. The work of its static part counts as that of a load. The work
+// of its rate-dependent part is dissipated.
 TEST(EnergyAudit, OfALawWithoutPotentialCountsAsALoad) {
   auto const law = [](auto const& x, auto const& rate) { return x * 100.0 + rate * 2.0; };
   LinearLaw const none{.stiffness = 0.0, .damping = 0.0};
@@ -322,7 +323,7 @@ TEST(EnergyAudit, OfALawWithoutPotentialCountsAsALoad) {
   EXPECT_LT(audit.relative(), 1e-4);
 }
 
-// F²t²/2m + M²t²/2J; both powers are linear in t, which the trapezoidal rule gets right.
+// F²t²/2m + M²t²/2J. Both powers are linear in t, so the trapezoidal rule is exact.
 TEST(EnergyAudit, OfPointLoadsIsExact) {
   Model<Bodies<planar::Rigid>, Joints<>, Forces<PointForce<>, PointMoment<>>> model;
   auto const body = model.add(planar::Rigid(2.0, 0.25), "body");
@@ -339,7 +340,8 @@ TEST(EnergyAudit, OfPointLoadsIsExact) {
        audit.powers().loads, 3.0 * 1.5 + 0.5 * 2.0, 1e-12);
 }
 
-// m v̇ = −c v leaves e^(−2ct/m) of the kinetic energy. A user's force has no potential: a load, here of negative work.
+// m v̇ = −c v leaves e^(−2ct/m) of the kinetic energy. A user-defined force has no potential. It counts as a load,
+// here with negative work.
 TEST(EnergyAudit, OfAUsersForceIsTheWorkOfALoad) {
   auto const drag = user_force<1>([](auto const& frames, double) {
     std::array<Wrench<std::decay_t<decltype(frames[0].r[0])>>, 1> w;
@@ -359,8 +361,8 @@ TEST(EnergyAudit, OfAUsersForceIsTheWorkOfALoad) {
   EXPECT_LT(audit.relative(), 1e-5);
 }
 
-/// Balls of 1 kg and 0.1 m on the ground, each by a contact of its own or all by a group; the i-th at a height of 0.2 i
-/// above touch.
+/// Balls of 1 kg and 0.1 m on the ground. Each has its own contact, or all are in a group. The i-th ball is 0.2 i
+/// above the contact height.
 template <class Law, bool grouped = false>
 struct Balls {
   using F = std::conditional_t<grouped, ContactGroup<Law>, Law>;
@@ -396,10 +398,11 @@ struct Balls {
 };
 using Floor = Contact<SphereOnPlane>;
 
-// CASES C2 [C]: a mass of 1 kg falls 1 m on k = 1e5 N/m, c = 63.2 N s/m and comes back at 3.2911781211 m/s where k d +
-// c ḋ = 0: there ½ k d² and m g d are left in the overlap, of which the first is lost as nothing holds the floor's
-// spring back. As the damper's power jumps by c v² at touch, where the run begins, the trapezoidal rule misses half a
-// step of it and the integrator, whose first stage has a weight of 1/6, that much.
+// Penalty impact (C2, independent computation): a mass of 1 kg falls 1 m on k = 1e5 N/m, c = 63.2 N s/m. It separates
+// at 3.2911781211 m/s when k d + c ḋ = 0. At this instant ½ k d² and m g d remain in the overlap. The first is lost,
+// because nothing constrains the spring of the floor. The power of the damper jumps by c v² at the impact, where the
+// run begins. The trapezoidal rule therefore misses half a step of it, and so does the integrator, whose first stage
+// has the weight 1/6.
 TEST(EnergyAudit, OfAnImpactLosesWhatThePublishedReboundLeaves) {
   double const k = 1e5, c = 63.245553203, v = std::sqrt(2.0 * gravity), back = 3.2911781211, h = 2e-6;
   Balls<Floor> const ball({.geometry = {.radius = 0.1}, .normal = {.stiffness = k, .damping = c}}, 1, 0.0, {0, 0, -v});
@@ -413,8 +416,9 @@ TEST(EnergyAudit, OfAnImpactLosesWhatThePublishedReboundLeaves) {
   EXPECT_LT(audit.relative(), 1e-3);
 }
 
-// CASES C3 [A]: what slides, stops within 1.02 s, and all of ½ v² is lost; regularised, the rest decays by e in
-// v_s/(μ g) = 0.3 ms. The weight stands on the floor from the start, and the friction acts at the centre.
+// Coulomb sliding (C3, closed form): the mass stops within 1.02 s and loses all of ½ v². With regularisation the
+// remainder decays by e in v_s/(μ g) = 0.3 ms. The weight is supported from the start, and the friction acts at the
+// centre.
 TEST(EnergyAudit, OfASlidingMassLosesAllOfItsSpeedToFriction) {
   Floor const law{
       .geometry = {.radius = 0.0}, .normal = {.stiffness = 1e5}, .friction = {.coefficient = 0.3, .slip_speed = 1e-3}};
@@ -427,8 +431,9 @@ TEST(EnergyAudit, OfASlidingMassLosesAllOfItsSpeedToFriction) {
   EXPECT_LT(audit.relative(), 1e-4);
 }
 
-// Bounces with friction and spin, in steps of h and of h/8. The damper's force jumps at each touch: first order, about
-// 1/8 of the first, as touch falls in a step. That of Hunt and Crossley does not: second order at least, 1/64.
+// Bounces with friction and spin, in steps of h and of h/8. The force of the damper jumps at each impact. The error
+// is of first order, about 1/8, because the impact is within a step. The force of Hunt and Crossley has no jump. Its
+// error is at least of second order, 1/64.
 template <class N>
 std::array<double, 2> unaccounted_of_bounces(N const& normal, double h) {
   Contact<SphereOnPlane, N> const law{
@@ -453,7 +458,7 @@ TEST(EnergyAudit, OfABouncingBallWithFrictionAddsUp) {
   EXPECT_LT(smooth[1], 0.02 * smooth[0]);
 }
 
-// A group is the sum of its pairs.
+// The energies of a group are the sums over its pairs.
 TEST(EnergyAudit, OfAGroupOfContactsIsThatOfTheContacts) {
   Floor const law{.geometry = {.radius = 0.1},
                   .normal = {.stiffness = 1e4, .damping = 20.0},
@@ -469,21 +474,21 @@ TEST(EnergyAudit, OfAGroupOfContactsIsThatOfTheContacts) {
   EXPECT_LT(group.relative(), 0.01);
 }
 
-/// A free mass of 1 kg on a spring of k [N/m] without free length, released from x = 1 m: ω² = k.
+/// Free mass of 1 kg on a spring of k [N/m] without free length, released from x = 1 m: ω² = k.
 EnergyAudit of_oscillator(Model<Bodies<planar::Rigid>, Joints<>, Forces<SpringDamper>> const& model, double rho_inf,
                           double h, int steps) {
   EnergyAudit audit(model);
   State x = model.reference_state();
   GeneralizedAlpha const integrator{.rho_inf = rho_inf, .tolerance = 1e-12};
   RunOptions options{.until = h * steps, .step = h};
-  options.limits.energy = std::numeric_limits<double>::infinity();  // a step of 1e4/ω overshoots before it damps
+  options.limits.energy = std::numeric_limits<double>::infinity();  // a step of 1e4/ω overshoots before the damping
   for (State const& now : simulate(model, x, integrator, options)) audit.record(now);
   return audit;
 }
 
-// CASES I1 [A/C]: ω = 1 and h = 0.2, after 50 steps of ρ∞ = 0 q = −0.887774657662 and h v = 0.077081882918: the rest of
-// ½ is the method's. ρ∞ = 1 is the trapezoidal rule, which keeps the energy of a linear oscillator; and of steps of
-// 1e4/ω ρ∞ = 0 leaves nothing.
+// Linear oscillator (I1, closed form and independent computation): ω = 1 and h = 0.2, after 50 steps of ρ∞ = 0 q =
+// −0.887774657662 and h v = 0.077081882918. The method dissipates the remainder of ½. ρ∞ = 1 is the trapezoidal rule,
+// which conserves the energy of a linear oscillator. Steps of 1e4/ω with ρ∞ = 0 dissipate all energy.
 TEST(EnergyAudit, ShowsWhatTheIntegratorLoses) {
   auto const oscillator = [](double k) {
     Model<Bodies<planar::Rigid>, Joints<>, Forces<SpringDamper>> model;
@@ -509,8 +514,8 @@ TEST(EnergyAudit, ShowsWhatTheIntegratorLoses) {
   EXPECT_EQ(quenched.dissipated(), 0.0);
 }
 
-// Two damped cables pinned to each other by linear rows, swinging: what they lose is found, and the sum converges with
-// h².
+// Two swinging damped cables, pinned to each other by linear constraint equations. The dissipated energy is measured,
+// and the balance converges with h².
 template <class Policy>
 auto of_cables(double h) {
   using Pin = Joint<planar::Revolute, Policy>;
@@ -540,7 +545,7 @@ TEST(EnergyAudit, OfDampedCablesOnLinearRowsAddsUp) {
   EXPECT_EQ(fine[3], 0.0);
 }
 
-// A bar that is stretched by a tenth at the start, and free of strain later.
+// Bar with an initial stretch of a tenth that is later free of strain.
 TEST(EnergyAudit, CountsWhatIsStoredFromTheStart) {
   Model<Bodies<AncfCable<>>, Joints<>> model;
   model.add(

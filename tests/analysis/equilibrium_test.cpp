@@ -23,7 +23,7 @@ using planar::Lrvf;
 using Clamp = Joint<planar::Weld, Constraint>;
 using SoftClamp = Joint<planar::Weld, Penalty>;
 
-/// 1, or NaN from t = 1 on.
+/// Function of time that is 1, and NaN from t = 1 on.
 struct Breaks {
   Motion operator()(double t) const { return {t < 1.0 ? 1.0 : std::numeric_limits<double>::quiet_NaN()}; }
 };
@@ -35,7 +35,7 @@ Bar bar(double stiffness) {
           .constants = BarConstants{.EA = stiffness, .EI = 1.0, .mass_per_length = 1.0, .GA = stiffness}};
 }
 
-/// Clamped at the origin, with a tip force `force`.
+/// Body clamped at the origin, with the tip force `force`.
 struct Held {
   Structure model;
   BodyHandle<Lrvf> beam;
@@ -49,7 +49,7 @@ struct Held {
   }
 };
 
-/// The message of the E that equilibrium throws; the state must be as before, to the last bit.
+/// Message of the E that equilibrium throws. The state must be bitwise unchanged.
 template <class E>
 std::string refused(Structure const& model, State x, EquilibriumOptions const& options = {}) {
   x.v.setConstant(0.25);
@@ -60,7 +60,8 @@ std::string refused(Structure const& model, State x, EquilibriumOptions const& o
   return message;
 }
 
-// A stiff beam makes Newton contract by turns (θ = 0.01, 0.8, 1e-4, …); stopping on one good rate was 3e-9 off.
+// In a stiff beam the contraction rate of Newton's method alternates (θ = 0.01, 0.8, 1e-4, …). A single good rate as
+// a stopping criterion would leave an error of 3e-9.
 TEST(Equilibrium, DoesNotDependOnTheLoadSteps) {
   Held const s(bar(1e6), 16, {0, 1, 0});
   State once = s.model.reference_state();
@@ -69,7 +70,7 @@ TEST(Equilibrium, DoesNotDependOnTheLoadSteps) {
     State x = s.model.reference_state();
     EXPECT_GE(equilibrium(s.model, x, {.load_steps = steps}).parts, steps);
     EXPECT_LT((x.q - once.q).cwiseAbs().maxCoeff(), 1e-11) << steps;
-    EXPECT_LT((x.lambda - once.lambda).cwiseAbs().maxCoeff(), 1e-7) << steps;  // rounding: EA · 1e-16 · elements
+    EXPECT_LT((x.lambda - once.lambda).cwiseAbs().maxCoeff(), 1e-7) << steps;  // round-off: EA · 1e-16 · elements
   }
 }
 
@@ -93,8 +94,8 @@ TEST(Equilibrium, OfAStateInEquilibriumIsThatState) {
   EXPECT_LT((again.q - x.q).cwiseAbs().maxCoeff(), 1e-12);
 }
 
-// With the whole tangent, the follower's and the reaction's terms too, the digits double with each iteration: nine
-// digits more cost two iterations. (A linear rate of 0.1 would cost nine.)
+// With the complete tangent, including the terms of the follower load and of the reaction, the convergence is
+// quadratic. Nine more digits cost two iterations. (A linear rate of 0.1 would cost nine.)
 TEST(Equilibrium, ConvergesQuadratically) {
   for (LoadAxes const axes : {LoadAxes::world, LoadAxes::marker}) {
     Held const s(bar(100.0), 8, {0.5, 2, 0}, axes);
@@ -110,7 +111,7 @@ TEST(Equilibrium, ConvergesQuadratically) {
   }
 }
 
-// 4 elements go to the dense solver, 40 to the sparse one.
+// The dense solver is used for 4 elements, the sparse one for 40.
 TEST(Equilibrium, NamesTheBodyThatNothingHolds) {
   for (Index const n : {4, 40})
     for (double const weight : {0.0, -9.81}) {
@@ -125,8 +126,8 @@ TEST(Equilibrium, NamesTheBodyThatNothingHolds) {
     }
 }
 
-// A clamp made twice: the later one is dropped and named, and everything else is as with one. Made at another place, it
-// is refused.
+// A duplicate clamp: the second one is dropped and named, and the result is unchanged. At another position it is
+// refused.
 TEST(Equilibrium, DropsTheJointThatIsThereTwice) {
   for (Index const n : {4, 40}) {
     Held once(bar(1e4), n, {0, 1, 0}), twice(bar(1e4), n, {0, 1, 0}), apart(bar(1e4), n, {0, 1, 0});
@@ -159,8 +160,9 @@ TEST(Equilibrium, HalvesAPartThatFailsAndGetsThere) {
   EXPECT_LT((x.q - small.q).cwiseAbs().maxCoeff(), 1e-10);
 }
 
-// Stiffness and force times 2ᵏ: the same coordinates, multipliers times 2ᵏ, to the last bit. Rows do not take part, so
-// they must not be lost beside pivots of 1e24 N/m, nor outweigh those of 1e-12.
+// Stiffness and force are multiplied by 2ᵏ. The coordinates and the multipliers divided by 2ᵏ are bitwise identical.
+// The constraint equations are not scaled. They must not be lost compared with pivots of 1e24 N/m, nor dominate those
+// of 1e-12.
 TEST(Equilibrium, DoesNotDependOnTheUnitOfForce) {
   for (Index const n : {4, 40}) {
     State reference;
@@ -179,7 +181,7 @@ TEST(Equilibrium, DoesNotDependOnTheUnitOfForce) {
   }
 }
 
-// The whole load takes several parts; from the equilibrium under half of it one or two are left.
+// The full load requires several substeps. From the equilibrium under half of it one or two are sufficient.
 TEST(Equilibrium, GoesOnFromWhereItIs) {
   Held const half(bar(1e6), 16, {0, 25, 0}), full(bar(1e6), 16, {0, 50, 0});
   State x = full.model.reference_state(), y = x;
@@ -200,8 +202,8 @@ TEST(Equilibrium, SaysThatAForceIsNotFinite) {
   EXPECT_EQ(x.t, 0.5);
 }
 
-// A clamped column buckles at (2i − 1)² π² EI/4L²: its straight state has as many negative pivots as such loads lie
-// below.
+// A clamped column buckles at (2i − 1)² π² EI/4L². The number of negative pivots of its straight state is the number
+// of such loads below the actual one.
 TEST(Equilibrium, CountsTheNegativePivotsOfAStraightColumn) {
   double const first = 0.25 * std::numbers::pi * std::numbers::pi;
   for (Index const n : {12, 40})
@@ -218,7 +220,7 @@ TEST(Equilibrium, CountsTheNegativePivotsOfAStraightColumn) {
     }
 }
 
-/// A chain of rods on pins, hanging or inverted.
+/// Chain of rods on pins, hanging or inverted.
 struct Rods {
   using Pin = Joint<planar::Revolute, Constraint>;
   Model<Bodies<planar::Rigid>, Joints<Pin>> model;
@@ -235,7 +237,8 @@ struct Rods {
   }
 };
 
-// The whole stiffness is that of the multipliers. Upside down each rod may fall; pins made twice change nothing.
+// The complete stiffness is due to the multipliers. In the inverted position each rod is unstable. Doubled pins have
+// no influence.
 TEST(Equilibrium, CountsTheNegativePivotsOfRodsThatHangAndStand) {
   for (int const rods : {1, 2, 7})
     for (bool const twice : {false, true})
@@ -246,8 +249,8 @@ TEST(Equilibrium, CountsTheNegativePivotsOfRodsThatHangAndStand) {
       }
 }
 
-/// Two springs of 2400 N/m from (±1, 0) m to a load F downwards at (0, 0.2) m. In equilibrium
-/// F = 2 k (L₀ − L) y/L, L² = 1 + y²; the limit load is 7.0735 N at y = 0.1158 m.
+/// Truss of two springs of 2400 N/m from (±1, 0) m to a load F downwards at (0, 0.2) m. In equilibrium F = 2 k (L₀ −
+/// L) y/L, L² = 1 + y². The limit load is 7.0735 N at y = 0.1158 m.
 struct Truss {
   Model<Bodies<planar::Rigid>, Joints<Joint<planar::Prismatic, Constraint>>, Forces<SpringDamper, PointForce<>>> model;
   State x;
@@ -264,8 +267,8 @@ struct Truss {
   static double force(double y) { return 4800.0 * (std::hypot(1.0, 0.2) / std::hypot(1.0, y) - 1.0) * y; }
 };
 
-// Beyond the limit load the truss snaps through. Whatever the load steps, this is either refused or comes with a
-// warning that names the load factor; below it the state is on the path from the start.
+// Beyond the limit load the truss snaps through. For all load steps, this is either refused or reported with a
+// warning that gives the load factor. Below the limit load the state is on the path from the start.
 TEST(Equilibrium, WarnsOfALimitPoint) {
   double limit = 0.0;
   for (double y = 0.0; y < 0.2; y += 1e-5) limit = std::max(limit, Truss::force(y));
@@ -293,7 +296,8 @@ TEST(Equilibrium, WarnsOfALimitPoint) {
     }
 }
 
-// A penalty clamp yields by what it bears, g = F/k and k g = M; a stiffer one comes nearer to the constraint.
+// The deflection of a penalty clamp follows from its load, g = F/k and k g = M. A stiffer clamp approaches the
+// constraint.
 TEST(Equilibrium, PenaltySupportsYieldByForceOverStiffness) {
   Vec3 const force(0.4, 2, 0);
   Held const ideal(bar(1e4), 8, force);

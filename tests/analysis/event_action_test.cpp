@@ -1,4 +1,4 @@
-// What an event changes in a state: impacts as jumps of the speeds.
+// Changes of the state by an event action: impacts as jumps of the velocities.
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/rigid/planar_rigid.hpp>
@@ -17,7 +17,7 @@ namespace event_action_test {
 
 constexpr double g = 9.81;
 
-/// A ball, 1 m above the floor, that keeps 0.8 of its speed at each impact.
+/// Ball 1 m above the floor with the restitution 0.8.
 struct Ball {
   Model<Bodies<planar::Rigid>, Joints<>> model{Gravity{0, -g, 0}};
   State x;
@@ -39,7 +39,7 @@ TEST(EventAction, AnImpactIsMetOnceAndTurnsTheSpeedRound) {
       simulate(ball.model, ball.x, GeneralizedAlpha{}, {.until = 1.7, .step = 1e-2, .events = {ball.floor, ball.apex}});
   run.run();
   double const t1 = std::sqrt(2.0 / g), v1 = std::sqrt(2.0 * g);
-  // a jump of the speed through zero is no apex
+  // a jump of the velocity through zero is not an apex
   auto const& met = run.report().events;
   ASSERT_EQ(met.size(), 4u);
   EXPECT_EQ(met[0].name, "floor");
@@ -69,7 +69,7 @@ TEST(EventAction, ASnapshotKeepsThatAnEventHasActed) {
   EXPECT_NEAR(x.v[1], 0.8 * std::sqrt(2.0 * g) - g * (0.6 - t1), 1e-12);
 }
 
-/// Two rods on pins that fall from the side; the first one hits a stop where it hangs.
+/// Two rods on pins that fall from the side. The first one hits a stop in its hanging position.
 template <class Policy>
 struct Stopped {
   using Pin = Joint<planar::Revolute, Policy>;
@@ -85,7 +85,7 @@ struct Stopped {
     model.connect(Pin{}, a.at(1.0), b.at(0.0), "hinge");
     x = model.reference_state();
   }
-  /// A blow on the first rod alone: the speeds are projected afterwards, over the masses.
+  /// Impact on the first rod alone. The velocities are then projected in the mass norm.
   RunReport run(double restitution, double until) {
     Event const stop{.name = "stop",
                      .value = [](State const& now) { return now.q[2] + 0.5 * std::numbers::pi; },
@@ -109,7 +109,8 @@ TEST(EventAction, SpeedsAreProjectedOntoTheJointsOverTheMasses) {
                        }};
   auto run = simulate(s.model, s.x, GeneralizedAlpha{}, {.until = 2.0, .step = 1e-3, .events = {stop}});
   while (run.report().events.empty()) run.advance();
-  // M (v⁺ − v) + Gᵀμ = 0 with G v⁺ = 0, v the changed speeds: the change is across what the joints leave free
+  // M (v⁺ − v) + Gᵀμ = 0 with G v⁺ = 0 and the changed velocities v: the change is orthogonal to the free directions
+  // of the joints
   VecX changed = before.v;
   changed[2] = -changed[2];
   System system(s.model, with<Entries::motion>);
@@ -117,10 +118,10 @@ TEST(EventAction, SpeedsAreProjectedOntoTheJointsOverTheMasses) {
   VecX rate(system.rows());
   system.violation_rate(rate);
   EXPECT_LT(rate.norm(), 1e-12 * changed.norm());
-  // a rod of length l: mass m, inertia m l²/12
+  // rod of length l: mass m, inertia m l²/12
   double const inertia = 1.0 / 12.0;
   Vec<double, 6> const masses(Vec<double, 6>{{1.0, 1.0, inertia, 1.0, 1.0, inertia}});
-  auto const work_on = [&](double spin_a, double spin_b) {  // of the change, along a motion of both angles
+  auto const work_on = [&](double spin_a, double spin_b) {  // work of the change along a motion of both angles
     double const a = s.x.q[2], b = s.x.q[5];
     Vec<double, 6> w;
     w << -0.5 * std::sin(a) * spin_a, 0.5 * std::cos(a) * spin_a, spin_a,
@@ -150,11 +151,11 @@ TEST(EventAction, MustLeaveFiniteNumbers) {
   State const start = ball.x;
   auto run = simulate(ball.model, ball.x, GeneralizedAlpha{}, {.until = 1.0, .step = 1e-2, .events = {bad}});
   EXPECT_TRUE(has(refusal([&] { run.run(); }), "The speeds after the event \"floor\" must be finite"));
-  EXPECT_TRUE(all_finite(ball.x.v));  // as it was before the step
+  EXPECT_TRUE(all_finite(ball.x.v));  // state before the step
   EXPECT_GT(ball.x.q[1], 0.0);
 }
 
-/// A ball on the floor, or above it, that keeps e of its speed.
+/// Ball on the floor, or above it, with the restitution e.
 template <class I>
 State bounce(I const& integrator, double e, double height, RunOptions options, RunReport* report = nullptr) {
   Model<Bodies<planar::Rigid>, Joints<>> model{Gravity{0, -g, 0}};
@@ -171,7 +172,7 @@ State bounce(I const& integrator, double e, double height, RunOptions options, R
 }
 
 TEST(EventAction, ALongStepAfterAnImpactMeetsTheNextOne) {
-  // in free flight the error asks for no end of a step
+  // in free flight the error estimate does not shorten the steps
   RunReport report;
   bounce(DormandPrince<>{}, 0.8, 1.0, {.until = 2.0, .step = 1e-3}, &report);
   ASSERT_EQ(report.events.size(), 3u);
@@ -211,7 +212,7 @@ TEST(EventAction, ImpactsThatAccumulateAreRefusedUnlessTheValueMayRest) {
                               number(t1 * (1.0 + e) / (1.0 - e)).substr(0, 6)));
     EXPECT_TRUE(has(said, "Set `rests` of the event"));
   }
-  // at rest from the start, also where rounding puts the ball below the floor
+  // at rest from the start, also if round-off puts the ball below the floor
   for (double const height : {0.0, 0.3 - 0.1 - 0.2}) {
     EXPECT_TRUE(
         has(refusal([&] { bounce(RungeKutta4<>{}, 0.5, height, {.until = 1.0, .step = 1e-2, .events = {only_time}}); }),
@@ -236,7 +237,7 @@ TEST(EventAction, AValueThatRestsLeavesWhereItIsDrivenBack) {
   EXPECT_EQ(report.events[2].name, "kick");
 }
 
-/// A rod on a pin that falls onto a stop at −45° and rests there.
+/// Rod on a pin that falls onto a stop at −45° and comes to rest there.
 template <class Policy, class I>
 void expect_rest_of_rod(I const& integrator) {
   using Pin = Joint<planar::Revolute, Policy>;

@@ -7,7 +7,7 @@
 namespace polybody {
 namespace event_watch_test {
 
-/// A run that only counts time.
+/// Run without dynamics, which advances the time only.
 struct Clock {
   std::vector<Event> events;
   State x{};
@@ -22,7 +22,7 @@ struct Clock {
   static std::function<void(State&, double)> drift() {
     return [](State& s, double h) { s.t += h; };
   }
-  /// One step of h; whether an event ended it.
+  /// One step of h. \return true if an event ended it
   bool step(double h) {
     State const before = x;
     x.t += h;
@@ -50,7 +50,7 @@ TEST(EventWatch, EndsAStepWhereAnEventPassesThroughZero) {
   EXPECT_EQ(clock.report.events[0].time, clock.x.t);
   EXPECT_FALSE(clock.report.stopped);
   EXPECT_LE(clock.steps, 32);      // 0.25/2³² < 1e-10
-  EXPECT_FALSE(clock.step(0.25));  // it is met once
+  EXPECT_FALSE(clock.step(0.25));  // the event occurs once
 }
 
 TEST(EventWatch, TakesTheFirstOfTwo) {
@@ -120,7 +120,7 @@ TEST(EventWatch, MakesTheUsersStateOnceForAllEvents) {
     s.t += h;
     return h;
   };
-  EXPECT_FALSE(watch.meet(events, {before, 0.5, again, {0.5, counted, on}}, x, report));  // which asks for rates
+  EXPECT_FALSE(watch.meet(events, {before, 0.5, again, {0.5, counted, on}}, x, report));  // it requires rates
   made = 0;
   State const middle = x;
   x.t = 0.9;
@@ -128,7 +128,7 @@ TEST(EventWatch, MakesTheUsersStateOnceForAllEvents) {
   EXPECT_EQ(made, 1);
 }
 
-/// A point that flies: height q, speed v.
+/// Point in free flight: height q, velocity v.
 struct Flight {
   std::vector<Event> events;
   State x{};
@@ -162,7 +162,7 @@ Event above(double height) {
 }
 
 TEST(EventWatch, FindsTwoZerosInOneStep) {
-  // thrown up at 0.4 m/s: 0.008155 m high at most, after 0.0408 s
+  // thrown upwards at 0.4 m/s: apex at 0.008155 m after 0.0408 s
   double const first = (0.4 - std::sqrt(0.16 - 2.0 * 9.81 * 0.008)) / 9.81,
                second = (0.4 + std::sqrt(0.16 - 2.0 * 9.81 * 0.008)) / 9.81;
   Flight flight(0.4, above(0.008));
@@ -171,7 +171,7 @@ TEST(EventWatch, FindsTwoZerosInOneStep) {
   EXPECT_TRUE(flight.step(0.1));
   EXPECT_NEAR(flight.x.t, second, 1e-9);
   EXPECT_EQ(flight.report.events.size(), 2u);
-  Flight short_steps(0.4, above(0.00815));  // with steps before the one in which the value turns round
+  Flight short_steps(0.4, above(0.00815));  // with steps before the one in which the value has its extremum
   bool met = false;
   for (int k = 0; k < 5 && !met; ++k) met = short_steps.step(0.013);
   EXPECT_TRUE(met);

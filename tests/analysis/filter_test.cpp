@@ -1,5 +1,5 @@
-// Filters and spectra of histories. The references are closed forms: sums of sines whose frequencies fit the record or
-// do not.
+// Filters and spectra of histories. The references are closed forms: sums of sines with or without a whole number of
+// periods in the record.
 #include <polybody/signals/filter.hpp>
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ namespace filter_test {
 using namespace polybody;
 constexpr double pi = std::numbers::pi;
 
-/// n samples of f(t), a step apart, from t = 2 s on.
+/// n samples of f(t) at equal steps from t = 2 s on.
 struct Record {
   std::vector<double> times, values;
   template <class F>
@@ -30,8 +30,7 @@ double worst(std::vector<double> const& a, std::vector<double> const& b, std::si
   return most;
 }
 
-// 5 Hz and 40 Hz are whole numbers of periods in 1 s, whether the samples are even, odd, prime or a power of two in
-// number.
+// 5 Hz and 40 Hz have whole numbers of periods in 1 s. The number of samples is even, odd, prime or a power of two.
 TEST(LowPass, KeepsWhatIsBelowInSizeAndPhaseAndRemovesWhatIsAbove) {
   for (int const n : {1000, 1001, 997, 1024, 90}) {
     double const step = 1.0 / n;
@@ -40,14 +39,14 @@ TEST(LowPass, KeepsWhatIsBelowInSizeAndPhaseAndRemovesWhatIsAbove) {
         below(n, step, slow);
     EXPECT_LT(worst(low_pass(both.times, both.values, {.cut_off = 30.0}), below.values), 1e-11) << n;
     EXPECT_LT(worst(low_pass(both.times, both.values, {.cut_off = 40.0}), both.values), 1e-11)
-        << n;  // the cut-off itself stays
+        << n;  // the cut-off frequency itself is kept
     EXPECT_LT(worst(low_pass(both.times, both.values, {.cut_off = 4.0}), std::vector<double>(std::size_t(n), 1e3)),
               1e-11)
         << n;
   }
 }
 
-// Half a cosine between 30 and 50 Hz: H(35), H(40), H(45) = ½(1 + cos(π/4)), ½, ½(1 − cos(π/4)).
+// Cosine roll-off between 30 and 50 Hz: H(35), H(40), H(45) = ½(1 + cos(π/4)), ½, ½(1 − cos(π/4)).
 TEST(LowPass, RollsOffAsACosine) {
   LowPass const filter{.cut_off = 30.0, .roll_off = 20.0};
   double const high = 0.5 * (1 + std::sqrt(0.5)), low = 1.0 - high;
@@ -60,9 +59,9 @@ TEST(LowPass, RollsOffAsACosine) {
   }
 }
 
-// A ramp taken as periodic jumps by its height at the ends and rings (Gibbs: half the jump at the ends themselves).
-// Forth and back it is a triangle wave of period T′ = 2T with terms 4/(πk)² for odd k alone: those beyond f_c = m/T′
-// sum up to less than 2/(π²(m − 1)) of the height.
+// The periodic continuation of a ramp jumps by its height at the ends and rings (Gibbs: half of the jump at the ends
+// themselves). The mirrored ramp is a triangle wave of period T′ = 2T with terms 4/(πk)² for odd k alone. The terms
+// beyond f_c = m/T′ sum up to less than 2/(π²(m − 1)) of the height.
 TEST(LowPass, MirroredRecordsDoNotRingAtTheEnds) {
   int const n = 1001;
   Record const ramp(n, 1e-3, [](double t) { return 7.0 + (t - 2.0); });
@@ -71,7 +70,7 @@ TEST(LowPass, MirroredRecordsDoNotRingAtTheEnds) {
   EXPECT_GT(worst(plain, ramp.values), 0.4);
   std::vector<double> const mirrored = low_pass(ramp.times, ramp.values, {.cut_off = 30.0, .mirrored = true});
   EXPECT_LT(worst(mirrored, ramp.values), 2.0 / (pi * pi * (m - 1)));
-  // a cosine with half periods in the record is periodic forth and back
+  // the mirrored continuation of a cosine with a whole number of half periods in the record is periodic
   for (int const count : {1001, 1000}) {
     double const length = (count - 1) * 1e-3;
     Record const half(count, 1e-3, [&](double t) { return std::cos(pi * 7 * (t - 2.0) / length); });
@@ -79,7 +78,7 @@ TEST(LowPass, MirroredRecordsDoNotRingAtTheEnds) {
   }
 }
 
-// Parseval: Σ x²/n = a₀² + ½ Σ a_k² + a_N², the last for even n alone.
+// Parseval: Σ x²/n = a₀² + ½ Σ a_k² + a_N², with the last term for even n only.
 TEST(AmplitudeSpectrum, KeepsTheMeanSquare) {
   for (int const n : {600, 601}) {
     Record const x(n, 0.01, [](double t) { return 0.3 + std::exp(-t) * std::sin(40 * t) + std::fmod(7919 * t, 1.0); });
@@ -93,8 +92,8 @@ TEST(AmplitudeSpectrum, KeepsTheMeanSquare) {
   }
 }
 
-// A sine that fits the record stands at its frequency with its amplitude, under any window; sin² spreads half of it to
-// each neighbour.
+// A sine with a whole number of periods has a peak of its amplitude at its frequency, for every window. The sin²
+// window gives half of it at each neighbour.
 TEST(AmplitudeSpectrum, PeaksAreAmplitudes) {
   Record const x(2000, 1e-3, [](double t) {
     return -12.0 + 3.0 * std::sin(2 * pi * 30 * t + 0.4) + 0.5 * std::cos(2 * pi * 500 * t);
@@ -105,15 +104,16 @@ TEST(AmplitudeSpectrum, PeaksAreAmplitudes) {
     EXPECT_NEAR(s.frequencies[60], 30.0, 1e-10);
     EXPECT_NEAR(s.amplitudes[60], 3.0, 1e-12);
     EXPECT_NEAR(s.amplitudes[0], 12.0, 1e-12);
-    EXPECT_NEAR(s.amplitudes[1000], 0.5, 1e-12);  // Nyquist's frequency
+    EXPECT_NEAR(s.amplitudes[1000], 0.5, 1e-12);  // Nyquist frequency
     EXPECT_NEAR(s.amplitudes[200], 0.0, 1e-12);
   }
   EXPECT_NEAR(plain.amplitudes[61], 0.0, 1e-12);
   EXPECT_NEAR(hann.amplitudes[61], 1.5, 1e-12);
 }
 
-// Between two frequencies sin² reads 8/(3π) = 0.849 of the amplitude, equal weights 2/π = 0.637 [Harris 1978]; far off
-// sin² leaks less. The other half of the cosine, at −30.25 Hz, adds some 1e-6 and 1e-2.
+// Between two frequencies the sin² window gives 8/(3π) = 0.849 of the amplitude, equal weights give 2/π = 0.637
+// [Harris 1978]. Far from the peak the sin² window leaks less. The other half of the cosine, at −30.25 Hz, adds some
+// 1e-6 and 1e-2.
 TEST(AmplitudeSpectrum, TheWindowDecidesWhatLeaks) {
   Record const x(2000, 1e-3, [](double t) { return std::sin(2 * pi * 30.25 * t); });
   Spectrum const plain = amplitude_spectrum(x.times, x.values, EqualWeights{});
@@ -124,7 +124,7 @@ TEST(AmplitudeSpectrum, TheWindowDecidesWhatLeaks) {
 }
 
 TEST(Resampled, DrawsStraightLines) {
-  std::vector<double> const times{0.0, 0.1, 0.15, 0.3, 0.4}, values{1.0, 2.0, 2.5, 4.0, 5.0};  // on 1 + 10 t
+  std::vector<double> const times{0.0, 0.1, 0.15, 0.3, 0.4}, values{1.0, 2.0, 2.5, 4.0, 5.0};  // samples of 1 + 10 t
   std::vector<double> const x = resampled(times, values, 0.1), expected{1.0, 2.0, 3.0, 4.0, 5.0};
   EXPECT_LT(worst(x, expected), 1e-14);
   EXPECT_EQ(resampled(times, values, 0.15).size(), 3u);

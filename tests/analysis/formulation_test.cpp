@@ -38,7 +38,7 @@ TEST(Formulation, MakesItsBodyWithTheMeshThatBelongsToIt) {
   EXPECT_EQ(Stiff::body(bar).coordinates(), 3);
 }
 
-/// Largest height of the middle off the chord of a rod that falls on a pin, and how it was found.
+/// Scenario of a rod on a pin that falls from the horizontal. The output is the height of its tip.
 struct Fall {
   template <class F>
   auto operator()(F const& choice) const {
@@ -61,9 +61,9 @@ TEST(Formulation, OneAliasIsOneLineOfAComparison) {
   Comparison const c = compare<Ideal, Cable>(Fall{});
   ASSERT_EQ(c.runs.size(), 2u);
   EXPECT_EQ(c.runs[0].census.coordinates, 3);
-  EXPECT_EQ(c.runs[1].census.coordinates, 4 * 5);  // two places and two slopes at each of five nodes
+  EXPECT_EQ(c.runs[1].census.coordinates, 4 * 5);  // two positions and two slopes at each of five nodes
   EXPECT_NEAR(c.runs[0].outputs[0].back(), -0.75 * 9.81 * 0.1 * 0.1, 2e-3);  // ½ (3 g / 2 l) t² l
-  EXPECT_LT(c.runs[1].difference[0], 2e-2);                                  // it swings at 5.5 Hz
+  EXPECT_LT(c.runs[1].difference[0], 2e-2);                                  // it vibrates at 5.5 Hz
   EXPECT_GT(c.runs[1].difference[0], 1e-6);
 }
 

@@ -1,4 +1,4 @@
-// Steps that stall are halved where a run allows it.
+// Halving of steps that do not converge, if the run permits it.
 #include <gtest/gtest.h>
 
 #include <polybody/polybody.hpp>
@@ -12,7 +12,7 @@ namespace halvings_test {
 using OnFloor = Contact<SphereOnPlane>;
 using Group = ContactGroup<OnFloor>;
 
-// A mass that lands on a damper without onset: its force jumps to c ḋ where they touch, so that some steps have no
+// Mass that lands on a damper without smooth onset. Its force jumps to c ḋ at the contact, so some steps have no
 // solution.
 struct Landing {
   Model<Bodies<Rigid<>>, Joints<>, Forces<Group>> model{Gravity{0, 0, -9.81}};
@@ -45,7 +45,7 @@ TEST(Halvings, LetLandingsThroughThatStall) {
     RunReport const report = with.run(20);
     halved += report.rejected > 0;
     EXPECT_EQ(with.x.t, 0.15);
-    // it lies where its weight presses it to, c/k = 15 ms after it has landed: within what it fell in that time
+    // at rest at the static deflection c/k = 15 ms after the landing: within its falling distance in that time
     EXPECT_LT(std::abs(position(with.model, with.x, with.mass.at(Vec3(0, 0, 0))).z()), 0.01);
     EXPECT_EQ(report.steps, 75);
   }
@@ -53,7 +53,7 @@ TEST(Halvings, LetLandingsThroughThatStall) {
   EXPECT_EQ(halved, stalled);
 }
 
-/// Two rods on pins in space at 20 to 59 rad/s; energy is kept.
+/// Two rods on pins in space at 20 to 59 rad/s. The energy is constant.
 struct TwoRods {
   using Pin = Joint<Revolute, Constraint>;
   Model<Bodies<Rigid<>>, Joints<Pin>> model{Gravity{0, 0, -9.81}};
@@ -74,7 +74,7 @@ struct TwoRods {
   }
 };
 
-// Halved steps that end with the energy off by more than half are refused, or the report warns of them.
+// Halved steps that change the energy by more than half are refused, or the report contains a warning.
 TEST(Halvings, DoNotChangeTheEnergyWithoutAWord) {
   int finished = 0, silent = 0, warned = 0;
   for (double const h : {3e-3, 1e-2})
@@ -98,7 +98,7 @@ TEST(Halvings, DoNotChangeTheEnergyWithoutAWord) {
   EXPECT_GT(warned, 0);
 }
 
-/// A ball of 1 kg and 0.1 m dropped from 1 m onto an elastic floor of 1e5 N/m; the contact takes 10 ms.
+/// Ball of 1 kg and 0.1 m, dropped from 1 m onto an elastic floor of 1e5 N/m. The contact lasts 10 ms.
 struct Bounce {
   Model<Bodies<Rigid<>>, Joints<>, Forces<OnFloor>> model{Gravity{0, 0, -9.81}};
   State x;
@@ -140,7 +140,7 @@ TEST(Halvings, AnElasticBallThatGainsEnergyIsRefusedOrWarnedOf) {
   }
 }
 
-// 100 m/s: in a step of 0.02 s the first ball of 0.05 m would be beyond the second.
+// 100 m/s: in a step of 0.02 s the first ball of 0.05 m would pass the second.
 TEST(Halvings, AnImpactThatAStepJumpsOverIsFound) {
   using Balls = Contact<SphereOnSphere>;
   for (int const halvings : {0, 8}) {
@@ -162,13 +162,13 @@ TEST(Halvings, AnImpactThatAStepJumpsOverIsFound) {
     } else {
       RunReport const report = run();
       EXPECT_GT(report.rejected, 0);
-      EXPECT_GT(x.v[6], 1.0);  // it is hit, by steps that do not resolve the impact
+      EXPECT_GT(x.v[6], 1.0);  // the impact occurs, although the steps do not resolve it
       EXPECT_EQ(report.warnings.size(), 1u);
     }
   }
 }
 
-// Steps of 0.6 periods: the energy ended at 283 J where 4.9 J is the scale.
+// Steps of 0.6 periods would end with an energy of 283 J, compared with a scale of 4.9 J.
 TEST(Halvings, APendulumAtAStepOfASecondIsRefused) {
   using Pin = Joint<Revolute, Constraint>;
   Model<Bodies<Rigid<>>, Joints<Pin>> model{Gravity{0, 0, -9.81}};

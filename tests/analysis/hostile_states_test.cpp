@@ -1,5 +1,4 @@
-// Statics, modes, rotations, audits and observers refuse a state from which nothing can be computed, by name; none
-// returns a NaN.
+// Statics, modes, rotations, audits and observers refuse an invalid state and name the cause. None returns a NaN.
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/rigid/rigid.hpp>
@@ -20,7 +19,7 @@ namespace hostile_states_test {
 
 using Ball = Joint<Spherical, Constraint>;
 
-/// A body that hangs by a point.
+/// Body that hangs from a point.
 struct Hanging {
   Model<Bodies<Rigid<>>, Joints<Ball>> model{Gravity{0, 0, -9.81}};
   BodyHandle<Rigid<>> body =
@@ -28,7 +27,7 @@ struct Hanging {
   ElementHandle<Ball> pivot = model.connect(Ball{}, model.ground().at({0, 0, 0}), body.at({0, 0, 1}), "pivot");
 };
 
-/// A state, and what every refusal of it contains.
+/// State, and the text that every refusal contains.
 struct Hostile {
   State x;
   std::string named;
@@ -76,7 +75,7 @@ TEST(HostileStates, AreRefusedByNameOutsideOfRuns) {
   }
 }
 
-// In the middle of an account, too, whose sums would stay NaN.
+// Also during an audit, whose sums would otherwise remain NaN.
 TEST(HostileStates, DoNotEnterAnAccountOfEnergy) {
   Hanging const h;
   State x = h.model.reference_state();
@@ -100,7 +99,7 @@ TEST(HostileStates, CountsOfModesAreOneAtLeast) {
   EXPECT_EQ(modes(h.model, x, std::numeric_limits<Index>::max()).frequency.size(), 3);
 }
 
-// A tolerance that nothing reaches, and iterations that do not end.
+// An unreachable tolerance, and iterations that do not end.
 TEST(HostileStates, AssemblyComesToAnEnd) {
   Hanging const h;
   State x = h.model.reference_state();

@@ -10,9 +10,9 @@ namespace implied_curve_test {
 
 using namespace polybody;
 
-/// A helix of radius a and pitch 2πb, unit speed with c = √(a² + b²): r = (a cos u, a sin u, b u), u = s/c, so
-/// t = (−a/c sin u, a/c cos u, b/c): in Eq. 2.1 ψ = u + π/2, sin θ = b/c; φ turns the sections about t and is free.
-/// κ = a/c², τ = b/c².
+/// Helix of radius a and pitch 2πb with arc-length parametrisation, c = √(a² + b²): r = (a cos u, a sin u, b u), u =
+/// s/c. Its tangent is t = (−a/c sin u, a/c cos u, b/c). In Eq. 2.1 ψ = u + π/2 and sin θ = b/c; φ rotates the
+/// sections about t and is arbitrary. κ = a/c², τ = b/c².
 struct Helix {
   double a = 0.8, b = 0.5, c = std::hypot(a, b);
   double (*roll)(double) = [](double) { return 0.0; };
@@ -31,7 +31,7 @@ Helix const rolling{.roll = [](double s) { return 0.3 + std::sin(2 * s); },
                     .roll_slope = [](double s) { return 2 * std::cos(2 * s); },
                     .roll_second = [](double s) { return -4 * std::sin(2 * s); }};
 
-// Eq. 2.1 as printed, entry by entry.
+// Eq. 2.1 of Wallin 2016 as printed, entry by entry.
 TEST(ImpliedCurve, AnglesGiveTheMatrixOfTheThesis) {
   using std::cos, std::sin;
   double const p = 0.7, t = -0.4, f = 1.9;
@@ -42,8 +42,7 @@ TEST(ImpliedCurve, AnglesGiveTheMatrixOfTheThesis) {
   EXPECT_LT((section_turn({p}, {t}, {f}).R - expected).norm(), 1e-15);
 }
 
-// R′ = R K̃ and K′, by dual numbers through angles that all vary: ψ = 0.7 + 2s + s², θ = −0.4 + 3s − s², φ = 1.9 − s +
-// 2s².
+// R′ = R K̃ and K′, by dual numbers with varying angles: ψ = 0.7 + 2s + s², θ = −0.4 + 3s − s², φ = 1.9 − s + 2s².
 TEST(ImpliedCurve, AnglesGiveTheCurvatureAndItsSlope) {
   using D = Dual<1>;
   auto const field = [](double h) {
@@ -60,11 +59,11 @@ TEST(ImpliedCurve, AnglesGiveTheCurvatureAndItsSlope) {
   Mat3 const slope = r.unaryExpr([](D const& x) { return x.d[0]; });
   SectionTurn const s = field(0.0);
   EXPECT_LT((slope - s.R * skew<double>(s.K)).norm(), 1e-14);
-  double const h = 1e-4;  // the central difference of K is exact to h² K‴/6
+  double const h = 1e-4;  // error of the central difference of K: h² K‴/6
   EXPECT_LT(((field(h).K - field(-h).K) / (2 * h) - s.dK).norm(), 1e-6);
 }
 
-// Eq. 2.4: κ² = (ψ′ cos θ)² + θ′².
+// Eq. 2.4 of Wallin 2016: κ² = (ψ′ cos θ)² + θ′².
 TEST(ImpliedCurve, CurvatureIsThatOfTheThesis) {
   EXPECT_NEAR(implied_curvature(section_turn({0.7, 2.0}, {-0.4, 3.0}, {1.9, -1.0})),
               std::hypot(2.0 * std::cos(0.4), 3.0), 1e-14);
@@ -96,7 +95,7 @@ Lrvf<I> beam(Index n) {
       {.length = 2.0, .constants = BarConstants{.EA = 1, .EI = 1, .mass_per_length = 1, .GA = 1, .GJ = 1}}, n);
 }
 
-/// q with every node turned by s φ, positions left as they were.
+/// q with every node rotated by s φ at unchanged positions.
 template <class I>
 std::vector<double> turned(Lrvf<I> const& b, Vec3 const& phi) {
   std::vector<double> q(std::size_t(b.coordinates()));
@@ -106,8 +105,8 @@ std::vector<double> turned(Lrvf<I> const& b, Vec3 const& phi) {
   return q;
 }
 
-// R = exp(s φ) is the Frenet frame of a helix of curvature √(φ₂² + φ₃²) and torsion φ₁, r = s Jl(s φ) e₁: what
-// `Objective` interpolates from node to node. Positions have no say in it, and the curve does not stretch [§2.5.3].
+// R = exp(s φ) is the Frenet frame of a helix of curvature √(φ₂² + φ₃²) and torsion φ₁, r = s Jl(s φ) e₁. `Objective`
+// interpolates this helix between two nodes. Positions have no influence, and the curve does not stretch [§2.5.3].
 TEST(ImpliedCurve, ABeamInterpolatesAHelixBetweenItsNodes) {
   Vec3 const phi(0.6, -0.5, 1.2);
   Lrvf<> const b = beam<Objective>(3);
@@ -122,8 +121,8 @@ TEST(ImpliedCurve, ABeamInterpolatesAHelixBetweenItsNodes) {
   }
 }
 
-// `Direct` does the same from the placement, but its curvature varies once the helix is turned: R′ = R K̃ and K′ by
-// differences.
+// `Direct` gives the same helix from the placement. If the helix is rotated, its curvature varies: R′ = R K̃ and K′
+// by finite differences.
 TEST(ImpliedCurve, TheFieldOfRotationVectorsIsItsOwnDerivative) {
   Lrvf<Direct> const b = beam<Direct>(1);
   EXPECT_NEAR(implied_torsion(b.rotation_field(b.at(0.7), turned(b, Vec3(0.6, -0.5, 1.2)))), 0.6, 1e-14);

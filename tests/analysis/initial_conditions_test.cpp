@@ -1,4 +1,5 @@
-// Consistent starts, on a rod on a pin and on a four-bar of uniform rods (crank 1, coupler 2, rocker 1.5, base 2).
+// Consistent initial conditions of a rod on a pin and of a four-bar of uniform rods (crank 1, coupler 2, rocker 1.5,
+// base 2).
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/joints/knife_edge.hpp>
 #include <polybody/joints/planar/revolute.hpp>
@@ -30,7 +31,7 @@ struct Pendulum {
   State x = model.reference_state();
 };
 
-// All rods start at the origin along x, so all joints but the first stand open until the state is set.
+// All rods start at the origin along x. All joints except the first are violated until the state is set.
 struct FourBar {
   TestModel model;
   BodyHandle<planar::Rigid> crank = model.add(rod(1.0), "crank"), coupler = model.add(rod(2.0), "coupler"),
@@ -84,7 +85,7 @@ TEST(InitialConditions, TheJointThatIsOpenMostIsNamed) {
   EXPECT_TRUE(has(message, "\"C\""));
   EXPECT_FALSE(has(message, "\"D\""));
   EXPECT_TRUE(has(message, "assemble"));
-  // the point of the coupler less that of the rocker, by trigonometry
+  // point of the coupler minus that of the rocker, by trigonometry
   double const x = std::cos(1.2) + 2.0 * std::cos(0.3) - 2.0 - 1.5 * std::cos(1.5);
   double const y = std::sin(1.2) + 2.0 * std::sin(0.3) - 1.5 * std::sin(1.5);
   EXPECT_TRUE(has(message, number(std::max(std::abs(x), std::abs(y)))));
@@ -109,14 +110,15 @@ TEST(InitialConditions, AssembleClosesEveryJoint) {
   State const before = f.x;
   assemble(f.model, f.x);
   EXPECT_LT(f.largest_gap(), 1e-12);
-  EXPECT_LT((f.x.q - before.q).norm(), 0.7);  // it stays on this branch
+  EXPECT_LT((f.x.q - before.q).norm(), 0.7);  // the branch is unchanged
   System system(f.model);
   EXPECT_LT(violation(system, f.x).velocity, 1e-13);
-  EXPECT_GT(f.x.v.norm(), 0.1);  // and goes on moving
+  EXPECT_GT(f.x.v.norm(), 0.1);  // the motion continues
   EXPECT_EQ(f.x.t, before.t);
 }
 
-// A pin opened along the rod, through its mass centre, closes by that shift alone: the smallest change.
+// A pin with a violation along the rod, through its mass centre. The smallest correction is a translation along the
+// rod.
 TEST(InitialConditions, AssembleMovesAsLittleAsItCan) {
   Pendulum p;
   State const closed = p.x;
@@ -125,8 +127,8 @@ TEST(InitialConditions, AssembleMovesAsLittleAsItCan) {
   EXPECT_LT((p.x.q - closed.q).norm(), 1e-14);
 }
 
-// A moving rod is caught by the pin: the smallest change of the speeds in the norm of M keeps the angular momentum
-// about the pin, ω = (m r × v + I ω₀)/(I + m r²) with r = 1/2, m = 1, I = 1/12.
+// A pin is added to a moving rod. The smallest change of the velocities in the mass norm conserves the angular
+// momentum about the pin: ω = (m r × v + I ω₀)/(I + m r²) with r = 1/2, m = 1, I = 1/12.
 TEST(InitialConditions, AssembleProjectsSpeedsAsAnImpactWould) {
   Pendulum p;
   p.x.v << 0.7, -0.4, 0.9;
@@ -144,7 +146,7 @@ TEST(InitialConditions, AssembleLeavesAClosedModelAlone) {
   EXPECT_LT((p.x.v - before.v).norm(), 1e-15);
 }
 
-// With the bases 6 apart, rods of 1 + 2 + 1.5 cannot reach.
+// At a base of 6, rods of 1 + 2 + 1.5 cannot form a loop.
 TEST(InitialConditions, WhatCannotCloseIsRefusedAndTheStateStays) {
   FourBar f(6.0);
   State const before = f.x;
@@ -153,8 +155,9 @@ TEST(InitialConditions, WhatCannotCloseIsRefusedAndTheStateStays) {
   expect_same(f.x, before);
 }
 
-// Two blades at one point, 0.01 rad apart, stop it; one of them carries 1e-5 of the mass. Beside the row that moves the
-// light rod alone, what is left of it with the heavy one is too little for a pivot.
+// Two blades at one point with the relative angle 0.01 rad fix the point. One blade carries 1e-5 of the mass. After
+// elimination of the equation that moves the light rod alone, the remainder with the heavy rod is too small for a
+// pivot.
 TEST(InitialConditions, ARowThatIsLeftOutAndStaysOpenIsRefused) {
   using Blade = Joint<KnifeEdge, Constraint>;
   for (double const mass : {1.0, 1e-5}) {
@@ -172,7 +175,7 @@ TEST(InitialConditions, ARowThatIsLeftOutAndStaysOpenIsRefused) {
     System system(model, with<Entries::motion>);
     if (mass == 1.0) {
       assemble<BlockSolver>(system, x);
-      EXPECT_LT(x.v.cwiseAbs().maxCoeff(), 1e-9);  // the point stands
+      EXPECT_LT(x.v.cwiseAbs().maxCoeff(), 1e-9);  // the point is fixed
     } else {
       std::string const message = inconsistency([&] { assemble<BlockSolver>(system, x); });
       EXPECT_TRUE(has(message, "The rows of joint \"second\" repeat")) << message;

@@ -1,5 +1,5 @@
-// What is done before the first step grows linearly with the model: shown by structure and by counts of operations.
-// bench/start.cpp shows times.
+// Cost before the first step grows linearly with the model. The tests count entries and operations. bench/start.cpp
+// measures times.
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/rigid/planar_rigid.hpp>
@@ -28,7 +28,7 @@ Chain chain(int bodies) {
   }
   return model;
 }
-/// One body on so many pins at one point.
+/// One body on `pins` pins at one point.
 Chain pinned(int pins) {
   Chain model{Gravity{0, -9.81, 0}};
   auto const hub = model.add(planar::Rigid(1.0, 1.0, Placement::planar(0.5, 0.0)), "hub");
@@ -36,7 +36,8 @@ Chain pinned(int pins) {
   return model;
 }
 
-/// The factor of the rows of a model in its reference state, of all rows or without private ones.
+/// Factor of the constraint Jacobian of a model in its reference state, with all equations or without those of
+/// private coordinates.
 template <class M>
 detail::RowFactor<> factor_of(M const& model, bool all) {
   System system(model, with<Entries::motion>);
@@ -47,7 +48,7 @@ detail::RowFactor<> factor_of(M const& model, bool all) {
   system.masses(sink);
   return {system.speeds(), system.rows(), entries, all ? Sequence<BodyPlace>() : system.layout().bodies};
 }
-/// Both factors find the same rank, rows and relations; `factored` rows are left for the second one.
+/// Both factors find the same rank, equations and relations. The second one factorises `factored` equations.
 template <class M>
 void expect_alike(M const& model, Index factored) {
   auto const all = factor_of(model, true), without = factor_of(model, false);
@@ -62,7 +63,8 @@ void expect_alike(M const& model, Index factored) {
   }
 }
 
-// A rank is found of loops alone. The factor of all rows of a chain has a number of entries that grows as the square.
+// Only loops require a rank computation. The number of entries of a factor with all equations of a chain grows as the
+// square.
 TEST(LargeModels, FactorNoRowsOfChains) {
   expect_alike(chain(50), 0);
   auto const large = factor_of(chain(3000), false);
@@ -71,7 +73,7 @@ TEST(LargeModels, FactorNoRowsOfChains) {
 }
 TEST(LargeModels, FactorRowsOfRepeatedPins) { expect_alike(pinned(20), 40); }
 
-// A four-bar linkage with a chain on its coupler; then one pin of the linkage is doubled.
+// Four-bar linkage with a chain on its coupler. In a second model one pin of the linkage is doubled.
 TEST(LargeModels, FactorRowsOfLoopsOnly) {
   Chain model;
   auto const bar = [&](double x, double y, double angle) {
@@ -91,7 +93,7 @@ TEST(LargeModels, FactorRowsOfLoopsOnly) {
   expect_alike(model, 10);
 }
 
-// Bodies that own a row, in space.
+// Spatial bodies with their own constraint equation.
 TEST(LargeModels, FactorNoRowsOfTreesInSpace) {
   using Hinge = Joint<Revolute, Constraint>;
   Model<Bodies<Rigid<>, Rigid<EulerParameters>>, Joints<Hinge>> model;
@@ -110,7 +112,7 @@ TEST(LargeModels, FactorNoRowsOfTreesInSpace) {
   expect_alike(model, model.rows());
 }
 
-/// Counts what is solved for.
+/// Counts the solutions.
 struct Counting : DefaultSolver {
   void solve(VecX const& b, VecX& x) {
     ++solutions;
@@ -120,7 +122,7 @@ struct Counting : DefaultSolver {
 };
 static_assert(LinearSolver<Counting>);
 
-/// Solutions that the check of a start takes.
+/// Number of solutions in the check of initial conditions.
 int solutions_of_start(int pins) {
   Chain const model = pinned(pins);
   System system(model, with<Entries::motion>);
@@ -132,14 +134,14 @@ int solutions_of_start(int pins) {
   EXPECT_EQ(forward.redundant_rows().size(), std::size_t(2 * (pins - 1)));
   return Counting::solutions;
 }
-// The number of repeated rows does not matter where they agree: three questions, one solution each, and one for the
-// speeds that test for a singular position.
+// The number of consistent redundant constraint equations has no influence. Three checks need one solution each. The
+// velocities that test for a singular configuration need one more.
 TEST(LargeModels, AreAskedForContradictionsByFewSolutions) {
   EXPECT_EQ(solutions_of_start(5), 4);
   EXPECT_EQ(solutions_of_start(60), 4);
 }
 
-// Automatic names of two kinds of pins, which share their numbers: each is the next free one.
+// Automatic names of two pin types with a common numbering. Each name has the next free number.
 TEST(LargeModels, NumberPartsOfTwoTypesWithOneName) {
   detail::Names names;
   std::size_t const count = 20000;

@@ -13,7 +13,8 @@ planar::Lrvf beam(Index n) {
       {.length = 2.0, .constants = BarConstants{.EA = 1.0, .EI = 1.0, .mass_per_length = 1.0, .GA = 1.0}}, n);
 }
 
-/// Length of the polygon through points of a curve; an arc of curvature κ in steps of h is longer by (κ h)²/24 of it.
+/// Length of the polygon through points of a curve. An arc of curvature κ in steps of h is longer by the factor 1 +
+/// (κ h)²/24.
 double polygon_length(std::vector<Vec2> const& points) {
   double length = 0.0;
   for (std::size_t i = 1; i < points.size(); ++i) length += (points[i] - points[i - 1]).norm();
@@ -36,7 +37,7 @@ TEST(MeshDiagnostics, LinearRotationsImplyACircle) {
   std::vector<double> q(std::size_t(b.coordinates()));
   for (std::size_t i = 0; i <= 5; ++i) {
     double const s = 0.4 * double(i);
-    q[3 * i] = s;  // the position mesh stays straight
+    q[3 * i] = s;  // the position mesh is straight
     q[3 * i + 1] = 0.0;
     q[3 * i + 2] = k * s;
   }
@@ -55,7 +56,7 @@ TEST(MeshDiagnostics, LinearRotationsImplyACircle) {
   EXPECT_NEAR(polygon_length(implied_curve(b, q, 7)), 2.0 * 2.0 * std::sin(0.5 * chord) / chord, 1e-13);
 }
 
-// Thesis 2.5.3: the rotation field is inextensible whatever the positions do.
+// Wallin 2016, 2.5.3: the rotation field is inextensible for any positions.
 TEST(MeshDiagnostics, StretchLengthensThePositionMeshOnly) {
   planar::Lrvf const b = beam(3);
   std::vector<double> q(std::size_t(b.coordinates()), 0.0);
@@ -66,7 +67,7 @@ TEST(MeshDiagnostics, StretchLengthensThePositionMeshOnly) {
   EXPECT_EQ(d.rotation_length, 2.0);
 }
 
-// The implied curve of a natural shape has that shape's curvature: an arc of 0.3 1/m.
+// The curve implied by a natural shape has the curvature of the shape: an arc of 0.3 1/m.
 TEST(MeshDiagnostics, ANaturalShapeCountsInTheCurvature) {
   double const k = 0.3;
   auto const b = planar::Lrvf::naturally_curved(
@@ -84,7 +85,8 @@ Lrvf<> rod(Index n) {
       {.length = 2.0, .constants = BarConstants{.EA = 1, .EI = 1, .mass_per_length = 1, .GA = 1, .GJ = 1}}, n);
 }
 
-// Straight sections, r = s ((1 + eps) t1 + gamma t2 + delta t3): the length is that of r', the gap L times the strains.
+// Straight sections, r = s ((1 + eps) t1 + gamma t2 + delta t3): the length is that of r', and the distance is L
+// times the strains.
 TEST(SpatialMeshDiagnostics, StretchAndShearLengthenThePositionMeshOnly) {
   Placement const turned = Placement::at({0.3, -0.2, 0.5}, {0.7, -0.4, 1.1});
   Vec3 const strain(0.1, 0.2, -0.3);
@@ -100,9 +102,9 @@ TEST(SpatialMeshDiagnostics, StretchAndShearLengthenThePositionMeshOnly) {
   for (double c : d.position_curvature) EXPECT_EQ(c, 0.0);
 }
 
-// Rotations exp(s phi) are the Frenet frames of a helix of curvature kappa = hypot(phi2, phi3) and torsion phi1, with
-// w = |phi|: radius kappa/w^2, rise phi1/w. With the nodes on it the meshes agree at the nodes, and the position mesh
-// is shorter, by chords of sqrt((phi1 l/w)^2 + (2 kappa/w^2 sin(w l/2))^2).
+// Rotations exp(s phi) are the Frenet frames of a helix of curvature kappa = hypot(phi2, phi3) and torsion phi1. With
+// w = |phi| its radius is kappa/w^2 and its rise phi1/w. With nodes on the helix the meshes agree at the nodes. The
+// position mesh is shorter, with chords of sqrt((phi1 l/w)^2 + (2 kappa/w^2 sin(w l/2))^2).
 TEST(SpatialMeshDiagnostics, AHelixHasItsCurvatureAndItsChords) {
   Index const n = 5;
   Vec3 const phi(0.6, -0.5, 1.2);
@@ -120,7 +122,7 @@ TEST(SpatialMeshDiagnostics, AHelixHasItsCurvatureAndItsChords) {
   for (double c : d.rotation_curvature) EXPECT_NEAR(c, kappa, 1e-13);
 }
 
-// The curved reference itself: a helix free of stress shows the same, and no gap.
+// Curved reference configuration: a stress-free helix has these chords, and no distance between the meshes.
 TEST(SpatialMeshDiagnostics, ACurvedReferenceHasNoGap) {
   Vec3 const phi(0.6, -0.5, 1.2);
   auto const b = Lrvf<>::from(
@@ -144,7 +146,7 @@ VecX in_space() {
   });
 }
 
-// A planar motion in space shows what the planar beam does, whatever the quadrature of either.
+// A planar motion in space gives the results of the planar beam, for all quadratures of either.
 TEST(SpatialMeshDiagnostics, APlanarMotionIsThatOfThePlanarBeam) {
   std::vector<double> q;
   for (int i = 0; i <= 4; ++i) {
@@ -169,7 +171,7 @@ TEST(SpatialMeshDiagnostics, APlanarMotionIsThatOfThePlanarBeam) {
   EXPECT_EQ(mesh_diagnostics(full, q).largest_gap, plane.largest_gap);
 }
 
-// A rigid motion carries both curves along, and changes no number.
+// A rigid motion moves both curves and changes no result.
 TEST(SpatialMeshDiagnostics, ARigidMotionCarriesBothCurves) {
   Placement const motion = Placement::at({1.3, -0.7, 2.1}, {-0.8, 1.9, 0.6});
   VecX const at = nodes_of(4, [](double i) {

@@ -1,4 +1,4 @@
-// How redundant joints share a load: answers by hand.
+// Load sharing of redundant joints, computed by hand.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ namespace minimum_norm_test {
 
 constexpr double g = 9.81;
 
-/// A plate of 2 kg on four legs at (±1, ±1), its mass centre at (x, y).
+/// Plate of 2 kg on four legs at (±1, ±1), with the mass centre at (x, y).
 struct Platform {
   using Leg = Joint<PointInPlane, Constraint>;
   Model<Bodies<Rigid<>>, Joints<Leg>> model{Gravity{0, 0, -g}};
@@ -41,8 +41,8 @@ struct Platform {
   double force(State const& s, std::size_t i) const { return reaction(model, s, legs[i]).f[2]; }
 };
 
-// min Σ λ² with Σ λ = m g, Σ λ x_i = m g x, Σ λ y_i = m g y is affine in the place of the leg: λ_i = ¼ m g (1 + x x_i +
-// y y_i).
+// The minimum of Σ λ² with Σ λ = m g, Σ λ x_i = m g x, Σ λ y_i = m g y is affine in the position of the leg: λ_i = ¼
+// m g (1 + x x_i + y y_i).
 TEST(MinimumNorm, OfAPlatformOnFourLegsIsAffine) {
   for (auto const& [cx, cy] : {std::pair{0.0, 0.0}, std::pair{0.2, -0.5}}) {
     Platform p(cx, cy);
@@ -50,7 +50,7 @@ TEST(MinimumNorm, OfAPlatformOnFourLegsIsAffine) {
     ASSERT_EQ(run.report().redundant.size(), 1u);
     double least = 1.0;
     for (std::size_t i = 0; i < 4; ++i) least = std::min(least, std::abs(p.force(p.x, i)));
-    EXPECT_NEAR(least, 0.0, 1e-12);  // as dropped: one leg carries nothing
+    EXPECT_NEAR(least, 0.0, 1e-12);  // a dropped equation has no force in one leg
     State shared = p.x;
     shared.lambda = minimum_norm_multipliers(p.model, p.x);
     for (std::size_t i = 0; i < 4; ++i)
@@ -62,11 +62,11 @@ TEST(MinimumNorm, OfAPlatformOnFourLegsIsAffine) {
     VecX r = VecX::Zero(p.model.speeds());
     system.evaluate(shared.q, shared.v, shared.t);
     system.residual(shared.a, shared.lambda, r);
-    EXPECT_LT(r.norm(), 1e-12);  // M a + Gᵀλ = f as before
+    EXPECT_LT(r.norm(), 1e-12);  // M a + Gᵀλ = f also holds
   }
 }
 
-// Two pins hold a beam four ways: its weight and a push along it are shared equally.
+// Two pins constrain a beam four times. They share its weight and a force along it equally.
 TEST(MinimumNorm, OfABeamOnTwoPinsIsHalf) {
   using Pin = Joint<planar::Revolute, Constraint>;
   Model<Bodies<planar::Rigid>, Joints<Pin>, Forces<PointForce<>>> model{Gravity{0, -g, 0}};
@@ -82,7 +82,7 @@ TEST(MinimumNorm, OfABeamOnTwoPinsIsHalf) {
                   (reaction(model, now, pin).f - Vec3(-3.5, 1.5 * g, 0)).norm(), 1e-12, {equals("t", now.t), 1.5 * g});
 }
 
-/// A door of mass m on two pins at z = ±h, its mass centre at d from them, that turns at ω.
+/// Door of mass m on two pins at z = ±h, with the mass centre at the distance d from them, rotating at ω.
 template <class I>
 void expect_door(char const* formulation, I const& integrator, double unit, double tolerance) {
   using Pin = Joint<Revolute, Constraint>;
@@ -96,8 +96,9 @@ void expect_door(char const* formulation, I const& integrator, double unit, doub
                                     door.at(Vec3(-d, 0, -h)), "bottom");
   State x = model.reference_state();
   model.set_velocity(x, door, Vec3::Zero(), {0, 0, omega});
-  // The pins exert the moment −M = −m g d about the tangent: by forces ∓F along the radius, 2 h F, and moments N each,
-  // 2 N. The least 2 F² + 2 N²/ℓ² has F = N h/ℓ²; ℓ = h, the distance of both from their mean: F = M/4h, N = M/4.
+  // The pins carry the moment −M = −m g d about the tangent by forces ∓F along the radius, 2 h F, and moments N each,
+  // 2 N. The minimum of 2 F² + 2 N²/ℓ² has F = N h/ℓ². With ℓ = h, the distance of both pins from their mean: F =
+  // M/4h, N = M/4.
   double const moment = m * g * unit * d, weight = m * g * unit, scale = std::max(weight, m * omega * omega * d);
   int states = 0;
   double off_f = 0.0, off_m = 0.0;
@@ -126,9 +127,9 @@ TEST(MinimumNorm, OfADoorOnTwoPinsIsSharedInEveryStateOfARun) {
   expect_door("Rigid, Runge–Kutta 4", RungeKutta4<Projection>{}, 1.0, 1e-7);
   expect_door("Rigid, generalised-α", GeneralizedAlpha{}, 1.0, 1e-3);
 }
-// A body on a screw of pitch p and a weld beside it, pushed along their axis with F: the screw's row, a force with a
-// moment of p, takes s, the weld F − s and the moment p s. The weights are 1, 1 + p²/ℓ² and 1/ℓ², ℓ = 1 for joints at
-// one place: the least (F − s)² + (1 + p²) s² + p² s² has s = F/(2 + 2 p²).
+// Body on a screw of pitch p parallel to a weld, with the force F along their axis. The constraint force of the
+// screw, a force with the moment p, is s. The weld carries F − s and the moment p s. The weights are 1, 1 + p²/ℓ² and
+// 1/ℓ², with ℓ = 1 for joints at one position. The minimum of (F − s)² + (1 + p²) s² + p² s² has s = F/(2 + 2 p²).
 TEST(MinimumNorm, WeighsForcesAndMomentsOfARow) {
   using Thread = Joint<Screw, Constraint>;
   using Clamp = Joint<Weld, Constraint>;
@@ -150,12 +151,12 @@ TEST(MinimumNorm, WeighsForcesAndMomentsOfARow) {
   share("force of a weld beside a screw [N]", reaction(model, x, clamp).f[2], s - push);
 }
 
-// ℓ goes with the model, so millimetres share as metres do.
+// ℓ scales with the model, so the load sharing is independent of the unit of length.
 TEST(MinimumNorm, OfADoorDoesNotDependOnTheUnits) {
   expect_door("Rigid, Runge–Kutta 4, in millimetres", RungeKutta4<Projection>{}, 1e3, 1e-7);
 }
 
-// Without redundant rows the multipliers stay as they are, bit for bit.
+// Without redundant constraints the multipliers are bitwise unchanged.
 TEST(MinimumNorm, LeavesUniqueMultipliersAlone) {
   using Pin = Joint<planar::Revolute, Constraint>;
   Model<Bodies<planar::Rigid>, Joints<Pin>> model{Gravity{0, -g, 0}};

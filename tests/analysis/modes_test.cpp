@@ -23,8 +23,8 @@ using namespace polybody;
 
 namespace modes_test {
 
-// The whole stiffness of a hinged rod is a second-order term: ω² = m g d/J about the hinge, here 3g/2L; upside down it
-// is −3g/2L.
+// The stiffness of a hinged rod consists of a second-order term: ω² = m g d/J about the hinge, here 3g/2L. In the
+// inverted position it is −3g/2L.
 TEST(Modes, OfAHangingAndOfAStandingRod) {
   for (double const sign : {1.0, -1.0}) {
     Chain<InSpace<Constraint>> chain(1, bar_link(0.8), sign * 9.81, 0.0);
@@ -48,7 +48,7 @@ TEST(Modes, OfADoublePendulum) {
     EXPECT_NEAR(m.frequency[i], std::sqrt((2.0 + (i ? 1.0 : -1.0) * std::sqrt(2.0)) * 9.81 / 0.5), 1e-9);
 }
 
-/// A mass on a slide, held by a spring and a damper.
+/// Mass on a slide with a spring and a damper.
 struct Oscillator {
   using Slide = Joint<planar::Prismatic, Constraint>;
   Model<Bodies<planar::Rigid>, Joints<Slide>, Forces<SpringDamper>> model;
@@ -82,8 +82,8 @@ TEST(DampedModes, CreepBackWithoutSwinging) {
   EXPECT_NEAR(d.eigenvalue[0].imag(), 0.0, 1e-10);
 }
 
-// A thin rod on a ball joint turns freely about itself without inertia: that motion has no frequency. It swings in two
-// planes, ω² = m g d/(J + m d²).
+// A thin rod on a ball joint rotates freely about its axis without inertia. This motion has no frequency. The rod
+// swings in two planes, ω² = m g d/(J + m d²).
 TEST(Modes, MotionsWithoutInertiaAreLeftOut) {
   using Ball = Joint<Spherical, Constraint>;
   Model<Bodies<Rigid<>>, Joints<Ball>> model{Gravity{0, -9.81, 0}};
@@ -97,8 +97,8 @@ TEST(Modes, MotionsWithoutInertiaAreLeftOut) {
   for (int i = 0; i < 2; ++i) EXPECT_NEAR(m.frequency[i], std::sqrt(9.81 * 0.4 / (0.1 + 0.16)), 1e-9);
 }
 
-// A point mass on a bar without inertia that two springs hold at a and b: its turn follows without delay, and
-// ω² = k₁ k₂ (a − b)²/((k₁ a² + k₂ b²) m).
+// Point mass on a bar without inertia, supported by two springs at a and b. Its rotation follows statically, and ω² =
+// k₁ k₂ (a − b)²/((k₁ a² + k₂ b²) m).
 TEST(Modes, MotionsWithoutInertiaFollowTheOthers) {
   double const k1 = 300.0, k2 = 500.0, a = 0.3, b = -0.5, mass = 2.0, length = 1.0;
   Model<Bodies<planar::Rigid>, Joints<Joint<PointInPlane, Constraint>>, Forces<SpringDamper>> model;
@@ -117,8 +117,8 @@ TEST(Modes, MotionsWithoutInertiaFollowTheOthers) {
   EXPECT_NEAR(m.frequency[0], std::sqrt(square), 1e-9);
 }
 
-/// A planar rod, EI = L = 1, 1 kg/m, EA = GA = 1e8 N, clamped or free, under a dead force along it at its second end.
-/// Its highest eigenvalue, near GA over the rotary inertia, is 1e16 and more times the lowest one.
+/// Planar rod, EI = L = 1, 1 kg/m, EA = GA = 1e8 N, clamped or free, under an axial dead force at its second end. The
+/// ratio of its highest eigenvalue, near GA over the rotary inertia, to the lowest one is at least 1e16.
 struct ThinRod {
   using Clamp = Joint<planar::Weld, Constraint>;
   Model<Bodies<planar::Lrvf>, Joints<Clamp>, Forces<PointForce<>>> model;
@@ -132,14 +132,14 @@ struct ThinRod {
     if (force != 0.0) equilibrium(model, x);
   }
 };
-/// The limit of errors in h² and h⁴ from meshes of 16, 32 and 64 elements.
+/// Limit without errors in h² and h⁴ from meshes of 16, 32 and 64 elements.
 template <class F>
 double limit_of_meshes(F&& of) {
   double const a = of(16), b = of(32), c = of(64), once = (4.0 * b - a) / 3.0, twice = (4.0 * c - b) / 3.0;
   return (16.0 * twice - once) / 15.0;
 }
 
-// Euler and Bernoulli: (βL)² of cosh βL cos βL = −1 and 1; shear and rotary inertia change them by 1e-7 and less.
+// Euler–Bernoulli: (βL)² with cosh βL cos βL = −1 and 1. Shear and rotary inertia change the values by at most 1e-7.
 TEST(Modes, OfThinRodsKeepTheirLowestFrequencies) {
   for (double const rotary_inertia : {1e-9, 1e-11}) {
     auto const frequency = [&](bool clamped, Index mode) {
@@ -154,7 +154,8 @@ TEST(Modes, OfThinRodsKeepTheirLowestFrequencies) {
   }
 }
 
-// All modes of one model, low ones by a shift and high ones in their complement, have unit mass and are orthogonal.
+// All modes of one model have unit mass and are orthogonal. A shift gives the low modes, and their complement gives
+// the high ones.
 TEST(Modes, OfThinRodsAreOrthogonalOverTheWholeSpectrum) {
   ThinRod const rod(16, 1e-9, true);
   Linearisation const l = linearise(rod.model, rod.x);
@@ -166,7 +167,7 @@ TEST(Modes, OfThinRodsAreOrthogonalOverTheWholeSpectrum) {
   for (Index i = 1; i < n; ++i) EXPECT_GE(all.frequency[i], all.frequency[i - 1]);
 }
 
-// The sign of the lowest frequency changes at Euler's load π² EI/4L², to which secants on ω² lead.
+// The lowest squared frequency changes its sign at Euler's load π² EI/4L². Secants on ω² converge to this load.
 TEST(Modes, OfThinColumnsFindEulersLoad) {
   double const exact = 0.25 * std::numbers::pi * std::numbers::pi;
   double const found = limit_of_meshes([&](Index n) {
@@ -188,8 +189,8 @@ TEST(Modes, OfThinColumnsFindEulersLoad) {
   EXPECT_NEAR(found, exact, 1e-5 * exact);
 }
 
-// Two thin rods on ball joints at x = 0, each held by a spring across its far end in two directions. Nothing resists
-// their rotations about themselves, which have no inertia. The squared frequencies k/(J + m d²) have a ratio of 1e18.
+// Two thin rods on ball joints at x = 0, each with a spring across its far end in two directions. Rotations about
+// their axes have neither stiffness nor inertia. The squared frequencies k/(J + m d²) have a ratio of 1e18.
 TEST(Modes, KeepLowFrequenciesBesideNeutralMotionsWithoutInertia) {
   using Ball = Joint<Spherical, Constraint>;
   Model<Bodies<Rigid<>>, Joints<Ball>, Forces<SpringDamper>> model;
@@ -210,7 +211,7 @@ TEST(Modes, KeepLowFrequenciesBesideNeutralMotionsWithoutInertia) {
   }
 }
 
-// A clamped bar of 24 finite elements, in two planes. Cubic elements of length h are off by (βh)⁴/1440: 1.0e-6.
+// Clamped bar of 24 finite elements, in two planes. Cubic elements of length h have an error of (βh)⁴/1440: 1.0e-6.
 TEST(DenseModes, OfThinBarsKeepTheirLowestFrequencies) {
   Structure const s = structure_of(
       Bar{.length = 1.0,

@@ -1,4 +1,4 @@
-// Equilibria whose stiffness has no inverse: rows that repeat others, and motions that nothing resists.
+// Equilibria with a singular stiffness: redundant constraints, and free motions without stiffness.
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/lrvf/planar_lrvf.hpp>
@@ -19,7 +19,8 @@ using namespace polybody;
 
 namespace neutral_equilibrium_test {
 
-/// Rods of 1 m and 1 kg, pinned to each other, the first and the last one to the ground. \tparam Where as for `Chain`
+/// Rods of 1 m and 1 kg, pinned to each other. The first and the last one are pinned to the ground. \tparam Where as
+/// for `Chain`
 template <class Where>
 struct HungChain {
   using Body = typename Where::Body;
@@ -49,8 +50,9 @@ struct HungChain {
   }
 };
 
-// In space the parallel pins repeat three rows: the chain hangs as in the plane, and the joints bear the same forces.
-// Two rods of half span c and sag s, c² + s² = 1: each end bears m g upwards and H = m g c/(2 s) inwards.
+// In space the parallel pins have three redundant constraint equations. The chain hangs as in the plane, and the
+// joints carry the same forces. For two rods of half span c and sag s, c² + s² = 1, each end carries m g upwards and
+// H = m g c/(2 s) inwards.
 TEST(HungChain, InSpaceHangsAsInThePlane) {
   for (int const n : {2, 3, 6, 20}) {
     HungChain<InPlane<Constraint>> const plane(n);
@@ -73,7 +75,7 @@ TEST(HungChain, InSpaceHangsAsInThePlane) {
   }
 }
 
-// On ball joints nothing repeats, but each rod spins about its own line.
+// On ball joints no constraint is redundant, but each rod can rotate about its axis.
 TEST(HungChain, OnBallJointsSpinsRodByRod) {
   int const n = 12;
   HungChain<InPlane<Constraint>> const plane(n);
@@ -90,7 +92,7 @@ TEST(HungChain, OnBallJointsSpinsRodByRod) {
   }
 }
 
-// Two rods side by side: the second one's row is dropped, and on request both share the load.
+// Two parallel rods: the constraint equation of the second one is dropped. With the option both share the load.
 TEST(RowsThatRepeat, BearNothingOrShareTheLoad) {
   Model<Bodies<Rigid<>>, Joints<Joint<Distance, Constraint>>> model{Gravity{0, 0, -9.81}};
   auto const payload = model.add(Rigid<>(3.0, 0.2 * Mat3::Identity(), Placement::at({0.5, 0, -2.0})), "payload");
@@ -108,7 +110,8 @@ TEST(RowsThatRepeat, BearNothingOrShareTheLoad) {
   EXPECT_NEAR(shared[1], 0.5 * 29.43, 1e-9);
 }
 
-// A payload on a rod hangs below its hook, whatever the start. Only its spin about the vertical is free, and is named.
+// A payload on a rod hangs below its hook for every initial state. Only its rotation about the vertical is free, and
+// is named.
 TEST(NeutralFreedom, OfAPayloadIsItsSpin) {
   for (Vec3 const& start : {Vec3(0, 0, -2.5), Vec3(0.3, 0.2, -2.0)})
     for (Vec3 const& eye : {Vec3(0, 0, 0.5), Vec3(0.1, 0.05, 0.5)}) {
@@ -123,13 +126,13 @@ TEST(NeutralFreedom, OfAPayloadIsItsSpin) {
       EXPECT_EQ(report.neutral, std::vector<std::string>{"body \"payload\" turns about (0, 0, 1) through (0, 0, 0)"});
       EXPECT_LT((position(model, x, payload.at(Vec3(0, 0, 0))) - Vec3(0, 0, -length - eye.norm())).norm(), 1e-9);
       EXPECT_NEAR(std::abs(reaction(model, x, rope).f.z()), 3.0 * 9.81, 1e-9);
-      if (start.x() == 0.0 && eye.x() == 0.0) EXPECT_LT(std::abs(x.q[6]), 1e-12);  // it is where it was
+      if (start.x() == 0.0 && eye.x() == 0.0) EXPECT_LT(std::abs(x.q[6]), 1e-12);  // its position is unchanged
     }
 }
 
 using Float = Model<Bodies<planar::Lrvf>, Joints<Joint<planar::Weld, Constraint>>, Forces<PointForce<>>>;
 
-/// A beam that floats, pulled along its axis by `left` and `right`.
+/// Floating beam under the axial forces `left` and `right`.
 struct Floating {
   Float model;
   Vec3 const along{std::cos(0.7), std::sin(0.7), 0};
@@ -147,8 +150,8 @@ struct Floating {
   }
 };
 
-// Under F at both ends it is longer by F L/EA, and its middle stays: of all such places the one that moves least. 4
-// elements go to the dense solver, 40 to the sparse one. The path by arc length goes the same way.
+// Under F at both ends the beam is longer by F L/EA, and its middle is at rest: the equilibrium with the least
+// motion. The dense solver is used for 4 elements, the sparse one for 40. The arc-length method agrees.
 TEST(NeutralFreedom, OfABeamInTensionIsToMove) {
   for (Index const n : {4, 40}) {
     Floating const s(n, 10.0, 10.0);
@@ -171,7 +174,8 @@ TEST(NeutralFreedom, OfABeamInTensionIsToMove) {
   }
 }
 
-// One part in a thousand more at one end: the beam flies off, and the message says where to.
+// An excess of one part in a thousand at one end: no equilibrium exists, and the message gives the direction of the
+// motion.
 TEST(NeutralFreedom, ThatALoadExcitesIsRefused) {
   for (Index const n : {4, 40}) {
     Floating const s(n, 10.0, 10.01);

@@ -1,6 +1,5 @@
-// Stress at named nodes of the M113's steel link, whose matrices and stresses CalculiX 2.20 wrote
-// (examples/track_stress/fe_link), against CalculiX's own numbers, states that are known exactly and beams; and what is
-// refused.
+// Stress at named nodes of the M113's steel link, with matrices and stresses of CalculiX 2.20
+// (examples/track_stress/fe_link). References are CalculiX's own values, exact states, and beams. Refused input.
 #include <polybody/stress/nodal_stress.hpp>
 
 #include <gtest/gtest.h>
@@ -38,7 +37,7 @@ NodalStress const& stress() {
 double const young = m113::youngs_modulus, shear = m113::shear_modulus, poisson = 0.5 * young / shear - 1.0,
              length = m113::pitch, width = m113::cable_width, height = m113::cable_height;
 
-/// Displacements u(r) of every node.
+/// Nodal displacements of the field u(r).
 template <class Field>
 VecX displacements(Field const& u) {
   VecX e(link().size());
@@ -46,7 +45,7 @@ VecX displacements(Field const& u) {
   return e;
 }
 
-/// CalculiX's load case: the rear face is clamped, pull and lift are on the front face.
+/// Load case of CalculiX: the rear face is clamped, tension and lift act on the front face.
 struct LoadCase {
   double pull = 0.0, lift = 0.0;
   VecX displacements = VecX::Zero(link().size());
@@ -64,7 +63,7 @@ struct LoadCase {
   }
 };
 
-// Blocks are integrated exactly; CalculiX's input has the nodes to a nanometre.
+// Blocks are integrated exactly. CalculiX's input gives the nodes to a nanometre.
 TEST(FeLink, HasMassAndInertiaOfTheTracksLink) {
   m113::Solid const steel = m113::with_steel_links().link;
   Structure const& s = link();
@@ -99,8 +98,9 @@ TEST(FeLink, HasTheFrequenciesThatCalculixPrints) {
          {equals("mode", double(i + 1))});
 }
 
-// CalculiX extrapolates stresses from the integration points and averages over the elements of a node; the operator
-// takes them at the node. They are 2.1e-5 of the largest apart, by the 7 digits of the displacements.
+// CalculiX extrapolates stresses from the integration points and averages over the elements of a node. The operator
+// evaluates them at the node. The difference is 2.1e-5 of the largest stress, due to the 7 digits of the
+// displacements.
 TEST(NodalStress, IsWhatCalculixFinds) {
   LoadCase const given;
   double largest = 0.0;
@@ -115,7 +115,7 @@ TEST(NodalStress, IsWhatCalculixFinds) {
                  "what CalculiX extrapolates to the node", "its CalculiX matrices, NodalStress"},
                 (one[0] - given.stress[i]).cwiseAbs().maxCoeff(), 1e-4 * largest, {name, largest});
   }
-  // The matrices carry that load: its resultant is on the front face, and nothing between the faces.
+  // The matrices represent that load: its resultant is on the front face, without forces between the faces.
   VecX const force = link().stiffness * given.displacements;
   Vec3 front = Vec3::Zero();
   double between = 0.0;
@@ -130,8 +130,8 @@ TEST(NodalStress, IsWhatCalculixFinds) {
   EXPECT_LT(between, 1e-3 * given.pull);
 }
 
-// N/A ± M c/I. The clamp lets the link, 2.5 times as wide as long, not contract across; that is worth 1.9 % in the
-// middle and 0.9 % at a third of the way to the front.
+// N/A ± M c/I. The clamp prevents the lateral contraction of the link, which is 2.5 times as wide as long. The effect
+// is 1.9 % in the middle and 0.9 % at a third of the distance to the front.
 TEST(NodalStress, IsThatOfABeamFarFromTheClamp) {
   LoadCase const given;
   for (auto const& [place, x] : {std::pair("middle", 0.0), std::pair("third", length / 6.0)}) {
@@ -145,13 +145,13 @@ TEST(NodalStress, IsThatOfABeamFarFromTheClamp) {
   }
 }
 
-// Elements with quadratic shapes represent these states: any error is one of the operator.
+// Elements with quadratic shapes represent these states, so any error is due to the operator.
 TEST(NodalStress, IsExactForUniformStrainAndPureBending) {
   double const lame = young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)), strain = 1e-3;
   int const first[6] = {0, 1, 2, 0, 1, 2}, second[6] = {0, 1, 2, 1, 2, 0};
   for (int k = 0; k < 6; ++k) {
     Mat3 gradient = Mat3::Zero();
-    gradient(first[k], second[k]) = strain;  // with the rotation that it contains
+    gradient(first[k], second[k]) = strain;  // including its rotation
     VecX const e = displacements([&](Vec3 const& r) { return Vec3(gradient * r); });
     Vec6 exact = Vec6::Zero();
     if (k < 3) exact.head<3>().setConstant(lame * strain);
@@ -209,8 +209,8 @@ TEST(NodalStress, OfModesIsThatOfTheirDisplacements) {
   EXPECT_TRUE(has(refusal([&] { stress().modal(q); }), "the shapes have 6 rows, but its matrix has 945 columns"));
 }
 
-// A rigid link that spins about its pins' direction: the part beyond a section pulls with ½ ρω² (p²/4 − x²) in the mean
-// over the section, which the surface at y = 0 is 0.05 % off. The stress does not ask which nodes were held.
+// Rigid link rotating about the direction of its pins. The mean stress in a section is ½ ρω² (p²/4 − x²). The surface
+// at y = 0 differs from the mean by 0.05 %. The stress is independent of the fixed nodes.
 TEST(NodalStress, AfterARigidRunIsTheCentrifugalOne) {
   Model<Bodies<Rigid<>>, Joints<>, Forces<>> model;
   auto const body = model.add(Rigid<>::from(m113::link_bar()), "link");
@@ -257,7 +257,7 @@ TEST(VonMises, OfKnownStates) {
   EXPECT_NEAR(of(0, 0, 0, 0, s, 0), std::sqrt(3.0) * s, 1e-9 * s);
   EXPECT_NEAR(of(0, 0, 0, 0, 0, -s), std::sqrt(3.0) * s, 1e-9 * s);
   EXPECT_EQ(of(s, s, s, 0, 0, 0), 0.0);
-  EXPECT_NEAR(of(s, -s, 0, 0, 0, 0), std::sqrt(3.0) * s, 1e-9 * s);  // shear, seen at 45°
+  EXPECT_NEAR(of(s, -s, 0, 0, 0, 0), std::sqrt(3.0) * s, 1e-9 * s);  // shear in axes at 45°
 }
 
 /// Two files in a folder of this process.

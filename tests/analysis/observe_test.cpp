@@ -1,4 +1,4 @@
-// Energies, momenta and what is asked of a single state.
+// Energies, momenta and other observations of a single state.
 #include <polybody/run/observe.hpp>
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ using namespace polybody;
 
 namespace observe_test {
 
-/// A rod of 3 kg and 2 m, 0.5 m from the origin, between two springs.
+/// Rod of 3 kg and 2 m, 0.5 m from the origin, between two springs.
 struct Rod {
   using M = Model<Bodies<planar::Rigid>, Joints<>, Forces<SpringDamper>>;
   M model{Gravity{0, -10.0, 0}};
@@ -27,7 +27,7 @@ struct Rod {
   }
 };
 
-// v of the middle is (1, 2) + ω × (0.5, 0.25) = (1 + 1, 2 − 2).
+// Velocity of the middle: (1, 2) + ω × (0.5, 0.25) = (1 + 1, 2 − 2).
 TEST(Energy, IsThatOfTheHandCalculation) {
   Rod const r;
   Energy const e = energy(r.model, r.x);
@@ -47,15 +47,15 @@ TEST(Momentum, IsThatOfTheHandCalculation) {
   EXPECT_LT((p.angular - Vec3(0, 0, -5.5)).norm(), 1e-13);
 }
 
-// A pin 0.25 m from where it should be, whose bar turns and moves: ‖Φ‖, ‖Φ̇‖ and ‖Φ̈‖ by the largest entry.
+// Pin with a violation of 0.25 m on a rotating and moving bar: ‖Φ‖, ‖Φ̇‖ and ‖Φ̈‖ by the largest entry.
 TEST(Violation, IsThatOfTheHandCalculation) {
   Model<Bodies<planar::Rigid>, Joints<Joint<planar::Revolute, Constraint>>> model;
   auto const bar = model.add(planar::Rigid(1.0, 1.0), "bar");
   model.connect(Joint<planar::Revolute, Constraint>{}, model.ground().at({-1, 0, 0}), bar.at(Vec2(-1, 0)), "pin");
   State x = model.reference_state();
   x.q[1] = 0.25;
-  x.v << 0.5, 0.0, 3.0;  // of its end: (0.5, −3)
-  x.a << 1.0, 2.0, 0.0;  // and (1 + 9, 2)
+  x.v << 0.5, 0.0, 3.0;  // velocity of its end: (0.5, −3)
+  x.a << 1.0, 2.0, 0.0;  // its acceleration: (1 + 9, 2)
   Violation const v = violation(model, x);
   EXPECT_NEAR(v.position, 0.25, 1e-15);
   EXPECT_NEAR(v.velocity, 3.0, 1e-14);
@@ -65,7 +65,7 @@ TEST(Violation, IsThatOfTheHandCalculation) {
 }
 
 // Without damping, drives and dead loads the power of the residual forces is the rate of the potential:
-// d(potential)/dt = v·(M a − r)|… = −v·f, differenced along q ⊞ v t.
+// d(potential)/dt = v·(M a − r)|… = −v·f, by differences along q ⊞ v t.
 TEST(Energy, PotentialFallsByThePowerOfTheForces) {
   using M =
       Model<Bodies<planar::Lrvf, planar::AncfCable<>>, Joints<Joint<planar::Weld, Penalty>>, Forces<SpringDamper>>;
@@ -85,7 +85,7 @@ TEST(Energy, PotentialFallsByThePowerOfTheForces) {
   };
   double const h = 1e-4;
   double const rate = (8.0 * (potential(h) - potential(-h)) - (potential(2 * h) - potential(-2 * h))) / (12.0 * h);
-  // at rest the residual without accelerations is minus the potential's force
+  // without velocities and accelerations the residual is minus the force of the potential
   system.evaluate(x.q, VecX::Zero(model.speeds()), 0.0);
   VecX r = VecX::Zero(model.speeds());
   system.residual(VecX::Zero(model.speeds()), VecX::Zero(0), r);
@@ -113,7 +113,7 @@ TEST(Observe, ReadsPartsOfTheState) {
   EXPECT_EQ(position(r.model, r.x, r.model.ground().at({1, 2, 3})), Vec3(1, 2, 3));
 }
 
-// Thesis Table 3.4: a unit quaternion counts four coordinates and one constraint.
+// Wallin 2016, Table 3.4: a unit quaternion counts as four coordinates and one constraint.
 TEST(Census, CountsAsTheThesisDoes) {
   auto const space = census(MixedSpace::model(0.0));
   EXPECT_EQ(space.coordinates, 14);

@@ -1,4 +1,4 @@
-// A model in words.
+// Summary of a model as text.
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/rigid/rigid.hpp>

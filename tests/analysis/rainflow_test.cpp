@@ -1,5 +1,4 @@
-// Rainflow counting: the worked example of the standard, histories whose cycles are plain, and laws that hold for any
-// history.
+// Rainflow counting: the example of the standard, histories with obvious cycles, and properties for every history.
 #include <polybody/signals/rainflow.hpp>
 
 #include <gtest/gtest.h>
@@ -32,7 +31,7 @@ TEST(TurningPoints, ArePeaksValleysAndEnds) {
   EXPECT_TRUE(has(refusal([] { turning_points(Points{0, std::nan("")}); }), "sample 1 is not finite"));
 }
 
-// ASTM E1049-85, Fig. 6: peaks and valleys A … I; the order, the pairs and the table of the standard.
+// ASTM E1049-85, Fig. 6: peaks and valleys A … I. Compared are the order, the pairs and the table of the standard.
 TEST(Rainflow, CountsTheExampleOfTheStandard) {
   Points const history{-2, 1, -3, 5, -1, 3, -4, 4, -2};
   std::vector<StressCycle> const expected{{3, -0.5, 0.5},  // A–B
@@ -55,8 +54,8 @@ TEST(Rainflow, CountsTheExampleOfTheStandard) {
   EXPECT_EQ(binned(found, 2.5), (std::vector<double>{0, 2.0, 0.5, 1.5}));  // up to 2.5, 5, 7.5, 10
 }
 
-// n periods of a sine from zero: every range between extremes is 2, in halves for the history begins and ends within
-// one; the first and last quarter are halves of range 1.
+// n periods of a sine from zero. Every range between extrema is 2. These ranges count as halves, because the history
+// begins and ends within one. The first and the last quarter are halves of range 1.
 TEST(Rainflow, CountsASineOncePerPeriod) {
   Points wave;
   for (int i = 0; i <= 4000; ++i) wave.push_back(std::sin(2 * std::numbers::pi * i / 400.0));
@@ -67,16 +66,16 @@ TEST(Rainflow, CountsASineOncePerPeriod) {
   EXPECT_EQ(small, 1.0);
 }
 
-// By hand after §5.4.4: three cycles of 1 close within larger ranges; 0–10 is half a cycle, for it begins the history;
-// 10, −10, 5, 0 are left.
+// By hand after §5.4.4: three cycles of 1 close within larger ranges. 0–10 is half a cycle, because it begins the
+// history. 10, −10, 5, 0 remain.
 TEST(Rainflow, FindsSmallCyclesWithinALargeOne) {
   auto const c = counts(rainflow(Points{0, 4, 3, 8, 7, 10, -10, 0, -1, 5, 0}));
   EXPECT_EQ(c, (std::map<double, double>{{1, 3.0}, {5, 0.5}, {10, 0.5}, {15, 0.5}, {20, 0.5}}));
 }
 
-// Whatever the history: the ranges, each as often as it is counted and twice over, make up the whole way from point to
-// point, the largest is from the lowest to the highest point, and a history upside down has the same cycles with
-// opposite means.
+// Properties of every history. Twice the sum of all ranges times their counts is the total path from point to point.
+// The largest range is from the lowest to the highest point. The inverted history has the same cycles with opposite
+// means.
 TEST(Rainflow, KeepsTheWayTheSpanAndTheSymmetry) {
   std::mt19937 random(3);
   for (int trial = 0; trial < 50; ++trial) {
@@ -103,8 +102,8 @@ TEST(Rainflow, KeepsTheWayTheSpanAndTheSymmetry) {
   }
 }
 
-// N₀ = 2e6 at 100 MPa with m = 3: 2e6 cycles of 100 MPa are the whole life, 50 MPa lasts 8 times as long. The
-// standard's history in units of 10 MPa: D = (0.5·3³ + 1.5·4³ + 0.5·6³ + 8³ + 0.5·9³)/10³ / 2e6 = 1.094e3/1e3/2e6.
+// N₀ = 2e6 at 100 MPa with m = 3: the life is 2e6 cycles of 100 MPa, and 8 times as many at 50 MPa. The standard's
+// history in units of 10 MPa: D = (0.5·3³ + 1.5·4³ + 0.5·6³ + 8³ + 0.5·9³)/10³ / 2e6 = 1.094e3/1e3/2e6.
 TEST(Damage, IsLinearInCyclesAndAPowerOfTheRange) {
   Basquin const curve{.range = 100e6, .cycles = 2e6, .exponent = 3.0};
   held({"closed forms", "cycles that a specimen lasts", By::closed_form, "N₀ (Δσ₀/Δσ)^m", "Basquin"}, curve.life(50e6),

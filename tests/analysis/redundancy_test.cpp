@@ -1,4 +1,5 @@
-// Ranks and counts of rows: CASES J5, a door on two pins, joints that contradict each other.
+// Ranks and numbers of constraint equations: four-bar and Bricard mechanism (J5), a door on two pins, contradictory
+// joints.
 
 #include <gtest/gtest.h>
 
@@ -30,7 +31,7 @@ std::string names(Redundancy const& r) {
   return all;
 }
 
-/// Rows, their rank and the degrees of freedom, counted.
+/// Checks the number of constraint equations, their rank and the degrees of freedom.
 void expect_counts(std::string const& mechanism, Redundancy const& r, Index rows, Index rank, Index freedoms) {
   auto const same = [&](char const* what, Index found, Index counted) {
     held({"J5", what, By::closed_form, "counted", mechanism}, double(found), double(counted), 0.0);
@@ -40,7 +41,7 @@ void expect_counts(std::string const& mechanism, Redundancy const& r, Index rows
   same("degrees of freedom", r.degrees_of_freedom, freedoms);
 }
 
-/// N windows of rods of 1 m, upright or turned down flat by 90° [CASES R2].
+/// N windows of rods of 1 m (R2: IFToMM A02), upright or rotated by 90° into the flat configuration.
 Model<Bodies<planar::Rigid>, Joints<FlatPin>> four_bars(int n, bool flat) {
   Model<Bodies<planar::Rigid>, Joints<FlatPin>> model;
   Vec2 const up = flat ? Vec2(1, 0) : Vec2(0, 1);
@@ -60,7 +61,8 @@ Model<Bodies<planar::Rigid>, Joints<FlatPin>> four_bars(int n, bool flat) {
   return model;
 }
 
-// CASES J5: 15 coordinates and 14 rows of rank 14; 12 in the flat position, where each window may fold both ways.
+// J5: 15 coordinates and 14 constraint equations of rank 14. The rank is 12 in the flat configuration, in which each
+// window has two branches.
 TEST(Redundancy, OfTheFourBarIsThatOfTheTheory) {
   auto const upright = four_bars(2, false), flat = four_bars(2, true);
   Redundancy const r = redundancy(upright, upright.reference_state()), f = redundancy(flat, flat.reference_state());
@@ -70,14 +72,14 @@ TEST(Redundancy, OfTheFourBarIsThatOfTheTheory) {
   EXPECT_TRUE(f.consistent());
 }
 
-// N + 1 ways to move in the flat position for any N.
+// N + 1 instantaneous degrees of freedom in the flat configuration for any N.
 TEST(Redundancy, OfFortyFlatWindowsIsForty) {
   auto const flat = four_bars(40, true);
   Redundancy const r = redundancy(flat, flat.reference_state());
   expect_counts("four-bar of 40 windows, flat", r, 2 * (41 + 2 * 40), 2 * (41 + 2 * 40) - 40, 41);
 }
 
-// CASES J5: 30 rows of rank 29 on 30 speeds; the last pin closes the loop.
+// J5: 30 generalised velocities and 30 constraint equations of rank 29. The last pin closes the loop.
 TEST(Redundancy, OfTheBricardMechanismIsOne) {
   Bricard<> const b(0.1);
   Redundancy const r = redundancy(b.model, b.model.reference_state());
@@ -86,14 +88,14 @@ TEST(Redundancy, OfTheBricardMechanismIsOne) {
   EXPECT_TRUE(r.consistent());
 }
 
-// Euler parameters bring five speeds and five rows of their own.
+// Euler parameters add five generalised velocities and five constraint equations of their own.
 TEST(Redundancy, CountsRowsThatBodiesOwn) {
   Bricard<Constraint, Rigid<EulerParameters>> const b(0.1);
   Redundancy const r = redundancy(b.model, b.model.reference_state());
   expect_counts("Bricard mechanism, Euler parameters", r, 35, 34, 1);
 }
 
-// In millimetres and grams the rank is the same.
+// The rank is the same in millimetres and grams.
 TEST(Redundancy, DoesNotDependOnTheUnits) {
   for (double const unit : {1e-6, 1.0, 1e6}) {
     Model<Bodies<Rigid<>>, Joints<Pin>> model;
@@ -117,7 +119,7 @@ TEST(Redundancy, OfBodiesWithoutJointsIsNone) {
 
 // --- contradictions -------------------------------------------------------------------------------------------
 
-/// A point mass of the plane on two bars from the same point, of lengths 1 and `second`.
+/// Planar point mass on two bars from the same point, of lengths 1 and `second`.
 struct TwoBars {
   using Bar = Joint<Distance, Constraint>;
   Model<Bodies<planar::Rigid>, Joints<Bar>> model;
@@ -162,7 +164,7 @@ struct Quadratic {
   }
 };
 
-/// A wheel on a pin with two drives.
+/// Wheel on a pin with two driving constraints.
 struct DrivenTwice {
   using Drive = Joint<PrescribedAngle<Quadratic>, Constraint>;
   Model<Bodies<planar::Rigid>, Joints<FlatPin, Drive>> model;

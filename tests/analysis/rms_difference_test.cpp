@@ -1,4 +1,4 @@
-// How far histories are apart.
+// Differences of histories.
 #include <gtest/gtest.h>
 
 #include <polybody/signals/rms_difference.hpp>
@@ -27,7 +27,7 @@ Sampled sampled(double until, int n, auto&& f) {
 
 double wave(double t) { return std::sin(2.0 * std::numbers::pi * t); }
 
-// sin against 1.1 sin is a tenth; against sin shifted by φ, 2 sin(φ/2).
+// Relative difference of sin and 1.1 sin: a tenth; of sin and sin shifted by φ: 2 sin(φ/2).
 TEST(RmsDifference, OfWaves) {
   auto const apart = [](Sampled const& a, Sampled const& b) {
     RmsDifference d(0.0, 10.0);
@@ -41,7 +41,8 @@ TEST(RmsDifference, OfWaves) {
   EXPECT_NEAR(apart(b, b), 0.0, 1e-15);
 }
 
-// Half of the step, and steps that have nothing to do with each other: linear in between, (2πh)²/8 at most.
+// Half of the step, and steps without a common multiple. The interpolation is linear, with an error of at most
+// (2πh)²/8.
 TEST(RmsDifference, OfOtherSteps) {
   Sampled const b = sampled(5.0, 1000, wave);
   for (auto const& [n, within] : {std::pair(2000, 1e-12), {1370, 1e-4}, {777, 4e-4}}) {

@@ -1,4 +1,4 @@
-// Refusals: steps past the end of a run, clocks that are too coarse, snapshots that fail or are damaged.
+// Refusals: steps past the end of a run, clocks with insufficient resolution, snapshots that fail or are damaged.
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/rigid/planar_rigid.hpp>
@@ -81,7 +81,7 @@ void expect_bits_after_failed_snapshot(I const& integrator) {
   bad = made + 1;
   EXPECT_THROW((void)run.snapshot(), std::runtime_error);
   bad = -1;
-  run.run();  // with the bits of a run without a snapshot
+  run.run();  // bitwise identical to a run without a snapshot
   EXPECT_EQ(p.x.q, reference.x.q);
   EXPECT_EQ(p.x.v, reference.x.v);
 }

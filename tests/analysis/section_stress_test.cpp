@@ -1,5 +1,5 @@
-// Stress in a section: it adds up to the section's forces, leaves the surface free, and has the textbook's largest
-// values.
+// Stress in a section: its resultants are the section forces, the surface is free of traction, and the largest values
+// are those of textbooks.
 #include <polybody/stress/section_stress.hpp>
 
 #include <gtest/gtest.h>
@@ -19,13 +19,14 @@ Bar bar(decltype(Bar::section) const& section, double poisson = 0.3) {
 }
 Vec6 const forces = (Vec6() << 900.0, 700.0, -500.0, 40.0, 25.0, -35.0).finished();
 
-/// What a stress contributes to (N, Q_y, Q_z, M_x, M_y, M_z).
+/// Contribution of a stress to (N, Q_y, Q_z, M_x, M_y, M_z).
 Vec6 part(SectionStress const& s, double y, double z) {
   double const xy = s.shear[0], xz = s.shear[1];
   return (Vec6() << s.axial, xy, xz, y * xz - z * xy, z * s.axial, -y * s.axial).finished();
 }
 
-// Stresses are polynomials of degree two, their moments of degree three times r: exact by five radii and equal angles.
+// Stresses are polynomials of degree two, and their moments have degree three times r. Five radii and equal angles
+// are exact.
 TEST(SectionStress, OfACircleAddsUpToTheForces) {
   double const r = 0.05;
   Bar const round = bar(Circle{.radius = r}, 0.27);
@@ -49,8 +50,8 @@ TEST(SectionStress, LeavesTheSurfaceOfACircleFree) {
   }
 }
 
-// The torque's series is integrated by 16 pieces of five points each way; it is cut after 30 terms, which leave 1e-6 of
-// a moment.
+// The series of the torque is integrated in 16 pieces of five points in each direction. It is truncated after 30
+// terms with an error of 1e-6 of a moment.
 TEST(SectionStress, OfARectangleAddsUpToTheForces) {
   for (auto const& [h, w] : {std::pair(0.06, 0.02), {0.02, 0.05}, {0.03, 0.03}}) {
     Bar const flat = bar(Rectangle{.height = h, .width = w});
@@ -68,8 +69,8 @@ TEST(SectionStress, OfARectangleAddsUpToTheForces) {
   }
 }
 
-// Largest shear of a torque M_x/(k a b²) in the middle of the longer sides b: k = 0.208, 0.246, 0.267, 0.299 for sides
-// 1, 2, 3, 6 to 1 [Timoshenko & Goodier 1970, §109, table 4], to the digits printed; and none in the corners.
+// Largest shear of a torque, M_x/(k a b²), in the middle of the longer sides b: k = 0.208, 0.246, 0.267, 0.299 for
+// the ratios 1, 2, 3, 6 [Timoshenko & Goodier 1970, §109, table 4], to the printed digits. It is zero in the corners.
 TEST(SectionStress, OfTorqueIsTheTables) {
   Vec6 torque = Vec6::Zero();
   torque[3] = 1.0;

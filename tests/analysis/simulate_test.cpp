@@ -1,4 +1,5 @@
-// What a run owes its user, on a rigid uniform rod that hangs on a pin (m = 1, L = 1, g = 9.81) and on a free rod.
+// Properties of a run for its user, with a rigid uniform rod that hangs on a pin (m = 1, L = 1, g = 9.81) and with a
+// free rod.
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/forces/user_force.hpp>
@@ -21,7 +22,7 @@ namespace simulate_test {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// A force that is not finite from a certain time on.
+// Force that is not finite from a given time on.
 auto poison(double from) {
   return user_force<1>([from](auto const& frames, double t) {
     using T = typename std::decay_t<decltype(frames[0].r)>::Scalar;
@@ -40,7 +41,7 @@ planar::Rigid uniform_rod() {
   return planar::Rigid::from({.length = 1.0, .constants = BarConstants{.EA = 1.0, .EI = 1.0, .mass_per_length = 1.0}});
 }
 
-// Released at rest from the horizontal.
+// Pendulum released at rest from the horizontal.
 struct Pendulum {
   TestModel model{Gravity{0.0, -9.81, 0.0}};
   BodyHandle<planar::Rigid> rod = model.add(uniform_rod(), "rod");
@@ -53,7 +54,7 @@ struct Pendulum {
   }
 };
 
-// Not held, without gravity.
+// Rod without joints and gravity.
 struct FreeRod {
   TestModel model;
   BodyHandle<planar::Rigid> rod = model.add(uniform_rod(), "rod");
@@ -62,8 +63,8 @@ struct FreeRod {
   void push(Vec3 const& force, Window const& law) { model.apply(Push{.force = force, .law = law}, rod.at(0.5)); }
 };
 
-// A quarter of the period at an amplitude of 90 degrees: K(sin 45°)/ω, ω² = 3g/2L, K the complete elliptic integral
-// [any text on the pendulum; J1 of the reference cases: R(release) = mg/4, R(bottom) = 5mg/2].
+// A quarter of the period at an amplitude of 90 degrees: K(sin 45°)/ω, ω² = 3g/2L, with the complete elliptic
+// integral K. The reactions (J1) are R(release) = mg/4 and R(bottom) = 5mg/2.
 double const quarter_period = std::comp_ellint_1(std::sqrt(0.5)) / std::sqrt(1.5 * 9.81);
 
 std::vector<double> times_of(auto&& run) {
@@ -87,7 +88,7 @@ TEST(Simulate, YieldsTheStartAndTheEndOfEveryStep) {
   Pendulum p;
   std::vector<double> const t = times_of(simulate(p.model, p.x, GeneralizedAlpha{}, {.until = 1.0, .step = 0.25}));
   EXPECT_EQ(t, (std::vector{0.0, 0.25, 0.5, 0.75, 1.0}));
-  EXPECT_EQ(p.x.t, 1.0);  // the caller's state was moved along
+  EXPECT_EQ(p.x.t, 1.0);  // the caller's state is updated
   EXPECT_LT(p.tip(p.x)[0], -0.9);
 }
 
@@ -99,17 +100,19 @@ TEST(Simulate, AnEndThatIsTheStartTakesNoStep) {
   EXPECT_EQ(run.report().steps, 0);
 }
 
-// Speeds that violate the joint are projected, then v̇ and λ are those of the start: mg/4 at release [J1, A].
+// Velocities that violate the joint are projected. v̇ and λ are then those of the start: mg/4 at release (J1, closed
+// form).
 TEST(Simulate, StartsConsistently) {
   Pendulum p;
-  p.x.v << 0.3, 0.0, 0.0;  // along the rod, which the pin forbids
+  p.x.v << 0.3, 0.0, 0.0;  // along the rod, prevented by the pin
   auto run = simulate(p.model, p.x, GeneralizedAlpha{}, {.until = 1.0, .step = 0.1});
   EXPECT_LT(p.x.v.norm(), 1e-15);
   EXPECT_LT((p.x.a - Vec3(0.0, -0.75 * 9.81, -1.5 * 9.81)).norm(), 1e-13);
   EXPECT_LT((reaction(p.model, p.x, p.pin).f - Vec3(0.0, 0.25 * 9.81, 0.0)).norm(), 1e-13);
 }
 
-// A step of a third of a millisecond summed 30000 times misses 10 s by 1e-12; no step is spent on that.
+// The sum of 30000 steps of a third of a millisecond differs from 10 s by 1e-12. No additional step covers this
+// difference.
 TEST(Simulate, RoundingOfTheClockCostsNoStep) {
   FreeRod f;
   auto const& report = simulate(f.model, f.x, GeneralizedAlpha{}, {.until = 10.0, .step = 1e-3 / 3.0}).run();
@@ -117,7 +120,7 @@ TEST(Simulate, RoundingOfTheClockCostsNoStep) {
   EXPECT_EQ(report.steps, 30000);
 }
 
-// Nothing is left to refer to after `auto const& report = simulate(…).run();`.
+// No object remains for a reference after `auto const& report = simulate(…).run();`.
 TEST(Simulate, TheReportOfASimulationThatEndsWithItsStatementIsACopy) {
   FreeRod f;
   RunOptions const options{.until = 0.1, .step = 0.01};
@@ -128,7 +131,7 @@ TEST(Simulate, TheReportOfASimulationThatEndsWithItsStatementIsACopy) {
   EXPECT_EQ(run.report().steps, 10);
 }
 
-// t = t₀ + k h: 0.1 s summed 1000 times is 1.4e-12 s off.
+// t = t₀ + k h: the sum of 1000 steps of 0.1 s would have an error of 1.4e-12 s.
 TEST(Simulate, TheClockDoesNotAddUpRounding) {
   FreeRod f;
   std::vector<double> const t = times_of(simulate(f.model, f.x, GeneralizedAlpha{}, {.until = 100.0, .step = 0.1}));
@@ -159,7 +162,7 @@ TEST(Simulate, AResumedRunKeepsTheClock) {
   EXPECT_EQ(rest, std::vector<double>(t.begin() + 77, t.end()));
 }
 
-// 0.77 − 0.76 is not 0.01: a last step of that length would set what follows apart from a run that went through.
+// 0.77 − 0.76 is not 0.01. A last step of that length would change the results compared with an uninterrupted run.
 TEST(Simulate, ARunThatGoesOnLaterHasTheBitsOfOneThatWentThrough) {
   Pendulum whole, parted;
   auto through = simulate(whole.model, whole.x, GeneralizedAlpha{}, {.until = 2.0, .step = 0.01});
@@ -173,20 +176,22 @@ TEST(Simulate, ARunThatGoesOnLaterHasTheBitsOfOneThatWentThrough) {
   expect_same(x, whole.x);
 }
 
-// Over a crumb of a step h the rows would fix accelerations and reactions by rounding errors over h².
+// In a very short remainder step h the constraint equations would determine accelerations and reactions from
+// round-off divided by h².
 TEST(Simulate, LeavesNoCrumbAtTheEnd) {
   double const step = (1.0 - 1e-7) / 1000.0;
   Pendulum p;
   std::vector<double> const t = times_of(simulate(p.model, p.x, GeneralizedAlpha{}, {.until = 1.0, .step = step}));
   EXPECT_EQ(t.back(), 1.0);
   for (std::size_t i = 1; i < t.size(); ++i) EXPECT_NEAR(t[i] - t[i - 1], step, 0.011 * step);
-  // t = 1: R = (0.1804260137, 2.4539749449) [J1, C]; measured 9.4e-5, the method's own error of second order
+  // t = 1: R = (0.1804260137, 2.4539749449) (J1, independent computation); measured 9.4e-5, the method's own error of
+  // second order
   EXPECT_LT((reaction(p.model, p.x, p.pin).f - Vec3(0.1804260137, 2.4539749449, 0.0)).norm(), 3e-4);
 }
 
-// --- corners --------------------------------------------------------------------------------------------------
+// --- breakpoints ----------------------------------------------------------------------------------------------
 
-// Steps end at the corners of loads and at the user's, not just near them.
+// Steps end exactly at the breakpoints of loads and of the user.
 TEST(Simulate, HitsEveryCornerExactly) {
   FreeRod f;
   f.push({8.0, 0.0, 0.0}, {.from = 0.05, .to = 0.35});
@@ -196,7 +201,8 @@ TEST(Simulate, HitsEveryCornerExactly) {
   EXPECT_EQ(t.size(), 13u);  // 0, .05 | .15, .25, .35 | .45, .55, .65, .75, .777 | .877, .977, 1
 }
 
-// A force over 0.05 ≤ t < 0.35 gives the momentum 8 · 0.3 and the way 8 · 0.3²/2 + 2.4 · 0.65, exactly [A].
+// A force over 0.05 ≤ t < 0.35 gives the momentum 8 · 0.3 and the distance 8 · 0.3²/2 + 2.4 · 0.65, exactly (closed
+// form).
 template <class I>
 void expect_exact_impulse(I const& integrator) {
   FreeRod f;
@@ -208,7 +214,7 @@ void expect_exact_impulse(I const& integrator) {
 TEST(Simulate, GivesTheImpulseOfALoadThatJumps) { expect_exact_impulse(GeneralizedAlpha{}); }
 TEST(Simulate, GivesTheImpulseOfALoadThatJumpsToAnExplicitMethod) { expect_exact_impulse(Adaptive{}); }
 
-// 0.3 and 0.1 + 0.2 differ in the last bit; no step fits between them, nor between a corner and the end.
+// 0.3 and 0.1 + 0.2 differ in the last bit. There is no step between them, nor between a breakpoint and the end.
 TEST(Simulate, CornersThatOnlyRoundingSetsApartAreOne) {
   for (double const until : {0.3, 0.1 + 0.2, 0.4}) {
     FreeRod f;
@@ -240,20 +246,20 @@ double time_of_first_crossing(auto const& integrator, double step) {
   EXPECT_EQ(run.report().events.size(), 1u);
   EXPECT_EQ(run.report().events[0].time, p.x.t);
   EXPECT_LT(std::abs(p.tip(p.x)[0]), 1e-9);  // speed 5.4 m/s, tolerance 1e-10 s
-  EXPECT_LT((reaction(p.model, p.x, p.pin).f - Vec3(0.0, 2.5 * 9.81, 0.0)).norm(), 1e-2);  // 5mg/2 [J1, A]
+  EXPECT_LT((reaction(p.model, p.x, p.pin).f - Vec3(0.0, 2.5 * 9.81, 0.0)).norm(), 1e-2);  // 5mg/2 (J1, closed form)
   return p.x.t;
 }
 
-// The pendulum crosses the vertical after a quarter of the period.
+// The pendulum passes the vertical after a quarter of the period.
 TEST(Simulate, EndsTheStepWhereAnEventHappens) {
   EXPECT_NEAR(time_of_first_crossing(Adaptive{}, 1e-2), quarter_period, 1e-9);
   double const coarse = time_of_first_crossing(GeneralizedAlpha{.rho_inf = 1.0}, 4e-3) - quarter_period;
   double const fine = time_of_first_crossing(GeneralizedAlpha{.rho_inf = 1.0}, 2e-3) - quarter_period;
   EXPECT_LT(std::abs(fine), 1e-5);       // measured 6.5e-6
-  EXPECT_NEAR(coarse / fine, 4.0, 0.2);  // what is left is the method's own error, of second order
+  EXPECT_NEAR(coarse / fine, 4.0, 0.2);  // the remaining error is that of the method, of second order
 }
 
-// It crosses at every odd quarter; the run goes on after each.
+// It passes the vertical at every odd quarter. The run continues after each event.
 TEST(Simulate, MeetsAnEventAsOftenAsItHappens) {
   Pendulum p;
   auto run = simulate(p.model, p.x, Adaptive{}, {.until = 10.0, .step = 1e-2, .events = {p.crossing()}});
@@ -268,7 +274,7 @@ TEST(Simulate, MeetsAnEventAsOftenAsItHappens) {
   }
 }
 
-// A value that depends on time alone is found to the event's tolerance, whatever the order of the events.
+// The time of an event function of time alone is found to the event's tolerance, for any order of the events.
 TEST(Simulate, FindsTheFirstOfSeveralEventsInAStep) {
   auto const at = [](char const* name, double time, bool stops = false) {
     return Event{.name = name, .value = [time](State const& x) { return x.t - time; }, .stops = stops};
@@ -297,10 +303,10 @@ TEST(Simulate, MeetsEventsThatHappenTogether) {
   run.run();
   ASSERT_EQ(run.report().events.size(), 2u);
   EXPECT_EQ(run.report().events[0].time, run.report().events[1].time);
-  EXPECT_TRUE(run.report().stopped);  // one of them stops
+  EXPECT_TRUE(run.report().stopped);  // one of them is terminal
 }
 
-// The event at the corner, a hair before it, and a hair after.
+// Event at the breakpoint, shortly before it, and shortly after it.
 TEST(Simulate, AnEventMayFallOnACorner) {
   for (double const shift : {0.0, -3e-10, 3e-10}) {
     FreeRod f;
@@ -315,8 +321,8 @@ TEST(Simulate, AnEventMayFallOnACorner) {
   }
 }
 
-// An event a hair after a step's start, or before the end, leaves a crumb of a step; reactions survive it.
-// R = (0.1804260137, 2.4539749449) at t = 1 [J1, C].
+// An event shortly after the start of a step, or before its end, leaves a very short remainder step. The reactions
+// remain accurate. R = (0.1804260137, 2.4539749449) at t = 1 (J1, independent computation).
 TEST(Simulate, AnEventNextToAStepEndDoesNoHarm) {
   for (double const time : {0.5 + 2e-9, 1.0 - 2e-9}) {
     Pendulum p;
@@ -325,10 +331,10 @@ TEST(Simulate, AnEventNextToAStepEndDoesNoHarm) {
     double largest = 0.0;
     for (State const& now : run) {
       largest = std::max(largest, reaction(p.model, now, p.pin).f.norm());
-      ASSERT_LT(violation(run.system(), now).velocity, 2e-5);  // the method's own; 8e-6 measured, of second order
+      ASSERT_LT(violation(run.system(), now).velocity, 2e-5);  // error of the method; 8e-6 measured, of second order
     }
     EXPECT_EQ(run.report().events.size(), 1u);
-    EXPECT_LT(largest, 2.5 * 9.81 + 0.01);  // nowhere more than at the bottom
+    EXPECT_LT(largest, 2.5 * 9.81 + 0.01);  // the maximum is at the bottom
     EXPECT_LT((reaction(p.model, p.x, p.pin).f - Vec3(0.1804260137, 2.4539749449, 0.0)).norm(), 3e-4);
   }
 }
@@ -348,7 +354,7 @@ TEST(Simulate, RefusesAnEventThatIsNotANumber) {
 
 // --- failures -------------------------------------------------------------------------------------------------
 
-// Runs until it throws E; the state must be that of the last step accepted.
+// Runs until it throws E. The state must be that of the last accepted step.
 template <class E>
 std::string failure(Pendulum& p, auto const& integrator, RunOptions const& options, double latest) {
   auto run = simulate(p.model, p.x, integrator, options);
@@ -383,7 +389,7 @@ TEST(Simulate, AFailingStepOfAnExplicitMethodLeavesTheStateUntouched) {
   EXPECT_TRUE(has(failure<NonFinite>(p, Adaptive{}, {.until = 1.0, .step = 0.1}, 0.45), "\"rod\""));
 }
 
-// The step to the corner succeeds, but nothing can start from there.
+// The step to the breakpoint succeeds, but no step can start from there.
 TEST(Simulate, AFailureAtACornerLeavesTheStateUntouched) {
   Pendulum p;
   p.model.apply(poison(0.45), p.rod.at(1.0), "poison");
@@ -417,7 +423,7 @@ TEST(Simulate, NothingIsAcceptedUnconverged) {
 
 TEST(Simulate, AFailingStartLeavesTheStateUntouched) {
   Pendulum p;
-  p.x.v << 0.3, 0.0, 0.0;  // would be projected
+  p.x.v << 0.3, 0.0, 0.0;  // would be projected otherwise
   p.model.apply(poison(0.0), p.rod.at(1.0), "poison");
   State const before = p.x;
   EXPECT_THROW((void)simulate(p.model, p.x, GeneralizedAlpha{}, {.until = 1.0, .step = 0.1}), NonFinite);
@@ -452,7 +458,7 @@ TEST(Simulate, AStateOfAnotherSizeIsRefused) {
   FreeRod f;
   RunOptions const options{.until = 1.0, .step = 0.1};
   auto const told = [&](State x) { return refusal([&] { (void)simulate(p.model, x, GeneralizedAlpha{}, options); }); };
-  EXPECT_TRUE(has(told(f.x), "does not fit"));  // has no multipliers
+  EXPECT_TRUE(has(told(f.x), "does not fit"));  // without multipliers
   EXPECT_TRUE(has(told(State{}), "does not fit"));
   State early = p.x;
   p.model.add(uniform_rod(), "a later one");

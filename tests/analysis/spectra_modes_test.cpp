@@ -1,4 +1,4 @@
-// Spectra's Lanczos iteration against Eigen's dense solver and closed forms; this file is built where Spectra is
+// Lanczos iteration of Spectra compared with Eigen's dense solver and closed forms. This file is built if Spectra is
 // installed.
 #include <polybody/vibration/spectra_modes.hpp>
 
@@ -11,7 +11,7 @@
 namespace polybody {
 namespace spectra_modes_test {
 
-/// 40 elements; with a round section every frequency of bending is double.
+/// 40 elements. With a round section every bending frequency is double.
 Structure bar(double ratio) {
   return structure_of(Bar{.length = 2.0,
                           .constants = BarConstants{.EA = 4e4,
@@ -33,7 +33,7 @@ struct Held {
   }
 };
 
-/// Frequencies to 1e-8; shapes with unit mass, that span what the dense solver's span.
+/// Frequencies to 1e-8. The shapes have unit mass and span the subspace of the dense solver.
 void expect_alike(LowestModes const& modes, LowestModes const& dense, Structure::Sparse const& m) {
   Index const n = dense.squared_frequencies.size();
   ASSERT_EQ(modes.squared_frequencies.size(), n);
@@ -44,7 +44,7 @@ void expect_alike(LowestModes const& modes, LowestModes const& dense, Structure:
       EXPECT_GE(modes.squared_frequencies[i], modes.squared_frequencies[i - 1] * (1.0 - 1e-9));
     }
   }
-  MatX const product = dense.shapes.transpose() * (m * modes.shapes);  // orthogonal when both span the same
+  MatX const product = dense.shapes.transpose() * (m * modes.shapes);  // orthogonal if both span the same subspace
   EXPECT_LT((MatX(modes.shapes.transpose() * (m * modes.shapes)) - MatX::Identity(n, n)).norm(), 1e-9);
   EXPECT_LT((product * product.transpose() - MatX::Identity(n, n)).norm(), 1e-8);
   for (Index i = 0; i < n; ++i)  // and modes of different frequencies do not mix
@@ -54,7 +54,7 @@ void expect_alike(LowestModes const& modes, LowestModes const& dense, Structure:
       }
 }
 
-// Eleven of the round bar: five pairs of bending and, ninth, torsion.
+// Eleven modes of the round bar: five pairs of bending and torsion as the ninth.
 TEST(SpectraModes, AgreeWithTheDenseSolver) {
   for (double const ratio : {1.7, 1.0}) {
     Held const held(bar(ratio));
@@ -77,8 +77,8 @@ TEST(SpectraModes, LeaveMostOfAllModesToTheDenseSolver) {
   EXPECT_EQ(SpectraModes{}(held.k, held.m, 6).squared_frequencies, DenseModes{}(held.k, held.m, 6).squared_frequencies);
 }
 
-// E1 clamped–free: ω_i = (β_i/L)² √(EI/ρA), in two planes. Of forty cubic elements ω² errs by (β h/L)⁴/720, for the
-// fifth mode 2.2e-5, and rotary inertia of 1e-9 m² adds 1e-7.
+// E1 clamped–free: ω_i = (β_i/L)² √(EI/ρA), in two planes. With forty cubic elements the error of ω² is (β h/L)⁴/720,
+// 2.2e-5 for the fifth mode. The rotary inertia of 1e-9 m² adds 1e-7.
 TEST(SpectraModes, OfACantileverAreEulerAndBernoullis) {
   double const beta[] = {1.875104068711961, 4.694091132974175, 7.854757438237613, 10.99554073487547, 14.13716839104647};
   double const length = 1.5, EI = 4.0, density = 0.9;

@@ -1,4 +1,4 @@
-// The warning of steps that compliant joints do not bear: at the limit of the closed form, and runs on both sides of
+// Warning of steps that are unstable for compliant joints: at the limit of the closed form, and runs on both sides of
 // it.
 
 #include <gtest/gtest.h>
@@ -24,8 +24,8 @@ namespace stable_step_test {
 
 using Pin = Joint<planar::Revolute, Penalty>;
 
-/// A body of 2 kg and 0.1 kg m² on a compliant pin 0.3 m from its mass centre: across, ω² = k s and d = c s with
-/// s = 1/m + r²/J = 0.5 + 0.9; along, 1/m only.
+/// Body of 2 kg and 0.1 kg m² on a compliant pin 0.3 m from its mass centre. Across, ω² = k s and d = c s with s =
+/// 1/m + r²/J = 0.5 + 0.9. Along, s = 1/m.
 struct Pinned {
   static constexpr double s = 0.5 + 0.3 * 0.3 / 0.1, k = 3e4;
   Model<Bodies<planar::Rigid>, Joints<Pin>> model;
@@ -46,7 +46,7 @@ std::vector<std::string> warnings(I const& integrator, M const& model, State con
   return simulate(model, x, integrator, {.until = h, .step = h}).report().warnings;
 }
 
-/// Whether 500 steps leave the speeds below a hundred times those of the start.
+/// Returns true if 500 steps leave the velocities below a hundred times their initial values.
 template <class I, class M>
 bool stays(I const& integrator, M const& model, State const& start, double h) {
   State x = start;
@@ -60,7 +60,7 @@ bool stays(I const& integrator, M const& model, State const& start, double h) {
   return true;
 }
 
-/// The step from which on a run warns, near `limit`, by bisection.
+/// Smallest step with a warning near `limit`, by bisection.
 template <class I, class M>
 double warned_from(I const& integrator, M const& model, State const& start, double limit) {
   double low = 0.9 * limit, high = 1.1 * limit;
@@ -70,7 +70,7 @@ double warned_from(I const& integrator, M const& model, State const& start, doub
   }
   return 0.5 * (low + high);
 }
-/// Records it; the iteration for the highest frequency ends from below, so the step is never too short.
+/// Records this step. The iteration for the highest frequency converges from below, so the step is never too short.
 template <class I, class M>
 void held_limit(char const* what, char const* source, I const& integrator, M const& model, State const& start,
                 double limit, double part, std::string const& at = {}) {
@@ -78,7 +78,7 @@ void held_limit(char const* what, char const* source, I const& integrator, M con
        warned_from(integrator, model, start, limit), limit, part * limit, {at});
 }
 
-/// `limit` is the largest stable step of the closed form: no warning and no growth below, both above.
+/// `limit` is the largest stable step of the closed form: below it neither warning nor growth, above it both.
 template <class I>
 void expect_limit(I const& integrator, double damping, double limit) {
   Pinned const p(damping);
@@ -103,8 +103,8 @@ TEST(StableStep, OfUndampedJointsIsThatOfTheImaginaryAxis) {
   expect_limit(RungeKutta4<>{}, 0.0, std::sqrt(8.0) / omega);
 }
 
-// With x₁ = −x₀, v₁ = −v₀, a₁ = −a₀ the equations of a step give ω²h² + 4dh = 4 for central differences and ω²h² + 2dh
-// = 4 for symplectic Euler; d = 2ζω makes that quadratic in ωh.
+// With x₁ = −x₀, v₁ = −v₀, a₁ = −a₀ the equations of a step give ω²h² + 4dh = 4 for central differences and ω²h² +
+// 2dh = 4 for symplectic Euler. With d = 2ζω these are quadratic in ωh.
 TEST(StableStep, OfDampedJointsIsShorter) {
   for (double const z : {0.1, 0.7, 4.0}) {
     double const verlet = std::sqrt(16.0 * z * z + 4.0) - 4.0 * z, euler = std::sqrt(4.0 * z * z + 4.0) - 2.0 * z;
@@ -114,8 +114,8 @@ TEST(StableStep, OfDampedJointsIsShorter) {
   }
 }
 
-// On the negative real axis Runge–Kutta is stable where 1 + z/2 + z²/6 + z³/24 = 0 at the latest, z =
-// −2.785293563405282; the fast root of ζ = 5/4 is 2ω.
+// On the negative real axis the stability limit of Runge–Kutta is 1 + z/2 + z²/6 + z³/24 = 0, z = −2.785293563405282.
+// The fast root of ζ = 5/4 is 2ω.
 TEST(StableStep, OfOverdampedJointsUnderRungeKuttaIsThatOfTheRealAxis) {
   double const z = -2.785293563405282;
   ASSERT_NEAR(1.0 + z / 2 + z * z / 6 + z * z * z / 24, 0.0, 1e-12);
@@ -128,7 +128,7 @@ TEST(StableStep, OfIntegratorsWithoutALimitIsNotWarnedOf) {
   EXPECT_TRUE(warnings(DormandPrince<>{}, p.model, p.x, 100.0 / omega).empty());
 }
 
-// A slide along y leaves the body no turn: ω² = k/m.
+// A slide along y prevents the rotation of the body: ω² = k/m.
 TEST(StableStep, KnowsWhatRowsHold) {
   using Slide = Joint<planar::Prismatic, Constraint>;
   Model<Bodies<planar::Rigid>, Joints<Pin, Slide>> model;
@@ -144,7 +144,7 @@ TEST(StableStep, KnowsWhatRowsHold) {
              limit, 1e-4);
 }
 
-// Bushings: the largest of kᵢ/m and of the turns' kᵢ/Iᵢ.
+// Bushings: the largest of kᵢ/m and of the rotational kᵢ/Iᵢ.
 TEST(StableStep, OfABushingIsThatOfItsStiffestCoordinate) {
   using Mount = Joint<Weld, Bushing>;
   for (double const turn : {500.0, 10.0}) {
@@ -161,8 +161,8 @@ TEST(StableStep, OfABushingIsThatOfItsStiffestCoordinate) {
   }
 }
 
-// Eight bodies of 2 kg, each pinned to the next at their mass centres: ω² = 4 k/m sin²(jπ/16), at most j = 7. The
-// iteration finds it from below, to half a per cent.
+// Eight bodies of 2 kg, each pinned to the next at the mass centres: ω² = 4 k/m sin²(jπ/16), at most j = 7. The
+// iteration converges from below, to half a per cent.
 TEST(StableStep, OfAChainIsThatOfItsHighestMode) {
   Model<Bodies<planar::Rigid>, Joints<Pin>> model;
   std::vector<BodyHandle<planar::Rigid>> bodies;

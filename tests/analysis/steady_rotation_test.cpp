@@ -22,7 +22,7 @@ using Pin = Joint<Revolute, Constraint>;
 using Ball = Joint<Spherical, Constraint>;
 using Drive = Joint<PrescribedAngle<Ramp>, Constraint>;
 
-/// Drag c from the ground.
+/// Drag c relative to the ground.
 auto const drag = user_force<1>([](auto const& frames, double) {
   using T = typename std::decay_t<decltype(frames[0].r)>::Scalar;
   Wrench<T> w;
@@ -30,14 +30,14 @@ auto const drag = user_force<1>([](auto const& frames, double) {
   return std::array{w};
 });
 
-// as few types as will do, for the compiler's sake
+// few model types, for the compilation time
 using PlaneModel = Model<Bodies<planar::Rigid>, Joints<>, Forces<SpringDamper, std::decay_t<decltype(drag)>>>;
 template <class B>
 using SpaceModel = Model<Bodies<B>, Joints<Pin, Ball, Drive>, Forces<SpringDamper>>;
 
 SteadyRotation about_z(double omega) { return {.angular_velocity = {0, 0, omega}}; }
 
-/// Modes about a steady rotation, without the neutral ones, slower than 1e-4 rad/s.
+/// Eigenvalues about a steady rotation, without those of free motions, below 1e-4 rad/s.
 std::vector<std::complex<double>> eigenvalues(Linearisation const& l) {
   std::vector<std::complex<double>> kept;
   for (std::complex<double> const s : damped_modes(l, 100).eigenvalue)
@@ -45,11 +45,11 @@ std::vector<std::complex<double>> eigenvalues(Linearisation const& l) {
   return kept;
 }
 
-/// A mass m on a spring k, c of free length l₀ whose other end is at the origin; both turn about z. In the turning
+/// Mass m on a spring k, c of free length l₀ whose other end is at the origin. Both rotate about z. In the rotating
 /// frame
 ///   radial ξ¨ + (c/m) ξ˙ − 2Ω η˙ + (k/m − Ω²) ξ = 0,  tangential η¨ + 2Ω ξ˙ + (N/(m r₀) − Ω²) η = 0,
-/// and the tension N = k (r₀ − l₀) = m Ω² r₀ cancels the last term: s² (s² + (c/m) s + k/m + 3Ω²) = 0. Across the plane
-/// ζ¨ + Ω² ζ = 0.
+/// and the tension N = k (r₀ − l₀) = m Ω² r₀ cancels the last term: s² (s² + (c/m) s + k/m + 3Ω²) = 0. Normal to the
+/// plane ζ¨ + Ω² ζ = 0.
 struct Slung {
   double const m = 2.0, k = 50.0, c = 1.2, free_length = 1.0, omega = 3.0;
   double const radius = k * free_length / (k - m * omega * omega);
@@ -75,8 +75,8 @@ TEST(SteadyRotation, OfAMassOnASpringInThePlane) {
   EXPECT_LT(std::abs(s[0] - slung.radial), 1e-8);
 }
 
-// In space also the body's own turning: a sphere whose spin is tilted once keeps it, and seen from the frame the spin
-// goes round with Ω.
+// In space the body's own rotation is included. A sphere with a tilted spin keeps it, and in the rotating frame the
+// spin axis rotates with Ω.
 TEST(SteadyRotation, OfAMassOnASpringInSpace) {
   Slung const slung;
   Rigid<> const sphere(slung.m, 0.3 * Mat3::Identity(), Placement::at({0.9, 0.9, 0}, {0.3, -0.5, 0.7}));
@@ -86,9 +86,9 @@ TEST(SteadyRotation, OfAMassOnASpringInSpace) {
   EXPECT_LT(std::abs(s[2] - slung.radial), 1e-8);
 }
 
-// A mass at rest on the axis, spring k and drag c from the ground: in the world s = −c/2m ± i ω_d; a frame that turns
-// with Ω sees the two whirls at |ω_d ∓ Ω|, with the same decay. This asks for ∂f/∂v Dw in K and for the Coriolis terms
-// in D.
+// Mass at rest on the axis, with spring k and drag c relative to the ground: in the world s = −c/2m ± i ω_d. In a
+// frame that rotates with Ω the two whirls have |ω_d ∓ Ω| and the same decay. This requires ∂f/∂v Dw in K and the
+// Coriolis terms in D.
 TEST(SteadyRotation, ShiftsWhirlsByItsOwnRate) {
   double const m = 2.0, k = 50.0, c = 1.2, omega = 3.0;
   PlaneModel model;
@@ -102,7 +102,7 @@ TEST(SteadyRotation, ShiftsWhirlsByItsOwnRate) {
   EXPECT_LT(std::abs(s[1] - std::complex<double>(-decay, swing + omega)), 1e-9);
 }
 
-/// A hub driven about z, and a thin uniform rod of length L hinged to it at distance e from the axis.
+/// Hub driven about z, and a thin uniform rod of length L hinged to it at the distance e from the axis.
 struct Blade {
   SpaceModel<Rigid<>> model;
   State x;
@@ -119,9 +119,9 @@ struct Blade {
   }
 };
 
-// A piece dm of the rod at s from the hinge is pulled away from the axis by Ω² (e + s) dm. Flapping by β its lever is s
-// β, so that ω² = Ω² ∫(e + s) s ds/∫s² ds = Ω² (1 + 3e/2L); lagging, the pull turns with the radius, and only its part
-// from e is left: ω² = Ω² 3e/2L.
+// The centrifugal force on an element dm of the rod at s from the hinge is Ω² (e + s) dm. In flapping by β its moment
+// arm is s β, so ω² = Ω² ∫(e + s) s ds/∫s² ds = Ω² (1 + 3e/2L). In lagging, the force rotates with the radius, and
+// only its part due to e remains: ω² = Ω² 3e/2L.
 TEST(SteadyRotation, OfAHingedBlade) {
   double const omega = 7.0, e = 0.3, length = 2.0;
   for (bool const flaps : {true, false}) {
@@ -134,7 +134,7 @@ TEST(SteadyRotation, OfAHingedBlade) {
   }
 }
 
-/// A body that spins freely about the second of its principal axes, held at its centre of mass away from the origin.
+/// Body that rotates freely about the second of its principal axes, fixed at its centre of mass away from the origin.
 template <class B>
 std::vector<std::complex<double>> spinning(Vec3 const& inertia, double omega) {
   Placement const place = Placement::at({1, 2, -1}, {0.4, -0.9, 1.7});
@@ -145,9 +145,9 @@ std::vector<std::complex<double>> spinning(Vec3 const& inertia, double omega) {
   return eigenvalues(linearise(model, rotating_state(model, model.reference_state(), rotation), rotation));
 }
 
-// Euler's equations about a spin Ω along axis 1: I₀ w₀˙ = (I₁ − I₂) Ω w₂, I₂ w₂˙ = (I₀ − I₁) Ω w₀, so
-// s² = −Ω² (I₁ − I₀)(I₁ − I₂)/(I₀ I₂); the other motion is a constant tilt of the momentum, which goes round with Ω.
-// About the middle axis the spin is unstable.
+// Euler's equations about a rotation Ω about axis 1: I₀ w₀˙ = (I₁ − I₂) Ω w₂, I₂ w₂˙ = (I₀ − I₁) Ω w₀, so s² = −Ω²
+// (I₁ − I₀)(I₁ − I₂)/(I₀ I₂). The other motion is a constant tilt of the angular momentum, which rotates with Ω. The
+// rotation about the middle axis is unstable.
 template <class B>
 void spins() {
   double const omega = 5.0;
@@ -167,8 +167,8 @@ void spins() {
 TEST(SteadyRotation, OfAFreeBody) { spins<Rigid<>>(); }
 TEST(SteadyRotation, OfAFreeBodyInEulerParameters) { spins<Rigid<EulerParameters>>(); }
 
-// Conical pendulum of a point mass: at the angle ϑ from the vertical cos ϑ = g/(l Ω²). From the effective potential
-// Ω²sin⁴ϑ₀/(2 sin²ϑ) − (g/l) cos ϑ: ω² = Ω² (1 + 3 cos² ϑ). Gravity turns about its own line, so the rotation is
+// Conical pendulum of a point mass: at the angle ϑ from the vertical cos ϑ = g/(l Ω²). The effective potential
+// Ω²sin⁴ϑ₀/(2 sin²ϑ) − (g/l) cos ϑ gives ω² = Ω² (1 + 3 cos² ϑ). Gravity is along the axis, so the rotation is
 // steady.
 TEST(SteadyRotation, OfAConicalPendulum) {
   double const g = 9.81, length = 0.8, omega = 4.5;
@@ -188,7 +188,7 @@ TEST(SteadyRotation, OfAConicalPendulum) {
   EXPECT_LT(std::abs(nearest - std::complex<double>(0.0, omega * std::sqrt(1.0 + 3.0 * cosine * cosine))), 1e-6);
 }
 
-// At rest both linearisations are one.
+// At rest both linearisations agree.
 TEST(SteadyRotation, OfZeroIsRest) {
   Blade blade(0.0, 0.3, 2.0, {0, 1, 0}, Gravity{0, 0, -9.81});
   blade.x.q.tail<7>() << 0.3, 0.0, -1.0, std::sqrt(0.5), 0.0, std::sqrt(0.5), 0.0;  // hanging
@@ -212,7 +212,7 @@ TEST(SteadyRotation, RefusesWhatIsNotSteady) {
   State const moving = rotating_state(level.model, start, right);
   EXPECT_TRUE(has(refusal([&] { damped_modes(level.model, moving); }), "linearise(model, x, SteadyRotation{...})"));
 
-  // across the axis gravity pulls the rod to and fro
+  // gravity normal to the axis pulls the rod back and forth
   Blade across(7.0, 0.3, 2.0, {0, 0, 1}, Gravity{-1.0, 0, 0});
   relative_equilibrium(across.model, across.x, right);
   EXPECT_TRUE(has(refusal([&] { linearise(across.model, across.x, right); }), "do not turn with the model"));
@@ -223,7 +223,7 @@ TEST(SteadyRotation, RefusesWhatIsNotSteady) {
                   "body \"disc\" lives in the plane"));
 }
 
-// Least corrections leave alone what nothing resists: a body that falls along the axis is no steady rotation.
+// Least-norm corrections leave free motions unchanged: a body that falls along the axis is not a steady rotation.
 TEST(SteadyRotation, NamesTheBodyThatForcesPushWhereNothingResists) {
   SpaceModel<Rigid<>> model{Gravity{0, 0, -1.0}};
   model.add(Rigid<>(1.0, Vec3(0.1, 0.2, 0.3).asDiagonal().toDenseMatrix()), "top");
@@ -234,7 +234,7 @@ TEST(SteadyRotation, NamesTheBodyThatForcesPushWhereNothingResists) {
   EXPECT_TRUE(x.q == before.q && x.v == before.v);
 }
 
-// A spring softer than m Ω² holds the mass nowhere.
+// With a spring softer than m Ω² the mass has no equilibrium.
 TEST(SteadyRotation, FindsNothingBeyondTheCriticalSpeed) {
   PlaneModel model;
   auto const mass = model.add(planar::Rigid(2.0, 0.3, Placement::planar(1.2, 0.0)), "mass");

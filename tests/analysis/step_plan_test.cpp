@@ -5,7 +5,7 @@
 namespace polybody {
 namespace step_plan_test {
 
-/// The ends of all steps of about h from 0 to `until`, the clock set as `simulate` sets it.
+/// End times of all steps of about h from 0 to `until`. The clock is updated as in `simulate`.
 std::vector<double> ends(StepPlan plan, double until, double h) {
   std::vector<double> times;
   double t = plan.pass(0.0);
@@ -26,7 +26,7 @@ TEST(StepPlan, CornersOutsideTheRunAreLeftOut) {
   EXPECT_EQ(ends(StepPlan(0.0, 1.0, 0.5, {-1.0, 0.0, 1.5}), 1.0, 0.5), (std::vector{0.5, 1.0}));
 }
 
-// 0.1 + 0.2 > 0.3: two corners by rounding only. They are one, and the clock takes the later.
+// 0.1 + 0.2 > 0.3: two breakpoints that differ by round-off only. They are merged, and the clock has the later time.
 TEST(StepPlan, CornersThatOnlyRoundingSetsApartAreOne) {
   StepPlan plan(0.0, 1.0, 0.1, {0.3, 0.1 + 0.2});
   EXPECT_EQ(plan.pass(0.3), 0.1 + 0.2);
@@ -35,14 +35,14 @@ TEST(StepPlan, CornersThatOnlyRoundingSetsApartAreOne) {
 
 TEST(StepPlan, ACrumbLeftOverGoesToTheStepBefore) {
   StepPlan const plan(0.0, 1.0, 0.5, {});
-  auto const last = plan.next(0.496, 0.5);  // 0.504 is left: within a hundredth of a step
+  auto const last = plan.next(0.496, 0.5);  // the remainder is 0.504, within a hundredth of a step
   EXPECT_TRUE(last.lands);
   EXPECT_EQ(last.h, 1.0 - 0.496);
   EXPECT_FALSE(plan.next(0.49, 0.5).lands);
   EXPECT_EQ(plan.next(0.49, 0.5).h, 0.5);
 }
 
-// A law that changes at a corner is asked for its old value at the end of the step before.
+// A function of time that changes at a breakpoint is evaluated with its old value at the end of the previous step.
 TEST(StepPlan, AStepToACornerEndsJustBeforeIt) {
   StepPlan const plan(0.0, 1.0, 0.5, {0.3});
   auto const step = plan.next(0.1, 0.5);

@@ -1,4 +1,5 @@
-// What a model looks like: surfaces are closed, face outwards, hold the bodies' volume, and go where the bodies go.
+// Surfaces of a model. They are closed, their normals point outwards, they enclose the volume of the bodies, and they
+// move with the bodies.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -27,7 +28,7 @@ void expect_refused(Act&& act, std::vector<std::string> const& parts) {
   for (std::string const& part : parts) EXPECT_TRUE(has(told, part));
 }
 
-/// Every edge is walked once in each direction: the surface is closed, and all polygons face the same side.
+/// Every edge occurs once in each direction: the surface is closed, and all polygons have the same orientation.
 void expect_closed(Surface const& s) {
   std::map<std::pair<int, int>, int> walked;
   int begin = 0;
@@ -83,7 +84,7 @@ struct SweptBody : testing::Test {};
 using Swept = testing::Types<Rigid<>, AncfCable<>, AncfBeam<ElasticLine>, AncfBeam<Continuum<>>, Lrvf<>, planar::Lrvf>;
 TYPED_TEST_SUITE(SweptBody, Swept);
 
-// The reference: a block of height × width × length where the bar was placed, without stress.
+// Reference state: a block of height × width × length at the placement of the bar, without stress.
 TYPED_TEST(SweptBody, IsTheBarWhereItWasPlaced) {
   Bar const bar = square();
   Model<Bodies<TypeParam>, Joints<>> model;
@@ -102,7 +103,7 @@ TYPED_TEST(SweptBody, IsTheBarWhereItWasPlaced) {
   for (double const s : part.axial_stress) EXPECT_NEAR(s, 0.0, 1e-2);
 }
 
-// A rigid motion in the plane, which every formulation has: v = v₀ + ω × r in every point.
+// Rigid motion in the plane, which every formulation has: v = v₀ + ω × r at every point.
 TYPED_TEST(SweptBody, MovesWithItsPoints) {
   Bar const bar = square();
   Model<Bodies<TypeParam>, Joints<>> model;
@@ -120,8 +121,8 @@ TYPED_TEST(SweptBody, MovesWithItsPoints) {
   }
 }
 
-// Half a circle by an end moment: plane sections along an arc of unchanged length hold the same volume [Pappus], up to
-// the chords of n = 60 pieces, (π/n)²/6 of it; and stress is ± M h/2I = E h κ/2 at the faces.
+// Half a circle by an end moment. Plane sections along an arc of unchanged length enclose the same volume [Pappus],
+// up to the relative error (π/n)²/6 of the chords of n = 60 pieces. The stress is ± M h/2I = E h κ/2 at the faces.
 TEST(SweptBodies, BendWithTheBody) {
   Bar bar{.length = 2.0,
           .section = Rectangle{.height = 0.02, .width = 0.03},

@@ -103,8 +103,8 @@ TEST(MatrixStructure, IntegralsOfKnownFieldsAreMomentsOfTheBlock) {
     EXPECT_NEAR(place.dot(s.inertia[p] * place), s.second(symmetric_row[p], symmetric_column[p]), 1e-14 * m);
 }
 
-// ν = 0: the face x = 0 is fixed, and F is distributed over the opposite face. The solution u_x = F x/EA is in the
-// span of the elements.
+// Steel (wave speed 5100 m/s) in kilograms and N/m. Nodes in millimetres have the same rigid motions, but the wave
+// speed is 1000 times as large.
 TEST(MatrixStructure, RefusesNodesInMillimetresBesideAStiffnessInMetres) {
   Block block(3, 0.3);
   block.mass *= 7850.0 / block.density;
@@ -117,8 +117,8 @@ TEST(MatrixStructure, RefusesNodesInMillimetresBesideAStiffnessInMetres) {
   EXPECT_NO_THROW(structure_of(block.mass.sparseView(), block.stiffness.sparseView(), block.nodes, 1e8));
 }
 
-// Static shapes of Craig & Bampton for both faces contain the stretch exactly. In mean axes the distance of the ends
-// grows by F L/EA.
+// ν = 0: the face x = 0 is fixed, and F is distributed over the opposite face. The solution u_x = F x/EA is in the
+// span of the elements.
 TEST(MatrixStructure, StretchesAsABar) {
   Block const block(3, 0.0);
   Structure const s = block.structure();
@@ -137,7 +137,8 @@ TEST(MatrixStructure, StretchesAsABar) {
   tip(Ffr(s, held_modes(s, 36, face)));
 }
 
-// --- law tests of bodies that require no Bar ---------------------------------------------------------------
+// Static shapes of Craig & Bampton for both faces contain the stretch exactly. In mean axes the distance of the ends
+// grows by F L/EA.
 TEST(MatrixStructure, CraigBamptonStretchesAsABar) {
   Block const block(3, 0.0);
   Structure const s = block.structure();
@@ -157,7 +158,7 @@ TEST(MatrixStructure, AFrameIsNotTiedToANodeWithoutRotations) {
   EXPECT_TRUE(has(refusal([&] { held_modes(s, 2); }), "Fix enough coordinates"));
 }
 
-// Kinetic energy ½ m v_c² + ½ Ωᵀ J Ω of a rigid motion of the undeformed block.
+// --- law tests of bodies that require no Bar ---------------------------------------------------------------
 
 struct BlockCase {
   static Bar bar() {
@@ -200,7 +201,7 @@ TEST_F(MatrixBody, TangentIsTheDerivativeOfTheForce) {
   EXPECT_LT(mismatch(tangent(q, v, 0.0, 1.0), -by_speed), 1e-12);
 }
 
-// p · v₀ + l · ω of the free body is constant in any deformation, including damping: (rigid motion)ᵀ M v.
+// Kinetic energy ½ m v_c² + ½ Ωᵀ J Ω of a rigid motion of the undeformed block.
 TEST_F(MatrixBody, MovesRigidlyAsTheBlock) {
   VecX const q = reference();
   Vec3 const v0 = vector3(), omega = vector3();
@@ -211,7 +212,7 @@ TEST_F(MatrixBody, MovesRigidlyAsTheBlock) {
   EXPECT_NEAR(kinetic_energy(q, rigid_velocity(q, v0, omega)), expected, 1e-13 * expected);
 }
 
-// --- refused input -------------------------------------------------------------------------------------------
+// p · v₀ + l · ω of the free body is constant in any deformation, including damping: (rigid motion)ᵀ M v.
 TEST_F(MatrixBody, KeepsItsMomentum) {
   VecX const q = configuration(), v = speeds();
   VecX const a = mass(q).ldlt().solve(force<double>(q, v));
@@ -225,7 +226,7 @@ TEST_F(MatrixBody, KeepsItsMomentum) {
   EXPECT_LT(std::abs(rate), 1e-9 * size);
 }
 
-// Error message for the block's matrices after a change by `spoil`.
+// --- refused input -------------------------------------------------------------------------------------------
 
 /// Error message for the block's matrices after a change by `spoil`.
 template <class Spoil>
@@ -276,9 +277,9 @@ TEST(MatrixStructure, RefusesAStiffnessThatResistsRigidMotions) {
                   "a rigid displacement along x strains the structure, most in row 21 (x of node 7)"));
 }
 
-// Files of the block. A symmetric matrix is stored as its lower triangle.
+// --- files -----------------------------------------------------------------------------------------------------
 
-/// Lines 1 to 3: banner, comment, dimensions.
+/// Files of the block. A symmetric matrix is stored as its lower triangle.
 struct MatrixFiles : testing::Test {
   Block const block{1, 0.3};
   std::filesystem::path const folder =
@@ -308,7 +309,7 @@ struct MatrixFiles : testing::Test {
     std::ofstream out(file);
     for (std::string const& line : lines) out << line << '\n';
   }
-  /// Error message for a mass file with another text in line `at` (from 1).
+  /// Lines 1 to 3: banner, comment, dimensions.
   static std::vector<std::string> lines_of(MatX const& m, bool symmetric) {
     std::vector<std::string> lines = {
         std::string("%%MatrixMarket matrix coordinate real ") + (symmetric ? "symmetric" : "General"), "% a block", ""};
@@ -318,7 +319,7 @@ struct MatrixFiles : testing::Test {
     lines[2] = std::to_string(m.rows()) + " " + std::to_string(m.cols()) + " " + std::to_string(lines.size() - 3);
     return lines;
   }
-  /// a blank ends a number
+  /// Error message for a mass file with another text in line `at` (from 1).
   std::string told(std::size_t at, std::string const& line) {
     std::vector<std::string> lines = lines_of(block.mass, true);
     lines[at - 1] = line;
@@ -373,7 +374,7 @@ TEST_F(MatrixFiles, BrokenMatricesAreNamedByFileAndLine) {
   EXPECT_TRUE(has(told(7, "7 1 1e999"), where + "7: "));
   EXPECT_TRUE(has(told(7, "7 1 1.0 2.0"), where + "7: "));
   EXPECT_TRUE(has(told(111, "24 24 1.0\n\v\f\n7 1 1.0"), where + "113: '7 1 1.0' is not the end of the file"));
-  EXPECT_TRUE(has(told(7, "7 1.5"), where + "7: '7 1.5' is not a row"));  // a number ends at a blank
+  EXPECT_TRUE(has(told(7, "7 1.5"), where + "7: '7 1.5' is not a row"));  // a blank ends a number
   EXPECT_TRUE(has(told(7, "7 1-2"), where + "7: "));
   EXPECT_TRUE(has(told(7, "7-1 2"), where + "7: "));
   EXPECT_TRUE(has(told(3, "24 24 -1"), where + "3: the number of entries must not be negative, but is -1"));

@@ -1,6 +1,6 @@
-// Closed mechanisms with redundant joints: two equal branches of a double Cardan shaft (reference case 8), and
-// mechanisms in which every joint is connected twice. The motion is that of the mechanism without the double, and the
-// reactions are bounded and continuous.
+// Closed mechanisms with redundant joints: two equal branches of a double Cardan shaft (data of OpenModelica's issue
+// 8365), and mechanisms in which every joint is connected twice. The motion is that of the mechanism without the
+// second joints. The reactions are bounded and continuous.
 
 #include <gtest/gtest.h>
 
@@ -75,7 +75,7 @@ struct CardanShafts {
   }
 };
 
-/// The largest errors of a run of 1 s, and sizes of its reactions.
+/// Largest errors of a run of 1 s, and magnitudes of its reactions.
 struct Turned {
   double out_speed = 0, middle_speed = 0, torque = 0;      ///< [rad/s], [rad/s], [N m]
   double halves = 0;                                       ///< difference of both branches' torques [N m]
@@ -109,8 +109,9 @@ Turned turn(int branches, I const& integrator, bool minimum_norm) {
   return r;
 }
 
-/// 36 constraint equations of rank 35; the row of the slide that a fixed order of elimination drops is independent of
-/// the others when the Cardan joints are in phase, at 20 t = kπ. \param middle tolerance of its speed [rad/s]
+/// 36 constraint equations of rank 35. A fixed elimination order would drop one equation of the slide. This equation
+/// is independent of the others when the Cardan joints are in phase, at 20 t = kπ. \param middle tolerance of its
+/// angular velocity [rad/s]
 template <class I>
 void expect_two_branches(I const& integrator, double middle) {
   for (bool const minimum_norm : {false, true}) {
@@ -120,7 +121,7 @@ void expect_two_branches(I const& integrator, double middle) {
     EXPECT_LT(r.middle_speed, middle);
     EXPECT_LT(r.torque, 1e-3);
     EXPECT_LT(r.largest, 20.0);  // one branch alone carries 18
-    EXPECT_LT(r.jump, 0.25);     // 18 N m turn by 0.01 rad in a step
+    EXPECT_LT(r.jump, 0.25);     // 18 N m rotate by 0.01 rad per step
     if (minimum_norm) EXPECT_LT(r.halves, 1e-3);
     EXPECT_EQ(r.redundant, std::vector<std::string>{"joint \"second Cardan joint 1\""});
     EXPECT_TRUE(r.warnings.empty()) << r.warnings.front();
@@ -150,7 +151,7 @@ TEST(TwoCardanBranches, NameTheSameJointInARunAndInRedundancy) {
   EXPECT_EQ(r.repeated[0].name, "joint \"second Cardan joint 1\"");
 }
 
-/// A run of a mechanism with single joints and of the same one with double joints. \param until end time [s]
+/// Runs a mechanism with single joints and the same mechanism with doubled joints. \param until end time [s]
 /// \param single, twice mechanisms with `model`, `x` \param off tolerance of the motion
 template <class M, class I>
 void expect_same(M single, M twice, I const& integrator, double until, double off) {
@@ -197,7 +198,7 @@ TEST(DoubledJoints, MoveThinRodsAsSingleOnes) {  // whose mass is singular
   auto const make = [](int each) { return Bricard<>(0.0, {}, {}, each); };
   expect_same(make(1), make(2), GeneralizedAlpha{.tolerance = 1e-10}, 1.0, 1e-8);
 }
-// At the flat position the rank decreases further.
+// In the flat configuration the rank decreases further.
 TEST(DoubledJoints, PassASingularPosition) {
   for (int const n : {1, 2}) {
     Corner const end =

@@ -1,4 +1,4 @@
-// A mooring line with a part on the sea bed: the catenary with a grounded part.
+// Mooring line with a part on the sea bed, compared with the catenary with a grounded part.
 
 #include <polybody/bodies/ancf/ancf_cable.hpp>
 #include <polybody/bodies/shared/catenary.hpp>
@@ -60,7 +60,7 @@ TEST(MooringLine, ClosedFormGivesThePublishedNumbers) {
 
 enum class Start { straight, catenary };
 
-/// 40 elements; nodes rest on the bed by springs that yield 1 mm under the weight of an element.
+/// 40 elements. Nodes rest on springs of the bed, which deflect by 1 mm under the weight of an element.
 template <class Cable>
 void expect_published(Line const& c, Start start) {
   using Ball = Joint<Spherical, Constraint>;
@@ -86,7 +86,7 @@ void expect_published(Line const& c, Start start) {
   EXPECT_NEAR(f[0], exact.H, 5e-3 * exact.H) << int(start);
   EXPECT_NEAR(f[2], exact.V, 5e-3 * exact.V) << int(start);
   EXPECT_NEAR(f[1], 0.0, 1e-6 * exact.H);
-  // above the bed by h behind the touch-down: h = a (cosh(d/a) − 1), a = H/w
+  // height h above the bed at the distance d after the touch-down: h = a (cosh(d/a) − 1), a = H/w
   double s = exact.grounded;
   while (position(model, x, line.at(s))[2] < 0.02 * c.z) s += 1e-3 * element;
   Vec3 const above = position(model, x, line.at(s));
@@ -102,7 +102,7 @@ TEST(MooringLine, LiesAndHangsAsTheCatenary) {
     }
 }
 
-// The points at 80 m and 60 m of the small line.
+// Points at 80 m and 60 m of the small line.
 TEST(MooringLine, PointsOfTheClosedFormAreThePublishedOnes) {
   Hang const c = closed_form(small);
   for (auto const& [s, x, z] : {std::tuple{80.0, 75.65625, 12.33073}, std::tuple{60.0, 60.01350, 0.50177}}) {

@@ -13,8 +13,8 @@ namespace axial_spring_test {
 
 using Ends = std::array<Frame<double>, 2>;
 
-/// Marker b stands at (s, 0.3, −0.2) from marker a in a's axes and moves at `rate` against them; a itself turns and
-/// moves.
+/// Marker b is at (s, 0.3, −0.2) from marker a in a's axes and moves at `rate` relative to them. Marker a itself
+/// rotates and moves.
 Ends sliding(double s, Vec3 const& rate) {
   Mat3 const axes = exp_so3<double>(Vec3(0.3, -0.8, 0.5));
   Frame<double> const a{.r = {1, 2, 3}, .A = axes, .v = {0.4, -0.2, 0.9}, .w = {0.7, 1.1, -0.6}};
@@ -33,7 +33,7 @@ TEST(AxialSpring, PushesAlongTheAxisOfItsFirstBody) {
   }
 }
 
-// What b does across the axis, and that a turns, is no rate of s.
+// Transverse motion of b and rotation of a do not contribute to the rate of s.
 TEST(AxialSpring, DampsOnlyTheSlide) {
   AxialSpring const damper{.stiffness = 0.0, .damping = 4.0};
   Ends const ends = sliding(0.7, Vec3(0.5, 7.0, -3.0));

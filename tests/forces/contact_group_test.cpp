@@ -33,8 +33,7 @@ Rigid<> ball(double m, double r, Vec3 const& at) {
   return Rigid<>(m, Mat3(0.4 * m * r * r * Mat3::Identity()), Placement::at(at));
 }
 
-/// The same law of two markers without a stand-in for its gradient: a group then takes the exact blocks by dual
-/// numbers.
+/// Force law of two markers without its approximate gradient. A group then computes the exact blocks by dual numbers.
 template <class Law>
 struct Exact {
   static constexpr int markers = 2;
@@ -50,7 +49,7 @@ struct Exact {
 };
 static_assert(!HasOwnStiffness<Exact<OnPlane>>);
 
-/// Each law alone between two markers, or all in a group, with or without the stand-in.
+/// Each law separately between two markers, or all in a group, with or without the approximate gradient.
 enum class Applied { one_by_one, grouped, exactly };
 template <Applied how>
 struct How {
@@ -71,7 +70,7 @@ struct How<Applied::exactly> {
   using ForceList = Forces<Grouped>;
 };
 
-/// Balls that fall upon a floor, a fixed ball, a heavier ball and a plate, which are thrown up at them.
+/// Balls that fall on a floor, a fixed ball, a heavier ball and a plate. The last two move upwards.
 template <Applied how>
 struct Heap {
   using Plane = typename How<how>::Plane;
@@ -83,7 +82,7 @@ struct Heap {
       Rigid<>(20.0, Vec3(2, 2, 4).asDiagonal().toDenseMatrix(), Placement::at({0, 0, 0.25}, {0.05, 0.02, 0})), "plate");
 
   Heap() {
-    // in a row along x: two meet the heavy ball, the middle the fixed ball, all the plate or the floor
+    // a row along x: two hit the heavy ball, the middle one the fixed ball, all the plate or the floor
     for (int i = 0; i < 5; ++i)
       balls.push_back(model.add(ball(mass, radius, {-0.6 + 0.27 * i, 0.04 * i, 0.52 + 0.03 * i})));
     auto const floor = model.ground().at({0, 0, 0}), post = model.ground().at({0.1, 0.1, 0.1});
@@ -128,10 +127,11 @@ Fall fallen(I const& integrator, double step) {
 }
 double apart(State const& a, State const& b) { return std::max((a.q - b.q).norm(), (a.v - b.v).norm()); }
 
-// --- a group moves as its contacts do one by one --------------------------------------------------------------
+// --- motion of a group, compared with single contacts ---------------------------------------------------------
 
-// The same sums in another order: an explicit method tells them apart by rounding, if at all.
-// Markers beyond reach are told side by side: the same pairs in the same order as one by one, whatever their numbers.
+// The sums have a different order. The results of an explicit method differ at most by round-off. Markers out of
+// reach are excluded several at a time. The remaining pairs have the order of single contacts, for any number of
+// markers.
 TEST(ContactGroup, FindsThePairsThatMayTouchOneAfterTheOther) {
   using Pairs = std::vector<std::pair<Index, Index>>;
   for (int const planes : {0, 1, 20, 40})
@@ -159,7 +159,7 @@ TEST(ContactGroup, FindsThePairsThatMayTouchOneAfterTheOther) {
       }
     }
 }
-// What is no number is found, so that it comes to where numbers are looked at.
+// A marker with a NaN is kept as a pair, so the NaN reaches the check of the forces.
 TEST(ContactGroup, PassesOverNothingThatIsNoNumber) {
   ContactReach const reach = ContactReach::sphere({0, 0, 0}, 1.0);
   double const nan = std::nan("");
@@ -171,7 +171,7 @@ TEST(ContactGroup, PassesOverNothingThatIsNoNumber) {
 TEST(ContactGroup, IsTheSumOfItsContacts) {
   State const one_by_one = fallen<Applied::one_by_one>(RungeKutta4<>{}, 2e-4).x;
   EXPECT_LT(apart(fallen<Applied::grouped>(RungeKutta4<>{}, 2e-4).x, one_by_one), 1e-11);
-  // and all of them have acted: nobody is where it would have fallen freely
+  // all contacts have acted: no body is at its position of free fall
   Heap<Applied::grouped> const heap;
   State const start = heap.start();
   auto const disturbed = [&](BodyHandle<Rigid<>> const& body) {
@@ -182,15 +182,16 @@ TEST(ContactGroup, IsTheSumOfItsContacts) {
   };
   for (auto const& b : heap.balls) {
     EXPECT_GT(disturbed(b).head<3>().norm(), 0.5) << b.name;
-    EXPECT_GT(disturbed(b).tail<3>().norm(), 0.5) << b.name;  // spun by friction
+    EXPECT_GT(disturbed(b).tail<3>().norm(), 0.5) << b.name;  // spin due to friction
   }
   EXPECT_GT(disturbed(heap.heavy).norm(), 0.1);
   EXPECT_GT(disturbed(heap.plate).norm(), 0.01);
 }
 
-// Newton's method leaves a part `tolerance` of the accelerations in every step. Bodies change their speeds by some m/s,
-// all together by less than 100 m/s, and impacts make of what is left up to ten times as much: 1000 · tolerance. Below,
-// it stops at 30 roundings of a coordinate over βh² (see AlphaMethod), here 1e-6 m/s², for half a second.
+// Newton's method leaves a fraction `tolerance` of the accelerations in every step. Bodies change their velocities by
+// some m/s, all together by less than 100 m/s. Impacts amplify the error up to ten times: 1000 · tolerance. The lower
+// limit of the iteration is 30 times the round-off of a coordinate over βh² (see AlphaMethod), here 1e-6 m/s² for
+// half a second.
 TEST(ContactGroup, MovesAsItsContactsDoWhateverNewtonKnowsOfThem) {
   for (double const tolerance : {1e-6, 1e-8}) {
     GeneralizedAlpha const alpha{.tolerance = tolerance};
@@ -201,7 +202,7 @@ TEST(ContactGroup, MovesAsItsContactsDoWhateverNewtonKnowsOfThem) {
   }
 }
 
-// --- what it costs Newton's method ----------------------------------------------------------------------------
+// --- cost in Newton iterations --------------------------------------------------------------------------------
 
 TEST(ContactGroup, StandInCostsNewtonHardlyMoreThanExactBlocks) {
   GeneralizedAlpha const alpha{};
@@ -213,14 +214,14 @@ TEST(ContactGroup, StandInCostsNewtonHardlyMoreThanExactBlocks) {
         "heap, h = %g s: iterations per step %.3f by all blocks, %.3f by own exact blocks, %.3f by the stand-in\n",
         step, double(all.iterations) / double(all.steps), double(exact.iterations) / double(exact.steps),
         double(own.iterations) / double(own.steps));
-    EXPECT_GT(all.iterations, 1.1 * double(all.steps));  // there is something to iterate for
+    EXPECT_GT(all.iterations, 1.1 * double(all.steps));  // the iteration count is not trivial
     EXPECT_LT(own.iterations, 1.1 * double(exact.iterations));
     EXPECT_LT(own.iterations, 1.25 * double(all.iterations));
   }
 }
 
-/// Balls that slide over the floor until they roll, in steps that do not resolve how the slip ends: it changes by
-/// 7/2 μ g h = 0.014 m/s a step.
+/// Balls that slide on the floor until they roll. The steps do not resolve the end of the slip, which changes by 7/2
+/// μ g h = 0.014 m/s per step.
 template <Applied how>
 RunReport rolled(double slip_speed) {
   using Plane = typename How<how>::Plane;
@@ -238,7 +239,7 @@ RunReport rolled(double slip_speed) {
   State x = model.reference_state();
   for (int i = 0; i < 10; ++i) model.set_velocity(x, balls[std::size_t(i)], {0.1 + 0.1 * i, 0, 0}, {0, 0, 0});
   RunReport const report = simulate(model, x, GeneralizedAlpha{}, {.until = 0.5, .step = 1e-3}).run();
-  for (int i = 0; i < 10; ++i)  // 5/7 of its speed is left to a solid ball that rolls
+  for (int i = 0; i < 10; ++i)  // a solid ball that rolls keeps 5/7 of its velocity
     EXPECT_NEAR(frame(model, x, many[std::size_t(i)]).v.x(), 5.0 / 7.0 * (0.1 + 0.1 * i), slip_speed);
   return report;
 }
@@ -254,7 +255,7 @@ TEST(ContactGroup, StandInCostsNewtonHardlyMoreWhereSlipEnds) {
 
 // --- energy ---------------------------------------------------------------------------------------------------
 
-// Two balls of a row sink by 0.01 and 0.02 into the floor, the first one by 0.05 into the post besides.
+// The penetrations of two balls into the floor are 0.01 and 0.02. The first ball also penetrates the post by 0.05.
 TEST(ContactGroup, EnergyCountsWhatItStores) {
   Model<Bodies<Rigid<>>, Joints<>, Forces<Group>> model;
   std::vector<Marker<Rigid<>>> many;
@@ -290,7 +291,7 @@ TEST(ContactGroup, RefusesMarkersAndHandlesOfAnotherModel) {
   System const system(a.model, with<Entries::motion>);
   EXPECT_TRUE(has(refusal([&] { for_each_contact(system, of_b, [](auto const&) {}); }), "\"others\"" + told));
   EXPECT_TRUE(has(refusal([&] { for_each_contact(system, unset, [](auto const&) {}); }), "A handle made by default"));
-  // what was refused has left nothing behind
+  // a refused call has changed nothing
   EXPECT_EQ(a.model.entry(group).markers.size(), 1u);
   EXPECT_EQ(std::get<0>(a.model.force_pools()).size(), 1u);
   int opponents = 0;
@@ -309,7 +310,7 @@ TEST(ContactGroup, NamesItselfAndTheOpponentInMessages) {
   f.model.pair_with(group, on_plane, floor);
   EXPECT_TRUE(
       has(refusal([&] { f.model.pair_with(group, bad, floor); }), "\"marbles\", \"opponent 2\": the sphere's radius"));
-  // a group that comes with opponents of its own asks them, too
+  // a group with its own contact partners also checks them
   Group full;
   full.pair_with(bad, 0, "floor");
   EXPECT_TRUE(

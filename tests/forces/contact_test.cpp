@@ -33,7 +33,7 @@ struct SphereOnSphereCase {
   }
 };
 
-// The same in the plane across the axis z.
+// Planar version, in the plane normal to the axis z.
 struct SphereOnCylinderCase {
   static constexpr double radius = 0.3, cylinder = 0.7;
   static SphereOnCylinder geometry() { return {.radius = radius, .cylinder = cylinder}; }
@@ -51,10 +51,11 @@ bool const obeyed[] = {obeys<SphereOnPlaneCase, ContactLaws>("SphereOnPlane"),
                        obeys<SphereOnSphereCase, ContactLaws>("SphereOnSphere"),
                        obeys<SphereOnCylinderCase, ContactLaws>("SphereOnCylinder")};
 
-// --- by hand --------------------------------------------------------------------------------------------------
+// --- values computed by hand ----------------------------------------------------------------------------------
 
-// A ball of radius 0.5 sinks 0.1 into a floor of 1000 N/m and slides along x at 3 m/s with v_s = 4 m/s: 100 N, and 0.5
-// · 100 N · 3/5 against it, which also turn the ball forward: their arm is the radius.
+// A ball of radius 0.5 penetrates a floor of 1000 N/m by 0.1 and slides along x at 3 m/s with v_s = 4 m/s. The normal
+// force is 100 N. The friction force is 0.5 · 100 N · 3/5 against the velocity. It also rotates the ball forwards,
+// with the radius as its moment arm.
 TEST(SphereOnPlane, SlidingBallIsLiftedBrakedAndTurned) {
   Contact<SphereOnPlane> const law{.geometry = {.radius = 0.5},
                                    .normal = {.stiffness = 1000.0},
@@ -69,7 +70,7 @@ TEST(SphereOnPlane, SlidingBallIsLiftedBrakedAndTurned) {
   EXPECT_LT((law.wrenches<double>(rolling, 0.0)[0].f - Vec3(0, 0, 100)).norm(), 1e-12);
 }
 
-// A flat contact at rest without friction: the ball's own block is exact, all of it.
+// Flat contact at rest without friction: the ball's own block is completely exact.
 TEST(SphereOnPlane, OwnStiffnessOfTheBallIsExactWithoutFriction) {
   Numbers number;
   ContactLaws<SphereOnPlaneCase> laws;
@@ -82,13 +83,13 @@ TEST(SphereOnPlane, OwnStiffnessOfTheBallIsExactWithoutFriction) {
   EXPECT_LT((own.topLeftCorner<3, 3>() - (0.7 * 900.0 + 31.0 * 7.0) * n * n.transpose()).norm(), 1e-12 * own.norm());
 }
 
-// The side of negative z is the plane's inside, however deep.
+// The inside of the plane is the side of negative z, at any depth.
 TEST(SphereOnPlane, PushesOutOfTheFarSideToo) {
   SphereOnPlane const plane{.radius = 0.5};
   EXPECT_DOUBLE_EQ(point_of(plane, Frame<double>{.r = {0, 0, -2}}, Frame<double>{}).depth, 2.5);
 }
 
-// From 1.0 − 0.6 to 0.5 on the line between them: in the middle.
+// The overlap on the connecting line is from 1.0 − 0.6 to 0.5. The contact point is in its middle.
 TEST(SphereOnSphere, TouchInTheMiddleOfTheOverlap) {
   SphereOnSphere const balls{.radius_a = 0.6, .radius_b = 0.5};
   ContactPoint<double> const p = point_of(balls, Frame<double>{.r = {0, 3, 0}}, Frame<double>{.r = {0, 2, 0}});
@@ -109,7 +110,7 @@ TEST(SphereOnCylinder, SphereOnTheAxisHasNoNormalAndDoesNotTouch) {
   EXPECT_EQ(wrench_gradient(law, f, 0.0, 1.0, 1.0).norm(), 0.0);
 }
 
-// A point, of radius zero, touches like any sphere.
+// A point of radius zero is treated like a sphere.
 TEST(SphereOnCylinder, TakesPointsOfABelt) {
   SphereOnCylinder const drum{.radius = 0.0, .cylinder = 2.0};
   ContactPoint<double> const p = point_of(drum, Frame<double>{.r = {0, 1.9, 7}}, Frame<double>{});
@@ -133,7 +134,7 @@ TEST(Contacts, RefuseNumbersThatCannotBeMeantByName) {
     EXPECT_TRUE(has(told(SphereOnCylinder{.radius = bad, .cylinder = 1.0}), "\"wheel\": the sphere's radius"));
     EXPECT_TRUE(has(told(SphereOnCylinder{.radius = 0.0, .cylinder = bad}),
                     "\"wheel\": the cylinder's radius must be positive"));
-    // a contact asks all of its parts
+    // a contact checks all its parts
     EXPECT_TRUE(has(told(Contact<SphereOnPlane>{{.radius = bad}, spring}), "\"wheel\": the sphere's radius"));
     EXPECT_TRUE(
         has(told(Contact<SphereOnPlane>{{.radius = 1.0}, {.stiffness = bad}}), "\"wheel\": the contact stiffness"));

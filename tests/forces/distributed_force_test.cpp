@@ -1,4 +1,4 @@
-// A force spread along a bar is the weight it equals, whatever the formulation.
+// Distributed force along a bar, compared with an equal weight, in every formulation.
 #include <polybody/forces/distributed_force.hpp>
 
 #include <gtest/gtest.h>
@@ -30,7 +30,8 @@ struct Clamped {
 
 Bar slender() { return {.length = 1.0, .constants = BarConstants{.EA = 1e6, .EI = 1.0, .mass_per_length = 1.0}}; }
 
-// CASES S2b, q L³/EI = 5: tip at (1 − 0.15334, 0.49591); tolerance as in statics_elastica_test.cpp, stretch and 2e-6.
+// Elastica under a distributed load (S2b), q L³/EI = 5: tip at (1 − 0.15334, 0.49591). The tolerance is that of
+// statics_elastica_test.cpp, stretch and 2e-6.
 TEST(DistributedForce, BendsTheElastica) {
   Clamped<Cable> c(Cable::from(slender(), 64));
   apply_distributed(c.model, c.bar, PointForce<>{.force = {0, 5, 0}}, {.from = 0.0, .to = 1.0, .pieces = 64});
@@ -41,7 +42,7 @@ TEST(DistributedForce, BendsTheElastica) {
   EXPECT_NEAR(tip[1], 0.4959050446, 5e-6 + 2e-6);
 }
 
-// Over a part of a rigid bar: the clamp carries q (b − a) and its moment q (b² − a²)/2.
+// Load over a part of a rigid bar: the clamp carries q (b − a) and its moment q (b² − a²)/2.
 TEST(DistributedForce, HasItsResultant) {
   Clamped<planar::Rigid> c(planar::Rigid::from(slender()));
   apply_distributed(c.model, c.bar, PointForce<>{.force = {0, 8, 0}}, {.from = 0.25, .to = 0.75, .pieces = 1});

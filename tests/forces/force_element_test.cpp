@@ -9,7 +9,7 @@ using namespace polybody::laws;
 
 namespace force_element_test {
 
-// f = (k · pose, c · twist) of a frame: its gradient is known by heart.
+// f = (k · pose, c · twist) of a frame, whose gradient is (k, c).
 struct Linear {
   static constexpr int markers = 2;
   static constexpr Observes needs = Observes::point;
@@ -39,7 +39,7 @@ TEST(WrenchGradient, HasPoseTimesCkAndTwistTimesCd) {
   EXPECT_LT(gradient_mismatch(Linear{}, frames, 0.0, ck, cd), 1e-10);
 }
 
-// --- the concept: each of its demands is asked ----------------------------------------------------------------
+// --- concept: each requirement is checked ---------------------------------------------------------------------
 
 struct Unchecked : Linear {
   void check(double) const {}

@@ -1,4 +1,4 @@
-// The laws of force elements, of those of the library.
+// Law tests of force elements for those of the library.
 #include <polybody/forces/axial_spring.hpp>
 #include <polybody/forces/maxwell_element.hpp>
 #include <polybody/forces/point_load.hpp>

@@ -13,7 +13,7 @@ using namespace polybody::laws;
 
 namespace normal_force_test {
 
-/// Calls visit(law, name) for one of each kind, all their numbers unlike 1.
+/// Calls visit(law, name) for one law of each kind. All their parameters differ from 1.
 template <class Visit>
 void with_each_law(Visit&& visit) {
   visit(SpringDamperContact{.stiffness = 2000.0, .damping = 30.0}, "SpringDamperContact");
@@ -27,7 +27,7 @@ void with_each_law(Visit&& visit) {
 }
 constexpr double overlaps[] = {1e-4, 0.01, 0.04, 0.3}, rates[] = {-9.0, -1.0, -0.2, 0.0, 0.1, 3.0};
 
-// --- values, by hand ------------------------------------------------------------------------------------------
+// --- values computed by hand ----------------------------------------------------------------------------------
 
 TEST(SpringDamperContact, AddsSpringAndDamperUntilTheyWouldPull) {
   SpringDamperContact const law{.stiffness = 2000.0, .damping = 30.0};
@@ -41,7 +41,7 @@ TEST(SpringDamperContact, AddsSpringAndDamperUntilTheyWouldPull) {
 TEST(HertzContact, GrowsWithThePowerOfThreeHalves) {
   HertzContact const law{.modulus = 3e6, .radius = 0.04};
   EXPECT_NEAR(law.stiffness(), 8e5, 1e-9);
-  EXPECT_NEAR(law.force(0.01, 7.0), 800.0, 1e-12 * 800.0);  // whatever the rate
+  EXPECT_NEAR(law.force(0.01, 7.0), 800.0, 1e-12 * 800.0);  // for every rate
   EXPECT_NEAR(law.potential(0.01), 0.4 * 800.0 * 0.01, 1e-13);
 }
 
@@ -54,7 +54,7 @@ TEST(HuntCrossleyContact, ScalesThePowerByTheRate) {
   EXPECT_NEAR(law.potential(0.04), 80.0 * 0.04 / 2.5, 1e-13);
 }
 
-// --- what all laws obey ---------------------------------------------------------------------------------------
+// --- properties of all laws -----------------------------------------------------------------------------------
 
 TEST(NormalForces, NeverPull) {
   with_each_law([](auto const& law, char const* name) {
@@ -90,8 +90,8 @@ TEST(NormalForces, SlopeIsThatOfTheForce) {
   });
 }
 
-// Where the damper comes in with the overlap: that of the force while the bodies approach, without the part by d, which
-// falls, while they part.
+// Derivative with a damper that grows with the penetration. During the approach it is the derivative of the force.
+// During separation the decreasing part by d is omitted.
 TEST(NormalForces, SlopeWhereTheDamperComesIn) {
   SpringDamperContact const law{.stiffness = 2000.0, .damping = 30.0, .onset = 0.02};
   for (double const d : {0.001, 0.01, 0.019, 0.021, 0.3})
@@ -115,9 +115,9 @@ TEST(NormalForces, PotentialIsTheIntegralOfTheForceAtRest) {
 
 // --- restitution ----------------------------------------------------------------------------------------------
 
-/// What a body of mass m that comes at `speed` keeps of it: m d̈ = −N(d, ḋ) by the classical method of order four, from
-/// d = 0 until it leaves. Where N turns to zero with overlap left, it has a kink: there alone the step is accurate to
-/// h² only.
+/// Restitution of a body of mass m with the initial velocity `speed`: m d̈ = −N(d, ḋ) by the classical method of
+/// order four, from d = 0 to the separation. If N reaches zero at a positive penetration, it has a kink. Only there
+/// the accuracy of the step is h².
 template <class N>
 double restitution(N const& law, double mass, double speed, double step) {
   auto const acceleration = [&](double d, double v) {
@@ -143,15 +143,15 @@ TEST(SpringDamperContact, LeavesWithTheRestitutionThatWasAskedFor) {
   for (double const e : wanted) {
     SpringDamperContact const law = SpringDamperContact::with_restitution(k, m, e);
     EXPECT_EQ(law.stiffness, k);
-    // in steps of 1e-4/√(k/m); the kink costs (ωh)² of the speed, and less than ten times that here
+    // in steps of 1e-4/√(k/m); the kink costs (ωh)² of the velocity, less than a tenth of the tolerance
     for (double const speed : {0.02, 5.0})
       EXPECT_NEAR(restitution(law, m, speed, 1e-4 * std::sqrt(m / k)), e, 1e-7) << speed;
   }
   EXPECT_EQ(SpringDamperContact::with_restitution(k, m, 1.0).damping, 0.0);
 }
 
-// ζ = ½: with T the time in units of √(m/k), d = e^(−T/2) sin(√3 T/2) presses until d̈ = 0, T = 4π/(3√3), and ḋ has then
-// fallen to −e^(−T/2). ζ = 1: d = T e^(−T), d̈ = 0 at T = 2, ḋ = −e⁻².
+// ζ = ½: with the time T in units of √(m/k), d = e^(−T/2) sin(√3 T/2). The contact ends at d̈ = 0, T = 4π/(3√3), with
+// ḋ = −e^(−T/2). ζ = 1: d = T e^(−T), d̈ = 0 at T = 2, ḋ = −e⁻².
 TEST(SpringDamperContact, HasTheDampingOfKnownCases) {
   double const k = 100.0, m = 4.0, critical = 2.0 * std::sqrt(k * m);
   EXPECT_NEAR(
@@ -177,7 +177,7 @@ TEST(HuntCrossleyContact, LeavesWithTheRestitutionThatWasAskedForWhateverMassAnd
       for (double const m : {0.3, 20.0}) {
         double const k = 1e5, speed = 2.0;
         HuntCrossleyContact const law = HuntCrossleyContact::with_restitution(k, exponent, e, speed);
-        // half a period of the undamped impact is of the size of depth/speed; nothing jumps here
+        // half a period of the undamped impact has the order of depth/speed; the force has no jump
         double const depth = std::pow(0.5 * (exponent + 1.0) * m * speed * speed / k, 1.0 / (exponent + 1.0));
         EXPECT_NEAR(restitution(law, m, speed, 1e-4 * depth / speed), e, 1e-7) << exponent << ' ' << m;
       }

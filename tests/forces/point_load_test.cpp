@@ -55,7 +55,7 @@ TEST(PointForce, FollowsItsLawOfTime) {
   EXPECT_LT((turn.wrenches<double>(frame, 1.0)[0].m - 1.5 * load).norm(), 1e-14);
 }
 
-// δf = φ × f for a follower; a dead load has no gradient.
+// Gradient of a follower load: δf = φ × f. A dead load has no gradient.
 TEST(PointLoads, GradientIsThatOfTheLoadThatTurns) {
   std::array<Frame<double>, 1> const frame{Numbers{}.frame()};
   PointForce<> const follower{.force = load, .axes = LoadAxes::marker};

@@ -28,7 +28,7 @@ TEST(SpringDamper, StretchedPullsItsEndsTogether) {
 
 TEST(SpringDamper, LengtheningIsResisted) {
   SpringDamper const damper{.stiffness = 0.0, .damping = 4.0, .free_length = 1.0};
-  auto const w = damper.wrenches<double>(apart({2, 0, 0}, {0.5, 7, 0}), 0.0);  // sideways does not count
+  auto const w = damper.wrenches<double>(apart({2, 0, 0}, {0.5, 7, 0}), 0.0);  // no effect of transverse velocity
   EXPECT_LT((w[0].f - Vec3(2, 0, 0)).norm(), 1e-14);
   EXPECT_LT((w[1].f + Vec3(2, 0, 0)).norm(), 1e-14);
 }
@@ -76,7 +76,7 @@ TEST(SpringDamper, DamperTakesPowerOut) {
   }
 }
 
-// l₀ = 0: f = k d, linear in d, so force and tangent stay what they are at l = 0.
+// l₀ = 0: f = k d is linear in d, so force and tangent are continuous through l = 0.
 TEST(SpringDamper, WithoutFreeLengthPassesThroughZeroLengthSmoothly) {
   SpringDamper const spring{.stiffness = 10.0, .free_length = 0.0};
   for (double const x : {0.0, 1e-300, -1e-12, 1e-8, 1e-4}) {

@@ -9,7 +9,7 @@ using namespace polybody::laws;
 
 namespace user_force_test {
 
-// Drag −c |v| v and a torque that turns the marker's first axis to world z.
+// Drag −c |v| v, and a torque that rotates the marker's first axis towards the world's z.
 auto const drag = user_force<1>([](auto const& frames, double) {
   using T = typename std::decay_t<decltype(frames[0].r)>::Scalar;
   using std::sqrt;
@@ -21,7 +21,7 @@ auto const drag = user_force<1>([](auto const& frames, double) {
   return std::array{w};
 });
 
-// Inverse-square attraction between two markers, fading with time.
+// Inverse-square attraction between two markers that decays with time.
 auto const attraction = user_force<2>([](auto const& frames, double t) {
   using T = typename std::decay_t<decltype(frames[0].r)>::Scalar;
   using std::sqrt;

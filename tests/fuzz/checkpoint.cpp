@@ -1,5 +1,5 @@
-// Checkpoints: the input as a file, and as the content of a file whose head and checksum are right. What is read and
-// written again is the same file, byte for byte.
+// Checkpoints. The input is read as a file, and as the content of a file with a correct head and checksum. An
+// accepted checkpoint is written again, and both files are identical in every byte.
 #include <polybody/io/checkpoint.hpp>
 
 #include "fuzz/target.hpp"

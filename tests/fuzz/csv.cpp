@@ -1,4 +1,5 @@
-// Tables from comma-separated values. What is read has a number under every head; written again it is read as the same.
+// Tables from comma-separated values. An accepted table has a number under every head. It is written and read again
+// with the same result.
 #include <bit>
 #include <set>
 
@@ -23,7 +24,7 @@ void check(Table const& table) {
     for (double const x : row) require(std::isfinite(x), "numbers of a table are finite");
   }
   std::set<std::string> const different(table.columns.begin(), table.columns.end());
-  if (different.size() != table.columns.size() || different.contains("")) return;  // `Csv` refuses such heads
+  if (different.size() != table.columns.size() || different.contains("")) return;  // `Csv` refuses these heads
   std::string const file = folder().file("again.csv");
   Csv csv(file, table.columns);
   for (auto const& row : table.rows) csv.row(row);

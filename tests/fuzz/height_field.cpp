@@ -1,5 +1,5 @@
-// Height fields. What is accepted goes through its points, is finite in its cells and beyond them, and stays below
-// `highest()`.
+// Height fields. An accepted field interpolates its points, is finite within its cells and outside, and does not
+// exceed `highest()`.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,7 +13,8 @@ namespace polybody::fuzz {
 void check(HeightField const& field, HeightField::Grid const& grid) {
   MatX const& z = grid.heights;
   double const size = largest_size(z.reshaped());
-  // Beside their digits, products of denormal numbers err by the least of them: four, and sums of four times up to dy.
+  // In addition to round-off, products of denormal numbers have an error of the least denormal number: four products,
+  // and sums of four times up to dy.
   double const least = std::numeric_limits<double>::denorm_min();
   double const rounding = 1e-9 * size + 32.0 * least * std::max<double>({1.0, grid.dx, grid.dy});
   auto const at = [&](double i, double j) { return field.height(grid.x0 + i * grid.dx, grid.y0 + j * grid.dy); };
@@ -24,7 +25,7 @@ void check(HeightField const& field, HeightField::Grid const& grid) {
               ", ", j);
       require(h.z <= field.highest() + rounding, "heights stay below the highest at ", i, ", ", j);
     }
-  // Where a place has few digits left beside the spacing, cells are not found exactly.
+  // If positions have few digits compared with the spacing, the cell search is not exact.
   if (std::abs(grid.x0) > 1e3 * grid.dx || std::abs(grid.y0) > 1e3 * grid.dy) return;
   for (Index i = 0; i < z.rows(); ++i)
     for (Index j = 0; j < z.cols(); ++j)

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What the targets of Matrix Market and node files share: an independent count of words, and numbers written out.
+/// Common parts of the targets for Matrix Market and node files: an independent word count, and numbers as text.
 
 #include <sstream>
 
@@ -8,7 +8,7 @@
 
 namespace polybody::fuzz {
 
-/// The number of words in each line that has any before the comment character.
+/// Number of words before the comment character for each line with at least one word.
 inline std::vector<std::size_t> words_of_lines(std::string_view text, char comment) {
   std::vector<std::size_t> counts;
   std::istringstream lines{std::string(text)};

@@ -1,4 +1,5 @@
-// Matrix Market files of 6×6 matrices. Each entry has a line of three words; written again it is read as the same.
+// Matrix Market files of 6×6 matrices. Each entry has a line of three words. An accepted matrix is written and read
+// again with the same result.
 #include <polybody/bodies/ffr/matrix_file.hpp>
 
 #include "fuzz/lines.hpp"

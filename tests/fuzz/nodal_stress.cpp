@@ -1,6 +1,6 @@
-// Stress at named nodes of three: a file of names and a matrix, which stand in the input one after the other behind a
-// line of "====". What is read has six finite rows for each name, of which none repeats; written again it is read as
-// the same.
+// Stress at named nodes of a structure of three nodes. The input consists of a file of names and a matrix, separated
+// by a line "====". An accepted result has six finite rows for each name, and the names differ. It is written and
+// read again with the same result.
 #include <polybody/stress/nodal_stress.hpp>
 
 #include "fuzz/lines.hpp"

@@ -1,4 +1,5 @@
-// Node files. Each line with words has three, and they are what is read; written again they are read as the same.
+// Node files. Each line with words has three words, which are the accepted numbers. They are written and read again
+// with the same result.
 #include <polybody/bodies/ffr/matrix_structure.hpp>
 
 #include "fuzz/lines.hpp"

@@ -1,6 +1,5 @@
-// The options of the examples: one of each kind that they have, of each type. The arguments stand in the input, one a
-// line. What is parsed keeps to its bounds and is finite; what is not is told on a stream, and gives main a code to
-// return.
+// Options of the examples: one option of each kind and type. The input contains one argument per line. Accepted
+// values are finite and within their bounds. Other values cause a message on a stream and an exit code.
 // with: examples/support/command_line.cpp
 #include <algorithm>
 #include <cmath>
@@ -56,7 +55,7 @@ void check(Options const& o) {
   require(std::isfinite(o.moment), "--moment is finite");
 }
 
-/// What the parser prints, in place of the streams of the program.
+/// Captures the output of the parser, which otherwise goes to the streams of the program.
 struct Streams {
   std::ostringstream out, err;
   std::streambuf *const cout = std::cout.rdbuf(out.rdbuf()), *const cerr = std::cerr.rdbuf(err.rdbuf());

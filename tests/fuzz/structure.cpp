@@ -1,5 +1,5 @@
-// Structures of three files: nodes, mass and stiffness, which stand in the input one after the other behind lines of
-// "====". What is read has a finite, positive mass with finite moments, and matrices that are symmetric.
+// Structures from three files: nodes, mass and stiffness, separated in the input by lines "====". An accepted
+// structure has a finite, positive mass, finite moments and symmetric matrices.
 #include <polybody/bodies/ffr/matrix_structure.hpp>
 
 #include "fuzz/target.hpp"

@@ -1,6 +1,6 @@
-// Records of studies. What is accepted has an outcome of the study's own outputs, or a sentence, at each point that is
-// there; written again line by line it is read as the same, and what is torn is at the end. The input is given as it
-// is, as lines after the head, and as texts of lines whose checksums are right.
+// Records of studies. An accepted record has the study's own outputs or an error message at each of its points. It is
+// written line by line and read again with the same result. A torn line can occur only at the end. The input is read
+// unchanged, as lines after the head, and as texts of lines with correct checksums.
 #include <polybody/study/record_content.hpp>
 
 #include "fuzz/target.hpp"

@@ -1,6 +1,6 @@
-// Tables of numbers as they come from files: SmoothTable, MonotoneTable and RoadProfile. What is accepted goes through
-// its points and is finite between them and beyond, by as much as the last two are apart; a road stays below its
-// highest point.
+// Tables of numbers from files: SmoothTable, MonotoneTable and RoadProfile. An accepted table interpolates its points
+// and is finite between them. Outside it is finite up to the distance of the last two points. A road does not exceed
+// its highest point.
 #include <cmath>
 
 #include <polybody/math/smooth_table.hpp>
@@ -15,7 +15,7 @@ struct Pair {
 };
 bool names_table(std::string const& message) { return message.starts_with("the table"); }
 
-/// Calls `at(x)` at the points, between them and on either side.
+/// Calls `at(x)` at the points, between them and on both sides.
 template <class F>
 void visit(std::vector<Pair> const& points, F&& at) {
   std::size_t const n = points.size();
@@ -78,7 +78,7 @@ extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size
   while (numbers.left() >= 2) {
     double const x = numbers.next();
     pairs.push_back({x, numbers.next()});
-    if ((ends & 4) && pairs.size() > 1)  // widths in place of places: these rise
+    if ((ends & 4) && pairs.size() > 1)  // widths instead of positions: these increase
       pairs.back().x = pairs[pairs.size() - 2].x + std::abs(x);
   }
   smooth(pairs, rates);

@@ -1,9 +1,8 @@
 #pragma once
 /// \file
-/// What the fuzz targets share. A target is a file with libFuzzer's entry: it gives its input to a reader, which must
-/// yield finite, consistent data or refuse it with an error of the library that names the file. Everything else
-/// (another exception, a report of a sanitizer, a property that does not hold) ends the program, and libFuzzer keeps
-/// the input.
+/// Common parts of the fuzz targets. A target is a file with libFuzzer's entry function, which passes its input to a
+/// reader. The reader must return finite, consistent data, or throw an error of the library that names the file. Any
+/// other exception, a sanitizer report or a violated property ends the program, and libFuzzer stores the input.
 
 #include <unistd.h>
 
@@ -25,7 +24,7 @@ namespace polybody::fuzz {
 inline std::string told(std::string const& text) { return text; }
 inline std::string told(double x) { return number(x); }
 
-/// Ends the program where `holds` is false; the property is told by these texts and numbers.
+/// Ends the program if `holds` is false, and prints these texts and numbers.
 template <class... Part>
 void require(bool holds, Part const&... property) {
   if (holds) return;
@@ -37,7 +36,7 @@ inline std::string_view text_of(std::uint8_t const* data, std::size_t size) {
   return {reinterpret_cast<char const*>(data), size};
 }
 
-/// A folder of this process, in memory where the machine has such a place, that is removed at the end.
+/// Folder of this process, in memory if the machine provides it. The folder is removed at the end.
 class Folder {
  public:
   Folder() { std::filesystem::create_directories(path_); }
@@ -49,7 +48,7 @@ class Folder {
   Folder& operator=(Folder const&) = delete;
 
   std::string file(std::string const& name) const { return (path_ / name).string(); }
-  /// A file with this text.
+  /// Writes a file with this text.
   std::string put(std::string const& name, std::string_view text) const {
     std::ofstream(file(name), std::ios::binary).write(text.data(), std::streamsize(text.size()));
     return file(name);
@@ -67,7 +66,8 @@ inline Folder const& folder() {
   return one;
 }
 
-/// What `read` yields, or nothing where it refuses; `names(message)` says whether a refusal names what it must.
+/// Result of `read`, or nothing if it refuses the input. `names(message)` checks that the refusal names the required
+/// object.
 template <class Read, class Names>
 auto accepted(Read&& read, Names&& names) -> std::optional<decltype(read())> {
   try {
@@ -81,13 +81,14 @@ auto accepted(Read&& read, Names&& names) -> std::optional<decltype(read())> {
 
 inline bool has(std::string_view text, std::string_view part) { return text.find(part) != text.npos; }
 
-/// The bytes of an input as numbers of every size: two for each, a factor of −128 to 127 and a power of ten, which is
-/// zero for half of the inputs. The largest and the smallest powers overflow and underflow.
+/// Bytes of an input as numbers of every magnitude. Each number consists of two bytes: a factor of −128 to 127 and a
+/// power of ten. The power is zero for half of the inputs. The largest and the smallest powers overflow and
+/// underflow.
 class Numbers {
  public:
   Numbers(std::uint8_t const* data, std::size_t size) : data_(data), size_(size) {}
   std::size_t left() const { return size_ / 2; }
-  /// The next byte; zero at the end.
+  /// Next byte, or zero at the end.
   std::uint8_t byte() {
     if (size_ == 0) return 0;
     --size_;

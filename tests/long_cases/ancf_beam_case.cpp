@@ -1,4 +1,4 @@
-// M1, M2, M3 and M7 by AncfBeam.
+// Flexible mechanisms M1, M2, M3 and M7 by AncfBeam.
 #include <polybody/bodies/ancf/ancf_beam.hpp>
 
 #include "driven_beams.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// CASES2 M2 and M3: lateral buckling of a beam driven by crank and link, and a flexible shaft through its critical
-/// speed [Bauchau et al. 2016, Multibody Syst. Dyn. 37, 29–48], against spectral geometrically exact beams.
+/// M2: lateral buckling of a beam driven by crank and link. M3: flexible shaft through its critical speed. Data:
+/// [Bauchau et al. 2016, Multibody Syst. Dyn. 37, 29–48]. The references are spectral geometrically exact beams.
 
 #include "mechanism.hpp"
 
@@ -27,7 +27,7 @@ inline constexpr BucklingRow buckling_table[] = {
     {0.3, -0.0169347, 0.0010592, -0.0013112, 0.0038027},   {0.35, 0.0191311, -0.0038993, 0.0030826, -0.0143032},
     {0.4, -0.0220714, -0.0051619, -0.0040196, -0.0201670}};
 
-/// The beam from the origin along x, clamped; link and crank lie d beside it.
+/// The beam is clamped at the origin along x. Link and crank are at the distance d from it.
 template <class B>
 struct BucklingBeam {
   static constexpr double d = 1e-4, duration = 0.4;
@@ -85,7 +85,7 @@ struct BucklingBeam {
   Vec3 moved(double s) const { return position(model, x, beam.at(s)) - Vec3(s, 0, 0); }
 };
 
-/// \param lateral allowed errors of the lateral displacements until 0.12, 0.14, 0.2, 0.25 and 0.4 s [m]
+/// \param lateral tolerances of the lateral displacements until 0.12, 0.14, 0.2, 0.25 and 0.4 s [m]
 template <class B>
 void beam_buckles(Mesh<B> const& mesh, Index n, double h, std::array<double, 5> const& lateral) {
   BucklingBeam<B> m(mesh, n);
@@ -109,7 +109,7 @@ void beam_buckles(Mesh<B> const& mesh, Index n, double h, std::array<double, 5> 
     if (i >= 10) widest = std::max(widest, std::abs(m.moved(0.5)[1]));
     held(spectral("M2", "u_z of the tip after the drive [m]", name), m.moved(1.0)[2], -0.0205, 5e-4,
          {equals("t", 0.4 + 0.01 * i)});
-    EXPECT_LE(energy(m.model, m.x).total(), plateau * (1.0 + 1e-4));  // it is not monotone within a period
+    EXPECT_LE(energy(m.model, m.x).total(), plateau * (1.0 + 1e-4));  // not monotone within a period
   }
   held(spectral("M2", "amplitude of the middle after 0.5 s [m]", name), widest, 0.02495, 2.5e-3);
 }
@@ -148,7 +148,7 @@ inline Motion shaft_speed(double t) {
   return {51.0 + 1.2 * w * (t - 1.25), 1.2 * w, 0.0};
 }
 
-/// A tube of 6 m along x with an eccentric disk in the middle, in static equilibrium.
+/// Tube of 6 m along x with an eccentric disk in the middle, in static equilibrium.
 template <class B>
 struct Shaft {
   Mechanism<B> model{Gravity{0, 0, -9.81}};
@@ -180,7 +180,7 @@ struct Shaft {
   Shaft(Shaft const&) = delete;
 };
 
-/// \param whirl allowed errors of u_y and u_z until 0.5, 1.1, 1.5 and 2.25 s [m]
+/// \param whirl tolerances of u_y and u_z until 0.5, 1.1, 1.5 and 2.25 s [m]
 template <class B>
 void shaft_whirls(Mesh<B> const& mesh, Index n, double h, std::array<double, 4> const& whirl) {
   Shaft<B> m(mesh, n);

@@ -1,4 +1,4 @@
-// M7 by the floating frame of reference, with the lowest modes of each clamped beam.
+// Double pendulum M7 by the floating frame of reference, with the lowest modes of each clamped beam.
 #include <polybody/bodies/ffr/beam_structure.hpp>
 #include <polybody/bodies/ffr/ffr.hpp>
 

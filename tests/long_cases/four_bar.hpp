@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// CASES2 M1: flexible four-bar mechanism with a misaligned hinge [Bauchau et al. 2016, Multibody Syst. Dyn. 37,
-/// 29–48], its path of equilibria, against shooting on the exact rod equations.
+/// M1: flexible four-bar mechanism with a misaligned hinge [Bauchau et al. 2016, Multibody Syst. Dyn. 37, 29–48]. Its
+/// path of equilibria is compared with shooting on the exact rod equations.
 
 #include "mechanism.hpp"
 
@@ -12,7 +12,7 @@ struct FourBarRow {
   Vec3 n, m;         ///< section forces at A
   double angles[3];  ///< θ_B, θ_C, φ_D
   double z;          ///< of the middle of BC
-  Vec3 c;            ///< place of C
+  Vec3 c;            ///< position of C
 };
 inline FourBarRow const four_bar_table[] = {{0.5,
                                              {2.7244, 13.2901, -99.5030},
@@ -111,7 +111,7 @@ inline FourBarRow const four_bar_table[] = {{0.5,
                                              -1.677302e-03,
                                              {0.33521032, 0.07294037, -3.075281e-03}}};
 
-/// A at the origin, B (0, 0.12, 0), C (0.24, 0.12, 0), D (0.24, 0, 0); the hinge at C leans by 5°.
+/// A at the origin, B (0, 0.12, 0), C (0.24, 0.12, 0), D (0.24, 0, 0). The hinge at C is inclined by 5°.
 template <class B>
 struct FourBar {
   Mechanism<B> model;
@@ -146,7 +146,7 @@ struct FourBar {
         .EA = 13.25e6, .EI = 70.66, .mass_per_length = 0.4992, .GA = 4.22e6, .GJ = 45.84, .rotary_inertia = 2.662e-6};
   }
 
-  /// To the crank's place at t: in steps of 0.8° and, near the collinear positions, 0.08°.
+  /// Follows the path to the crank angle at t, in steps of 0.8°, or 0.08° near the collinear configurations.
   void follow_to(double t) {
     double const degree = std::numbers::pi / 180.0 / 0.6;
     while (x.t < t) {
@@ -155,7 +155,7 @@ struct FourBar {
       equilibrium(model, x);
     }
   }
-  /// N and M at A in the section's axes: what the rest of the bar exerts on the ground there.
+  /// N and M at A in the axes of the section: force and moment of the bar on the ground.
   Vec6 root() const {
     Wrench<> const pin = reaction(model, x, at_a), turn = reaction(model, x, crank);
     Mat3 const axes = frame(model, x, ab.at(0.0)).A;
@@ -163,7 +163,7 @@ struct FourBar {
     out << axes.transpose() * (-pin.f - turn.f), axes.transpose() * (-pin.m - turn.m);
     return out;
   }
-  /// θ_B, θ_C, φ_D near those of a row.
+  /// θ_B, θ_C, φ_D near the angles of a row of the table.
   Vec3 angles(FourBarRow const& row) const {
     auto const turned = [&](auto const& marker) {
       return Mat3(frame(model, x, marker).A * frame(model, model.reference_state(), marker).A.transpose());
@@ -176,8 +176,8 @@ struct FourBar {
   }
 };
 
-/// Two meshes, and what they tend to. \param ratio of their errors; \param tolerance of N₂, N₃ and M beside their size;
-/// N₁, by which the loop closes in its plane, is ten times as sensitive, angles a hundred times less
+/// Two meshes and their extrapolation. \param ratio of their errors; \param tolerance of N₂, N₃ and M relative to
+/// their size; N₁, which closes the loop in its plane, is ten times as sensitive, angles a hundred times less
 template <class B>
 void four_bar_follows(Mesh<B> const& mesh, Index n, double ratio, double tolerance) {
   FourBar<B> coarse(mesh, n), fine(mesh, 2 * n);

@@ -1,4 +1,4 @@
-// M1, M2, M3 and M7 by Lrvf; M7 with rigid bars.
+// Flexible mechanisms M1, M2, M3 and M7 by Lrvf; M7 also with rigid bars.
 #include <polybody/bodies/lrvf/lrvf.hpp>
 #include <polybody/integrators/radau.hpp>
 

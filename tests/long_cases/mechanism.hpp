@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// What the flexible mechanisms of CASES2 have in common: one type of model for each type of beam, so that the cases
-/// share what is compiled.
+/// Common parts of the flexible mechanisms M1, M2, M3 and M7: one model type for each type of beam, so that the cases
+/// share compiled code.
 
 #include <gtest/gtest.h>
 
@@ -25,10 +25,10 @@
 
 namespace polybody::long_cases {
 
-/// An angle as any function of time.
+/// Angle as an arbitrary function of time.
 struct Turn {
   std::function<Motion(double)> law;
-  std::vector<double> ends = {};  ///< of its parts
+  std::vector<double> ends = {};  ///< end times of its parts
   Motion operator()(double t) const { return law(t); }
   std::vector<double> corners() const { return ends; }
 };
@@ -44,7 +44,7 @@ using BodiesOf = std::conditional_t<std::is_same_v<B, Rigid<>>, Bodies<B>, Bodie
 template <class B>
 using Mechanism = Model<BodiesOf<B>, Joints<Hinge, Drive, Ball, Sleeve, Fixed>>;
 
-/// How a formulation meshes a bar, and what the tables call it.
+/// Mesh of a bar in a formulation, and the name of the formulation in the tables.
 template <class B>
 struct Mesh {
   std::string name;
@@ -56,15 +56,15 @@ inline Drive drive(Vec3 const& axis, Turn const& turn) {
   return {PrescribedAngle<Turn>{.law = turn, .axis = axis}, {}};
 }
 
-/// Angle of a turn R about the axis c, within a turn of `near`: sin θ c is the axial vector of R, 2 cos θ + 1 its
-/// trace.
+/// Angle of a rotation R about the axis c, within one revolution of `near`: sin θ c is the axial vector of R, 2 cos θ
+/// + 1 its trace.
 inline double angle_about(Mat3 const& r, Vec3 const& c, double near) {
   Vec3 const axial(r(2, 1) - r(1, 2), r(0, 2) - r(2, 0), r(1, 0) - r(0, 1));
   double const angle = std::atan2(0.5 * c.dot(axial), 0.5 * (r.trace() - 1.0));
   return near + std::remainder(angle - near, 2.0 * std::numbers::pi);
 }
 
-/// What two meshes tend to whose errors are as `ratio` to one.
+/// Limit of two meshes whose errors have the given `ratio`.
 inline double extrapolated(double coarse, double fine, double ratio) { return fine + (fine - coarse) / (ratio - 1.0); }
 
 }  // namespace polybody::long_cases

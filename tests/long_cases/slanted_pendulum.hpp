@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// CASES2 M7: double pendulum of two beams, its second hinge at 45° (data of SHARPy), against spectral geometrically
-/// exact beams and, for rigid bars, Lagrange's equations of two angles.
+/// M7: double pendulum of two beams with the second hinge at 45° (data of SHARPy's TestDoublePendulumSlanted). The
+/// references are spectral geometrically exact beams and, for rigid bars, Lagrange's equations of two angles.
 
 #include "mechanism.hpp"
 
@@ -34,7 +34,7 @@ struct SlantedPendulum {
   BodyHandle<B> upper, lower;
   State x;
 
-  /// \param make a body of a bar
+  /// \param make makes a body from a bar
   template <class Make>
   explicit SlantedPendulum(Make const& make)
       : upper(model.add(make(bar(0.0)), "upper")), lower(model.add(make(bar(0.5)), "lower")) {
@@ -56,7 +56,7 @@ struct SlantedPendulum {
   }
 };
 
-/// To t = 1 s. \param early, late allowed distances until 0.5 s and after [m]
+/// Runs to t = 1 s. \param early, late tolerances of the distance until 0.5 s and after [m]
 template <class B, class Make, class I>
 void pendulum_follows(Make const& make, I const& integrator, double h, PendulumRow const (&table)[7], double early,
                       double late, std::string const& formulation) {

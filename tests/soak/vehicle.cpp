@@ -1,7 +1,7 @@
-// The tracked vehicle for a minute of simulated time and more: what grows, what drifts, where the energy goes.
+// Tracked vehicle for a minute of simulated time or more: growth of memory, drift of constraints, balance of energy.
 //   soak_vehicle [seconds [step]]
-// Fails where memory grows after the first five seconds, a pin opens, a track leaves its sprocket or its middle plane,
-// or energy is not accounted for.
+// The test fails if memory grows after the first five seconds, if a pin opens, if a track leaves its sprocket or its
+// middle plane, or if the energy balance is not closed.
 #include <unistd.h>
 
 #include <cstdlib>
@@ -17,7 +17,7 @@ using namespace polybody;
 
 namespace {
 
-// Resident memory of this process [kB]; 0 where the system does not say.
+// Resident memory of this process [kB]; 0 if the system does not provide it.
 long memory() {
   std::ifstream in("/proc/self/statm");
   long whole = 0, resident = 0;
@@ -26,7 +26,7 @@ long memory() {
 }
 
 struct Worst {
-  double gap = 0.0, spring = 0.0;  // of the ideal pins, and of the spring that closes a track (10⁹ N/m) [m]
+  double gap = 0.0, spring = 0.0;  // [m], of the ideal pins and of the track's closing spring (10⁹ N/m)
   double sideways = 0.0, off_path = 0.0;
 };
 
