@@ -184,7 +184,7 @@ struct SqueezerEquations {
   static constexpr double side_e = 1.0, side_g = 1.0, side_h = -1.0;
 };
 
-/// The same mechanism with bodies and pins; names and numbers are those of the test set. Parameters as above.
+/// This mechanism with bodies and pins; names and numbers are those of the test set. Parameters as above.
 auto squeezer(double end, double step) {
   return [=](P p) {
     using Pin = Joint<planar::Revolute, Constraint>;

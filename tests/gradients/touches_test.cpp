@@ -85,7 +85,7 @@ TEST(Touches, LeftOutAreFoundByTheAdjointThroughEvents) {
   EXPECT_TRUE(has(said({"floor"}, {"other"}), "\"push [N]\" changes the equations of body \"ball\" at t = 0.1"));
 }
 
-/// The same model without the push, whose beginning is a breakpoint.
+/// This model without the push, whose beginning is a breakpoint.
 auto without_push(std::span<double const> p) {
   auto scenario = balls(std::array{p[0], 0.0, p[1]});
   scenario.options.until = 0.09;

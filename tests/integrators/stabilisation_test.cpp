@@ -48,7 +48,7 @@ bool const stabilisation_obey[] = {
 
 namespace stabilisation_test {
 
-/// Largest difference over 1 s between Φ of a bar that starts off its pin and `expected(t, Φ₀, Φ̇₀)`, relative to the
+/// Largest difference over 1 s between Φ of a bar with an initial violation of its pin and `expected(t, Φ₀, Φ̇₀)`, relative to the
 /// initial value.
 template <class I, class Expected>
 double worst_of_open_pin(I const& integrator, Expected expected) {
@@ -263,8 +263,8 @@ TEST(CoordinatePartitioning, StartForgetsTheChoice) {
   }
 }
 
-// The constraint equations of a pin are linear in the position of its rod, so one iteration is enough. Those of a
-// loop are nonlinear.
+// The constraint equations of a pin are linear in the position of its rod, so one iteration is enough. The equations
+// of a loop are nonlinear.
 TEST(CoordinatePartitioning, SaysThatThePositionsCannotBeBroughtBack) {
   CrankRocker mechanism;
   assemble(mechanism.model, mechanism.x);

@@ -284,7 +284,7 @@ class Examination {
     if (balanced) note("moment of momentum", off.tail<3>().norm() / scale, 1e-7);
   }
 
-  /// The same model with `Constraint`: accelerations, multipliers, reactions.
+  /// This model with `Constraint`: accelerations, multipliers, reactions.
   void check_twin(Built& b, State const& x) {
     RunSystems run = b.systems_of_run();
     System& stepped = *run.stepped;

@@ -92,7 +92,7 @@ struct Plan {
 
   /// Checks for joints with `Recursive`.
   bool has_joint_coordinates(Kinds const& kinds) const;
-  /// The same model with `Constraint` as the policy.
+  /// This model with `Constraint` as the policy.
   Plan twin(Kinds const& kinds) const;
   std::string text(Kinds const& kinds) const;
 };

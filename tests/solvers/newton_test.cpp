@@ -230,7 +230,7 @@ TEST(Newton, EndsAtItsBudgetAndSaysWhatItLeft) {
   Scalar p{[](double y) { return y - 1.0; }, [](double) { return 2.0; }};
   NewtonOptions const options{.max_iterations = 100, .budget = 13.0};
   p.factored_slope = 2.0;
-  KeptFactor kept{.usable = true, .theta = 0.5, .fresh = 0.5};  // a new factorisation is no better
+  KeptFactor kept{.usable = true, .theta = 0.5, .fresh = 0.5};  // a new factorisation does not improve the rate
   NewtonReport const report = newton(p, options, kept);
   EXPECT_EQ(report.result, NewtonResult::converged);
   EXPECT_EQ(report.iterations, 13);

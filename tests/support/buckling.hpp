@@ -24,7 +24,7 @@ double lowest(M const& model, State const& x) {
 }
 
 /// Zero of `lowest(force)` between a, stable, and b, unstable, by the secant method. The function is not evaluated at
-/// the last iterate, where the stiffness is singular.
+/// the last iterate, because the stiffness is singular there.
 template <class F>
 double critical_force(F&& lowest, double a, double b) {
   double at_a = lowest(a), at_b = lowest(b);

@@ -1,4 +1,4 @@
-// Invalid input is refused with a message, and not with a crash or an exception of the standard library.
+// Invalid input throws an `Error` that names it. It causes neither a crash nor an exception of the standard library.
 #include <gtest/gtest.h>
 
 #include <polybody/polybody.hpp>

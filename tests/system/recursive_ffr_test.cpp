@@ -185,7 +185,7 @@ void expect_as_multipliers(char const* world, char const* way, double bound) {
 }
 
 // With random deformations the bodies accelerate by 1e7 m/s². `Reduced` adds the forces of all bodies at the roots,
-// where they cancel. Another order of summation changes its error by a factor of a hundred, up to 1.5e-9.
+// and their sum is small. Another order of summation changes its error by a factor of a hundred, up to 1.5e-9.
 TEST(RecursiveFfr, TreesInSpaceAccelerateAsMultipliersSay) {
   expect_as_multipliers<InSpace, Recursive>("in space", "Recursive", 1e-9);
   expect_as_multipliers<InSpace, Reduced>("in space", "RecursiveBy<Reduced>", 1e-8);

@@ -146,7 +146,7 @@ TEST_P(Tangent, StiffnessIsExactInMotionWithoutDampers) {
   EXPECT_LT(mismatch(stiffness(undamped, x), by_position(undamped, x)), 1e-13);
 }
 
-// The same comparison without dual numbers.
+// This comparison without dual numbers.
 TEST_P(Tangent, StiffnessAgreesWithDifferencesOfTheResidual) {
   MatX k(nv, nv);
   for (Index j = 0; j < nv; ++j)

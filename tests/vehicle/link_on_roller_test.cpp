@@ -79,7 +79,7 @@ TEST(LinkOnRoller, TouchesWithBothRims) {
     EXPECT_LT((found[k].place - Vec3(0, y * std::cos(alpha), thick)).norm(), 1e-15);
   }
   auto const beside = contact_points(two_rims, at({0, 0, 0}),
-                                     over(at({0, 0, 0}), 0.0, 0.15, d));  // one rim is off the face, at y = 0.21
+                                     over(at({0, 0, 0}), 0.0, 0.15, d));  // one rim is outside the face, at y = 0.21
   ASSERT_EQ(beside.size(), 1u);
   EXPECT_NEAR(beside[0].place[1], 0.09, 1e-15);
 }
@@ -183,8 +183,8 @@ TEST(LinkOnRoller, EdgeMeetsTheRimBeyondTheFace) {
          found[0].depth, 0.002, 1e-13, {equals("side", side)});
     EXPECT_LT((found[0].place - edge).norm(), 1e-15);
     EXPECT_LT((found[0].normal - (edge - axle).normalized()).norm(), 1e-13);
-    // 20 mm deep in the extension of the rim, but just beyond the face: the depth is no larger than the distance from
-    // the face
+    // 20 mm deep in the extension of the rim, but just beyond the face: the depth is at most the distance from the
+    // face
     auto const just = [&](double beyond) {
       return contact_points(one_rim, link, at({side * (0.5 * pitch + beyond), 0, thick + reach - 0.02}));
     };

@@ -160,7 +160,7 @@ TEST(SprocketProfile, DepthAndNormalAreContinuous) {
   EXPECT_GT(began, 20);
 }
 
-// The same test with dual numbers, exact in every piece.
+// This test with dual numbers, exact in every piece.
 TEST(SprocketProfile, NormalIsTheSlopeOfTheDepth) {
   Numbers number;
   std::array<int, 4> pieces{};  // arc, flank, corner, tip

@@ -52,7 +52,7 @@ Ride ride(P const& policy, double until, double speed, bool hold = false) {
 }
 
 // The forward positions of all formulations agree within 0.15 m after 10 s (tolerance chosen for the claim of Wallin
-// 2016). Over the first metre they agree to millimetres, as no formulation is softer than contacts of 2e6 N/m.
+// 2016). Over the first metre they agree to millimetres, because no formulation is softer than contacts of 2e6 N/m.
 TEST(TrackFormulations, MoveTheVehicleAlike) {
   Ride const ideal = ride<Rigid<>>(Constraint{}, 0.6, 8.0);
   EXPECT_TRUE(ideal.held);

@@ -74,7 +74,7 @@ class Dumbbell : public AddingCoordinates {  // q ⊞ δ = q + δ: `plus` and `l
       out[3 + i] = -out[i];
     }
   }
-  /// K = [B, −B; −B, B], B = e (k e + c (1 − e eᵀ) ḋ/l)ᵀ + N/l (1 − e eᵀ); D likewise with c e eᵀ.
+  /// K = [B, −B; −B, B], B = e (k e + c (1 − e eᵀ) ḋ/l)ᵀ + N/l (1 − e eᵀ); D has the same form with c e eᵀ.
   void tangent(Index, std::span<double const> q, std::span<double const> v, double ck, double cd,
                Mat<double, 6, 6>& k) const {
     Vec3 const d = part<3>(q, 3) - part<3>(q, 0), rate = part<3>(v, 3) - part<3>(v, 0);
