@@ -1,8 +1,9 @@
 """Prints the line coverage of headers:  coverage_report.py INCLUDE_DIR LIBCLANG_DIR FOUND.info…
 
-FOUND are the SF: and DA: lines of lcov records. A line counts as reached when one of them reaches it. Functions that
-have no line in any record were not instantiated: they are found in the compiler's AST, and their lines count as not
+FOUND are the SF: and DA: lines of lcov records. A line counts as reached if one of the records reaches it. Functions
+without a line in any record were not instantiated. They are found in the compiler's AST, and their lines count as not
 reached.
+
 """
 
 import re
@@ -11,7 +12,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-sys.path.append("/usr/lib/python3/dist-packages")  # where Debian puts clang's bindings, for another Python as well
+sys.path.append("/usr/lib/python3/dist-packages")  # folder of clang's bindings in Debian, also for other Python versions
 from clang import cindex  # noqa: E402
 
 KIND = cindex.CursorKind
@@ -28,7 +29,7 @@ ROOMS = CLASSES | {KIND.NAMESPACE, KIND.FRIEND_DECL}
 
 
 def kind_of(cursor):
-    """None for what the bindings do not know, such as concepts."""
+    """None for kinds that the bindings do not support, such as concepts."""
     try:
         return cursor.kind
     except ValueError:
@@ -36,7 +37,7 @@ def kind_of(cursor):
 
 
 def counts_of(records, root):
-    """{header: {line: times that it was reached}} of lcov records."""
+    """{header: {line: execution count}} of lcov records."""
     counts = {}
     for record in records:
         lines = None
@@ -97,7 +98,7 @@ def functions_of(root):
 
 
 def code_lines(text):
-    """Numbers of the lines that hold more than blanks and comments."""
+    """Numbers of the lines that contain more than blanks and comments."""
     text = re.sub(r"/\*.*?\*/", lambda m: re.sub(r"[^\n]", " ", m[0]), text, flags=re.DOTALL)
     return {i for i, line in enumerate(text.splitlines(), 1) if line.split("//")[0].strip()}
 

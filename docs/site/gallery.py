@@ -1,7 +1,10 @@
-"""The gallery as a page: reads what docs/site/build says of the examples and their pictures, one a line between tabs.
+"""The gallery as a page. It reads the list of the examples and their pictures from docs/site/build, one per line:
 
-  stage    NAME   WHAT IT SHOWS   COMMAND
+  stage    NAME   DESCRIPTION   COMMAND
   picture  FILE   CAPTION
+
+Fields are separated by tabs.
+
 """
 import html
 import sys

@@ -1,17 +1,18 @@
-"""What Doxygen reads in place of the files of the project:  prepare.py TO FILE...
+"""Input files for Doxygen, derived from the files of the project:  prepare.py TO FILE...
 
 Each FILE, relative to the project, is written to TO under the same name.
 
 Headers
-  - belong to the group of their floor (`reference.dox`);
-  - have equations, which are indented in comments, on lines of their own;
+  - belong to the group of their layer (`reference.dox`);
+  - have equations, which are indented in comments, on separate lines;
   - are read without explicit instantiations, which declare nothing, and without Eigen's traits;
   - have the comment of `double a, b;  ///< ...`, or of one line above it, at each of the names;
-  - have at members that a concept asks for what docs/extending.md says of them there, where they say nothing themselves.
+  - take the description of a member that a concept requires from docs/extending.md if the member has no comment.
 Pages
   - and their headings have labels, and links to pages and headings are references, which Doxygen checks;
-  - links in the pages of docs/site make their order: \\subpage.
+  - are ordered by the links in the pages of docs/site: \\subpage.
 Lines keep their numbers, so that a warning names the right one.
+
 """
 import re
 import sys
@@ -28,7 +29,7 @@ NO_TYPES = ("return", "using", "friend", "typedef", "throw", "case")
 
 
 def split_at_commas(text):
-    """Parts of `text` between commas that stand in no bracket."""
+    """Parts of `text` between commas outside brackets."""
     parts, depth = [""], 0
     for i, c in enumerate(text):
         depth += (c in "([{<") - (c in ")]}" or (c == ">" and text[i - 1] not in "-="))
@@ -40,7 +41,7 @@ def split_at_commas(text):
 
 
 def each_with_its_comment(line, comment=None):
-    """`double a, b = 1.0;  ///< text` as a declaration for each name, each with the text; None where the line is no such."""
+    """`double a, b = 1.0;  ///< text` as one declaration per name, each with the text; None for other lines."""
     code, _, own = line.partition("///<")
     first, *others = split_at_commas(code.rstrip().removesuffix(";"))
     found = DECLARED.match(first)
@@ -57,8 +58,8 @@ MEMBER_ROW = re.compile(r"^\| (`[^|]*`[^|]*) \| ([^|]*) \|$", re.M)
 
 
 def asked_by_concepts():
-    """What docs/extending.md says of each member in its tables: {folder: {(name, whether it is a function): text}}."""
-    said = {folder: {} for folder in (*SECTIONS.values(), "math", "vehicle")}  # where types of these kinds are, too
+    """Descriptions of members in the tables of docs/extending.md: {folder: {(name, True for a function): text}}."""
+    said = {folder: {} for folder in (*SECTIONS.values(), "math", "vehicle")}  # these folders also contain types of these kinds
     for section in re.split(r"^## ", (ROOT / "docs/extending.md").read_text(encoding="utf-8"), flags=re.M):
         if folder := SECTIONS.get(re.match(r"[\w ]*", section)[0].strip()):
             for cell, text in MEMBER_ROW.findall(section):
@@ -69,7 +70,7 @@ def asked_by_concepts():
 
 
 def undocumented():
-    """What a first run found without a comment: {file: {line: names}}."""
+    """Names without a comment in a first run of Doxygen: {file: {line: names}}."""
     found = {}
     file = ROOT / "build/site/parts/undocumented.txt"
     for row in file.read_text(encoding="utf-8").splitlines() if file.exists() else ():
@@ -83,13 +84,13 @@ WAITING = undocumented()
 
 
 def asked_of(folder, member, is_function):
-    """The words of the folder's own table, or of another one; those of solvers are of no other folder."""
+    """Description from the folder's own table, or from another one; those of solvers are not used in other folders."""
     tables = [ASKED[folder], *(table for other, table in ASKED.items() if "solvers" not in (folder, other))] if folder in ASKED else []
     return next((table[member, is_function] for table in tables if (member, is_function) in table), None)
 
 
 def say_what_is_asked(lines, i, folder, member):
-    """Puts the words for a member that line i declares before it, and before its `template` and `requires`."""
+    """Puts the description of a member that line i declares before it, and before its `template` and `requires`."""
     is_function = bool(re.search(rf"\b{re.escape(member)}\(", lines[i]))
     text = asked_of(folder, member, is_function)
     if not text or not (is_function or re.search(r"static constexpr|^\s*using \w+ =", lines[i])):
@@ -105,10 +106,10 @@ LEFT_OUT = (re.compile(r"^(?:extern )?template (?!<)[^;]*;", re.M), re.compile(r
 
 
 def on_lines_of_their_own(lines):
-    """Indented lines of a comment are equations: they keep their lines."""
+    """Indented lines of a comment are equations: they remain separate lines."""
     after = False
     for line in lines:
-        if "///" in line:  # no end of a sentence
+        if "///" in line:  # not the end of a sentence
             line = re.sub(r"\b(Eqs?|Figs?|et al|vol|cf)\. ", r"\1.&nbsp;", line)
         equation = EQUATION.match(line)
         plain = re.match(r"^(\s*///) ([^ \\].*)$", line) if after and not equation else None
@@ -120,7 +121,7 @@ def header(name, text):
     for pattern in LEFT_OUT:
         text = pattern.sub(lambda m: "\n" * m[0].count("\n"), text)
     lines = text.split("\n")
-    _, _, folder, *within = name.split("/")  # include/polybody/FLOOR/...
+    _, _, folder, *within = name.split("/")  # include/polybody/LAYER/...
     for i, line in enumerate(lines):
         if "///<" in line and "," in line:
             lines[i] = each_with_its_comment(line) or line
@@ -142,7 +143,7 @@ def label(path):
 
 
 def anchor(heading):
-    """As GitHub makes it of a heading, in letters that Doxygen takes."""
+    """The anchor that GitHub derives from a heading, with characters that Doxygen accepts."""
     words = re.sub(r"[^\w\- ]", "", heading.lower()).strip().replace(" ", "-")
     return "".join(c if c.isascii() else f"_{ord(c):x}" for c in words)
 
@@ -172,7 +173,7 @@ def title(path):
 def link(path, found):
     target = (path.parent / found[2]).resolve() if found[2] else path
     if target.suffix != ".md" or not target.is_relative_to(ROOT / "docs"):
-        return found[1]  # a file that is no page of the site
+        return found[1]  # a file that is not a page of the site
     text = title(target) if found[1] == target.name else found[1]
     name = label(target) + (f"_{anchor(found[3])}" if found[3] else "")
     kind = "\\subpage" if path.parent == SITE and not found[3] and label(target) != "site_index" else "\\ref"

@@ -1,6 +1,7 @@
-"""Members and types that Doxygen found without a comment:  undocumented.py WARNINGS
+"""Members and types without a comment according to Doxygen:  undocumented.py WARNINGS
 
-A line each: file, line, name, kind (`type`, `name` of a namespace, or `member`), between tabs.
+One line each: file, line, name, kind (`type`, `name` of a namespace, or `member`), separated by tabs.
+
 """
 import re
 import sys
@@ -10,7 +11,7 @@ WARNING = re.compile(r"^(\S+?):(\d+): (?:warning: )?(?:Member (.*) \((\w+)\) of 
 
 
 def rows(warnings):
-    """Each once, though Doxygen names what is in a group twice."""
+    """Each item once, although Doxygen names members of groups twice."""
     seen = set()
     for line in Path(warnings).read_text(encoding="utf-8").splitlines():
         if not (found := WARNING.match(line)):

@@ -1,15 +1,15 @@
-"""A mesh of hexahedra with 20 nodes (C3D20) for CalculiX: made node by node, written to and read from an input file."""
+"""A mesh of hexahedra with 20 nodes (C3D20) for CalculiX: created node by node, written to and read from an input file."""
 
 
 class Mesh:
     def __init__(self):
         self.nodes = []  # [x, y, z] [m]; CalculiX counts them from 1
-        self.elements = []  # 20 places in nodes: corners below (z < 0), above, edges below, above, edges along z
+        self.elements = []  # 20 indices of nodes: corners below (z < 0), above, edges below, above, edges along z
         self.young = self.poisson = self.density = 0.0  # [Pa], 1, [kg/m3]
         self._place = {}
 
     def node(self, x, y, z):
-        """The place of the node there, which is made unless it exists."""
+        """The node at this position; it is created if it does not exist."""
         key = tuple(round(c, 9) + 0.0 for c in (x, y, z))
         if key not in self._place:
             self._place[key] = len(self.nodes)
@@ -43,7 +43,7 @@ class Mesh:
 
     @classmethod
     def read(cls, file):
-        """The mesh of a file that `write` wrote."""
+        """The mesh of a file that `write` has written."""
         mesh, rows, section = cls(), [], ""
         for line in open(file):
             if line.startswith("**"):
@@ -63,7 +63,7 @@ class Mesh:
 
 
 def number_of(x):
-    """As CalculiX reads it, whose numbers have at most twenty characters: 2.1e11, 7850., 0.3."""
+    """A number in CalculiX's format with at most twenty characters: 2.1e11, 7850., 0.3."""
     if x < 1e6:
         text = f"{x:.12g}"
         return text if "." in text else text + "."

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Makes link.inp, link.mass.mtx, link.stiffness.mtx, link.nodes.txt and link.reference.txt, which are kept beside this script, anew.
-#   make_matrices.sh [FOLDER]   those of the mesh of FOLDER/make_mesh.py, kept in FOLDER
-# Needs CalculiX (Debian: calculix-ccx; 2.20 made those that are kept) and python3.
+# Makes link.inp, link.mass.mtx, link.stiffness.mtx, link.nodes.txt and link.reference.txt again, which are stored in this folder.
+#   make_matrices.sh [FOLDER]   the files for the mesh of FOLDER/make_mesh.py, stored in FOLDER
+# Needs CalculiX (Debian: calculix-ccx; 2.20 made the stored files) and python3.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 folder=$(cd "${1:-$here}" && pwd)

@@ -1,8 +1,9 @@
 """Writes link.inp, the mesh of the link for CalculiX: 20 hexahedra of 20 nodes (C3D20), SI units.
 
 The link is a plate 0.15 x 0.05 x 0.02 m about the origin, with two holes of radius 0.0125 m through z at x = -0.05 and 0.05.
-Each hole has a ring of eight elements; four stand between the two rings. Nodes between corners lie on the circle or on the
-middle of a straight edge.
+Each hole has a ring of eight elements, and four elements are between the two rings. Nodes between corners are on the circle
+or on the middle of a straight edge.
+
 """
 
 import math
@@ -18,7 +19,7 @@ def on_circle(centre, angle):
 
 
 def on_square(centre, eighth):
-    """The point of the square around a hole at so many eighths of a turn."""
+    """The point of the square around a hole at the given number of eighths of a turn."""
     x, y = math.cos(eighth * math.pi / 4), math.sin(eighth * math.pi / 4)
     scale = HALF_WIDTH / max(abs(x), abs(y))
     return (centre + scale * x, scale * y)

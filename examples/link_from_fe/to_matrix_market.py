@@ -1,7 +1,8 @@
-"""What CalculiX wrote, as files for polybody's read_structure:  to_matrix_market.py OUTPUT_DIR
+"""Converts the output of CalculiX to files for polybody's read_structure:  to_matrix_market.py OUTPUT_DIR
 
 Reads link.inp, matrices.{sti,mas,dof} and frequencies.dat in the working directory; writes link.stiffness.mtx, link.mass.mtx,
-link.nodes.txt and link.reference.txt. Displacements are ordered by node, x y z of each.
+link.nodes.txt and link.reference.txt. Displacements are ordered by node, x y z for each.
+
 """
 
 import sys
@@ -28,7 +29,7 @@ def convert(source, name, unit):
         i, j = row[int(i) - 1], row[int(j) - 1]
         entries.append((min(i, j), max(i, j), float(value)))  # column, row: the lower triangle
     largest = max(abs(e[2]) for e in entries)
-    entries = sorted(e for e in entries if abs(e[2]) > 1e-15 * largest)  # the others are rounding
+    entries = sorted(e for e in entries if abs(e[2]) > 1e-15 * largest)  # smaller entries are round-off
     with open(out / name, "w") as file:
         print("%%MatrixMarket matrix coordinate real symmetric", file=file)
         print(f"% {name}: {unit}, of link.inp by CalculiX 2.20; see make_matrices.sh", file=file)

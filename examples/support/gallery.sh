@@ -1,10 +1,11 @@
-# What examples/run builds and shows, and the page of its pictures. Sourced.
+# Names and captions of the examples of examples/run, and the page of their pictures. Sourced.
 
-# What is built where nothing is named: the thesis. Then studies and designs.
+# Examples that are built by default: the thesis. Then studies and designs.
 chapters=(pendulum robot_arm cantilever tracked_vehicle link_from_fe track_stress)
 stages=("${chapters[@]}" chain_study vehicle_study identify lighter_link)
 
-# What each takes from nothing to its last picture, after those before it, on two cores [s]: for what is left only.
+# Time of each example from the start to its last picture, after the previous ones, on two cores [s]. It is used for the
+# remaining time only.
 declare -A seconds=([pendulum]=15 [robot_arm]=90 [cantilever]=25 [chain_study]=30 [tracked_vehicle]=150 [link_from_fe]=25 [track_stress]=120 [vehicle_study]=50 [identify]=45 [lighter_link]=40)
 
 declare -A shows=(
@@ -20,7 +21,7 @@ declare -A shows=(
   [vehicle_study]="A study of 24 vehicles whose preload and friction are drawn at random: forces in a pin, and the way."
 )
 
-# command_of NAME OUT [VIEWER]: the program and its options. With the page that plays films, some write one.
+# command_of NAME OUT [VIEWER]: the program and its options. If the film player exists, some write a film.
 command_of() {
   local film=${3:+ --viewer $3}
   case $1 in
@@ -36,7 +37,7 @@ films_of() { find "$1" -type f -name 'film*.html' 2> /dev/null | sort; }
 
 pictures_of() { find "$1" -type f \( -name '*.png' -o -name '*.svg' \) 2> /dev/null | sort; }
 
-# left DONE ALL ELAPSED: of ALL expected seconds DONE were done in ELAPSED.
+# left DONE ALL ELAPSED: the remaining time if DONE of ALL expected seconds took ELAPSED.
 left() {
   local expected=$(($2 - $1))
   (($1 == 0)) || expected=$((expected * $3 / $1))
@@ -49,17 +50,17 @@ left() {
 
 escaped() { sed 's/&/\&amp;/g; s/</\&lt;/g; s/>/\&gt;/g; s/"/\&quot;/g' <<< "$1"; }
 
-# caption_of PICTURE: the title that the script beside it sets, or its name.
+# caption_of PICTURE: the title in the script of the same name, or its name.
 caption_of() {
   local script=${1%.*}.gp title=
   [ ! -r "$script" ] || title=$(sed -n "s/^set title '\(.*\)' noenhanced\$/\1/p" "$script" | head -n 1 | sed "s/''/'/g")
   echo "${title:-$(basename "${1%.*}" | tr _ ' ')}"
 }
 
-# title_of FILM: the title of its page, as it stands there.
+# title_of FILM: the title of its page, unchanged.
 title_of() { grep -m 1 -ao '<title>[^<]*' "$1" | sed 's/^<title>//; s/ · film$//'; }
 
-# write_index OUT: OUT/index.html of all pictures and films below it. Written beside and moved, so it is never half there.
+# write_index OUT: OUT/index.html of all pictures and films below it. Written to a temporary file and moved, so it is never incomplete.
 write_index() {
   local out=$1 page=$1/index.html.part name picture path
   mkdir -p "$out"

@@ -1,5 +1,6 @@
-"""The recipes of vcpkg and Conan, with stand-ins for both: they name this version, as CITATION.cff does, files that exist,
-and options that CMake knows.   recipes.py SOURCE VERSION"""
+"""Checks the recipes of vcpkg and Conan with simulated package managers:  recipes.py SOURCE VERSION
+
+The recipes must name this version, as CITATION.cff does, existing files, and options of CMakeLists.txt."""
 import importlib.util
 import json
 import re

@@ -37,7 +37,8 @@ auto rated_by_outputs(Make const& make) {
   };
 }
 
-/// Value and derivative of this objective function by forward sensitivities. The integral includes the derivatives of the step lengths.
+/// Value and derivative of this objective function by forward sensitivities. The integral includes the derivatives of
+/// the step lengths.
 inline std::pair<double, VecX> by_direct_differentiation(Sensitivities const& s, bool integrates) {
   double value = 0.0;
   VecX slopes = VecX::Zero(s.slopes[0].cols());

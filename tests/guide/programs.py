@@ -1,13 +1,14 @@
-"""The programs of the pages in docs/guide, and what they print.
+"""The programs of the pages in docs/guide, and their output.
 
-  programs.py names PAGE...            their names, one a line: of blocks behind <!-- program: NAME -->, which those behind
-                                       <!-- more: NAME --> continue; a block has at most 60 lines
-  programs.py write PAGE NAME FILE     one of them
-  programs.py check PAGE NAME PROGRAM  runs it and compares what it prints with the block behind <!-- output: NAME -->:
-                                       words as they stand, numbers to a thousandth, sizes of errors (1e-9) to a factor of 100
-  programs.py self                     what `check` finds and what it lets pass
-  programs.py errors PAGE INCLUDE      the page's table has each exception that a header under INCLUDE declares, and no other,
-                                       each with its cause and remedy
+  programs.py names PAGE...            their names, one per line. A program is the block after <!-- program: NAME -->; blocks
+                                       after <!-- more: NAME --> continue it. A block has at most 60 lines
+  programs.py write PAGE NAME FILE     writes one of them
+  programs.py check PAGE NAME PROGRAM  runs it and compares its output with the block after <!-- output: NAME -->: words
+                                       exactly, numbers to a thousandth, sizes of errors (1e-9) to a factor of 100
+  programs.py self                     tests of `check`: differences that it reports and accepts
+  programs.py errors PAGE INCLUDE      checks that the page's table has exactly the exceptions that the headers under INCLUDE
+                                       declare, each with its cause and remedy
+
 """
 import re
 import subprocess
@@ -75,7 +76,7 @@ def check_self():
 
 
 def check_errors(page, include):
-    """Classes that derive from Error, at once or in steps, beside the rows of the page's table."""
+    """Compares the classes that derive from Error, directly or indirectly, with the rows of the page's table."""
     bases = {}
     for header in Path(include).rglob("*.hpp"):
         bases.update(re.findall(r"^(?:class|struct) (\w+)(?: final)? : (?:public )?(\w+) \{", header.read_text(encoding="utf-8"), re.M))

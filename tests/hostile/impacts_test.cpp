@@ -1,4 +1,4 @@
-// Balls that bounce by events, until their impacts accumulate: none falls through the floor.
+// Balls that bounce by events until their impacts accumulate: no ball falls through the floor.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -11,7 +11,7 @@ namespace impacts_test {
 
 constexpr double g = 9.81;
 
-/// The lowest height at an end of a step, and the number of steps.
+/// The lowest height at the end of a step, and the number of steps.
 struct Bounced {
   double lowest = 0.0;
   long steps = 0;
@@ -44,7 +44,7 @@ Bounced bounce(I const& integrator, double restitution, double step, double heig
   return out;
 }
 
-/// When the impacts of a ball dropped from 1 m have all been, by the sum of flights; none for e = 1.
+/// Time at which a ball dropped from 1 m comes to rest, by the sum of flights; infinite for e = 1.
 double comes_to_rest(double e) { return std::sqrt(2.0 / g) * (1.0 + e) / (1.0 - e); }
 
 template <class I>
@@ -93,9 +93,9 @@ TEST(Impacts, ABallNeverFallsThroughAFloorOfEvents) {
   expect_bounces(Rattle{}, e, h, 1e-6);
   expect_bounces(RungeKutta4<>{}, e, h, 1e-6);
   expect_bounces(CentralDifference<>{}, e, h, 0.2);
-  expect_bounces(SymplecticEuler{}, e, h, 0.4);  // of first order: steps that end at impacts cost energy
+  expect_bounces(SymplecticEuler{}, e, h, 0.4);  // a first-order method: steps that end at impacts dissipate energy
   expect_bounces(DormandPrince<>{}, e, h, 1e-6);
-  // a multistep method starts with short steps each time that the floor holds the ball
+  // a multistep method restarts with short steps after each resting contact of the ball
   expect_bounces(AdamsBashforthMoulton<>{.relative_tolerance = 1e-5, .absolute_tolerance = 1e-5}, e, h, 1e-2);
 }
 

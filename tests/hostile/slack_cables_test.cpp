@@ -1,4 +1,4 @@
-// Slack cables drawn at random: `equilibrium` finds the elastic catenary, or gives a warning or an error.
+// Random slack cables: `equilibrium` finds the elastic catenary, or gives a warning or an error.
 
 #include <polybody/bodies/ancf/ancf_cable.hpp>
 #include <polybody/bodies/shared/catenary.hpp>
@@ -24,7 +24,7 @@ double const length = 10.0, weight = 10.0;  // [m], [N/m]
 Vec2 elastic_catenary(double d, double h, double EA) {
   double const load = weight * length, r = std::sqrt(length * length - h * h) / d;
   double x = 3.0;
-  for (int k = 0; k < 300; ++k) x = std::asinh(r * x);  // sinh x = r x: the inextensible one
+  for (int k = 0; k < 300; ++k) x = std::asinh(r * x);  // sinh x = r x: the inextensible catenary
   double H = 0.5 * weight * d / x, V = H * std::sinh(std::atanh(h / length) + x);
   for (int k = 0; k < 50; ++k) {
     double const V0 = V - load, T = std::hypot(H, V), T0 = std::hypot(H, V0);
@@ -96,8 +96,8 @@ std::pair<double, std::string> hang(Drawn const& c) {
   }
 }
 
-// Chords of 0.3 to 0.98 of the length, up to 50° askew, 8 to 40 elements, EA of 3e3 to 1e7 N. Bending and the mesh
-// change the force by less than 2 %.
+// Chords of 0.3 to 0.98 of the length, inclined by up to 50°, 8 to 40 elements, EA of 3e3 to 1e7 N. Bending and the
+// mesh change the force by less than 2 %.
 TEST(SlackCables, HangInACatenaryOrGiveASentence) {
   unsigned const seed = 20260101;
   std::mt19937 random(seed);

@@ -1,4 +1,4 @@
-// Exceptions from callbacks leave state and report as before the step; the step can be repeated.
+// An exception from a callback leaves the state and the report of the last step unchanged; the step can be repeated.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -79,7 +79,7 @@ bool same(RunReport const& a, RunReport const& b) {
          a.redundant == b.redundant && a.warnings == b.warnings;
 }
 
-/// Events that are met, act, and stop the run; all of them callbacks.
+/// Events with an event function, an event action and a terminal condition; all of them are callbacks.
 RunOptions with_callbacks(RunOptions options, bool events) {
   options.progress = [](RunProgress const&) { calls(); };
   if (!events) return options;
@@ -101,7 +101,7 @@ RunOptions with_callbacks(RunOptions options, bool events) {
   return options;
 }
 
-/// All call positions are tried, in place of some 40 of each step.
+/// True if all call positions are tested, instead of about 40 of each step.
 bool every_call() {
   char const* const asked = std::getenv("POLYBODY_HOSTILE");
   return asked && std::string(asked) == "all";
@@ -110,7 +110,8 @@ bool every_call() {
 struct Tally {
   long threw = 0, damaged = 0;
 };
-/// Each step of a run is tried until it passes, with a throw at the first call, then at the second, and so on.
+/// Each step of a run is repeated until it succeeds, with an exception at the first call, then at the second, and so
+/// on.
 template <class Make, class I>
 Tally throw_everywhere(Make const& make, I const& integrator, RunOptions const& options) {
   Tally tally;
@@ -139,7 +140,7 @@ Tally throw_everywhere(Make const& make, I const& integrator, RunOptions const& 
     }
   }
   calls.bad = -1;
-  // an implicit step that is repeated starts with the factors of the failed one, so Newton's iterates differ
+  // a repeated implicit step starts with the factors of the failed one, so Newton's iterates differ
   EXPECT_EQ(x.t, reference.t) << I::name;
   EXPECT_LT((x.q - reference.q).norm(), 1e-6 * (1.0 + reference.q.norm())) << I::name;
   EXPECT_LT((x.v - reference.v).norm(), 1e-4 * (1.0 + reference.v.norm())) << I::name;

@@ -1,19 +1,19 @@
-"""House rules, read off the headers:  check.py RULE INCLUDE_DIR [--shrink]
+"""House rules for the headers:  check.py RULE INCLUDE_DIR [--shrink]
 
-floors     a header includes only its own floor or a lower one
+floors     a header includes only its own layer or a lower one
 words      no #define and no `virtual` in the code (comments may use the words)
 length     no header above 400 lines; reports the median and the 90 % line
-umbrella   polybody.hpp reaches every header, but for those that say why not
+umbrella   polybody.hpp reaches every header, except those that give a reason
 functions  no function above 60 lines, none with more than 6 parameters
-waist      integrators, solvers, analyses and io take the mechanics through its interface: they name no pool of a model, no
-           `detail::` of another folder, and no model as template parameter, but for doors: functions of at most five
-           lines, and records without functions
+waist      integrators, solvers, analyses and io use the mechanics through its interface: they name no pool of a model, no
+           `detail::` of another folder, and no model as template parameter. Exceptions are entry points: functions of at
+           most five lines, and records without functions
 comments   no line of a comment begins with "Of" or "…"
 system     BasicSystem has at most 25 public member functions, its constructors not counted
 
-functions, waist and comments have a list of what they still allow, <rule>_allowed.txt beside this file: a `key` or
-`key count` on each line. The lists only shrink: an entry that offends no longer is an error, too. --shrink takes such
-entries off.
+functions, waist and comments have a list of allowed violations, <rule>_allowed.txt in this folder: a `key` or `key count`
+on each line. The lists only shrink: an entry without a violation is also an error. --shrink removes such entries.
+
 """
 
 import re
@@ -146,7 +146,7 @@ def short(name):
 
 
 def offending_functions(texts):
-    """{header:function: [sentences]}, one for each overload that offends, dearest first."""
+    """{header:function: [sentences]}, one for each overload that violates the rule, most violations first."""
     rows = []
     for name, text in texts.items():
         for d in declarations(name, text):
@@ -161,7 +161,7 @@ def offending_functions(texts):
 
 
 def takes_model(head):
-    """Whether a declaration is a template with a parameter M that is a type."""
+    """True if a declaration is a template with a type parameter M."""
     for m in re.finditer(r"\btemplate\s*(?=<)", head):
         parameters = head[m.end() : cpp_reader.after_angles(head, m.end())]
         if re.search(r"(?:\b(?!int\b|bool\b|Index\b)\w+|>)\s+M\b", parameters):
@@ -170,7 +170,7 @@ def takes_model(head):
 
 
 def is_door(d, all_of_header):
-    """Whether a template on a model only hands it on: a short or deleted function, or a record without functions."""
+    """True if a template with a model parameter is an entry point: a short or deleted function, or a record without functions."""
     if d.kind == "class":
         return not any(o.kind == "function" and o.name.startswith(f"{d.name}::") for o in all_of_header)
     if re.search(r"=\s*delete\s*$", d.head):
@@ -231,7 +231,7 @@ def allowed(rule):
 
 
 def beyond_list(rule, offenders, tell=False):
-    """Sentences on offenders that the list of the rule does not allow, and on entries that it should no longer have."""
+    """Messages about violations that the list of the rule does not allow, and about entries without a violation."""
     old = allowed(rule)
     listed = [told for key, all_told in offenders.items() if key in old for told in all_told]
     print(f"allowed by {rule}_allowed.txt: {len(listed)}")

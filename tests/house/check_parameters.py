@@ -1,6 +1,8 @@
-"""check_parameters.py INCLUDE_DIR TESTS_DIR: the tests of hostile parameters (tests/hostile) know every type of the library that has a
-`check`: it has its entry `words_of<…>`, or stands below with the reason why there is nothing to try. A type with words is
-tried: the tests name it.
+"""Checks the tests of hostile parameters (tests/hostile):  check_parameters.py INCLUDE_DIR TESTS_DIR
+
+Every type of the library with a `check` must have an entry `words_of<…>`, or an entry below with the reason for its
+omission. The tests must name every type with words.
+
 """
 
 import re
@@ -26,7 +28,7 @@ NOTHING_TO_TRY = {
     "HeightField": "its constructor refuses: tests/vehicle/terrain_test.cpp",
     "VtkWriterOf": "it looks at a file",
 }
-INSIDE = {"NewtonOptions"}  # tried as parts of others: of the implicit integrators
+INSIDE = {"NewtonOptions"}  # tested as parts of the implicit integrators
 WORDS = re.compile(r"\bwords_of<(?:\w+::)*(\w+)")
 
 

@@ -1,4 +1,4 @@
-"""Tests of check.py: each rule finds what it must find, and nothing else."""
+"""Tests of check.py: each rule reports all violations, and nothing else."""
 
 import tempfile
 import unittest

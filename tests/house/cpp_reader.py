@@ -1,4 +1,4 @@
-"""A light reader of C++ headers: what they declare, and how long their functions are. It knows brackets, not types."""
+"""A simple reader of C++ headers: their declarations, and the length of their functions. It matches brackets, not types."""
 
 import re
 from dataclasses import dataclass
@@ -17,14 +17,14 @@ NOT_A_NAME = {"requires", "noexcept", "decltype", "alignas", "sizeof", "explicit
 @dataclass
 class Declaration:
     kind: str  # function, class, enum, concept, alias, variable
-    name: str  # with the classes around it: System::rows
-    scopes: tuple  # names of the namespaces around it, outermost first
+    name: str  # qualified by the enclosing classes: System::rows
+    scopes: tuple  # names of the enclosing namespaces, outermost first
     first: int  # line of its first word
     last: int  # line of its closing brace, or of its semicolon
     parameters: int = 0  # of a function
-    body: bool = False  # whether it is a function with one
+    body: bool = False  # True for a function with a body
     lines: int = 0  # between the braces of its body
-    head: str = ""  # what stands before its brace or semicolon
+    head: str = ""  # text before its brace or semicolon
     public: bool = True
     friend: bool = False
 
@@ -34,12 +34,12 @@ def blanked(text, what):
 
 
 def code_of(text):
-    """The text without comments, strings, characters and directives; every letter that is left stays in its place."""
+    """The text with comments, strings, characters and directives blanked; all other letters keep their positions."""
     return blanked(blanked(text, NOT_CODE), DIRECTIVE)
 
 
 def partners(code):
-    """{place of each opening bracket: place of its closing one}, angles left out."""
+    """{position of each opening bracket: position of its closing one}, without angle brackets."""
     found, open_ones = {}, []
     for i, c in enumerate(code):
         if c in "([{":
@@ -54,7 +54,7 @@ def partners(code):
 
 
 def after_angles(text, i):
-    """The place after the template list that opens at i."""
+    """The position after the template list that opens at i."""
     depth, brackets = 0, 0
     while i < len(text):
         c = text[i]
@@ -73,7 +73,7 @@ def after_angles(text, i):
 
 
 def after_requires(text, i):
-    """The place after the requires-clause whose constraint begins at i: primaries joined by && and ||."""
+    """The position after the requires-clause whose constraint begins at i: primaries joined by && and ||."""
     while True:
         while i < len(text) and text[i].isspace():
             i += 1
@@ -98,7 +98,7 @@ def after_requires(text, i):
 
 
 def after_bracket(text, i):
-    """The place after the bracket that opens at i; the end of the text where it stays open."""
+    """The position after the bracket that opens at i; the end of the text if it is not closed."""
     depth = 0
     for j in range(i, len(text)):
         depth += (text[j] in "([{") - (text[j] in ")]}")
@@ -108,8 +108,8 @@ def after_bracket(text, i):
 
 
 def bare(head, friends=False):
-    """A declaration without attributes, template lists and their requires-clauses, `inline` and the like; `friend` is
-    left where it is asked for."""
+    """A declaration without attributes, template lists and their requires-clauses, `inline` and the like. `friend`
+    remains if `friends` is true."""
     head = re.sub(r"\[\[[^\]]*\]\]", lambda m: " " * len(m.group()), head).strip()
     while m := re.match(r"template\s*(?=<)", head):
         head = head[after_angles(head, m.end()) :].lstrip()
@@ -119,7 +119,7 @@ def bare(head, friends=False):
 
 
 def top_level(head):
-    """The head with what stands in brackets or angles blanked, the brackets themselves kept; operators become words."""
+    """The head with the content of brackets and angle brackets blanked, the brackets themselves kept; operators become words."""
     head = re.sub(r"\boperator\s*(\(\s*\)|\[\s*\]|[-+*/%^&|~!=<>,]+)", lambda m: "operator" + "_" * len(m.group(1)), head)
     out, stack, angle = [], 0, 0
     for i, c in enumerate(head):
@@ -142,11 +142,11 @@ def top_level(head):
 
 
 def parameter_list(head):
-    """(name, place of the opening parenthesis in `words`, words, top) of a function's head; None where it has no list."""
+    """(name, position of the opening parenthesis in `words`, words, top) of a function's head; None without a parameter list."""
     words, top = top_level(bare(head))
     for m in re.finditer(r"((?:~\s*)?\w+)\s*\(", top):
         if m[1] not in NOT_A_NAME:
-            # the name with what qualifies it: Model<Bodies<Bs...>>::add
+            # the qualified name: Model<Bodies<Bs...>>::add
             before = re.search(r"((?:\w+\s*::\s*)*)$", re.sub(r"\s*(?=::)", "", top[: m.start()]))
             name = re.sub(r"\s", "", before[1] + m[1])
             if name.startswith("operator_"):
@@ -166,7 +166,7 @@ def count_parameters(words, at):
 
 
 def is_requires_expression(head):
-    """Whether the brace after this head opens a requires-expression."""
+    """True if the brace after this head opens a requires-expression."""
     if re.search(r"\brequires\s*$", head):
         return True
     if not head.rstrip().endswith(")"):
@@ -182,7 +182,7 @@ def is_requires_expression(head):
 
 
 def opens(head):
-    """What a brace after this head opens: namespace, class, enum, function, or nothing that is read (an initialiser)."""
+    """Kind of the brace after this head: namespace, class, enum, function, or nothing that is read (an initialiser)."""
     if is_requires_expression(head):
         return "expression"
     plain = bare(head)
@@ -199,7 +199,7 @@ def opens(head):
     if re.search(r"(?<![=!<>])=(?!=)", top[:at]):
         return "initialiser"
     rest = top[after_bracket(words, at) :]
-    if re.search(r"(?<!:):(?!:)", rest) and re.search(r"[\w>]\s*$", words):  # a member of a constructor's list
+    if re.search(r"(?<!:):(?!:)", rest) and re.search(r"[\w>]\s*$", words):  # an entry of a constructor's initialiser list
         return "initialiser"
     return "function"
 
@@ -211,7 +211,7 @@ def declarations(text):
     line = lambda i: code.count("\n", 0, i) + 1
 
     def simple(head):
-        """kind and name of what ends with a semicolon."""
+        """Kind and name of a declaration that ends with a semicolon."""
         plain = bare(head)
         if m := re.match(r"using\s+(\w+)\s*=|concept\s+(\w+)", plain):
             return ("alias" if m[1] else "concept"), m[1] or m[2]

@@ -1,14 +1,15 @@
-"""What the site says of public names, read off what docs/site/build made:  documented.py SITE [--shrink]
+"""Checks the comments of public names in the output of docs/site/build:  documented.py SITE [--shrink]
 
 types, names   each type, function, alias, constant and concept of a public namespace has a comment
-members        so has each public member; those that a concept asks for have it in docs/extending.md
-parameters     a parameter of a public function is named in the function's comment: as a word, in `backticks`, by \\param or as the Greek letter that it spells, q₀ for q0;
-               but for one whose type says what it is, a class, enumeration or concept of the library, and for the letters in the table of docs/extending.md, with the types that stand there
-units          a public member that is a number (double, Vec2, Vec3, Vec6, Mat3, a list of them; not scratch of run-time size) has its unit in brackets, [m/s], in its own comment or its
-               type's, or a word that says why there is none: relative, unit vector, factor, ratio, share, part, count, ν, ξ, …
+members        each public member has a comment; docs/extending.md describes those that a concept requires
+parameters     the comment of a public function names each parameter: as a word, in `backticks`, by \\param or as the Greek letter that it spells, q₀ for q0.
+               Exceptions are parameters whose type describes them, a class, enumeration or concept of the library, and the letters in the table of docs/extending.md with their types
+units          a public member that is a number (double, Vec2, Vec3, Vec6, Mat3, a list of them; not a workspace of run-time size) has its unit in brackets, [m/s], in its own comment or that of its
+               type, or a word that explains its absence: relative, unit vector, factor, ratio, share, part, count, ν, ξ, …
 
-documented_allowed.txt beside this file holds what is older: `members HEADER COUNT`, `units HEADER COUNT`. It only shrinks, as the lists of
-check.py do; --shrink takes off what is mended.
+documented_allowed.txt in this folder lists existing violations: `members HEADER COUNT`, `units HEADER COUNT`. It only shrinks, like the lists of
+check.py; --shrink removes fixed entries.
+
 """
 import re
 import sys
@@ -22,10 +23,10 @@ LETTERS = ROOT / "docs/extending.md"
 sys.path.insert(0, str(ROOT / "docs/site"))
 import undocumented  # noqa: E402
 
-# A parameter of these types may be anything; of other types of the library, its type says what it is.
+# Types that do not describe a parameter; the other types of the library do.
 PLAIN = set("Index Vec Vec2 Vec3 Vec4 Vec6 VecX VecXOf Vector V3 V6 Row Mat Mat3 Mat6 MatX MatXOf M6 Scalar StateScalar Number Numbers".split())
 GREEK = dict(zip("alpha beta gamma delta epsilon zeta eta theta lambda mu nu xi rho sigma tau phi psi omega".split(), "α β γ δΔ ε ζ η θ λ μ ν ξ ρ σ τ φΦ ψ ωΩ".split()))
-WORDS_OF_TEXT = set("a as at by from in of on to".split())  # as names they stand in code or in a formula
+WORDS_OF_TEXT = set("a as at by from in of on to".split())  # as names they appear in code or in a formula
 INDICES = str.maketrans("₀₁₂₃₄₅₆₇₈₉", "0123456789")
 RAISED = re.compile("[⁰¹²³⁴⁵⁶⁷⁸⁹ᵀ⁺⁻ᵢⱼₖ]")  # powers, transposes, entries
 LETTER_ROW = re.compile(r"^\| ((?:`\w+`(?:, )?)+) \| [^|]* \| ([^|]*) \|", re.M)
@@ -40,7 +41,7 @@ def said_of(element):
 
 
 def numbers_without_unit(folder):
-    """Header of each."""
+    """The header of each number without a unit."""
     for file in sorted(folder.glob("*.xml")):
         if not re.match(r"(?:class|struct)", file.name):
             continue
@@ -59,7 +60,7 @@ def numbers_without_unit(folder):
 
 
 def letters():
-    """The names of docs/extending.md that mean the same everywhere: {name: words of its types}."""
+    """The names in docs/extending.md with the same meaning everywhere: {name: words of its types}."""
     section = re.search(r"^## Letters\n(.*?)^## ", LETTERS.read_text(encoding="utf-8"), re.M | re.S)[1]
     found = {}
     for cell, types in LETTER_ROW.findall(section):
@@ -69,7 +70,7 @@ def letters():
 
 
 def is_named(name, function):
-    """Whether the comment of a function names a parameter."""
+    """True if the comment of a function names the parameter."""
     after = r"(?![\w\u0300-\u036f˙¨])"  # q̇ is not q
     word = rf"(?<![\w.]){re.escape(name)}{after}"
     code = " ".join("".join(e.itertext()) for e in function.iter() if e.tag in ("computeroutput", "parametername"))
@@ -86,7 +87,7 @@ def words_of(element):
 
 
 def unnamed_parameters(folder):
-    """(header, line, function, parameter) of each, and the letters that no function has."""
+    """(header, line, function, parameter) of each unnamed parameter, and the letters that no function has."""
     wholes = [xml.parse(file).getroot().find("compounddef") for file in sorted(folder.glob("*.xml")) if file.name != "index.xml"]
     wholes = [whole for whole in wholes if whole is not None]
     members = {m.get("id"): m for whole in wholes for m in whole.iter("memberdef")}.values()
@@ -107,7 +108,7 @@ def unnamed_parameters(folder):
                 continue
             if words & same_everywhere.get(name, set()):
                 unused.discard(name)
-            elif said_of(function).strip() and not is_named(name, function):  # without any comment it is among the members
+            elif said_of(function).strip() and not is_named(name, function):  # a function without a comment is reported among the members
                 place = function.find("location")
                 found.append((place.get("file").split("include/")[-1], place.get("line"), function.findtext("name"), name))
     return found, unused

@@ -1,4 +1,4 @@
-"""What documented.py and docs/site/prepare.py find, and what they let pass."""
+"""Tests of documented.py and docs/site/prepare.py: reported and accepted comments."""
 import html
 import sys
 import tempfile
@@ -33,7 +33,7 @@ def faults(folder, warnings="", allowed="", function="", table="## Letters\n\n##
 
 
 def unnamed(folder, name, text, kind="double", template="", table="## Letters\n\n## A body\n", scope="polybody::", prot="public"):
-    """What is found of a function with one parameter and this comment."""
+    """Findings for a function with one parameter and this comment."""
     return faults(folder, function=FUNCTION.format(name=name, text=text, kind=html.escape(kind), template=template, scope=scope, prot=prot), table=table)
 
 

@@ -3,9 +3,10 @@
 Reads the sentences of pages (.md), of comments (.hpp, .cpp, .cmake) and of the messages that the headers throw, and
 reports the sentences that a reader has to read twice. One strong rule or two weak ones make a finding.
 
-A file may have as many findings as prose_allowed.txt allows, a file that is not listed none. The list only shrinks:
---shrink lowers its numbers. --list prints the findings of the given files. Dates, commit hashes and machines are
+prose_allowed.txt gives the allowed number of findings per file; a file without an entry may have none. The list only
+shrinks: --shrink lowers its numbers. --list prints the findings of the given files. Dates, commit hashes and machines are
 findings in every page outside docs/notes.
+
 """
 
 import re
@@ -72,7 +73,7 @@ COMPILED = {
     kind: [(name, re.compile(pattern)) for name, pattern in rules.items()]
     for kind, rules in (("strong", STRONG), ("weak", WEAK), ("diary", DIARY))
 }
-DOT = "\u2024"  # a full stop that ends no sentence
+DOT = "\u2024"  # a full stop that does not end a sentence
 ABBREVIATION = re.compile(r"`[^`]*`|\b(?:e\.g|i\.e|Eqs?|Figs?|Secs?|cf|vol|et al|No|approx|resp)\.")
 END = re.compile(r"[.!?](?=\s+(?:[A-Z`*\[(“\"‖ΔθΦ∂\\]|$))")
 
@@ -128,7 +129,7 @@ def paragraphs_of_comments(text, mark):
 
 
 def paragraphs_of_messages(text):
-    """The string literals of each statement that throws, joined; a gap stands for a value."""
+    """The string literals of each statement that throws, joined; a gap represents a value."""
     for m in re.finditer(r"\bthrow\b[^;]*?;", text, re.S):
         literals = re.findall(r'"((?:\\.|[^"\\])*)"', m[0])
         if sentence := re.sub(r"\s+", " ", " `v` ".join(literals)).strip():
@@ -146,7 +147,7 @@ def sentences(path, text):
 
 
 def faults(sentence, page=False):
-    """The names of the rules that make a sentence a finding."""
+    """The names of the rules that a sentence violates."""
     plain = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", re.sub(r"`[^`]*`", "`c`", sentence))
     hit = {kind: [name for name, rule in rules if rule.search(plain)] for kind, rules in COMPILED.items()}
     weak = hit["weak"] if hit["strong"] or len(hit["weak"]) > 1 else []

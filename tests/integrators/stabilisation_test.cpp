@@ -48,8 +48,8 @@ bool const stabilisation_obey[] = {
 
 namespace stabilisation_test {
 
-/// Largest difference over 1 s between Φ of a bar with an initial violation of its pin and `expected(t, Φ₀, Φ̇₀)`, relative to the
-/// initial value.
+/// Largest difference over 1 s between Φ of a bar with an initial violation of its pin and `expected(t, Φ₀, Φ̇₀)`,
+/// relative to the initial value.
 template <class I, class Expected>
 double worst_of_open_pin(I const& integrator, Expected expected) {
   SwingingBar bar;

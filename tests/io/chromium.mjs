@@ -1,11 +1,11 @@
-// Chromium without a window, asked through pipes [Chrome DevTools Protocol], and its pictures as pixels.
+// Chromium without a window, controlled through pipes [Chrome DevTools Protocol], and its pictures as pixels.
 import {spawn, spawnSync} from 'node:child_process';
 import {mkdtempSync, rmSync} from 'node:fs';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {inflateSync} from 'node:zlib';
 
-/** The program's name, or null where there is none. */
+/** The program's name, or null if none is installed. */
 export function findChromium() {
   return ['chromium', 'chromium-browser', 'google-chrome'].find((name) => spawnSync(name, ['--version']).status === 0) ?? null;
 }
@@ -16,7 +16,7 @@ export class Chromium {
     this.waiting = new Map();
     this.last = 0;
     this.text = '';
-    this.messages = []; // errors that pages threw or wrote
+    this.messages = []; // errors that pages threw or logged
     this.process = spawn(program, [
       '--headless=new', '--no-sandbox', '--disable-dev-shm-usage', '--remote-debugging-pipe', `--user-data-dir=${this.folder}`,
       `--window-size=${width},${height}`, '--hide-scrollbars', '--force-device-scale-factor=1', '--no-first-run', '--disable-extensions',
@@ -73,7 +73,7 @@ export class Chromium {
     await done;
   }
 
-  /** What a JavaScript expression of the page is, or what it promises, as far as JSON can say it. */
+  /** Value of a JavaScript expression of the page, or of its promise, as JSON. */
   async ask(expression) {
     const {result, exceptionDetails} =
         await this.send('Runtime.evaluate', {expression: `(async () => JSON.stringify(await (${expression})))()`, awaitPromise: true, returnByValue: true});
@@ -102,7 +102,7 @@ export class Chromium {
   }
 }
 
-/** Pixels of a PNG of 8 bits, without interlacing [ISO/IEC 15948]. */
+/** Pixels of an 8-bit PNG without interlacing [ISO/IEC 15948]. */
 export function pixelsOf(png) {
   const width = png.readUInt32BE(16), height = png.readUInt32BE(20), channels = png[25] === 6 ? 4 : 3, data = [];
   for (let at = 8; at < png.length; at += 12 + png.readUInt32BE(at))

@@ -1,13 +1,13 @@
 // node film_browser.mjs FILM [--places RUN.pvd]... [--pictures FOLDER] [--damage] [--rate N]
 //
-// Plays a film in chromium without a window, by software GL, 800 x 600 pixels, and says what it finds. It fails unless
-//   the page opens without an error and asks no network; it draws: pixels differ from the background, also from frame to
-//   frame; it has a frame for each time; keys do what the page says;
-//   --places    points of scene k, as they are given to the graphics, are those of the k-th collection of a VtkWriter,
-//               at all times that both have, within 1e-4 of the size of what is seen;
-//   --rate      while it plays, it draws so many pictures a second or more;
-//   --damage    the page says what is wrong in a sentence where the file is cut off or changed.
-// --pictures keeps pictures of the page. Ends with 77 where there is no film or no chromium.
+// Plays a film in chromium without a window, by software GL, 800 x 600 pixels, and prints its findings. It fails unless
+//   the page opens without an error and makes no network request; pixels differ from the background, also from frame to
+//   frame; the film has a frame for each time; keys have the effects that the page lists;
+//   --places    the points of scene k on the graphics card are those of the k-th collection of a VtkWriter, at all common
+//               times, within 1e-4 of the size of the visible scene;
+//   --rate      during playback, it draws at least N pictures per second;
+//   --damage    the page shows a message that describes the error if the file is cut off or changed.
+// --pictures keeps pictures of the page. Exits with 77 if there is no film or no chromium.
 import {existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
 import {tmpdir} from 'node:os';
 import {basename, dirname, join, resolve} from 'node:path';
@@ -53,7 +53,7 @@ function differing(a, b) {
   return count;
 }
 
-/** Times and points of the states of a VtkWriter, as the files have them. */
+/** Times and points of the states in the files of a VtkWriter. */
 function statesOf(collection) {
   const text = readFileSync(collection, 'utf8');
   return [...text.matchAll(/timestep="([^"]*)" part="0" file="([^"]*)"/g)].map(([, time, file]) => {
@@ -113,7 +113,7 @@ async function play(page) {
   }
 }
 
-/** Numbers that plots read out stand beside their titles, or below them where they are narrow. */
+/** The values of plots are next to their titles, or below them in narrow plots. */
 async function readOuts(page) {
   const range = await page.ask('polybodyFilm.range');
   const unnamed = await page.ask(`[...document.querySelectorAll('.plot canvas')].filter((canvas) => !canvas.ariaLabel).length`);
@@ -171,7 +171,7 @@ async function pressKeys(page) {
   }
 }
 
-/** Pictures a second while the film plays through in three seconds, each drawn anew. */
+/** Pictures per second during a playback of three seconds; each picture is drawn again. */
 async function measureRate(page, least) {
   const [begin, end] = await page.ask('polybodyFilm.range');
   await page.ask(`(polybodyFilm.race(${(end - begin) / 3}, true), 0)`);
@@ -187,14 +187,14 @@ async function measureRate(page, least) {
   await page.ask('(polybodyFilm.race(1, false), 0)');
 }
 
-/** A page that is cut off or changed says so, or where nothing of it is lost, plays. */
+/** A page that is cut off or changed shows a message, or plays if no data is lost. */
 async function damage(page) {
   const folder = mkdtempSync(join(tmpdir(), 'polybody-film-')), file = join(folder, 'damaged.html');
   const whole = readFileSync(options.film, 'latin1'), data = whole.indexOf('id="film">') + 10, end = whole.indexOf('</script>', data);
   const told = async (text) => {
     writeFileSync(file, text, 'latin1');
     await page.open(pathToFileURL(file).href);
-    // The first picture is drawn some time after the page is loaded, later where the machine is busy.
+    // The first picture is drawn some time after the page is loaded, later on a busy machine.
     return page.ask(`(async () => {
       const element = (id) => document.getElementById(id), last = performance.now() + 10000;
       for (;;) {

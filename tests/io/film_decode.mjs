@@ -1,6 +1,6 @@
-// node film_decode.mjs FILM: the data of a film, read by the viewer's own decoder and cut off at every length, and changed
-// in every byte of head and table and many of the arrays. Each time the decoder must refuse in a sentence. Prints the
-// contents in lines, as film_test.cpp compares them:  part SCENE FRAME PART X Y Z ...   for the points of every part.
+// node film_decode.mjs FILM: the data of a film, read by the viewer's own decoder. The film is cut off at every length, and
+// changed in every byte of head and table and in many bytes of the arrays. Each time the decoder must throw an error with a
+// message. Prints the contents as lines for film_test.cpp:  part SCENE FRAME PART X Y Z ...   for the points of every part.
 import {readFileSync} from 'node:fs';
 
 import {bytesOfBase64, decodeFilm, FilmError, pointsOf} from '../../cmake/viewer/src/decode.js';
@@ -29,7 +29,7 @@ for (let n = 0; n < bytes.length; n += n < 32 + table ? 1 : 11) {
   refused(`byte ${n} changed`, () => decodeFilm(changed));
 }
 
-/** The film with another table, under the right sum. */
+/** The film with another table, with the correct checksum. */
 function withTable(text) {
   const words = new TextEncoder().encode(text), out = new Uint8Array(32 + words.length + bytes.length - 32 - table);
   out.set(bytes.subarray(0, 32));
@@ -43,7 +43,7 @@ function withTable(text) {
   return out;
 }
 const text = new TextDecoder().decode(bytes.subarray(32, 32 + table));
-decodeFilm(withTable(text)); // the sum by another way is the sum
+decodeFilm(withTable(text)); // this checksum equals that of the film
 const places = [...text.matchAll(/\["(f4|f8|i2|u2|u4)",(\d+),(\d+)\]/g)];
 for (const [place, type, first, count] of places)
   for (const bad of [`["${type}",${first},${Number(count) + 1000000}]`, `["${type}",${Number(first) + 1},${count}]`, `["${type}",-8,${count}]`, '7', '["x1",0,0]', 'null', '{}'])

@@ -1,8 +1,8 @@
 // node film_stress.mjs FILM
 //
-// Whether links of the film of track_stress have the colours of their stress: in each scene all 128 links have a stress
-// in each point and frame, and that of the link whose history is plotted, in the mean over its sections, is the history
-// where it has a point at the time of the frame. Ends with 77 where there is no film.
+// Checks that links of the film of track_stress have the colours of their stress. In each scene all 128 links have a stress
+// in each point and frame. For the link with a plotted history, the mean over its sections equals the history at each frame
+// with a point of the history at its time. Exits with 77 if there is no film.
 import {existsSync, readFileSync} from 'node:fs';
 
 import {bytesOfBase64, decodeFilm} from '../../cmake/viewer/src/decode.js';
@@ -20,7 +20,7 @@ function check(holds, what) {
   if (!holds) ++failures;
 }
 
-/** Mean stress along a link in a frame: trapezoids over the rings of four points. */
+/** Mean stress along a link in a frame: trapezoidal rule over the rings of four points. */
 function meanStress(scene, part, frame) {
   const {low, high} = scene.scalars[0], n = scene.shapes[part.shape].points.length / 3, rings = n / 4;
   let sum = 0;

@@ -1,8 +1,9 @@
-"""vtk_read.py RUN.pvd: what VTK's own reader finds in the files of a VtkWriter, as lines of words.
+"""Contents of the files of a VtkWriter according to VTK's own reader, as lines of words:  vtk_read.py RUN.pvd
 
 For each state:  state TIME POINTS CELLS VOLUME XMIN XMAX YMIN YMAX ZMIN ZMAX
-and each array:  array point|cell NAME COMPONENTS MIN MAX     (of a vector its length; NaNs left out)
-Ends with 77 where VTK is not installed for this python (Debian: python3-vtk9), with 1 on what VTK cannot read.
+and each array:  array point|cell NAME COMPONENTS MIN MAX     (of a vector its length; NaNs omitted)
+Exits with 77 if this python has no VTK (Debian: python3-vtk9), with 1 if VTK cannot read a file.
+
 """
 
 import sys
@@ -18,7 +19,7 @@ except ImportError:
 
 
 def volume(grid):
-    """What the surfaces enclose [m³]."""
+    """Volume that the surfaces enclose [m³]."""
     surface, triangles, mass = vtkGeometryFilter(), vtkTriangleFilter(), vtkMassProperties()
     surface.SetInputData(grid)
     triangles.SetInputConnection(surface.GetOutputPort())

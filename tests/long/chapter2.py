@@ -18,7 +18,7 @@ def said(text):
 
 
 def snapshots(text):
-    """Lines '  meshes NAME t ...' as rows 'NAME t', and the row of each name whose gap is largest as 'NAME widest'."""
+    """Lines '  meshes NAME t ...' as rows 'NAME t', and the row with the largest difference of each name as 'NAME widest'."""
     numbers = {}
     for name, rest in re.findall(r"^  meshes (\S+) +([-\d. ]+)$", text, re.MULTILINE):
         t, *values = rest.split()
@@ -50,7 +50,7 @@ def comparison(text):
 
 
 def meshes(figures):
-    """All numbers, and a table of the snapshots with the largest gap; of these, the extremes of what is left as 'all'."""
+    """All numbers, and a table of the snapshots with the largest difference; the extremes of the other snapshots as 'all'."""
 
     def read(text):
         numbers = {**said(text), **comparison(text)}
@@ -75,7 +75,7 @@ def plain(text):
 
 
 def energies(text):
-    """Lines '  energy NAME INTEGRATOR h E0 largest end'; what Newton's method leaves is no number to repeat."""
+    """Lines '  energy NAME INTEGRATOR h E0 largest end'; the remaining error of Newton's method is not repeatable."""
     numbers, rows = {}, []
     for name, method, *values in re.findall(rf"^  energy (.+?) +(\w+) +({NUMBER}) +({NUMBER}) +({NUMBER}) +({NUMBER})$", text, re.MULTILINE):
         step, start, largest, end = map(float, values)

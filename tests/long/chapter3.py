@@ -1,7 +1,8 @@
 """Cases of Chapter 3: the runs whose numbers docs/tracked_vehicle.md quotes, marked CASE/ROW/COLUMN in its text.
 
-A row is what a line of the program is about, a column a quantity of it: "  path, penalty: taut 1.6 mm, slack 2.8 mm".
-Processor times are printed, too, and not quoted with a mark.
+A row is the subject of a line of the output, a column a quantity of it: "  path, penalty: taut 1.6 mm, slack 2.8 mm".
+Processor times are printed as well, and are not quoted with a mark.
+
 """
 
 import re
@@ -12,7 +13,7 @@ QUANTITY = re.compile(r"(\S.*) (-?\d+(?:\.\d+)?(?:e[+-]?\d+)?)(?: \S+)?")
 
 
 def lines(text):
-    """Numbers by what a line is about and by quantity; there is no table."""
+    """Numbers by the subject of a line and by quantity; there is no table."""
     numbers = {}
     for line in text.splitlines():
         row, colon, rest = line.partition(": ")

@@ -69,7 +69,7 @@ FATIGUE = {
 
 
 def report(text):
-    """Numbers of each formulation of the links; `all` has the least and the most of each over them, and how far apart."""
+    """Numbers of each formulation of the links; `all` has their minimum and maximum and the difference."""
     numbers = {}
     blocks = re.split(r"^(?=\w+ +from [\d.]+ s on: speed)", text, flags=re.MULTILINE)[1:]
     for block in blocks:
@@ -115,12 +115,12 @@ twenty = by_pattern({
 
 
 def numbers_of(read):
-    """What `read` reads, without its table."""
+    """The numbers that `read` returns, without its table."""
     return lambda text: (read(text)[0], "")
 
 
 def with_rows(read, rows):
-    """What `read` reads, and rows that are made of it: {row: {column: function of all rows}}."""
+    """The numbers that `read` returns, and derived rows: {row: {column: function of all rows}}."""
 
     def more(text):
         numbers, table = read(text)
@@ -155,7 +155,7 @@ SURFACE = {"all": {
     "means apart": lambda numbers: max(100.0 * abs(of["mean decoupled"] / of["mean coupled"] - 1.0) for of in numbers.values()),
     "peaks higher": lambda numbers: max(peaks(numbers)),
     "peaks lower": lambda numbers: -min(peaks(numbers))}}
-OTHER_MASS = "cables"  # how the names of settings begin in which cables have another mass than rigid links
+OTHER_MASS = "cables"  # prefix of the settings in which cables have another mass than rigid links
 ENSEMBLE = {
     "same links": {"ratio off": lambda numbers: max(100.0 * abs(of["ratio"] - 1.0) for name, of in numbers.items()
                                                     if not name.startswith(OTHER_MASS))},

@@ -1,11 +1,11 @@
-"""Numbers in the text of a page: marked ones, which a case prints, and given ones."""
+"""Numbers in the text of a page: marked numbers, which a case prints, and given numbers."""
 
 import re
 
 NUMBER = r"[−-]?\d+(?:\.\d+)?(?:e[−-]?\d+)?"
 MARK = re.compile(rf"({NUMBER})<!--(<= |>= )?([^/>]+)/([^/>]+)/([^/>]+)-->")
-# Places of numbers that need no source: code, tables of cases, marked numbers; names of code, links, names of figures,
-# years of sources, powers of ten beside a number.
+# Numbers that need no source: code, tables of cases, marked numbers; identifiers, links, names of figures, years of
+# sources, powers of ten after a number.
 MADE = [r"```.*?```", r"<!-- tests/long: .*?<!-- end -->", MARK.pattern]
 SILENT = [r"`[^`]*`", r"\]\([^)]*\)", r"\[[^\]]*\d{4}[a-z]?\]",
           r"(?:Figures?|Fig\.|Tables?|Chapters?|ch\.|§)\s*\(?\d+(?:\.\d+)*[ab]?\)?(?:(?:,| and| to|–|-)\s*\(?\d+(?:\.\d+)+[ab]?\)?)*",
@@ -18,7 +18,7 @@ def value(written):
 
 
 def as_written(found, written):
-    """`found` to the digits of `written`."""
+    """`found` with the digits of `written`."""
     mantissa, power, _ = written.partition("e")
     decimals = len(mantissa.partition(".")[2])
     if not power:
@@ -28,7 +28,7 @@ def as_written(found, written):
 
 
 def marked_numbers(text, case, numbers):
-    """The text with the numbers of this case made right, and (fault, whether that mends it) for each wrong one."""
+    """The text with the corrected numbers of this case, and (fault, True if the correction removes it) for each wrong one."""
     faults = []
 
     def right(match):
@@ -54,7 +54,7 @@ def marked_numbers(text, case, numbers):
 
 
 def numbers_without_source(text, cases, given):
-    """Faults: marks of no case, numbers that are neither marked nor in a given phrase, and given phrases that the text has not."""
+    """Faults: marks without a case, numbers without a mark outside given phrases, and given phrases that are not in the text."""
     faults = [f"'{m[0]}' names no case." for m in MARK.finditer(text) if m[3] not in cases]
     blank = lambda m: "\n" * m[0].count("\n") + " "
     for pattern in MADE:

@@ -1,4 +1,4 @@
-"""Tests of prose.py and reading.py: each wrong number of a page is found, and nothing else."""
+"""Tests of prose.py and reading.py: each wrong number of a page is reported, and nothing else."""
 
 import unittest
 

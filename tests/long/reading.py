@@ -1,4 +1,4 @@
-"""What programs print, as numbers by row and column, and as a table of a page."""
+"""Output of programs, as numbers by row and column, and as a table of a page."""
 
 import re
 
@@ -9,7 +9,7 @@ def markdown(head, rows):
 
 
 def columns(width, names, head, digits):
-    """Of lines with a name of `width` characters and a number for each of `names`; the table shows those of `digits`."""
+    """Numbers of lines with a name of `width` characters and a number for each of `names`; the table contains those of `digits`."""
 
     def read(text):
         numbers, rows = {}, []

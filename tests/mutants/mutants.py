@@ -1,4 +1,4 @@
-"""Mutants of the formulas in the headers: how many of them some test notices (tests/mutants/run)."""
+"""Mutants of the formulas in the headers, and the number of them that a test detects (tests/mutants/run)."""
 
 import argparse
 import os
@@ -19,7 +19,7 @@ from sites import ROOT, all_sites, put_in  # noqa: E402
 FACTORS = {-1.0: "sign", 0.0: "dropped", 1.01: "x 1.01"}
 BUILD = ROOT / "build" / "mutants"
 REASONS = ROOT / "tests" / "mutants" / "reasons.txt"
-LONGEST_TEST = 40.0  # s; a longer one is not asked
+LONGEST_TEST = 40.0  # s; longer tests are not used
 
 
 def arguments():
@@ -34,7 +34,7 @@ def arguments():
 
 
 def draw(options):
-    """{number: site}, twice as many as asked, since some turn out to hold no number; and {number: factor}."""
+    """{number: site}, twice the requested number, because some sites contain no number; and {number: factor}."""
     sites = [s for s in all_sites(ROOT / "include") if options.only in s.header]
     lot = random.Random(options.seed)
     if options.again:
@@ -90,7 +90,7 @@ def list_tests():
 
 
 def run(program, names, seconds, **environment):
-    """Whether the tests pass; in a folder of their own, for they write files."""
+    """True if the tests pass. They run in a separate folder because they write files."""
     with tempfile.TemporaryDirectory() as folder:
         command = [program, "--gtest_filter=" + ":".join(names), "--gtest_fail_fast", "--gtest_brief=1"]
         try:
@@ -102,7 +102,7 @@ def run(program, names, seconds, **environment):
 
 
 def record(test):
-    """Runs the test without a mutant: which sites it reaches, 1 as numbers, 2 as other things."""
+    """Runs the test without a mutant. Returns the sites it reaches, 1 as numbers, 2 as other objects."""
     with tempfile.TemporaryDirectory() as folder:
         reached = Path(folder) / "reached"
         begin = time.monotonic()
@@ -114,7 +114,7 @@ def record(test):
 
 
 def batches(tests):
-    """Tests that are run together: few and short ones first, each batch of one program."""
+    """Tests that run together: few and short ones first, each batch from one program."""
     waiting, most = sorted(tests, key=lambda t: t.seconds), 1.0
     while waiting:
         now, budget = [], most
@@ -127,7 +127,7 @@ def batches(tests):
 
 
 def notices(number, factor, tests):
-    """The name of a test, or of the first of some, that fails with the mutant; None where all pass."""
+    """The name of the test that fails with the mutant, or of the first of several; None if all pass."""
     for program, some in batches(tests):
         seconds = 5 + 5 * sum(t.seconds for t in some)
         if not run(program, [t.name for t in some], seconds, POLYBODY_MUTANT=f"{number}:{factor}"):

@@ -1,4 +1,4 @@
-"""Where the headers hold formulas: the places in front of whose terms a mutant's factor may stand."""
+"""Formulas in the headers: the positions before terms at which a mutant's factor can be inserted."""
 
 import re
 import sys
@@ -20,11 +20,11 @@ class Site:
     header: str  # polybody/math/so3.hpp
     line: int
     place: int  # in the text of the header
-    row: str  # with a mark at the place
+    row: str  # with a mark at the position
 
 
 def outside_brackets(text):
-    """The text up to the end of its statement, with what stands in brackets blanked."""
+    """The text up to the end of its statement, with the content of brackets blanked."""
     out, depth = [], 0
     for c in text:
         depth -= c in ")]}"
@@ -36,7 +36,7 @@ def outside_brackets(text):
 
 
 def bodies_of(text, code):
-    """(first, last place) of the body of each function that does not return a reference."""
+    """(first, last position) of the body of each function that does not return a reference."""
     lines = [0]
     for m in re.finditer("\n", code):
         lines.append(m.end())
@@ -63,7 +63,7 @@ def sites_of(path, header):
                 continue
             rest = outside_brackets(code[m.end() : end]).replace("\n", " ")
             lone = re.fullmatch(r"\s*-?[\d.]+\s*", rest)
-            if FORMULA.search(rest) and " = " not in rest and not lone:  # of a = b = c, b is no term
+            if FORMULA.search(rest) and " = " not in rest and not lone:  # in a = b = c, b is not a term
                 found.add(m.end())
         for m in TERMS.finditer(code, begin, end):
             found.add(m.end())
@@ -74,7 +74,7 @@ def sites_of(path, header):
 
 
 def all_sites(include):
-    """Every site of the library, without the suites that test users' types."""
+    """Every site of the library, without the law suites for users' types."""
     for path in sorted((include / "polybody").rglob("*.hpp")):
         header = str(path.relative_to(include))
         if not header.startswith("polybody/testing/"):
@@ -82,7 +82,7 @@ def all_sites(include):
 
 
 def put_in(include, numbered):
-    """Writes the sites, {number: site}, into the headers of a copy."""
+    """Writes the sites, {number: site}, to the headers of a copy."""
     by_header = {}
     for number, site in numbered.items():
         by_header.setdefault(site.header, []).append((site.place, number))

@@ -21,7 +21,7 @@ struct FourBars {
   std::vector<BodyHandle<Body>> upright, across;
   State x;
 
-  /// \param each how often every pin is connected
+  /// \param each number of copies of every pin
   explicit FourBars(int n, typename Where::PolicyType const& policy = {}, int each = 1) {
     Link const link = bar_link();
     for (int i = 0; i <= n; ++i)
@@ -74,7 +74,7 @@ struct Bricard {
   State x;
 
   explicit Bricard(double h, Policy const& policy = {}) : Bricard(h, policy, policy) {}
-  /// \param each how often every pin is connected
+  /// \param each number of copies of every pin
   Bricard(double h, Policy const& policy, Closing const& closing, int each = 1) {
     Vec3 const points[] = {{0, 0, 0}, {1, 0, 0}, {1, -1, 0}, {1, -1, 1}, {0, -1, 1}, {0, 0, 1}};
     Vec3 const axes[] = {Vec3::UnitY(), Vec3::UnitZ(), Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ(), Vec3::UnitX()};

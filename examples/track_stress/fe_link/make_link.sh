@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Makes all link.* that are kept beside this script anew: mesh, matrices and frequencies as examples/link_from_fe does, then
-# the stress at named nodes, checked against a load case of CalculiX. Prints what it checks.
-# Needs CalculiX (Debian: calculix-ccx; 2.20 made those that are kept) and python3.
+# Makes all files link.* of this folder again: mesh, matrices and frequencies like examples/link_from_fe, then the stress at
+# named nodes, which is checked against a load case of CalculiX. Prints the results of the checks.
+# Needs CalculiX (Debian: calculix-ccx; 2.20 made the stored files) and python3.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 shared=$here/../../link_from_fe

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from hexahedra import Mesh
 
-# Where an engineer asks: fractions of pitch, width and height from the centre. The block has no bores; the eye around a
+# Points of evaluation: fractions of pitch, width and height from the centre. The block has no bores; the eye around a
 # pin of 20 mm radius ends at a third of the pitch.
 SPOTS = {
     "middle, wheel side": (0, 0, 0.5),
@@ -39,7 +39,7 @@ UNEVEN = 0.5  # the pull is 1 + UNEVEN y / half the width of its mean
 
 
 def shape(i, at):
-    """Shape function i of the quadratic serendipity hexahedron, and its slopes."""
+    """Shape function i of the quadratic serendipity hexahedron, and its derivatives."""
     place = PLACES[i]
     f = [1 + p * c if p else 1 - c * c for p, c in zip(place, at)]
     d = [p if p else -2 * c for p, c in zip(place, at)]
@@ -139,7 +139,7 @@ def spot_nodes(mesh):
 
 
 def front_loads(mesh):
-    """{column: N} on the front face: a pull that is linear in y, and a uniform lift, by the elements' shape functions."""
+    """Nodal forces {column: N} on the front face by the elements' shape functions: a pull that is linear in y, and a uniform lift."""
     front, width = max(n[0] for n in mesh.nodes), 2 * max(n[1] for n in mesh.nodes)
     loads = {}
     for element in mesh.elements:
@@ -218,7 +218,7 @@ def write_operator(out, mesh, operator):
         for k, rows in enumerate(operator)
         for row, values in enumerate(rows)
         for column, value in sorted(values.items())
-        if abs(value) > 1e-13 * largest  # the others are rounding
+        if abs(value) > 1e-13 * largest  # smaller entries are round-off
     ]
     with open(out / "link.stress.mtx", "w") as file:
         print("%%MatrixMarket matrix coordinate real general", file=file)

@@ -1,7 +1,9 @@
-"""Studies over ranks: run.py PROGRAM MPIEXEC
+"""Studies over MPI ranks: run.py PROGRAM MPIEXEC
 
-Ranks give the table of one thread, bit for bit; a rank that is killed in mid-run ends all, and any later run, by ranks or
-by threads, goes on without losing or repeating a finished point; what must be refused is, by every rank, and nobody hangs.
+Ranks write the same table as one thread, bit for bit. A rank that is killed in mid-run ends all ranks. Any later run, by
+ranks or by threads, continues without losing or repeating a finished point. Every rank refuses invalid input, and no rank
+waits forever.
+
 """
 import os
 import signal
@@ -16,7 +18,7 @@ HEAD = 8  # lines of the record before the first point
 # Open MPI without a network, as root in a container, and with more ranks than cores.
 ENVIRONMENT = dict(
     os.environ,
-    ASAN_OPTIONS="detect_leaks=0",  # MPI keeps what it took to the end
+    ASAN_OPTIONS="detect_leaks=0",  # MPI keeps its memory to the end
     OMPI_ALLOW_RUN_AS_ROOT="1",
     OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
     OMPI_MCA_btl="self,vader",
@@ -138,7 +140,7 @@ def check_refusals(runs, root):
 
 
 def check_limits(runs, root, one):
-    """Points that hang fail after their time limit, under ranks and threads; the others are as without."""
+    """Points that do not end fail after their time limit, with ranks and threads; the other points are not affected."""
     for ranks, options in [(0, ["--threads", "2"]), (1, []), (3, [])]:
         folder = root / f"limit {ranks}"
         folder.mkdir()
