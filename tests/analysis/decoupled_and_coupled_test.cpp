@@ -1,6 +1,6 @@
 // Decoupled stress after a rigid run compared with the stress of flexible bodies. Both agree for small velocities.
-// The difference grows with velocity² if the deformation acts back on the moment arm of centrifugal forces, or on the
-// motion of the body (its mass coupled to the deformation, m_rf).
+// The difference grows with velocity². One cause is the effect of the deformation on the moment arm of centrifugal
+// forces. The other cause is its effect on the motion of the body (coupling of mass and deformation, m_rf).
 #include <polybody/stress/decoupled_stress.hpp>
 
 #include <gtest/gtest.h>

@@ -1,6 +1,5 @@
-// Stress after a rigid run compared with known solutions: textbook formulas of rigid rods in motion, and the
-// equations of motion of a part cut from a body. The comparison with the coupled formulations is in
-// decoupled_and_coupled_test.cpp.
+// Stress after a rigid run. The references are textbook formulas of rigid rods in motion, and the equations of motion
+// of a part cut from a body. The comparison with the coupled formulations is in decoupled_and_coupled_test.cpp.
 #include <polybody/stress/decoupled_stress.hpp>
 
 #include <gtest/gtest.h>

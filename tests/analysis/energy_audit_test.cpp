@@ -181,9 +181,9 @@ struct Crane {
   }
 };
 
-// The drive prescribes the motion: its work is ½ J ψ̇² + m g l/2 (1 − cos ψ). The trapezoidal rule adds h²/12 of the
-// increase of Ṗ, P = (J ψ̈ + m g l/2 sin ψ) ψ̇, from zero [Euler and Maclaurin], and terms of h⁴. With ψ = 2 x³ (10 −
-// 15 x + 6 x²), P˙ = −130.9 W/s at x = 0.6.
+// The drive prescribes the motion: its work is ½ J ψ̇² + m g l/2 (1 − cos ψ). The trapezoidal rule adds h²/12 times
+// the increase of Ṗ, P = (J ψ̈ + m g l/2 sin ψ) ψ̇, from zero [Euler and Maclaurin], and terms of h⁴. With ψ = 2 x³
+// (10 − 15 x + 6 x²), P˙ = −130.9 W/s at x = 0.6.
 TEST(EnergyAudit, OfADrivenPendulumFindsTheWorkOfItsDrive) {
   Crane<Constraint> const crane;
   Motion const psi = crane.law(0.6);
@@ -400,9 +400,9 @@ using Floor = Contact<SphereOnPlane>;
 
 // Penalty impact (C2, independent computation): a mass of 1 kg falls 1 m on k = 1e5 N/m, c = 63.2 N s/m. It separates
 // at 3.2911781211 m/s when k d + c ḋ = 0. At this instant ½ k d² and m g d remain in the overlap. The first is lost,
-// because nothing constrains the spring of the floor. The power of the damper jumps by c v² at the impact, where the
-// run begins. The trapezoidal rule therefore misses half a step of it, and so does the integrator, whose first stage
-// has the weight 1/6.
+// because nothing constrains the spring of the floor. The run begins at the impact, at which the power of the damper
+// jumps by c v². The trapezoidal rule therefore misses half a step of it, and so does the integrator, whose first
+// stage has the weight 1/6.
 TEST(EnergyAudit, OfAnImpactLosesWhatThePublishedReboundLeaves) {
   double const k = 1e5, c = 63.245553203, v = std::sqrt(2.0 * gravity), back = 3.2911781211, h = 2e-6;
   Balls<Floor> const ball({.geometry = {.radius = 0.1}, .normal = {.stiffness = k, .damping = c}}, 1, 0.0, {0, 0, -v});

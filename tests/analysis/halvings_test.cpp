@@ -45,7 +45,8 @@ TEST(Halvings, LetLandingsThroughThatStall) {
     RunReport const report = with.run(20);
     halved += report.rejected > 0;
     EXPECT_EQ(with.x.t, 0.15);
-    // at rest at the static deflection c/k = 15 ms after the landing: within its falling distance in that time
+    // near the static position: the time constant after the landing is c/k = 15 ms, and the bound is the fall in that
+    // time
     EXPECT_LT(std::abs(position(with.model, with.x, with.mass.at(Vec3(0, 0, 0))).z()), 0.01);
     EXPECT_EQ(report.steps, 75);
   }

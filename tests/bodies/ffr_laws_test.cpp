@@ -1,5 +1,5 @@
-// Law tests of bodies for the spatial floating frame of reference: nodal coordinates, with and without geometric
-// stiffening, modes, mean axes, and a frame of two bars.
+// Law tests of bodies for the spatial floating frame of reference. The variants are nodal coordinates with and
+// without geometric stiffening, modes, mean axes, and a frame of two bars.
 #include <polybody/bodies/ffr/ffr.hpp>
 
 #include <polybody/testing/flexible_body_laws.hpp>

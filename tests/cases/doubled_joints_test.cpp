@@ -1,6 +1,6 @@
-// Closed mechanisms with redundant joints: two equal branches of a double Cardan shaft (data of OpenModelica's issue
-// 8365), and mechanisms in which every joint is connected twice. The motion is that of the mechanism without the
-// second joints. The reactions are bounded and continuous.
+// Closed mechanisms with redundant joints. The first has two equal branches of a double Cardan shaft (data of
+// OpenModelica's issue 8365). In the others every joint is connected twice. The motion is that of the mechanism
+// without the second joints. The reactions are bounded and continuous.
 
 #include <gtest/gtest.h>
 
@@ -32,8 +32,8 @@ struct AtRate {
   Motion operator()(double t) const { return {rate * t, rate, 0}; }
 };
 
-/// An input and an output shaft at 60°, joined by `branches` equal middle shafts of two halves on a prismatic joint,
-/// with a Cardan joint at both ends.
+/// Input and output shaft at 60°, joined by `branches` equal middle shafts. A middle shaft consists of two halves on
+/// a prismatic joint, and has a Cardan joint at both ends.
 struct CardanShafts {
   using Pin = Joint<Revolute, Constraint>;
   using Cardan = Joint<Universal, Constraint>;

@@ -1,5 +1,5 @@
-// Static equilibrium of floating frames made of several bars: the beams of MacNeal & Harder 1985 (S8, S8b), several
-// frames welded in a row (S7), and a cantilever that buckles under its tip force (S9e).
+// Static equilibrium of floating frames made of several bars: the beams of MacNeal & Harder 1985 (S8, S8b) and
+// several frames welded in a row (S7). Buckling of a cantilever under its tip force (S9e).
 #include <gtest/gtest.h>
 
 #include <numbers>

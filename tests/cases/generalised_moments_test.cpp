@@ -223,8 +223,9 @@ TEST(EulerParameterMoments, LeaveNothingToTheNormsOfTheParameters) {
   }
 }
 
-// The applied moment M (axes of b) gives Ḡᵀ M, M, and with joint coordinates its components along the axes of the
-// joints in addition to those of the weights. All have the power M·Ω.
+// Generalised moment of the applied moment M (axes of b): Ḡᵀ M with Euler parameters, M with the quaternion. With
+// joint coordinates it consists of the components along the axes of the joints, and is added to the part of the
+// weights. All have the power M·Ω.
 TEST(EulerParameterMoments, OfALoadHaveItsPower) {
   auto const& [p, c, r] = runs();
   VecX const four = p.applied_force(), three = c.applied_force();

@@ -1,6 +1,6 @@
-// Results of examples/identify: the least-squares method with NIST's certified values, derivatives compared with
-// finite differences of complete runs, confidence intervals compared with the scatter of many records, and the error
-// of the mount's stiffness under the assumption of a rigid arm.
+// Results of examples/identify. The least-squares method is compared with NIST's certified values, and derivatives
+// with finite differences of complete runs. Confidence intervals are compared with the scatter of many records. A
+// rigid arm causes a bias of the mount's stiffness.
 #include <gtest/gtest.h>
 
 #include "../../examples/identify/arm.hpp"
@@ -97,8 +97,8 @@ TEST(Identify, ARigidArmTakesItsOwnComplianceForTheMounts) {
   VecX const record = with_noise(exact_record(experiment, truth), 5e-4, 7);
   Estimate const rigid = estimate(candidate<planar::Rigid>("rigid", experiment), record, truth),
                  flexible = estimate(candidate<planar::Lrvf>("Lrvf", experiment, 10), record, truth);
-  // at rest the tip of the clamped arm sinks by w l⁴/8EI under its weight w l, and the mount rotates by w l³/2k_t at
-  // the tip
+  // at rest the tip of the clamped arm sinks by w l⁴/8EI under its weight w l, and the rotation of the mount adds w
+  // l³/2k_t
   double const ei = constants(strip()).EI, own = 1.0 / (8.0 * ei), mounts = 1.0 / (2.0 * truth[2]),
                expected = truth[2] * mounts / (mounts + own);
   EXPECT_NEAR(rigid.value[2], expected, 0.06 * truth[2]);

@@ -1,5 +1,6 @@
-// Beam with interpolated increments compared with a beam with `Objective`: the remaining tip displacement after a
-// closed load path [after Romero 2004], and the difference in motion as steps and elements become finer.
+// Beam with interpolated increments compared with a beam with `Objective`. The first quantity is the remaining tip
+// displacement after a closed load path [after Romero 2004]. The second is the difference in motion as steps and
+// elements become finer.
 
 #include <polybody/bodies/lrvf/incremental_interpolation.hpp>
 #include <polybody/bodies/lrvf/lrvf.hpp>
@@ -138,7 +139,7 @@ TEST(IncrementalRotations, InMotionItConvergesBesideObjective) {
   EXPECT_LT(off(4, 5e-4), 0.01 * by_mesh);
 }
 
-// Forces are gradients of the energy along the rotations of the nodes, so the energy is conserved to the order with
+// Forces are gradients of the energy along the rotations of the nodes. The energy is conserved to the order with
 // which a step follows these rotations. The error of the interpolation is of order two. It is hidden in the error of
 // `GeneralizedAlpha`. `RungeKutta4` loses its fourth order.
 TEST(IncrementalRotations, EnergyStaysToTheSecondOrder) {

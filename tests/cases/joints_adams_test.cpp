@@ -86,8 +86,8 @@ TEST(AdamsCases, UniversalSwingsAboutEitherArm) {
         .expect_the_swings(Vec3::UnitY(), "Universal, Dormand–Prince");
 }
 
-// Wallin 2016, Eq. 3.8, with points half a metre apart along the pin, and the spherical form of §3.5.1: both give one
-// motion and one wrench on the bar.
+// Two forms of the revolute joint: Wallin 2016, Eq. 3.8, with points half a metre apart along the pin, and the
+// spherical form of §3.5.1. Motion and wrench on the bar agree.
 TEST(RevolutePin, IsTheRevoluteOfTheSphericalForm) {
   Placement const level = Placement::at({2, 0, 0});
   Swinging one(Ideal<Revolute>{{.axis = Vec3::UnitY()}, {}}, along_x, level, {-2, 0.3, 0}, {0, 0.3, 0});
@@ -107,9 +107,9 @@ TEST(RevolutePin, IsTheRevoluteOfTheSphericalForm) {
   alike("moment of the pin at 5 s [N m]", (by_one.m - by_other.m).norm(), 1e-6, by_one.m.norm());
 }
 
-// J4, closed form: two shafts at β = 30°, the first at 1 rad/s. ω₂/ω₁ = cos β/(1 − sin²β cos²φ), where φ is the angle
-// between the arm of the first shaft and the plane of both shafts. The ratio is between cos β and 1/cos β. The second
-// shaft is constrained along its axis only, and the cross constrains its position.
+// J4, closed form: two shafts at β = 30°, the first at 1 rad/s. The ratio ω₂/ω₁ = cos β/(1 − sin²β cos²φ) is between
+// cos β and 1/cos β. The angle φ is between the arm of the first shaft and the plane of both shafts. The second shaft
+// is constrained along its axis only, and the cross constrains its position.
 TEST(CardanJoint, HasTheRatioOfSpeeds) {
   double const beta = std::numbers::pi / 6.0, c = std::cos(beta), s2 = 0.25;
   Vec3 const n(c, 0.5, 0);

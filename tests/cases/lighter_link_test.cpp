@@ -1,6 +1,6 @@
-// Results of examples/lighter_link: the optimisation method with a published design, stresses with a formula,
-// derivatives compared with finite differences of complete runs, and the design of a rigid link by the rule of equal
-// stress.
+// Results of examples/lighter_link. The optimisation method is compared with a published design, stresses with a
+// formula, and derivatives with finite differences of complete runs. The design of a rigid link is compared with the
+// rule of equal stress.
 #include <gtest/gtest.h>
 
 #include "../../examples/lighter_link/search.hpp"

@@ -1,5 +1,5 @@
-// Steel link of examples/link_from_fe. Matrices of CalculiX 2.20 are compared with its own mass, moments of inertia
-// and frequencies (link.reference.txt, made by make_matrices.sh), and with the plate with two holes.
+// Steel link of examples/link_from_fe. Its matrices are from CalculiX 2.20. The references are CalculiX's mass,
+// moments of inertia and frequencies (link.reference.txt, made by make_matrices.sh), and the plate with two holes.
 
 #include <gtest/gtest.h>
 

@@ -43,8 +43,9 @@ GeneralizedAlpha const light{.rho_inf = 0.95}, stabilised{.rho_inf = 0.95, .stab
 
 // R2: the motion passes ten times in 10 s through the flat configuration, in which the constraint Jacobian loses one
 // rank per window. Exudyn's error with two windows at this step is 5e-5. The benchmark allows 0.1 J. The remaining
-// errors are those of the methods, of order two. With two windows and h = 1e-3, 5e-4 and 2.5e-4 s they are 5.0e-5,
-// 1.2e-5 and 3.3e-6 for ρ∞ = 0.8, 4.7e-5, 1.2e-5 and 2.5e-6 for 0.95, and 7.4e-5, 1.8e-5 and 4.0e-6 for HHT.
+// errors are those of the methods, of order two. With two windows and ρ∞ = 0.8 they are 5.0e-5, 1.2e-5 and 3.3e-6 at
+// h = 1e-3, 5e-4 and 2.5e-4 s. With ρ∞ = 0.95 they are 4.7e-5, 1.2e-5 and 2.5e-6, and with HHT 7.4e-5, 1.8e-5 and
+// 4.0e-6.
 TEST(FourBar, PassesItsSingularPosition) {
   for (int const n : {1, 2, 40}) {
     Corner const end = corner(n, n == 40 ? 4 : 10);

@@ -117,7 +117,7 @@ TEST(SingularPosition, MayBeAnyNodeOfRadau) {
 }
 
 /// One window in its flat configuration. \param crank, coupler angular velocities [rad/s] of the first crank and of
-/// the coupler; the coupler's is zero on the parallelogram's branch, the crank's is zero on the kite's branch
+/// the coupler; `coupler` is zero on the parallelogram's branch, `crank` on the kite's branch
 FourBars<InPlane<Constraint>> flat_window(double crank, double coupler) {
   FourBars<InPlane<Constraint>> bars(1);
   auto const lay = [&](int link, double x, double speed, double rate) {

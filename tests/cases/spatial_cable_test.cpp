@@ -1,6 +1,6 @@
-// ANCF cable in space: elastica (S2) and the cantilever of Gerstmayr & Irschik 2008 (S3) in an inclined plane, a
-// hanging cable (S11), and the very flexible spinning pendulum of Gerstmayr and of Chrono's utest_FEA_ANCFCable
-// (D6a), also by Lrvf.
+// ANCF cable in space. The elastica (S2) and the cantilever of Gerstmayr & Irschik 2008 (S3) are in an inclined
+// plane. The other cases are a hanging cable (S11) and the very flexible spinning pendulum of Gerstmayr and of
+// Chrono's utest_FEA_ANCFCable (D6a). The pendulum is also modelled by Lrvf.
 
 #include <polybody/bodies/ancf/ancf_cable.hpp>
 #include <polybody/bodies/lrvf/lrvf.hpp>

@@ -1,6 +1,6 @@
-// Independence of the accuracy of a body from bodies that do not act on it, from a common velocity, from the distance
-// to the origin, and from accumulated rotations. The case is from issue 1392 of Basilisk: step control by one norm
-// over orbital velocity and attitude.
+// The accuracy of a body is independent of bodies that do not act on it and of a common velocity. It is also
+// independent of the distance to the origin and of accumulated rotations. The case is from issue 1392 of Basilisk:
+// step control by one norm over orbital velocity and attitude.
 
 #include <gtest/gtest.h>
 

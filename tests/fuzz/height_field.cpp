@@ -13,8 +13,8 @@ namespace polybody::fuzz {
 void check(HeightField const& field, HeightField::Grid const& grid) {
   MatX const& z = grid.heights;
   double const size = largest_size(z.reshaped());
-  // In addition to round-off, products of denormal numbers have an error of the least denormal number: four products,
-  // and sums of four times up to dy.
+  // In addition to round-off, each product of denormal numbers has an error of the least denormal number. There are
+  // four products, and sums of four times up to dy.
   double const least = std::numeric_limits<double>::denorm_min();
   double const rounding = 1e-9 * size + 32.0 * least * std::max<double>({1.0, grid.dx, grid.dy});
   auto const at = [&](double i, double j) { return field.height(grid.x0 + i * grid.dx, grid.y0 + j * grid.dy); };

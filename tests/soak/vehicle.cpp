@@ -1,7 +1,7 @@
 // Tracked vehicle for a minute of simulated time or more: growth of memory, drift of constraints, balance of energy.
 //   soak_vehicle [seconds [step]]
-// The test fails if memory grows after the first five seconds, if a pin opens, if a track leaves its sprocket or its
-// middle plane, or if the energy balance is not closed.
+// The test fails if memory grows after the first five seconds or if a pin opens. It also fails if a track leaves its
+// sprocket or its middle plane, or if the energy balance is not closed.
 #include <unistd.h>
 
 #include <cstdlib>
