@@ -190,7 +190,7 @@ double parting(Turn const& turn, bool follows, double force = 1e-3) {
 
 // Ramp of a force across a rotating arm. The hub's motion is prescribed, so the arm does not act back on it. The
 // decoupled equations of Wallin 2016 lack only the terms linear in the deformation and quadratic in the velocity.
-// With these terms they lack nothing.
+// With these terms they are complete.
 TEST(DecoupledAndCoupled, AgreeAtLowSpeedAndPartAsItsSquare) {
   double const slow = parting({.speed = 1e-3}, false), one = parting({.speed = 0.2}, false),
                two = parting({.speed = 0.4}, false);
@@ -220,9 +220,9 @@ double half_period(std::vector<double> const& times, std::vector<double> const& 
 
 // Free rod with a sudden force at one end. With unit EA, ρA and L the lowest free axial frequency is π. A frame fixed
 // to the end has one mode, sin πx/2, of frequency π/2. In the coupled equations the frame recoils when the rod
-// vibrates. Its mass reduces that of the mode by c² = 8/π², so the frequency is π/2 / √(1 − 8/π²), 15 % above π, the
-// accuracy of one mode. In the decoupled equations the frame does not recoil, and π/2 remains. In the frame of the
-// mean motion frame and mode do not interact, and one mode has the frequency π.
+// vibrates. Its mass reduces that of the mode by c² = 8/π², so the frequency is π/2 / √(1 − 8/π²), 15 % above π. This
+// error is due to the single mode. In the decoupled equations the frame does not recoil, and π/2 remains. In the
+// frame of the mean motion frame and mode do not interact, and one mode has the frequency π.
 TEST(DecoupledAndCoupled, OnlyTheCoupledFrameRecoils) {
   Bar const rod{
       .length = 1.0,

@@ -400,9 +400,9 @@ using Floor = Contact<SphereOnPlane>;
 
 // Penalty impact (C2, independent computation): a mass of 1 kg falls 1 m on k = 1e5 N/m, c = 63.2 N s/m. It separates
 // at 3.2911781211 m/s when k d + c ḋ = 0. At this instant ½ k d² and m g d remain in the overlap. The first is lost,
-// because nothing constrains the spring of the floor. The run begins at the impact, at which the power of the damper
-// jumps by c v². The trapezoidal rule therefore misses half a step of it, and so does the integrator, whose first
-// stage has the weight 1/6.
+// because no contact holds the spring of the floor compressed. The run begins at the impact, at which the power of
+// the damper jumps by c v². The trapezoidal rule therefore misses half a step of it, and so does the integrator,
+// whose first stage has the weight 1/6.
 TEST(EnergyAudit, OfAnImpactLosesWhatThePublishedReboundLeaves) {
   double const k = 1e5, c = 63.245553203, v = std::sqrt(2.0 * gravity), back = 3.2911781211, h = 2e-6;
   Balls<Floor> const ball({.geometry = {.radius = 0.1}, .normal = {.stiffness = k, .damping = c}}, 1, 0.0, {0, 0, -v});

@@ -60,7 +60,7 @@ TEST(LowPass, RollsOffAsACosine) {
 }
 
 // The periodic continuation of a ramp jumps by its height at the ends and rings (Gibbs: half of the jump at the ends
-// themselves). The mirrored ramp is a triangle wave of period T′ = 2T with terms 4/(πk)² for odd k alone. The terms
+// themselves). The mirrored ramp is a triangle wave of period T′ = 2T with terms 4/(πk)² for odd k only. The terms
 // beyond f_c = m/T′ sum up to less than 2/(π²(m − 1)) of the height.
 TEST(LowPass, MirroredRecordsDoNotRingAtTheEnds) {
   int const n = 1001;

@@ -36,8 +36,8 @@ Chain pinned(int pins) {
   return model;
 }
 
-/// Factor of the constraint Jacobian of a model in its reference state, with all equations or without those of
-/// private coordinates.
+/// Factor of the constraint Jacobian of a model in its reference state, with all equations or without those that are
+/// private to a body (`PrivateRows`).
 template <class M>
 detail::RowFactor<> factor_of(M const& model, bool all) {
   System system(model, with<Entries::motion>);

@@ -77,8 +77,7 @@ TEST(AncfCuredContinuum, HomogeneousDeformationObeysHookesLawWithCorrectedShear)
 }
 
 // Curvature κ and twist τ to first order: r_y = e₂ − κ s e₁ + τ s e₃, r_z = e₃ − τ s e₂ at the nodes, r_x along the
-// normal. Velocities in y and z are zero. Stretch, shear and E₂₂ are of second order in δ, so the energy is ½ L (EI
-// κ² + GJ τ²) to fourth order.
+// normal. Stretch, shear and E₂₂ are of second order in δ, so the energy is ½ L (EI κ² + GJ τ²) to fourth order.
 template <class B>
 double energy_of(B const& body, double kappa, double tau) {
   VecX q(body.coordinates());

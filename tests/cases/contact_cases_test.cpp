@@ -330,8 +330,8 @@ struct Roller {
     model.set_velocity(x, body, {v0, 0, 0}, {0, 0, 0});
     return x;
   }
-  /// Velocity of the centre, and velocity of the lowest point. A wheel that rolls along x has the angular velocity −ω
-  /// about z in the plane, and ω about y in space.
+  /// Velocity of the centre, and velocity of the lowest point. In a wheel that rolls along x, the rotation is −v/R
+  /// about z in the plane, and v/R about y in space.
   double speed(State const& x) const { return frame(model, x, centre()).v.x(); }
   double slip(State const& x) const {
     Frame<double> const f = frame(model, x, centre());

@@ -122,9 +122,9 @@ Vec3 bend_tip(Index pieces, Index bars_of_each, BarConstants const& constants, d
   return position(model, x, tips.back());
 }
 
-// The rotations within a substructure are small. The neglected terms fall with the square of its length. They fall to
-// a quarter if the frame is in the middle. The beams have no shear here, and the stretch of so stiff a bar is
-// negligible.
+// The rotations within a substructure are small. The neglected terms fall with the square of its length. They are a
+// quarter if the frame is in the middle of the substructure. The beams have no shear here, and the stretch of so
+// stiff a bar is negligible.
 TEST(FloatingFrames, SubStructuresConvergeToTheExactRod) {
   BarConstants const c{.EA = 1e10, .EI = 1e7 / 12, .mass_per_length = 1.0, .GJ = 1e7 / 12, .rotary_inertia = 1.0 / 12};
   Vec3 const exact(47.1512944003, 15.6850781622, 53.4685984423), straight(70.7106781187, 29.2893218813, 0);

@@ -133,9 +133,8 @@ double critical_force(Index n) {
 }
 
 // The independent computation gives 8554.9932 N, including the deflection before buckling. The classical value,
-// 8430.96 N, neglects it. The rod of the reference has no shear (derived: with k = 5/6 the same meshes tend to
-// 8555.0165). Here GA is a hundred times that of k = 1, so 2e-4 N remain. Extrapolation removes the errors in h² and
-// h⁴.
+// 8430.96 N, neglects it. The rod of the reference has no shear. With k = 5/6 the same meshes tend to 8555.0165 N.
+// Here GA is a hundred times that of k = 1, so 2e-4 N remain. Extrapolation removes the errors in h² and h⁴.
 TEST(LateralBuckling, StripBucklesAtTheExactForce) {
   double const a = critical_force(8), b = critical_force(16), c = critical_force(32);
   double const exact = 8554.9932;
