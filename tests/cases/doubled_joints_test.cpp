@@ -1,6 +1,6 @@
 // Closed mechanisms with redundant joints. The first has two equal branches of a double Cardan shaft (data of
-// OpenModelica's issue 8365). In the others every joint is connected twice. The motion is that of the mechanism
-// without the second joints. The reactions are bounded and continuous.
+// OpenModelica's issue 8365). The next mechanisms have every joint twice. The motion is that of the mechanism without
+// the second joints. The reactions are bounded and continuous.
 
 #include <gtest/gtest.h>
 
