@@ -1,5 +1,5 @@
-// Springs of every kind under every integrator, at steps from 1/100 to 10 times the stability limit: the energy of the
-// run stays within 10 % of its largest value, or the run is refused, or its report warns.
+// Springs of every kind under every integrator, at steps from 1/100 to 10 times the stability limit. Either the
+// energy of the run stays within 10 % of its largest value, or the run is refused, or its report warns.
 #include <gtest/gtest.h>
 
 #include <cstdlib>

@@ -67,8 +67,8 @@ TYPED_TEST(BlockSolvers, SolveChainsOfEveryBlockSize) {
     for (Index const bodies : {1, 2, 9}) this->solved(chain(bodies, n, m, this->draw));
 }
 
-// Two constraint equations of each joint are nearly redundant, as near a singular configuration. The error of a
-// moderate solution is a tenth of the error that multipliers of such joints would cause (8e-11).
+// Two constraint equations of each joint are nearly redundant, as near a singular configuration. The residual of a
+// moderate solution is about a tenth of the residual that the multipliers of such joints would cause (8e-11).
 TYPED_TEST(BlockSolvers, LoseNothingToRowsThatNearlyRepeatOthers) {
   Draw& draw = this->draw;
   Blocks b;

@@ -24,8 +24,8 @@ struct CarriedArm {
 
 /// An arm that rotates. It carries a slider on a spring, which carries a body on a ball joint. This body carries
 /// another one that slides and rotates. Parameters: stiffness of the spring, mass of the slider, position of the ball
-/// on it, gravity, an initial velocity before the projection onto the joints, Young's modulus of the beam. The
-/// objective function contains the final state and the path of the tip. Steps have the length h [s].
+/// on it, gravity, an initial velocity, Young's modulus of the beam. The initial velocity is projected onto the
+/// joints. The objective function contains the final state and the path of the tip. Steps have the length h [s].
 template <class Policy, CarriedArm with_what>
 auto carried_arm(double h) {
   return [h](std::span<double const> p) {

@@ -62,8 +62,9 @@ inline constexpr Corner corners[] = {
     {40, 1, -0.1153568806321099, -0.9933241113004502}, {40, 4, 0.0693420322279992, 0.9975929443247336},
     {40, 10, 0.1805122266867284, 0.9835727405823116}};
 
-/// The Bricard mechanism [IFToMM A04] (R4): five rods of 1 m and 1 kg of width h, six pins, and one degree of freedom
-/// that a count of constraint equations does not give. h = 0 gives thin rods, whose mass matrix is singular as well.
+/// The Bricard mechanism [IFToMM A04] (R4): five rods of 1 m and 1 kg of width h, and six pins. A count of constraint
+/// equations does not give its one degree of freedom. With h = 0 the rods are thin, and their mass matrix is singular
+/// as well.
 /// \tparam Closing the policy of the last pin
 template <class Policy = Constraint, class B = Rigid<>, class Closing = Policy>
 struct Bricard {

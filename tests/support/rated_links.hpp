@@ -10,8 +10,8 @@
 
 namespace polybody {
 
-/// Two links. The objective function contains the final position of the tip, the motion of the bodies, the path of
-/// the tip and, multiplied by a factor, the final reactions.
+/// Two links. The objective function contains the final position of the tip, the motion of the bodies and the path of
+/// the tip. It also contains the final reactions, multiplied by a factor.
 template <class B, class Policy>
 auto rated_links(double held) {
   return [held](std::span<double const> p) {

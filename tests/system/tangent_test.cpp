@@ -34,7 +34,7 @@ struct Asked {
   std::function<VecX(State const&, VecX const& dq, VecX const& dv)> slope;
 };
 
-/// Loads and gravity are on at 0.7 of their values.
+/// Loads and gravity have the load factor 0.7.
 template <class M>
 Asked ask(M const& m) {
   auto const model = std::make_shared<M const>(m);
@@ -216,7 +216,7 @@ TEST_P(Tangent, ViolationRateIsTheRateOfTheViolation) {
   EXPECT_LT(mismatch(damped.violation_rate(x) - damped.violation_rate(y), G(damped, x) * x.v), 1e-14);
 }
 
-// γ = Φ̈ at constant speeds.
+// γ = Φ̈ at constant velocities.
 TEST_P(Tangent, AccelerationBiasIsTheRateOfTheViolationRate) {
   VecX const expected = slope_at_zero([&](double h) { return damped.violation_rate(later(x, h)); });
   EXPECT_LT(mismatch(damped.acceleration_bias(x), expected), 1e-10);

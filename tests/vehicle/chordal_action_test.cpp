@@ -1,15 +1,14 @@
 // Chordal action (C6, closed form): a chain of pitch p on a sprocket of N teeth is a polygon, so the velocity of its
 // strand varies.
 //
-// Pins at the bottoms of the valleys are on the pitch circle R = p/(2 sin π/N). ψ is the angle of the pin at the end
-// of the strand, measured from the point with the circle's tangent parallel to the strand. If the strand stays
-// parallel to itself, its velocity is the component of the pin's velocity along the strand,
-//   v = ω R cos ψ,  −π/N ≤ ψ ≤ π/N:  v_min/v_max = cos π/N,  x(ψ) = R sin ψ and a pitch more for every tooth,  mean v =
-//   N p n.
-// The strand stays parallel if the force at its end has a constant direction and is the only force, as here. A strand
-// at rest is then straight and along the force, for any position of its other end. (A strand of length L with its end
-// on the line z = R − s is inclined by β, L sin β = s − R (1 − cos ψ). The velocity of its end is v = ω R (cos ψ −
-// sin ψ tan β), and the velocity ratio depends on L and s.)
+// Pins at the bottoms of the valleys are on the pitch circle R = p/(2 sin π/N). Angle ψ gives the position of the pin
+// at the end of the strand. It is zero if the circle's tangent at the pin is parallel to the strand. If the strand
+// stays parallel to itself, its velocity is the component of the pin's velocity along the strand, v = ω R cos ψ, −π/N
+// ≤ ψ ≤ π/N: v_min/v_max = cos π/N, x(ψ) = R sin ψ and a pitch more for every tooth, mean v = N p n. The strand stays
+// parallel if the force at its end has a constant direction and is the only force, as here. A strand at rest is then
+// straight and along the force, for any position of its other end. (A strand of length L with its end on the line z =
+// R − s is inclined by β, L sin β = s − R (1 − cos ψ). The velocity of its end is v = ω R (cos ψ − sin ψ tan β), and
+// the velocity ratio depends on L and s.)
 //
 // Both strands are on the same side of the sprocket, under the same force T. All pins at the bottoms of frictionless
 // valleys are then in equilibrium at every ψ. The strands pull with T cos ψ along the tangent on both ends of the row

@@ -188,8 +188,8 @@ TEST(M113, PinsSitOnThePitchCircle) {
   EXPECT_LT(centre, m113::tip_radius);
 }
 
-// x(10 s) = 33.35, 40.02 and 106.7 m are the distances of a linear ramp, in closed form. Rounded corners of the ramp
-// give the same distances.
+// x(10 s) = 33.35, 40.02 and 106.7 m are the distances of a linear ramp, in closed form. A ramp with rounded ends
+// gives the same distances.
 TEST(M113, DriveRestsForOneSecondAndRampsForSeven) {
   for (auto const& [speed, distance] : {std::pair{25.0, 33.35}, {30.0, 40.02}, {80.0, 106.7}})
     for (double const rounding : {0.0, 0.1}) {

@@ -80,7 +80,8 @@ TEST(M113Vehicle, AnswersOfItsTracksAreThoseOfItsModel) {
 }
 
 // Wallin 2016, Figure 3.7: 7 cm with suspension. The attachment of the springs is fitted to this value
-// (m113::shock_on_arm), so the test checks the fit and is not a claim. 0.64 cm without suspension is not fitted.
+// (m113::shock_on_arm), so the test checks the fit and is not a claim. The value without suspension, 0.64 cm, is not
+// fitted.
 TEST(M113Vehicle, DropsOntoItsSpringsByTheFittedSevenCentimetres) {
   double const sprung = dip_of({}, 0.3), bare = dip_of({.suspension = false}, 0.15);
   EXPECT_NEAR(sprung, 0.07, 0.007);

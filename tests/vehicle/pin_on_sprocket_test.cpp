@@ -132,10 +132,10 @@ void along_lines(F const& f) {
   }
 }
 
-// As a pin moves along arc, flank, corner and tip, its depth changes by at most its displacement. n rotates by at
-// most that displacement over the smallest distance from a centre of curvature. This distance is r_p − 15 mm at the
-// corner, which gives 200 per metre. Deeper pins are omitted, because at a depth of r_p the centre is within the
-// tooth. The depth grows against n.
+// As a pin moves along arc, flank, corner and tip, its depth changes by at most its displacement. The normal n
+// rotates by at most that displacement over the smallest distance from a centre of curvature. This distance is r_p −
+// 15 mm at the corner, which gives 200 per metre. Deeper pins are omitted, because at a depth of r_p the centre is
+// within the tooth. The depth grows against n.
 TEST(SprocketProfile, DepthAndNormalAreContinuous) {
   int touching = 0, began = 0;
   double most = 0.0, turned = 0.0, slope = 0.0;

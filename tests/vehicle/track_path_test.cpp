@@ -125,7 +125,7 @@ TEST(TrackPath, OfTheM113HasOneRoot) {
     EXPECT_LT(track_length(layout, travel), track_length(layout, travel + 5e-4)) << "travel " << travel;
 }
 
-// Independent computation of the equilibrium with a preload: the tensioner's spring carries 28.3 kN at tensions of
+// Independent computation of the equilibrium with a preload. The tensioner's spring carries 28.3 kN at tensions of
 // 13.6 to 14.6 kN in the two runs, and 47.4 kN at 23.1 to 24.3 kN. A higher tension gives straighter runs.
 TEST(TrackPath, PullsTheTensionerWithBothRuns) {
   TrackPath const path = wrap_track(m113::track());
@@ -139,8 +139,8 @@ TEST(TrackPath, PullsTheTensionerWithBothRuns) {
   EXPECT_NEAR(path.pull[1], std::sin(3.031794984) - std::sin(0.233036280), 1e-8);
 }
 
-// For every vehicle, links have their length, faces touch rims without penetration, pins are on the pitch circle or
-// outside, and the chain makes one full turn.
+// For every vehicle, links have their length, and faces touch rims without penetration. Pins are on the pitch circle
+// or outside, and the chain makes one full turn.
 TEST(TrackPath, ClosesWithoutStretchOrPenetration) {
   TrackLayout moved = m113::track();
   moved.sprocket.valley = moved.sprocket.valley + 0.11;

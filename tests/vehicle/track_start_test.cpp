@@ -60,15 +60,15 @@ double share() {
   TrackPath const path = wrap_track(m113::track());
   return -path.pull.dot(path.layout.tensioner.direction);
 }
-/// Upper bound of the displacement of the idler. Contacts yield by ΔL with T ΔL = ΣN d, and ΣN ≤ 2π T around a convex
-/// loop. The mean depth is at most that of the sprocket, at which links rotate most and N = 2 T sin π/10. Hence ΔL ≤
-/// 2π d. The tension is that of the reference; with yielding contacts it is lower, as the spring relaxes with the
-/// idler.
+/// Upper bound of the displacement of the idler. The deformation of contacts lengthens the path by ΔL with T ΔL = ΣN
+/// d, and ΣN ≤ 2π T around a convex loop. The mean depth is at most that of the sprocket, at which links rotate most
+/// and N = 2 T sin π/10. Hence ΔL ≤ 2π d. The tension is that of the reference; with yielding contacts it is lower,
+/// as the spring relaxes with the idler.
 double given_way(Reference const& row) { return 2.0 * pi * depth(2.0 * row.upper_run * std::sin(pi / 10.0)) / share(); }
 
 /// Upper bound of the distance of pins from the reference. It is the sum of the displacement of the idler, the
-/// additional sag w L²/8T of the upper run between the sprocket and wheel 2 due to the lower tension, and the yield
-/// of the supporting contacts.
+/// additional sag of the upper run, and the deformation of the supporting contacts. The sag is w L²/8T between the
+/// sprocket and wheel 2 and grows because the tension is lower.
 double out_of_place(Reference const& row) {
   double const span = -m113::wheel(1, m113::Side::left).x, sag = weight * span * span / (8.0 * row.upper_run);
   double const spring =
