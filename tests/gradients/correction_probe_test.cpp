@@ -51,7 +51,8 @@ TEST(CorrectionProbe, EstimatesWhatCorrectionsLeave) {
       above += part > 1.0;
       probe.add(numbers(n, 0.4 + 0.02 * step), 1.0);
     }
-    EXPECT_LE(above, 2);  // in 50 draws: one probe may be nearly orthogonal to the missing blocks
+    // two exceptions in 50 draws are permitted: one probe may be nearly orthogonal to the missing blocks
+    EXPECT_LE(above, 2);
     EXPECT_LT(most, 2.0);
     EXPECT_GT(most, 1e-4);  // the bound is not far above the error
   }

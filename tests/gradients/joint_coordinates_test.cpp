@@ -55,7 +55,7 @@ auto const in_the_plane = [](std::span<double const> p) {
   using M = Model<Bodies<planar::Rigid, planar::Ffr>, Joints<Turn, Slide>>;
   M model{Gravity{0, -9.81, 0}};
   auto const slider = model.add(planar::Rigid(p[2], 0.01, Placement::planar(0.6, p[1], 0.2)), "slider");
-  Vec2 const end_of_beam = Eigen::Rotation2D(-0.2) * Vec2(-0.1, -p[1]);  // on the slider
+  Vec2 const end_of_beam = Eigen::Rotation2D(-0.2) * Vec2(-0.1, -p[1]);  // in axes of the slider
   auto const beam = model.add(planar::Ffr::from({.length = 0.5,
                                                  .section = Rectangle{.height = 0.01, .width = 0.01},
                                                  .material = Material{.density = 2000.0, .young = p[0], .poisson = 0.3},
@@ -72,7 +72,7 @@ auto const in_the_plane = [](std::span<double const> p) {
   State start = model.reference_state();
   System const system(model, with<Entries::rigid_speeds>);
   system.entries().first.rigid_speeds(system.entries().second, start.q, Vec3::Zero(), {0, 0, p[3]}, start.v);
-  start.v[8] += 1.0;  // of the second flying body
+  start.v[8] += 1.0;  // velocity of the second flying body
   auto const end = [slider, second](auto const& m, auto const& x) {
     auto const a = position(m, x, slider.at(Vec2(0.05, 0.02))), b = position(m, x, second.at(Vec2(0.0, 0.1)));
     auto sum = a[0] + 2.0 * a[1] + b[0] - b[1];

@@ -139,7 +139,7 @@ struct SqueezerEquations {
 
   struct Shape {
     Jet inertia;    ///< Σ m |c_β|² + I φ_β²; its second derivative is not stored
-    Jet potential;  ///< of the spring
+    Jet potential;  ///< potential energy of the spring
     D gamma;
   };
   Shape at(D const& beta) const {
@@ -402,7 +402,7 @@ struct Equations {
     planar::FfrIntegrals const one = rod(1.0);
     D const phi1 = omega * t, ax = -omega * omega * l1 * cos(phi1), ay = -omega * omega * l1 * sin(phi1);
     D const c = cos(y[0]), s = sin(y[0]), w = y[5], length = y[4] + l2, rate = y[9];
-    D const bx = c * ax + s * ay, by = c * ay - s * ax;  // of the crank pin, in axes of the rod
+    D const bx = c * ax + s * ay, by = c * ay - s * ax;  // acceleration of the crank pin, in axes of the rod
     // [mass matrix, constraint equation of the joint] (φ̈₂, q̈, λ) = forces
     constexpr std::size_t n = 6;
     std::array<std::array<D, n + 1>, n> A{};

@@ -64,7 +64,7 @@ struct Step {
 };
 
 struct Matrices {
-  MatX by_differences;  // of the equations of the step with respect to its unknowns
+  MatX by_differences;  // derivative of the equations of the step with respect to its unknowns
   MatX plain, turned;   // tangent with second-order terms; tangent with the derivative of ⊞, in the same unknowns
 };
 Matrices matrices_of(System& system, State const& x, Motion const& motion, bool exact) {

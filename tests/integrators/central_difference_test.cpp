@@ -51,7 +51,7 @@ namespace central_difference_test {
 /// longitudinal mode.
 struct FreeCable {
   Model<Bodies<planar::AncfCable<>>, Joints<>> model;
-  VecX mode;           ///< of the highest frequency, normalised to unit mass
+  VecX mode;           ///< mode of the highest frequency, normalised to unit mass
   double omega = 0.0;  ///< the highest frequency [rad/s]
   State start;
 

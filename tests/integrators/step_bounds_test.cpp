@@ -131,7 +131,7 @@ TEST(StepBounds, AnOpenJointEndsTheRun) {
       most = std::max(most, violation(system, now).position);
   } catch (Error const&) {
   }
-  EXPECT_GT(most, 10.0);  // with pins 1 m apart
+  EXPECT_GT(most, 10.0);  // larger than the distance of the pins, 1 m
   auto run = simulate<BlockSolver>(m.model, m.x, loose, {.until = 2.0, .step = 3e-3});
   std::string const message = message_of_divergence(run, m.x);
   EXPECT_TRUE(has(message, "leaves joint \""));
@@ -375,7 +375,7 @@ TEST(StepBounds, SlowGrowthIsWarnedOfAndThenRefused) {
     auto run = simulate(model, x, RungeKutta4<Projection>{}, {.until = until, .step = 0.0284});
     if (until == 1.0) {
       message_of_divergence(run, x);
-      EXPECT_LT(energy(model, x).total(), 400.0);  // from 50 J
+      EXPECT_LT(energy(model, x).total(), 400.0);  // the initial energy is 50 J
     } else {
       auto slow = simulate(model, x, RungeKutta4<Projection>{}, {.until = 0.2, .step = 0.0284});
       auto const warnings = slow.run().warnings;

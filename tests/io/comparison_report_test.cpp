@@ -245,7 +245,7 @@ TEST_F(ComparisonReport, DifferencesCountByLengthsThatMatter) {
     run.outputs = {gap, wave, gap};
     run.difference = {1e-5 * double(i), 0.02 * double(i), 1e-5 * double(i)};
   }
-  // of a hundredth of the length
+  // the scale is a hundredth of the largest length
   EXPECT_NEAR(detail::relative_difference(c, c.runs[1], 0), 1e-5 / (1e-2 * 2.0), 1e-6);
   EXPECT_NEAR(detail::relative_difference(c, c.runs[1], 1), 0.02 / 2.0, 1e-4);
   // relative to its own span

@@ -347,7 +347,7 @@ TEST_F(CsvFiles, KeepsThePermissionsOfAFileThatItReplaces) {
   };
   auto const old_mask = ::umask(022);
   write("first");
-  EXPECT_EQ(fs::status(file).permissions(), fs::perms(0644));  // as for any new file
+  EXPECT_EQ(fs::status(file).permissions(), fs::perms(0644));  // the permissions of any new file
   for (int const mode : {0600, 0640, 0666, 0755, 0400}) {
     fs::permissions(file, fs::perms(mode));
     write("secret");

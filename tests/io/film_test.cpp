@@ -105,7 +105,7 @@ struct FilmFiles : testing::Test {
 TEST_F(FilmFiles, HoldWhatWasRecordedAndAreRefusedWhereverTheyAreDamaged) {
   Film film = film_with(bare_viewer);
   std::array<double, 2> const bends{0.1, 0.002};
-  std::vector<double> half_steps;  // of the scalars [MPa]
+  std::vector<double> half_steps;  // half a quantisation step of the scalars [MPa]
   for (double const size : bends) {
     bend = size;
     record(film, "bent by " + number(size));

@@ -84,7 +84,7 @@ struct Path {
 TEST_F(Plots, WritesDataScriptAndPicture) {
   Drawn const drawn = write_figure(waves(), stem);
   EXPECT_EQ(drawn, have_gnuplot ? Drawn::png : Drawn::script_only);
-  EXPECT_EQ(files(), have_gnuplot ? 3u : 2u);  // and no temporary file
+  EXPECT_EQ(files(), have_gnuplot ? 3u : 2u);  // no temporary file remains
   if (!have_gnuplot) GTEST_SKIP() << "gnuplot is not on PATH";
   EXPECT_TRUE(is_png(with(".png")));
   EXPECT_EQ(png_size(with(".png")), (std::array{1000, 700}));

@@ -87,7 +87,7 @@ TEST(NonlinearBushing, EachComponentHasItsLaw) {
   EXPECT_DOUBLE_EQ(lambda[1], 40.0 * x[1] + 2.0 * rate[1]);
   EXPECT_DOUBLE_EQ(lambda[2], 7.0 * std::pow(x[2], 3) + 3.0 * x[2] + x[2] * x[2] * rate[2]);
   EXPECT_DOUBLE_EQ(lambda[4], 6.0 * std::sin(x[4]) + 1.0);
-  EXPECT_NEAR(lambda[5], 3.5 * x[5] + 0.5 + 0.1 * rate[5], 1e-14);  // two points: a line
+  EXPECT_NEAR(lambda[5], 3.5 * x[5] + 0.5 + 0.1 * rate[5], 1e-14);  // a table of two points is a line
 }
 
 TEST(NonlinearBushing, OfLinearLawsIsADiagonalBushing) {
@@ -136,7 +136,7 @@ TEST(Bushing, RefusesCouplingThatMakesTheStiffnessNegative) {
     EXPECT_NO_THROW((Bushing{.stiffness = k, .damping = k}.check("mount")));
     k(0, 4) = k(4, 0) = unit;  // semidefinite: it leaves one direction free
     EXPECT_NO_THROW((Bushing{.stiffness = k, .damping = k}.check("mount")));
-    k(4, 5) = k(5, 4) = 0.1 * unit;  // … a free direction permits no coupling
+    k(4, 5) = k(5, 4) = 0.1 * unit;  // a free direction permits no coupling
     EXPECT_TRUE(has(said(k), "the coupling of its row 5 with the others is too strong"));
   }
   Matrix k = Bushing::diagonal({1, 1, 1}, {0, 0, 0});

@@ -59,7 +59,8 @@ TEST(Checks, UnitAllowsRoundingOnly) {
   EXPECT_NO_THROW(require_unit(Vec3(1 + 1e-10, 0, 0), "axis"));
   for (Vec3 const& axis : {Vec3(1 + 1e-8, 0, 0), Vec3(0, 0, 0), Vec3(1, 1, 0), Vec3(nan_, 0, 1)})
     EXPECT_TRUE(has(refusal([&] { require_unit(axis, "pin: the axis"); }), "pin: the axis"));
-  EXPECT_TRUE(has(refusal([] { require_unit(Vec3(2, 0, 0), "axis"); }), "has length 2."));  // and gives the length
+  // the message contains the length
+  EXPECT_TRUE(has(refusal([] { require_unit(Vec3(2, 0, 0), "axis"); }), "has length 2."));
 }
 
 TEST(Checks, FindTheLargestEntry) {

@@ -29,9 +29,9 @@ enum class Offset { none, along_axis, across };
 struct JointKind {
   char const* geometry;
   char const* policy;
-  int rows;  ///< with multipliers
+  int rows;  ///< number of multipliers
   Offset offset;
-  bool asks_axis;     ///< of its second marker: the joint's axis is then the tangent of a cable
+  bool asks_axis;     ///< requires the axis of its second marker: the joint's axis is then the tangent of a cable
   bool eliminates;    ///< eliminates coordinates from a time step
   bool linear;        ///< constraint equations that are linear in coordinates: axes are material lines
   int twin = ground;  ///< the same geometry with `Constraint`, for a policy that eliminates

@@ -48,8 +48,8 @@ using SmallContact = Contact<SphereOnSphere>;
 /// A type-erased model.
 struct Built {
   std::shared_ptr<void const> model;
-  std::unique_ptr<System> whole;               ///< with energies and rigid motions
-  std::function<RunSystems()> systems_of_run;  ///< for explicit steps
+  std::unique_ptr<System> whole;               ///< system with energies and rigid motions
+  std::function<RunSystems()> systems_of_run;  ///< systems for explicit steps
   State reference;
 };
 
@@ -238,7 +238,7 @@ struct Realiser<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>> {
   M model;
   Plan const& plan;
   std::tuple<std::vector<BodyHandle<Bs>>...> handles = {};
-  std::vector<std::size_t> index = {};  ///< of each body, within the list of its type
+  std::vector<std::size_t> index = {};  ///< index of each body within the list of its type
 
   /// Calls f<T>(i) for the types of a list, numbered from `first`.
   template <class... Ts, class F>

@@ -228,7 +228,7 @@ TYPED_TEST(BlockSolvers, DropRowsThatRepeatOthers) {
     VecX x = VecX::Zero(b.size);
     solver.solve(rhs, x);
     EXPECT_LT((x - y).head(6 * bodies).norm(), 1e-9 * y.norm());  // velocities
-    EXPECT_LT((a * x - rhs).norm(), 1e-9 * rhs.norm());           // and Gᵀλ
+    EXPECT_LT((a * x - rhs).norm(), 1e-9 * rhs.norm());           // Gᵀλ is correct as well
     for (Index const i : solver.dropped()) EXPECT_EQ(x[i], 0.0);
   }
 }
@@ -240,7 +240,7 @@ TYPED_TEST(BlockSolvers, SolveSeveralSidesAtOnce) {
   MatX x = MatX::Zero(b.size, 3);
   solver.solve(sides, x);
   EXPECT_LT((b.dense() * x - sides).norm(), 1e-11 * sides.norm());
-  // in place
+  // solution in place
   VecX y = sides.col(1);
   solver.solve(y, y);
   EXPECT_EQ(y, x.col(1));
@@ -299,7 +299,7 @@ TYPED_TEST(BlockSolvers, GoBackToAnEarlierOrder) {
   EXPECT_EQ(solver.order(), order);
   solver.solve(side, x);
   EXPECT_EQ(x, first);
-  // and the solver changes its order again
+  // the solver changes its order again
   write_and_factor(solver, [&](BlockSink& s) { thin.write(s); });
   solver.solve(side, x);
   EXPECT_EQ(x, thinned);

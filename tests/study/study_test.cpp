@@ -76,7 +76,7 @@ TEST_F(StudyFiles, TheTableHasAPointInEachLineAndMeasuredOutputsBesideIt) {
   EXPECT_EQ(std::ranges::count(text, '\n'), 13);
   std::string const all = text_of(folder / "a_measured.csv");
   EXPECT_TRUE(all.starts_with("point,stiffness [N/m],integrator,step [s],sum [m],calls,failure\n")) << all;
-  EXPECT_TRUE(has(all, ",1,\n"));  // the first call
+  EXPECT_TRUE(has(all, ",1,\n"));  // number of the first call
 }
 
 TEST_F(StudyFiles, ManyThreadsGiveTheTableOfOne) {

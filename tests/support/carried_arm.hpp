@@ -69,7 +69,7 @@ auto carried_arm(double h) {
     model.apply(SpringDamper{.stiffness = p[0], .damping = 1.0, .free_length = 0.4}, arm.at({-0.1, 0, 0.1}),
                 slider.at({0, 0, 0}), "spring");
     State start = model.reference_state();
-    start.v[3 * 6 + 1] = p[4];  // of the tool, transverse to the arm
+    start.v[3 * 6 + 1] = p[4];  // velocity of the tool, transverse to the arm
     start.v[0 * 6 + 4] = 0.5 * p[4];
     auto const tip = tool.at({0, 0, 0});
     auto const end = [tip](auto const& m, auto const& x) {

@@ -10,7 +10,7 @@ namespace polybody {
 
 struct Drift {
   double energy = 0.0, linear = 0.0, angular = 0.0;  ///< relative to the initial values
-  double largest_gain = -1.0;  ///< of energy in one step, relative; negative if every step loses energy
+  double largest_gain = -1.0;  ///< largest energy gain in one step, relative; negative if every step loses energy
   double violation = 0.0;      ///< |Φ|, largest
 };
 

@@ -19,7 +19,7 @@ namespace polybody {
 inline auto impact_of_cables(double h) {
   return [h](std::span<double const> p) {
     auto scenario = hung_cables<AncfLinear, false>(h)(std::array{1e7, p[0], p[1], p[2], 2.0});
-    Index const z = scenario.start.q.size() - 4;  // of the tip, ahead of its gradient
+    Index const z = scenario.start.q.size() - 4;  // height of the tip; its gradient follows
     Event const floor{.name = "floor",
                       .value = [z, height = p[3]](State const& x) { return x.q[z] - height; },
                       .tolerance = 1e-15,

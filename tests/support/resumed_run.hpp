@@ -68,7 +68,7 @@ void expect_resumes(I const& integrator) {
     if (!is_due(run.report().steps)) continue;
     write_checkpoint(file, run.snapshot());
     snapshots.push_back(read_checkpoint(file));
-    EXPECT_EQ(bits(now), path.back());  // which does not change the state
+    EXPECT_EQ(bits(now), path.back());  // a snapshot does not change the state
   }
   std::filesystem::remove(file);
   ASSERT_EQ(snapshots.size(), 3u);

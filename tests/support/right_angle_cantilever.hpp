@@ -64,7 +64,7 @@ struct RightAngle {
 
 struct Row {
   double t;
-  Vec6 u;  ///< of the elbow and of the tip
+  Vec6 u;  ///< displacements of the elbow and of the tip
 };
 inline Vec6 six(double a, double b, double c, double d, double e, double f) {
   return (Vec6() << a, b, c, d, e, f).finished();

@@ -191,8 +191,8 @@ State stepped(S& whole, State x, double h) {
 /// A run of steps of one length, with its derivatives by linearised steps and by finite differences of the run.
 struct DerivedSteps {
   State end;
-  std::vector<State> slopes, differences;  // with respect to the parameters
-  double left = 0.0;                       // by the last corrections of the steps
+  std::vector<State> slopes, differences;  // derivatives with respect to the parameters
+  double left = 0.0;                       // error estimate from the last corrections of the steps
 };
 
 /// The increment of the differences.

@@ -26,7 +26,7 @@ inline std::vector<std::vector<std::string>> read_by_vtk(
         " -B '" + script.string() + "' '" + collection.string() + "' > '" + out.string() + "' 2> /dev/null";
     int const status = std::system((python + what).c_str());
     int const code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    if (code == 77 || code == 127) continue;  // no VTK, no such python
+    if (code == 77 || code == 127) continue;  // VTK or this python is not installed
     EXPECT_EQ(code, 0);
     std::vector<std::vector<std::string>> lines;
     std::ifstream stream(out);

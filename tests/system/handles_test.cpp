@@ -223,7 +223,7 @@ TEST(Handles, OfAModelWhoseVectorGrowsStayValid) {
   std::vector<M> models(1);
   auto const hub = models[0].add(cube(1.0, {3, 0, 0}), "hub");
   std::uint64_t const serial = models[0].serial();
-  models.resize(5);  // which moves the models and does not copy them
+  models.resize(5);  // moves the models and does not copy them
   EXPECT_EQ(models[0].serial(), serial);
   EXPECT_EQ(position(models[0], models[0].reference_state(), hub.at({0, 0, 0})), Vec3(3, 0, 0));
 }

@@ -50,7 +50,8 @@ struct Tree {
     Draws draw{std::mt19937(seed)};
     int const n = 1 + draw.below(9);
     for (int i = 0; i < n; ++i) {
-      Vec3 const half = Vec3(draw.number(0.1, 0.4), draw.number(0.1, 0.4), draw.number(0.1, 0.4));  // of a box
+      // half edges of a box
+      Vec3 const half = Vec3(draw.number(0.1, 0.4), draw.number(0.1, 0.4), draw.number(0.1, 0.4));
       double const mass = draw.number(0.5, 3.0), third = mass / 3.0;
       Vec3 const squares = half.cwiseProduct(half);
       bodies.push_back(model.add(Body({.mass = mass,

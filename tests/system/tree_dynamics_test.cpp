@@ -151,7 +151,7 @@ TEST(TreeDynamics, PendulumStartsAsItsClosedFormSays) {
   State x = reduce(system, model.reference_state());
   for (double const angle : {0.0, 0.7, 2.0}) {
     x.q[0] = angle;
-    x.v[0] = 3.0;  // has no influence
+    x.v[0] = 3.0;  // the angular velocity has no influence
     ForwardDynamics<>(system).accelerations(system, {x.q, x.v, 0.0}, x.a, x.lambda);
     held({"closed forms", "angular acceleration of a pendulum [rad/s²]", By::closed_form,
           "m g c cos ϑ/(J + m c²), positive downwards", "RecursiveBy<ArticulatedBody>"},

@@ -173,7 +173,7 @@ TEST(ChordalAction, StrandRunsAsUnevenlyAsAPolygon) {
     held(claim("travel in a tooth, of a pitch", "1"), (x[18] - x[0]) / p, 1.0, 1e-6,
          at);  // the remaining error is due to the residual motion at rest
     if (error_before > 0.0) {
-      EXPECT_LT(error, error_before / 3.0) << k;  // of the order 1/k, and k is four times as large
+      EXPECT_LT(error, error_before / 3.0) << k;  // the error has the order 1/k, and k is four times as large
       EXPECT_LT(place, place_before / 3.0) << k;
     }
     error_before = error;

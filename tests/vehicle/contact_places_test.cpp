@@ -51,7 +51,7 @@ TEST(ContactPlaces, HaveTheSameResultant) {  // links of one face and of three f
   for (Pressed const& p : {one, three}) EXPECT_LT(p.farthest, 0.5 * m113::pitch + 0.05);
 }
 
-TEST(ContactPlaces, AreTheSameOnALinkOfFiniteElements) {  // if the link is not deformed
+TEST(ContactPlaces, AreTheSameOnALinkOfFiniteElements) {  // for a link without deformation
   using Rigids = m113::Vehicle<>;
   using Modal = m113::Vehicle<Ffr, Constraint>;
   std::string const files = POLYBODY_FE_LINK_FILES;

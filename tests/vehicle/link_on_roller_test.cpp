@@ -91,7 +91,7 @@ TEST(LinkOnRoller, LeavesAloneWhatIsAboveBelowAndBeside) {
   EXPECT_EQ(contact_points(one_rim, link, over(link, 0, 0, -1e-9)).size(), 0u);          // just above
   EXPECT_EQ(contact_points(one_rim, link, over(link, 0, 0, radius - 1e-9)).size(), 1u);  // the axle just above the face
   EXPECT_EQ(contact_points(one_rim, link, over(link, 0, 0, radius + 1e-9)).size(), 0u);  // just below it
-  // on the side of the outer face
+  // below the link, 1 mm deep in its outer face
   EXPECT_EQ(contact_points(one_rim, link, at({0, 0, -radius - thick + 0.001})).size(), 0u);
   for (double const side : {-1.0, 1.0}) {
     EXPECT_EQ(contact_points(one_rim, link, over(link, side * (end - 1e-9), 0, 0.001)).size(), 1u);
@@ -112,7 +112,7 @@ TEST(LinkOnRoller, HandsOverToTheNextLinkWithoutABump) {
   double const d = 0.0013, e = one_rim.handover;
   int both = 0;
   for (int i = 0; i <= 400; ++i) {
-    double const s = pitch * i / 400.0;  // from the middle of one link to the middle of the next
+    double const s = pitch * i / 400.0;  // position from the middle of one link to the middle of the next
     Frame<double> const wheel = over(first, s, 0.0, d);
     Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
     double shares = 0.0;
@@ -202,7 +202,7 @@ TEST(LinkOnRoller, EdgeMeetsTheRimBeyondTheFace) {
 // of the next. Up to the bend 2 atan(p/2/(R + h)) = 0.4523, at which it touches both middles, the nearer face carries
 // at least half of the force.
 TEST(LinkOnRoller, IsNeverLostInABend) {
-  // of the axle above the line of either link's pins, 1 mm deep in the face
+  // distance of the axle from the line of either link's pins, 1 mm deep in the face
   double const reach = radius + thick - 0.001;
   for (double const bend : {0.01, 0.1, 0.45}) {
     Vec3 const turn(0, -bend, 0);  // the next link points upwards

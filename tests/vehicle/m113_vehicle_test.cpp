@@ -149,7 +149,7 @@ TEST(M113Vehicle, AcceleratesWithItsTracksWhereTheyBelongAndNoEnergyUnaccounted)
   held_within({"M113 vehicle", "unaccounted energy of the vehicle that sets out, of the largest", By::closed_form, "0",
                "Rigid, Constraint, h = 5e-4 s"},
               audit.relative(), 0.01, {.scale = 1.0});
-  EXPECT_GT(audit.work_of_drives(), 0.5 * m113::thesis.total() * 2.0);  // at about 1.45 m/s
+  EXPECT_GT(audit.work_of_drives(), 0.5 * m113::thesis.total() * 2.0);  // kinetic energy at about 1.45 m/s
   EXPECT_LT(depth, 0.010);
   EXPECT_LT(off, 1e-3);
   EXPECT_LT(std::abs(hull_of(vehicle, x).r.y()), 1e-4);

@@ -207,7 +207,7 @@ TEST(SprocketProfile, SharesTheLoadAmongItsTeeth) {
     Vec2 const slack = -co * side - s * out, tight = co * side - s * out;
     Mat<double, 2, 2> both;
     both << slack, tight;
-    Vec2 const tension = both.inverse() * -n;  // for N = 1
+    Vec2 const tension = both.inverse() * -n;  // tensions for N = 1
     double const k = std::tan(c.angle * degree) * std::tan(pi / 10.0);
     auto const ratio = [&](By by, char const* source, double reference, double tolerance) {
       held({"M113.md §5", "tension behind a pin over that before it", by, source, "PinOnSprocket"},

@@ -285,7 +285,7 @@ TEST(RoadProfile, IsNowhereHigherThanItsPoints) {
   }
   EXPECT_EQ(kerb.highest(), 0.15);
   EXPECT_EQ(road.highest(), 0.3);
-  // at x = 0.5, which is among the points tested
+  // highest point at x = 0.5, which is among the points tested
   EXPECT_NEAR(highest_seen(road, {-3.5, 0.0}, {4.5, 1.0}), 0.3, 1e-15);
   EXPECT_EQ(RoadProfile({{0.0, -0.2}, {1.0, -0.2}}).highest(), -0.2);
   for (double const low : {-0.7, -2.4e-319})

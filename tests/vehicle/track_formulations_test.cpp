@@ -14,7 +14,7 @@ using namespace polybody;
 namespace track_formulations_test {
 
 struct Ride {
-  Vec3 place, velocity;                 ///< of the hull at the end
+  Vec3 place, velocity;                 ///< position and velocity of the hull at the end
   double dip = 0.0;                     ///< [m]
   double pull = 0.0;                    ///< mean force in pin 40 of the left track, over the last fifth [N]
   double gap = 0.0, largest_gap = 0.0;  ///< between the points of that pin at the end, and of any pin at any time [m]

@@ -47,7 +47,7 @@ TrackLayout layout_of(m113::TrackStart const& start) {
   return layout;
 }
 
-double const weight = m113::thesis.link.mass * 9.81 / m113::pitch;  ///< of one metre of track [N/m]
+double const weight = m113::thesis.link.mass * 9.81 / m113::pitch;  ///< weight of one metre of track [N/m]
 
 /// The highest tension in a row's equilibrium: that of the upper run, plus at most the weight that hangs from the top
 /// of the sprocket.

@@ -25,7 +25,7 @@ GeneralizedAlpha integrator() { return {.rho_inf = 0.5, .tolerance = 1e-5}; }
 struct Ride {
   std::vector<double> times, strain, bending;
   std::vector<double> pull;                            ///< half of the force of the tensioner's spring [N]
-  Vec3 place = Vec3::Zero(), velocity = Vec3::Zero();  ///< of the hull at the end
+  Vec3 place = Vec3::Zero(), velocity = Vec3::Zero();  ///< position and velocity of the hull at the end
   double unaccounted = 0.0;
   long halved = 0;
   bool seated = true;

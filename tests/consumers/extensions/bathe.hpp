@@ -11,7 +11,7 @@ using namespace polybody;
 /// local_rate(δ, v):
 ///   y₁ = y₀ + b (y˙₀ + y˙₁),  y₂ = c₁ y₁ − c₀ y₀ + b y˙₂,  y = (δ, v),  b = (1 − √½) h,  2 c₁ = √2 + 1,  2 c₀ = √2 −
 ///   1,
-/// each with M v̇ + Gᵀλ = f and Φ = 0 at its end. At the end of the step the velocities satisfy the constraint
+/// Both sub-steps end with M v̇ + Gᵀλ = f and Φ = 0. At the end of the step the velocities satisfy the constraint
 /// equations, and the accelerations are consistent with them.
 struct Bathe {
   static constexpr char const* name = "Bathe";
@@ -19,7 +19,7 @@ struct Bathe {
   static constexpr bool accepts_rows = true;
   static constexpr Entries entries = Entries::tangent;  ///< entries that it calls in addition to `Entries::motion`
 
-  double tolerance = 1e-13;  ///< of Newton's corrections of δ, relative to 1 + max |q|
+  double tolerance = 1e-13;  ///< relative tolerance of Newton's corrections of δ, scaled by 1 + max |q|
   int max_iterations = 30;
 
   void check() const { require_positive(tolerance, "Bathe: the tolerance"); }

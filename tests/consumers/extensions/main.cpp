@@ -127,7 +127,7 @@ void pendulum(Checks& checks) {
   using Pin = Joint<planar::Revolute, Constraint>;
   Model<Bodies<planar::Rigid>, Joints<Pin>> model{Gravity{0, -9.81, 0}};
   auto const rod = [&](double mass, double length, Vec2 const& from, double angle) {
-    double const direction = angle - 0.5 * std::numbers::pi;  // of a hanging rod
+    double const direction = angle - 0.5 * std::numbers::pi;  // direction of a hanging rod
     Vec2 const middle = from + 0.5 * length * Vec2(std::cos(direction), std::sin(direction));
     return model.add(
         planar::Rigid(mass, mass * length * length / 12.0, Placement::planar(middle.x(), middle.y(), direction)));

@@ -12,8 +12,8 @@ using namespace polybody;
 struct PointOnParabola {
   static constexpr char const* name = "PointOnParabola";
   static constexpr int rows = 2;
-  static constexpr Observes needs = Observes::frame;            ///< of marker a, which carries the wire
-  static constexpr Observes needs_of_second = Observes::point;  ///< of marker b
+  static constexpr Observes needs = Observes::frame;            ///< requirement on marker a, which carries the wire
+  static constexpr Observes needs_of_second = Observes::point;  ///< requirement on marker b
   static constexpr World world = World::space;
 
   Required<double> focal_length;  ///< f [m]

@@ -30,7 +30,7 @@ std::array<double, 2> values_at(Options const& o, int rank, Point const& p) {
       std::to_string(p.index()) + ' ' + std::to_string(rank) + ' ' + std::to_string(::getpid()) + '\n';
   std::FILE* const calls = std::fopen((o.folder + "/calls").c_str(), "a");
   if (!calls) throw std::runtime_error("calls cannot be written");
-  std::fwrite(call.data(), 1, call.size(), calls);  // one piece
+  std::fwrite(call.data(), 1, call.size(), calls);  // written in one piece
   std::fclose(calls);
   if (o.pause > 0) std::this_thread::sleep_for(std::chrono::milliseconds(o.pause));
   if (p.index() == 20 && o.fail == "misuse") p["no such column"];
