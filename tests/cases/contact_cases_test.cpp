@@ -581,11 +581,12 @@ TEST(SpinningRingOf64, OpensBushingsByTheForceOverTheStiffness) {
 /// motion, except for the terms that the start neglects.
 ///
 /// At a point between two rods with angles a and b from the tangent, the contact force is N = T sin a + T′ sin b. The
-/// balance along the drum is T′ cos b = T cos a + μN: T′/T = (cos a + μ sin a)/(cos b − μ sin b). The first and the
-/// last point join their free rods along the tangent. The angle between a rod on the drum and the tangents at its
-/// ends is half of its angle φ. So the tension changes from one point to the next by the factor f = (1 + μ tan
-/// φ/2)/(1 − μ tan φ/2) = e^(2 artanh(μ tan φ/2)) = e^(μφ + (μ + μ³)φ³/12 + …) and T₂/T₁ = fⁿ, nφ = β, tends to
-/// e^(μβ) with an error of order φ². The derivation is this balance; the limit is known [Euler 1769, Eytelwein 1808].
+/// balance along the drum is T′ cos b = T cos a + μN:
+///   T′/T = (cos a + μ sin a)/(cos b − μ sin b).
+/// The first and the last point join their free rods along the tangent. The angle between a rod on the drum and the
+/// tangents at its ends is half of its angle φ. So the tension changes from one point to the next by the factor
+///   f = (1 + μ tan φ/2)/(1 − μ tan φ/2) = e^(2 artanh(μ tan φ/2)) = e^(μφ + (μ + μ³)φ³/12 + …)
+/// and T₂/T₁ = fⁿ, nφ = β, tends to e^(μβ) with an error of order φ². The limit is known [Euler 1769, Eytelwein 1808].
 struct Capstan {
   static constexpr double radius = 0.5, mu = 0.3, slack = 10.0, speed = 0.05, slip_speed = 1e-3;
   /// Effective friction coefficient of the regularised law at this speed.
