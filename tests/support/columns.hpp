@@ -1,6 +1,6 @@
 #pragma once
 /// \file Euler's columns (S9e) and a strip under a force in its stiff plane (S9d): buckling loads of rods, and the
-/// motion after buckling.
+/// bent equilibrium after buckling.
 
 #include <polybody/joints/point_on_line.hpp>
 #include <polybody/joints/prismatic.hpp>

@@ -253,8 +253,9 @@ DerivedSteps derive_steps(Make const& make, std::vector<Parameter> const& parame
 }
 
 /// Derivatives and differences agree within 1e-8, and within the accuracy of the differences. \param rounding
-/// round-off of the velocities, accelerations and multipliers of a state over a thousandth. It is large because they
-/// are sums of large forces. Differences divide by a thousandth of the size of the parameter. Coordinates have 5e-12.
+/// round-off of the velocities, accelerations and multipliers of a state over a thousandth. This round-off is large
+/// because these values are sums of large forces. Differences divide by a thousandth of the size of the parameter.
+/// Coordinates have 5e-12.
 inline void expect_slopes_of_steps(DerivedSteps const& run, std::vector<Parameter> const& parameters, double rounding) {
   EXPECT_LT(run.left, 1e-9);
   for (std::size_t j = 0; j < parameters.size(); ++j)
