@@ -1,6 +1,6 @@
-// N four-bars in a row through their singular configurations [IFToMM A02]: error of implicit methods after 10 s
-// compared with the closed form. The results are the counters `error` [m] and `energy` [J]; a failed run reports its
-// error. All runs take some minutes; select with --benchmark_filter='Hht.*/2/'.
+// N four-bars in a row through their singular configurations [A02, González et al. 2006]: error of implicit methods
+// after 10 s compared with the closed form. The results are the counters `error` [m] and `energy` [J]; a failed run
+// reports its error. All runs take some minutes; select with --benchmark_filter='Hht.*/2/'.
 #include <benchmark/benchmark.h>
 
 #include <cmath>

@@ -47,7 +47,7 @@ class CorrectionProbe {
     double const least = 1e-14 * weights_.maxCoeff();
     if (!(least > 0.0)) return false;
     for (Index i = 0; i < z.size(); ++i) {
-      random_ = random_ * 6364136223846793005u + 1442695040888963407u;  // [Knuth, Art of Computer Programming 2, 3.3.4]
+      random_ = random_ * 6364136223846793005u + 1442695040888963407u;  // [Knuth 1998, §3.3.4]
       drawn_[i] = std::max(weights_[i], least);
       z[i] = drawn_[i] * double(std::int64_t(random_)) * 0x1p-63;
     }

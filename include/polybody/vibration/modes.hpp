@@ -2,7 +2,7 @@
 /// \file
 /// Small vibrations about a state of rest: with q = q₀ ⊞ δ,
 ///   M δ̈ + D δ̇ + K δ + Gᵀ μ = 0,  G δ = 0,
-/// K = −∂f/∂q + ∂(Gᵀλ)/∂q with every second-order term, D = −∂f/∂v [Shabana 2018, Ch. 4]. The rows are eliminated by a
+/// K = −∂f/∂q + ∂(Gᵀλ)/∂q with every second-order term, D = −∂f/∂v [Géradin & Rixen 2015]. The rows are eliminated by a
 /// basis N of the null space of G, δ = N z, so redundant rows do no harm. First-order states are the rates of motions
 /// that nothing else depends on: M has one there, K no column, and the last columns of N are theirs. Vibrations about a
 /// steady rotation are in vibration/steady_rotation.hpp.

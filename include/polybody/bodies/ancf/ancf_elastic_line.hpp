@@ -12,7 +12,7 @@ namespace polybody {
 /// With the section frame R of (r_y, r_z)
 ///   Γ = Rᵀ r₀′ − e₁ (stretch, two shears),  K = axial(Rᵀ R′) (twist, two curvatures): the exact rod's strains, and
 ///   ½ (r_y·r_y − 1), ½ (r_z·r_z − 1), r_y·r_z: the section's own strains, with stiffness EA, EA, GA;
-/// Γ and K against their values in the reference [Simo & Vu-Quoc 1986; Nachbagauer, Gruber & Gerstmayr 2013]. R, Γ, K
+/// Γ and K against their values in the reference [Simo & Vu-Quoc 1986b; Nachbagauer, Gruber & Gerstmayr 2013]. R, Γ, K
 /// do not feel how a section stretches, so on fine meshes the sections keep their shape and the element is the exact
 /// rod. Quadrature:
 ///   Γ at three Gauss points, exact for linear theory, where r₀′ is quadratic. (With two, r = 0 and the same r_x across

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Increments of the nodes' rotations interpolated: a policy of `Lrvf` for comparison [Simo & Vu-Quoc 1986; Cardona &
+/// Increments of the nodes' rotations interpolated: a policy of `Lrvf` for comparison [Simo & Vu-Quoc 1986b; Cardona &
 /// Géradin 1988; Jelenić & Crisfield 1999]. Not in polybody.hpp: `Objective` is what to use.
 
 #include <polybody/bodies/lrvf/rotation_interpolation.hpp>

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Large rotation vector formulation in space, the geometrically exact beam [Reissner 1981; Simo & Vu-Quoc 1986; thesis
-/// §2.3–2.5]: a chain of equal two-node elements. Positions are interpolated linearly, rotations by a policy
+/// Large rotation vector formulation in space, the geometrically exact beam [Reissner 1981; Simo & Vu-Quoc 1986b;
+/// thesis §2.3–2.5]: a chain of equal two-node elements. Positions are interpolated linearly, rotations by a policy
 /// (rotation_interpolation.hpp); strains are taken where another one says (strain_quadrature.hpp), by default in the
 /// middle of the element, R = R_m: one-point quadrature, no shear locking:
 ///   Γ = Rᵀ r′ − Γ₀,  K = axial(Rᵀ R′) − K₀,  N = diag(EA, GA, GA_z) Γ,  M = diag(GJ, EI_y, EI) K,

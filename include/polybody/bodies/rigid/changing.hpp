@@ -19,7 +19,7 @@ namespace polybody {
 ///
 /// M(t) v̇ = f holds where what leaves, or comes, has the velocity of the body at that place, so that it takes its own
 /// momentum with it. What leaves by another velocity pushes: a stream of ṁ [kg/s] at u [m/s] relative to the body is a
-/// force ṁ u against it, which is applied as any other [Meshchersky 1897; Goldstein, Classical Mechanics, ch. 1].
+/// force ṁ u against it, which is applied as any other [Meshchersky 1897; Goldstein, Poole & Safko 2002, ch. 1].
 /// Energies are those of the mass that is there.
 template <Body B>
 class Changing : public B {
