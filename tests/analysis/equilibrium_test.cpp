@@ -277,7 +277,7 @@ TEST(Equilibrium, WarnsOfALimitPoint) {
       Truss truss(part * limit);
       EquilibriumReport report;
       try {
-        report = equilibrium(truss.model, truss.x, {.load_steps = steps});
+        report = equilibrium<AutoLu>(truss.model, truss.x, {.load_steps = steps});
       } catch (Error const&) {
         EXPECT_GT(part, 1.0);
         continue;

@@ -68,6 +68,12 @@ class NamedSolver {
     return {};
   }
   void solve(VecX const& b, VecX& x) const { other_ ? other_->solve(b, x) : default_.solve(b, x); }
+  /// 0 with a solver of the environment.
+  double sign_of_determinant() const
+    requires requires(Default const s) { s.sign_of_determinant(); }
+  {
+    return other_ ? 0.0 : default_.sign_of_determinant();
+  }
 
  private:
   Default default_;
