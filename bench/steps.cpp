@@ -41,7 +41,7 @@ struct Chain {
   Chain(int links, Policy const& policy) : Chain(links, policy, [](int) { return 1.0; }) {}
 };
 
-/// Pendulum of a very flexible cable that turns about the vertical (D6a), after the test utest_FEA_ANCFCable of Chrono.
+/// Pendulum of a very flexible cable that turns about the vertical (D6a of docs/cases.md).
 struct CablePendulum {
   using Ball = Joint<Spherical, Constraint>;
   Model<Bodies<AncfCable<>>, Joints<Ball>> model{Gravity{0, -9.81, 0}};
@@ -107,8 +107,7 @@ void compare_solvers_of_arm(std::string const& what, Index elements, P const& po
   compare_solvers("robot arm, " + what, robot.model, robot.model.reference_state(), 1.0);
 }
 
-/// Linkage of N windows of unit bars on pins (R2), upright, moving to the right at 1 m/s: benchmark A02 of
-/// González et al. 2006 and of the IFToMM library.
+/// Linkage of N windows of unit bars on pins (R2 of docs/cases.md), upright, moving to the right at 1 m/s.
 struct FourBars {
   using Pin = Joint<planar::Revolute, Constraint>;
   Model<Bodies<planar::Rigid>, Joints<Pin>> model{Gravity{0, -9.81, 0}};

@@ -8,7 +8,7 @@
 #include <cstdio>
 using namespace polybody;
 
-// 1. The physics: case D6b of the project's reference cases.
+// 1. The physics: case D6b of docs/cases.md.
 Bar const bar{.length = 1.0,
               .constants = BarConstants{
                   .EA = 1.5e5, .EI = 5.0, .mass_per_length = 1.0, .GA = 4.807692e4, .rotary_inertia = 3.3333333e-5}};
