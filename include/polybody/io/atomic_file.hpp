@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A file that appears under its own name only when it is complete.
+/// File that appears under its own name only when it is complete.
 
 #include <cerrno>
 #include <cstdio>
@@ -16,18 +16,17 @@
 
 namespace polybody {
 
-/// Writes bytes to a temporary file in the same folder and renames it into place on `close()`. A reader finds the old
-/// file or the whole new one, never a half-written one, also after a loss of power (fsync). The new file gets the
-/// permissions of the file that it replaces. A killed program leaves nothing on Linux. If the file system has no files
-/// without a name (O_TMPFILE), it leaves ".polybody-<16 hex digits>.tmp", which may be removed.
-/// Destroyed without `close()`: closes, unless a write has failed, or an exception is in flight and
-/// `keep_on_exception()` was not called; then the temporary is removed and whatever was there before
-/// stays. Move-only.
+/// Output file that is written to a temporary file in the same folder and renamed on `close()`. A reader finds the
+/// old file or the complete new file, also after a loss of power (fsync). The new file gets the permissions of the
+/// file that it replaces. On Linux a killed program leaves no file. If the file system has no unnamed files
+/// (O_TMPFILE), a killed program leaves ".polybody-<16 hex digits>.tmp", which may be removed. The destructor closes
+/// an open file, with two exceptions: a write has failed, or an exception is in flight and `keep_on_exception()` was
+/// not called. In these cases the temporary file is removed and an existing file remains unchanged. Move-only.
 class AtomicFile {
  public:
-  /// Creates the parent folders and opens the temporary file. A symbolic link is followed, also to a file that does
-  /// not exist yet. Throws IoError (file name and the system's reason) if that fails, for a name that is too long and
-  /// for links that form a loop, or if `file` exists and is not a regular file.
+  /// Creates the parent folders of `file` and opens the temporary file. A symbolic link is followed, also if its
+  /// target does not exist yet. Throws IoError with the file name and the system's reason if this fails, if a name is
+  /// too long, if links form a loop, or if `file` exists and is not a regular file.
   explicit AtomicFile(std::filesystem::path const& file) : name_(file.string()) {
     namespace fs = std::filesystem;
     if (!file.has_filename()) throw IoError{"file '", name_, "': the name of a file is missing"};
@@ -48,9 +47,9 @@ class AtomicFile {
     if (exists) file_.set_permissions(status.permissions());
   }
 
-  AtomicFile(AtomicFile&&) noexcept = default;  ///< The source is left closed.
+  AtomicFile(AtomicFile&&) noexcept = default;  ///< The source is then closed.
 
-  /// First finishes the file held so far as the destructor does; the source is left closed.
+  /// Completes the present file as the destructor does, then takes over the other. The source is then closed.
   AtomicFile& operator=(AtomicFile&& other) noexcept {
     AtomicFile taken(std::move(other));
     std::swap(name_, taken.name_);
@@ -61,7 +60,8 @@ class AtomicFile {
     return *this;
   }
 
-  /// See the class. A destructor cannot throw: a failure of this last close is printed to stderr.
+  /// Closes or discards the file (see the class). A destructor cannot throw: it prints a failure of the last close to
+  /// stderr.
   ~AtomicFile() {
     if (!is_open()) return;
     try {
@@ -71,8 +71,8 @@ class AtomicFile {
     }
   }
 
-  /// Appends `bytes`. Throws IoError if the system refuses them (a full disk, for one) and
-  /// InvalidInput if the file is closed.
+  /// Appends `bytes`. Throws IoError if the system refuses them (for example if the disk is full), and InvalidInput
+  /// if the file is closed.
   void write(std::string_view bytes) {
     if (!is_open()) throw InvalidInput{"file '", name_, "' is already closed; nothing can be added"};
     errno = 0;
@@ -81,11 +81,11 @@ class AtomicFile {
     fail("cannot be written", {errno, std::generic_category()});
   }
 
-  /// What is written is of use although more was to come: an exception puts it in place, too.
+  /// Keeps an incomplete file: after an exception the bytes written so far appear under the final name.
   void keep_on_exception() noexcept { kept_ = true; }
 
-  /// Flushes and renames into place; a second call does nothing. Throws IoError (file name and the
-  /// system's reason), also if an earlier write failed; the temporary is then removed.
+  /// Flushes the file and renames it to its final name. A second call has no effect. Throws IoError with the file
+  /// name and the system's reason, also if an earlier write failed. The temporary file is then removed.
   void close() {
     if (!is_open()) return;
     errno = 0;
@@ -97,11 +97,11 @@ class AtomicFile {
     fail(written ? "cannot be put in place" : "could not be written completely", reason);
   }
 
-  /// Gives the file up: the temporary is removed, nothing appears under the final name.
+  /// Removes the temporary file. No file appears under the final name.
   void discard() noexcept { file_.discard(); }
 
-  bool is_open() const noexcept { return file_.is_open(); }   ///< Neither closed nor given up.
-  std::string const& name() const noexcept { return name_; }  ///< The path as it was given.
+  bool is_open() const noexcept { return file_.is_open(); }   ///< True until the file is closed or discarded.
+  std::string const& name() const noexcept { return name_; }  ///< Path as passed to the constructor.
 
  private:
   [[noreturn, gnu::cold]] void fail(std::string const& what, std::error_code reason) const {

@@ -1,7 +1,8 @@
 #pragma once
 /// \file
-/// Snapshots of runs in files. A file is: "polybody", 0x01020304, version, length of the content, content, `checksum`
-/// of all before; numbers as this machine holds them, integers as int64. Not in polybody.hpp: few programs need it.
+/// Checkpoints: snapshots of runs in files. The format is "polybody", 0x01020304, version, length of the content,
+/// content, and the `checksum` of all preceding bytes. Numbers have the machine's representation, integers as int64.
+/// Not in polybody.hpp: few programs need it.
 
 #include <cstring>
 
@@ -13,7 +14,7 @@ namespace polybody {
 
 namespace detail {
 
-/// Visits all numbers of a snapshot in the same order for writing and reading: `archive(x)` writes or reads one.
+/// Visitor of all numbers of a snapshot, in the same order for writing and reading: `archive(x)` writes or reads one.
 template <class Archive>
 class SnapshotWalk {
  public:
@@ -64,7 +65,7 @@ struct SnapshotWriter {
     std::conditional_t<std::is_floating_point_v<T>, double, std::int64_t> const wide(static_cast<decltype(wide)>(x));
     bytes.append(reinterpret_cast<char const*>(&wide), sizeof wide);
   }
-  void operator()(char c) { (*this)(static_cast<unsigned char>(c)); }  // which has a sign on some machines only
+  void operator()(char c) { (*this)(static_cast<unsigned char>(c)); }  // char is signed on some machines only
   template <class List>
   void resize(List const& of) {
     (*this)(of.size());
@@ -101,7 +102,9 @@ struct SnapshotReader {
   }
 };
 
-/// \throws IoError for what the checksum does not see: content by another program, which has more or other sizes.
+/// Checks that the sizes in a snapshot agree with its model. The checksum cannot detect different sizes in the
+/// content of another program.
+/// \throws IoError otherwise.
 template <class = void>
 void require_consistent(RunSnapshot const& s, std::size_t left, std::string const& name) {
   std::string const inconsistent = "checkpoint '" + name + "' is inconsistent: ", remedy = ". Write it anew.";
@@ -126,11 +129,11 @@ inline constexpr CheckpointHead checkpoint_head{{'p', 'o', 'l', 'y', 'b', 'o', '
 
 }  // namespace detail
 
-/// Writes a snapshot to the file `name`, which replaces an older one when it is complete:
+/// Writes a checkpoint to the file `name`, which replaces an older one when it is complete:
 ///   if (run.report().steps % 1000 == 0) write_checkpoint("out/run.checkpoint", run.snapshot());
-/// and later, in another process,
+/// Another process continues the run with bitwise identical results:
 ///   auto run = resume(model, x, GeneralizedAlpha{}, options, read_checkpoint("out/run.checkpoint"));
-/// goes on with the same bits. \throws IoError.
+/// \throws IoError.
 template <class = void>
 void write_checkpoint(std::filesystem::path const& name, RunSnapshot const& snapshot) {
   detail::SnapshotWalk<detail::SnapshotWriter> content;
@@ -146,8 +149,9 @@ void write_checkpoint(std::filesystem::path const& name, RunSnapshot const& snap
   file.close();
 }
 
-/// \throws IoError for a file that cannot be read, is no checkpoint, is of another version or byte order, is cut off,
-/// damaged or inconsistent.
+/// Returns the snapshot in the checkpoint `file`.
+/// \throws IoError for a file that cannot be read, is not a checkpoint, has another version or byte order, or is
+/// truncated, damaged or inconsistent.
 template <class = void>
 RunSnapshot read_checkpoint(std::filesystem::path const& file) {
   std::string const name = file.string();

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The figures of a comparison's report: outputs and what they differ by, violations, and what computing costs.
+/// Figures of a comparison's report: outputs and their differences, constraint violations and computing time.
 
 #include <algorithm>
 #include <functional>
@@ -11,7 +11,7 @@
 
 namespace polybody::detail {
 
-/// One curve for each run over the run's times: the first broad, the others dashed upon it.
+/// Figure with one curve for each run over its times. The first curve is thick, the others are dashed lines over it.
 template <class = void>
 Figure over_time(Comparison const& c, std::string const& title, std::string const& y_label,
                  std::function<double(ComparedRun const&, std::size_t)> const& value) {
@@ -27,8 +27,9 @@ Figure over_time(Comparison const& c, std::string const& title, std::string cons
   return figure;
 }
 
-/// Violations over time, on a logarithmic axis, of the runs that have any; no figure where none has. What is below
-/// rounding is drawn at 1e-16, or at a millionth of the largest where that is less; zeros are left out.
+/// Adds a figure of the constraint violations over time, on a logarithmic axis, for the runs that have any. Adds no
+/// figure if no run has any. Values below 1e-16, or below a millionth of the largest if that is less, are drawn at
+/// this limit. Zeros are omitted.
 template <class = void>
 void add_violations(Comparison const& c, std::string const& title, std::string const& units, double Violation::* level,
                     std::vector<Figure>& figures) {
@@ -46,28 +47,29 @@ void add_violations(Comparison const& c, std::string const& title, std::string c
   figures.push_back(std::move(figure));
 }
 
-/// The first run's output i at time t [s].
+/// Output i of the first run at time t [s].
 template <class = void>
 double first_output(Comparison const& c, std::size_t i, double t) {
   return interpolate(c.runs.front().times, c.runs.front().outputs[i], t);
 }
 
-/// "[m]" of "tip x [m]"; empty where there is none.
+/// Unit in a name, "[m]" of "tip x [m]"; empty if the name has no unit.
 template <class = void>
 std::string_view unit_in(std::string_view name) {
   std::size_t const unit = name.rfind(" [");
   return unit == name.npos || !name.ends_with(']') ? std::string_view() : name.substr(unit + 1);
 }
 
-/// What the first run's output i spans, or its amount where it is constant.
+/// Span of output i in the first run, or its magnitude if it is constant.
 template <class = void>
 double own_span(Comparison const& c, std::size_t i) {
   auto const [low, high] = std::ranges::minmax(c.runs.front().outputs[i]);
   return high > low ? high - low : std::abs(high);
 }
 
-/// What differences of output i are measured by: its own span, or a hundredth of the largest span of an output in its
-/// unit where that is more. A gap that only rounding opens in the first run then counts by lengths that matter.
+/// Reference span for differences of output i: its own span, or a hundredth of the largest span of an output with the
+/// same unit if that is larger. The difference of an output that is only round-off in the first run is thus relative
+/// to a significant length.
 template <class = void>
 double measure_of(Comparison const& c, std::size_t i) {
   std::vector<std::string> const& names = c.runs.front().output_names;
@@ -78,15 +80,15 @@ double measure_of(Comparison const& c, std::size_t i) {
   return span;
 }
 
-/// The largest difference of output i in a run from the first run's, as a part of `measure_of` it; infinite where that
-/// is zero.
+/// Largest difference of output i between a run and the first run, relative to `measure_of`. It is infinite if
+/// `measure_of` is zero.
 template <class = void>
 double relative_difference(Comparison const& c, ComparedRun const& run, std::size_t i) {
   double const most = run.difference[i], span = measure_of(c, i);
   return most == 0.0 ? 0.0 : span > 0.0 ? most / span : std::numeric_limits<double>::infinity();
 }
 
-/// Numbers of the outputs, those that differ most from the first run's before the others.
+/// Indices of the outputs, in descending order of their largest relative difference from the first run.
 template <class = void>
 std::vector<std::size_t> outputs_by_difference(Comparison const& c) {
   std::vector<double> most(c.runs.front().outputs.size(), 0.0);
@@ -99,7 +101,7 @@ std::vector<std::size_t> outputs_by_difference(Comparison const& c) {
   return order;
 }
 
-/// The largest amount of a curve.
+/// Largest magnitude of a curve's values.
 template <class = void>
 double largest_amount(Curve const& curve) {
   double most = 0.0;
@@ -115,8 +117,8 @@ double mean_square(Curve const& curve) {
   return sum / double(curve.y.size());
 }
 
-/// Amounts on a logarithmic axis, without the curves that are zero. What is less than a thousandth of the flattest
-/// curve's largest amount is drawn there.
+/// Converts the curves of a figure to magnitudes on a logarithmic axis, and removes curves that are zero. `least` is
+/// the largest magnitude of the smallest curve. Values below a thousandth of it are drawn at this limit.
 template <class = void>
 void show_amounts(Figure& figure, double least) {
   figure.log_y = true;
@@ -126,9 +128,9 @@ void show_amounts(Figure& figure, double least) {
     for (double& y : curve.y) y = std::max(std::abs(y), 1e-3 * least);
 }
 
-/// What output i of the others is off the first run's, the largest differences (in the mean square) below the small
-/// ones, which they would hide; as amounts on a logarithmic axis where one run is off a hundred times as far as
-/// another.
+/// Figure of the differences of output i from the first run. Curves with large differences (in the mean square) are
+/// drawn first, because they would hide the small ones. The figure shows magnitudes on a logarithmic axis if the
+/// largest difference of one run exceeds that of another run a hundredfold.
 template <class = void>
 Figure difference_figure(Comparison const& c, std::size_t i) {
   std::string const &name = c.runs.front().output_names[i], unit(unit_in(name));
@@ -148,8 +150,8 @@ Figure difference_figure(Comparison const& c, std::size_t i) {
   return off;
 }
 
-/// Each output over time and, where runs are compared, beside it what the others are off the first: curves that agree
-/// hide one another.
+/// Figure of each output over time. If there are several runs, a figure of the differences from the first run
+/// follows, since curves that agree hide one another.
 template <class = void>
 std::vector<Figure> output_figures(Comparison const& c) {
   std::vector<Figure> figures;
@@ -161,8 +163,8 @@ std::vector<Figure> output_figures(Comparison const& c) {
   return figures;
 }
 
-/// A line across at the first run's time of computing, behind the points of the others; times on a logarithmic axis
-/// where they are of several magnitudes.
+/// Adds a vertical line at the computing time of the first run, behind the points of the other runs. The time axis is
+/// logarithmic if the times span more than a factor of 10.
 template <class = void>
 void add_first_cost(ComparedRun const& first, Figure& figure) {
   double low = std::numeric_limits<double>::infinity(), high = 0.0, soonest = first.cpu, latest = soonest;
@@ -182,7 +184,8 @@ void add_first_cost(ComparedRun const& first, Figure& figure) {
                                                  .color = 0});
 }
 
-/// How far each run is off the first, over its time of computing; no figure where none is off.
+/// Figure of the largest difference of each run from the first, over its computing time. No figure is returned if no
+/// run differs.
 template <class = void>
 std::vector<Figure> cost_figure(Comparison const& c) {
   ComparedRun const& first = c.runs.front();

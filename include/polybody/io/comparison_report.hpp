@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A comparison, and what accuracy costs, as files: tables, histories and figures.
+/// Tables, histories and figures of comparisons and work-precision studies, written to files.
 
 #include <polybody/compare/work_precision.hpp>
 #include <polybody/io/comparison_figures.hpp>
@@ -11,7 +11,8 @@ namespace polybody {
 
 namespace detail {
 
-/// \throws InvalidInput unless there are runs, each with whole histories and the outputs of the first.
+/// Checks that a comparison has runs, complete histories, and in each run the outputs of the first.
+/// \throws InvalidInput otherwise.
 template <class = void>  // compiled where it is used
 void check(Comparison const& c, std::string const& what) {
   if (c.runs.empty()) throw InvalidInput{what, ": the comparison has no runs. Give `compare` a formulation."};
@@ -29,7 +30,8 @@ void check(Comparison const& c, std::string const& what) {
   }
 }
 
-/// `name` as part of a file name: letters, digits and signs beyond ASCII stay, all else becomes one '_' for a group.
+/// `name` as part of a file name: letters, digits and non-ASCII characters remain. Each group of other characters
+/// becomes one '_'.
 template <class = void>
 std::string file_word(std::string const& name) {
   std::string word;
@@ -44,7 +46,7 @@ std::string file_word(std::string const& name) {
   return word;
 }
 
-/// Draws panels, six on a page (stem, stem_2, …) in so many columns, and adds the files to `written`.
+/// Draws panels in so many columns, six on a page (stem, stem_2, …), and adds the names of the files to `written`.
 template <class = void>
 void draw_panels(std::vector<Figure> const& figures, int columns, std::filesystem::path const& stem, bool draw,
                  std::vector<std::filesystem::path>& written) {
@@ -63,8 +65,8 @@ void draw_panels(std::vector<Figure> const& figures, int columns, std::filesyste
 
 }  // namespace detail
 
-/// To `file`, the table that `<<` prints, in full precision: one row a quantity, one column a run.
-/// Throws InvalidInput for a comparison without runs and for numbers that are not finite, IoError as `Csv` does.
+/// Writes to `file` the table that `<<` prints, in full precision: one row per quantity, one column per run. Throws
+/// InvalidInput for a comparison without runs and for numbers that are not finite, IoError as `Csv`.
 template <class = void>
 void write_csv(Comparison const& c, std::filesystem::path const& file) {
   detail::check(c, "write_csv");
@@ -83,8 +85,8 @@ void write_csv(Comparison const& c, std::filesystem::path const& file) {
   csv.close();
 }
 
-/// The histories of each run in a file of its own in `folder`, history_<number>_<name>.csv: the column "t [s]", then
-/// those of `histories`. Returns the files in the order of the runs. Throws as `write_csv`.
+/// Writes the histories of each run to a separate file in `folder`, history_<number>_<name>.csv. The columns are "t
+/// [s]" and the histories of `histories`. Returns the files in the order of the runs. Throws as `write_csv`.
 template <class = void>
 std::vector<std::filesystem::path> write_histories(Comparison const& c, std::filesystem::path const& folder) {
   detail::check(c, "write_histories");
@@ -107,12 +109,16 @@ std::vector<std::filesystem::path> write_histories(Comparison const& c, std::fil
   return written;
 }
 
-/// Draws all runs over time, in `folder`: `outputs` (with what the others are off the first beside each, those that
-/// differ most as a part of their spans first, six panels a page: `outputs`, `outputs_2`, …), `violations` (of
-/// positions, speeds and accelerations), `joint_force` (of the joint that holds most) and `energies`; and `cost`, how
-/// far each run is off the first over its time of computing. Each comes as .dat, .gp and, where gnuplot is there and
-/// `draw` is set, .png. There is no figure without anything to show. Returns the files. Throws as `write_csv`, and
-/// IoError where gnuplot fails.
+/// Draws the histories of all runs in `folder`:
+///   `outputs`      each output and its difference from the first run, largest relative difference first
+///   `violations`   of positions, velocities and accelerations
+///   `joint_force`  largest joint force
+///   `energies`     kinetic, potential and total energy
+///   `cost`         difference of each run from the first, over its computing time
+///
+/// A page has six panels; further pages are `outputs_2`, …. Each figure consists of .dat and .gp, and of .png if
+/// gnuplot is found and `draw` is set. A figure without data is not written. Returns the files. Throws as `write_csv`,
+/// and IoError if gnuplot fails.
 template <class = void>
 std::vector<std::filesystem::path> write_figures(Comparison const& c, std::filesystem::path const& folder,
                                                  bool draw = true) {
@@ -142,7 +148,7 @@ std::vector<std::filesystem::path> write_figures(Comparison const& c, std::files
   return written;
 }
 
-/// All of the above in `folder`: table.csv, histories and figures, as .png too if `draw`. Returns the files.
+/// Writes table.csv, histories and figures to `folder`, figures also as .png if `draw`. Returns the files.
 template <class = void>
 std::vector<std::filesystem::path> write_report(Comparison const& c, std::filesystem::path const& folder,
                                                 bool draw = true) {
@@ -154,7 +160,7 @@ std::vector<std::filesystem::path> write_report(Comparison const& c, std::filesy
   return written;
 }
 
-/// All points that came to their end to `file`, one row each. Throws IoError as `Csv` does.
+/// Writes the points of all completed runs to `file`, one row each. Throws IoError as `Csv`.
 template <class = void>
 void write_csv(WorkPrecision const& w, std::filesystem::path const& file) {
   Csv csv(file, {"formulation", "step [s] or tolerance", "steps", "CPU time [s]", "error"}, Csv::Keeps::whole_table);
@@ -164,7 +170,7 @@ void write_csv(WorkPrecision const& w, std::filesystem::path const& file) {
   csv.close();
 }
 
-/// Error against CPU time of the runs that came to their end, both axes logarithmic.
+/// Figure of the error over CPU time for the completed runs, with logarithmic axes.
 template <class = void>
 Figure work_precision_figure(WorkPrecision const& w) {
   if (w.curves.empty())
@@ -194,8 +200,8 @@ Figure work_precision_figure(WorkPrecision const& w) {
   return figure;
 }
 
-/// The points and their figure in `folder`: work_precision.csv, .dat, .gp and, where gnuplot is there and `draw` is
-/// set, .png. Returns the files. Throws InvalidInput where there is nothing to draw, IoError as `Csv` and where gnuplot
+/// Writes the points and their figure to `folder`: work_precision.csv, .dat and .gp, and .png if gnuplot is found and
+/// `draw` is set. Returns the files. Throws InvalidInput if no run is complete, IoError as `Csv` and if gnuplot
 /// fails.
 template <class = void>
 std::vector<std::filesystem::path> write_report(WorkPrecision const& w, std::filesystem::path const& folder,

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Tables of numbers as comma-separated values (RFC 4180); reading them back: table.hpp.
+/// Writer of tables as comma-separated values (RFC 4180). table.hpp reads them.
 
 #include <cmath>
 #include <concepts>
@@ -21,17 +21,19 @@
 
 namespace polybody {
 
-/// Writes a table, one head line and then rows of numbers in the shortest form that reads back to
-/// the same double. A text that begins with =, +, - or @ gets a single quote before it, so that a spreadsheet does not
-/// evaluate it. The file appears under its name on `close()` (see AtomicFile), and where an
-/// exception ends the loop that writes it: with the rows so far, if there are any. Move-only.
+/// Writer of a table: a head line, then rows of numbers in the shortest form that reads back to the same double. A
+/// single quote precedes a text that begins with =, +, - or @, so that a spreadsheet does not evaluate it. The file
+/// appears under its name on `close()` (see AtomicFile). If an exception ends the loop that writes it, the file
+/// appears with the rows written so far, if there are any. Move-only.
 class Csv {
  public:
-  /// What an exception leaves: rows of a run are of use without those to come, half a table is not.
+  /// Part of the file that remains after an exception: the rows written so far, or nothing if only a whole table is
+  /// useful.
   enum class Keeps { rows, whole_table };
 
-  /// `columns`: the heads, with their units ("t [s]"); not empty and all different, else
-  /// InvalidInput. Creates the parent folders; throws IoError if the file cannot be made.
+  /// Creates `file` with its parent folders and writes the heads `columns`, with their units ("t [s]").
+  /// \throws InvalidInput unless the heads are not empty and all different
+  /// \throws IoError if the file cannot be created.
   Csv(std::filesystem::path const& file, std::vector<std::string> columns, Keeps keeps = Keeps::rows)
       : columns_(std::move(columns)), file_((check_heads(file, columns_), file)), keeps_(keeps) {
     for (auto const& head : columns_) (line_ += detail::csv_text(head)) += ',';
@@ -39,33 +41,33 @@ class Csv {
     file_.write(line_);
   }
 
-  /// Adds one row, `values`, a number for each column. Throws InvalidInput, and writes nothing, if the count differs or
-  /// a number is not finite; IoError if the system refuses the bytes.
+  /// Adds one row of `values`, a number for each column. Throws InvalidInput, and writes nothing, if the count
+  /// differs or a number is not finite. Throws IoError if the system refuses the bytes.
   void row(std::span<double const> values) {
     line_.clear();
     write_row(values, 0);
   }
 
-  /// The same with a text before the `values`, in the first column: `row("mass [kg]", numbers)`. `read_csv` reads
-  /// numbers only and refuses such a table.
+  /// Adds one row with a `text` in the first column, followed by `values`: `row("mass [kg]", numbers)`. `read_csv`
+  /// reads only numbers and refuses such a table.
   void row(std::string_view text, std::span<double const> values) {
     line_ = detail::csv_text(std::string(text)) + ',';
     write_row(values, 1);
   }
 
-  /// The same for `values` in braces, `row({t, x, y})`.
+  /// Overload for `values` in braces, `row({t, x, y})`.
   void row(std::initializer_list<double> values) { row(std::span<double const>(values.begin(), values.size())); }
 
-  /// The same for `values` one by one, `row(t, x, y)`.
+  /// Overload for `values` as separate arguments, `row(t, x, y)`.
   template <std::convertible_to<double>... Numbers>
   void row(Numbers const&... values) {
     row({static_cast<double>(values)...});
   }
 
-  /// Completes the file and puts it in place; a second call does nothing. Throws IoError.
+  /// Completes the file and renames it to its final name. A second call has no effect. Throws IoError.
   void close() { file_.close(); }
 
-  std::size_t rows() const noexcept { return rows_; }  ///< Rows written so far, without the head.
+  std::size_t rows() const noexcept { return rows_; }  ///< Number of rows written, without the head.
 
  private:
   static void check_heads(std::filesystem::path const& file, std::vector<std::string> const& columns) {
@@ -78,7 +80,7 @@ class Csv {
     }
   }
 
-  /// Completes `line_`, which holds the texts of the first `texts` columns.
+  /// Appends `values` to `line_`, which contains the texts of the first `texts` columns, and writes the line.
   void write_row(std::span<double const> values, std::size_t texts) {
     auto const where = [&] { return "file '" + file_.name() + "', row " + std::to_string(rows_ + 1); };
     if (values.size() + texts != columns_.size())

@@ -4,7 +4,7 @@
 
 namespace polybody::detail {
 
-/// Adds x to a text in the shortest form that reads back to the same double.
+/// Appends x to a text, in the shortest form that reads back to the same double.
 inline void append_digits(std::string& text, double x) {
   char digits[32];
   text.append(digits, std::to_chars(digits, digits + sizeof digits, x).ptr);

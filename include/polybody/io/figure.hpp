@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What a figure is: curves, axes and text; plot.hpp writes and draws it.
+/// Data of a figure: curves, axes and text. plot.hpp writes and draws figures.
 
 #include <algorithm>
 #include <array>
@@ -15,24 +15,25 @@
 
 namespace polybody {
 
-/// One curve of a figure.
+/// Curve of a figure.
 struct Curve {
   std::vector<double> x{}, y{};  ///< (n) points, n >= 1 [units of the axes]
-  std::string label{};           ///< in the legend; empty: not in the legend
+  std::string label{};           ///< text in the legend; empty: no entry
   std::string style = "lines";   ///< lines, points, linespoints, dashed, steps, or filled: the translucent area inside
-  int color = -1;                ///< same number, same colour (8, then again); -1: its place
+  int color = -1;                ///< index of one of 8 colours, cyclic; -1: index of the curve
   double width = 1.5;            ///< line width [pt]
 };
 
-/// One pair of axes. All text is printed as it stands (UTF-8; '\n' begins a new line).
+/// Figure with one pair of axes. All text is printed literally (UTF-8; '\n' begins a new line).
 struct Figure {
-  std::string title{}, x_label{}, y_label{};                  ///< above, below and left of the axes; empty: none
-  std::vector<Curve> curves{};                                ///< drawn in this order
-  bool equal_axes = false;                                    ///< one unit of x is as long as one unit of y
-  bool log_x = false, log_y = false;                          ///< points that are not positive are then left out
-  bool legend = true;                                         ///< a list of the curves' labels
-  std::optional<std::array<double, 2>> x_range{}, y_range{};  ///< from, to; else all points
-  int width_px = 1000, height_px = 700;                       ///< size of the picture [pixels]
+  std::string title{}, x_label{}, y_label{};  ///< above, below and left of the axes; empty: none
+  std::vector<Curve> curves{};                ///< drawn in this order
+  bool equal_axes = false;                    ///< one unit of x is as long as one unit of y
+  bool log_x = false, log_y = false;          ///< logarithmic axes; they omit points that are not positive
+  bool legend = true;                         ///< draws a list of the curves' labels
+  std::optional<std::array<double, 2>> x_range{},
+      y_range{};                         ///< lower and upper limit [units of the axes]; default: all points
+  int width_px = 1000, height_px = 700;  ///< size of the picture [pixels]
 };
 
 namespace detail {
@@ -40,7 +41,7 @@ namespace detail {
 inline constexpr std::array<std::string_view, 6> curve_styles{"lines",  "points", "linespoints",
                                                               "dashed", "steps",  "filled"};
 
-/// Throws InvalidInput with the figure's title and the curve's label unless all can be drawn.
+/// Checks that all curves can be drawn. Throws InvalidInput with the figure's title and the curve's label otherwise.
 template <class = void>  // compiled where it is used
 void check(Figure const& figure) {
   std::string where = "figure '" + figure.title + "'";

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The whole of a file as a string.
+/// Content of a file as a string.
 
 #include <filesystem>
 #include <fstream>
@@ -9,7 +9,7 @@
 
 namespace polybody::detail {
 
-/// Nothing where the file cannot be read, as a folder cannot.
+/// Returns the content of a file, or nothing if it cannot be read, for example because it is a folder.
 template <class = void>  // compiled where it is used
 std::optional<std::string> content_of(std::filesystem::path const& file) {
   std::ifstream stream(file, std::ios::binary);

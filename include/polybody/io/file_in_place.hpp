@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// A file that is written under its own name from the beginning.
+/// File that is written under its own name from the beginning.
 ///
-/// Not in polybody.hpp: it comes with io/vtk.hpp.
+/// Not in polybody.hpp: it belongs to io/vtk.hpp.
 
 #include <cerrno>
 #include <cstdio>
@@ -16,11 +16,12 @@
 
 namespace polybody {
 
-/// For what is of use while it grows, or is not read before another file names it: no temporary file is left when the
-/// program is killed. Compare AtomicFile. Move-only.
+/// Output file for content that is useful while it grows, or that is not read until another file refers to it. A
+/// killed program leaves no temporary file. Compare AtomicFile. Move-only.
 class FileInPlace {
  public:
-  /// Creates the parent folders and empties the file. \throws IoError.
+  /// Creates the parent folders of `file` and an empty file.
+  /// \throws IoError.
   explicit FileInPlace(std::filesystem::path const& file) : name_(file.string()) {
     std::error_code reason;
     std::filesystem::create_directories(file.parent_path(), reason);
@@ -29,17 +30,18 @@ class FileInPlace {
     if (!file_) fail("cannot be created", {errno, std::generic_category()});
   }
 
-  /// Writes `bytes`. \throws IoError, as the others.
+  /// Writes `bytes`.
+  /// \throws IoError, as the other functions.
   void write(std::string_view bytes) {
     errno = 0;
     require(std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) == bytes.size());
   }
-  /// Hands what is written to the system: up to 4096 bytes at once.
+  /// Passes buffered bytes to the system, up to 4096 bytes in one call.
   void flush() {
     errno = 0;
     require(std::fflush(file_.get()) == 0);
   }
-  /// The next bytes are written from this place on.
+  /// Sets the position of the next write to `place` [bytes].
   void go_to(std::size_t place) {
     errno = 0;
     require(std::fseek(file_.get(), long(place), SEEK_SET) == 0);

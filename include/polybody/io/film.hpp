@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// A run as one HTML file that plays in any browser, without a network. Not in polybody.hpp: few programs need it.
+/// Film of a run as one HTML file that plays in any browser, without a network. Not in polybody.hpp: few programs
+/// need it.
 
 #include <deque>
 #include <filesystem>
@@ -11,29 +12,30 @@
 
 namespace polybody {
 
-/// What lies under a scene.
+/// Position of the grid of a scene: below it, behind it, or no grid.
 enum class FilmFloor { ground, behind, none };
 
-/// What a film is called, where its viewer is, and how it is looked at.
+/// Options of a film: title, viewer, frame rate and camera.
 struct FilmOptions {
-  /// The page that plays: `polybody_viewer.html`, which CMake's target `viewer` makes in the build folder and
-  /// installs in share/polybody/viewer.
+  /// HTML page of the viewer, `polybody_viewer.html`. CMake's target `viewer` builds it in the build folder and
+  /// installs it in share/polybody/viewer.
   std::filesystem::path viewer;
-  std::string title = "polybody";      ///< of the page
-  double frames_per_second = 30.0;     ///< of simulated time [1/s]
-  Vec3 look_from = Vec3(-2, -3, 1.5);  ///< (3) direction from what is seen to the eye, world axes
-  Vec3 up = Vec3::UnitZ();             ///< (3) direction that is up in the picture, world axes
-  std::string follow = {};             ///< name of the part that the camera goes with; empty: none
-  /// A grid: across `up` below all that is seen, or across `look_from` behind it.
+  std::string title = "polybody";      ///< title of the page
+  double frames_per_second = 30.0;     ///< frames per second of simulated time [1/s]
+  Vec3 look_from = Vec3(-2, -3, 1.5);  ///< (3) direction from the scene to the camera, world axes
+  Vec3 up = Vec3::UnitZ();             ///< (3) upward direction in the picture, world axes
+  std::string follow = {};             ///< name of the part that the camera follows; empty: none
+  /// Grid normal to `up` below the scene, or normal to `look_from` behind it.
   FilmFloor floor = FilmFloor::ground;
 };
 
 namespace detail {
 
-/// Where the viewer takes the film, once in its file.
+/// Placeholder for the film in the viewer's file, which contains it once.
 inline constexpr std::string_view film_slot = "<!--polybody-film-->";
 
-/// \throws IoError for a viewer that is not there or is none.
+/// Returns the text of the viewer's page.
+/// \throws IoError if the file does not exist or is not a viewer.
 template <class = void>
 std::string viewer_page(std::filesystem::path const& file) {
   char const* const remedy =
@@ -49,7 +51,7 @@ std::string viewer_page(std::filesystem::path const& file) {
   return std::move(*page);
 }
 
-/// Text of an HTML element.
+/// Escapes a text for an HTML element.
 template <class = void>
 std::string html_text(std::string const& text) {
   std::string out;
@@ -59,17 +61,20 @@ std::string html_text(std::string const& text) {
 
 }  // namespace detail
 
-/// Scenes side by side, which share clock and camera:
+/// Film of several scenes side by side, with a common clock and camera:
 ///   Film film({.viewer = "polybody_viewer.html", .title = "The arm"});
 ///   FilmScene& scene = film.scene("LRVF");
 ///   for (State const& now : simulate(…))
 ///     if (scene.due(now.t)) scene.record(now.t, visual.at(now));
 ///   film.write("out/arm.html");
-/// Parts that a frame carries cost 20 bytes a frame; parts that deform 3 or 6 more for each point, and 2 for each
-/// colour.
+/// A part with constant shape needs 20 bytes a frame. A deformable part needs 3 or 6 more bytes for each point, and 2
+/// for each colour.
 class Film {
  public:
-  /// \throws InvalidInput for options that cannot be meant; IoError where the viewer is not there: before the run.
+  /// Empty film. Checks the options and reads the viewer.
+  /// \throws InvalidInput for a frame rate that is not positive, and for view directions that are parallel or not
+  /// finite.
+  /// \throws IoError if the viewer does not exist.
   explicit Film(FilmOptions options) : options_(std::move(options)) {
     require_positive(options_.frames_per_second, "Film: the frames per second");
     double const across = options_.look_from.cross(options_.up).norm();
@@ -78,17 +83,21 @@ class Film {
     page_ = detail::viewer_page(options_.viewer);
   }
 
-  /// One more scene; the reference stays valid. \throws InvalidInput for a name that another scene has.
+  /// Adds a scene with this `name`. The reference remains valid.
+  /// \throws InvalidInput if another scene has the same name.
   FilmScene& scene(std::string name) {
     for (FilmScene const& other : scenes_)
       if (other.name() == name) throw InvalidInput{"Film: two scenes are called \"", name, "\"."};
     return scenes_.emplace_back(std::move(name), options_.frames_per_second);
   }
 
-  std::size_t scenes() const { return scenes_.size(); }  ///< so far
+  std::size_t scenes() const { return scenes_.size(); }  ///< number of scenes
 
-  /// The file appears when it is complete. \return its size [bytes] \throws InvalidInput without a scene or for one
-  /// without frames, or where `follow` is no part of a scene; IoError.
+  /// Writes the film to `file`, which appears when it is complete.
+  /// \return size of the file [bytes]
+  /// \throws InvalidInput if the film has no scene, a scene has no frames, or a scene has no part with the name
+  /// `follow`.
+  /// \throws IoError if the file cannot be written.
   std::size_t write(std::filesystem::path const& file) const {
     if (scenes_.empty()) throw InvalidInput{"Film '", options_.title, "' has no scene."};
     for (FilmScene const& scene : scenes_) require_complete(scene);
@@ -115,7 +124,7 @@ class Film {
       throw InvalidInput{"Film: the scene \"", scene.name(), "\" has no part \"", options_.follow, "\" to follow."};
   }
 
-  /// Members of the table of contents that are not scenes.
+  /// Members of the table of contents except the scenes.
   std::string contents() const {
     auto const vector = [](Vec3 const& v) {
       return '[' + detail::all_digits(v[0]) + ',' + detail::all_digits(v[1]) + ',' + detail::all_digits(v[2]) + ']';

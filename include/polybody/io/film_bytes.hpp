@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// What the data of a film are made of: numbers as bytes, bytes as letters, texts between quotes.
-/// Not in polybody.hpp: it comes with io/film.hpp.
+/// Encoding of the data of a film: numbers as bytes, bytes as base 64, texts as JSON strings. Not in polybody.hpp: it
+/// belongs to io/film.hpp.
 
 #include <algorithm>
 #include <bit>
@@ -17,7 +17,7 @@
 
 namespace polybody::detail {
 
-/// Adds a number with its lowest byte first, whatever the machine does.
+/// Appends a number in little-endian byte order, independent of the machine.
 template <class T>
 void append_bytes(std::string& bytes, T number) {
   using Small = std::conditional_t<sizeof(T) == 2, std::uint16_t, std::uint8_t>;
@@ -27,7 +27,7 @@ void append_bytes(std::string& bytes, T number) {
   for (unsigned i = 0; i < sizeof(T); ++i) bytes += char((bits >> (8 * i)) & 0xff);
 }
 
-/// The letter that names a type of numbers in the film's table of contents.
+/// Letter and size of a number type in the film's table of contents.
 template <class T>
 constexpr char const* type_letters() {
   return std::is_same_v<T, double>         ? "f8"
@@ -38,11 +38,12 @@ constexpr char const* type_letters() {
                                            : "u4";
 }
 
-/// Arrays one behind the other, each from a multiple of eight bytes on. Arrays with the same bytes are there once:
-/// parts of one body turn alike.
+/// Consecutive arrays, each aligned to eight bytes. Arrays with equal bytes are stored once: the parts of one body
+/// have the same rotations.
 class FilmArrays {
  public:
-  /// \return where the array is, as it stands in the table of contents: ["type", first byte, numbers]
+  /// Appends an array unless an equal one exists.
+  /// \return location of the array, as written in the table of contents: ["type", first byte, count of numbers]
   template <class T>
   std::string add(std::vector<T> const& values) {
     std::string own;
@@ -64,7 +65,7 @@ class FilmArrays {
   std::unordered_map<std::string, std::size_t> first_byte_;
 };
 
-/// Base 64 [RFC 4648, §4].
+/// Base 64 encoding [RFC 4648, §4].
 template <class = void>
 std::string base64(std::string_view bytes) {
   static constexpr char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -79,7 +80,7 @@ std::string base64(std::string_view bytes) {
   return text;
 }
 
-/// A text between quotes, as JSON wants it [RFC 8259, §7].
+/// JSON string of a text [RFC 8259, §7].
 template <class = void>
 std::string json_text(std::string_view text) {
   std::string out = "\"";
@@ -93,7 +94,7 @@ std::string json_text(std::string_view text) {
   return out + '"';
 }
 
-/// Numbers as integers of up to `most`, 127 or 32767: value ≈ integer·step, |error| ≤ step/2.
+/// Numbers quantised to integers of magnitude up to `most`, 127 or 32767: value ≈ integer·step, |error| ≤ step/2.
 struct Quantised {
   std::vector<std::int16_t> integers = {};
   double step = 0.0;
@@ -109,7 +110,7 @@ Quantised quantised(std::vector<float> const& values, double most = 32767.0) {
   return out;
 }
 
-/// A rotation as its unit quaternion (w, x, y, z) in integers of 16 bits; it is off by less than 1e-4 rad.
+/// Unit quaternion (w, x, y, z) of a rotation in integers of 16 bits. The error is less than 1e-4 rad.
 template <class = void>
 std::array<std::int16_t, 4> quantised_rotation(Mat3 const& axes) {
   Eigen::Quaterniond const q = Eigen::Quaterniond(axes).normalized();
@@ -117,7 +118,7 @@ std::array<std::int16_t, 4> quantised_rotation(Mat3 const& axes) {
   return {integer(q.w()), integer(q.x()), integer(q.y()), integer(q.z())};
 }
 
-/// The rotation that the viewer makes of these integers.
+/// Rotation that the viewer computes from these integers.
 template <class = void>
 Mat3 rotation_of(std::array<std::int16_t, 4> const& q) {
   return Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();

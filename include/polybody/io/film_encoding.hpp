@@ -1,20 +1,21 @@
 #pragma once
 /// \file
-/// The data of a film: a head, a table of contents as JSON, and arrays of numbers.
-/// Not in polybody.hpp: it comes with io/film.hpp.
+/// Binary data of a film: a head, a table of contents as JSON, and arrays of numbers. Not in polybody.hpp: it belongs
+/// to io/film.hpp.
 ///
-/// All numbers have their lowest byte first. The head is
-///   8 bytes   "pbfilm01", the last two digits being the version
+/// All numbers are little-endian. The head is
+///   8 bytes   "pbfilm01", where the last two digits are the version
 ///   4 bytes   length c of the table of contents
 ///   4 bytes   zero
 ///   8 bytes   length d of the arrays
 ///   8 bytes   FNV-1a of the c + d bytes that follow (math/checksum.hpp)
-/// Then come the table and, from its end on, the arrays. The table names an array by ["f4", first byte, numbers]: f4
-/// and f8 are IEEE floats of 4 and 8 bytes, i2 signed, u2 and u4 unsigned integers.
+/// The table of contents follows, then the arrays. The table refers to an array by ["f4", first byte, count of
+/// numbers]. f4 and f8 are IEEE floats of 4 and 8 bytes, i1 and i2 signed, u2 and u4 unsigned integers.
 ///
-/// A point of a part stands at place + A (point + step·deviation): places and turns (quaternions, scaled to length one)
-/// are of each frame, deviations only of parts that deform, in one byte where that leaves 1e-4 of the part's size or
-/// less. A scalar is low + (high − low)·u/65534; 65535 says none.
+/// The position of a point of a part is place + A (point + step·deviation). Places and rotations (quaternions,
+/// normalised) are stored for each frame, deviations only for deformable parts. Deviations are stored in one byte if
+/// their error is at most 1e-4 of the part's size, else in two. A scalar is low + (high − low)·u/65534; u = 65535
+/// means no value.
 
 #include <deque>
 
@@ -26,7 +27,7 @@ namespace polybody::detail {
 
 inline constexpr std::string_view film_magic = "pbfilm01";
 
-/// Items of a list, each made by `item`.
+/// JSON list whose items are the results of `item`.
 template <class List, class Item>
 std::string json_list(List const& list, Item const& item) {
   std::string text = "[";
@@ -34,7 +35,7 @@ std::string json_list(List const& list, Item const& item) {
   return text + ']';
 }
 
-/// Scalars of one kind, of all parts that have them, between the least and the largest.
+/// Range of a scalar over all parts that have it. Quantises the values within the range.
 struct ScalarRange {
   float low = std::numeric_limits<float>::infinity(), high = -low;
 
@@ -51,7 +52,7 @@ struct ScalarRange {
   }
 };
 
-/// The table of contents of one scene; its numbers go into the arrays.
+/// Table of contents of one scene. Its numbers are appended to the arrays.
 class SceneContents {
  public:
   SceneContents(FilmScene const& scene, FilmArrays& arrays) : scene_(scene), arrays_(arrays) {
@@ -78,7 +79,7 @@ class SceneContents {
 
   std::string scalar(std::size_t k) const {
     ScalarRange const& r = ranges_[k];
-    bool const some = r.low <= r.high;  // else no part has a value
+    bool const some = r.low <= r.high;  // false: no part has a value
     return named(scene_.scalars()[k].label, scene_.scalars()[k].unit) + ",\"low\":" + all_digits(some ? r.low : 0.0) +
            ",\"high\":" + all_digits(some ? r.high : 0.0) + '}';
   }
@@ -106,7 +107,7 @@ class SceneContents {
     return text + "]}";
   }
 
-  /// Diagonal of the box around a part [m].
+  /// Diagonal of the bounding box of a part [m].
   static double size_of(FilmPart const& p) {
     Vec3 low = p.points.front(), high = low;
     for (Vec3 const& x : p.points) {
@@ -132,7 +133,8 @@ class SceneContents {
   std::vector<ScalarRange> ranges_;
 };
 
-/// The data as bytes. \param page what the table says of the page besides its scenes: members of a JSON object
+/// Encodes all scenes as bytes.
+/// \param page JSON members of the table of contents except the scenes
 template <class = void>
 std::string film_bytes(std::string const& page, std::deque<FilmScene> const& scenes) {
   FilmArrays arrays;

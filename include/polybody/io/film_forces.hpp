@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Forces of joints and contacts as arrows of a film. Not in polybody.hpp: it goes with io/film.hpp.
+/// Forces of joints and contacts as arrows of a film. Not in polybody.hpp: it belongs to io/film.hpp.
 
 #include <polybody/io/film_scene.hpp>
 #include <polybody/run/contacts.hpp>
@@ -8,8 +8,10 @@
 
 namespace polybody {
 
-/// The force of each joint on its second body, where that has it, in the last frame of a scene. `system` must have been
-/// evaluated at x. \param unit of the arrows [N], 1000 for kN \throws InvalidInput, NonFinite as `FilmScene::arrow`.
+/// Adds to the last frame of a scene the force of each joint on its second body, as an arrow at the second marker.
+/// `system` must have been evaluated in state x.
+/// \param unit of the arrows [N], 1000 for kN
+/// \throws InvalidInput, NonFinite as `FilmScene::arrow`.
 template <class = void>
 void add_reactions(FilmScene& scene, FilmArrows arrows, System const& system, State const& x, double unit = 1.0) {
   for (RowBlock<double> const& block : system.data().rows) {
@@ -20,7 +22,8 @@ void add_reactions(FilmScene& scene, FilmArrows arrows, System const& system, St
   }
 }
 
-/// A visitor for `for_each_contact`: the force of each point that presses, on the body of the many.
+/// Visitor for `for_each_contact` that adds the force of each contact point, on the body of the contact group's many
+/// markers, as an arrow.
 /// \param unit of the arrows [N], 1000 for kN
 template <class = void>
 TouchingPointVisit add_contacts(FilmScene& scene, FilmArrows arrows, double unit = 1.0) {

@@ -1,7 +1,6 @@
 #pragma once
 /// \file
-/// One scene of a film: what a run looks like frame by frame, with arrows and histories.
-/// Not in polybody.hpp: it comes with io/film.hpp.
+/// Scene of a film: the frames of a run, with arrows and histories. Not in polybody.hpp: it belongs to io/film.hpp.
 
 #include <array>
 #include <cstdint>
@@ -13,15 +12,16 @@
 
 namespace polybody {
 
-/// A number in each point of a part, shown by colours with a bar.
+/// Scalar field on the points of a part, shown by colours with a colour bar.
 struct FilmScalar {
-  std::string label;  ///< of the bar
-  std::string unit;   ///< of the values
-  /// One for each point of the part, in the unit; NaN where there is none; empty where the part has none.
+  std::string label;  ///< text at the colour bar
+  std::string unit;   ///< unit of the values
+  /// Returns one value for each point of the part, in the unit. A value may be NaN. The list is empty if the part has
+  /// no values.
   std::function<std::vector<double>(VisualPart const&)> values;
 };
 
-/// The axial stress where bodies know it [MPa].
+/// Axial stress of bodies that provide it [MPa].
 template <class = void>
 FilmScalar axial_stress_colours() {
   return {"axial stress", "MPa", [](VisualPart const& part) {
@@ -31,7 +31,7 @@ FilmScalar axial_stress_colours() {
           }};
 }
 
-/// How fast points are [m/s].
+/// Magnitude of the velocity of the points [m/s].
 template <class = void>
 FilmScalar speed_colours() {
   return {"speed", "m/s", [](VisualPart const& part) {
@@ -43,20 +43,20 @@ FilmScalar speed_colours() {
 
 namespace detail {
 
-/// What a part does: places and rotations of its frame, and what its points deviate from where they were in the first
-/// frame, in axes of the frame.
+/// Motion of a part: origins and rotations of its frame, and deviations of its points from their positions in the
+/// first frame of the film, in axes of the part's frame.
 struct FilmPart {
   std::string name;
-  std::size_t shape = 0;  ///< among the scene's
+  std::size_t shape = 0;  ///< index of the shape in the scene
   bool rigid = false;
-  std::vector<Vec3> points = {};            ///< in axes of its frame, float32 [m]
-  std::vector<float> places = {};           ///< 3 a frame [m]
-  std::vector<std::int16_t> turns = {};     ///< 4 a frame
-  std::vector<float> deviations = {};       ///< 3 a point and frame [m]
-  std::vector<std::vector<float>> scalars;  ///< of each of the scene's: 1 a point and frame, or none
+  std::vector<Vec3> points = {};            ///< positions in axes of the part's frame, rounded to float32 [m]
+  std::vector<float> places = {};           ///< origins, 3 numbers per frame [m]
+  std::vector<std::int16_t> turns = {};     ///< quaternions, 4 numbers per frame
+  std::vector<float> deviations = {};       ///< 3 numbers per point and frame [m]
+  std::vector<std::vector<float>> scalars;  ///< for each scalar of the scene: 1 number per point and frame, or none
 };
 
-/// Points in axes of a frame, and the polygons through them.
+/// Shape of a part: points in axes of its frame, and the polygons through them.
 struct FilmShape {
   std::vector<float> points;
   std::vector<int> corners, ends;
@@ -66,7 +66,7 @@ struct FilmShape {
 struct FilmArrowSet {
   std::string label, unit;
   bool shown = true;
-  std::vector<std::uint32_t> counts = {};  ///< of each frame
+  std::vector<std::uint32_t> counts = {};  ///< number of arrows in each frame
   std::vector<float> places = {}, vectors = {};
 };
 
@@ -78,12 +78,12 @@ struct FilmHistory {
 
 }  // namespace detail
 
-/// Names a set of arrows of a scene.
+/// Handle of a set of arrows in a scene.
 struct FilmArrows {
-  std::size_t place;  ///< among the scene's sets
+  std::size_t place;  ///< index of the set in the scene
 };
 
-/// Made by `Film::scene`. What is to be coloured and which arrows there are is said before the first frame:
+/// Scene of a film, created by `Film::scene`. Colours and sets of arrows are defined before the first frame:
 ///   scene.colour(axial_stress_colours());
 ///   FilmArrows const contacts = scene.arrows("contact forces", "N");
 ///   for (State const& now : simulate(…)) {
@@ -94,10 +94,11 @@ struct FilmArrows {
 ///   }
 class FilmScene {
  public:
-  /// Empty, with so many `frames_per_second` [1/s]; see `Film::scene`.
+  /// Scene without frames, with so many `frames_per_second` [1/s]; see `Film::scene`.
   FilmScene(std::string name, double frames_per_second) : name_(std::move(name)), interval_(1.0 / frames_per_second) {}
 
-  /// \throws InvalidInput after the first frame, or for a scalar that the scene has.
+  /// Adds a scalar that colours the parts.
+  /// \throws InvalidInput after the first frame, or if the scene already has the scalar.
   void colour(FilmScalar scalar) {
     require_start(scalar.label);
     for (FilmScalar const& other : scalars_)
@@ -106,8 +107,8 @@ class FilmScene {
     scalars_.push_back(std::move(scalar));
   }
 
-  /// Arrows under this `label` whose vectors have one unit, and one scale in the picture. \param shown or hidden until
-  /// they are asked for
+  /// Adds a set of arrows with this `label`. Their vectors have one `unit`, and one scale in the picture.
+  /// \param shown initial visibility in the viewer
   /// \throws InvalidInput after the first frame.
   FilmArrows arrows(std::string label, std::string unit, bool shown = true) {
     require_start(label);
@@ -115,10 +116,12 @@ class FilmScene {
     return {arrows_.size() - 1};
   }
 
-  /// Whether a frame is due at time t [s], by the film's frames per second.
+  /// Returns true if a frame is due at time t [s] according to the film's frames per second.
   bool due(double t) const { return times_.empty() || t >= next_ - 1e-9; }
 
-  /// One frame. \throws InvalidInput unless times rise and the parts are those of the first frame; NonFinite.
+  /// Records a frame of `parts` at time t [s].
+  /// \throws InvalidInput unless times increase and the parts are the same as in the first frame
+  /// \throws NonFinite for a time or part that is not finite.
   void record(double t, std::vector<VisualPart> const& parts) {
     if (!std::isfinite(t)) throw NonFinite{told(), "the time of a frame is not finite."};
     if (!times_.empty() && !(t > times_.back()))
@@ -134,8 +137,10 @@ class FilmScene {
     next_ = next_ + interval_ > t ? next_ + interval_ : t + interval_;
   }
 
-  /// An arrow in the last frame. \param place where it begins, world axes [m] \param vector in the unit of the set
-  /// \throws InvalidInput before the first frame or for arrows of another scene; NonFinite.
+  /// Adds an arrow to the last frame.
+  /// \param place start of the arrow, world axes [m]
+  /// \param vector in the unit of the set
+  /// \throws InvalidInput if there is no frame yet, or for arrows of another scene; NonFinite.
   void arrow(FilmArrows set, Vec3 const& place, Vec3 const& vector) {
     if (set.place >= arrows_.size() || times_.empty())
       throw InvalidInput{told(), "an arrow belongs to a set of this scene and to a frame; record one first."};
@@ -146,9 +151,9 @@ class FilmScene {
     for (int i = 0; i < 3; ++i) arrows.places.push_back(float(place[i])), arrows.vectors.push_back(float(vector[i]));
   }
 
-  /// A point of the history `label`, `value` in `unit`, at any time. Scenes whose histories have one label share a
-  /// plot.
-  /// \throws InvalidInput unless its times rise; NonFinite.
+  /// Adds a point to the history `label`: a `value` in `unit` at any time t [s]. Histories of several scenes with the
+  /// same label share a plot.
+  /// \throws InvalidInput unless the times of the history increase; NonFinite.
   void plot(std::string const& label, std::string const& unit, double t, double value) {
     if (!std::isfinite(t) || !std::isfinite(value))
       throw NonFinite{told(), "a point of the history \"", label, "\" is not finite at t = ", t, " s."};
@@ -161,15 +166,17 @@ class FilmScene {
     found->values.push_back(float(value));
   }
 
-  std::string const& name() const { return name_; }            ///< as `Film::scene` was told
-  std::vector<double> const& times() const { return times_; }  ///< of the frames [s]
+  std::string const& name() const { return name_; }            ///< name given to `Film::scene`
+  std::vector<double> const& times() const { return times_; }  ///< times of the frames [s]
 
-  /// \name What a film writes
+  /// \name Data that a film writes
   ///@{
-  std::vector<FilmScalar> const& scalars() const { return scalars_; }              ///< that parts are coloured by
-  std::vector<detail::FilmShape> const& shapes() const { return shapes_; }         ///< each once
-  std::vector<detail::FilmPart> const& parts() const { return parts_; }            ///< of the first frame
-  std::vector<detail::FilmArrowSet> const& arrow_sets() const { return arrows_; }  ///< in the order of `arrows`
+  std::vector<FilmScalar> const& scalars() const { return scalars_; }       ///< scalars that colour the parts
+  std::vector<detail::FilmShape> const& shapes() const { return shapes_; }  ///< different shapes of the parts
+  std::vector<detail::FilmPart> const& parts() const { return parts_; }     ///< parts of the first frame
+  std::vector<detail::FilmArrowSet> const& arrow_sets() const {
+    return arrows_;
+  }  ///< sets in the order of the calls of `arrows`
   std::vector<detail::FilmHistory> const& histories() const {
     return histories_;
   }  ///< in the order of their first points

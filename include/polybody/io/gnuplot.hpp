@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Finding and running the program gnuplot, and writing text so that it prints it as it stands.
+/// Search and call of the program gnuplot, and quotation of text for it.
 
 #include <cstdlib>
 #include <filesystem>
@@ -16,7 +16,7 @@
 
 namespace polybody {
 
-/// The first executable `gnuplot` in the folders of the environment variable PATH, if any.
+/// First executable `gnuplot` in the folders of the environment variable PATH, if any.
 template <class = void>  // compiled where it is used
 std::optional<std::filesystem::path> find_gnuplot() {
   namespace fs = std::filesystem;
@@ -36,7 +36,7 @@ std::optional<std::filesystem::path> find_gnuplot() {
 
 namespace detail {
 
-/// `text` in single quotes, each single quote inside replaced by `escape`.
+/// `text` in single quotes. `escape` replaces each single quote within the text.
 template <class = void>
 std::string single_quoted(std::string_view text, std::string_view escape) {
   std::string quoted = "'";
@@ -44,13 +44,13 @@ std::string single_quoted(std::string_view text, std::string_view escape) {
   return quoted + '\'';
 }
 
-/// One word for a POSIX shell.
+/// Text quoted as one word for a POSIX shell.
 template <class = void>
 std::string shell_word(std::string_view text) {
   return single_quoted(text, R"('\'')");
 }
 
-/// A gnuplot string expression; nothing in it is special (gnuplot runs `...` in double quotes).
+/// Gnuplot string expression for a text, without special characters (gnuplot runs `...` in double quotes).
 template <class = void>
 std::string gnuplot_text(std::string_view text) {
   std::string expression = single_quoted(text, "''");
@@ -59,9 +59,8 @@ std::string gnuplot_text(std::string_view text) {
   return expression;
 }
 
-/// Runs `program` in the folder of `script` with the gnuplot variable png set to the name of a
-/// temporary file, which then takes the place of `png`. Throws IoError with the script's name and
-/// gnuplot's own words.
+/// Runs `program` in the folder of `script`. The gnuplot variable png is the name of a temporary file, which then
+/// replaces `png`. Throws IoError with the script's name and gnuplot's message.
 template <class = void>
 void run_gnuplot(std::filesystem::path const& program, std::filesystem::path const& script,
                  std::filesystem::path const& png) {

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Figures of curves: a data file, a gnuplot script to run or edit by hand, and a PNG.
+/// Writer of figures: a data file, a gnuplot script to run or edit by hand, and a PNG.
 
 #include <algorithm>
 #include <array>
@@ -20,26 +20,27 @@
 
 namespace polybody {
 
-/// What `write_figure` could make: script_only when gnuplot is not on PATH or draw is false (a PNG
-/// of an earlier run is then left alone).
+/// Result of `write_figure`. It is script_only if gnuplot is not on PATH or `draw` is false; a PNG of an earlier run
+/// is then not changed.
 enum class Drawn { png, script_only };
 
 namespace detail {
 
-/// What gnuplot calls each of `curve_styles`.
+/// Gnuplot's names of the `curve_styles`.
 inline constexpr std::array<std::string_view, 6> gnuplot_styles{
     "lines",       "points",
     "linespoints", "lines dashtype (12,6)",
     "steps",       "filledcurves closed fillstyle transparent solid 0.3"};
 
-/// Colours that colour-blind readers can tell apart [Okabe & Ito 2008], strongest first.
+/// Colours that colour-blind readers can distinguish [Okabe & Ito 2008], strongest first.
 inline constexpr std::array<std::string_view, 8> palette{"#0072B2", "#D55E00", "#009E73", "#E69F00",
                                                          "#CC79A7", "#56B4E9", "#000000", "#F0E442"};
 
-/// Marks of gnuplot that readers tell apart without the colours: filled ones first, as thick lines fill the others.
+/// Point types of gnuplot that are distinct without colours. Filled types come first, because thick lines fill the
+/// open ones.
 inline constexpr std::array<int, 8> point_types{5, 7, 9, 13, 11, 15, 4, 6};
 
-/// A block of two columns for each curve; two blank lines part the blocks.
+/// Text of the data file: a block of two columns for each curve. Two blank lines separate the blocks.
 template <class = void>  // compiled where it is used
 std::string data_text(std::vector<Figure> const& figures) {
   std::string text;
@@ -54,7 +55,7 @@ std::string data_text(std::vector<Figure> const& figures) {
   return text;
 }
 
-/// How many digits tell the marks of an axis apart: six, or more for a small span far from zero.
+/// Number of digits for the tick labels of an axis from `low` to `high`: six, or more for a small span far from zero.
 template <class = void>
 std::string tick_digits(double low, double high) {
   double const share = std::max(std::abs(low), std::abs(high)) / std::abs(high - low);
@@ -62,7 +63,7 @@ std::string tick_digits(double low, double high) {
   return std::to_string(static_cast<int>(std::clamp(digits, 6.0, 17.0)));
 }
 
-/// The commands for one figure, whose first curve is data block `block` of the file `data`.
+/// Gnuplot commands for one figure, whose first curve is data block `block` of the file `data`.
 template <class = void>
 std::string script_text(Figure const& figure, std::string const& data, std::size_t block) {
   auto const range = [](auto const& r) {
@@ -108,10 +109,10 @@ std::filesystem::path with_ending(std::filesystem::path stem, char const* ending
 
 }  // namespace detail
 
-/// Draws several figures in one PNG, row by row in `columns` columns, each panel as large as the
-/// largest figure. Writes stem.dat, stem.gp (runs by hand from its own folder) and, if `draw` and
-/// gnuplot is on PATH, stem.png; each appears only when complete. Throws InvalidInput (naming the
-/// figure and the curve) before anything is written, IoError if writing or gnuplot fails.
+/// Draws several figures in one PNG, row by row in `columns` columns. Each panel has the size of the largest figure.
+/// Writes `stem`.dat, .gp (a script that runs in its own folder) and, if `draw` and gnuplot is on PATH, .png. Each
+/// file appears when it is complete. Throws InvalidInput with the figure and the curve before anything is written,
+/// IoError if writing or gnuplot fails.
 template <class = void>
 Drawn write_panels(std::vector<Figure> const& figures, int columns, std::filesystem::path const& stem,
                    bool draw = true) {
@@ -156,7 +157,7 @@ Drawn write_panels(std::vector<Figure> const& figures, int columns, std::filesys
   return Drawn::png;
 }
 
-/// One figure, to `stem`.dat, .gp and, if `draw`, .png; see `write_panels`.
+/// Writes one figure to `stem`.dat, .gp and, if `draw`, .png; see `write_panels`.
 template <class = void>
 Drawn write_figure(Figure const& figure, std::filesystem::path const& stem, bool draw = true) {
   return write_panels({figure}, 1, stem, draw);

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A progress bar with the time that is left, on the terminal.
+/// Progress bar with the remaining time, on the terminal.
 
 #include <algorithm>
 #include <chrono>
@@ -24,7 +24,7 @@
 
 namespace polybody {
 
-/// Whether std::cerr goes to a terminal (never, on systems without isatty).
+/// Returns true if std::cerr is a terminal; false on systems without isatty.
 inline bool stderr_is_terminal() {
 #if __has_include(<unistd.h>)
   return ::isatty(STDERR_FILENO) == 1;
@@ -33,21 +33,22 @@ inline bool stderr_is_terminal() {
 #endif
 }
 
-/// Shows how far a run has come, on one line of at most 79 signs that is redrawn in place:
+/// Progress bar of a run, on one line of at most 79 characters that is redrawn in place:
 ///
 ///     pendulum  42% [==============>                   ]  0:00:21  ETA 0:00:29
 ///
-/// Silent where stderr is not a terminal. Not for use from several threads at once.
+/// Nothing is drawn if stderr is not a terminal. Not for use from several threads at once.
 class Progress {
  public:
-  using Clock = std::function<double()>;  ///< Seconds from any origin, never falling.
+  using Clock = std::function<double()>;  ///< Time [s] from any origin; it never decreases.
 
-  /// Under this `label`, from `start` to `end` (either may be the greater), in the unit of `update`, the simulated time
-  /// for one. Throws InvalidInput if either is not finite.
+  /// Progress bar with this `label` from `start` to `end`, in the unit of `update`, such as the simulated time.
+  /// Either end may be the greater. Throws InvalidInput if either is not finite.
   Progress(double start, double end, std::string label = "")
       : Progress(start, end, std::move(label), std::cerr, stderr_is_terminal(), steady_seconds) {}
 
-  /// The same from `start` to `end`, under its `label`, on any stream, with any clock; draws only if `terminal`.
+  /// Progress bar from `start` to `end` with this `label`, on the stream `out`, with any `clock`. It is drawn only if
+  /// `terminal`.
   Progress(double start, double end, std::string label, std::ostream& out, bool terminal, Clock clock = steady_seconds)
       : start_(start),
         end_(end),
@@ -63,15 +64,15 @@ class Progress {
   Progress(Progress const&) = delete;
   Progress& operator=(Progress const&) = delete;
 
-  /// Leaves the line as far as the run came; the next output begins on a new line.
+  /// Ends the line with the last progress drawn. The next output begins on a new line.
   ~Progress() {
     try {
       end_line();
-    } catch (...) {  // NOLINT(bugprone-empty-catch): a stream set to throw; a lost bar is no reason to end the program
+    } catch (...) {  // NOLINT(bugprone-empty-catch): a stream may throw; a lost bar must not end the program
     }
   }
 
-  /// The run has reached `now`. Cheap: redraws at most ten times a second.
+  /// Sets the progress to `now`. The bar is redrawn at most ten times a second.
   void update(double now) {
     if (!terminal_ || std::isnan(now)) return;
     done_ = end_ == start_ ? 1.0 : std::clamp((now - start_) / (end_ - start_), 0.0, 1.0);
@@ -80,7 +81,7 @@ class Progress {
     draw(seconds);
   }
 
-  /// The run is complete: draws 100 % and ends the line. Later calls do nothing.
+  /// Draws 100 % and ends the line. Later calls have no effect.
   void finish() {
     done_ = 1.0;
     drawn_ = true;
@@ -95,7 +96,7 @@ class Progress {
     return Seconds(std::chrono::steady_clock::now().time_since_epoch()).count();
   }
 
-  /// Seconds as h:mm:ss.
+  /// Formats a time in seconds as h:mm:ss.
   static std::string h_mm_ss(double seconds) {
     if (!(seconds < 3.6e6)) return ">999:59:59";
     auto const whole = static_cast<unsigned>(std::max(0.0, seconds));
@@ -112,7 +113,7 @@ class Progress {
 
   static std::string shortened(std::string text) {
     std::ranges::replace_if(text, [](unsigned char c) { return c < ' ' || c == 127; }, ' ');
-    while (width(text) > label_width) text.pop_back();  // ends with the first byte of a sign
+    while (width(text) > label_width) text.pop_back();  // removes a UTF-8 character up to its first byte
     return text;
   }
 
@@ -148,12 +149,12 @@ class Progress {
   bool drawn_ = false;
 };
 
-/// For `RunOptions::progress`: a bar over the time of the run, from its first step on, that is complete where the run
-/// ends:
+/// Callback for `RunOptions::progress` that draws a progress bar over the simulated time of a run. The bar begins
+/// with the first step and is complete when the run ends:
 ///
 ///     simulate(model, x, integrator, {.until = 10.0, .step = 1e-3, .progress = progress_bar("pendulum")}).run();
 ///
-/// `make` makes the bar; it belongs to one run.
+/// `make` creates the bar. The callback belongs to one run.
 template <class Make>
   requires std::is_invocable_r_v<std::unique_ptr<Progress>, Make const&, RunProgress const&>
 std::function<void(RunProgress const&)> progress_bar(Make make) {
@@ -162,7 +163,7 @@ std::function<void(RunProgress const&)> progress_bar(Make make) {
     run.done ? bar->finish() : bar->update(run.now);
   };
 }
-/// The same under its `label` on stderr, where that is a terminal.
+/// Progress bar with this `label` on stderr, drawn if stderr is a terminal.
 inline std::function<void(RunProgress const&)> progress_bar(std::string label = "") {
   return progress_bar([label = std::move(label)](RunProgress const& run) {
     return std::make_unique<Progress>(run.start, run.until, label);

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What a run says of its states, as a table, a file and a picture:
+/// Outputs of a run as a table, a file and a figure:
 ///
 ///     Table const table = tabulate(simulate(model, x, integrator, {.until = 2.0, .step = 1e-3}),
 ///                                  {{"tip height [m]", [&](State const& now) { return tip(now).z(); }}});
@@ -15,15 +15,16 @@
 
 namespace polybody {
 
-/// A number of interest of a state.
+/// Output of a run: a number that is a function of the state.
 struct TableColumn {
-  std::string name;                           ///< with its unit: "tip height [m]"
-  std::function<double(State const&)> value;  ///< in that unit
+  std::string name;                           ///< name with unit: "tip height [m]"
+  std::function<double(State const&)> value;  ///< value in that unit
 };
 
 namespace detail {
 
-/// \throws InvalidInput unless columns have names, all different, and values, and none is called as the time.
+/// Checks that columns have values and different names, and that no name is "t [s]".
+/// \throws InvalidInput otherwise.
 template <class = void>  // compiled where it is used
 void check(std::vector<TableColumn> const& columns) {
   std::vector<std::string> names{"t [s]"};
@@ -36,7 +37,7 @@ void check(std::vector<TableColumn> const& columns) {
     throw InvalidInput{"tabulate: two columns are called \"", *twice, "\". The first one is \"t [s]\"."};
 }
 
-/// The unit at the end of a column's head: "m/s" of "speed [m/s]", empty where there is none.
+/// Unit at the end of a column's head: "m/s" of "speed [m/s]"; empty if the head has no unit.
 template <class = void>
 std::string unit_of(std::string const& head) {
   std::size_t const begin = head.rfind('[');
@@ -44,8 +45,8 @@ std::string unit_of(std::string const& head) {
   return has_unit ? head.substr(begin + 1, head.size() - begin - 2) : "";
 }
 
-/// One figure over the first column for each unit, in the order in which they first come; a column without a unit has
-/// its own.
+/// Figures over the first column, one for each unit, in the order of the columns. A column without a unit has a
+/// separate figure.
 template <class = void>
 std::vector<Figure> figures_of(Table const& table) {
   std::vector<Figure> figures;
@@ -70,10 +71,11 @@ std::vector<Figure> figures_of(Table const& table) {
 
 }  // namespace detail
 
-/// Takes a run to its end: a row for the first state, for the first one on or after each multiple of `sampling` [s]
-/// from there on, and for the last; for every state where that is zero. The first column is "t [s]".
-/// \throws InvalidInput for columns without a name or value or that are called alike and a negative sampling, NonFinite
-/// for a value that is not finite, and what the run throws.
+/// Completes a run and returns a table of `columns`. Its rows are the first state, the first state on or after each
+/// multiple of `sampling` [s] from the start, and the last state. If `sampling` is zero, every state is a row. The
+/// first column is "t [s]".
+/// \throws InvalidInput for columns without a name or value or with equal names, and a negative sampling.
+/// \throws NonFinite for a value that is not finite, and the exceptions of the run.
 template <class Run>
 Table tabulate(Run&& run, std::vector<TableColumn> const& columns, double sampling = 0.0) {
   detail::check(columns);
@@ -93,7 +95,7 @@ Table tabulate(Run&& run, std::vector<TableColumn> const& columns, double sampli
   return table;
 }
 
-/// Writes a table to `file`; `read_csv` reads it back to the same doubles. Throws InvalidInput and IoError as `Csv`.
+/// Writes a table to `file`. `read_csv` returns the same doubles. Throws InvalidInput and IoError as `Csv`.
 template <class = void>
 void write_csv(Table const& table, std::filesystem::path const& file) {
   Csv csv(file, table.columns, Csv::Keeps::whole_table);
@@ -101,9 +103,9 @@ void write_csv(Table const& table, std::filesystem::path const& file) {
   csv.close();
 }
 
-/// Writes stem.csv and draws all columns over the first one as stem.dat, stem.gp and, if `draw` and gnuplot is on PATH,
-/// stem.png: columns of one unit ("… [m]") share a panel. Throws InvalidInput for a table without rows or with less
-/// than two columns, and as `write_csv` and `write_panels`.
+/// Writes `stem`.csv and draws all columns over the first one as .dat, .gp and, if `draw` and gnuplot is on PATH,
+/// .png. Columns with the same unit ("… [m]") share a panel. Throws InvalidInput for a table without rows or with
+/// less than two columns, and as `write_csv` and `write_panels`.
 template <class = void>
 Drawn plot(Table const& table, std::filesystem::path const& stem, bool draw = true) {
   if (table.rows.empty() || table.columns.size() < 2)

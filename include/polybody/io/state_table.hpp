@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// States as rows of named columns, for other programs to read and to write. Checkpoints (io/checkpoint.hpp) keep more:
-/// what a run needs to go on with the same bits.
+/// Tables of states with named columns, for exchange with other programs. Checkpoints (io/checkpoint.hpp) also store
+/// the integrator's history, so a resumed run is bitwise identical.
 ///
 /// Not in polybody.hpp: few programs exchange states with others.
 
@@ -16,19 +16,19 @@ namespace polybody {
 
 namespace detail {
 
-/// A number of a state as a table calls it.
+/// Name and unit of a number of a state, in a table.
 struct StateHead {
   std::string name = "t [s]";
-  std::string unit = {};  ///< empty where none is known
+  std::string unit = {};  ///< empty if unknown
 
-  /// What is written.
+  /// Head of the column: name and unit.
   std::string text() const { return unit.empty() ? name : name + " [" + unit + ']'; }
 };
 
-/// The heads of a state's columns, in the order of t, q, v, λ.
+/// Heads of a state's columns, in the order t, q, v, λ.
 struct StateHeads {
   std::vector<StateHead> all;
-  std::size_t required;  ///< those before it make a state; multipliers are zero where they are not there
+  std::size_t required;  ///< number of heads that a state requires; missing multipliers are zero
 
   template <class = void>  // compiled where it is used
   explicit StateHeads(ModelLayout const& layout)
@@ -46,12 +46,12 @@ struct StateHeads {
   }
 
  private:
-  /// "rod q[0]", "rod q[1]", … for `count` numbers of one owner.
+  /// Names `count` numbers of one owner "rod q[0]", "rod q[1]", ….
   void name(std::string const& owner, char const* what, Index first, Index count) {
     for (Index i = 0; i < count; ++i)
       all[std::size_t(first + i)].name = owner + ' ' + what + '[' + std::to_string(i) + ']';
   }
-  /// Those of the body's coordinates, from place q on, and of its speeds, from place v on.
+  /// Sets the units of a body's coordinates, from index q, and of its velocities, from index v.
   template <class = void>
   void name_units(BodyPlace const& b, Index q, Index v) {
     for (Index i = 0; i < b.coordinates; ++i) all[std::size_t(q + i)].unit = b.units.of_coordinate(b.body, i);
@@ -61,7 +61,7 @@ struct StateHeads {
   }
 };
 
-/// The columns of a table by their heads.
+/// Index of the columns of a table by their heads.
 class StateColumns {
  public:
   template <class = void>
@@ -71,8 +71,8 @@ class StateColumns {
         throw InvalidInput{"state_from: two columns are called \"", table.columns[j], "\"."};
   }
 
-  /// The column of a number, with its unit or bare; none where there is none. \throws InvalidInput where both are
-  /// there, or another unit.
+  /// Index of the column of a number, with or without unit in its head; none if there is no such column.
+  /// \throws InvalidInput if columns with and without unit exist, or if the unit differs.
   template <class = void>
   std::optional<std::size_t> find(StateHead const& head) const {
     auto const whole = places_.find(head.text()), bare = places_.find(head.name);
@@ -153,24 +153,27 @@ State state_from(ModelLayout const& layout, Table const& table, std::size_t row)
 
 }  // namespace detail
 
-/// The heads of a state's columns: "t [s]", then for each body its coordinates ("rod q[0] [m]", …), for each body its
-/// speeds ("rod v[0] [m/s]", …), first-order states of forces ("valve z[0]", …), multipliers of the rows
-/// ("pin lambda[0]", …). Their order within a body is that which the body's header names. Units are those that a body
-/// names (NamesUnits); states and multipliers have none in their heads.
+/// Heads of the columns of a state of a model. They are "t [s]", the coordinates of each body ("rod q[0] [m]", …),
+/// its velocities ("rod v[0] [m/s]", …), the first-order states of forces ("valve z[0]", …) and the multipliers of
+/// the constraint equations ("pin lambda[0]", …). The order within a body is given in the body's header. Units are
+/// those that a body provides (NamesUnits). Heads of first-order states and multipliers have no unit.
 template <class M>
 std::vector<std::string> state_columns(M const& model) {
   return detail::state_columns(layout_of(model));
 }
 
-/// States of a model, one row each. \throws InvalidInput for a state that does not fit the model.
+/// Table of states of a model, with one row per state.
+/// \throws InvalidInput for a state that does not fit the model.
 template <class M>
 Table state_table(M const& model, std::vector<State> const& states) {
   return detail::state_table(layout_of(model), states);
 }
 
-/// The state in a row of a table with these columns, in any order, among others, their units or not. Multipliers may be
-/// left out, and are zero then; accelerations are zero, and `simulate` finds both. \throws InvalidInput naming a column
-/// that is missing, there twice or in another unit, and for a row that is not there.
+/// Returns the state in a `row` of a table. The columns of `state_columns` may have any order, may lack units, and
+/// may be among other columns. Columns of multipliers are optional; missing multipliers are zero. Accelerations are
+/// zero. `simulate` computes multipliers and accelerations.
+/// \throws InvalidInput with the name of a column that is missing, duplicate or in another unit, and for a row that
+/// does not exist.
 template <class M>
 State state_from(M const& model, Table const& table, std::size_t row) {
   return detail::state_from(layout_of(model), table, row);

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Closed surfaces of polygons: what a body looks like.
+/// Closed surfaces of polygons, for the display of bodies.
 
 #include <cmath>
 #include <numbers>
@@ -10,21 +10,21 @@
 
 namespace polybody {
 
-/// Polygon i has the corners [ends[i − 1], ends[i]) of `corners`, which are places in `points`; counter-clockwise as
-/// seen from outside.
+/// Surface of polygons. The corners of polygon i are the entries [ends[i − 1], ends[i]) of `corners`, which are
+/// indices of `points`. They are listed counter-clockwise as seen from outside.
 struct Surface {
-  std::vector<Vec3> points;  ///< [m]
-  std::vector<int> corners;  ///< places in `points`
-  std::vector<int> ends;     ///< one past each polygon's last corner
+  std::vector<Vec3> points;  ///< positions [m]
+  std::vector<int> corners;  ///< indices of `points`
+  std::vector<int> ends;     ///< for each polygon, the index after its last corner
 
-  /// One more polygon, whose corners are the places `of_points` in `points`.
+  /// Adds a polygon with the points `of_points`, indices of `points`.
   void add_polygon(std::vector<int> const& of_points) {
     corners.insert(corners.end(), of_points.begin(), of_points.end());
     ends.push_back(int(corners.size()));
   }
 };
 
-/// The volume inside a closed surface, Σ p₀·(p_i × p_{i+1})/6 over the triangles of its polygons [m³].
+/// Volume inside a closed surface [m³]: Σ p₀·(p_i × p_{i+1})/6 over the triangles of its polygons.
 template <class = void>
 double volume(Surface const& surface) {
   double six = 0.0;
@@ -39,8 +39,8 @@ double volume(Surface const& surface) {
   return six / 6.0;
 }
 
-/// The polygon (y, z) around a section, counter-clockwise as seen from +x. A circle becomes a polygon of so many sides
-/// and the same area.
+/// Outline of a bar's section as a polygon (y, z) [m], counter-clockwise as seen from +x. A circle becomes a polygon
+/// with so many `sides` and the same area.
 /// \throws InvalidInput for a bar without a section, or fewer than three sides.
 template <class = void>
 std::vector<Vec2> outline(Bar const& bar, int sides = 24) {
@@ -57,8 +57,9 @@ std::vector<Vec2> outline(Bar const& bar, int sides = 24) {
   return points;
 }
 
-/// The surface through rings of points, each with as many, `points_of_ring`, as the first and counter-clockwise about
-/// the direction of the sweep, closed by the first and the last ring. Point i of ring k is i + k·(points of a ring).
+/// Topology of the surface through `rings` of points, closed by the first and the last ring. Each ring has
+/// `points_of_ring` points, counter-clockwise about the direction of the sweep. Point i of ring k has the index i +
+/// k·`points_of_ring`.
 template <class = void>
 Surface swept(int rings, int points_of_ring) {
   Surface s;
@@ -78,8 +79,8 @@ Surface swept(int rings, int points_of_ring) {
   return s;
 }
 
-/// A box of this `size` (3) along the axes [m] with its middle at the origin. \throws InvalidInput unless the sizes are
-/// positive.
+/// Box of this `size` (3) along the axes [m], with its centre at the origin.
+/// \throws InvalidInput unless the sizes are positive.
 template <class = void>
 Surface box(Vec3 const& size) {
   for (int i = 0; i < 3; ++i) require_positive(size[i], "box: the size");
@@ -91,8 +92,9 @@ Surface box(Vec3 const& size) {
   return s;
 }
 
-/// A prism with so many sides in place of the cylinder of `radius` and `length` [m], of its volume; middle at the
-/// origin. \throws InvalidInput unless the sizes are positive, `axis` is a unit vector and there are three sides.
+/// Prism with so many `sides` that approximates a cylinder of `radius` and `length` [m] along `axis`. It has the
+/// volume of the cylinder, and its centre is at the origin.
+/// \throws InvalidInput unless the sizes are positive, `axis` is a unit vector and there are at least three sides.
 template <class T = double>  // compiled where it is used
 Surface cylinder(double radius, double length, Vec3 const& axis = Vec3::UnitX(), int sides = 24) {
   require_positive(radius, "cylinder: the radius");

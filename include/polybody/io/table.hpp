@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A table of numbers in memory, and reading one from comma-separated values (RFC 4180).
+/// Table of numbers in memory, and its reader for comma-separated values (RFC 4180).
 
 #include <cerrno>
 #include <charconv>
@@ -16,13 +16,13 @@
 
 namespace polybody {
 
-/// A table in memory: `rows[i][j]` is the number in row i under head `columns[j]`.
+/// Table of numbers: `rows[i][j]` is the number in row i and column `columns[j]`.
 struct Table {
-  std::vector<std::string> columns;       ///< (m) the heads, units included
+  std::vector<std::string> columns;       ///< (m) heads of the columns, with units
   std::vector<std::vector<double>> rows;  ///< (n) rows of m numbers
 
-  /// The n numbers under the head `name`. Throws InvalidInput, listing the heads, unless exactly
-  /// one column is called so.
+  /// Returns the n numbers of the column `name`. Throws InvalidInput with a list of the heads unless exactly one
+  /// column has this name.
   std::vector<double> column(std::string_view name) const {
     std::string heads;
     std::size_t found = 0, place = 0;
@@ -41,7 +41,7 @@ struct Table {
 
 namespace detail {
 
-/// The place of a character by which a spreadsheet takes a text for a formula, after single quotes; npos for another
+/// Index of the character, after any single quotes, by which a spreadsheet recognises a formula; npos for another
 /// text.
 inline std::size_t formula_in(std::string_view text) {
   std::size_t const first = text.find_first_not_of('\'');
@@ -49,8 +49,8 @@ inline std::size_t formula_in(std::string_view text) {
   return is_formula ? first : text.npos;
 }
 
-/// A text, never a number, as a field of comma-separated values (RFC 4180). A text that begins with =, +, - or @, which
-/// spreadsheets evaluate as a formula, gets a single quote before it.
+/// Field of comma-separated values (RFC 4180) for a text that is not a number. A single quote precedes a text that
+/// begins with =, +, - or @, because spreadsheets evaluate such texts as formulas.
 inline std::string csv_text(std::string const& text) {
   std::string const whole = formula_in(text) == text.npos ? text : '\'' + text;
   bool const edge = whole.starts_with(' ') || whole.ends_with(' ') || whole.starts_with("\xEF\xBB\xBF");
@@ -59,24 +59,24 @@ inline std::string csv_text(std::string const& text) {
   for (char const c : whole) quoted.append(c == '"' ? 2u : 1u, c);
   return quoted + '"';
 }
-/// The text of a field that `csv_text` wrote.
+/// Text of a field written by `csv_text`.
 inline std::string text_of_csv(std::string const& field) {
   std::size_t const place = formula_in(field);
   return place == 0 || place == field.npos ? field : field.substr(1);
 }
 
-/// Cuts RFC 4180 text into records of fields and counts its lines (from 1).
+/// Reader that splits RFC 4180 text into records of fields and counts lines from 1.
 struct CsvReader {
   std::string_view text;
-  std::string name;  ///< the file, for messages
+  std::string name;  ///< name of the file, for messages
   std::size_t line = 1;
 
   [[noreturn, gnu::cold]] void fail(std::size_t at, std::string const& what) const {
     throw IoError{"file '", name, "', line ", at, ": ", what};
   }
 
-  /// The next record; `at` becomes the line where it begins. Blank lines are passed over, the end
-  /// of the text gives none. Blanks around an unquoted field are dropped.
+  /// Returns the next record, which is empty at the end of the text. `at` becomes the line in which the record
+  /// begins. Blank lines, and blanks around an unquoted field, are skipped.
   std::vector<std::string> record(std::size_t& at) {
     while (!text.empty() && (text.front() == '\n' || text.front() == '\r')) step();
     at = line;
@@ -131,10 +131,10 @@ struct CsvReader {
 
 }  // namespace detail
 
-/// Reads a file as `Csv` writes it, and what other programs write: lines that end with LF, CR LF or CR, quoted fields,
-/// a byte-order mark, a leading '+', blank lines. A head that begins with a single quote before =, +, - or @ loses it.
-/// Throws IoError with the file, and the line where there is one, if it cannot be read, is empty, is ragged or holds
-/// anything but finite numbers.
+/// Reads a table from `file`, written by `Csv` or another program. Accepts lines that end with LF, CR LF or CR,
+/// quoted fields, a byte-order mark, a leading '+' and blank lines. Removes the single quote of a head that begins
+/// with one before =, +, - or @. Throws IoError with the file and, if possible, the line. The reasons are a file that
+/// cannot be read or is empty, rows of different lengths, and fields that are not finite numbers.
 inline Table read_csv(std::filesystem::path const& file) {
   std::string const name = file.string();
   errno = 0;

@@ -1,9 +1,9 @@
 #pragma once
 /// \file
-/// The temporary file of an AtomicFile, and the calls of POSIX that it needs. On systems without them the file has a
-/// name from the beginning, and the system decides when its bytes reach the disk.
+/// Temporary file of an AtomicFile, and its POSIX calls. On systems without POSIX the file has a name from the
+/// beginning, and the system decides when its bytes are written to the disk.
 ///
-/// Not in polybody.hpp: it comes with io/atomic_file.hpp.
+/// Not in polybody.hpp: it belongs to io/atomic_file.hpp.
 
 #if __has_include(<unistd.h>)
 #include <fcntl.h>
@@ -20,7 +20,7 @@
 
 namespace polybody::detail {
 
-/// A hidden name in the folder of `file` that no other writer uses: ".polybody-<16 hex digits>.tmp".
+/// Unused hidden name in the folder of `file`: ".polybody-<16 hex digits>.tmp".
 inline std::filesystem::path temporary_beside(std::filesystem::path const& file) {
   std::random_device random;
   std::string name = ".polybody-";
@@ -28,12 +28,13 @@ inline std::filesystem::path temporary_beside(std::filesystem::path const& file)
   return file.parent_path() / (name + ".tmp");
 }
 
-/// A file that replaces another one when it is complete. Linux makes it without a name (O_TMPFILE), so that a killed
-/// program leaves nothing behind; on file systems without such files it has a hidden name. Move-only.
+/// File that replaces another one when it is complete. Linux creates it without a name (O_TMPFILE), so a killed
+/// program leaves no file. On file systems without unnamed files it has a hidden name. Move-only.
 class TemporaryFile {
  public:
-  TemporaryFile() = default;  ///< None.
-  /// Makes one in the folder of `target`, which exists. The caller checks `is_open`; errno has the reason.
+  TemporaryFile() = default;  ///< No file.
+  /// Creates a file in the existing folder of `target`. The caller checks `is_open`; errno contains the reason of a
+  /// failure.
   explicit TemporaryFile(std::filesystem::path const& target) : target_(target), name_(temporary_beside(target)) {
 #ifdef O_TMPFILE
     std::filesystem::path const folder = target.parent_path();
@@ -55,9 +56,9 @@ class TemporaryFile {
   ~TemporaryFile() { discard(); }
 
   bool is_open() const noexcept { return file_ != nullptr; }
-  /// The stream to write to.
+  /// Stream for writing.
   std::FILE* stream() const noexcept { return file_; }
-  /// The file gets the permissions of the one that it replaces.
+  /// Sets the `permissions` of the file, those of the file that it replaces.
   void set_permissions(std::filesystem::perms permissions) const {
 #if __has_include(<unistd.h>)
     (void)::fchmod(::fileno(file_), static_cast<mode_t>(permissions & std::filesystem::perms::mask));
@@ -67,8 +68,8 @@ class TemporaryFile {
 #endif
   }
 
-  /// Hands all bytes to the disk, so that a loss of power finds the old file or the whole new one. False where the
-  /// system refuses; errno has the reason.
+  /// Writes all bytes to the disk, so after a loss of power either the old file or the complete new file exists.
+  /// Returns false if the system refuses; errno contains the reason.
   bool flush() const {
     if (std::fflush(file_) != 0) return false;
 #if __has_include(<unistd.h>)
@@ -76,8 +77,8 @@ class TemporaryFile {
 #endif
     return true;
   }
-  /// Closes the file and gives it the name of its target. Returns the system's reason where it refuses; nothing is
-  /// left then.
+  /// Closes the file and renames it to its target. If the system refuses, it removes the file and returns the
+  /// system's reason.
   std::error_code put_in_place() {
     if (!is_named_ && !give_name()) {
       std::error_code const reason(errno, std::generic_category());
@@ -97,7 +98,7 @@ class TemporaryFile {
     sync_folder();
     return {};
   }
-  /// Closes and removes it.
+  /// Closes and removes the file.
   void discard() noexcept {
     if (file_) std::fclose(std::exchange(file_, nullptr));
     if (is_named_) remove();
@@ -122,7 +123,7 @@ class TemporaryFile {
 #ifdef O_TMPFILE
     return ::linkat(AT_FDCWD, link_to(::fileno(file_)).c_str(), AT_FDCWD, name_.c_str(), AT_SYMLINK_FOLLOW) == 0;
 #else
-    return false;  // it has one
+    return false;  // the file has a name
 #endif
   }
   void sync_folder() const noexcept {
@@ -139,7 +140,8 @@ class TemporaryFile {
   bool is_named_ = false;
 };
 
-/// The file at the end of a chain of symbolic links; it need not exist. `reason` becomes an error for a loop of links.
+/// Target of a chain of symbolic links from `file`; it need not exist. `reason` becomes an error if the links form a
+/// loop.
 inline std::filesystem::path end_of_links(std::filesystem::path file, std::error_code& reason) {
   namespace fs = std::filesystem;
   for (int links = 0; fs::is_symlink(fs::symlink_status(file, reason)); ++links) {

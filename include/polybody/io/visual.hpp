@@ -1,7 +1,6 @@
 #pragma once
 /// \file
-/// What a model looks like in a state: shapes carried by markers, and bars swept along their sections, under every
-/// formulation.
+/// Visual geometry of a model in a state: shapes fixed to markers, and sections swept along bars.
 
 #include <functional>
 #include <string>
@@ -13,21 +12,21 @@
 
 namespace polybody {
 
-/// One thing to be seen: its surface in world axes, and in each of its points the axial stress [N/m²] where its body
-/// knows it, else none, and the velocity [m/s]. A frame goes with it: the one that carries its shape, or the one at the
-/// middle of a bar.
+/// Visible part of a model: its surface, point velocities [m/s] and axial stresses [N/m²] in one state, and a frame.
+/// The stresses are empty if the body does not provide them. The frame is the marker's frame of a fixed shape, or the
+/// frame at the middle of a bar.
 struct VisualPart {
-  std::string name;                   ///< of the body
-  Surface surface;                    ///< as it stands in the state
-  std::vector<double> axial_stress;   ///< of each point, where it is known [N/m²]
-  std::vector<Vec3> velocities = {};  ///< of each point, world axes [m/s]
+  std::string name;                   ///< name of the part
+  Surface surface;                    ///< surface in the state, world axes
+  std::vector<double> axial_stress;   ///< axial stress of each point [N/m²]; empty if unknown
+  std::vector<Vec3> velocities = {};  ///< velocity of each point, world axes [m/s]
   Vec3 place = Vec3::Zero();          ///< (3) origin of the frame, world axes [m]
-  Mat3 axes = Mat3::Identity();       ///< (3×3) from axes of the frame to world axes
-  std::vector<Vec3> carried = {};  ///< where a frame carries the part: its points in axes of the frame [m]; else none
+  Mat3 axes = Mat3::Identity();       ///< (3×3) rotation from axes of the frame to world axes
+  std::vector<Vec3> carried = {};     ///< points of a fixed shape in axes of its frame [m]; else empty
 };
 
 namespace detail {
-/// Point i of a part stands at `point` in the axes of a frame, and moves with it.
+/// Sets position and velocity of point i of a part that is fixed to frame f at `point`, in axes of the frame.
 template <class = void>
 void place_point(Frame<double> const& f, Vec3 const& point, VisualPart& part, std::size_t i) {
   Vec3 const arm = f.A * point;
@@ -36,37 +35,39 @@ void place_point(Frame<double> const& f, Vec3 const& point, VisualPart& part, st
 }
 }  // namespace detail
 
-/// The visual geometry of a model, put together once and then asked for any state:
+/// Visual geometry of a model, defined once and evaluated in any state:
 ///   Visual visual(model);
-///   visual.attach(chassis.at({0, 0, 0}), box({4, 2, 1}));   carried by the marker's frame
-///   visual.sweep(beam, bar, 20);                            the bar's section along the body, deformed as the body is
+///   visual.attach(chassis.at({0, 0, 0}), box({4, 2, 1}));   fixed to the marker's frame
+///   visual.sweep(beam, bar, 20);                            the bar's section along the deformed body
 ///   for (VisualPart const& part : visual.at(x)) ...
-/// The model must outlive it and must not change after.
+/// The model must outlive this object and must not change after its construction.
 class Visual {
  public:
-  /// No shapes yet. The model must be complete.
+  /// Geometry of a complete model, without shapes.
   template <class M>
   explicit Visual(M const& model) : layout_(layout_of(model)), reference_(model.reference_state()) {}
   template <class M>
     requires(!std::same_as<M, Visual>)
-  explicit Visual(M const&& model) = delete;  ///< a temporary model, which would not outlive it
+  explicit Visual(M const&& model) = delete;  ///< deleted: a temporary model does not outlive the geometry
 
-  /// The shape's axes are the marker's. \throws InvalidInput for a marker of another model.
+  /// Adds a shape that is fixed to a marker, under `name`. The axes of the shape are the axes of the marker.
+  /// \throws InvalidInput for a marker of another model.
   template <class B>
   void attach(Marker<B> const& marker, Surface const& shape, std::string name = "shape");
 
-  /// The bar that the body was made from, in so many pieces along its length, round sections with so many `sides`.
-  /// Points of a section lie where the body's own points do; sections of cables and of the plane are carried by the
-  /// frame on the axis.
+  /// Adds the surface of the bar from which the body was made, divided into `pieces` along its length. Round sections
+  /// become polygons with so many `sides`. The points of a section follow the body's own displacement field if the
+  /// body provides points off its axis. Otherwise, as for cables and planar bodies, the section is rigid and fixed to
+  /// the frame on the axis.
   /// \throws InvalidInput for fewer than one piece, a handle of another model or a bar without a section.
   template <class B>
   void sweep(BodyHandle<B> const& body, Bar const& bar, int pieces, int sides = 24);
 
-  /// The state in which the model is undeformed as placed.
+  /// Reference state: the bodies are undeformed and placed as built.
   State const& reference() const { return reference_; }
 
-  /// All parts in state x; valid until asked again. \throws InvalidInput for a state of another model, or where the
-  /// model has changed.
+  /// Returns all parts in state x. The reference is valid until the next call.
+  /// \throws InvalidInput for a state of another model, or if the model has changed.
   std::vector<VisualPart> const& at(State const& x) {
     layout_.watch.require_unchanged();
     for (std::size_t i = 0; i < parts_.size(); ++i) moves_[i](x, parts_[i]);
@@ -74,7 +75,7 @@ class Visual {
   }
 
  private:
-  /// One more part, whose points stand in the axes of a frame.
+  /// Adds a part whose points are fixed in the axes of a frame.
   template <class = void>
   void carry(Surface const& shape, std::string name, FrameIn frame_in);
 
@@ -84,7 +85,8 @@ class Visual {
   std::vector<std::function<void(State const&, VisualPart&)>> moves_;
 };
 
-// Outside the class, so that a program that links `polybody::compiled` does not compile them again.
+// Defined outside of the class: a program that links `polybody::compiled` then does not compile these functions
+// again.
 template <class B>
 void Visual::attach(Marker<B> const& marker, Surface const& shape, std::string name) {
   if constexpr (std::is_same_v<B, Ground>) {

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// What a model looks like over time, as VTK's XML files for ParaView: a collection (.pvd) and beside it an
-/// unstructured grid (.vtu) for each state. Not in polybody.hpp: few programs need it.
+/// Animations of a model for ParaView, as VTK's XML files: a collection (.pvd) and an unstructured grid (.vtu) for
+/// each state. Not in polybody.hpp: few programs need it.
 
 #include <bit>
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace polybody {
 
 namespace detail {
 
-/// `text` as it stands between the quotes of an XML attribute.
+/// `text` escaped for an XML attribute.
 template <class = void>
 std::string xml_text(std::string const& text) {
   std::string out;
@@ -22,8 +22,8 @@ std::string xml_text(std::string const& text) {
   return out;
 }
 
-/// Arrays of a VTK file: their heads, and their raw bytes, each array behind its length, as they are appended [VTK File
-/// Formats, XML].
+/// Arrays of a VTK file: their XML elements, and their raw appended data. The length of each array precedes its bytes
+/// [VTK File Formats, XML].
 struct VtkArrays {
   std::string heads, bytes;
 
@@ -47,7 +47,8 @@ struct VtkArrays {
   }
 };
 
-/// All parts as one unstructured grid of polygons. \param rest where the points stand in the reference state
+/// Writes all parts to the file `name` as one unstructured grid of polygons.
+/// \param rest positions of the points in the reference state
 template <class = void>
 void write_vtu(std::filesystem::path const& name, std::vector<VisualPart> const& parts, std::vector<Vec3> const& rest) {
   std::vector<Vec3> points, moved, velocities;
@@ -68,7 +69,7 @@ void write_vtu(std::filesystem::path const& name, std::vector<VisualPart> const&
     velocities.insert(velocities.end(), part.velocities.begin(), part.velocities.end());
     for (double const s : part.axial_stress) stress.push_back(float(s));
     stressed = stressed || !part.axial_stress.empty();
-    stress.resize(points.size(), std::numeric_limits<float>::quiet_NaN());  // of a part without
+    stress.resize(points.size(), std::numeric_limits<float>::quiet_NaN());  // NaN for a part without stresses
   }
 
   VtkArrays arrays;
@@ -99,19 +100,21 @@ void write_vtu(std::filesystem::path const& name, std::vector<VisualPart> const&
 
 }  // namespace detail
 
-/// Writes one state after the other:
+/// Writer of ParaView animations, one state after the other:
 ///   VtkWriter writer("out/run.pvd", visual);
 ///   for (State const& now : simulate(…)) writer.write(now);
-/// makes out/run.pvd and out/run/run_000000.vtu, …. Points carry `displacement` from the reference state [m],
-/// `velocity` [m/s] and, where a part knows it, `axial_stress` [N/m²] (NaN on the others); cells carry `part`, the
-/// place among the parts of the visual, from 0. Numbers are float32. A grid is complete before the collection names it,
-/// and the collection is whole after every state; so a run that is broken off, even by a signal, leaves an animation up
-/// to its last state, and no temporary file. The visual must outlive the writer.
+/// The example writes out/run.pvd and out/run/run_000000.vtu, …. The point data are the `displacement` from the
+/// reference state [m], the `velocity` [m/s] and the `axial_stress` [N/m²] (NaN if a part does not provide it). The
+/// cell data are `part`, the index of the part in the visual, from 0. Numbers are float32. A grid is complete before
+/// the collection refers to it, and the collection is valid after every state. A run that is interrupted, even by a
+/// signal, therefore leaves an animation up to its last state, and no temporary file. The visual must outlive the
+/// writer.
 template <class = void>  // compiled where it is used
 class VtkWriterOf {
  public:
-  /// Writes a collection without states. \throws InvalidInput unless the file ends in .pvd; IoError when it cannot be
-  /// written.
+  /// Writes a collection without states to `file`.
+  /// \throws InvalidInput unless the name of the file ends in .pvd
+  /// \throws IoError if the file cannot be written.
   VtkWriterOf(std::filesystem::path const& file, Visual& visual)
       : visual_(&visual), file_(std::filesystem::absolute(file)), collection_((check(file), file_)) {
     for (VisualPart const& part : visual.at(visual.reference()))
@@ -119,7 +122,9 @@ class VtkWriterOf {
     add("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n");
   }
 
-  /// \throws InvalidInput unless times rise, NonFinite, IoError.
+  /// Writes the grid of state x and adds it to the collection.
+  /// \throws InvalidInput unless times increase
+  /// \throws NonFinite for coordinates that are not finite, IoError.
   void write(State const& x) {
     if (!(x.t > last_))
       throw InvalidInput{"VtkWriter: the states of '",
@@ -144,14 +149,14 @@ class VtkWriterOf {
     ++count_;
   }
 
-  std::size_t states() const { return count_; }  ///< written so far
+  std::size_t states() const { return count_; }  ///< number of states written
 
  private:
   static void check(std::filesystem::path const& file) {
     if (file.extension() != ".pvd")
       throw InvalidInput{"VtkWriter: the name of a collection ends in .pvd, but this is '", file.string(), "'."};
   }
-  /// Writes an entry over the end of the collection, and the end behind it, by one call of the system.
+  /// Overwrites the end of the collection by an entry and a new end, in one system call.
   void add(std::string const& entry) {
     collection_.go_to(end_);
     collection_.write(entry + "</Collection>\n</VTKFile>\n");
@@ -162,7 +167,7 @@ class VtkWriterOf {
   Visual* visual_;
   std::filesystem::path file_;
   FileInPlace collection_;
-  std::size_t end_ = 0;  ///< of the entries [bytes]
+  std::size_t end_ = 0;  ///< end of the entries in the collection [bytes]
   std::vector<Vec3> rest_;
   std::size_t count_ = 0;
   double last_ = -std::numeric_limits<double>::infinity();
