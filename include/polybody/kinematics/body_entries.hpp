@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The bodies of one type as a model and its handles hold them.
+/// Storage of the bodies of one type, shared by a model and its handles.
 
 #include <cstdint>
 #include <memory>
@@ -12,20 +12,19 @@
 
 namespace polybody::detail {
 
-/// A body in a model, and where its coordinates and speeds stand in the model's.
+/// Body of a model with the positions of its coordinates and velocities in those of the model.
 template <class B>
 struct BodyEntry {
   B body;
   std::string name;
   Index q0;                   ///< first coordinate
-  Index v0;                   ///< first speed
-  Index row = -1;             ///< first of its own rows; −1 for a body without
-  std::uint64_t made_in = 0;  ///< serial number of the model that it was added to
+  Index v0;                   ///< first generalised velocity
+  Index row = -1;             ///< first of its own constraint equations; −1 for a body without
+  std::uint64_t made_in = 0;  ///< serial number of the model to which it was added
 };
 
-/// The entries stand by value one after another, so loops read them without an indirection. Handles share the array: a
-/// body is in memory once, and is there as long as its model or a handle of it. A copied model gets an array of its
-/// own.
+/// Array of the bodies of one type, stored by value, so that loops read them without indirection. Handles share the
+/// array. It exists as long as the model or one of the handles. A copy of a model has a separate array.
 template <class B>
 class BodyEntries {
  public:
@@ -60,7 +59,7 @@ class BodyEntries {
   Entry const* begin() const { return first_; }
   Entry const* end() const { return first_ + size_; }
 
-  /// The array, for a handle; it grows with the model.
+  /// Array for a handle; it grows with the model.
   std::shared_ptr<Sequence<Entry> const> shared() const { return array_; }
 
  private:
@@ -69,8 +68,8 @@ class BodyEntries {
     size_ = array_ ? array_->size() : 0;
   }
 
-  std::shared_ptr<Sequence<Entry>> array_;  ///< none before the first body
-  Entry const* first_ = nullptr;            ///< of the array
+  std::shared_ptr<Sequence<Entry>> array_;  ///< null until the first body is added
+  Entry const* first_ = nullptr;            ///< first entry of the array
   std::size_t size_ = 0;
 };
 

@@ -1,12 +1,12 @@
 #pragma once
 /// \file
-/// Waist 1: what a joint or a force sees of a body, whatever the body is.
+/// Kinematics of markers: the interface between bodies on one side, joints and forces on the other.
 
 #include <polybody/math/quaternion.hpp>
 
 namespace polybody {
 
-/// Place, orientation and motion of a marker, all in world axes.
+/// Position, orientation and velocity of a marker, all in world axes.
 template <StateScalar T = double>
 struct Frame {
   Vec<T, 3> r = Vec<T, 3>::Zero();  ///< (3) origin [m]
@@ -15,51 +15,51 @@ struct Frame {
   Vec<T, 3> w = Vec<T, 3>::Zero();  ///< (3) angular velocity [rad/s]
 };
 
-/// The frame `x` without its derivatives.
+/// Frame `x` without derivatives.
 template <StateScalar T>
 Frame<double> values_of(Frame<T> const& x) {
   return {values_of(x.r), values_of(x.A), values_of(x.v), values_of(x.w)};
 }
 
-/// Force and moment about the marker's origin, in world axes.
+/// Force and moment about the origin of a marker, in world axes.
 template <StateScalar T = double>
 struct Wrench {
   Vec<T, 3> f = Vec<T, 3>::Zero();  ///< (3) force [N]
   Vec<T, 3> m = Vec<T, 3>::Zero();  ///< (3) moment about the origin of the frame [N m]
 };
 
-/// A wrench that acts at a place.
+/// Wrench with its point of action.
 struct PlacedWrench {
-  Vec3 at = Vec3::Zero();  ///< (3) [m]
-  Wrench<double> w;        ///< about that place
+  Vec3 at = Vec3::Zero();  ///< (3) point of action [m]
+  Wrench<double> w;        ///< moment about this point
 };
 
-/// What a marker can tell: a point, a point and its first axis, or a full frame.
+/// Kinematics that a marker provides: a point, a point and its first axis, or a full frame.
 enum class Observes { point, axis, frame };
 
-/// Which world a body lives in; a joint of one never meets a marker of the other, except the ground.
+/// Dimension of a body: plane or space. A joint connects bodies of one dimension; the ground belongs to both.
 enum class World { plane, space, both };
 
-/// Whether what knows a and what knows b can be joined: plane with plane, space with space, both with either.
+/// True if parts of a and b can be connected: plane with plane, space with space, both with either.
 constexpr bool same_world(World a, World b) { return a == b || a == World::both || b == World::both; }
 
-/// Where a body stands at the start, and how it is turned: placement of its own axes in the world.
+/// Initial position and orientation of a body: placement of its axes in the world.
 struct Placement {
   Vec3 origin = Vec3::Zero();  ///< (3) [m]
   Mat3 axes = identity();      ///< (3×3) columns are the body's axes in world axes
 
-  /// In the plane: origin (x, y) and the angle from world x to body x [rad].
+  /// Placement in the plane: origin (x, y) and `angle` from world x to body x [rad].
   template <class = void>  // compiled where it is used
   static Placement planar(double x, double y, double angle = 0.0) {
     return {Vec3(x, y, 0.0), exp_so3<double>(Vec3(0.0, 0.0, angle))};
   }
-  /// At `origin` (3), world axes [m], turned by the vector `rotation` (3) [rad].
+  /// Placement at `origin` (3), world axes [m], rotated by the rotation vector `rotation` (3) [rad].
   template <class = void>  // compiled where it is used
   static Placement at(Vec3 const& origin, Vec3 const& rotation = Vec3::Zero()) {
     return {origin, exp_so3<double>(rotation)};
   }
 
-  /// \throws InvalidInput naming `what` unless finite and orthonormal, right-handed.
+  /// \throws InvalidInput naming `what` unless the placement is finite and its axes are orthonormal and right-handed.
   template <class = void>  // compiled where it is used
   void check(std::string const& what) const {
     require_finite(origin, what, ": the placement's origin");
@@ -81,8 +81,8 @@ struct Placement {
       throw InvalidInput{what, ": the placement's axes must be orthonormal and right-handed."};
   }
 
-  /// The angle about world z of a planar placement [rad].
-  /// \throws InvalidInput when the placement leaves the plane z = 0.
+  /// Angle about world z of a planar placement [rad].
+  /// \throws InvalidInput if the placement is not in the plane z = 0.
   template <class = void>  // compiled where it is used
   double planar_angle(std::string const& what) const {
     check(what);

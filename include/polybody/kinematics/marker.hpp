@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Markers as the user holds them: a material point of a body of a certain model.
+/// Markers, material points of a body in a model, and handles of bodies.
 
 #include <cstdint>
 #include <string>
@@ -12,7 +12,7 @@
 namespace polybody {
 
 namespace detail {
-/// \throws InvalidInput for the serial number of no model.
+/// \throws InvalidInput for the serial number 0, which belongs to no model.
 inline void require_filled(std::uint64_t model) {
   if (model == 0)
     throw InvalidInput(
@@ -20,31 +20,31 @@ inline void require_filled(std::uint64_t model) {
 }
 }  // namespace detail
 
-/// A material point of a body of type B in the model with this serial number.
+/// Material point of a body of type B in a model with a given serial number.
 template <class B>
 struct Marker {
-  using BodyType = B;                                ///< the body that it is on
+  using BodyType = B;                                ///< type of its body
   static constexpr World world = B::world;           ///< plane or space
-  static constexpr Observes observes = B::observes;  ///< whether it knows a point, an axis, a frame
+  static constexpr Observes observes = B::observes;  ///< provides a point, an axis or a frame
 
-  std::uint64_t model = 0;       ///< the serial of the model that made it
-  Index body = 0;                ///< among the bodies of its type
-  typename B::Point point = {};  ///< on the body
+  std::uint64_t model = 0;       ///< serial number of the model that created it
+  Index body = 0;                ///< number of the body among the bodies of its type
+  typename B::Point point = {};  ///< position on the body
 };
 
 /// The world as a body without coordinates. Its points are placements.
 struct Ground {
-  static constexpr World world = World::both;            ///< joints connect it to bodies of the plane and of space
-  static constexpr Observes observes = Observes::frame;  ///< its markers know a frame
-  using Point = Placement;                               ///< place and axes of a marker
+  static constexpr World world = World::both;            ///< connects to bodies of the plane and of space
+  static constexpr Observes observes = Observes::frame;  ///< its markers provide a full frame
+  using Point = Placement;                               ///< position and axes of a marker
 
-  /// The marker at `origin` [m], axes parallel to the world's.
+  /// Marker at `origin` [m] with axes parallel to the world axes.
   template <class = void>  // compiled where it is used
   Point at(Vec3 const& origin) const {
     require_finite(origin, "Ground: the point");
     return Placement::at(origin);
   }
-  /// The marker there, with these axes. \throws InvalidInput for axes that are no rotation.
+  /// Marker at `placement`. \throws InvalidInput if its axes are not orthonormal and right-handed.
   template <class = void>  // compiled where it is used
   Point at(Placement const& placement) const {
     placement.check("Ground");
@@ -52,18 +52,18 @@ struct Ground {
   }
 };
 
-/// Handle of a body in a model: names it and makes markers on it. One made by default names nothing and refuses to be
-/// used until a handle is assigned to it.
+/// Handle of a body in a model; it creates markers on the body. A default-constructed handle refers to no body. Its
+/// use throws until a handle is assigned to it.
 template <class B>
 struct BodyHandle {
-  std::uint64_t model = 0;  ///< the serial of the model that made it
-  Index index = 0;          ///< among the parts of its type
-  std::string name = {};    ///< the user's own
-  /// The model's bodies of this type, shared with the model and not copied; none for the ground.
+  std::uint64_t model = 0;  ///< serial number of the model that created it
+  Index index = 0;          ///< number among the bodies of its type
+  std::string name = {};    ///< name given by the user
+  /// Bodies of this type, shared with the model and not copied; null for the ground.
   std::shared_ptr<Sequence<detail::BodyEntry<B>> const> bodies = {};
 
-  /// The body as the model holds it; the reference is valid until a body of this type is added to the model.
-  /// \throws InvalidInput for a handle made by default.
+  /// Body in the model. The reference is valid until a body of this type is added to the model.
+  /// \throws InvalidInput for a default-constructed handle.
   B const& body() const {
     detail::require_filled(bodies || std::is_same_v<B, Ground> ? model : 0);
     if constexpr (std::is_same_v<B, Ground>) {
@@ -74,20 +74,20 @@ struct BodyHandle {
     }
   }
 
-  /// A marker at a material point; `args` as for the body's own `at`. \throws InvalidInput with its name, or for a
-  /// handle made by default.
+  /// Marker at a material point; `args` as for the function `at` of the body. \throws InvalidInput with the name of
+  /// the body for an invalid point, and for a default-constructed handle.
   template <class... Args>
     requires requires(B const b, Args... args) { b.at(args...); }
   Marker<B> at(Args const&... args) const {
     return named([&](B const& on) { return on.at(args...); });
   }
-  /// The same for a point in braces.
+  /// Marker at the material point `point`, which may be written in braces [m].
   Marker<B> at(Vec3 const& point) const
     requires(B::world != World::plane) && requires(B const b, Vec3 p) { b.at(p); }
   {
     return named([&](B const& on) { return on.at(point); });
   }
-  /// The same in the plane; `point` (2) as for the body's own `at` [m].
+  /// Marker at the material point `point` (2) of a planar body, as for the function `at` of the body [m].
   Marker<B> at(Vec2 const& point) const
     requires(B::world == World::plane) && requires(B const b, Vec2 p) { b.at(p); }
   {

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Waist 1 as data: a marker after its body has published it. The body's type is gone.
+/// Marker kinematics with erased body type: arrays for joints, forces and solvers.
 
 #include <algorithm>
 #include <cassert>
@@ -9,30 +9,30 @@
 
 namespace polybody {
 
-/// Shape of a marker's Jacobian.
+/// Storage format of a marker's Jacobian.
 enum class JacobianShape : unsigned char {
   ground,  ///< no columns
-  rigid,   ///< twist = [1, −A ũ; 0, A] [ṙ; ω_body]: kept as A and the arm ρ = A u, never multiplied out
-  dense    ///< 6×n, stored
+  rigid,   ///< [1, −A ũ; 0, A] for [ṙ; ω_body]; only A and the moment arm ρ = A u are stored
+  dense    ///< 6×n matrix
 };
 
-/// A marker's frame, Jacobian and bias. twist [ṙ; ω] = J v, twist˙ = J v̇ + bias.
+/// Marker kinematics: frame, Jacobian J and bias acceleration of a marker; twist [ṙ; ω] = J v, twist˙ = J v̇ + bias.
 template <StateScalar T = double>
 struct Published {
-  Frame<T> frame;                               ///< place, axes and velocities
-  Vec<T, 6> bias = Vec<T, 6>::Zero();           ///< twist˙ for v̇ = 0, world axes [m/s²], [rad/s²]
-  Mat<T, 3, 3> body_axes = identity<T>();       ///< rigid only: A of the body
-  Vec<T, 3> arm = Vec<T, 3>::Zero();            ///< rigid only: ρ = A u, world axes [m]
-  T* jacobian = nullptr;                        ///< dense only: 6×columns, column-major, in the arena of the data
-  Index first = 0;                              ///< first velocity column it touches
-  Index columns = 0;                            ///< how many
-  JacobianShape shape = JacobianShape::ground;  ///< says where J stands
+  Frame<T> frame;                          ///< position, axes and velocities
+  Vec<T, 6> bias = Vec<T, 6>::Zero();      ///< twist˙ for v̇ = 0, world axes [m/s²], [rad/s²]
+  Mat<T, 3, 3> body_axes = identity<T>();  ///< rigid only: A of the body
+  Vec<T, 3> arm = Vec<T, 3>::Zero();       ///< rigid only: ρ = A u, world axes [m]
+  T* jacobian = nullptr;                   ///< dense only: 6×columns, column-major, in memory of the evaluated data
+  Index first = 0;                         ///< first velocity with a nonzero column
+  Index columns = 0;                       ///< number of columns
+  JacobianShape shape = JacobianShape::ground;  ///< storage format of J
 
   using DenseMap = Eigen::Map<Mat<T, 6, Eigen::Dynamic> const>;      ///< 6×columns
-  DenseMap dense() const { return DenseMap(jacobian, 6, columns); }  ///< J of the dense shape
+  DenseMap dense() const { return DenseMap(jacobian, 6, columns); }  ///< J of the dense format
 
-  /// out (columns×k) = (rows · J)ᵀ for `rows` given as 6×k columns [force part; moment part]:
-  /// the generalised forces of k wrenches.
+  /// Generalised forces of k wrenches: out (columns×k) = Jᵀ `wrenches`, with `wrenches` (6×k) as columns [force;
+  /// moment].
   template <class In, class Out>
   void pull(In const& wrenches, Out&& out) const {
     switch (shape) {
@@ -41,7 +41,7 @@ struct Published {
       case JacobianShape::rigid:
         pull_rigid(wrenches, out);
         return;
-      case JacobianShape::dense:  // in plain loops: a matrix product of Eigen costs more, to compile and to run
+      case JacobianShape::dense:  // plain loops: a matrix product of Eigen compiles and runs more slowly
         for (Index k = 0; k < wrenches.cols(); ++k)
           for (Index c = 0; c < columns; ++c) {
             T const* const j = jacobian + 6 * c;
@@ -52,8 +52,8 @@ struct Published {
     }
   }
 
-  /// `pull` for the rigid shape, w (6×k) to out (6×k): [f; Aᵀ(m + ρ × f)], component by component for all wrenches, as
-  /// vector units like it.
+  /// `pull` for the rigid format, w (6×k) to out (6×k): [f; Aᵀ(m + ρ × f)]. The loops over all wrenches are
+  /// innermost, so that they vectorise.
   template <class In, class Out>
   void pull_rigid(In const& w, Out& out) const {
     constexpr int fixed = In::ColsAtCompileTime;
@@ -76,7 +76,7 @@ struct Published {
     }
   }
 
-  /// J b (6), b by the marker's columns.
+  /// Twist J b (6) of generalised velocities b, one per column of J.
   Vec<T, 6> push(T const* b) const {
     Vec<T, 6> t;
     for (int i = 0; i < 6; ++i) t[i] = T(0.0);

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Where the blocks of a matrix go: one type, whatever receives them, so that who writes a matrix is compiled once.
+/// Receivers of the blocks of a sparse matrix. `BlockSink` erases the type of the receiver, so that code that writes
+/// a matrix is compiled once.
 
 #include <atomic>
 #include <concepts>
@@ -12,21 +13,22 @@
 
 namespace polybody {
 
-/// Place of a block in the matrix.
+/// Position and size of a block in the matrix.
 struct Block {
   Index row, col, rows, cols;  ///< first row and column of the block in the matrix, and its size
 };
 
-/// A part of a block and its place in a solver's storage: entry (i, j) is added to to[i stride + j]; transposed, to
-/// to[j stride + i].
+/// Part of a block and its position in a solver's storage. Entry (i, j) is added to to[i stride + j]; if
+/// `transposed`, to to[j stride + i].
 struct BlockPiece {
-  double* to;                ///< the entry of the storage that receives the part's first entry
-  int row, col, rows, cols;  ///< the part, within the block
-  /// Entries of the storage from one row of the part to the next; from one column to the next if transposed.
+  double* to;                ///< entry of the storage that receives the first entry of the part
+  int row, col, rows, cols;  ///< position and size of the part within the block
+  /// Number of entries of the storage from one row of the part to the next; from one column to the next if
+  /// `transposed`.
   int stride;
   bool transposed;  ///< the storage has the part's columns as rows
 
-  /// Adds the numbers of this part of block b to the storage.
+  /// Adds the values of this part of block b to the storage.
   void add(BlockView const& b) const {
     double const* const from = b.data + row * b.row_step + col * b.col_step;
     if (transposed)
@@ -48,45 +50,46 @@ struct BlockPiece {
   }
 };
 
-/// The pieces of all blocks in the order in which they come: those of block k are [first[k], first[k + 1]).
+/// Parts of all blocks in the order of the blocks. The parts of block k are [first[k], first[k + 1]).
 struct BlockSlots {
-  BlockPiece const* pieces = nullptr;  ///< all pieces, block after block
-  /// (blocks + 1) number of the first piece of each block; null where a receiver is called for each block.
+  BlockPiece const* pieces = nullptr;  ///< parts of all blocks, in the order of the blocks
+  /// (blocks + 1) number of the first part of each block; null if the receiver is called for each block.
   int const* first = nullptr;
-  std::uint64_t layout = 0;  ///< of the storage: another number for every other one
+  std::uint64_t layout = 0;  ///< identifier of the storage layout, different for each layout
 
-  /// A number that no layout has had.
+  /// Returns an identifier that no other layout has.
   static std::uint64_t new_layout() {
     static std::atomic<std::uint64_t> last{0};
     return ++last;
   }
 };
 
-/// A receiver of blocks that is called for each of them: `add(row, col, block)`, always in the same order.
+/// Receiver with a function `add(row, col, block)`, called for each block, always in the same order.
 template <class S>
 concept TakesBlocks = requires(S target, BlockView const& b) { target.add(Index(0), Index(0), b); };
 
-/// A receiver that takes a block of zeros without its numbers.
+/// Receiver that accepts a block of zeros without its values.
 template <class S>
 concept SkipsZeros = requires(S target) { target.skip(Index(0), Index(0), Index(0), Index(0)); };
 
-/// A receiver that has the numbers of some diagonal blocks already: of those of unknowns that it does not want, `skip`
-/// will do.
+/// Receiver that already contains the values of some diagonal blocks. If `wants` is false for the unknowns of a
+/// diagonal block, a call of `skip` is sufficient.
 template <class S>
 concept ChoosesBlocks = requires(S target) {
   { target.wants(Index(0), Index(0)) } -> std::convertible_to<bool>;
 };
 
-/// A receiver that has laid its storage out: block k goes straight to its slots.
+/// Receiver with a fixed storage layout. Block k is added directly to its parts in the storage.
 template <class S>
 concept OffersSlots = requires(S const target) {
   { target.slots() } -> std::convertible_to<BlockSlots>;
 };
 
-/// Passes blocks on to a receiver: into its slots, or by a call for each. The receiver must outlive the sink.
+/// Passes blocks to a receiver: directly into its storage, or by one call per block. The receiver must outlive the
+/// sink.
 class BlockSink {
  public:
-  /// Passes blocks on to `target`: into its slots where it offers any, else by a call of its `add` for each.
+  /// Passes blocks to `target`: into its `slots()` if it has them, otherwise by a call of its `add` for each block.
   template <TakesBlocks S>
     requires(!std::same_as<std::remove_cvref_t<S>, BlockSink>)
   explicit BlockSink(S& target) : target_(&target) {
@@ -104,17 +107,17 @@ class BlockSink {
     };
   }
 
-  /// Adds block b, whose first entry stands at (row, col) of the matrix.
+  /// Adds block b with its first entry at (row, col) of the matrix.
   void add(Index row, Index col, BlockView const& b) {
     if (!slots_.first) return add_(target_, row, col, b);
     int const end = *++slots_.first;
     for (int k = slots_.first[-1]; k < end; ++k) slots_.pieces[k].add(b);
   }
-  /// Where the blocks to come go; none where the receiver is called for each.
+  /// Storage of the next blocks; empty if the receiver is called for each block.
   BlockSlots const& slots() const { return slots_; }
-  /// Whether the numbers of the diagonal block of the unknowns [first, first + size) are of use.
+  /// Checks that the receiver needs the values of the diagonal block of the unknowns [first, first + size).
   bool wants(Index first, Index size) const { return !wants_ || wants_(target_, first, size); }
-  /// A block of rows × cols zeros: it has its place in the matrix but does not act.
+  /// Adds a block of rows × cols zeros at (row, col): it is part of the pattern, but its values are not used.
   void skip(Index row, Index col, Index rows, Index cols) {
     if (slots_.first)
       ++slots_.first;
@@ -130,10 +133,10 @@ class BlockSink {
   BlockSlots slots_;
 };
 
-/// Whoever writes the blocks of a matrix into a sink: a callable of any type, which must outlive this.
+/// Callable that writes the blocks of a matrix into a sink, with erased type. The callable must outlive this object.
 class BlockWriter {
  public:
-  /// Stands for f, which is called as f(sink).
+  /// Refers to f, which is called as f(sink).
   template <class F>
     requires(!std::same_as<std::remove_cvref_t<F>, BlockWriter> && std::invocable<F const&, BlockSink&>)
   BlockWriter(F const& f)  // NOLINT(google-explicit-constructor): stands for the callable
@@ -145,10 +148,10 @@ class BlockWriter {
   void (*call_)(void const*, BlockSink&);
 };
 
-/// Records where blocks go, in the order in which they come.
+/// Records the positions of blocks in the order of the calls.
 struct PatternSink {
-  Sequence<Block> blocks;  ///< place and size of each block
-  /// Records a block; its numbers are not looked at.
+  Sequence<Block> blocks;  ///< position and size of each block
+  /// Records the position and size of block b at (row, col); its values are not read.
   void add(Index row, Index col, BlockView const& b) { blocks.push_back({row, col, b.rows, b.cols}); }
 };
 

@@ -3,13 +3,14 @@
 
 namespace polybody {
 
-/// A dense block wherever it stands in memory, also transposed. Not an Eigen expression, so that a sink is compiled
-/// once and not for every shape of block.
+/// View of a dense block in memory with arbitrary strides, also transposed. The type is not an Eigen expression. A
+/// sink is therefore compiled once and not for each shape of block.
 struct BlockView {
   double const* data;                    ///< first entry of the block
-  Index rows, cols, row_step, col_step;  ///< how many; how many doubles from one to the next in memory
+  Index rows, cols, row_step, col_step;  ///< size, and distances between rows and between columns in doubles
 
-  /// The matrix `m`, or a part or map of one, with direct access to its memory; it must outlive the view.
+  /// View of the matrix `m`, or of a part or map of a matrix, with direct access to its memory; `m` must outlive the
+  /// view.
   template <class D>
     requires(bool(D::Flags& Eigen::DirectAccessBit))
   BlockView(Eigen::MatrixBase<D> const& m)  // NOLINT(google-explicit-constructor): a view of a matrix
@@ -19,11 +20,12 @@ struct BlockView {
         row_step(D::IsRowMajor ? m.derived().outerStride() : m.derived().innerStride()),
         col_step(D::IsRowMajor ? m.derived().innerStride() : m.derived().outerStride()) {}
 
-  /// `height` rows of `width` columns from `first` on; `down` doubles from row to row, `right` from column to column.
+  /// View of `height` rows and `width` columns with the first entry at `first`. Rows are `down` doubles apart,
+  /// columns `right` doubles.
   BlockView(double const* first, Index height, Index width, Index down, Index right)
       : data(first), rows(height), cols(width), row_step(down), col_step(right) {}
 
-  /// The same memory with rows and columns exchanged.
+  /// View of the same memory with rows and columns exchanged.
   BlockView transposed() const { return {data, cols, rows, col_step, row_step}; }
   /// Entry (i, j), counted from zero.
   double operator()(Index i, Index j) const { return data[i * row_step + j * col_step]; }

@@ -1,7 +1,6 @@
 #pragma once
 /// \file
-/// Forward-mode dual numbers: a value with N partial derivatives, x + Σ dᵢ εᵢ, εᵢεⱼ = 0.
-/// f(x + d ε) = f(x) + f′(x) d ε  [Griewank & Walther 2008, §3.1].
+/// Dual numbers for forward differentiation.
 
 #include <Eigen/Core>
 #include <cmath>
@@ -9,21 +8,22 @@
 
 namespace polybody {
 
-/// A value `v` and `N` partial derivatives `d`.
+/// Dual number x + Σ dᵢ εᵢ with εᵢεⱼ = 0: a value `v` and `N` partial derivatives `d`.
+/// f(x + d ε) = f(x) + f′(x) d ε  [Griewank & Walther 2008, §3.1].
 template <int N>
 struct Dual {
   static_assert(N > 0, "A dual number needs at least one partial derivative.");
   using Partials = Eigen::Array<double, N, 1>;  ///< (N) column of partial derivatives
 
-  double v = 0.0;                 ///< value, in the unit of the quantity that it stands for
-  Partials d = Partials::Zero();  ///< (N) partial derivatives by the independent variables
+  double v = 0.0;                 ///< value, in the unit of the quantity
+  Partials d = Partials::Zero();  ///< (N) partial derivatives with respect to the independent variables
 
   Dual() = default;
-  /// The constant `value`: all of its derivatives are zero.
+  /// The constant `value`; all its derivatives are zero.
   Dual(double value) : v(value) {}  // NOLINT(google-explicit-constructor): a constant is a dual
   Dual(double value, Partials const& partials) : v(value), d(partials) {}  ///< a value and its derivatives
 
-  /// The independent variable number `i`, at `value`.
+  /// Independent variable number `i` with the value `value`.
   static Dual variable(double value, int i) {
     Dual x(value);
     x.d[i] = 1.0;
@@ -48,7 +48,7 @@ struct Dual {
     v *= b.v;
     return *this;
   }
-  /// d(a/b) = (da − (a/b) db)/b; b = 0 gives infinities or NaN, no exception.
+  /// d(a/b) = (da − (a/b) db)/b. Division by b = 0 yields infinities or NaN and does not throw.
   Dual& operator/=(Dual const& b) {
     double const inverse = 1.0 / b.v;
     v *= inverse;
@@ -68,7 +68,7 @@ struct Dual {
 
   friend Dual sqrt(Dual const& a) {
     double const s = std::sqrt(a.v);
-    if (s == 0.0) return {s, (a.d == 0.0).select(0.0, a.d / 0.0)};  // a constant zero stays one
+    if (s == 0.0) return {s, (a.d == 0.0).select(0.0, a.d / 0.0)};  // the derivative of a constant zero is zero
     return {s, a.d * (0.5 / s)};
   }
   friend Dual sin(Dual const& a) { return {std::sin(a.v), a.d * std::cos(a.v)}; }
@@ -102,21 +102,21 @@ struct Dual {
   friend bool isfinite(Dual const& a) { return std::isfinite(a.v) && a.d.allFinite(); }
 };
 
-/// The value of the scalar `x` without its derivatives: the branch that a formula takes.
+/// Value of the scalar `x` without derivatives. Formulas use it to choose between branches.
 inline double value_of(double x) { return x; }
-/// The value without its derivatives.
+/// Value of the dual number `x` without derivatives.
 template <int N>
 double value_of(Dual<N> const& x) {
   return x.v;
 }
 
-/// The values of the matrix `m` of duals.
+/// Values of the matrix `m` of dual numbers.
 template <class Derived>
 auto values_of(Eigen::MatrixBase<Derived> const& m) {
   return m.unaryExpr([](typename Derived::Scalar const& x) { return value_of(x); }).eval();
 }
 
-/// A scalar that a state may be made of: double or a dual number.
+/// Scalar type of a state: double or a dual number.
 template <class T>
 concept StateScalar = requires(T x, double c) {
   { x + x } -> std::convertible_to<T>;

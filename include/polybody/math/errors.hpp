@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The exceptions of the library. Each message names the object, where known the time, and the remedy.
+/// Exceptions of the library. Each message names the object, the time if it is known, and the remedy.
 
 #include <charconv>
 #include <concepts>
@@ -11,23 +11,23 @@
 
 namespace polybody {
 
-/// The text of `x` in messages: up to `digits` digits, with a decimal point in every locale.
+/// Text of `x` in messages: up to `digits` digits, with a decimal point in every locale.
 inline std::string number(double x, int digits = 9) {
   char text[32];
   return {text, std::to_chars(text, text + sizeof text, x, std::chars_format::general, digits).ptr};
 }
 
-/// A part of a message: a text that outlives it, or a number.
+/// Part of a message: a number, or a text that must outlive the part.
 class MessagePart {
  public:
   ///@{
-  /// A text or a letter, which must outlive the part.
+  /// Part with the `text` or the `letter`, which must outlive the part.
   MessagePart(char const* text) : text_(text) {}          // NOLINT(google-explicit-constructor)
   MessagePart(std::string_view text) : text_(text) {}     // NOLINT(google-explicit-constructor)
   MessagePart(std::string const& text) : text_(text) {}   // NOLINT(google-explicit-constructor)
   MessagePart(char const& letter) : text_(&letter, 1) {}  // NOLINT(google-explicit-constructor)
   ///@}
-  /// The number `x`: an integer as it is, any other one with up to nine digits.
+  /// The number `x`: an integer with all digits, a floating-point number with up to nine digits.
   template <class Number>
     requires std::convertible_to<Number const&, double>
   MessagePart(Number const& x) {  // NOLINT(google-explicit-constructor)
@@ -55,65 +55,66 @@ class MessagePart {
   };
 };
 
-/// The parts of a message, one after the other. A chain of `+` compiles to three times as much code.
+/// Joins the parts of a message. A chain of `+` would compile to three times as much code.
 [[gnu::cold]] inline std::string sentence_of(std::initializer_list<MessagePart> parts) {
   std::string all;
   for (MessagePart const& part : parts) part.write_to(all);
   return all;
 }
 
-/// Base of every exception that polybody throws. It is made of a text, or of the parts of one:
+/// Base class of all exceptions that polybody throws. It is constructed from a text or from the parts of a text:
 /// `throw InvalidInput{"The mass must be positive, but is ", mass, "."}`.
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
-  /// From the parts of its text, which `sentence_of` puts together.
+  /// Constructs the exception from the parts of its text, which `sentence_of` joins.
   Error(std::initializer_list<MessagePart> parts) : std::runtime_error(sentence_of(parts)) {}
 };
 
-/// A number, name or combination that cannot be meant: negative mass, zero axis, s outside the body.
+/// Invalid number, name or combination: negative mass, zero axis, s outside the body.
 class InvalidInput : public Error {
  public:
   using Error::Error;  ///< from a text or its parts, as `Error`
 };
 
-/// A start that violates a joint; `assemble` repairs it.
+/// Initial state that violates a constraint equation; `assemble` corrects it.
 class InconsistentStart : public Error {
  public:
   using Error::Error;  ///< from a text or its parts, as `Error`
 };
 
-/// Newton's method did not converge; the state is as it was before the step.
+/// Newton's method did not converge; the state is the one at the start of the step.
 class NewtonStalled : public Error {
  public:
   using Error::Error;  ///< from a text or its parts, as `Error`
 };
 
-/// A step that converged, but left joints open or energy that no work explains; the state is as it was before the step.
+/// The step converged, but constraint equations are violated or the energy changed without work. The state is the one
+/// at the start of the step.
 class Diverged : public Error {
  public:
   using Error::Error;  ///< from a text or its parts, as `Error`
 };
 
-/// A point that slides along a body has gone off its end.
+/// A point that slides along a body has passed the end of the body.
 class OffTheEnd : public Error {
  public:
   using Error::Error;  ///< from a text or its parts, as `Error`
 };
 
-/// The step control asks for a step below the smallest one allowed.
+/// The step control requires a step below the smallest allowed step.
 class StepTooSmall : public Error {
  public:
   using Error::Error;  ///< from a text or its parts, as `Error`
 };
 
-/// A force, mass or coordinate became NaN or infinite.
+/// A force, mass or coordinate is NaN or infinite.
 class NonFinite : public Error {
  public:
   using Error::Error;  ///< from a text or its parts, as `Error`
 };
 
-/// The linear solver met a matrix without inverse.
+/// The matrix of a linear system is singular.
 class LinearSolverSingular : public Error {
  public:
   using Error::Error;  ///< from a text or its parts, as `Error`

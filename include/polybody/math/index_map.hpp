@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Few values by an index; costs a compiler little.
+/// Sorted map from indices to a few values, with short compile times.
 
 #include <utility>
 
@@ -9,17 +9,17 @@
 
 namespace polybody {
 
-/// In the order of the indices.
+/// Map from indices to values V, sorted by index.
 template <class V>
 class IndexMap {
  public:
-  /// An index and where it leads.
+  /// Index and its value.
   struct Entry {
     Index index;  ///< key of the entry
-    V value;      ///< what stands under the index
+    V value;      ///< value of the entry
   };
 
-  /// That of an index; a new one is V().
+  /// Value of `index`. A new entry is V().
   V& operator[](Index index) {
     std::size_t const k = place(index);
     if (k == entries_.size() || entries_[k].index != index) {
@@ -28,24 +28,24 @@ class IndexMap {
     }
     return entries_[k].value;
   }
-  /// What stands at `index`; null where there is none.
+  /// Value of `index`; null if there is no entry.
   V const* find(Index index) const {
     std::size_t const k = place(index);
     return k < entries_.size() && entries_[k].index == index ? &entries_[k].value : nullptr;
   }
-  /// Removes the entry of an index, if there is one.
+  /// Removes the entry of `index` if it exists.
   void erase(Index index) {
     std::size_t const k = place(index);
     if (k == entries_.size() || entries_[k].index != index) return;
     for (std::size_t i = k; i + 1 < entries_.size(); ++i) std::swap(entries_[i], entries_[i + 1]);
     entries_.pop_back();
   }
-  /// First entry; entries come in ascending order of their indices.
+  /// First entry. The entries are sorted by ascending index.
   Entry const* begin() const { return entries_.begin(); }
   Entry const* end() const { return entries_.end(); }  ///< end of the entries
 
  private:
-  /// The first entry that is not before an index.
+  /// Number of the first entry with an index not less than `index`.
   std::size_t place(Index index) const {
     std::size_t from = 0, to = entries_.size();
     while (from < to) {

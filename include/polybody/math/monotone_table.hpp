@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A function through given points, with a continuous slope and without overshoot.
+/// Interpolation of given points with a continuous derivative and without overshoot.
 
 #include <algorithm>
 #include <vector>
@@ -10,17 +10,17 @@
 
 namespace polybody {
 
-/// Piecewise cubic Hermite polynomial that rises where its points rise and falls where they fall [Fritsch & Carlson
-/// 1980]; linear beyond the first and the last point. Points on a line give the line.
+/// Piecewise cubic Hermite polynomial through given points, monotone wherever the points are monotone [Fritsch &
+/// Carlson 1980]. It is linear beyond the first and the last point. Points on a line yield this line.
 class MonotoneTable {
  public:
-  /// A point of the table.
+  /// Point of the table.
   struct Point {
     double x, y;  ///< abscissa [x] and ordinate [y], in units of the caller's choice
   };
 
-  /// \throws InvalidInput naming `what` unless there are two points or more, finite, with x strictly increasing, and
-  /// slopes and areas between them are finite.
+  /// \throws InvalidInput naming `what` unless there are at least two points, all finite, with x strictly increasing,
+  /// and the derivatives and areas between them are finite.
   explicit MonotoneTable(std::vector<Point> const& points, std::string const& what = "MonotoneTable") {
     if (points.size() < 2)
       throw InvalidInput{what, ": a table needs two points at least, but has ", points.size(), "."};
@@ -47,7 +47,7 @@ class MonotoneTable {
     check_pieces(what);
   }
 
-  /// The value at x, a double or a dual number.
+  /// Value at x, a double or a dual number.
   template <StateScalar T>
   T operator()(T const& x) const {
     double const at = value_of(x);
@@ -55,7 +55,7 @@ class MonotoneTable {
     return f.value + (x - at) * f.slope;
   }
   double slope(double x) const { return local(x).slope; }  ///< dy/dx at x
-  /// ∫ of the function from 0 to x.
+  /// Integral ∫ y dx of the function from 0 to x.
   double integral(double x) const {
     if (x <= knots_.front().x) return line_area(knots_.front(), x);
     if (x >= knots_.back().x) return line_area(knots_.back(), x);
@@ -65,14 +65,15 @@ class MonotoneTable {
 
  private:
   struct Knot {
-    double x, y, slope, area;  ///< a point in units [x], [y], the slope there [y/x], and the area from 0 to x [x y]
+    double x, y, slope, area;  ///< a point in units [x], [y], derivative at it [y/x], and the area from 0 to x [x y]
   };
   struct Local {
     double value, slope;  ///< [y] and [y/x]
   };
 
-  /// Slopes at the points. Inside, the weighted harmonic mean of the secants δ to both sides, or zero where they differ
-  /// in sign [Fritsch & Butland 1984]; at the ends that of the parabola through three points, kept between zero and 3δ.
+  /// Computes the derivatives at the points. At an inner point it is the weighted harmonic mean of the secants δ on
+  /// both sides, or zero if they differ in sign [Fritsch & Butland 1984]. At an end it is the derivative of the
+  /// parabola through three points, limited to the range from zero to 3δ.
   void set_slopes() {
     std::size_t const n = knots_.size();
     auto const width = [&](std::size_t i) { return knots_[i + 1].x - knots_[i].x; };
@@ -94,8 +95,9 @@ class MonotoneTable {
     knots_[n - 1].slope = end(width(n - 2), width(n - 3), secant(n - 2), secant(n - 3));
   }
 
-  /// Slopes grow as y by x, and neighbours in x may be as close as the last place of a double; no y of a piece exceeds
-  /// |y| + h (|m| + h (|a| + h |b|)).
+  /// Checks that all values, derivatives and areas are finite. The derivatives grow as y/x, and neighbouring
+  /// abscissae may differ in the last digit of a double only. The bound of |y| in a piece is |y| + h (|m| + h (|a| +
+  /// h |b|)).
   void check_pieces(std::string const& what) const {
     for (std::size_t i = 1; i < knots_.size(); ++i) {
       Knot const &k = knots_[i - 1], &next = knots_[i];
@@ -115,12 +117,13 @@ class MonotoneTable {
     }
   }
 
-  /// The first knot beyond x, which lies between two.
+  /// Number of the first knot beyond x, which must lie between two knots.
   std::size_t after(double x) const {
     auto const before = [](double v, Knot const& k) { return v < k.x; };
     return std::size_t(std::upper_bound(knots_.begin(), knots_.end(), x, before) - knots_.begin());
   }
-  /// y + m u + a u² + b u³ between knots i − 1 and i, u = x − x_{i−1}:  a = (3δ − 2m − m₁)/h,  b = (m + m₁ − 2δ)/h².
+  /// Cubic y + m u + a u² + b u³ between knots i − 1 and i, u = x − x_{i−1}: a = (3δ − 2m − m₁)/h, b = (m + m₁ −
+  /// 2δ)/h².
   struct Cubic {
     double a, b;  ///< [y/x²] and [y/x³]
   };

@@ -1,8 +1,7 @@
 #pragma once
 /// \file
-/// A few numbers side by side, one for each of as many alike elements: arithmetic on all of them at once, in the
-/// machine's vector registers. A kernel that is a template on its scalar and does not branch on values runs on packs as
-/// it stands.
+/// SIMD vectors of a few numbers, one for each of several elements of one type. Each operation applies to all numbers
+/// at once. A kernel that is a template of its scalar and has no branches on values also compiles for SIMD vectors.
 
 #include <Eigen/Core>
 #include <array>
@@ -15,7 +14,7 @@ namespace polybody {
 namespace detail {
 
 template <int N>
-struct LanesOf;  // a vector of 2 or 4: its length may not depend on a template's parameter
+struct LanesOf;  // vector of 2 or 4 doubles; the attribute does not accept a template parameter as size
 template <>
 struct LanesOf<2> {
   using Type [[gnu::vector_size(16)]] = double;
@@ -27,28 +26,28 @@ struct LanesOf<4> {
 
 }  // namespace detail
 
-/// As many doubles as the machine for which we compile takes at once, two or four (a wider vector than its own would be
-/// taken apart entry by entry).
+/// Number of doubles in a SIMD vector of the target machine, two or four. The compiler splits a vector that is wider
+/// than the registers of the machine into single entries.
 inline constexpr int pack_size = Eigen::internal::packet_traits<double>::size >= 4 ? 4 : 2;
 
-/// `N` numbers. There is no `value_of`: a formula that takes branches does not compile for packs.
+/// SIMD vector of `N` doubles. It has no `value_of`: a formula that branches on values does not compile for it.
 template <int N = pack_size>
 class Pack {
  public:
-  static constexpr int size = N;                    ///< how many numbers it holds
+  static constexpr int size = N;                    ///< number of entries
   using Lanes = typename detail::LanesOf<N>::Type;  ///< the compiler's vector of N doubles
   using Native =
-      typename Eigen::internal::find_best_packet<double, N>::type;  ///< Eigen's name for `Lanes` where it has one
+      typename Eigen::internal::find_best_packet<double, N>::type;  ///< Eigen's type for `Lanes`, if there is one
 
-  Pack() = default;  ///< `Pack<>()` is zero, `Pack<> x;` is not made yet, as for double
-  /// The same number N times.
+  Pack() = default;  ///< `Pack<>()` is zero, `Pack<> x;` is not initialised, as for double
+  /// N copies of the number `same`.
   Pack(double same) : x_(same - Lanes{}) {}  // NOLINT(google-explicit-constructor): a constant is a pack
 
-  double operator[](int i) const { return x_[i]; }  ///< number i, 0 ≤ i < N
-  void set(int i, double x) { x_[i] = x; }          ///< makes x the number i
+  double operator[](int i) const { return x_[i]; }  ///< entry i, 0 ≤ i < N
+  void set(int i, double x) { x_[i] = x; }          ///< sets entry i to x
 
   ///@{
-  /// Number by number.
+  /// Operation entry by entry.
   Pack& operator+=(Pack const& b) {
     x_ += b.x_;
     return *this;
@@ -73,16 +72,16 @@ class Pack {
   friend Pack operator-(Pack const& a) { return Pack(-a.x_); }
   friend Pack operator+(Pack const& a) { return a; }
 
-  /// `N` numbers one after another in memory, aligned or not, the first at `from`.
+  /// Loads `N` numbers that are contiguous in memory, aligned or not, the first at `from`.
   static Pack load(double const* from) {
     Pack r;
     std::memcpy(&r.x_, from, sizeof(Lanes));
     return r;
   }
-  /// Writes the N numbers one after another, aligned or not, the first to `to`.
+  /// Stores the N numbers contiguously, aligned or not, the first at `to`.
   void store(double* to) const { std::memcpy(to, &x_, sizeof(Lanes)); }
 
-  /// `N` packs as the rows of a matrix become its columns.
+  /// Transposes the N×N matrix with the SIMD vectors `packs` as its rows.
   friend void transpose(std::array<Pack, std::size_t(N)>& packs) {
     if constexpr (sizeof(Native) == sizeof(Lanes)) {
       Eigen::internal::PacketBlock<Native, N> block;
@@ -103,7 +102,7 @@ class Pack {
   friend Pack sqrt(Pack const& a) {
     if constexpr (sizeof(Native) == sizeof(Lanes))
       return Pack(
-          Lanes(Eigen::internal::psqrt(Native(a.x_))));  // at once; std::sqrt stops to look for negative numbers
+          Lanes(Eigen::internal::psqrt(Native(a.x_))));  // one instruction; std::sqrt also checks for negative numbers
     else
       return each(a, [](double x) { return std::sqrt(x); });
   }
@@ -126,7 +125,7 @@ class Pack {
   Lanes x_;
 };
 
-/// What an element's kernel may be asked to run on: double, dual numbers, packs.
+/// Scalar type of an element's kernel: double, dual number or SIMD vector.
 template <class T>
 concept KernelScalar = requires(T x, double c) {
   { x + x } -> std::convertible_to<T>;

@@ -1,13 +1,13 @@
 #pragma once
 /// \file
-/// Gauss–Legendre rules on [0, 1], exact for polynomials of degree 2n − 1
-/// [Abramowitz & Stegun 1964, 25.4.29]. Computed at compile time.
+/// Gauss–Legendre rules on [0, 1], exact for polynomials of degree 2n − 1 [Abramowitz & Stegun 1964, 25.4.29],
+/// computed at compile time.
 
 #include <array>
 
 namespace polybody {
 
-/// A point ξ ∈ [0, 1] and its weight; the weights add up to one.
+/// Integration point ξ ∈ [0, 1] and its weight. The weights of a rule have the sum one.
 struct GaussPoint {
   double xi;      ///< ξ in (−1, 1) or (0, 1)
   double weight;  ///< weight of the point
@@ -20,7 +20,7 @@ struct LegendreValue {
   double dp;  ///< P_n′(x)
 };
 
-/// (k+1) P_{k+1} = (2k+1) x P_k − k P_{k−1};  (1 − x²) P_n′ = n (P_{n−1} − x P_n).
+/// Recursion (k+1) P_{k+1} = (2k+1) x P_k − k P_{k−1} and derivative (1 − x²) P_n′ = n (P_{n−1} − x P_n).
 constexpr LegendreValue legendre(int n, double x) {
   double before = 1.0, now = x;
   for (int k = 1; k < n; ++k) {
@@ -31,7 +31,7 @@ constexpr LegendreValue legendre(int n, double x) {
   return {now, n * (before - x * now) / (1.0 - x * x)};
 }
 
-/// The roots of P_n separate those of P_{n+1}: bisect between them, then polish by Newton.
+/// Roots of P_n. The roots of P_{n−1} separate them. Bisection between these roots is followed by Newton's method.
 template <int n>
 constexpr std::array<double, n> legendre_roots() {
   std::array<double, n> roots{};
@@ -49,7 +49,7 @@ constexpr std::array<double, n> legendre_roots() {
           lo = mid;
       }
       double x = 0.5 * (lo + hi);
-      for (int k = 0; k < 5; ++k) {  // from within 1/256 of the gap between fences: quadratic at once
+      for (int k = 0; k < 5; ++k) {  // starts within 1/256 of the interval: converges quadratically at once
         LegendreValue const f = legendre(n, x);
         x -= f.p / f.dp;
       }
@@ -72,7 +72,7 @@ constexpr std::array<GaussPoint, n> gauss_rule() {
 
 }  // namespace detail
 
-/// The n-point rule: ∫₀¹ f(ξ) dξ ≈ Σ weight f(ξ).
+/// Gauss rule of n points: ∫₀¹ f(ξ) dξ ≈ Σ weight f(ξ).
 template <int n>
   requires(n >= 1 && n <= 10)
 inline constexpr std::array<GaussPoint, n> gauss = detail::gauss_rule<n>();

@@ -1,30 +1,30 @@
 #pragma once
 /// \file
-/// Unit quaternions (w, x, y, z) as four numbers of a state; ⊞ and ⊟ act in body axes.
+/// Unit quaternions (w, x, y, z) as four coordinates of a state; ⊞ and ⊟ act in body axes.
 /// [Solà, Deray & Atchuthan 2018, §4; Shabana 2020, §2.4]
 
 #include <polybody/math/so3.hpp>
 
 namespace polybody {
 
-/// (w, x, y, z); A(q) turns body components into world components.
+/// Quaternion (w, x, y, z). A(q) transforms body components into world components.
 template <class T>
 using Quaternion = Vec<T, 4>;
 
-/// p q: first the turn q, then p.
+/// Quaternion product p q: the rotation q followed by the rotation p.
 template <class T>
 Quaternion<T> quaternion_product(Quaternion<T> const& p, Quaternion<T> const& q) {
   return {p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3], p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2],
           p[0] * q[2] - p[1] * q[3] + p[2] * q[0] + p[3] * q[1], p[0] * q[3] + p[1] * q[2] - p[2] * q[1] + p[3] * q[0]};
 }
 
-/// The inverse of a unit quaternion.
+/// Inverse of a unit quaternion.
 template <class T>
 Quaternion<T> conjugate(Quaternion<T> const& q) {
   return {q[0], -q[1], -q[2], -q[3]};
 }
 
-/// Rotation matrix A(q), 3×3, of a unit quaternion, written to `a` where it is to stand.
+/// Writes the rotation matrix A(q), 3×3, of a unit quaternion q to `a`.
 template <class T>
 void set_rotation(Quaternion<T> const& q, Mat<T, 3, 3>& a) {
   T const ww = q[0] * q[0], xx = q[1] * q[1], yy = q[2] * q[2], zz = q[3] * q[3];
@@ -41,7 +41,7 @@ void set_rotation(Quaternion<T> const& q, Mat<T, 3, 3>& a) {
   a(2, 2) = ww - xx - yy + zz;
 }
 
-/// The same, returned.
+/// Rotation matrix A(q), 3×3, of a unit quaternion q.
 template <class T>
 Mat<T, 3, 3> rotation_matrix(Quaternion<T> const& q) {
   Mat<T, 3, 3> a;
@@ -49,7 +49,7 @@ Mat<T, 3, 3> rotation_matrix(Quaternion<T> const& q) {
   return a;
 }
 
-/// exp(φ): the unit quaternion of the rotation vector φ [rad].
+/// Exponential map exp(φ): unit quaternion of the rotation vector φ [rad].
 template <class T>
 Quaternion<T> quaternion_exp(Vec<T, 3> const& phi) {
   using std::sqrt;
@@ -59,7 +59,7 @@ Quaternion<T> quaternion_exp(Vec<T, 3> const& phi) {
   return {1.0 - x * s.b, half[0] * s.a, half[1] * s.a, half[2] * s.a};
 }
 
-/// log(q): the rotation vector of a unit quaternion, |φ| ≤ π [rad]. q and −q give the same vector.
+/// Logarithm log(q): rotation vector of a unit quaternion, |φ| ≤ π [rad]. q and −q have the same rotation vector.
 template <class T>
 Vec<T, 3> quaternion_log(Quaternion<T> const& q) {
   using std::atan2, std::sqrt;
@@ -76,19 +76,20 @@ Vec<T, 3> quaternion_log(Quaternion<T> const& q) {
   return {v[0] * factor, v[1] * factor, v[2] * factor};
 }
 
-/// `out` (4) = q ⊞ δ = q exp(δ), normalised, of q (4) and `delta` (3), δ in body axes [rad]. Numbers are read where
-/// they stand: put into vectors one by one and read from there as a whole, they would be waited for.
+/// Computes `out` (4) = q ⊞ δ = q exp(δ), normalised, from q (4) and `delta` (3), δ in body axes [rad]. Each number
+/// is read directly from memory. If single numbers were stored in vectors and the vectors loaded whole, each load
+/// would wait for the stores.
 template <class T>
 void set_quaternion_plus(T const* q, T const* delta, T* out) {
   using std::sqrt;
   Quaternion<T> const r =
       quaternion_product<T>({q[0], q[1], q[2], q[3]}, quaternion_exp<T>({delta[0], delta[1], delta[2]}));
   T const square = r[0] * r[0] + r[1] * r[1] + r[2] * r[2] + r[3] * r[3], off = square - 1.0;
-  bool const near = value_of(off) * value_of(off) < 1e-16;  // the next term of the series, 3/8 off², is below rounding
+  bool const near = value_of(off) * value_of(off) < 1e-16;  // the next term of the series, 3/8 off², is below round-off
   T const scale = near ? T(1.0 - 0.5 * off) : T(1.0 / sqrt(square));
   for (int i = 0; i < 4; ++i) out[i] = r[i] * scale;
 }
-/// q ⊞ δ, returned.
+/// Retraction q ⊞ δ with δ in body axes [rad].
 template <class T>
 Quaternion<T> quaternion_plus(Quaternion<T> const& q, Vec<T, 3> const& delta) {
   Quaternion<T> turned;
@@ -96,19 +97,19 @@ Quaternion<T> quaternion_plus(Quaternion<T> const& q, Vec<T, 3> const& delta) {
   return turned;
 }
 
-/// q ⊟ p = log(p⁻¹ q): the δ with p ⊞ δ = q (up to sign of the quaternion).
+/// Difference q ⊟ p = log(p⁻¹ q): the δ with p ⊞ δ = q (up to the sign of the quaternion).
 template <class T>
 Vec<T, 3> quaternion_minus(Quaternion<T> const& q, Quaternion<T> const& p) {
   return quaternion_log<T>(quaternion_product<T>(conjugate<T>(p), q));
 }
 
-/// The unit quaternion of the rotation matrix `a` (w ≥ 0) of scalars T.
+/// Unit quaternion of the rotation matrix `a` (w ≥ 0) of scalars T.
 template <class T>
 Quaternion<T> quaternion_from(Mat<T, 3, 3> const& a) {
   using std::sqrt;
-  // by the largest of 4w², 4x², 4y², 4z², whose square root loses no digits [Shepperd 1978]
+  // starts with the largest of 4w², 4x², 4y², 4z²; its square root is accurate [Shepperd 1978]
   T const trace = a(0, 0) + a(1, 1) + a(2, 2);
-  int largest = -1;  // of the axes; −1: w
+  int largest = -1;  // axis of the largest diagonal entry; −1: w
   T most = trace;
   for (int i = 0; i < 3; ++i)
     if (a(i, i) > most) {
@@ -130,13 +131,13 @@ Quaternion<T> quaternion_from(Mat<T, 3, 3> const& a) {
   if (q[0] < 0.0) inverse = -inverse;
   return {q[0] * inverse, q[1] * inverse, q[2] * inverse, q[3] * inverse};
 }
-/// The same in doubles, of the rotation matrix `a` (3×3).
+/// Unit quaternion of the rotation matrix `a` (3×3) of doubles.
 template <class = void>  // compiled where it is used
 Quaternion<double> quaternion_of(Mat3 const& a) {
   return quaternion_from<double>(a);
 }
 
-/// log of the rotation matrix `a`: rotation vector with |φ| ≤ π [rad].
+/// Rotation vector of the rotation matrix `a`, |φ| ≤ π [rad].
 template <class = void>  // compiled where it is used
 Vec3 log_so3(Mat3 const& a) {
   return quaternion_log<double>(quaternion_of(a));

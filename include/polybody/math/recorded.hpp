@@ -1,12 +1,13 @@
 #pragma once
 /// \file
-/// Reverse-mode numbers: a value that a recording remembers with the partial derivatives of the operation that made it.
-/// For z = f(x, y) recorded, z̄ = ∂J/∂z of a result J gives x̄ += z̄ ∂f/∂x, ȳ += z̄ ∂f/∂y, the operations taken
-/// backwards [Griewank & Walther 2008, §3.2]: all derivatives of one result by one sweep.
+/// Numbers for reverse differentiation [Griewank & Walther 2008, §3.2]. A tape stores each operation with its partial
+/// derivatives.
+/// If z = f(x, y) is recorded and z̄ = ∂J/∂z for a result J, then x̄ += z̄ ∂f/∂x and ȳ += z̄ ∂f/∂y, in the reverse
+/// order of the operations. One backward sweep yields all derivatives of one result.
 ///
-/// Constants are recorded nowhere: sums with them and products with one or zero add nothing.
+/// Constants are not recorded. Sums with constants and products with one or zero add no operations to the tape.
 ///
-/// Not in polybody.hpp: only derivatives of whole runs record (gradients/gradient.hpp).
+/// Not included in polybody.hpp: only the gradients of whole runs use it (gradients/gradient.hpp).
 
 #include <Eigen/Core>
 #include <cmath>
@@ -20,20 +21,20 @@
 
 namespace polybody {
 
-/// Operations on recorded numbers in their order, each with its two arguments and the derivatives by them.
+/// Tape: sequence of operations, each with its two arguments and its partial derivatives.
 class Recording {
  public:
-  /// Number of an operation in the recording; that of all constants is zero.
+  /// Number of an operation on the tape; zero for all constants.
   using Number = std::int32_t;
 
-  /// Forgets all operations; the memory stays.
+  /// Removes all operations and keeps the memory.
   void clear() { size_ = 1; }
-  /// How many operations there are, with the one that stands for constants.
+  /// Number of operations, including one that represents the constants.
   std::size_t size() const { return size_; }
 
-  /// An independent variable.
+  /// Records an independent variable.
   Number variable() { return record(0, 0.0, 0, 0.0); }
-  /// A result of numbers `a` and `b`; `by_a` and `by_b` are its partial derivatives.
+  /// Records a result of the numbers `a` and `b`; `by_a` and `by_b` are its partial derivatives.
   Number record(Number a, double by_a, Number b, double by_b) {
     if (size_ >= operations_.size()) [[unlikely]]
       grow();
@@ -41,16 +42,17 @@ class Recording {
     return Number(size_++);
   }
 
-  /// Before a sweep: J changes with none of the first `count` operations.
+  /// Prepares a backward sweep: sets the derivatives of J with respect to the first `count` operations to zero.
   void clear_slopes(std::size_t count) {
     if (slopes_.size() < count) slopes_.resize(operations_.size());
     std::fill(slopes_.begin(), slopes_.begin() + std::ptrdiff_t(count), 0.0);
   }
-  /// ∂J/∂x of the operation with this number, to be added to before a sweep and read after it.
+  /// Derivative ∂J/∂x with respect to the operation x. Add the seed to it before a sweep, and read it after the
+  /// sweep.
   double& slope(Number x) { return slopes_[std::size_t(x)]; }
-  /// Takes the first `count` operations backwards.
+  /// Backward sweep over the first `count` operations.
   void sweep(std::size_t count) { sweep(count, 1); }
-  /// Takes operations backwards from the one before `end` to `begin`, one at least.
+  /// Backward sweep over the operations from `end` − 1 down to `begin`, with `begin` ≥ 1.
   void sweep(std::size_t end, std::size_t begin) {
     double* const slopes = slopes_.data();
     for (std::size_t i = end; i-- > begin;) {
@@ -62,12 +64,12 @@ class Recording {
     }
   }
 
-  /// The recording of this thread that operations go to.
+  /// Tape of this thread.
   static Recording& current() { return *current_; }
-  /// While it lives, operations of its thread go to a recording, which it clears first.
+  /// Makes a tape the current one of its thread during its lifetime. The constructor clears the tape.
   class On {
    public:
-    explicit On(Recording& recording) : before_(current_) {  ///< to `recording`
+    explicit On(Recording& recording) : before_(current_) {  ///< uses the tape `recording`
       recording.clear();
       current_ = &recording;
     }
@@ -81,8 +83,8 @@ class Recording {
 
  private:
   struct Operation {
-    double by_a = 0.0, by_b = 0.0;  ///< derivatives by both arguments: factors of the slope
-    Number a = 0, b = 0;            ///< the arguments
+    double by_a = 0.0, by_b = 0.0;  ///< partial derivatives with respect to both arguments: factors of ∂J/∂z
+    Number a = 0, b = 0;            ///< numbers of the arguments
   };
   [[gnu::cold]] void grow() {
     if (this == &none_)
@@ -101,23 +103,23 @@ class Recording {
 inline Recording Recording::none_;
 inline thread_local constinit Recording* Recording::current_ = &Recording::none_;
 
-/// A value, and its number in the recording of its thread.
+/// Value with its number on the tape of its thread.
 struct Recorded {
-  double v = 0.0;                ///< value, in the unit of the quantity that it stands for
-  Recording::Number number = 0;  ///< zero: a constant
+  double v = 0.0;                ///< value, in the unit of the quantity
+  Recording::Number number = 0;  ///< zero for a constant
 
   Recorded() = default;
-  /// A constant of this value.
+  /// The constant `value`.
   Recorded(double value) : v(value) {}  // NOLINT(google-explicit-constructor): a constant is a recorded number
-  Recorded(double value, Recording::Number of) : v(value), number(of) {}  ///< a value with the number `of`
+  Recorded(double value, Recording::Number of) : v(value), number(of) {}  ///< value with the number `of` on the tape
 
-  /// An independent variable of this value.
+  /// Independent variable with the value `value`.
   static Recorded variable(double value) { return {value, Recording::current().variable()}; }
-  /// f(a) of this value and with the derivative `by_a` = f′(a).
+  /// Result f(a) with the value `value` and the derivative `by_a` = f′(a).
   static Recorded of(double value, Recorded const& a, double by_a) {
     return {value, a.number == 0 || by_a == 0.0 ? 0 : Recording::current().record(a.number, by_a, 0, 0.0)};
   }
-  /// f(a, b) of this value and with its partial derivatives `by_a` and `by_b`.
+  /// Result f(a, b) with the value `value` and the partial derivatives `by_a` and `by_b`.
   static Recorded of(double value, Recorded const& a, double by_a, Recorded const& b, double by_b) {
     if (b.number == 0) return of(value, a, by_a);
     if (a.number == 0) return of(value, b, by_b);
@@ -144,10 +146,10 @@ struct Recorded {
   }
   friend Recorded operator-(Recorded const& a) { return of(-a.v, a, -1.0); }
   friend Recorded operator+(Recorded const& a) { return a; }
-  Recorded& operator+=(Recorded const& b) { return *this = *this + b; }  ///< the sum takes its place
-  Recorded& operator-=(Recorded const& b) { return *this = *this - b; }  ///< the difference takes its place
-  Recorded& operator*=(Recorded const& b) { return *this = *this * b; }  ///< the product takes its place
-  Recorded& operator/=(Recorded const& b) { return *this = *this / b; }  ///< the quotient takes its place
+  Recorded& operator+=(Recorded const& b) { return *this = *this + b; }  ///< assigns the sum
+  Recorded& operator-=(Recorded const& b) { return *this = *this - b; }  ///< assigns the difference
+  Recorded& operator*=(Recorded const& b) { return *this = *this * b; }  ///< assigns the product
+  Recorded& operator/=(Recorded const& b) { return *this = *this / b; }  ///< assigns the quotient
 
   friend bool operator==(Recorded const& a, Recorded const& b) { return a.v == b.v; }
   friend auto operator<=>(Recorded const& a, Recorded const& b) { return a.v <=> b.v; }
@@ -193,7 +195,7 @@ struct Recorded {
   }
 };
 
-/// The value alone.
+/// Value of `x` without its number on the tape.
 inline double value_of(Recorded const& x) { return x.v; }
 
 }  // namespace polybody

@@ -1,33 +1,33 @@
 #pragma once
 /// \file
-/// Secants: a function's values at both ends of a step and its slope between them, f₁ − f₀ = s·(x₁ − x₀), carried
-/// through formulas as dual numbers carry derivatives [slopes: Krawczyk & Neumaier 1985; Rump 1996]. The rules are
-/// symmetric in the two ends,
-///   s(f g) = f̄ s(g) + ḡ s(f),   s(f/g) = (ḡ s(f) − f̄ s(g))/(g₀ g₁),   f̄ = ½ (f₀ + f₁),
-/// so s is a discrete gradient [Gonzalez 1996]: exact over the step, and the gradient in its middle up to O(|x₁ −
-/// x₀|²). Of a quadratic form it is the gradient in the middle itself; and of a function of quadratic forms that a
-/// rotation does not change it stays at right angles to the rotations of the middle.
+/// Numbers that carry the values of a function at both ends of a step and its secant slopes.
 
 #include <polybody/math/dual.hpp>
 
 namespace polybody {
 
-/// Values `a` and `b` at the two ends and the slope `d` by N variables.
+/// Secant: values `a` and `b` of a function f at the two ends of a step and its slopes `d` = s with respect to N
+/// variables, f₁ − f₀ = s·(x₁ − x₀). Formulas propagate slopes as dual numbers propagate derivatives [slopes:
+/// Krawczyk & Neumaier 1985; Rump 1996]. The rules are symmetric in the two ends:
+///   s(f g) = f̄ s(g) + ḡ s(f),   s(f/g) = (ḡ s(f) − f̄ s(g))/(g₀ g₁),   f̄ = ½ (f₀ + f₁).
+/// Therefore s is a discrete gradient [Gonzalez 1996]: exact over the step, and equal to the gradient at the midpoint
+/// up to O(|x₁ − x₀|²). For a quadratic form, s is the gradient at the midpoint. For a function of quadratic forms
+/// that is invariant under a rotation, s is orthogonal to the rotations of the midpoint.
 template <int N>
 struct Secant {
   static_assert(N > 0, "A secant needs at least one variable.");
   using Slope = Eigen::Array<double, N, 1>;  ///< (N) column of slopes
 
   double a = 0.0, b = 0.0;  ///< values at both ends of the step, in the unit of the quantity
-  Slope d = Slope::Zero();  ///< (N) slopes by the variables over the step
+  Slope d = Slope::Zero();  ///< (N) slopes over the step with respect to the variables
 
   Secant() = default;
-  /// A constant: the same value at both ends, all slopes zero.
+  /// The constant `value`: equal at both ends, all slopes zero.
   Secant(double value) : a(value), b(value) {}  // NOLINT(google-explicit-constructor): a constant is a secant
   /// Values at both ends, `from` and `to`, and the slopes.
   Secant(double from, double to, Slope const& slope) : a(from), b(to), d(slope) {}
 
-  /// The variable number `i`, which goes from `from` to `to`.
+  /// Independent variable number `i`, which changes from `from` to `to`.
   static Secant variable(double from, double to, int i) {
     Secant x(from, to, Slope::Zero());
     x.d[i] = 1.0;
@@ -58,7 +58,7 @@ struct Secant {
     b *= y.b;
     return *this;
   }
-  /// s(f/g) = (ḡ s(f) − f̄ s(g))/(g₀ g₁); g must not be zero at an end.
+  /// s(f/g) = (ḡ s(f) − f̄ s(g))/(g₀ g₁); g must not be zero at either end.
   Secant& operator/=(Secant const& y) {
     d = (d * y.mean() - y.d * mean()) / (y.a * y.b);
     a /= y.a;
@@ -78,13 +78,14 @@ struct Secant {
 
   friend Secant sqrt(Secant const& x) {
     double const from = std::sqrt(x.a), to = std::sqrt(x.b);
-    if (from + to == 0.0) return {from, to, (x.d == 0.0).select(0.0, x.d / 0.0)};  // a constant zero stays one
+    if (from + to == 0.0)
+      return {from, to, (x.d == 0.0).select(0.0, x.d / 0.0)};  // the slope of a constant zero is zero
     return {from, to, x.d / (from + to)};
   }
-  /// sin b − sin a = 2 cos ½(a + b) sin ½(b − a), and cos alike.
+  /// sin b − sin a = 2 cos ½(a + b) sin ½(b − a); cos correspondingly.
   friend Secant sin(Secant const& x) { return {std::sin(x.a), std::sin(x.b), x.d * (std::cos(x.mean()) * chord(x))}; }
   friend Secant cos(Secant const& x) { return {std::cos(x.a), std::cos(x.b), x.d * (-std::sin(x.mean()) * chord(x))}; }
-  /// The angle turns by φ = atan2(X, D), X = x₀ y₁ − y₀ x₁ = x̄ Δy − ȳ Δx, D = x₀ x₁ + y₀ y₁: less than half a turn.
+  /// The angle changes by φ = atan2(X, D), X = x₀ y₁ − y₀ x₁ = x̄ Δy − ȳ Δx, D = x₀ x₁ + y₀ y₁, |φ| < π.
   friend Secant atan2(Secant const& y, Secant const& x) {
     double const across = x.a * y.b - y.a * x.b, along = x.a * x.b + y.a * y.b, t = across / along;
     double const turn = std::atan2(across, along), from = std::atan2(y.a, x.a);
@@ -97,14 +98,14 @@ struct Secant {
   friend bool isfinite(Secant const& x) { return std::isfinite(x.a) && std::isfinite(x.b) && x.d.allFinite(); }
 
  private:
-  /// sin(x)/x of half the change.
+  /// sin(h)/h of half the change, h = (b − a)/2.
   static double chord(Secant const& x) {
     double const half = 0.5 * x.change();
     return std::abs(half) < 1e-4 ? 1.0 - half * half / 6.0 : std::sin(half) / half;
   }
 };
 
-/// The branch that a formula takes is that of the middle.
+/// Mean of the two values of `x`. Formulas use it to choose between branches.
 template <int N>
 double value_of(Secant<N> const& x) {
   return x.mean();

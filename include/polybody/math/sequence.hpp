@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A contiguous array of values that costs a compiler little.
+/// Contiguous array with short compile times.
 
 #include <algorithm>
 #include <cstddef>
@@ -14,7 +14,7 @@
 namespace polybody {
 namespace detail {
 
-/// Room for `count` values of `size` bytes each. Throws std::bad_alloc.
+/// Allocates memory for `count` values of `size` bytes each. Throws std::bad_alloc.
 inline void* take_memory(std::size_t count, std::size_t size, std::size_t alignment) {
   if (count > std::size_t(PTRDIFF_MAX) / size) throw std::bad_alloc();
   return alignment > __STDCPP_DEFAULT_NEW_ALIGNMENT__ ? ::operator new(count * size, std::align_val_t(alignment))
@@ -29,13 +29,13 @@ inline void give_memory(void* memory, std::size_t alignment) noexcept {
 
 }  // namespace detail
 
-/// Values one after the other in memory, with the usual members of std::vector and their meaning. A type of value costs
-/// a compiler a third of what it does in std::vector (`bench/compile --containers`): the core's own arrays are
-/// Sequences, what a user passes is a std::vector or a span.
+/// Contiguous array of values with the usual members of std::vector and their meaning. The compile time of a value
+/// type is one third of the time with std::vector (`bench/compile --containers`). The library stores its own arrays
+/// as Sequences; users pass a std::vector or a span.
 template <class T>
 class Sequence {
  public:
-  using value_type = T;  ///< the type of its values, as std::vector names it
+  using value_type = T;  ///< type of the values, named as in std::vector
 
   Sequence() = default;
   explicit Sequence(std::size_t size) : Sequence() { resize(size); }                ///< `size` values T()
@@ -49,8 +49,8 @@ class Sequence {
     append(first, last);
   }
   Sequence(Sequence const& other) : Sequence() { copy(other.data_, other.size_); }  ///< copies all values
-  Sequence(Sequence&& other) noexcept { swap(other); }  ///< takes the memory of `other`, which is empty then
-  /// Keeps its memory where that is large enough.
+  Sequence(Sequence&& other) noexcept { swap(other); }  ///< moves the memory of `other`, which becomes empty
+  /// Copies all values of `other`; keeps its own memory if it is large enough.
   Sequence& operator=(Sequence const& other) {
     if (this != &other) {
       clear();
@@ -58,7 +58,7 @@ class Sequence {
     }
     return *this;
   }
-  /// Takes the memory of `other`, which is empty then.
+  /// Moves the memory of `other`, which becomes empty.
   Sequence& operator=(Sequence&& other) noexcept {
     Sequence taken(std::move(other));
     swap(taken);
@@ -69,32 +69,32 @@ class Sequence {
     detail::give_memory(data_, alignof(T));
   }
 
-  /// Exchanges the memory of both; no value is moved.
+  /// Exchanges the memory of both arrays; no value is moved.
   void swap(Sequence& other) noexcept {
     std::swap(data_, other.data_);
     std::swap(size_, other.size_);
     std::swap(capacity_, other.capacity_);
   }
 
-  T* data() { return data_; }                     ///< the values in memory; null as long as there was no room for any
-  T const* data() const { return data_; }         ///< the same, to be read
-  T* begin() { return data_; }                    ///< the first value
-  T const* begin() const { return data_; }        ///< the first value, to be read
-  T* end() { return data_ + size_; }              ///< behind the last value
-  T const* end() const { return data_ + size_; }  ///< behind the last value
-  std::size_t size() const { return size_; }      ///< how many values there are
-  bool empty() const { return size_ == 0; }       ///< whether there are none
-  T& operator[](std::size_t i) { return data_[i]; }  ///< value i; a place that does not exist is not noticed
-  T const& operator[](std::size_t i) const { return data_[i]; }  ///< value i, to be read
+  T* data() { return data_; }                                    ///< values in memory; null if no memory is allocated
+  T const* data() const { return data_; }                        ///< values in memory, read-only
+  T* begin() { return data_; }                                   ///< first value
+  T const* begin() const { return data_; }                       ///< first value, read-only
+  T* end() { return data_ + size_; }                             ///< end of the values
+  T const* end() const { return data_ + size_; }                 ///< end of the values
+  std::size_t size() const { return size_; }                     ///< number of values
+  bool empty() const { return size_ == 0; }                      ///< true if there are no values
+  T& operator[](std::size_t i) { return data_[i]; }              ///< value i; the range of i is not checked
+  T const& operator[](std::size_t i) const { return data_[i]; }  ///< value i, read-only
   /// Value number `i`. \throws std::out_of_range
   T& at(std::size_t i) { return data_[within(i)]; }
-  T const& at(std::size_t i) const { return data_[within(i)]; }  ///< value number `i`, to be read
-  T& front() { return *data_; }                                  ///< the first value, of one or more
-  T const& front() const { return *data_; }                      ///< the first value, to be read
-  T& back() { return data_[size_ - 1]; }                         ///< the last value, of one or more
-  T const& back() const { return data_[size_ - 1]; }             ///< the last value, to be read
+  T const& at(std::size_t i) const { return data_[within(i)]; }  ///< value number `i`, read-only
+  T& front() { return *data_; }                                  ///< first value; the array must not be empty
+  T const& front() const { return *data_; }                      ///< first value, read-only
+  T& back() { return data_[size_ - 1]; }                         ///< last value; the array must not be empty
+  T const& back() const { return data_[size_ - 1]; }             ///< last value, read-only
 
-  /// Takes room for `capacity` values in all; the values move there.
+  /// Allocates memory for `capacity` values in total and moves the values there.
   void reserve(std::size_t capacity) {
     static_assert(std::is_nothrow_move_constructible_v<T>, "a value in a Sequence must move without throwing");
     if (capacity <= capacity_) return;
@@ -107,7 +107,7 @@ class Sequence {
     data_ = fresh;
     capacity_ = capacity;
   }
-  /// Appends a value. All values move to a larger memory where the room is full.
+  /// Appends `value`. If the memory is full, all values move to a larger one.
   void push_back(T value) {
     if (size_ == capacity_) reserve(2 * size_ + 1);
     new (data_ + size_) T(std::move(value));
@@ -119,31 +119,31 @@ class Sequence {
     push_back(T(std::forward<As>(as)...));
     return back();
   }
-  void pop_back() { data_[--size_].~T(); }  ///< removes the last value, of one or more
-  /// As many values as `size`; new ones are T().
+  void pop_back() { data_[--size_].~T(); }  ///< removes the last value; the array must not be empty
+  /// Changes the number of values to `size`; new values are T().
   void resize(std::size_t size) {
     truncate(size);
     reserve(size);
     for (; size_ < size; ++size_) new (data_ + size_) T();
   }
-  /// As many values as `size`; new ones are copies of `value`.
+  /// Changes the number of values to `size`; new values are copies of `value`.
   void resize(std::size_t size, T const& value) {
     truncate(size);
     while (size_ < size) push_back(value);
   }
-  /// Adds copies of the values in [first, last), which must not be of this Sequence.
+  /// Appends copies of the values in [first, last), which must not belong to this Sequence.
   template <class It>
   void append(It first, It last) {
     for (; first != last; ++first) push_back(*first);
   }
-  /// Replaces all values by `size` copies of `value`, which may be one of them.
+  /// Replaces all values by `size` copies of `value`, which may belong to this Sequence.
   void assign(std::size_t size, T const& value) {
-    T const kept = value;  // it may be one of these
+    T const kept = value;  // `value` may belong to this Sequence
     clear();
     reserve(size);
     for (; size_ < size; ++size_) new (data_ + size_) T(kept);
   }
-  /// Keeps the first `size` values.
+  /// Removes all values except the first `size` ones.
   void truncate(std::size_t size) noexcept {
     if constexpr (std::is_trivially_destructible_v<T>)
       size_ = size < size_ ? size : size_;
@@ -166,13 +166,13 @@ class Sequence {
   std::size_t size_ = 0, capacity_ = 0;
 };
 
-/// Whether both have the same entries.
+/// True if both arrays have equal values.
 template <class T>
 bool operator==(Sequence<T> const& a, Sequence<T> const& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end());
 }
 
-/// Removes the values of which `goes` is true.
+/// Removes all values for which `goes` is true.
 template <class T, class F>
 void erase_if(Sequence<T>& values, F const& goes) {
   std::size_t kept = 0;
@@ -181,8 +181,7 @@ void erase_if(Sequence<T>& values, F const& goes) {
   values.truncate(kept);
 }
 
-/// Sorts values and keeps one of those that are equal. Sorting by a heap compiles in less than half of std::sort's
-/// time.
+/// Sorts the values and removes duplicates. The heap sort compiles in less than half of the time of std::sort.
 template <class T>
 void sort_once(Sequence<T>& values) {
   std::make_heap(values.begin(), values.end());

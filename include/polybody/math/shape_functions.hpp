@@ -6,20 +6,20 @@
 
 namespace polybody {
 
-/// Values and derivatives with respect to arc length x = ξ l of `n` shape functions.
+/// Values of `n` shape functions and their derivatives with respect to the arc length x = ξ l.
 template <int n>
 struct ShapeValues {
-  std::array<double, n> s;    ///< s
+  std::array<double, n> s;    ///< values s
   std::array<double, n> ds;   ///< ∂s/∂x [1/m]
   std::array<double, n> dds;  ///< ∂²s/∂x² [1/m²]
 };
 
-/// Linear, on an element of this length [m]: s₁ = 1 − ξ, s₂ = ξ.
+/// Linear shape functions on an element of length `length` [m]: s₁ = 1 − ξ, s₂ = ξ.
 constexpr ShapeValues<2> linear_shape(double xi, double length) {
   return {{1.0 - xi, xi}, {-1.0 / length, 1.0 / length}, {0.0, 0.0}};
 }
 
-/// Cubic Hermite for (r₀, r₀′, r₁, r₁′) on an element of length l = `length` [m]:
+/// Cubic Hermite shape functions of (r₀, r₀′, r₁, r₁′) on an element of length l = `length` [m]:
 /// s₁ = 1 − 3ξ² + 2ξ³, s₂ = l(ξ − 2ξ² + ξ³), s₃ = 3ξ² − 2ξ³, s₄ = l(−ξ² + ξ³)
 /// [thesis Eq. 3.16, s₃ with the sign of Eq. 4.8].
 constexpr ShapeValues<4> hermite_shape(double xi, double length) {

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A function of time through measured or planned points.
+/// Function of time that interpolates measured or planned points.
 
 #include <algorithm>
 #include <optional>
@@ -9,26 +9,27 @@
 
 namespace polybody {
 
-/// The cubic spline through points (t, value): value, rate and acceleration are continuous  [de Boor 1978, ch. IV].
-/// Its first and last rate may be given; an end without one is natural, acceleration zero. Beyond both ends it goes on
-/// at the rate it has there.
+/// Cubic spline through points (t, value) with continuous value, rate and acceleration  [de Boor 1978, ch. IV]. The
+/// first and the last rate may be prescribed; an end without a prescribed rate has zero acceleration (natural
+/// spline). Beyond the ends the spline is continued linearly with the rate at the end.
 class SmoothTable {
  public:
-  /// A point of the table.
+  /// Point of the table.
   struct Point {
     double time;   ///< [s]
     double value;  ///< [m] or [rad]
   };
-  /// Rates at both ends of the table.
+  /// Prescribed rates at the ends of the table.
   struct Ends {
     std::optional<double> first_rate = {};  ///< [value/s]
     std::optional<double> last_rate = {};   ///< [value/s]
   };
 
-  /// \throws InvalidInput naming `what` for fewer than two points, times that do not increase, and numbers that are not
-  /// finite, of the spline as of the points.
+  /// \throws InvalidInput naming `what` for fewer than two points, times that do not increase, and points or
+  /// coefficients of the spline that are not finite.
   explicit SmoothTable(std::vector<Point> const& points) : SmoothTable(points, Ends{}) {}
-  /// Rates at the ends may be given. \throws InvalidInput as above, and for rates that are not finite.
+  /// Spline with prescribed rates at the ends. \throws InvalidInput as the other constructor, and for rates that are
+  /// not finite.
   SmoothTable(std::vector<Point> const& points, Ends const& ends, std::string const& what = "SmoothTable")
       : knots_(points.size()) {
     check_points(points, ends, what);
@@ -56,13 +57,13 @@ class SmoothTable {
     return {k.value + x * (k.rate + x * (k.second / 2.0 + x * k.third / 6.0)),
             k.rate + x * (k.second + x * k.third / 2.0), k.second + x * k.third};
   }
-  /// ∫ value dt from the first point.
+  /// Integral ∫ value dt from the first point to t.
   double integral(double t) const { return integral_to(piece(t), t); }
-  /// The ends at which the acceleration jumps.
+  /// Times of the ends at which the acceleration is discontinuous [s].
   std::vector<double> corners() const { return corners_; }
 
  private:
-  /// A point with the derivatives of the piece that begins there: [m], [m/s], [m/s²], [m/s³], or [rad] for [m].
+  /// Point with the derivatives of the piece that begins at it: [m], [m/s], [m/s²], [m/s³], or [rad] for [m].
   struct Knot {
     double time = 0.0, value = 0.0, rate = 0.0, second = 0.0, third = 0.0;
     double integral = 0.0;  ///< from the first point to this one
@@ -88,8 +89,8 @@ class SmoothTable {
       throw InvalidInput{what, ": the rates at the ends must be finite."};
   }
 
-  /// Rates grow as values by times, which may be as close as the last place of a double; no value of a piece exceeds
-  /// |v| + h (|v′| + h (|v″| + h |v‴|)).
+  /// Checks that all coefficients are finite. The rates grow as value/time, and neighbouring times may differ in the
+  /// last digit of a double only. The bound of the value in a piece is |v| + h (|v′| + h (|v″| + h |v‴|)).
   void check_knots(std::string const& what) const {
     for (std::size_t i = 0; i < knots_.size(); ++i) {
       Knot const& k = knots_[i];
@@ -106,8 +107,9 @@ class SmoothTable {
     }
   }
 
-  /// The second derivatives mᵢ that make the rates continuous, s the slopes of the chords:
-  ///   hᵢ₋₁ mᵢ₋₁ + 2 (hᵢ₋₁ + hᵢ) mᵢ + hᵢ mᵢ₊₁ = 6 (sᵢ − sᵢ₋₁),  at an end s is the given rate and h zero.
+  /// Computes the second derivatives mᵢ for which the rates are continuous, with the slopes s of the chords:
+  ///   hᵢ₋₁ mᵢ₋₁ + 2 (hᵢ₋₁ + hᵢ) mᵢ + hᵢ mᵢ₊₁ = 6 (sᵢ − sᵢ₋₁).
+  /// At an end, s is the prescribed rate and h is zero.
   void solve(Ends const& ends) {
     std::size_t const n = knots_.size();
     std::vector<double> upper(n, 0.0);
@@ -129,7 +131,7 @@ class SmoothTable {
     for (std::size_t i = n - 1; i-- > 0;) knots_[i].second -= upper[i] * knots_[i + 1].second;
   }
 
-  /// The piece at t; outside the table a straight line.
+  /// Piece at t; a straight line outside the table.
   Knot piece(double t) const {
     auto const after =
         std::upper_bound(knots_.begin(), knots_.end(), t, [](double x, Knot const& k) { return x < k.time; });

@@ -1,9 +1,9 @@
 #pragma once
 /// \file
-/// Rotations in space: exp, log and their Jacobians, smooth through zero.
-/// Conventions: A = exp(φ̃) turns body components into world components; increments act on the right
-/// (body axes), A ⊞ δ = A exp(δ̃). [Solà, Deray & Atchuthan 2018, eqs. 132–146; Brüls, Cardona &
-/// Arnold 2012, App. A]
+/// Rotations in space: exponential map, logarithm and their Jacobians, smooth at zero.
+///
+/// Convention: A = exp(φ̃) transforms body components into world components. Increments act on the right (body axes),
+/// A ⊞ δ = A exp(δ̃). [Solà, Deray & Atchuthan 2018, eqs. 132–146; Brüls, Cardona & Arnold 2012, App. A]
 
 #include <array>
 
@@ -12,7 +12,7 @@
 
 namespace polybody {
 
-/// 1 + b ã + c ã², a (3), entry by entry: matrix products of Eigen would cost more to compile.
+/// Matrix 1 + b ã + c ã² of a (3). Explicit entries compile faster than matrix products of Eigen.
 template <class T>
 Mat<T, 3, 3> one_and_skew(Vec<T, 3> const& a, T const& b, T const& c) {
   Mat<T, 3, 3> m;
@@ -27,7 +27,7 @@ Mat<T, 3, 3> one_and_skew(Vec<T, 3> const& a, T const& b, T const& c) {
 }
 
 namespace detail {
-/// 1/k!, k = 0 … 19.
+/// Inverse factorials 1/k!, k = 0 … 19.
 inline constexpr auto inverse_factorials = [] {
   std::array<double, 20> f{1.0};
   for (std::size_t k = 1; k < f.size(); ++k) f[k] = f[k - 1] / double(k);
@@ -35,11 +35,12 @@ inline constexpr auto inverse_factorials = [] {
 }();
 }  // namespace detail
 
-/// Coefficients of exp as functions of x = |φ|², by series near zero: a = sin θ/θ, b = (1 − cos θ)/θ², θ = √x.
+/// Coefficients of the exponential map as functions of x = |φ|²: a = sin θ/θ, b = (1 − cos θ)/θ², θ = √x, by series
+/// near zero.
 template <class T>
 struct ExpSeries {
-  T a, b;  ///< as above, without unit; φ in [rad]
-  /// At x = |φ|² [rad²].
+  T a, b;  ///< coefficients a and b, without unit; φ in [rad]
+  /// Evaluates the coefficients at x = |φ|² [rad²].
   explicit ExpSeries(T const& x) {
     using std::cos, std::sin, std::sqrt;
     if (value_of(x) < 0.25) {
@@ -53,8 +54,8 @@ struct ExpSeries {
     }
   }
 
-  /// Σ (−x)ᵏ/(n + 2k)!, by Horner's rule. Five terms are enough of what a step turns, eight up to x = 1/4: the next one
-  /// is below 1e-19.
+  /// Σ (−x)ᵏ/(n + 2k)!, by Horner's rule. Five terms are sufficient for the rotation in one step, eight up to x =
+  /// 1/4. The next term is below 1e-19.
   static T series(T const& x, int n) { return value_of(x) < 1e-3 ? series_of<5>(x, n) : series_of<8>(x, n); }
 
  private:
@@ -66,20 +67,21 @@ struct ExpSeries {
   }
 };
 
-/// The same with that of its Jacobian, c = (θ − sin θ)/θ³.
+/// Coefficients of the exponential map and of its Jacobian, c = (θ − sin θ)/θ³.
 template <class T>
 struct RotationSeries : ExpSeries<T> {
-  T c;  ///< as above, without unit
-  /// At x = |φ|² [rad²].
+  T c;  ///< coefficient c, without unit
+  /// Evaluates the coefficients at x = |φ|² [rad²].
   explicit RotationSeries(T const& x)
       : ExpSeries<T>(x), c(value_of(x) < 0.25 ? this->series(x, 3) : T((1.0 - this->a) / x)) {}
 };
 
-/// Slopes by x of b and c: db/dx = d − c/2 and dc/dx = (3e − d)/2 with d = (½ − b)/x, e = (1/6 − c)/x.
+/// Derivatives of b and c with respect to x: db/dx = d − c/2 and dc/dx = (3e − d)/2 with d = (½ − b)/x, e = (1/6 −
+/// c)/x.
 template <class T>
 struct RotationSlopes {
   T b, c;  ///< db/dx and dc/dx [1/rad²]
-  /// At x = |φ|² [rad²].
+  /// Evaluates the derivatives at x = |φ|² [rad²].
   explicit RotationSlopes(T const& x) {
     RotationSeries<T> const s(x);
     bool const small = value_of(x) < 0.25;
@@ -90,15 +92,15 @@ struct RotationSlopes {
   }
 };
 
-/// a = atan t/t and m = (1 − a)/t² as functions of z = t², and their slopes da/dz, dm/dz, by series near zero.
-/// For t = tan(θ/4): a rotation by θ about n, written as c = t n, has the rotation vector 4 a c.
+/// Functions a = atan t/t and m = (1 − a)/t² of z = t² with their derivatives da/dz, dm/dz, by series near zero. They
+/// convert c = t n, t = tan(θ/4), of a rotation by θ about n into the rotation vector 4 a c.
 template <class T>
 struct ArctanSeries {
-  T a, m, da, dm;  ///< as above, without unit
-  /// At z = t².
+  T a, m, da, dm;  ///< functions and derivatives with respect to z, without unit
+  /// Evaluates the functions at z = t².
   explicit ArctanSeries(T const& z) {
     using std::atan, std::sqrt;
-    if (value_of(z) < 0.1) {  // m = Σ (−z)ᵏ/(2k + 3); sixteen terms leave 1e-17
+    if (value_of(z) < 0.1) {  // m = Σ (−z)ᵏ/(2k + 3); the error of sixteen terms is 1e-17
       m = dm = T(0.0);
       for (int k = 15; k >= 0; --k) {
         dm = m - z * dm;
@@ -117,7 +119,7 @@ struct ArctanSeries {
   }
 };
 
-/// exp(φ̃) = 1 + a φ̃ + b φ̃²  (Rodrigues), 3×3; φ in [rad].
+/// Rotation matrix exp(φ̃) = 1 + a φ̃ + b φ̃²  (Rodrigues), 3×3; φ in [rad].
 template <class T>
 Mat<T, 3, 3> exp_so3(Vec<T, 3> const& phi) {
   RotationSeries<T> const s(squared_norm(phi));
@@ -137,7 +139,7 @@ Mat<T, 3, 3> left_jacobian(Vec<T, 3> const& phi) {
   return right_jacobian<T>({-phi[0], -phi[1], -phi[2]});
 }
 
-/// Jr(φ)⁻¹ = 1 + ½ φ̃ + e φ̃², e = (1 − (a/2b))/|φ|², for |φ| < 2π.
+/// Inverse right Jacobian Jr(φ)⁻¹ = 1 + ½ φ̃ + e φ̃², e = (1 − (a/2b))/|φ|², for |φ| < 2π.
 template <class T>
 Mat<T, 3, 3> right_jacobian_inverse(Vec<T, 3> const& phi) {
   T const x = squared_norm(phi);
@@ -155,8 +157,8 @@ Mat<T, 3, 3> right_jacobian_inverse(Vec<T, 3> const& phi) {
   return one_and_skew<T>(phi, T(0.5), e);
 }
 
-/// ∂(Jr(φ) x)/∂φ at fixed x, 3×3:
-///   2 (c′ φ × (φ × x) − b′ φ × x) φᵀ + b x̃ − c ((φ × x)~ + φ̃ x̃),  b′, c′ the slopes of b, c.
+/// Derivative ∂(Jr(φ) x)/∂φ at constant x, 3×3:
+///   2 (c′ φ × (φ × x) − b′ φ × x) φᵀ + b x̃ − c ((φ × x)~ + φ̃ x̃),  b′, c′ the derivatives of b, c.
 template <class T>
 Mat<T, 3, 3> right_jacobian_derivative(Vec<T, 3> const& phi, Vec<T, 3> const& x) {
   T const angle2 = squared_norm(phi), along_x = dot(phi, x);

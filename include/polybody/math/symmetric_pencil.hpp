@@ -1,15 +1,20 @@
 #pragma once
 /// \file
-/// Lowest solutions of K x = λ M x with symmetric K and M, by a shift. Solvers that form M^-½ K M^-½ have errors of ε
-/// λₙ in every λ, ε the round-off unit and λₙ the largest eigenvalue. In a thin rod λₙ belongs to shear waves of single
-/// elements and exceeds the lowest λ by more than 1/ε. With a shift τ and K + τM = L Lᵀ the eigenvalues
-///   μ = 1/(λ + τ)  of  L⁻¹ M L⁻ᵀ
-/// have errors of ε μ₁, so that the error of λ is ε (λ + τ)²/(λ₁ + τ) [Parlett 1998, §15.3; Ericsson & Ruhe 1980].
-/// Motions without inertia have μ = 0. The two errors are equal at λ + τ = √(λₙ (λ₁ + τ)): each solver gives its side.
-/// The factor L adds errors of ε K_ii to the stiffness of every motion. Rayleigh quotients of the vectors, summed in
-/// long double, remove them to second order.
+/// Lowest solutions of K x = λ M x with symmetric K and M, by a shift.
 ///
-/// Not in polybody.hpp: Eigen's eigenvalue solvers would cost every program seconds to compile.
+/// Solvers that form M^-½ K M^-½ have errors of ε λₙ in every λ, with the round-off unit ε and the largest eigenvalue
+/// λₙ. In a thin rod λₙ belongs to shear waves of single elements and exceeds the lowest λ by more than 1/ε.
+///
+/// With a shift τ and K + τM = L Lᵀ the eigenvalues
+///   μ = 1/(λ + τ)  of  L⁻¹ M L⁻ᵀ
+/// have errors of ε μ₁. The error of λ is therefore ε (λ + τ)²/(λ₁ + τ) [Parlett 1998, §15.3; Ericsson & Ruhe 1980].
+/// Motions without inertia have μ = 0. The errors of both solvers are equal at λ + τ = √(λₙ (λ₁ + τ)). The shifted
+/// solver computes the eigenvalues below this limit, the other solver those above it.
+///
+/// The factor L adds errors of ε K_ii to the stiffness of every motion. Rayleigh quotients of the vectors, summed in
+/// long double, remove these errors to second order.
+///
+/// Not included in polybody.hpp: Eigen's eigenvalue solvers would add seconds to the compile time of every program.
 
 #include <algorithm>
 #include <cmath>
@@ -27,14 +32,15 @@ namespace polybody {
 
 /// Solutions of K x = λ M x by a shift.
 struct ShiftedPencil {
-  bool found = false;  ///< a shift was found
+  bool found = false;  ///< true if a shift was found
   double shift = 0.0;  ///< τ, unit of λ
-  VecX values = {};    ///< λ ascending; the last ones, of motions without inertia, are infinite
-  MatX vectors = {};   ///< (n×n) xᵀMx = 1
+  VecX values = {};    ///< λ in ascending order; infinite for motions without inertia, which are last
+  MatX vectors = {};   ///< (n×n) eigenvectors with xᵀMx = 1
 };
 
-/// K + τM = L Lᵀ with pivots of at least 1e-8 of the diagonal, which keeps the errors of L below those of K's entries.
-/// The shift is the first one of 0, t, 64 t, 64² t … that gives them; t is 1e-12 of the smallest |K_ii|/M_ii.
+/// Solves K x = λ M x with K + τM = L Lᵀ. The pivots are at least 1e-8 of the diagonal. The errors of L then remain
+/// below the errors of the entries of K. The shift is the first value of 0, t, 64 t, 64² t … that yields such pivots;
+/// t is 1e-12 of the smallest |K_ii|/M_ii.
 /// \param k K (n×n) symmetric \param m M (n×n) symmetric, not negative
 template <class = void>  // compiled where it is used
 ShiftedPencil by_shift(MatX const& k, MatX const& m) {
@@ -68,7 +74,7 @@ ShiftedPencil by_shift(MatX const& k, MatX const& m) {
   return out;
 }
 
-/// xᵀKx/xᵀMx, summed in long double. \param k K (n×n) \param m M (n×n) \param x (n)
+/// Rayleigh quotient xᵀKx/xᵀMx, summed in long double. \param k K (n×n) \param m M (n×n) \param x (n)
 template <class = void>  // compiled where it is used
 double rayleigh_quotient(MatX const& k, MatX const& m, MatX::ConstColXpr const& x) {
   long double stiffness = 0.0L, mass = 0.0L;
@@ -84,9 +90,9 @@ double rayleigh_quotient(MatX const& k, MatX const& m, MatX::ConstColXpr const& 
   return double(stiffness / mass);
 }
 
-/// Replaces the low end of a solution of K x = λ M x that another solver has found with errors of ε λₙ. Nothing changes
-/// if these errors are below 1e-9 of each of the `count` lowest λ. \param k K (n×n) symmetric
-/// \param m M (n×n) symmetric, not negative \param count of the eigenvalues that are of use
+/// Replaces the lowest eigenvalues of a solution of K x = λ M x by another solver with errors of ε λₙ. The solution
+/// does not change if these errors are below 1e-9 of each of the `count` lowest λ.
+/// \param k K (n×n) symmetric \param m M (n×n) symmetric, not negative \param count number of required eigenvalues
 /// \param values (r) all λ, ascending \param vectors X (n×r), XᵀMX = 1
 /// \return false if no shift makes K + τM positive definite
 template <class = void>  // compiled where it is used
@@ -100,7 +106,7 @@ bool renew_low_end(MatX const& k, MatX const& m, Index count, VecX& values, MatX
   Index renewed = 1;
   while (renewed < n && low.values[renewed] + low.shift <= border) ++renewed;
   if (renewed < std::min(count, n)) {
-    // the others, in the complement of the renewed ones; in the coordinates x = X w the old solution is diag(λ)
+    // other eigenvalues: problem in the complement of the replaced vectors; with x = X w the old matrix is diag(λ)
     MatX const mx = m * vectors, w = mx.transpose() * low.vectors.leftCols(renewed);
     Eigen::HouseholderQR<MatX> const qr(w);
     MatX const q = qr.householderQ(), rest = q.rightCols(n - renewed);
@@ -108,7 +114,7 @@ bool renew_low_end(MatX const& k, MatX const& m, Index count, VecX& values, MatX
     values.tail(n - renewed) = high.eigenvalues();
     vectors.rightCols(n - renewed) = MatX(vectors * (rest * high.eigenvectors()));
   }
-  std::vector<std::pair<double, Index>> order;  // quotients of a double λ may change places
+  std::vector<std::pair<double, Index>> order;  // quotients of a double eigenvalue may change their order
   for (Index i = 0; i < renewed; ++i)
     order.emplace_back(i < count ? rayleigh_quotient<>(k, m, low.vectors.col(i)) : low.values[i], i);
   std::sort(order.begin(), order.begin() + std::min(count, renewed));

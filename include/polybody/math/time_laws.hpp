@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Functions of time with rate and acceleration, for drives and loads.
+/// Functions of time with rate and acceleration, for driving constraints and loads.
 
 #include <algorithm>
 #include <array>
@@ -13,32 +13,32 @@
 
 namespace polybody {
 
-/// A prescribed value with its first and second derivative in time.
+/// Prescribed value with its first and second derivative with respect to time.
 struct Motion {
   double value = 0.0;         ///< [m] or [rad]
   double rate = 0.0;          ///< [m/s] or [rad/s]
   double acceleration = 0.0;  ///< [m/s²] or [rad/s²]
 };
 
-/// A function of time t [s] that yields a Motion; a lambda will do.
+/// Function of time t [s] that returns a Motion, for example a lambda.
 template <class L>
 concept TimeLaw = requires(L const law, double t) {
   { law(t) } -> std::convertible_to<Motion>;
 };
 
-/// A time law that knows where its rate jumps; `simulate` ends a step there.
+/// Function of time with known breakpoints of its rate [s]; `simulate` ends a step at each of them.
 template <class L>
 concept HasCorners = requires(L const law) {
   { law.corners() } -> std::convertible_to<std::vector<double>>;
 };
 
-/// Calls `law.check(what)` of a law that has one. \throws InvalidInput for numbers that cannot be meant.
+/// Calls `law.check(what)` if the law has this member. \throws InvalidInput for invalid values.
 template <TimeLaw Law>
 void check_law(Law const& law, std::string const& what) {
   if constexpr (requires { law.check(what); }) law.check(what);
 }
 
-/// The corners of a law; none for a law without `corners()`.
+/// Breakpoints of a law [s]; none if it has no member `corners()`.
 template <TimeLaw Law>
 std::vector<double> corners_of(Law const& law) {
   if constexpr (HasCorners<Law>)
@@ -47,7 +47,7 @@ std::vector<double> corners_of(Law const& law) {
     return {};
 }
 
-/// Checks a law that moves a body. \throws InvalidInput as `check_law`, and where its value jumps.
+/// Checks a law that prescribes a motion. \throws InvalidInput as `check_law`, and if its value is discontinuous.
 template <TimeLaw Law>
 void check_drive(Law const& law, std::string const& what) {
   check_law(law, what);
@@ -63,24 +63,24 @@ void check_drive(Law const& law, std::string const& what) {
   }
 }
 
-/// A time law that knows ∫ value dt from some fixed time.
+/// Function of time with a known integral ∫ value dt from a fixed time.
 template <class L>
 concept HasIntegral = TimeLaw<L> && requires(L const law, double t) {
   { law.integral(t) } -> std::convertible_to<double>;
 };
 
-/// ∫ value dt from t = 0: a place where the law is a speed, an angle where it is an angular velocity.
+/// Integral ∫ value dt from t = 0: a displacement if the law is a velocity, an angle if it is an angular velocity.
 template <HasIntegral Law>
 struct IntegralOf {
-  Law law;  ///< whose integral it is
+  Law law;  ///< integrand
 
   void check(std::string const& what) const { check_law(law, what); }
-  /// The value is the integral, the rate and the acceleration are value and rate of the law.
+  /// Integral as value; value and rate of the law as rate and acceleration.
   Motion operator()(double t) const {
     Motion const speed = law(t);
     return {law.integral(t) - law.integral(0.0), speed.value, speed.rate};
   }
-  std::vector<double> corners() const { return corners_of(law); }  ///< those of the law [s]
+  std::vector<double> corners() const { return corners_of(law); }  ///< breakpoints of the law [s]
 };
 
 namespace detail {
@@ -93,10 +93,12 @@ inline void check_ramp(double target, double duration, double start, std::string
 
 }  // namespace detail
 
-/// 0 until `start`, then linear to `target` in `duration`, constant afterwards. The rate jumps at both
-/// ends; the value at a corner is that of the piece that begins there. With a `rounding` w each corner is a
-/// parabola instead, from w/2 before to w/2 after it: value = slope s²/(2w), s = t − corner + w/2. Then only
-/// the acceleration jumps; after both corners value and integral are those without rounding.
+/// Ramp from 0 at `start` to `target` within `duration`, constant afterwards. The rate is discontinuous at both ends.
+/// At a breakpoint the value is that of the following piece.
+///
+/// With a `rounding` w a parabola replaces each breakpoint, from w/2 before to w/2 after it: value = slope s²/(2w), s
+/// = t − corner + w/2. Only the acceleration is then discontinuous. After both parabolas, value and integral equal
+/// those without rounding.
 struct Ramp {
   Required<double> target;    ///< [m] or [rad]
   Required<double> duration;  ///< [s]
@@ -117,27 +119,27 @@ struct Ramp {
     return {target * (begin.value - end.value) / duration, target * (begin.rate - end.rate) / duration,
             target * (begin.acceleration - end.acceleration) / duration};
   }
-  /// ∫ value dt from −∞ to t: [m s] or [rad s].
+  /// Integral ∫ value dt from −∞ to t: [m s] or [rad s].
   double integral(double t) const {
     double const x = t - start, y = x - duration;
     if (y >= 0.5 * rounding) return target * 0.5 * (x + y);
     return target * (corner_integral(x) - corner_integral(y)) / duration;
   }
-  /// None where they are rounded.
+  /// Breakpoints [s]; none if they are rounded.
   std::vector<double> corners() const {
     if (rounding > 0.0) return {};
     return {start, start + duration};
   }
 
  private:
-  /// max(0, x), rounded.
+  /// max(0, x) with the rounding.
   Motion corner(double x) const {
     double const s = x + 0.5 * rounding;
     if (x >= 0.5 * rounding) return {x, 1.0, 0.0};
     if (s <= 0.0) return {};
     return {0.5 * s * s / rounding, s / rounding, 1.0 / rounding};
   }
-  /// ∫ of it: s³/(6w), then x²/2 + w²/24.
+  /// Integral of `corner`: s³/(6w) within the rounding, then x²/2 + w²/24.
   double corner_integral(double x) const {
     double const s = x + 0.5 * rounding;
     if (x >= 0.5 * rounding) return 0.5 * x * x + rounding * rounding / 24.0;
@@ -145,7 +147,7 @@ struct Ramp {
   }
 };
 
-/// From 0 to `target` in `duration` without jumps up to the acceleration:
+/// Smooth ramp from 0 to `target` within `duration`, with continuous rate and acceleration:
 /// value = target (10 x³ − 15 x⁴ + 6 x⁵), x = (t − start)/duration.
 struct SmoothRamp {
   Required<double> target;    ///< [m] or [rad]
@@ -161,14 +163,14 @@ struct SmoothRamp {
     return {target * x2 * x * (10.0 - 15.0 * x + 6.0 * x2), target * 30.0 * x2 * (1.0 - 2.0 * x + x2) / d,
             target * 60.0 * x * (1.0 - 3.0 * x + 2.0 * x2) / (d * d)};
   }
-  /// ∫ value dt from −∞ to t: [m s] or [rad s].
+  /// Integral ∫ value dt from −∞ to t: [m s] or [rad s].
   double integral(double t) const {
     double const d = duration, x = std::clamp((t - start) / d, 0.0, 1.0), x2 = x * x;
     return target * (d * x2 * x2 * (2.5 - 3.0 * x + x2) + std::max(0.0, t - start - d));
   }
 };
 
-/// The spin-up of Kane, Ryan & Banerjee 1987: from rest to the rate `speed` in `duration`,
+/// Spin-up of Kane, Ryan & Banerjee 1987 from rest to the rate `speed` within `duration`:
 /// ψ = (speed/T)[t²/2 + (T/2π)²(cos(2πt/T) − 1)], then ψ = speed (t − T/2).
 struct SpinUp {
   Required<double> speed;     ///< [rad/s]
@@ -186,22 +188,22 @@ struct SpinUp {
   }
 };
 
-/// Always `value`.
+/// Constant function of time, `value`.
 struct Constant {
-  double value = 1.0;  ///< at all times; a factor of what it scales
+  double value = 1.0;  ///< value at all times; a factor if it scales a load
 
   void check(std::string const& what) const {
     if (!std::isfinite(value)) throw InvalidInput{what, ": the value must be finite, but is ", value, "."};
   }
   Motion operator()(double) const { return {value, 0.0, 0.0}; }  ///< rate and acceleration are zero
-  double integral(double t) const { return value * t; }          ///< from zero to t
+  double integral(double t) const { return value * t; }          ///< integral from zero to t
 };
 
-/// `value` for from ≤ t < to, else 0: a load that is switched on and off.
+/// Load that is switched on and off: `value` for from ≤ t < to, else 0.
 struct Window {
   double from = 0.0;                                    ///< [s]
   double to = std::numeric_limits<double>::infinity();  ///< [s]
-  double value = 1.0;                                   ///< between the two; a factor of what it scales
+  double value = 1.0;                                   ///< value between `from` and `to`; a factor if it scales a load
 
   void check(std::string const& what) const {
     if (!(from < to) || !std::isfinite(value))
@@ -210,7 +212,7 @@ struct Window {
                          to,    ", value = ",
                          value, "."};
   }
-  /// `value` within, else zero; rate zero.
+  /// `value` within the interval, else zero; the rate is zero.
   Motion operator()(double t) const { return {t >= from && t < to ? value : 0.0, 0.0, 0.0}; }
   std::vector<double> corners() const { return {from, to}; }  ///< both ends [s]
 };

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Vectors of three numbers in the machine's registers. One by one each number is loaded, multiplied and stored by
-/// itself; Eigen leaves vectors of three to that.
+/// Vectors of three numbers in SIMD registers. Eigen loads, multiplies and stores each entry of such a vector
+/// separately.
 
 #include <cstring>
 
@@ -10,16 +10,17 @@
 
 namespace polybody {
 
-/// Three numbers, as `pack_size` of the machine allows: in one register of four, or in one of two and a number. Each
-/// function is one expression, so that products and sums are contracted as those of numbers are.
+/// Vector of three numbers in one SIMD register of four numbers, or in one of two numbers and a double, by
+/// `pack_size` of the machine. Each function is one expression. Products and sums are therefore contracted in the
+/// same way as those of doubles.
 template <int lanes = pack_size>
 class Triple;
 
-/// In a register of four, whose last number means nothing.
+/// Three numbers in a register of four, with an unused last entry.
 template <>
 class Triple<4> {
  public:
-  /// The three numbers at `from`.
+  /// Loads the three numbers at `from`.
   static Triple load(double const* from) {
     Half first;
     std::memcpy(&first, from, sizeof first);
@@ -28,10 +29,10 @@ class Triple<4> {
   /// Column `i` of `m`.
   static Triple column(Mat3 const& m, int i) {
     Lanes x;
-    std::memcpy(&x, m.data() + (i < 2 ? 3 * i : 5), sizeof x);  // a register ends with the matrix
+    std::memcpy(&x, m.data() + (i < 2 ? 3 * i : 5), sizeof x);  // the last register ends at the end of the matrix
     return {i < 2 ? x : __builtin_shufflevector(x, x, 1, 2, 3, 3)};
   }
-  /// x c₀ + y c₁ + z c₂ for three factors c.
+  /// Linear combination x c₀ + y c₁ + z c₂ with three factors c.
   static Triple combination(Triple const& x, Triple const& y, Triple const& z, double const* c) {
     return {x.x_ * c[0] + y.x_ * c[1] + z.x_ * c[2]};
   }
@@ -41,15 +42,15 @@ class Triple<4> {
     return {a.next().x_ * b.last().x_ - a.last().x_ * b.next().x_};
   }
 
-  /// Writes the three numbers to `to`.
+  /// Stores the three numbers at `to`.
   void store(double* to) const {
     Half const first = __builtin_shufflevector(x_, x_, 0, 1);
     std::memcpy(to, &first, sizeof first);
     to[2] = x_[2];
   }
-  /// Writes columns to `m`.
+  /// Stores three columns in `m`.
   static void store_columns(Triple const& x, Triple const& y, Triple const& z, Mat3& m) {
-    std::memcpy(m.data(), &x.x_, sizeof x.x_);  // one number too many, which the next column overwrites
+    std::memcpy(m.data(), &x.x_, sizeof x.x_);  // also writes one entry of the next column, which is overwritten below
     std::memcpy(m.data() + 3, &y.x_, sizeof y.x_);
     z.store(m.data() + 6);
   }
@@ -57,7 +58,7 @@ class Triple<4> {
  private:
   using Lanes = detail::LanesOf<4>::Type;
   using Half = detail::LanesOf<2>::Type;
-  Triple(Lanes const& x) : x_(x) {}  // NOLINT(google-explicit-constructor): what an expression makes
+  Triple(Lanes const& x) : x_(x) {}  // result of an expression
 
   Triple next() const { return {__builtin_shufflevector(x_, x_, 1, 2, 0, 3)}; }
   Triple last() const { return {__builtin_shufflevector(x_, x_, 2, 0, 1, 3)}; }
@@ -65,11 +66,11 @@ class Triple<4> {
   Lanes x_;
 };
 
-/// In a register of two, and a number.
+/// Three numbers in a register of two and a double.
 template <>
 class Triple<2> {
  public:
-  /// The three numbers at `from`.
+  /// Loads the three numbers at `from`.
   static Triple load(double const* from) {
     Lanes first;
     std::memcpy(&first, from, sizeof first);
@@ -77,7 +78,7 @@ class Triple<2> {
   }
   /// Column `i` of `m`.
   static Triple column(Mat3 const& m, int i) { return load(m.data() + 3 * i); }
-  /// x c₀ + y c₁ + z c₂ for three factors c.
+  /// Linear combination x c₀ + y c₁ + z c₂ with three factors c.
   static Triple combination(Triple const& x, Triple const& y, Triple const& z, double const* c) {
     return {x.x_ * c[0] + y.x_ * c[1] + z.x_ * c[2], x.z_ * c[0] + y.z_ * c[1] + z.z_ * c[2]};
   }
@@ -88,12 +89,12 @@ class Triple<2> {
             a.x_[0] * b.x_[1] - a.x_[1] * b.x_[0]};
   }
 
-  /// Writes the three numbers to `to`.
+  /// Stores the three numbers at `to`.
   void store(double* to) const {
     std::memcpy(to, &x_, sizeof x_);
     to[2] = z_;
   }
-  /// Writes columns to `m`.
+  /// Stores three columns in `m`.
   static void store_columns(Triple const& x, Triple const& y, Triple const& z, Mat3& m) {
     x.store(m.data());
     y.store(m.data() + 3);

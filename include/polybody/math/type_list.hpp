@@ -1,23 +1,23 @@
 #pragma once
 /// \file
-/// Type lists of a model and questions about them.
+/// Lists of the types of a model, and their properties.
 
 #include <cstddef>
 #include <type_traits>
 
 namespace polybody {
 
-/// A list of types.
+/// List of types.
 template <class... Ts>
 struct TypeList {
-  static constexpr std::size_t size = sizeof...(Ts);  ///< how many types it lists
+  static constexpr std::size_t size = sizeof...(Ts);  ///< number of types
 };
 
-/// How often T stands among Ts.
+/// Number of occurrences of T in Ts.
 template <class T, class... Ts>
 inline constexpr std::size_t count_of = (std::size_t(std::is_same_v<T, Ts>) + ... + 0);
 
-/// T stands among Ts exactly once.
+/// T occurs in Ts exactly once.
 template <class T, class... Ts>
 concept OneOf = count_of<T, Ts...> == 1;
 
@@ -34,11 +34,11 @@ struct Gathered<List, TypeList<Kept...>, T, Rest...>
                Rest...> {};
 }  // namespace detail
 
-/// `List<Ts…>` with each type once: `EachOnce<Bodies, Rigid<>, Link>` where a link may be a `Rigid<>` too.
+/// `List<Ts…>` without duplicate types: `EachOnce<Bodies, Rigid<>, Link>` if `Link` may also be `Rigid<>`.
 template <template <class...> class List, class... Ts>
 using EachOnce = typename detail::Gathered<List, TypeList<>, Ts...>::Type;
 
-/// Every type of Ts stands once.
+/// Every type occurs in Ts only once.
 template <class... Ts>
 concept Distinct = ((count_of<Ts, Ts...> == 1) && ...);
 

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Vectors, matrices and small checks that every floor uses.
+/// Vectors, matrices and checks of numbers for all layers.
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -14,7 +14,7 @@
 
 namespace polybody {
 
-using Index = Eigen::Index;  ///< counts and places
+using Index = Eigen::Index;  ///< numbers of items and positions
 
 /// Column of n scalars.
 template <class T, int n>
@@ -38,13 +38,13 @@ using VecXOf = Eigen::Matrix<T, Eigen::Dynamic, 1>;
 template <class T>
 using MatXOf = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
 
-/// double, as a name that depends on T: an expression with it is compiled where a template is used, not where it
-/// stands.
+/// The type double, dependent on T. An expression with it is compiled where the template is instantiated, not where
+/// it is defined.
 template <class T>
 using RealFor = std::conditional_t<true, double, T>;
 
 namespace detail {
-/// `M::Zero()` without an expression type for each M.
+/// `M::Zero()` without a separate expression type for each M.
 template <class M>
 M zeros() {
   M m;
@@ -53,7 +53,7 @@ M zeros() {
 }
 }  // namespace detail
 
-/// 1, 3×3, without an expression type.
+/// Identity matrix, 3×3, without an expression type.
 template <class T = double>
 Mat<T, 3, 3> identity() {
   auto m = detail::zeros<Mat<T, 3, 3>>();
@@ -61,21 +61,22 @@ Mat<T, 3, 3> identity() {
   return m;
 }
 
-/// A number that decides physics: it has no default, so a forgotten one does not compile.
+/// Number without a default value, for physical data. A program that omits it does not compile.
 template <class T>
 struct Required {
-  T value;  ///< what was given
-  /// From the T `v`: `.mass = 2.0` sets a `Required<double>`.
+  T value;  ///< given value
+  /// Converts the T `v`: `.mass = 2.0` sets a `Required<double>`.
   constexpr Required(T v) : value(v) {}  // NOLINT(google-explicit-constructor): reads as a T
-  /// From an expression `x` that makes a T.
+  /// Converts an expression `x` that is convertible to T.
   template <class X>
     requires std::is_class_v<X> && (!std::is_same_v<X, Required>) && std::is_convertible_v<X const&, T>
   constexpr Required(X const& x) : value(x) {}  // NOLINT(google-explicit-constructor)
-  /// Reads as the T that was given.
+  /// Returns the given value.
   constexpr operator T() const { return value; }  // NOLINT(google-explicit-constructor)
 };
 
-/// \throws InvalidInput unless `x` is finite and positive; `what` names the object and the quantity, `part` goes on.
+/// \throws InvalidInput unless `x` is finite and positive. The message begins with `what`, the object and the
+/// quantity, followed by `part`.
 inline void require_positive(double x, std::string_view what, std::string_view part = {}) {
   if (!(x > 0.0) || !std::isfinite(x)) throw InvalidInput{what, part, " must be positive and finite, but is ", x, "."};
 }
@@ -86,7 +87,7 @@ inline void require_not_negative(double x, std::string_view what, std::string_vi
     throw InvalidInput{what, part, " must be zero or positive and finite, but is ", x, "."};
 }
 
-/// \throws InvalidInput unless 1 ≤ n ≤ 10⁶: what is repeated is tried once at least, and comes to an end.
+/// \throws InvalidInput unless 1 ≤ n ≤ 10⁶, the allowed range of a number of repetitions.
 inline void require_count(int n, std::string_view what, std::string_view part = {}) {
   if (n < 1 || n > 1'000'000) throw InvalidInput{what, part, " must lie in [1, 1000000], but is ", n, "."};
 }
@@ -94,35 +95,35 @@ inline void require_count(int n, std::string_view what, std::string_view part = 
 /// \throws InvalidInput unless every entry of `x` is finite.
 template <class Derived>
 void require_finite(Eigen::MatrixBase<Derived> const& x, std::string_view what, std::string_view part = {}) {
-  typename Derived::PlainObject const& m = x.derived();  // an expression is evaluated; in loops, which compile fast
+  typename Derived::PlainObject const& m = x.derived();  // evaluates an expression; loops compile fast
   for (Index j = 0; j < m.cols(); ++j)
     for (Index i = 0; i < m.rows(); ++i)
       if (!std::isfinite(m(i, j))) throw InvalidInput{what, part, " must be finite, but has a NaN or an infinity."};
 }
 
-/// Beyond it squares, and with them energies and norms, are no longer finite.
+/// Largest allowed number. Squares of larger numbers, and with them energies and norms, are not finite.
 inline constexpr double largest_number = 1e150;
 
-/// The first entry of `x` that is NaN, infinite or beyond `largest_number`, or −1.
+/// Index of the first entry of `x` that is NaN, infinite or beyond `largest_number`; −1 if there is none.
 inline Index first_not_finite(VecX const& x) {
   for (Index i = 0; i < x.size(); ++i)
     if (!(std::abs(x[i]) <= largest_number)) return i;
   return -1;
 }
-/// \throws InvalidInput for an `x` other than zero whose square overflows or vanishes.
+/// \throws InvalidInput if `x` is not zero and its square overflows or underflows.
 inline void require_size(double x, std::string_view what, std::string_view part = {}) {
   if (x != 0.0 && !(std::abs(x) >= 1.0 / largest_number && std::abs(x) <= largest_number))
     throw InvalidInput{what, part, " must be of a size in [1e-150, 1e+150], where squares are numbers, but is ", x,
                        "."};
 }
-/// " is not finite", or by how much x is too large.
+/// Text " is not finite" for messages, or the excess of x over `largest_number`.
 template <class = void>  // compiled where it is used
 std::string how_not_finite(double x) {
   return std::isfinite(x) ? " is " + number(x) + ", beyond " + number(largest_number) + " whose square is not finite,"
                           : " is not finite";
 }
 
-/// max |xᵢ|: zero without entries, NaN if one is.
+/// Maximum norm max |xᵢ|: zero for an empty vector, NaN if an entry is NaN.
 inline double largest_size(VecX const& x) {
   double largest = 0.0;
   for (Index i = 0; i < x.size(); ++i) {

@@ -1,38 +1,38 @@
 #pragma once
 /// \file
-/// Vectors and matrices of three rows, entry by entry: Eigen's expressions of them would cost more to compile.
+/// Algebra of vectors and matrices with three rows. Explicit entries compile faster than expressions of Eigen.
 
 #include <polybody/math/types.hpp>
 
 namespace polybody {
 
-/// |a|², a·b, a − b, a s and a × b.
+/// Squared norm |a|².
 template <class T>
 T squared_norm(Vec<T, 3> const& a) {
   return a[0] * a[0] + a[1] * a[1] + a[2] * a[2];
 }
-/// a·b.
+/// Scalar product a·b.
 template <class T>
 T dot(Vec<T, 3> const& a, Vec<T, 3> const& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
-/// a − b.
+/// Difference a − b.
 template <class T>
 Vec<T, 3> difference(Vec<T, 3> const& a, Vec<T, 3> const& b) {
   return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
-/// s a.
+/// Product s a of the vector a and the number s.
 template <class T>
 Vec<T, 3> scaled(Vec<T, 3> const& a, double s) {
   return {a[0] * s, a[1] * s, a[2] * s};
 }
-/// a × b.
+/// Vector product a × b.
 template <class T>
 Vec<T, 3> cross(Vec<T, 3> const& a, Vec<T, 3> const& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-/// a b, aᵀb and aᵀ of matrices a (3×3) and b (3×n).
+/// Product a b of matrices a (3×3) and b (3×n).
 template <class T, int n>
 Mat<T, 3, n> product(Mat<T, 3, 3> const& a, Mat<T, 3, n> const& b) {
   Mat<T, 3, n> m;
@@ -44,7 +44,7 @@ Mat<T, 3, n> product(Mat<T, 3, 3> const& a, Mat<T, 3, n> const& b) {
   }
   return m;
 }
-/// aᵀ b, of a (3×k) and b (3×n).
+/// Product aᵀ b of matrices a (3×k) and b (3×n).
 template <class T, int k, int n>
 Mat<T, k, n> transposed_product(Mat<T, 3, k> const& a, Mat<T, 3, n> const& b) {
   Mat<T, k, n> m;
@@ -52,7 +52,7 @@ Mat<T, k, n> transposed_product(Mat<T, 3, k> const& a, Mat<T, 3, n> const& b) {
     for (int i = 0; i < k; ++i) m(i, j) = a(0, i) * b(0, j) + a(1, i) * b(1, j) + a(2, i) * b(2, j);
   return m;
 }
-/// aᵀ.
+/// Transpose aᵀ.
 template <class T>
 Mat<T, 3, 3> transposed(Mat<T, 3, 3> const& a) {
   Mat<T, 3, 3> m;
@@ -61,7 +61,7 @@ Mat<T, 3, 3> transposed(Mat<T, 3, 3> const& a) {
   return m;
 }
 
-/// ã with ã b = a × b, 3×3.
+/// Skew-symmetric matrix ã with ã b = a × b, 3×3.
 template <class T>
 Mat<T, 3, 3> skew(Vec<T, 3> const& a) {
   Mat<T, 3, 3> s;
@@ -74,7 +74,7 @@ Mat<T, 3, 3> skew(Vec<T, 3> const& a) {
   return s;
 }
 
-/// ã b: a (3) × each column of b (3×n).
+/// Product ã b: a (3) × each column of b (3×n).
 template <class T, int n>
 Mat<T, 3, n> skew_product(Vec<T, 3> const& a, Mat<T, 3, n> const& b) {
   Mat<T, 3, n> m;
@@ -84,7 +84,7 @@ Mat<T, 3, n> skew_product(Vec<T, 3> const& a, Mat<T, 3, n> const& b) {
   }
   return m;
 }
-/// ã b̃ = b aᵀ − (a·b) 1.
+/// Product ã b̃ = b aᵀ − (a·b) 1 of two skew-symmetric matrices.
 template <class T>
 Mat<T, 3, 3> skew_of_skew(Vec<T, 3> const& a, Vec<T, 3> const& b) {
   T const along = dot(a, b);

@@ -1,12 +1,12 @@
 #pragma once
 /// \file
-/// A small number known at run time as a constant of the compiler, so that loops over it are unrolled.
+/// Conversion of a small number into a compile-time constant, so that loops over it are unrolled.
 
 #include <type_traits>
 
 namespace polybody {
 
-/// Calls f with n as a constant, N = 1 … 6, or with 0 for any other number.
+/// Calls f with the compile-time constant N = n for n = 1 … 6, and with 0 for other numbers.
 template <class F>
 auto with_constant(int n, F&& f) {
   switch (n) {

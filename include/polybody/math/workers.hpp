@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Threads that share loops. A loop is cut into as many contiguous parts as there are threads, so whoever writes to
-/// places of its own writes the same whatever their number.
+/// Threads that share loops. A loop is divided into one contiguous part per thread. If each index writes to its own
+/// memory, the results do not depend on the number of threads.
 
 #include <algorithm>
 #include <atomic>
@@ -16,17 +16,17 @@
 
 namespace polybody {
 
-/// The body of a loop over [begin, end). Its type is erased, so that `Workers` are compiled once.
+/// Body of a loop over [begin, end) with erased type, so that `Workers` is compiled once.
 class LoopBody {
  public:
-  /// Calls f, which must outlive this.
+  /// Refers to f, which must outlive this object.
   template <class F>
     requires(!std::same_as<std::remove_cvref_t<F>, LoopBody>)
   explicit LoopBody(F&& f)
       : body_(&f), call_([](void const* body, Index begin, Index end) {
           (*static_cast<std::remove_reference_t<F> const*>(body))(begin, end);
         }) {}
-  /// Runs the body for the indices [begin, end).
+  /// Executes the body for the indices [begin, end).
   void operator()(Index begin, Index end) const { call_(body_, begin, end); }
 
  private:
@@ -34,12 +34,13 @@ class LoopBody {
   void (*call_)(void const*, Index, Index);
 };
 
-/// Threads that share the loops of an evaluation; results do not depend on how many there are.
+/// Threads that share the loops of an evaluation. Results do not depend on the number of threads.
 class Workers {
  public:
-  static constexpr int most = 4096;  ///< threads
+  static constexpr int most = 4096;  ///< largest number of threads
 
-  /// `threads` counts the caller: 1 starts none. \throws InvalidInput for less, and for more than the system starts.
+  /// Starts `threads` − 1 threads; the calling thread is the first one. \throws InvalidInput for less than one, and
+  /// for more threads than the system starts.
   [[gnu::cold]] explicit Workers(int threads) : thrown_(std::size_t(std::clamp(threads, 0, most))) {
     if (threads < 1) throw InvalidInput{"Workers: at least one thread is needed, but ", threads, " are asked for."};
     if (threads > most)
@@ -63,11 +64,11 @@ class Workers {
   Workers& operator=(Workers const&) = delete;
   ~Workers() { end(); }
 
-  int size() const { return int(thrown_.size()); }  ///< how many threads share a loop, the caller included
+  int size() const { return int(thrown_.size()); }  ///< number of threads that share a loop, including the calling one
 
-  /// Calls f(begin, end) for parts of [0, n) and returns when all are done. Parts begin at multiples of four and have
-  /// no fewer than `least` entries, so a short loop stays with the caller. An exception of the first part that throws
-  /// is passed on.
+  /// Calls f(begin, end) for parts of [0, n) and returns when all parts are complete. Parts begin at multiples of
+  /// four and have at least `least` entries. The calling thread executes a short loop alone. If parts throw, the
+  /// exception of the first of these parts is thrown again.
   void over(Index n, Index least, LoopBody const& f) {
     Index const parts = std::clamp<Index>(n / std::max<Index>(least, 1), 1, size());
     if (parts == 1) {
@@ -91,7 +92,7 @@ class Workers {
         std::rethrow_exception(first);
       }
   }
-  /// The same over [0, n), at `least` so many a worker, for any f that can be called as f(begin, end).
+  /// Overload for any f that is callable as f(begin, end): parts of [0, n) with at least `least` entries per thread.
   template <class F>
   void over(Index n, Index least, F const& f) {
     over(n, least, LoopBody(f));
@@ -123,8 +124,8 @@ class Workers {
       if (running_.fetch_sub(1) == 1) running_.notify_one();
     }
   }
-  /// Looks for a tenth of a millisecond before it sleeps: the loops of a step follow one another within that, and to be
-  /// woken takes half of it.
+  /// Polls for 0.1 ms before it sleeps. The loops of a step follow each other within this time, and waking a thread
+  /// takes half of it.
   static void wait_for_change(std::atomic<unsigned> const& x, unsigned old) {
     auto const end = std::chrono::steady_clock::now() + std::chrono::microseconds(100);
     do
@@ -137,11 +138,11 @@ class Workers {
   Sequence<std::exception_ptr> thrown_;  // one for each thread
   void (*call_)(void const*, int) = nullptr;
   void const* what_ = nullptr;
-  std::atomic<unsigned> round_{0}, running_{0};  // wrap around without harm
-  Sequence<std::thread> others_;                 // last: they use the rest
+  std::atomic<unsigned> round_{0}, running_{0};  // an overflow does no harm
+  Sequence<std::thread> others_;                 // last member: the threads use the others
 };
 
-/// f over [0, n), at `least` so many a worker, by `workers` where there are any.
+/// Calls f over parts of [0, n) with at least `least` entries per thread, by `workers`, or serially if it is null.
 template <class F>
 void share(Workers* workers, Index n, Index least, F const& f) {
   LoopBody const body(f);
