@@ -1,7 +1,8 @@
 #pragma once
 /// \file
-/// The stretch and the bending of a track's rigid link after a run, from its record; link_strain.hpp has those of a
-/// flexible one. Not in polybody.hpp: of use to vehicles only.
+/// Axial strain and bending strain of a rigid track link, computed after a run from its record. For vehicles; not
+/// included by polybody.hpp.
+/// See link_strain.hpp for flexible links.
 
 #include <polybody/stress/decoupled_stress.hpp>
 #include <polybody/vehicle/link_strain.hpp>
@@ -9,7 +10,7 @@
 namespace polybody::m113 {
 
 /// Mean axial strain of a rigid link at each time of its record.
-template <class = void>  // compiled where it is used
+template <class = void>  // compiled only if it is used
 std::vector<double> link_strain(DecoupledStress const& stress) {
   std::vector<double> out(stress.times().size(), 0.0);
   for (double const s : strain_places) {
@@ -27,7 +28,7 @@ std::vector<double> link_bending(DecoupledStress const& stress, double height = 
   return out;
 }
 
-/// A link as a structure, two elements with a node in the middle.
+/// Structure of a link: two elements with a node in the middle.
 template <class = void>
 Structure link_structure(Bar const& bar = link_bar()) {
   return structure_of(bar, 2);

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// How far a point is from a path in a plane, such as a link from the way of another. Not in polybody.hpp: of use to
-/// vehicles only.
+/// Distance of a point from a path in a plane, such as the distance of a link from the path of another link. For
+/// vehicles; not included by polybody.hpp.
 
 #include <algorithm>
 #include <cmath>
@@ -13,10 +13,10 @@
 
 namespace polybody {
 
-/// Distance of p to the nearest point of the straight lines from each corner to the next [m]. Corners may coincide. A
-/// closed path has its first corner once more at its end.
+/// Distance from p to the nearest point of the straight lines between consecutive corners [m]. Corners may coincide.
+/// The first corner of a closed path is repeated at its end.
 /// \throws InvalidInput for a path without corners
-template <class = void>  // compiled where it is used
+template <class = void>  // compiled only if it is used
 double distance_to_path(Vec2 const& p, std::span<Vec2 const> corners) {
   if (corners.empty()) throw InvalidInput("A path without corners is near to nothing. Give it one corner or more.");
   double nearest = (p - corners.front()).squaredNorm();

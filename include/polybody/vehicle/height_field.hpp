@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Ground given by heights on a grid, as surveys and generated roads are. Not in polybody.hpp: of use to vehicles only.
+/// Ground given by heights on a grid, for example from a survey or a generated road. For vehicles; not included by
+/// polybody.hpp.
 
 #include <polybody/math/shape_functions.hpp>
 #include <polybody/vehicle/terrain.hpp>
@@ -8,20 +9,21 @@
 namespace polybody {
 
 /// Ground through heights on a grid: bicubic in each cell, with continuous slopes [Catmull & Rom 1974, along x and
-/// along y]. The slope at a point is that of the chord between its neighbours, at the border of the one to the next; so
-/// planes and x·y are reproduced, away from the border parabolas, too. Beyond the border the slope across it falls to
-/// zero, evenly over one spacing, and farther out it is zero. It keeps four numbers for each height; copies share them.
+/// along y]. The slope at a grid point equals the slope of the chord between its two neighbours. At the border it
+/// equals the slope of the chord to the one neighbour. So planes and x·y are reproduced exactly, and parabolas are
+/// reproduced away from the border. Beyond the border, the slope normal to the border decreases to zero linearly over
+/// one spacing and is zero farther out. Four numbers are stored for each height; copies share them.
 class HeightField {
  public:
   /// Heights at the corners of equal rectangles.
   struct Grid {
-    Required<double> x0, y0;  ///< the place of heights(0, 0) [m]
+    Required<double> x0, y0;  ///< position of heights(0, 0) [m]
     Required<double> dx, dy;  ///< spacings [m]
     MatX heights;             ///< (nx × ny) heights(i, j) at (x0 + i dx, y0 + j dy) [m]
   };
 
-  /// \throws InvalidInput naming `what` unless there are two points or more each way, spacings are positive and all is
-  /// finite, slopes and curvatures included.
+  /// \throws InvalidInput naming `what` if there are fewer than two points along x or y, if a spacing is not positive,
+  /// or if a height, slope or curvature is not finite.
   explicit HeightField(Grid const& grid, std::string const& what = "HeightField") {
     MatX const& z = grid.heights;
     require_finite(Vec2(grid.x0, grid.y0), what, ": the place x0, y0 of the first point");
@@ -52,10 +54,10 @@ class HeightField {
         highest_ = std::max(highest_, (bx * nodes_->block<4, 4>(2 * i, 2 * j) * by.transpose()).eval().maxCoeff());
   }
 
-  void check(std::string const&) const {}      ///< the constructor did
-  double highest() const { return highest_; }  ///< bound that no height exceeds, in and beyond the grid [m]
-  /// h = s(x)ᵀ N s(y), s the Hermite polynomials and N the values and slopes of the cell's corners; of their
-  /// derivatives h(k, l) = ∂ᵏ⁺ˡh/∂xᵏ∂yˡ.
+  void check(std::string const&) const {}      ///< does nothing: the constructor checks the data
+  double highest() const { return highest_; }  ///< upper bound of the height, inside and outside of the grid [m]
+  /// Height h = s(x)ᵀ N s(y) and its derivatives h(k, l) = ∂ᵏ⁺ˡh/∂xᵏ∂yˡ. s are the Hermite polynomials; N contains the
+  /// values and slopes at the corners of the cell.
   template <StateScalar T>
   Height<T> height(T const& x, T const& y) const {
     Piece const px = x_.piece(value_of(x)), py = y_.piece(value_of(y));
@@ -67,11 +69,11 @@ class HeightField {
  private:
   struct Piece {
     Index cell;
-    Mat<double, 4, 3> shape;  ///< Hermite polynomials, their slopes and curvatures
+    Mat<double, 4, 3> shape;  ///< Hermite polynomials, their first and their second derivatives
   };
-  /// The cells along x or y; the first and the last lie beyond the border.
+  /// Cells along x or y; the first and the last cell lie outside of the grid.
   struct Axis {
-    double start = 0.0, spacing = 1.0;  ///< where the first cell begins, and the length of a cell [m]
+    double start = 0.0, spacing = 1.0;  ///< start of the first cell and length of a cell [m]
     Index cells = 0;
 
     Piece piece(double x) const {
@@ -81,11 +83,12 @@ class HeightField {
       Index const cell = std::min(Index(at), cells - 1);
       ShapeValues<4> const h = hermite_shape(at - double(cell), spacing);
       Piece p{cell, Mat<double, 4, 3>::Zero()};
-      for (int i = 0; i < 4; ++i) p.shape.row(i) << h.s[i], h.ds[i], inside ? h.dds[i] : 0.0;  // slopes end at zero
+      // Outside the slope and its derivative are zero.
+      for (int i = 0; i < 4; ++i) p.shape.row(i) << h.s[i], h.ds[i], inside ? h.dds[i] : 0.0;
       return p;
     }
-    /// Takes (z₀, z₀′, z₁, z₁′) to the Bézier ordinates (z₀, z₀ + z₀′h/3, z₁ − z₁′h/3, z₁); no cubic exceeds its
-    /// highest.
+    /// Matrix that maps (z₀, z₀′, z₁, z₁′) to the Bézier ordinates (z₀, z₀ + z₀′h/3, z₁ − z₁′h/3, z₁). A cubic does not
+    /// exceed its highest ordinate.
     Mat<double, 4, 4> bezier() const {
       double const third = spacing / 3.0;
       return Mat<double, 4, 4>{
@@ -93,8 +96,8 @@ class HeightField {
     }
   };
 
-  /// Values and slopes by turns, of the n rows of z at a distance h and of a row more on either side, to which the
-  /// slope falls to zero: z − hz′/2 and z + hz′/2.
+  /// Values and slopes in alternate rows, of the n rows of z at a distance h and of one added row on either side. In
+  /// the added rows the slope is zero and the values are z − hz′/2 and z + hz′/2.
   static MatX with_slopes(MatX const& z, double h) {
     Index const n = z.rows();
     MatX all = MatX::Zero(2 * n + 4, z.cols());
@@ -108,7 +111,8 @@ class HeightField {
   }
 
   Axis x_, y_;
-  std::shared_ptr<MatX const> nodes_;  ///< (2nx + 4 × 2ny + 4) h and ∂h/∂x by turns down, h and ∂h/∂y by turns across
+  /// (2nx + 4 × 2ny + 4) rows alternate between h and ∂h/∂x, columns between h and ∂h/∂y.
+  std::shared_ptr<MatX const> nodes_;
   double highest_ = 0.0;
 };
 

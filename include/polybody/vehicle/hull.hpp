@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// What carries a track of the vehicle of m113.hpp: its bodies and how they hang together, as data.
-/// Not in polybody.hpp: of use to vehicles only.
+/// Bodies that carry a track of the vehicle of m113.hpp, and the joints and springs between them, as data. For
+/// vehicles; not included by polybody.hpp.
 
 #include <string>
 #include <vector>
@@ -11,39 +11,40 @@
 
 namespace polybody::m113 {
 
-/// A rigid body of one side, its axes turned about y.
+/// Rigid body of one side of the vehicle. Its axes may be rotated about y.
 struct HullBody {
   std::string name;            ///< unique in the vehicle, such as "left wheel 1"
   Solid solid;                 ///< mass and moments of inertia
   Vec3 centre = Vec3::Zero();  ///< (3) world axes [m]
-  double about_y = 0.0;        ///< [rad]
+  double about_y = 0.0;        ///< rotation about y [rad]
 };
 
-/// A joint or a spring between two bodies.
+/// Joint or spring between two bodies.
 struct HullJoint {
-  /// `axle`: revolute about y; `mount`: weld; `guide`: prismatic along x; `drive`: speed about y; the others: springs.
+  /// `axle`: revolute joint about y; `mount`: weld; `guide`: prismatic joint along x; `drive`: prescribed speed about
+  /// y; the other kinds: springs.
   enum class Kind { axle, mount, guide, drive, tensioner, shock };
-  Kind kind;                                      ///< which joint or spring it is
-  std::size_t a, b;                               ///< places among the bodies, from 1; 0 is the chassis
+  Kind kind;                                      ///< kind of joint or spring
+  std::size_t a, b;                               ///< numbers of the two bodies, from 1; 0 is the chassis
   Vec3 at_a = Vec3::Zero(), at_b = Vec3::Zero();  ///< (3) in the axes of the body, from its centre [m]
   std::string name;                               ///< unique in the vehicle, such as "left drive"
 };
 
-/// One side: sprocket, tensioner, idler, then wheel and arm by turns.
+/// One side of the vehicle. Its bodies are sprocket, tensioner and idler, then a wheel and its arm for each road wheel.
 struct HullSide {
-  static constexpr std::size_t sprocket = 1, tensioner = 2, idler = 3;  ///< places among a side's bodies from 1
-  /// Place of road wheel i, 0 in front … 4.
+  static constexpr std::size_t sprocket = 1, tensioner = 2, idler = 3;  ///< numbers of bodies of a side, from 1
+  /// Number of road wheel i; i = 0 is in front, i = 4 at the rear.
   static constexpr std::size_t wheel(int i) { return 4 + 2 * std::size_t(i); }
-  static constexpr std::size_t arm(int i) { return wheel(i) + 1; }  ///< place of the arm that carries wheel i
+  static constexpr std::size_t arm(int i) { return wheel(i) + 1; }  ///< number of the arm that carries wheel i
 
-  std::string name;               ///< with which all names of this side begin
-  std::vector<HullBody> bodies;   ///< bodies[k − 1] has the place k
+  std::string name;               ///< prefix of all names of this side
+  std::vector<HullBody> bodies;   ///< bodies[k − 1] has the number k
   std::vector<HullJoint> joints;  ///< joints and springs of this side
 };
 
 namespace detail {
-/// A place of the world in the axes of one of the bodies, from its centre.
-template <class = void>  // compiled where it is used
+/// Point given in world axes, as a vector from the centre of one of the bodies, in the body's axes.
+template <class = void>  // compiled only if it is used
 Vec3 in_axes(std::vector<HullBody> const& bodies, std::size_t body, Vec3 const& place) {
   if (body == 0) return place - Vec3(chassis);
   HullBody const& b = bodies[body - 1];
@@ -53,9 +54,9 @@ Vec3 in_axes(std::vector<HullBody> const& bodies, std::size_t body, Vec3 const& 
 }
 }  // namespace detail
 
-/// \param idler_x where the idler is at the start [m]
-/// \param sprung the arms hang on shock absorbers; else they are welded to the chassis
-template <class = void>  // compiled where it is used
+/// \param idler_x initial position of the idler along x [m]
+/// \param sprung true: shock absorbers support the arms; false: the arms are welded to the chassis
+template <class = void>  // compiled only if it is used
 HullSide hull_side(Side s, Solids const& masses, double idler_x, bool sprung) {
   using enum HullJoint::Kind;
   HullSide hull{s == Side::left ? "left " : "right ", {}, {}};

@@ -1,13 +1,13 @@
 #pragma once
 /// \file
-/// The axes of a track's link as contacts see them. Not in polybody.hpp: of use to vehicles only.
+/// Axes of a track link for the evaluation of contacts. For vehicles; not included by polybody.hpp.
 
 #include <polybody/kinematics/frame.hpp>
 
 namespace polybody {
 
 namespace detail {
-/// Column j of A, a + b and a x, entry by entry: expressions of Eigen would be compiled anew for dual numbers.
+/// Column j of A, a + b and a x, entry by entry. Expressions of Eigen would be compiled again for dual numbers.
 template <StateScalar T>
 Vec<T, 3> column(Mat<T, 3, 3> const& A, int j) {
   return {A(0, j), A(1, j), A(2, j)};
@@ -20,13 +20,13 @@ template <StateScalar T>
 Vec<T, 3> scaled(Vec<T, 3> const& a, T const& x) {
   return {a[0] * x, a[1] * x, a[2] * x};
 }
-/// r + A p.
+/// Point r + A p.
 template <StateScalar T>
 Vec<T, 3> point_in(Vec<T, 3> const& r, Mat<T, 3, 3> const& A, Vec<T, 3> const& p) {
   Vec<T, 3> const arm = A * p;
   return sum<T>(r, arm);
 }
-/// The part of a across the unit vector n.
+/// Component of a perpendicular to the unit vector n.
 template <StateScalar T>
 Vec<T, 3> across(Vec<T, 3> const& a, Vec<T, 3> const& n) {
   T const along = n.dot(a);
@@ -34,9 +34,9 @@ Vec<T, 3> across(Vec<T, 3> const& a, Vec<T, 3> const& n) {
 }
 }  // namespace detail
 
-/// (3×3) x from the link's rear pin to its front pin, y along its pins, z towards the wheels. A marker with a full
-/// frame has these axes itself. A cable has its tangent only: its y is the direction across the tangent that is nearest
-/// to `lateral`, the axle of the body that it touches.
+/// Axes of a link (3×3): x from its rear pin to its front pin, y along its pins, z towards the wheels. The axes of a
+/// marker with a full frame are these axes. A cable has a tangent only: its y is perpendicular to the tangent and as
+/// close as possible to `lateral`, the axle of the body that it touches.
 template <Observes observed, StateScalar T>
 Mat<T, 3, 3> link_axes(Frame<T> const& link, Vec<T, 3> const& lateral) {
   if constexpr (observed == Observes::frame) {

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A track's link on the ground. Not in polybody.hpp: of use to vehicles only.
+/// Contact of a track link with the ground. For vehicles; not included by polybody.hpp.
 
 #include <vector>
 
@@ -10,16 +10,17 @@
 
 namespace polybody {
 
-/// Points of a link's pad on a terrain. Marker a is the link's centre, marker b the ground, over whose x and y the
-/// terrain's height is measured. At a point P below the ground by e = h(x, y) − z the normal is (−h_x, −h_y, 1)/√(1 +
-/// h_x² + h_y²) and d = e n_z.
+/// Contact of points of a link's pad with a terrain. Marker a is the link's centre. Marker b is the ground; the
+/// terrain's height is a function of its x and y. The penetration of a point P at the depth e = h(x, y) − z below the
+/// ground is d = e n_z, with the normal n = (−h_x, −h_y, 1)/√(1 + h_x² + h_y²).
 template <Terrain G = FlatGround, Observes observed = Observes::frame>
 struct LinkOnGround {
   static constexpr Observes needs = observed;
   static constexpr Observes needs_of_second = Observes::frame;
 
-  G terrain = {};  ///< height over x and y of marker b
-  /// n × (3) in the link's axes [m]. A cable has no roll: there y is ignored and z points away from the ground.
+  G terrain = {};  ///< height as a function of x and y of marker b
+  /// Points of the pad, n × (3), in the link's axes [m]. A cable has no roll: y is ignored and z points away from the
+  /// ground.
   std::vector<Vec3> pad = {};
 
   void check(std::string const& name) const {
@@ -39,7 +40,7 @@ struct LinkOnGround {
     using std::sqrt;
     Vec<T, 3> const up = detail::column<T>(ground.A, 2);
     Mat<T, 3, 3> axes = link.A;
-    if constexpr (observed != Observes::frame) {  // z across the tangent, as near as may be to the ground's
+    if constexpr (observed != Observes::frame) {  // z is normal to the tangent, close to the ground's z
       Vec<T, 3> const z = detail::across<T>(up, detail::column<T>(axes, 0));
       T const length = sqrt(z.squaredNorm());
       for (int i = 0; i < 3; ++i) {
@@ -51,7 +52,7 @@ struct LinkOnGround {
       Vec<T, 3> const place = detail::point_in<T>(link.r, axes, {T(p[0]), T(p[1]), T(p[2])});
       Vec<T, 3> const arm = difference<T>(place, ground.r), local = ground.A.transpose() * arm;
       Height<T> const h = terrain.template height<T>(local[0], local[1]);
-      if (!(value_of(h.z) > value_of(local[2]))) continue;  // nor where a cable stands upright
+      if (!(value_of(h.z) > value_of(local[2]))) continue;  // no contact above the ground, nor for an upright cable
       T const nz = T(1.0) / sqrt(h.slope_x * h.slope_x + h.slope_y * h.slope_y + 1.0);
       Vec<T, 3> n;
       for (int i = 0; i < 3; ++i) n[i] = (up[i] - ground.A(i, 0) * h.slope_x - ground.A(i, 1) * h.slope_y) * nz;

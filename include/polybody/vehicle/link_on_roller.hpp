@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A track's link on a road wheel, idler or roller. Not in polybody.hpp: of use to vehicles only.
+/// Contact of a track link with a road wheel, idler or roller. For vehicles; not included by polybody.hpp.
 
 #include <vector>
 
@@ -9,27 +9,31 @@
 
 namespace polybody {
 
-/// The rims of a roller on the inner face of a link. Marker a is the link's centre (x to the front pin, z to the
-/// roller), marker b the roller's centre with its axle along y. A rim is a circle of radius R in its middle plane. It
-/// meets the face z = h where its lowest point is above the link, |s| ≤ p/2, with depth d = R − (height of the axle
-/// above the face). Each face ends where the next one begins. Within `handover` of that place both carry the share
-/// x² (3 − 2x) of the force, x = (p/2 + ε − |s|)/2ε, so that a wheel passes from one to the next without a bump. In a
-/// bend towards the wheel the strips above the faces overlap. Beyond a face its edge may meet the rim, as over a bump:
-/// the depth of this point is d = R − c − (its distance from the axle), c the chamfer of the edge along the radius, but
-/// at most its distance beyond the face, so that the force begins at zero. [after Choi, Lee & Shabana 1998:
-/// inner-surface contact with one or both rims]
+/// Contact of the rims of a roller with the inner face of a link [after Choi, Lee & Shabana 1998: inner-surface contact
+/// with one or both rims]. Marker a is the link's centre, with x to the front pin and z to the roller. Marker b is the
+/// roller's centre, with its axle along y. A rim is a circle of radius R in its middle plane.
+///
+/// The lowest point of a rim touches the face z = h if it lies above the link, |s| ≤ p/2. The penetration is d = R −
+/// (height of the axle above the face). Each face ends at the start of the next face. Within the distance ε =
+/// `handover` of this edge, each of the two links carries the share x² (3 − 2x) of the force, with x = (p/2 + ε −
+/// |s|)/2ε. So the force is continuous if a wheel passes from one link to the next. If the track bends towards the
+/// wheel, the strips above the faces overlap.
+///
+/// Beyond a face its edge may touch the rim, for example on a bump. The penetration of the edge is d = R − c − (its
+/// distance from the axle), with the chamfer c of the edge along the radius. It is at most the distance of the rim
+/// beyond the face, so that the force begins at zero.
 template <Observes observed = Observes::frame>
 struct LinkOnRoller {
   static constexpr Observes needs = observed;
   static constexpr Observes needs_of_second = Observes::frame;
 
-  Required<double> pitch;            ///< p, of the link [m]
-  Required<double> half_thickness;   ///< h, from the pins' line to the face [m]
-  Required<double> half_width;       ///< of the face [m]
-  Required<double> radius;           ///< R, of the rims [m]
-  double handover = 0.03;            ///< ε [m]
-  double chamfer = 0.005;            ///< c [m]
-  std::vector<double> rims = {0.0};  ///< where their middle planes are along the axle [m]
+  Required<double> pitch;            ///< p, pitch of the link [m]
+  Required<double> half_thickness;   ///< h, from the line between the pins to the face [m]
+  Required<double> half_width;       ///< half width of the face [m]
+  Required<double> radius;           ///< R, radius of the rims [m]
+  double handover = 0.03;            ///< ε, half length of the transition between two links [m]
+  double chamfer = 0.005;            ///< c, chamfer of the edges [m]
+  std::vector<double> rims = {0.0};  ///< positions of their middle planes along the axle [m]
 
   void check(std::string const& name) const {
     require_positive(pitch, name, ": the pitch of the link");
@@ -86,11 +90,12 @@ struct LinkOnRoller {
     for (double const y : rims) far = std::max(far, std::abs(y));
     return far;
   }
-  /// The roller's middle from that of a link that it touches, at most. \param far that of a rim from the roller's
-  /// middle
+  /// Upper bound of the distance between the centres of the roller and of a link in contact [m]. \param far upper bound
+  /// of the distance of a rim from the roller's centre [m]
   double farthest(double far) const { return radius + half_thickness + half_width + pitch + far; }
-  /// The axle, at `arm` from the link, is not higher above the face than the rims reach; nor is one of these, `far`
-  /// along it. A cable's z lies along x × axle (`link_axes`).
+  /// Checks that the rims can reach the face: the height above the face, of at least one point of the axle
+  /// within ±`far` of its middle, is less than the radius of the rims. `arm` is the vector from the link to the middle.
+  /// The z axis of a cable is along x × axle (`link_axes`).
   bool reaches(Frame<double> const& link, Vec3 const& arm, Vec3 const& axle, double far) const {
     double const height = (radius + half_thickness) * (1.0 + 1e-9);
     if constexpr (observed == Observes::frame) {
@@ -102,12 +107,12 @@ struct LinkOnRoller {
       return above < 0.0 || above * above < height * height * z.squaredNorm();
     }
   }
-  /// Where the axle stands over an edge of the face.
+  /// Position of the axle relative to an edge of the face.
   template <StateScalar T>
   struct OverEdge {
-    T across;          ///< along the edge, from the middle of the link [m]
-    double side;       ///< sign of x, a factor: 1 at the front edge, −1 at the rear edge
-    T beyond, height;  ///< outwards from the edge, and above the face [m]
+    T across;          ///< position along the edge, from the middle of the link [m]
+    double side;       ///< sign of x: 1 at the front edge, −1 at the rear edge
+    T beyond, height;  ///< distance outwards from the edge, and height above the face [m]
   };
   template <StateScalar T, class Visit>
   void meet_edge(Frame<T> const& link, Mat<T, 3, 3> const& axes, OverEdge<T> const& axle, Visit& visit) const {
@@ -124,18 +129,18 @@ struct LinkOnRoller {
   }
 };
 
-/// Lateral guide of a track: a horn on the inner face of a link runs between the rims of a wheel and meets their inner
-/// faces. Markers as for `LinkOnRoller`. The force is along the axle; its depth is the distance beyond the play, but at
-/// most the distance of the tip within the rims. So the force grows from zero also where a horn enters beside its gap:
-/// edges are chamfered by 45°.
+/// Lateral guide of a track: a horn on the inner face of a link runs between the rims of a wheel and touches their
+/// inner faces. The markers are those of `LinkOnRoller`. The force is parallel to the axle. The penetration is the
+/// distance of the horn beyond the play, and at most the distance of the tip within the rims. So the force also grows
+/// from zero if a horn comes down on a rim instead of the gap between the rims: the edges are chamfered by 45°.
 template <Observes observed = Observes::frame>
 struct HornOnRims {
   static constexpr Observes needs = observed;
   static constexpr Observes needs_of_second = Observes::frame;
 
   Vec3 tip = Vec3::Zero();  ///< (3) middle of the horn's upper end, in the link's axes [m]
-  Required<double> play;    ///< to either side before it meets a rim [m]
-  Required<double> radius;  ///< of the rims [m]
+  Required<double> play;    ///< free lateral distance on either side between horn and rim [m]
+  Required<double> radius;  ///< radius of the rims [m]
 
   void check(std::string const& name) const {
     require_finite(tip, name, ": the tip of the horn");
@@ -146,12 +151,12 @@ struct HornOnRims {
     Vec3 const arm = difference<double>(roller.r, link.r), axle = detail::column<double>(roller.A, 1);
     double const across = arm.dot(axle), reach = radius + tip.norm();
     if (!(arm.squaredNorm() - across * across < reach * reach)) return false;
-    double aside = tip[0] * axle.dot(detail::column<double>(link.A, 0)) - across;  // of the tip, along the axle
+    double aside = tip[0] * axle.dot(detail::column<double>(link.A, 0)) - across;  // offset of the tip along the axle
     double room = play * (1.0 - 1e-9);
     if constexpr (observed == Observes::frame)
       for (int i = 1; i < 3; ++i) aside += tip[i] * axle.dot(detail::column<double>(link.A, i));
     else
-      room -= std::abs(tip[1]);  // a cable's z is across the axle
+      room -= std::abs(tip[1]);  // z of a cable is perpendicular to the axle
     return std::abs(aside) > room;
   }
   ContactReach reach(Frame<double> const& roller) const {

@@ -1,7 +1,8 @@
 #pragma once
 /// \file
-/// The stretch and the bending of a track's flexible link in a coupled run; decoupled_link_strain.hpp has those of a
-/// rigid one. Not in polybody.hpp: of use to vehicles only.
+/// Axial strain and bending strain of a flexible track link in a coupled run. For vehicles; not included by
+/// polybody.hpp.
+/// See decoupled_link_strain.hpp for rigid links.
 
 #include <array>
 
@@ -12,13 +13,14 @@
 
 namespace polybody::m113 {
 
-/// Places where strain is taken, from the rear pin [m]: two Gauss points of either half. The mean over them is the
-/// change of the link's length over its length, also where contact forces make the axial force jump in the middle.
+/// Distances of the strain points from the rear pin [m]: two Gauss points in either half. The mean strain at these
+/// points equals the change of the link's length divided by its length. This holds also if contact forces cause a jump
+/// of the axial force in the middle.
 inline constexpr std::array<double, 4> strain_places{
     pitch * (0.25 - 0.14433756729740644), pitch * (0.25 + 0.14433756729740644), pitch * (0.75 - 0.14433756729740644),
     pitch * (0.75 + 0.14433756729740644)};
 
-/// Mean axial strain of a flexible link in a state of the model that made the handle.
+/// Mean axial strain of a flexible link in a state of the model that returned the handle.
 template <class B>
 double link_strain(BodyHandle<B> const& link, State const& x) {
   BodyInState<B> const b = body_in_state(link, x);
@@ -31,17 +33,17 @@ double link_strain(BodyHandle<B> const& link, State const& x) {
   return sum / double(strain_places.size());
 }
 
-/// Axial strain in the fibre towards the wheels by a unit moment M_y about the pins' direction [1/(N m)]; `height` of
-/// the section, here and below [m].
-template <class = void>  // compiled where it is used
+/// Axial strain in the fibre towards the wheels due to a unit moment M_y about the direction of the pins [1/(N m)].
+/// `height` is the height of the section, here and below [m].
+template <class = void>  // compiled only if it is used
 double bending_by_moment(double height = cable_height) {
   return 0.5 * height / *constants(link_bar({}, height)).EI_y;
 }
 
-/// Axial strain by bending in the fibre towards the wheels, of a section of this `height` [m], just ahead of the
-/// middle, where contacts push. One cubic element shows half of the effect of a force there, one linear element none;
-/// two elements have a node there and show it in full. A cable needs `lateral`, the vehicle's y axis, to know the side
-/// of the wheels (link_axes.hpp).
+/// Axial strain due to bending in the fibre towards the wheels, in a section of this `height` [m], just in front of the
+/// middle, on which contact forces act. One cubic element resolves half of the effect of a force in the middle, and one
+/// linear element does not resolve it. Two elements have a node in the middle and resolve it fully. For a cable,
+/// `lateral` (the vehicle's y axis) is required to determine the side of the wheels (link_axes.hpp).
 template <class B>
 double link_bending(BodyHandle<B> const& link, State const& x, Vec3 const& lateral, double height = cable_height) {
   BodyInState<B> const b = body_in_state(link, x);
@@ -51,8 +53,8 @@ double link_bending(BodyHandle<B> const& link, State const& x, Vec3 const& later
   return bending_by_moment(height) * moment.dot(link_axes<B::observes>(section, lateral).col(1));
 }
 
-/// (T₀ + m v²/p)/EA: the strain in a chain of links of mass m [kg], pitch p and `height` [m] that runs at speed v [m/s]
-/// and is pulled by T₀ = `pull` [N].
+/// Strain (T₀ + m v²/p)/EA in a chain of links of mass m [kg], pitch p and `height` [m] that moves at speed v [m/s]
+/// under the tension T₀ = `pull` [N].
 inline double running_strain(double speed, double pull, double height = cable_height, double mass = thesis.link.mass) {
   return (pull + mass * speed * speed / pitch) / constants(link_bar({}, height)).EA;
 }

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// The vehicle of m113.hpp as a model, its tracks under a formulation of choice. Not in polybody.hpp: of use to
-/// vehicles only.
+/// Model of the vehicle of m113.hpp with a selectable formulation of its tracks. For vehicles; not included by
+/// polybody.hpp.
 
 #include <polybody/joints/point_on_line.hpp>
 #include <polybody/joints/spherical.hpp>
@@ -11,47 +11,50 @@
 
 namespace polybody::m113 {
 
-/// Chassis, and on each side sprocket, idler, tensioner, five wheels on arms and 64 links; `Link` is a link's body,
-/// `PinPolicy` how links hang together. Where pins are rows or joint coordinates, 63 of a track are, and the last one
-/// is as `Closure` says; where they are forces or linear rows, all 64 are alike.
+/// Vehicle of a chassis and two sides; each side has a sprocket, an idler, a tensioner, five wheels on arms and 64
+/// links. `Link` is the body of a link; `PinPolicy` is the policy of the pins between links. If pins are constraints or
+/// joint coordinates, 63 pins of a track have this policy, and the last pin is chosen by `Closure`. If pins are forces
+/// or linear constraint equations, all 64 pins are alike.
 template <class Link = Rigid<>, Policy PinPolicy = Constraint, Terrain Ground = FlatGround, TimeLaw Drive = Ramp>
 class Vehicle : public TrackedVehicle {
  public:
   using LinkType = Link;                                ///< the body of a link
-  static constexpr Observes observed = Link::observes;  ///< what markers on a link know
-  /// All 64 pins of a track are alike.
+  static constexpr Observes observed = Link::observes;  ///< observed quantities of markers on a link
+  /// True if all 64 pins of a track are alike.
   static constexpr bool closes_alike = AddsForce<PinPolicy> || LinearInCoordinates<PinPolicy>;
-  using Base =
-      std::conditional_t<std::is_same_v<Link, Rigid<EulerParameters>>, Link, Rigid<>>;  ///< of all that is no link
-  using Hull = HullTypes<Base, Drive>;     ///< types of what carries the tracks
-  using Driven = typename Hull::Driven;    ///< drive of a sprocket: its speed is prescribed
+  /// Body of all parts except links.
+  using Base = std::conditional_t<std::is_same_v<Link, Rigid<EulerParameters>>, Link, Rigid<>>;
+  using Hull = HullTypes<Base, Drive>;     ///< types of the bodies and joints that carry the tracks
+  using Driven = typename Hull::Driven;    ///< driving constraint of a sprocket: its speed is prescribed
   using Pin = Joint<Revolute, PinPolicy>;  ///< pin between two links
   /// Pin that closes a loop under `Closure::stiff_spring`.
   using SpringPin = std::conditional_t<closes_alike, Pin, Joint<Spherical, Penalty>>;
   /// Pin that closes a loop under `Closure::in_plane`.
   using PlanePin = std::conditional_t<closes_alike, Pin, Joint<PointOnLine, Constraint>>;
-  using Contacts = TrackContacts<observed, Ground>;  ///< what the links of a track touch
-  /// The model, with the bodies, joints and forces of the vehicle and no others.
+  using Contacts = TrackContacts<observed, Ground>;  ///< contacts of the links of a track
+  /// Type of the model, with the bodies, joints and forces of the vehicle only.
   using ModelType = Model<EachOnce<Bodies, Base, Link>,
                           EachOnce<Joints, typename Hull::Hinge, typename Hull::Slide, typename Hull::Fixed, Driven,
                                    Pin, SpringPin, PlanePin>,
                           Forces<SpringDamper, AxialSpring, Contacts>>;
-  using Handle = BodyHandle<Base>;  ///< a body that is no link
+  using Handle = BodyHandle<Base>;  ///< handle of a body that is not a link
 
-  /// One side. Pin i is in front of link i; `pins[i]` is at pin i but for the one where the loop is cut.
+  /// Parts of one side. Pin i is in front of link i. `pins[i]` is the handle of pin i, except for the pin that closes
+  /// the loop.
   struct SideParts : Carriers<Base>, LinkParts<Link> {
     std::vector<ElementHandle<Pin>> pins = {};           ///< (64) handles of the pins
-    std::vector<ElementHandle<Driven>> drive = {};       ///< one
-    std::vector<ElementHandle<Contacts>> contacts = {};  ///< one; four where contacts act at their places
+    std::vector<ElementHandle<Driven>> drive = {};       ///< one handle
+    std::vector<ElementHandle<Contacts>> contacts = {};  ///< one handle; four if contacts act at their own points
   };
 
-  ModelType model{Gravity{0, 0, -9.81}};  ///< all of the vehicle; weight along −z, 9.81 m/s²
-  std::vector<Handle> chassis;            ///< one
+  ModelType model{Gravity{0, 0, -9.81}};  ///< all parts of the vehicle; gravity is 9.81 m/s² along −z
+  std::vector<Handle> chassis;            ///< one handle
   std::array<SideParts, 2> sides;         ///< left, right
 
-  SideParts const& side(Side s) const { return sides[s == Side::left ? 0 : 1]; }  ///< the parts of a side
+  SideParts const& side(Side s) const { return sides[s == Side::left ? 0 : 1]; }  ///< parts of the side s
 
-  /// With the policy `pin` for its pins. \param drives of the left and the right sprocket \throws InvalidInput.
+  /// Creates the vehicle with the policy `pin` for its pins. \param drives drives of the left and the right sprocket
+  /// \throws InvalidInput.
   [[gnu::cold]] Vehicle(PinPolicy const& pin, std::array<Drive, 2> const& drives, VehicleOptions const& options = {},
                         Ground const& ground = {}, LinkOf<Link> const& of_links = {}) {
     check(options);

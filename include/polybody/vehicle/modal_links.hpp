@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// The links of a track as floating frames with modes: of beam elements, or of a finite element model.
+/// Track links in a floating frame with modes, from beam elements or from a finite element model.
 ///
-/// Not in polybody.hpp: of use to vehicles only, and it comes with Eigen's sparse module.
+/// For vehicles; not included by polybody.hpp. Requires Eigen's sparse module.
 
 #include <map>
 
@@ -14,17 +14,18 @@
 
 namespace polybody::m113 {
 
-/// A finite element model of a link about its centre, with the size of `link_bar`, and the basis in which it deforms.
+/// Finite element model of a link about its centre, with the dimensions of `link_bar`, and the shapes of its
+/// deformation.
 struct FiniteElementLink {
   Structure structure;  ///< nodes and elements, in axes of the link from its centre
-  MatX shapes;          ///< (N×n)
+  MatX shapes;          ///< (N×n) shapes of the deformation
 
-  /// The end face at the front pin (sign 1) or the rear pin (−1).
-  template <class = void>  // compiled where it is used
+  /// End face at the front pin (sign 1) or at the rear pin (−1).
+  template <class = void>  // compiled only if it is used
   NodePatch pin(double sign) const {
     return patch([&](Vec3 const& r) { return sign * r.x() > 0.5 * pitch - same_place; });
   }
-  /// The part of a side that is not farther than a sixth of the pitch ahead of x or behind.
+  /// Part of a side within a sixth of the pitch of x.
   template <class = void>
   NodePatch part(double x, Face face) const {
     double const side = face == Face::wheels ? 1.0 : -1.0;
@@ -32,13 +33,12 @@ struct FiniteElementLink {
       return side * r.z() > 0.5 * cable_height - same_place && std::abs(r.x() - x) < pitch / 6.0 + same_place;
     });
   }
-  /// The nodes at x.
+  /// Nodes at x.
   template <class = void>
   NodePatch section(double x) const {
     return patch([&](Vec3 const& r) { return std::abs(r.x() - x) < same_place; });
   }
-  /// The nodes that bear what acts on a rigid link in its place, as they do on this one
-  /// (`ContactsAct::at_their_places`).
+  /// Nodes that carry the loads that act on a rigid link at the same points (`ContactsAct::at_their_places`).
   template <class = void>
   std::vector<LoadPatch> patches() const {
     std::vector<LoadPatch> found;
@@ -49,14 +49,14 @@ struct FiniteElementLink {
   }
 
  private:
-  static constexpr double same_place = 1e-6;  ///< [m]
+  static constexpr double same_place = 1e-6;  ///< tolerance of positions [m]
 
-  /// Nodes that share a load as a line load along the pins does: those at one y have the length of that line which is
-  /// nearest to it.
+  /// Nodes with weights that distribute a load as a line load along the pins. Nodes at one y carry the part of the line
+  /// that is nearest to them.
   template <class Chosen>
   NodePatch patch(Chosen const& chosen) const {
     std::vector<Index> nodes;
-    std::map<long, double> counts;  // of nodes by y in millionths of a metre
+    std::map<long, double> counts;  // number of nodes for each y in millionths of a metre
     auto const line = [&](Index i) { return std::lround(structure.nodes[std::size_t(i)].y() / same_place); };
     for (std::size_t i = 0; i < structure.nodes.size(); ++i)
       if (chosen(structure.nodes[i])) {
@@ -74,9 +74,10 @@ struct FiniteElementLink {
   }
 };
 
-/// With the static shapes of what pins, wheels and ground do to a link, and its three lowest free modes: forces and
-/// moments but that about y at either pin, forces along z on each third of the inner face and at both ends of the pad.
-/// \throws InvalidInput for nodes that leave a face without a patch, and as `attachment_modes`.
+/// Basis of static shapes under the loads of pins, wheels and ground, and of the three lowest free modes. The loads are
+/// all forces and moments at either pin except the moment about y, forces along z on each third of the inner face, and
+/// forces along z at both ends of the pad. \throws InvalidInput if the nodes leave a face without a patch, and as
+/// `attachment_modes`.
 template <class = void>
 std::shared_ptr<FiniteElementLink const> finite_element_link(Structure structure) {
   FiniteElementLink link{std::move(structure), {}};
@@ -92,52 +93,55 @@ std::shared_ptr<FiniteElementLink const> finite_element_link(Structure structure
   return std::make_shared<FiniteElementLink const>(std::move(link));
 }
 
-/// Without a finite element model two beam elements, unless more are asked for, with a boundary frame at each pin, the
-/// floating frame tied to the rear one [Craig & Bampton 1968]: the six static shapes of the front pin's motion and the
-/// three lowest modes between the pins: torsion, bending up and down, stretch. With one its pins move with its end
-/// faces, and what touches it acts on parts of its inner and outer face.
+/// Links in a floating frame with modes. Without a finite element model, a link has two beam elements (or a larger
+/// given number) and a boundary frame at each pin. The floating frame is attached to the rear one [Craig & Bampton
+/// 1968]. The shapes are the six static shapes of the front pin's motion and the three lowest modes with both pins
+/// fixed: torsion, vertical bending, axial stretch. With a finite element model, the pins move with the end faces, and
+/// contact forces act on parts of the inner and outer faces.
 template <>
 struct LinkOf<Ffr> {
-  static constexpr Index modes_between = 3;  ///< how many modes between fixed pins, those of the lowest frequencies
+  static constexpr Index modes_between = 3;  ///< number of fixed-interface modes, those of the lowest frequencies
 
-  std::shared_ptr<FiniteElementLink const> model = {};  ///< null: the link is made of beam elements
-  FfrTerms terms = {};                                  ///< which terms of the floating frame's equations are kept
-  double height = cable_height;                         ///< of the section of beam elements; a model has its own [m]
+  std::shared_ptr<FiniteElementLink const> model = {};  ///< null: the link consists of beam elements
+  FfrTerms terms = {};                                  ///< terms of the floating frame's equations that are included
+  double height = cable_height;  ///< height of the section of beam elements; not used with a finite element model [m]
 
-  /// A link with its centre at `at`: of the model, or of two beam `elements` or more. The `Solid` has no effect.
+  /// Link with its centre at `at`, from the finite element model or from at least two beam `elements`. The `Solid` has
+  /// no effect.
   template <class = void>
   Ffr make(Solid const&, Placement const& at, int elements) const;
-  /// The front pin.
+  /// Front pin.
   template <class = void>
   Marker<Ffr> front(BodyHandle<Ffr> const& link) const {
     return pin(link, 1.0);
   }
-  /// The rear pin.
+  /// Rear pin.
   template <class = void>
   Marker<Ffr> rear(BodyHandle<Ffr> const& link) const {
     return pin(link, -1.0);
   }
-  /// The middle of the inner face, of a link of beam elements the middle of its line.
+  /// Middle of the inner face; for a link of beam elements, middle of its line.
   template <class = void>
   Marker<Ffr> middle(BodyHandle<Ffr> const& link) const {
     return under(link, 0.0, Face::wheels);
   }
-  /// Where what touches `face` acts, `x` [m] ahead of the link's centre.
+  /// Point of action of contact forces on `face`, at the distance `x` [m] in front of the link's centre.
   template <class = void>
   Marker<Ffr> under(BodyHandle<Ffr> const& link, double x, Face face) const;
-  /// At the front (sign 1) or the rear (−1).
+  /// Pin at the front (sign 1) or at the rear (−1).
   template <class = void>
   Marker<Ffr> pin(BodyHandle<Ffr> const& link, double sign) const;
 
-  /// The link that was made last. Others like it share its constants, as their shapes cost an eigenproblem.
+  /// Constants of the link that was made last. Links with the same data share them, because their shapes require the
+  /// solution of an eigenvalue problem.
   struct Made {
     std::shared_ptr<FiniteElementLink const> model;  ///< its finite element model, or null
-    FfrTerms terms;                                  ///< which terms of the equations it keeps
+    FfrTerms terms;                                  ///< terms of the equations that are included
     double height;                                   ///< height of its section [m]
-    int elements;                                    ///< how many elements were asked for
-    Ffr link;                                        ///< the link, wherever it was placed
+    int elements;                                    ///< number of elements of the request
+    Ffr link;                                        ///< the link, at any placement
   };
-  mutable std::shared_ptr<Made const> made = {};  ///< null as long as no link was made
+  mutable std::shared_ptr<Made const> made = {};  ///< null until a link is made
 };
 
 template <class>

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A track's pins between the teeth of its sprocket. Not in polybody.hpp: of use to vehicles only.
+/// Contact of a track's pins with the teeth of its sprocket. For vehicles; not included by polybody.hpp.
 
 #include <numbers>
 #include <optional>
@@ -11,22 +11,23 @@
 
 namespace polybody {
 
-/// Round pins of radius r_p in valleys between N teeth. A valley's bottom is an arc of radius r_a > r_p to an angle φ
-/// on both sides, about a point at r_c = R_p + r_a − r_p, so that a pin at the bottom lies on the pitch circle R_p;
-/// straight flanks go on along the arc's tangents up to the tip circle R_t.
+/// Profile of a sprocket with N teeth, for round pins of radius r_p in the valleys. The bottom of a valley is an arc of
+/// radius r_a > r_p and half angle φ. The arc's centre is at r_c = R_p + r_a − r_p, so that a pin at the bottom lies on
+/// the pitch circle R_p. Straight flanks continue along the arc's tangents up to the tip circle R_t.
 struct SprocketProfile {
-  Required<int> teeth;             ///< N
-  Required<double> pitch;          ///< p, of the track [m]
-  Required<double> pin_radius;     ///< r_p [m]
-  Required<double> valley_radius;  ///< r_a [m]
-  Required<double> flank;          ///< φ [rad]
-  Required<double> tip_radius;     ///< R_t [m]
+  Required<int> teeth;             ///< N, number of teeth
+  Required<double> pitch;          ///< p, pitch of the track [m]
+  Required<double> pin_radius;     ///< r_p, radius of a pin [m]
+  Required<double> valley_radius;  ///< r_a, radius of the arc [m]
+  Required<double> flank;          ///< φ, half angle of the arc [rad]
+  Required<double> tip_radius;     ///< R_t, outer radius of the teeth [m]
 
-  double pitch_radius() const { return 0.5 * pitch / std::sin(std::numbers::pi / teeth); }  ///< R_p [m]
-  double arc_centre() const { return pitch_radius() + valley_radius - pin_radius; }         ///< r_c, from the axle [m]
-  /// Distance from the axle of a pin that just touches a tip; a pin further away touches nothing [m].
+  /// R_p, radius of the pitch circle [m].
+  double pitch_radius() const { return 0.5 * pitch / std::sin(std::numbers::pi / teeth); }
+  double arc_centre() const { return pitch_radius() + valley_radius - pin_radius; }  ///< r_c, from the axle [m]
+  /// Distance from the axle at which a pin just touches a tip; there is no contact at a greater distance [m].
   double outer_radius() const { return tip_radius + pin_radius; }
-  /// (2) Point where flank and tip circle meet, radial and tangential, seen from the middle of the valley [m].
+  /// (2) Intersection of flank and tip circle, radial and tangential, relative to the middle of the valley [m].
   Vec2 corner() const {
     Vec2 const foot(arc_centre() - valley_radius * std::cos(flank), valley_radius * std::sin(flank)),
         up(std::sin(flank), std::cos(flank));
@@ -34,7 +35,7 @@ struct SprocketProfile {
     return foot + (std::sqrt(b * b - foot.squaredNorm() + tip_radius * tip_radius) - b) * up;
   }
 
-  /// \throws InvalidInput for numbers that make no tooth.
+  /// \throws InvalidInput if the numbers do not define a tooth.
   void check(std::string const& name) const {
     if (teeth < 4) throw InvalidInput{name, ": a sprocket needs at least four teeth, but has ", int(teeth), "."};
     require_positive(pitch, name, ": the pitch of the track");
@@ -55,21 +56,22 @@ struct SprocketProfile {
           name, ": the valleys leave nothing of the teeth. Take a smaller valley, a lower tip or fewer teeth."};
   }
 
-  /// A pin at X along the middle of a valley and Y ≥ 0 across: overlap d and normal (radial, tangential). d and n are
-  /// continuous.
+  /// Penetration d and normal (radial, tangential) of a pin at X along the middle of a valley and Y ≥ 0 across it. d
+  /// and n are continuous.
   template <StateScalar T>
   struct Overlap {
-    T depth, radial, tangential;  ///< d [m]; unit vector along the middle of the valley and across
+    T depth, radial, tangential;  ///< d [m]; unit vector along the middle of the valley and across it
   };
-  /// The overlap of a pin at X = x and Y = y [m]; its depth is negative where they are apart.
+  /// Penetration of a pin at X = x and Y = y [m]; it is negative if pin and tooth are separated.
   template <StateScalar T>
   Overlap<T> overlap(T const& x, T const& y) const {
     using std::sqrt;
     double const rc = arc_centre(), room = valley_radius - pin_radius, c = std::cos(flank), s = std::sin(flank);
     T const u = rc - x;  // towards the bottom
     Vec2 const k = corner();
-    double const along = (value_of(x) - k[0]) * s + (value_of(y) - k[1]) * c;  // beyond the flank's end
-    if (value_of(y) * c <= value_of(u) * s && value_of(u) > 0.0) {             // before the arc's end
+    // Position along the flank, beyond its end.
+    double const along = (value_of(x) - k[0]) * s + (value_of(y) - k[1]) * c;
+    if (value_of(y) * c <= value_of(u) * s && value_of(u) > 0.0) {  // contact with the arc
       T const r = sqrt(u * u + y * y);
       if (value_of(r) <= 0.0) return {T(-room), T(1.0), T(0.0)};
       return {r - room, u / r, -y / r};
@@ -82,19 +84,21 @@ struct SprocketProfile {
   }
 };
 
-/// The front pin of a link in the teeth. Marker a is on the link's middle line, x to the front pin; marker b is the
-/// sprocket's centre with its axle along y.
+/// Contact of the front pin of a link with the teeth of a sprocket. Marker a is on the link's middle line, with x to
+/// the front pin. Marker b is the sprocket's centre, with its axle along y.
 template <Observes observed = Observes::frame>
 struct PinOnSprocket {
   static constexpr Observes needs = observed;
   static constexpr Observes needs_of_second = Observes::frame;
 
-  SprocketProfile profile;            ///< the teeth and the pins between them
+  SprocketProfile profile;            ///< profile of the teeth and radius of the pins
   Required<double> valley;            ///< angle of any one valley in the sprocket's axes, from z towards x [rad]
-  std::vector<double> rings = {0.0};  ///< where the rings of teeth are along the axle [m]
-  std::optional<double> ahead = {};   ///< from marker a to the pin [m]; none: a is the link's centre, half a pitch
+  std::vector<double> rings = {0.0};  ///< positions of the rings of teeth along the axle [m]
+  /// Distance from marker a to the pin [m]; if empty, a is the link's centre and the distance is half a pitch.
+  std::optional<double> ahead = {};
 
-  double to_pin() const { return ahead ? *ahead : 0.5 * profile.pitch; }  ///< from marker a to the pin along x [m]
+  /// Distance from marker a to the pin along x [m].
+  double to_pin() const { return ahead ? *ahead : 0.5 * profile.pitch; }
   void check(std::string const& name) const {
     profile.check(name);
     if (!std::isfinite(valley)) throw InvalidInput{name, ": the angle of a valley must be finite."};
@@ -109,8 +113,8 @@ struct PinOnSprocket {
     double const across = arm.dot(axle), far = farthest_ring();
     double const askew = observed == Observes::frame ? cross<double>(detail::column<double>(link.A, 1), axle).norm()
                                                      : std::abs(x.dot(axle));
-    double const reach =
-        profile.outer_radius() + far * askew;  // of the pin's middle: at the rings it is nearer by far · askew
+    // Distance of the pin's middle; at the rings the pin is nearer by far · askew.
+    double const reach = profile.outer_radius() + far * askew;
     return arm.squaredNorm() - across * across < reach * reach;
   }
   ContactReach reach(Frame<double> const& sprocket) const {
@@ -123,7 +127,8 @@ struct PinOnSprocket {
     Vec<T, 3> const along = detail::column<T>(link.A, 0), axis_x = detail::column<T>(sprocket.A, 0),
                     axis_z = detail::column<T>(sprocket.A, 2);
     Vec<T, 3> const pin = difference<T>(detail::shifted<T>(link.r, along, T(to_pin())), sprocket.r);
-    double turned = std::numeric_limits<double>::quiet_NaN(), s = 0.0, c = 1.0;  // to the valley, which rings share
+    // Rotation to the valley, computed once for all rings.
+    double turned = std::numeric_limits<double>::quiet_NaN(), s = 0.0, c = 1.0;
     for (double const ring : rings) {
       Vec<T, 3> const arm = detail::shifted<T>(pin, lateral, T(ring));
       T const x = arm.dot(axis_x), z = arm.dot(axis_z);
@@ -135,10 +140,11 @@ struct PinOnSprocket {
         s = std::sin(middle);
         c = std::cos(middle);
       }
-      T const out = x * s + z * c, side = x * c - z * s;  // along the middle of the valley, and across from z towards x
+      // Components along the middle of the valley, and across it from z towards x.
+      T const out = x * s + z * c, side = x * c - z * s;
       bool const forward = value_of(side) >= 0.0;
       auto const o = profile.template overlap<T>(out, forward ? side : T(-side));
-      if (!(value_of(o.depth) > 0.0)) continue;  // nor where a cable lies along the axle
+      if (!(value_of(o.depth) > 0.0)) continue;  // no contact without penetration, nor for a cable along the axle
       T const across = forward ? o.tangential : T(-o.tangential);
       T const by_x = o.radial * s + across * c, by_z = o.radial * c - across * s;
       Vec<T, 3> const n = detail::shifted<T>(detail::scaled<T>(axis_x, by_x), axis_z, by_z);
@@ -148,7 +154,7 @@ struct PinOnSprocket {
   }
 
  private:
-  /// That of a ring from the sprocket's middle, at most.
+  /// Upper bound of the distance of a ring from the sprocket's middle [m].
   double farthest_ring() const {
     double far = 0.0;
     for (double const ring : rings) far = std::max(far, std::abs(ring));

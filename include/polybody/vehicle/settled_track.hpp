@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Tracks at rest on a vehicle that does not load them yet. Not in polybody.hpp: of use to vehicles only.
+/// Tracks at rest on a vehicle that does not yet load them. For vehicles; not included by polybody.hpp.
 
 #include <polybody/integrators/generalized_alpha.hpp>
 #include <polybody/run/energy.hpp>
@@ -10,12 +10,13 @@
 
 namespace polybody::m113 {
 
-/// Rest position of tracks of rigid links on the held vehicle, whose wheels just touch the ground. `wrap_track` lays
-/// straight runs and knows no ground; a long run sags. The rest position is found by dynamic relaxation with kinetic
-/// damping, without friction: the track is released and stopped at each maximum of its kinetic energy, until it rests
-/// [Day 1965; Barnes 1999]. \param ground level under the vehicle; a program that drives on the same type of ground
-/// compiles one vehicle for both
-/// \throws InvalidInput, NewtonStalled; Error where it does not come to rest.
+/// Computes the position at rest of tracks of rigid links on a fixed vehicle whose wheels just touch the ground.
+/// `wrap_track` computes straight runs and ignores the ground; a long run sags. The position at rest is found by
+/// dynamic relaxation with kinetic damping, without friction [Day 1965; Barnes 1999]. The track is released, and its
+/// velocities are set to zero at each maximum of its kinetic energy, until it rests.
+/// \param ground terrain under the vehicle. If a program drives on the same type of ground, only one vehicle type is
+/// compiled.
+/// \throws InvalidInput, NewtonStalled; Error if the track does not come to rest.
 template <Terrain Ground = FlatGround>
 TrackStart settled_track(VehicleOptions options = {}, Ground const& ground = {}) {
   options.held = true;
@@ -25,7 +26,7 @@ TrackStart settled_track(VehicleOptions options = {}, Ground const& ground = {})
   Vehicle<Rigid<>, Constraint, Ground> const bench(Constraint{}, {drive(0.0), drive(0.0)}, options, ground);
   State x = bench.model.reference_state();
   auto const& side = bench.side(Side::left);
-  double fastest = 0.0;  // of all links since the track was let go [m/s]
+  double fastest = 0.0;  // greatest speed of all links since the last release [m/s]
   for (int again = 0; again < 300 && (again < 10 || fastest > 1e-3); ++again) {
     x.v.setZero();
     x.t = 0.0;

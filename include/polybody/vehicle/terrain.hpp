@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// What vehicles drive on: a height z = h(x, y) above the plane z = 0 of the world, z up, with its slopes.
-/// Not in polybody.hpp: of use to vehicles only.
+/// Terrains under vehicles: heights z = h(x, y) above the plane z = 0 of the world, with z up, and their slopes. For
+/// vehicles; not included by polybody.hpp.
 
 #include <algorithm>
 #include <array>
@@ -17,7 +17,7 @@
 
 namespace polybody {
 
-/// A height and its slopes; (−∂h/∂x, −∂h/∂y, 1) is normal to the ground.
+/// Height and slopes at a point; (−∂h/∂x, −∂h/∂y, 1) is normal to the ground.
 template <StateScalar T>
 struct Height {
   T z;        ///< h [m]
@@ -25,8 +25,8 @@ struct Height {
   T slope_y;  ///< ∂h/∂y
 };
 
-/// A height with continuous slopes, and a bound that no height exceeds, infinite where none is known: what lies above
-/// it touches nothing. Of dual numbers the slopes carry their derivatives, too.
+/// Concept of a terrain: a height with continuous slopes, and an upper bound of the height. The bound is infinite if
+/// none is known. A point above the bound has no contact. For dual numbers the slopes also contain their derivatives.
 template <class G>
 concept Terrain = requires(G const terrain, double x, Dual<2> d, std::string const name) {
   { terrain.template height<double>(x, x) } -> std::same_as<Height<double>>;
@@ -36,12 +36,12 @@ concept Terrain = requires(G const terrain, double x, Dual<2> d, std::string con
 };
 
 namespace detail {
-/// A height at one point and its derivatives up to the second.
+/// Height at one point and its first and second derivatives.
 struct Relief {
   double z = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;
 };
-/// The height that follows the derivatives of x and y: dh = h,x dx + h,y dy, and so for the slopes. It is NaN where x
-/// or y is.
+/// Height of dual coordinates by the chain rule, dh = h,x dx + h,y dy, and slopes in the same way. The result is NaN if
+/// x or y is NaN.
 template <StateScalar T>
 Height<T> follow(Relief const& h, T const& x, T const& y) {
   T const dx = x - value_of(x), dy = y - value_of(y);
@@ -49,32 +49,32 @@ Height<T> follow(Relief const& h, T const& x, T const& y) {
 }
 }  // namespace detail
 
-/// The plane at the height z.
+/// Horizontal plane at the height z.
 struct FlatGround {
-  double z = 0.0;  ///< [m]
+  double z = 0.0;  ///< height of the plane [m]
 
   void check(std::string const& name) const {
     if (!std::isfinite(z)) throw InvalidInput{name, ": the height of the ground must be finite, but is ", z, "."};
   }
-  double highest() const { return z; }  ///< [m]
-  /// h = z, without slopes.
+  double highest() const { return z; }  ///< height of the plane [m]
+  /// Height h = z with zero slopes.
   template <StateScalar T>
   Height<T> height(T const&, T const&) const {
     return {T(z), T(0.0), T(0.0)};
   }
 };
 
-/// Waves h = a sin(2πx/l) without end, the same for every y.
+/// Endless waves h = a sin(2πx/l), the same for every y.
 struct Washboard {
   Required<double> amplitude;   ///< a, half the height from trough to crest [m]
-  Required<double> wavelength;  ///< l [m]
+  Required<double> wavelength;  ///< l, wavelength [m]
 
   void check(std::string const& name) const {
     require_not_negative(amplitude, name, ": the amplitude");
     require_positive(wavelength, name, ": the wavelength");
   }
-  double highest() const { return amplitude; }  ///< [m]
-  /// h = a sin(2πx/l) and its slope along x.
+  double highest() const { return amplitude; }  ///< amplitude of the waves [m]
+  /// Height h = a sin(2πx/l) and its slope along x.
   template <StateScalar T>
   Height<T> height(T const& x, T const&) const {
     using std::cos, std::sin;
@@ -84,20 +84,21 @@ struct Washboard {
   }
 };
 
-/// A bump H c((x − x₀)/L) c((y − y₀)/W) with c(s) = ½ (1 + cos 2πs) for |s| < ½, else zero; a hole where H is negative.
+/// Bump H c((x − x₀)/L) c((y − y₀)/W) with c(s) = ½ (1 + cos 2πs) for |s| < ½, else zero. It is a hole if H is
+/// negative.
 struct Bump {
-  Required<double> x;                                      ///< x₀, of its middle [m]
-  Required<double> length;                                 ///< L, along x from foot to foot [m]
-  Required<double> height;                                 ///< H, of its middle [m]
-  double y = 0.0;                                          ///< y₀, of its middle [m]
-  double width = std::numeric_limits<double>::infinity();  ///< W, along y from foot to foot [m]; infinite: c = 1
+  Required<double> x;                                      ///< x₀ of its middle [m]
+  Required<double> length;                                 ///< L, length along x from foot to foot [m]
+  Required<double> height;                                 ///< H, height of its middle [m]
+  double y = 0.0;                                          ///< y₀ of its middle [m]
+  double width = std::numeric_limits<double>::infinity();  ///< W, width along y from foot to foot [m]; infinite: c = 1
 };
 
-/// Bumps on the plane z = 0; where they overlap they add up.
+/// Bumps on the plane z = 0. The heights of overlapping bumps are added.
 class BumpCourse {
  public:
-  /// \throws InvalidInput naming `what` and the bump, unless lengths and widths are positive and the other numbers
-  /// finite.
+  /// \throws InvalidInput naming `what` and the bump if a length or a width is not positive, or if another number is
+  /// not finite.
   explicit BumpCourse(std::vector<Bump> bumps, std::string const& what = "BumpCourse") : bumps_(std::move(bumps)) {
     for (std::size_t i = 0; i < bumps_.size(); ++i) {
       Bump const& b = bumps_[i];
@@ -107,7 +108,7 @@ class BumpCourse {
       if (!(b.width > 0.0))
         throw InvalidInput{bump, ": the width must be positive, but is ", b.width,
                            ". Leave it out for a bump right across."};
-      double together = 0.0;  // all bumps over any point of this one overlap it
+      double together = 0.0;  // every bump that covers a point of this bump overlaps it
       for (Bump const& other : bumps_)
         if (std::abs(other.x - b.x) < 0.5 * (other.length + b.length) &&
             std::abs(other.y - b.y) < 0.5 * (other.width + b.width))
@@ -116,9 +117,9 @@ class BumpCourse {
     }
   }
 
-  void check(std::string const&) const {}      ///< the constructor did
-  double highest() const { return highest_; }  ///< [m]
-  /// The sum of all bumps over the place (x, y) [m], and its slopes.
+  void check(std::string const&) const {}      ///< does nothing: the constructor checks the data
+  double highest() const { return highest_; }  ///< upper bound of the height [m]
+  /// Sum of all bumps at the point (x, y) [m], and its slopes.
   template <StateScalar T>
   Height<T> height(T const& x, T const& y) const {
     detail::Relief h;
@@ -137,7 +138,7 @@ class BumpCourse {
   }
 
  private:
-  /// c(u/L), its slope and its curvature by u.
+  /// Function c(u/L) and its first and second derivatives with respect to u; L is `length`.
   static std::array<double, 3> hump(double u, double length) {
     double const k = 2.0 * std::numbers::pi / length, cosine = std::cos(k * u);
     return {0.5 * (1.0 + cosine), -0.5 * k * std::sin(k * u), -0.5 * k * k * cosine};
@@ -147,17 +148,18 @@ class BumpCourse {
   double highest_ = 0.0;
 };
 
-/// A road through points (x, z), the same for every y. It rises where they rise and falls where they fall, so it has no
-/// hump that they have not [Fritsch & Carlson 1980; slopes of MonotoneTable]. At both ends it is level, and constant
-/// beyond them. Copies share the points.
+/// Road through points (x, z), the same for every y. Between two points its height is monotone, so it has no hump
+/// besides the given points [Fritsch & Carlson 1980; slopes of MonotoneTable]. Both ends are level, and the height is
+/// constant beyond them. Copies share the points.
 class RoadProfile {
  public:
-  /// A point of the profile.
+  /// Point of the profile.
   struct Point {
-    double x, z;  ///< [m]
+    double x, z;  ///< coordinates [m]
   };
 
-  /// \throws InvalidInput naming `what` unless there are two points or more, finite, with x strictly increasing.
+  /// \throws InvalidInput naming `what` if there are fewer than two points, if a number is not finite, or if x does not
+  /// increase strictly.
   explicit RoadProfile(std::vector<Point> const& points, std::string const& what = "RoadProfile") {
     std::vector<MonotoneTable::Point> entries;
     for (Point const& p : points) entries.push_back({p.x, p.z});
@@ -169,9 +171,9 @@ class RoadProfile {
     knots_ = std::make_shared<std::vector<Knot> const>(std::move(knots));
   }
 
-  void check(std::string const&) const {}      ///< the constructor did
-  double highest() const { return highest_; }  ///< [m]
-  /// At (x, y) [m], the cubic between two points of the profile, and its slope along x; constant beyond both ends.
+  void check(std::string const&) const {}      ///< does nothing: the constructor checks the data
+  double highest() const { return highest_; }  ///< upper bound of the height [m]
+  /// Height at (x, y) [m] and its slope along x: a cubic between two points of the profile, constant beyond both ends.
   template <StateScalar T>
   Height<T> height(T const& x, T const& y) const {
     double const at = value_of(x);
@@ -184,13 +186,13 @@ class RoadProfile {
     auto const of = [&](std::array<double, 4> const& s) {
       return s[0] * a.z + s[1] * a.slope + s[2] * b.z + s[3] * b.slope;
     };
-    double const z = std::clamp(of(h.s), std::min(a.z, b.z), std::max(a.z, b.z));  // rounding leaves these bounds
+    double const z = std::clamp(of(h.s), std::min(a.z, b.z), std::max(a.z, b.z));  // round-off may exceed these bounds
     return detail::follow({.z = z, .x = of(h.ds), .xx = of(h.dds)}, x, y);
   }
 
  private:
   struct Knot {
-    double x, z, slope;  ///< a point [m] and the slope there
+    double x, z, slope;  ///< coordinates [m] and slope of a point
   };
   std::shared_ptr<std::vector<Knot> const> knots_;
   double highest_ = -std::numeric_limits<double>::infinity();

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// How well a closed chain of pins fits its sprocket and circles. Not in polybody.hpp: of use to vehicles only.
+/// Clearances between a closed chain of pins and its sprocket and circles. For vehicles; not included by polybody.hpp.
 
 #include <algorithm>
 #include <cmath>
@@ -11,19 +11,19 @@
 
 namespace polybody {
 
-/// How well a chain of pins fits its layout; a negative gap is a penetration.
+/// Clearances of a chain of pins in its layout. A negative gap is a penetration.
 struct TrackClearances {
-  double stretch = 0.0;                                      ///< largest | |rᵢ₊₁ − rᵢ| − p | [m]
+  double stretch = 0.0;  ///< greatest error of a link's length | |rᵢ₊₁ − rᵢ| − p | [m]
   double circles = std::numeric_limits<double>::infinity();  ///< least gap between a link's faces and a rim [m]
-  int link = 0, circle = 0;                                  ///< where that is
+  int link = 0, circle = 0;                                  ///< link and circle of the least gap
   double sprocket =
-      std::numeric_limits<double>::infinity();  ///< how far the innermost pin lies outside the pitch circle [m]
+      std::numeric_limits<double>::infinity();  ///< distance of the innermost pin outwards from the pitch circle [m]
   double ground = std::numeric_limits<double>::infinity();  ///< least height of a link's corner above the ground [m]
 };
 
 namespace detail {
 
-/// The gap between a circle and the faces of the link with pins `front` and `rear`: a rectangle of p × 2h.
+/// Gap between `circle` and the faces of the link with pins `front` and `rear`; the link is a rectangle of p × 2h.
 inline double track_gap(Vec2 const& front, Vec2 const& rear, double half_thickness, TrackCircle const& circle) {
   Vec2 const chord = front - rear, arm = circle.centre - 0.5 * (front + rear);
   double const pitch = chord.norm();
@@ -34,7 +34,7 @@ inline double track_gap(Vec2 const& front, Vec2 const& rear, double half_thickne
 
 }  // namespace detail
 
-/// How well a closed chain of `pins` (x, z) [m] fits `layout` and stays above the ground z = `ground`.
+/// Clearances of a closed chain of `pins` (x, z) [m] in its `layout`, and its height above the ground z = `ground`.
 inline TrackClearances clearances(TrackLayout const& layout, std::span<Vec2 const> pins,
                                   double ground = -std::numeric_limits<double>::infinity()) {
   TrackClearances found;

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What the links of the vehicle of m113.hpp touch. Not in polybody.hpp: of use to vehicles only.
+/// Contacts of the links of the vehicle of m113.hpp. For vehicles; not included by polybody.hpp.
 
 #include <algorithm>
 #include <optional>
@@ -13,7 +13,7 @@
 
 namespace polybody::m113 {
 
-/// The teeth of the sprockets.
+/// Profile of the teeth of the sprockets.
 inline SprocketProfile sprocket_profile() {
   return {.teeth = teeth,
           .pitch = pitch,
@@ -23,7 +23,8 @@ inline SprocketProfile sprocket_profile() {
           .tip_radius = tip_radius};
 }
 
-/// The contacts of links whose middle observes so much: a cable's lie in its middle plane, one for each two.
+/// Contacts of links whose middle marker has the quantities `observed`. Contacts of cables lie in the middle plane of
+/// the track: one contact represents the two contacts of a rigid link.
 template <Observes observed>
 struct LinkContacts {
   using OnRoller = Contact<LinkOnRoller<observed>>;     ///< inner face on the rims of a wheel
@@ -32,12 +33,12 @@ struct LinkContacts {
   /// Pad on the ground.
   template <Terrain Ground>
   using OnGround = Contact<LinkOnGround<Ground, observed>>;
-  /// Links are cables, which know no roll: contacts lie in the track's middle plane.
+  /// True for links that are cables: they have no roll, so contacts lie in the track's middle plane.
   static constexpr bool in_plane = observed != Observes::frame;
 
-  double friction = 1.0;  ///< times the coefficients of m113.hpp [1]; 0: none
+  double friction = 1.0;  ///< factor of the friction coefficients of m113.hpp [1]; 0: no friction
 
-  /// A link on rollers of this `radius` [m]. \param length of the face along the link [m]
+  /// Contact of a link with rollers of this `radius` [m]. \param length length of the face along the link [m]
   OnRoller on_roller(double radius, double length = pitch) const {
     return law(LinkOnRoller<observed>{.pitch = length,
                                       .half_thickness = half_thickness,
@@ -47,12 +48,12 @@ struct LinkContacts {
                                       .rims = in_plane ? std::vector{0.0} : std::vector{-rim_y, rim_y}},
                on_wheel);
   }
-  /// The horn between rims of this radius [m].
+  /// Contact of the horn with rims of this `radius` [m].
   OnRims on_rims(double radius) const {
     Vec3 const tip(horn.x, horn.y, horn.z + 0.5 * horn_size.z);
     return law(HornOnRims<observed>{.tip = tip, .play = horn_play, .radius = radius}, on_wheel);
   }
-  /// \param ahead from the marker to the front pin [m]
+  /// Contact of a pin with the teeth. \param ahead distance from the marker to the front pin [m]
   OnSprocket on_teeth(double ahead = 0.5 * pitch) const {
     return law(PinOnSprocket<observed>{.profile = sprocket_profile(),
                                        .valley = first_valley,
@@ -60,13 +61,13 @@ struct LinkContacts {
                                        .ahead = ahead},
                on_sprocket);
   }
-  /// \param corners of the pad, from the marker
+  /// Contact of the pad with the ground. \param corners corners of the pad, relative to the marker
   template <Terrain Ground>
   OnGround<Ground> on_terrain(Ground const& ground, std::vector<Vec3> const& corners) const {
     return law(LinkOnGround<Ground, observed>{.terrain = ground, .pad = corners}, on_ground);
   }
-  /// Corners of the pad seen from a marker on the middle line, `x` ahead of the link's centre: all, or those at `x`
-  /// alone.
+  /// Corners of the pad relative to a marker on the middle line at the distance `x` in front of the link's centre. If
+  /// `x` is given, the result contains the corners at `x` only; otherwise, it contains all corners.
   static std::vector<Vec3> corners(std::optional<double> x = {}) {
     std::vector<Vec3> found;
     for (Triple const& p : pad)
@@ -85,7 +86,7 @@ struct LinkContacts {
   }
 };
 
-/// All that links touch that observe so much, on a ground.
+/// Group of all contacts of links with the quantities `observed`, on one type of ground.
 template <Observes observed, Terrain Ground>
 using TrackContacts = ContactGroup<typename LinkContacts<observed>::OnRoller, typename LinkContacts<observed>::OnRims,
                                    typename LinkContacts<observed>::OnSprocket,

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// What the links of a track touch, as a part of any model that has their types. Not in polybody.hpp: of use to
-/// vehicles only.
+/// Contacts of the links of a track, as a part of any model that has their types. For vehicles; not included by
+/// polybody.hpp.
 
 #include <utility>
 #include <vector>
@@ -13,20 +13,21 @@
 
 namespace polybody::m113 {
 
-/// Adds what the links of one side touch.
+/// Adds the contacts of the links of one side to a model.
 template <class Link, class Base, Terrain Ground>
 class TrackContactsAdder {
  public:
-  using OfLinks = LinkContacts<Link::observes>;            ///< contacts of such links
-  using Contacts = TrackContacts<Link::observes, Ground>;  ///< the group that takes them
-  /// What a model must have to take the contacts.
+  using OfLinks = LinkContacts<Link::observes>;            ///< contacts of links of this type
+  using Contacts = TrackContacts<Link::observes, Ground>;  ///< contact group of the links
+  /// Types of bodies and forces that a model requires for the contacts.
   using Part = Subassembly<EachOnce<Bodies, Base, Link>, Joints<>, Forces<Contacts>>;
 
-  /// `of_links` and `options` must outlive this.
+  /// `of_links` and `options` must outlive this object.
   TrackContactsAdder(Part part, LinkOf<Link> const& of_links, VehicleOptions const& options)
       : part_(part), of_links_(of_links), options_(options) {}
 
-  /// \param name with which all names begin \returns the groups: one; four where contacts act at their places
+  /// Adds the contacts of one track. \param name prefix of all names \returns the contact groups: one; four if contacts
+  /// act at their own points
   [[gnu::cold]] std::vector<ElementHandle<Contacts>> add(std::string const& name, Carriers<Base> const& carriers,
                                                          LinkParts<Link> const& of_side, Ground const& ground,
                                                          Track& track) {
@@ -54,7 +55,7 @@ class TrackContactsAdder {
   }
 
  private:
-  /// Contacts of `markers`, so many of each link.
+  /// Adds a contact group of `markers`; each link has the same number of them.
   [[gnu::cold]] ElementHandle<Contacts> add_group(std::vector<Marker<Link>> const& markers, std::string const& name,
                                                   Track& track) {
     auto const group = part_.apply(Contacts{}, markers, name);
@@ -70,7 +71,7 @@ class TrackContactsAdder {
     };
     return group;
   }
-  /// The places on each link that are so far ahead of its middle.
+  /// Points on each link at the given distances in front of its middle.
   [[gnu::cold]] std::vector<Marker<Link>> under(LinkParts<Link> const& parts, std::vector<double> const& ahead,
                                                 Face face) const {
     std::vector<Marker<Link>> found;

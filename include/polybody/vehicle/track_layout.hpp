@@ -1,11 +1,11 @@
 #pragma once
 /// \file
-/// The layout of a track: its links, the circles that it goes around, and the tensioner.
-/// Not in polybody.hpp: of use to vehicles only.
+/// Layout of a track: its links, the circles that it goes around, and the tensioner. For vehicles; not included by
+/// polybody.hpp.
 ///
-/// Everything lies in a plane with x forward and z up; y points left, away from the reader who sees x to the right. The
-/// track runs as a positive rotation about y does: forward on top, rearward along the ground. Places are (x, z) [m]; an
-/// angle b about y turns x into (cos b, −sin b) and z into (sin b, cos b).
+/// The layout lies in a plane with x to the right (forward) and z up; y points to the left of the vehicle, away from
+/// the viewer. The track moves in the direction of a positive rotation about y: forward on top, rearward along the
+/// ground. Points are (x, z) [m]. A rotation by b about y turns x into (cos b, −sin b) and z into (sin b, cos b).
 
 #include <cmath>
 #include <numbers>
@@ -16,52 +16,54 @@
 
 namespace polybody {
 
-/// Whether the track goes around a circle, which its inner faces touch, or passes by it with its outer faces.
+/// Side of the track on which a circle lies: inside, in contact with its inner faces, or outside, in contact with its
+/// outer faces.
 enum class TrackSide { inside, outside };
 
-/// A wheel, idler or roller: a circle in the plane of the track.
+/// Wheel, idler or roller: a circle in the plane of the track.
 struct TrackCircle {
-  std::string name;                    ///< by which the tensioner and messages name it
-  Vec2 centre;                         ///< (2) [m]
-  Required<double> radius;             ///< R, of the rim [m]
-  TrackSide side = TrackSide::inside;  ///< which faces of the track touch it
+  std::string name;                    ///< name, used by the tensioner and in messages
+  Vec2 centre;                         ///< (2) position [m]
+  Required<double> radius;             ///< R, radius of the rim [m]
+  TrackSide side = TrackSide::inside;  ///< selects the faces of the track that touch it
 };
 
-/// The driven wheel; a pin sits in each valley that the track covers.
+/// Driven wheel of the track. A pin is seated in each valley that the track covers.
 struct TrackSprocket {
-  std::string name = "sprocket";  ///< by which messages name it
-  Vec2 centre;                    ///< (2) [m]
-  Required<int> teeth;            ///< N
+  std::string name = "sprocket";  ///< name in messages
+  Vec2 centre;                    ///< (2) position [m]
+  Required<int> teeth;            ///< N, number of teeth
   Required<double> valley;        ///< angle of any one valley, from z towards x [rad]
 };
 
-/// How the track is tightened.
+/// Tensioner of the track: a circle with an adjustable position.
 struct TrackTensioner {
-  std::string circle;      ///< the name of the circle that moves
-  Vec2 direction;          ///< (2) where to, a unit vector or longer
-  Required<double> least;  ///< its travel from the place in the list [m]
-  Required<double> most;   ///< [m]
+  std::string circle;      ///< name of the circle that moves
+  Vec2 direction;          ///< (2) direction of motion, of length one or more
+  Required<double> least;  ///< lower limit of the travel from the listed position [m]
+  Required<double> most;   ///< upper limit of the travel [m]
 };
 
-/// All that decides how a track lies.
+/// Data that determine the path of a track.
 struct TrackLayout {
-  Required<int> links;              ///< how many links close the loop
-  Required<double> pitch;           ///< p [m]
+  Required<int> links;              ///< number of links in the closed loop
+  Required<double> pitch;           ///< p, distance between two pins [m]
   Required<double> half_thickness;  ///< h, from the line through a link's pins to either face [m]
-  TrackSprocket sprocket;           ///< the driven wheel, which pulls the track
-  /// In the order in which the track meets them after the sprocket. A wheel that the track may touch twice, such as one
-  /// that carries the upper run too, is listed twice; one that it does not reach does no harm.
+  TrackSprocket sprocket;           ///< driven wheel, which pulls the track
+  /// Circles in the order in which the track meets them after the sprocket. A wheel that the track may touch twice is
+  /// listed twice, for example a wheel that also carries the upper run. A circle that the track does not reach has no
+  /// effect.
   std::vector<TrackCircle> circles = {};
-  TrackTensioner tensioner;  ///< which circle moves, and how far
+  TrackTensioner tensioner;  ///< circle that moves, and limits of its travel
 
-  /// The radius of the pitch polygon's corners [m].
+  /// Radius of the corners of the pitch polygon [m].
   double pitch_radius() const { return 0.5 * pitch / std::sin(std::numbers::pi / sprocket.teeth); }
-  /// The place of valley number k, counted in the track's direction from the named one.
+  /// Position of valley k, counted in the track's direction from the given valley.
   Vec2 seat(int k) const {
     double const a = sprocket.valley + 2.0 * std::numbers::pi * k / sprocket.teeth;
     return sprocket.centre + pitch_radius() * Vec2(std::sin(a), std::cos(a));
   }
-  /// The same with the tensioner's circle moved by `travel` [m].
+  /// Layout with the tensioner's circle moved by `travel` [m].
   TrackLayout tensioned(double travel) const {
     TrackLayout moved = *this;
     for (TrackCircle& c : moved.circles)
@@ -74,8 +76,9 @@ namespace detail {
 
 inline std::string track_name(TrackCircle const& c) { return sentence_of({"'", c.name, "'"}); }
 
-/// \throws InvalidInput where two circles overlap, or two wheels have one name. The sprocket counts with its pitch
-/// circle; the tensioner's circle only if `placed`.
+/// Checks a layout for overlapping circles and repeated names. \throws InvalidInput if two circles overlap, or if two
+/// wheels have one name. The sprocket has the radius of its pitch circle; the tensioner's circle is checked only if
+/// `placed` is true.
 inline void check_track_overlaps(TrackLayout const& layout, bool placed) {
   std::vector<TrackCircle> all = layout.circles;
   all.push_back({layout.sprocket.name, layout.sprocket.centre, layout.pitch_radius()});
@@ -101,7 +104,7 @@ inline void check_track_overlaps(TrackLayout const& layout, bool placed) {
     }
 }
 
-/// \throws InvalidInput for numbers that cannot be meant.
+/// \throws InvalidInput if a number is outside of its allowed range.
 inline void check_track(TrackLayout const& layout) {
   require_positive(layout.links, "Track: the number of links");
   require_positive(layout.pitch, "Track: the pitch");

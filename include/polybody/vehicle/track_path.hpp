@@ -1,11 +1,11 @@
 #pragma once
 /// \file
-/// Where the links of a track lie at the start: closed, taut, and through no wheel. Not in polybody.hpp: of use to
-/// vehicles only.
+/// Initial positions of the links of a track: a closed and taut chain that penetrates no wheel. For vehicles; not
+/// included by polybody.hpp.
 ///
-/// The length of the chain of track_walk.hpp depends on the place of the tensioner's circle; the root of
+/// The length of the chain of track_walk.hpp depends on the position of the tensioner's circle. The root of
 ///   track_length(layout, travel) = links
-/// closes the loop.
+/// is the travel at which the loop is closed.
 
 #include <algorithm>
 #include <span>
@@ -15,34 +15,34 @@
 
 namespace polybody {
 
-/// A link's frame: x from its rear pin to its front pin, z to the inner face.
+/// Frame of a link: x from its rear pin to its front pin, z to the inner face.
 struct TrackLink {
-  static constexpr int none = -1;  ///< in place of a circle: it touches none
+  static constexpr int none = -1;  ///< value of `touches` for a link without contact
 
-  Vec2 centre;         ///< (2) midway between the pins [m]
-  double angle;        ///< b, about y [rad], −π ≤ b ≤ π
-  int touches = none;  ///< the first circle in the list that a face touches
+  Vec2 centre;         ///< (2) point midway between the pins [m]
+  double angle;        ///< b, rotation about y [rad], −π ≤ b ≤ π
+  int touches = none;  ///< first circle in the list that touches a face
 
-  /// In the plane y = `y` of space.
+  /// Placement in space, in the plane y = `y`.
   Placement placement(double y) const { return Placement::at(Vec3(centre[0], y, centre[1]), Vec3(0.0, angle, 0.0)); }
 };
 
-/// A closed track. Pin i is the front pin of link i and the rear pin of link i − 1; both are numbered along the track's
-/// direction from the first pin that sits on the sprocket.
+/// Closed track. Pin i is the front pin of link i and the rear pin of link i − 1. Pins and links are numbered along the
+/// track's direction from the first pin that is seated on the sprocket.
 struct TrackPath {
-  TrackLayout layout;                 ///< with the tensioner's circle where it closes the loop
-  double travel;                      ///< how far that is from the place given [m]
-  std::vector<Vec2> pins = {};        ///< links × (2) [m]
+  TrackLayout layout;                 ///< layout with the tensioner's circle at the position that closes the loop
+  double travel;                      ///< travel of this circle from the given position [m]
+  std::vector<Vec2> pins = {};        ///< links × (2) positions [m]
   std::vector<TrackLink> links = {};  ///< one for each pin
-  int seated = 0;                     ///< pins 0 … seated − 1 sit on the sprocket
-  int first_valley = 0;               ///< the valley (see `TrackLayout::seat`) of pin 0
-  /// (2) The force of a unit tension on the tensioner's circle. A force F of the tensioner along its direction d gives
-  /// the track the tension F / (−pull · d).
+  int seated = 0;                     ///< pins 0 … seated − 1 are seated on the sprocket
+  int first_valley = 0;               ///< number of the valley (see `TrackLayout::seat`) of pin 0
+  /// (2) Force on the tensioner's circle due to a unit tension of the track. If the tensioner's force along its
+  /// direction d is F, the tension is F / (−pull · d).
   Vec2 pull = Vec2::Zero();
 
-  /// In place of a circle: the pin sits on the sprocket.
+  /// Value of `pin_on` for a pin that is seated on the sprocket.
   static constexpr int sprocket = -2;
-  /// What pin i sits on: `sprocket`, the circle that the links on both of its sides touch, or `TrackLink::none`.
+  /// Support of pin i: `sprocket`, the index of the circle that both adjacent links touch, or `TrackLink::none`.
   int pin_on(int i) const {
     if (i < seated) return sprocket;
     int const ahead = links[i].touches, behind = links[i - 1].touches;
@@ -50,8 +50,8 @@ struct TrackPath {
   }
 };
 
-/// The frames of a closed chain's links, of its `pins` (x, z) [m]; pin i is in front of link i. A face touches a rim
-/// that it is nearer to than 1e-6 p.
+/// Frames of the links of a closed chain with the given `pins` (x, z) [m]; pin i is in front of link i. A face touches
+/// a rim if their distance is less than 1e-6 p.
 inline std::vector<TrackLink> track_links(TrackLayout const& layout, std::span<Vec2 const> pins) {
   std::vector<TrackLink> links;
   for (std::size_t i = 0; i < pins.size(); ++i) {
@@ -65,15 +65,15 @@ inline std::vector<TrackLink> track_links(TrackLayout const& layout, std::span<V
   return links;
 }
 
-/// How well a track fits its layout, above the ground z = `ground` [m].
+/// Clearances of a track in its layout, above the ground z = `ground` [m].
 inline TrackClearances clearances(TrackPath const& path, double ground = -std::numeric_limits<double>::infinity()) {
   return clearances(path.layout, path.pins, ground);
 }
 
 namespace detail {
 
-/// `place` is within the polygon of the pins: a ray from it in the direction of x crosses the chain an odd number of
-/// times.
+/// Checks that `place` is inside the polygon of the pins: a ray from it in the direction of x then crosses the chain an
+/// odd number of times.
 inline bool track_encloses(std::vector<Vec2> const& pins, Vec2 const& place) {
   bool within = false;
   for (std::size_t i = 0; i < pins.size(); ++i) {
@@ -83,7 +83,7 @@ inline bool track_encloses(std::vector<Vec2> const& pins, Vec2 const& place) {
   return within;
 }
 
-/// \throws InvalidInput where a chain that closes leaves a circle on its wrong side, or is none that can be built.
+/// Checks a closed chain. \throws InvalidInput if the chain leaves a circle on its wrong side or cannot be built.
 inline void check_wrapped(TrackPath const& path) {
   TrackLayout const& layout = path.layout;
   std::size_t const n = path.pins.size();
@@ -121,8 +121,8 @@ inline void check_wrapped(TrackPath const& path) {
                        "between it and its neighbours."};
 }
 
-/// The travel at which `links` links close the loop, of several the one nearest to zero: a scan in steps of p/16, then
-/// bisection.
+/// Travel at which `links` links close the loop, by a scan in steps of p/16 and bisection. If there are several
+/// solutions, the solution nearest to zero is returned.
 inline double track_travel(TrackLayout const& layout) {
   TrackTensioner const& tensioner = layout.tensioner;
   double const range = tensioner.most - tensioner.least;
@@ -168,7 +168,8 @@ inline double track_travel(TrackLayout const& layout) {
   return above;
 }
 
-/// The runs pull where contact with the tensioner's circle begins and where it ends.
+/// Force of a unit tension on the tensioner's circle. The straight runs pull at the two ends of the contact with the
+/// circle.
 inline Vec2 track_pull(TrackPath const& path) {
   std::size_t const n = path.links.size();
   auto const tightened = [&](std::size_t i) {
@@ -186,9 +187,9 @@ inline Vec2 track_pull(TrackPath const& path) {
 
 }  // namespace detail
 
-/// Lays the track around its circles. \throws InvalidInput, naming the circle, for circles that overlap or come in an
-/// order that no track can take, too few or too many links for the tensioner's travel, and a pitch too long for a
-/// wheel.
+/// Computes the path of a track around its circles. \throws InvalidInput, naming the circle, if circles overlap or have
+/// an order that is impossible for a track, if there are too few or too many links for the tensioner's travel, or if
+/// the pitch is too long for a wheel.
 inline TrackPath wrap_track(TrackLayout const& layout) {
   detail::check_track(layout);
   double const travel = detail::track_travel(layout);

@@ -1,13 +1,12 @@
 #pragma once
 /// \file
-/// A chain of rigid links laid once around the circles of a track, as taut as it can be.
-/// Not in polybody.hpp: of use to vehicles only.
+/// Taut chain of rigid links, laid once around the circles of a track. For vehicles; not included by polybody.hpp.
 ///
-/// A link is the straight chord of length p between two pins; its faces lie at the distance h to both sides. Pins that
-/// sit on the sprocket lie on the corners of its pitch polygon, of radius p / (2 sin(π/N)). Away from it each link
-/// turns inwards at its pin as far as the circles let it: it lies on a line that touches the next circle of radius R +
-/// h (its face touches the rim), or that leads to the first seat of the sprocket. Links of one straight run share their
-/// line. The chain is a taut string around the same circles, with corners in place of arcs.
+/// A link is the straight chord of length p between two pins. Its faces are at the distance h on either side. Pins
+/// seated on the sprocket are corners of its pitch polygon, of radius p / (2 sin(π/N)). Away from the sprocket each
+/// link turns inwards at its pin as far as the circles permit. It lies on a line that touches the next circle of radius
+/// R + h (its face touches the rim), or on the line to the first seat of the sprocket. All links of a straight run lie
+/// on one line. The chain is similar to a taut string around the same circles, but its arcs are polygons.
 
 #include <algorithm>
 #include <limits>
@@ -19,10 +18,10 @@ namespace detail {
 
 inline double track_cross(Vec2 const& a, Vec2 const& b) { return a[0] * b[1] - a[1] * b[0]; }
 
-/// A direction in which a link may lie, and by how much it then turns to the left of the one before.
+/// Possible direction of a link, and its left turn relative to the previous link.
 struct TrackSight {
-  Vec2 direction = Vec2::Zero();  ///< (2) of length one
-  double turn;                    ///< [rad], −3π/2 < turn ≤ π/2
+  Vec2 direction = Vec2::Zero();  ///< (2) unit vector
+  double turn;                    ///< turn to the left [rad], −3π/2 < turn ≤ π/2
 };
 
 inline TrackSight track_sight(Vec2 const& heading, Vec2 const& direction) {
@@ -30,8 +29,8 @@ inline TrackSight track_sight(Vec2 const& heading, Vec2 const& direction) {
   return {direction, turn > 0.5 * std::numbers::pi ? turn - 2.0 * std::numbers::pi : turn};
 }
 
-/// From `pin` along the tangent to the circle of radius r = R + h. With c to the centre, t² = c² − r² and c⊥ = c turned
-/// left, the tangent that leaves the circle on its right is (t c + r c⊥)/c².
+/// Tangent from `pin` to the circle of radius r = R + h. With the vector c to the centre, t² = c² − r² and c⊥, which is
+/// c turned left by 90°, the tangent that has the circle on its right is (t c + r c⊥)/c².
 inline TrackSight track_tangent(TrackLayout const& layout, TrackCircle const& circle, Vec2 const& pin,
                                 Vec2 const& heading) {
   Vec2 const c = circle.centre - pin;
@@ -40,16 +39,16 @@ inline TrackSight track_tangent(TrackLayout const& layout, TrackCircle const& ci
   return track_sight(heading, Vec2(t * c[0] - r * c[1], t * c[1] + r * c[0]).normalized());
 }
 
-/// Once around: from a seat that the track surely covers, over the circles, back to the first seat that it meets.
+/// Chain once around: from a seat that the track surely covers, over the circles, back to the first seat that it meets.
 struct TrackWalk {
-  int start;               ///< the seat where the walk begins
-  int last;                ///< the last seat covered, ≥ start
-  int first = 0;           ///< the first seat covered, ≤ start
-  std::vector<Vec2> pins;  ///< from seat `start` to the pin from which a straight run leads to seat `first`
-  double length = 0.0;     ///< of the whole loop, in links; not a whole number unless it closes
+  int start;               ///< seat at which the chain begins
+  int last;                ///< last seat covered, ≥ start
+  int first = 0;           ///< first seat covered, ≤ start
+  std::vector<Vec2> pins;  ///< pins from seat `start` to the pin from which a straight run leads to seat `first`
+  double length = 0.0;     ///< length of the whole loop in links; a whole number only if the loop closes
 };
 
-/// The seat that points away from the circles.
+/// Seat that points away from the circles.
 inline int track_start(TrackLayout const& layout) {
   Vec2 away = layout.sprocket.centre;
   for (TrackCircle const& c : layout.circles) away -= c.centre / double(layout.circles.size());
@@ -57,8 +56,8 @@ inline int track_start(TrackLayout const& layout) {
   return int(std::lround(angle * layout.sprocket.teeth / (2.0 * std::numbers::pi)));
 }
 
-/// The seat that the track meets among those before the first one covered by the walk: all others are to the right of
-/// the line to it.
+/// First seat that the track meets, among the seats in front of `start`. All other seats are
+/// to the right of the line from `pin` to this seat, whose direction is written to `sight`.
 inline int track_first_seat(TrackLayout const& layout, int start, Vec2 const& pin, Vec2 const& heading,
                             TrackSight& sight) {
   int first = start;
@@ -75,18 +74,21 @@ inline int track_first_seat(TrackLayout const& layout, int start, Vec2 const& pi
   return first;
 }
 
-/// Target of the link behind the last pin of `walk`: the index of a circle at or after `at`; −1 for the next seat,
-/// while the walk has not left the sprocket; the number of circles for the seat that ends it. Sets `heading` to the
-/// link's direction. Circles inside the track bound a link's turn to the right, those outside bound it to the left.
-/// They are visited in their order until one bound crosses the other: then the link runs to the circle that set the
-/// other one. If no bounds cross, as without circles outside, it runs to the target furthest to the left.
+/// Target of the link behind the last pin of `walk`. The result is the index of a circle at or after `at`, or −1 for
+/// the next seat while the chain is on the sprocket, or the number of circles for the seat at the end of the chain.
+/// Sets `heading` to the link's direction.
+///
+/// Circles inside the track bound a link's turn to the right, and circles outside bound it to the left. They are
+/// visited in their order until a bound crosses the bound of the other side. Then the link runs to the circle of this
+/// other bound. If no bounds cross, for example without circles outside, the link runs to the target furthest to the
+/// left.
 inline int track_target(TrackLayout const& layout, int at, Vec2& heading, TrackWalk& walk) {
   struct Bound {
     TrackSight sight;
     int by;
   };
   double const endless = std::numeric_limits<double>::infinity();
-  double const same = 1e-9;  // bounds as close as this are one, and the earlier circle's
+  double const same = 1e-9;  // bounds with a smaller difference are equal and belong to the earlier circle
   int const count = int(layout.circles.size());
   Vec2 const pin = walk.pins.back();
   Bound right{{heading, -endless}, count}, left{{heading, endless}, count};
@@ -132,7 +134,7 @@ inline TrackWalk track_walk(TrackLayout const& layout) {
 
 }  // namespace detail
 
-/// The number of links, seldom whole, that go around `layout` with the tensioner's circle at `travel` [m].
+/// Length of the chain around `layout` with the tensioner's circle at `travel` [m], in links; rarely a whole number.
 inline double track_length(TrackLayout const& layout, double travel) {
   return detail::track_walk(layout.tensioned(travel)).length;
 }

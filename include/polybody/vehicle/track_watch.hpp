@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Whether tracks are where they belong: pins in the valleys of their sprocket one after the other, links on the wheels
-/// and not in them, the chain near its path. Not in polybody.hpp: of use to vehicles only.
+/// Checks of the tracks during a run: pins in consecutive valleys of their sprocket, penetrations between links and
+/// wheels, distance of the chain from its path. For vehicles; not included by polybody.hpp.
 
 #include <cmath>
 #include <string>
@@ -15,24 +15,26 @@ namespace polybody::m113 {
 
 /// Pins of one side on their sprocket.
 struct Seating {
-  int seated = 0;    ///< pins between the teeth
-  int lost_at = -1;  ///< the first link whose front pin does not follow the one before by one valley; −1 if all do
-  /// Two pins or more between the teeth, and none has jumped.
+  int seated = 0;  ///< number of pins between the teeth
+  /// First link whose front pin is not in the valley next to the previous pin's valley; −1 if there is none.
+  int lost_at = -1;
+  /// True if two or more pins are between the teeth and no pin has jumped.
   bool holds() const { return seated >= 2 && lost_at < 0; }
 };
 
-/// What a track may do wrong, in a state.
+/// Deviations of a track in a state.
 struct TrackFault {
-  double depth = 0.0;     ///< of the deepest contact [m]
-  Index link = 0;         ///< where that is,
-  std::string against;    ///< and against what
-  double sideways = 0.0;  ///< farthest that a link's middle is off the track's middle plane of the chassis [m]
-  double off_path = 0.0;  ///< farthest that a pin is off the chain of the start, seen from the chassis [m]
+  double depth = 0.0;   ///< penetration of the deepest contact [m]
+  Index link = 0;       ///< link with this contact,
+  std::string against;  ///< and the part that it touches
+  /// Greatest lateral distance of a link's middle from the track's middle plane, in the chassis' axes [m]
+  double sideways = 0.0;
+  double off_path = 0.0;  ///< greatest distance of a pin from the initial chain, in the chassis' axes [m]
 };
 
-/// Pins count that are nearer to the axle than the tips of the teeth; each of them has its valley, and links follow one
-/// another by one.
-template <class = void>  // compiled where it is used
+/// Seating of the pins of one side. A pin counts if its distance from the axle is less than the radius of the tips of
+/// the teeth. Each such pin is assigned to a valley, and consecutive links must be in consecutive valleys.
+template <class = void>  // compiled only if it is used
 Seating seating(TrackedVehicle const& vehicle, State const& x, Side side) {
   Track const& track = vehicle.track(side);
   Frame<double> const sprocket = track.sprocket(x);
@@ -44,7 +46,7 @@ Seating seating(TrackedVehicle const& vehicle, State const& x, Side side) {
   };
   auto const within = [](Vec3 const& p) { return std::hypot(p.x(), p.z()) < tip_radius; };
   int first = 0;
-  while (first < links && within(pin_of(first))) ++first;  // begin outside
+  while (first < links && within(pin_of(first))) ++first;  // begin outside of the sprocket
   for (int k = first; k < first + links; ++k) {
     Vec3 const p = pin_of(k);
     if (!within(p)) {
@@ -60,7 +62,8 @@ Seating seating(TrackedVehicle const& vehicle, State const& x, Side side) {
   return found;
 }
 
-/// For `RunOptions::events`: zero where a track jumps a tooth or leaves its sprocket. The vehicle must outlive the run.
+/// Event for `RunOptions::events`: zero if a track jumps a tooth or leaves its sprocket. The vehicle must outlive the
+/// run.
 template <class = void>
 Event track_lost(TrackedVehicle const& vehicle, Side side) {
   return {.name = std::string(side == Side::left ? "the left" : "the right") + " track leaves its sprocket",
@@ -69,7 +72,7 @@ Event track_lost(TrackedVehicle const& vehicle, Side side) {
           .tolerance = 1e-4};
 }
 
-/// In a sentence: time, side and link of a track that is not on its sprocket; empty if both are.
+/// Message with the time, side and link of a track that is not seated on its sprocket; empty if both tracks are seated.
 template <class = void>
 std::string track_trouble(TrackedVehicle const& vehicle, State const& x) {
   std::string text;
@@ -85,7 +88,8 @@ std::string track_trouble(TrackedVehicle const& vehicle, State const& x) {
   return text;
 }
 
-/// The faults of one side; `system` must have been evaluated at x. \param start where the links were placed
+/// Deviations of the track of one side. `system` must have been evaluated at x. \param start initial positions of the
+/// links
 template <class = void>
 TrackFault track_fault(TrackedVehicle const& vehicle, System const& system, State const& x, Side side,
                        TrackStart const& start) {
@@ -112,8 +116,8 @@ TrackFault track_fault(TrackedVehicle const& vehicle, System const& system, Stat
   return worst;
 }
 
-/// A warning for a step longer than a sixth of the time in which a tooth passes, 2π/(N ω): such a step does not resolve
-/// the teeth. Empty for a shorter step. \param speed ω, the sprocket's fastest [rad/s]
+/// Warning about a `step` longer than a sixth of the time in which a tooth passes, 2π/(N ω): such a step does not
+/// resolve the teeth. Empty for a shorter step. \param speed ω, greatest angular velocity of the sprocket [rad/s]
 inline std::string drive_warning(double speed, double step) {
   double const passing = 2.0 * std::numbers::pi / (teeth * std::abs(speed));
   if (step <= passing / 6.0) return {};

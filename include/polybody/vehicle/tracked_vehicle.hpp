@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// What is asked about a vehicle's tracks in a state, whatever the formulation of their links and pins.
-/// Not in polybody.hpp: of use to vehicles only.
+/// Frames and contacts of a vehicle's tracks in a state, for any formulation of links and pins. For vehicles; not
+/// included by polybody.hpp.
 
 #include <array>
 #include <functional>
@@ -13,20 +13,21 @@
 
 namespace polybody::m113 {
 
-/// One side.
+/// Frames and contacts of one track.
 struct Track {
-  FrameIn sprocket, tensioner;                              ///< of their centres
-  std::vector<FrameIn> front = {}, middle = {}, rear = {};  ///< of each link: front pin, middle, rear pin
-  /// `for_each_contact` of what the links touch.
+  FrameIn sprocket, tensioner;                              ///< frames of their centres
+  std::vector<FrameIn> front = {}, middle = {}, rear = {};  ///< frames of each link: front pin, middle, rear pin
+  /// Calls a visitor for each contact of the links (`for_each_contact`).
   std::function<void(System const&, TouchingPointVisit const&)> contacts = {};
 };
 
-/// The questions keep the bodies that they ask: they serve a copy of the vehicle, too.
+/// Frames and contacts of both tracks. The functions share ownership of the bodies that they evaluate, so they are also
+/// valid for a copy of the vehicle.
 struct TrackedVehicle {
-  FrameIn hull;                 ///< of the chassis, at its centre of mass
+  FrameIn hull;                 ///< frame of the chassis at its centre of mass
   std::array<Track, 2> tracks;  ///< left, right
 
-  Track const& track(Side s) const { return tracks[s == Side::left ? 0 : 1]; }  ///< the track of a side
+  Track const& track(Side s) const { return tracks[s == Side::left ? 0 : 1]; }  ///< track of the side s
 };
 
 }  // namespace polybody::m113

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The bodies of a vehicle that carry one of its tracks. Not in polybody.hpp: of use to vehicles only.
+/// Bodies of a vehicle that carry one of its tracks. For vehicles; not included by polybody.hpp.
 
 #include <vector>
 
@@ -10,13 +10,13 @@
 
 namespace polybody::m113 {
 
-/// The bodies that carry one track.
+/// Bodies that carry one track.
 template <class Base>
 struct Carriers {
-  /// Five road wheels and arms, from the front; one sprocket, idler and tensioner.
+  /// Five road wheels and five arms, from the front; one sprocket, one idler and one tensioner.
   std::vector<BodyHandle<Base>> wheels = {}, arms = {}, sprocket = {}, idler = {}, tensioner = {};
 
-  /// \param bodies the chassis and those of `hull`
+  /// Stores the bodies of one side, and their frames in `track`. \param bodies the chassis and the bodies of `hull`
   void set(HullSide const& hull, std::vector<BodyHandle<Base>> const& bodies, Track& track) {
     sprocket = {bodies[hull.sprocket]};
     tensioner = {bodies[hull.tensioner]};

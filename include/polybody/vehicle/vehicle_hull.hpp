@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// The hull of m113_vehicle.hpp as a part of any model with its types. Not in polybody.hpp: of use to vehicles only.
+/// Hull of the vehicle of m113_vehicle.hpp as a part of any model with its types. For vehicles; not included by
+/// polybody.hpp.
 
 #include <vector>
 
@@ -18,14 +19,15 @@
 
 namespace polybody::m113 {
 
-/// Bodies of type Base, joints that are rows, springs, and drives by `Drive`.
+/// Types of the hull: bodies of type Base, joints as constraints, springs, and driving constraints with the function of
+/// time `Drive`.
 template <class Base, TimeLaw Drive>
 struct HullTypes {
   using Hinge = Joint<Revolute, Constraint>;                ///< axles, and pivots of sprung arms
   using Slide = Joint<Prismatic, Constraint>;               ///< guide of a tensioner on the chassis
-  using Fixed = Joint<Weld, Constraint>;                    ///< arms without springs, a chassis that is held
+  using Fixed = Joint<Weld, Constraint>;                    ///< arms without springs, and a fixed chassis
   using Driven = Joint<PrescribedRate<Drive>, Constraint>;  ///< speed of a sprocket relative to the chassis
-  /// What a model must have to take the hull.
+  /// Types of bodies, joints and forces that a model requires for the hull.
   using Part = Subassembly<Bodies<Base>, Joints<Hinge, Slide, Fixed, Driven>, Forces<SpringDamper, AxialSpring>>;
 };
 
@@ -36,7 +38,7 @@ Base solid_body(Solid const& s, Vec3 const& centre, double about_y = 0.0) {
   return Base(s.mass, principal(s.inertia), Placement::at(centre, Vec3(0, about_y, 0)));
 }
 
-/// The chassis, held or not; with the ground as a body, as thesis Table 3.4 counts, before it.
+/// Adds the chassis, welded to the ground or free. If the ground is a body [Wallin 2016, Table 3.4], it is added first.
 template <class Base, class Drive>
 [[gnu::cold]] BodyHandle<Base> add_chassis(typename HullTypes<Base, Drive>::Part& part, VehicleOptions const& options) {
   using Fixed = typename HullTypes<Base, Drive>::Fixed;
@@ -49,7 +51,7 @@ template <class Base, class Drive>
   return chassis;
 }
 
-/// One joint or spring of the hull; the handle of a drive, else one of no model.
+/// Adds one joint or spring of the hull. Returns the handle of a drive; for other kinds, a handle of no model.
 template <class Base, class Drive>
 [[gnu::cold]] ElementHandle<typename HullTypes<Base, Drive>::Driven> add_hull_joint(
     typename HullTypes<Base, Drive>::Part& part, HullJoint const& j, std::vector<BodyHandle<Base>> const& bodies,
@@ -84,7 +86,7 @@ template <class Base, class Drive>
   return driven;
 }
 
-/// What carries the track of one side. Returns the handle of its drive.
+/// Adds the bodies and joints that carry the track of one side. Returns the handle of its drive.
 template <class Base, class Drive>
 [[gnu::cold]] ElementHandle<typename HullTypes<Base, Drive>::Driven> add_carriers(
     typename HullTypes<Base, Drive>::Part& part, HullSide const& side, BodyHandle<Base> const& chassis,

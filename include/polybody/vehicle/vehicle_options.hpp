@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// What the vehicle of m113_vehicle.hpp is made with besides the formulation of its tracks, and pins of a stiffness.
-/// Not in polybody.hpp: of use to vehicles only.
+/// Options of the vehicle of m113_vehicle.hpp besides the formulation of its tracks, and pins with a given stiffness.
+/// For vehicles; not included by polybody.hpp.
 
 #include <vector>
 
@@ -12,21 +12,21 @@
 
 namespace polybody::m113 {
 
-/// Where the links of either side and the idler are at the start.
+/// Initial positions of the idler and of the links of either side.
 struct TrackStart {
-  double idler_x = idler_reference_x;                        ///< [m]
-  std::vector<TrackLink> links = wrap_track(track()).links;  ///< 64
+  double idler_x = idler_reference_x;                        ///< position of the idler along x [m]
+  std::vector<TrackLink> links = wrap_track(track()).links;  ///< 64 links
 };
 
-/// Pins as penalties of `stiffness` [N/m]: rows that are direction cosines get that of forces at the ends of a link's
-/// width.
-template <class = void>  // compiled where it is used
+/// Pins as penalties of `stiffness` [N/m]. For constraint equations that are direction cosines, the stiffness is equal
+/// to that of forces at both ends of the link's width.
+template <class = void>  // compiled only if it is used
 PenaltyPerRow<5> penalty_pin(double stiffness) {
   Vec<double, 5> rows;
   rows << 1.0, 1.0, 1.0, pin_arm * pin_arm, pin_arm * pin_arm;
   return {.stiffness = Vec<double, 5>(stiffness * rows), .damping = Vec<double, 5>(pin_damping * rows)};
 }
-/// Pins as bushings of `stiffness` [N/m], whose third axis is the pin's.
+/// Pins as bushings of `stiffness` [N/m]. The third axis of a bushing is the axis of the pin.
 template <class = void>
 Bushing bushing_pin(double stiffness) {
   Vec3 const along(1.0, 1.0, 1.0), about(pin_arm * pin_arm, pin_arm * pin_arm, 0.0);
@@ -34,37 +34,37 @@ Bushing bushing_pin(double stiffness) {
           .damping = Bushing::diagonal(pin_damping * along, pin_damping * about)};
 }
 
-/// How a track of ideal pins closes. Pins about parallel axes around a loop have three rows too many.
+/// Closure of a track of ideal pins. A loop of pins about parallel axes has three redundant constraints.
 enum class Closure {
-  stiff_spring,  ///< the 64th pin is no constraint but 10⁹ N/m between two points, as thesis Table 3.4 counts
-  in_plane       ///< two rows hold its points together across the pin's axis: the loop needs no more
+  stiff_spring,  ///< the 64th pin is a spring of 10⁹ N/m between two points, not a constraint [Wallin 2016, Table 3.4]
+  in_plane  ///< two constraint equations keep its points together across the pin's axis; they suffice to close the loop
 };
 
-/// Where on a link that what it touches acts, as a wrench.
+/// Point of a link at which contact forces act as a wrench.
 enum class ContactsAct {
-  in_the_middle,   ///< all about the link's middle
-  at_their_places  ///< wheels about the middle of a third of the link, teeth about the front pin, the ground about the
-                   ///< pairs of corners of the pad, rims about the middle
+  in_the_middle,   ///< all act at the link's middle
+  at_their_places  ///< wheels act at the middle of a third of the link, teeth at the front pin, the ground at the pairs
+                   ///< of corners of the pad, rims at the middle
 };
 
-/// Options of the vehicle besides the formulation of its tracks. The defaults are those of m113.hpp.
+/// Options of the vehicle besides the formulation of its tracks. The defaults are the values of m113.hpp.
 struct VehicleOptions {
-  Solids masses = thesis;                   ///< of all bodies
-  bool suspension = true;                   ///< else the arms are welded to the chassis, without springs
-  double preload = m113::preload;           ///< of the tensioners [N]
-  int cut = 0;                              ///< the pin of each track that closes the loop where pins are rows
-  Closure closure = Closure::stiff_spring;  ///< of tracks of ideal pins
-  TrackStart start = {};                    ///< of links and idler
-  int link_elements = 0;                    ///< of each flexible link; 0: one, and two of a floating frame
-  bool friction = true;                     ///< of all contacts
-  double friction_factor = 1.0;             ///< of all coefficients of m113.hpp [1]
-  ContactsAct contacts = ContactsAct::in_the_middle;  ///< on a link
-  bool held = false;         ///< the chassis is welded to the ground and the arms to the chassis
-  bool ground_body = false;  ///< as thesis Table 3.4 counts: the ground is a body too, welded to the world
+  Solids masses = thesis;          ///< masses and inertias of all bodies
+  bool suspension = true;          ///< false: the arms are welded to the chassis, without springs
+  double preload = m113::preload;  ///< preload of the tensioners [N]
+  int cut = 0;                     ///< number of the pin that closes the loop of each track, if pins are constraints
+  Closure closure = Closure::stiff_spring;  ///< closure of tracks of ideal pins
+  TrackStart start = {};                    ///< initial positions of links and idlers
+  int link_elements = 0;         ///< elements of each flexible link; 0: one element, or two in a floating frame
+  bool friction = true;          ///< friction in all contacts
+  double friction_factor = 1.0;  ///< factor of all friction coefficients of m113.hpp [1]
+  ContactsAct contacts = ContactsAct::in_the_middle;  ///< points of action on a link
+  bool held = false;         ///< true: the chassis is welded to the ground, and the arms to the chassis
+  bool ground_body = false;  ///< true: the ground is a body too, welded to the world [Wallin 2016, Table 3.4]
 };
 
-/// \throws InvalidInput.
-template <class = void>  // compiled where it is used
+/// Checks the options. \throws InvalidInput.
+template <class = void>  // compiled only if it is used
 void check(VehicleOptions const& options) {
   if (options.start.links.size() != std::size_t(links))
     throw InvalidInput{"M113: the start needs the places of ", links, " links, but has ", options.start.links.size(),

@@ -1,7 +1,6 @@
 #pragma once
 /// \file
-/// The links of a track and what they touch, as a part of any model that has their types. Not in polybody.hpp: of use
-/// to vehicles only.
+/// Links of a track, as a part of any model that has their types. For vehicles; not included by polybody.hpp.
 
 #include <vector>
 
@@ -12,13 +11,13 @@
 
 namespace polybody::m113 {
 
-/// The links of one track.
+/// Links of one track.
 template <class Link>
 struct LinkParts {
-  std::vector<BodyHandle<Link>> links = {};  ///< in the order of the track; pin i is in front of link i
-  std::vector<Marker<Link>> front = {}, middle = {}, rear = {};  ///< of each link: front pin, middle, rear pin
+  std::vector<BodyHandle<Link>> links = {};  ///< links in the order of the track; pin i is in front of link i
+  std::vector<Marker<Link>> front = {}, middle = {}, rear = {};  ///< markers of each link: front pin, middle, rear pin
 
-  /// Appends a link with its pins and middle, also to `track`.
+  /// Appends `link` with its pins and its middle, and the frames of these points to `track`.
   void add(LinkOf<Link> const& of, BodyHandle<Link> const& link, Track& track) {
     links.push_back(link);
     front.push_back(of.front(link));
@@ -32,7 +31,7 @@ struct LinkParts {
 
 namespace detail {
 
-/// 64 links of one side, with names that begin with `name`.
+/// Adds the 64 links of one side, with names that begin with `name`.
 template <class Link>
 [[gnu::cold]] void add_links(Subassembly<Bodies<Link>>& part, LinkOf<Link> const& of_links, Side s,
                              VehicleOptions const& options, LinkParts<Link>& parts, Track& track) {

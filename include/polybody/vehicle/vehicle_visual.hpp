@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What the vehicle of m113_vehicle.hpp looks like. Not in polybody.hpp: of use to vehicles only.
+/// Visual shapes of the vehicle of m113_vehicle.hpp. For vehicles; not included by polybody.hpp.
 
 #include <polybody/io/visual.hpp>
 #include <polybody/vehicle/m113_vehicle.hpp>
@@ -8,12 +8,12 @@
 namespace polybody::m113 {
 
 namespace detail {
-/// The sprocket's rim, tooth by tooth, as two rings along y.
-template <class = void>  // compiled where it is used
+/// Outline of the sprocket with its teeth, as two rings along y.
+template <class = void>  // compiled only if it is used
 Surface toothed_wheel(double width) {
   SprocketProfile const profile = sprocket_profile();
   Vec2 const corner = profile.corner();
-  std::vector<Vec2> outline;  // (z, x), from z towards x
+  std::vector<Vec2> outline;  // points (z, x), from z towards x
   for (int k = 0; k < teeth; ++k) {
     double const middle = first_valley + 2.0 * std::numbers::pi * k / teeth;
     auto const add = [&](double radial, double across) {
@@ -40,10 +40,10 @@ Surface toothed_wheel(double width) {
 template <class Base>
 void attach_hull(Visual& visual, BodyHandle<Base> const& chassis) {
   visual.attach(chassis.at(Vec3(0.1, 0, 0.35)), box({4.6, 1.5, 0.9}), "hull");
-  visual.attach(chassis.at(Vec3(0.1, 0, 0.545)), box({4.6, 2.54, 0.49}), "sponsons");  // not in one plane with the hull
+  visual.attach(chassis.at(Vec3(0.1, 0, 0.545)), box({4.6, 2.54, 0.49}), "sponsons");  // not coplanar with the hull
 }
 
-/// A wheel or the idler.
+/// Shape of a wheel or of the idler.
 template <class Base>
 void attach_drum(Visual& visual, BodyHandle<Base> const& body, double radius) {
   Vec3 const y = Vec3::UnitY();
@@ -61,7 +61,7 @@ void attach_sprocket(Visual& visual, BodyHandle<Base> const& sprocket) {
   visual.attach(sprocket.at(Vec3(0, 0, 0)), cylinder(0.12, 2.0 * tooth_y, Vec3::UnitY()), sprocket.name + " hub");
 }
 
-/// What carries one track.
+/// Shapes of the bodies that carry one track.
 template <class Base>
 void attach_carriers(Visual& visual, Carriers<Base> const& side) {
   for (auto const& wheel : side.wheels) attach_drum(visual, wheel, wheel_radius);
@@ -70,7 +70,7 @@ void attach_carriers(Visual& visual, Carriers<Base> const& side) {
   attach_sprocket(visual, side.sprocket[0]);
 }
 
-/// A floating frame of a finite element model.
+/// True if `link` is a floating frame with a finite element model, without beam elements.
 template <class Link>
 bool without_bars(Link const& link) {
   if constexpr (requires { link.structure().beams; }) return link.structure().beams.empty();
@@ -96,8 +96,8 @@ void attach_links(Visual& visual, LinkParts<Link> const& side) {
 }
 }  // namespace detail
 
-/// The pictures of a `vehicle`: hull, wheels with their rims, arms, sprockets with their teeth, and shoes with their
-/// horns; cables are swept.
+/// Visual shapes of a `vehicle`: hull, wheels with their rims, arms, sprockets with their teeth, and track shoes with
+/// their horns. Cables are drawn as swept sections.
 template <class V>
 Visual vehicle_visual(V const& vehicle) {
   Visual visual(vehicle.model);
