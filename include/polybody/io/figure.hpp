@@ -31,9 +31,8 @@ struct Figure {
   bool equal_axes = false;                    ///< one unit of x is as long as one unit of y
   bool log_x = false, log_y = false;          ///< logarithmic axes; they omit points that are not positive
   bool legend = true;                         ///< draws a list of the curves' labels
-  std::optional<std::array<double, 2>> x_range{},
-      y_range{};                         ///< lower and upper limit [units of the axes]; default: all points
-  int width_px = 1000, height_px = 700;  ///< size of the picture [pixels]
+  std::optional<std::array<double, 2>> x_range{}, y_range{};  ///< limits; empty: all points
+  int width_px = 1000, height_px = 700;                       ///< size of the picture [pixels]
 };
 
 namespace detail {

@@ -1,16 +1,17 @@
 #pragma once
 /// \file
-/// Points on grids and from lists.
+/// Points of a study on grids and from lists.
 ///
-/// Not in polybody.hpp: of use to studies only.
+/// Not in polybody.hpp: only studies need it.
 
 #include <polybody/study/points.hpp>
 #include <polybody/study/portable.hpp>
 
 namespace polybody {
 
-/// `count` values from `first` to `last` at equal distances; those between have twelve digits. \throws InvalidInput for
-/// less than two, and ends that are not finite.
+/// Values with equal distances: `count` values from `first` to `last`. The intermediate values are rounded to twelve
+/// digits.
+/// \throws InvalidInput for less than two values, and ends that are not finite.
 template <class = void>  // compiled where it is used
 std::vector<double> linear(double first, double last, std::size_t count) {
   if (count < 2 || !std::isfinite(first) || !std::isfinite(last))
@@ -23,12 +24,13 @@ std::vector<double> linear(double first, double last, std::size_t count) {
   return values;
 }
 
-/// `count` values from `first` to `last` at equal ratios. \throws InvalidInput for ends that are not positive.
+/// Values with equal ratios: `count` values from `first` to `last`.
+/// \throws InvalidInput for ends that are not positive.
 template <class = void>
 std::vector<double> logarithmic(double first, double last, std::size_t count) {
   if (!(first > 0.0 && last > 0.0))
     throw InvalidInput{"study: logarithmic(", first, ", ", last, ", ", count, ") needs positive ends."};
-  std::vector<double> values = linear(first, last, count);  // refuses what it must; the ends stay
+  std::vector<double> values = linear(first, last, count);  // checks the arguments; the ends remain
   double const from = detail::portable_log(first), to = detail::portable_log(last);
   for (std::size_t k = 1; k + 1 < count; ++k)
     values[k] =
@@ -36,13 +38,13 @@ std::vector<double> logarithmic(double first, double last, std::size_t count) {
   return values;
 }
 
-/// Points of one parameter, its `values`: axis("step", "s", {1e-3, 1e-4}).
+/// Points of one parameter with this `name`, `unit` and `values`: axis("step", "s", {1e-3, 1e-4}).
 template <class = void>
 Points axis(std::string name, std::string unit, std::vector<double> values) {
   return {{{.name = std::move(name), .unit = std::move(unit)}}, std::move(values), "grid"};
 }
 
-/// Points of one choice, by words, its `choices`: formulations("integrator", {"Radau", "HHT"}). See `Point::with`.
+/// Points of one parameter with named `choices`: formulations("integrator", {"Radau", "HHT"}). See `Point::with`.
 template <class = void>
 Points formulations(std::string name, std::vector<std::string> choices) {
   std::vector<double> values(choices.size());
@@ -50,7 +52,7 @@ Points formulations(std::string name, std::vector<std::string> choices) {
   return {{{.name = std::move(name), .choices = std::move(choices)}}, std::move(values), "grid"};
 }
 
-/// Points one by one, `rows` with a value for each column.
+/// Points from a list of `rows`, each with a value for each column.
 template <class = void>
 Points list(std::vector<Column> columns, std::vector<std::vector<double>> const& rows) {
   std::vector<double> values;
@@ -62,7 +64,7 @@ Points list(std::vector<Column> columns, std::vector<std::vector<double>> const&
   return {std::move(columns), std::move(values), "list"};
 }
 
-/// Every point of the first with every one of the second, the second varying faster.
+/// Product of two sets of points: every point of the first with every point of the second. The second varies faster.
 template <class = void>
 Points grid(Points const& first, Points const& second) {
   std::vector<Column> columns = first.columns();
@@ -76,7 +78,8 @@ Points grid(Points const& first, Points const& second) {
   std::string const one = first.origin(), other = second.origin();
   return {std::move(columns), std::move(values), one == other ? one : one + " x " + other};
 }
-/// Axes, formulations, lists and samples alike, and `others`: grid(axis(…), formulations(…), latin_hypercube(…)).
+/// Product of several sets of points, `first`, `second` and `others`. Axes, formulations, lists and samples may be
+/// combined: grid(axis(…), formulations(…), latin_hypercube(…)).
 template <class... Others>
 Points grid(Points const& first, Points const& second, Others const&... others) {
   return grid(grid(first, second), others...);

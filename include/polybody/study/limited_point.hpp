@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// A point of a study in a separate process, which is ended after a time limit. Needs POSIX.
+/// Computation of a study's point in a separate process, which is ended after a time limit. Needs POSIX.
 ///
-/// Not in polybody.hpp: it comes with study/study.hpp.
+/// Not in polybody.hpp: it belongs to study/study.hpp.
 
 #include <fcntl.h>
 #include <poll.h>
@@ -23,13 +23,14 @@
 
 namespace polybody::detail {
 
-/// The process of one point, with the pipe for its answer. The destructor ends the process.
+/// Process of one point, with a pipe for its answer. The destructor ends the process.
 class PointProcess {
  public:
-  /// Starts it; `answer` gives the text that it sends. \throws Error where the system has no more processes.
+  /// Starts the process; `answer` returns the text that it sends.
+  /// \throws Error if the system has no more processes.
   template <class F>
   explicit PointProcess(F const& answer) {
-    static std::mutex one_at_a_time;  // else the process of another thread keeps this pipe open
+    static std::mutex one_at_a_time;  // else a process started by another thread inherits this pipe
     std::unique_lock lock(one_at_a_time);
     int ends[2];
     if (::pipe(ends) != 0) fail("pipes");
@@ -57,7 +58,7 @@ class PointProcess {
     if (pipe_ >= 0) ::close(pipe_);
   }
 
-  /// Its answer, or nothing where none is complete within `limit` [s].
+  /// Returns the answer of the process, or nothing if it is not complete within `limit` [s].
   std::optional<std::string> answer(double limit) {
     using Clock = std::chrono::steady_clock;
     auto const began = Clock::now();
@@ -74,12 +75,12 @@ class PointProcess {
       text.append(block, std::size_t(got));
     }
   }
-  /// Ends it. Returns the number of the signal that ended it before, or zero.
+  /// Kills the process. Returns the number of the signal that ended it, or zero if it ended by itself.
   int end() {
     (void)::kill(process_, SIGKILL);
     return wait();
   }
-  /// Waits for its end. Returns the number of the signal that ended it, or zero.
+  /// Waits until the process ends. Returns the number of the signal that ended it, or zero.
   int wait() {
     int status = 0;
     while (::waitpid(process_, &status, 0) < 0 && errno == EINTR) {
@@ -92,7 +93,7 @@ class PointProcess {
   [[noreturn, gnu::cold]] static void fail(char const* what, int why = errno) {
     throw Error{"study: the system has no more ", what, " for a point with a time limit: ", std::strerror(why), "."};
   }
-  /// In the process of the point, which ends here without the exits of the program.
+  /// Sends the answer and ends the process of the point, without the exit handlers of the program.
   [[noreturn]] static void send(int pipe, std::string const& text) {
     for (std::size_t done = 0; done < text.size();) {
       ssize_t const got = ::write(pipe, text.data() + done, text.size() - done);
@@ -107,9 +108,10 @@ class PointProcess {
   int pipe_ = -1;
 };
 
-/// The outcome of `found()`, computed in a separate process. The outcome is a failure if the process crashes, or does
-/// not end within `limit` [s]. \throws Error with the sentence of an exception that is not of the library; StudyMisuse;
-/// Error where the system has no more processes.
+/// Outcome of `found()`, computed in a separate process. The outcome is a failure if the process crashes, or does not
+/// end within `limit` [s].
+/// \throws Error with the message of an exception that is not of the library; StudyMisuse; Error if the system has no
+/// more processes.
 template <class F>
 Outcome outcome_within(double limit, std::size_t outputs, F const& found) {
   pid_t const parent = ::getpid();

@@ -1,10 +1,11 @@
 #pragma once
 /// \file
-/// Studies over the ranks of MPI: the program that runs over threads, started by `mpirun -np 4 program`. Rank 0 gives
-/// points to whoever is free, works on points itself, and records; the file is as that of threads, and either goes on
-/// with what the other has begun. Where a rank dies mpirun ends them all, and the next run goes on.
+/// Studies over the ranks of MPI: the same program as with threads, started by `mpirun -np 4 program`. Rank 0
+/// distributes the points to free ranks, computes points itself, and writes the record. The record has the same
+/// format as with threads, so either kind of run continues the record of the other. If a rank dies, mpirun ends all
+/// ranks, and the next run continues the record.
 ///
-/// Not in polybody.hpp: it needs MPI (study/mpi_ranks.hpp says how to link it).
+/// Not in polybody.hpp: it needs MPI (study/mpi_ranks.hpp explains the linking).
 
 #include <polybody/study/mpi_ranks.hpp>
 #include <polybody/study/study.hpp>
@@ -13,7 +14,7 @@ namespace polybody {
 
 namespace detail {
 
-/// What is told to all ranks at the end: a line for each point that is finished.
+/// Message to all ranks at the end: counts, and a line for each finished point.
 template <class = void>  // compiled where it is used
 std::string text_of(StudyResults const& results) {
   std::string text = std::to_string(results.taken_over) + (results.torn ? " 1\n" : " 0\n");
@@ -33,7 +34,7 @@ StudyResults results_in(std::string_view text, Study const& study) {
   return study.results(std::move(outcomes), std::stoul(head), head.ends_with('1'));
 }
 
-/// Rank 0 gives out points until every other rank has been told that there are no more.
+/// Distributes points from rank 0 until every other rank has the message that no points are left.
 template <class = void>
 void give_points(MpiRanks const& ranks, Study const& study, StudyQueue& queue) {
   for (int working = ranks.size() - 1; working > 0;) {
@@ -48,7 +49,7 @@ void give_points(MpiRanks const& ranks, Study const& study, StudyQueue& queue) {
   }
 }
 
-/// The other ranks. What f throws beyond errors of the library ends the study.
+/// Computation of points on the other ranks. An exception of f that is not an error of the library ends the study.
 template <class F>
 StudyResults work_for_first(Study const& study, F const& f, StudyOptions const& options) {
   std::exception_ptr own;
@@ -72,7 +73,8 @@ StudyResults work_for_first(Study const& study, F const& f, StudyOptions const& 
   return results_in(message.text, study);
 }
 
-/// Rank 0: the file, the points for the others, and points of its own in a second thread, as MPI is of this one alone.
+/// Run on rank 0: writes the record, distributes points, and computes points in a second thread. Only this thread
+/// calls MPI.
 template <class F>
 StudyResults run_first(MpiRanks const& ranks, Study const& study, F const& f, StudyOptions const& options) {
   StudyRecord record(study.kind());
@@ -85,7 +87,7 @@ StudyResults run_first(MpiRanks const& ranks, Study const& study, F const& f, St
   return study.results(queue.take(), study.points().size() - queue.left(), record.torn());
 }
 
-/// Whether all ranks have the same study: a number of rank 0's is compared by all.
+/// Checks that all ranks have the same study: the checksums of all ranks must be equal.
 template <class = void>
 void require_same_study(Study const& study) {
   std::string all;
@@ -101,9 +103,9 @@ void require_same_study(Study const& study) {
 
 }  // namespace detail
 
-/// As `study.run(f, options)`, over all ranks, which must all call it. All get the results, or an error: rank 0 and a
-/// rank whose f threw get the exception itself, the others an IoError with its sentence. One rank alone runs over
-/// threads.
+/// Runs a study as `study.run(f, options)`, over all ranks; all ranks must call it. All ranks get the results, or an
+/// exception. Rank 0 and a rank whose f threw get the original exception, the other ranks an IoError with its
+/// message. A single rank uses threads.
 template <class F>
 StudyResults run_over_ranks(MpiRanks const& ranks, Study const& study, F const& f, StudyOptions const& options = {}) {
   if (ranks.size() == 1) return study.run(f, options);

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// The ranks of a program under MPI. Needs mpi.h and a library: in CMake, `find_package(MPI REQUIRED COMPONENTS CXX)`
-/// and `target_link_libraries(program PRIVATE MPI::MPI_CXX)`.
+/// Ranks of a program under MPI. Needs mpi.h and a library: in CMake, `find_package(MPI REQUIRED COMPONENTS CXX)` and
+/// `target_link_libraries(program PRIVATE MPI::MPI_CXX)`.
 ///
 /// Not in polybody.hpp: it needs MPI.
 
@@ -18,11 +18,12 @@
 
 namespace polybody {
 
-/// MPI from here to the end of its scope: one at the beginning of main, outside of its `try`. A program that is started
-/// without mpirun has one rank.
+/// Initialisation of MPI; the destructor finalises it. A program has one object, at the beginning of main and outside
+/// of its `try`. A program that is started without mpirun has one rank.
 class MpiRanks {
  public:
-  /// Takes those of `main`, argc and argv. \throws Error where MPI does not start.
+  /// Starts MPI with the arguments argc and argv of `main`.
+  /// \throws Error if MPI does not start.
   MpiRanks(int& argc, char**& argv) {
     int ready = 0, threads = 0;
     MPI_Initialized(&ready);
@@ -40,12 +41,12 @@ class MpiRanks {
     if (own_) MPI_Finalize();
   }
 
-  int rank() const { return rank_; }         ///< of this process, from 0
-  int size() const { return size_; }         ///< how many there are
-  bool first() const { return rank_ == 0; }  ///< the one that records, and writes what all have found
+  int rank() const { return rank_; }         ///< rank of this process, from 0
+  int size() const { return size_; }         ///< number of ranks
+  bool first() const { return rank_ == 0; }  ///< true for rank 0, which records and writes the results
 
-  /// Ends the ranks with `code`, for an error that one alone has met outside of `run_over_ranks`: the others wait for
-  /// it.
+  /// Ends all ranks with exit `code`. For an error outside of `run_over_ranks` on one rank only, because the other
+  /// ranks wait for it.
   [[noreturn]] void abort(int code = 1) const {
     MPI_Abort(MPI_COMM_WORLD, code);
     std::abort();
@@ -58,19 +59,20 @@ class MpiRanks {
 
 namespace detail {
 
-/// What a message means. A worker asks for a point, with the outcome of its last one, or stops the study with an error;
-/// the answer is a point or that there are no more. When all have ended the first rank tells each what was found, or
-/// why nothing was.
+/// Type of a message. A worker requests a point and sends the outcome of its last one, or stops the study with an
+/// error. Rank 0 answers with a point, or that no points are left. At the end rank 0 sends the results to all ranks,
+/// or the reason of a failure.
 enum class RankTag : int { asks = 1, stops, point, no_more, found, refused };
 
-/// A text from another rank.
+/// Text from another rank.
 struct RankMessage {
   int from = 0;
   RankTag tag = RankTag::asks;
   std::string text;
 };
 
-/// \throws InvalidInput for a text of more than 2 GB, which MPI does not take.
+/// Sends a text with a `tag` to the rank `to`.
+/// \throws InvalidInput for a text of more than 2 GB, the limit of MPI.
 template <class = void>  // compiled where it is used
 void send(int to, RankTag tag, std::string const& text) {
   if (text.size() > std::size_t(std::numeric_limits<int>::max()))
@@ -78,7 +80,8 @@ void send(int to, RankTag tag, std::string const& text) {
   MPI_Send(text.data(), static_cast<int>(text.size()), MPI_CHAR, to, static_cast<int>(tag), MPI_COMM_WORLD);
 }
 
-/// The next message from any rank. Looks for it up to every two milliseconds, as waiting inside MPI takes a whole core.
+/// Receives the next message from any rank. Polls at intervals of up to 2 ms, because waiting inside MPI occupies a
+/// core.
 template <class = void>
 RankMessage receive() {
   MPI_Status status;

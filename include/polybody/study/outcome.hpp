@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// What a study finds at its points.
+/// Results of a study at its points.
 ///
-/// Not in polybody.hpp: of use to studies only.
+/// Not in polybody.hpp: only studies need it.
 
 #include <optional>
 
@@ -10,58 +10,60 @@
 
 namespace polybody {
 
-/// A number that a study finds at each point.
+/// Output of a study: a number computed at each point.
 struct StudyOutput {
-  std::string head;       ///< with its unit: "error [m]"
-  bool measured = false;  ///< such as a time: another run finds another number
+  std::string head;       ///< name with unit: "error [m]"
+  bool measured = false;  ///< the number, such as a time, differs between runs
 
-  /// A head is an output.
+  /// Conversion of a head to an output.
   StudyOutput(char const* name) : head(name) {}  // NOLINT(google-explicit-constructor)
-  /// The same.
+  /// Conversion of a head to an output.
   StudyOutput(std::string name) : head(std::move(name)) {}  // NOLINT(google-explicit-constructor)
-  /// An output that may be measured: `is_measured`.
+  /// Output with the head `name`; `is_measured` marks a number that differs between runs.
   StudyOutput(std::string name, bool is_measured) : head(std::move(name)), measured(is_measured) {}
 };
 
-/// A number under `head` that another run of the same point would not find again, as a time. It is recorded and drawn
-/// like the others; the table that is the same bit for bit leaves it out.
+/// Output with this `head` whose number differs between runs, such as a time. Records and figures include it. The
+/// table that is bitwise identical for each run omits it.
 inline StudyOutput measured(std::string head) { return {std::move(head), true}; }
 
-/// An output for each of `heads`: outputs("error [m]", measured("cpu [s]"))
+/// List of outputs with these `heads`: outputs("error [m]", measured("cpu [s]"))
 template <class... Heads>
 std::vector<StudyOutput> outputs(Heads&&... heads) {
   return {StudyOutput(std::forward<Heads>(heads))...};
 }
 
-/// What a point gave: a number for each output, or why there is none.
+/// Result of a point: a number for each output, or the reason of a failure.
 struct Outcome {
-  std::vector<double> values{};  ///< of the outputs, each in the unit of its head; none where it failed
-  std::string failure{};         ///< one line; empty: none
+  std::vector<double> values{};  ///< values of the outputs, each in the unit of its head; empty after a failure
+  std::string failure{};         ///< reason of a failure, one line; empty: no failure
 
-  bool failed() const { return !failure.empty(); }  ///< there are no values
+  bool failed() const { return !failure.empty(); }  ///< true if there are no values
 };
 
-/// All that a study found so far.
+/// Results of a study so far.
 struct StudyResults {
-  Points points;                                   ///< of the study
-  std::vector<StudyOutput> outputs;                ///< of the study
-  std::vector<std::optional<Outcome>> outcomes{};  ///< in the order of the points; nothing where it is not finished
-  std::size_t taken_over = 0;                      ///< points that an earlier run had finished
-  bool torn = false;                               ///< an earlier run was killed while it wrote
+  Points points;                     ///< points of the study
+  std::vector<StudyOutput> outputs;  ///< outputs of the study
+  std::vector<std::optional<Outcome>>
+      outcomes{};              ///< outcomes in the order of the points; none for an unfinished point
+  std::size_t taken_over = 0;  ///< number of points that an earlier run has finished
+  bool torn = false;           ///< true if an earlier run was killed while it wrote a line
 
-  /// Points that have an outcome, be it a failure.
+  /// Number of points that have an outcome, including failures.
   std::size_t finished() const {
     return std::size_t(std::ranges::count_if(outcomes, [](auto const& o) { return o.has_value(); }));
   }
-  /// Points whose outcome is a failure.
+  /// Number of points whose outcome is a failure.
   std::size_t failed() const {
     return std::size_t(std::ranges::count_if(outcomes, [](auto const& o) { return o && o->failed(); }));
   }
-  /// Every point has an outcome.
+  /// Returns true if every point has an outcome.
   bool complete() const { return finished() == points.size(); }
 
-  /// The values of a parameter (by its name or its head) or an output at the points that have outputs, in their order.
-  /// \throws InvalidInput where there is none.
+  /// Values of a parameter or an output, called `name`, at the points that have outputs, in the order of the points.
+  /// A parameter is given by its name or its head.
+  /// \throws InvalidInput if there is no such column.
   std::vector<double> column(std::string_view name) const {
     std::vector<double> values;
     auto const take = [&](auto const& value) {

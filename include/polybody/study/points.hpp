@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// The points of a study: a table of parameters with names and units, one row for each point.
+/// Points of a study: a table of parameters with names and units, one row for each point.
 ///
-/// Not in polybody.hpp: of use to studies only.
+/// Not in polybody.hpp: only studies need it.
 
 #include <algorithm>
 #include <cmath>
@@ -16,30 +16,33 @@
 
 namespace polybody {
 
-/// What a study's function asks of a point that the study does not have, or gives too few or too many outputs. This is
-/// an error of the program, so it ends the study and is not recorded as a failure of the point.
+/// Error of a program that uses a study wrongly: its function reads a column that does not exist, or returns the
+/// wrong number of outputs. It ends the study and is not recorded as a failure of the point.
 class StudyMisuse : public InvalidInput {
  public:
   using InvalidInput::InvalidInput;
 };
 
-/// One parameter.
+/// Parameter of a study: a column of its table.
 struct Column {
-  std::string name{};                  ///< by which a point is asked for its value
+  std::string name{};                  ///< name by which a point returns the value
   std::string unit{};                  ///< empty: none
-  std::vector<std::string> choices{};  ///< what the values 0, 1, … mean; empty: they are numbers in `unit`
+  std::vector<std::string> choices{};  ///< meaning of the values 0, 1, …; empty: the values are numbers in `unit`
 
-  std::string head() const { return unit.empty() ? name : name + " [" + unit + ']'; }  ///< "step [s]"
+  std::string head() const { return unit.empty() ? name : name + " [" + unit + ']'; }  ///< name with unit: "step [s]"
 };
 
 class Point;
 
-/// A table of parameters. `grid.hpp` and `sampling.hpp` make them; the order of points is that of the study's table.
+/// Table of parameters, with one row for each point. `grid.hpp` and `sampling.hpp` create such tables. The study's
+/// table has the same order of points.
 class Points {
  public:
-  /// \param values (points × columns), row by row \param origin how they were made, in words
-  /// \throws InvalidInput for no point, no column, names that are empty, alike or not printable, values that are not
-  /// finite and choices that there are not.
+  /// Table with given columns and values.
+  /// \param values (points × columns), row by row
+  /// \param origin description of the rule that generated the points
+  /// \throws InvalidInput for no point or no column, names that are empty, equal or not printable, values that are
+  /// not finite, and values outside of the choices.
   Points(std::vector<Column> columns, std::vector<double> values, std::string origin)
       : columns_(std::move(columns)), values_(std::move(values)), origin_(std::move(origin)) {
     if (columns_.empty()) throw InvalidInput{"study: its points need one column at least."};
@@ -50,13 +53,14 @@ class Points {
     for (std::size_t k = 0; k < values_.size(); ++k) require_good_value(columns_[k % columns_.size()], values_[k]);
   }
 
-  std::size_t size() const { return values_.size() / columns_.size(); }  ///< how many points
-  std::vector<Column> const& columns() const { return columns_; }        ///< parameters, in their order
-  std::vector<double> const& values() const { return values_; }          ///< (points × columns), row by row
-  std::string const& origin() const { return origin_; }                  ///< how they were made, in words
-  /// The value of a `point` in the unit of its column. \throws std::out_of_range.
+  std::size_t size() const { return values_.size() / columns_.size(); }  ///< number of points
+  std::vector<Column> const& columns() const { return columns_; }        ///< parameters, in the order of the columns
+  std::vector<double> const& values() const { return values_; }          ///< (points × columns) values, row by row
+  std::string const& origin() const { return origin_; }  ///< description of the rule that generated the points
+  /// Value of a `point` in a `column`, in the unit of the column.
+  /// \throws std::out_of_range.
   double at(std::size_t point, std::size_t column) const { return values_.at(point * columns_.size() + column); }
-  /// One point, by the names of its columns; this must outlive it.
+  /// Row number `point`, from 0. This table must outlive it.
   Point operator[](std::size_t point) const;
 
  private:
@@ -93,33 +97,34 @@ class Points {
   std::string origin_;
 };
 
-/// One row, by the names of its columns. The points must outlive it.
+/// Point of a study: a row of the table, read by the names of its columns. The table must outlive it.
 class Point {
  public:
   /// Row `index` of `points`, from 0.
   Point(Points const& points, std::size_t index) : points_(&points), index_(index) {}
 
-  std::size_t index() const { return index_; }  ///< from 0, in the order of the table
+  std::size_t index() const { return index_; }  ///< index of the row, from 0
 
-  /// The value in the unit of its column. \throws StudyMisuse where there is no such column.
+  /// Value in a `column`, in the unit of the column.
+  /// \throws StudyMisuse if the column does not exist.
   double operator[](std::string_view column) const { return points_->at(index_, place(column)); }
 
-  /// Which of the column's choices it has, from 0. \throws StudyMisuse where there is no such column, or none of
-  /// choices.
+  /// Index of the point's choice in a `column`, from 0.
+  /// \throws StudyMisuse if the column does not exist or has no choices.
   std::size_t choice(std::string_view column) const {
     std::size_t const j = place(column);
     if (points_->columns()[j].choices.empty())
       throw StudyMisuse{"study: column '", column, "' holds numbers, not choices. Ask for point[\"", column, "\"]."};
     return static_cast<std::size_t>(points_->at(index_, j));
   }
-  /// The same as the word that `formulations` has for it in `column`.
+  /// Name of the point's choice in a `column`, as given to `formulations`.
   std::string const& chosen(std::string_view column) const {
     return points_->columns()[place(column)].choices[choice(column)];
   }
 
-  /// Calls f with that of `first` and `others` which the point has chosen in `column`, as in
-  /// `point.with("integrator", run, GeneralizedAlpha{}, Radau{})`. \throws StudyMisuse unless there is one of `all` for
-  /// each choice.
+  /// Calls f with the one of the arguments `first`, `others` that the point's choice in `column` selects, as in
+  /// `point.with("integrator", run, GeneralizedAlpha{}, Radau{})`.
+  /// \throws StudyMisuse unless there is one argument for each choice.
   template <class F, class First, class... Others>
   auto with(std::string_view column, F const& f, First const& first, Others const&... others) const {
     std::size_t const k = choice(column), count = points_->columns()[place(column)].choices.size();

@@ -1,10 +1,11 @@
 #pragma once
 /// \file
-/// Functions that give the same bits on every machine, for the points of studies. The functions of C libraries differ
-/// in the last bit; +, −, ×, ÷, √ and fma are rounded alike everywhere (IEEE 754; not under -ffast-math). A product
-/// that is added to something is an fma in the source, so that no compiler has a choice.
+/// Elementary functions with bitwise identical results on every machine, for the points of studies. The functions of
+/// C libraries differ in the last bit. In contrast, +, −, ×, ÷, √ and fma are rounded identically everywhere (IEEE
+/// 754; not under -ffast-math). The source writes each sum with a product as an fma, so the result does not depend on
+/// the compiler.
 ///
-/// Not in polybody.hpp: it comes with study/grid.hpp.
+/// Not in polybody.hpp: it belongs to study/grid.hpp.
 
 #include <charconv>
 #include <cmath>
@@ -12,7 +13,7 @@
 
 namespace polybody::detail {
 
-/// ln x of a positive x, by m·2ᵏ with √½ ≤ m < √2 and ln m = 2 artanh((m − 1)/(m + 1)).
+/// Logarithm ln x of a positive x, by m·2ᵏ with √½ ≤ m < √2 and ln m = 2 artanh((m − 1)/(m + 1)).
 template <class = void>  // compiled where it is used
 double portable_log(double x) {
   int k = 0;
@@ -24,7 +25,7 @@ double portable_log(double x) {
   return std::fma(double(k), std::numbers::ln2, 2.0 * s * sum);
 }
 
-/// eˣ, by 2ᵏ eʳ with |r| ≤ ½ ln 2 and the series of eʳ.
+/// Exponential eˣ, by 2ᵏ eʳ with |r| ≤ ½ ln 2 and the series of eʳ.
 template <class = void>
 double portable_exp(double x) {
   double const k = std::nearbyint(x / std::numbers::ln2);
@@ -37,8 +38,8 @@ double portable_exp(double x) {
   return std::ldexp(sum, static_cast<int>(k));
 }
 
-/// Φ(x) of a standard normal variable for x ≤ 0: ½ + φ Σ x²ᵏ⁺¹/(1·3·…·(2k+1)), or φ/(|x| + 1/(|x| + 2/(|x| + …))) in
-/// the tail.  [Abramowitz & Stegun 1964, 26.2.11, 26.2.14]
+/// Distribution function Φ(x) of a standard normal variable for x ≤ 0: ½ + φ Σ x²ᵏ⁺¹/(1·3·…·(2k+1)), or φ/(|x| +
+/// 1/(|x| + 2/(|x| + …))) in the tail.  [Abramowitz & Stegun 1964, 26.2.11, 26.2.14]
 template <class = void>
 double normal_share(double x, double density) {
   if (x > -3.0) {
@@ -55,8 +56,9 @@ double normal_share(double x, double density) {
   return density / fraction;
 }
 
-/// x with Φ(x) = u, 0 < u < 1. Newton's method on ln Φ, which is concave: from the left of the root it never passes it.
-/// The start is left of it, as Φ(−t) ≤ ½ exp(−t²/2).
+/// Quantile of the standard normal distribution: x with Φ(x) = u, 0 < u < 1. The method is Newton's, applied to ln Φ.
+/// This function is concave, so iterates that start left of the root remain left of it. The initial value is left of
+/// the root because Φ(−t) ≤ ½ exp(−t²/2).
 template <class = void>
 double normal_quantile(double u) {
   if (u > 0.5) return -normal_quantile(1.0 - u);
@@ -73,7 +75,7 @@ double normal_quantile(double u) {
   return x;
 }
 
-/// The number of twelve digits next to x: 10⁷ and 0.3 where rounding gives 9999999.999999998 and 0.30000000000000004.
+/// Number with twelve digits closest to x: 10⁷ and 0.3 instead of 9999999.999999998 and 0.30000000000000004.
 template <class = void>
 double of_twelve_digits(double x) {
   char digits[40];

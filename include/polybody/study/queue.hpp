@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// Which points of a study are left, for all who work on them.
+/// Queue of the unfinished points of a study, shared by all threads.
 ///
-/// Not in polybody.hpp: it comes with study/study.hpp.
+/// Not in polybody.hpp: it belongs to study/study.hpp.
 
 #include <exception>
 #include <mutex>
@@ -12,20 +12,21 @@
 
 namespace polybody {
 
-/// How a study is run.
+/// Options of a run of a study.
 struct StudyOptions {
-  int threads = 1;            ///< that work on points; over several ranks each rank works on one at a time
-  bool retry_failed = false;  ///< points that failed in an earlier run are tried again
-  bool progress = true;       ///< a bar with the time that is left, where stderr is a terminal
-  /// Longest wall-clock time of a point [s]; zero: no limit. A point that exceeds it fails with a sentence, and the
-  /// study continues. With a limit each point is computed in a separate process: changes of variables by the function
-  /// are lost, and a crash is a failure of its point alone.
+  int threads = 1;            ///< number of threads; with several ranks each rank computes one point at a time
+  bool retry_failed = false;  ///< computes points again that failed in an earlier run
+  bool progress = true;       ///< shows a bar with the remaining time if stderr is a terminal
+  /// Wall-clock time limit of a point [s]; zero: no limit. A point that exceeds it is recorded as failed, and the
+  /// study continues. With a limit, each point is computed in a separate process. Changes of variables by the
+  /// function are then lost, and a crash is a failure of its point only.
   double time_limit = 0.0;
 };
 
 namespace detail {
 
-/// Gives points out in their order and records what they gave, in the order in which they end. For several threads.
+/// Thread-safe queue that distributes points in the order of the table. It records outcomes in the order in which the
+/// points finish.
 class StudyQueue {
  public:
   StudyQueue(StudyRecord& record, StudyOptions const& options, std::string const& label)
@@ -35,16 +36,16 @@ class StudyQueue {
     if (options.progress && !left_.empty()) progress_.emplace(0.0, double(left_.size()), label);
   }
 
-  std::size_t left() const { return left_.size(); }  ///< at the start
+  std::size_t left() const { return left_.size(); }  ///< number of unfinished points at the start
 
-  /// The next point; nothing where all are given out or the study is stopped.
+  /// Returns the next point, or nothing if all are distributed or the study is stopped.
   std::optional<std::size_t> next() {
     std::lock_guard const lock(mutex_);
     if (error_ || given_ == left_.size()) return std::nullopt;
     return left_[given_++];
   }
 
-  /// Records it. Where that fails the study is stopped.
+  /// Records the outcome of a point. The study stops if this fails.
   void finish(std::size_t point, Outcome outcome) {
     std::lock_guard const lock(mutex_);
     try {
@@ -56,7 +57,7 @@ class StudyQueue {
     }
   }
 
-  /// No more points are given out; `rethrow` throws the first reason.
+  /// Stops the distribution of points. `rethrow` throws the first reason.
   void stop(std::exception_ptr why) {
     std::lock_guard const lock(mutex_);
     if (!error_) error_ = std::move(why);
@@ -65,7 +66,7 @@ class StudyQueue {
     if (error_) std::rethrow_exception(error_);
   }
 
-  /// Works on points until none is left: `outcome(i)` gives that of point i.
+  /// Computes points until none is left: `outcome(i)` returns the outcome of point i.
   template <class F>
   void work(F const& outcome) {
     try {

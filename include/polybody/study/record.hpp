@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// The file to which a study appends each finished point. Needs POSIX.
+/// File to which a study appends each finished point. Needs POSIX.
 ///
-/// Not in polybody.hpp: it comes with study/study.hpp.
+/// Not in polybody.hpp: it belongs to study/study.hpp.
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -18,15 +18,15 @@
 
 namespace polybody::detail {
 
-/// The record of one study, locked for this process as long as it is open. A line goes to the system in one piece, so a
-/// killed process loses nothing that it has finished; to the disk it goes as soon as a tenth of a second has passed
-/// since the last time, so a machine that loses its power loses that and what the disk had not got. Not for several
-/// threads.
+/// Record of one study, locked by this process while it is open. Each line is passed to the system at once, so a
+/// killed process loses no finished point. A line is synchronised to the disk (fsync) if the last synchronisation is
+/// at least 0.1 s ago. A loss of power can therefore lose the lines of the last 0.1 s and those that the disk has not
+/// stored. Not thread-safe.
 class StudyRecord {
  public:
-  /// Opens or begins the record, drops what a killed run has left torn. \throws IoError with the file, and the line
-  /// where there is one, if its folder or the file cannot be made, another process has it, or it is refused
-  /// (`record_content`); what was there is then left as it is.
+  /// Opens or creates the record, and removes the incomplete line of a killed run.
+  /// \throws IoError with the file and, if possible, the line. The reasons are that the folder or the file cannot be
+  /// created, another process has locked it, or `record_content` refuses it. An existing file then remains unchanged.
   explicit StudyRecord(RecordKind kind) : kind_(std::move(kind)) {
     open();
     try {
@@ -42,10 +42,14 @@ class StudyRecord {
   StudyRecord& operator=(StudyRecord const&) = delete;
   ~StudyRecord() { close(); }
 
-  std::vector<std::optional<Outcome>> const& found() const { return content_.outcomes; }  ///< when it was opened
+  std::vector<std::optional<Outcome>> const& found() const {
+    return content_.outcomes;
+  }  ///< outcomes at the time of opening
   bool torn() const { return content_.torn; }
 
-  /// \throws IoError if the system refuses the bytes (a full disk, for one); the record then ends with the line before.
+  /// Appends the outcome of a point.
+  /// \throws IoError if the system refuses the bytes, for example if the disk is full. The record then ends with the
+  /// previous line.
   void append(std::size_t point, Outcome const& outcome) {
     RecordChain const before = content_.chain;
     try {
@@ -92,7 +96,8 @@ class StudyRecord {
                   "' is written by another run of the study. Wait until that ends, or choose another file"};
   }
 
-  /// Whether the open file still has its name: a run that could write no line removes the file that it began.
+  /// Returns true if the open file still has its name. A run that has written no line removes the file that it
+  /// created.
   bool is_in_place() const {
     struct stat here = {}, named = {};
     return ::fstat(file_, &here) == 0 && ::stat(kind_.file.c_str(), &named) == 0 && here.st_ino == named.st_ino &&
@@ -124,7 +129,7 @@ class StudyRecord {
     }
   }
 
-  /// A file of ours in which nothing stands is removed.
+  /// Closes the file. Removes it if this run created it and it is empty.
   void close() noexcept {
     if (file_ < 0) return;
     struct stat status = {};

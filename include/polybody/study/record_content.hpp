@@ -1,33 +1,34 @@
 #pragma once
 /// \file
-/// Reading a study's record: what is whole, what a killed run left torn, and what must be refused.
+/// Reader of a study's record, which distinguishes complete lines, the incomplete line of a killed run, and invalid
+/// content.
 ///
-/// Not in polybody.hpp: it comes with study/study.hpp.
+/// Not in polybody.hpp: it belongs to study/study.hpp.
 
 #include <polybody/study/record_lines.hpp>
 
 namespace polybody::detail {
 
-/// Which study a record must be of.
+/// Identity of the study to which a record must belong.
 struct RecordKind {
-  std::string file;               ///< for messages
+  std::string file;               ///< name of the file, for messages
   std::vector<std::string> head;  ///< `record_head`
   std::size_t points = 0, outputs = 0;
 };
 
-/// What stands in a record.
+/// Content of a record.
 struct RecordContent {
-  std::vector<std::optional<Outcome>> outcomes{};  ///< of all points
-  std::size_t whole = 0;                           ///< bytes up to the end of the last whole line; 0: no head yet
-  bool torn = false;                               ///< bytes of a line without end follow
-  RecordChain chain{};                             ///< goes on after the last whole line
+  std::vector<std::optional<Outcome>> outcomes{};  ///< outcomes of all points
+  std::size_t whole = 0;                           ///< bytes up to the end of the last complete line; 0: no head yet
+  bool torn = false;                               ///< an incomplete line follows
+  RecordChain chain{};                             ///< state of the chain after the last complete line
 };
 
 [[noreturn, gnu::cold]] inline void refuse_record(RecordKind const& kind, std::size_t line, std::string const& why) {
   throw IoError{"file '", kind.file, "', line ", line, ": ", why};
 }
 
-/// The head as it stands in the file.
+/// Text of the head in the file.
 template <class = void>
 std::string head_text(RecordKind const& kind, RecordChain& chain) {
   std::string text;
@@ -45,7 +46,7 @@ void require_head_line(RecordKind const& kind, std::size_t line, std::string con
                     "'. Give this study another file, or remove the old one");
 }
 
-/// A point that failed may be there again, when a later run has tried it once more.
+/// Stores the outcome of a line. A failed point may occur again if a later run has computed it again.
 template <class = void>
 void take_outcome(RecordKind const& kind, std::size_t line, std::string const& text, RecordContent& content) {
   auto found = outcome_in(text, kind.points, kind.outputs);
@@ -55,8 +56,8 @@ void take_outcome(RecordKind const& kind, std::size_t line, std::string const& t
   place = std::move(found->second);
 }
 
-/// Reads the bytes of a record. The end of a file may be a part of a line, which a killed run leaves; the head may be a
-/// part of ours. \throws IoError with file and line for all else: damage, another study, a file that is no record.
+/// Reads the `bytes` of a record. The last line, or the head, may be incomplete after a killed run.
+/// \throws IoError with file and line for damage, another study, or a file that is not a record.
 template <class = void>
 RecordContent record_content(RecordKind const& kind, std::string_view bytes) {
   RecordContent content{.outcomes = std::vector<std::optional<Outcome>>(kind.points)};

@@ -1,13 +1,13 @@
 #pragma once
 /// \file
-/// The text of a study's record: lines that each end with a checksum of themselves and of all lines before them.
+/// Text of a study's record: each line ends with a checksum of itself and of all preceding lines.
 ///
 ///     polybody study 1	#5c9d6e3a70b1f284
 ///     what the study is: its columns, points, outputs	#…
 ///     17: 0.00125 3.5	#…                                   point 17 and its outputs, in digits that read back exactly
 ///     18 failed: Newton's method …	#…
 ///
-/// Not in polybody.hpp: it comes with study/study.hpp.
+/// Not in polybody.hpp: it belongs to study/study.hpp.
 
 #include <charconv>
 
@@ -24,15 +24,15 @@ std::string sixteen_digits(std::uint64_t x) {
   return text;
 }
 
-/// Makes lines; each checksum takes the one before it in, so that a line that is missing is missed.
+/// Writer and checker of lines. Each checksum depends on the previous one, so a missing line is detected.
 struct RecordChain {
-  std::string link{};  ///< the checksum of the last line
+  std::string link{};  ///< checksum of the last line
 
   std::string line(std::string const& text) {
     link = sixteen_digits(checksum(link + text));
     return text + "\t#" + link + '\n';
   }
-  /// The text of a line without its end; nothing where it is not the next one.
+  /// Returns the text of a line without its checksum, or nothing if it is not the next line.
   std::optional<std::string> text(std::string_view line) {
     std::size_t const tail = 2 + 16;
     if (line.size() < tail) return std::nullopt;
@@ -45,7 +45,7 @@ struct RecordChain {
   }
 };
 
-/// What says which study it is, line by line.
+/// Lines that identify a study: description, columns, points and outputs.
 template <class = void>
 std::vector<std::string> record_head(std::string const& about, Points const& points,
                                      std::vector<StudyOutput> const& outputs) {
@@ -64,7 +64,7 @@ std::vector<std::string> record_head(std::string const& about, Points const& poi
   return lines;
 }
 
-/// "17: 0.00125 3.5" or "18 failed: why"
+/// Line of an outcome: "17: 0.00125 3.5" or "18 failed: why"
 template <class = void>
 std::string record_text(std::size_t point, Outcome const& outcome) {
   std::string text = std::to_string(point) + (outcome.failed() ? " failed: " + outcome.failure : ":");
@@ -72,8 +72,8 @@ std::string record_text(std::size_t point, Outcome const& outcome) {
   return text;
 }
 
-/// The other way round. Nothing where it is neither, the point is not one of `points`, or its numbers are not
-/// `outputs`.
+/// Outcome of a line written by `record_text`. Returns nothing if the line is neither form, if the point is not below
+/// `points`, or if the count of numbers is not `outputs`.
 template <class = void>
 std::optional<std::pair<std::size_t, Outcome>> outcome_in(std::string_view text, std::size_t points,
                                                           std::size_t outputs) {

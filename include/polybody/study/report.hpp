@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// What a study found as tables, curves and statistics.
+/// Tables, curves and statistics of the results of a study.
 ///
-/// Not in polybody.hpp: of use to studies only.
+/// Not in polybody.hpp: only studies need it.
 
 #include <map>
 
@@ -16,7 +16,7 @@ namespace polybody {
 
 namespace detail {
 
-/// The value of column j of a point as it stands in a table: the word of a choice, or digits that read back exactly.
+/// Value of column j of point i, as written in a table: the name of a choice, or digits that read back exactly.
 template <class = void>  // compiled where it is used
 std::string column_text(Points const& points, std::size_t i, std::size_t j) {
   std::vector<std::string> const& choices = points.columns()[j].choices;
@@ -50,10 +50,10 @@ std::string table_text(StudyResults const& found, bool with_measured) {
 
 }  // namespace detail
 
-/// Writes to `file` the points that are finished, in their order whatever the order in which they were, with units in
-/// the heads. Numbers read back to the same double; a failed point has no numbers and its sentence under "failure".
-/// Measured outputs are left out, so that the same study gives the same bytes; where there are any, NAME_measured.csv
-/// has all.
+/// Writes the finished points of the results `found` to `file`, in the order of the points, with units in the heads.
+/// Numbers read back to the same double. A failed point has no numbers, and its message in the column "failure".
+/// Measured outputs are omitted, so the same study gives the same bytes. If there are measured outputs,
+/// NAME_measured.csv contains all outputs.
 /// \throws IoError, as AtomicFile.
 template <class = void>
 void write_table(StudyResults const& found, std::filesystem::path const& file) {
@@ -68,7 +68,8 @@ void write_table(StudyResults const& found, std::filesystem::path const& file) {
   all.close();
 }
 
-/// Those points alone of which `keeps(point)` is true, as if the others were not finished: one panel of a figure.
+/// Results `found`, restricted to the points for which `keeps(point)` is true. The other points count as unfinished.
+/// Useful for one panel of a figure.
 template <class Keeps>
 StudyResults where(StudyResults found, Keeps const& keeps) {
   for (std::size_t i = 0; i < found.outcomes.size(); ++i)
@@ -76,16 +77,16 @@ StudyResults where(StudyResults found, Keeps const& keeps) {
   return found;
 }
 
-/// Curves of y over x, parameters or outputs both, for a Figure: one for each combination of values of the parameters
-/// `by`, with its points in their order. Failed points are left out. \throws InvalidInput for a column that there is
-/// not.
+/// Curves of y over x for a Figure; x and y are parameters or outputs. There is one curve for each combination of
+/// values of the parameters `by`, with its points in the order of the table. Failed points are omitted.
+/// \throws InvalidInput for a column that does not exist.
 template <class = void>
 std::vector<Curve> curves_of(StudyResults const& found, std::string_view x, std::string_view y,
                              std::vector<std::string> const& by = {}) {
   std::vector<double> const of_x = found.column(x), of_y = found.column(y);
   std::vector<std::string> labels(of_x.size());
   for (std::string const& name : by) {
-    found.column(name);  // refuses what there is not
+    found.column(name);  // throws if the column does not exist
     std::size_t const j =
         std::size_t(std::ranges::find(found.points.columns(), name, &Column::name) - found.points.columns().begin());
     if (j == found.points.columns().size())

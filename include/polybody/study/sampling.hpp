@@ -1,9 +1,10 @@
 #pragma once
 /// \file
-/// Points by Monte-Carlo and Latin hypercube sampling. A seed gives the same bits on every machine: the generator is
-/// std::mt19937_64, whose numbers the standard fixes, and no distribution of the standard library is used.
+/// Points by Monte Carlo and Latin hypercube sampling. A seed gives bitwise identical points on every machine. The
+/// generator is std::mt19937_64, whose numbers are fixed by the standard. No distribution of the standard library is
+/// used.
 ///
-/// Not in polybody.hpp: of use to studies only.
+/// Not in polybody.hpp: only studies need it.
 
 #include <cstdint>
 #include <functional>
@@ -13,13 +14,14 @@
 
 namespace polybody {
 
-/// A parameter that is not known but by its distribution.
+/// Uncertain parameter, given by its distribution.
 struct RandomAxis {
-  Column column;                           ///< its name and unit
-  std::function<double(double)> quantile;  ///< the value that is not exceeded with probability u, 0 < u < 1
+  Column column;                           ///< name and unit
+  std::function<double(double)> quantile;  ///< value that is not exceeded with probability u, 0 < u < 1
 };
 
-/// Equally probable between two ends. \throws InvalidInput unless low < high, both finite.
+/// Uniform distribution between `low` and `high` [unit].
+/// \throws InvalidInput unless low < high, both finite.
 template <class = void>  // compiled where it is used
 RandomAxis uniform(std::string name, std::string unit, double low, double high) {
   if (!(low < high && std::isfinite(high - low)))
@@ -27,7 +29,8 @@ RandomAxis uniform(std::string name, std::string unit, double low, double high) 
   return {{.name = std::move(name), .unit = std::move(unit)}, [=](double u) { return std::fma(u, high - low, low); }};
 }
 
-/// Its logarithm is equally probable between those of two positive ends. \throws InvalidInput unless 0 < low < high.
+/// Log-uniform distribution between `low` and `high` [unit]: the logarithm is uniformly distributed.
+/// \throws InvalidInput unless 0 < low < high.
 template <class = void>
 RandomAxis log_uniform(std::string name, std::string unit, double low, double high) {
   if (!(low > 0.0 && low < high && std::isfinite(high)))
@@ -43,7 +46,8 @@ RandomAxis log_uniform(std::string name, std::string unit, double low, double hi
           [=](double u) { return std::clamp(detail::portable_exp(std::fma(u, to - from, from)), low, high); }};
 }
 
-/// Normal about `mean`, without bounds. \throws InvalidInput unless the standard deviation is positive.
+/// Normal distribution with this `mean` and standard `deviation` [unit], without bounds.
+/// \throws InvalidInput unless the standard deviation is positive.
 template <class = void>
 RandomAxis normal(std::string name, std::string unit, double mean, double deviation) {
   if (!(deviation > 0.0 && std::isfinite(deviation) && std::isfinite(mean)))
@@ -60,13 +64,13 @@ RandomAxis normal(std::string name, std::string unit, double mean, double deviat
 
 namespace detail {
 
-/// 2⁵² numbers at equal distances in (0, 1).
+/// Random number from 2⁵² equidistant numbers in (0, 1).
 template <class = void>
 double unit_sample(std::mt19937_64& generator) {
   return (double(generator() >> 12) + 0.5) * 0x1p-52;
 }
 
-/// One of 0 … n − 1, each with the same probability: draws that would favour some are repeated.
+/// Random integer from 0 … n − 1, with equal probabilities. Draws that would favour some integers are repeated.
 template <class = void>
 std::size_t sample_below(std::mt19937_64& generator, std::uint64_t n) {
   std::uint64_t const usable = UINT64_MAX - (UINT64_MAX % n + 1) % n;
@@ -75,7 +79,7 @@ std::size_t sample_below(std::mt19937_64& generator, std::uint64_t n) {
   return static_cast<std::size_t>(draw % n);
 }
 
-/// Samples u (points × axes) as points.
+/// Points from samples u (points × axes).
 template <class = void>
 Points sampled(std::vector<double> u, std::vector<RandomAxis> const& axes, std::string origin) {
   std::vector<Column> columns;
@@ -86,7 +90,8 @@ Points sampled(std::vector<double> u, std::vector<RandomAxis> const& axes, std::
 
 }  // namespace detail
 
-/// `count` independent points. The first points of a larger sample with the same seed and axes are those of a smaller.
+/// Monte Carlo sample of `count` independent points, with the random numbers of `seed`. A smaller sample with the
+/// same seed and axes equals the first points of a larger one.
 /// \throws InvalidInput for no point or no axis.
 template <class = void>
 Points monte_carlo(std::size_t count, std::uint64_t seed, std::vector<RandomAxis> const& axes) {
@@ -96,9 +101,10 @@ Points monte_carlo(std::size_t count, std::uint64_t seed, std::vector<RandomAxis
   return detail::sampled(std::move(u), axes, "Monte Carlo, seed " + std::to_string(seed));
 }
 
-/// `count` points by the random numbers of `seed`, of which each axis has one in each of `count` strata of equal
-/// probability, at a random place in it; strata of different axes are paired at random.  [McKay, Beckman & Conover
-/// 1979] \throws InvalidInput for no point, no axis, and more than 2²⁰ points.
+/// Latin hypercube sample of `count` points, with the random numbers of `seed`. Each axis has `count` strata of equal
+/// probability, with one point at a random place in each stratum. Strata of different axes are paired at random.
+/// [McKay, Beckman & Conover 1979]
+/// \throws InvalidInput for no point, no axis, and more than 2²⁰ points.
 template <class = void>
 Points latin_hypercube(std::size_t count, std::uint64_t seed, std::vector<RandomAxis> const& axes) {
   if (count > 1u << 20)
@@ -110,7 +116,8 @@ Points latin_hypercube(std::size_t count, std::uint64_t seed, std::vector<Random
     for (std::size_t i = 0; i < count; ++i) strata[i] = i;
     for (std::size_t i = count; i > 1; --i) std::swap(strata[i - 1], strata[detail::sample_below(generator, i)]);
     for (std::size_t i = 0; i < count; ++i) {
-      double const within = (double(generator() >> 34) + 0.5) * 0x1p-30;  // exact beside twenty bits of a stratum
+      double const within =
+          (double(generator() >> 34) + 0.5) * 0x1p-30;  // exact together with the 20 bits of a stratum
       u[i * axes.size() + j] = (double(strata[i]) + within) / double(count);
     }
   }

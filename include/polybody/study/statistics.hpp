@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// Statistics of an ensemble: what a sampled study says of an output.
+/// Statistics of an output over the points of a sampled study.
 ///
-/// Not in polybody.hpp: of use to studies only.
+/// Not in polybody.hpp: only studies need it.
 
 #include <numeric>
 
@@ -10,14 +10,14 @@
 
 namespace polybody {
 
-/// One output over the points that have it.
+/// Statistics of one output over the points that have it.
 struct Statistics {
-  std::size_t count = 0;         ///< n
-  double mean = 0.0;             ///< in the unit of the output
-  double deviation = 0.0;        ///< √(Σ(x − mean)²/(n − 1)), in that unit
-  std::vector<double> sorted{};  ///< (n) values, rising, in that unit
+  std::size_t count = 0;         ///< number n of points
+  double mean = 0.0;             ///< mean, in the unit of the output
+  double deviation = 0.0;        ///< standard deviation √(Σ(x − mean)²/(n − 1)), in that unit
+  std::vector<double> sorted{};  ///< (n) values in ascending order, in that unit
 
-  /// The value at a share p of the sorted values, 0 … 1, linear between two: 0 the least, 0.5 the median.
+  /// Quantile at a share p in [0, 1], interpolated linearly: 0 is the minimum, 0.5 the median.
   double quantile(double p) const {
     if (!(p >= 0.0 && p <= 1.0)) throw InvalidInput{"study: a quantile is at a share of 0 … 1, not at ", p, "."};
     double const place = p * double(count - 1);
@@ -26,7 +26,8 @@ struct Statistics {
   }
 };
 
-/// \throws InvalidInput for a column that there is not, or has less than two values.
+/// Statistics of a `column` of the results `found`.
+/// \throws InvalidInput for a column that does not exist or has less than two values.
 template <class = void>  // compiled where it is used
 Statistics statistics(StudyResults const& found, std::string_view column) {
   Statistics s{.sorted = found.column(column)};
@@ -44,7 +45,7 @@ Statistics statistics(StudyResults const& found, std::string_view column) {
 
 namespace detail {
 
-/// Ranks 1 … n of values; those that are equal share the mean of theirs.
+/// Ranks 1 … n of the values x. Equal values have the mean of their ranks.
 template <class = void>
 std::vector<double> ranks_of(std::vector<double> const& x) {
   std::vector<std::size_t> order(x.size());
@@ -60,8 +61,9 @@ std::vector<double> ranks_of(std::vector<double> const& x) {
 
 }  // namespace detail
 
-/// Spearman's rank correlation of two columns, −1 … 1: how far one rises or falls with the other, whatever the curve.
-/// 0 where one of them is constant. \throws InvalidInput as `statistics`.
+/// Spearman's rank correlation of the columns `one` and `other`, in [−1, 1]. It measures the monotonic dependence of
+/// two columns, independent of the form of the curve. It is 0 if one of them is constant.
+/// \throws InvalidInput as `statistics`.
 template <class = void>
 double rank_correlation(StudyResults const& found, std::string_view one, std::string_view other) {
   std::vector<double> const a = detail::ranks_of(found.column(one)), b = detail::ranks_of(found.column(other));

@@ -1,9 +1,9 @@
 #pragma once
 /// \file
-/// Studies: one function at many points, over the threads of a machine. Each finished point is recorded at once, so a
-/// study that was killed goes on where it was. Over the ranks of MPI: study/mpi.hpp.
+/// Studies: one function at many points, distributed over the threads of a machine. Each finished point is recorded
+/// at once, so a killed study continues where it stopped. For the ranks of MPI see study/mpi.hpp.
 ///
-/// Not in polybody.hpp: of use to studies only. Needs POSIX.
+/// Not in polybody.hpp: only studies need it. Needs POSIX.
 
 #include <thread>
 
@@ -14,18 +14,18 @@
 
 namespace polybody {
 
-/// Where a study is recorded, and what its function computes.
+/// Record file and description of a study.
 struct StudyFile {
-  std::filesystem::path file;  ///< made with its folder, or gone on with
-  /// In words, with all that the outputs depend on and that is no column: "chain of 8 links, 0.5 s". A record with
-  /// other words is of another study.
+  std::filesystem::path file;  ///< record; created with its folder, or continued
+  /// Description of everything that affects the outputs and is not a column: "chain of 8 links, 0.5 s". A record with
+  /// another description belongs to another study.
   std::string about = "";
 };
 
 namespace detail {
 
-/// What f gives at a point: a number, or a range of them, for the outputs. Errors of the library are failures of the
-/// point; all else is passed on.
+/// Outcome of f at a point: a number, or a range of numbers, for the outputs. Errors of the library are failures of
+/// the point; other exceptions are passed on.
 template <class F>
 Outcome outcome_of(F const& f, Point const& point, std::vector<StudyOutput> const& outputs) {
   try {
@@ -51,13 +51,14 @@ Outcome outcome_of(F const& f, Point const& point, std::vector<StudyOutput> cons
   }
 }
 
-/// The same within the time limit of the options, if they have one.
+/// Outcome of f at a point within the time limit of the options, if there is one.
 template <class F>
 Outcome outcome_of(F const& f, Point const& point, std::vector<StudyOutput> const& outputs,
                    StudyOptions const& options) {
   if (options.time_limit == 0.0) return outcome_of(f, point, outputs);
   return outcome_within(options.time_limit, outputs.size(), [&] { return outcome_of(f, point, outputs); });
 }
+/// Checks the options of a run.
 /// \throws InvalidInput for less than one thread and a time limit that is negative or not finite.
 template <class = void>
 void check(StudyOptions const& options) {
@@ -70,15 +71,18 @@ void check(StudyOptions const& options) {
 
 }  // namespace detail
 
-/// A study:
+/// Study of a function at many points, recorded in a file:
 ///   Study study({.file = "out/chain.study", .about = "chain of 8 links"},
 ///               grid(axis("stiffness", "N/m", logarithmic(1e6, 1e10, 5)), axis("step", "s", {1e-3, 5e-4})),
 ///               outputs("error [m]", measured("cpu [s]")));
 ///   StudyResults const found = study.run([](Point const& p) { return std::array{…}; }, {.threads = 2});
-/// Run again, it takes what the file holds and does the rest. Nothing of the file is touched before it runs.
+/// A repeated run reads the finished points from the file and computes the others. The constructor does not access
+/// the file.
 class Study {
  public:
-  /// \throws InvalidInput for no output, and heads of outputs that are empty, not printable, alike or those of columns.
+  /// Study with its record, points and outputs. Does not access the file.
+  /// \throws InvalidInput for no output, and for heads of outputs that are empty, not printable, equal or used by
+  /// columns.
   Study(StudyFile const& file, Points points, std::vector<StudyOutput> outputs)
       : file_(file), points_(std::move(points)), outputs_(std::move(outputs)) {
     std::vector<Column> heads;
@@ -86,18 +90,19 @@ class Study {
     for (StudyOutput const& output : outputs_) heads.push_back({output.head});
     if (outputs_.empty()) throw InvalidInput{"study '", file_.file.string(), "': it needs one output at least."};
     std::vector<double> const one_row(heads.size());
-    Points(std::move(heads), one_row, "");  // checks names
+    Points(std::move(heads), one_row, "");  // checks the names
     if (std::ranges::any_of(file_.about, [](unsigned char c) { return c < ' ' || c == 127; }))
       throw InvalidInput{"study '", file_.file.string(), "': what it is about must be words on one line."};
   }
 
-  /// Calls f(point) for each point that is not finished, by several threads at once: f must not change what it shares.
-  /// What f gives, a number or a range of numbers, are the outputs; where f throws an Error, or an output is not
-  /// finite, the point is recorded as failed with that sentence. So is a point that exceeds the time limit of the
-  /// options.
-  /// \throws IoError for a file that cannot be made or written, that another run has open, that is damaged or of
-  /// another study; InvalidInput for less than one thread and a negative time limit; what else f throws,
-  /// under a time limit as an Error with its sentence. What is finished by then is recorded.
+  /// Calls f(point) for each unfinished point, from several threads at once: f must not change shared data. The
+  /// results of f, a number or a range of numbers, are the outputs. The point is recorded as failed, with a message,
+  /// if f throws an Error, an output is not finite, or the time limit of the options is exceeded. After an exception
+  /// the points finished until then are recorded.
+  /// \throws IoError for a file that cannot be created or written, is open in another run, is damaged, or belongs to
+  /// another study.
+  /// \throws InvalidInput for less than one thread and a negative time limit.
+  /// \throws Error with the message of another exception of f under a time limit; else the exception itself.
   template <class F>
     requires std::is_invocable_v<F const&, Point const&>
   StudyResults run(F const& f, StudyOptions const& options = {}) const {
@@ -112,7 +117,7 @@ class Study {
     others.reserve(useful);
     try {
       while (others.size() + 1 < useful) others.emplace_back(work);
-    } catch (std::system_error const&) {  // the system has no more; those that there are do
+    } catch (std::system_error const&) {  // the system has no more threads; the existing ones suffice
     }
     work();
     for (std::thread& other : others) other.join();
@@ -120,7 +125,8 @@ class Study {
     return results(queue.take(), points_.size() - queue.left(), record.torn());
   }
 
-  /// What is recorded so far, also while another process runs the study; nothing is changed. \throws IoError as `run`.
+  /// Returns the results recorded so far, also while another process runs the study. The record is not changed.
+  /// \throws IoError as `run`.
   template <class = void>  // compiled where it is used
   StudyResults recorded() const {
     auto const bytes = detail::content_of(file_.file);
@@ -131,18 +137,18 @@ class Study {
     return so_far;
   }
 
-  Points const& points() const { return points_; }                      ///< at which it runs
-  std::vector<StudyOutput> const& outputs() const { return outputs_; }  ///< what it finds at each
+  Points const& points() const { return points_; }                      ///< points of the study
+  std::vector<StudyOutput> const& outputs() const { return outputs_; }  ///< outputs at each point
 
-  /// \name For those who run studies in other ways (study/mpi.hpp)
+  /// \name Access for other ways to run a study (study/mpi.hpp)
   ///@{
-  /// Which study the record must be of.
+  /// Identity of the study that the record must have.
   detail::RecordKind kind() const {
     return {file_.file.string(), detail::record_head(file_.about, points_, outputs_), points_.size(), outputs_.size()};
   }
-  /// What the bar of progress calls it.
+  /// Label of the progress bar.
   std::string label() const { return file_.file.stem().string(); }
-  /// Outcomes with the study that they are of; `taken_over`, `torn` as in StudyResults.
+  /// Results from outcomes, with the study to which they belong; `taken_over`, `torn` as in StudyResults.
   StudyResults results(std::vector<std::optional<Outcome>> outcomes, std::size_t taken_over, bool torn) const {
     return {points_, outputs_, std::move(outcomes), taken_over, torn};
   }

@@ -1,14 +1,14 @@
 #pragma once
 /// \file
-/// The processor time of one thread: what a point costs beside others that run at the same time. Needs POSIX.
+/// Processor time of one thread, for the cost of a point while other points run at the same time. Needs POSIX.
 ///
-/// Not in polybody.hpp: of use to studies only.
+/// Not in polybody.hpp: only studies need it.
 
 #include <ctime>
 
 namespace polybody {
 
-/// Seconds of processor time that the calling thread has taken so far; std::clock adds those of all threads up.
+/// Processor time of the calling thread so far [s]. In contrast, std::clock adds the times of all threads.
 inline double thread_seconds() {
   timespec now = {};
   ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
