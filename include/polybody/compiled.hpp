@@ -1,9 +1,9 @@
 #pragma once
 /// \file
-/// polybody.hpp, with the promise that the library target `polybody::compiled` is linked: what does not depend on the
-/// user's model is compiled there, once. That is `System`, runs by the library's integrators with the default solver,
-/// joint coordinates, and the tangents of the common flexible bodies.
-/// Not in polybody.hpp: it is for programs that link `polybody::compiled`.
+/// polybody.hpp for programs that link the library target `polybody::compiled`. The target contains the code that
+/// does not depend on the user's model: `System`, runs with the library's integrators and the default solver, joint
+/// coordinates, and the tangents of the common flexible bodies. Not in polybody.hpp: it is for programs that link
+/// `polybody::compiled`.
 
 #include <polybody/polybody.hpp>
 

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// compiled.hpp with the vehicle of m113_vehicle.hpp, for programs that link `polybody::compiled_vehicle`: its
-/// hull and contacts are compiled there, once for all formulations of the tracks, on a FlatGround or a BumpCourse.
+/// compiled.hpp with the vehicle of m113_vehicle.hpp, for programs that link `polybody::compiled_vehicle`. The target
+/// contains its hull and contacts on a FlatGround or a BumpCourse, compiled once for all formulations of the tracks.
 /// Not in polybody.hpp: it is for programs that link `polybody::compiled_vehicle`.
 
 #include <polybody/compiled.hpp>

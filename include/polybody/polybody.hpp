@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// polybody: one model, every formulation. Includes everything.
+/// All headers of polybody: one model, every formulation.
 
-// The headers that refuse wrong pairings come first: a compiler's message begins with what includes what.
+// The headers that reject invalid combinations come first: a compiler's message begins with the chain of includes.
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/relative_coordinates.hpp>
 #include <polybody/system/model.hpp>

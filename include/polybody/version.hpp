@@ -2,8 +2,8 @@
 
 namespace polybody {
 
-/// The version of these headers; CMake, pkg-config and packages take theirs from here. Before 1.0 a minor version may
-/// change what programs see, which CHANGELOG.md says.
+/// Version of these headers, which CMake, pkg-config and packages read from here. In 0.x a minor version may change
+/// the interface; CHANGELOG.md lists such changes.
 inline constexpr char const* library_version = "0.2.0";
 
 }  // namespace polybody

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// One case under several formulations, side by side.
+/// Comparison of several formulations for one case.
 
 #include <ctime>
 
@@ -11,26 +11,27 @@
 
 namespace polybody {
 
-/// A number of interest that every formulation of a case can answer.
+/// Output of a case: a number that every formulation of the case provides.
 template <class M>
 struct Output {
-  std::string name;                                     ///< with its unit
-  std::function<double(M const&, State const&)> value;  ///< in a state
+  std::string name;                                     ///< name with unit
+  std::function<double(M const&, State const&)> value;  ///< value in a state, in the unit of the name
 };
 
-/// What a case makes of a formulation: the model, its start, the run and the outputs.
+/// Scenario of a case for one formulation: model, initial state, options of the run and outputs.
 template <class M>
 struct Scenario {
-  M model;                                                    ///< of one formulation
-  State start;                                                ///< where the run begins
-  RunOptions options;                                         ///< of the run
-  std::vector<Output<M>> outputs = {};                        ///< what is compared
-  std::function<void(M const&, State const&)> observer = {};  ///< called at every state that is asked, not timed
+  M model;                                                    ///< model with one formulation
+  State start;                                                ///< initial state of the run
+  RunOptions options;                                         ///< options of the run
+  std::vector<Output<M>> outputs = {};                        ///< outputs to compare
+  std::function<void(M const&, State const&)> observer = {};  ///< called in every sampled state, not timed
   double sampling = 0.0;  ///< [s]: asked is the first state on or after each multiple of it from the start on; 0: every
                           ///< state of the run. For integrators whose steps are much shorter than what is of interest.
 };
 
-/// A case is called with a formulation and returns a Scenario of whatever model type that leads to.
+/// Case that can be called with a formulation and returns a Scenario. The type of the model may depend on the
+/// formulation.
 template <class C, class F>
 concept CaseFor = requires(C const c, F const f) {
   { c(f).model };
@@ -40,12 +41,12 @@ concept CaseFor = requires(C const c, F const f) {
 
 namespace detail {
 
-/// The formulation's own name, or else its integrator's.
+/// Name of a formulation, or of its integrator if it has none.
 template <class F>
 std::string name_of(F const& formulation) {
   return formulation.name.empty() ? decltype(formulation.integrator)::name : formulation.name;
 }
-/// The name, made different from those of earlier runs.
+/// Name `own`, made different from the names of `earlier` runs.
 template <class = void>
 std::string name_beside(std::vector<ComparedRun> const& earlier, std::string const& own) {
   std::string name = own;
@@ -54,7 +55,8 @@ std::string name_beside(std::vector<ComparedRun> const& earlier, std::string con
   return name;
 }
 
-/// \throws InvalidInput unless the outputs of a run have names, all different, and are those of the earlier runs.
+/// Checks that the outputs of a run have different names, and that they are the outputs of the `earlier` runs.
+/// \throws InvalidInput otherwise.
 template <class = void>
 void check_outputs(ComparedRun const& run, std::vector<ComparedRun> const& earlier) {
   std::vector<std::string> names = run.output_names;
@@ -67,7 +69,7 @@ void check_outputs(ComparedRun const& run, std::vector<ComparedRun> const& earli
                        "\". Let the case name the same ones, in the same order, for every formulation."};
 }
 
-/// The questions that are asked about every state of a run, whatever the case's model.
+/// Evaluations in each sampled state of a run, independent of the type of the case's model.
 struct CaseQuestions {
   System system;
   std::vector<std::function<double(State const&)>> outputs = {};
@@ -88,7 +90,7 @@ struct CaseQuestions {
   }
 };
 
-/// The questions of a scenario, which must outlive them.
+/// Evaluations of a scenario, which must outlive them.
 template <class S>
 CaseQuestions questions_of(S& scenario) {
   auto const& model = scenario.model;
@@ -98,8 +100,8 @@ CaseQuestions questions_of(S& scenario) {
   return questions;
 }
 
-/// Runs to the end and notes the first state, the last one, and those in between that `sampling` asks for; only the
-/// steps are timed.
+/// Completes a run and records its first and last state, and the states between them that `sampling` selects. Only
+/// the steps are timed.
 template <class Run>
 void record_run(Run& run, CaseQuestions& questions, double sampling, ComparedRun& out) {
   RunSampling asked(run.state().t, sampling);
@@ -115,7 +117,7 @@ void record_run(Run& run, CaseQuestions& questions, double sampling, ComparedRun
   out.run = run.report();
 }
 
-/// Adds the run of a formulation to c, or a sentence to `failures`.
+/// Adds the run of a formulation to c, or a message to `failures`.
 template <class F, class C>
 void add_run(C const& make_case, F const& formulation, Comparison& c, std::string& failures) {
   auto scenario = make_case(formulation);
@@ -138,7 +140,7 @@ void add_run(C const& make_case, F const& formulation, Comparison& c, std::strin
   c.runs.push_back(std::move(out));
 }
 
-/// How far the outputs of each run are off those of the first.
+/// Computes the largest differences between the outputs of each run and the outputs of the first run.
 template <class = void>
 void compare_with_first(Comparison& c) {
   if (c.runs.empty()) return;
@@ -154,10 +156,11 @@ void compare_with_first(Comparison& c) {
 
 }  // namespace detail
 
-/// Runs the case under each of `formulations` (values: a policy without default numbers needs its own);
-/// make_case(formulation) gives it.
-/// \throws InvalidInput for outputs that are not the same for all, and what the case throws; ComparisonFailed, after
-/// the other runs and with their results, where `simulate` or an output throws an `Error`.
+/// Runs the case that `make_case(formulation)` returns for each of the `formulations`. They are passed as values,
+/// because a policy without default parameters needs an initialiser.
+/// \throws InvalidInput for outputs that are not the same for all formulations, and exceptions of the case.
+/// \throws ComparisonFailed if `simulate` or an output throws an `Error`. It is thrown after the other runs and
+/// contains their results.
 template <class C, class... Fs>
   requires(CaseFor<C, Fs> && ...)
 Comparison compare(C const& make_case, Fs const&... formulations) {
@@ -169,7 +172,7 @@ Comparison compare(C const& make_case, Fs const&... formulations) {
   return c;
 }
 
-/// The same for formulations whose numbers all have defaults: compare<F1, F2, …>(make_case).
+/// Overload for formulations whose parameters all have defaults: compare<F1, F2, …>(make_case).
 template <class... Fs, class C>
   requires(sizeof...(Fs) > 0 && (CaseFor<C, Fs> && ...))
 Comparison compare(C const& make_case) {

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Results of a comparison of formulations: numbers and histories of each run, and a table of all.
+/// Results of a comparison of formulations: numbers and histories of each run, and a table of all runs.
 
 #include <algorithm>
 #include <cmath>
@@ -13,52 +13,52 @@
 
 namespace polybody {
 
-/// One column of the report.
+/// Results of one run, a column of the report.
 struct ComparedRun {
-  std::string name;                          ///< of the formulation
-  Census census;                             ///< of its model
-  RunReport run;                             ///< what the run cost
-  double cpu = 0.0;                          ///< of the steps alone [s]
-  Violation violation;                       ///< largest over the run
-  double energy_start = 0.0;                 ///< total energy [J]
-  double energy_end = 0.0;                   ///< at the end [J]
-  double peak_joint_force = 0.0;             ///< [N]
-  std::vector<double> times;                 ///< (n) the start and every step's end [s]
+  std::string name;                          ///< name of the formulation
+  Census census;                             ///< problem size of the model
+  RunReport run;                             ///< steps, iterations and other counts of the run
+  double cpu = 0.0;                          ///< CPU time of the steps [s]
+  Violation violation;                       ///< largest violations over the run
+  double energy_start = 0.0;                 ///< total energy at the start [J]
+  double energy_end = 0.0;                   ///< total energy at the end [J]
+  double peak_joint_force = 0.0;             ///< largest joint force over the run [N]
+  std::vector<double> times;                 ///< (n) times of the recorded states, from the start to the end [s]
   std::vector<Violation> violations;         ///< (n)
   std::vector<Energy> energies;              ///< (n)
-  std::vector<double> joint_forces;          ///< (n) of the joint that holds most [N]
-  std::vector<std::string> output_names;     ///< in the order of `outputs`
+  std::vector<double> joint_forces;          ///< (n) largest force of all joints at each time [N]
+  std::vector<std::string> output_names;     ///< names in the order of `outputs`
   std::vector<std::vector<double>> outputs;  ///< one history (n) for each output
-  std::vector<double> difference;  ///< largest |output − first formulation's| over the run [unit of the output]
+  std::vector<double> difference;            ///< largest difference from the first run [unit of the output]
 };
 
-/// The runs of one case under several formulations, side by side.
+/// Runs of one case under several formulations.
 struct Comparison {
   std::vector<ComparedRun> runs;  ///< in the order of the formulations
 };
 
-/// Runs of a comparison failed; the message names each with its reason.
+/// Error of a comparison in which runs failed. The message gives each failed run with its reason.
 class ComparisonFailed : public Error {
  public:
-  /// `others` are the runs that came to their end; `message` says what stopped the rest.
+  /// Error with a `message` about the failed runs, and the completed runs `others`.
   ComparisonFailed(std::string const& message, Comparison others) : Error(message), finished(std::move(others)) {}
 
-  Comparison finished;  ///< the runs that came to their end
+  Comparison finished;  ///< completed runs
 };
 
-/// A number and what it is called, with its unit.
+/// Number with name and unit.
 struct Quantity {
-  std::string name;  ///< with its unit
-  double value;      ///< in that unit
+  std::string name;  ///< name with unit
+  double value;      ///< value in that unit
 };
 
-/// A quantity at the times of a run.
+/// History of a quantity at the times of a run.
 struct History {
-  std::string name;            ///< with its unit
-  std::vector<double> values;  ///< in that unit
+  std::string name;            ///< name with unit
+  std::vector<double> values;  ///< values in that unit, one for each time
 };
 
-/// The column of the report for one run, beside the `first` one.
+/// Column of the report for one run. Differences are relative to the `first` run.
 template <class = void>  // compiled where it is used
 std::vector<Quantity> quantities(ComparedRun const& run, ComparedRun const& first) {
   double const steps = double(std::max(run.run.steps, 1L));
@@ -83,8 +83,8 @@ std::vector<Quantity> quantities(ComparedRun const& run, ComparedRun const& firs
   return column;
 }
 
-/// The quantities known at each time of a run: violations, energies and the peak joint force, then the outputs. An
-/// output with the name of another history replaces it.
+/// Histories of a run: violations, energies and the largest joint force, then the outputs. An output with the name of
+/// another history replaces it.
 template <class = void>
 std::vector<History> histories(ComparedRun const& run) {
   std::vector<History> all;
@@ -108,9 +108,9 @@ std::vector<History> histories(ComparedRun const& run) {
 
 namespace detail {
 
-/// y(t) in a history with increasing times: the cubic through two times before t and two after it, near an end through
-/// the four times there; beyond an end, the value at the end. Times much closer together than the two about t are left
-/// out, as differences there are rounding errors.
+/// Interpolates y(t) in a history with increasing times, by the cubic through two times before t and two after it.
+/// Near an end the cubic passes through the four times there. Beyond an end the result is the value at the end. Times
+/// that are much closer together than the two around t are omitted, because their differences are round-off.
 template <class = void>
 double interpolate(std::vector<double> const& times, std::vector<double> const& y, double t) {
   auto const after = std::lower_bound(times.begin(), times.end(), t);
@@ -148,7 +148,8 @@ double interpolate(std::vector<double> const& times, std::vector<double> const& 
 
 }  // namespace detail
 
-/// The report as a table, one line a quantity and one column a formulation, and the warnings of the runs below it.
+/// Prints the report as a table with one line per quantity and one column per formulation, and the warnings of the
+/// runs below it.
 template <class = void>
 std::ostream& operator<<(std::ostream& out, Comparison const& c) {
   if (c.runs.empty()) return out;

@@ -7,17 +7,17 @@
 
 namespace polybody {
 
-/// A body formulation with the mesh that belongs to it, in the place of the body in a `Formulation`: a cable of so many
-/// elements, a floating frame with so many modes.
+/// Body formulation with its mesh, for use as the body of a `Formulation`: a cable with so many elements, or a
+/// floating frame with so many modes.
 template <Body B, int count>
   requires(count > 0)
 struct Meshed {
-  using BodyType = B;                     ///< without its mesh
-  static constexpr int elements = count;  ///< the second argument of `from`
+  using BodyType = B;                     ///< body without mesh
+  static constexpr int elements = count;  ///< number of elements or modes, the second argument of `from`
 };
 
 namespace detail {
-/// What a formulation names as its body: a body itself, or one with a mesh.
+/// Body type and mesh of a formulation's body: a body itself, or one with a mesh.
 template <class B>
 struct MeshOf {
   using BodyType = B;
@@ -26,8 +26,8 @@ template <class B, int count>
 struct MeshOf<Meshed<B, count>> : Meshed<B, count> {};
 }  // namespace detail
 
-/// One choice of each: how bodies are described, how joints are enforced, how time is integrated.
-/// `compare` runs one case under several of them, one line each:
+/// Formulation of a mechanism: a body formulation, a constraint policy and an integrator. `compare` runs one case
+/// under several formulations, one line each:
 ///
 ///     using Ideal = Formulation<planar::Rigid, Constraint, GeneralizedAlpha>;
 ///     using Cable = Formulation<Meshed<planar::AncfCable<>, 8>, Constraint, GeneralizedAlpha>;
@@ -35,16 +35,16 @@ struct MeshOf<Meshed<B, count>> : Meshed<B, count> {};
 template <class B, Policy P, class I>
   requires Body<typename detail::MeshOf<B>::BodyType>
 struct Formulation {
-  using BodyType = typename detail::MeshOf<B>::BodyType;  ///< the body without its mesh
-  using PolicyType = P;                                   ///< how joints are enforced
-  using IntegratorType = I;                               ///< how time is integrated
+  using BodyType = typename detail::MeshOf<B>::BodyType;  ///< body formulation without mesh
+  using PolicyType = P;                                   ///< policy that enforces the constraint equations of joints
+  using IntegratorType = I;                               ///< numerical method for the equations of motion
 
-  std::string name;   ///< in the report
-  P policy = {};      ///< for the joints of the case
-  I integrator = {};  ///< with its options
+  std::string name;   ///< name in the report
+  P policy = {};      ///< policy of the case's joints
+  I integrator = {};  ///< integrator with its options
 
-  /// The body made `from` what it is given, `shape`, such as a bar, and then the number of elements of a `Meshed` one,
-  /// and `others`.
+  /// Creates the body by its function `from`. The arguments are `shape`, such as a bar, the number of elements of a
+  /// `Meshed` body, and `others`.
   template <class Shape, class... Others>
   static BodyType body(Shape const& shape, Others&&... others) {
     if constexpr (requires { detail::MeshOf<B>::elements; })

@@ -1,9 +1,9 @@
 #pragma once
 /// \file
-/// The space curve that a rotation field implies [thesis §2.3]: its tangent is the first axis of the sections, t = R
-/// e₁,
+/// Space curve that a rotation field implies [thesis §2.3]. Its tangent is the first axis of the sections, t = R e₁:
 ///   r(s) = r₀ + ∫ t ds (Eq. 2.2),  κ = |t′| (Eq. 2.4),  τ = t·(t′ × t″)/κ²  (Frenet).
-/// With R′ = R K̃: t′ = R (0, K₃, −K₂), so that κ² = K₂² + K₃² and τ = K₁ + (K₂ K₃′ − K₃ K₂′)/κ².
+/// With R′ = R K̃ the derivative of the tangent is t′ = R (0, K₃, −K₂). Therefore κ² = K₂² + K₃² and τ = K₁ + (K₂ K₃′
+/// − K₃ K₂′)/κ².
 
 #include <concepts>
 #include <vector>
@@ -13,20 +13,20 @@
 
 namespace polybody {
 
-/// κ of the implied curve [1/m].
+/// Curvature of the implied curve [1/m], κ = √(K₂² + K₃²).
 inline double implied_curvature(SectionTurn const& s) { return std::hypot(s.K[1], s.K[2]); }
 
-/// τ of the implied curve [1/m]; NaN where the curve is straight and has none.
+/// Torsion of the implied curve [1/m], τ = K₁ + (K₂ K₃′ − K₃ K₂′)/κ²; NaN if the curve is straight.
 inline double implied_torsion(SectionTurn const& s) {
   return s.K[0] + (s.K[1] * s.dK[2] - s.K[2] * s.dK[1]) / (s.K[1] * s.K[1] + s.K[2] * s.K[2]);
 }
 
-/// An angle along a bar: its value [rad] and its first two derivatives by arc length.
+/// Angle along a bar: its value [rad] and its first two derivatives by arc length.
 struct AngleAlong {
   double value = 0.0, slope = 0.0, second = 0.0;  ///< [rad], [rad/m], [rad/m²]
 };
 
-/// The rotation field of Eq. 2.1 at one section: ψ about Z, then θ about −Y, then φ about −X:
+/// Rotation field of Eq. 2.1 at one section: rotations ψ about Z, then θ about −Y, then φ about −X:
 ///   R = exp(ψ e₃) exp(−θ e₂) exp(−φ e₁),  K = −φ′ e₁ + exp(φ e₁) (−θ′ e₂ + exp(θ e₂) ψ′ e₃).
 template <class T = double>  // compiled where it is used
 SectionTurn section_turn(AngleAlong const& psi, AngleAlong const& theta, AngleAlong const& phi) {
@@ -45,8 +45,8 @@ SectionTurn section_turn(AngleAlong const& psi, AngleAlong const& theta, AngleAl
 }
 
 /// Points of the implied curve of a field `rotation`, s ↦ R(s), from `start` [m], at s = 0, length/pieces, ...: five
-/// Gauss points in each piece. The field may have corners between pieces. \throws InvalidInput for a length that is not
-/// positive, or pieces < 1.
+/// Gauss points in each piece. The derivative of the field may jump between pieces.
+/// \throws InvalidInput for a length that is not positive, or pieces < 1.
 template <class Field>
   requires std::is_invocable_r_v<Mat3, Field&, double>
 std::vector<Vec3> implied_curve(Field&& rotation, double length, Index pieces, Vec3 const& start = Vec3::Zero()) {
@@ -65,8 +65,8 @@ std::vector<Vec3> implied_curve(Field&& rotation, double length, Index pieces, V
   return curve;
 }
 
-/// The same for the rotation field of a beam at the coordinates q, from its first node: `samples` points in each
-/// element.
+/// Points of the implied curve for the rotation field of a beam at the coordinates q, from its first node: `samples`
+/// points in each element.
 template <FollowsNodes Interpolation, StrainQuadrature Quadrature>
 std::vector<Vec3> implied_curve(Lrvf<Interpolation, Quadrature> const& beam, std::span<double const> q,
                                 int samples = 1) {

@@ -1,13 +1,13 @@
 #pragma once
 /// \file
-/// Comparisons of one case that were made apart, as one: each formulation may be compiled in a file of its own.
+/// Union of separate comparisons of one case: each formulation may be compiled in its own file.
 
 #include <polybody/compare/compare.hpp>
 
 namespace polybody {
 
-/// The runs of all `parts` in their order, each beside the first of them. Names that stand twice get a number.
-/// \throws InvalidInput for outputs that are not the same for all.
+/// Joins the runs of all `parts` in their order, and compares each with the first run. Equal names get a number.
+/// \throws InvalidInput for outputs that are not the same for all runs.
 template <class = void>  // compiled where it is used
 Comparison join(std::vector<Comparison> const& parts) {
   Comparison all;

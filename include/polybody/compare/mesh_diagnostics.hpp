@@ -1,8 +1,6 @@
 #pragma once
 /// \file
-/// The two curves of a large-rotation-vector beam, in the plane and in space. Its position field gives one; its
-/// rotation field implies another, r(s) = r(0) + ∫ t₁ ds [thesis Eq. 2.2, 2.17]. Their nodes, lengths and curvatures
-/// side by side.
+/// Comparison of the position mesh and the implied curve of an LRVF beam, in the plane and in space.
 
 #include <concepts>
 #include <span>
@@ -13,15 +11,17 @@
 
 namespace polybody {
 
-/// Both curves in the plane (dim = 2) or in space (dim = 3), in world axes.
+/// Position mesh and implied curve of an LRVF beam in the plane (dim = 2) or in space (dim = 3), in world axes. The
+/// position field of the beam gives the position mesh. Its rotation field implies another curve,
+///   r(s) = r(0) + ∫ t₁ ds [thesis Eq. 2.2, 2.17].
 template <int dim>
 struct TwoMeshes {
-  using Point = Mat<double, dim, 1>;       ///< in world axes [m]
-  std::vector<Point> position_nodes;       ///< nodes of the position mesh [m]
-  std::vector<Point> rotation_nodes;       ///< the same material points on the curve the rotations imply [m]
-  double largest_gap = 0.0;                ///< between the two, over all nodes [m]
-  double position_length = 0.0;            ///< arc length of the position mesh [m]
-  double rotation_length = 0.0;            ///< arc length of the implied curve [m]: the bar's, as |t₁| = 1
+  using Point = Mat<double, dim, 1>;  ///< point in world axes [m]
+  std::vector<Point> position_nodes;  ///< nodes of the position mesh [m]
+  std::vector<Point> rotation_nodes;  ///< the same material points on the implied curve [m]
+  double largest_gap = 0.0;           ///< largest distance between the two, over all nodes [m]
+  double position_length = 0.0;       ///< arc length of the position mesh [m]
+  double rotation_length = 0.0;       ///< arc length of the implied curve [m]: the length of the bar, since |t₁| = 1
   std::vector<double> position_curvature;  ///< |r′ × r″|/|r′|³ in the middle of each element [1/m], Eq. 2.16
   /// Curvature of the implied curve in the middle of each element [1/m]: θ′ with its sign in the plane, Eq. 2.15; |t₁′|
   /// in space, Eq. 2.4.
@@ -32,7 +32,8 @@ using SpatialMeshDiagnostics = TwoMeshes<3>;  ///< in space
 
 namespace detail {
 
-/// Adds the nodes of the next material point, and the element of length l before it: gap, length, curvature.
+/// Adds the nodes of the next material point to d, with distance, length and curvature of the preceding element of
+/// length l.
 template <int dim>
 void add_nodes(TwoMeshes<dim>& d, double l, typename TwoMeshes<dim>::Point const& position,
                typename TwoMeshes<dim>::Point const& rotation) {
@@ -57,7 +58,8 @@ void add_nodes(TwoMeshes<dim>& d, double l, typename TwoMeshes<dim>::Point const
 
 }  // namespace detail
 
-/// Points of the curve that the rotation field implies: `samples` in each element and the first node.
+/// Points of the curve that the rotation field of a planar beam implies at the coordinates q: the first node and
+/// `samples` points in each element.
 template <std::derived_from<planar::SimoVuQuoc> Theory>
 std::vector<Vec2> implied_curve(planar::Beam<Theory> const& beam, std::span<double const> q, int samples = 1) {
   std::vector<double> const rest(q.size(), 0.0);
@@ -79,7 +81,7 @@ std::vector<Vec2> implied_curve(planar::Beam<Theory> const& beam, std::span<doub
   return curve;
 }
 
-/// Both meshes of a planar beam at the coordinates q (see `coordinates_of`), whatever its quadrature.
+/// Position mesh and implied curve of a planar beam at the coordinates q (see `coordinates_of`), for any quadrature.
 template <std::derived_from<planar::SimoVuQuoc> Theory>
 MeshDiagnostics mesh_diagnostics(planar::Beam<Theory> const& beam, std::span<double const> q) {
   MeshDiagnostics d;
@@ -93,9 +95,9 @@ MeshDiagnostics mesh_diagnostics(planar::Beam<Theory> const& beam, std::span<dou
   return d;
 }
 
-/// Both meshes of a beam in space at the coordinates q: the rotation field is that of its interpolation. On a curved
-/// reference the position mesh is the polygon through the nodes, and the implied curve has the reference's own
-/// curvature, too.
+/// Position mesh and implied curve of a spatial beam at the coordinates q. The rotation field is that of the beam's
+/// interpolation. On a curved reference the position mesh is the polygon through the nodes. The implied curve
+/// includes the curvature of the reference.
 template <FollowsNodes Interpolation, StrainQuadrature Quadrature>
 SpatialMeshDiagnostics mesh_diagnostics(Lrvf<Interpolation, Quadrature> const& beam, std::span<double const> q) {
   SpatialMeshDiagnostics d;

@@ -1,47 +1,47 @@
 #pragma once
 /// \file
-/// What accuracy costs: one case at several steps or tolerances, error against CPU time.
+/// Work-precision studies: error over CPU time of one case at several steps or tolerances.
 
 #include <polybody/compare/compare.hpp>
 
 namespace polybody {
 
-/// One run of a curve.
+/// Run of a work-precision curve.
 struct WorkPoint {
-  double setting = 0.0;      ///< the step [s], or the relative tolerance of an integrator that controls its step
-  long steps = 0;            ///< of the run
-  double cpu = 0.0;          ///< of the steps alone [s]
-  double error = 0.0;        ///< in the unit of the output, see `work_precision`
-  std::string failure = {};  ///< why there is no result; then only the setting has a meaning
+  double setting = 0.0;      ///< step [s], or relative tolerance of an integrator with step size control
+  long steps = 0;            ///< number of steps of the run
+  double cpu = 0.0;          ///< CPU time of the steps [s]
+  double error = 0.0;        ///< error in the unit of the output, see `work_precision`
+  std::string failure = {};  ///< reason of a failure; then only the setting is valid
 };
 
-/// All runs of one formulation.
+/// Work-precision curve: all runs of one formulation.
 struct WorkCurve {
-  std::string name;                    ///< of the formulation
-  std::string output;                  ///< of which the error is
-  std::vector<WorkPoint> points = {};  ///< one a step length
+  std::string name;                    ///< name of the formulation
+  std::string output;                  ///< name of the output with the error
+  std::vector<WorkPoint> points = {};  ///< one point for each setting
 };
 
-/// Curves of several formulations for one output.
+/// Work-precision curves of several formulations for one output.
 struct WorkPrecision {
-  std::vector<WorkCurve> curves;  ///< one a formulation
+  std::vector<WorkCurve> curves;  ///< one curve for each formulation
 };
 
-/// An output in a recorded run, y(t) by cubics through its times.
+/// Output of a recorded run, y(t), interpolated by cubics between its times.
 struct RecordedOutput {
   std::vector<double> times, values;  ///< (n) t [s] and y [unit of the output]
-  /// y at t [s].
+  /// Interpolates y at time t [s].
   double operator()(double t) const { return detail::interpolate(times, values, t); }
 };
 
-/// What an output should be: a function of time or a `reference_run`, or a number for the end of the run.
+/// Reference for an output: a function of time, a `reference_run`, or a number for the end of the run.
 struct OutputReference {
-  std::function<double(double)> at;  ///< y_ref(t)
-  bool only_at_end = false;          ///< compared at the end of the run, not over all of it
+  std::function<double(double)> at;  ///< y_ref(t), t in [s]
+  bool only_at_end = false;          ///< compares at the end of the run only
 
-  /// The value at the end of the run.
+  /// Reference value at the `end` of the run.
   OutputReference(double end) : at([end](double) { return end; }), only_at_end(true) {}
-  /// The value y(t) at every time of the run.
+  /// Reference function y(t) for every time of the run.
   template <class F>
     requires std::is_invocable_r_v<double, F const&, double>
   OutputReference(F const& y) : at(y) {}
@@ -49,7 +49,8 @@ struct OutputReference {
 
 namespace detail {
 
-/// \throws InvalidInput unless the case has that output.
+/// Returns output number `output` of a scenario.
+/// \throws InvalidInput if it does not exist.
 template <class S>
 auto const& output_of(S const& scenario, std::size_t output, std::string const& what) {
   if (output >= scenario.outputs.size())
@@ -58,7 +59,7 @@ auto const& output_of(S const& scenario, std::size_t output, std::string const& 
   return scenario.outputs[output];
 }
 
-/// Makes `setting` the step, or the relative tolerance; the absolute tolerance changes in proportion.
+/// Sets the step, or the relative tolerance, to `setting`. The absolute tolerance changes in proportion.
 template <class I>
 void set_accuracy(I& integrator, RunOptions& options, double setting) {
   require_positive(setting, "work_precision: a step or tolerance");
@@ -72,9 +73,9 @@ void set_accuracy(I& integrator, RunOptions& options, double setting) {
 
 }  // namespace detail
 
-/// Records output number `output` of the case that make_case(formulation) gives in a run at the `setting`, a step [s]
-/// or a tolerance, as a reference for other integrators. Between its times it is as good as h⁴ d⁴y/dt⁴/43: give a short
-/// step. An integrator that controls its step takes at least 4000.
+/// Runs the case that `make_case(formulation)` returns and records its output number `output`, as a reference for
+/// other integrators. The `setting` is a step [s] or a tolerance. The interpolation error between the times is about
+/// h⁴ d⁴y/dt⁴/43, so the step must be short. An integrator with step size control uses at least 4000 steps.
 template <class C, class F>
   requires CaseFor<C, F>
 RecordedOutput reference_run(C const& make_case, F const& formulation, double setting, std::size_t output = 0) {
@@ -95,12 +96,12 @@ RecordedOutput reference_run(C const& make_case, F const& formulation, double se
   return out;
 }
 
-/// Runs the case that make_case(formulation) gives once for each setting: the step, or the relative tolerance of an
-/// integrator that controls its step. The error of output y is, with the states of the run at t_k and its end T,
+/// Work-precision curve of the case that `make_case(formulation)` returns, with one run for each of the `settings`:
+/// the step, or the relative tolerance of an integrator with step size control. The error of output y follows from
+/// the states of the run at t_k and its end T:
 ///   max_k |y(t_k) − y_ref(t_k)|  for a function of time or a `reference_run`,   |y(T) − y_ref|  for a number.
-/// A step that fails, such as one that is too long, ends that run only; `failure` holds the message.
-/// \throws InvalidInput for settings that are not positive, or where there are none, and an output that the case does
-/// not have.
+/// A step that fails, for example because it is too long, ends only its run; `failure` contains the message.
+/// \throws InvalidInput for settings that are not positive, no settings, and an output that does not exist.
 template <class C, class F>
   requires CaseFor<C, F>
 WorkCurve work_precision(C const& make_case, F const& formulation, std::vector<double> const& settings,
@@ -126,7 +127,7 @@ WorkCurve work_precision(C const& make_case, F const& formulation, std::vector<d
       point.cpu = double(std::clock() - begin) / CLOCKS_PER_SEC;
       if (reference.only_at_end)
         compare_at(x);
-      else  // a second run, so that nothing stands between the steps that are timed
+      else  // a second run: the timed run contains only steps
         for (State const& now : simulate(scenario.model, again, integrator, scenario.options)) compare_at(now);
     } catch (Error const& failed) {
       point.failure = failed.what();
