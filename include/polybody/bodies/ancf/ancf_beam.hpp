@@ -1,8 +1,6 @@
 #pragma once
 /// \file
-/// Fully parameterised two-node ANCF beam in space: node coordinates (r, r_x, r_y, r_z), twelve a node, of the field in
-/// ancf_field.hpp. Constant mass matrix; coordinates add. Where its elastic force comes from is a policy.
-/// [Shabana & Yakoub 2001; Yakoub & Shabana 2001; thesis §3.5.4]
+/// Fully parameterised two-node ANCF beam in space [Shabana & Yakoub 2001; Yakoub & Shabana 2001; thesis §3.5.4].
 
 #include <vector>
 
@@ -12,7 +10,9 @@
 
 namespace polybody {
 
-/// `AncfBeam<>::from(bar, n)`, `AncfBeam<Continuum<>>::from(bar, n, curve)`.
+/// Fully parameterised two-node ANCF beam with the field of ancf_field.hpp. A node has twelve coordinates (r, r_x, r_y,
+/// r_z), and coordinates add. The mass matrix is constant. The policy `Elastic` computes the elastic force:
+/// `ElasticLine` or `Continuum`. Examples: `AncfBeam<>::from(bar, n)`, `AncfBeam<Continuum<>>::from(bar, n, curve)`.
 template <class Elastic = ElasticLine>
 class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
   using Chain = ElasticChain<12, typename Elastic::Groups>;
@@ -28,23 +28,26 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
   using Element = Vec<T, element_columns>;
   using ElementMatrix = typename Chain::ElementMatrix;
   using PointMap = Mat<double, 3, element_columns>;  ///< S of r = S e, 3×24
-  static constexpr int gradients = 3;                ///< that are linear in the coordinates
+  static constexpr int gradients = 3;  ///< number of position gradients that are linear in the coordinates
 
-  /// A material point: element, place ξ ∈ [0, 1] on it, and distances y, z off the axis in the reference [m].
+  /// Material point: element, position ξ ∈ [0, 1] along it, and distances y, z from the axis in the reference [m].
   struct Point {
     Index element = 0;        ///< counted from 0, from the bar's first end
     double xi = 0.0;          ///< ξ ∈ [0, 1], from its first node to its second
     double y = 0.0, z = 0.0;  ///< in the axes of the reference section [m]
   };
 
-  /// The straight bar in n equal elements. Its rotary inertia must be positive about both axes: without it r_y or r_z
-  /// has no mass. \throws InvalidInput for n < 1 or a constant that the bar does not give.
+  /// Beam from the straight bar, with n elements of equal length. The rotary inertia of the bar must be positive about
+  /// both axes, because otherwise r_y or r_z has no mass.
+  /// \throws InvalidInput for n < 1 or a constant that the bar does not give.
   static AncfBeam from(Bar const& bar, Index n) {
     return AncfBeam(bar, n, [](double s) { return Placement{Vec3(s, 0, 0)}; }, true);
   }
-  /// The bar with a curved or twisted reference, n elements, free of stress but for the pretension. Nodes get place and
-  /// axes of `curve`, which between them is interpolated by the element's own field. \throws InvalidInput also where
-  /// the section would be turned inside out, or `curve` does not run at unit speed.
+  /// Beam from the bar with a curved or twisted reference, n elements, free of stress except for the pretension. The
+  /// nodes have the positions and axes of `curve`. Between the nodes the field of the element interpolates the
+  /// reference.
+  /// \throws InvalidInput also if the determinant of the reference gradients is not positive, or if `curve` is not
+  /// parameterised by its arc length.
   static AncfBeam from(Bar const& bar, Index n, ReferenceCurve const& curve) { return AncfBeam(bar, n, curve, false); }
 
   char const* coordinate_unit(Index i) const { return i % node_columns < 3 ? "m" : "1"; }
@@ -52,7 +55,8 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
   double element_length() const { return l_; }
   BarConstants const& constants() const { return constants_; }
 
-  /// The point s from the first end, (y, z) off the axis. \throws InvalidInput outside the bar.
+  /// Point at distance s from the first end of the bar [m], at (y, z) from the axis [m].
+  /// \throws InvalidInput outside the bar.
   Point at(double s, double y = 0.0, double z = 0.0) const {
     double const x = require_inside(s, bar_.length, Elastic::name) / l_;
     if (!std::isfinite(y) || !std::isfinite(z))
@@ -61,7 +65,7 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
     return {e, x - double(e), y, z};
   }
 
-  /// r₀ = Σ s_v e_v on the axis, and its derivatives by arc length.
+  /// Shape functions s_v of the axis, r₀ = Σ s_v e_v, and their derivatives with respect to arc length.
   ShapeValues<ancf::vectors> axis_shape(double xi) const {
     ShapeValues<4> const h = hermite_shape(xi, l_);
     ShapeValues<ancf::vectors> out{};
@@ -95,7 +99,7 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
     return this->same_strains(other) && inertia_.size() == 1 && other.inertia_.size() == 1 &&
            inertia_[0].mass == other.inertia_[0].mass;
   }
-  /// M a of an element's own accelerations, for elements that are alike.
+  /// Product M a with the accelerations of one element. All elements have the same mass matrix.
   template <KernelScalar T>
   void element_inertia(Element<T> const& a, Element<T>& out) const {
     times_mass(inertia_[0], a, out);
@@ -123,16 +127,18 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
     return -this->of_element(e, q).dot(weight);
   }
 
-  /// r = S e at `p`, 3×24, constant: S is also the Jacobian of ṙ. e are the coordinates from `first_column(p)`.
+  /// Matrix S of r = S e at `p`, 3×24 and constant. S is also the Jacobian of ṙ. The coordinates e begin at
+  /// `first_column(p)`.
   PointMap position_map(Point const& p) const { return map_of(p, 0); }
-  /// ∂r/∂x, ∂r/∂y, ∂r/∂z = S_α e at `p` for α = 0, 1, 2, 3×24, constant.
+  /// Matrix S_α of the gradient S_α e = ∂r/∂x, ∂r/∂y, ∂r/∂z at `p` for `alpha` = 0, 1, 2; 3×24 and constant.
   PointMap gradient_map(Point const& p, int alpha) const {
     if (alpha < 0 || alpha > 2) throw InvalidInput("AncfBeam: the gradient's direction must be 0, 1 or 2 for x, y, z.");
     return map_of(p, alpha + 1);
   }
 
-  /// The marker is the material point; its axes are those of the section on the axis there (`Elastic::frame` of r_y and
-  /// r_z). Off the axis it follows r(x, y, z), also where the section stretches.
+  /// Marker kinematics of the material point `p`. The axes are those of the section at the axis of the beam
+  /// (`Elastic::frame` of r_y and r_z). A point at a distance from the axis follows r(x, y, z), which includes the
+  /// strain of the section.
   template <StateScalar T>
   void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v, Published<T>& out) const {
     Index const first = first_column(p);
@@ -171,8 +177,9 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
     out.columns = element_columns;
   }
 
-  /// The force pulls through a constant S. For the moment, δ̂(m·ω) = m·(φ̂ × φ) + m·δ̂φ in the section's axes.
-  template <class T>  // compiled where it is used
+  /// Geometric stiffness of the wrench `w`. The force has none, because S is constant. For the moment, δ̂(m·ω) = m·(φ̂
+  /// × φ) + m·δ̂φ in the axes of the section.
+  template <class T>  // compiled only if used
   void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, Mat<T, 24, 24>& k) const {
     PointMap const by = map_of(p, 2), bz = map_of(p, 3);
     Element<T> const x = this->of_element(p.element, q);
@@ -191,7 +198,8 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
         k.template block<6, 6>(12 * a + 6, 12 * b + 6) = s[std::size_t(a)] * s[std::size_t(b)] * by_vectors;
   }
 
-  /// Γ = Rᵀ r_x and K = axial(Rᵀ R_x) less those of the reference, R the markers' axes (see sections.hpp).
+  /// Strains Γ = Rᵀ r_x and K = axial(Rᵀ R_x) relative to the reference, with the axes R of the markers (see
+  /// sections.hpp).
   Vec6 section_strains(Point const& p, std::span<double const> q) const {
     if constexpr (std::same_as<Elastic, ElasticLine>) {
       Vec3 const stretch = strains<std::tuple_element_t<0, ElasticLine::Groups>>(p, q),
@@ -206,29 +214,28 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
       return Elastic::section_strains(constants_, deformation(p, q), p.xi);
     }
   }
-  /// Forces of the section without damping: stiffness times strain of `ElasticLine`, integrals of the stress of
-  /// `Continuum`.
+  /// Section forces without damping: stiffness times strain for `ElasticLine`, integrals of the stress for `Continuum`.
   Vec6 section_forces(Point const& p, std::span<double const> q) const {
     if constexpr (std::same_as<Elastic, ElasticLine>)
       return Elastic::section_forces(bar_, this->groups_of(p.element), section_strains(p, q));
     else
       return Elastic::section_forces(bar_, constants_, deformation(p, q), p.xi);
   }
-  /// `ElasticLine`: (r_y² − 1, r_z² − 1)/2 and r_y·r_z at `p`, less those of the reference.
+  /// Strains of the section for `ElasticLine`: (r_y² − 1, r_z² − 1)/2 and r_y·r_z at `p`, relative to the reference.
   Vec3 section_deformation(Point const& p, std::span<double const> q) const
     requires std::same_as<Elastic, ElasticLine>
   {
     return strains<std::tuple_element_t<2, typename Elastic::Groups>>(p, q);
   }
 
-  /// F at `p`: from the axes of the reference section to world axes.
+  /// Deformation gradient F at `p`, from the axes of the reference section to world axes.
   Mat3 deformation_gradient(Point const& p, std::span<double const> q) const {
     return deformation(p, q).gradient(p.xi, p.y, p.z);
   }
   /// Green–Lagrange strain E at `p`, in the axes of the reference section.
   Mat3 strain(Point const& p, std::span<double const> q) const { return deformation(p, q).strain(p.xi, p.y, p.z); }
-  /// `Continuum`: stress at `p`, without damping. When cured, Poisson's part is that of the axis, and the shear
-  /// stresses are the corrected ones, means over the section.
+  /// Stress at `p` without damping, for `Continuum`. With `Locking::cured` the Poisson terms are those on the axis. The
+  /// shear stresses then are the corrected ones, which are means over the section.
   Stress stress(Point const& p, std::span<double const> q) const
     requires(!std::same_as<Elastic, ElasticLine>)
   {
@@ -238,7 +245,7 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
   }
 
  private:
-  /// M = ∫ρ NᵀN dV, the same for the three components, and ∫ρ N dV.
+  /// Mass integrals of an element: M = ∫ρ NᵀN dV, equal for the three components, and ∫ρ N dV.
   struct Inertia {
     ElementMatrix mass = ElementMatrix::Zero();
     Vec<double, ancf::vectors> first_moment = Vec<double, ancf::vectors>::Zero();
@@ -246,14 +253,15 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
 
   AncfBeam(Bar const& bar, Index n, ReferenceCurve const& curve, bool straight);
 
-  /// \throws InvalidInput for a reference that is no beam.
+  /// Checks the reference of element `e`.
+  /// \throws InvalidInput if the reference is not a beam.
   void check_reference(ancf::Reference const& ref, Index e) const {
     std::string const what = sentence_of({Elastic::name, ": element ", e});
     double const chord = std::hypot(ref.x[12] - ref.x[0], ref.x[13] - ref.x[1], ref.x[14] - ref.x[2]);
     if (!(chord > 1e-6 * l_)) throw InvalidInput{what, " begins where it ends. Use more elements, or another curve."};
     if (chord > (1.0 + 1e-6) * l_)
       throw InvalidInput{what, " is longer than its part of the bar: the curve's argument must be its arc length."};
-    double height = 0.0, width = 0.0;  // half of each
+    double height = 0.0, width = 0.0;  // half height and half width
     if (auto const* r = std::get_if<Rectangle>(&bar_.section)) {
       height = 0.5 * r->height;
       width = 0.5 * r->width;
@@ -271,8 +279,8 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
     }
   }
 
-  /// Over Gauss points along x (exact for the straight bar) and the four points of the section that give Aρ and both
-  /// Iρ.
+  /// Mass integrals of the reference `ref`, over Gauss points along x (exact for the straight bar) and the four points
+  /// of the section that give Aρ and both Iρ.
   Inertia inertia_of(ancf::Reference const& ref) const {
     double const rho = constants_.mass_per_length, iz = constants_.rotary_inertia;
     ancf::SectionPoints const section{std::sqrt(iz / rho), std::sqrt(constants_.rotary_inertia_y.value_or(iz) / rho)};
@@ -322,7 +330,7 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
       for (int i = 0; i < 3; ++i) map(i, 3 * a + i) = n(a, derivative);
     return map;
   }
-  /// ω in world axes by the rates of (r_y, r_z), 3×6.
+  /// Matrix of ω in world axes from the rates of (r_y, r_z), 3×6.
   template <class T, class SectionOf>
   static Mat<T, 3, 6> turning(SectionOf const& f) {
     Mat<T, 3, 6> local, turn;
@@ -336,8 +344,9 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
   Bar bar_;
   BarConstants constants_;
   double l_ = 0.0;
-  std::vector<Placement> nodes_;             ///< in the bar's axes
-  std::vector<ancf::Reference> references_;  ///< one where all elements are alike, or one each; `inertia_` as well
+  std::vector<Placement> nodes_;  ///< in the bar's axes
+  std::vector<ancf::Reference>
+      references_;  ///< one entry if all elements are alike, else one for each element; also `inertia_`
   std::vector<Inertia> inertia_;
 };
 

@@ -1,26 +1,28 @@
 #pragma once
 /// \file
-/// Gradient-deficient ANCF cable in space: cubic Hermite position field, node coordinates (r, r′), 12 an element,
-/// constant mass matrix, no torsion and no section [thesis Eq. 3.16–3.20, 4.8; Gerstmayr & Shabana 2006]. With s_i of
-/// `hermite_shape`,
-///   r(ξ) = Σ s_i e_i,   M = Aρ ∫ s_i s_j dx ⊗ 1,   U = ½ ∫ (EA ε² + EI κ·κ) dx.
+/// Gradient-deficient ANCF cable in space [thesis Eq. 3.16–3.20, 4.8; Gerstmayr & Shabana 2006].
 
 #include <polybody/bodies/ancf/cable_laws.hpp>
 #include <polybody/bodies/shared/elastic_chain.hpp>
 
 namespace polybody {
 
-/// The strain groups of a cable: stretch and bending, at so many points each.
+/// Strain groups of a cable: axial strain and bending, each with its number of Gauss points.
 template <class Strain, int axial_points, int bending_points>
 using CableGroups =
     std::tuple<StrainGroup<CableAxial<Strain, axial_points>>, StrainGroup<CableBending<Strain, bending_points>>>;
 
-/// `AncfCable<>::from(bar, n)` with Green strain, `AncfCable<EngineeringStrain>` with that; more or fewer Gauss points
-/// for the axial and the bending part, 5 and 3 being the field's choice [Gerstmayr & Irschik 2008].
+/// Gradient-deficient ANCF cable in space: cubic Hermite position field, node coordinates (r, r′), 12 an element,
+/// constant mass matrix, without torsion and without a deformable section [thesis Eq. 3.16–3.20, 4.8; Gerstmayr &
+/// Shabana 2006]. With s_i of `hermite_shape`,
+///   r(ξ) = Σ s_i e_i,   M = Aρ ∫ s_i s_j dx ⊗ 1,   U = ½ ∫ (EA ε² + EI κ·κ) dx.
+/// `AncfCable<>::from(bar, n)` has Green strain, `AncfCable<EngineeringStrain>` has engineering strain. The numbers of
+/// Gauss points for the axial and the bending part can be set; 5 and 3 suit the field [Gerstmayr & Irschik 2008].
 ///
-/// A marker knows its point and the tangent, not how the section turns about it: ω = r′ × ṙ′/|r′|² has no part along
-/// r′, a moment along r′ has no effect, and the marker's other two axes stand as the smallest turn from the reference
-/// leaves them. A clamp is `Revolute` about the tangent, with the cable's marker second.
+/// A marker has a position and a tangent. The rotation of the section about the tangent is undetermined: ω = r′ ×
+/// ṙ′/|r′|² has no component along r′, and a moment along r′ has no effect. The other two axes of the marker follow
+/// from the reference axes by the smallest rotation. A clamp is `Revolute` about the tangent, with the marker of the
+/// cable second.
 template <class Strain = GreenStrain, int axial_points = 5, int bending_points = 3>
 class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bending_points>> {
   using Groups = CableGroups<Strain, axial_points, bending_points>;
@@ -34,27 +36,28 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
   static constexpr Observes observes = Observes::axis;
   static constexpr bool constant_mass = true;
   static constexpr bool packs_pay = true;
-  static constexpr char const* name = "AncfCable";  ///< begins its messages
+  static constexpr char const* name = "AncfCable";  ///< prefix of its error messages
   template <class T>
   using Element = Vec<T, 12>;
   using ElementMatrix = typename Chain::ElementMatrix;
   using PointMap = Mat<RealFor<Strain>, 3, 12>;  ///< S of r = S e, 3×12
-  static constexpr int gradients = 1;            ///< that are linear in the coordinates
+  static constexpr int gradients = 1;            ///< number of position gradients that are linear in the coordinates
 
-  /// A material point of the axis: element, and place ξ ∈ [0, 1] on it.
+  /// Material point of the axis: element, and position ξ ∈ [0, 1] along it.
   struct Point {
     Index element = 0;  ///< counted from 0, from the bar's first end
     double xi = 0.0;    ///< ξ ∈ [0, 1], from its first node to its second
   };
 
-  /// The bar in n equal elements. \throws InvalidInput for n < 1.
+  /// Cable from the straight bar, with n elements of equal length.
+  /// \throws InvalidInput for n < 1.
   static AncfCable from(Bar const& bar, Index n) {
     return from(bar, n, [](double s) { return Placement::at({s, 0, 0}); });
   }
-  /// The same of n elements laid along a curve, nodes at equal arc lengths. Its natural shape stays straight: it stands
-  /// bent.
-  /// \throws InvalidInput also where the curve is not given by its own arc length: |r′| of the cubic through the nodes
-  /// off by a tenth.
+  /// Cable of n elements along `curve`, with nodes at equal arc lengths. The undeformed shape remains straight, so the
+  /// initial configuration is bent.
+  /// \throws InvalidInput also if the curve is not parameterised by its arc length: |r′| of the cubic through the nodes
+  /// differs from 1 by more than 0.1.
   static AncfCable from(Bar const& bar, Index n, ReferenceCurve const& curve) {
     require_elements(n, "AncfCable");
     return AncfCable(bar, polybody::constants(bar), n, curve);
@@ -65,18 +68,20 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
   double element_length() const { return l_; }
   BarConstants const& constants() const { return constants_; }
 
-  /// The point s from the first end. \throws InvalidInput outside the bar.
+  /// Point at distance s from the first end [m].
+  /// \throws InvalidInput outside the bar.
   Point at(double s) const {
     double const x = require_inside(s, length_, name) / l_;
     Index const e = std::min(Index(x), elements() - 1);
     return {e, x - double(e)};
   }
 
-  /// r = Σ s_i e_i, e_i of entries 3i … 3i + 2 of an element, and its derivatives by arc length.
+  /// Shape functions s_i of r = Σ s_i e_i, where e_i has the entries 3i … 3i + 2 of an element, and their derivatives
+  /// with respect to arc length.
   ShapeValues<4> axis_shape(double xi) const { return hermite_shape(xi, l_); }
 
   void reference(std::span<double> q) const { std::copy(reference_.begin(), reference_.end(), q.begin()); }
-  template <class T = double>  // compiled where it is used
+  template <class T = double>  // compiled only if used
   void rigid_velocity(std::span<double const> q, Vec3 const& v0, Vec3 const& omega, std::span<double> v) const {
     for (Index i = 0; i <= elements(); ++i) {
       Vec<T, 3> const r = part<3>(q, 6 * i), slope = part<3>(q, 6 * i + 3);
@@ -93,7 +98,7 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
   }
 
   bool same_elements(AncfCable const& other) const { return this->same_strains(other) && mass_ == other.mass_; }
-  /// M a of an element's own accelerations.
+  /// Product M a with the accelerations of one element.
   template <KernelScalar T>
   void element_inertia(Element<T> const& a, Element<T>& out) const {
     for (int i = 0; i < 4; ++i)
@@ -113,14 +118,14 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
       for (int k = 0; k < 3; ++k) out[3 * i + k] = T(weight_[i] * g[k]);
   }
 
-  template <class T = double>  // compiled where it is used
+  template <class T = double>  // compiled only if used
   double kinetic_energy(Index e, std::span<double const>, std::span<double const> v) const {
     Element<T> const x = part<12>(v, first_column(e));
     Element<T> momentum;
     element_inertia<T>(x, momentum);
     return 0.5 * x.dot(momentum);
   }
-  template <class T = double>  // compiled where it is used
+  template <class T = double>  // compiled only if used
   double gravity_energy(Index e, std::span<double const> q, Vec3 const& g) const {
     Element<T> const x = part<12>(q, first_column(e));
     Element<T> weight;
@@ -128,13 +133,13 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
     return -x.dot(weight);
   }
 
-  /// r = S e at `p`, 3×12, constant; e are the coordinates from `first_column(p)`.
+  /// Matrix S of r = S e at `p`, 3×12 and constant. The coordinates e begin at `first_column(p)`.
   PointMap position_map(Point const& p) const { return map_of(hermite_shape(p.xi, l_).s); }
-  /// r′ = S′ e at `p`, 3×12, constant: the one gradient of a cable, α = 0.
+  /// Matrix S′ of r′ = S′ e at `p`, 3×12 and constant. It is the only gradient of a cable, α = 0.
   PointMap gradient_map(Point const& p, int) const { return map_of(hermite_shape(p.xi, l_).ds); }
 
-  /// At `p`, in the axes of a marker there (see sections.hpp): a cable knows axial strain and curvature, nothing of
-  /// shear and torsion.
+  /// Section strains at `p`, in the axes of a marker there (see sections.hpp). A cable has axial strain and curvature,
+  /// and neither shear nor torsion.
   Vec6 section_strains(Point const& p, std::span<double const> q) const {
     Element<double> const x = element_of(p, q);
     return in_section_axes(p, x, axial().strains(p.xi, l_, x)[0], bending().strains(p.xi, l_, x));
@@ -175,7 +180,7 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
         out.frame.A(i, k) = turned(i, 0) * axes(0, k) + turned(i, 1) * axes(1, k) + turned(i, 2) * axes(2, k);
       along[k] = slope[k] * inverse;
     }
-    for (int i = 0; i < 4; ++i) {  // a node's columns: s e_k above r′ × e_k s′/n²
+    for (int i = 0; i < 4; ++i) {  // columns of a node: s e_k above r′ × e_k s′/n²
       T *const x = out.jacobian + 18 * i, *const y = x + 6, *const z = y + 6;
       T const none(0.0), here(s.s[i]), a = along[0] * s.ds[i], b = along[1] * s.ds[i], c = along[2] * s.ds[i];
       x[0] = y[1] = z[2] = here;
@@ -191,8 +196,9 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
     out.columns = 12;
   }
 
-  /// Jᵀw has the part s_i′ (m × r′)/n² that depends on q: ∂/∂r′ = m̃/n² − 2 (m × r′) r′ᵀ/n⁴.
-  template <class T>  // compiled where it is used
+  /// Geometric stiffness of the wrench `w`. The part s_i′ (m × r′)/n² of Jᵀw depends on q: ∂/∂r′ = m̃/n² − 2 (m × r′)
+  /// r′ᵀ/n⁴.
+  template <class T>  // compiled only if used
   void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, Mat<T, 12, 12>& k) const {
     ShapeValues<4> const s = hermite_shape(p.xi, l_);
     Vec<T, 3> const slope = slope_of(s, element_of(p, q));
@@ -230,8 +236,8 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
     return out;
   }
 
-  /// The axes `from` after the smallest turn that brings their first one along `slope`; beyond a right angle they are
-  /// first turned by π about their third one, so that there is always one.
+  /// Axes `from` after the smallest rotation of their first axis onto `slope`. If the angle exceeds a right angle, the
+  /// axes are first rotated by π about their third axis, so that the smallest rotation is unique.
   template <StateScalar T>
   static Mat<T, 3, 3> smallest_turn(Vec<T, 3> const& slope, Mat3 from) {
     using std::sqrt;
@@ -250,10 +256,10 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
   BarConstants constants_;
   double length_;
   double l_;
-  Mat<RealFor<Strain>, 4, 4> mass_ = detail::zeros<decltype(mass_)>();  ///< of each component
-  Vec4 weight_ = detail::zeros<Vec4>();                                 ///< the same for a uniform field
+  Mat<RealFor<Strain>, 4, 4> mass_ = detail::zeros<decltype(mass_)>();  ///< mass matrix of each component
+  Vec4 weight_ = detail::zeros<Vec4>();  ///< mass vector of each component in a uniform field
   std::vector<double> reference_;
-  std::vector<Mat3> axes_;  ///< of the reference in the middle of each element
+  std::vector<Mat3> axes_;  ///< axes of the reference at the middle of each element
 };
 
 template <class Strain, int axial_points, int bending_points>

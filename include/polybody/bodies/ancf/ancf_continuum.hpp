@@ -1,9 +1,9 @@
 #pragma once
-/// \file
-/// The elastic force of the fully parameterised ANCF beam by general continuum mechanics: Green–Lagrange strain
-/// E = ½ (FᵀF − 1) against the reference, F = J J₀⁻¹, and St. Venant–Kirchhoff stress S = D : (E + τ Ė) with Hooke's
-/// law in three dimensions. D is written in squares, so that strains do not couple:
-///   S : E = λ (tr E)² + 2μ Σ E_ii² + 4μ Σ_{i<j} E_ij².
+/// E₂₃ = α − β. The torsional stiffnesses are D_y = GA_z y² for α and D_z = GA z² for β, coupled by GA. Under a torque
+/// both turn alike in the bar, and r_y carries p = D_y/(D_y + D_z). A joint or a moment at an end may apply another
+/// share p̂. The difference decays by 2E₂₃ over the length ℓ with ℓ² = D_y D_z/((D_y + D_z) GA). The marker there turns
+/// by an additional angle (p̂ − p)² ℓ/(p (1 − p)) T/GJ.
+/// Elastic force of the fully parameterised ANCF beam by three-dimensional continuum mechanics.
 
 #include <tuple>
 
@@ -15,7 +15,7 @@ namespace polybody {
 
 namespace ancf {
 
-/// Strains of columns of F, the shapes, which read all nodal vectors.
+/// Strains that depend on columns of F. Their shapes read all nodal vectors.
 template <int used>
 struct OfGradient {
   static constexpr int components = 3;
@@ -23,7 +23,7 @@ struct OfGradient {
   static constexpr int reach = vectors - 1;
   static constexpr int difference = vectors / 2;
   static constexpr int vector(int, int j) { return j + 1; }
-  /// P for the columns `which` of F, from the gradients g of the shapes.
+  /// Matrix P of the columns `which` of F, from the gradients `g` of the shapes.
   static Mat<double, used, vectors - 1> map(Mat<double, vectors, 3> const& g, std::array<int, used> const& which) {
     Mat<double, used, vectors - 1> n;
     for (int v = 1; v < vectors; ++v)
@@ -32,7 +32,7 @@ struct OfGradient {
   }
 };
 
-/// E₁₁ = ½ (f₁·f₁ − 1); p = f₁.
+/// Axial Green strain E₁₁ = ½ (f₁·f₁ − 1), with p = f₁.
 struct AlongStrain : OfGradient<1> {
   static constexpr int points = 12;
   static constexpr int strains = 1;
@@ -48,7 +48,7 @@ struct AlongStrain : OfGradient<1> {
   }
 };
 
-/// (2E₁₂, 2E₁₃) = (f₁·f₂, f₁·f₃); p = (f₁, f₂, f₃).
+/// Shear strains (2E₁₂, 2E₁₃) = (f₁·f₂, f₁·f₃), with p = (f₁, f₂, f₃).
 struct ShearStrains : OfGradient<3> {
   static constexpr int points = 12;
   static constexpr int strains = 2;
@@ -74,7 +74,7 @@ struct ShearStrains : OfGradient<3> {
   }
 };
 
-/// (tr E, E₁₁, E₂₂, E₃₃, 2E₂₃, 2E₁₃, 2E₁₂); p = (f₁, f₂, f₃).
+/// Green strains (tr E, E₁₁, E₂₂, E₃₃, 2E₂₃, 2E₁₃, 2E₁₂), with p = (f₁, f₂, f₃).
 template <int at_points>
 struct GreenStrains : OfGradient<3> {
   static constexpr int points = at_points;
@@ -85,7 +85,7 @@ struct GreenStrains : OfGradient<3> {
     for (int i = 0; i < 7; ++i)
       for (int k = 0; k < 9; ++k) b(i, k) = T(0.0);
     for (int i = 0; i < 3; ++i) {
-      int const j = (i + 1) % 3, k = (i + 2) % 3;  // the shear beside axis i
+      int const j = (i + 1) % 3, k = (i + 2) % 3;  // shear in the plane normal to axis i
       strain[1 + i] = T(-0.5);
       strain[4 + i] = T(0.0);
       for (int a = 0; a < 3; ++a) {
@@ -111,12 +111,12 @@ struct GreenStrains : OfGradient<3> {
 
 }  // namespace ancf
 
-/// Whether a `Continuum` beam is left to lock.
+/// Treatment of locking in a `Continuum` beam: left in the element, or removed.
 enum class Locking { present, cured };
 
 namespace ancf {
 
-/// The strain groups of a `Continuum`, by name: a `Continuum` alone compiles none of them.
+/// Strain groups of a `Continuum` by name. A declaration of `Continuum` alone compiles none of them.
 template <Locking>
 struct ContinuumGroups;
 /// All strains at the points of the volume.
@@ -126,13 +126,13 @@ struct ContinuumGroups<Locking::present> {
   using Volume = StrainGroup<GreenStrains<12>>;  ///< all strains in 12 points
   using type = std::tuple<Volume>;               ///< the groups of an element
 };
-/// Axial strain along the axis, mean shear, and the strains within a section.
+/// Axial strain along the axis, mean shear strains, and strains within a section.
 template <>
 struct ContinuumGroups<Locking::cured> {
   using Number = double;                          ///< scalar of stiffness and of damping times
   using Along = StrainGroup<AlongStrain>;         ///< E₁₁ in 12 points
-  using Shear = StrainGroup<ShearStrains>;        ///< 2E₁₂, 2E₁₃ in 12 points nearer the axis, or farther from it
-  using Across = StrainGroup<GreenStrains<2>>;    ///< the rest of Hooke's law, on the axis at both nodes
+  using Shear = StrainGroup<ShearStrains>;        ///< 2E₁₂, 2E₁₃ in 12 points whose distance from the axis is scaled
+  using Across = StrainGroup<GreenStrains<2>>;    ///< the other terms of Hooke's law, on the axis at both nodes
   using type = std::tuple<Along, Shear, Across>;  ///< the groups of an element
 };
 
@@ -144,30 +144,36 @@ struct Stress {
   Mat3 cauchy;        ///< F S Fᵀ/det F, world axes [N/m²]
 };
 
+/// Elastic force by general continuum mechanics. Green–Lagrange strain E = ½ (FᵀF − 1) relative to the reference, with
+/// F = J J₀⁻¹, and St. Venant–Kirchhoff stress S = D : (E + τ Ė) with Hooke's law in three dimensions. D is written in
+/// squares, so that strains do not couple:
+///   S : E = λ (tr E)² + 2μ Σ E_ii² + 4μ Σ_{i<j} E_ij².
+///
 /// Quadrature: three Gauss points along x, exact for the quartic energy of linear theory (r_x is quadratic), and four
-/// points of the section (`SectionPoints`), exact for the stretch, bending and twist that the field can show. With
-/// `Locking::present` that is all. The strain that follows y and z through r_x has no partner in E₂₂, E₃₃, constant
-/// across the section: bending meets λ + 2μ in place of E, and a slender cantilever shows but (1 + ν)(1 − 2ν)/(1 − ν)
-/// of its deflection.
+/// points of the section (`SectionPoints`). The section points are exact for the stretch, bending and twist of the
+/// field. `Locking::present` uses this quadrature for all strains. In bending, E₁₁ varies linearly with y and z,
+/// whereas E₂₂ and E₃₃ are constant across the section. Bending therefore has the modulus λ + 2μ in place of E, and the
+/// deflection of a slender cantilever is (1 + ν)(1 − 2ν)/(1 − ν) times the correct one.
 ///
 /// `Locking::cured` splits D = D⁰ + Dᵛ [Gerstmayr, Matikainen & Mikkola 2008]:
-///   E E₁₁² over the volume, as a bar in uniaxial stress has it;
-///   the rest of Hooke's law for normal strains, and E₂₃, on the axis only, and there at the nodes (trapezoidal rule):
-///   between the nodes |r_y| < 1 belongs to the chord of a bent element and would stiffen it;
-///   the shears 2E₁₂, 2E₁₃ with the corrected shear stiffnesses GA, GA_z of the bar, at four points drawn towards the
-///   axis (or away from it) until twist meets GJ of the bar. Three points along x remain: two leave a mode without
-///   energy, and three do not lock (see `ElasticLine`).
+///   E E₁₁² over the volume, as in a bar under uniaxial stress;
+///   the other terms of Hooke's law for normal strains, and E₂₃, on the axis only, at the nodes (trapezoidal rule):
+///   between the nodes of a bent element |r_y| < 1 is an interpolation error of the chord and would add stiffness;
+///   the shears 2E₁₂, 2E₁₃ with the corrected shear stiffnesses GA, GA_z of the bar, at four points whose distance
+///   from the axis is scaled until the torsional stiffness equals GJ of the bar. Three points along x remain: two leave
+///   a mode without energy, and three do not lock (see `ElasticLine`).
 ///
-/// Kelvin–Voigt times: axial for normal strains, so for bending, too; shear for shears. Ė is objective.
-/// `Damping::bending` has no meaning of its own here.
+/// Kelvin–Voigt times: axial for normal strains and therefore also for bending; shear for shears. Ė is objective.
+/// `Damping::bending` is not used by this policy.
 template <Locking locking = Locking::cured>
 struct Continuum {
-  static constexpr char const* name = "AncfBeam<Continuum>";  ///< begins its messages
-  static constexpr bool cured = locking == Locking::cured;    ///< whether D is split so that bending does not lock
+  static constexpr char const* name = "AncfBeam<Continuum>";  ///< prefix of its error messages
+  static constexpr bool cured = locking == Locking::cured;    ///< true if D is split so that bending does not lock
 
   using Parts = ancf::ContinuumGroups<locking>;  ///< the strain groups by name
   using Groups = typename Parts::type;           ///< the strain groups of an element
 
+  /// Checks the data of the bar.
   /// \throws InvalidInput without section and material, for ν ≥ 0.5, and for a shear factor under `Locking::present`.
   static void check(Bar const& bar, BarConstants const&) {
     if (!bar.material)
@@ -182,7 +188,7 @@ struct Continuum {
                          "out, or take Continuum<Locking::cured>."};
   }
 
-  /// The strain groups of an element with the reference `ref`.
+  /// Strain groups of an element with the reference `ref`.
   static Groups make(Bar const& bar, BarConstants const& c, ancf::Reference const& ref) {
     Moduli const m(bar);
     double const area = c.EA / m.young, y = std::sqrt(c.EI / c.EA), z = std::sqrt(c.EI_y.value() / c.EA);
@@ -192,7 +198,7 @@ struct Continuum {
       times[i] = i < 4 ? axial : shear;
       stiffness[i] = i == 0 ? m.lambda : i < 4 ? 2.0 * m.mu : m.mu;
     }
-    double const stretch = -bar.pretension / c.EA;  // in which the prestressed bar would be free of stress
+    double const stretch = -bar.pretension / c.EA;  // strain at which the prestressed bar is free of stress
     ancf::SectionPoints const section{y, z};
     if constexpr (cured) {
       stiffness[1] -= m.young;
@@ -229,7 +235,7 @@ struct Continuum {
     }
   }
 
-  /// Where shear is measured: this many times as far from the axis as the points of the section.
+  /// Ratio of the distance of the shear points from the axis to the distance of the points of the section.
   static double lever(BarConstants const& c) {
     if constexpr (cured)
       return std::sqrt(c.GJ * c.EA / (c.GA * c.EI_y.value() + c.GA_z.value() * c.EI));
@@ -237,8 +243,9 @@ struct Continuum {
       return 1.0;
   }
 
-  /// Stress at a point with strain E, `e`, and `at_axis` where the section meets the axis; without damping.
-  template <class T = double>  // compiled where it is used
+  /// Stress at a point with strain `e`, where `at_axis` is the strain at the centre of the same section; without
+  /// damping.
+  template <class T = double>  // compiled only if used
   static Mat3 second_piola(Bar const& bar, BarConstants const& c, Mat3 const& e, Mat3 const& at_axis) {
     Moduli const m(bar);
     Mat<T, 3, 3> const axis = at_axis;
@@ -254,23 +261,19 @@ struct Continuum {
     return s;
   }
 
-  /// The share of torsion that r_y carries, p. Sections that turn by α (r_y) and β (r_z) have 2E₁₂ = −z β′, 2E₁₃ = y α′
-  /// and 2E₂₃ = α − β, hence two torsional stiffnesses, D_y = GA_z y² for α and D_z = GA z² for β, tied by GA. Under a
-  /// torque both turn alike in the bar, and r_y carries p = D_y/(D_y + D_z). A joint or a moment at an end that shares
-  /// its torque otherwise, p̂, is evened out by 2E₂₃ over ℓ² = D_y D_z/((D_y + D_z) GA), and there the marker turns by
-  /// (p̂ − p)² ℓ/(p (1 − p)) T/GJ more.
+  /// Share p of the torque that r_y carries. If r_y turns by α and r_z by β, then 2E₁₂ = −z β′, 2E₁₃ = y α′ and
   static double share(BarConstants const& c) {
     double const y = c.EI * (cured ? c.GA_z.value() : 1.0), z = c.EI_y.value() * (cured ? c.GA : 1.0);
     return y / (y + z);
   }
-  /// The frame of a section with r_y = b, r_z = c that markers follow: the mean by these shares.
+  /// Frame of a section with r_y = b, r_z = c for markers: the mean weighted by `share`.
   template <KernelScalar T>
   static MeanSectionFrame<T> frame(Vec<T, 3> const& b, Vec<T, 3> const& c, BarConstants const& bar) {
     return {b, c, share(bar)};
   }
 
-  /// Γ = Rᵀ r_x and K = axial(Rᵀ R_x) less those of the reference, R the frame that markers follow.
-  template <class T = double>  // compiled where it is used
+  /// Strains Γ = Rᵀ r_x and K = axial(Rᵀ R_x) relative to the reference, with the frame R of markers.
+  template <class T = double>  // compiled only if used
   static Vec6 section_strains(BarConstants const& c, ancf::Deformation const& field, double xi) {
     Vec6 const now = stretch_and_bend<T>(c, field.e, field.reference.l, xi),
                then = stretch_and_bend<T>(c, field.reference.x, field.reference.l, xi);
@@ -279,11 +282,11 @@ struct Continuum {
     return x;
   }
 
-  /// With the traction t = F S e₁ on the section, in the axes of the deformed one,
-  ///   N = ∫ Rᵀt dA,  M = ∫ Rᵀ(r − r₀) × Rᵀt dA,
-  /// over the points that the energy uses: normal stress at the four of the section, shear stress at those that twist
-  /// meets GJ with.
-  template <class T = double>  // compiled where it is used
+  /// Section forces from the traction t = F S e₁ on the section, in the axes of the deformed section:
+  ///   N = ∫ Rᵀt dA,  M = ∫ Rᵀ(r − r₀) × Rᵀt dA.
+  /// The integration points are those of the energy: the four points of the section for the normal stress, and the
+  /// scaled points for the shear stress.
+  template <class T = double>  // compiled only if used
   static Vec6 section_forces(Bar const& bar, BarConstants const& c, ancf::Deformation const& field, double xi) {
     Vec<T, 3> const by = director<T>(field.e, 2, xi), bz = director<T>(field.e, 3, xi);
     MeanSectionFrame<T> const frame = Continuum::frame<T>(by, bz, c);
@@ -312,11 +315,11 @@ struct Continuum {
       lambda = 2.0 * mu * poisson / (1.0 - 2.0 * poisson);
     }
   };
-  /// (Rᵀ r_x, axial(Rᵀ R_x)) on the axis.
-  template <class T>  // compiled where it is used
+  /// Strains (Rᵀ r_x, axial(Rᵀ R_x)) on the axis.
+  template <class T>  // compiled only if used
   static Vec<T, 6> stretch_and_bend(BarConstants const& c, ancf::Coordinates const& e, double l, double xi) {
     Mat<double, ancf::vectors, 4> const n = ancf::shape(xi, 0.0, 0.0, l);
-    Vec<T, 3> along = detail::zeros<Vec<T, 3>>(), by, bz;  // r_x; the slopes of r_y, r_z
+    Vec<T, 3> along = detail::zeros<Vec<T, 3>>(), by, bz;  // r_x; the derivatives of r_y, r_z
     for (int i = 0; i < 3; ++i) {
       for (int a = 0; a < ancf::vectors; ++a) along[i] += n(a, 1) * e[3 * a + i];
       by[i] = (e[18 + i] - e[6 + i]) / l;
@@ -326,14 +329,14 @@ struct Continuum {
     Vec<T, 3> const stretch = f.local(along), bend = f.spin(f.components(by, bz));
     return {stretch[0], stretch[1], stretch[2], bend[0], bend[1], bend[2]};
   }
-  /// r_y (v = 2) or r_z (v = 3).
-  template <class T>  // compiled where it is used
+  /// Director r_y (v = 2) or r_z (v = 3) at ξ.
+  template <class T>  // compiled only if used
   static Vec<T, 3> director(ancf::Coordinates const& e, int v, double xi) {
     Vec<T, 3> d;
     for (int i = 0; i < 3; ++i) d[i] = (1.0 - xi) * e[3 * v + i] + xi * e[12 + 3 * v + i];
     return d;
   }
-  /// The strains of uniaxial stress.
+  /// Strains of uniaxial stress with axial strain e.
   static Vec<double, 7> uniaxial(double e, double nu) {
     Vec<double, 7> strain = Vec<double, 7>::Zero();
     strain[0] = (1.0 - 2.0 * nu) * e;

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The elastic force of the fully parameterised ANCF beam by structural mechanics on its axis.
+/// Elastic force of the fully parameterised ANCF beam by structural mechanics on its axis.
 
 #include <tuple>
 
@@ -9,25 +9,24 @@
 
 namespace polybody {
 
-/// With the section frame R of (r_y, r_z)
-///   Γ = Rᵀ r₀′ − e₁ (stretch, two shears),  K = axial(Rᵀ R′) (twist, two curvatures): the exact rod's strains, and
-///   ½ (r_y·r_y − 1), ½ (r_z·r_z − 1), r_y·r_z: the section's own strains, with stiffness EA, EA, GA;
-/// Γ and K against their values in the reference [Simo & Vu-Quoc 1986b; Nachbagauer, Gruber & Gerstmayr 2013]. R, Γ, K
-/// do not feel how a section stretches, so on fine meshes the sections keep their shape and the element is the exact
-/// rod. Quadrature:
-///   Γ at three Gauss points, exact for linear theory, where r₀′ is quadratic. (With two, r = 0 and the same r_x across
-///   the axis
-///     at all nodes has no energy: r₀′ is the Legendre polynomial P₂, zero at both.) Nothing locks: the quadratic r₀′
-///     can follow any piecewise linear r_y, r_z with Γ = 0.
-///   K at two: for sections that turn by θ an element they give θ/l up to θ⁴.
-///   The section's strains at the nodes alone: that |r_y| falls to cos(θ/2) between them is the chord's doing, not a
-///   strain.
-/// Kelvin–Voigt times: axial for Γ₁ and the sections' stretches, shear for Γ₂, Γ₃, twist and the sections' shear,
-/// bending.
+/// Elastic force from the strains of the axis and of the sections [Simo & Vu-Quoc 1986b; Nachbagauer, Gruber &
+/// Gerstmayr 2013]. With the section frame R of (r_y, r_z),
+///   Γ = Rᵀ r₀′ − e₁ (stretch, two shears),  K = axial(Rᵀ R′) (twist, two curvatures): the strains of the exact rod;
+///   ½ (r_y·r_y − 1), ½ (r_z·r_z − 1), r_y·r_z: the strains of the section, with stiffness EA, EA, GA.
+/// Γ and K are taken relative to their values in the reference. R, Γ and K do not depend on the strains of the section.
+/// On fine meshes the sections therefore keep their shape, and the element converges to the exact rod. Quadrature:
+///   Γ at three Gauss points, exact for linear theory, where r₀′ is quadratic. With two points, r = 0 and equal r_x
+///     across the axis at all nodes would have no energy: r₀′ is the Legendre polynomial P₂, which is zero at both.
+///     The element does not lock: the quadratic r₀′ can follow any piecewise linear r_y, r_z with Γ = 0.
+///   K at two points: for sections that rotate by θ per element, the result is θ/l with an error of order θ⁴.
+///   The strains of the section only at the nodes: between them |r_y| decreases to cos(θ/2) by the interpolation along
+///     the chord, which is not a strain.
+/// Kelvin–Voigt times: axial for Γ₁ and the stretches of the section; shear for Γ₂, Γ₃, twist and the shear of the
+/// section; bending for the curvatures.
 struct ElasticLine {
-  static constexpr char const* name = "AncfBeam<ElasticLine>";  ///< begins its messages
+  static constexpr char const* name = "AncfBeam<ElasticLine>";  ///< prefix of its error messages
 
-  /// Γ; p = (r₀′, r_y, r_z).
+  /// Strains Γ, with p = (r₀′, r_y, r_z).
   struct Stretch {
     static constexpr int points = 3;
     static constexpr int components = 3;
@@ -52,7 +51,7 @@ struct ElasticLine {
       return n;
     }
 
-    /// u = Rᵀ r₀′:  δu = Rᵀ δr₀′ + u × φ.
+    /// Vector u = Rᵀ r₀′ with the variation δu = Rᵀ δr₀′ + u × φ.
     template <KernelScalar T>
     static void evaluate(Vec<T, 9> const& p, Vec<T, 3>& strain, Mat<T, 3, 9>& b) {
       SectionFrame<T> const f({p[3], p[4], p[5]}, {p[6], p[7], p[8]});
@@ -63,7 +62,7 @@ struct ElasticLine {
         f.to_vectors(f.pull(f.cross(f.axis(i), u)), i, 3, b);
       }
     }
-    /// n·δ̂δu = α·(φ̂ × n) + α̂·(φ × n) + φᵀ (u nᵀ − (n·u) 1) φ̂ + (n × u)·δ̂φ, α = Rᵀ δr₀′.
+    /// Second variation n·δ̂δu = α·(φ̂ × n) + α̂·(φ × n) + φᵀ (u nᵀ − (n·u) 1) φ̂ + (n × u)·δ̂φ, with α = Rᵀ δr₀′.
     template <KernelScalar T>
     static void add_hessian(Vec<T, 9> const& p, Vec<T, 3> const& n, Mat<T, 9, 9>& h) {
       SectionFrame<T> const f({p[3], p[4], p[5]}, {p[6], p[7], p[8]});
@@ -71,7 +70,7 @@ struct ElasticLine {
       Mat<T, 6, 6> twice = f.second(f.cross(n, u));
       T const nu = f.dot(n, u);
       Vec<T, 6> const pn = f.pull(n), pu = f.pull(u);
-      constexpr std::array<int, 3> turning = {0, 2, 3};  // the components that turn the frame
+      constexpr std::array<int, 3> turning = {0, 2, 3};  // components that rotate the frame
       for (int const i : turning)
         for (int const j : turning) twice(i, j) += pu[i] * pn[j];
       Vec<T, 3> const nw = f.world(n);
@@ -90,7 +89,7 @@ struct ElasticLine {
     }
   };
 
-  /// K; p = (r_y, r_z, r_y′, r_z′).
+  /// Strains K, with p = (r_y, r_z, r_y′, r_z′).
   struct Bend {
     static constexpr int points = 2;
     static constexpr int components = 3;
@@ -136,7 +135,7 @@ struct ElasticLine {
     }
   };
 
-  /// The section's own strains; p = (r_y, r_z).
+  /// Strains of the section, with p = (r_y, r_z).
   struct Section {
     static constexpr int points = 2;
     static constexpr int components = 3;
@@ -179,6 +178,7 @@ struct ElasticLine {
   using Groups =
       std::tuple<StrainGroup<Stretch>, StrainGroup<Bend>, StrainGroup<Section>>;  ///< the strain groups of an element
 
+  /// Checks the constants of the bar.
   /// \throws InvalidInput unless GA, GA_z, GJ and EI_y are positive.
   static void check(Bar const&, BarConstants const& c) {
     require_positive(c.GA, "AncfBeam<ElasticLine>: the shear stiffness GA of the bar");
@@ -187,8 +187,8 @@ struct ElasticLine {
     require_positive(c.EI_y.value_or(c.EI), "AncfBeam<ElasticLine>: the bending stiffness EI_y of the bar");
   }
 
-  /// The strain groups of an element with the reference `ref`.
-  template <class Line = ElasticLine>  // compiled where it is used
+  /// Strain groups of an element with the reference `ref`.
+  template <class Line = ElasticLine>  // compiled only if used
   static typename Line::Groups make(Bar const& bar, BarConstants const& c, ancf::Reference const& ref) {
     Vec3 const pretension(-bar.pretension / c.EA, 0.0, 0.0), none(0.0, 0.0, 0.0);
     std::array<GaussPoint, 2> const nodes = {GaussPoint{0.0, 0.5}, GaussPoint{1.0, 0.5}};
@@ -197,15 +197,15 @@ struct ElasticLine {
             on_axis<typename Line::Section>(nodes, bar, c, ref, none)};
   }
 
-  /// The frame of a section with r_y = b, r_z = c that markers follow: that of Γ and K, so a joint or a moment does
-  /// work on the strains alone and the section keeps its shape.
+  /// Frame of a section with r_y = b, r_z = c for markers. It equals the frame of Γ and K, so a joint or a moment does
+  /// work only on these strains and the section keeps its shape.
   template <KernelScalar T>
   static SectionFrame<T> frame(Vec<T, 3> const& b, Vec<T, 3> const& c, BarConstants const&) {
     return {b, c};
   }
 
-  /// Stiffness, from `groups`, times the section's strains (Γ, K), and the pretension.
-  template <class Made>  // compiled where it is used
+  /// Section forces: stiffness from `groups` times the `strains` (Γ, K) of the section, plus the pretension.
+  template <class Made>  // compiled only if used
   static Vec6 section_forces(Bar const& bar, Made const& groups, Vec6 const& strains) {
     Vec6 n = strains;
     for (int i = 0; i < 3; ++i) {

@@ -1,11 +1,11 @@
 #pragma once
 /// \file
-/// The field of the fully parameterised ANCF beam. In an element of length l, with r₀(x) cubic and r_y, r_z linear in
-/// x,
-///   r(x, y, z) = r₀ + y r_y + z r_z = Σ N_v(x, y, z) e_v,  e = (r, r_x, r_y, r_z) of the first node, then of the
-///   second
-/// [Shabana & Yakoub 2001; Yakoub & Shabana 2001; thesis Eq. 3.16]. The reference is such a field, too; strains are
-/// measured against it, in the axes of its sections (`SectionFrame` of r_y, r_z).
+/// Position field of the fully parameterised ANCF beam [Shabana & Yakoub 2001; Yakoub & Shabana 2001; thesis Eq. 3.16].
+/// In an element of length l, r₀(x) is cubic, and r_y and r_z are linear in x:
+///   r(x, y, z) = r₀ + y r_y + z r_z = Σ N_v(x, y, z) e_v,
+///   e = (r, r_x, r_y, r_z) of the first node, then of the second.
+/// The reference is a field of the same kind. Strains are relative to it, in the axes of its sections (`SectionFrame`
+/// of r_y, r_z).
 
 #include <polybody/bodies/ancf/section_frame.hpp>
 #include <polybody/bodies/shared/bar.hpp>
@@ -17,8 +17,8 @@ inline constexpr int vectors = 8;  ///< nodal vectors of an element, numbered v;
 inline constexpr int columns = 3 * vectors;  ///< coordinates of an element
 using Coordinates = Vec<double, columns>;    ///< coordinates of an element (24)
 
-/// N_v and its derivatives by x, y, z at (ξ, y, z), as columns.
-template <class = void>  // compiled where it is used
+/// Shape functions N_v and their derivatives with respect to x, y, z at (ξ, y, z), as columns.
+template <class = void>  // compiled only if used
 Mat<double, vectors, 4> shape(double xi, double y, double z, double l) {
   ShapeValues<4> const h = hermite_shape(xi, l);
   Mat<double, vectors, 4> n = Mat<double, vectors, 4>::Zero();
@@ -39,28 +39,29 @@ Mat<double, vectors, 4> shape(double xi, double y, double z, double l) {
   return n;
 }
 
-/// The reference of an element.
+/// Reference configuration of an element.
 class Reference {
  public:
-  double l = 0.0;                       ///< of the axis [m]
-  Coordinates x = Coordinates::Zero();  ///< e
-  bool straight = true;                 ///< neither bent nor twisted
+  double l = 0.0;                       ///< length of the axis [m]
+  Coordinates x = Coordinates::Zero();  ///< nodal coordinates e
+  bool straight = true;                 ///< true if neither bent nor twisted
 
-  /// det [r_x r_y r_z], linear in y and z: negative where the section is turned inside out.
-  template <class T = double>  // compiled where it is used
+  /// Determinant det [r_x r_y r_z], linear in y and z. It is negative if the section is turned inside out.
+  template <class T = double>  // compiled only if used
   double determinant(double xi, double y, double z) const {
     return straight ? 1.0 : jacobian<T>(xi, y, z).determinant();
   }
 
-  /// ∂N/∂X of the place X in the section's axes there, so that F = Σ e_v (∂N_v/∂X)ᵀ is one in the reference; and the
-  /// reference volume dV/(dx dy dz) by that on the axis. (Between nodes the interpolated section is smaller by the
-  /// chord than the bar's.)
+  /// Gradients ∂N/∂X with respect to the position X in the axes of the section, so that F = Σ e_v (∂N_v/∂X)ᵀ is the
+  /// identity in the reference. They include the reference volume dV/(dx dy dz) relative to the volume on the axis.
+  /// Between the nodes of a curved element the interpolated section is smaller than the section of the bar.
   struct Gradients {
-    Mat<double, vectors, 3> g;  ///< (8×3) a row for each nodal vector
-    double volume;              ///< relative to that on the axis
+    Mat<double, vectors, 3> g;  ///< 8×3, a row for each nodal vector
+    double volume;              ///< relative to the volume on the axis
   };
-  /// ∂N/∂X = [N_x N_y N_z] J₀⁻¹ at (ξ, y, z) [m],  J₀ = Rᵀ [r_x r_y r_z] of the reference, R its section frame.
-  template <class T = double>  // compiled where it is used
+  /// Gradients ∂N/∂X = [N_x N_y N_z] J₀⁻¹ at (ξ, y, z) [m], with J₀ = Rᵀ [r_x r_y r_z] of the reference and R its
+  /// section frame.
+  template <class T = double>  // compiled only if used
   Gradients gradients(double xi, double y, double z) const {
     Mat<T, vectors, 4> const n = shape(xi, y, z, l);
     Mat<T, vectors, 3> const natural = n.template rightCols<3>();
@@ -72,7 +73,7 @@ class Reference {
   }
 
  private:
-  template <class T>  // compiled where it is used
+  template <class T>  // compiled only if used
   Mat<T, 3, 3> jacobian(double xi, double y, double z) const {
     Vec<T, columns> const e = x;
     Mat<T, vectors, 4> const n = shape(xi, y, z, l);
@@ -80,27 +81,27 @@ class Reference {
   }
 };
 
-/// An element deformed to the coordinates e.
+/// Element in the deformed configuration with the coordinates e.
 struct Deformation {
-  Reference const& reference;  ///< must outlive this
-  Coordinates e;               ///< (24) of both nodes
+  Reference const& reference;  ///< must outlive this object
+  Coordinates e;               ///< coordinates of both nodes (24)
 
-  /// F at (ξ, y, z) [m]: from the axes of the reference section to world axes.
-  template <class T = double>  // compiled where it is used
+  /// Deformation gradient F at (ξ, y, z) [m], from the axes of the reference section to world axes.
+  template <class T = double>  // compiled only if used
   Mat3 gradient(double xi, double y, double z) const {
     Vec<T, columns> const x = e;
     return x.reshaped(3, vectors) * reference.gradients(xi, y, z).g;
   }
   /// Green–Lagrange strain E at (ξ, y, z) [m], in the axes of the reference section.
-  template <class T = double>  // compiled where it is used
+  template <class T = double>  // compiled only if used
   Mat3 strain(double xi, double y, double z) const {
     Mat<T, 3, 3> const f = gradient(xi, y, z);
     return 0.5 * (f.transpose() * f - Mat<T, 3, 3>::Identity());
   }
 };
 
-/// A bar's section as four points, each with a quarter of its area, that give its area and both its second moments:
-/// y = ±√(I_z/A), z = ±√(I_y/A). For a rectangle they are the Gauss points (2 × 2).
+/// Four points of a section, each with a quarter of its area, that give the area and both second moments of area: y =
+/// ±√(I_z/A), z = ±√(I_y/A). For a rectangle they are the Gauss points (2 × 2).
 struct SectionPoints {
   double y, z;  ///< √(I_z/A) and √(I_y/A) [m]
   /// Calls f(y, z) at each of the four points [m].

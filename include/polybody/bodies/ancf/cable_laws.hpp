@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Axial strain of a cable in plane or space, and bending in space, as strain laws over the cubic Hermite element with
-/// coordinates (r, r′) at both ends.
+/// Strain laws of a cable: axial strain in the plane or in space, and bending in space, for the cubic Hermite element
+/// with coordinates (r, r′) at both ends.
 
 #include <polybody/bodies/ancf/cable_strains.hpp>
 #include <polybody/bodies/shared/strain_group.hpp>
@@ -11,7 +11,7 @@ namespace polybody {
 
 namespace detail {
 
-/// The rows of p = (r′, r″) over the coordinates behind the first of an element of length l.
+/// Rows of p = (r′, r″) for the coordinates after the first nodal vector, in an element of length l.
 template <class T>
 Mat<T, 2, 3> cable_curvature_map(double xi, double l) {
   ShapeValues<4> const s = hermite_shape(xi, l);
@@ -22,7 +22,7 @@ Mat<T, 2, 3> cable_curvature_map(double xi, double l) {
   }
   return n;
 }
-/// 1/nᵏ of 1/n², k = 2 or 3.
+/// Inverse power 1/nᵏ from 1/n², for k = 2 or 3.
 template <int k, class T>
 T inverse_power(T const& inverse2) {
   using std::sqrt;
@@ -34,7 +34,7 @@ T inverse_power(T const& inverse2) {
 
 }  // namespace detail
 
-/// Axial strain, p = r′. Five points integrate ε² of the cubic field exactly.
+/// Axial strain, with p = r′. Five points integrate ε² of the cubic field exactly.
 template <class Strain, int axial_points, int dimension = 3>
 struct CableAxial {
   static constexpr int points = axial_points;
@@ -44,7 +44,7 @@ struct CableAxial {
   static constexpr int reach = 3;
   static constexpr int difference = 2;
 
-  template <class T = double>  // compiled where it is used
+  template <class T = double>  // compiled only if used
   static Vec<T, 1> stiffness(BarConstants const& c) {
     return Vec<T, 1>(double(c.EA));
   }
@@ -68,8 +68,8 @@ struct CableAxial {
   }
 };
 
-/// Bending in space as the vector κ = s × u/|s|ᵏ, s = r′, u = r″; p = (s, u). It is smooth where its length is not, at
-/// κ = 0.
+/// Bending in space as the vector κ = s × u/|s|ᵏ, with s = r′, u = r″ and p = (s, u). Unlike its length, the vector is
+/// smooth at κ = 0.
 template <class Strain, int bending_points>
 struct CableBending {
   static constexpr int points = bending_points;
@@ -78,7 +78,7 @@ struct CableBending {
   static constexpr int strains = 3;
   static constexpr int reach = 3;
   static constexpr int difference = 2;
-  static constexpr int k = Strain::curvature_power;  ///< the power of |r′| in κ
+  static constexpr int k = Strain::curvature_power;  ///< power of |r′| in κ
 
   static Vec3 stiffness(BarConstants const& c) { return {c.EI, c.EI, c.EI}; }
   static Vec3 damping(Damping const& d) { return {d.bending, d.bending, d.bending}; }
@@ -88,7 +88,7 @@ struct CableBending {
     return detail::cable_curvature_map<T>(xi, l);
   }
 
-  /// With c = s × u: ∂κ/∂s = −ũ/nᵏ − k κ sᵀ/n², ∂κ/∂u = s̃/nᵏ.
+  /// Derivatives with c = s × u: ∂κ/∂s = −ũ/nᵏ − k κ sᵀ/n², ∂κ/∂u = s̃/nᵏ.
   template <KernelScalar T>
   static void evaluate(Vec<T, 6> const& p, Vec<T, 3>& strain, Mat<T, 3, 6>& b) {
     T const inverse2 = T(1.0) / (p[0] * p[0] + p[1] * p[1] + p[2] * p[2]), inverse = detail::inverse_power<k>(inverse2);
@@ -105,7 +105,7 @@ struct CableBending {
     }
   }
 
-  /// κ·κ = ((s·s)(u·u) − (s·u)²)/n²ᵏ.
+  /// Square κ·κ = ((s·s)(u·u) − (s·u)²)/n²ᵏ.
   template <KernelScalar T>
   static T square(Vec<T, 6> const& p) {
     T const ss = p[0] * p[0] + p[1] * p[1] + p[2] * p[2], uu = p[3] * p[3] + p[4] * p[4] + p[5] * p[5];
@@ -113,7 +113,7 @@ struct CableBending {
     return (ss * uu - su * su) * (inverse * inverse);
   }
 
-  /// For w·κ = c/nᵏ, c = w·(s × u) with ∂c/∂s = a = u × w, ∂c/∂u = d = w × s, ∂²c/∂s∂u = −w̃:
+  /// Second derivatives of w·κ = c/nᵏ, with c = w·(s × u), ∂c/∂s = a = u × w, ∂c/∂u = d = w × s, ∂²c/∂s∂u = −w̃:
   ///   ∂²/∂s² = (−k (a sᵀ + s aᵀ + c 1) + k (k + 2) c s sᵀ/n²)/nᵏ⁺²,  ∂²/∂s∂u = −w̃/nᵏ − k s dᵀ/nᵏ⁺².
   template <KernelScalar T>
   static void add_hessian(Vec<T, 6> const& p, Vec<T, 3> const& w, Mat<T, 6, 6>& h) {
@@ -143,17 +143,18 @@ struct CableBending {
     }
   }
 
-  /// κ̇ = turn of κ + change of its length, and a cable does not know how it turns about its own axis; so the length
-  /// alone is damped,
-  ///   p = w κ̇ + G κ (κ·κ̇),  w = (1 + x)⁻⁴,  G = (1 − w)/κ²,  x = κ²/κ₀²,
-  /// with all of κ̇ below κ₀ = 1e-3 1/m, where the direction of κ says nothing. G is a polynomial over (1 + x)⁴.
+  /// Objective part p of the rate κ̇. The rate is the sum of a rotation of κ and a change of its length. The rotation
+  /// of a cable about its own axis is undetermined, so that only the change of length is damped:
+  ///   p = w κ̇ + G κ (κ·κ̇),  w = (1 + x)⁻⁴,  G = (1 − w)/κ²,  x = κ²/κ₀².
+  /// Below κ₀ = 1e-3 1/m the direction of κ is not significant, and all of κ̇ is damped. G is a polynomial over (1 +
+  /// x)⁴.
   template <KernelScalar T>
   static void objective_rate(Vec<T, 3> const& strain, Vec<T, 3>& rate) {
     Blend<T> const f(strain);
     T const along = detail::dot(strain, rate);
     for (int i = 0; i < 3; ++i) rate[i] = rate[i] * f.w + strain[i] * (f.g * along);
   }
-  /// ∂p/∂κ̇ = w 1 + G κ κᵀ;  ∂p/∂κ = κ̇ w′ᵀ + G ((κ·κ̇) 1 + κ κ̇ᵀ) + κ (κ·κ̇) G′ᵀ.
+  /// Derivatives ∂p/∂κ̇ = w 1 + G κ κᵀ;  ∂p/∂κ = κ̇ w′ᵀ + G ((κ·κ̇) 1 + κ κ̇ᵀ) + κ (κ·κ̇) G′ᵀ.
   template <KernelScalar T>
   static void objective_rate_gradients(Vec<T, 3> const& strain, Vec<T, 3> const& rate, Mat<T, 3, 3>& by_rate,
                                        Mat<T, 3, 3>& by_strain) {
@@ -171,7 +172,7 @@ struct CableBending {
   }
 
  private:
-  /// w, G and their gradients' factors of κ.
+  /// Weights w and G, and the factors of κ in their gradients.
   template <class T>
   struct Blend {
     T w, g, dw, dg;

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Axial strain measures of cables, functions of the slope p = r′ in the plane (d = 2) or in space (d = 3), each with
-/// the power k of |r′| in the bending measure |r′ × r″|/|r′|ᵏ that goes with it.
+/// Axial strain measures of cables as functions of p = r′ in the plane (d = 2) or in space (d = 3). Each has the power
+/// k of |r′| in the corresponding bending measure |r′ × r″|/|r′|ᵏ.
 
 #include <polybody/math/pack.hpp>
 #include <polybody/math/types.hpp>
@@ -17,29 +17,29 @@ T dot(Vec<T, d> const& a, Vec<T, d> const& b) {
 }
 }  // namespace detail
 
-/// Green strain ε = ½ (r′·r′ − 1) and the exact geometric curvature κ = |r′ × r″|/|r′|³ (the thesis' choice).
+/// Green strain ε = ½ (r′·r′ − 1) and the exact geometric curvature κ = |r′ × r″|/|r′|³, as in the thesis.
 struct GreenStrain {
-  static constexpr int curvature_power = 3;  ///< k, the power of |r′| in the bending measure
+  static constexpr int curvature_power = 3;  ///< power k of |r′| in the bending measure
 
-  /// ε and b = ∂ε/∂p at the slope p.
+  /// Strain ε and its derivative b = ∂ε/∂p at p = r′.
   template <KernelScalar T, int d>
   static void axial(Vec<T, d> const& p, Vec<T, 1>& strain, Mat<T, 1, d>& b) {
     strain[0] = detail::dot(p, p) * 0.5 - 0.5;
     for (int i = 0; i < d; ++i) b(0, i) = p[i];
   }
-  /// h += n ∂²ε/∂p².
+  /// Adds the second derivative, h += n ∂²ε/∂p².
   template <KernelScalar T, int d>
   static void add_axial_hessian(Vec<T, d> const&, T const& n, Mat<T, d, d>& h) {
     for (int i = 0; i < d; ++i) h(i, i) += n;
   }
 };
 
-/// Engineering strain ε = |r′| − 1 and material bending measure κ = |r′ × r″|/|r′|²: linear in the resultants of the
-/// exact rod [Gerstmayr & Irschik 2008].
+/// Engineering strain ε = |r′| − 1 and material bending measure κ = |r′ × r″|/|r′|². Both are linear in the resultants
+/// of the exact rod [Gerstmayr & Irschik 2008].
 struct EngineeringStrain {
-  static constexpr int curvature_power = 2;  ///< k, the power of |r′| in the bending measure
+  static constexpr int curvature_power = 2;  ///< power k of |r′| in the bending measure
 
-  /// ε and b = ∂ε/∂p at the slope p.
+  /// Strain ε and its derivative b = ∂ε/∂p at p = r′.
   template <KernelScalar T, int d>
   static void axial(Vec<T, d> const& p, Vec<T, 1>& strain, Mat<T, 1, d>& b) {
     using std::sqrt;
@@ -47,7 +47,7 @@ struct EngineeringStrain {
     strain[0] = n - 1.0;
     for (int i = 0; i < d; ++i) b(0, i) = p[i] / n;
   }
-  /// h += n (1 − p pᵀ/|p|²)/|p|, the part across p.
+  /// Adds the second derivative, h += n (1 − p pᵀ/|p|²)/|p|, which acts normal to p.
   template <KernelScalar T, int d>
   static void add_axial_hessian(Vec<T, d> const& p, T const& n, Mat<T, d, d>& h) {
     using std::sqrt;

@@ -1,13 +1,8 @@
 #pragma once
 /// \file
-/// ANCF Cholesky coordinates [Yakoub & Shabana 1999; thesis §4.4]: with M = L Lᵀ constant and p = Lᵀ e the mass matrix
-/// of any body whose coordinates e add becomes the identity, T = ½ ṗᵀ ṗ. Forces are Q_p = L⁻¹ Q_e; the motion stays the
-/// same. Points that are linear in e are so in p: `AncfLinear` joins such bodies. What it eliminates couples them, so
-/// that the mass matrix of the mechanism is TᵀT: explicit steps factor it once (solvers/kept_parts.hpp). L is banded
-/// like M, so a force costs a few operations a coordinate more; tangent and markers fill up, for L⁻¹ is full: meant for
-/// explicit steppers without constraints, and for comparison.
+/// ANCF Cholesky coordinates [Yakoub & Shabana 1999; thesis §4.4].
 ///
-/// Not in polybody.hpp: few programs need it.
+/// This header is not part of polybody.hpp, because few programs need it.
 
 #include <vector>
 
@@ -15,7 +10,19 @@
 
 namespace polybody {
 
-/// `CholeskyCoordinates<AncfCable<>>::from(bar, n)` in place of `AncfCable<>::from(bar, n)`; everything else stays.
+/// Body B in Cholesky coordinates p = Lᵀ e, where M = L Lᵀ is the constant mass matrix for the coordinates e [Yakoub &
+/// Shabana 1999; thesis §4.4]. The mass matrix becomes the identity, T = ½ ṗᵀ ṗ, and the forces are Q_p = L⁻¹ Q_e. The
+/// motion does not change. B can be any body with additive coordinates.
+///
+/// Points that are linear in e are linear in p, so that `AncfLinear` can join such bodies. The elimination couples the
+/// bodies, and the mass matrix of the mechanism becomes TᵀT. Explicit steps factorise it once (solvers/kept_parts.hpp).
+///
+/// L is banded like M, so a force costs a few additional operations per coordinate. L⁻¹ is full, therefore the tangent
+/// and the marker Jacobians are full. The class is meant for explicit integrators without constraints, and for
+/// comparison.
+///
+/// A program that calls `CholeskyCoordinates<AncfCable<>>::from(bar, n)` instead of `AncfCable<>::from(bar, n)` needs
+/// no other change.
 template <Body B>
   requires(B::constant_mass && B::element_columns > 0)
 class CholeskyCoordinates : public AddingCoordinates {
@@ -25,8 +32,8 @@ class CholeskyCoordinates : public AddingCoordinates {
   static constexpr bool constant_mass = true;
   static constexpr int element_columns = Eigen::Dynamic;
   static constexpr int point_columns = Eigen::Dynamic;
-  using Point = typename B::Point;  ///< as of the body itself
-  /// Position gradients that are linear in the coordinates.
+  using Point = typename B::Point;  ///< point type of the body B
+  /// Number of position gradients that are linear in the coordinates.
   static constexpr int gradients = [] {
     if constexpr (HasLinearPoints<B>)
       return B::gradients;
@@ -34,12 +41,14 @@ class CholeskyCoordinates : public AddingCoordinates {
       return 0;
   }();
 
-  /// The body from the arguments `args` of its own `from`. \throws InvalidInput as the constructor.
+  /// Creates the body from the arguments `args` of `B::from`.
+  /// \throws InvalidInput as the constructor.
   template <class... Args>
   static CholeskyCoordinates from(Args const&... args) {
     return CholeskyCoordinates(B::from(args...));
   }
-  /// \throws InvalidInput for a body whose coordinates do not add, or whose mass is not positive definite.
+  /// Wraps `body`.
+  /// \throws InvalidInput for a body whose coordinates do not add, or whose mass matrix is not positive definite.
   explicit CholeskyCoordinates(B body) : body_(std::move(body)), n_(body_.speeds()) {
     if (body_.coordinates() != n_)
       throw InvalidInput("CholeskyCoordinates: the body's coordinates must add, without quaternions.");
@@ -53,27 +62,28 @@ class CholeskyCoordinates : public AddingCoordinates {
   Point at(Args const&... args) const {
     return body_.at(args...);
   }
-  /// Coordinates e of the body itself from p, for its own questions (strains, centre line).
+  /// Coordinates e of the underlying body from p, for its own functions (strains, centre line).
   VecX base_coordinates(std::span<double const> p) const {
     VecX e = Eigen::Map<VecX const>(p.data(), n_);
     back<double>(e);
     return e;
   }
 
-  /// r = S L⁻ᵀ p, and its gradients, by all columns.
+  /// Matrix of r = S L⁻ᵀ p at `p`, over all columns.
   MatX position_map(Point const& p) const
     requires HasLinearPoints<B>
   {
     return by_own(body_.position_map(p), p);
   }
-  /// Gradient α of the body by all columns of p; α = 0, 1, 2 for x, y, z, as far as the body has them.
+  /// Matrix of gradient `alpha` at point `p`, over all columns; `alpha` = 0, 1, 2 for x, y, z, if the body has this
+  /// gradient.
   MatX gradient_map(Point const& p, int alpha) const
     requires HasLinearPoints<B>
   {
     return by_own(body_.gradient_map(p, alpha), p);
   }
 
-  /// As the body itself tells them (see sections.hpp).
+  /// Section strains of the underlying body (see sections.hpp).
   Vec6 section_strains(Point const& p, std::span<double const> q) const {
     return body_.section_strains(p, span(base_coordinates(q)));
   }
@@ -133,7 +143,7 @@ class CholeskyCoordinates : public AddingCoordinates {
     return over_elements([&](Index i) { return body_.gravity_energy(i, span(e), g); });
   }
 
-  /// J_p = J_e L⁻ᵀ.
+  /// Marker kinematics with the Jacobian J_p = J_e L⁻ᵀ.
   template <StateScalar T>
   void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v, Published<T>& out) const {
     constexpr int width = B::point_columns;
@@ -178,7 +188,7 @@ class CholeskyCoordinates : public AddingCoordinates {
   double l(Index i, Index j) const { return factor_[place(i, j)]; }
   std::size_t place(Index i, Index j) const { return std::size_t(i * (band_ + 1) + j - i + band_); }
 
-  /// M = L Lᵀ within the band.
+  /// Cholesky factorisation M = L Lᵀ within the band.
   void factor() {
     constexpr int width = B::element_columns;
     band_ = std::min<Index>(width - 1, n_ - 1);
@@ -202,7 +212,7 @@ class CholeskyCoordinates : public AddingCoordinates {
         at(i, j) = j < i ? sum / at(j, j) : std::sqrt(sum);
       }
   }
-  /// x = Lᵀ x.
+  /// Product x = Lᵀ x.
   void multiply(std::span<double> x) const {
     for (Index j = 0; j < n_; ++j) {
       double sum = 0.0;
@@ -210,7 +220,7 @@ class CholeskyCoordinates : public AddingCoordinates {
       x[std::size_t(j)] = sum;
     }
   }
-  /// x = L⁻¹ x and x = L⁻ᵀ x.
+  /// Solutions x = L⁻¹ x and x = L⁻ᵀ x.
   template <class T, class V>
   void forth(V&& x) const {
     for (Index i = 0; i < n_; ++i) {
@@ -227,19 +237,20 @@ class CholeskyCoordinates : public AddingCoordinates {
       x[j] = sum * (1.0 / l(j, j));
     }
   }
-  /// m L⁻ᵀ, m of the columns of `p`.
+  /// Product m L⁻ᵀ of a matrix m with the columns of `p`.
   MatX by_own(auto const& m, Point const& p) const {
     MatX out = MatX::Zero(m.rows(), n_);
     out.middleCols(body_.first_column(p), m.cols()) = m;
     for (Index i = 0; i < out.rows(); ++i) forth<double>(out.row(i));
     return out;
   }
-  /// L⁻¹ k L⁻ᵀ.
+  /// Product L⁻¹ k L⁻ᵀ.
   void both_sides(MatX& k) const {
     for (Index j = 0; j < n_; ++j) forth<double>(k.col(j));
     for (Index i = 0; i < n_; ++i) forth<double>(k.row(i));
   }
-  /// The body's own coordinates or speeds, in one of two places that each thread keeps, so that no step allocates.
+  /// Coordinates or generalised velocities of the underlying body. Each thread has two buffers for them, so that no
+  /// step allocates memory.
   template <class T>
   VecXOf<T> const& base_of(std::span<T const> p, int place) const {
     static thread_local VecXOf<T> kept[2];

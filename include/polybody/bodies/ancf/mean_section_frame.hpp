@@ -1,35 +1,35 @@
 #pragma once
 /// \file
-/// The mean orthonormal frame of a deformable section, with weights p and 1 − p for its two vectors b, c (r_y and r_z
-/// of a beam): t₁ = b × c/|b × c| is normal to both, and among the turns about it R = [t₁ t₂ t₃] is the one of least
-///   p |b − t₂|² + (1 − p) |c − t₃|²,  hence  t₂ = m/|m|,  m = p b + (1 − p) c × t₁,
-/// and R is the identity where b = e₂, c = e₃. So R follows from
-///   b·t₁ = c·t₁ = 0,  p b·t₃ = (1 − p) c·t₂.
-/// A change (δb, δc) has the components w = (X, Y), X = Rᵀδb, Y = Rᵀδc, and turns the frame by φ = S w in its own axes;
-/// varied, the three conditions give
-///   (p b₂ + (1 − p) c₃) φ₁ = p X₃ − (1 − p) Y₂,  b₂ φ₃ − b₃ φ₂ = −X₁,  c₂ φ₃ − c₃ φ₂ = −Y₁.
-/// While the frame moves by ŵ, a constant d changes its components by X × φ̂, Y × φ̂, and b, c theirs by
-///   b̂ = X̂ + b × φ̂,  ĉ = Ŷ + c × φ̂.
-/// Varied again, the same three equations give δ̂φ = S h with
-///   h = (X × φ̂ − φ × b̂, Y × φ̂ − φ × ĉ).
-/// With p = 1 it is `SectionFrame`, for whose strains that has closed forms. Plain loops; they run on doubles, dual
-/// numbers and packs.
+/// Mean orthonormal frame of a deformable section.
 
 #include <polybody/bodies/ancf/section_frame.hpp>
 
 namespace polybody {
 
-/// Axes that divide the directions of two gradients by a share p, with their rates and variations.
+/// Mean orthonormal frame of a deformable section, with weights p and 1 − p of its two vectors b, c (r_y and r_z of a
+/// beam). The axis t₁ = b × c/|b × c| is normal to both. Among the rotations about t₁, R = [t₁ t₂ t₃] minimises
+///   p |b − t₂|² + (1 − p) |c − t₃|²,  hence  t₂ = m/|m|,  m = p b + (1 − p) c × t₁.
+/// R is the identity if b = e₂ and c = e₃. The conditions for R are
+///   b·t₁ = c·t₁ = 0,  p b·t₃ = (1 − p) c·t₂.
+/// A change (δb, δc) has the components w = (X, Y), X = Rᵀδb, Y = Rᵀδc. It rotates the frame by φ = S w in its own
+/// axes. The variation of the three conditions gives
+///   (p b₂ + (1 − p) c₃) φ₁ = p X₃ − (1 − p) Y₂,  b₂ φ₃ − b₃ φ₂ = −X₁,  c₂ φ₃ − c₃ φ₂ = −Y₁.
+/// While the frame moves by ŵ, the components of a constant d change by X × φ̂, Y × φ̂, and those of b, c by
+///   b̂ = X̂ + b × φ̂,  ĉ = Ŷ + c × φ̂.
+/// The second variation of the same three equations gives δ̂φ = S h with
+///   h = (X × φ̂ − φ × b̂, Y × φ̂ − φ × ĉ).
+/// With p = 1 the frame equals `SectionFrame`, which has closed forms for its strains. The code uses plain loops for
+/// doubles, dual numbers and SIMD vectors.
 template <KernelScalar T>
 class MeanSectionFrame : public SectionAxes<T> {
  public:
   using V3 = Vec<T, 3>;         ///< three components
-  using V6 = Vec<T, 6>;         ///< the components w = (X, Y) of a change
-  using M6 = Mat<T, 6, 6>;      ///< a form in two changes
-  using Axes = SectionAxes<T>;  ///< holds R
+  using V6 = Vec<T, 6>;         ///< components w = (X, Y) of a change
+  using M6 = Mat<T, 6, 6>;      ///< bilinear form in two changes
+  using Axes = SectionAxes<T>;  ///< base class, stores R
   using Axes::axis, Axes::cross, Axes::dot, Axes::local, Axes::R, Axes::world;
 
-  /// From the gradients b = r_y and c = r_z (3); `share` is p in [0, 1].
+  /// Frame from the gradients b = r_y and c = r_z (3); `share` is p in [0, 1].
   MeanSectionFrame(V3 const& b, V3 const& c, double share) : p_(share) {
     using std::sqrt;
     V3 const n = cross(b, c);
@@ -51,30 +51,31 @@ class MeanSectionFrame : public SectionAxes<T> {
     c_ = V3(T(0.0), dot(c, t2), dot(c, t3));
   }
 
-  /// w = (Rᵀdb, Rᵀdc), for changes db of b and dc of c.
+  /// Components w = (Rᵀdb, Rᵀdc) of changes db of b and dc of c.
   V6 components(V3 const& db, V3 const& dc) const {
     V3 const x = local(db), y = local(dc);
     return {x[0], x[1], x[2], y[0], y[1], y[2]};
   }
-  /// φ = S w; of rates: the angular velocity, of derivatives along the axis: twist and curvatures. In the frame's axes.
+  /// Rotation φ = S w in the axes of the frame. For rates it is the angular velocity, for derivatives along the axis
+  /// twist and curvatures.
   V3 spin(V6 const& w) const {
     return {(w[2] * p_ - w[4] * (1.0 - p_)) * im_, (b_[1] * w[3] - c_[1] * w[0]) * in_,
             (b_[2] * w[3] - c_[2] * w[0]) * in_};
   }
-  /// Sᵀm, m (3) in the section's axes.
+  /// Product Sᵀm, with m (3) in the axes of the section.
   V6 pull(V3 const& m) const {
     return {-(c_[1] * m[1] + c_[2] * m[2]) * in_, T(0.0), m[0] * p_ * im_, (b_[1] * m[1] + b_[2] * m[2]) * in_,
             -(m[0] * (1.0 - p_)) * im_,           T(0.0)};
   }
-  /// δ̂φ of a constant d of components w while the frame moves `by` ŵ.
+  /// Change δ̂φ of φ for a constant d with components w, while the frame moves `by` ŵ.
   V3 change(V6 const& w, V6 const& by) const {
     V3 const phi = spin(w), turn = spin(by), x = cross(head(w), turn), y = cross(tail(w), turn),
              b = cross(b_, turn) + head(by), c = cross(c_, turn) + tail(by), bx = cross(phi, b), cy = cross(phi, c);
     return spin({x[0] - bx[0], x[1] - bx[1], x[2] - bx[2], y[0] - cy[0], y[1] - cy[1], y[2] - cy[2]});
   }
-  /// The angular acceleration, in the frame's axes, of b and c moving at constant rates w.
+  /// Angular acceleration in the axes of the frame if b and c move at constant rates w.
   V3 acceleration(V6 const& w) const { return change(w, w); }
-  /// M(m), 6×6: m·δ̂φ(w) = wᵀ M ŵ for a constant d of components w.
+  /// Matrix M(m), 6×6, of m·δ̂φ(w) = wᵀ M ŵ for a constant d with components w.
   M6 second(V3 const& m) const {
     M6 h;
     for (int j = 0; j < 6; ++j)
@@ -82,7 +83,8 @@ class MeanSectionFrame : public SectionAxes<T> {
     return h;
   }
 
-  /// Row `row` of `out` gets the covector s of (X, Y) as one of (δb, δc) at columns `first`, `first` + 3.
+  /// Writes the covector s of (X, Y) as a covector of (δb, δc) to row `row` of `out`, at columns `first` and `first` +
+  /// 3.
   template <int rows, int columns>
   void to_vectors(V6 const& s, int row, int first, Mat<T, rows, columns>& out) const {
     V3 const x = world(head(s)), y = world(tail(s));
@@ -91,10 +93,10 @@ class MeanSectionFrame : public SectionAxes<T> {
       out(row, first + 3 + i) = y[i];
     }
   }
-  /// Block (first_row, first_column) of `out` += the form h of (X, Y) × (X, Y) as one of (δb, δc) × (δb, δc).
+  /// Adds the form h of (X, Y) × (X, Y) to block (first_row, first_column) of `out`, as a form of (δb, δc) × (δb, δc).
   template <int n>
   void add_form(M6 const& h, int first_row, int first_column, Mat<T, n, n>& out) const {
-    M6 half;  // h by world axes from the right
+    M6 half;  // h in world axes on the right-hand side
     for (int i = 0; i < 6; ++i) to_vectors(V6(h.row(i)), i, 0, half);
     for (int j = 0; j < 6; ++j) {
       V6 const column = half.col(j);
@@ -115,7 +117,7 @@ class MeanSectionFrame : public SectionAxes<T> {
     return e;
   }
 
-  double p_;   ///< the weight of b
+  double p_;   ///< weight of b
   V3 b_, c_;   ///< Rᵀb, Rᵀc
   T im_, in_;  ///< 1/|m|, |m| = p b₂ + (1 − p) c₃;  1/|b × c|
 };

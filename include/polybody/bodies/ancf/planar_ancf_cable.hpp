@@ -1,8 +1,6 @@
 #pragma once
 /// \file
-/// Gradient-deficient ANCF cable in the plane: cubic Hermite position field, node coordinates (x, y, x′, y′),
-/// constant mass matrix, no rotation coordinate and no rotary inertia
-/// [Berzeri & Shabana 2000; Gerstmayr & Irschik 2008; thesis Eq. 3.16–3.20].
+/// Gradient-deficient ANCF cable in the plane.
 
 #include <polybody/bodies/ancf/cable_laws.hpp>
 #include <polybody/bodies/shared/planar_beam.hpp>
@@ -12,52 +10,55 @@ namespace polybody::planar {
 
 using polybody::EngineeringStrain, polybody::GreenStrain;
 
-/// The Theory of `AncfCable`, with so many Gauss points for axial strain and bending.
+/// Theory of the planar `AncfCable`: cubic Hermite position field, node coordinates (x, y, x′, y′), constant mass
+/// matrix, neither rotation coordinates nor rotary inertia [Berzeri & Shabana 2000; Gerstmayr & Irschik 2008; thesis
+/// Eq. 3.16–3.20]. The template arguments set the numbers of Gauss points for axial strain and bending.
 template <class Strain, int axial_points = 5, int bending_points = 3>
 struct HermiteCable {
-  static constexpr char const* name = "planar::AncfCable";  ///< begins its messages
+  static constexpr char const* name = "planar::AncfCable";  ///< prefix of its error messages
   static constexpr int node_columns = 4;                    ///< (x, y, x′, y′)
   static constexpr bool packs_pay = true;
-  static constexpr std::array<int, 2> section_rows = {0, 5};  ///< of axial strain and curvature
-  static constexpr int gradients = 1;                         ///< that are linear in the coordinates
+  static constexpr std::array<int, 2> section_rows = {0, 5};  ///< rows of axial strain and curvature
+  static constexpr int gradients = 1;  ///< number of position gradients that are linear in the coordinates
 
-  static void check(BarConstants const&) {}  ///< every bar will do
-  /// The node at s [m] along a straight axis from `origin` [m], turned from world x by `angle` [rad].
+  static void check(BarConstants const&) {}  ///< accepts every bar
+  /// Node at distance s [m] along a straight axis from `origin` [m], rotated from world x by `angle` [rad].
   static Vec4 reference_node(Vec2 const& origin, double angle, double s) {
     double const c = std::cos(angle), d = std::sin(angle);
     return {origin[0] + s * c, origin[1] + s * d, c, d};
   }
-  /// The node's speeds in a rigid motion: v0 of the body-fixed point at the world's origin [m/s], omega [rad/s].
+  /// Generalised velocities of the node in a rigid motion: v0 of the body-fixed point at the origin of the world [m/s],
+  /// omega [rad/s].
   static Vec4 rigid_velocity(Vec4 const& node, Vec2 const& v0, double omega) {
     return {v0[0] - omega * node[1], v0[1] + omega * node[0], -omega * node[3], omega * node[2]};
   }
-  /// The map (2×8) with one factor of s for each nodal vector.
-  template <class T = double>  // compiled where it is used
+  /// Matrix (2×8) with one factor of s for each nodal vector.
+  template <class T = double>  // compiled only if used
   static Mat<T, 2, 8> spread(std::array<double, 4> const& s) {
     Mat<T, 2, 8> n = Mat<T, 2, 8>::Zero();
     for (int i = 0; i < 4; ++i) n(0, 2 * i) = n(1, 2 * i + 1) = T(s[i]);
     return n;
   }
-  /// S (2×8) of r = S e at ξ of an element of length l [m].
+  /// Matrix S (2×8) of r = S e at ξ of an element of length l [m].
   template <class T = double>
   static Mat<T, 2, 8> position(double xi, double l) {
     return spread<T>(hermite_shape(xi, l).s);
   }
-  /// S′ (2×8) of r′ = S′ e.
+  /// Matrix S′ (2×8) of r′ = S′ e.
   template <class T = double>
   static Mat<T, 2, 8> gradient(double xi, double l) {
     return spread<T>(hermite_shape(xi, l).ds);
   }
-  /// The factors of the nodal vectors in r at ξ, and their derivatives by arc length.
+  /// Shape functions of r at ξ, and their derivatives with respect to arc length.
   static ShapeValues<4> axis_shape(double xi, double l) { return hermite_shape(xi, l); }
-  /// A cable has no rotary inertia.
+  /// Rotary inertia; a cable has none.
   template <class T = double>
   static Vec<T, 8> rotary(double, double) {
     return Vec<T, 8>::Zero();
   }
 
-  /// Angle of r′ at the coordinates e (8) with rates `ed`; θ̇ = r′ × ṙ′/|r′|², whose derivative without r̈′ is −2
-  /// (r′·ṙ′) θ̇/|r′|².
+  /// Angle θ of r′ at the coordinates e (8) with rates `ed`, and θ̇ = r′ × ṙ′/|r′|². The derivative of θ̇ without r̈′
+  /// is −2 (r′·ṙ′) θ̇/|r′|².
   template <StateScalar T>
   static SectionAngle<T, 8> rotation(double xi, double l, Vec<T, 8> const& e, Vec<T, 8> const& ed) {
     using std::atan2;
@@ -71,7 +72,7 @@ struct HermiteCable {
     return out;
   }
 
-  /// h = ∂²θ/∂e² = S′ᵀ [2xy, y² − x²; y² − x², −2xy]/|r′|⁴ S′ with r′ = (x, y).
+  /// Hessian h = ∂²θ/∂e² = S′ᵀ [2xy, y² − x²; y² − x², −2xy]/|r′|⁴ S′ with r′ = (x, y).
   template <class T>
   static void rotation_hessian(double xi, double l, Vec<T, 8> const& e, Mat<T, 8, 8>& h) {
     Mat<T, 2, 8> const d = gradient<T>(xi, l);
@@ -84,7 +85,7 @@ struct HermiteCable {
 
   using Axial = CableAxial<Strain, axial_points, 2>;  ///< the law of axial strain
 
-  /// Bending, p = (r′, r″), κ = c/nᵏ with c = r′ × r″, n = |r′|. Three points are the field's choice [Gerstmayr &
+  /// Bending with p = (r′, r″) and κ = c/nᵏ, where c = r′ × r″ and n = |r′|. Three points suit the field [Gerstmayr &
   /// Irschik 2008].
   struct Bending {
     static constexpr int points = bending_points;
@@ -93,7 +94,7 @@ struct HermiteCable {
     static constexpr int strains = 1;
     static constexpr int reach = 3;
     static constexpr int difference = 2;
-    static constexpr int k = Strain::curvature_power;  ///< the power of |r′| in κ
+    static constexpr int k = Strain::curvature_power;  ///< power of |r′| in κ
 
     template <class T = double>
     static Vec<T, 1> stiffness(BarConstants const& c) {
@@ -119,7 +120,7 @@ struct HermiteCable {
       b(0, 2) = -p[1] * inverse;
       b(0, 3) = p[0] * inverse;
     }
-    /// With s = r′, u = ∂c/∂s, w = ∂c/∂r″, and J = ∂²c/∂s∂r″ (a quarter turn):
+    /// Second derivatives with s = r′, u = ∂c/∂s, w = ∂c/∂r″, and J = ∂²c/∂s∂r″ (a rotation by a right angle):
     ///   ∂²κ/∂s² = (−k (u sᵀ + s uᵀ + c 1) + k (k + 2) c s sᵀ/n²)/nᵏ⁺²,  ∂²κ/∂s∂r″ = J/nᵏ − k s wᵀ/nᵏ⁺².
     template <KernelScalar T>
     static void add_hessian(Vec<T, 4> const& p, Vec<T, 1> const& n, Mat<T, 4, 4>& h) {

@@ -1,18 +1,18 @@
 #pragma once
 /// \file
-/// The orthonormal frame of a deformable section, its rotation, and the derivatives of both in closed form. From two
-/// vectors b, c that lie in the section (r_y and r_z of a beam):
-///   t₂ = b/|b|,  t₁ = b × c/|b × c|,  t₃ = t₁ × t₂,
-/// so that t₁ is normal to the section and R = [t₁ t₂ t₃] is the identity where b = e₂, c = e₃. With β = |b|, c₃ =
+/// Orthonormal frame of a deformable section, its rotation, and the derivatives of both in closed form. The frame
+/// follows from two vectors b, c in the section (r_y and r_z of a beam):
+///   t₂ = b/|b|,  t₁ = b × c/|b × c|,  t₃ = t₁ × t₂.
+/// The axis t₁ is normal to the section, and R = [t₁ t₂ t₃] is the identity if b = e₂ and c = e₃. With β = |b|, c₃ =
 /// c·t₃, σ = c·t₂/c₃, a change d = (δb, δc) has the components
-///   w = (X, Y),  X = Rᵀδb/β,  Y = Rᵀδc/c₃,
-/// and turns the frame by φ = S w in its own axes, δR = R φ̃:
-///   φ = (X₃, Y₁ − σ X₁, −X₁),
-/// from δt₂ = (1 − t₂t₂ᵀ) δb/β and from t₁·c staying zero. While the frame moves by ŵ, the components of a constant d
-/// change:
+///   w = (X, Y),  X = Rᵀδb/β,  Y = Rᵀδc/c₃.
+/// It rotates the frame by φ = S w in its own axes, δR = R φ̃:
+///   φ = (X₃, Y₁ − σ X₁, −X₁).
+/// This follows from δt₂ = (1 − t₂t₂ᵀ) δb/β and from the condition t₁·c = 0. While the frame moves by ŵ, the components
+/// of a constant d change:
 ///   δ̂X = X × φ̂ − X X̂₂,  δ̂Y = Y × φ̂ − Y (Ŷ₃ − σ X̂₃),  δ̂σ = g·ŵ = Ŷ₂ + (1 + σ²) X̂₃ − σ Ŷ₃.
-/// All else follows by the chain rule. Six-vectors are ordered (X, Y). Plain loops; they run on doubles, dual numbers
-/// and packs.
+/// All other derivatives follow by the chain rule. Vectors of six are ordered (X, Y). The code uses plain loops for
+/// doubles, dual numbers and SIMD vectors.
 
 #include <array>
 
@@ -22,47 +22,47 @@
 
 namespace polybody {
 
-/// The axes of a section, and products with them.
+/// Axes of a section, and products with them.
 template <KernelScalar T>
 struct SectionAxes {
   using V3 = Vec<T, 3>;  ///< three components
 
   Mat<T, 3, 3> R;  ///< columns t₁, t₂, t₃
 
-  /// Rᵀ x, x (3).
+  /// Product Rᵀ x, x (3).
   V3 local(V3 const& x) const {
     V3 y;
     for (int i = 0; i < 3; ++i) y[i] = R(0, i) * x[0] + R(1, i) * x[1] + R(2, i) * x[2];
     return y;
   }
-  /// R x.
+  /// Product R x.
   V3 world(V3 const& x) const {
     V3 y;
     for (int i = 0; i < 3; ++i) y[i] = R(i, 0) * x[0] + R(i, 1) * x[1] + R(i, 2) * x[2];
     return y;
   }
-  /// The unit vector e_k, k = 0, 1, 2.
+  /// Unit vector e_k, k = 0, 1, 2.
   static V3 axis(int k) { return V3(T(k == 0 ? 1.0 : 0.0), T(k == 1 ? 1.0 : 0.0), T(k == 2 ? 1.0 : 0.0)); }
-  /// a × b.
+  /// Cross product a × b.
   static V3 cross(V3 const& a, V3 const& b) {
     return V3(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]);
   }
-  /// a · b.
+  /// Scalar product a · b.
   static T dot(V3 const& a, V3 const& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 };
 
-/// Axes of a section from two of its gradients, with their rates and variations: the first along b, the second in the
-/// plane of b and c.
+/// Axes of a section from its gradients b and c, with their rates and variations: t₂ along b, t₃ in the plane of b and
+/// c.
 template <KernelScalar T>
 class SectionFrame : public SectionAxes<T> {
  public:
   using V3 = Vec<T, 3>;         ///< three components
-  using V6 = Vec<T, 6>;         ///< the components w = (X, Y) of a change
-  using M6 = Mat<T, 6, 6>;      ///< a form in two changes
-  using Axes = SectionAxes<T>;  ///< holds R
+  using V6 = Vec<T, 6>;         ///< components w = (X, Y) of a change
+  using M6 = Mat<T, 6, 6>;      ///< bilinear form in two changes
+  using Axes = SectionAxes<T>;  ///< base class, stores R
   using Axes::axis, Axes::cross, Axes::dot, Axes::local, Axes::R, Axes::world;
 
-  /// The frame of b and c, which must not be parallel.
+  /// Frame of b and c, which must not be parallel.
   SectionFrame(V3 const& b, V3 const& c) {
     using std::sqrt;
     V3 const n = cross(b, c);
@@ -80,7 +80,7 @@ class SectionFrame : public SectionAxes<T> {
     sigma_ = (R(0, 1) * c[0] + R(1, 1) * c[1] + R(2, 1) * c[2]) * ic_;
   }
 
-  /// w = (Rᵀdb/β, Rᵀdc/c₃), for changes db of b and dc of c.
+  /// Components w = (Rᵀdb/β, Rᵀdc/c₃) of changes db of b and dc of c.
   V6 components(V3 const& db, V3 const& dc) const {
     V3 const x = local(db), y = local(dc);
     V6 w;
@@ -90,9 +90,10 @@ class SectionFrame : public SectionAxes<T> {
     }
     return w;
   }
-  /// φ = S w; of rates: the angular velocity, of derivatives along the axis: twist and curvatures. In the frame's axes.
+  /// Rotation φ = S w in the axes of the frame. For rates it is the angular velocity, for derivatives along the axis
+  /// twist and curvatures.
   V3 spin(V6 const& w) const { return V3(w[2], w[3] - sigma_ * w[0], -w[0]); }
-  /// Sᵀ m, m (3) in the section's axes.
+  /// Product Sᵀ m, with m (3) in the axes of the section.
   V6 pull(V3 const& m) const {
     V6 s;
     for (int i = 0; i < 6; ++i) s[i] = T(0.0);
@@ -101,8 +102,8 @@ class SectionFrame : public SectionAxes<T> {
     s[3] = m[1];
     return s;
   }
-  /// M(m), 6×6: m·δ̂φ(w) = wᵀ M ŵ for a constant d of components w: the second derivative of the rotation,
-  /// `pairing(pull(m), 1)` less m₂ g in its first row.
+  /// Matrix M(m), 6×6, of m·δ̂φ(w) = wᵀ M ŵ for a constant d with components w. It is the second derivative of the
+  /// rotation: `pairing(pull(m), 1)` minus m₂ g in its first row.
   M6 second(V3 const& m) const {
     T const along = m[2] + sigma_ * m[1];
     M6 h;
@@ -118,8 +119,7 @@ class SectionFrame : public SectionAxes<T> {
     h(0, 4) = h(4, 0) = h(3, 5) = h(5, 3) = -m[1];
     return h;
   }
-  /// δ̂φ of d = w moving by itself: the angular acceleration, in the frame's axes, of b and c moving at constant rates
-  /// w.
+  /// Angular acceleration in the axes of the frame if b and c move at constant rates w: δ̂φ for d = ŵ = w.
   V3 acceleration(V6 const& w) const {
     V3 a;
     for (int k = 0; k < 3; ++k) {
@@ -132,7 +132,8 @@ class SectionFrame : public SectionAxes<T> {
     return a;
   }
 
-  /// ∂K/∂(X, Y), 3×6, of K = S w′ for the components w′ of (b′, c′); the derivative by (X′, Y′) is S itself.
+  /// Gradient ∂K/∂(X, Y), 3×6, of K = S w′ for the components w′ of (b′, c′). The derivative with respect to (X′, Y′)
+  /// is S.
   Mat<T, 3, 6> curvature_gradient(V6 const& w) const {
     M6 const l = pairing(w, -1.0);
     V6 const g = sigma_gradient();
@@ -144,13 +145,13 @@ class SectionFrame : public SectionAxes<T> {
     }
     return k;
   }
-  /// Second derivatives of n·K at w by (X, Y) twice, `twice`, and by (X′, Y′) (rows) and (X, Y) (columns), `mixed` =
-  /// M(n).
+  /// Second derivatives of n·K at w: `twice` with respect to (X, Y), and `mixed` = M(n) with respect to (X′, Y′) (rows)
+  /// and (X, Y) (columns).
   void curvature_hessian(V6 const& w, V3 const& n, M6& twice, M6& mixed) const {
     M6 const l = pairing(w, -1.0);  // δ̂w′ = l ŵ
     V6 const s = pull(n), g = sigma_gradient();
     mixed = second(n);
-    V6 h, c;  // ∂(n·K)/∂(X, Y);  the factor of δ̂σ
+    V6 h, c;  // ∂(n·K)/∂(X, Y);  factor of δ̂σ
     for (int j = 0; j < 6; ++j) {
       T sum = -(n[1] * w[0] * g[j]);
       for (int i = 0; i < 6; ++i) sum += l(i, j) * s[i];
@@ -165,7 +166,7 @@ class SectionFrame : public SectionAxes<T> {
     for (int j = 0; j < 6; ++j)
 #pragma GCC unroll 6
       for (int i = 0; i < 6; ++i) {
-        if (j > i) continue;  // symmetric: the lower half will do
+        if (j > i) continue;  // symmetric: only the lower half is computed
         T sum = c[i] * g[j];
 #pragma GCC unroll 6
         for (int k = 0; k < 6; ++k)
@@ -174,7 +175,8 @@ class SectionFrame : public SectionAxes<T> {
       }
   }
 
-  /// Row `row` of `out` gets the covector s of (X, Y) as one of (δb, δc) at columns `first`, `first` + 3.
+  /// Writes the covector s of (X, Y) as a covector of (δb, δc) to row `row` of `out`, at columns `first` and `first` +
+  /// 3.
   template <int rows, int columns>
   void to_vectors(V6 const& s, int row, int first, Mat<T, rows, columns>& out) const {
     for (int i = 0; i < 3; ++i) {
@@ -182,7 +184,7 @@ class SectionFrame : public SectionAxes<T> {
       out(row, first + 3 + i) = (R(i, 0) * s[3] + R(i, 1) * s[4] + R(i, 2) * s[5]) * ic_;
     }
   }
-  /// Block (first_row, first_column) of `out` += the form h of (X, Y) × (X, Y) as one of (δb, δc) × (δb, δc).
+  /// Adds the form h of (X, Y) × (X, Y) to block (first_row, first_column) of `out`, as a form of (δb, δc) × (δb, δc).
   template <int n>
   void add_form(M6 const& h, int first_row, int first_column, Mat<T, n, n>& out) const {
     for (int a = 0; a < 2; ++a)
@@ -190,7 +192,7 @@ class SectionFrame : public SectionAxes<T> {
         add_world<everywhere>(
             h, a, b, [&](int i, int j, T const& x) { out(first_row + 3 * a + i, first_column + 3 * b + j) += x; });
   }
-  /// The same of a symmetric form h, of which the lower half is read, in a block on the diagonal from `first` on.
+  /// Adds a symmetric form h to the diagonal block at `first`. Only the lower half of h is read.
   template <int n>
   void add_symmetric(M6 const& h, int first, Mat<T, n, n>& out) const {
     M6 whole = h;
@@ -205,7 +207,7 @@ class SectionFrame : public SectionAxes<T> {
       out(first + j, first + 3 + i) += x;
     });
   }
-  /// The same of h = M(m) in a block off the diagonal, at (first_row, first_column), and its mirror image.
+  /// Adds h = M(m) to the block at (first_row, first_column) off the diagonal, and its transpose to the mirrored block.
   template <int n>
   void add_second(M6 const& h, int first_row, int first_column, Mat<T, n, n>& out) const {
 #pragma GCC unroll 2
@@ -219,7 +221,7 @@ class SectionFrame : public SectionAxes<T> {
   }
 
  private:
-  /// Where forms may differ from zero.
+  /// Entries of a form that may be nonzero.
   using Places = std::array<std::array<bool, 6>, 6>;
   static constexpr Places everywhere = [] {
     Places all{};
@@ -233,13 +235,14 @@ class SectionFrame : public SectionAxes<T> {
                                         {true, false, false, false, false, false},
                                         {true, false, false, true, false, false}}};
 
-  /// add(i, j, x) for the entries x of block (a, b) of the form h in world axes, R h_ab Rᵀ by the lengths.
+  /// Calls add(i, j, x) for the entries x of block (a, b) of the form h in world axes, R h_ab Rᵀ divided by the
+  /// lengths.
   template <Places places, class F>
   void add_world(M6 const& h, int a, int b, F&& add) const {
     T const scale = (a == 0 ? ib_ : ic_) * (b == 0 ? ib_ : ic_);
 #pragma GCC unroll 3
     for (int j = 0; j < 3; ++j) {
-      V3 column(T(0.0), T(0.0), T(0.0));  // of R h_ab Rᵀ
+      V3 column(T(0.0), T(0.0), T(0.0));  // column of R h_ab Rᵀ
 #pragma GCC unroll 3
       for (int r = 0; r < 3; ++r) {
         bool any = false;
@@ -256,7 +259,7 @@ class SectionFrame : public SectionAxes<T> {
       for (int i = 0; i < 3; ++i) add(i, j, column[i] * scale);
     }
   }
-  /// g with δ̂σ = g·ŵ.
+  /// Gradient g of δ̂σ = g·ŵ.
   V6 sigma_gradient() const {
     V6 g;
     for (int i = 0; i < 6; ++i) g[i] = T(0.0);
@@ -265,8 +268,8 @@ class SectionFrame : public SectionAxes<T> {
     g[5] = -sigma_;
     return g;
   }
-  /// sign = 1: A with s·δ̂w = wᵀ A ŵ;  sign = −1: L with δ̂w = L ŵ for w = s. Either: ∓ s̃ S less s times the change of
-  /// length.
+  /// Matrix A with s·δ̂w = wᵀ A ŵ for `sign` = 1; matrix L with δ̂w = L ŵ for w = s and `sign` = −1. Both are ∓ s̃ S
+  /// minus s times the change of length.
   M6 pairing(V6 const& s, double sign) const {
     M6 m;
     for (int part = 0; part < 2; ++part) {

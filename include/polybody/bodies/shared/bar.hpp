@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// One physical specification of a straight prismatic bar, from which every body formulation is built.
+/// Physical specification of a straight prismatic bar, from which every body formulation can be made.
 
 #include <functional>
 #include <numbers>
@@ -22,21 +22,21 @@ struct Rectangle {
   Required<double> width;   ///< along z [m]
 };
 
-/// Linear elastic, isotropic.
+/// Linear elastic isotropic material.
 struct Material {
   Required<double> density;  ///< [kg/m³]
   Required<double> young;    ///< E [N/m²]
   double poisson = 0.3;      ///< ν, in (−1, 0.5]
 };
 
-/// Stiffness and inertia of the section, as most published cases give them. "y" and "z" name the section's
-/// axes; the plane bends about z.
+/// Stiffness and inertia of a section, in the form of most published cases. The axes y and z are those of the section;
+/// a planar bar bends about z.
 struct BarConstants {
   Required<double> EA;                          ///< axial stiffness [N]
   Required<double> EI;                          ///< bending stiffness about z [N m²]
   Required<double> mass_per_length;             ///< Aρ [kg/m]
-  double GA = 0.0;                              ///< shear stiffness k G A along y [N]; 0 where none is given
-  double GJ = 0.0;                              ///< torsional stiffness [N m²]; 0 where none is given
+  double GA = 0.0;                              ///< shear stiffness k G A along y [N]; 0 if not given
+  double GJ = 0.0;                              ///< torsional stiffness [N m²]; 0 if not given
   double rotary_inertia = 0.0;                  ///< Iρ about z, per length [kg m]
   std::optional<double> EI_y = {};              ///< bending stiffness about y [N m²]; as EI if not given
   std::optional<double> GA_z = {};              ///< shear stiffness along z [N]; as GA if not given
@@ -44,40 +44,40 @@ struct BarConstants {
   std::optional<double> polar_inertia = {};     ///< about the axis, per length [kg m]; Iρ_y + Iρ_z if not given
 };
 
-/// Iρ of a section about the axes x (the bar's), y and z, per length [kg m].
-template <class = void>  // compiled where it is used
+/// Rotary inertias Iρ of a section about x (the axis of the bar), y and z, per length [kg m].
+template <class = void>  // compiled only if used
 Vec3 rotary_inertias(BarConstants const& c) {
   double const z = c.rotary_inertia, y = c.rotary_inertia_y.value_or(z);
   return Vec3(c.polar_inertia.value_or(y + z), y, z);
 }
 
-/// Kelvin–Voigt damping: stress = stiffness · (strain + time · strain rate), objective by construction.
+/// Kelvin–Voigt damping: stress = stiffness · (strain + time · strain rate). It is objective by construction.
 struct Damping {
   double axial = 0.0;    ///< [s]
   double shear = 0.0;    ///< shear and torsion [s]
   double bending = 0.0;  ///< [s]
 };
 
-/// A straight bar: first end at the placement's origin, axis along the placement's x.
-/// Given either by `section` and `material` or by `constants`.
+/// Straight bar with its first end at the origin of the placement and its axis along the x axis of the placement. Its
+/// data are either `section` and `material`, or `constants`.
 struct Bar {
-  Required<double> length;  ///< [m], of 1e-100 to 1e100: beyond, its cubes are no numbers
-  std::variant<std::monostate, Circle, Rectangle> section = {};  ///< none: the bar is given by `constants`
-  std::optional<Material> material = {};                         ///< of the section
+  Required<double> length;  ///< [m], from 1e-100 to 1e100, because its cube must be finite and nonzero
+  std::variant<std::monostate, Circle, Rectangle> section = {};  ///< empty if the bar is given by `constants`
+  std::optional<Material> material = {};                         ///< material of the section
   std::optional<BarConstants> constants = {};                    ///< instead of section and material
-  Placement placement = {};                                      ///< of its first end, along x
-  Damping damping = {};                                          ///< of the material
-  double pretension = 0.0;                                       ///< axial force in the reference configuration [N]
-  std::optional<double> shear_factor = {};  ///< factor k of the shear stiffness k G A; Cowper's if not given
+  Placement placement = {};                 ///< placement of the first end; the bar lies along its x axis
+  Damping damping = {};                     ///< damping of the material
+  double pretension = 0.0;                  ///< axial force in the reference configuration [N]
+  std::optional<double> shear_factor = {};  ///< factor k of the shear stiffness k G A; by Cowper's formula if not given
 };
 
-/// A curved reference: the placement of the section at arc length s ∈ [0, length], in the bar's own axes (x along the
-/// tangent). At s = 0 it is usually `Placement{}`.
+/// Curved reference: the placement of the section at arc length s ∈ [0, length], in the axes of the bar (x along the
+/// tangent). At s = 0 it usually is `Placement{}`.
 using ReferenceCurve = std::function<Placement(double)>;
 
 namespace detail {
 
-template <class = void>  // compiled where it is used
+template <class = void>  // compiled only if used
 [[gnu::cold]] BarConstants constants_of_section(Bar const& bar) {
   Material const& m = *bar.material;
   require_positive(m.density, "Bar: the material's density");
@@ -102,7 +102,7 @@ template <class = void>  // compiled where it is used
     iz = w * h * h * h / 12.0;
     iy = h * w * w * w / 12.0;
     shear = 10.0 * (1.0 + nu) / (12.0 + 11.0 * nu);  // Cowper 1966
-    // Saint-Venant torsion, J = a b³ (1/3 − (64/π⁵)(b/a) Σ tanh((2k+1)πa/2b)/(2k+1)⁵) with sides a ≥ b
+    // Torsion constant of Saint-Venant, J = a b³ (1/3 − (64/π⁵)(b/a) Σ tanh((2k+1)πa/2b)/(2k+1)⁵) with sides a ≥ b
     // [Timoshenko & Goodier 1970, §109, there with half the sides]
     double const a = std::max(h, w), b = std::min(h, w);
     double sum = 0.0;
@@ -126,8 +126,9 @@ template <class = void>  // compiled where it is used
           .rotary_inertia_y = rho * iy};
 }
 
-/// \throws InvalidInput for stiffness and inertia with which no calculation goes on; `of` begins the sentence.
-template <class = void>  // compiled where it is used
+/// Checks the constants of a bar.
+/// \throws InvalidInput for stiffness and inertia that prevent a calculation; `of` begins the sentence.
+template <class = void>  // compiled only if used
 [[gnu::cold]] void require_sizes(BarConstants const& c, std::string const& of) {
   struct {
     double x;
@@ -144,8 +145,9 @@ template <class = void>  // compiled where it is used
                    {c.polar_inertia.value_or(0.0), "polar_inertia"}};
   for (auto const& [x, what] : all) require_size(x, of + what);
 }
-/// \throws InvalidInput where products of the section's and the material's numbers overflow or vanish.
-template <class = void>  // compiled where it is used
+/// Checks the section and the material of a bar.
+/// \throws InvalidInput if products of their numbers overflow or vanish.
+template <class = void>  // compiled only if used
 [[gnu::cold]] void require_section_sizes(Bar const& bar, BarConstants const& c) {
   std::string of = "Bar: with a section of ";
   if (auto const* circle = std::get_if<Circle>(&bar.section)) of += sentence_of({"radius ", circle->radius});
@@ -159,8 +161,9 @@ template <class = void>  // compiled where it is used
   require_sizes(c, of);
 }
 
-/// \throws InvalidInput naming `what` unless it is zero or positive, and its products with stiffness are numbers.
-template <class = void>  // compiled where it is used
+/// Checks a damping time [s].
+/// \throws InvalidInput naming `what` unless the time is zero or positive, and its products with stiffness are finite.
+template <class = void>  // compiled only if used
 void require_damping_time(double time, std::string const& what) {
   require_not_negative(time, what);
   if (time > largest_number) throw InvalidInput{what, " must be at most ", largest_number, " s, but is ", time, " s."};
@@ -168,8 +171,9 @@ void require_damping_time(double time, std::string const& what) {
 
 }  // namespace detail
 
-/// The section's stiffness and inertia. \throws InvalidInput naming the quantity that cannot be meant.
-template <class = void>  // compiled where it is used
+/// Stiffness and inertia of the section of a bar.
+/// \throws InvalidInput naming the quantity that is not valid.
+template <class = void>  // compiled only if used
 [[gnu::cold]] BarConstants constants(Bar const& bar) {
   require_positive(bar.length, "Bar: the length");
   if (!(bar.length >= 1e-100 && bar.length <= 1e100))
@@ -206,9 +210,10 @@ template <class = void>  // compiled where it is used
   return c;
 }
 
-/// A body whose mass stands in material points has ∫ρ(y² + z²) about its axis. \throws InvalidInput naming `what` for
-/// another polar inertia.
-template <class = void>  // compiled where it is used
+/// Checks the polar inertia of a body whose mass is distributed over material points: it must be ∫ρ(y² + z²) about the
+/// axis.
+/// \throws InvalidInput naming `what` for another polar inertia.
+template <class = void>  // compiled only if used
 void require_polar_inertia_of_points(BarConstants const& c, std::string const& what) {
   Vec3 const i = rotary_inertias(c);
   if (std::abs(i[0] - (i[1] + i[2])) > 1e-9 * (i[1] + i[2]))
@@ -221,13 +226,15 @@ void require_polar_inertia_of_points(BarConstants const& c, std::string const& w
                        " kg m. Leave it out, or take Lrvf or Rigid, whose sections are rigid."};
 }
 
-/// \throws InvalidInput naming `what` unless a bar is cut into n = 1 … 10⁷ elements.
+/// Checks the number n of elements of a bar.
+/// \throws InvalidInput naming `what` unless n = 1 … 10⁷.
 inline void require_elements(Index n, std::string_view what) {
   if (n < 1) throw InvalidInput{what, ": at least one element is needed."};
   if (n > 10'000'000) throw InvalidInput{what, ": ", n, " elements are more than memory holds. Use at most 10000000."};
 }
 
-/// \throws InvalidInput unless 0 ≤ s ≤ length (to 1e-12 of the length); returns s within the bar.
+/// Returns s limited to the bar, 0 ≤ s ≤ length.
+/// \throws InvalidInput naming `what` if s lies outside by more than 1e-12 of the length.
 inline double require_inside(double s, double length, std::string_view what) {
   double const slack = 1e-12 * length;
   if (!(s >= -slack && s <= length + slack))

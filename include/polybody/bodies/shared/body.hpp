@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The Body concept: what a formulation supplies, and the second-order term that dual numbers supply for it.
+/// Body concept: members that a formulation must have, and the geometric stiffness of a marker by dual numbers.
 
 #include <span>
 
@@ -8,7 +8,7 @@
 
 namespace polybody {
 
-/// `n` entries of a body's coordinates or speeds `x` from `first`, as a vector expression.
+/// Expression for `n` entries of the coordinates or generalised velocities `x` of a body, beginning at `first`.
 template <int n, class T>
 auto part(std::span<T> x, Index first) {
   using Scalar = std::remove_const_t<T>;
@@ -16,57 +16,59 @@ auto part(std::span<T> x, Index first) {
   return Map(x.data() + first);
 }
 
-/// The same entries of `x` from `first` as a vector: `n` numbers are copied without Eigen's expressions, which cost
-/// more to compile.
+/// Copy of `n` entries of `x` beginning at `first`, as a vector. It avoids Eigen's expressions, which take longer to
+/// compile.
 template <int n, class T>
 Vec<std::remove_const_t<T>, n> entries(std::span<T> x, Index first) {
   Vec<std::remove_const_t<T>, n> out;
   for (int i = 0; i < n; ++i) out[i] = x[std::size_t(first + i)];
   return out;
 }
-/// Writes `value` (n) into x from entry `first` on.
+/// Writes `value` (n) to x, beginning at entry `first`.
 template <int n, class T>
 void set_entries(std::span<T> x, Index first, Vec<T, n> const& value) {
   for (int i = 0; i < n; ++i) x[std::size_t(first + i)] = value[i];
 }
 
-/// How a rigid body whose pose a joint may give writes it: coordinates and speeds.
+/// Coordinates and generalised velocities of a rigid body whose pose a joint may prescribe.
 enum class RigidLayout : unsigned char {
   quaternion,  ///< (r, unit quaternion) and (ṙ, Ω in body axes)
   plane        ///< (x, y, θ) and their rates
 };
 
-/// A rigid body that says how it writes its pose, from its centre of mass.
+/// Rigid body that declares the layout of the pose of its centre of mass.
 template <class B>
 concept HasRigidLayout = requires {
   { B::layout } -> std::convertible_to<RigidLayout>;
 };
 
-/// A body that deforms in a frame whose pose a joint may give: first the coordinates and speeds of the frame, which
-/// `frame_layout` names, then those of the deformation, which add. All its markers are of run-time width.
+/// Body that deforms in a frame whose pose a joint may prescribe. The coordinates and generalised velocities of the
+/// frame come first, in the layout `frame_layout`. The coordinates of the deformation follow, and they add. The sizes
+/// of all its markers are known at run time only.
 template <class B>
 concept FloatsOnFrame = requires(B const b) {
   { B::frame_layout } -> std::convertible_to<RigidLayout>;
   { b.deformations() } -> std::convertible_to<Index>;
 };
 
-/// Bodies that nothing but weight and their own inertia moves, m r̈ = m g and J Ω˙ + Ω × J Ω = 0, where no joint or
-/// force acts: a type says so of itself, not of those derived from it.
+/// True for bodies that move by m r̈ = m g and J Ω˙ + Ω × J Ω = 0 if no joint or force acts on them. The declaration
+/// holds for the type itself and not for derived types.
 template <class B>
 inline constexpr bool moves_by_newton_euler = false;
 
-/// A body whose points are linear in its coordinates, r = S e with constant S; and so are so many of the gradients r_α.
+/// Body whose points are linear in its coordinates, r = S e with constant S. The number `gradients` counts the
+/// gradients r_α that are also linear.
 template <class B>
 concept HasLinearPoints = requires(B const b, typename B::Point p) {
   { B::gradients } -> std::convertible_to<int>;
   b.position_map(p);
 };
 
-/// A body is made of elements: fixed-size units that yield inertia, force and tangent. Spans cover the whole
-/// body; element e touches the columns [first_column(e), first_column(e) + element_columns). A body whose size is known
-/// at run time only says `element_columns = Eigen::Dynamic`: it is one element, and touches all its columns. Positions
-/// may live on a manifold, q ⊞ δ (`plus`); δ has as many entries as there are speeds. A `Point` is copied and has a
-/// default; `at(…)` makes one. `docs/extending.md` tells what each member gives, and what else a body may have.
+/// Body of elements of fixed size that compute inertia, force and tangent. Spans cover the whole body. Element e uses
+/// the columns [first_column(e), first_column(e) + element_columns). A body whose size is known at run time only has
+/// `element_columns = Eigen::Dynamic`: it has one element with all its columns. Coordinates may be on a manifold, q ⊞ δ
+/// (`plus`); δ has as many entries as there are generalised velocities. A `Point` can be copied and has a default;
+/// `at(…)` makes one. `docs/extending.md` describes each member, and the optional members.
 template <class B>
 concept Body = requires(B const b, Index e, std::span<double const> x, std::span<double> out, typename B::Point p,
                         Published<double>& published, Vec<double, B::element_columns>& vector,
@@ -81,7 +83,7 @@ concept Body = requires(B const b, Index e, std::span<double const> x, std::span
   { b.first_column(e) } -> std::convertible_to<Index>;
   b.reference(out);                             // q of the undeformed body as placed
   b.template plus<double>(x, x, out);           // q ⊞ δ
-  b.template local_rate<double>(x, x, out);     // δ˙ of q ⊞ δ moving with speeds v
+  b.template local_rate<double>(x, x, out);     // δ˙ of q ⊞ δ for velocities v
   b.rigid_velocity(x, g, g, out);               // v of a rigid motion
   b.mass(e, x, matrix);                         // M
   b.template inertia<double>(e, x, x, vector);  // M a
@@ -96,9 +98,9 @@ concept Body = requires(B const b, Index e, std::span<double const> x, std::span
   b.load_stiffness(p, x, Wrench<double>{}, stiffness);  // ∂(Jᵀw)/∂q
 };
 
-/// A body that owns rows between its coordinates, such as the norm of Euler parameters: Φ(q) = 0 with G = ∂Φ/∂q
-/// (own_rows × all speeds of the body, whose number is fixed) and γ, Φ̈ = G v̇ + γ. They are counted and solved like a
-/// joint's.
+/// Body with its own constraint equations between its coordinates, such as the norm of Euler parameters: Φ(q) = 0 with
+/// G = ∂Φ/∂q (own_rows × all generalised velocities of the body, whose number is fixed) and γ, Φ̈ = G v̇ + γ. They are
+/// counted and solved like the constraint equations of a joint.
 template <class B>
 concept OwnsRows = requires(B const b, std::span<double const> x, Vec<double, B::own_rows>& rows,
                             Mat<double, B::own_rows, B::element_columns>& map,
@@ -109,20 +111,21 @@ concept OwnsRows = requires(B const b, std::span<double const> x, Vec<double, B:
   b.own_stiffness(x, Vec<double, B::own_rows>(), stiffness);  // ∂(Gᵀλ)/∂q
 };
 
-/// A body may say how near its beams are to buckling by axial forces that its deflection leaves out, with a sign: at −1
-/// they buckle. A run warns of it.
+/// Body that computes the ratio of the axial forces in its beams to their buckling forces, with a sign: at −1 the beams
+/// buckle. The deflection of such a body does not include the effect of these forces. A run warns of it.
 template <class B>
 concept LeavesOutAxialForces =
     requires(B const b, std::span<double const> x, Vec3 g, std::span<PlacedWrench const> loads) {
       { b.axial_share(x, x, x, g, loads) } -> std::convertible_to<double>;  // at q, v, v̇
     };
 
-/// Columns that an element of a body, or a marker on it, touches. A body whose markers differ says `columns_of(point)`.
+/// Number of columns of an element of `body`, or of a marker on it. A body with markers of different sizes has
+/// `columns_of(point)`.
 template <class B>
 Index element_columns(B const& body) {
   return B::element_columns == Eigen::Dynamic ? body.speeds() : Index(B::element_columns);
 }
-/// Columns that a marker at p of `body` touches.
+/// Number of columns of a marker at p of `body`.
 template <class B>
 Index point_columns(B const& body, [[maybe_unused]] typename B::Point const& p) {
   if constexpr (requires { body.columns_of(p); })
@@ -131,36 +134,36 @@ Index point_columns(B const& body, [[maybe_unused]] typename B::Point const& p) 
     return B::point_columns == Eigen::Dynamic ? body.speeds() : Index(B::point_columns);
 }
 
-/// Coordinates, speeds and accelerations of a body.
+/// Coordinates, generalised velocities and accelerations of a body.
 template <StateScalar T = double>
 struct BodyMotion {
   std::span<T const> q, v, a = {};  ///< q, v and v̇ of the whole body
 };
 
-/// A body of one element that adds M v̇ − f, less its weight under g, to its `speeds` rows itself: where that is little,
-/// to write its parts and read them again takes longer than they do.
+/// Body of one element that adds M v̇ − f, minus its weight under g, to its `speeds` rows. For a small body this is
+/// faster than to store the terms and read them again.
 template <class B, class T>
 concept AddsUnbalance =
     requires(B const b, BodyMotion<T> const& x, Vec3 const& g, T* rows) { b.add_unbalance(x, g, rows); };
 
-/// What the loops over a body's elements need besides it: on the stack where sizes are known at compile time, else kept
-/// with the body's data, so that no step allocates.
+/// Workspace of the loops over the elements of a body. It is on the stack if the sizes are known at compile time.
+/// Otherwise it is stored with the data of the body, so that no step allocates memory.
 template <class B, class T>
 struct ForceScratch {
-  Vec<T, B::element_columns> x, force, weight;  ///< for an element: M a − f, force and weight
-  VecXOf<T> room;                               ///< for a body that balances at once
-  /// Takes the sizes that are known at run time only from the body.
+  Vec<T, B::element_columns> x, force, weight;  ///< of an element: M a − f, force and weight
+  VecXOf<T> room;                               ///< of a body that computes its residual at once
+  /// Sets the sizes that are known at run time only from `body`.
   explicit ForceScratch([[maybe_unused]] B const& body) {
     if constexpr (B::element_columns == Eigen::Dynamic)
       for (auto* const v : {&x, &force, &weight}) v->resize(body.speeds());
     if constexpr (requires { body.room(); }) room.resize(body.room());
   }
 };
-/// Room for an element's tangent and mass.
+/// Workspace for the tangent and the mass matrix of an element.
 template <class B>
 struct TangentScratch {
   Mat<double, B::element_columns, B::element_columns> k, m;  ///< tangent and mass
-  /// Takes the sizes that are known at run time only from the body.
+  /// Sets the sizes that are known at run time only from `body`.
   explicit TangentScratch([[maybe_unused]] B const& body) {
     if constexpr (B::element_columns == Eigen::Dynamic)
       for (auto* const matrix : {&k, &m}) matrix->resize(body.speeds(), body.speeds());
@@ -168,10 +171,10 @@ struct TangentScratch {
 };
 
 namespace detail {
-/// Kept with the data for each body of run-time size; nothing for the others.
+/// Workspace stored for each body of run-time size; without element data for the other bodies.
 template <class B, class T>
 struct KeptScratch {
-  MatX of_point;  ///< for a marker's load stiffness, where its size is known at run time only
+  MatX of_point;  ///< for the load stiffness of a marker whose size is known at run time only
   explicit KeptScratch([[maybe_unused]] B const& body) {
     if constexpr (B::point_columns == Eigen::Dynamic) of_point.resize(body.speeds(), body.speeds());
   }
@@ -191,7 +194,8 @@ struct KeptScratch<B, T> {
 };
 }  // namespace detail
 
-/// A body whose points share what is dear to compute: `pose` once, then `publish` each point from it.
+/// Body whose points share costly intermediate results: `pose` computes them once, then `publish` uses them for each
+/// point.
 template <class B, class T>
 concept SharesPose = requires(B const b, std::span<T const> x, typename B::Point p, typename B::template Pose<T>& pose,
                               Published<T>& out) {
@@ -212,9 +216,9 @@ struct PoseOf<B, T> {
 };
 }  // namespace detail
 
-/// ∂(Jᵀw)/∂q, columns × columns, of a marker with J of fixed width by dual numbers: the default for a body
-/// that has no closed form and whose coordinates add, q ⊞ δ = q + δ. `body.local(p)` is p in a body made of the
-/// marker's columns only.
+/// Load stiffness ∂(Jᵀw)/∂q, columns × columns, of a marker with J of fixed width, by dual numbers. It is the default
+/// for a body without a closed form whose coordinates add, q ⊞ δ = q + δ. `body.local(p)` is p in a body that consists
+/// of the columns of the marker only.
 template <class B>
 void load_stiffness_by_duals(B const& body, typename B::Point const& p, std::span<double const> q,
                              Wrench<double> const& w, Mat<double, B::point_columns, B::point_columns>& out) {

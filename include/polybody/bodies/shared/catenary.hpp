@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Catenary: the curve of an inextensible cable without bending stiffness under its own weight.
+/// Catenary: curve of an inextensible cable without bending stiffness under its own weight.
 
 #include <cmath>
 
@@ -8,16 +8,17 @@
 
 namespace polybody {
 
-/// The curve of a cable hung between the origin and `end`, by its arc length s, for `from(bar, n, catenary(…))` or as a
-/// natural shape. With sinh u = sinh u₀ + s/a,
+/// Catenary of a cable between the origin and `end`, as a function of its arc length s, for `from(bar, n, catenary(…))`
+/// or as an undeformed shape [Irvine 1981, ch. 1]. With sinh u = sinh u₀ + s/a,
 ///   x = a (u − u₀) along the horizontal,  z = a (cosh u − cosh u₀) upwards,
-///   a the horizontal force over the weight per length: 2a sinh(d/2a) = √(L² − h²) for a span d and a rise h of the end
-/// [Irvine 1981, ch. 1]. The section's y axis lies in the plane of the curve.
-/// \param end (3) the second end, in the bar's own axes [m] \param length L [m], above |end|
-/// \param down (3) direction of the weight, in the bar's own axes; any length
-/// \throws InvalidInput for a cable that is not longer than the distance of its ends, for ends one above the other, for
-/// `down` of no direction.
-template <class = void>  // compiled where it is used
+///   a the ratio of the horizontal force to the weight per length:
+///   2a sinh(d/2a) = √(L² − h²) for a span d and a rise h of the end.
+/// The y axis of the section lies in the plane of the curve.
+/// \param end (3) position of the second end, in the axes of the bar [m] \param length L [m], greater than |end|
+/// \param down (3) direction of the weight, in the axes of the bar; any length
+/// \throws InvalidInput for a cable that is not longer than the distance of its ends, for ends on one vertical line,
+/// and for `down` without a direction.
+template <class = void>  // compiled only if used
 ReferenceCurve catenary(Vec3 const& end, double length, Vec3 const& down) {
   require_finite(end, "catenary: the end");
   require_finite(down, "catenary: the direction of the weight");
@@ -36,7 +37,7 @@ ReferenceCurve catenary(Vec3 const& end, double length, Vec3 const& down) {
                        " m apart along the horizontal. Give them a horizontal distance of at least ", 1e-6 * length,
                        " m."};
   along /= d;
-  // sinh x = r x by Newton's method from above, where sinh x − r x is convex: x² < 6 (r − 1), x = ln 2r + ln x + …
+  // Newton's method for sinh x = r x from above, where sinh x − r x is convex: x² < 6 (r − 1), x = ln 2r + ln x + …
   double const r = std::sqrt((length - h) * (length + h)) / d;
   double x = std::min(std::sqrt(6.0 * (r - 1.0)), std::log(2.0 * r) + std::log1p(std::log(2.0 * r)) + 1.0);
   for (int k = 0; k < 100; ++k) {

@@ -1,19 +1,19 @@
 #pragma once
 /// \file
-/// Bodies that are others at other times.
+/// Bodies with properties that are functions of time.
 
 #include <concepts>
 
 namespace polybody {
 
-/// A body whose mass and forces change with time: at_time(t) is the body that it is then. Its coordinates and points
-/// stay what they are. It is asked in every evaluation, and copied.
+/// Body whose mass and forces change with time. `at_time(t)` returns the body at time t. Its coordinates and points do
+/// not change. Every evaluation calls `at_time` and copies the result.
 template <class B>
 concept ChangesWithTime = requires(B const b, double t) {
   { b.at_time(t) } -> std::same_as<B>;
 };
 
-/// The body at time t [s]: itself, but for one that changes.
+/// Returns the body at time t [s]; a body that does not change with time is returned itself.
 template <class B>
 decltype(auto) at_time(B const& body, [[maybe_unused]] double t) {
   if constexpr (ChangesWithTime<B>)

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What coordinates and speeds of a body are measured in.
+/// Units of the coordinates and generalised velocities of a body.
 
 #include <concepts>
 
@@ -8,22 +8,23 @@
 
 namespace polybody {
 
-/// A body may name the units of its coordinates, and those of its speeds where they are not the coordinates' rates:
-/// tables of states have them in their heads (io/state_table.hpp).
+/// Body that declares the units of its coordinates, and those of its generalised velocities if they are not the rates
+/// of the coordinates. Tables of states show them in their heads (io/state_table.hpp).
 template <class B>
 concept NamesUnits = requires(B const b, Index i) {
   { b.coordinate_unit(i) } -> std::convertible_to<char const*>;
 };
 
-/// Asks a body whose type is forgotten.
+/// Units of the coordinates of a type-erased body.
 struct CoordinateUnits {
-  /// Unit of coordinate i, such as "m"; none of a body that does not name it.
+  /// Unit of coordinate i, such as "m"; empty for a body that does not declare it.
   char const* (*of_coordinate)(void const* body, Index i) = nullptr;
-  /// Unit of speed i, such as "rad/s"; none where speeds are the coordinates' rates.
+  /// Unit of generalised velocity i, such as "rad/s"; empty if the generalised velocities are the rates of the
+  /// coordinates.
   char const* (*of_speed)(void const* body, Index i) = nullptr;
 };
 
-/// Those of a body of type B.
+/// Units of a body of type B.
 template <class B>
 constexpr CoordinateUnits units_of() {
   CoordinateUnits units;

@@ -1,7 +1,8 @@
 #pragma once
 /// \file
-/// Loops over the elements of a body. Where all elements are alike, neighbours go through the kernel side by side in
-/// packs (structure of arrays); what is left over, and bodies of other kinds, one by one.
+/// Loops over the elements of a body. If all elements are alike, the kernel processes several neighbours at once in
+/// SIMD vectors (structure of arrays). The remaining elements, and the elements of other bodies, are processed one by
+/// one.
 
 #include <array>
 
@@ -10,52 +11,53 @@
 
 namespace polybody {
 
-/// A body whose elements differ in nothing but their coordinates, which each reads at its own columns, q as v: its
-/// kernels take an element's own coordinates and may run on packs. Where that depends on the body, its `alike()` says
-/// so.
+/// Body whose elements differ only in their coordinates. Each element reads q and v at its own columns. The kernels
+/// take the coordinates of one element and can run on SIMD vectors. If the property depends on the data of the body,
+/// `alike()` returns it.
 template <class B>
 concept AlikeElements = requires(B const b, Vec<Pack<>, B::element_columns> x, Vec<Pack<>, B::element_columns>& out,
                                  Mat<Pack<>, B::element_columns, B::element_columns>& k) {
-  requires B::packs_pay;                              // measured: the kernel is arithmetic, not sines
-  { B::element_stride } -> std::convertible_to<int>;  // from an element's first column to that of the next
+  requires B::packs_pay;                              // by measurement: the kernel is arithmetic, not sines
+  { B::element_stride } -> std::convertible_to<int>;  // from the first column of an element to that of the next
   b.template element_inertia<Pack<>>(x, out);
   b.template element_force<Pack<>>(x, x, out);
   b.template element_tangent<Pack<>>(x, x, 1.0, 1.0, k);
 };
 
-/// Bodies that tell whether their elements are those of another one, so that elements of several bodies go in one pack.
+/// Body that compares its elements with those of another body, so that elements of several bodies can share a SIMD
+/// vector.
 template <class B>
 concept ComparesElements = AlikeElements<B> && requires(B const b) {
   { b.same_elements(b) } -> std::convertible_to<bool>;
 };
 
-/// Elements [begin, end) of a body. `begin` is a multiple of `pack_size`, and `end` too unless it is the number of
-/// elements.
+/// Elements [begin, end) of a body. `begin` is a multiple of `pack_size`. `end` is a multiple of `pack_size` or the
+/// number of elements.
 struct ElementRange {
   Index begin, end;  ///< the first element, and one past the last
 };
-/// Coefficients of cm M + cd D + ck K, D = −∂f/∂v, K = −∂f/∂q.
+/// Coefficients of cm M + cd D + ck K, with D = −∂f/∂v and K = −∂f/∂q.
 struct ElementCoefficients {
-  double mass, damping, stiffness;  ///< cm, cd and ck, factors of M, D and K
+  double mass, damping, stiffness;  ///< factors cm, cd and ck of M, D and K
 };
 
 namespace detail {
 
-/// Where the numbers of `pack_size` elements begin.
+/// Addresses of the numbers of `pack_size` elements.
 using PackFrom = std::array<double const*, std::size_t(pack_size)>;
-/// The same of neighbours, from the first one's on.
+/// Addresses of the numbers of `pack_size` neighbours, where `x` is the address for the first one.
 template <int stride>
 PackFrom neighbours(double const* x) {
   PackFrom from;
   for (int l = 0; l < pack_size; ++l) from[std::size_t(l)] = x + l * stride;
   return from;
 }
-/// What the elements of a pack set out from.
+/// Addresses of the motion of `pack_size` elements.
 struct PackMotion {
   PackFrom q, v, a;
 };
 
-/// The coordinates of `pack_size` elements.
+/// SIMD vectors of the coordinates of `pack_size` elements.
 template <int n>
 Vec<Pack<>, n> side_by_side(PackFrom const& x) {
   static_assert(n % pack_size == 0);
@@ -68,7 +70,7 @@ Vec<Pack<>, n> side_by_side(PackFrom const& x) {
   }
   return packed;
 }
-/// The other way: each of `pack_size` vectors or matrices gets its numbers, on top of those of `same`.
+/// Inverse of `side_by_side`: writes to each of `pack_size` vectors or matrices its numbers plus those of `same`.
 template <class Packed, class Each>
 void take_apart(Packed const& packed, Each const& same, std::array<Each, pack_size>& each) {
   static_assert(Packed::SizeAtCompileTime % pack_size == 0);
@@ -81,7 +83,7 @@ void take_apart(Packed const& packed, Each const& same, std::array<Each, pack_si
   }
 }
 
-/// All elements differ in nothing but their coordinates.
+/// Returns true if all elements differ only in their coordinates.
 template <class B>
 bool are_alike(B const& body) {
   if constexpr (requires { body.alike(); })
@@ -90,8 +92,8 @@ bool are_alike(B const& body) {
     return AlikeElements<B>;
 }
 
-/// End of the elements of a range that go in packs: packs begin at multiples of their size, so that an element's kernel
-/// does not depend on how a loop is cut.
+/// End of the elements of a range that are processed in SIMD vectors. Each SIMD vector begins at a multiple of
+/// `pack_size`, so that the kernel of an element does not depend on the subdivision of a loop.
 template <class B>
 Index packed_until(B const& body, ElementRange range) {
   if constexpr (AlikeElements<B>) {
@@ -103,7 +105,7 @@ Index packed_until(B const& body, ElementRange range) {
   }
 }
 
-/// M a − force of `pack_size` elements like those of `body`.
+/// Residuals M a − force of `pack_size` elements like those of `body`.
 template <class B>
 void unbalance_of_pack(B const& body, PackMotion const& x,
                        std::array<Vec<double, B::element_columns>, pack_size>& each) {
@@ -116,7 +118,7 @@ void unbalance_of_pack(B const& body, PackMotion const& x,
   take_apart(inertia, zero, each);
 }
 
-/// The same of one element, into scratch.x.
+/// Residual M a − force of one element, written to scratch.x.
 template <class B, StateScalar T>
 void unbalance_of_one(B const& body, Index e, BodyMotion<T> const& x, ForceScratch<B, T>& scratch) {
   if constexpr (requires { body.template unbalance<T>(x, scratch.room, scratch.force, scratch.x); })
@@ -127,7 +129,7 @@ void unbalance_of_one(B const& body, Index e, BodyMotion<T> const& x, ForceScrat
   for (int k = 0; k < int(scratch.x.size()); ++k) scratch.x[k] -= scratch.force[k];
 }
 
-/// `inertia` + cd D + ck K of `pack_size` elements like those of `body`.
+/// Tangents `inertia` + cd D + ck K of `pack_size` elements like those of `body`.
 template <class B>
 void tangent_of_pack(B const& body, PackMotion const& x, ElementCoefficients c,
                      Mat<double, B::element_columns, B::element_columns> const& inertia,
@@ -138,7 +140,7 @@ void tangent_of_pack(B const& body, PackMotion const& x, ElementCoefficients c,
   take_apart(packs, inertia, each);
 }
 
-/// The same of neighbours in a body, from element `first` on.
+/// Addresses of the motion of `pack_size` neighbours in a body, from element `first` on.
 template <class B>
 PackMotion motion_of_neighbours(B const& body, Index first, BodyMotion<> const& x) {
   constexpr int stride = B::element_stride;
@@ -168,7 +170,7 @@ void for_each_unbalance(B const& body, ElementRange range, BodyMotion<T> const& 
   }
 }
 
-/// The same with scratch of its own; f as there.
+/// Overload with its own workspace.
 template <Body B, StateScalar T, class F>
 void for_each_unbalance(B const& body, ElementRange range, BodyMotion<T> const& x, F&& f) {
   ForceScratch<B, T> scratch(body);
@@ -210,7 +212,7 @@ void for_each_element_tangent(B const& body, ElementRange range, BodyMotion<> co
   }
 }
 
-/// The same with scratch of its own; f as there.
+/// Overload with its own workspace.
 template <Body B, class F>
 void for_each_element_tangent(B const& body, ElementRange range, BodyMotion<> const& x, ElementCoefficients c, F&& f) {
   TangentScratch<B> scratch(body);

@@ -1,12 +1,12 @@
 #pragma once
 /// \file
-/// What bodies share whose coordinates form a vector space, and those of them that are chains of nodes.
+/// Bodies whose coordinates form a vector space, and chains of nodes among them.
 
 #include <polybody/bodies/shared/body.hpp>
 
 namespace polybody {
 
-/// Coordinates that add: q ⊞ δ = q + δ, and δ moves with the speeds.
+/// Coordinates that add: q ⊞ δ = q + δ, and δ˙ is the vector of generalised velocities.
 struct AddingCoordinates {
   template <StateScalar T>
   void plus(std::span<T const> q, std::span<T const> delta, std::span<T> out) const {
@@ -18,7 +18,7 @@ struct AddingCoordinates {
   }
 };
 
-/// n elements between n + 1 nodes of so many coordinates each, one after another.
+/// Chain of n elements between n + 1 nodes, each with `columns` coordinates, stored one node after another.
 template <int columns>
 class NodeChain : public AddingCoordinates {
  public:
@@ -31,13 +31,13 @@ class NodeChain : public AddingCoordinates {
   Index speeds() const { return coordinates(); }
   Index elements() const { return n_; }
   Index first_column(Index e) const { return e * columns; }
-  /// First column of the element that the point p is on.
+  /// First column of the element of the point p.
   template <class P>
     requires requires(P p) { p.element; }
   Index first_column(P const& p) const {
     return first_column(p.element);
   }
-  /// The point p in a chain of its own element alone.
+  /// Point p in a chain that consists of its element only.
   template <class P>
     requires requires(P p) { p.element; }
   P local(P p) const {
@@ -47,7 +47,7 @@ class NodeChain : public AddingCoordinates {
 
  protected:
   explicit NodeChain(Index n) : n_(n) {}  ///< n elements
-  Index n_;                               ///< how many elements
+  Index n_;                               ///< number of elements
 };
 
 }  // namespace polybody

@@ -1,7 +1,6 @@
 #pragma once
 /// \file
-/// A flexible bar in the plane as a chain of equal two-node elements. A policy, the Theory, says what is interpolated
-/// and which strains follow; mass, gravity and markers stand here, elastic forces in `ElasticChain`.
+/// Flexible bar in the plane as a chain of equal two-node elements.
 
 #include <algorithm>
 #include <tuple>
@@ -12,13 +11,13 @@
 
 namespace polybody::detail {
 
-/// The groups of strains of the laws of a theory.
+/// Strain groups of the laws of a theory.
 template <class Laws>
 struct GroupsOf;
 template <class... Laws>
 struct GroupsOf<std::tuple<Laws...>> {
   using type = std::tuple<StrainGroup<Laws>...>;
-  /// A pretension is the first stress of the first group, along the axis.
+  /// Creates the groups of an element of length l. A pretension is the first stress of the first group, along the axis.
   static type make(BarConstants const& c, Bar const& bar, double l) {
     type groups(StrainGroup<Laws>(c, bar.damping, l)...);
     using First = std::tuple_element_t<0, type>;
@@ -33,17 +32,17 @@ struct GroupsOf<std::tuple<Laws...>> {
 
 namespace polybody::planar {
 
-/// The centre line at one place of an element, all linear in e except the angle.
+/// Position and motion of the centre line at one point of an element; all are linear in e except the angle.
 template <StateScalar T>
 struct CentreLine {
   Vec<T, 2> r;  ///< position [m]
   Vec<T, 2> v;  ///< velocity [m/s]
-  T angle;      ///< of the section's normal from world x [rad]
+  T angle;      ///< of the normal of the section from world x [rad]
   T rate;       ///< its rate [rad/s]
   T rate_bias;  ///< its second derivative for ë = 0 [rad/s²]
 };
 
-/// Angle of a section by the coordinates e of its element.
+/// Angle of a section as a function of the coordinates e of its element.
 template <StateScalar T, int n>
 struct SectionAngle {
   T angle;        ///< θ [rad]
@@ -51,7 +50,9 @@ struct SectionAngle {
   T bias;         ///< θ̈ for ë = 0 [rad/s²]
 };
 
-/// A beam in the plane: what all theories share, made of their strains (`Theory::Groups`).
+/// Flexible bar in the plane as a chain of equal two-node elements. The policy `Theory` gives the interpolation and the
+/// strains (`Theory::Groups`). This class computes mass, gravity and markers; `ElasticChain` computes the elastic
+/// forces.
 template <class Theory>
 class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf<typename Theory::Groups>::type> {
   using Groups = detail::GroupsOf<typename Theory::Groups>;
@@ -66,18 +67,20 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
   template <class T>
   using Element = Vec<T, element_columns>;
   using ElementMatrix = Mat<double, element_columns, element_columns>;
-  using PointMap = Mat<double, 2, element_columns>;    ///< S of r = S e, 2×n
-  static constexpr int gradients = Theory::gradients;  ///< of the position, that are linear in the coordinates
+  using PointMap = Mat<double, 2, element_columns>;  ///< S of r = S e, 2×n
+  static constexpr int gradients =
+      Theory::gradients;  ///< number of position gradients that are linear in the coordinates
 
-  /// A material point: element, place ξ ∈ [0, 1] on it, and distance y off the axis [m].
+  /// Material point: element, position ξ ∈ [0, 1] along it, and distance y from the axis [m].
   struct Point {
     Index element = 0;  ///< counted from 0, from the bar's first end
     double xi = 0.0;    ///< ξ ∈ [0, 1], from its first node to its second
-    double y = 0.0;     ///< along the section's normal [m]
+    double y = 0.0;     ///< along the normal of the section [m]
   };
 
-  /// The bar in n equal elements. \throws InvalidInput for n < 1, a placement that leaves the plane, or a
-  /// stiffness that the theory needs and the bar does not give.
+  /// Beam from the straight bar, with n elements of equal length.
+  /// \throws InvalidInput for n < 1, a placement that leaves the plane, or a stiffness that the theory needs and the
+  /// bar does not give.
   static Beam from(Bar const& bar, Index n) {
     require_elements(n, Theory::name);
     BarConstants const c = polybody::constants(bar);
@@ -85,18 +88,20 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
     return Beam(bar, c, n);
   }
 
-  /// The same of n elements laid along a curve, nodes at equal arc lengths. Its natural shape stays straight, so that
-  /// it is bent in the reference state. \throws InvalidInput also as `naturally_curved`.
+  /// Beam of n elements along `curve`, with nodes at equal arc lengths. The undeformed shape remains straight, so that
+  /// the beam is bent in the reference state.
+  /// \throws InvalidInput also as `naturally_curved`.
   static Beam from(Bar const& bar, Index n, ReferenceCurve const& curve) {
     Beam beam = from(bar, n);
     beam.laid_ = beam.nodes_on(bar.placement, curve);
     return beam;
   }
 
-  /// The bar of n elements whose natural shape is `curve`: it stands there free of stress, but for the pretension,
-  ///   U = ½ ∫ Σ C_i (ε_i − ε⁰_i)² dx,  ε⁰ the strains of the nodes on the curve with the elements' own shapes.
-  /// So a circular arc of radius R is straight under the moment EI/R. \throws InvalidInput as `from`, and for a curve
-  /// that leaves the plane or is not given by its arc length: the axis of an element off by a tenth.
+  /// Beam of n elements with the undeformed shape `curve`, free of stress except for the pretension:
+  ///   U = ½ ∫ Σ C_i (ε_i − ε⁰_i)² dx,  ε⁰ the strains of the elements with the nodes on the curve.
+  /// A circular arc of radius R is therefore straight under the moment EI/R.
+  /// \throws InvalidInput as `from`, and for a curve that leaves the plane or is not parameterised by its arc length:
+  /// the length of the axis of an element differs by more than a tenth.
   static Beam naturally_curved(Bar const& bar, Index n, ReferenceCurve const& curve) {
     Beam beam = from(bar, n);
     beam.bend_to(bar.placement, curve);
@@ -110,7 +115,8 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
   double element_length() const { return l_; }
   BarConstants const& constants() const { return constants_; }
 
-  /// The point s from the first end, y off the axis. \throws InvalidInput outside the bar.
+  /// Point at distance s from the first end [m], at y from the axis [m].
+  /// \throws InvalidInput outside the bar.
   Point at(double s, double y = 0.0) const {
     double const x = require_inside(s, length_, Theory::name) / l_;
     if (!std::isfinite(y)) throw InvalidInput{Theory::name, ": y of a point must be finite."};
@@ -118,8 +124,8 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
     return {e, x - double(e), y};
   }
 
-  /// r = Σ s_i e_i, e_i of entries 2i and 2i + 1 of an element, and its derivatives by arc length; for theories whose
-  /// axis is smooth.
+  /// Shape functions s_i of r = Σ s_i e_i, where e_i has the entries 2i and 2i + 1 of an element, and their derivatives
+  /// with respect to arc length. Only for theories with a smooth axis.
   auto axis_shape(double xi) const
     requires requires { Theory::axis_shape(xi, 1.0); }
   {
@@ -142,7 +148,7 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
   void mass(Index, std::span<double const>, ElementMatrix& m) const { m = mass_; }
 
   bool same_elements(Beam const& other) const { return this->same_strains(other) && mass_ == other.mass_; }
-  /// M a of an element's own accelerations.
+  /// Product M a with the accelerations of one element.
   template <KernelScalar T>
   void element_inertia(Element<T> const& a, Element<T>& out) const {
     for (int i = 0; i < element_columns; ++i) {
@@ -168,13 +174,13 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
     return -part<element_columns>(q, first_column(e)).dot(gravity_ * g.head<2>());
   }
 
-  /// r = S e at `p`, 2×n, constant; e are the coordinates from `first_column(p)`. \throws InvalidInput off the axis,
-  /// where r turns with the section.
+  /// Matrix S of r = S e at `p`, 2×n and constant. The coordinates e begin at `first_column(p)`.
+  /// \throws InvalidInput for a point off the axis, because it rotates with the section.
   PointMap position_map(Point const& p) const {
     if (p.y != 0.0) throw InvalidInput{Theory::name, ": a point off the axis is not linear in the coordinates."};
     return Theory::position(p.xi, l_);
   }
-  /// r′ = S′ e at `p`, 2×n, constant.
+  /// Matrix S′ of r′ = S′ e at `p`, 2×n and constant.
   PointMap gradient_map(Point const& p, int) const
     requires(Theory::gradients > 0)
   {
@@ -196,8 +202,8 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
     return c;
   }
 
-  /// r = r₀ + y n, n = (−sin θ, cos θ);  ṙ = ṙ₀ − y t θ̇, t = (cos θ, sin θ);
-  /// bias = −y (t θ̈ᵇ + n θ̇²), θ̈ᵇ the part of θ̈ without ë.
+  /// Marker kinematics: r = r₀ + y n, n = (−sin θ, cos θ);  ṙ = ṙ₀ − y t θ̇, t = (cos θ, sin θ);
+  /// bias = −y (t θ̈ᵇ + n θ̇²), where θ̈ᵇ is the part of θ̈ without ë.
   template <StateScalar T>
   void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v, Published<T>& out) const {
     using std::cos, std::sin;
@@ -223,7 +229,8 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
     out.columns = element_columns;
   }
 
-  /// Jᵀw = Nᵀf + h c with the row h of θ̇ and c = m − y t·f;  ∂/∂e = c ∂h/∂e − y (n·f) h hᵀ.
+  /// Geometric stiffness of the wrench `w`: Jᵀw = Nᵀf + h c with the row h of θ̇ and c = m − y t·f, hence ∂/∂e = c
+  /// ∂h/∂e − y (n·f) h hᵀ.
   void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, ElementMatrix& k) const {
     Element<double> const x = this->of_element(p.element, q), rest = Element<double>::Zero();
     SectionAngle<double, element_columns> const turned = Theory::template rotation<double>(p.xi, l_, x, rest);
@@ -233,20 +240,19 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
     k -= (p.y * (c * w.f[1] - s * w.f[0])) * turned.row * turned.row.transpose();
   }
 
-  /// Strains and forces of the section in the axes of space (see sections.hpp); what the theory does not know is zero.
+  /// Section strains in the axes of space (see sections.hpp). Components that the theory does not have are zero.
   Vec6 section_strains(Point const& p, std::span<double const> q) const {
     return in_space(p.element, [&](auto const& group) { return strains_of(group, p, q); });
   }
   Vec6 section_forces(Point const& p, std::span<double const> q) const {
     return in_space(p.element, [&](auto const& group) { return group.stress(strains_of(group, p, q)); });
   }
-  /// Strains of group G (in the order of the theory) at `p` beyond those of the natural shape, and their stress
-  /// resultants without damping.
+  /// Strains of group G (in the order of the theory) at `p` relative to the undeformed shape.
   template <int G>
   auto strains(Point const& p, std::span<double const> q) const {
     return strains_of(std::get<G>(this->groups_of(p.element)), p, q);
   }
-  /// Section forces of group G without damping [N], [N m].
+  /// Stress resultants of group G without damping [N], [N m].
   template <int G>
   auto resultants(Point const& p, std::span<double const> q) const {
     return std::get<G>(this->groups_of(p.element)).stress(strains<G>(p, q));
@@ -260,7 +266,7 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
         l_(bar.length / double(n)),
         origin_(bar.placement.origin.head<2>()),
         angle_(bar.placement.planar_angle(Theory::name)) {
-    // M = ∫ (Aρ NᵀN + Iρ N_θᵀN_θ) dx, gravity = Aρ ∫ Nᵀ dx; exact for the theory's polynomials
+    // M = ∫ (Aρ NᵀN + Iρ N_θᵀN_θ) dx, gravity = Aρ ∫ Nᵀ dx; exact for the polynomials of the theory
     for (GaussPoint const& g : gauss<4>) {
       Mat<double, 2, element_columns> const s = Theory::position(g.xi, l_);
       mass_ += g.weight * l_ * c.mass_per_length * s.transpose() * s;
@@ -270,7 +276,7 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
     }
   }
 
-  /// Entries of the groups one after another, where the theory says they belong.
+  /// Entries of the groups one after another, at the rows that the theory gives.
   template <class F>
   Vec6 in_space(Index element, F&& of_group) const {
     Vec6 out = Vec6::Zero();
@@ -293,7 +299,7 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
   std::vector<double> nodes_on(Placement const& place, ReferenceCurve const& curve) const {
     if (!curve) throw InvalidInput{Theory::name, ": the curve is empty."};
     std::vector<double> nodes(std::size_t(this->coordinates()));
-    double angle = angle_;  // counts full turns
+    double angle = angle_;  // includes full revolutions
     for (Index i = 0; i <= elements(); ++i) {
       Placement const section = curve(double(i) * l_);
       angle += std::remainder(angle_ + section.planar_angle(Theory::name) - angle, 2.0 * std::numbers::pi);
@@ -328,8 +334,8 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
   double l_;
   Vec2 origin_;
   double angle_;
-  std::vector<double> natural_;  ///< coordinates of a natural shape that is curved
-  std::vector<double> laid_;     ///< coordinates of the reference state; empty for the natural shape
+  std::vector<double> natural_;  ///< nodal coordinates of a curved undeformed shape
+  std::vector<double> laid_;     ///< nodal coordinates of the reference state; empty if it is the undeformed shape
   ElementMatrix mass_ = ElementMatrix::Zero();
   Mat<double, element_columns, 2> gravity_ = Mat<double, element_columns, 2>::Zero();
 };

@@ -1,12 +1,13 @@
 #pragma once
 /// \file
-/// Strains and forces of a beam's section, under the same names for every formulation. In the axes of the section as it
-/// stands, x along the beam, as vectors of six:
-///   section_strains  (ε, γ_y, γ_z, κ_x, κ_y, κ_z): stretch, shears, twist and curvatures [1], [1/m], those of the
-///   reference taken off section_forces   (N, Q_y, Q_z, M_x, M_y, M_z): axial and shear forces [N], torque and bending
-///   moments [N m], without damping
-/// that the part beyond the section exerts on the part before it. What a formulation does not know is zero: a cable has
-/// no shear and no torsion; shear force follows there, as in the floating frame, from the slope of the moment.
+/// Strains and forces of a section of a beam, with the same names for every formulation. They are vectors of six in the
+/// axes of the deformed section, with x along the beam:
+///   section_strains  (ε, γ_y, γ_z, κ_x, κ_y, κ_z): stretch, shears, twist and curvatures [1], [1/m], relative to the
+///                    reference;
+///   section_forces   (N, Q_y, Q_z, M_x, M_y, M_z): axial and shear forces [N], torque and bending moments [N m],
+///                    without damping, of the part beyond the section on the part before it.
+/// Components that a formulation does not have are zero: a cable has no shear and no torsion. The shear force of a
+/// cable or of a floating frame follows from the derivative of the moment.
 
 #include <span>
 
@@ -14,14 +15,14 @@
 
 namespace polybody {
 
-/// A body that tells them, at its coordinates q.
+/// Body that computes section strains and section forces at its coordinates q.
 template <class B>
 concept HasSections = requires(B const b, typename B::Point p, std::span<double const> q) {
   { b.section_strains(p, q) } -> std::convertible_to<Vec6>;
   { b.section_forces(p, q) } -> std::convertible_to<Vec6>;
 };
 
-/// (y, z) of the point p off the axis [m]; zero where its type has none.
+/// Distances (y, z) of the point p from the axis [m]; zero if its type has none.
 template <class P>
 Vec2 off_axis(P const& p) {
   Vec2 x = Vec2::Zero();
@@ -30,13 +31,13 @@ Vec2 off_axis(P const& p) {
   return x;
 }
 
-/// Strain of the fibre (y, z) [m] of a section that stays plane, `strains` (Γ, K): ε − y κ_z + z κ_y.
+/// Strain ε − y κ_z + z κ_y of the fibre (y, z) [m] of a section that remains plane, from its `strains` (Γ, K).
 inline double fibre_strain(Vec6 const& strains, double y, double z) {
   return strains[0] - y * strains[5] + z * strains[4];
 }
 
-/// Axial stress of that fibre under `forces` (N, M), N/A − y M_z/I_z + z M_y/I_y [N/m²]. \throws InvalidInput for a bar
-/// without section and material.
+/// Axial stress N/A − y M_z/I_z + z M_y/I_y of the fibre (y, z) [m] under `forces` (N, M) [N/m²].
+/// \throws InvalidInput for a bar without section and material.
 template <class = void>
 double fibre_stress(Bar const& bar, Vec6 const& forces, double y, double z) {
   if (!bar.material)

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// A point that slides along a flexible body, as a pulley along a rope: its place is one more coordinate of the body.
+/// Point that slides along a flexible body, such as a pulley along a rope. Its position is an additional coordinate of
+/// the body.
 
 #include <algorithm>
 #include <vector>
@@ -12,8 +13,8 @@
 
 namespace polybody {
 
-/// A chain of elements whose axis is a sum of nodal vectors, r(x) = Σ s_i(x) e_i, smooth from element to element.
-/// Component k of e_i is entry d i + k of an element, d the dimension of its world.
+/// Chain of elements whose axis is a sum of nodal vectors, r(x) = Σ s_i(x) e_i, smooth from element to element.
+/// Component k of e_i is entry d i + k of an element in a space of dimension d.
 template <class B>
 concept SmoothAxis = std::derived_from<B, AddingCoordinates> && requires(B const b) {
   { b.length() } -> std::convertible_to<double>;
@@ -21,22 +22,24 @@ concept SmoothAxis = std::derived_from<B, AddingCoordinates> && requires(B const
   b.axis_shape(0.5);
 };
 
-/// Which of the sliding points of a body.
+/// Number of a slider of a body.
 struct Slider {
   Index index = 0;  ///< counted from 0
 };
 
-/// A cable or beam with sliding points: `Sliding(AncfCable<>::from(bar, n), {s₁, …})`, s [m] along the axis at the
-/// start. Markers: `at(s)` as of the body itself, and `at(Slider{k})`, a point without axes; joined to a bead by
-/// Spherical, say, it is what slides. Coordinates: those of the body, then the places s. A place has no inertia; with
-/// (′ = ∂/∂s)
-///   ṙ = Σ s_i ė_i + r′ ṡ,   r̈ = Σ s_i ë_i + r′ s̈ + 2 ṡ Σ s_i′ ė_i + r″ ṡ²
-/// its equation r′·f = 0 says that the force f on it has no part along the axis: it slides without friction. A place
-/// that is not held by a joint with rows is undetermined, and the linear solver says so.
+/// Cable or beam with sliders: `Sliding(AncfCable<>::from(bar, n), {s₁, …})`, where s [m] are the initial positions
+/// along the axis. Markers: `at(s)` as for the body itself, and `at(Slider{k})`, a point without axes. A joint such as
+/// Spherical connects a slider to another body. The coordinates are those of the body, followed by the positions s of
+/// the sliders. A slider has no inertia. With ′ = ∂/∂s,
+///   ṙ = Σ s_i ė_i + r′ ṡ,   r̈ = Σ s_i ë_i + r′ s̈ + 2 ṡ Σ s_i′ ė_i + r″ ṡ².
+/// The equation of s is r′·f = 0: the force f on the slider has no component along the axis, so that the slider moves
+/// without friction. The position of a slider is undetermined if no joint with constraint equations holds it, and the
+/// linear solver reports this.
 ///
-/// A slider touches all columns of the body, since its element changes with s: its rows are as long as the body, its
-/// load stiffness is dense. As it passes a node, r″ jumps, and accelerations with it. Beyond an end the last cubic goes
-/// on for the length of an element, so that a step can end there; see run/sliders.hpp for the event.
+/// A slider depends on all columns of the body, because its element changes with s. Its Jacobian rows are therefore as
+/// long as the body, and its load stiffness is dense. At a node r″ jumps, and with it the accelerations. Beyond an end
+/// the cubic of the last element is extended by the length of an element, so that a step can end there; run/sliders.hpp
+/// has the event.
 template <Body B>
 class Sliding : public B {
   static_assert(
@@ -48,19 +51,21 @@ class Sliding : public B {
   static constexpr int point_columns = Eigen::Dynamic;
   using B::observes;
 
-  /// A material point, or a slider.
+  /// Material point, or slider.
   struct Point {
-    typename B::Point material = {};  ///< of the body itself; without meaning for a slider
-    Index slider = -1;                ///< its column; −1 for a material point
+    typename B::Point material = {};  ///< point of the body itself; not used for a slider
+    Index slider = -1;                ///< column of the slider; −1 for a material point
   };
 
-  /// \throws InvalidInput for places outside the body.
+  /// Adds sliders at the positions `places` [m] to the body `line`.
+  /// \throws InvalidInput for positions outside the body.
   Sliding(B line, std::vector<double> places) : B(std::move(line)), places_(std::move(places)) {
     for (double& s : places_) s = require_inside(s, B::length(), "Sliding: the place");
   }
 
-  Index sliders() const { return Index(places_.size()); }  ///< how many sliding points
-  /// The coordinate (and the speed) of a slider's place. \throws InvalidInput for a slider that the body has not.
+  Index sliders() const { return Index(places_.size()); }  ///< number of sliders
+  /// Index of the coordinate (and of the generalised velocity) of `slider`.
+  /// \throws InvalidInput for a slider that the body does not have.
   Index column_of(Slider slider) const {
     if (slider.index < 0 || slider.index >= sliders())
       throw InvalidInput{"Sliding: there is no slider ", slider.index, "; the body has ", sliders(),
@@ -73,9 +78,10 @@ class Sliding : public B {
   Point at(Args const&... args) const {
     return {B::at(args...), -1};
   }
-  /// The slider as a marker, a point without axes. \throws InvalidInput for a slider that the body has not.
+  /// Marker on `slider`, a point without axes.
+  /// \throws InvalidInput for a slider that the body does not have.
   Point at(Slider slider) const { return {{}, column_of(slider)}; }
-  /// As the body's points, but a slider has no axes.
+  /// Kinematics that a marker at p has: those of the points of the body, except that a slider has no axes.
   static Observes observes_at(Point const& p) { return p.slider < 0 ? observes : Observes::point; }
 
   Index coordinates() const { return B::coordinates() + sliders(); }
@@ -98,6 +104,7 @@ class Sliding : public B {
     std::fill(v.end() - sliders(), v.end(), 0.0);
   }
 
+  /// Marker kinematics of a material point or a slider.
   /// \throws OffTheEnd for a slider more than an element beyond an end.
   template <StateScalar T>
   void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v, Published<T>& out) const {
@@ -108,8 +115,9 @@ class Sliding : public B {
     out.columns = speeds();
   }
 
-  /// Into the first rows and columns of k. Of a slider Jᵀw = [s_i f; r′·f]: ∂/∂s of the first is the transpose of
-  /// ∂/∂e_i of the second, s_i′ f, and ∂(r′·f)/∂s = r″·f.
+  /// Load stiffness in the first rows and columns of k. For a slider Jᵀw = [s_i f; r′·f]. The derivative of the first
+  /// part with respect to s is s_i′ f, the transpose of the derivative of the second part with respect to e_i. The last
+  /// entry is ∂(r′·f)/∂s = r″·f.
   void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, MatX& k) const {
     if (p.slider < 0) {
       Mat<double, B::point_columns, B::point_columns> each;
@@ -142,7 +150,8 @@ class Sliding : public B {
     return {B::first_column(e), B::axis_shape(s / l - double(e))};
   }
 
-  /// Shapes at the value of s; what a dual s has beyond it moves them along their derivatives.
+  /// Marker kinematics of a slider. The shape functions are evaluated at the value of s; the dual part of s enters by
+  /// their derivatives.
   template <StateScalar T>
   void slide(Index column, std::span<T const> q, std::span<T const> v, Published<T>& out) const {
     std::fill_n(out.jacobian, 6 * speeds(), T(0.0));
@@ -172,7 +181,7 @@ class Sliding : public B {
     }
   }
 
-  std::vector<double> places_;  ///< at the start [m]
+  std::vector<double> places_;  ///< initial positions [m]
 };
 
 }  // namespace polybody

@@ -3,14 +3,15 @@
 
 namespace polybody {
 
-/// How strains are taken over a step that conserves energy: ε̄ + decay Δε, and ε̇ = rate Δε.
+/// Coefficients of the strains over a step that conserves energy: mean strain ε̄ + decay Δε, and strain rate ε̇ = rate
+/// Δε.
 struct StepMeans {
   double rate = 0.0;   ///< 1/h [1/s]
-  double decay = 0.0;  ///< factor of C Δε·Δε, the energy that is lost; 0 conserves energy
+  double decay = 0.0;  ///< factor of C Δε·Δε, the energy that is dissipated; 0 conserves energy
 };
 
-/// A body of constant mass whose coordinates form a vector space, and which gives its elastic and damping force over a
-/// step from q₀ to q₁: f·Δq = −ΔU less what is damped.
+/// Body of constant mass whose coordinates form a vector space, with its elastic and damping force over a step from q₀
+/// to q₁: f·Δq = −ΔU minus the dissipated energy.
 template <class B>
 concept OffersStepMeans =
     std::is_base_of_v<AddingCoordinates, B> && B::constant_mass &&

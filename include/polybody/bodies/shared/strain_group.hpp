@@ -1,15 +1,6 @@
 #pragma once
 /// \file
-/// Elastic energy of an element by a group of strains at its quadrature points:
-///   U = ½ ∫ Σ_i C_i (ε_i(p) − ε⁰_i)² dx,  p = P(x) e the group's parameters, linear in the element's coordinates e,
-/// ε⁰ the strains free of stress (zero unless given), with Kelvin–Voigt damping and initial stress
-/// n_i = C_i (ε_i − ε⁰_i + τ_i ε̇_i) + n⁰_i. Then, with B = ∂ε/∂p and H_i = ∂²ε_i/∂p²,
-///   f = −∫ Pᵀ Bᵀ n dx,
-///   −∂f/∂e = ∫ Pᵀ [Bᵀ C B + Σ n_i H_i + Σ C_i τ_i B_iᵀ (H_i ṗ)ᵀ] P dx,
-///   −∂f/∂ė = ∫ Pᵀ Bᵀ C τ B P dx.
-/// Where strains are components of a vector that turns with the body, a law says which part of ε̇ is deformation: ε̇ is
-/// then replaced by P_ε ε̇ (`objective_rate`). P is sparse (`StrainMap`). Plain loops, for they run on doubles, dual
-/// numbers and packs of elements alike, and compile fast.
+/// Elastic energy of an element by a group of strains at its quadrature points.
 
 #include <numeric>
 
@@ -17,7 +8,17 @@
 
 namespace polybody {
 
-/// Force and tangent of an element by the strains of a law.
+/// Force and tangent of an element from the strains of a law. The energy is
+///   U = ½ ∫ Σ_i C_i (ε_i(p) − ε⁰_i)² dx,  with the parameters p = P(x) e of the group.
+/// The parameters are linear in the coordinates e of the element. ε⁰ are the strains in the stress-free state (zero
+/// unless given). With Kelvin–Voigt damping and initial stress, n_i = C_i (ε_i − ε⁰_i + τ_i ε̇_i) + n⁰_i. With B =
+/// ∂ε/∂p and H_i = ∂²ε_i/∂p²,
+///   f = −∫ Pᵀ Bᵀ n dx,
+///   −∂f/∂e = ∫ Pᵀ [Bᵀ C B + Σ n_i H_i + Σ C_i τ_i B_iᵀ (H_i ṗ)ᵀ] P dx,
+///   −∂f/∂ė = ∫ Pᵀ Bᵀ C τ B P dx.
+/// If strains are components of a vector that rotates with the body, a law defines the part of ε̇ that is deformation:
+/// ε̇ is then replaced by P_ε ε̇ (`objective_rate`). P is sparse (`StrainMap`). The code uses plain loops, which work
+/// for doubles, dual numbers and SIMD vectors of elements, and compile fast.
 template <StrainFunctions Law>
 class StrainGroup : public StrainPoints<Law> {
   using Points = StrainPoints<Law>;
@@ -26,11 +27,11 @@ class StrainGroup : public StrainPoints<Law> {
 
  public:
   using Points::np, Points::m, Points::Points;
-  using typename Points::P;  ///< the map from e to p
+  using typename Points::P;  ///< map from e to p
   template <class T, int n>
   using Coordinates = typename P::template Coordinates<T, n>;  ///< ê of an element
 
-  /// f += the group's force at coordinates x, rates xd.
+  /// Adds the force of the group at coordinates x and velocities xd, f += f(x, xd).
   template <KernelScalar T, int n>
   void add_force(Vec<T, n> const& x, Vec<T, n> const& xd, Vec<T, n>& f) const {
     Coordinates<T, n> const e(x), ed(xd);
@@ -57,10 +58,10 @@ class StrainGroup : public StrainPoints<Law> {
     P::spread(step, f);
   }
 
-  // The tangent is put together from all groups of an element by `tangent_of`: `prepare` once, then `add_block` for
+  // `tangent_of` assembles the tangent from all groups of an element: it calls `prepare` once, then `add_block` for
   // each block.
-  /// What the tangent's blocks are made of: h of each point, by p; of quadratic strains K̂ itself, by the vectors that
-  /// are read.
+  /// Data for the blocks of the tangent: the matrix h of each point with respect to p. For quadratic strains, K̂ itself
+  /// with respect to the nodal vectors that are read.
   template <KernelScalar T>
   struct Prepared {
     using Each = std::array<Mat<T, np, np>, std::size_t(Law::points)>;                ///< h of each point
@@ -68,9 +69,10 @@ class StrainGroup : public StrainPoints<Law> {
     Prepared() {}  // NOLINT(modernize-use-equals-default): a tuple of defaulted ones would fill them with zeros
   };
 
-  /// K̂_vw = Σ_points Σ_i β_iv γ_iwᵀ + 1 Σ_st N_sv N_tw σ_st, with β = B P, γ = w C [ck B + τ (ck Ḃ + cd B)] P, Ḃ_i =
-  /// H_i ṗ, and σ = ck w Σ n_i S_i: of few strains that read many vectors this is less work than Pᵀ h P. A few points
-  /// at a time, which fit the first cache. The blocks above the diagonal are left out if `symmetric`.
+  /// Prepares the blocks K̂_vw = Σ_points Σ_i β_iv γ_iwᵀ + 1 Σ_st N_sv N_tw σ_st, with β = B P, γ = w C [ck B + τ (ck Ḃ
+  /// + cd B)] P, Ḃ_i = H_i ṗ, and σ = ck w Σ n_i S_i. For few strains that read many vectors this is less work than Pᵀ
+  /// h P. The loop processes a few points at a time, which fit into the first-level cache. The blocks above the
+  /// diagonal are omitted if `symmetric`.
   template <KernelScalar T, int n>
   void prepare(Vec<T, n> const& x, Vec<T, n> const& xd, double ck, double cd, bool symmetric, Prepared<T>& k) const
     requires quadratic
@@ -124,7 +126,7 @@ class StrainGroup : public StrainPoints<Law> {
         }
     }
   }
-  /// `block` += the group's share of K̂_vw, for nodal vectors v and w.
+  /// Adds the contribution of the group to K̂_vw to `block`, for nodal vectors v and w.
   template <KernelScalar T>
   void add_block(int v, int w, Prepared<T> const& k, typename P::template Block<T>& block) const
     requires quadratic
@@ -135,7 +137,7 @@ class StrainGroup : public StrainPoints<Law> {
     P::for_each_entry([&](int i, int j) { block(i, j) += from[P::d * P::reach * j + i]; });
   }
 
-  /// h = w [ck (BᵀCB + Σ n_i H_i) + the part of damping].
+  /// Prepares h = w [ck (BᵀCB + Σ n_i H_i) + the part of damping] of each point.
   template <KernelScalar T, int n>
   void prepare(Vec<T, n> const& x, Vec<T, n> const& xd, double ck, double cd, bool, Prepared<T>& hs) const
     requires(!quadratic)
@@ -173,7 +175,7 @@ class StrainGroup : public StrainPoints<Law> {
       Law::template add_hessian<T>(at.p, stress, h);
     }
   }
-  /// `block` += the group's share of K̂_vw, for nodal vectors v and w.
+  /// Adds the contribution of the group to K̂_vw to `block`, for nodal vectors v and w.
   template <KernelScalar T>
   void add_block(int v, int w, Prepared<T> const& hs, typename P::template Block<T>& block) const
     requires(!quadratic)
@@ -191,7 +193,7 @@ class StrainGroup : public StrainPoints<Law> {
   }
 
  private:
-  /// A point in motion.
+  /// Strains of a point and their derivatives during a motion.
   template <class T>
   struct Moving {
     Vec<T, np> p, pd;
@@ -199,7 +201,7 @@ class StrainGroup : public StrainPoints<Law> {
     Mat<T, m, np> b;  ///< B
   };
 
-  /// ε̇ = B ṗ.
+  /// Strain rates ε̇ = B ṗ.
   template <class T>
   static Vec<T, m> rates(Mat<T, m, np> const& b, Vec<T, np> const& pd) {
     Vec<T, m> rate;
@@ -213,7 +215,7 @@ class StrainGroup : public StrainPoints<Law> {
     return rate;
   }
 
-  /// strain += τ P_ε ε̇.
+  /// Adds the damping, strain += τ P_ε ε̇.
   template <class T>
   void add_damping(Vec<T, m> rate, Vec<T, m>& strain) const {
     if constexpr (HasObjectiveRate<Law>) Law::template objective_rate<T>(strain, rate);
@@ -221,10 +223,11 @@ class StrainGroup : public StrainPoints<Law> {
     for (int i = 0; i < m; ++i) strain[i] += rate[i] * time_[i];
   }
 
-  /// h += Σ_i w C_i τ_i B_iᵀ [Σ_j P_ij (ck (H_j ṗ)ᵀ + cd B_j) + ck Q_ij B_j], with P_ε = 1 and Q = 0 for most laws.
+  /// Adds the derivative of the damping, h += Σ_i w C_i τ_i B_iᵀ [Σ_j P_ij (ck (H_j ṗ)ᵀ + cd B_j) + ck Q_ij B_j]. Most
+  /// laws have P_ε = 1 and Q = 0.
   template <class T>
   void add_damping_gradient(double w, double ck, double cd, Moving<T> const& at, Mat<T, np, np>& h) const {
-    Mat<T, m, np> change;  // ck H_j ṗ + cd B_j by rows
+    Mat<T, m, np> change;  // rows ck H_j ṗ + cd B_j
     for (int j = 0; j < m; ++j) {
       Mat<T, np, np> second;
       Vec<T, m> only;

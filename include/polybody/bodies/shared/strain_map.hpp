@@ -1,13 +1,6 @@
 #pragma once
 /// \file
-/// The constant linear map p = P e from the coordinates of an element to the parameters of its strains at a point. The
-/// parameters of a law are vectors of `components` entries, the shapes. Shape s reads a few nodal vectors, its j-th
-/// being e_v with v = `vector(s, j)`, by one factor for all components:
-///   p_s = Σ_j N_sj ê_v,  P = N ⊗ 1.
-/// ê = e but for what a law names as `difference`: strains do not feel where an element is, so that the factors of its
-/// two ends are opposite, and ê_v = e_v − e_0 stands for both. K̂ = PᵀhP then has the blocks
-///   K̂_vw = Σ_(s,j) Σ_(t,l) N_sj N_tl h_st,  v = vector(s, j), w = vector(t, l),
-/// one product for each pair of factors; K by e has K_0w = −K_vw, v the difference.
+/// Constant linear map p = P e from the coordinates of an element to the parameters of its strains at a point.
 
 #include <algorithm>
 #include <array>
@@ -17,28 +10,37 @@
 
 namespace polybody {
 
-/// The linear map from an element's coordinates to the parameters of its strains, N, and products with it. A shape has
-/// d entries, p has np; each of the shapes reads `reach` nodal vectors at most.
+/// Constant linear map p = P e from the coordinates of an element to the parameters of its strains at a point, and
+/// products with it. The parameters of a law are vectors of d = `components` entries, the shapes; np is the number of
+/// all entries. Shape s reads at most `reach` nodal vectors. Its j-th one is e_v with v = `vector(s, j)`, multiplied
+/// by one factor for all components: p_s = Σ_j N_sj ê_v, P = N ⊗ 1. ê_v = e_v, except for the vector `difference` of
+/// a law: ê_v = e_v − e_0. Strains do not depend on the position of an element, so that the factors of its two ends
+/// are opposite, and the difference replaces both. K̂ = PᵀhP then has the blocks K̂_vw = Σ_(s,j) Σ_(t,l) N_sj N_tl
+/// h_st, v = vector(s, j), w = vector(t, l), with one product for each pair of factors. The tangent K with respect to
+/// e has K_0w = −K_vw for the difference v.
 template <class Law>
 class StrainMap {
  public:
-  static constexpr int d = Law::components, np = Law::parameters, shapes = np / d, reach = Law::reach;  ///< see above
+  static constexpr int
+      d = Law::components,
+      np = Law::parameters, shapes = np / d,
+      reach = Law::reach;  ///< entries of a shape and of all parameters, number of shapes, and vectors per shape
 
   using Factors = Mat<double, shapes, reach>;  ///< N
   template <class T>
-  using Block = Mat<T, d, d>;  ///< for two nodal vectors
+  using Block = Mat<T, d, d>;  ///< block for two nodal vectors
 
-  /// The vector that is read against the first one; 0: there is none.
+  /// Nodal vector that is read relative to the first one; 0 if there is none.
   static constexpr int difference = [] {
     if constexpr (requires { Law::difference; })
       return int(Law::difference);
     else
       return 0;
   }();
-  /// Whether ê_v, of nodal vector v, is the difference e_v − e_0.
+  /// Returns true if ê_v of nodal vector v is the difference e_v − e_0.
   static constexpr bool is_difference(int v) { return difference > 0 && v == difference; }
 
-  /// f(i, j) for the entries of a block.
+  /// Calls f(i, j) for the entries of a block.
   template <class F>
   static void for_each_entry(F&& f) {
 #pragma GCC unroll 4
@@ -47,20 +49,20 @@ class StrainMap {
       for (int i = 0; i < d; ++i) f(i, j);
   }
 
-  /// ê.
+  /// Coordinates ê of an element.
   template <class T, int n>
   struct Coordinates {
-    Vec<T, n> const& e;  ///< must outlive this
-    Vec<T, d> step;      ///< the difference
-    /// Takes the difference of x.
+    Vec<T, n> const& e;  ///< must outlive this object
+    Vec<T, d> step;      ///< difference e_v − e_0
+    /// Computes the difference for x.
     explicit Coordinates(Vec<T, n> const& x) : e(x) {
       for (int i = 0; i < d; ++i) step[i] = difference > 0 ? x[d * difference + i] - x[i] : x[i];
     }
-    /// Entry i of ê_v, of nodal vector v.
+    /// Entry i of ê_v for nodal vector v.
     T const& operator()(int v, int i) const { return is_difference(v) ? step[i] : e[d * v + i]; }
   };
 
-  /// p.
+  /// Parameters p.
   template <class T, int n>
   static Vec<T, np> parameters(Factors const& factors, Coordinates<T, n> const& x) {
     Vec<T, np> p;
@@ -74,7 +76,7 @@ class StrainMap {
     }
     return p;
   }
-  /// f −= Pᵀ s; what the difference gets goes to `step`.
+  /// Subtracts the force f −= Pᵀ s. The contribution to the difference is added to `step`.
   template <class T, int n>
   static void subtract_pulled(Factors const& factors, Vec<T, np> const& s, Vec<T, n>& f, Vec<T, d>& step) {
 #pragma GCC unroll 8
@@ -85,7 +87,7 @@ class StrainMap {
         if (v >= 0) (is_difference(v) ? step[k % d] : f[d * v + k % d]) -= s[k] * factors(k / d, j);
       }
   }
-  /// f += what the difference got, `step`.
+  /// Adds the contribution `step` of the difference to both of its vectors in f.
   template <class T, int n>
   static void spread(Vec<T, d> const& step, Vec<T, n>& f) {
     if constexpr (difference > 0)
@@ -95,7 +97,7 @@ class StrainMap {
       }
   }
 
-  /// k += Pᵀ h P, for any h: entry by entry.
+  /// Adds k += Pᵀ h P entry by entry, for any h.
   template <int n>
   static void add_mapped(Factors const& factors, Mat<double, np, np> const& h, Mat<double, n, n>& k) {
     Mat<double, np, n> p = Mat<double, np, n>::Zero();
@@ -108,14 +110,14 @@ class StrainMap {
       }
     for (int c = 0; c < n; ++c)
       for (int r = 0; r < np; ++r) {
-        double sum = 0.0;  // of h P
+        double sum = 0.0;  // entry of h P
         for (int q = 0; q < np; ++q) sum += h(r, q) * p(q, c);
         if (sum == 0.0) continue;
         for (int i = 0; i < n; ++i) k(i, c) += p(r, i) * sum;
       }
   }
 
-  /// Row `row` of B P, B being b, by the vectors that all shapes read.
+  /// Row `row` of B P, where B is `b`, with respect to the nodal vectors that all shapes read.
   template <class T, int m>
   static void pull_row(Factors const& factors, Mat<T, m, np> const& b, int row, Vec<T, d * reach>& out) {
     for (int j = 0; j < reach; ++j)
@@ -128,7 +130,7 @@ class StrainMap {
       }
   }
 
-  /// One more than the last nodal vector that is read.
+  /// Largest index of a nodal vector that is read, plus one.
   static constexpr int vectors = [] {
     int most = 0;
     for (int s = 0; s < shapes; ++s)
@@ -142,16 +144,17 @@ class StrainMap {
       for (int j = 0; j < reach; ++j) sum += Law::vector(s, j) >= 0;
     return sum;
   }();
-  /// All pairs of factors, those of block (v, w) from `first[v][w]` to `last[v][w]`.
+  /// Pair of factors. The pairs of block (v, w) are `first[v][w]` to `last[v][w]`.
   struct Pair {
-    int s, j, t, l;  ///< of N_sj N_tl
+    int s, j, t, l;  ///< indices of N_sj N_tl
   };
   /// All pairs of factors in the order of the blocks.
   struct Pairs {
-    std::array<Pair, std::size_t(count* count)> pairs{};                                      ///< all of them
-    std::array<std::array<int, std::size_t(vectors)>, std::size_t(vectors)> first{}, last{};  ///< of a block in `pairs`
+    std::array<Pair, std::size_t(count* count)> pairs{};  ///< all pairs
+    std::array<std::array<int, std::size_t(vectors)>, std::size_t(vectors)> first{},
+        last{};  ///< range of a block in `pairs`
   };
-  /// Made at compile time.
+  /// Table of the pairs, computed at compile time.
   static constexpr Pairs table = [] {
     Pairs out;
     int next = 0;
@@ -167,7 +170,7 @@ class StrainMap {
       }
     return out;
   }();
-  /// Whether a shape reads nodal vector v.
+  /// Returns true if a shape reads nodal vector v.
   static constexpr bool reads(int v) { return v < vectors && table.first[v][v] < table.last[v][v]; }
 };
 

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// The quadrature points of a group of strains (see strain_group.hpp): energy, and the mean force over a step, whose
-/// work is the change of the energy.
+/// Quadrature points of a group of strains (see strain_group.hpp): energy, and the mean force over a step, whose work
+/// equals the change of the energy.
 
 #include <array>
 
@@ -12,33 +12,34 @@
 
 namespace polybody {
 
-/// Weights, maps and free strains of the points, and C, τ and n⁰, which are the same at all of them.
+/// Weights, maps and stress-free strains of the quadrature points of a group, and C, τ and n⁰, which are equal at all
+/// points.
 template <StrainFunctions Law>
 class StrainPoints {
  public:
   static constexpr int np = Law::parameters, m = Law::strains;  ///< number of parameters and of strains
 
-  using P = StrainMap<Law>;         ///< from e to p
+  using P = StrainMap<Law>;         ///< map from e to p
   using Map = typename P::Factors;  ///< N at a point
   template <class T, int n>
   using Coordinates = typename P::template Coordinates<T, n>;  ///< ê of an element
-  using Strains = Vec<double, m>;                              ///< a number for each strain
+  using Strains = Vec<double, m>;                              ///< one number for each strain
 
   StrainPoints() = default;
-  /// At the points of elements of length l [m], Gauss' unless the law has a `rule`; `initial` is the stress in the
-  /// reference configuration.
+  /// Quadrature points of elements of length l [m]: Gauss points, unless the law has a `rule`. `initial` is the stress
+  /// in the reference configuration.
   StrainPoints(BarConstants const& c, Damping const& d, double l, Strains const& initial = Strains::Zero())
     requires StrainLaw<Law>
       : StrainPoints(Law::stiffness(c), Law::damping(d)) {
     initial_ = initial;
     for (int g = 0; g < Law::points; ++g) set_point(g, point(g).weight * l, Law::map(point(g).xi, l));
   }
-  /// With C and τ [s]; `set_point` gives each of the points.
+  /// Points with the given C and τ [s]; `set_point` defines each of them.
   StrainPoints(Strains const& stiffness, Strains const& time) : stiffness_(stiffness), time_(time) {
     damped_ = !time_.isZero(0.0);
     free_.fill(Strains::Zero());
   }
-  /// The `weight` [m], factors of P, and strains free of stress of point g.
+  /// Sets the `weight` [m], the factors `map` of P, and the stress-free strains `free` of point g.
   void set_point(int g, double weight, Map const& map, Strains const& free = Strains::Zero()) {
     weights_[g] = weight;
     maps_[g] = map;
@@ -49,7 +50,7 @@ class StrainPoints {
     }
   }
 
-  /// Coordinates x become free of strain, ε⁰ = ε(x) at each point.
+  /// Makes the coordinates x free of strain, ε⁰ = ε(x) at each point.
   template <int n>
   void set_free(Vec<double, n> const& x) {
     Mat<double, m, np> b;
@@ -57,11 +58,11 @@ class StrainPoints {
       Law::template evaluate<double>(P::parameters(maps_[g], Coordinates<double, n>(x)), free_[g], b);
   }
 
-  Strains const& stiffness() const { return stiffness_; }  ///< C, of each strain [N] or [N m²]
-  /// The stress of strains without damping.
+  Strains const& stiffness() const { return stiffness_; }  ///< C of each strain [N] or [N m²]
+  /// Stress of the given strains without damping.
   Strains stress(Strains const& strain) const { return stiffness_.cwiseProduct(strain) + initial_; }
 
-  /// ε at ξ of an element of length l with coordinates x.
+  /// Strains ε at ξ of an element of length l with coordinates x.
   template <int n>
   static Strains strains(double xi, double l, Vec<double, n> const& x)
     requires StrainLaw<Law>
@@ -72,10 +73,10 @@ class StrainPoints {
     return strain;
   }
 
-  bool damped() const { return damped_; }                ///< whether a τ is not zero
-  bool operator==(StrainPoints const&) const = default;  ///< whether all numbers are the same
+  bool damped() const { return damped_; }                ///< true if a τ is not zero
+  bool operator==(StrainPoints const&) const = default;  ///< compares all numbers
 
-  /// The energy stored at the element's coordinates x [J].
+  /// Energy stored at the coordinates x of the element [J].
   template <int n>
   double energy(Vec<double, n> const& x) const {
     double u = 0.0;
@@ -93,11 +94,11 @@ class StrainPoints {
     return u;
   }
 
-  /// f += the group's force over a step from x0 to x1, by secants S of the strains [Gonzalez 1996]:
-  ///   −∫ Pᵀ Sᵀ n dx,  n_i = C_i (ε̄_i − ε⁰_i + (decay + τ_i/h) Δε_i) + n⁰_i,  S P Δx = Δε,
-  /// so that f·Δx = −ΔU − Σ ∫ C_i (decay + τ_i/h) Δε_i² dx. It has no moment where strains are made of scalar products.
-  /// The others, vectors that turn, go by their square z: n_z = ½ C (1 + τ Δz/(2h(z̄ + κ₀²))), κ₀ = 1e-3 1/m, as
-  /// `objective_rate` damps; the part of `decay` has a moment then.
+  /// Adds the force of the group over a step from x0 to x1, by secants S of the strains [Gonzalez 1996]:
+  ///   f += −∫ Pᵀ Sᵀ n dx,  n_i = C_i (ε̄_i − ε⁰_i + (decay + τ_i/h) Δε_i) + n⁰_i,  S P Δx = Δε,
+  /// so that f·Δx = −ΔU − Σ ∫ C_i (decay + τ_i/h) Δε_i² dx. The force has no moment if strains are scalar products.
+  /// Strains that are components of a rotating vector enter by their square z: n_z = ½ C (1 + τ Δz/(2h(z̄ + κ₀²))),
+  /// with κ₀ = 1e-3 1/m, which agrees with the damping of `objective_rate`. The part of `decay` then has a moment.
   template <int n>
   void add_mean_force(Vec<double, n> const& x0, Vec<double, n> const& x1, StepMeans const& means,
                       Vec<double, n>& f) const {
@@ -132,8 +133,8 @@ class StrainPoints {
     P::spread(step, f);
   }
 
-  /// k += ck (−∂f/∂x1) of `add_mean_force` from x0 to x1, not symmetric, with the strains' gradients B̄ and H̄ of the
-  /// middle for the secants:
+  /// Adds the tangent k += ck (−∂f/∂x1) of `add_mean_force` from x0 to x1, which is not symmetric. The gradients B̄ and
+  /// H̄ of the strains in the middle of the step replace the secants:
   ///   Pᵀ [B̄ᵀ C (½ + decay + τ/h) B(x1) + ½ Σ n_i H̄_i] P.
   template <int n>
   void add_mean_tangent(Vec<double, n> const& x0, Vec<double, n> const& x1, StepMeans const& means, double ck,
@@ -176,12 +177,12 @@ class StrainPoints {
   }
 
  protected:
-  static constexpr bool quadratic = QuadraticStrains<Law>;  ///< whether tangents take the way of `QuadraticStrains`
+  static constexpr bool quadratic = QuadraticStrains<Law>;  ///< tangents use `QuadraticStrains`
 
   Strains stiffness_ = Strains::Zero();             ///< C
   Strains time_ = Strains::Zero();                  ///< τ [s]
   Strains initial_ = Strains::Zero();               ///< n⁰
-  bool damped_ = false;                             ///< whether a τ is not zero
+  bool damped_ = false;                             ///< true if a τ is not zero
   std::array<Map, std::size_t(Law::points)> maps_;  ///< N
   /// Products of two factors, for each pair.
   std::array<std::array<double, std::size_t(Law::points)>, quadratic ? 0 : P::table.pairs.size()> products_;

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// The tangent of an element from all its groups of strains, block by block of nodal vectors, so that each entry is
-/// written once.
+/// Tangent of an element from all its strain groups, block by block of nodal vectors, so that each entry is written
+/// once.
 
 #include <tuple>
 #include <utility>
@@ -11,7 +11,7 @@
 namespace polybody {
 
 namespace detail {
-/// Block (v, w) of k becomes `block`, or less that; and with its mirror image.
+/// Sets block (v, w) of k to `block`, or to its negative. If `mirror`, also sets the transposed block.
 template <bool negative, class T, int d, int n>
 void set_block(int v, int w, Mat<T, d, d> const& block, bool mirror, Mat<T, n, n>& k) {
   T* const at = k.data() + d * (v + n * w);
@@ -28,10 +28,9 @@ void set_block(int v, int w, Mat<T, d, d> const& block, bool mirror, Mat<T, n, n
 }
 }  // namespace detail
 
-/// k = ck (−∂f/∂x) + cd (−∂f/∂xd) of the groups of an element. Undamped it is symmetric, and only the blocks on and
-/// below the diagonal are calculated. The blocks of the first vector are those of the one that is read against it, with
-/// the other sign
-/// (`StrainMap`).
+/// Tangent k = ck (−∂f/∂x) + cd (−∂f/∂xd) of the groups of an element. Without damping it is symmetric, and only the
+/// blocks on and below the diagonal are computed. The blocks of the first vector are the negative blocks of the vector
+/// that is read relative to it (`StrainMap`).
 template <KernelScalar T, int n, class... Groups>
 void tangent_of(std::tuple<Groups...> const& groups, Vec<T, n> const& x, Vec<T, n> const& xd, double ck, double cd,
                 Mat<T, n, n>& k) {
@@ -58,7 +57,7 @@ void tangent_of(std::tuple<Groups...> const& groups, Vec<T, n> const& x, Vec<T, 
       if (v == difference && w == difference) detail::set_block<false, T, d, n>(0, 0, block, false, k);
     }
   };
-  if constexpr (d == 1) {  // few entries, most of one product: the compiler is to see which
+  if constexpr (d == 1) {  // few entries, most of one product: unrolled loops let the compiler select them
 #pragma GCC unroll 8
     for (int v = first; v < n; ++v)
 #pragma GCC unroll 8
