@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// What the laws of bodies read off a case, and the small things that they compute with.
+/// Data of a case for the law tests of bodies, and functions for their evaluation.
 ///
-/// Not in polybody.hpp: for tests.
+/// For tests; not included by polybody.hpp.
 
 #include <algorithm>
 #include <limits>
@@ -14,12 +14,12 @@
 
 namespace polybody::laws {
 
-/// The entries of the vector x, to be read.
+/// Read access to the entries of the vector x.
 template <class V>
 auto view(V const& x) {
   return std::span<typename V::Scalar const>(x.data(), std::size_t(x.size()));
 }
-/// The entries of the vector x, to be written.
+/// Write access to the entries of the vector x.
 template <class V>
 auto mutable_view(V& x) {
   return std::span<typename V::Scalar>(x.data(), std::size_t(x.size()));
@@ -30,10 +30,10 @@ inline MatX epsilon_of(MatXOf<Dual<1>> const& m) {
   return m.unaryExpr([](Dual<1> const& x) { return x.d[0]; });
 }
 
-/// |a − b| against |b|, or against one where b is smaller.
+/// Relative difference |a − b| / max(1, |b|).
 inline double mismatch(MatX const& a, MatX const& b) { return (a - b).norm() / std::max(1.0, b.norm()); }
 
-/// The smallest pivot of L D Lᵀ = m without exchanges: positive exactly for a positive definite matrix.
+/// Smallest pivot of L D Lᵀ = m without exchanges; it is positive if and only if m is positive definite.
 inline double smallest_pivot(MatX m) {
   double smallest = std::numeric_limits<double>::infinity();
   for (Index k = 0; k < m.rows(); ++k) {
@@ -44,25 +44,25 @@ inline double smallest_pivot(MatX m) {
   return smallest;
 }
 
-/// The body of the case is made from a Bar.
+/// Concept of a case whose body is made from a Bar.
 template <class Case>
 concept MadeFromBar = requires { Case::body(Case::bar()); };
 
-/// What a case says of its body, with or without a Bar.
+/// Body of a case and its reference values. Specialised for cases with a Bar.
 template <class Case>
 struct BodyOf {
-  static auto body() { return Case::body(); }  ///< the case's body, damping included
-  /// The body without damping: the case's own, or the same where the case names no other.
+  static auto body() { return Case::body(); }  ///< body of the case, with damping
+  /// Body without damping: `Case::undamped` if the case has it, otherwise the same body.
   static auto undamped() {
     if constexpr (requires { Case::undamped(); })
       return Case::undamped();
     else
       return Case::body();
   }
-  static double mass() { return Case::mass(); }  ///< mass that the case says [kg]
-  /// (3) centre of mass in the reference configuration, world axes [m].
+  static double mass() { return Case::mass(); }  ///< mass given by the case [kg]
+  /// (3) Centre of mass in the reference configuration, world axes [m].
   static Vec3 centre() { return Case::centre(); }
-  /// The largest elastic constant, by which errors of forces are measured; 1 where the case does not say.
+  /// Largest elastic constant, as the unit of errors of forces; 1 if the case does not give it.
   static double stiffness() {
     if constexpr (requires { Case::stiffness; })
       return Case::stiffness;
@@ -70,11 +70,11 @@ struct BodyOf {
       return 1.0;
   }
 };
-/// What a case says of a body that is made from a Bar.
+/// Body that is made from a Bar, and its reference values from the Bar.
 template <MadeFromBar Case>
 struct BodyOf<Case> {
-  static auto body() { return Case::body(Case::bar()); }  ///< the body made from the case's bar, damping included
-  /// The body made from the case's bar without its damping.
+  static auto body() { return Case::body(Case::bar()); }  ///< body made from the case's bar, with damping
+  /// Body made from the case's bar, without damping.
   static auto undamped() {
     Bar bar = Case::bar();
     bar.damping = {};
@@ -82,12 +82,12 @@ struct BodyOf<Case> {
   }
   /// Mass of the bar [kg].
   static double mass() { return constants(Case::bar()).mass_per_length * Case::bar().length; }
-  /// (3) The bar's middle in the reference configuration, world axes [m].
+  /// (3) Middle of the bar in the reference configuration, world axes [m].
   static Vec3 centre() {
     Bar const bar = Case::bar();
     return bar.placement.origin + bar.placement.axes.col(0) * (0.5 * bar.length);
   }
-  /// EA + EI of the bar, by which errors of forces are measured.
+  /// EA + EI of the bar, as the unit of errors of forces.
   static double stiffness() {
     BarConstants const c = constants(Case::bar());
     return c.EA + c.EI;

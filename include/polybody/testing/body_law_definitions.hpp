@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// The laws of `BodyLaws`, each a member of it; what they say stands in body_laws.hpp.
+/// Definitions of the laws of `BodyLaws`; body_laws.hpp states them.
 ///
-/// Not in polybody.hpp: needs GoogleTest.
+/// Requires GoogleTest; not included by polybody.hpp.
 
 #include <polybody/testing/body_laws.hpp>
 
@@ -80,7 +80,7 @@ template <class Case>
 void BodyLaws<Case>::reference_is_free_of_force_and_energy() {
   VecX const q = reference();
   double size = Made::stiffness();
-  if constexpr (requires { Case::rounding; }) size *= Case::rounding;  // of coordinates that are transformed
+  if constexpr (requires { Case::rounding; }) size *= Case::rounding;  // round-off of transformed coordinates
   EXPECT_LT(force_at_rest(q).norm(), 1e-14 * size);
   EXPECT_LT(strain_energy(q), 1e-25 * size);
 }
@@ -123,7 +123,7 @@ void BodyLaws<Case>::undamped_force_gives_back_the_strain_energy() {
   VecX const q = configuration(), v = speeds();
   double const power = force_of<double>(elastic, q, v).dot(v);
   double const rate = slope_at_zero([&](double h) { return strain_energy(moved<double>(q, v * h)); }, 3e-4);
-  double by_mass = 0.0;  // with own rows ⊞ keeps them, which these speeds do not; v · Q_v of Euler parameters is zero
+  double by_mass = 0.0;  // zero with own constraints: ⊞ keeps them, these v do not; v · Q_v of Euler parameters is zero
   if constexpr (!OwnsRows<B>)
     by_mass = slope_at_zero([&](double h) { return kinetic_energy(moved<double>(q, v * h), v); }, 3e-4);
   EXPECT_NEAR(power, -rate - by_mass, 1e-8 * (1.0 + std::abs(rate) + std::abs(by_mass)));
@@ -241,7 +241,7 @@ void BodyLaws<Case>::load_stiffness_is_the_derivative_of_the_pulled_wrench() {
   }
 }
 
-// --- own rows -------------------------------------------------------------------------------------------------
+// --- own constraint equations ---------------------------------------------------------------------------------
 
 template <class Case>
 void BodyLaws<Case>::own_rows_hold_at_the_reference_and_their_maps_are_derivatives() {
@@ -275,7 +275,7 @@ void BodyLaws<Case>::own_rows_hold_at_the_reference_and_their_maps_are_derivativ
     Mat<double, n, n> k;
     body.own_stiffness(view(q), Vec<double, m>(lambda), k);
     EXPECT_LT(mismatch(k, stiffness), 1e-14);
-    // a rigid motion keeps them
+    // a rigid motion satisfies the constraint equations
     EXPECT_LT((g * rigid_velocity(q, velocity(), spin())).norm(), 1e-14);
   }
 }
@@ -314,7 +314,7 @@ void BodyLaws<Case>::points_outside_the_bar_are_refused() {
     if constexpr (rolls) {
       EXPECT_THROW((void)body.at(0.0, nan), InvalidInput);
     }
-    EXPECT_NO_THROW((void)body.at(length * (1 + 1e-15)));  // rounding is forgiven
+    EXPECT_NO_THROW((void)body.at(length * (1 + 1e-15)));  // round-off is accepted
   }
 }
 

@@ -1,28 +1,8 @@
 #pragma once
 /// \file
-/// The laws that every Body obeys, whatever it is made of. A case says how to build the body, and what the body is to
-/// weigh. A body that is made from a Bar is compared with the bar:
+/// Law tests of bodies.
 ///
-///     struct LrvfCase {
-///       static Bar bar();                     // every constant, damping and a placement that is not trivial
-///       static planar::Lrvf body(Bar const&);
-///     };
-///     bool const lrvf_obeys = obeys<LrvfCase, BodyLaws>("Lrvf");
-///
-/// Any other body comes with its points and its mass:
-///
-///     struct DumbbellCase {
-///       static Dumbbell body();               // with damping, if it has any
-///       static Dumbbell undamped();           // the same without; not needed where there is none
-///       static std::vector<Dumbbell::Point> points();
-///       static double mass();                 // [kg]
-///       static Vec3 centre();                 // of mass, in the reference configuration, world axes [m]
-///       static constexpr double stiffness = 900.0;  // the largest of its elastic constants; one where it is not said
-///     };
-///
-/// Derivatives are taken with dual numbers along one direction at a time, q ⊞ ε d.
-///
-/// Not in polybody.hpp: needs GoogleTest.
+/// Requires GoogleTest; not included by polybody.hpp.
 
 #include <gtest/gtest.h>
 
@@ -36,30 +16,53 @@
 
 namespace polybody::laws {
 
-/// The laws of bodies, for one case.
+/// Laws that every Body satisfies. A case gives the body and its mass.
+///
+/// A body that is made from a Bar is compared with the bar:
+///
+///     struct LrvfCase {
+///       static Bar bar();  // all constants, damping and a general placement
+///       static planar::Lrvf body(Bar const&);
+///     };
+///     bool const lrvf_obeys = obeys<LrvfCase, BodyLaws>("Lrvf");
+///
+/// For any other body the case gives points and mass:
+///
+///     struct DumbbellCase {
+///       static Dumbbell body();                     // with damping, if it has any
+///       static Dumbbell undamped();                 // the same body without damping; optional if it has none
+///       static std::vector<Dumbbell::Point> points();
+///       static double mass();                       // [kg]
+///       static Vec3 centre();                       // of mass, in the reference configuration, world axes [m]
+///       static constexpr double stiffness = 900.0;  // largest elastic constant; 1 if omitted
+///     };
+///
+/// Derivatives are computed with dual numbers along one direction d at a time, q ⊞ ε d.
 template <class Case>
 struct BodyLaws {
-  using Made = BodyOf<Case>;                                        ///< how the case makes its body
-  using B = decltype(Made::body());                                 ///< the body's type
-  using D = Dual<1>;                                                ///< number with the derivative along one direction
-  static constexpr bool planar = B::world == World::plane;          ///< the body moves in a plane
-  static constexpr bool rolls = B::observes == Observes::frame;     ///< else a marker knows no axes across its first
-  static constexpr bool directed = B::observes != Observes::point;  ///< else it knows no axis at all
-  /// Whether a rigid motion of all its coordinates carries the whole body; a body that says nothing owes it.
+  using Made = BodyOf<Case>;                                ///< creation of the body by the case
+  using B = decltype(Made::body());                         ///< type of the body
+  using D = Dual<1>;                                        ///< dual number with the derivative along one direction
+  static constexpr bool planar = B::world == World::plane;  ///< true if the body moves in a plane
+  static constexpr bool rolls = B::observes == Observes::frame;     ///< true if markers have three axes
+  static constexpr bool directed = B::observes != Observes::point;  ///< true if markers have an axis
+  /// True if a rigid motion of all coordinates is a rigid motion of the whole body; the default for a body without this
+  /// member.
   static constexpr bool objective = [] {
     if constexpr (requires { B::objective; })
       return B::objective;
     else
       return true;
   }();
-  /// Speeds of an element, `Eigen::Dynamic` for one element of run-time size.
+  /// Generalised velocities of an element; `Eigen::Dynamic` for one element of run-time size.
   static constexpr int n = B::element_columns;
 
-  B const body = Made::body();                              ///< the body under test, with its damping
-  Index const nq = body.coordinates(), nv = body.speeds();  ///< how many coordinates q and speeds v it has
-  std::mt19937 generator{20240607};                         ///< source of the random numbers; its seed is fixed
+  B const body = Made::body();  ///< body under test, with its damping
+  /// Numbers of coordinates q and of generalised velocities v.
+  Index const nq = body.coordinates(), nv = body.speeds();
+  std::mt19937 generator{20240607};  ///< source of the random numbers; its seed is fixed
 
-  // --- random but fixed -----------------------------------------------------------------------------------
+  // --- random numbers with a fixed seed -------------------------------------------------------------------
 
   /// Random number in [−size, size].
   double number(double size) { return size * (double(generator()) / 2147483648.0 - 1.0); }
@@ -68,22 +71,22 @@ struct BodyLaws {
     return VecX::NullaryExpr(size, [&](Index) { return number(scale); });
   }
   Vec3 vector3() { return vector(3, 1.0); }  ///< random column (3) in [−1, 1]
-  /// A velocity and an angular velocity that the body's world knows.
+  /// Random velocity (3), in the plane for a planar body [m/s].
   Vec3 velocity() { return planar ? Vec3(number(1), number(1), 0.0) : vector3(); }
-  /// Random angular velocity (3) that the body's world knows [rad/s].
+  /// Random angular velocity (3), about z for a planar body [rad/s].
   Vec3 spin() { return planar ? Vec3(0.0, 0.0, number(1)) : vector3(); }
-  /// A configuration far from the undeformed one; a body in space also turns by about a radian.
-  /// A case may say `deformation`: the part of it that a formulation for small deformation bears.
+  /// Configuration far from the undeformed one; a body in space also rotates by about one radian. A case may give
+  /// `deformation`, a factor of the deformation for a formulation that is limited to small deformations.
   VecX configuration() {
     VecX delta = vector(nv, planar ? 0.3 : 1.0);
     if constexpr (requires { Case::deformation; }) delta.tail(nv - (planar ? 3 : 6)) *= Case::deformation;
     return moved<double>(reference(), delta);
   }
-  VecX speeds() { return vector(nv, 1.5); }                               ///< random speeds (nv) in [−1.5, 1.5]
-  Mat3 turned() { return exp_so3<double>(vector3()); }                    ///< random rotation (3×3)
+  VecX speeds() { return vector(nv, 1.5); }             ///< random generalised velocities (nv) in [−1.5, 1.5]
+  Mat3 turned() { return exp_so3<double>(vector3()); }  ///< random rotation (3×3)
   Wrench<double> wrench() { return {vector3() * 5.0, vector3() * 3.0}; }  ///< random force [N] and moment [N m]
 
-  /// The case's points; of a bar some on the axis, at both ends, and off it.
+  /// Points of the case. For a bar: points on the axis, at both ends, and off the axis.
   std::vector<typename B::Point> points() const {
     if constexpr (MadeFromBar<Case>) {
       double const length = Case::bar().length;
@@ -99,19 +102,19 @@ struct BodyLaws {
       return Case::points();
     }
   }
-  /// The axes that a marker knows.
+  /// Columns of `axes` that a marker has.
   static MatX known(Mat3 const& axes) { return axes.leftCols(rolls ? 3 : directed ? 1 : 0); }
-  /// The part of an angular velocity w (3) (or its error) that a marker knows: none along its axis where it has one
-  /// only.
+  /// Component of an angular velocity w (3), or of its error, that a marker has. A marker with one axis has no
+  /// component along this axis.
   static Vec3 known_turn(Vec3 const& w, Mat3 const& axes) {
     if (!directed) return Vec3::Zero();
     Vec3 const along = axes.col(0);
     return rolls ? w : Vec3(w - along * along.dot(w));
   }
 
-  // --- the body as a whole --------------------------------------------------------------------------------
+  // --- the whole body -------------------------------------------------------------------------------------
 
-  /// Coordinates q (nq) of the undeformed body as placed.
+  /// Coordinates q (nq) of the undeformed body at its placement.
   VecX reference() const {
     VecX q(nq);
     body.reference(mutable_view(q));
@@ -125,42 +128,43 @@ struct BodyLaws {
     body.template plus<T>(view(from), view(delta), mutable_view(to));
     return to;
   }
-  /// The rate δ˙ (nv) with which q ⊞ δ moves at the speeds v.
+  /// Rate δ˙ (nv) of q ⊞ δ at the generalised velocities v.
   VecX rates(VecX const& delta, VecX const& v) const {
     VecX rate(nv);
     body.template local_rate<double>(view(delta), view(v), mutable_view(rate));
     return rate;
   }
-  /// Speeds (nv) of a rigid motion: v0 of the body-fixed point at the world's origin, omega in world axes.
+  /// Generalised velocities (nv) of a rigid motion: v0 is the velocity of the body-fixed point at the world's origin,
+  /// omega is the angular velocity in world axes.
   VecX rigid_velocity(VecX const& q, Vec3 const& v0, Vec3 const& omega) const {
     VecX v(nv);
     body.rigid_velocity(view(q), v0, omega, mutable_view(v));
     return v;
   }
 
-  /// x + ε d, and q ⊞ ε d, d being `direction`.
+  /// Dual numbers x + ε d, with d = `direction`.
   static VecXOf<D> along(VecX const& x, VecX const& direction) {
     VecXOf<D> out = x.cast<D>();
     for (Index i = 0; i < x.size(); ++i) out[i].d[0] = direction[i];
     return out;
   }
-  /// q ⊞ ε d (nq) in dual numbers, d the direction.
+  /// Coordinates q ⊞ ε d (nq) in dual numbers, with d = `direction`.
   VecXOf<D> carried(VecX const& q, VecX const& direction) const {
     return moved<D>(q, along(VecX::Zero(nv), direction));
   }
 
-  /// Sum over the elements (nv): element(e, x) writes the column of element e into x.
+  /// Sum over the elements (nv); element(e, x) writes the column of element e to x.
   template <class T, class Element>
   VecXOf<T> assembled(Element&& element) const {
     VecXOf<T> sum = VecXOf<T>::Zero(nv);
     for (Index e = 0; e < body.elements(); ++e) {
-      Vec<T, n> x = Vec<T, n>::Constant(element_columns(body), T(1e9));  // whatever stood there must be overwritten
+      Vec<T, n> x = Vec<T, n>::Constant(element_columns(body), T(1e9));  // all entries must be overwritten
       element(e, x);
       sum.segment(body.first_column(e), x.size()) += x;
     }
     return sum;
   }
-  /// Sum over the elements (nv×nv): element(e, m) writes the matrix of element e into m.
+  /// Sum over the elements (nv×nv); element(e, m) writes the matrix of element e to m.
   template <class Element>
   MatX assembled_matrix(Element&& element) const {
     MatX sum = MatX::Zero(nv, nv);
@@ -172,7 +176,7 @@ struct BodyLaws {
     }
     return sum;
   }
-  /// Sum over the elements of the number element(e).
+  /// Sum of the numbers element(e) over the elements.
   template <class Element>
   double summed(Element&& element) const {
     double sum = 0.0;
@@ -184,27 +188,27 @@ struct BodyLaws {
   MatX mass(VecX const& q) const {
     return assembled_matrix([&](Index e, auto& m) { body.mass(e, view(q), m); });
   }
-  /// M a (nv), from the body's `inertia`.
+  /// Product M a (nv), from the body's `inertia`.
   template <class T>
   VecXOf<T> inertia(VecXOf<T> const& q, VecXOf<T> const& a) const {
     return assembled<T>([&](Index e, auto& x) { body.template inertia<T>(e, view(q), view(a), x); });
   }
-  /// Elastic, damping and quadratic-velocity force f (nv) of a body b.
+  /// Elastic, damping and quadratic-velocity force f (nv) of the body b.
   template <class T>
   VecXOf<T> force_of(B const& b, VecXOf<T> const& q, VecXOf<T> const& v) const {
     return assembled<T>([&](Index e, auto& x) { b.template force<T>(e, view(q), view(v), x); });
   }
-  /// The force f (nv) of the body under test.
+  /// Force f (nv) of the body under test.
   template <class T>
   VecXOf<T> force(VecXOf<T> const& q, VecXOf<T> const& v) const {
     return force_of<T>(body, q, v);
   }
   VecX force_at_rest(VecX const& q) const { return force<double>(q, VecX::Zero(nv)); }  ///< f (nv) at v = 0
-  /// The body's `tangent`, −(ck ∂f/∂q + cd ∂f/∂v) (nv×nv).
+  /// Tangent of the body, −(ck ∂f/∂q + cd ∂f/∂v) (nv×nv), from its `tangent`.
   MatX tangent(VecX const& q, VecX const& v, double ck, double cd) const {
     return assembled_matrix([&](Index e, auto& k) { body.tangent(e, view(q), view(v), ck, cd, k); });
   }
-  /// G of the body's own rows.
+  /// Constraint Jacobian G of the body's own constraint equations.
   MatX own_map(VecX const& q) const
     requires OwnsRows<B>
   {
@@ -212,7 +216,7 @@ struct BodyLaws {
     body.template own_map<double>(view(q), g);
     return g;
   }
-  /// Force of the weight (nv) in the field g [m/s²].
+  /// Generalised force of the weight (nv) in the field g [m/s²].
   VecX gravity(VecX const& q, Vec3 const& g) const {
     return assembled<double>([&](Index e, auto& x) { body.template gravity<double>(e, view(q), g, x); });
   }
@@ -224,12 +228,12 @@ struct BodyLaws {
   double strain_energy(VecX const& q) const {
     return summed([&](Index e) { return body.strain_energy(e, view(q)); });
   }
-  /// Energy of the weight in the field g [J].
+  /// Potential energy of the weight in the field g [J].
   double gravity_energy(VecX const& q, Vec3 const& g) const {
     return summed([&](Index e) { return body.gravity_energy(e, view(q), g); });
   }
 
-  /// ∂f/∂δ at δ = 0 of a number that depends on q ⊞ δ, by differences.
+  /// Derivative ∂f/∂δ at δ = 0 of a scalar function f of q ⊞ δ, by differences.
   template <class F>
   VecX gradient(F&& f, VecX const& q) const {
     VecX out(nv);
@@ -238,23 +242,23 @@ struct BodyLaws {
     return out;
   }
 
-  // --- a marker -------------------------------------------------------------------------------------------
+  // --- markers --------------------------------------------------------------------------------------------
 
-  /// A published marker, with its Jacobian over all columns of the body.
+  /// Marker kinematics, with the Jacobian over all columns of the body.
   template <class T>
   struct Seen {
-    Sequence<T> memory;                  ///< of the Jacobian; moving it keeps its address
-    Published<T> marker;                 ///< what `publish` wrote
-    Mat<T, 6, Eigen::Dynamic> jacobian;  ///< all columns of the body
-    /// Velocity [m/s] and angular velocity [rad/s] of the marker, world axes: [ṙ; ω].
+    Sequence<T> memory;                  ///< memory of the Jacobian; its address is constant under moves
+    Published<T> marker;                 ///< result of `publish`
+    Mat<T, 6, Eigen::Dynamic> jacobian;  ///< Jacobian over all columns of the body
+    /// Twist of the marker [ṙ; ω] in world axes [m/s], [rad/s].
     Vec<T, 6> twist() const {
       Vec<T, 6> t;
       t << marker.frame.v, marker.frame.w;
       return t;
     }
   };
-  /// The marker at point p in the state q, v. Its axes in the body's are `axes` if a marker of the body knows all
-  /// three.
+  /// Kinematics of the marker at point p in the state q, v. The marker has the axes `axes` in the body if its markers
+  /// have three axes.
   template <class T>
   Seen<T> see(typename B::Point const& p, Mat3 const& axes, VecXOf<T> const& q, VecXOf<T> const& v) const {
     Seen<T> s;
@@ -267,19 +271,19 @@ struct BodyLaws {
     return s;
   }
 
-  // --- the laws, each a test ------------------------------------------------------------------------------
+  // --- laws, each of them a test --------------------------------------------------------------------------
 
-  /// M = Mᵀ and vᵀM v > 0; where a body owns rows, M + GᵀG is positive definite.
+  /// M = Mᵀ and vᵀM v > 0. If the body has own constraint equations, M + GᵀG is positive definite.
   void mass_is_symmetric_and_positive();
   /// T = ½ vᵀM v.
   void kinetic_energy_is_half_v_m_v();
   /// `inertia` = M a, in double and in dual numbers.
   void inertia_is_mass_times_acceleration();
-  /// ∂M/∂q = 0 where the body says `constant_mass`.
+  /// ∂M/∂q = 0 if the body declares `constant_mass`.
   void constant_mass_does_not_depend_on_the_configuration();
-  /// T = ½ m v₀² in a translation with v₀.
+  /// T = ½ m v₀² for a translation with v₀.
   void total_mass_is_as_given();
-  /// Power of the weight in a rigid motion: m g·v₀ + (c × m g)·ω, and U = −m g·c, with the centre of mass at c.
+  /// The power of the weight in a rigid motion is m g·v₀ + (c × m g)·ω, and U = −m g·c, for the centre of mass c.
   void weight_acts_at_the_centre_of_mass();
   /// `gravity` = −∂U/∂q.
   void weight_is_the_gradient_of_its_energy();
@@ -293,13 +297,13 @@ struct BodyLaws {
   void tangent_is_the_derivative_of_the_force_by_speed();
   /// `tangent`(ck, cd) = ck `tangent`(1, 0) + cd `tangent`(0, 1).
   void tangent_mixes_its_two_parts_linearly();
-  /// f·v = −U˙ − ½ vᵀM˙v without damping: elastic and quadratic-velocity forces keep the energy.
+  /// f·v = −U˙ − ½ vᵀM˙v without damping: elastic and quadratic-velocity forces conserve the energy.
   void undamped_force_gives_back_the_strain_energy();
   /// q ⊞ 0 = q, and δ˙ = v at δ = 0.
   void plus_of_nothing_changes_nothing();
-  /// While q ⊞ δ(t) moves with δ˙ = `local_rate`(δ, v), every point moves as the speeds v say.
+  /// If q ⊞ δ(t) moves with δ˙ = `local_rate`(δ, v), the velocity of each point is that of v.
   void local_rate_moves_the_body_with_its_speeds();
-  /// With v = `rigid_velocity`(q, v₀, ω) every point has ṙ = v₀ + ω × r and the angular velocity ω.
+  /// For v = `rigid_velocity`(q, v₀, ω) every point has ṙ = v₀ + ω × r and the angular velocity ω.
   void rigid_velocity_is_the_field_of_a_rigid_motion();
   /// AᵀA = 1, det A > 0.
   void frame_is_orthonormal();
@@ -307,19 +311,20 @@ struct BodyLaws {
   void twist_is_jacobian_times_speeds();
   /// δr = J_r δ and δA = (J_ω δ)~ A under q ⊞ δ.
   void jacobian_is_the_derivative_of_the_frame();
-  /// bias = d/dt (J v) at v˙ = 0, from the Jacobian and, on another path, from the frame's own twist.
+  /// bias = d/dt (J v) at v˙ = 0, computed from the Jacobian and from the frame's twist.
   void bias_is_the_acceleration_at_constant_speeds();
-  /// `load_stiffness` = ∂(Jᵀw)/∂q of a wrench w that stands still.
+  /// `load_stiffness` = ∂(Jᵀw)/∂q for a constant wrench w.
   void load_stiffness_is_the_derivative_of_the_pulled_wrench();
-  /// Φ(q₀) = 0, G = ∂Φ/∂q, γ = d/dt (G v) at v˙ = 0, `own_stiffness` = ∂(Gᵀλ)/∂q, of a body that owns rows.
+  /// Φ(q₀) = 0, G = ∂Φ/∂q, γ = d/dt (G v) at v˙ = 0 and `own_stiffness` = ∂(Gᵀλ)/∂q for a body with own constraint
+  /// equations.
   void own_rows_hold_at_the_reference_and_their_maps_are_derivatives();
-  /// at(s, y) of the undeformed body is the bar's material point, its axes the bar's.
+  /// at(s, y) of the undeformed body is the bar's material point, and its axes are the bar's axes.
   void reference_stands_where_the_bar_is_placed();
-  /// at(s) throws for s outside [0, L], but forgives rounding.
+  /// at(s) throws for s outside of [0, L], with a tolerance for round-off.
   void points_outside_the_bar_are_refused();
 
   static constexpr char const* suite = "BodyLaws";
-  /// All laws, the two of bodies made from a bar last.
+  /// All laws; the last two apply to bodies made from a bar.
   static constexpr Law<BodyLaws> all[] = {
       {"MassIsSymmetricAndPositive", &BodyLaws::mass_is_symmetric_and_positive},
       {"KineticEnergyIsHalfVMV", &BodyLaws::kinetic_energy_is_half_v_m_v},
@@ -347,7 +352,7 @@ struct BodyLaws {
        &BodyLaws::own_rows_hold_at_the_reference_and_their_maps_are_derivatives},
       {"ReferenceStandsWhereTheBarIsPlaced", &BodyLaws::reference_stands_where_the_bar_is_placed},
       {"PointsOutsideTheBarAreRefused", &BodyLaws::points_outside_the_bar_are_refused}};
-  /// The last two are of bars.
+  /// Laws of the case; without the last two if the body is not made from a bar.
   static constexpr std::span<Law<BodyLaws> const> laws{all, std::size(all) - (MadeFromBar<Case> ? 0 : 2)};
 };
 

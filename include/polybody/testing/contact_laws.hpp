@@ -1,13 +1,8 @@
 #pragma once
 /// \file
-/// Laws of contact geometries, alone and with normal force and friction. Not in polybody.hpp: needs GoogleTest. A case:
-///     struct SphereOnPlaneCase {
-///       static SphereOnPlane geometry();
-///       static constexpr double radius;                                      // of the shape about marker a
-///       static Vec3 centre(Numbers&, Frame<double> const& b, double depth);  // where a stands to overlap by depth
-///       static Mat3 turning(Frame<double> const& a, Frame<double> const& b); // ∂n/∂r_a [1/m]
-///     };
-///     bool const sphere_obeys = obeys<SphereOnPlaneCase, ContactLaws>("SphereOnPlane");
+/// Law tests of contact geometries.
+///
+/// Requires GoogleTest; not included by polybody.hpp.
 
 #include <gtest/gtest.h>
 
@@ -19,16 +14,25 @@
 
 namespace polybody::laws {
 
-/// The laws of contact geometries, for one case.
+/// Laws that every contact geometry satisfies, alone and in a contact with normal force and friction. Example of a
+/// case:
+///
+///     struct SphereOnPlaneCase {
+///       static SphereOnPlane geometry();
+///       static constexpr double radius;                                       // of the shape about marker a
+///       static Vec3 centre(Numbers&, Frame<double> const& b, double depth);   // position of a for this penetration
+///       static Mat3 turning(Frame<double> const& a, Frame<double> const& b);  // ∂n/∂r_a [1/m]
+///     };
+///     bool const sphere_obeys = obeys<SphereOnPlaneCase, ContactLaws>("SphereOnPlane");
 template <class Case>
 struct ContactLaws {
   static constexpr char const* suite = "ContactLaws";
-  using G = decltype(Case::geometry());      ///< the geometry's type
-  using Elastic = Contact<G, HertzContact>;  ///< contact with Hertz' normal force
-  G const geometry = Case::geometry();       ///< the geometry under test
+  using G = decltype(Case::geometry());      ///< type of the geometry
+  using Elastic = Contact<G, HertzContact>;  ///< contact with the normal force of Hertz
+  G const geometry = Case::geometry();       ///< geometry under test
   Numbers number;                            ///< random numbers with a fixed seed
 
-  /// Bodies that overlap by `depth`, turned anyhow, moving at about a metre a second.
+  /// Bodies with penetration `depth`, at random orientations, with velocities of about 1 m/s.
   Touching overlapping(double depth) {
     Touching f{number.frame(), number.frame()};
     f[0].r = Case::centre(number, f[1], depth);
@@ -38,8 +42,8 @@ struct ContactLaws {
     Touching f = overlapping(depth);
     for (Frame<double>& x : f) x.v = x.w = Vec3::Zero();
     return f;
-  }  ///< bodies that overlap by `depth`, whose velocities are zero
-  /// The velocity of a relative to b at the point.
+  }  ///< bodies at rest with penetration `depth`
+  /// Velocity of a relative to b at the contact point.
   static Vec3 relative(ContactPoint<double> const& p, Touching const& f) {
     return f[0].v + f[0].w.cross(p.place - f[0].r) - f[1].v - f[1].w.cross(p.place - f[1].r);
   }
@@ -47,9 +51,11 @@ struct ContactLaws {
   static Law with(Law law, double coefficient = 0.4) {
     law.friction = {.coefficient = coefficient, .slip_speed = 0.3};
     return law;
-  }  ///< `law` with friction of this coefficient, v_s = 0.3 m/s
-  Elastic elastic() const { return {.geometry = geometry, .normal = {.modulus = 3e3, .radius = 0.04}}; }  ///< smooth
-  /// Calls visit(contact) for each normal force, without friction; none lets go of bodies that part as these do.
+  }  ///< `law` with this friction coefficient, v_s = 0.3 m/s
+  /// Contact with an elastic normal force.
+  Elastic elastic() const { return {.geometry = geometry, .normal = {.modulus = 3e3, .radius = 0.04}}; }
+  /// Calls visit(contact) for each normal force, without friction. The separation speeds of these bodies are too low
+  /// for a zero force.
   template <class Visit>
   void with_each_contact(Visit&& visit) const {
     visit(Contact<G>{.geometry = geometry, .normal = {.stiffness = 900.0, .damping = 7.0}});
@@ -62,7 +68,7 @@ struct ContactLaws {
     law.own_stiffness(f, ck, cd, k[0], k[1]);
     return k;
   }  ///< (6×6) `own_stiffness` of `law`, of body a and of body b
-  /// What `own_stiffness` of `law` stands for.
+  /// Exact matrices that `own_stiffness` of `law` approximates, for bodies a and b.
   template <class Law>
   static std::array<Mat<double, 6, 6>, 2> exact(Law const& law, Touching const& f, double ck, double cd) {
     Mat<double, 12, 12> const k = -wrench_gradient(law, f, 0.0, ck, cd);
@@ -72,7 +78,7 @@ struct ContactLaws {
     return Eigen::SelfAdjointEigenSolver<Mat<double, 6, 6>>(m).eigenvalues()[0];
   }  ///< smallest eigenvalue of a symmetric matrix m (6×6)
 
-  // --- the geometry -------------------------------------------------------------------------------------------
+  // --- geometry -----------------------------------------------------------------------------------------------
 
   void touches_at_the_depth_it_is_given() {
     for (double const depth : {1e-9, 0.01, 0.1}) {
@@ -80,25 +86,25 @@ struct ContactLaws {
       ContactPoint<double> const p = point_of(geometry, f[0], f[1]);
       EXPECT_NEAR(p.depth, depth, 1e-14);
       EXPECT_NEAR(p.normal.norm(), 1.0, 1e-14);
-      // the point lies on the line through a's centre, where both shapes are
+      // the point lies inside of both shapes, on the line through a's centre along n
       Vec3 const arm = f[0].r - p.place;
       EXPECT_LT(arm.cross(p.normal).norm(), 1e-14);
       EXPECT_LE(arm.dot(p.normal), Case::radius + 1e-14);
       EXPECT_GE(arm.dot(p.normal), Case::radius - depth - 1e-14);
     }
-  }  ///< d is as the case placed a, |n| = 1, and the point is where both shapes are
+  }  ///< d is the penetration of the case, |n| = 1, and the point lies inside of both shapes
 
   void normal_is_the_slope_of_the_depth() {
     for (int k = 0; k < 4; ++k) {
       Touching const f = overlapping(0.1);
       ContactPoint<double> const p = point_of(geometry, f[0], f[1]);
-      // moving a by δ along n makes the overlap less by δ, however large δ is
+      // a displacement of a by any δ along n reduces the penetration by δ
       for (double const delta : {0.05, 1e-4, -0.03}) {
         Frame<double> apart = f[0];
         apart.r += delta * p.normal;
         EXPECT_NEAR(point_of(geometry, apart, f[1]).depth, p.depth - delta, 1e-14);
       }
-      // every motion of a and b, by dual numbers: that of the body's point at the place of contact, along n
+      // all motions of a and b, by dual numbers: −n times the displacement of a relative to b at the contact point
       using D = Dual<12>;
       Vec<D, 6> of_a, of_b;
       for (int i = 0; i < 6; ++i) {
@@ -109,12 +115,12 @@ struct ContactLaws {
       Vec<double, 12> expected;
       expected << -p.normal, -(p.place - f[0].r).cross(p.normal), p.normal, (p.place - f[1].r).cross(p.normal);
       EXPECT_LT((depth.d.matrix() - expected).norm(), 1e-13);
-      // the same by differences
+      // the same derivative by differences
       double const rate =
           slope_at_zero([&](double t) { return point_of(geometry, later(f[0], t), later(f[1], t)).depth; }, 1e-4);
       EXPECT_NEAR(rate, -p.normal.dot(relative(p, f)), 1e-9);
     }
-  }  ///< ∂d/∂r_a = −n, and d has the slope of n for every other motion of a and b
+  }  ///< ∂d/∂r_a = −n, and all other derivatives of d follow from n
 
   void normal_turns_as_the_shapes_are_curved() {
     for (int k = 0; k < 4; ++k) {
@@ -127,7 +133,7 @@ struct ContactLaws {
       for (int i = 0; i < 3; ++i) turning.row(i) = p.normal[i].d.matrix().transpose();
       EXPECT_LT((turning - Case::turning(f[0], f[1])).norm(), 1e-13);
     }
-  }  ///< ∂n/∂r_a is as the case says
+  }  ///< ∂n/∂r_a is the matrix of the case
 
   void may_touch_is_false_only_where_nothing_touches() {
     int touching = 0, apart = 0;
@@ -144,11 +150,11 @@ struct ContactLaws {
     for (int k = 0; k < 20; ++k) {
       Touching const near = overlapping(1e-12), far = overlapping(-1.0);
       EXPECT_TRUE(geometry.may_touch(near[0], near[1]));
-      EXPECT_FALSE(geometry.may_touch(far[0], far[1]));  // or it would be of no use
+      EXPECT_FALSE(geometry.may_touch(far[0], far[1]));  // otherwise the test would be useless
     }
-  }  ///< what touches may touch and is within reach, and the tests are false for most of the rest
+  }  ///< `may_touch` and the reach include all contacts, and they exclude most other positions
 
-  // --- the contact --------------------------------------------------------------------------------------------
+  // --- contact ------------------------------------------------------------------------------------------------
 
   void action_is_reaction() {
     with_each_contact([&](auto const& contact) {
@@ -160,7 +166,7 @@ struct ContactLaws {
       Vec3 const moment = w[0].m + f[0].r.cross(w[0].f) + w[1].m + f[1].r.cross(w[1].f);  // about the world's origin
       EXPECT_LT(moment.norm(), 1e-13 * size);
     });
-  }  ///< f_a + f_b = 0, and the moments about the world's origin balance
+  }  ///< f_a + f_b = 0, and the moments about the world's origin are balanced
 
   void presses_by_the_law_at_the_depth_and_its_rate() {
     with_each_contact([&](auto const& contact) {
@@ -172,7 +178,7 @@ struct ContactLaws {
       EXPECT_LT((w[0].m - (p.place - f[0].r).cross(w[0].f)).norm(), 1e-13 * n);
       EXPECT_EQ(contact.potential(f, 0.0), contact.normal.potential(p.depth));
     });
-  }  ///< f_a = N(d, ḋ) n at the point of contact, and U is that of the normal force at d
+  }  ///< f_a = N(d, ḋ) n at the contact point, and U is the potential of the normal force at d
 
   void rigid_motion_of_both_turns_the_wrench() {
     with_each_contact([&](auto const& contact) {
@@ -182,7 +188,7 @@ struct ContactLaws {
       Vec3 const shift = number.template vec<3>(), v = number.template vec<3>(), omega = number.template vec<3>(3.0);
       for (Frame<double>& x : turned) {
         x = carried(x, turn, shift);
-        x.v += v + omega.cross(x.r);  // the world may turn and drift, too
+        x.v += v + omega.cross(x.r);  // rotation and translation of the world
         x.w += omega;
       }
       auto const before = rough.template wrenches<double>(f, 0.0), after = rough.template wrenches<double>(turned, 0.0);
@@ -193,7 +199,7 @@ struct ContactLaws {
         EXPECT_LT((after[k].m - turn * before[k].m).norm(), 1e-12 * size);
       }
     });
-  }  ///< frames and twists turned and shifted together turn the wrenches
+  }  ///< rotation and displacement of all frames and twists rotates the wrenches
 
   void friction_opposes_sliding_and_takes_power() {
     for (double const mu : {0.1, 0.4, 1.3}) {
@@ -208,7 +214,7 @@ struct ContactLaws {
       EXPECT_LT(std::abs(tangential.dot(p.normal)), 1e-13 * n);
       EXPECT_LT(tangential.norm(), mu * n);
       EXPECT_LT((tangential + mu * n * slip / std::sqrt(speed * speed + 0.3 * 0.3)).norm(), 1e-13 * n);
-      // power of both wrenches: what the overlap gives back, −U̇, and what sliding takes
+      // power of both wrenches: elastic power −U̇ and friction power
       double power = 0.0;
       for (std::size_t k = 0; k < 2; ++k) power += w[k].f.dot(f[k].v) + w[k].m.dot(f[k].w);
       auto const stored = [&](double t) { return rough.potential({later(f[0], t), later(f[1], t)}, 0.0); };
@@ -216,7 +222,7 @@ struct ContactLaws {
       EXPECT_LT(taken, 0.0);
       EXPECT_NEAR(taken, tangential.dot(slip), 1e-9 * std::abs(power));
     }
-  }  ///< F_t = −μ N v/√(v² + v_s²), v across n; all of its power is lost
+  }  ///< F_t = −μ N v/√(v² + v_s²), with v normal to n; all of its power is dissipated
 
   void damping_takes_power() {
     Contact<G> const damped{.geometry = geometry, .normal = {.stiffness = 900.0, .damping = 7.0}};
@@ -225,11 +231,11 @@ struct ContactLaws {
       auto const w = damped.template wrenches<double>(f, 0.0);
       ContactPoint<double> const p = point_of(geometry, f[0], f[1]);
       double const rate = p.normal.dot(relative(p, f));
-      double power = 900.0 * p.depth * -rate;  // into the spring
+      double power = 900.0 * p.depth * -rate;  // power stored in the spring
       for (std::size_t i = 0; i < 2; ++i) power += w[i].f.dot(f[i].v) + w[i].m.dot(f[i].w);
       EXPECT_NEAR(power, -7.0 * rate * rate, 1e-11);
     }
-  }  ///< the damper takes c ḋ²
+  }  ///< the damper dissipates c ḋ²
 
   void force_is_the_slope_of_the_potential() {
     Touching const f = overlapping(0.1);
@@ -244,7 +250,7 @@ struct ContactLaws {
             return contact.potential(shifted, 0.0);
           },
           1e-3);
-      EXPECT_NEAR(w[j], -slope, 1e-7 * w.norm());  // (h/d)⁴/30 = 3e-10 of a force that grows with d^(3/2)
+      EXPECT_NEAR(w[j], -slope, 1e-7 * w.norm());  // error (h/d)⁴/30 = 3e-10 of a force proportional to d^(3/2)
     }
   }  ///< w = −∂U/∂pose without friction and damping
 
@@ -270,19 +276,19 @@ struct ContactLaws {
         EXPECT_EQ(wrench_gradient(rough, f, 0.0, 1.0, 1.0).norm(), 0.0);
       }
     });
-  }  ///< no wrench, potential or stiffness of shapes that do not overlap
+  }  ///< wrench, potential and stiffness are zero for shapes that do not overlap
 
-  /// No force between bodies that part faster than the damper lets them, k d + c ḋ < 0.
+  /// The force is zero if the bodies separate so fast that k d + c ḋ < 0.
   void lets_go_of_what_parts_too_fast() {
     Contact<G> const damped = with(Contact<G>{.geometry = geometry, .normal = {.stiffness = 900.0, .damping = 7.0}});
     Touching f = at_rest(0.01);
     f[0].v = 2.0 * point_of(geometry, f[0], f[1]).normal + Vec3(0.3, 0.2, 0.1);
     EXPECT_EQ(stacked_wrenches(damped, f, 0.0).norm(), 0.0);
     for (auto const& k : own(damped, f, 1.0, 1.0)) EXPECT_EQ(k.norm(), 0.0);
-    EXPECT_GT(damped.potential(f, 0.0), 0.0);  // still compressed
+    EXPECT_GT(damped.potential(f, 0.0), 0.0);  // the spring is still compressed
   }
 
-  // --- its stand-in for Newton's method -----------------------------------------------------------------------
+  // --- approximate tangent for Newton's method ----------------------------------------------------------------
 
   void own_stiffness_is_symmetric_and_never_negative() {
     with_each_contact([&](auto const& contact) {
@@ -293,9 +299,10 @@ struct ContactLaws {
         EXPECT_GT(k.norm(), 1.0);
       }
     });
-  }  ///< k = kᵀ, and no eigenvalue is below zero
+  }  ///< k = kᵀ, and no eigenvalue is negative
 
-  /// What is left out of the force on a by its own shift: N ∂n/∂r, which takes stiffness away where shapes are round.
+  /// The approximation omits one term of the derivative of the force on a by its displacement: N ∂n/∂r, which reduces
+  /// the stiffness of curved shapes.
   void own_stiffness_leaves_out_only_how_the_normal_turns() {
     with_each_contact([&](auto const& contact) {
       Touching const f = at_rest(0.1);
@@ -306,7 +313,8 @@ struct ContactLaws {
     });
   }
 
-  /// Without friction, moving: exact in the twists and along the normal, which does not turn when a moves along it.
+  /// Without friction, for moving bodies: the approximation is exact in the twists and along the normal, whose
+  /// direction is constant during a displacement of a along it.
   void own_stiffness_has_the_slopes_of_the_normal_force() {
     with_each_contact([&](auto const& contact) {
       Touching const f = overlapping(0.1);
@@ -321,7 +329,8 @@ struct ContactLaws {
     });
   }
 
-  /// At rest the wrenches depend on the twists as the stand-in says, friction or not: at v = 0 the chord is the slope.
+  /// At rest the approximation is exact in the twists, with and without friction: at v = 0 the secant of the friction
+  /// force equals its derivative.
   void own_stiffness_is_exact_in_the_twists_of_bodies_at_rest() {
     with_each_contact([&](auto const& contact) {
       for (auto const& law : {contact, with(contact)}) {
@@ -332,8 +341,8 @@ struct ContactLaws {
     });
   }
 
-  /// Sliding, the chord is more than the slope along the slip and the same across: own − exact = Jᵀ (μN/s)(u uᵀ/s²) J,
-  /// s² = u² + v_s².
+  /// During sliding the secant exceeds the derivative along the slip, and equals it across the slip: own − exact = Jᵀ
+  /// (μN/s)(u uᵀ/s²) J with s² = u² + v_s².
   void own_stiffness_of_friction_is_an_upper_bound() {
     for (double const mu : {0.1, 0.4, 1.3}) {
       Touching const f = overlapping(0.1);

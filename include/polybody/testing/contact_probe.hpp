@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// Where a contact geometry says that two frames touch.
+/// Contact points of two frames in a contact geometry.
 ///
-/// Not in polybody.hpp: needs GoogleTest.
+/// Requires GoogleTest; not included by polybody.hpp.
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 
 namespace polybody::laws {
 
-using Touching = std::array<Frame<double>, 2>;  ///< the frames of two shapes that overlap
+using Touching = std::array<Frame<double>, 2>;  ///< frames of two shapes that overlap
 
-/// The one point where the shapes of `geometry` overlap; a test failure where there is none or more.
+/// The contact point of `geometry`; a test failure if there is none or more than one.
 template <StateScalar T, class G>
 ContactPoint<T> point_of(G const& geometry, Frame<T> const& a, Frame<T> const& b) {
   ContactPoint<T> found;
@@ -24,7 +24,7 @@ ContactPoint<T> point_of(G const& geometry, Frame<T> const& a, Frame<T> const& b
   EXPECT_EQ(count, 1);
   return found;
 }
-/// Whether the shapes of `geometry` overlap anywhere.
+/// True if the shapes of `geometry` overlap.
 template <class G>
 bool touch(G const& geometry, Touching const& f) {
   int count = 0;

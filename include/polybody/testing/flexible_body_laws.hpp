@@ -1,38 +1,38 @@
 #pragma once
 /// \file
-/// What a body that deforms owes beyond BodyLaws; with the same case, whose body is damped:
+/// Law tests of flexible bodies.
 ///
-///     bool const lrvf_obeys = obeys<LrvfCase, BodyLaws, FlexibleBodyLaws>("Lrvf");
-///
-/// A case without a Bar also says
-///
-///     static Dumbbell elsewhere();  // the same body placed elsewhere and turned
-///
-/// Not in polybody.hpp: needs GoogleTest.
+/// Requires GoogleTest; not included by polybody.hpp.
 
 #include <polybody/testing/body_laws.hpp>
 
 namespace polybody::laws {
 
-/// The laws of bodies that deform, for one case.
+/// Laws that every flexible body satisfies in addition to BodyLaws, for the same case; its body has damping:
+///
+///     bool const lrvf_obeys = obeys<LrvfCase, BodyLaws, FlexibleBodyLaws>("Lrvf");
+///
+/// A case without a Bar has one more function:
+///
+///     static Dumbbell elsewhere();  // the same body at another position and orientation
 template <class Case>
 struct FlexibleBodyLaws : BodyLaws<Case> {
-  typename BodyLaws<Case>::B const undamped = BodyOf<Case>::undamped();  ///< the same body without damping
+  typename BodyLaws<Case>::B const undamped = BodyOf<Case>::undamped();  ///< same body without damping
   VecX damping_force(VecX const& q, VecX const& v) {
     return this->template force<double>(q, v) - this->template force_of<double>(undamped, q, v);
-  }  ///< (nv) what damping adds to f
-  /// (nv) Elastic force and that of damping, without what inertia adds at speeds.
+  }  ///< (nv) part of f due to damping
+  /// (nv) Elastic force and damping force, without the velocity terms of inertia.
   VecX internal_force(VecX const& q, VecX const& v) { return this->force_at_rest(q) + damping_force(q, v); }
 
-  /// The case's configuration has U > 0, f ≠ 0 and a damping force, so that the other laws compare numbers, not zeros.
+  /// The case's configuration has U > 0, f ≠ 0 and a damping force, so that the other laws do not compare zeros.
   void deformation_is_resisted_and_damped();
-  /// f = 0 and U = 0 in the reference of the same body placed elsewhere: a rigid motion of its own.
+  /// f = 0 and U = 0 in the reference configuration of the same body at another placement.
   void rigid_motion_strains_nothing();
-  /// f·v = 0 for v of a rigid motion superposed on any state, damping included.
+  /// f·v = 0 for v of a rigid motion, superposed on any state, with damping.
   void internal_forces_are_in_equilibrium();
   /// f(q, v) = f(q, 0) for v of a rigid motion.
   void rigid_velocity_is_not_damped();
-  /// Damping takes vᵀD v > 0, D = Dᵀ = −∂f/∂v, out of the motion.
+  /// The power of damping is −vᵀD v < 0, with D = Dᵀ = −∂f/∂v.
   void damping_takes_energy();
 
   static constexpr char const* suite = "FlexibleBodyLaws";

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// The wrenches of a force element as one vector, and their derivatives by differences.
+/// Wrenches of a force element as one vector, and their derivatives by differences.
 ///
-/// Not in polybody.hpp: for tests.
+/// For tests; not included by polybody.hpp.
 
 #include <algorithm>
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace polybody::laws {
 
-/// All wrenches of a force element, [f; m] for each marker.
+/// Wrenches of a force element, [f; m] for each marker.
 template <ForceElement F>
 VecX stacked_wrenches(F const& force, std::array<Frame<double>, F::markers> const& frames, double t) {
   VecX all(6 * F::markers);
@@ -22,7 +22,7 @@ VecX stacked_wrenches(F const& force, std::array<Frame<double>, F::markers> cons
   return all;
 }
 
-/// The same at states z of a force element, and their rates behind the wrenches.
+/// Wrenches of a force element at its states z, followed by the rates of the states.
 template <HasStates F>
 VecX stacked_answer(F const& force, std::array<Frame<double>, F::markers> const& frames,
                     std::array<double, F::states> const& z, double t) {
@@ -33,7 +33,7 @@ VecX stacked_answer(F const& force, std::array<Frame<double>, F::markers> const&
   return all;
 }
 
-/// Frames of which one has moved in direction j of its pose, by ck h, and of its twist, by cd h.
+/// Frames after a displacement in direction j of a pose, by ck h, and a change of the twist in this direction, by cd h.
 template <std::size_t markers>
 std::array<Frame<double>, markers> shifted(std::array<Frame<double>, markers> frames, Index j, double ck, double cd,
                                            double h) {
@@ -45,7 +45,7 @@ std::array<Frame<double>, markers> shifted(std::array<Frame<double>, markers> fr
   return frames;
 }
 
-/// ck ∂w/∂pose + cd ∂w/∂twist by differences: what `wrench_gradient` must be.
+/// Derivative ck ∂w/∂pose + cd ∂w/∂twist by differences, the reference for `wrench_gradient`.
 template <ForceElement F>
 MatX gradient_by_differences(F const& force, std::array<Frame<double>, F::markers> const& frames, double t, double ck,
                              double cd) {
@@ -56,7 +56,7 @@ MatX gradient_by_differences(F const& force, std::array<Frame<double>, F::marker
         slope_at_zero([&](double h) { return stacked_wrenches(force, shifted(frames, j, ck, cd, h), t); }, step);
   return gradient;
 }
-/// The same of wrenches and rates: what `gradient_with_states` must be.
+/// Derivative of wrenches and rates by differences, the reference for `gradient_with_states`.
 template <HasStates F>
 MatX gradient_by_differences(F const& force, std::array<Frame<double>, F::markers> const& frames,
                              std::array<double, F::states> const& z, double t, SlopeFactors const& by) {
@@ -77,7 +77,7 @@ MatX gradient_by_differences(F const& force, std::array<Frame<double>, F::marker
   return gradient;
 }
 
-/// The largest entry of `wrench_gradient` less the differences, relative to 1 + the largest entry.
+/// Largest error of `wrench_gradient` relative to the differences, divided by 1 + the largest entry.
 template <ForceElement F>
 double gradient_mismatch(F const& force, std::array<Frame<double>, F::markers> const& frames, double t, double ck,
                          double cd) {

@@ -1,34 +1,34 @@
 #pragma once
 /// \file
-/// The laws that every force element obeys. A case says which element, and where its markers may be:
+/// Law tests of force elements.
 ///
-///     struct SpringCase {
-///       static SpringDamper force();
-///       static std::array<Frame<double>, 2> frames(Numbers&);  // not needed where any places do
-///     };
-///     bool const spring_obeys = obeys<SpringCase, ForceLaws>("Spring");
-///
-/// Not in polybody.hpp: needs GoogleTest.
+/// Requires GoogleTest; not included by polybody.hpp.
 
 #include <polybody/testing/force_differences.hpp>
 #include <polybody/testing/laws.hpp>
 
 namespace polybody::laws {
 
-/// The laws of force elements, for one case.
+/// Laws that every force element satisfies. A case gives the element and the frames of its markers:
+///
+///     struct SpringCase {
+///       static SpringDamper force();
+///       static std::array<Frame<double>, 2> frames(Numbers&);  // optional; the default is random frames
+///     };
+///     bool const spring_obeys = obeys<SpringCase, ForceLaws>("Spring");
 template <class Case>
 struct ForceLaws {
   using F = decltype(Case::force());  ///< type of the element
   static constexpr int markers = F::markers;
-  using Frames = std::array<Frame<double>, std::size_t(markers)>;  ///< a frame for each marker
-  static constexpr bool internal = markers > 1 && !F::is_load;     ///< acts between its markers, on nothing else
+  using Frames = std::array<Frame<double>, std::size_t(markers)>;  ///< frame of each marker
+  static constexpr bool internal = markers > 1 && !F::is_load;  ///< true if the element acts between its markers only
 
-  F const force = Case::force();                                            ///< the element under test
-  double const t = 1.3;                                                     ///< time at which it is asked [s]
+  F const force = Case::force();                                            ///< element under test
+  double const t = 1.3;                                                     ///< time of the evaluation [s]
   Numbers number;                                                           ///< random numbers with a fixed seed
-  std::array<double, std::size_t(states_of<F>())> const z = some_states();  ///< of an element with states
+  std::array<double, std::size_t(states_of<F>())> const z = some_states();  ///< states of the element, if it has any
 
-  /// Frames of the markers: those of the case, random ones where it names none.
+  /// Frames of the markers: frames of the case if it gives them, otherwise random frames.
   Frames frames() {
     if constexpr (requires { Case::frames(number); }) {
       return Case::frames(number);
@@ -38,7 +38,7 @@ struct ForceLaws {
       return all;
     }
   }
-  /// Random states in [−1, 1], a number for each.
+  /// Random states in [−1, 1].
   std::array<double, std::size_t(states_of<F>())> some_states() {
     std::array<double, std::size_t(states_of<F>())> some{};
     for (double& x : some) x = number();
@@ -51,7 +51,7 @@ struct ForceLaws {
     else
       return force;
   }
-  /// [f; m] of each marker, then the rates of the states, in one column.
+  /// Column of [f; m] of each marker, followed by the rates of the states.
   VecX stacked(Frames const& f) const {
     if constexpr (HasStates<F>)
       return stacked_answer(force, f, z, t);
@@ -61,11 +61,12 @@ struct ForceLaws {
   std::array<Wrench<double>, std::size_t(markers)> wrenches(Frames const& f) const {
     return law().template wrenches<double>(f, t);
   }
-  /// What marker number `marker` must know.
+  /// Required kinematics of marker number `marker`.
   static Observes needs(int marker) { return marker == 1 ? needs_of_second<F>() : F::needs; }
 
-  /// `wrench_gradient` = ck ∂w/∂pose + cd ∂w/∂twist, with states `gradient_with_states`, by differences: what is
-  /// written for any scalar has no branch or conversion that hides a derivative.
+  /// `wrench_gradient` = ck ∂w/∂pose + cd ∂w/∂twist, and for elements with states `gradient_with_states`, compared with
+  /// differences. A branch or a conversion in a template for any scalar type could lose a derivative; this law finds
+  /// it.
   void gradient_is_the_derivative_of_the_wrenches() {
     for (auto const& [ck, cd] : {std::pair{1.0, 0.0}, {0.0, 1.0}, {0.7, 31.0}})
       if constexpr (HasStates<F>) {
@@ -79,8 +80,8 @@ struct ForceLaws {
       }
   }
 
-  /// Wrenches and rates do not depend on axes and angular velocity of a marker that need only be a point, and the
-  /// wrenches have no moment there.
+  /// Wrenches and rates do not depend on the axes and the angular velocity of a marker that the element uses as a point
+  /// only. The moment on such a marker is zero.
   void asks_no_more_than_it_says() {
     Frames const given = frames();
     Frames turned = given;
@@ -96,7 +97,7 @@ struct ForceLaws {
       }
   }
 
-  /// Σ f = 0 and Σ (m + r × f) = 0 of an element between two markers or more that is no load.
+  /// Σ f = 0 and Σ (m + r × f) = 0 for an element between two or more markers that is not a load.
   void action_is_reaction() {
     if (!internal) GTEST_SKIP() << "it acts from outside";
     Frames const f = frames();
@@ -113,8 +114,8 @@ struct ForceLaws {
     EXPECT_LT(moment.norm(), 1e-12 * size);
   }
 
-  /// All frames and their twists turned and shifted together turn the wrenches and leave the rates, of an element
-  /// between its markers.
+  /// For an element between its markers, a rotation and displacement of all frames and twists rotates the wrenches and
+  /// does not change the rates.
   void rigid_motion_turns_the_wrenches() {
     if (!internal) GTEST_SKIP() << "it acts from outside";
     Frames const f = frames();
@@ -132,7 +133,7 @@ struct ForceLaws {
     EXPECT_LT((stacked(elsewhere).tail(states) - stacked(f).tail(states)).norm(), 1e-12 * size);
   }
 
-  /// w = −∂U/∂pose at rest, of an element that has a potential.
+  /// w = −∂U/∂pose at rest, for an element with a potential.
   void wrenches_at_rest_are_the_slope_of_the_potential() {
     if constexpr (!HasPotential<F>) {
       GTEST_SKIP() << "it has no potential";
@@ -153,7 +154,7 @@ struct ForceLaws {
     }
   }
 
-  /// Σ w·V ≤ −U˙: an element with a potential gives back what it stores, and no more.
+  /// Σ w·V ≤ −U˙ for an element with a potential: its power does not exceed the release of stored energy.
   void gives_back_no_more_than_its_potential() {
     if constexpr (!HasPotential<F>) {
       GTEST_SKIP() << "it has no potential";

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// Frames that look random and are the same in every run, and how frames move.
+/// Random frames with a fixed seed, and motions of frames.
 ///
-/// Not in polybody.hpp: for tests.
+/// For tests; not included by polybody.hpp.
 
 #include <random>
 
@@ -10,12 +10,12 @@
 
 namespace polybody::laws {
 
-/// Numbers in [−size, size].
+/// Random numbers in [−size, size] with a fixed seed.
 class Numbers {
  public:
-  explicit Numbers(unsigned seed = 20240607) : generator_(seed) {}  ///< equal numbers from an equal `seed`
+  explicit Numbers(unsigned seed = 20240607) : generator_(seed) {}  ///< the same numbers for the same `seed`
 
-  /// The next number in [−size, size].
+  /// Next number in [−size, size].
   double operator()(double size = 1.0) { return size * (double(generator_()) / 2147483648.0 - 1.0); }
   /// Column (n) of the next n numbers, in [−size, size].
   template <int n>
@@ -26,13 +26,14 @@ class Numbers {
   VecX vector(Index n, double size = 1.0) {
     return VecX::NullaryExpr(n, [&](Index) { return (*this)(size); });
   }
-  /// [δr; δφ] or [ṙ; ω] in [−size, size]; if `planar`, only (x, y) and about z.
+  /// Random motion [δr; δφ] or twist [ṙ; ω] in [−size, size]; if `planar`, with components along x and y and about z
+  /// only.
   Vec6 motion(bool planar, double size = 1.0) {
     Vec6 x = vec<6>(size);
     if (planar) x[2] = x[3] = x[4] = 0.0;
     return x;
   }
-  /// Anywhere, turned anyhow, moving; if `planar`, in the plane.
+  /// Random position, orientation and twist; if `planar`, in the plane.
   Frame<double> frame(bool planar = false) {
     Vec6 const place = motion(planar, 2.0), twist = motion(planar);
     return {.r = place.head<3>(), .A = exp_so3<double>(place.tail<3>()), .v = twist.head<3>(), .w = twist.tail<3>()};
@@ -42,7 +43,7 @@ class Numbers {
   std::mt19937 generator_;
 };
 
-/// r + δr, exp(φ̃) A: the frame after a motion [δr; φ] in world axes; its twist stays.
+/// Frame r + δr, exp(φ̃) A after a motion [δr; φ] in world axes, with the same twist.
 template <StateScalar T>
 Frame<T> moved(Frame<double> const& f, Vec<T, 6> const& motion) {
   Vec<T, 3> const phi = motion.template tail<3>();
@@ -52,7 +53,7 @@ Frame<T> moved(Frame<double> const& f, Vec<T, 6> const& motion) {
           .w = f.w.cast<T>()};
 }
 
-/// The frame after its twist has acted for a time without acceleration.
+/// Frame after a motion with its constant twist for a given time.
 template <StateScalar T>
 Frame<T> later(Frame<double> const& f, T const& time) {
   Vec6 twist;
@@ -60,7 +61,7 @@ Frame<T> later(Frame<double> const& f, T const& time) {
   return moved<T>(f, twist.cast<T>() * time);
 }
 
-/// The frame carried along by a rigid motion of the world: turned by `turn` about the origin, then moved by `shift` (3)
+/// Frame after a rigid motion of the world: a rotation by `turn` about the origin, then a displacement by `shift` (3)
 /// [m].
 inline Frame<double> carried(Frame<double> const& f, Mat3 const& turn, Vec3 const& shift) {
   return {.r = turn * f.r + shift, .A = turn * f.A, .v = turn * f.v, .w = turn * f.w};

@@ -1,20 +1,8 @@
 #pragma once
 /// \file
-/// What every integrator with a fixed step owes. A case names the integrator, a conservative model and a run:
+/// Law tests of integrators with a fixed step.
 ///
-///     struct Rk4OnTheTop {
-///       using Model = TopModel;                                  // .model, and .start of type State
-///       static std::vector<RungeKutta4<Projection>> integrators();  // that differ in options only
-///       static constexpr double until = 0.5;                     // [s]
-///       static constexpr int steps = 32;                         // of the coarsest run
-///     };
-///     bool const rk4_obeys = obeys<Rk4OnTheTop, IntegratorLaws>("Rk4OnTheTop");
-///
-/// An integrator with a member `stabilised` keeps the rows of speeds where it is true; any other keeps them always. A
-/// case says `static constexpr bool keeps_accelerations = false` of an integrator whose last accelerations belong to
-/// predicted speeds.
-///
-/// Not in polybody.hpp: needs GoogleTest.
+/// Requires GoogleTest; not included by polybody.hpp.
 
 #include <polybody/run/energy.hpp>
 #include <polybody/run/observe.hpp>
@@ -24,27 +12,39 @@
 
 namespace polybody::laws {
 
-/// log₂ of the ratio of neighbours: the measured order of errors at h, h/2, h/4, …
+/// Base-2 logarithms of the ratios of consecutive errors at h, h/2, h/4, …: the measured orders.
 inline std::vector<double> slopes(std::vector<double> const& errors) {
   std::vector<double> slope;
   for (std::size_t i = 1; i < errors.size(); ++i) slope.push_back(std::log2(errors[i - 1] / errors[i]));
   return slope;
 }
 
-/// The laws of integrators, for one case.
+/// Laws that every integrator with a fixed step satisfies. A case gives the integrator, a conservative model and a run:
+///
+///     struct Rk4OnTheTop {
+///       using Model = TopModel;                // .model, and .start of type State
+///       static std::vector<RungeKutta4<Projection>> integrators();  // with different options
+///       static constexpr double until = 0.5;   // end time [s]
+///       static constexpr int steps = 32;       // steps of the coarsest run
+///     };
+///     bool const rk4_obeys = obeys<Rk4OnTheTop, IntegratorLaws>("Rk4OnTheTop");
+///
+/// If an integrator has a member `stabilised`, the constraint equations of velocities hold only if it is true;
+/// otherwise they hold always. If the accelerations at the end of a step belong to predicted velocities, the case
+/// declares `static constexpr bool keeps_accelerations = false`.
 template <class Case>
 struct IntegratorLaws {
   using Integrator = typename decltype(Case::integrators())::value_type;  ///< type of the case's integrators
-  static constexpr double slack = 0.1;  ///< by how much a measured order may fall short, a part of one order
+  static constexpr double slack = 0.1;  ///< allowed deficit of a measured order, in parts of one order [1]
 
-  typename Case::Model setup;  ///< model and start of the case
+  typename Case::Model setup;  ///< model and initial state of the case
 
-  /// Where a run ends, and how much energy it lost or gained on the way.
+  /// Result of a run: final state and energy error.
   struct Outcome {
     State x;                    ///< state at the end of the run
-    double energy_error = 0.0;  ///< largest |E − E(0)| on the way [J]
+    double energy_error = 0.0;  ///< largest |E − E(0)| during the run [J]
   };
-  /// A run of `steps` equal steps from the case's start to its end.
+  /// Run of `steps` equal steps from the initial state to the end time.
   Outcome run(Integrator const& integrator, int steps) const {
     Outcome out{setup.start};
     double const start = energy(setup.model, setup.start).total();
@@ -54,24 +54,24 @@ struct IntegratorLaws {
     EXPECT_EQ(simulation.report().steps, steps);
     return out;
   }
-  /// The runs at steps, 2 steps, 4 steps, 8 steps.
+  /// Runs with steps, 2 steps, 4 steps and 8 steps.
   std::vector<Outcome> refined(Integrator const& integrator) const {
     std::vector<Outcome> runs;
     for (int k = 1; k <= 8; k *= 2) runs.push_back(run(integrator, Case::steps * k));
     return runs;
   }
 
-  /// ‖x_h − x_{h/2}‖ falls by 2^order as h is halved, for each of q, v, v̇ and λ.
+  /// ‖x_h − x_{h/2}‖ decreases by the factor 2^order if h is halved, for each of q, v, v̇ and λ.
   void state_converges_at_the_declared_order();
-  /// max |E(t) − E(0)| falls by 2^order likewise.
+  /// max |E(t) − E(0)| decreases by the factor 2^order if h is halved.
   void energy_error_falls_at_the_declared_order();
   /// |Φ| < 1e-10, |Φ̇| < 1e-10 and |Φ̈| < 1e-8 at the end of a run.
   void rows_hold_at_the_end();
-  /// `start` leaves q and v; a step takes h, says so, suggests h again and moves t by it.
+  /// `start` does not change q and v. A step advances t by h, reports h, and suggests h for the next step.
   void step_reports_what_it_took();
-  /// Two runs end in the same bits.
+  /// Two runs are bitwise identical.
   void runs_repeat_to_the_last_bit();
-  /// A step from speeds whose squares overflow throws and leaves the state; the workspace serves on.
+  /// A step from velocities whose squares overflow throws and does not change the state. The workspace remains usable.
   void failed_step_leaves_the_state_as_it_was();
 
   static constexpr char const* suite = "IntegratorLaws";
@@ -119,7 +119,7 @@ void IntegratorLaws<Case>::rows_hold_at_the_end() {
     System system(setup.model);
     Violation const open = violation(system, outcome.x);
     EXPECT_LT(open.position, 1e-10);
-    // Without stabilisation a step of the family of generalised-α keeps the rows of the positions only.
+    // Without stabilisation, a step of a generalised-α method satisfies the constraint equations of positions only.
     if constexpr (requires { integrator.stabilised; }) {
       EXPECT_TRUE(open.velocity < 1e-10 || !integrator.stabilised) << open.velocity;
     } else {
@@ -181,7 +181,7 @@ void IntegratorLaws<Case>::failed_step_leaves_the_state_as_it_was() {
     EXPECT_EQ(x.lambda, before.lambda);
     EXPECT_EQ(x.memory, before.memory);
     EXPECT_EQ(x.t, before.t);
-    // The workspace serves on.
+    // The workspace remains usable.
     x = sound;
     EXPECT_NO_THROW(method.step(system, x, h, workspace));
     EXPECT_GT(x.t, sound.t);

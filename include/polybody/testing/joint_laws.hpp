@@ -1,19 +1,8 @@
 #pragma once
 /// \file
-/// The laws that every joint geometry obeys. A case says how its frames fit together:
+/// Law tests of joint geometries.
 ///
-///     struct RevoluteCase {
-///       static constexpr bool planar = false;      // its frames stay in the plane z = 0
-///       static constexpr int world_rows = 3;       // leading rows given in world axes
-///       static Revolute geometry();
-///       static Mate mate(Numbers&, double t);      // how b may stand against a at time t
-///     };
-///     bool const revolute_obeys = obeys<RevoluteCase, JointLaws>("Revolute");
-///
-/// Derivatives are taken with dual numbers along motions of the frames, [δr; φ] in world axes. The geometry is asked
-/// through a few functions, so that the laws are compiled once in a file, however many geometries it tests.
-///
-/// Not in polybody.hpp: needs GoogleTest.
+/// Requires GoogleTest; not included by polybody.hpp.
 
 #include <polybody/testing/differences.hpp>
 #include <polybody/testing/joint_probe.hpp>
@@ -21,50 +10,62 @@
 
 namespace polybody::laws {
 
-/// The laws themselves, of a geometry of any type. V = [ṙ; ω] of both frames, G = [Ga Gb].
+/// Laws of a joint geometry of any type. V = [ṙ; ω] are the twists of both frames, and G = [Ga Gb].
 struct JointLawsOf {
-  static constexpr double tolerance = 1e-12;                         ///< largest error of numbers about one
-  AnyGeometry const geometry;                                        ///< the geometry under test
-  bool const planar = geometry.planar;                               ///< whether all frames stay in the plane z = 0
-  Index const m = geometry.rows, held = m - geometry.velocity_rows;  ///< rows, and those of them that hold positions
-  double const t = 1.3;                                              ///< time at which it is asked [s]
+  static constexpr double tolerance = 1e-12;                         ///< largest error of numbers of size one
+  AnyGeometry const geometry;                                        ///< geometry under test
+  bool const planar = geometry.planar;                               ///< true if all frames stay in the plane z = 0
+  Index const m = geometry.rows, held = m - geometry.velocity_rows;  ///< constraint equations, and the holonomic ones
+  double const t = 1.3;                                              ///< time of the evaluation [s]
   Numbers number;                                                    ///< random numbers with a fixed seed
 
   explicit JointLawsOf(AnyGeometry g) : geometry(std::move(g)) {}  ///< laws of the geometry g
 
-  /// Frames that fit, and frames where b was then moved away.
+  /// Pairs of frames that satisfy the constraint equations.
   std::vector<FramePair> closed();
-  std::vector<FramePair> open();  ///< closed frames, b then moved at random
-  std::vector<FramePair> all();   ///< the closed and the open frames
-  /// The motions of two frames that their world knows, as a 0/1 matrix (12×n).
+  std::vector<FramePair> open();  ///< closed frames after a random motion of b
+  std::vector<FramePair> all();   ///< closed and open frames
+  /// Basis of the possible motions of two frames in their world, as a 0/1 matrix (12×n).
   MatX known() const;
   VecX multipliers();                                           ///< random λ (m) in [−3, 3]
   VecX wrenches(FramePair const& p, VecX const& lambda) const;  ///< Gᵀλ (12): [f; m] on a, then on b
 
-  /// g = 0 where the case says that b fits to a; g ≠ 0 where b was moved away.
+  /// g = 0 for closed frames; g ≠ 0 after a motion of b.
   void closed_frames_have_no_gap();
-  /// G = ∂g/∂(motions of the frames). Velocity rows have g = 0 everywhere.
+  /// G = ∂g/∂(motions of the frames). For nonholonomic constraints g = 0 everywhere.
   void maps_are_the_derivative_of_the_gap();
   /// `rate` = Φ_t = ∂g/∂t.
   void rate_is_the_derivative_of_the_gap_by_time();
-  /// γ = d/dt (G V + Φ_t) while V stands still: along the motion by dual numbers, in time by differences.
+  /// γ = d/dt (G V + Φ_t) at constant V: along the motion by dual numbers, in time by differences.
   void gamma_is_the_second_derivative_without_accelerations();
-  /// Gaᵀλ·Va + Gbᵀλ·Vb = λ·(ġ − Φ_t), ġ along the motion.
+  /// Gaᵀλ·Va + Gbᵀλ·Vb = λ·(ġ − Φ_t), with ġ along the motion.
   void wrenches_have_the_power_of_the_multipliers();
-  /// f_a + f_b = 0 always. Moments balance about every point while the joint is closed; open, rows in world axes leave
-  /// the moment d × f, f the force of these rows (none for a force along d, a spring's). A geometry whose ends are said
-  /// to be opposite has Gb = −Ga to the last bit.
+  /// f_a + f_b = 0 in all frames. In closed frames the moments about every point are balanced. In open frames,
+  /// constraint equations in world axes have the moment d × f, with the force f of these equations. It is zero for a
+  /// force along d, for example of a spring. If a geometry declares opposite ends, Gb = −Ga is bitwise exact.
   void wrenches_are_equal_and_opposite();
-  /// Both frames and their twists turned and shifted together: rows in world axes turn with them, the others stay.
+  /// Invariance under a rotation and displacement of both frames and their twists: constraint equations in world axes
+  /// rotate with the frames, and the others do not change.
   void does_not_see_a_rigid_motion_of_both_frames();
-  /// `wrench_gradient` = ∂(Gᵀλ)/∂(motions of the frames), in closed form or by dual numbers, against differences.
+  /// `wrench_gradient` = ∂(Gᵀλ)/∂(motions of the frames), in closed form or by dual numbers, compared with differences.
   void wrench_gradient_is_the_derivative_of_the_wrenches();
-  /// G has full rank where the joint is closed, G T = 0 for the case's freedoms T, and rows and freedoms are as many as
-  /// the motions of b.
+  /// In closed frames G has full rank, and G T = 0 for the free directions T of the case. The numbers of constraint
+  /// equations and of free directions add up to the number of motions of b.
   void rows_and_freedoms_make_up_all_motions();
 };
 
-/// The laws of joint geometries, for one case.
+/// Laws that every joint geometry satisfies. A case gives frames that satisfy the constraint equations:
+///
+///     struct RevoluteCase {
+///       static constexpr bool planar = false;  // true: frames in the plane z = 0
+///       static constexpr int world_rows = 3;   // number of leading constraint equations in world axes
+///       static Revolute geometry();
+///       static Mate mate(Numbers&, double t);  // position of b relative to a at time t
+///     };
+///     bool const revolute_obeys = obeys<RevoluteCase, JointLaws>("Revolute");
+///
+/// Derivatives are computed with dual numbers along motions of the frames, [δr; φ] in world axes. The laws access the
+/// geometry through a few functions, so that a file compiles them once for all of its geometries.
 template <class Case>
 struct JointLaws : JointLawsOf {
   JointLaws() : JointLawsOf(any_geometry<Case>()) {}
@@ -92,7 +93,7 @@ inline std::vector<FramePair> JointLawsOf::closed() {
     p.b.r = p.a.r + p.a.A * mate.d;
     p.b.A = p.a.A * mate.R;
     p.freedoms.resize(6, mate.freedoms.cols());
-    if (mate.freedoms.cols() > 0)  // a weld leaves none, and an empty matrix has no rows to point at
+    if (mate.freedoms.cols() > 0)  // a weld has none, and an empty matrix has no data
       p.freedoms << p.a.A * mate.freedoms.topRows<3>(), p.a.A * mate.freedoms.bottomRows<3>();
   }
   return pairs;
@@ -124,7 +125,7 @@ inline VecX JointLawsOf::wrenches(FramePair const& p, VecX const& lambda) const 
   return geometry.gap(p, t).G.transpose() * lambda;
 }
 
-/// The moment of both wrenches, w (12), about a point.
+/// Moment of both wrenches, w (12), about a point.
 inline Vec3 moment_about(FramePair const& p, VecX const& w, Vec3 const& about) {
   Vec3 const fa = w.segment<3>(0), fb = w.segment<3>(6);
   return w.segment<3>(3) + (p.a.r - about).cross(fa) + w.segment<3>(9) + (p.b.r - about).cross(fb);
@@ -136,7 +137,7 @@ inline void JointLawsOf::closed_frames_have_no_gap() {
   for (FramePair const& p : open()) EXPECT_GT(geometry.gap(p, t).g.norm(), 1e-3);
 }
 
-// Velocity rows have no gap, so that nothing is to be differentiated.
+// The constraint function of nonholonomic constraints is zero, without derivatives.
 inline void JointLawsOf::maps_are_the_derivative_of_the_gap() {
   for (FramePair const& p : all()) {
     SeenGap const seen = geometry.gap_with_slopes(p, t);
@@ -222,7 +223,7 @@ inline void JointLawsOf::wrench_gradient_is_the_derivative_of_the_wrenches() {
 
 inline void JointLawsOf::rows_and_freedoms_make_up_all_motions() {
   MatX const k = known();
-  auto const smallest_part = [](MatX a) {  // of a row that the rows before it do not explain
+  auto const smallest_part = [](MatX a) {  // part of a row that is independent of the previous rows
     double smallest = a.row(0).norm();
     for (Index i = 1; i < a.rows(); ++i) {
       a.row(i - 1).normalize();

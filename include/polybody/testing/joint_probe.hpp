@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// A joint geometry of any type between two frames: its gap, and the derivatives of it that the laws compare.
+/// Constraint function of a joint geometry of any type between two frames, and the derivatives that the laws compare.
 ///
-/// Not in polybody.hpp: for tests.
+/// For tests; not included by polybody.hpp.
 
 #include <functional>
 #include <vector>
@@ -12,46 +12,47 @@
 
 namespace polybody::laws {
 
-/// A place of b against a where the joint is closed, and the motions of b against a that keep it closed.
+/// Position of b relative to a that satisfies the constraint equations, and the motions of b relative to a that the
+/// joint permits.
 struct Mate {
   Vec3 d = Vec3::Zero();      ///< (3) r_b − r_a in a's axes [m]
-  Mat3 R = Mat3::Identity();  ///< (3×3) AaᵀAb, cosines of the angles between axes
+  Mat3 R = Mat3::Identity();  ///< (3×3) AaᵀAb, direction cosines
   MatX freedoms;              ///< (6×dof) [velocity; angular velocity] of b in a's axes
 };
 
-/// Two frames, their twists with them.
+/// Two frames with their twists.
 struct FramePair {
-  Frame<double> a, b;                ///< the frames of the joint's markers
-  MatX freedoms = MatX::Zero(6, 0);  ///< (6×dof) of b, world axes
+  Frame<double> a, b;                ///< frames of the joint's markers
+  MatX freedoms = MatX::Zero(6, 0);  ///< (6×dof) free directions of b, world axes
 
   VecX twists() const;                           ///< (12) [ṙ; ω] of a, then of b, world axes
   FramePair moved_by(VecX const& motion) const;  ///< after a motion (12): [δr; φ] of a, then of b, world axes
 };
 
-/// A gap with G = [Ga Gb] and its derivatives.
+/// Constraint function g, its Jacobian G = [Ga Gb] and its derivatives.
 struct SeenGap {
   VecX g, rate;  ///< (m)
   MatX G;        ///< (m×12)
-  MatX slope;    ///< (m×12) ∂g/∂(motions), dual numbers
-  MatX G_rate;   ///< (m×12) Ġ while the frames keep their twists and time stands still, dual numbers
+  MatX slope;    ///< (m×12) ∂g/∂(motions), by dual numbers
+  MatX G_rate;   ///< (m×12) Ġ at constant twists and constant time, by dual numbers
 };
 
-/// A geometry of any type.
+/// Joint geometry with its type erased.
 struct AnyGeometry {
-  /// How many; how many of the first are in world axes, of the last speeds.
+  /// Numbers of constraint equations: in total, in world axes (the first ones), of velocities (the last ones).
   Index rows = 0, world_rows = 0, velocity_rows = 0;
-  bool planar = false;         ///< whether the frames stay in the plane z = 0
-  bool opposite_ends = false;  ///< whether it says that Gb = −Ga
+  bool planar = false;         ///< true if the frames stay in the plane z = 0
+  bool opposite_ends = false;  ///< true if the geometry declares Gb = −Ga
   ///@{
-  /// The gap at a time [s]; `gap_with_slopes` has the derivatives, too.
+  /// Constraint function at a time [s]; `gap_with_slopes` also computes the derivatives.
   std::function<SeenGap(FramePair const&, double)> gap, gap_with_slopes;
   ///@}
   std::function<VecX(FramePair const&, double)> gamma;                  ///< γ (m) at a time [s]
   std::function<MatX(FramePair const&, double, VecX const&)> gradient;  ///< (12×12) ∂(Gᵀλ)/∂(motions)
-  std::function<Mate(Numbers&, double)> mate;                           ///< how b may stand against a at a time [s]
+  std::function<Mate(Numbers&, double)> mate;                           ///< position of b relative to a at a time [s]
 };
 
-/// The geometry of a case, asked through functions.
+/// Creates the functions of the geometry of a case.
 template <class Case>
 AnyGeometry any_geometry() {
   using G = decltype(Case::geometry());

@@ -1,15 +1,16 @@
 #pragma once
 /// \file
-/// Laws that many types obey, each a test of GoogleTest. The suites beside this header are those of the library's own
-/// types: `BodyLaws`, `FlexibleBodyLaws`, `JointLaws`, `PolicyLaws`, `ForceLaws`, `ContactLaws`, `IntegratorLaws`,
-/// `LinearSolvers`, `UserSystemLaws`. A type of your own is tested by one line beside a case that makes it:
+/// Law tests: properties of many types, each of them a test of GoogleTest. The suites in this folder test the types of
+/// the library: `BodyLaws`, `FlexibleBodyLaws`, `JointLaws`, `PolicyLaws`, `ForceLaws`, `ContactLaws`,
+/// `IntegratorLaws`, `LinearSolvers`, `UserSystemLaws`. One line and a case that creates the object add tests of
+/// another type:
 ///
 ///     bool const bead_obeys = polybody::laws::obeys<BeadCase, polybody::laws::JointLaws>("Bead");
 ///
-/// The program links `polybody::testing`, which brings GoogleTest and its main. The namespace is not `testing`, as
-/// `using namespace polybody` would then hide GoogleTest's own.
+/// The program links `polybody::testing`, which includes GoogleTest and its main function. The namespace is not
+/// `testing`, because `using namespace polybody` would then hide the namespace of GoogleTest.
 ///
-/// A suite is a template with its laws as members and a list of them:
+/// A suite is a template with its laws as members and a list of the laws:
 ///
 ///     template <class Case>
 ///     struct SpringLaws {
@@ -19,9 +20,9 @@
 ///     bool const steel_obeys = obeys<SteelCase, SpringLaws>("Steel");  // registers the test
 ///     Steel/SpringLaws.ForceFallsWithLength
 ///
-/// GoogleTest's typed tests do the same with a class for each law and type, which takes longer to compile.
+/// Typed tests of GoogleTest require a class for each law and type, which takes longer to compile.
 ///
-/// Not in polybody.hpp: needs GoogleTest.
+/// Requires GoogleTest; not included by polybody.hpp.
 
 #include <gtest/gtest.h>
 
@@ -31,32 +32,32 @@
 
 namespace polybody::laws {
 
-/// A law: its name, and the member of its suite that tests it.
+/// Law: its name, and the member function of its suite that tests it.
 template <class Laws>
 struct Law {
-  char const* name;       ///< name of the test, such as "MassIsSymmetric"
+  char const* name;       ///< name of the test, for example "MassIsSymmetric"
   void (Laws::*holds)();  ///< the member function that tests the law
 };
 
-/// A test of one law: made anew, so that laws do not see one another.
+/// Test of one law. Each test creates its own suite object, so that laws are independent.
 class LawTest : public ::testing::Test {
  public:
-  explicit LawTest(std::function<void()> law) : law_(std::move(law)) {}  ///< a test that calls `law`
+  explicit LawTest(std::function<void()> law) : law_(std::move(law)) {}  ///< test that calls `law`
 
  private:
   void TestBody() override { law_(); }
   std::function<void()> law_;
 };
 
-/// Registers one law, of `suite`, as a test of GoogleTest: holds() checks it; `file` and `line` are where it is asked
-/// for.
+/// Registers one law of `suite` as a test of GoogleTest. holds() tests the law; `file` and `line` are the source
+/// location of the request.
 inline void register_law(std::string const& suite, char const* law, char const* file, int line,
                          std::function<void()> holds) {
   ::testing::RegisterTest(suite.c_str(), law, nullptr, nullptr, file, line,
                           [holds = std::move(holds)]() -> LawTest* { return new LawTest(holds); });
 }
 
-/// Registers every law of a suite, asked for at `line` of `file`.
+/// Registers every law of a suite; `file` and `line` are the source location of the request.
 template <class Laws>
 void register_laws(std::string const& suite, char const* file, int line) {
   for (Law<Laws> const& law : Laws::laws)
@@ -66,8 +67,8 @@ void register_laws(std::string const& suite, char const* file, int line) {
     });
 }
 
-/// Registers the laws of each suite for a case, as tests named `name/Suite.Law`, asked for at `line` of `file`. For the
-/// initialiser of a variable, so that it runs before `main`.
+/// Registers the laws of each suite for a case, as tests named `name/Suite.Law`; `file` and `line` are the source
+/// location of the request. The call initialises a variable, so that it runs before `main`.
 template <class Case, template <class> class... Suites>
 bool obeys(std::string const& name, char const* file = __builtin_FILE(), int line = __builtin_LINE()) {
   (register_laws<Suites<Case>>(name + "/" + Suites<Case>::suite, file, line), ...);

@@ -1,10 +1,8 @@
 #pragma once
 /// \file
-/// The laws that every linear solver obeys, on the same matrices. The solver is its own case:
+/// Law tests of linear solvers.
 ///
-///     bool const dense_lu_obeys = obeys<DenseLu, LinearSolvers>("DenseLu");
-///
-/// Not in polybody.hpp: needs GoogleTest.
+/// Requires GoogleTest; not included by polybody.hpp.
 
 #include <cstdlib>
 
@@ -15,13 +13,13 @@
 
 namespace polybody::laws {
 
-/// Bodies of six columns in a row, joints of five rows between neighbours: [M, Gᵀ; G, 0], with blocks that
-/// overlap (a second spring on body 0) and come in a fixed order.
+/// Saddle-point matrix [M, Gᵀ; G, 0] of a chain of bodies with six columns each, and joints of five constraint
+/// equations between neighbours. Some blocks overlap (a second spring on body 0). The order of the blocks is fixed.
 struct Blocks {
-  Index bodies;                               ///< how many bodies, and joints
-  Index size() const { return 11 * bodies; }  ///< rows of the matrix: 6 of a body, 5 of a joint
+  Index bodies;                               ///< number of bodies, and of joints
+  Index size() const { return 11 * bodies; }  ///< rows of the matrix: 6 per body, 5 per joint
 
-  /// Adds all blocks to `sink`; `seed` decides their numbers, not their places.
+  /// Adds all blocks to `sink`. `seed` determines their numbers, not their positions.
   template <class Sink>
   void write(Sink& sink, unsigned seed) const {
     std::srand(seed);
@@ -45,27 +43,29 @@ struct Blocks {
   }
 };
 
-/// Adds blocks in place: what a sink must amount to.
+/// Sink that adds blocks to a dense matrix, as the reference for other sinks.
 struct Plain {
-  MatX a;  ///< (n×n) sum of the blocks so far
-  /// Adds b with its first entry at (row, col).
+  MatX a;  ///< (n×n) sum of the added blocks
+  /// Adds b; its first entry is at (row, col).
   void add(Index row, Index col, BlockView const& b) {
     for (Index i = 0; i < b.rows; ++i)
       for (Index j = 0; j < b.cols; ++j) a(row + i, col + j) += b(i, j);
   }
 };
 
-/// The blocks, with the numbers of `seed`, as a dense matrix (n×n).
+/// Dense matrix (n×n) of the blocks, with the numbers of `seed`.
 inline MatX plain(Blocks const& blocks, unsigned seed) {
   Plain sink{MatX::Zero(blocks.size(), blocks.size())};
   blocks.write(sink, seed);
   return sink.a;
 }
 
-/// The laws of linear solvers, for one solver.
+/// Laws that every linear solver satisfies, on the same matrices. The solver itself is the case:
+///
+///     bool const dense_lu_obeys = obeys<DenseLu, LinearSolvers>("DenseLu");
 template <class Solver>
 struct LinearSolvers {
-  /// A solver that has seen the pattern of the blocks.
+  /// Solver after the analysis of the pattern of the blocks.
   static Solver analysed(Blocks const& blocks) {
     PatternSink pattern;
     blocks.write(pattern, 1);
@@ -74,13 +74,14 @@ struct LinearSolvers {
     return solver;
   }
 
-  /// |x − A⁻¹b| < 1e-10 |A⁻¹b| for several matrices of one pattern, and several b of one factorisation.
+  /// |x − A⁻¹b| < 1e-10 |A⁻¹b| for several matrices of one pattern, and for several b with one factorisation.
   void solve_what_full_pivoting_solves();
-  /// `factor` names a column of the zero matrix, and serves a sound one afterwards.
+  /// For the zero matrix `factor` returns a column. It then factorises a regular matrix successfully.
   void name_a_column_of_a_singular_matrix();
-  /// Where two joints have the same rows, `factor` names a column of one; or the solver drops its rows and tells them.
+  /// If two joints have the same constraint equations, `factor` returns a column of one of them, or the solver drops
+  /// these constraint equations and lists them.
   void name_one_of_two_equal_joints();
-  /// A system without unknowns is factored and solved.
+  /// A system without unknowns is factorised and solved.
   void nothing_is_solved_at_once();
 
   static constexpr char const* suite = "LinearSolvers";
@@ -96,12 +97,12 @@ void LinearSolvers<Solver>::solve_what_full_pivoting_solves() {
   for (Index const bodies : {1, 4, 12}) {
     Blocks const blocks{bodies};
     auto solver = analysed(blocks);
-    for (unsigned seed : {1u, 2u, 3u}) {  // one analysis, many values
+    for (unsigned seed : {1u, 2u, 3u}) {  // one analysis for several matrices
       solver.begin();
       blocks.write(solver, seed);
       ASSERT_EQ(solver.factor(), -1);
       MatX const a = plain(blocks, seed);
-      for (int k = 0; k < 2; ++k) {  // one factorisation, many sides
+      for (int k = 0; k < 2; ++k) {  // one factorisation for several right-hand sides
         VecX const b = VecX::Random(blocks.size());
         VecX x = VecX::Zero(blocks.size());
         solver.solve(b, x);
@@ -118,17 +119,18 @@ void LinearSolvers<Solver>::name_a_column_of_a_singular_matrix() {
     Blocks const blocks{bodies};
     auto solver = analysed(blocks);
     solver.begin();
-    Index const column = solver.factor();  // zero throughout
+    Index const column = solver.factor();  // the matrix is zero
     EXPECT_GE(column, 0);
     EXPECT_LT(column, blocks.size());
-    // and after it, a sound matrix again
+    // the next matrix is regular
     solver.begin();
     blocks.write(solver, 1);
     EXPECT_EQ(solver.factor(), -1);
   }
 }
 
-// Two joints with the same rows: singular but for rounding, and one of the two is named.
+// Two joints with the same constraint equations: the matrix is singular up to round-off, and one of the two is
+// returned.
 template <class Solver>
 void LinearSolvers<Solver>::name_one_of_two_equal_joints() {
   for (Index const bodies : {3, 20}) {
@@ -151,7 +153,7 @@ void LinearSolvers<Solver>::name_one_of_two_equal_joints() {
     solver.begin();
     write(solver);
     Index column = solver.factor();
-    if constexpr (requires { solver.dropped(); }) {  // the block solvers go on without them
+    if constexpr (requires { solver.dropped(); }) {  // the block solvers drop redundant constraints
       ASSERT_EQ(column, -1);
       ASSERT_EQ(solver.dropped().size(), 5u);
       column = solver.dropped().front();

@@ -1,15 +1,8 @@
 #pragma once
 /// \file
-/// The laws that every policy obeys that answers rows by a force −Gᵀλ(g, ġ). A case says which, and how large gaps are:
+/// Law tests of policies.
 ///
-///     struct PenaltyCase {
-///       static constexpr int rows = 3;      // that it is asked to answer
-///       static Penalty policy();
-///       static constexpr double gap = 0.1;  // about which g is tried [m], [rad]; one where it is not said
-///     };
-///     bool const penalty_obeys = obeys<PenaltyCase, PolicyLaws>("Penalty");
-///
-/// Not in polybody.hpp: needs GoogleTest.
+/// Requires GoogleTest; not included by polybody.hpp.
 
 #include <polybody/joints/policies/policy.hpp>
 #include <polybody/testing/differences.hpp>
@@ -18,25 +11,33 @@
 
 namespace polybody::laws {
 
-/// The laws of policies that answer rows, for one case.
+/// Laws that every policy satisfies that replaces constraint equations by a force −Gᵀλ(g, ġ). A case gives the policy
+/// and the size of constraint violations:
+///
+///     struct PenaltyCase {
+///       static constexpr int rows = 3;      // number of constraint equations
+///       static Penalty policy();
+///       static constexpr double gap = 0.1;  // size of g [m], [rad]; 1 if omitted
+///     };
+///     bool const penalty_obeys = obeys<PenaltyCase, PolicyLaws>("Penalty");
 template <class Case>
 struct PolicyLaws {
   using P = decltype(Case::policy());   ///< type of the policy
-  static constexpr int m = Case::rows;  ///< how many rows it answers
+  static constexpr int m = Case::rows;  ///< number of constraint equations
   static_assert(AnswersRows<P, m> && Policy<P>);
-  using Row = Vec<double, m>;  ///< a number for each row
+  using Row = Vec<double, m>;  ///< one number for each constraint equation
 
-  P const policy = Case::policy();  ///< the policy under test
+  P const policy = Case::policy();  ///< policy under test
   Numbers number;                   ///< random numbers with a fixed seed
 
-  /// Size of the gaps that are tried [m], [rad]: as the case says, else one.
+  /// Size of the constraint violations [m], [rad]: value of the case, or 1.
   static double size() {
     if constexpr (requires { Case::gap; })
       return Case::gap;
     else
       return 1.0;
   }
-  Row gap() { return number.template vec<m>(size()); }  ///< random gap g in [−size, size]
+  Row gap() { return number.template vec<m>(size()); }  ///< random violation g in [−size, size]
   Row rate() { return number.template vec<m>(); }       ///< random rate ġ in [−1, 1]
   Row multiplier(Row const& g, Row const& g_rate) const { return policy.template multiplier<m, double>(g, g_rate); }
 
@@ -67,13 +68,13 @@ struct PolicyLaws {
     }
   }
 
-  /// λ(0, 0) = 0 and U(0) = 0: nothing pulls at a joint that is closed and at rest.
+  /// λ(0, 0) = 0 and U(0) = 0: the force is zero if the constraint equations are satisfied at rest.
   void closed_joint_is_at_rest() {
     EXPECT_EQ(multiplier(Row::Zero(), Row::Zero()).norm(), 0.0);
     EXPECT_EQ(policy.template potential<m>(Row::Zero()), 0.0);
   }
 
-  /// (λ(g, ġ) − λ(g, 0))·ġ ≥ 0: what depends on the rate takes energy out.
+  /// (λ(g, ġ) − λ(g, 0))·ġ ≥ 0: the force of the rate dissipates energy.
   void damping_takes_power() {
     for (int k = 0; k < 10; ++k) {
       Row const g = gap(), g_rate = rate();

@@ -1,14 +1,8 @@
 #pragma once
 /// \file
-/// The laws that equations obey of which `system_of` makes a system. A case says which, and where they hold:
+/// Law tests of equations for `system_of`.
 ///
-///     struct DoublePendulumCase {
-///       static DoublePendulum equations();
-///       static VecX coordinates(Numbers&);  // not needed where any numbers in [−1, 1] do
-///     };
-///     bool const pendulum_obeys = obeys<DoublePendulumCase, UserSystemLaws>("DoublePendulum");
-///
-/// Not in polybody.hpp: needs GoogleTest.
+/// Requires GoogleTest; not included by polybody.hpp.
 
 #include <polybody/system/user_system.hpp>
 #include <polybody/testing/differences.hpp>
@@ -17,26 +11,33 @@
 
 namespace polybody::laws {
 
-/// The laws of a user's equations, for one case.
+/// Laws of a user's equations, from which `system_of` makes a system. A case gives the equations and coordinates at
+/// which the laws are tested:
+///
+///     struct DoublePendulumCase {
+///       static DoublePendulum equations();
+///       static VecX coordinates(Numbers&);  // optional; the default is random numbers in [−1, 1]
+///     };
+///     bool const pendulum_obeys = obeys<DoublePendulumCase, UserSystemLaws>("DoublePendulum");
 template <class Case>
 struct UserSystemLaws {
   using E = decltype(Case::equations());  ///< type of the equations
   static_assert(UserMechanics<E>);
-  static constexpr double wild = 1e9;  ///< stands in every argument before it is written, whatever the unit
+  static constexpr double wild = 1e9;  ///< initial value of all results, in any unit
 
-  E const equations = Case::equations();  ///< the equations under test
-  Index const n = equations.speeds();     ///< how many speeds they have
-  double const t = 1.3;                   ///< time at which they are asked [s]
+  E const equations = Case::equations();  ///< equations under test
+  Index const n = equations.speeds();     ///< number of generalised velocities
+  double const t = 1.3;                   ///< time of the evaluation [s]
   Numbers number;                         ///< random numbers with a fixed seed
 
-  /// Coordinates q (n): those of the case, random ones in [−1, 1] where it names none.
+  /// Coordinates q (n): coordinates of the case if it gives them, otherwise random numbers in [−1, 1].
   VecX coordinates() {
     if constexpr (requires { Case::coordinates(number); })
       return Case::coordinates(number);
     else
       return number.vector(n);
   }
-  /// Mass matrix M (n×n). It is written over a matrix whose entries are all `before`.
+  /// Mass matrix M (n×n). All entries have the value `before` before the evaluation.
   MatX mass(VecX const& q, double before = wild) const {
     MatX m = MatX::Constant(n, n, before);
     equations.mass(q, m);
@@ -48,20 +49,20 @@ struct UserSystemLaws {
     equations.force(q, v, t, f);
     return f;
   }
-  /// How many rows the equations have; zero where they offer none.
+  /// Number of constraint equations; zero if the equations have none.
   Index rows() const {
     if constexpr (OffersRows<E>)
       return equations.rows();
     else
       return 0;
   }
-  /// Violation Φ of the rows (rows) at time `at` [s].
+  /// Constraint violation Φ (rows) at time `at` [s].
   VecX violation(VecX const& q, double at) const {
     VecX phi = VecX::Constant(rows(), wild);
     if constexpr (OffersRows<E>) equations.violation(q, at, phi);
     return phi;
   }
-  /// Jacobian ∂Φ/∂q (rows×n) at time `at` [s].
+  /// Constraint Jacobian ∂Φ/∂q (rows×n) at time `at` [s].
   MatX jacobian(VecX const& q, double at) const {
     MatX g = MatX::Constant(rows(), n, wild);
     if constexpr (OffersRows<E>) equations.jacobian(q, at, g);
@@ -74,7 +75,7 @@ struct UserSystemLaws {
     return phi_t;
   }
 
-  /// M = Mᵀ, written over whatever stood there, and vᵀM v > 0.
+  /// M = Mᵀ independent of the initial values of the result, and vᵀM v > 0.
   void mass_is_symmetric_and_positive() {
     VecX const q = coordinates();
     MatX const m = mass(q);
@@ -86,7 +87,7 @@ struct UserSystemLaws {
     }
   }
 
-  /// `tangent` = −(ck ∂f/∂q + cd ∂f/∂v), where the equations give one.
+  /// `tangent` = −(ck ∂f/∂q + cd ∂f/∂v), if the equations have a tangent.
   void tangent_is_the_derivative_of_the_force() {
     if constexpr (!OffersForceTangent<E>) {
       GTEST_SKIP() << "its tangent comes from differences";
@@ -106,7 +107,7 @@ struct UserSystemLaws {
     }
   }
 
-  /// G = ∂Φ/∂q and Φ_t = ∂Φ/∂t, of equations with rows.
+  /// G = ∂Φ/∂q and Φ_t = ∂Φ/∂t, for equations with constraint equations.
   void jacobian_and_rate_are_the_derivatives_of_the_violation() {
     if (rows() == 0) GTEST_SKIP() << "it has no rows";
     VecX const q = coordinates();
@@ -119,7 +120,7 @@ struct UserSystemLaws {
     EXPECT_LT((rate(q, t) - by_time).norm(), 1e-9 * (1.0 + by_time.norm()));
   }
 
-  /// γ = d/dt (G v + Φ_t) along q + v t while v stands still, so that Φ̈ = G v̇ + γ.
+  /// γ = d/dt (G v + Φ_t) along q + v t at constant v, so that Φ̈ = G v̇ + γ.
   void gamma_is_the_second_derivative_without_accelerations() {
     if constexpr (!OffersRows<E>) {
       GTEST_SKIP() << "it has no rows";
