@@ -57,10 +57,9 @@ struct BodyLaws {
   /// Generalised velocities of an element; `Eigen::Dynamic` for one element of run-time size.
   static constexpr int n = B::element_columns;
 
-  B const body = Made::body();  ///< body under test, with its damping
-  /// Numbers of coordinates q and of generalised velocities v.
-  Index const nq = body.coordinates(), nv = body.speeds();
-  std::mt19937 generator{20240607};  ///< source of the random numbers; its seed is fixed
+  B const body = Made::body();                              ///< body under test, with its damping
+  Index const nq = body.coordinates(), nv = body.speeds();  ///< numbers of coordinates q and velocities v
+  std::mt19937 generator{20240607};                         ///< source of the random numbers; its seed is fixed
 
   // --- random numbers with a fixed seed -------------------------------------------------------------------
 

@@ -6,8 +6,8 @@
 
 namespace polybody::laws {
 
-/// Derivative f′(0) of a function of one number, with values in double or in Eigen vectors: [8 (f(h) − f(−h)) − (f(2h)
-/// − f(−2h))]/12h, with the error h⁴ f⁽⁵⁾/30  [Abramowitz & Stegun 1964, 25.3.21].
+/// Derivative f′(0) of a function of one number, with values in double or in Eigen vectors:
+/// [8 (f(h) − f(−h)) − (f(2h) − f(−2h))]/12h, error h⁴ f⁽⁵⁾/30  [Abramowitz & Stegun 1964, 25.3.21].
 template <class F>
 auto slope_at_zero(F&& f, double h = 1e-3) {
   using Value = decltype(f(h));

@@ -111,7 +111,7 @@ struct LinkOnRoller {
   template <StateScalar T>
   struct OverEdge {
     T across;          ///< position along the edge, from the middle of the link [m]
-    double side;       ///< sign of x: 1 at the front edge, −1 at the rear edge
+    double side;       ///< sign of x, a factor: 1 at the front edge, −1 at the rear edge
     T beyond, height;  ///< distance outwards from the edge, and height above the face [m]
   };
   template <StateScalar T, class Visit>
