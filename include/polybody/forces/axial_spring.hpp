@@ -3,9 +3,9 @@
 
 namespace polybody {
 
-/// Spring, damper and preload along an axis that is fixed in the first body. With s the distance of marker b from
-/// marker a along the axis, a pushes b by −(k s + c ṡ + P) along it, and b pushes back. For bodies that slide in a
-/// guide, such as the tensioner of a track.
+/// Spring, damper and preload along an axis that is fixed in the first body. With the distance s of marker b from
+/// marker a along the axis, the force on b along the axis is −(k s + c ṡ + P); the opposite force acts on a. The
+/// element is used for bodies that slide in a guide, such as the tensioner of a track.
 struct AxialSpring {
   static constexpr int markers = 2;
   static constexpr bool is_load = false;
@@ -25,10 +25,10 @@ struct AxialSpring {
     require_unit(axis, name, ": the axis");
   }
 
-  bool is_lossless() const { return damping == 0.0; }  ///< all work that it takes is stored
+  bool is_lossless() const { return damping == 0.0; }  ///< true without damping
 
-  /// With d = r_b − r_a and e the axis: s = e·d, ṡ = e·(ḋ − ω_a × d). The pair acts at r_b, so on a it has the moment d
-  /// × f_a.
+  /// Wrenches, with d = r_b − r_a and the axis e: s = e·d, ṡ = e·(ḋ − ω_a × d). Both forces act at r_b. The moment on
+  /// a is therefore d × f_a.
   template <StateScalar T>
   std::array<Wrench<T>, 2> wrenches(std::array<Frame<T>, 2> const& f, double) const {
     Vec<T, 3> const e = direction(f[0]), d = f[1].r - f[0].r, turning = f[0].w.cross(d);

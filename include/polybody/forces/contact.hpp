@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Contact between two markers: a geometry that says where they overlap, a normal force and friction.
+/// Contact between two markers: a geometry that computes the penetration, a normal force law and friction.
 
 #include <polybody/forces/contact_reach.hpp>
 #include <polybody/forces/force_group.hpp>
@@ -8,30 +8,30 @@
 
 namespace polybody {
 
-/// The share of a face in a contact, near the place where one face of a body hands over to the next: each face has its
-/// share of the force and of the potential. A share that varies with the place makes the force −(∫N dd) ∂share/∂place
-/// on a, and the opposite on b.
+/// Share of one face in a contact, near the boundary between two faces of a body. Each face contributes its share of
+/// the force and of the potential. A share that varies with the position adds the force −(∫N dd) ∂share/∂place on a
+/// and the opposite force on b.
 template <StateScalar T>
 struct Handover {
-  T share = T(1.0);  ///< part of the force and of the potential that this face bears, in [0, 1]
-  Vec<T, 3> slope = {T(0.0), T(0.0), T(0.0)};  ///< (3) ∂share/∂place [1/m], place moving with a
-  Vec<T, 3> place = {T(0.0), T(0.0), T(0.0)};  ///< (3) [m]
+  T share = T(1.0);                            ///< part of the force and of the potential of this face, in [0, 1]
+  Vec<T, 3> slope = {T(0.0), T(0.0), T(0.0)};  ///< (3) ∂share/∂place [1/m]; the position moves with a
+  Vec<T, 3> place = {T(0.0), T(0.0), T(0.0)};  ///< (3) position [m]
 };
 
-/// A point where body a and body b overlap.
+/// Contact point: point in the overlap of body a and body b.
 template <StateScalar T>
 struct ContactPoint {
-  Vec<T, 3> place;            ///< (3) where the force acts, world axes [m]
+  Vec<T, 3> place;            ///< (3) point of action of the force, world axes [m]
   Vec<T, 3> normal;           ///< (3) unit vector from b to a
-  T depth;                    ///< d > 0 [m]
-  Handover<T> handover = {};  ///< the face's part of the force; 1 where no other face is near
+  T depth;                    ///< penetration d > 0 [m]
+  Handover<T> handover = {};  ///< share of the face in the force; 1 if no other face is near
 };
 
 namespace detail {
 struct AnyPoint {
   void operator()(ContactPoint<double> const& point) const;
 };
-/// A visitor of points without its type: a geometry is compiled once for each scalar, whatever is asked at its points.
+/// Visitor of contact points with erased type, so that a geometry is compiled once per scalar type.
 template <StateScalar T>
 class PointVisitor {
  public:
@@ -44,15 +44,16 @@ class PointVisitor {
   void const* visit_;
   void (*call_)(void const*, ContactPoint<T> const&);
 };
-/// p + n x.
+/// Sum p + n x.
 template <StateScalar T>
 Vec<T, 3> shifted(Vec<T, 3> const& p, Vec<T, 3> const& n, T const& x) {
   return {p[0] + n[0] * x, p[1] + n[1] * x, p[2] + n[2] * x};
 }
 }  // namespace detail
 
-/// Calls visit(point) for every point where the shapes at frames a and b overlap. `may_touch` is a cheap test before:
-/// it is false only where they cannot overlap. `reach(b)`, where there is one, is a cheaper one (`TellsReach`).
+/// Contact geometry: calls visit(point) for every contact point of the shapes at frames a and b. `may_touch` is a
+/// fast test: it is false only if the shapes cannot overlap. The optional `reach(b)` is an even faster test
+/// (`TellsReach`).
 template <class G>
 concept ContactGeometry =
     requires(G const geometry, Frame<double> const a, Frame<double> const b, std::string const name) {
@@ -62,11 +63,11 @@ concept ContactGeometry =
       geometry.check(name);
     };
 
-/// Coulomb's friction, regularised: −μ N v/√(v² + v_s²) at the sliding velocity v. In place of sticking, bodies creep
-/// at less than v_s.
+/// Regularised Coulomb friction −μ N v/√(v² + v_s²) at the slip velocity v. Instead of sticking, bodies creep at less
+/// than v_s.
 struct Friction {
-  double coefficient = 0.0;  ///< μ, a ratio of forces
-  double slip_speed = 0.0;   ///< v_s [m/s], positive where μ is
+  double coefficient = 0.0;  ///< coefficient of friction μ [1]
+  double slip_speed = 0.0;   ///< v_s [m/s], positive if μ is
 
   void check(std::string const& name) const {
     require_not_negative(coefficient, name, ": the coefficient of friction");
@@ -74,8 +75,8 @@ struct Friction {
   }
 };
 
-/// On a at each point the force N n + F_t, F_t the friction; on b the opposite. The point moves with either body as if
-/// it were fixed to it.
+/// Contact force between two markers: N n + F_t on a at each contact point, with the friction F_t, and the opposite
+/// force on b. The velocity of either body is evaluated at the contact point as a material point.
 template <ContactGeometry G, NormalForce N = SpringDamperContact>
 struct Contact {
   using Geometry = G;  ///< type of the geometry
@@ -89,8 +90,8 @@ struct Contact {
       return G::needs;
   }();
 
-  G geometry;              ///< where the bodies touch
-  N normal;                ///< the law of the normal force
+  G geometry;              ///< contact geometry
+  N normal;                ///< normal force law
   Friction friction = {};  ///< regularised Coulomb friction
 
   void check(std::string const& name) const {
@@ -99,13 +100,13 @@ struct Contact {
     friction.check(name);
   }
   bool may_touch(Frame<double> const& a, Frame<double> const& b) const { return geometry.may_touch(a, b); }
-  /// Neither friction nor the normal force dissipates.
+  /// True if neither friction nor the normal force dissipates energy.
   bool is_lossless() const
     requires requires(N const& law) { law.is_lossless(); }
   {
     return friction.coefficient == 0.0 && normal.is_lossless();
   }
-  /// The shapes do not touch at frames `from` or at frames `to`, but on the straight way between.
+  /// True if the shapes touch neither at frames `from` nor at frames `to`, but on the straight line between them.
   bool passes(Frame<double> const (&from)[2], Frame<double> const (&to)[2]) const
     requires requires(G const& shape) { shape.passes(from, to); }
   {
@@ -117,7 +118,7 @@ struct Contact {
     return geometry.reach(b);
   }
 
-  /// Calls visit(point, v, N) for every point, v the velocity of a relative to b there.
+  /// Calls visit(point, v, N) for every contact point, with the velocity v of a relative to b at the point.
   template <StateScalar T, class Visit>
   void for_each_point(std::array<Frame<T>, 2> const& f, Visit&& visit) const {
     auto const at_point = [&](ContactPoint<T> const& p) {
@@ -130,7 +131,7 @@ struct Contact {
     geometry.template for_each_point<T>(f[0], f[1], detail::PointVisitor<T>(at_point));
   }
 
-  /// The force on a at a point [N] where a moves with v (3) against b [m/s] and the normal force is n [N].
+  /// Force on a at a contact point [N], with the velocity v (3) of a relative to b [m/s] and the normal force n [N].
   template <StateScalar T>
   Vec<T, 3> force_at(ContactPoint<T> const& p, Vec<T, 3> const& v, T const& n) const {
     using std::sqrt;
@@ -167,10 +168,11 @@ struct Contact {
     return w;
   }
 
-  /// Into `of_a`, `of_b`: Jᵀ(N′ n nᵀ + F′ (1 − n nᵀ))J at each point, J = [1, −ρ×], ρ from the marker to the point, N′
-  /// the normal force's slope. F′ is the chord of the friction, μ N/√(v² + v_s²), which is never less than its slope:
-  /// so Newton's method approaches v = 0 from one side and does not jump across. The turning of n, the change of F_t
-  /// with N, and handovers are left out.
+  /// Adds the approximate stiffness Jᵀ(N′ n nᵀ + F′ (1 − n nᵀ))J of each contact point to `of_a` and `of_b`. J = [1,
+  /// −ρ×] with the vector ρ from the marker to the point, and N′ is the derivative of the normal force. F′ = μ N/√(v²
+  /// + v_s²) is the secant of the friction, which is never less than its derivative. Newton's method therefore
+  /// approaches v = 0 from one side and does not overshoot. The rotation of n, the change of F_t with N, and the
+  /// shares of faces are neglected.
   void own_stiffness(std::array<Frame<double>, 2> const& f, double ck, double cd, Mat<double, 6, 6>& of_a,
                      Mat<double, 6, 6>& of_b) const {
     for_each_point<double>(f, [&](ContactPoint<double> const& p, Vec3 const& v, double n) {
@@ -220,8 +222,8 @@ struct Contact {
 };
 
 namespace detail {
-/// Points x and y lie outside of a sphere of radius `reach` [m] about zero, and the way from x to y goes through it by
-/// more than a twentieth of the radius.
+/// True if x and y lie outside a sphere of radius `reach` [m] about zero, and the line between them enters it by more
+/// than a twentieth of the radius.
 inline bool passes_through(Vec3 const& x, Vec3 const& y, double reach) {
   Vec3 const way = y - x;
   double const length2 = way.dot(way), outside = reach * reach;
@@ -231,7 +233,7 @@ inline bool passes_through(Vec3 const& x, Vec3 const& y, double reach) {
 }
 }  // namespace detail
 
-/// A sphere of this radius about marker a on the plane z = 0 of marker b, on the side of positive z.
+/// Sphere of radius `radius` about marker a on the plane z = 0 of marker b, on the side of positive z.
 struct SphereOnPlane {
   static constexpr Observes needs = Observes::point;
   static constexpr Observes needs_of_second = Observes::frame;
@@ -255,7 +257,7 @@ struct SphereOnPlane {
   }
 };
 
-/// Spheres about both markers. Concentric ones have no normal.
+/// Spheres about both markers. Concentric spheres have no normal.
 struct SphereOnSphere {
   static constexpr Observes needs = Observes::point;
   Required<double> radius_a;  ///< [m]
@@ -275,7 +277,7 @@ struct SphereOnSphere {
   ContactReach reach(Frame<double> const& b) const {
     return ContactReach::sphere(b.r, radius_a + radius_b);
   }
-  /// The spheres pass through each other between these frames.
+  /// True if the spheres pass through each other between these frames.
   template <class = void>  // compiled where it is used
   bool passes(Frame<double> const (&from)[2], Frame<double> const (&to)[2]) const {
     return detail::passes_through(from[0].r - from[1].r, to[0].r - to[1].r, radius_a + radius_b);
@@ -291,8 +293,8 @@ struct SphereOnSphere {
   }
 };
 
-/// A sphere of this radius about marker a on a cylinder about the z axis of marker b, from outside; radius zero for
-/// points of a belt.
+/// Sphere of radius `radius` about marker a on the outside of a cylinder about the z axis of marker b. Points of a
+/// belt have the radius zero.
 struct SphereOnCylinder {
   static constexpr Observes needs = Observes::point;
   static constexpr Observes needs_of_second = Observes::frame;
@@ -313,7 +315,7 @@ struct SphereOnCylinder {
   ContactReach reach(Frame<double> const& b) const {
     return ContactReach::cylinder(b.r, {b.A(0, 2), b.A(1, 2), b.A(2, 2)}, radius + cylinder);
   }
-  /// The sphere passes through the cylinder between these frames.
+  /// True if the sphere passes through the cylinder between these frames.
   template <class = void>  // compiled where it is used
   bool passes(Frame<double> const (&from)[2], Frame<double> const (&to)[2]) const {
     auto const across = [](Frame<double> const(&f)[2]) {

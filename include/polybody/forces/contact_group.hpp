@@ -11,12 +11,14 @@
 
 namespace polybody {
 
-/// Contacts between many bodies and a few: links of a track and what it runs over, balls and walls.
+/// Contacts between many markers and a few partners: links of a track and the rollers and ground under it, or balls
+/// and walls.
 ///   auto const track = model.apply(ContactGroup<OnRoller, OnGround>{}, links, "left track");   many markers
 ///   model.pair_with(track, on_roller, wheel.at({0, 0, 0}), "wheel 1");                            one at a time
-/// A law is a force element of two markers: the first is one of the many, the second one of the few. It is evaluated
-/// only where its `may_touch(first, second)` is true, which should cost little more than a distance. Where all laws
-/// tell their `reach(second)` (`TellsReach`), markers beyond it are told side by side.
+/// A law is a force element of two markers: the first is one of the many, the second is a partner. It is evaluated
+/// only if its `may_touch(first, second)` is true. The cost of this test should be little more than that of a
+/// distance. If all laws have `reach(second)` (`TellsReach`), several markers are tested at once with SIMD
+/// operations.
 template <ForceElement... Laws>
   requires((Laws::markers == 2) && ...)
 class ContactGroup {
@@ -26,23 +28,24 @@ class ContactGroup {
   static constexpr Observes needs = std::max({Laws::needs...});
   static constexpr bool all_laws_store = (HasPotential<Laws> && ...);  ///< each law has a potential
 
-  /// One of the few.
+  /// Contact partner of the many markers.
   template <class Law>
   struct Opponent {
-    Law law;           ///< how the two touch
-    Index marker;      ///< among the group's
+    Law law;           ///< contact law
+    Index marker;      ///< number of its marker in the group
     std::string name;  ///< name of the opponent in messages and results
   };
 
-  /// The first `count` markers are the many; the model sets this.
+  /// Sets the number `count` of the many markers, the first ones of the group; called by the model.
   void set_many(Index count) { many_ = count; }
-  Index many() const { return many_; }  ///< how many markers are the many: the first ones of the group
-  /// How many opponents each of them has.
+  Index many() const { return many_; }  ///< number of the many markers, the first ones of the group
+  /// Number of partners.
   Index opponents() const {
     return Index(std::apply([](auto const&... few) { return (few.size() + ... + std::size_t(0)); }, few_));
   }
 
-  /// Adds an opponent: under `law` each of the many may touch the group's marker number `marker`.
+  /// Adds a partner with the group's marker number `marker`: each of the many markers may touch it under `law`.
+  /// Messages use `name`.
   template <class Law>
     requires(std::is_same_v<Law, Laws> || ...)
   void pair_with(Law const& law, Index marker, std::string name) {
@@ -51,23 +54,24 @@ class ContactGroup {
 
   void check(std::string const& name) const;
 
-  /// Calls f(opponent) for each `Opponent`: by the type of its law, then in the order in which they were added.
+  /// Calls f(opponent) for each `Opponent`, ordered by the type of its law, then by the order of addition.
   template <class F>
   void for_each_opponent(F&& f) const {
     std::apply([&](auto const&... few) { (each_of(few, f), ...); }, few_);
   }
 
-  /// Calls visit(i, marker, law) for each pair of one of the many, i, and an opponent, near or far.
+  /// Calls visit(i, marker, law) for each pair of one of the many markers, i, and a partner, at any distance.
   template <class Visit>
   void for_each_candidate(Visit&& visit) const {
     for (Index i = 0; i < many_; ++i) for_each_opponent([&](auto const& few) { visit(i, few.marker, few.law); });
   }
-  /// Calls visit(i, marker, law) for the pairs whose law says that they may touch; frame(k) is the frame of marker k.
+  /// Calls visit(i, marker, law) for the pairs with `may_touch` true; frame(k) is the frame of marker k.
   template <class FrameOf, class Visit>
   void for_each_pair(FrameOf&& frame, Visit&& visit) const {
     for_each_pair(frame, visit, 0, many_);
   }
-  /// The same for the markers [begin, end) of the many; frame(i) is that of marker i, visit(i, j, law) takes a pair.
+  /// Overload for the markers [begin, end) of the many: frame(i) is the frame of marker i, and visit(i, j, law) is
+  /// called for a pair.
   template <class FrameOf, class Visit>
   void for_each_pair(FrameOf&& frame, Visit&& visit, Index begin, Index end) const {
     if constexpr ((TellsReach<Laws> && ...))
@@ -80,7 +84,8 @@ class ContactGroup {
 
  private:
   static constexpr Index side_by_side = 32;
-  /// Places of as many of the many, and a bit for each opponent that may reach them, in the order of all opponents.
+  /// Positions of some of the many markers, with one bit per partner, set if the marker is within its reach. The bits
+  /// have the order of all partners.
   struct Row {
     std::array<double, side_by_side> x, y, z;
     std::array<std::uint64_t, side_by_side> near;
@@ -115,7 +120,7 @@ class ContactGroup {
       bit <<= 1;
     });
   }
-  /// Visits those of a law that may touch marker i; their bits are shifted out.
+  /// Visits the partners under one law that may touch marker i, and removes their bits.
   template <class Few, class FrameOf, class Visit>
   static void visit_near(Few const& few, FrameOf& frame, Visit& visit, Index i, std::uint64_t& bits) {
     std::size_t const n = few.size();

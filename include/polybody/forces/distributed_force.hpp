@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A force spread along a bar, for every formulation: point forces at Gauss points.
+/// Distributed force along a bar of any formulation, by point forces at Gauss points.
 
 #include <vector>
 
@@ -10,16 +10,17 @@
 
 namespace polybody {
 
-/// A part of a bar, measured from its first end, cut into equal pieces.
+/// Range of a bar, measured from its first end and divided into equal pieces.
 struct BarRange {
   Required<double> from, to;  ///< [m]
-  Required<Index> pieces;     ///< how many equal pieces, 1 or more; each bears two point forces
+  Required<Index> pieces;     ///< number of equal pieces, at least 1, with two point forces each
 };
 
-/// Spreads `per_length` [N/m], dead or following the section, over a range of a bar, as two point forces on each piece.
-/// That is exact for shapes up to third order if there are as many pieces as elements. They are called "`name`, point
-/// 1" and so on, or by the next names that are free. The model's forces must hold `PointForce<Law>`. Returns their
-/// handles. \throws InvalidInput for a range that is empty or outside the bar, or fewer pieces than one.
+/// Applies the distributed force `per_length` [N/m] to a range of a bar, dead or following the section, as two point
+/// forces on each piece. The result is exact for shapes up to third order if each element has its own piece. The
+/// forces are named "`name`, point 1" and so on, or by the next unused names. The force types of the model must
+/// include `PointForce<Law>`. Returns the handles of the forces.
+/// \throws InvalidInput for a range that is empty or outside the bar, or fewer pieces than one.
 template <class M, class B, TimeLaw Law = Constant>
 auto apply_distributed(M& model, BodyHandle<B> const& bar, PointForce<Law> const& per_length, BarRange const& range,
                        std::string const& name = "") {

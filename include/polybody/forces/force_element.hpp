@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// The concept of a force element: wrenches on its markers as a function of their frames. Its tangent comes from dual
-/// numbers.
+/// Concept of a force element: wrenches on its markers as a function of their frames. Dual numbers provide its
+/// tangent.
 
 #include <array>
 
@@ -9,7 +9,7 @@
 
 namespace polybody {
 
-/// How many first-order states a force element has of its own: `static constexpr int states`, or none.
+/// Number of first-order states of a force element: `static constexpr int states`, or zero without this member.
 template <class F>
 constexpr int states_of() {
   if constexpr (requires { F::states; })
@@ -23,9 +23,9 @@ template <class F>
 concept GivesWrenches = requires(F const force, std::array<Frame<double>, F::markers> const frames, double t) {
   { force.template wrenches<double>(frames, t) } -> std::same_as<std::array<Wrench<double>, F::markers>>;
 };
-/// A force element with first-order states z of its own, such as a controller, a valve or a material that creeps:
-/// wrenches as a function of frames and states, and the rates ż = h(frames, z, t). It may have `initial_states()`, z of
-/// the reference state; else they are zero.
+/// Force element with first-order states z, such as a controller, a valve or a viscoelastic material. It provides
+/// wrenches as a function of frames and states, and the rates ż = h(frames, z, t). The optional `initial_states()`
+/// returns z in the reference state, which is otherwise zero.
 template <class F>
 concept HasStates = states_of<F>() > 0 && requires(F const force, std::array<Frame<double>, F::markers> const frames,
                                                    std::array<double, states_of<F>()> const z, double t) {
@@ -33,8 +33,9 @@ concept HasStates = states_of<F>() > 0 && requires(F const force, std::array<Fra
   { force.template rates<double>(frames, z, t) } -> std::same_as<std::array<double, states_of<F>()>>;
 };
 
-/// The concept of a force element; `check(name)` is called by `apply` with its name. It may have a member `law` with
-/// `corners()`, times at which steps are to end; `docs/extending.md` lists what else.
+/// Concept of a force element. `apply` calls `check(name)` with the name of the element. The optional member `law`
+/// with `corners()` contains the breakpoints, at which steps end. `docs/extending.md` lists the other optional
+/// members.
 template <class F>
 concept ForceElement = requires(F const force, std::string const name) {
   requires F::markers >= 1;
@@ -43,7 +44,8 @@ concept ForceElement = requires(F const force, std::string const name) {
   force.check(name);
 } && (GivesWrenches<F> || HasStates<F>);
 
-/// What the second marker of a force element must observe: `needs_of_second`, or `needs` as for the first.
+/// Kinematics that a force element requires of its second marker: `needs_of_second`, or `needs` as for the first
+/// marker.
 template <class F>
   requires requires { F::markers; }
 constexpr Observes needs_of_second() {
@@ -53,17 +55,17 @@ constexpr Observes needs_of_second() {
     return F::needs;
 }
 
-/// The markers Ms of a force element F, in their order, tell what it asks of them.
+/// The markers Ms of a force element F, in their order, provide the kinematics that it requires.
 template <class F, class... Ms>
 constexpr bool tell_enough() {
   int k = 0;
   return ((Ms::observes >= (k++ == 1 ? needs_of_second<F>() : F::needs)) && ...);
 }
 
-/// A force element may leave the blocks that couple its markers' bodies out of a time step's matrix by
-/// `static constexpr bool couples_bodies = false`: then Newton's matrix holds each body's own stiffness only. This is
-/// for contacts of many candidates: the pattern of the matrix and the order of its elimination stay as they are without
-/// contact, whichever candidates touch.
+/// Choice of the blocks that couple the bodies of a force element's markers. `static constexpr bool couples_bodies =
+/// false` omits them from the matrix of a time step, which then contains only the stiffness of each body. Contacts
+/// with many candidates use it: the sparsity pattern and the elimination order are then independent of the touching
+/// candidates.
 template <class F>
 constexpr bool couples_bodies() {
   if constexpr (requires { F::couples_bodies; })
@@ -72,7 +74,7 @@ constexpr bool couples_bodies() {
     return true;
 }
 
-/// A force element that stores energy: a function of its frames and time [J].
+/// Force element with a potential energy, a function of its frames and time [J].
 template <class F>
 concept HasPotential = requires(F const force, std::array<Frame<double>, F::markers> const frames, double t) {
   { force.potential(frames, t) } -> std::convertible_to<double>;
@@ -80,15 +82,15 @@ concept HasPotential = requires(F const force, std::array<Frame<double>, F::mark
 
 namespace detail {
 
-/// A dual number with slope in direction i.
+/// Dual number of `value` with the derivative `slope` in direction i.
 template <int n>
 Dual<n> seeded(double value, int i, double slope) {
   Dual<n> x(value);
   x.d[i] = slope;
   return x;
 }
-/// A frame as a function of its pose (δr, δφ in world axes) and twist, six directions from `first` on: pose seeded with
-/// ck, twist with cd. \param moved without any slopes
+/// Frame as a function of its pose (δr, δφ in world axes) and twist, in six directions from `first` on. The factor of
+/// the pose is ck, that of the twist cd. \param moved the frame with derivatives; zero on entry
 template <int n>
 void seed_frame(Frame<double> const& f, int first, double ck, double cd, Frame<Dual<n>>& moved) {
   for (int i = 0; i < 3; ++i) {
@@ -105,7 +107,7 @@ void seed_frame(Frame<double> const& f, int first, double ck, double cd, Frame<D
     }
   }
 }
-/// Those of all markers, one after another.
+/// Frames of all markers as functions of their poses and twists, one after another.
 template <int n, std::size_t markers>
 std::array<Frame<Dual<n>>, markers> seeded_frames(std::array<Frame<double>, markers> const& frames, double ck,
                                                   double cd) {
@@ -113,7 +115,7 @@ std::array<Frame<Dual<n>>, markers> seeded_frames(std::array<Frame<double>, mark
   for (std::size_t k = 0; k < markers; ++k) seed_frame(frames[k], 6 * int(k), ck, cd, moved[k]);
   return moved;
 }
-/// The slopes of the wrenches, 6N×n, into the first rows of `gradient`.
+/// Copies the derivatives of the wrenches, 6N×n, to the first rows of `gradient`.
 template <int n, std::size_t markers, int rows>
 void copy_slopes(std::array<Wrench<Dual<n>>, markers> const& w, Mat<double, rows, n>& gradient) {
   for (std::size_t k = 0; k < markers; ++k)
@@ -126,8 +128,8 @@ void copy_slopes(std::array<Wrench<Dual<n>>, markers> const& w, Mat<double, rows
 
 }  // namespace detail
 
-/// Gradients of all wrenches with respect to the frames' poses and twists, ck ∂w/∂pose + cd ∂w/∂twist, 6N×6N, by one
-/// pass of dual numbers.
+/// Tangent of all wrenches with respect to the poses and twists of the frames, ck ∂w/∂pose + cd ∂w/∂twist, 6N×6N, by
+/// one evaluation with dual numbers.
 template <ForceElement F>
 Mat<double, 6 * F::markers, 6 * F::markers> wrench_gradient(F const& force,
                                                             std::array<Frame<double>, F::markers> const& frames,

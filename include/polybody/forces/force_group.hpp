@@ -1,16 +1,16 @@
 #pragma once
 /// \file
-/// Force elements among any number of markers, such as contacts of many candidates.
+/// Force elements with any number of markers, such as contacts with many candidates.
 
 #include <polybody/forces/force_element.hpp>
 
 namespace polybody {
 
-/// `F::markers` of a force element whose markers are known only when the model is built.
+/// Value of `F::markers` if the number of markers is known only when the model is built.
 inline constexpr int any_number = -1;
 
 namespace detail {
-/// Arguments for the checks of a concept.
+/// Placeholder arguments for the checks of a concept.
 struct AnyFrame {
   Frame<double> const& operator()(Index marker) const;
 };
@@ -21,13 +21,15 @@ struct AnyVisit {
 };
 }  // namespace detail
 
-/// A force element that is the sum of forces between two of its markers each:
-///   for_each_pair(frame, visit)  calls visit(i, j, law), law a force element of two markers, for all pairs of its
-///   markers i, j that
-///                                may act on each other as they stand: frame(i) is marker i's;
-///   for_each_candidate(visit)    the same for all pairs that may ever act.
-/// The matrix of a time step holds the blocks of each body of a pair, not those that couple the two: which pairs act
-/// changes from step to step, while the pattern of the matrix and the order of its elimination stay.
+/// Force element that is the sum of forces between pairs of its markers.
+///
+/// `for_each_pair(frame, visit)` calls visit(i, j, law) for all pairs of its markers i, j that may interact in their
+/// present position. law is a force element of two markers, and frame(i) is the frame of marker i.
+/// `for_each_candidate(visit)` calls visit(i, j, law) for all pairs that can ever interact.
+///
+/// The matrix of a time step contains the blocks of each body of a pair, but not the blocks that couple the two
+/// bodies. The interacting pairs therefore change from step to step without a change of the sparsity pattern or the
+/// elimination order.
 template <class F>
 concept ForceGroup = requires(F const group, std::string const name) {
   requires F::markers == any_number;
@@ -38,21 +40,21 @@ concept ForceGroup = requires(F const group, std::string const name) {
   group.check(name);
 };
 
-/// A group that goes through its pairs by parts, which threads share: i is one of its first `many()` markers, j
-/// another.
+/// Group whose pairs can be visited in parts, which threads share: i is one of its first `many()` markers, j another
+/// marker.
 template <class F>
 concept PairsByParts = ForceGroup<F> && requires(F const group) {
   { group.many() } -> std::convertible_to<Index>;
-  group.for_each_pair(detail::AnyFrame{}, detail::AnyVisit{}, Index(0), Index(0));  // of i in [begin, end)
+  group.for_each_pair(detail::AnyFrame{}, detail::AnyVisit{}, Index(0), Index(0));  // for i in [begin, end)
 };
 
-/// A force that a model may hold.
+/// Force of a model: a force element or a group.
 template <class F>
 concept AppliedForce = ForceElement<F> || ForceGroup<F>;
 
-/// A force element of two markers that approximates its own stiffness at each of them, −(ck ∂w/∂pose + cd ∂w/∂twist),
-/// by symmetric, positive semidefinite 6×6 matrices, added to `of_a` and `of_b`. They are cheaper than the exact
-/// gradient by dual numbers and good enough for Newton's method.
+/// Force element of two markers that approximates its stiffness −(ck ∂w/∂pose + cd ∂w/∂twist) at each marker. The
+/// approximations are symmetric, positive semidefinite 6×6 matrices, added to `of_a` and `of_b`. They are cheaper
+/// than the exact tangent by dual numbers and sufficient for Newton's method.
 template <class F>
 concept HasOwnStiffness = ForceElement<F> && F::markers == 2 &&
                           requires(F const force, std::array<Frame<double>, 2> const frames, Mat<double, 6, 6> of_a,

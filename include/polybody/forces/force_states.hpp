@@ -1,20 +1,20 @@
 #pragma once
 /// \file
-/// Force elements with first-order states of their own, ż = h(frames, z, t): what they give, and its gradient.
+/// Force elements with first-order states, ż = h(frames, z, t): wrenches, rates and their tangent.
 
 #include <polybody/forces/force_element.hpp>
 
 namespace polybody {
 
-/// A force element at given states: one without any, for all that asks for its wrenches alone.
+/// Force element at constant states z. It has no states and provides the wrenches only.
 template <HasStates F, StateScalar T>
 struct AtStates {
   static constexpr int markers = F::markers;
   static constexpr bool is_load = F::is_load;
   static constexpr Observes needs = F::needs;
 
-  F const& force;                     ///< the element, which must outlive this
-  std::array<T, F::states> const& z;  ///< its states, which must outlive this
+  F const& force;                     ///< element, which must outlive this object
+  std::array<T, F::states> const& z;  ///< states, which must outlive this object
 
   void check(std::string const&) const {}
   template <StateScalar U>
@@ -23,12 +23,12 @@ struct AtStates {
   }
 };
 
-/// What derivatives with respect to poses, twists and states are multiplied by.
+/// Factors of the derivatives with respect to poses, twists and states.
 struct SlopeFactors {
-  double pose, twist, states;  ///< factors of the derivatives by poses, twists and states; zero leaves them out
+  double pose, twist, states;  ///< factor of each derivative; the derivative is omitted if it is zero
 };
 
-/// Gradients of wrenches and rates, in this order, with respect to the frames and the states, (6N + S)×(6N + S).
+/// Tangent of wrenches and rates, in this order, with respect to the frames and the states, (6N + S)×(6N + S).
 template <HasStates F>
 Mat<double, 6 * F::markers + F::states, 6 * F::markers + F::states> gradient_with_states(
     F const& force, std::array<Frame<double>, F::markers> const& frames, std::array<double, F::states> const& z,

@@ -3,10 +3,10 @@
 
 namespace polybody {
 
-/// A spring and a damper one behind the other along the line between two markers: tension N = k (l − l₀ − z), with
-/// z˙ = N/c the elongation of the damper. Held at a length, the tension relaxes as e^{−kt/c} [Maxwell 1867].
+/// Spring and damper in series along the line between two markers: tension N = k (l − l₀ − z) with the elongation z
+/// of the damper, z˙ = N/c. At constant length the tension relaxes as e^{−kt/c} [Maxwell 1867].
 struct MaxwellElement {
-  static constexpr int markers = 2, states = 1;  ///< two ends; one state, the elongation z of the damper [m]
+  static constexpr int markers = 2, states = 1;  ///< two markers; one state, the elongation z of the damper [m]
   static constexpr bool is_load = false;
   static constexpr Observes needs = Observes::point;
 
@@ -20,7 +20,7 @@ struct MaxwellElement {
     require_not_negative(free_length, name, ": the free length");
   }
 
-  /// f_a = N d/l with d = r_b − r_a, l = |d|; l = 0 has no direction.
+  /// Wrenches f_a = N d/l with d = r_b − r_a, l = |d|. The direction is undefined at l = 0.
   template <StateScalar T>
   std::array<Wrench<T>, 2> wrenches(std::array<Frame<T>, 2> const& frames, std::array<T, 1> const& z, double) const {
     Vec<T, 3> const d = frames[1].r - frames[0].r;

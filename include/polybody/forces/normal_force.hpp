@@ -1,14 +1,15 @@
 #pragma once
 /// \file
-/// How hard two bodies press on each other where they overlap by d > 0 and d grows at the rate ḋ. Never negative: they
-/// do not stick together.
+/// Normal force laws of contact, as functions of the penetration d > 0 and its rate ḋ. The force is never negative:
+/// bodies do not adhere.
 
 #include <polybody/math/dual.hpp>
 #include <polybody/math/types.hpp>
 
 namespace polybody {
 
-/// N(d, ḋ) [N]; a slope ck ∂N/∂d + cd ∂N/∂ḋ, never negative; and its potential, ∫ N(d, 0) dd [J].
+/// Normal force law: force N(d, ḋ) [N], derivative ck ∂N/∂d + cd ∂N/∂ḋ, never negative, and potential ∫ N(d, 0) dd
+/// [J].
 template <class N>
 concept NormalForce = requires(N const law, double d, double rate, std::string const name) {
   { law.template force<double>(d, rate) } -> std::convertible_to<double>;
@@ -18,12 +19,12 @@ concept NormalForce = requires(N const law, double d, double rate, std::string c
 };
 
 namespace detail {
-/// \throws InvalidInput unless 0 < e ≤ 1.
+/// \throws InvalidInput unless 0 < e ≤ 1; `of` names the law.
 inline void require_restitution(double e, char const* of) {
   if (!(e > 0.0 && e <= 1.0))
     throw InvalidInput{of, ": the coefficient of restitution must lie above 0 and not above 1, but is ", e, "."};
 }
-/// The root of `f`, which falls from f(from) > 0, by halving.
+/// Root of the decreasing function `f` with f(from) > 0, by bisection.
 template <class F>
 double falling_root(F const& f, double from, double to) {
   for (int k = 0; k < 200 && to - from > 1e-16 * to; ++k) {
@@ -34,17 +35,19 @@ double falling_root(F const& f, double from, double to) {
 }
 }  // namespace detail
 
-/// Spring and damper, N = max(0, k d + c ḋ) [thesis §3.6]. How much of its speed a body keeps does not depend on how
-/// fast it came. A body that comes at v meets the force c v at once; with an `onset` the damper comes in over that
-/// depth, c min(1, d/onset), and the force is continuous, as steps that are long beside an impact like it.
+/// Spring and damper, N = max(0, k d + c ḋ) [thesis §3.6]. The coefficient of restitution is independent of the
+/// impact velocity. A body with the impact velocity v meets the force c v at once. With an `onset` the damping
+/// increases over this penetration, c min(1, d/onset), and the force is continuous. Steps that are long compared with
+/// an impact require a continuous force.
 struct SpringDamperContact {
   Required<double> stiffness;  ///< k [N/m]
   double damping = 0.0;        ///< c [N s/m]
-  double onset = 0.0;          ///< [m]
+  double onset = 0.0;          ///< penetration of full damping [m]; 0: at once
 
-  /// The damper with which a body of `mass` [kg] on a spring of `stiffness` [N/m] that comes at v leaves at e v. With ζ
-  /// = c/(2√(km)) = cos θ it leaves, where N = 0, after 2θ of its damped oscillation, so that e = exp(−2θ cot θ); for ζ
-  /// = cosh η > 1, e = exp(−2η coth η). [derived; Schwager & Pöschel 2007 have the same in other words]
+  /// Damper with a given coefficient of restitution e: a body of `mass` [kg] on a spring of `stiffness` [N/m] arrives
+  /// with the velocity v and departs with e v. With ζ = c/(2√(km)) = cos θ it departs when N = 0, after 2θ of its
+  /// damped oscillation, so that e = exp(−2θ cot θ). For ζ = cosh η > 1, e = exp(−2η coth η). [derived; Schwager &
+  /// Pöschel 2007 have the same in other words]
   static SpringDamperContact with_restitution(double stiffness, double mass, double e) {
     require_positive(stiffness, "SpringDamperContact: the stiffness");
     require_positive(mass, "SpringDamperContact: the mass");
@@ -67,29 +70,30 @@ struct SpringDamperContact {
     require_not_negative(damping, name, ": the contact damping");
     require_not_negative(onset, name, ": the onset of the contact damping");
   }
-  bool is_lossless() const { return damping == 0.0; }  ///< an impact keeps its energy
-  /// The force N ≥ 0 [N] at depth d [m] that grows at `rate` [m/s].
+  bool is_lossless() const { return damping == 0.0; }  ///< true if an impact conserves energy
+  /// Force N ≥ 0 [N] at penetration d [m] with the rate `rate` [m/s].
   template <StateScalar T>
   T force(T const& d, T const& rate) const {
     T const c = value_of(d) < onset ? T(d * (damping / onset)) : T(damping);
     T const n = d * stiffness.value + c * rate;
     return value_of(n) > 0.0 ? n : T(0.0);
   }
-  /// ck ∂N/∂d + cd ∂N/∂rate. Where the damper comes in as the body leaves, that falls with d; the slope leaves it out.
+  /// Derivative ck ∂N/∂d + cd ∂N/∂rate. Within the onset, the damping force of a departing body decreases with d. The
+  /// derivative neglects this term.
   double slope(double d, double rate, double ck, double cd) const {
     bool const begins = d < onset;
     double const c = begins ? damping * d / onset : damping;
     if (stiffness * d + c * rate <= 0.0) return 0.0;
     return ck * (stiffness + (begins && rate > 0.0 ? damping * rate / onset : 0.0)) + cd * c;
   }
-  /// The energy stored at depth d [m], without damping [J].
+  /// Stored energy at penetration d [m], without damping [J].
   template <StateScalar T>
   T potential(T const& d) const {
     return d * d * (0.5 * stiffness);
   }
 };
 
-/// Elastic spheres, N = (4/3) E* √R d^(3/2) [Hertz 1882; Johnson 1985, §4.2].
+/// Hertz contact of elastic spheres, N = (4/3) E* √R d^(3/2) [Hertz 1882; Johnson 1985, §4.2].
 struct HertzContact {
   Required<double> modulus;  ///< E*, 1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂ [Pa]
   Required<double> radius;   ///< R, 1/R = 1/R₁ + 1/R₂ [m]
@@ -100,16 +104,16 @@ struct HertzContact {
     require_positive(modulus, name, ": the contact modulus");
     require_positive(radius, name, ": the contact radius");
   }
-  bool is_lossless() const { return true; }  ///< an impact keeps its energy
-  /// The force N ≥ 0 [N] at depth d [m].
+  bool is_lossless() const { return true; }  ///< true: an impact conserves energy
+  /// Force N ≥ 0 [N] at penetration d [m].
   template <StateScalar T>
   T force(T const& d, T const&) const {
     using std::sqrt;
     return d * sqrt(d) * stiffness();
   }
-  /// ck ∂N/∂d at depth d [m].
+  /// Derivative ck ∂N/∂d at penetration d [m].
   double slope(double d, double, double ck, double) const { return ck * 1.5 * stiffness() * std::sqrt(d); }
-  /// The energy stored at depth d [m] [J].
+  /// Stored energy at penetration d [m] [J].
   template <StateScalar T>
   T potential(T const& d) const {
     using std::sqrt;
@@ -117,14 +121,16 @@ struct HertzContact {
   }
 };
 
-/// N = max(0, K dⁿ (1 + D ḋ)) [Hunt & Crossley 1975]: the force begins and ends at zero, and faster impacts lose more.
+/// Hunt–Crossley contact, N = max(0, K dⁿ (1 + D ḋ)) [Hunt & Crossley 1975]. The force begins and ends at zero, and
+/// the restitution decreases with the impact velocity.
 struct HuntCrossleyContact {
   Required<double> stiffness;  ///< K [N/mⁿ]
   double exponent = 1.5;       ///< n, a ratio
   Required<double> damping;    ///< D [s/m]
 
-  /// The damping with which a body that comes at `speed` v [m/s] leaves at e v, with K = `stiffness`
-  /// [N/mⁿ] and n = `exponent` as given. From m v dv/dd = −K dⁿ(1 + D v), whatever m, K and n,
+  /// Damping with a given coefficient of restitution e at the impact velocity `speed` v [m/s]: the body departs with
+  /// e v. The `stiffness` K [N/mⁿ] and the `exponent` n are given. The equation m v dv/dd = −K dⁿ(1 + D v) yields for
+  /// any m, K and n
   ///   D v − ln(1 + D v) = −e D v − ln(1 − e D v).
   static HuntCrossleyContact with_restitution(double stiffness, double exponent, double e, double speed) {
     detail::require_restitution(e, "HuntCrossleyContact");
@@ -141,20 +147,20 @@ struct HuntCrossleyContact {
     if (!(exponent >= 1.0) || !std::isfinite(exponent))
       throw InvalidInput{name, ": the exponent of the overlap must be 1 or more, but is ", exponent, "."};
   }
-  bool is_lossless() const { return damping == 0.0; }  ///< an impact keeps its energy
-  /// The force N ≥ 0 [N] at depth d [m] that grows at `rate` [m/s].
+  bool is_lossless() const { return damping == 0.0; }  ///< true if an impact conserves energy
+  /// Force N ≥ 0 [N] at penetration d [m] with the rate `rate` [m/s].
   template <StateScalar T>
   T force(T const& d, T const& rate) const {
     using std::pow;
     T const factor = rate * damping.value + 1.0;
     return value_of(factor) > 0.0 ? T(pow(d, exponent) * factor * stiffness.value) : T(0.0);
   }
-  /// ck ∂N/∂d + cd ∂N/∂rate.
+  /// Derivative ck ∂N/∂d + cd ∂N/∂rate.
   double slope(double d, double rate, double ck, double cd) const {
     double const factor = 1.0 + damping * rate, power = stiffness * std::pow(d, exponent - 1.0);
     return factor > 0.0 ? power * (ck * exponent * factor + cd * damping * d) : 0.0;
   }
-  /// The energy stored at depth d [m], without damping [J].
+  /// Stored energy at penetration d [m], without damping [J].
   template <StateScalar T>
   T potential(T const& d) const {
     using std::pow;

@@ -1,16 +1,16 @@
 #pragma once
 /// \file
-/// Forces and moments at a marker: dead (fixed in the world) or following the marker's axes.
+/// Forces and moments on a marker: dead loads and follower loads.
 
 #include <polybody/forces/force_element.hpp>
 #include <polybody/math/time_laws.hpp>
 
 namespace polybody {
 
-/// Axes in which a load's components are given.
+/// Axes of a load's components.
 enum class LoadAxes {
-  world,  ///< dead: keeps its direction
-  marker  ///< follower: turns with the marker
+  world,  ///< dead load: constant direction in the world
+  marker  ///< follower load: rotates with the marker
 };
 
 namespace detail {
@@ -26,7 +26,7 @@ Vec<T, 3> load_in_world(Vec3 const& load, double scale, LoadAxes axes, Frame<T> 
 
 }  // namespace detail
 
-/// A force at a marker, `force` times the law of time.
+/// Force on a marker, `force` times a function of time.
 template <TimeLaw Law = Constant>
 struct PointForce {
   static constexpr int markers = 1;
@@ -34,7 +34,7 @@ struct PointForce {
   static constexpr Observes needs = Observes::point;
 
   Vec3 force = Vec3::Zero();        ///< (3) [N]
-  LoadAxes axes = LoadAxes::world;  ///< in which the force is given
+  LoadAxes axes = LoadAxes::world;  ///< axes of the components
   Law law = {};                     ///< factor as a function of time
 
   void check(std::string const& name) const {
@@ -50,8 +50,8 @@ struct PointForce {
   }
 };
 
-/// A moment at a marker, `moment` times the law of time. In space a dead moment is not conservative. A marker that
-/// observes only its tangent takes the part across it.
+/// Moment on a marker, `moment` times a function of time. In space a dead moment is not conservative. If a marker
+/// provides only its tangent, only the part of the moment orthogonal to the tangent acts.
 template <TimeLaw Law = Constant>
 struct PointMoment {
   static constexpr int markers = 1;
@@ -59,7 +59,7 @@ struct PointMoment {
   static constexpr Observes needs = Observes::axis;
 
   Vec3 moment = Vec3::Zero();       ///< (3) [N m]
-  LoadAxes axes = LoadAxes::world;  ///< in which the moment is given
+  LoadAxes axes = LoadAxes::world;  ///< axes of the components
   Law law = {};                     ///< factor as a function of time
 
   void check(std::string const& name) const {

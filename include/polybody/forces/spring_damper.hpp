@@ -19,10 +19,10 @@ struct SpringDamper {
     require_not_negative(free_length, name, ": the free length");
   }
 
-  bool is_lossless() const { return damping == 0.0; }  ///< all work that it takes is stored
+  bool is_lossless() const { return damping == 0.0; }  ///< true without damping
 
-  /// With d = r_b − r_a, l = |d|: f_a = N d/l, f_b = −f_a. For l₀ = 0 the spring passes through l = 0
-  /// smoothly when undamped; elsewhere l = 0 has no direction.
+  /// Wrenches f_a = N d/l, f_b = −f_a with d = r_b − r_a, l = |d|. If l₀ = 0 and c = 0, the force is smooth at l = 0;
+  /// otherwise its direction is undefined at l = 0.
   template <StateScalar T>
   std::array<Wrench<T>, 2> wrenches(std::array<Frame<T>, 2> const& frames, double) const {
     using std::sqrt;

@@ -3,17 +3,17 @@
 
 namespace polybody {
 
-/// A user's force: a generic lambda over N frames and time that returns N wrenches,
+/// Force defined by the user: a generic lambda of N frames and time that returns N wrenches,
 ///   auto f = user_force<1>([](auto const& frames, double t) { … return std::array{w}; });
-/// where the scalar of the frames may be double or a dual number: `Wrench<T>` with the T of the frames.
-/// Its tangent comes from dual numbers. `decltype(f)` goes into the model's `Forces<…>`.
+/// The scalar T of the frames is double or a dual number; the wrenches are `Wrench<T>`. Dual numbers provide the
+/// tangent. The type `decltype(f)` must be in the model's `Forces<…>`.
 template <int N, class Law>
 struct UserForce {
   static constexpr int markers = N;
   static constexpr bool is_load = true;
   static constexpr Observes needs = Observes::point;
 
-  Law law;  ///< the lambda
+  Law law;  ///< lambda of the wrenches
 
   void check(std::string const&) const {}
 
@@ -23,16 +23,16 @@ struct UserForce {
   }
 };
 
-/// A force of N markers from a lambda `law`: law(frames, t) gives their wrenches.
+/// Creates a force on N markers from a lambda `law`: law(frames, t) returns their wrenches.
 template <int N, class Law>
 UserForce<N, Law> user_force(Law law) {
   return {std::move(law)};
 }
 
-/// A user's force with S first-order states, by two generic lambdas over frames, states and time,
+/// Force defined by the user with S first-order states, by two generic lambdas of frames, states and time,
 ///   auto f = user_force<2, 1>([](auto const& frames, auto const& z, double t) { … return std::array{w_a, w_b}; },
 ///                             [](auto const& frames, auto const& z, double t) { … return std::array{rate}; });
-/// where the states have the scalar of the frames.
+/// The states have the scalar type of the frames.
 template <int N, int S, class Law, class Rates>
 struct UserForceWithStates {
   static constexpr int markers = N;
@@ -40,8 +40,8 @@ struct UserForceWithStates {
   static constexpr bool is_load = true;
   static constexpr Observes needs = Observes::point;
 
-  Law law;          ///< the lambda of the wrenches
-  Rates rates_law;  ///< the lambda of the rates
+  Law law;          ///< lambda of the wrenches
+  Rates rates_law;  ///< lambda of the rates
 
   void check(std::string const&) const {}
 
@@ -55,8 +55,8 @@ struct UserForceWithStates {
   }
 };
 
-/// A force of N markers with S first-order states from two lambdas: law(frames, z, t) gives wrenches, rates(frames, z,
-/// t) ż.
+/// Creates a force on N markers with S first-order states from two lambdas: law(frames, z, t) returns the wrenches,
+/// rates(frames, z, t) returns ż.
 template <int N, int S, class Law, class Rates>
 UserForceWithStates<N, S, Law, Rates> user_force(Law law, Rates rates) {
   return {std::move(law), std::move(rates)};

@@ -21,7 +21,7 @@ template <class T>
 Vec<T, 3> difference(Vec<T, 3> const& a, Vec<T, 3> const& b) {
   return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
-/// Product s a of the vector a and the number s.
+/// Product of the vector `a` and the number `s`.
 template <class T>
 Vec<T, 3> scaled(Vec<T, 3> const& a, double s) {
   return {a[0] * s, a[1] * s, a[2] * s};

@@ -1,7 +1,9 @@
 #pragma once
 /// \file
-/// A low pass without phase shift and amplitude spectra of equally spaced samples, by their Fourier sums; resampling at
-/// equal steps. Not in polybody.hpp: Eigen's FFT is in its unsupported modules, and few programs need it.
+/// Low-pass filter without phase shift and amplitude spectra of equally spaced samples, by their Fourier sums;
+/// resampling at equal steps.
+///
+/// Not included in polybody.hpp: Eigen's FFT is one of its unsupported modules, and few programs need it.
 
 #include <algorithm>
 #include <complex>
@@ -19,7 +21,8 @@ namespace polybody {
 
 namespace detail {
 
-/// The step of equally spaced samples [s]: intervals may be off by a thousandth. \throws InvalidInput for others.
+/// Time step of equally spaced samples [s]. The intervals may differ by a factor of 1e-3. \throws InvalidInput for
+/// other times.
 template <class = void>
 double equal_step(std::span<double const> times, std::string const& who) {
   std::vector<double> intervals;
@@ -37,7 +40,8 @@ double equal_step(std::span<double const> times, std::string const& who) {
   return (times.back() - times.front()) / double(intervals.size());
 }
 
-using HalfSpectrum = std::vector<std::complex<double>>;  ///< the terms of frequencies 0, 1/T, … up to Nyquist's
+using HalfSpectrum =
+    std::vector<std::complex<double>>;  ///< coefficients of the frequencies 0, 1/T, … up to the Nyquist frequency
 
 template <class = void>
 HalfSpectrum fourier_terms(std::vector<double> const& values) {
@@ -50,10 +54,10 @@ HalfSpectrum fourier_terms(std::vector<double> const& values) {
 
 }  // namespace detail
 
-/// The samples at t₀, t₀ + step, …, linear between the given `values`. Frequencies above half of the new sampling rate
-/// alias: take a smaller step for such a history.
-/// \param step [s]  \param largest_gap between given samples, over which a line is drawn [s]; 0: 1.5 steps
-/// \throws InvalidInput for fewer than two samples, NaNs, times that do not rise, a larger gap.
+/// Resamples `values` at t₀, t₀ + step, … by linear interpolation. Frequencies above half of the new sampling rate
+/// alias. Such histories require a smaller step.
+/// \param step [s] \param largest_gap largest interval between given samples that is interpolated [s]; 0: 1.5 steps
+/// \throws InvalidInput for fewer than two samples, NaNs, times that do not increase, a larger gap.
 template <class = void>
 std::vector<double> resampled(std::span<double const> times, std::span<double const> values, double step,
                               double largest_gap = 0.0) {
@@ -82,28 +86,31 @@ std::vector<double> resampled(std::span<double const> times, std::span<double co
   return out;
 }
 
-/// Keeps frequencies up to the cut-off in amplitude and phase and removes those above. In the Fourier sum of the whole
-/// record,
-///   y(t) = Σ_k H(f_k) c_k e^{2πi f_k t},   f_k = k/T,
-/// H is 1 up to the cut-off, 0 above; with a roll-off it falls as ½(1 + cos π(f − f_c)/w) in between.
-/// The sum takes the record as periodic. Where its ends do not meet, a sharp cut-off rings there; `mirrored` takes the
-/// record and its mirror image as the period, so that the ends meet, though with a kink. A roll-off makes ringing die
-/// out sooner.
+/// Low-pass filter that preserves frequencies up to the cut-off in amplitude and phase and removes those above. It
+/// multiplies the Fourier sum of the whole record by the transfer function H,
+///   y(t) = Σ_k H(f_k) c_k e^{2πi f_k t},   f_k = k/T.
+/// H is 1 up to the cut-off and 0 above it. With a roll-off, H decreases between the two as ½(1 + cos π(f − f_c)/w).
+///
+/// The Fourier sum is periodic with the record as period. If the ends of the record differ, a sharp cut-off causes
+/// ringing there. With `mirrored`, the period is the record with its mirror image, which is continuous but has a kink
+/// at the ends. A roll-off makes ringing decay sooner.
 struct LowPass {
   Required<double> cut_off;  ///< f_c [Hz]
   double roll_off = 0.0;     ///< w [Hz]
-  bool mirrored = false;     ///< takes record and mirror image as the period
+  bool mirrored = false;     ///< period of the record with its mirror image
 
-  /// H at f [Hz].
+  /// Transfer function H at f [Hz].
   double share(double f) const {
     if (f <= cut_off * (1.0 + 1e-12)) return 1.0;
     return f < cut_off + roll_off ? 0.5 * (1.0 + std::cos(std::numbers::pi * (f - cut_off) / roll_off)) : 0.0;
   }
 };
 
-/// The history `values` without frequencies above the cut-off. The computing time grows with the largest prime factor
-/// of the number of samples: choose a round number for long records. \param times equally spaced [s]
+/// Returns the history `values` without frequencies above the cut-off. The computing time increases with the largest
+/// prime factor of the number of samples; long records should have a number of samples with small factors. \param
+/// times equally spaced [s]
 /// \throws InvalidInput for samples that are too few, not finite or not equally spaced, for a cut-off above Nyquist's
+/// frequency and for one whose period is longer than the record.
 /// frequency and for one whose period is longer than the record.
 template <class = void>
 std::vector<double> low_pass(std::span<double const> times, std::span<double const> values, LowPass const& filter) {
@@ -139,30 +146,31 @@ std::vector<double> low_pass(std::span<double const> times, std::span<double con
   return period;
 }
 
-/// A window weights the samples of a record by their place in it, x ∈ [0, 1), before the spectrum is taken.
+/// Window function: weights of the samples of a record at the relative position x ∈ [0, 1) for the spectrum.
 template <class W>
 concept RecordWindow = requires(double x) {
   { W::weight(x) } -> std::convertible_to<double>;
 };
-/// Weight one: exact for what is periodic in the record.
+/// Rectangular window with weight one, exact for periods of the record.
 struct EqualWeights {
-  static double weight(double) { return 1.0; }  ///< one at all places
+  static double weight(double) { return 1.0; }  ///< one at all positions
 };
-/// sin²πx: what is not periodic leaks little beyond neighbouring frequencies; an amplitude between two frequencies is
-/// up to 15 % too low [Harris 1978].
+/// Hann window sin²πx with little leakage beyond neighbouring frequencies. The error of an amplitude between two
+/// frequencies is up to −15 % [Harris 1978].
 struct HannWindow {
-  /// Weight at the place x of the record.
+  /// Weight at the relative position x of the record.
   static double weight(double x) { return 0.5 * (1.0 - std::cos(2.0 * std::numbers::pi * x)); }
 };
 
-/// Amplitudes by frequency: x(t) = Σ_k a_k cos(2π f_k t + φ_k), a₀ = |mean|.
+/// Amplitude spectrum: x(t) = Σ_k a_k cos(2π f_k t + φ_k), a₀ = |mean|.
 struct Spectrum {
   std::vector<double> frequencies;  ///< [Hz]
   std::vector<double> amplitudes;   ///< (n) [unit of the samples]
 };
 
-/// Amplitudes of equally spaced samples, `values` at `times` [s], less their mean, under a window: a_k = 2|Σ_i w_i x_i
-/// e^{−2πi k i/n}|/Σ_i w_i (Nyquist's without the 2). \throws InvalidInput as `low_pass`.
+/// Amplitude spectrum of equally spaced samples, `values` at `times` [s], without their mean, with a window: a_k =
+/// 2|Σ_i w_i x_i e^{−2πi k i/n}|/Σ_i w_i (without the factor 2 at the Nyquist frequency). \throws InvalidInput as
+/// `low_pass`.
 template <RecordWindow W = HannWindow>
 Spectrum amplitude_spectrum(std::span<double const> times, std::span<double const> values, W const& = {}) {
   detail::require_history(times, values, 4, "amplitude_spectrum");

@@ -1,7 +1,8 @@
 #pragma once
 /// \file
-/// Fatigue of a history of stress: cycles by rainflow counting [ASTM E1049-85, §5.4.4], and the damage that they do.
-/// Not in polybody.hpp: few programs need it.
+/// Fatigue damage of a stress history: cycles by rainflow counting [ASTM E1049-85, §5.4.4] and their damage.
+///
+/// Not included in polybody.hpp: few programs need it.
 
 #include <cmath>
 #include <cstddef>
@@ -14,8 +15,8 @@
 
 namespace polybody {
 
-/// The peaks and valleys of a history, with its first and last sample; the first of equal samples in a row. \throws
-/// InvalidInput for a NaN.
+/// Turning points of a history: peaks, valleys, and the first and the last sample. Of consecutive equal samples the
+/// first is used. \throws InvalidInput for a NaN.
 template <class = void>
 std::vector<double> turning_points(std::span<double const> history) {
   std::vector<double> points;
@@ -33,18 +34,20 @@ std::vector<double> turning_points(std::span<double const> history) {
   return points;
 }
 
-/// A closed cycle, or half of one.
+/// Closed stress cycle, or half of a cycle.
 struct StressCycle {
-  double range;  ///< from valley to peak, twice the amplitude [N/m²]
+  double range;  ///< range from valley to peak, twice the amplitude [N/m²]
   double mean;   ///< [N/m²]
-  double count;  ///< a count: 1 or ½
+  double count;  ///< number of cycles: 1 or ½ [1]
 };
 
-/// The cycles of a history, in the order in which they close: with X the last range and Y the one before it, as soon as
-/// X ≥ Y
-///   Y counts as a cycle and its two points leave the history, or, where it begins the history,
-///   Y counts as half a cycle and its first point leaves the history;
-/// every range that is left at the end is half a cycle [ASTM E1049-85, §5.4.4].
+/// Rainflow counting: cycles of a history, in the order in which they close. X is the last range and Y the one before
+/// it. As soon as X ≥ Y,
+///
+/// - Y counts as a cycle, and its two points are removed from the history;
+/// - if Y begins the history, Y counts as half a cycle, and its first point is removed from the history.
+///
+/// Every range that remains at the end counts as half a cycle [ASTM E1049-85, §5.4.4].
 /// \throws InvalidInput for a NaN.
 template <class = void>
 std::vector<StressCycle> rainflow(std::span<double const> history) {
@@ -71,8 +74,8 @@ std::vector<StressCycle> rainflow(std::span<double const> history) {
   return cycles;
 }
 
-/// Cycles by range: entry k counts those of ranges in [k·width, (k + 1)·width). \throws InvalidInput unless the width
-/// is positive.
+/// Histogram of the ranges of cycles: entry k counts the cycles with ranges in [k·width, (k + 1)·width). \throws
+/// InvalidInput unless the width is positive.
 template <class = void>
 std::vector<double> binned(std::span<StressCycle const> cycles, double width) {
   require_positive(width, "binned: the width");
@@ -85,19 +88,19 @@ std::vector<double> binned(std::span<StressCycle const> cycles, double width) {
   return counts;
 }
 
-/// How many cycles of a range S break the detail, N = N₀ (S₀/S)^m, a line in double logarithms [Basquin 1910]. For
-/// details of welds it is usual to give S₀ at N₀ = 2e6, with m = 3.
+/// S–N curve: number N of cycles of a range S until failure of a structural detail, N = N₀ (S₀/S)^m, a line in double
+/// logarithms [Basquin 1910]. For welded details, S₀ is usually given at N₀ = 2e6, with m = 3.
 struct Basquin {
   Required<double> range;     ///< S₀, from valley to peak [N/m²]
-  Required<double> cycles;    ///< N₀
-  Required<double> exponent;  ///< m, a ratio
-  double limit = 0.0;         ///< ranges up to this do no damage [N/m²]
+  Required<double> cycles;    ///< N₀ [1]
+  Required<double> exponent;  ///< m [1]
+  double limit = 0.0;         ///< ranges up to this limit cause no damage [N/m²]
 
-  /// N of the range `of_range`, infinite up to the limit.
+  /// Number N of cycles of the range `of_range` until failure; infinite up to the limit.
   double life(double of_range) const {
     return of_range > limit ? cycles * std::pow(range / of_range, exponent) : std::numeric_limits<double>::infinity();
   }
-  /// \throws InvalidInput unless all are positive, the limit at least zero.
+  /// \throws InvalidInput unless all values are positive; the limit may be zero.
   void check() const {
     require_positive(range, "Basquin: the range");
     require_positive(cycles, "Basquin: the number of cycles");
@@ -106,8 +109,8 @@ struct Basquin {
   }
 };
 
-/// The damage D = Σ n_i/N_i that a history does to a detail, which endures 1/D such histories [Palmgren 1924; Miner
-/// 1945]. Mean stresses of cycles are neglected. \throws InvalidInput as `Basquin::check`.
+/// Cumulative damage D = Σ n_i/N_i of a history. The detail endures 1/D such histories [Palmgren 1924; Miner 1945].
+/// Mean stresses of cycles are neglected. \throws InvalidInput as `Basquin::check`.
 template <class = void>
 double damage(std::span<StressCycle const> cycles, Basquin const& curve) {
   curve.check();

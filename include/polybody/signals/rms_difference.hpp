@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The relative root mean square difference of two histories. Not in polybody.hpp: few programs need it.
+/// Relative root mean square difference of two histories. Not included in polybody.hpp: few programs need it.
 
 #include <algorithm>
 
@@ -8,19 +8,20 @@
 
 namespace polybody {
 
-/// (∫(a − b)² / ∫b²)^½ over the samples of b from one time to another; of vectors, component by component:
+/// Relative root mean square difference (∫(a − b)² / ∫b²)^½ of the histories a and b, over the samples of b in a
+/// range of time. Vectors are added component by component:
 ///   RmsDifference d(1.0, 10.0);
 ///   d.add({ta, ax}, {tb, bx});
 ///   d.add({ta, ay}, {tb, by});
 ///   d.value()
-/// a is linear between its samples, so its times may differ from those of b, as in a run with half the step.
+/// The history a is interpolated linearly. Its times may differ from those of b, as in a run with half the step.
 class RmsDifference {
  public:
-  /// Samples from `from` to `to` [s] count.
+  /// Difference over the samples from `from` to `to` [s].
   RmsDifference(double from, double to) : from_(from), to_(to) {}
 
-  /// \throws InvalidInput for samples without as many times as values or with none, times that do not rise, or a number
-  /// that is not finite.
+  /// Adds the histories a and b of one component. \throws InvalidInput for histories that are empty, with different
+  /// numbers of times and values, times that do not increase, or a number that is not finite.
   void add(Samples const& a, Samples const& b) {
     detail::require_history(a.times, a.values, 1, "RmsDifference");
     detail::require_history(b.times, b.values, 1, "RmsDifference");
@@ -37,9 +38,9 @@ class RmsDifference {
       ++samples_;
     }
   }
-  /// How many samples of b were compared.
+  /// Number of compared samples of b.
   std::size_t samples() const { return samples_; }
-  /// \throws InvalidInput when no sample was compared, or b is zero in all of them.
+  /// Relative difference [1]. \throws InvalidInput if no sample was compared, or if b is zero in all of them.
   double value() const {
     if (samples_ == 0)
       throw InvalidInput{"RmsDifference: there is no sample of both histories from ", from_, " to ", to_, " s."};

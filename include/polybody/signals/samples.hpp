@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// Samples of one quantity at rising times, as filters and differences of runs take them.
+/// Samples of one quantity at increasing times, the input of filters and comparisons of runs.
 ///
-/// Not in polybody.hpp: few programs need it.
+/// Not included in polybody.hpp: few programs need it.
 
 #include <cmath>
 #include <span>
@@ -12,15 +12,15 @@
 
 namespace polybody {
 
-/// The samples of one quantity, in the order of time.
+/// Samples of one quantity in the order of time.
 struct Samples {
   std::span<double const> times;   ///< [s]
-  std::span<double const> values;  ///< as many
+  std::span<double const> values;  ///< values, one per time
 };
 
 namespace detail {
 
-/// \throws InvalidInput unless there are `least` finite samples, each with its time, and times rise.
+/// \throws InvalidInput unless there are at least `least` finite samples, each with its time, and the times increase.
 template <class = void>
 void require_history(std::span<double const> times, std::span<double const> values, std::size_t least,
                      std::string const& who) {

@@ -1,15 +1,9 @@
 #pragma once
 /// \file
-/// Stress after a rigid run, "decoupled" [thesis §4.3.5]: of a recorded rigid body (body_record.hpp) the linear problem
-///   M q̈ + D q̇ + K q = Q_f − m_fr q̈_r − C_qfᵀ λ
-/// with the right-hand side of structure_loads.hpp, by any integrator, in nodal or modal coordinates e = Φ q. The
-/// deformation does not act back on the motion.
+/// "Decoupled" stress: stress of a recorded rigid body, computed after the run [thesis §4.3.5].
 ///
-/// Only the accelerations q̈ of the solution are used: K e = Q − M Φ q̈ gives all nodal displacements, and the forces
-/// within a beam follow from those at its ends by equilibrium with what acts along it. The stress of static loads is
-/// then exact in every section, whatever the number of elements and modes ("mode acceleration" [Williams 1945]).
-///
-/// Not in polybody.hpp: Eigen's sparse module and factorisations would cost every program seconds to compile.
+/// Not included in polybody.hpp: Eigen's sparse module and factorisations would add seconds to the compile time of
+/// every program.
 
 #include <polybody/bodies/ffr/static_supports.hpp>
 #include <polybody/stress/section_stress.hpp>
@@ -19,7 +13,7 @@ namespace polybody {
 
 namespace detail {
 
-/// The `mass_points` of a beam's part up to ξ.
+/// Mass points (`mass_points`) of the part of a beam up to ξ.
 template <class = void>  // compiled where it is used
 std::array<MassPoint, 4> mass_points_before(Structure const& s, Structure::Beam const& beam, double xi) {
   std::array<MassPoint, 4> points = mass_points(s, beam);
@@ -38,32 +32,44 @@ std::array<MassPoint, 4> mass_points_before(Structure const& s, Structure::Beam 
 
 }  // namespace detail
 
-/// Histories of section forces, strains and stresses, at the times of the record. To filter one:
-///   low_pass(stress.times(), stress.axial_strain(0.1), {.cut_off = 15.0})      (signals/filter.hpp)
+/// Histories of section forces, strains and stresses of a recorded rigid body (body_record.hpp), at the times of the
+/// record. The deformation solves the linear problem [thesis §4.3.5]
+///   M q̈ + D q̇ + K q = Q_f − m_fr q̈_r − C_qfᵀ λ
+/// with the right-hand side of structure_loads.hpp, by any integrator, in nodal or modal coordinates e = Φ q. It has
+/// no effect on the recorded motion.
+///
+/// Only the accelerations q̈ of the solution are used. K e = Q − M Φ q̈ yields all nodal displacements. The forces in
+/// a beam follow from the forces at its ends and the loads along it by equilibrium. The stress of static loads is
+/// then exact in every section, for any number of elements and modes ("mode acceleration" [Williams 1945]).
+///
+/// Example of a filtered history (signals/filter.hpp):
+///   low_pass(stress.times(), stress.axial_strain(0.1), {.cut_off = 15.0})
 class DecoupledStress {
  public:
-  /// K e = Q of each sample: right where loads change slowly compared with the structure's vibrations. Loads that
-  /// balance, as recorded ones do, cause the same stress whatever `frame` holds; displacements are relative to it.
-  /// \throws InvalidInput as `StructureLoads`, and for a frame that holds something, but not enough.
+  /// Quasi-static stress: K e = Q of each sample, valid if the loads change slowly compared with the structure's
+  /// vibrations. Recorded loads are balanced. Their stress is independent of `frame`; the displacements are relative
+  /// to it.
+  /// \throws InvalidInput as `StructureLoads`, and for a frame that restrains some, but not all rigid motions.
   template <class = void>
   static DecoupledStress quasi_static(Structure structure, BodyRecord const& record,
                                       StructureLoadOptions const& options = {},
                                       ReferenceConditions const& frame = ReferenceConditions::none());
-  /// With vibrations. \throws InvalidInput as `StructureLoads`, for shapes that do not fit the structure or move
-  /// what the frame holds, and for fewer substeps than one; what the integrator throws.
+  /// Stress with vibrations. \throws InvalidInput as `StructureLoads`, for shapes that do not fit the structure or
+  /// move a coordinate that the frame fixes, and for fewer substeps than one. Exceptions of the integrator are passed
+  /// on.
   template <LinearSolver Solver = DenseLu, class I>
   static DecoupledStress vibrating(Structure structure, BodyRecord const& record, I const& integrator,
                                    Vibration const& how, StructureLoadOptions const& options = {});
 
-  std::vector<double> const& times() const { return loads_.times(); }  ///< of the samples [s]
-  StructureLoads const& loads() const { return loads_; }               ///< on the structure
-  /// Nodal displacements (N×samples), in the structure's axes [m], [rad]; with damping, those that the forces cause at
-  /// rest.
+  std::vector<double> const& times() const { return loads_.times(); }  ///< times of the samples [s]
+  StructureLoads const& loads() const { return loads_; }               ///< loads on the structure
+  /// Nodal displacements (N×samples) in the structure's axes [m], [rad]. With damping they are the static
+  /// displacements under the elastic and damping forces.
   MatX const& displacements() const { return e_; }
 
-  /// (N, Q_y, Q_z, M_x, M_y, M_z) of the section at s of a bar (see sections.hpp), damping included [N], [N m]. Where a
-  /// load acts right at the section, those just beyond it; at the last end, just before. \throws InvalidInput outside
-  /// the bar, and for a structure without bars.
+  /// Section forces (N, Q_y, Q_z, M_x, M_y, M_z) at s of a bar (see sections.hpp), damping included [N], [N m]. If a
+  /// load acts at this section, the values just beyond it are returned; at the last end of the bar, the values just
+  /// before it. \throws InvalidInput outside the bar, and for a structure without bars.
   template <class = void>
   std::vector<Vec6> section_forces(double s, Index bar = 0) const {
     auto const [index, xi] = locate(s, bar);
@@ -76,7 +82,7 @@ class DecoupledStress {
     std::vector<Vec6> out;
     for (std::size_t i = 0; i < times().size(); ++i) {
       Local const at = local(beam, i);
-      Vec<double, 12> ends = k * at.e;  // what the rest of the structure exerts on the beam's ends
+      Vec<double, 12> ends = k * at.e;  // forces of the other parts of the structure on the beam's ends
       for (MassPoint const& g : whole) {
         auto const [a, ay, az] = acceleration(at, g, beam);
         ends += g.m * (g.axis.transpose() * a) + g.my * (g.y.transpose() * ay) + g.mz * (g.z.transpose() * az);
@@ -101,8 +107,8 @@ class DecoupledStress {
     return out;
   }
 
-  /// Axial strain of the fibre (y, z) [m] of that section, at arc length s [m] of bar number `bar`, N/EA − y M_z/EI + z
-  /// M_y/EI_y: with damping, that which these forces would cause at rest. \throws InvalidInput as `section_forces`.
+  /// Axial strain of the fibre (y, z) [m] at arc length s [m] of bar number `bar`, N/EA − y M_z/EI + z M_y/EI_y. With
+  /// damping it is the static strain under these section forces. \throws InvalidInput as `section_forces`.
   template <class = void>
   std::vector<double> axial_strain(double s, double y = 0.0, double z = 0.0, Index bar = 0) const {
     BarConstants const& c = loads_.structure().beams[std::size_t(locate(s, bar).first)].constants;
@@ -111,16 +117,16 @@ class DecoupledStress {
       out.push_back(n[0] / c.EA - y * n[5] / c.EI + z * n[4] / c.EI_y.value_or(c.EI));
     return out;
   }
-  /// Axial stress of that fibre [N/m²], at s, y, z [m], `of` being the bar. \throws InvalidInput as above, and for a
-  /// bar given by constants.
+  /// Axial stress [N/m²] of the fibre (y, z) [m] at arc length s [m] of the bar `of`. \throws InvalidInput as
+  /// `section_forces`, and for a bar given by constants.
   template <class = void>
   std::vector<double> axial_stress(Bar const& of, double s, double y = 0.0, double z = 0.0, Index bar = 0) const {
     std::vector<double> out;
     for (Vec6 const& n : section_forces(s, bar)) out.push_back(fibre_stress(of, n, y, z));
     return out;
   }
-  /// Axial and shear stress at a point (y, z) [m] of that section, at s [m] of number `bar`, which tell principal
-  /// stresses and von Mises'. \throws InvalidInput as `section_stress`.
+  /// Axial and shear stress at the point (y, z) [m] of the section at s [m] of bar number `bar`; they yield the
+  /// principal stresses and the von Mises stress. \throws InvalidInput as `section_stress`.
   template <class = void>
   std::vector<SectionStress> stress(Bar const& of, double s, double y, double z, Index bar = 0) const {
     std::vector<SectionStress> out;
@@ -129,9 +135,9 @@ class DecoupledStress {
   }
 
  private:
-  static constexpr double same = 1e-9;  ///< ξ of a load and of a section that are one place
+  static constexpr double same = 1e-9;  ///< largest difference of ξ between a load and a section at the same position
 
-  /// One beam at one sample: nodal displacements of its ends and their rates (12).
+  /// State of one beam at one sample: nodal displacements of its ends and their rates (12).
   struct Local {
     StructureLoads::Motion const& motion;
     Vec<double, 12> e, deformed, rate, acceleration;
@@ -145,12 +151,13 @@ class DecoupledStress {
                          "stress afterwards."};
   }
 
-  /// K e = loads, the structure held as `frame` says; where that lets it move as a whole, by `statically_determinate`.
+  /// Solves K e = loads with the restraints of `frame`. If they permit a rigid motion, the restraints of
+  /// `statically_determinate` are used.
   template <class = void>
   void settle(ReferenceConditions const& frame, MatX const& loads) {
     Structure const& s = loads_.structure();
     std::vector<Index> free = frame.free_coordinates(s);
-    bool const loose = Index(free.size()) == s.size();  // pivots that should be zero are rounding, of either sign
+    bool const loose = Index(free.size()) == s.size();  // pivots that should be zero are round-off of either sign
     SparseFactor factor;
     if (!loose) factor.compute(submatrix(s.stiffness, free, free));
     if (loose || factor.info() != Eigen::Success ||
@@ -192,7 +199,7 @@ class DecoupledStress {
     return {loads_.motion(sample), of(e_), of(vibration_.deformed), of(vibration_.rate), of(vibration_.acceleration)};
   }
 
-  /// Acceleration less gravity at a point of the axis, and its slopes along y and z of the section.
+  /// Acceleration less gravity at a point of the axis, and its derivatives along y and z of the section.
   template <class = void>
   std::array<Vec3, 3> acceleration(Local const& x, MassPoint const& g, Structure::Beam const& beam) const {
     Mat3 const& B = x.motion.B;

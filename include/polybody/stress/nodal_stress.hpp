@@ -1,17 +1,8 @@
 #pragma once
 /// \file
-/// Stress at named nodes of a solid structure (bodies/ffr/matrix_structure.hpp), linear in its nodal displacements:
-///   σ = D B(ξ_node) u,   xx, yy, zz, xy, yz, zx in the structure's axes [Pa],
-/// averaged over the elements that share the node. The finite element program, or a script beside it, writes the
-/// matrix; `examples/track_stress/fe_link/stress_operator.py` does. B gives no stress to a small rigid motion, so it
-/// does not matter which frame the displacements are relative to.
+/// Stress at named nodes of a solid structure, from its nodal displacements.
 ///
-///     auto const stress = NodalStress::read("link.stress.mtx", "link.stress_nodes.txt", structure.size());
-///     stress.von_mises("middle, wheel side", decoupled.displacements());  // stress/decoupled_stress.hpp
-///     stress.modal(shapes).of("middle, wheel side", q);                   // coordinates of a floating frame
-/// Displacements are (N×samples), modal coordinates q (n×samples).
-///
-/// Not in polybody.hpp: few programs need it.
+/// Not included in polybody.hpp: few programs need it.
 
 #include <cmath>
 #include <limits>
@@ -22,18 +13,30 @@
 
 namespace polybody {
 
-/// The matrix, and the names of its nodes.
+/// Stress at named nodes of a solid structure (bodies/ffr/matrix_structure.hpp), linear in its nodal displacements u:
+///   σ = D B(ξ_node) u,   xx, yy, zz, xy, yz, zx in the structure's axes [Pa],
+/// averaged over the elements that share the node. The finite element program or a script writes the matrix, for
+/// example `examples/track_stress/fe_link/stress_operator.py`. A small rigid motion causes no stress. The result is
+/// therefore independent of the frame of the displacements.
+///
+///     auto const stress = NodalStress::read("link.stress.mtx", "link.stress_nodes.txt", structure.size());
+///     stress.von_mises("middle, wheel side", decoupled.displacements());  // stress/decoupled_stress.hpp
+///     stress.modal(shapes).of("middle, wheel side", q);                   // coordinates of a floating frame
+///
+/// Displacements are (N×samples), modal coordinates q (n×samples).
 class NodalStress {
  public:
-  using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;  ///< stresses by nodal coordinates
-  /// A node of the structure, and what it is called.
+  using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;  ///< stresses per nodal coordinate
+  /// Named node of the structure.
   struct Spot {
-    Index node = 0;    ///< of the finite element model
-    std::string name;  ///< of the spot
+    Index node = 0;    ///< node number in the finite element model
+    std::string name;  ///< name of the node
   };
 
-  /// `matrix` has six rows for each spot, in their order, and a column for each coordinate (6k×N) [Pa/m].
-  /// \throws InvalidInput for another number of rows, an entry that is not finite, no spots, or two of one name.
+  /// Stress by a `matrix` with six rows for each of the spots, in their order, and one column per coordinate (6k×N)
+  /// [Pa/m].
+  /// \throws InvalidInput for another number of rows, an entry that is not finite, no spots, or two spots with one
+  /// name.
   template <class = void>  // compiled where it is used
   NodalStress(Matrix const& matrix, std::vector<Spot> spots) : matrix_(matrix), spots_(std::move(spots)) {
     Index const k = Index(spots_.size());
@@ -56,11 +59,11 @@ class NodalStress {
         throw InvalidInput{"NodalStress: two nodes are called \"", spot->name, "\". Give each a name of its own."};
   }
 
-  /// From `matrix_file`, in Matrix Market's format (6k×`coordinates`), and `names_file`, a text with a line `node name`
-  /// for each of the k nodes, the node counted from 0; # begins a comment. A structure has three coordinates a node:
-  /// `Structure::size()`.
-  /// \throws IoError naming file and line for what cannot be read, is truncated or does not fit; InvalidInput for
-  /// coordinates that are not three a node.
+  /// Reads `matrix_file` in the Matrix Market format (6k×`coordinates`) and `names_file`, a text with a line `node
+  /// name` for each of the k nodes. Nodes are counted from 0; # begins a comment. A structure has three coordinates
+  /// per node: `Structure::size()`.
+  /// \throws IoError naming file and line if a file cannot be read, is truncated or does not fit; InvalidInput if
+  /// `coordinates` is not three per node.
   template <class = void>
   static NodalStress read(std::string const& matrix_file, std::string const& names_file, Index coordinates) {
     if (coordinates < 3 || coordinates % 3 != 0 || coordinates > std::numeric_limits<int>::max())
@@ -75,20 +78,20 @@ class NodalStress {
             std::move(spots)};
   }
 
-  std::vector<Spot> const& spots() const { return spots_; }  ///< in the order of the rows
-  /// (6k×N) [Pa/m].
+  std::vector<Spot> const& spots() const { return spots_; }  ///< named nodes, in the order of the rows
+  /// Stress matrix (6k×N) [Pa/m].
   Matrix const& matrix() const { return matrix_; }
-  Index coordinates() const { return matrix_.cols(); }  ///< of the structure
+  Index coordinates() const { return matrix_.cols(); }  ///< number of coordinates of the structure
 
-  /// Stress of every node (6k×samples) [Pa] under these displacements (N×samples) [m]. \throws InvalidInput for another
-  /// number of rows.
+  /// Stress of every node (6k×samples) [Pa] under these displacements (N×samples) [m]. \throws InvalidInput for
+  /// another number of rows.
   template <class = void>
   MatX of(MatX const& displacements) const {
     require_rows(displacements, "displacements");
     return matrix_ * displacements;
   }
-  /// History of one node's stress under these `displacements` (N×samples) [m]. \throws InvalidInput as above, and for a
-  /// name that does not exist.
+  /// Stress history of the node `name` under these `displacements` (N×samples) [m]. \throws InvalidInput as
+  /// `stresses`, and for a name that does not exist.
   template <class = void>
   std::vector<Vec6> of(std::string_view name, MatX const& displacements) const {
     Index const first = row_of(name);
@@ -98,7 +101,8 @@ class NodalStress {
     for (std::size_t i = 0; i < out.size(); ++i) out[i] = history.col(Index(i));
     return out;
   }
-  /// History of its von Mises stress [Pa] under these `displacements`. \throws InvalidInput as above.
+  /// History of the von Mises stress [Pa] of the node `name` under these `displacements`. \throws InvalidInput as
+  /// `of`.
   template <class = void>
   std::vector<double> von_mises(std::string_view name, MatX const& displacements) const {
     std::vector<double> out;
@@ -106,9 +110,9 @@ class NodalStress {
     return out;
   }
 
-  /// The same nodes by modal coordinates q (n×samples), where the displacements are `shapes` (N×n) times q: its matrix
-  /// is (6k×n), and a stress six scalar products of n numbers. \throws InvalidInput for shapes with another number of
-  /// rows.
+  /// Stress at the same nodes from modal coordinates q (n×samples), for displacements of `shapes` (N×n) times q. Its
+  /// matrix is (6k×n), and a stress consists of six scalar products of length n. \throws InvalidInput for shapes with
+  /// another number of rows.
   template <class = void>
   NodalStress modal(MatX const& shapes) const {
     require_rows(shapes, "shapes");

@@ -1,33 +1,33 @@
 #pragma once
 /// \file
-/// Stress at a point of a bar's section from the section's forces (N, Q_y, Q_z, M_x, M_y, M_z) of
-/// bodies/shared/sections.hpp, by Saint-Venant's theory, which holds away from the ends and from point loads; principal
-/// stresses and von Mises'.
+/// Stress at a point of a bar's section from the section forces (N, Q_y, Q_z, M_x, M_y, M_z) of
+/// bodies/shared/sections.hpp; principal stresses and von Mises stress. Saint-Venant's theory is used, which is valid
+/// away from the ends and from point loads.
 ///
-/// Not in polybody.hpp: few programs need it.
+/// Not included in polybody.hpp: few programs need it.
 
 #include <polybody/bodies/shared/sections.hpp>
 
 namespace polybody {
 
-/// On a face across the bar.
+/// Stress on the cross section of a bar.
 struct SectionStress {
   double axial = 0.0;         ///< σ_x [N/m²]
   Vec2 shear = Vec2::Zero();  ///< (τ_xy, τ_xz) [N/m²]
 
-  /// σ₁ ≥ 0 ≥ σ₃, σ/2 ± √((σ/2)² + τ²); the middle one is zero.
+  /// Principal stresses σ₁ ≥ 0 ≥ σ₃, σ/2 ± √((σ/2)² + τ²) [N/m²]; the middle one is zero.
   Vec2 principal() const {
     double const half = 0.5 * axial, radius = std::hypot(half, shear.norm());
     return {half + radius, half - radius};
   }
-  /// √(σ² + 3 τ²) [von Mises 1913].
+  /// Von Mises stress √(σ² + 3 τ²) [von Mises 1913].
   double von_mises() const { return std::hypot(axial, std::sqrt(3.0) * shear.norm()); }
 };
 
 namespace detail {
 
-/// Circle of radius r. Torque: τ = M_x (−z, y)/I_p. A force P along x of section axes x, y [Timoshenko & Goodier 1970,
-/// §121]:
+/// Shear stress of a circle of radius r. Torque: τ = M_x (−z, y)/I_p. Force P along x of section axes x, y
+/// [Timoshenko & Goodier 1970, §121]:
 ///   τ_x = (3+2ν)/(8(1+ν)) P/I (r² − x² − (1−2ν)/(3+2ν) y²),   τ_y = −(1+2ν)/(4(1+ν)) P/I x y.
 inline Vec2 shear_of(Circle const& c, double nu, Vec6 const& n, double y, double z) {
   double const r2 = c.radius * c.radius, i = 0.25 * std::numbers::pi * r2 * r2;
@@ -37,14 +37,15 @@ inline Vec2 shear_of(Circle const& c, double nu, Vec6 const& n, double y, double
                                                n[2] * k * (r2 - z * z - ratio * y * y) + n[1] * across);
 }
 
-/// Rectangle of height h and width w. Force along y: 3/2 Q/A (1 − (2y/h)²), exact for ν = 0. Torque: τ = (φ_z, −φ_y),
+/// Shear stress of a rectangle of height h and width w. Force along y: 3/2 Q/A (1 − (2y/h)²), exact for ν = 0.
+/// Torque: τ = (φ_z, −φ_y),
 ///   φ = Gϑ [h²/4 − y² − (8h²/π³) Σ_odd (−1)^((k−1)/2)/k³ · cosh(kπz/h)/cosh(kπw/2h) · cos(kπy/h)],   Gϑ = M_x/J
-/// [Timoshenko & Goodier 1970, §109], y along the shorter side so that the series converges fast.
+/// [Timoshenko & Goodier 1970, §109]. The axis y is parallel to the shorter side, so that the series converges fast.
 inline Vec2 shear_of(Rectangle const& s, double torsion, Vec6 const& n, double y, double z) {
   double const area = s.height * s.width, pi = std::numbers::pi;
   bool const swap = s.height > s.width;
   double const h = swap ? s.width : s.height, w = swap ? s.height : s.width, a = swap ? z : y, b = swap ? y : z;
-  double by_a = -2.0 * a, by_b = 0.0;  // slopes of φ/Gϑ
+  double by_a = -2.0 * a, by_b = 0.0;  // derivatives of φ/Gϑ
   for (int k = 1; k < 60; k += 2) {
     double const p = k * pi / h, sign = (k - 1) % 4 == 0 ? 1.0 : -1.0,
                  scale = sign * 8.0 * h * h / (pi * pi * pi) / std::pow(k, 3);
@@ -62,8 +63,8 @@ inline Vec2 shear_of(Rectangle const& s, double torsion, Vec6 const& n, double y
 
 }  // namespace detail
 
-/// Stress at (y, z) [m] under `forces` (N, M) [N], [N m]. \throws InvalidInput for a bar without section and material,
-/// and for a point outside the section.
+/// Stress at (y, z) [m] under `forces` (N, M) [N], [N m]. \throws InvalidInput for a bar without section and
+/// material, and for a point outside the section.
 template <class = void>
 SectionStress section_stress(Bar const& bar, Vec6 const& forces, double y, double z) {
   SectionStress out;

@@ -1,15 +1,8 @@
 #pragma once
 /// \file
-/// A recorded motion as loads on a structure: nodal forces of joints, contacts, gravity and of the inertia of the
-/// body's rigid motion [thesis §4.3.2–4.3.5]. In the structure's axes a point u₀ of the body has the acceleration less
-/// gravity
-///   a(u₀) = b + B u₀,   b = Aᵀ(r̈ − g),   B = Ω˙~ + Ω~ Ω~,
-/// and the linear structural problem has the right-hand side
-///   Q_f − m_fr q̈_r − C_qfᵀ λ = −∫ρ Sᵀ a + Σ (Sᵀ f + S_rᵀ m),   ∫ρ Sᵀ a = Σ_l b_l ∫ρ S_lᵀ + Σ_kl B_lk ∫ρ u₀ₖ S_lᵀ:
-/// of B, Ω~ Ω~ is the reduced (Q_v)_f = Ĩ₀ω of Eq. 4.2 and A.4c, Ω˙~ the rotational part of m_fr; S and S_r those of
-/// Eq. 4.5.
+/// Loads of a recorded rigid motion on a structure.
 ///
-/// Not in polybody.hpp: Eigen's sparse module would cost every program seconds to compile.
+/// Not included in polybody.hpp: Eigen's sparse module would add seconds to the compile time of every program.
 
 #include <algorithm>
 
@@ -19,42 +12,50 @@
 
 namespace polybody {
 
-/// Nodes that share what acts at a place.
+/// Patch of nodes that share a load.
 struct LoadPatch {
-  Vec3 at;          ///< (3) in the structure's axes [m]
-  NodePatch nodes;  ///< that share a load
+  Vec3 at;          ///< (3) point of action in the structure's axes [m]
+  NodePatch nodes;  ///< nodes that share the load
 };
 
-/// How a recorded motion becomes loads on a structure.
+/// Options for the loads of a recorded motion on a structure.
 struct StructureLoadOptions {
-  /// Placement of the structure's axes in the body's. None: the axes are parallel and the centres of mass coincide, as
-  /// for a body and a structure made from the same bar.
+  /// Placement of the structure's axes relative to the body's axes. None: the axes are parallel and the centres of
+  /// mass coincide, as for a body and a structure made from the same bar.
   std::optional<Placement> placement = {};
-  double largest_gap = 0.0;  ///< between samples, over which a line is drawn [s]; 0: 1.5 times the median interval
-  double unbalance = 1e-3;   ///< what may be left of forces and moments, as a part of their size
-  double patch = 0.0;  ///< nodes within this distance of a load share it [m]; asked for where nodes have no rotations
-  std::vector<LoadPatch> patches = {};  ///< of the places that have their own nodes, where nodes have no rotations
+  double largest_gap = 0.0;  ///< largest interpolated interval between samples [s]; 0: 1.5 times the median interval
+  double unbalance = 1e-3;   ///< allowed sum of forces and of moments, relative to their size
+  double patch = 0.0;        ///< nodes within this distance of a load share it [m]; required if nodes have no rotations
+  std::vector<LoadPatch> patches =
+      {};  ///< patches of given nodes, for loads at their points, if nodes have no rotations
 };
 
-/// The loads of a recorded motion on a structure: what acts at markers, and inertia.
+/// Loads of a recorded motion on a structure: nodal forces of joints, contacts, gravity and of the inertia of the
+/// body's rigid motion [thesis §4.3.2–4.3.5]. In the structure's axes a point u₀ of the body has the acceleration
+/// less gravity
+///   a(u₀) = b + B u₀,   b = Aᵀ(r̈ − g),   B = Ω˙~ + Ω~ Ω~.
+/// The linear structural problem has the right-hand side
+///   Q_f − m_fr q̈_r − C_qfᵀ λ = −∫ρ Sᵀ a + Σ (Sᵀ f + S_rᵀ m),   ∫ρ Sᵀ a = Σ_l b_l ∫ρ S_lᵀ + Σ_kl B_lk ∫ρ u₀ₖ S_lᵀ.
+/// In B, the term Ω~ Ω~ is the reduced (Q_v)_f = Ĩ₀ω of Eq. 4.2 and A.4c, and Ω˙~ is the rotational part of m_fr; S
+/// and S_r are the matrices of Eq. 4.5.
 class StructureLoads {
  public:
-  /// Motion in the structure's axes, of its origin.
+  /// Motion of the structure's origin, in the structure's axes.
   struct Motion {
     Vec3 b = Vec3::Zero();      ///< acceleration less gravity [m/s²]
     Vec3 omega = Vec3::Zero();  ///< Ω [rad/s]
     Mat3 B = Mat3::Zero();      ///< Ω˙~ + Ω~ Ω~ [1/s²]
-    double size = 0.0;          ///< |r̈| + |g|: what b is the difference of [m/s²]
+    double size = 0.0;          ///< |r̈| + |g|, the size of the terms in b [m/s²]
   };
-  /// A wrench in the structure's axes about the place on a beam, or the node, that takes it.
+  /// Wrench in the structure's axes about its point of action, on a beam or a node.
   struct Load {
-    Index beam = -1, node = -1;               ///< where the load stands; −1: not there
+    Index beam = -1, node = -1;               ///< beam or node with the point of action; −1: none
     double xi = 0.0;                          ///< ξ along the beam, 0 … 1
     Vec3 f = Vec3::Zero(), m = Vec3::Zero();  ///< (3) force [N] and moment [N m]
   };
 
-  /// \throws InvalidInput for fewer than two samples, gaps, loads that do not balance the structure's inertia, and
-  /// patches of nodes that cannot take them.
+  /// Computes the loads. \throws InvalidInput for fewer than two samples, gaps, loads that do not balance the
+  /// structure's inertia, and patches of nodes that cannot carry their load.
   template <class = void>  // compiled where it is used
   StructureLoads(Structure structure, BodyRecord const& record, StructureLoadOptions const& options)
       : s_(std::move(structure)),
@@ -83,11 +84,11 @@ class StructureLoads {
     require_balance(options.unbalance);
   }
 
-  std::string const& name() const { return name_; }                  ///< name of the body
-  Structure const& structure() const { return s_; }                  ///< the finite element model that is loaded
-  std::vector<double> const& times() const { return times_; }        ///< of the samples [s]
-  Motion const& motion(std::size_t k) const { return motions_[k]; }  ///< of sample k
-  std::vector<Load> const& loads(std::size_t k) const { return loads_[k]; }  ///< of sample k
+  std::string const& name() const { return name_; }                          ///< name of the body
+  Structure const& structure() const { return s_; }                          ///< finite element model under load
+  std::vector<double> const& times() const { return times_; }                ///< times of the samples [s]
+  Motion const& motion(std::size_t k) const { return motions_[k]; }          ///< motion of sample k
+  std::vector<Load> const& loads(std::size_t k) const { return loads_[k]; }  ///< loads of sample k
 
   /// Nodal forces of sample k (N).
   template <class = void>
@@ -116,7 +117,7 @@ class StructureLoads {
     return q;
   }
 
-  /// The part of a load's nodal forces on its beam (12).
+  /// Nodal forces (12) of a load on its beam.
   template <class = void>
   Vec<double, 12> on_beam(Load const& load) const {
     BeamShapes const shapes(load.xi, beam(load).length);
@@ -124,7 +125,7 @@ class StructureLoads {
     return in_body_axes(shapes.axis, axes).transpose() * load.f +
            in_body_axes(shapes.rotation, axes).transpose() * load.m;
   }
-  /// The beam that takes a load; for loads that a node takes there is none.
+  /// Beam under a load; undefined for a load on a node.
   Structure::Beam const& beam(Load const& load) const { return s_.beams[std::size_t(load.beam)]; }
 
  private:
@@ -144,7 +145,7 @@ class StructureLoads {
     return x;
   }
 
-  /// Puts a load on the nearest section of a beam, which is rigid, or on the nearest node.
+  /// Applies a load to the nearest section of a beam, which is rigid, or to the nearest node.
   template <class = void>
   void take(Load load, Vec3 const& at) {
     Vec3 held = Vec3::Zero();
@@ -172,7 +173,7 @@ class StructureLoads {
     loads_.back().push_back(load);
   }
 
-  /// Shares a load among the nodes of a patch.
+  /// Distributes a load among the nodes of a patch.
   template <class = void>
   void share(Load const& load, Vec3 const& at, StructureLoadOptions const& options) {
     auto const own = std::find_if(options.patches.begin(), options.patches.end(),
@@ -194,7 +195,7 @@ class StructureLoads {
   }
 
   /// Checks Σ f − ∫ρ a = 0 and Σ (m + u × f) − ∫ρ u × a = 0 about the centre of mass, relative to the largest sum of
-  /// sizes of the record.
+  /// absolute values in the record.
   template <class = void>
   void require_balance(double part) const {
     double const length = size();
@@ -231,7 +232,7 @@ class StructureLoads {
           when,  " s. Give the structure the mass, inertia and placement of the recorded body, or raise `unbalance`."};
   }
 
-  static constexpr double same_place = 1e-6;  ///< of a load and its patch [m]
+  static constexpr double same_place = 1e-6;  ///< largest distance between a load and its patch [m]
 
   Structure s_;
   std::string name_, patch_of_;

@@ -1,11 +1,12 @@
 #pragma once
 /// \file
-/// How a structure vibrates under the loads of a recorded rigid motion (structure_loads.hpp), in nodal or modal
+/// Vibration of a structure under the loads of a recorded rigid motion (structure_loads.hpp), in nodal or modal
 /// coordinates, e = Φ q:
 ///   M q̈ + D q̇ + K q = Φᵀ(Q_f − m_fr q̈_r − C_qfᵀ λ)   [thesis §4.3.5],
-/// by any integrator that steps a `System`.
+/// by any integrator for a `System`.
 ///
-/// Not in polybody.hpp: Eigen's sparse module and factorisations would cost every program seconds to compile.
+/// Not included in polybody.hpp: Eigen's sparse module and factorisations would add seconds to the compile time of
+/// every program.
 
 #include <polybody/bodies/ffr/ffr_basis.hpp>
 #include <polybody/integrators/integrator.hpp>
@@ -15,23 +16,23 @@
 
 namespace polybody {
 
-/// How the structure vibrates in the body's frame. The frame moves as the rigid body did, so it matters what it is tied
-/// to: tie it where joints guide the body, and let it follow the mean motion (`free_interface_modes`, with
-/// `ReferenceConditions::none()`) of a body that is free.
+/// Options for the vibration of a structure in the body's frame. The frame moves with the rigid body, so that the
+/// result depends on its attachment. If joints guide the body, the frame should be attached at these joints. For a
+/// free body it should follow the mean motion (`free_interface_modes`, with `ReferenceConditions::none()`).
 struct Vibration {
-  ReferenceConditions frame = ReferenceConditions::clamped();  ///< what the frame is tied to
-  MatX shapes = {};  ///< Φ (N×n), made with `frame`; empty: all nodal coordinates
-  /// Includes the terms linear in the deformation: 2 S̃₁ q̇ (Coriolis), S̃₂ q (centrifugal) of A.4, and m_fr(q) of Ω˙. The
-  /// thesis leaves them out. The stiffness that axial forces add is left out in either case.
+  ReferenceConditions frame = ReferenceConditions::clamped();  ///< attachment of the frame
+  MatX shapes = {};  ///< Φ (N×n), computed with `frame`; empty: all nodal coordinates
+  /// Includes the terms linear in the deformation: 2 S̃₁ q̇ (Coriolis), S̃₂ q (centrifugal) of A.4, and m_fr(q) of
+  /// Ω˙. The thesis neglects them. Geometric stiffening by axial forces is neglected in both cases.
   bool follows_deformation = false;
-  double stiffness_damping = 0.0;  ///< adds this time [s] × K to the structure's damping
-  bool settled = true;             ///< starts at rest as the first loads deform it, else undeformed
-  int substeps = 1;  ///< steps of the integrator from sample to sample; loads lie on straight lines between
+  double stiffness_damping = 0.0;  ///< time [s] that multiplies K; added to the structure's damping
+  bool settled = true;  ///< starts at rest in the static deformation of the first loads; otherwise undeformed
+  int substeps = 1;     ///< steps of the integrator per sample; loads are interpolated linearly
 };
 
 namespace detail {
 
-/// Σ_kl x_kl ∫ρ S_kᵀ S_l.
+/// Weighted sum Σ_kl x_kl ∫ρ S_kᵀ S_l.
 template <class Matrix>
 Matrix weighted(Mat3 const& x, std::array<Matrix, 6> const& inertia) {
   Matrix sum = x(0, 0) * inertia[0];
@@ -45,11 +46,11 @@ Matrix weighted(Mat3 const& x, std::array<Matrix, 6> const& inertia) {
   return sum;
 }
 
-/// Loads by q, linear between the samples; with `products`, also the terms that follow the deformation.
+/// Loads on q, linear between the samples. With `products` it also contains the terms that depend on the deformation.
 struct LoadLines {
   StructureLoads const* of;
   MatX loads;                    ///< (n×samples)
-  std::array<MatX, 6> products;  ///< Φᵀ ∫ρ S_kᵀ S_l Φ; or empty
+  std::array<MatX, 6> products;  ///< Φᵀ ∫ρ S_kᵀ S_l Φ; empty if not used
 
   template <class = void>  // compiled where it is used
   std::pair<Index, double> between(double t) const {
@@ -76,12 +77,12 @@ struct LoadLines {
 
 }  // namespace detail
 
-/// Histories of the nodal coordinates (N×samples); empty where they do not enter the inertia forces.
+/// Histories of the nodal coordinates (N×samples); empty if they do not enter the inertia forces.
 struct VibrationHistory {
-  MatX deformed, rate;  ///< Φ q, Φ q̇: of a vibration that follows the deformation
+  MatX deformed, rate;  ///< Φ q, Φ q̇: of a vibration with `follows_deformation`
   MatX acceleration;    ///< Φ q̈
 
-  /// Inertia forces M Φ q̈ + 2 S̃₁ Φ q̇ + … (N×samples), with K e = loads − these.
+  /// Inertia forces M Φ q̈ + 2 S̃₁ Φ q̇ + … (N×samples); K e equals the loads minus these forces.
   template <class = void>
   MatX inertia(StructureLoads const& loads) const {
     Structure const& s = loads.structure();
@@ -97,7 +98,7 @@ struct VibrationHistory {
 
 namespace detail {
 
-/// \throws InvalidInput for shapes of another size, and such as move what the frame holds.
+/// \throws InvalidInput for shapes of another size, and shapes that move a coordinate that the frame fixes.
 template <class = void>
 void require_fitting_shapes(Structure const& s, Vibration const& how, std::string const& who) {
   if (how.shapes.rows() != s.size())
@@ -113,8 +114,8 @@ void require_fitting_shapes(Structure const& s, Vibration const& how, std::strin
 
 }  // namespace detail
 
-/// \throws InvalidInput for shapes that do not fit the structure, move what the frame holds or have no stiffness, and
-/// for fewer substeps than one; what the integrator throws.
+/// Computes the vibration. \throws InvalidInput for shapes that do not fit the structure, move a coordinate that the
+/// frame fixes or have no stiffness, and for fewer substeps than one. Exceptions of the integrator are passed on.
 template <LinearSolver Solver = DenseLu, class I>
 VibrationHistory vibration_of(StructureLoads const& loads, I const& integrator, Vibration how) {
   Structure const& s = loads.structure();

@@ -1,13 +1,8 @@
 #pragma once
 /// \file
-/// Small vibrations about a state of rest: with q = q₀ ⊞ δ,
-///   M δ̈ + D δ̇ + K δ + Gᵀ μ = 0,  G δ = 0,
-/// K = −∂f/∂q + ∂(Gᵀλ)/∂q with every second-order term, D = −∂f/∂v [Géradin & Rixen 2015]. The rows are eliminated by a
-/// basis N of the null space of G, δ = N z, so redundant rows do no harm. First-order states are the rates of motions
-/// that nothing else depends on: M has one there, K no column, and the last columns of N are theirs. Vibrations about a
-/// steady rotation are in vibration/steady_rotation.hpp.
+/// Small vibrations about an equilibrium.
 ///
-/// Not in polybody.hpp: Eigen's eigenvalue solvers would cost every program seconds to compile.
+/// Not included in polybody.hpp: Eigen's eigenvalue solvers would add seconds to the compile time of every program.
 
 #include <algorithm>
 #include <complex>
@@ -25,16 +20,23 @@
 
 namespace polybody {
 
-/// The matrices about a state, dense; and a basis of the motions that the rows leave free.
+/// Linearised equations of motion about an equilibrium q₀, with q = q₀ ⊞ δ, as dense matrices [Géradin & Rixen 2015]:
+///   M δ̈ + D δ̇ + K δ + Gᵀ μ = 0,  G δ = 0.
+/// The stiffness K = −∂f/∂q + ∂(Gᵀλ)/∂q contains all second-order terms, and D = −∂f/∂v. A basis N of the null space
+/// of G, δ = N z, eliminates the constraint equations. Redundant constraints are therefore allowed.
+///
+/// First-order states are the rates of coordinates that no other quantity depends on: M is one there, K has a zero
+/// column, and the last columns of N are theirs. Vibrations about a steady rotation are in
+/// vibration/steady_rotation.hpp.
 struct Linearisation {
-  MatX M, D, K;      ///< (nv×nv)
-  MatX G;            ///< (rows×nv)
-  MatX N;            ///< (nv×free) orthonormal, G N = 0
-  Index states = 0;  ///< first-order ones, the last of δ̇
+  MatX M, D, K;      ///< mass, damping and stiffness (nv×nv)
+  MatX G;            ///< constraint Jacobian (rows×nv)
+  MatX N;            ///< null space of G (nv×free), orthonormal, G N = 0
+  Index states = 0;  ///< number of first-order states, the last entries of δ̇
 };
 
 namespace detail {
-/// Adds up blocks in a dense matrix.
+/// Sum of blocks in a dense matrix.
 struct DenseSink {
   MatX& sum;
   void add(Index row, Index col, BlockView const& b) {
@@ -51,8 +53,8 @@ MatX dense_tangent(System& system, TangentCoefficients const& c, VecX const& lam
   return sum;
 }
 
-/// A basis of the motions that rows G leave free: orthonormal, G N = 0; the last `states` columns are those of G that
-/// rows do not hold.
+/// Orthonormal basis N of the null space of G, G N = 0. The last `states` columns are those of the first-order
+/// states, which have no constraint equations.
 template <class = void>  // compiled where it is used
 MatX free_motions(MatX const& g, Index states = 0) {
   if (g.rows() == 0) return MatX::Identity(g.cols(), g.cols());
@@ -67,7 +69,7 @@ MatX free_motions(MatX const& g, Index states = 0) {
   return n;
 }
 
-/// The smallest least-squares solution of A x = b; pivots below `threshold` count as zero.
+/// Least-squares solution of A x = b with minimum norm; pivots below `threshold` count as zero.
 template <class = void>
 MatX smallest_solution(MatX const& a, MatX const& b, double threshold) {
   Eigen::CompleteOrthogonalDecomposition<MatX> solver(a.rows(), a.cols());
@@ -76,13 +78,14 @@ MatX smallest_solution(MatX const& a, MatX const& b, double threshold) {
   return solver.solve(b);
 }
 
-/// \throws InvalidInput unless one mode at least is asked for.
+/// \throws InvalidInput unless `count` is at least 1; `who` names the function.
 inline void require_modes(Index count, std::string const& who) {
   if (count < 1) throw InvalidInput{who, ": the count of modes must be at least 1, but is ", count, "."};
 }
 
-/// K with a spring on each motion among those without inertia, the columns of v, that K does not resist. Such a motion
-/// y has K y = 0 and M y = 0, so that the spring keeps all other solutions of K x = λ M x, with yᵀx = 0.
+/// K with a spring on each motion without inertia and without stiffness. The columns of v are the motions without
+/// inertia. Such a motion y has K y = 0 and M y = 0. The spring therefore preserves all other solutions of K x = λ M
+/// x, with yᵀx = 0.
 template <class = void>
 MatX with_springs_at_rest(MatX const& k, MatX const& v) {
   MatX out = k;
@@ -98,7 +101,7 @@ MatX with_springs_at_rest(MatX const& k, MatX const& v) {
   return out;
 }
 
-/// Nᵀ A N.
+/// Projection Nᵀ A N.
 template <class = void>
 MatX of_free_motions(MatX const& n, MatX const& a) {
   MatX const an = a * n;
@@ -106,8 +109,9 @@ MatX of_free_motions(MatX const& n, MatX const& a) {
 }
 }  // namespace detail
 
-/// About state x, which rests; its multipliers count (a hanging pendulum swings by them). A model that turns steadily
-/// is linearised with its `SteadyRotation`; in any other motion matrices change. \throws InvalidInput when x moves.
+/// Linearisation about a state x at rest. The multipliers of x enter the stiffness, as in a hanging pendulum. A model
+/// in steady rotation is linearised with its `SteadyRotation`. In other motions the matrices would depend on time.
+/// \throws InvalidInput if x moves.
 template <class = void>
 Linearisation linearise(System& system, State const& x) {
   require_usable(system, x);
@@ -130,23 +134,24 @@ Linearisation linearise(System& system, State const& x) {
   return l;
 }
 
-/// The same of a model.
+/// Overload for a model.
 template <class M>
 Linearisation linearise(M const& model, State const& x) {
   System system(model, with<Entries::implicit_step>);
   return linearise(system, x);
 }
 
-/// Undamped modes, by frequency.
+/// Undamped modes in the order of frequency.
 struct Modes {
-  VecX frequency;  ///< (k) ω [rad/s], ascending; −√(−ω²) where the state is unstable
-  MatX shape;      ///< (nv×k) δ by speeds, shapeᵀ M shape = 1
+  VecX frequency;  ///< (k) ω [rad/s], ascending; −√(−ω²) in an unstable state
+  MatX shape;      ///< (nv×k) shapes δ, one entry per generalised velocity, shapeᵀ M shape = 1
 };
 
-/// The `count` lowest modes of M δ̈ + K δ + Gᵀμ = 0 by a dense solver: for models of up to some hundred speeds. Motions
-/// without inertia have no frequency and are left out. K is symmetrised and D left out: follower loads, whose K is not
-/// symmetric, and models that turn, whose D is gyroscopic, belong to `damped_modes`. Frequencies far below the highest
-/// one keep their digits (math/symmetric_pencil.hpp).
+/// Computes the `count` lowest modes of M δ̈ + K δ + Gᵀμ = 0 by a dense solver, for models of up to some hundred
+/// generalised velocities. Motions without inertia have no frequency and are omitted. K is symmetrised and D is
+/// neglected. `damped_modes` computes modes with follower loads, whose K is not symmetric, and modes of rotating
+/// models, whose D is gyroscopic. Frequencies far below the highest frequency are computed accurately
+/// (math/symmetric_pencil.hpp).
 template <class = void>  // compiled where it is used
 Modes modes(Linearisation const& l, Index count = 10) {
   detail::require_modes(count, "modes");
@@ -156,7 +161,7 @@ Modes modes(Linearisation const& l, Index count = 10) {
   MatX const full = detail::of_free_motions(l.N, l.K), k = 0.5 * (full + full.transpose()),
              m = detail::of_free_motions(l.N, l.M);
   if (m.rows() == 0) return {};
-  // motions with inertia first: m = V diag(d) Vᵀ; the others follow without delay, K₂₂ z₂ = −K₂₁ z₁
+  // motions with inertia first: m = V diag(d) Vᵀ; those without follow statically, K₂₂ z₂ = −K₂₁ z₁
   Eigen::SelfAdjointEigenSolver<MatX> const inertia(m);
   VecX const& d = inertia.eigenvalues();
   Index const n = d.size();
@@ -184,7 +189,7 @@ Modes modes(Linearisation const& l, Index count = 10) {
   out.shape = l.N * shapes.leftCols(kept);
   return out;
 }
-/// The same, the `count` lowest, about x, a state of rest in equilibrium. \throws InvalidInput when x moves.
+/// Computes the `count` lowest modes about x, an equilibrium at rest. \throws InvalidInput if x moves.
 template <class S>
 Modes modes(S const& model, State const& x, Index count = 10) {
   return modes(linearise(model, x), count);
@@ -192,22 +197,24 @@ Modes modes(S const& model, State const& x, Index count = 10) {
 
 /// Damped modes δ = Re(shape e^{s t}).
 struct DampedModes {
-  Eigen::VectorXcd eigenvalue;  ///< (k) s [1/s], by |s|; of conjugate pairs the one above the real axis
-  Eigen::MatrixXcd shape;       ///< (nv×k) of first-order states, what they are and not their integral
-  /// Frequency |s| [rad/s] and damping ratio −Re s/|s| of mode i.
+  Eigen::VectorXcd eigenvalue;  ///< (k) s [1/s], ordered by |s|; one per conjugate pair, Im s ≥ 0
+  Eigen::MatrixXcd shape;       ///< (nv×k); for first-order states their value, not their integral
+  /// Frequency |s| [rad/s] of mode i.
   double frequency(Index i) const { return std::abs(eigenvalue[i]); }
   double damping_ratio(Index i) const { return -eigenvalue[i].real() / std::abs(eigenvalue[i]); }  ///< −Re s/|s| of i
 };
 
-/// The `count` slowest modes of M δ̈ + D δ̇ + K δ + Gᵀμ = 0, dense. With δ = N z, the unit of time 1/τ and y = (z, ż/τ)
-/// the state matrix is A = [0, 1; −M̂⁻¹K, −M̂⁻¹D̂], M̂ = τ² M, D̂ = τ D. Solved is its inverse about s = τ, which asks for
-/// no M⁻¹,
-///   (A − 1)⁻¹ = [−Y, −Z; 1 − Y, −Z],  Y = Q⁻¹ (M̂ + D̂),  Z = Q⁻¹ M̂,  Q = M̂ + D̂ + K,  s = τ (1 + 1/μ):
-/// slow motions have its largest eigenvalues μ, so that stiff ones do not spoil their digits. τ is a little
-/// below the lowest frequency of M z̈ + K z = 0 without its neutral motions. Those of the model come first, with an |s|
-/// of √rounding. First-order states bring one mode each; the motions whose rates they are stand in no equation and
-/// leave the matrix.
-/// \throws InvalidInput when a free motion has no inertia.
+/// Computes the `count` slowest modes of M δ̈ + D δ̇ + K δ + Gᵀμ = 0 by a dense solver. With δ = N z, the unit of
+/// time 1/τ and y = (z, ż/τ) the state matrix is A = [0, 1; −M̂⁻¹K, −M̂⁻¹D̂], M̂ = τ² M, D̂ = τ D. The eigenvalues of
+/// the shifted inverse about s = τ are computed, which does not require M⁻¹:
+///   (A − 1)⁻¹ = [−Y, −Z; 1 − Y, −Z],  Y = Q⁻¹ (M̂ + D̂),  Z = Q⁻¹ M̂,  Q = M̂ + D̂ + K,  s = τ (1 + 1/μ).
+/// Slow motions have the largest eigenvalues μ of this matrix and are therefore accurate in spite of stiff ones. τ is
+/// slightly below the lowest frequency of M z̈ + K z = 0 without its free motions. Free motions of the model come
+/// first, with an |s| of the order of the square root of the round-off.
+///
+/// Each first-order state adds one mode. The coordinates with these states as rates occur in no equation and are
+/// removed from the matrix.
+/// \throws InvalidInput if a free motion has no inertia.
 template <class = void>  // compiled where it is used
 DampedModes damped_modes(Linearisation const& l, Index count = 10) {
   detail::require_modes(count, "damped_modes");
@@ -257,7 +264,7 @@ DampedModes damped_modes(Linearisation const& l, Index count = 10) {
   }
   return out;
 }
-/// The same, the `count` lowest, about x. \throws InvalidInput also when x moves.
+/// Computes the `count` slowest modes about x. \throws InvalidInput also if x moves.
 template <class S>
 DampedModes damped_modes(S const& model, State const& x, Index count = 10) {
   return damped_modes(linearise(model, x), count);

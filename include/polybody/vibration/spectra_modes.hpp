@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// The lowest modes of large structures by Spectra's Lanczos iteration. Not in polybody.hpp: it needs Spectra's headers
-/// (Debian: libspectra-dev).
+/// Lowest modes of large structures by the Lanczos iteration of Spectra. Not included in polybody.hpp: it requires
+/// the headers of Spectra (Debian: libspectra-dev).
 
 #include <Spectra/MatOp/SparseSymMatProd.h>
 #include <Spectra/SymGEigsShiftSolver.h>
@@ -10,17 +10,18 @@
 
 namespace polybody {
 
-/// In place of DenseModes in held_modes, free_interface_modes and craig_bampton: implicitly restarted Lanczos on K⁻¹M,
-/// in the inner product of M [Ericsson & Ruhe 1980; Sorensen 1992]. The iteration may miss modes of a repeated
-/// frequency; so the modes below the last are counted by the negative pivots of K − σM (Sylvester), and the iteration
-/// starts anew with twice the vectors until none is missing, six times at most.
+/// Replacement of DenseModes in held_modes, free_interface_modes and craig_bampton: implicitly restarted Lanczos
+/// iteration on K⁻¹M, in the inner product of M [Ericsson & Ruhe 1980; Sorensen 1992]. The iteration may miss modes
+/// of a repeated frequency. The number of modes below the last one is therefore compared with the negative pivots of
+/// K − σM (Sylvester). If modes are missing, the iteration is repeated with twice the number of vectors, up to six
+/// times.
 struct SpectraModes {
-  Index restarts = 1000;     ///< at most, for each number of vectors
-  double tolerance = 1e-12;  ///< of ω², relative
+  Index restarts = 1000;     ///< largest number of restarts, for each number of vectors
+  double tolerance = 1e-12;  ///< relative error of ω²
 
-  /// The `count` lowest modes of K and M (n×n) symmetric, K positive definite. The same numbers in every run. Half of
-  /// all modes or more are left to DenseModes.
-  /// \throws InvalidInput for a K that is not positive definite; Error when the iteration does not converge.
+  /// Computes the `count` lowest modes of K and M (n×n) symmetric, K positive definite. The results are equal in
+  /// every run. If `count` is at least half of all modes, DenseModes computes them.
+  /// \throws InvalidInput if K is not positive definite; Error if the iteration does not converge.
   template <class = void>  // compiled where it is used
   LowestModes operator()(Structure::Sparse const& k, Structure::Sparse const& m, Index count) const {
     Index const n = k.rows();
@@ -52,7 +53,7 @@ struct SpectraModes {
   }
 
  private:
-  /// y = K⁻¹ x, as Spectra wants it.
+  /// Operator y = K⁻¹ x in the form that Spectra requires.
   struct Inverse {
     using Scalar = double;
     SparseFactor factor;
@@ -65,13 +66,13 @@ struct SpectraModes {
     }
     Index rows() const { return size; }
     Index cols() const { return size; }
-    void set_shift(double) {}  // always zero
+    void set_shift(double) {}  // the shift is always zero
     void perform_op(double const* x, double* y) const {
       Eigen::Map<VecX>(y, size) = factor.solve(Eigen::Map<VecX const>(x, size));
     }
   };
 
-  /// No frequency below the last is missing.
+  /// True if no frequency below the last one is missing.
   static bool complete(VecX const& squared, Structure::Sparse const& k, Structure::Sparse const& m) {
     double const sigma = squared[squared.size() - 1] * (1.0 - 1e-6);
     SparseFactor const factor(k - sigma * m);

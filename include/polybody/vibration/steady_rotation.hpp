@@ -1,19 +1,19 @@
 #pragma once
 /// \file
-/// Small vibrations about a steady rotation. The whole model turns with angular velocity Ω about an axis fixed in the
-/// world, g(t) its rotation, and vibrates beside that: q(t) = g(t)·(q₀ ⊞ ε(t)). Let w(q) be the speeds of the rotation
-/// at q. g acts on the speeds of a body by a linear map that does not depend on q, with the generator
+/// Small vibrations about a steady rotation. The whole model rotates with the angular velocity Ω about an axis fixed
+/// in the world. With its rotation g(t) the motion is q(t) = g(t)·(q₀ ⊞ ε(t)). The rotation at q has the generalised
+/// velocities w(q). g acts on the velocities of a body by a linear map that does not depend on q, with the generator
 ///   Γξ = Dw ξ − c(w, ξ),   c(δ, v) = d/ds (local_rate(s δ, v) − local_rate(−s δ, v)) at s = 0,
-/// c the commutator of the local coordinates. (Positions and gradients: Γ = Dw = Ω×, c = 0. Angular velocities in body
-/// axes: Γ = 0, Dw ξ = w × ξ = c.) At t = 0, to first order in ε,
-///   v = w(q₀ ⊞ ε) + ε˙,   v˙ = Γ w(q₀ ⊞ ε) + (Γ + Dw) ε˙ + ε¨,
-/// so that R = M v˙ − f + Gᵀλ gives equations with constant coefficients [Simo, Lewis & Marsden 1991]:
+/// where c is the commutator of the local coordinates. (Positions and gradients: Γ = Dw = Ω×, c = 0. Angular
+/// velocities in body axes: Γ = 0, Dw ξ = w × ξ = c.) At t = 0, to first order in ε,
+///   v = w(q₀ ⊞ ε) + ε˙,   v˙ = Γ w(q₀ ⊞ ε) + (Γ + Dw) ε˙ + ε¨.
+/// R = M v˙ − f + Gᵀλ then yields equations with constant coefficients [Simo, Lewis & Marsden 1991]:
 ///   M ε¨ + (D + M (Γ + Dw)) ε˙ + K ε + Gᵀμ = 0,  G ε = 0,
 ///   D = −∂f/∂v,   K = ∂/∂ε R(q₀ ⊞ ε, w(q₀ ⊞ ε), Γ w(q₀ ⊞ ε)).
-/// Beside D stand Coriolis and gyroscopic forces; K contains the centrifugal forces and the stiffness of the stress
-/// they cause.
+/// The term M (Γ + Dw) contains Coriolis and gyroscopic forces. K contains the centrifugal forces and the geometric
+/// stiffness of the stress that they cause.
 ///
-/// Not in polybody.hpp: it needs vibration/modes.hpp.
+/// Not included in polybody.hpp: it requires vibration/modes.hpp.
 
 #include <polybody/solvers/newton.hpp>
 #include <polybody/statics/load_steps.hpp>
@@ -21,21 +21,21 @@
 
 namespace polybody {
 
-/// A model turns as a whole about an axis.
+/// Steady rotation of a whole model about an axis.
 struct SteadyRotation {
   Vec3 angular_velocity = Vec3::Zero();  ///< (3) Ω, world axes [rad/s]
-  Vec3 point = Vec3::Zero();             ///< (3) any point of the axis, world axes [m]
+  Vec3 point = Vec3::Zero();             ///< (3) point of the axis, world axes [m]
 };
 
 namespace detail {
 
-/// A model in the frame that turns with it. Everything static is exact; what the rotation adds is smooth and
-/// differentiated by differences of fourth order, with steps of 1e-3 [m], [rad].
+/// Model in a frame that rotates with it. Static terms are exact. The smooth terms of the rotation are differentiated
+/// by finite differences of fourth order, with steps of 1e-3 [m], [rad].
 template <class = void>  // compiled where it is used
 class TurningFrame {
  public:
   System& system;
-  double share = 1.0;  ///< of the angular velocity
+  double share = 1.0;  ///< fraction of the angular velocity
 
   TurningFrame(System& of, VecX const& q, SteadyRotation const& rotation)
       : system(of),
@@ -67,20 +67,20 @@ class TurningFrame {
     }
   }
 
-  /// w(q).
+  /// Generalised velocities w(q) of the rotation.
   void speeds(VecX const& q, VecX& w) const {
     Vec3 const omega = share * rotation_.angular_velocity, origin = rotation_.point.cross(omega);
     require_entry(system.entries().first.rigid_speeds, "speeds of rigid motions")(system.entries().second, q, origin,
                                                                                   omega, w);
   }
-  /// Puts the system at (q, w, t). R(q, w, Γw) with these multipliers.
+  /// Residual R(q, w, Γw) with these multipliers. The state of the system becomes (q, w, t).
   void residual(VecX const& q, VecX const& lambda, double t, VecX& r) {
     speeds(q, w_);
     a_.noalias() = share * generator_ * w_;
     system.evaluate(q, w_, t);
     system.residual(a_, lambda, r);
   }
-  /// [K, Gᵀ; G, 0] at x.
+  /// Matrix [K, Gᵀ; G, 0] at x.
   MatX stiffness(State const& x) {
     system.evaluate(x.q, none_, x.t);
     MatX k = dense_tangent(system, {.stiffness = 1.0}, x.lambda);
@@ -93,11 +93,11 @@ class TurningFrame {
     });
     return k;
   }
-  /// Dw + Γ, and Γ, at the whole angular velocity and the first q.
+  /// Dw + Γ at the full angular velocity and the initial q.
   MatX rate_matrix() const { return gradient_ + generator_; }
   MatX const& generator() const { return generator_; }
 
-  /// \throws InvalidInput for rows that do not turn with the model: Φ˙ = G w + Φ_t must vanish.
+  /// \throws InvalidInput for constraint equations that do not rotate with the model: Φ˙ = G w + Φ_t must vanish.
   void require_turning_rows(State const& x) {
     VecX rate(no_row_);
     speeds(x.q, w_);
@@ -111,7 +111,7 @@ class TurningFrame {
   }
 
  private:
-  /// ∂f/∂ε (nv×nv) at q ⊞ ε: (8 (f(h) − f(−h)) − (f(2h) − f(−2h)))/12h.
+  /// Finite difference ∂f/∂ε (nv×nv) at q ⊞ ε: (8 (f(h) − f(−h)) − (f(2h) − f(−2h)))/12h.
   template <class F>
   MatX by_speeds(VecX const& q, F&& f) {
     double const h = 1e-3;
@@ -135,12 +135,12 @@ class TurningFrame {
   MatX gradient_, generator_;
 };
 
-/// The equations of a steady rotation for Newton's method, at a share of the angular velocity.
+/// Equations of a steady rotation for Newton's method, at a fraction of the angular velocity.
 template <class = void>  // compiled where it is used
 struct TurningEquilibrium {
   TurningFrame<> frame;
   State trial;
-  double tolerance, unit = 1.0;  ///< of the rows, so that their entries are as large as the stiffness
+  double tolerance, unit = 1.0;  ///< unit: factor of the constraint equations, of the size of the stiffness
   Index nv = trial.v.size(), rows = trial.lambda.size();
   MatX k = {};
   VecX r = VecX::Zero(nv), phi = VecX::Zero(rows), rhs = VecX::Zero(nv + rows), y = rhs, q = trial.q;
@@ -172,7 +172,8 @@ struct TurningEquilibrium {
     trial.lambda += y.tail(rows);
   }
 
-  /// \throws LinearSolverSingular naming what forces push where nothing resists: it takes no part in least corrections.
+  /// \throws LinearSolverSingular if a force acts along a motion without stiffness, which minimum-norm corrections
+  /// omit.
   void require_balance() {
     evaluate();
     double const load = rows ? (k.topRightCorner(nv, rows) * (trial.lambda / unit)).cwiseAbs().maxCoeff() : 0.0;
@@ -183,7 +184,7 @@ struct TurningEquilibrium {
                                  " that forces excite as the model turns (", r[i], " is left). Hold every body."};
   }
 
-  /// \throws NonFinite, NewtonStalled as the result says.
+  /// \throws NonFinite, NewtonStalled according to `result`.
   [[noreturn, gnu::cold]] void refuse(NewtonResult result) const {
     std::string const at = sentence_of({" at ", frame.share, " of the angular velocity"});
     if (result != NewtonResult::diverged) throw NonFinite{"relative_equilibrium: a force is not finite", at, "."};
@@ -195,8 +196,8 @@ struct TurningEquilibrium {
 
 }  // namespace detail
 
-/// x turning steadily: v = w(q), a = Γw; everything else stays. \throws InvalidInput for planar bodies about another
-/// axis than z.
+/// State x in steady rotation: v = w(q), a = Γw; coordinates and multipliers are those of x. \throws InvalidInput for
+/// planar bodies if the axis is not parallel to z.
 template <class = void>
 State rotating_state(System& system, State const& x, SteadyRotation const& rotation) {
   require_usable(system, x);
@@ -207,12 +208,13 @@ State rotating_state(System& system, State const& x, SteadyRotation const& rotat
   return out;
 }
 
-/// Moves x (coordinates, multipliers) from its present place to where elastic, centrifugal and all other forces balance
-/// while the model turns steadily; speeds and their rates become those of the rotation. Rows that depend on time are
-/// taken at x.t. `load_steps` and `smallest_part` divide Ω. The smallest corrections are taken where rows are redundant
-/// or nothing resists a motion. Dense: for models of up to some hundred speeds.
-/// \throws InvalidInput for rows that do not turn with the model; LinearSolverSingular naming a body that forces push
-/// where nothing resists; NewtonStalled, NonFinite; x is then untouched.
+/// Moves x (coordinates, multipliers) into relative equilibrium, in which elastic, centrifugal and all other forces
+/// balance during steady rotation. The velocities and accelerations of x become those of the rotation. Constraint
+/// equations that depend on time are evaluated at x.t. `load_steps` and `smallest_part` apply to Ω. Corrections have
+/// minimum norm if constraints are redundant or a motion has no stiffness. The solver is dense, for models of up to
+/// some hundred generalised velocities.
+/// \throws InvalidInput for constraint equations that do not rotate with the model; LinearSolverSingular naming a
+/// body with a force along a motion without stiffness; NewtonStalled, NonFinite. x is then unchanged.
 template <class = void>
 EquilibriumReport relative_equilibrium(System& system, State& x, SteadyRotation const& rotation,
                                        EquilibriumOptions const& options = {}) {
@@ -242,9 +244,10 @@ EquilibriumReport relative_equilibrium(System& system, State& x, SteadyRotation 
   return report;
 }
 
-/// About x, which turns steadily: its coordinates, multipliers and time count. With the result `damped_modes` gives the
-/// motions ε = Re(shape e^{st}) seen from the turning model. \throws InvalidInput when forces do not balance in x, or
-/// forces or rows do not turn with the model, as gravity across the axis.
+/// Linearisation about x in steady rotation; coordinates, multipliers and time of x are used. `damped_modes` of the
+/// result computes the motions ε = Re(shape e^{st}) relative to the rotating model. \throws InvalidInput if forces do
+/// not balance in x, or if forces or constraint equations do not rotate with the model, such as gravity across the
+/// axis.
 template <class = void>
 Linearisation linearise(System& system, State const& x, SteadyRotation const& rotation) {
   require_usable(system, x);
@@ -262,7 +265,7 @@ Linearisation linearise(System& system, State const& x, SteadyRotation const& ro
   l.M = detail::dense_tangent(system, {.mass = 1.0}, x.lambda).topLeftCorner(nv, nv);
   l.D = detail::dense_tangent(system, {.damping = 1.0}, x.lambda).topLeftCorner(nv, nv) + l.M * frame.rate_matrix();
 
-  // against the forces of the rotation and of the rows, and the rounding errors of the stiffness
+  // compared with the forces of the rotation and of the constraints, and the round-off of the stiffness
   double const omega = rotation.angular_velocity.norm();
   double const pull = rows ? (l.G.transpose() * x.lambda).cwiseAbs().maxCoeff() : 0.0;
   double const small = 1e-6 * (omega * (l.M * w).cwiseAbs().maxCoeff() + pull) +
@@ -271,7 +274,7 @@ Linearisation linearise(System& system, State const& x, SteadyRotation const& ro
   if (!(r.cwiseAbs().maxCoeff(&i) <= small))
     throw InvalidInput{"linearise: forces on ", system.name_of(i), " do not balance as the model turns (", r[i],
                        " is left); take the state from relative_equilibrium(model, x, rotation)."};
-  // Kw is the rate at which R changes as the model turns: nothing but forces in the rows
+  // K w is the rate of R during the rotation; only constraint forces may change
   VecX const turned = l.N * (l.N.transpose() * (l.K * w));
   if (!(turned.cwiseAbs().maxCoeff(&i) <= small * omega))
     throw InvalidInput{"linearise: forces on ", system.name_of(i),
@@ -286,20 +289,20 @@ System turning_system(M const& model) {
 }
 }  // namespace detail
 
-/// The same of a model.
+/// Overload for a model.
 template <class M>
 State rotating_state(M const& model, State const& x, SteadyRotation const& rotation) {
   System system = detail::turning_system(model);
   return rotating_state(system, x, rotation);
 }
-/// The same of a model.
+/// Overload for a model.
 template <class M>
 EquilibriumReport relative_equilibrium(M const& model, State& x, SteadyRotation const& rotation,
                                        EquilibriumOptions const& options = {}) {
   System system = detail::turning_system(model);
   return relative_equilibrium(system, x, rotation, options);
 }
-/// The same of a model.
+/// Overload for a model.
 template <class M>
 Linearisation linearise(M const& model, State const& x, SteadyRotation const& rotation) {
   System system = detail::turning_system(model);
