@@ -26,8 +26,9 @@ struct Scenario {
   RunOptions options;                                         ///< options of the run
   std::vector<Output<M>> outputs = {};                        ///< outputs to compare
   std::function<void(M const&, State const&)> observer = {};  ///< called in every sampled state, not timed
-  double sampling = 0.0;  ///< [s]: asked is the first state on or after each multiple of it from the start on; 0: every
-                          ///< state of the run. For integrators whose steps are much shorter than what is of interest.
+  /// Sampling interval [s]: the first state on or after each multiple of it from the start is sampled; 0: every state.
+  /// Useful for integrators with steps much shorter than the time scale of the outputs.
+  double sampling = 0.0;
 };
 
 /// Case that can be called with a formulation and returns a Scenario. The type of the model may depend on the
@@ -157,7 +158,7 @@ void compare_with_first(Comparison& c) {
 }  // namespace detail
 
 /// Runs the case that `make_case(formulation)` returns for each of the `formulations`. They are passed as values,
-/// because a policy without default parameters needs an initialiser.
+/// because some policies have parameters without defaults.
 /// \throws InvalidInput for outputs that are not the same for all formulations, and exceptions of the case.
 /// \throws ComparisonFailed if `simulate` or an output throws an `Error`. It is thrown after the other runs and
 /// contains their results.

@@ -24,8 +24,8 @@ struct ComparedRun {
   double energy_end = 0.0;                   ///< total energy at the end [J]
   double peak_joint_force = 0.0;             ///< largest joint force over the run [N]
   std::vector<double> times;                 ///< (n) times of the recorded states, from the start to the end [s]
-  std::vector<Violation> violations;         ///< (n)
-  std::vector<Energy> energies;              ///< (n)
+  std::vector<Violation> violations;         ///< (n) largest violations at each time
+  std::vector<Energy> energies;              ///< (n) energies at each time [J]
   std::vector<double> joint_forces;          ///< (n) largest force of all joints at each time [N]
   std::vector<std::string> output_names;     ///< names in the order of `outputs`
   std::vector<std::vector<double>> outputs;  ///< one history (n) for each output
@@ -34,7 +34,7 @@ struct ComparedRun {
 
 /// Runs of one case under several formulations.
 struct Comparison {
-  std::vector<ComparedRun> runs;  ///< in the order of the formulations
+  std::vector<ComparedRun> runs;  ///< runs in the order of the formulations
 };
 
 /// Error of a comparison in which runs failed. The message gives each failed run with its reason.

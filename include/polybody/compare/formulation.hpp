@@ -7,8 +7,8 @@
 
 namespace polybody {
 
-/// Body formulation with its mesh, for use as the body of a `Formulation`: a cable with so many elements, or a
-/// floating frame with so many modes.
+/// Body formulation with its mesh, for use as the body of a `Formulation`. The `count` is the number of elements of a
+/// cable, or of modes of a floating frame.
 template <Body B, int count>
   requires(count > 0)
 struct Meshed {
@@ -43,8 +43,8 @@ struct Formulation {
   P policy = {};      ///< policy of the case's joints
   I integrator = {};  ///< integrator with its options
 
-  /// Creates the body by its function `from`. The arguments are `shape`, such as a bar, the number of elements of a
-  /// `Meshed` body, and `others`.
+  /// Creates the body by its function `from`. The arguments are `shape`, such as a bar, then the number of elements
+  /// if the body is `Meshed`, and `others`.
   template <class Shape, class... Others>
   static BodyType body(Shape const& shape, Others&&... others) {
     if constexpr (requires { detail::MeshOf<B>::elements; })

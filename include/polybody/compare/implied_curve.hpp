@@ -2,8 +2,8 @@
 /// \file
 /// Space curve that a rotation field implies [thesis §2.3]. Its tangent is the first axis of the sections, t = R e₁:
 ///   r(s) = r₀ + ∫ t ds (Eq. 2.2),  κ = |t′| (Eq. 2.4),  τ = t·(t′ × t″)/κ²  (Frenet).
-/// With R′ = R K̃ the derivative of the tangent is t′ = R (0, K₃, −K₂). Therefore κ² = K₂² + K₃² and τ = K₁ + (K₂ K₃′
-/// − K₃ K₂′)/κ².
+/// With R′ = R K̃ the derivative of the tangent is t′ = R (0, K₃, −K₂), so that
+///   κ² = K₂² + K₃²,  τ = K₁ + (K₂ K₃′ − K₃ K₂′)/κ².
 
 #include <concepts>
 #include <vector>
@@ -44,8 +44,8 @@ SectionTurn section_turn(AngleAlong const& psi, AngleAlong const& theta, AngleAl
   return s;
 }
 
-/// Points of the implied curve of a field `rotation`, s ↦ R(s), from `start` [m], at s = 0, length/pieces, ...: five
-/// Gauss points in each piece. The derivative of the field may jump between pieces.
+/// Points of the implied curve of a field `rotation`, s ↦ R(s), from `start` [m], at s = 0, length/pieces, .... Each
+/// piece is integrated with five Gauss points. The derivative of the field may jump between pieces.
 /// \throws InvalidInput for a length that is not positive, or pieces < 1.
 template <class Field>
   requires std::is_invocable_r_v<Mat3, Field&, double>

@@ -27,8 +27,8 @@ struct TwoMeshes {
   /// in space, Eq. 2.4.
   std::vector<double> rotation_curvature;
 };
-using MeshDiagnostics = TwoMeshes<2>;         ///< in the plane
-using SpatialMeshDiagnostics = TwoMeshes<3>;  ///< in space
+using MeshDiagnostics = TwoMeshes<2>;         ///< diagnostics of planar beams
+using SpatialMeshDiagnostics = TwoMeshes<3>;  ///< diagnostics of spatial beams
 
 namespace detail {
 
@@ -58,8 +58,8 @@ void add_nodes(TwoMeshes<dim>& d, double l, typename TwoMeshes<dim>::Point const
 
 }  // namespace detail
 
-/// Points of the curve that the rotation field of a planar beam implies at the coordinates q: the first node and
-/// `samples` points in each element.
+/// Points of the curve that the rotation field of a planar beam implies at the coordinates q. They are the first node
+/// and `samples` points in each element.
 template <std::derived_from<planar::SimoVuQuoc> Theory>
 std::vector<Vec2> implied_curve(planar::Beam<Theory> const& beam, std::span<double const> q, int samples = 1) {
   std::vector<double> const rest(q.size(), 0.0);

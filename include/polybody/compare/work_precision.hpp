@@ -96,9 +96,9 @@ RecordedOutput reference_run(C const& make_case, F const& formulation, double se
   return out;
 }
 
-/// Work-precision curve of the case that `make_case(formulation)` returns, with one run for each of the `settings`:
-/// the step, or the relative tolerance of an integrator with step size control. The error of output y follows from
-/// the states of the run at t_k and its end T:
+/// Work-precision curve of the case that `make_case(formulation)` returns, with one run for each of the `settings`. A
+/// setting is the step [s], or the relative tolerance of an integrator with step size control. The error of output y
+/// follows from the states of the run at t_k and its end T:
 ///   max_k |y(t_k) − y_ref(t_k)|  for a function of time or a `reference_run`,   |y(T) − y_ref|  for a number.
 /// A step that fails, for example because it is too long, ends only its run; `failure` contains the message.
 /// \throws InvalidInput for settings that are not positive, no settings, and an output that does not exist.

@@ -20,13 +20,13 @@ namespace polybody {
 /// old file or the complete new file, also after a loss of power (fsync). The new file gets the permissions of the
 /// file that it replaces. On Linux a killed program leaves no file. If the file system has no unnamed files
 /// (O_TMPFILE), a killed program leaves ".polybody-<16 hex digits>.tmp", which may be removed. The destructor closes
-/// an open file, with two exceptions: a write has failed, or an exception is in flight and `keep_on_exception()` was
-/// not called. In these cases the temporary file is removed and an existing file remains unchanged. Move-only.
+/// an open file and renames it. It removes the temporary file instead if a write has failed, or if an exception is in
+/// flight and `keep_on_exception()` was not called. An existing file then remains unchanged. Move-only.
 class AtomicFile {
  public:
   /// Creates the parent folders of `file` and opens the temporary file. A symbolic link is followed, also if its
-  /// target does not exist yet. Throws IoError with the file name and the system's reason if this fails, if a name is
-  /// too long, if links form a loop, or if `file` exists and is not a regular file.
+  /// target does not exist yet. Throws IoError with the file name and the system's reason if this fails, also for a
+  /// name that is too long or links that form a loop. Throws IoError if `file` exists and is not a regular file.
   explicit AtomicFile(std::filesystem::path const& file) : name_(file.string()) {
     namespace fs = std::filesystem;
     if (!file.has_filename()) throw IoError{"file '", name_, "': the name of a file is missing"};
@@ -49,7 +49,8 @@ class AtomicFile {
 
   AtomicFile(AtomicFile&&) noexcept = default;  ///< The source is then closed.
 
-  /// Completes the present file as the destructor does, then takes over the other. The source is then closed.
+  /// Closes or discards the present file by the rule of the destructor, then moves `other` here. The source is then
+  /// closed.
   AtomicFile& operator=(AtomicFile&& other) noexcept {
     AtomicFile taken(std::move(other));
     std::swap(name_, taken.name_);

@@ -27,8 +27,7 @@ namespace polybody {
 /// appears with the rows written so far, if there are any. Move-only.
 class Csv {
  public:
-  /// Part of the file that remains after an exception: the rows written so far, or nothing if only a whole table is
-  /// useful.
+  /// Content of the file after an exception: the rows written so far, or no file if only a whole table is useful.
   enum class Keeps { rows, whole_table };
 
   /// Creates `file` with its parent folders and writes the heads `columns`, with their units ("t [s]").

@@ -4,13 +4,14 @@
 /// to io/film.hpp.
 ///
 /// All numbers are little-endian. The head is
-///   8 bytes   "pbfilm01", where the last two digits are the version
+///   8 bytes   "pbfilm01"; the last two digits are the version
 ///   4 bytes   length c of the table of contents
 ///   4 bytes   zero
 ///   8 bytes   length d of the arrays
 ///   8 bytes   FNV-1a of the c + d bytes that follow (math/checksum.hpp)
 /// The table of contents follows, then the arrays. The table refers to an array by ["f4", first byte, count of
-/// numbers]. f4 and f8 are IEEE floats of 4 and 8 bytes, i1 and i2 signed, u2 and u4 unsigned integers.
+/// numbers]. Types are `f4` and `f8` (IEEE floats of 4 and 8 bytes), `i1` and `i2` (signed integers), `u2` and `u4`
+/// (unsigned integers).
 ///
 /// The position of a point of a part is place + A (point + step·deviation). Places and rotations (quaternions,
 /// normalised) are stored for each frame, deviations only for deformable parts. Deviations are stored in one byte if

@@ -43,8 +43,8 @@ FilmScalar speed_colours() {
 
 namespace detail {
 
-/// Motion of a part: origins and rotations of its frame, and deviations of its points from their positions in the
-/// first frame of the film, in axes of the part's frame.
+/// Motion of a part: origins and rotations of its frame, and deviations of its points. A deviation is relative to the
+/// position in the first frame of the film, in axes of the part's frame.
 struct FilmPart {
   std::string name;
   std::size_t shape = 0;  ///< index of the shape in the scene
@@ -179,7 +179,7 @@ class FilmScene {
   }  ///< sets in the order of the calls of `arrows`
   std::vector<detail::FilmHistory> const& histories() const {
     return histories_;
-  }  ///< in the order of their first points
+  }  ///< histories in the order of their first points
      ///@}
 
  private:

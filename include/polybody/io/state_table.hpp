@@ -153,10 +153,11 @@ State state_from(ModelLayout const& layout, Table const& table, std::size_t row)
 
 }  // namespace detail
 
-/// Heads of the columns of a state of a model. They are "t [s]", the coordinates of each body ("rod q[0] [m]", …),
-/// its velocities ("rod v[0] [m/s]", …), the first-order states of forces ("valve z[0]", …) and the multipliers of
-/// the constraint equations ("pin lambda[0]", …). The order within a body is given in the body's header. Units are
-/// those that a body provides (NamesUnits). Heads of first-order states and multipliers have no unit.
+/// Heads of the columns of a state of a model. The first is "t [s]". The coordinates of all bodies follow ("rod q[0]
+/// [m]", …), then their velocities ("rod v[0] [m/s]", …). Then come the first-order states of forces ("valve z[0]",
+/// …) and the multipliers of the constraint equations ("pin lambda[0]", …). The order within a body is given in the
+/// body's header. Units are those that a body provides (NamesUnits). Heads of first-order states and multipliers have
+/// no unit.
 template <class M>
 std::vector<std::string> state_columns(M const& model) {
   return detail::state_columns(layout_of(model));

@@ -56,9 +56,9 @@ class Visual {
   void attach(Marker<B> const& marker, Surface const& shape, std::string name = "shape");
 
   /// Adds the surface of the bar from which the body was made, divided into `pieces` along its length. Round sections
-  /// become polygons with so many `sides`. The points of a section follow the body's own displacement field if the
-  /// body provides points off its axis. Otherwise, as for cables and planar bodies, the section is rigid and fixed to
-  /// the frame on the axis.
+  /// become polygons with so many `sides`. If the body provides points outside of its axis, the points of a section
+  /// follow its displacement field. Otherwise, as for cables and planar bodies, the section is rigid and fixed to the
+  /// frame on the axis.
   /// \throws InvalidInput for fewer than one piece, a handle of another model or a bar without a section.
   template <class B>
   void sweep(BodyHandle<B> const& body, Bar const& bar, int pieces, int sides = 24);

@@ -104,11 +104,11 @@ void write_vtu(std::filesystem::path const& name, std::vector<VisualPart> const&
 ///   VtkWriter writer("out/run.pvd", visual);
 ///   for (State const& now : simulate(…)) writer.write(now);
 /// The example writes out/run.pvd and out/run/run_000000.vtu, …. The point data are the `displacement` from the
-/// reference state [m], the `velocity` [m/s] and the `axial_stress` [N/m²] (NaN if a part does not provide it). The
-/// cell data are `part`, the index of the part in the visual, from 0. Numbers are float32. A grid is complete before
-/// the collection refers to it, and the collection is valid after every state. A run that is interrupted, even by a
-/// signal, therefore leaves an animation up to its last state, and no temporary file. The visual must outlive the
-/// writer.
+/// reference state [m], the `velocity` [m/s] and the `axial_stress` [N/m²]. The stress is NaN if a part does not
+/// provide it. The cell data are `part`, the index of the part in the visual, from 0. Numbers are float32. A grid is
+/// complete before the collection refers to it, and the collection is valid after every state. A run that is
+/// interrupted, even by a signal, therefore leaves an animation up to its last state, and no temporary file. The
+/// visual must outlive the writer.
 template <class = void>  // compiled where it is used
 class VtkWriterOf {
  public:

@@ -26,7 +26,7 @@ class StudyMisuse : public InvalidInput {
 /// Parameter of a study: a column of its table.
 struct Column {
   std::string name{};                  ///< name by which a point returns the value
-  std::string unit{};                  ///< empty: none
+  std::string unit{};                  ///< unit of the values; empty: none
   std::vector<std::string> choices{};  ///< meaning of the values 0, 1, …; empty: the values are numbers in `unit`
 
   std::string head() const { return unit.empty() ? name : name + " [" + unit + ']'; }  ///< name with unit: "step [s]"
@@ -35,14 +35,14 @@ struct Column {
 class Point;
 
 /// Table of parameters, with one row for each point. `grid.hpp` and `sampling.hpp` create such tables. The study's
-/// table has the same order of points.
+/// table of results has the same order of points.
 class Points {
  public:
   /// Table with given columns and values.
   /// \param values (points × columns), row by row
   /// \param origin description of the rule that generated the points
-  /// \throws InvalidInput for no point or no column, names that are empty, equal or not printable, values that are
-  /// not finite, and values outside of the choices.
+  /// \throws InvalidInput for no point or no column, for names that are empty, equal or not printable, and for values
+  /// that are not finite or outside of the choices.
   Points(std::vector<Column> columns, std::vector<double> values, std::string origin)
       : columns_(std::move(columns)), values_(std::move(values)), origin_(std::move(origin)) {
     if (columns_.empty()) throw InvalidInput{"study: its points need one column at least."};
@@ -60,7 +60,7 @@ class Points {
   /// Value of a `point` in a `column`, in the unit of the column.
   /// \throws std::out_of_range.
   double at(std::size_t point, std::size_t column) const { return values_.at(point * columns_.size() + column); }
-  /// Row number `point`, from 0. This table must outlive it.
+  /// Row number `point`, from 0. This table must outlive the returned Point.
   Point operator[](std::size_t point) const;
 
  private:

@@ -25,8 +25,9 @@ namespace polybody::detail {
 class StudyRecord {
  public:
   /// Opens or creates the record, and removes the incomplete line of a killed run.
-  /// \throws IoError with the file and, if possible, the line. The reasons are that the folder or the file cannot be
-  /// created, another process has locked it, or `record_content` refuses it. An existing file then remains unchanged.
+  /// \throws IoError with the file and, if possible, the line. The error occurs if the folder or the file cannot be
+  /// created, another process has locked the file, or `record_content` refuses it. An existing file then remains
+  /// unchanged.
   explicit StudyRecord(RecordKind kind) : kind_(std::move(kind)) {
     open();
     try {

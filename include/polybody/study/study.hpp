@@ -1,7 +1,7 @@
 #pragma once
 /// \file
 /// Studies: one function at many points, distributed over the threads of a machine. Each finished point is recorded
-/// at once, so a killed study continues where it stopped. For the ranks of MPI see study/mpi.hpp.
+/// at once, so the next run continues a killed study. For the ranks of MPI see study/mpi.hpp.
 ///
 /// Not in polybody.hpp: only studies need it. Needs POSIX.
 
@@ -96,9 +96,9 @@ class Study {
   }
 
   /// Calls f(point) for each unfinished point, from several threads at once: f must not change shared data. The
-  /// results of f, a number or a range of numbers, are the outputs. The point is recorded as failed, with a message,
-  /// if f throws an Error, an output is not finite, or the time limit of the options is exceeded. After an exception
-  /// the points finished until then are recorded.
+  /// results of f, a number or a range of numbers, are the outputs. The point is recorded as failed if f throws an
+  /// Error, an output is not finite, or the time limit of the options is exceeded. The record then contains the
+  /// message. After an exception the points finished until then are recorded.
   /// \throws IoError for a file that cannot be created or written, is open in another run, is damaged, or belongs to
   /// another study.
   /// \throws InvalidInput for less than one thread and a negative time limit.
