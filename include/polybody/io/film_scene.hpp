@@ -171,12 +171,10 @@ class FilmScene {
 
   /// \name Data that a film writes
   ///@{
-  std::vector<FilmScalar> const& scalars() const { return scalars_; }       ///< scalars that colour the parts
-  std::vector<detail::FilmShape> const& shapes() const { return shapes_; }  ///< different shapes of the parts
-  std::vector<detail::FilmPart> const& parts() const { return parts_; }     ///< parts of the first frame
-  std::vector<detail::FilmArrowSet> const& arrow_sets() const {
-    return arrows_;
-  }  ///< sets in the order of the calls of `arrows`
+  std::vector<FilmScalar> const& scalars() const { return scalars_; }              ///< scalars that colour the parts
+  std::vector<detail::FilmShape> const& shapes() const { return shapes_; }         ///< different shapes of the parts
+  std::vector<detail::FilmPart> const& parts() const { return parts_; }            ///< parts of the first frame
+  std::vector<detail::FilmArrowSet> const& arrow_sets() const { return arrows_; }  ///< in the order of definition
   std::vector<detail::FilmHistory> const& histories() const {
     return histories_;
   }  ///< histories in the order of their first points

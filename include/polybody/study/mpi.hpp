@@ -73,8 +73,8 @@ StudyResults work_for_first(Study const& study, F const& f, StudyOptions const& 
   return results_in(message.text, study);
 }
 
-/// Run on rank 0: writes the record, distributes points, and computes points in a second thread. Only this thread
-/// calls MPI.
+/// Run on rank 0: writes the record, distributes points, and computes points in a second thread. Only the
+/// first thread calls MPI.
 template <class F>
 StudyResults run_first(MpiRanks const& ranks, Study const& study, F const& f, StudyOptions const& options) {
   StudyRecord record(study.kind());

@@ -43,9 +43,7 @@ class StudyRecord {
   StudyRecord& operator=(StudyRecord const&) = delete;
   ~StudyRecord() { close(); }
 
-  std::vector<std::optional<Outcome>> const& found() const {
-    return content_.outcomes;
-  }  ///< outcomes at the time of opening
+  std::vector<std::optional<Outcome>> const& found() const { return content_.outcomes; }  ///< at the time of opening
   bool torn() const { return content_.torn; }
 
   /// Appends the outcome of a point.

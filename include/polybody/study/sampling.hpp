@@ -116,8 +116,7 @@ Points latin_hypercube(std::size_t count, std::uint64_t seed, std::vector<Random
     for (std::size_t i = 0; i < count; ++i) strata[i] = i;
     for (std::size_t i = count; i > 1; --i) std::swap(strata[i - 1], strata[detail::sample_below(generator, i)]);
     for (std::size_t i = 0; i < count; ++i) {
-      double const within =
-          (double(generator() >> 34) + 0.5) * 0x1p-30;  // exact together with the 20 bits of a stratum
+      double const within = (double(generator() >> 34) + 0.5) * 0x1p-30;  // exact with the 20 bits of a stratum
       u[i * axes.size() + j] = (double(strata[i]) + within) / double(count);
     }
   }
