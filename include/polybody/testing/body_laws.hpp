@@ -133,8 +133,8 @@ struct BodyLaws {
     body.template local_rate<double>(view(delta), view(v), mutable_view(rate));
     return rate;
   }
-  /// Generalised velocities (nv) of a rigid motion: v0 is the velocity of the body-fixed point at the world's origin,
-  /// omega is the angular velocity in world axes.
+  /// Generalised velocities (nv) of a rigid motion. v0 is the velocity of the body-fixed point at the world's origin,
+  /// and omega is the angular velocity in world axes.
   VecX rigid_velocity(VecX const& q, Vec3 const& v0, Vec3 const& omega) const {
     VecX v(nv);
     body.rigid_velocity(view(q), v0, omega, mutable_view(v));

@@ -313,8 +313,8 @@ struct ContactLaws {
     });
   }
 
-  /// Without friction, for moving bodies: the approximation is exact in the twists and along the normal, whose
-  /// direction is constant during a displacement of a along it.
+  /// Without friction, for moving bodies: the approximation is exact in the twists and along the normal. A
+  /// displacement of a along the normal does not change its direction.
   void own_stiffness_has_the_slopes_of_the_normal_force() {
     with_each_contact([&](auto const& contact) {
       Touching const f = overlapping(0.1);
@@ -341,8 +341,8 @@ struct ContactLaws {
     });
   }
 
-  /// During sliding the secant exceeds the derivative along the slip, and equals it across the slip: own − exact = Jᵀ
-  /// (μN/s)(u uᵀ/s²) J with s² = u² + v_s².
+  /// During sliding the secant exceeds the derivative along the slip u, and equals it across the slip. The difference
+  /// own − exact is Jᵀ (μN/s)(u uᵀ/s²) J with s² = u² + v_s².
   void own_stiffness_of_friction_is_an_upper_bound() {
     for (double const mu : {0.1, 0.4, 1.3}) {
       Touching const f = overlapping(0.1);

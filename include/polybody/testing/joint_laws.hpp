@@ -44,8 +44,8 @@ struct JointLawsOf {
   /// constraint equations in world axes have the moment d × f, with the force f of these equations. It is zero for a
   /// force along d, for example of a spring. If a geometry declares opposite ends, Gb = −Ga is bitwise exact.
   void wrenches_are_equal_and_opposite();
-  /// Invariance under a rotation and displacement of both frames and their twists: constraint equations in world axes
-  /// rotate with the frames, and the others do not change.
+  /// Invariance under a rotation and displacement of both frames and their twists. Constraint equations in world axes
+  /// rotate with the frames; the others do not change.
   void does_not_see_a_rigid_motion_of_both_frames();
   /// `wrench_gradient` = ∂(Gᵀλ)/∂(motions of the frames), in closed form or by dual numbers, compared with differences.
   void wrench_gradient_is_the_derivative_of_the_wrenches();

@@ -78,8 +78,8 @@ struct LinearSolvers {
   void solve_what_full_pivoting_solves();
   /// For the zero matrix `factor` returns a column. It then factorises a regular matrix successfully.
   void name_a_column_of_a_singular_matrix();
-  /// If two joints have the same constraint equations, `factor` returns a column of one of them, or the solver drops
-  /// these constraint equations and lists them.
+  /// If two joints have the same constraint equations, `factor` returns a column of one of them. A solver may instead
+  /// drop these constraint equations and list them.
   void name_one_of_two_equal_joints();
   /// A system without unknowns is factorised and solved.
   void nothing_is_solved_at_once();

@@ -22,8 +22,8 @@ class HeightField {
     MatX heights;             ///< (nx × ny) heights(i, j) at (x0 + i dx, y0 + j dy) [m]
   };
 
-  /// \throws InvalidInput naming `what` if there are fewer than two points along x or y, if a spacing is not positive,
-  /// or if a height, slope or curvature is not finite.
+  /// \throws InvalidInput naming `what` if there are fewer than two points along x or y. Spacings must be positive;
+  /// heights, slopes and curvatures must be finite.
   explicit HeightField(Grid const& grid, std::string const& what = "HeightField") {
     MatX const& z = grid.heights;
     require_finite(Vec2(grid.x0, grid.y0), what, ": the place x0, y0 of the first point");

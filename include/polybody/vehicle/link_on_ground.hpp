@@ -11,8 +11,8 @@
 namespace polybody {
 
 /// Contact of points of a link's pad with a terrain. Marker a is the link's centre. Marker b is the ground; the
-/// terrain's height is a function of its x and y. The penetration of a point P at the depth e = h(x, y) − z below the
-/// ground is d = e n_z, with the normal n = (−h_x, −h_y, 1)/√(1 + h_x² + h_y²).
+/// terrain's height is a function of its x and y. The normal is n = (−h_x, −h_y, 1)/√(1 + h_x² + h_y²). A point P at
+/// the depth e = h(x, y) − z below the ground has the penetration d = e n_z.
 template <Terrain G = FlatGround, Observes observed = Observes::frame>
 struct LinkOnGround {
   static constexpr Observes needs = observed;

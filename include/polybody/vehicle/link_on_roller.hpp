@@ -93,8 +93,8 @@ struct LinkOnRoller {
   /// Upper bound of the distance between the centres of the roller and of a link in contact [m]. \param far upper bound
   /// of the distance of a rim from the roller's centre [m]
   double farthest(double far) const { return radius + half_thickness + half_width + pitch + far; }
-  /// Checks that the rims can reach the face: the height above the face, of at least one point of the axle
-  /// within ±`far` of its middle, is less than the radius of the rims. `arm` is the vector from the link to the middle.
+  /// Checks that the rims can reach the face. At least one point of the axle within ±`far` of its middle must be
+  /// lower above the face than the radius of the rims. `arm` is the vector from the link to the middle of the `axle`.
   /// The z axis of a cable is along x × axle (`link_axes`).
   bool reaches(Frame<double> const& link, Vec3 const& arm, Vec3 const& axle, double far) const {
     double const height = (radius + half_thickness) * (1.0 + 1e-9);
@@ -129,10 +129,10 @@ struct LinkOnRoller {
   }
 };
 
-/// Lateral guide of a track: a horn on the inner face of a link runs between the rims of a wheel and touches their
+/// Lateral guide of a track. A horn on the inner face of a link runs between the rims of a wheel and touches their
 /// inner faces. The markers are those of `LinkOnRoller`. The force is parallel to the axle. The penetration is the
 /// distance of the horn beyond the play, and at most the distance of the tip within the rims. So the force also grows
-/// from zero if a horn comes down on a rim instead of the gap between the rims: the edges are chamfered by 45°.
+/// from zero if a horn comes down on a rim. This represents edges with a chamfer of 45°.
 template <Observes observed = Observes::frame>
 struct HornOnRims {
   static constexpr Observes needs = observed;

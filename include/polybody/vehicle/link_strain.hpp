@@ -40,10 +40,10 @@ double bending_by_moment(double height = cable_height) {
   return 0.5 * height / *constants(link_bar({}, height)).EI_y;
 }
 
-/// Axial strain due to bending in the fibre towards the wheels, in a section of this `height` [m], just in front of the
-/// middle, on which contact forces act. One cubic element resolves half of the effect of a force in the middle, and one
-/// linear element does not resolve it. Two elements have a node in the middle and resolve it fully. For a cable,
-/// `lateral` (the vehicle's y axis) is required to determine the side of the wheels (link_axes.hpp).
+/// Axial strain due to bending in the fibre towards the wheels. The section has this `height` [m] and lies just in
+/// front of the middle, on which contact forces act. One cubic element resolves half of the effect of a force in the
+/// middle, and one linear element does not resolve it. Two elements have a node in the middle and resolve it fully.
+/// For a cable, `lateral` (the vehicle's y axis) is required to determine the side of the wheels (link_axes.hpp).
 template <class B>
 double link_bending(BodyHandle<B> const& link, State const& x, Vec3 const& lateral, double height = cable_height) {
   BodyInState<B> const b = body_in_state(link, x);
@@ -53,8 +53,8 @@ double link_bending(BodyHandle<B> const& link, State const& x, Vec3 const& later
   return bending_by_moment(height) * moment.dot(link_axes<B::observes>(section, lateral).col(1));
 }
 
-/// Strain (T₀ + m v²/p)/EA in a chain of links of mass m [kg], pitch p and `height` [m] that moves at speed v [m/s]
-/// under the tension T₀ = `pull` [N].
+/// Strain (T₀ + m v²/p)/EA in a chain that moves at speed v [m/s] under the tension T₀ = `pull` [N]. Its links have
+/// the mass m [kg], the pitch p and this `height` [m].
 inline double running_strain(double speed, double pull, double height = cable_height, double mass = thesis.link.mass) {
   return (pull + mass * speed * speed / pitch) / constants(link_bar({}, height)).EA;
 }

@@ -227,9 +227,9 @@ inline constexpr double horn_play = 0.0198;
 // -----------------------------------------------------------------------------------------------------------------
 // drive
 
-/// Function of time of the sprocket's speed relative to the chassis [rad/s]: zero for 1 s, then a ramp to `speed` at 8
-/// s, then constant  [T, Figures 3.6, 4.3; linear ramp: A]. A `rounding` of 0.1 s makes the angular acceleration
-/// continuous.
+/// Function of time of the sprocket's speed relative to the chassis [rad/s]. It is zero for 1 s, then a ramp to
+/// `speed` at t = 8 s, then constant [T, Figures 3.6, 4.3; linear ramp: A]. A `rounding` of 0.1 s makes the angular
+/// acceleration continuous.
 inline Ramp drive(double speed, double rounding = 0.0) {
   return {.target = speed, .duration = 7.0, .start = 1.0, .rounding = rounding};
 }

@@ -74,9 +74,9 @@ struct FiniteElementLink {
   }
 };
 
-/// Basis of static shapes under the loads of pins, wheels and ground, and of the three lowest free modes. The loads are
-/// all forces and moments at either pin except the moment about y, forces along z on each third of the inner face, and
-/// forces along z at both ends of the pad. \throws InvalidInput if the nodes leave a face without a patch, and as
+/// Basis of static shapes under the loads of pins, wheels and ground, and of the three lowest free modes. The loads
+/// at either pin are all forces, and the moments about x and z. The other loads are forces along z on each third of
+/// the inner face and at both ends of the pad. \throws InvalidInput if the nodes leave a face without a patch, and as
 /// `attachment_modes`.
 template <class = void>
 std::shared_ptr<FiniteElementLink const> finite_element_link(Structure structure) {
@@ -95,9 +95,9 @@ std::shared_ptr<FiniteElementLink const> finite_element_link(Structure structure
 
 /// Links in a floating frame with modes. Without a finite element model, a link has two beam elements (or a larger
 /// given number) and a boundary frame at each pin. The floating frame is attached to the rear one [Craig & Bampton
-/// 1968]. The shapes are the six static shapes of the front pin's motion and the three lowest modes with both pins
-/// fixed: torsion, vertical bending, axial stretch. With a finite element model, the pins move with the end faces, and
-/// contact forces act on parts of the inner and outer faces.
+/// 1968]. The shapes are the six static shapes of the front pin's motion, and the three lowest modes with fixed pins.
+/// These are torsion, vertical bending and axial stretch. With a finite element model, the pins move with the end
+/// faces, and contact forces act on parts of the inner and outer faces.
 template <>
 struct LinkOf<Ffr> {
   static constexpr Index modes_between = 3;  ///< number of fixed-interface modes, those of the lowest frequencies

@@ -3,9 +3,10 @@
 /// Layout of a track: its links, the circles that it goes around, and the tensioner. For vehicles; not included by
 /// polybody.hpp.
 ///
-/// The layout lies in a plane with x to the right (forward) and z up; y points to the left of the vehicle, away from
-/// the viewer. The track moves in the direction of a positive rotation about y: forward on top, rearward along the
-/// ground. Points are (x, z) [m]. A rotation by b about y turns x into (cos b, −sin b) and z into (sin b, cos b).
+/// The layout lies in a plane with x to the right (forward) and z up. The y axis points to the left of the vehicle,
+/// away from the viewer. The track moves in the direction of a positive rotation about y: forward on top, rearward
+/// along the ground. Points are (x, z) [m]. A rotation by b about y turns x into (cos b, −sin b) and z into (sin b,
+/// cos b).
 
 #include <cmath>
 #include <numbers>

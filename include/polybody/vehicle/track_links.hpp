@@ -42,8 +42,8 @@ inline Solids with_steel_links(Solids masses = thesis, double h = cable_height) 
   return masses;
 }
 
-/// Creation of a link as a body of type B, and the markers of its pins, its middle, and the points of action of contact
-/// forces on its middle line. `at` is the placement of the link's centre, with x to the front pin and z to the wheels.
+/// Creation of a link as a body of type B, and its markers: pins, middle, and points of action of contact forces on
+/// the middle line. `at` is the placement of the link's centre, with x to the front pin and z to the wheels.
 /// `elements` is the number of elements of a flexible link; 0 selects the least number of its formulation.
 ///
 /// Beams extend from the rear pin to the front pin, by default with one element. The mass of a `Solid` has no effect:

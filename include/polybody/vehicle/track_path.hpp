@@ -72,7 +72,7 @@ inline TrackClearances clearances(TrackPath const& path, double ground = -std::n
 
 namespace detail {
 
-/// Checks that `place` is inside the polygon of the pins: a ray from it in the direction of x then crosses the chain an
+/// Checks that `place` is inside the polygon of the pins. In this case, a ray from it along x crosses the chain an
 /// odd number of times.
 inline bool track_encloses(std::vector<Vec2> const& pins, Vec2 const& place) {
   bool within = false;
@@ -187,9 +187,9 @@ inline Vec2 track_pull(TrackPath const& path) {
 
 }  // namespace detail
 
-/// Computes the path of a track around its circles. \throws InvalidInput, naming the circle, if circles overlap or have
-/// an order that is impossible for a track, if there are too few or too many links for the tensioner's travel, or if
-/// the pitch is too long for a wheel.
+/// Computes the path of a track around its circles. \throws InvalidInput, naming the circle, if circles overlap, if
+/// their order is impossible for a track, or if the pitch is too long for a wheel. It is also thrown if there are too
+/// few or too many links for the tensioner's travel.
 inline TrackPath wrap_track(TrackLayout const& layout) {
   detail::check_track(layout);
   double const travel = detail::track_travel(layout);

@@ -4,9 +4,9 @@
 ///
 /// A link is the straight chord of length p between two pins. Its faces are at the distance h on either side. Pins
 /// seated on the sprocket are corners of its pitch polygon, of radius p / (2 sin(π/N)). Away from the sprocket each
-/// link turns inwards at its pin as far as the circles permit. It lies on a line that touches the next circle of radius
-/// R + h (its face touches the rim), or on the line to the first seat of the sprocket. All links of a straight run lie
-/// on one line. The chain is similar to a taut string around the same circles, but its arcs are polygons.
+/// link turns inwards at its pin as far as the circles permit. It lies on a tangent of the next circle of radius R +
+/// h, so that its face touches the rim, or on the line to the first seat of the sprocket. All links of a straight run
+/// lie on one line. The chain is similar to a taut string around the same circles, but its arcs are polygons.
 
 #include <algorithm>
 #include <limits>
@@ -29,8 +29,8 @@ inline TrackSight track_sight(Vec2 const& heading, Vec2 const& direction) {
   return {direction, turn > 0.5 * std::numbers::pi ? turn - 2.0 * std::numbers::pi : turn};
 }
 
-/// Tangent from `pin` to the circle of radius r = R + h. With the vector c to the centre, t² = c² − r² and c⊥, which is
-/// c turned left by 90°, the tangent that has the circle on its right is (t c + r c⊥)/c².
+/// Tangent from `pin` to the circle of radius r = R + h. The tangent that has the circle on its right is (t c + r
+/// c⊥)/c² with t² = c² − r². c is the vector to the centre; c⊥ is c turned left by 90°.
 inline TrackSight track_tangent(TrackLayout const& layout, TrackCircle const& circle, Vec2 const& pin,
                                 Vec2 const& heading) {
   Vec2 const c = circle.centre - pin;
@@ -74,9 +74,9 @@ inline int track_first_seat(TrackLayout const& layout, int start, Vec2 const& pi
   return first;
 }
 
-/// Target of the link behind the last pin of `walk`. The result is the index of a circle at or after `at`, or −1 for
-/// the next seat while the chain is on the sprocket, or the number of circles for the seat at the end of the chain.
-/// Sets `heading` to the link's direction.
+/// Target of the link behind the last pin of `walk`. The result is the index of a circle at or after `at`. It is −1
+/// for the next seat while the chain is on the sprocket. It is the number of circles for the seat at the end of the
+/// chain. Sets `heading` to the link's direction.
 ///
 /// Circles inside the track bound a link's turn to the right, and circles outside bound it to the left. They are
 /// visited in their order until a bound crosses the bound of the other side. Then the link runs to the circle of this
