@@ -10,7 +10,7 @@ namespace polybody {
 
 /// Ground through heights on a grid: bicubic in each cell, with continuous slopes [Catmull & Rom 1974, along x and
 /// along y]. The slope at a grid point equals the slope of the chord between its two neighbours. At the border it
-/// equals the slope of the chord to the one neighbour. So planes and x·y are reproduced exactly, and parabolas are
+/// equals the slope of the chord to its only neighbour. So planes and x·y are reproduced exactly, and parabolas are
 /// reproduced away from the border. Beyond the border, the slope normal to the border decreases to zero linearly over
 /// one spacing and is zero farther out. Four numbers are stored for each height; copies share them.
 class HeightField {

@@ -3,17 +3,17 @@
 /// Data of an armoured personnel carrier like the M113 with 64 links per track: the vehicle of Wallin 2016, chapters 3
 /// and 4, in SI units. For vehicles; not included by polybody.hpp.
 ///
-/// Each number has its source in brackets:
+/// The comment of each number gives its source:
 ///   [T…]  M. Wallin, PhD thesis, University of Illinois at Chicago 2016, with the table (T3.1), section or figure
 ///   [C]   the M113 data files of Project Chrono
 ///   [P]   public data sheets and the manual TM 9-2350-247-10
 ///   [D]   derived from the other sources; the derivation follows the number
 ///   [A]   an assumption
 ///
-/// World axes at the start: x forward, y left, z up. The ground is z = 0; the sprockets' axes are at x = 0. The origin
-/// of body axes is the centre of mass. They are parallel to the world axes, with two exceptions. Arms have x along the
-/// arm, from wheel to pivot. Links have x from the rear pin to the front pin and z to the wheels. Forward drive is a
-/// positive rotation about y.
+/// World axes at the start: x forward, y left, z up. The ground is z = 0; the sprockets' axes are at x = 0. Body axes
+/// have their origin in the centre of mass and are parallel to the world axes, with two exceptions. Arms have x along
+/// the arm, from wheel to pivot. Links have x from the rear pin to the front pin and z to the wheels. Forward drive is
+/// a positive rotation about y.
 
 #include <array>
 #include <numbers>

@@ -1,5 +1,6 @@
 #pragma once
-/// \file Checks of the tracks during a run: seating of pins in the valleys of their sprocket, penetrations, and
+/// \file
+/// Checks of the tracks during a run: seating of pins in the valleys of their sprocket, penetrations, and
 /// distance of the chain from its path. For vehicles; not included by polybody.hpp.
 
 #include <cmath>
