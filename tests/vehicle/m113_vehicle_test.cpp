@@ -53,7 +53,7 @@ TEST(M113Vehicle, CountsAsTheThesisDoes) {
   EXPECT_EQ(census(m113::Vehicle<>(Constraint{}, still(), options).model).degrees_of_freedom, 168);
   // loops that are closed in their plane by two constraint equations have the actual degrees of freedom
   EXPECT_EQ(census(Car(Constraint{}, still(), {.closure = m113::Closure::in_plane}).model).degrees_of_freedom, 164);
-  // 128 links of 8 coordinates and 28 bodies of 7 (including the ground); the thesis has a 29th body: 1227, 1060, 167
+  // 128 links of 8 coordinates and 28 bodies of 7 (including the ground); Wallin 2016 has a 29th body: 1227, 1060, 167
   Census const cable = census(m113::Vehicle<AncfCable<>, AncfLinear>({}, still(), options).model);
   EXPECT_EQ(cable.coordinates, 1220);
   EXPECT_EQ(cable.constraints, 166);

@@ -25,8 +25,8 @@ struct Seating {
 /// Deviations of a track in a state.
 struct TrackFault {
   double depth = 0.0;   ///< penetration of the deepest contact [m]
-  Index link = 0;       ///< link with this contact,
-  std::string against;  ///< and the part that it touches
+  Index link = 0;       ///< link with the deepest contact
+  std::string against;  ///< name of the part that this link touches
   /// Greatest lateral distance of a link's middle from the track's middle plane, in the chassis' axes [m]
   double sideways = 0.0;
   double off_path = 0.0;  ///< greatest distance of a pin from the initial chain, in the chassis' axes [m]

@@ -8,7 +8,7 @@
 namespace polybody::m113 {
 
 namespace detail {
-/// Outline of the sprocket with its teeth, as two rings along y.
+/// Surface of the toothed rim of the sprocket, as two rings along y.
 template <class = void>  // compiled only if it is used
 Surface toothed_wheel(double width) {
   SprocketProfile const profile = sprocket_profile();
