@@ -25,8 +25,8 @@ namespace polybody {
 class AtomicFile {
  public:
   /// Creates the parent folders of `file` and opens the temporary file. A symbolic link is followed, also if its
-  /// target does not exist yet. Throws IoError with the file name and the system's reason if this fails, also for a
-  /// name that is too long or links that form a loop. Throws IoError if `file` exists and is not a regular file.
+  /// target does not exist yet. Throws IoError with the file name and the system's reason if this fails. Reasons
+  /// include a name that is too long, links that form a loop, and a `file` that exists and is not a regular file.
   explicit AtomicFile(std::filesystem::path const& file) : name_(file.string()) {
     namespace fs = std::filesystem;
     if (!file.has_filename()) throw IoError{"file '", name_, "': the name of a file is missing"};

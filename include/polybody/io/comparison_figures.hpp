@@ -67,9 +67,9 @@ double own_span(Comparison const& c, std::size_t i) {
   return high > low ? high - low : std::abs(high);
 }
 
-/// Reference span for differences of output i: its own span, or 1 % of the largest span of all outputs with its unit,
-/// if that is larger. An output that consists of round-off in the first run is thus compared with the size of the
-/// other outputs.
+/// Reference span for differences of output i: its own span, but at least 1 % of the largest span of the outputs with
+/// the same unit. An output that consists of round-off in the first run is thus compared with the size of the other
+/// outputs.
 template <class = void>
 double measure_of(Comparison const& c, std::size_t i) {
   std::vector<std::string> const& names = c.runs.front().output_names;
