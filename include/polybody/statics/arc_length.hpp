@@ -1,11 +1,12 @@
 #pragma once
 /// \file
-/// A path of static equilibria past limit points: the load factor p becomes an unknown, and steps have a length along
-/// the path [Riks 1979; Crisfield 1991, §9.3]. With r(q, λ, p) = 0 affine in p, K Δ = −r − r_p Δp, corrections stay in
-/// the plane normal to the tangent (t, t_p) of the step's start:
+/// Arc-length method: path of static equilibria past limit points [Riks 1979; Crisfield 1991, §9.3].
+///
+/// The load factor p is an unknown, and steps have a length along the path. The residual r(q, λ, p) is affine in p, K
+/// Δ = −r − r_p Δp. Corrections are in the plane orthogonal to the tangent (t, t_p) at the start of the step:
 ///   a = −K⁻¹ r,  b = −K⁻¹ r_p,  Δp = −t·a / (t·b + t_p),  Δ = a + b Δp.
-/// A path that sets out with rows that repeat others, or with freedoms that no load excites, takes a and b of least
-/// norm.
+/// If the path starts with redundant constraints or with free motions that no load excites, a and b are solutions of
+/// minimum norm.
 
 #include <functional>
 #include <limits>
@@ -18,16 +19,16 @@
 
 namespace polybody {
 
-/// How a path of equilibria is followed, and where it ends.
+/// Options of `equilibrium_path`: step lengths, number of points and Newton iteration.
 struct ArcLengthOptions {
-  double step = 0.05;       ///< first length: the load factor it covers at the start
-  double largest = 0.05;    ///< no step is longer: a load factor
-  double smallest = 1e-6;   ///< nor shorter: a load factor
-  int points = 200;         ///< at most so many
+  double step = 0.05;       ///< first step: load factor that it covers at the start
+  double largest = 0.05;    ///< largest step: a load factor
+  double smallest = 1e-6;   ///< smallest step: a load factor
+  int points = 200;         ///< largest number of points
   double tolerance = 1e-9;  ///< of a correction, relative to 1 + max |q|
-  int max_iterations = 12;  ///< in a step
+  int max_iterations = 12;  ///< largest number of iterations in a step
 
-  /// \throws InvalidInput unless counts lie in [1, 10⁶] and the other numbers are positive and finite.
+  /// \throws InvalidInput unless the counts are in [1, 10⁶] and the other numbers are positive and finite.
   void check() const {
     require_positive(step, "equilibrium_path: the step");
     require_positive(largest, "equilibrium_path: the largest step");
@@ -38,19 +39,19 @@ struct ArcLengthOptions {
   }
 };
 
-/// A state in equilibrium under `load_factor` times gravity and loads.
+/// State in equilibrium under `load_factor` times gravity and loads.
 struct PathPoint {
-  double load_factor = 0.0;  ///< the factor of all loads
-  State x;                   ///< in equilibrium under that factor
+  double load_factor = 0.0;  ///< factor of gravity and all loads
+  State x;                   ///< equilibrium under that factor
 };
 
 namespace detail {
 
-/// The equations of a path at a point, and the tangent (t, t_p) that a step sets out along.
+/// Equations of an equilibrium path at a point, and the tangent (t, t_p) of a step.
 template <class Solver>
 class PathEquations {
  public:
-  /// `start` is in equilibrium without loads. \throws LinearSolverSingular where the path has no tangent there.
+  /// `start` is in equilibrium without loads. \throws LinearSolverSingular if the path has no tangent at `start`.
   PathEquations(System& system, PathPoint const& start)
       : system_(system),
         nv_(system.speeds()),
@@ -70,7 +71,7 @@ class PathEquations {
     turn();
   }
 
-  /// The tangent where the equations were solved last, of unit length and onwards.
+  /// Computes the tangent of unit length from the last solution, in the direction of the previous tangent.
   void turn() {
     double tp = 1.0 / std::sqrt(1.0 + b_.head(nv_).squaredNorm() / c2_);
     next_ = b_ * tp;
@@ -83,8 +84,8 @@ class PathEquations {
   }
   /// Moves a point along the tangent.
   void predict(PathPoint& point, double length) { move(point, VecX(length * t_), length * tp_); }
-  /// Newton's corrections of a point in the plane normal to the tangent: how many it takes; −1 where they do not
-  /// converge, or K is singular.
+  /// Corrects a point by Newton's method in the plane orthogonal to the tangent. Returns the number of iterations; −1
+  /// if they do not converge, or if K is singular.
   int correct(PathPoint& trial, ArcLengthOptions const& options) {
     double before = std::numeric_limits<double>::infinity();
     for (int k = 0; k < options.max_iterations; ++k) {
@@ -105,7 +106,7 @@ class PathEquations {
     system_.evaluate(at.x.q, at.x.v, at.x.t);
     return system_;
   }
-  /// a = −K⁻¹ r and b = −K⁻¹ r_p at a point; false where K is singular. \throws NonFinite.
+  /// Computes a = −K⁻¹ r and b = −K⁻¹ r_p at a point; false if K is singular. \throws NonFinite.
   bool solve(PathPoint const& at) {
     evaluated(at);
     for (auto const& [factor, out] : {std::pair{0.0, &r0_}, std::pair{1.0, &r1_}, std::pair{at.load_factor, &r_}}) {
@@ -118,7 +119,7 @@ class PathEquations {
     if ((takes_least_ ? least_.factor(at.x.lambda) : stiffness_.factor(at.x.lambda)) >= 0) return false;
     return solve_for(-r_, -phi_, at, a_) && solve_for(r0_ - r1_, VecX::Zero(rows_), at, b_);
   }
-  /// False where a freedom that nothing resists is excited.
+  /// Solves the linear equations; false if a force excites a motion without stiffness.
   bool solve_for(VecX const& f, VecX const& phi, PathPoint const& at, VecX& out) {
     if (takes_least_)
       least_.solve(f, phi, at.x.lambda, out);
@@ -150,9 +151,10 @@ class PathEquations {
 
 }  // namespace detail
 
-/// Follows the path from x, in equilibrium without loads, until `done(point)` or `options.points`. Lengths are measured
-/// by |dq|²/c² + dp², c = |dq/dp| at the start. \throws NewtonStalled naming the load factor where steps have become
-/// too short, LinearSolverSingular where not even the start has a tangent, NonFinite.
+/// Follows the path from x, in equilibrium without loads, until `done(point)` is true or `options.points` are
+/// computed. The length is the square root of |dq|²/c² + dp², c = |dq/dp| at the start. \throws NewtonStalled naming
+/// the load factor if the steps become too short, LinearSolverSingular if the path has no tangent at the start,
+/// NonFinite.
 template <LinearSolver Solver = DefaultStaticSolver>
 std::vector<PathPoint> equilibrium_path(System& system, State const& start, ArcLengthOptions const& options = {},
                                         std::function<bool(PathPoint const&)> const& done = {}) {
@@ -184,7 +186,7 @@ std::vector<PathPoint> equilibrium_path(System& system, State const& start, ArcL
   return path;
 }
 
-/// The same of a model.
+/// Overload for a model.
 template <LinearSolver Solver = DefaultStaticSolver, class M>
 std::vector<PathPoint> equilibrium_path(M const& model, State const& start, ArcLengthOptions const& options = {},
                                         std::function<bool(PathPoint const&)> const& done = {}) {

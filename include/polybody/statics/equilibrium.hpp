@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Static equilibrium: f(q, z) − Gᵀλ = 0, Φ(q) = 0 and h(q, z) = 0 at v = 0, by full Newton with load steps.
+/// Static equilibrium by Newton's method with load steps.
 
 #include <polybody/integrators/forward_dynamics.hpp>
 #include <polybody/run/fitting.hpp>
@@ -14,8 +14,8 @@
 namespace polybody {
 
 namespace detail {
-/// Multipliers that carry the loads at the first instant, in place of none: what holds a pendulum upright is made of
-/// them. False where the state has no unique acceleration.
+/// Computes initial multipliers that balance the loads at the first instant. The multipliers stabilise, for example,
+/// an upright pendulum in the tangent. False if the accelerations of the state are not unique.
 template <class = void>
 bool multipliers_at_rest(System& system, State& x) {
   VecX a = x.a;
@@ -27,8 +27,8 @@ bool multipliers_at_rest(System& system, State& x) {
   return true;
 }
 
-/// Follows the path from the present place to its end. What stopped it; `path.trial` is then the last place in
-/// equilibrium.
+/// Follows the path from the present state to its end. Returns the result of the last Newton iteration. `path.trial`
+/// is then the last equilibrium.
 template <class Solver>
 NewtonResult follow(EquilibriumPath<Solver>& path, EquilibriumOptions const& options, EquilibriumReport& report) {
   LoadSteps steps(options);
@@ -62,8 +62,8 @@ NewtonResult follow(EquilibriumPath<Solver>& path, EquilibriumOptions const& opt
   return NewtonResult::converged;
 }
 
-/// The path once more, from `start`, by corrections of least norm. Whether it ends in equilibrium: the last corrections
-/// are those of a tangent at the end itself, whose springs are reported.
+/// Follows the path again from `start`, by minimum-norm corrections. True if it ends in equilibrium. The last
+/// corrections use a tangent at the end itself, and the report contains its springs.
 template <class Solver>
 bool follow_least(EquilibriumPath<Solver>& path, State const& start, EquilibriumOptions const& options,
                   EquilibriumReport& report) {
@@ -78,8 +78,8 @@ bool follow_least(EquilibriumPath<Solver>& path, State const& start, Equilibrium
   return true;
 }
 
-/// Replaces an unstable state that only halved parts have reached by the end of the damped motion from `start`, if that
-/// is stable.
+/// Treats an unstable state that was reached by step halving only: the damped motion from `start` replaces it if its
+/// end is stable.
 template <class Solver>
 [[gnu::cold]] void relax_unstable(EquilibriumPath<Solver>& path, State const& start, EquilibriumOptions const& options,
                                   EquilibriumReport& report) {
@@ -97,7 +97,7 @@ template <class Solver>
   path.system.evaluate(found.q, found.v, found.t);
 }
 
-/// Puts a limit point into the report, with a warning; none if the load factor is 0.
+/// Adds a limit point at the load factor `factor` to the report, with a warning; nothing if `factor` is 0.
 template <class = void>
 [[gnu::cold]] void report_limit_point(double factor, EquilibriumReport& report) {
   if (factor == 0.0) return;
@@ -107,9 +107,9 @@ template <class = void>
        ". The equilibrium found beyond it is not its continuation. Follow the path by equilibrium_path(model, x)."}));
 }
 
-/// Follows the path a second time from `start`. Parts in which the determinant of the tangent changes its sign are
-/// halved. If this path ends in another stable state, that state is the equilibrium. If it ends early at a limit point,
-/// the first result stays and the report names the load factor.
+/// Follows the path a second time from `start`. Load steps in which the determinant of the tangent changes its sign
+/// are halved. If this path ends in another stable state, that state is the equilibrium. If it ends early at a limit
+/// point, the first result remains and the report contains the load factor.
 template <class Solver>
 [[gnu::cold]] void follow_without_crossing(EquilibriumPath<Solver>& path, State const& start,
                                            EquilibriumOptions const& options, EquilibriumReport& report) {
@@ -134,17 +134,22 @@ template <class Solver>
 
 }  // namespace detail
 
-/// Moves x (coordinates, first-order states, multipliers; speeds become zero) into equilibrium at time x.t, from its
-/// present place. Every term of the tangent is included. Where Newton's method does not get there at once, it follows
-/// the path s = 0 … 1 of
+/// Moves x into static equilibrium at time x.t from its present configuration: f(q, z) − Gᵀλ = 0, Φ(q) = 0 and h(q,
+/// z) = 0 at v = 0. Coordinates, first-order states and multipliers of x change; its velocities become zero. The
+/// tangent contains every term.
+///
+/// If Newton's method does not converge at once, it follows the path s = 0 … 1 of
 ///   r(q, λ, p) = (1 − s) r₀,  Φ(q) = (1 − s) Φ₀,  p = p₀ + s (1 − p₀),
-/// p the factor of loads and gravity: p₀ ∈ [0, 1] is the one that best keeps x where it is, r₀ and Φ₀ what it leaves.
-/// From a reference state loads grow from nothing; from an equilibrium under smaller ones they grow from those.
-/// Where the tangent has no inverse, the path is followed once more by corrections of least norm (`LeastNorm`): rows
-/// that repeat others are dropped, their multipliers zero, and freedoms that no load excites move as little as they
-/// can; the report names both. \throws NewtonStalled; LinearSolverSingular, naming the motion where a load excites one
-/// that nothing resists; InconsistentStart for rows that repeat others but contradict them; NonFinite. x is then
-/// untouched.
+/// with the factor p of loads and gravity. p₀ ∈ [0, 1] minimises the residual at x; r₀ and Φ₀ are the remaining
+/// residuals. From a reference state the loads increase from zero; from an equilibrium under smaller loads they
+/// increase from those.
+///
+/// If the tangent is singular, the path is followed again by minimum-norm corrections (`LeastNorm`). Redundant
+/// constraints are omitted, and their multipliers are zero. Free motions that no load excites are as small as
+/// possible. The report names both.
+///
+/// \throws NewtonStalled; LinearSolverSingular, naming the motion if a load excites a motion without stiffness;
+/// InconsistentStart for redundant constraints that contradict others; NonFinite. x is then unchanged.
 template <LinearSolver Solver = DefaultStaticSolver>
 EquilibriumReport equilibrium(System& system, State& x, EquilibriumOptions const& options = {}) {
   options.check();
@@ -190,7 +195,7 @@ EquilibriumReport equilibrium(System& system, State& x, EquilibriumOptions const
   return report;
 }
 
-/// The same of a whole model: policies that eliminate unknowns are rows here.
+/// Overload for a model. Joints of policies that eliminate unknowns are constraint equations here.
 template <LinearSolver Solver = DefaultStaticSolver, class M>
 EquilibriumReport equilibrium(M const& model, State& x, EquilibriumOptions const& options = {}) {
   System system(model, with < Entries::implicit_step | Entries::rigid_speeds >);

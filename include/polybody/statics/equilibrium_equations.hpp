@@ -7,7 +7,7 @@
 
 namespace polybody::detail {
 
-/// The equations of `equilibrium` for Newton's method, at a share s of the path.
+/// Equations of `equilibrium` for Newton's method, at the fraction s of the path.
 template <class Solver>
 struct EquilibriumPath {
   System& system;
@@ -15,20 +15,20 @@ struct EquilibriumPath {
   LeastNorm<Solver>& least;
   State& trial;
   double tolerance;
-  bool takes_least = false;  ///< corrections by `least`
-  /// A part of the path fails if the determinant of the tangent changes its sign between iterates, as beyond a limit
-  /// point, where Newton's method may converge to another branch.
+  bool takes_least = false;  ///< minimum-norm corrections by `least`
+  /// A load step fails if the determinant of the tangent changes its sign between iterates. Beyond a limit point
+  /// Newton's method may otherwise converge to another branch.
   bool refuses_crossing = false;
-  bool crosses = false;  ///< the determinant has changed its sign in this part
-  double sign = 0.0;     ///< of the determinant at the start of this part; 0: none yet
-  double least_rate = std::numeric_limits<double>::infinity();  ///< max |Δq|/Δs of the part with the least one
-  double far = 1e6 * (1.0 + trial.q.cwiseAbs().maxCoeff());     ///< no equilibrium is sought beyond
+  bool crosses = false;  ///< the determinant has changed its sign in this load step
+  double sign = 0.0;     ///< sign of the determinant at the start of this load step; 0: not computed
+  double least_rate = std::numeric_limits<double>::infinity();  ///< smallest max |Δq|/Δs of the load steps
+  double far = 1e6 * (1.0 + trial.q.cwiseAbs().maxCoeff());     ///< largest allowed coordinate and correction
   Index nv = system.speeds(), rows = system.rows(), states = system.layout().states, bad = -1;
   double first = 0.0, share = 0.0;  ///< p₀, s
   VecX r0 = VecX::Zero(nv), phi0 = VecX::Zero(rows), r = r0, phi = phi0, y = VecX::Zero(nv + rows), dq = r, q = trial.q;
-  VecX moved = r;  ///< sum of the corrections of this part
+  VecX moved = r;  ///< sum of the corrections of this load step
 
-  /// The path starts at the present place.
+  /// Starts the path at the present state.
   void begin() {
     system.evaluate(trial.q, trial.v, trial.t);
     system.load_factor = 0.0;
@@ -49,13 +49,13 @@ struct EquilibriumPath {
     system.load_factor = first + s * (1.0 - first);
   }
 
-  /// After a part Δs from `before` that has converged.
+  /// Records max |Δq|/Δs of a converged load step Δs from `before`.
   void measure_rate(State const& before, double part) {
     least_rate = std::min(least_rate, largest_size(trial.q - before.q) / part);
   }
 
-  /// Checks the sign of the determinant between `before` and the present state: Newton's method may pass over a range
-  /// of negative stiffness.
+  /// Checks the sign of the determinant halfway between `before` and the present state, because Newton's method may
+  /// step over a range of negative stiffness.
   [[gnu::cold]] void look_half_way(State const& before) {
     if (crosses || sign == 0.0 || takes_least) return;
     VecX const half = 0.5 * moved, lambda = 0.5 * (before.lambda + trial.lambda);
@@ -66,8 +66,8 @@ struct EquilibriumPath {
     system.evaluate(trial.q, trial.v, trial.t);
     tangent.sign_here(trial.lambda);
   }
-  /// The present load factor, if a limit point is near: the motion per load, K⁻¹ ∂f/∂s, has grown to many times the
-  /// least one of the parts so far. Else 0.
+  /// Returns the present load factor near a limit point, otherwise 0. Near a limit point the motion per load, K⁻¹
+  /// ∂f/∂s, is many times the smallest one of all load steps so far.
   [[gnu::cold]] double limit_point() {
     if (takes_least) return 0.0;
     double const factor = system.load_factor;
@@ -109,13 +109,13 @@ struct EquilibriumPath {
     if (takes_least && least.excited() >= 0) return std::numeric_limits<double>::infinity();
     return correction();
   }
-  /// The size of the correction y; its part of the coordinates into dq.
+  /// Returns the relative size of the correction y and stores its coordinates in dq.
   double correction() {
     dq = y.head(nv);
-    for (Index i = nv - states; i < nv; ++i) dq[i] /= 1.0 + std::abs(trial.v[i]);  // each by its own unit
+    for (Index i = nv - states; i < nv; ++i) dq[i] /= 1.0 + std::abs(trial.v[i]);  // relative to the state
     Index largest = 0;
     double const step = dq.cwiseAbs().maxCoeff(&largest), size = trial.q.cwiseAbs().maxCoeff();
-    if (!(step < far && size < far)) {  // nothing but rounding errors resists
+    if (!(step < far && size < far)) {  // only round-off resists this motion
       bad = largest;
       return std::numeric_limits<double>::infinity();
     }
@@ -129,7 +129,7 @@ struct EquilibriumPath {
     trial.lambda += y.tail(rows);
   }
 
-  /// Whether the tangent has no inverse where the path has come to; `least` then holds its springs.
+  /// True if the tangent is singular at the present state; `least` then contains its springs.
   bool is_singular() {
     if (!(tangent.growth() > LeastNorm<Solver>::suspicious)) return false;
     return finds_springs();
@@ -138,7 +138,7 @@ struct EquilibriumPath {
     system.evaluate(trial.q, trial.v, trial.t);
     return least.factor(trial.lambda) < 0 && !least.pins().empty();
   }
-  /// \throws LinearSolverSingular naming the motion that a load excites and nothing resists.
+  /// \throws LinearSolverSingular naming the motion without stiffness that a load excites.
   void refuse_excited() const {
     if (!takes_least || least.excited() < 0) return;
     std::size_t const k = std::size_t(least.excited());
@@ -152,7 +152,7 @@ struct EquilibriumPath {
                                ", and the loads excite this motion. Hold every body, or pass a limit point another "
                                "way."};
   }
-  /// \throws InconsistentStart naming a joint that repeats others but does not close where they do.
+  /// \throws InconsistentStart naming a joint with redundant constraints that are violated.
   void require_closed() const {
     double const limit = 1e-8 * (1.0 + largest_size(trial.q));
     VecX open = phi;
@@ -165,7 +165,7 @@ struct EquilibriumPath {
                                 "Penalty."};
   }
   std::string place() const { return sentence_of({" at load factor ", system.load_factor}); }
-  /// \throws LinearSolverSingular, NonFinite, NewtonStalled as the result says.
+  /// \throws LinearSolverSingular, NonFinite, NewtonStalled according to `result`.
   [[noreturn, gnu::cold]] void refuse(NewtonResult result, Index first_bad, std::string const& at) const {
     if (result == NewtonResult::singular)
       throw LinearSolverSingular{"equilibrium: the stiffness is singular", at, ", first at ",
@@ -175,7 +175,7 @@ struct EquilibriumPath {
     throw NewtonStalled{"equilibrium: Newton's method did not converge", at,
                         ". Use more load steps, or start nearer to the solution."};
   }
-  /// The names of what `least` found.
+  /// Adds the names of the motions and constraints with springs in `least` to the report.
   void report_springs(EquilibriumReport& report) const {
     report.neutral.clear();
     report.redundant.clear();
@@ -193,7 +193,7 @@ struct EquilibriumPath {
   }
 };
 
-/// Newton's method at the present share; what it cost goes into the report.
+/// Newton's method at the present fraction of the path; adds its iterations to the report.
 template <class Solver>
 NewtonResult correct(EquilibriumPath<Solver>& path, EquilibriumOptions const& options, EquilibriumReport& report) {
   KeptFactor kept;

@@ -1,13 +1,13 @@
 #pragma once
 /// \file
-/// Equations of statics A y = b that are singular: by rows that repeat others, and by neutral freedoms, motions that
-/// nothing resists. As many unknowns p as A lacks in rank are pinned, held by a unit spring each [Farhat & Géradin
-/// 1998]:
+/// Singular equations of statics A y = b, with redundant constraints or with free motions that have no stiffness.
+///
+/// As many unknowns p as the rank deficiency of A are held by a unit spring each [Farhat & Géradin 1998]:
 ///   A′ = A + P Pᵀ,  Z = A′⁻¹ P,  y′ = A′⁻¹ b.
-/// Then A Z = 0 and PᵀZ = 1, for every W with WᵀA = 0 has WᵀP = WᵀA′Z = WᵀP PᵀZ. So Z spans the motions and multipliers
-/// that A knows nothing of, and the springs bear Pᵀy′ = (WᵀP)⁻¹Wᵀb: nothing where A y = b has a solution, and then
-/// y′ − Z c is one for every c. Multipliers of pinned rows are made zero, as a time step makes those of rows that it
-/// drops, and |x| is made least.
+/// Then A Z = 0 and PᵀZ = 1, because every W with WᵀA = 0 has WᵀP = WᵀA′Z = WᵀP PᵀZ. Z therefore spans the motions
+/// and multipliers in the null space of A. The force in the springs is Pᵀy′ = (WᵀP)⁻¹Wᵀb. It is zero if A y = b has a
+/// solution, and then y′ − Z c is a solution for every c. The multipliers of constraint equations with a spring are
+/// made zero, as a time step makes those of redundant constraints, and |x| is minimised.
 
 #include <polybody/math/sequence.hpp>
 #include <polybody/statics/null_space.hpp>
@@ -15,8 +15,8 @@
 namespace polybody {
 
 namespace detail {
-/// The largest of the multipliers, the answers of compliant joints and the wrenches of force elements: what has to
-/// cancel where loads balance.
+/// Largest absolute value of the multipliers, the forces of compliant joints and the wrenches of force elements: the
+/// size of the terms that cancel in an equilibrium.
 template <class = void>
 double largest_load(System const& system, VecX const& lambda) {
   double largest = largest_size(lambda);
@@ -29,22 +29,22 @@ double largest_load(System const& system, VecX const& lambda) {
 }
 }  // namespace detail
 
-/// Static solutions where a freedom is neutral: springs that the matrix needs, and the solution of least norm among all
-/// that differ by neutral motions.
+/// Static solutions with free motions: the springs that the matrix requires, and the solution of minimum norm among
+/// all solutions that differ by free motions.
 template <LinearSolver Solver>
 class LeastNorm {
  public:
-  /// Growth factor of a solution from which on a freedom may be neutral.
+  /// Growth factor of a solution above which the matrix may be singular.
   static constexpr double suspicious = 1e8;
-  /// The force on a spring that balanced loads leave, as a share of the largest of them.
+  /// Largest force on a spring under balanced loads, relative to the largest load.
   static constexpr double balanced = 1e-9;
 
-  /// Both must outlive this.
+  /// Constructor; `system` and `tangent` must outlive this object.
   LeastNorm(System& system, StaticTangent<Solver>& tangent)
       : system_(&system), tangent_(&tangent), nv_(system.speeds()), b_(VecX::Zero(system.size())) {}
 
-  /// Finds the springs that the matrix needs at the state last evaluated, and Z. −1, or an unknown without a pivot
-  /// where no springs help.
+  /// Computes the springs that the matrix requires at the state last evaluated, and Z. Returns −1, or an unknown
+  /// without a pivot if springs are not sufficient.
   Index factor(VecX const& lambda) {
     excited_ = -1;
     set_springs(lambda);
@@ -61,7 +61,8 @@ class LeastNorm {
     return -1;
   }
 
-  /// `out` (size) = (x, μ) for f (speeds) and φ (rows). Whether loads excite a motion is in `excited` afterwards.
+  /// Solves for `out` (size) = (x, μ) with forces f (velocities) and violations φ (constraint equations). If the
+  /// loads excite a free motion, `excited` returns it.
   void solve(VecX const& f, VecX const& phi, VecX const& lambda, VecX& out) {
     double const unit = tangent_->unit();
     for (Index i = 0; i < nv_; ++i) b_[i] = f[i] / unit;
@@ -73,12 +74,12 @@ class LeastNorm {
     for (Index i = nv_; i < out.size(); ++i) out[i] *= unit;
   }
 
-  /// Unknowns that are pinned; the motion Z of the k-th (size).
+  /// Unknowns with a spring.
   Sequence<Index> const& pins() const { return pins_; }
-  VecX const& motion(std::size_t k) const { return columns_[k].z; }  ///< Z of pin k (size)
-  /// The place among the pins of the motion that loads excite most, beyond rounding; −1 where they balance.
+  VecX const& motion(std::size_t k) const { return columns_[k].z; }  ///< Z of spring k (size)
+  /// Number of the spring whose free motion the loads excite most, beyond round-off; −1 if the loads are balanced.
   Index excited() const { return excited_; }
-  /// λ with the same forces and zero at pinned rows.
+  /// Replaces λ by multipliers with the same forces that are zero for constraint equations with a spring.
   void drop_multipliers(VecX& lambda) {
     for (Index i = 0; i < b_.size(); ++i) b_[i] = i < nv_ ? 0.0 : lambda[i - nv_];
     take_rows_off(b_);
@@ -92,7 +93,7 @@ class LeastNorm {
     tangent_->set_springs(b_, lambda);
   }
 
-  /// Z of the last factorisation; whether A Z = 0.
+  /// Computes Z of the last factorisation; true if A Z = 0.
   bool columns_are_null(VecX const& lambda) {
     columns_.resize(pins_.size());
     for (std::size_t k = 0; k < columns_.size(); ++k) {
@@ -105,7 +106,7 @@ class LeastNorm {
     return std::all_of(columns_.begin(), columns_.end(), [](auto const& c) { return c.is_null(); });
   }
 
-  /// An orthonormal basis of the motions among Z.
+  /// Orthonormal basis of the motions in Z.
   void make_basis() {
     basis_.clear();
     for (std::size_t k = 0; k < columns_.size(); ++k) {
@@ -115,7 +116,8 @@ class LeastNorm {
     }
   }
 
-  /// Beside the rounding errors of f, ε |K| (1 + |q|) at each entry, and what is left of loads that cancel.
+  /// Computes `excited_`. Tolerances are the round-off of f, ε |K| (1 + |q|) at each entry, and the remainder of
+  /// loads that cancel.
   void find_excited(VecX const& y, double load) {
     double const reach = 1.0 + largest_size(system_->at().q), unit = tangent_->unit();
     double worst = 1.0;

@@ -5,28 +5,29 @@
 
 namespace polybody {
 
-/// The way s = 0 … 1 in equal parts: a part that fails is halved, and the next one is twice as large again.
+/// Load steps of the path s = 0 … 1, equal in length. A failed step is halved, and the step after it is doubled
+/// again.
 class LoadSteps {
  public:
-  /// s = 0, with the number of parts and the smallest one that the options name.
+  /// Starts at s = 0, with the number of steps and the smallest step of the options.
   explicit LoadSteps(EquilibriumOptions const& options)
       : whole_(1.0 / std::max(options.load_steps, 1)), smallest_(options.smallest_part), part_(whole_) {}
 
-  bool done() const { return done_ >= 1.0; }  ///< whether s = 1
+  bool done() const { return done_ >= 1.0; }  ///< true if s = 1
   double reached() const { return done_; }    ///< s
-  /// Where the next part ends.
+  /// End of the next load step.
   double next() const { return done_ + part_ > 1.0 - 1e-12 ? 1.0 : done_ + part_; }
-  /// Moves to `next()`, after a part that converged.
+  /// Moves to `next()`, after a load step that converged.
   void reach_next() {
     done_ = next();
     part_ = std::min(2.0 * part_, whole_);
   }
-  /// False where the part becomes smaller than the smallest one.
+  /// Halves the load step; false if it becomes smaller than the smallest one.
   bool halve() {
     part_ *= 0.5;
     return part_ >= smallest_;
   }
-  /// Back to s = 0, with parts as they are.
+  /// Returns to s = 0 and keeps the present load step.
   void restart() { done_ = 0.0; }
 
  private:

@@ -4,14 +4,15 @@
 
 namespace polybody::detail {
 
-/// How a body moves with the speeds z of a model, as a rigid one does.
+/// Rigid part of a body's motion for generalised velocities z of a model.
 struct RigidPart {
-  Vec3 velocity = Vec3::Zero();  ///< (3) of its point at the world's origin, world axes
+  Vec3 velocity = Vec3::Zero();  ///< (3) velocity of its point at the world's origin, world axes
   Vec3 turn = Vec3::Zero();      ///< (3) angular velocity, world axes
-  double left = 0.0;             ///< |what no rigid motion explains| / |speeds of the body|
+  double left = 0.0;             ///< |velocities that no rigid motion explains| / |velocities of the body|
 };
 
-/// By least squares: the speeds of the six motions (three in the plane), made orthogonal one after the other.
+/// Computes the rigid part by least squares: the velocities of the six rigid motions (three in the plane) are
+/// orthogonalised one after the other.
 template <class = void>  // compiled where it is used
 RigidPart rigid_part(System const& system, BodyPlace const& body, VecX const& z) {
   auto const entry = require_entry(system.entries().first.rigid_speeds, "speeds of rigid motions");
@@ -41,7 +42,7 @@ RigidPart rigid_part(System const& system, BodyPlace const& body, VecX const& z)
       for (int i = 0; i < 6; ++i) motion[i] -= part * motions[j][i];
     }
     double const length = std::sqrt(dot(column, column));
-    if (!(length > 1e-9 * before)) continue;  // the spin of a straight cable moves nothing
+    if (!(length > 1e-9 * before)) continue;  // the spin of a straight cable has no velocities
     for (Index i = 0; i < column.size(); ++i) column[i] /= length;
     for (int i = 0; i < 6; ++i) motion[i] /= length;
     double const part = dot(column, rest);
@@ -54,7 +55,7 @@ RigidPart rigid_part(System const& system, BodyPlace const& body, VecX const& z)
           whole > 0.0 ? std::sqrt(dot(rest, rest)) / whole : 0.0};
 }
 
-/// "(0, 0, 1)", to six digits behind the point.
+/// Text "(0, 0, 1)" of a vector, rounded to six decimals.
 template <class = void>
 std::string in_brackets(Vec3 const& x) {
   std::string text;
@@ -62,7 +63,7 @@ std::string in_brackets(Vec3 const& x) {
   return text + ')';
 }
 
-/// What a rigid motion is called: it moves along a direction or turns about an axis through a point, or both.
+/// Text of a rigid motion: a translation along a direction, a rotation about an axis through a point, or both.
 template <class = void>
 std::string text_of(RigidPart const& part, double reach) {
   double const v = std::sqrt(squared_norm(part.velocity)), w = std::sqrt(squared_norm(part.turn));
@@ -86,7 +87,8 @@ std::string text_of(RigidPart const& part, double reach) {
   return text;
 }
 
-/// The motion z of a model, named by the body of unknown i: body "payload" turns about (0, 0, 1) through (0, 0, -2).
+/// Text of the motion z of a model, with the name of the body of unknown i: body "payload" turns about (0, 0, 1)
+/// through (0, 0, -2).
 template <class = void>
 std::string name_of_motion(System const& system, VecX const& z, Index i) {
   std::string text = system.name_of(i);

@@ -4,15 +4,15 @@
 
 namespace polybody::detail {
 
-/// A column z beside A z and |A| |z|.
+/// Candidate z for a null vector, with A z and |A| |z|.
 struct NullColumn {
   VecX z, product, size;
 
-  /// What is left of A z is rounding: of its terms, or of entries of z, which those of A, near one at most, multiply.
+  /// True if A z is round-off: of its terms, or of the entries of z times entries of A, which are at most near one.
   bool is_null() const { return largest_size(product) <= 1e-13 * largest_size(size) + 1e-15 * largest_size(z); }
 };
 
-/// Adds up A z and |A| |z| of all columns.
+/// Computes the sums A z and |A| |z| of all columns.
 struct NullColumnSink {
   Sequence<NullColumn>& columns;
 
@@ -37,7 +37,7 @@ void multiply(StaticTangent<Solver>& tangent, VecX const& lambda, Sequence<NullC
   tangent.write_scaled(lambda, sink);
 }
 
-/// Σ aᵢ bᵢ over the first n.
+/// Scalar product Σ aᵢ bᵢ over the first n entries.
 inline double dot_of_first(Index n, VecX const& a, VecX const& b) {
   double sum = 0.0;
   for (Index i = 0; i < n; ++i) sum += a[i] * b[i];
@@ -46,7 +46,8 @@ inline double dot_of_first(Index n, VecX const& a, VecX const& b) {
 inline void add_scaled(double factor, VecX const& z, VecX& to) {
   for (Index i = 0; i < z.size(); ++i) to[i] += factor * z[i];
 }
-/// Makes the last vector normal to those before it, and of unit length, by its first n entries (Gram–Schmidt, twice).
+/// Orthogonalises and normalises the last vector with respect to the previous ones, by their first n entries
+/// (Gram–Schmidt, twice).
 template <class = void>
 void make_orthonormal(Sequence<VecX>& vectors, Index n) {
   VecX& last = vectors.back();

@@ -1,17 +1,17 @@
 #pragma once
 /// \file
-/// The null space of a matrix A of statics, by inverse iteration beside a small shift:
-///   y ← (A + σ D)⁻¹ D y,  σ = 1e-12,  D = diag(largest entry of the row; negative for rows of joints).
-/// Vectors of the null space grow by 1/σ in each pass, any other by 1/(σ + its eigenvalue beside D) [Golub & Van Loan
-/// 2013, §8.2]. The matrix with the shift is quasi-definite where K is not negative, and its pivots stand far above
-/// rounding. A vector is accepted where what is left of A z is rounding beside |A| |z|.
+/// Null space of a matrix A of statics, by inverse iteration with a small shift:
+///   y ← (A + σ D)⁻¹ D y,  σ = 1e-12,  D = diag(largest entry of the row; negative for constraint equations).
+/// Vectors of the null space grow by 1/σ in each pass, any other vector by 1/(σ + its eigenvalue relative to D)
+/// [Golub & Van Loan 2013, §8.2]. If K is not negative, the shifted matrix is quasi-definite, and its pivots are far
+/// above round-off. A vector is accepted if A z is round-off compared with |A| |z|.
 
 #include <polybody/math/sequence.hpp>
 #include <polybody/statics/null_column.hpp>
 
 namespace polybody::detail {
 
-/// The largest entry of each row.
+/// Largest absolute entry of each row.
 struct RowSizeSink {
   VecX& largest;
 
@@ -30,7 +30,8 @@ class NullSpace {
   NullSpace(System& system, StaticTangent<Solver>& tangent)
       : tangent_(tangent), nv_(system.speeds()), scale_(VecX::Zero(system.size())), y_(scale_), one_(1) {}
 
-  /// The unknowns that, held, leave nothing of the null space, into `pins`. −1, or an unknown without a pivot.
+  /// Computes `pins`, the unknowns that must be held to remove the null space. Returns −1, or an unknown without a
+  /// pivot.
   Index find(VecX const& lambda, Sequence<Index>& pins) {
     RowSizeSink sizes{scale_};
     tangent_.write_scaled(lambda, sizes);
@@ -46,7 +47,7 @@ class NullSpace {
   }
 
  private:
-  /// One more vector into `vectors_`.
+  /// Adds a vector to `vectors_`; false if there is no further one.
   bool finds_one(VecX const& lambda) {
     Index const n = scale_.size();
     vectors_.emplace_back(n);
@@ -63,7 +64,8 @@ class NullSpace {
     return false;
   }
 
-  /// By elimination with complete pivoting; of equal entries the last one, so that the joint connected last is dropped.
+  /// Selects the unknowns by elimination with complete pivoting. Of equal entries the last one is selected, so that
+  /// the joint connected last is redundant.
   void choose(Sequence<Index>& pins) {
     pins.clear();
     for (std::size_t k = 0; k < vectors_.size(); ++k) {

@@ -4,13 +4,13 @@
 
 namespace polybody {
 
-/// What a compliant joint bears before anything moves.
+/// Wrench in a compliant joint in the initial state.
 struct Preload {
-  std::string joint;      ///< its name in the model
+  std::string joint;      ///< name of the joint in the model
   Wrench<double> wrench;  ///< on the second body about the joint point there, world axes
 };
 
-/// The wrenches of all compliant joints (penalties, bushings) where `system` has been evaluated last, in the order of
+/// Wrenches of all compliant joints (penalties, bushings) in the state last evaluated by `system`, in the order of
 /// the model's joint types.
 template <class = void>
 std::vector<Preload> preloads(System const& system) {
@@ -24,8 +24,8 @@ std::vector<Preload> preloads(System const& system) {
   }
   return out;
 }
-/// The same at the reference state. They are zero where markers coincide and laws begin at zero; a start from the
-/// reference state releases what they store.
+/// Wrenches of all compliant joints in the reference state. They are zero if the markers coincide and the functions
+/// of time start at zero. A run from the reference state releases the stored energy.
 template <class M>
 std::vector<Preload> preloads(M const& model) {
   State const x = model.reference_state();

@@ -1,17 +1,17 @@
 #pragma once
 /// \file
-/// Damped motion into equilibrium, for states from which Newton's method does not converge, such as slack cables: the
-/// gradient flow
+/// Damped motion into equilibrium, for states from which Newton's method does not converge, such as slack cables. It
+/// follows the gradient flow
 ///   W q̇ = f − Gᵀλ,  Φ(q) = (1 − s) Φ₀,  W the diagonal of the mass matrix,
-/// by the implicit Euler method with steps τ that grow with its success (pseudo-transient continuation [Kelley & Keyes
-/// 1998]). It ends in a stable equilibrium: unstable ones repel it.
+/// by the implicit Euler method. The steps τ grow as long as they converge (pseudo-transient continuation [Kelley &
+/// Keyes 1998]). The motion ends in a stable equilibrium; unstable ones repel it.
 
 #include <polybody/statics/equilibrium_equations.hpp>
 #include <polybody/statics/stability.hpp>
 
 namespace polybody::detail {
 
-/// Adds up the diagonal of a matrix.
+/// Sum of the diagonal blocks of a matrix, diagonal entries only.
 struct DiagonalSink {
   VecX& sum;
 
@@ -21,7 +21,7 @@ struct DiagonalSink {
   }
 };
 
-/// One step of the damped motion for Newton's method: K + μ W in place of K, μ = 1/τ.
+/// One step of the damped motion for Newton's method: K + μ W instead of K, μ = 1/τ.
 template <class Solver>
 struct DampedStep {
   EquilibriumPath<Solver>& path;
@@ -50,7 +50,8 @@ struct DampedStep {
   }
 };
 
-/// Moves an unstable equilibrium by 1e-3 of its size along a motion of negative stiffness. False for a stable one.
+/// Moves an unstable equilibrium by 1e-3 of its size along a motion of negative stiffness. False for a stable
+/// equilibrium.
 template <class Solver>
 [[gnu::cold]] bool leaves_saddle(EquilibriumPath<Solver>& path) {
   path.system.evaluate(path.trial.q, path.trial.v, path.trial.t);
@@ -62,7 +63,7 @@ template <class Solver>
   return true;
 }
 
-/// Follows the damped motion from `start` under the whole load. Whether it ends in equilibrium.
+/// Follows the damped motion from `start` with increasing load up to the full load. True if it ends in equilibrium.
 template <class Solver>
 [[gnu::cold]] bool relax(EquilibriumPath<Solver>& path, State const& start, EquilibriumOptions const& options,
                          EquilibriumReport& report) {
@@ -118,7 +119,7 @@ template <class Solver>
   return report.relaxed = reached;
 }
 
-/// Counts negative pivots at the present place into the report, with a warning where there are any.
+/// Counts the negative pivots in the present state and adds them to the report, with a warning if there are any.
 template <class Solver>
 [[gnu::cold]] void report_stability(EquilibriumPath<Solver>& path, EquilibriumReport& report) {
   report.negative_pivots = -1;

@@ -1,10 +1,11 @@
 #pragma once
 /// \file
-/// Stability of an equilibrium: number of negative eigenvalues of ZᵀK Z, Z a basis of the motions that the constraint
-/// equations allow, G Z = 0. Z comes from elimination: each constraint equation gives one coordinate by others,
+/// Stability of an equilibrium: number of negative eigenvalues of ZᵀK Z, with a basis Z of the motions that the
+/// constraint equations permit, G Z = 0. Z is computed by elimination. Each constraint equation expresses one
+/// coordinate by others,
 ///   G_d x_d + G_f x_f = 0,  Z = [−G_d⁻¹ G_f; 1].
-/// K is symmetrised. Each negative pivot has a motion x. A sum of xᵀK x in long double confirms it: it must be negative
-/// beyond the round-off of its terms.
+/// K is symmetrised. Each negative pivot has a motion x. A sum of xᵀK x in long double confirms it: the sum must be
+/// negative beyond the round-off of its terms.
 
 #include <algorithm>
 #include <functional>
@@ -15,7 +16,7 @@
 
 namespace polybody::detail {
 
-/// Entries of a matrix of statics, K and G apart.
+/// Entries of a matrix of statics, K and G separately.
 struct StaticEntries {
   struct Entry {
     int row, col;
@@ -38,20 +39,20 @@ struct StaticEntries {
   }
 };
 
-/// A sum of coordinates.
+/// Linear combination of coordinates.
 struct CoordinateSum {
   Sequence<int> columns = {};
   Sequence<double> factors = {};
 };
 
-/// Coordinates that constraint equations give by others.
+/// Dependent coordinates, expressed by others through the constraint equations.
 class DependentCoordinates {
  public:
   static constexpr double redundant =
-      1e-10;  ///< of an equation's largest entry: what is left of one that repeats others
+      1e-10;  ///< largest remainder of a redundant constraint equation, relative to its largest entry
   static constexpr std::size_t most_terms = 20000000;
 
-  /// False where the sums have more than `most_terms`.
+  /// Computes the linear combinations; false if they have more than `most_terms`.
   template <class = void>  // compiled where it is used
   bool find(StaticEntries const& entries, Index rows) {
     std::size_t const n = std::size_t(entries.speeds);
@@ -70,7 +71,7 @@ class DependentCoordinates {
       give(redundant * largest);
     }
     std::size_t terms = 0;
-    for (std::size_t k = sums_.size(); k-- > 0;) {  // later ones by free coordinates, then earlier ones
+    for (std::size_t k = sums_.size(); k-- > 0;) {  // last to first, in terms of free coordinates
       for (std::size_t i = 0; i < sums_[k].columns.size(); ++i) add(sums_[k].columns[i], sums_[k].factors[i]);
       reduce();
       sums_[k] = take();
@@ -79,7 +80,7 @@ class DependentCoordinates {
     }
     return true;
   }
-  /// The coordinate as a sum of free ones; null if it is free.
+  /// Linear combination of free coordinates for a dependent one; null if the coordinate is free.
   CoordinateSum const* sum(int column) const {
     int const k = order_[std::size_t(column)];
     return k < 0 ? nullptr : &sums_[std::size_t(k)];
@@ -97,7 +98,7 @@ class DependentCoordinates {
     }
     work_[std::size_t(column)] += value;
   }
-  /// Puts sums in place of dependent coordinates, those given first first.
+  /// Substitutes linear combinations for dependent coordinates, in the order of their computation.
   void reduce() {
     while (!pending_.empty()) {
       std::pop_heap(pending_.begin(), pending_.end(), std::greater<int>());
@@ -109,7 +110,7 @@ class DependentCoordinates {
       for (std::size_t i = 0; i < sum.columns.size(); ++i) add(sum.columns[i], value * sum.factors[i]);
     }
   }
-  /// The row at hand gives the coordinate of its largest entry.
+  /// Solves the present constraint equation for the coordinate with the largest entry, if this entry exceeds `least`.
   void give(double least) {
     int best = -1;
     double most = least;
@@ -126,7 +127,7 @@ class DependentCoordinates {
     dependent_.push_back(best);
     sums_.push_back(std::move(sum));
   }
-  /// The sum at hand, which leaves none.
+  /// Returns the present linear combination and clears it.
   CoordinateSum take() {
     CoordinateSum sum;
     for (int const c : touched_) {
@@ -146,13 +147,13 @@ class DependentCoordinates {
   Sequence<CoordinateSum> sums_;
 };
 
-/// Negative eigenvalues of ZᵀK Z.
+/// Number of negative eigenvalues of ZᵀK Z, with an unstable motion.
 struct Stability {
-  Index negative = -1;  ///< their number; −1: the matrix is too large
-  VecX motion = {};     ///< (nv) one of negative xᵀK x; empty where there is none
+  Index negative = -1;  ///< number of negative eigenvalues; −1: the matrix is too large
+  VecX motion = {};     ///< (nv) motion with negative xᵀK x; empty if there is none
 };
 
-/// xᵀK x is negative beyond round-off.
+/// True if xᵀK x is negative beyond round-off.
 template <class = void>  // compiled where it is used
 bool is_negative(StaticEntries const& entries, VecX const& x) {
   long double sum = 0.0L, terms = 0.0L;

@@ -1,10 +1,10 @@
 #pragma once
 /// \file
-/// The linear equations of statics, [K, Gᵀ; G, 0] (x, μ) = (f, φ), K = −∂f/∂q with every term; x and f have first-order
-/// states and their rates behind coordinates and forces. They are solved as A y = b,
+/// Linear equations of statics, [K, Gᵀ; G, 0] (x, μ) = (f, φ). K = −∂f/∂q contains every term. x and f contain the
+/// first-order states and their rates after coordinates and forces. The equations are scaled to A y = b,
 ///   A = [K/u, Gᵀ; G, 0],  y = (x, μ/u),  b = (f/u, φ),
-/// u a power of two as large as K: beside bodies of 1e14 N/m rows of G, whose entries are near one, would otherwise be
-/// lost among rounding errors of pivots.
+/// with u a power of two of the size of K. Without the scaling, the entries of G, which are near one, would be
+/// lost in the round-off of pivots next to stiffnesses of 1e14 N/m.
 
 #include <cmath>
 #include <cstdint>
@@ -15,11 +15,11 @@
 
 namespace polybody {
 
-/// The static equations' matrix at a state, scaled, written, factored and solved with.
+/// Matrix of the equations of statics in a state: scaling, assembly, factorisation and solution.
 template <LinearSolver Solver>
 class StaticTangent {
  public:
-  /// The system must outlive this; its state is the one last given to `System::evaluate`, here and below.
+  /// Constructor. `system` must outlive this object. All functions use its state last given to `System::evaluate`.
   StaticTangent(System& system, VecX const& lambda)
       : system_(&system), nv_(system.speeds()), rhs_(VecX::Zero(system.size())) {
     analyse(lambda);
@@ -30,19 +30,19 @@ class StaticTangent {
     rescale(sink.largest);
   }
 
-  /// From now on unknown i bears a spring of its own, A + diag(springs). The first time it analyses anew.
+  /// Adds a spring to each unknown, A + diag(springs). The first call analyses the sparsity pattern again.
   void set_springs(VecX const& springs, VecX const& lambda) {
     bool const first = springs_.size() == 0;
     springs_ = springs;
     if (first) analyse(lambda);
   }
-  /// Back to A itself; analyses anew.
+  /// Removes the springs and analyses the sparsity pattern again.
   void remove_springs(VecX const& lambda) {
     springs_.resize(0);
     analyse(lambda);
   }
 
-  /// −1, or the unknown without a usable pivot.
+  /// Factorises the matrix. Returns −1, or the unknown without a usable pivot.
   Index factor(VecX const& lambda) {
     double largest = 0.0;
     Index const bad = write_and_factor(solver_, [&](BlockSink& solver) {
@@ -56,15 +56,15 @@ class StaticTangent {
     return bad;
   }
 
-  /// `out` (size) = (x, μ) for f (speeds) and φ (rows).
+  /// Computes `out` (size) = (x, μ) for f (velocities) and φ (constraint equations).
   void solve(VecX const& f, VecX const& phi, VecX& out) {
     rhs_ << f / factored_, phi;
     solver_.solve(rhs_, out);
     out.tail(phi.size()) *= factored_;
   }
-  /// y = (A + diag(springs))⁻¹ b.
+  /// Computes y = (A + diag(springs))⁻¹ b.
   void solve_scaled(VecX const& b, VecX& y) { solver_.solve(b, y); }
-  /// The blocks of A, without springs, in the unit of the last factorisation.
+  /// Writes the blocks of A, without springs, with the scale u of the last factorisation.
   template <TakesBlocks S>
   void write_scaled(VecX const& lambda, S& sink) {
     write(lambda, factored_, sink);
@@ -72,7 +72,7 @@ class StaticTangent {
   double unit() const { return factored_; }   ///< u of the last factorisation
   double next_unit() const { return unit_; }  ///< u of the next one
 
-  /// ±1, the sign of the determinant of the last factorisation; 0 for solvers that do not give it.
+  /// Sign of the determinant in the last factorisation, ±1; 0 for solvers that do not provide it.
   double sign_of_determinant() const {
     if constexpr (requires { solver_.sign_of_determinant(); })
       return solver_.sign_of_determinant();
@@ -80,7 +80,8 @@ class StaticTangent {
       return 0.0;
   }
 
-  /// The same at the present state of the system; 0 also for a singular matrix. The next scale u stays.
+  /// Factorises the matrix at the present state and returns the sign of its determinant; 0 also for a singular
+  /// matrix. The scale u of the next factorisation does not change.
   double sign_here(VecX const& lambda) {
     double const next = unit_;
     double const sign = factor(lambda) < 0 ? sign_of_determinant() : 0.0;
@@ -88,15 +89,16 @@ class StaticTangent {
     return sign;
   }
 
-  /// max |A⁻¹ b| for a b without order: as large as the inverse of the smallest singular value, but for a b that
-  /// happens to be normal to its vector.
+  /// Growth max |A⁻¹ b| for a pseudorandom b. It is of the order of the inverse of the smallest singular value,
+  /// except if b is orthogonal to the singular vector by chance.
   double growth() {
     VecX y = rhs_;
     fill_without_order(0, rhs_);
     solver_.solve(rhs_, y);
     return largest_size(y);
   }
-  /// The k-th of such b, entries between −1 and 1, the same in every run (a multiplicative hash).
+  /// Sets `b` to the pseudorandom vector number k with entries between −1 and 1, equal in every run (a multiplicative
+  /// hash).
   static void fill_without_order(std::size_t k, VecX& b) {
     for (Index i = 0; i < b.size(); ++i) {
       std::uint64_t h = ((std::uint64_t(k) << 32) + std::uint64_t(i) + 1) * 0x9E3779B97F4A7C15u;
@@ -104,7 +106,8 @@ class StaticTangent {
       b[i] = double(std::int64_t(h ^ (h >> 32))) * 0x1p-63;
     }
   }
-  /// Rows that the solver has dropped by itself, as unknowns. Empty for solvers that do not tell.
+  /// Redundant constraint equations that the solver has omitted, as unknowns. Empty for solvers that do not report
+  /// them.
   std::span<Index const> dropped() const {
     if constexpr (requires { solver_.dropped(); })
       return solver_.dropped();
@@ -113,11 +116,11 @@ class StaticTangent {
   }
 
  private:
-  /// Passes blocks on and keeps the largest entry of K.
+  /// Passes blocks to a solver and records the largest entry of K.
   struct Passing {
     BlockSink& solver;
     Index speeds;
-    double largest = 0.0;  ///< |K_ij| so far, relative to u
+    double largest = 0.0;  ///< largest |K_ij| so far, relative to u
 
     void add(Index row, Index col, BlockView const& b) {
       solver.add(row, col, b);
@@ -144,7 +147,7 @@ class StaticTangent {
   System* system_;
   Index nv_;
   Solver solver_;
-  double unit_ = 1.0, factored_ = 1.0;  ///< of the next factorisation and of the last one
+  double unit_ = 1.0, factored_ = 1.0;  ///< u of the next factorisation and of the last one
   VecX rhs_, springs_;
 };
 

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Inertia of a sparse symmetric matrix R: the signs of the pivots of P R Pᵀ = L D Lᵀ are those of its eigenvalues
-/// (Sylvester's law). P is the approximate minimum degree order; L is computed row by row along the elimination tree
+/// Inertia of a sparse symmetric matrix R: the pivots of P R Pᵀ = L D Lᵀ have the signs of its eigenvalues
+/// (Sylvester's law). P is the approximate minimum degree order. L is computed row by row along the elimination tree
 /// [Davis 2006, §4.7].
 
 #include <cmath>
@@ -14,16 +14,16 @@
 
 namespace polybody::detail {
 
-/// The factors L and D of a symmetric matrix with all entries given; a pivot below 1e-13 of its terms is zero to
-/// rounding and replaced by their size.
+/// Factors L and D of a symmetric matrix with all entries given. A pivot below 1e-13 of the size of its terms is zero
+/// up to round-off and is replaced by this size.
 class SymmetricPivots {
  public:
-  static constexpr double rounding = 1e-13;        ///< of a pivot beside the terms that it is the sum of
-  static constexpr Index most_entries = 40000000;  ///< of L
+  static constexpr double rounding = 1e-13;        ///< of a pivot relative to its terms
+  static constexpr Index most_entries = 40000000;  ///< largest number of entries of L
 
   using Matrix = Eigen::SparseMatrix<double>;
 
-  /// False where L would have more than `most_entries`.
+  /// Computes the factors; false if L would have more than `most_entries`.
   template <class = void>  // compiled where it is used
   bool factor(Matrix const& r) {
     size_ = r.cols();
@@ -39,10 +39,10 @@ class SymmetricPivots {
     eliminate(r);
     return true;
   }
-  /// The pivots that are negative beyond rounding, as their places.
+  /// Positions of the pivots that are negative beyond round-off.
   Sequence<Index> const& negative() const { return negative_; }
-  Index zero() const { return zero_; }  ///< number of pivots that are zero to rounding
-  /// x with xᵀR x = the pivot at place k: L ᵀP x = e_k.
+  Index zero() const { return zero_; }  ///< number of pivots that are zero up to round-off
+  /// Vector x with xᵀR x = pivot at position k: L ᵀP x = e_k.
   template <class = void>
   VecX direction(Index k) const {
     VecX y = VecX::Zero(size_), x(size_);
@@ -55,8 +55,8 @@ class SymmetricPivots {
   }
 
  private:
-  /// Calls `visit(i)` for the entries i of row k of L, which the entries of column k of P R Pᵀ above the diagonal lead
-  /// to along the elimination tree.
+  /// Calls `visit(i)` for the entries i of row k of L. They follow from the entries of column k of P R Pᵀ above the
+  /// diagonal along the elimination tree.
   template <class Visit>
   void reach(Matrix const& r, int k, Visit&& visit) {
     mark_[std::size_t(k)] = k;

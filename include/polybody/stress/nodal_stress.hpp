@@ -90,8 +90,8 @@ class NodalStress {
     require_rows(displacements, "displacements");
     return matrix_ * displacements;
   }
-  /// Stress history of the node `name` under these `displacements` (N×samples) [m]. \throws InvalidInput as
-  /// `stresses`, and for a name that does not exist.
+  /// Stress history of the node `name` under these `displacements` (N×samples) [m].
+  /// \throws InvalidInput for another number of rows, and for a name that does not exist.
   template <class = void>
   std::vector<Vec6> of(std::string_view name, MatX const& displacements) const {
     Index const first = row_of(name);

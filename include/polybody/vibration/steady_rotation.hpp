@@ -4,7 +4,7 @@
 /// in the world. With its rotation g(t) the motion is q(t) = g(t)·(q₀ ⊞ ε(t)). The rotation at q has the generalised
 /// velocities w(q). g acts on the velocities of a body by a linear map that does not depend on q, with the generator
 ///   Γξ = Dw ξ − c(w, ξ),   c(δ, v) = d/ds (local_rate(s δ, v) − local_rate(−s δ, v)) at s = 0,
-/// where c is the commutator of the local coordinates. (Positions and gradients: Γ = Dw = Ω×, c = 0. Angular
+/// with the commutator c of the local coordinates. (Positions and gradients: Γ = Dw = Ω×, c = 0. Angular
 /// velocities in body axes: Γ = 0, Dw ξ = w × ξ = c.) At t = 0, to first order in ε,
 ///   v = w(q₀ ⊞ ε) + ε˙,   v˙ = Γ w(q₀ ⊞ ε) + (Γ + Dw) ε˙ + ε¨.
 /// R = M v˙ − f + Gᵀλ then yields equations with constant coefficients [Simo, Lewis & Marsden 1991]:
