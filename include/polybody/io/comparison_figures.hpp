@@ -67,7 +67,7 @@ double own_span(Comparison const& c, std::size_t i) {
   return high > low ? high - low : std::abs(high);
 }
 
-/// Reference span for differences of output i: its own span, but at least 1 % of the largest span of the outputs with
+/// Reference span for differences of output i: its own span, and at least 1 % of the largest span of outputs with
 /// the same unit. An output that consists of round-off in the first run is thus compared with the size of the other
 /// outputs.
 template <class = void>
