@@ -24,7 +24,7 @@ struct AnyVisit {
 /// Force element that is the sum of forces between pairs of its markers.
 ///
 /// `for_each_pair(frame, visit)` calls visit(i, j, law) for all pairs of its markers i, j that may interact in their
-/// present position. law is a force element of two markers, and frame(i) is the frame of marker i.
+/// present position. The law is a force element of two markers, and frame(i) is the frame of marker i.
 /// `for_each_candidate(visit)` calls visit(i, j, law) for all pairs that can ever interact.
 ///
 /// The matrix of a time step contains the blocks of each body of a pair, but not the blocks that couple the two

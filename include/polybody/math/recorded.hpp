@@ -1,11 +1,6 @@
 #pragma once
 /// \file
-/// Numbers for reverse differentiation [Griewank & Walther 2008, §3.2]. A tape stores each operation with its partial
-/// derivatives.
-/// If z = f(x, y) is recorded and z̄ = ∂J/∂z for a result J, then x̄ += z̄ ∂f/∂x and ȳ += z̄ ∂f/∂y, in the reverse
-/// order of the operations. One backward sweep yields all derivatives of one result.
-///
-/// Constants are not recorded. Sums with constants and products with one or zero add no operations to the tape.
+/// Numbers for reverse differentiation.
 ///
 /// Not included in polybody.hpp: only the gradients of whole runs use it (gradients/gradient.hpp).
 
@@ -21,7 +16,12 @@
 
 namespace polybody {
 
-/// Tape: sequence of operations, each with its two arguments and its partial derivatives.
+/// Tape for reverse differentiation: sequence of operations, each with its two arguments and its partial derivatives
+/// [Griewank & Walther 2008, §3.2]. If z = f(x, y) is recorded and z̄ = ∂J/∂z for a result J, then
+///   x̄ += z̄ ∂f/∂x,   ȳ += z̄ ∂f/∂y,
+/// in the reverse order of the operations. One backward sweep yields all derivatives of one result.
+///
+/// Constants are not recorded. Sums with constants and products with one or zero add no operations to the tape.
 class Recording {
  public:
   /// Number of an operation on the tape; zero for all constants.

@@ -107,10 +107,9 @@ struct LowPass {
 };
 
 /// Returns the history `values` without frequencies above the cut-off. The computing time increases with the largest
-/// prime factor of the number of samples; long records should have a number of samples with small factors. \param
-/// times equally spaced [s]
+/// prime factor of the number of samples. Long records should have a number of samples with small factors.
+/// \param times equally spaced [s]
 /// \throws InvalidInput for samples that are too few, not finite or not equally spaced, for a cut-off above Nyquist's
-/// frequency and for one whose period is longer than the record.
 /// frequency and for one whose period is longer than the record.
 template <class = void>
 std::vector<double> low_pass(std::span<double const> times, std::span<double const> values, LowPass const& filter) {

@@ -74,8 +74,8 @@ std::vector<StressCycle> rainflow(std::span<double const> history) {
   return cycles;
 }
 
-/// Histogram of the ranges of cycles: entry k counts the cycles with ranges in [k·width, (k + 1)·width). \throws
-/// InvalidInput unless the width is positive.
+/// Histogram of the ranges of cycles: entry k counts the cycles with ranges in [k·width, (k + 1)·width).
+/// \throws InvalidInput unless the width is positive.
 template <class = void>
 std::vector<double> binned(std::span<StressCycle const> cycles, double width) {
   require_positive(width, "binned: the width");

@@ -1,12 +1,6 @@
 #pragma once
 /// \file
-/// Arc-length method: path of static equilibria past limit points [Riks 1979; Crisfield 1991, §9.3].
-///
-/// The load factor p is an unknown, and steps have a length along the path. The residual r(q, λ, p) is affine in p, K
-/// Δ = −r − r_p Δp. Corrections are in the plane orthogonal to the tangent (t, t_p) at the start of the step:
-///   a = −K⁻¹ r,  b = −K⁻¹ r_p,  Δp = −t·a / (t·b + t_p),  Δ = a + b Δp.
-/// If the path starts with redundant constraints or with free motions that no load excites, a and b are solutions of
-/// minimum norm.
+/// Arc-length method: paths of static equilibria past limit points.
 
 #include <functional>
 #include <limits>
@@ -151,10 +145,17 @@ class PathEquations {
 
 }  // namespace detail
 
-/// Follows the path from x, in equilibrium without loads, until `done(point)` is true or `options.points` are
-/// computed. The length is the square root of |dq|²/c² + dp², c = |dq/dp| at the start. \throws NewtonStalled naming
-/// the load factor if the steps become too short, LinearSolverSingular if the path has no tangent at the start,
-/// NonFinite.
+/// Follows a path of static equilibria past limit points by the arc-length method [Riks 1979; Crisfield 1991, §9.3].
+/// The path starts at x, in equilibrium without loads, and ends if `done(point)` is true or `options.points` are
+/// computed. The length is the square root of |dq|²/c² + dp², c = |dq/dp| at the start.
+///
+/// The load factor p is an unknown, and the residual r(q, λ, p) is affine in it. Corrections (Δ, Δp) are in the plane
+/// orthogonal to the tangent (t, t_p) at the start of the step:
+///   K Δ = −r − r_p Δp,  a = −K⁻¹ r,  b = −K⁻¹ r_p,  Δp = −t·a / (t·b + t_p),  Δ = a + b Δp.
+/// If the path starts with redundant constraints or with free motions that no load excites, a and b are solutions of
+/// minimum norm.
+/// \throws NewtonStalled naming the load factor if the steps become too short, LinearSolverSingular if the path has
+/// no tangent at the start, NonFinite.
 template <LinearSolver Solver = DefaultStaticSolver>
 std::vector<PathPoint> equilibrium_path(System& system, State const& start, ArcLengthOptions const& options = {},
                                         std::function<bool(PathPoint const&)> const& done = {}) {

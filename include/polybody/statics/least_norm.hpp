@@ -1,13 +1,6 @@
 #pragma once
 /// \file
-/// Singular equations of statics A y = b, with redundant constraints or with free motions that have no stiffness.
-///
-/// As many unknowns p as the rank deficiency of A are held by a unit spring each [Farhat & Géradin 1998]:
-///   A′ = A + P Pᵀ,  Z = A′⁻¹ P,  y′ = A′⁻¹ b.
-/// Then A Z = 0 and PᵀZ = 1, because every W with WᵀA = 0 has WᵀP = WᵀA′Z = WᵀP PᵀZ. Z therefore spans the motions
-/// and multipliers in the null space of A. The force in the springs is Pᵀy′ = (WᵀP)⁻¹Wᵀb. It is zero if A y = b has a
-/// solution, and then y′ − Z c is a solution for every c. The multipliers of constraint equations with a spring are
-/// made zero, as a time step makes those of redundant constraints, and |x| is minimised.
+/// Singular equations of statics.
 
 #include <polybody/math/sequence.hpp>
 #include <polybody/statics/null_space.hpp>
@@ -15,8 +8,8 @@
 namespace polybody {
 
 namespace detail {
-/// Largest absolute value of the multipliers, the forces of compliant joints and the wrenches of force elements: the
-/// size of the terms that cancel in an equilibrium.
+/// Size of the terms that cancel in an equilibrium: the largest of the multipliers, the forces of compliant joints
+/// and the wrenches of force elements.
 template <class = void>
 double largest_load(System const& system, VecX const& lambda) {
   double largest = largest_size(lambda);
@@ -29,8 +22,15 @@ double largest_load(System const& system, VecX const& lambda) {
 }
 }  // namespace detail
 
-/// Static solutions with free motions: the springs that the matrix requires, and the solution of minimum norm among
-/// all solutions that differ by free motions.
+/// Minimum-norm solution of singular equations of statics A y = b. The cause is redundant constraints or free
+/// motions, which have no stiffness. As many unknowns p as the rank deficiency of A are held by a unit spring each
+/// [Farhat & Géradin 1998]:
+///   A′ = A + P Pᵀ,  Z = A′⁻¹ P,  y′ = A′⁻¹ b.
+/// Then A Z = 0 and PᵀZ = 1, because every W with WᵀA = 0 has WᵀP = WᵀA′Z = WᵀP PᵀZ. Z therefore spans the null space
+/// of A, motions and multipliers. The force in the springs is Pᵀy′ = (WᵀP)⁻¹Wᵀb. It is zero if A y = b has a
+/// solution, and then y′ − Z c is a solution for every c. The multipliers of constraint equations with a spring are
+/// made zero, as in a time step with redundant constraints. Of the other solutions the one with the least |x| is
+/// computed.
 template <LinearSolver Solver>
 class LeastNorm {
  public:

@@ -1,10 +1,6 @@
 #pragma once
 /// \file
-/// Damped motion into equilibrium, for states from which Newton's method does not converge, such as slack cables. It
-/// follows the gradient flow
-///   W q̇ = f − Gᵀλ,  Φ(q) = (1 − s) Φ₀,  W the diagonal of the mass matrix,
-/// by the implicit Euler method. The steps τ grow as long as they converge (pseudo-transient continuation [Kelley &
-/// Keyes 1998]). The motion ends in a stable equilibrium; unstable ones repel it.
+/// Damped motion into equilibrium.
 
 #include <polybody/statics/equilibrium_equations.hpp>
 #include <polybody/statics/stability.hpp>
@@ -63,7 +59,12 @@ template <class Solver>
   return true;
 }
 
-/// Follows the damped motion from `start` with increasing load up to the full load. True if it ends in equilibrium.
+/// Damped motion from `start` into equilibrium, for states from which Newton's method does not converge, such as
+/// slack cables. It follows the gradient flow
+///   W q̇ = f − Gᵀλ,  Φ(q) = (1 − s) Φ₀,  W the diagonal of the mass matrix,
+/// by the implicit Euler method. The load increases to the full load. The steps τ grow as long as they converge
+/// (pseudo-transient continuation [Kelley & Keyes 1998]). The motion ends in a stable equilibrium; unstable ones
+/// repel it. True if it ends in equilibrium.
 template <class Solver>
 [[gnu::cold]] bool relax(EquilibriumPath<Solver>& path, State const& start, EquilibriumOptions const& options,
                          EquilibriumReport& report) {

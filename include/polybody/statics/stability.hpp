@@ -1,11 +1,6 @@
 #pragma once
 /// \file
-/// Stability of an equilibrium: number of negative eigenvalues of ZᵀK Z, with a basis Z of the motions that the
-/// constraint equations permit, G Z = 0. Z is computed by elimination. Each constraint equation expresses one
-/// coordinate by others,
-///   G_d x_d + G_f x_f = 0,  Z = [−G_d⁻¹ G_f; 1].
-/// K is symmetrised. Each negative pivot has a motion x. A sum of xᵀK x in long double confirms it: the sum must be
-/// negative beyond the round-off of its terms.
+/// Stability of an equilibrium.
 
 #include <algorithm>
 #include <functional>
@@ -147,7 +142,12 @@ class DependentCoordinates {
   Sequence<CoordinateSum> sums_;
 };
 
-/// Number of negative eigenvalues of ZᵀK Z, with an unstable motion.
+/// Stability of an equilibrium: number of negative eigenvalues of ZᵀK Z, with a basis Z of the motions that the
+/// constraint equations permit, G Z = 0. Z is computed by elimination. Each constraint equation expresses one
+/// coordinate by others,
+///   G_d x_d + G_f x_f = 0,  Z = [−G_d⁻¹ G_f; 1].
+/// K is symmetrised. Each negative pivot has a motion x. A sum of xᵀK x in long double confirms it: the sum must be
+/// negative beyond the round-off of its terms.
 struct Stability {
   Index negative = -1;  ///< number of negative eigenvalues; −1: the matrix is too large
   VecX motion = {};     ///< (nv) motion with negative xᵀK x; empty if there is none

@@ -1,10 +1,6 @@
 #pragma once
 /// \file
-/// Linear equations of statics, [K, Gᵀ; G, 0] (x, μ) = (f, φ). K = −∂f/∂q contains every term. x and f contain the
-/// first-order states and their rates after coordinates and forces. The equations are scaled to A y = b,
-///   A = [K/u, Gᵀ; G, 0],  y = (x, μ/u),  b = (f/u, φ),
-/// with u a power of two of the size of K. Without the scaling, the entries of G, which are near one, would be
-/// lost in the round-off of pivots next to stiffnesses of 1e14 N/m.
+/// Matrix of the equations of statics.
 
 #include <cmath>
 #include <cstdint>
@@ -16,6 +12,12 @@
 namespace polybody {
 
 /// Matrix of the equations of statics in a state: scaling, assembly, factorisation and solution.
+///
+/// Linear equations of statics, [K, Gᵀ; G, 0] (x, μ) = (f, φ). K = −∂f/∂q contains every term. x and f contain the
+/// first-order states and their rates after coordinates and forces. The equations are scaled to A y = b,
+///   A = [K/u, Gᵀ; G, 0],  y = (x, μ/u),  b = (f/u, φ),
+/// with u a power of two of the size of K. Without the scaling, the entries of G, which are near one, would be
+/// lost in the round-off of pivots next to stiffnesses of 1e14 N/m.
 template <LinearSolver Solver>
 class StaticTangent {
  public:

@@ -1,8 +1,6 @@
 #pragma once
 /// \file
-/// Inertia of a sparse symmetric matrix R: the pivots of P R Pᵀ = L D Lᵀ have the signs of its eigenvalues
-/// (Sylvester's law). P is the approximate minimum degree order. L is computed row by row along the elimination tree
-/// [Davis 2006, §4.7].
+/// Inertia of a sparse symmetric matrix.
 
 #include <cmath>
 
@@ -14,8 +12,10 @@
 
 namespace polybody::detail {
 
-/// Factors L and D of a symmetric matrix with all entries given. A pivot below 1e-13 of the size of its terms is zero
-/// up to round-off and is replaced by this size.
+/// Inertia of a sparse symmetric matrix R: the pivots of P R Pᵀ = L D Lᵀ have the signs of its eigenvalues
+/// (Sylvester's law). P is the approximate minimum degree order. L is computed row by row along the elimination tree
+/// [Davis 2006, §4.7]. A pivot below 1e-13 of the size of its terms is zero up to round-off and is replaced by this
+/// size. Both triangles of R must be given.
 class SymmetricPivots {
  public:
   static constexpr double rounding = 1e-13;        ///< of a pivot relative to its terms

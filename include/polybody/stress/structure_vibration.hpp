@@ -1,9 +1,6 @@
 #pragma once
 /// \file
-/// Vibration of a structure under the loads of a recorded rigid motion (structure_loads.hpp), in nodal or modal
-/// coordinates, e = Φ q:
-///   M q̈ + D q̇ + K q = Φᵀ(Q_f − m_fr q̈_r − C_qfᵀ λ)   [thesis §4.3.5],
-/// by any integrator for a `System`.
+/// Vibration of a structure under the loads of a recorded rigid motion.
 ///
 /// Not included in polybody.hpp: Eigen's sparse module and factorisations would add seconds to the compile time of
 /// every program.
@@ -16,9 +13,14 @@
 
 namespace polybody {
 
-/// Options for the vibration of a structure in the body's frame. The frame moves with the rigid body, so that the
-/// result depends on its attachment. If joints guide the body, the frame should be attached at these joints. For a
-/// free body it should follow the mean motion (`free_interface_modes`, with `ReferenceConditions::none()`).
+/// Options for the vibration of a structure under the loads of a recorded rigid motion (structure_loads.hpp), in
+/// nodal or modal coordinates e = Φ q relative to the body's frame:
+///   M q̈ + D q̇ + K q = Φᵀ(Q_f − m_fr q̈_r − C_qfᵀ λ)   [thesis §4.3.5].
+/// Any integrator for a `System` solves it.
+///
+/// The frame moves with the rigid body, so that the result depends on its attachment. If joints guide the body, the
+/// frame should be attached at these joints. For a free body it should follow the mean motion
+/// (`free_interface_modes`, with `ReferenceConditions::none()`).
 struct Vibration {
   ReferenceConditions frame = ReferenceConditions::clamped();  ///< attachment of the frame
   MatX shapes = {};  ///< Φ (N×n), computed with `frame`; empty: all nodal coordinates

@@ -1,17 +1,6 @@
 #pragma once
 /// \file
-/// Small vibrations about a steady rotation. The whole model rotates with the angular velocity Ω about an axis fixed
-/// in the world. With its rotation g(t) the motion is q(t) = g(t)·(q₀ ⊞ ε(t)). The rotation at q has the generalised
-/// velocities w(q). g acts on the velocities of a body by a linear map that does not depend on q, with the generator
-///   Γξ = Dw ξ − c(w, ξ),   c(δ, v) = d/ds (local_rate(s δ, v) − local_rate(−s δ, v)) at s = 0,
-/// with the commutator c of the local coordinates. (Positions and gradients: Γ = Dw = Ω×, c = 0. Angular
-/// velocities in body axes: Γ = 0, Dw ξ = w × ξ = c.) At t = 0, to first order in ε,
-///   v = w(q₀ ⊞ ε) + ε˙,   v˙ = Γ w(q₀ ⊞ ε) + (Γ + Dw) ε˙ + ε¨.
-/// R = M v˙ − f + Gᵀλ then yields equations with constant coefficients [Simo, Lewis & Marsden 1991]:
-///   M ε¨ + (D + M (Γ + Dw)) ε˙ + K ε + Gᵀμ = 0,  G ε = 0,
-///   D = −∂f/∂v,   K = ∂/∂ε R(q₀ ⊞ ε, w(q₀ ⊞ ε), Γ w(q₀ ⊞ ε)).
-/// The term M (Γ + Dw) contains Coriolis and gyroscopic forces. K contains the centrifugal forces and the geometric
-/// stiffness of the stress that they cause.
+/// Small vibrations about a steady rotation.
 ///
 /// Not included in polybody.hpp: it requires vibration/modes.hpp.
 
@@ -21,7 +10,18 @@
 
 namespace polybody {
 
-/// Steady rotation of a whole model about an axis.
+/// Steady rotation of a whole model with the angular velocity Ω about an axis fixed in the world. With its rotation
+/// g(t), small vibrations ε about it are q(t) = g(t)·(q₀ ⊞ ε(t)). The rotation at q has the generalised velocities
+/// w(q). g acts on the velocities of a body by a linear map that does not depend on q, with the generator
+///   Γξ = Dw ξ − c(w, ξ),   c(δ, v) = d/ds (local_rate(s δ, v) − local_rate(−s δ, v)) at s = 0,
+/// and the commutator c of the local coordinates. (Positions and gradients: Γ = Dw = Ω×, c = 0. Angular velocities in
+/// body axes: Γ = 0, Dw ξ = w × ξ = c.) At t = 0, to first order in ε,
+///   v = w(q₀ ⊞ ε) + ε˙,   v˙ = Γ w(q₀ ⊞ ε) + (Γ + Dw) ε˙ + ε¨.
+/// R = M v˙ − f + Gᵀλ then yields equations with constant coefficients [Simo, Lewis & Marsden 1991]:
+///   M ε¨ + (D + M (Γ + Dw)) ε˙ + K ε + Gᵀμ = 0,  G ε = 0,
+///   D = −∂f/∂v,   K = ∂/∂ε R(q₀ ⊞ ε, w(q₀ ⊞ ε), Γ w(q₀ ⊞ ε)).
+/// The term M (Γ + Dw) contains Coriolis and gyroscopic forces. K contains the centrifugal forces and the geometric
+/// stiffness of the stress that they cause.
 struct SteadyRotation {
   Vec3 angular_velocity = Vec3::Zero();  ///< (3) Ω, world axes [rad/s]
   Vec3 point = Vec3::Zero();             ///< (3) point of the axis, world axes [m]
