@@ -33,7 +33,7 @@ class ContactGroup {
   struct Opponent {
     Law law;           ///< contact law
     Index marker;      ///< number of its marker in the group
-    std::string name;  ///< name of the opponent in messages and results
+    std::string name;  ///< name of the partner in messages and results
   };
 
   /// Sets the number `count` of the many markers, the first ones of the group; called by the model.

@@ -12,7 +12,7 @@
 
 namespace polybody::detail {
 
-/// Body of a model with the positions of its coordinates and velocities in those of the model.
+/// Body of a model with the positions of its coordinates and velocities in the vectors of the model.
 template <class B>
 struct BodyEntry {
   B body;

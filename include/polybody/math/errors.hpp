@@ -74,56 +74,56 @@ class Error : public std::runtime_error {
 /// Invalid number, name or combination: negative mass, zero axis, s outside the body.
 class InvalidInput : public Error {
  public:
-  using Error::Error;  ///< from a text or its parts, as `Error`
+  using Error::Error;  ///< constructors from a text or its parts, as `Error`
 };
 
 /// Initial state that violates a constraint equation; `assemble` corrects it.
 class InconsistentStart : public Error {
  public:
-  using Error::Error;  ///< from a text or its parts, as `Error`
+  using Error::Error;  ///< constructors from a text or its parts, as `Error`
 };
 
 /// Newton's method did not converge; the state is the one at the start of the step.
 class NewtonStalled : public Error {
  public:
-  using Error::Error;  ///< from a text or its parts, as `Error`
+  using Error::Error;  ///< constructors from a text or its parts, as `Error`
 };
 
 /// The step converged, but constraint equations are violated or the energy changed without work. The state is the one
 /// at the start of the step.
 class Diverged : public Error {
  public:
-  using Error::Error;  ///< from a text or its parts, as `Error`
+  using Error::Error;  ///< constructors from a text or its parts, as `Error`
 };
 
 /// A point that slides along a body has passed the end of the body.
 class OffTheEnd : public Error {
  public:
-  using Error::Error;  ///< from a text or its parts, as `Error`
+  using Error::Error;  ///< constructors from a text or its parts, as `Error`
 };
 
 /// The step control requires a step below the smallest allowed step.
 class StepTooSmall : public Error {
  public:
-  using Error::Error;  ///< from a text or its parts, as `Error`
+  using Error::Error;  ///< constructors from a text or its parts, as `Error`
 };
 
 /// A force, mass or coordinate is NaN or infinite.
 class NonFinite : public Error {
  public:
-  using Error::Error;  ///< from a text or its parts, as `Error`
+  using Error::Error;  ///< constructors from a text or its parts, as `Error`
 };
 
 /// The matrix of a linear system is singular.
 class LinearSolverSingular : public Error {
  public:
-  using Error::Error;  ///< from a text or its parts, as `Error`
+  using Error::Error;  ///< constructors from a text or its parts, as `Error`
 };
 
 /// A file could not be read or written.
 class IoError : public Error {
  public:
-  using Error::Error;  ///< from a text or its parts, as `Error`
+  using Error::Error;  ///< constructors from a text or its parts, as `Error`
 };
 
 }  // namespace polybody

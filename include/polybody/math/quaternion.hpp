@@ -77,8 +77,8 @@ Vec<T, 3> quaternion_log(Quaternion<T> const& q) {
 }
 
 /// Computes `out` (4) = q ⊞ δ = q exp(δ), normalised, from q (4) and `delta` (3), δ in body axes [rad]. Each number
-/// is read directly from memory. If single numbers were stored in vectors and the vectors loaded whole, each load
-/// would wait for the stores.
+/// is read directly from memory. If single numbers were stored in vectors and the vectors read whole, each read
+/// would wait for the writes.
 template <class T>
 void set_quaternion_plus(T const* q, T const* delta, T* out) {
   using std::sqrt;

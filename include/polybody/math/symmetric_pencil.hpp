@@ -41,7 +41,7 @@ struct ShiftedPencil {
 /// Solves K x = λ M x with K + τM = L Lᵀ. The pivots are at least 1e-8 of the diagonal. The errors of L then remain
 /// below the errors of the entries of K. The shift is the first value of 0, t, 64 t, 64² t … that yields such pivots;
 /// t is 1e-12 of the smallest |K_ii|/M_ii.
-/// \param k K (n×n) symmetric \param m M (n×n) symmetric, not negative
+/// \param k K (n×n) symmetric \param m M (n×n) symmetric, positive semidefinite
 template <class = void>  // compiled where it is used
 ShiftedPencil by_shift(MatX const& k, MatX const& m) {
   ShiftedPencil out;
@@ -92,7 +92,8 @@ double rayleigh_quotient(MatX const& k, MatX const& m, MatX::ConstColXpr const& 
 
 /// Replaces the lowest eigenvalues of a solution of K x = λ M x by another solver with errors of ε λₙ. The solution
 /// does not change if these errors are below 1e-9 of each of the `count` lowest λ.
-/// \param k K (n×n) symmetric \param m M (n×n) symmetric, not negative \param count number of required eigenvalues
+/// \param k K (n×n) symmetric \param m M (n×n) symmetric, positive semidefinite \param count number of required
+/// eigenvalues
 /// \param values (r) all λ, ascending \param vectors X (n×r), XᵀMX = 1
 /// \return false if no shift makes K + τM positive definite
 template <class = void>  // compiled where it is used

@@ -14,8 +14,8 @@
 namespace polybody {
 
 namespace detail {
-/// Computes initial multipliers that balance the loads at the first instant. The multipliers stabilise, for example,
-/// an upright pendulum in the tangent. False if the accelerations of the state are not unique.
+/// Computes initial multipliers that balance the loads at the first instant. The stiffness of a pendulum, for
+/// example, consists of terms with multipliers. False if the accelerations of the state are not unique.
 template <class = void>
 bool multipliers_at_rest(System& system, State& x) {
   VecX a = x.a;

@@ -37,8 +37,8 @@ struct EquilibriumReport {
   /// are zero.
   std::vector<std::string> redundant = {};
   /// Number of negative eigenvalues of the tangent stiffness, symmetrised, on the motions that the constraint
-  /// equations permit. It is 0 in a stable state. A state with one or more is unstable. −1: not counted, in models
-  /// with first-order states, about a steady rotation, or beyond some 10⁵ coordinates of one long mechanism.
+  /// equations permit. It is 0 in a stable state. A state with a positive number is unstable. −1: not counted, in
+  /// models with first-order states, about a steady rotation, or beyond some 10⁵ coordinates of one long mechanism.
   int negative_pivots = 0;
   double limit_point = 0.0;  ///< load factor of a limit point or branch point on the path from the start; 0: none found
   bool relaxed = false;      ///< Newton's method did not converge; the state comes from a damped motion

@@ -29,7 +29,7 @@ double largest_load(System const& system, VecX const& lambda) {
 /// Then A Z = 0 and PᵀZ = 1, because every W with WᵀA = 0 has WᵀP = WᵀA′Z = WᵀP PᵀZ. Z therefore spans the null space
 /// of A, motions and multipliers. The force in the springs is Pᵀy′ = (WᵀP)⁻¹Wᵀb. It is zero if A y = b has a
 /// solution, and then y′ − Z c is a solution for every c. The multipliers of constraint equations with a spring are
-/// made zero, as in a time step with redundant constraints. Of the other solutions the one with the least |x| is
+/// made zero, as in a time step with redundant constraints. The solution has the least |x| is
 /// computed.
 template <LinearSolver Solver>
 class LeastNorm {

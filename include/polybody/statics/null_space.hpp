@@ -20,8 +20,8 @@ struct RowSizeSink {
 /// Null space of a matrix A of statics, by inverse iteration with a small shift:
 ///   y ← (A + σ D)⁻¹ D y,  σ = 1e-12,  D = diag(largest entry of the row; negative for constraint equations).
 /// Vectors of the null space grow by 1/σ in each pass, any other vector by 1/(σ + its eigenvalue relative to D)
-/// [Golub & Van Loan 2013, §8.2]. If K is not negative, the shifted matrix is quasi-definite, and its pivots are far
-/// above round-off. A vector is accepted if A z is round-off compared with |A| |z|.
+/// [Golub & Van Loan 2013, §8.2]. If K is positive semidefinite, the shifted matrix is quasi-definite, and its pivots
+/// are far above round-off. A vector is accepted if A z is round-off compared with |A| |z|.
 template <LinearSolver Solver>
 class NullSpace {
  public:

@@ -7,7 +7,7 @@
 
 namespace polybody::detail {
 
-/// Sum of the diagonal blocks of a matrix, diagonal entries only.
+/// Diagonal of a matrix, summed over its blocks.
 struct DiagonalSink {
   VecX& sum;
 

@@ -33,8 +33,8 @@ class NodalStress {
     std::string name;  ///< name of the node
   };
 
-  /// Stress by a `matrix` with six rows for each of the spots, in their order, and one column per coordinate (6k×N)
-  /// [Pa/m].
+  /// Constructs the stress from a `matrix` with six rows for each of the spots, in their order, and one column per
+  /// coordinate (6k×N) [Pa/m].
   /// \throws InvalidInput for another number of rows, an entry that is not finite, no spots, or two spots with one
   /// name.
   template <class = void>  // compiled where it is used

@@ -36,7 +36,7 @@ struct Linearisation {
 };
 
 namespace detail {
-/// Sum of blocks in a dense matrix.
+/// Dense matrix, summed over its blocks.
 struct DenseSink {
   MatX& sum;
   void add(Index row, Index col, BlockView const& b) {
@@ -83,9 +83,9 @@ inline void require_modes(Index count, std::string const& who) {
   if (count < 1) throw InvalidInput{who, ": the count of modes must be at least 1, but is ", count, "."};
 }
 
-/// K with a spring on each motion without inertia and without stiffness. The columns of v are the motions without
-/// inertia. Such a motion y has K y = 0 and M y = 0. The spring therefore preserves all other solutions of K x = λ M
-/// x, with yᵀx = 0.
+/// Stiffness K with a spring on each motion without inertia and without stiffness. The columns of v are the motions
+/// without inertia. Such a motion y has K y = 0 and M y = 0. The spring therefore preserves all other solutions of K x
+/// = λ M x, with yᵀx = 0.
 template <class = void>
 MatX with_springs_at_rest(MatX const& k, MatX const& v) {
   MatX out = k;
