@@ -344,9 +344,8 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
   Bar bar_;
   BarConstants constants_;
   double l_ = 0.0;
-  std::vector<Placement> nodes_;  ///< in the bar's axes
-  std::vector<ancf::Reference>
-      references_;  ///< one entry if all elements are alike, else one for each element; also `inertia_`
+  std::vector<Placement> nodes_;             ///< in the bar's axes
+  std::vector<ancf::Reference> references_;  ///< one for all alike elements, else one each; `inertia_` as well
   std::vector<Inertia> inertia_;
 };
 

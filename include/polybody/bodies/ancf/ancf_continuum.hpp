@@ -1,8 +1,5 @@
 #pragma once
-/// E₂₃ = α − β. The torsional stiffnesses are D_y = GA_z y² for α and D_z = GA z² for β, coupled by GA. Under a torque
-/// both turn alike in the bar, and r_y carries p = D_y/(D_y + D_z). A joint or a moment at an end may apply another
-/// share p̂. The difference decays by 2E₂₃ over the length ℓ with ℓ² = D_y D_z/((D_y + D_z) GA). The marker there turns
-/// by an additional angle (p̂ − p)² ℓ/(p (1 − p)) T/GJ.
+/// \file
 /// Elastic force of the fully parameterised ANCF beam by three-dimensional continuum mechanics.
 
 #include <tuple>
@@ -261,7 +258,11 @@ struct Continuum {
     return s;
   }
 
-  /// Share p of the torque that r_y carries. If r_y turns by α and r_z by β, then 2E₁₂ = −z β′, 2E₁₃ = y α′ and
+  /// Share p of the torque that r_y carries. If r_y rotates by α and r_z by β, then 2E₁₂ = −z β′, 2E₁₃ = y α′ and
+  /// 2E₂₃ = α − β. The torsional stiffnesses are D_y = GA_z y² for α and D_z = GA z² for β, coupled by GA. Under a
+  /// torque both rotations are equal in the bar, and r_y carries p = D_y/(D_y + D_z). A joint or a moment at an end may
+  /// apply another share p̂. The difference decays by 2E₂₃ over the length ℓ with ℓ² = D_y D_z/((D_y + D_z) GA). The
+  /// marker there rotates by an additional angle (p̂ − p)² ℓ/(p (1 − p)) T/GJ.
   static double share(BarConstants const& c) {
     double const y = c.EI * (cured ? c.GA_z.value() : 1.0), z = c.EI_y.value() * (cured ? c.GA : 1.0);
     return y / (y + z);

@@ -1,21 +1,16 @@
 #pragma once
 /// \file
-/// A basis of static shapes for the loads that a body will bear, and of free modes, in mean axes [MacNeal 1971; Rubin
-/// 1975; Craig & Kurdila 2006, §17.3]. A load f on the free structure is balanced by the inertia of the acceleration
-/// that it causes,
-///   f_b = f − M R (RᵀM R)⁻¹ Rᵀ f,   K x = f_b,   Rᵀ M x = 0,   R the rigid motions,
-/// so that stress and stiffness under such loads are those of the whole model, whatever the number of modes. For nodes
-/// without rotations, where boundary nodes cannot hold the frame (`craig_bampton`), and for loads on patches of nodes.
+/// Attachment modes and free modes of a structure in mean axes.
 ///
-/// Not in polybody.hpp: Eigen's sparse module and factorisations would cost every program seconds to compile.
+/// This header is not part of polybody.hpp, because Eigen's sparse module and factorisations take seconds to compile.
 
 #include <polybody/bodies/ffr/static_supports.hpp>
 
 namespace polybody {
 
-/// Displacements of the structure that moves as a whole (N×6): along x, y, z, and turned about them through the centre
+/// Rigid motions of the structure (N×6): displacements along x, y, z, and rotations about these axes through the centre
 /// of mass.
-template <class = void>  // compiled where it is used
+template <class = void>  // compiled only if used
 MatX rigid_motions(Structure const& s) {
   MatX out = MatX::Zero(s.size(), 6);
   Vec3 const centre = s.first / s.mass;
@@ -29,8 +24,8 @@ MatX rigid_motions(Structure const& s) {
 
 namespace detail {
 
-/// Shapes with unit modal mass that span the columns of `shapes`, by ascending frequency; what repeats other columns is
-/// left out.
+/// Shapes with unit modal mass that span the columns of `shapes`, by ascending frequency. Linearly dependent columns
+/// are omitted.
 template <class = void>
 MatX orthogonal_basis(Structure const& s, MatX shapes) {
   MatX k = shapes.transpose() * (s.stiffness * shapes);
@@ -50,11 +45,17 @@ MatX orthogonal_basis(Structure const& s, MatX shapes) {
 
 }  // namespace detail
 
-/// The static shapes of the nodal loads (N×m), each with the inertia that balances it, and the `count` lowest modes, by
-/// `solve`, of the free structure: orthogonal, with unit modal mass, in mean axes. Shapes that repeat others are left
-/// out.
-/// \throws InvalidInput for loads that do not fit the structure or are not finite, a count beyond what there is, and a
-/// structure that moves without deformation in more ways than as a whole.
+/// Basis of static shapes for given loads and of free modes, in mean axes [MacNeal 1971; Rubin 1975; Craig & Kurdila
+/// 2006, §17.3]. The inertia of the resulting rigid acceleration balances a load f on the free structure:
+///   f_b = f − M R (RᵀM R)⁻¹ Rᵀ f,   K x = f_b,   Rᵀ M x = 0,   R the rigid motions.
+/// Stress and stiffness under such loads therefore equal those of the full model for any number of modes. The basis is
+/// suitable for nodes without rotations, which cannot hold the frame in `craig_bampton`, and for loads on patches of
+/// nodes.
+///
+/// The result contains the static shapes of the nodal loads `loads` (N×m) and the `count` lowest modes, computed by
+/// `solve`. The shapes are orthogonal with unit modal mass. Linearly dependent shapes are omitted.
+/// \throws InvalidInput for loads that do not fit the structure or are not finite, a count above the number of modes,
+/// and a structure with motions without strain other than the rigid ones.
 template <class Eigensolver = DenseModes>
 MatX attachment_modes(Structure const& s, MatX const& loads, Index count, Eigensolver const& solve = {}) {
   if (loads.rows() != s.size() || !loads.allFinite())

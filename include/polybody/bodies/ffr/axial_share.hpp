@@ -1,9 +1,9 @@
 #pragma once
 /// \file
-/// How near the axial forces in a structure of beams come to buckling it: what a floating frame's body without
-/// geometric stiffening leaves out.
+/// Ratio of the axial forces in a structure of beams to its buckling forces. It estimates the error of a floating frame
+/// without geometric stiffening.
 ///
-/// Not in polybody.hpp: it comes with bodies/ffr/ffr.hpp.
+/// This header is not part of polybody.hpp; bodies/ffr/ffr.hpp includes it.
 
 #include <Eigen/Cholesky>
 #include <span>
@@ -13,16 +13,16 @@
 
 namespace polybody {
 
-/// What acts on a structure at one time, in its axes: loads, and the inertia and weight of a rigid motion in which the
-/// point u₀ has the acceleration less gravity b + B u₀.
+/// Loads on a structure at one time, in its axes, together with the inertia and the weight of a rigid motion. In this
+/// motion the point u₀ has the acceleration b + B u₀ minus gravity.
 struct StructureAction {
   Vec3 b = Vec3::Zero();                 ///< (3) Aᵀ(r̈ − g) [m/s²]
   Mat3 B = Mat3::Zero();                 ///< (3×3) Ω˙~ + Ω~ Ω~ [1/s²]
-  std::vector<PlacedWrench> loads = {};  ///< about points of the structure
+  std::vector<PlacedWrench> loads = {};  ///< wrenches about points of the structure
 
-  /// The same in the axes of a frame that turns with Ω and Ω˙ = `alpha` (its own axes); r̈ − g = `acceleration` [m/s²]
-  /// and `loads` are in world axes.
-  template <class = void>  // compiled where it is used
+  /// Actions in the axes of a frame that rotates with Ω and Ω˙ = `alpha` (in its own axes). The acceleration minus
+  /// gravity, r̈ − g = `acceleration` [m/s²], and `loads` are in world axes.
+  template <class = void>  // compiled only if used
   static StructureAction in_frame(Frame<double> const& frame, Vec3 const& acceleration, Vec3 const& alpha,
                                   std::span<PlacedWrench const> loads) {
     Mat3 const to_frame = frame.A.transpose();
@@ -35,10 +35,11 @@ struct StructureAction {
   }
 };
 
-/// The eigenvalue ρ of largest size of Φᵀ K_G Φ φ = ρ Φᵀ K Φ φ, K_G = ∫ N (v′ᵀv′ + w′ᵀw′) dx with the axial forces N
-/// that the action causes: at −1 it buckles the structure, at ρ the deflection is off by about the part ρ where K_G is
-/// left out. By iteration, thus from below. \param shapes Φ (N×n) \param stiffness ΦᵀKΦ, factored
-template <class = void>  // compiled where it is used
+/// Eigenvalue ρ of largest magnitude of Φᵀ K_G Φ φ = ρ Φᵀ K Φ φ, with K_G = ∫ N (v′ᵀv′ + w′ᵀw′) dx and the axial forces
+/// N due to the `action`. The structure buckles at ρ = −1. Without K_G the relative error of the deflection is about ρ.
+/// The iteration converges from below.
+/// \param shapes Φ (N×n) \param stiffness ΦᵀKΦ, factorised
+template <class = void>  // compiled only if used
 double axial_share(Structure const& s, MatX const& shapes, Eigen::LLT<MatX> const& stiffness,
                    StructureAction const& action) {
   std::vector<Vec<double, 12>> within(s.beams.size(), Vec<double, 12>::Zero());
@@ -78,7 +79,8 @@ double axial_share(Structure const& s, MatX const& shapes, Eigen::LLT<MatX> cons
   for (int i = 0; i < 40; ++i) {
     VecX const deformed = shapes * x, pull = by_axial * deformed, y = shapes.transpose() * pull;
     VecX const z = stiffness.solve(y);
-    double const size = std::sqrt(std::max(z.dot(y), 0.0)), before = share;  // of K⁻¹ K_G x by K, where x has size 1
+    double const size = std::sqrt(std::max(z.dot(y), 0.0)),
+                 before = share;  // norm of K⁻¹ K_G x in the metric K, for x of norm 1
     if (!(size > 0.0)) return 0.0;
     share = std::copysign(size, x.dot(y));
     x = z / size;

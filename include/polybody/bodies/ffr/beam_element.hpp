@@ -1,26 +1,27 @@
 #pragma once
 /// \file
-/// One beam of a structure: shape functions, stiffness and points of mass of the space beam element of thesis App. A
-/// [Przemieniecki 1968, §5.6, §11.4], in the axes of the body that it is part of.
+/// Space beam element of thesis App. A [Przemieniecki 1968, §5.6, §11.4]: shape functions, stiffness and mass points,
+/// in the axes of the body.
 ///
-/// Not in polybody.hpp: Eigen's sparse module would cost every program seconds to compile.
+/// This header is not part of polybody.hpp, because Eigen's sparse module takes seconds to compile.
 
 #include <polybody/bodies/ffr/structure.hpp>
 #include <polybody/math/quadrature.hpp>
 
 namespace polybody {
 
-/// Shape functions of Eq. A.1, in the element's axes with nodal coordinates (u, v, w, θx, θy, θz) at either end: the
-/// displacement at (ξ l, y, z) is (axis + y · by_y + z · by_z) e, the section's rotation `rotation` e.
+/// Shape functions of Eq. A.1 in the axes of the element, with nodal coordinates (u, v, w, θx, θy, θz) at both ends.
+/// The displacement at (ξ l, y, z) is (axis + y · by_y + z · by_z) e, and the rotation of the section is `rotation` e.
 struct BeamShapes {
   Mat<double, 3, 12> axis = Mat<double, 3, 12>::Zero();  ///< displacement of the axis
-  Mat<double, 3, 12> by_y = Mat<double, 3, 12>::Zero(), by_z = Mat<double, 3, 12>::Zero();  ///< slopes by y, by z
-  Mat<double, 3, 12> rotation = Mat<double, 3, 12>::Zero();                                 ///< (θx, −w′, v′)
+  Mat<double, 3, 12> by_y = Mat<double, 3, 12>::Zero(),
+                     by_z = Mat<double, 3, 12>::Zero();      ///< derivatives with respect to y and z
+  Mat<double, 3, 12> rotation = Mat<double, 3, 12>::Zero();  ///< (θx, −w′, v′)
   Mat<double, 4, 12> strain =
       Mat<double, 4, 12>::Zero();  ///< rows: axial strain, torsion, curvature about y, about z [1/m]
 
-  /// At ξ of an element of length l [m].
-  template <class = void>  // compiled where it is used
+  /// Shape functions at ξ of an element of length l [m].
+  template <class = void>  // compiled only if used
   BeamShapes(double xi, double l) {
     double const x = xi, h[4] = {1 - 3 * x * x + 2 * x * x * x, (x - 2 * x * x + x * x * x) * l,
                                  3 * x * x - 2 * x * x * x, (x * x * x - x * x) * l};
@@ -51,12 +52,12 @@ struct BeamShapes {
   }
 };
 
-// What follows runs once, when a body is made: plain loops, for they compile fast.
+// The following functions run once, when a body is made. They use plain loops, which compile fast.
 
-/// A matrix by the nodal coordinates of a beam's two ends, in the body's axes.
+/// Matrix with respect to the nodal coordinates of both ends of a beam, in the axes of the body.
 using BeamMatrix = Mat<double, 12, 12>;
 
-/// m from the element's axes to the body's in its columns: m diag(Cᵀ, Cᵀ, Cᵀ, Cᵀ).
+/// Transforms the columns of m from the axes of the element to those of the body: m diag(Cᵀ, Cᵀ, Cᵀ, Cᵀ).
 template <int rows>
 Mat<double, rows, 12> by_body_axes(Mat<double, rows, 12> const& m, Mat3 const& axes) {
   Mat<double, rows, 12> out;
@@ -67,7 +68,7 @@ Mat<double, rows, 12> by_body_axes(Mat<double, rows, 12> const& m, Mat3 const& a
     }
   return out;
 }
-/// m from the element's axes to the body's in its columns and rows: C m diag(Cᵀ, Cᵀ, Cᵀ, Cᵀ).
+/// Transforms the rows and columns of m from the axes of the element to those of the body: C m diag(Cᵀ, Cᵀ, Cᵀ, Cᵀ).
 template <class = void>
 Mat<double, 3, 12> in_body_axes(Mat<double, 3, 12> const& m, Mat3 const& axes) {
   Mat<double, 3, 12> const t = by_body_axes<3>(m, axes);
@@ -76,7 +77,7 @@ Mat<double, 3, 12> in_body_axes(Mat<double, 3, 12> const& m, Mat3 const& axes) {
     for (int i = 0; i < 3; ++i) out(i, j) = axes(i, 0) * t(0, j) + axes(i, 1) * t(1, j) + axes(i, 2) * t(2, j);
   return out;
 }
-/// Adds the matrix of one beam to the entries of the structure's.
+/// Adds the matrix `m` of one beam to the entries of the matrix of the structure.
 template <class = void>
 void add_entries(Structure::Beam const& beam, BeamMatrix const& m, std::vector<Eigen::Triplet<double>>& entries) {
   auto const dof = [&](int i) { return int(6 * (i < 6 ? beam.a : beam.b) + i % 6); };
@@ -84,19 +85,19 @@ void add_entries(Structure::Beam const& beam, BeamMatrix const& m, std::vector<E
     for (int j = 0; j < 12; ++j)
       if (m(i, j) != 0.0) entries.emplace_back(dof(i), dof(j), m(i, j));
 }
-/// Adds nodal values x of one beam to those of the structure, `sum` (N).
+/// Adds the nodal values x of one beam to those of the structure, `sum` (N).
 template <class = void>
 void add_entries(Structure::Beam const& beam, Vec<double, 12> const& x, VecX& sum) {
   for (int i = 0; i < 12; ++i) sum[6 * (i < 6 ? beam.a : beam.b) + i % 6] += x[i];
 }
 
-/// A point of a beam at a Gauss point, in the body's axes, with its part of ∫ρ, ∫ρy², ∫ρz².
+/// Gauss point of a beam in the axes of the body, with its contributions to ∫ρ, ∫ρy², ∫ρz².
 struct MassPoint {
-  Vec3 at;                        ///< place of the axis, from the origin of the body's axes [m]
-  Mat<double, 3, 12> axis, y, z;  ///< (3×12) displacement of the axis and its slopes by y and z
-  double m, my, mz;               ///< parts of ∫ρ [kg], ∫ρy² and ∫ρz² [kg m²]
+  Vec3 at;                        ///< position of the axis from the origin of the body axes [m]
+  Mat<double, 3, 12> axis, y, z;  ///< (3×12) displacement of the axis and its derivatives with respect to y and z
+  double m, my, mz;               ///< contributions to ∫ρ [kg], ∫ρy² and ∫ρz² [kg m²]
 };
-/// The four Gauss points of a beam, which are exact for products of cubics.
+/// Four Gauss points of a beam, exact for products of cubics.
 template <class = void>
 std::array<MassPoint, 4> mass_points(Structure const& s, Structure::Beam const& beam) {
   std::array<MassPoint, 4> points;
@@ -117,7 +118,7 @@ std::array<MassPoint, 4> mass_points(Structure const& s, Structure::Beam const& 
 }
 
 namespace detail {
-/// sum += w aᵀ b for a row a and a row b.
+/// Adds sum += w aᵀ b for row `row_a` of a and row `row_b` of b.
 template <class A, class B>
 void add_product(double w, A const& a, int row_a, B const& b, int row_b, BeamMatrix& sum) {
   for (int j = 0; j < 12; ++j)
@@ -125,7 +126,8 @@ void add_product(double w, A const& a, int row_a, B const& b, int row_b, BeamMat
 }
 }  // namespace detail
 
-/// ∫ Bᵀ diag(c) B: with two Gauss points the closed form of Eq. A.5 [Przemieniecki 1968, Eq. 5.116 without shear].
+/// Stiffness ∫ Bᵀ diag(c) B of a beam. Two Gauss points give the closed form of Eq. A.5 [Przemieniecki 1968, Eq. 5.116
+/// without shear].
 template <class = void>
 BeamMatrix beam_stiffness(Structure::Beam const& beam, Vec4 const& c) {
   BeamMatrix k = BeamMatrix::Zero();
@@ -135,13 +137,13 @@ BeamMatrix beam_stiffness(Structure::Beam const& beam, Vec4 const& c) {
   }
   return k;
 }
-/// (EA, GJ, EI_y, EI_z) of a section: its stiffness against axial strain, torsion and bending about y and z.
+/// Stiffness (EA, GJ, EI_y, EI_z) of a section: axial strain, torsion, and bending about y and z.
 template <class = void>
 Vec4 section_stiffness(BarConstants const& c) {
   return {c.EA, c.GJ, c.EI_y.value_or(c.EI), c.EI};
 }
 
-/// ∫ N (v′ᵀv′ + w′ᵀw′) dx: what an axial force N(ξ) = n₀ + n₁ ξ + n₂ ξ² [N] adds to the stiffness.
+/// Geometric stiffness ∫ N (v′ᵀv′ + w′ᵀw′) dx of a beam with the axial force N(ξ) = n₀ + n₁ ξ + n₂ ξ² [N].
 template <class = void>
 BeamMatrix axial_force_stiffness(Structure::Beam const& beam, double n0, double n1 = 0.0, double n2 = 0.0) {
   BeamMatrix k = BeamMatrix::Zero();

@@ -1,18 +1,19 @@
 #pragma once
 /// \file
-/// Structures made of bars: the space beam element of thesis App. A [Przemieniecki 1968, §5.6, §11.4] with the errata
-/// of its Eq. A.1 (−2ξ + 3ξ², 2ξ − 3ξ² in rows 11 and 12), with intermediate element frames A.2–A.3 that let elements
-/// point anywhere.
+/// Structures made of bars: space beam element of thesis App. A [Przemieniecki 1968, §5.6, §11.4]. The code corrects
+/// the errata of its Eq. A.1 (−2ξ + 3ξ², 2ξ − 3ξ² in rows 11 and 12). The intermediate element frames A.2–A.3 permit
+/// any direction of an element.
 ///
-/// Not in polybody.hpp: Eigen's sparse module and factorisations would cost every program seconds to compile.
+/// This header is not part of polybody.hpp, because Eigen's sparse module and factorisations take seconds to compile.
 
 #include <polybody/bodies/ffr/beam_element.hpp>
 
 namespace polybody {
 
-/// Axes of the intermediate element frame of a beam along `direction`: Eq. A.2, which keeps z normal to the body's y
-/// axis, and Eq. A.3 where the beam points along it. \throws InvalidInput for a zero direction.
-template <class = void>  // compiled where it is used
+/// Axes of the intermediate element frame of a beam along `direction`, by Eq. A.2, which keeps z normal to the y axis
+/// of the body. If the beam is parallel to that axis, Eq. A.3 applies.
+/// \throws InvalidInput for a zero direction.
+template <class = void>  // compiled only if used
 Mat3 intermediate_axes(Vec3 const& direction) {
   double const length = direction.norm();
   if (!(length > 0.0)) throw InvalidInput("Structure: a beam needs two different nodes.");
@@ -28,7 +29,7 @@ Mat3 intermediate_axes(Vec3 const& direction) {
 
 namespace detail {
 
-/// The part of ∫ρ u₀ₖ S_l (k = −1: of ∫ρ S_l) that stems from one beam.
+/// Contribution of one beam to ∫ρ u₀ₖ S_l (for k = −1 to ∫ρ S_l).
 template <class = void>
 Vec<double, 12> spread_moment(Structure const& s, Structure::Beam const& beam, int k, int l) {
   Vec<double, 12> sum = Vec<double, 12>::Zero();
@@ -40,7 +41,7 @@ Vec<double, 12> spread_moment(Structure const& s, Structure::Beam const& beam, i
   return sum;
 }
 
-/// Inertia of a beam: the integrals of structure.hpp.
+/// Adds the inertia of a beam to the integrals of structure.hpp.
 template <class = void>
 void add_inertia(Structure& s, Structure::Beam const& beam,
                  std::array<std::vector<Eigen::Triplet<double>>, 6>& entries) {
@@ -71,11 +72,12 @@ void add_inertia(Structure& s, Structure::Beam const& beam,
 
 }  // namespace detail
 
-/// Ends of bars that are closer than this part of the longest bar are one node.
+/// Ends of bars are one node if their distance is smaller than this fraction of the longest bar.
 inline constexpr double same_node = 1e-9;
 
-/// Bars, each cut into as many elements as `elements` says, welded wherever their ends meet; placements are in the
-/// body's axes. Their damping is Kelvin–Voigt's; a pretension keeps its first-order force and its stiffness.
+/// Structure of `bars`, each divided into the number of elements given by `elements`, welded at common ends. The
+/// placements are in the axes of the body. The damping of the bars is Kelvin–Voigt damping. A pretension contributes
+/// its first-order force and its stiffness.
 /// \throws InvalidInput for no bar, fewer than one element, or a bar without torsional stiffness GJ.
 template <class = void>
 Structure structure_of(std::vector<Bar> const& bars, std::vector<Index> const& elements) {
@@ -133,19 +135,21 @@ Structure structure_of(std::vector<Bar> const& bars, std::vector<Index> const& e
   return s;
 }
 
-/// One bar in n equal elements, in its own axes: nodes 0 … n, and the body placed where the bar is.
+/// Structure of one bar in n equal elements, in its own axes, with nodes 0 … n. The placement of the bar becomes that
+/// of the body.
 template <class = void>
 Structure structure_of(Bar bar, Index n) {
   bar.placement = {};
   return structure_of(std::vector{bar}, {n});
 }
 
-/// ∫ N (v′ᵀv′ + w′ᵀw′) dx over all beams, N the axial forces that a load causes in the structure held at one node:
-/// twice the second-order work of the load [Wallrapp & Schwertassek 1991], e · (·) e = 2 Σ load · (what bending draws
-/// it along).
+/// Geometric stiffness ∫ N (v′ᵀv′ + w′ᵀw′) dx over all beams, with the axial forces N due to a load on the structure
+/// held at one node [Wallrapp & Schwertassek 1991]. It gives twice the second-order work of the load: eᵀ K_G e = 2 Σ
+/// load · (displacement by axial foreshortening).
 class AxialForceStiffness {
  public:
-  /// Holds all six coordinates of `node`. \throws InvalidInput for a structure that is not made of beams, or in parts.
+  /// Holds all six coordinates of `node`.
+  /// \throws InvalidInput for a structure that is not made of beams, or not connected.
   template <class = void>
   explicit AxialForceStiffness(Structure const& s, Index node = 0) : structure_(&s) {
     if (s.beams.empty())
@@ -161,8 +165,8 @@ class AxialForceStiffness {
       throw InvalidInput("Structure: its beams are not all joined, or their stiffness is not positive.");
   }
 
-  /// Stiffness by one load: `load` (N) at the nodes, and `spread(beam)`, the nodal forces (12, body axes) equivalent to
-  /// what acts within the beam.
+  /// Geometric stiffness due to one load: `load` (N) at the nodes, and `spread(beam)`, the nodal forces (12, body axes)
+  /// equivalent to the load within the beam.
   template <class Spread>
   Structure::Sparse operator()(VecX const& load, Spread&& spread) const {
     Structure const& s = *structure_;
@@ -181,7 +185,7 @@ class AxialForceStiffness {
         at_a += beam.axes(i, 0) * load_within[i];
         at_b += beam.axes(i, 0) * load_within[6 + i];
       }
-      // A load that runs linearly along the beam, p₀ + p₁ ξ, has f = l (p₀/2 + p₁/6) at a and l (p₀/2 + p₁/3) at b.
+      // A load that is linear along the beam, p₀ + p₁ ξ, has f = l (p₀/2 + p₁/6) at a and l (p₀/2 + p₁/3) at b.
       double const p0 = 4.0 * at_a - 2.0 * at_b, p1 = 6.0 * (at_b - at_a);
       add_entries(beam, axial_force_stiffness(beam, n0, -p0, -0.5 * p1), entries);
     }

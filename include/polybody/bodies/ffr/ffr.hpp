@@ -1,14 +1,8 @@
 #pragma once
 /// \file
-/// Floating frame of reference in space [Shabana 2013, ch. 5–6; thesis §4.3 and App. A]: small deformation, given by a
-/// structure and a basis, in a frame whose motion may be large. With c, J, H of ffr_integrals.hpp and C = c_q, the
-/// quantities in the frame's axes, Lagrange's equations of T(ṙ, Ω, q̇) give
-///   m r̈ + A (Ω̇ × c + C q̈)                      = −A (Ω × (Ω × c) + 2 Ω × ċ + Ċ q̇),
-///   c × Aᵀr̈ + J Ω̇ + H q̈                        = −(J˙ Ω + Ω × (J Ω + H q̇) + H˙ q̇),
-///   Cᵀ Aᵀr̈ + Hᵀ Ω̇ + M q̈ + D q̇ + K q            = ½ (Ωᵀ J Ω)_q − Σ Ω_i W_i q̇,   W_i = ∂H_iᵀ/∂q − ∂H_i/∂q.
-/// In the thesis H and C are called m_rf, Σ Ω_i W_i is 2 S̃₁, and the part of ½ (ΩᵀJΩ)_q that grows with q is −S̃₂ q.
+/// Floating frame of reference in space [Shabana 2013, ch. 5–6; thesis §4.3 and App. A].
 ///
-/// Not in polybody.hpp: Eigen's sparse module and factorisations would cost every program seconds to compile.
+/// This header is not part of polybody.hpp, because Eigen's sparse module and factorisations take seconds to compile.
 
 #include <memory>
 
@@ -22,37 +16,47 @@
 
 namespace polybody {
 
-/// Coordinates: r (3) of the frame's origin in world axes, its unit quaternion (4), q (n); speeds: ṙ (3), Ω (3) in the
-/// frame's axes, q̇ (n). q are multiples of shapes, whose entries are displacements [m] and rotations [rad]. A marker
-/// turns with the small rotation of the section or node it sits on, θ = R q, as exp(θ̃).
+/// Floating frame of reference in space [Shabana 2013, ch. 5–6; thesis §4.3 and App. A]: small deformation, given by a
+/// structure and a basis, in a frame with arbitrary motion. With c, J, H of ffr_integrals.hpp and C = c_q, all in the
+/// axes of the frame, Lagrange's equations of T(ṙ, Ω, q̇) give
+///   m r̈ + A (Ω̇ × c + C q̈)                      = −A (Ω × (Ω × c) + 2 Ω × ċ + Ċ q̇),
+///   c × Aᵀr̈ + J Ω̇ + H q̈                        = −(J˙ Ω + Ω × (J Ω + H q̇) + H˙ q̇),
+///   Cᵀ Aᵀr̈ + Hᵀ Ω̇ + M q̈ + D q̇ + K q            = ½ (Ωᵀ J Ω)_q − Σ Ω_i W_i q̇,   W_i = ∂H_iᵀ/∂q − ∂H_i/∂q.
+/// In the thesis H and C are called m_rf, Σ Ω_i W_i is 2 S̃₁, and the part of ½ (ΩᵀJΩ)_q that is linear in q is −S̃₂ q.
+///
+/// The coordinates are r (3) of the origin of the frame in world axes, its unit quaternion (4), and q (n). The
+/// generalised velocities are ṙ (3), Ω (3) in the axes of the frame, and q̇ (n). The coordinates q are multiples of
+/// shapes, whose entries are displacements [m] and rotations [rad]. A marker rotates by the small rotation θ = R q of
+/// its section or node, as exp(θ̃).
 class Ffr {
  public:
   static constexpr World world = World::space;
   static constexpr Observes observes = Observes::frame;
   static constexpr bool constant_mass = false;
-  static constexpr RigidLayout frame_layout = RigidLayout::quaternion;  ///< `Recursive` joints carry the frame
+  static constexpr RigidLayout frame_layout = RigidLayout::quaternion;  ///< `Recursive` joints move the frame
   static constexpr int element_columns = Eigen::Dynamic;                ///< one element: the whole body
   static constexpr int point_columns = Eigen::Dynamic;
 
-  using Point = FfrPoint;      ///< a material point in the frame's axes
-  using Options = FfrOptions;  ///< place, terms of the inertia, stiffening and damping
+  using Point = FfrPoint;      ///< material point in the axes of the frame
+  using Options = FfrOptions;  ///< placement, terms of the inertia, stiffening and damping
 
-  /// The bar in n elements, frame tied to its first end, all nodal coordinates: 6 n. \throws InvalidInput as
-  /// `structure_of`.
-  template <class = void>  // compiled where it is used
+  /// Body of the bar in n elements, with the frame tied to its first end and all 6 n nodal coordinates.
+  /// \throws InvalidInput as `structure_of`.
+  template <class = void>  // compiled only if used
   static Ffr from(Bar const& bar, Index n, Options options = {}) {
     options.placement = bar.placement;
     Structure const s = structure_of(bar, n);
     return Ffr(s, nodal_coordinates(s), options);
   }
-  /// A structure with `shapes`, a basis of ffr_basis.hpp (N×n). \throws InvalidInput for a basis that does not fit or
-  /// is dependent.
+  /// Body of a structure with the basis `shapes` of ffr_basis.hpp (N×n).
+  /// \throws InvalidInput for a basis that does not fit or is linearly dependent.
   template <class = void>
   Ffr(Structure structure, MatX shapes, Options const& options = {})
       : Ffr(integrals_of(structure, shapes, options.stiffening), options) {
     points_ = std::make_shared<FfrPoints const>(std::move(structure), std::move(shapes), stiffens());
   }
-  /// With the user's own integrals. \throws InvalidInput when they do not fit each other.
+  /// Body from the user's own integrals.
+  /// \throws InvalidInput for integrals of different sizes.
   template <class = void>
   Ffr(FfrIntegrals integrals, Options const& options) : placement_(options.placement), terms_(options.terms) {
     integrals.check("Ffr");
@@ -62,7 +66,8 @@ class Ffr {
     FfrStack stack = FfrStack::of(integrals);
     made_of_ = std::make_shared<Constants const>(std::move(integrals), std::move(stack));
   }
-  /// The same body elsewhere; both share their constants. \throws InvalidInput for axes that are no rotation.
+  /// Copy of the body at another placement; both share their constants.
+  /// \throws InvalidInput for axes that are not a rotation matrix.
   Ffr placed(Placement const& placement) const {
     placement.check("Ffr");
     Ffr other = *this;
@@ -71,31 +76,35 @@ class Ffr {
   }
 
   FfrIntegrals const& integrals() const { return made_of_->integrals; }  ///< inertia and stiffness by the deformation
-  bool stiffens() const { return integrals().stiffens(); }               ///< whether with geometric stiffening
-  Index deformations() const { return integrals().size(); }              ///< n, coordinates of the deformation
-  /// Length of the first bar [m]. \throws InvalidInput for a body that is not made of bars.
+  bool stiffens() const { return integrals().stiffens(); }               ///< true with geometric stiffening
+  Index deformations() const { return integrals().size(); }              ///< number n of coordinates of the deformation
+  /// Length of the first bar [m].
+  /// \throws InvalidInput for a body that is not made of bars.
   double length() const { return made().length(); }
 
-  /// The section at distance s from the first end of bar `bar`, (y, z) off its axis. \throws InvalidInput outside, and
-  /// for a body that is not made of bars.
+  /// Section at distance s from the first end of bar `bar`, at (y, z) from its axis [m].
+  /// \throws InvalidInput outside the bar, and for a body that is not made of bars.
   template <class = void>
   Point at(double s, double y = 0.0, double z = 0.0, Index bar = 0) const {
     return made().at(s, y, z, bar);
   }
-  /// Node i of the structure. \throws InvalidInput for one that does not exist.
+  /// Node i of the structure.
+  /// \throws InvalidInput for a node that does not exist.
   template <class = void>
   Point node(Index i) const {
     return made().node(i);
   }
-  /// The point `at` of the undeformed body [m], which moves with a patch of the structure's nodes as a whole.
+  /// Point `at` of the undeformed body [m] that follows the mean motion of a patch of nodes of the structure.
   /// \throws InvalidInput with geometric stiffening.
   template <class = void>
   Point patch(NodePatch const& nodes, Vec3 const& at) const {
     return made().patch(nodes, at);
   }
-  /// The structure that the body is made of. \throws InvalidInput for a body made of the user's own integrals.
+  /// Structure from which the body is made.
+  /// \throws InvalidInput for a body made of the user's own integrals.
   Structure const& structure() const { return made().structure(); }
-  /// A point as the user describes it. \throws InvalidInput for matrices that are not 3×n.
+  /// Point with the user's own matrices.
+  /// \throws InvalidInput for matrices that are not 3×n.
   Point at(Point const& p) const {
     if (p.S.cols() != deformations() || p.R.cols() != deformations())
       throw InvalidInput("Ffr: S and R of a point must be 3×n, n the number of deformation coordinates.");
@@ -171,9 +180,10 @@ class Ffr {
     products.at_speeds(v.data() + 6);
     FfrBalance<T>(integrals(), terms_, products, q).force(v, out);
   }
-  /// Numbers that `unbalance` needs room for.
+  /// Number of workspace entries for `unbalance`.
   Index room() const { return FfrProducts<double>::room(deformations()); }
-  /// M a − force, which share J, H and their slopes. `room` has `room()` numbers, `forces` as many as there are speeds.
+  /// Residual M a − force. Both terms share J, H and their derivatives. `room` has `room()` entries, and `forces` has
+  /// as many entries as there are generalised velocities.
   template <StateScalar T>
   void unbalance(BodyMotion<T> const& x, VecXOf<T>& room, VecXOf<T>& forces, VecXOf<T>& out) const {
     FfrProducts<T> products(made_of_->integrals, made_of_->stack, room.data());
@@ -203,7 +213,8 @@ class Ffr {
 
   template <class = void>
   double kinetic_energy(Index, std::span<double const> q, std::span<double const> v) const {
-    static thread_local VecX mv;  // an energy is asked for within steps, too
+    static thread_local VecX
+        mv;  // thread-local, because energies are also evaluated within steps, which do not allocate memory
     mv.resize(speeds());
     inertia<double>(0, q, v, mv);
     return 0.5 * mv.dot(Eigen::Map<VecX const>(v.data(), speeds()));
@@ -220,7 +231,8 @@ class Ffr {
                   rotation_matrix<double>(part<4>(q, 3)) * integrals().first_moment<double>(q.data() + 7));
   }
 
-  /// r = r₀ + A u;  ω = A (Ω + Jl(θ) θ˙);  bias = A [Ω × (Ω × u) + 2 Ω × u˙ + u¨; Ω × Jl θ˙ + Jl˙ θ˙].
+  /// Marker kinematics: r = r₀ + A u;  ω = A (Ω + Jl(θ) θ˙);  bias = A [Ω × (Ω × u) + 2 Ω × u˙ + u¨; Ω × Jl θ˙ + Jl˙
+  /// θ˙].
   template <StateScalar T>
   void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v, Published<T>& out) const {
     Mat<T, 3, 3> const A = rotation_matrix<T>(part<4>(q, 3));
@@ -282,7 +294,8 @@ class Ffr {
     out.columns = 6 + n;
   }
 
-  /// Jᵀw = [f; u × F + N; Sᵀ F + Rᵀ Jr(θ) N] with F = Aᵀf, N = Aᵀm, by q ⊞ δ.
+  /// Load stiffness: the derivative of Jᵀw = [f; u × F + N; Sᵀ F + Rᵀ Jr(θ) N] with respect to q ⊞ δ, with F = Aᵀf and
+  /// N = Aᵀm.
   template <class = void>
   void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, MatX& k) const {
     Index const n = deformations();
@@ -304,8 +317,9 @@ class Ffr {
     for (std::size_t i = 0; i < 3 && p.drawn[0].size() > 0; ++i) k.bottomRightCorner(n, n) -= f[Index(i)] * p.drawn[i];
   }
 
-  /// How near the axial forces that `loads` (world axes) and the motion of the frame cause come to buckling the beams,
-  /// where the body's deflection does not feel them (axial_share.hpp); else zero. \param a v̇ of the body
+  /// Ratio of the axial forces due to `loads` (world axes) and to the motion of the frame to the buckling forces of the
+  /// beams (axial_share.hpp). It is zero for a body with geometric stiffening, and for one without beams.
+  /// \param a v̇ of the body
   template <class = void>
   double axial_share(std::span<double const> q, std::span<double const> v, std::span<double const> a,
                      Vec3 const& gravity, std::span<PlacedWrench const> loads) const {
@@ -317,8 +331,9 @@ class Ffr {
     return points_->axial_share(StructureAction::in_frame(frame, part<3>(a, 0) - gravity, part<3>(a, 3), loads));
   }
 
-  /// Axial strain, torsion and curvatures of the beam that a point is on, and its section forces (see sections.hpp); q
-  /// are all coordinates of the body. Shear is zero. \throws InvalidInput for a point that is not on a beam.
+  /// Axial strain, torsion and curvatures of the beam at point p (see sections.hpp). The shear strains are zero. q are
+  /// all coordinates of the body.
+  /// \throws InvalidInput for a point that is not on a beam.
   template <class = void>
   Vec6 section_strains(Point const& p, std::span<double const> q) const {
     return p.section_strains(q.data() + 7);
@@ -332,7 +347,7 @@ class Ffr {
   template <class T>
   using Moments = FfrIntegrals::Moments<T>;
 
-  /// c and J as the terms say.
+  /// First moment c as selected by the terms.
   template <class T>
   Vec<T, 3> first_moment(T const* x) const {
     return terms_.first_moment<T>(integrals(), x);
@@ -344,7 +359,7 @@ class Ffr {
     out.J = integrals().inertia.template cast<T>();
   }
 
-  /// In room of this thread.
+  /// Products in a workspace of this thread.
   template <class T>
   FfrProducts<T> own_products() const {
     static thread_local VecXOf<T> numbers;

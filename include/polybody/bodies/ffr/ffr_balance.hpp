@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// M a and the force of a floating frame's body (ffr.hpp has the equations), from products that both share.
+/// Inertia M a and force of the body of a floating frame (equations in ffr.hpp), from products that both share.
 ///
-/// Not in polybody.hpp: it comes with bodies/ffr/ffr.hpp.
+/// This header is not part of polybody.hpp; bodies/ffr/ffr.hpp includes it.
 
 #include <span>
 
@@ -12,11 +12,11 @@
 
 namespace polybody {
 
-/// Inertia and forces of a floating frame's body in one state.
+/// Inertia and forces of the body of a floating frame in one state.
 template <class T>
 class FfrBalance {
  public:
-  /// `products` are those at q.
+  /// Balance with `products` evaluated at q.
   FfrBalance(FfrIntegrals const& integrals, FfrTerms const& terms, FfrProducts<T> const& products, std::span<T const> q)
       : of_(integrals),
         terms_(terms),
@@ -95,9 +95,9 @@ class FfrBalance {
   FfrIntegrals const& of_;
   FfrTerms const& terms_;
   FfrProducts<T> const& products_;
-  T const* x_;  // deformation
+  T const* x_;  // coordinates of the deformation
   Mat<T, 3, 3> A_;
-  Vec<T, 3> c_;  // and J: as the terms say
+  Vec<T, 3> c_;  // first moment; c and J as selected by the terms
   Mat<T, 3, 3> J_;
 };
 

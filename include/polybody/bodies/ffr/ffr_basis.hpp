@@ -1,9 +1,9 @@
 #pragma once
 /// \file
-/// Deformation coordinates of a floating frame's body: reference conditions that tie the frame to the structure, and
-/// bases Φ (N×n), e = Φ q: all free nodal coordinates, modes of vibration, or Craig & Bampton's [1968].
+/// Deformation coordinates of a floating frame: reference conditions that tie the frame to the structure, and bases Φ
+/// (N×n), e = Φ q. The bases are all free nodal coordinates, vibration modes, or those of Craig & Bampton [1968].
 ///
-/// Not in polybody.hpp: Eigen's sparse module and factorisations would cost every program seconds to compile.
+/// This header is not part of polybody.hpp, because Eigen's sparse module and factorisations take seconds to compile.
 
 #include <algorithm>
 #include <set>
@@ -15,37 +15,39 @@
 
 namespace polybody {
 
-/// Which nodal coordinates stay zero in the floating frame. At least six in space must, and those that do must keep the
-/// structure from moving as a whole; or none, for modes of the free structure (mean axes).
+/// Reference conditions: nodal coordinates that remain zero in the floating frame. In space at least six are required,
+/// and they must prevent rigid motions of the structure. For modes of the free structure (mean axes) there are none.
 class ReferenceConditions {
  public:
-  /// All coordinates of one node: the frame is tied to it.
+  /// Conditions on all coordinates of one node, which tie the frame to it.
   static ReferenceConditions clamped(Index node = 0) {
     ReferenceConditions r;
     r.nodes_.push_back(node);
     return r;
   }
-  /// x, y, z and the rotation about x at `a`, y and z at `b`: for beams along x, the frame's x axis runs from a to b.
+  /// Conditions on x, y, z and the rotation about x at `a`, and on y and z at `b`. For beams along x, the x axis of the
+  /// frame points from a to b.
   static ReferenceConditions simply_supported(Index a, Index b) {
     ReferenceConditions r;
     for (int const c : {0, 1, 2, 3}) r.fix(a, c);
     for (int const c : {1, 2}) r.fix(b, c);
     return r;
   }
-  static ReferenceConditions none() { return {}; }  ///< holds nothing: for a free structure
+  static ReferenceConditions none() { return {}; }  ///< no condition, for a free structure
 
-  /// One more, of `node`: component 0–2 a displacement, 3–5 a rotation.
+  /// Adds a condition at `node`: component 0–2 is a displacement, 3–5 a rotation.
   ReferenceConditions& fix(Index node, int component) {
     single_.emplace_back(node, component);
     return *this;
   }
-  /// Only displacements along x, y and rotations about z remain.
+  /// Restricts the structure to displacements along x and y and rotations about z.
   ReferenceConditions& in_plane() {
     in_plane_ = true;
     return *this;
   }
 
-  /// The nodal coordinates that remain, in order. \throws InvalidInput for a node or component that does not exist.
+  /// Remaining nodal coordinates, in ascending order.
+  /// \throws InvalidInput for a node or component that does not exist.
   template <class = void>
   std::vector<Index> free_coordinates(Structure const& s) const {
     std::vector<char> fixed(std::size_t(s.size()), 0);
@@ -67,7 +69,7 @@ class ReferenceConditions {
       if (!fixed[std::size_t(i)]) free.push_back(i);
     return free;
   }
-  /// Rigid motions of the structure if it were free: 3 `in_plane`, else 6.
+  /// Number of rigid motions of the free structure: 3 if `in_plane`, otherwise 6.
   int rigid_motions() const { return in_plane_ ? 3 : 6; }
 
  private:
@@ -76,17 +78,17 @@ class ReferenceConditions {
   bool in_plane_ = false;
 };
 
-/// The lowest solutions of K x = ω² M x: ω² ascending, x by columns with xᵀMx = 1.
+/// Lowest solutions of K x = ω² M x: ω² ascending, x as columns with xᵀMx = 1.
 struct LowestModes {
   VecX squared_frequencies;  ///< [rad²/s²]
   MatX shapes;               ///< (N×count)
 };
 
-/// All modes by Eigen's dense solver, of which the lowest are kept: for up to some thousand coordinates.
-/// vibration/spectra_modes.hpp has one for larger structures.
+/// Eigenvalue solver that computes all modes with Eigen's dense solver and returns the lowest ones, for up to about a
+/// thousand coordinates. vibration/spectra_modes.hpp has a solver for larger structures.
 struct DenseModes {
-  /// The `count` lowest solutions.
-  template <class = void>  // compiled where it is used
+  /// Lowest `count` solutions.
+  template <class = void>  // compiled only if used
   LowestModes operator()(Structure::Sparse const& k, Structure::Sparse const& m, Index count) const {
     MatX const dense_k(k), dense_m(m);
     Eigen::GeneralizedSelfAdjointEigenSolver<MatX> const solver(dense_k, dense_m);
@@ -113,8 +115,8 @@ void require_mass(Structure::Sparse const& m) {
 
 }  // namespace detail
 
-/// Every nodal coordinate that the reference conditions leave. \throws InvalidInput when the structure can still move
-/// as a whole.
+/// Basis of all nodal coordinates that the reference conditions leave free.
+/// \throws InvalidInput if a rigid motion of the structure remains.
 template <class = void>
 MatX nodal_coordinates(Structure const& s, ReferenceConditions const& frame = ReferenceConditions::clamped()) {
   std::vector<Index> const free = frame.free_coordinates(s);
@@ -122,8 +124,8 @@ MatX nodal_coordinates(Structure const& s, ReferenceConditions const& frame = Re
   return scatter_rows(MatX::Identity(Index(free.size()), Index(free.size())), free, s.size());
 }
 
-/// The `count` lowest modes, by `solve`, of the structure held by the reference conditions. \throws InvalidInput as
-/// above, and for a count beyond what there is.
+/// Lowest `count` modes of the structure under the reference conditions, computed by `solve`.
+/// \throws InvalidInput if a rigid motion remains, and for a count above the number of modes.
 template <class Eigensolver = DenseModes>
 MatX held_modes(Structure const& s, Index count, ReferenceConditions const& frame = ReferenceConditions::clamped(),
                 Eigensolver const& solve = {}) {
@@ -135,8 +137,9 @@ MatX held_modes(Structure const& s, Index count, ReferenceConditions const& fram
   return scatter_rows(solve(k, m, count).shapes, free, s.size());
 }
 
-/// The `count` lowest modes, by `solve`, of the free structure that deform it. The frame follows the mean motion:
-/// momentum and moment of momentum of the deformation vanish in it to first order (Tisserand's or Buckens' mean axes).
+/// Lowest `count` modes of the free structure with deformation, computed by `solve`. The frame follows the mean motion:
+/// momentum and angular momentum of the deformation relative to it vanish to first order (mean axes of Tisserand or
+/// Buckens).
 /// \throws InvalidInput as above.
 template <class Eigensolver = DenseModes>
 MatX free_interface_modes(Structure const& s, Index count,
@@ -147,17 +150,18 @@ MatX free_interface_modes(Structure const& s, Index count,
   detail::require_count(count, Index(free.size()) - rigid);
   Structure::Sparse const k = submatrix(s.stiffness, free, free), m = submatrix(s.mass_matrix(), free, free);
   detail::require_mass(m);
-  // K alone is singular: with a shift of the size of a low frequency it is not, and the modes stay the same.
+  // K is singular. A shift of the size of a low squared frequency makes it regular and does not change the modes.
   double const shift = 1e-3 * k.diagonal().sum() / m.diagonal().sum();
   LowestModes const modes = solve(Structure::Sparse(k + shift * m), m, count + rigid);
   return scatter_rows(modes.shapes.rightCols(count), free, s.size());
 }
 
-/// Craig & Bampton [1968]: the static shapes of unit displacements of the boundary nodes, and the `count` lowest modes
-/// with these nodes held, by `solve`; all of them, or those `in_plane`. The frame is tied to the first boundary node,
-/// whose shapes are left out, or follows the mean motion (`mean_axes`): then the basis is turned into free modes of the
-/// reduced model, less the rigid ones. \throws InvalidInput for boundary nodes that do not exist or repeat, a count
-/// beyond what there is, or a frame tied to a node without rotations.
+/// Basis of Craig & Bampton [1968]: constraint modes of the boundary nodes, and the `count` lowest fixed-interface
+/// modes, computed by `solve`. All coordinates are used, or those `in_plane`. The frame is tied to the first boundary
+/// node, whose constraint modes are omitted. With `mean_axes` it follows the mean motion instead: the basis then is
+/// transformed to the free modes of the reduced model, without the rigid ones.
+/// \throws InvalidInput for boundary nodes that do not exist or are repeated, a count above the number of modes, or a
+/// frame tied to a node without rotations.
 template <class Eigensolver = DenseModes>
 MatX craig_bampton(Structure const& s, std::vector<Index> const& boundary, Index count, bool mean_axes = false,
                    bool in_plane = false, Eigensolver const& solve = {}) {

@@ -1,9 +1,9 @@
 #pragma once
 /// \file
-/// The inertia and stiffness of a floating frame's body by its n deformation coordinates q: the inertia shape integrals
-/// of a structure carried to a basis e = Φ q, or numbers that the user brings.
+/// Inertia and stiffness of the body of a floating frame as functions of its n deformation coordinates q. They follow
+/// from the inertia shape integrals of a structure, projected onto a basis e = Φ q, or are given by the user.
 ///
-/// Not in polybody.hpp: Eigen's sparse module and factorisations would cost every program seconds to compile.
+/// This header is not part of polybody.hpp, because Eigen's sparse module and factorisations take seconds to compile.
 
 #include <polybody/bodies/ffr/beam_structure.hpp>
 
@@ -11,11 +11,12 @@ namespace polybody {
 
 namespace detail {
 
-/// Column k of m times x.
+/// Product of column k of m and x.
 template <class T>
 T column_times(MatX const& m, Index k, T const* x) {
   if constexpr (std::is_same_v<T, double>) {
-    return m.col(k).dot(Eigen::Map<VecX const>(x, m.rows()));  // Eigen adds in packets, a compiler must not
+    return m.col(k).dot(
+        Eigen::Map<VecX const>(x, m.rows()));  // Eigen vectorises the sum; a compiler must not reorder it
   } else {
     T sum(0.0);
     for (Index j = 0; j < m.rows(); ++j) sum += x[j] * m(j, k);
@@ -23,7 +24,7 @@ T column_times(MatX const& m, Index k, T const* x) {
   }
 }
 
-/// xᵀ m y.
+/// Product xᵀ m y.
 template <class T>
 T quadratic(MatX const& m, T const* x, T const* y) {
   T sum(0.0);
@@ -31,7 +32,7 @@ T quadratic(MatX const& m, T const* x, T const* y) {
   return sum;
 }
 
-/// out (rows of m) = m x, column by column: long runs in memory, whatever the type of the numbers.
+/// Product out = m x, column by column. The entries are contiguous in memory for every number type.
 template <class T>
 void times(MatX const& m, T const* x, T* out) {
   Index const rows = m.rows();
@@ -44,12 +45,12 @@ void times(MatX const& m, T const* x, T* out) {
 
 }  // namespace detail
 
-/// In the axes of the floating frame, of the body's points u = u₀ + S q:
+/// Integrals of the body of a floating frame, in the axes of the frame, for the points u = u₀ + S q:
 ///   c(q) = ∫ρ u = first + first_by q − ½ [qᵀ first_second_k q]_k,
-///   J(q) = inertia + Σ_kl (inertia_by_kl · q + qᵀ inertia_second_kl q), the inertia tensor about the frame's origin,
+///   J(q) = inertia + Σ_kl (inertia_by_kl · q + qᵀ inertia_second_kl q), the inertia tensor about the origin,
 ///   H(q) = ∫ρ ũ S with the rows H_i = coupling_i + qᵀ coupling_by_i,
-///   T = ½ m ṙ² + ṙᵀA (Ω × c + c_q q̇) + ½ Ωᵀ J Ω + Ωᵀ H q̇ + ½ q̇ᵀ mass_matrix q̇,   U = ½ qᵀ stiffness q + initial_force
-///   · q.
+///   T = ½ m ṙ² + ṙᵀA (Ω × c + c_q q̇) + ½ Ωᵀ J Ω + Ωᵀ H q̇ + ½ q̇ᵀ mass_matrix q̇,
+///   U = ½ qᵀ stiffness q + initial_force · q.
 struct FfrIntegrals {
   double mass = 0.0;                        ///< [kg]
   Vec3 first = Vec3::Zero();                ///< [kg m]
@@ -63,10 +64,10 @@ struct FfrIntegrals {
   MatX mass_matrix, stiffness, damping;     ///< (n×n)
   VecX initial_force;                       ///< (n)
 
-  Index size() const { return mass_matrix.rows(); }  ///< n, coordinates of the deformation
+  Index size() const { return mass_matrix.rows(); }  ///< number n of coordinates of the deformation
 
-  /// All zero, for n deformation coordinates.
-  template <class = void>  // compiled where it is used
+  /// Integrals that are all zero, for n deformation coordinates.
+  template <class = void>  // compiled only if used
   static FfrIntegrals zero(Index n) {
     FfrIntegrals x;
     x.first_by.setZero(3, n);
@@ -79,6 +80,7 @@ struct FfrIntegrals {
     return x;
   }
 
+  /// Checks sizes and mass.
   /// \throws InvalidInput naming `what` for sizes that differ, a mass that is not positive, or a mass matrix that is
   /// not symmetric and positive definite.
   template <class = void>
@@ -96,7 +98,7 @@ struct FfrIntegrals {
     require_finite(mass_matrix, what, ": the mass matrix");
     require_finite(stiffness, what, ": the stiffness matrix");
     require_entries(what);
-    MatX l = mass_matrix;  // L D Lᵀ, and D must be positive
+    MatX l = mass_matrix;  // L D Lᵀ; all entries of D must be positive
     bool positive = (l - l.transpose()).norm() <= 1e-9 * l.norm();
     for (Index k = 0; k < n; ++k) {
       positive = positive && l(k, k) > 1e-13 * mass_matrix(k, k);
@@ -106,6 +108,7 @@ struct FfrIntegrals {
     if (!positive)
       throw InvalidInput{what, ": the mass matrix of its deformation is not symmetric and positive definite."};
   }
+  /// Checks the entries of all integrals.
   /// \throws InvalidInput naming `what` and the integral that has a NaN, or an entry whose square is not finite.
   template <class = void>
   void require_entries(std::string const& what) const {
@@ -126,21 +129,20 @@ struct FfrIntegrals {
     require(damping.data(), damping.size(), "damping");
     require(initial_force.data(), initial_force.size(), "initial_force");
   }
-  /// Whether it has the terms of geometric stiffening.
+  /// Returns true if the integrals have the terms of geometric stiffening.
   template <class = void>
   bool stiffens() const {
     return first_second[0].size() > 0;
   }
 
-  /// First and second moment of the deformed body about its frame's origin, per volume of the integrals [kg m], [kg
-  /// m²].
+  /// First and second moment of the deformed body about the origin of its frame [kg m], [kg m²].
   template <class T>
   struct Moments {
     Vec<T, 3> c;     ///< ∫ρ u
-    Mat<T, 3, 3> J;  ///< the inertia tensor
+    Mat<T, 3, 3> J;  ///< inertia tensor
   };
 
-  /// c(q) and J(q), x being q (n) here and below.
+  /// Moments c(q) and J(q); here and below x is q (n).
   template <class T>
   void moments(T const* x, Moments<T>& out) const {
     Vec<T, 6> j;
@@ -153,7 +155,7 @@ struct FfrIntegrals {
       for (int k = 0; k < 3; ++k) out.J(i, k) = j[symmetric_place[i][k]];
     out.c = first_moment<T>(x);
   }
-  /// c(q) at q = x.
+  /// First moment c(q) at q = x.
   template <class T>
   Vec<T, 3> first_moment(T const* x) const {
     Vec<T, 3> c;
@@ -174,22 +176,22 @@ struct FfrIntegrals {
     }
     return c;
   }
-  /// Column k of C(q), to c, and of H(q), to h, at q = x.
+  /// Columns k of C(q) and of H(q) at q = x, written to c and h.
   template <class T>
   void columns(T const* x, Index k, Vec<T, 3>& c, Vec<T, 3>& h) const {
     c = first_slope(x, k);
     for (std::size_t i = 0; i < 3; ++i)
       h[Index(i)] = detail::column_times(coupling_by[i], k, x) + coupling(Index(i), k);
   }
-  /// ∂J_p/∂q_k at q = x, p an entry in the order of `symmetric_row`, k a coordinate.
+  /// Derivative ∂J_p/∂q_k at q = x, for entry p in the order of `symmetric_row` and coordinate k.
   template <class T>
   T inertia_slope(T const* x, std::size_t p, Index k) const {
     return detail::column_times(inertia_second[p], k, x) * 2.0 + inertia_by[p][k];
   }
 };
 
-/// The integrals of `s` with e = `shapes` q (N×n); `stiffening` adds, to second order in q, what bending draws the
-/// points along the beams (foreshortening), which centrifugal and other axial forces work on.
+/// Integrals of `s` with e = `shapes` q (N×n). `stiffening` adds axial foreshortening to second order in q, on which
+/// centrifugal and other axial forces do work.
 /// \throws InvalidInput for shapes of another size; with stiffening, for a structure without beams.
 template <class = void>
 FfrIntegrals integrals_of(Structure const& s, MatX const& shapes, bool stiffening = false) {
@@ -215,7 +217,7 @@ FfrIntegrals integrals_of(Structure const& s, MatX const& shapes, bool stiffenin
     x.first_by.row(Index(k)) = (shapes.transpose() * s.translation[k]).transpose();
     for (std::size_t l = 0; l < 3; ++l) moment[k][l] = shapes.transpose() * s.moment[k][l];
   }
-  // What bending draws along the beams: −½ qᵀ drawn_kl q = ∫ρ u₀ₖ (second-order displacement along l).
+  // Axial foreshortening: −½ qᵀ drawn_kl q = ∫ρ u₀ₖ (second-order displacement along l).
   std::array<std::array<MatX, 3>, 3> drawn;
   if (stiffening) {
     AxialForceStiffness const axial(s);
@@ -244,7 +246,7 @@ FfrIntegrals integrals_of(Structure const& s, MatX const& shapes, bool stiffenin
     // H_i = ∫ρ (u_j S_k − u_k S_j)
     x.coupling.row(Index(i)) = (moment[j][k] - moment[k][j]).transpose();
     auto const p = std::size_t(symmetric_place[j][k]);
-    bool const as_kept = symmetric_row[p] == int(j);  // else ∫ρ S_jᵀ S_k is the kept one, transposed
+    bool const as_kept = symmetric_row[p] == int(j);  // otherwise ∫ρ S_jᵀ S_k is the transpose of the stored product
     MatX const jk = as_kept ? products[p] : MatX(products[p].transpose());
     x.coupling_by[i] = jk - jk.transpose();
     if (stiffening) x.coupling_by[i] -= drawn[j][k] - drawn[k][j];

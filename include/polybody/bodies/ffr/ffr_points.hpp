@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// Material points of a floating frame's body: what its displacement, small rotation and strain are made of.
+/// Material points of the body of a floating frame, with the matrices of their displacement, small rotation and strain.
 ///
-/// Not in polybody.hpp: Eigen's sparse module and factorisations would cost every program seconds to compile.
+/// This header is not part of polybody.hpp, because Eigen's sparse module and factorisations take seconds to compile.
 
 #include <algorithm>
 #include <optional>
@@ -12,16 +12,16 @@
 
 namespace polybody {
 
-/// Place u₀ in the frame [m], displacement S q and small rotation R q (3×n); for a point of a beam also its section's
-/// strains and stiffness.
+/// Material point: position u₀ in the frame [m], displacement S q and small rotation R q (3×n). A point of a beam also
+/// has the strains and the stiffness of its section.
 struct FfrPoint {
-  Vec3 u = Vec3::Zero();                ///< u₀ (3), in the frame's axes [m]
-  Mat<double, 3, Eigen::Dynamic> S, R;  ///< displacement [m] and small rotation [rad] by unit q
+  Vec3 u = Vec3::Zero();                ///< u₀ (3), in the axes of the frame [m]
+  Mat<double, 3, Eigen::Dynamic> S, R;  ///< displacement [m] and small rotation [rad] for unit q
   std::array<MatX, 3> drawn;  ///< with geometric stiffening: the displacement is S q − ½ [qᵀ drawn_k q]_k (n×n)
   Mat<double, 4, Eigen::Dynamic>
       strain;                     ///< (4×n) of the axis: axial strain, torsion, curvature about y, z [1/m]; or empty
   Vec4 stiffness = Vec4::Zero();  ///< (EA, GJ, EI_y, EI)
-  double y = 0.0, z = 0.0;        ///< off the axis of its beam [m]
+  double y = 0.0, z = 0.0;        ///< distances from the axis of its beam [m]
 
   /// Entry (i, k) of S − qᵀ drawn.
   template <class T>
@@ -31,16 +31,16 @@ struct FfrPoint {
     for (Index j = 0; j < m.rows(); ++j) s -= q[j] * m(j, k);
     return s;
   }
-  /// Column k of S − qᵀ drawn, to `out` (3).
+  /// Column k of S − qᵀ drawn, written to `out` (3).
   template <class T>
   void slopes(T const* q, Index k, T* out) const {
     for (int i = 0; i < 3; ++i) out[i] = T(S(i, k));
     if (drawn[0].size() == 0) return;
     for (int i = 0; i < 3; ++i) out[i] = slope(q, i, k);
   }
-  /// Strains and forces of the beam's section by the deformation q (see sections.hpp). \throws InvalidInput for a point
-  /// that is not of a beam.
-  template <class = void>  // compiled where it is used
+  /// Strains of the section of the beam for the deformation q (see sections.hpp).
+  /// \throws InvalidInput for a point that is not on a beam.
+  template <class = void>  // compiled only if used
   Vec6 section_strains(double const* q) const {
     if (strain.cols() != S.cols()) throw InvalidInput("Ffr: strains are known in points of beams only.");
     Vec6 sum = Vec6::Zero();
@@ -48,7 +48,7 @@ struct FfrPoint {
       for (int i = 0; i < 4; ++i) sum[i == 0 ? 0 : i + 2] += strain(i, k) * q[k];
     return sum;
   }
-  /// (N, M) by the deformation q [N], [N m], without shear and damping.
+  /// Section forces (N, M) for the deformation q [N], [N m], without shear and damping.
   template <class = void>
   Vec6 section_forces(double const* q) const {
     Vec6 n = section_strains(q);
@@ -57,13 +57,13 @@ struct FfrPoint {
   }
 };
 
-/// Makes the points of a structure with e = Φ q.
+/// Factory for the points of a structure with e = Φ q.
 class FfrPoints {
  public:
-  /// `shapes` are Φ (N×n); `stiffening`: whether beams get shorter as they bend.
+  /// Points for the basis Φ = `shapes` (N×n). With `stiffening`, beams have axial foreshortening.
   template <class = void>
   FfrPoints(Structure structure, MatX shapes, bool stiffening) : s_(std::move(structure)), shapes_(std::move(shapes)) {
-    auto const make = [](auto& part, auto const& from) { part.emplace(from); };  // compiled where it is used
+    auto const make = [](auto& part, auto const& from) { part.emplace(from); };  // compiled only if used
     if (stiffening) {
       make(axial_, s_);
     } else if (!s_.beams.empty() && shapes_.cols() > 0) {
@@ -75,20 +75,23 @@ class FfrPoints {
   FfrPoints(FfrPoints const&) = delete;
   FfrPoints& operator=(FfrPoints const&) = delete;
 
-  Structure const& structure() const { return s_; }  ///< the finite element model
-  /// As the free function; zero with stiffening, which leaves nothing out, and for what is not made of beams.
+  Structure const& structure() const { return s_; }  ///< finite element model
+  /// Ratio of axial forces to buckling forces, as the free function computes it. It is zero with stiffening, because
+  /// then no effect is omitted, and for a structure that is not made of beams.
   template <class = void>
   double axial_share(StructureAction const& action) const {
     return unstiffened_ ? polybody::axial_share(s_, shapes_, *unstiffened_, action) : 0.0;
   }
   MatX const& shapes() const { return shapes_; }  ///< Φ (N×n)
 
-  /// Length of the first bar [m]. \throws InvalidInput without bars.
+  /// Length of the first bar [m].
+  /// \throws InvalidInput without bars.
   double length() const {
     if (s_.beams.empty()) throw InvalidInput("Ffr: only a body made of bars has a length.");
     return s_.bar_lengths.front();
   }
-  /// The point at distance s from the first end of a bar, (y, z) off its axis. \throws InvalidInput outside the bar.
+  /// Point at distance s from the first end of bar `bar`, at (y, z) from its axis [m].
+  /// \throws InvalidInput outside the bar.
   template <class = void>
   FfrPoint at(double s, double y, double z, Index bar) const {
     if (s_.beams.empty()) throw InvalidInput("Ffr: at(s) needs a body made from bars; use node(i).");
@@ -119,7 +122,8 @@ class FfrPoints {
     return p;
   }
 
-  /// Node i. \throws InvalidInput for one that does not exist.
+  /// Node i.
+  /// \throws InvalidInput for a node that does not exist.
   template <class = void>
   FfrPoint node(Index i) const {
     s_.require_node(i, "Ffr");
@@ -139,8 +143,8 @@ class FfrPoints {
     return p;
   }
 
-  /// The point `at` of the undeformed structure, fixed to the mean motion of a patch of its nodes. \throws InvalidInput
-  /// with geometric stiffening.
+  /// Point `at` of the undeformed structure, fixed to the mean motion of a patch of its nodes.
+  /// \throws InvalidInput with geometric stiffening.
   template <class = void>
   FfrPoint patch(NodePatch const& nodes, Vec3 const& at) const {
     if (axial_)
@@ -154,7 +158,7 @@ class FfrPoints {
   }
 
  private:
-  /// m (rows × 12) of a beam's nodal coordinates, by q.
+  /// Matrix m (rows × 12) of the nodal coordinates of a beam, projected onto q.
   template <int rows>
   Mat<double, rows, Eigen::Dynamic> of_nodes(Structure::Beam const& beam, Mat<double, rows, 12> const& m) const {
     Mat<double, rows, Eigen::Dynamic> out(rows, shapes_.cols());
@@ -166,8 +170,9 @@ class FfrPoints {
       }
     return out;
   }
-  /// −½ qᵀ drawn_k q: what the axial forces of a unit force along k at the point work. A force at a node leaves them
-  /// constant along each beam (a held node draws nothing); one `within` a beam counts as spread over it.
+  /// Matrices drawn_k, with −½ qᵀ drawn_k q the second-order work of a unit force along k at the point. A force at a
+  /// node gives a constant axial force along each beam, and a held node gives none. A force `within` a beam is treated
+  /// as distributed over it.
   template <class Load>
   void draw(FfrPoint& p, bool within, Load&& load) const {
     for (int k = 0; k < 3; ++k) {
@@ -183,7 +188,7 @@ class FfrPoints {
   Structure s_;
   MatX shapes_;
   std::optional<AxialForceStiffness> axial_;
-  std::optional<Eigen::LLT<MatX>> unstiffened_;  ///< of ΦᵀKΦ, without stiffening
+  std::optional<Eigen::LLT<MatX>> unstiffened_;  ///< factorisation of ΦᵀKΦ, without stiffening
 };
 
 }  // namespace polybody

@@ -1,22 +1,22 @@
 #pragma once
 /// \file
-/// What the equations of a floating frame multiply coordinates, speeds and their rates by: stacked, so that each is
-/// gone through once.
+/// Matrix products of the equations of a floating frame with coordinates, velocities and accelerations. The matrices
+/// are stacked, so that each vector is read once.
 ///
-/// Not in polybody.hpp: it comes with bodies/ffr/ffr.hpp.
+/// This header is not part of polybody.hpp; bodies/ffr/ffr.hpp includes it.
 
 #include <polybody/bodies/ffr/ffr_integrals.hpp>
 
 namespace polybody {
 
-/// The matrices of `FfrIntegrals`, transposed, one below the other; n deformation coordinates.
+/// Transposed matrices of `FfrIntegrals`, stacked one below the other, for n deformation coordinates.
 struct FfrStack {
   MatX of_coordinates;  ///< (10n×n) 2 inertia_second_p, coupling_by_i, stiffness
   MatX of_speeds;       ///< (4n×n) W_i, damping
-  MatX of_rates;        ///< (n×n) the mass matrix
+  MatX of_rates;        ///< (n×n) mass matrix
 
   /// Stacks the matrices of a body.
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   static FfrStack of(FfrIntegrals const& i) {
     Index const n = i.size();
     FfrStack out{MatX(10 * n, n), MatX(4 * n, n), i.mass_matrix.transpose()};
@@ -33,12 +33,12 @@ struct FfrStack {
   }
 };
 
-/// Products at one state, in room for 15 n numbers.
+/// Products in one state, in a workspace of 15 n numbers.
 template <class T>
 class FfrProducts {
  public:
-  static Index room(Index n) { return 15 * n; }  ///< numbers of scratch for n coordinates
-  /// `room` has room(n) numbers. All three arguments must outlive this.
+  static Index room(Index n) { return 15 * n; }  ///< number of workspace entries for n coordinates
+  /// Products in the workspace `room` with room(n) entries. All three arguments must outlive this object.
   FfrProducts(FfrIntegrals const& integrals, FfrStack const& stack, T* room)
       : i_(integrals), stack_(stack), n_(integrals.size()), x_(room), xd_(room + 10 * n_), xdd_(room + 14 * n_) {}
 
@@ -46,12 +46,12 @@ class FfrProducts {
   void at_speeds(T const* speeds) { detail::times(stack_.of_speeds, speeds, xd_); }         ///< q̇ = `speeds` (n)
   void at_rates(T const* rates) { detail::times(stack_.of_rates, rates, xdd_); }            ///< q̈ = `rates` (n)
 
-  /// ∂J_p/∂q_k, p an entry in the order of `symmetric_row`, k a coordinate here and below.
+  /// Derivative ∂J_p/∂q_k, for entry p in the order of `symmetric_row`; here and below k is a coordinate.
   T inertia_slope(std::size_t p, Index k) const { return x_[Index(p) * n_ + k] + i_.inertia_by[p][k]; }
-  /// Entry k of H_i, i an axis.
+  /// Entry k of H_i for axis i.
   T coupling(Index i, Index k) const { return x_[(6 + i) * n_ + k] + i_.coupling(i, k); }
   T stiffness(Index k) const { return x_[9 * n_ + k]; }  ///< entry k of K q
-  /// Entry k of W_i q̇, i an axis, with the sign of the force.
+  /// Entry k of W_i q̇ for axis i, with the sign of the force.
   T gyroscopic(Index i, Index k) const { return xd_[i * n_ + k]; }
   T damping(Index k) const { return xd_[3 * n_ + k]; }  ///< entry k of D q̇
   T mass(Index k) const { return xdd_[k]; }             ///< entry k of M q̈

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// The tangent of a floating frame's body in space.
+/// Tangent of the body of a floating frame in space.
 ///
-/// Not in polybody.hpp: it comes with bodies/ffr/ffr.hpp.
+/// This header is not part of polybody.hpp; bodies/ffr/ffr.hpp includes it.
 
 #include <span>
 
@@ -12,13 +12,15 @@
 
 namespace polybody {
 
-/// ck (−∂f/∂δ) + cd (−∂f/∂v) of `Ffr::force` f, term by term. With w = Ω × (Ω × c) + 2 Ω × ċ + Ċ q̇ and the derivatives
-/// of J and H by q written out, the rows of r are
-///   by the frame's rotation −A w̃,  by Ω  A ((−Ω × c)~ − Ω̃ c̃ − 2 ċ~),  by q  A (Ω̃² C + 2 Ω̃ ċ_q).
+/// Tangent ck (−∂f/∂δ) + cd (−∂f/∂v) of `Ffr::force` f, term by term. With w = Ω × (Ω × c) + 2 Ω × ċ + Ċ q̇ and
+/// explicit derivatives of J and H with respect to q, the derivatives of the rows of r are
+///   with respect to the rotation of the frame −A w̃,
+///   with respect to Ω  A ((−Ω × c)~ − Ω̃ c̃ − 2 ċ~),
+///   with respect to q  A (Ω̃² C + 2 Ω̃ ċ_q).
 class FfrTangent {
  public:
-  /// At coordinates q and speeds v of the whole body. All arguments must outlive this.
-  template <class = void>  // compiled where it is used
+  /// Tangent at coordinates q and generalised velocities v of the whole body. All arguments must outlive this object.
+  template <class = void>  // compiled only if used
   FfrTangent(FfrIntegrals const& integrals, FfrTerms const& terms, std::span<double const> q, std::span<double const> v)
       : i_(integrals),
         terms_(terms),
@@ -33,7 +35,8 @@ class FfrTangent {
     at_.J = i_.inertia;
   }
 
-  /// Writes the tangent to k, which becomes (6 + n)×(6 + n). Call it once: sums are kept.
+  /// Writes the tangent to k, which becomes (6 + n)×(6 + n). It may be called only once, because the object accumulates
+  /// sums.
   template <class = void>
   void write(double ck, double cd, MatX& k) {
     Index const n = i_.size();
@@ -51,7 +54,7 @@ class FfrTangent {
   }
 
  private:
-  /// The terms of C and H without their derivatives.
+  /// Adds the terms of C and H without their derivatives.
   template <class = void>
   void add_columns(double ck, double cd, MatX& k) {
     for (Index i = 0; i < i_.size(); ++i) {
@@ -65,7 +68,7 @@ class FfrTangent {
       k.block<3, 1>(3, 6 + i) += cd * spin_ * h;
     }
   }
-  /// The terms of J, entry p by entry: slope (n) = ∂J_p/∂q, bent (n) = ∂(J˙_p)/∂q.
+  /// Adds the terms of J, entry p by entry: slope (n) = ∂J_p/∂q, bent (n) = ∂(J˙_p)/∂q.
   template <class = void>
   void add_inertia(double ck, double cd, MatX& k) {
     for (std::size_t p = 0; p < 6; ++p) {
@@ -78,7 +81,7 @@ class FfrTangent {
         double const moving = terms_.changes_inertia() ? 1.0 : 0.0;
         j_rate_(a, b) += moving * slope * xd_[i];
         if (off) j_rate_(b, a) += moving * slope * xd_[i];
-        Vec3 by = Vec3::Zero();  // ∂(J Ω)/∂q_i of this entry, per slope
+        Vec3 by = Vec3::Zero();  // ∂(J Ω)/∂q_i of this entry, relative to slope
         by[a] += omega_[b];
         if (off) by[b] += omega_[a];
         k.block<3, 1>(3, 6 + i) += moving * (ck * bent + cd * slope) * by;
@@ -91,7 +94,7 @@ class FfrTangent {
             (ck * (off ? 2.0 : 1.0) * omega_[a] * omega_[b]) * i_.inertia_second[p];
     }
   }
-  /// The derivatives of H by q.
+  /// Adds the derivatives of H with respect to q.
   template <class = void>
   void add_coupling(double ck, double cd, MatX& k) const {
     for (Index i = 0; i < 3; ++i) {
@@ -107,7 +110,7 @@ class FfrTangent {
       if (terms_.coriolis) k.bottomRightCorner(i_.size(), i_.size()) += (cd * omega_[i]) * (m.transpose() - m);
     }
   }
-  /// The derivatives of C by q, and Ċ q̇ into w.
+  /// Adds the derivatives of C with respect to q, and adds Ċ q̇ to w.
   template <class = void>
   void add_foreshortening(double ck, double cd, Vec3& w, MatX& k) const {
     for (Index i = 0; i < 3; ++i) {

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// Sparse matrices of a finite element program, in Matrix Market's coordinate format.
+/// Sparse matrices of a finite element program in the coordinate format of Matrix Market.
 ///
-/// Not in polybody.hpp: few programs need it.
+/// This header is not part of polybody.hpp, because few programs need it.
 
 #include <unordered_set>
 #include <vector>
@@ -13,11 +13,12 @@
 
 namespace polybody {
 
-/// A sparse matrix of this size, m×n, of a Matrix Market file [Boisvert, Pozo & Remington 1996]: coordinate, real or
-/// integer, general or symmetric (its lower triangle). Eigen's unsupported loader leaves symmetric matrices halved and
-/// believes any index, so this does not use it. `need` says why the size must be that: "the matrix is 2×2, but the …".
-/// \throws IoError for anything else, with the line.
-template <class = void>  // compiled where it is used
+/// Sparse matrix of size m×n from a Matrix Market file [Boisvert, Pozo & Remington 1996]: coordinate, real or integer,
+/// general or symmetric (its lower triangle). Eigen's unsupported loader returns half of a symmetric matrix and does
+/// not check indices, so this function does not use it. `need` explains the required size in a message: "the matrix is
+/// 2×2, but the …".
+/// \throws IoError for any other content, with the line.
+template <class = void>  // compiled only if used
 Eigen::SparseMatrix<double> read_matrix(std::string const& file, Index m, Index n, std::string const& need) {
   NumberLines lines(file, '%');
   std::string banner;

@@ -1,13 +1,12 @@
 #pragma once
 /// \file
-/// A structure from the matrices of a finite element program: solid elements with three displacements per node. Their
-/// shape functions carry displacement and undeformed position alike, u = Σ N_i u_i and u₀ = Σ N_i x_i, so that with
-/// m_ij = ∫ρ N_i N_j the mass matrix is m ⊗ 1₃, and every integral of structure.hpp follows from m and the nodes
-/// exactly:
-///   ∫ρ S_kᵀ S_l: m_ij at (3i+k, 3j+l),   ∫ρ S_k: Σ_i m_ij at 3j+k,   ∫ρ u₀ₖ S_l: Σ_i x_ik m_ij at 3j+l,   ∫ρ u₀u₀ᵀ =
-///   Xᵀ m X.
+/// Structure from the matrices of a finite element program: solid elements with three displacements per node.
+/// Displacement and undeformed position have the same shape functions, u = Σ N_i u_i and u₀ = Σ N_i x_i. With m_ij = ∫ρ
+/// N_i N_j the mass matrix is m ⊗ 1₃, and all integrals of structure.hpp follow exactly from m and the nodes:
+///   ∫ρ S_kᵀ S_l: m_ij at (3i+k, 3j+l),   ∫ρ S_k: Σ_i m_ij at 3j+k,
+///   ∫ρ u₀ₖ S_l: Σ_i x_ik m_ij at 3j+l,   ∫ρ u₀u₀ᵀ = Xᵀ m X.
 ///
-/// Not in polybody.hpp: few programs need it.
+/// This header is not part of polybody.hpp, because few programs need it.
 
 #include <limits>
 
@@ -21,8 +20,8 @@ namespace polybody {
 
 namespace detail {
 
-/// Row or column i of a matrix with x, y, z of every node.
-template <class = void>  // compiled where it is used
+/// Name of row or column i of a matrix with x, y, z of every node.
+template <class = void>  // compiled only if used
 std::string coordinate_name(Index i) {
   return sentence_of({i, " (", "xyz"[i % 3], " of node ", i / 3, ")"});
 }
@@ -39,7 +38,8 @@ double largest_entry(Structure::Sparse const& m) {
   return largest;
 }
 
-/// \throws InvalidInput unless m is n×n, finite (with its norm) and symmetric, but for 1e-9 of its largest entry.
+/// Checks the matrix m; `name` begins the message.
+/// \throws InvalidInput unless m is n×n, finite (with its norm) and symmetric to 1e-9 of its largest entry.
 template <class = void>
 void require_symmetric(Structure::Sparse const& m, Index n, std::string const& name) {
   if (m.rows() != n || m.cols() != n)
@@ -77,8 +77,8 @@ void require_symmetric(Structure::Sparse const& m, Index n, std::string const& n
   }
 }
 
-/// m (n×n) of M = m ⊗ 1₃. \throws InvalidInput for another M, but for 1e-9 of its largest entry, and for an m that is
-/// not positive definite.
+/// Matrix m (n×n) of M = m ⊗ 1₃.
+/// \throws InvalidInput if M does not have this form to 1e-9 of its largest entry, or if m is not positive definite.
 template <class = void>
 Structure::Sparse scalar_mass(Structure::Sparse const& mass) {
   std::string const remedy =
@@ -102,7 +102,7 @@ Structure::Sparse scalar_mass(Structure::Sparse const& mass) {
             "Structure: the mass matrix has ", it.value(), " in ", entry_name(i, j), ", but ", other, " in ",
             entry_name(i + next, j + next),    remedy};
       entries.emplace_back(int(i / 3), int(j / 3),
-                           it.value() / 6.0);  // the mean of the directions and of (i, j), (j, i)
+                           it.value() / 6.0);  // mean over the three directions and over (i, j), (j, i)
       entries.emplace_back(int(j / 3), int(i / 3), it.value() / 6.0);
     }
   Structure::Sparse m(n, n);
@@ -116,7 +116,8 @@ Structure::Sparse scalar_mass(Structure::Sparse const& mass) {
   return m;
 }
 
-/// \throws InvalidInput when a motion of the whole structure strains it: ‖K φ‖ > 1e-6 ‖K‖ ‖φ‖.
+/// Checks the stiffness for rigid motions φ.
+/// \throws InvalidInput if a rigid motion strains the structure: ‖K φ‖ > 1e-6 ‖K‖ ‖φ‖.
 template <class = void>
 void require_free_of_rigid_work(Structure::Sparse const& stiffness, std::vector<Vec3> const& nodes) {
   Vec3 middle = Vec3::Zero();
@@ -142,8 +143,9 @@ void require_free_of_rigid_work(Structure::Sparse const& stiffness, std::vector<
   }
 }
 
-/// Speed of waves from node to node [m/s], to a factor of two: h √(K_ii/m_ii)/2, h the distance of the nearest node
-/// that the stiffness couples with node i; the least one of all nodes. \param m (n×n) masses of the nodes [kg]
+/// Speed of waves from node to node [m/s], accurate to a factor of two: the smallest value of h √(K_ii/m_ii)/2 over all
+/// nodes. The length h is the distance of the nearest node that the stiffness couples with node i.
+/// \param m (n×n) masses of the nodes [kg]
 template <class = void>
 double wave_speed(Structure::Sparse const& m, Structure::Sparse const& stiffness, std::vector<Vec3> const& nodes) {
   double least = std::numeric_limits<double>::infinity();
@@ -160,8 +162,9 @@ double wave_speed(Structure::Sparse const& m, Structure::Sparse const& stiffness
   return least;
 }
 
-/// \throws InvalidInput for a wave speed above `fastest` [m/s], as of nodes in millimetres: lengths in any unit have
-/// the same rigid motions, but the wave speed is proportional to them.
+/// Checks the wave speed of a structure.
+/// \throws InvalidInput for a wave speed above `fastest` [m/s], for example with nodes in millimetres. The rigid
+/// motions do not depend on the unit of length, but the wave speed is proportional to it.
 template <class = void>
 void require_units_of_solids(double speed, double fastest) {
   if (!(speed > fastest) || !std::isfinite(speed)) return;
@@ -172,7 +175,8 @@ void require_units_of_solids(double speed, double fastest) {
                      "of your own."};
 }
 
-/// \throws InvalidInput where products of masses and places overflow, as of nodes in no unit of length.
+/// Checks that the moments of mass are finite.
+/// \throws InvalidInput if products of masses and positions overflow.
 template <class = void>
 void require_finite_moments(Structure const& s) {
   bool finite = s.first.allFinite() && s.second.allFinite();
@@ -185,12 +189,12 @@ void require_finite_moments(Structure const& s) {
 
 }  // namespace detail
 
-/// A structure of solid elements from its mass matrix [kg] and stiffness [N/m] (N×N, N = 3 × nodes; x, y, z of node 0,
-/// of node 1, …), and its undeformed nodes [m]. Isoparametric elements with a consistent mass matrix give the exact
+/// Structure of solid elements from its mass matrix [kg] and stiffness [N/m] (N×N, N = 3 × nodes; x, y, z of node 0, of
+/// node 1, …), and its undeformed nodes [m]. Isoparametric elements with a consistent mass matrix give the exact
 /// integrals.
 /// \throws InvalidInput for sizes that do not fit; matrices that are not symmetric or not finite; a mass matrix that is
-/// not m ⊗ 1₃ or not positive definite; a stiffness that resists rigid motions, as it does to nodes in the wrong order;
-/// waves that would travel faster than `fastest_wave` [m/s], as with nodes in millimetres and a stiffness in N/m.
+/// not m ⊗ 1₃ or not positive definite; a stiffness that resists rigid motions, for example with nodes in the wrong
+/// order; waves faster than `fastest_wave` [m/s], for example with nodes in millimetres and a stiffness in N/m.
 template <class = void>
 Structure structure_of(Structure::Sparse const& mass, Structure::Sparse const& stiffness,
                        std::vector<Vec3> const& nodes, double fastest_wave = 1e5) {
@@ -232,7 +236,8 @@ Structure structure_of(Structure::Sparse const& mass, Structure::Sparse const& s
 
 namespace detail {
 
-/// One `x y z` [m] a line. \throws IoError for other lines, or none.
+/// Nodes from a file with one `x y z` [m] on each line.
+/// \throws IoError for other lines, or none.
 template <class = void>
 std::vector<Vec3> read_nodes(std::string const& file) {
   NumberLines lines(file, '#');
@@ -247,10 +252,10 @@ std::vector<Vec3> read_nodes(std::string const& file) {
 
 }  // namespace detail
 
-/// The same from files: `mass_file`, `stiffness_file` in Matrix Market's coordinate format, and `nodes_file`, a line
-/// `x y z` [m] for each, in which # begins a comment. \throws IoError naming file and line for a file that cannot be
-/// read, is truncated or does not fit the nodes; InvalidInput naming the files as `structure_of`, also for waves faster
-/// than `fastest_wave` [m/s].
+/// Structure from files. `mass_file` and `stiffness_file` are in the coordinate format of Matrix Market. `nodes_file`
+/// has a line `x y z` [m] for each node, in which # begins a comment.
+/// \throws IoError naming file and line for a file that cannot be read, is truncated or does not fit the nodes;
+/// InvalidInput naming the files as `structure_of`, also for waves faster than `fastest_wave` [m/s].
 template <class = void>
 Structure read_structure(std::string const& mass_file, std::string const& stiffness_file, std::string const& nodes_file,
                          double fastest_wave = 1e5) {

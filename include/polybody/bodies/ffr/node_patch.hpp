@@ -1,19 +1,15 @@
 #pragma once
 /// \file
-/// Nodes of a structure that move and bear together, as the seat of a pin or the place under a wheel: a distributing
-/// coupling. With weights w_i, Σ w_i = 1, a wrench (f, m) about the nodes' middle c = Σ w_i r_i is shared as
-///   f_i = w_i (f + θ × d_i),   θ = (Σ w (d² 1 − d dᵀ))⁻¹ m,   d_i = r_i − c:
-/// of all nodal forces with this resultant those of the least Σ f_i²/w_i. The motion of the patch is what they work on:
-///   u = Σ w_i u_i,   ϑ = (Σ w (d² 1 − d dᵀ))⁻¹ Σ w_i d_i × u_i.
+/// Distributing coupling of several nodes of a structure, such as the seat of a pin or the area under a wheel.
 ///
-/// Not in polybody.hpp: it comes with bodies/ffr/ffr.hpp.
+/// This header is not part of polybody.hpp; bodies/ffr/ffr.hpp includes it.
 
 #include <polybody/bodies/ffr/structure.hpp>
 
 namespace polybody {
 
-/// Nodes within this `distance` [m] of the place `at` (3) [m].
-template <class = void>  // compiled where it is used
+/// Nodes within `distance` [m] of the position `at` (3) [m].
+template <class = void>  // compiled only if used
 std::vector<Index> nodes_within(Structure const& s, Vec3 const& at, double distance) {
   std::vector<Index> nodes;
   for (std::size_t i = 0; i < s.nodes.size(); ++i)
@@ -21,17 +17,23 @@ std::vector<Index> nodes_within(Structure const& s, Vec3 const& at, double dista
   return nodes;
 }
 
-/// A point that moves with the mean of several nodes, as a rigid body that fits them best.
+/// Distributing coupling: a point that follows the mean motion of several nodes. With weights w_i, Σ w_i = 1, a wrench
+/// (f, m) about the centre of the nodes c = Σ w_i r_i is distributed as
+///   f_i = w_i (f + θ × d_i),   θ = (Σ w (d² 1 − d dᵀ))⁻¹ m,   d_i = r_i − c.
+/// Of all nodal forces with this resultant, these have the least Σ f_i²/w_i. The motion of the patch is conjugate to
+/// them:
+///   u = Σ w_i u_i,   ϑ = (Σ w (d² 1 − d dᵀ))⁻¹ Σ w_i d_i × u_i.
 class NodePatch {
  public:
   /// Displacement (3×n) and small rotation (3×n) of a point.
   struct Motion {
-    Mat<double, 3, Eigen::Dynamic> displacement, rotation;  ///< in the structure's axes
+    Mat<double, 3, Eigen::Dynamic> displacement, rotation;  ///< in the axes of the structure
   };
 
-  /// \param weights of the nodes, as the area that each stands for; none: all alike.
-  /// \throws InvalidInput, which begins with `who`, for nodes that do not exist, fewer than three or all in line, and
-  /// weights that are not positive or not as many.
+  /// Patch of `nodes`.
+  /// \param weights of the nodes, such as the area of each; equal if empty.
+  /// \throws InvalidInput, which begins with `who`, for nodes that do not exist, for fewer than three nodes or nodes on
+  /// one line, and for weights that are not positive or of another number.
   template <class = void>
   NodePatch(Structure const& s, std::vector<Index> nodes, std::string const& who, std::vector<double> weights = {})
       : per_node_(s.per_node), nodes_(std::move(nodes)), weights_(std::move(weights)) {
@@ -50,16 +52,16 @@ class NodePatch {
     by_moment_ = spread.inverse();
   }
 
-  std::vector<Index> const& nodes() const { return nodes_; }  ///< which nodes of the structure
-  Vec3 const& middle() const { return middle_; }              ///< c = Σ w_i r_i, in the structure's axes [m]
+  std::vector<Index> const& nodes() const { return nodes_; }  ///< indices of the nodes in the structure
+  Vec3 const& middle() const { return middle_; }              ///< c = Σ w_i r_i, in the axes of the structure [m]
 
-  /// The force on node k of the patch [N] by a wrench, f (3) [N] and m (3) [N m], about the point `at`.
+  /// Force on node k of the patch [N] due to a wrench, f (3) [N] and m (3) [N m], about the point `at`.
   template <class = void>
   Vec3 force(std::size_t k, Vec3 const& at, Vec3 const& f, Vec3 const& m) const {
     Vec3 const theta = by_moment_ * (m + (at - middle_).cross(f));
     return weights_[k] * (f + theta.cross(arms_[k]));
   }
-  /// Nodal forces (N×6) of the unit forces and moments about `at`, for a structure of N = `size` coordinates.
+  /// Nodal forces (N×6) of the unit forces and unit moments about `at`, for a structure of N = `size` coordinates.
   template <class = void>
   MatX loads(Vec3 const& at, Index size) const {
     MatX out = MatX::Zero(size, 6);
@@ -70,7 +72,7 @@ class NodePatch {
     }
     return out;
   }
-  /// The motion of the point `at`, fixed to the patch, by the shapes (N×n) of the structure.
+  /// Motion of the point `at`, fixed to the patch, for the shapes (N×n) of the structure.
   template <class = void>
   Motion motion(Vec3 const& at, MatX const& shapes) const {
     Mat<double, 3, Eigen::Dynamic> mean(3, shapes.cols()), turn(3, shapes.cols());

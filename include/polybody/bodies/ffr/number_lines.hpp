@@ -2,7 +2,7 @@
 /// \file
 /// Lines of numbers in a text file of a finite element program. An error names the file and the line.
 ///
-/// Not in polybody.hpp: few programs need it.
+/// This header is not part of polybody.hpp, because few programs need it.
 
 #include <algorithm>
 #include <cctype>
@@ -17,22 +17,23 @@
 
 namespace polybody {
 
-/// Reads them one by one. What follows the comment character, and empty lines, are passed over.
+/// Reader of a file with lines of numbers. It skips comments and empty lines.
 class NumberLines {
  public:
-  /// The rest of a line without the blanks at its ends: a name after numbers.
+  /// Remaining text of a line without leading and trailing blanks, such as a name after numbers.
   struct Rest {
-    std::string text;  ///< without those blanks; may be empty
+    std::string text;  ///< text without these blanks; may be empty
   };
 
-  /// Lines of a file in which `comment` begins a comment. \throws IoError for a file that cannot be read.
+  /// Opens a file in which `comment` begins a comment.
+  /// \throws IoError for a file that cannot be read.
   NumberLines(std::string const& file, char comment) : file_(file), in_(file), comment_(comment) {
     if (in_) in_.peek();  // a folder can be opened, but not read
     if (!in_.is_open() || in_.bad())
       throw IoError{file, ": it cannot be opened. Check the path, and that it may be read."};
     in_.clear();
   }
-  /// The next line as it stands, up to LF, CR LF or CR; false at the end.
+  /// Reads the next line without changes, up to LF, CR LF or CR; returns false at the end.
   bool raw(std::string& line) {
     ++line_;
     line.clear();
@@ -45,28 +46,30 @@ class NumberLines {
     }
     return !line.empty();
   }
-  /// The next line with numbers into `values`, all of it, `expected` in words. False at the end of the file. \throws
-  /// IoError for another line.
+  /// Reads the next line with numbers into `values`, which must be the whole line; `expected` describes it in the
+  /// message. Returns false at the end of the file.
+  /// \throws IoError for another line.
   template <class... T>
   bool next(std::string const& expected, T&... values) {
     std::string line;
     do {
       if (!raw(line)) return false;
       line.resize(std::min(line.find(comment_), line.size()));
-    } while (line.find_first_not_of(" \t\r\v\f") == std::string::npos);  // the blanks of `>>`
+    } while (line.find_first_not_of(" \t\r\v\f") == std::string::npos);  // the blanks that `>>` skips
     std::istringstream words(line);
     words.imbue(std::locale::classic());
     std::string rest;
     if (!(read(words, values) && ...) || (words >> rest)) fail("'" + line.substr(0, 60) + "' is not " + expected);
     return true;
   }
-  /// \throws IoError with the file and the line.
+  /// Reports an error.
+  /// \throws IoError with the file, the line and `what`.
   [[noreturn, gnu::cold]] void fail(std::string const& what) const {
     throw IoError{file_, ", line ", line_, ": ", what, "."};
   }
 
  private:
-  /// A number ends at a blank: "1.5.5" is not 1.5 and 0.5, nor "3-4" 3 and −4.
+  /// Reads a number that ends at a blank: "1.5.5" is not 1.5 and 0.5, and "3-4" is not 3 and −4.
   template <class T>
   static bool read(std::istream& words, T& value) {
     return words >> value && (words.eof() || std::isspace(words.peek()));

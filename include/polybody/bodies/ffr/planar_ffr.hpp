@@ -1,12 +1,8 @@
 #pragma once
 /// \file
-/// Floating frame of reference in the plane [Shabana 2013, ch. 5]: small deformation in a frame that turns by any angle
-/// θ. With c, J, H of the integrals below, C = c_q, e× a quarter turn, in the frame's axes:
-///   m r̈ + A (θ̈ e × c + C q̈)          = −A (−θ̇² c + 2 θ̇ e × ċ + Ċ q̇),
-///   (e × c) · Aᵀr̈ + J θ̈ + H q̈        = −J˙ θ̇,        as H˙ q̇ = q̇ᵀ coupling_by q̇ = 0,
-///   Cᵀ Aᵀr̈ + Hᵀ θ̈ + M q̈ + D q̇ + K q = ½ θ̇² J_q − θ̇ W q̇,   W = ∂Hᵀ/∂q − ∂H/∂q.
+/// Floating frame of reference in the plane [Shabana 2013, ch. 5].
 ///
-/// Not in polybody.hpp: Eigen's sparse module and factorisations would cost every program seconds to compile.
+/// This header is not part of polybody.hpp, because Eigen's sparse module and factorisations take seconds to compile.
 
 #include <memory>
 
@@ -16,40 +12,48 @@
 
 namespace polybody::planar {
 
-/// Coordinates x, y of the frame's origin, its angle θ, q (n); speeds their rates. A marker turns with its section.
+/// Floating frame of reference in the plane [Shabana 2013, ch. 5]: small deformation in a frame that rotates by any
+/// angle θ. With c, J, H of planar_ffr_integrals.hpp, C = c_q, and e× a rotation by a right angle, all in the axes of
+/// the frame,
+///   m r̈ + A (θ̈ e × c + C q̈)          = −A (−θ̇² c + 2 θ̇ e × ċ + Ċ q̇),
+///   (e × c) · Aᵀr̈ + J θ̈ + H q̈        = −J˙ θ̇,        as H˙ q̇ = q̇ᵀ coupling_by q̇ = 0,
+///   Cᵀ Aᵀr̈ + Hᵀ θ̈ + M q̈ + D q̇ + K q = ½ θ̇² J_q − θ̇ W q̇,   W = ∂Hᵀ/∂q − ∂H/∂q.
+/// The coordinates are x, y of the origin of the frame, its angle θ, and q (n). The generalised velocities are their
+/// rates. A marker rotates with its section.
 class Ffr : public AddingCoordinates {
  public:
   static constexpr World world = World::plane;
   static constexpr Observes observes = Observes::frame;
   static constexpr bool constant_mass = false;
-  static constexpr RigidLayout frame_layout = RigidLayout::plane;  ///< `Recursive` joints carry the frame
+  static constexpr RigidLayout frame_layout = RigidLayout::plane;  ///< `Recursive` joints move the frame
   static constexpr int element_columns = Eigen::Dynamic;
   static constexpr int point_columns = Eigen::Dynamic;
 
-  using Point = FfrPoint;      ///< a material point in the frame's axes
-  using Options = FfrOptions;  ///< place, terms of the inertia, stiffening and damping
+  using Point = FfrPoint;      ///< material point in the axes of the frame
+  using Options = FfrOptions;  ///< placement, terms of the inertia, stiffening and damping
 
-  /// The bar in n elements, frame tied to its first end, all nodal coordinates in the plane: 3 n. The bar needs no GJ
-  /// here.
-  template <class = void>  // compiled where it is used
+  /// Body of the bar in n elements, with the frame tied to its first end and all 3 n nodal coordinates in the plane.
+  /// The bar needs no GJ.
+  template <class = void>  // compiled only if used
   static Ffr from(Bar const& bar, Index n, Options options = {}) {
     options.placement = bar.placement;
     Structure const s = structure_in_plane(bar, n);
     return Ffr(s, nodal_coordinates(s, ReferenceConditions::clamped().in_plane()), options);
   }
-  /// The structure of a bar for use in the plane only, n elements. \throws InvalidInput as `structure_of`.
+  /// Structure of a bar with n elements, for use in the plane only.
+  /// \throws InvalidInput as `structure_of`.
   template <class = void>
   static Structure structure_in_plane(Bar bar, Index n) {
     BarConstants c = constants(bar);
-    if (c.GJ == 0.0) c.GJ = c.EI;  // resists what the plane leaves out
+    if (c.GJ == 0.0) c.GJ = c.EI;  // prevents rigid motions out of the plane
     bar.section = std::monostate{};
     bar.material.reset();
     bar.shear_factor.reset();
     bar.constants = c;
     return structure_of(bar, n);
   }
-  /// A structure in the plane of x and y with a basis `shapes` made `in_plane`. \throws InvalidInput for a basis that
-  /// leaves the plane.
+  /// Body of a structure in the plane of x and y with a basis `shapes` made `in_plane`.
+  /// \throws InvalidInput for a basis that leaves the plane.
   template <class = void>
   Ffr(Structure structure, MatX shapes, Options const& options = {})
       : Ffr(FfrIntegrals::of(integrals_of(structure, shapes, options.stiffening)), options) {
@@ -58,7 +62,8 @@ class Ffr : public AddingCoordinates {
         throw InvalidInput("planar::Ffr: the basis leaves the plane; make it in_plane.");
     points_ = std::make_shared<FfrPoints const>(std::move(structure), std::move(shapes), i_.stiffens());
   }
-  /// With the user's own integrals. \throws InvalidInput when they do not fit each other.
+  /// Body from the user's own integrals.
+  /// \throws InvalidInput for integrals of different sizes.
   template <class = void>
   Ffr(FfrIntegrals integrals, Options const& options) : i_(std::move(integrals)), terms_(options.terms) {
     i_.check("planar::Ffr");
@@ -68,22 +73,25 @@ class Ffr : public AddingCoordinates {
     angle_ = options.placement.planar_angle("planar::Ffr");
   }
 
-  FfrIntegrals const& integrals() const { return i_; }  ///< inertia and stiffness by the deformation
-  Index deformations() const { return i_.size(); }      ///< n, coordinates of the deformation
-  /// Length of the first bar [m]. \throws InvalidInput for a body that is not made of bars.
+  FfrIntegrals const& integrals() const { return i_; }  ///< inertia and stiffness as functions of the deformation
+  Index deformations() const { return i_.size(); }      ///< number n of coordinates of the deformation
+  /// Length of the first bar [m].
+  /// \throws InvalidInput for a body that is not made of bars.
   double length() const { return made().length(); }
 
-  /// The point at arc length s of bar number `bar`, y off its axis [m].
+  /// Point at arc length s of bar number `bar`, at y from its axis [m].
   template <class = void>
   Point at(double s, double y = 0.0, Index bar = 0) const {
     return made().at(s, y, 0.0, bar);
   }
-  /// The point at node i. \throws InvalidInput for a node that does not exist.
+  /// Point at node i.
+  /// \throws InvalidInput for a node that does not exist.
   template <class = void>
   Point node(Index i) const {
     return made().node(i);
   }
-  /// A point as the user describes it. \throws InvalidInput for matrices that are not 3×n.
+  /// Point with the user's own matrices.
+  /// \throws InvalidInput for matrices that are not 3×n.
   Point at(Point const& p) const {
     if (p.S.cols() != deformations() || p.R.cols() != deformations())
       throw InvalidInput("planar::Ffr: S and R of a point must be 3×n, n the number of deformation coordinates.");
@@ -249,7 +257,8 @@ class Ffr : public AddingCoordinates {
 
   template <class = void>
   double kinetic_energy(Index, std::span<double const> q, std::span<double const> v) const {
-    static thread_local VecX mv;  // an energy is asked for within steps, too
+    static thread_local VecX
+        mv;  // thread-local, because energies are also evaluated within steps, which do not allocate memory
     mv.resize(speeds());
     inertia<double>(0, q, v, mv);
     return 0.5 * mv.dot(Eigen::Map<VecX const>(v.data(), speeds()));
@@ -268,7 +277,7 @@ class Ffr : public AddingCoordinates {
     return -g[0] * (i_.mass * q[0] + c * at.c[0] - s * at.c[1]) - g[1] * (i_.mass * q[1] + s * at.c[0] + c * at.c[1]);
   }
 
-  /// r = r₀ + A u, the angle θ + R_z q;  bias = A [−θ̇² u + 2 θ̇ e × u˙ + u¨; 0].
+  /// Marker kinematics: r = r₀ + A u, the angle θ + R_z q;  bias = A [−θ̇² u + 2 θ̇ e × u˙ + u¨; 0].
   template <StateScalar T>
   void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v, Published<T>& out) const {
     using std::cos, std::sin;
@@ -310,7 +319,7 @@ class Ffr : public AddingCoordinates {
     out.columns = 3 + n;
   }
 
-  /// Jᵀw with F = Aᵀf: [f; u × F + m; Sᵀ F + R_zᵀ m].
+  /// Load stiffness of Jᵀw = [f; u × F + m; Sᵀ F + R_zᵀ m] with F = Aᵀf.
   template <class = void>
   void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, MatX& k) const {
     Index const n = deformations();
@@ -329,7 +338,8 @@ class Ffr : public AddingCoordinates {
       k.bottomRightCorner(n, n) -= (i == 0 ? fx : fy) * p.drawn[i];
   }
 
-  /// As in space. \param gravity (3) of which z is left out
+  /// Ratio of axial forces to buckling forces, as in space.
+  /// \param gravity (3), whose z component is ignored
   template <class = void>
   double axial_share(std::span<double const> q, std::span<double const> v, std::span<double const> a,
                      Vec3 const& gravity, std::span<PlacedWrench const> loads) const {
@@ -342,7 +352,7 @@ class Ffr : public AddingCoordinates {
     return points_->axial_share(StructureAction::in_frame(frame, acceleration, Vec3(0.0, 0.0, a[2]), loads));
   }
 
-  /// As in space.
+  /// Section strains, as in space.
   template <class = void>
   Vec6 section_strains(Point const& p, std::span<double const> q) const {
     return p.section_strains(q.data() + 3);
@@ -353,7 +363,7 @@ class Ffr : public AddingCoordinates {
   }
 
  private:
-  /// c and J as the terms say.
+  /// Moments c and J as selected by the terms.
   template <class T>
   void moments(T const* x, FfrIntegrals::Moments<T>& out) const {
     if (terms_.deformed_inertia) return i_.template moments<T>(x, out);

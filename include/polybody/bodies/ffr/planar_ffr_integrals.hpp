@@ -1,39 +1,40 @@
 #pragma once
 /// \file
-/// The inertia and stiffness of a planar floating frame's body by its deformation coordinates.
+/// Inertia and stiffness of the body of a planar floating frame as functions of its deformation coordinates.
 ///
-/// Not in polybody.hpp: Eigen's sparse module and factorisations would cost every program seconds to compile.
+/// This header is not part of polybody.hpp, because Eigen's sparse module and factorisations take seconds to compile.
 
 #include <polybody/bodies/ffr/ffr_integrals.hpp>
 
 namespace polybody::planar {
 
-/// By n deformation coordinates q, in the frame's axes, of the body's points u = u₀ + S q:
+/// Integrals of the body of a planar floating frame with n deformation coordinates q, in the axes of the frame, for the
+/// points u = u₀ + S q:
 ///   c = ∫ρ u = first + first_by q − ½ [qᵀ first_second_k q]_k,   J = inertia + inertia_by · q + qᵀ inertia_second q,
-///   H = ∫ρ u × S = coupling + qᵀ coupling_by,   T = ½ m ṙ² + ṙᵀA (θ̇ e × c + C q̇) + ½ J θ̇² + θ̇ H q̇ + ½ q̇ᵀ mass_matrix
-///   q̇.
+///   H = ∫ρ u × S = coupling + qᵀ coupling_by,
+///   T = ½ m ṙ² + ṙᵀA (θ̇ e × c + C q̇) + ½ J θ̇² + θ̇ H q̇ + ½ q̇ᵀ mass_matrix q̇.
 struct FfrIntegrals {
   double mass = 0.0;                        ///< [kg]
   Vec2 first = Vec2::Zero();                ///< [kg m]
   Mat<double, 2, Eigen::Dynamic> first_by;  ///< (2×n) ∫ρ S
   std::array<MatX, 2> first_second;         ///< (n×n) symmetric; empty without geometric stiffening
-  double inertia = 0.0;                     ///< about the frame's origin [kg m²]
+  double inertia = 0.0;                     ///< about the origin of the frame [kg m²]
   VecX inertia_by;                          ///< (n) 2 ∫ρ u₀ · S
-  MatX inertia_second;                      ///< (n×n) symmetric; ∫ρ SᵀS but for stiffening
+  MatX inertia_second;                      ///< (n×n) symmetric; ∫ρ SᵀS without stiffening
   VecX coupling;                            ///< (n) ∫ρ u₀ × S
   MatX coupling_by;                         ///< (n×n) ∫ρ (S_xᵀ S_y − S_yᵀ S_x)
   MatX mass_matrix, stiffness, damping;     ///< (n×n)
   VecX initial_force;                       ///< (n)
 
-  Index size() const { return mass_matrix.rows(); }             ///< n, coordinates of the deformation
-  bool stiffens() const { return first_second[0].size() > 0; }  ///< whether with geometric stiffening
+  Index size() const { return mass_matrix.rows(); }             ///< number n of coordinates of the deformation
+  bool stiffens() const { return first_second[0].size() > 0; }  ///< true with geometric stiffening
 
-  /// All zero, for n deformation coordinates.
-  template <class = void>  // compiled where it is used
+  /// Integrals that are all zero, for n deformation coordinates.
+  template <class = void>  // compiled only if used
   static FfrIntegrals zero(Index n) {
     return of(polybody::FfrIntegrals::zero(n));
   }
-  /// What remains of a body in space whose deformation stays in the plane of x and y.
+  /// Planar integrals of a body in space whose deformation remains in the plane of x and y.
   template <class = void>
   static FfrIntegrals of(polybody::FfrIntegrals const& s) {
     FfrIntegrals x{.mass = s.mass,
@@ -52,7 +53,8 @@ struct FfrIntegrals {
     if (s.stiffens()) x.first_second = {s.first_second[0], s.first_second[1]};
     return x;
   }
-  /// The same numbers in the form of space. \throws InvalidInput as `polybody::FfrIntegrals::check`.
+  /// Checks the integrals by their spatial form.
+  /// \throws InvalidInput naming `what`, as `polybody::FfrIntegrals::check`.
   template <class = void>
   void check(std::string const& what) const {
     polybody::FfrIntegrals x = polybody::FfrIntegrals::zero(size());
@@ -81,12 +83,12 @@ struct FfrIntegrals {
     require_positive(inertia, what, ": the inertia about the frame's origin");
   }
 
-  /// First moment of the deformed body about its frame's origin [kg m], and its moment of inertia [kg m²].
+  /// First moment of the deformed body about the origin of its frame [kg m], and its moment of inertia [kg m²].
   template <class T>
   struct Moments {
     T c[2], J;  ///< c (2) and J
   };
-  /// c(q) and J(q), x being q (n) here and below.
+  /// Moments c(q) and J(q); here and below x is q (n).
   template <class T>
   void moments(T const* x, Moments<T>& out) const {
     out.J = T(inertia);

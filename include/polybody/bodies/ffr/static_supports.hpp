@@ -2,16 +2,17 @@
 /// \file
 /// Reference conditions that hold a structure without straining it.
 ///
-/// Not in polybody.hpp: Eigen's sparse module and factorisations would cost every program seconds to compile.
+/// This header is not part of polybody.hpp, because Eigen's sparse module and factorisations take seconds to compile.
 
 #include <polybody/bodies/ffr/ffr_basis.hpp>
 
 namespace polybody {
 
-/// `frame`, and what keeps a structure from moving as a whole without forcing it: the first node; where nodes have no
-/// rotations, of the node b farthest from it two displacements across b − a, and of the node farthest from their line
-/// that across the plane.
-template <class = void>  // compiled where it is used
+/// Adds statically determinate supports to `frame`: conditions that prevent rigid motions without reaction forces
+/// within the structure. All coordinates of the first node a are held. If nodes have no rotations, two displacements
+/// across b − a of the node b farthest from a are also held. The third node is the one farthest from the line a–b; its
+/// displacement normal to the plane of the three nodes is held.
+template <class = void>  // compiled only if used
 ReferenceConditions statically_determinate(Structure const& s, ReferenceConditions frame = {}) {
   for (int c = 0; c < s.per_node; ++c) frame.fix(0, c);
   if (s.per_node == 6) return frame;

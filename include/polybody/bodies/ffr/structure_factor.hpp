@@ -1,15 +1,15 @@
 #pragma once
 /// \file
-/// Parts of a structure's matrices and their factorisation.
+/// Submatrices of the matrices of a structure, and their factorisation.
 ///
-/// Not in polybody.hpp: Eigen's sparse module and factorisations would cost every program seconds to compile.
+/// This header is not part of polybody.hpp, because Eigen's sparse module and factorisations take seconds to compile.
 
 #include <polybody/bodies/ffr/structure.hpp>
 
 namespace polybody {
 
-/// These rows and columns of a sparse matrix.
-template <class = void>  // compiled where it is used
+/// Submatrix of the given rows and columns of a sparse matrix.
+template <class = void>  // compiled only if used
 Structure::Sparse submatrix(Structure::Sparse const& m, std::vector<Index> const& rows,
                             std::vector<Index> const& columns) {
   std::vector<int> row(std::size_t(m.rows()), -1);
@@ -23,7 +23,7 @@ Structure::Sparse submatrix(Structure::Sparse const& m, std::vector<Index> const
   return out;
 }
 
-/// A matrix of `size` rows that has those of `shapes` at `free`, and zeros elsewhere.
+/// Matrix with `size` rows that has the rows of `shapes` at `free`, and zeros elsewhere.
 template <class = void>
 MatX scatter_rows(MatX const& shapes, std::vector<Index> const& free, Index size) {
   MatX out = MatX::Zero(size, shapes.cols());
@@ -31,9 +31,10 @@ MatX scatter_rows(MatX const& shapes, std::vector<Index> const& free, Index size
   return out;
 }
 
-/// LDLᵀ of a symmetric sparse matrix.
+/// Factorisation LDLᵀ of a symmetric sparse matrix.
 using SparseFactor = Eigen::SimplicialLDLT<Structure::Sparse>;
 
+/// Factorises m.
 /// \throws InvalidInput with `what` unless m is positive definite.
 template <class = void>
 void factor_positive(SparseFactor& factor, Structure::Sparse const& m, std::string const& what) {
@@ -41,7 +42,8 @@ void factor_positive(SparseFactor& factor, Structure::Sparse const& m, std::stri
   if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 1e-13 * factor.vectorD().maxCoeff()))
     throw InvalidInput{"Ffr: ", what};
 }
-/// \throws InvalidInput unless the stiffness under reference conditions is positive definite.
+/// Checks the stiffness under reference conditions.
+/// \throws InvalidInput unless it is positive definite.
 template <class = void>
 void require_held(Structure::Sparse const& k) {
   SparseFactor factor;

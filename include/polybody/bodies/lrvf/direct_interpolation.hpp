@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Rotation vectors of the nodes interpolated as they are: a policy of `Lrvf` for comparison.
+/// Linear interpolation of the rotation vectors of the nodes, a policy of `Lrvf` for comparison.
 
 #include <array>
 #include <numbers>
@@ -9,27 +9,29 @@
 
 namespace polybody {
 
-/// The rotation vectors Ψ of the nodes relative to the bar's placement R₀, interpolated linearly: R(ξ) = R₀ exp(Ψ(ξ)),
-/// K = Jr(Ψ) Ψ′  [thesis §2.3–2.5]. For comparison; use `Objective`. Two faults, both measured in the tests:
-/// - It is not objective. While an element turns by φ about one axis and is carried rigidly about another, its
+/// Linear interpolation of the rotation vectors Ψ of the nodes relative to the placement R₀ of the bar: R(ξ) = R₀
+/// exp(Ψ(ξ)), K = Jr(Ψ) Ψ′  [thesis §2.3–2.5]. It is meant for comparison; `Objective` is recommended. The tests
+/// measure two faults:
+/// - It is not objective. If an element that bends by φ about one axis rotates rigidly about another axis, its
 /// curvature
-///   and energy change by terms of the order of φ² (energy: 1 % of φ² after a carriage of 2 rad).
-/// - Ψ₁ is the vector with |Ψ₁| ≤ π, and Ψ₂ the nearer of Ψ and its complement Ψ (1 − 2π/|Ψ|). As node 1 passes
-///   |Ψ₁| = π both change sheets, and the curvature jumps, by terms of the order of φ³/l, unless the element turns
-///   about Ψ itself.
+///  and energy change by terms of order φ² (the energy by 1 % of φ² after a rotation by 2 rad).
+/// - Ψ₁ is the vector with |Ψ₁| ≤ π. Ψ₂ is either Ψ or its complement Ψ (1 − 2π/|Ψ|), the one nearer to Ψ₁. If node 1
+///  passes |Ψ₁| = π, both vectors change to their complements. The curvature then jumps by terms of order φ³/l, unless
+///  the element rotates about Ψ itself.
 class Direct {
  public:
   static constexpr bool objective = false;
-  /// Ψ is relative to the axes of `placement`.
-  template <class = void>  // compiled where it is used
+  /// Interpolation with Ψ relative to the axes of `placement`.
+  template <class = void>  // compiled only if used
   explicit Direct(Placement const& placement) : from_(quaternion_of(placement.axes)), axes_(placement.axes) {}
 
-  /// The section in the middle, ξ = ½.
+  /// Section in the middle of the element, ξ = ½.
   template <StateScalar T>
   void middle(Quaternion<T> const& a, Quaternion<T> const& b, StrainSection<T>& out) const {
     at<T>(0.5, a, b, out);
   }
-  /// δ(l K) = Jr(Ψ) (δΨ₂ − δΨ₁) + D(Ψ, Ψ₂ − Ψ₁) ((1 − ξ) δΨ₁ + ξ δΨ₂),  D(φ, x) = ∂(Jr(φ) x)/∂φ,  δΨᵢ = Jr⁻¹(Ψᵢ) δθᵢ.
+  /// Section at ξ, with δ(l K) = Jr(Ψ) (δΨ₂ − δΨ₁) + D(Ψ, Ψ₂ − Ψ₁) ((1 − ξ) δΨ₁ + ξ δΨ₂), D(φ, x) = ∂(Jr(φ) x)/∂φ and
+  /// δΨᵢ = Jr⁻¹(Ψᵢ) δθᵢ.
   template <StateScalar T>
   void at(double xi, Quaternion<T> const& a, Quaternion<T> const& b, StrainSection<T>& out) const {
     Vec<T, 3> const first = vector<T>(a), second = vector<T>(b, first), apart = difference(second, first);
@@ -48,21 +50,21 @@ class Direct {
     set_halves<T>(product(bend1, inverse1), product(bend2, inverse2), {1.0, 1.0}, out.bend);
   }
 
-  /// By dual numbers, for t = l N × Γ, m = M (3) and w = (Ω₁, Ω₂).
-  template <class T>  // compiled where it is used
+  /// Derivatives of the maps of the middle section by dual numbers, for t = l N × Γ, m = M (3) and w = (Ω₁, Ω₂).
+  template <class T>  // compiled only if used
   void gradient(Quaternion<T> const& a, Quaternion<T> const& b, Vec<T, 3> const& t, Vec<T, 3> const& m,
                 Vec<T, 6> const& w, StrainGradient& out) const {
     detail::strain_gradient(*this, 0.5, {a, b}, {t, m, w}, out);
   }
 
-  /// A section in a state, with what its strains are differentiated by.
+  /// Section in a state, with intermediate results for its derivatives.
   template <StateScalar T>
   struct Section : SectionMotion<T> {
     double share[2];                    ///< 1 − ξ, ξ
     Vec<T, 3> psi, node[2];             ///< Ψ, Ψ₁ and Ψ₂
     Mat<T, 3, 3> jacobian, inverse[2];  ///< Jr(Ψ), Jr⁻¹(Ψ₁) and Jr⁻¹(Ψ₂)
   };
-  /// Ω = Jr(Ψ) Ψ˙,  Jr(Ψᵢ) Ψᵢ˙ = Ωᵢ.
+  /// Section at ξ with its angular velocity Ω = Jr(Ψ) Ψ˙,  Jr(Ψᵢ) Ψᵢ˙ = Ωᵢ.
   template <StateScalar T>
   void section(double xi, Quaternion<T> const& a, Quaternion<T> const& b, Section<T>& out) const {
     out.share[0] = 1.0 - xi;
@@ -76,7 +78,7 @@ class Direct {
     set_halves<T>(product(out.jacobian, out.inverse[0]), product(out.jacobian, out.inverse[1]), {1.0 - xi, xi},
                   out.spin);
   }
-  /// Both equations once more by time, w = (Ω₁, Ω₂).
+  /// Time derivative of Ω for constant w = (Ω₁, Ω₂), from the time derivatives of both equations.
   template <StateScalar T>
   Vec<T, 3> bias(Section<T> const& s, Vec<T, 6> const& w) const {
     Vec<T, 3> rate = detail::zeros<Vec<T, 3>>(), second = rate;
@@ -92,9 +94,10 @@ class Direct {
     Vec<T, 3> const carried = product(s.jacobian, second);
     return {own[0] + carried[0], own[1] + carried[1], own[2] + carried[2]};
   }
-  /// Pᵢᵀx = sᵢ Jr⁻¹(−Ψᵢ) y,  y = Jr(−Ψ) x,  sᵢ the nodes' shares of Ψ;  with D(φ, x) = ∂(Jr(φ) x)/∂φ:
-  ///   ∂y/∂Ψ = −D(−Ψ, x),  ∂(Jr⁻¹(−Ψᵢ) y) = Jr⁻¹(−Ψᵢ) (∂y + D(−Ψᵢ, Jr⁻¹(−Ψᵢ) y) ∂Ψᵢ).
-  template <class T>  // compiled where it is used
+  /// Derivative of Pᵢᵀx = sᵢ Jr⁻¹(−Ψᵢ) y with y = Jr(−Ψ) x and the weights sᵢ of the nodes in Ψ. With D(φ, x) = ∂(Jr(φ)
+  /// x)/∂φ:
+  ///  ∂y/∂Ψ = −D(−Ψ, x),  ∂(Jr⁻¹(−Ψᵢ) y) = Jr⁻¹(−Ψᵢ) (∂y + D(−Ψᵢ, Jr⁻¹(−Ψᵢ) y) ∂Ψᵢ).
+  template <class T>  // compiled only if used
   void spin_gradient(Section<T> const& s, Vec<T, 3> const& x, Mat<T, 6, 6>& out) const {
     Vec<T, 3> const y = transposed_product(s.jacobian, x);
     Mat<T, 3, 3> const by_y = right_jacobian_derivative<T>(scaled<T>(s.psi, -1.0), x);
@@ -112,8 +115,8 @@ class Direct {
     }
   }
 
-  /// R, K and K′ at ξ of an element of length l [m].
-  template <class T>  // compiled where it is used
+  /// Rotation R with K and K′ at ξ of an element of length l [m].
+  template <class T>  // compiled only if used
   SectionTurn turn(double xi, double l, Quaternion<T> const& a, Quaternion<T> const& b) const {
     Vec<T, 3> const first = vector<T>(a), second = vector<T>(b, first), psi = between<T>(first, second, xi);
     Vec<T, 3> const rate = scaled<T>(difference(second, first), 1.0 / l);
@@ -122,13 +125,13 @@ class Direct {
   }
 
  private:
-  /// Ψ of a node's rotation, |Ψ| ≤ π.
+  /// Rotation vector Ψ of a node, |Ψ| ≤ π.
   template <StateScalar T>
   Vec<T, 3> vector(Quaternion<T> const& q) const {
     Quaternion<T> const back(from_[0], -from_[1], -from_[2], -from_[3]);
     return quaternion_log<T>(quaternion_product<T>(back, q));
   }
-  /// Ψ or its complement, whichever is nearer to `other`: the complement if Ψ·other < |Ψ| (|Ψ| − π).
+  /// Rotation vector Ψ or its complement, the one nearer to `other`: the complement if Ψ·other < |Ψ| (|Ψ| − π).
   template <StateScalar T>
   Vec<T, 3> vector(Quaternion<T> const& q, Vec<T, 3> const& other) const {
     using std::sqrt;
@@ -139,14 +142,14 @@ class Direct {
     T const other_way = 1.0 - 2.0 * pi / sqrt(size2);
     return {psi[0] * other_way, psi[1] * other_way, psi[2] * other_way};
   }
-  /// Ψ = (1 − ξ) Ψ₁ + ξ Ψ₂.
+  /// Interpolated rotation vector Ψ = (1 − ξ) Ψ₁ + ξ Ψ₂.
   template <class T>
   static Vec<T, 3> between(Vec<T, 3> const& first, Vec<T, 3> const& second, double xi) {
     Vec<T, 3> psi;
     for (int i = 0; i < 3; ++i) psi[i] = first[i] * (1.0 - xi) + second[i] * xi;
     return psi;
   }
-  /// [s₁ A₁, s₂ A₂].
+  /// Sets the matrix [s₁ A₁, s₂ A₂].
   template <class T>
   static void set_halves(Mat<T, 3, 3> const& first, Mat<T, 3, 3> const& second, std::array<double, 2> share,
                          Mat<T, 3, 6>& map) {

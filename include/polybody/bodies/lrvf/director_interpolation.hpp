@@ -1,29 +1,31 @@
 #pragma once
 /// \file
-/// Directors interpolated as they are: a policy of `Lrvf` for comparison [Romero & Armero 2002; Betsch & Steinmann
+/// Linear interpolation of directors, a policy of `Lrvf` for comparison [Romero & Armero 2002; Betsch & Steinmann
 /// 2002].
 ///
-/// Not in polybody.hpp: `Objective` is what to use.
+/// This header is not part of polybody.hpp; `Objective` is the recommended policy.
 
 #include <polybody/bodies/lrvf/elastic_elements.hpp>
 #include <polybody/bodies/lrvf/polar_interpolation.hpp>
 
 namespace polybody {
 
-/// dᵢ(ξ) = (1 − ξ) dᵢ(0) + ξ dᵢ(1), the columns of Λ = (1 − ξ) R₁ + ξ R₂, which is no rotation between the nodes.
-/// Strains are taken from the directors:
-///   Γᵢ = dᵢ·r′ − Γ₀,  Kᵢ = ½ εᵢⱼₖ dₖ·dⱼ′ − K₀;  here K = sin φ/l n in every section, n the axis of the nodes' relative
-///   turn.
-/// Objective, and knows no path. Inside an element that turns by φ the directors across n are shorter, in the middle by
-/// cos(φ/2), and Γ with them. The energy of bending, ½ EI sin²φ/l, is largest at a quarter of a turn: an element that
-/// bends farther is driven on to half a turn, where it has none. What a marker shows is the nearest rotation, `Polar`.
+/// Linear interpolation of directors, dᵢ(ξ) = (1 − ξ) dᵢ(0) + ξ dᵢ(1) [Romero & Armero 2002; Betsch & Steinmann 2002].
+/// The directors are the columns of Λ = (1 − ξ) R₁ + ξ R₂. Between the nodes Λ is not a rotation matrix. The strains
+/// follow from the directors:
+///   Γᵢ = dᵢ·r′ − Γ₀,  Kᵢ = ½ εᵢⱼₖ dₖ·dⱼ′ − K₀;  here K = sin φ/l n in every section,
+///   n the axis of the relative rotation of the nodes.
+/// The policy is objective, and its strains do not depend on the path. In an element that bends by φ, the directors
+/// normal to n are shorter, in the middle by cos(φ/2), and Γ is reduced accordingly. The bending energy ½ EI sin²φ/l is
+/// largest at φ = π/2: an element with a larger angle is driven to φ = π, at which its energy is zero. Markers have the
+/// nearest rotation, as in `Polar`.
 class Directors : public Polar {
  public:
   using Polar::Polar;
 };
 
 namespace detail {
-/// Directors at one section, and how their strains follow the nodes.
+/// Directors of one section, and the derivatives of their strains with respect to the nodes.
 template <StateScalar T>
 struct DirectorSection {
   Mat<T, 3, 3> directors;  ///< Λ
@@ -31,27 +33,28 @@ struct DirectorSection {
 };
 }  // namespace detail
 
-/// δΓ = Λᵀ δr′ + (1 − ξ) (R₁ᵀr′) × δθ₁ + ξ (R₂ᵀr′) × δθ₂,  δ(l K) = δu (`RelativeTurn`):
-/// f_r = ± l/c₀ Λ N,  f_θ = −(l Hᵀ N + δuᵀ M). Tangents are the forces' derivatives by dual numbers.
+/// Elements with interpolated directors. With δΓ = Λᵀ δr′ + (1 − ξ) (R₁ᵀr′) × δθ₁ + ξ (R₂ᵀr′) × δθ₂ and δ(l K) = δu
+/// (`RelativeTurn`), the forces are f_r = ± l/c₀ Λ N,  f_θ = −(l Hᵀ N + δuᵀ M). The tangents are the derivatives of the
+/// forces by dual numbers.
 template <StrainQuadrature Quadrature>
 class ElasticElements<Directors, Quadrature> {
  public:
-  /// For a number of elements, each of arc length l [m].
+  /// Elements, `elements` of them, each of arc length l [m].
   ElasticElements(LrvfSection const& section, Placement const&, double l, Index elements)
       : sections_(std::apply([&](auto const&... p) { return std::array{section.weighted(p)...}; }, Quadrature::points)),
         l_(l),
         free_(std::size_t(elements)) {}
 
-  Index size() const { return Index(free_.size()); }  ///< how many elements
+  Index size() const { return Index(free_.size()); }  ///< number of elements
 
-  /// Element e is free of stress in q, where its nodes are `chord` apart [m].
+  /// Sets the stress-free state of element e to q, with the distance `chord` of its nodes [m].
   void set_free(Index e, std::span<double const> q, double chord) {
     Free& free = free_[std::size_t(e)];
     free.chord = chord;
     for (int i = 0; i <= count; ++i) free.at[i] = measured(i, e, q, chord);
   }
 
-  /// f of element e, with moment(i) on node i.
+  /// Force f of element e, with moment(i) on node i.
   template <StateScalar T, std::invocable<int> Moment>
   void force(Index e, std::span<T const> q, std::span<T const> v, Moment const& moment, Vec<T, 12>& out) const {
     out = detail::zeros<Vec<T, 12>>();
@@ -62,8 +65,8 @@ class ElasticElements<Directors, Quadrature> {
     add_force<T>(free_[std::size_t(e)], q.subspan(std::size_t(7 * e), 14), v.subspan(std::size_t(6 * e), 12), out);
   }
 
-  /// ck (−∂f/∂δ) + cd (−∂f/∂v): the derivative of −f(q ⊞ ck δ, v + cd δ) by δ.
-  template <class T, StateScalar D = Dual<12>>  // compiled where it is used
+  /// Tangent ck (−∂f/∂δ) + cd (−∂f/∂v): the derivative of −f(q ⊞ ck δ, v + cd δ) with respect to δ.
+  template <class T, StateScalar D = Dual<12>>  // compiled only if used
   void tangent(Index e, std::span<double const> q, std::span<double const> v, double ck, double cd,
                Mat<T, 12, 12>& k) const {
     std::array<D, 14> at;
@@ -92,12 +95,12 @@ class ElasticElements<Directors, Quadrature> {
     for (int i = 0; i < count; ++i) sum += sections_[std::size_t(i)].energy(strains(i, e, q));
     return l_ * sum;
   }
-  /// (Γ, K) in the middle of element e [1], [1/m].
+  /// Strains (Γ, K) in the middle of element e [1], [1/m].
   Vec6 strains(Index e, std::span<double const> q) const { return strains(count, e, q); }
 
  private:
   static constexpr int count = int(Quadrature::points.size());
-  /// The points, and the middle after them.
+  /// Position of point i; the middle follows after the points of the quadrature.
   static constexpr double place(int i) { return i == count ? 0.5 : Quadrature::points[std::size_t(i)].xi; }
   struct Free {
     double chord = 1.0;  ///< c₀ [m]
@@ -116,7 +119,7 @@ class ElasticElements<Directors, Quadrature> {
         for (int j = 0; j < 3; ++j) out.slide(i, 3 * node + j) = x(i, j) * share[node];
     }
   }
-  /// q and v are those of the element alone.
+  /// Adds the force of one element; q and v belong to the element only.
   template <StateScalar T>
   void add_force(Free const& free, std::span<T const> q, std::span<T const> v, Vec<T, 12>& out) const {
     Quaternion<T> const a = detail::turned<T>(q, 0), b = detail::turned<T>(q, 1);
@@ -130,7 +133,7 @@ class ElasticElements<Directors, Quadrature> {
       StrainedSection<T> s;
       s.gamma = transposed_product(at.directors, slope);
       detail::set_turning<T>(0, v, s.turning);
-      s.at.spin = detail::zeros<Mat<T, 3, 6>>();  // all of Γ˙ stands in `rate`
+      s.at.spin = detail::zeros<Mat<T, 3, 6>>();  // `rate` contains all of Γ˙
       s.at.bend = turn.by_u;
       Vec<T, 3> const moved = transposed_product(at.directors, rate), slid = detail::of_nodes(at.slide, s.turning);
       for (int k = 0; k < 3; ++k) {
@@ -148,7 +151,7 @@ class ElasticElements<Directors, Quadrature> {
         }
     }
   }
-  /// Γ and l K at point i, with those of the reference.
+  /// Strains Γ and l K at point i, including those of the reference.
   static detail::FreeStrain measured(int i, Index e, std::span<double const> q, double chord) {
     Quaternion<double> const a = detail::turned<double>(q, e), b = detail::turned<double>(q, e + 1);
     Vec<double, 3> const slope = detail::slope<double>(q, 7 * e, 7, chord);

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// What the strains of the spatial `Lrvf` do to the nodes: forces, tangents and energy of its elements, from the
-/// sections of a quadrature. Nothing here knows inertia.
+/// Elastic elements of the spatial `Lrvf`: forces, tangents and energy from the sections of a quadrature, without
+/// inertia.
 
 #include <array>
 #include <concepts>
@@ -18,12 +18,12 @@ namespace polybody {
 
 namespace detail {
 
-/// The rotation of a node.
+/// Rotation of a node.
 template <StateScalar T>
 Quaternion<T> turned(std::span<T const> q, Index node) {
   return entries<4>(q, 7 * node + 3);
 }
-/// Where the carried section of element e stands in q: behind the nodes.
+/// Index in q of the stored section of element e, after the coordinates of the nodes.
 constexpr Index carried_at(Index elements, Index e) { return 7 * (elements + 1 + e); }
 template <StateScalar T>
 CarriedSection<T> carried_section(std::span<T const> q, Index elements, Index e) {
@@ -36,40 +36,41 @@ void set_carried_section(std::span<T> q, Index elements, Index e, CarriedSection
   set_entries<4>(q, first, section.axes);
   set_entries<3>(q, first + 4, section.turn);
 }
-/// The column of an element's (Ω₁, Ω₂) among its (ṙ₁, Ω₁, ṙ₂, Ω₂).
+/// Column of component i of (Ω₁, Ω₂) of an element in (ṙ₁, Ω₁, ṙ₂, Ω₂).
 constexpr int turn_column(int i) { return i < 3 ? 3 + i : 6 + i; }
-/// (Ω₁, Ω₂) of an element, written where it is to stand: a copy would wait for what was just stored.
+/// Writes (Ω₁, Ω₂) of an element directly to w. A copy would wait for preceding writes to memory.
 template <StateScalar T>
 void set_turning(Index e, std::span<T const> v, Vec<T, 6>& w) {
   for (int i = 0; i < 6; ++i) w[i] = v[std::size_t(6 * e + turn_column(i))];
 }
-/// (x₂ − x₁)/c₀ of what stands at `first` and at `first + stride`.
+/// Quotient (x₂ − x₁)/c₀ of the vectors at `first` and at `first + stride`.
 template <StateScalar T>
 Vec<T, 3> slope(std::span<T const> x, Index first, Index stride, double chord) {
   return scaled<T>(difference<T>(entries<3>(x, first + stride), entries<3>(x, first)), 1.0 / chord);
 }
 
-/// Γ₀ and l K₀ in a section of an element in the reference configuration.
+/// Strains Γ₀ and l K₀ of a section of an element in the reference configuration.
 struct FreeStrain {
   Vec3 gamma, turn;
 };
 
 }  // namespace detail
 
-/// Elements whose sections stay rotations between the nodes. With one point all is compiled for the middle.
+/// Elastic elements whose sections remain rotations between the nodes. For a quadrature with one point, all code is
+/// specialised for the middle.
 template <RotationInterpolation Interpolation, StrainQuadrature Quadrature>
 class ElasticElements {
  public:
-  /// For a number of elements, each of arc length l [m], of a bar with this placement.
+  /// Elements, `elements` of them, each of arc length l [m], of a bar with this placement.
   ElasticElements(LrvfSection const& section, Placement const& placement, double l, Index elements)
       : interpolation_(placement),
         sections_(std::apply([&](auto const&... p) { return std::array{section.weighted(p)...}; }, Quadrature::points)),
         l_(l),
         free_(std::size_t(elements)) {}
 
-  Index size() const { return Index(free_.size()); }  ///< how many elements
+  Index size() const { return Index(free_.size()); }  ///< number of elements
 
-  /// Element e is free of stress in q, where its nodes are c₀ = `chord` apart [m].
+  /// Sets the stress-free state of element e to q, with the distance c₀ = `chord` of its nodes [m].
   void set_free(Index e, std::span<double const> q, double chord) {
     Free& free = free_[std::size_t(e)];
     free.chord = chord;
@@ -80,9 +81,10 @@ class ElasticElements {
     });
   }
 
-  /// From l Σ w (N·δΓ + M·δK), δΓ = Rᵀ (δr₂ − δr₁)/c₀ + Γ × δθ, δθ = P δθ₁₂, δK = Q δθ₁₂/l  (Γ with Γ₀):
-  /// f_r = ± l/c₀ R N,  f_θ = −(Pᵀ t + Qᵀ M) with t = l N × Γ, summed over the points; and moment(i) on node i, which
-  /// is inertia's: it is added where nothing has been stored yet.
+  /// Force of element e from l Σ w (N·δΓ + M·δK), with δΓ = Rᵀ (δr₂ − δr₁)/c₀ + Γ × δθ, δθ = P δθ₁₂, δK = Q δθ₁₂/l (Γ
+  /// including Γ₀):
+  /// f_r = ± l/c₀ R N,  f_θ = −(Pᵀ t + Qᵀ M) with t = l N × Γ, summed over the points.
+  /// The function also adds moment(i), the inertia moment of node i, because at that stage no sum has been stored yet.
   template <StateScalar T, std::invocable<int> Moment>
   void force(Index e, std::span<T const> q, std::span<T const> v, Moment const& moment, Vec<T, 12>& out) const {
     point_force<0, T>(e, q, v, moment, out);
@@ -93,8 +95,8 @@ class ElasticElements {
     });
   }
 
-  /// ck (−∂f/∂δ) + cd (−∂f/∂v), δ of q ⊞ δ: not symmetric in general, as δθ does not commute.
-  template <class T>  // compiled where it is used
+  /// Tangent ck (−∂f/∂δ) + cd (−∂f/∂v), with δ of q ⊞ δ. It is not symmetric in general, because δθ does not commute.
+  template <class T>  // compiled only if used
   void tangent(Index e, std::span<double const> q, std::span<double const> v, double ck, double cd,
                Mat<T, 12, 12>& k) const {
     point_tangent<0, T>(e, q, v, ck, cd, k);
@@ -106,18 +108,19 @@ class ElasticElements {
     });
   }
 
-  /// [J].
+  /// Strain energy of element e [J].
   double energy(Index e, std::span<double const> q) const {
     double sum = sections_[0].energy(strains_in<0>(e, q));
     for_points<1, count>([&]<int i>() { sum += sections_[i].energy(strains_in<i>(e, q)); });
     return l_ * sum;
   }
-  /// (Γ, K) in the middle, in the axes of the section there [1], [1/m]. There the shear is free of what bending adds.
+  /// Strains (Γ, K) in the middle, in the axes of the section there [1], [1/m]. There the shear strain is free of the
+  /// error due to bending.
   Vec6 strains(Index e, std::span<double const> q) const { return strains_in<middle>(e, q); }
 
  private:
   static constexpr int count = int(Quadrature::points.size());
-  /// The point in the middle; where the quadrature has none, one after all others.
+  /// Index of the point in the middle, or of an additional point after the others if the quadrature has none.
   static constexpr int middle = [] {
     for (int i = 0; i < count; ++i)
       if (Quadrature::points[i].xi == 0.5) return i;
@@ -127,13 +130,13 @@ class ElasticElements {
   static_assert(!CarriesSections<Interpolation> || (count == 1 && middle == 0),
                 "This interpolation carries one section along, in the middle of each element: strains are known there "
                 "only. Take Reduced.");
-  /// An element in the reference configuration.
+  /// Element in the reference configuration.
   struct Free {
     double chord = 1.0;  ///< c₀ [m]
     std::array<detail::FreeStrain, stored> at;
   };
 
-  /// `f.operator()<i>()` for i = first … last − 1.
+  /// Calls `f.operator()<i>()` for i = first … last − 1.
   template <int first, int last, class F>
   static void for_points(F&& f) {
     [&]<int... i>(std::integer_sequence<int, i...>) {
@@ -152,7 +155,7 @@ class ElasticElements {
       interpolation_.template at<T>(Quadrature::points[i].xi, a, b, at);
     gamma = transposed_product(at.R, detail::slope<T>(q, 7 * e, 7, free_[std::size_t(e)].chord));
   }
-  /// Strains and section forces in point i of an element.
+  /// Strains and section forces at point i of an element.
   template <int i, StateScalar T>
   void strain(Index e, std::span<T const> q, std::span<T const> v, StrainedSection<T>& s) const {
     Free const& free = free_[std::size_t(e)];

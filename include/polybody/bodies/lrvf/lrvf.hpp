@@ -1,11 +1,7 @@
 #pragma once
 /// \file
 /// Large rotation vector formulation in space, the geometrically exact beam [Reissner 1981; Simo & Vu-Quoc 1986b;
-/// thesis §2.3–2.5]: a chain of equal two-node elements. Positions are interpolated linearly, rotations by a policy
-/// (rotation_interpolation.hpp); strains are taken where another one says (strain_quadrature.hpp), by default in the
-/// middle of the element, R = R_m: one-point quadrature, no shear locking:
-///   Γ = Rᵀ r′ − Γ₀,  K = axial(Rᵀ R′) − K₀,  N = diag(EA, GA, GA_z) Γ,  M = diag(GJ, EI_y, EI) K,
-/// in the axes of the section, x along the beam; Γ₀, K₀ are those of the reference configuration.
+/// thesis §2.3–2.5].
 
 #include <algorithm>
 #include <vector>
@@ -15,17 +11,26 @@
 
 namespace polybody {
 
-/// Coordinates of a node: position r (3) in world axes and a unit quaternion (4) of the section; speeds: ṙ (3) and Ω
-/// (3), the angular velocity in the section's axes. q ⊞ δ acts on each node as in `Rigid`: no angle is singular. Behind
-/// the nodes stand the sections that a policy carries along (`CarriesSections`), one for each element.
+/// Geometrically exact beam, a chain of equal two-node elements [Reissner 1981; Simo & Vu-Quoc 1986b; thesis §2.3–2.5].
+/// Positions are interpolated linearly, and rotations by the policy `Interpolation` (rotation_interpolation.hpp). The
+/// policy `Quadrature` (strain_quadrature.hpp) gives the points at which strains are evaluated. The default is one
+/// point in the middle of the element, R = R_m, without shear locking:
+///  Γ = Rᵀ r′ − Γ₀,  K = axial(Rᵀ R′) − K₀,  N = diag(EA, GA, GA_z) Γ,  M = diag(GJ, EI_y, EI) K,
+/// in the axes of the section, with x along the beam; Γ₀, K₀ are the strains of the reference configuration.
 ///
-/// Mass: translation consistent with the linear shapes, Aρ l/6 [2 1; 1 2]; rotary inertia lumped at the nodes,
-/// J = ½ l diag(Iρ_y + Iρ_z, Iρ_y, Iρ_z), so that M is constant. Without any rotary inertia M is singular: the
-/// rotations then follow the positions without delay; implicit methods and statics take that, explicit ones do not.
+/// The coordinates of a node are its position r (3) in world axes and a unit quaternion (4) of the section. Its
+/// generalised velocities are ṙ (3) and Ω (3), the angular velocity in the axes of the section. q ⊞ δ acts on each node
+/// as in `Rigid`, without a singular angle. After the nodes follow the sections that a policy stores
+/// (`CarriesSections`), one for each element.
 ///
-/// A curved reference is cut into n pieces of arc length l whose nodes lie on the curve. With the chord c₀ of an
-/// element in the reference, r′ = (r₂ − r₁)/c₀ and K = axial(Rᵀ R′) over l: a uniform stretch and a uniform bend of a
-/// circular arc are then measured exactly; integrals run over l.
+/// The mass of the translation is consistent with the linear shapes, Aρ l/6 [2 1; 1 2]. The rotary inertia is lumped at
+/// the nodes, J = ½ l diag(Iρ_y + Iρ_z, Iρ_y, Iρ_z), so that M is constant. Without any rotary inertia M is singular,
+/// and the rotations follow the positions without delay. Implicit methods and statics accept this, explicit methods do
+/// not.
+///
+/// A curved reference is divided into n elements of arc length l whose nodes lie on the curve. With the chord c₀ of an
+/// element in the reference, r′ = (r₂ − r₁)/c₀, and K = axial(Rᵀ R′) with respect to l. Uniform stretch and uniform
+/// bending of a circular arc are then exact. Integrals extend over l.
 template <RotationInterpolation Interpolation = Objective, StrainQuadrature Quadrature = Reduced>
 class Lrvf {
  public:
@@ -41,19 +46,21 @@ class Lrvf {
   using Element = Vec<T, 12>;
   using ElementMatrix = Mat<double, 12, 12>;
 
-  /// A material point: element, place ξ ∈ [0, 1] on it, and (y, z) off the axis [m].
+  /// Material point: element, position ξ ∈ [0, 1] along it, and distances (y, z) from the axis [m].
   struct Point {
     Index element = 0;        ///< counted from 0, from the bar's first end
     double xi = 0.0;          ///< ξ ∈ [0, 1], from its first node to its second
-    double y = 0.0, z = 0.0;  ///< in the section's axes [m]
+    double y = 0.0, z = 0.0;  ///< in the axes of the section [m]
   };
 
-  /// The straight bar in n equal elements. \throws InvalidInput for n < 1 or a stiffness that is missing (GA, GJ, ...).
+  /// Beam from the straight bar, with n elements of equal length.
+  /// \throws InvalidInput for n < 1 or a missing stiffness (GA, GJ, ...).
   static Lrvf from(Bar const& bar, Index n) {
     return from(bar, n, [](double s) { return Placement{.origin = Vec3(s, 0, 0)}; });
   }
-  /// The bar of n elements bent and twisted without stress to `curve`, whose parameter is its arc length. \throws
-  /// InvalidInput as above, and for a curve on which nodes coincide or lie farther apart than the arc between them.
+  /// Beam of n elements with the stress-free shape `curve`, bent and twisted, whose parameter is its arc length.
+  /// \throws InvalidInput as above, and for a curve on which nodes coincide or are farther apart than the arc between
+  /// them.
   static Lrvf from(Bar const& bar, Index n, ReferenceCurve const& curve) {
     require_elements(n, "Lrvf");
     if (!curve) throw InvalidInput("Lrvf: the reference curve is empty.");
@@ -64,13 +71,14 @@ class Lrvf {
   double element_length() const { return l_; }
   BarConstants const& constants() const { return constants_; }
 
-  /// The section at arc length s of the reference, (y, z) off its axis. \throws InvalidInput outside the bar.
+  /// Section at arc length s of the reference [m], at (y, z) from its axis [m].
+  /// \throws InvalidInput outside the bar.
   Point at(double s, double y = 0.0, double z = 0.0) const {
     double const x = require_inside(s, length_, "Lrvf") / l_;
     if (!std::isfinite(y) || !std::isfinite(z)) throw InvalidInput("Lrvf: y and z of a point must be finite.");
     Index const e = std::min(Index(x + 1e-12), elements() - 1);
     double const xi = x - double(e);
-    Point const p{e, xi < 1e-12 ? 0.0 : xi > 1.0 - 1e-12 ? 1.0 : xi, y, z};  // a node is met exactly
+    Point const p{e, xi < 1e-12 ? 0.0 : xi > 1.0 - 1e-12 ? 1.0 : xi, y, z};  // exact position of a node
     if constexpr (CarriesSections<Interpolation>) interpolation_.require_known(p.xi, s);
     return p;
   }
@@ -79,7 +87,7 @@ class Lrvf {
   Index speeds() const { return 6 * (elements() + 1); }
   char const* coordinate_unit(Index i) const {
     if (i < detail::carried_at(elements(), 0)) return i % 7 < 3 ? "m" : "1";
-    return i % 7 < 4 ? "1" : "rad";  // of the section carried in an element
+    return i % 7 < 4 ? "1" : "rad";  // of the section stored in an element
   }
   char const* speed_unit(Index i) const { return i % 6 < 3 ? "m/s" : "rad/s"; }
   Index elements() const { return elastic_.size(); }
@@ -102,7 +110,7 @@ class Lrvf {
             interpolation_.template plus<T>(detail::carried_section<T>(q, elements(), e), entries<3>(delta, 6 * e + 3),
                                             entries<3>(delta, 6 * e + 9)));
   }
-  /// δ˙ with q ⊞ δ(t) moving with v: Ω = Jr(δ) δ˙ at each node.
+  /// Rate δ˙ if q ⊞ δ(t) moves with v: Ω = Jr(δ) δ˙ at each node.
   template <StateScalar T>
   void local_rate(std::span<T const> delta, std::span<T const> v, std::span<T> out) const {
     for (Index i = 0; i < speeds(); i += 6) {
@@ -110,7 +118,7 @@ class Lrvf {
       set_entries<3>(out, i + 3, product(right_jacobian_inverse<T>(entries<3>(delta, i + 3)), entries<3>(v, i + 3)));
     }
   }
-  template <class T = double>  // compiled where it is used
+  template <class T = double>  // compiled only if used
   void rigid_velocity(std::span<double const> q, Vec3 const& v0, Vec3 const& omega, std::span<double> v) const {
     for (Index i = 0; i <= elements(); ++i) {
       Vec<T, 3> const turning = cross<T>(omega, entries<3>(q, 7 * i));
@@ -148,8 +156,8 @@ class Lrvf {
     elastic_.template force<T>(e, q, v, gyro, out);
   }
 
-  /// ck (−∂f/∂δ) + cd (−∂f/∂v), δ of q ⊞ δ: not symmetric in general, as δθ does not commute.
-  template <class T>  // compiled where it is used
+  /// Tangent ck (−∂f/∂δ) + cd (−∂f/∂v), with δ of q ⊞ δ. It is not symmetric in general, because δθ does not commute.
+  template <class T>  // compiled only if used
   void tangent(Index e, std::span<double const> q, std::span<double const> v, double ck, double cd,
                Mat<T, 12, 12>& k) const {
     elastic_.template tangent<T>(e, q, v, ck, cd, k);
@@ -168,33 +176,34 @@ class Lrvf {
     for (int i = 0; i < 3; ++i) out[i] = out[6 + i] = T(3.0 * sixth_ * g[i]);
   }
 
-  template <class T = double>  // compiled where it is used
+  template <class T = double>  // compiled only if used
   double kinetic_energy(Index e, std::span<double const>, std::span<double const> v) const {
     Vec<T, 3> const v1 = entries<3>(v, 6 * e), w1 = entries<3>(v, 6 * e + 3), v2 = entries<3>(v, 6 * e + 6),
                     w2 = entries<3>(v, 6 * e + 9);
     return sixth_ * (squared_norm(v1) + dot(v1, v2) + squared_norm(v2)) + 0.5 * (dot(spun(w1), w1) + dot(spun(w2), w2));
   }
   double strain_energy(Index e, std::span<double const> q) const { return elastic_.energy(e, q); }
-  template <class T = double>  // compiled where it is used
+  template <class T = double>  // compiled only if used
   double gravity_energy(Index e, std::span<double const> q, Vec3 const& g) const {
     Vec<T, 3> const r1 = entries<3>(q, 7 * e), r2 = entries<3>(q, 7 * e + 7);
     return -3.0 * sixth_ * (dot<T>(g, r1) + dot<T>(g, r2));
   }
 
-  /// (Γ, K) of the element of `p`, in its middle, in the axes of that section [1], [1/m]: see sections.hpp.
+  /// Strains (Γ, K) in the middle of the element of `p`, in the axes of that section [1], [1/m] (see sections.hpp).
   Vec6 section_strains(Point const& p, std::span<double const> q) const { return elastic_.strains(p.element, q); }
-  /// (N, M) of the element of `p`, without damping [N], [N m].
+  /// Section forces (N, M) of the element of `p`, without damping [N], [N m].
   Vec6 section_forces(Point const& p, std::span<double const> q) const {
     return section_.forces(section_strains(p, q));
   }
-  /// The rotation field at `p`, with its curvature (reference included).
+  /// Rotation field at `p`, with its curvature including that of the reference.
   SectionTurn rotation_field(Point const& p, std::span<double const> q) const
     requires FollowsNodes<Interpolation>
   {
     return interpolation_.turn(p.xi, l_, turned<double>(q, p.element), turned<double>(q, p.element + 1));
   }
 
-  /// r = (1 − ξ) r₁ + ξ r₂ + ρ, ρ = R(ξ) (0, y, z);  ω = R Ω;  bias: ω˙ᵇ = R Ω˙ᵇ,  ω˙ᵇ × ρ + ω × (ω × ρ).
+  /// Marker kinematics: r = (1 − ξ) r₁ + ξ r₂ + ρ, ρ = R(ξ) (0, y, z);  ω = R Ω;  bias: ω˙ᵇ = R Ω˙ᵇ,
+  /// ω˙ᵇ × ρ + ω × (ω × ρ).
   template <StateScalar T>
   void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v, Published<T>& out) const {
     Index const e = p.element;
@@ -217,7 +226,7 @@ class Lrvf {
       for (int k = 0; k < 3; ++k)
         out.frame.A(i, k) = s.R(i, 0) * axes(0, k) + s.R(i, 1) * axes(1, k) + s.R(i, 2) * axes(2, k);
     }
-    for (int k = 0; k < 6; ++k) {  // a column of (ṙ₁, ṙ₂), and one of (Ω₁, Ω₂): P × ρ, P
+    for (int k = 0; k < 6; ++k) {  // one column of (ṙ₁, ṙ₂), and one of (Ω₁, Ω₂): P × ρ, P
       T *const move = out.jacobian + 6 * (detail::turn_column(k) - 3), *const turn = move + 18;
       T const x = spin(0, k), y = spin(1, k), z = spin(2, k);
       for (int i = 0; i < 3; ++i) {
@@ -235,9 +244,10 @@ class Lrvf {
     out.columns = 12;
   }
 
-  /// Jᵀw = [(1 − ξ) f; P₁ᵀ c; ξ f; P₂ᵀ c], c = ρ̃ F + M, F = Rᵀf, M = Rᵀm;  δF = F̃ P δθ, hence
-  ///   δc = (ρ̃ F̃ + M̃) P δθ,  δ(Pᵀc) = Pᵀ δc + (∂Pᵀ) c.
-  template <class T = double>  // compiled where it is used
+  /// Load stiffness: the derivative of Jᵀw = [(1 − ξ) f; P₁ᵀ c; ξ f; P₂ᵀ c], with c = ρ̃ F + M, F = Rᵀf, M = Rᵀm. With
+  /// δF = F̃ P δθ,
+  ///  δc = (ρ̃ F̃ + M̃) P δθ,  δ(Pᵀc) = Pᵀ δc + (∂Pᵀ) c.
+  template <class T = double>  // compiled only if used
   void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, ElementMatrix& k) const {
     Section<T> s;
     section<T>(p, q, s);
@@ -267,12 +277,12 @@ class Lrvf {
     return detail::turned<T>(q, node);
   }
   static bool inside(Point const& p) { return p.xi != 0.0 && p.xi != 1.0; }
-  /// J Ω of a node.
+  /// Angular momentum J Ω of a node.
   template <class T>
   Vec<T, 3> spun(Vec<T, 3> const& omega) const {
     return {omega[0] * rotary_[0], omega[1] * rotary_[1], omega[2] * rotary_[2]};
   }
-  /// At a node the node's own section, exactly; else the policy's.
+  /// Section at p: at a node exactly the section of the node, elsewhere that of the policy.
   template <StateScalar T>
   void section(Point const& p, std::span<T const> q, Section<T>& out) const {
     Quaternion<T> const a = turned<T>(q, p.element), b = turned<T>(q, p.element + 1);
@@ -293,7 +303,7 @@ class Lrvf {
   LrvfSection section_;
   ElasticElements<Interpolation, Quadrature> elastic_;
   double sixth_ = 0.0;  ///< Aρ l/6 [kg]
-  Vec3 rotary_;         ///< J of a node's half element [kg m²]
+  Vec3 rotary_;         ///< J of half an element at a node [kg m²]
   std::vector<double> reference_;
 };
 

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// The linear elastic section of a large rotation vector beam: forces and tangent of an element from the strains in one
-/// of its sections.
+/// Linear elastic section of a geometrically exact beam: forces and tangent of an element from the strains at one of
+/// its sections.
 
 #include <polybody/bodies/lrvf/rotation_interpolation.hpp>
 #include <polybody/bodies/lrvf/strain_quadrature.hpp>
@@ -9,22 +9,23 @@
 
 namespace polybody {
 
-/// An element in a state, by one of its sections.
+/// Strains of an element at one of its sections, in a state.
 template <StateScalar T>
 struct StrainedSection {
-  StrainSection<T> at;  ///< the section, and how it follows the nodes
+  StrainSection<T> at;  ///< section, with its derivatives with respect to the nodes
   double chord = 1.0;   ///< c₀, distance of the nodes in the reference [m]
   Vec<T, 3> gamma;      ///< R_mᵀ r′
   Vec<T, 3> rate;       ///< R_mᵀ ṙ′, for damping
   Vec<T, 6> turning;    ///< (Ω₁, Ω₂), for damping
-  Vec<T, 3> n, m;       ///< Γ and l K less those of the reference; after `stress` the section forces N, M
+  Vec<T, 3> n, m;       ///< Γ and l K relative to the reference; after `stress` the section forces N, M
 };
 
 /// Stiffness and damping of a section: section forces and tangent from the strains of an element.
 class LrvfSection {
  public:
-  /// For elements of arc length `l`. \throws InvalidInput for a stiffness that is missing.
-  template <class T = double>  // compiled where it is used
+  /// Section for elements of arc length `l`.
+  /// \throws InvalidInput for a missing stiffness.
+  template <class T = double>  // compiled only if used
   LrvfSection(Bar const& bar, BarConstants const& c, double l) : l_(l), pretension_(bar.pretension) {
     double const shear = bar.damping.shear, bending = bar.damping.bending;
     double const stiffness[] = {c.EA, c.GA, c.GA_z.value_or(c.GA), c.GJ, c.EI_y.value_or(c.EI), c.EI};
@@ -38,7 +39,7 @@ class LrvfSection {
     }
   }
 
-  /// The same with the share of each strain that a section of a quadrature stands for.
+  /// Section with the weight of each strain at the point p of a quadrature.
   LrvfSection weighted(StrainPoint const& p) const {
     LrvfSection out = *this;
     for (int i = 0; i < 6; ++i) out.stiffness_[i] *= i == 0 ? p.axial : i < 3 ? p.shear : p.curvature;
@@ -46,9 +47,9 @@ class LrvfSection {
     return out;
   }
 
-  bool damped() const { return damped_; }  ///< whether a damping time is not zero
+  bool damped() const { return damped_; }  ///< true if a damping time is not zero
 
-  /// Stress = C (strain + τ strain˙), in place of the strains in s.n and s.m.
+  /// Stress = C (strain + τ strain˙). It replaces the strains in s.n and s.m.
   template <StateScalar T>
   void stress(StrainedSection<T>& s) const {
     if (damped_) {
@@ -65,26 +66,26 @@ class LrvfSection {
     }
     s.n[0] += pretension_;
   }
-  /// (N, M) of strains (Γ, K), without damping [N], [N m].
+  /// Section forces (N, M) for the strains (Γ, K), without damping [N], [N m].
   Vec6 forces(Vec6 const& strains) const {
     Vec6 n = strains;
     for (int i = 0; i < 6; ++i) n[i] *= stiffness_[i];
     n[0] += pretension_;
     return n;
   }
-  /// Energy of strains (Γ, K) [J/m].
-  template <class T = double>  // compiled where it is used
+  /// Energy for the strains (Γ, K) [J/m].
+  template <class T = double>  // compiled only if used
   double energy(Vec6 const& strains) const {
     T sum = 0.0;
     for (int i = 0; i < 6; ++i) sum += strains[i] * stiffness_[i] * strains[i];
     return 0.5 * sum + pretension_ * strains[0];
   }
 
-  /// The tangent of the elastic and damping force of an element. With x = R_mᵀ (δr₂ − δr₁)/c₀ and θ = δθ₁₂, all in the
-  /// axes of the section:
+  /// Tangent of the elastic and damping force of an element. With x = R_mᵀ (δr₂ − δr₁)/c₀ and θ = δθ₁₂, all in the axes
+  /// of the section:
   ///   δΓ = x + Γ̃ P θ,  δN = C (ck + cd τ) δΓ + ck C τ δΓ˙,  δt = l (N × δΓ − Γ × δN),
   ///   −δf_r = ∓ l/c₀ R_m (δN + ck Pθ × N),  −δf_θ = Pᵀ δt + Qᵀ δM + ck ∂(Pᵀt + Qᵀ M) θ.
-  template <class T>  // compiled where it is used
+  template <class T>  // compiled only if used
   void tangent(StrainedSection<T> const& s, StrainGradient const& by, double ck, double cd, Mat<T, 12, 12>& k) const {
     Slopes<T> const by_state = slopes(s, by, ck, cd);
     Mat<T, 3, 3> const& nx = by_state.nx;
@@ -94,7 +95,7 @@ class LrvfSection {
     Mat<T, 3, 6> const n_spin = skew_product(n, s.at.spin), n_slide = skew_product(n, skew_product(s.gamma, s.at.spin)),
                        by_theta = skew_product(s.gamma, nt);
     Mat<T, 3, 3> through;       // ∂t/∂x, with t = l N × Γ for a fixed Γ
-    Mat<T, 3, 6> shift, moved;  // ∂(R_m N)/∂θ in the section's axes, ∂t/∂θ
+    Mat<T, 3, 6> shift, moved;  // ∂(R_m N)/∂θ in the axes of the section, ∂t/∂θ
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) through(i, j) = l_ * (of_n(i, j) - by_x(i, j));
       for (int j = 0; j < 6; ++j) {
@@ -121,14 +122,15 @@ class LrvfSection {
   }
 
  private:
-  /// Derivatives of the section forces by x and by θ = δθ₁₂.
+  /// Derivatives of the section forces with respect to x and to θ = δθ₁₂.
   template <class T>
   struct Slopes {
     Mat<T, 3, 3> nx;      ///< ∂N/∂x
     Mat<T, 3, 6> nt, mt;  ///< ∂N/∂θ, ∂M/∂θ
   };
-  /// δN = C (ck + cd τ) (x + Γ̃ P θ) + ck C τ δΓ˙,  likewise δM of Q θ;  with Γ˙ = u + Γ × Ω, u = R_mᵀ (ṙ₂ − ṙ₁)/c₀:
-  ///   δΓ˙ = u × Pθ + δΓ × Ω + Γ × δΩ.
+  /// Derivatives δN = C (ck + cd τ) (x + Γ̃ P θ) + ck C τ δΓ˙ and, in the same form, δM of Q θ. With Γ˙ = u + Γ × Ω and
+  /// u = R_mᵀ (ṙ₂ − ṙ₁)/c₀:
+  ///  δΓ˙ = u × Pθ + δΓ × Ω + Γ × δΩ.
   template <class T>
   Slopes<T> slopes(StrainedSection<T> const& s, StrainGradient const& by, double ck, double cd) const {
     Slopes<T> out;
@@ -160,7 +162,7 @@ class LrvfSection {
 
   double l_, pretension_;
   Vec6 stiffness_;  ///< EA, GA, GA_z, GJ, EI_y, EI
-  Vec6 time_;       ///< of damping [s]
+  Vec6 time_;       ///< damping times [s]
   bool damped_ = false;
 };
 

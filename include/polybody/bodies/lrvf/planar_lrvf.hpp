@@ -1,9 +1,6 @@
 #pragma once
 /// \file
-/// Large rotation vector formulation in the plane: position and rotation fields interpolated linearly and
-/// independently, one-point quadrature of the strains (strain_quadrature.hpp has others)
-///   ε = t₁ᵀ r′ − 1,  γ = t₂ᵀ r′,  κ = θ′,  t₁ = (cos θ, sin θ), t₂ = (−sin θ, cos θ)
-/// [Simo & Vu-Quoc 1986; thesis Eq. 2.7–2.10]. Node coordinates (x, y, θ).
+/// Large rotation vector formulation in the plane, a planar geometrically exact beam.
 
 #include <polybody/bodies/lrvf/strain_quadrature.hpp>
 #include <polybody/bodies/shared/planar_beam.hpp>
@@ -11,28 +8,33 @@
 
 namespace polybody::planar {
 
-/// The Theory of `Lrvf`.
+/// Theory of the planar `Lrvf` [Simo & Vu-Quoc 1986; thesis Eq. 2.7–2.10]. Position and rotation fields are
+/// interpolated linearly and independently, with node coordinates (x, y, θ). The strains are evaluated at one point
+/// (strain_quadrature.hpp has other quadratures):
+///  ε = t₁ᵀ r′ − 1,  γ = t₂ᵀ r′,  κ = θ′,  t₁ = (cos θ, sin θ), t₂ = (−sin θ, cos θ).
 struct SimoVuQuoc {
-  static constexpr char const* name = "planar::Lrvf";            ///< begins its messages
+  static constexpr char const* name = "planar::Lrvf";            ///< prefix of its error messages
   static constexpr int node_columns = 3;                         ///< (x, y, θ)
-  static constexpr bool packs_pay = false;                       ///< most of its time goes into one sine and one cosine
-  static constexpr std::array<int, 3> section_rows = {0, 1, 5};  ///< of ε, γ and κ
-  static constexpr int gradients = 0;                            ///< that are linear in the coordinates
+  static constexpr bool packs_pay = false;                       ///< one sine and one cosine take most of the time
+  static constexpr std::array<int, 3> section_rows = {0, 1, 5};  ///< rows of ε, γ and κ
+  static constexpr int gradients = 0;  ///< number of position gradients that are linear in the coordinates
 
+  /// Checks the constants of the bar.
   /// \throws InvalidInput unless GA is positive.
   static void check(BarConstants const& c) {
     require_positive(c.GA, "planar::Lrvf: the shear stiffness GA of the bar");
   }
-  /// The node at s [m] along a straight axis from `origin` [m], turned from world x by `angle` [rad].
+  /// Node at distance s [m] along a straight axis from `origin` [m], rotated from world x by `angle` [rad].
   static Vec3 reference_node(Vec2 const& origin, double angle, double s) {
     return {origin[0] + s * std::cos(angle), origin[1] + s * std::sin(angle), angle};
   }
-  /// The node's speeds in a rigid motion: v0 of the body-fixed point at the world's origin [m/s], omega [rad/s].
+  /// Generalised velocities of the node in a rigid motion: v0 of the body-fixed point at the origin of the world [m/s],
+  /// omega [rad/s].
   static Vec3 rigid_velocity(Vec3 const& node, Vec2 const& v0, double omega) {
     return {v0[0] - omega * node[1], v0[1] + omega * node[0], omega};
   }
-  /// S (2×6) of r = S e at ξ.
-  template <class T = double>  // compiled where it is used
+  /// Matrix S (2×6) of r = S e at ξ.
+  template <class T = double>  // compiled only if used
   static Mat<T, 2, 6> position(double xi, double) {
     Mat<T, 2, 6> n = Mat<T, 2, 6>::Zero();
     for (int i = 0; i < 2; ++i) {
@@ -41,8 +43,8 @@ struct SimoVuQuoc {
     }
     return n;
   }
-  /// The row of θ in the kinetic energy ½ ∫ Iρ θ̇² dx.
-  template <class T = double>  // compiled where it is used
+  /// Row of θ in the kinetic energy ½ ∫ Iρ θ̇² dx.
+  template <class T = double>  // compiled only if used
   static Vec<T, 6> rotary(double xi, double) {
     Vec<T, 6> row = Vec<T, 6>::Zero();
     row[2] = T(1.0 - xi);
@@ -50,20 +52,20 @@ struct SimoVuQuoc {
     return row;
   }
 
-  /// θ(ξ) at the coordinates e (6); the field is linear, so that there is no bias.
+  /// Angle θ(ξ) at the coordinates e (6). The field is linear, so that there is no bias.
   template <StateScalar T>
   static SectionAngle<T, 6> rotation(double xi, double l, Vec<T, 6> const& e, Vec<T, 6> const&) {
     Vec<T, 6> const row = rotary<T>(xi, l);
     return {row.dot(e), row, T(0.0)};
   }
 
-  /// h = ∂²θ/∂e²: none.
-  template <class T>  // compiled where it is used
+  /// Hessian h = ∂²θ/∂e², which is zero.
+  template <class T>  // compiled only if used
   static void rotation_hessian(double, double, Vec<T, 6> const&, Mat<T, 6, 6>& h) {
     h.setZero();
   }
 
-  /// Axial, shear and bending strain at the one Gauss point; p = (x′, y′, θ, θ′).
+  /// Axial, shear and bending strain at the only Gauss point, with p = (x′, y′, θ, θ′).
   struct Section {
     static constexpr int points = 1;
     static constexpr int components = 1;
@@ -74,9 +76,9 @@ struct SimoVuQuoc {
     static Vec3 damping(Damping const& d) { return {d.axial, d.shear, d.bending}; }
 
     static constexpr int reach = 2;
-    /// The nodal vector, one coordinate, that shape k reads as its j-th.
+    /// Index of the nodal vector (one coordinate) that shape k reads as its j-th.
     static constexpr int vector(int k, int j) { return 3 * j + (k < 2 ? k : 2); }
-    template <class T = double>  // compiled where it is used
+    template <class T = double>  // compiled only if used
     static Mat<T, 4, 2> map(double xi, double l) {
       ShapeValues<2> const n = linear_shape(xi, l);
       Mat<T, 4, 2> p;
@@ -100,7 +102,7 @@ struct SimoVuQuoc {
     static void add_hessian(Vec<T, 4> const& p, Vec<T, 3> const& n, Mat<T, 4, 4>& h) {
       using std::cos, std::sin;
       T const c = cos(p[2]), s = sin(p[2]);
-      T const x = -(s * n[0]) - c * n[1], y = c * n[0] - s * n[1];  // with θ
+      T const x = -(s * n[0]) - c * n[1], y = c * n[0] - s * n[1];  // together with θ
       h(0, 2) += x;
       h(2, 0) += x;
       h(1, 2) += y;
@@ -108,21 +110,22 @@ struct SimoVuQuoc {
       h(2, 2) -= (c * p[0] + s * p[1]) * n[0] + (c * p[1] - s * p[0]) * n[1];
     }
   };
-  using Groups = std::tuple<Section>;  ///< the strain laws of the beam
+  using Groups = std::tuple<Section>;  ///< strain laws of the beam
 };
 
-/// The strains (ε, γ, κ) of a section from `first` on, `count` of them, in the points of Q where they count.
+/// Strains of a section: `count` of (ε, γ, κ), beginning at `first`, at the points of Q with nonzero weight.
 template <StrainQuadrature Q, int first, int count>
 struct SectionIn {
-  using All = SimoVuQuoc::Section;  ///< three strains
-  static constexpr int components = All::components, parameters = All::parameters, reach = All::reach;  ///< as All
+  using All = SimoVuQuoc::Section;  ///< law of the three strains
+  static constexpr int components = All::components, parameters = All::parameters,
+                       reach = All::reach;  ///< those of `All`
   static constexpr int strains = count;
   static constexpr auto rule = detail::rule_of<Q, detail::strain_weights[std::size_t(first)]>();
   static constexpr int points = int(rule.size());
 
-  /// The nodal vector, one coordinate, that shape k reads as its j-th.
+  /// Index of the nodal vector (one coordinate) that shape k reads as its j-th.
   static constexpr int vector(int k, int j) { return All::vector(k, j); }
-  template <class T = double>  // compiled where it is used
+  template <class T = double>  // compiled only if used
   static Mat<T, 4, 2> map(double xi, double l) {
     return All::map<T>(xi, l);
   }
@@ -147,35 +150,36 @@ struct SectionIn {
   }
 };
 
-/// The Theory of `LrvfBy`: strains whose points are the same make one group.
+/// Theory of `LrvfBy`. Strains with the same points are in one group.
 template <StrainQuadrature Q>
 struct SimoVuQuocBy : SimoVuQuoc {
   static constexpr bool together =
       detail::alike<Q>(&StrainPoint::axial, &StrainPoint::shear);  ///< ε and γ have the same points
   static constexpr bool all =
       together && detail::alike<Q>(&StrainPoint::shear, &StrainPoint::curvature);  ///< ε, γ and κ have the same points
-  using Three = std::tuple<SectionIn<Q, 0, 1>, SectionIn<Q, 1, 1>, SectionIn<Q, 2, 1>>;  ///< a law for each strain
-  using Two = std::tuple<SectionIn<Q, 0, 2>, SectionIn<Q, 2, 1>>;  ///< a law for ε and γ, another one for κ
-  using Groups = std::conditional_t<all, std::tuple<SectionIn<Q, 0, 3>>,
-                                    std::conditional_t<together, Two, Three>>;  ///< as few laws as the points allow
+  using Three = std::tuple<SectionIn<Q, 0, 1>, SectionIn<Q, 1, 1>, SectionIn<Q, 2, 1>>;  ///< one law for each strain
+  using Two = std::tuple<SectionIn<Q, 0, 2>, SectionIn<Q, 2, 1>>;  ///< one law for ε and γ, another one for κ
+  using Groups =
+      std::conditional_t<all, std::tuple<SectionIn<Q, 0, 3>>,
+                         std::conditional_t<together, Two, Three>>;  ///< smallest number of laws that the points permit
 };
 template <>
 struct SimoVuQuocBy<Reduced> : SimoVuQuoc {};
 
-/// Planar geometrically exact beam with linear elements whose strains are taken where Q says: `LrvfBy<Q>::from(bar,
-/// n)`.
+/// Planar geometrically exact beam with linear elements and the quadrature Q of the strains: `LrvfBy<Q>::from(bar, n)`.
 template <StrainQuadrature Q>
 using LrvfBy = Beam<SimoVuQuocBy<Q>>;
 
-/// All strains in the middle: nothing locks.
+/// Planar beam with all strains evaluated in the middle, which does not lock.
 using Lrvf = LrvfBy<Reduced>;
 
-/// All strains in both Gauss points, for comparison: it locks, bending is stiffer by 1 + GA l²/(12 EI)
-/// [Hughes, Taylor & Kanoknukulchai 1977].
+/// Planar beam with all strains evaluated at both Gauss points, for comparison. It locks: its bending stiffness is too
+/// large by the factor 1 + GA l²/(12 EI) [Hughes, Taylor & Kanoknukulchai 1977].
 using FullLrvf = LrvfBy<Full>;
 
-/// ε and γ in the middle, κ in both Gauss points. As θ is linear and κ the same in the whole element, this is `Lrvf` to
-/// rounding, at more cost: what the literature calls selective or reduced is one beam here.
+/// Planar beam with ε and γ evaluated in the middle, κ at both Gauss points. θ is linear and κ is constant in an
+/// element, so this equals `Lrvf` to round-off, at a higher cost. Selective and reduced quadrature of the literature
+/// coincide for this beam.
 using SelectiveLrvf = LrvfBy<Selective>;
 
 }  // namespace polybody::planar

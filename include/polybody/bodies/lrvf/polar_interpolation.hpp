@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// Interpolated directors made orthonormal again: a policy of `Lrvf` for comparison [Romero 2004, §4].
+/// Interpolated directors that are made orthonormal, a policy of `Lrvf` for comparison [Romero 2004, §4].
 ///
-/// Not in polybody.hpp: `Objective` is what to use.
+/// This header is not part of polybody.hpp; `Objective` is the recommended policy.
 
 #include <polybody/bodies/lrvf/strain_gradient.hpp>
 
@@ -10,17 +10,18 @@ namespace polybody {
 
 namespace detail {
 
-/// How far node 2 is turned against node 1, by φ about n: u = sin φ n and s = sin²(φ/2), and how they follow the nodes.
+/// Relative rotation of node 2 to node 1, by φ about n: u = sin φ n and s = sin²(φ/2), with their derivatives with
+/// respect to the nodes.
 template <StateScalar T>
 struct RelativeTurn {
   Quaternion<T> p;  ///< (p₀, p_v), the relative quaternion: u = 2 p₀ p_v, s = p_v·p_v
   Vec<T, 3> u;
   T s;
   Mat<T, 3, 6> by_u;  ///< δu = by_u (δθ₁, δθ₂)
-  Vec<T, 6> by_s;     ///< δs, likewise
+  Vec<T, 6> by_s;     ///< δs = by_s (δθ₁, δθ₂)
 
-  /// δp = ½ (p ∘ δθ₂ − δθ₁ ∘ p), hence
-  ///   δu = p_v p_vᵀ (δθ₁ − δθ₂) + p₀ (p₀ (δθ₂ − δθ₁) + p_v × (δθ₁ + δθ₂)),  δs = ½ u·(δθ₂ − δθ₁).
+  /// Relative rotation and its derivatives: δp = ½ (p ∘ δθ₂ − δθ₁ ∘ p), hence
+  ///  δu = p_v p_vᵀ (δθ₁ − δθ₂) + p₀ (p₀ (δθ₂ − δθ₁) + p_v × (δθ₁ + δθ₂)),  δs = ½ u·(δθ₂ − δθ₁).
   RelativeTurn(Quaternion<T> const& a, Quaternion<T> const& b) : p(quaternion_product<T>(conjugate<T>(a), b)) {
     Vec<T, 3> const v(p[1], p[2], p[3]);
     Mat<T, 3, 3> const x = skew(v);
@@ -41,39 +42,40 @@ struct RelativeTurn {
 
 }  // namespace detail
 
-/// R(ξ) is the rotation nearest to (1 − ξ) R₁ + ξ R₂ (polar decomposition). It turns about the same axis n as
-/// `Objective` does, by another angle: in the plane across n the mean of 1 and e^{iφ} is 1 − ξ + ξ e^{iφ} = ρ e^{iα},
-/// hence
-///   R = R₁ exp(α n),  ρ² = 1 − 4 ξ (1 − ξ) s,  g = tan(α/2) n = ξ u/D,  D = ρ + 1 − 2 ξ s,  l K = α′ n = u/ρ²,
-/// with u = sin φ n, s = sin²(φ/2). It is objective and knows no path; α − ξφ = −ξ (1 − ξ) (1 − 2ξ) φ³/6 + O(φ⁵). In
-/// the middle R is that of `Objective` and l K = 2 tan(φ/2) n. An element must turn by less than half a turn.
+/// Interpolation with R(ξ) the rotation nearest to (1 − ξ) R₁ + ξ R₂ (polar decomposition) [Romero 2004, §4]. The axis
+/// n of the relative rotation is that of `Objective`, and the angle differs. In the plane normal to n, the mean of 1
+/// and e^{iφ} is 1 − ξ + ξ e^{iφ} = ρ e^{iα}, hence
+///  R = R₁ exp(α n),  ρ² = 1 − 4 ξ (1 − ξ) s,  g = tan(α/2) n = ξ u/D,  D = ρ + 1 − 2 ξ s,  l K = α′ n = u/ρ²,
+/// with u = sin φ n, s = sin²(φ/2). The policy is objective, and its strains do not depend on the path. The difference
+/// of the angles is α − ξφ = −ξ (1 − ξ) (1 − 2ξ) φ³/6 + O(φ⁵). In the middle R is that of `Objective`, and l K = 2
+/// tan(φ/2) n. The relative rotation of an element must be less than π.
 class Polar {
  public:
   static constexpr bool objective = true;
   explicit Polar(Placement const&) {}  ///< the placement has no influence
 
-  /// A section in a state, with what its strains are differentiated by.
+  /// Section in a state, with intermediate results for its derivatives.
   template <StateScalar T>
   struct Section : SectionMotion<T> {
     double xi;            ///< ξ ∈ [0, 1]
-    Quaternion<T> p;      ///< of the nodes, relative
+    Quaternion<T> p;      ///< relative quaternion of the nodes
     Vec<T, 3> g;          ///< tan(α/2) n
     T rho;                ///< ρ = |1 − ξ + ξ e^{iφ}|
     Mat<T, 3, 3> turned;  ///< exp(α n)
   };
 
-  /// The section in the middle, ξ = ½.
+  /// Section in the middle of the element, ξ = ½.
   template <StateScalar T>
   void middle(Quaternion<T> const& a, Quaternion<T> const& b, StrainSection<T>& out) const {
     at<T>(0.5, a, b, out);
   }
-  /// By dual numbers, for t = l N × Γ, m = M (3) and w = (Ω₁, Ω₂).
-  template <class T>  // compiled where it is used
+  /// Derivatives of the maps of the middle section by dual numbers, for t = l N × Γ, m = M (3) and w = (Ω₁, Ω₂).
+  template <class T>  // compiled only if used
   void gradient(Quaternion<T> const& a, Quaternion<T> const& b, Vec<T, 3> const& t, Vec<T, 3> const& m,
                 Vec<T, 6> const& w, StrainGradient& out) const {
     detail::strain_gradient(*this, 0.5, {a, b}, {t, m, w}, out);
   }
-  /// δ(u/ρ²) = δu/ρ² + 4 ξ (1 − ξ) u δs/ρ⁴.
+  /// Section at ξ, with δ(u/ρ²) = δu/ρ² + 4 ξ (1 − ξ) u δs/ρ⁴.
   template <StateScalar T>
   void at(double xi, Quaternion<T> const& a, Quaternion<T> const& b, StrainSection<T>& out) const {
     detail::RelativeTurn<T> const turn(a, b);
@@ -88,13 +90,13 @@ class Polar {
     }
   }
 
-  /// R(ξ), and its P, between nodes with the rotations a and b.
+  /// Section at ξ with R(ξ) and its P, between nodes with the rotations a and b.
   template <StateScalar T>
   void section(double xi, Quaternion<T> const& a, Quaternion<T> const& b, Section<T>& out) const {
     place<T>(xi, a, detail::RelativeTurn<T>(a, b), out);
   }
-  /// Ω = exp(−α n) Ω₁ + ω, ω = h (ġ − g × ġ), h = 2/(1 + g²), once more by time, w = (Ω₁, Ω₂); g D = ξ u gives g¨ from
-  /// p¨.
+  /// Time derivative of Ω for constant w = (Ω₁, Ω₂), from Ω = exp(−α n) Ω₁ + ω, ω = h (ġ − g × ġ), h = 2/(1 + g²). The
+  /// equation g D = ξ u gives g¨ from p¨.
   template <StateScalar T>
   Vec<T, 3> bias(Section<T> const& s, Vec<T, 6> const& w) const {
     double const xi = s.xi, eta = 2.0 * xi * (1.0 - xi);
@@ -118,8 +120,8 @@ class Polar {
     for (int i = 0; i < 3; ++i) out[i] = relative[i] + h * twice[i] + h1 * once[i];
     return out;
   }
-  /// The derivative of Pᵀx by dual numbers; P depends on the relative turn alone.
-  template <class T, StateScalar D = Dual<6>>  // compiled where it is used
+  /// Derivative of Pᵀx by dual numbers; P depends on the relative rotation only.
+  template <class T, StateScalar D = Dual<6>>  // compiled only if used
   void spin_gradient(Section<T> const& s, Vec<T, 3> const& x, Mat<T, 6, 6>& out) const {
     Section<D> moved;
     section<D>(s.xi, detail::turning_quaternion<6>({1.0, 0.0, 0.0, 0.0}, 0), detail::turning_quaternion<6>(s.p, 3),
@@ -129,8 +131,8 @@ class Polar {
       for (int j = 0; j < 6; ++j)
         for (int k = 0; k < 6; ++k) out(j, k) += x[i] * moved.spin(i, j).d[k];
   }
-  /// K′ = −u (ρ²)′/(ρ⁴ l²),  (ρ²)′ = −4 (1 − 2ξ) s.
-  template <class T>  // compiled where it is used
+  /// Rotation with curvature, with K′ = −u (ρ²)′/(ρ⁴ l²),  (ρ²)′ = −4 (1 − 2ξ) s.
+  template <class T>  // compiled only if used
   SectionTurn turn(double xi, double l, Quaternion<T> const& a, Quaternion<T> const& b) const {
     detail::RelativeTurn<T> const turn(a, b);
     Section<T> s;
@@ -140,7 +142,7 @@ class Polar {
   }
 
  private:
-  /// P = [exp(−α n), 0] + h (1 − g̃) ∂g,  ∂g = ξ/D (∂u + 2 (ξ (1 − ξ)/ρ + ξ)/D u ∂s).
+  /// Section with P = [exp(−α n), 0] + h (1 − g̃) ∂g,  ∂g = ξ/D (∂u + 2 (ξ (1 − ξ)/ρ + ξ)/D u ∂s).
   template <StateScalar T>
   static void place(double xi, Quaternion<T> const& a, detail::RelativeTurn<T> const& turn, Section<T>& out) {
     using std::sqrt;
@@ -164,7 +166,7 @@ class Polar {
         if (j < 3) out.spin(i, j) += out.turned(j, i);
       }
   }
-  /// ½ (p ∘ Ω₂ − Ω₁ ∘ p).
+  /// Rate ½ (p ∘ Ω₂ − Ω₁ ∘ p) of the relative quaternion.
   template <StateScalar T>
   static Quaternion<T> quaternion_rate(Quaternion<T> const& p, Vec<T, 6> const& w) {
     Quaternion<T> const first(T(0.0), w[0], w[1], w[2]), second(T(0.0), w[3], w[4], w[5]);

@@ -1,38 +1,38 @@
 #pragma once
 /// \file
-/// How the rotation of a section goes from one node of a beam element to the other: what `Lrvf` asks of a policy, and
-/// its default; direct_interpolation.hpp holds another one. Rotations of the nodes are unit quaternions; δθ₁, δθ₂ and
-/// all angular velocities are in the axes of the section that turns.
+/// Rotation interpolation between the nodes of a beam element: the concepts of a policy of `Lrvf`, and the default
+/// policy. direct_interpolation.hpp has another one. Rotations of the nodes are unit quaternions. δθ₁, δθ₂ and all
+/// angular velocities are in the axes of the rotating section.
 
 #include <polybody/kinematics/frame.hpp>
 
 namespace polybody {
 
-/// A section in which strains are taken, and how it follows the nodes.
+/// Section at which strains are evaluated, with its derivatives with respect to the nodes.
 template <StateScalar T>
 struct StrainSection {
-  Mat<T, 3, 3> R;     ///< its axes in world axes
-  Vec<T, 3> turn;     ///< l K, the material curvature times the element's length [rad]
+  Mat<T, 3, 3> R;     ///< axes of the section in world axes
+  Vec<T, 3> turn;     ///< l K, the material curvature times the length of the element [rad]
   Mat<T, 3, 6> spin;  ///< P: δθ = P (δθ₁, δθ₂)
   Mat<T, 3, 6> bend;  ///< Q: δ(l K) = Q (δθ₁, δθ₂)
 };
 
-/// Derivatives of such a section's maps by (δθ₁, δθ₂), for fixed t, m, w.
+/// Derivatives of the maps of a `StrainSection` with respect to (δθ₁, δθ₂), for fixed t, m, w.
 struct StrainGradient {
   Mat<double, 6, 6> pulled;  ///< of Pᵀ t + Qᵀ m
   Mat<double, 3, 6> spin;    ///< of P w
   Mat<double, 3, 6> bend;    ///< of Q w
 };
 
-/// Any section of an element, and how it follows the nodes. A policy's own `Section` adds what its terms have in
-/// common.
+/// Any section of an element, with the map of its angular velocity. The class `Section` of a policy adds common
+/// intermediate results.
 template <StateScalar T>
 struct SectionMotion {
-  Mat<T, 3, 3> R;     ///< its axes in world axes
+  Mat<T, 3, 3> R;     ///< axes of the section in world axes
   Mat<T, 3, 6> spin;  ///< P: Ω = P (Ω₁, Ω₂)
 };
 
-/// A rotation field along a bar, at one of its sections.
+/// Rotation field along a bar, at one of its sections.
 struct SectionTurn {
   Mat3 R;   ///< axes of the section in world axes
   Vec3 K;   ///< material curvature, R′ = R K̃ [1/m]
@@ -41,7 +41,7 @@ struct SectionTurn {
 
 namespace detail {
 
-/// P x, P a map of both nodes.
+/// Product P x with a map P of both nodes.
 template <class T>
 Vec<T, 3> of_nodes(Mat<T, 3, 6> const& map, Vec<T, 6> const& x) {
   Vec<T, 3> out;
@@ -51,7 +51,7 @@ Vec<T, 3> of_nodes(Mat<T, 3, 6> const& map, Vec<T, 6> const& x) {
   }
   return out;
 }
-/// [A; B].
+/// Sets the matrix [A; B].
 template <class T>
 void set_rows(Mat<T, 3, 6> const& a, Mat<T, 3, 6> const& b, Mat<T, 6, 6>& out) {
   for (int i = 0; i < 3; ++i)
@@ -60,7 +60,7 @@ void set_rows(Mat<T, 3, 6> const& a, Mat<T, 3, 6> const& b, Mat<T, 6, 6>& out) {
       out(3 + i, j) = b(i, j);
     }
 }
-/// x₁ or x₂ of (x₁, x₂).
+/// Vector x₁ or x₂ of (x₁, x₂).
 template <class T>
 Vec<T, 3> of_node(int node, Vec<T, 6> const& x) {
   return {x[3 * node], x[3 * node + 1], x[3 * node + 2]};
@@ -68,37 +68,37 @@ Vec<T, 3> of_node(int node, Vec<T, 6> const& x) {
 
 }  // namespace detail
 
-/// The section in the middle of an element where it does not follow from the nodes.
+/// Section in the middle of an element that stores it, because it does not follow from the nodes.
 template <StateScalar T>
 struct CarriedSection {
-  Quaternion<T> axes;  ///< in world axes
+  Quaternion<T> axes;  ///< axes in world axes
   Vec<T, 3> turn;      ///< l K [rad]
 };
 
-/// The nodes give every section of their element.
+/// Policy for which the nodes determine every section of their element.
 template <class I>
 concept FollowsNodes =
     requires(I const i, Quaternion<double> const a, Vec6 const w, Vec3 const x, StrainSection<double> strained,
              StrainGradient gradient, typename I::template Section<double> section) {
       i.template middle<double>(a, a, strained);   // ξ = ½
-      i.gradient(a, a, x, x, w, gradient);         // of the same
-      i.template at<double>(0.2, a, a, strained);  // any ξ: for quadratures with more points
+      i.gradient(a, a, x, x, w, gradient);         // derivatives of the maps of the middle section
+      i.template at<double>(0.2, a, a, strained);  // at any ξ: for quadratures with more points
       i.template section<double>(0.5, a, a, section);
       { i.turn(0.5, 1.0, a, a) } -> std::same_as<SectionTurn>;
     };
 
-/// The section in the middle depends on the way that the nodes went: the coordinates carry it along, element by
-/// element. No other one is known.
+/// Policy for which the section in the middle depends on the path of the nodes. It is part of the coordinates of each
+/// element, and no other section is available.
 template <class I>
 concept CarriesSections =
     requires(I const i, CarriedSection<double> const s, Quaternion<double> const a, Vec6 const w, Vec3 const x,
              StrainSection<double> strained, StrainGradient gradient, typename I::template Section<double> section) {
       { i.between(a, a) } -> std::same_as<CarriedSection<double>>;                   // in the reference
-      { i.template plus<double>(s, x, x) } -> std::same_as<CarriedSection<double>>;  // by δ₁, δ₂ of q ⊞ δ
+      { i.template plus<double>(s, x, x) } -> std::same_as<CarriedSection<double>>;  // increment by δ₁, δ₂ of q ⊞ δ
       i.template middle<double>(s, strained);
-      i.gradient(s, x, w, gradient);  // of the same, for fixed m and w: P does not change
+      i.gradient(s, x, w, gradient);  // derivatives for fixed m and w; P is constant
       i.template section<double>(s, section);
-      i.require_known(0.5, 0.65);  // a marker may stand at ξ, which is s along the bar
+      i.require_known(0.5, 0.65);  // for a marker at ξ, at distance s along the bar
     };
 
 template <class I>
@@ -108,15 +108,16 @@ concept RotationInterpolation =
              Mat<double, 6, 6> pulled) {
       requires std::derived_from<typename I::template Section<double>, SectionMotion<double>>;
       { i.template bias<double>(section, w) } -> std::same_as<Vec3>;  // Ω˙ for Ω₁˙ = Ω₂˙ = 0 [rad/s²]
-      i.spin_gradient(section, x, pulled);                            // of Pᵀ x, for a fixed x
-      { I::objective } -> std::convertible_to<bool>;  // rigid motions of both nodes carry the whole element
+      i.spin_gradient(section, x, pulled);                            // derivative of Pᵀ x, for a fixed x
+      { I::objective } -> std::convertible_to<bool>;  // rigid motions of both nodes move the element rigidly
     };
 
-/// The shortest rotation from node to node at constant curvature, R(ξ) = R₁ exp(ξ φ), φ = log(R₁ᵀR₂): a rigid motion of
-/// the nodes carries the whole element, and strains do not feel it [Crisfield & Jelenić 1999]. An element must turn by
-/// less than half a turn between its nodes; the body as a whole may turn as far as it likes.
+/// Rotation with constant curvature on the shortest path from node to node, R(ξ) = R₁ exp(ξ φ), φ = log(R₁ᵀR₂)
+/// [Crisfield & Jelenić 1999]. A rigid motion of the nodes moves the whole element rigidly, and the strains do not
+/// change. The relative rotation of the nodes of an element must be less than π. The rotation of the whole body is not
+/// limited.
 ///
-/// In the middle everything is algebraic in c = tan(|φ|/4) n, n = φ/|φ|  (Wiener–Milenković):
+/// In the middle all quantities are algebraic in c = tan(|φ|/4) n, n = φ/|φ|  (Wiener–Milenković):
 ///   δθ = ½ (δθ₁ + δθ₂) + ½ c × (δθ₂ − δθ₁),
 ///   δφ = Jr⁻¹(φ) δθ₂ − Jr⁻¹(−φ) δθ₁,  Jr⁻¹(±φ) = 1 ± 2a c̃ + h c̃²,  h = a + m  (`ArctanSeries`),
 ///   δc = G δθ₂ − Gᵀ δθ₁,  G = ¼ ((1 − c²) 1 + 2 c̃ + 2 c cᵀ).
@@ -125,7 +126,7 @@ class Objective {
   static constexpr bool objective = true;
   explicit Objective(Placement const&) {}  ///< the placement has no influence
 
-  /// A section in a state, with what its strains are differentiated by.
+  /// Section in a state, with intermediate results for its derivatives.
   template <StateScalar T>
   struct Section : SectionMotion<T> {
     double xi;                               ///< ξ ∈ [0, 1]
@@ -133,7 +134,7 @@ class Objective {
     Mat<T, 3, 3> turned, jacobian, inverse;  ///< exp(ξφ), Jr(ξφ), Jr⁻¹(φ)
   };
 
-  /// The middle between nodes with the rotations a and b, in closed form.
+  /// Section in the middle between nodes with the rotations a and b, in closed form.
   template <StateScalar T>
   void middle(Quaternion<T> const& a, Quaternion<T> const& b, StrainSection<T>& out) const {
     Vec<T, 3> const c = quarter<T>(a, b);
@@ -156,8 +157,8 @@ class Objective {
     }
   }
 
-  /// Derivatives of the middle's P and Q for t = l N × Γ, m = M (3) and w = (Ω₁, Ω₂), in closed form.
-  template <class T>  // compiled where it is used
+  /// Derivatives of P and Q of the middle section for t = l N × Γ, m = M (3) and w = (Ω₁, Ω₂), in closed form.
+  template <class T>  // compiled only if used
   void gradient(Quaternion<T> const& a, Quaternion<T> const& b, Vec<T, 3> const& t, Vec<T, 3> const& m,
                 Vec<T, 6> const& w, StrainGradient& out) const {
     Vec<T, 3> const c = quarter<T>(a, b), w1 = detail::of_node(0, w), w2 = detail::of_node(1, w);
@@ -168,7 +169,7 @@ class Objective {
     Mat<T, 3, 3> const even = even_slope(s, c, m), odd = odd_slope(s, c, m);
     Mat<T, 3, 3> const even_w = even_slope(s, c, apart), odd_w = odd_slope(s, c, sum);
     Mat<T, 3, 6> by_nodes;                      // ∂c
-    Mat<T, 3, 3> pulled1, pulled2, spin, bend;  // by c
+    Mat<T, 3, 3> pulled1, pulled2, spin, bend;  // derivatives with respect to c
     for (int j = 0; j < 3; ++j)
       for (int i = 0; i < 3; ++i) {
         T const symmetric = 0.5 * c[i] * c[j] + (i == j ? 0.25 * (1.0 - z) : 0.0);
@@ -186,7 +187,7 @@ class Objective {
     detail::set_rows(first, second, out.pulled);
   }
 
-  /// R = R₁ exp(ξφ) and Ω = exp(−ξφ) Ω₁ + ξ Jr(ξφ) φ˙,  Jr(φ) φ˙ = Ω₂ − exp(−φ) Ω₁.
+  /// Section at ξ with R = R₁ exp(ξφ) and Ω = exp(−ξφ) Ω₁ + ξ Jr(ξφ) φ˙,  Jr(φ) φ˙ = Ω₂ − exp(−φ) Ω₁.
   template <StateScalar T>
   void section(double xi, Quaternion<T> const& a, Quaternion<T> const& b, Section<T>& out) const {
     out.xi = xi;
@@ -204,7 +205,7 @@ class Objective {
         out.spin(i, 3 + j) = second(i, j) * xi;
       }
   }
-  /// Both equations once more by time, w = (Ω₁, Ω₂).
+  /// Time derivative of Ω for constant w = (Ω₁, Ω₂), from the time derivatives of both equations.
   template <StateScalar T>
   Vec<T, 3> bias(Section<T> const& s, Vec<T, 6> const& w) const {
     Vec<T, 3> const w1 = detail::of_node(0, w), w2 = detail::of_node(1, w);
@@ -218,9 +219,10 @@ class Objective {
     for (int i = 0; i < 3; ++i) out[i] = (relative[i] + second[i]) * s.xi + by_part[i] * (s.xi * s.xi);
     return out;
   }
-  /// Pᵀx = [exp(ξφ) x − Jr⁻¹(φ) y; Jr⁻¹(−φ) y],  y = ξ Jr(−ξφ) x;  by φ, with D(φ, x) = ∂(Jr(φ) x)/∂φ:
-  ///   ∂y = −ξ² D(−ξφ, x),  ∂(Jr⁻¹(±φ) y) = Jr⁻¹(±φ) (∂y ∓ D(±φ, Jr⁻¹(±φ) y)),  ∂(exp(ξφ) x) = −ξ exp(ξφ) x̃ Jr(ξφ).
-  template <class T>  // compiled where it is used
+  /// Derivative of Pᵀx = [exp(ξφ) x − Jr⁻¹(φ) y; Jr⁻¹(−φ) y],  y = ξ Jr(−ξφ) x. With D(φ, x) = ∂(Jr(φ) x)/∂φ the
+  /// derivatives with respect to φ are
+  ///  ∂y = −ξ² D(−ξφ, x),  ∂(Jr⁻¹(±φ) y) = Jr⁻¹(±φ) (∂y ∓ D(±φ, Jr⁻¹(±φ) y)),  ∂(exp(ξφ) x) = −ξ exp(ξφ) x̃ Jr(ξφ).
+  template <class T>  // compiled only if used
   void spin_gradient(Section<T> const& s, Vec<T, 3> const& x, Mat<T, 6, 6>& out) const {
     Mat<T, 3, 3> const& inverse = s.inverse;
     double const xi = s.xi;
@@ -245,7 +247,7 @@ class Objective {
     detail::set_rows(product(first, by_nodes), product(transposed_product(inverse, of_second), by_nodes), out);
   }
 
-  /// l K = φ in every section, δφ = Jr⁻¹(φ) δθ₂ − Jr⁻¹(−φ) δθ₁.
+  /// Section at ξ, with l K = φ in every section and δφ = Jr⁻¹(φ) δθ₂ − Jr⁻¹(−φ) δθ₁.
   template <StateScalar T>
   void at(double xi, Quaternion<T> const& a, Quaternion<T> const& b, StrainSection<T>& out) const {
     Section<T> s;
@@ -260,8 +262,8 @@ class Objective {
       }
   }
 
-  /// R, K = φ/l and K′ = 0 at ξ of an element of length l [m].
-  template <class T>  // compiled where it is used
+  /// Rotation R with K = φ/l and K′ = 0 at ξ of an element of length l [m].
+  template <class T>  // compiled only if used
   SectionTurn turn(double xi, double l, Quaternion<T> const& a, Quaternion<T> const& b) const {
     Vec<T, 3> const phi = quaternion_minus<T>(b, a);
     return {product(rotation_matrix<T>(a), exp_so3<T>(scaled<T>(phi, xi))), scaled<T>(phi, 1.0 / l),
@@ -269,14 +271,14 @@ class Objective {
   }
 
  private:
-  /// tan(|φ|/4) n of the shorter way from a to b.
+  /// Vector tan(|φ|/4) n of the shorter path from a to b.
   template <StateScalar T>
   static Vec<T, 3> quarter(Quaternion<T> const& a, Quaternion<T> const& b) {
     Quaternion<T> const p = quaternion_product<T>(conjugate<T>(a), b);
     T const way = value_of(p[0]) < 0.0 ? T(p[0] - 1.0) : T(p[0] + 1.0);
     return {p[1] / way, p[2] / way, p[3] / way};
   }
-  /// By c: of 2a c × y, and of h c × (c × y).
+  /// Derivatives with respect to c: of 2a c × y, and of h c × (c × y).
   template <class T>
   static Mat<T, 3, 3> odd_slope(ArctanSeries<T> const& s, Vec<T, 3> const& c, Vec<T, 3> const& y) {
     Vec<T, 3> const once = cross(c, y);

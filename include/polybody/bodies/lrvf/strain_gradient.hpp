@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Derivatives of a section's maps by dual numbers, for interpolations of rotations without closed forms of their own.
+/// Derivatives of the maps of a section by dual numbers, for rotation interpolations without closed forms.
 
 #include <array>
 
@@ -8,7 +8,8 @@
 
 namespace polybody::detail {
 
-/// q ⊞ δ for a small δ, whose three components are the variables number `first` and on, each times `size`.
+/// Quaternion q ⊞ δ for a small δ, whose three components are the dual variables with numbers from `first` on,
+/// multiplied by `size`.
 template <int n>
 Quaternion<Dual<n>> turning_quaternion(Quaternion<double> const& q, int first, double size = 1.0) {
   Quaternion<Dual<n>> out(q[0], q[1], q[2], q[3]);
@@ -21,14 +22,14 @@ Quaternion<Dual<n>> turning_quaternion(Quaternion<double> const& q, int first, d
   return out;
 }
 
-/// What stands still in a derivative of the maps.
+/// Vectors that are constant in a derivative of the maps.
 struct HeldFixed {
   Vec<double, 3> t, m;
   Vec<double, 6> w;
 };
 
-/// ∂(Pᵀ t + Qᵀ m), ∂(P w) and ∂(Q w) at ξ by (δθ₁, δθ₂).
-template <class I, StateScalar D = Dual<6>>  // compiled where it is used
+/// Derivatives of Pᵀ t + Qᵀ m, P w and Q w at ξ with respect to (δθ₁, δθ₂).
+template <class I, StateScalar D = Dual<6>>  // compiled only if used
 void strain_gradient(I const& interpolation, double xi, std::array<Quaternion<double>, 2> const& nodes,
                      HeldFixed const& fixed, StrainGradient& out) {
   StrainSection<D> at;

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Where along an element `Lrvf` and `planar::Lrvf` take their strains: a policy. With linear shapes the choice decides
-/// whether a slender element bends or locks [Hughes, Taylor & Kanoknukulchai 1977; Simo & Vu-Quoc 1986].
+/// Quadrature of the strains of `Lrvf` and `planar::Lrvf` along an element, a policy. With linear shapes the choice
+/// determines if a slender element bends or locks [Hughes, Taylor & Kanoknukulchai 1977; Simo & Vu-Quoc 1986].
 
 #include <array>
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace polybody {
 
-/// A section in which strains are taken, and what it counts in the energies of the strains.
+/// Section at which strains are evaluated, with its weights in the energies of the strains.
 struct StrainPoint {
   double xi;         ///< ∈ (0, 1)
   double axial;      ///< weight of Γ₁
@@ -20,7 +20,7 @@ struct StrainPoint {
 
 namespace detail {
 
-/// The weights of each strain add up to one, and no section lies at a node.
+/// Returns true if the weights of each strain add up to one, and no section lies at a node.
 template <std::size_t n>
 constexpr bool is_rule(std::array<StrainPoint, n> const& points) {
   double axial = 0.0, shear = 0.0, curvature = 0.0;
@@ -34,11 +34,11 @@ constexpr bool is_rule(std::array<StrainPoint, n> const& points) {
   return one(axial) && one(shear) && one(curvature);
 }
 
-/// What a section counts in the energy of ε or Γ₁, of γ or Γ₂, Γ₃, and of κ or K.
+/// Weights of a section in the energy of ε or Γ₁, of γ or Γ₂, Γ₃, and of κ or K.
 inline constexpr std::array<double StrainPoint::*, 3> strain_weights = {&StrainPoint::axial, &StrainPoint::shear,
                                                                         &StrainPoint::curvature};
 
-/// The points in which one of them counts.
+/// Points with a nonzero weight of one kind of strain.
 template <class Q, double StrainPoint::* weight>
 constexpr auto rule_of() {
   constexpr auto counts = [] {
@@ -53,7 +53,7 @@ constexpr auto rule_of() {
   return rule;
 }
 
-/// Both kinds of strain have the same points and weights.
+/// Returns true if both kinds of strain have the same points and weights.
 template <class Q>
 constexpr bool alike(double StrainPoint::* a, double StrainPoint::* b) {
   for (StrainPoint const& p : Q::points)
@@ -66,32 +66,33 @@ constexpr bool alike(double StrainPoint::* a, double StrainPoint::* b) {
 template <class Q>
 concept StrainQuadrature = requires { requires detail::is_rule(Q::points); };
 
-/// All strains in the middle: nothing locks.
+/// All strains evaluated in the middle; the element does not lock.
 struct Reduced {
-  /// ξ, and the weights of Γ₁, of Γ₂ and Γ₃, of K.
+  /// Position ξ, and the weights of Γ₁, of Γ₂ and Γ₃, of K.
   static constexpr std::array<StrainPoint, 1> points = {{{0.5, 1.0, 1.0, 1.0}}};
 };
 
-/// All strains in both Gauss points, for comparison: it locks. Where the curvature turns the sections by φ, those of
-/// the points lean by ±φ/√12 against the straight chord, which counts as shear. Bending is then stiffer by the factor
-/// 1 + GA l²/(12 EI).
+/// All strains evaluated at both Gauss points, for comparison. The element locks: if the sections of its nodes differ
+/// by the angle φ, those of the Gauss points are inclined by ±φ/√12 to the straight chord, and this angle acts as a
+/// shear strain. The bending stiffness is then too large by the factor 1 + GA l²/(12 EI).
 struct Full {
-  /// ξ, and the weights of Γ₁, of Γ₂ and Γ₃, of K.
+  /// Position ξ, and the weights of Γ₁, of Γ₂ and Γ₃, of K.
   static constexpr std::array<StrainPoint, 2> points = {
       {{gauss<2>[0].xi, 0.5, 0.5, 0.5}, {gauss<2>[1].xi, 0.5, 0.5, 0.5}}};
 };
 
-/// Γ in the middle, K in both Gauss points. Linear theory of a straight bar asks it of the shear alone, as Γ₁ = u′ is
-/// constant. Otherwise Γ₁ must come along: in points that lean by ψ ± φ/√12 against the chord,
-/// Γ₁ = |r′| cos(ψ ± φ/√12) − 1.
-/// - The mean over both falls by φ²/24 under pure bending, and the chord stretches by as much, where that of an arc
-///   shortens.
-/// - The difference, 2 sin ψ sin(φ/√12), is strained by the shear ψ: EA φ²/12 stands beside GA. On a curved reference
-///   that is so in linear theory, too, with its angle φ₀ an element.
-/// `Objective` has one K in the whole element, and the plane one κ: there this is `Reduced`, in space at five to ten
-/// times the cost.
+/// Γ evaluated in the middle, K at both Gauss points. In the linear theory of a straight bar only the shear requires
+/// the middle, because Γ₁ = u′ is constant. Otherwise Γ₁ must also be evaluated there: at points inclined by ψ ± φ/√12
+/// to the chord, Γ₁ = |r′| cos(ψ ± φ/√12) − 1.
+/// - The mean over both points decreases by φ²/24 under pure bending, and the chord becomes longer by the same
+/// fraction.
+///  The chord of an arc becomes shorter instead.
+/// - The difference of both points, 2 sin ψ sin(φ/√12), depends on the shear ψ: it adds EA φ²/12 to GA. On a curved
+///  reference this also occurs in linear theory, with its angle φ₀ per element.
+/// `Objective` has a constant K in the element, and the planar beam a constant κ. This quadrature then equals
+/// `Reduced`; in space its cost is five to ten times higher.
 struct Selective {
-  /// ξ, and the weights of Γ₁, of Γ₂ and Γ₃, of K.
+  /// Position ξ, and the weights of Γ₁, of Γ₂ and Γ₃, of K.
   static constexpr std::array<StrainPoint, 3> points = {
       {{gauss<2>[0].xi, 0.0, 0.0, 0.5}, {0.5, 1.0, 1.0, 0.0}, {gauss<2>[1].xi, 0.0, 0.0, 0.5}}};
 };

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// Rigid bodies whose mass changes with time: tanks that empty, rockets, belts that are loaded.
+/// Rigid bodies whose mass changes with time, such as tanks that empty, rockets, and belts that are loaded.
 ///
-/// Not in polybody.hpp: few bodies gain or lose mass.
+/// This header is not part of polybody.hpp, because few bodies gain or lose mass.
 
 #include <array>
 #include <functional>
@@ -13,14 +13,13 @@
 
 namespace polybody {
 
-/// A rigid body B with mass and inertia by a law of time, about a centre of mass that stays at its place in the body:
-///
+/// Rigid body B with mass and inertia as functions of time. The centre of mass is fixed in the body:
 ///     Changing<Rigid<>> const stage([](double t) { return Rigid<>(mass(t), inertia(t)); });
 ///
-/// M(t) v̇ = f holds where what leaves, or comes, has the velocity of the body at that place, so that it takes its own
-/// momentum with it. What leaves by another velocity pushes: a stream of ṁ [kg/s] at u [m/s] relative to the body is a
-/// force ṁ u against it, which is applied as any other [Meshchersky 1897; Goldstein, Poole & Safko 2002, ch. 1].
-/// Energies are those of the mass that is there.
+/// The equation M(t) v̇ = f is valid if the mass that leaves or arrives has the velocity of the body at its point, and
+/// therefore keeps its own momentum. Mass with another velocity exerts a force: a stream of ṁ [kg/s] at u [m/s]
+/// relative to the body exerts the force −ṁ u. This force is applied like any other force [Meshchersky 1897; Goldstein,
+/// Poole & Safko 2002, ch. 1]. Energies are those of the present mass.
 template <Body B>
 class Changing : public B {
   static_assert(
@@ -31,13 +30,15 @@ class Changing : public B {
  public:
   static constexpr bool constant_mass = false;
 
-  /// The body that it is at time t [s]; it is asked in every evaluation, by several threads where there are any.
+  /// Body at time t [s]. Every evaluation calls the function, from several threads if there are any.
   using Law = std::function<B(double t)>;
 
-  /// \throws InvalidInput without a law, and what the law throws for t = 0.
+  /// Body with the function of time `law`.
+  /// \throws InvalidInput without a function, and any exception of the function for t = 0.
   explicit Changing(Law law) : B(at_start(law)), law_(std::make_shared<Law const>(std::move(law))) {}
 
-  /// \throws InvalidInput where the law places the centre of mass or its axes elsewhere than at the start.
+  /// Body at time t [s].
+  /// \throws InvalidInput if the function changes the position of the centre of mass or the axes of the body.
   Changing at_time(double t) const {
     Changing now = *this;
     static_cast<B&>(now) = (*law_)(t);

@@ -1,13 +1,15 @@
 #pragma once
 /// \file
-/// Rigid body in the plane. Coordinates (x, y, θ) of the centre of mass; speeds are their rates.
+/// Rigid body in the plane, with the coordinates (x, y, θ) of the centre of mass and their rates as generalised
+/// velocities.
 
 #include <polybody/bodies/shared/bar.hpp>
 #include <polybody/bodies/shared/step_means.hpp>
 
 namespace polybody::planar {
 
-/// A rigid body in the plane: x, y of the centre of mass and the angle θ, three coordinates and speeds [m], [rad].
+/// Rigid body in the plane: x, y of the centre of mass and the angle θ, three coordinates and generalised velocities
+/// [m], [rad].
 class Rigid : public AddingCoordinates {
  public:
   static constexpr World world = World::plane;
@@ -15,22 +17,23 @@ class Rigid : public AddingCoordinates {
   static constexpr bool constant_mass = true;
   static constexpr int element_columns = 3;
   static constexpr int point_columns = 3;
-  static constexpr RigidLayout layout = RigidLayout::plane;  ///< (x, y, θ), which `Recursive` joints may give
+  static constexpr RigidLayout layout = RigidLayout::plane;  ///< (x, y, θ), which `Recursive` joints may prescribe
 
-  /// A material point, in body axes from the centre of mass [m].
+  /// Material point, in body axes from the centre of mass [m].
   struct Point {
     Vec2 u = Vec2::Zero();  ///< (2) [m]
   };
 
-  /// Mass, inertia and place.
+  /// Mass, inertia and placement.
   struct Parameters {
     Required<double> mass;     ///< [kg]
     Required<double> inertia;  ///< about the centre of mass, axis z [kg m²]; zero for a point mass
-    Placement placement = {};  ///< of the centre of mass
+    Placement placement = {};  ///< placement of the centre of mass
   };
 
+  /// Body with the given parameters.
   /// \throws InvalidInput for mass ≤ 0, inertia < 0 or a placement that leaves the plane.
-  template <class = void>     // compiled where it is used
+  template <class = void>     // compiled only if used
   Rigid(Parameters const& p)  // NOLINT(google-explicit-constructor)
       : mass_(p.mass),
         inertia_(p.inertia),
@@ -39,13 +42,14 @@ class Rigid : public AddingCoordinates {
     require_positive(mass_, "planar::Rigid: the mass");
     require_not_negative(inertia_, "planar::Rigid: the inertia");
   }
-  /// The same of mass [kg] and inertia about the centre of mass [kg m²]. \throws InvalidInput likewise.
-  template <class = void>  // compiled where it is used
+  /// Body with `mass` [kg] and `inertia` about the centre of mass [kg m²].
+  /// \throws InvalidInput as the constructor from parameters.
+  template <class = void>  // compiled only if used
   Rigid(double mass, double inertia, Placement const& placement = {})
       : Rigid(Parameters{.mass = mass, .inertia = inertia, .placement = placement}) {}
 
-  /// The bar as a rigid body; its origin is the bar's middle.
-  template <class = void>  // compiled where it is used
+  /// Rigid body of the bar; its origin is the middle of the bar.
+  template <class = void>  // compiled only if used
   static Rigid from(Bar const& bar) {
     BarConstants const c = constants(bar);
     double const l = bar.length, m = c.mass_per_length * l;
@@ -56,14 +60,15 @@ class Rigid : public AddingCoordinates {
     return body;
   }
 
-  /// The point s from the first end of the bar, y off its axis. \throws InvalidInput outside the bar.
-  template <class = void>  // compiled where it is used
+  /// Point at distance s from the first end of the bar [m], at y from its axis [m].
+  /// \throws InvalidInput outside the bar.
+  template <class = void>  // compiled only if used
   Point at(double s, double y = 0.0) const {
     if (length_ == 0.0) throw InvalidInput("planar::Rigid: at(s) needs a body made from a Bar; use at(Vec2).");
     return at(Vec2(require_inside(s, length_, "planar::Rigid") - 0.5 * length_, y));
   }
-  /// The point u in body axes from the centre of mass [m].
-  template <class = void>  // compiled where it is used
+  /// Point u in body axes from the centre of mass [m].
+  template <class = void>  // compiled only if used
   Point at(Vec2 const& u) const {
     require_finite(u, "planar::Rigid: the point");
     return {u};
@@ -88,7 +93,7 @@ class Rigid : public AddingCoordinates {
     v[2] = omega[2];
   }
 
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   void mass(Index, std::span<double const>, Mat3& m) const {
     m.setZero();
     m(0, 0) = m(1, 1) = mass_;
@@ -102,15 +107,15 @@ class Rigid : public AddingCoordinates {
   void force(Index, std::span<T const>, std::span<T const>, Vec<T, 3>& out) const {
     out.setZero();
   }
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   void tangent(Index, std::span<double const>, std::span<double const>, double, double, Mat3& k) const {
     k.setZero();
   }
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   void mean_force(Index, std::span<double const>, std::span<double const>, StepMeans const&, Vec3& out) const {
     out.setZero();
   }
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   void mean_tangent(Index, std::span<double const>, std::span<double const>, StepMeans const&, double, Mat3& k) const {
     k.setZero();
   }
@@ -127,7 +132,7 @@ class Rigid : public AddingCoordinates {
     return -mass_ * (g[0] * q[0] + g[1] * q[1]);
   }
 
-  /// r = r_c + ρ, ρ = A u;  ṙ = ṙ_c + θ̇ e_z × ρ;  bias = −θ̇² ρ.
+  /// Marker kinematics: r = r_c + ρ, ρ = A u;  ṙ = ṙ_c + θ̇ e_z × ρ;  bias = −θ̇² ρ.
   template <StateScalar T>
   void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v, Published<T>& out) const {
     using std::cos, std::sin;
@@ -153,8 +158,8 @@ class Rigid : public AddingCoordinates {
     out.columns = 3;
   }
 
-  /// Only the third row of Jᵀw depends on q: ∂(ρ × f)/∂θ = −ρ · f.
-  template <class = void>  // compiled where it is used
+  /// Load stiffness. Only the third row of Jᵀw depends on q: ∂(ρ × f)/∂θ = −ρ · f.
+  template <class = void>  // compiled only if used
   void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, Mat3& k) const {
     double const c = std::cos(q[2]), s = std::sin(q[2]);
     k.setZero();

@@ -1,8 +1,6 @@
 #pragma once
 /// \file
-/// Rigid body in space. Coordinates (r, q): r the centre of mass in world axes, q a unit quaternion;
-/// speeds (ṙ, Ω): Ω the angular velocity in body axes. Newton–Euler:
-///   m r̈ = f,   J Ω˙ + Ω × J Ω = Aᵀ m_c.   [Shabana 2020, §3.5; Brüls, Cardona & Arnold 2012]
+/// Rigid body in space with a unit quaternion [Shabana 2020, §3.5; Brüls, Cardona & Arnold 2012].
 
 #include <algorithm>
 #include <concepts>
@@ -16,8 +14,8 @@ namespace polybody {
 
 namespace detail {
 
-/// A + shift·1 has positive pivots.
-template <class = void>  // compiled where it is used
+/// Returns true if A + shift·1 has positive pivots.
+template <class = void>  // compiled only if used
 bool is_definite(Mat3 const& a, double shift) {
   double const d0 = a(0, 0) + shift, l10 = a(1, 0) / d0, l20 = a(2, 0) / d0;
   double const d1 = a(1, 1) + shift - l10 * a(1, 0), c21 = a(2, 1) - l20 * a(1, 0);
@@ -25,8 +23,8 @@ bool is_definite(Mat3 const& a, double shift) {
   return d0 > 0.0 && d1 > 0.0 && d2 > 0.0;
 }
 
-/// Eigenvalues of a symmetric matrix, descending, to 1e-8 of the largest: for messages [Smith 1961].
-template <class = void>  // compiled where it is used
+/// Eigenvalues of a symmetric matrix, descending, accurate to 1e-8 of the largest, for messages [Smith 1961].
+template <class = void>  // compiled only if used
 std::array<double, 3> principal_values(Mat3 const& a) {
   double const mean = (a(0, 0) + a(1, 1) + a(2, 2)) / 3.0;
   double const x = a(0, 0) - mean, y = a(1, 1) - mean, z = a(2, 2) - mean;
@@ -41,9 +39,10 @@ std::array<double, 3> principal_values(Mat3 const& a) {
 
 }  // namespace detail
 
-/// \throws InvalidInput unless `inertia` can belong to a mass distribution: symmetric, principal moments
-/// not negative and none greater than the sum of the others; that is, ½ tr(J) 1 − J ⪰ 0.
-template <class = void>  // compiled where it is used
+/// Checks that `inertia` is possible for a mass distribution; `what` begins the message.
+/// \throws InvalidInput unless `inertia` is symmetric, no principal moment is negative, and none exceeds the sum of the
+/// others; that is, ½ tr(J) 1 − J ⪰ 0.
+template <class = void>  // compiled only if used
 [[gnu::cold]] void require_inertia(Mat3 const& inertia, std::string const& what) {
   require_finite(inertia, what, ": the inertia");
   double const size = std::max({std::abs(inertia(0, 0)), std::abs(inertia(1, 1)), std::abs(inertia(2, 2)),
@@ -72,13 +71,13 @@ template <class = void>  // compiled where it is used
   }
 }
 
-/// Mass properties, placement and points: what a rigid body has however its rotation is written.
+/// Mass properties, placement and points of a rigid body, independent of its rotation coordinates.
 class RigidShape {
  public:
   static constexpr World world = World::space;
   static constexpr Observes observes = Observes::frame;
 
-  /// A material point, in body axes from the centre of mass [m].
+  /// Material point, in body axes from the centre of mass [m].
   struct Point {
     Vec3 u = Vec3::Zero();  ///< (3) [m]
   };
@@ -87,33 +86,35 @@ class RigidShape {
   struct Parameters {
     Required<double> mass;        ///< [kg]
     Mat3 inertia = Mat3::Zero();  ///< (3×3) about the centre of mass, body axes [kg m²]
-    Placement placement = {};     ///< of the centre of mass and the body's axes
+    Placement placement = {};     ///< placement of the centre of mass and of the axes of the body
   };
 
-  /// \throws InvalidInput for mass ≤ 0 or an inertia that no body has. Zero moments are allowed.
-  template <class = void>  // compiled where it is used
+  /// Body with the given parameters. Moments of inertia may be zero.
+  /// \throws InvalidInput for mass ≤ 0 or an inertia that no body has.
+  template <class = void>  // compiled only if used
   RigidShape(Parameters const& p) : mass_(p.mass), inertia_(p.inertia), placement_(p.placement) {  // NOLINT
     require_positive(mass_, "Rigid: the mass");
     require_inertia(inertia_, "Rigid");
     placement_.check("Rigid");
   }
-  /// The same; the inertia is about the centre of mass, in body axes [kg m²].
-  template <class = void>  // compiled where it is used
+  /// Body with `mass` [kg] and `inertia` about the centre of mass, in body axes [kg m²].
+  template <class = void>  // compiled only if used
   RigidShape(double mass, Mat3 const& inertia, Placement const& placement = {})
       : RigidShape(Parameters{.mass = mass, .inertia = inertia, .placement = placement}) {}
 
   double mass() const { return mass_; }             ///< [kg]
   Mat3 const& inertia() const { return inertia_; }  ///< J (3×3) about the centre of mass, body axes [kg m²]
 
-  /// The point s from the first end of the bar, (y, z) off its axis. \throws InvalidInput outside the bar.
-  template <class = void>  // compiled where it is used
+  /// Point at distance s from the first end of the bar [m], at (y, z) from its axis [m].
+  /// \throws InvalidInput outside the bar.
+  template <class = void>  // compiled only if used
   Point at(double s, double y = 0.0, double z = 0.0) const {
     if (length_ == 0.0)
       throw InvalidInput("Rigid: at(s) needs a body made from a Bar; use at(Vec3) from the centre of mass.");
     return at(Vec3(require_inside(s, length_, "Rigid") - 0.5 * length_, y, z));
   }
-  /// The point u in body axes from the centre of mass [m].
-  template <class = void>  // compiled where it is used
+  /// Point u in body axes from the centre of mass [m].
+  template <class = void>  // compiled only if used
   Point at(Vec3 const& u) const {
     require_finite(u, "Rigid: the point");
     return {u};
@@ -124,13 +125,13 @@ class RigidShape {
   Index first_column(Point const&) const { return 0; }
 
  protected:
-  /// The bar as a rigid body; its axes are the bar's, its origin the bar's middle.
-  template <class = void>  // compiled where it is used
+  /// Rigid body of the bar; its axes are those of the bar, its origin is the middle of the bar.
+  template <class = void>  // compiled only if used
   explicit RigidShape(Bar const& bar) : RigidShape(parameters(bar)) {
     length_ = bar.length;
   }
   /// Mass properties of the bar.
-  template <class T = double>  // compiled where it is used
+  template <class T = double>  // compiled only if used
   static Parameters parameters(Bar const& bar) {
     BarConstants const c = constants(bar);
     double const l = bar.length, m = c.mass_per_length * l;
@@ -144,7 +145,7 @@ class RigidShape {
     return {.mass = m, .inertia = inertia, .placement = place};
   }
 
-  /// J x, in body axes.
+  /// Product J x in body axes.
   template <StateScalar T>
   Vec<T, 3> inertia_times(Vec<T, 3> const& x) const {
     Vec<T, 3> y;
@@ -156,7 +157,7 @@ class RigidShape {
   Vec<T, 3> axis_of_inertia(int j) const {
     return {inertia_(0, j), inertia_(1, j), inertia_(2, j)};
   }
-  /// a × b into three entries of `out`; Eigen's goes through memory, and waits for it.
+  /// Writes a × b to three entries of `out` from `first` on. Eigen's cross product writes to memory and waits for it.
   template <class A, class B, class Out>
   static void set_cross(A const& a, B const& b, Out& out, int first) {
     out[first] = a[1] * b[2] - a[2] * b[1];
@@ -166,18 +167,22 @@ class RigidShape {
 
   double mass_;          ///< [kg]
   Mat3 inertia_;         ///< J about the centre of mass, body axes [kg m²]
-  Placement placement_;  ///< of the centre of mass
-  double length_ = 0.0;  ///< of the bar; 0 where there is none [m]
+  Placement placement_;  ///< placement of the centre of mass
+  double length_ = 0.0;  ///< length of the bar; 0 without a bar [m]
 };
 
-/// How `Rigid` writes its rotation: unit quaternion with body-frame angular velocity as speeds.
+/// Rotation of `Rigid` as a unit quaternion, with the angular velocity in body axes as generalised velocities.
 struct UnitQuaternion {};
 
-/// A rigid body: `Rigid<>`, or `Rigid<EulerParameters>` of bodies/rigid/rigid_euler_parameters.hpp.
+/// Rigid body: `Rigid<>`, or `Rigid<EulerParameters>` of bodies/rigid/rigid_euler_parameters.hpp.
 template <class Rotation = UnitQuaternion>
 class Rigid;
 
-/// A rigid body with a unit quaternion and angular velocity in body axes [rad/s]: six speeds, no row.
+/// Rigid body with a unit quaternion: six generalised velocities and no constraint equation of its own [Shabana 2020,
+/// §3.5; Brüls, Cardona & Arnold 2012]. The coordinates are (r, q), with the centre of mass r in world axes [m] and the
+/// unit quaternion q. The generalised velocities are (ṙ, Ω), with the angular velocity Ω in body axes [rad/s]. The
+/// equations of Newton and Euler are
+///  m r̈ = f,   J Ω˙ + Ω × J Ω = Aᵀ m_c.
 template <>
 class Rigid<UnitQuaternion> : public RigidShape {
  public:
@@ -185,12 +190,12 @@ class Rigid<UnitQuaternion> : public RigidShape {
   static constexpr int element_columns = 6;
   static constexpr int point_columns = 6;
   static constexpr RigidLayout layout =
-      RigidLayout::quaternion;  ///< (r, quaternion), which `Recursive` joints may give
+      RigidLayout::quaternion;  ///< (r, quaternion), which `Recursive` joints may prescribe
 
   using RigidShape::inertia, RigidShape::mass, RigidShape::RigidShape;
 
-  /// The bar as a rigid body; its axes are the bar's, its origin the bar's middle.
-  template <class = void>  // compiled where it is used
+  /// Rigid body of the bar; its axes are those of the bar, its origin is the middle of the bar.
+  template <class = void>  // compiled only if used
   static Rigid from(Bar const& bar) {
     return Rigid(bar);
   }
@@ -200,7 +205,7 @@ class Rigid<UnitQuaternion> : public RigidShape {
   char const* coordinate_unit(Index i) const { return i < 3 ? "m" : "1"; }
   char const* speed_unit(Index i) const { return i < 3 ? "m/s" : "rad/s"; }
 
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   void reference(std::span<double> q) const {
     Quaternion<double> const turn = quaternion_of(placement_.axes);
     for (std::size_t i = 0; i < 3; ++i) q[i] = placement_.origin[Index(i)];
@@ -213,7 +218,7 @@ class Rigid<UnitQuaternion> : public RigidShape {
     set_quaternion_plus<T>(q.data() + 3, delta.data() + 3, out.data() + 3);
   }
 
-  /// δ˙ with q ⊞ δ(t) moving with v: Ω = Jr(δ) δ˙.
+  /// Rate δ˙ if q ⊞ δ(t) moves with v: Ω = Jr(δ) δ˙.
   template <StateScalar T>
   void local_rate(std::span<T const> delta, std::span<T const> v, std::span<T> out) const {
     Mat<T, 3, 3> const jacobian = right_jacobian_inverse<T>({delta[3], delta[4], delta[5]});
@@ -222,16 +227,16 @@ class Rigid<UnitQuaternion> : public RigidShape {
       out[std::size_t(3 + i)] = jacobian(i, 0) * v[3] + jacobian(i, 1) * v[4] + jacobian(i, 2) * v[5];
   }
 
-  /// Speeds of a rigid motion: velocity of the world's origin point `v0` [m/s] and angular velocity `omega` [rad/s]
-  /// (world axes).
-  template <class T = double>  // compiled where it is used
+  /// Generalised velocities of a rigid motion: velocity `v0` of the body-fixed point at the origin of the world [m/s]
+  /// and angular velocity `omega` [rad/s] (world axes).
+  template <class T = double>  // compiled only if used
   void rigid_velocity(std::span<double const> q, Vec3 const& v0, Vec3 const& omega, std::span<double> v) const {
     Vec<T, 3> const r = part<3>(q, 0);
     part<3>(v, 0) = v0 + omega.cross(r);
     part<3>(v, 3) = rotation_matrix<T>(part<4>(q, 3)).transpose() * omega;
   }
 
-  template <class T>  // compiled where it is used
+  template <class T>  // compiled only if used
   void mass(Index, std::span<double const>, Mat<T, 6, 6>& m) const {
     m = detail::zeros<Mat<T, 6, 6>>();
     for (int i = 0; i < 3; ++i) {
@@ -249,7 +254,7 @@ class Rigid<UnitQuaternion> : public RigidShape {
     }
   }
 
-  /// The gyroscopic force −Ω × J Ω.
+  /// Gyroscopic force −Ω × J Ω.
   template <StateScalar T>
   void force(Index, std::span<T const>, std::span<T const> v, Vec<T, 6>& out) const {
     Vec<T, 3> const omega(v[3], v[4], v[5]), spin = inertia_times<T>(omega);
@@ -257,7 +262,7 @@ class Rigid<UnitQuaternion> : public RigidShape {
     set_cross(spin, omega, out, 3);
   }
 
-  /// `rows` (6) += [m (v̇ − g); J Ω˙ + Ω × J Ω].
+  /// Adds the residual, `rows` (6) += [m (v̇ − g); J Ω˙ + Ω × J Ω].
   template <StateScalar T>
   void add_unbalance(BodyMotion<T> const& x, Vec3 const& g, T* rows) const {
     Vec<T, 3> const omega(x.v[3], x.v[4], x.v[5]), spin = inertia_times<T>(omega),
@@ -270,8 +275,8 @@ class Rigid<UnitQuaternion> : public RigidShape {
     }
   }
 
-  /// −∂f/∂Ω = Ω̃ J − (J Ω)~.
-  template <class T>  // compiled where it is used
+  /// Tangent −∂f/∂Ω = Ω̃ J − (J Ω)~.
+  template <class T>  // compiled only if used
   void tangent(Index, std::span<double const>, std::span<double const> v, double, double cd, Mat<T, 6, 6>& k) const {
     Vec<T, 3> const omega(v[3], v[4], v[5]);
     Mat<T, 3, 3> const of_spin = skew<T>(inertia_times<T>(omega));
@@ -291,19 +296,19 @@ class Rigid<UnitQuaternion> : public RigidShape {
     }
   }
 
-  template <class T = double>  // compiled where it is used
+  template <class T = double>  // compiled only if used
   double kinetic_energy(Index, std::span<double const>, std::span<double const> v) const {
     Vec<T, 3> const omega(v[3], v[4], v[5]), spin = inertia_times<T>(omega);
     return 0.5 * mass_ * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) +
            0.5 * (omega[0] * spin[0] + omega[1] * spin[1] + omega[2] * spin[2]);
   }
   double strain_energy(Index, std::span<double const>) const { return 0.0; }
-  template <class T = double>  // compiled where it is used
+  template <class T = double>  // compiled only if used
   double gravity_energy(Index, std::span<double const> q, Vec3 const& g) const {
     return -mass_ * (g[0] * q[0] + g[1] * q[1] + g[2] * q[2]);
   }
 
-  /// What all points of the body share.
+  /// Kinematics that all points of the body share.
   template <StateScalar T>
   struct Pose {
     Vec<T, 3> r, v, w;  ///< of the centre of mass, world axes
@@ -320,7 +325,7 @@ class Rigid<UnitQuaternion> : public RigidShape {
     }
   }
 
-  /// r = r_c + A u;  ṙ = ṙ_c + ω × A u;  bias = [ω × (ω × A u); 0]; the body is where the pose `at` says.
+  /// Marker kinematics of a body with the pose `at`: r = r_c + A u;  ṙ = ṙ_c + ω × A u;  bias = [ω × (ω × A u); 0].
   template <StateScalar T>
   void publish(Point const& p, Mat3 const& axes, Pose<T> const& at, Published<T>& out) const {
     out.shape = JacobianShape::rigid;
@@ -338,7 +343,7 @@ class Rigid<UnitQuaternion> : public RigidShape {
       out.frame.r[i] = at.r[i] + arm[i];
       out.frame.v[i] = at.v[i] + rate[i];
       out.bias[3 + i] = T(0.0);
-      out.arm[i] = arm[i];  // as a whole it would be read as it is written, which waits
+      out.arm[i] = arm[i];  // entry by entry: a vector load would wait for these writes
     }
     out.frame.w = at.w;
     out.body_axes = at.A;
@@ -350,8 +355,8 @@ class Rigid<UnitQuaternion> : public RigidShape {
     publish(p, axes, at, out);
   }
 
-  /// Jᵀw = [f; Aᵀm + u × Aᵀf];  under A ⊞ δ: δ(Aᵀm) = (Aᵀm)~ δ, hence (Aᵀm)~ + ũ (Aᵀf)~.
-  template <class T>  // compiled where it is used
+  /// Load stiffness of Jᵀw = [f; Aᵀm + u × Aᵀf]. Under A ⊞ δ, δ(Aᵀm) = (Aᵀm)~ δ, hence (Aᵀm)~ + ũ (Aᵀf)~.
+  template <class T>  // compiled only if used
   void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, Mat<T, 6, 6>& k) const {
     Mat<T, 3, 3> const a = rotation_matrix<T>({q[3], q[4], q[5], q[6]});
     Vec<T, 3> f, m;
@@ -367,11 +372,11 @@ class Rigid<UnitQuaternion> : public RigidShape {
   }
 
  private:
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   explicit Rigid(Bar const& bar) : RigidShape(bar) {}
 };
 
-/// It moves by Newton's and Euler's equations about its centre of mass.
+/// True: the body moves by the equations of Newton and Euler about its centre of mass.
 template <>
 inline constexpr bool moves_by_newton_euler<Rigid<UnitQuaternion>> = true;
 

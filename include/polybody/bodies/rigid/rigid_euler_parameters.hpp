@@ -1,50 +1,51 @@
 #pragma once
 /// \file
-/// Rigid body with Euler parameters: coordinates (r, θ), θ = (θ₀, θ₁, θ₂, θ₃), and their rates as speeds, seven of
-/// each, with the row ½ (θᵀθ − 1) = 0 [thesis §3.4, Table 3.4; Shabana 2020, §2.4 and §3.3]. With
-///   Ḡ = (2/|θ|²) [−θ₁ θ₀ θ₃ −θ₂; −θ₂ −θ₃ θ₀ θ₁; −θ₃ θ₂ −θ₁ θ₀]   (3×4),   Ω = Ḡ θ̇,   G_w = A Ḡ, ω = G_w θ̇,
-/// Cartesian moments m_c (body axes) and generalised ones are related by m_θ = Ḡᵀ m_c; hence
-///   M = diag(m 1, Ḡᵀ J Ḡ),   f_θ = −Ḡᵀ (Ω × J Ω).
-/// M is singular along θ; the norm row makes up for it. Division by |θ|² keeps A and Ḡ a rotation and its rate where
-/// the row does not hold exactly.
+/// Rigid body with Euler parameters [thesis §3.4, Table 3.4; Shabana 2020, §2.4 and §3.3].
 
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/bodies/shared/node_chain.hpp>
 
 namespace polybody {
 
-/// How `Rigid` writes its rotation: four Euler parameters whose rates are speeds.
+/// Rotation of `Rigid` as four Euler parameters, with their rates as generalised velocities.
 struct EulerParameters {};
 
-/// A rigid body whose four Euler parameters are coordinates and speeds, with the row of their norm.
+/// Rigid body with Euler parameters [thesis §3.4, Table 3.4; Shabana 2020, §2.4 and §3.3]. The coordinates are (r, θ),
+/// θ = (θ₀, θ₁, θ₂, θ₃), and the generalised velocities are their rates, seven of each. The body has the constraint
+/// equation ½ (θᵀθ − 1) = 0. With
+///  Ḡ = (2/|θ|²) [−θ₁ θ₀ θ₃ −θ₂; −θ₂ −θ₃ θ₀ θ₁; −θ₃ θ₂ −θ₁ θ₀]   (3×4),   Ω = Ḡ θ̇,   G_w = A Ḡ, ω = G_w θ̇,
+/// the moment m_c (body axes) and the generalised moment are related by m_θ = Ḡᵀ m_c; hence
+///  M = diag(m 1, Ḡᵀ J Ḡ),   f_θ = −Ḡᵀ (Ω × J Ω).
+/// M is singular along θ, and the constraint equation removes this singularity. Division by |θ|² makes A a rotation
+/// matrix and Ḡ θ̇ its angular velocity if the constraint equation is not exactly satisfied.
 template <>
 class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
  public:
   static constexpr bool constant_mass = false;
   static constexpr int element_columns = 7;
   static constexpr int point_columns = 7;
-  static constexpr int own_rows = 1;  ///< the norm, |θ| = 1
+  static constexpr int own_rows = 1;  ///< norm, |θ| = 1
 
   using RigidShape::inertia, RigidShape::mass, RigidShape::RigidShape;
 
-  /// The bar as a rigid body; its axes are the bar's, its origin the bar's middle.
-  template <class = void>  // compiled where it is used
+  /// Rigid body of the bar; its axes are those of the bar, its origin is the middle of the bar.
+  template <class = void>  // compiled only if used
   static Rigid from(Bar const& bar) {
     return Rigid(bar);
   }
 
-  Point const& local(Point const& p) const { return p; }  ///< p itself: every point touches all columns
+  Point const& local(Point const& p) const { return p; }  ///< p itself: every point depends on all columns
   Index coordinates() const { return 7; }
   Index speeds() const { return 7; }
   char const* coordinate_unit(Index i) const { return i < 3 ? "m" : "1"; }
 
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   void reference(std::span<double> q) const {
     part<3>(q, 0) = placement_.origin;
     part<4>(q, 3) = quaternion_of(placement_.axes);
   }
-  /// ṙ = v0 + Ω × r, θ̇ = ¼ |θ|² Ḡᵀ Ω.
-  template <class T = double>  // compiled where it is used
+  /// Generalised velocities of a rigid motion: ṙ = v0 + Ω × r with Ω = `omega`, θ̇ = ¼ |θ|² Ḡᵀ Ω.
+  template <class T = double>  // compiled only if used
   void rigid_velocity(std::span<double const> q, Vec3 const& v0, Vec3 const& omega, std::span<double> v) const {
     Vec<T, 3> const r = part<3>(q, 0);
     Vec<T, 4> const theta = part<4>(q, 3);
@@ -52,7 +53,7 @@ class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
     part<4>(v, 3) = (0.25 * theta.squaredNorm()) * map<T>(q).transpose() * (axes<T>(q).transpose() * omega);
   }
 
-  /// Ḡ (3×4) at q: Ω = Ḡ θ̇, and m_θ = Ḡᵀ m for a moment m in body axes.
+  /// Matrix Ḡ (3×4) at q: Ω = Ḡ θ̇, and m_θ = Ḡᵀ m for a moment m in body axes.
   template <StateScalar T>
   static Mat<T, 3, 4> map(std::span<T const> q) {
     T const a = q[3], b = q[4], c = q[5], d = q[6], scale = T(2.0) / (a * a + b * b + c * c + d * d);
@@ -60,7 +61,7 @@ class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
     g << -b, a, d, -c, -c, -d, a, b, -d, c, -b, a;
     return g * scale;
   }
-  /// A (3×3) at q, of θ/|θ|.
+  /// Rotation matrix A (3×3) at q, of θ/|θ|.
   template <StateScalar T>
   static Mat<T, 3, 3> axes(std::span<T const> q) {
     Mat<T, 3, 3> a;
@@ -68,7 +69,7 @@ class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
     return a / (q[3] * q[3] + q[4] * q[4] + q[5] * q[5] + q[6] * q[6]);
   }
 
-  template <class T>  // compiled where it is used
+  template <class T>  // compiled only if used
   void mass(Index, std::span<double const> q, Mat<T, 7, 7>& m) const {
     Mat<T, 3, 4> const g = map<T>(q);
     m.setZero();
@@ -81,7 +82,7 @@ class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
     out.template head<3>() = part<3>(a, 0) * T(mass_);
     out.template tail<4>() = g.transpose() * inertia_times<T>(g * part<4>(a, 3));
   }
-  /// −Ḡᵀ(Ω × J Ω).
+  /// Gyroscopic force −Ḡᵀ(Ω × J Ω).
   template <StateScalar T>
   void force(Index, std::span<T const> q, std::span<T const> v, Vec<T, 7>& out) const {
     Mat<T, 3, 4> const g = map<T>(q);
@@ -91,8 +92,8 @@ class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
     out.template head<3>().setZero();
     out.template tail<4>() = g.transpose() * moment;
   }
-  /// By dual numbers along ck δθ and cd δθ̇.
-  template <class T, StateScalar D = Dual<4>>  // compiled where it is used
+  /// Tangent by dual numbers along ck δθ and cd δθ̇.
+  template <class T, StateScalar D = Dual<4>>  // compiled only if used
   void tangent(Index e, std::span<double const> q, std::span<double const> v, double ck, double cd,
                Mat<T, 7, 7>& k) const {
     std::array<D, 7> moved, moving;
@@ -116,42 +117,42 @@ class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
   void gravity(Index, std::span<T const>, Vec3 const& g, Vec<T, 7>& out) const {
     for (int i = 0; i < 7; ++i) out[i] = T(i < 3 ? g[i] * mass_ : 0.0);
   }
-  template <class T = double>  // compiled where it is used
+  template <class T = double>  // compiled only if used
   double kinetic_energy(Index, std::span<double const> q, std::span<double const> v) const {
     Vec<T, 3> const speed = part<3>(v, 0), omega = map<T>(q) * part<4>(v, 3);
     return 0.5 * mass_ * speed.squaredNorm() + 0.5 * omega.dot(inertia_ * omega);
   }
   double strain_energy(Index, std::span<double const>) const { return 0.0; }
-  template <class T = double>  // compiled where it is used
+  template <class T = double>  // compiled only if used
   double gravity_energy(Index, std::span<double const> q, Vec3 const& g) const {
     Vec<T, 3> const r = part<3>(q, 0);
     return -mass_ * g.dot(r);
   }
 
-  /// Φ = ½ (θᵀθ − 1), G = [0, θᵀ], γ = θ̇ᵀθ̇, ∂(Gᵀλ)/∂q = λ on θ.
+  /// Constraint function Φ = ½ (θᵀθ − 1), with G = [0, θᵀ], γ = θ̇ᵀθ̇, and ∂(Gᵀλ)/∂q = λ for θ.
   template <StateScalar T>
   void own_gap(std::span<T const> q, Vec<T, 1>& phi) const {
     phi[0] = (q[3] * q[3] + q[4] * q[4] + q[5] * q[5] + q[6] * q[6]) * 0.5 - 0.5;
   }
-  /// G (1×7), to g.
+  /// Constraint Jacobian G (1×7), written to g.
   template <StateScalar T>
   void own_map(std::span<T const> q, Mat<T, 1, 7>& g) const {
     for (int i = 0; i < 7; ++i) g(0, i) = i < 3 ? T(0.0) : q[i];
   }
-  /// γ, with Φ̈ = G v̇ + γ.
+  /// Acceleration bias γ of Φ̈ = G v̇ + γ.
   template <StateScalar T>
   void own_gamma(std::span<T const>, std::span<T const> v, Vec<T, 1>& gamma) const {
     gamma[0] = v[3] * v[3] + v[4] * v[4] + v[5] * v[5] + v[6] * v[6];
   }
-  /// ∂(Gᵀλ)/∂q (7×7).
-  template <class T>  // compiled where it is used
+  /// Stiffness ∂(Gᵀλ)/∂q (7×7) of the constraint equation.
+  template <class T>  // compiled only if used
   void own_stiffness(std::span<double const>, Vec<T, 1> const& lambda, Mat<T, 7, 7>& k) const {
     k.setZero();
     for (int i = 3; i < 7; ++i) k(i, i) = lambda[0];
   }
 
-  /// As `Rigid<>`, with the marker's axes in the body's, `marker`; Ω = Ḡ θ̇; Ω̇ = Ḡ θ̈ + Ḡ˙ θ̇, where Ḡ˙ θ̇ = −2
-  /// (θ·θ̇)/|θ|² Ω.
+  /// Marker kinematics as in `Rigid<>`, where `marker` are the axes of the marker in body axes. Ω = Ḡ θ̇ and Ω̇ = Ḡ θ̈
+  /// + Ḡ˙ θ̇, with Ḡ˙ θ̇ = −2 (θ·θ̇)/|θ|² Ω.
   template <StateScalar T>
   void publish(Point const& p, Mat3 const& marker, std::span<T const> q, std::span<T const> v,
                Published<T>& out) const {
@@ -173,13 +174,13 @@ class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
     out.shape = JacobianShape::dense;
     out.columns = 7;
   }
-  template <class T>  // compiled where it is used
+  template <class T>  // compiled only if used
   void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, Mat<T, 7, 7>& k) const {
     load_stiffness_by_duals(*this, p, q, w, k);
   }
 
  private:
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   explicit Rigid(Bar const& bar) : RigidShape(bar) {}
 };
 

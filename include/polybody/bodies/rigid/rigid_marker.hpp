@@ -1,14 +1,14 @@
 #pragma once
 /// \file
-/// A marker of a rigid body in doubles. Markers are many and are written at every evaluation.
+/// Marker of a rigid body in doubles. Markers are numerous and are written at every evaluation.
 
 #include <polybody/kinematics/published.hpp>
 #include <polybody/math/triple.hpp>
 
 namespace polybody::detail {
 
-/// What `Rigid::publish` writes to `out`, to the last bit: of the point u with the axes `axes`, both by the body's,
-/// whose pose is `at`.
+/// Writes the marker kinematics of `Rigid::publish` to `out`, bitwise identical, for the point u with the axes `axes`,
+/// both in body axes, of a body with the pose `at`.
 template <class Pose, class V = Triple<>>  // compiled where it is used
 void write_rigid_marker(Vec3 const& u, Mat3 const& axes, Pose const& at, Published<double>& out) {
   V const x = V::column(at.A, 0), y = V::column(at.A, 1), z = V::column(at.A, 2), w = V::load(at.w.data());

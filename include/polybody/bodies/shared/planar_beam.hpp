@@ -67,9 +67,8 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
   template <class T>
   using Element = Vec<T, element_columns>;
   using ElementMatrix = Mat<double, element_columns, element_columns>;
-  using PointMap = Mat<double, 2, element_columns>;  ///< S of r = S e, 2×n
-  static constexpr int gradients =
-      Theory::gradients;  ///< number of position gradients that are linear in the coordinates
+  using PointMap = Mat<double, 2, element_columns>;    ///< S of r = S e, 2×n
+  static constexpr int gradients = Theory::gradients;  ///< number of gradients linear in the coordinates
 
   /// Material point: element, position ξ ∈ [0, 1] along it, and distance y from the axis [m].
   struct Point {

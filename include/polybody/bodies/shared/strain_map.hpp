@@ -21,10 +21,8 @@ namespace polybody {
 template <class Law>
 class StrainMap {
  public:
-  static constexpr int
-      d = Law::components,
-      np = Law::parameters, shapes = np / d,
-      reach = Law::reach;  ///< entries of a shape and of all parameters, number of shapes, and vectors per shape
+  static constexpr int d = Law::components, np = Law::parameters, shapes = np / d,
+                       reach = Law::reach;  ///< see above
 
   using Factors = Mat<double, shapes, reach>;  ///< N
   template <class T>
