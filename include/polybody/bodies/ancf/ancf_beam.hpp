@@ -10,9 +10,12 @@
 
 namespace polybody {
 
-/// Fully parameterised two-node ANCF beam with the field of ancf_field.hpp. A node has twelve coordinates (r, r_x, r_y,
-/// r_z), and coordinates add. The mass matrix is constant. The policy `Elastic` computes the elastic force:
-/// `ElasticLine` or `Continuum`. Examples: `AncfBeam<>::from(bar, n)`, `AncfBeam<Continuum<>>::from(bar, n, curve)`.
+/// Fully parameterised two-node ANCF beam in space [Shabana & Yakoub 2001; Yakoub & Shabana 2001; thesis §3.5.4]. In an
+/// element r₀(x) is cubic, and r_y and r_z are linear in x (ancf_field.hpp):
+///   r(x, y, z) = r₀ + y r_y + z r_z.
+/// A node has twelve coordinates (r, r_x, r_y, r_z), and coordinates add. The mass matrix is constant. The policy
+/// `Elastic` computes the elastic force: `ElasticLine` or `Continuum`. Examples: `AncfBeam<>::from(bar, n)`,
+/// `AncfBeam<Continuum<>>::from(bar, n, curve)`.
 template <class Elastic = ElasticLine>
 class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
   using Chain = ElasticChain<12, typename Elastic::Groups>;
@@ -99,7 +102,7 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
     return this->same_strains(other) && inertia_.size() == 1 && other.inertia_.size() == 1 &&
            inertia_[0].mass == other.inertia_[0].mass;
   }
-  /// Product M a with the accelerations of one element. All elements have the same mass matrix.
+  /// Product M a with the accelerations of one element, if all elements are alike.
   template <KernelScalar T>
   void element_inertia(Element<T> const& a, Element<T>& out) const {
     times_mass(inertia_[0], a, out);

@@ -149,7 +149,8 @@ struct HermiteCable {
   using Groups = std::tuple<Axial, Bending>;  ///< the strain laws of the cable
 };
 
-/// Planar ANCF cable: `AncfCable<>::from(bar, n)`, `AncfCable<EngineeringStrain>::from(bar, n)`.
+/// Gradient-deficient ANCF cable in the plane, with the theory `HermiteCable`: `AncfCable<>::from(bar, n)`,
+/// `AncfCable<EngineeringStrain>::from(bar, n)`.
 template <class Strain = GreenStrain, int axial_points = 5, int bending_points = 3>
 using AncfCable = Beam<HermiteCable<Strain, axial_points, bending_points>>;
 

@@ -1,18 +1,6 @@
 #pragma once
 /// \file
-/// Orthonormal frame of a deformable section, its rotation, and the derivatives of both in closed form. The frame
-/// follows from two vectors b, c in the section (r_y and r_z of a beam):
-///   t₂ = b/|b|,  t₁ = b × c/|b × c|,  t₃ = t₁ × t₂.
-/// The axis t₁ is normal to the section, and R = [t₁ t₂ t₃] is the identity if b = e₂ and c = e₃. With β = |b|, c₃ =
-/// c·t₃, σ = c·t₂/c₃, a change d = (δb, δc) has the components
-///   w = (X, Y),  X = Rᵀδb/β,  Y = Rᵀδc/c₃.
-/// It rotates the frame by φ = S w in its own axes, δR = R φ̃:
-///   φ = (X₃, Y₁ − σ X₁, −X₁).
-/// This follows from δt₂ = (1 − t₂t₂ᵀ) δb/β and from the condition t₁·c = 0. While the frame moves by ŵ, the components
-/// of a constant d change:
-///   δ̂X = X × φ̂ − X X̂₂,  δ̂Y = Y × φ̂ − Y (Ŷ₃ − σ X̂₃),  δ̂σ = g·ŵ = Ŷ₂ + (1 + σ²) X̂₃ − σ Ŷ₃.
-/// All other derivatives follow by the chain rule. Vectors of six are ordered (X, Y). The code uses plain loops for
-/// doubles, dual numbers and SIMD vectors.
+/// Orthonormal frame of a deformable section, with its rotation and derivatives.
 
 #include <array>
 
@@ -51,8 +39,19 @@ struct SectionAxes {
   static T dot(V3 const& a, V3 const& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 };
 
-/// Axes of a section from its gradients b and c, with their rates and variations: t₂ along b, t₃ in the plane of b and
-/// c.
+/// Orthonormal frame of a deformable section, its rotation, and the derivatives of both in closed form. The frame
+/// follows from two vectors b, c in the section (r_y and r_z of a beam):
+///   t₂ = b/|b|,  t₁ = b × c/|b × c|,  t₃ = t₁ × t₂.
+/// The axis t₁ is normal to the section, and R = [t₁ t₂ t₃] is the identity if b = e₂ and c = e₃. With β = |b|, c₃ =
+/// c·t₃, σ = c·t₂/c₃, a change d = (δb, δc) has the components
+///   w = (X, Y),  X = Rᵀδb/β,  Y = Rᵀδc/c₃.
+/// It rotates the frame by φ = S w in its own axes, δR = R φ̃:
+///   φ = (X₃, Y₁ − σ X₁, −X₁).
+/// This follows from δt₂ = (1 − t₂t₂ᵀ) δb/β and from the condition t₁·c = 0. While the frame moves by ŵ, the components
+/// of a constant d change:
+///   δ̂X = X × φ̂ − X X̂₂,  δ̂Y = Y × φ̂ − Y (Ŷ₃ − σ X̂₃),  δ̂σ = g·ŵ = Ŷ₂ + (1 + σ²) X̂₃ − σ Ŷ₃.
+/// All other derivatives follow by the chain rule. Vectors of six are ordered (X, Y). The code uses plain loops for
+/// doubles, dual numbers and SIMD vectors.
 template <KernelScalar T>
 class SectionFrame : public SectionAxes<T> {
  public:
@@ -175,8 +174,8 @@ class SectionFrame : public SectionAxes<T> {
       }
   }
 
-  /// Writes the covector s of (X, Y) as a covector of (δb, δc) to row `row` of `out`, at columns `first` and `first` +
-  /// 3.
+  /// Writes the covector s of (X, Y) to row `row` of `out`, as a covector of (δb, δc). Its columns begin at `first` and
+  /// at `first + 3`.
   template <int rows, int columns>
   void to_vectors(V6 const& s, int row, int first, Mat<T, rows, columns>& out) const {
     for (int i = 0; i < 3; ++i) {

@@ -12,12 +12,11 @@ namespace polybody {
 /// Linear interpolation of the rotation vectors Ψ of the nodes relative to the placement R₀ of the bar: R(ξ) = R₀
 /// exp(Ψ(ξ)), K = Jr(Ψ) Ψ′  [thesis §2.3–2.5]. It is meant for comparison; `Objective` is recommended. The tests
 /// measure two faults:
-/// - It is not objective. If an element that bends by φ about one axis rotates rigidly about another axis, its
-/// curvature
-///  and energy change by terms of order φ² (the energy by 1 % of φ² after a rotation by 2 rad).
+/// - It is not objective. The curvature and the energy of an element that bends by φ about one axis change if the
+///   element rotates rigidly about another axis. The change is of order φ² (energy: 1 % of φ² after 2 rad).
 /// - Ψ₁ is the vector with |Ψ₁| ≤ π. Ψ₂ is either Ψ or its complement Ψ (1 − 2π/|Ψ|), the one nearer to Ψ₁. If node 1
-///  passes |Ψ₁| = π, both vectors change to their complements. The curvature then jumps by terms of order φ³/l, unless
-///  the element rotates about Ψ itself.
+///   passes |Ψ₁| = π, both vectors change to their complements. The curvature then jumps by terms of order φ³/l, unless
+///   the element rotates about Ψ itself.
 class Direct {
  public:
   static constexpr bool objective = false;
@@ -96,7 +95,7 @@ class Direct {
   }
   /// Derivative of Pᵢᵀx = sᵢ Jr⁻¹(−Ψᵢ) y with y = Jr(−Ψ) x and the weights sᵢ of the nodes in Ψ. With D(φ, x) = ∂(Jr(φ)
   /// x)/∂φ:
-  ///  ∂y/∂Ψ = −D(−Ψ, x),  ∂(Jr⁻¹(−Ψᵢ) y) = Jr⁻¹(−Ψᵢ) (∂y + D(−Ψᵢ, Jr⁻¹(−Ψᵢ) y) ∂Ψᵢ).
+  ///   ∂y/∂Ψ = −D(−Ψ, x),  ∂(Jr⁻¹(−Ψᵢ) y) = Jr⁻¹(−Ψᵢ) (∂y + D(−Ψᵢ, Jr⁻¹(−Ψᵢ) y) ∂Ψᵢ).
   template <class T>  // compiled only if used
   void spin_gradient(Section<T> const& s, Vec<T, 3> const& x, Mat<T, 6, 6>& out) const {
     Vec<T, 3> const y = transposed_product(s.jacobian, x);

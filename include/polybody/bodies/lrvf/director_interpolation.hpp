@@ -39,7 +39,7 @@ struct DirectorSection {
 template <StrainQuadrature Quadrature>
 class ElasticElements<Directors, Quadrature> {
  public:
-  /// Elements, `elements` of them, each of arc length l [m].
+  /// Chain of `elements` elements, each of arc length l [m].
   ElasticElements(LrvfSection const& section, Placement const&, double l, Index elements)
       : sections_(std::apply([&](auto const&... p) { return std::array{section.weighted(p)...}; }, Quadrature::points)),
         l_(l),

@@ -61,7 +61,7 @@ struct FreeStrain {
 template <RotationInterpolation Interpolation, StrainQuadrature Quadrature>
 class ElasticElements {
  public:
-  /// Elements, `elements` of them, each of arc length l [m], of a bar with this placement.
+  /// Chain of `elements` elements, each of arc length l [m], of a bar with this placement.
   ElasticElements(LrvfSection const& section, Placement const& placement, double l, Index elements)
       : interpolation_(placement),
         sections_(std::apply([&](auto const&... p) { return std::array{section.weighted(p)...}; }, Quadrature::points)),
@@ -84,7 +84,7 @@ class ElasticElements {
   /// Force of element e from l Σ w (N·δΓ + M·δK), with δΓ = Rᵀ (δr₂ − δr₁)/c₀ + Γ × δθ, δθ = P δθ₁₂, δK = Q δθ₁₂/l (Γ
   /// including Γ₀):
   /// f_r = ± l/c₀ R N,  f_θ = −(Pᵀ t + Qᵀ M) with t = l N × Γ, summed over the points.
-  /// The function also adds moment(i), the inertia moment of node i, because at that stage no sum has been stored yet.
+  /// The function also adds moment(i), the moment of inertia forces on node i, to the first term of the sum.
   template <StateScalar T, std::invocable<int> Moment>
   void force(Index e, std::span<T const> q, std::span<T const> v, Moment const& moment, Vec<T, 12>& out) const {
     point_force<0, T>(e, q, v, moment, out);

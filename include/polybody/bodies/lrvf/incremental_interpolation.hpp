@@ -9,24 +9,23 @@ namespace polybody {
 
 /// Linear interpolation of the increments δ₁ and δ₂ of q ⊞ δ in a step [Simo & Vu-Quoc 1986b; Cardona & Géradin 1988;
 /// Jelenić & Crisfield 1999]. The increment rotates each section from its previous orientation:
-///  R⁺(ξ) = R(ξ) exp(δ(ξ)),  δ(ξ) = (1 − ξ) δ₁ + ξ δ₂,
-///  K⁺ = axial(R⁺ᵀ R⁺′) = exp(−δ) K + Jr(δ) δ′.
+///   R⁺(ξ) = R(ξ) exp(δ(ξ)),  δ(ξ) = (1 − ξ) δ₁ + ξ δ₂,
+///   K⁺ = axial(R⁺ᵀ R⁺′) = exp(−δ) K + Jr(δ) δ′.
 /// The rotation R and the vector l K of the middle are coordinates of the element. There δ = ½ (δ₁ + δ₂) and
-///  R⁺ = R exp(δ),  l K⁺ = exp(−δ) l K + Jr(δ) (δ₂ − δ₁).
+///   R⁺ = R exp(δ),  l K⁺ = exp(−δ) l K + Jr(δ) (δ₂ − δ₁).
 /// The derivatives at δ = 0 are
-///  δθ = ½ (δθ₁ + δθ₂),  δ(l K) = δθ₂ − δθ₁ + l K × δθ.
+///   δθ = ½ (δθ₁ + δθ₂),  δ(l K) = δθ₂ − δθ₁ + l K × δθ.
 /// In the reference both are those of `Objective`. Forces are the gradient of the energy with respect to the rotations
 /// of the nodes: for every path, their work equals the loss of energy. The energy is not a function of the nodal
 /// coordinates. The tests measure three faults:
 /// - The strains depend on the path, and shorter steps do not remove this. After a closed path of the nodes the element
-///  is bent, and its stress-free shape differs from the reference by terms of order l².
+///   is bent, and its stress-free shape differs from the reference by terms of order l².
 /// - The strains depend on the steps: an integrator interpolates the increment of a whole step, `equilibrium` that of
-///  each Newton correction. While q ⊞ δ(t) moves with the angular velocities of the nodes, the middle rotates with
-///  ½ (Ω₁ + Ω₂) at δ = 0 only. The leading error is ⅛ (δ₂ − δ₁) × (Ω₂ − Ω₁). The energy error is at best of second
-///  order in the step, for every integrator.
-/// - It is not objective. A rigid rotation ω of an element bent by φ about n, n ⊥ ω, rotates the middle with cos(φ/2)
-/// ω,
-///  and changes l K by (φ cos(φ/2) − 2 sin(φ/2)) n × ω ≈ −φ³/12 n × ω.
+///   each Newton correction. While q ⊞ δ(t) moves with the angular velocities of the nodes, the middle rotates with
+///   ½ (Ω₁ + Ω₂) at δ = 0 only. The leading error is ⅛ (δ₂ − δ₁) × (Ω₂ − Ω₁). The energy error is at best of second
+///   order in the step, for every integrator.
+/// - It is not objective. If an element bent by φ about n rotates rigidly with ω ⊥ n, its middle rotates with
+///   cos(φ/2) ω, and l K changes by (φ cos(φ/2) − 2 sin(φ/2)) n × ω ≈ −φ³/12 n × ω.
 /// User-defined coordinates must include the section in the middle; q ⊞ δ computes it.
 class Incremental {
  public:

@@ -15,7 +15,7 @@ namespace polybody {
 /// Positions are interpolated linearly, and rotations by the policy `Interpolation` (rotation_interpolation.hpp). The
 /// policy `Quadrature` (strain_quadrature.hpp) gives the points at which strains are evaluated. The default is one
 /// point in the middle of the element, R = R_m, without shear locking:
-///  Γ = Rᵀ r′ − Γ₀,  K = axial(Rᵀ R′) − K₀,  N = diag(EA, GA, GA_z) Γ,  M = diag(GJ, EI_y, EI) K,
+///   Γ = Rᵀ r′ − Γ₀,  K = axial(Rᵀ R′) − K₀,  N = diag(EA, GA, GA_z) Γ,  M = diag(GJ, EI_y, EI) K,
 /// in the axes of the section, with x along the beam; Γ₀, K₀ are the strains of the reference configuration.
 ///
 /// The coordinates of a node are its position r (3) in world axes and a unit quaternion (4) of the section. Its
@@ -246,7 +246,7 @@ class Lrvf {
 
   /// Load stiffness: the derivative of Jᵀw = [(1 − ξ) f; P₁ᵀ c; ξ f; P₂ᵀ c], with c = ρ̃ F + M, F = Rᵀf, M = Rᵀm. With
   /// δF = F̃ P δθ,
-  ///  δc = (ρ̃ F̃ + M̃) P δθ,  δ(Pᵀc) = Pᵀ δc + (∂Pᵀ) c.
+  ///   δc = (ρ̃ F̃ + M̃) P δθ,  δ(Pᵀc) = Pᵀ δc + (∂Pᵀ) c.
   template <class T = double>  // compiled only if used
   void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, ElementMatrix& k) const {
     Section<T> s;

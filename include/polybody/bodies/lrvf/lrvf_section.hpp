@@ -130,7 +130,7 @@ class LrvfSection {
   };
   /// Derivatives δN = C (ck + cd τ) (x + Γ̃ P θ) + ck C τ δΓ˙ and, in the same form, δM of Q θ. With Γ˙ = u + Γ × Ω and
   /// u = R_mᵀ (ṙ₂ − ṙ₁)/c₀:
-  ///  δΓ˙ = u × Pθ + δΓ × Ω + Γ × δΩ.
+  ///   δΓ˙ = u × Pθ + δΓ × Ω + Γ × δΩ.
   template <class T>
   Slopes<T> slopes(StrainedSection<T> const& s, StrainGradient const& by, double ck, double cd) const {
     Slopes<T> out;

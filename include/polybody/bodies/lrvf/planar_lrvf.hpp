@@ -11,7 +11,7 @@ namespace polybody::planar {
 /// Theory of the planar `Lrvf` [Simo & Vu-Quoc 1986; thesis Eq. 2.7–2.10]. Position and rotation fields are
 /// interpolated linearly and independently, with node coordinates (x, y, θ). The strains are evaluated at one point
 /// (strain_quadrature.hpp has other quadratures):
-///  ε = t₁ᵀ r′ − 1,  γ = t₂ᵀ r′,  κ = θ′,  t₁ = (cos θ, sin θ), t₂ = (−sin θ, cos θ).
+///   ε = t₁ᵀ r′ − 1,  γ = t₂ᵀ r′,  κ = θ′,  t₁ = (cos θ, sin θ), t₂ = (−sin θ, cos θ).
 struct SimoVuQuoc {
   static constexpr char const* name = "planar::Lrvf";            ///< prefix of its error messages
   static constexpr int node_columns = 3;                         ///< (x, y, θ)
@@ -118,7 +118,7 @@ template <StrainQuadrature Q, int first, int count>
 struct SectionIn {
   using All = SimoVuQuoc::Section;  ///< law of the three strains
   static constexpr int components = All::components, parameters = All::parameters,
-                       reach = All::reach;  ///< those of `All`
+                       reach = All::reach;  ///< of All
   static constexpr int strains = count;
   static constexpr auto rule = detail::rule_of<Q, detail::strain_weights[std::size_t(first)]>();
   static constexpr int points = int(rule.size());

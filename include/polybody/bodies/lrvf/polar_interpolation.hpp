@@ -21,7 +21,7 @@ struct RelativeTurn {
   Vec<T, 6> by_s;     ///< δs = by_s (δθ₁, δθ₂)
 
   /// Relative rotation and its derivatives: δp = ½ (p ∘ δθ₂ − δθ₁ ∘ p), hence
-  ///  δu = p_v p_vᵀ (δθ₁ − δθ₂) + p₀ (p₀ (δθ₂ − δθ₁) + p_v × (δθ₁ + δθ₂)),  δs = ½ u·(δθ₂ − δθ₁).
+  ///   δu = p_v p_vᵀ (δθ₁ − δθ₂) + p₀ (p₀ (δθ₂ − δθ₁) + p_v × (δθ₁ + δθ₂)),  δs = ½ u·(δθ₂ − δθ₁).
   RelativeTurn(Quaternion<T> const& a, Quaternion<T> const& b) : p(quaternion_product<T>(conjugate<T>(a), b)) {
     Vec<T, 3> const v(p[1], p[2], p[3]);
     Mat<T, 3, 3> const x = skew(v);
@@ -45,7 +45,7 @@ struct RelativeTurn {
 /// Interpolation with R(ξ) the rotation nearest to (1 − ξ) R₁ + ξ R₂ (polar decomposition) [Romero 2004, §4]. The axis
 /// n of the relative rotation is that of `Objective`, and the angle differs. In the plane normal to n, the mean of 1
 /// and e^{iφ} is 1 − ξ + ξ e^{iφ} = ρ e^{iα}, hence
-///  R = R₁ exp(α n),  ρ² = 1 − 4 ξ (1 − ξ) s,  g = tan(α/2) n = ξ u/D,  D = ρ + 1 − 2 ξ s,  l K = α′ n = u/ρ²,
+///   R = R₁ exp(α n),  ρ² = 1 − 4 ξ (1 − ξ) s,  g = tan(α/2) n = ξ u/D,  D = ρ + 1 − 2 ξ s,  l K = α′ n = u/ρ²,
 /// with u = sin φ n, s = sin²(φ/2). The policy is objective, and its strains do not depend on the path. The difference
 /// of the angles is α − ξφ = −ξ (1 − ξ) (1 − 2ξ) φ³/6 + O(φ⁵). In the middle R is that of `Objective`, and l K = 2
 /// tan(φ/2) n. The relative rotation of an element must be less than π.

@@ -221,7 +221,7 @@ class Objective {
   }
   /// Derivative of Pᵀx = [exp(ξφ) x − Jr⁻¹(φ) y; Jr⁻¹(−φ) y],  y = ξ Jr(−ξφ) x. With D(φ, x) = ∂(Jr(φ) x)/∂φ the
   /// derivatives with respect to φ are
-  ///  ∂y = −ξ² D(−ξφ, x),  ∂(Jr⁻¹(±φ) y) = Jr⁻¹(±φ) (∂y ∓ D(±φ, Jr⁻¹(±φ) y)),  ∂(exp(ξφ) x) = −ξ exp(ξφ) x̃ Jr(ξφ).
+  ///   ∂y = −ξ² D(−ξφ, x),  ∂(Jr⁻¹(±φ) y) = Jr⁻¹(±φ) (∂y ∓ D(±φ, Jr⁻¹(±φ) y)),  ∂(exp(ξφ) x) = −ξ exp(ξφ) x̃ Jr(ξφ).
   template <class T>  // compiled only if used
   void spin_gradient(Section<T> const& s, Vec<T, 3> const& x, Mat<T, 6, 6>& out) const {
     Mat<T, 3, 3> const& inverse = s.inverse;

@@ -72,9 +72,9 @@ struct Reduced {
   static constexpr std::array<StrainPoint, 1> points = {{{0.5, 1.0, 1.0, 1.0}}};
 };
 
-/// All strains evaluated at both Gauss points, for comparison. The element locks: if the sections of its nodes differ
-/// by the angle φ, those of the Gauss points are inclined by ±φ/√12 to the straight chord, and this angle acts as a
-/// shear strain. The bending stiffness is then too large by the factor 1 + GA l²/(12 EI).
+/// All strains evaluated at both Gauss points, for comparison. The element locks. If the sections of its nodes differ
+/// by the angle φ, those of the Gauss points are inclined by ±φ/√12 to the straight chord. This angle acts as a shear
+/// strain. The bending stiffness is then too large by the factor 1 + GA l²/(12 EI).
 struct Full {
   /// Position ξ, and the weights of Γ₁, of Γ₂ and Γ₃, of K.
   static constexpr std::array<StrainPoint, 2> points = {
@@ -84,11 +84,10 @@ struct Full {
 /// Γ evaluated in the middle, K at both Gauss points. In the linear theory of a straight bar only the shear requires
 /// the middle, because Γ₁ = u′ is constant. Otherwise Γ₁ must also be evaluated there: at points inclined by ψ ± φ/√12
 /// to the chord, Γ₁ = |r′| cos(ψ ± φ/√12) − 1.
-/// - The mean over both points decreases by φ²/24 under pure bending, and the chord becomes longer by the same
-/// fraction.
-///  The chord of an arc becomes shorter instead.
+/// - The mean over both points decreases by φ²/24 under pure bending. The chord becomes longer by the same fraction,
+///   whereas the chord of an arc becomes shorter.
 /// - The difference of both points, 2 sin ψ sin(φ/√12), depends on the shear ψ: it adds EA φ²/12 to GA. On a curved
-///  reference this also occurs in linear theory, with its angle φ₀ per element.
+///   reference this also occurs in linear theory, with its angle φ₀ per element.
 /// `Objective` has a constant K in the element, and the planar beam a constant κ. This quadrature then equals
 /// `Reduced`; in space its cost is five to ten times higher.
 struct Selective {

@@ -182,7 +182,7 @@ class Rigid;
 /// §3.5; Brüls, Cardona & Arnold 2012]. The coordinates are (r, q), with the centre of mass r in world axes [m] and the
 /// unit quaternion q. The generalised velocities are (ṙ, Ω), with the angular velocity Ω in body axes [rad/s]. The
 /// equations of Newton and Euler are
-///  m r̈ = f,   J Ω˙ + Ω × J Ω = Aᵀ m_c.
+///   m r̈ = f,   J Ω˙ + Ω × J Ω = Aᵀ m_c.
 template <>
 class Rigid<UnitQuaternion> : public RigidShape {
  public:

@@ -13,9 +13,9 @@ struct EulerParameters {};
 /// Rigid body with Euler parameters [thesis §3.4, Table 3.4; Shabana 2020, §2.4 and §3.3]. The coordinates are (r, θ),
 /// θ = (θ₀, θ₁, θ₂, θ₃), and the generalised velocities are their rates, seven of each. The body has the constraint
 /// equation ½ (θᵀθ − 1) = 0. With
-///  Ḡ = (2/|θ|²) [−θ₁ θ₀ θ₃ −θ₂; −θ₂ −θ₃ θ₀ θ₁; −θ₃ θ₂ −θ₁ θ₀]   (3×4),   Ω = Ḡ θ̇,   G_w = A Ḡ, ω = G_w θ̇,
+///   Ḡ = (2/|θ|²) [−θ₁ θ₀ θ₃ −θ₂; −θ₂ −θ₃ θ₀ θ₁; −θ₃ θ₂ −θ₁ θ₀]   (3×4),   Ω = Ḡ θ̇,   G_w = A Ḡ, ω = G_w θ̇,
 /// the moment m_c (body axes) and the generalised moment are related by m_θ = Ḡᵀ m_c; hence
-///  M = diag(m 1, Ḡᵀ J Ḡ),   f_θ = −Ḡᵀ (Ω × J Ω).
+///   M = diag(m 1, Ḡᵀ J Ḡ),   f_θ = −Ḡᵀ (Ω × J Ω).
 /// M is singular along θ, and the constraint equation removes this singularity. Division by |θ|² makes A a rotation
 /// matrix and Ḡ θ̇ its angular velocity if the constraint equation is not exactly satisfied.
 template <>
@@ -151,8 +151,8 @@ class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
     for (int i = 3; i < 7; ++i) k(i, i) = lambda[0];
   }
 
-  /// Marker kinematics as in `Rigid<>`, where `marker` are the axes of the marker in body axes. Ω = Ḡ θ̇ and Ω̇ = Ḡ θ̈
-  /// + Ḡ˙ θ̇, with Ḡ˙ θ̇ = −2 (θ·θ̇)/|θ|² Ω.
+  /// Marker kinematics as in `Rigid<>`, where `marker` are the axes of the marker in body axes. With Ω = Ḡ θ̇,
+  ///   Ω̇ = Ḡ θ̈ + Ḡ˙ θ̇,  Ḡ˙ θ̇ = −2 (θ·θ̇)/|θ|² Ω.
   template <StateScalar T>
   void publish(Point const& p, Mat3 const& marker, std::span<T const> q, std::span<T const> v,
                Published<T>& out) const {

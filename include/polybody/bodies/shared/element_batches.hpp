@@ -170,7 +170,7 @@ void for_each_unbalance(B const& body, ElementRange range, BodyMotion<T> const& 
   }
 }
 
-/// Overload with its own workspace.
+/// Calls f(e, M a − force) for the elements of a range, with a workspace of its own.
 template <Body B, StateScalar T, class F>
 void for_each_unbalance(B const& body, ElementRange range, BodyMotion<T> const& x, F&& f) {
   ForceScratch<B, T> scratch(body);
@@ -212,7 +212,7 @@ void for_each_element_tangent(B const& body, ElementRange range, BodyMotion<> co
   }
 }
 
-/// Overload with its own workspace.
+/// Calls f(e, cm M + cd D + ck K) for the elements of a range, with a workspace of its own.
 template <Body B, class F>
 void for_each_element_tangent(B const& body, ElementRange range, BodyMotion<> const& x, ElementCoefficients c, F&& f) {
   TangentScratch<B> scratch(body);

@@ -1,13 +1,6 @@
 #pragma once
 /// \file
-/// Strains and forces of a section of a beam, with the same names for every formulation. They are vectors of six in the
-/// axes of the deformed section, with x along the beam:
-///   section_strains  (ε, γ_y, γ_z, κ_x, κ_y, κ_z): stretch, shears, twist and curvatures [1], [1/m], relative to the
-///                    reference;
-///   section_forces   (N, Q_y, Q_z, M_x, M_y, M_z): axial and shear forces [N], torque and bending moments [N m],
-///                    without damping, of the part beyond the section on the part before it.
-/// Components that a formulation does not have are zero: a cable has no shear and no torsion. The shear force of a
-/// cable or of a floating frame follows from the derivative of the moment.
+/// Strains and forces of the sections of beams, with the same names for every formulation.
 
 #include <span>
 
@@ -15,7 +8,14 @@
 
 namespace polybody {
 
-/// Body that computes section strains and section forces at its coordinates q.
+/// Body that computes section strains and section forces at its coordinates q, with the same names for every
+/// formulation. Both are vectors of six in the axes of the deformed section, with x along the beam:
+///   section_strains  (ε, γ_y, γ_z, κ_x, κ_y, κ_z): stretch, shears, twist and curvatures [1], [1/m], relative to the
+///                    reference;
+///   section_forces   (N, Q_y, Q_z, M_x, M_y, M_z): axial and shear forces [N], torque and bending moments [N m],
+///                    without damping, of the part beyond the section on the part before it.
+/// Components that a formulation does not have are zero: a cable has no shear and no torsion. The shear force of a
+/// cable or of a floating frame follows from the derivative of the moment.
 template <class B>
 concept HasSections = requires(B const b, typename B::Point p, std::span<double const> q) {
   { b.section_strains(p, q) } -> std::convertible_to<Vec6>;

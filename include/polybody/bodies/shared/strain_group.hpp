@@ -69,10 +69,11 @@ class StrainGroup : public StrainPoints<Law> {
     Prepared() {}  // NOLINT(modernize-use-equals-default): a tuple of defaulted ones would fill them with zeros
   };
 
-  /// Prepares the blocks K̂_vw = Σ_points Σ_i β_iv γ_iwᵀ + 1 Σ_st N_sv N_tw σ_st, with β = B P, γ = w C [ck B + τ (ck Ḃ
-  /// + cd B)] P, Ḃ_i = H_i ṗ, and σ = ck w Σ n_i S_i. For few strains that read many vectors this is less work than Pᵀ
-  /// h P. The loop processes a few points at a time, which fit into the first-level cache. The blocks above the
-  /// diagonal are omitted if `symmetric`.
+  /// Prepares the blocks of the tangent of quadratic strains,
+  ///   K̂_vw = Σ_points Σ_i β_iv γ_iwᵀ + 1 Σ_st N_sv N_tw σ_st,
+  ///   β = B P,  γ = w C [ck B + τ (ck Ḃ + cd B)] P,  Ḃ_i = H_i ṗ,  σ = ck w Σ n_i S_i.
+  /// For few strains that read many vectors this is less work than Pᵀ h P. The loop processes a few points at a time,
+  /// which fit into the first-level cache. The blocks above the diagonal are omitted if `symmetric`.
   template <KernelScalar T, int n>
   void prepare(Vec<T, n> const& x, Vec<T, n> const& xd, double ck, double cd, bool symmetric, Prepared<T>& k) const
     requires quadratic

@@ -12,17 +12,18 @@ namespace polybody {
 
 /// Constant linear map p = P e from the coordinates of an element to the parameters of its strains at a point, and
 /// products with it. The parameters of a law are vectors of d = `components` entries, the shapes; np is the number of
-/// all entries. Shape s reads at most `reach` nodal vectors. Its j-th one is e_v with v = `vector(s, j)`, multiplied
-/// by one factor for all components: p_s = Σ_j N_sj ê_v, P = N ⊗ 1. ê_v = e_v, except for the vector `difference` of
-/// a law: ê_v = e_v − e_0. Strains do not depend on the position of an element, so that the factors of its two ends
-/// are opposite, and the difference replaces both. K̂ = PᵀhP then has the blocks K̂_vw = Σ_(s,j) Σ_(t,l) N_sj N_tl
-/// h_st, v = vector(s, j), w = vector(t, l), with one product for each pair of factors. The tangent K with respect to
-/// e has K_0w = −K_vw for the difference v.
+/// all entries. Shape s reads at most `reach` nodal vectors. Its j-th one is e_v with v = `vector(s, j)`, multiplied by
+/// one factor for all components:
+///   p_s = Σ_j N_sj ê_v,  P = N ⊗ 1.
+/// ê_v = e_v, except for the vector `difference` of a law: ê_v = e_v − e_0. Strains do not depend on the position of an
+/// element, so that the factors of its two ends are opposite, and the difference replaces both. K̂ = PᵀhP then has the
+/// blocks
+///   K̂_vw = Σ_(s,j) Σ_(t,l) N_sj N_tl h_st,  v = vector(s, j), w = vector(t, l),
+/// with one product for each pair of factors. The tangent K with respect to e has K_0w = −K_vw for the difference v.
 template <class Law>
 class StrainMap {
  public:
-  static constexpr int d = Law::components, np = Law::parameters, shapes = np / d,
-                       reach = Law::reach;  ///< see above
+  static constexpr int d = Law::components, np = Law::parameters, shapes = np / d, reach = Law::reach;  ///< see above
 
   using Factors = Mat<double, shapes, reach>;  ///< N
   template <class T>
@@ -148,9 +149,8 @@ class StrainMap {
   };
   /// All pairs of factors in the order of the blocks.
   struct Pairs {
-    std::array<Pair, std::size_t(count* count)> pairs{};  ///< all pairs
-    std::array<std::array<int, std::size_t(vectors)>, std::size_t(vectors)> first{},
-        last{};  ///< range of a block in `pairs`
+    std::array<Pair, std::size_t(count* count)> pairs{};                                      ///< all pairs
+    std::array<std::array<int, std::size_t(vectors)>, std::size_t(vectors)> first{}, last{};  ///< of a block in `pairs`
   };
   /// Table of the pairs, computed at compile time.
   static constexpr Pairs table = [] {
