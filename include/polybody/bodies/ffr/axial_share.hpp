@@ -79,8 +79,7 @@ double axial_share(Structure const& s, MatX const& shapes, Eigen::LLT<MatX> cons
   for (int i = 0; i < 40; ++i) {
     VecX const deformed = shapes * x, pull = by_axial * deformed, y = shapes.transpose() * pull;
     VecX const z = stiffness.solve(y);
-    double const size = std::sqrt(std::max(z.dot(y), 0.0)),
-                 before = share;  // norm of K⁻¹ K_G x in the metric K, for x of norm 1
+    double const size = std::sqrt(std::max(z.dot(y), 0.0)), before = share;  // size of K⁻¹ K_G x by K, for x of size 1
     if (!(size > 0.0)) return 0.0;
     share = std::copysign(size, x.dot(y));
     x = z / size;

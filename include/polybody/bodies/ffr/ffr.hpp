@@ -213,8 +213,7 @@ class Ffr {
 
   template <class = void>
   double kinetic_energy(Index, std::span<double const> q, std::span<double const> v) const {
-    static thread_local VecX
-        mv;  // thread-local, because energies are also evaluated within steps, which do not allocate memory
+    static thread_local VecX mv;  // energies are also evaluated within steps
     mv.resize(speeds());
     inertia<double>(0, q, v, mv);
     return 0.5 * mv.dot(Eigen::Map<VecX const>(v.data(), speeds()));

@@ -1,10 +1,6 @@
 #pragma once
 /// \file
 /// Structure from the matrices of a finite element program: solid elements with three displacements per node.
-/// Displacement and undeformed position have the same shape functions, u = Σ N_i u_i and u₀ = Σ N_i x_i. With m_ij = ∫ρ
-/// N_i N_j the mass matrix is m ⊗ 1₃, and all integrals of structure.hpp follow exactly from m and the nodes:
-///   ∫ρ S_kᵀ S_l: m_ij at (3i+k, 3j+l),   ∫ρ S_k: Σ_i m_ij at 3j+k,
-///   ∫ρ u₀ₖ S_l: Σ_i x_ik m_ij at 3j+l,   ∫ρ u₀u₀ᵀ = Xᵀ m X.
 ///
 /// This header is not part of polybody.hpp, because few programs need it.
 
@@ -192,6 +188,11 @@ void require_finite_moments(Structure const& s) {
 /// Structure of solid elements from its mass matrix [kg] and stiffness [N/m] (N×N, N = 3 × nodes; x, y, z of node 0, of
 /// node 1, …), and its undeformed nodes [m]. Isoparametric elements with a consistent mass matrix give the exact
 /// integrals.
+///
+/// Displacement and undeformed position have the same shape functions, u = Σ N_i u_i and u₀ = Σ N_i x_i. With m_ij = ∫ρ
+/// N_i N_j the mass matrix is m ⊗ 1₃, and all integrals of structure.hpp follow exactly from m and the nodes:
+///   ∫ρ S_kᵀ S_l: m_ij at (3i+k, 3j+l),   ∫ρ S_k: Σ_i m_ij at 3j+k,
+///   ∫ρ u₀ₖ S_l: Σ_i x_ik m_ij at 3j+l,   ∫ρ u₀u₀ᵀ = Xᵀ m X.
 /// \throws InvalidInput for sizes that do not fit; matrices that are not symmetric or not finite; a mass matrix that is
 /// not m ⊗ 1₃ or not positive definite; a stiffness that resists rigid motions, for example with nodes in the wrong
 /// order; waves faster than `fastest_wave` [m/s], for example with nodes in millimetres and a stiffness in N/m.

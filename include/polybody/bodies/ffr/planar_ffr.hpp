@@ -45,7 +45,7 @@ class Ffr : public AddingCoordinates {
   template <class = void>
   static Structure structure_in_plane(Bar bar, Index n) {
     BarConstants c = constants(bar);
-    if (c.GJ == 0.0) c.GJ = c.EI;  // prevents rigid motions out of the plane
+    if (c.GJ == 0.0) c.GJ = c.EI;  // any torsional stiffness, because the plane excludes torsion
     bar.section = std::monostate{};
     bar.material.reset();
     bar.shear_factor.reset();
@@ -257,8 +257,7 @@ class Ffr : public AddingCoordinates {
 
   template <class = void>
   double kinetic_energy(Index, std::span<double const> q, std::span<double const> v) const {
-    static thread_local VecX
-        mv;  // thread-local, because energies are also evaluated within steps, which do not allocate memory
+    static thread_local VecX mv;  // energies are also evaluated within steps
     mv.resize(speeds());
     inertia<double>(0, q, v, mv);
     return 0.5 * mv.dot(Eigen::Map<VecX const>(v.data(), speeds()));

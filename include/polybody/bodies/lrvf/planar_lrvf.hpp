@@ -117,8 +117,7 @@ struct SimoVuQuoc {
 template <StrainQuadrature Q, int first, int count>
 struct SectionIn {
   using All = SimoVuQuoc::Section;  ///< law of the three strains
-  static constexpr int components = All::components, parameters = All::parameters,
-                       reach = All::reach;  ///< of All
+  static constexpr int components = All::components, parameters = All::parameters, reach = All::reach;  ///< of All
   static constexpr int strains = count;
   static constexpr auto rule = detail::rule_of<Q, detail::strain_weights[std::size_t(first)]>();
   static constexpr int points = int(rule.size());
@@ -159,9 +158,8 @@ struct SimoVuQuocBy : SimoVuQuoc {
       together && detail::alike<Q>(&StrainPoint::shear, &StrainPoint::curvature);  ///< ε, γ and κ have the same points
   using Three = std::tuple<SectionIn<Q, 0, 1>, SectionIn<Q, 1, 1>, SectionIn<Q, 2, 1>>;  ///< one law for each strain
   using Two = std::tuple<SectionIn<Q, 0, 2>, SectionIn<Q, 2, 1>>;  ///< one law for ε and γ, another one for κ
-  using Groups =
-      std::conditional_t<all, std::tuple<SectionIn<Q, 0, 3>>,
-                         std::conditional_t<together, Two, Three>>;  ///< smallest number of laws that the points permit
+  using Groups = std::conditional_t<all, std::tuple<SectionIn<Q, 0, 3>>,
+                                    std::conditional_t<together, Two, Three>>;  ///< fewest laws for the points
 };
 template <>
 struct SimoVuQuocBy<Reduced> : SimoVuQuoc {};

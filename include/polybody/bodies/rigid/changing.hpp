@@ -14,12 +14,13 @@
 namespace polybody {
 
 /// Rigid body B with mass and inertia as functions of time. The centre of mass is fixed in the body:
+///
 ///     Changing<Rigid<>> const stage([](double t) { return Rigid<>(mass(t), inertia(t)); });
 ///
-/// The equation M(t) v̇ = f is valid if the mass that leaves or arrives has the velocity of the body at its point, and
-/// therefore keeps its own momentum. Mass with another velocity exerts a force: a stream of ṁ [kg/s] at u [m/s]
-/// relative to the body exerts the force −ṁ u. This force is applied like any other force [Meshchersky 1897; Goldstein,
-/// Poole & Safko 2002, ch. 1]. Energies are those of the present mass.
+/// The equation M(t) v̇ = f is valid if the mass that leaves or arrives has the velocity of the body at its point, so
+/// that it keeps its own momentum. Mass that leaves with another velocity exerts a force on the body: −ṁ u for a stream
+/// of ṁ [kg/s] at u [m/s] relative to the body. It is applied like any other force
+/// [Meshchersky 1897; Goldstein, Poole & Safko 2002, ch. 1]. Energies are those of the present mass.
 template <Body B>
 class Changing : public B {
   static_assert(

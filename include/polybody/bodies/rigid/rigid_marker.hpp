@@ -9,7 +9,7 @@ namespace polybody::detail {
 
 /// Writes the marker kinematics of `Rigid::publish` to `out`, bitwise identical, for the point u with the axes `axes`,
 /// both in body axes, of a body with the pose `at`.
-template <class Pose, class V = Triple<>>  // compiled where it is used
+template <class Pose, class V = Triple<>>  // compiled only if used
 void write_rigid_marker(Vec3 const& u, Mat3 const& axes, Pose const& at, Published<double>& out) {
   V const x = V::column(at.A, 0), y = V::column(at.A, 1), z = V::column(at.A, 2), w = V::load(at.w.data());
   auto const turned = [&](double const* by_body) { return V::combination(x, y, z, by_body); };
