@@ -62,10 +62,10 @@ constexpr bool tell_enough() {
   return ((Ms::observes >= (k++ == 1 ? needs_of_second<F>() : F::needs)) && ...);
 }
 
-/// Choice of the blocks that couple the bodies of a force element's markers. `static constexpr bool couples_bodies =
-/// false` omits them from the matrix of a time step, which then contains only the stiffness of each body. Contacts
-/// with many candidates use it: the sparsity pattern and the elimination order are then independent of the touching
-/// candidates.
+/// Choice of the blocks that couple the bodies of a force element's markers.
+/// `static constexpr bool couples_bodies = false` omits them from the matrix of a time step, which then contains only
+/// the stiffness of each body. Contacts with many candidates use it: the sparsity pattern and the elimination order
+/// are then independent of the touching candidates.
 template <class F>
 constexpr bool couples_bodies() {
   if constexpr (requires { F::couples_bodies; })

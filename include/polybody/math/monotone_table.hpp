@@ -122,8 +122,8 @@ class MonotoneTable {
     auto const before = [](double v, Knot const& k) { return v < k.x; };
     return std::size_t(std::upper_bound(knots_.begin(), knots_.end(), x, before) - knots_.begin());
   }
-  /// Cubic y + m u + a u² + b u³ between knots i − 1 and i, u = x − x_{i−1}: a = (3δ − 2m − m₁)/h, b = (m + m₁ −
-  /// 2δ)/h².
+  /// Cubic y + m u + a u² + b u³ between knots i − 1 and i, u = x − x_{i−1}: a = (3δ − 2m − m₁)/h,
+  /// b = (m + m₁ − 2δ)/h².
   struct Cubic {
     double a, b;  ///< [y/x²] and [y/x³]
   };

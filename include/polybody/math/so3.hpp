@@ -76,8 +76,8 @@ struct RotationSeries : ExpSeries<T> {
       : ExpSeries<T>(x), c(value_of(x) < 0.25 ? this->series(x, 3) : T((1.0 - this->a) / x)) {}
 };
 
-/// Derivatives of b and c with respect to x: db/dx = d − c/2 and dc/dx = (3e − d)/2 with d = (½ − b)/x, e = (1/6 −
-/// c)/x.
+/// Derivatives of b and c with respect to x: db/dx = d − c/2 and dc/dx = (3e − d)/2 with d = (½ − b)/x,
+/// e = (1/6 − c)/x.
 template <class T>
 struct RotationSlopes {
   T b, c;  ///< db/dx and dc/dx [1/rad²]

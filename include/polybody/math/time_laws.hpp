@@ -96,8 +96,8 @@ inline void check_ramp(double target, double duration, double start, std::string
 /// Ramp from 0 at `start` to `target` within `duration`, constant afterwards. The rate is discontinuous at both ends.
 /// At a breakpoint the value is that of the following piece.
 ///
-/// With a `rounding` w a parabola replaces each breakpoint, from w/2 before to w/2 after it: value = slope s²/(2w), s
-/// = t − corner + w/2. Only the acceleration is then discontinuous. After both parabolas, value and integral equal
+/// With a `rounding` w a parabola replaces each breakpoint, from w/2 before to w/2 after it: value = slope s²/(2w),
+/// s = t − corner + w/2. Only the acceleration is then discontinuous. After both parabolas, value and integral equal
 /// those without rounding.
 struct Ramp {
   Required<double> target;    ///< [m] or [rad]

@@ -89,8 +89,8 @@ std::vector<double> resampled(std::span<double const> times, std::span<double co
 /// Low-pass filter that preserves frequencies up to the cut-off f_c in amplitude and phase and removes those above.
 /// It multiplies the Fourier sum of the whole record by the transfer function H,
 ///   y(t) = Σ_k H(f_k) c_k e^{2πi f_k t},   f_k = k/T.
-/// H is 1 up to the cut-off and 0 above it. With a roll-off w, H decreases from f_c to f_c + w as ½(1 + cos π(f −
-/// f_c)/w).
+/// H is 1 up to the cut-off and 0 above it. With a roll-off w, H decreases from f_c to f_c + w as
+/// ½(1 + cos π(f − f_c)/w).
 ///
 /// The Fourier sum is periodic with the record as period. If the ends of the record differ, a sharp cut-off causes
 /// ringing there. With `mirrored`, the period is the record with its mirror image, which is continuous but has a kink

@@ -134,8 +134,8 @@ template <class Solver>
 
 }  // namespace detail
 
-/// Moves x into static equilibrium at time x.t from its present configuration: f(q, z) − Gᵀλ = 0, Φ(q) = 0 and h(q,
-/// z) = 0 at v = 0. Coordinates, first-order states and multipliers of x change; its velocities become zero. The
+/// Moves x into static equilibrium at time x.t from its present configuration: f(q, z) − Gᵀλ = 0, Φ(q) = 0 and
+/// h(q, z) = 0 at v = 0. Coordinates, first-order states and multipliers of x change; its velocities become zero. The
 /// tangent contains every term.
 ///
 /// If Newton's method does not converge at once, it follows the path s = 0 … 1 of

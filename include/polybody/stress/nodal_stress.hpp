@@ -59,9 +59,9 @@ class NodalStress {
         throw InvalidInput{"NodalStress: two nodes are called \"", spot->name, "\". Give each a name of its own."};
   }
 
-  /// Reads `matrix_file` in the Matrix Market format (6k×`coordinates`) and `names_file`, a text with a line `node
-  /// name` for each of the k nodes. Nodes are counted from 0; # begins a comment. A structure has three coordinates
-  /// per node: `Structure::size()`.
+  /// Reads `matrix_file` in the Matrix Market format (6k×`coordinates`) and `names_file`, a text with a line
+  /// `node name` for each of the k nodes. Nodes are counted from 0; # begins a comment. A structure has three
+  /// coordinates per node: `Structure::size()`.
   /// \throws IoError naming file and line if a file cannot be read, is truncated or does not fit; InvalidInput if
   /// `coordinates` is not three per node.
   template <class = void>

@@ -84,8 +84,8 @@ inline void require_modes(Index count, std::string const& who) {
 }
 
 /// Stiffness K with a spring on each motion without inertia and without stiffness. The columns of v are the motions
-/// without inertia. Such a motion y has K y = 0 and M y = 0. The spring therefore preserves all other solutions of K x
-/// = λ M x, with yᵀx = 0.
+/// without inertia. Such a motion y has K y = 0 and M y = 0. The spring therefore preserves all other solutions of
+/// K x = λ M x, with yᵀx = 0.
 template <class = void>
 MatX with_springs_at_rest(MatX const& k, MatX const& v) {
   MatX out = k;
