@@ -91,7 +91,7 @@ struct Bounces {
     Event const floor{.name = "floor", .value = [](State const& s) { return s.q[z]; }};
     Event const apex_event{.name = "apex", .value = [](State const& s) { return s.q[z] > 0.0 ? s.v[z] : 1.0; }};
     RunOptions const options{.until = 2.3, .step = 1e-4, .largest_step = 1e-2, .events = {floor, apex_event}};
-    for (Met const& m : events_of(drop.model, x, DormandPrince<>{}, options)) {
+    for (Met const& m : events_of(drop.model, x, DormandPrince<>{.relative_tolerance = 1e-9}, options)) {
       if (m.name == "floor" && m.x.v[z] < 0.0) impact.push_back(m.x.t);
       if (m.name == "apex" && m.x.q[z] > 0.1 && m.x.t > 0.1) apex.push_back(m.x.q[z]);
     }

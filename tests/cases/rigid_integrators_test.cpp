@@ -159,9 +159,13 @@ TEST(EveryIntegrator, HhtTurnsTheFourBars) {
   way.step = 1e-3;
   for (int const n : {1, 2, 40}) expect_windows(way, n, 4, 1e-4);
 }
+// At the flat positions round-off of the accelerations exceeds the tolerances of the other cases.
 TEST(EveryIntegrator, AdamsTurnsTheFourBars) {
-  expect_windows(adams(), 2, 10, 1e-6);
-  expect_windows(adams(), 40, 4, 1e-6);
+  auto way = adams();
+  way.integrator.relative_tolerance = 1e-9;
+  way.integrator.absolute_tolerance = 1e-10;
+  expect_windows(way, 2, 10, 1e-6);
+  expect_windows(way, 40, 4, 1e-6);
 }
 
 TEST(EveryIntegrator, HhtFoldsBricard) { expect_bricard(hht()); }

@@ -156,7 +156,7 @@ inline constexpr auto words_of<AdamsBashforthMoulton<S>> =
 
 // runs and statics
 template <>
-inline constexpr auto words_of<StepLimits> = words("violation", "energy");
+inline constexpr auto words_of<StepLimits> = words("violation", "energy", "warning");
 template <>
 inline constexpr auto words_of<Event> = words("name", "value", "stops", "tolerance", "then", "rests");
 template <>

@@ -40,6 +40,23 @@ class Behind final : public SolverInTests {
     if constexpr (requires { solver_.dropped(); }) return solver_.dropped();
     return {};
   }
+  void leave_out(std::span<Index const> unknowns) override {
+    if constexpr (requires { solver_.leave_out(unknowns); }) solver_.leave_out(unknowns);
+  }
+  bool is_doubtful(double share) const override {
+    if constexpr (requires { solver_.is_doubtful(share); }) return solver_.is_doubtful(share);
+    return false;
+  }
+  void null_vector(Index dropped, VecX& n) const override {
+    if constexpr (requires { solver_.null_vector(dropped, n); })
+      solver_.null_vector(dropped, n);
+    else
+      n.setZero();
+  }
+  double sign_of_determinant() const override {
+    if constexpr (requires { solver_.sign_of_determinant(); }) return solver_.sign_of_determinant();
+    return 0.0;
+  }
   void solve(VecX const& b, VecX& x) const override { solver_.solve(b, x); }
 
  private:

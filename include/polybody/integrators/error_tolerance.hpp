@@ -36,7 +36,8 @@ struct ErrorTolerance {
 /// a group g holds the unknowns of one kind of one body. The scales are the largest before and after the step of
 ///   lengths:    s_q the extent of the positions of the assembly, s_v that of their velocities, or the change of a
 ///               velocity over the step;
-///   rotations:  s_q = 1 (a quaternion, or one radian), s_v the largest rate of the group;
+///   rotations:  s_q = 1 (a quaternion, or one radian), s_v the largest rate of the group, or the extent of the
+///               velocities of the assembly over its extent;
 ///   others:     the largest entries of the group: gradients, deformations, slides, coordinates of unknown unit.
 /// An assembly holds the bodies that joints and forces connect; markers on the ground are points of it, at rest. So
 /// bodies do not change the scales of bodies that they do not act on, and a common velocity, a common translation and
@@ -59,8 +60,9 @@ class ErrorNorm {
     for (Group& g : groups_) {
       auto const [extent, speed] = extents_[g.assembly];
       bool const length = g.kind == UnknownKind::length, rotation = g.kind == UnknownKind::rotation;
+      double const rate = rotation && extent > 0.0 ? std::max(g.largest_v, speed / extent) : g.largest_v;
       g.in_q = share(tolerance.of(length ? extent : rotation ? 1.0 : g.largest_q, g.largest_q), g.errors);
-      g.in_v = share(tolerance.of(length ? speed : g.largest_v, g.largest_v), g.speeds);
+      g.in_v = share(tolerance.of(length ? speed : rate, g.largest_v), g.speeds);
     }
   }
 

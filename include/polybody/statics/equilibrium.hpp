@@ -115,14 +115,20 @@ template <class Solver>
                                            EquilibriumOptions const& options, EquilibriumReport& report) {
   State const found = path.trial;
   path.trial = start;
+  path.advance(1.0);
+  path.evaluate();
+  double const loads = largest_size(path.r);
   path.refuses_crossing = true;
   path.least_rate = std::numeric_limits<double>::infinity();
   EquilibriumReport again;
   if (follow(path, options, again) != NewtonResult::converged) {
     report_limit_point<>(path.limit_point(), report);
   } else if (largest_size(path.trial.q - found.q) > 1e-6 * (1.0 + largest_size(found.q)) && !path.is_singular()) {
+    path.advance(1.0);
+    // Next to a stiffness of the size of the round-off of loads Newton's method may stop at the start.
+    bool const balanced = path.evaluate() && largest_size(path.r) <= 1e-6 * loads;
     report_stability(path, again);
-    if (again.negative_pivots == 0) {
+    if (again.negative_pivots == 0 && balanced) {
       report = std::move(again);
       return;
     }

@@ -18,7 +18,7 @@ namespace polybody {
 /// Limits of a run; an infinite limit switches its check off.
 struct StepLimits {
   double violation = 0.1;  ///< |Φ| of a constraint equation, relative to the extent of the markers and to one
-  double energy = 1.0;     ///< unexplained energy at which a step is refused, relative to S (`StepBounds`)
+  double energy = 10.0;    ///< unexplained energy at which a step is refused, relative to S (`StepBounds`)
   double warning =
       0.05;  ///< unexplained energy at which the report warns at the end of a run, relative to `Unexplained::scale`
 };

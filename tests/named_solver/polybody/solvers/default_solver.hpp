@@ -24,6 +24,10 @@ struct SolverInTests {
   virtual std::size_t reorderings() const = 0;
   virtual void keep_reorderings(std::size_t count) noexcept = 0;
   virtual std::span<Index const> dropped() const = 0;
+  virtual void leave_out(std::span<Index const> unknowns) = 0;
+  virtual bool is_doubtful(double share) const = 0;
+  virtual void null_vector(Index dropped, VecX& n) const = 0;
+  virtual double sign_of_determinant() const = 0;
   virtual void solve(VecX const& b, VecX& x) const = 0;
 };
 
@@ -68,11 +72,25 @@ class NamedSolver {
     return {};
   }
   void solve(VecX const& b, VecX& x) const { other_ ? other_->solve(b, x) : default_.solve(b, x); }
-  /// 0 with a solver of the environment.
+  void leave_out(std::span<Index const> unknowns)
+    requires requires(Default s) { s.leave_out(unknowns); }
+  {
+    other_ ? other_->leave_out(unknowns) : default_.leave_out(unknowns);
+  }
+  bool is_doubtful(double share) const
+    requires requires(Default const s) { s.is_doubtful(share); }
+  {
+    return other_ ? other_->is_doubtful(share) : default_.is_doubtful(share);
+  }
+  void null_vector(Index dropped, VecX& n) const
+    requires requires(Default const s) { s.null_vector(dropped, n); }
+  {
+    other_ ? other_->null_vector(dropped, n) : default_.null_vector(dropped, n);
+  }
   double sign_of_determinant() const
     requires requires(Default const s) { s.sign_of_determinant(); }
   {
-    return other_ ? 0.0 : default_.sign_of_determinant();
+    return other_ ? other_->sign_of_determinant() : default_.sign_of_determinant();
   }
 
  private:
