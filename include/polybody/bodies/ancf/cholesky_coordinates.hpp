@@ -2,7 +2,7 @@
 /// \file
 /// ANCF Cholesky coordinates [Yakoub & Shabana 1999; thesis §4.4].
 ///
-/// This header is not part of polybody.hpp, because few programs need it.
+/// Not in polybody.hpp: few programs need it.
 
 #include <vector>
 

@@ -2,7 +2,7 @@
 /// \file
 /// Attachment modes and free modes of a structure in mean axes.
 ///
-/// This header is not part of polybody.hpp, because Eigen's sparse module and factorisations take seconds to compile.
+/// Not in polybody.hpp: Eigen's sparse module and factorisations take seconds to compile.
 
 #include <polybody/bodies/ffr/static_supports.hpp>
 

@@ -3,7 +3,7 @@
 /// Ratio of the axial forces in a structure of beams to its buckling forces. It estimates the error of a floating frame
 /// without geometric stiffening.
 ///
-/// This header is not part of polybody.hpp; bodies/ffr/ffr.hpp includes it.
+/// Not in polybody.hpp: bodies/ffr/ffr.hpp includes it.
 
 #include <Eigen/Cholesky>
 #include <span>

@@ -3,7 +3,7 @@
 /// Space beam element of thesis App. A [Przemieniecki 1968, §5.6, §11.4]: shape functions, stiffness and mass points,
 /// in the axes of the body.
 ///
-/// This header is not part of polybody.hpp, because Eigen's sparse module takes seconds to compile.
+/// Not in polybody.hpp: Eigen's sparse module takes seconds to compile.
 
 #include <polybody/bodies/ffr/structure.hpp>
 #include <polybody/math/quadrature.hpp>

@@ -4,7 +4,7 @@
 /// the errata of its Eq. A.1 (−2ξ + 3ξ², 2ξ − 3ξ² in rows 11 and 12). The intermediate element frames A.2–A.3 permit
 /// any direction of an element.
 ///
-/// This header is not part of polybody.hpp, because Eigen's sparse module and factorisations take seconds to compile.
+/// Not in polybody.hpp: Eigen's sparse module and factorisations take seconds to compile.
 
 #include <polybody/bodies/ffr/beam_element.hpp>
 

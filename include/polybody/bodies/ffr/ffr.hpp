@@ -2,7 +2,7 @@
 /// \file
 /// Floating frame of reference in space [Shabana 2013, ch. 5–6; thesis §4.3 and App. A].
 ///
-/// This header is not part of polybody.hpp, because Eigen's sparse module and factorisations take seconds to compile.
+/// Not in polybody.hpp: Eigen's sparse module and factorisations take seconds to compile.
 
 #include <memory>
 

@@ -2,7 +2,7 @@
 /// \file
 /// Inertia M a and force of the body of a floating frame (equations in ffr.hpp), from products that both share.
 ///
-/// This header is not part of polybody.hpp; bodies/ffr/ffr.hpp includes it.
+/// Not in polybody.hpp: bodies/ffr/ffr.hpp includes it.
 
 #include <span>
 

@@ -3,7 +3,7 @@
 /// Deformation coordinates of a floating frame: reference conditions that tie the frame to the structure, and bases Φ
 /// (N×n), e = Φ q. The bases are all free nodal coordinates, vibration modes, or those of Craig & Bampton [1968].
 ///
-/// This header is not part of polybody.hpp, because Eigen's sparse module and factorisations take seconds to compile.
+/// Not in polybody.hpp: Eigen's sparse module and factorisations take seconds to compile.
 
 #include <algorithm>
 #include <set>

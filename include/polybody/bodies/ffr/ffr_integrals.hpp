@@ -3,7 +3,7 @@
 /// Inertia and stiffness of the body of a floating frame as functions of its n deformation coordinates q. They follow
 /// from the inertia shape integrals of a structure, projected onto a basis e = Φ q, or are given by the user.
 ///
-/// This header is not part of polybody.hpp, because Eigen's sparse module and factorisations take seconds to compile.
+/// Not in polybody.hpp: Eigen's sparse module and factorisations take seconds to compile.
 
 #include <polybody/bodies/ffr/beam_structure.hpp>
 

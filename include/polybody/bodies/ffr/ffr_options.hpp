@@ -2,7 +2,7 @@
 /// \file
 /// Options of the body of a floating frame, in space and in the plane.
 ///
-/// This header is not part of polybody.hpp; bodies/ffr/ffr.hpp includes it.
+/// Not in polybody.hpp: bodies/ffr/ffr.hpp includes it.
 
 #include <polybody/kinematics/frame.hpp>
 

@@ -2,7 +2,7 @@
 /// \file
 /// Material points of the body of a floating frame, with the matrices of their displacement, small rotation and strain.
 ///
-/// This header is not part of polybody.hpp, because Eigen's sparse module and factorisations take seconds to compile.
+/// Not in polybody.hpp: Eigen's sparse module and factorisations take seconds to compile.
 
 #include <algorithm>
 #include <optional>

@@ -3,7 +3,7 @@
 /// Matrix products of the equations of a floating frame with coordinates, velocities and accelerations. The matrices
 /// are stacked, so that each vector is read once.
 ///
-/// This header is not part of polybody.hpp; bodies/ffr/ffr.hpp includes it.
+/// Not in polybody.hpp: bodies/ffr/ffr.hpp includes it.
 
 #include <polybody/bodies/ffr/ffr_integrals.hpp>
 

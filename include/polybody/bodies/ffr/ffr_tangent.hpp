@@ -2,7 +2,7 @@
 /// \file
 /// Tangent of the body of a floating frame in space.
 ///
-/// This header is not part of polybody.hpp; bodies/ffr/ffr.hpp includes it.
+/// Not in polybody.hpp: bodies/ffr/ffr.hpp includes it.
 
 #include <span>
 

@@ -2,7 +2,7 @@
 /// \file
 /// Sparse matrices of a finite element program in the coordinate format of Matrix Market.
 ///
-/// This header is not part of polybody.hpp, because few programs need it.
+/// Not in polybody.hpp: few programs need it.
 
 #include <unordered_set>
 #include <vector>

@@ -2,7 +2,7 @@
 /// \file
 /// Structure from the matrices of a finite element program: solid elements with three displacements per node.
 ///
-/// This header is not part of polybody.hpp, because few programs need it.
+/// Not in polybody.hpp: few programs need it.
 
 #include <limits>
 

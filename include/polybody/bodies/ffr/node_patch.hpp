@@ -2,7 +2,7 @@
 /// \file
 /// Distributing coupling of several nodes of a structure, such as the seat of a pin or the area under a wheel.
 ///
-/// This header is not part of polybody.hpp; bodies/ffr/ffr.hpp includes it.
+/// Not in polybody.hpp: bodies/ffr/ffr.hpp includes it.
 
 #include <polybody/bodies/ffr/structure.hpp>
 
@@ -20,8 +20,8 @@ std::vector<Index> nodes_within(Structure const& s, Vec3 const& at, double dista
 /// Distributing coupling: a point that follows the mean motion of several nodes. With weights w_i, Σ w_i = 1, a wrench
 /// (f, m) about the centre of the nodes c = Σ w_i r_i is distributed as
 ///   f_i = w_i (f + θ × d_i),   θ = (Σ w (d² 1 − d dᵀ))⁻¹ m,   d_i = r_i − c.
-/// Of all nodal forces with this resultant, these have the least Σ f_i²/w_i. The motion of the patch is conjugate to
-/// them:
+/// These nodal forces have the least Σ f_i²/w_i of all forces with this resultant. The motion of the patch is conjugate
+/// to them:
 ///   u = Σ w_i u_i,   ϑ = (Σ w (d² 1 − d dᵀ))⁻¹ Σ w_i d_i × u_i.
 class NodePatch {
  public:

@@ -2,7 +2,7 @@
 /// \file
 /// Lines of numbers in a text file of a finite element program. An error names the file and the line.
 ///
-/// This header is not part of polybody.hpp, because few programs need it.
+/// Not in polybody.hpp: few programs need it.
 
 #include <algorithm>
 #include <cctype>

@@ -2,7 +2,7 @@
 /// \file
 /// Floating frame of reference in the plane [Shabana 2013, ch. 5].
 ///
-/// This header is not part of polybody.hpp, because Eigen's sparse module and factorisations take seconds to compile.
+/// Not in polybody.hpp: Eigen's sparse module and factorisations take seconds to compile.
 
 #include <memory>
 

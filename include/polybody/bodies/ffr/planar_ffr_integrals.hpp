@@ -2,7 +2,7 @@
 /// \file
 /// Inertia and stiffness of the body of a planar floating frame as functions of its deformation coordinates.
 ///
-/// This header is not part of polybody.hpp, because Eigen's sparse module and factorisations take seconds to compile.
+/// Not in polybody.hpp: Eigen's sparse module and factorisations take seconds to compile.
 
 #include <polybody/bodies/ffr/ffr_integrals.hpp>
 

@@ -2,7 +2,7 @@
 /// \file
 /// Reference conditions that hold a structure without straining it.
 ///
-/// This header is not part of polybody.hpp, because Eigen's sparse module and factorisations take seconds to compile.
+/// Not in polybody.hpp: Eigen's sparse module and factorisations take seconds to compile.
 
 #include <polybody/bodies/ffr/ffr_basis.hpp>
 

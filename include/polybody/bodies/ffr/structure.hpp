@@ -2,7 +2,7 @@
 /// \file
 /// Linear finite element model of one body in its own axes, the basis of a floating frame of reference (ffr.hpp).
 ///
-/// This header is not part of polybody.hpp, because Eigen's sparse module and factorisations take seconds to compile.
+/// Not in polybody.hpp: Eigen's sparse module and factorisations take seconds to compile.
 
 #include <array>
 #include <vector>

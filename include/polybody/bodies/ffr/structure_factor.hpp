@@ -2,7 +2,7 @@
 /// \file
 /// Submatrices of the matrices of a structure, and their factorisation.
 ///
-/// This header is not part of polybody.hpp, because Eigen's sparse module and factorisations take seconds to compile.
+/// Not in polybody.hpp: Eigen's sparse module and factorisations take seconds to compile.
 
 #include <polybody/bodies/ffr/structure.hpp>
 

@@ -3,7 +3,7 @@
 /// Linear interpolation of directors, a policy of `Lrvf` for comparison [Romero & Armero 2002; Betsch & Steinmann
 /// 2002].
 ///
-/// This header is not part of polybody.hpp; `Objective` is the recommended policy.
+/// Not in polybody.hpp: `Objective` is the recommended policy.
 
 #include <polybody/bodies/lrvf/elastic_elements.hpp>
 #include <polybody/bodies/lrvf/polar_interpolation.hpp>

@@ -1,7 +1,8 @@
 #pragma once
 /// \file
-/// Interpolation of the increments of the nodal rotations, a policy of `Lrvf` for comparison. This header is not part
-/// of polybody.hpp; `Objective` is the recommended policy.
+/// Interpolation of the increments of the nodal rotations, a policy of `Lrvf` for comparison.
+///
+/// Not in polybody.hpp: `Objective` is the recommended policy.
 
 #include <polybody/bodies/lrvf/rotation_interpolation.hpp>
 

@@ -2,7 +2,7 @@
 /// \file
 /// Interpolated directors that are made orthonormal, a policy of `Lrvf` for comparison [Romero 2004, §4].
 ///
-/// This header is not part of polybody.hpp; `Objective` is the recommended policy.
+/// Not in polybody.hpp: `Objective` is the recommended policy.
 
 #include <polybody/bodies/lrvf/strain_gradient.hpp>
 

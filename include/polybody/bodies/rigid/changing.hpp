@@ -2,7 +2,7 @@
 /// \file
 /// Rigid bodies whose mass changes with time, such as tanks that empty, rockets, and belts that are loaded.
 ///
-/// This header is not part of polybody.hpp, because few bodies gain or lose mass.
+/// Not in polybody.hpp: few bodies gain or lose mass.
 
 #include <array>
 #include <functional>
