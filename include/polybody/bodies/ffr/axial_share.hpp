@@ -14,7 +14,7 @@
 namespace polybody {
 
 /// Loads on a structure at one time, in its axes, together with the inertia and the weight of a rigid motion. In this
-/// motion the point u₀ has the acceleration b + B u₀ minus gravity.
+/// motion the acceleration of the point u₀ minus gravity is b + B u₀.
 struct StructureAction {
   Vec3 b = Vec3::Zero();                 ///< (3) Aᵀ(r̈ − g) [m/s²]
   Mat3 B = Mat3::Zero();                 ///< (3×3) Ω˙~ + Ω~ Ω~ [1/s²]
