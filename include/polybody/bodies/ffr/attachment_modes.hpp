@@ -54,8 +54,8 @@ MatX orthogonal_basis(Structure const& s, MatX shapes) {
 ///
 /// The result contains the static shapes of the nodal loads `loads` (N×m) and the `count` lowest modes, computed by
 /// `solve`. The shapes are orthogonal with unit modal mass. Linearly dependent shapes are omitted.
-/// \throws InvalidInput for loads that do not fit the structure or are not finite, a count above the number of modes,
-/// and a structure with motions without strain other than the rigid ones.
+/// \throws InvalidInput for loads that do not fit the structure or are not finite, and for a count above the number
+/// of modes. A structure with motions without strain other than the rigid ones is also refused.
 template <class Eigensolver = DenseModes>
 MatX attachment_modes(Structure const& s, MatX const& loads, Index count, Eigensolver const& solve = {}) {
   if (loads.rows() != s.size() || !loads.allFinite())

@@ -32,8 +32,8 @@ class NodePatch {
 
   /// Patch of `nodes`.
   /// \param weights of the nodes, such as the area of each; equal if empty.
-  /// \throws InvalidInput, which begins with `who`, for nodes that do not exist, for fewer than three nodes or nodes on
-  /// one line, and for weights that are not positive or of another number.
+  /// \throws InvalidInput, which begins with `who`, for nodes that do not exist, and for fewer than three nodes or
+  /// nodes on one line. The weights must be positive, one for each node.
   template <class = void>
   NodePatch(Structure const& s, std::vector<Index> nodes, std::string const& who, std::vector<double> weights = {})
       : per_node_(s.per_node), nodes_(std::move(nodes)), weights_(std::move(weights)) {

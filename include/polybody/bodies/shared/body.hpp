@@ -98,9 +98,10 @@ concept Body = requires(B const b, Index e, std::span<double const> x, std::span
   b.load_stiffness(p, x, Wrench<double>{}, stiffness);  // ∂(Jᵀw)/∂q
 };
 
-/// Body with its own constraint equations between its coordinates, such as the norm of Euler parameters: Φ(q) = 0 with
-/// G = ∂Φ/∂q (own_rows × all generalised velocities of the body, whose number is fixed) and γ, Φ̈ = G v̇ + γ. They are
-/// counted and solved like the constraint equations of a joint.
+/// Body with its own constraint equations between its coordinates, such as the norm of Euler parameters:
+///   Φ(q) = 0,  G = ∂Φ/∂q,  Φ̈ = G v̇ + γ.
+/// G is own_rows × all generalised velocities of the body, whose number is fixed. The equations are counted and solved
+/// like those of a joint.
 template <class B>
 concept OwnsRows = requires(B const b, std::span<double const> x, Vec<double, B::own_rows>& rows,
                             Mat<double, B::own_rows, B::element_columns>& map,

@@ -99,8 +99,8 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
   /// Beam of n elements with the undeformed shape `curve`, free of stress except for the pretension:
   ///   U = ½ ∫ Σ C_i (ε_i − ε⁰_i)² dx,  ε⁰ the strains of the elements with the nodes on the curve.
   /// A circular arc of radius R is therefore straight under the moment EI/R.
-  /// \throws InvalidInput as `from`, and for a curve that leaves the plane or is not parameterised by its arc length:
-  /// the length of the axis of an element differs by more than a tenth.
+  /// \throws InvalidInput as `from`, and for a curve that leaves the plane or is not parameterised by its arc length.
+  /// The length of the axis of an element may differ from the arc length by a tenth.
   static Beam naturally_curved(Bar const& bar, Index n, ReferenceCurve const& curve) {
     Beam beam = from(bar, n);
     beam.bend_to(bar.placement, curve);
