@@ -129,7 +129,7 @@ def umbrella(texts):
                 reached.add(other)
                 todo.append(other)
     for name in texts:
-        if name not in reached and "Not in polybody.hpp" not in texts[name]:
+        if name not in reached and not re.search(r"[Nn]ot\s(///\s)?(included\s(///\s)?)?(in|by)\s(///\s)?`?polybody\.hpp", texts[name]):
             yield f"{name} is not reached from {top}, and does not say why (Not in polybody.hpp: …)"
 
 
