@@ -143,7 +143,9 @@ struct ContactLaws {
       touching += touched;
       apart += !may;
       EXPECT_TRUE(may || !touched);
-      if constexpr (TellsReach<G>) EXPECT_TRUE(geometry.reach(f[1]).holds(f[0].r) || !may);
+      if constexpr (TellsReach<G>) {
+        EXPECT_TRUE(geometry.reach(f[1]).holds(f[0].r) || !may);
+      }
     }
     EXPECT_GT(touching, 20);
     EXPECT_GT(apart, 200);
