@@ -131,14 +131,15 @@ auto const bumped = [](P p) {
   start.v[0] = p[0];
   Event const there{.name = "there", .value = [at = p[2]](State const& x) { return x.q[0] - at; }, .stops = true};
   std::vector<Output<M>> outputs{{"v [m/s]", [](M const&, State const& x) { return x.v[0]; }}};
-  return Scenario<M>{std::move(model), start, {.until = 2.0, .step = 1.0, .events = {there}}, std::move(outputs)};
+  RunOptions const options{.until = 2.0, .step = 1.0, .largest_step = 0.2, .events = {there}};
+  return Scenario<M>{std::move(model), start, options, std::move(outputs)};
 };
 TEST(SensitivitiesOfStagesThroughEvents, GoOverAllStepsThatLeadToAnEvent) {
-  // no stage of the first step meets the pulse; shorter steps meet it and are divided
+  // The step that leads to the pulse is divided.
   double const v = 1.0, push = 20.0, at = 0.7, impulse = push * 0.02 * std::sqrt(std::numbers::pi) / 2.0;
   Sensitivities const s = sensitivities(bumped, {{"v [m/s]", v}, {"push [N]", push}, {"at [m]", at}},
                                         DormandPrince<>{.relative_tolerance = 1e-10, .absolute_tolerance = 1e-12});
-  ASSERT_EQ(s.times.size(), 2u);
+  ASSERT_GT(s.times.size(), 5u);
   double const t = s.times.back(), after = v + impulse;  // at = v t + impulse (t − 0.5 s)
   EXPECT_NEAR(t, (at + 0.5 * impulse) / after, 1e-6);
   VecX const& by = s.time_slopes.back();
