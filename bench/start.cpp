@@ -83,7 +83,7 @@ void chains(char const* title) {
       title);
   Table table;
   for (int const bodies : {1000, 3000, 10000, 20000, 100000}) {
-    malloc_trim(0);  // each size takes its memory from the system anew
+    malloc_trim(0);  // each size starts without cached memory
     std::optional<Chain<Policy>> model;
     std::vector<double> times{seconds([&] { model = chain<Policy>(bodies); })};
     State x = model->reference_state();

@@ -50,9 +50,10 @@ double size_of_rows(X const& x) {
 /// Values of an equation at the four places of its own parameter.
 using ValuesAtPlaces = std::array<double, 4>;
 
-/// The equations of a group of parameters. An equation without an owner must not change. An equation with an owner must
-/// change with its owner only: the contribution of a second member, which has another order, is not linear in the place
-/// of the owner. Curvature of an equation has the same effect, so a doubt is no proof.
+/// The equations of a group of parameters. An equation without an owner must not change. An equation with an owner
+/// must change with its owner only: the contribution of a second member, which has another order, is not linear in
+/// the place of the owner. Curvature of an equation has the same effect, so a difference here does not prove a
+/// dependence.
 class SharedEquations {
  public:
   static constexpr std::size_t nobody = std::size_t(-1);  ///< in place of the rank of an owner

@@ -52,9 +52,9 @@ std::vector<char> touched_in_whole(ModelLayout const& layout, Parameter const& p
   }
   return touched;
 }
-/// What of a step's equations is touched where so much of the whole model's is. Forces on coordinates that depend on
-/// others go to these; a joint that is touched itself may change how, and with that all equations. In joint coordinates
-/// that depends on the place, and all are.
+/// Touched equations of a time step, from the touched equations of the full model. Forces on coordinates that depend
+/// on others go to these; a joint that is touched itself may change how, and with that all equations. In joint
+/// coordinates that depends on the place, and all are.
 template <class = void>
 std::vector<char> touched_in_step(System const& system, std::vector<char> const& whole) {
   Coordinates const& c = system.step_coordinates();

@@ -131,9 +131,9 @@ class RowFactor {
 
 }  // namespace detail
 
-/// Counts and names the rows of `model` that repeat others at x (its place, speeds and time), by a factorisation of its
-/// own. A run chooses the rows that it leaves out by the same rule (`leave_out_redundant`). A
-/// contradiction in positions is found to first order: ask at the state where `assemble` stopped.
+/// Counts and names the rows of `model` that repeat others at x (its place, speeds and time), by a factorisation of
+/// its own. A run chooses the rows that it leaves out by the same rule (`leave_out_redundant`). A contradiction in
+/// positions is found to first order: call this function at the final state of `assemble`.
 /// \throws InvalidInput for a state of another model.
 template <class = void>
 Redundancy redundancy(System& system, State const& x) {

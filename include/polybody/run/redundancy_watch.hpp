@@ -12,7 +12,7 @@ class RedundancyWatch {
   void start(System& system, ForwardDynamics<Solver>& forward, State const& x) {
     if (!forward.redundant_rows().empty() && !keeps_all_) leave_out_redundant(system, forward, x);
   }
-  /// After a step to x: replaces a choice that is no longer valid. Returns whether the choice has changed.
+  /// After a step to x: replaces an invalid choice. Returns whether the choice has changed.
   template <class Solver>
   bool changes(System& system, ForwardDynamics<Solver>& forward, State const& x) {
     return forward.leaves_out() && forward.is_doubtful() && leave_out_redundant(system, forward, x);

@@ -57,8 +57,8 @@ struct RowRelation {
 };
 
 /// b − G a by rows, for a motion a with G a = b in all rows that were not dropped: in a dropped row, c·b with its
-/// relation c. As max |c| ≥ 1, |c·b|/max |c| is at most as large. A limit is thus asked of all rows by one solution;
-/// only rows beyond it need their relations. `forward` is as factored last, at the place of `system`.
+/// relation c. As max |c| ≥ 1, |c·b|/max |c| is at most as large. One solution thus compares all rows with a limit;
+/// only rows beyond the limit need their relations. `forward` is as factored last, at the place of `system`.
 template <class Solver>
 [[gnu::cold]] VecX left_of(System& system, ForwardDynamics<Solver>& forward, VecX const& b) {
   VecX a = VecX::Zero(system.speeds()), left = VecX::Zero(system.rows());

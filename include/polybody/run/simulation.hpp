@@ -52,7 +52,7 @@ class Simulation {
   using Iterator = RunIterator<Simulation>;      ///< takes a step where it moves on
   using Sentinel = typename Iterator::Sentinel;  ///< the end
   Iterator begin() { return Iterator(this); }    ///< takes steps as it goes on
-  Sentinel end() const { return {}; }            ///< where the run is done
+  Sentinel end() const { return {}; }            ///< the end of the run
 
   /// To the end. Returns the report, as a copy of its own from a simulation that ends with the statement.
   RunReport const& run() &;
@@ -81,7 +81,8 @@ class Simulation {
   bool eliminates() const { return bool(whole_); }
   void advance(bool shown);  ///< shown: the user's state follows
 
-  /// A workspace that knows no earlier step, and is ready for the next one. When that fails, all stays as it was.
+  /// Replaces the workspace by one without data of earlier steps, ready for the next step. When that fails, all stays
+  /// as it was.
   [[gnu::cold]] void renew() {
     auto fresh = method_.template workspace<Solver>(*system_);
     State ready = stepped();  // whose memory `start` clears
@@ -150,7 +151,7 @@ class Simulation {
     };
     return {asked(), seen, drift_of(*system_)};
   }
-  /// Ends the step that was `taken` at the first event. Returns whether the run begins anew there.
+  /// Ends the step that was `taken` at the first event. Returns true if the run restarts there.
   bool meet_events(double taken) {
     undo_.events = true;
     EventWatch::Step const again = [this](State& x, double h) {
@@ -160,7 +161,7 @@ class Simulation {
   }
   /// All that follows the end of a step, and may fail.
   void follow(StepReport const& report, bool at_corner, bool crumb, bool shown);
-  [[gnu::cold]] void undo();  // what a step that failed in `follow` has changed
+  [[gnu::cold]] void undo();  // restores the run after a failure in `follow`
   [[gnu::cold]] void tell_progress(StepReport const& report, bool shown);  // counts the step before
 
   std::unique_ptr<System> system_, whole_;  // workspaces refer to it

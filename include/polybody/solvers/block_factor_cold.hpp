@@ -16,7 +16,7 @@ template <Symmetry symmetry>
   auto const& segments = pattern_.segments();
   auto const& segment = segments[std::size_t(pattern_.of(unknown))];
   bool changed = false;
-  if (!n.pivoted && n.joint) {  // what hangs on it cannot carry it alone: it waits for all others
+  if (!n.pivoted && n.joint) {  // its neighbours cannot eliminate it alone: it is eliminated last
     for (std::size_t s = 0; s < segments.size(); ++s)
       if (segments[s].first == segment.first && !hints_.late[s]) {
         hints_.late[s] = 1;

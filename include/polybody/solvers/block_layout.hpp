@@ -34,8 +34,9 @@ class BlockLayout {
     int stride;                ///< of what it is added to
     bool lower;                ///< into Lt, transposed
   };
-  /// What numeric trouble has taught: segments whose body and joint are one node, joints that wait for all others,
-  /// further joints of such a body in nodes of their own (they may be redundant), all in one node.
+  /// Changes of the elimination order after missing pivots: segments with body and joint in one node, joints that are
+  /// eliminated last, further joints of such a body in separate nodes (they may be redundant), all unknowns in one
+  /// node.
   struct NodeHints {
     Sequence<char> merged, late;
     bool apart = false;

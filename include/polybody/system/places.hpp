@@ -23,7 +23,7 @@ namespace detail {
 /// added to the model with the number `serial`.
 template <class T, class Place>
 Index index_of(Sequence<Place> const& places, std::uint64_t serial, Index index, std::string const& what) {
-  for (std::size_t i = std::size_t(std::max<Index>(index, 0)); i < places.size(); ++i)  // none stands before its index
+  for (std::size_t i = std::size_t(std::max<Index>(index, 0)); i < places.size(); ++i)  // no index is smaller
     if (places[i].type == &type_tag<T> && places[i].index == index && places[i].made_in == serial) return Index(i);
   refuse_marker_of_another_model(what);
 }

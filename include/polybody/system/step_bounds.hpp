@@ -32,15 +32,14 @@ struct Unexplained {
   bool known = false;   ///< the model has such a balance
 };
 
-/// The limits of a run, with a balance of the energy E = T + V since the last start. A step is refused for
-///   E − E₀ − W > limit · S,   S = T₀ + max(V₀⁺, V₀ − V) + 2 W,
-/// V₀⁺ what was stored at the start, without gravity,
-/// W the work that forces without a potential, drives and compliant joints without a potential have put in
-/// (`WorkAccount`). W counts twice in S: of the work of a force that is switched on within a step, the quadratures see
-/// half. The balance is made whenever the speeds have doubled, so a run that does not grow pays for a sum of squares
-/// and for the powers of such elements. Dissipation is not counted: only a gain is refused. At the end of a run,
-/// and before each restart, `settle` makes the balance with the signs of all works. It counts losses where no part of
-/// the model dissipates. A potential that depends on time has no such balance, and no verdict.
+/// The limits of a run, with a balance of the energy E = T + V since the last start. A step is refused for E − E₀ − W
+/// > limit · S, S = T₀ + max(V₀⁺, V₀ − V) + 2 W, V₀⁺ what was stored at the start, without gravity, W the work that
+/// forces without a potential, drives and compliant joints without a potential have put in (`WorkAccount`). W counts
+/// twice in S: of the work of a force that is switched on within a step, the quadratures see half. The balance is
+/// made whenever the speeds have doubled, so the cost of other steps is a sum of squares and the powers of such
+/// elements. Dissipation is not counted: only a gain is refused. At the end of a run, and before each restart,
+/// `settle` makes the balance with the signs of all works. It counts losses where no part of the model dissipates. A
+/// potential that depends on time has no such balance, and no verdict.
 class StepBounds {
  private:
   static constexpr double never = std::numeric_limits<double>::infinity();
@@ -264,7 +263,7 @@ Unexplained StepBounds::judge_energy(System& system, StepEnd const& end) {
   for (Index i = 1; i < end.v.size(); ++i)
     if (std::abs(end.v[i]) > std::abs(end.v[fastest])) fastest = i;
   double const unexplained = gained - put_in;
-  // A motion that is slow relative to its coordinates is no explosion, but round-off.
+  // The energy of a motion that is slow relative to its coordinates is round-off and not an instability.
   if (unexplained > account_.energy * account_.scale &&
       std::abs(end.v[fastest]) * end.h >= 1e-3 * (1.0 + largest_size(end.q)))
     throw Diverged{"The step to t = ",
