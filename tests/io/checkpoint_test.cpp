@@ -41,7 +41,8 @@ RunSnapshot rich() {
              VecX::Constant(1, std::nan("")),
              0.7,
              {}};
-  s.report = {.steps = 10, .iterations = 21, .factorisations = 3, .evaluations = 22, .rejected = 1};
+  static_cast<RunCounts&>(s.report) = {
+      .steps = 10, .iterations = 21, .factorisations = 3, .evaluations = 22, .rejected = 1};
   s.report.last = {.taken = 1e-3, .next = 2e-3, .iterations = 2, .factorisations = 1, .evaluations = 2, .rejected = 1};
   s.report.last.order = 5;
   s.report.last.contraction = 0.1;
