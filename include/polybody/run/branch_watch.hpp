@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <polybody/integrators/forward_dynamics.hpp>
+#include <polybody/integrators/integrator.hpp>
 
 namespace polybody {
 
