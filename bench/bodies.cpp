@@ -82,7 +82,7 @@ template <class B>
 void measure(char const* name, B const& body) {
   VecX q(body.coordinates());
   body.reference({q.data(), std::size_t(q.size())});
-  VecX delta(body.speeds()), v(body.speeds()), a(body.speeds());
+  VecX delta(body.velocities()), v(body.velocities()), a(body.velocities());
   for (Index i = 0; i < delta.size(); ++i) {
     delta[i] = 1e-3 * std::sin(7.0 * double(i));
     v[i] = 0.1 * std::sin(3.0 * double(i));
@@ -133,8 +133,8 @@ void all_bodies(benchmark::State& state) {
     measure("Lrvf<Objective>", Lrvf<>::from(bar(), n));
     measure("Lrvf<Direct>", Lrvf<Direct>::from(bar(), n));
     Structure const s = structure_of(bar(), 8);
-    measure("Ffr, 6 modes", Ffr(s, held_modes(s, 6)));
-    measure("Ffr, 6 modes, stiffening", Ffr(s, held_modes(s, 6), {.stiffening = true}));
+    measure("Ffr, 6 modes", Ffr(s, fixed_interface_modes(s, 6)));
+    measure("Ffr, 6 modes, stiffening", Ffr(s, fixed_interface_modes(s, 6), {.stiffening = true}));
     measure("Ffr, 48 nodal coordinates", Ffr(s, nodal_coordinates(s)));
     measure("planar::Rigid", planar::Rigid::from(bar()));
     measure("planar::AncfCable<>", planar::AncfCable<>::from(bar(), n));

@@ -17,7 +17,7 @@ template <bool Couples>
 struct Press {
   static constexpr int markers = 2;
   static constexpr bool is_load = false;
-  static constexpr Observes needs = Observes::point;
+  static constexpr MarkerKind needs = MarkerKind::point;
   static constexpr bool couples_bodies = Couples;
 
   double distance = 0.0;  ///< of the centres at first touch [m]
@@ -77,7 +77,7 @@ double microseconds(Clock::time_point start) {
 template <class M>
 void report(char const* what, M const& model) {
   State x = model.reference_state();
-  auto run = simulate(model, x, GeneralizedAlpha{}, {.until = 0.5, .step = 1e-3});
+  auto run = simulate(model, x, GeneralisedAlpha{}, {.end_time = 0.5, .step = 1e-3});
   auto const start = Clock::now();
   RunReport const& r = run.run();
   double const time = microseconds(start) / double(r.steps);

@@ -28,18 +28,18 @@ double angle(int n, double t) {
 template <class I>
 void turn(benchmark::State& state, I const& integrator) {
   int const n = int(state.range(0));
-  double const step = 1e-3 / double(state.range(1)), until = 10.0;
+  double const step = 1e-3 / double(state.range(1)), end_time = 10.0;
   for (auto _ : state) {
     FourBars<InPlane<Constraint>> bars(n);
     double const before = energy(bars.model, bars.x).total();
     try {
-      RunReport const report = simulate(bars.model, bars.x, integrator, {.until = until, .step = step}).run();
+      RunReport const report = simulate(bars.model, bars.x, integrator, {.end_time = end_time, .step = step}).run();
       state.counters["iterations"] = double(report.iterations) / double(report.steps);
     } catch (Error const& e) {
       state.SkipWithError(e.what());
       break;
     }
-    double const theta = angle(n, until);
+    double const theta = angle(n, end_time);
     state.counters["error"] = (bars.corner() - Vec3(std::sin(theta), std::cos(theta), 0.0)).norm();
     state.counters["energy"] = energy(bars.model, bars.x).total() - before;
   }
@@ -57,9 +57,9 @@ void list(char const* name, I const& integrator) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  list("GeneralizedAlpha", GeneralizedAlpha{});
-  list("GeneralizedAlpha_0.95", GeneralizedAlpha{.rho_inf = 0.95});
-  list("GeneralizedAlpha_stabilised", GeneralizedAlpha{.rho_inf = 0.95, .stabilised = true});
+  list("GeneralisedAlpha", GeneralisedAlpha{});
+  list("GeneralizedAlpha_0.95", GeneralisedAlpha{.rho_inf = 0.95});
+  list("GeneralizedAlpha_stabilised", GeneralisedAlpha{.rho_inf = 0.95, .stabilised = true});
   list("HhtAlpha", HhtAlpha{});
   list("Newmark", Newmark{.gamma = 0.6, .beta = 0.3025});
   list("EnergyMomentum", EnergyMomentum{});

@@ -25,7 +25,7 @@ double cpu() {
 template <class B>
 struct Chain {
   int links;
-  double until;
+  double end_time;
   double turn = 0.0;  // [rad/s]
 
   auto operator()(std::span<double const> p) const {
@@ -51,8 +51,9 @@ struct Chain {
     auto const tip = bodies.back();
     std::vector<Output<M>> outputs{
         {"tip z [m]", [tip](M const& m, State const& x) { return position(m, x, tip.at(0.1))[2]; }}};
-    return rated(Scenario<M>{std::move(model), start, {.until = until, .step = 1e-3}, std::move(outputs)},
-                 [tip](auto const& m, auto const& x) { return position(m, x, tip.at(0.1))[2]; });
+    return with_objective(
+        Scenario<M>{std::move(model), start, {.end_time = end_time, .step = 1e-3}, std::move(outputs)},
+        [tip](auto const& m, auto const& x) { return position(m, x, tip.at(0.1))[2]; });
   }
 };
 
@@ -60,7 +61,7 @@ struct Chain {
 /// parameters.
 struct Vehicle {
   using Car = m113::Vehicle<>;
-  double until;
+  double end_time;
   m113::VehicleOptions options = {};
 
   auto operator()(std::span<double const> p) const {
@@ -76,8 +77,8 @@ struct Vehicle {
       return position(m, x, hull.at(Vec3(0, 0, 0)))[2];
     };
     std::vector<Output<Car::ModelType>> outputs{{"z [m]", height}};
-    return rated(Scenario<Car::ModelType>{std::move(car.model), start, {.until = until, .step = 1e-3}, outputs},
-                 height);
+    return with_objective(
+        Scenario<Car::ModelType>{std::move(car.model), start, {.end_time = end_time, .step = 1e-3}, outputs}, height);
   }
 };
 
@@ -110,10 +111,10 @@ void print(char const* name, int links, Make const& make, std::vector<Parameter>
   for (int k = 0; k < 2; ++k) {
     auto const parameters = of(counts[k]);
     direct[k] =
-        least([&] { by_direct = sensitivities(make, parameters, integrator).slopes.back().row(0).transpose(); });
-    adjoint[k] = least([&] { by_adjoint = gradient(make, parameters, integrator).slopes; });
+        least([&] { by_direct = sensitivities(make, parameters, integrator).derivatives.back().row(0).transpose(); });
+    adjoint[k] = least([&] { by_adjoint = gradient(make, parameters, integrator).derivatives; });
   }
-  Gradient few;
+  GradientResult few;
   double const with_few = least([&] { few = gradient(make, of(1), integrator, {.snapshots = 50}); });
   auto const each = [&](double const* t) { return (t[1] - t[0]) / double(counts[1] - counts[0]); };
   std::printf("| %s | %d | %zu | %.0f | %.2f | %.2f | %.2f | %.3f | %.2f, %zu steps, %.1f MB | %.0e |\n", name, links,
@@ -133,7 +134,7 @@ std::vector<Parameter> parameters(int count, std::string const& what, std::strin
 template <class B>
 void print_chain(char const* name, int links, double turn = 0.0) {
   print(name, links, Chain<B>{links, 2.0, turn}, parameters(std::min(links, 33), "mass of link", "link"),
-        GeneralizedAlpha{.tolerance = 1e-12});
+        GeneralisedAlpha{.tolerance = 1e-12});
 }
 
 }  // namespace
@@ -153,5 +154,5 @@ int main(int argc, char** argv) {
   print_chain<Rigid<>>("rigid, turning", 64, 2.0);
   print_chain<AncfCable<>>("`AncfCable`, turning", 64, 2.0);
   print("vehicle", 128, Vehicle{0.2}, parameters(100, "stiffness of spring", "spring"),
-        GeneralizedAlpha{.rho_inf = 0.5, .tolerance = 1e-12, .start_correction = false});
+        GeneralisedAlpha{.rho_inf = 0.5, .tolerance = 1e-12, .start_correction = false});
 }

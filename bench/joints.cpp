@@ -19,12 +19,13 @@ using Laws = NonlinearBushing<LinearLaw, LinearLaw, LinearLaw, LinearLaw, Linear
 /// A chain of bodies B on pins of geometry G, each by one of the policies.
 template <class B, class G, class... Ps>
 using Chain = Model<Bodies<B>, Joints<Joint<G, Ps>...>>;
-using Rods = Chain<Rigid<>, Revolute, Constraint, Penalty, PenaltyPerRow<5>, Bushing, Laws>;
+using Rods = Chain<Rigid<>, Revolute, Constraint, Penalty, PenaltyPerEquation<5>, Bushing, Laws>;
 template <class... Ps>
 using Cables = Chain<Cable, planar::Revolute, Ps...>;
 
 Penalty const penalty{.stiffness = 1e7, .damping = 1e3};
-PenaltyPerRow<5> const per_row{.stiffness = Vec<double, 5>::Constant(1e7), .damping = Vec<double, 5>::Constant(1e3)};
+PenaltyPerEquation<5> const per_row{.stiffness = Vec<double, 5>::Constant(1e7),
+                                    .damping = Vec<double, 5>::Constant(1e3)};
 Bushing const bushing{.stiffness = Bushing::diagonal(Vec3::Constant(1e7), Vec3::Constant(1e5)),
                       .damping = Bushing::diagonal(Vec3::Constant(1e3), Vec3::Constant(10.0))};
 LinearLaw const slide{.stiffness = 1e7, .damping = 1e3}, turn{.stiffness = 1e5, .damping = 10.0};
@@ -94,7 +95,7 @@ Cost cost(M const& model, int links) {
   State x = model.reference_state();
   for (int i = 0; i < 5 + 512 / links; ++i) {
     x = model.reference_state();
-    auto run = simulate(model, x, GeneralizedAlpha{}, {.until = 0.1, .step = 1e-3});
+    auto run = simulate(model, x, GeneralisedAlpha{}, {.end_time = 0.1, .step = 1e-3});
     double const us = fastest(1, [&] { run.run(); }) * 1e6, steps = double(run.report().steps);
     if (i == 0 || us / steps < out.step) out.step = us / steps;
     out.iterations = double(run.report().iterations) / steps;
@@ -108,7 +109,7 @@ Cost cost(M const& model, int links) {
   auto const write = [&](BlockSink& sink) { system.tangent(c, SecondOrder::omitted, y.lambda, sink); };
   system.evaluate(y.q, y.v, y.t);
   solver.analyse(system, 1, write);
-  VecX r = VecX::Zero(system.speeds()), rhs = VecX::Ones(system.size()), solution = rhs;
+  VecX r = VecX::Zero(system.velocities()), rhs = VecX::Ones(system.size()), solution = rhs;
   Taken taken;
   int const passes = std::max(1, 2048 / links);
   auto const ns = [&](auto&& pass) {
@@ -183,8 +184,8 @@ void measure(char const* name, M const& like, P const& policy, Cost const& free,
 void all_joints(benchmark::State& state) {
   for (auto _ : state) {
     using Kept = Cables<Constraint, Penalty>;
-    using ByBodies = RecursiveBy<recursive::ArticulatedBody>;
-    using Dense = RecursiveBy<recursive::Reduced>;
+    using ByBodies = JointCoordinatesBy<joint_coordinates::ArticulatedBody>;
+    using Dense = JointCoordinatesBy<joint_coordinates::DenseMatrix>;
     Cost const rod = cost(chain(Rods{}, Constraint{}, 64, false), 64),
                cable = cost(chain(Kept{}, Constraint{}, 64, false), 64);
     Tables tables;
@@ -196,12 +197,13 @@ void all_joints(benchmark::State& state) {
     std::printf("\n");
     measure("rigid, Constraint", Rods{}, Constraint{}, rod, tables);
     measure("rigid, Penalty", Rods{}, penalty, rod, tables);
-    measure("rigid, PenaltyPerRow", Rods{}, per_row, rod, tables, 64);
+    measure("rigid, PenaltyPerEquation", Rods{}, per_row, rod, tables, 64);
     measure("rigid, Bushing", Rods{}, bushing, rod, tables);
     measure("rigid, NonlinearBushing", Rods{}, laws, rod, tables, 64);
-    measure("rigid, Recursive", Chain<Rigid<>, Revolute, Recursive>{}, Recursive{}, rod, tables);
-    measure("rigid, RecursiveBy<ArticulatedBody>", Chain<Rigid<>, Revolute, ByBodies>{}, ByBodies{}, rod, tables);
-    measure("rigid, RecursiveBy<Reduced>", Chain<Rigid<>, Revolute, Dense>{}, Dense{}, rod, tables, 128);
+    measure("rigid, JointCoordinates", Chain<Rigid<>, Revolute, JointCoordinates>{}, JointCoordinates{}, rod, tables);
+    measure("rigid, JointCoordinatesBy<ArticulatedBody>", Chain<Rigid<>, Revolute, ByBodies>{}, ByBodies{}, rod,
+            tables);
+    measure("rigid, JointCoordinatesBy<DenseMatrix>", Chain<Rigid<>, Revolute, Dense>{}, Dense{}, rod, tables, 128);
     measure("cables, Constraint", Kept{}, Constraint{}, cable, tables);
     measure("cables, Penalty", Kept{}, penalty, cable, tables, 64);
     measure("cables, AncfLinear", Cables<AncfLinear>{}, AncfLinear{}, cable, tables);
@@ -212,7 +214,7 @@ void all_joints(benchmark::State& state) {
       std::printf("  %-36s %9.0f %9.0f %9.0f %9.0f\n", name, c.residual, c.tangent, c.factor, c.solve);
     std::printf("%s", tables.parts.c_str());
     for (Figure& f : tables.panels) {
-      f.curves.push_back({.x = {16, 1024}, .y = {4, 256}, .label = "slope 1", .style = "dashed", .color = 6});
+      f.curves.push_back({.x = {16, 1024}, .y = {4, 256}, .label = "slope 1", .style = "dashed", .colour = 6});
     }
     write_panels(tables.panels, 2, "joints");
   }

@@ -3,7 +3,7 @@
 #pragma once
 #include <algorithm>
 #include <cstdio>
-#include <polybody/math/pack.hpp>
+#include <polybody/math/simd_vector.hpp>
 #include <string>
 #include <vector>
 

@@ -8,8 +8,8 @@
 #include <ctime>
 #include <functional>
 #include <polybody/polybody.hpp>
-#include <polybody/run/check.hpp>
-#include <polybody/run/outline.hpp>
+#include <polybody/run/diagnose.hpp>
+#include <polybody/run/summary.hpp>
 #include <sstream>
 
 namespace {
@@ -88,10 +88,11 @@ void chains(char const* title) {
     std::vector<double> times{seconds([&] { model = chain<Policy>(bodies); })};
     State x = model->reference_state();
     State const start = x;
-    using Run = decltype(simulate(*model, x, GeneralizedAlpha{}, RunOptions{.until = 1.0, .step = 1e-3}));
+    using Run = decltype(simulate(*model, x, GeneralisedAlpha{}, RunOptions{.end_time = 1.0, .step = 1e-3}));
     std::unique_ptr<Run> run;
-    times.push_back(seconds(
-        [&] { run.reset(new Run(simulate(*model, x, GeneralizedAlpha{}, RunOptions{.until = 1.0, .step = 1e-3}))); }));
+    times.push_back(seconds([&] {
+      run.reset(new Run(simulate(*model, x, GeneralisedAlpha{}, RunOptions{.end_time = 1.0, .step = 1e-3})));
+    }));
     times.push_back(seconds([&] { run->advance(); }));
     times.push_back(seconds([&] { benchmark::DoNotOptimize(outline(*model)); }));
     times.push_back(seconds([&] { benchmark::DoNotOptimize(check(*model, start)); }));
@@ -105,7 +106,7 @@ void pins() {
   for (int const n : {100, 200, 400}) {
     Chain<Constraint> const model = pinned(n);
     State x = model.reference_state();
-    double const start = seconds([&] { simulate(model, x, GeneralizedAlpha{}, {.until = 1.0, .step = 1e-3}); });
+    double const start = seconds([&] { simulate(model, x, GeneralisedAlpha{}, {.end_time = 1.0, .step = 1e-3}); });
     double const rank = seconds([&] { benchmark::DoNotOptimize(redundancy(model, x)); });
     table.add(n, {start, rank});
   }
@@ -114,7 +115,7 @@ void pins() {
 void start(benchmark::State& state) {
   for (auto _ : state) {
     chains<Constraint>("chain, Constraint");
-    chains<Recursive>("chain, Recursive");
+    chains<JointCoordinates>("chain, JointCoordinates");
     pins();
   }
 }

@@ -63,8 +63,8 @@ struct Cost {
 };
 
 template <class Solver, class M>
-Cost cost(M const& model, State x, double until) {
-  auto run = simulate<Solver>(model, x, GeneralizedAlpha{}, {.until = until, .step = 1e-3});
+Cost cost(M const& model, State x, double end_time) {
+  auto run = simulate<Solver>(model, x, GeneralisedAlpha{}, {.end_time = end_time, .step = 1e-3});
   auto const start = std::chrono::steady_clock::now();
   run.run();
   double const time = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
@@ -76,12 +76,12 @@ void chains() {
   std::printf("\nmicroseconds a step (Newton iterations, factorisations a step)\n");
   std::printf("  links   constraint, block solver      constraint, Eigen SparseLU   penalty 1e7 N/m, block solver\n");
   for (int const links : {4, 16, 64, 256, 1024}) {
-    double const until = links > 64 ? 0.2 : 1.0;
+    double const end_time = links > 64 ? 0.2 : 1.0;
     Chain<Constraint> const ideal(links, {});
     Chain<Penalty> const compliant(links, {.stiffness = 1e7, .damping = 1e3});
-    Cost const block = cost<BlockSolver>(ideal.model, ideal.model.reference_state(), until),
-               lu = cost<EigenSparseLu>(ideal.model, ideal.model.reference_state(), until),
-               soft = cost<BlockSolver>(compliant.model, compliant.model.reference_state(), until);
+    Cost const block = cost<BlockSolver>(ideal.model, ideal.model.reference_state(), end_time),
+               lu = cost<EigenSparseLu>(ideal.model, ideal.model.reference_state(), end_time),
+               soft = cost<BlockSolver>(compliant.model, compliant.model.reference_state(), end_time);
     std::printf("  %5d", links);
     for (Cost const& c : {block, lu, soft})
       std::printf(" %9.1f (%5.2f, %5.3f)      ", c.microseconds, c.iterations, c.factorisations);
@@ -91,8 +91,8 @@ void chains() {
 
 /// A row of the table: the default solver, Eigen's sparse LU, their ratio.
 template <class M>
-void compare_solvers(std::string const& what, M const& model, State const& x, double until) {
-  Cost const block = cost<BlockSolver>(model, x, until), lu = cost<EigenSparseLu>(model, x, until);
+void compare_solvers(std::string const& what, M const& model, State const& x, double end_time) {
+  Cost const block = cost<BlockSolver>(model, x, end_time), lu = cost<EigenSparseLu>(model, x, end_time);
   std::printf("  %-34s %8.1f (%5.2f, %5.3f)   %8.1f   ratio %.1f\n", what.c_str(), block.microseconds, block.iterations,
               block.factorisations, lu.microseconds, lu.microseconds / block.microseconds);
 }
@@ -167,7 +167,7 @@ struct Parts {
   BlockSolver solver;
   VecX r, rhs, y;
 
-  Parts() : r(VecX::Zero(system.speeds())), rhs(VecX::Zero(system.size())), y(rhs) {
+  Parts() : r(VecX::Zero(system.velocities())), rhs(VecX::Zero(system.size())), y(rhs) {
     PatternSink pattern;
     system.evaluate(x.q, x.v, 0.0);
     system.tangent({1.0, 1.0, 1.0}, SecondOrder::omitted, x.lambda, pattern);
@@ -235,7 +235,7 @@ void variants() {
     for (int k = 0; k < 8; ++k) {
       Chain<Constraint> const chain(64, {}, [&](int) { return 1.0 + within(random); });
       State x = chain.model.reference_state();
-      auto run = simulate(chain.model, x, GeneralizedAlpha{}, {.until = 1.0, .step = 1e-3});
+      auto run = simulate(chain.model, x, GeneralisedAlpha{}, {.end_time = 1.0, .step = 1e-3});
       runs.push_back(lockstep::counts_of(run));
     }
     char name[40];
@@ -245,10 +245,10 @@ void variants() {
 }
 
 /// One run with the default solver only, for a profiler: bench_steps --run MODEL SIZE SECONDS.
-int run_alone(std::string const& model, int size, double until) {
+int run_alone(std::string const& model, int size, double end_time) {
   auto const run = [&](auto const& m, State const& x) {
-    Cost const c = cost<BlockSolver>(m, x, until);
-    std::printf("%.0f steps, %.3f Newton iterations a step\n", until / 1e-3, c.iterations);
+    Cost const c = cost<BlockSolver>(m, x, end_time);
+    std::printf("%.0f steps, %.3f Newton iterations a step\n", end_time / 1e-3, c.iterations);
     return 0;
   };
   auto const from_reference = [&](auto const& m) { return run(m, m.reference_state()); };

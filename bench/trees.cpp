@@ -16,7 +16,7 @@ namespace {
 using namespace polybody;
 using namespace falling_chain;
 
-using ByBodies = RecursiveBy<recursive::ArticulatedBody>;
+using ByBodies = JointCoordinatesBy<joint_coordinates::ArticulatedBody>;
 using Pin = Joint<Revolute, ByBodies>;
 using Chain = Model<Bodies<Rigid<>>, Joints<Pin>>;
 
@@ -44,7 +44,7 @@ Second second(int links, double tolerance) {
   out.seconds = fastest(3, 1, [&] {
     State x = model.reference_state();
     simulate(model, x, DormandPrince<>{.relative_tolerance = tolerance, .absolute_tolerance = tolerance},
-             {.until = 1.0, .step = 1e-2})
+             {.end_time = 1.0, .step = 1e-2})
         .run();
     Index const last = 7 * (links - 1);
     out.tip = {x.q[last], x.q[last + 1]};
@@ -74,7 +74,7 @@ std::pair<double, double> step(int links, I const& integrator) {
   double iterations = 0.0;
   double const taken = fastest(5, 1, [&] {
     State x = model.reference_state();
-    auto run = simulate(model, x, integrator, {.until = 1e-3 * steps, .step = 1e-3});
+    auto run = simulate(model, x, integrator, {.end_time = 1e-3 * steps, .step = 1e-3});
     iterations = double(run.run().iterations) / steps;
   });
   return {taken / steps, iterations};
@@ -113,8 +113,8 @@ void calls() {
 void implicit_steps() {
   std::printf("\na step of 1 ms by generalised-alpha [us], iterations   and by full Newton\n");
   for (int const links : {16, 64, 256, 1024, 4096}) {
-    auto const [taken, iterations] = step(links, GeneralizedAlpha{});
-    auto const [full, of_full] = step(links, GeneralizedAlpha{.newton = {.always_refactor = true}});
+    auto const [taken, iterations] = step(links, GeneralisedAlpha{});
+    auto const [full, of_full] = step(links, GeneralisedAlpha{.newton = {.always_refactor = true}});
     std::printf("  %4d links  %8.1f   %.2f                            %8.1f   %.2f\n", links, 1e6 * taken, iterations,
                 1e6 * full, of_full);
   }
@@ -127,11 +127,11 @@ void work_for_accuracy() {
                 .log_x = true,
                 .log_y = true};
   std::printf("\none second: processor time [ms] for an error of the tip of 1e-7 m\n");
-  int color = 1;
+  int colour = 1;
   for (int const links : {4, 16, 64}) {
     Tip const reference = second(links, 1e-12).tip;
     std::string const name = ", " + std::to_string(links) + " links";
-    Curve ours{.label = "polybody, Dormand-Prince" + name, .style = "linespoints", .color = color};
+    Curve ours{.label = "polybody, Dormand-Prince" + name, .style = "linespoints", .colour = color};
     for (double tolerance = 1e-4; tolerance > 1e-11; tolerance *= 0.1) {
       Second const one = second(links, tolerance);
       ours.x.push_back(apart(one.tip, reference));
@@ -140,7 +140,7 @@ void work_for_accuracy() {
     std::printf("  %4d links  %8.1f", links, 1e3 * time_at(ours, 1e-7));
 #ifdef POLYBODY_HAS_SIMBODY
     Tip const their_reference = simbody_second(links, 1e-12).tip;
-    Curve theirs{.label = "Simbody, Runge-Kutta-Merson" + name, .style = "dashed", .color = color};
+    Curve theirs{.label = "Simbody, Runge-Kutta-Merson" + name, .style = "dashed", .colour = color};
     for (double accuracy = 1e-3; accuracy > 1e-9; accuracy *= 0.1) {
       Second const one = simbody_second(links, accuracy);
       theirs.x.push_back(apart(one.tip, their_reference));

@@ -30,18 +30,18 @@ struct Parts {
 };
 
 /// Measures the parts at a state of a run, with all data in the cache as within a step.
-Parts parts_of(AnyModel const& model, State const& whole, GeneralizedAlpha const& integrator, double h) {
-  RunSystems const systems = model.systems_of<GeneralizedAlpha>();
+Parts parts_of(AnyModel const& model, State const& full, GeneralisedAlpha const& integrator, double h) {
+  RunSystems const systems = model.systems_of<GeneralisedAlpha>();
   System& system = *systems.stepped;
-  State x = reduce(system, whole);
+  State x = reduce(system, full);
   append_multipliers(system, x);
   AlphaMethod const m = integrator.method();
   TangentCoefficients const c{(1.0 - m.alpha_m) / (1.0 - m.alpha_f), m.gamma * h, m.beta * h * h};
-  StepPlace const place{{x.q, x.v, x.t}, x.a, x.lambda};
+  StepPosition const place{{x.q, x.v, x.t}, x.a, x.lambda};
   auto const write = [&](BlockSink& sink) { system.tangent(c, SecondOrder::omitted, x.lambda, sink); };
-  TangentSolver<SolverOfSteps<BlockSolver>> solver;
+  TangentSolver<StepSolver<BlockSolver>> solver;
   solver.analyse(system, 1, write);
-  VecX r(system.speeds()), rhs = VecX::Ones(system.speeds() + multipliers_of(system)), y = rhs;
+  VecX r(system.velocities()), rhs = VecX::Ones(system.velocities() + multipliers_of(system)), y = rhs;
   solver.evaluate(system, place.at);
   solver.balance(system, place, r);
   if (solver.factor_tangent(system, place, c, SecondOrder::omitted) >= 0) std::printf("no pivot\n");
@@ -66,8 +66,9 @@ void measure(Options const& o, Combination const& combination) {
   Built const built = build(o, [&](VehicleParts const& parts) { return combination.make(o, parts).vehicle; });
   AnyModel const& model = built.vehicle.model;
   State x = model.reference_state();
-  GeneralizedAlpha const by = integrator(o);
-  Simulation<GeneralizedAlpha> run = simulate(model, x, by, {.until = o.until, .step = o.step, .halvings = 6});
+  GeneralisedAlpha const by = integrator(o);
+  Simulation<GeneralisedAlpha> run =
+      simulate(model, x, by, {.end_time = o.end_time, .step = o.step, .max_step_halvings = 6});
   std::vector<double> times;
   double last = cpu();
   for (State const& state : run) {
@@ -83,7 +84,7 @@ void measure(Options const& o, Combination const& combination) {
   Parts const p = parts_of(model, x, by, o.step);
   std::printf(
       "| `%s` | `%s` | %.2f | %.0f, %.0f, %.0f | %.2f, %.2f | %.0f, %.0f, %.0f | %.0f, %.0f (%.0f) | %.0f |\n",
-      combination.links.c_str(), combination.pins.c_str(), 1e-6 * sum / o.until, sum / steps,
+      combination.links.c_str(), combination.pins.c_str(), 1e-6 * sum / o.end_time, sum / steps,
       times[times.size() - 1 - times.size() / 1000], times.back(), iterations, factorisations, p.evaluation, p.residual,
       p.solution, p.writing, p.factorisation, p.limit,
       100.0 * (iterations * (p.evaluation + p.residual + p.solution) + factorisations * (p.writing + p.factorisation)) *
@@ -110,10 +111,10 @@ void causes(Options const& o, Combination const& combination) {
   Built const built = build(o, [&](VehicleParts const& parts) { return combination.make(o, parts).vehicle; });
   AnyModel const& model = built.vehicle.model;
   State x = model.reference_state();
-  Simulation<GeneralizedAlpha> run =
-      simulate(model, x, integrator(o), {.until = o.until, .step = o.step, .halvings = 6});
-  RunSystems const systems = model.systems_of<GeneralizedAlpha>();
-  System& whole = systems.whole ? *systems.whole : *systems.stepped;
+  Simulation<GeneralisedAlpha> run =
+      simulate(model, x, integrator(o), {.end_time = o.end_time, .step = o.step, .max_step_halvings = 6});
+  RunSystems const systems = model.systems_of<GeneralisedAlpha>();
+  System& full = systems.full ? *systems.full : *systems.stepped;
   struct Class {
     std::size_t most;  // contacts that come or go
     double steps = 0.0, iterations = 0.0, factorisations = 0.0;
@@ -122,7 +123,7 @@ void causes(Options const& o, Combination const& combination) {
   std::vector<std::size_t> before, after, changed;
   double iterations = 0.0, factorisations = 0.0;
   for (State const& state : run) {
-    after = touching(built.vehicle, whole, state);
+    after = touching(built.vehicle, full, state);
     auto const& report = run.report();
     if (state.t > 0.0) {
       changed.clear();
@@ -155,8 +156,8 @@ void variants(Options o, Combination const& combination) {
     Built const built = build(o, [&](VehicleParts const& parts) { return combination.make(o, parts).vehicle; });
     AnyModel const& model = built.vehicle.model;
     State x = model.reference_state();
-    Simulation<GeneralizedAlpha> run =
-        simulate(model, x, integrator(o), {.until = o.until, .step = o.step, .halvings = 6});
+    Simulation<GeneralisedAlpha> run =
+        simulate(model, x, integrator(o), {.end_time = o.end_time, .step = o.step, .max_step_halvings = 6});
     runs.push_back(lockstep::counts_of(run));
     if (by != 0.0) continue;
     Parts const p = parts_of(model, x, integrator(o), o.step);
@@ -174,7 +175,7 @@ int main(int argc, char** argv) {
   o.step = 1e-3;
   o.rho = 0.5;
   o.speed = 30.0;
-  o.until = 4.0;
+  o.end_time = 4.0;
   bool of_variants = false, of_causes = false;
   o.links.clear();
   o.masses = m113::with_steel_links(o.masses);
@@ -186,7 +187,7 @@ int main(int argc, char** argv) {
     else if (name == "--pins")
       o.pins = value;
     else if (name == "--until")
-      o.until = std::stod(value);
+      o.end_time = std::stod(value);
     else if (name == "--speed")
       o.speed = std::stod(value);
     else if (name == "--causes")
@@ -208,7 +209,7 @@ int main(int argc, char** argv) {
         "%g s from a standstill to %g rad/s, steps of 1 ms: share of the steps [%%] in which so many contacts come or "
         "go, and their iterations and factorisations\n\n| links | pins | none | 1 or 2 | 3 to 5 | 6 to 10 | more "
         "|\n|---|---|---|---|---|---|---|\n",
-        o.until, o.speed);
+        o.end_time, o.speed);
     each(causes);
     return 0;
   }
@@ -222,6 +223,6 @@ int main(int argc, char** argv) {
       "| links | pins | CPU a second [s] | step: mean, 99.9 %%, largest | iterations, factorisations | evaluation, "
       "residual, solution | writing, factorisation (flop limit) | share of the step [%%] |\n"
       "|---|---|---|---|---|---|---|---|\n",
-      o.until, o.speed);
+      o.end_time, o.speed);
   each(measure);
 }

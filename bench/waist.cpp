@@ -48,15 +48,15 @@ struct Fixture {
       : model(make_chain(links)),
         system(model),
         q(model.reference_state().q),
-        v(VecX::Random(model.speeds())),
-        a(VecX::Random(model.speeds())),
+        v(VecX::Random(model.velocities())),
+        a(VecX::Random(model.velocities())),
         lambda(VecX::Random(model.rows())),
-        r(VecX::Zero(model.speeds())),
+        r(VecX::Zero(model.velocities())),
         phi(VecX::Zero(model.rows())),
         rhs(VecX::Zero(system.size())),
         x(rhs) {
     VecX moved = q;
-    system.plus(q, 0.01 * VecX::Random(model.speeds()), moved);
+    system.plus(q, 0.01 * VecX::Random(model.velocities()), moved);
     q = moved;
     PatternSink pattern;
     system.evaluate(q, v, 0.0);
@@ -95,7 +95,7 @@ struct Fused {
   Eigen::SparseLU<EigenSparseLu::Matrix, Eigen::COLAMDOrdering<int>> lu;
   VecX x;
   BlockSolver block;
-  Mat3 triad = rows::triad_about(pin_axis, "pin");
+  Mat3 triad = constraint_functions::triad_about(pin_axis, "pin");
 
   Fused(int n, EigenSparseLu::Matrix const& pattern)
       : links(n), matrix(pattern), rhs(VecX::Zero(pattern.rows())), axes(std::size_t(n)), x(rhs) {

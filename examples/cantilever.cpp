@@ -20,7 +20,7 @@ struct Options {
   Index elements = 10;
   double step = 5e-3;
   double density = 7850.0;
-  double until = 20.0;
+  double end_time = 20.0;
   double moment = 30e3;
   fs::path out = "out/cantilever";
   fs::path viewer, film;
@@ -48,13 +48,13 @@ void tell_tips(Lrvf const& beam, State const& now) {
 // Figure 2.10: curvature of both meshes along the beam.
 void curvatures(Options const& o, Lrvf const& beam, State const& x) {
   MeshDiagnostics const d = mesh_diagnostics(beam.beam.body(), coordinates_of(beam.model, x, beam.beam));
-  Curve rotation{.label = "rotation mesh: constant in each element", .color = 1},
-      position{.label = "position mesh: zero", .color = 0},
+  Curve rotation{.label = "rotation mesh: constant in each element", .colour = 1},
+      position{.label = "position mesh: zero", .colour = 0},
       still{.x = {0.0, length},
             .y = {o.moment / low.EI, o.moment / low.EI},
             .label = "M/EI at rest",
             .style = "dashed",
-            .color = 2};
+            .colour = 2};
   double const l = length / double(o.elements);
   double jump = 0.0, largest = 0.0, straight = 0.0;
   for (std::size_t e = 0; e < d.rotation_curvature.size(); ++e) {
@@ -70,7 +70,7 @@ void curvatures(Options const& o, Lrvf const& beam, State const& x) {
   }
   write_table(o.out / "figure_2_10_curvature.csv", {"s [m]", "rotation mesh [1/m]", "position mesh [1/m]"},
               {rotation.x, rotation.y, position.y});
-  draw({.title = "Figure 2.10: curvature of the two meshes at t = " + std::to_string(int(o.until)) + " s",
+  draw({.title = "Figure 2.10: curvature of the two meshes at t = " + std::to_string(int(o.end_time)) + " s",
         .x_label = "s [m]",
         .y_label = "curvature [1/m]",
         .curves = {position, rotation, still},
@@ -93,9 +93,9 @@ void tip_moment(Options const& o) {
   std::vector<double> const wanted{0.0, 1.0, 2.0, 3.0, 4.0, 20.0};
   std::size_t next = 0;
   std::vector<std::vector<double>> columns(5);
-  Progress progress(0.0, o.until, "tip moment");
+  Progress progress(0.0, o.end_time, "tip moment");
   for (State const& now :
-       simulate(beam.model, x, GeneralizedAlpha{.rho_inf = 0.8}, {.until = o.until, .step = o.step})) {
+       simulate(beam.model, x, GeneralisedAlpha{.rho_inf = 0.8}, {.end_time = o.end_time, .step = o.step})) {
     Vec3 const tip = position(beam.model, now, beam.beam.at(length));
     Energy const e = energy(beam.model, now);
     std::vector<double> const row{now.t, tip[0], tip[1], e.kinetic, e.strain};
@@ -118,14 +118,14 @@ void tip_moment(Options const& o) {
 
 // M = 2 pi EI/L closes the beam to a circle, exactly [Bernoulli-Euler]. Statics, one formulation.
 template <class B>
-double roll_up(Options const& o, Figure& shapes, std::string const& name, Index elements, int color) {
+double roll_up(Options const& o, Figure& shapes, std::string const& name, Index elements, int colour) {
   double const full = 2.0 * std::numbers::pi * low.EI / length;
   Cantilever<B> beam(bar(low, o.density), elements, full);
   State x = beam.model.reference_state();
   EquilibriumReport const report = equilibrium(beam.model, x, {.load_steps = 10});
   Curve c = shape_of(beam.model, x, beam.beam, length, 120);
   c.label = name;
-  c.color = color;
+  c.colour = color;
   c.style = color == 0 ? "lines" : "dashed";
   shapes.curves.push_back(c);
   double const open = position(beam.model, x, beam.beam.at(length)).norm();
@@ -163,7 +163,7 @@ struct BeamCase {
     if (film) observer = BarFilm<M, typename F::BodyType>(film->scene(f.name), beam.beam, visible_bar(low, o.density));
     return Scenario<M>{std::move(beam.model),
                        start,
-                       {.until = std::min(o.until, 4.0), .step = o.step},
+                       {.end_time = std::min(o.end_time, 4.0), .step = o.step},
                        {{"tip x [m]", [tip](M const& m, State const& x) { return position(m, x, tip)[0]; }},
                         {"tip y [m]", [tip](M const& m, State const& x) { return position(m, x, tip)[1]; }}},
                        observer};
@@ -171,15 +171,15 @@ struct BeamCase {
 };
 
 void comparison(Options const& o) {
-  GeneralizedAlpha const implicit{.rho_inf = 0.8};
+  GeneralisedAlpha const implicit{.rho_inf = 0.8};
   std::shared_ptr<Film> film;
   if (!o.film.empty())
     film = std::make_shared<Film>(
         film_options(o.viewer, "The clamped beam, " + number(1e-3 * o.moment) + " kN m at its tip"));
   Comparison const c = compare(
-      BeamCase{o, film}, Formulation<planar::Lrvf, Constraint, GeneralizedAlpha>{"LRVF", {}, implicit},
-      Formulation<planar::AncfCable<GreenStrain>, Constraint, GeneralizedAlpha>{"ANCF Green", {}, implicit},
-      Formulation<planar::AncfCable<EngineeringStrain>, Constraint, GeneralizedAlpha>{"ANCF engin.", {}, implicit});
+      BeamCase{o, film}, Formulation<planar::Lrvf, Constraint, GeneralisedAlpha>{"LRVF", {}, implicit},
+      Formulation<planar::AncfCable<GreenStrain>, Constraint, GeneralisedAlpha>{"ANCF Green", {}, implicit},
+      Formulation<planar::AncfCable<EngineeringStrain>, Constraint, GeneralisedAlpha>{"ANCF engin.", {}, implicit});
   std::cout << "\nThe clamped beam under the tip moment, three formulations:\n\n";
   report(c, o.out / "comparison", !o.no_plot);
   if (film) film->write(o.film);
@@ -196,7 +196,7 @@ int main(int argc, char** argv) {
               "formulation of the case 'moment'; only lrvf has two meshes");
   line.positive("--elements", &o.elements, "elements along the beam");
   line.positive("--step", &o.step, "time step [s]");
-  line.positive("--until", &o.until, "end of the run [s]");
+  line.positive("--until", &o.end_time, "end of the run [s]");
   line.option("--moment", &o.moment, "moment at the tip [N m]");
   line.positive("--density", &o.density, "density, not printed in the thesis [kg/m^3]");
   line.option("--out", &o.out, "folder for CSV files and pictures");

@@ -17,7 +17,7 @@ namespace {
 
 struct Options {
   int links = 6, levels = 5, threads = 1;
-  double until = 0.5;
+  double end_time = 0.5;
   fs::path out = "out/chain_study";
   bool retry = false, no_plot = false;
 };
@@ -45,7 +45,7 @@ End swing(Options const& o, Policy const& policy, Integrator const& integrator, 
     before = rod;
   }
   State x = model.reference_state();
-  auto run = simulate(model, x, integrator, {.until = o.until, .step = step});
+  auto run = simulate(model, x, integrator, {.end_time = o.end_time, .step = step});
   double const begin = thread_seconds();
   run.run();
   return {position(model, x, before.at(Vec2(0.5 * length, 0.0))), thread_seconds() - begin};
@@ -55,7 +55,7 @@ std::array<double, 2> error_and_cost(Options const& o, Vec3 const& exact, Point 
   Penalty const pins{.stiffness = p["stiffness"], .damping = 0.02 * std::sqrt(p["stiffness"])};
   End const end = p.with(
       "integrator", [&](auto const& integrator) { return swing(o, pins, integrator, p["step"]); },
-      GeneralizedAlpha{.rho_inf = 0.8}, EnergyMomentum{}, Radau{}, RungeKutta4<>{});
+      GeneralisedAlpha{.rho_inf = 0.8}, EnergyMomentum{}, Radau{}, RungeKutta4<>{});
   return {(end.place - exact).norm(), end.seconds};
 }
 
@@ -86,8 +86,8 @@ void draw(Options const& o, StudyResults const& found, char const* x, std::strin
 void run(Options const& o, Ranks const& ranks) {
   std::size_t const n = std::size_t(o.levels);
   Study const study(
-      {o.out / "chain.study", std::to_string(o.links) + " rods, " + number(o.until) + " s"},
-      grid(formulations("integrator", {"GeneralizedAlpha", "EnergyMomentum", "Radau", "RungeKutta4"}),
+      {o.out / "chain.study", std::to_string(o.links) + " rods, " + number(o.end_time) + " s"},
+      grid(formulations("integrator", {"GeneralisedAlpha", "EnergyMomentum", "Radau", "RungeKutta4"}),
            axis("stiffness", "N/m", logarithmic(1e5, 1e9, n)), axis("step", "s", logarithmic(1e-2, 1e-4, n))),
       outputs("error [m]", measured("cpu [s]")));
   Vec3 const exact = swing(o, Constraint{}, Radau{}, 1e-3).place;
@@ -95,8 +95,8 @@ void run(Options const& o, Ranks const& ranks) {
                                             {.threads = o.threads, .retry_failed = o.retry});
   if (!ranks.first()) return;
   write_table(found, o.out / "chain.csv");
-  std::cout << found.points.size() << " points, " << found.taken_over << " of them from an earlier run, "
-            << found.failed() << " failed\n";
+  std::cout << found.points.size() << " points, " << found.resumed << " of them from an earlier run, " << found.failed()
+            << " failed\n";
   std::vector<double> const errors = found.column("error [m]");
   if (errors.empty()) return;
   draw(o, found, "cpu [s]", "work_precision");
@@ -112,7 +112,7 @@ int main(int argc, char** argv) {
   CommandLine line{"A study: penalty pins of a chain, their stiffness, step and integrator against ideal pins."};
   line.between("--links", &o.links, 1, 100, "rods of the chain");
   line.between("--levels", &o.levels, 2, 9, "stiffnesses, and steps");
-  line.positive("--until", &o.until, "end of the runs [s]");
+  line.positive("--until", &o.end_time, "end of the runs [s]");
   line.between("--threads", &o.threads, 1, 4096, "that work on points");
   line.option("--out", &o.out, "folder of the record, the tables and the pictures");
   line.flag("--retry", &o.retry, "tries the points again that have failed");

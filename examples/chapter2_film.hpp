@@ -40,7 +40,7 @@ class BarFilm {
     Visual visual(model);
     visual.sweep(body_, bar_, 40);
     scene_->record(x.t, visual.at(x));
-    System system(model, with<Entries::motion>);
+    System system(model, with<Capabilities::motion>);
     system.evaluate(x.q, x.v, x.t);
     add_reactions(*scene_, reactions_, system, x, 1e3);
   }

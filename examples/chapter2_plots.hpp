@@ -35,11 +35,11 @@ template <class M, class B>
 void add_snapshot(Figure& figure, M const& model, State const& x, BodyHandle<B> const& handle, double bar_length) {
   bool const first = figure.curves.empty();
   Curve position = shape_of(model, x, handle, bar_length);
-  position.color = 0;
+  position.colour = 0;
   if constexpr (std::is_same_v<B, planar::Lrvf>) {
     position.label = first ? "position mesh" : "";
     Curve rotation = implied_shape_of(model, x, handle);
-    rotation.color = 1;
+    rotation.colour = 1;
     rotation.style = "dashed";
     rotation.label = first ? "rotation mesh" : "";
     figure.curves.push_back(position);
@@ -82,8 +82,8 @@ inline void write_table(std::filesystem::path const& file, std::vector<std::stri
 }
 
 inline void draw(Figure const& figure, std::filesystem::path const& stem, bool plot) {
-  Drawn const drawn = write_figure(figure, stem, plot);
-  std::cout << "  " << stem.string() << (drawn == Drawn::png ? ".png" : ".gp") << '\n';
+  DrawResult const drawn = write_figure(figure, stem, plot);
+  std::cout << "  " << stem.string() << (drawn == DrawResult::png ? ".png" : ".gp") << '\n';
 }
 
 // The table of a comparison on the terminal, and all of it as files in a folder of its own.

@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 struct Options {
   std::string links = "rigid";
   bool bumps = false, clock = true;
-  double until = 3600.0, step = 1e-3, frame = 0.02, rho = 0.5, tolerance = 1e-5, budget = 12.0;
+  double end_time = 3600.0, step = 1e-3, frame = 0.02, rho = 0.5, tolerance = 1e-5, budget = 12.0;
   int threads = 1;
   fs::path drive, record;
 };
@@ -103,7 +103,7 @@ void write_report(WallClock const& clock, RunReport const& report, double simula
   double const n = double(std::max(report.steps, 1L));
   lines("Newton", {{"iterations", double(report.iterations) / n, 2},
                    {"factorisations", double(report.factorisations) / n, 2, "a step"},
-                   {"cut short", double(report.cut_short), 0, "steps"},
+                   {"cut short", double(report.over_budget), 0, "steps"},
                    {"left", report.left, 0, "times what is tolerated"},
                    {"halved", double(report.rejected), 0, "steps"}});
 }
@@ -113,9 +113,9 @@ void run(Options const& o) {
   DrivenVehicle const vehicle = vehicle_of(o, throttles);
   Pilot pilot(o, throttles);
   State x = vehicle.model.reference_state();
-  GeneralizedAlpha const alpha{.rho_inf = o.rho, .tolerance = o.tolerance, .newton = {.budget = o.budget}};
-  auto simulation =
-      simulate(vehicle.model, x, alpha, {.until = o.until, .step = o.step, .halvings = 6, .threads = o.threads});
+  GeneralisedAlpha const alpha{.rho_inf = o.rho, .tolerance = o.tolerance, .newton = {.budget = o.budget}};
+  auto simulation = simulate(vehicle.model, x, alpha,
+                             {.end_time = o.end_time, .step = o.step, .max_step_halvings = 6, .threads = o.threads});
   int const steps_of_frame = std::max(1, int(std::lround(o.frame / o.step)));
   WallClock clock(o.clock, 0.2);
   while (!simulation.done() && pilot.steer(x.t)) {
@@ -154,7 +154,7 @@ int main(int argc, char** argv) {
   line.option("--record", &o.record, "file for the orders that are given");
   line.flag("--bumps", &o.bumps, "a bump of 10 cm at 8 m");
   line.flag("!--no-clock", &o.clock, "as fast as it goes");
-  line.positive("--until", &o.until, "end [s]");
+  line.positive("--until", &o.end_time, "end [s]");
   line.positive("--step", &o.step, "[s]");
   line.positive("--frame", &o.frame, "time between looks at the clock and at the keys [s]");
   line.positive("--tolerance", &o.tolerance, "of Newton's method");

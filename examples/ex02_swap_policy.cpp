@@ -21,12 +21,12 @@ Result swing(P policy) {
   auto const pin = model.connect(Hinge{{}, policy}, model.ground().at({0, 0, 0}), rod.at(0.0), "pin");
   State x = model.reference_state();
   // 2. Released horizontally; the run ends where the rod hangs straight down.
-  RunOptions options{.until = 2.0, .step = 5e-4};
+  RunOptions options{.end_time = 2.0, .step = 5e-4};
   options.events.push_back({.name = "lowest point",
                             .value = [&](State const& s) { return position(model, s, rod.at(1.0))[0]; },
-                            .stops = true});
-  simulate(model, x, GeneralizedAlpha{.rho_inf = 0.9}, options).run();
-  return {reaction(model, x, pin).f[1], gap(model, x, pin).norm()};
+                            .terminal = true});
+  simulate(model, x, GeneralisedAlpha{.rho_inf = 0.9}, options).run();
+  return {reaction(model, x, pin).f[1], constraint_violation(model, x, pin).norm()};
 }
 
 int main() {

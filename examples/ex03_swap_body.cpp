@@ -21,7 +21,7 @@ Vec3 tip_at_half_a_second(B const& body) {
   auto const rod = model.add(body, "rod");
   model.connect(Pin{}, model.ground().at({0, 0, 0}), rod.at(0.0), "pin");
   State x = model.reference_state();
-  simulate(model, x, GeneralizedAlpha{.rho_inf = 0.8}, {.until = 0.5, .step = 1e-3}).run();
+  simulate(model, x, GeneralisedAlpha{.rho_inf = 0.8}, {.end_time = 0.5, .step = 1e-3}).run();
   return position(model, x, rod.at(1.0));  // at(s) is the same material point in all of them
 }
 

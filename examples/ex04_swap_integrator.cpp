@@ -1,5 +1,5 @@
 // Lesson: the integrator is one argument. One double pendulum with an implicit method and with explicit methods that
-// are stabilised by projection. Sample run: GeneralizedAlpha 2000 steps tip (-1.4448, -1.3218) energy error 3e-05 J
+// are stabilised by projection. Sample run: GeneralisedAlpha 2000 steps tip (-1.4448, -1.3218) energy error 3e-05 J
 // ...
 #include <polybody/polybody.hpp>
 
@@ -17,7 +17,7 @@ bool run(I const& integrator, double step) {
   model.connect(Pin{}, first.at({0.0, 0.0}), second.at({-1.0, 0.0}), "lower pin");
   State x = model.reference_state();
   // 2. An explicit integrator without stabilisation, RungeKutta4<>, would not compile here: the pins add rows.
-  auto simulation = simulate(model, x, integrator, {.until = 1.0, .step = step});
+  auto simulation = simulate(model, x, integrator, {.end_time = 1.0, .step = step});
   RunReport const& report = simulation.run();
   Vec3 const tip = position(model, x, second.at({0.0, 0.0}));
   double const drift = energy(model, x).total();
@@ -28,7 +28,7 @@ bool run(I const& integrator, double step) {
 }
 
 int main() {
-  bool good = run(GeneralizedAlpha{.rho_inf = 1.0}, 5e-4);
+  bool good = run(GeneralisedAlpha{.rho_inf = 1.0}, 5e-4);
   good = run(RungeKutta4<Projection>{}, 5e-3) && good;
   good = run(DormandPrince<Projection>{}, 1e-2) && good;
   good = run(CentralDifference<Projection>{}, 5e-4) && good;

@@ -20,7 +20,7 @@ int main() {
                       {.title = "c) curvatures for the same q", .x_label = "x [m]", .y_label = "|d^2u/dx^2| [1/m]"}};
   double largest[2] = {0.0, 0.0};
   for (int mode = 1; mode <= 2; ++mode) {
-    Curve shape{.color = mode - 1}, curvature{.label = mode == 1 ? "of u_1" : "of u_2", .color = mode - 1};
+    Curve shape{.colour = mode - 1}, curvature{.label = mode == 1 ? "of u_1" : "of u_2", .colour = mode - 1};
     for (int i = 0; i <= 200; ++i) {
       double const x = length * i / 200.0;
       shape.x.push_back(x);

@@ -60,7 +60,7 @@ void print_gradients(std::vector<Candidate> const& candidates, Numbers const& p)
   for (Candidate const& c : candidates) {
     VecX tip;
     MatX exact, forward, central;
-    double const run = seconds_of([&] { tip = c.tip(p); }), derived = seconds_of([&] { exact = c.slopes(p); });
+    double const run = seconds_of([&] { tip = c.tip(p); }), derived = seconds_of([&] { exact = c.derivatives(p); });
     forward = central = MatX(exact.rows(), exact.cols());
     auto const moved = [&](std::size_t j, double by) {
       Numbers other = p;
@@ -97,14 +97,14 @@ void draw_record(Options const& o, VecX const& record, std::vector<Candidate> co
   Curve points = curve_of(o, record, 1);
   points.label = "record";
   points.style = "points";
-  points.color = 6;
+  points.colour = 6;
   points.width = 0.8;
   fits.curves.push_back(points);
   for (std::size_t k = 0; k < found.size(); ++k) {
     VecX const tip = candidates[k].tip(found[k].value);
     Curve fit = curve_of(o, tip, 1), left = curve_of(o, record - tip, 1);
     fit.label = left.label = found[k].name;
-    fit.color = left.color = int(k);
+    fit.colour = left.colour = int(k);
     fit.style = k == 0 ? "dashed" : "lines";
     fits.curves.push_back(fit);
     rest.curves.push_back(left);
@@ -115,7 +115,7 @@ void draw_record(Options const& o, VecX const& record, std::vector<Candidate> co
 void draw_descent(Options const& o, std::vector<Estimate> const& found, Index values) {
   Figure figure{.title = "Descent of the residual", .x_label = "iteration", .y_label = "residual [mm]", .log_y = true};
   for (std::size_t k = 0; k < found.size(); ++k) {
-    Curve c{.label = found[k].name, .style = "linespoints", .color = int(k)};
+    Curve c{.label = found[k].name, .style = "linespoints", .colour = int(k)};
     for (std::size_t i = 0; i < found[k].sums.size(); ++i) {
       c.x.push_back(double(i));
       c.y.push_back(1e3 * std::sqrt(2.0 * found[k].sums[i] / double(values - Index(names.size()))));
@@ -149,10 +149,10 @@ void draw_ellipses(Options const& o, std::vector<Estimate> const& found) {
                    .y_label = std::string(i == 0 ? "c" : "c_t") + ", over the true one"};
       for (std::size_t k = first; k < found.size(); ++k) {
         Curve c = ellipse(o, found[k], i, i + 1);
-        c.color = int(k);
+        c.colour = int(k);
         panel.curves.push_back(std::move(c));
       }
-      panel.curves.push_back({.x = {1.0}, .y = {1.0}, .label = "true", .style = "points", .color = 6, .width = 2.5});
+      panel.curves.push_back({.x = {1.0}, .y = {1.0}, .label = "true", .style = "points", .colour = 6, .width = 2.5});
       panels.push_back(std::move(panel));
     }
   write_panels(panels, 2, o.out / "ellipses", !o.no_plot);
@@ -188,7 +188,7 @@ int main(int argc, char** argv) {
   line.positive("--noise", &o.noise, "deviation of the record's noise [m]");
   line.between("--off", &o.off, 1.0, 5.0, "factor by which the start is off the numbers that were recorded");
   line.option("--seed", &o.seed, "of the noise");
-  line.positive("--until", &o.experiment.until, "end of the record [s]");
+  line.positive("--until", &o.experiment.end_time, "end of the record [s]");
   line.option("--out", &o.out, "folder of the pictures");
   line.flag("--no-plot", &o.no_plot, "data and scripts only");
   if (auto const code = line.parse(argc, argv)) return *code;

@@ -47,8 +47,8 @@ void print_crosswise(std::vector<Candidate> const& candidates, std::vector<Light
   std::printf("\n");
 }
 
-Curve counted(std::vector<double> const& y, std::string label, int color, std::string style) {
-  Curve c{.y = y, .label = std::move(label), .style = std::move(style), .color = color};
+Curve counted(std::vector<double> const& y, std::string label, int colour, std::string style) {
+  Curve c{.y = y, .label = std::move(label), .style = std::move(style), .colour = color};
   for (std::size_t i = 0; i < y.size(); ++i) c.x.push_back(double(i + 1));
   return c;
 }
@@ -70,7 +70,7 @@ void draw_descent(Options const& o, std::vector<Lightest> const& found) {
 void draw_designs(Options const& o, std::vector<Lightest> const& found) {
   Figure figure{.title = "The lightest link under each formulation", .x_label = "x [m]", .y_label = "y [mm]"};
   for (std::size_t k = 0; k < found.size(); ++k) {
-    Curve c{.label = found[k].name, .color = int(k)};
+    Curve c{.label = found[k].name, .colour = int(k)};
     auto const edge = [&](double side) {
       for (std::size_t n = 0; n < found[k].heights.size(); ++n) {
         std::size_t const i = side > 0.0 ? n : found[k].heights.size() - 1 - n;
@@ -98,9 +98,9 @@ void draw_stress(Options const& o, std::vector<Candidate> const& candidates, std
                  .y_label = "stress, over what is allowed"};
     for (std::size_t k = 0; k < candidates.size(); ++k) {
       MatX const s = candidates[k].stresses(d->heights);
-      Curve c{.label = candidates[k].name, .style = k == 0 ? "dashed" : "lines", .color = int(k)};
+      Curve c{.label = candidates[k].name, .style = k == 0 ? "dashed" : "lines", .colour = int(k)};
       for (Index i = 0; i < s.rows(); ++i) {
-        c.x.push_back(o.task.until * double(i) / double(s.rows() - 1));
+        c.x.push_back(o.task.end_time * double(i) / double(s.rows() - 1));
         c.y.push_back(s(i, 0));
       }
       panel.curves.push_back(std::move(c));
@@ -146,7 +146,7 @@ int main(int argc, char** argv) {
   o.task.allowed = 1e6 * megapascals;
   o.task.sections = std::size_t(sections);
   o.task.turn.middle = 4.0 * o.task.turn.time;
-  o.task.until = 7.5 * o.task.turn.time;
+  o.task.end_time = 7.5 * o.task.turn.time;
   try {
     run(o);
   } catch (Error const& e) {

@@ -28,7 +28,7 @@ using Hinge = Joint<Revolute, Constraint>;
 struct Options {
   std::string files = POLYBODY_LINK_FILES;
   Index modes = 16;
-  double until = 1.0;
+  double end_time = 1.0;
   double step = 1e-3;
 };
 
@@ -74,8 +74,10 @@ std::vector<Vec3> swing(B const& body, Point const& pin, Point const& end, Vec3 
   model.connect(Hinge{Revolute{.axis = {0, 0, 1}}, Constraint{}}, model.ground().at(at), link.at(pin), "pin");
   State x = model.reference_state();
   std::vector<Vec3> path;
-  for (State const& now : simulate(model, x, GeneralizedAlpha{.rho_inf = 0.8}, {.until = o.until, .step = o.step}))
-    if (now.t >= 0.1 * o.until * (double(path.size()) + 1.0) - 1e-9) path.push_back(position(model, now, link.at(end)));
+  for (State const& now :
+       simulate(model, x, GeneralisedAlpha{.rho_inf = 0.8}, {.end_time = o.end_time, .step = o.step}))
+    if (now.t >= 0.1 * o.end_time * (double(path.size()) + 1.0) - 1e-9)
+      path.push_back(position(model, now, link.at(end)));
   return path;
 }
 
@@ -120,7 +122,7 @@ void run(Options const& o) {
   std::printf(
       "\nits other hole, as a pendulum:\n  t [s]        flexible x, y [m]            rigid x, y [m]    apart [m]\n");
   for (std::size_t k = 0; k < flexible_path.size(); ++k)
-    std::printf("  %4.2f    (%10.7f, %10.7f)  (%10.7f, %10.7f)    %.1e\n", 0.1 * o.until * double(k + 1),
+    std::printf("  %4.2f    (%10.7f, %10.7f)  (%10.7f, %10.7f)    %.1e\n", 0.1 * o.end_time * double(k + 1),
                 flexible_path[k][0], flexible_path[k][1], rigid_path[k][0], rigid_path[k][1],
                 (flexible_path[k] - rigid_path[k]).norm());
 }
@@ -133,7 +135,7 @@ int main(int argc, char** argv) {
   line.option("--files", &o.files,
               "folder of link.mass.mtx, link.stiffness.mtx, link.nodes.txt and link.reference.txt");
   line.not_negative("--modes", &o.modes, "modes between the holes");
-  line.positive("--until", &o.until, "end of the run [s]");
+  line.positive("--until", &o.end_time, "end of the run [s]");
   line.positive("--step", &o.step, "time step [s]");
   if (auto const code = line.parse(argc, argv)) return *code;
   try {

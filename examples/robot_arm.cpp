@@ -20,7 +20,7 @@ struct Options {
   double step = 5e-3;
   double density = 7850.0;
   double slow_ramp = 10.0;
-  double until = 0.0;
+  double end_time = 0.0;
   double window = 20.0;
   double stiffer = 1.0;
   fs::path out = "out/robot_arm";
@@ -52,10 +52,10 @@ std::vector<Case> cases(Options const& o) {
 
 void figure_2_4(Options const& o) {
   Figure f{.title = "Figure 2.4: prescribed angle of the pin", .x_label = "t [s]", .y_label = "angle [rad]"};
-  int color = 0;
+  int colour = 0;
   for (double ramp : {o.slow_ramp, 4.5}) {
     Ramp const law{.target = angle, .duration = ramp};
-    Curve c{.label = color == 0 ? "slow (Figures 2.5, 2.6)" : "fast (Figures 2.7, 2.8)", .color = color};
+    Curve c{.label = color == 0 ? "slow (Figures 2.5, 2.6)" : "fast (Figures 2.7, 2.8)", .colour = color};
     for (double t : {0.0, ramp, o.slow_ramp * 1.2}) {
       c.x.push_back(t);
       c.y.push_back(law(t).value);
@@ -102,7 +102,7 @@ template <class B>
 void run_case(Options const& o, Case const& c) {
   RobotArm<B> arm(bar(c.stiffness, o.density), o.elements, c.ramp, c.axial_force);
   State x = arm.model.reference_state();
-  double const until = o.until > 0.0 ? o.until : c.ramp;
+  double const end_time = o.end_time > 0.0 ? o.end_time : c.ramp;
   Figure snapshots{
       .title = c.title + ", one shape a second", .x_label = "x [m]", .y_label = "y [m]", .equal_axes = true};
   std::vector<std::string> heads{"t [s]", "tip x [m]", "tip y [m]", "kinetic energy [J]", "strain energy [J]"};
@@ -111,19 +111,20 @@ void run_case(Options const& o, Case const& c) {
     heads.insert(heads.end(), {"node gap [m]", "length of the position mesh [m]", "length of the rotation mesh [m]"});
   std::vector<std::vector<double>> columns(heads.size());
   MeshWatch watch{.of = c};
-  double next_snapshot = 0.0;
+  double next_checkpoint = 0.0;
   if (two_meshes) meshes_head();
-  Progress progress(0.0, until, c.name);
-  for (State const& now : simulate(arm.model, x, GeneralizedAlpha{.rho_inf = 0.8}, {.until = until, .step = o.step})) {
+  Progress progress(0.0, end_time, c.name);
+  for (State const& now :
+       simulate(arm.model, x, GeneralisedAlpha{.rho_inf = 0.8}, {.end_time = end_time, .step = o.step})) {
     Vec3 const tip = position(arm.model, now, arm.arm.at(length));
     Energy const e = energy(arm.model, now);
     std::vector<double> row{now.t, tip[0], tip[1], e.kinetic, e.strain};
     if constexpr (two_meshes) watch.see(arm, now, row);
     for (std::size_t i = 0; i < row.size(); ++i) columns[i].push_back(row[i]);
-    if (now.t >= next_snapshot - 1e-9) {
+    if (now.t >= next_checkpoint - 1e-9) {
       add_snapshot(snapshots, arm.model, now, arm.arm, length);
       if constexpr (two_meshes) watch.snapshot(arm, now);
-      next_snapshot += 1.0;
+      next_checkpoint += 1.0;
     }
     progress.update(now.t);
   }
@@ -162,7 +163,7 @@ struct ArmCase {
       observer = BarFilm<M, typename F::BodyType>(film->scene(f.name), arm.arm, visible_bar(stiffness, o.density));
     return Scenario<M>{std::move(arm.model),
                        start,
-                       {.until = o.until > 0.0 ? o.until : 1.5 * ramp, .step = o.step},
+                       {.end_time = o.end_time > 0.0 ? o.end_time : 1.5 * ramp, .step = o.step},
                        std::move(outputs),
                        observer};
   }
@@ -174,15 +175,15 @@ std::shared_ptr<Film> film_of(Options const& o) {
 }
 
 void comparison(Options const& o) {
-  GeneralizedAlpha const implicit{.rho_inf = 0.8};
+  GeneralisedAlpha const implicit{.rho_inf = 0.8};
   Penalty const stiff{.stiffness = 1e9, .damping = 1e5};
   std::shared_ptr<Film> const film = film_of(o);
   Comparison const c = compare(
-      ArmCase{o, medium, 4.5, film}, Formulation<planar::Lrvf, Constraint, GeneralizedAlpha>{"LRVF", {}, implicit},
-      Formulation<planar::Lrvf, Penalty, GeneralizedAlpha>{"LRVF, penalty", stiff, implicit},
-      Formulation<planar::AncfCable<GreenStrain>, Constraint, GeneralizedAlpha>{"ANCF Green", {}, implicit},
-      Formulation<planar::AncfCable<EngineeringStrain>, Constraint, GeneralizedAlpha>{"ANCF engin.", {}, implicit},
-      Formulation<planar::Rigid, Constraint, GeneralizedAlpha>{"rigid", {}, implicit});
+      ArmCase{o, medium, 4.5, film}, Formulation<planar::Lrvf, Constraint, GeneralisedAlpha>{"LRVF", {}, implicit},
+      Formulation<planar::Lrvf, Penalty, GeneralisedAlpha>{"LRVF, penalty", stiff, implicit},
+      Formulation<planar::AncfCable<GreenStrain>, Constraint, GeneralisedAlpha>{"ANCF Green", {}, implicit},
+      Formulation<planar::AncfCable<EngineeringStrain>, Constraint, GeneralisedAlpha>{"ANCF engin.", {}, implicit},
+      Formulation<planar::Rigid, Constraint, GeneralisedAlpha>{"rigid", {}, implicit});
   std::cout << "\nThe arm of medium stiffness, 1.5 rad in 4.5 s, under five formulations:\n\n";
   report(c, o.out / "comparison", !o.no_plot);
   if (film) film->write(o.film);
@@ -195,8 +196,8 @@ void drift(Options const& o, Figure& figure, std::string const& name, I const& i
       energy_drift<B>({.density = o.density, .window = o.window, .step = step}, o.elements, integrator);
   std::printf("  energy %-14s %-16s %8.3f %12.1f %12.2e %12.2e\n", name.c_str(), I::name, 1e3 * step, d.start,
               d.largest, d.end);
-  if (std::is_same_v<I, GeneralizedAlpha> && step < o.step) return;
-  Curve c{.label = name + ", " + I::name, .color = int(figure.curves.size())};
+  if (std::is_same_v<I, GeneralisedAlpha> && step < o.step) return;
+  Curve c{.label = name + ", " + I::name, .colour = int(figure.curves.size())};
   if constexpr (std::is_same_v<I, EnergyMomentum>) c.style = "dashed";
   c.x = d.t;
   for (double off : d.off) c.y.push_back(1e6 * off);
@@ -205,7 +206,7 @@ void drift(Options const& o, Figure& figure, std::string const& name, I const& i
 
 template <class B>
 void drifts(Options const& o, Figure& figure, char const* name) {
-  for (double part : {1.0, 0.5, 0.25}) drift<B>(o, figure, name, GeneralizedAlpha{.rho_inf = 0.8}, part * o.step);
+  for (double part : {1.0, 0.5, 0.25}) drift<B>(o, figure, name, GeneralisedAlpha{.rho_inf = 0.8}, part * o.step);
   drift<B>(o, figure, name, EnergyMomentum{}, o.step);
 }
 
@@ -241,7 +242,7 @@ int main(int argc, char** argv) {
               "formulation of the snapshots; only lrvf has two meshes");
   line.positive("--elements", &o.elements, "elements along the arm");
   line.positive("--step", &o.step, "time step [s]");
-  line.not_negative("--until", &o.until, "end of the run [s]; 0: the end of the ramp");
+  line.not_negative("--until", &o.end_time, "end of the run [s]; 0: the end of the ramp");
   line.positive("--density", &o.density, "density, not printed in the thesis [kg/m^3]");
   line.positive("--slow-ramp", &o.slow_ramp, "duration of the slow ramp, not printed in the thesis [s]");
   line.positive("--stiffer", &o.stiffer,

@@ -31,12 +31,12 @@ class Cache {
     return std::ranges::any_of(runs_, [&](auto const& made) { return made.first.first == speed; });
   }
   // Under the settings asked for; with bands also under those that the thesis does not give.
-  std::vector<SettingRuns> const& at(double speed, double until) {
-    auto const key = std::pair(speed, until);
+  std::vector<SettingRuns> const& at(double speed, double end_time) {
+    auto const key = std::pair(speed, end_time);
     if (auto const found = runs_.find(key); found != runs_.end()) return found->second;
     Options o = options_;
     o.speed = speed;
-    o.until = until;
+    o.end_time = end_time;
     if (!runs_.empty()) o.film = nullptr;
     if (o.bands) return runs_.emplace(key, runs_of_settings(o)).first->second;
     SettingRuns as_given{"as given", o, run(o, {on_pins(rigid_links()), on_pins(cable_links())})};
@@ -98,7 +98,7 @@ void report_bending(StressRuns const& runs, std::size_t k) {
 }
 
 void report(Options const& o, StressRuns const& runs) {
-  std::printf("%g rad/s, %g s, steps of %g ms, rho %g; strain of left link %d, low pass %g Hz\n", o.speed, o.until,
+  std::printf("%g rad/s, %g s, steps of %g ms, rho %g; strain of left link %d, low pass %g Hz\n", o.speed, o.end_time,
               1e3 * o.step, o.rho, watched_link, o.cut_off);
   std::size_t const last = runs.comparison.runs.size() - 1;
   std::size_t beside = 0;  // index of the ANCF cables if they are among the runs, else 0
@@ -155,7 +155,7 @@ Figure bending_figure(Options const& o, StressRuns const& runs) {
   Figure f{.title = "Stress by bending in the middle of a link, " + number(o.speed) + " rad/s",
            .x_label = "t [s]",
            .y_label = "stress [MPa]",
-           .x_range = {{0.95 * o.until, o.until}}};
+           .x_range = {{0.95 * o.end_time, o.end_time}}};
   for (std::size_t k = 0; k < runs.comparison.runs.size(); ++k)
     f.curves.push_back(
         curve(label_of(runs, k), runs.times(k), runs.bending(k), int(k), 1e-6 * m113::youngs_modulus, 1));
@@ -183,12 +183,12 @@ bool wanted(Options const& o, std::string const& figure) { return o.figure == "a
 
 void figures(Options const& o) {
   Cache cache(o);
-  double const until = std::min(o.until, 10.0), twice = 2.0 * until;
+  double const end_time = std::min(o.end_time, 10.0), twice = 2.0 * end_time;
   bool const longer = wanted(o, "4.11") || wanted(o, "4.12");
-  auto const [slow, fast] = m113::chapter_4_speeds;
+  auto const [slow, fast] = m113::fast_sprocket_velocities;
   std::string const filter = ", " + number(o.cut_off) + " Hz low pass";
   auto const runs_at = [&](double speed) -> std::vector<SettingRuns> const& {
-    return cache.at(speed, speed == slow && longer ? twice : until);
+    return cache.at(speed, speed == slow && longer ? twice : end_time);
   };
   auto const name_of = [](std::string number) {
     std::replace(number.begin(), number.end(), '.', '_');
@@ -204,7 +204,7 @@ void figures(Options const& o) {
     add_bands(f, settings, scale, 1, [&](SettingRuns const& s, std::size_t k) {
       return Filtered{s.runs.times(k), s.runs.history(k, output)};
     });
-    f.x_range = {{0.0, until}};
+    f.x_range = {{0.0, end_time}};
     draw(o, f, name_of(number));
   };
   auto const strain = [&](std::string const& number, double speed, bool filtered, double from, double to) {
@@ -237,14 +237,14 @@ void figures(Options const& o) {
       history(std::string("4.5") + letter, speed, "forward velocity [m/s]", "chassis forward velocity",
               "velocity [m/s]");
   }
-  if (wanted(o, "4.6")) draw(o, strain("4.6", slow, false, 0.0, until), name_of("4.6"));
+  if (wanted(o, "4.6")) draw(o, strain("4.6", slow, false, 0.0, end_time), name_of("4.6"));
   if (wanted(o, "4.7")) history("4.7", slow, "joint force x [N]", "longitudinal joint force", "force [kN]", 1e-3);
-  if (wanted(o, "4.8")) draw(o, strain("4.8", slow, true, 0.0, until), name_of("4.8"));
-  if (wanted(o, "4.9")) draw(o, strain("4.9", fast, false, 0.0, until), name_of("4.9"));
-  if (wanted(o, "4.10")) draw(o, strain("4.10", fast, true, 0.0, until), name_of("4.10"));
-  if (wanted(o, "4.11")) draw(o, strain("4.11", slow, true, until, twice), name_of("4.11"));
+  if (wanted(o, "4.8")) draw(o, strain("4.8", slow, true, 0.0, end_time), name_of("4.8"));
+  if (wanted(o, "4.9")) draw(o, strain("4.9", fast, false, 0.0, end_time), name_of("4.9"));
+  if (wanted(o, "4.10")) draw(o, strain("4.10", fast, true, 0.0, end_time), name_of("4.10"));
+  if (wanted(o, "4.11")) draw(o, strain("4.11", slow, true, end_time, twice), name_of("4.11"));
   if (wanted(o, "4.12")) {
-    Figure f = strain("4.12", slow, true, until, twice);
+    Figure f = strain("4.12", slow, true, end_time, twice);
     f.title = "Figure 4.12: axial stress of a link, " + number(slow) + " rad/s" + filter;
     f.y_label = "axial stress [MPa]";
     for (Curve& c : f.curves)
@@ -260,7 +260,7 @@ void figures(Options const& o) {
 void fatigue(Options const& o, StressRuns const& runs) {
   Figure f{.title = "Ranges of axial stress, " + number(o.speed) + " rad/s",
            .x_label = "range [MPa]",
-           .y_label = "cycles in " + number(o.until) + " s",
+           .y_label = "cycles in " + number(o.end_time) + " s",
            .log_y = true};
   for (std::size_t k = 0; k < runs.comparison.runs.size(); ++k) {
     auto const cycles = cycles_of(runs.raw(k));
@@ -271,7 +271,7 @@ void fatigue(Options const& o, StressRuns const& runs) {
     double const width = 0.25e6;
     std::vector<double> bins = binned(cycles, width);
     bins.push_back(bins.back());
-    Curve c{.label = label_of(runs, k), .style = "steps", .color = int(k)};
+    Curve c{.label = label_of(runs, k), .style = "steps", .colour = int(k)};
     for (std::size_t i = 0; i < bins.size(); ++i) {
       c.x.push_back(1e-6 * width * double(i));
       c.y.push_back(bins[i]);
@@ -282,7 +282,7 @@ void fatigue(Options const& o, StressRuns const& runs) {
 }
 
 void compare_steps(Options const& o, StressRuns const& coarse, StressRuns const& fine) {
-  double const from = std::min(1.0, 0.25 * o.until);
+  double const from = std::min(1.0, 0.25 * o.end_time);
   std::printf("%s, steps of %g and %g ms: filtered strain %.2f %% apart (rms from %.2g s on); CPU %.1f and %.1f s\n",
               coarse.name(0).c_str(), 1e3 * o.step, 0.5e3 * o.step, 1e2 * off(o, fine, 0, coarse, 0, from), from,
               coarse.comparison.runs[0].cpu, fine.comparison.runs[0].cpu);
@@ -291,9 +291,9 @@ void compare_steps(Options const& o, StressRuns const& coarse, StressRuns const&
 void show(Options const& o, StressRuns const& r) {
   report(o, r);
   if (o.fatigue) fatigue(o, r);
-  draw(o, strain_figure(o, r, "Axial strain of a link", false, 0.0, o.until), "strain");
+  draw(o, strain_figure(o, r, "Axial strain of a link", false, 0.0, o.end_time), "strain");
   draw(o, bending_figure(o, r), "bending");
-  draw(o, strain_figure(o, r, "Axial strain of a link, " + number(o.cut_off) + " Hz low pass", true, 0.0, o.until),
+  draw(o, strain_figure(o, r, "Axial strain of a link, " + number(o.cut_off) + " Hz low pass", true, 0.0, o.end_time),
        "strain_filtered");
 }
 
@@ -330,7 +330,8 @@ Cell cell_of(Options const& o, Combination const& c) {
                   .energy = r.outcomes[0].relative,
                   .turning = yaw_rate(r, 0, from)};
   std::printf("%-10s %-10s %6td %5td %8.1f %6.2f %6.3f %11.4f %9.3f %9.2f %9.2e %9.3f", c.links.c_str(), c.pins.c_str(),
-              one.census.speeds, one.census.rows, one.cpu, double(one.run.iterations) / double(one.run.steps),
+              one.problem_size.velocities, one.problem_size.rows, one.cpu,
+              double(one.run.iterations) / double(one.run.steps),
               double(one.run.factorisations) / double(one.run.steps), cell.forward, 1e5 * cell.strain,
               1e-3 * cell.force, cell.gap, 1e2 * cell.energy);
   if (!o.turn.empty()) std::printf(" %13.5f", cell.turning);
@@ -368,7 +369,7 @@ void matrix(Options o) {
   std::printf(
       "%g rad/s, %g s, steps of %g ms, rho %g; pins of %g N/m where they yield; from half of the run on, or the "
       "plateau: strain of left link %d (low pass %g Hz), largest force in its front pin, largest gap of a pin\n",
-      o.speed, o.until, 1e3 * o.step, o.rho, m113::pin_stiffness, watched_link, o.cut_off);
+      o.speed, o.end_time, 1e3 * o.step, o.rho, m113::pin_stiffness, watched_link, o.cut_off);
   std::printf("%-10s %-10s %6s %5s %8s %6s %6s %11s %9s %9s %9s %9s%s\n", "links", "pins", "speeds", "rows", "CPU [s]",
               "iter.", "fact.", "forward [m]", "strain e-5", "force [kN]", "gap [m]", "energy [%]",
               o.turn.empty() ? "" : "    yaw [rad/s]");
@@ -409,7 +410,7 @@ void compare_terms(Options o) {
         .centrifugal = false,
         .spin = false}}};
   std::printf("%g rad/s, %g s, steps of %g ms, rho %g; left link %d, from half of the run on, or the plateau\n",
-              o.speed, o.until, 1e3 * o.step, o.rho, watched_link);
+              o.speed, o.end_time, 1e3 * o.step, o.rho, watched_link);
   std::printf("%-52s %10s %9s %9s %9s %10s\n", "floating frames with", "strain e-5", "off [%]", "raw [%]", "bend. [%]",
               "energy [%]");
   Combination const c = on_pins(modal_links(), o.pins);
@@ -420,7 +421,7 @@ void compare_terms(Options o) {
     if (whole.links.empty()) whole = r;
     double const from = plateau(r.times(0));
     auto const unfiltered = [&](Told of) {
-      RmsDifference d(from, o.until);
+      RmsDifference d(from, o.end_time);
       d.add({r.times(0), (r.*of)(0)}, {whole.times(0), (whole.*of)(0)});
       return d.value();
     };
@@ -447,20 +448,20 @@ void surface_stress(Options o) {
     auto const& coupled = r.links[1]->surface.at(name);
     Span const a = span_of(r.times(0), decoupled, from), b = span_of(r.times(1), coupled, from);
     auto const apart = [&](double since) {
-      RmsDifference d(since, o.until);
+      RmsDifference d(since, o.end_time);
       d.add({r.times(0), decoupled}, {r.times(1), coupled});
       return 1e2 * d.value();
     };
-    RmsDifference slow(from, o.until);
+    RmsDifference slow(from, o.end_time);
     slow.add({r.filtered_times(0), r.filtered(0, decoupled, o.cut_off)},
              {r.filtered_times(1), r.filtered(1, coupled, o.cut_off)});
     std::printf("%-28s %7.3f %7.3f %8.3f %8.3f %8.2f %% %8.2f %% %8.2f %%\n", name.c_str(), 1e-6 * a.mean,
-                1e-6 * b.mean, 1e-6 * a.most, 1e-6 * b.most, apart(std::min(1.0, 0.25 * o.until)), apart(from),
+                1e-6 * b.mean, 1e-6 * a.most, 1e-6 * b.most, apart(std::min(1.0, 0.25 * o.end_time)), apart(from),
                 1e2 * slow.value());
     Figure f{.title = "Von Mises stress, " + name + ", " + number(o.speed) + " rad/s",
              .x_label = "t [s]",
              .y_label = "stress [MPa]",
-             .x_range = {{0.95 * o.until, o.until}}};
+             .x_range = {{0.95 * o.end_time, o.end_time}}};
     f.curves = {curve("rigid, decoupled", r.times(0), decoupled, 0, 1e-6, 1),
                 curve("finite element link", r.times(1), coupled, 1, 1e-6, 1)};
     std::string file = "von_mises_" + name;
@@ -479,7 +480,7 @@ void side_by_side(Options const& o, std::vector<Combination> const& combinations
   draw(o,
        strain_figure(o, r,
                      "Axial strain of a link, " + number(o.speed) + " rad/s, " + number(o.cut_off) + " Hz low pass",
-                     true, 0.0, o.until),
+                     true, 0.0, o.end_time),
        "strain_filtered");
 }
 
@@ -492,7 +493,7 @@ void open_film(Options& o) {
         "A film shows one run, or rigid links beside cables: --film and --viewer go with --links, --figure, --compare "
         "links, --compare pair and --compare ensemble.");
   o.film = vehicle_film(o.viewer, "The tracked vehicle of Chapter 4: stress of its links");
-  if (!o.figure.empty()) o.film_until = std::min(o.until, 10.0);
+  if (!o.figure.empty()) o.film_until = std::min(o.end_time, 10.0);
 }
 
 }  // namespace
@@ -502,7 +503,7 @@ int main(int argc, char** argv) {
   o.masses = m113::with_steel_links();
   o.step = 1e-3;
   o.rho = 0.5;
-  o.speed = m113::chapter_4_speeds[0];
+  o.speed = m113::fast_sprocket_velocities[0];
   o.out = "out/track_stress";
   o.files = POLYBODY_TRACK_LINK_FILES;
   std::string contacts = "middle";
@@ -526,7 +527,7 @@ int main(int argc, char** argv) {
   line.flag("--bumps", &o.bumps, "a course with three bumps");
   line.option("--figure", &o.figure, "4.3 to 4.12 of the thesis, or all");
   line.option("--speed", &o.speed, "of the sprockets after 8 s [rad/s]");
-  line.positive("--until", &o.until, "end of the run [s]");
+  line.positive("--until", &o.end_time, "end of the run [s]");
   line.positive("--step", &o.step, "[s]");
   line.between("--rho", &o.rho, 0.0, 1.0, "spectral radius at infinity of the integrator");
   line.positive("--cut-off", &o.cut_off, "of the low pass [Hz]");

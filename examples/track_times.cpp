@@ -19,7 +19,7 @@ using namespace polybody;
 namespace {
 
 struct Options {
-  double until = 0.2, tolerance = 1e-6, limit = 60.0, speed = 20.0;
+  double end_time = 0.2, tolerance = 1e-6, limit = 60.0, speed = 20.0;
   bool names = false;
 };
 
@@ -29,7 +29,7 @@ double processor_time() { return double(std::clock()) / CLOCKS_PER_SEC; }
 /// power iteration with differences of accelerations, over two passes at a time, as pairs of complex ones turn.
 double fastest_rate(System& system, State const& x) {
   ForwardDynamics<> forward(system);
-  Index const n = system.speeds();
+  Index const n = system.velocities();
   VecX place = VecX::Random(n), speed = VecX::Random(n), q = x.q, v = x.v, a = x.a, lambda = x.lambda;
   forward.accelerations(system, {x.q, x.v, x.t}, a, lambda);
   VecX const before = a;
@@ -62,7 +62,7 @@ struct Taken {
 };
 void write(Lines& lines, std::string const& name, Taken const& t, double of_pins) {
   double const step = t.simulated / double(t.report.steps);
-  lines("steps, " + name, {{"speeds", double(t.system.speeds()), 0},
+  lines("steps, " + name, {{"speeds", double(t.system.velocities()), 0},
                            {"rows", double(t.system.rows()), 0},
                            {"simulated", t.simulated, 3, "s"},
                            {"steps", double(t.report.steps), 0},
@@ -89,17 +89,17 @@ double measure(Options const& o, std::string const& name, Policy const& policy, 
   System system(model);
   AdamsBashforthMoulton<CoordinatePartitioning> const integrator{.relative_tolerance = o.tolerance,
                                                                  .absolute_tolerance = o.tolerance};
-  auto run = simulate(model, x, integrator, {.until = o.until, .step = 1e-5});
+  auto run = simulate(model, x, integrator, {.end_time = o.end_time, .step = 1e-5});
   Violation worst;
   double spent = 0.0;
   long seen = 0;
-  Progress progress(0.0, o.until, name);
+  Progress progress(0.0, o.end_time, name);
   while (!run.done() && spent < o.limit) {
     double const start = processor_time();
     run.advance();
     spent += processor_time() - start;
     if (seen++ % 100 != 0) continue;
-    Violation const open = violation(system, x);
+    Violation const open = largest_violation(system, x);
     worst.position = std::max(worst.position, open.position);
     worst.velocity = std::max(worst.velocity, open.velocity);
     worst.acceleration = std::max(worst.acceleration, open.acceleration);
@@ -111,7 +111,8 @@ double measure(Options const& o, std::string const& name, Policy const& policy, 
   Lines lines;
   write(lines, name, taken, of_pins);
   if (o.names && of_pins == 0.0) {
-    std::vector<std::string> const independent = independent_speeds(stepped, reduce(stepped, model.reference_state()));
+    std::vector<std::string> const independent =
+        independent_velocities(stepped, reduce(stepped, model.reference_state()));
     lines("partition, " + name, {{"independent speeds", double(independent.size()), 0}});
     for (std::string const& each : independent) std::cout << "    " << each << '\n';
   }
@@ -123,7 +124,7 @@ double measure(Options const& o, std::string const& name, Policy const& policy, 
 int main(int argc, char** argv) {
   Options o;
   CommandLine line{"The vehicle by coordinate partitioning and Adams-Bashforth-Moulton: processor times of its pins."};
-  line.positive("--until", &o.until, "end of the runs [s]");
+  line.positive("--until", &o.end_time, "end of the runs [s]");
   line.positive("--tolerance", &o.tolerance, "relative and absolute, of all runs");
   line.positive("--limit", &o.limit, "processor time after which a run is cut [s]");
   line.option("--speed", &o.speed, "of the sprockets from 0.6 s on [rad/s]");

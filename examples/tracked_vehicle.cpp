@@ -77,7 +77,7 @@ void report(Options const& o, Runs const& runs, Lines& lines) {
 void table_3_4(Options const& o) {
   std::cout << "Table 3.4\n";
   Lines lines;
-  auto const count = [&](char const* name, Census const& c, char const* thesis) {
+  auto const count = [&](char const* name, ProblemSize const& c, char const* thesis) {
     lines(std::string("Table 3.4, ") + name,
           {{"coordinates", double(c.coordinates), 0},
            {"degrees of freedom", double(c.degrees_of_freedom), 0},
@@ -239,9 +239,9 @@ void halve(Options const& o) {
                              {"half", 1e3 * half.step, 3, "ms"},
                              {"forward", x(coarse), 4, "m"},
                              {"apart", 1e3 * std::abs(x(fine) - x(coarse)), 3, "mm"}};
-  if (o.until > 10.0)
+  if (o.end_time > 10.0)
     numbers.push_back({"speed apart", 1e3 * (std::abs(mean_speed(fine, 0) - mean_speed(coarse, 0))), 2, "mm/s"});
-  if (o.until >= 4.0) numbers.push_back({"30 Hz forces apart", 1e2 * force_difference(coarse, 0, fine, 0), 2, "%"});
+  if (o.end_time >= 4.0) numbers.push_back({"30 Hz forces apart", 1e2 * force_difference(coarse, 0, fine, 0), 2, "%"});
   Lines{}("halved", numbers);
 }
 
@@ -268,7 +268,7 @@ int main(int argc, char** argv) {
   line.one_of("--figure", &o.figure,
               {"3.6", "3.7", "3.8", "3.9", "3.10", "3.11", "3.12", "3.13", "3.14", "3.15", "table", "all"},
               "of the thesis, with its numbers, Table 3.4, or all");
-  line.positive("--until", &o.until, "end of the run [s]");
+  line.positive("--until", &o.end_time, "end of the run [s]");
   line.one_of("--integrator", &o.integrator, {"alpha", "hht", "radau", "adams", "dormand-prince", "rk"},
               "alpha, hht, radau: implicit; adams, rk: explicit, by coordinate partitioning; dormand-prince: explicit, "
               "projected");

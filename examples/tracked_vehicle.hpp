@@ -27,12 +27,12 @@ namespace fs = std::filesystem;
 inline constexpr int watched_pin = 20;  // of the left track, on the ground at the start
 
 struct Settings {
-  m113::Solids masses = m113::thesis;
-  double until = 10.0;
+  m113::Solids masses = m113::wallin_2016;
+  double end_time = 10.0;
   double step = 5e-4;
   double first_step = 0.0;  // of an integrator that controls its step, whose longest is `step`; 0: `step`
   double sampling = 0.0;    // of the histories [s]; 0: every step
-  double speed = m113::chapter_3_speed;
+  double speed = m113::moderate_sprocket_speed;
   double left = 1.0, right = 1.0;  // of the speed: unequal ones turn
   double ramp = 7.0;               // duration of the drives' ramp [s]
   bool suspension = true;
@@ -55,7 +55,7 @@ struct Settings {
 // Obstacles for the bump course: 10 and 15 cm high, across both tracks and under one of them; or none.
 BumpCourse course(bool bumps);
 m113::VehicleOptions vehicle_options(Settings const& s);
-GeneralizedAlpha integrator(Settings const& o);
+GeneralisedAlpha integrator(Settings const& o);
 void warn_of_drive(Settings const& o);
 
 // Positions of the links of tracks at rest, common to all formulations.
@@ -145,7 +145,7 @@ Span span_of(std::vector<double> const& times, std::vector<double> const& x, dou
 double yaw_rate(Runs const& runs, std::size_t run, double from);
 
 // A curve of every `every`-th sample, so that files stay small.
-Curve curve(std::string label, std::vector<double> const& x, std::vector<double> const& y, int color,
+Curve curve(std::string label, std::vector<double> const& x, std::vector<double> const& y, int colour,
             double scale = 1.0, std::size_t every = 4);
 void draw(Settings const& o, Figure const& f, std::string const& name);
 Figure history_figure(Runs const& runs, std::string const& output, std::string title, std::string label,

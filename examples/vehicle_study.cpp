@@ -9,7 +9,7 @@
 #include <polybody/study/statistics.hpp>
 #include <polybody/vehicle/m113_vehicle.hpp>
 #include <polybody/vehicle/settled_track.hpp>
-#include <polybody/vehicle/track_watch.hpp>
+#include <polybody/vehicle/track_checks.hpp>
 
 #include "support/command_line.hpp"
 #include "support/ranks.hpp"
@@ -21,7 +21,7 @@ namespace {
 
 struct Options {
   int samples = 24, seed = 1, threads = 1;
-  double until = 1.5, speed = 10.0, step = 1e-3;
+  double end_time = 1.5, speed = 10.0, step = 1e-3;
   fs::path out = "out/vehicle_study";
   bool retry = false, no_plot = false;
 };
@@ -32,26 +32,26 @@ constexpr int watched_pin = 20;  // of the left track, on the ground at the star
 std::array<double, 3> drive(Options const& o, Point const& p) {
   m113::VehicleOptions options{.preload = 1e3 * p["preload"], .friction_factor = p["friction factor"]};
   options.start = m113::settled_track(options);
-  Ramp const ramp{.target = o.speed, .duration = 0.6 * o.until, .start = 0.1 * o.until, .rounding = 0.1};
+  Ramp const ramp{.target = o.speed, .duration = 0.6 * o.end_time, .start = 0.1 * o.end_time, .rounding = 0.1};
   m113::Vehicle<Rigid<>, Constraint> const vehicle(Constraint{}, {ramp, ramp}, options);
   State x = vehicle.model.reference_state();
   double const begin = vehicle.hull(x).r.x();
   double most = 0.0, sum = 0.0;
   long steps = 0;
-  for (State const& now : simulate(vehicle.model, x, GeneralizedAlpha{.rho_inf = 0.0},
-                                   {.until = o.until, .step = o.step, .halvings = 8})) {
+  for (State const& now : simulate(vehicle.model, x, GeneralisedAlpha{.rho_inf = 0.0},
+                                   {.end_time = o.end_time, .step = o.step, .max_step_halvings = 8})) {
     double const force = 1e-3 * reaction(vehicle.model, now, vehicle.side(m113::Side::left).pins[watched_pin]).f.norm();
     most = std::max(most, force);
     sum += force;
     ++steps;
-    if (std::string const trouble = m113::track_trouble(vehicle, now); !trouble.empty()) throw Diverged{trouble};
+    if (std::string const trouble = m113::track_warning(vehicle, now); !trouble.empty()) throw Diverged{trouble};
   }
   return {most, sum / double(steps), vehicle.hull(x).r.x() - begin};
 }
 
 void report(Options const& o, StudyResults const& found) {
   write_table(found, o.out / "vehicle.csv");
-  std::cout << found.points.size() << " vehicles, " << found.taken_over << " of them from an earlier run, "
+  std::cout << found.points.size() << " vehicles, " << found.resumed << " of them from an earlier run, "
             << found.failed() << " failed\n";
   if (found.finished() - found.failed() < 2) return;
   std::vector<Figure> panels;
@@ -74,8 +74,8 @@ void report(Options const& o, StudyResults const& found) {
 }
 
 void run(Options const& o, Ranks const& ranks) {
-  Study const study({o.out / "vehicle.study", "M113, sprockets to " + number(o.speed) + " rad/s, " + number(o.until) +
-                                                  " s in steps of " + number(o.step) + " s"},
+  Study const study({o.out / "vehicle.study", "M113, sprockets to " + number(o.speed) + " rad/s, " +
+                                                  number(o.end_time) + " s in steps of " + number(o.step) + " s"},
                     latin_hypercube(std::size_t(o.samples), std::uint64_t(o.seed),
                                     {uniform("preload", "kN", 10.0, 40.0), uniform("friction factor", "", 0.5, 1.5)}),
                     outputs("largest pin force [kN]", "mean pin force [kN]", "way [m]"));
@@ -92,7 +92,7 @@ int main(int argc, char** argv) {
   CommandLine line{"A study: the tracked vehicle under unknown preload and friction."};
   line.between("--samples", &o.samples, 1, 100000, "vehicles");
   line.between("--seed", &o.seed, 0, 1e9, "of the Latin hypercube");
-  line.positive("--until", &o.until, "end of the runs [s]");
+  line.positive("--until", &o.end_time, "end of the runs [s]");
   line.positive("--step", &o.step, "time step [s]");
   line.option("--speed", &o.speed, "of the sprockets after 0.7 of the run [rad/s]");
   line.between("--threads", &o.threads, 1, 4096, "that work on points");

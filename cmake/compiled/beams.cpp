@@ -19,6 +19,6 @@ template detail::LinearPointOf<double> detail::linear_point<AncfBeam<Continuum<>
     AncfBeam<Continuum<>> const&, AncfBeam<Continuum<>>::Point const&);
 template void detail::fill_linear_rows<Revolute, double>(detail::LinearPointOf<double> const&,
                                                          detail::LinearPointOf<double> const&, Vec3 const&,
-                                                         LinearRows&);
+                                                         LinearConstraints&);
 
 }  // namespace polybody

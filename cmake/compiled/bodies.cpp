@@ -11,7 +11,7 @@ template struct BodyKernels<planar::Lrvf, double>;
 template struct JointKernels<Joint<Revolute, Constraint>, double>;
 template struct JointKernels<Joint<Revolute, Bushing>, double>;
 template struct JointKernels<Joint<Revolute, AncfLinear>, double>;
-template struct JointKernels<Joint<Revolute, Recursive>, double>;
+template struct JointKernels<Joint<Revolute, JointCoordinates>, double>;
 template struct JointKernels<Joint<Spherical, Constraint>, double>;
 template struct JointKernels<Joint<Spherical, Penalty>, double>;
 template struct JointKernels<Joint<Prismatic, Constraint>, double>;
@@ -22,8 +22,9 @@ template struct JointKernels<Joint<planar::Revolute, Constraint>, double>;
 template struct ForceKernels<SpringDamper, double>;
 template struct ForceKernels<AxialSpring, double>;
 template void detail::place_ground(Sequence<detail::GroundMarker> const&, Index, Index, Data<double>&);
-template void detail::place_linear_rows(Sequence<LinearRows> const&, double*, Data<double>&);
-template void detail::measure_linear_rows(Sequence<LinearRows> const&, VecX const&, Data<double> const&, double*);
+template void detail::place_linear_rows(Sequence<LinearConstraints> const&, double*, Data<double>&);
+template void detail::measure_linear_rows(Sequence<LinearConstraints> const&, VecX const&, Data<double> const&,
+                                          double*);
 template BarConstants constants<void>(Bar const&);
 
 }  // namespace polybody

@@ -3,7 +3,7 @@
 
 namespace polybody {
 
-template class Simulation<GeneralizedAlpha>;
+template class Simulation<GeneralisedAlpha>;
 template class Simulation<HhtAlpha>;
 template class Simulation<Newmark>;
 template class Simulation<Trapezoidal>;

@@ -9,9 +9,9 @@ template class JointTreeOf<double>;
 template class LinearEliminationOf<double>;
 template class detail::BodyEquationsOf<void>;
 template class detail::ReducedCoordinates<void>;
-template class detail::ReducedCoordinates<recursive::Augmented>;
-template class detail::ReducedCoordinates<recursive::Reduced>;
-template class detail::ReducedCoordinates<recursive::ArticulatedBody>;
+template class detail::ReducedCoordinates<joint_coordinates::Augmented>;
+template class detail::ReducedCoordinates<joint_coordinates::DenseMatrix>;
+template class detail::ReducedCoordinates<joint_coordinates::ArticulatedBody>;
 template void assemble<DefaultSolver>(System&, State&, double, int);
 
 }  // namespace polybody

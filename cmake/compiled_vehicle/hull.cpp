@@ -3,7 +3,7 @@
 
 namespace polybody {
 
-template struct JointKernels<Joint<Revolute, PenaltyPerRow<5>>, double>;
+template struct JointKernels<Joint<Revolute, PenaltyPerEquation<5>>, double>;
 template m113::HullSide m113::hull_side<void>(m113::Side, m113::Solids const&, double, bool);
 template BodyHandle<Rigid<>> m113::detail::add_chassis<Rigid<>, Ramp>(m113::HullTypes<Rigid<>, Ramp>::Part&,
                                                                       m113::VehicleOptions const&);

@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include <polybody/math/time_laws.hpp>
+#include <polybody/math/time_functions.hpp>
 
 namespace drive {
 

@@ -26,7 +26,7 @@ DrivenVehicle driven(Throttles const& throttles, m113::VehicleOptions const& opt
   using V = m113::Vehicle<Link, Policy, BumpCourse, Throttle>;
   auto const vehicle = std::make_shared<V const>(Policy{}, throttles, options, ground, m113::LinkOf<Link>{});
   return {vehicle, AnyModel(std::shared_ptr<typename V::ModelType const>(vehicle, &vehicle->model),
-                            stepped_by<GeneralizedAlpha>)};
+                            stepped_by<GeneralisedAlpha>)};
 }
 
 }  // namespace drive

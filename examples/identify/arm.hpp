@@ -27,8 +27,8 @@ inline Bar strip() {
 }
 
 struct Experiment {
-  double until = 1.5, step = 2e-3;  // of the runs that are fitted [s]
-  double sampling = 1e-2;           // of the record, a multiple of the step [s]
+  double end_time = 1.5, step = 2e-3;  // of the runs that are fitted [s]
+  double sampling = 1e-2;              // of the record, a multiple of the step [s]
 };
 
 // The arm as a B of so many elements, made for numbers of the mount.
@@ -56,7 +56,7 @@ struct Arm {
     };
     std::vector<Output<M>> outputs{{"tip x [m]", tip(0)}, {"tip y [m]", tip(1)}};
     return Scenario<M>{
-        std::move(model), start, {.until = experiment.until, .step = experiment.step}, std::move(outputs)};
+        std::move(model), start, {.end_time = experiment.end_time, .step = experiment.step}, std::move(outputs)};
   }
 };
 
@@ -77,18 +77,18 @@ VecX tip_of(Make const& make, std::span<double const> p, I const& integrator) {
 }
 
 // A smooth motion's error by steps is some 1e-5 of it; Newton's own is far below, so that differences of runs show it.
-inline GeneralizedAlpha const method{.rho_inf = 0.9, .tolerance = 1e-12, .start_correction = false};
+inline GeneralisedAlpha const method{.rho_inf = 0.9, .tolerance = 1e-12, .start_correction = false};
 
 // The derivatives of `tip_of`, rows as there.
 template <class Make>
-MatX slopes_of_tip(Make const& make, std::span<double const> p) {
+MatX derivatives_of_tip(Make const& make, std::span<double const> p) {
   std::vector<Parameter> parameters;
   for (std::size_t j = 0; j < names.size(); ++j) parameters.push_back({names[j], p[j]});
-  Sensitivities const s = sensitivities(make, parameters, method);
+  SensitivityResult const s = sensitivities(make, parameters, method);
   auto const every = std::size_t(std::lround(make.experiment.sampling / make.experiment.step));
   MatX out(Index(2 * ((s.times.size() - 1) / every)), Index(names.size()));
   for (std::size_t k = every, row = 0; k < s.times.size(); k += every, row += 2)
-    out.middleRows<2>(Index(row)) = s.slopes[k];
+    out.middleRows<2>(Index(row)) = s.derivatives[k];
   return out;
 }
 
@@ -96,13 +96,13 @@ MatX slopes_of_tip(Make const& make, std::span<double const> p) {
 struct Candidate {
   std::string name{};
   std::function<VecX(std::span<double const>)> tip;
-  std::function<MatX(std::span<double const>)> slopes;
+  std::function<MatX(std::span<double const>)> derivatives;
 };
 template <class B>
 Candidate candidate(std::string name, Experiment const& experiment, Index elements = 1) {
   Arm<B> const arm{experiment, elements};
   return {std::move(name), [arm](std::span<double const> p) { return tip_of(arm, p, method); },
-          [arm](std::span<double const> p) { return slopes_of_tip(arm, p); }};
+          [arm](std::span<double const> p) { return derivatives_of_tip(arm, p); }};
 }
 
 // Record of the experiment without noise: a formulation that is not among the fitted ones (engineering strain, 16
@@ -148,7 +148,7 @@ inline Estimate estimate(Candidate const& c, VecX const& record, Numbers const& 
     return VecX(0.5 * Eigen::Map<Vec4 const>(p.data()));
   };
   LeastSquares const problem{[&](VecX const& x) { return VecX(c.tip(numbers(x)) - record); },
-                             [&](VecX const& x) { return MatX(c.slopes(numbers(x)) * factors(x).asDiagonal()); }};
+                             [&](VecX const& x) { return MatX(c.derivatives(numbers(x)) * factors(x).asDiagonal()); }};
   std::clock_t const begin = std::clock();
   LeastSquaresFit const fit = least_squares(problem, VecX::Ones(Index(start.size())));
   Estimate e{.name = c.name, .value = numbers(fit.at), .deviation = fit.deviation(), .sums = fit.sums};

@@ -28,7 +28,7 @@ struct Task {
   double length = 1.0, width = 0.02;                    // of the link [m]
   double payload = 2.0, payload_inertia = 1e-3;         // at its end [kg], [kg m²]
   Turn turn{0.5 * std::numbers::pi, 0.1, 0.4};          // of its root
-  double until = 0.75, step = 3e-3;                     // [s]
+  double end_time = 0.75, step = 3e-3;                  // [s]
   double allowed = 100e6;                               // stress [N/m²]
   std::size_t sections = 4;                             // of equal lengths
   Material material{.density = 2700.0, .young = 7e10};  // aluminium
@@ -78,7 +78,7 @@ struct Link {
     auto const mass =
         model.add(planar::Rigid(task.payload, task.payload_inertia, Placement::planar(task.length, 0.0)), "payload");
     model.connect(Weld{}, sections.back().at(l), mass.at(Vec2(0, 0)), "grip");
-    System const system(model, with<Entries::rigid_speeds>);
+    System const system(model, with<Capabilities::rigid_velocities>);
     auto const row = [&](auto const& joint) {
       return system.layout().joints[std::size_t(index_of_joint(system.layout(), joint))].row;
     };
@@ -95,9 +95,9 @@ struct Link {
                            }});
     }
     State start = model.reference_state();
-    system.entries().first.rigid_speeds(system.entries().second, start.q, Vec3::Zero(), {0, 0, task.turn(0.0).rate},
-                                        start.v);
-    return Scenario<M>{std::move(model), start, {.until = task.until, .step = task.step}, std::move(outputs)};
+    system.entries().first.rigid_velocities(system.entries().second, start.q, Vec3::Zero(), {0, 0, task.turn(0.0).rate},
+                                            start.v);
+    return Scenario<M>{std::move(model), start, {.end_time = task.end_time, .step = task.step}, std::move(outputs)};
   }
 
  private:
@@ -109,7 +109,7 @@ struct Link {
   }
 };
 
-inline GeneralizedAlpha const method{.rho_inf = 0.8, .tolerance = 1e-12, .start_correction = false};
+inline GeneralisedAlpha const method{.rho_inf = 0.8, .tolerance = 1e-12, .start_correction = false};
 
 // The outputs of a run: steps × outputs.
 template <class Make>
@@ -133,14 +133,14 @@ struct Aggregate {
     return most + std::log((sharpness * (stresses.array() - most)).exp().sum()) / sharpness;
   }
   // ∂/∂p = Σ w ∂σ/∂p, w = exp(ρ σ)/Σ exp(ρ σ): the same and its slopes of a run with derivatives.
-  std::pair<double, VecX> slopes(Sensitivities const& s) const {
+  std::pair<double, VecX> derivatives(SensitivityResult const& s) const {
     double most = s.values[0].maxCoeff(), sum = 0.0;
     for (VecX const& v : s.values) most = std::max(most, v.maxCoeff());
     VecX by = VecX::Zero(Index(s.parameters.size()));
     for (std::size_t k = 0; k < s.values.size(); ++k) {
       VecX const w = (sharpness * (s.values[k].array() - most)).exp();
       sum += w.sum();
-      by += s.slopes[k].transpose() * w;
+      by += s.derivatives[k].transpose() * w;
     }
     return {most + std::log(sum) / sharpness, by / sum};
   }
@@ -149,7 +149,7 @@ struct Aggregate {
 // Results of a run with derivatives for one design.
 struct Loaded {
   double aggregate = 0.0, most = 0.0;  // stress, over what is allowed
-  VecX slopes{};                       // of the aggregate, by the heights [1/m]
+  VecX derivatives{};                  // of the aggregate, by the heights [1/m]
 };
 
 // A formulation of the link with erased type.
@@ -165,9 +165,9 @@ Candidate candidate(std::string name, Task const& task, Aggregate const& aggrega
   auto const loaded = [all, aggregate](std::span<double const> h) {
     std::vector<Parameter> parameters;
     for (double const x : h) parameters.push_back({"height " + std::to_string(parameters.size() + 1) + " [m]", x});
-    Sensitivities const s = sensitivities(all, parameters, method);
+    SensitivityResult const s = sensitivities(all, parameters, method);
     Loaded out;
-    std::tie(out.aggregate, out.slopes) = aggregate.slopes(s);
+    std::tie(out.aggregate, out.derivatives) = aggregate.derivatives(s);
     for (VecX const& v : s.values) out.most = std::max(out.most, v.maxCoeff());
     return out;
   };

@@ -40,7 +40,7 @@ inline Lightest lightest(Candidate const& c, Task const& task, Bounds const& bou
                 .most = std::vector<double>(task.sections, std::log(bounds.most / bounds.start))};
   design.objective = [&](std::span<double const> x) {
     ValueAndSlopes share{task.mass(heights(x)) / mass, {}};
-    for (double const one : x) share.slopes.push_back(std::exp(one) / double(x.size()));
+    for (double const one : x) share.derivatives.push_back(std::exp(one) / double(x.size()));
     return share;
   };
   design.constraint = [&](std::span<double const> x) {
@@ -53,7 +53,8 @@ inline Lightest lightest(Candidate const& c, Task const& task, Bounds const& bou
       out.stresses.push_back(here.most);
     }
     ValueAndSlopes bound{std::log(here.aggregate), {}};
-    for (std::size_t i = 0; i < h.size(); ++i) bound.slopes.push_back(here.slopes[Index(i)] * h[i] / here.aggregate);
+    for (std::size_t i = 0; i < h.size(); ++i)
+      bound.derivatives.push_back(here.derivatives[Index(i)] * h[i] / here.aggregate);
     return bound;
   };
   std::clock_t const begin = std::clock();

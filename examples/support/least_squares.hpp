@@ -13,15 +13,15 @@
 // Residuals r(x) and their derivatives (values × numbers).
 struct LeastSquares {
   std::function<Eigen::VectorXd(Eigen::VectorXd const&)> residuals;
-  std::function<Eigen::MatrixXd(Eigen::VectorXd const&)> slopes;
+  std::function<Eigen::MatrixXd(Eigen::VectorXd const&)> derivatives;
 };
 
 struct LeastSquaresFit {
-  Eigen::VectorXd at{};          // where the sum is least
-  Eigen::VectorXd residuals{};   // there
-  Eigen::MatrixXd slopes{};      // there
-  std::vector<double> sums{};    // ½ Σ r² of the start and after each iteration
-  int runs = 0, slope_runs = 0;  // number of evaluations of residuals and of derivatives
+  Eigen::VectorXd at{};           // where the sum is least
+  Eigen::VectorXd residuals{};    // there
+  Eigen::MatrixXd derivatives{};  // there
+  std::vector<double> sums{};     // ½ Σ r² of the start and after each iteration
+  int runs = 0, slope_runs = 0;   // number of evaluations of residuals and of derivatives
   bool converged = false;
 
   // s with s² = Σ r²/(values − numbers).
@@ -29,7 +29,8 @@ struct LeastSquaresFit {
   // Covariance s² (JᵀJ)⁻¹ of the solution. It is correct if the residuals are noise only and r is nearly linear over
   // their range.
   Eigen::MatrixXd covariance() const {
-    Eigen::MatrixXd const normal = slopes.transpose() * slopes, one = Eigen::MatrixXd::Identity(at.size(), at.size());
+    Eigen::MatrixXd const normal = derivatives.transpose() * derivatives,
+                          one = Eigen::MatrixXd::Identity(at.size(), at.size());
     Eigen::VectorXd const scale = normal.diagonal().cwiseSqrt().cwiseInverse();  // numbers of different units
     Eigen::MatrixXd const scaled = scale.asDiagonal() * normal * scale.asDiagonal();
     return std::pow(deviation(), 2) * (scale.asDiagonal() * scaled.ldlt().solve(one) * scale.asDiagonal());
@@ -49,7 +50,7 @@ struct CountedLeastSquares : Eigen::DenseFunctor<double> {
     return 0;
   }
   int df(InputType const& x, JacobianType& j) const {
-    j = of.slopes(x);
+    j = of.derivatives(x);
     ++fit.slope_runs;
     return 0;
   }
@@ -82,7 +83,7 @@ inline LeastSquaresFit least_squares(LeastSquares const& problem, Eigen::VectorX
   }
   fit.converged = status > Status::ImproperInputParameters && status < Status::TooManyFunctionEvaluation;
   fit.residuals = method.fvec();
-  fit.slopes = problem.slopes(fit.at);
+  fit.derivatives = problem.derivatives(fit.at);
   ++fit.slope_runs;
   return fit;
 }

@@ -14,7 +14,7 @@
 
 struct ValueAndSlopes {
   double value = 0.0;
-  std::vector<double> slopes{};
+  std::vector<double> derivatives{};
 };
 
 // x that makes `objective` least where `constraint` ≤ 0 and least ≤ x ≤ most. All should be of the size of one.
@@ -38,11 +38,11 @@ struct DesignCall {
   nlopt_opt method;
   std::exception_ptr& thrown;
 
-  static double call(unsigned n, double const* x, double* slopes, void* data) {
+  static double call(unsigned n, double const* x, double* derivatives, void* data) {
     auto const& self = *static_cast<DesignCall const*>(data);
     try {
       ValueAndSlopes const here = self.f(std::span(x, n));
-      if (slopes) std::copy(here.slopes.begin(), here.slopes.end(), slopes);
+      if (derivatives) std::copy(here.derivatives.begin(), here.derivatives.end(), derivatives);
       return here.value;
     } catch (...) {
       self.thrown = std::current_exception();

@@ -3,7 +3,7 @@
 
 #include <polybody/io/vtk.hpp>
 #include <polybody/vehicle/settled_track.hpp>
-#include <polybody/vehicle/track_watch.hpp>
+#include <polybody/vehicle/track_checks.hpp>
 
 #include "vehicle_film.hpp"
 
@@ -70,7 +70,7 @@ class Probe {
     }
     depth = off_path = off_plane = 0.0;
     for (m113::Side const s : {m113::Side::left, m113::Side::right}) {
-      m113::TrackFault const fault = m113::track_fault(*vehicle_, system_, x, s, start_);
+      m113::TrackDerailment const fault = m113::track_derailment(*vehicle_, system_, x, s, start_);
       if (fault.depth > deepest_depth) {
         deepest_depth = fault.depth;
         deepest_time = x.t;
@@ -85,7 +85,7 @@ class Probe {
 
   Index joint_named(std::string const& name) const {
     auto const& joints = system_.layout().joints;
-    return std::find_if(joints.begin(), joints.end(), [&](JointPlace const& j) { return j.name == name; }) -
+    return std::find_if(joints.begin(), joints.end(), [&](JointLayout const& j) { return j.name == name; }) -
            joints.begin();
   }
 
@@ -126,8 +126,8 @@ class Watch {
         std::shared_ptr<Probe> probe)
       : vehicle_(std::move(vehicle)),
         probe_(std::move(probe)),
-        progress_(0.0, s.until, name),
-        until_(s.until),
+        progress_(0.0, s.end_time, name),
+        until_(s.end_time),
         every_(s.animate) {}
 
   void audit(EnergyAudit audit) { audit_ = std::make_unique<EnergyAudit>(std::move(audit)); }
@@ -142,7 +142,7 @@ class Watch {
     o.deepest = probe_->deepest;
     o.depth = probe_->deepest_depth;
     o.deepest_time = probe_->deepest_time;
-    if (o.trouble.empty()) o.trouble = m113::track_trouble(*vehicle_, x);
+    if (o.trouble.empty()) o.trouble = m113::track_warning(*vehicle_, x);
     if (audit_) {
       audit_->record(x);
       o.drives = audit_->work_of_drives();
@@ -197,7 +197,7 @@ m113::VehicleOptions vehicle_options(Settings const& s) {
           .contacts = s.contacts};
 }
 
-GeneralizedAlpha integrator(Settings const& o) { return {.rho_inf = o.rho, .tolerance = 1e-5}; }
+GeneralisedAlpha integrator(Settings const& o) { return {.rho_inf = o.rho, .tolerance = 1e-5}; }
 
 void warn_of_drive(Settings const& o) {
   double const fastest = o.speed * std::max(std::abs(o.left), std::abs(o.right));
@@ -235,11 +235,11 @@ Scenario<AnyModel> TrackCase::scenario(std::string const& name, Built const& bui
   auto observer = [watch, out = outcomes, mine = outcomes->size() - 1](AnyModel const&, State const& x) {
     watch->see(x, (*out)[mine]);
   };
-  RunOptions run{.until = s.until, .step = s.first_step > 0.0 ? s.first_step : s.step, .halvings = 6};
-  if (s.first_step > 0.0) run.largest_step = s.step;
+  RunOptions run{.end_time = s.end_time, .step = s.first_step > 0.0 ? s.first_step : s.step, .max_step_halvings = 6};
+  if (s.first_step > 0.0) run.max_step = s.step;
   if (s.watched)
     for (m113::Side const side : {m113::Side::left, m113::Side::right})
-      run.events.push_back(m113::track_lost(*vehicle.tracks, side));
+      run.events.push_back(m113::derailed(*vehicle.tracks, side));
   return {vehicle.model, vehicle.model.reference_state(), run, std::move(outputs), observer, s.sampling};
 }
 

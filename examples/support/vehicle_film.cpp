@@ -22,8 +22,8 @@ std::shared_ptr<Film> vehicle_film(fs::path const& viewer, std::string const& ti
                                             .follow = "hull"});
 }
 
-VehicleScene::VehicleScene(Film& film, std::string const& name, AnyVehicle const& vehicle, double until, bool joints)
-    : visual_(vehicle.visual()), tracks_(vehicle.tracks), scene_(film.scene(name)), until_(until) {
+VehicleScene::VehicleScene(Film& film, std::string const& name, AnyVehicle const& vehicle, double end_time, bool joints)
+    : visual_(vehicle.visual()), tracks_(vehicle.tracks), scene_(film.scene(name)), until_(end_time) {
   scene_.colour(axial_stress_colours());
   contacts_ = scene_.arrows("contact forces on links", "kN");
   if (joints) joints_ = scene_.arrows("forces of joints", "kN", false);

@@ -15,7 +15,7 @@ class VehicleScene {
  public:
   // \param until last time of the film [s]
   // \param joints whether with the forces of joints, a sixth of the file
-  VehicleScene(Film& film, std::string const& name, AnyVehicle const& vehicle, double until, bool joints = true);
+  VehicleScene(Film& film, std::string const& name, AnyVehicle const& vehicle, double end_time, bool joints = true);
 
   // A point of a history, unless there was one within 5 ms.
   void plot(double t, std::vector<std::pair<char const*, double>> const& numbers);

@@ -49,7 +49,7 @@ void print(SettingRuns const& setting) {
   double const a = mean(0, r.raw(0)), b = mean(1, r.raw(1));
   Ranges const of_a = ranges_of(cycles_of(r.raw(0))), of_b = ranges_of(cycles_of(r.raw(1)));
   std::printf("%-26s %9.3f %9.3f %9.3f %8.3f %9.2f %9.2f %8.2f, %8.2f %8.3f, %8.3f\n", setting.name.c_str(), a,
-              mean(0, r.vibrating(0)), b, a / b, 1e2 * off(o, r, 0, r, 1, std::min(1.0, 0.25 * o.until)),
+              mean(0, r.vibrating(0)), b, a / b, 1e2 * off(o, r, 0, r, 1, std::min(1.0, 0.25 * o.end_time)),
               1e2 * off(o, r, 0, r, 0, from, &StressRuns::vibrating, &StressRuns::raw), 1e-6 * of_a.largest,
               1e-6 * of_b.largest, 1e-6 * of_a.equivalent, 1e-6 * of_b.equivalent);
   std::fflush(stdout);
@@ -59,7 +59,7 @@ void print_heads(Options const& o) {
   std::printf(
       "%g rad/s, %g s; from 8.5 s on, or half of the run: strain, low pass %g Hz, in the mean [1e-5]: decoupled, "
       "by vibrations, coupled (ANCF cables); their ratio; rms differences; ranges of stress, unfiltered [MPa]\n",
-      o.speed, o.until, o.cut_off);
+      o.speed, o.end_time, o.cut_off);
   std::printf("%-26s %9s %9s %9s %8s %9s %9s %18s %18s\n", "", "decoupled", "vibrating", "coupled", "ratio", "off [%]",
               "vib. [%]", "largest", "equivalent");
 }
@@ -107,8 +107,8 @@ Band::Band(std::vector<SettingRuns> const& settings, std::function<Filtered(Sett
   }
 }
 
-Curve Band::curve(std::string label, int color, double scale, std::size_t every) const {
-  Curve c{.label = std::move(label), .style = "filled", .color = color};
+Curve Band::curve(std::string label, int colour, double scale, std::size_t every) const {
+  Curve c{.label = std::move(label), .style = "filled", .colour = color};
   auto const add = [&](std::size_t i, std::vector<double> const& y) {
     c.x.push_back(times_[i]);
     c.y.push_back(scale * y[i]);
@@ -125,7 +125,7 @@ void ensemble(Options const& o) {
                     " Hz low pass: the range over settings",
            .x_label = "t [s]",
            .y_label = "axial strain [10⁻⁵]",
-           .x_range = {{0.0, o.until}}};
+           .x_range = {{0.0, o.end_time}}};
   char const* const names[] = {"rigid, decoupled", "ANCF cables"};
   for (std::size_t k = 0; k < 2; ++k)
     f.curves.push_back(Band(settings, [&](SettingRuns const& s) {

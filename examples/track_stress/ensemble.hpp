@@ -21,7 +21,7 @@ class Band {
  public:
   Band(std::vector<SettingRuns> const& settings, std::function<Filtered(SettingRuns const&)> const& history);
   // The area between them.
-  Curve curve(std::string label, int color, double scale, std::size_t every = 4) const;
+  Curve curve(std::string label, int colour, double scale, std::size_t every = 4) const;
 
  private:
   std::vector<double> times_, least_, most_;

@@ -35,11 +35,11 @@ WatchedLink watched(Options const& o, std::shared_ptr<V const> const& vehicle, L
 template <class Body, class Policy>
 constexpr char const* refusal() {
   using Pin = Joint<Revolute, Policy>;
-  if constexpr (LinearInCoordinates<Policy> && !HasLinearPoints<Body>)
+  if constexpr (LinearPolicy<Policy> && !HasLinearPoints<Body>)
     return "the frames of its ends are not linear in its coordinates";
-  else if constexpr (!MayBeCarried<Policy, Body>)
+  else if constexpr (!CarriableBody<Policy, Body>)
     return "it has no frame that a joint could carry";
-  else if constexpr (!TellsEnoughFirst<Pin, Body> || !TellsEnoughSecond<Pin, Body>)
+  else if constexpr (!SufficientFirstMarker<Pin, Body> || !SufficientSecondMarker<Pin, Body>)
     return "its ends have an axis and no frame, so that nothing tells where a pin points";
   else
     return "";
@@ -52,12 +52,12 @@ using LinksMade = std::function<m113::LinkOf<Body>(Options const&)>;
 template <class Body, class Policy>
 Combination combination(std::string const& links, std::string const& pins, bool usual, Policy const& policy,
                         LinksMade<Body> const& made) {
-  Combination c{links, pins, usual, refusal<Body, Policy>(), Body::observes != Observes::axis};
+  Combination c{links, pins, usual, refusal<Body, Policy>(), Body::observes != MarkerKind::axis};
   if constexpr (*refusal<Body, Policy>() == '\0')
     c.make = [=](Options const& o, VehicleParts const& parts) {
       m113::LinkOf<Body> const of_links = made(o);
       auto const vehicle = made_vehicle<Body>(policy, parts, of_links);
-      return StressVehicle{any_vehicle(vehicle, stepped_by<GeneralizedAlpha>), watched(o, vehicle, of_links)};
+      return StressVehicle{any_vehicle(vehicle, stepped_by<GeneralisedAlpha>), watched(o, vehicle, of_links)};
     };
   return c;
 }
@@ -77,7 +77,7 @@ std::vector<Combination> links_of(std::string const& name, LinksMade<Body> const
     return combination<Body>(name, all_pins[pins], usual, policy, made);
   };
   return {by(0, Constraint{}), by(1, m113::penalty_pin(m113::pin_stiffness)),
-          by(2, m113::bushing_pin(m113::pin_stiffness)), by(3, AncfLinear{}), by(4, Recursive{})};
+          by(2, m113::bushing_pin(m113::pin_stiffness)), by(3, AncfLinear{}), by(4, JointCoordinates{})};
 }
 
 }  // namespace chapter4

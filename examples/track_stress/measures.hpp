@@ -16,7 +16,7 @@ inline double off(Options const& o, StressRuns const& as, std::size_t i, StressR
                   double from, Told of = &StressRuns::raw, Told of_b = nullptr) {
   if (!of_b) of_b = of;
   std::vector<double> const a = as.filtered(i, (as.*of)(i), o.cut_off), b = bs.filtered(k, (bs.*of_b)(k), o.cut_off);
-  RmsDifference d(from, o.until);
+  RmsDifference d(from, o.end_time);
   d.add({as.filtered_times(i), a}, {bs.filtered_times(k), b});
   return d.value();
 }

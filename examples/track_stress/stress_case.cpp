@@ -28,7 +28,7 @@ DecoupledStress recovered(Options const& o, BodyRecord const& record) {
 }
 
 // Runs to the end and puts the first state from `at` [s] on away in a file; returns its time.
-double put_away(Simulation<GeneralizedAlpha>& run, double at, fs::path const& file) {
+double put_away(Simulation<GeneralisedAlpha>& run, double at, fs::path const& file) {
   double done_at = -1.0;
   while (!run.done()) {
     run.advance();
@@ -83,7 +83,7 @@ void restart(Options const& o, Combination const& c) {
   fs::path const file = o.out / (c.name() + ".checkpoint");
   State x = scenario.start;
   auto whole = simulate(scenario.model, x, integrator(o), scenario.options);
-  double const at = put_away(whole, 0.5 * o.until, file);
+  double const at = put_away(whole, 0.5 * o.end_time, file);
   State y = scenario.start;
   auto rest = resume(scenario.model, y, integrator(o), scenario.options, read_checkpoint(file));
   while (!rest.done()) rest.advance();

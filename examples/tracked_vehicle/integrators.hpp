@@ -9,7 +9,7 @@ using Adams = polybody::AdamsBashforthMoulton<polybody::CoordinatePartitioning>;
 using DormandPrince = polybody::DormandPrince<polybody::Projection>;
 using RungeKutta = polybody::RungeKutta4<polybody::CoordinatePartitioning>;
 
-inline constexpr polybody::SteppedBy<polybody::GeneralizedAlpha, polybody::HhtAlpha, polybody::Radau, Adams,
+inline constexpr polybody::SteppedBy<polybody::GeneralisedAlpha, polybody::HhtAlpha, polybody::Radau, Adams,
                                      DormandPrince, RungeKutta>
     by_each;
 

@@ -10,7 +10,7 @@ namespace {
 template <class I>
 Runs run_by(Options o, Pins const& pins, I const& integrator, double step = implicit_step) {
   if (o.step == 0.0) o.step = step;
-  if constexpr (requires { I::controls_step; }) o.first_step = std::min(1e-5, o.step);
+  if constexpr (requires { I::adaptive_step; }) o.first_step = std::min(1e-5, o.step);
   if (o.first_step > 0.0 || o.step < implicit_step) o.sampling = std::max(o.step, implicit_step);
   Runs runs;
   runs.sampling = o.sampling;
@@ -29,12 +29,12 @@ Runs Pins::run(Options const& o) const {
   if (o.integrator == "dormand-prince")
     return run_by(o, *this, DormandPrince{.relative_tolerance = error, .absolute_tolerance = error});
   if (o.integrator == "rk") return run_by(o, *this, RungeKutta{}, bearable);
-  return run_by(o, *this, GeneralizedAlpha{.rho_inf = o.rho, .tolerance = newton});
+  return run_by(o, *this, GeneralisedAlpha{.rho_inf = o.rho, .tolerance = newton});
 }
 
-Census Pins::count(Options const& o) const {
+ProblemSize Pins::count(Options const& o) const {
   Ramp const drive = m113::drive(o.speed);
-  return census(make({course(false), {drive, drive}, {.ground_body = true}}).model);
+  return problem_size(make({course(false), {drive, drive}, {.ground_body = true}}).model);
 }
 
 }  // namespace chapter3

@@ -28,7 +28,7 @@ struct Pins {
 
   Runs run(Options const& o) const;
   // Count of coordinates and constraints as in the thesis, in which the ground is a body.
-  Census count(Options const& o) const;
+  ProblemSize count(Options const& o) const;
 };
 Pins ideal_pins();
 Pins penalty_pins(double stiffness);

@@ -15,9 +15,9 @@ extern template class JointTreeOf<double>;
 extern template class LinearEliminationOf<double>;
 extern template class detail::BodyEquationsOf<void>;
 extern template class detail::ReducedCoordinates<void>;
-extern template class detail::ReducedCoordinates<recursive::Augmented>;
-extern template class detail::ReducedCoordinates<recursive::Reduced>;
-extern template class detail::ReducedCoordinates<recursive::ArticulatedBody>;
+extern template class detail::ReducedCoordinates<joint_coordinates::Augmented>;
+extern template class detail::ReducedCoordinates<joint_coordinates::DenseMatrix>;
+extern template class detail::ReducedCoordinates<joint_coordinates::ArticulatedBody>;
 extern template void assemble<DefaultSolver>(System&, State&, double, int);
 
 extern template struct BodyKernels<Rigid<>, double>;
@@ -36,7 +36,7 @@ extern template Lrvf<>::Lrvf(Bar const&, BarConstants const&, Index, ReferenceCu
 extern template struct JointKernels<Joint<Revolute, Constraint>, double>;
 extern template struct JointKernels<Joint<Revolute, Bushing>, double>;
 extern template struct JointKernels<Joint<Revolute, AncfLinear>, double>;
-extern template struct JointKernels<Joint<Revolute, Recursive>, double>;
+extern template struct JointKernels<Joint<Revolute, JointCoordinates>, double>;
 extern template struct JointKernels<Joint<Spherical, Constraint>, double>;
 extern template struct JointKernels<Joint<Spherical, Penalty>, double>;
 extern template struct JointKernels<Joint<Prismatic, Constraint>, double>;
@@ -73,19 +73,19 @@ extern template detail::LinearPointOf<double> detail::linear_point<AncfBeam<Cont
     AncfBeam<Continuum<>> const&, AncfBeam<Continuum<>>::Point const&);
 extern template void detail::fill_linear_rows<Revolute, double>(detail::LinearPointOf<double> const&,
                                                                 detail::LinearPointOf<double> const&, Vec3 const&,
-                                                                LinearRows&);
+                                                                LinearConstraints&);
 extern template void Visual::carry<void>(Surface const&, std::string, FrameIn);
 extern template std::vector<Vec2> outline<void>(Bar const&, int);
 extern template Surface swept<void>(int, int);
 extern template Surface cylinder<double>(double, double, Vec3 const&, int);
 extern template Surface box<void>(Vec3 const&);
 extern template void detail::place_ground(Sequence<detail::GroundMarker> const&, Index, Index, Data<double>&);
-extern template void detail::place_linear_rows(Sequence<LinearRows> const&, double*, Data<double>&);
-extern template void detail::measure_linear_rows(Sequence<LinearRows> const&, VecX const&, Data<double> const&,
+extern template void detail::place_linear_rows(Sequence<LinearConstraints> const&, double*, Data<double>&);
+extern template void detail::measure_linear_rows(Sequence<LinearConstraints> const&, VecX const&, Data<double> const&,
                                                  double*);
 extern template BarConstants constants<void>(Bar const&);
 
-extern template class Simulation<GeneralizedAlpha>;
+extern template class Simulation<GeneralisedAlpha>;
 extern template class Simulation<HhtAlpha>;
 extern template class Simulation<Newmark>;
 extern template class Simulation<Trapezoidal>;

@@ -12,7 +12,7 @@
 
 namespace polybody {
 
-extern template struct JointKernels<Joint<Revolute, PenaltyPerRow<5>>, double>;
+extern template struct JointKernels<Joint<Revolute, PenaltyPerEquation<5>>, double>;
 extern template m113::HullSide m113::hull_side<void>(m113::Side, m113::Solids const&, double, bool);
 extern template BodyHandle<Rigid<>> m113::detail::add_chassis<Rigid<>, Ramp>(m113::HullTypes<Rigid<>, Ramp>::Part&,
                                                                              m113::VehicleOptions const&);
@@ -29,92 +29,92 @@ extern template void m113::detail::attach_links(Visual&, m113::LinkParts<Rigid<>
 extern template class m113::TrackContactsAdder<Rigid<>, Rigid<>, FlatGround>;
 extern template class m113::TrackContactsAdder<Rigid<>, Rigid<>, BumpCourse>;
 
-extern template struct ForceKernels<m113::TrackContacts<Observes::axis, FlatGround>, double>;
-extern template void m113::TrackContacts<Observes::axis, FlatGround>::check(std::string const&) const;
+extern template struct ForceKernels<m113::TrackContacts<MarkerKind::axis, FlatGround>, double>;
+extern template void m113::TrackContacts<MarkerKind::axis, FlatGround>::check(std::string const&) const;
 extern template void for_each_contact(System const&,
-                                      ElementHandle<m113::TrackContacts<Observes::axis, FlatGround>> const&,
+                                      ElementHandle<m113::TrackContacts<MarkerKind::axis, FlatGround>> const&,
                                       TouchingPointVisit const&);
 extern template void detail::add_opponent(detail::ModelParts&,
-                                          detail::ForceEntry<m113::TrackContacts<Observes::axis, FlatGround>>&,
-                                          m113::LinkContacts<Observes::axis>::OnRoller const&,
+                                          detail::ForceEntry<m113::TrackContacts<MarkerKind::axis, FlatGround>>&,
+                                          m113::LinkContacts<MarkerKind::axis>::OnRoller const&,
                                           detail::PooledMarker<Rigid<>> const&, std::string);
 extern template void detail::add_opponent(detail::ModelParts&,
-                                          detail::ForceEntry<m113::TrackContacts<Observes::axis, FlatGround>>&,
-                                          m113::LinkContacts<Observes::axis>::OnRims const&,
+                                          detail::ForceEntry<m113::TrackContacts<MarkerKind::axis, FlatGround>>&,
+                                          m113::LinkContacts<MarkerKind::axis>::OnRims const&,
                                           detail::PooledMarker<Rigid<>> const&, std::string);
 extern template void detail::add_opponent(detail::ModelParts&,
-                                          detail::ForceEntry<m113::TrackContacts<Observes::axis, FlatGround>>&,
-                                          m113::LinkContacts<Observes::axis>::OnSprocket const&,
+                                          detail::ForceEntry<m113::TrackContacts<MarkerKind::axis, FlatGround>>&,
+                                          m113::LinkContacts<MarkerKind::axis>::OnSprocket const&,
                                           detail::PooledMarker<Rigid<>> const&, std::string);
 extern template void detail::add_opponent(detail::ModelParts&,
-                                          detail::ForceEntry<m113::TrackContacts<Observes::axis, FlatGround>>&,
-                                          m113::LinkContacts<Observes::axis>::OnGround<FlatGround> const&,
+                                          detail::ForceEntry<m113::TrackContacts<MarkerKind::axis, FlatGround>>&,
+                                          m113::LinkContacts<MarkerKind::axis>::OnGround<FlatGround> const&,
                                           detail::PooledMarker<Ground> const&, std::string);
 
-extern template struct ForceKernels<m113::TrackContacts<Observes::axis, BumpCourse>, double>;
-extern template void m113::TrackContacts<Observes::axis, BumpCourse>::check(std::string const&) const;
+extern template struct ForceKernels<m113::TrackContacts<MarkerKind::axis, BumpCourse>, double>;
+extern template void m113::TrackContacts<MarkerKind::axis, BumpCourse>::check(std::string const&) const;
 extern template void for_each_contact(System const&,
-                                      ElementHandle<m113::TrackContacts<Observes::axis, BumpCourse>> const&,
+                                      ElementHandle<m113::TrackContacts<MarkerKind::axis, BumpCourse>> const&,
                                       TouchingPointVisit const&);
 extern template void detail::add_opponent(detail::ModelParts&,
-                                          detail::ForceEntry<m113::TrackContacts<Observes::axis, BumpCourse>>&,
-                                          m113::LinkContacts<Observes::axis>::OnRoller const&,
+                                          detail::ForceEntry<m113::TrackContacts<MarkerKind::axis, BumpCourse>>&,
+                                          m113::LinkContacts<MarkerKind::axis>::OnRoller const&,
                                           detail::PooledMarker<Rigid<>> const&, std::string);
 extern template void detail::add_opponent(detail::ModelParts&,
-                                          detail::ForceEntry<m113::TrackContacts<Observes::axis, BumpCourse>>&,
-                                          m113::LinkContacts<Observes::axis>::OnRims const&,
+                                          detail::ForceEntry<m113::TrackContacts<MarkerKind::axis, BumpCourse>>&,
+                                          m113::LinkContacts<MarkerKind::axis>::OnRims const&,
                                           detail::PooledMarker<Rigid<>> const&, std::string);
 extern template void detail::add_opponent(detail::ModelParts&,
-                                          detail::ForceEntry<m113::TrackContacts<Observes::axis, BumpCourse>>&,
-                                          m113::LinkContacts<Observes::axis>::OnSprocket const&,
+                                          detail::ForceEntry<m113::TrackContacts<MarkerKind::axis, BumpCourse>>&,
+                                          m113::LinkContacts<MarkerKind::axis>::OnSprocket const&,
                                           detail::PooledMarker<Rigid<>> const&, std::string);
 extern template void detail::add_opponent(detail::ModelParts&,
-                                          detail::ForceEntry<m113::TrackContacts<Observes::axis, BumpCourse>>&,
-                                          m113::LinkContacts<Observes::axis>::OnGround<BumpCourse> const&,
+                                          detail::ForceEntry<m113::TrackContacts<MarkerKind::axis, BumpCourse>>&,
+                                          m113::LinkContacts<MarkerKind::axis>::OnGround<BumpCourse> const&,
                                           detail::PooledMarker<Ground> const&, std::string);
 
-extern template struct ForceKernels<m113::TrackContacts<Observes::frame, FlatGround>, double>;
-extern template void m113::TrackContacts<Observes::frame, FlatGround>::check(std::string const&) const;
+extern template struct ForceKernels<m113::TrackContacts<MarkerKind::frame, FlatGround>, double>;
+extern template void m113::TrackContacts<MarkerKind::frame, FlatGround>::check(std::string const&) const;
 extern template void for_each_contact(System const&,
-                                      ElementHandle<m113::TrackContacts<Observes::frame, FlatGround>> const&,
+                                      ElementHandle<m113::TrackContacts<MarkerKind::frame, FlatGround>> const&,
                                       TouchingPointVisit const&);
 extern template void detail::add_opponent(detail::ModelParts&,
-                                          detail::ForceEntry<m113::TrackContacts<Observes::frame, FlatGround>>&,
-                                          m113::LinkContacts<Observes::frame>::OnRoller const&,
+                                          detail::ForceEntry<m113::TrackContacts<MarkerKind::frame, FlatGround>>&,
+                                          m113::LinkContacts<MarkerKind::frame>::OnRoller const&,
                                           detail::PooledMarker<Rigid<>> const&, std::string);
 extern template void detail::add_opponent(detail::ModelParts&,
-                                          detail::ForceEntry<m113::TrackContacts<Observes::frame, FlatGround>>&,
-                                          m113::LinkContacts<Observes::frame>::OnRims const&,
+                                          detail::ForceEntry<m113::TrackContacts<MarkerKind::frame, FlatGround>>&,
+                                          m113::LinkContacts<MarkerKind::frame>::OnRims const&,
                                           detail::PooledMarker<Rigid<>> const&, std::string);
 extern template void detail::add_opponent(detail::ModelParts&,
-                                          detail::ForceEntry<m113::TrackContacts<Observes::frame, FlatGround>>&,
-                                          m113::LinkContacts<Observes::frame>::OnSprocket const&,
+                                          detail::ForceEntry<m113::TrackContacts<MarkerKind::frame, FlatGround>>&,
+                                          m113::LinkContacts<MarkerKind::frame>::OnSprocket const&,
                                           detail::PooledMarker<Rigid<>> const&, std::string);
 extern template void detail::add_opponent(detail::ModelParts&,
-                                          detail::ForceEntry<m113::TrackContacts<Observes::frame, FlatGround>>&,
-                                          m113::LinkContacts<Observes::frame>::OnGround<FlatGround> const&,
+                                          detail::ForceEntry<m113::TrackContacts<MarkerKind::frame, FlatGround>>&,
+                                          m113::LinkContacts<MarkerKind::frame>::OnGround<FlatGround> const&,
                                           detail::PooledMarker<Ground> const&, std::string);
 
-extern template struct ForceKernels<m113::TrackContacts<Observes::frame, BumpCourse>, double>;
-extern template void m113::TrackContacts<Observes::frame, BumpCourse>::check(std::string const&) const;
+extern template struct ForceKernels<m113::TrackContacts<MarkerKind::frame, BumpCourse>, double>;
+extern template void m113::TrackContacts<MarkerKind::frame, BumpCourse>::check(std::string const&) const;
 extern template void for_each_contact(System const&,
-                                      ElementHandle<m113::TrackContacts<Observes::frame, BumpCourse>> const&,
+                                      ElementHandle<m113::TrackContacts<MarkerKind::frame, BumpCourse>> const&,
                                       TouchingPointVisit const&);
 extern template void detail::add_opponent(detail::ModelParts&,
-                                          detail::ForceEntry<m113::TrackContacts<Observes::frame, BumpCourse>>&,
-                                          m113::LinkContacts<Observes::frame>::OnRoller const&,
+                                          detail::ForceEntry<m113::TrackContacts<MarkerKind::frame, BumpCourse>>&,
+                                          m113::LinkContacts<MarkerKind::frame>::OnRoller const&,
                                           detail::PooledMarker<Rigid<>> const&, std::string);
 extern template void detail::add_opponent(detail::ModelParts&,
-                                          detail::ForceEntry<m113::TrackContacts<Observes::frame, BumpCourse>>&,
-                                          m113::LinkContacts<Observes::frame>::OnRims const&,
+                                          detail::ForceEntry<m113::TrackContacts<MarkerKind::frame, BumpCourse>>&,
+                                          m113::LinkContacts<MarkerKind::frame>::OnRims const&,
                                           detail::PooledMarker<Rigid<>> const&, std::string);
 extern template void detail::add_opponent(detail::ModelParts&,
-                                          detail::ForceEntry<m113::TrackContacts<Observes::frame, BumpCourse>>&,
-                                          m113::LinkContacts<Observes::frame>::OnSprocket const&,
+                                          detail::ForceEntry<m113::TrackContacts<MarkerKind::frame, BumpCourse>>&,
+                                          m113::LinkContacts<MarkerKind::frame>::OnSprocket const&,
                                           detail::PooledMarker<Rigid<>> const&, std::string);
 extern template void detail::add_opponent(detail::ModelParts&,
-                                          detail::ForceEntry<m113::TrackContacts<Observes::frame, BumpCourse>>&,
-                                          m113::LinkContacts<Observes::frame>::OnGround<BumpCourse> const&,
+                                          detail::ForceEntry<m113::TrackContacts<MarkerKind::frame, BumpCourse>>&,
+                                          m113::LinkContacts<MarkerKind::frame>::OnGround<BumpCourse> const&,
                                           detail::PooledMarker<Ground> const&, std::string);
 
 extern template double m113::link_strain(BodyHandle<AncfBeam<>> const&, State const&);

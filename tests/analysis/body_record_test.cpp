@@ -8,7 +8,7 @@
 #include <polybody/forces/contact_group.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/forces/spring_damper.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/policies/bushing.hpp>
@@ -41,7 +41,7 @@ Vec2 left_over(BodyRecord const& record, double mass, Mat3 const& inertia) {
     Vec3 force = mass * (to_body * (record.gravity - s.acceleration));
     Vec3 moment = -inertia * (to_body * s.angular_acceleration) - omega.cross(inertia * omega);
     Vec2 sum(mass * (record.gravity.norm() + s.acceleration.norm()), moment.norm());
-    for (RecordedLoad const& l : s.loads) {
+    for (LoadSample const& l : s.loads) {
       force += l.f;
       moment += l.m + l.at.cross(l.f);
       sum += Vec2(l.f.norm(), l.m.norm() + l.at.norm() * l.f.norm());
@@ -56,7 +56,7 @@ Vec2 left_over(BodyRecord const& record, double mass, Mat3 const& inertia) {
 struct Press {
   static constexpr int markers = 2;
   static constexpr bool is_load = false;
-  static constexpr Observes needs = Observes::point;
+  static constexpr MarkerKind needs = MarkerKind::point;
   double stiffness = 1e5;
 
   void check(std::string const&) const {}
@@ -99,7 +99,7 @@ void balances() {
   model.apply(PointForce<>{.force = {50, 300, -200}, .axes = LoadAxes::marker}, b.at(2.0, -0.05, 0.0), "follower");
   model.apply(PointMoment<>{.moment = {30, -40, 50}}, a.at(0.7), "moment");
   auto const group = model.apply(Group{}, std::vector{a.at(1.9), b.at(2.0)}, "contacts");
-  model.pair_with(group, Press{}, model.ground().at({0, 0, -2.2}), "floor");
+  model.add_partner(group, Press{}, model.ground().at({0, 0, -2.2}), "floor");
 
   LoadRecorder recorder(model);
   recorder.add(b);
@@ -107,7 +107,7 @@ void balances() {
   recorder.add(a);  // a second call has no effect
   State x = model.reference_state();
   for (State const& now :
-       simulate(model, x, GeneralizedAlpha{.tolerance = 1e-12, .stabilised = true}, {.until = 0.6, .step = 2e-3}))
+       simulate(model, x, GeneralisedAlpha{.tolerance = 1e-12, .stabilised = true}, {.end_time = 0.6, .step = 2e-3}))
     recorder.record(now);
 
   Rigid<> const body = Rigid<>::from(rod());
@@ -141,7 +141,7 @@ TEST(BodyRecord, HoldsThePinForceAtItsPointInTheBodysAxes) {
   model.set_velocity(x, arm, Vec3::Zero(), {0, 0, 5.0});
   LoadRecorder recorder(model);
   recorder.add(arm);
-  for (State const& now : simulate(model, x, RungeKutta4<Projection>{}, {.until = 0.5, .step = 1e-3}))
+  for (State const& now : simulate(model, x, RungeKutta4<Projection>{}, {.end_time = 0.5, .step = 1e-3}))
     recorder.record(now);
   double const mass = 7800 * 0.02 * 2.0;
   BodyRecord const& record = recorder.of(arm);
@@ -158,7 +158,7 @@ TEST(BodyRecord, HoldsThePinForceAtItsPointInTheBodysAxes) {
 
 // Loads of joints that eliminate coordinates agree with those of joints with multipliers.
 TEST(BodyRecord, BalancesWithRecursiveJoints) {
-  using Turn = Joint<Revolute, Recursive>;
+  using Turn = Joint<Revolute, JointCoordinates>;
   Model<Bodies<Rigid<>>, Joints<Turn>> model{Gravity{0, 0, -9.81}};
   auto const a = model.add(Rigid<>::from(rod()), "a");
   auto const b = model.add(Rigid<>::from(rod(Placement::at({2, 0, 0}))), "b");
@@ -168,7 +168,7 @@ TEST(BodyRecord, BalancesWithRecursiveJoints) {
   recorder.add(a);
   recorder.add(b);
   State x = model.reference_state();
-  for (State const& now : simulate(model, x, GeneralizedAlpha{.tolerance = 1e-12}, {.until = 0.3, .step = 2e-3}))
+  for (State const& now : simulate(model, x, GeneralisedAlpha{.tolerance = 1e-12}, {.end_time = 0.3, .step = 2e-3}))
     recorder.record(now);
   for (BodyRecord const* r : {&recorder.of(a), &recorder.of(b)})
     held_within({"thesis §4.3", "recorded loads less the inertia of their body, of the largest", By::closed_form, "0",

@@ -7,7 +7,7 @@
 
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/compare/work_precision.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 
@@ -34,7 +34,7 @@ struct Pendulum {
     model.connect(Pin{{}, f.policy}, model.ground().at({0, 0, 0}), rod.at(0.0), "pin");
     State const start = model.reference_state();
     auto const tip = rod.at(1.0);
-    Scenario<M> scenario{std::move(model), start, {.until = 0.5, .step = 1e-3}};
+    Scenario<M> scenario{std::move(model), start, {.end_time = 0.5, .step = 1e-3}};
     for (std::string const& name : outputs)
       scenario.outputs.push_back({name, [tip](M const& m, State const& x) { return position(m, x, tip)[1]; }});
     if (f.name == "of its own mind") scenario.outputs.pop_back();
@@ -53,8 +53,8 @@ double exact_tip(double t) {
 
 double nowhere(double) { return std::nan(""); }
 
-using Ideal = Formulation<planar::Rigid, Constraint, GeneralizedAlpha>;
-using Stiff = Formulation<planar::Rigid, Penalty, GeneralizedAlpha>;
+using Ideal = Formulation<planar::Rigid, Constraint, GeneralisedAlpha>;
+using Stiff = Formulation<planar::Rigid, Penalty, GeneralisedAlpha>;
 using Explicit = Formulation<planar::Rigid, Constraint, RungeKutta4<Projection>>;
 
 TEST(Compare, RunsOneCaseUnderSeveralFormulations) {
@@ -63,10 +63,10 @@ TEST(Compare, RunsOneCaseUnderSeveralFormulations) {
               Stiff{"penalty", {.stiffness = 1e7, .damping = 1e3}, {.rho_inf = 0.9}}, Explicit{"explicit", {}, {}});
   ASSERT_EQ(c.runs.size(), 3u);
   // Counts as in Table 3.4 of Wallin 2016: the penalty does not reduce the degrees of freedom.
-  EXPECT_EQ(c.runs[0].census.degrees_of_freedom, 1);
-  EXPECT_EQ(c.runs[1].census.degrees_of_freedom, 3);
-  EXPECT_EQ(c.runs[0].census.rows, 2);
-  EXPECT_EQ(c.runs[1].census.rows, 0);
+  EXPECT_EQ(c.runs[0].problem_size.degrees_of_freedom, 1);
+  EXPECT_EQ(c.runs[1].problem_size.degrees_of_freedom, 3);
+  EXPECT_EQ(c.runs[0].problem_size.rows, 2);
+  EXPECT_EQ(c.runs[1].problem_size.rows, 0);
   // The pin carries 5/2 m g cos φ along the rod and 1/4 m g sin φ across it, so m g/4 at the start. A penalty carries
   // no force at the start.
   double const mg = 9.81, held = mg * std::hypot(2.5 * std::cos(end_angle), 0.25 * std::sin(end_angle));
@@ -101,19 +101,19 @@ TEST(Compare, AsksTheFirstStateAfterEachSample) {
   using Controlled = Formulation<planar::Rigid, Constraint, DormandPrince<Projection>>;
   Pendulum const all{}, sampled{.sampling = 0.05}, within{.sampling = 0.0035};
   DormandPrince<Projection> const short_steps{.relative_tolerance = 1e-12, .absolute_tolerance = 1e-12};
-  for (auto const& [run, whole] : {std::pair(compare(sampled, Controlled{"own steps", {}, short_steps}).runs[0],
-                                             compare(all, Controlled{"own steps", {}, short_steps}).runs[0]),
-                                   {compare(sampled, Ideal{"ideal"}).runs[0], compare(all, Ideal{"ideal"}).runs[0]}}) {
-    EXPECT_EQ(run.run.steps, whole.run.steps) << run.name;  // the steps are unchanged
+  for (auto const& [run, full] : {std::pair(compare(sampled, Controlled{"own steps", {}, short_steps}).runs[0],
+                                            compare(all, Controlled{"own steps", {}, short_steps}).runs[0]),
+                                  {compare(sampled, Ideal{"ideal"}).runs[0], compare(all, Ideal{"ideal"}).runs[0]}}) {
+    EXPECT_EQ(run.run.steps, full.run.steps) << run.name;  // the steps are unchanged
     ASSERT_EQ(run.times.size(), 11u) << run.name;
     ASSERT_EQ(run.outputs[0].size(), run.times.size());
     ASSERT_EQ(run.energies.size(), run.times.size());
     for (std::size_t k = 0; k < run.times.size(); ++k) {
       auto const after =
-          std::find_if(whole.times.begin(), whole.times.end(), [&](double t) { return t > 0.05 * double(k) - 1e-12; });
-      ASSERT_NE(after, whole.times.end());
+          std::find_if(full.times.begin(), full.times.end(), [&](double t) { return t > 0.05 * double(k) - 1e-12; });
+      ASSERT_NE(after, full.times.end());
       EXPECT_EQ(run.times[k], *after) << run.name << ", sample " << k;
-      EXPECT_EQ(run.outputs[0][k], whole.outputs[0][std::size_t(after - whole.times.begin())]);
+      EXPECT_EQ(run.outputs[0][k], full.outputs[0][std::size_t(after - full.times.begin())]);
     }
   }
   // 0, 4, 7, 11, 14 ms …, and the end, which is not a multiple
@@ -150,7 +150,7 @@ TEST(Compare, TypesAloneDoWhereEveryNumberHasADefault) {
   ASSERT_EQ(c.runs.size(), 2u);
   std::ostringstream text;
   text << c;
-  for (char const* word : {"GeneralizedAlpha", "RungeKutta4", "degrees of freedom", "Newton iterations a step",
+  for (char const* word : {"GeneralisedAlpha", "RungeKutta4", "degrees of freedom", "Newton iterations a step",
                            "peak joint force [N]", "end: tip y [m]"})
     EXPECT_NE(text.str().find(word), std::string::npos) << word;
 }
@@ -160,7 +160,7 @@ TEST(Compare, TellsRunsOfTheSameNameApart) {
   runs[0].name = "ideal";
   runs[1].name = "ideal (2)";
   EXPECT_EQ(detail::name_beside(runs, detail::name_of(Ideal{"ideal"})), "ideal (3)");
-  EXPECT_EQ(detail::name_beside(runs, detail::name_of(Ideal{})), "GeneralizedAlpha");
+  EXPECT_EQ(detail::name_beside(runs, detail::name_of(Ideal{})), "GeneralisedAlpha");
 }
 
 TEST(Compare, RefusesOutputsThatCannotBePutSideBySide) {
@@ -219,28 +219,28 @@ TEST(Compare, InterpolatesByCubicsThatSkipCrumbs) {
 TEST(WorkPrecision, ErrorOfASecondOrderMethodFallsWithTheSquareOfTheStep) {
   Ideal const ideal{"ideal", {}, {.rho_inf = 0.9}};
   std::vector<double> const steps{2e-2, 1e-2, 5e-3, 2.5e-3};
-  WorkCurve const whole = work_precision(Pendulum{}, ideal, steps, exact_tip);
+  WorkCurve const full = work_precision(Pendulum{}, ideal, steps, exact_tip);
   WorkCurve const end = work_precision(Pendulum{}, ideal, steps, -std::cos(end_angle));
-  EXPECT_EQ(whole.name, "ideal");
-  EXPECT_EQ(whole.output, "tip y [m]");
-  ASSERT_EQ(whole.points.size(), 4u);
+  EXPECT_EQ(full.name, "ideal");
+  EXPECT_EQ(full.output, "tip y [m]");
+  ASSERT_EQ(full.points.size(), 4u);
   for (std::size_t i = 0; i < 4; ++i) {
-    EXPECT_EQ(whole.points[i].setting, steps[i]);
-    EXPECT_EQ(whole.points[i].steps, std::lround(0.5 / steps[i]));
-    EXPECT_EQ(whole.points[i].failure, "");
-    EXPECT_LE(end.points[i].error, whole.points[i].error * (1.0 + 1e-6));
+    EXPECT_EQ(full.points[i].setting, steps[i]);
+    EXPECT_EQ(full.points[i].steps, std::lround(0.5 / steps[i]));
+    EXPECT_EQ(full.points[i].failure, "");
+    EXPECT_LE(end.points[i].error, full.points[i].error * (1.0 + 1e-6));
     if (i > 0) {
-      EXPECT_NEAR(std::log2(whole.points[i - 1].error / whole.points[i].error), 2.0, 0.2) << steps[i];
+      EXPECT_NEAR(std::log2(full.points[i - 1].error / full.points[i].error), 2.0, 0.2) << steps[i];
       EXPECT_NEAR(std::log2(end.points[i - 1].error / end.points[i].error), 2.0, 0.2) << steps[i];
     }
   }
   // CPU time is measured in clock ticks, but eight times the steps take more than zero
-  EXPECT_GT(whole.points[3].cpu, 0.0);
+  EXPECT_GT(full.points[3].cpu, 0.0);
 }
 
 TEST(WorkPrecision, TakesTheRunOfAnotherIntegratorForTheTruth) {
   Ideal const ideal{"ideal", {}, {.rho_inf = 0.9}};
-  RecordedOutput const fine = reference_run(Pendulum{}, Explicit{}, 1.1e-3);
+  OutputHistory const fine = reference_run(Pendulum{}, Explicit{}, 1.1e-3);
   EXPECT_EQ(fine.times.size(), 456u);  // 0.5 s/1.1 ms, plus the start
   double const by_run = work_precision(Pendulum{}, ideal, {7e-3}, fine).points[0].error;
   double const exact = work_precision(Pendulum{}, ideal, {7e-3}, exact_tip).points[0].error;
@@ -250,7 +250,7 @@ TEST(WorkPrecision, TakesTheRunOfAnotherIntegratorForTheTruth) {
 TEST(WorkPrecision, ToleranceIsTheSettingOfAnIntegratorThatControlsItsStep) {
   DormandPrince<> adaptive;
   adaptive.absolute_tolerance = 1e-3 * adaptive.relative_tolerance;
-  RunOptions options{.until = 1.0, .step = 0.1};
+  RunOptions options{.end_time = 1.0, .step = 0.1};
   detail::set_accuracy(adaptive, options, 1e-5);
   EXPECT_EQ(adaptive.relative_tolerance, 1e-5);
   EXPECT_NEAR(adaptive.absolute_tolerance, 1e-8, 1e-22);

@@ -10,7 +10,7 @@
 #include <polybody/bodies/lrvf/lrvf.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/forces/point_load.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/newmark.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/prescribed_angle.hpp>
@@ -65,7 +65,7 @@ struct OnHub {
   OnHub(B const& body, Turn const& turn) : arm(model.add(body, "arm")) {
     model.connect(Pin{{.axis = {0, 0, 1}}, {}}, model.ground().at({0, 0, 0}), hub.at({0, 0, 0}), "shaft");
     model.connect(Drive{{turn, {0, 0, 1}}, {}}, model.ground().at({0, 0, 0}), hub.at({0, 0, 0}), "drive");
-    if constexpr (B::observes == Observes::frame) {
+    if constexpr (B::observes == MarkerKind::frame) {
       clamp = model.connect(Clamp{}, hub.at({0, 0, 0}), arm.at(0.0), "clamp");
     } else {
       model.connect(Pin{{.axis = {1, 0, 0}}, {}}, hub.at({0, 0, 0}), arm.at(0.0), "clamp");
@@ -98,10 +98,10 @@ template <class B>
 void is_centrifugal(B const& body, double omega) {
   OnHub<B> flexible(body, {.speed = omega});
   relative_equilibrium(flexible.model, flexible.x, {.angular_velocity = {0, 0, omega}});
-  double const whole = 0.5 * 7800 * omega * omega;
+  double const full = 0.5 * 7800 * omega * omega;
   for (double const x : {0.03125, 0.28125, 0.53125, 0.78125, 0.96875}) {
     double const stress = axial_stress(flexible.model, flexible.x, flexible.arm.at(x), steel()),
-                 expected = whole * (1.0 - x * x);
+                 expected = full * (1.0 - x * x);
     held({"thesis §4.3", "stress of a rotating rod, coupled [Pa]", By::closed_form, "½ ρω² (L² − x²)",
           std::is_same_v<B, Ffr> ? "Ffr, 16 elements" : "AncfCable, 16 elements"},
          stress, expected, 0.01 * expected, {equals("x/L", x)});
@@ -109,13 +109,13 @@ void is_centrifugal(B const& body, double omega) {
 }
 
 TEST(DecoupledAndCoupled, BothGiveTheCentrifugalStress) {
-  double const omega = 100.0, whole = 0.5 * 7800 * omega * omega;
+  double const omega = 100.0, full = 0.5 * 7800 * omega * omega;
   OnHub<Rigid<>> rigid(Rigid<>::from(steel()), {.speed = omega});
   auto const decoupled = DecoupledStress::quasi_static(structure_of(steel(), 2), steady_record(rigid, omega));
   for (double const x : {0.03125, 0.28125, 0.53125, 0.78125, 0.96875})
     held({"thesis §4.3", "stress of a rod that turns steadily [Pa]", By::closed_form, "½ ρω² (L² − x²)",
           "Rigid, quasi-static"},
-         decoupled.axial_stress(steel(), x).back(), whole * (1.0 - x * x), 1e-8 * whole, {equals("x/L", x)});
+         decoupled.axial_stress(steel(), x).back(), full * (1.0 - x * x), 1e-8 * full, {equals("x/L", x)});
   is_centrifugal(Ffr::from(steel(), 16), omega);
   is_centrifugal(AncfCable<>::from(steel(), 16), omega);
 }
@@ -159,7 +159,7 @@ std::vector<double> coupled_tip(Turn const& turn, Push const& push) {
   OnHub<Ffr> flexible(Ffr::from(blade(1e4), 3), turn);
   flexible.model.apply(push, flexible.arm.at(1.0), "tip");
   std::vector<double> out;
-  for (State const& now : simulate(flexible.model, flexible.x, GeneralizedAlpha{}, {.until = 3.0, .step = 5e-3}))
+  for (State const& now : simulate(flexible.model, flexible.x, GeneralisedAlpha{}, {.end_time = 3.0, .step = 5e-3}))
     out.push_back(coordinates_of(flexible.model, now, flexible.arm)[7 + 6 * 2 + 1]);
   return out;
 }
@@ -168,10 +168,10 @@ std::vector<double> decoupled_tip(Turn const& turn, Push const& push, bool follo
   rigid.model.apply(push, rigid.arm.at(1.0), "tip");
   LoadRecorder recorder(rigid.model);
   recorder.add(rigid.arm);
-  for (State const& now : simulate(rigid.model, rigid.x, GeneralizedAlpha{}, {.until = 3.0, .step = 5e-3}))
+  for (State const& now : simulate(rigid.model, rigid.x, GeneralisedAlpha{}, {.end_time = 3.0, .step = 5e-3}))
     recorder.record(now);
   auto const stress =
-      DecoupledStress::vibrating(structure_of(blade(1e4), 3), recorder.of(rigid.arm), GeneralizedAlpha{},
+      DecoupledStress::vibrating(structure_of(blade(1e4), 3), recorder.of(rigid.arm), GeneralisedAlpha{},
                                  {.follows_deformation = follows, .settled = false});
   VecX const tip = stress.displacements().row(6 * 3 + 1);
   return {tip.data(), tip.data() + tip.size()};
@@ -228,9 +228,9 @@ TEST(DecoupledAndCoupled, OnlyTheCoupledFrameRecoils) {
       .length = 1.0,
       .constants = BarConstants{.EA = 1.0, .EI = 1.0, .mass_per_length = 1.0, .GJ = 1.0, .rotary_inertia = 1e-3}};
   Structure const structure = structure_of(rod, 16);
-  MatX const tied = held_modes(structure, 1), mean = free_interface_modes(structure, 1);
+  MatX const tied = fixed_interface_modes(structure, 1), mean = free_interface_modes(structure, 1);
   PointForce<> const push{.force = {1e-3, 0, 0}};
-  RunOptions const run{.until = 3.0, .step = 5e-3};
+  RunOptions const run{.end_time = 3.0, .step = 5e-3};
 
   Model<Bodies<Ffr>, Joints<>, Forces<PointForce<>>> flexible;
   auto const body = flexible.add(Ffr(structure, tied, {}), "rod");

@@ -9,7 +9,7 @@
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/integrators/adams_bashforth_moulton.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/newmark.hpp>
 #include <polybody/integrators/radau.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
@@ -72,17 +72,17 @@ TEST(DecoupledStress, OfARotatingRodIsTheCentrifugalOne) {
   Vec3 const spin = omega * askew.axes.col(2);
   model.set_velocity(x, arm, -spin.cross(askew.origin), spin);
   BodyRecord const run =
-      record(model, arm, x, Exact{}, {.until = 0.01, .step = 5e-4});  // ωh = 0.04: (ωh)⁶/144 per step
-  double const whole = 0.5 * density * omega * omega * length * length;
+      record(model, arm, x, Exact{}, {.end_time = 0.01, .step = 5e-4});  // ωh = 0.04: (ωh)⁶/144 per step
+  double const full = 0.5 * density * omega * omega * length * length;
   for (Index const n : {1, 3, 8}) {
     auto const stress = DecoupledStress::quasi_static(structure_of(rod(), n), run);
     for (double const part : {0.0, 0.1, 1.0 / 3.0, 0.5, 0.77, 0.99, 1.0}) {
       for (double const s : stress.axial_stress(rod(), part * length, 0.5 * height, 0.5 * width))
         held(
             {"thesis §4.3", "stress of a rotating rod [Pa]", By::closed_form, "½ ρω² (L² − x²)", "Rigid, quasi-static"},
-            s, whole * (1.0 - part * part), 1e-9 * whole, {equals("x/L", part), whole});
+            s, full * (1.0 - part * part), 1e-9 * full, {equals("x/L", part), full});
       for (double const e : stress.axial_strain(part * length))
-        EXPECT_NEAR(e, whole / young * (1.0 - part * part), 1e-9 * whole / young);
+        EXPECT_NEAR(e, full / young * (1.0 - part * part), 1e-9 * full / young);
     }
   }
 }
@@ -110,7 +110,7 @@ struct Swing {
 // the part beyond has the opposite sign.
 template <class M, class B>
 void swings(M const& model, BodyHandle<B> const& arm) {
-  BodyRecord const run = record(model, arm, model.reference_state(), Exact{}, {.until = 1.5, .step = 2e-3});
+  BodyRecord const run = record(model, arm, model.reference_state(), Exact{}, {.end_time = 1.5, .step = 2e-3});
   double const rotary = constants(rod()).rotary_inertia, weight = mass * g;
   auto const stress = DecoupledStress::quasi_static(structure_of(rod(), 4), run);
   double least = 10.0, most = 0.0;
@@ -152,7 +152,7 @@ TEST(DecoupledStress, OfASwingingRodInThePlaneIsTheTextbooks) {
 TEST(DecoupledStress, OfAFallingBodyIsNone) {
   Arms model{Gravity{0, 0, -g}};
   auto const arm = model.add(Rigid<>::from(rod(Placement::at({0, 0, 0}, {0, 0.7, 0}))), "arm");
-  BodyRecord const run = record(model, arm, model.reference_state(), Exact{}, {.until = 0.1, .step = 0.01});
+  BodyRecord const run = record(model, arm, model.reference_state(), Exact{}, {.end_time = 0.1, .step = 0.01});
   for (Vec6 const& n : DecoupledStress::quasi_static(structure_of(rod(), 3), run).section_forces(0.4))
     held_within({"thesis §4.3", "section forces of a rod that falls, of its weight", By::closed_form, "0",
                  "Rigid, quasi-static"},
@@ -168,12 +168,13 @@ TEST(DecoupledStress, OfACantileverIsThatOfStatics) {
   Arms model{Gravity{0, -g, 0}};
   auto const arm = model.add(Rigid<>::from(rod()), "arm");
   model.connect(Clamp{}, model.ground().at({0, 0, 0}), arm.at(0.0), "clamp");
-  BodyRecord const run = record(model, arm, model.reference_state(), GeneralizedAlpha{}, {.until = 1.0, .step = 5e-3});
+  BodyRecord const run =
+      record(model, arm, model.reference_state(), GeneralisedAlpha{}, {.end_time = 1.0, .step = 5e-3});
   double const lambda = 1.875104069, sigma = 0.7340955, w = density * area * g, root = 0.5 * w * length * length;
   double const omega = std::pow(lambda / length, 2) * height * std::sqrt(young / (12.0 * density));
   Structure const structure = structure_of(rod(), 6);
   auto const still = DecoupledStress::quasi_static(structure, run);
-  auto const settled = DecoupledStress::vibrating(structure, run, GeneralizedAlpha{}, {});
+  auto const settled = DecoupledStress::vibrating(structure, run, GeneralisedAlpha{}, {});
   for (double const x : {0.0, 0.3, 0.8, 1.4}) {
     double const rest = length - x;
     Vec6 const expected = (Vec6() << 0.0, -w * rest, 0.0, 0.0, 0.0, -0.5 * w * rest * rest).finished();
@@ -200,10 +201,10 @@ TEST(DecoupledStress, OfACantileverIsThatOfStatics) {
   Vibration const from_rest{.settled = false};
   Vibration damped = from_rest;
   damped.stiffness_damping = 2e-3;
-  auto const by_bars = DecoupledStress::vibrating(structure_of(slow, 6), run, GeneralizedAlpha{}, from_rest);
-  auto const by_option = DecoupledStress::vibrating(structure, run, GeneralizedAlpha{}, damped);
+  auto const by_bars = DecoupledStress::vibrating(structure_of(slow, 6), run, GeneralisedAlpha{}, from_rest);
+  auto const by_option = DecoupledStress::vibrating(structure, run, GeneralisedAlpha{}, damped);
   EXPECT_LT(largest(by_bars.section_forces(0.3), by_option.section_forces(0.3)), 1e-9 * root);
-  MatX const shape = held_modes(structure, 1);
+  MatX const shape = fixed_interface_modes(structure, 1);
   auto const sudden = DecoupledStress::vibrating(structure, run, Exact{}, {.shapes = shape, .settled = false});
   std::vector<Vec6> const forces = sudden.section_forces(0.0);
   for (std::size_t i = 0; i < forces.size(); ++i)
@@ -218,7 +219,8 @@ TEST(DecoupledStress, OfACantileverThatBendsAcross) {
   Arms model{Gravity{0, 0, g}};
   auto const arm = model.add(Rigid<>::from(rod()), "arm");
   model.connect(Clamp{}, model.ground().at({0, 0, 0}), arm.at(0.0), "clamp");
-  BodyRecord const run = record(model, arm, model.reference_state(), GeneralizedAlpha{}, {.until = 0.1, .step = 5e-3});
+  BodyRecord const run =
+      record(model, arm, model.reference_state(), GeneralisedAlpha{}, {.end_time = 0.1, .step = 5e-3});
   auto const stress = DecoupledStress::quasi_static(structure_of(rod(), 6), run);
   double const w = density * area * g, x = 0.4, moment = 0.5 * w * std::pow(length - x, 2),
                modulus = height * width * width / 6.0;
@@ -248,9 +250,9 @@ TEST(DecoupledStress, OfAVibratingRodEndsInNothing) {
   model.connect(Pin{{.axis = {0, 0, 1}}, {}}, model.ground().at({0, 0, 0}), arm.at(0.0), "pin");
   State x = model.reference_state();
   model.set_velocity(x, arm, Vec3::Zero(), Vec3(0, 0, 300.0));
-  BodyRecord const run = record(model, arm, x, Exact{}, {.until = 2e-3, .step = 1e-5});
+  BodyRecord const run = record(model, arm, x, Exact{}, {.end_time = 2e-3, .step = 1e-5});
   auto const stress =
-      DecoupledStress::vibrating(structure_of(rod(), 5), run, GeneralizedAlpha{}, {.follows_deformation = true});
+      DecoupledStress::vibrating(structure_of(rod(), 5), run, GeneralisedAlpha{}, {.follows_deformation = true});
   double const root = 0.5 * mass * length * 300.0 * 300.0;
   for (Vec6 const& n : stress.section_forces(length))
     held_within({"thesis §4.3", "section forces at the free end of a rod that spins and shakes, of the root's",
@@ -276,7 +278,7 @@ TEST(DecoupledStress, GivesWhatTheCutOffPartNeeds) {
   model.set_velocity(x, arm, -spin.cross(hinge), spin);
   State start = x;
   assemble(model, start);
-  BodyRecord const run = record(model, arm, start, Exact{}, {.until = 0.4, .step = 1e-3});
+  BodyRecord const run = record(model, arm, start, Exact{}, {.end_time = 0.4, .step = 1e-3});
   Structure const structure = structure_of(rod(), 4);  // the intermediate load is within an element
   auto const stress = DecoupledStress::quasi_static(structure, run);
   BarConstants const c = constants(rod());
@@ -335,7 +337,7 @@ TEST(DecoupledStress, OfABodyOfSeveralBarsIsThatOfEach) {
   auto const body =
       model.add(Rigid<>(structure.mass, central.trace() * Mat3::Identity() - central, Placement::at(centre)), "angle");
   model.connect(Ball{}, model.ground().at({0.2, 0, 0}), body.at(Vec3(Vec3(0.2, 0, 0) - centre)), "ball");
-  BodyRecord const run = record(model, body, model.reference_state(), Exact{}, {.until = 0.5, .step = 5e-3});
+  BodyRecord const run = record(model, body, model.reference_state(), Exact{}, {.end_time = 0.5, .step = 5e-3});
   auto const stress = DecoupledStress::quasi_static(structure, run);
   BarConstants const c = constants(rod());
   for (double const s : {0.0, 0.4, 1.1}) {
@@ -390,7 +392,7 @@ TEST(DecoupledStress, OfNodesWithoutRotationsIsCarriedByAPatch) {
   auto const hook = body.at(Vec3(0.05, 0.02, 0.35));
   model.apply(PointForce<>{.force = {30, -20, 400}}, hook, "lift");
   model.apply(PointMoment<>{.moment = {3, 2, 5}}, hook, "twist");
-  BodyRecord const run = record(model, body, model.reference_state(), Exact{}, {.until = 0.1, .step = 0.005});
+  BodyRecord const run = record(model, body, model.reference_state(), Exact{}, {.end_time = 0.1, .step = 0.005});
   auto const stress = DecoupledStress::quasi_static(block, run, {.patch = 0.3});
   for (std::size_t t = 0; t < run.samples.size(); ++t) {
     BodySample const& at = run.samples[t];
@@ -430,7 +432,7 @@ TEST(DecoupledStress, OfNodesWithoutRotationsIsCarriedByAPatch) {
 ///   q¨)/ω² = q.
 struct Ramped {
   Structure structure = structure_of(rod(), 3);
-  MatX shape = held_modes(structure, 1);
+  MatX shape = fixed_interface_modes(structure, 1);
   BodyRecord run;
   double omega = std::sqrt((shape.transpose() * (structure.stiffness * shape))(0, 0)), rate = 50.0;
 
@@ -440,7 +442,7 @@ struct Ramped {
     model.connect(Clamp{}, model.ground().at({0, 0, 0}), arm.at(0.0), "clamp");
     model.apply(PointForce<Ramp>{.force = {0, rate, rate}, .law = {.target = 1.0, .duration = 1.0}}, arm.at(length),
                 "tip");
-    run = record(model, arm, model.reference_state(), GeneralizedAlpha{}, {.until = 0.5, .step = 0.01});
+    run = record(model, arm, model.reference_state(), GeneralisedAlpha{}, {.end_time = 0.5, .step = 0.01});
   }
   /// Largest error relative to the largest q.
   template <class I>
@@ -464,7 +466,7 @@ struct Ramped {
 TEST(DecoupledStress, VibratesByAnyIntegrator) {
   Ramped const r;
   for (auto const& [coarse, fine, order] :
-       {std::tuple(r.error(GeneralizedAlpha{.rho_inf = 0.9}, 4), r.error(GeneralizedAlpha{.rho_inf = 0.9}, 8), 2),
+       {std::tuple(r.error(GeneralisedAlpha{.rho_inf = 0.9}, 4), r.error(GeneralisedAlpha{.rho_inf = 0.9}, 8), 2),
         {r.error(Trapezoidal{}, 4), r.error(Trapezoidal{}, 8), 2},
         {r.error(Exact{}, 4), r.error(Exact{}, 8), 4}}) {
     EXPECT_NEAR(std::log2(coarse / fine), order, 0.2);
@@ -484,7 +486,8 @@ TEST(DecoupledStress, RefusesInSentences) {
   Arms model{Gravity{0, -g, 0}};
   auto const arm = model.add(Rigid<>::from(rod()), "link 7");
   model.connect(Pin{{.axis = {0, 0, 1}}, {}}, model.ground().at({0, 0, 0}), arm.at(0.0), "pin");
-  BodyRecord const run = record(model, arm, model.reference_state(), GeneralizedAlpha{}, {.until = 0.5, .step = 0.01});
+  BodyRecord const run =
+      record(model, arm, model.reference_state(), GeneralisedAlpha{}, {.end_time = 0.5, .step = 0.01});
   Structure const structure = structure_of(rod(), 2);
   auto const refused = [&](BodyRecord const& r) {
     return refusal([&] { DecoupledStress::quasi_static(structure, r); });
@@ -523,11 +526,12 @@ TEST(DecoupledStress, RefusesInSentences) {
   EXPECT_EQ(low_pass(stress.times(), stress.axial_strain(0.5), {.cut_off = 15.0}).size(), run.samples.size());
 
   EXPECT_TRUE(has(refusal([&] {
-                    DecoupledStress::vibrating(structure, run, Trapezoidal{},
-                                               {.shapes = held_modes(structure, 2, ReferenceConditions::clamped(2))});
+                    DecoupledStress::vibrating(
+                        structure, run, Trapezoidal{},
+                        {.shapes = fixed_interface_modes(structure, 2, ReferenceConditions::clamped(2))});
                   }),
                   "the shapes move node 0, which the reference conditions hold"));
-  MatX twice = held_modes(structure, 2);
+  MatX twice = fixed_interface_modes(structure, 2);
   twice.col(1) = twice.col(0);
   EXPECT_TRUE(has(refusal([&] { DecoupledStress::vibrating(structure, run, Trapezoidal{}, {.shapes = twice}); }),
                   "shapes that repeat others"));

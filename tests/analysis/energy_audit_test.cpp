@@ -13,11 +13,11 @@
 #include <polybody/forces/contact.hpp>
 #include <polybody/forces/contact_group.hpp>
 #include <polybody/forces/user_force.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/planar/prismatic.hpp>
 #include <polybody/joints/policies/ancf_linear.hpp>
-#include <polybody/joints/policies/recursive.hpp>
+#include <polybody/joints/policies/joint_coordinates.hpp>
 #include <polybody/run/simulate.hpp>
 #include <polybody/testing/differences.hpp>
 
@@ -39,7 +39,7 @@ Claim work(char const* what, By by, char const* source, char const* formulation)
 /// Accelerations x.a that satisfy M a − f + Gᵀλ = 0 for any λ, also if the constraint equations are violated. M is
 /// computed column by column.
 void obey(System& system, State& x) {
-  Index const n = system.speeds();
+  Index const n = system.velocities();
   VecX at_rest(n), r(n), a = VecX::Zero(n);
   MatX mass(n, n);
   system.evaluate(x.q, x.v, x.t);
@@ -173,10 +173,10 @@ struct Crane {
   }
   /// Energy audit of a run that ends while the drive is active.
   template <class I>
-  auto run(I const& integrator, double h, double until = 0.6) const {
+  auto run(I const& integrator, double h, double end_time = 0.6) const {
     EnergyAudit audit(model);
     State x = model.reference_state();
-    for (State const& now : simulate(model, x, integrator, {.until = until, .step = h})) audit.record(now);
+    for (State const& now : simulate(model, x, integrator, {.end_time = end_time, .step = h})) audit.record(now);
     return audit;
   }
 };
@@ -212,7 +212,7 @@ TEST(EnergyAudit, OfAnImplicitRunConvergesLikeTheIntegrator) {
   Crane<Constraint> const crane;
   Motion const psi = crane.law(0.6);
   double const spent = crane.weight * (1.0 - std::cos(psi.value)) + 0.5 * crane.inertia * psi.rate * psi.rate;
-  GeneralizedAlpha const alpha{.tolerance =
+  GeneralisedAlpha const alpha{.tolerance =
                                    1e-11};  // Newton's tolerance is negligible compared with the error of the step
   auto const coarse = crane.run(alpha, 5e-3), fine = crane.run(alpha, 2.5e-3);
   held({"energy", "work of the drive of a pendulum [J]", By::closed_form, "½ J ψ̇² + ½ m g l (1 − cos ψ)",
@@ -224,7 +224,7 @@ TEST(EnergyAudit, OfAnImplicitRunConvergesLikeTheIntegrator) {
 // Joints without constraint equations in a step: `simulate` computes their forces.
 TEST(EnergyAudit, OfJointCoordinatesIsThatOfRows) {
   auto const rows = Crane<Constraint>{}.run(RungeKutta4<Projection>{}, 2.5e-3);
-  auto const joint_coordinates = Crane<Recursive>{}.run(RungeKutta4<Projection>{}, 2.5e-3);
+  auto const joint_coordinates = Crane<JointCoordinates>{}.run(RungeKutta4<Projection>{}, 2.5e-3);
   held_within(work("work of the drive of a pendulum [J]", By::itself, "Constraint", "joint coordinates, Runge–Kutta 4"),
               std::abs(joint_coordinates.work_of_drives() - rows.work_of_drives()), 1e-8, {.scale = 1.0});
   EXPECT_NEAR(joint_coordinates.unaccounted(), rows.unaccounted(), 1e-8);
@@ -254,21 +254,21 @@ double left_after(double t) {
 // unaccounted part is at most the error of the trapezoidal rule, and falls with h².
 template <class M>
 void expect_damped(char const* formulation, M const& model, State const& from) {
-  double const until = 0.35;
+  double const end_time = 0.35;
   EXPECT_NEAR(energy(model, from).total(), 50.0, 1e-12);
   std::array<double, 2> left{};
   double h = 2e-3;
   for (double& unaccounted : left) {
     EnergyAudit audit(model);
     State x = from;
-    for (State const& now : simulate(model, x, RungeKutta4<Projection>{}, {.until = until, .step = h}))
+    for (State const& now : simulate(model, x, RungeKutta4<Projection>{}, {.end_time = end_time, .step = h}))
       audit.record(now);
     char const* const decay = "damped oscillator";
     held(work("what a damped oscillator has less [J]", By::closed_form, decay, formulation),
-         -audit.kinetic() - audit.stored(), 50.0 - left_after(until), 1e-5,
+         -audit.kinetic() - audit.stored(), 50.0 - left_after(end_time), 1e-5,
          {equals("h", h)});  // RungeKutta4: (ωh)⁴ of 50 J
     held(work("what a damped oscillator loses [J]", By::closed_form, decay, formulation), audit.dissipated(),
-         50.0 - left_after(until), 1e-4 * 50.0, {equals("h", h)});
+         50.0 - left_after(end_time), 1e-4 * 50.0, {equals("h", h)});
     EXPECT_EQ(audit.work_of_loads(), 0.0);
     EXPECT_LT(audit.relative(), 1e-4);
     unaccounted = audit.unaccounted();
@@ -313,7 +313,7 @@ TEST(EnergyAudit, OfALawWithoutPotentialCountsAsALoad) {
   x.q[0] = 1.0;
   EXPECT_EQ(energy(model, x).joints, 0.0);
   EnergyAudit audit(model);
-  for (State const& now : simulate(model, x, RungeKutta4<>{}, {.until = 0.35, .step = 1e-3})) audit.record(now);
+  for (State const& now : simulate(model, x, RungeKutta4<>{}, {.end_time = 0.35, .step = 1e-3})) audit.record(now);
   double const at_rest = 50.0 * (1.0 - x.q[0] * x.q[0]);
   EXPECT_NEAR(audit.work_of_loads(), at_rest, 1e-4 * 50.0);
   held(work("what a damped oscillator loses [J]", By::closed_form, "damped oscillator",
@@ -331,7 +331,7 @@ TEST(EnergyAudit, OfPointLoadsIsExact) {
   model.apply(PointMoment<>{.moment = {0, 0, 0.5}}, body.at(Vec2(0, 0)), "moment");
   EnergyAudit audit(model);
   State x = model.reference_state();
-  for (State const& now : simulate(model, x, RungeKutta4<>{}, {.until = 1.0, .step = 0.05})) audit.record(now);
+  for (State const& now : simulate(model, x, RungeKutta4<>{}, {.end_time = 1.0, .step = 0.05})) audit.record(now);
   held(work("work of a force and a moment [J]", By::closed_form, "F²t²/2m + M²t²/2J", "planar Rigid, Runge–Kutta 4"),
        audit.work_of_loads(), 9.0 / 4.0 + 0.25 / 0.5, 1e-12);
   EXPECT_NEAR(audit.kinetic(), audit.work_of_loads(), 1e-12);
@@ -354,7 +354,7 @@ TEST(EnergyAudit, OfAUsersForceIsTheWorkOfALoad) {
   EnergyAudit audit(model);
   State x = model.reference_state();
   x.v[0] = 2.0;
-  for (State const& now : simulate(model, x, RungeKutta4<>{}, {.until = 1.0, .step = 0.01})) audit.record(now);
+  for (State const& now : simulate(model, x, RungeKutta4<>{}, {.end_time = 1.0, .step = 0.01})) audit.record(now);
   held(work("work of a user's drag [J]", By::closed_form, "½ m v₀² (e^(−2ct/m) − 1)", "UserForce, Runge–Kutta 4"),
        audit.work_of_loads(), 2.0 * (std::exp(-1.0) - 1.0), 2e-5);  // h²/12 [P′] = 8e-6 · 0.63 · 2
   EXPECT_EQ(audit.dissipated(), 0.0);
@@ -379,7 +379,7 @@ struct Balls {
       std::vector<decltype(balls[0].at(Vec3(0, 0, 0)))> many;
       for (auto const& b : balls) many.push_back(b.at(Vec3(0, 0, 0)));
       auto const group = model.apply(F{}, many, "balls");
-      model.pair_with(group, law, floor, "ground");
+      model.add_partner(group, law, floor, "ground");
     } else {
       for (auto const& b : balls) model.apply(law, b.at(Vec3(0, 0, 0)), floor);
     }
@@ -389,10 +389,10 @@ struct Balls {
       x.v.segment<3>(6 * i + 3) = spin;
     }
   }
-  auto run(double until, double h) const {
+  auto run(double end_time, double h) const {
     EnergyAudit audit(model);
     State now = x;
-    for (State const& s : simulate(model, now, RungeKutta4<>{}, {.until = until, .step = h})) audit.record(s);
+    for (State const& s : simulate(model, now, RungeKutta4<>{}, {.end_time = end_time, .step = h})) audit.record(s);
     return audit;
   }
 };
@@ -479,8 +479,8 @@ EnergyAudit of_oscillator(Model<Bodies<planar::Rigid>, Joints<>, Forces<SpringDa
                           double h, int steps) {
   EnergyAudit audit(model);
   State x = model.reference_state();
-  GeneralizedAlpha const integrator{.rho_inf = rho_inf, .tolerance = 1e-12};
-  RunOptions options{.until = h * steps, .step = h};
+  GeneralisedAlpha const integrator{.rho_inf = rho_inf, .tolerance = 1e-12};
+  RunOptions options{.end_time = h * steps, .step = h};
   options.limits.energy = std::numeric_limits<double>::infinity();  // a step of 1e4/ω overshoots before the damping
   for (State const& now : simulate(model, x, integrator, options)) audit.record(now);
   return audit;
@@ -530,7 +530,7 @@ auto of_cables(double h) {
   model.connect(Pin{}, a.at(0.5), b.at(0.0), "hinge");
   EnergyAudit audit(model);
   State x = model.reference_state();
-  for (State const& now : simulate(model, x, GeneralizedAlpha{.rho_inf = 0.9}, {.until = 0.3, .step = h}))
+  for (State const& now : simulate(model, x, GeneralisedAlpha{.rho_inf = 0.9}, {.end_time = 0.3, .step = h}))
     audit.record(now);
   return std::array{audit.dissipated(), audit.unaccounted(), audit.relative(), audit.work_of_drives()};
 }

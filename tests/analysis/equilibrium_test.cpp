@@ -68,7 +68,7 @@ TEST(Equilibrium, DoesNotDependOnTheLoadSteps) {
   equilibrium(s.model, once);
   for (int const steps : {2, 3, 10, 20, 40}) {
     State x = s.model.reference_state();
-    EXPECT_GE(equilibrium(s.model, x, {.load_steps = steps}).parts, steps);
+    EXPECT_GE(equilibrium(s.model, x, {.load_steps = steps}).load_steps, steps);
     EXPECT_LT((x.q - once.q).cwiseAbs().maxCoeff(), 1e-11) << steps;
     EXPECT_LT((x.lambda - once.lambda).cwiseAbs().maxCoeff(), 1e-7) << steps;  // round-off: EA · 1e-16 · elements
   }
@@ -82,7 +82,7 @@ TEST(Equilibrium, BalancesForcesWithTheReactions) {
   Wrench<double> const support = reaction(s.model, x, s.clamp);
   EXPECT_LT((support.f - Vec3(-0.3, 0.7 - 2.0, 0)).norm(), 1e-9);
   EXPECT_TRUE(x.v.isZero(0.0) && x.a.isZero(0.0));
-  EXPECT_LT(gap(s.model, x, s.clamp).norm(), 1e-12);
+  EXPECT_LT(constraint_violation(s.model, x, s.clamp).norm(), 1e-12);
 }
 
 TEST(Equilibrium, OfAStateInEquilibriumIsThatState) {
@@ -120,7 +120,7 @@ TEST(Equilibrium, NamesTheBodyThatNothingHolds) {
       loose.placement = Placement::planar(0.3, 0.2, 0.7);
       auto const body = s.model.add(Lrvf::from(loose, n), "loose");
       s.model.apply(PointForce<>{.force = {0, 1, 0}}, body.at(1.0));
-      std::string const text = refused<LinearSolverSingular>(s.model, s.model.reference_state());
+      std::string const text = refused<SingularMatrix>(s.model, s.model.reference_state());
       EXPECT_TRUE(has(text, "body \"loose\"")) << n;
       EXPECT_TRUE(has(text, "Hold every body")) << n;
     }
@@ -136,26 +136,27 @@ TEST(Equilibrium, DropsTheJointThatIsThereTwice) {
     EXPECT_TRUE(equilibrium(once.model, x).redundant.empty());
     EquilibriumReport const report = equilibrium(twice.model, y);
     EXPECT_EQ(report.redundant, std::vector<std::string>{"joint \"again\""});
-    EXPECT_TRUE(report.neutral.empty());
+    EXPECT_TRUE(report.free_motions.empty());
     EXPECT_LT((x.q - y.q).cwiseAbs().maxCoeff(), 1e-10) << n;
     EXPECT_LT((reaction(once.model, x, once.clamp).m - reaction(twice.model, y, twice.clamp).m).norm(), 1e-8) << n;
     EXPECT_EQ(reaction(twice.model, y, again).f, Vec3(0, 0, 0)) << n;
 
     apart.model.connect(Clamp{}, apart.model.ground().at({0, 0.01, 0}), apart.beam.at(0.0), "elsewhere");
-    EXPECT_TRUE(has(refused<InconsistentStart>(apart.model, apart.model.reference_state()), "joint \"")) << n;
+    EXPECT_TRUE(has(refused<InconsistentInitialConditions>(apart.model, apart.model.reference_state()), "joint \""))
+        << n;
   }
 }
 
 TEST(Equilibrium, SaysThatNewtonStalled) {
   Held const s(bar(1e6), 8, {0, 50, 0});
-  std::string const text = refused<NewtonStalled>(s.model, s.model.reference_state(), {.max_iterations = 1});
+  std::string const text = refused<NewtonConvergenceFailure>(s.model, s.model.reference_state(), {.max_iterations = 1});
   EXPECT_TRUE(has(text, "load steps"));
 }
 
 TEST(Equilibrium, HalvesAPartThatFailsAndGetsThere) {
   Held const s(bar(1e6), 16, {0, 50, 0});
   State x = s.model.reference_state(), small = x;
-  EXPECT_GT(equilibrium(s.model, x).parts, 1);
+  EXPECT_GT(equilibrium(s.model, x).load_steps, 1);
   equilibrium(s.model, small, {.load_steps = 40});
   EXPECT_LT((x.q - small.q).cwiseAbs().maxCoeff(), 1e-10);
 }
@@ -185,9 +186,9 @@ TEST(Equilibrium, DoesNotDependOnTheUnitOfForce) {
 TEST(Equilibrium, GoesOnFromWhereItIs) {
   Held const half(bar(1e6), 16, {0, 25, 0}), full(bar(1e6), 16, {0, 50, 0});
   State x = full.model.reference_state(), y = x;
-  EXPECT_GT(equilibrium(full.model, x).parts, 2);
+  EXPECT_GT(equilibrium(full.model, x).load_steps, 2);
   equilibrium(half.model, y);
-  EXPECT_LE(equilibrium(full.model, y).parts, 2);
+  EXPECT_LE(equilibrium(full.model, y).load_steps, 2);
   EXPECT_LT((x.q - y.q).cwiseAbs().maxCoeff(), 1e-10);
 }
 
@@ -196,7 +197,7 @@ TEST(Equilibrium, SaysThatAForceIsNotFinite) {
   s.model.apply(PointForce<Breaks>{.force = {0, 1, 0}}, s.beam.at(0.5));
   State x = s.model.reference_state();
   x.t = 1.0;
-  refused<NonFinite>(s.model, x);
+  refused<NonFiniteValue>(s.model, x);
   x.t = 0.5;
   EXPECT_NO_THROW(equilibrium(s.model, x));
   EXPECT_EQ(x.t, 0.5);
@@ -314,7 +315,7 @@ TEST(Equilibrium, PenaltySupportsYieldByForceOverStiffness) {
     model.apply(PointForce<>{.force = force}, beam.at(1.0));
     State x = model.reference_state();
     equilibrium(model, x);
-    Vec3 const g = gap(model, x, clamp);
+    Vec3 const g = constraint_violation(model, x, clamp);
     EXPECT_NEAR(g[0], force[0] / k, 1e-9 * force[0] / k + 1e-15);
     EXPECT_NEAR(g[1], force[1] / k, 1e-9 * force[1] / k + 1e-15);
     Wrench<double> const r = reaction(model, x, clamp);

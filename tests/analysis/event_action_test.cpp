@@ -2,11 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/rigid/planar_rigid.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/policies/constraint.hpp>
-#include <polybody/joints/policies/recursive.hpp>
+#include <polybody/joints/policies/joint_coordinates.hpp>
 #include <polybody/run/simulate.hpp>
 
 #include "support/refusal.hpp"
@@ -24,7 +24,7 @@ struct Ball {
   Event const floor{.name = "floor",
                     .value = [](State const& now) { return now.q[1]; },
                     .tolerance = 1e-15,
-                    .then = [](State& now) { now.v[1] *= -0.8; }};
+                    .action = [](State& now) { now.v[1] *= -0.8; }};
   Event const apex{.name = "apex", .value = [](State const& now) { return now.v[1]; }, .tolerance = 1e-15};
 
   Ball() {
@@ -35,8 +35,8 @@ struct Ball {
 
 TEST(EventAction, AnImpactIsMetOnceAndTurnsTheSpeedRound) {
   Ball ball;
-  auto run =
-      simulate(ball.model, ball.x, GeneralizedAlpha{}, {.until = 1.7, .step = 1e-2, .events = {ball.floor, ball.apex}});
+  auto run = simulate(ball.model, ball.x, GeneralisedAlpha{},
+                      {.end_time = 1.7, .step = 1e-2, .events = {ball.floor, ball.apex}});
   run.run();
   double const t1 = std::sqrt(2.0 / g), v1 = std::sqrt(2.0 * g);
   // a jump of the velocity through zero is not an apex
@@ -56,13 +56,13 @@ TEST(EventAction, AnImpactIsMetOnceAndTurnsTheSpeedRound) {
 
 TEST(EventAction, ASnapshotKeepsThatAnEventHasActed) {
   Ball ball;
-  RunOptions options{.until = 0.46, .step = 1e-2, .events = {ball.floor}};
-  auto first = simulate(ball.model, ball.x, GeneralizedAlpha{}, options);
+  RunOptions options{.end_time = 0.46, .step = 1e-2, .events = {ball.floor}};
+  auto first = simulate(ball.model, ball.x, GeneralisedAlpha{}, options);
   while (first.report().events.empty()) first.advance();
   RunSnapshot const kept = first.snapshot();
   State x = ball.model.reference_state();
-  options.until = 0.6;
-  auto second = resume(ball.model, x, GeneralizedAlpha{}, options, kept);
+  options.end_time = 0.6;
+  auto second = resume(ball.model, x, GeneralisedAlpha{}, options, kept);
   second.run();
   EXPECT_EQ(second.report().events.size(), 1u);
   double const t1 = std::sqrt(2.0 / g);
@@ -86,12 +86,12 @@ struct Stopped {
     x = model.reference_state();
   }
   /// Impact on the first rod alone. The velocities are then projected in the mass norm.
-  RunReport run(double restitution, double until) {
+  RunReport run(double restitution, double end_time) {
     Event const stop{.name = "stop",
                      .value = [](State const& now) { return now.q[2] + 0.5 * std::numbers::pi; },
                      .tolerance = 1e-14,
-                     .then = [restitution](State& now) { now.v[2] *= -restitution; }};
-    auto run = simulate(model, x, RungeKutta4<Projection>{}, {.until = until, .step = 1e-3, .events = {stop}});
+                     .action = [restitution](State& now) { now.v[2] *= -restitution; }};
+    auto run = simulate(model, x, RungeKutta4<Projection>{}, {.end_time = end_time, .step = 1e-3, .events = {stop}});
     return run.run();
   }
 };
@@ -102,18 +102,18 @@ TEST(EventAction, SpeedsAreProjectedOntoTheJointsOverTheMasses) {
   Event const stop{.name = "stop",
                    .value = [](State const& now) { return now.q[2] + 0.5 * std::numbers::pi; },
                    .tolerance = 1e-14,
-                   .then =
+                   .action =
                        [&](State& now) {
                          before = now;
                          now.v[2] = -now.v[2];
                        }};
-  auto run = simulate(s.model, s.x, GeneralizedAlpha{}, {.until = 2.0, .step = 1e-3, .events = {stop}});
+  auto run = simulate(s.model, s.x, GeneralisedAlpha{}, {.end_time = 2.0, .step = 1e-3, .events = {stop}});
   while (run.report().events.empty()) run.advance();
   // M (v⁺ − v) + Gᵀμ = 0 with G v⁺ = 0 and the changed velocities v: the change is orthogonal to the free directions
   // of the joints
   VecX changed = before.v;
   changed[2] = -changed[2];
-  System system(s.model, with<Entries::motion>);
+  System system(s.model, with<Capabilities::motion>);
   system.evaluate(s.x.q, s.x.v, s.x.t);
   VecX rate(system.rows());
   system.violation_rate(rate);
@@ -135,7 +135,7 @@ TEST(EventAction, SpeedsAreProjectedOntoTheJointsOverTheMasses) {
 
 TEST(EventAction, IsTheSameInJointCoordinates) {
   Stopped<Constraint> rows;
-  Stopped<Recursive> tree;
+  Stopped<JointCoordinates> tree;
   RunReport const a = rows.run(0.5, 1.2), b = tree.run(0.5, 1.2);
   ASSERT_GE(a.events.size(), 1u);
   ASSERT_EQ(a.events.size(), b.events.size());
@@ -147,9 +147,9 @@ TEST(EventAction, IsTheSameInJointCoordinates) {
 TEST(EventAction, MustLeaveFiniteNumbers) {
   Ball ball;
   Event bad = ball.floor;
-  bad.then = [](State& now) { now.v[1] = std::nan(""); };
+  bad.action = [](State& now) { now.v[1] = std::nan(""); };
   State const start = ball.x;
-  auto run = simulate(ball.model, ball.x, GeneralizedAlpha{}, {.until = 1.0, .step = 1e-2, .events = {bad}});
+  auto run = simulate(ball.model, ball.x, GeneralisedAlpha{}, {.end_time = 1.0, .step = 1e-2, .events = {bad}});
   EXPECT_TRUE(has(refusal([&] { run.run(); }), "The speeds after the event \"floor\" must be finite"));
   EXPECT_TRUE(all_finite(ball.x.v));  // state before the step
   EXPECT_GT(ball.x.q[1], 0.0);
@@ -163,7 +163,7 @@ State bounce(I const& integrator, double e, double height, RunOptions options, R
   State x = model.reference_state();
   options.events.insert(options.events.begin(), Event{.name = "floor",
                                                       .value = [](State const& now) { return now.q[1]; },
-                                                      .then = [e](State& now) { now.v[1] *= -e; },
+                                                      .action = [e](State& now) { now.v[1] *= -e; },
                                                       .rests = options.events.empty() || options.events[0].rests});
   auto run = simulate(model, x, integrator, options);
   run.run();
@@ -174,7 +174,7 @@ State bounce(I const& integrator, double e, double height, RunOptions options, R
 TEST(EventAction, ALongStepAfterAnImpactMeetsTheNextOne) {
   // in free flight the error estimate does not shorten the steps
   RunReport report;
-  bounce(DormandPrince<>{}, 0.8, 1.0, {.until = 2.0, .step = 1e-3}, &report);
+  bounce(DormandPrince<>{}, 0.8, 1.0, {.end_time = 2.0, .step = 1e-3}, &report);
   ASSERT_EQ(report.events.size(), 3u);
   double const t1 = std::sqrt(2.0 / g);
   EXPECT_NEAR(report.events[0].time, t1, 1e-8);
@@ -187,19 +187,19 @@ TEST(EventAction, AnActionThatLetsTheValuePassIsMetOnTheWayBack) {
   model.add(planar::Rigid(2.0, 1.0), "ball");
   State x = model.reference_state();
   x.v[1] = 4.0;
-  std::vector<double> speeds;
+  std::vector<double> velocities;
   Event const net{.name = "net",
                   .value = [](State const& now) { return now.q[1] - 0.3; },
-                  .then =
+                  .action =
                       [&](State& now) {
-                        speeds.push_back(now.v[1]);
+                        velocities.push_back(now.v[1]);
                         now.v[1] *= 0.5;
                       }};
-  simulate(model, x, GeneralizedAlpha{}, {.until = 1.0, .step = 1e-2, .events = {net}}).run();
+  simulate(model, x, GeneralisedAlpha{}, {.end_time = 1.0, .step = 1e-2, .events = {net}}).run();
   double const v = std::sqrt(16.0 - 2.0 * g * 0.3);
-  ASSERT_EQ(speeds.size(), 2u);
-  EXPECT_NEAR(speeds[0], v, 1e-8);
-  EXPECT_NEAR(speeds[1], -0.5 * v, 1e-8);
+  ASSERT_EQ(velocities.size(), 2u);
+  EXPECT_NEAR(velocities[0], v, 1e-8);
+  EXPECT_NEAR(velocities[1], -0.5 * v, 1e-8);
 }
 
 TEST(EventAction, ImpactsThatAccumulateAreRefusedUnlessTheValueMayRest) {
@@ -207,17 +207,17 @@ TEST(EventAction, ImpactsThatAccumulateAreRefusedUnlessTheValueMayRest) {
   double const t1 = std::sqrt(2.0 / g);
   for (double const e : {0.0, 0.5}) {
     std::string const said =
-        refusal([&] { bounce(GeneralizedAlpha{}, e, 1.0, {.until = 10.0, .step = 1e-2, .events = {only_time}}); });
+        refusal([&] { bounce(GeneralisedAlpha{}, e, 1.0, {.end_time = 10.0, .step = 1e-2, .events = {only_time}}); });
     EXPECT_TRUE(has(said, "The event \"floor\" is met again within its tolerance of 1e-10 s after its action at t = " +
                               number(t1 * (1.0 + e) / (1.0 - e)).substr(0, 6)));
     EXPECT_TRUE(has(said, "Set `rests` of the event"));
   }
   // at rest from the start, also if round-off puts the ball below the floor
   for (double const height : {0.0, 0.3 - 0.1 - 0.2}) {
-    EXPECT_TRUE(
-        has(refusal([&] { bounce(RungeKutta4<>{}, 0.5, height, {.until = 1.0, .step = 1e-2, .events = {only_time}}); }),
-            "The event \"floor\" is met again"));
-    State const rested = bounce(RungeKutta4<>{}, 0.5, height, {.until = 1.0, .step = 1e-2});
+    EXPECT_TRUE(has(
+        refusal([&] { bounce(RungeKutta4<>{}, 0.5, height, {.end_time = 1.0, .step = 1e-2, .events = {only_time}}); }),
+        "The event \"floor\" is met again"));
+    State const rested = bounce(RungeKutta4<>{}, 0.5, height, {.end_time = 1.0, .step = 1e-2});
     EXPECT_NEAR(rested.q[1], 0.0, 1e-12);
     EXPECT_NEAR(rested.v[1], 0.0, 1e-12);
   }
@@ -226,10 +226,10 @@ TEST(EventAction, ImpactsThatAccumulateAreRefusedUnlessTheValueMayRest) {
 TEST(EventAction, AValueThatRestsLeavesWhereItIsDrivenBack) {
   Event const kick{.name = "kick",
                    .value = [](State const& now) { return now.t - 1.0; },
-                   .then = [](State& now) { now.v[1] = 3.0; },
+                   .action = [](State& now) { now.v[1] = 3.0; },
                    .rests = true};
   RunReport report;
-  State const x = bounce(GeneralizedAlpha{}, 0.0, 0.2, {.until = 1.2, .step = 1e-2, .events = {kick}}, &report);
+  State const x = bounce(GeneralisedAlpha{}, 0.0, 0.2, {.end_time = 1.2, .step = 1e-2, .events = {kick}}, &report);
   EXPECT_NEAR(x.q[1], 3.0 * 0.2 - 0.5 * g * 0.04, 1e-8);
   EXPECT_NEAR(x.v[1], 3.0 - g * 0.2, 1e-8);
   ASSERT_EQ(report.events.size(), 3u);
@@ -249,17 +249,17 @@ void expect_rest_of_rod(I const& integrator) {
   State x = model.reference_state();
   Event const stop{.name = "stop",
                    .value = [](State const& now) { return now.q[2] + 0.25 * std::numbers::pi; },
-                   .then = [](State& now) { now.v *= -0.3; },
+                   .action = [](State& now) { now.v *= -0.3; },
                    .rests = true};
-  auto run = simulate(model, x, integrator, {.until = 2.0, .step = 1e-3, .events = {stop}});
+  auto run = simulate(model, x, integrator, {.end_time = 2.0, .step = 1e-3, .events = {stop}});
   double worst = 0.0, open = 0.0;
-  System whole(model, with<Entries::motion>);
-  VecX gaps(whole.rows());
+  System full(model, with<Capabilities::motion>);
+  VecX gaps(full.rows());
   bool rests = false;
   while (!run.done()) {
     run.advance();
-    whole.evaluate(x.q, x.v, x.t);
-    whole.violation(gaps);
+    full.evaluate(x.q, x.v, x.t);
+    full.violation(gaps);
     open = std::max(open, gaps.lpNorm<Eigen::Infinity>());
     rests = rests || (!run.report().events.empty() && run.report().events.back().name == "stop comes to rest");
     if (rests) worst = std::max(worst, std::abs(x.q[2] + 0.25 * std::numbers::pi));
@@ -270,8 +270,8 @@ void expect_rest_of_rod(I const& integrator) {
   EXPECT_LT(x.v.norm(), 1e-9);
 }
 TEST(EventAction, APartOfAMechanismRests) {
-  expect_rest_of_rod<Constraint>(GeneralizedAlpha{});
-  expect_rest_of_rod<Recursive>(RungeKutta4<Projection>{});
+  expect_rest_of_rod<Constraint>(GeneralisedAlpha{});
+  expect_rest_of_rod<JointCoordinates>(RungeKutta4<Projection>{});
 }
 
 TEST(EventAction, MustKeepJointsClosed) {
@@ -280,8 +280,8 @@ TEST(EventAction, MustKeepJointsClosed) {
     State x = s.x;
     Event const event{.name = "push",
                       .value = [](State const& now) { return now.t - 0.1503; },
-                      .then = [by](State& now) { now.q[0] += by; }};
-    auto run = simulate(s.model, x, GeneralizedAlpha{}, {.until = 0.3, .step = 1e-3, .events = {event}});
+                      .action = [by](State& now) { now.q[0] += by; }};
+    auto run = simulate(s.model, x, GeneralisedAlpha{}, {.end_time = 0.3, .step = 1e-3, .events = {event}});
     State before = x;
     try {
       for (; !run.done(); run.advance()) before = x;
@@ -301,12 +301,12 @@ TEST(EventAction, MustKeepJointsClosed) {
 TEST(EventAction, MustKeepTheSizesOfTheState) {
   Ball ball;
   Event bad = ball.floor;
-  bad.then = [](State& now) { now.q.resize(0); };
-  auto run = simulate(ball.model, ball.x, GeneralizedAlpha{}, {.until = 1.0, .step = 1e-2, .events = {bad}});
+  bad.action = [](State& now) { now.q.resize(0); };
+  auto run = simulate(ball.model, ball.x, GeneralisedAlpha{}, {.end_time = 1.0, .step = 1e-2, .events = {bad}});
   EXPECT_TRUE(has(refusal([&] { run.run(); }), "The action of the event \"floor\" at t = 0.4515"));
   EXPECT_EQ(ball.x.q.size(), 3);
   Ball other;
-  auto steps = simulate(other.model, other.x, GeneralizedAlpha{}, {.until = 1.0, .step = 1e-2});
+  auto steps = simulate(other.model, other.x, GeneralisedAlpha{}, {.end_time = 1.0, .step = 1e-2});
   steps.advance();
   other.x.q.resize(0);
   EXPECT_TRUE(has(refusal([&] { steps.advance(); }), "The sizes of the state were changed since the last step"));

@@ -69,7 +69,7 @@ TEST(HostileStates, AreRefusedByNameOutsideOfRuns) {
     EXPECT_TRUE(said([&] { rotating_state(h.model, x, turning); }));
     EXPECT_TRUE(said([&] { energy(h.model, x); }));
     EXPECT_TRUE(said([&] { momentum(h.model, x); }));
-    EXPECT_TRUE(said([&] { gap(h.model, x, h.pivot); }));
+    EXPECT_TRUE(said([&] { constraint_violation(h.model, x, h.pivot); }));
     EXPECT_TRUE(said([&] { reaction(h.model, x, h.pivot); }));
     EXPECT_TRUE(said([&] { EnergyAudit(h.model).start(x); }));
   }

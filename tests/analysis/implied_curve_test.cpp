@@ -105,11 +105,12 @@ std::vector<double> turned(Lrvf<I> const& b, Vec3 const& phi) {
   return q;
 }
 
-// R = exp(s φ) is the Frenet frame of a helix of curvature √(φ₂² + φ₃²) and torsion φ₁, r = s Jl(s φ) e₁. `Objective`
-// interpolates this helix between two nodes. Positions have no influence, and the curve does not stretch [§2.5.3].
+// R = exp(s φ) is the Frenet frame of a helix of curvature √(φ₂² + φ₃²) and torsion φ₁, r = s Jl(s φ) e₁.
+// `RelativeRotation` interpolates this helix between two nodes. Positions have no influence, and the curve does not
+// stretch [§2.5.3].
 TEST(ImpliedCurve, ABeamInterpolatesAHelixBetweenItsNodes) {
   Vec3 const phi(0.6, -0.5, 1.2);
-  Lrvf<> const b = beam<Objective>(3);
+  Lrvf<> const b = beam<RelativeRotation>(3);
   std::vector<double> const q = turned(b, phi);
   std::vector<Vec3> const curve = implied_curve(b, q, 4);
   for (int i = 0; i <= 12; ++i) {

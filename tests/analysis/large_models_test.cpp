@@ -39,14 +39,14 @@ Chain pinned(int pins) {
 /// Factor of the constraint Jacobian of a model in its reference state, with all equations or without those that are
 /// private to a body (`PrivateRows`).
 template <class M>
-detail::RowFactor<> factor_of(M const& model, bool all) {
-  System system(model, with<Entries::motion>);
+detail::ConstraintFactor<> factor_of(M const& model, bool all) {
+  System system(model, with<Capabilities::motion>);
   State const x = model.reference_state();
   system.evaluate(x.q, x.v, x.t);
   std::vector<Eigen::Triplet<double>> entries;
-  detail::RowsSink<> sink{system.speeds(), entries};
+  detail::ConstraintSink<> sink{system.velocities(), entries};
   system.masses(sink);
-  return {system.speeds(), system.rows(), entries, all ? Sequence<BodyPlace>() : system.layout().bodies};
+  return {system.velocities(), system.rows(), entries, all ? Sequence<BodyLayout>() : system.layout().bodies};
 }
 /// Both factors find the same rank, equations and relations. The second one factorises `factored` equations.
 template <class M>
@@ -125,12 +125,12 @@ static_assert(LinearSolver<Counting>);
 /// Number of solutions in the check of initial conditions.
 int solutions_of_start(int pins) {
   Chain const model = pinned(pins);
-  System system(model, with<Entries::motion>);
+  System system(model, with<Capabilities::motion>);
   State const x = model.reference_state();
   ForwardDynamics<Counting> forward(system);
   Counting::solutions = 0;
-  require_consistent_rows(system, forward, x);
-  EXPECT_EQ(warn_of_start_between_branches(system, forward, x), "");
+  require_consistent_redundancy(system, forward, x);
+  EXPECT_EQ(warn_of_ambiguous_branch(system, forward, x), "");
   EXPECT_EQ(forward.redundant_rows().size(), std::size_t(2 * (pins - 1)));
   return Counting::solutions;
 }

@@ -5,7 +5,7 @@
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/forces/point_load.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/point_in_plane.hpp>
@@ -28,12 +28,12 @@ struct Platform {
   Model<Bodies<Rigid<>>, Joints<Leg>> model{Gravity{0, 0, -g}};
   std::vector<ElementHandle<Leg>> legs;
   State x;
-  static constexpr double corners[4][2] = {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
+  static constexpr double breakpoints[4][2] = {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
 
   Platform(double cx, double cy) {
     Mat3 const inertia = Vec3(0.7, 0.8, 1.5).asDiagonal();
     auto const plate = model.add(Rigid<>(2.0, inertia, Placement::at({cx, cy, 0})), "plate");
-    for (auto const& c : corners)
+    for (auto const& c : breakpoints)
       legs.push_back(model.connect(Leg{PointInPlane{.normal = Vec3::UnitZ()}, {}}, model.ground().at({0, 0, 0}),
                                    plate.at(Vec3(c[0] - cx, c[1] - cy, 0))));
     x = model.reference_state();
@@ -46,7 +46,7 @@ struct Platform {
 TEST(MinimumNorm, OfAPlatformOnFourLegsIsAffine) {
   for (auto const& [cx, cy] : {std::pair{0.0, 0.0}, std::pair{0.2, -0.5}}) {
     Platform p(cx, cy);
-    auto run = simulate(p.model, p.x, GeneralizedAlpha{}, {.until = 0.1, .step = 0.01});
+    auto run = simulate(p.model, p.x, GeneralisedAlpha{}, {.end_time = 0.1, .step = 0.01});
     ASSERT_EQ(run.report().redundant.size(), 1u);
     double least = 1.0;
     for (std::size_t i = 0; i < 4; ++i) least = std::min(least, std::abs(p.force(p.x, i)));
@@ -56,10 +56,10 @@ TEST(MinimumNorm, OfAPlatformOnFourLegsIsAffine) {
     for (std::size_t i = 0; i < 4; ++i)
       held({"closed forms", "forces in four legs of a platform [N]", By::closed_form, "¼ m g (1 + x xᵢ + y yᵢ)",
             "Rigid, minimum norm"},
-           p.force(shared, i), 0.5 * g * (1.0 + cx * p.corners[i][0] + cy * p.corners[i][1]), 1e-12,
+           p.force(shared, i), 0.5 * g * (1.0 + cx * p.breakpoints[i][0] + cy * p.breakpoints[i][1]), 1e-12,
            {equals("leg", double(i + 1))});
     System system(p.model);
-    VecX r = VecX::Zero(p.model.speeds());
+    VecX r = VecX::Zero(p.model.velocities());
     system.evaluate(shared.q, shared.v, shared.t);
     system.residual(shared.a, shared.lambda, r);
     EXPECT_LT(r.norm(), 1e-12);  // M a + Gᵀλ = f also holds
@@ -75,7 +75,8 @@ TEST(MinimumNorm, OfABeamOnTwoPinsIsHalf) {
   auto const right = model.connect(Pin{}, model.ground().at({2, 0, 0}), beam.at(Vec2(2, 0)), "right");
   model.apply(PointForce<>{.force = {7, 0, 0}}, beam.at(Vec2(0, 0)), "push");
   State x = model.reference_state();
-  for (State const& now : simulate(model, x, GeneralizedAlpha{}, {.until = 0.02, .step = 0.01, .minimum_norm = true}))
+  for (State const& now :
+       simulate(model, x, GeneralisedAlpha{}, {.end_time = 0.02, .step = 0.01, .minimum_norm = true}))
     for (auto const& pin : {left, right})
       held_within({"closed forms", "forces in two pins of a beam [N]", By::closed_form, "half of the load each",
                    "planar Rigid, minimum norm"},
@@ -102,7 +103,7 @@ void expect_door(char const* formulation, I const& integrator, double unit, doub
   double const moment = m * g * unit * d, weight = m * g * unit, scale = std::max(weight, m * omega * omega * d);
   int states = 0;
   double off_f = 0.0, off_m = 0.0;
-  for (State const& now : simulate(model, x, integrator, {.until = 0.5, .step = 0.01, .minimum_norm = true})) {
+  for (State const& now : simulate(model, x, integrator, {.end_time = 0.5, .step = 0.01, .minimum_norm = true})) {
     Vec3 const out(std::cos(omega * now.t), std::sin(omega * now.t), 0.0), along(-out[1], out[0], 0.0);
     for (bool const upper : {true, false}) {
       Wrench<> const w = reaction(model, now, upper ? top : bottom);
@@ -125,7 +126,7 @@ void expect_door(char const* formulation, I const& integrator, double unit, doub
 
 TEST(MinimumNorm, OfADoorOnTwoPinsIsSharedInEveryStateOfARun) {
   expect_door("Rigid, Runge–Kutta 4", RungeKutta4<Projection>{}, 1.0, 1e-7);
-  expect_door("Rigid, generalised-α", GeneralizedAlpha{}, 1.0, 1e-3);
+  expect_door("Rigid, generalised-α", GeneralisedAlpha{}, 1.0, 1e-3);
 }
 // Body on a screw of pitch p parallel to a weld, with the force F along their axis. The constraint force of the
 // screw, a force with the moment p, is s. The weld carries F − s and the moment p s. The weights are 1, 1 + p²/ℓ² and
@@ -141,7 +142,7 @@ TEST(MinimumNorm, WeighsForcesAndMomentsOfARow) {
   auto const clamp = model.connect(Clamp{}, model.ground().at({0, 0, 0}), nut.at(Vec3(0, 0, 0)));
   model.apply(PointForce<>{.force = {0, 0, push}}, nut.at(Vec3(0, 0, 0)));
   State x = model.reference_state();
-  simulate(model, x, GeneralizedAlpha{}, {.until = 0.02, .step = 0.01, .minimum_norm = true}).run();
+  simulate(model, x, GeneralisedAlpha{}, {.end_time = 0.02, .step = 0.01, .minimum_norm = true}).run();
   double const s = push / (2.0 + 2.0 * pitch * pitch);
   auto const share = [](char const* what, double value, double exact) {
     held({"closed forms", what, By::closed_form, "s = F/(2 + 2 p²)", "Rigid, minimum norm"}, value, exact, 1e-11);
@@ -163,8 +164,8 @@ TEST(MinimumNorm, LeavesUniqueMultipliersAlone) {
   auto const rod = model.add(planar::Rigid(1.0, 0.1), "rod");
   model.connect(Pin{}, model.ground().at({-0.5, 0, 0}), rod.at(Vec2(-0.5, 0)), "pin");
   State x = model.reference_state(), y = x;
-  simulate(model, x, GeneralizedAlpha{}, {.until = 0.3, .step = 0.01}).run();
-  simulate(model, y, GeneralizedAlpha{}, {.until = 0.3, .step = 0.01, .minimum_norm = true}).run();
+  simulate(model, x, GeneralisedAlpha{}, {.end_time = 0.3, .step = 0.01}).run();
+  simulate(model, y, GeneralisedAlpha{}, {.end_time = 0.3, .step = 0.01, .minimum_norm = true}).run();
   EXPECT_EQ(x.lambda, y.lambda);
   EXPECT_EQ(x.lambda, minimum_norm_multipliers(model, x));
 }

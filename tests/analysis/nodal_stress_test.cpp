@@ -219,11 +219,11 @@ TEST(NodalStress, AfterARigidRunIsTheCentrifugalOne) {
   model.set_velocity(x, body, Vec3::Zero(), Vec3(0, omega, 0));
   LoadRecorder recorder(model);
   recorder.add(body);
-  for (State const& now : simulate(model, x, RungeKutta4<Projection>{}, {.until = 2e-4, .step = 1e-4}))
+  for (State const& now : simulate(model, x, RungeKutta4<Projection>{}, {.end_time = 2e-4, .step = 1e-4}))
     recorder.record(now);
   auto const decoupled = DecoupledStress::quasi_static(link(), recorder.of(body));
   MatX const& e = decoupled.displacements();
-  double const half = 0.5 * length, whole = 0.5 * m113::density * omega * omega * half * half;
+  double const half = 0.5 * length, full = 0.5 * m113::density * omega * omega * half * half;
   for (auto const& [name, at] :
        {std::pair("middle, wheel side", 0.0), std::pair("middle, ground side", 0.0),
         std::pair("third, ground side", length / 6.0), std::pair("third, wheel side", length / 6.0)}) {
@@ -232,7 +232,7 @@ TEST(NodalStress, AfterARigidRunIsTheCentrifugalOne) {
     for (Vec6 const& s : history)
       held({"thesis §4.3", "axial stress of a spinning link of solid elements [Pa]", By::closed_form,
             "½ ρω² (p²/4 − x²)", "Rigid, quasi-static, NodalStress"},
-           s[0], whole * (1.0 - at * at / (half * half)), 0.002 * whole, {name});
+           s[0], full * (1.0 - at * at / (half * half)), 0.002 * full, {name});
   }
   ReferenceConditions hold = ReferenceConditions::none();
   for (int k = 0; k < 3; ++k) hold.fix(0, k);

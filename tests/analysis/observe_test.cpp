@@ -56,12 +56,12 @@ TEST(Violation, IsThatOfTheHandCalculation) {
   x.q[1] = 0.25;
   x.v << 0.5, 0.0, 3.0;  // velocity of its end: (0.5, −3)
   x.a << 1.0, 2.0, 0.0;  // its acceleration: (1 + 9, 2)
-  Violation const v = violation(model, x);
+  Violation const v = largest_violation(model, x);
   EXPECT_NEAR(v.position, 0.25, 1e-15);
   EXPECT_NEAR(v.velocity, 3.0, 1e-14);
   EXPECT_NEAR(v.acceleration, 10.0, 1e-14);
   State const other = Rod().x;
-  EXPECT_TRUE(has(refusal([&] { (void)violation(model, other); }), "does not fit"));
+  EXPECT_TRUE(has(refusal([&] { (void)largest_violation(model, other); }), "does not fit"));
 }
 
 // Without damping, drives and dead loads the power of the residual forces is the rate of the potential:
@@ -86,9 +86,9 @@ TEST(Energy, PotentialFallsByThePowerOfTheForces) {
   double const h = 1e-4;
   double const rate = (8.0 * (potential(h) - potential(-h)) - (potential(2 * h) - potential(-2 * h))) / (12.0 * h);
   // without velocities and accelerations the residual is minus the force of the potential
-  system.evaluate(x.q, VecX::Zero(model.speeds()), 0.0);
-  VecX r = VecX::Zero(model.speeds());
-  system.residual(VecX::Zero(model.speeds()), VecX::Zero(0), r);
+  system.evaluate(x.q, VecX::Zero(model.velocities()), 0.0);
+  VecX r = VecX::Zero(model.velocities());
+  system.residual(VecX::Zero(model.velocities()), VecX::Zero(0), r);
   EXPECT_NEAR(r.dot(x.v), rate, 1e-8 * std::abs(rate));
 }
 
@@ -104,7 +104,7 @@ TEST(Reaction, TurnsIntoTheAxesOfTheJoint) {
 
 TEST(Observe, ReadsPartsOfTheState) {
   Rod const r;
-  auto const q = coordinates_of(r.model, r.x, r.rod), v = speeds_of(r.model, r.x, r.rod);
+  auto const q = coordinates_of(r.model, r.x, r.rod), v = velocities_of(r.model, r.x, r.rod);
   ASSERT_EQ(q.size(), 3u);
   EXPECT_EQ(q[0], 0.5);
   EXPECT_EQ(q[1], 0.25);
@@ -114,14 +114,14 @@ TEST(Observe, ReadsPartsOfTheState) {
 }
 
 // Wallin 2016, Table 3.4: a unit quaternion counts as four coordinates and one constraint.
-TEST(Census, CountsAsTheThesisDoes) {
-  auto const space = census(MixedSpace::model(0.0));
+TEST(ProblemSize, CountsAsTheThesisDoes) {
+  auto const space = problem_size(MixedSpace::model(0.0));
   EXPECT_EQ(space.coordinates, 14);
-  EXPECT_EQ(space.speeds, 12);
+  EXPECT_EQ(space.velocities, 12);
   EXPECT_EQ(space.rows, 5);
   EXPECT_EQ(space.constraints, 7);
   EXPECT_EQ(space.degrees_of_freedom, 7);
-  auto const plane = census(MixedPlane::model(0.0));
+  auto const plane = problem_size(MixedPlane::model(0.0));
   EXPECT_EQ(plane.coordinates, 3 + 9 + 12);
   EXPECT_EQ(plane.rows, 2 + 3 + 1);
   EXPECT_EQ(plane.degrees_of_freedom, 24 - 6);

@@ -6,7 +6,7 @@
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/bodies/rigid/rigid_euler_parameters.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/distance.hpp>
 #include <polybody/joints/planar/revolute.hpp>
@@ -136,7 +136,7 @@ struct TwoBars {
 TEST(Contradiction, InPositionsIsRefusedByAssemble) {
   TwoBars bars(1.1);
   State const before = bars.x;
-  std::string const message = message_of<InconsistentStart>([&] { assemble(bars.model, bars.x); });
+  std::string const message = message_of<InconsistentInitialConditions>([&] { assemble(bars.model, bars.x); });
   EXPECT_TRUE(has(message, "joint \"short\", joint \"long\""));
   EXPECT_TRUE(has(message, "0.1"));
   EXPECT_TRUE(has(message, "positions"));
@@ -145,7 +145,7 @@ TEST(Contradiction, InPositionsIsRefusedByAssemble) {
   Redundancy const r = redundancy(bars.model, bars.x);
   EXPECT_EQ(r.rank, 1);
   EXPECT_EQ(r.in_positions, std::vector<std::string>{"joint \"short\", joint \"long\""});
-  EXPECT_TRUE(r.in_speeds.empty());
+  EXPECT_TRUE(r.in_velocities.empty());
 }
 
 TEST(Contradiction, IsNotSeenWhereBothAgree) {
@@ -177,9 +177,9 @@ struct DrivenTwice {
     model.connect(Drive{{.law = second}, {}}, home, wheel.at(Vec2(0, 0)), "brake");
     x = model.reference_state();
   }
-  template <class I = GeneralizedAlpha>
+  template <class I = GeneralisedAlpha>
   RunReport run(I const& integrator = {}) {
-    return simulate(model, x, integrator, {.until = 0.1, .step = 0.01}).run();
+    return simulate(model, x, integrator, {.end_time = 0.1, .step = 0.01}).run();
   }
 };
 
@@ -188,7 +188,7 @@ TEST(Contradiction, InSpeedsIsRefusedByAssembleAndSimulate) {
   State const before = wheel.x;
   for (bool const starts : {false, true}) {
     std::string const message =
-        message_of<InconsistentStart>([&] { starts ? void(wheel.run()) : assemble(wheel.model, wheel.x); });
+        message_of<InconsistentInitialConditions>([&] { starts ? void(wheel.run()) : assemble(wheel.model, wheel.x); });
     EXPECT_TRUE(has(message, "joint \"motor\", joint \"brake\""));
     EXPECT_FALSE(has(message, "pin"));
     EXPECT_TRUE(has(message, "0.5 in their speeds"));
@@ -196,7 +196,7 @@ TEST(Contradiction, InSpeedsIsRefusedByAssembleAndSimulate) {
     EXPECT_EQ(wheel.x.v, before.v);
   }
   Redundancy const r = redundancy(wheel.model, wheel.x);
-  EXPECT_EQ(r.in_speeds, std::vector<std::string>{"joint \"motor\", joint \"brake\""});
+  EXPECT_EQ(r.in_velocities, std::vector<std::string>{"joint \"motor\", joint \"brake\""});
   EXPECT_TRUE(r.in_positions.empty());
   EXPECT_FALSE(r.consistent());
 }
@@ -204,13 +204,13 @@ TEST(Contradiction, InSpeedsIsRefusedByAssembleAndSimulate) {
 TEST(Contradiction, InAccelerationsIsRefusedWhateverStabilises) {
   auto const expect_refused = [](auto const& integrator) {
     DrivenTwice wheel({.acceleration = 3.0}, {.acceleration = 1.0});
-    std::string const message = message_of<InconsistentStart>([&] { wheel.run(integrator); });
+    std::string const message = message_of<InconsistentInitialConditions>([&] { wheel.run(integrator); });
     EXPECT_TRUE(has(message, "joint \"motor\", joint \"brake\""));
     EXPECT_TRUE(has(message, "2 in their accelerations"));
     EXPECT_EQ(wheel.x.a, wheel.model.reference_state().a);
     EXPECT_EQ(redundancy(wheel.model, wheel.x).in_accelerations.size(), 1u);
   };
-  expect_refused(GeneralizedAlpha{});
+  expect_refused(GeneralisedAlpha{});
   expect_refused(RungeKutta4<Projection>{});
   expect_refused(RungeKutta4<Baumgarte>{{.alpha = 1e3, .beta = 1e3}});
 }

@@ -16,10 +16,10 @@ struct Sampled {
   operator Samples() const { return {t, y}; }
 };
 
-Sampled sampled(double until, int n, auto&& f) {
+Sampled sampled(double end_time, int n, auto&& f) {
   Sampled s;
   for (int i = 0; i <= n; ++i) {
-    s.t.push_back(until * i / n);
+    s.t.push_back(end_time * i / n);
     s.y.push_back(f(s.t.back()));
   }
   return s;

@@ -3,7 +3,7 @@
 
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/forces/user_force.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/policies/constraint.hpp>
@@ -41,17 +41,17 @@ struct Pendulum {
 template <class I>
 void expect_end(I const& integrator) {
   Pendulum p;
-  auto run = simulate(p.model, p.x, integrator, {.until = 0.1, .step = 0.01});
+  auto run = simulate(p.model, p.x, integrator, {.end_time = 0.1, .step = 0.01});
   run.run();
   State const end = p.x;
   EXPECT_TRUE(has(refusal([&] { run.advance(); }), "advance: the run has ended at t = 0.1 s. Ask done() before"));
   EXPECT_EQ(p.x.q, end.q);
   Pendulum still;
-  auto none = simulate(still.model, still.x, integrator, {.until = 0.0, .step = 0.01});
+  auto none = simulate(still.model, still.x, integrator, {.end_time = 0.0, .step = 0.01});
   EXPECT_TRUE(has(refusal([&] { none.advance(); }), "advance: the run has ended at t = 0 s"));
 }
 TEST(RunEnd, StepsPastItAreRefused) {
-  expect_end(GeneralizedAlpha{});
+  expect_end(GeneralisedAlpha{});
   expect_end(RungeKutta4<Projection>{});
   expect_end(DormandPrince<Projection>{});
 }
@@ -60,7 +60,7 @@ TEST(RunClock, StepsBelowItsResolutionAreRefused) {
   auto const run_at = [](double start, double step, double length) {
     Pendulum p;
     p.x.t = start;
-    simulate(p.model, p.x, GeneralizedAlpha{}, {.until = start + length, .step = step}).run();
+    simulate(p.model, p.x, GeneralisedAlpha{}, {.end_time = start + length, .step = step}).run();
     return p.x;
   };
   EXPECT_TRUE(has(refusal([&] { run_at(1e15, 0.01, 1.0); }), "simulate: the clock resolves 0.125 s at t = 1e+15 s"));
@@ -72,7 +72,7 @@ TEST(RunClock, StepsBelowItsResolutionAreRefused) {
 
 template <class I>
 void expect_bits_after_failed_snapshot(I const& integrator) {
-  RunOptions const options{.until = 0.5, .step = 0.01};
+  RunOptions const options{.end_time = 0.5, .step = 0.01};
   Pendulum reference, p;
   bad = -1;
   simulate(reference.model, reference.x, integrator, options).run();
@@ -86,14 +86,14 @@ void expect_bits_after_failed_snapshot(I const& integrator) {
   EXPECT_EQ(p.x.v, reference.x.v);
 }
 TEST(RunSnapshot, OneThatFailsLeavesTheBitsOfTheRun) {
-  expect_bits_after_failed_snapshot(GeneralizedAlpha{});
+  expect_bits_after_failed_snapshot(GeneralisedAlpha{});
   expect_bits_after_failed_snapshot(RungeKutta4<Projection>{});
 }
 
 TEST(RunSnapshot, NumbersThatAreNotFiniteAreRefused) {
   Pendulum p;
-  RunOptions const options{.until = 0.5, .step = 0.01};
-  auto run = simulate(p.model, p.x, GeneralizedAlpha{}, options);
+  RunOptions const options{.end_time = 0.5, .step = 0.01};
+  auto run = simulate(p.model, p.x, GeneralisedAlpha{}, options);
   run.advance();
   RunSnapshot const sound = run.snapshot();
   auto const said = [&](auto const& spoil) {
@@ -102,7 +102,7 @@ TEST(RunSnapshot, NumbersThatAreNotFiniteAreRefused) {
     Pendulum other;
     State const before = other.x;
     std::string const message =
-        refusal([&] { (void)resume(other.model, other.x, GeneralizedAlpha{}, options, damaged); });
+        refusal([&] { (void)resume(other.model, other.x, GeneralisedAlpha{}, options, damaged); });
     EXPECT_EQ(other.x.q, before.q);
     return message;
   };
@@ -111,7 +111,7 @@ TEST(RunSnapshot, NumbersThatAreNotFiniteAreRefused) {
   EXPECT_TRUE(has(said([&](State& x) { x.v[1] = nan; }), "resume: the speeds of the snapshot"));
   EXPECT_TRUE(has(said([&](State& x) { x.a[2] = nan; }), "resume: the accelerations of the snapshot"));
   EXPECT_TRUE(has(said([&](State& x) { x.lambda[0] = nan; }), "resume: the multipliers of the snapshot"));
-  EXPECT_TRUE(has(said([&](State& x) { x.memory[0] = nan; }), "resume: the integrator's memory in the snapshot"));
+  EXPECT_TRUE(has(said([&](State& x) { x.history[0] = nan; }), "resume: the integrator's memory in the snapshot"));
 }
 
 }  // namespace run_restored_test

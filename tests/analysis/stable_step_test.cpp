@@ -6,7 +6,7 @@
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/integrators/central_difference.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/integrators/symplectic.hpp>
 #include <polybody/joints/joint.hpp>
@@ -43,7 +43,7 @@ struct Pinned {
 template <class I, class M>
 std::vector<std::string> warnings(I const& integrator, M const& model, State const& start, double h) {
   State x = start;
-  return simulate(model, x, integrator, {.until = h, .step = h}).report().warnings;
+  return simulate(model, x, integrator, {.end_time = h, .step = h}).report().warnings;
 }
 
 /// Returns true if 500 steps leave the velocities below a hundred times their initial values.
@@ -52,7 +52,7 @@ bool stays(I const& integrator, M const& model, State const& start, double h) {
   State x = start;
   double const before = x.v.norm();
   try {
-    for (State const& now : simulate(model, x, integrator, {.until = 500 * h, .step = h}))
+    for (State const& now : simulate(model, x, integrator, {.end_time = 500 * h, .step = h}))
       if (!(now.v.norm() < 100.0 * before)) return false;
   } catch (Error const&) {
     return false;
@@ -124,7 +124,7 @@ TEST(StableStep, OfOverdampedJointsUnderRungeKuttaIsThatOfTheRealAxis) {
 
 TEST(StableStep, OfIntegratorsWithoutALimitIsNotWarnedOf) {
   Pinned const p(0.0);
-  EXPECT_TRUE(warnings(GeneralizedAlpha{}, p.model, p.x, 100.0 / omega).empty());
+  EXPECT_TRUE(warnings(GeneralisedAlpha{}, p.model, p.x, 100.0 / omega).empty());
   EXPECT_TRUE(warnings(DormandPrince<>{}, p.model, p.x, 100.0 / omega).empty());
 }
 

@@ -5,11 +5,11 @@
 namespace polybody {
 namespace step_plan_test {
 
-/// End times of all steps of about h from 0 to `until`. The clock is updated as in `simulate`.
-std::vector<double> ends(StepPlan plan, double until, double h) {
+/// End times of all steps of about h from 0 to `end_time`. The clock is updated as in `simulate`.
+std::vector<double> ends(StepPlan plan, double end_time, double h) {
   std::vector<double> times;
   double t = plan.pass(0.0);
-  while (t < until) {
+  while (t < end_time) {
     auto const next = plan.next(t, h);
     t = next.lands ? next.target : t + next.h;
     times.push_back(t);

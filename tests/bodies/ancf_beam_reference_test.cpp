@@ -15,7 +15,7 @@ namespace polybody {
 using namespace laws;
 namespace ancf_beam_reference_test {
 
-static_assert(AlikeElements<AncfBeam<>> && AlikeElements<AncfBeam<Continuum<>>>);
+static_assert(IdenticalElements<AncfBeam<>> && IdenticalElements<AncfBeam<Continuum<>>>);
 
 template <class V>
 auto as_span(V const& x) {

@@ -187,9 +187,9 @@ TEST(AncfElasticLine, MarkerIsTheMaterialPointAndTheSectionsFrame) {
              v = VecX::Zero(q.size());
   auto const p = beam.at(0.7, 0.05, -0.03);
   std::array<double, 144> memory;
-  Published<double> out;
+  MarkerKinematics<double> out;
   out.jacobian = memory.data();
-  beam.publish<double>(p, Mat3::Identity(), view(q), view(v), out);
+  beam.evaluate_marker<double>(p, Mat3::Identity(), view(q), view(v), out);
   EXPECT_LT((out.frame.r - origin - gradients * Vec3(0.7, 0.05, -0.03)).norm(), 1e-14);
   Vec3 const y = gradients.col(1), z = gradients.col(2), t2 = y / y.norm(), t1 = y.cross(z) / y.cross(z).norm();
   EXPECT_LT((out.frame.A.col(0) - t1).norm() + (out.frame.A.col(1) - t2).norm(), 1e-14);

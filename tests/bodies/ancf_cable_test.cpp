@@ -26,7 +26,7 @@ bool const ancf_cable_obey[] = {
     obeys<SpatialCableCase<GreenStrain>, BodyLaws, FlexibleBodyLaws>("SpatialGreenCable"),
     obeys<SpatialCableCase<EngineeringStrain>, BodyLaws, FlexibleBodyLaws>("SpatialEngineeringCable")};
 
-static_assert(AlikeElements<AncfCable<>>);
+static_assert(IdenticalElements<AncfCable<>>);
 
 // A bar in the plane z = 0 agrees with the planar cable in mass, force and tangent.
 template <class Strain>
@@ -116,11 +116,11 @@ TEST(SpatialCable, KnowsTheCurvatureOfAHelix) {
   for (double const s : {0.3, 1.1, 2.7, 3.9}) {
     Vec6 const strains = cable.section_strains(cable.at(s), view(q)),
                forces = cable.section_forces(cable.at(s), view(q));
-    Published<double> marker;
+    MarkerKinematics<double> marker;
     std::array<double, 72> jacobian;
     VecX const rest = VecX::Zero(q.size());
     marker.jacobian = jacobian.data();
-    cable.publish<double>(cable.at(s), Mat3::Identity(), view(q), view(rest), marker);
+    cable.evaluate_marker<double>(cable.at(s), Mat3::Identity(), view(q), view(rest), marker);
     Vec3 const kappa = marker.frame.A * strains.tail<3>();
     EXPECT_NEAR(kappa.norm(), a / (a * a + b * b), bound) << s;
     EXPECT_NEAR(kappa.dot(helix(s).axes.col(2)), kappa.norm(), 1e-5) << s;  // about the binormal

@@ -18,7 +18,7 @@ static_assert(Body<planar::Rigid> && Body<planar::Lrvf>);
 static_assert(Body<planar::AncfCable<>> && Body<planar::AncfCable<planar::GreenStrain>>);
 static_assert(Body<planar::AncfCable<planar::EngineeringStrain>>);
 
-static_assert(!Body<int> && !Body<Bar> && !Body<Published<double>> && !Body<planar::SimoVuQuoc>);
+static_assert(!Body<int> && !Body<Bar> && !Body<MarkerKinematics<double>> && !Body<planar::SimoVuQuoc>);
 
 // A type that lacks any required member is not a body.
 struct Weightless : planar::Rigid {
@@ -28,7 +28,7 @@ struct Unmoved : planar::Rigid {
   void plus() = delete;
 };
 struct Unseen : planar::Rigid {
-  void publish() = delete;
+  void evaluate_marker() = delete;
 };
 struct Nowhere : planar::Rigid {
   struct world;
@@ -60,15 +60,15 @@ TEST(LoadStiffness, ByDualsIsTheDerivativeOfThePulledWrench) {
   auto const pulled = [&](VecX const& at) {
     std::array<double, 48> memory;
     std::array<double, 16> const rest{};
-    Published<double> out;
+    MarkerKinematics<double> out;
     out.jacobian = memory.data();
-    cable.publish<double>(p, Mat3::Identity(), std::span<double const>(at.data(), 16), rest, out);
+    cable.evaluate_marker<double>(p, Mat3::Identity(), std::span<double const>(at.data(), 16), rest, out);
     VecX force(8);
     out.pull(load, force);
     return force;
   };
   Mat<double, 8, 8> k;
-  load_stiffness_by_duals(cable, p, std::span<double const>(q.data(), 16), w, k);
+  load_stiffness_by_dual_numbers(cable, p, std::span<double const>(q.data(), 16), w, k);
   EXPECT_GT(k.norm(), 1.0);
   for (Index j = 0; j < 8; ++j) {
     VecX const slope = slope_at_zero([&](double h) { return pulled(q + h * VecX::Unit(16, 4 + j)); });
@@ -79,13 +79,13 @@ TEST(LoadStiffness, ByDualsIsTheDerivativeOfThePulledWrench) {
 /// Frame of at(s, y) in the undeformed body.
 template <Body B>
 Frame<double> reference_frame(B const& body, double s, double y) {
-  std::vector<double> q(std::size_t(body.coordinates())), v(std::size_t(body.speeds()));
+  std::vector<double> q(std::size_t(body.coordinates())), v(std::size_t(body.velocities()));
   body.reference(q);
   std::vector<double> memory(6 * B::point_columns);
-  Published<double> out;
+  MarkerKinematics<double> out;
   out.jacobian = memory.data();
-  body.template publish<double>(body.at(s, y), Mat3::Identity(), std::span<double const>(q), std::span<double const>(v),
-                                out);
+  body.template evaluate_marker<double>(body.at(s, y), Mat3::Identity(), std::span<double const>(q),
+                                        std::span<double const>(v), out);
   return out.frame;
 }
 

@@ -3,7 +3,7 @@
 
 #include <polybody/bodies/ancf/ancf_cable.hpp>
 #include <polybody/bodies/ancf/planar_ancf_cable.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/policies/constraint.hpp>
@@ -42,7 +42,7 @@ Vec3 swung() {
   auto const bar = model.add(B::from(rod(), Index(4)), "rod");
   model.connect(Pin{}, model.ground().at({0, 0, 0}), bar.at(0.0), "pin");
   State x = model.reference_state();
-  simulate(model, x, GeneralizedAlpha{.rho_inf = 0.8, .tolerance = 1e-11}, {.until = 0.5, .step = 2e-3}).run();
+  simulate(model, x, GeneralisedAlpha{.rho_inf = 0.8, .tolerance = 1e-11}, {.end_time = 0.5, .step = 2e-3}).run();
   return position(model, x, bar.at(1.0));
 }
 TEST(CholeskyCoordinates, SwingLikeTheCableItself) {
@@ -57,7 +57,7 @@ Vec3 thrown() {
   auto const bar = model.add(B::from(rod(), Index(4)), "rod");
   State x = model.reference_state();
   model.set_velocity(x, bar, {0, 3, 0}, {0, 0, 5});
-  simulate(model, x, RungeKutta4<>{}, {.until = 0.2, .step = 1e-4}).run();
+  simulate(model, x, RungeKutta4<>{}, {.end_time = 0.2, .step = 1e-4}).run();
   return position(model, x, bar.at(0.3));
 }
 TEST(CholeskyCoordinates, FlyLikeTheCableItself) {

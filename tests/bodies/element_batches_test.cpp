@@ -11,8 +11,9 @@ using namespace polybody;
 
 namespace element_batches_test {
 
-static_assert(AlikeElements<planar::AncfCable<>> && AlikeElements<planar::AncfCable<planar::EngineeringStrain>>);
-static_assert(!AlikeElements<planar::Lrvf> && !AlikeElements<Rigid<>>);
+static_assert(IdenticalElements<planar::AncfCable<>> &&
+              IdenticalElements<planar::AncfCable<planar::EngineeringStrain>>);
+static_assert(!IdenticalElements<planar::Lrvf> && !IdenticalElements<Rigid<>>);
 
 template <class B>
 struct Swaying {

@@ -112,7 +112,7 @@ VecX held_frequencies(Ffr const& body) {
 VecX free_frequencies(Ffr const& body) {
   VecX q(body.coordinates());
   body.reference({q.data(), std::size_t(q.size())});
-  MatX m, k = MatX::Zero(body.speeds(), body.speeds());
+  MatX m, k = MatX::Zero(body.velocities(), body.velocities());
   body.mass(0, {q.data(), std::size_t(q.size())}, m);
   k.bottomRightCorner(body.deformations(), body.deformations()) = body.integrals().stiffness;
   return Eigen::GeneralizedSelfAdjointEigenSolver<MatX>(k, m)
@@ -132,7 +132,7 @@ double const clamped_free[3] = {3.516015268, 22.03449156, 61.69721441}, free_fre
 // Euler–Bernoulli frequencies (E1): Craig–Bampton with five fixed-interface modes, tolerance 1e-3.
 TEST(Bases, GiveTheFrequenciesOfTheBeam) {
   Structure const s = structure_of(unit(), 16);
-  Ffr const nodal(s, nodal_coordinates(s)), tied(s, held_modes(s, 4)), cb(s, craig_bampton(s, {0, 16}, 5));
+  Ffr const nodal(s, nodal_coordinates(s)), tied(s, fixed_interface_modes(s, 4)), cb(s, craig_bampton(s, {0, 16}, 5));
   auto const expect = [](char const* ends, char const* basis, VecX const& found, std::span<double const> exact) {
     for (std::size_t i = 0; i < exact.size(); ++i)
       held({"E1", std::string("frequencies ") + ends + " by bases of a structure, ω √(ρA L⁴/EI)", By::closed_form,
@@ -175,7 +175,7 @@ TEST(Bases, SimplySupportedFrameHasTheSameFrequencies) {
 // the offset.
 TEST(Ffr, PointsOffTheAxisMoveWithTheirSection) {
   Structure const s = structure_of(unit(), 3);
-  Ffr const body(s, held_modes(s, 6));
+  Ffr const body(s, fixed_interface_modes(s, 6));
   double const y = 0.03, z = -0.02;
   FfrPoint const axis = body.at(0.4), off = body.at(0.4, y, z);
   ASSERT_GT(axis.R.norm(), 1e-3);
@@ -187,7 +187,7 @@ TEST(Ffr, PointsOffTheAxisMoveWithTheirSection) {
 
 TEST(Ffr, RefusesWhatCannotBeMeant) {
   Structure const s = structure_of(unit(), 4);
-  EXPECT_TRUE(has(refusal([&] { held_modes(s, 25); }), "25 modes"));
+  EXPECT_TRUE(has(refusal([&] { fixed_interface_modes(s, 25); }), "25 modes"));
   EXPECT_TRUE(has(refusal([&] { free_interface_modes(s, 25); }), "25 modes"));
   EXPECT_TRUE(has(refusal([&] { craig_bampton(s, {0, 7}, 2); }), "node 7 does not exist"));
   EXPECT_TRUE(has(refusal([&] { craig_bampton(s, {0, 0}, 2); }), "each once"));
@@ -208,7 +208,7 @@ TEST(Ffr, RefusesWhatCannotBeMeant) {
   Bar apart = steel(1.0, {Vec3(5, 0, 0)});
   Structure const two = structure_of({steel(1.0), apart}, {1, 1});
   EXPECT_TRUE(has(refusal([&] { nodal_coordinates(two); }), "not positive definite"));
-  Ffr const body(s, held_modes(s, 2));
+  Ffr const body(s, fixed_interface_modes(s, 2));
   EXPECT_TRUE(has(refusal([&] { body.at(1.5); }), "outside"));
   EXPECT_TRUE(has(refusal([&] { body.at(0.5, 0.0, 0.0, 1); }), "bar 1 does not exist"));
   EXPECT_TRUE(has(refusal([&] { body.node(5); }), "node 5"));

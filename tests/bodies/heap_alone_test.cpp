@@ -31,7 +31,7 @@ void expect_no_heap(B const& body) {
   constexpr int n = B::element_columns, np = B::point_columns;
   std::array<double, 32> q_memory{}, v_memory{}, out_memory{};
   std::span<double const> const q(q_memory.data(), std::size_t(body.coordinates()));
-  std::span<double const> const v(v_memory.data(), std::size_t(body.speeds()));
+  std::span<double const> const v(v_memory.data(), std::size_t(body.velocities()));
   body.reference(std::span<double>(q_memory.data(), q.size()));
   body.rigid_velocity(q, Vec3(1, 2, 0), Vec3(0, 0, 3), std::span<double>(v_memory.data(), v.size()));
   auto const point = body.at(0.4, 0.01);
@@ -46,7 +46,7 @@ void expect_no_heap(B const& body) {
   Mat<double, n, n> m;
   Mat<double, np, np> k;
   std::array<double, 6 * np> jacobian;
-  Published<double> published;
+  MarkerKinematics<double> published;
   published.jacobian = jacobian.data();
   EXPECT_NO_THROW({
     body.template plus<double>(q, v, std::span<double>(out_memory.data(), q.size()));
@@ -59,7 +59,7 @@ void expect_no_heap(B const& body) {
       body.template gravity<double>(e, q, Vec3(0, -9.81, 0), x);
       (void)(body.kinetic_energy(e, q, v) + body.strain_energy(e, q) + body.gravity_energy(e, q, Vec3::UnitY()));
     }
-    body.template publish<double>(point, axes, q, v, published);
+    body.template evaluate_marker<double>(point, axes, q, v, published);
     published.pull(wrenches, matrix);
     published.pull(wrenches.col(0), generalised);
     body.load_stiffness(point, q, wrench, k);
@@ -80,11 +80,11 @@ TEST(Heap, TheWatchSeesAnAllocation) {
 TEST(Heap, RigidTakesNone) { expect_no_heap(Rigid<>::from(bar)); }
 TEST(Heap, PlanarRigidTakesNone) { expect_no_heap(planar::Rigid::from(bar)); }
 TEST(Heap, SpatialLrvfTakesNone) {
-  expect_no_heap(Lrvf<Objective>::from(bar, 3));
+  expect_no_heap(Lrvf<RelativeRotation>::from(bar, 3));
   expect_no_heap(Lrvf<Direct>::from(bar, 3));
   expect_no_heap(Lrvf<Polar>::from(bar, 3));
   expect_no_heap(Lrvf<Directors>::from(bar, 3));
-  expect_no_heap(Lrvf<Objective, Selective>::from(bar, 3));
+  expect_no_heap(Lrvf<RelativeRotation, SelectiveQuadrature>::from(bar, 3));
 }
 TEST(Heap, LrvfTakesNone) { expect_no_heap(planar::Lrvf::from(bar, 3)); }
 TEST(Heap, GreenCableTakesNone) { expect_no_heap(planar::AncfCable<>::from(bar, 3)); }

@@ -46,7 +46,7 @@ TEST_F(CurvedLrvf, NodesStandOnTheCurveWithoutStrain) {
 
 // The chord differs from the arc. The laws of force, tangent and weight hold as on the straight bar.
 TEST_F(CurvedLrvf, ForceIsTheGradientOfTheEnergyAndTheTangentThatOfTheForce) {
-  VecX const q = configuration(), v = speeds();
+  VecX const q = configuration(), v = velocities();
   VecX const slope = gradient([&](VecX const& at) { return strain_energy(at); }, q);
   EXPECT_LT(mismatch(force_at_rest(q), -slope), 1e-8);
   MatX by_position(nv, nv), by_speed(nv, nv);

@@ -61,12 +61,12 @@ TEST(DirectLrvf, TurnsAboutOneAxisAreMeasuredExactly) {
       VecX const q = carried(Placement::at(Vec3(1, 2, 3), Vec3(0, 0, turned)), bent(phi, 0.0));
       Vec6 const direct = strain<Direct>(q);
       EXPECT_NEAR(direct[5], phi / l, 1e-14);
-      EXPECT_LT((direct - strain<Objective>(q)).norm(), 1e-14);
+      EXPECT_LT((direct - strain<RelativeRotation>(q)).norm(), 1e-14);
     }
 }
 
 // Error of objectivity [Wallin 2016, §2.5]: a rigid rotation changes the curvature by exactly this amount.
-// `Objective` has no change.
+// `RelativeRotation` has no change.
 TEST(DirectLrvf, ARigidTurnAfterABendStrainsByTheDerivedAmount) {
   for (double const phi : {0.1, 1.0, 2.0}) {
     double const energy = 0.5 * EI * phi * phi / l;
@@ -77,7 +77,7 @@ TEST(DirectLrvf, ARigidTurnAfterABendStrainsByTheDerivedAmount) {
       EXPECT_LT((strain<Direct>(q).tail<3>() - expected.curvature()).norm(), 1e-13) << phi << ' ' << a;
       EXPECT_LT(strain<Direct>(q).head<3>().norm(), 1e-14);
       EXPECT_NEAR(strain_energy_of(element<Direct>(), q), expected.energy(), 1e-13 * energy);
-      EXPECT_NEAR(strain_energy_of(element<Objective>(), q), energy, 1e-14 * energy);
+      EXPECT_NEAR(strain_energy_of(element<RelativeRotation>(), q), energy, 1e-14 * energy);
     }
   }
 }
@@ -102,7 +102,7 @@ TEST(DirectLrvf, ItsForcesDoWorkInARigidTurn) {
   element<Direct>().rigid_velocity(numbers(q), Vec3::Zero(), Vec3::UnitX(), std::span<double>(v.data(), 12));
   Vec<double, 12> direct, objective;
   element<Direct>().force<double>(0, numbers(q), numbers(rest), direct);
-  element<Objective>().force<double>(0, numbers(q), numbers(rest), objective);
+  element<RelativeRotation>().force<double>(0, numbers(q), numbers(rest), objective);
   double const slope = slope_at_zero([&](double h) { return turn(phi, a + h).energy(); });
   EXPECT_GT(std::abs(slope), 0.1);
   EXPECT_NEAR(direct.dot(v), -slope, 1e-9);
@@ -122,7 +122,7 @@ TEST(DirectLrvf, CurvatureJumpsWhereTheNodesPassAHalfTurn) {
   // beyond π, a is measured from the other side
   EXPECT_LT((strain<Direct>(bent(phi, 4.0)).tail<3>() - turn(phi, 4.0 - 2 * pi).curvature()).norm(), 1e-13);
   // the other interpolation has no jump
-  Vec6 const jumpless = strain<Objective>(bent(phi, pi + step)) - strain<Objective>(bent(phi, pi - step));
+  Vec6 const jumpless = strain<RelativeRotation>(bent(phi, pi + step)) - strain<RelativeRotation>(bent(phi, pi - step));
   EXPECT_LT(jumpless.norm(), 1e-14);
 }
 

@@ -20,10 +20,10 @@ template <class Quadrature>
 struct Elastic : Spinning<Quadrature> {
   static Bar bar() { return without_rotary_inertia(spatial_lrvf_bar()); }
 };
-bool const reduced = obeys<Spinning<Reduced>, BodyLaws>("DirectorsLrvf");
-bool const reduced_elastic = obeys<Elastic<Reduced>, FlexibleBodyLaws>("DirectorsLrvf");
-bool const selective = obeys<Spinning<Selective>, BodyLaws>("SelectiveDirectorsLrvf");
-bool const selective_elastic = obeys<Elastic<Selective>, FlexibleBodyLaws>("SelectiveDirectorsLrvf");
+bool const reduced = obeys<Spinning<ReducedQuadrature>, BodyLaws>("DirectorsLrvf");
+bool const reduced_elastic = obeys<Elastic<ReducedQuadrature>, FlexibleBodyLaws>("DirectorsLrvf");
+bool const selective = obeys<Spinning<SelectiveQuadrature>, BodyLaws>("SelectiveDirectorsLrvf");
+bool const selective_elastic = obeys<Elastic<SelectiveQuadrature>, FlexibleBodyLaws>("SelectiveDirectorsLrvf");
 
 }  // namespace lrvf_director_laws_test
 }  // namespace polybody

@@ -79,18 +79,18 @@ struct MiddleLaws : BodyLaws<Case> {
   static constexpr char const* suite = "MiddleLaws";
   static constexpr Law<MiddleLaws> laws[] = {
       {"FrameIsOrthonormal", &MiddleLaws::frame_is_orthonormal},
-      {"TwistIsJacobianTimesSpeeds", &MiddleLaws::twist_is_jacobian_times_speeds},
+      {"TwistIsJacobianTimesSpeeds", &MiddleLaws::twist_is_jacobian_times_velocities},
       {"JacobianIsTheDerivativeOfTheFrame", &MiddleLaws::jacobian_is_the_derivative_of_the_frame},
-      {"BiasIsTheAccelerationAtConstantSpeeds", &MiddleLaws::bias_is_the_acceleration_at_constant_speeds},
+      {"BiasIsTheAccelerationAtConstantSpeeds", &MiddleLaws::bias_is_the_acceleration_at_constant_velocities},
       {"LoadStiffnessIsTheDerivativeOfThePulledWrench",
        &MiddleLaws::load_stiffness_is_the_derivative_of_the_pulled_wrench},
-      {"SpeedsOfTheMiddleWithinAStep", &MiddleLaws::speeds_of_the_middle_within_a_step}};
+      {"SpeedsOfTheMiddleWithinAStep", &MiddleLaws::velocities_of_the_middle_within_a_step}};
 
   /// During the motion q ⊞ δ(t) with δ˙ = `local_rate`(δ, v), the angular velocity of the middle is R_m Jr(δ_m) δ˙_m,
   /// δ_m = ½ (δ₁ + δ₂). It equals the marker's R_m ½ (Ω₁ + Ω₂) at δ = 0 only. By the series of Jr the leading term of
   /// the difference is ⅛ (δ₂ − δ₁) × (Ω₂ − Ω₁).
-  void speeds_of_the_middle_within_a_step() {
-    VecX const q = this->configuration(), v = this->speeds(), whole = this->vector(this->nv, 0.8);
+  void velocities_of_the_middle_within_a_step() {
+    VecX const q = this->configuration(), v = this->velocities(), whole = this->vector(this->nv, 0.8);
     double first = 0.0;
     for (double const share : {1e-3, 1.0}) {
       VecX const delta = share * whole, rate = this->rates(delta, v);
@@ -125,7 +125,7 @@ using Bodily = BodyLaws<Elastic>;
 // equilibrium, moments are not.
 TEST(IncrementalLrvf, ATranslationIsNotFelt) {
   FlexibleBodyLaws<Elastic> of;
-  VecX const q = of.configuration(), v = of.speeds(), shift = of.rigid_velocity(q, of.velocity(), Vec3::Zero());
+  VecX const q = of.configuration(), v = of.velocities(), shift = of.rigid_velocity(q, of.velocity(), Vec3::Zero());
   VecX const f = of.internal_force(q, v);
   EXPECT_LT(std::abs(f.dot(shift)), 1e-13 * f.norm() * shift.norm());
   EXPECT_LT(of.damping_force(q, shift).norm(), 1e-13 * f.norm());
@@ -151,7 +151,7 @@ TEST(IncrementalLrvf, ARigidSpinBendsByTheThirdPowerOfTheAngle) {
   Beam const beam = Beam::from({.length = 1.3, .constants = spatial_lrvf_bar().constants}, 1);
   Bodily const of;
   auto const bending = [&](double phi) {  // rate of l K
-    VecX q(beam.coordinates()), v(beam.speeds());
+    VecX q(beam.coordinates()), v(beam.velocities());
     beam.reference(mutable_view(q));
     VecXOf<Dual<1>> delta = VecXOf<Dual<1>>::Zero(12), next(q.size());
     VecX bend = VecX::Zero(12), bent = q;

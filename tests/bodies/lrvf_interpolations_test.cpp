@@ -31,7 +31,7 @@ SectionTurn field(double xi, Quaternions const& nodes) {
 double angle(Mat3 const& a, Mat3 const& b) { return (a - b).norm() / std::sqrt(2.0); }
 
 // sin((1 − ξ) φ/2) a + sin(ξ φ/2) b over sin(φ/2) [Shoemake 1985]. The great circle between the quaternions rotates
-// at a constant rate about one axis, like `Objective`.
+// at a constant rate about one axis, like `RelativeRotation`.
 TEST(LrvfInterpolations, SphericalLinearInterpolationIsObjective) {
   for (double const phi : {0.01, 0.5, 2.0, 3.0}) {
     Quaternions const nodes = turned_apart(phi);
@@ -40,7 +40,7 @@ TEST(LrvfInterpolations, SphericalLinearInterpolationIsObjective) {
       Quaternion<double> q;
       for (int i = 0; i < 4; ++i)
         q[i] = (std::sin((1.0 - xi) * half) * nodes[0][i] + std::sin(xi * half) * nodes[1][i]) / std::sin(half);
-      EXPECT_LT(angle(rotation_matrix<double>(q), field<Objective>(xi, nodes).R), 5e-15) << phi << ' ' << xi;
+      EXPECT_LT(angle(rotation_matrix<double>(q), field<RelativeRotation>(xi, nodes).R), 5e-15) << phi << ' ' << xi;
     }
   }
 }
@@ -65,7 +65,7 @@ TEST(LrvfInterpolations, FieldsDifferByTheThirdOrTheSecondOrder) {
   auto const off = [&](auto const* policy, double phi) {
     using I = std::remove_cvref_t<decltype(*policy)>;
     Quaternions const nodes = turned_apart(phi);
-    return angle(field<I>(xi, nodes).R, field<Objective>(xi, nodes).R);
+    return angle(field<I>(xi, nodes).R, field<RelativeRotation>(xi, nodes).R);
   };
   Polar const* const polar = nullptr;
   Direct const* const direct = nullptr;
@@ -75,7 +75,7 @@ TEST(LrvfInterpolations, FieldsDifferByTheThirdOrTheSecondOrder) {
   EXPECT_NEAR(off(direct, 2.0 * phi) / off(direct, phi), 4.0, 0.2);
   EXPECT_GT(off(direct, phi), 1e-4);
   Quaternions const nodes = turned_apart(2.0);
-  EXPECT_LT(angle(field<Polar>(0.5, nodes).R, field<Objective>(0.5, nodes).R), 1e-15);
+  EXPECT_LT(angle(field<Polar>(0.5, nodes).R, field<RelativeRotation>(0.5, nodes).R), 1e-15);
 }
 
 // K is the rotation of the field per length, and K′ its derivative. Both are compared with finite differences along
@@ -110,7 +110,7 @@ Vec6 strains(VecX const& q) {
 
 TEST(LrvfInterpolations, CurvatureInTheMiddleIsAsDerived) {
   for (double const phi : {0.1, 1.0, 2.5}) {
-    EXPECT_NEAR(strains<Objective>(bent(phi))[5], phi / l, 1e-14);
+    EXPECT_NEAR(strains<RelativeRotation>(bent(phi))[5], phi / l, 1e-14);
     EXPECT_NEAR(strains<Polar>(bent(phi))[5], 2.0 * std::tan(0.5 * phi) / l, 1e-13);
     EXPECT_NEAR(strains<Directors>(bent(phi))[5], std::sin(phi) / l, 1e-14);
     EXPECT_NEAR(strains<Polar>(bent(phi))[0], 0.0, 1e-14);
@@ -137,7 +137,7 @@ TEST(LrvfInterpolations, ARigidMotionStrainsNoneButRotationVectors) {
   VecX const q = bent(1.0);
   for (double const turn : {0.5, 2.0, 3.1}) {
     Placement const motion = Placement::at(Vec3(1, -2, 3), Vec3(turn, 0.1, 0.0));
-    EXPECT_LT(change<Objective>(q, motion), 1e-14);
+    EXPECT_LT(change<RelativeRotation>(q, motion), 1e-14);
     EXPECT_LT(change<Polar>(q, motion), 1e-14);
     EXPECT_LT(change<Directors>(q, motion), 1e-14);
     EXPECT_GT(change<Direct>(q, motion), 1e-3) << turn;
@@ -184,7 +184,7 @@ TEST(LrvfInterpolations, IncrementsLeaveACurvatureAfterAClosedPath) {
   double const coarse = after_a_round<Incremental>(200).norm(), fine = after_a_round<Incremental>(400).norm();
   EXPECT_NEAR(fine, 0.78, 0.005);
   EXPECT_NEAR(coarse / fine, 1.0, 0.001);
-  EXPECT_LT(after_a_round<Objective>(200).norm(), 1e-13);
+  EXPECT_LT(after_a_round<RelativeRotation>(200).norm(), 1e-13);
   EXPECT_LT(after_a_round<Polar>(200).norm(), 1e-13);
   EXPECT_LT(after_a_round<Direct>(200).norm(), 1e-13);
   EXPECT_LT(after_a_round<Directors>(200).norm(), 1e-13);
@@ -202,10 +202,11 @@ TEST(LrvfInterpolations, IncrementsAreNotObjective) {
   EXPECT_NEAR((turn_of(beam, turned) - Vec3(0, 0, 1)).norm(), 0.08, 0.005);
 }
 
-// About one axis increments add up: the result is independent of the path, and all strains are those of `Objective`.
+// About one axis increments add up: the result is independent of the path, and all strains are those of
+// `RelativeRotation`.
 TEST(LrvfInterpolations, IncrementsInThePlaneAreObjective) {
   Lrvf<Incremental> const beam = element<Incremental>();
-  Lrvf<Objective> const other = element<Objective>();
+  Lrvf<RelativeRotation> const other = element<RelativeRotation>();
   VecX q = straight(beam), p = straight(other);
   for (double const turn : {0.4, 1.7, -0.8, 2.9, 1.1})
     for (double const phi : {0.5, -2.0, 1.3}) {

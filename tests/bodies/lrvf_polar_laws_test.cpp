@@ -20,10 +20,10 @@ template <class Quadrature>
 struct Elastic : Spinning<Quadrature> {
   static Bar bar() { return without_rotary_inertia(spatial_lrvf_bar()); }
 };
-bool const reduced = obeys<Spinning<Reduced>, BodyLaws>("PolarLrvf");
-bool const reduced_elastic = obeys<Elastic<Reduced>, FlexibleBodyLaws>("PolarLrvf");
-bool const selective = obeys<Spinning<Selective>, BodyLaws>("SelectivePolarLrvf");
-bool const selective_elastic = obeys<Elastic<Selective>, FlexibleBodyLaws>("SelectivePolarLrvf");
+bool const reduced = obeys<Spinning<ReducedQuadrature>, BodyLaws>("PolarLrvf");
+bool const reduced_elastic = obeys<Elastic<ReducedQuadrature>, FlexibleBodyLaws>("PolarLrvf");
+bool const selective = obeys<Spinning<SelectiveQuadrature>, BodyLaws>("SelectivePolarLrvf");
+bool const selective_elastic = obeys<Elastic<SelectiveQuadrature>, FlexibleBodyLaws>("SelectivePolarLrvf");
 
 }  // namespace lrvf_polar_laws_test
 }  // namespace polybody

@@ -19,12 +19,12 @@ template <class Interpolation, class Quadrature>
 struct Elastic : Spinning<Interpolation, Quadrature> {
   static Bar bar() { return without_rotary_inertia(spatial_lrvf_bar()); }
 };
-bool const full = obeys<Spinning<Objective, Full>, BodyLaws>("FullLrvf");
-bool const full_elastic = obeys<Elastic<Objective, Full>, FlexibleBodyLaws>("FullLrvf");
-bool const selective = obeys<Spinning<Objective, Selective>, BodyLaws>("SelectiveLrvf");
-bool const selective_elastic = obeys<Elastic<Objective, Selective>, FlexibleBodyLaws>("SelectiveLrvf");
-bool const direct = obeys<Spinning<Direct, Selective>, BodyLaws>("SelectiveDirectLrvf");
-bool const direct_elastic = obeys<Elastic<Direct, Selective>, FlexibleBodyLaws>("SelectiveDirectLrvf");
+bool const full = obeys<Spinning<RelativeRotation, FullQuadrature>, BodyLaws>("FullLrvf");
+bool const full_elastic = obeys<Elastic<RelativeRotation, FullQuadrature>, FlexibleBodyLaws>("FullLrvf");
+bool const selective = obeys<Spinning<RelativeRotation, SelectiveQuadrature>, BodyLaws>("SelectiveLrvf");
+bool const selective_elastic = obeys<Elastic<RelativeRotation, SelectiveQuadrature>, FlexibleBodyLaws>("SelectiveLrvf");
+bool const direct = obeys<Spinning<Direct, SelectiveQuadrature>, BodyLaws>("SelectiveDirectLrvf");
+bool const direct_elastic = obeys<Elastic<Direct, SelectiveQuadrature>, FlexibleBodyLaws>("SelectiveDirectLrvf");
 
 }  // namespace lrvf_quadrature_laws_test
 }  // namespace polybody

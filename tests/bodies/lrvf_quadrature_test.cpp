@@ -19,7 +19,7 @@ struct TooMuch {
 struct AtNode {
   static constexpr std::array<StrainPoint, 1> points = {{{0.0, 1.0, 1.0, 1.0}}};
 };
-static_assert(StrainQuadrature<Full> && StrainQuadrature<AxialInBoth>);
+static_assert(StrainQuadrature<FullQuadrature> && StrainQuadrature<AxialInBoth>);
 static_assert(!StrainQuadrature<TooMuch> && !StrainQuadrature<AtNode> && !StrainQuadrature<double>);
 
 double const length = 1.0, EA = 1e7, EI = 20.0, GA = 4e6;  // slender: GA L²/(12 EI) = 16667
@@ -31,8 +31,8 @@ Bar slender() {
 /// −∂f/∂δ of the complete beam at q.
 template <class B>
 MatX stiffness(B const& beam, VecX const& q) {
-  MatX k = MatX::Zero(beam.speeds(), beam.speeds());
-  VecX const rest = VecX::Zero(beam.speeds());
+  MatX k = MatX::Zero(beam.velocities(), beam.velocities());
+  VecX const rest = VecX::Zero(beam.velocities());
   for (Index e = 0; e < beam.elements(); ++e) {
     Mat<double, 12, 12> part;
     beam.tangent(e, numbers(q), numbers(rest), 1.0, 0.0, part);
@@ -49,7 +49,7 @@ VecX standing(B const& beam) {
 /// Deflection per force at the tip of the cantilever in linear theory. Both are along `axis`.
 template <class Quadrature>
 double flexibility(Bar const& bar, Index n, int axis) {
-  auto const beam = Lrvf<Objective, Quadrature>::from(bar, n);
+  auto const beam = Lrvf<RelativeRotation, Quadrature>::from(bar, n);
   MatX const k = stiffness(beam, standing(beam)).bottomRightCorner(6 * n, 6 * n);
   return k.lu().solve(VecX::Unit(6 * n, 6 * (n - 1) + axis))[6 * (n - 1) + axis];
 }
@@ -68,18 +68,19 @@ double one_point(Index n, double ei, bool locks = false) {
 // [Hughes, Taylor & Kanoknukulchai 1977]. The bending deflection falls by that factor.
 TEST(LrvfQuadrature, FullLocksByTheKnownFactor) {
   for (Index const n : {1, 2, 8, 64}) {
-    EXPECT_NEAR(flexibility<Full>(slender(), n, 1) / one_point(n, EI, true), 1.0, 1e-8) << n;
-    EXPECT_NEAR(flexibility<Full>(slender(), n, 2) / one_point(n, 30.0, true), 1.0, 1e-8) << n;
+    EXPECT_NEAR(flexibility<FullQuadrature>(slender(), n, 1) / one_point(n, EI, true), 1.0, 1e-8) << n;
+    EXPECT_NEAR(flexibility<FullQuadrature>(slender(), n, 2) / one_point(n, 30.0, true), 1.0, 1e-8) << n;
   }
   double const exact = length * length * length / (3.0 * EI) + length / GA;
-  EXPECT_NEAR(flexibility<Full>(slender(), 1, 1) / exact, 0.75 / (1.0 + GA / (12.0 * EI)), 2e-5);  // 4.5e-5
-  EXPECT_LT(flexibility<Full>(slender(), 64, 1) / exact, 0.2);
+  EXPECT_NEAR(flexibility<FullQuadrature>(slender(), 1, 1) / exact, 0.75 / (1.0 + GA / (12.0 * EI)), 2e-5);  // 4.5e-5
+  EXPECT_LT(flexibility<FullQuadrature>(slender(), 64, 1) / exact, 0.2);
 }
 
 TEST(LrvfQuadrature, ReducedAndSelectiveDoNotLock) {
   double const exact = length * length * length / (3.0 * EI) + length / GA;
   for (Index const n : {1, 2, 8, 64})
-    for (double const found : {flexibility<Reduced>(slender(), n, 1), flexibility<Selective>(slender(), n, 1)}) {
+    for (double const found :
+         {flexibility<ReducedQuadrature>(slender(), n, 1), flexibility<SelectiveQuadrature>(slender(), n, 1)}) {
       EXPECT_NEAR(found / one_point(n, EI), 1.0, 1e-8) << n;
       EXPECT_NEAR(found / exact, 1.0 - 0.25 / double(n * n), 1e-5) << n;
     }
@@ -89,31 +90,32 @@ TEST(LrvfQuadrature, ReducedAndSelectiveDoNotLock) {
 template <class B>
 VecX bent(B const& beam) {
   VecX q(beam.coordinates());
-  VecX const delta = VecX::NullaryExpr(beam.speeds(), [](Index i) { return 0.4 * std::sin(1.0 + 3.0 * double(i)); });
+  VecX const delta =
+      VecX::NullaryExpr(beam.velocities(), [](Index i) { return 0.4 * std::sin(1.0 + 3.0 * double(i)); });
   VecX const from = standing(beam);
   beam.template plus<double>(numbers(from), numbers(delta), {q.data(), std::size_t(q.size())});
   return q;
 }
 
-// `Objective` has a constant curvature in an element, so one point is sufficient for its energy. The curvature of
-// `Direct` varies.
+// `RelativeRotation` has a constant curvature in an element, so one point is sufficient for its energy. The curvature
+// of `Direct` varies.
 TEST(LrvfQuadrature, SelectiveIsReducedWhereTheCurvatureIsConstant) {
   Bar const bar = spatial_lrvf_bar();
   auto const one = Lrvf<>::from(bar, 3);
   VecX const q = bent(one);
   double const energy = strain_energy_of(one, q);
-  EXPECT_NEAR(strain_energy_of(Lrvf<Objective, Selective>::from(bar, 3), q), energy, 1e-14 * energy);
+  EXPECT_NEAR(strain_energy_of(Lrvf<RelativeRotation, SelectiveQuadrature>::from(bar, 3), q), energy, 1e-14 * energy);
   MatX const k = stiffness(one, q);
-  EXPECT_LT((stiffness(Lrvf<Objective, Selective>::from(bar, 3), q) - k).norm(), 1e-12 * k.norm());
+  EXPECT_LT((stiffness(Lrvf<RelativeRotation, SelectiveQuadrature>::from(bar, 3), q) - k).norm(), 1e-12 * k.norm());
   double const direct = strain_energy_of(Lrvf<Direct>::from(bar, 3), q);
-  EXPECT_GT(std::abs(strain_energy_of(Lrvf<Direct, Selective>::from(bar, 3), q) - direct), 1e-6 * direct);
+  EXPECT_GT(std::abs(strain_energy_of(Lrvf<Direct, SelectiveQuadrature>::from(bar, 3), q) - direct), 1e-6 * direct);
 }
 
 // The reported strains are those of the middle for every quadrature.
 TEST(LrvfQuadrature, StrainsAreToldInTheMiddle) {
   Bar const bar = spatial_lrvf_bar();
   auto const one = Lrvf<>::from(bar, 3);
-  auto const two = Lrvf<Objective, Full>::from(bar, 3);
+  auto const two = Lrvf<RelativeRotation, FullQuadrature>::from(bar, 3);
   VecX const q = bent(one);
   EXPECT_LT((one.section_strains(one.at(0.5), numbers(q)) - two.section_strains(two.at(0.5), numbers(q))).norm(),
             1e-14);
@@ -128,8 +130,8 @@ TEST(LrvfQuadrature, AxialStrainInBothPointsStretchesTheChordOfABentElement) {
   auto const state = [&](double chord) {
     return nodes_of(1, [&](double i) { return Placement::at(Vec3(i * chord, 0, 0), Vec3(0, 0, (i - 0.5) * phi)); });
   };
-  auto const both = Lrvf<Objective, AxialInBoth>::from(slender(), 1);
-  auto const middle = Lrvf<Objective, Selective>::from(slender(), 1);
+  auto const both = Lrvf<RelativeRotation, AxialInBoth>::from(slender(), 1);
+  auto const middle = Lrvf<RelativeRotation, SelectiveQuadrature>::from(slender(), 1);
   double const bending = 0.5 * EI * phi * phi / length;
   EXPECT_NEAR(strain_energy_of(both, state(1.0 / std::cos(phi / std::sqrt(12.0)))), bending, 1e-9 * bending);
   EXPECT_GT(strain_energy_of(both, state(1.0)), 10.0 * bending);
@@ -149,9 +151,9 @@ TEST(LrvfQuadrature, AxialStrainInBothPointsOfAnArcStiffensItsShear) {
     turned[5] = turned[11] = 1.0;
     return turned.dot(stiffness(beam, standing(beam)) * turned);
   };
-  EXPECT_NEAR(shear(Lrvf<Objective, Selective>::from(slender(), 1, arc)), GA, 1e-9 * GA);
-  EXPECT_NEAR(shear(Lrvf<Objective, AxialInBoth>::from(slender(), 1, arc)), GA + EA * std::pow(std::sin(lean), 2),
-              1e-9 * EA);
+  EXPECT_NEAR(shear(Lrvf<RelativeRotation, SelectiveQuadrature>::from(slender(), 1, arc)), GA, 1e-9 * GA);
+  EXPECT_NEAR(shear(Lrvf<RelativeRotation, AxialInBoth>::from(slender(), 1, arc)),
+              GA + EA * std::pow(std::sin(lean), 2), 1e-9 * EA);
   EXPECT_LT(c, length);
 }
 

@@ -87,8 +87,8 @@ TEST(SpatialLrvf, StrainSectionLiesOnTheRotationField) {
     Vec3 const phi = angle * Vec3(0.6, -0.48, 0.64);
     Quaternion<double> const b = quaternion_plus<double>(a, phi);
     StrainSection<double> middle;
-    Objective::Section<double> section;
-    Objective const field{Placement{}};
+    RelativeRotation::Section<double> section;
+    RelativeRotation const field{Placement{}};
     field.middle<double>(a, -b, middle);  // q and −q are the same rotation
     field.section<double>(0.5, a, b, section);
     EXPECT_LT((middle.R - section.R).norm(), 1e-14) << angle;
@@ -116,7 +116,7 @@ TEST(SpatialLrvf, StrainsDoNotFeelARigidMotionThroughManyTurns) {
 // last node rotates.
 TEST(SpatialLrvf, ATurningTipTwistsTheLastElementWithoutAJumpOfTheOthers) {
   Lrvf<> const beam = straight();
-  VecX q(beam.coordinates()), delta = VecX::Zero(beam.speeds()), next = q;
+  VecX q(beam.coordinates()), delta = VecX::Zero(beam.velocities()), next = q;
   beam.reference(std::span<double>(q.data(), std::size_t(q.size())));
   for (Index i = 0; i <= elements; ++i) delta[6 * i + 3] = 0.05 * double(i);  // about x, proportional to s
   for (int k = 1; k <= 240;
@@ -177,10 +177,10 @@ TEST(SpatialLrvf, PointsOffTheAxisTurnWithTheSection) {
   Lrvf<> const beam = straight();
   VecX const q = stepped(Vec3(0.2, -0.3, 0.5)), v = VecX::Zero(30);
   std::array<double, 72> memory;
-  Published<double> out;
+  MarkerKinematics<double> out;
   out.jacobian = memory.data();
   for (double const i : {2.5, 3.0}) {
-    beam.publish<double>(beam.at(i * l, 0.1, -0.2), Mat3::Identity(), numbers(q), numbers(v), out);
+    beam.evaluate_marker<double>(beam.at(i * l, 0.1, -0.2), Mat3::Identity(), numbers(q), numbers(v), out);
     Mat3 const axes = exp_so3<double>(i * Vec3(0.2, -0.3, 0.5));
     Vec3 const r1 = q.segment<3>(14), r2 = q.segment<3>(21), centre = i == 3.0 ? r2 : Vec3(0.5 * (r1 + r2));
     EXPECT_LT((out.frame.A - axes).norm(), 1e-14);

@@ -134,7 +134,7 @@ TEST(MatrixStructure, StretchesAsABar) {
       EXPECT_LT((body.node(12 + i).S * q - Vec3(stretch, 0.0, 0.0)).norm(), 1e-12 * stretch);
   };
   tip(Ffr(s, nodal_coordinates(s, face)));
-  tip(Ffr(s, held_modes(s, 36, face)));
+  tip(Ffr(s, fixed_interface_modes(s, 36, face)));
 }
 
 // Static shapes of Craig & Bampton for both faces contain the stretch exactly. In mean axes the distance of the ends
@@ -155,7 +155,7 @@ TEST(MatrixStructure, CraigBamptonStretchesAsABar) {
 TEST(MatrixStructure, AFrameIsNotTiedToANodeWithoutRotations) {
   Structure const s = Block(2, 0.3).structure();
   EXPECT_TRUE(has(refusal([&] { craig_bampton(s, {0, 11}, 0); }), "say mean_axes"));
-  EXPECT_TRUE(has(refusal([&] { held_modes(s, 2); }), "Fix enough coordinates"));
+  EXPECT_TRUE(has(refusal([&] { fixed_interface_modes(s, 2); }), "Fix enough coordinates"));
 }
 
 // --- law tests of bodies that require no Bar ---------------------------------------------------------------
@@ -186,12 +186,12 @@ TEST_F(MatrixBody, MassIsSymmetricAndPositive) {
 }
 
 TEST_F(MatrixBody, InertiaIsMassTimesAcceleration) {
-  VecX const q = configuration(), a = speeds();
+  VecX const q = configuration(), a = velocities();
   EXPECT_LT(mismatch(inertia<double>(q, a), mass(q) * a), 1e-14);
 }
 
 TEST_F(MatrixBody, TangentIsTheDerivativeOfTheForce) {
-  VecX const q = configuration(), v = speeds();
+  VecX const q = configuration(), v = velocities();
   MatX by_position(nv, nv), by_speed(nv, nv);
   for (Index j = 0; j < nv; ++j) {
     by_position.col(j) = epsilon_of(force<D>(carried(q, VecX::Unit(nv, j)), v.cast<D>()));
@@ -214,7 +214,7 @@ TEST_F(MatrixBody, MovesRigidlyAsTheBlock) {
 
 // p · v₀ + l · ω of the free body is constant in any deformation, including damping: (rigid motion)ᵀ M v.
 TEST_F(MatrixBody, KeepsItsMomentum) {
-  VecX const q = configuration(), v = speeds();
+  VecX const q = configuration(), v = velocities();
   VecX const a = mass(q).ldlt().solve(force<double>(q, v));
   Vec3 const v0 = vector3(), omega = vector3();
   double const rate = slope_at_zero([&](double h) {

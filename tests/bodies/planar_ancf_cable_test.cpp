@@ -156,9 +156,9 @@ TEST(AncfCable, PointsOffTheAxisStandOnTheNormal) {
   VecX const q = curve([](double s) { return Vec2(s, 0.4 * s * s); }, [](double s) { return Vec2(1, 0.8 * s); });
   VecX const v = VecX::Zero(q.size());
   std::array<double, 48> memory;
-  Published<double> out;
+  MarkerKinematics<double> out;
   out.jacobian = memory.data();
-  cable.publish<double>(cable.at(0.9, -0.1), Mat3::Identity(), view(q), view(v), out);
+  cable.evaluate_marker<double>(cable.at(0.9, -0.1), Mat3::Identity(), view(q), view(v), out);
   double const angle = std::atan(0.72);
   EXPECT_LT((out.frame.r - Vec3(0.9 + 0.1 * std::sin(angle), 0.324 - 0.1 * std::cos(angle), 0)).norm(), 1e-14);
   EXPECT_LT((out.frame.A - exp_so3<double>(Vec3(0, 0, angle))).norm(), 1e-14);

@@ -28,7 +28,7 @@ TYPED_TEST(PlanarBeam, NeighboursShareANode) {
   int const n = TypeParam::node_columns;
   EXPECT_EQ(beam.elements(), 3);
   EXPECT_EQ(beam.coordinates(), 4 * n);
-  EXPECT_EQ(beam.speeds(), 4 * n);
+  EXPECT_EQ(beam.velocities(), 4 * n);
   for (Index e = 0; e < 3; ++e) EXPECT_EQ(beam.first_column(e), e * n);
   EXPECT_DOUBLE_EQ(beam.element_length(), 0.4);
   EXPECT_DOUBLE_EQ(beam.length(), 1.2);
@@ -76,11 +76,11 @@ TYPED_TEST(PlanarBeam, CentreLineIsWhatAMarkerPublishes) {
     v[i] = std::cos(2.0 * double(i));
   }
   std::array<double, 48> memory;
-  Published<double> out;
+  MarkerKinematics<double> out;
   out.jacobian = memory.data();
   using Span = std::span<double const>;
   auto const p = beam.at(0.7);
-  beam.template publish<double>(p, Mat3::Identity(), Span(q), Span(v), out);
+  beam.template evaluate_marker<double>(p, Mat3::Identity(), Span(q), Span(v), out);
   auto const c = beam.template centre_line<double>(p, Span(q), Span(v));
   EXPECT_LT((out.frame.r.template head<2>() - c.r).norm(), 1e-15);
   EXPECT_LT((out.frame.v.template head<2>() - c.v).norm(), 1e-15);

@@ -16,7 +16,7 @@ struct AxialInBoth {
   static constexpr std::array<StrainPoint, 3> points = {
       {{gauss<2>[0].xi, 0.5, 0.0, 0.5}, {0.5, 0.0, 1.0, 0.0}, {gauss<2>[1].xi, 0.5, 0.0, 0.5}}};
 };
-static_assert(std::same_as<planar::Lrvf, planar::LrvfBy<Reduced>>);
+static_assert(std::same_as<planar::Lrvf, planar::LrvfBy<ReducedQuadrature>>);
 
 template <class Quadrature>
 struct Case {
@@ -28,8 +28,8 @@ struct Case {
   }
   static planar::LrvfBy<Quadrature> body(Bar const& bar) { return planar::LrvfBy<Quadrature>::from(bar, 3); }
 };
-bool const full_obeys = obeys<Case<Full>, BodyLaws, FlexibleBodyLaws>("PlanarFullLrvf");
-bool const selective_obeys = obeys<Case<Selective>, BodyLaws, FlexibleBodyLaws>("PlanarSelectiveLrvf");
+bool const full_obeys = obeys<Case<FullQuadrature>, BodyLaws, FlexibleBodyLaws>("PlanarFullLrvf");
+bool const selective_obeys = obeys<Case<SelectiveQuadrature>, BodyLaws, FlexibleBodyLaws>("PlanarSelectiveLrvf");
 bool const axial_obeys = obeys<Case<AxialInBoth>, BodyLaws, FlexibleBodyLaws>("PlanarAxialInBothLrvf");
 
 double const length = 1.0, EI = 20.0, GA = 4e6;
@@ -78,8 +78,8 @@ VecX bent() {
 // θ is linear, so κ is constant in the element and one point is sufficient. Compared are energy, tangent and section
 // forces.
 TEST(PlanarLrvfQuadrature, SelectiveIsReduced) {
-  auto const one = Case<Reduced>::body(Case<Reduced>::bar());
-  auto const selective = Case<Selective>::body(Case<Reduced>::bar());
+  auto const one = Case<ReducedQuadrature>::body(Case<ReducedQuadrature>::bar());
+  auto const selective = Case<SelectiveQuadrature>::body(Case<ReducedQuadrature>::bar());
   VecX const q = bent(), v = VecX::Constant(12, 0.3);
   double const energy = energy_of(one, q);
   EXPECT_NEAR(energy_of(selective, q), energy, 1e-14 * energy);
@@ -92,7 +92,7 @@ TEST(PlanarLrvfQuadrature, SelectiveIsReduced) {
   auto const at = one.at(0.6);
   EXPECT_LT((one.section_forces(at, view(q)) - selective.section_forces({at.element, at.xi, at.y}, view(q))).norm(),
             1e-13 * energy);
-  EXPECT_GT(std::abs(energy_of(Case<AxialInBoth>::body(Case<Reduced>::bar()), q) - energy), 1e-3 * energy);
+  EXPECT_GT(std::abs(energy_of(Case<AxialInBoth>::body(Case<ReducedQuadrature>::bar()), q) - energy), 1e-3 * energy);
 }
 
 // Reason for ε in the middle, derived in lrvf_quadrature_test.cpp. An element bent by φ has ε = c/l cos(φ/√12) − 1 at

@@ -115,9 +115,9 @@ TEST(Lrvf, PointsOffTheAxisTurnWithTheSection) {
   planar::Lrvf const beam = straight();
   VecX const q = nodes([](double i) { return Vec3(l * i, 0.2 * i, 0.3 * i); }), v = VecX::Zero(q.size());
   std::array<double, 36> memory;
-  Published<double> out;
+  MarkerKinematics<double> out;
   out.jacobian = memory.data();
-  beam.publish<double>(beam.at(2.5 * l, 0.1), Mat3::Identity(), view(q), view(v), out);
+  beam.evaluate_marker<double>(beam.at(2.5 * l, 0.1), Mat3::Identity(), view(q), view(v), out);
   double const angle = 0.75;
   EXPECT_LT((out.frame.r - Vec3(2.5 * l - 0.1 * std::sin(angle), 0.5 + 0.1 * std::cos(angle), 0)).norm(), 1e-15);
   EXPECT_LT((out.frame.A - exp_so3<double>(Vec3(0, 0, angle))).norm(), 1e-15);

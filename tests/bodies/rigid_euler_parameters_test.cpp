@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/revolute.hpp>
@@ -67,7 +67,7 @@ struct Mechanism {
   }
   template <class Integrator>
   void run(Integrator const& integrator, double step) {
-    simulate(model, x, integrator, {.until = 0.5, .step = step}).run();
+    simulate(model, x, integrator, {.end_time = 0.5, .step = step}).run();
   }
 };
 
@@ -91,13 +91,13 @@ TEST(EulerParameterMotion, IsThatOfTheUnitQuaternion) {
   expect_same_motion(RungeKutta4<Projection>{}, 1e-3, 1e-8);
   // each method has its own error of order h²: 1 ms of a Lie group method against 1 ms of a vector space with a
   // constraint equation
-  expect_same_motion(GeneralizedAlpha{}, 2.5e-4, 2e-5);
+  expect_same_motion(GeneralisedAlpha{}, 2.5e-4, 2e-5);
 }
 
 TEST(EulerParameterMotion, KeepsTheNormAndTheEnergy) {
   Mechanism<EulerParameters> m;
   double const start = energy(m.model, m.x).total();
-  m.run(GeneralizedAlpha{}, 5e-4);
+  m.run(GeneralisedAlpha{}, 5e-4);
   EXPECT_NEAR(energy(m.model, m.x).total(), start, 1e-3 * std::abs(start));
   for (Index const at : {3, 10}) EXPECT_NEAR(m.x.q.segment<4>(at).norm(), 1.0, 1e-10);
 }
@@ -105,13 +105,13 @@ TEST(EulerParameterMotion, KeepsTheNormAndTheEnergy) {
 // Counts as in Table 3.4 of Wallin 2016: seven coordinates and one constraint per body.
 TEST(EulerParameterCensus, CountsAsTheThesis) {
   Mechanism<EulerParameters> const m;
-  Census const c = census(m.model);
+  ProblemSize const c = problem_size(m.model);
   EXPECT_EQ(c.coordinates, 14);
   EXPECT_EQ(c.constraints, 2 + 3 + 5);
   EXPECT_EQ(c.degrees_of_freedom, 4);
-  EXPECT_EQ(c.speeds, 14);
+  EXPECT_EQ(c.velocities, 14);
   EXPECT_EQ(c.rows, 10);
-  EXPECT_EQ(census(Mechanism<UnitQuaternion>().model).constraints, 10);  // including one for each quaternion
+  EXPECT_EQ(problem_size(Mechanism<UnitQuaternion>().model).constraints, 10);  // including one for each quaternion
 }
 
 TEST(EulerParameterNames, OwnRowIsNamedByItsBody) {

@@ -105,7 +105,7 @@ TEST(Rigid, AddsInertiaLessForceAndWeight) {
   body.force<double>(0, q, v, force);
   body.gravity<double>(0, q, g, weight);
   Vec<double, 6> const expected = rows + of_inertia - force - weight;
-  body.add_unbalance<double>({q, v, a}, g, rows.data());
+  body.add_residual<double>({q, v, a}, g, rows.data());
   EXPECT_LT((rows - expected).norm(), 1e-14 * expected.norm());
 }
 
@@ -203,9 +203,10 @@ void publishes_by_hand() {
   double const half = std::sqrt(0.5);
   std::array<T, 7> const q{T(10.0), T(20.0), T(30.0), T(half), T(0.0), T(0.0), T(half)};
   std::array<T, 6> const v{T(1.0), T(0.0), T(-1.0), T(0.5), T(0.0), T(2.0)};
-  Published<T> out;
+  MarkerKinematics<T> out;
   out.bias.setConstant(T(9.0));
-  Rigid<>(2.0, tilted).publish<T>({Vec3(1, 2, 3)}, (Mat3() << 1, 0, 0, 0, 0, -1, 0, 1, 0).finished(), q, v, out);
+  Rigid<>(2.0, tilted)
+      .evaluate_marker<T>({Vec3(1, 2, 3)}, (Mat3() << 1, 0, 0, 0, 0, -1, 0, 1, 0).finished(), q, v, out);
   auto const near = [](auto const& x, auto const& expected) {
     for (Index i = 0; i < expected.size(); ++i) EXPECT_NEAR(value_of(x.data()[i]), expected.data()[i], 4e-14);
   };

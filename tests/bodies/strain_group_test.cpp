@@ -20,12 +20,13 @@ struct Group {
 };
 using Green = planar::HermiteCable<planar::GreenStrain>;
 using Engineering = planar::HermiteCable<planar::EngineeringStrain>;
-using Groups = testing::Types<Group<Green::Axial, 8>, Group<Green::Bending, 8>, Group<Engineering::Axial, 8>,
-                              Group<Engineering::Bending, 8>, Group<planar::SimoVuQuoc::Section, 6>,
-                              Group<planar::SectionIn<Full, 0, 3>, 6>, Group<planar::SectionIn<Selective, 0, 2>, 6>,
-                              Group<planar::SectionIn<Selective, 2, 1>, 6>, Group<planar::SectionIn<Full, 1, 1>, 6>,
-                              Group<CableAxial<GreenStrain, 5>, 12>, Group<CableAxial<EngineeringStrain, 5>, 12>,
-                              Group<CableBending<GreenStrain, 3>, 12>, Group<CableBending<EngineeringStrain, 3>, 12>>;
+using Groups = testing::Types<
+    Group<Green::Axial, 8>, Group<Green::Bending, 8>, Group<Engineering::Axial, 8>, Group<Engineering::Bending, 8>,
+    Group<planar::SimoVuQuoc::Section, 6>, Group<planar::SectionIn<FullQuadrature, 0, 3>, 6>,
+    Group<planar::SectionIn<SelectiveQuadrature, 0, 2>, 6>, Group<planar::SectionIn<SelectiveQuadrature, 2, 1>, 6>,
+    Group<planar::SectionIn<FullQuadrature, 1, 1>, 6>, Group<CableAxial<GreenStrain, 5>, 12>,
+    Group<CableAxial<EngineeringStrain, 5>, 12>, Group<CableBending<GreenStrain, 3>, 12>,
+    Group<CableBending<EngineeringStrain, 3>, 12>>;
 
 template <class G>
 struct StrainGroupLaws : testing::Test {
@@ -117,8 +118,8 @@ TYPED_TEST(StrainGroupLaws, ForceIsTheEnergysSlopeAndTangentItsGradient) {
 // SIMD vectors evaluate four elements with the same arithmetic.
 TYPED_TEST(StrainGroupLaws, PacksCalculateWithEachElement) {
   constexpr int n = TypeParam::n;
-  Vec<Pack<>, n> x, xd, force = Vec<Pack<>, n>::Zero();
-  Mat<Pack<>, n, n> tangent;
+  Vec<SimdVector<>, n> x, xd, force = Vec<SimdVector<>, n>::Zero();
+  Mat<SimdVector<>, n, n> tangent;
   std::array<Vec<double, n>, pack_size> each, rate;
   for (int l = 0; l < pack_size; ++l) {
     each[std::size_t(l)] = this->coordinates();
@@ -128,7 +129,7 @@ TYPED_TEST(StrainGroupLaws, PacksCalculateWithEachElement) {
       xd[i].set(l, rate[std::size_t(l)][i]);
     }
   }
-  this->group.template add_force<Pack<>>(x, xd, force);
+  this->group.template add_force<SimdVector<>>(x, xd, force);
   tangent_of(std::tuple(this->group), x, xd, 0.7, 0.1, tangent);
   for (int l = 0; l < pack_size; ++l) {
     Vec<double, n> f = Vec<double, n>::Zero();

@@ -90,7 +90,7 @@ TYPED_TEST(StrainTangent, DoesNotFeelWhereAnElementIs) {
 // SIMD evaluation of the tangent with the mass, compared with the evaluation of single elements.
 TYPED_TEST(StrainTangent, InPacksIsThatOfEachElement) {
   constexpr int n = TypeParam::element_columns;
-  static_assert(AlikeElements<TypeParam>);
+  static_assert(IdenticalElements<TypeParam>);
   for (Damping const& damping : this->dampings) {
     Swaying<TypeParam> const s(damping);
     Index next = 0;

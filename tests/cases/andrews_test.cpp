@@ -6,13 +6,13 @@
 #include <polybody/forces/point_load.hpp>
 #include <polybody/forces/spring_damper.hpp>
 #include <polybody/integrators/adams_bashforth_moulton.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/hht_alpha.hpp>
 #include <polybody/integrators/radau.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/planar/revolute.hpp>
-#include <polybody/joints/policies/recursive.hpp>
+#include <polybody/joints/policies/joint_coordinates.hpp>
 #include <polybody/run/energy.hpp>
 #include <polybody/run/observe.hpp>
 #include <polybody/run/simulate.hpp>
@@ -122,7 +122,7 @@ Claim independent(char const* what, char const* formulation) {
 
 TEST(Andrews, StartsAsPublished) {
   Squeezer<> s(start);
-  simulate(s.model, s.x, RungeKutta4<Projection>{}, {.until = 0.0, .step = 1e-5}).run();
+  simulate(s.model, s.x, RungeKutta4<Projection>{}, {.end_time = 0.0, .step = 1e-5}).run();
   EXPECT_LT((s.read(s.x.q) - start).norm(), 1e-15);
   Angles const a = s.read(s.x.a);
   held(published("β¨ at the start [rad/s²]", "start of a run"), a[0], 14222.4439199541138706, 1e-7);
@@ -144,12 +144,12 @@ void expect_published(I const& integrator, double step, double tolerance, char c
   } const way[] = {{0.01, 2.1601131315315, -1.8833642311070, 0.15851675800},
                    {0.02, 8.1849058896618, -7.8905053637306, 0.20953691338}};
   for (auto const& w : way) {
-    simulate(s.model, s.x, integrator, {.until = w.t, .step = step}).run();
+    simulate(s.model, s.x, integrator, {.end_time = w.t, .step = step}).run();
     Angles const at = s.read(s.x.q);
     held_within(independent("β, Θ and γ on the way [rad]", formulation),
                 (at.head<3>() - Vec3(w.beta, w.theta, w.gamma)).norm(), tolerance, {equals("t", w.t), 2.9});
   }
-  simulate(s.model, s.x, integrator, {.until = 0.03, .step = step}).run();
+  simulate(s.model, s.x, integrator, {.end_time = 0.03, .step = step}).run();
   held_within(published("q at 0.03 s [rad]", formulation), (s.read(s.x.q) - end).norm(), tolerance,
               {.scale = end.norm()});
   held_within(published("rates at 0.03 s [rad/s]", formulation), (s.read(s.x.v) - end_rate).norm(), 1e3 * tolerance,
@@ -178,11 +178,12 @@ TEST(Andrews, HasThePublishedDigitsWithRadau) {
   expect_published(Radau{.tolerance = 1e-12}, 7.5e-6, 1e-8, "Radau IIA, h = 7.5e-6 s");
 }
 TEST(Andrews, HasThePublishedDigitsInJointCoordinates) {  // the three pins at E close loops
-  expect_published<Recursive>(DormandPrince<Projection>{.relative_tolerance = 1e-12, .absolute_tolerance = 1e-13}, 1e-5,
-                              1e-8, "joint coordinates, Dormand–Prince");
+  expect_published<JointCoordinates>(
+      DormandPrince<Projection>{.relative_tolerance = 1e-12, .absolute_tolerance = 1e-13}, 1e-5, 1e-8,
+      "joint coordinates, Dormand–Prince");
 }
 TEST(Andrews, IsMetByAlphaMethodsWithinAThousandth) {
-  expect_published(GeneralizedAlpha{}, 1e-5, 1e-3, "generalised-α, h = 1e-5 s");
+  expect_published(GeneralisedAlpha{}, 1e-5, 1e-3, "generalised-α, h = 1e-5 s");
   expect_published(HhtAlpha{}, 1e-5, 1e-3, "HHT-α, h = 1e-5 s");
 }
 
@@ -191,7 +192,7 @@ TEST(Andrews, IsMetByAlphaMethodsWithinAThousandth) {
 TEST(Andrews, SmallStepsOfAlphaMethodsKeepTheirOrder) {
   auto const error = [](double step) {
     Squeezer<> s(start);
-    simulate(s.model, s.x, GeneralizedAlpha{}, {.until = 0.01, .step = step}).run();
+    simulate(s.model, s.x, GeneralisedAlpha{}, {.end_time = 0.01, .step = step}).run();
     return (s.read(s.x.q).head<3>() - Vec3(2.1601131315315, -1.8833642311070, 0.15851675800)).norm();
   };
   double const coarse = error(2e-6), fine = error(1e-6);
@@ -211,7 +212,7 @@ TEST(Andrews, OfTheBenchmarkCarriesFWhereItIsPublished) {
                    {0.04, 0.005051245443, -0.004846124171}};
   for (auto const& w : way) {
     simulate(s.model, s.x, DormandPrince<Projection>{.relative_tolerance = 1e-11, .absolute_tolerance = 1e-12},
-             {.until = w.t, .step = 1e-5})
+             {.end_time = w.t, .step = 1e-5})
         .run();
     Claim claim = independent("x of F, β(0) = −0.062 [m]", "Dormand–Prince");
     held(claim, 0.007 * std::cos(s.x.q[2]), w.x, 1e-10, {equals("t", w.t)});

@@ -23,7 +23,7 @@ Bar column() {
 
 /// Ratio for a body at rest at the origin, under loads and gravity.
 double share(Ffr const& body, Vec3 const& gravity, std::vector<PlacedWrench> const& loads) {
-  std::vector<double> q(std::size_t(body.coordinates())), zero(std::size_t(body.speeds()), 0.0);
+  std::vector<double> q(std::size_t(body.coordinates())), zero(std::size_t(body.velocities()), 0.0);
   body.reference(q);
   return body.axial_share(q, zero, zero, gravity, loads);
 }
@@ -35,7 +35,7 @@ TEST(AxialForces, ShareOfEulersLoads) {
   Structure const s = structure_of(column(), 8);
   double const euler = pi * pi * EI / (length * length);
   Ffr const cantilever = Ffr::from(column(), 8),
-            pinned(s, held_modes(s, 4, ReferenceConditions::simply_supported(0, 8)));
+            pinned(s, fixed_interface_modes(s, 4, ReferenceConditions::simply_supported(0, 8)));
   for (double const part : {0.1, 0.5, 1.0}) {
     EXPECT_NEAR(share(cantilever, Vec3::Zero(), pressed_with(0.25 * part * euler)), -part, 2e-3 * part);
     EXPECT_NEAR(share(pinned, Vec3::Zero(), pressed_with(part * euler)), -part, 2e-3 * part);
@@ -54,9 +54,9 @@ TEST(AxialForces, ShareOfGreenhillsWeight) {
 // 0.0976244 ρA Ω² L⁴/EI (Ritz method with x² to x⁸).
 template <class Body>
 double spun(Body const& body, double omega) {
-  std::vector<double> q(std::size_t(body.coordinates())), v(std::size_t(body.speeds()), 0.0), a = v;
+  std::vector<double> q(std::size_t(body.coordinates())), v(std::size_t(body.velocities()), 0.0), a = v;
   body.reference(q);
-  v[body.speeds() == 3 + body.deformations() ? 2 : 5] = omega;
+  v[body.velocities() == 3 + body.deformations() ? 2 : 5] = omega;
   return body.axial_share(q, v, a, Vec3::Zero(), {});
 }
 TEST(AxialForces, ShareOfCentrifugalForces) {
@@ -80,7 +80,7 @@ struct Pressed {
     x = model.reference_state();
   }
   std::vector<std::string> warnings() {
-    return simulate(model, x, GeneralizedAlpha{.rho_inf = 0.6}, {.until = 0.05, .step = 1e-3}).run().warnings;
+    return simulate(model, x, GeneralisedAlpha{.rho_inf = 0.6}, {.end_time = 0.05, .step = 1e-3}).run().warnings;
   }
 };
 

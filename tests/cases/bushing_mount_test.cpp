@@ -164,7 +164,7 @@ TEST(BushingMount, FollowsItsLaws) {
 
 TEST(BushingMount, AddsNoRows) {
   Mounted const m{Mount{{}, diagonal}};
-  Census const c = census(m.model);
+  ProblemSize const c = problem_size(m.model);
   EXPECT_EQ(c.rows, 0);
   EXPECT_EQ(c.degrees_of_freedom, 6);
   static_assert(!decltype(m.model)::may_have_rows);

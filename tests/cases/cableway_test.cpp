@@ -4,7 +4,7 @@
 
 #include <polybody/bodies/ancf/ancf_cable.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/radau.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/spherical.hpp>
@@ -22,7 +22,7 @@ namespace cableway_test {
 
 constexpr double g = 9.81;
 using Ball = Joint<Spherical, Constraint>;
-using InSpace = Model<Bodies<Sliding<AncfCable<>>, Rigid<>>, Joints<Ball>>;
+using InSpace = Model<Bodies<WithSliders<AncfCable<>>, Rigid<>>, Joints<Ball>>;
 
 /// A cable of 4 m is taut between two anchors. The right anchor is 0.5 m lower. A cabin hangs 0.3 m under a slider
 /// and swings sideways.
@@ -33,7 +33,7 @@ struct Cableway {
                 .placement = Placement::at({0, 0, 0}, {0, std::asin(0.125), 0}),
                 .pretension = 200.0};
   Vec3 along = bar.placement.axes.col(0);
-  BodyHandle<Sliding<AncfCable<>>> cable = model.add(Sliding(AncfCable<>::from(bar, 8), {0.7}), "cable");
+  BodyHandle<WithSliders<AncfCable<>>> cable = model.add(WithSliders(AncfCable<>::from(bar, 8), {0.7}), "cable");
   BodyHandle<Rigid<>> cabin = model.add(
       Rigid<>(2.0, Vec3(0.02, 0.03, 0.04).asDiagonal().toDenseMatrix(), Placement::at(0.7 * along - Vec3(0, 0, 0.3))),
       "cabin");
@@ -57,11 +57,11 @@ struct Ride {
   Violation open;
 
   template <class I>
-  Ride(Cableway const& way, I const& integrator, double until, double step) : x(way.start) {
+  Ride(Cableway const& way, I const& integrator, double end_time, double step) : x(way.start) {
     System system(way.model);
     double before = 0.0;
-    for (State const& now : simulate(way.model, x, integrator, {.until = until, .step = step})) {
-      Violation const v = violation(system, now);
+    for (State const& now : simulate(way.model, x, integrator, {.end_time = end_time, .step = step})) {
+      Violation const v = largest_violation(system, now);
       double const e = polybody::energy(system, now).total();
       if (now.t == 0.0) before = e;
       energy = std::max(energy, std::abs(e - before));
@@ -76,10 +76,10 @@ struct Ride {
 // equations hold in position, velocity and acceleration. Two methods agree.
 TEST(Cableway, RidesDownTheCableWithItsEnergy) {
   Cableway const way;
-  double const until = 0.8, weight = 2.0 * g;  // times 1 m
-  Ride const alpha(way, GeneralizedAlpha{.rho_inf = 0.9, .stabilised = true}, until, 1e-4),
-      radau(way, Radau{}, until, 5e-4);
-  EXPECT_GT(place(way.model, radau.x, way.cable), 1.1);
+  double const end_time = 0.8, weight = 2.0 * g;  // times 1 m
+  Ride const alpha(way, GeneralisedAlpha{.rho_inf = 0.9, .stabilised = true}, end_time, 1e-4),
+      radau(way, Radau{}, end_time, 5e-4);
+  EXPECT_GT(slider_position(way.model, radau.x, way.cable), 1.1);
   char const *const by_alpha = "AncfCable, generalised-α, stabilised", *const by_radau = "AncfCable, Radau IIA";
   auto const drift = [&](char const* method, double change, double part) {
     held_within(
@@ -94,10 +94,10 @@ TEST(Cableway, RidesDownTheCableWithItsEnergy) {
   EXPECT_LT(radau.open.velocity, 1e-10);
   EXPECT_LT(radau.open.acceleration, 1e-9);
   held_within({"sliders", "place of a cabin on a cable [m]", By::itself, "Radau IIA", by_alpha},
-              std::abs(place(way.model, alpha.x, way.cable) - place(way.model, radau.x, way.cable)), 5e-5,
-              {.scale = 1.0});
+              std::abs(slider_position(way.model, alpha.x, way.cable) - slider_position(way.model, radau.x, way.cable)),
+              5e-5, {.scale = 1.0});
   // the hook pulls across the cable: f · r′ = 0, with r′ from positions on both sides
-  double const s = place(way.model, radau.x, way.cable), e = 1e-4;
+  double const s = slider_position(way.model, radau.x, way.cable), e = 1e-4;
   auto const point = [&](double at) { return position(way.model, radau.x, way.cable.at(at)); };
   Vec3 const slope = (point(s + e) - point(s - e)) / (2.0 * e);
   Vec3 const f = reaction(way.model, radau.x, way.hanger).f;

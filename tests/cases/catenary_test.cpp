@@ -8,7 +8,7 @@
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/policies/bushing.hpp>
-#include <polybody/joints/policies/recursive.hpp>
+#include <polybody/joints/policies/joint_coordinates.hpp>
 #include <polybody/run/observe.hpp>
 #include <polybody/statics/equilibrium.hpp>
 
@@ -22,7 +22,7 @@ template <class Policy>
 using Pin = Joint<planar::Revolute, Policy>;
 /// Model type for all tests, which is compiled once.
 using Hanging =
-    Model<Bodies<planar::Rigid, Cable>, Joints<Pin<Constraint>, Pin<Penalty>, Pin<Bushing>, Pin<Recursive>>>;
+    Model<Bodies<planar::Rigid, Cable>, Joints<Pin<Constraint>, Pin<Penalty>, Pin<Bushing>, Pin<JointCoordinates>>>;
 
 /// Angle between successive chords of n chords of length l with their ends on a circle, span s: Σ l cos δ(i − (n −
 /// 1)/2) = s.
@@ -173,7 +173,7 @@ TEST(HangingChain, HasThePublishedForcesAndShape) {
 // The tree starts at the first support and a pin at the far one closes the loop. The time steps are tested in
 // tests/system/recursive_loop_test.cpp.
 TEST(HangingChain, HangsAlikeOnJointCoordinates) {
-  held_chain(Chain(ten, Recursive{}, Constraint{}).hang(), of_ten, "10 rigid links on joint coordinates");
+  held_chain(Chain(ten, JointCoordinates{}, Constraint{}).hang(), of_ten, "10 rigid links on joint coordinates");
 }
 
 // Springs instead of pins: they agree with their closed form at every stiffness, and with the published force up to

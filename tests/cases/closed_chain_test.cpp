@@ -4,7 +4,7 @@
 
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/planar/revolute.hpp>
@@ -153,13 +153,13 @@ PinForces compare(Space const& space, Plane const& plane) {
 // unique. The forces of the spatial chain are equal at every step. The forces out of the plane are zero, although
 // three constraint equations could transmit them.
 template <class I>
-void expect_the_plane(char const* formulation, I const& integrator, double step, double until, double tolerance,
+void expect_the_plane(char const* formulation, I const& integrator, double step, double end_time, double tolerance,
                       double energy_tolerance) {
   Space space;
   Plane plane;
   double const start = energy(space.model, space.x).total();
-  auto run = simulate(space.model, space.x, integrator, {.until = until, .step = step});
-  auto planar = simulate(plane.model, plane.x, integrator, {.until = until, .step = step});
+  auto run = simulate(space.model, space.x, integrator, {.end_time = end_time, .step = step});
+  auto planar = simulate(plane.model, plane.x, integrator, {.end_time = end_time, .step = step});
   EXPECT_TRUE(planar.report().redundant.empty());
   ASSERT_GE(run.report().redundant.size(), 1u);
   ASSERT_LE(run.report().redundant.size(), 3u);
@@ -184,7 +184,7 @@ void expect_the_plane(char const* formulation, I const& integrator, double step,
 }
 
 TEST(ClosedChain, FallsAsInThePlaneWithImplicitSteps) {
-  expect_the_plane("64 links in space, generalised-α", GeneralizedAlpha{.tolerance = 1e-10}, 1e-3, 0.5, 1e-6, 1.0);
+  expect_the_plane("64 links in space, generalised-α", GeneralisedAlpha{.tolerance = 1e-10}, 1e-3, 0.5, 1e-6, 1.0);
 }
 TEST(ClosedChain, FallsAsInThePlaneWithExplicitSteps) {
   expect_the_plane("64 links in space, Runge–Kutta 4", RungeKutta4<Projection>{}, 1e-3, 0.2, 1e-6, 1e-3);

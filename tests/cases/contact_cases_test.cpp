@@ -11,7 +11,7 @@
 #include <polybody/forces/contact.hpp>
 #include <polybody/forces/contact_group.hpp>
 #include <polybody/forces/point_load.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/newmark.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/distance.hpp>
@@ -90,7 +90,7 @@ struct Bounces {
     State x = drop.start({0, 0, 0});
     Event const floor{.name = "floor", .value = [](State const& s) { return s.q[z]; }};
     Event const apex_event{.name = "apex", .value = [](State const& s) { return s.q[z] > 0.0 ? s.v[z] : 1.0; }};
-    RunOptions const options{.until = 2.3, .step = 1e-4, .largest_step = 1e-2, .events = {floor, apex_event}};
+    RunOptions const options{.end_time = 2.3, .step = 1e-4, .max_step = 1e-2, .events = {floor, apex_event}};
     for (Met const& m : events_of(drop.model, x, DormandPrince<>{.relative_tolerance = 1e-9}, options)) {
       if (m.name == "floor" && m.x.v[z] < 0.0) impact.push_back(m.x.t);
       if (m.name == "apex" && m.x.q[z] > 0.1 && m.x.t > 0.1) apex.push_back(m.x.q[z]);
@@ -137,7 +137,7 @@ struct Impact {
   Impact(Drop<N> const& drop, double speed, Release const& release) : after(drop.start({0, 0, -speed})) {
     Event const turns{.name = "deepest", .value = [](State const& s) { return s.v[z]; }, .tolerance = 1e-14};
     Event const leaves{.name = "free", .value = release, .tolerance = 1e-14};
-    RunOptions const options{.until = 0.015, .step = 1e-6, .largest_step = 1e-4, .events = {turns, leaves}};
+    RunOptions const options{.end_time = 0.015, .step = 1e-6, .max_step = 1e-4, .events = {turns, leaves}};
     auto const met = events_of(drop.model, after, precise, options);
     deepest = first(met, "deepest");
     free = first(met, "free");
@@ -174,7 +174,7 @@ TEST(ImpactOnASpring, WithADamperHasTheNumbersOfTheCase) {
 TEST(ImpactOnASpring, RestsWhereTheSpringBearsItsWeight) {
   Drop<SpringDamperContact> const drop({.stiffness = 1e5, .damping = 300.0}, 1.0, 0.0, down);
   State x = drop.start({0, 0, 0});
-  simulate(drop.model, x, GeneralizedAlpha{}, {.until = 0.5, .step = 1e-3}).run();
+  simulate(drop.model, x, GeneralisedAlpha{}, {.end_time = 0.5, .step = 1e-3}).run();
   held(closed_form("C2", "depth at rest [m]", "m g/k", "SpringDamperContact, generalised-α, h = 1e-3 s"), x.q[z],
        -9.81e-5, 1e-12);
 }
@@ -193,7 +193,7 @@ struct Within {
   double error(I const& integrator, double step) const {
     Drop<SpringDamperContact> const drop({.stiffness = k, .damping = c}, 1.0, -depth(1e-3), down);
     State x = drop.start({0, 0, -rate(1e-3)});
-    simulate(drop.model, x, integrator, {.until = 7e-3, .step = step}).run();
+    simulate(drop.model, x, integrator, {.end_time = 7e-3, .step = step}).run();
     return std::hypot(x.q[z] + depth(8e-3), (x.v[z] + rate(8e-3)) / std::sqrt(k));
   }
 };
@@ -204,7 +204,7 @@ TEST(ImpactOnASpring, IsIntegratedAtTheOrderOfTheMethod) {
       return std::log2(within.error(integrator, step) / within.error(integrator, 0.5 * step));
     };
     EXPECT_NEAR(order(RungeKutta4<>{}, 1e-4), 4.0, 0.1) << c;
-    EXPECT_NEAR(order(GeneralizedAlpha{.tolerance = 1e-12}, 1e-4), 2.0, 0.1) << c;
+    EXPECT_NEAR(order(GeneralisedAlpha{.tolerance = 1e-12}, 1e-4), 2.0, 0.1) << c;
     EXPECT_LT(within.error(RungeKutta4<>{}, 1e-5), 1e-9);
   }
 }
@@ -234,7 +234,7 @@ TEST(SlidingBlock, StopsWithinTheBoundOfTheRegularisation) {
         .name = "as slow as v_s", .value = [s](State const& now) { return now.v[0] - s; }, .tolerance = 1e-12};
     auto const met =
         events_of(block.model, x, DormandPrince<>{.relative_tolerance = 1e-10, .absolute_tolerance = 1e-12},
-                  {.until = 1.3, .step = 1e-4, .events = {slow}});
+                  {.end_time = 1.3, .step = 1e-4, .events = {slow}});
     State const& at = first(met, "as slow as v_s");
     char const* const regularised = "∫ of μN v/√(v² + v_s²)";
     auto const slides = [](char const* what, char const* source) {
@@ -253,7 +253,7 @@ TEST(SlidingBlock, StopsWithinTheBoundOfTheRegularisation) {
 }
 
 /// Block that slides down a slope tan α = t.
-State slid(double t, double mu, double s, double until) {
+State slid(double t, double mu, double s, double end_time) {
   double const alpha = std::atan(t);
   Placement const slope = Placement::at({0.2, 0.1, 0.3}, {0, alpha, 0});
   using Law = Contact<SphereOnPlane>;
@@ -264,7 +264,7 @@ State slid(double t, double mu, double s, double until) {
   model.apply(Law{{.radius = 0.0}, {.stiffness = k_floor}, {.coefficient = mu, .slip_speed = s}},
               block.at(Vec3(0, 0, 0)), model.ground().at(slope));
   State x = model.reference_state();
-  simulate(model, x, GeneralizedAlpha{}, {.until = until, .step = 1e-3}).run();
+  simulate(model, x, GeneralisedAlpha{}, {.end_time = end_time, .step = 1e-3}).run();
   x.v.head<3>() = (slope.axes.transpose() * x.v.head<3>()).eval();  // along the slope
   return x;
 }
@@ -284,8 +284,8 @@ TEST(SlidingBlock, CreepsDownASlopeAtTheSpeedOfTheFormula) {
 // Above the friction angle, v̇ = g (sin α − μ cos α) + μ g cos α (1 − v/√(v² + v_s²)). The integral of the last term
 // is at most v_s μ cos α/(sin α − μ cos α).
 TEST(SlidingBlock, SlidesDownASteeperSlope) {
-  double const mu = 0.3, s = 1e-2, t = 0.5, alpha = std::atan(t), until = 0.5;
-  double const v = slid(t, mu, s, until).v[0], ideal = g * (std::sin(alpha) - mu * std::cos(alpha)) * until;
+  double const mu = 0.3, s = 1e-2, t = 0.5, alpha = std::atan(t), end_time = 0.5;
+  double const v = slid(t, mu, s, end_time).v[0], ideal = g * (std::sin(alpha) - mu * std::cos(alpha)) * end_time;
   EXPECT_GT(v, ideal);
   EXPECT_LT(v, ideal + s * mu / (t - mu));
 }
@@ -354,7 +354,7 @@ void expect_slip_then_roll(double t_roll, double x_roll, double v_roll) {
     Event const ideal{.name = "ideal", .value = [&](State const& now) { return now.t - t_roll; }, .tolerance = 1e-12};
     auto const met =
         events_of(roller.model, x, DormandPrince<>{.relative_tolerance = 1e-10, .absolute_tolerance = 1e-12},
-                  {.until = 0.8, .step = 1e-4, .events = {rolls, ideal}});
+                  {.end_time = 0.8, .step = 1e-4, .events = {rolls, ideal}});
     State const& slow = first(met, "slip v_s");
     char const* const regularised = "∫ of μN u/√(u² + v_s²)";
     auto const rolling = [](char const* what, char const* source) {
@@ -393,12 +393,12 @@ TEST(SlipToRoll, DiscRollsAtTwoThirdsOfItsSpeed) {
 // an additional part below v_s (μ/q)/(1 − μ/q).
 template <class Body>
 void expect_rolls_down() {
-  double const alpha = 0.5, s = 1e-3, until = 0.6, pull = g * std::sin(alpha);
+  double const alpha = 0.5, s = 1e-3, end_time = 0.6, pull = g * std::sin(alpha);
   double const c = Roller<Body>::c, q = std::tan(alpha) * c / (1.0 + c);
   auto const after = [&](double mu) {
     Roller<Body> const roller({.coefficient = mu, .slip_speed = s}, alpha);
     State x = roller.start(0.0);
-    simulate(roller.model, x, GeneralizedAlpha{}, {.until = until, .step = 5e-4}).run();
+    simulate(roller.model, x, GeneralisedAlpha{}, {.end_time = end_time, .step = 5e-4}).run();
     return std::pair(roller.speed(x), roller.slip(x));
   };
   for (double const more : {1.1, 2.0}) {
@@ -412,14 +412,14 @@ void expect_rolls_down() {
     Instance const when{equals("μ (1 + c)/(c tan α)", more)};
     held(down_an_incline("slip down an incline [m/s]", "v_s q/√(μ² − q²)"), slip, u, 1e-5 * u, when);
     held(down_an_incline("speed down an incline [m/s]", "(g sin α t + c u)/(1 + c)"), v,
-         (pull * until + c * u) / (1.0 + c), 1e-8, when);
-    held(down_an_incline("acceleration down an incline [m/s²]", "g sin α/(1 + c), without slip"), v / until,
-         pull / (1.0 + c), c / (1.0 + c) * u / until + 1e-8, when);
+         (pull * end_time + c * u) / (1.0 + c), 1e-8, when);
+    held(down_an_incline("acceleration down an incline [m/s²]", "g sin α/(1 + c), without slip"), v / end_time,
+         pull / (1.0 + c), c / (1.0 + c) * u / end_time + 1e-8, when);
   }
   auto const [v, slip] = after(0.9 * q);
-  EXPECT_GT(slip, 0.1 * pull * until);
-  EXPECT_LT(slip, 0.1 * pull * until + 9.0 * s);
-  EXPECT_NEAR(v, (pull * until + c * slip) / (1.0 + c), 1e-8);
+  EXPECT_GT(slip, 0.1 * pull * end_time);
+  EXPECT_LT(slip, 0.1 * pull * end_time + 9.0 * s);
+  EXPECT_NEAR(v, (pull * end_time + c * slip) / (1.0 + c), 1e-8);
 }
 TEST(SlipToRoll, BallRollsDownAnInclineWhereFrictionReachesForIt) { expect_rolls_down<Rigid<>>(); }
 TEST(SlipToRoll, DiscRollsDownAnInclineWhereFrictionReachesForIt) { expect_rolls_down<planar::Rigid>(); }
@@ -460,7 +460,7 @@ struct Pair {
     x = model.reference_state();
     model.set_velocity(x, two, Vec3(0.1, 0.2, 0.3) - speed * line, {0, 0, 0});
     model.set_velocity(x, one, Vec3(0.1, 0.2, 0.3), {0, 0, 0});
-    for (State const& now : simulate(model, x, precise, {.until = 2e-3 + 5e-3, .step = 1e-6, .largest_step = 1e-5}))
+    for (State const& now : simulate(model, x, precise, {.end_time = 2e-3 + 5e-3, .step = 1e-6, .max_step = 1e-5}))
       deepest = std::max(deepest, 2.0 * radius - distance(now).norm());
   }
   Vec3 distance(State const& now) const {
@@ -546,13 +546,14 @@ void expect_ring(Policy const& policy, double stiffness, char const* pins) {
   int steps = 0;
   double worst = 0.0, worst_gap = 0.0;
   for (State const& now :
-       simulate(ring.model, x, GeneralizedAlpha{.tolerance = 1e-12}, {.until = 120 * h, .step = h})) {
+       simulate(ring.model, x, GeneralisedAlpha{.tolerance = 1e-12}, {.end_time = 120 * h, .step = h})) {
     if (steps++ % 10 != 0) continue;
     for (int const i : {0, 20, ring.n - 1}) {
       double const angle = ring.half * (2 * i + 1) + ring.omega * now.t;
       Vec3 const f = reaction(ring.model, now, ring.pins[std::size_t(i)]).f;  // on the next link, along its end
       worst = std::max(worst, (f - force * Vec3(std::sin(angle), -std::cos(angle), 0)).norm());
-      worst_gap = std::max(worst_gap, std::abs(gap(ring.model, now, ring.pins[std::size_t(i)]).norm() - open));
+      worst_gap =
+          std::max(worst_gap, std::abs(constraint_violation(ring.model, now, ring.pins[std::size_t(i)]).norm() - open));
     }
   }
   held_within({"C5", "force of the joints [N]", By::closed_form, "m ω² l cos(π/N)/(4 sin²(π/N)), with the gap's share",
@@ -640,11 +641,11 @@ struct Capstan {
                           model.ground().at(Vec3(places.back() + line * tangent(wrap))), "winch");
     model.apply(PointForce<>{.force = -slack * tangent(0.0)}, points.front(), "slack end");
     auto const belt = model.apply(ContactGroup<OnDrum>{}, points, "belt");
-    model.pair_with(belt,
-                    OnDrum{{.radius = 0.0, .cylinder = radius},
-                           {.stiffness = k, .exponent = 1.0, .damping = 10.0},
-                           {.coefficient = mu, .slip_speed = slip_speed}},
-                    model.ground().at({0, 0, 0}), "drum");
+    model.add_partner(belt,
+                      OnDrum{{.radius = 0.0, .cylinder = radius},
+                             {.stiffness = k, .exponent = 1.0, .damping = 10.0},
+                             {.coefficient = mu, .slip_speed = slip_speed}},
+                      model.ground().at({0, 0, 0}), "drum");
     x = model.reference_state();
     for (std::size_t i = 0; i < nodes.size(); ++i) model.set_velocity(x, nodes[i], speed * ways[i], {0, 0, 0});
   }
@@ -676,8 +677,8 @@ TEST(Capstan, HoldsAsItsPointsBalanceAndTendsToTheExponential) {
     for (int const links : {4, 8, 16, 32}) {
       Capstan capstan(wrap, links);
       std::vector<double> ratios, errors;
-      GeneralizedAlpha const alpha{.rho_inf = 0.5};
-      for (State const& now : simulate(capstan.model, capstan.x, alpha, {.until = 1.5, .step = 1e-3})) {
+      GeneralisedAlpha const alpha{.rho_inf = 0.5};
+      for (State const& now : simulate(capstan.model, capstan.x, alpha, {.end_time = 1.5, .step = 1e-3})) {
         if (now.t < 0.0495) continue;
         ratios.push_back(capstan.tight(now) / Capstan::slack);
         errors.push_back(std::abs(ratios.back() / capstan.balance(now) - 1.0));
@@ -746,11 +747,11 @@ struct CableCapstan {
                           model.ground().at(Vec3(place + line * tangent(wrap))), "winch");
     model.apply(PointForce<>{.force = -slack * tangent(0.0)}, points.front(), "slack end");
     auto const belt = model.apply(ContactGroup<OnDrum>{}, points, "cable");
-    model.pair_with(belt,
-                    OnDrum{{.radius = 0.0, .cylinder = radius},
-                           {.stiffness = bed * spacing, .exponent = 1.0, .damping = 5.0},
-                           {.coefficient = mu, .slip_speed = slip_speed}},
-                    model.ground().at({0, 0, 0}), "drum");
+    model.add_partner(belt,
+                      OnDrum{{.radius = 0.0, .cylinder = radius},
+                             {.stiffness = bed * spacing, .exponent = 1.0, .damping = 5.0},
+                             {.coefficient = mu, .slip_speed = slip_speed}},
+                      model.ground().at({0, 0, 0}), "drum");
     x.lambda = VecX::Zero(model.rows());
   }
 };
@@ -762,7 +763,7 @@ TEST(Capstan, OfACableHoldsByTheExponential) {
     int seen = 0;
     double worst = 0.0;
     for (State const& now :
-         simulate(capstan.model, capstan.x, GeneralizedAlpha{.rho_inf = 0.5}, {.until = 0.6, .step = 5e-4})) {
+         simulate(capstan.model, capstan.x, GeneralisedAlpha{.rho_inf = 0.5}, {.end_time = 0.6, .step = 5e-4})) {
       if (now.t < 0.0995 || std::lround(now.t / 5e-4) % 20 != 0) continue;
       double const ratio = reaction(capstan.model, now, capstan.winch).f.norm() / CableCapstan::slack;
       worst = std::max(worst, std::abs(ratio - exponential));

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include <polybody/forces/point_load.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/hht_alpha.hpp>
 #include <polybody/integrators/newmark.hpp>
 #include <polybody/integrators/radau.hpp>
@@ -88,7 +88,7 @@ Turned turn(int branches, I const& integrator, bool minimum_norm) {
   Turned r;
   VecX last;
   Vec3 const origin = Vec3::Zero();
-  auto run = simulate(s.model, s.x, integrator, {.until = 1.0, .step = 5e-4, .minimum_norm = minimum_norm});
+  auto run = simulate(s.model, s.x, integrator, {.end_time = 1.0, .step = 5e-4, .minimum_norm = minimum_norm});
   for (State const& now : run) {
     // ω_m = ω cos β/(1 − sin²β sin² ωt), and the power of the driving torque
     double const angle = rate * now.t, sine2 = std::sin(beta) * std::sin(beta),
@@ -130,10 +130,10 @@ void expect_two_branches(I const& integrator, double middle) {
 
 TEST(TwoCardanBranches, TurnAsOneUnderTheAlphaFamily) {
   double const order_two = 2e-4;  // 1.3e-4 with one branch
-  expect_two_branches(GeneralizedAlpha{.rho_inf = 0.8}, order_two);
-  expect_two_branches(GeneralizedAlpha{.rho_inf = 0.5}, 2 * order_two);
-  expect_two_branches(GeneralizedAlpha{.rho_inf = 0.8, .stabilised = true}, 1e-6);
-  expect_two_branches(GeneralizedAlpha{.rho_inf = 1.0}, order_two);
+  expect_two_branches(GeneralisedAlpha{.rho_inf = 0.8}, order_two);
+  expect_two_branches(GeneralisedAlpha{.rho_inf = 0.5}, 2 * order_two);
+  expect_two_branches(GeneralisedAlpha{.rho_inf = 0.8, .stabilised = true}, 1e-6);
+  expect_two_branches(GeneralisedAlpha{.rho_inf = 1.0}, order_two);
   expect_two_branches(HhtAlpha{}, order_two);
   expect_two_branches(Newmark{}, order_two);
 }
@@ -154,9 +154,9 @@ TEST(TwoCardanBranches, NameTheSameJointInARunAndInRedundancy) {
 /// Runs a mechanism with single joints and the same mechanism with doubled joints. \param until end time [s]
 /// \param single, twice mechanisms with `model`, `x` \param off tolerance of the motion
 template <class M, class I>
-void expect_same(M single, M twice, I const& integrator, double until, double off) {
+void expect_same(M single, M twice, I const& integrator, double end_time, double off) {
   SCOPED_TRACE(I::name);
-  RunOptions const options{.until = until, .step = 2e-3};
+  RunOptions const options{.end_time = end_time, .step = 2e-3};
   auto one = simulate(single.model, single.x, integrator, options);
   auto two = simulate(twice.model, twice.x, integrator, options);
   VecX before_one = single.x.lambda, before_two = twice.x.lambda;
@@ -177,12 +177,12 @@ void expect_same(M single, M twice, I const& integrator, double until, double of
   EXPECT_LT(jump_two, 5 * jump_one);
 }
 template <class Make>
-void expect_same_by_every_method(Make const& make, double until) {
-  expect_same(make(1), make(2), GeneralizedAlpha{.tolerance = 1e-10}, until, 1e-9);
-  expect_same(make(1), make(2), GeneralizedAlpha{.tolerance = 1e-10, .stabilised = true}, until, 1e-9);
-  expect_same(make(1), make(2), HhtAlpha{.tolerance = 1e-10}, until, 1e-9);
-  expect_same(make(1), make(2), Radau{}, until, 1e-9);
-  expect_same(make(1), make(2), RungeKutta4<Projection>{}, until, 1e-9);
+void expect_same_by_every_method(Make const& make, double end_time) {
+  expect_same(make(1), make(2), GeneralisedAlpha{.tolerance = 1e-10}, end_time, 1e-9);
+  expect_same(make(1), make(2), GeneralisedAlpha{.tolerance = 1e-10, .stabilised = true}, end_time, 1e-9);
+  expect_same(make(1), make(2), HhtAlpha{.tolerance = 1e-10}, end_time, 1e-9);
+  expect_same(make(1), make(2), Radau{}, end_time, 1e-9);
+  expect_same(make(1), make(2), RungeKutta4<Projection>{}, end_time, 1e-9);
 }
 
 TEST(DoubledJoints, MoveFourBarsAsSingleOnes) {
@@ -196,20 +196,20 @@ TEST(DoubledJoints, MoveTheBricardMechanismAsSingleOnes) {
 }
 TEST(DoubledJoints, MoveThinRodsAsSingleOnes) {  // whose mass is singular
   auto const make = [](int each) { return Bricard<>(0.0, {}, {}, each); };
-  expect_same(make(1), make(2), GeneralizedAlpha{.tolerance = 1e-10}, 1.0, 1e-8);
+  expect_same(make(1), make(2), GeneralisedAlpha{.tolerance = 1e-10}, 1.0, 1e-8);
 }
 // In the flat configuration the rank decreases further.
 TEST(DoubledJoints, PassASingularPosition) {
   for (int const n : {1, 2}) {
-    Corner const end =
-        *std::find_if(std::begin(corners), std::end(corners), [n](Corner const& c) { return c.n == n && c.t == 4; });
+    Corner const end = *std::find_if(std::begin(breakpoints), std::end(breakpoints),
+                                     [n](Corner const& c) { return c.n == n && c.t == 4; });
     auto const expect = [&](auto bars, auto const& integrator) {
-      simulate(bars.model, bars.x, integrator, {.until = end.t, .step = 1e-3}).run();
+      simulate(bars.model, bars.x, integrator, {.end_time = end.t, .step = 1e-3}).run();
       EXPECT_LT((bars.corner() - Vec3(end.x, end.y, 0)).norm(), 1e-4) << n << integrator.name;
     };
-    expect(FourBars<InPlane<Constraint>>(n, {}, 2), GeneralizedAlpha{});
+    expect(FourBars<InPlane<Constraint>>(n, {}, 2), GeneralisedAlpha{});
     expect(FourBars<InPlane<Constraint>>(n, {}, 2), Radau{});
-    expect(FourBars<InSpace<Constraint>>(n, {}, 2), GeneralizedAlpha{});
+    expect(FourBars<InSpace<Constraint>>(n, {}, 2), GeneralisedAlpha{});
   }
 }
 

@@ -47,7 +47,8 @@ TEST(SimoVuQuocArm, DisplacementDrivenConvergesToTheIndependentSolution) {
                               {10.0, -2.5966, 9.6614}};
   std::size_t next = 0;
   double energy_after = 0.0;
-  for (State const& now : simulate(arm.model, x, GeneralizedAlpha{.rho_inf = 0.9}, {.until = 10.0, .step = 2.5e-3})) {
+  for (State const& now :
+       simulate(arm.model, x, GeneralisedAlpha{.rho_inf = 0.9}, {.end_time = 10.0, .step = 2.5e-3})) {
     if (next < rows.size() && now.t >= rows[next].t - 1e-9) {
       Vec3 const tip = position(arm.model, now, arm.arm.at(10.0));
       Instance const at{equals("t", now.t), 10.0};  // 0.5 % of L
@@ -71,7 +72,7 @@ TEST(SimoVuQuocArm, TenElementsAsInThePaperStayWithinFivePercentOfTheLength) {
   };
   std::vector<Row> const rows{{1.0, 9.9233, 0.2375}, {2.5, 8.7431, 4.7879}, {5.0, -2.6005, 9.5806}};
   std::size_t next = 0;
-  for (State const& now : simulate(arm.model, x, GeneralizedAlpha{.rho_inf = 0.9}, {.until = 5.0, .step = 5e-3}))
+  for (State const& now : simulate(arm.model, x, GeneralisedAlpha{.rho_inf = 0.9}, {.end_time = 5.0, .step = 5e-3}))
     if (next < rows.size() && now.t >= rows[next].t - 1e-9) {
       Vec3 const tip = position(arm.model, now, arm.arm.at(10.0));
       held_within(spectral("D1", "tip, angle driven in 5 s [m]", "planar Lrvf, 10 elements, h = 5e-3 s"),
@@ -91,7 +92,7 @@ TEST(SimoVuQuocArm, SlowlyDrivenConvergesToTheIndependentSolution) {
   for (Row const& row :
        {Row{0.5, 9.9886, 0.0425}, Row{1.0, 9.9233, 0.2375}, Row{2.5, 8.7431, 4.7879}, Row{5.0, -2.6005, 9.5806},
         Row{7.5, 0.1419, 10.0080}, Row{9.0, 5.1927, 8.2075}, Row{10.0, 4.6035, 8.7458}, Row{15.0, 2.9439, 9.5287}}) {
-    simulate(arm.model, x, GeneralizedAlpha{.rho_inf = 0.9}, {.until = row.t, .step = 2.5e-3}).run();
+    simulate(arm.model, x, GeneralisedAlpha{.rho_inf = 0.9}, {.end_time = row.t, .step = 2.5e-3}).run();
     held_within(spectral("D1", "tip, angle driven in 5 s [m]", forty),
                 (position(arm.model, x, arm.arm.at(10.0)) - Vec3(row.x, row.y, 0)).norm(), 0.05,
                 {equals("t", row.t), 10.0});
@@ -108,9 +109,9 @@ TEST(SimoVuQuocArm, TorqueDrivenKeepsTheImpulseExactly) {
   model.connect(Pin{}, model.ground().at({0, 0, 0}), arm.at(0.0), "pin");
   model.apply(PointMoment<Window>{.moment = {0, 0, 80}, .law = {.to = 2.5}}, arm.at(0.0), "torque");
   State x = model.reference_state();
-  GeneralizedAlpha const integrator{.rho_inf = 0.9};
+  GeneralisedAlpha const integrator{.rho_inf = 0.9};
   auto const turns = [&](double t, double tip_x, double tip_y) {
-    simulate(model, x, integrator, {.until = t, .step = 2.5e-3}).run();
+    simulate(model, x, integrator, {.end_time = t, .step = 2.5e-3}).run();
     Instance const at{equals("t", t), 10.0};
     held(spectral("D1", "x of the tip, driven by 80 N m [m]", forty), position(model, x, arm.at(10.0))[0], tip_x, 0.05,
          at);
@@ -151,7 +152,7 @@ void flying_rod(double EI, int elements, Vec2 const& loaded, Vec2 const& free, d
   model.apply(PointForce<Window>{.force = {8, 0, 0}, .law = {.to = 2.5}}, rod.at(0.0), "force");
   model.apply(PointMoment<Window>{.moment = {0, 0, -80}, .law = {.to = 2.5}}, rod.at(0.0), "moment");
   State x = model.reference_state();
-  simulate(model, x, GeneralizedAlpha{.rho_inf = 0.95}, {.until = 5.0, .step = 2.5e-3}).run();
+  simulate(model, x, GeneralisedAlpha{.rho_inf = 0.95}, {.end_time = 5.0, .step = 2.5e-3}).run();
   Momentum const p = momentum(model, x);
   std::string const mesh =
       "planar Lrvf, EI = " + std::to_string(int(EI)) + ", " + std::to_string(elements) + " elements, h = 2.5e-3 s";
@@ -185,7 +186,7 @@ void pendulum(Claim const& claim, B const& body, std::vector<std::array<double, 
   model.connect(Pin{}, model.ground().at({0, 0, 0}), rod.at(0.0), "pin");
   State x = model.reference_state();
   for (auto const& [t, tip_x, tip_y] : rows) {
-    simulate(model, x, GeneralizedAlpha{.rho_inf = 0.9}, {.until = t, .step = step}).run();
+    simulate(model, x, GeneralisedAlpha{.rho_inf = 0.9}, {.end_time = t, .step = step}).run();
     Vec3 const tip = position(model, x, rod.at(1.0));
     held_within(claim, (tip - Vec3(tip_x, tip_y, 0)).lpNorm<Eigen::Infinity>(), tolerance, {equals("t", t), 1.0});
   }

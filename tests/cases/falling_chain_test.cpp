@@ -6,10 +6,10 @@
 
 #include <polybody/bodies/ancf/ancf_cable.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/joints/policies/ancf_linear.hpp>
 #include <polybody/joints/policies/bushing.hpp>
-#include <polybody/joints/policies/recursive.hpp>
+#include <polybody/joints/policies/joint_coordinates.hpp>
 #include <polybody/joints/revolute.hpp>
 #include <polybody/run/observe.hpp>
 #include <polybody/run/simulate.hpp>
@@ -31,8 +31,8 @@ struct Kind {
   static Link link(Bar const& bar) { return Link::from(bar); }
 };
 template <>
-struct Kind<Recursive> : Kind<Constraint> {
-  using ModelType = Model<Bodies<Link>, Joints<Pin<Recursive>>>;
+struct Kind<JointCoordinates> : Kind<Constraint> {
+  using ModelType = Model<Bodies<Link>, Joints<Pin<JointCoordinates>>>;
 };
 template <>
 struct Kind<AncfLinear> {
@@ -93,8 +93,8 @@ struct Chain {
   /// Integrates for one second.
   void fall(double h = 2e-3) {
     System system(model);
-    for (State const& now : simulate(model, x, GeneralizedAlpha{}, {.until = 1.0, .step = h})) {
-      Violation const open = violation(system, now);
+    for (State const& now : simulate(model, x, GeneralisedAlpha{}, {.end_time = 1.0, .step = h})) {
+      Violation const open = largest_violation(system, now);
       worst.position = std::max(worst.position, open.position);
       worst.velocity = std::max(worst.velocity, open.velocity);
     }
@@ -108,7 +108,7 @@ struct Chain {
   }
   double opening() const {
     double sum = 0.0;
-    for (auto const& pin : pins) sum += gap(model, x, pin).squaredNorm();
+    for (auto const& pin : pins) sum += constraint_violation(model, x, pin).squaredNorm();
     return std::sqrt(sum);
   }
 };
@@ -135,7 +135,7 @@ TEST(FallingChain, OfTenLinksHasThePublishedTip) {
         (tip - exact).norm(), tolerance, {.scale = (exact - Vec3(length, 0, 0)).norm()});
   };
   expect("Constraint", fallen<Constraint>(10).tip(), 2e-5);
-  expect("Recursive", fallen<Recursive>(10).tip(), 2e-5);
+  expect("JointCoordinates", fallen<JointCoordinates>(10).tip(), 2e-5);
   expect("Penalty", fallen<Penalty>(10).tip(), 1e-4);
   expect("Bushing", fallen<Bushing>(10).tip(), 1e-4);
   expect("cables, AncfLinear", fallen<AncfLinear>(10).tip(), 5e-4);
@@ -157,7 +157,7 @@ TEST(FallingChain, HasOneTipByFivePolicies) {
                 (other - tip).norm(), part * way, {.scale = way});
   };
   expect("Constraint, h = 1 ms", fine.tip(), 5e-6);
-  expect("Recursive, h = 2 ms", fallen<Recursive>(64).tip(), 5e-6);
+  expect("JointCoordinates, h = 2 ms", fallen<JointCoordinates>(64).tip(), 5e-6);
   expect("Penalty, h = 2 ms", fallen<Penalty>(64).tip(), 1e-4);
   expect("Bushing, h = 2 ms", fallen<Bushing>(64).tip(), 1e-4);
   expect("cables, AncfLinear, h = 2 ms", fallen<AncfLinear>(64).tip(), 1e-4);
@@ -198,13 +198,13 @@ TEST(FallingChain, OfCablesIsThatOfSpringsAsStiff) {
 // A step of generalised-α satisfies the constraint equations of `Constraint`, not their rates. Joint coordinates
 // satisfy both.
 TEST(FallingChain, PinsWithoutSpringsStayClosed) {
-  Chain<Recursive> const joints = fallen<Recursive>(64);
+  Chain<JointCoordinates> const joints = fallen<JointCoordinates>(64);
   auto const expect = [](char const* what, char const* policy, double gap, double tolerance) {
     held_within({"thesis §3.5", what, By::closed_form, "pins stay closed", std::string("64 links, ") + policy}, gap,
                 tolerance, {.scale = length});
   };
-  expect("largest gap of a pin in 1 s [m]", "Recursive", joints.worst.position, 1e-12);
-  expect("largest rate of a gap in 1 s [m/s]", "Recursive", joints.worst.velocity, 1e-12);
+  expect("largest gap of a pin in 1 s [m]", "JointCoordinates", joints.worst.position, 1e-12);
+  expect("largest rate of a gap in 1 s [m/s]", "JointCoordinates", joints.worst.velocity, 1e-12);
   expect("largest gap of a pin in 1 s [m]", "cables, AncfLinear", fallen<AncfLinear>(64).worst.position, 1e-12);
   expect("largest gap of a pin in 1 s [m]", "Constraint", ideal().worst.position, 1e-10);
 }
@@ -214,7 +214,7 @@ TEST(FallingChain, PinsWithoutSpringsStayClosed) {
 // four between cables. Penalties and bushings have none.
 TEST(FallingChain, IsCountedAsInTheThesis) {
   constexpr Index n = 64;
-  auto const expect = [](char const* policy, Census const& c, Index coordinates, Index constraints, Index freedoms,
+  auto const expect = [](char const* policy, ProblemSize const& c, Index coordinates, Index constraints, Index freedoms,
                          Index rows) {
     auto const same = [&](char const* what, Index found, Index counted) {
       held({"thesis, ch. 3", what, By::closed_form, "counted as Table 3.4 does", std::string("64 links, ") + policy},
@@ -225,11 +225,11 @@ TEST(FallingChain, IsCountedAsInTheThesis) {
     same("degrees of freedom of the chain", c.degrees_of_freedom, freedoms);
     EXPECT_EQ(c.rows, rows);
   };
-  expect("Constraint", census(Chain<Constraint>(n).model), 7 * n, n + 5 * n, n, 5 * n);
-  expect("Penalty", census(Chain<Penalty>(n).model), 7 * n, n, 6 * n, 0);
-  expect("Bushing", census(Chain<Bushing>(n).model), 7 * n, n, 6 * n, 0);
-  expect("Recursive", census(Chain<Recursive>(n).model), n, 0, n, 0);
-  expect("cables, AncfLinear", census(Chain<AncfLinear>(n).model), 12 * n - 4 * n, 0, 8 * n, 0);
+  expect("Constraint", problem_size(Chain<Constraint>(n).model), 7 * n, n + 5 * n, n, 5 * n);
+  expect("Penalty", problem_size(Chain<Penalty>(n).model), 7 * n, n, 6 * n, 0);
+  expect("Bushing", problem_size(Chain<Bushing>(n).model), 7 * n, n, 6 * n, 0);
+  expect("JointCoordinates", problem_size(Chain<JointCoordinates>(n).model), n, 0, n, 0);
+  expect("cables, AncfLinear", problem_size(Chain<AncfLinear>(n).model), 12 * n - 4 * n, 0, 8 * n, 0);
 }
 
 }  // namespace falling_chain_test

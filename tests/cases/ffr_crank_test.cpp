@@ -4,12 +4,12 @@
 
 #include <polybody/bodies/ffr/planar_ffr.hpp>
 #include <polybody/bodies/rigid/planar_rigid.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/radau.hpp>
 #include <polybody/joints/planar/prismatic.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/policies/constraint.hpp>
-#include <polybody/joints/policies/recursive.hpp>
+#include <polybody/joints/policies/joint_coordinates.hpp>
 #include <polybody/joints/prescribed_angle.hpp>
 #include <polybody/run/observe.hpp>
 #include <polybody/run/simulate.hpp>
@@ -148,7 +148,7 @@ TEST(FlexibleSliderCrank, ReproducesTheTestSetWithItsOwnMatrices) {
        0.1697373328427860,
        {0.1893192899613509e-3, 0.2375751249879174e-4, -0.5323896770569702e-5, -0.8363313279112129e-5}}};
   std::size_t next = 0;
-  for (State const& now : simulate(model, x, GeneralizedAlpha{.rho_inf = 0.8}, {.until = 0.1, .step = 1e-5})) {
+  for (State const& now : simulate(model, x, GeneralisedAlpha{.rho_inf = 0.8}, {.end_time = 0.1, .step = 1e-5})) {
     if (next == rows.size() || std::abs(now.t - rows[next].t) > 1e-9) continue;
     Row const& row = rows[next++];
     auto const claim = [&](char const* what) {
@@ -176,7 +176,7 @@ TEST(FlexibleSliderCrank, ReproducesTheTestSetWithItsOwnMatrices) {
 template <class Pins>
 void expect_the_test_set_by(char const* pins) {
   SliderCrank<planar::Ffr, Pins> set;
-  simulate(set.model, set.x, Radau{.tolerance = 1e-12}, {.until = 0.1, .step = 1e-5}).run();
+  simulate(set.model, set.x, Radau{.tolerance = 1e-12}, {.end_time = 0.1, .step = 1e-5}).run();
   auto const check = [pins](std::string const& what, double value, double reference, double tolerance) {
     held({"D7", what + " at 0.1 s", By::published,
           "IVP Test Set crank, its own matrices: MEBDFI at a tolerance of 1e-14",
@@ -208,7 +208,9 @@ TEST(FlexibleSliderCrank, HasTheVelocitiesAccelerationsAndMultipliersOfTheTestSe
 }
 // Joint coordinates of the crank carry the rod's frame, and the rod's end, which stretches, carries the slider. Drive
 // and guide remain constraint equations.
-TEST(FlexibleSliderCrank, HasThemInJointCoordinates) { expect_the_test_set_by<Recursive>("joint coordinates, "); }
+TEST(FlexibleSliderCrank, HasThemInJointCoordinates) {
+  expect_the_test_set_by<JointCoordinates>("joint coordinates, ");
+}
 
 TEST(FlexibleSliderCrank, AsksForACouplingThatIsSkew) {
   planar::FfrIntegrals bad = rod_integrals();
@@ -245,7 +247,7 @@ TEST(FlexibleSliderCrank, HasAUsersRodThatAgreesWithItsEnergy) {
 // q₁ distinguishes this variant from the linear one, whose q₁ is 1.893e-4. φ₂ and x₃ hardly differ.
 TEST(FlexibleSliderCrank, ReproducesTheNonlinearVariantByAUsersRod) {
   SliderCrank<StiffeningRod> set;
-  simulate(set.model, set.x, Radau{.tolerance = 1e-12}, {.until = 0.1, .step = 1e-5}).run();
+  simulate(set.model, set.x, Radau{.tolerance = 1e-12}, {.end_time = 0.1, .step = 1e-5}).run();
   auto const check = [&](std::string const& what, Index at, double reference, double tolerance) {
     held({"D7", what + " at 0.1 s, nonlinear stiffness", By::independent, "the test set's equations by another solver",
           "planar Ffr, 4 modes, U₃ added by the user, Radau IIA, h = 1e-5 s"},

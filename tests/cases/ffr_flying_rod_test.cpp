@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <polybody/forces/point_load.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/run/energy.hpp>
 #include <polybody/run/observe.hpp>
 #include <polybody/run/simulate.hpp>
@@ -39,7 +39,9 @@ struct Flight {
     return Ffr(s, free_interface_modes(s, modes),
                {.placement = Placement::planar(6.0, 0.0, std::atan2(8.0, -6.0)), .stiffening = stiffening});
   }
-  void fly_until(double t) { simulate(model, x, GeneralizedAlpha{.rho_inf = 0.9}, {.until = t, .step = 2e-3}).run(); }
+  void fly_until(double t) {
+    simulate(model, x, GeneralisedAlpha{.rho_inf = 0.9}, {.end_time = t, .step = 2e-3}).run();
+  }
   /// Larger position error of the two ends [m].
   double miss(Vec3 const& loaded, Vec3 const& free) const {
     return std::max((position(model, x, body.at(0.0)) - loaded).norm(),

@@ -7,7 +7,7 @@
 #include <polybody/forces/point_load.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/weld.hpp>
-#include <polybody/run/points.hpp>
+#include <polybody/run/marker_frames.hpp>
 #include <polybody/statics/equilibrium.hpp>
 #include <polybody/stress/section.hpp>
 

@@ -5,7 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <polybody/bodies/ffr/ffr.hpp>
 #include <polybody/bodies/ffr/planar_ffr.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/prescribed_angle.hpp>
@@ -27,8 +27,8 @@ Bar kane_bar() {
 planar::Ffr kane_arm(Index modes, bool stiffening, FfrTerms terms = {}) {
   Structure const s = planar::Ffr::structure_in_plane(kane_bar(), 16);
   ReferenceConditions frame = ReferenceConditions::clamped();
-  frame.in_plane();
-  return {s, held_modes(s, modes, frame), {.terms = terms, .stiffening = stiffening}};
+  frame.restrict_to_plane();
+  return {s, fixed_interface_modes(s, modes, frame), {.terms = terms, .stiffening = stiffening}};
 }
 
 struct SpinningArm {
@@ -50,8 +50,8 @@ struct SpinningArm {
     double const psi = law(now.t).value, c = std::cos(psi), s = std::sin(psi);
     return {c * r[0] + s * r[1] - 10.0, c * r[1] - s * r[0]};
   }
-  auto run(double until) {
-    return simulate(model, x, GeneralizedAlpha{.rho_inf = 0.8}, {.until = until, .step = 5e-3});
+  auto run(double end_time) {
+    return simulate(model, x, GeneralisedAlpha{.rho_inf = 0.8}, {.end_time = end_time, .step = 5e-3});
   }
 };
 
@@ -98,7 +98,7 @@ TEST(SpinUp, StiffenedFrameFollowsTheIndependentSolution) {
 TEST(SpinUp, AxialCoordinatesGiveTheSteadyStretch) {
   Structure const s = planar::Ffr::structure_in_plane(kane_bar(), 4);
   ReferenceConditions frame = ReferenceConditions::clamped();
-  SpinningArm arm({s, nodal_coordinates(s, frame.in_plane()), {.stiffening = true}});
+  SpinningArm arm({s, nodal_coordinates(s, frame.restrict_to_plane()), {.stiffening = true}});
   double sum = 0.0;
   int count = 0;
   for (State const& now : arm.run(18.0))
@@ -137,12 +137,12 @@ TEST(SpinUp, WithoutCouplingTheArmDoesNotBend) {
 /// with the body's own matrices, dimensionless.
 VecX spinning_frequencies(Ffr const& body, double omega) {
   Index const n = body.deformations();
-  VecX q(body.coordinates()), v = VecX::Zero(body.speeds());
+  VecX q(body.coordinates()), v = VecX::Zero(body.velocities());
   body.reference({q.data(), std::size_t(q.size())});
   v[5] = omega;
   // about the stretch at which centrifugal and elastic forces are in balance
   std::span<double const> const qs(q.data(), std::size_t(q.size())), vs(v.data(), std::size_t(v.size()));
-  VecX f(body.speeds());
+  VecX f(body.velocities());
   MatX k, g, m;
   for (int i = 0; i < 3; ++i) {
     body.force<double>(0, qs, vs, f);
@@ -207,7 +207,7 @@ TEST(RotatingCantilever, EachTermDoesWhatItIsSaidToDo) {
   // S̃₁: the gyroscopic part of the tangent
   for (bool const coriolis : {true, false}) {
     Ffr const body = unit_blade({.coriolis = coriolis}, false);
-    VecX q(body.coordinates()), v = VecX::Zero(body.speeds());
+    VecX q(body.coordinates()), v = VecX::Zero(body.velocities());
     body.reference({q.data(), std::size_t(q.size())});
     v[5] = omega;
     MatX g;

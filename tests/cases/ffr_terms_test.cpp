@@ -55,7 +55,7 @@ B body(FfrTerms const& terms, bool stiffening = true) {
 /// Moving and deformed body: coordinates, velocities and accelerations.
 template <class B>
 struct Moved {
-  static constexpr int frame = B::world == World::plane ? 3 : 7, speeds = B::world == World::plane ? 3 : 6;
+  static constexpr int frame = B::world == World::plane ? 3 : 7, velocities = B::world == World::plane ? 3 : 6;
   VecX q, v, a;
 
   explicit Moved(unsigned seed) {
@@ -63,7 +63,7 @@ struct Moved {
     std::mt19937 engine(seed);
     auto const draw = [&](double size) { return std::uniform_real_distribution<>(-size, size)(engine); };
     q = VecX::Zero(b.coordinates());
-    v = VecX::Zero(b.speeds());
+    v = VecX::Zero(b.velocities());
     a = v;
     for (int i = 0; i < frame; ++i) q[i] = draw(1.0);
     if (frame == 7) q.segment<4>(3).normalize();
@@ -80,7 +80,7 @@ VecX inertia_forces(FfrTerms const& terms, Moved<B> const& at) {
   B const b = body<B>(terms);
   MatX m;
   b.mass(0, span(at.q), m);
-  VecX f(b.speeds()), ma = f, still = VecX::Zero(b.speeds()), elastic = f;
+  VecX f(b.velocities()), ma = f, still = VecX::Zero(b.velocities()), elastic = f;
   b.template force<double>(0, span(at.q), span(at.v), f);
   b.template force<double>(0, span(at.q), span(still), elastic);
   b.template inertia<double>(0, span(at.q), span(at.a), ma);
@@ -187,7 +187,7 @@ TEST(FfrTerms, LeaveOutTheSameInThePlane) {
     Moved<planar::Ffr> const flat(3);
     planar::Ffr const b = body<planar::Ffr>({});
     Ffr const in_space(Ffr::from(bar, 2, {.stiffening = true}).structure(),
-                       nodal_coordinates(structure_of(bar, 2), ReferenceConditions::clamped().in_plane()),
+                       nodal_coordinates(structure_of(bar, 2), ReferenceConditions::clamped().restrict_to_plane()),
                        {.terms = without(s.of), .stiffening = true});
     Index const n = b.deformations();
     ASSERT_EQ(in_space.deformations(), n);
@@ -204,9 +204,9 @@ TEST(FfrTerms, LeaveOutTheSameInThePlane) {
     in_space.force<double>(0, span(q), span(v), f);
     in_space.force<double>(0, span(q), span(still), elastic);
     in_space.inertia<double>(0, span(q), span(a), ma);
-    VecX const whole = ma - (f - elastic), rows = inertia_forces<planar::Ffr>(without(s.of), flat);
+    VecX const full = ma - (f - elastic), rows = inertia_forces<planar::Ffr>(without(s.of), flat);
     VecX expected(3 + n);
-    expected << whole.head<2>(), whole[5], whole.tail(n);
+    expected << full.head<2>(), full[5], full.tail(n);
     EXPECT_LT((rows - expected).norm(), 1e-11 * rows.norm()) << s.name;
   }
 }
@@ -219,7 +219,7 @@ void expect_tangents() {
     for (FfrTerms const& terms : variants) {
       B const b = body<B>(terms, stiffening);
       Moved<B> const at(7);
-      Index const n = b.speeds();
+      Index const n = b.velocities();
       MatX k, expected(n, n);
       double const ck = 0.3, cd = 0.7, h = 1e-6;
       b.tangent(0, span(at.q), span(at.v), ck, cd, k);
@@ -260,7 +260,7 @@ double defect(FfrTerms const& terms) {
   x.v[13] = 0.3;
   System system(model);
   double const start = energy(system, x).total();
-  simulate<BlockLu>(model, x, RungeKutta4<>{}, {.until = 0.2, .step = 1e-5}).run();
+  simulate<BlockLu>(model, x, RungeKutta4<>{}, {.end_time = 0.2, .step = 1e-5}).run();
   return energy(system, x).total() / start - 1.0;
 }
 TEST(FfrTerms, WhatFollowsFromALagrangianConservesEnergy) {
@@ -297,8 +297,8 @@ TEST(FfrTerms, WithoutCouplingTheFrameIsARigidBody) {
   x.v.segment<3>(3) = omega;
   y.v.head<3>() = omega.cross(centre);
   y.v.segment<3>(3) = omega;
-  simulate(model, x, RungeKutta4<>{}, {.until = 0.5, .step = 1e-5}).run();
-  simulate(twin, y, RungeKutta4<>{}, {.until = 0.5, .step = 1e-5}).run();
+  simulate(model, x, RungeKutta4<>{}, {.end_time = 0.5, .step = 1e-5}).run();
+  simulate(twin, y, RungeKutta4<>{}, {.end_time = 0.5, .step = 1e-5}).run();
   EXPECT_LT((position(model, x, free.at(0.4)) - position(twin, y, rigid.at(Vec3(0.4, 0, 0) - centre))).norm(), 1e-9);
   EXPECT_EQ(x.q.tail(i.size()).norm(), 0.0);
 }

@@ -7,7 +7,7 @@
 #include <polybody/bodies/ancf/ancf_beam.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/forces/point_load.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/weld.hpp>
 #include <polybody/run/energy.hpp>
@@ -25,7 +25,7 @@ namespace flying_rod_test {
 struct Triangle {
   double peak = 2.5;  ///< [s]
   Motion operator()(double t) const { return {std::max(0.0, 1.0 - std::abs(t / peak - 1.0)), 0.0, 0.0}; }
-  std::vector<double> corners() const { return {0.0, peak, 2.0 * peak}; }
+  std::vector<double> breakpoints() const { return {0.0, peak, 2.0 * peak}; }
 };
 
 /// Rod from (6, 0, 0) to (0, 8, 0). The section's inertia about its own x is the sum of the two others, 20.
@@ -64,7 +64,9 @@ struct Flight {
     }
     x = model.reference_state();
   }
-  void fly_until(double t) { simulate(model, x, GeneralizedAlpha{.rho_inf = 0.9}, {.until = t, .step = step}).run(); }
+  void fly_until(double t) {
+    simulate(model, x, GeneralisedAlpha{.rho_inf = 0.9}, {.end_time = t, .step = step}).run();
+  }
   Vec6 ends() const {
     Vec6 out;
     out << position(model, x, body.at(0.0)), position(model, x, body.at(10.0));

@@ -8,7 +8,7 @@
 #include <polybody/bodies/ffr/planar_ffr.hpp>
 #include <polybody/bodies/lrvf/lrvf.hpp>
 #include <polybody/forces/point_load.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/planar/weld.hpp>
 #include <polybody/joints/policies/constraint.hpp>
@@ -32,11 +32,11 @@ constexpr bool plane = B::world == World::plane;
 /// joint hangs it.
 template <class B>
 using Clamp = Joint<
-    std::conditional_t<plane<B>, planar::Weld, std::conditional_t<B::observes == Observes::frame, Weld, Revolute>>,
+    std::conditional_t<plane<B>, planar::Weld, std::conditional_t<B::observes == MarkerKind::frame, Weld, Revolute>>,
     Constraint>;
 template <class B>
 using Pin = Joint<std::conditional_t<plane<B>, planar::Revolute,
-                                     std::conditional_t<B::observes == Observes::frame, Revolute, Spherical>>,
+                                     std::conditional_t<B::observes == MarkerKind::frame, Revolute, Spherical>>,
                   Constraint>;
 
 /// Model type for both cases, which is compiled once.
@@ -121,7 +121,7 @@ TYPED_TEST(EveryFormulation, StiffPendulumSwingsAlike) {
   double const tolerance = std::same_as<TypeParam, AncfCable<>> ? 1e-3 : 1e-4;
   std::size_t next = 0;
   State x = model.reference_state();
-  for (State const& now : simulate(model, x, GeneralizedAlpha{.rho_inf = 0.8}, {.until = 1.0, .step = 1e-3})) {
+  for (State const& now : simulate(model, x, GeneralisedAlpha{.rho_inf = 0.8}, {.end_time = 1.0, .step = 1e-3})) {
     if (next == rows.size() || std::abs(now.t - rows[next].t) > 1e-9) continue;
     Vec3 const tip = position(model, now, rod.at(1.0));
     held_within(spectral("D6c", name_of<TypeParam> + ", 6 elements, h = 1e-3 s"),
@@ -160,7 +160,7 @@ TYPED_TEST(EveryFormulation, FlexiblePendulumSwingsAlike) {
                                  {3.0, {-0.997753, -0.063940, 0}}};
   State x = model.reference_state();
   for (Row const& row : cable ? without : with_shear) {
-    simulate(model, x, GeneralizedAlpha{.rho_inf = 0.9}, {.until = row.t, .step = 1e-3}).run();
+    simulate(model, x, GeneralisedAlpha{.rho_inf = 0.9}, {.end_time = row.t, .step = 1e-3}).run();
     held_within(spectral("D6b", name_of<B> + ", " + std::to_string(elements) + " elements, h = 1e-3 s"),
                 (position(model, x, rod.at(1.0)) - row.tip).norm(), tolerance, {equals("t", row.t), 1.0});
   }

@@ -8,7 +8,7 @@
 #include <polybody/bodies/rigid/rigid_euler_parameters.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
-#include <polybody/joints/policies/recursive.hpp>
+#include <polybody/joints/policies/joint_coordinates.hpp>
 #include <polybody/joints/spherical.hpp>
 #include <polybody/joints/universal.hpp>
 #include <polybody/run/observe.hpp>
@@ -47,7 +47,7 @@ struct Pendulum {
     Vec3 const spin_a(1, 2, 0), spin_b(2, -1, 3);  // rotation of a about both arms of the cross
     model.set_velocity(x, a, Vec3::Zero(), spin_a);
     model.set_velocity(x, b, (spin_a - spin_b).cross(elbow), spin_b);
-    simulate(model, x, RungeKutta4<Projection>{}, {.until = 1.0, .step = h}).run();
+    simulate(model, x, RungeKutta4<Projection>{}, {.end_time = 1.0, .step = h}).run();
   }
   template <class B>
   Frame<double> of(B const& body) const {
@@ -58,10 +58,10 @@ struct Pendulum {
   VecX joint_force(BodyHandle<Rigid<Rotation>> const& body, VecX const& lambda) const {
     System system(model);
     system.evaluate(x.q, x.v, x.t);
-    VecX with(model.speeds()), without(model.speeds());
+    VecX with(model.velocities()), without(model.velocities());
     system.residual(x.a, lambda, with);
     system.residual(x.a, VecX::Zero(model.rows()), without);
-    return (without - with).segment(model.entry(body).v0, body.body().speeds());
+    return (without - with).segment(model.entry(body).v0, body.body().velocities());
   }
   /// Multipliers of one joint, zero elsewhere.
   template <class J>
@@ -75,17 +75,17 @@ struct Pendulum {
   VecX applied_force() const {
     System system(model);
     system.evaluate(x.q, x.v, x.t);
-    VecX with(model.speeds()), without(model.speeds());
+    VecX with(model.velocities()), without(model.velocities());
     system.residual(x.a, x.lambda, with);
     system.load_factor = 0.0;
     system.residual(x.a, x.lambda, without);
-    return (without - with).segment(model.entry(b).v0 + 3, b.body().speeds() - 3);
+    return (without - with).segment(model.entry(b).v0 + 3, b.body().velocities() - 3);
   }
 };
 
 using Parameters = Pendulum<EulerParameters, Constraint>;
 using Cartesian = Pendulum<UnitQuaternion, Constraint>;
-using Relative = Pendulum<UnitQuaternion, Recursive>;
+using Relative = Pendulum<UnitQuaternion, JointCoordinates>;
 
 /// The three models after one second.
 struct Runs {
@@ -246,12 +246,12 @@ TEST(EulerParameterMoments, OfALoadHaveItsPower) {
               {.scale = std::abs(power)});
 
   System system = stepped_system(r.model);
-  State const narrow = reduce(system, r.x);
-  system.evaluate(narrow.q, narrow.v, narrow.t);
-  VecX with(system.speeds()), without(system.speeds());
-  system.residual(narrow.a, narrow.lambda, with);
+  State const reduced = reduce(system, r.x);
+  system.evaluate(reduced.q, reduced.v, reduced.t);
+  VecX with(system.velocities()), without(system.velocities());
+  system.residual(reduced.a, reduced.lambda, with);
   system.load_factor = 0.0;
-  system.residual(narrow.a, narrow.lambda, without);
+  system.residual(reduced.a, reduced.lambda, without);
   VecX const five = without - with;
   ASSERT_EQ(five.size(), 2 + 3);
   Frame<double> const a = r.of(r.a), b = r.of(r.b);
@@ -265,28 +265,28 @@ TEST(EulerParameterMoments, OfALoadHaveItsPower) {
               {"ball", about_cross.norm()});
   double const falling = weight.dot(2.0 * a.v + b.v);
   held_within({"thesis §3.4", "power of a load [W]", By::closed_form, "M · Ω + Σ m g · v", "joint coordinates"},
-              std::abs(five.dot(narrow.v) - power - falling), 1e-6, {.scale = std::abs(power)});
+              std::abs(five.dot(reduced.v) - power - falling), 1e-6, {.scale = std::abs(power)});
 }
 
 // Counts as in Table 3.4 of Wallin 2016: seven coordinates and one constraint per body, four constraint equations of
 // the cross, three of the ball. The joint coordinates of a ball are four parameters with their norm.
 TEST(EulerParameterMoments, AreCountedAsInTheThesis) {
   auto const& [p, c, r] = runs();
-  auto const expect = [](char const* formulation, Census const& census, Index coordinates, Index constraints,
-                         Index speeds, Index rows) {
+  auto const expect = [](char const* formulation, ProblemSize const& problem_size, Index coordinates, Index constraints,
+                         Index velocities, Index rows) {
     auto const same = [&](char const* what, Index found, Index counted) {
       held({"thesis §3.4", what, By::closed_form, "counted as Table 3.4 does", formulation}, double(found),
            double(counted), 0.0);
     };
-    same("coordinates", census.coordinates, coordinates);
-    same("constraints", census.constraints, constraints);
-    EXPECT_EQ(census.speeds, speeds);
-    EXPECT_EQ(census.rows, rows);
-    same("degrees of freedom", census.degrees_of_freedom, 5);  // two of the cross, three of the ball
+    same("coordinates", problem_size.coordinates, coordinates);
+    same("constraints", problem_size.constraints, constraints);
+    EXPECT_EQ(problem_size.velocities, velocities);
+    EXPECT_EQ(problem_size.rows, rows);
+    same("degrees of freedom", problem_size.degrees_of_freedom, 5);  // two of the cross, three of the ball
   };
-  expect("Rigid<EulerParameters>", census(p.model), 2 * 7, 2 + 4 + 3, 2 * 7, 2 + 4 + 3);
-  expect("Rigid<UnitQuaternion>", census(c.model), 2 * 7, 2 + 4 + 3, 2 * 6, 4 + 3);
-  expect("joint coordinates", census(r.model), 2 + 4, 1, 5, 0);
+  expect("Rigid<EulerParameters>", problem_size(p.model), 2 * 7, 2 + 4 + 3, 2 * 7, 2 + 4 + 3);
+  expect("Rigid<UnitQuaternion>", problem_size(c.model), 2 * 7, 2 + 4 + 3, 2 * 6, 4 + 3);
+  expect("joint coordinates", problem_size(r.model), 2 + 4, 1, 5, 0);
 }
 
 }  // namespace generalised_moments_test

@@ -4,11 +4,11 @@
 
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/forces/spring_damper.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/hht_alpha.hpp>
 #include <polybody/integrators/radau.hpp>
 #include <polybody/joints/joint.hpp>
-#include <polybody/joints/policies/recursive.hpp>
+#include <polybody/joints/policies/joint_coordinates.hpp>
 #include <polybody/joints/prismatic.hpp>
 #include <polybody/joints/revolute.hpp>
 #include <polybody/run/energy.hpp>
@@ -79,10 +79,10 @@ struct Governor {
   }
 };
 
-struct Published {
+struct MarkerKinematics {
   double t, height, angle, turn;
 };
-constexpr Published r5[] = {
+constexpr MarkerKinematics r5[] = {
     {0.1, 0.5238364756, 0.4961738691, 0.622106681}, {0.2, 0.5850798118, 0.4277204683, 1.213937177},
     {0.5, 0.7432494248, 0.2594913815, 2.807679488}, {1, 0.5014209224, 0.5218333016, 5.586346966},
     {2, 0.5059092943, 0.5166637974, 11.173267076},  {3, 0.5132460783, 0.5082455270, 16.761308972},
@@ -98,8 +98,8 @@ void expect_r5(I const& integrator, double step, double tolerance, double moment
     return Claim{"R5", what, By::independent, "ordinary solver in the three freedoms", formulation};
   };
   double drift = 0.0;
-  for (Published const& p : r5) {
-    simulate(governor.model, governor.x, integrator, {.until = p.t, .step = step}).run();
+  for (MarkerKinematics const& p : r5) {
+    simulate(governor.model, governor.x, integrator, {.end_time = p.t, .step = step}).run();
     Instance const at{equals("t", p.t)};
     held(claim("height of the slider [m]"), governor.height(), p.height, tolerance, at);
     for (std::size_t i : {0u, 1u}) held(claim("angle of both rods [rad]"), governor.angle(i), p.angle, tolerance, at);
@@ -114,16 +114,16 @@ void expect_r5(I const& integrator, double step, double tolerance, double moment
 
 // The published tolerance of s is 1e-4 at h = 1e-3.
 TEST(Governor, MovesAsPublishedWithAlphaMethods) {
-  expect_r5(GeneralizedAlpha{}, 1e-3, 1e-4, 1e-5, "generalised-α, h = 1e-3 s");
+  expect_r5(GeneralisedAlpha{}, 1e-3, 1e-4, 1e-5, "generalised-α, h = 1e-3 s");
   expect_r5(HhtAlpha{}, 1e-3, 1e-4, 1e-5, "HHT-α, h = 1e-3 s");
 }
 TEST(Governor, MovesAsPublishedToTheDigitsWithRadau) { expect_r5(Radau{}, 5e-3, 1e-8, 1e-9, "Radau IIA, h = 5e-3 s"); }
 TEST(Governor, MovesAsPublishedInJointCoordinates) {
-  expect_r5<Recursive>(GeneralizedAlpha{}, 1e-3, 1e-4, 1e-5, "joint coordinates, generalised-α, h = 1e-3 s");
+  expect_r5<JointCoordinates>(GeneralisedAlpha{}, 1e-3, 1e-4, 1e-5, "joint coordinates, generalised-α, h = 1e-3 s");
 }
 // Pins and slide have deflections F/k, some 200 N/1e9 N/m.
 TEST(Governor, MovesAsPublishedOnPenalties) {
-  expect_r5(GeneralizedAlpha{}, 1e-3, 1e-4, 2e-5, "penalties of 1e9 N/m, generalised-α, h = 1e-3 s",
+  expect_r5(GeneralisedAlpha{}, 1e-3, 1e-4, 2e-5, "penalties of 1e9 N/m, generalised-α, h = 1e-3 s",
             Penalty{.stiffness = 1e9, .damping = 1e4});
 }
 

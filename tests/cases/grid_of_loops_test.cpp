@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/radau.hpp>
-#include <polybody/joints/policies/recursive.hpp>
+#include <polybody/joints/policies/joint_coordinates.hpp>
 #include <polybody/run/energy.hpp>
 #include <polybody/run/simulate.hpp>
 
@@ -105,7 +105,7 @@ void follows(I const& integrator, double step, double early, double late, std::s
   held(reduced("energy at the start [J]", formulation), before, -320.0461532, 1e-7);
   for (Row const& row : table) {
     double const tolerance = row.t > 4.0 ? late : early;
-    simulate(grid.model, grid.x, integrator, {.until = row.t, .step = step}).run();
+    simulate(grid.model, grid.x, integrator, {.end_time = row.t, .step = step}).run();
     Vec<double, 5> const found = grid.angles();
     double worst = 0.0;
     for (int i = 0; i < 5; ++i) worst = std::max(worst, std::abs(found[i] - row.angles[i]));
@@ -119,10 +119,11 @@ void follows(I const& integrator, double step, double early, double late, std::s
 
 // The bars of every row of the grid are collinear when they pass 90°. The lowest row is the first, at 0.76 s.
 TEST(GridOfLoops, FallsAsFiveAnglesDo) {
-  follows<Constraint, Constraint>(GeneralizedAlpha{.rho_inf = 0.9}, 1e-3, 1.6e-4, 2e-3,
+  follows<Constraint, Constraint>(GeneralisedAlpha{.rho_inf = 0.9}, 1e-3, 1.6e-4, 2e-3,
                                   "planar::Rigid, Constraint, generalised-α, h = 1 ms");
-  follows<Recursive, Constraint>(GeneralizedAlpha{.rho_inf = 0.9}, 1e-3, 1.6e-4, 2e-3,
-                                 "planar::Rigid, joint coordinates, loops by Constraint, generalised-α, h = 1 ms");
+  follows<JointCoordinates, Constraint>(
+      GeneralisedAlpha{.rho_inf = 0.9}, 1e-3, 1.6e-4, 2e-3,
+      "planar::Rigid, joint coordinates, loops by Constraint, generalised-α, h = 1 ms");
 }
 TEST(GridOfLoops, FallsAsFiveAnglesDoByRadau) {
   follows<Constraint, Constraint>(Radau{}, 2e-3, 1e-8, 3e-8, "planar::Rigid, Constraint, Radau IIA, h = 2 ms");

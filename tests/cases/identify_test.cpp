@@ -43,9 +43,9 @@ TEST(IdentifyLeastSquares, FindsNistsCertifiedNumbers) {
 }
 
 template <class B>
-void expect_slopes_of_runs(Index elements) {
-  Candidate const arm = candidate<B>("arm", {.until = 0.2}, elements);
-  MatX const exact = arm.slopes(truth);
+void expect_derivatives_of_runs(Index elements) {
+  Candidate const arm = candidate<B>("arm", {.end_time = 0.2}, elements);
+  MatX const exact = arm.derivatives(truth);
   double const rounding = 1e-12 * std::sqrt(double(exact.rows()));  // of the runs in the finite differences [m]
   for (std::size_t j = 0; j < truth.size(); ++j) {
     VecX sum = VecX::Zero(exact.rows());
@@ -59,13 +59,13 @@ void expect_slopes_of_runs(Index elements) {
   }
 }
 TEST(Identify, DerivativesAreThoseOfRuns) {
-  expect_slopes_of_runs<planar::Ffr>(2);
-  expect_slopes_of_runs<planar::Lrvf>(4);
+  expect_derivatives_of_runs<planar::Ffr>(2);
+  expect_derivatives_of_runs<planar::Lrvf>(4);
 }
 
 // A formulation identifies the exact parameters from its own record without noise.
 TEST(Identify, FindsTheNumbersOfItsOwnRecord) {
-  Candidate const arm = candidate<planar::AncfCable<>>("cable", {.until = 0.4, .step = 5e-3}, 2);
+  Candidate const arm = candidate<planar::AncfCable<>>("cable", {.end_time = 0.4, .step = 5e-3}, 2);
   Estimate const found = estimate(arm, arm.tip(truth), {3000.0, 8.0, 37.5, 0.16});
   EXPECT_TRUE(found.converged);
   for (std::size_t j = 0; j < truth.size(); ++j) EXPECT_NEAR(found.value[j], truth[j], 1e-6 * truth[j]) << names[j];
@@ -73,7 +73,7 @@ TEST(Identify, FindsTheNumbersOfItsOwnRecord) {
 
 // For d = p̂ − p with its covariance C, dᵀC⁻¹d has the mean 4 and the variance 8 if C is correct.
 TEST(Identify, IntervalsAreTheScatterOfManyRecords) {
-  Candidate const arm = candidate<planar::Rigid>("rigid", {.until = 0.8, .step = 5e-3});
+  Candidate const arm = candidate<planar::Rigid>("rigid", {.end_time = 0.8, .step = 5e-3});
   VecX const record = arm.tip(truth);
   int const records = 60;
   double mean = 0.0;
@@ -93,7 +93,7 @@ TEST(Identify, IntervalsAreTheScatterOfManyRecords) {
 
 // A rigid arm adds the arm's own compliance to the mount. A flexible arm does not add it.
 TEST(Identify, ARigidArmTakesItsOwnComplianceForTheMounts) {
-  Experiment const experiment{.until = 1.0, .step = 4e-3, .sampling = 2e-2};
+  Experiment const experiment{.end_time = 1.0, .step = 4e-3, .sampling = 2e-2};
   VecX const record = with_noise(exact_record(experiment, truth), 5e-4, 7);
   Estimate const rigid = estimate(candidate<planar::Rigid>("rigid", experiment), record, truth),
                  flexible = estimate(candidate<planar::Lrvf>("Lrvf", experiment, 10), record, truth);

@@ -1,11 +1,11 @@
-// Beam with interpolated increments compared with a beam with `Objective`. The first quantity is the remaining tip
-// displacement after a closed load path [after Romero 2004]. The second is the difference in motion as steps and
+// Beam with interpolated increments compared with a beam with `RelativeRotation`. The first quantity is the remaining
+// tip displacement after a closed load path [after Romero 2004]. The second is the difference in motion as steps and
 // elements become finer.
 
 #include <polybody/bodies/lrvf/incremental_interpolation.hpp>
 #include <polybody/bodies/lrvf/lrvf.hpp>
 #include <polybody/forces/point_load.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/weld.hpp>
@@ -30,7 +30,7 @@ struct Wave {
 };
 using Clamp = Joint<Weld, Constraint>;
 /// Model type for both bodies, which is compiled once.
-using Beams = Model<Bodies<Lrvf<Objective>, Lrvf<Incremental>>, Joints<Clamp>, Forces<PointMoment<Wave>>>;
+using Beams = Model<Bodies<Lrvf<RelativeRotation>, Lrvf<Incremental>>, Joints<Clamp>, Forces<PointMoment<Wave>>>;
 
 Bar bar() {
   Bar b = spatial_lrvf_bar();
@@ -84,7 +84,7 @@ Left after_a_round(Index elements, int steps) {
 // nodes, so the beam stays bent. Finer steps do not reduce this error. Finer elements reduce it with l²: a rotation
 // across the curvature has an error of φ²/8.
 TEST(IncrementalRotations, ARoundOfTheLoadLeavesTheTipOff) {
-  Left const objective = after_a_round<Objective>(8, 32);
+  Left const objective = after_a_round<RelativeRotation>(8, 32);
   EXPECT_GT(objective.farthest, 0.9);
   EXPECT_LT(objective.tip, 1e-13);
   Left const coarse = after_a_round<Incremental>(4, 32), middle = after_a_round<Incremental>(8, 32),
@@ -115,19 +115,20 @@ Flight flown(Index elements, double h, Integrator const& integrator) {
   beam.load({0, 20, 0}, length, pulse);
   beam.load({10, 0, 15}, 0.0, [](double t) { return pulse(t - 0.1); });
   beam.x = beam.model.reference_state();
-  simulate(beam.model, beam.x, integrator, {.until = 0.35, .step = h}).run();
+  simulate(beam.model, beam.x, integrator, {.end_time = 0.35, .step = h}).run();
   double const before = beam.total_energy();
-  simulate(beam.model, beam.x, integrator, {.until = 1.0, .step = h}).run();
+  simulate(beam.model, beam.x, integrator, {.end_time = 1.0, .step = h}).run();
   return {beam.tip(), beam.total_energy() / before - 1.0};
 }
 
-GeneralizedAlpha const conserving{.rho_inf = 1.0};
+GeneralisedAlpha const conserving{.rho_inf = 1.0};
 
-// The difference to `Objective` is not due to the steps. It remains while both converge. It is the difference between
-// two elements, and small compared with the effect of finer elements.
+// The difference to `RelativeRotation` is not due to the steps. It remains while both converge. It is the difference
+// between two elements, and small compared with the effect of finer elements.
 TEST(IncrementalRotations, InMotionItConvergesBesideObjective) {
   auto const off = [](Index elements, double h) {
-    return (flown<Incremental>(elements, h, conserving).tip - flown<Objective>(elements, h, conserving).tip).norm();
+    return (flown<Incremental>(elements, h, conserving).tip - flown<RelativeRotation>(elements, h, conserving).tip)
+        .norm();
   };
   Vec3 const a = flown<Incremental>(4, 1e-3, conserving).tip, b = flown<Incremental>(4, 5e-4, conserving).tip,
              c = flown<Incremental>(4, 2.5e-4, conserving).tip;
@@ -135,22 +136,24 @@ TEST(IncrementalRotations, InMotionItConvergesBesideObjective) {
   EXPECT_NEAR(off(4, 2.5e-4), 6.4e-5, 1e-6);
   EXPECT_NEAR(off(4, 5e-4) / off(4, 2.5e-4), 1.0, 0.02);
   EXPECT_NEAR(off(16, 5e-4), 1.26e-5, 2e-7);
-  double const by_mesh = (flown<Objective>(4, 5e-4, conserving).tip - flown<Objective>(8, 5e-4, conserving).tip).norm();
+  double const by_mesh =
+      (flown<RelativeRotation>(4, 5e-4, conserving).tip - flown<RelativeRotation>(8, 5e-4, conserving).tip).norm();
   EXPECT_LT(off(4, 5e-4), 0.01 * by_mesh);
 }
 
 // Forces are gradients of the energy along the rotations of the nodes. The energy is conserved to the order with
 // which a step follows these rotations. The error of the interpolation is of order two. It is hidden in the error of
-// `GeneralizedAlpha`. `RungeKutta4` loses its fourth order.
+// `GeneralisedAlpha`. `RungeKutta4` loses its fourth order.
 TEST(IncrementalRotations, EnergyStaysToTheSecondOrder) {
   auto const ratio = [](auto const* policy, double h, auto const& integrator) {
     using I = std::remove_cvref_t<decltype(*policy)>;
     return flown<I>(4, h, integrator).drift / flown<I>(4, 0.5 * h, integrator).drift;
   };
   Incremental const* const increments = nullptr;
-  Objective const* const objective = nullptr;
+  RelativeRotation const* const objective = nullptr;
   EXPECT_NEAR(ratio(increments, 1e-3, conserving), 4.0, 0.1);
-  EXPECT_NEAR(flown<Incremental>(4, 5e-4, conserving).drift / flown<Objective>(4, 5e-4, conserving).drift, 1.0, 0.01);
+  EXPECT_NEAR(flown<Incremental>(4, 5e-4, conserving).drift / flown<RelativeRotation>(4, 5e-4, conserving).drift, 1.0,
+              0.01);
   RungeKutta4<Projection> const fourth{};
   EXPECT_NEAR(ratio(increments, 5e-4, fourth), 4.0, 0.2);
   EXPECT_GT(ratio(objective, 5e-4, fourth), 15.0);
@@ -163,11 +166,11 @@ TEST(IncrementalRotations, InThePlaneTheRunIsThatOfObjective) {
     Beam<Lrvf<I>> beam(4);
     beam.load({0, 0, 30}, length, pulse);
     beam.x = beam.model.reference_state();
-    simulate(beam.model, beam.x, conserving, {.until = 0.5, .step = 1e-3}).run();
+    simulate(beam.model, beam.x, conserving, {.end_time = 0.5, .step = 1e-3}).run();
     return beam.tip();
   };
   Incremental const* const increments = nullptr;
-  Objective const* const objective = nullptr;
+  RelativeRotation const* const objective = nullptr;
   EXPECT_LT((tip(increments) - tip(objective)).norm(), 1e-9);
   EXPECT_GT((tip(objective) - Vec3(length, 0, 0)).norm(), 0.1);
 }

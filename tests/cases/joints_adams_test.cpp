@@ -56,7 +56,7 @@ struct Swinging {
 
   void expect_the_swings(Vec3 const& out, char const* formulation) {
     for (Swing const& s : swings) {
-      simulate(model, x, precise(), {.until = s.t, .step = 0.01}).run();
+      simulate(model, x, precise(), {.end_time = s.t, .step = 0.01}).run();
       Vec3 const at = position(model, x, bar.at(Vec3(0, 0, 0)));
       held_within({"J2", "middle of the bar [m]", By::independent, "ordinary solver of order eight", formulation},
                   (at - s.out * out - Vec3(0, 0, s.up)).norm(), 1e-8, {equals("t", s.t), 2.0});
@@ -130,7 +130,7 @@ TEST(CardanJoint, HasTheRatioOfSpeeds) {
   double least = 2.0, most = 0.0;
   for (int i = 0; i <= 8; ++i) {
     double const phi = i * std::numbers::pi / 4.0;
-    if (i > 0) simulate(model, x, precise(), {.until = phi, .step = 0.01}).run();
+    if (i > 0) simulate(model, x, precise(), {.end_time = phi, .step = 0.01}).run();
     double const ratio = frame(model, x, second.at(Vec3(0, 0, 0))).w.dot(n);
     held({"J4", "ratio of the speeds of two shafts on a cross", By::closed_form, "cos β/(1 − sin²β cos²φ)",
           "Universal, Dormand–Prince"},

@@ -4,12 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/rigid/rigid.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/cylindrical.hpp>
 #include <polybody/joints/distance.hpp>
-#include <polybody/joints/plane_on_plane.hpp>
-#include <polybody/joints/prescribed_slide.hpp>
+#include <polybody/joints/planar_joint.hpp>
+#include <polybody/joints/prescribed_translation.hpp>
 #include <polybody/joints/prismatic.hpp>
 #include <polybody/joints/screw.hpp>
 #include <polybody/joints/spherical.hpp>
@@ -26,14 +26,16 @@ namespace joints_exact_test {
 
 template <JointGeometry G>
 using Ideal = Joint<G, Constraint>;
-using Push = Ideal<PrescribedSlide<SmoothTable>>;
-using Space = Model<Bodies<Rigid<>>, Joints<Ideal<Cylindrical>, Ideal<Distance>, Ideal<PlaneOnPlane>, Ideal<Prismatic>,
+using Push = Ideal<PrescribedTranslation<SmoothTable>>;
+using Space = Model<Bodies<Rigid<>>, Joints<Ideal<Cylindrical>, Ideal<Distance>, Ideal<PlanarJoint>, Ideal<Prismatic>,
                                             Ideal<Screw>, Ideal<Spherical>, Push>>;
 
 constexpr double g = 9.81;
 
 DormandPrince<Projection> precise() { return {.relative_tolerance = 1e-11, .absolute_tolerance = 1e-11}; }
-void run_to(Space const& model, State& x, double t) { simulate(model, x, precise(), {.until = t, .step = 0.01}).run(); }
+void run_to(Space const& model, State& x, double t) {
+  simulate(model, x, precise(), {.end_time = t, .step = 0.01}).run();
+}
 
 Mat3 diagonal(double x, double y, double z) { return Vec3(x, y, z).asDiagonal(); }
 
@@ -79,7 +81,7 @@ TEST(Screw, LowersANutByImplicitSteps) {
   model.connect(Ideal<Screw>{{.pitch = 0.1, .axis = Vec3::UnitZ()}, {}}, model.ground().at({0, 0, 0}),
                 nut.at(Vec3(0, 0, 0)), "thread");
   State x = model.reference_state();
-  simulate(model, x, GeneralizedAlpha{}, {.until = 3.0, .step = 0.01}).run();
+  simulate(model, x, GeneralisedAlpha{}, {.end_time = 3.0, .step = 0.01}).run();
   held({"closed forms", "place of a nut on a screw at 3 s [m]", By::closed_form, "−½ s̈ t², s̈ = g m/(m + I/p²)",
         "Screw, generalised-α, h = 0.01 s"},
        position(model, x, nut.at(Vec3(0, 0, 0)))[2], -0.5 * g * 2.0 / 7.0 * 9.0, 1e-8);
@@ -108,23 +110,23 @@ TEST(Cylindrical, SwingsAsARevoluteAndDriftsEvenly) {
 
 // Block on a plane inclined by asin 0.6 about y. It moves along a parabola in the plane and rotates at a constant
 // rate.
-TEST(PlaneOnPlane, LetsABlockFlyAParabola) {
+TEST(PlanarJoint, LetsABlockFlyAParabola) {
   Vec3 const n(0.6, 0, 0.8), down(0.8, 0, -0.6), start(0.2, 0, -0.15);
   Space model{Gravity{0, 0, -g}};
   auto const block = model.add(Rigid<>(1.5, diagonal(0.2, 0.3, 0.4)), "block");
   auto const ground = model.ground().at(start);
-  auto const plane = model.connect(Ideal<PlaneOnPlane>{{.normal = n}, {}}, ground, block.at(Vec3(0, 0, 0)), "plane");
+  auto const plane = model.connect(Ideal<PlanarJoint>{{.normal = n}, {}}, ground, block.at(Vec3(0, 0, 0)), "plane");
   State x = model.reference_state();
   Vec3 const v = 0.5 * Vec3::UnitY() - 2.0 * down;
   model.set_velocity(x, block, v, 3.0 * n);
   for (double const t : {0.4, 2.0}) {
     run_to(model, x, t);
     Frame<double> const at = frame(model, x, block.at(Vec3(0, 0, 0)));
-    within("closed forms", "place of a block on an inclined plane [m]", "v t + ½ g sin α t²", "PlaneOnPlane",
+    within("closed forms", "place of a block on an inclined plane [m]", "v t + ½ g sin α t²", "PlanarJoint",
            (at.r - v * t - 0.3 * g * t * t * down).norm(), 1e-8, t, 1.0);
-    within("closed forms", "turn of a block on an inclined plane", "exp ωt", "PlaneOnPlane",
+    within("closed forms", "turn of a block on an inclined plane", "exp ωt", "PlanarJoint",
            (at.A - exp_so3<double>(3.0 * t * n)).norm(), 1e-8, t, 1.0);
-    within("closed forms", "force of an inclined plane on a block [N]", "m g cos α", "PlaneOnPlane",
+    within("closed forms", "force of an inclined plane on a block [N]", "m g cos α", "PlanarJoint",
            (reaction(model, x, plane).f - 1.5 * 0.8 * g * n).norm(), 1e-8, t, 1.5 * 0.8 * g);
   }
 }
@@ -200,7 +202,7 @@ TEST(Distance, SwingsAsABallOnABallJoint) {
 // Block pushed up a slope of sin = 0.6 along a table from rest to rest. The pushing force is m (s̈ + 0.6 g), the
 // force of the rail 0.8 m g across. One metre in two seconds with both ends clamped is the cubic s = 3 x² − 2 x³, x =
 // t/2.
-TEST(PrescribedSlide, PushesABlockUpASlope) {
+TEST(PrescribedTranslation, PushesABlockUpASlope) {
   Vec3 const up(0.8, 0, 0.6), across(-0.6, 0, 0.8);
   double const m = 1.5;
   SmoothTable const table({{0.0, 0.0}, {2.0, 1.0}}, {.first_rate = 0.0, .last_rate = 0.0});
@@ -213,9 +215,9 @@ TEST(PrescribedSlide, PushesABlockUpASlope) {
   for (double const t : {0.4, 1.5, 3.0}) {
     run_to(model, x, t);
     double const y = std::min(1.0, 0.5 * t), acceleration = t < 2.0 ? 1.5 - 3.0 * y : 0.0;
-    within("closed forms", "place of a block pushed up a slope [m]", "3 x² − 2 x³, x = t/2", "PrescribedSlide",
+    within("closed forms", "place of a block pushed up a slope [m]", "3 x² − 2 x³, x = t/2", "PrescribedTranslation",
            (position(model, x, block.at(Vec3(0, 0, 0))) - (3.0 - 2.0 * y) * y * y * up).norm(), 1e-9, t, 1.0);
-    within("closed forms", "push on a block up a slope [N]", "m (s̈ + g sin α)", "PrescribedSlide",
+    within("closed forms", "push on a block up a slope [N]", "m (s̈ + g sin α)", "PrescribedTranslation",
            (reaction(model, x, push).f - m * (acceleration + 0.6 * g) * up).norm(), 1e-8, t, m * g);
     within("closed forms", "force of the rail of a block up a slope [N]", "m g cos α", "Prismatic",
            (reaction(model, x, rail).f - m * 0.8 * g * across).norm(), 1e-8, t, m * g);

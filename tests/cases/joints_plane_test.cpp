@@ -11,7 +11,7 @@
 #include <polybody/joints/point_in_plane.hpp>
 #include <polybody/joints/prescribed_distance.hpp>
 #include <polybody/joints/prescribed_rate.hpp>
-#include <polybody/joints/prescribed_slide.hpp>
+#include <polybody/joints/prescribed_translation.hpp>
 #include <polybody/run/observe.hpp>
 #include <polybody/run/simulate.hpp>
 
@@ -29,13 +29,15 @@ using Pin = Ideal<planar::Revolute>;
 using Rod = Ideal<Distance>;
 using Ram = Ideal<PrescribedDistance<SmoothRamp>>;
 using Motor = Ideal<PrescribedRate<SmoothRamp>>;
-using Hand = Ideal<PrescribedSlide<SmoothRamp>>;
+using Hand = Ideal<PrescribedTranslation<SmoothRamp>>;
 using Plane = Model<Bodies<planar::Rigid>, Joints<Pin, Rod, Ram, Motor, Ideal<Gear>, Ideal<PointInPlane>, Hand>>;
 
 constexpr double g = 9.81;
 
 DormandPrince<Projection> precise() { return {.relative_tolerance = 1e-11, .absolute_tolerance = 1e-11}; }
-void run_to(Plane const& model, State& x, double t) { simulate(model, x, precise(), {.until = t, .step = 0.01}).run(); }
+void run_to(Plane const& model, State& x, double t) {
+  simulate(model, x, precise(), {.end_time = t, .step = 0.01}).run();
+}
 
 /// Checks for a number and a vector in closed form.
 void exact(char const* case_id, char const* what, char const* source, char const* joint, double value, double reference,
@@ -72,7 +74,7 @@ TEST(DistanceInThePlane, OfPointsThatCoincideDoesNotStart) {
   auto const mass = model.add(planar::Rigid(2.0, 0.1), "mass");
   model.connect(Rod{{.length = 1.0}, {}}, model.ground().at({0, 0, 0}), mass.at({0, 0}), "rod");
   State x = model.reference_state();
-  EXPECT_TRUE(has(message_of<InconsistentStart>([&] { run_to(model, x, 1.0); }), "rod"));
+  EXPECT_TRUE(has(message_of<InconsistentInitialConditions>([&] { run_to(model, x, 1.0); }), "rod"));
   assemble(model, x);
   EXPECT_NEAR(position(model, x, mass.at({0, 0})).norm(), 1.0, 1e-12);
   auto const ground = model.ground().at({0, 0, 0});
@@ -180,12 +182,12 @@ TEST(PointInPlane, HoldsALadderToWallAndFloor) {
   run_to(model, x, 2.0);
   within("closed forms", "head of a ladder pushed to the wall [m]", "√(2² − 1.2²)", "PointInPlane",
          (position(model, x, head) - Vec3(0, 1.6, 0)).norm(), 1e-9, 2.0, 1.6);
-  within("closed forms", "foot of a ladder pushed to the wall [m]", "1.2", "PrescribedSlide",
+  within("closed forms", "foot of a ladder pushed to the wall [m]", "1.2", "PrescribedTranslation",
          (position(model, x, foot) - Vec3(1.2, 0, 0)).norm(), 1e-9, 2.0, 1.2);
   // at rest: the floor carries m g, and the force of the hand against the wall is m g · 0.6/1.6
   within("closed forms", "force of the floor on a ladder [N]", "m g", "PointInPlane",
          (reaction(model, x, floor).f - Vec3(0, 4.0 * g, 0)).norm(), 1e-7, 2.0, 4.0 * g);
-  within("closed forms", "force of the hand on a ladder [N]", "m g · 0.6/1.6", "PrescribedSlide",
+  within("closed forms", "force of the hand on a ladder [N]", "m g · 0.6/1.6", "PrescribedTranslation",
          (reaction(model, x, hand).f + Vec3(4.0 * g * 0.375, 0, 0)).norm(), 1e-7, 2.0, 4.0 * g * 0.375);
 }
 

@@ -8,7 +8,7 @@
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/forces/axial_spring.hpp>
 #include <polybody/forces/spring_damper.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/policies/bushing.hpp>
 #include <polybody/joints/prismatic.hpp>
@@ -43,7 +43,7 @@ struct Case {
   template <class I>
   Vec3 after_five_seconds(I const& integrator, double step) const {
     State x = model.reference_state();
-    simulate(model, x, integrator, {.until = 5.0, .step = step}).run();
+    simulate(model, x, integrator, {.end_time = 5.0, .step = step}).run();
     return position(model, x, body.at(Vec3(0, 0, 0)));
   }
 };
@@ -53,7 +53,7 @@ DormandPrince<Projection> precise() { return {.relative_tolerance = 1e-11, .abso
 /// Compares with the printed digits and with an exact solution. The position tolerance of Chrono's test is 1e-3.
 void expect(Case const& c, char const* which, std::optional<Vec3> const& printed, Vec3 const& exact,
             char const* solution, By by) {
-  Vec3 const fine = c.after_five_seconds(precise(), 0.01), coarse = c.after_five_seconds(GeneralizedAlpha{}, 5e-4);
+  Vec3 const fine = c.after_five_seconds(precise(), 0.01), coarse = c.after_five_seconds(GeneralisedAlpha{}, 5e-4);
   std::string const what = std::string(which) + ": place at 5 s [m]";
   Instance const at{.scale = 1.0};
   held_within({"J2", what, by, solution, "Dormand–Prince"}, (fine - exact).norm(), 1e-8, at);

@@ -8,7 +8,7 @@
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/planar/prismatic.hpp>
 #include <polybody/joints/planar/revolute.hpp>
-#include <polybody/joints/policies/recursive.hpp>
+#include <polybody/joints/policies/joint_coordinates.hpp>
 #include <polybody/run/energy.hpp>
 #include <polybody/run/observe.hpp>
 #include <polybody/run/simulate.hpp>
@@ -68,7 +68,7 @@ template <class Policy, class I>
 void follows(I const& integrator, double tolerance, std::string const& formulation) {
   CartPole<Policy> c;
   for (Row const& row : table) {
-    simulate(c.model, c.x, integrator, {.until = row.t, .step = 1e-4}).run();
+    simulate(c.model, c.x, integrator, {.end_time = row.t, .step = 1e-4}).run();
     Instance const at{equals("t", row.t), 1.0};
     held(quadrature("angle of the pole [rad]", formulation), c.angle(), row.angle, tolerance, at);
     held(quadrature("place of the cart [m]", formulation), c.place(), row.place, tolerance, at);
@@ -87,8 +87,8 @@ TEST(LightCartPole, MovesAsTheQuadratureSays) {
   double const rtol = 1e-10, atol = 1e-12;
   follows<Constraint>(DormandPrince<Projection>{.relative_tolerance = rtol, .absolute_tolerance = atol}, 1e-6,
                       "planar::Rigid, Constraint, Dormand–Prince, tolerance 1e-10");
-  follows<Recursive>(DormandPrince<>{.relative_tolerance = rtol, .absolute_tolerance = atol}, 1e-6,
-                     "planar::Rigid, joint coordinates, Dormand–Prince, tolerance 1e-10");
+  follows<JointCoordinates>(DormandPrince<>{.relative_tolerance = rtol, .absolute_tolerance = atol}, 1e-6,
+                            "planar::Rigid, joint coordinates, Dormand–Prince, tolerance 1e-10");
   follows<Constraint>(AdamsBashforthMoulton<Projection>{.relative_tolerance = 1e-12, .absolute_tolerance = atol}, 1e-6,
                       "planar::Rigid, Constraint, Adams–Bashforth–Moulton, tolerance 1e-12");
 }

@@ -26,7 +26,7 @@ TEST(LighterLinkMethod, FindsSvanbergsCantilever) {
     ValueAndSlopes f{-1.0, {}};
     for (std::size_t i = 0; i < 5; ++i) {
       f.value += share[i] / std::pow(x[i], 3);
-      f.slopes.push_back(-3.0 * share[i] / std::pow(x[i], 4));
+      f.derivatives.push_back(-3.0 * share[i] / std::pow(x[i], 4));
     }
     return f;
   };
@@ -79,7 +79,7 @@ TEST(LighterLink, StressOfARigidLinkIsThatOfItsInertia) {
 // In slow motion the stresses of a flexible link are those of a rigid one.
 template <class B>
 void expect_stress_of_inertia(Index elements) {
-  Task const task{.turn = {1.5, 0.5, 2.0}, .until = 4.5, .step = 1e-2};
+  Task const task{.turn = {1.5, 0.5, 2.0}, .end_time = 4.5, .step = 1e-2};
   std::vector<double> const heights{0.03, 0.022, 0.018, 0.012};
   MatX const rigid = stresses_of(Link<planar::Rigid>{task}, heights), s = stresses_of(Link<B>{task, elements}, heights);
   EXPECT_LT((s - rigid).cwiseAbs().maxCoeff(), 0.02 * rigid.cwiseAbs().maxCoeff());
@@ -91,8 +91,8 @@ TEST(LighterLink, TurnedSlowlyAllBearTheSame) {
 }
 
 template <class B>
-void expect_slopes_of_runs(Index elements) {
-  Task const task{.turn = {0.5 * std::numbers::pi, 0.1, 0.2}, .until = 0.35, .step = 5e-3, .sections = 2};
+void expect_derivatives_of_runs(Index elements) {
+  Task const task{.turn = {0.5 * std::numbers::pi, 0.1, 0.2}, .end_time = 0.35, .step = 5e-3, .sections = 2};
   Aggregate const aggregate{50.0};
   Candidate const link = candidate<B>("link", task, aggregate, elements);
   std::vector<double> const heights{0.024, 0.016};
@@ -106,13 +106,13 @@ void expect_slopes_of_runs(Index elements) {
       h[j] += FourPoints::places[k] * e;
       sum += FourPoints::weights[k] / e * aggregate(link.stresses(h));
     }
-    EXPECT_NEAR(loaded.slopes[Index(j)], sum, 1e-6 * std::abs(sum));
+    EXPECT_NEAR(loaded.derivatives[Index(j)], sum, 1e-6 * std::abs(sum));
   }
 }
 TEST(LighterLink, SlopesOfTheAggregateAreThoseOfRuns) {
-  expect_slopes_of_runs<planar::Rigid>(1);
-  expect_slopes_of_runs<planar::Ffr>(1);
-  expect_slopes_of_runs<planar::Lrvf>(2);
+  expect_derivatives_of_runs<planar::Rigid>(1);
+  expect_derivatives_of_runs<planar::Ffr>(1);
+  expect_derivatives_of_runs<planar::Lrvf>(2);
 }
 
 TEST(LighterLink, TheAggregateIsALittleAboveTheLargest) {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <polybody/integrators/coordinate_partitioning.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/hht_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/run/energy.hpp>
@@ -30,16 +30,17 @@ template <class I>
 Turned turn(Corner const& e, I const& integrator, double step) {
   Plane bars(e.n);
   double const before = energy(bars.model, bars.x).total();
-  simulate(bars.model, bars.x, integrator, {.until = e.t, .step = step}).run();
+  simulate(bars.model, bars.x, integrator, {.end_time = e.t, .step = step}).run();
   return {(bars.corner() - Vec3(e.x, e.y, 0)).norm(), std::abs(energy(bars.model, bars.x).total() - before)};
 }
 Corner corner(int n, double t) {
-  return *std::find_if(std::begin(corners), std::end(corners), [&](Corner const& c) { return c.n == n && c.t == t; });
+  return *std::find_if(std::begin(breakpoints), std::end(breakpoints),
+                       [&](Corner const& c) { return c.n == n && c.t == t; });
 }
 Claim closed_form(char const* what, std::string const& formulation) {
   return {"R2", what, By::closed_form, "θ¨ = A sin θ of the parallelogram, elliptic integrals", formulation};
 }
-GeneralizedAlpha const light{.rho_inf = 0.95}, stabilised{.rho_inf = 0.95, .stabilised = true};
+GeneralisedAlpha const light{.rho_inf = 0.95}, stabilised{.rho_inf = 0.95, .stabilised = true};
 
 // R2: the motion passes ten times in 10 s through the flat configuration, in which the constraint Jacobian loses one
 // rank per window. Exudyn's error with two windows at this step is 5e-5. The benchmark allows 0.1 J. The remaining
@@ -56,7 +57,7 @@ TEST(FourBar, PassesItsSingularPosition) {
       held_within({"R2", "energy gained or lost [J]", By::closed_form, "invariant", formulation}, r.energy, 1e-3,
                   {.scale = 1.0});
     };
-    expect("generalised-α", turn(end, GeneralizedAlpha{}, 1e-3));
+    expect("generalised-α", turn(end, GeneralisedAlpha{}, 1e-3));
     expect("generalised-α, ρ∞ = 0.95", turn(end, light, 1e-3));
     if (n < 40) expect("stabilised", turn(end, stabilised, 1e-3));  // forty windows do not run with every linear solver
     expect("HHT", turn(end, HhtAlpha{}, 1e-3));
@@ -69,7 +70,7 @@ TEST(FourBar, PassesItsSingularPosition) {
 // The benchmark's forty windows to its 10 s. The error of order two falls to a quarter with half of the step.
 TEST(FourBar, TurnsFortyWindowsForTenSeconds) {
   auto const expect = [](char const* formulation, double step, double tolerance) {
-    Turned const r = turn(corner(40, 10), GeneralizedAlpha{}, step);
+    Turned const r = turn(corner(40, 10), GeneralisedAlpha{}, step);
     held_within(closed_form("corner of 40 four-bars after 10 s [m]", formulation), r.error, tolerance, {.scale = 1.0});
     held_within({"R2", "energy gained or lost in 10 s [J]", By::closed_form, "invariant", formulation}, r.energy, 1e-3,
                 {.scale = 1.0});
@@ -88,14 +89,14 @@ TEST(FourBar, PassesItsSingularPositionInSmallSteps) {
     held_within({"R2", "energy gained or lost [J]", By::closed_form, "invariant", formulation}, r.energy, 1e-5,
                 {.scale = 1.0});
   };
-  expect("generalised-α", turn(corner(2, 10), GeneralizedAlpha{}, 1.25e-4));
+  expect("generalised-α", turn(corner(2, 10), GeneralisedAlpha{}, 1.25e-4));
   expect("generalised-α, ρ∞ = 0.95", turn(corner(2, 10), light, 1.25e-4));
   expect("stabilised", turn(corner(2, 10), stabilised, 1.25e-4));
   expect("HHT", turn(corner(2, 10), HhtAlpha{}, 1.25e-4));
   held_within(closed_form("corner after 4 s [m]", "N = 1, generalised-α, h = 6.25e-5 s"),
-              turn(corner(1, 4), GeneralizedAlpha{}, 6.25e-5).error, 1e-6, {.scale = 1.0});
+              turn(corner(1, 4), GeneralisedAlpha{}, 6.25e-5).error, 1e-6, {.scale = 1.0});
   held_within(closed_form("corner after 1 s [m]", "N = 40, generalised-α, h = 2.5e-4 s"),
-              turn(corner(40, 1), GeneralizedAlpha{}, 2.5e-4).error, 3e-6, {.scale = 1.0});
+              turn(corner(40, 1), GeneralisedAlpha{}, 2.5e-4).error, 3e-6, {.scale = 1.0});
 }
 
 // In space the four parallel pins have three redundant constraint equations. The solver chooses the joint that is
@@ -103,16 +104,16 @@ TEST(FourBar, PassesItsSingularPositionInSmallSteps) {
 TEST(RedundantFourBar, InSpaceMovesAsInThePlane) {
   Plane plane(1);
   Space space(1);
-  GeneralizedAlpha const integrator{.tolerance = 1e-10};
-  auto run = simulate(space.model, space.x, integrator, {.until = 0.6, .step = 1e-3});
+  GeneralisedAlpha const integrator{.tolerance = 1e-10};
+  auto run = simulate(space.model, space.x, integrator, {.end_time = 0.6, .step = 1e-3});
   ASSERT_EQ(run.report().redundant.size(), 1u);
-  auto planar = simulate(plane.model, plane.x, integrator, {.until = 0.6, .step = 1e-3});
+  auto planar = simulate(plane.model, plane.x, integrator, {.end_time = 0.6, .step = 1e-3});
   while (!run.done()) {
     run.advance();
     planar.advance();
     System system(space.model);
     system.evaluate(space.x.q, space.x.v, space.x.t);
-    VecX r = VecX::Zero(space.model.speeds());
+    VecX r = VecX::Zero(space.model.velocities());
     system.residual(space.x.a, space.x.lambda, r);
     ASSERT_LT(r.norm(), 1e-6);  // M a + Gᵀλ = f
     ASSERT_TRUE(space.x.lambda.allFinite());
@@ -125,8 +126,8 @@ TEST(RedundantFourBar, ExplicitMethodsTakeItToo) {
   auto const expect_same = [](auto const& integrator) {
     Plane plane(1);
     Space space(1);
-    simulate(plane.model, plane.x, integrator, {.until = 0.5, .step = 5e-3}).run();
-    simulate(space.model, space.x, integrator, {.until = 0.5, .step = 5e-3}).run();
+    simulate(plane.model, plane.x, integrator, {.end_time = 0.5, .step = 5e-3}).run();
+    simulate(space.model, space.x, integrator, {.end_time = 0.5, .step = 5e-3}).run();
     EXPECT_LT((space.corner() - plane.corner()).norm(), 1e-9);
   };
   expect_same(RungeKutta4<Projection>{});
@@ -137,7 +138,7 @@ TEST(RedundantFourBar, ExplicitMethodsTakeItToo) {
 // constraint Jacobian falls.
 TEST(FourBar, PartitionedCoordinatesPassItsSingularPosition) {
   Plane bars(1);
-  simulate(bars.model, bars.x, RungeKutta4<CoordinatePartitioning>{}, {.until = 1.0, .step = 1e-3}).run();
+  simulate(bars.model, bars.x, RungeKutta4<CoordinatePartitioning>{}, {.end_time = 1.0, .step = 1e-3}).run();
   char const* const formulation = "N = 1, Runge–Kutta 4 by coordinate partitioning, h = 1e-3 s";
   held(closed_form("x of the corner after 1 s [m]", formulation), bars.corner()[0], -0.2607126751836504, 1e-6);
   held(closed_form("y of the corner after 1 s [m]", formulation), bars.corner()[1], -0.9654164391590732, 1e-6);
@@ -147,7 +148,7 @@ void bricard(double h, std::vector<std::pair<double, Vec3>> const& exact) {
   Bricard<> b(h);
   double const start = energy(b.model, b.x).total();
   for (auto const& [t, p3] : exact) {
-    auto run = simulate(b.model, b.x, GeneralizedAlpha{.rho_inf = 0.9}, {.until = t, .step = 1e-3});
+    auto run = simulate(b.model, b.x, GeneralisedAlpha{.rho_inf = 0.9}, {.end_time = t, .step = 1e-3});
     run.run();
     EXPECT_EQ(run.report().redundant.size(), 1u) << t;
     std::string const formulation =
@@ -191,7 +192,7 @@ TEST(RedundantJoint, IsNamedAndHarmless) {
     for (char const* name : pins)
       model.connect(Pin{{.axis = Vec3::UnitZ()}, {}}, model.ground().at({-1, 0, 0}), rod.at(Vec3(-1, 0, 0)), name);
     State x = model.reference_state();
-    auto run = simulate(model, x, GeneralizedAlpha{}, {.until = 0.5, .step = 0.01});
+    auto run = simulate(model, x, GeneralisedAlpha{}, {.end_time = 0.5, .step = 0.01});
     run.run();
     redundant = run.report().redundant;
     return x.q;

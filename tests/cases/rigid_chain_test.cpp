@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/run/simulate.hpp>
 
@@ -36,7 +36,7 @@ void expect_angles(C const& chain, I const& integrator, double step, std::vector
                    std::string const& formulation) {
   State x = chain.model.reference_state();
   for (Angles const& e : exact) {
-    simulate(chain.model, x, integrator, {.until = e.t, .step = step}).run();
+    simulate(chain.model, x, integrator, {.end_time = e.t, .step = step}).run();
     Instance const at{equals("t", e.t), 1.0};
     held_within(ordinary_solver("angles of both links [rad]", formulation),
                 std::abs(wrapped(chain.angle(x, 0) - e.first)), tolerance, at);
@@ -62,7 +62,7 @@ TEST(DoublePendulum, OfPointMassesFollowsThePublishedAngles) {
   Plane const chain(2, point_link());
   expect_angles(chain, precise(), 0.01, point_masses, 1e-6, "(a) two point masses, Dormand–Prince");
   State x = chain.model.reference_state();
-  simulate(chain.model, x, precise(), {.until = 1.0, .step = 0.01}).run();
+  simulate(chain.model, x, precise(), {.end_time = 1.0, .step = 0.01}).run();
   held_within(ordinary_solver("place of the second mass at t = 1 s [m]", "(a) two point masses, Dormand–Prince"),
               (chain.tip(x) - Vec3(-1.444818849943, -1.321794461381, 0.0)).norm(), 1e-8, {.scale = 2.0});
 }
@@ -78,7 +78,7 @@ TEST(DoublePendulum, OfBarsConvergesAtSecondOrderWithGeneralizedAlpha) {
   std::vector<double> errors;
   for (double const h : {4e-3, 2e-3, 1e-3}) {
     State x = chain.model.reference_state();
-    simulate(chain.model, x, GeneralizedAlpha{}, {.until = 1.0, .step = h}).run();
+    simulate(chain.model, x, GeneralisedAlpha{}, {.end_time = 1.0, .step = h}).run();
     errors.push_back(std::hypot(chain.angle(x, 0) - bars[1].first, chain.angle(x, 1) - bars[1].second));
   }
   EXPECT_LT(errors[2], 1e-4);
@@ -89,13 +89,13 @@ TEST(DoublePendulum, OfBarsConvergesAtSecondOrderWithGeneralizedAlpha) {
 TEST(DoublePendulum, OfThePeerKeepsItsTolerances) {
   Space const chain(2, chrono_link, 10.0);
   expect_angles(chain, precise(), 0.01, chrono, 1e-7, "(c) the peer's two links in space, Dormand–Prince");
-  expect_angles(chain, GeneralizedAlpha{}, 2e-4, {chrono[0], chrono[1]}, 1e-5,
+  expect_angles(chain, GeneralisedAlpha{}, 2e-4, {chrono[0], chrono[1]}, 1e-5,
                 "(c) the peer's two links in space, generalised-α, h = 2e-4 s");
 
   State x = chain.model.reference_state();
-  simulate(chain.model, x, GeneralizedAlpha{}, {.until = 1.0, .step = 2e-4}).run();
+  simulate(chain.model, x, GeneralisedAlpha{}, {.end_time = 1.0, .step = 2e-4}).run();
   System system(chain.model);
-  EXPECT_LT(violation(system, x).position, 1e-6);
+  EXPECT_LT(largest_violation(system, x).position, 1e-6);
   char const* const peer = "(c) the peer's two links in space, generalised-α, h = 2e-4 s";
   held(ordinary_solver("rates of both links at t = 1 s [rad/s]", peer), x.v[5], -1.9495974609, 1e-3);
   held(ordinary_solver("rates of both links at t = 1 s [rad/s]", peer), x.v[11], -3.9480427098, 1e-3);
@@ -112,13 +112,14 @@ std::vector<Tip> const tips{{3, 0.25, 0.880767899903, -0.295360886340},   {3, 0.
                             {10, 0.75, -0.908445211876, -0.383978760999}, {10, 1.0, -0.894316852361, -0.146565064747}};
 
 template <class C, class I>
-void expect_tips(int links, I const& integrator, double step, double until, double tolerance, char const* formulation) {
+void expect_tips(int links, I const& integrator, double step, double end_time, double tolerance,
+                 char const* formulation) {
   C const chain(links, bar_link(1.0 / links, 1.0 / links));
   State x = chain.model.reference_state();
   int compared = 0;
   for (Tip const& e : tips) {
-    if (e.links != links || e.t > until) continue;
-    simulate(chain.model, x, integrator, {.until = e.t, .step = step}).run();
+    if (e.links != links || e.t > end_time) continue;
+    simulate(chain.model, x, integrator, {.end_time = e.t, .step = step}).run();
     held_within(ordinary_solver("tip of N bars [m]", "(d) N = " + std::to_string(links) + formulation),
                 (chain.tip(x) - Vec3(e.x, e.y, 0.0)).norm(), tolerance, {equals("t", e.t), 0.9});
     ++compared;
@@ -137,8 +138,8 @@ TEST(LongPendulum, TipIsThereInSpaceToo) {
 
 TEST(LongPendulum, TipIsThereWithImplicitSteps) {
   for (int const links : {3, 4, 10})
-    expect_tips<Plane>(links, GeneralizedAlpha{}, 2e-4, 0.5, 1e-5, " in the plane, generalised-α, h = 2e-4 s");
-  expect_tips<Space>(10, GeneralizedAlpha{}, 2e-4, 0.5, 1e-5, " in space, generalised-α, h = 2e-4 s");
+    expect_tips<Plane>(links, GeneralisedAlpha{}, 2e-4, 0.5, 1e-5, " in the plane, generalised-α, h = 2e-4 s");
+  expect_tips<Space>(10, GeneralisedAlpha{}, 2e-4, 0.5, 1e-5, " in space, generalised-α, h = 2e-4 s");
 }
 
 }  // namespace rigid_chain_test

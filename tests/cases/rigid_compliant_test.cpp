@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/joints/policies/bushing.hpp>
 #include <polybody/run/energy.hpp>
 #include <polybody/run/simulate.hpp>
@@ -44,7 +44,7 @@ void expect_swings(double tolerance) {
   Link const heavy{.length = 1.0, .mass = 2.0, .inertia = 2.0 * 0.16, .com = 0.8};
   Chain<InPlane<Policy>> const ball(1, heavy, g, -0.5 * std::numbers::pi, stiff<Policy>(1e9));
   State x = ball.model.reference_state();
-  simulate(ball.model, x, GeneralizedAlpha{}, {.until = 2.0, .step = 2.5e-4}).run();
+  simulate(ball.model, x, GeneralisedAlpha{}, {.end_time = 2.0, .step = 2.5e-4}).run();
   std::string const formulation = on<Policy>(1e9, "2.5e-4");
   held_within(
       {"R1", "point at 1 m of a ball at 2 s [m]", By::closed_form, "elliptic functions, ideal joint", formulation},
@@ -55,7 +55,7 @@ void expect_swings(double tolerance) {
   for (auto const& [t, first, second] :
        {std::array{0.5, 0.448142625932, 1.041962887304}, std::array{1.0, -1.207716238191, -0.814391023091},
         std::array{2.0, -0.082758306821, 0.407362074912}}) {
-    simulate(bars.model, y, GeneralizedAlpha{}, {.until = t, .step = 2.5e-4}).run();
+    simulate(bars.model, y, GeneralisedAlpha{}, {.end_time = t, .step = 2.5e-4}).run();
     held(solver("R8", "angle of the first bar [rad]", formulation), bars.angle(y, 0), first, tolerance,
          {equals("t", t)});
     held(solver("R8", "angle of the second bar [rad]", formulation), bars.angle(y, 1), second, tolerance,
@@ -71,9 +71,9 @@ template <class Policy>
 void expect_windows(double k, double tolerance) {
   FourBars<InPlane<Policy>> bars(2, stiff<Policy>(k));
   double const before = energy(bars.model, bars.x).total();
-  for (Corner const& c : corners) {
+  for (Corner const& c : breakpoints) {
     if (c.n != 2 || c.t > 4.0) continue;
-    simulate(bars.model, bars.x, GeneralizedAlpha{}, {.until = c.t, .step = 5e-4}).run();
+    simulate(bars.model, bars.x, GeneralisedAlpha{}, {.end_time = c.t, .step = 5e-4}).run();
     Instance const at{equals("t", c.t), 1.0};
     held_within({"R2", "corner of 2 four-bars [m]", By::closed_form,
                  "θ¨ = A sin θ of the parallelogram, elliptic integrals", on<Policy>(k, "5e-4")},
@@ -98,7 +98,7 @@ void expect_bricard(double tolerance) {
   for (auto const& [t, p3] : {std::pair{0.5, Vec3(0.968283679, -1.224625159, 0.750146609)},
                               std::pair{1.0, Vec3(0.510501461, -1.649167599, 0.140123115)},
                               std::pair{2.0, Vec3(-0.969340345, -1.221246895, 0.754278011)}}) {
-    auto run = simulate(b.model, b.x, GeneralizedAlpha{}, {.until = t, .step = 5e-4});
+    auto run = simulate(b.model, b.x, GeneralisedAlpha{}, {.end_time = t, .step = 5e-4});
     run.run();
     EXPECT_TRUE(run.report().redundant.empty());
     held_within({"R4", "P₃ of the Bricard mechanism [m]", By::independent, "ordinary solver in the one freedom",
@@ -119,7 +119,7 @@ void expect_top(double tolerance) {
   model.connect(Ball{{}, stiff<Policy>(1e9)}, model.ground().at({0, 0, 0}), top.at(Vec3(0, -1, 0)), "tip");
   State x = model.reference_state();
   model.set_velocity(x, top, Vec3::Zero(), Vec3(0, 150, -4.61538));
-  simulate(model, x, GeneralizedAlpha{}, {.until = 0.2, .step = 1e-4}).run();
+  simulate(model, x, GeneralisedAlpha{}, {.end_time = 0.2, .step = 1e-4}).run();
   held_within(solver("R6", "heavy top: centre of mass at 0.2 s [m]", on<Policy>(1e9, "1e-4")),
               (x.q.head<3>() - Vec3(0.6055505614, 0.5989576818, -0.5239830274)).norm(), tolerance, {.scale = 1.0});
 }

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/run/energy.hpp>
 #include <polybody/run/simulate.hpp>
@@ -62,7 +62,7 @@ TEST(HeavyTop, IsWhereThePublishedSolutionIs) {
   HeavyTop const top;
   State x = top.start;
   for (auto const& e : exact) {
-    simulate(top.model, x, precise(), {.until = e.t, .step = 1e-3}).run();
+    simulate(top.model, x, precise(), {.end_time = e.t, .step = 1e-3}).run();
     auto const at = [&](double scale) { return Instance{equals("t", e.t), scale}; };
     held_within(claim("R6", "heavy top: centre of mass [m]", by_orders), (x.q.head<3>() - e.place).norm(), 1e-7,
                 at(1.0));
@@ -81,9 +81,9 @@ TEST(HeavyTop, ConvergesAtSecondOrderWithGeneralizedAlpha) {
   std::vector<double> early, late;
   for (double const h : {5e-4, 2.5e-4, 1.25e-4}) {
     State x = top.start;
-    simulate(top.model, x, GeneralizedAlpha{}, {.until = 0.2, .step = h}).run();
+    simulate(top.model, x, GeneralisedAlpha{}, {.end_time = 0.2, .step = h}).run();
     early.push_back((x.q.head<3>() - Vec3(0.6055505614, 0.5989576818, -0.5239830274)).norm());
-    simulate(top.model, x, GeneralizedAlpha{}, {.until = 1.0, .step = h}).run();
+    simulate(top.model, x, GeneralisedAlpha{}, {.end_time = 1.0, .step = h}).run();
     late.push_back((x.q.head<3>() - Vec3(0.1733439641, 0.6400885921, -0.7484907911)).norm());
   }
   for (auto const* errors : {&early, &late}) {
@@ -103,11 +103,11 @@ TEST(SlowTop, IsWhereThePublishedSolutionIs) {
   SlowTop const top;
   State fine = top.start, coarse = top.start;
   for (auto const& e : exact) {
-    simulate(top.model, fine, precise(), {.until = e.t, .step = 1e-3}).run();
+    simulate(top.model, fine, precise(), {.end_time = e.t, .step = 1e-3}).run();
     char const* const what = "slow asymmetric top: centre of mass [m]";
     Instance const at{equals("t", e.t), 0.374};
     held_within(claim("R6", what, by_orders), (fine.q.head<3>() - e.place).norm(), 1e-8, at);
-    simulate(top.model, coarse, GeneralizedAlpha{}, {.until = e.t, .step = 2.5e-4}).run();
+    simulate(top.model, coarse, GeneralisedAlpha{}, {.end_time = e.t, .step = 2.5e-4}).run();
     held_within(claim("R6", what, "Rigid, generalised-α, h = 2.5e-4 s"), (coarse.q.head<3>() - e.place).norm(), 1e-4,
                 at);
   }
@@ -139,7 +139,7 @@ TEST(TorqueFreeBody, TumblesAsPublished) {
   Vec3 const momentum0 = momentum(body.model, body.x).angular;
   DormandPrince<> const integrator{.relative_tolerance = 1e-12, .absolute_tolerance = 1e-13};
   for (Spin const& e : r7) {
-    simulate(body.model, body.x, integrator, {.until = e.t, .step = 0.01}).run();
+    simulate(body.model, body.x, integrator, {.end_time = e.t, .step = 0.01}).run();
     Instance const at{equals("t", e.t), 5.0};
     held_within(claim("R7", "torque-free body: angular velocity [rad/s]", by_orders),
                 (body.x.v.tail<3>() - e.omega).norm(), 1e-8, at);
@@ -159,7 +159,7 @@ TEST(TorqueFreeBody, ConvergesAtSecondOrderWithGeneralizedAlpha) {
   std::vector<double> errors;
   for (double const h : {4e-3, 2e-3, 1e-3}) {
     FreeBody body;
-    simulate(body.model, body.x, GeneralizedAlpha{}, {.until = 3.0, .step = h}).run();
+    simulate(body.model, body.x, GeneralisedAlpha{}, {.end_time = 3.0, .step = h}).run();
     errors.push_back((body.x.v.tail<3>() - r7[3].omega).norm());
   }
   EXPECT_GT(std::log2(errors[1] / errors[2]), 1.9) << testing::PrintToString(errors);

@@ -107,7 +107,7 @@ TEST(RollingDisc, KeepsItsEnergyWhileItWobbles) {
   double lowest = 1.0, highest = 0.0;
   State x = circle.start;
   for (State const& now :
-       simulate(circle.model, x, RungeKutta4<CoordinatePartitioning>{}, {.until = 20.0, .step = 2e-3})) {
+       simulate(circle.model, x, RungeKutta4<CoordinatePartitioning>{}, {.end_time = 20.0, .step = 2e-3})) {
     double const steep = frame(circle.model, now, circle.wheel.at(Vec3::Zero())).A(2, 2);
     lowest = std::min(lowest, steep);
     highest = std::max(highest, steep);

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <polybody/integrators/energy_momentum.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/radau.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/run/energy.hpp>
@@ -23,13 +23,13 @@ struct Turned {
   std::vector<std::string> warnings;
 };
 template <class Solver = DefaultSolver, class I>
-Turned turn(int n, double until, I const& integrator, double step) {
+Turned turn(int n, double end_time, I const& integrator, double step) {
   FourBars<InPlane<Constraint>> bars(n);
   double const before = energy(bars.model, bars.x).total();
-  RunReport const report = simulate<Solver>(bars.model, bars.x, integrator, {.until = until, .step = step}).run();
+  RunReport const report = simulate<Solver>(bars.model, bars.x, integrator, {.end_time = end_time, .step = step}).run();
   Turned out{0.0, energy(bars.model, bars.x).total() - before, report.warnings};
-  for (Corner const& c : corners)
-    if (c.n == n && c.t == until) out.off = (bars.corner() - Vec3(c.x, c.y, 0)).norm();
+  for (Corner const& c : breakpoints)
+    if (c.n == n && c.t == end_time) out.off = (bars.corner() - Vec3(c.x, c.y, 0)).norm();
   return out;
 }
 
@@ -75,7 +75,7 @@ TEST(SingularPosition, IsPassedByRadau) {
 // Forty windows. The distance of a step's end from the singular configuration is 3 % of its length. There corrections
 // of 3e-4 m/s² are round-off, which exceeds the tolerance of four last digits.
 TEST(SingularPosition, MayBePassedWithoutTheMultipliersOfStabilisedSteps) {
-  Turned const r = turn(40, 10, GeneralizedAlpha{.rho_inf = 0.95, .stabilised = true}, 2e-3);
+  Turned const r = turn(40, 10, GeneralisedAlpha{.rho_inf = 0.95, .stabilised = true}, 2e-3);
   EXPECT_LT(r.off, 1.5e-4);
   EXPECT_LT(std::abs(r.gained), 1e-3);  // of 620 J; round-off: 1.7e-4 to 6.6e-4 J, by the solver
   EXPECT_TRUE(r.warnings.empty());
@@ -87,8 +87,8 @@ TEST(SingularPosition, MayBePassedWithoutTheMultipliersOfStabilisedSteps) {
 TEST(SingularPosition, MayBeWhereAStepOfRadauEnds) {
   FourBars<InPlane<Constraint>> bars(3);
   double const before = energy(bars.model, bars.x).total();
-  simulate(bars.model, bars.x, Radau{}, {.until = 1.2, .step = 1e-3}).run();
-  simulate(bars.model, bars.x, Radau{}, {.until = 1.3, .step = 6.25e-5}).run();
+  simulate(bars.model, bars.x, Radau{}, {.end_time = 1.2, .step = 1e-3}).run();
+  simulate(bars.model, bars.x, Radau{}, {.end_time = 1.3, .step = 6.25e-5}).run();
   EXPECT_LT(std::abs(energy(bars.model, bars.x).total() - before), 1e-8);  // of 55 J
   for (int i = 1; i <= 3; ++i) EXPECT_NEAR(bars.x.q[3 * i + 2], bars.x.q[2], 1e-8);
 }
@@ -99,9 +99,9 @@ void expect_passes_with_node_at(double share) {
   for (int const k : {12, 50, 230}) {
     FourBars<InPlane<Constraint>> bars(2);
     double const before = energy(bars.model, bars.x).total(), flat = 0.7143555292929605;  // R2
-    simulate(bars.model, bars.x, Radau{}, {.until = 0.7, .step = 1e-3}).run();
+    simulate(bars.model, bars.x, Radau{}, {.end_time = 0.7, .step = 1e-3}).run();
     double const step = (flat - bars.x.t) / (k - 1 + share);
-    simulate(bars.model, bars.x, Radau{}, {.until = flat + 8.0 * step, .step = step}).run();
+    simulate(bars.model, bars.x, Radau{}, {.end_time = flat + 8.0 * step, .step = step}).run();
     EXPECT_LT(std::abs(energy(bars.model, bars.x).total() - before), 1e-9) << k;  // of 36 J
     for (int i = 1; i <= 2; ++i) EXPECT_NEAR(bars.x.q[3 * i + 2], bars.x.q[2], 1e-11) << k;
   }
@@ -132,7 +132,7 @@ FourBars<InPlane<Constraint>> flat_window(double crank, double coupler) {
 template <class I>
 std::vector<std::string> warnings_of_flat_start(I const& integrator, double crank, double coupler) {
   auto bars = flat_window(crank, coupler);
-  return simulate(bars.model, bars.x, integrator, {.until = 0.01, .step = 1e-3}).run().warnings;
+  return simulate(bars.model, bars.x, integrator, {.end_time = 0.01, .step = 1e-3}).run().warnings;
 }
 
 TEST(SingularPosition, IsReportedWhereARunStartsInItWithoutABranch) {
@@ -144,13 +144,14 @@ TEST(SingularPosition, IsReportedWhereARunStartsInItWithoutABranch) {
     EXPECT_TRUE(warnings_of_flat_start(integrator, -4.0, 0.0).empty());
   };
   expect(Radau{});
-  expect(GeneralizedAlpha{});
+  expect(GeneralisedAlpha{});
   expect(RungeKutta4<Projection>{});
   EXPECT_TRUE(warnings_of_flat_start(Radau{}, 0.0, -4.0).empty());  // the kite
 }
 // The angular velocities ω₀ and ω_c of crank and coupler must satisfy ω₀ ω_c = 0.
 TEST(SingularPosition, RefusesSpeedsOfNoBranch) {
-  std::string const told = message_of<InconsistentStart>([] { warnings_of_flat_start(Radau{}, -4.0, 4.0); });
+  std::string const told =
+      message_of<InconsistentInitialConditions>([] { warnings_of_flat_start(Radau{}, -4.0, 4.0); });
   EXPECT_TRUE(has(told, "contradict by"));
   EXPECT_TRUE(has(told, "in a singular position, start with the speeds of one branch"));
 }
@@ -158,7 +159,8 @@ TEST(SingularPosition, RefusesSpeedsOfNoBranch) {
 TEST(SingularPosition, IsNotTakenForRowsThatAlwaysRepeat) {
   FourBars<InSpace<Constraint>> bars(1);
   bars.x.v.setZero();
-  EXPECT_TRUE(simulate(bars.model, bars.x, GeneralizedAlpha{}, {.until = 0.01, .step = 1e-3}).run().warnings.empty());
+  EXPECT_TRUE(
+      simulate(bars.model, bars.x, GeneralisedAlpha{}, {.end_time = 0.01, .step = 1e-3}).run().warnings.empty());
 }
 
 // The constraint equations that lose rank at the start are satisfied afterwards.
@@ -172,7 +174,7 @@ TEST(SingularPosition, MayBeWhereARunOfRadauStarts) {
     for (int i = 0; i <= n; ++i) lay(i, i + 0.5, -2.0, -4.0);
     for (int i = 0; i < n; ++i) lay(n + 1 + i, i + 1.5, -4.0, 0.0);
     double const before = energy(bars.model, bars.x).total();
-    simulate(bars.model, bars.x, Radau{}, {.until = 0.1, .step = 1e-3}).run();
+    simulate(bars.model, bars.x, Radau{}, {.end_time = 0.1, .step = 1e-3}).run();
     EXPECT_LT(std::abs(energy(bars.model, bars.x).total() - before), 1e-9) << n;
     for (int i = 1; i <= n; ++i) EXPECT_NEAR(bars.x.q[3 * i + 2], bars.x.q[2], 1e-12) << n;
   }

@@ -30,7 +30,8 @@ TEST(BeadOnATautCable, ComesToTheMiddle) {
   auto const claim = [](char const* what, char const* source) {
     return Claim{"sliders", what, By::closed_form, source, "planar AncfCable, 24 elements"};
   };
-  held(claim("place of a weight on a taut cable [m]", "the middle"), place(rig.model, x, rig.line), 0.5 * length, 1e-6);
+  held(claim("place of a weight on a taut cable [m]", "the middle"), slider_position(rig.model, x, rig.line),
+       0.5 * length, 1e-6);
   held(claim("deflection of a taut cable under a weight [m]", "P L/4T (1 − tanh u/u), u = ½ L √(T/EI)"),
        -rig.place_of_bead(x)[1], w, 1e-4 * w);
   held_within(claim("force of a taut cable on its weight [N]", "m g"),
@@ -65,7 +66,7 @@ TEST(BeadOnARope, HangsWhereBothSidesAreEquallySteep) {
   x.q << before.q.head(before.q.size() - 3), from_left + 0.02, before.q.tail<3>();
   x.lambda = before.lambda;
   equilibrium(rig.model, x);
-  double const s = place(rig.model, x, rig.line);
+  double const s = slider_position(rig.model, x, rig.line);
   Vec3 const bead = rig.place_of_bead(x);
   Wrench<double> const a = reaction(rig.model, x, rig.left), b = reaction(rig.model, x, right);
   auto const claim = [](char const* what, char const* source) {

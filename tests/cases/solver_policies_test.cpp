@@ -4,12 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/ancf/planar_ancf_cable.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/run/simulate.hpp>
 #include <polybody/solvers/auto_lu.hpp>
 #include <polybody/solvers/block_ldlt.hpp>
 #include <polybody/solvers/eigen_ldlt.hpp>
-#include <polybody/solvers/refined.hpp>
+#include <polybody/solvers/iterative_refinement.hpp>
 
 #include "support/chain.hpp"
 
@@ -41,7 +41,7 @@ struct Mixed {
 template <class Solver, class M>
 State moved(M const& model) {
   State x = model.reference_state();
-  simulate<Solver>(model, x, GeneralizedAlpha{.tolerance = 1e-12}, {.until = 0.1, .step = 2e-3}).run();
+  simulate<Solver>(model, x, GeneralisedAlpha{.tolerance = 1e-12}, {.end_time = 0.1, .step = 2e-3}).run();
   return x;
 }
 
@@ -55,7 +55,7 @@ double apart(State const& x, State const& y) {
 template <class Solver>
 struct SolverPolicies : testing::Test {};
 using AnySolver =
-    testing::Types<EigenSparseLu, EigenLdlt, AutoLu, BlockLdlt, BlockLu, BlockSolver, Refined<BlockSolver>>;
+    testing::Types<EigenSparseLu, EigenLdlt, AutoLu, BlockLdlt, BlockLu, BlockSolver, IterativeRefinement<BlockSolver>>;
 TYPED_TEST_SUITE(SolverPolicies, AnySolver);
 
 /// Solvers for general tangents.

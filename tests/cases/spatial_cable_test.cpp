@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <polybody/forces/point_load.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/radau.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/revolute.hpp>
@@ -198,7 +198,7 @@ void spins(Index n, char const* formulation) {
                       {1.5, {-0.555340, -0.487708, -0.649961}, {-0.312379, -0.280193, -0.273679}},
                       {2.0, {-0.239876, -0.202892, 0.903284}, {-0.010451, -0.170533, 0.468231}}};
   for (Row const& row : rows) {
-    simulate(model, x, GeneralizedAlpha{}, {.until = row.t, .step = 1e-3}).run();
+    simulate(model, x, GeneralisedAlpha{}, {.end_time = row.t, .step = 1e-3}).run();
     double const tolerance = row.t > 1.0 ? 1e-2 : 2e-3;
     Instance const at{equals("t", row.t), 1.0};
     held_within(spinning("tip [m]", formulation), (position(model, x, rod.at(1.0)) - row.tip).norm(), tolerance, at);
@@ -215,7 +215,7 @@ TEST(SpinningPendulum, CableFollowsTheConvergedMotion) {
 TEST(SpinningPendulum, CableFollowsTheConvergedMotionWithRadau) {
   struct Run {
     Index n;
-    double step, until;
+    double step, end_time;
     Vec3 tip;
   };
   for (Run const& run :
@@ -225,9 +225,9 @@ TEST(SpinningPendulum, CableFollowsTheConvergedMotionWithRadau) {
     model.connect(Ball{}, model.ground().at({0, 0, 0}), rod.at(0.0), "hinge");
     State x = model.reference_state();
     model.set_velocity(x, rod, Vec3::Zero(), Vec3(0, 4, 0));
-    simulate(model, x, Radau{}, {.until = run.until, .step = run.step}).run();
+    simulate(model, x, Radau{}, {.end_time = run.end_time, .step = run.step}).run();
     held_within(spinning("tip [m]", "AncfCable, 32 and 16 elements, Radau IIA, h = 1e-3 and 4e-3 s"),
-                (position(model, x, rod.at(1.0)) - run.tip).norm(), 2e-3, {equals("t", run.until), 1.0});
+                (position(model, x, rod.at(1.0)) - run.tip).norm(), 2e-3, {equals("t", run.end_time), 1.0});
   }
 }
 TEST(SpinningPendulum, LrvfFollowsTheConvergedMotion) {

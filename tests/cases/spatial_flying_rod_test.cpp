@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <polybody/forces/point_load.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/revolute.hpp>
 #include <polybody/run/energy.hpp>
@@ -67,7 +67,9 @@ struct Flight {
     model.apply(PointMoment<Window>{.moment = {0, 0, -80}, .law = {.to = 2.5}}, marker, "moment");
     x = model.reference_state();
   }
-  void fly_until(double t) { simulate(model, x, GeneralizedAlpha{.rho_inf = 0.9}, {.until = t, .step = step}).run(); }
+  void fly_until(double t) {
+    simulate(model, x, GeneralisedAlpha{.rho_inf = 0.9}, {.end_time = t, .step = step}).run();
+  }
 
   Vec3 end(double s) const { return position(model, x, body.at(s)); }
   /// Larger position error of the two ends [m].
@@ -91,7 +93,7 @@ struct Flight {
 /// Closed forms of D3: the impulse 8·min(t, 2.5), and the centre of mass, 3 + 0.4 t² and then 5.5 + 2 (t − 2.5) on
 /// the line y = 4.
 template <class B>
-void moves_as_a_whole(Flight<B> const& flight, char const* formulation) {
+void moves_as_a_full(Flight<B> const& flight, char const* formulation) {
   double const t = flight.x.t, x = t < 2.5 ? 3.0 + 0.4 * t * t : 5.5 + 2.0 * (t - 2.5);
   held_within({"D3", "momentum of the rod in space [N s]", By::closed_form, "8 N for 2.5 s", formulation},
               (flight.total_momentum().linear - Vec3(8 * std::min(t, 2.5), 0, 0)).norm(), 1e-10,
@@ -112,7 +114,7 @@ void follows(Flight<B> flight, std::vector<Row> const& rows, double tolerance, d
     char const* const spectral = "spectral geometrically exact beam, two meshes";
     held_within({"D3", "ends of the rod in space [m]", By::independent, spectral, formulation}, flight.miss(row),
                 tolerance, {equals("t", row.t), 10.0});
-    moves_as_a_whole(flight, formulation);
+    moves_as_a_full(flight, formulation);
     if (row.t == 2.5) {
       kept = flight.total_energy();
       angular = flight.total_momentum().angular[2];
@@ -175,9 +177,9 @@ TEST(FlyingRodOfThePlane, CableAloneHasTheMotionOfItsCentreOnly) {
   flight.fly_until(1.0);
   EXPECT_GT(flight.miss(stiff[0]), 0.5);
   char const* const alone = "AncfCable without discs, 16 elements, EI = 500, h = 1 ms";
-  moves_as_a_whole(flight, alone);
+  moves_as_a_full(flight, alone);
   flight.fly_until(3.0);
-  moves_as_a_whole(flight, alone);
+  moves_as_a_full(flight, alone);
 }
 
 }  // namespace spatial_flying_rod_test

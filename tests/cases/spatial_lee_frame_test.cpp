@@ -92,7 +92,7 @@ TEST(LeeFrameInSpace, HasItsLimitLoads) {
   double const unit = 1e4;
   LeeFrame const frame(48, unit);
   std::vector<PathPoint> const path =
-      equilibrium_path(frame.model, frame.model.reference_state(), {.step = 0.03, .largest = 0.03, .points = 2000},
+      equilibrium_path(frame.model, frame.model.reference_state(), {.step = 0.03, .max_step = 0.03, .points = 2000},
                        [&](PathPoint const& p) { return p.load_factor > 0.0 && frame.displacement(p.x)[1] < -75.0; });
   double high = 0.0, low = 0.0;
   for (std::size_t i = 1; i + 1 < path.size(); ++i) {

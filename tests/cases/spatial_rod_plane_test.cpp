@@ -14,7 +14,7 @@ using namespace polybody;
 
 namespace spatial_rod_plane_test {
 
-template <class Interpolation = Objective>
+template <class Interpolation = RelativeRotation>
 using Rod = SpatialCantilever<Lrvf<Interpolation>>;
 
 /// S2 and S2c: EA = GA = 1e6 EI/L².
@@ -52,9 +52,9 @@ void is_planar(char const* case_id, BarConstants const& c, double length, double
 }
 
 TEST(PlaneInSpace, ElasticaAndThickCantileverAreThoseOfThePlane) {
-  is_planar<Objective>("S2", slender(), 1.0, 10.0, LoadAxes::world);
-  is_planar<Objective>("S2c", slender(), 1.0, 10.0, LoadAxes::marker);
-  is_planar<Objective>("S4", thick(), 2.0, 5e8 * 0.125, LoadAxes::world);
+  is_planar<RelativeRotation>("S2", slender(), 1.0, 10.0, LoadAxes::world);
+  is_planar<RelativeRotation>("S2c", slender(), 1.0, 10.0, LoadAxes::marker);
+  is_planar<RelativeRotation>("S4", thick(), 2.0, 5e8 * 0.125, LoadAxes::world);
   is_planar<Direct>("S2", slender(), 1.0, 10.0,
                     LoadAxes::world);  // rotations about one axis of the placement: also exact for this interpolation
 }
@@ -94,13 +94,13 @@ Bar strip() {
 double smallest_pivot(Index n, double force) {
   Cantilever<planar::Lrvf> const plane(planar::Lrvf::from(strip(), n), {.force = {0, force}}, {});
   Lrvf<> const rod = Lrvf<>::from(strip(), n);
-  VecX q(rod.coordinates()), v = VecX::Zero(rod.speeds());
+  VecX q(rod.coordinates()), v = VecX::Zero(rod.velocities());
   for (Index i = 0; i <= n; ++i) {
     Vec3 const node = plane.at(double(i) * rod.element_length());
     q.segment<3>(7 * i) = Vec3(node[0], node[1], 0);
     q.segment<4>(7 * i + 3) = quaternion_exp<double>(Vec3(0, 0, node[2]));
   }
-  MatX k = MatX::Zero(rod.speeds(), rod.speeds());
+  MatX k = MatX::Zero(rod.velocities(), rod.velocities());
   for (Index e = 0; e < n; ++e) {
     Mat<double, 12, 12> element;
     rod.tangent(e, std::span<double const>(q.data(), std::size_t(q.size())),

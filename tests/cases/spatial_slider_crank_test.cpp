@@ -5,11 +5,11 @@
 
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/bodies/rigid/rigid_euler_parameters.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/radau.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/joint.hpp>
-#include <polybody/joints/policies/recursive.hpp>
+#include <polybody/joints/policies/joint_coordinates.hpp>
 #include <polybody/joints/prismatic.hpp>
 #include <polybody/joints/revolute.hpp>
 #include <polybody/joints/spherical.hpp>
@@ -95,7 +95,7 @@ void follows(I const& integrator, double step, double tolerance, std::string con
     held(independent("energy above the hinge at the start [J]", mid_arm, formulation), before - 0.12 * 9.81 * 0.12,
          mid_arm ? 0.62517168 : 0.57462768, 6e-9, {.scale = 1.0});
     auto const compare = [&](Row const& row) {
-      simulate(m.model, m.x, integrator, {.until = row.t, .step = step}).run();
+      simulate(m.model, m.x, integrator, {.end_time = row.t, .step = step}).run();
       Instance const at{equals("t", row.t), 1.0}, of_place{at.at, 0.1};
       double const allowed = tolerance * std::max(1.0, row.t);
       held(independent("angle of the crank [rad]", mid_arm, formulation), m.angle(row.angle), row.angle, allowed, at);
@@ -112,11 +112,11 @@ void follows(I const& integrator, double step, double tolerance, std::string con
 }
 
 TEST(SpatialSliderCrank, MovesAsTheEnergyIntegralSays) {
-  follows<Rigid<>, Constraint>(GeneralizedAlpha{.rho_inf = 0.9}, 5e-4, 1.2e-3,
+  follows<Rigid<>, Constraint>(GeneralisedAlpha{.rho_inf = 0.9}, 5e-4, 1.2e-3,
                                "Rigid, Constraint, generalised-α, h = 0.5 ms");
-  follows<Rigid<EulerParameters>, Constraint>(GeneralizedAlpha{.rho_inf = 0.9}, 5e-4, 1.2e-3,
+  follows<Rigid<EulerParameters>, Constraint>(GeneralisedAlpha{.rho_inf = 0.9}, 5e-4, 1.2e-3,
                                               "Rigid<EulerParameters>, Constraint, generalised-α, h = 0.5 ms");
-  follows<Rigid<>, Recursive>(Radau{}, 2e-3, 1e-6, "Rigid, joint coordinates, Radau IIA, h = 2 ms");
+  follows<Rigid<>, JointCoordinates>(Radau{}, 2e-3, 1e-6, "Rigid, joint coordinates, Radau IIA, h = 2 ms");
   follows<Rigid<>, Constraint>(DormandPrince<Projection>{.relative_tolerance = 1e-10, .absolute_tolerance = 1e-12},
                                1e-3, 3e-8, "Rigid, Constraint, Dormand–Prince, tolerance 1e-10");
 }

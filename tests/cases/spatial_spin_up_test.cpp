@@ -26,7 +26,7 @@ void spins_up(Index n, spin_up::Share const& share, char const* formulation) {
   auto const hub = model.add(Rigid<>(1.0, Mat3::Identity()), "hub").at(Vec3(0, 0, 0));
   model.connect(Pin{{.axis = Vec3::UnitZ()}, {}}, model.ground().at({0, 0, 0}), hub, "axle");
   model.connect(spin_up::drive(), model.ground().at({0, 0, 0}), hub, "drive");
-  if constexpr (B::observes == Observes::frame) {
+  if constexpr (B::observes == MarkerKind::frame) {
     model.connect(Fixed{}, hub, arm.at(0.0), "clamp");
   } else {
     model.connect(Pin{Revolute{.axis = Vec3::UnitX()}, {}}, hub, arm.at(0.0), "clamp");

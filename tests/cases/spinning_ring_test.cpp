@@ -81,13 +81,13 @@ void expect_ring(Spin const& s, Policy const& policy, double stiffness, std::str
               1e-10 * s.force);
   State x = ring.spinning(s.omega, open);
   double worst = 0.0, worst_moment = 0.0, worst_gap = 0.0;
-  for (State const& now : simulate(ring.model, x, Integrator{}, {.until = 100 * h, .step = h}))
+  for (State const& now : simulate(ring.model, x, Integrator{}, {.end_time = 100 * h, .step = h}))
     for (int const i : {0, s.links / 3, s.links - 1}) {
       Wrench<> const w = reaction(ring.model, now, ring.pins[std::size_t(i)]);
       worst = std::max(worst, (w.f - force * ring.direction(i, s.omega * now.t)).norm());
       worst_moment = std::max(worst_moment, w.m.norm());
       if constexpr (!std::is_same_v<Policy, Constraint>) {
-        double const g = gap(ring.model, now, ring.pins[std::size_t(i)]).norm();
+        double const g = constraint_violation(ring.model, now, ring.pins[std::size_t(i)]).norm();
         worst_gap = std::max(worst_gap, std::abs(g - open));
         EXPECT_NEAR(g, s.force / stiffness, 1e-3 * g);
       }
@@ -109,8 +109,8 @@ TEST(SpinningRing, HasTheForceOfTheClosedForm) {
     expect_ring<RungeKutta4<Projection>>(s, Constraint{}, std::numeric_limits<double>::infinity(), "ideal pins");
 }
 TEST(SpinningRing, OpensPenaltiesByTheForceOverTheStiffness) {
-  PenaltyPerRow<5> const penalty{.stiffness = Vec<double, 5>(1e7, 1e7, 1e7, 100.0, 100.0),
-                                 .damping = Vec<double, 5>::Zero()};
+  PenaltyPerEquation<5> const penalty{.stiffness = Vec<double, 5>(1e7, 1e7, 1e7, 100.0, 100.0),
+                                      .damping = Vec<double, 5>::Zero()};
   for (Spin const& s : spins) expect_ring<RungeKutta4<>>(s, penalty, 1e7, "penalties of 1e7 N/m");
 }
 TEST(SpinningRing, OpensBushingsByTheForceOverTheStiffness) {

@@ -40,9 +40,9 @@ TEST(StackedBalls, OfAGroupRestAndSwingAsThoseOneByOne) {
   single.model.apply(ball, single.balls[1], single.balls[0]);
   Stack<Forces<Group>> grouped;
   auto const group = grouped.model.apply(Group{}, grouped.balls);
-  grouped.model.pair_with(group, floor, grouped.model.ground().at({0, 0, 0}));
-  grouped.model.pair_with(group, ball, grouped.balls[0]);
-  auto const judge = [](char const* forces, auto& stack) {
+  grouped.model.add_partner(group, floor, grouped.model.ground().at({0, 0, 0}));
+  grouped.model.add_partner(group, ball, grouped.balls[0]);
+  auto const check_step = [](char const* forces, auto& stack) {
     auto const claim = [&](char const* what, char const* source) {
       return Claim{"closed forms", what, By::closed_form, source, forces};
     };
@@ -59,8 +59,8 @@ TEST(StackedBalls, OfAGroupRestAndSwingAsThoseOneByOne) {
     held(modes_of, m.frequency[0] / unit, golden, 1e-9, {"mode = 1"});
     held(modes_of, m.frequency[1] / unit, 1.0 / golden, 1e-9, {"mode = 2"});
   };
-  judge("contacts one by one", single);
-  judge("contact group", grouped);
+  check_step("contacts one by one", single);
+  check_step("contact group", grouped);
 }
 
 }  // namespace stacked_balls_test

@@ -24,7 +24,7 @@ double largest_gap(Stiffness const& stiffness, double ramp, Index elements = 10)
   RobotArm<Lrvf> arm(bar(stiffness, 7850.0), elements, ramp);
   State x = arm.model.reference_state();
   double gap = 0.0;
-  for (State const& now : simulate(arm.model, x, GeneralizedAlpha{.rho_inf = 0.8}, {.until = ramp, .step = 5e-3}))
+  for (State const& now : simulate(arm.model, x, GeneralisedAlpha{.rho_inf = 0.8}, {.end_time = ramp, .step = 5e-3}))
     gap = std::max(gap, mesh_diagnostics(arm.arm.body(), coordinates_of(arm.model, now, arm.arm)).largest_gap);
   return gap;
 }
@@ -69,7 +69,7 @@ TEST(ThesisChapter2, AxialForceStretchesThePositionMeshOnly) {
   RobotArm<Lrvf> arm(bar(low, 7850.0), 10, 4.5, 100e3);
   State x = arm.model.reference_state();
   double longest = 0.0;
-  for (State const& now : simulate(arm.model, x, GeneralizedAlpha{.rho_inf = 0.8}, {.until = 4.5, .step = 5e-3})) {
+  for (State const& now : simulate(arm.model, x, GeneralisedAlpha{.rho_inf = 0.8}, {.end_time = 4.5, .step = 5e-3})) {
     MeshDiagnostics const d = mesh_diagnostics(arm.arm.body(), coordinates_of(arm.model, now, arm.arm));
     longest = std::max(longest, d.position_length);
     double const implied = polygon_length(implied_curve(arm.arm.body(), coordinates_of(arm.model, now, arm.arm), 20));
@@ -82,7 +82,7 @@ TEST(ThesisChapter2, AxialForceStretchesThePositionMeshOnly) {
 TEST(ThesisChapter2, TipMomentBringsTheMeshesApart) {
   chapter2::Cantilever<Lrvf> beam(bar(low, 7850.0), 10, 30e3);
   State x = beam.model.reference_state();
-  simulate(beam.model, x, GeneralizedAlpha{.rho_inf = 0.8}, {.until = 2.0, .step = 1e-3}).run();
+  simulate(beam.model, x, GeneralisedAlpha{.rho_inf = 0.8}, {.end_time = 2.0, .step = 1e-3}).run();
   MeshDiagnostics const d = mesh_diagnostics(beam.beam.body(), coordinates_of(beam.model, x, beam.beam));
   char const* const body = "Lrvf, low stiffness, 30 kN m, h = 1e-3 s";
   held(independent("x of the tip at 2 s, position mesh [m]", body), d.position_nodes.back()[0], 8.832, 1e-3);
@@ -91,7 +91,7 @@ TEST(ThesisChapter2, TipMomentBringsTheMeshesApart) {
   held(independent("y of the tip at 2 s, rotation mesh [m]", body), d.rotation_nodes.back()[1], 1.955, 1e-3);
   // Figure 2.10: zero curvature on the position mesh; piecewise constant curvature with jumps on the rotation mesh
   for (double const curvature : d.position_curvature) EXPECT_EQ(curvature, 0.0);
-  simulate(beam.model, x, GeneralizedAlpha{.rho_inf = 0.8}, {.until = 20.0, .step = 5e-3}).run();
+  simulate(beam.model, x, GeneralisedAlpha{.rho_inf = 0.8}, {.end_time = 20.0, .step = 5e-3}).run();
   MeshDiagnostics const late = mesh_diagnostics(beam.beam.body(), coordinates_of(beam.model, x, beam.beam));
   double jump = 0.0;
   for (std::size_t e = 1; e < 10; ++e)
@@ -119,13 +119,13 @@ TEST(ThesisChapter2, EnergyStaysOnceTheDriveStandsStill) {
 }
 TEST(ThesisChapter2, EnergyDriftOfGeneralizedAlphaIsOfSecondOrder) {
   auto const drift = [](double h) {
-    return energy_drift<Lrvf>({.step = h}, 10, GeneralizedAlpha{.rho_inf = 0.8}).largest;
+    return energy_drift<Lrvf>({.step = h}, 10, GeneralisedAlpha{.rho_inf = 0.8}).largest;
   };
   double const coarse = drift(5e-3), fine = drift(2.5e-3);
-  held(measured("energy in 20 s after the ramp, drift of itself", "Lrvf, GeneralizedAlpha, h = 5 ms"), coarse, 2.4e-5,
+  held(measured("energy in 20 s after the ramp, drift of itself", "Lrvf, GeneralisedAlpha, h = 5 ms"), coarse, 2.4e-5,
        5e-7);
   held({"thesis, ch. 2", "order of the drift of energy", By::closed_form, "order of the method",
-        "Lrvf, GeneralizedAlpha, h = 5 and 2.5 ms"},
+        "Lrvf, GeneralisedAlpha, h = 5 and 2.5 ms"},
        std::log2(coarse / fine), 2.0, 0.2);
 }
 

@@ -8,11 +8,11 @@
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/integrators/adams_bashforth_moulton.hpp>
 #include <polybody/integrators/central_difference.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/planar/revolute.hpp>
-#include <polybody/joints/policies/recursive.hpp>
+#include <polybody/joints/policies/joint_coordinates.hpp>
 #include <polybody/run/simulate.hpp>
 
 using namespace polybody;
@@ -22,7 +22,7 @@ namespace tolerance_scales_test {
 /// Attraction proportional to 1/r² between two markers.
 struct Attraction {
   static constexpr int markers = 2;
-  static constexpr Observes needs = Observes::point;
+  static constexpr MarkerKind needs = MarkerKind::point;
   static constexpr bool is_load = false;
   double mu;  ///< [N m²]
 
@@ -42,7 +42,7 @@ struct Attraction {
 /// Spring about z between two planar bodies.
 struct TorsionSpring {
   static constexpr int markers = 2;
-  static constexpr Observes needs = Observes::frame;
+  static constexpr MarkerKind needs = MarkerKind::frame;
   static constexpr bool is_load = false;
   double stiffness;  ///< [N m/rad]
 
@@ -91,7 +91,7 @@ Outcome planet(double tolerance, double rotor, double flight, double centre = 0.
   model.set_velocity(x, planet, Vec3(0, std::sqrt(0.5 / 1.5), 0), Vec3::Zero());
   x.v[5] = rotor;
   model.set_velocity(x, shot, Vec3(flight, 0, 0), Vec3::Zero());
-  long const steps = simulate(model, x, with_tolerance<I>(tolerance), {.until = 20.0, .step = 1e-3}).run().steps;
+  long const steps = simulate(model, x, with_tolerance<I>(tolerance), {.end_time = 20.0, .step = 1e-3}).run().steps;
   return {(x.q.head<2>() - ellipse(20.0, centre)).norm(), steps};
 }
 
@@ -130,7 +130,7 @@ double beside_a_rotor_in_space(double rotor) {
   State x = model.reference_state();
   model.set_velocity(x, planet, Vec3(0, std::sqrt(0.5 / 1.5), 0), Vec3::Zero());
   model.set_velocity(x, wheel, Vec3::Zero(), Vec3(0, 0, rotor));
-  simulate(model, x, with_tolerance<I>(1e-8), {.until = 20.0, .step = 1e-3}).run();
+  simulate(model, x, with_tolerance<I>(1e-8), {.end_time = 20.0, .step = 1e-3}).run();
   return (x.q.head<2>() - ellipse(20.0, 0.0)).norm();
 }
 
@@ -177,7 +177,7 @@ void does_not_feel_a_common_velocity() {
     Spacecraft<Policy> craft(moving ? 7600.0 : 0.0);
     for (auto const& e : exact) {
       steps[moving] +=
-          simulate(craft.model, craft.x, with_tolerance<I>(1e-8), {.until = e.t, .step = 0.01}).run().steps;
+          simulate(craft.model, craft.x, with_tolerance<I>(1e-8), {.end_time = e.t, .step = 0.01}).run().steps;
       EXPECT_NEAR(craft.hub_x(), e.x, 1e-6) << moving << ' ' << e.t;
       EXPECT_NEAR(craft.x.q[1], e.y, 1e-6) << moving << ' ' << e.t;
       EXPECT_NEAR(craft.angle(), e.angle, 1e-6) << moving << ' ' << e.t;
@@ -190,11 +190,11 @@ void does_not_feel_a_common_velocity() {
 
 TEST(ToleranceScales, DormandPrinceDoesNotFeelACommonVelocity) {
   does_not_feel_a_common_velocity<Constraint, DormandPrince<Projection>>();
-  does_not_feel_a_common_velocity<Recursive, DormandPrince<>>();
+  does_not_feel_a_common_velocity<JointCoordinates, DormandPrince<>>();
 }
 TEST(ToleranceScales, AdamsDoesNotFeelACommonVelocity) {
   does_not_feel_a_common_velocity<Constraint, AdamsBashforthMoulton<Projection>>();
-  does_not_feel_a_common_velocity<Recursive, AdamsBashforthMoulton<>>();
+  does_not_feel_a_common_velocity<JointCoordinates, AdamsBashforthMoulton<>>();
 }
 
 template <class I>
@@ -202,7 +202,7 @@ void is_invariant_at_fixed_steps(I const& integrator, double bound) {
   double angle[2], opening[2];
   for (int const moving : {0, 1}) {
     Spacecraft<Constraint> craft(moving ? 7600.0 : 0.0);
-    simulate(craft.model, craft.x, integrator, {.until = 50.0, .step = 0.01}).run();
+    simulate(craft.model, craft.x, integrator, {.end_time = 50.0, .step = 0.01}).run();
     angle[moving] = craft.angle();
     opening[moving] = craft.opening();
   }
@@ -213,7 +213,7 @@ void is_invariant_at_fixed_steps(I const& integrator, double bound) {
 TEST(ToleranceScales, FixedStepsAreInvariantUnderACommonVelocity) {
   is_invariant_at_fixed_steps(RungeKutta4<Projection>{}, 1e-9);
   is_invariant_at_fixed_steps(CentralDifference<Projection>{}, 1e-9);
-  is_invariant_at_fixed_steps(GeneralizedAlpha{}, 2e-6);  // index 3: 6e-11 m, the round-off of 4e5 m, divided by h²
+  is_invariant_at_fixed_steps(GeneralisedAlpha{}, 2e-6);  // index 3: 6e-11 m, the round-off of 4e5 m, divided by h²
 }
 
 // The accuracy of the satellite's attitude is the same with and without a wheel. Both rotate about one axis in the
@@ -228,7 +228,7 @@ TEST(ToleranceScales, AccumulatedTurnsOfAWheelDoNotCount) {
     State x = model.reference_state();
     x.v[2] = 0.5;  // about the ground: φ¨ = −φ, because the bearing has no moment
     x.v[5] = rate;
-    simulate(model, x, with_tolerance<DormandPrince<Projection>>(1e-8), {.until = 20.0, .step = 1e-3}).run();
+    simulate(model, x, with_tolerance<DormandPrince<Projection>>(1e-8), {.end_time = 20.0, .step = 1e-3}).run();
     EXPECT_NEAR(x.q[2], 0.5 * std::sin(20.0), 1e-6) << rate;
     EXPECT_NEAR(x.v[2], 0.5 * std::cos(20.0), 1e-6) << rate;
   }

@@ -28,8 +28,8 @@ def vcpkg():
     with tempfile.TemporaryDirectory() as folder:
         script = Path(folder) / "port.cmake"
         calls = "vcpkg_cmake_configure vcpkg_cmake_install vcpkg_cmake_config_fixup vcpkg_fixup_pkgconfig vcpkg_install_copyright"
-        stand_ins = "\n".join(f'function({call})\n  message("{call}: ${{ARGN}}")\nendfunction()' for call in calls.split())
-        script.write_text(f"{stand_ins}\ninclude({port / 'portfile.cmake'})\n")
+        surrogate_friction = "\n".join(f'function({call})\n  message("{call}: ${{ARGN}}")\nendfunction()' for call in calls.split())
+        script.write_text(f"{surrogate_friction}\ninclude({port / 'portfile.cmake'})\n")
         ran = subprocess.run(["cmake", "-P", script], capture_output=True, text=True)
     expect(ran.returncode == 0, f"portfile.cmake: {ran.stderr}")
     said = dict(line.split(": ", 1) for line in ran.stderr.splitlines() if line.startswith("vcpkg_"))

@@ -4,7 +4,7 @@
 
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/forces/contact.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/run/contacts.hpp>
 #include <polybody/run/energy.hpp>
@@ -38,7 +38,7 @@ template <class Law>
 struct Exact {
   static constexpr int markers = 2;
   static constexpr bool is_load = false;
-  static constexpr Observes needs = Law::needs;
+  static constexpr MarkerKind needs = Law::needs;
   Law law;
   void check(std::string const& name) const { law.check(name); }
   bool may_touch(Frame<double> const& a, Frame<double> const& b) const { return law.may_touch(a, b); }
@@ -98,10 +98,10 @@ struct Heap {
       std::vector<Marker<Rigid<>>> many;
       for (auto const& b : balls) many.push_back(b.at(Vec3(0, 0, 0)));
       auto const group = model.apply(typename How<how>::Grouped{}, many, "balls");
-      model.pair_with(group, Plane{on_plane}, floor, "floor");
-      model.pair_with(group, Plane{on_plane}, plate.at(Vec3(0, 0, 0)), "plate");
-      model.pair_with(group, Ball{on_fixed}, post, "post");
-      model.pair_with(group, Ball{on_free}, heavy.at(Vec3(0, 0, 0)), "heavy ball");
+      model.add_partner(group, Plane{on_plane}, floor, "floor");
+      model.add_partner(group, Plane{on_plane}, plate.at(Vec3(0, 0, 0)), "plate");
+      model.add_partner(group, Ball{on_fixed}, post, "post");
+      model.add_partner(group, Ball{on_free}, heavy.at(Vec3(0, 0, 0)), "heavy ball");
     }
   }
   State start() const {
@@ -121,7 +121,7 @@ template <Applied how, class I>
 Fall fallen(I const& integrator, double step) {
   Heap<how> const heap;
   Fall fall{heap.start(), {}};
-  auto run = simulate(heap.model, fall.x, integrator, {.until = 0.5, .step = step});
+  auto run = simulate(heap.model, fall.x, integrator, {.end_time = 0.5, .step = step});
   fall.report = run.run();
   return fall;
 }
@@ -139,8 +139,8 @@ TEST(ContactGroup, FindsThePairsThatMayTouchOneAfterTheOther) {
       int const many = 77, few = planes + fixed;
       Group group;
       group.set_many(many);
-      for (int k = 0; k < planes; ++k) group.pair_with(on_plane, many + k, "plane");
-      for (int k = 0; k < fixed; ++k) group.pair_with(on_fixed, many + planes + k, "ball");
+      for (int k = 0; k < planes; ++k) group.add_partner(on_plane, many + k, "plane");
+      for (int k = 0; k < fixed; ++k) group.add_partner(on_fixed, many + planes + k, "ball");
       laws::Numbers number;
       std::vector<Frame<double>> frames;
       for (int k = 0; k < many + few; ++k) frames.push_back(number.frame());
@@ -194,7 +194,7 @@ TEST(ContactGroup, IsTheSumOfItsContacts) {
 // half a second.
 TEST(ContactGroup, MovesAsItsContactsDoWhateverNewtonKnowsOfThem) {
   for (double const tolerance : {1e-6, 1e-8}) {
-    GeneralizedAlpha const alpha{.tolerance = tolerance};
+    GeneralisedAlpha const alpha{.tolerance = tolerance};
     Fall const one_by_one = fallen<Applied::one_by_one>(alpha, 2e-4), grouped = fallen<Applied::grouped>(alpha, 2e-4),
                exactly = fallen<Applied::exactly>(alpha, 2e-4);
     EXPECT_LT(apart(grouped.x, one_by_one.x), 1e3 * tolerance + 5e-7);
@@ -205,7 +205,7 @@ TEST(ContactGroup, MovesAsItsContactsDoWhateverNewtonKnowsOfThem) {
 // --- cost in Newton iterations --------------------------------------------------------------------------------
 
 TEST(ContactGroup, StandInCostsNewtonHardlyMoreThanExactBlocks) {
-  GeneralizedAlpha const alpha{};
+  GeneralisedAlpha const alpha{};
   for (double const step : {2e-4, 1e-4}) {
     RunReport const all = fallen<Applied::one_by_one>(alpha, step).report,
                     own = fallen<Applied::grouped>(alpha, step).report,
@@ -235,10 +235,10 @@ RunReport rolled(double slip_speed) {
     balls.push_back(model.add(ball(mass, radius, {0, 0.3 * i, radius - mass * g / 1e5})));
     many.push_back(balls.back().at(Vec3(0, 0, 0)));
   }
-  model.pair_with(model.apply(Grouped{}, many), Plane{law}, model.ground().at({0, 0, 0}));
+  model.add_partner(model.apply(Grouped{}, many), Plane{law}, model.ground().at({0, 0, 0}));
   State x = model.reference_state();
   for (int i = 0; i < 10; ++i) model.set_velocity(x, balls[std::size_t(i)], {0.1 + 0.1 * i, 0, 0}, {0, 0, 0});
-  RunReport const report = simulate(model, x, GeneralizedAlpha{}, {.until = 0.5, .step = 1e-3}).run();
+  RunReport const report = simulate(model, x, GeneralisedAlpha{}, {.end_time = 0.5, .step = 1e-3}).run();
   for (int i = 0; i < 10; ++i)  // a solid ball that rolls keeps 5/7 of its velocity
     EXPECT_NEAR(frame(model, x, many[std::size_t(i)]).v.x(), 5.0 / 7.0 * (0.1 + 0.1 * i), slip_speed);
   return report;
@@ -263,9 +263,9 @@ TEST(ContactGroup, EnergyCountsWhatItStores) {
     many.push_back(model.add(ball(mass, radius, {100.0 * depth, 0, radius - depth})).at(Vec3(0, 0, 0)));
   auto const group = model.apply(Group{}, many);
   EXPECT_EQ(energy(model, model.reference_state()).forces, 0.0);
-  model.pair_with(group, on_plane, model.ground().at({0, 0, 0}));
+  model.add_partner(group, on_plane, model.ground().at({0, 0, 0}));
   EXPECT_NEAR(energy(model, model.reference_state()).forces, 0.5 * 2e4 * (1e-4 + 4e-4), 1e-12);
-  model.pair_with(group, on_fixed, model.ground().at({1.0 + radius + 0.3 - 0.05, 0, radius - 0.01}));
+  model.add_partner(group, on_fixed, model.ground().at({1.0 + radius + 0.3 - 0.05, 0, radius - 0.01}));
   EXPECT_NEAR(energy(model, model.reference_state()).forces, 5.0 + 2e5 * std::pow(0.05, 2.5) / 2.5, 1e-10);
 }
 
@@ -283,12 +283,12 @@ TEST(ContactGroup, RefusesMarkersAndHandlesOfAnotherModel) {
   auto const floor = a.model.ground().at({0, 0, 0});
   std::string const told = " was given a marker or handle of another model";
   EXPECT_TRUE(has(refusal([&] { a.model.apply(Group{}, b.many, "marbles"); }), "\"marbles\"" + told));
-  EXPECT_TRUE(has(refusal([&] { a.model.pair_with(of_b, on_plane, floor); }), "\"others\"" + told));
-  EXPECT_TRUE(
-      has(refusal([&] { a.model.pair_with(group, on_plane, b.model.ground().at({0, 0, 0})); }), "\"marbles\"" + told));
+  EXPECT_TRUE(has(refusal([&] { a.model.add_partner(of_b, on_plane, floor); }), "\"others\"" + told));
+  EXPECT_TRUE(has(refusal([&] { a.model.add_partner(group, on_plane, b.model.ground().at({0, 0, 0})); }),
+                  "\"marbles\"" + told));
   ElementHandle<Group> const unset;
-  EXPECT_TRUE(has(refusal([&] { a.model.pair_with(unset, on_plane, floor); }), "A handle made by default"));
-  System const system(a.model, with<Entries::motion>);
+  EXPECT_TRUE(has(refusal([&] { a.model.add_partner(unset, on_plane, floor); }), "A handle made by default"));
+  System const system(a.model, with<Capabilities::motion>);
   EXPECT_TRUE(has(refusal([&] { for_each_contact(system, of_b, [](auto const&) {}); }), "\"others\"" + told));
   EXPECT_TRUE(has(refusal([&] { for_each_contact(system, unset, [](auto const&) {}); }), "A handle made by default"));
   // a refused call has changed nothing
@@ -305,14 +305,14 @@ TEST(ContactGroup, NamesItselfAndTheOpponentInMessages) {
   auto const floor = f.model.ground().at({0, 0, 0});
   OnPlane bad = on_plane;
   bad.geometry.radius = -1.0;
-  EXPECT_TRUE(has(refusal([&] { f.model.pair_with(group, bad, floor, "floor"); }),
+  EXPECT_TRUE(has(refusal([&] { f.model.add_partner(group, bad, floor, "floor"); }),
                   "\"marbles\", \"floor\": the sphere's radius"));
-  f.model.pair_with(group, on_plane, floor);
-  EXPECT_TRUE(
-      has(refusal([&] { f.model.pair_with(group, bad, floor); }), "\"marbles\", \"opponent 2\": the sphere's radius"));
+  f.model.add_partner(group, on_plane, floor);
+  EXPECT_TRUE(has(refusal([&] { f.model.add_partner(group, bad, floor); }),
+                  "\"marbles\", \"opponent 2\": the sphere's radius"));
   // a group with its own contact partners also checks them
   Group full;
-  full.pair_with(bad, 0, "floor");
+  full.add_partner(bad, 0, "floor");
   EXPECT_TRUE(
       has(refusal([&] { f.model.apply(full, f.many, "more marbles"); }), "\"more marbles\": the sphere's radius"));
 }
@@ -321,9 +321,9 @@ TEST(ContactGroup, MayHaveNoMarkersAndNoOpponents) {
   Floor f;
   auto const empty = f.model.apply(Group{}, std::vector<Marker<Rigid<>>>{});
   f.model.apply(Group{}, f.many);
-  f.model.pair_with(empty, on_plane, f.model.ground().at({0, 0, 0}));
+  f.model.add_partner(empty, on_plane, f.model.ground().at({0, 0, 0}));
   State x = f.model.reference_state();
-  simulate(f.model, x, GeneralizedAlpha{}, {.until = 0.1, .step = 0.01}).run();
+  simulate(f.model, x, GeneralisedAlpha{}, {.end_time = 0.1, .step = 0.01}).run();
   EXPECT_EQ(x.q, f.model.reference_state().q);
 }
 

@@ -152,7 +152,7 @@ TEST(Contacts, RefuseNumbersThatCannotBeMeantByName) {
 // --- the concepts ---------------------------------------------------------------------------------------------
 
 struct WithoutBound {
-  static constexpr Observes needs = Observes::point;
+  static constexpr MarkerKind needs = MarkerKind::point;
   void check(std::string const&) const {}
   template <StateScalar T, class Visit>
   void for_each_point(Frame<T> const&, Frame<T> const&, Visit&&) const {}

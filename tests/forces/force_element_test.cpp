@@ -12,7 +12,7 @@ namespace force_element_test {
 // f = (k · pose, c · twist) of a frame, whose gradient is (k, c).
 struct Linear {
   static constexpr int markers = 2;
-  static constexpr Observes needs = Observes::point;
+  static constexpr MarkerKind needs = MarkerKind::point;
   static constexpr bool is_load = false;
   void check(std::string const&) const {}
   template <StateScalar T>
@@ -52,7 +52,7 @@ struct OfOneWrenchTooMany : Linear {
 };
 struct Silent {
   static constexpr int markers = 1;
-  static constexpr Observes needs = Observes::point;
+  static constexpr MarkerKind needs = MarkerKind::point;
   static constexpr bool is_load = false;
   void check(std::string const&) const {}
 };

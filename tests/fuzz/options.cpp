@@ -13,7 +13,7 @@
 namespace polybody::fuzz {
 
 struct Options {
-  double until = 1.0, step = 1e-3, ramp = 0.0, rho = 0.5, moment = 1.0;
+  double end_time = 1.0, step = 1e-3, ramp = 0.0, rho = 0.5, moment = 1.0;
   std::ptrdiff_t elements = 8, modes = 16;
   int cut = 0;
   std::string body = "lrvf", figure, files = "files";
@@ -27,7 +27,7 @@ std::optional<int> parse(Options& o, std::vector<std::string>& arguments) {
   line.positive("--elements", &o.elements, "elements");
   line.not_negative("--modes", &o.modes, "modes");
   line.positive("--step", &o.step, "time step [s]");
-  line.positive("--until", &o.until, "end of the run [s]");
+  line.positive("--until", &o.end_time, "end of the run [s]");
   line.not_negative("--ramp", &o.ramp, "end of the ramp [s]");
   line.between("--rho", &o.rho, 0.0, 1.0, "spectral radius");
   line.between("--cut", &o.cut, 0, 63, "pin");
@@ -48,7 +48,7 @@ void check(Options const& o) {
   require(std::find(bodies.begin(), bodies.end(), o.body) != bodies.end(), "--body is one of its names");
   require(o.elements > 0 && o.modes >= 0, "counts keep to their bounds");
   require(o.step > 0.0 && std::isfinite(o.step), "--step is positive and finite");
-  require(o.until > 0.0 && std::isfinite(o.until), "--until is positive and finite");
+  require(o.end_time > 0.0 && std::isfinite(o.end_time), "--until is positive and finite");
   require(o.ramp >= 0.0 && std::isfinite(o.ramp), "--ramp is not negative and finite");
   require(o.rho >= 0.0 && o.rho <= 1.0, "--rho is between 0 and 1");
   require(o.cut >= 0 && o.cut <= 63, "--cut is between 0 and 63");

@@ -8,7 +8,7 @@
 #include <polybody/forces/contact.hpp>
 #include <polybody/gradients/gradient.hpp>
 #include <polybody/gradients/sensitivities.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 
 #include "support/differences_of_runs.hpp"
 
@@ -49,10 +49,10 @@ auto heap(std::span<double const> p) {
   OnPlane const heavy_on_floor{{.radius = 0.2}, {.stiffness = p[1], .damping = 15.0}, rubber};
   if constexpr (grouped) {
     auto const group = model.apply(Group{}, many, "balls");
-    model.pair_with(group, on_floor, floor, "floor");
-    model.pair_with(group, on_heavy, middle, "heavy ball");
+    model.add_partner(group, on_floor, floor, "floor");
+    model.add_partner(group, on_heavy, middle, "heavy ball");
     auto const alone = model.apply(Group{}, std::vector{middle}, "heavy one");
-    model.pair_with(alone, heavy_on_floor, floor, "floor");
+    model.add_partner(alone, heavy_on_floor, floor, "floor");
   } else {
     for (auto const& one : many) {
       model.apply(on_floor, one, floor);
@@ -67,17 +67,18 @@ auto heap(std::span<double const> p) {
     return a[2] + 0.3 * a[0] + b[1] - 0.7 * b[0];
   };
   std::vector<Output<M>> outputs{{"place [m]", height}};
-  return rated(Scenario<M>{std::move(model), start, {.until = 0.12, .step = 1e-3}, std::move(outputs)}, height);
+  return with_objective(Scenario<M>{std::move(model), start, {.end_time = 0.12, .step = 1e-3}, std::move(outputs)},
+                        height);
 }
 
-GeneralizedAlpha const integrator{.tolerance = 1e-12, .start_correction = false};
+GeneralisedAlpha const integrator{.tolerance = 1e-12, .start_correction = false};
 
 TEST(GradientsOfContactGroups, AreThoseOfTheirPairs) {
   auto const grouped = [](std::span<double const> p) { return heap<true>(p); };
   auto const one_by_one = [](std::span<double const> p) { return heap<false>(p); };
-  VecX const expected = sensitivities(one_by_one, parameters, integrator).slopes.back().row(0).transpose(),
-             direct = sensitivities(grouped, parameters, integrator).slopes.back().row(0).transpose(),
-             adjoint = gradient(grouped, parameters, integrator).slopes;
+  VecX const expected = sensitivities(one_by_one, parameters, integrator).derivatives.back().row(0).transpose(),
+             direct = sensitivities(grouped, parameters, integrator).derivatives.back().row(0).transpose(),
+             adjoint = gradient(grouped, parameters, integrator).derivatives;
   MatX const differences = by_differences(grouped, parameters, integrator);
   VecX sizes(expected.size());
   for (Index j = 0; j < sizes.size(); ++j) sizes[j] = parameters[std::size_t(j)].size();

@@ -1,8 +1,8 @@
 // Derivatives of runs with multi-stage methods whose joints eliminate coordinates.
+#include <polybody/gradients/radau_linearised_step.hpp>
 #include <polybody/gradients/radau_step_adjoint.hpp>
-#include <polybody/gradients/radau_step_slope.hpp>
+#include <polybody/gradients/runge_kutta_linearised_step.hpp>
 #include <polybody/gradients/runge_kutta_step_adjoint.hpp>
-#include <polybody/gradients/runge_kutta_step_slope.hpp>
 
 #include <gtest/gtest.h>
 
@@ -15,19 +15,19 @@ using namespace polybody;
 namespace eliminated_stages_test {
 
 template <bool held, class I>
-void expect_slopes(double h, I const& integrator) {
+void expect_derivatives(double h, I const& integrator) {
   auto const make = hung_cables<AncfLinear, held>(h);
-  expect_slopes_of_runs(make, parameters_of_hung_cables, integrator, 1e-8);
-  expect_slopes_backwards(make, parameters_of_hung_cables, integrator, 1e-11);
+  expect_derivatives_of_runs(make, parameters_of_hung_cables, integrator, 1e-8);
+  expect_derivatives_backwards(make, parameters_of_hung_cables, integrator, 1e-11);
 }
 
-TEST(EliminatedInStages, ByRungeKuttaWithoutRows) { expect_slopes<false>(5e-4, RungeKutta4<>{}); }
+TEST(EliminatedInStages, ByRungeKuttaWithoutRows) { expect_derivatives<false>(5e-4, RungeKutta4<>{}); }
 TEST(EliminatedInStages, ByRungeKuttaWithProjectionOfARowThatStays) {
-  expect_slopes<true>(5e-4, RungeKutta4<Projection>{});
+  expect_derivatives<true>(5e-4, RungeKutta4<Projection>{});
 }
 TEST(EliminatedInStages, ByRadau) {
-  expect_slopes<false>(2e-3, Radau{});
-  expect_slopes<true>(2e-3, Radau{});
+  expect_derivatives<false>(2e-3, Radau{});
+  expect_derivatives<true>(2e-3, Radau{});
 }
 TEST(EliminatedInStages, EventsSeeAndChangeWholeStates) {
   expect_impact_of_cables(5e-4, RungeKutta4<>{});

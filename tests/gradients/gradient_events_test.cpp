@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/newmark.hpp>
 
 #include "support/impacts_of_whole_states.hpp"
@@ -33,108 +33,110 @@ auto rated_by_outputs(Make const& make) {
     auto const way = [weight, first = outputs[0]](M const& model, State const& x) {
       return weight * first.value(model, x);
     };
-    return rated(Scenario<M>(std::move(scenario)), end, way);
+    return with_objective(Scenario<M>(std::move(scenario)), end, way);
   };
 }
 
 /// Value and derivative of this objective function by forward sensitivities. The integral includes the derivatives of
 /// the step lengths.
-inline std::pair<double, VecX> by_direct_differentiation(Sensitivities const& s, bool integrates) {
+inline std::pair<double, VecX> by_direct_differentiation(SensitivityResult const& s, bool integrates) {
   double value = 0.0;
-  VecX slopes = VecX::Zero(s.slopes[0].cols());
+  VecX derivatives = VecX::Zero(s.derivatives[0].cols());
   for (Index i = 0; i < s.values.back().size(); ++i) {
     value += double(i + 1) * s.values.back()[i];
-    slopes += double(i + 1) * s.slopes.back().row(i).transpose();
+    derivatives += double(i + 1) * s.derivatives.back().row(i).transpose();
   }
   for (std::size_t k = 1; integrates && k < s.times.size(); ++k) {
     double const h = s.times[k] - s.times[k - 1], mean = 0.5 * (s.values[k][0] + s.values[k - 1][0]);
     value += h * mean;
-    slopes += 0.5 * h * (s.slopes[k].row(0) + s.slopes[k - 1].row(0)).transpose() +
-              mean * (s.time_slopes[k] - s.time_slopes[k - 1]);
+    derivatives += 0.5 * h * (s.derivatives[k].row(0) + s.derivatives[k - 1].row(0)).transpose() +
+                   mean * (s.time_derivatives[k] - s.time_derivatives[k - 1]);
   }
-  return {value, slopes};
+  return {value, derivatives};
 }
 
 template <bool integrates = true, class Make, class I>
-void expect_direct_slopes(Make const& make, std::vector<Parameter> const& parameters, I const& integrator,
-                          double within = 1e-10) {
-  auto const [value, slopes] = by_direct_differentiation(sensitivities(make, parameters, integrator), integrates);
-  Gradient const g = gradient(rated_by_outputs<integrates>(make), parameters, integrator);
+void expect_direct_derivatives(Make const& make, std::vector<Parameter> const& parameters, I const& integrator,
+                               double within = 1e-10) {
+  auto const [value, derivatives] = by_direct_differentiation(sensitivities(make, parameters, integrator), integrates);
+  GradientResult const g = gradient(rated_by_outputs<integrates>(make), parameters, integrator);
   EXPECT_NEAR(g.value, value, 1e-12 * (1.0 + std::abs(value)));
   EXPECT_LT(g.left, 1e-10);
   for (std::size_t j = 0; j < parameters.size(); ++j) {
     double const size = parameters[j].size();
-    EXPECT_NEAR(size * g.slopes[Index(j)], size * slopes[Index(j)], within * (1.0 + std::abs(size * slopes[Index(j)])))
+    EXPECT_NEAR(size * g.derivatives[Index(j)], size * derivatives[Index(j)],
+                within * (1.0 + std::abs(size * derivatives[Index(j)])))
         << parameters[j].name;
   }
 }
 
 TEST(GradientThroughEvents, BouncesFollowDirectDifferentiation) {
-  expect_direct_slopes(ball<true>, of_ball, GeneralizedAlpha{});
-  expect_direct_slopes(ball<true>, of_ball, Newmark{});
+  expect_direct_derivatives(ball<true>, of_ball, GeneralisedAlpha{});
+  expect_direct_derivatives(ball<true>, of_ball, Newmark{});
 }
 TEST(GradientThroughEvents, AFallThatEndsTheRunFollowsDirectDifferentiation) {
-  expect_direct_slopes(ball<false>, of_ball, GeneralizedAlpha{.rho_inf = 0.6});
+  expect_direct_derivatives(ball<false>, of_ball, GeneralisedAlpha{.rho_inf = 0.6});
 }
 TEST(GradientThroughCorners, APushFollowsDirectDifferentiation) {
-  expect_direct_slopes(pushed, {{"T [s]", 0.3137}, {"F [N]", 3.0}, {"m [kg]", 2.0}}, GeneralizedAlpha{.rho_inf = 0.7});
+  expect_direct_derivatives(pushed, {{"T [s]", 0.3137}, {"F [N]", 3.0}, {"m [kg]", 2.0}},
+                            GeneralisedAlpha{.rho_inf = 0.7});
 }
 TEST(GradientThroughCorners, ARampOfADriveFollowsDirectDifferentiation) {
-  expect_direct_slopes(driven<Constraint>, of_drive, GeneralizedAlpha{.rho_inf = 0.7});
+  expect_direct_derivatives(driven<Constraint>, of_drive, GeneralisedAlpha{.rho_inf = 0.7});
   // on stiff pins the forward sensitivities are accurate to 1e-8 only: they change by this amount with the size of
   // the difference
-  expect_direct_slopes(driven<Penalty>, of_drive, Trapezoidal{}, 1e-8);
+  expect_direct_derivatives(driven<Penalty>, of_drive, Trapezoidal{}, 1e-8);
 }
 TEST(GradientThroughEvents, ImpactsOfAMechanismFollowDirectDifferentiation) {
-  expect_direct_slopes(stopped<Constraint>, of_stop, GeneralizedAlpha{.rho_inf = 0.7});
-  expect_direct_slopes(stopped<Penalty>, of_stop, Newmark{});
+  expect_direct_derivatives(stopped<Constraint>, of_stop, GeneralisedAlpha{.rho_inf = 0.7});
+  expect_direct_derivatives(stopped<Penalty>, of_stop, Newmark{});
 }
 TEST(GradientThroughEvents, AnEventUnderADriveFollowsDirectDifferentiation) {
-  expect_direct_slopes(braked, of_brake, GeneralizedAlpha{.rho_inf = 0.7});
+  expect_direct_derivatives(braked, of_brake, GeneralisedAlpha{.rho_inf = 0.7});
 }
 TEST(GradientThroughEvents, AnEventMayChangeTheStateByItsForces) {
   auto const pulled = [](P p) {
     auto scenario = stopped<Constraint>(std::array{1.2, p[0], p[1], 0.6});
-    scenario.options.events[0].then = [k = p[2]](State& x) { x.v *= -k * (0.01 * x.lambda.norm() + 0.02 * x.a[2]); };
+    scenario.options.events[0].action = [k = p[2]](State& x) { x.v *= -k * (0.01 * x.lambda.norm() + 0.02 * x.a[2]); };
     return scenario;
   };
   // multipliers contain the round-off of the constraint equations over βh²: both derivatives change by 1.4e-7 from
   // solver to solver
-  expect_direct_slopes(pulled, {{"gravity [m/s²]", 9.81}, {"angle [rad]", 1.4}, {"factor [1]", 0.3}},
-                       GeneralizedAlpha{.rho_inf = 0.7}, 1e-6);
+  expect_direct_derivatives(pulled, {{"gravity [m/s²]", 9.81}, {"angle [rad]", 1.4}, {"factor [1]", 0.3}},
+                            GeneralisedAlpha{.rho_inf = 0.7}, 1e-6);
 }
 TEST(GradientThroughEvents, JumpsInSpaceFollowDirectDifferentiation) {
-  expect_direct_slopes(spun, {{"spin [rad/s]", 3.0}, {"height [m]", 0.6}, {"gravity [m/s²]", 9.81}},
-                       GeneralizedAlpha{});
+  expect_direct_derivatives(spun, {{"spin [rad/s]", 3.0}, {"height [m]", 0.6}, {"gravity [m/s²]", 9.81}},
+                            GeneralisedAlpha{});
 }
 TEST(GradientThroughEvents, LengthsOfStepsAndOfTheRunAreParameters) {
   auto const swung = [](P p) {
     auto scenario = stopped<Constraint>(std::array{1.2, 9.81, 10.0, 0.5});
-    scenario.options.until = p[0];
+    scenario.options.end_time = p[0];
     scenario.options.step = p[1];
     scenario.start.t = p[2];
     return scenario;
   };
   // the start correction for the jerk uses a finite difference over a part of a step; its round-off is 1e-10 of the
   // generalised velocities
-  expect_direct_slopes(swung, {{"until [s]", 0.508}, {"step [s]", 0.01, 0.1}, {"start [s]", 0.0, 0.1}},
-                       GeneralizedAlpha{}, 1e-9);
-  expect_direct_slopes(swung, {{"until [s]", 0.508}, {"step [s]", 0.01, 0.1}, {"start [s]", 0.0, 0.1}},
-                       GeneralizedAlpha{.start_correction = false}, 2e-10);
+  expect_direct_derivatives(swung, {{"until [s]", 0.508}, {"step [s]", 0.01, 0.1}, {"start [s]", 0.0, 0.1}},
+                            GeneralisedAlpha{}, 1e-9);
+  expect_direct_derivatives(swung, {{"until [s]", 0.508}, {"step [s]", 0.01, 0.1}, {"start [s]", 0.0, 0.1}},
+                            GeneralisedAlpha{.start_correction = false}, 2e-10);
 }
 TEST(GradientThroughEvents, CornersOfOptionsAtFixedTimesFollowDirectDifferentiation) {
   auto const swung = [](P p) {
     auto scenario = stopped<Constraint>(std::array{p[0], p[1], 10.0, 0.5});
-    scenario.options.corners = {0.2013, 0.31};
+    scenario.options.breakpoints = {0.2013, 0.31};
     return scenario;
   };
-  expect_direct_slopes(swung, {{"length [m]", 1.2}, {"gravity [m/s²]", 9.81}}, GeneralizedAlpha{});
+  expect_direct_derivatives(swung, {{"length [m]", 1.2}, {"gravity [m/s²]", 9.81}}, GeneralisedAlpha{});
 }
 TEST(GradientThroughEvents, ImpactsOfWholeStatesFollowDirectDifferentiation) {
-  expect_direct_slopes(nut_on_thread, of_nut, GeneralizedAlpha{});
+  expect_direct_derivatives(nut_on_thread, of_nut, GeneralisedAlpha{});
   // after the impact of cables stiff terms dominate the change of the accelerations; these derivatives contain
   // round-off
-  expect_direct_slopes<false>(impact_of_cables(2e-3), of_impact, GeneralizedAlpha{.rho_inf = 0.6}, 1e-9);
+  expect_direct_derivatives<false>(impact_of_cables(2e-3), of_impact, GeneralisedAlpha{.rho_inf = 0.6}, 1e-9);
 }
 
 TEST(GradientThroughEvents, ABounceIsThatOfTheClosedForm) {
@@ -143,15 +145,15 @@ TEST(GradientThroughEvents, ABounceIsThatOfTheClosedForm) {
     using M = std::remove_cvref_t<decltype(scenario.model)>;
     auto const height = [](auto const&, auto const& x) { return x.q[1]; };
     auto const falls = [](auto const&, auto const& x) { return x.v[1]; };
-    return rated(Scenario<M>(std::move(scenario)), height, falls);
+    return with_objective(Scenario<M>(std::move(scenario)), height, falls);
   };
-  Gradient const g = gradient(rated_ball, of_ball, GeneralizedAlpha{});
+  GradientResult const g = gradient(rated_ball, of_ball, GeneralisedAlpha{});
   std::vector<double> const p{9.81, 1.0, 0.8};
   // v is linear between impacts, so the sum over steps is exact: ∫v dt = y − h, although v jumps
   EXPECT_NEAR(g.value, 2.0 * flight(p, 2, 1.7)[0] - p[1], 1e-11);
   for (std::size_t j = 0; j < 3; ++j)
-    EXPECT_NEAR(g.slopes[Index(j)], slope_of([](auto const& q) { return 2.0 * flight(q, 2, 1.7)[0] - q[1]; }, p, j),
-                1e-9)
+    EXPECT_NEAR(g.derivatives[Index(j)],
+                slope_of([](auto const& q) { return 2.0 * flight(q, 2, 1.7)[0] - q[1]; }, p, j), 1e-9)
         << j;
   EXPECT_EQ(g.run.events.size(), 2u);
 }
@@ -160,27 +162,28 @@ TEST(GradientThroughEvents, TheTimeOfAFallIsThatOfTheClosedForm) {
   auto const timed = [](P p) {
     auto scenario = ball<false>(p);
     using M = std::remove_cvref_t<decltype(scenario.model)>;
-    return rated(Scenario<M>(std::move(scenario)), NoTerm{}, [](auto const&, State const&) { return 1.0; });
+    return with_objective(Scenario<M>(std::move(scenario)), NoTerm{}, [](auto const&, State const&) { return 1.0; });
   };
-  Gradient const g = gradient(timed, of_ball, GeneralizedAlpha{.rho_inf = 0.6});
+  GradientResult const g = gradient(timed, of_ball, GeneralisedAlpha{.rho_inf = 0.6});
   double const t = std::sqrt(2.0 / 9.81);
   EXPECT_NEAR(g.value, t, 1e-13);
-  EXPECT_NEAR(g.slopes[0], -0.5 * t / 9.81, 1e-11);
-  EXPECT_NEAR(g.slopes[1], 0.5 * t, 1e-11);
+  EXPECT_NEAR(g.derivatives[0], -0.5 * t / 9.81, 1e-11);
+  EXPECT_NEAR(g.derivatives[1], 0.5 * t, 1e-11);
   EXPECT_EQ(g.run.warnings.size(), 1u);  // about the restitution, whose impact comes after the end of the run
 }
 
 TEST(GradientThroughEvents, EverySnapshotCountGivesTheSameBits) {
   auto const with = [](std::size_t snapshots) {
-    return gradient(rated_by_outputs(braked), of_brake, GeneralizedAlpha{.rho_inf = 0.7}, {.snapshots = snapshots});
+    return gradient(rated_by_outputs(braked), of_brake, GeneralisedAlpha{.rho_inf = 0.7}, {.snapshots = snapshots});
   };
-  Gradient const all = with(1000);
+  GradientResult const all = with(1000);
   EXPECT_EQ(all.reversal.taken, all.reversal.steps);
   for (std::size_t const snapshots : {1u, 2u, 3u, 7u, 30u}) {
-    Gradient const few = with(snapshots);
+    GradientResult const few = with(snapshots);
     EXPECT_GT(few.reversal.taken, few.reversal.steps);
     EXPECT_EQ(few.value, all.value);
-    for (Index j = 0; j < all.slopes.size(); ++j) EXPECT_EQ(few.slopes[j], all.slopes[j]) << snapshots << ' ' << j;
+    for (Index j = 0; j < all.derivatives.size(); ++j)
+      EXPECT_EQ(few.derivatives[j], all.derivatives[j]) << snapshots << ' ' << j;
   }
 }
 
@@ -191,7 +194,7 @@ TEST(GradientThroughEvents, RefusesWhatHasNoDerivative) {
       change(scenario.options, p[0]);
       return scenario;
     };
-    return refusal([&] { gradient(rated_by_outputs(make), {{"p [s]", 0.5}}, GeneralizedAlpha{}); });
+    return refusal([&] { gradient(rated_by_outputs(make), {{"p [s]", 0.5}}, GeneralisedAlpha{}); });
   };
   auto const event = [](char const* name, auto const& value) {
     return Event{.name = name, .value = [value](State const& x) { return value(x.t); }};
@@ -208,14 +211,15 @@ TEST(GradientThroughEvents, RefusesWhatHasNoDerivative) {
   EXPECT_TRUE(
       has(said([&](RunOptions& o, double p) { o.events = {event("end", [p](double t) { return t - p - 0.3; })}; }),
           "an event, and a corner or the end"));
-  EXPECT_TRUE(has(said([](RunOptions& o, double p) { o.corners = {p, 0.5}; }), "gradient: two corners"));
-  EXPECT_TRUE(has(said([](RunOptions& o, double p) { o.corners = {p, 0.5003}; }), "change their order with \"p [s]\""));
+  EXPECT_TRUE(has(said([](RunOptions& o, double p) { o.breakpoints = {p, 0.5}; }), "gradient: two corners"));
+  EXPECT_TRUE(
+      has(said([](RunOptions& o, double p) { o.breakpoints = {p, 0.5003}; }), "change their order with \"p [s]\""));
   EXPECT_TRUE(has(said([](RunOptions& o, double p) {
-                    o.until = 0.5;
-                    o.corners = {p};
+                    o.end_time = 0.5;
+                    o.breakpoints = {p};
                   }),
                   "gradient: a corner at the end of the run, t = 0.5 s, moves"));
-  EXPECT_TRUE(has(said([](RunOptions& o, double) { o.halvings = 3; }), "gradient: a run with halved steps"));
+  EXPECT_TRUE(has(said([](RunOptions& o, double) { o.max_step_halvings = 3; }), "gradient: a run with halved steps"));
 }
 
 }  // namespace gradient_events_test

@@ -1,8 +1,8 @@
 // Adjoint gradients of runs with Runge–Kutta methods and Radau against their forward sensitivities.
+#include <polybody/gradients/radau_linearised_step.hpp>
 #include <polybody/gradients/radau_step_adjoint.hpp>
-#include <polybody/gradients/radau_step_slope.hpp>
+#include <polybody/gradients/runge_kutta_linearised_step.hpp>
 #include <polybody/gradients/runge_kutta_step_adjoint.hpp>
-#include <polybody/gradients/runge_kutta_step_slope.hpp>
 
 #include <gtest/gtest.h>
 
@@ -19,36 +19,37 @@ namespace gradient_stages_test {
 
 TEST(GradientOfStages, RigidOnConstraintByRungeKuttaWithProjection) {
   for (double const held : {0.0, 1.0})
-    expect_direct_slopes(rated_links<Rigid<>, Constraint>(held), RungeKutta4<Projection>{}, 1e-11);
+    expect_direct_derivatives(rated_links<Rigid<>, Constraint>(held), RungeKutta4<Projection>{}, 1e-11);
 }
 TEST(GradientOfStages, RigidOnConstraintByRungeKuttaWithBaumgarte) {
-  expect_direct_slopes(rated_links<Rigid<>, Constraint>(1.0),
-                       RungeKutta4<Baumgarte>{.stabilisation = {.alpha = 20.0, .beta = 20.0}}, 1e-11);
+  expect_direct_derivatives(rated_links<Rigid<>, Constraint>(1.0),
+                            RungeKutta4<Baumgarte>{.stabilisation = {.alpha = 20.0, .beta = 20.0}}, 1e-11);
 }
 TEST(GradientOfStages, RigidOnConstraintByDormandPrinceWithItsChoiceOfStepsFrozen) {
-  expect_direct_slopes(rated_links<Rigid<>, Constraint>(1.0),
-                       DormandPrince<Projection>{.relative_tolerance = 1e-8, .absolute_tolerance = 1e-10}, 1e-11);
+  expect_direct_derivatives(rated_links<Rigid<>, Constraint>(1.0),
+                            DormandPrince<Projection>{.relative_tolerance = 1e-8, .absolute_tolerance = 1e-10}, 1e-11);
 }
 
 TEST(GradientOfStages, RigidOnConstraintByRadau) {
-  expect_direct_slopes(rated_links<Rigid<>, Constraint>(0.0), Radau{}, 1e-11);
-  expect_direct_slopes(rated_links<Rigid<>, Constraint>(1.0), Radau{}, 1e-10);
+  expect_direct_derivatives(rated_links<Rigid<>, Constraint>(0.0), Radau{}, 1e-11);
+  expect_direct_derivatives(rated_links<Rigid<>, Constraint>(1.0), Radau{}, 1e-10);
 }
 TEST(GradientOfStages, LrvfOnBushingByRadau) {
-  expect_direct_slopes(rated_links<Lrvf<>, Bushing>(0.0), Radau{}, 1e-11);
+  expect_direct_derivatives(rated_links<Lrvf<>, Bushing>(0.0), Radau{}, 1e-11);
 }
 
 TEST(GradientOfStages, HasTheSameBitsWithFewSnapshots) {
   auto const make = rated_links<Rigid<>, Constraint>(1.0);
   DormandPrince<Projection> const exact{.relative_tolerance = 1e-12, .absolute_tolerance = 1e-14};
-  Gradient const by_radau = gradient(make, parameters_of_two_links, Radau{});
+  GradientResult const by_radau = gradient(make, parameters_of_two_links, Radau{});
   for (std::size_t const snapshots : {2u, 5u}) {
-    Gradient const all = gradient(make, parameters_of_two_links, exact),
-                   few = gradient(make, parameters_of_two_links, exact, {.snapshots = snapshots});
+    GradientResult const all = gradient(make, parameters_of_two_links, exact),
+                         few = gradient(make, parameters_of_two_links, exact, {.snapshots = snapshots});
     EXPECT_EQ(few.value, all.value);
-    EXPECT_EQ(few.slopes, all.slopes);
+    EXPECT_EQ(few.derivatives, all.derivatives);
     EXPECT_GT(few.reversal.taken, all.reversal.taken);
-    EXPECT_EQ(gradient(make, parameters_of_two_links, Radau{}, {.snapshots = snapshots}).slopes, by_radau.slopes);
+    EXPECT_EQ(gradient(make, parameters_of_two_links, Radau{}, {.snapshots = snapshots}).derivatives,
+              by_radau.derivatives);
   }
 }
 
@@ -66,7 +67,7 @@ TEST(GradientOfStages, RefusesTimesThatEndItsSteps) {
                   }),
                   "gradient: runs with events or corners go back under the generalised-α family alone"));
   EXPECT_TRUE(
-      has(said([](RunOptions& o, double p) { o.until = 0.05 * p; }), "gradient: runs whose start, end or steps"));
+      has(said([](RunOptions& o, double p) { o.end_time = 0.05 * p; }), "gradient: runs whose start, end or steps"));
 }
 
 }  // namespace gradient_stages_test

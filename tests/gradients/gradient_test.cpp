@@ -7,7 +7,7 @@
 #include <polybody/forces/contact.hpp>
 #include <polybody/forces/spring_damper.hpp>
 #include <polybody/gradients/sensitivities.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/policies/penalty.hpp>
@@ -25,8 +25,8 @@ namespace gradient_test {
 using namespace touched_chain;
 
 /// A mass of 2 kg on a spring k and a damper c along x, with the spring stretched by 1 m. J = x(T) + ∫ x dt.
-auto oscillator(double until, double step) {
-  return [until, step](P p) {
+auto oscillator(double end_time, double step) {
+  return [end_time, step](P p) {
     using M = Model<Bodies<planar::Rigid>, Joints<>, Forces<SpringDamper>>;
     M model;
     auto const mass = model.add(planar::Rigid(2.0, 1.0, Placement::at({3.0, 0, 0})), "mass");
@@ -34,7 +34,7 @@ auto oscillator(double until, double step) {
                 mass.at(Vec2(0, 0)), "spring");
     auto const place = [](auto const&, auto const& x) { return x.q[0]; };
     State const start = model.reference_state();
-    return rated(Scenario<M>{std::move(model), start, {.until = until, .step = step}}, place, place);
+    return with_objective(Scenario<M>{std::move(model), start, {.end_time = end_time, .step = step}}, place, place);
   };
 }
 std::vector<Parameter> const of_oscillator{{"k [N/m]", 50.0}, {"c [N s/m]", 3.0}};
@@ -48,7 +48,7 @@ double closed_form(double k, double c, double t) {
          (e * (-2.0 * delta * cosine + (w2 - delta * delta) / w * sine) + 2.0 * delta) / (delta * delta + w2);
 }
 
-TEST(Gradient, OfAnOscillatorApproachesTheClosedFormAtSecondOrder) {
+TEST(GradientResult, OfAnOscillatorApproachesTheClosedFormAtSecondOrder) {
   double const k = 50.0, c = 3.0, e = 1e-3;
   auto const slope = [&](double ek, double ec) {
     auto const at = [&](double s) { return closed_form(k + s * ek, c + s * ec, 1.0); };
@@ -56,9 +56,9 @@ TEST(Gradient, OfAnOscillatorApproachesTheClosedFormAtSecondOrder) {
   };
   std::array const expected{closed_form(k, c, 1.0), slope(e, 0.0), slope(0.0, e)};
   auto const error = [&](double h) {
-    Gradient const g = gradient(oscillator(1.0, h), of_oscillator, GeneralizedAlpha{});
-    return std::array{std::abs(g.value - expected[0]), std::abs(g.slopes[0] - expected[1]),
-                      std::abs(g.slopes[1] - expected[2])};
+    GradientResult const g = gradient(oscillator(1.0, h), of_oscillator, GeneralisedAlpha{});
+    return std::array{std::abs(g.value - expected[0]), std::abs(g.derivatives[0] - expected[1]),
+                      std::abs(g.derivatives[1] - expected[2])};
   };
   auto const coarse = error(1e-2), fine = error(5e-3);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -67,37 +67,37 @@ TEST(Gradient, OfAnOscillatorApproachesTheClosedFormAtSecondOrder) {
   }
 }
 
-TEST(Gradient, HasTheSameBitsWithFewSnapshots) {
+TEST(GradientResult, HasTheSameBitsWithFewSnapshots) {
   auto const make = oscillator(1.0, 1e-2);
-  Gradient const all = gradient(make, of_oscillator, GeneralizedAlpha{});
+  GradientResult const all = gradient(make, of_oscillator, GeneralisedAlpha{});
   EXPECT_EQ(all.reversal.steps, 100u);
   EXPECT_EQ(all.reversal.taken, 100u);
   EXPECT_EQ(all.run.steps, 100);
   for (std::size_t const snapshots : {1u, 2u, 7u, 50u}) {
-    Gradient const few = gradient(make, of_oscillator, GeneralizedAlpha{}, {.snapshots = snapshots});
+    GradientResult const few = gradient(make, of_oscillator, GeneralisedAlpha{}, {.snapshots = snapshots});
     EXPECT_EQ(few.value, all.value) << snapshots;
-    EXPECT_EQ(few.slopes, all.slopes) << snapshots;
+    EXPECT_EQ(few.derivatives, all.derivatives) << snapshots;
     EXPECT_EQ(few.reversal.snapshots, snapshots);
     EXPECT_GT(few.reversal.taken, 100u);
     EXPECT_EQ(few.run.steps, 100);
   }
-  Gradient const within = gradient(make, of_oscillator, GeneralizedAlpha{}, {.memory = 7.9 * all.snapshot_size});
+  GradientResult const within = gradient(make, of_oscillator, GeneralisedAlpha{}, {.memory = 7.9 * all.snapshot_size});
   EXPECT_EQ(within.reversal.snapshots, 7u);
-  EXPECT_EQ(within.slopes, all.slopes);
+  EXPECT_EQ(within.derivatives, all.derivatives);
 }
 
-TEST(Gradient, TakesAFunctionOfStatesInDoublesByDifferences) {
+TEST(GradientResult, TakesAFunctionOfStatesInDoublesByDifferences) {
   auto const recorded = oscillator(0.3, 1e-2);
   auto const by_differences = [&](P p) {
     auto scenario = recorded(p);
     using M = std::remove_cvref_t<decltype(scenario.model)>;
     auto const place = [](M const&, State const& x) { return x.q[0]; };
-    return rated(Scenario<M>(std::move(scenario)), place, place);
+    return with_objective(Scenario<M>(std::move(scenario)), place, place);
   };
-  Gradient const a = gradient(recorded, of_oscillator, GeneralizedAlpha{}),
-                 b = gradient(by_differences, of_oscillator, GeneralizedAlpha{});
+  GradientResult const a = gradient(recorded, of_oscillator, GeneralisedAlpha{}),
+                       b = gradient(by_differences, of_oscillator, GeneralisedAlpha{});
   EXPECT_EQ(a.value, b.value);
-  EXPECT_LT((a.slopes - b.slopes).norm(), 1e-11 * a.slopes.norm());
+  EXPECT_LT((a.derivatives - b.derivatives).norm(), 1e-11 * a.derivatives.norm());
 }
 
 /// A ball that falls on a plane, slides and begins to roll. Parameters: radius, modulus, friction, height, initial
@@ -117,22 +117,23 @@ auto const ball = [](P p) {
   model.set_velocity(start, body, {p[4], 0, 0}, Vec3::Zero());
   auto const rated_by = [](auto const&, auto const& x) { return x.q[0] + 2.0 * x.q[2] + 0.1 * x.v[4]; };
   std::vector<Output<M>> outputs{{"where and how fast [1]", rated_by}};
-  return rated(Scenario<M>{std::move(model), start, {.until = 0.12, .step = 5e-4}, std::move(outputs)}, rated_by);
+  return with_objective(Scenario<M>{std::move(model), start, {.end_time = 0.12, .step = 5e-4}, std::move(outputs)},
+                        rated_by);
 };
 std::vector<Parameter> const of_ball{
     {"radius [m]", 0.1}, {"modulus [Pa]", 1e6}, {"friction [1]", 0.3}, {"height [m]", 0.02}, {"speed [m/s]", 1.0}};
 
-TEST(Gradient, GoesThroughAContactWithFriction) {
-  GeneralizedAlpha const integrator{.start_correction = false};
-  Gradient const g = gradient(ball, of_ball, integrator);
-  VecX const direct = sensitivities(ball, of_ball, integrator).slopes.back().row(0).transpose();
+TEST(GradientResult, GoesThroughAContactWithFriction) {
+  GeneralisedAlpha const integrator{.start_correction = false};
+  GradientResult const g = gradient(ball, of_ball, integrator);
+  VecX const direct = sensitivities(ball, of_ball, integrator).derivatives.back().row(0).transpose();
   VecX const expected = by_differences(ball, of_ball, integrator).row(0).transpose();
   for (Index j = 0; j < direct.size(); ++j) {
     double const size = of_ball[std::size_t(j)].size();
-    EXPECT_NEAR(size * g.slopes[j], size * direct[j], 1e-11 * (1.0 + std::abs(size * direct[j]))) << j;
+    EXPECT_NEAR(size * g.derivatives[j], size * direct[j], 1e-11 * (1.0 + std::abs(size * direct[j]))) << j;
     // the force is d^(3/2) at first contact, which has no second derivative there
-    EXPECT_NEAR(size * g.slopes[j], size * expected[j], 1e-5 * (1.0 + std::abs(size * expected[j]))) << j;
-    EXPECT_GT(std::abs(size * g.slopes[j]), 1e-5) << j;
+    EXPECT_NEAR(size * g.derivatives[j], size * expected[j], 1e-5 * (1.0 + std::abs(size * expected[j]))) << j;
+    EXPECT_GT(std::abs(size * g.derivatives[j]), 1e-5) << j;
   }
 }
 
@@ -153,38 +154,39 @@ auto const disc = [](P p) {
   model.set_velocity(start, wheel, -w.cross(contact), w);
   auto const rated_by = [](auto const&, auto const& x) { return x.q[0] + 2.0 * x.q[1] + x.q[2]; };
   std::vector<Output<M>> outputs{{"where [m]", rated_by}};
-  return rated(Scenario<M>{std::move(model), start, {.until = 0.2, .step = 4e-3}, std::move(outputs)}, rated_by);
+  return with_objective(Scenario<M>{std::move(model), start, {.end_time = 0.2, .step = 4e-3}, std::move(outputs)},
+                        rated_by);
 };
 
-TEST(Gradient, GoesThroughRowsOfSpeeds) {
+TEST(GradientResult, GoesThroughRowsOfSpeeds) {
   std::vector<Parameter> const parameters{{"mass [kg]", 2.0}, {"inertia [kg m²]", 0.15}, {"spin [rad/s]", 5.0}};
-  GeneralizedAlpha const integrator{.rho_inf = 0.8};
-  Gradient const g = gradient(disc, parameters, integrator);
-  VecX const direct = sensitivities(disc, parameters, integrator).slopes.back().row(0).transpose();
+  GeneralisedAlpha const integrator{.rho_inf = 0.8};
+  GradientResult const g = gradient(disc, parameters, integrator);
+  VecX const direct = sensitivities(disc, parameters, integrator).derivatives.back().row(0).transpose();
   VecX const expected = by_differences(disc, parameters, integrator).row(0).transpose();
-  EXPECT_LT((g.slopes - direct).norm(), 1e-11 * (1.0 + direct.norm()));
-  EXPECT_LT((g.slopes - expected).norm(), 1e-8 * (1.0 + expected.norm()));
+  EXPECT_LT((g.derivatives - direct).norm(), 1e-11 * (1.0 + direct.norm()));
+  EXPECT_LT((g.derivatives - expected).norm(), 1e-8 * (1.0 + expected.norm()));
 }
 
-TEST(Gradient, IsTheSameWhereParametersSayWhatTheyTouch) {
-  Gradient const a = gradient(chain, of_chain(true), GeneralizedAlpha{}),
-                 b = gradient(chain, of_chain(false), GeneralizedAlpha{});
+TEST(GradientResult, IsTheSameWhereParametersSayWhatTheyTouch) {
+  GradientResult const a = gradient(chain, of_chain(true), GeneralisedAlpha{}),
+                       b = gradient(chain, of_chain(false), GeneralisedAlpha{});
   for (Index j = 0; j < 15; ++j) {
     double const size = of_chain(true)[std::size_t(j)].size();
-    EXPECT_NEAR(size * a.slopes[j], size * b.slopes[j], 1e-12) << j;
-    EXPECT_GT(std::abs(size * a.slopes[j]), 1e-8) << j;
+    EXPECT_NEAR(size * a.derivatives[j], size * b.derivatives[j], 1e-12) << j;
+    EXPECT_GT(std::abs(size * a.derivatives[j]), 1e-8) << j;
   }
 }
 
-TEST(Gradient, DirectDifferentiationIsTheSameWhereParametersSayWhatTheyTouch) {
-  expect_same_slopes_with_touches(GeneralizedAlpha{});
+TEST(GradientResult, DirectDifferentiationIsTheSameWhereParametersSayWhatTheyTouch) {
+  expect_same_derivatives_with_touches(GeneralisedAlpha{});
 }
 
-TEST(Gradient, DirectDifferentiationRefusesParametersThatTouchMoreThanTheySay) {
-  auto const said = [](std::size_t j, std::vector<std::string> touches) {
+TEST(GradientResult, DirectDifferentiationRefusesParametersThatTouchMoreThanTheySay) {
+  auto const said = [](std::size_t j, std::vector<std::string> affects) {
     auto parameters = of_chain(true);
-    parameters[j].touches = std::move(touches);
-    return refusal([&] { sensitivities(chain_with_angle, parameters, GeneralizedAlpha{}); });
+    parameters[j].affects = std::move(touches);
+    return refusal([&] { sensitivities(chain_with_angle, parameters, GeneralisedAlpha{}); });
   };
   EXPECT_TRUE(has(said(3, {"rod 7"}), "touches \"rod 7\", but the model has no body, joint or force of that name"));
   EXPECT_TRUE(has(said(3, {"pin 1"}), "\"length 1 [m]\" changes the equations of body \"rod 2\""));
@@ -192,11 +194,11 @@ TEST(Gradient, DirectDifferentiationRefusesParametersThatTouchMoreThanTheySay) {
   EXPECT_TRUE(has(said(5, {"rod 0"}), "\"stiffness 1 [N/m]\" changes the equations of body \"rod 1\""));
 }
 
-TEST(Gradient, ParametersThatTouchNothingInCommonShareTheirModels) {
-  using V = detail::Variant<decltype(chain({})), GeneralizedAlpha>;
+TEST(GradientResult, ParametersThatTouchNothingInCommonShareTheirModels) {
+  using V = detail::PerturbedModel<decltype(chain({})), GeneralisedAlpha>;
   auto const groups = [](std::vector<Parameter> const& parameters) {
-    V const model(chain(detail::values_of(parameters)), GeneralizedAlpha{}.method());
-    return detail::EquationSlopes<V>(chain, parameters, model).groups();
+    V const model(chain(detail::values_of(parameters)), GeneralisedAlpha{}.method());
+    return detail::EquationDerivatives<V>(chain, parameters, model).groups();
   };
   EXPECT_EQ(groups(of_chain(false)), 15u);
   // a length touches both neighbours and needs three groups; densities and stiffnesses of other bodies fill two more
@@ -205,27 +207,27 @@ TEST(Gradient, ParametersThatTouchNothingInCommonShareTheirModels) {
   EXPECT_GE(groups(of_chain(true)), 5u);
 }
 
-TEST(Gradient, RefusesParametersThatTouchMoreThanTheySay) {
-  auto const said = [](std::vector<std::string> touches) {
+TEST(GradientResult, RefusesParametersThatTouchMoreThanTheySay) {
+  auto const said = [](std::vector<std::string> affects) {
     auto parameters = of_chain(true);
-    parameters[3].touches = std::move(touches);  // the parameter is a length
-    return refusal([&] { gradient(chain, parameters, GeneralizedAlpha{}); });
+    parameters[3].affects = std::move(touches);  // the parameter is a length
+    return refusal([&] { gradient(chain, parameters, GeneralisedAlpha{}); });
   };
   EXPECT_TRUE(has(said({"rod 7"}), "touches \"rod 7\", but the model has no body, joint or force of that name"));
   EXPECT_TRUE(has(said({"pin 1"}), "\"length 1 [m]\" changes the equations of body \"rod 2\""));
 }
 
-TEST(Gradient, SaysWhatNothingDependsOn) {
+TEST(GradientResult, SaysWhatNothingDependsOn) {
   auto const make = [](P p) { return oscillator(0.1, 1e-2)(std::array{p[0], 3.0}); };
-  Gradient const g = gradient(make, {{"k [N/m]", 50.0}, {"colour [1]", 3.0}}, GeneralizedAlpha{});
+  GradientResult const g = gradient(make, {{"k [N/m]", 50.0}, {"colour [1]", 3.0}}, GeneralisedAlpha{});
   ASSERT_EQ(g.run.warnings.size(), 1u);
   EXPECT_EQ(g.run.warnings[0], "Nothing of the objective depends on the parameter \"colour [1]\".");
-  EXPECT_EQ(g.slopes[1], 0.0);
+  EXPECT_EQ(g.derivatives[1], 0.0);
 }
 
-TEST(Gradient, RefusesWhatItDoesNotDifferentiate) {
+TEST(GradientResult, RefusesWhatItDoesNotDifferentiate) {
   auto const make = oscillator(0.1, 1e-2);
-  auto const said = [](auto const& of, GradientOptions const& options = {}, GeneralizedAlpha const& i = {}) {
+  auto const said = [](auto const& of, GradientOptions const& options = {}, GeneralisedAlpha const& i = {}) {
     return refusal([&] { gradient(of, of_oscillator, i, options); });
   };
   for (double const memory : {0.0, 10.0, std::nan("")})
@@ -235,16 +237,17 @@ TEST(Gradient, RefusesWhatItDoesNotDifferentiate) {
   EXPECT_TRUE(has(said(oscillator(0.0, 1e-2)), "has no step"));
   auto const halved = [&](P p) {
     auto scenario = make(p);
-    scenario.options.halvings = 2;
+    scenario.options.max_step_halvings = 2;
     return scenario;
   };
   EXPECT_TRUE(has(said(halved), "gradient: a run with halved steps"));
   auto const wild = [&](P p) {
     auto scenario = make(p);
     using M = std::remove_cvref_t<decltype(scenario.model)>;
-    return rated(Scenario<M>(std::move(scenario)), [](M const&, State const& x) { return std::log(-x.q[0]); });
+    return with_objective(Scenario<M>(std::move(scenario)), [](M const&, State const& x) { return std::log(-x.q[0]); });
   };
-  EXPECT_TRUE(has(message_of<NonFinite>([&] { gradient(wild, of_oscillator, GeneralizedAlpha{}); }), "the objective"));
+  EXPECT_TRUE(
+      has(message_of<NonFiniteValue>([&] { gradient(wild, of_oscillator, GeneralisedAlpha{}); }), "the objective"));
 }
 
 }  // namespace gradient_test

@@ -7,7 +7,7 @@
 #include <polybody/bodies/ffr/planar_ffr.hpp>
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/gradients/sensitivities.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/joints/planar/prismatic.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 
@@ -19,39 +19,39 @@ using namespace polybody;
 
 namespace joint_coordinates_test {
 
-GeneralizedAlpha const integrator{.rho_inf = 0.7};
+GeneralisedAlpha const integrator{.rho_inf = 0.7};
 
 template <class Policy, CarriedArm what>
-void expect_slopes() {
+void expect_derivatives() {
   auto parameters = parameters_of_carried_arm;
   if (!what.flexible) parameters.pop_back();
   auto const make = carried_arm<Policy, what>(2e-3);
   // the force in the rod contains the round-off of the constraint equations over βh²; differences of runs divide it
   // by the change of the parameter
-  expect_slopes_of_runs(make, parameters, integrator, what.loop ? 1e-7 : 1e-8);
-  expect_slopes_backwards(make, parameters, integrator, 1e-11);
+  expect_derivatives_of_runs(make, parameters, integrator, what.loop ? 1e-7 : 1e-8);
+  expect_derivatives_backwards(make, parameters, integrator, 1e-11);
 }
 
 TEST(JointCoordinatesUnderParameters, OfATreeInTheAugmentedSystem) {
-  expect_slopes<Recursive, CarriedArm{}>();
-  expect_slopes<Recursive, CarriedArm{.loop = true}>();
+  expect_derivatives<JointCoordinates, CarriedArm{}>();
+  expect_derivatives<JointCoordinates, CarriedArm{.loop = true}>();
 }
 TEST(JointCoordinatesUnderParameters, OfATreeInTheDenseSystem) {
-  expect_slopes<RecursiveBy<recursive::Reduced>, CarriedArm{.loop = true}>();
+  expect_derivatives<JointCoordinatesBy<joint_coordinates::DenseMatrix>, CarriedArm{.loop = true}>();
 }
 TEST(JointCoordinatesUnderParameters, OfATreeBodyByBody) {
-  expect_slopes<RecursiveBy<recursive::ArticulatedBody>, CarriedArm{}>();
-  expect_slopes<RecursiveBy<recursive::ArticulatedBody>, CarriedArm{.loop = true}>();
+  expect_derivatives<JointCoordinatesBy<joint_coordinates::ArticulatedBody>, CarriedArm{}>();
+  expect_derivatives<JointCoordinatesBy<joint_coordinates::ArticulatedBody>, CarriedArm{.loop = true}>();
 }
 TEST(JointCoordinatesUnderParameters, OfATreeWithABeamThatFloatsOnAFrame) {
-  expect_slopes<Recursive, CarriedArm{.flexible = true}>();
+  expect_derivatives<JointCoordinates, CarriedArm{.flexible = true}>();
 }
 
 /// In the plane: a beam on a pin with a slider at its end, and two bodies on a pin that fly. Parameters: Young's
 /// modulus, position of the slider, a mass, a spin.
 auto const in_the_plane = [](std::span<double const> p) {
-  using Turn = Joint<planar::Revolute, Recursive>;
-  using Slide = Joint<planar::Prismatic, Recursive>;
+  using Turn = Joint<planar::Revolute, JointCoordinates>;
+  using Slide = Joint<planar::Prismatic, JointCoordinates>;
   using M = Model<Bodies<planar::Rigid, planar::Ffr>, Joints<Turn, Slide>>;
   M model{Gravity{0, -9.81, 0}};
   auto const slider = model.add(planar::Rigid(p[2], 0.01, Placement::planar(0.6, p[1], 0.2)), "slider");
@@ -70,8 +70,8 @@ auto const in_the_plane = [](std::span<double const> p) {
   model.connect(Slide{{.axis = Vec3::UnitX()}}, beam.at(0.5), slider.at(end_of_beam), "slide");
   model.connect(Turn{}, second.at(Vec2(-0.2, 0.0)), first.at(Vec2(-0.3, -0.05)), "flying pin");
   State start = model.reference_state();
-  System const system(model, with<Entries::rigid_speeds>);
-  system.entries().first.rigid_speeds(system.entries().second, start.q, Vec3::Zero(), {0, 0, p[3]}, start.v);
+  System const system(model, with<Capabilities::rigid_velocities>);
+  system.entries().first.rigid_velocities(system.entries().second, start.q, Vec3::Zero(), {0, 0, p[3]}, start.v);
   start.v[8] += 1.0;  // velocity of the second flying body
   auto const end = [slider, second](auto const& m, auto const& x) {
     auto const a = position(m, x, slider.at(Vec2(0.05, 0.02))), b = position(m, x, second.at(Vec2(0.0, 0.1)));
@@ -81,23 +81,27 @@ auto const in_the_plane = [](std::span<double const> p) {
   };
   auto const way = [second](auto const& m, auto const& x) { return position(m, x, second.at(Vec2(0.0, 0.1)))[1]; };
   std::vector<Output<M>> outputs{{"end [1]", end}, {"way [1]", way}};
-  return rated(Scenario<M>{std::move(model), start, {.until = 0.1, .step = 2e-3}, std::move(outputs)}, end, way);
+  return with_objective(Scenario<M>{std::move(model), start, {.end_time = 0.1, .step = 2e-3}, std::move(outputs)}, end,
+                        way);
 };
 TEST(JointCoordinatesUnderParameters, InThePlane) {
   std::vector<Parameter> const parameters{
       {"young [Pa]", 1e9}, {"place [m]", 0.1}, {"mass [kg]", 0.2}, {"spin [rad/s]", 3.0}};
-  expect_slopes_of_runs(in_the_plane, parameters, integrator, 1e-7);  // tolerance for a beam that swings many times
-  expect_slopes_backwards(in_the_plane, parameters, integrator, 1e-11);
+  expect_derivatives_of_runs(in_the_plane, parameters, integrator,
+                             1e-7);  // tolerance for a beam that swings many times
+  expect_derivatives_backwards(in_the_plane, parameters, integrator, 1e-11);
 }
 
-TEST(JointCoordinatesUnderParameters, OfAThreadAndOfWhatAnEventDoes) { expect_slopes_of_nut(integrator); }
+TEST(JointCoordinatesUnderParameters, OfAThreadAndOfWhatAnEventDoes) { expect_derivatives_of_nut(integrator); }
 
 TEST(JointCoordinatesUnderParameters, ApproachSlopesOnRowsAtSecondOrder) {
   auto parameters = parameters_of_carried_arm;
   parameters.pop_back();
   auto const apart = [&](double h) {
-    MatX const free = sensitivities(carried_arm<Recursive, CarriedArm{}>(h), parameters, integrator).slopes.back(),
-               on_rows = sensitivities(carried_arm<Constraint, CarriedArm{}>(h), parameters, integrator).slopes.back();
+    MatX const free = sensitivities(carried_arm<JointCoordinates, CarriedArm{}>(h), parameters, integrator)
+                          .derivatives.back(),
+               on_rows =
+                   sensitivities(carried_arm<Constraint, CarriedArm{}>(h), parameters, integrator).derivatives.back();
     double most = 0.0;
     for (Index j = 0; j < free.cols(); ++j)
       most = std::max(most, parameters[std::size_t(j)].size() * (free - on_rows).col(j).head(3).norm());

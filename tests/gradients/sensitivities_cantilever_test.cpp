@@ -5,7 +5,7 @@
 
 #include <polybody/bodies/ancf/planar_ancf_cable.hpp>
 #include <polybody/forces/point_load.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/joints/planar/weld.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/run/observe.hpp>
@@ -42,7 +42,7 @@ auto cantilever(double step) {
     State const start = model.reference_state();
     std::vector<Output<M>> outputs{
         {"tip y [m]", [bar](M const& m, State const& x) { return position(m, x, bar.at(1.0))[1]; }}};
-    return Scenario<M>{std::move(model), start, {.until = end, .step = step}, std::move(outputs)};
+    return Scenario<M>{std::move(model), start, {.end_time = end, .step = step}, std::move(outputs)};
   };
 }
 
@@ -69,9 +69,9 @@ TEST(SensitivitiesOfACantilever, TheSlopeByItsStiffnessTendsToThatOfTheModalSum)
   for (std::size_t k = 0; k < 4; ++k) exact += FourPoints::weights[k] / e * tip(1.0 + FourPoints::places[k] * e, end);
   std::array<double, 3> by{}, value{};
   for (std::size_t k = 0; k < 3; ++k) {
-    Sensitivities const s =
-        sensitivities(cantilever(8e-3 / double(1 << k)), {{"EI [N m²]", 1.0}}, GeneralizedAlpha{.rho_inf = 0.9});
-    by[k] = s.slopes.back()(0, 0);
+    SensitivityResult const s =
+        sensitivities(cantilever(8e-3 / double(1 << k)), {{"EI [N m²]", 1.0}}, GeneralisedAlpha{.rho_inf = 0.9});
+    by[k] = s.derivatives.back()(0, 0);
     value[k] = s.values.back()[0];
   }
   EXPECT_NEAR((4.0 * value[2] - value[1]) / 3.0, tip(1.0, end), 1e-5 * tip(1.0, end));

@@ -5,7 +5,7 @@
 
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/forces/contact.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/newmark.hpp>
 
 #include "support/moving_times.hpp"
@@ -16,16 +16,16 @@ namespace sensitivities_events_test {
 
 using namespace moving_times;
 
-TEST(SensitivitiesThroughEvents, TheTimeOfAFallIsThatOfTheClosedForm) { expect_fall(GeneralizedAlpha{.rho_inf = 0.6}); }
-TEST(SensitivitiesThroughEvents, BouncesFollowTheClosedForm) { expect_bounces(GeneralizedAlpha{}); }
+TEST(SensitivitiesThroughEvents, TheTimeOfAFallIsThatOfTheClosedForm) { expect_fall(GeneralisedAlpha{.rho_inf = 0.6}); }
+TEST(SensitivitiesThroughEvents, BouncesFollowTheClosedForm) { expect_bounces(GeneralisedAlpha{}); }
 
 // --- breakpoints -------------------------------------------------------------------------------------------------
 
-TEST(SensitivitiesThroughCorners, APushThatEndsAtAParameterIsExact) { expect_push(GeneralizedAlpha{.rho_inf = 0.7}); }
+TEST(SensitivitiesThroughCorners, APushThatEndsAtAParameterIsExact) { expect_push(GeneralisedAlpha{.rho_inf = 0.7}); }
 TEST(SensitivitiesThroughCorners, ARampOfADriveIsThatOfItsRuns) {
-  expect_slopes_of_moving_runs(driven<Constraint>, of_drive, GeneralizedAlpha{.rho_inf = 0.7}, 3e-8,
-                               {0.025, 0.25, 0.25, 2.5});
-  expect_slopes_of_moving_runs(driven<Penalty>, of_drive, Trapezoidal{}, 3e-8, {0.025, 0.25, 0.25, 2.5});
+  expect_derivatives_of_moving_runs(driven<Constraint>, of_drive, GeneralisedAlpha{.rho_inf = 0.7}, 3e-8,
+                                    {0.025, 0.25, 0.25, 2.5});
+  expect_derivatives_of_moving_runs(driven<Penalty>, of_drive, Trapezoidal{}, 3e-8, {0.025, 0.25, 0.25, 2.5});
 }
 TEST(SensitivitiesThroughCorners, HowFarACornerMovesInStepsDoesNotMatter) {
   auto const of_duration = [](P p) {
@@ -33,35 +33,35 @@ TEST(SensitivitiesThroughCorners, HowFarACornerMovesInStepsDoesNotMatter) {
     scenario.options.step = 5e-4;
     return scenario;
   };
-  auto const slopes = [&](double scale) {
-    return MatX(sensitivities(of_duration, {{"duration [s]", 0.1531, scale}}, GeneralizedAlpha{}).slopes.back());
+  auto const derivatives = [&](double scale) {
+    return MatX(sensitivities(of_duration, {{"duration [s]", 0.1531, scale}}, GeneralisedAlpha{}).derivatives.back());
   };
-  MatX const within = slopes(0.075), beyond = slopes(1.125);  // 0.1 and 1.8 steps
+  MatX const within = derivatives(0.075), beyond = derivatives(1.125);  // 0.1 and 1.8 steps
   EXPECT_LT((beyond - within).norm(), 3e-8 * within.norm());
 }
 
 // --- events of mechanisms ----------------------------------------------------------------------------------------
 
 TEST(SensitivitiesThroughEvents, ImpactsOfAMechanismAreThoseOfItsRuns) {
-  Sensitivities const s = sensitivities(stopped<Constraint>, of_stop, GeneralizedAlpha{.rho_inf = 0.7});
+  SensitivityResult const s = sensitivities(stopped<Constraint>, of_stop, GeneralisedAlpha{.rho_inf = 0.7});
   ASSERT_GE(s.run.events.size(), 3u);
-  expect_slopes_of_moving_runs(stopped<Constraint>, of_stop, GeneralizedAlpha{.rho_inf = 0.7}, 1e-8,
-                               {0.25, 2.5, 0.25, 0.25});
-  expect_slopes_of_moving_runs(stopped<Penalty>, of_stop, Newmark{}, 1e-7, {0.25, 2.5, 0.25, 0.25});
+  expect_derivatives_of_moving_runs(stopped<Constraint>, of_stop, GeneralisedAlpha{.rho_inf = 0.7}, 1e-8,
+                                    {0.25, 2.5, 0.25, 0.25});
+  expect_derivatives_of_moving_runs(stopped<Penalty>, of_stop, Newmark{}, 1e-7, {0.25, 2.5, 0.25, 0.25});
 }
 
 TEST(SensitivitiesThroughEvents, AnEventUnderADriveIsThatOfItsRuns) {
-  expect_slopes_of_moving_runs(braked, of_brake, GeneralizedAlpha{.rho_inf = 0.7}, 3e-8, {0.025, 0.25, 2.5, 0.4});
+  expect_derivatives_of_moving_runs(braked, of_brake, GeneralisedAlpha{.rho_inf = 0.7}, 3e-8, {0.025, 0.25, 2.5, 0.4});
 }
 
 TEST(SensitivitiesThroughEvents, JumpsInSpaceAreThoseOfTheirRuns) {
   std::vector<Parameter> const parameters{{"spin [rad/s]", 3.0}, {"height [m]", 0.6}, {"gravity [m/s²]", 9.81}};
-  ASSERT_EQ(sensitivities(spun, parameters, GeneralizedAlpha{}).run.events.size(), 1u);
-  expect_slopes_of_moving_runs(spun, parameters, GeneralizedAlpha{}, 1e-8, {0.75, 0.125, 2.5});
+  ASSERT_EQ(sensitivities(spun, parameters, GeneralisedAlpha{}).run.events.size(), 1u);
+  expect_derivatives_of_moving_runs(spun, parameters, GeneralisedAlpha{}, 1e-8, {0.75, 0.125, 2.5});
 }
 
 TEST(SensitivitiesThroughEvents, LengthsOfStepsAndOfTheRunAreParameters) {
-  expect_lengths_as_parameters(GeneralizedAlpha{}, 0.01);
+  expect_lengths_as_parameters(GeneralisedAlpha{}, 0.01);
 }
 
 // --- smooth laws of contact --------------------------------------------------------------------------------------
@@ -77,16 +77,16 @@ auto const on_floor = [](P p) {
   State const start = model.reference_state();
   std::vector<Output<M>> outputs{{"z [m]", [](M const&, State const& x) { return x.q[2]; }},
                                  {"v [m/s]", [](M const&, State const& x) { return x.v[2]; }}};
-  return Scenario<M>{std::move(model), start, {.until = 0.35, .step = 5e-4}, std::move(outputs)};
+  return Scenario<M>{std::move(model), start, {.end_time = 0.35, .step = 5e-4}, std::move(outputs)};
 };
 
 TEST(SensitivitiesThroughContact, ASmoothLawNeedsNoEvents) {
-  expect_slopes_of_moving_runs(on_floor, {{"modulus [Pa]", 1e6}, {"height [m]", 0.3}, {"mass [kg]", 1.0}},
-                               GeneralizedAlpha{.rho_inf = 0.8}, 1e-7, {2.5e4, 2.5e-3, 2.5e-2});
+  expect_derivatives_of_moving_runs(on_floor, {{"modulus [Pa]", 1e6}, {"height [m]", 0.3}, {"mass [kg]", 1.0}},
+                                    GeneralisedAlpha{.rho_inf = 0.8}, 1e-7, {2.5e4, 2.5e-3, 2.5e-2});
 }
 
 // --- refusals ----------------------------------------------------------------------------------------------------
 
-TEST(SensitivitiesThroughEvents, RefuseWhatHasNoDerivative) { expect_refusals(GeneralizedAlpha{}); }
+TEST(SensitivitiesThroughEvents, RefuseWhatHasNoDerivative) { expect_refusals(GeneralisedAlpha{}); }
 
 }  // namespace sensitivities_events_test

@@ -11,7 +11,7 @@
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/forces/spring_damper.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/joints/planar/prismatic.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/policies/constraint.hpp>
@@ -71,7 +71,8 @@ struct Tending {
 
   Tending(Make const& make_with, std::vector<Parameter> const& parameters, double h) {
     for (std::size_t k = 0; k < 3; ++k)
-      by[k] = sensitivities(make_with(h / double(1 << k)), parameters, GeneralizedAlpha{.rho_inf = 0.9}).slopes.back();
+      by[k] =
+          sensitivities(make_with(h / double(1 << k)), parameters, GeneralisedAlpha{.rho_inf = 0.9}).derivatives.back();
     MatX const first = (4.0 * by[1] - by[0]) / 3.0, second = (4.0 * by[2] - by[1]) / 3.0;
     limit = (8.0 * second - first) / 7.0;
   }
@@ -233,7 +234,7 @@ auto squeezer(double end, double step) {
     std::vector<Output<M>> outputs{{"beta [rad]", [](M const&, State const& x) { return x.q[2]; }},
                                    {"gamma [rad]", [](M const&, State const& x) { return x.q[8]; }},
                                    {"rate of beta [rad/s]", [](M const&, State const& x) { return x.v[2]; }}};
-    return Scenario<M>{std::move(model), start, {.until = end, .step = step}, std::move(outputs)};
+    return Scenario<M>{std::move(model), start, {.end_time = end, .step = step}, std::move(outputs)};
   };
 }
 
@@ -330,7 +331,7 @@ auto governor(double end, double step) {
            Mat3 const A = frame(m, x, shaft.at(Vec3(0, 0, 0))).A;
            return std::atan2(A(1, 0), A(0, 0));
          }}};
-    return Scenario<M>{std::move(model), start, {.until = end, .step = step}, std::move(outputs)};
+    return Scenario<M>{std::move(model), start, {.end_time = end, .step = step}, std::move(outputs)};
   };
 }
 
@@ -494,7 +495,7 @@ auto made(double end, double step) {
                                    {"q1 [m]", [](M const&, State const& x) { return x.q[9]; }},
                                    {"q2 [m]", [](M const&, State const& x) { return x.q[10]; }},
                                    {"q4 [m]", [](M const&, State const& x) { return x.q[12]; }}};
-    return Scenario<M>{std::move(model), start, {.until = end, .step = step}, std::move(outputs)};
+    return Scenario<M>{std::move(model), start, {.end_time = end, .step = step}, std::move(outputs)};
   };
 }
 

@@ -8,7 +8,7 @@
 #include <polybody/bodies/ffr/ffr.hpp>
 #include <polybody/bodies/lrvf/lrvf.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/hht_alpha.hpp>
 #include <polybody/integrators/newmark.hpp>
 #include <polybody/joints/policies/bushing.hpp>
@@ -25,34 +25,34 @@ using namespace polybody;
 namespace sensitivities_pairs_test {
 
 template <class Make, class I>
-void expect_slopes_of_runs(Make const& make, std::vector<Parameter> const& parameters, I const& integrator) {
-  Sensitivities const s = sensitivities(make, parameters, integrator);
+void expect_derivatives_of_runs(Make const& make, std::vector<Parameter> const& parameters, I const& integrator) {
+  SensitivityResult const s = sensitivities(make, parameters, integrator);
   MatX const expected = by_differences(make, parameters, integrator);
   EXPECT_LT(s.left, 1e-9);
   for (Index j = 0; j < expected.cols(); ++j)
-    EXPECT_LT((s.slopes.back().col(j) - expected.col(j)).norm(),
+    EXPECT_LT((s.derivatives.back().col(j) - expected.col(j)).norm(),
               1e-7 * (expected.col(j).norm() + 1e-4 / parameters[std::size_t(j)].size()))
-        << parameters[std::size_t(j)].name << ": " << s.slopes.back().col(j).transpose() << " for "
+        << parameters[std::size_t(j)].name << ": " << s.derivatives.back().col(j).transpose() << " for "
         << expected.col(j).transpose();
 }
 TEST(SensitivitiesByPairs, RigidOnConstraintByGeneralizedAlpha) {
-  expect_slopes_of_runs(two_links<Rigid<>, Constraint>, parameters_of_two_links, GeneralizedAlpha{});
+  expect_derivatives_of_runs(two_links<Rigid<>, Constraint>, parameters_of_two_links, GeneralisedAlpha{});
 }
 TEST(SensitivitiesByPairs, RigidOnBushingByTrapezoidal) {
-  expect_slopes_of_runs(two_links<Rigid<>, Bushing>, parameters_of_two_links, Trapezoidal{});
+  expect_derivatives_of_runs(two_links<Rigid<>, Bushing>, parameters_of_two_links, Trapezoidal{});
 }
 TEST(SensitivitiesByPairs, CableOnPenaltyByHht) {
-  expect_slopes_of_runs(two_links<AncfCable<>, Penalty>, parameters_of_two_links, HhtAlpha{});
+  expect_derivatives_of_runs(two_links<AncfCable<>, Penalty>, parameters_of_two_links, HhtAlpha{});
 }
 TEST(SensitivitiesByPairs, LrvfOnBushingByNewmark) {
-  expect_slopes_of_runs(two_links<Lrvf<>, Bushing>, parameters_of_two_links, Newmark{});
+  expect_derivatives_of_runs(two_links<Lrvf<>, Bushing>, parameters_of_two_links, Newmark{});
 }
 TEST(SensitivitiesByPairs, FloatingFrameOnConstraintByHht) {
-  expect_slopes_of_runs(two_links<Ffr, Constraint>, parameters_of_two_links, HhtAlpha{});
+  expect_derivatives_of_runs(two_links<Ffr, Constraint>, parameters_of_two_links, HhtAlpha{});
 }
 TEST(SensitivitiesByPairs, BeamOnConstraintByGeneralizedAlpha) {
-  expect_slopes_of_runs(two_links<AncfBeam<ElasticLine>, Constraint>, parameters_of_two_links,
-                        GeneralizedAlpha{.rho_inf = 0.5});
+  expect_derivatives_of_runs(two_links<AncfBeam<ElasticLine>, Constraint>, parameters_of_two_links,
+                             GeneralisedAlpha{.rho_inf = 0.5});
 }
 
 }  // namespace sensitivities_pairs_test

@@ -1,6 +1,6 @@
 // Derivatives of runs with multi-stage methods against finite differences of the same runs.
-#include <polybody/gradients/radau_step_slope.hpp>
-#include <polybody/gradients/runge_kutta_step_slope.hpp>
+#include <polybody/gradients/radau_linearised_step.hpp>
+#include <polybody/gradients/runge_kutta_linearised_step.hpp>
 #include <polybody/gradients/sensitivities.hpp>
 
 #include <gtest/gtest.h>
@@ -56,47 +56,47 @@ MatX by_frozen_differences(Make const& make, std::vector<Parameter> const& param
   return out;
 }
 
-void expect_near(MatX const& slopes, MatX const& expected, std::vector<Parameter> const& parameters) {
+void expect_near(MatX const& derivatives, MatX const& expected, std::vector<Parameter> const& parameters) {
   for (Index j = 0; j < expected.cols(); ++j)
-    EXPECT_LT((slopes.col(j) - expected.col(j)).norm(),
+    EXPECT_LT((derivatives.col(j) - expected.col(j)).norm(),
               1e-7 * (expected.col(j).norm() + 1e-4 / parameters[std::size_t(j)].size()))
-        << parameters[std::size_t(j)].name << ": " << slopes.col(j).transpose() << " for "
+        << parameters[std::size_t(j)].name << ": " << derivatives.col(j).transpose() << " for "
         << expected.col(j).transpose();
 }
 
 TEST(SensitivitiesOfStages, RigidOnConstraintByRungeKuttaWithProjection) {
   auto const& parameters = parameters_of_two_links;
   RungeKutta4<Projection> const integrator;
-  Sensitivities const s = sensitivities(two_links<Rigid<>, Constraint>, parameters, integrator);
+  SensitivityResult const s = sensitivities(two_links<Rigid<>, Constraint>, parameters, integrator);
   ASSERT_EQ(s.times.size(), 31u);
-  expect_near(s.slopes.back(), by_differences(two_links<Rigid<>, Constraint>, parameters, integrator), parameters);
+  expect_near(s.derivatives.back(), by_differences(two_links<Rigid<>, Constraint>, parameters, integrator), parameters);
   // rigid rods do not depend on Young's modulus, ideal pins do not depend on a stiffness
   EXPECT_EQ(s.run.warnings.size(), 2u);
 }
 TEST(SensitivitiesOfStages, LrvfOnBushingByRadau) {
   auto const& parameters = parameters_of_two_links;
-  Sensitivities const s = sensitivities(two_links<Lrvf<>, Bushing>, parameters, Radau{});
+  SensitivityResult const s = sensitivities(two_links<Lrvf<>, Bushing>, parameters, Radau{});
   EXPECT_LT(s.left, 1e-9);
-  expect_near(s.slopes.back(), by_differences(two_links<Lrvf<>, Bushing>, parameters, Radau{}), parameters);
+  expect_near(s.derivatives.back(), by_differences(two_links<Lrvf<>, Bushing>, parameters, Radau{}), parameters);
 }
 TEST(SensitivitiesOfStages, RigidOnConstraintByDormandPrinceWithItsChoiceOfStepsFrozen) {
   auto const& parameters = parameters_of_two_links;
   DormandPrince<Projection> integrator{.relative_tolerance = 1e-8, .absolute_tolerance = 1e-10};
   auto const make = two_links<Rigid<>, Constraint>;
-  Sensitivities const s = sensitivities(make, parameters, integrator);
+  SensitivityResult const s = sensitivities(make, parameters, integrator);
   double const first = s.times[1] - s.times[0], last = s.times.back() - s.times[s.times.size() - 2];
   EXPECT_GT(std::abs(first - last), 1e-3 * first);  // the method chose the step length
   integrator.relative_tolerance = integrator.absolute_tolerance = 1e6;
-  expect_near(s.slopes.back(), by_frozen_differences(make, parameters, integrator, s.times), parameters);
+  expect_near(s.derivatives.back(), by_frozen_differences(make, parameters, integrator, s.times), parameters);
 }
 
 TEST(SensitivitiesOfStages, AreTheSameWhereParametersSayWhatTheyTouch) {
-  touched_chain::expect_same_slopes_with_touches(RungeKutta4<>{});
-  touched_chain::expect_same_slopes_with_touches(Radau{});
+  touched_chain::expect_same_derivatives_with_touches(RungeKutta4<>{});
+  touched_chain::expect_same_derivatives_with_touches(Radau{});
 }
 TEST(SensitivitiesOfStages, RefuseParametersThatTouchMoreThanTheySay) {
   auto parameters = touched_chain::of_chain(true);
-  parameters[5].touches = {"rod 0"};
+  parameters[5].affects = {"rod 0"};
   auto const run = [&] { sensitivities(touched_chain::chain_with_angle, parameters, RungeKutta4<>{}); };
   EXPECT_TRUE(has(refusal(run), "\"stiffness 1 [N/m]\" changes the equations of body \"rod 1\""));
 }

@@ -5,7 +5,7 @@
 #include <polybody/bodies/ancf/planar_ancf_cable.hpp>
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/forces/spring_damper.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/run/observe.hpp>
@@ -35,14 +35,14 @@ auto const pendulum = [](P p) {
       {"angle [rad]", [](M const&, State const& x) { return x.q[2]; }},
       {"tip y [m]", [rod, l](M const& m, State const& x) { return position(m, x, rod.at(l))[1]; }},
       {"force [N]", [pin](M const& m, State const& x) { return reaction(m, x, pin).f.norm(); }}};
-  return Scenario<M>{std::move(model), start, {.until = 0.5, .step = 1e-2}, std::move(outputs)};
+  return Scenario<M>{std::move(model), start, {.end_time = 0.5, .step = 1e-2}, std::move(outputs)};
 };
 
 std::vector<Parameter> const of_pendulum{{"length [m]", 1.2}, {"density [kg/m³]", 7800.0}, {"gravity [m/s²]", 9.81}};
 
-TEST(Sensitivities, OfAPendulumAreThoseOfItsRuns) {
-  GeneralizedAlpha const integrator{.rho_inf = 0.7};
-  Sensitivities const s = sensitivities(pendulum, of_pendulum, integrator);
+TEST(SensitivityResult, OfAPendulumAreThoseOfItsRuns) {
+  GeneralisedAlpha const integrator{.rho_inf = 0.7};
+  SensitivityResult const s = sensitivities(pendulum, of_pendulum, integrator);
   MatX const expected = by_differences(pendulum, of_pendulum, integrator);
   ASSERT_EQ(s.times.size(), 51u);
   EXPECT_LT(s.left, 1e-10);
@@ -50,17 +50,17 @@ TEST(Sensitivities, OfAPendulumAreThoseOfItsRuns) {
   // change of the parameter
   for (Index i = 0; i < 3; ++i)
     for (Index j = 0; j < 3; ++j)
-      EXPECT_NEAR(s.slopes.back()(i, j), expected(i, j), (i == 2 ? 1e-8 : 1e-9) * (1.0 + std::abs(expected(i, j))))
+      EXPECT_NEAR(s.derivatives.back()(i, j), expected(i, j), (i == 2 ? 1e-8 : 1e-9) * (1.0 + std::abs(expected(i, j))))
           << i << ' ' << j;
   // the motion does not depend on the mass
-  EXPECT_NEAR(s.slopes.back()(0, 1), 0.0, 1e-12);
-  EXPECT_GT(s.slopes.back()(2, 1), 1e-4);
+  EXPECT_NEAR(s.derivatives.back()(0, 1), 0.0, 1e-12);
+  EXPECT_GT(s.derivatives.back()(2, 1), 1e-4);
 }
 
 /// A mass on a spring and a damper along x, with the spring stretched by 1 m, [r(t), ṙ(t)].
 template <int spare = 0>
-auto oscillator(double until, double step) {
-  return [until, step](P p) {
+auto oscillator(double end_time, double step) {
+  return [end_time, step](P p) {
     using M = Model<Bodies<planar::Rigid>, Joints<>, Forces<SpringDamper>>;
     M model;
     auto const mass = model.add(planar::Rigid(2.0, 1.0, Placement::at({3.0, 0, 0})), "mass");
@@ -69,7 +69,7 @@ auto oscillator(double until, double step) {
     State const start = model.reference_state();
     std::vector<Output<M>> outputs{{"x [m]", [](M const&, State const& x) { return x.q[0]; }},
                                    {"v [m/s]", [](M const&, State const& x) { return x.v[0]; }}};
-    return Scenario<M>{std::move(model), start, {.until = until, .step = step}, std::move(outputs)};
+    return Scenario<M>{std::move(model), start, {.end_time = end_time, .step = step}, std::move(outputs)};
   };
 }
 /// x(t) = 2 + e^(−δt) (cos ωt + δ/ω sin ωt).
@@ -78,7 +78,7 @@ double place(double k, double c, double t) {
   return 2.0 + std::exp(-delta * t) * (std::cos(w * t) + delta / w * std::sin(w * t));
 }
 
-TEST(Sensitivities, OfAnOscillatorApproachTheClosedFormAtSecondOrder) {
+TEST(SensitivityResult, OfAnOscillatorApproachTheClosedFormAtSecondOrder) {
   double const k = 50.0, c = 3.0, e = 1e-3;
   double const by_k = (8.0 * (place(k + e, c, 1.0) - place(k - e, c, 1.0)) - place(k + 2 * e, c, 1.0) +
                        place(k - 2 * e, c, 1.0)) /
@@ -88,7 +88,7 @@ TEST(Sensitivities, OfAnOscillatorApproachTheClosedFormAtSecondOrder) {
                       (12.0 * e);
   auto const error = [&](double h) {
     MatX const s =
-        sensitivities(oscillator(1.0, h), {{"k [N/m]", k}, {"c [N s/m]", c}}, GeneralizedAlpha{}).slopes.back();
+        sensitivities(oscillator(1.0, h), {{"k [N/m]", k}, {"c [N s/m]", c}}, GeneralisedAlpha{}).derivatives.back();
     return std::array{std::abs(s(0, 0) - by_k), std::abs(s(0, 1) - by_c)};
   };
   auto const coarse = error(2e-2), fine = error(1e-2);
@@ -98,17 +98,17 @@ TEST(Sensitivities, OfAnOscillatorApproachTheClosedFormAtSecondOrder) {
   }
 }
 
-TEST(Sensitivities, AShorterLastStepIsDifferentiatedToo) {
-  GeneralizedAlpha const integrator;
+TEST(SensitivityResult, AShorterLastStepIsDifferentiatedToo) {
+  GeneralisedAlpha const integrator;
   std::vector<Parameter> const parameters{{"k [N/m]", 50.0}, {"c [N s/m]", 3.0}};
   auto const make = oscillator(0.505, 1e-2);
-  Sensitivities const s = sensitivities(make, parameters, integrator);
+  SensitivityResult const s = sensitivities(make, parameters, integrator);
   MatX const expected = by_differences(make, parameters, integrator);
   EXPECT_EQ(s.times.back(), 0.505);
-  EXPECT_LT((s.slopes.back() - expected).norm(), 1e-10 * expected.norm());
+  EXPECT_LT((s.derivatives.back() - expected).norm(), 1e-10 * expected.norm());
 }
 
-TEST(Sensitivities, BeginAtTheStart) {
+TEST(SensitivityResult, BeginAtTheStart) {
   // the initial position x₀ of a mass on a spring is a parameter itself
   auto const make = [](P p) {
     auto scenario = oscillator(0.2, 1e-2)(std::array{50.0, 3.0});
@@ -117,33 +117,33 @@ TEST(Sensitivities, BeginAtTheStart) {
     return scenario;
   };
   std::vector<Parameter> const parameters{{"x0 [m]", 0.1}, {"v0 [m/s]", 0.0, 1.0}};
-  Sensitivities const s = sensitivities(make, parameters, GeneralizedAlpha{});
-  EXPECT_NEAR((s.slopes[0] - MatX::Identity(2, 2)).norm(), 0.0, 1e-10);
-  MatX const expected = by_differences(make, parameters, GeneralizedAlpha{});
-  EXPECT_LT((s.slopes.back() - expected).norm(), 1e-9);
+  SensitivityResult const s = sensitivities(make, parameters, GeneralisedAlpha{});
+  EXPECT_NEAR((s.derivatives[0] - MatX::Identity(2, 2)).norm(), 0.0, 1e-10);
+  MatX const expected = by_differences(make, parameters, GeneralisedAlpha{});
+  EXPECT_LT((s.derivatives.back() - expected).norm(), 1e-9);
 }
 
-TEST(Sensitivities, SayWhatNothingDependsOn) {
+TEST(SensitivityResult, SayWhatNothingDependsOn) {
   auto const make = [](P p) { return pendulum(std::array{1.2, 7800.0, p[0]}); };
   auto const with_spare = [&](P p) { return make(p.first(1)); };
-  Sensitivities const s =
-      sensitivities(with_spare, {{"gravity [m/s²]", 9.81}, {"colour [1]", 3.0}}, GeneralizedAlpha{});
+  SensitivityResult const s =
+      sensitivities(with_spare, {{"gravity [m/s²]", 9.81}, {"colour [1]", 3.0}}, GeneralisedAlpha{});
   ASSERT_EQ(s.run.warnings.size(), 1u);
   EXPECT_EQ(s.run.warnings[0], "Nothing in the run depends on the parameter \"colour [1]\".");
 }
 
-TEST(Sensitivities, RefuseSlopesThatDoNotConverge) {
+TEST(SensitivityResult, RefuseSlopesThatDoNotConverge) {
   EXPECT_EQ(detail::require_converged(1e-9, 0.25, "sensitivities"), 1e-9);
   for (double const left : {1e-3, std::nan("")}) {
     std::string const said =
-        message_of<NewtonStalled>([&] { (void)detail::require_converged(left, 0.25, "sensitivities"); });
+        message_of<NewtonConvergenceFailure>([&] { (void)detail::require_converged(left, 0.25, "sensitivities"); });
     EXPECT_TRUE(has(said, "sensitivities: derivatives of the step that ends at t = 0.25 s do not converge")) << said;
     EXPECT_TRUE(has(said, "Take a smaller step")) << said;
   }
 }
 
-TEST(Sensitivities, RefuseWhatTheyDoNotDifferentiate) {
-  auto const said = [](auto const& make, std::vector<Parameter> const& parameters, GeneralizedAlpha const& i = {}) {
+TEST(SensitivityResult, RefuseWhatTheyDoNotDifferentiate) {
+  auto const said = [](auto const& make, std::vector<Parameter> const& parameters, GeneralisedAlpha const& i = {}) {
     return refusal([&] { sensitivities(make, parameters, i); });
   };
   EXPECT_TRUE(has(said(pendulum, {{"", 1.0}}), "Parameter 0 has no name"));
@@ -165,7 +165,7 @@ TEST(Sensitivities, RefuseWhatTheyDoNotDifferentiate) {
                   p[0] > 3.0 ? 4 : 3),
               "cable");
     State const start = model.reference_state();
-    return Scenario<M>{std::move(model), start, {.until = 0.1, .step = 1e-2}};
+    return Scenario<M>{std::move(model), start, {.end_time = 0.1, .step = 1e-2}};
   };
   EXPECT_TRUE(
       has(said(grows, {{"elements [1]", 3.0}}), "another \"elements [1]\" the factory makes a model of other sizes"));

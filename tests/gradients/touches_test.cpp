@@ -9,14 +9,14 @@
 #include <polybody/forces/contact.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/forces/user_force.hpp>
+#include <polybody/gradients/runge_kutta_linearised_step.hpp>
 #include <polybody/gradients/runge_kutta_step_adjoint.hpp>
-#include <polybody/gradients/runge_kutta_step_slope.hpp>
 #include <polybody/gradients/sensitivities.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/planar/revolute.hpp>
-#include <polybody/joints/policies/recursive.hpp>
-#include <polybody/run/points.hpp>
+#include <polybody/joints/policies/joint_coordinates.hpp>
+#include <polybody/run/marker_frames.hpp>
 
 #include "support/refusal.hpp"
 
@@ -47,7 +47,7 @@ auto balls(std::span<double const> p) {
     return r[0] + r[2];
   };
   std::vector<Output<Balls>> outputs{{"x + z [m]", place}};
-  return rated(Scenario<Balls>{std::move(m), x, {.until = 0.14, .step = 1e-3}, std::move(outputs)}, place);
+  return with_objective(Scenario<Balls>{std::move(m), x, {.end_time = 0.14, .step = 1e-3}, std::move(outputs)}, place);
 }
 std::vector<Parameter> of_balls(Names k, Names push, Names radius) {
   return {{"k [N/m]", 1e4, 0.0, std::move(k)},
@@ -55,7 +55,7 @@ std::vector<Parameter> of_balls(Names k, Names push, Names radius) {
           {"radius [m]", 0.1, 0.0, std::move(radius)}};
 }
 
-GeneralizedAlpha const integrator{.tolerance = 1e-11};
+GeneralisedAlpha const integrator{.tolerance = 1e-11};
 
 template <class I>
 void expect_refusals(I const& by, auto const& differentiate) {
@@ -88,7 +88,7 @@ TEST(Touches, LeftOutAreFoundByTheAdjointThroughEvents) {
 /// This model without the push, whose beginning is a breakpoint.
 auto without_push(std::span<double const> p) {
   auto scenario = balls(std::array{p[0], 0.0, p[1]});
-  scenario.options.until = 0.09;
+  scenario.options.end_time = 0.09;
   return scenario;
 }
 TEST(Touches, LeftOutAreFoundByTheAdjoint) {
@@ -105,12 +105,12 @@ TEST(Touches, LeftOutAreFoundByTheAdjoint) {
 /// difference in the radius. This kink must not be refused.
 TEST(Touches, CompleteNamesGiveTheSameDerivatives) {
   auto const named = of_balls({"floor"}, {"push"}, {"floor"}), all = of_balls({}, {}, {});
-  Sensitivities const a = sensitivities(balls, named, integrator), b = sensitivities(balls, all, integrator);
-  Gradient const back = gradient(balls, named, integrator);
+  SensitivityResult const a = sensitivities(balls, named, integrator), b = sensitivities(balls, all, integrator);
+  GradientResult const back = gradient(balls, named, integrator);
   for (Index j = 0; j < 3; ++j) {
-    double const size = named[std::size_t(j)].size(), expected = size * b.slopes.back()(0, j);
-    EXPECT_NEAR(size * a.slopes.back()(0, j), expected, 1e-10) << j;
-    EXPECT_NEAR(size * back.slopes[j], expected, 1e-8) << j;
+    double const size = named[std::size_t(j)].size(), expected = size * b.derivatives.back()(0, j);
+    EXPECT_NEAR(size * a.derivatives.back()(0, j), expected, 1e-10) << j;
+    EXPECT_NEAR(size * back.derivatives[j], expected, 1e-8) << j;
   }
 }
 
@@ -132,7 +132,7 @@ auto row_of_bodies(double share) {
     m.apply(Push{.force = {share * p[count - 1], 0, 0}, .law = {.from = 0.1}}, first.at(Vec3(0, 0, 0)), "late");
     State const x = m.reference_state();
     std::vector<Output<M>> outputs{{"x [m]", [](M const&, State const& y) { return y.q[0]; }}};
-    return Scenario<M>{std::move(m), x, {.until = 0.2, .step = 1e-2}, std::move(outputs)};
+    return Scenario<M>{std::move(m), x, {.end_time = 0.2, .step = 1e-2}, std::move(outputs)};
   };
 }
 /// One group of all parameters. The orders of the parameters in two models do not distinguish the first from the last
@@ -161,7 +161,7 @@ TEST(Touches, LeftOutAreFoundAmongManyThatShareModels) {
 TEST(Touches, ChangeNothingInJointCoordinates) {
   auto const make = [](std::span<double const> p) {
     using Rod = planar::Rigid;
-    using Pin = Joint<planar::Revolute, Recursive>;
+    using Pin = Joint<planar::Revolute, JointCoordinates>;
     using M = Model<Bodies<Rod>, Joints<Pin>, Forces<Push>>;
     M m{Gravity{0, -9.81, 0}};
     BodyHandle<Rod> last;
@@ -173,13 +173,13 @@ TEST(Touches, ChangeNothingInJointCoordinates) {
     m.apply(Push{.force = {0, p[1], 0}, .law = {.from = 0.05, .to = 0.5}}, last.at(Vec2(0.5, 0)), "push");
     State const x = m.reference_state();
     std::vector<Output<M>> outputs{{"angle [rad]", [](M const&, State const& y) { return y.q[5]; }}};
-    return Scenario<M>{std::move(m), x, {.until = 0.1, .step = 2e-3}, std::move(outputs)};
+    return Scenario<M>{std::move(m), x, {.end_time = 0.1, .step = 2e-3}, std::move(outputs)};
   };
   auto const of = [](Names push) {
     return std::vector<Parameter>{{"mass [kg]", 1.0, 0.0, {"rod 0"}}, {"push [N]", 2.0, 0.0, std::move(push)}};
   };
-  MatX const a = sensitivities(make, of({"rod 0"}), integrator).slopes.back(),
-             b = sensitivities(make, of({}), integrator).slopes.back();
+  MatX const a = sensitivities(make, of({"rod 0"}), integrator).derivatives.back(),
+             b = sensitivities(make, of({}), integrator).derivatives.back();
   EXPECT_GT(std::abs(b(0, 1)), 1e-4);
   EXPECT_EQ(a, b);
 }

@@ -45,7 +45,7 @@ void swing(Made const& made) {
   auto const body = model.add(made(), "body");
   auto const marker = body.at(0.0);
   model.connect(J{}, model.ground().at({0, 0, 0}), marker, "pin");
-  run_ten_steps(model, GeneralizedAlpha{});
+  run_ten_steps(model, GeneralisedAlpha{});
 }
 template <class B, class Made>
 int try_bars(std::string const& type, Made const& made) {
@@ -81,14 +81,14 @@ TEST(HostileParameters, OfBodies) {
     Model<Bodies<Rigid<>>, Joints<Ball>> model{Gravity{0, 0, -9.81}};
     auto const body = model.add(Rigid<>(p), "body");
     model.connect(Ball{}, model.ground().at({0, 0, 0}), body.at({0, 0, 0}), "pin");
-    run_ten_steps(model, GeneralizedAlpha{});
+    run_ten_steps(model, GeneralisedAlpha{});
   });
   tried += try_hostile(planar::Rigid::Parameters{.mass = 1.0, .inertia = 1.0}, "planar::Rigid",
                        [](planar::Rigid::Parameters const& p) {
                          Model<Bodies<planar::Rigid>, Joints<Hinge>> model{Gravity{0, -9.81, 0}};
                          auto const body = model.add(planar::Rigid(p), "body");
                          model.connect(Hinge{}, model.ground().at({0, 0, 0}), body.at(Vec2(0, 0)), "pin");
-                         run_ten_steps(model, GeneralizedAlpha{});
+                         run_ten_steps(model, GeneralisedAlpha{});
                        });
   tried += try_hostile(
       FfrOptions{}, "FfrOptions",
@@ -103,7 +103,7 @@ TEST(HostileParameters, OfBodies) {
       [](FfrIntegrals const& integrals) {
         Model<Bodies<Ffr>, Joints<>> model{Gravity{0, 0, -9.81}};
         model.add(Ffr(integrals, FfrOptions{}), "body");
-        run_ten_steps(model, GeneralizedAlpha{});
+        run_ten_steps(model, GeneralisedAlpha{});
       },
       some);
   std::cout << tried << " parameters of bodies\n";

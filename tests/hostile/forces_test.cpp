@@ -12,11 +12,11 @@ namespace {
 using OnPlane = Contact<SphereOnPlane>;
 using OnSphere = Contact<SphereOnSphere, HertzContact>;
 using OnCylinder = Contact<SphereOnCylinder, HuntCrossleyContact>;
-using OnGround = Contact<LinkOnGround<FlatGround>>;
-using OnWaves = Contact<LinkOnGround<Washboard>>;
-using OnRoller = Contact<LinkOnRoller<>>;
-using OnRims = Contact<HornOnRims<>>;
-using OnSprocket = Contact<PinOnSprocket<>>;
+using OnGround = Contact<LinkGroundContact<FlatGround>>;
+using OnWaves = Contact<LinkGroundContact<Washboard>>;
+using OnRoller = Contact<LinkRollerContact<>>;
+using OnRims = Contact<GuideHornContact<>>;
+using OnSprocket = Contact<PinSprocketContact<>>;
 
 template <class G>
 using Held = Joint<G, Constraint>;
@@ -28,8 +28,8 @@ using Mechanism =
     Model<Bodies<Rigid<>>,
           Joints<Held<Distance>, Held<RevolutePin>, Held<Screw>, Held<Gear>, Held<RackAndPinion>, Held<RollingDisc>,
                  Held<KnifeEdge>, Held<PrescribedAngle<Ramp>>, Held<PrescribedAngle<IntegralOf<SmoothRamp>>>,
-                 Held<PrescribedSlide<SpinUp>>, Held<PrescribedDistance<Constant>>, Held<Revolute>, Pin<Penalty>,
-                 Pin<PenaltyPerRow<5>>, Pin<Bushing>, Pin<Laws>>,
+                 Held<PrescribedTranslation<SpinUp>>, Held<PrescribedDistance<Constant>>, Held<Revolute>, Pin<Penalty>,
+                 Pin<PenaltyPerEquation<5>>, Pin<Bushing>, Pin<Laws>>,
           Forces<SpringDamper, MaxwellElement, AxialSpring, PointForce<>, PointForce<Ramp>, PointForce<Window>,
                  PointMoment<SmoothRamp>, PointMoment<SpinUp>, OnPlane, OnSphere, OnCylinder, OnGround, OnWaves,
                  OnRoller, OnRims, OnSprocket>>;
@@ -53,7 +53,7 @@ void act(F const& force) {
     s.model.apply(force, s.model.ground().at({0, 0, 0}), s.body.at({0, 0, 0}), "hostile");
   else
     s.model.apply(force, s.body.at({0, 0, 0}), s.model.ground().at({0, 0, 0}), "hostile");
-  run_ten_steps(s.model, GeneralizedAlpha{});
+  run_ten_steps(s.model, GeneralisedAlpha{});
 }
 
 template <class F>
@@ -89,19 +89,20 @@ TEST(HostileParameters, OfContacts) {
       try_force(OnCylinder{.geometry = {.radius = 0.3, .cylinder = 0.2}, .normal = {.stiffness = 1e4, .damping = 0.1}},
                 "SphereOnCylinder");
   std::vector<Vec3> const pad{Vec3(0.1, 0.1, -0.41), Vec3(-0.1, 0.1, -0.41)};
-  tried += try_force(OnGround{.geometry = {.terrain = {}, .pad = pad}, .normal = pads}, "LinkOnGround<FlatGround>");
+  tried +=
+      try_force(OnGround{.geometry = {.terrain = {}, .pad = pad}, .normal = pads}, "LinkGroundContact<FlatGround>");
   tried +=
       try_force(OnWaves{.geometry = {.terrain = {.amplitude = 0.1, .wavelength = 2.0}, .pad = pad}, .normal = pads},
-                "LinkOnGround<Washboard>");
+                "LinkGroundContact<Washboard>");
   tried += try_force(
       OnRoller{.geometry = {.pitch = 0.15, .half_thickness = 0.15, .half_width = 0.1, .radius = 0.3}, .normal = pads},
-      "LinkOnRoller");
+      "LinkRollerContact");
   tried += try_force(OnRims{.geometry = {.tip = Vec3(0, 0.05, -0.2), .play = 0.01, .radius = 0.3}, .normal = pads},
-                     "HornOnRims");
+                     "GuideHornContact");
   SprocketProfile const profile{
       .teeth = 10, .pitch = 0.1524, .pin_radius = 0.02, .valley_radius = 0.035, .flank = 1.05, .tip_radius = 0.265};
   profile.check("the sane one");
-  tried += try_force(OnSprocket{.geometry = {.profile = profile, .valley = 0.0}, .normal = pads}, "PinOnSprocket");
+  tried += try_force(OnSprocket{.geometry = {.profile = profile, .valley = 0.0}, .normal = pads}, "PinSprocketContact");
   std::cout << tried << " parameters of contacts\n";
 }
 
@@ -110,7 +111,7 @@ template <class J>
 void join(J const& joint, double arm, double height = 0.0) {
   Stage s;
   s.model.connect(joint, s.model.ground().at({0, 0, height}), s.body.at({0, 0, arm}), "hostile");
-  run_ten_steps(s.model, GeneralizedAlpha{});
+  run_ten_steps(s.model, GeneralisedAlpha{});
 }
 template <class G>
 int try_geometry(G const& sane, std::string const& type, double arm, double height = 0.0) {
@@ -136,8 +137,8 @@ TEST(HostileParameters, OfJoints) {
                         "PrescribedAngle<Ramp>", 0.0);
   tried += try_geometry(PrescribedAngle<IntegralOf<SmoothRamp>>{.law = {{.target = 0.1, .duration = 0.05}}, .axis = y},
                         "PrescribedAngle<IntegralOf<SmoothRamp>>", 0.0);
-  tried += try_geometry(PrescribedSlide<SpinUp>{.law = {.speed = 0.1, .duration = 0.05}, .axis = z},
-                        "PrescribedSlide<SpinUp>", -0.4);
+  tried += try_geometry(PrescribedTranslation<SpinUp>{.law = {.speed = 0.1, .duration = 0.05}, .axis = z},
+                        "PrescribedTranslation<SpinUp>", -0.4);
   tried += try_geometry(PrescribedDistance<Constant>{.law = {.value = 0.1}, .length = 0.3},
                         "PrescribedDistance<Constant>", 0.0);
   std::cout << tried << " parameters of joints\n";
@@ -147,8 +148,9 @@ TEST(HostileParameters, OfPolicies) {
   int tried = 0;
   tried += try_policy(Penalty{.stiffness = 1e5, .damping = 10.0}, "Penalty");
   using Five = Vec<double, 5>;
-  tried += try_policy(PenaltyPerRow<5>{.stiffness = Five(Five::Constant(1e5)), .damping = Five(Five::Constant(10.0))},
-                      "PenaltyPerRow");
+  tried +=
+      try_policy(PenaltyPerEquation<5>{.stiffness = Five(Five::Constant(1e5)), .damping = Five(Five::Constant(10.0))},
+                 "PenaltyPerEquation");
   Vec3 const one(1, 1, 1);
   tried += try_policy(Bushing{.stiffness = Bushing::diagonal(1e5 * one, 1e3 * one),
                               .damping = Bushing::diagonal(10.0 * one, 1.0 * one)},

@@ -22,7 +22,7 @@ struct Bounced {
 Event floor_event(double restitution, bool rests, double height = 0.0) {
   return {.name = "floor",
           .value = [height](State const& x) { return x.q[1] - height; },
-          .then = [restitution](State& x) { x.v[1] *= -restitution; },
+          .action = [restitution](State& x) { x.v[1] *= -restitution; },
           .rests = rests};
 }
 
@@ -33,8 +33,8 @@ Bounced bounce(I const& integrator, double restitution, double step, double heig
   Bounced out;
   out.end = model.reference_state();
   out.end.v[1] = speed;
-  auto run =
-      simulate(model, out.end, integrator, {.until = 10.0, .step = step, .events = {floor_event(restitution, rests)}});
+  auto run = simulate(model, out.end, integrator,
+                      {.end_time = 10.0, .step = step, .events = {floor_event(restitution, rests)}});
   while (!run.done()) {
     run.advance();
     out.lowest = std::min(out.lowest, out.end.q[1]);
@@ -83,7 +83,7 @@ TEST(Impacts, ABallNeverFallsThroughAFloorOfEvents) {
   std::vector<double> const e = all() ? std::vector<double>{0.0, 0.1, 0.3, 0.5, 0.8, 0.9, 0.95, 1.0}
                                       : std::vector<double>{0.0, 0.5, 0.8},
                             h = all() ? std::vector<double>{0.1, 1e-2, 1e-3} : std::vector<double>{1e-2};
-  expect_bounces(GeneralizedAlpha{}, e, h, 1e-6);
+  expect_bounces(GeneralisedAlpha{}, e, h, 1e-6);
   expect_bounces(HhtAlpha{}, e, h, 1e-6);
   expect_bounces(Newmark{}, e, h, 1e-6);
   expect_bounces(Trapezoidal{}, e, h, 1e-6);

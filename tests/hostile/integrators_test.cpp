@@ -35,7 +35,7 @@ int try_integrator(I const& sane) {
 
 TEST(HostileParameters, OfIntegrators) {
   int tried = 0;
-  tried += try_integrator(GeneralizedAlpha{});
+  tried += try_integrator(GeneralisedAlpha{});
   tried += try_integrator(HhtAlpha{});
   tried += try_integrator(Newmark{.gamma = 0.6, .beta = 0.3025});
   tried += try_integrator(Trapezoidal{});
@@ -52,10 +52,11 @@ TEST(HostileParameters, OfIntegrators) {
 
 TEST(HostileParameters, OfRuns) {
   Pendulum const pendulum;
-  RunOptions const sane{
-      .until = 0.1, .step = 0.01, .corners = {0.05}, .events = {{"low", [](State const& x) { return x.q[1] + 0.01; }}}};
+  RunOptions const sane{.end_time = 0.1, .step = 0.01, .breakpoints = {0.05}, .events = {{"low", [](State const& x) {
+                                                                                            return x.q[1] + 0.01;
+                                                                                          }}}};
   int tried = try_hostile(sane, "RunOptions", [&](RunOptions const& options) {
-    run_ten_steps(pendulum.model, GeneralizedAlpha{}, options);
+    run_ten_steps(pendulum.model, GeneralisedAlpha{}, options);
     run_ten_steps(pendulum.model, DormandPrince<Projection>{}, options);
   });
   std::cout << tried << " options of runs\n";

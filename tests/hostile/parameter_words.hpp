@@ -5,9 +5,9 @@
 #include <polybody/bodies/ffr/ffr_options.hpp>
 #include <polybody/polybody.hpp>
 #include <polybody/signals/rainflow.hpp>
-#include <polybody/vehicle/link_on_ground.hpp>
-#include <polybody/vehicle/link_on_roller.hpp>
-#include <polybody/vehicle/pin_on_sprocket.hpp>
+#include <polybody/vehicle/link_ground_contact.hpp>
+#include <polybody/vehicle/link_roller_contact.hpp>
+#include <polybody/vehicle/pin_sprocket_contact.hpp>
 
 #include "support/parameters.hpp"
 
@@ -60,18 +60,19 @@ template <>
 inline constexpr auto words_of<FlatGround> = words("height");
 template <>
 inline constexpr auto words_of<Washboard> = words("amplitude", "wavelength");
-template <class G, Observes observed>
-inline constexpr auto words_of<LinkOnGround<G, observed>> = words("terrain", "point of the pad");
-template <Observes observed>
-inline constexpr auto words_of<LinkOnRoller<observed>> =
+template <class G, MarkerKind observed>
+inline constexpr auto words_of<LinkGroundContact<G, observed>> = words("terrain", "point of the pad");
+template <MarkerKind observed>
+inline constexpr auto words_of<LinkRollerContact<observed>> =
     words("pitch", "half thickness", "half width", "radius", "handover", "chamfer", "rim");
-template <Observes observed>
-inline constexpr auto words_of<HornOnRims<observed>> = words("tip", "play", "radius");
+template <MarkerKind observed>
+inline constexpr auto words_of<GuideHornContact<observed>> = words("tip", "play", "radius");
 template <>
 inline constexpr auto words_of<SprocketProfile> =
     words("teeth|tips", "pitch|tips|valleys", "pins|tips", "valleys", "arc of a valley|valleys", "tip");
-template <Observes observed>
-inline constexpr auto words_of<PinOnSprocket<observed>> = words("profile", "valley", "ring", "way from the marker");
+template <MarkerKind observed>
+inline constexpr auto words_of<PinSprocketContact<observed>> =
+    words("profile", "valley", "ring", "way from the marker");
 
 // joints
 template <>
@@ -91,7 +92,7 @@ inline constexpr auto words_of<KnifeEdge> = words("across");
 template <class Law>
 inline constexpr auto words_of<PrescribedAngle<Law>> = words("law", "axis");
 template <class Law>
-inline constexpr auto words_of<PrescribedSlide<Law>> = words("law", "axis");
+inline constexpr auto words_of<PrescribedTranslation<Law>> = words("law", "axis");
 template <class Law>
 inline constexpr auto words_of<PrescribedDistance<Law>> = words("law", "length");
 template <>
@@ -101,7 +102,7 @@ inline constexpr auto words_of<Revolute> = words("axis");
 template <>
 inline constexpr auto words_of<Penalty> = words("stiffness", "damping");
 template <int n>
-inline constexpr auto words_of<PenaltyPerRow<n>> = words("stiffness", "damping");
+inline constexpr auto words_of<PenaltyPerEquation<n>> = words("stiffness", "damping");
 template <>
 inline constexpr auto words_of<Bushing> = words("stiffness", "damping");
 template <>
@@ -117,7 +118,7 @@ template <>
 inline constexpr auto words_of<NewtonOptions> =
     words("max_iterations", "factorisation_cost", "always_refactor", "growths", "budget", "predictive_stop");
 template <>
-inline constexpr auto words_of<GeneralizedAlpha> =
+inline constexpr auto words_of<GeneralisedAlpha> =
     words("rho_inf", "tolerance", "newton", "start_correction", "second_order_terms", "stabilised");
 template <>
 inline constexpr auto words_of<HhtAlpha> =
@@ -156,7 +157,7 @@ inline constexpr auto words_of<AdamsBashforthMoulton<S>> =
 
 // runs and statics
 template <>
-inline constexpr auto words_of<StepLimits> = words("violation", "energy", "warning");
+inline constexpr auto words_of<PlausibilityLimits> = words("violation", "energy", "warning");
 template <>
 inline constexpr auto words_of<Event> = words("name", "value", "stops", "tolerance", "then", "rests");
 template <>
@@ -165,7 +166,7 @@ inline constexpr auto words_of<RunOptions> =
           "thread", "progress");
 template <>
 inline constexpr auto words_of<EquilibriumOptions> =
-    words("load_steps", "smallest_part", "tolerance", "max_iterations");
+    words("load_steps", "min_load_step", "tolerance", "max_iterations");
 template <>
 inline constexpr auto words_of<ArcLengthOptions> =
     words("step", "largest", "smallest", "points", "tolerance", "max_iterations");

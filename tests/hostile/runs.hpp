@@ -17,7 +17,7 @@ inline void expect_finite(State const& x) {
 
 /// At most ten steps of a run.
 template <class M, class I>
-void run_ten_steps(M const& model, I const& integrator, RunOptions const& options = {.until = 0.1, .step = 0.01}) {
+void run_ten_steps(M const& model, I const& integrator, RunOptions const& options = {.end_time = 0.1, .step = 0.01}) {
   State x = model.reference_state();
   int steps = 0;
   try {

@@ -64,7 +64,7 @@ ReferenceCurve arc(Vec3 const& end) {
 enum class Start { straight_along_x, catenary, arc, straight_along_chord };
 char const* const names[] = {"straight along x", "catenary", "arc", "straight along the chord"};
 
-struct Drawn {
+struct DrawResult {
   Vec3 end;
   Index n;
   double EA, EI;
@@ -73,7 +73,7 @@ struct Drawn {
 
 /// Relative error of the force on the far support, and the first warning or the message of the exception.
 template <class Cable>
-std::pair<double, std::string> hang(Drawn const& c) {
+std::pair<double, std::string> hang(DrawResult const& c) {
   Model<Bodies<Cable>, Joints<Ball>> model{Gravity{0, 0, -weight}};
   Bar bar{.length = length, .constants = BarConstants{.EA = c.EA, .EI = c.EI, .mass_per_length = 1.0}};
   if (c.start == Start::straight_along_chord)
@@ -105,11 +105,11 @@ TEST(SlackCables, HangInACatenaryOrGiveASentence) {
   int silent = 0, sentences = 0;
   for (int i = 0; i < 50; ++i) {
     double const chord = between(0.3, 0.98) * length, angle = between(-0.9, 0.9);
-    Drawn const c{{chord * std::cos(angle), 0.0, chord * std::sin(angle)},
-                  8 + Index(between(0.0, 33.0)),
-                  std::pow(10.0, between(3.5, 7.0)),
-                  std::pow(10.0, between(-4.0, -2.0)),
-                  Start(i % 4)};
+    DrawResult const c{{chord * std::cos(angle), 0.0, chord * std::sin(angle)},
+                       8 + Index(between(0.0, 33.0)),
+                       std::pow(10.0, between(3.5, 7.0)),
+                       std::pow(10.0, between(-4.0, -2.0)),
+                       Start(i % 4)};
     for (bool const green : {false, true}) {
       auto const [off, text] = green ? hang<AncfCable<GreenStrain>>(c) : hang<AncfCable<EngineeringStrain>>(c);
       sentences += !text.empty();

@@ -87,12 +87,12 @@ struct Count {
 template <class Case, class I>
 void run_one(I const& integrator, int kind, double factor, double limit, Count& count) {
   Case setup(kind);
-  double const h = factor * limit / omega, until = std::max(10.0 * 6.3 / omega, 100.0 * h);
+  double const h = factor * limit / omega, end_time = std::max(10.0 * 6.3 / omega, 100.0 * h);
   double const start = setup.energy_of(setup.x);
   double most = start;
   ++count.runs;
   try {
-    auto run = simulate(setup.model, setup.x, integrator, {.until = until, .step = h, .largest_step = h});
+    auto run = simulate(setup.model, setup.x, integrator, {.end_time = end_time, .step = h, .max_step = h});
     for (State const& now : run) most = std::max(most, setup.energy_of(now));
     if (!run.report().warnings.empty()) {
       ++count.warned;
@@ -112,7 +112,7 @@ void run_one(I const& integrator, int kind, double factor, double limit, Count& 
 
 template <class Case, class I>
 void sweep(I const& integrator, Count& count, double limit = 2.0) {
-  if constexpr (NamesStableStep<I>) limit = I::stable_to;
+  if constexpr (HasStabilityLimit<I>) limit = I::stability_limit;
   bool const all = std::getenv("POLYBODY_HOSTILE") != nullptr;
   std::vector<double> factors{0.05, 0.3, 0.9, 0.999, 1.004, 1.1, 3.0, 10.0};
   if (all)
@@ -135,7 +135,7 @@ void sweep_both(I const& integrator, Count& count) {
 
 TEST(HostileSprings, NoIntegratorChangesTheEnergyWithoutAWord) {
   Count count;
-  sweep_both(GeneralizedAlpha{}, count);
+  sweep_both(GeneralisedAlpha{}, count);
   sweep_both(HhtAlpha{}, count);
   sweep_both(Newmark{.gamma = 0.6, .beta = 0.3025}, count);
   sweep_both(Trapezoidal{}, count);

@@ -22,7 +22,7 @@ struct Law {
     calls();
     return {0.3 * std::sin(8.0 * t), 2.4 * std::cos(8.0 * t), -19.2 * std::sin(8.0 * t)};
   }
-  std::vector<double> corners() const { return {0.1, 0.21}; }
+  std::vector<double> breakpoints() const { return {0.1, 0.21}; }
 };
 auto user_push() {
   return user_force<1>([](auto const& frames, double t) {
@@ -68,7 +68,7 @@ struct Beam {
 bool same(VecX const& a, VecX const& b) { return a.size() == b.size() && a == b; }
 bool same(State const& a, State const& b) {
   return a.t == b.t && same(a.q, b.q) && same(a.v, b.v) && same(a.a, b.a) && same(a.lambda, b.lambda) &&
-         same(a.memory, b.memory);
+         same(a.history, b.history);
 }
 bool same(RunReport const& a, RunReport const& b) {
   if (a.events.size() != b.events.size()) return false;
@@ -92,12 +92,12 @@ RunOptions with_callbacks(RunOptions options, bool events) {
                      },
                  .tolerance = 1e-4};
   };
-  options.events = {at("acts", 0.05), at("is met", 0.13), at("stops", options.until - 0.013)};
-  options.events[0].then = [](State& x) {
+  options.events = {at("acts", 0.05), at("is met", 0.13), at("stops", options.end_time - 0.013)};
+  options.events[0].action = [](State& x) {
     calls();
     x.v *= 0.5;
   };
-  options.events[2].stops = true;
+  options.events[2].terminal = true;
   return options;
 }
 
@@ -164,27 +164,27 @@ void expect_kept(Make const& make, I const& integrator, RunOptions const& option
 
 TEST(ThrowingCallbacks, LeaveStateAndReportUnderEveryIntegrator) {
   auto const crank = [] { return Crank<Constraint>::make(); };
-  RunOptions const options{.until = 0.3, .step = 0.02};
-  expect_kept(crank, GeneralizedAlpha{}, options);
+  RunOptions const options{.end_time = 0.3, .step = 0.02};
+  expect_kept(crank, GeneralisedAlpha{}, options);
   expect_kept(crank, HhtAlpha{}, options);
   expect_kept(crank, Newmark{}, options);
   expect_kept(crank, Trapezoidal{}, options);
   expect_kept(crank, EnergyMomentum{}, options);
   expect_kept(crank, EnergyDecaying{}, options);
-  expect_kept(crank, Radau{}, {.until = 0.16, .step = 0.02});
+  expect_kept(crank, Radau{}, {.end_time = 0.16, .step = 0.02});
   expect_kept(crank, RungeKutta4<Projection>{}, options);
   expect_kept(crank, CentralDifference<Projection>{}, options);
-  expect_kept(crank, DormandPrince<Projection>{}, {.until = 0.16, .step = 0.02});
-  expect_kept(crank, AdamsBashforthMoulton<Projection>{}, {.until = 0.08, .step = 0.02});
+  expect_kept(crank, DormandPrince<Projection>{}, {.end_time = 0.16, .step = 0.02});
+  expect_kept(crank, AdamsBashforthMoulton<Projection>{}, {.end_time = 0.08, .step = 0.02});
   std::cout << total << " throws\n";
 }
 TEST(ThrowingCallbacks, LeaveStateAndReportWithEveryQuestion) {
-  RunOptions const options{.until = 0.2, .step = 0.01};
-  expect_kept([] { return Crank<Constraint>::make(); }, GeneralizedAlpha{},
-              {.until = 0.2, .step = 0.02, .minimum_norm = true});
-  expect_kept([] { return Crank<Recursive>::make(); }, GeneralizedAlpha{}, options);
-  expect_kept([] { return Crank<Recursive>::make(); }, RungeKutta4<Projection>{}, options);
-  expect_kept([] { return Beam::make(); }, GeneralizedAlpha{}, {.until = 0.2, .step = 0.005});
+  RunOptions const options{.end_time = 0.2, .step = 0.01};
+  expect_kept([] { return Crank<Constraint>::make(); }, GeneralisedAlpha{},
+              {.end_time = 0.2, .step = 0.02, .minimum_norm = true});
+  expect_kept([] { return Crank<JointCoordinates>::make(); }, GeneralisedAlpha{}, options);
+  expect_kept([] { return Crank<JointCoordinates>::make(); }, RungeKutta4<Projection>{}, options);
+  expect_kept([] { return Beam::make(); }, GeneralisedAlpha{}, {.end_time = 0.2, .step = 0.005});
   std::cout << total << " throws\n";
 }
 

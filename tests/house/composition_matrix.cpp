@@ -20,33 +20,34 @@ struct Type {
 };
 
 using Laws = NonlinearBushing<LinearLaw, LinearLaw, LinearLaw, LinearLaw, LinearLaw, LinearLaw>;
-/// Stands for `PenaltyPerRow` with as many numbers as the geometry has rows.
+/// Stands for `PenaltyPerEquation` with as many numbers as the geometry has rows.
 struct PerRow {};
 template <class P, class G>
-using PolicyFor = std::conditional_t<std::is_same_v<P, PerRow>, PenaltyPerRow<G::rows>, P>;
+using PolicyFor = std::conditional_t<std::is_same_v<P, PerRow>, PenaltyPerEquation<G::rows>, P>;
 
 auto const geometries = std::tuple(
     Type<Spherical>{"Spherical"}, Type<Revolute>{"Revolute"}, Type<RevolutePin>{"RevolutePin"},
     Type<Universal>{"Universal"}, Type<Cylindrical>{"Cylindrical"}, Type<Prismatic>{"Prismatic"}, Type<Screw>{"Screw"},
-    Type<PlaneOnPlane>{"PlaneOnPlane"}, Type<PointOnLine>{"PointOnLine"}, Type<PointInPlane>{"PointInPlane"},
-    Type<Orientation>{"Orientation"}, Type<ParallelAxes>{"ParallelAxes"}, Type<PerpendicularAxes>{"PerpendicularAxes"},
-    Type<Weld>{"Weld"}, Type<RelativeCoordinates>{"RelativeCoordinates"}, Type<Distance>{"Distance"},
-    Type<Gear>{"Gear"}, Type<RackAndPinion>{"RackAndPinion"}, Type<RollingDisc>{"RollingDisc"},
-    Type<KnifeEdge>{"KnifeEdge"}, Type<PrescribedAngle<Ramp>>{"PrescribedAngle"},
+    Type<PlanarJoint>{"PlanarJoint"}, Type<PointOnLine>{"PointOnLine"}, Type<PointInPlane>{"PointInPlane"},
+    Type<ConstantOrientation>{"ConstantOrientation"}, Type<ParallelAxes>{"ParallelAxes"},
+    Type<PerpendicularAxes>{"PerpendicularAxes"}, Type<Weld>{"Weld"}, Type<RelativeCoordinates>{"RelativeCoordinates"},
+    Type<Distance>{"Distance"}, Type<Gear>{"Gear"}, Type<RackAndPinion>{"RackAndPinion"},
+    Type<RollingDisc>{"RollingDisc"}, Type<KnifeEdge>{"KnifeEdge"}, Type<PrescribedAngle<Ramp>>{"PrescribedAngle"},
     Type<PrescribedRate<Ramp>>{"PrescribedRate"}, Type<PrescribedDistance<Ramp>>{"PrescribedDistance"},
-    Type<PrescribedSlide<Ramp>>{"PrescribedSlide"}, Type<planar::Revolute>{"planar::Revolute"},
+    Type<PrescribedTranslation<Ramp>>{"PrescribedTranslation"}, Type<planar::Revolute>{"planar::Revolute"},
     Type<planar::Prismatic>{"planar::Prismatic"}, Type<planar::Weld>{"planar::Weld"});
 
-auto const policies = std::tuple(
-    Type<Constraint>{"Constraint"}, Type<Penalty>{"Penalty"}, Type<PerRow>{"PenaltyPerRow"}, Type<Bushing>{"Bushing"},
-    Type<Laws>{"NonlinearBushing"}, Type<Recursive>{"Recursive"},
-    Type<RecursiveBy<recursive::Reduced>>{"RecursiveBy<Reduced>"},
-    Type<RecursiveBy<recursive::ArticulatedBody>>{"RecursiveBy<ArticulatedBody>"}, Type<AncfLinear>{"AncfLinear"});
+auto const policies =
+    std::tuple(Type<Constraint>{"Constraint"}, Type<Penalty>{"Penalty"}, Type<PerRow>{"PenaltyPerEquation"},
+               Type<Bushing>{"Bushing"}, Type<Laws>{"NonlinearBushing"}, Type<JointCoordinates>{"JointCoordinates"},
+               Type<JointCoordinatesBy<joint_coordinates::DenseMatrix>>{"JointCoordinatesBy<DenseMatrix>"},
+               Type<JointCoordinatesBy<joint_coordinates::ArticulatedBody>>{"JointCoordinatesBy<ArticulatedBody>"},
+               Type<AncfLinear>{"AncfLinear"});
 
 auto const bodies = std::tuple(
     Type<Rigid<>>{"Rigid<>"}, Type<Rigid<EulerParameters>>{"Rigid<EulerParameters>"}, Type<AncfCable<>>{"AncfCable"},
     Type<AncfBeam<ElasticLine>>{"AncfBeam<ElasticLine>"}, Type<AncfBeam<Continuum<>>>{"AncfBeam<Continuum>"},
-    Type<Lrvf<Objective>>{"Lrvf<Objective>"}, Type<Lrvf<Direct>>{"Lrvf<Direct>"}, Type<Ffr>{"Ffr"},
+    Type<Lrvf<RelativeRotation>>{"Lrvf<Objective>"}, Type<Lrvf<Direct>>{"Lrvf<Direct>"}, Type<Ffr>{"Ffr"},
     Type<planar::Rigid>{"planar::Rigid"}, Type<planar::AncfCable<>>{"planar::AncfCable"},
     Type<planar::Lrvf>{"planar::Lrvf"}, Type<planar::Ffr>{"planar::Ffr"});
 
@@ -57,7 +58,7 @@ struct Stepper {
   char const* refuses = "";
 };
 auto const integrators = std::tuple(
-    Stepper<GeneralizedAlpha>{"GeneralizedAlpha"}, Stepper<HhtAlpha>{"HhtAlpha"}, Stepper<Newmark>{"Newmark"},
+    Stepper<GeneralisedAlpha>{"GeneralisedAlpha"}, Stepper<HhtAlpha>{"HhtAlpha"}, Stepper<Newmark>{"Newmark"},
     Stepper<Trapezoidal>{"Trapezoidal"}, Stepper<Radau>{"Radau", "t"}, Stepper<EnergyMomentum>{"EnergyMomentum", "e"},
     Stepper<EnergyDecaying>{"EnergyDecaying", "e"}, Stepper<RungeKutta4<>>{"RungeKutta4<>"},
     Stepper<DormandPrince<>>{"DormandPrince<>"}, Stepper<AdamsBashforthMoulton<>>{"AdamsBashforthMoulton<>"},
@@ -75,15 +76,15 @@ constexpr char const* yes = "✓";
 template <class P, class G>
 char const* policy_cell() {
   using Q = PolicyFor<P, G>;
-  if constexpr (Holds<Q, G>)
+  if constexpr (EnforceablePair<Q, G>)
     return yes;
-  else if constexpr (!HasGapToAnswer<Q, G>)
+  else if constexpr (!HolonomicOrConstrained<Q, G>)
     return "v";
-  else if constexpr (!MeasuresGeometry<Q, G>)
+  else if constexpr (!MeasurableGeometry<Q, G>)
     return "f";
-  else if constexpr (!HasJointCoordinates<Q, G>)
+  else if constexpr (!JointCoordinatesIfRequired<Q, G>)
     return "j";
-  else if constexpr (!HasLinearRows<Q, G>)
+  else if constexpr (!LinearIfRequired<Q, G>)
     return "l";
   else
     return "no";
@@ -91,12 +92,12 @@ char const* policy_cell() {
 
 /// Body B and the ground may be joined by geometry G and policy P.
 template <class B, class G, class P>
-concept Joinable = MeetInOneWorld<G, B, Ground> && Holds<PolicyFor<P, G>, G> && MayBeEliminated<PolicyFor<P, G>, B>;
+concept Joinable = SameWorld<G, B, Ground> && EnforceablePair<PolicyFor<P, G>, G> && EliminableBody<PolicyFor<P, G>, B>;
 /// … with the first marker on B; with the second.
 template <class B, class G, class P>
-concept First = Joinable<B, G, P> && TellsEnoughFirst<Joint<G, PolicyFor<P, G>>, B>;
+concept First = Joinable<B, G, P> && SufficientFirstMarker<Joint<G, PolicyFor<P, G>>, B>;
 template <class B, class G, class P>
-concept Second = Joinable<B, G, P> && TellsEnoughSecond<Joint<G, PolicyFor<P, G>>, B>;
+concept Second = Joinable<B, G, P> && SufficientSecondMarker<Joint<G, PolicyFor<P, G>>, B>;
 
 template <class B, class P, class... Gs>
 char const* marker_cell(char const* refused) {
@@ -106,9 +107,9 @@ char const* marker_cell(char const* refused) {
 
 template <class M, class I>
 char const* step_cell(Stepper<I> const& stepper) {
-  if constexpr (StepsModel<I, M>)
+  if constexpr (CompatibleIntegrator<I, M>)
     return yes;
-  else if constexpr (!KeepsToRows<I, M>)
+  else if constexpr (!ConstraintCompatible<I, M>)
     return "s";
   else
     return stepper.refuses;
@@ -116,7 +117,7 @@ char const* step_cell(Stepper<I> const& stepper) {
 
 /// A body in the plane that does not stand in the way of any integrator, on a joint of policy P.
 template <class P>
-using Held = Model<Bodies<std::conditional_t<LinearInCoordinates<P>, planar::AncfCable<>, planar::Rigid>>,
+using Held = Model<Bodies<std::conditional_t<LinearPolicy<P>, planar::AncfCable<>, planar::Rigid>>,
                    Joints<Joint<planar::Revolute, PolicyFor<P, planar::Revolute>>>>;
 using OnABlade = Model<Bodies<planar::Rigid>, Joints<Joint<KnifeEdge, Constraint>>>;
 
@@ -179,7 +180,7 @@ void geometry_row(Table& by_policy, Table& by_body, Type<G> g) {
   std::apply([&]<class... Ps>(Type<Ps>...) { by_policy.row(g.name, policy_cell<Ps, G>()...); }, policies);
   std::apply(
       [&]<class... Bs>(Type<Bs>...) {
-        by_body.row(g.name, marker_cell<Bs, Constraint, G>(MeetInOneWorld<G, Bs, Ground> ? "n" : "w")...);
+        by_body.row(g.name, marker_cell<Bs, Constraint, G>(SameWorld<G, Bs, Ground> ? "n" : "w")...);
       },
       bodies);
 }
@@ -187,7 +188,7 @@ template <class P, class... Gs>
 void policy_row(Table& by_body, Type<P> p, std::tuple<Type<Gs>...> const&) {
   std::apply(
       [&]<class... Bs>(Type<Bs>...) {
-        by_body.row(p.name, marker_cell<Bs, P, Gs...>(MakesJointCoordinates<P> ? "r" : "l")...);
+        by_body.row(p.name, marker_cell<Bs, P, Gs...>(JointCoordinatePolicy<P> ? "r" : "l")...);
       },
       bodies);
 }
@@ -210,7 +211,7 @@ std::string composition() {
   std::apply([&](auto... p) { (policy_row(policy_body, p, geometries), ...); }, policies);
   std::apply([&](auto const&... i) { (integrator_row(integrator_body, integrator_policy, i), ...); }, integrators);
 
-  static_assert(HeldCoordinates<Spherical>::needs == Observes::frame);
+  static_assert(ConstrainedCoordinates<Spherical>::needs == MarkerKind::frame);
   return geometry_policy.text("geometry") +
          "\nv: nonholonomic equations have no position level for a compliant force. f: the geometry names no free "
          "directions, which a bushing needs. j: the free motion has no joint coordinates. l: the equations are not "
@@ -220,7 +221,8 @@ std::string composition() {
          "frame. w: the body is of another dimension. The ground can be used everywhere. A bushing needs a frame at "
          "its first marker.\n\n" +
          policy_body.text("policy, some geometry") +
-         "\nr: joint coordinates need a body with a frame, and `RecursiveBy<ArticulatedBody>` needs rigid bodies. l: "
+         "\nr: joint coordinates need a body with a frame, and `JointCoordinatesBy<ArticulatedBody>` needs rigid "
+         "bodies. l: "
          "points are not linear in the coordinates.\n\n" +
          integrator_body.text("integrator") +
          "\ns: the method has no stabilisation, and the norm of Euler parameters is a constraint equation. m: the mass "

@@ -18,20 +18,20 @@ namespace central_difference_test {
 struct CentralDifferenceOnFreeBody {
   using Model = SprungBody;
   static auto integrators() { return std::vector<CentralDifference<>>(1); }
-  static constexpr double until = 1.0;
+  static constexpr double end_time = 1.0;
   static constexpr int steps = 64;
 };
 struct CentralDifferenceOnBar {
   using Model = SwingingBar;
   static auto integrators() { return std::vector<CentralDifference<Projection>>(1); }
-  static constexpr double until = 0.5;
+  static constexpr double end_time = 0.5;
   static constexpr int steps = 32;
   static constexpr bool keeps_accelerations = false;  // the accelerations belong to the predicted velocities
 };
 struct CentralDifferenceOnTop {
   using Model = SlowTop;
   static auto integrators() { return std::vector<CentralDifference<Projection>>(1); }
-  static constexpr double until = 0.5;
+  static constexpr double end_time = 0.5;
   static constexpr int steps = 64;
   static constexpr bool keeps_accelerations = false;  // the accelerations belong to the predicted velocities
 };
@@ -106,7 +106,7 @@ TEST(CentralDifference, IsStableUpToTwoOverTheHighestFrequency) {
           "CentralDifference, AncfCable"},
          std::pow(a[39] / a[19], 1.0 / 20.0), growth, 0.01 * growth, {equals("elements", double(n))});
     // the growth ends in numbers that are not finite
-    EXPECT_THROW(cable.amplitudes(1.01 * limit, 2000), NonFinite);
+    EXPECT_THROW(cable.amplitudes(1.01 * limit, 2000), NonFiniteValue);
   }
 }
 

@@ -114,7 +114,7 @@ TEST(EnergyDecaying, IsOfOrderOneAndOfOrderTwoWhereItKeepsEnergy) {
     for (int k = 1; k <= 8; k *= 2) {
       Flight flight(1e3, 100.0, 2);
       flight.x.v[8] += 0.5;
-      simulate(flight.model, flight.x, EnergyDecaying{.rho_inf = rho}, {.until = 0.5, .step = 0.001 / k}).run();
+      simulate(flight.model, flight.x, EnergyDecaying{.rho_inf = rho}, {.end_time = 0.5, .step = 0.001 / k}).run();
       VecX end(2 * flight.x.q.size());
       end << flight.x.q, flight.x.v;
       ends.push_back(end);
@@ -127,9 +127,10 @@ TEST(EnergyDecaying, IsOfOrderOneAndOfOrderTwoWhereItKeepsEnergy) {
 TEST(EnergyDecaying, RefusesARadiusOutsideItsRange) {
   Flight flight(1e3, 100.0, 2);
   for (double const rho : {-0.1, 1.1, std::numeric_limits<double>::quiet_NaN()})
-    EXPECT_TRUE(has(
-        refusal([&] { simulate(flight.model, flight.x, EnergyDecaying{.rho_inf = rho}, {.until = 1.0, .step = 0.1}); }),
-        "EnergyDecaying: rho_inf must lie in [0, 1]"));
+    EXPECT_TRUE(has(refusal([&] {
+                      simulate(flight.model, flight.x, EnergyDecaying{.rho_inf = rho}, {.end_time = 1.0, .step = 0.1});
+                    }),
+                    "EnergyDecaying: rho_inf must lie in [0, 1]"));
 }
 
 }  // namespace energy_decaying_test

@@ -20,7 +20,7 @@ namespace energy_momentum_space_test {
 /// Rises from 0 to 1 at 2.5 s and falls back to 0 at 5 s.
 struct Triangle {
   Motion operator()(double t) const { return {std::max(0.0, 1.0 - std::abs(t / 2.5 - 1.0)), 0.0, 0.0}; }
-  std::vector<double> corners() const { return {0.0, 2.5, 5.0}; }
+  std::vector<double> breakpoints() const { return {0.0, 2.5, 5.0}; }
 };
 
 /// Free flight in space (D4, AeroBeams, "flyingSpaghetti3D"): a rod from (6, 0, 0) to (0, 8, 0), thrown by a force
@@ -43,7 +43,7 @@ struct Thrown {
     model.apply(PointForce<Triangle>{.force = {20, 0, 0}}, rod.at(0.0), "force");
     model.apply(PointMoment<Triangle>{.moment = {0, -100, -200}}, rod.at(0.0), "moment");
     x = model.reference_state();
-    simulate(model, x, EnergyMomentum{}, {.until = 5.0, .step = 0.01}).run();
+    simulate(model, x, EnergyMomentum{}, {.end_time = 5.0, .step = 0.01}).run();
   }
 };
 
@@ -72,7 +72,7 @@ TEST(EnergyMomentumInSpace, DampsABentCableAsRadauDoes) {
       x.q.segment<3>(6 * node + 3) = Vec3(std::cos(angle), 0.0, std::sin(angle));
     }
     double const before = energy(model, x).total();
-    simulate(model, x, integrator, {.until = 0.1, .step = step}).run();
+    simulate(model, x, integrator, {.end_time = 0.1, .step = step}).run();
     return energy(model, x).total() / before;
   };
   double const by_radau = left(Radau{}, 2.5e-4), kept = left(EnergyMomentum{}, 2.5e-5);

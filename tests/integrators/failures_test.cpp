@@ -7,10 +7,10 @@
 #include <polybody/integrators/adams_bashforth_moulton.hpp>
 #include <polybody/integrators/central_difference.hpp>
 #include <polybody/integrators/coordinate_partitioning.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/integrators/symplectic.hpp>
-#include <polybody/joints/policies/recursive.hpp>
+#include <polybody/joints/policies/joint_coordinates.hpp>
 #include <polybody/run/simulate.hpp>
 
 #include "support/chain.hpp"
@@ -25,22 +25,22 @@ void expect_same(State const& a, State const& b) {
   EXPECT_EQ(a.v, b.v);
   EXPECT_EQ(a.a, b.a);
   EXPECT_EQ(a.lambda, b.lambda);
-  EXPECT_EQ(a.memory, b.memory);
+  EXPECT_EQ(a.history, b.history);
   EXPECT_EQ(a.t, b.t);
 }
 
 TEST(Failures, AbsurdStepStallsNewtonAndLeavesTheState) {
   Chain<InSpace<Constraint>> chain(4, bar_link());
   State x = chain.model.reference_state();
-  GeneralizedAlpha const integrator;
+  GeneralisedAlpha const integrator;
   System system(chain.model);
   auto const method = method_of(integrator);
   auto workspace = method.workspace<DenseLu>(system);
   method.start(system, x, 1e-3, workspace);
   for (int i = 0; i < 100; ++i) method.step(system, x, 1e-3, workspace);
   State const before = x;
-  std::string const message = message_of<NewtonStalled>(
-      [&] { method_of(GeneralizedAlpha{.newton = {.max_iterations = 3}}).step(system, x, 3.0, workspace); });
+  std::string const message = message_of<NewtonConvergenceFailure>(
+      [&] { method_of(GeneralisedAlpha{.newton = {.max_iterations = 3}}).step(system, x, 3.0, workspace); });
   EXPECT_TRUE(has(message, "did not converge at t = 3.1"));
   EXPECT_TRUE(has(message, "Take a smaller step"));
   expect_same(x, before);
@@ -74,8 +74,8 @@ struct Poisoned {
   template <class I>
   void expect_named(I const& integrator) {
     State before = x;
-    auto run = simulate(model, x, integrator, {.until = 1.0, .step = 0.01});
-    std::string const message = message_of<NonFinite>([&] {
+    auto run = simulate(model, x, integrator, {.end_time = 1.0, .step = 0.01});
+    std::string const message = message_of<NonFiniteValue>([&] {
       while (!run.done()) {
         before = run.state();
         run.advance();
@@ -91,7 +91,7 @@ struct Poisoned {
 };
 
 TEST(Failures, ForceThatIsNoNumberNamesItsBody) {
-  Poisoned().expect_named(GeneralizedAlpha{});
+  Poisoned().expect_named(GeneralisedAlpha{});
   Poisoned().expect_named(RungeKutta4<Projection>{});
   Poisoned().expect_named(DormandPrince<Projection>{});
   Poisoned().expect_named(CentralDifference<Projection>{});
@@ -119,7 +119,7 @@ inline auto fails_at(Faulty* fault) {
 // Joints in joint coordinates evaluate the forces again after a step, for their reactions. If a force fails in this
 // evaluation, the step fails: the state is unchanged, and a repeated step is bitwise identical.
 TEST(Failures, ForceThatFailsAfterTheStepLeavesTheState) {
-  using Pin = Joint<planar::Revolute, Recursive>;
+  using Pin = Joint<planar::Revolute, JointCoordinates>;
   using Push = decltype(fails_at(nullptr));
   Faulty fault;
   Model<Bodies<planar::Rigid>, Joints<Pin>, Forces<Push>> model{Gravity{0, -9.81, 0}};
@@ -129,7 +129,7 @@ TEST(Failures, ForceThatFailsAfterTheStepLeavesTheState) {
   auto const calls_of_a_step = [&](int at, bool throws, State const& sound) {
     State x = model.reference_state();
     fault = {};
-    auto run = simulate(model, x, RungeKutta4<>{}, {.until = 1.0, .step = 0.01});
+    auto run = simulate(model, x, RungeKutta4<>{}, {.end_time = 1.0, .step = 0.01});
     State const before = x;
     fault = {at, 0, throws};
     try {
@@ -171,7 +171,7 @@ TEST(Failures, StepTakenAgainHasTheOrderOfEliminationThatItBeganWith) {
     model.set_velocity(start, top, -omega.cross(axes.col(2)), omega);
     auto const end = [&](int failing) {
       State x = start;
-      auto run = simulate(model, x, RungeKutta4<Projection>{}, {.until = 1.0, .step = 4e-3});
+      auto run = simulate(model, x, RungeKutta4<Projection>{}, {.end_time = 1.0, .step = 4e-3});
       for (int i = 0; i < steps; ++i) {
         fault = {i == failing ? 3 : -1};
         if (i == failing) EXPECT_THROW(run.advance(), std::runtime_error);
@@ -194,7 +194,8 @@ TEST(Failures, DoubledJointIsLeftOutAndNamed) {
     for (char const* const name : pins)
       model.connect(Pin{{.axis = Vec3::UnitZ()}, {}}, model.ground().at({-1, 0, 0}), rod.at(Vec3(-1, 0, 0)), name);
     State x = model.reference_state();
-    redundant = simulate<decltype(solver)>(model, x, GeneralizedAlpha{}, {.until = 1.0, .step = 0.01}).run().redundant;
+    redundant =
+        simulate<decltype(solver)>(model, x, GeneralisedAlpha{}, {.end_time = 1.0, .step = 0.01}).run().redundant;
     return x.q;
   };
   auto const expect_left_out = [&](auto solver) {
@@ -214,8 +215,8 @@ TEST(Failures, DoubledJointIsLeftOutAndNamed) {
 TEST(Failures, BodyWithoutInertiaIsNamed) {
   Chain<OnBallJoints<Constraint>> chain(1, point_link());
   State x = chain.model.reference_state();
-  std::string const message = message_of<LinearSolverSingular>(
-      [&] { simulate(chain.model, x, GeneralizedAlpha{}, {.until = 1.0, .step = 0.01}).run(); });
+  std::string const message = message_of<SingularMatrix>(
+      [&] { simulate(chain.model, x, GeneralisedAlpha{}, {.end_time = 1.0, .step = 0.01}).run(); });
   EXPECT_TRUE(has(message, "body \"link 1\""));
   EXPECT_TRUE(has(message, "a body without inertia that is free to move"));
 }
@@ -224,8 +225,8 @@ TEST(Failures, OpenJointAtTheStartIsNamed) {
   Chain<InPlane<Constraint>> chain(2, bar_link());
   State x = chain.model.reference_state();
   x.q[0] += 1e-3;
-  std::string const message = message_of<InconsistentStart>(
-      [&] { simulate(chain.model, x, GeneralizedAlpha{}, {.until = 1.0, .step = 0.01}); });
+  std::string const message = message_of<InconsistentInitialConditions>(
+      [&] { simulate(chain.model, x, GeneralisedAlpha{}, {.end_time = 1.0, .step = 0.01}); });
   EXPECT_TRUE(has(message, "joint \"pin"));
   EXPECT_TRUE(has(message, "0.001"));
 }

@@ -20,13 +20,13 @@ std::vector<HhtAlpha> every_damping() {
 struct HhtAlphaOnBar {
   using Model = SwingingBar;
   static auto integrators() { return every_damping(); }
-  static constexpr double until = 0.5;
+  static constexpr double end_time = 0.5;
   static constexpr int steps = 32;
 };
 struct HhtAlphaOnTop {
   using Model = SlowTop;
   static auto integrators() { return every_damping(); }
-  static constexpr double until = 0.5;
+  static constexpr double end_time = 0.5;
   static constexpr int steps = 64;
 };
 
@@ -91,7 +91,7 @@ template <class Setup>
 void expect_decay(Setup const& setup, State x, double period) {
   int const half = 64;
   auto run = simulate(setup.model, x, HhtAlpha{.alpha = -0.1, .tolerance = 1e-12},
-                      {.until = 6.0 * period, .step = 0.5 * period / half});
+                      {.end_time = 6.0 * period, .step = 0.5 * period / half});
   std::vector<double> energies;
   for (State const& now : run) energies.push_back(energy(setup.model, now).total());
   ASSERT_GE(energies.size(), 12u * half);

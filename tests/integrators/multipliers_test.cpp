@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/testing/integrator_laws.hpp>
 
@@ -34,11 +34,11 @@ struct Errors {
   double first = 0.0, before = 0.0, after = 0.0, largest = 0.0, rate = 0.0;
 };
 
-GeneralizedAlpha method(double rho, bool correction) {
+GeneralisedAlpha method(double rho, bool correction) {
   return {.rho_inf = rho, .tolerance = 1e-12, .start_correction = correction};
 }
 
-Errors in_the_plane(GeneralizedAlpha const& integrator, double h, double then) {
+Errors in_the_plane(GeneralisedAlpha const& integrator, double h, double then) {
   SwingingBar bar;
   Stepper run(bar.model, bar.start, integrator, h);
   Errors e;
@@ -58,7 +58,7 @@ Errors in_the_plane(GeneralizedAlpha const& integrator, double h, double then) {
 }
 
 /// The reference is Runge–Kutta of order four with the same steps.
-Errors on_se3(GeneralizedAlpha const& integrator, double h, double then) {
+Errors on_se3(GeneralisedAlpha const& integrator, double h, double then) {
   SlowTop top;
   Stepper run(top.model, top.start, integrator, h);
   Stepper exact(top.model, top.start, RungeKutta4<Projection>{}, h);

@@ -19,19 +19,19 @@ struct NewmarkOnBar {
   static auto integrators() {
     return std::vector<Newmark>{{.gamma = 0.6, .beta = 0.25 * 1.1 * 1.1, .tolerance = 1e-11}};
   }
-  static constexpr double until = 0.5;
+  static constexpr double end_time = 0.5;
   static constexpr int steps = 32;
 };
 struct TrapezoidalOnBar {
   using Model = SwingingBar;
   static auto integrators() { return std::vector<Trapezoidal>{{.tolerance = 1e-11}}; }
-  static constexpr double until = 0.5;
+  static constexpr double end_time = 0.5;
   static constexpr int steps = 32;
 };
 struct TrapezoidalOnSprungBody {
   using Model = SprungBody;
   static auto integrators() { return std::vector<Trapezoidal>{{.tolerance = 1e-11}}; }
-  static constexpr double until = 1.0;
+  static constexpr double end_time = 1.0;
   static constexpr int steps = 32;
 };
 
@@ -95,7 +95,7 @@ TEST(Newmark, LosesEnergyInEveryStepAsDerived) {
     Oscillator o;
     State before = o.x, x = o.x;
     bool first = true;
-    for (State const& now : simulate(o.model, x, integrator, {.until = 30 * h, .step = h})) {
+    for (State const& now : simulate(o.model, x, integrator, {.end_time = 30 * h, .step = h})) {
       if (!first) {
         double const dq = now.q[0] - before.q[0], da = now.a[0] - before.a[0];
         double const loss = (2.0 * gamma - 1.0) * (dq * dq + kappa * h * h * da * da);

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/run/simulate.hpp>
 
 #include "support/chain.hpp"
@@ -11,10 +11,10 @@ using namespace polybody;
 
 namespace newton_reports_test {
 
-RunReport fall(int links, GeneralizedAlpha const& integrator, double until) {
+RunReport fall(int links, GeneralisedAlpha const& integrator, double end_time) {
   Chain<InSpace<Constraint>> chain(links, {.length = 0.1, .mass = 1.0, .inertia = 1e-3, .com = 0.05});
   State x = chain.model.reference_state();
-  return simulate(chain.model, x, integrator, {.until = until, .step = 1e-3}).run();
+  return simulate(chain.model, x, integrator, {.end_time = end_time, .step = 1e-3}).run();
 }
 
 double per_step(long count, RunReport const& r) { return double(count) / double(r.steps); }
@@ -33,13 +33,13 @@ TEST(NewtonReports, LongChainKeepsItsFactorisation) {
 
 // At this tolerance the remaining error of Newton's method is far below the error of the step.
 TEST(NewtonReports, WhatNewtonLeavesIsSmallBesideTheStepsError) {
-  auto const tip = [](GeneralizedAlpha const& integrator, double step) {
+  auto const tip = [](GeneralisedAlpha const& integrator, double step) {
     Chain<InSpace<Constraint>> chain(64, bar_link(0.1));
     State x = chain.model.reference_state();
-    simulate(chain.model, x, integrator, {.until = 0.5, .step = step}).run();
+    simulate(chain.model, x, integrator, {.end_time = 0.5, .step = step}).run();
     return chain.tip(x);
   };
-  GeneralizedAlpha const tight{.tolerance = 1e-10};
+  GeneralisedAlpha const tight{.tolerance = 1e-10};
   for (double const step : {1e-3, 5e-4}) {
     Vec3 const solved = tip(tight, step);
     double const of_step = (solved - tip(tight, 0.5 * step)).norm() * 4.0 / 3.0;
@@ -57,7 +57,7 @@ TEST(NewtonReports, FullNewtonFactorsInEveryIteration) {
 TEST(NewtonReports, ChainAtRestCostsOneIterationAndNoFactorisation) {
   Chain<InSpace<Constraint>> chain(8, bar_link(0.1), 9.81, 0.0);
   State x = chain.model.reference_state();
-  auto run = simulate(chain.model, x, GeneralizedAlpha{}, {.until = 0.1, .step = 1e-3});
+  auto run = simulate(chain.model, x, GeneralisedAlpha{}, {.end_time = 0.1, .step = 1e-3});
   RunReport const& report = run.run();
   EXPECT_LT(report.iterations, 1.1 * report.steps);  // except for occasional round-off errors
   EXPECT_EQ(report.factorisations, 1);
@@ -67,7 +67,7 @@ TEST(NewtonReports, ChainAtRestCostsOneIterationAndNoFactorisation) {
 TEST(NewtonReports, ReportOfAStepIsThatOfTheSum) {
   Chain<InSpace<Constraint>> chain(4, bar_link());
   State x = chain.model.reference_state();
-  auto run = simulate(chain.model, x, GeneralizedAlpha{}, {.until = 0.1, .step = 5e-3});
+  auto run = simulate(chain.model, x, GeneralisedAlpha{}, {.end_time = 0.1, .step = 5e-3});
   long iterations = 0, factorisations = 0;
   while (!run.done()) {
     run.advance();
@@ -84,8 +84,8 @@ TEST(NewtonReports, ReportOfAStepIsThatOfTheSum) {
 TEST(NewtonReports, BudgetBoundsAStepAndTellsWhatItLeft) {
   Chain<InSpace<Constraint>> chain(16, bar_link(0.1));
   State x = chain.model.reference_state(), exact = x;
-  simulate(chain.model, exact, GeneralizedAlpha{}, {.until = 1.0, .step = 1e-3}).run();
-  auto run = simulate(chain.model, x, GeneralizedAlpha{.newton = {.budget = 5.0}}, {.until = 1.0, .step = 1e-3});
+  simulate(chain.model, exact, GeneralisedAlpha{}, {.end_time = 1.0, .step = 1e-3}).run();
+  auto run = simulate(chain.model, x, GeneralisedAlpha{.newton = {.budget = 5.0}}, {.end_time = 1.0, .step = 1e-3});
   long most = 0, cut = 0;
   double left = 0.0;
   while (!run.done()) {
@@ -95,7 +95,7 @@ TEST(NewtonReports, BudgetBoundsAStepAndTellsWhatItLeft) {
     if (step.left > 0.0) ++cut;
     left = std::max(left, step.left);
   }
-  EXPECT_EQ(run.report().cut_short, cut);
+  EXPECT_EQ(run.report().over_budget, cut);
   EXPECT_EQ(run.report().left, left);
   EXPECT_GT(cut, 100);
   EXPECT_GT(left, 1.0);

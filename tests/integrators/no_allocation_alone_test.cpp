@@ -17,12 +17,12 @@
 #include <polybody/integrators/central_difference.hpp>
 #include <polybody/integrators/coordinate_partitioning.hpp>
 #include <polybody/integrators/energy_momentum.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/integrators/symplectic.hpp>
 #include <polybody/joints/policies/bushing.hpp>
+#include <polybody/joints/policies/joint_coordinates.hpp>
 #include <polybody/joints/policies/nonlinear_bushing.hpp>
-#include <polybody/joints/policies/recursive.hpp>
 #include <polybody/joints/prescribed_angle.hpp>
 #include <polybody/run/energy.hpp>
 #include <polybody/run/simulate.hpp>
@@ -157,10 +157,11 @@ struct FallingBalls {
       middles.push_back(
           balls.add(Rigid<>(1.0, 0.004 * Mat3::Identity(), Placement::at({0.1 * z, 0, z}))).at(Vec3(0, 0, 0)));
     auto const group = balls.apply(Group{}, middles);
-    balls.pair_with(group, OnFloor{{0.1}, {.stiffness = 1e4, .damping = 10.0, .onset = 1e-4}, rough},
-                    balls.ground().at({0, 0, 0}));
-    balls.pair_with(group, OnBall{{0.1, 0.1}, {.stiffness = 1e4}, rough},
-                    balls.add(Rigid<>(1.0, 0.004 * Mat3::Identity(), Placement::at({0.15, 0, 0.2}))).at(Vec3(0, 0, 0)));
+    balls.add_partner(group, OnFloor{{0.1}, {.stiffness = 1e4, .damping = 10.0, .onset = 1e-4}, rough},
+                      balls.ground().at({0, 0, 0}));
+    balls.add_partner(
+        group, OnBall{{0.1, 0.1}, {.stiffness = 1e4}, rough},
+        balls.add(Rigid<>(1.0, 0.004 * Mat3::Identity(), Placement::at({0.15, 0, 0.2}))).at(Vec3(0, 0, 0)));
   }
   auto const& model() const { return balls; }
 };
@@ -177,8 +178,9 @@ struct HungFrames {
         .length = 1.0,
         .constants = BarConstants{.EA = 1e5, .EI = 50, .mass_per_length = 1.0, .GJ = 40, .rotary_inertia = 1e-3}};
     Structure const s = structure_of(bar, 4);
-    auto const body = frame.add(Ffr(s, held_modes(s, 6), {.stiffening = true}), "frame");
-    auto const next = frame.add(Ffr(s, held_modes(s, 6), {.placement = Placement::at({1, 0, 0}, {0, 0, 0})}), "next");
+    auto const body = frame.add(Ffr(s, fixed_interface_modes(s, 6), {.stiffening = true}), "frame");
+    auto const next =
+        frame.add(Ffr(s, fixed_interface_modes(s, 6), {.placement = Placement::at({1, 0, 0}, {0, 0, 0})}), "next");
     frame.connect(Pin{{.axis = Vec3::UnitZ()}, {}}, frame.ground().at({0, 0, 0}), body.at(0.0), "pin");
     frame.connect(Pin{{.axis = Vec3::UnitZ()}, {}}, body.at(1.0), next.at(0.0), "second pin");
   }
@@ -204,7 +206,7 @@ struct CreepingCable {
 /// end.
 template <bool sprung>
 struct TreeOfLinks {
-  using Pin = Joint<Revolute, RecursiveBy<recursive::ArticulatedBody>>;
+  using Pin = Joint<Revolute, JointCoordinatesBy<joint_coordinates::ArticulatedBody>>;
   Model<Bodies<Rigid<>>, Joints<Pin>, std::conditional_t<sprung, Forces<SpringDamper>, Forces<>>> tree{
       Gravity{0, -9.81, 0}};
 
@@ -252,10 +254,10 @@ long in_steps(I const& integrator) {
 
 template <class Case>
 void expect_none() {
-  EXPECT_EQ(in_steps<Case>(GeneralizedAlpha{}), 0);
-  EXPECT_EQ((in_steps<Case, DenseLu>(GeneralizedAlpha{})), 0);
-  EXPECT_EQ(in_steps<Case>(GeneralizedAlpha{.second_order_terms = true}), 0);
-  EXPECT_EQ(in_steps<Case>(GeneralizedAlpha{.stabilised = true}), 0);
+  EXPECT_EQ(in_steps<Case>(GeneralisedAlpha{}), 0);
+  EXPECT_EQ((in_steps<Case, DenseLu>(GeneralisedAlpha{})), 0);
+  EXPECT_EQ(in_steps<Case>(GeneralisedAlpha{.second_order_terms = true}), 0);
+  EXPECT_EQ(in_steps<Case>(GeneralisedAlpha{.stabilised = true}), 0);
   EXPECT_EQ(in_steps<Case>(RungeKutta4<Projection>{}), 0);
   EXPECT_EQ(in_steps<Case>(CentralDifference<Projection>{}), 0);
   EXPECT_EQ(in_steps<Case>(DormandPrince<Projection>{}), 0);
@@ -294,7 +296,7 @@ template <class Case>
 void expect_none_by_tree() {
   EXPECT_EQ(in_steps<Case>(RungeKutta4<>{}), 0);
   EXPECT_EQ(in_steps<Case>(DormandPrince<>{}), 0);
-  EXPECT_EQ(in_steps<Case>(GeneralizedAlpha{}), 0);
+  EXPECT_EQ(in_steps<Case>(GeneralisedAlpha{}), 0);
 }
 
 TEST(NoAllocation, InAStepOfATree) {
@@ -303,25 +305,25 @@ TEST(NoAllocation, InAStepOfATree) {
 }
 
 TEST(NoAllocation, InAStepOfBodiesOnBushings) {
-  EXPECT_EQ(in_steps<BushedBodies>(GeneralizedAlpha{.second_order_terms = true}), 0);
+  EXPECT_EQ(in_steps<BushedBodies>(GeneralisedAlpha{.second_order_terms = true}), 0);
 }
 
 TEST(NoAllocation, InAStepOfAGroupOfContacts) {
-  EXPECT_EQ(in_steps<FallingBalls>(GeneralizedAlpha{}), 0);
-  EXPECT_EQ(in_steps<FallingBalls>(GeneralizedAlpha{.second_order_terms = true}), 0);
+  EXPECT_EQ(in_steps<FallingBalls>(GeneralisedAlpha{}), 0);
+  EXPECT_EQ(in_steps<FallingBalls>(GeneralisedAlpha{.second_order_terms = true}), 0);
   EXPECT_EQ(in_steps<FallingBalls>(RungeKutta4<>{}), 0);
 }
 
 TEST(NoAllocation, InAStepOfAFloatingFrame) {
-  EXPECT_EQ(in_steps<HungFrames<Constraint>>(GeneralizedAlpha{}), 0);
-  EXPECT_EQ(in_steps<HungFrames<Constraint>>(GeneralizedAlpha{.second_order_terms = true}), 0);
+  EXPECT_EQ(in_steps<HungFrames<Constraint>>(GeneralisedAlpha{}), 0);
+  EXPECT_EQ(in_steps<HungFrames<Constraint>>(GeneralisedAlpha{.second_order_terms = true}), 0);
   EXPECT_EQ(in_steps<HungFrames<Constraint>>(RungeKutta4<Projection>{}), 0);
-  EXPECT_EQ(in_steps<HungFrames<Recursive>>(GeneralizedAlpha{}), 0);
-  EXPECT_EQ(in_steps<HungFrames<Recursive>>(RungeKutta4<>{}), 0);
+  EXPECT_EQ(in_steps<HungFrames<JointCoordinates>>(GeneralisedAlpha{}), 0);
+  EXPECT_EQ(in_steps<HungFrames<JointCoordinates>>(RungeKutta4<>{}), 0);
 }
 
 TEST(NoAllocation, InAStepWithFirstOrderStates) {
-  EXPECT_EQ(in_steps<CreepingCable>(GeneralizedAlpha{}), 0);
+  EXPECT_EQ(in_steps<CreepingCable>(GeneralisedAlpha{}), 0);
   EXPECT_EQ(in_steps<CreepingCable>(EnergyMomentum{}), 0);
   EXPECT_EQ(in_steps<CreepingCable>(DormandPrince<Projection>{}), 0);
 }

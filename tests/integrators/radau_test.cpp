@@ -20,19 +20,19 @@ namespace radau_test {
 struct RadauOnBar {
   using Model = SwingingBar;
   static auto integrators() { return std::vector<Radau>{{.tolerance = 1e-12}}; }
-  static constexpr double until = 1.0;
+  static constexpr double end_time = 1.0;
   static constexpr int steps = 16;
 };
 struct RadauOnTop {
   using Model = SlowTop;
   static auto integrators() { return std::vector<Radau>{{.tolerance = 1e-12}}; }
-  static constexpr double until = 0.5;
+  static constexpr double end_time = 0.5;
   static constexpr int steps = 16;
 };
 struct RadauOnSprungBody {
   using Model = SprungBody;
   static auto integrators() { return std::vector<Radau>{{.tolerance = 1e-12}}; }
-  static constexpr double until = 1.0;
+  static constexpr double end_time = 1.0;
   static constexpr int steps = 24;
 };
 
@@ -93,7 +93,7 @@ TEST(Radau, FollowsAStiffSpringWithoutResolvingIt) {
   std::vector<double> errors;
   for (double const h : {0.2, 0.1, 0.05}) {
     Led led;
-    simulate(led.model, led.x, Radau{}, {.until = 2.0, .step = h}).run();
+    simulate(led.model, led.x, Radau{}, {.end_time = 2.0, .step = h}).run();
     held({"I1", "place of a mass led by a stiff spring at 2 s", By::closed_form, "cos t (Prothero & Robinson)",
           "Radau IIA"},
          led.x.q[0], std::cos(2.0), 10.0 / Led::k, {equals("h", h)});
@@ -109,7 +109,7 @@ TEST(Radau, FollowsAStiffSpringWithoutResolvingIt) {
 TEST(Radau, PendulumAgreesWithTheExactMotion) {
   SwingingBar bar;
   State x = bar.start;
-  simulate(bar.model, x, Radau{.tolerance = 1e-12}, {.until = 2.0, .step = 0.005}).run();
+  simulate(bar.model, x, Radau{.tolerance = 1e-12}, {.end_time = 2.0, .step = 0.005}).run();
   auto const [angle, rate, acceleration] = bar.exact(bar.phase + 2.0);
   auto const claim = [](char const* what) {
     return Claim{"R1", what, By::closed_form, "elliptic functions", "planar Rigid, Radau IIA, h = 5e-3 s"};
@@ -125,7 +125,7 @@ TEST(Radau, PendulumAgreesWithTheExactMotion) {
 TEST(Radau, PendulumAgreesWithTheExactMotionBySmallSteps) {
   SwingingBar bar;
   State x = bar.start;
-  simulate(bar.model, x, Radau{}, {.until = 0.2, .step = 2e-5}).run();
+  simulate(bar.model, x, Radau{}, {.end_time = 0.2, .step = 2e-5}).run();
   auto const [angle, rate, acceleration] = bar.exact(bar.phase + 0.2);
   EXPECT_NEAR(x.q[2] + 0.5 * std::numbers::pi, angle, 3e-11);
   EXPECT_NEAR(x.v[2], rate, 3e-10);

@@ -16,19 +16,19 @@ namespace runge_kutta_test {
 struct Rk4OnFreeBody {
   using Model = SprungBody;
   static auto integrators() { return std::vector<RungeKutta4<>>(1); }
-  static constexpr double until = 1.0;
+  static constexpr double end_time = 1.0;
   static constexpr int steps = 32;
 };
 struct Rk4OnBar {
   using Model = SwingingBar;
   static auto integrators() { return std::vector<RungeKutta4<Projection>>(1); }
-  static constexpr double until = 0.5;
+  static constexpr double end_time = 0.5;
   static constexpr int steps = 8;
 };
 struct Rk4OnTop {
   using Model = SlowTop;
   static auto integrators() { return std::vector<RungeKutta4<Projection>>(1); }
-  static constexpr double until = 0.5;
+  static constexpr double end_time = 0.5;
   static constexpr int steps = 16;
 };
 
@@ -55,7 +55,7 @@ std::vector<double> errors_by_tolerance(M const& model, State const& start, VecX
     State x = start;
     I integrator;
     integrator.relative_tolerance = integrator.absolute_tolerance = tolerance;
-    simulate(model, x, integrator, {.until = 1.0, .step = 0.01}).run();
+    simulate(model, x, integrator, {.end_time = 1.0, .step = 0.01}).run();
     errors.push_back((x.q - exact).norm());
     EXPECT_LT(errors.back(), 100.0 * tolerance);
   }
@@ -80,7 +80,7 @@ TEST(DormandPrince, ErrorOfAPendulumIsProportionalToTheTolerance) {
 TEST(DormandPrince, ErrorOfAFreeBodyIsProportionalToTheTolerance) {
   SprungBody body;
   State fine = body.start;
-  simulate(body.model, fine, RungeKutta4<>{}, {.until = 1.0, .step = 1.0 / 8192}).run();
+  simulate(body.model, fine, RungeKutta4<>{}, {.end_time = 1.0, .step = 1.0 / 8192}).run();
   expect_proportional(errors_by_tolerance<DormandPrince<>>(body.model, body.start, fine.q));
 }
 
@@ -113,8 +113,8 @@ auto along_x(F f) {
 // The solution of x˙˙ = 6 x² with x(0) = 1, x˙(0) = 2 is x = 1/(1 − t)²: no step reaches t = 1.
 TEST(DormandPrince, StopsBeforeABlowUp) {
   Point point(along_x([](auto const& x, auto const&, double) { return 6.0 * x * x; }), 1.0, 2.0);
-  auto run = simulate(point.model, point.x, DormandPrince<>{}, {.until = 2.0, .step = 0.01});
-  EXPECT_THROW(run.run(), StepTooSmall);
+  auto run = simulate(point.model, point.x, DormandPrince<>{}, {.end_time = 2.0, .step = 0.01});
+  EXPECT_THROW(run.run(), MinimumStepReached);
   EXPECT_NEAR(point.x.t, 1.0, 1e-6);
   // the state is the last accepted one: finite, with the first integral x˙² = 4 x³
   double const x = point.x.q[0], v = point.x.v[0];
@@ -126,13 +126,13 @@ TEST(DormandPrince, StopsBeforeABlowUp) {
 TEST(DormandPrince, SaysThatAStiffModelNeedsAnImplicitMethod) {
   auto const stiff = along_x([](auto const& x, auto const& v, double) { return -1e8 * x - 1e5 * v; });
   Point point(stiff, 0.1, 0.0);
-  DormandPrince<> const careful{.relative_tolerance = 1e-4, .absolute_tolerance = 1e-6, .smallest_step = 1e-3};
-  auto run = simulate(point.model, point.x, careful, {.until = 1.0, .step = 0.01});
+  DormandPrince<> const careful{.relative_tolerance = 1e-4, .absolute_tolerance = 1e-6, .min_step = 1e-3};
+  auto run = simulate(point.model, point.x, careful, {.end_time = 1.0, .step = 0.01});
   State const before = point.x;
   try {
     run.run();
     FAIL() << "the step was not refused";
-  } catch (StepTooSmall const& error) {
+  } catch (MinimumStepReached const& error) {
     EXPECT_TRUE(has(error.what(), "implicit integrator"));
   }
   EXPECT_EQ(point.x.q, before.q);
@@ -148,8 +148,8 @@ TEST(DormandPrince, RefusesStepsOverAJump) {
   RunReport reports[2];
   for (int announced : {0, 1}) {
     Point point(jump, 1.0, 0.0);
-    RunOptions options{.until = 1.0, .step = 0.1};
-    if (announced) options.corners = {0.5};
+    RunOptions options{.end_time = 1.0, .step = 0.1};
+    if (announced) options.breakpoints = {0.5};
     reports[announced] = simulate(point.model, point.x, with_tolerance<NoStabilisation>(1e-8), options).run();
     EXPECT_NEAR(point.x.q[0], exact, 1e-6);
   }
@@ -161,8 +161,8 @@ TEST(DormandPrince, RefusesStepsOverAJump) {
 TEST(DormandPrince, TakesAtMostTheStepItIsGiven) {
   SprungBody body;
   State x = body.start;
-  RunOptions options{.until = 1.0, .step = 1e-3};
-  options.largest_step = 0.02;
+  RunOptions options{.end_time = 1.0, .step = 1e-3};
+  options.max_step = 0.02;
   auto run = simulate(body.model, x, with_tolerance<NoStabilisation>(1e-2), options);
   double before = 0.0, largest = 0.0;
   for (State const& now : run) {
@@ -183,11 +183,11 @@ TEST(DormandPrince, RefusesTolerancesThatCannotBeMeant) {
   SprungBody body;
   auto const try_with = [&](DormandPrince<> const& integrator) {
     State x = body.start;
-    return refusal([&] { simulate(body.model, x, integrator, {.until = 1.0, .step = 0.1}); });
+    return refusal([&] { simulate(body.model, x, integrator, {.end_time = 1.0, .step = 0.1}); });
   };
   EXPECT_TRUE(has(try_with({.relative_tolerance = 0.0}), "the relative tolerance must be positive"));
   EXPECT_TRUE(has(try_with({.absolute_tolerance = -1.0}), "the absolute tolerance must be positive"));
-  EXPECT_TRUE(has(try_with({.smallest_step = 0.0}), "the smallest step must be positive"));
+  EXPECT_TRUE(has(try_with({.min_step = 0.0}), "the smallest step must be positive"));
 }
 
 // A start with a constraint violation that is too large for the correction in a step.
@@ -199,7 +199,7 @@ TEST(Projection, SaysThatThePositionsCannotBeBroughtBack) {
   State x = bar.start;
   integrator.start(system, x, 0.3, workspace);
   State const before = x;
-  EXPECT_THROW(integrator.step(system, x, 0.3, workspace), NewtonStalled);
+  EXPECT_THROW(integrator.step(system, x, 0.3, workspace), NewtonConvergenceFailure);
   EXPECT_EQ(x.q, before.q);
   EXPECT_EQ(x.t, before.t);
 }

@@ -121,7 +121,7 @@ TEST(SparsePartition, TakesNoRowsAndRowsOfZeros) {
   }
   FourBars<InSpace<Penalty>> bars(1, {.stiffness = 1e6, .damping = 1e2});
   System system(bars.model);
-  EXPECT_EQ(independent_speeds(system, bars.x, sparse).size(), 18u);
+  EXPECT_EQ(independent_velocities(system, bars.x, sparse).size(), 18u);
 }
 
 /// Largest constraint violations of four-bar linkages over a run.
@@ -130,7 +130,7 @@ Violation worst_of(M const& model, State& x, I const& integrator, RunOptions con
   Violation worst;
   System system(model);
   for (State const& now : simulate(model, x, integrator, options)) {
-    Violation const open = violation(system, now);
+    Violation const open = largest_violation(system, now);
     worst.position = std::max(worst.position, open.position);
     worst.velocity = std::max(worst.velocity, open.velocity);
     worst.acceleration = std::max(worst.acceleration, open.acceleration);
@@ -141,7 +141,7 @@ Violation worst_of(M const& model, State& x, I const& integrator, RunOptions con
 TEST(SparsePartitioning, MovesLinkagesAsTheDenseOneDoes) {
   for (int const bars : {1, 3, 40}) {
     FourBars<InSpace<Constraint>> kept(bars), dense(bars);
-    RunOptions const options{.until = 0.3, .step = 2e-3};
+    RunOptions const options{.end_time = 0.3, .step = 2e-3};
     Violation const open =
         worst_of(kept.model, kept.x, RungeKutta4<CoordinatePartitioning>{.stabilisation = sparse}, options);
     EXPECT_LT(open.position, 1e-11) << bars;
@@ -160,13 +160,13 @@ TEST(SparsePartitioning, NamesTheIndependentSpeedsAndCountsChoices) {
   FourBars<InSpace<Constraint>> bars(2);
   System system(bars.model);
   for (int const dense_up_to : {0, 1000}) {
-    std::vector<std::string> const names = independent_speeds(system, bars.x, {.dense_up_to = dense_up_to});
+    std::vector<std::string> const names = independent_velocities(system, bars.x, {.dense_up_to = dense_up_to});
     ASSERT_EQ(names.size(), 1u);
     EXPECT_NE(names.front().find(", speed "), std::string::npos) << names.front();
   }
   State x = bars.x;
   auto run = simulate(bars.model, x, RungeKutta4<CoordinatePartitioning>{.stabilisation = sparse},
-                      {.until = 0.5, .step = 2e-3});
+                      {.end_time = 0.5, .step = 2e-3});
   EXPECT_GE(run.run().last.choices, 1);
 }
 
@@ -182,18 +182,18 @@ TEST(SparsePartitioning, ChangesItsChoiceAsARodTurnsOver) {
   double const start = energy(model, x).total();
   auto run =
       simulate(model, x, RungeKutta4<CoordinatePartitioning>{.stabilisation = {.largest_ratio = 1.5, .dense_up_to = 0}},
-               {.until = 10.0, .step = 1e-3});
+               {.end_time = 10.0, .step = 1e-3});
   EXPECT_GE(run.run().last.choices, 8);
   EXPECT_NEAR(energy(model, x).total(), start, 1e-6);
   System system(model);
-  EXPECT_LT(violation(system, x).position, 1e-11);
+  EXPECT_LT(largest_violation(system, x).position, 1e-11);
 }
 
 TEST(SparsePartitioning, RefusesWhatCannotBeMeant) {
   FourBars<InSpace<Constraint>> bars(1);
   State x = bars.x;
   EXPECT_THROW(simulate(bars.model, x, RungeKutta4<CoordinatePartitioning>{.stabilisation = {.dense_up_to = -1}},
-                        {.until = 0.1, .step = 1e-3}),
+                        {.end_time = 0.1, .step = 1e-3}),
                InvalidInput);
 }
 

@@ -20,19 +20,19 @@ namespace stabilisation_test {
 struct PartitionedBar {
   using Model = SwingingBar;
   static auto integrators() { return std::vector<RungeKutta4<CoordinatePartitioning>>(1); }
-  static constexpr double until = 0.5;
+  static constexpr double end_time = 0.5;
   static constexpr int steps = 16;
 };
 struct PartitionedTop {
   using Model = SlowTop;
   static auto integrators() { return std::vector<RungeKutta4<CoordinatePartitioning>>(1); }
-  static constexpr double until = 0.5;
+  static constexpr double end_time = 0.5;
   static constexpr int steps = 16;
 };
 struct PartitionedDifferences {
   using Model = SwingingBar;
   static auto integrators() { return std::vector<CentralDifference<CoordinatePartitioning>>(1); }
-  static constexpr double until = 0.5;
+  static constexpr double end_time = 0.5;
   static constexpr int steps = 32;
   static constexpr bool keeps_accelerations = false;  // the accelerations belong to the predicted velocities
 };
@@ -103,7 +103,7 @@ double order_on_the_pendulum(I const& integrator, int steps) {
   std::vector<double> errors;
   for (int const n : {steps, 2 * steps}) {
     State x = bar.start;
-    simulate(bar.model, x, integrator, {.until = 0.5, .step = 0.5 / n}).run();
+    simulate(bar.model, x, integrator, {.end_time = 0.5, .step = 0.5 / n}).run();
     errors.push_back(std::abs(x.q[2] + 0.5 * std::numbers::pi - bar.exact(bar.phase + 0.5).angle));
   }
   EXPECT_GT(errors.back(), 1e-12);
@@ -159,9 +159,9 @@ struct LongRun {
     CrankRocker mechanism;
     System system(mechanism.model);
     double start = std::numeric_limits<double>::quiet_NaN();
-    auto run = simulate(mechanism.model, mechanism.x, integrator, {.until = 100.0, .step = 0.01});
+    auto run = simulate(mechanism.model, mechanism.x, integrator, {.end_time = 100.0, .step = 0.01});
     for (State const& now : run) {
-      Violation const open = violation(system, now);
+      Violation const open = largest_violation(system, now);
       all.position = std::max(all.position, open.position);
       all.velocity = std::max(all.velocity, open.velocity);
       all.acceleration = std::max(all.acceleration, open.acceleration);
@@ -203,15 +203,15 @@ TEST(Baumgarte, HoldsAFourBarWithinASmallGap) {
   EXPECT_GT(held.all.position, 1e-11);                      // the violation does not decay
 }
 
-/// Steps of a partitioned run to `until`, and the number of choices of independent velocities.
+/// Steps of a partitioned run to `end_time`, and the number of choices of independent velocities.
 template <class M>
-long choices(M const& model, State& x, double h, double until) {
+long choices(M const& model, State& x, double h, double end_time) {
   System system(model);
   RungeKutta4<CoordinatePartitioning> const integrator;
   auto const method = method_of(integrator);
   auto workspace = method.template workspace<DenseLu>(system);
   method.start(system, x, h, workspace);
-  for (long i = std::lround(until / h); i > 0; --i) method.step(system, x, h, workspace);
+  for (long i = std::lround(end_time / h); i > 0; --i) method.step(system, x, h, workspace);
   return workspace.scratch.rows.choices;
 }
 
@@ -231,7 +231,7 @@ TEST(CoordinatePartitioning, ChangesItsChoiceAsARodTurnsOver) {
   EXPECT_EQ(counted, 1 + std::lround(std::floor((x.q[2] + std::atan(0.1)) / (0.5 * std::numbers::pi))));
   EXPECT_NEAR(energy(model, x).total(), start, 1e-6);
   System system(model);
-  EXPECT_LT(violation(system, x).position, 1e-11);
+  EXPECT_LT(largest_violation(system, x).position, 1e-11);
 }
 
 // Revolute joint test of Chrono against ADAMS (J2): three swings in 5 s, released level. The third swing is within 1°
@@ -275,7 +275,8 @@ TEST(CoordinatePartitioning, SaysThatThePositionsCannotBeBroughtBack) {
   State x = mechanism.x;
   method.start(system, x, 0.2, workspace);
   State const before = x;
-  EXPECT_TRUE(has(message_of<NewtonStalled>([&] { method.step(system, x, 0.2, workspace); }), "Take a smaller step"));
+  EXPECT_TRUE(has(message_of<NewtonConvergenceFailure>([&] { method.step(system, x, 0.2, workspace); }),
+                  "Take a smaller step"));
   EXPECT_EQ(x.q, before.q);
   EXPECT_EQ(x.t, before.t);
 }
@@ -284,7 +285,7 @@ TEST(Stabilisation, RefusesOptionsThatCannotBeMeant) {
   SwingingBar bar;
   auto const told = [&](auto const& integrator) {
     State x = bar.start;
-    return refusal([&] { simulate(bar.model, x, integrator, {.until = 1.0, .step = 0.1}); });
+    return refusal([&] { simulate(bar.model, x, integrator, {.end_time = 1.0, .step = 0.1}); });
   };
   using Damped = RungeKutta4<Baumgarte>;
   EXPECT_TRUE(has(told(Damped{.stabilisation = {.alpha = 0.0, .beta = 1.0}}), "Baumgarte: alpha must be positive"));
@@ -297,7 +298,7 @@ TEST(Stabilisation, RefusesOptionsThatCannotBeMeant) {
 }
 
 /// Writes G as constraint equations of a tangent, and r and 2r as right-hand sides.
-void write(PartitionedRows& rows, MatX const& g, VecX const& r) {
+void write(PartitionedConstraints& rows, MatX const& g, VecX const& r) {
   rows.begin();
   rows.add(g.cols(), 0, g);
   for (Index i = 0; i < r.size(); ++i) {
@@ -307,11 +308,11 @@ void write(PartitionedRows& rows, MatX const& g, VecX const& r) {
 }
 
 // The third row is the sum of the others, so the rank is 2. Then the row changes and the rank is 3.
-TEST(PartitionedRows, FindTheRankAndSolve) {
+TEST(PartitionedConstraints, FindTheRankAndSolve) {
   MatX g(3, 4);
   g << 1, 2, 0, 4, 3, -1, 5, 0, 4, 1, 5, 4;
   Vec3 const r(1, 2, 3);
-  PartitionedRows rows(3, 4);
+  PartitionedConstraints rows(3, 4);
   write(rows, g, r);
   EXPECT_FALSE(rows.reduce(10.0));  // no new choice
   write(rows, g, r);
@@ -340,8 +341,8 @@ TEST(PartitionedRows, FindTheRankAndSolve) {
 }
 
 // One row (1, s): the first column remains dependent until its ratio to the second exceeds the limit.
-TEST(PartitionedRows, ChooseAnewWhereADependentSpeedMovesTooMuch) {
-  PartitionedRows rows(1, 2);
+TEST(PartitionedConstraints, ChooseAnewWhereADependentSpeedMovesTooMuch) {
+  PartitionedConstraints rows(1, 2);
   MatX g(1, 2);
   VecX const r = VecX::Ones(1);
   g << 1.0, 0.5;

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/hht_alpha.hpp>
 #include <polybody/testing/integrator_laws.hpp>
 
@@ -14,20 +14,20 @@ using namespace polybody::laws;
 
 namespace stabilised_alpha_test {
 
-std::vector<GeneralizedAlpha> both_dampings() {
+std::vector<GeneralisedAlpha> both_dampings() {
   return {{.rho_inf = 0.8, .tolerance = 1e-11, .stabilised = true},
           {.rho_inf = 0.5, .tolerance = 1e-11, .stabilised = true}};
 }
 struct StabilisedAlphaOnBar {
   using Model = SwingingBar;
   static auto integrators() { return both_dampings(); }
-  static constexpr double until = 0.5;
+  static constexpr double end_time = 0.5;
   static constexpr int steps = 32;
 };
 struct StabilisedAlphaOnTop {
   using Model = SlowTop;
   static auto integrators() { return both_dampings(); }
-  static constexpr double until = 0.5;
+  static constexpr double end_time = 0.5;
   static constexpr int steps = 64;
 };
 
@@ -47,8 +47,8 @@ Violation worst(Setup const& setup, I const& integrator) {
   State x = setup.start;
   System system(setup.model);
   Violation out;
-  for (State const& now : simulate(setup.model, x, integrator, {.until = 1.0, .step = 0.01})) {
-    Violation const open = violation(system, now);
+  for (State const& now : simulate(setup.model, x, integrator, {.end_time = 1.0, .step = 0.01})) {
+    Violation const open = largest_violation(system, now);
     out.position = std::max(out.position, open.position);
     out.velocity = std::max(out.velocity, open.velocity);
   }
@@ -72,12 +72,12 @@ void expect_both_rows_kept(char const* setup_is, Setup const& setup, I integrato
 }
 
 TEST(StabilisedAlpha, KeepsPositionsAndSpeedsOfAPendulumInEveryStep) {
-  expect_both_rows_kept("swinging bar", SwingingBar(), GeneralizedAlpha{.tolerance = 1e-12});
+  expect_both_rows_kept("swinging bar", SwingingBar(), GeneralisedAlpha{.tolerance = 1e-12});
   expect_both_rows_kept("swinging bar", SwingingBar(), HhtAlpha{.tolerance = 1e-12});
 }
 
 TEST(StabilisedAlpha, KeepsPositionsAndSpeedsOfATopInEveryStep) {
-  expect_both_rows_kept("slow top", SlowTop(), GeneralizedAlpha{.tolerance = 1e-12});
+  expect_both_rows_kept("slow top", SlowTop(), GeneralisedAlpha{.tolerance = 1e-12});
 }
 
 // Second order of the multipliers (I2) without a correction of the initial velocities.
@@ -88,7 +88,7 @@ TEST(StabilisedAlpha, MultipliersConvergeAtSecondOrderFromTheFirstStep) {
     State x = bar.start;
     double worst = 0.0;
     for (State const& now :
-         simulate(bar.model, x, GeneralizedAlpha{.tolerance = 1e-12, .stabilised = true}, {.until = 1.0, .step = h}))
+         simulate(bar.model, x, GeneralisedAlpha{.tolerance = 1e-12, .stabilised = true}, {.end_time = 1.0, .step = h}))
       worst = std::max(worst, (now.lambda + bar.reaction(now.t)).norm());
     errors.push_back(worst);
   }
@@ -98,8 +98,8 @@ TEST(StabilisedAlpha, MultipliersConvergeAtSecondOrderFromTheFirstStep) {
 TEST(StabilisedAlpha, WithoutRowsChangesNothing) {
   SprungBody body;
   State with = body.start, without = body.start;
-  simulate(body.model, with, GeneralizedAlpha{.stabilised = true}, {.until = 0.5, .step = 0.01}).run();
-  simulate(body.model, without, GeneralizedAlpha{}, {.until = 0.5, .step = 0.01}).run();
+  simulate(body.model, with, GeneralisedAlpha{.stabilised = true}, {.end_time = 0.5, .step = 0.01}).run();
+  simulate(body.model, without, GeneralisedAlpha{}, {.end_time = 0.5, .step = 0.01}).run();
   EXPECT_EQ(with.q, without.q);
   EXPECT_EQ(with.v, without.v);
 }

@@ -9,8 +9,8 @@ using namespace polybody;
 /// Powers of t: entry k of v̇ is tᵏ, entry k of λ is tᵏ⁺¹. Five points determine the powers up to t⁴.
 struct Powers {
   State x;
-  Powers(Index speeds, Index rows) {
-    x.a.resize(speeds);
+  Powers(Index velocities, Index rows) {
+    x.a.resize(velocities);
     x.lambda.resize(rows);
     at(0.0);
     StepHistory::reset(x);

@@ -6,8 +6,8 @@
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/joints/revolute.hpp>
 #include <polybody/solvers/default_solver.hpp>
+#include <polybody/system/make_operations.hpp>
 #include <polybody/system/model.hpp>
-#include <polybody/system/model_entries.hpp>
 
 using namespace polybody;
 
@@ -24,7 +24,7 @@ struct Pendulum {
 
 struct StepTangents : testing::Test {
   Pendulum pendulum;
-  System system{pendulum.model, with<Entries::implicit_step>};
+  System system{pendulum.model, with<Capabilities::implicit_step>};
   VecX lambda = VecX::Zero(system.rows());
   StepTangent<BlockSolver> tangent;
 

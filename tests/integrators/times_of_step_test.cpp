@@ -8,7 +8,7 @@
 #include <polybody/integrators/energy_momentum.hpp>
 #include <polybody/integrators/symplectic.hpp>
 #include <polybody/joints/joint.hpp>
-#include <polybody/joints/prescribed_slide.hpp>
+#include <polybody/joints/prescribed_translation.hpp>
 #include <polybody/run/energy.hpp>
 #include <polybody/run/simulate.hpp>
 
@@ -32,7 +32,7 @@ double speed_under_a_rising_force(I const& integrator) {
   auto const mass = model.add(planar::Rigid(1.0, 1.0), "mass");
   model.apply(PointForce<Rising>{.force = {1, 0, 0}}, mass.at(Vec2(0, 0)));
   State x = model.reference_state();
-  simulate(model, x, integrator, {.until = 1.0, .step = 0.1}).run();
+  simulate(model, x, integrator, {.end_time = 1.0, .step = 0.1}).run();
   return x.v[0];
 }
 
@@ -46,7 +46,7 @@ TEST(TimesOfAStep, OfLoads) {
       {.length = 1.0, .constants = BarConstants{.EA = 100.0, .EI = 1.0, .mass_per_length = 2.0}}, 2));
   model.apply(PointForce<Rising>{.force = {1, 3, 0}}, cable.at(0.3));
   State x = model.reference_state();
-  simulate(model, x, EnergyMomentum{}, {.until = 1.0, .step = 0.1}).run();
+  simulate(model, x, EnergyMomentum{}, {.end_time = 1.0, .step = 0.1}).run();
   Vec3 const p = momentum(model, x).linear;
   EXPECT_NEAR(p[0], 0.5, 1e-9);
   EXPECT_NEAR(p[1], 1.5, 1e-9);
@@ -54,12 +54,12 @@ TEST(TimesOfAStep, OfLoads) {
 
 // Rattle satisfies the constraint equations at the end of each step, in positions and velocities.
 TEST(TimesOfAStep, OfDrivenRows) {
-  using Slide = Joint<PrescribedSlide<Cubic>, Constraint>;
+  using Slide = Joint<PrescribedTranslation<Cubic>, Constraint>;
   Model<Bodies<planar::Rigid>, Joints<Slide>> model;
   auto const mass = model.add(planar::Rigid(1.0, 1.0), "mass");
   model.connect(Slide{{.law = {}, .axis = Vec3::UnitX()}, {}}, model.ground().at({0, 0, 0}), mass.at(Vec2(0, 0)));
   State x = model.reference_state();
-  for (State const& now : simulate(model, x, Rattle{}, {.until = 1.0, .step = 0.05})) {
+  for (State const& now : simulate(model, x, Rattle{}, {.end_time = 1.0, .step = 0.05})) {
     EXPECT_NEAR(now.q[0], std::pow(now.t, 3), 1e-11);
     EXPECT_NEAR(now.v[0], 3.0 * now.t * now.t, 1e-11);
   }

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 
 #include "support/refusal.hpp"
@@ -46,7 +46,7 @@ RunSnapshot rich() {
   s.report.last = {.taken = 1e-3, .next = 2e-3, .iterations = 2, .factorisations = 1, .evaluations = 2, .rejected = 1};
   s.report.last.order = 5;
   s.report.last.contraction = 0.1;
-  s.report.cut_short = 2;
+  s.report.over_budget = 2;
   s.report.left = 30.0;
   s.report.last.left = 20.0;
   s.report.events = {{"stop", 0.25}};
@@ -135,8 +135,8 @@ TEST_F(Checkpoints, OfARunNoticeEveryDamage) {
     return position(chain.model, x, InPlane<Constraint>::at(chain.links[0], 1.0))[1];
   };
   State x = chain.model.reference_state();
-  auto run = simulate(chain.model, x, GeneralizedAlpha{},
-                      {.until = 1.0, .step = 0.004, .events = {{.name = "falls", .value = height}}});
+  auto run = simulate(chain.model, x, GeneralisedAlpha{},
+                      {.end_time = 1.0, .step = 0.004, .events = {{.name = "falls", .value = height}}});
   for (int k = 0; k < 20; ++k) run.advance();
   write_checkpoint(file, run.snapshot());
   std::string const good = text_of(file);

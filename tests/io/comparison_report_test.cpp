@@ -30,7 +30,8 @@ Comparison oscillators() {
   for (int i = 0; i < 2; ++i) {
     ComparedRun run;
     run.name = i == 0 ? "ideal, \"1\"" : "stiff/ρ";
-    run.census = {.coordinates = 3 - i, .constraints = 2 - i, .speeds = 3, .rows = 2, .degrees_of_freedom = 1};
+    run.problem_size = {
+        .coordinates = 3 - i, .constraints = 2 - i, .velocities = 3, .rows = 2, .degrees_of_freedom = 1};
     run.run.steps = i == 0 ? 100 : 40;
     run.run.iterations = 300;
     run.cpu = 0.125 * (i + 1);
@@ -268,8 +269,8 @@ TEST_F(ComparisonReport, LargeDifferencesDoNotHideSmallOnes) {
   };
   Figure const far = detail::difference_figure(c, 0);
   EXPECT_EQ(labels(far), (std::vector<std::string>{"off by -0.005", "off by 0.001", "off by 2e-05"}));
-  EXPECT_EQ(far.curves[0].color, 2);  // the colour of this run in every figure
-  EXPECT_TRUE(far.log_y);             // a ratio of 250
+  EXPECT_EQ(far.curves[0].colour, 2);  // the colour of this run in every figure
+  EXPECT_TRUE(far.log_y);              // a ratio of 250
   EXPECT_EQ(far.y_label, "amount of the difference [m]");
   EXPECT_NEAR(far.curves[0].y[7], 5e-3, 1e-12);
   EXPECT_NEAR(far.curves[2].y[7], 2e-5, 1e-12);

@@ -244,12 +244,14 @@ TEST_F(FilmFiles, RefuseWhatCannotBeShown) {
   EXPECT_TRUE(has(refusal([&] { two.record(0.5, visual.at(x)); }), "t = 0.5 s follows 0.5 s"));
   EXPECT_TRUE(has(refusal([&] { two.record(1.0, {visual.at(x)[0]}); }), "not those of the first frame"));
   Vec3 const nan = Vec3::Constant(std::nan(""));
-  EXPECT_TRUE(has(message_of<NonFinite>([&] { two.arrow(forces, nan, Vec3::Zero()); }), "\"force\" is not finite"));
-  EXPECT_TRUE(has(message_of<NonFinite>([&] { two.plot("p", "N", 0.0, std::nan("")); }), "\"p\" is not finite"));
+  EXPECT_TRUE(
+      has(message_of<NonFiniteValue>([&] { two.arrow(forces, nan, Vec3::Zero()); }), "\"force\" is not finite"));
+  EXPECT_TRUE(has(message_of<NonFiniteValue>([&] { two.plot("p", "N", 0.0, std::nan("")); }), "\"p\" is not finite"));
   two.plot("p", "N", 0.0, 1.0);
   EXPECT_TRUE(has(refusal([&] { two.plot("p", "N", 0.0, 1.0); }), "must rise in time"));
   x.q[0] = std::nan("");
-  EXPECT_TRUE(has(message_of<NonFinite>([&] { two.record(1.0, visual.at(x)); }), "\"box 1\" is not finite at t = 1 s"));
+  EXPECT_TRUE(
+      has(message_of<NonFiniteValue>([&] { two.record(1.0, visual.at(x)); }), "\"box 1\" is not finite at t = 1 s"));
   EXPECT_EQ(two.times().size(), 1u);
 }
 

@@ -7,13 +7,13 @@
 
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/forces/spring_damper.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/io/progress.hpp>
 #include <polybody/io/run_table.hpp>
 #include <polybody/joints/planar/revolute.hpp>
-#include <polybody/run/check.hpp>
-#include <polybody/run/outline.hpp>
+#include <polybody/run/diagnose.hpp>
 #include <polybody/run/simulate.hpp>
+#include <polybody/run/summary.hpp>
 #include <polybody/study/report.hpp>
 #include <polybody/study/sampling.hpp>
 #include <polybody/study/study.hpp>
@@ -48,16 +48,16 @@ std::string all_texts(fs::path const& folder) {
   fs::create_directories(folder);
   M const model = pendulum();
   State x = model.reference_state();
-  RunOptions const options{.until = 0.05, .step = 0.0025};
+  RunOptions const options{.end_time = 0.05, .step = 0.0025};
   std::ostringstream told;
-  told << outline(model) << '\n' << number(9.81) << ' ' << number(-1234567.5) << ' ' << number(1.5e-300) << '\n';
+  told << summary(model) << '\n' << number(9.81) << ' ' << number(-1234567.5) << ' ' << number(1.5e-300) << '\n';
   told << sentence_of({"a ", 0.5, ", ", 1234567, ", ", 1e10, "\n"});
-  told << refusal([&] { (void)simulate(model, x, GeneralizedAlpha{.rho_inf = 1.5}, options); }) << '\n';
-  told << check(model, x);
+  told << refusal([&] { (void)simulate(model, x, GeneralisedAlpha{.rho_inf = 1.5}, options); }) << '\n';
+  told << diagnose(model, x);
   told << message_of<InvalidInput>([] {
     SpringDamper{.stiffness = -1.5, .damping = 0.25, .free_length = 0.5}.check("spring");
   }) << '\n';
-  Table const table = tabulate(simulate(model, x, GeneralizedAlpha{}, options),
+  Table const table = tabulate(simulate(model, x, GeneralisedAlpha{}, options),
                                {{"angle [rad]", [](State const& now) { return now.q[2]; }}});
   plot(table, folder / "run", false);
   for (auto const* end : {".csv", ".dat", ".gp"}) told << text_of((folder / "run").string() + end);

@@ -51,8 +51,8 @@ Figure waves() {
     if (i % 25 == 0) few.x.push_back(t), few.y.push_back(std::sin(t) + 0.03);
   }
   Curve twin = cosine, joined = few;
-  cosine.style = "dashed", steps.style = "steps", few.style = "points", few.color = 0;
-  twin.label = "", twin.color = 1, joined.style = "linespoints", joined.label = "joined, θ";
+  cosine.style = "dashed", steps.style = "steps", few.style = "points", few.colour = 0;
+  twin.label = "", twin.colour = 1, joined.style = "linespoints", joined.label = "joined, θ";
   for (double& y : twin.y) y = -y;
   for (double& y : joined.y) y -= 0.4;
   figure.curves = {sine, cosine, steps, few, twin, joined};
@@ -82,8 +82,8 @@ struct Path {
 };
 
 TEST_F(Plots, WritesDataScriptAndPicture) {
-  Drawn const drawn = write_figure(waves(), stem);
-  EXPECT_EQ(drawn, have_gnuplot ? Drawn::png : Drawn::script_only);
+  DrawResult const drawn = write_figure(waves(), stem);
+  EXPECT_EQ(drawn, have_gnuplot ? DrawResult::png : DrawResult::script_only);
   EXPECT_EQ(files(), have_gnuplot ? 3u : 2u);  // no temporary file remains
   if (!have_gnuplot) GTEST_SKIP() << "gnuplot is not on PATH";
   EXPECT_TRUE(is_png(with(".png")));
@@ -93,7 +93,7 @@ TEST_F(Plots, WritesDataScriptAndPicture) {
 }
 
 TEST_F(Plots, ScriptRunsByHandFromItsOwnFolder) {
-  ASSERT_EQ(write_figure(waves(), stem, false), Drawn::script_only);
+  ASSERT_EQ(write_figure(waves(), stem, false), DrawResult::script_only);
   EXPECT_EQ(files(), 2u);
   EXPECT_EQ(text_of(with(".gp")).find(folder.string()), std::string::npos);  // names are relative
   if (!have_gnuplot) GTEST_SKIP() << "gnuplot is not on PATH";
@@ -122,7 +122,7 @@ TEST_F(Plots, ScriptSaysWhatTheFigureSays) {
 
   Figure figure{.title = "", .curves = {{.x = {1, 2}, .y = {3, 4}, .label = "a"}}};
   figure.equal_axes = true, figure.legend = false;
-  figure.x_range = {0.0, 2.5}, figure.curves[0].color = 9;
+  figure.x_range = {0.0, 2.5}, figure.curves[0].colour = 9;
   write_figure(figure, stem, false);
   std::string const second = text_of(with(".gp"));
   EXPECT_TRUE(has(second, "set size ratio -1"));
@@ -150,11 +150,11 @@ TEST_F(Plots, PanelsShareOnePicture) {
               .y_label = "E [J]",
               .curves = {{.x = {0, 1, 2}, .y = {1, 1 + 1e-15, 1}, .label = "E"}}};
   flat.width_px = 300, flat.height_px = 200;
-  Drawn const drawn = write_panels({waves(), log, equal, flat, flat}, 3, stem);
+  DrawResult const drawn = write_panels({waves(), log, equal, flat, flat}, 3, stem);
   EXPECT_TRUE(has(text_of(with(".gp")), "set multiplot layout 2,3"));
   EXPECT_TRUE(has(text_of(with(".gp")), "index 19 "));
   EXPECT_TRUE(has(text_of(with(".gp")), "set format y '%.17h'"));  // 1 and 1 + 1e-15 differ
-  if (drawn == Drawn::script_only) GTEST_SKIP() << "gnuplot is not on PATH";
+  if (drawn == DrawResult::script_only) GTEST_SKIP() << "gnuplot is not on PATH";
   EXPECT_TRUE(is_png(with(".png")));
   EXPECT_EQ(png_size(with(".png")), (std::array{3000, 1400}));
   if (char const* keep = std::getenv("POLYBODY_KEEP_PANELS"))
@@ -169,11 +169,11 @@ TEST_F(Plots, EveryStyleAndOddShapeIsDrawn) {
       figure.curves.push_back({.x = {1}, .y = {2}, .label = "one point", .style = std::string(style)});
       figure.curves.push_back({.x = {1, 2, 1}, .y = {0, 0, 0}, .label = "zero", .style = std::string(style)});
       figure.log_y = log;
-      EXPECT_EQ(write_figure(figure, stem), Drawn::png) << style;
+      EXPECT_EQ(write_figure(figure, stem), DrawResult::png) << style;
     }
   Figure outside = waves();
   outside.x_range = {100.0, -100.0}, outside.y_range = {50.0, 60.0};
-  EXPECT_EQ(write_figure(outside, stem), Drawn::png);
+  EXPECT_EQ(write_figure(outside, stem), DrawResult::png);
 }
 
 TEST_F(Plots, TextAndNamesAreNeverCommands) {
@@ -186,8 +186,8 @@ TEST_F(Plots, TextAndNamesAreNeverCommands) {
   fs::current_path(folder);
   for (std::string const name : {"plain", "|touch pwned6", "< touch pwned7", "$(touch pwned8)", "`touch pwned9`", "-",
                                  "it's \"x\"", "a;b & c", "50%d", "~", "*", "path.with.dots", "Ünïcode θ"}) {
-    Drawn const drawn = write_figure(figure, name);
-    EXPECT_EQ(drawn, have_gnuplot ? Drawn::png : Drawn::script_only) << name;
+    DrawResult const drawn = write_figure(figure, name);
+    EXPECT_EQ(drawn, have_gnuplot ? DrawResult::png : DrawResult::script_only) << name;
     EXPECT_TRUE(fs::exists(name + ".gp") && fs::exists(name + ".dat")) << name;
     EXPECT_TRUE(!have_gnuplot || is_png(name + ".png")) << name;
   }
@@ -213,7 +213,7 @@ TEST_F(Plots, RefusalsNameTheFigureAndTheCurveAndWriteNothing) {
   EXPECT_TRUE(has(refusal([&](Figure& f) { f.curves[0].x[3] = nan; }), "in x is not finite"));
   EXPECT_TRUE(has(refusal([&](Figure& f) { f.curves[0].y[3] = infinity; }), "in y is not finite"));
   EXPECT_TRUE(has(refusal([](Figure& f) { f.curves[0].style = "dots"; }), "'dots'"));
-  EXPECT_TRUE(has(refusal([](Figure& f) { f.curves[0].color = -2; }), "color"));
+  EXPECT_TRUE(has(refusal([](Figure& f) { f.curves[0].colour = -2; }), "color"));
   EXPECT_TRUE(has(refusal([](Figure& f) { f.curves[0].width = 0; }), "width"));
   EXPECT_TRUE(has(refusal([](Figure& f) { f.height_px = 0; }), "pixels"));
   EXPECT_TRUE(has(refusal([](Figure& f) { f.width_px = 1 << 20; }), "pixels"));
@@ -236,7 +236,7 @@ TEST_F(Plots, WithoutGnuplotOnlyTheScript) {
   for (std::string const path : {"", ":", "/nowhere:relative"}) {
     Path const only(path);
     EXPECT_FALSE(find_gnuplot());
-    EXPECT_EQ(write_figure(waves(), stem), Drawn::script_only);
+    EXPECT_EQ(write_figure(waves(), stem), DrawResult::script_only);
     EXPECT_EQ(files(), 2u);
   }
 }

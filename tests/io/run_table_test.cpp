@@ -5,7 +5,7 @@
 #include <random>
 
 #include <polybody/bodies/rigid/planar_rigid.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/io/progress.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/policies/constraint.hpp>
@@ -37,7 +37,7 @@ struct RunTable : testing::Test {
   }
   ~RunTable() override { fs::remove_all(folder); }
 
-  auto run(RunOptions options) { return simulate(model, x, GeneralizedAlpha{}, std::move(options)); }
+  auto run(RunOptions options) { return simulate(model, x, GeneralisedAlpha{}, std::move(options)); }
   std::vector<TableColumn> columns() {
     return {{"tip x [m]", [&](State const& now) { return position(model, now, rod.at(1.0))[0]; }},
             {"speed [m/s]", [&](State const& now) { return frame(model, now, rod.at(1.0)).v.norm(); }},
@@ -46,7 +46,7 @@ struct RunTable : testing::Test {
 };
 
 TEST_F(RunTable, HoldsEveryStateOfARun) {
-  Table const table = tabulate(run({.until = 0.1, .step = 1e-2}), columns());
+  Table const table = tabulate(run({.end_time = 0.1, .step = 1e-2}), columns());
   EXPECT_EQ(table.columns, (std::vector<std::string>{"t [s]", "tip x [m]", "speed [m/s]", "tip y [m]"}));
   ASSERT_EQ(table.rows.size(), 11u);
   EXPECT_EQ(table.rows[0], (std::vector<double>{0.0, 1.0, 0.0, 0.0}));
@@ -60,18 +60,18 @@ TEST_F(RunTable, HoldsEveryStateOfARun) {
 }
 
 TEST_F(RunTable, SamplesTheFirstStateOnOrAfterEachMultiple) {
-  Table const table = tabulate(run({.until = 0.1, .step = 1e-2}), columns(), 0.025);
+  Table const table = tabulate(run({.end_time = 0.1, .step = 1e-2}), columns(), 0.025);
   std::vector<double> const times = table.column("t [s]");
   ASSERT_EQ(times.size(), 5u);
   for (std::size_t k = 0; k < 5; ++k) EXPECT_NEAR(times[k], (std::array{0.0, 0.03, 0.05, 0.08, 0.1})[k], 1e-12);
   x = model.reference_state();
   // the first row and the last row
-  EXPECT_EQ(tabulate(run({.until = 0.1, .step = 1e-2}), columns(), 7.0).rows.size(), 2u);
+  EXPECT_EQ(tabulate(run({.end_time = 0.1, .step = 1e-2}), columns(), 7.0).rows.size(), 2u);
 }
 
 TEST_F(RunTable, RefusesColumnsThatCannotBeTold) {
   auto const said = [&](std::vector<TableColumn> const& these, double sampling = 0.0) {
-    return refusal([&] { tabulate(run({.until = 0.1, .step = 1e-2}), these, sampling); });
+    return refusal([&] { tabulate(run({.end_time = 0.1, .step = 1e-2}), these, sampling); });
   };
   auto const zero = [](State const&) { return 0.0; };
   EXPECT_TRUE(has(said({{"", zero}}), "column 1 lacks a name or a value"));
@@ -81,16 +81,16 @@ TEST_F(RunTable, RefusesColumnsThatCannotBeTold) {
   EXPECT_TRUE(has(said({{"x [m]", zero}}, -1.0), "sampling"));
   EXPECT_EQ(x.t, 0.0);
   try {
-    tabulate(run({.until = 0.1, .step = 1e-2}),
+    tabulate(run({.end_time = 0.1, .step = 1e-2}),
              {{"root [1]", [](State const& now) { return std::sqrt(0.055 - now.t); }}});
     ADD_FAILURE();
-  } catch (NonFinite const& failed) {
+  } catch (NonFiniteValue const& failed) {
     EXPECT_STREQ(failed.what(), "tabulate: \"root [1]\" is not finite at t = 0.06 s.");
   }
 }
 
 TEST_F(RunTable, ReadsBackToTheSameDoubles) {
-  Table const table = tabulate(run({.until = 0.1, .step = 1e-2}), columns());
+  Table const table = tabulate(run({.end_time = 0.1, .step = 1e-2}), columns());
   write_csv(table, folder / "run.csv");
   Table const again = read_csv(folder / "run.csv");
   EXPECT_EQ(again.columns, table.columns);
@@ -98,7 +98,7 @@ TEST_F(RunTable, ReadsBackToTheSameDoubles) {
 }
 
 TEST_F(RunTable, ColumnsOfOneUnitShareAPanel) {
-  Table const table = tabulate(run({.until = 0.1, .step = 1e-2}), columns());
+  Table const table = tabulate(run({.end_time = 0.1, .step = 1e-2}), columns());
   auto const figures = detail::figures_of(table);
   ASSERT_EQ(figures.size(), 2u);
   EXPECT_EQ(figures[0].y_label, "[m]");
@@ -112,11 +112,11 @@ TEST_F(RunTable, ColumnsOfOneUnitShareAPanel) {
 }
 
 TEST_F(RunTable, PlotIsOneCall) {
-  bool const drawn = plot(tabulate(run({.until = 0.1, .step = 1e-2}), columns()), folder / "rod") == Drawn::png;
+  bool const drawn = plot(tabulate(run({.end_time = 0.1, .step = 1e-2}), columns()), folder / "rod") == DrawResult::png;
   EXPECT_EQ(drawn, find_gnuplot().has_value());
   for (char const* ending : {".csv", ".dat", ".gp"}) EXPECT_TRUE(fs::exists(folder / (std::string("rod") + ending)));
   EXPECT_EQ(fs::exists(folder / "rod.png"), drawn);
-  EXPECT_EQ(plot(read_csv(folder / "rod.csv"), folder / "again", false), Drawn::script_only);
+  EXPECT_EQ(plot(read_csv(folder / "rod.csv"), folder / "again", false), DrawResult::script_only);
   EXPECT_TRUE(has(refusal([&] { plot(Table{{"t [s]", "x [m]"}, {}}, folder / "none"); }), "0 rows of 2 columns"));
   EXPECT_TRUE(has(refusal([&] { plot(Table{{"t [s]"}, {{1.0}}}, folder / "none"); }), "1 rows of 1 columns"));
   EXPECT_FALSE(fs::exists(folder / "none.csv"));
@@ -124,12 +124,12 @@ TEST_F(RunTable, PlotIsOneCall) {
 
 TEST_F(RunTable, ARunTellsItsProgress) {
   std::vector<double> times;
-  run({.until = 0.05,
+  run({.end_time = 0.05,
        .step = 1e-2,
        .progress =
            [&](RunProgress const& p) {
              EXPECT_EQ(p.start, 0.0);
-             EXPECT_EQ(p.until, 0.05);
+             EXPECT_EQ(p.end_time, 0.05);
              EXPECT_EQ(p.done, p.now == 0.05);
              times.push_back(p.now);
            }})
@@ -138,8 +138,8 @@ TEST_F(RunTable, ARunTellsItsProgress) {
   EXPECT_EQ(times.back(), x.t);
   // from the start of the run to the end at an event
   bool done = false;
-  Event const stop{.name = "low", .value = [](State const& now) { return now.t - 0.071; }, .stops = true};
-  run({.until = 1.0,
+  Event const stop{.name = "low", .value = [](State const& now) { return now.t - 0.071; }, .terminal = true};
+  run({.end_time = 1.0,
        .step = 1e-2,
        .events = {stop},
        .progress =
@@ -156,9 +156,9 @@ TEST_F(RunTable, ARunTellsItsProgress) {
 TEST_F(RunTable, AProgressBarFollowsARun) {
   std::ostringstream out;
   double time = 0.0;
-  RunOptions options{.until = 0.1, .step = 1e-2};
+  RunOptions options{.end_time = 0.1, .step = 1e-2};
   options.progress = progress_bar([&](RunProgress const& p) {
-    return std::make_unique<Progress>(p.start, p.until, "rod", out, true, [&] { return time += 1.0; });
+    return std::make_unique<Progress>(p.start, p.end_time, "rod", out, true, [&] { return time += 1.0; });
   });
   run(options).run();
   std::string const text = out.str();

@@ -16,9 +16,9 @@
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/bodies/rigid/rigid_euler_parameters.hpp>
-#include <polybody/bodies/shared/sliding.hpp>
+#include <polybody/bodies/shared/with_sliders.hpp>
 #include <polybody/forces/maxwell_element.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/io/run_table.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/revolute.hpp>
@@ -56,7 +56,7 @@ struct StateTable : testing::Test {
 
 TEST_F(StateTable, ColumnsAreNamedByTheirOwners) {
   auto const heads = state_columns(model);
-  ASSERT_EQ(heads.size(), std::size_t(1 + model.coordinates() + model.speeds() + model.rows()));
+  ASSERT_EQ(heads.size(), std::size_t(1 + model.coordinates() + model.velocities() + model.rows()));
   State const x = model.reference_state();
   Table const table = state_table(model, {x});
   EXPECT_EQ(table.columns, heads);
@@ -76,7 +76,8 @@ TEST_F(StateTable, ColumnsAreNamedByTheirOwners) {
 TEST_F(StateTable, StatesComeBackTheSame) {
   State x = model.reference_state();
   std::vector<State> states;
-  for (State const& now : simulate(model, x, GeneralizedAlpha{}, {.until = 0.05, .step = 1e-2})) states.push_back(now);
+  for (State const& now : simulate(model, x, GeneralisedAlpha{}, {.end_time = 0.05, .step = 1e-2}))
+    states.push_back(now);
   Table const table = state_table(model, states);
   for (std::size_t k = 0; k < states.size(); ++k) {
     State const back = state_from(model, table, k);
@@ -84,17 +85,17 @@ TEST_F(StateTable, StatesComeBackTheSame) {
     EXPECT_EQ(back.q, states[k].q);
     EXPECT_EQ(back.v, states[k].v);
     EXPECT_EQ(back.lambda, states[k].lambda);
-    EXPECT_EQ(back.a, VecX(VecX::Zero(model.speeds())));
+    EXPECT_EQ(back.a, VecX(VecX::Zero(model.velocities())));
   }
   // a run continues from this state
   State from = state_from(model, table, 3);
-  simulate(model, from, GeneralizedAlpha{}, {.until = 0.05, .step = 1e-3}).run();
+  simulate(model, from, GeneralisedAlpha{}, {.end_time = 0.05, .step = 1e-3}).run();
   EXPECT_LT((from.q - x.q).norm(), 1e-4);
 }
 
 TEST_F(StateTable, ColumnsMayComeInAnyOrderAndMultipliersMayLack) {
   State x = model.reference_state();
-  simulate(model, x, GeneralizedAlpha{}, {.until = 0.05, .step = 1e-2}).run();
+  simulate(model, x, GeneralisedAlpha{}, {.end_time = 0.05, .step = 1e-2}).run();
   Table const table = state_table(model, {x});
   Table other{{"note [1]"}, {{7.0}}};
   for (std::size_t j = table.columns.size(); j-- > 0;)
@@ -117,7 +118,7 @@ Table without_units(Table table) {
 
 TEST_F(StateTable, HeadsMayLackTheirUnits) {
   State x = model.reference_state();
-  simulate(model, x, GeneralizedAlpha{}, {.until = 0.05, .step = 1e-2}).run();
+  simulate(model, x, GeneralisedAlpha{}, {.end_time = 0.05, .step = 1e-2}).run();
   Table const table = state_table(model, {x});
   Table const bare = without_units(table);
   ASSERT_EQ(std::ranges::count(bare.columns, "lower v[6]"), 1);
@@ -149,7 +150,7 @@ TEST_F(StateTable, RefusesAnotherUnitAndOneNumberTwice) {
 /// For every body, the coordinates and velocities in [m], [m/s], and no others, scale with the lengths of the body
 /// and of its motion.
 template <class Made>
-void expect_units(Made const& made, std::string const& coordinates, std::string const& speeds) {
+void expect_units(Made const& made, std::string const& coordinates, std::string const& velocities) {
   auto const of_size = [&](double size) {
     Mat3 const axes = Eigen::AngleAxisd(0.7, Vec3::UnitZ()).toRotationMatrix();
     Bar const bar{.length = 1.7 * size,
@@ -166,7 +167,7 @@ void expect_units(Made const& made, std::string const& coordinates, std::string 
       model.add(body, "arm");
       State const x = model.reference_state();
       q.assign(x.q.begin(), x.q.end());
-      v.resize(std::size_t(body.speeds()));
+      v.resize(std::size_t(body.velocities()));
       body.rigid_velocity(q, Vec3(0.9, 0.8, 0.0) * size, Vec3(0.0, 0.0, 1.1), v);
     }
   };
@@ -190,7 +191,7 @@ void expect_units(Made const& made, std::string const& coordinates, std::string 
   see("q", 1, one.q, large.q);
   see("v", 1 + one.q.size(), one.v, large.v);
   EXPECT_EQ(found[0], coordinates);
-  EXPECT_EQ(found[1], speeds);
+  EXPECT_EQ(found[1], velocities);
 }
 
 TEST(UnitsOfStates, OfRigidBodies) {
@@ -207,8 +208,8 @@ TEST(UnitsOfStates, OfCablesAndBeamsByGradients) {
   expect_units([](Bar const& bar) { return AncfBeam<>::from(bar, 1); }, node + ' ' + node, rate + ' ' + rate);
   expect_units([](Bar const& bar) { return planar::AncfCable<>::from(bar, 1); }, "m m 1 1 m m 1 1",
                "m/s m/s 1/s 1/s m/s m/s 1/s 1/s");
-  expect_units([](Bar const& bar) { return Sliding(planar::AncfCable<>::from(bar, 1), {0.0}); }, "m m 1 1 m m 1 1 m",
-               "m/s m/s 1/s 1/s m/s m/s 1/s 1/s m/s");
+  expect_units([](Bar const& bar) { return WithSliders(planar::AncfCable<>::from(bar, 1), {0.0}); },
+               "m m 1 1 m m 1 1 m", "m/s m/s 1/s 1/s m/s m/s 1/s 1/s m/s");
 }
 
 TEST(UnitsOfStates, OfBeamsByRotationsAndOfFloatingFrames) {

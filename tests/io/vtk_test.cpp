@@ -131,7 +131,7 @@ TEST_F(VtkFiles, AStateThatCannotBeWrittenLeavesTheOthers) {
   EXPECT_TRUE(has(refusal([&] { writer.write(x); }), "must rise in time, but t = 0 s follows 0 s"));
   x.t = 1.0;
   x.q[0] = std::nan("");
-  EXPECT_TRUE(has(message_of<NonFinite>([&] { writer.write(x); }), "\"box\" is not finite at t = 1 s"));
+  EXPECT_TRUE(has(message_of<NonFiniteValue>([&] { writer.write(x); }), "\"box\" is not finite at t = 1 s"));
   x = model.reference_state();
   x.t = 2.0;
   fs::create_directories(folder / "run" / "run_000001.vtu");

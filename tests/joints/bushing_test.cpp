@@ -170,10 +170,10 @@ TEST(NonlinearBushing, RefusesNumbersOfItsLawsByNameAndComponent) {
 
 // --- concepts -------------------------------------------------------------------------------------------------------
 
-static_assert(Policy<Bushing> && AddsForce<Bushing> && !AddsRows<Bushing>);
-static_assert(Policy<decltype(rubber)> && AnswersRows<decltype(rubber), 6> && !AnswersRows<decltype(rubber), 5>);
+static_assert(Policy<Bushing> && CompliantPolicy<Bushing> && !ConstrainingPolicy<Bushing>);
+static_assert(Policy<decltype(rubber)> && CompliantLaw<decltype(rubber), 6> && !CompliantLaw<decltype(rubber), 5>);
 static_assert(Joint<Revolute, Bushing>::rows == 6 && Joint<Weld, Bushing>::rows == 6);
-static_assert(std::is_same_v<Joint<Revolute, Bushing>::Measured, HeldCoordinates<Revolute>>);
+static_assert(std::is_same_v<Joint<Revolute, Bushing>::Measured, ConstrainedCoordinates<Revolute>>);
 static_assert(std::is_same_v<Joint<Revolute, Penalty>::Measured, Revolute>);
 static_assert(!std::is_default_constructible_v<Bushing>);  // its stiffness and damping have no default
 static_assert(ForceLaw<LinearLaw> && ForceLaw<TabulatedLaw> && !ForceLaw<double>);

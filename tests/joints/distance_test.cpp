@@ -60,7 +60,7 @@ struct PlanarActuatorCase : ActuatorCase {
 // The multiplier is a force: it pulls separated points together, along d = (3, 4, 0)/5.
 TEST(Distance, GapIsALengthAndItsMultiplierATension) {
   Frame<double> const a{.r = {1, 1, 1}}, b{.r = {4, 5, 1}};
-  Gap<1> const gap = Distance{.length = 2.0}.gap<double>(a, b, 0.0);
+  ConstraintTerms<1> const gap = Distance{.length = 2.0}.constraint_function<double>(a, b, 0.0);
   EXPECT_DOUBLE_EQ(gap.g[0], 3.0);
   EXPECT_LT((gap.Gb.head<3>() - Vec3(0.6, 0.8, 0).transpose()).norm(), 1e-15);
   EXPECT_EQ(gap.Gb.tail<3>().norm() + gap.Ga.tail<3>().norm(), 0.0);
@@ -73,7 +73,7 @@ TEST(Distance, GammaIsTheCentripetalAcceleration) {
 }
 
 TEST(Distance, OfPointsThatCoincideIsFinite) {
-  Gap<1> const gap = Distance{.length = 2.0}.gap<double>({}, {}, 0.0);
+  ConstraintTerms<1> const gap = Distance{.length = 2.0}.constraint_function<double>({}, {}, 0.0);
   EXPECT_EQ(gap.g[0], -2.0);
   EXPECT_EQ(Vec3(gap.Gb.head<3>()), Vec3(1, 0, 0));
 }
@@ -97,8 +97,8 @@ TEST(PrescribedDistance, RefusesWhatNoActuatorCanDo) {
 
 TEST(PrescribedDistance, TellsTheCornersOfItsLaw) {
   PrescribedDistance<Ramp> const ramp{.law = {.target = 1.0, .duration = 2.0, .start = 0.5}, .length = 1.0};
-  EXPECT_EQ(ramp.corners(), (std::vector{0.5, 2.5}));
-  EXPECT_TRUE(actuator.corners().empty());
+  EXPECT_EQ(ramp.breakpoints(), (std::vector{0.5, 2.5}));
+  EXPECT_TRUE(actuator.breakpoints().empty());
 }
 
 }  // namespace distance_test

@@ -1,6 +1,6 @@
 #include <polybody/joints/point_in_plane.hpp>
 #include <polybody/joints/point_on_line.hpp>
-#include <polybody/joints/prescribed_slide.hpp>
+#include <polybody/joints/prescribed_translation.hpp>
 
 #include <gtest/gtest.h>
 
@@ -36,7 +36,7 @@ struct PointInPlaneCase {
   static Mate mate(Numbers& number, double) { return at(number, {number(2.0), number(2.0), 0}, {0, 1}); }
 };
 
-using Slide = PrescribedSlide<SmoothRamp>;
+using Slide = PrescribedTranslation<SmoothRamp>;
 Slide const slide{.law = {.target = 0.6, .duration = 4.0}};
 
 struct SlideCase {
@@ -50,20 +50,24 @@ struct SlideCase {
 
 Frame<double> const b{.r = {0.1, 0.2, 0.3}};
 
-TEST(PointOnLine, RowsAreTheOffsetFromTheLine) { EXPECT_EQ((PointOnLine{}.gap<double>({}, b, 0.0).g), Vec2(0.1, 0.2)); }
-
-TEST(PointInPlane, RowIsTheHeightOverThePlane) { EXPECT_EQ((PointInPlane{}.gap<double>({}, b, 0.0).g[0]), 0.3); }
-
-TEST(PrescribedSlide, RowIsWhatTheSlideLacks) {
-  PrescribedSlide<Constant> const still{.law = {.value = 0.25}};
-  EXPECT_DOUBLE_EQ((still.gap<double>({}, b, 0.0).g[0]), 0.05);
+TEST(PointOnLine, RowsAreTheOffsetFromTheLine) {
+  EXPECT_EQ((PointOnLine{}.constraint_function<double>({}, b, 0.0).g), Vec2(0.1, 0.2));
 }
 
-TEST(PrescribedSlide, TellsTheCornersOfItsLawAndRefusesAJump) {
-  PrescribedSlide<Ramp> const ramp{.law = {.target = 1.0, .duration = 2.0, .start = 0.5}};
-  EXPECT_EQ(ramp.corners(), (std::vector{0.5, 2.5}));
+TEST(PointInPlane, RowIsTheHeightOverThePlane) {
+  EXPECT_EQ((PointInPlane{}.constraint_function<double>({}, b, 0.0).g[0]), 0.3);
+}
+
+TEST(PrescribedTranslation, RowIsWhatTheSlideLacks) {
+  PrescribedTranslation<Constant> const still{.law = {.value = 0.25}};
+  EXPECT_DOUBLE_EQ((still.constraint_function<double>({}, b, 0.0).g[0]), 0.05);
+}
+
+TEST(PrescribedTranslation, TellsTheCornersOfItsLawAndRefusesAJump) {
+  PrescribedTranslation<Ramp> const ramp{.law = {.target = 1.0, .duration = 2.0, .start = 0.5}};
+  EXPECT_EQ(ramp.breakpoints(), (std::vector{0.5, 2.5}));
   EXPECT_NO_THROW(ramp.check("\"slide\""));
-  PrescribedSlide<Window> const jump{.law = {.from = 1.0, .to = 2.0, .value = -3.0}};
+  PrescribedTranslation<Window> const jump{.law = {.from = 1.0, .to = 2.0, .value = -3.0}};
   EXPECT_TRUE(has(refusal([&] { jump.check("\"slide\""); }),
                   "\"slide\": the law of time: its value jumps from 0 to -3 at t = 1 s"));
 }
@@ -73,8 +77,8 @@ TEST(Points, RefuseAxesThatAreNotUnitVectors) {
       has(refusal([] { (void)PointOnLine{.axis = {0, 0, 0}}.triad(); }), "PointOnLine: the axis must be a unit"));
   EXPECT_TRUE(
       has(refusal([] { (void)PointInPlane{.normal = {0, 2, 0}}.triad(); }), "PointInPlane: the normal must be a unit"));
-  EXPECT_TRUE(
-      has(refusal([] { (void)Slide{.law = slide.law, .axis = {0, 2, 0}}.triad(); }), "PrescribedSlide: the axis"));
+  EXPECT_TRUE(has(refusal([] { (void)Slide{.law = slide.law, .axis = {0, 2, 0}}.triad(); }),
+                  "PrescribedTranslation: the axis"));
 }
 
 }  // namespace points_test
@@ -82,5 +86,5 @@ TEST(Points, RefuseAxesThatAreNotUnitVectors) {
 namespace polybody {
 bool const points_obey[] = {obeys<points_test::PointOnLineCase, JointLaws>("PointOnLine"),
                             obeys<points_test::PointInPlaneCase, JointLaws>("PointInPlane"),
-                            obeys<points_test::SlideCase, JointLaws>("PrescribedSlide")};
+                            obeys<points_test::SlideCase, JointLaws>("PrescribedTranslation")};
 }  // namespace polybody

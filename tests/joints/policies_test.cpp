@@ -58,7 +58,7 @@ TEST(Penalty, ElasticForcesOfAnOpenPinBalanceInMoment) {
   Numbers number;
   for (int k = 0; k < 3; ++k) {
     Frame<double> const a = number.frame(), b = number.frame();
-    Gap<5> const gap = Revolute{}.gap<double>(a, b, 0.0);
+    ConstraintTerms<5> const gap = Revolute{}.constraint_function<double>(a, b, 0.0);
     auto const lambda = penalty.multiplier<5, double>(gap.g, Vec<double, 5>::Zero());
     Vec6 const wa = gap.Ga.transpose() * lambda, wb = gap.Gb.transpose() * lambda;
     Vec3 const moment = wa.tail<3>() + a.r.cross(wa.head<3>()) + wb.tail<3>() + b.r.cross(wb.head<3>());
@@ -79,8 +79,8 @@ TEST(Penalty, RefusesNumbersThatCannotBeMeantByName) {
   EXPECT_NO_THROW((Penalty{.stiffness = 1.0, .damping = 0.0}.check("hinge")));
 }
 
-TEST(PenaltyPerRow, OfEqualNumbersIsThePenalty) {
-  PenaltyPerRow<3> const rows{.stiffness = Vec3(2000, 2000, 2000), .damping = Vec3(30, 30, 30)};
+TEST(PenaltyPerEquation, OfEqualNumbersIsThePenalty) {
+  PenaltyPerEquation<3> const rows{.stiffness = Vec3(2000, 2000, 2000), .damping = Vec3(30, 30, 30)};
   Vec3 const g(1e-3, -2e-3, 4e-3), rate(0.1, 0.3, -0.2);
   EXPECT_LT((rows.multiplier<3, double>(g, rate) - penalty.multiplier<3, double>(g, rate)).norm(), 1e-14);
   Mat3 const slope = rows.slope<3>(0.7, 31.0, g, rate), same = penalty.slope<3>(0.7, 31.0, g, rate);
@@ -88,29 +88,31 @@ TEST(PenaltyPerRow, OfEqualNumbersIsThePenalty) {
   EXPECT_NEAR(rows.potential<3>(g), penalty.potential<3>(g), 1e-16);
 }
 
-TEST(PenaltyPerRow, EachRowHasItsNumbers) {
-  PenaltyPerRow<3> const rows{.stiffness = Vec3(1, 10, 100), .damping = Vec3(0, 2, 4)};
+TEST(PenaltyPerEquation, EachRowHasItsNumbers) {
+  PenaltyPerEquation<3> const rows{.stiffness = Vec3(1, 10, 100), .damping = Vec3(0, 2, 4)};
   Vec3 const g(1, 2, -3), rate(5, 7, 9);
   EXPECT_LT((rows.multiplier<3, double>(g, rate) - Vec3(1, 20 + 14, -300 + 36)).norm(), 1e-12);
   EXPECT_LT((rows.slope<3>(2.0, 3.0, g, rate).diagonal() - Vec3(2, 20 + 6, 200 + 12)).norm(), 1e-12);
   EXPECT_NEAR(rows.potential<3>(g), 0.5 * (1 + 40 + 900), 1e-12);
 }
 
-TEST(PenaltyPerRow, RefusesNumbersThatCannotBeMeantByNameAndRow) {
-  EXPECT_TRUE(has(refusal([] { PenaltyPerRow<2>{.stiffness = Vec2(1, 0), .damping = Vec2(0, 0)}.check("\"hinge\""); }),
-                  "\"hinge\": the penalty stiffness of row 2 must be positive"));
-  EXPECT_TRUE(has(refusal([] { PenaltyPerRow<2>{.stiffness = Vec2(1, 1), .damping = Vec2(-1, 0)}.check("\"hinge\""); }),
-                  "\"hinge\": the penalty damping of row 1 must be zero or positive"));
+TEST(PenaltyPerEquation, RefusesNumbersThatCannotBeMeantByNameAndRow) {
+  EXPECT_TRUE(
+      has(refusal([] { PenaltyPerEquation<2>{.stiffness = Vec2(1, 0), .damping = Vec2(0, 0)}.check("\"hinge\""); }),
+          "\"hinge\": the penalty stiffness of row 2 must be positive"));
+  EXPECT_TRUE(
+      has(refusal([] { PenaltyPerEquation<2>{.stiffness = Vec2(1, 1), .damping = Vec2(-1, 0)}.check("\"hinge\""); }),
+          "\"hinge\": the penalty damping of row 1 must be zero or positive"));
 }
 
 // --- concepts: a policy is of exactly one kind ----------------------------------------------------------------
 
 struct Neither {};
 struct Both : Penalty {
-  static constexpr bool adds_rows = true;
+  static constexpr bool adds_constraints = true;
 };
 struct RowsDenied {
-  static constexpr bool adds_rows = false;
+  static constexpr bool adds_constraints = false;
 };
 struct NoPotential {
   void check(std::string const&) const {}
@@ -123,12 +125,13 @@ struct NoPotential {
     return {};
   }
 };
-static_assert(Policy<Constraint> && AddsRows<Constraint> && !AddsForce<Constraint>);
-static_assert(Policy<Penalty> && AddsForce<Penalty> && !AddsRows<Penalty>);
+static_assert(Policy<Constraint> && ConstrainingPolicy<Constraint> && !CompliantPolicy<Constraint>);
+static_assert(Policy<Penalty> && CompliantPolicy<Penalty> && !ConstrainingPolicy<Penalty>);
 static_assert(!Policy<Neither> && !Policy<Both> && !Policy<RowsDenied> && !Policy<NoPotential> && !Policy<int>);
-static_assert(AddsRows<Both> && AddsForce<Both>);
-static_assert(Policy<PenaltyPerRow<2>> && AnswersRows<PenaltyPerRow<2>, 2> && !AnswersRows<PenaltyPerRow<2>, 3>);
+static_assert(ConstrainingPolicy<Both> && CompliantPolicy<Both>);
+static_assert(Policy<PenaltyPerEquation<2>> && CompliantLaw<PenaltyPerEquation<2>, 2> &&
+              !CompliantLaw<PenaltyPerEquation<2>, 3>);
 // their parameters have no default
-static_assert(!std::is_default_constructible_v<Penalty> && !std::is_default_constructible_v<PenaltyPerRow<2>>);
+static_assert(!std::is_default_constructible_v<Penalty> && !std::is_default_constructible_v<PenaltyPerEquation<2>>);
 
 }  // namespace policies_test

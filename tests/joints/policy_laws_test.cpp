@@ -18,7 +18,7 @@ struct PenaltyCase {
 };
 struct PenaltyPerRowCase {
   static constexpr int rows = 3;
-  static PenaltyPerRow<3> policy() { return {.stiffness = Vec3(1, 10, 100), .damping = Vec3(0, 2, 4)}; }
+  static PenaltyPerEquation<3> policy() { return {.stiffness = Vec3(1, 10, 100), .damping = Vec3(0, 2, 4)}; }
 };
 struct BushingCase {
   static constexpr int rows = 6;
@@ -38,7 +38,7 @@ struct NonlinearBushingCase {
   }
 };
 bool const policies_obey[] = {
-    obeys<PenaltyCase, PolicyLaws>("Penalty"), obeys<PenaltyPerRowCase, PolicyLaws>("PenaltyPerRow"),
+    obeys<PenaltyCase, PolicyLaws>("Penalty"), obeys<PenaltyPerRowCase, PolicyLaws>("PenaltyPerEquation"),
     obeys<BushingCase, PolicyLaws>("Bushing"), obeys<NonlinearBushingCase, PolicyLaws>("NonlinearBushing")};
 
 }  // namespace policy_laws_test

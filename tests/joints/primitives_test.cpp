@@ -1,5 +1,5 @@
 #include <polybody/joints/cylindrical.hpp>
-#include <polybody/joints/plane_on_plane.hpp>
+#include <polybody/joints/planar_joint.hpp>
 #include <polybody/joints/primitives.hpp>
 #include <polybody/joints/prismatic.hpp>
 #include <polybody/joints/revolute.hpp>
@@ -20,7 +20,7 @@ namespace primitives_test {
 struct OrientationCase {
   static constexpr bool planar = false;
   static constexpr int world_rows = 0;
-  static Orientation geometry() { return {}; }
+  static ConstantOrientation geometry() { return {}; }
   static Mate mate(Numbers& number, double) {
     Mate mate{.d = number.vec<3>(), .freedoms = MatX::Zero(6, 3)};
     mate.freedoms.topRows<3>().setIdentity();
@@ -62,7 +62,7 @@ MatX maps(G const& geometry, Mat3 const& from, Frame<double> a, Frame<double> b)
   Mat3 const turn = from.transpose() * geometry.triad();
   a.A *= turn;
   b.A *= turn;
-  Gap<G::rows> const gap = geometry.template gap<double>(a, b, 0.0);
+  ConstraintTerms<G::rows> const gap = geometry.template constraint_function<double>(a, b, 0.0);
   EXPECT_LT(gap.g.norm(), 1e-14) << G::name;
   MatX g(G::rows, 12);
   g << gap.Ga, gap.Gb;
@@ -134,18 +134,18 @@ TEST(Primitives, MakeUpACylindrical) {
 
 TEST(Primitives, MakeUpAPlaneOnPlane) {
   expect_equal(
-      PlaneOnPlane{.normal = axis}, [](Numbers& n) { return Pose{.d = Vec3(n(), n(), 0), .R = turned_about(2, n)}; },
+      PlanarJoint{.normal = axis}, [](Numbers& n) { return Pose{.d = Vec3(n(), n(), 0), .R = turned_about(2, n)}; },
       PointInPlane{.normal = axis}, ParallelAxes{.axis = axis});
 }
 
 TEST(Primitives, MakeUpAPrismatic) {
   expect_equal(
       Prismatic{.axis = axis}, [](Numbers& n) { return Pose{.d = Vec3(0, 0, n())}; }, PointOnLine{.axis = axis},
-      Orientation{});
+      ConstantOrientation{});
 }
 
 TEST(Primitives, MakeUpAWeld) {
-  expect_equal(Weld{}, [](Numbers&) { return Pose{}; }, CoincidentPoints{}, Orientation{});
+  expect_equal(Weld{}, [](Numbers&) { return Pose{}; }, CoincidentPoints{}, ConstantOrientation{});
 }
 
 // Decomposition into single constraint equations.
@@ -155,12 +155,12 @@ TEST(Primitives, MakeUpALineOfTwoPlanesAndAnOrientationOfThreeRightAngles) {
       [](Numbers& n) { return Pose{.d = Vec3(0, 0, n()), .R = exp_so3<double>(n.vec<3>(3.0))}; },
       PointInPlane{.normal = across}, PointInPlane{.normal = axis.cross(across)});
   expect_equal(
-      Orientation{}, [](Numbers& n) { return Pose{.d = n.vec<3>()}; },
+      ConstantOrientation{}, [](Numbers& n) { return Pose{.d = n.vec<3>()}; },
       PerpendicularAxes{.first = {1, 0, 0}, .second = {0, 1, 0}},
       PerpendicularAxes{.first = {0, 1, 0}, .second = {0, 0, 1}},
       PerpendicularAxes{.first = {0, 0, 1}, .second = {1, 0, 0}});
   expect_equal(
-      Orientation{}, [](Numbers& n) { return Pose{.d = n.vec<3>()}; }, ParallelAxes{.axis = axis},
+      ConstantOrientation{}, [](Numbers& n) { return Pose{.d = n.vec<3>()}; }, ParallelAxes{.axis = axis},
       PerpendicularAxes{.first = across, .second = axis.cross(across)});
 }
 
@@ -174,7 +174,7 @@ TEST(Primitives, RefuseAxesThatCannotBeMeant) {
 }  // namespace primitives_test
 
 namespace polybody {
-bool const primitives_obey[] = {obeys<primitives_test::OrientationCase, JointLaws>("Orientation"),
+bool const primitives_obey[] = {obeys<primitives_test::OrientationCase, JointLaws>("ConstantOrientation"),
                                 obeys<primitives_test::ParallelAxesCase, JointLaws>("ParallelAxes"),
                                 obeys<primitives_test::PerpendicularAxesCase, JointLaws>("PerpendicularAxes")};
 }  // namespace polybody

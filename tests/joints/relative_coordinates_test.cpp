@@ -1,7 +1,7 @@
+#include <polybody/joints/constant_orientation.hpp>
 #include <polybody/joints/cylindrical.hpp>
-#include <polybody/joints/orientation.hpp>
 #include <polybody/joints/planar/revolute.hpp>
-#include <polybody/joints/plane_on_plane.hpp>
+#include <polybody/joints/planar_joint.hpp>
 #include <polybody/joints/point_in_plane.hpp>
 #include <polybody/joints/point_on_line.hpp>
 #include <polybody/joints/primitives.hpp>
@@ -32,7 +32,9 @@ struct RelativeCoordinatesCase {
 Frame<double> const a{.r = {0.2, -1, 3}, .A = exp_so3<double>(Vec3(0.3, 1, -2)), .v = {1, 2, 3}, .w = {-0.5, 0.7, 0.2}};
 
 Frame<double> beside(Vec3 const& d, Mat3 const& turn) { return {.r = a.r + a.A * d, .A = a.A * turn}; }
-Vec6 coordinates(Mat3 const& turn) { return RelativeCoordinates{}.gap<double>(a, beside({0, 0, 0}, turn), 0.0).g; }
+Vec6 coordinates(Mat3 const& turn) {
+  return RelativeCoordinates{}.constraint_function<double>(a, beside({0, 0, 0}, turn), 0.0).g;
+}
 
 // The pose consists of d, then a rotation of b by ψ about a₃ and a swing by the vector (s₁, s₂, 0).
 TEST(RelativeCoordinates, AreTheSlideTheSwingAndTheTwist) {
@@ -42,7 +44,7 @@ TEST(RelativeCoordinates, AreTheSlideTheSwingAndTheTwist) {
       Mat3 const turn = exp_so3<double>(s) * exp_so3<double>(Vec3(0, 0, psi));
       Vec6 x;
       x << d, s[0], s[1], psi;
-      EXPECT_LT((RelativeCoordinates{}.gap<double>(a, beside(d, turn), 0.0).g - x).norm(),
+      EXPECT_LT((RelativeCoordinates{}.constraint_function<double>(a, beside(d, turn), 0.0).g - x).norm(),
                 1e-14 * (3.0 + 20.0 / (3.2 - size)));
     }
 }
@@ -74,7 +76,7 @@ TEST(RelativeCoordinates, RateOfTheTwistAloneIsTheSpinAboutTheAxis) {
   Frame<double> b = beside({0, 0, 0}, exp_so3<double>(Vec3(0, 0, 2.0)));
   b.v = a.v;
   b.w = a.w + 3.0 * a.A.col(2);
-  Gap<6> const gap = RelativeCoordinates{}.gap<double>(a, b, 0.0);
+  ConstraintTerms<6> const gap = RelativeCoordinates{}.constraint_function<double>(a, b, 0.0);
   Vec6 rate = gap.Ga * twist(a) + gap.Gb * twist(b);
   rate[5] -= 3.0;
   EXPECT_LT(rate.norm(), 1e-14);
@@ -83,7 +85,8 @@ TEST(RelativeCoordinates, RateOfTheTwistAloneIsTheSpinAboutTheAxis) {
 /// Dependence of the constrained coordinates of a geometry on each of the six motions of b, in a's axes.
 template <class G>
 Vec6 felt() {
-  Gap<6> const gap = HeldCoordinates<G>{}.template gap<double>(a, beside({0, 0, 0}, Mat3::Identity()), 0.0);
+  ConstraintTerms<6> const gap =
+      ConstrainedCoordinates<G>{}.template constraint_function<double>(a, beside({0, 0, 0}, Mat3::Identity()), 0.0);
   Vec6 out;
   for (int i = 0; i < 3; ++i) {
     Vec6 along = Vec6::Zero(), about = Vec6::Zero();
@@ -94,7 +97,7 @@ Vec6 felt() {
   return out;
 }
 
-TEST(HeldCoordinates, LeaveFreeWhatTheGeometryLeavesFree) {
+TEST(ConstrainedCoordinates, LeaveFreeWhatTheGeometryLeavesFree) {
   auto const expect = [](Vec6 const& felt, std::initializer_list<double> held) {
     Vec6 expected;
     std::copy(held.begin(), held.end(), expected.data());
@@ -112,7 +115,8 @@ TEST(HeldCoordinates, LeaveFreeWhatTheGeometryLeavesFree) {
 // changes no constraint function, and each constrained motion changes one.
 template <class G>
 void expect_freedoms_of_the_rows() {
-  Gap<G::rows> const gap = G{}.template gap<double>(a, beside({0, 0, 0}, Mat3::Identity()), 0.0);
+  ConstraintTerms<G::rows> const gap =
+      G{}.template constraint_function<double>(a, beside({0, 0, 0}, Mat3::Identity()), 0.0);
   for (int i = 0; i < 6; ++i) {
     Vec6 motion = Vec6::Zero();
     motion.segment<3>(i < 3 ? 0 : 3) = a.A.col(i % 3);
@@ -125,16 +129,16 @@ void expect_freedoms_of_the_rows() {
   }
 }
 
-TEST(HeldCoordinates, FreedomsAreThoseOfTheRows) {
+TEST(ConstrainedCoordinates, FreedomsAreThoseOfTheRows) {
   expect_freedoms_of_the_rows<Weld>();
   expect_freedoms_of_the_rows<Revolute>();
   expect_freedoms_of_the_rows<Prismatic>();
   expect_freedoms_of_the_rows<Spherical>();
   expect_freedoms_of_the_rows<Cylindrical>();
-  expect_freedoms_of_the_rows<PlaneOnPlane>();
+  expect_freedoms_of_the_rows<PlanarJoint>();
   expect_freedoms_of_the_rows<PointOnLine>();
   expect_freedoms_of_the_rows<PointInPlane>();
-  expect_freedoms_of_the_rows<Orientation>();
+  expect_freedoms_of_the_rows<ConstantOrientation>();
   expect_freedoms_of_the_rows<ParallelAxes>();
   expect_freedoms_of_the_rows<RelativeCoordinates>();
 }
@@ -147,7 +151,7 @@ void expect_gradient_of_the_others() {
   Frame<double> const b =
       moved<double>(beside({0.1, -0.2, 0.3}, exp_so3<double>(Vec3(0.5, 0.2, 2.5))), number.vec<6>(0.1));
   Vec6 lambda = number.vec<6>(2.0);
-  Mat<double, 12, 12> const found = wrench_gradient(HeldCoordinates<G>{}, a, b, 0.0, lambda);
+  Mat<double, 12, 12> const found = wrench_gradient(ConstrainedCoordinates<G>{}, a, b, 0.0, lambda);
   for (int i = 0; i < 6; ++i)
     if (G::free[std::size_t(i)]) lambda[i] = 0.0;
   Mat<double, 12, 12> const expected = RelativeCoordinates{}.wrench_gradient(a, b, lambda);
@@ -155,16 +159,16 @@ void expect_gradient_of_the_others() {
   EXPECT_LT((found - expected).norm(), 1e-13 * expected.norm()) << G::name;
 }
 
-TEST(HeldCoordinates, WrenchGradientLeavesTheFreedomsFree) {
+TEST(ConstrainedCoordinates, WrenchGradientLeavesTheFreedomsFree) {
   expect_gradient_of_the_others<Revolute>();
   expect_gradient_of_the_others<Spherical>();
   expect_gradient_of_the_others<Prismatic>();
 }
 
 // A ball joint may rotate until its axis is opposite to its initial direction. There swing and twist are undefined.
-TEST(HeldCoordinates, OfABallJointHoldAtEveryTurn) {
+TEST(ConstrainedCoordinates, OfABallJointHoldAtEveryTurn) {
   Frame<double> const b = beside({0.1, 0, 0}, Vec3(1, -1, -1).asDiagonal().toDenseMatrix());
-  Gap<6> const gap = HeldCoordinates<Spherical>{}.gap<double>(a, b, 0.0);
+  ConstraintTerms<6> const gap = ConstrainedCoordinates<Spherical>{}.constraint_function<double>(a, b, 0.0);
   EXPECT_TRUE(gap.Ga.allFinite() && gap.Gb.allFinite());
   EXPECT_NEAR(gap.g.norm(), 0.1, 1e-15);
 }

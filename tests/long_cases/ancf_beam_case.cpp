@@ -16,7 +16,7 @@ TEST(LateralBuckling, OfAncfBeamsFollowsTheSpectralBeam) {
 }
 TEST(RotatingShaft, OfAncfBeamsFollowsTheSpectralBeam) { shaft_whirls(ancf, 32, 2.5e-4, {1e-3, 6e-3, 9e-3, 2e-2}); }
 TEST(SlantedPendulum, OfAncfBeamsFollowsTheSpectralBeam) {
-  pendulum_follows<Beam>([](Bar const& bar) { return Beam::from(bar, 4); }, GeneralizedAlpha{.rho_inf = 0.8}, 1e-3,
+  pendulum_follows<Beam>([](Bar const& bar) { return Beam::from(bar, 4); }, GeneralisedAlpha{.rho_inf = 0.8}, 1e-3,
                          flexible_pendulum, 1e-3, 3e-3, "AncfBeam, 4 elements a beam, generalised-α, h = 1 ms");
 }
 

@@ -80,7 +80,7 @@ struct BucklingBeam {
     return {.EA = ea, .EI = ei, .mass_per_length = mass, .GA = ga, .GJ = gj, .rotary_inertia = rotary};
   }
   void run_until(double t, double h) {
-    simulate(model, x, GeneralizedAlpha{.rho_inf = 0.9}, {.until = t, .step = h}).run();
+    simulate(model, x, GeneralisedAlpha{.rho_inf = 0.9}, {.end_time = t, .step = h}).run();
   }
   Vec3 moved(double s) const { return position(model, x, beam.at(s)) - Vec3(s, 0, 0); }
 };
@@ -187,7 +187,7 @@ void shaft_whirls(Mesh<B> const& mesh, Index n, double h, std::array<double, 4> 
   std::string const name = mesh.name + ", " + std::to_string(n) +
                            " elements, generalised-α, h = " + std::to_string(int(std::round(h * 1e6))) + " µs";
   for (ShaftRow const& row : shaft_table) {
-    simulate(m.model, m.x, GeneralizedAlpha{.rho_inf = 0.9}, {.until = row.t, .step = h}).run();
+    simulate(m.model, m.x, GeneralisedAlpha{.rho_inf = 0.9}, {.end_time = row.t, .step = h}).run();
     double const off = whirl[row.t < 0.55 ? 0 : row.t < 1.15 ? 1 : row.t < 1.55 ? 2 : 3];
     Vec3 const mid = position(m.model, m.x, m.tube.at(3.0));
     Instance const at{equals("t", row.t), 0.27};

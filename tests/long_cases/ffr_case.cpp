@@ -9,9 +9,9 @@ namespace polybody::long_cases {
 TEST(SlantedPendulum, OfFloatingFramesFollowsTheSpectralBeam) {
   auto const modal = [](Bar const& bar) {
     Structure const s = structure_of(bar, 4);
-    return Ffr(s, held_modes(s, 4), {.placement = bar.placement, .stiffening = true});
+    return Ffr(s, fixed_interface_modes(s, 4), {.placement = bar.placement, .stiffening = true});
   };
-  pendulum_follows<Ffr>(modal, GeneralizedAlpha{.rho_inf = 0.8}, 1e-3, flexible_pendulum, 1e-3, 3e-3,
+  pendulum_follows<Ffr>(modal, GeneralisedAlpha{.rho_inf = 0.8}, 1e-3, flexible_pendulum, 1e-3, 3e-3,
                         "Ffr, 4 modes a beam, generalised-α, h = 1 ms");
 }
 

@@ -8,7 +8,7 @@
 #include <functional>
 
 #include <polybody/bodies/rigid/rigid.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/joints/cylindrical.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/prescribed_angle.hpp>
@@ -30,7 +30,7 @@ struct Turn {
   std::function<Motion(double)> law;
   std::vector<double> ends = {};  ///< end times of its parts
   Motion operator()(double t) const { return law(t); }
-  std::vector<double> corners() const { return ends; }
+  std::vector<double> breakpoints() const { return ends; }
 };
 
 using Hinge = Joint<Revolute, Constraint>;

@@ -68,7 +68,7 @@ void pendulum_follows(Make const& make, I const& integrator, double h, PendulumR
                  formulation};
   };
   for (PendulumRow const& row : table) {
-    simulate(m.model, m.x, integrator, {.until = row.t, .step = h}).run();
+    simulate(m.model, m.x, integrator, {.end_time = row.t, .step = h}).run();
     double const off = row.t < 0.55 ? early : late;
     Instance const at{equals("t", row.t), 1.0};
     held_within(claim("place of the elbow [m]"), (position(m.model, m.x, m.upper.at(0.5)) - row.elbow).norm(), off, at);

@@ -9,8 +9,8 @@ using namespace polybody;
 namespace errors_test {
 
 template <template <class...> class List>
-using All =
-    List<InvalidInput, InconsistentStart, NewtonStalled, StepTooSmall, NonFinite, LinearSolverSingular, IoError>;
+using All = List<InvalidInput, InconsistentInitialConditions, NewtonConvergenceFailure, MinimumStepReached,
+                 NonFiniteValue, SingularMatrix, IoError>;
 
 /// Number of types Es that E derives from, itself included.
 template <class... Es>

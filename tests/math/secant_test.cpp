@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/math/pack.hpp>
+#include <polybody/math/simd_vector.hpp>
 #include <polybody/math/types.hpp>
 
 using namespace polybody;

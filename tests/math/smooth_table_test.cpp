@@ -50,7 +50,7 @@ TEST(SmoothTable, MeetsItsPointsWithoutAJumpUpToTheAcceleration) {
     EXPECT_NEAR(before.rate, at.rate, 1e-12) << t;
     EXPECT_NEAR(before.acceleration, at.acceleration, 1e-11) << t;
   }
-  EXPECT_TRUE(bumpy.corners().empty());
+  EXPECT_TRUE(bumpy.breakpoints().empty());
 }
 
 TEST(SmoothTable, RateAccelerationAndIntegralBelongToTheValue) {
@@ -69,7 +69,7 @@ TEST(SmoothTable, GoesOnAtTheRateOfItsEnds) {
   EXPECT_DOUBLE_EQ(lift(5.0).value, 6.0);
   EXPECT_DOUBLE_EQ(lift(5.0).rate, 0.5);
   EXPECT_EQ(lift(5.0).acceleration, 0.0);
-  EXPECT_EQ(lift.corners(), (std::vector{1.0, 3.0}));
+  EXPECT_EQ(lift.breakpoints(), (std::vector{1.0, 3.0}));
 }
 
 // One end clamped, the other natural: two points at distance 1, chord slope s = 0, rate 1 at the start, m = 0 at the
@@ -78,10 +78,10 @@ TEST(SmoothTable, TakesOneRateAlone) {
   SmoothTable const one({{0.0, 4.0}, {1.0, 4.0}}, {.first_rate = 1.0});
   EXPECT_DOUBLE_EQ(one(0.0).rate, 1.0);
   EXPECT_DOUBLE_EQ(one(1.0).rate, -0.5);
-  EXPECT_EQ(one.corners(), (std::vector{0.0}));
+  EXPECT_EQ(one.breakpoints(), (std::vector{0.0}));
   SmoothTable const other({{0.0, 4.0}, {1.0, 4.0}}, {.last_rate = -1.0});
   EXPECT_DOUBLE_EQ(other(0.0).rate, 0.5);
-  EXPECT_EQ(other.corners(), (std::vector{1.0}));
+  EXPECT_EQ(other.breakpoints(), (std::vector{1.0}));
 }
 
 TEST(SmoothTable, RefusesPointsThatMakeNoTable) {

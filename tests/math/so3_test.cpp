@@ -207,7 +207,7 @@ TEST(So3, SlopesAreThoseOfHighPrecision) {
   };
   for (double const angle : {0.0, 1e-8, 1e-4, 1e-2, 0.3, 0.49, 0.51, 1.0, 3.0, 6.0}) {
     double const x = angle * angle;
-    RotationSlopes<double> const s(x);
+    RotationDerivatives<double> const s(x);
     EXPECT_NEAR(s.b, slope(x, 2), 2e-15) << angle;
     EXPECT_NEAR(s.c, slope(x, 3), 2e-15) << angle;
   }

@@ -12,7 +12,7 @@ constexpr Index beyond_packs = 3 * pack_size + 2;
 TEST(ForPacks, VisitsEachEntryOnce) {
   for (Index n = 0; n < beyond_packs; ++n) {
     VecX x = VecX::LinSpaced(n, 1.0, double(n)), y = VecX::Zero(n);
-    for_packs(n, [&](auto at) { at.set(y, at(y) + 2.0 * at(x)); });
+    for_each_simd_block(n, [&](auto at) { at.set(y, at(y) + 2.0 * at(x)); });
     for (Index i = 0; i < n; ++i) EXPECT_EQ(y[i], 2.0 * double(i + 1)) << n << ", " << i;
   }
 }

@@ -54,9 +54,9 @@ TEST(Workers, ShortLoopsStayWithTheCaller) {
 TEST(Workers, AnExceptionReachesTheCallerAndLeavesThemUsable) {
   Workers workers(2);
   auto const failing = [&](Index from) {
-    return message_of<NonFinite>([&] {
+    return message_of<NonFiniteValue>([&] {
       workers.over(100, 10, [&](Index begin, Index) {
-        if (begin >= from) throw NonFinite("part " + std::to_string(begin));
+        if (begin >= from) throw NonFiniteValue("part " + std::to_string(begin));
       });
     });
   };

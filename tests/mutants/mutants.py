@@ -169,7 +169,7 @@ def main():
     chosen = [i for i in numbered if i not in others][: options.mutants]
     known, lock, found = reasons(), threading.Lock(), {"killed": 0, "survived": [], "not reached": [], "not run": 0}
 
-    def judge(i):
+    def check_step(i):
         if time.monotonic() - begin > 60 * options.minutes:
             with lock:
                 found["not run"] += 1
@@ -187,7 +187,7 @@ def main():
                 found["survived"].append((i, len(reaching)))
 
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        list(pool.map(judge, chosen))
+        list(pool.map(check_step, chosen))
 
     open_ones, survivors = 0, (BUILD / "survivors.txt").open("w")
     for i, count in sorted(found["survived"] + [(i, 0) for i in found["not reached"]]):

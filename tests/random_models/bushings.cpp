@@ -5,8 +5,8 @@ namespace polybody::random_models {
 
 /// All geometries of space that name their freedoms.
 template <class P>
-using WithFreedoms = JointsBy<P, Spherical, Revolute, Cylindrical, Prismatic, PlaneOnPlane, PointOnLine, PointInPlane,
-                              Orientation, ParallelAxes, Weld, RelativeCoordinates>;
+using WithFreedoms = JointsBy<P, Spherical, Revolute, Cylindrical, Prismatic, PlanarJoint, PointOnLine, PointInPlane,
+                              ConstantOrientation, ParallelAxes, Weld, RelativeCoordinates>;
 
 WideType bushings() {
   return wide_type<

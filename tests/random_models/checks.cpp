@@ -20,7 +20,7 @@ bool same_bits(VecX const& a, VecX const& b) {
 }
 bool same_bits(State const& a, State const& b) {
   return a.t == b.t && same_bits(a.q, b.q) && same_bits(a.v, b.v) && same_bits(a.a, b.a) &&
-         same_bits(a.lambda, b.lambda) && same_bits(a.memory, b.memory);
+         same_bits(a.lambda, b.lambda) && same_bits(a.history, b.history);
 }
 double size_of(VecX const& x) { return x.size() == 0 ? 0.0 : x.cwiseAbs().maxCoeff(); }
 
@@ -49,9 +49,9 @@ class Examination {
       if (which == 1) run(DormandPrince<Projection>{}, built, x, h);
       if (which == 2) run(AdamsBashforthMoulton<Projection>{}, built, x, h);
       if (which == 3) run(CentralDifference<Projection>{}, built, x, h);
-    } catch (InconsistentStart const&) {
+    } catch (InconsistentInitialConditions const&) {
       out_.refused = true;  // a loop that its driving constraint cannot close
-    } catch (LinearSolverSingular const& error) {
+    } catch (SingularMatrix const& error) {
       if (!out_.redundant && !out_.singular) out_.error = error.what();
     } catch (std::exception const& error) {
       out_.error = error.what();
@@ -80,8 +80,8 @@ class Examination {
     for (double const size : {0.05, 0.01}) {
       State x = b.reference;
       VecX const q = x.q;
-      whole.plus(q, dice_.numbers(whole.speeds(), size), x.q);
-      x.v = dice_.numbers(whole.speeds(), 0.3);
+      whole.plus(q, dice_.numbers(whole.velocities(), size), x.q);
+      x.v = dice_.numbers(whole.velocities(), 0.3);
       x.t = 0.3;
       try {
         assemble(whole, x);
@@ -92,7 +92,7 @@ class Examination {
     }
     out_.from_reference = true;
     State x = b.reference;
-    x.v = dice_.numbers(whole.speeds(), 0.3);
+    x.v = dice_.numbers(whole.velocities(), 0.3);
     assemble(whole, x);
     return x;
   }
@@ -107,7 +107,7 @@ class Examination {
           for (Index i = 0; i < b.rows; ++i) d[row + i] += b(i, i);
       }
     };
-    VecX d = VecX::Zero(s.speeds());
+    VecX d = VecX::Zero(s.velocities());
     s.masses(Diagonal{d});
     std::vector<VecX> columns;
     for (Index i = 0; i < s.rows(); ++i) {
@@ -141,7 +141,7 @@ class Examination {
   }
 
   void check_state(System& whole, State const& x) {
-    Violation const open = violation(whole, x);
+    Violation const open = largest_violation(whole, x);
     note("position rows", open.position / (1.0 + size_of(x.q)), 1e-12);
     note("velocity rows", open.velocity / (1.0 + size_of(x.v)), 1e-10);
     note("acceleration rows", open.acceleration / (1.0 + size_of(x.a)), 1e-9);
@@ -215,7 +215,7 @@ class Examination {
       return s.data().markers[std::size_t(marker)].frame;
     };
     for (std::size_t i = 0; i < layout.joints.size(); ++i) {
-      JointPlace const& j = layout.joints[i];
+      JointLayout const& j = layout.joints[i];
       if (owner(j.a) >= 0 && owner(j.b) >= 0) continue;
       Wrench<double> const w = reaction_of(s, x, Index(i));
       double const sign = owner(j.b) < 0 ? -1.0 : 1.0;
@@ -239,14 +239,14 @@ class Examination {
   /// The force of gravity and its moment: the derivatives of its potential along rigid motions.
   Vec6 weight(System& s, State const& x) {
     Vec6 w;
-    auto const rigid = s.entries().first.rigid_speeds;
+    auto const rigid = s.entries().first.rigid_velocities;
     for (int i = 0; i < 6; ++i) {
       State y = x;
-      VecX speeds = VecX::Zero(s.speeds());
+      VecX velocities = VecX::Zero(s.velocities());
       rigid(s.entries().second, x.q, i < 3 ? Vec3(Vec3::Unit(i)) : Vec3(Vec3::Zero()),
-            i < 3 ? Vec3(Vec3::Zero()) : Vec3(Vec3::Unit(i - 3)), speeds);
+            i < 3 ? Vec3(Vec3::Zero()) : Vec3(Vec3::Unit(i - 3)), velocities);
       auto const potential = [&](double by) {
-        s.plus(x.q, by * speeds, y.q);
+        s.plus(x.q, by * velocities, y.q);
         s.evaluate(y.q, y.v, y.t);
         return energy(s, y).gravity;
       };
@@ -320,7 +320,7 @@ class Examination {
   /// Several steps with the checks at their end, a bitwise identical repetition in a new model, and steps that fail.
   template <class I>
   void run(I const& integrator, Built& built, State const& start, double h) {
-    auto const options = [&](double step) { return RunOptions{.until = start.t + 1e3 * step, .step = step}; };
+    auto const options = [&](double step) { return RunOptions{.end_time = start.t + 1e3 * step, .step = step}; };
     auto const moved = [&](Built& b) {
       State x = start;
       Simulation<I> run(b.systems_of_run(), x, integrator, options(h));

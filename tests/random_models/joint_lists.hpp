@@ -13,7 +13,7 @@ struct Named {
 using Rate = PrescribedRate<SmoothRamp>;
 using Turn = PrescribedAngle<SmoothRamp>;
 using Stroke = PrescribedDistance<SmoothRamp>;
-using Slide = PrescribedSlide<SmoothRamp>;
+using Slide = PrescribedTranslation<SmoothRamp>;
 
 using PlanarRevolute = polybody::planar::Revolute;
 using PlanarPrismatic = polybody::planar::Prismatic;
@@ -42,18 +42,18 @@ struct NameOf<PlanarWeld> {
 
 template <class P>
 constexpr char const* policy_name() {
-  if constexpr (std::is_same_v<P, RecursiveBy<recursive::Reduced>>)
-    return "RecursiveBy<Reduced>";
-  else if constexpr (std::is_same_v<P, RecursiveBy<recursive::ArticulatedBody>>)
-    return "RecursiveBy<ArticulatedBody>";
+  if constexpr (std::is_same_v<P, JointCoordinatesBy<joint_coordinates::DenseMatrix>>)
+    return "JointCoordinatesBy<DenseMatrix>";
+  else if constexpr (std::is_same_v<P, JointCoordinatesBy<joint_coordinates::ArticulatedBody>>)
+    return "JointCoordinatesBy<ArticulatedBody>";
   else
     return P::name;
 }
 
-/// Placeholder for `PenaltyPerRow` with as many numbers as the geometry has constraint equations.
+/// Placeholder for `PenaltyPerEquation` with as many numbers as the geometry has constraint equations.
 struct PerRow {};
 template <class P, class G>
-using PolicyFor = std::conditional_t<std::is_same_v<P, PerRow>, PenaltyPerRow<G::rows>, P>;
+using PolicyFor = std::conditional_t<std::is_same_v<P, PerRow>, PenaltyPerEquation<G::rows>, P>;
 
 /// Joints of one policy.
 template <class P, class... Gs>
@@ -93,13 +93,13 @@ WideType wide_type(char const* name, std::vector<char const*> const& bodies, std
 /// All geometries of space.
 template <class P>
 using AllInSpace =
-    JointsBy<P, Spherical, Revolute, RevolutePin, Universal, Cylindrical, Prismatic, Screw, PlaneOnPlane, PointOnLine,
-             PointInPlane, Orientation, ParallelAxes, PerpendicularAxes, Weld, RelativeCoordinates, Distance, Gear,
-             RackAndPinion, RollingDisc, KnifeEdge, Turn, Rate, Stroke, Slide>;
+    JointsBy<P, Spherical, Revolute, RevolutePin, Universal, Cylindrical, Prismatic, Screw, PlanarJoint, PointOnLine,
+             PointInPlane, ConstantOrientation, ParallelAxes, PerpendicularAxes, Weld, RelativeCoordinates, Distance,
+             Gear, RackAndPinion, RollingDisc, KnifeEdge, Turn, Rate, Stroke, Slide>;
 /// Geometries that leave joint coordinates; the last three are planar.
 template <class P>
 using AllWithMotions =
-    JointsBy<P, Spherical, Revolute, Universal, Cylindrical, Prismatic, Screw, PlaneOnPlane, PointOnLine, PointInPlane,
-             Orientation, ParallelAxes, Weld, RelativeCoordinates, PlanarRevolute, PlanarPrismatic, PlanarWeld>;
+    JointsBy<P, Spherical, Revolute, Universal, Cylindrical, Prismatic, Screw, PlanarJoint, PointOnLine, PointInPlane,
+             ConstantOrientation, ParallelAxes, Weld, RelativeCoordinates, PlanarRevolute, PlanarPrismatic, PlanarWeld>;
 
 }  // namespace polybody::random_models

@@ -5,8 +5,8 @@ namespace polybody::random_models {
 
 /// All geometries with constraint functions.
 template <class P>
-using WithGaps = JointsBy<P, Spherical, Revolute, RevolutePin, Universal, Cylindrical, Prismatic, Screw, PlaneOnPlane,
-                          PointOnLine, PointInPlane, Orientation, ParallelAxes, PerpendicularAxes, Weld,
+using WithGaps = JointsBy<P, Spherical, Revolute, RevolutePin, Universal, Cylindrical, Prismatic, Screw, PlanarJoint,
+                          PointOnLine, PointInPlane, ConstantOrientation, ParallelAxes, PerpendicularAxes, Weld,
                           RelativeCoordinates, Distance, Gear, RackAndPinion, Turn, Rate, Stroke, Slide>;
 
 WideType penalties() {

@@ -90,7 +90,7 @@ struct Plan {
   std::vector<JointPlan> joints;
   std::vector<ForcePlan> forces;
 
-  /// Checks for joints with `Recursive`.
+  /// Checks for joints with `JointCoordinates`.
   bool has_joint_coordinates(Kinds const& kinds) const;
   /// This model with `Constraint` as the policy.
   Plan twin(Kinds const& kinds) const;

@@ -25,7 +25,7 @@ struct TrapSprung : std::exception {};
 struct FailingForce {
   static constexpr int markers = 1;
   static constexpr bool is_load = true;
-  static constexpr Observes needs = Observes::point;
+  static constexpr MarkerKind needs = MarkerKind::point;
 
   Vec3 force = Vec3::Zero();
   Trap* trap = nullptr;
@@ -77,10 +77,10 @@ constexpr bool may_join() {
   constexpr bool of_ground = std::is_same_v<A, Ground> || std::is_same_v<B, Ground>;
   if constexpr (std::is_same_v<A, Ground> && std::is_same_v<B, Ground>)
     return false;
-  else if constexpr (!MeetInOneWorld<G, A, B> || !MayBeEliminated<P, A> || !MayBeEliminated<P, B> ||
-                     !TellsEnoughFirst<J, A> || !TellsEnoughSecond<J, B>)
+  else if constexpr (!SameWorld<G, A, B> || !EliminableBody<P, A> || !EliminableBody<P, B> ||
+                     !SufficientFirstMarker<J, A> || !SufficientSecondMarker<J, B>)
     return false;
-  else if constexpr (LinearInCoordinates<P>)
+  else if constexpr (LinearPolicy<P>)
     return of_ground || std::is_same_v<A, B>;
   else
     return is_hub<A> || is_hub<B>;
@@ -103,7 +103,7 @@ BodyKind body_kind(char const* name) {
   return {name,
           B::world == World::plane,
           !is_rigid<B>,
-          B::observes == Observes::axis,
+          B::observes == MarkerKind::axis,
           !std::is_same_v<B, Lrvf<Direct>>,
           HasLinearPoints<B>};
 }
@@ -118,8 +118,9 @@ JointKind joint_kind(char const* geometry, char const* policy) {
   else if constexpr (
       requires(G g) { g.length; } || requires(G g) { g.centres; } || requires(G g) { g.normal, g.radius; })
     offset = Offset::across;
-  constexpr bool asks_axis = !LinearInCoordinates<P> && needs_of_second<typename J::Measured>() == Observes::axis;
-  return {geometry, policy, AddsRows<P> ? G::rows : 0, offset, asks_axis, Eliminates<P>, LinearInCoordinates<P>};
+  constexpr bool asks_axis = !LinearPolicy<P> && needs_of_second<typename J::Measured>() == MarkerKind::axis;
+  return {geometry,       policy, ConstrainingPolicy<P> ? G::rows : 0, offset, asks_axis, EliminatingPolicy<P>,
+          LinearPolicy<P>};
 }
 
 inline SmoothRamp ramp_of(JointPlan const& j) { return {.target = 0.4 * j.size, .duration = 1.0, .start = -0.05}; }
@@ -178,11 +179,11 @@ using Laws = NonlinearBushing<TabulatedLaw, LinearLaw, LinearLaw, LinearLaw, Lin
 template <class P, int rows>
 P policy_of(JointPlan const& j) {
   double const k = j.stiffness, c = j.damping;
-  if constexpr (AddsRows<P>) {
+  if constexpr (ConstrainingPolicy<P>) {
     return {};
   } else if constexpr (std::is_same_v<P, Penalty>) {
     return {.stiffness = k, .damping = c};
-  } else if constexpr (std::is_same_v<P, PenaltyPerRow<rows>>) {
+  } else if constexpr (std::is_same_v<P, PenaltyPerEquation<rows>>) {
     Vec<double, rows> stiffness, damping;
     for (int i = 0; i < rows; ++i) {
       stiffness[i] = k * (1.0 + 0.1 * i);
@@ -364,7 +365,7 @@ struct Realiser<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>> {
       for_each(List<Fs...>{}, 0, [&]<class F>(int i) {
         if (i != f.kind) return;
         with_ends<Pushed, F>(f.a, f.b, [&]<class A, class B>() {
-          F const force = detail::force_of<F>(f, plan.planar, A::observes == Observes::frame, trap);
+          F const force = detail::force_of<F>(f, plan.planar, A::observes == MarkerKind::frame, trap);
           if constexpr (F::markers == 1)
             model.apply(force, marker<A>(f.a), "force " + std::to_string(n));
           else
@@ -376,9 +377,9 @@ struct Realiser<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>> {
 
   /// The equations that any explicit method integrates.
   static RunSystems systems_of_run(M const& model) {
-    constexpr auto asked = with < Entries::compliance | Entries::coordinate_rates > ;
+    constexpr auto asked = with < Capabilities::compliance | Capabilities::coordinate_rates > ;
     RunSystems out{std::make_unique<System>(stepped_system(model, asked)), nullptr};
-    if constexpr (M::eliminates) out.whole = std::make_unique<System>(model, with<Entries::compliance>);
+    if constexpr (M::eliminates) out.whole = std::make_unique<System>(model, with<Capabilities::compliance>);
     return out;
   }
   static Built realise(Plan const& plan, Trap& trap) {
@@ -387,7 +388,7 @@ struct Realiser<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>> {
     r.connect();
     r.apply(trap);
     auto const model = std::make_shared<M const>(std::move(r.model));
-    return {model, std::make_unique<System>(*model, with < Entries::energy | Entries::rigid_speeds >),
+    return {model, std::make_unique<System>(*model, with < Capabilities::energy | Capabilities::rigid_velocities >),
             [model] { return systems_of_run(*model); }, model->reference_state()};
   }
 };

@@ -7,8 +7,8 @@ namespace polybody::random_models {
 template <class Path, class F, class Bs>
 WideType recursive_type(char const* name, std::vector<char const*> const& bodies,
                         std::vector<char const*> const& forces) {
-  using J =
-      Together<AllWithMotions<RecursiveBy<Path>>, AllWithMotions<Constraint>, JointsBy<Constraint, Distance, Turn>>;
+  using J = Together<AllWithMotions<JointCoordinatesBy<Path>>, AllWithMotions<Constraint>,
+                     JointsBy<Constraint, Distance, Turn>>;
   return wide_type<Bs, J, F>(name, bodies, forces);
 }
 

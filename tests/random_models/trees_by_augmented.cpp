@@ -4,8 +4,8 @@
 namespace polybody::random_models {
 
 WideType trees_by_augmented() {
-  return recursive_type<recursive::Augmented, AllForces, Framed>("trees, Augmented", names_of_framed,
-                                                                 names_of_all_forces);
+  return recursive_type<joint_coordinates::Augmented, AllForces, Framed>("trees, Augmented", names_of_framed,
+                                                                         names_of_all_forces);
 }
 
 }  // namespace polybody::random_models

@@ -4,8 +4,9 @@
 namespace polybody::random_models {
 
 WideType trees_by_bodies() {
-  return recursive_type<recursive::ArticulatedBody, ForcesWithoutStates, Bodies<Rigid<>, polybody::planar::Rigid>>(
-      "trees, ArticulatedBody", {"Rigid<>", "planar::Rigid"}, names_without_states);
+  return recursive_type<joint_coordinates::ArticulatedBody, ForcesWithoutStates,
+                        Bodies<Rigid<>, polybody::planar::Rigid>>("trees, ArticulatedBody",
+                                                                  {"Rigid<>", "planar::Rigid"}, names_without_states);
 }
 
 }  // namespace polybody::random_models

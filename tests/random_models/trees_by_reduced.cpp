@@ -4,7 +4,8 @@
 namespace polybody::random_models {
 
 WideType trees_by_reduced() {
-  return recursive_type<recursive::Reduced, AllForces, Framed>("trees, Reduced", names_of_framed, names_of_all_forces);
+  return recursive_type<joint_coordinates::DenseMatrix, AllForces, Framed>("trees, Reduced", names_of_framed,
+                                                                           names_of_all_forces);
 }
 
 }  // namespace polybody::random_models

@@ -1,12 +1,13 @@
 // refused: recursive::ArticulatedBody is for models of rigid bodies whose forces have no first-order states
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/forces/maxwell_element.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/run/simulate.hpp>
 
 using namespace polybody;
-using M = Model<Bodies<planar::Rigid>, Joints<Joint<planar::Revolute, RecursiveBy<recursive::ArticulatedBody>>>,
+using M = Model<Bodies<planar::Rigid>,
+                Joints<Joint<planar::Revolute, JointCoordinatesBy<joint_coordinates::ArticulatedBody>>>,
                 Forces<MaxwellElement>>;
 
-void run(M const& model, State& x) { simulate(model, x, GeneralizedAlpha{}, {.until = 1.0, .step = 1e-3}); }
+void run(M const& model, State& x) { simulate(model, x, GeneralisedAlpha{}, {.end_time = 1.0, .step = 1e-3}); }

@@ -12,5 +12,5 @@ void apply(Model<Bodies<AncfCable<>>, Joints<>, Forces<OnPlane, Group>>& model, 
            OnPlane const& contact) {
   model.apply(contact, cable.at(0.5), model.ground().at({0, 0, 0}));
   auto const group = model.apply(Group{}, std::vector{cable.at(0.0), cable.at(0.5)});
-  model.pair_with(group, contact, model.ground().at({0, 0, 0}));
+  model.add_partner(group, contact, model.ground().at({0, 0, 0}));
 }

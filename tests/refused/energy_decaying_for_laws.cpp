@@ -9,4 +9,4 @@ using namespace polybody;
 using Laws = NonlinearBushing<LinearLaw, LinearLaw, LinearLaw, LinearLaw, LinearLaw, LinearLaw>;
 using M = Model<Bodies<planar::Rigid>, Joints<Joint<planar::Weld, Laws>>>;
 
-void run(M const& model, State& x) { simulate(model, x, EnergyDecaying{}, {.until = 1.0, .step = 1e-3}); }
+void run(M const& model, State& x) { simulate(model, x, EnergyDecaying{}, {.end_time = 1.0, .step = 1e-3}); }

@@ -8,4 +8,4 @@
 using namespace polybody;
 using M = Model<Bodies<planar::Rigid>, Joints<Joint<KnifeEdge, Constraint>>>;
 
-void run(M const& model, State& x) { simulate(model, x, EnergyMomentum{}, {.until = 1.0, .step = 1e-3}); }
+void run(M const& model, State& x) { simulate(model, x, EnergyMomentum{}, {.end_time = 1.0, .step = 1e-3}); }

@@ -8,7 +8,7 @@ using namespace polybody;
 
 struct Well {
   static constexpr int markers = 1;
-  static constexpr Observes needs = Observes::point;
+  static constexpr MarkerKind needs = MarkerKind::point;
   static constexpr bool is_load = false;
   template <StateScalar T>
   std::array<Wrench<T>, 1> wrenches(std::array<Frame<T>, 1> const& at, double) const {
@@ -19,4 +19,4 @@ struct Well {
 };
 using M = Model<Bodies<planar::Rigid>, Joints<>, Forces<Well>>;
 
-void run(M const& model, State& x) { simulate(model, x, EnergyMomentum{}, {.until = 1.0, .step = 1e-3}).run(); }
+void run(M const& model, State& x) { simulate(model, x, EnergyMomentum{}, {.end_time = 1.0, .step = 1e-3}).run(); }

@@ -5,6 +5,6 @@
 #include <polybody/run/simulate.hpp>
 
 using namespace polybody;
-using M = Model<Bodies<planar::Rigid>, Joints<Joint<planar::Revolute, Recursive>>>;
+using M = Model<Bodies<planar::Rigid>, Joints<Joint<planar::Revolute, JointCoordinates>>>;
 
-void run(M const& model, State& x) { simulate(model, x, EnergyMomentum{}, {.until = 1.0, .step = 1e-3}); }
+void run(M const& model, State& x) { simulate(model, x, EnergyMomentum{}, {.end_time = 1.0, .step = 1e-3}); }

@@ -9,5 +9,5 @@ using namespace polybody;
 using Group = ContactGroup<Contact<SphereOnSphere>>;
 
 void run(Model<Bodies<planar::Rigid>, Joints<>, Forces<Group>> const& model, State& x) {
-  simulate(model, x, EnergyMomentum{}, {.until = 1.0, .step = 1e-3}).run();
+  simulate(model, x, EnergyMomentum{}, {.end_time = 1.0, .step = 1e-3}).run();
 }

@@ -6,4 +6,4 @@
 using namespace polybody;
 using M = Model<Bodies<Rigid<>>, Joints<>>;
 
-void run(M const& model, State& x) { simulate(model, x, EnergyMomentum{}, {.until = 1.0, .step = 1e-3}); }
+void run(M const& model, State& x) { simulate(model, x, EnergyMomentum{}, {.end_time = 1.0, .step = 1e-3}); }

@@ -7,4 +7,4 @@
 using namespace polybody;
 using M = Model<Bodies<planar::Rigid>, Joints<Joint<planar::Revolute, Constraint>>>;
 
-void run(M const& model, State& x) { simulate(model, x, RungeKutta4<>{}, {.until = 1.0, .step = 1e-3}); }
+void run(M const& model, State& x) { simulate(model, x, RungeKutta4<>{}, {.end_time = 1.0, .step = 1e-3}); }

@@ -7,7 +7,7 @@ using namespace polybody;
 struct Valve {
   static constexpr int markers = 1, states = 1;
   static constexpr bool is_load = true;
-  static constexpr Observes needs = Observes::point;
+  static constexpr MarkerKind needs = MarkerKind::point;
   void check(std::string const&) const {}
   template <StateScalar T>
   std::array<Wrench<T>, 1> wrenches(std::array<Frame<T>, 1> const&, std::array<T, 1> const&, double) const {

@@ -3,5 +3,5 @@
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/spherical.hpp>
 
-polybody::Joint<polybody::Spherical, polybody::PenaltyPerRow<5>> const joint{
+polybody::Joint<polybody::Spherical, polybody::PenaltyPerEquation<5>> const joint{
     {}, {.stiffness = polybody::Vec<double, 5>::Ones(), .damping = polybody::Vec<double, 5>::Zero()}};

@@ -5,6 +5,7 @@
 #include <polybody/run/simulate.hpp>
 
 using namespace polybody;
-using M = Model<Bodies<planar::Rigid>, Joints<Joint<planar::Revolute, RecursiveBy<recursive::ArticulatedBody>>>>;
+using M = Model<Bodies<planar::Rigid>,
+                Joints<Joint<planar::Revolute, JointCoordinatesBy<joint_coordinates::ArticulatedBody>>>>;
 
-void run(M const& model, State& x) { simulate(model, x, Radau{}, {.until = 1.0, .step = 1e-3}); }
+void run(M const& model, State& x) { simulate(model, x, Radau{}, {.end_time = 1.0, .step = 1e-3}); }

@@ -1,11 +1,11 @@
 // refused: Recursive needs a joint whose motion has coordinates
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/joints/distance.hpp>
-#include <polybody/joints/policies/recursive.hpp>
+#include <polybody/joints/policies/joint_coordinates.hpp>
 #include <polybody/system/model.hpp>
 
 using namespace polybody;
-using Rod = Joint<Distance, Recursive>;
+using Rod = Joint<Distance, JointCoordinates>;
 using M = Model<Bodies<Rigid<>>, Joints<Rod>>;
 
 void make(M& model, BodyHandle<Rigid<>> const& body) {

@@ -1,11 +1,11 @@
 // refused: Recursive makes joint coordinates between the ground, rigid bodies and bodies that float on a frame
 #include <polybody/bodies/ancf/ancf_beam.hpp>
-#include <polybody/joints/policies/recursive.hpp>
+#include <polybody/joints/policies/joint_coordinates.hpp>
 #include <polybody/joints/revolute.hpp>
 #include <polybody/system/model.hpp>
 
 using namespace polybody;
-using Pin = Joint<Revolute, Recursive>;
+using Pin = Joint<Revolute, JointCoordinates>;
 using M = Model<Bodies<AncfBeam<>>, Joints<Pin>>;
 
 void make(M& model, BodyHandle<AncfBeam<>> const& beam) {

@@ -4,4 +4,6 @@
 using namespace polybody;
 using M = Model<Bodies<Rigid<>>, Joints<Joint<Revolute, Constraint>>>;
 
-void run(State& x, RunSnapshot const& from) { resume(M{}, x, GeneralizedAlpha{}, {.until = 1.0, .step = 1e-3}, from); }
+void run(State& x, RunSnapshot const& from) {
+  resume(M{}, x, GeneralisedAlpha{}, {.end_time = 1.0, .step = 1e-3}, from);
+}

@@ -1,8 +1,8 @@
 // refused: Dependent coordinates that are chosen in a run are not
-#include <polybody/gradients/runge_kutta_step_slope.hpp>
+#include <polybody/gradients/runge_kutta_linearised_step.hpp>
 #include <polybody/integrators/coordinate_partitioning.hpp>
 
 using namespace polybody;
 
-using Slope = RungeKuttaStepSlope<RungeKutta4<CoordinatePartitioning>>;
+using Slope = RungeKuttaLinearisedStep<RungeKutta4<CoordinatePartitioning>>;
 Slope const* slope(Slope const& s) { return &s + sizeof(Slope); }

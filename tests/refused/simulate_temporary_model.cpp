@@ -4,4 +4,4 @@
 using namespace polybody;
 using M = Model<Bodies<Rigid<>>, Joints<Joint<Revolute, Constraint>>>;
 
-void run(State& x) { simulate(M{}, x, GeneralizedAlpha{}, {.until = 1.0, .step = 1e-3}); }
+void run(State& x) { simulate(M{}, x, GeneralisedAlpha{}, {.end_time = 1.0, .step = 1e-3}); }

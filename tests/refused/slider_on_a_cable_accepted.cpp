@@ -1,5 +1,5 @@
 // accepted
 #include <polybody/bodies/ancf/planar_ancf_cable.hpp>
-#include <polybody/bodies/shared/sliding.hpp>
+#include <polybody/bodies/shared/with_sliders.hpp>
 
-bool sliders(polybody::Sliding<polybody::planar::AncfCable<>> const& body) { return body.sliders() > 0; }
+bool sliders(polybody::WithSliders<polybody::planar::AncfCable<>> const& body) { return body.sliders() > 0; }

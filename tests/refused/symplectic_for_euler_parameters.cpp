@@ -6,4 +6,4 @@
 using namespace polybody;
 using M = Model<Bodies<Rigid<EulerParameters>>, Joints<>>;
 
-void run(M const& model, State& x) { simulate(model, x, Rattle{}, {.until = 1.0, .step = 1e-3}); }
+void run(M const& model, State& x) { simulate(model, x, Rattle{}, {.end_time = 1.0, .step = 1e-3}); }

@@ -6,6 +6,6 @@
 
 using namespace polybody;
 
-Model<Bodies<planar::Rigid>, Joints<Joint<planar::Revolute, RecursiveBy<recursive::ArticulatedBody>>,
-                                    Joint<planar::Prismatic, RecursiveBy<recursive::Reduced>>>>
+Model<Bodies<planar::Rigid>, Joints<Joint<planar::Revolute, JointCoordinatesBy<joint_coordinates::ArticulatedBody>>,
+                                    Joint<planar::Prismatic, JointCoordinatesBy<joint_coordinates::DenseMatrix>>>>
     model;

@@ -4,4 +4,4 @@
 using namespace polybody;
 using M = Model<Bodies<Rigid<>>, Joints<Joint<Revolute, Constraint>>>;
 
-void run(M const& model, State& x) { simulate(model, x, RungeKutta4<>{}, {.until = 1.0, .step = 1e-3}).run(); }
+void run(M const& model, State& x) { simulate(model, x, RungeKutta4<>{}, {.end_time = 1.0, .step = 1e-3}).run(); }

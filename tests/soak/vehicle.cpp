@@ -11,7 +11,7 @@
 
 #include <polybody/polybody.hpp>
 #include <polybody/vehicle/settled_track.hpp>
-#include <polybody/vehicle/track_watch.hpp>
+#include <polybody/vehicle/track_checks.hpp>
 
 using namespace polybody;
 
@@ -41,20 +41,20 @@ Worst worst_of(m113::TrackedVehicle const& vehicle, System& system, State const&
       gap = std::max(gap,
                      (track.front[i](x).r - track.rear[(i + track.rear.size() - 1) % track.rear.size()](x).r).norm());
     }
-    m113::TrackFault const fault = m113::track_fault(vehicle, system, x, side, options.start);
+    m113::TrackDerailment const fault = m113::track_derailment(vehicle, system, x, side, options.start);
     w.sideways = std::max(w.sideways, fault.sideways);
     w.off_path = std::max(w.off_path, fault.off_path);
   }
   return w;
 }
 
-bool drive(double until, double step) {
+bool drive(double end_time, double step) {
   m113::VehicleOptions options;
   options.start = m113::settled_track(options, BumpCourse({}));
-  Ramp const speed = m113::drive(m113::chapter_3_speed, 0.1);
+  Ramp const speed = m113::drive(m113::moderate_sprocket_speed, 0.1);
   m113::Vehicle<Rigid<>, Constraint, BumpCourse> const vehicle(Constraint{}, {speed, speed}, options, BumpCourse({}));
   State x = vehicle.model.reference_state();
-  System system(vehicle.model, with<Entries::motion>);
+  System system(vehicle.model, with<Capabilities::motion>);
   EnergyAudit audit(vehicle.model);
 
   std::printf("%6s %12s %10s %12s %12s %12s %12s %12s %10s %8s\n", "t [s]", "forward [m]", "yaw [rad]", "of pins [m]",
@@ -63,15 +63,15 @@ bool drive(double until, double step) {
   long early_memory = 0, late_memory = 0;
   double next = 1.0;
   std::string trouble;
-  auto run = simulate(vehicle.model, x, GeneralizedAlpha{.rho_inf = 0.8, .tolerance = 1e-5},
-                      {.until = until, .step = step, .halvings = 6});
+  auto run = simulate(vehicle.model, x, GeneralisedAlpha{.rho_inf = 0.8, .tolerance = 1e-5},
+                      {.end_time = end_time, .step = step, .max_step_halvings = 6});
   for (State const& now : run) {
     audit.record(now);
     if (now.t < next - 1e-9) continue;
     next += 1.0;
-    if (trouble.empty()) trouble = m113::track_trouble(vehicle, now);
+    if (trouble.empty()) trouble = m113::track_warning(vehicle, now);
     Worst const w = worst_of(vehicle, system, now, options);
-    Worst& of = now.t < 0.25 * until ? early : late;
+    Worst& of = now.t < 0.25 * end_time ? early : late;
     of.gap = std::max(of.gap, w.gap);
     of.spring = std::max(of.spring, w.spring);
     of.sideways = std::max(of.sideways, w.sideways);
@@ -91,7 +91,7 @@ bool drive(double until, double step) {
     if (!holds) std::printf("FAILED: %s\n", what);
     good = good && holds;
   };
-  ask(x.t >= until - 1e-9, "the run ends early");
+  ask(x.t >= end_time - 1e-9, "the run ends early");
   ask(trouble.empty(), trouble.c_str());
   ask(late_memory <= early_memory + 512, "memory grows");
   ask(late.gap <= 1e-7, "a pin opens by more than 1e-7 m");
@@ -105,13 +105,13 @@ bool drive(double until, double step) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  double const until = argc > 1 ? std::atof(argv[1]) : 60.0, step = argc > 2 ? std::atof(argv[2]) : 5e-4;
-  if (!(until > 0.0 && step > 0.0)) {
+  double const end_time = argc > 1 ? std::atof(argv[1]) : 60.0, step = argc > 2 ? std::atof(argv[2]) : 5e-4;
+  if (!(end_time > 0.0 && step > 0.0)) {
     std::cerr << "soak_vehicle [seconds [step]], both above zero\n";
     return 2;
   }
   try {
-    return drive(until, step) ? 0 : 1;
+    return drive(end_time, step) ? 0 : 1;
   } catch (Error const& e) {
     std::cerr << e.what() << '\n';
     return 1;

@@ -123,7 +123,7 @@ struct Accelerated : Incomplete {
 };
 
 NewtonReport solve(auto& problem, NewtonOptions const& options) {
-  KeptFactor kept;
+  ReusedFactorisation kept;
   return newton(problem, options, kept);
 }
 

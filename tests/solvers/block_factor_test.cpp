@@ -291,7 +291,7 @@ TYPED_TEST(BlockSolvers, GoBackToAnEarlierOrder) {
   solver.solve(side, thinned);
   EXPECT_GT(solver.reorderings(), 0u);
   EXPECT_NE(solver.order(), order);
-  solver.keep_reorderings(0);
+  solver.limit_reorderings(0);
   EXPECT_EQ(solver.reorderings(), 0u);
   solver.solve(side, x);
   EXPECT_EQ(x, thinned);  // the factor remains until the next one is begun

@@ -2,7 +2,7 @@
 
 #include <polybody/solvers/auto_lu.hpp>
 #include <polybody/solvers/block_lu.hpp>
-#include <polybody/solvers/refined.hpp>
+#include <polybody/solvers/iterative_refinement.hpp>
 
 #include <polybody/testing/linear_solver_laws.hpp>
 
@@ -11,15 +11,17 @@ using namespace polybody::laws;
 
 namespace polybody::test {
 
-bool const linear_solver_obey[] = {
-    obeys<DenseLu, LinearSolvers>("DenseLu"),         obeys<EigenSparseLu, LinearSolvers>("EigenSparseLu"),
-    obeys<AutoLu, LinearSolvers>("AutoLu"),           obeys<BlockLu, LinearSolvers>("BlockLu"),
-    obeys<BlockSolver, LinearSolvers>("BlockSolver"), obeys<Refined<BlockSolver>, LinearSolvers>("RefinedBlockSolver")};
+bool const linear_solver_obey[] = {obeys<DenseLu, LinearSolvers>("DenseLu"),
+                                   obeys<EigenSparseLu, LinearSolvers>("EigenSparseLu"),
+                                   obeys<AutoLu, LinearSolvers>("AutoLu"),
+                                   obeys<BlockLu, LinearSolvers>("BlockLu"),
+                                   obeys<BlockSolver, LinearSolvers>("BlockSolver"),
+                                   obeys<IterativeRefinement<BlockSolver>, LinearSolvers>("RefinedBlockSolver")};
 
 }  // namespace polybody::test
 
 // Masses of 1 and 1e9 in one matrix, known solution: refinement leaves a residual of the size of round-off.
-TEST(Refined, LeavesLessThanTheSolverAlone) {
+TEST(IterativeRefinement, LeavesLessThanTheSolverAlone) {
   laws::Blocks const blocks{12};
   Eigen::VectorXd scale(blocks.size());
   for (Index i = 0; i < scale.size(); ++i) scale[i] = i % 3 == 0 ? 1e5 : 1.0;
@@ -50,7 +52,7 @@ TEST(Refined, LeavesLessThanTheSolverAlone) {
     solver.solve(x, x);
     return ((b - a * x).array() / (a.cwiseAbs() * x.cwiseAbs()).array()).abs().maxCoeff();
   };
-  double const alone = residual(BlockSolver()), refined = residual(Refined<BlockSolver>());
+  double const alone = residual(BlockSolver()), refined = residual(IterativeRefinement<BlockSolver>());
   EXPECT_LT(refined, 1e-15);
   EXPECT_LT(refined, alone);
 }

@@ -49,9 +49,9 @@ Scalar square_root_of_two() {
 
 struct Outcome {
   NewtonReport report;
-  KeptFactor kept;
+  ReusedFactorisation kept;
 };
-Outcome solve(Scalar& problem, NewtonOptions const& options = {}, KeptFactor const& kept = {}) {
+Outcome solve(Scalar& problem, NewtonOptions const& options = {}, ReusedFactorisation const& kept = {}) {
   Outcome out{{}, kept};
   out.report = newton(problem, options, out.kept);
   return out;
@@ -122,7 +122,7 @@ TEST(Newton, RenewsSoonerWhatServesForLong) {
 TEST(Newton, BeginsAnewWhereTheLastFactorisationWasOfNoUse) {
   Scalar problem{[](double x) { return x - 1.0; }, [](double) { return 1.0; }};
   problem.factored_slope = -1.0;
-  KeptFactor kept{.usable = true, .theta = 0.1};
+  ReusedFactorisation kept{.usable = true, .theta = 0.1};
   NewtonReport const first = newton(problem, {}, kept);
   EXPECT_EQ(first.factorisations, 1);
   EXPECT_TRUE(kept.stale);
@@ -138,7 +138,7 @@ TEST(Newton, BeginsAnewWhereTheLastFactorisationWasOfNoUse) {
 // If new factorisations contract no faster than the reused one, few are made. Occasionally one is tried again.
 TEST(Newton, LearnsWhatANewFactorisationIsWorth) {
   Scalar problem{[](double x) { return x - 1.0; }, [](double) { return 1.0 / 0.7; }};
-  KeptFactor kept;
+  ReusedFactorisation kept;
   int factorisations = 0;
   for (int solves = 0; solves < 100; ++solves) {
     problem.x = 0.0;
@@ -198,7 +198,7 @@ struct TwoRoots : Scalar {
   TwoRoots() : Scalar{[](double y) { return (y - 1.0) * (y - 10.5); }, [](double y) { return 2.0 * y - 11.5; }} {
     factored_slope = -0.8;
   }
-  bool is_far(double norm) const { return norm * tolerance > 2.0; }
+  bool is_far_from_solution(double norm) const { return norm * tolerance > 2.0; }
   void restart() {
     ++restarts;
     x = 0.0;
@@ -207,7 +207,7 @@ struct TwoRoots : Scalar {
 
 TEST(Newton, BeginsAgainWhereAnEarlierFactorisationLedFar) {
   TwoRoots p;
-  KeptFactor kept{.usable = true, .theta = 0.1};
+  ReusedFactorisation kept{.usable = true, .theta = 0.1};
   NewtonReport const report = newton(p, {}, kept);
   EXPECT_EQ(report.result, NewtonResult::converged);
   EXPECT_NEAR(p.x, 1.0, 1e-10);
@@ -230,7 +230,8 @@ TEST(Newton, EndsAtItsBudgetAndSaysWhatItLeft) {
   Scalar p{[](double y) { return y - 1.0; }, [](double) { return 2.0; }};
   NewtonOptions const options{.max_iterations = 100, .budget = 13.0};
   p.factored_slope = 2.0;
-  KeptFactor kept{.usable = true, .theta = 0.5, .fresh = 0.5};  // a new factorisation does not improve the rate
+  ReusedFactorisation kept{
+      .usable = true, .theta = 0.5, .fresh = 0.5};  // a new factorisation does not improve the rate
   NewtonReport const report = newton(p, options, kept);
   EXPECT_EQ(report.result, NewtonResult::converged);
   EXPECT_EQ(report.iterations, 13);
@@ -264,8 +265,8 @@ TEST(Newton, GivesUpWhenCorrectionsGrow) {
 TEST(Newton, FullNewtonDampsWhatGoesBackAndForth) {
   auto const arc = [](double x) { return std::atan(x); };
   auto const slope = [](double x) { return 1.0 / (1.0 + x * x); };
-  NewtonOptions const full{.max_iterations = 60, .always_refactor = true, .growths = 60};
-  KeptFactor kept;
+  NewtonOptions const full{.max_iterations = 60, .always_refactor = true, .max_growths = 60};
+  ReusedFactorisation kept;
   Scalar undamped{arc, slope, 1.5};
   EXPECT_NE(newton(undamped, full, kept).result, NewtonResult::converged);
   Damped damped{{arc, slope, 1.5}};
@@ -337,7 +338,7 @@ TEST(Newton, FullNewtonDampsByCorrectionsThemselves) {
     }
   };
   Moving problem{{{[](double x) { return x - 1.0; }, [](double) { return 1.25; }}}};
-  KeptFactor kept;
+  ReusedFactorisation kept;
   EXPECT_EQ(newton(problem, {.always_refactor = true}, kept).result, NewtonResult::converged);
   EXPECT_EQ(problem.least_part, 1.0);
   EXPECT_NEAR(problem.x, 1.0, 1e-6);
@@ -348,8 +349,8 @@ TEST(Newton, DampingEnds) {
   // the first correction is opposite to a much smaller second one
   Damped problem{
       {[](double x) { return std::atan(x); }, [](double x) { return x == 3.0 ? 1.0 : 1.0 / (1.0 + x * x); }, 3.0}};
-  KeptFactor kept;
-  EXPECT_EQ(newton(problem, {.max_iterations = 40, .always_refactor = true, .growths = 40}, kept).result,
+  ReusedFactorisation kept;
+  EXPECT_EQ(newton(problem, {.max_iterations = 40, .always_refactor = true, .max_growths = 40}, kept).result,
             NewtonResult::converged);
   EXPECT_NEAR(problem.x, 0.0, 1e-9);
   EXPECT_GE(problem.least_part, 1.0 / 64.0);
@@ -376,7 +377,7 @@ struct Noisy : Scalar {
 /// Reports its noise.
 struct AwareOfNoise : Noisy {
   int asked = 0;
-  bool is_rounding(double norm) {
+  bool is_round_off(double norm) {
     ++asked;
     return norm * tolerance <= 3.0 * noise;
   }
@@ -388,7 +389,7 @@ TEST(Newton, StopsWhereCorrectionsAreRounding) {
   auto const f = [](double x) { return x - 2.0; };
   auto const slope = [](double) { return 1.0; };
   for (bool const full : {false, true}) {
-    KeptFactor kept;
+    ReusedFactorisation kept;
     Noisy noisy{{.f = f, .slope = slope, .x = 1.0}};
     EXPECT_EQ(newton(noisy, {.always_refactor = full, .predictive_stop = false}, kept).result, NewtonResult::diverged);
     kept = {};

@@ -35,7 +35,7 @@ TEST(StudyPoints, AChoiceCallsWithItsOwnArgument) {
   EXPECT_EQ(points[0].with("body", size, char{}, std::int16_t{}, std::int64_t{}), 1u);
   EXPECT_EQ(points[1].with("body", size, char{}, std::int16_t{}, std::int64_t{}), 2u);
   EXPECT_EQ(points[2].with("body", size, char{}, std::int16_t{}, std::int64_t{}), 8u);
-  EXPECT_TRUE(has(message_of<StudyMisuse>([&] { points[0].with("body", size, 1, 2); }), "has 3 choices"));
+  EXPECT_TRUE(has(message_of<StudyUsageError>([&] { points[0].with("body", size, 1, 2); }), "has 3 choices"));
 }
 
 TEST(StudyPoints, ScalesHaveTheirEndsAndRoundNumbersBetween) {
@@ -67,8 +67,8 @@ TEST(StudyPoints, WhatCannotBeMeantIsRefused) {
   EXPECT_TRUE(has(refusal([] { latin_hypercube(3, 1, {}); }), "one column"));
   EXPECT_TRUE(has(refusal([] { latin_hypercube((1u << 20) + 1, 1, {uniform("k", "", 0.0, 1.0)}); }), "1048576"));
   Points const points = axis("step", "s", {1.0});
-  EXPECT_TRUE(has(message_of<StudyMisuse>([&] { points[0]["stop"]; }), "no column 'stop'; its points have 'step'"));
-  EXPECT_TRUE(has(message_of<StudyMisuse>([&] { points[0].choice("step"); }), "holds numbers"));
+  EXPECT_TRUE(has(message_of<StudyUsageError>([&] { points[0]["stop"]; }), "no column 'stop'; its points have 'step'"));
+  EXPECT_TRUE(has(message_of<StudyUsageError>([&] { points[0].choice("step"); }), "holds numbers"));
 }
 
 TEST(StudySampling, TheGeneratorIsThatOfTheStandard) {

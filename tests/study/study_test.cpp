@@ -33,7 +33,7 @@ StudyOptions with_threads(int threads) { return {.threads = threads, .progress =
 /// Numbers with many digits; the second output differs between calls, like a time. Point 4 of each six fails.
 std::array<double, 2> values_at(Point const& p) {
   static std::atomic<int> calls = 0;
-  if (p.index() % 6 == 4) throw NewtonStalled{"step ", p["step"], "\nis too long"};
+  if (p.index() % 6 == 4) throw NewtonConvergenceFailure{"step ", p["step"], "\nis too long"};
   return {std::sqrt(p["stiffness"]) / (3.0 + double(p.choice("integrator"))) + std::sin(p["step"]), double(++calls)};
 }
 
@@ -90,7 +90,7 @@ TEST_F(StudyFiles, ManyThreadsGiveTheTableOfOne) {
 TEST_F(StudyFiles, AFinishedStudyIsNotRunAgain) {
   std::string const first = table_of(study.run(values_at, with_threads(2))), record = text_of(file);
   StudyResults const again = study.run([](Point const&) -> std::array<double, 2> { throw 1; }, with_threads(2));
-  EXPECT_EQ(again.taken_over, 12u);
+  EXPECT_EQ(again.resumed, 12u);
   EXPECT_EQ(table_of(again), first);
   EXPECT_EQ(text_of(file), record);
 }
@@ -126,11 +126,12 @@ TEST_F(StudyFiles, OtherExceptionsEndTheStudy) {
   };
   EXPECT_THROW(study.run(stops_at(5, [](Point const&) { throw std::bad_alloc(); }), with_threads(1)), std::bad_alloc);
   EXPECT_EQ(study.recorded().finished(), 5u);
-  EXPECT_TRUE(has(
-      message_of<StudyMisuse>([&] { study.run(stops_at(7, [](Point const& p) { p["no such"]; }), with_threads(2)); }),
-      "no column 'no such'"));
+  EXPECT_TRUE(has(message_of<StudyUsageError>(
+                      [&] { study.run(stops_at(7, [](Point const& p) { p["no such"]; }), with_threads(2)); }),
+                  "no column 'no such'"));
   EXPECT_GE(study.recorded().finished(), 7u);
-  EXPECT_TRUE(has(message_of<StudyMisuse>([&] { study.run([](Point const&) { return 1.0; }); }), "1 numbers for 2"));
+  EXPECT_TRUE(
+      has(message_of<StudyUsageError>([&] { study.run([](Point const&) { return 1.0; }); }), "1 numbers for 2"));
 }
 
 TEST_F(StudyFiles, AProcessThatIsKilledLosesAndRepeatsNothing) {
@@ -388,7 +389,7 @@ TEST_F(StudyFiles, APointThatHangsFailsAfterItsTimeLimitAndTheOthersGoOn) {
     EXPECT_TRUE(has(table_of(found), "\n3,1e+06,\"a, b\",0.001,,It has not ended within the time limit of 0.2 s.\n"));
     StudyResults const again = study.run(values_at, {.threads = threads, .retry_failed = true, .progress = false});
     EXPECT_EQ(again.failed(), 2u);
-    EXPECT_EQ(again.taken_over, 8u);
+    EXPECT_EQ(again.resumed, 8u);
     fs::remove(file);
   }
 }
@@ -415,14 +416,15 @@ TEST_F(StudyFiles, UnderATimeLimitErrorsOfTheProgramEndTheStudy) {
     };
   };
   auto const misuse = ends([](Point const& p) { (void)p["no such column"]; });
-  EXPECT_TRUE(has(message_of<StudyMisuse>([&] { (void)study.run(misuse, with_limit(1, 60.0)); }), "no such column"));
+  EXPECT_TRUE(
+      has(message_of<StudyUsageError>([&] { (void)study.run(misuse, with_limit(1, 60.0)); }), "no such column"));
   auto const own = ends([](Point const&) { throw std::runtime_error("an error of its own"); });
   EXPECT_TRUE(has(message_of<Error>([&] { (void)study.run(own, with_limit(2, 60.0)); }), "an error of its own"));
   auto const number = ends([](Point const&) { throw 3; });
   EXPECT_TRUE(
       has(message_of<Error>([&] { (void)study.run(number, with_limit(1, 60.0)); }), "not of the standard library"));
   StudyResults const found = study.run(values_at, with_limit(1, 60.0));
-  EXPECT_GE(found.taken_over, 2u);
+  EXPECT_GE(found.resumed, 2u);
   EXPECT_TRUE(found.complete());
 }
 

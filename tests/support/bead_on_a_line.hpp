@@ -20,16 +20,17 @@ struct BeadOnALine {
   using Line = planar::AncfCable<EngineeringStrain>;
   using Pin = Joint<planar::Revolute, Constraint>;
   using Motor = Joint<PrescribedRate<Constant>, Constraint>;
-  using Plane = Model<Bodies<Sliding<Line>, planar::Rigid>, Joints<Pin, Motor>>;
+  using Plane = Model<Bodies<WithSliders<Line>, planar::Rigid>, Joints<Pin, Motor>>;
 
   Plane model;
-  BodyHandle<Sliding<Line>> line;
+  BodyHandle<WithSliders<Line>> line;
   BodyHandle<planar::Rigid> bead;
   ElementHandle<Pin> left, contact;
 
   BeadOnALine(Gravity const& gravity, Bar const& bar, Index elements, double mass, double s, bool slides = true)
       : model(gravity),
-        line(model.add(Sliding(Line::from(bar, elements), slides ? std::vector{s} : std::vector<double>{}), "line")),
+        line(
+            model.add(WithSliders(Line::from(bar, elements), slides ? std::vector{s} : std::vector<double>{}), "line")),
         bead(model.add(
             planar::Rigid(mass, 1e-3 * mass, Placement{bar.placement.origin + s * bar.placement.axes.col(0)}), "bead")),
         left(model.connect(Pin{}, model.ground().at({0, 0, 0}), line.at(0.0), "left")),

@@ -50,7 +50,7 @@ struct Cantilever {
  private:
   Vec3 section(State const& y, double s) const {
     auto const line = bar.body().template centre_line<double>(bar.body().at(s), coordinates_of(model, y, bar),
-                                                              speeds_of(model, y, bar));
+                                                              velocities_of(model, y, bar));
     return {line.r[0], line.r[1], line.angle};
   }
   auto ground(B const& body) const {

@@ -8,7 +8,7 @@
 #include <polybody/joints/cylindrical.hpp>
 #include <polybody/joints/distance.hpp>
 #include <polybody/joints/policies/constraint.hpp>
-#include <polybody/joints/policies/recursive.hpp>
+#include <polybody/joints/policies/joint_coordinates.hpp>
 #include <polybody/joints/prismatic.hpp>
 #include <polybody/joints/revolute.hpp>
 #include <polybody/joints/spherical.hpp>
@@ -88,7 +88,8 @@ auto carried_arm(double h) {
         {"slider x [m]", [](M const&, State const& x) { return x.q[7]; }},
         {"force [10 N]", [wrist](M const& m, State const& x) { return 0.1 * reaction(m, x, wrist).f[2]; }},
         {"moment [N m]", [turn](M const& m, State const& x) { return reaction(m, x, turn).m[0]; }}};
-    return rated(Scenario<M>{std::move(model), start, {.until = 0.1, .step = h}, std::move(outputs)}, end, way);
+    return with_objective(Scenario<M>{std::move(model), start, {.end_time = 0.1, .step = h}, std::move(outputs)}, end,
+                          way);
   };
 }
 /// The parameters of `carried_arm`.

@@ -18,8 +18,8 @@ using Tracks = m113::Vehicle<Link, AncfLinear>;
 
 /// Tracks that reach their speed within this time [s].
 template <class Link>
-Tracks<Link> vehicle(double until) {
-  Ramp const drive{.target = 2.0, .duration = until};
+Tracks<Link> vehicle(double end_time) {
+  Ramp const drive{.target = 2.0, .duration = end_time};
   return Tracks<Link>(AncfLinear{}, {drive, drive}, {.masses = m113::with_steel_links()});
 }
 
@@ -31,12 +31,12 @@ std::vector<Vec3> middles(V const& vehicle, State const& x) {
   return places;
 }
 
-/// Positions of the middles of all links after `until` [s], with explicit steps of 1 µs.
+/// Positions of the middles of all links after `end_time` [s], with explicit steps of 1 µs.
 template <class Link>
-std::vector<Vec3> driven(double until) {
-  auto const tracks = vehicle<Link>(until);
+std::vector<Vec3> driven(double end_time) {
+  auto const tracks = vehicle<Link>(end_time);
   State x = tracks.model.reference_state();
-  simulate(tracks.model, x, RungeKutta4<Projection>{}, {.until = until, .step = 1e-6}).run();
+  simulate(tracks.model, x, RungeKutta4<Projection>{}, {.end_time = end_time, .step = 1e-6}).run();
   System system(tracks.model);
   system.evaluate(x.q, x.v, x.t);
   double pressed = 0.0;
@@ -47,10 +47,10 @@ std::vector<Vec3> driven(double until) {
 }
 
 /// Both versions have the same motion, within `tolerance` [m].
-inline void expect_the_same_motion(double until, double tolerance) {
-  auto const at_start = vehicle<AncfCable<>>(until);
-  std::vector<Vec3> const start = middles(at_start, at_start.model.reference_state()), own = driven<AncfCable<>>(until),
-                          cholesky = driven<Cholesky>(until);
+inline void expect_the_same_motion(double end_time, double tolerance) {
+  auto const at_start = vehicle<AncfCable<>>(end_time);
+  std::vector<Vec3> const start = middles(at_start, at_start.model.reference_state()),
+                          own = driven<AncfCable<>>(end_time), cholesky = driven<Cholesky>(end_time);
   double apart = 0.0, moved = 0.0;
   for (std::size_t i = 0; i < own.size(); ++i) {
     apart = std::max(apart, (own[i] - cholesky[i]).norm());
@@ -58,7 +58,7 @@ inline void expect_the_same_motion(double until, double tolerance) {
   }
   EXPECT_GT(moved, 1e-4);
   EXPECT_LT(apart, tolerance);
-  std::printf("%g s: links have moved by up to %.2e m and are within %.1e m\n", until, moved, apart);
+  std::printf("%g s: links have moved by up to %.2e m and are within %.1e m\n", end_time, moved, apart);
 }
 
 }  // namespace polybody::cholesky_tracks

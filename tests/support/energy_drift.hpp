@@ -17,7 +17,7 @@ struct Drift {
 /// Runs `steps` steps of length h from x, which it changes.
 template <class M, class I>
 Drift drift_of(M const& model, State& x, I const& integrator, double h, int steps) {
-  System system = system_for<I, Entries::energy>(model);
+  System system = system_for<I, Capabilities::energy>(model);
   auto const method = method_of(integrator);
   auto workspace = method.template workspace<DefaultSolver>(system);
   method.start(system, x, h, workspace);

@@ -34,8 +34,8 @@ auto hung_cables(double h = 2e-3) {
     auto const tip = second.at(0.5);
     if constexpr (held) model.connect(Rod{{.length = 0.7}, {}}, model.ground().at({p[2] + 0.5, 0.7, 0}), tip, "rod");
     State start = model.reference_state();
-    System const system(model, with<Entries::rigid_speeds>);
-    system.entries().first.rigid_speeds(system.entries().second, start.q, Vec3::Zero(), {0, p[4], 0}, start.v);
+    System const system(model, with<Capabilities::rigid_velocities>);
+    system.entries().first.rigid_velocities(system.entries().second, start.q, Vec3::Zero(), {0, p[4], 0}, start.v);
     auto const end = [tip](auto const& m, auto const& x) {
       auto const r = position(m, x, tip);
       auto sum = r[0] + 2.0 * r[1] - 0.5 * r[2];
@@ -53,7 +53,8 @@ auto hung_cables(double h = 2e-3) {
          [first, place = p[2]](M const& m, State const& x) { return position(m, x, first.at(place))[2]; }},
         {"tip y [m]", [tip](M const& m, State const& x) { return position(m, x, tip)[1]; }},
         {"reaction [10 N]", [pin](M const& m, State const& x) { return 0.1 * reaction(m, x, pin).f[2]; }}};
-    return rated(Scenario<M>{std::move(model), start, {.until = 0.1, .step = h}, std::move(outputs)}, end, way);
+    return with_objective(Scenario<M>{std::move(model), start, {.end_time = 0.1, .step = h}, std::move(outputs)}, end,
+                          way);
   };
 }
 /// The parameters of `hung_cables`.

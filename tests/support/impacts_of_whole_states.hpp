@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/rigid/rigid.hpp>
-#include <polybody/joints/policies/recursive.hpp>
+#include <polybody/joints/policies/joint_coordinates.hpp>
 #include <polybody/joints/screw.hpp>
 
 #include "support/differences_of_runs.hpp"
@@ -23,7 +23,7 @@ inline auto impact_of_cables(double h) {
     Event const floor{.name = "floor",
                       .value = [z, height = p[3]](State const& x) { return x.q[z] - height; },
                       .tolerance = 1e-15,
-                      .then = [](State& x) { x.v *= -0.5; }};
+                      .action = [](State& x) { x.v *= -0.5; }};
     scenario.options.events = {floor};
     return scenario;
   };
@@ -34,7 +34,7 @@ inline std::vector<Parameter> const of_impact{
 template <class I>
 void expect_impact_of_cables(double h, I const& integrator) {
   auto const make = impact_of_cables(h);
-  Sensitivities const s = sensitivities(make, of_impact, integrator);
+  SensitivityResult const s = sensitivities(make, of_impact, integrator);
   ASSERT_EQ(s.run.events.size(), 1u);
   MatX const expected = by_differences(make, of_impact, integrator);
   for (Index j = 0; j < expected.cols(); ++j) {
@@ -46,7 +46,7 @@ void expect_impact_of_cables(double h, I const& integrator) {
 
 /// A nut on a thread: z = p θ. Parameters: pitch, mass, spin, and the position at which an event reverses it.
 inline auto const nut_on_thread = [](std::span<double const> p) {
-  using Thread = Joint<Screw, Recursive>;
+  using Thread = Joint<Screw, JointCoordinates>;
   using M = Model<Bodies<Rigid<>>, Joints<Thread>>;
   M model{Gravity{0, 0, -9.81}};
   auto const body = model.add(Rigid<>(p[1], 0.01 * Mat3::Identity(), Placement::at({0, 0, 0})), "nut");
@@ -60,8 +60,8 @@ inline auto const nut_on_thread = [](std::span<double const> p) {
   Event const stop{.name = "stop",
                    .value = [at = p[3]](State const& x) { return x.q[2] - at; },
                    .tolerance = 1e-15,
-                   .then = [](State& x) { x.v *= -0.5; }};
-  return Scenario<M>{std::move(model), start, {.until = 0.2, .step = 1e-2, .events = {stop}}, std::move(outputs)};
+                   .action = [](State& x) { x.v *= -0.5; }};
+  return Scenario<M>{std::move(model), start, {.end_time = 0.2, .step = 1e-2, .events = {stop}}, std::move(outputs)};
 };
 inline std::vector<Parameter> const of_nut{
     {"pitch [m/rad]", 0.02}, {"mass [kg]", 2.0}, {"spin [rad/s]", 20.0}, {"stop [m]", 0.03}};
@@ -76,7 +76,7 @@ void expect_slopes_of_nut(I const& integrator) {
     return Vec2(p[3] + p[0] * (back * left + 0.5 * rate * left * left), back + rate * left);
   };
   std::vector<Parameter> const& parameters = of_nut;
-  Sensitivities const s = sensitivities(nut_on_thread, parameters, integrator);
+  SensitivityResult const s = sensitivities(nut_on_thread, parameters, integrator);
   ASSERT_EQ(s.run.events.size(), 1u);
   std::vector<double> p;
   for (Parameter const& one : parameters) p.push_back(one.value);

@@ -121,7 +121,7 @@ struct MixedPlane {
 struct LaggingPull {
   static constexpr int markers = 2, states = 2;
   static constexpr bool is_load = true;
-  static constexpr Observes needs = Observes::point;
+  static constexpr MarkerKind needs = MarkerKind::point;
 
   double damping = 0.0;
 
@@ -171,9 +171,9 @@ State scrambled(M const& model, unsigned seed = 1) {
   laws::Numbers number(seed);
   State x = model.reference_state();
   VecX q = x.q;
-  System(model).plus(q, number.vector(model.speeds(), 0.4), x.q);
-  x.v = number.vector(model.speeds());
-  x.a = number.vector(model.speeds(), 2.0);
+  System(model).plus(q, number.vector(model.velocities(), 0.4), x.q);
+  x.v = number.vector(model.velocities());
+  x.a = number.vector(model.velocities(), 2.0);
   x.lambda = number.vector(model.rows(), 5.0);
   x.t = 1.3;
   return x;

@@ -13,7 +13,7 @@
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/policies/penalty.hpp>
 #include <polybody/joints/prescribed_angle.hpp>
-#include <polybody/math/time_laws.hpp>
+#include <polybody/math/time_functions.hpp>
 #include <polybody/run/observe.hpp>
 
 #include "support/differences_of_runs.hpp"
@@ -44,14 +44,13 @@ inline auto const ball = [](P p) {
   M model{Gravity{0, -p[0], 0}};
   model.add(planar::Rigid(2.0, 1.0, Placement::at({0, p[1], 0})), "ball");
   State const start = model.reference_state();
-  Event floor{.name = "floor", .value = [](State const& x) { return x.q[1]; }, .stops = !bounces, .tolerance = 1e-15};
-  if (bounces) floor.then = [e = p[2]](State& x) { x.v[1] *= -e; };
+  Event floor{
+      .name = "floor", .value = [](State const& x) { return x.q[1]; }, .terminal = !bounces, .tolerance = 1e-15};
+  if (bounces) floor.action = [e = p[2]](State& x) { x.v[1] *= -e; };
   std::vector<Output<M>> outputs{{"y [m]", [](M const&, State const& x) { return x.q[1]; }},
                                  {"v [m/s]", [](M const&, State const& x) { return x.v[1]; }}};
-  return Scenario<M>{std::move(model),
-                     start,
-                     {.until = 1.7, .step = 1e-2, .largest_step = 0.1, .events = {floor}},
-                     std::move(outputs)};
+  return Scenario<M>{
+      std::move(model), start, {.end_time = 1.7, .step = 1e-2, .max_step = 0.1, .events = {floor}}, std::move(outputs)};
 };
 inline std::vector<Parameter> const of_ball{{"gravity [m/s²]", 9.81}, {"height [m]", 1.0}, {"restitution [1]", 0.8}};
 
@@ -70,11 +69,11 @@ inline std::array<double, 2> flight(std::vector<double> const& p, int n, double 
 /// The time of a fall equals that of the closed form.
 template <class I>
 void expect_fall(I const& integrator) {
-  Sensitivities const s = sensitivities(ball<false>, of_ball, integrator);
+  SensitivityResult const s = sensitivities(ball<false>, of_ball, integrator);
   double const g = 9.81, t = std::sqrt(2.0 / g);
   ASSERT_TRUE(s.run.stopped);
   EXPECT_NEAR(s.times.back(), t, 1e-13);
-  VecX const& by = s.time_slopes.back();
+  VecX const& by = s.time_derivatives.back();
   EXPECT_NEAR(by[0], -0.5 * t / g, 1e-11);
   EXPECT_NEAR(by[1], 0.5 * t, 1e-11);
   EXPECT_EQ(by[2], 0.0);
@@ -84,14 +83,14 @@ void expect_fall(I const& integrator) {
   EXPECT_NEAR(s.slopes.back()(1, 0), -1.0 / std::sqrt(2.0 * g), 1e-11);
   EXPECT_NEAR(s.slopes.back()(1, 1), -g / std::sqrt(2.0 * g), 1e-11);
   // times before the impact do not depend on the parameters
-  EXPECT_TRUE(s.time_slopes[s.times.size() / 2].isZero(0.0));
+  EXPECT_TRUE(s.time_derivatives[s.times.size() / 2].isZero(0.0));
 }
 
 /// Bounces agree with the closed form.
 template <class I>
 void expect_bounces(I const& integrator) {
   std::vector<double> const p{9.81, 1.0, 0.8};
-  Sensitivities const s = sensitivities(ball<true>, of_ball, integrator);
+  SensitivityResult const s = sensitivities(ball<true>, of_ball, integrator);
   ASSERT_EQ(s.run.events.size(), 2u);
   for (int n = 1; n <= 2; ++n) {
     double const t = s.run.events[std::size_t(n - 1)].time;
@@ -99,13 +98,13 @@ void expect_bounces(I const& integrator) {
     std::size_t const i = std::size_t(std::find(s.times.begin(), s.times.end(), t) - s.times.begin());
     ASSERT_LT(i, s.times.size());
     for (std::size_t j = 0; j < 3; ++j)
-      EXPECT_NEAR(s.time_slopes[i][Index(j)], slope_of([&](auto const& q) { return time_of_bounce(q, n); }, p, j),
+      EXPECT_NEAR(s.time_derivatives[i][Index(j)], slope_of([&](auto const& q) { return time_of_bounce(q, n); }, p, j),
                   1e-10)
           << n << ' ' << j;
   }
   EXPECT_EQ(s.times.back(), 1.7);
   for (std::size_t j = 0; j < 3; ++j) {
-    EXPECT_NEAR(s.time_slopes.back()[Index(j)], 0.0, 1e-12);
+    EXPECT_NEAR(s.time_derivatives.back()[Index(j)], 0.0, 1e-12);
     for (std::size_t i = 0; i < 2; ++i)
       EXPECT_NEAR(s.slopes.back()(Index(i), Index(j)),
                   slope_of([&](auto const& q) { return flight(q, 2, 1.7)[i]; }, p, j), 1e-9)
@@ -133,7 +132,7 @@ inline auto const pushed = [](P p) {
   std::vector<Output<M>> outputs{{"x [m]", [](M const&, State const& x) { return x.q[0]; }},
                                  {"v [m/s]", [](M const&, State const& x) { return x.v[0]; }},
                                  {"a [m/s²]", [](M const&, State const& x) { return x.a[0]; }}};
-  return Scenario<M>{std::move(model), start, {.until = 0.8, .step = 1e-2}, std::move(outputs)};
+  return Scenario<M>{std::move(model), start, {.end_time = 0.8, .step = 1e-2}, std::move(outputs)};
 };
 
 /// The derivative with respect to the end time of a push is exact.
@@ -142,7 +141,7 @@ void expect_push(I const& integrator) {
   double const T = 0.3137, F = 3.0, m = 2.0, end = 0.8;
   // the finite difference moves the breakpoint by 0.06 steps, or by 6
   for (double const scale : {0.75, 75.0}) {
-    Sensitivities const s = sensitivities(pushed, {{"T [s]", T, scale}, {"F [N]", F}, {"m [kg]", m}}, integrator);
+    SensitivityResult const s = sensitivities(pushed, {{"T [s]", T, scale}, {"F [N]", F}, {"m [kg]", m}}, integrator);
     MatX const& by = s.slopes.back();
     EXPECT_NEAR(by(0, 0), F / m * (end - T), 1e-11);
     EXPECT_NEAR(by(1, 0), F / m, 1e-11);
@@ -152,10 +151,10 @@ void expect_push(I const& integrator) {
     EXPECT_NEAR(by(0, 2), -F * T / (m * m) * (end - 0.5 * T), 1e-11);
     std::size_t const at = std::size_t(std::find(s.times.begin(), s.times.end(), T) - s.times.begin());
     ASSERT_LT(at, s.times.size());
-    EXPECT_NEAR(s.time_slopes[at][0], 1.0, 1e-12);
+    EXPECT_NEAR(s.time_derivatives[at][0], 1.0, 1e-12);
     EXPECT_NEAR(s.slopes[at](0, 0), F * T / m, 1e-11);
     EXPECT_NEAR(s.slopes[at](2, 0), 0.0, 1e-11);  // after the end of the push
-    EXPECT_NEAR(s.time_slopes.back()[0], 0.0, 1e-12);
+    EXPECT_NEAR(s.time_derivatives.back()[0], 0.0, 1e-12);
   }
 }
 
@@ -183,7 +182,7 @@ inline auto const driven = [](P p) {
       {"tip x [m]", [rod, l](M const& m, State const& x) { return position(m, x, rod.at(l))[0]; }},
       {"tip y [m]", [rod, l](M const& m, State const& x) { return position(m, x, rod.at(l))[1]; }},
       {"spin [rad/s]", [](M const&, State const& x) { return x.v[5]; }}};
-  return Scenario<M>{std::move(model), start, {.until = 0.4, .step = 4e-3}, std::move(outputs)};
+  return Scenario<M>{std::move(model), start, {.end_time = 0.4, .step = 4e-3}, std::move(outputs)};
 };
 /// The ramp ends at 0.2031 s.
 inline std::vector<Parameter> const of_drive{
@@ -194,7 +193,7 @@ inline std::vector<Parameter> const of_drive{
 template <class Make, class I>
 void expect_slopes_of_moving_runs(Make const& make, std::vector<Parameter> const& parameters, I const& integrator,
                                   double tolerance, std::vector<double> const& scales) {
-  Sensitivities const s = sensitivities(make, parameters, integrator);
+  SensitivityResult const s = sensitivities(make, parameters, integrator);
   auto near = parameters;
   for (std::size_t j = 0; j < scales.size(); ++j) near[j].scale = scales[j];
   MatX const expected = by_differences(make, near, integrator);
@@ -223,14 +222,15 @@ inline auto const stopped = [](P p) {
   Event const stop{.name = "stop",
                    .value = [at = p[2]](State const& x) { return x.q[2] + at; },
                    .tolerance = 1e-15,
-                   .then = [e = p[3]](State& x) { x.v *= -e; }};
+                   .action = [e = p[3]](State& x) { x.v *= -e; }};
   Event const half{.name = "half way", .value = [](State const& x) { return x.q[2] + 1.2; }, .tolerance = 1e-15};
   double const l = p[0];
   std::vector<Output<M>> outputs{
       {"angle [rad]", [](M const&, State const& x) { return x.q[2]; }},
       {"spin [rad/s]", [](M const&, State const& x) { return x.v[2]; }},
       {"tip x [m]", [rod, l](M const& m, State const& x) { return position(m, x, rod.at(l))[0]; }}};
-  return Scenario<M>{std::move(model), start, {.until = 0.9, .step = 5e-3, .events = {stop, half}}, std::move(outputs)};
+  return Scenario<M>{
+      std::move(model), start, {.end_time = 0.9, .step = 5e-3, .events = {stop, half}}, std::move(outputs)};
 };
 inline std::vector<Parameter> const of_stop{
     {"length [m]", 1.2}, {"gravity [m/s²]", 9.81}, {"angle [rad]", 1.4}, {"restitution [1]", 0.6}};
@@ -242,7 +242,7 @@ inline auto const braked = [](P p) {
   scenario.options.events = {{.name = "passes",
                               .value = [at = p[3]](State const& x) { return x.q[5] + at; },
                               .tolerance = 1e-15,
-                              .then = [](State& x) { x.v[5] *= 0.5; }}};
+                              .action = [](State& x) { x.v[5] *= 0.5; }}};
   return scenario;
 };
 inline std::vector<Parameter> const of_brake{
@@ -259,11 +259,11 @@ inline auto const spun = [](P p) {
   Event const passes{.name = "passes",
                      .value = [h = p[1]](State const& x) { return x.q[2] + 0.1 * x.q[4] - h; },
                      .tolerance = 1e-15,
-                     .then = [](State& x) { x.v.tail<3>() *= 0.5; }};
+                     .action = [](State& x) { x.v.tail<3>() *= 0.5; }};
   std::vector<Output<M>> outputs{
       {"x [m]", [rod](M const& m, State const& x) { return position(m, x, rod.at(Vec3(0.5, 0, 0)))[0]; }},
       {"z [m]", [rod](M const& m, State const& x) { return position(m, x, rod.at(Vec3(0, 0.5, 0)))[2]; }}};
-  return Scenario<M>{std::move(model), start, {.until = 0.5, .step = 5e-3, .events = {passes}}, std::move(outputs)};
+  return Scenario<M>{std::move(model), start, {.end_time = 0.5, .step = 5e-3, .events = {passes}}, std::move(outputs)};
 };
 
 /// The lengths of steps and of the run are parameters. \param step of the rod: long enough for a measurable error [s]
@@ -272,17 +272,17 @@ void expect_lengths_as_parameters(I const& integrator, double step) {
   // x(T) of a mass that is thrown: the method is exact for any step length
   auto const thrown = [](P p) {
     auto scenario = ball<false>(std::array{9.81, 100.0, 0.0});
-    scenario.options.until = p[0];
+    scenario.options.end_time = p[0];
     scenario.options.step = p[1];
     scenario.start.t = p[2];
     return scenario;
   };
-  Sensitivities const s =
+  SensitivityResult const s =
       sensitivities(thrown, {{"until [s]", 0.505}, {"step [s]", 0.01}, {"start [s]", 0.1}}, integrator);
   double const v = -9.81 * 0.405;
-  EXPECT_NEAR(s.time_slopes.back()[0], 1.0, 1e-12);
-  EXPECT_NEAR(s.time_slopes[1][2], 1.0, 1e-12);
-  EXPECT_NEAR(s.time_slopes[2][1], 2.0, 1e-12);
+  EXPECT_NEAR(s.time_derivatives.back()[0], 1.0, 1e-12);
+  EXPECT_NEAR(s.time_derivatives[1][2], 1.0, 1e-12);
+  EXPECT_NEAR(s.time_derivatives[2][1], 2.0, 1e-12);
   // the round-off is one unit in the last place of 100 m, over the size of the differences
   EXPECT_NEAR(s.slopes.back()(0, 0), v, 1e-9);
   EXPECT_NEAR(s.slopes.back()(0, 1), 0.0, 1e-9);
@@ -290,7 +290,7 @@ void expect_lengths_as_parameters(I const& integrator, double step) {
   // also of a rod, whose error depends on the step length; finite differences of its runs scatter by 2e-7
   auto const swung = [](P p) {
     auto scenario = stopped<Constraint>(std::array{1.2, 9.81, 10.0, 0.5});
-    scenario.options.until = p[0];
+    scenario.options.end_time = p[0];
     scenario.options.step = p[1];
     return scenario;
   };
@@ -331,15 +331,15 @@ void expect_refusals(I const& integrator) {
     return refusal([&] { sensitivities(make, {{"p [s]", 0.5}}, integrator); });
   };
   EXPECT_TRUE(
-      has(refused(scenario_with([](RunOptions& o, double p) { o.corners = {p, 0.5}; })), "part with \"p [s]\""));
-  EXPECT_TRUE(has(refused(scenario_with([](RunOptions& o, double p) { o.corners = {p, 0.5003}; })),
+      has(refused(scenario_with([](RunOptions& o, double p) { o.breakpoints = {p, 0.5}; })), "part with \"p [s]\""));
+  EXPECT_TRUE(has(refused(scenario_with([](RunOptions& o, double p) { o.breakpoints = {p, 0.5003}; })),
                   "change their order with \"p [s]\""));
   EXPECT_TRUE(has(refused(scenario_with([](RunOptions& o, double p) {
-                    o.until = 0.5;
-                    o.corners = {p};
+                    o.end_time = 0.5;
+                    o.breakpoints = {p};
                   })),
                   "a corner at the end of the run, t = 0.5 s, moves"));
-  EXPECT_TRUE(has(refused(scenario_with([](RunOptions& o, double) { o.halvings = 3; })), "halved steps"));
+  EXPECT_TRUE(has(refused(scenario_with([](RunOptions& o, double) { o.max_step_halvings = 3; })), "halved steps"));
 }
 
 }  // namespace polybody::moving_times

@@ -25,7 +25,7 @@ struct Oscillator {
   }
   template <class I>
   RunReport run(I const& integrator, double h, int steps) {
-    return simulate(model, x, integrator, {.until = h * steps, .step = h}).run();
+    return simulate(model, x, integrator, {.end_time = h * steps, .step = h}).run();
   }
   /// Factor by which a step of h ≫ 1/ω scales the velocity, over steps 21 to 30.
   template <class I>

@@ -30,14 +30,14 @@ auto rated_links(double held) {
     };
     links.outputs = {{"end [1]", end}, {"way [1]", way}};
     using M = std::remove_cvref_t<decltype(links.model)>;
-    return rated(Scenario<M>(std::move(links)), end, way);
+    return with_objective(Scenario<M>(std::move(links)), end, way);
   };
 }
 
 template <class Make, class I>
 void expect_direct_slopes(Make const& make, I const& integrator, double within) {
   std::vector<Parameter> const& parameters = parameters_of_two_links;
-  Sensitivities const direct = sensitivities(make, parameters, integrator);
+  SensitivityResult const direct = sensitivities(make, parameters, integrator);
   Gradient const g = gradient(make, parameters, integrator);
   EXPECT_LT(g.left, 1e-10);
   double value = direct.values.back()[0];

@@ -16,7 +16,7 @@ namespace polybody {
 /// Each number by its bits, so that 0 and −0 differ and NaN equals itself.
 inline std::vector<std::uint64_t> bits(State const& x) {
   std::vector<std::uint64_t> all{std::bit_cast<std::uint64_t>(x.t)};
-  for (VecX const* part : {&x.q, &x.v, &x.a, &x.lambda, &x.memory}) {
+  for (VecX const* part : {&x.q, &x.v, &x.a, &x.lambda, &x.history}) {
     all.push_back(std::uint64_t(part->size()));
     for (double const value : *part) all.push_back(std::bit_cast<std::uint64_t>(value));
   }
@@ -25,8 +25,8 @@ inline std::vector<std::uint64_t> bits(State const& x) {
 
 inline void expect_same(RunReport const& a, RunReport const& b) {
   auto const counts = [](RunReport const& r) {
-    return std::vector<long>{r.steps,    r.iterations, r.factorisations, r.evaluations,
-                             r.rejected, r.cut_short,  r.stopped};
+    return std::vector<long>{r.steps,    r.iterations,  r.factorisations, r.evaluations,
+                             r.rejected, r.over_budget, r.stopped};
   };
   EXPECT_EQ(counts(a), counts(b));
   EXPECT_EQ(a.redundant, b.redundant);
@@ -50,10 +50,10 @@ template <class World, class I>
 void expect_resumes(I const& integrator) {
   Chain<World> const chain(4, bar_link());
   auto const passed = [&](State const& x) { return position(chain.model, x, World::at(chain.links[0], 0.5))[0]; };
-  RunOptions const options{.until = 1.5,
+  RunOptions const options{.end_time = 1.5,
                            .step = 0.004,
-                           .largest_step = 0.01,
-                           .corners = {0.4, 0.7321},
+                           .max_step = 0.01,
+                           .breakpoints = {0.4, 0.7321},
                            .events = {{.name = "first rod hangs", .value = passed}}};
   std::string const name = "polybody resumed " + std::to_string(::getpid()) + ".checkpoint";
   auto const file = std::filesystem::path(testing::TempDir()) / name;

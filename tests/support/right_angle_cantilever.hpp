@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include <polybody/forces/point_load.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/weld.hpp>
 #include <polybody/run/energy.hpp>
@@ -22,7 +22,7 @@ namespace right_angle_cantilever {
 /// Rises from 0 to 1 in one second, and falls back to 0 in the next.
 struct Triangle {
   Motion operator()(double t) const { return {std::max(0.0, 1.0 - std::abs(t - 1.0)), 0.0, 0.0}; }
-  std::vector<double> corners() const { return {0.0, 1.0, 2.0}; }
+  std::vector<double> breakpoints() const { return {0.0, 1.0, 2.0}; }
 };
 
 inline Bar leg(Placement const& placement) {
@@ -51,7 +51,9 @@ struct RightAngle {
     model.apply(PointForce<Triangle>{.force = {0, 0, 50}}, first.at(10.0), "pull");
     x = model.reference_state();
   }
-  auto run_until(double t) { return simulate(model, x, GeneralizedAlpha{.rho_inf = 0.9}, {.until = t, .step = step}); }
+  auto run_until(double t) {
+    return simulate(model, x, GeneralisedAlpha{.rho_inf = 0.9}, {.end_time = t, .step = step});
+  }
   /// Displacements of elbow and tip in state `now`.
   Vec6 displacements(State const& now) const {
     Vec6 u;

@@ -60,7 +60,7 @@ Vec6 frequencies_in_rotation(B const& body, double omega) {
   model.connect(Pin{{.axis = axis}, {}}, model.ground().at(root), hub.at({0, 0, 0}), "shaft");
   model.connect(Drive{{Ramp{.target = omega, .duration = 1.0}, axis}, {}}, model.ground().at(root), hub.at({0, 0, 0}),
                 "drive");
-  if constexpr (B::observes == Observes::frame)
+  if constexpr (B::observes == MarkerKind::frame)
     model.connect(Clamp{}, hub.at({0, 0, 0}), arm.at(0.0), "clamp");
   else
     model.connect(Pin{{.axis = root.axes.col(0)}, {}}, hub.at({0, 0, 0}), arm.at(0.0), "clamp");

@@ -28,7 +28,7 @@ inline void expect_same_slopes(MatX const& slopes, MatX const& expected, std::ve
 template <class Make, class I>
 void expect_slopes_of_runs(Make const& make, std::vector<Parameter> const& parameters, I const& integrator,
                            double within) {
-  Sensitivities const s = sensitivities(make, parameters, integrator);
+  SensitivityResult const s = sensitivities(make, parameters, integrator);
   EXPECT_LT(s.left, 1e-9);
   expect_same_slopes(s.slopes.back(), by_differences(make, parameters, integrator), parameters, within);
   for (std::size_t j = 0; j < parameters.size(); ++j)
@@ -40,7 +40,7 @@ void expect_slopes_of_runs(Make const& make, std::vector<Parameter> const& param
 template <class Make, class I>
 void expect_slopes_backwards(Make const& make, std::vector<Parameter> const& parameters, I const& integrator,
                              double within) {
-  Sensitivities const direct = sensitivities(make, parameters, integrator);
+  SensitivityResult const direct = sensitivities(make, parameters, integrator);
   Gradient const g = gradient(make, parameters, integrator);
   MatX expected = direct.slopes.back().row(0);
   for (std::size_t k = 1; k < direct.times.size(); ++k)

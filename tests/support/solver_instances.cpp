@@ -2,8 +2,8 @@
 #include <polybody/solvers/default_solver.hpp>
 #include <polybody/solvers/dense_lu.hpp>
 #include <polybody/solvers/eigen_ldlt.hpp>
-#include <polybody/solvers/refined.hpp>
-#include <polybody/solvers/row_dropping.hpp>
+#include <polybody/solvers/iterative_refinement.hpp>
+#include <polybody/solvers/redundancy_dropping.hpp>
 
 #include <cstdlib>
 #include <span>
@@ -33,15 +33,15 @@ class Behind final : public SolverInTests {
     if constexpr (requires { solver_.reorderings(); }) return solver_.reorderings();
     return 0;
   }
-  void keep_reorderings(std::size_t count) noexcept override {
-    if constexpr (requires { solver_.keep_reorderings(count); }) solver_.keep_reorderings(count);
+  void limit_reorderings(std::size_t count) noexcept override {
+    if constexpr (requires { solver_.limit_reorderings(count); }) solver_.limit_reorderings(count);
   }
   std::span<Index const> dropped() const override {
     if constexpr (requires { solver_.dropped(); }) return solver_.dropped();
     return {};
   }
-  void leave_out(std::span<Index const> unknowns) override {
-    if constexpr (requires { solver_.leave_out(unknowns); }) solver_.leave_out(unknowns);
+  void mark_redundant(std::span<Index const> unknowns) override {
+    if constexpr (requires { solver_.mark_redundant(unknowns); }) solver_.mark_redundant(unknowns);
   }
   bool is_doubtful(double share) const override {
     if constexpr (requires { solver_.is_doubtful(share); }) return solver_.is_doubtful(share);
@@ -67,8 +67,8 @@ class Behind final : public SolverInTests {
 template <class Solver>
 std::unique_ptr<SolverInTests> behind(SolverFor use) {
   if (use == SolverFor::statics) return std::make_unique<Behind<Solver>>();
-  if (use == SolverFor::unsymmetric_steps) return std::make_unique<Behind<SolverOfSteps<UnsymmetricSolver<Solver>>>>();
-  return std::make_unique<Behind<SolverOfSteps<Solver>>>();
+  if (use == SolverFor::unsymmetric_steps) return std::make_unique<Behind<StepSolver<UnsymmetricSolver<Solver>>>>();
+  return std::make_unique<Behind<StepSolver<Solver>>>();
 }
 
 }  // namespace
@@ -93,7 +93,7 @@ std::unique_ptr<SolverInTests> solver_named_by_environment(Index size, SolverFor
   if (name == "BlockLdlt") return behind<BlockLdlt>(use);
   if (name == "BlockLu") return behind<BlockLu>(use);
   if (name == "EigenLdlt") return behind<EigenLdlt>(use);
-  return behind<Refined<BlockSolver>>(use);
+  return behind<IterativeRefinement<BlockSolver>>(use);
 }
 
 }  // namespace polybody

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/prescribed_angle.hpp>
 #include <polybody/run/observe.hpp>
@@ -57,7 +57,7 @@ void follows(M const& model, Marker<Tip> const& tip, Share const& share, char co
   std::size_t next = 0;
   double lag = 0.0, lag_time = 0.0, shortest = 0.0, sum = 0.0, swing = 0.0, astray = 0.0;
   int count = 0;
-  for (State const& now : simulate(model, x, GeneralizedAlpha{.rho_inf = 0.9}, {.until = 18.0, .step = 5e-3})) {
+  for (State const& now : simulate(model, x, GeneralisedAlpha{.rho_inf = 0.9}, {.end_time = 18.0, .step = 5e-3})) {
     Vec3 const u = exp_so3<double>(Vec3(0, 0, -law(now.t).value)) * position(model, now, tip) - Vec3(10, 0, 0);
     if (next < table.size() && now.t >= table[next].t - 1e-9) {
       Row const& row = table[next++];

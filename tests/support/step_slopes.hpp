@@ -7,7 +7,7 @@
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/forces/spring_damper.hpp>
 #include <polybody/gradients/parameter.hpp>
-#include <polybody/gradients/solved_places.hpp>
+#include <polybody/gradients/solved_points.hpp>
 #include <polybody/integrators/system_for.hpp>
 #include <polybody/joints/policies/bushing.hpp>
 #include <polybody/joints/policies/constraint.hpp>
@@ -38,7 +38,7 @@ struct ModelAndStart {
 /// the pins, length of the second link, initial speed and angle.
 template <class B, class Policy>
 struct TwoLinks {
-  static constexpr bool knows_frames = B::observes == Observes::frame;
+  static constexpr bool knows_frames = B::observes == MarkerKind::frame;
   using Pin = Joint<std::conditional_t<knows_frames, Revolute, Spherical>, Policy>;
   using M = Model<Bodies<B>, Joints<Pin>>;
 
@@ -54,9 +54,9 @@ struct TwoLinks {
     model.connect(pin({0, 1, 0}, p[2]), model.ground().at({0, 0, 0}), first.at(0.0), "shoulder");
     model.connect(pin({0, 0.8, 0.6}, p[2]), first.at(0.5), second.at(0.0), "elbow");
     State start = model.reference_state();
-    System const system(model, with<Entries::rigid_speeds>);
+    System const system(model, with<Capabilities::rigid_velocities>);
     VecX turn = start.v, next = start.q;
-    system.entries().first.rigid_speeds(system.entries().second, start.q, Vec3::Zero(), {0, 1, 0}, turn);
+    system.entries().first.rigid_velocities(system.entries().second, start.q, Vec3::Zero(), {0, 1, 0}, turn);
     system.plus(start.q, p[5] * turn, next);
     start.q = next;
     for (Index i = 0; i < turn.size(); ++i) start.v[i] = p[4] * turn[i] + 0.3 * std::sin(1.0 + 3.0 * double(i));
@@ -165,11 +165,11 @@ struct Steps {
   I method;
   decltype(std::declval<I const&>().template workspace<DefaultSolver>(std::declval<System&>())) work;
   State x;
-  PlaceEquations<> equations;
+  PointEquations<> equations;
 
   Steps(Made m, I const& integrator, double h)
       : made(std::move(m)),
-        system(system_for<I, Entries::implicit_step>(made.model)),
+        system(system_for<I, Capabilities::implicit_step>(made.model)),
         method(integrator),
         work(method.template workspace<DefaultSolver>(system)),
         x(made.start) {
@@ -182,9 +182,9 @@ struct Steps {
 
 /// The state after a step of h from x, with its own factorisations.
 template <class S>
-State stepped(S& whole, State x, double h) {
-  if constexpr (requires { whole.work.kept_factor; }) whole.work.kept_factor = {};
-  EXPECT_EQ(whole.method.step(whole.system, x, h, whole.work).taken, h);
+State stepped(S& full, State x, double h) {
+  if constexpr (requires { full.work.kept_factor; }) full.work.kept_factor = {};
+  EXPECT_EQ(full.method.step(full.system, x, h, full.work).taken, h);
   return x;
 }
 
@@ -204,7 +204,7 @@ DerivedSteps derive_steps(Make const& make, std::vector<Parameter> const& parame
   using S = Steps<decltype(make(std::span<double const>())), I>;
   std::vector<double> values;
   for (Parameter const& p : parameters) values.push_back(p.value);
-  S whole(make(values), integrator, h);
+  S full(make(values), integrator, h);
   std::vector<std::unique_ptr<S>> beside;  // four for each parameter
   for (std::size_t j = 0; j < parameters.size(); ++j)
     for (double const place : FourPoints::places) {
@@ -228,26 +228,27 @@ DerivedSteps derive_steps(Make const& make, std::vector<Parameter> const& parame
 
   DerivedSteps out;
   out.slopes = differences();
-  Slope slope(whole.made.model, whole.system, whole.method);
+  Slope slope(full.made.model, full.system, full.method);
   for (int n = 0; n < count; ++n) {
-    State const before = whole.x;
-    EXPECT_TRUE(whole.step(h));
-    StepTaken const step{before, whole.x, h};
+    State const before = full.x;
+    EXPECT_TRUE(full.step(h));
+    StepTaken const step{before, full.x, h};
     slope.set(step);
     for (std::size_t first = 0; first < parameters.size(); first += Slope::lanes) {
       std::vector<State*> directions;
       for (std::size_t j = first; j < std::min(first + Slope::lanes, parameters.size()); ++j)
         directions.push_back(&out.slopes[j]);
-      out.left = std::max(out.left, slope.advance(step, directions, [&](EquationPlace<> const& x, std::size_t l) {
+      out.left = std::max(out.left, slope.advance(step, directions, [&](EvaluationPoint<> const& x, std::size_t l) {
         std::size_t const j = first + l;
         for (std::size_t k = 0; k < 4; ++k) beside[4 * j + k]->equations.evaluate(beside[4 * j + k]->system, x);
-        return EquationSlope{difference(j, [](S& s) -> VecX const& { return s.equations.balance; }),
-                             difference(j, [](S& s) -> VecX const& { return s.equations.rows; }), parameters[j].size()};
+        return EquationDerivative{difference(j, [](S& s) -> VecX const& { return s.equations.balance; }),
+                                  difference(j, [](S& s) -> VecX const& { return s.equations.rows; }),
+                                  parameters[j].size()};
       }));
     }
     for (auto& s : beside) EXPECT_TRUE(s->step(h));
   }
-  out.end = whole.x;
+  out.end = full.x;
   out.differences = differences();
   return out;
 }
@@ -272,23 +273,23 @@ inline void expect_slopes_of_steps(DerivedSteps const& run, std::vector<Paramete
 
 /// The derivative of a step from x with respect to its length h, with functions that are smooth in time.
 template <class Slope, class S>
-State slope_by_length(S& whole, Slope& slope, State const& x, double h) {
-  State const after = stepped(whole, x, h);
+State slope_by_length(S& full, Slope& slope, State const& x, double h) {
+  State const after = stepped(full, x, h);
   StepTaken const step{x, after, h};
   State dx = x;
   for (VecX State::* const part : {&State::q, &State::v, &State::a, &State::lambda}) (dx.*part).setZero();
   std::vector<State*> const directions{&dx};
   double const later = 1.0, e = 1e-2 * h;
   slope.set(step);
-  auto const by_time = [&](EquationPlace<> const& at, std::size_t) {
-    EquationSlope out{VecX::Zero(x.v.size()), VecX::Zero(x.lambda.size()), h};
+  auto const by_time = [&](EvaluationPoint<> const& at, std::size_t) {
+    EquationDerivative out{VecX::Zero(x.v.size()), VecX::Zero(x.lambda.size()), h};
     for (std::size_t k = 0; k < 4; ++k) {
-      EquationPlace<> there = at;
+      EvaluationPoint<> there = at;
       there.t += FourPoints::places[k] * e;
-      whole.equations.evaluate(whole.system, there);
+      full.equations.evaluate(full.system, there);
       double const by = (at.t - x.t) / h * FourPoints::weights[k] / e;
-      out.balance += by * whole.equations.balance;
-      out.rows += by * whole.equations.rows;
+      out.balance += by * full.equations.balance;
+      out.rows += by * full.equations.rows;
     }
     return out;
   };
@@ -302,14 +303,14 @@ void expect_slopes_by_length(Make const& make, std::vector<Parameter> const& par
                              double rounding) {
   std::vector<double> values;
   for (Parameter const& p : parameters) values.push_back(p.value);
-  Steps<decltype(make(std::span<double const>())), I> whole(make(values), integrator, h);
-  for (int n = 0; n < 2; ++n) EXPECT_TRUE(whole.step(h));
-  State const x = whole.x;
-  Slope slope(whole.made.model, whole.system, whole.method);
-  State const dx = slope_by_length(whole, slope, x, h);
+  Steps<decltype(make(std::span<double const>())), I> full(make(values), integrator, h);
+  for (int n = 0; n < 2; ++n) EXPECT_TRUE(full.step(h));
+  State const x = full.x;
+  Slope slope(full.made.model, full.system, full.method);
+  State const dx = slope_by_length(full, slope, x, h);
   double const e = 2e-3 * h;
   std::vector<State> ends;
-  for (double const place : FourPoints::places) ends.push_back(stepped(whole, x, h + place * e));
+  for (double const place : FourPoints::places) ends.push_back(stepped(full, x, h + place * e));
   for (auto const& [name, part] : {std::pair{"q", &State::q}, std::pair{"v", &State::v}, std::pair{"a", &State::a},
                                    std::pair{"λ", &State::lambda}}) {
     VecX expected = VecX::Zero((x.*part).size());

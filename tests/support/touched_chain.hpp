@@ -40,7 +40,7 @@ inline auto const chain = [](P p) {
   }
   auto const height = [tip = last.at(p[12])](auto const& m, auto const& y) { return position(m, y, tip)[1]; };
   State const start = model.reference_state();
-  return rated(Scenario<M>{std::move(model), start, {.until = 0.1, .step = 2e-3}}, height);
+  return with_objective(Scenario<M>{std::move(model), start, {.end_time = 0.1, .step = 2e-3}}, height);
 };
 inline std::vector<Parameter> of_chain(bool with_touches) {
   std::vector<Parameter> all;
@@ -67,8 +67,8 @@ inline auto chain_with_angle(P p) {
 /// Derivatives of runs of the chain do not depend on the names in `touches`.
 template <class I>
 void expect_same_slopes_with_touches(I const& integrator) {
-  Sensitivities const a = sensitivities(chain_with_angle, of_chain(true), integrator),
-                      b = sensitivities(chain_with_angle, of_chain(false), integrator);
+  SensitivityResult const a = sensitivities(chain_with_angle, of_chain(true), integrator),
+                          b = sensitivities(chain_with_angle, of_chain(false), integrator);
   for (Index j = 0; j < 15; ++j) {
     double const size = of_chain(true)[std::size_t(j)].size();
     EXPECT_NEAR(size * a.slopes.back()(0, j), size * b.slopes.back()(0, j), 1e-11) << j;

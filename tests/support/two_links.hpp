@@ -40,7 +40,7 @@ struct RunOfTwoLinks : Scenario<M> {
 /// Parameters: Young's modulus, density, stiffness of the pins, length of the second link, initial speed.
 template <class B, class Policy>
 auto const two_links = [](std::span<double const> p) {
-  constexpr bool knows_frames = B::observes == Observes::frame;
+  constexpr bool knows_frames = B::observes == MarkerKind::frame;
   using Pin = Joint<std::conditional_t<knows_frames, Revolute, Spherical>, Policy>;
   using M = Model<Bodies<B>, Joints<Pin>>;
   M model{Gravity{0, 0, -9.81}};
@@ -61,14 +61,14 @@ auto const two_links = [](std::span<double const> p) {
   model.connect(pin({0, 1, 0}), model.ground().at({0, 0, 0}), first.at(0.0), "shoulder");
   model.connect(pin({0, 0.8, 0.6}), first.at(0.5), second.at(0.0), "elbow");
   State start = model.reference_state();
-  System const system(model, with<Entries::rigid_speeds>);
-  system.entries().first.rigid_speeds(system.entries().second, start.q, Vec3::Zero(), {0, p[4], 0}, start.v);
+  System const system(model, with<Capabilities::rigid_velocities>);
+  system.entries().first.rigid_velocities(system.entries().second, start.q, Vec3::Zero(), {0, p[4], 0}, start.v);
   double const end = p[3];
   std::vector<Output<M>> outputs{
       {"tip x [m]", [second, end](M const& m, State const& x) { return position(m, x, second.at(end))[0]; }},
       {"tip y [m]", [second, end](M const& m, State const& x) { return position(m, x, second.at(end))[1]; }},
       {"tip z [m]", [second, end](M const& m, State const& x) { return position(m, x, second.at(end))[2]; }}};
-  return RunOfTwoLinks<M, B>{{std::move(model), start, {.until = 0.06, .step = 2e-3}, std::move(outputs)},
+  return RunOfTwoLinks<M, B>{{std::move(model), start, {.end_time = 0.06, .step = 2e-3}, std::move(outputs)},
                              second.at(end)};
 };
 /// The parameters of `two_links`.

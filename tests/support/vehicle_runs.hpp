@@ -2,7 +2,7 @@
 // The vehicle of m113_vehicle.hpp in motion.
 #include <polybody/polybody.hpp>
 #include <polybody/vehicle/settled_track.hpp>
-#include <polybody/vehicle/track_watch.hpp>
+#include <polybody/vehicle/track_checks.hpp>
 
 namespace polybody {
 
@@ -15,12 +15,12 @@ inline m113::TrackStart const& track_at_rest() {
 // Ramp from standstill at 0.1 s to `speed` at 0.6 s.
 inline Ramp quick_drive(double speed) { return {.target = speed, .duration = 0.5, .start = 0.1, .rounding = 0.1}; }
 
-inline GeneralizedAlpha vehicle_integrator() { return {.rho_inf = 0.8, .tolerance = 1e-5}; }
+inline GeneralisedAlpha vehicle_integrator() { return {.rho_inf = 0.8, .tolerance = 1e-5}; }
 
 // Calls see(state, system evaluated in this state) after each step.
 template <class M, class See>
-RunReport run_vehicle(M const& model, State& x, double until, double step, See&& see) {
-  auto run = simulate(model, x, vehicle_integrator(), {.until = until, .step = step, .halvings = 6});
+RunReport run_vehicle(M const& model, State& x, double end_time, double step, See&& see) {
+  auto run = simulate(model, x, vehicle_integrator(), {.end_time = end_time, .step = step, .max_step_halvings = 6});
   System system(model);
   while (!run.done()) {
     run.advance();

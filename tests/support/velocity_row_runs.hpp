@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <polybody/integrators/coordinate_partitioning.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/radau.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/run/observe.hpp>
@@ -14,26 +14,26 @@
 
 namespace polybody {
 
-/// Runs to time `until` and returns the state. The constraint equations must be satisfied during the run, the
+/// Runs to time `end_time` and returns the state. The constraint equations must be satisfied during the run, the
 /// nonholonomic ones also if a method stabilises positions only.
 template <class M, class I>
-State rolled(M const& model, State x, I const& integrator, double until, double step) {
+State rolled(M const& model, State x, I const& integrator, double end_time, double step) {
   System system(model);
   VecX rate = VecX::Zero(model.rows());
   Violation worst;
   double blades = 0.0;
-  for (State const& now : simulate(model, x, integrator, {.until = until, .step = step})) {
-    Violation const v = violation(system, now);
+  for (State const& now : simulate(model, x, integrator, {.end_time = end_time, .step = step})) {
+    Violation const v = largest_violation(system, now);
     system.violation_rate(rate);
-    for (Index const i : model.velocity_rows()) blades = std::max(blades, std::abs(rate[i]));
+    for (Index const i : model.nonholonomic_equations()) blades = std::max(blades, std::abs(rate[i]));
     worst.position = std::max(worst.position, v.position);
     worst.velocity = std::max(worst.velocity, v.velocity);
   }
-  bool keeps_speeds = true;
-  if constexpr (requires { integrator.stabilised; }) keeps_speeds = integrator.stabilised;
+  bool keeps_velocities = true;
+  if constexpr (requires { integrator.stabilised; }) keeps_velocities = integrator.stabilised;
   EXPECT_LT(worst.position, 1e-10) << integrator.name;
   EXPECT_LT(blades, 1e-9) << integrator.name;
-  if (keeps_speeds) {
+  if (keeps_velocities) {
     EXPECT_LT(worst.velocity, 1e-9) << integrator.name;
   }
   return x;
@@ -52,8 +52,8 @@ std::string named(I const& integrator) {
 /// 100.
 template <class F>
 void with_each_integrator(F&& f) {
-  f(GeneralizedAlpha{.rho_inf = 0.8}, 5e-4, 1.0);
-  f(GeneralizedAlpha{.rho_inf = 0.8, .stabilised = true}, 5e-4, 1.0);
+  f(GeneralisedAlpha{.rho_inf = 0.8}, 5e-4, 1.0);
+  f(GeneralisedAlpha{.rho_inf = 0.8, .stabilised = true}, 5e-4, 1.0);
   f(RungeKutta4<Projection>{}, 2e-3, 1e-4);
   f(RungeKutta4<CoordinatePartitioning>{}, 2e-3, 1e-4);
   f(Radau{}, 1e-2, 1e-4);

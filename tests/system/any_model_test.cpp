@@ -26,7 +26,7 @@ BodyHandle<Rigid<>> hang(Builder& builder) {
 template <class M>
 State after_a_run(M const& model) {
   State x = model.reference_state();
-  simulate(model, x, GeneralizedAlpha{}, {.until = 0.5, .step = 5e-3}).run();
+  simulate(model, x, GeneralisedAlpha{}, {.end_time = 0.5, .step = 5e-3}).run();
   return x;
 }
 bool same(State const& a, State const& b) {
@@ -42,12 +42,12 @@ std::string refusal(auto&& call) {
 }
 
 TEST(Subassembly, BuildsWhatTheModelBuilds) {
-  Double whole{Gravity{0, 0, -9.81}}, in_parts{Gravity{0, 0, -9.81}};
-  hang(whole);
+  Double full{Gravity{0, 0, -9.81}}, in_parts{Gravity{0, 0, -9.81}};
+  hang(full);
   Subassembly<Bodies<Rigid<>>, Joints<Pin>, Forces<SpringDamper>> part(in_parts);
   BodyHandle<Rigid<>> const body = hang(part);
   EXPECT_EQ(in_parts.entry(body).name, "rod");
-  EXPECT_TRUE(same(after_a_run(whole), after_a_run(in_parts)));
+  EXPECT_TRUE(same(after_a_run(full), after_a_run(in_parts)));
 }
 
 TEST(Subassembly, RefusesWhatTheModelRefuses) {
@@ -63,11 +63,11 @@ TEST(Subassembly, RefusesWhatTheModelRefuses) {
 TEST(AnyModel, RunsAsItsModelDoes) {
   auto const model = std::make_shared<Double>(Gravity{0, 0, -9.81});
   BodyHandle<Rigid<>> const body = hang(*model);
-  AnyModel const any(std::shared_ptr<Double const>(model), stepped_by<GeneralizedAlpha, Radau>);
+  AnyModel const any(std::shared_ptr<Double const>(model), stepped_by<GeneralisedAlpha, Radau>);
   State const x = after_a_run(any);
   EXPECT_TRUE(same(x, after_a_run(*model)));
-  EXPECT_EQ(census(any).degrees_of_freedom, census(*model).degrees_of_freedom);
-  System asked = question_system(any);
+  EXPECT_EQ(problem_size(any).degrees_of_freedom, problem_size(*model).degrees_of_freedom);
+  System asked = observation_system(any);
   asked.evaluate(x.q, x.v, x.t);
   EXPECT_EQ(energy(asked, x).total(), energy(*model, x).total());
   EXPECT_EQ(asked.layout().bodies[std::size_t(index_of(asked.layout(), body))].name, "rod");
@@ -81,15 +81,15 @@ TEST(AnyModel, KeepsItsModel) {
   auto model = std::make_shared<Double>(Gravity{0, 0, -9.81});
   hang(*model);
   State const expected = after_a_run(*model);
-  AnyModel const any(std::shared_ptr<Double const>(std::move(model)), stepped_by<GeneralizedAlpha>);
+  AnyModel const any(std::shared_ptr<Double const>(std::move(model)), stepped_by<GeneralisedAlpha>);
   EXPECT_TRUE(same(after_a_run(any), expected));
 }
 
 TEST(AnyModel, NamesTheIntegratorThatItWasMadeWithout) {
   auto const model = std::make_shared<Double const>();
-  AnyModel const any(model, stepped_by<GeneralizedAlpha>);
+  AnyModel const any(model, stepped_by<GeneralisedAlpha>);
   State x = any.reference_state();
-  EXPECT_EQ(refusal([&] { simulate(any, x, Radau{}, {.until = 1.0, .step = 1e-2}); }),
+  EXPECT_EQ(refusal([&] { simulate(any, x, Radau{}, {.end_time = 1.0, .step = 1e-2}); }),
             std::string("AnyModel was made without ") + Radau::name +
                 ". Name it where it is made: AnyModel(model, stepped_by<...>).");
 }

@@ -4,7 +4,7 @@
 
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/forces/spring_damper.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/run/simulate.hpp>
 
 namespace couples_bodies_test {
@@ -60,9 +60,9 @@ TEST(CouplesBodies, DecidesWhichBlocksATimeStepWrites) {
 TEST(CouplesBodies, ChangesTheWayToTheSolutionOnly) {
   Row<SpringDamper> tight;
   Row<LooseSpring> loose;
-  GeneralizedAlpha const stepper{.rho_inf = 0.8, .tolerance = 1e-10};
-  simulate(tight.model, tight.x, stepper, {.until = 1.0, .step = 1e-2}).run();
-  simulate(loose.model, loose.x, stepper, {.until = 1.0, .step = 1e-2}).run();
+  GeneralisedAlpha const stepper{.rho_inf = 0.8, .tolerance = 1e-10};
+  simulate(tight.model, tight.x, stepper, {.end_time = 1.0, .step = 1e-2}).run();
+  simulate(loose.model, loose.x, stepper, {.end_time = 1.0, .step = 1e-2}).run();
   EXPECT_GT((tight.x.q - tight.model.reference_state().q).norm(), 0.05);
   EXPECT_LT((tight.x.q - loose.x.q).norm(), 1e-8);
 }

@@ -134,7 +134,7 @@ void expect_foreign(M& model, BodyHandle<Rigid<>> const& handle) {
   EXPECT_TRUE(has(refusal([&] { (void)model.entry(handle); }), foreign));
   EXPECT_TRUE(has(refusal([&] { model.set_velocity(x, handle, {1, 0, 0}, {0, 0, 1}); }), foreign));
   EXPECT_TRUE(has(refusal([&] { (void)coordinates_of(model, x, handle); }), foreign));
-  EXPECT_TRUE(has(refusal([&] { (void)speeds_of(model, x, handle); }), foreign));
+  EXPECT_TRUE(has(refusal([&] { (void)velocities_of(model, x, handle); }), foreign));
   EXPECT_TRUE(has(refusal([&] { model.connect(Ball{}, model.ground().at({0, 0, 0}), at); }), foreign));
   EXPECT_TRUE(has(refusal([&] { model.apply(spring_of(1.0), model.ground().at({0, 1, 0}), at); }), foreign));
   EXPECT_TRUE(has(refusal([&] { (void)index_of(layout_of(model), handle); }), foreign));
@@ -170,14 +170,14 @@ TEST(Handles, OfJointsAndForcesAddedToACopyAreRefusedByTheOriginal) {
     State const x = model.reference_state();
     EXPECT_TRUE(has(refusal([&] { (void)model.entry(ball); }), foreign));
     EXPECT_TRUE(has(refusal([&] { (void)reaction(model, x, ball); }), foreign));
-    EXPECT_TRUE(has(refusal([&] { (void)gap(model, x, ball); }), foreign));
+    EXPECT_TRUE(has(refusal([&] { (void)constraint_violation(model, x, ball); }), foreign));
     EXPECT_TRUE(has(refusal([&] { (void)model.entry(spring); }), foreign));
     EXPECT_TRUE(has(refusal([&] { (void)index_of_force(layout_of(model), spring); }), foreign));
-    EXPECT_EQ(gap(model, x, shared), Vec3(0, 0, 0));
+    EXPECT_EQ(constraint_violation(model, x, shared), Vec3(0, 0, 0));
     model.connect(Ball{}, model.ground().at({0, 1, 0}), hub.at({0, 1, 0}));
     model.apply(spring_of(1.0), model.ground().at({0, 1, 0}), hub.at({0, 0, 0}));
   }
-  EXPECT_EQ(gap(copy, copy.reference_state(), ball), Vec3(0, 0, 0));
+  EXPECT_EQ(constraint_violation(copy, copy.reference_state(), ball), Vec3(0, 0, 0));
 }
 
 // Copies of copies accept the handles that each ancestor had at the time of copying; all descendants share the

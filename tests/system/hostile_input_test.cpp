@@ -17,7 +17,8 @@ TEST(HostileInput, AModelWithoutBodiesIsRefusedByEveryDoor) {
   Model<Bodies<Rigid<>>, Joints<Pin>> const model{Gravity{0, 0, -9.81}};
   State x = model.reference_state();
   std::string const said = "no body that moves";
-  EXPECT_TRUE(has(refusal([&] { simulate(model, x, GeneralizedAlpha{}, {.until = 0.1, .step = 1e-3}).run(); }), said));
+  EXPECT_TRUE(
+      has(refusal([&] { simulate(model, x, GeneralisedAlpha{}, {.end_time = 0.1, .step = 1e-3}).run(); }), said));
   EXPECT_TRUE(has(refusal([&] { energy(model, x); }), said));
   EXPECT_TRUE(has(refusal([&] { equilibrium(model, x); }), said));
   EXPECT_TRUE(has(refusal([&] { assemble(model, x); }), said));
@@ -59,7 +60,7 @@ TEST(HostileInput, QuaternionsOfAnotherNormAreRefused) {
   for (double const norm : {0.0, 0.5, 2.0, 1e200}) {
     State x = model.reference_state();
     x.q.tail<4>() = Vec<double, 4>(norm, 0, 0, 0);
-    auto const run = [&] { simulate(model, x, GeneralizedAlpha{}, {.until = 0.1, .step = 1e-3}); };
+    auto const run = [&] { simulate(model, x, GeneralisedAlpha{}, {.end_time = 0.1, .step = 1e-3}); };
     EXPECT_TRUE(has(refusal(run), "body \"second\" are those of no place")) << norm;
   }
 }
@@ -72,9 +73,10 @@ TEST(HostileInput, ASpringBetweenCoincidentPointsIsNamed) {
   State x = model.reference_state();
   std::string const said = "is not finite at t = 0 s, that of \"strut\"";
   EXPECT_TRUE(
-      has(message_of<NonFinite>([&] { simulate(model, x, GeneralizedAlpha{}, {.until = 0.1, .step = 1e-3}); }), said));
-  EXPECT_TRUE(
-      has(message_of<NonFinite>([&] { simulate(model, x, RungeKutta4<>{}, {.until = 0.1, .step = 1e-3}); }), said));
+      has(message_of<NonFiniteValue>([&] { simulate(model, x, GeneralisedAlpha{}, {.end_time = 0.1, .step = 1e-3}); }),
+          said));
+  EXPECT_TRUE(has(
+      message_of<NonFiniteValue>([&] { simulate(model, x, RungeKutta4<>{}, {.end_time = 0.1, .step = 1e-3}); }), said));
 }
 
 template <class I>
@@ -88,7 +90,7 @@ void expect_finite(I const& integrator) {
       State x = model.reference_state();
       x.v[i] = speed;
       try {
-        for (State const& now : simulate(model, x, integrator, {.until = 1.0, .step = 0.1})) {
+        for (State const& now : simulate(model, x, integrator, {.end_time = 1.0, .step = 0.1})) {
           ASSERT_TRUE(now.q.allFinite() && now.v.allFinite()) << I::name << ' ' << i << ' ' << speed;
           ASSERT_TRUE(std::isfinite(energy(model, now).total())) << I::name << ' ' << i << ' ' << speed;
           ASSERT_NEAR((now.q.tail<4>().norm()), 1.0, 1e-9) << I::name << ' ' << i << ' ' << speed;
@@ -100,7 +102,7 @@ void expect_finite(I const& integrator) {
     }
 }
 TEST(HostileInput, WildSpeedsEndInAnErrorAndNotInNaN) {
-  expect_finite(GeneralizedAlpha{});
+  expect_finite(GeneralisedAlpha{});
   expect_finite(Radau{});
   expect_finite(RungeKutta4<>{});
   expect_finite(CentralDifference<>{});
@@ -127,11 +129,11 @@ struct Pushed {
   std::string message(I const& integrator) {
     std::string said;
     try {
-      simulate(model, x, integrator, {.until = 0.02, .step = 0.01}).run();
+      simulate(model, x, integrator, {.end_time = 0.02, .step = 0.01}).run();
       ADD_FAILURE() << I::name << " goes through";
-    } catch (NonFinite const& error) {
+    } catch (NonFiniteValue const& error) {
       said = error.what();
-    } catch (StepTooSmall const& error) {
+    } catch (MinimumStepReached const& error) {
       said = error.what();
     } catch (std::exception const& error) {
       ADD_FAILURE() << I::name << ": " << error.what();
@@ -153,7 +155,7 @@ void expect_refused(I const& integrator) {
 }
 // A sum that overflows is not a redundant joint.
 TEST(HostileInput, ForcesThatOverflowAreNamedAndNotCalledSingular) {
-  expect_refused(GeneralizedAlpha{});
+  expect_refused(GeneralisedAlpha{});
   expect_refused(Radau{});
   expect_refused(EnergyMomentum{});
   expect_refused(RungeKutta4<Projection>{});
@@ -164,10 +166,10 @@ TEST(HostileInput, NumbersWhoseSquaresOverflowAreRefusedAtTheStart) {
   for (double const size : {1e151, 1e200, 1e308}) {
     Pushed fast(false, 1.0, 0.0), far(false, 1.0, 0.0);
     fast.x.v[0] = far.x.q[0] = size;
-    RunOptions const options{.until = 0.1, .step = 0.01};
-    EXPECT_TRUE(has(refusal([&] { simulate(fast.model, fast.x, GeneralizedAlpha{}, options); }),
+    RunOptions const options{.end_time = 0.1, .step = 0.01};
+    EXPECT_TRUE(has(refusal([&] { simulate(fast.model, fast.x, GeneralisedAlpha{}, options); }),
                     "A speed of body \"rod\" is " + number(size)));
-    EXPECT_TRUE(has(refusal([&] { simulate(far.model, far.x, GeneralizedAlpha{}, options); }),
+    EXPECT_TRUE(has(refusal([&] { simulate(far.model, far.x, GeneralisedAlpha{}, options); }),
                     "A coordinate of body \"rod\" is " + number(size)));
   }
 }

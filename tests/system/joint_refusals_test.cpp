@@ -9,7 +9,7 @@
 #include <polybody/joints/policies/penalty.hpp>
 #include <polybody/joints/prescribed_angle.hpp>
 #include <polybody/joints/prescribed_distance.hpp>
-#include <polybody/joints/prescribed_slide.hpp>
+#include <polybody/joints/prescribed_translation.hpp>
 #include <polybody/joints/revolute.hpp>
 #include <polybody/math/smooth_table.hpp>
 #include <polybody/system/model.hpp>
@@ -25,7 +25,7 @@ using Mount = Joint<Revolute, Bushing>;
 using Rubber = Joint<Revolute, Six<LinearLaw>>;
 using Stiff = Joint<Revolute, Penalty>;
 using Turn = Joint<PrescribedAngle<Window>, Constraint>;
-using Push = Joint<PrescribedSlide<Window>, Constraint>;
+using Push = Joint<PrescribedTranslation<Window>, Constraint>;
 using Ram = Joint<PrescribedDistance<Window>, Constraint>;
 
 struct Refused {
@@ -77,7 +77,7 @@ TEST(RefusedJoint, HasATableThatGoesBack) {
 template <class G>
 using Ideal = Joint<G, Constraint>;
 using Motor = PrescribedAngle<Ramp>;
-using Ramming = PrescribedSlide<Ramp>;
+using Ramming = PrescribedTranslation<Ramp>;
 Ramp const ramp{.target = 1.0, .duration = 1.0};
 
 /// A rigid body, the ground, and joints between them.
@@ -105,7 +105,7 @@ struct Joined {
 };
 
 TEST(RefusedJoint, LeavesItsAxisOut) {
-  Joined<Rigid<>, Revolute, Cylindrical, Prismatic, Screw, PointOnLine, PointInPlane, PlaneOnPlane, ParallelAxes,
+  Joined<Rigid<>, Revolute, Cylindrical, Prismatic, Screw, PointOnLine, PointInPlane, PlanarJoint, ParallelAxes,
          Universal, RelativeCoordinates, Gear, RackAndPinion, RollingDisc, KnifeEdge, Motor, Ramming>
       space(Rigid<>(1.0, Mat3::Identity()));
   std::string const hint =
@@ -113,7 +113,7 @@ TEST(RefusedJoint, LeavesItsAxisOut) {
       "configuration, such as {0, 0, 1}.";
   EXPECT_EQ(space(Revolute{}, "pin"), "\"pin\": Revolute: the axis " + hint);
   EXPECT_EQ(space(Motor{.law = ramp}, "drive"), "\"drive\": PrescribedAngle: the axis " + hint);
-  EXPECT_EQ(space(Ramming{.law = ramp}, "ram"), "\"ram\": PrescribedSlide: the axis " + hint);
+  EXPECT_EQ(space(Ramming{.law = ramp}, "ram"), "\"ram\": PrescribedTranslation: the axis " + hint);
   EXPECT_EQ(space(PointInPlane{}, "foot"), "\"foot\": PointInPlane: the normal " + hint);
   EXPECT_EQ(space(Universal{.first = {1, 0, 0}}, "cross"), "\"cross\": Universal: the second axis " + hint);
   Gear const gear{.teeth_a = 1, .teeth_b = 1, .axis = {0, 0, 1}};
@@ -127,7 +127,7 @@ TEST(RefusedJoint, LeavesItsAxisOut) {
   EXPECT_EQ(space(KnifeEdge{}, "blade"), "\"blade\": KnifeEdge: the direction across " + hint);
   for (std::string const& said :
        {space(Cylindrical{}, "it"), space(Prismatic{}, "it"), space(Screw{.pitch = 0.1}, "it"),
-        space(PointOnLine{}, "it"), space(PlaneOnPlane{}, "it"), space(ParallelAxes{}, "it"),
+        space(PointOnLine{}, "it"), space(PlanarJoint{}, "it"), space(ParallelAxes{}, "it"),
         space(RelativeCoordinates{}, "it"), space(Gear{.teeth_a = 1, .teeth_b = 1}, "it")})
     EXPECT_TRUE(has(said, hint)) << said;
 }
@@ -137,7 +137,7 @@ TEST(RefusedJoint, NeedsNoAxisOfATurnInThePlane) {
   Joined<planar::Rigid, Motor, RelativeCoordinates, Ramming, PointInPlane> plane(planar::Rigid(1.0, 1.0));
   EXPECT_EQ(plane(Motor{.law = ramp}, "drive"), "");
   EXPECT_EQ(plane(RelativeCoordinates{}, "mount"), "");
-  EXPECT_TRUE(has(plane(Ramming{.law = ramp}, "ram"), "PrescribedSlide: the axis is not given"));
+  EXPECT_TRUE(has(plane(Ramming{.law = ramp}, "ram"), "PrescribedTranslation: the axis is not given"));
   EXPECT_TRUE(has(plane(PointInPlane{}, "foot"), "PointInPlane: the normal is not given"));
 }
 

@@ -5,7 +5,7 @@
 
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/integrators/energy_momentum.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/radau.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/joint.hpp>
@@ -29,7 +29,7 @@ struct Any {
   std::vector<double> breakpoints = {};
 
   Motion operator()(double t) const { return motion(t); }
-  std::vector<double> corners() const { return breakpoints; }
+  std::vector<double> breakpoints() const { return breakpoints; }
 };
 Any step_to(double value) {
   return {[=](double t) { return Motion{t < 0.5 ? 0.0 : value, 0.0, 0.0}; }};
@@ -59,11 +59,11 @@ struct Said {
   double t, angle;
 };
 template <class I>
-Said said(I const& integrator, Any const& law, double h = 1e-3, std::vector<double> const& corners = {}) {
+Said said(I const& integrator, Any const& law, double h = 1e-3, std::vector<double> const& breakpoints = {}) {
   Driven driven(law);
   std::string message;
   try {
-    simulate(driven.model, driven.x, integrator, {.until = 1.0, .step = h, .corners = corners}).run();
+    simulate(driven.model, driven.x, integrator, {.end_time = 1.0, .step = h, .breakpoints = breakpoints}).run();
   } catch (InvalidInput const& error) {
     message = error.what();
   }
@@ -85,7 +85,7 @@ void expect_refused_at_jumps(I const& integrator) {
 }
 
 TEST(LawWatch, RefusesAJumpThatIsNotDeclaredUnderEveryIntegrator) {
-  expect_refused_at_jumps(GeneralizedAlpha{});
+  expect_refused_at_jumps(GeneralisedAlpha{});
   expect_refused_at_jumps(RungeKutta4<Projection>{});
   expect_refused_at_jumps(Radau{});
   expect_refused_at_jumps(EnergyMomentum{});
@@ -97,17 +97,17 @@ TEST(LawWatch, RefusesDerivativesOfAnotherFunction) {
   Any const without_acceleration{
       [](double t) { return Motion{0.1 * (1.0 - std::cos(5.0 * t)), 0.5 * std::sin(5.0 * t)}; }};
   for (Any const& law : {without_rate, half_the_rate}) {
-    EXPECT_TRUE(has(said(GeneralizedAlpha{}, law).message, "joint \"drive\""));
+    EXPECT_TRUE(has(said(GeneralisedAlpha{}, law).message, "joint \"drive\""));
     EXPECT_TRUE(has(said(RungeKutta4<Projection>{}, law).message, "Give the derivatives"));
     EXPECT_LT(said(Radau{}, law).t, 0.02);
   }
-  EXPECT_TRUE(has(said(GeneralizedAlpha{}, without_acceleration).message, "the prescribed rate"));
+  EXPECT_TRUE(has(said(GeneralisedAlpha{}, without_acceleration).message, "the prescribed rate"));
 }
 
 TEST(LawWatch, AcceptsABreakpointThatIsDeclared) {
   Any declared = kink;
   declared.breakpoints = {0.5};
-  EXPECT_EQ(said(GeneralizedAlpha{}, declared).message, "");
+  EXPECT_EQ(said(GeneralisedAlpha{}, declared).message, "");
   EXPECT_EQ(said(EnergyMomentum{}, declared).message, "");
   Said const s = said(RungeKutta4<Projection>{}, kink, 1e-3, {0.5});  // declared in the options of the run
   EXPECT_EQ(s.message, "");
@@ -125,7 +125,7 @@ TEST(LawWatch, RefusesAJumpOfTheValueAtABreakpointOfTheRun) {
 // An angle may restart at zero after a full turn.
 TEST(LawWatch, AcceptsWholeTurns) {
   Any const turns{[](double t) { return Motion{std::fmod(40.0 * t, 2.0 * pi), 40.0, 0.0}; }};
-  EXPECT_EQ(said(GeneralizedAlpha{}, turns).message, "");
+  EXPECT_EQ(said(GeneralisedAlpha{}, turns).message, "");
 }
 
 // Functions of time that oscillate within a step, and functions whose second derivative jumps.
@@ -139,9 +139,9 @@ TEST(LawWatch, AcceptsLawsThatStepsDoNotResolve) {
     EXPECT_EQ(said(Radau{}, fast, 1e-2).message, "") << phase;
   }
   Ramp const rounded{.target = 0.1, .duration = 0.3, .start = 0.35, .rounding = 1e-3};
-  EXPECT_EQ(said(GeneralizedAlpha{}, {[=](double t) { return rounded(t); }}, 5e-3).message, "");
+  EXPECT_EQ(said(GeneralisedAlpha{}, {[=](double t) { return rounded(t); }}, 5e-3).message, "");
   SmoothRamp const smooth{.target = 1.0, .duration = 0.2, .start = 0.301};
-  EXPECT_EQ(said(GeneralizedAlpha{}, {[=](double t) { return smooth(t); }}, 1e-2).message, "");
+  EXPECT_EQ(said(GeneralisedAlpha{}, {[=](double t) { return smooth(t); }}, 1e-2).message, "");
 }
 
 }  // namespace law_watch_test

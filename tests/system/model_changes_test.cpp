@@ -2,7 +2,7 @@
 
 #include <memory>
 #include <polybody/bodies/rigid/planar_rigid.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/radau.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/io/surface.hpp>
@@ -27,7 +27,7 @@ using Pin = Joint<planar::Revolute, Policy>;
 template <class Policy>
 using Bars = Model<Bodies<planar::Rigid>, Joints<Pin<Policy>>>;
 
-RunOptions const options{.until = 0.1, .step = 0.01};
+RunOptions const options{.end_time = 0.1, .step = 0.01};
 char const* const grown = "was added to the model while a run, system or recorder refers to it";
 char const* const moved = "The model was moved to another object while a run, system or recorder refers to it";
 char const* const ended = "The model was destroyed or assigned to while a run, system or recorder refers to it";
@@ -93,17 +93,17 @@ void expect_stops(I const& integrator) {
 }
 
 TEST(ModelChanges, StopARunInASentence) {
-  expect_stops<Constraint>(GeneralizedAlpha{});
+  expect_stops<Constraint>(GeneralisedAlpha{});
   expect_stops<Constraint>(Radau{});
   expect_stops<Constraint>(RungeKutta4<Projection>{});
 }
 TEST(ModelChanges, StopARunInJointCoordinates) {
-  expect_stops<Recursive>(GeneralizedAlpha{});
-  expect_stops<Recursive>(RungeKutta4<>{});
+  expect_stops<JointCoordinates>(GeneralisedAlpha{});
+  expect_stops<JointCoordinates>(RungeKutta4<>{});
 }
 TEST(ModelChanges, StopARunOfATreeThatIsItsOwnSolver) {
-  using ByBodies = RecursiveBy<recursive::ArticulatedBody>;
-  expect_stops<ByBodies>(GeneralizedAlpha{});
+  using ByBodies = JointCoordinatesBy<joint_coordinates::ArticulatedBody>;
+  expect_stops<ByBodies>(GeneralisedAlpha{});
   expect_stops<ByBodies>(RungeKutta4<>{});
 }
 
@@ -112,7 +112,7 @@ TEST(ModelChanges, OfACopyLeaveARunAlone) {
   auto const last = [](bool copied) {
     auto model = bar();
     State x = model.reference_state();
-    auto run = simulate(model, x, GeneralizedAlpha{}, options);
+    auto run = simulate(model, x, GeneralisedAlpha{}, options);
     run.advance();
     if (copied) {
       auto copy = model;
@@ -141,7 +141,7 @@ TEST(ModelChanges, StopSystemsAuditsAndRecorders) {
   grow(*model);
   auto const expect = [&](char const* sentence) {
     EXPECT_TRUE(has(refusal([&] { system.evaluate(x.q, x.v, x.t); }), sentence));
-    EXPECT_TRUE(has(refusal([&] { (void)violation(system, x); }), sentence));
+    EXPECT_TRUE(has(refusal([&] { (void)largest_violation(system, x); }), sentence));
     EXPECT_TRUE(has(refusal([&] { fresh.start(x); }), sentence));
     EXPECT_TRUE(has(refusal([&] { audit.record(next); }), sentence));
     EXPECT_TRUE(has(refusal([&] { recorder.record(next); }), sentence));
@@ -159,7 +159,7 @@ TEST(ModelChanges, BeforeARunBeginsAreNoMatter) {
   grow(model);
   auto const there = std::move(model);
   State x = there.reference_state();
-  EXPECT_EQ(simulate(there, x, GeneralizedAlpha{}, options).run().steps, 10);
+  EXPECT_EQ(simulate(there, x, GeneralisedAlpha{}, options).run().steps, 10);
 }
 
 TEST(ModelChanges, OfAnEmptiedModelAreAsOfANewOne) {
@@ -167,12 +167,12 @@ TEST(ModelChanges, OfAnEmptiedModelAreAsOfANewOne) {
   auto const there = std::move(model);
   State none = model.reference_state();  // NOLINT(bugprone-use-after-move): the state after a move is what is tested
   EXPECT_EQ(none.q.size(), 0);
-  EXPECT_TRUE(has(refusal([&] { (void)simulate(model, none, GeneralizedAlpha{}, options); }), "no body that moves"));
+  EXPECT_TRUE(has(refusal([&] { (void)simulate(model, none, GeneralisedAlpha{}, options); }), "no body that moves"));
   auto const a = model.add(planar::Rigid(1, 0.1, Placement::planar(0.5, 0)), "a");
   model.connect(Pin<Constraint>{}, model.ground().at({0, 0, 0}), a.at(Vec2(-0.5, 0)), "pin");
   State x = model.reference_state(), y = there.reference_state();
-  simulate(model, x, GeneralizedAlpha{}, options).run();
-  simulate(there, y, GeneralizedAlpha{}, options).run();
+  simulate(model, x, GeneralisedAlpha{}, options).run();
+  simulate(there, y, GeneralisedAlpha{}, options).run();
   EXPECT_EQ(x.q, y.q);
 }
 
@@ -180,10 +180,10 @@ TEST(ModelChanges, OfAnEmptiedModelAreAsOfANewOne) {
 template <class M>
 concept TakesTemporaries = std::constructible_from<System, M> || std::constructible_from<EnergyAudit, M> ||
                            std::constructible_from<LoadRecorder, M> || std::constructible_from<Visual, M> ||
-                           requires(M model) { question_system(std::move(model)); } ||
-                           requires(M model) { run_systems<GeneralizedAlpha>(std::move(model)); } ||
+                           requires(M model) { observation_system(std::move(model)); } ||
+                           requires(M model) { run_systems<GeneralisedAlpha>(std::move(model)); } ||
                            requires(M model) { stepped_system(std::move(model)); } ||
-                           requires(M model) { system_for<GeneralizedAlpha>(std::move(model)); };
+                           requires(M model) { system_for<GeneralisedAlpha>(std::move(model)); };
 static_assert(!TakesTemporaries<Bars<Constraint>> && !TakesTemporaries<Bars<Constraint> const>);
 static_assert(std::constructible_from<EnergyAudit, Bars<Constraint>&> &&
               std::constructible_from<Visual, Bars<Constraint> const&>);

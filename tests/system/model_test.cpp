@@ -32,10 +32,10 @@ TEST(Model, CountsWhatWasAdded) {
   model.connect(Pin{}, a.at(Vec2(1, 0)), b.at(Vec2(0, 0)));
   model.connect(Drive{{.law = {.target = 1.0, .duration = 1.0}}, {}}, a.at(Vec2(0, 0)), b.at(Vec2(0, 0)));
   EXPECT_EQ(model.body_count(), 2);
-  EXPECT_EQ(model.speeds(), 6);
+  EXPECT_EQ(model.velocities(), 6);
   EXPECT_EQ(model.rows(), 5);
   EXPECT_EQ(model.markers(), 6);
-  EXPECT_EQ(census(model).degrees_of_freedom, 1);
+  EXPECT_EQ(problem_size(model).degrees_of_freedom, 1);
 }
 
 TEST(Model, NamesWhatHasNoName) {
@@ -153,8 +153,8 @@ TEST(Model, ACopyMovesAsTheOriginal) {
   model.connect(Pin{}, model.ground().at({0, 0, 0}), a.at(Vec2(-0.5, 0)));
   Plane const copy = model;
   State x = model.reference_state(), y = copy.reference_state();
-  simulate(model, x, RungeKutta4<Projection>{}, {.until = 0.1, .step = 0.01}).run();
-  simulate(copy, y, RungeKutta4<Projection>{}, {.until = 0.1, .step = 0.01}).run();
+  simulate(model, x, RungeKutta4<Projection>{}, {.end_time = 0.1, .step = 0.01}).run();
+  simulate(copy, y, RungeKutta4<Projection>{}, {.end_time = 0.1, .step = 0.01}).run();
   EXPECT_EQ(x.q, y.q);
 }
 

@@ -8,8 +8,8 @@
 #include <polybody/joints/revolute_pin.hpp>
 #include <polybody/joints/universal.hpp>
 #include <polybody/joints/weld.hpp>
+#include <polybody/system/make_operations.hpp>
 #include <polybody/system/model.hpp>
-#include <polybody/system/model_entries.hpp>
 #include <polybody/system/system.hpp>
 
 using namespace polybody;
@@ -32,8 +32,8 @@ void expect_power_of_rates(G const& geometry) {
   State x = model.reference_state();
   System s(model);
   auto const number = [](Index i) { return std::sin(1.7 * double(i) + 0.4); };
-  VecX const moved = VecX::NullaryExpr(s.speeds(), number),
-             rates = VecX::NullaryExpr(s.speeds(), [&](Index i) { return number(i + 30); });
+  VecX const moved = VecX::NullaryExpr(s.velocities(), number),
+             rates = VecX::NullaryExpr(s.velocities(), [&](Index i) { return number(i + 30); });
   VecX const lambda = VecX::NullaryExpr(s.rows(), [&](Index i) { return number(i + 70); });
   VecX q = x.q, force = x.v, rate(s.rows());
   s.plus(x.q, moved, q);
@@ -48,7 +48,7 @@ TEST(OppositeEnds, HaveThePowerOfTheRates) {
   expect_power_of_rates(Revolute{.axis = Vec3::UnitY()});
   expect_power_of_rates(Weld{});
   expect_power_of_rates(Spherical{});
-  expect_power_of_rates(Orientation{});
+  expect_power_of_rates(ConstantOrientation{});
   expect_power_of_rates(ParallelAxes{.axis = Vec3::UnitX()});
   expect_power_of_rates(Universal{.first = Vec3::UnitX(), .second = Vec3::UnitY()});
   expect_power_of_rates(RevolutePin{.distance = 0.2, .axis = Vec3::UnitZ()});

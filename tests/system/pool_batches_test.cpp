@@ -12,7 +12,8 @@ using namespace polybody;
 
 namespace pool_batches_test {
 
-static_assert(ComparesElements<AncfCable<>> && ComparesElements<AncfBeam<ElasticLine>> && !ComparesElements<Rigid<>>);
+static_assert(ComparableElements<AncfCable<>> && ComparableElements<AncfBeam<ElasticLine>> &&
+              !ComparableElements<Rigid<>>);
 
 Bar bar(double y, double young = 1e7) {
   return {.length = 0.3,
@@ -87,22 +88,22 @@ template <class B>
 void expect_sums_of_bodies(std::vector<B> const& all) {
   auto const model = bodies(all);
   State const x = swaying(model.reference_state());
-  System system(model, with<Entries::implicit_step>);
+  System system(model, with<Capabilities::implicit_step>);
   system.evaluate(x.q, x.v, 0.0);
-  VecX r(model.speeds());
+  VecX r(model.velocities());
   system.residual(x.a, x.lambda, r);
-  DenseSink sum{MatX::Zero(model.speeds(), model.speeds())};
+  DenseSink sum{MatX::Zero(model.velocities(), model.velocities())};
   BlockSink sink(sum);
   system.tangent({1.5, 0.1, 0.7}, SecondOrder::omitted, x.lambda, sink);
 
   Index first = 0;
   for (B const& body : all) {
-    Index const n = body.speeds();
+    Index const n = body.velocities();
     auto const only = bodies(std::vector<B>{body});
     State part = only.reference_state();
     part.q = x.q.segment(first, n);
     part.v = x.v.segment(first, n);
-    System alone(only, with<Entries::implicit_step>);
+    System alone(only, with<Capabilities::implicit_step>);
     alone.evaluate(part.q, part.v, 0.0);
     VecX of_part(n);
     alone.residual(VecX(x.a.segment(first, n)), part.lambda, of_part);

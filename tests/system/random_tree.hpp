@@ -4,12 +4,12 @@
 
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/forces/spring_damper.hpp>
+#include <polybody/joints/constant_orientation.hpp>
 #include <polybody/joints/cylindrical.hpp>
-#include <polybody/joints/orientation.hpp>
-#include <polybody/joints/plane_on_plane.hpp>
+#include <polybody/joints/planar_joint.hpp>
 #include <polybody/joints/point_in_plane.hpp>
 #include <polybody/joints/point_on_line.hpp>
-#include <polybody/joints/policies/recursive.hpp>
+#include <polybody/joints/policies/joint_coordinates.hpp>
 #include <polybody/joints/prismatic.hpp>
 #include <polybody/joints/revolute.hpp>
 #include <polybody/joints/screw.hpp>
@@ -21,7 +21,7 @@
 namespace random_tree {
 
 using namespace polybody;
-using ByBodies = RecursiveBy<recursive::ArticulatedBody>;
+using ByBodies = JointCoordinatesBy<joint_coordinates::ArticulatedBody>;
 
 struct Draws {
   std::mt19937 engine;
@@ -40,8 +40,8 @@ struct Tree {
   using J = Joint<G, Policy>;
   using Springs = std::conditional_t<sprung, Forces<SpringDamper>, Forces<>>;
   Model<Bodies<Body>,
-        Joints<J<Revolute>, J<Prismatic>, J<Cylindrical>, J<Spherical>, J<Universal>, J<Screw>, J<PlaneOnPlane>,
-               J<PointOnLine>, J<PointInPlane>, J<Orientation>, J<Weld>>,
+        Joints<J<Revolute>, J<Prismatic>, J<Cylindrical>, J<Spherical>, J<Universal>, J<Screw>, J<PlanarJoint>,
+               J<PointOnLine>, J<PointInPlane>, J<ConstantOrientation>, J<Weld>>,
         Springs>
       model{Gravity{1.0, -2.0, -9.81}};
   std::vector<BodyHandle<Body>> bodies;
@@ -83,13 +83,13 @@ struct Tree {
       case 5:
         return connect(J<Screw>{{.pitch = draw.number(-0.3, 0.3), .axis = draw.axis()}, {}}, draw, carrier, carried);
       case 6:
-        return connect(J<PlaneOnPlane>{{.normal = draw.axis()}, {}}, draw, carrier, carried);
+        return connect(J<PlanarJoint>{{.normal = draw.axis()}, {}}, draw, carrier, carried);
       case 7:
         return connect(J<PointOnLine>{{.axis = draw.axis()}, {}}, draw, carrier, carried);
       case 8:
         return connect(J<PointInPlane>{{.normal = draw.axis()}, {}}, draw, carrier, carried);
       case 9:
-        return connect(J<Orientation>{}, draw, carrier, carried);
+        return connect(J<ConstantOrientation>{}, draw, carrier, carried);
       default:
         return connect(J<Weld>{}, draw, carrier, carried);
     }
@@ -129,10 +129,10 @@ State moving(T const& tree, unsigned seed) {
   x.q = moved;
   for (double& d : x.v) d = draw.number(-2.0, 2.0);
   ForwardDynamics<>(system).accelerations(system, {x.q, x.v, 0.0}, x.a, x.lambda);
-  State whole;
+  State full;
   VecX room;
-  expand(system, x, whole, room);
-  return whole;
+  expand(system, x, full, room);
+  return full;
 }
 
 }  // namespace random_tree

@@ -5,7 +5,7 @@
 #include <polybody/bodies/ffr/ffr.hpp>
 #include <polybody/bodies/ffr/planar_ffr.hpp>
 #include <polybody/bodies/rigid/planar_rigid.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/planar/prismatic.hpp>
 #include <polybody/joints/planar/revolute.hpp>
@@ -22,7 +22,7 @@ using namespace polybody;
 namespace recursive_ffr_test {
 
 using random_tree::Draws;
-using Reduced = RecursiveBy<recursive::Reduced>;
+using Reduced = JointCoordinatesBy<joint_coordinates::DenseMatrix>;
 
 Bar const bar{
     .length = 0.5,
@@ -187,12 +187,12 @@ void expect_as_multipliers(char const* world, char const* way, double bound) {
 // With random deformations the bodies accelerate by 1e7 m/s². `Reduced` adds the forces of all bodies at the roots,
 // and their sum is small. Another order of summation changes its error by a factor of a hundred, up to 1.5e-9.
 TEST(RecursiveFfr, TreesInSpaceAccelerateAsMultipliersSay) {
-  expect_as_multipliers<InSpace, Recursive>("in space", "Recursive", 1e-9);
-  expect_as_multipliers<InSpace, Reduced>("in space", "RecursiveBy<Reduced>", 1e-8);
+  expect_as_multipliers<InSpace, JointCoordinates>("in space", "JointCoordinates", 1e-9);
+  expect_as_multipliers<InSpace, Reduced>("in space", "JointCoordinatesBy<DenseMatrix>", 1e-8);
 }
 TEST(RecursiveFfr, TreesInThePlaneAccelerateAsMultipliersSay) {
-  expect_as_multipliers<InPlane, Recursive>("in the plane", "Recursive", 1e-9);
-  expect_as_multipliers<InPlane, Reduced>("in the plane", "RecursiveBy<Reduced>", 1e-9);
+  expect_as_multipliers<InPlane, JointCoordinates>("in the plane", "JointCoordinates", 1e-9);
+  expect_as_multipliers<InPlane, Reduced>("in the plane", "JointCoordinatesBy<DenseMatrix>", 1e-9);
 }
 
 /// Three bars in a row that fall from the horizontal, each on the flexible end of the previous one.
@@ -221,14 +221,14 @@ struct Row {
 TEST(RecursiveFfr, ImplicitStepsHaveTheirOrder) {
   auto const tip = [](auto policy, auto const& integrator, double h) {
     Row<decltype(policy)> row;
-    simulate(row.model, row.x, integrator, {.until = 0.1, .step = h}).run();
+    simulate(row.model, row.x, integrator, {.end_time = 0.1, .step = h}).run();
     return position(row.model, row.x, row.links.back().at(bar.length));
   };
-  GeneralizedAlpha const alpha{.rho_inf = 0.6, .tolerance = 1e-9};
+  GeneralisedAlpha const alpha{.rho_inf = 0.6, .tolerance = 1e-9};
   Vec3 const exact = tip(Constraint{}, alpha, 2.5e-5);
   double last = 0.0;
   for (double const h : {1e-3, 5e-4, 2.5e-4, 1.25e-4}) {
-    double const off = (tip(Recursive{}, alpha, h) - exact).norm();
+    double const off = (tip(JointCoordinates{}, alpha, h) - exact).norm();
     EXPECT_LT(off, 1.5 * (tip(Constraint{}, alpha, h) - exact).norm());
     if (last > 0.0) {
       EXPECT_NEAR(std::log2(last / off), 2.0, 0.3);

@@ -5,13 +5,13 @@
 #include <polybody/bodies/ancf/planar_ancf_cable.hpp>
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/forces/spring_damper.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/planar/prismatic.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/planar/weld.hpp>
 #include <polybody/joints/point_in_plane.hpp>
-#include <polybody/joints/policies/recursive.hpp>
+#include <polybody/joints/policies/joint_coordinates.hpp>
 #include <polybody/run/observe.hpp>
 #include <polybody/run/simulate.hpp>
 
@@ -23,8 +23,8 @@ using namespace polybody;
 
 namespace recursive_loop_test {
 
-using Reduced = RecursiveBy<recursive::Reduced>;
-using ByBodies = RecursiveBy<recursive::ArticulatedBody>;
+using Reduced = JointCoordinatesBy<joint_coordinates::DenseMatrix>;
+using ByBodies = JointCoordinatesBy<joint_coordinates::ArticulatedBody>;
 
 /// A planar four-bar linkage, with a separate policy for the last pin.
 template <class Policy>
@@ -68,18 +68,18 @@ struct FourBar {
 template <class Policy, class I>
 FourBar<Policy> run_four_bar(I integrator, double step) {
   FourBar<Policy> f;
-  simulate(f.model, f.x, integrator, {.until = 0.5, .step = step}).run();
+  simulate(f.model, f.x, integrator, {.end_time = 0.5, .step = step}).run();
   return f;
 }
 
 TEST(RecursiveLoop, LoopsCloseByAnotherPolicy) {
   auto const tied = run_four_bar<Constraint>(RungeKutta4<Projection>{}, 1e-3);
-  auto const open = run_four_bar<Recursive>(RungeKutta4<Projection>{}, 1e-3);
+  auto const open = run_four_bar<JointCoordinates>(RungeKutta4<Projection>{}, 1e-3);
   auto const dense = run_four_bar<Reduced>(RungeKutta4<Projection>{}, 1e-3);
   auto const bodies = run_four_bar<ByBodies>(RungeKutta4<Projection>{}, 1e-3);
-  EXPECT_EQ(census(open.model).rows, 2);
-  EXPECT_EQ(census(open.model).speeds, 4);
-  EXPECT_EQ(census(open.model).degrees_of_freedom, 2);
+  EXPECT_EQ(problem_size(open.model).rows, 2);
+  EXPECT_EQ(problem_size(open.model).velocities, 4);
+  EXPECT_EQ(problem_size(open.model).degrees_of_freedom, 2);
   Vec3 const force = reaction(tied.model, tied.x, tied.last).f;
   EXPECT_GT(force.norm(), 1.0);
   System tied_system(tied.model);
@@ -97,7 +97,7 @@ TEST(RecursiveLoop, LoopsCloseByAnotherPolicy) {
     apart("force of the pin that closes a loop, of its size",
           (force - reaction(other.model, other.x, other.last).f).norm() / force.norm(), 1e-6, 1.0);
     System system(other.model);
-    EXPECT_LT(violation(system, other.x).position, 1e-11);
+    EXPECT_LT(largest_violation(system, other.x).position, 1e-11);
     EXPECT_NEAR(peak_joint_force(system, other.x), most, 1e-6 * most);
   };
   expect_same("augmented", open);
@@ -126,13 +126,13 @@ State run_on_lines() {
   }
   State x = model.reference_state();
   assemble(model, x);
-  simulate(model, x, RungeKutta4<Projection>{}, {.until = 0.3, .step = 1e-3}).run();
+  simulate(model, x, RungeKutta4<Projection>{}, {.end_time = 0.3, .step = 1e-3}).run();
   return x;
 }
 
 TEST(RecursiveLoop, JointOfBothWorldsKeepsToThePlane) {
   State const held = run_on_lines<Constraint>();
-  for (State const& x : {run_on_lines<Recursive>(), run_on_lines<Reduced>(), run_on_lines<ByBodies>()}) {
+  for (State const& x : {run_on_lines<JointCoordinates>(), run_on_lines<Reduced>(), run_on_lines<ByBodies>()}) {
     EXPECT_LT((held.q - x.q).norm(), 1e-8);
     EXPECT_LT((held.a - x.a).norm(), 1e-6 * held.a.norm());
     EXPECT_LT((held.lambda - x.lambda).norm(), 1e-6 * held.lambda.norm());
@@ -140,18 +140,18 @@ TEST(RecursiveLoop, JointOfBothWorldsKeepsToThePlane) {
 }
 
 TEST(RecursiveLoop, ImplicitStepsHaveTheirOrder) {
-  auto const exact = run_four_bar<Recursive>(RungeKutta4<Projection>{}, 5e-4);
+  auto const exact = run_four_bar<JointCoordinates>(RungeKutta4<Projection>{}, 5e-4);
   double last = 0.0;
   for (double const h : {4e-3, 2e-3, 1e-3}) {
-    double const off = (run_four_bar<Recursive>(GeneralizedAlpha{.rho_inf = 0.8}, h).x.q - exact.x.q).norm();
+    double const off = (run_four_bar<JointCoordinates>(GeneralisedAlpha{.rho_inf = 0.8}, h).x.q - exact.x.q).norm();
     if (last > 0.0) {
       EXPECT_NEAR(std::log2(last / off), 2.0, 0.15);
     }
     last = off;
   }
   EXPECT_GT(last, 1e-9);
-  auto const bodies = run_four_bar<ByBodies>(GeneralizedAlpha{.rho_inf = 0.8}, 1e-3);
-  auto const dense = run_four_bar<Reduced>(GeneralizedAlpha{.rho_inf = 0.8}, 1e-3);
+  auto const bodies = run_four_bar<ByBodies>(GeneralisedAlpha{.rho_inf = 0.8}, 1e-3);
+  auto const dense = run_four_bar<Reduced>(GeneralisedAlpha{.rho_inf = 0.8}, 1e-3);
   EXPECT_NEAR((bodies.x.q - exact.x.q).norm(), last, 0.01 * last);
   EXPECT_NEAR((dense.x.q - exact.x.q).norm(), last, 0.01 * last);
 }
@@ -171,10 +171,10 @@ TEST(RecursiveLoop, FlexibleBodiesHangOnATreeByAnotherPolicy) {
     model.connect(Pin{}, model.ground().at({0, 0, 0}), arm.at(Vec2(-0.5, 0)));
     model.connect(Clamp{}, arm.at(Vec2(0.5, 0)), beam.at(0.0));
     State x = model.reference_state();
-    simulate(model, x, GeneralizedAlpha{}, {.until = 0.3, .step = 1e-3}).run();
+    simulate(model, x, GeneralisedAlpha{}, {.end_time = 0.3, .step = 1e-3}).run();
     return position(model, x, beam.at(1.0));
   };
-  Vec3 const tied = tip(Constraint{}), free = tip(Recursive{});
+  Vec3 const tied = tip(Constraint{}), free = tip(JointCoordinates{});
   EXPECT_GT(std::abs(tied[1]), 0.1);
   held_within({"closed forms", "tip of a cable on a rigid arm [m]", By::itself, "Constraint",
                "joint coordinates and Constraint"},
@@ -184,7 +184,7 @@ TEST(RecursiveLoop, FlexibleBodiesHangOnATreeByAnotherPolicy) {
 // Discrete catenary (S11), in equilibrium: ten links of 0.1 m and 1 kg hang over 0.8 m; tan θᵢ = (V − m g (i + ½))/H.
 // The links stay at rest, and the reactions of the tree's pins are computed.
 TEST(RecursiveLoop, ChainHangsWithThePublishedForces) {
-  using Loop = FourBar<Recursive>;
+  using Loop = FourBar<JointCoordinates>;
   Loop::ModelType model{Gravity{0, -9.81, 0}};
   double const H = 33.0892370968, V = 49.05, length = 0.1;
   std::vector<ElementHandle<Loop::Pin>> pins;
@@ -204,11 +204,11 @@ TEST(RecursiveLoop, ChainHangsWithThePublishedForces) {
     r += half;
   }
   auto const closing = model.connect(Loop::Close{}, links.back().at(end), model.ground().at({0.8, 0, 0}));
-  EXPECT_EQ(census(model).speeds, 10);
-  EXPECT_EQ(census(model).rows, 2);
+  EXPECT_EQ(problem_size(model).velocities, 10);
+  EXPECT_EQ(problem_size(model).rows, 2);
   State x = model.reference_state();
   VecX const hanging = x.q;
-  simulate(model, x, GeneralizedAlpha{.rho_inf = 0.8}, {.until = 0.1, .step = 1e-2}).run();
+  simulate(model, x, GeneralisedAlpha{.rho_inf = 0.8}, {.end_time = 0.1, .step = 1e-2}).run();
   char const *const links_are = "10 rigid links on joint coordinates, generalised-α, 10 steps",
                     *by = "balance of each link";
   held_within({"S11", "places and turns of the hanging links [m, rad]", By::closed_form, by, links_are},
@@ -220,15 +220,16 @@ TEST(RecursiveLoop, ChainHangsWithThePublishedForces) {
 }
 
 TEST(RecursiveLoop, EventsSeeTheWholeState) {
-  using Pin = Joint<planar::Revolute, Recursive>;
+  using Pin = Joint<planar::Revolute, JointCoordinates>;
   Model<Bodies<planar::Rigid>, Joints<Pin>> model{Gravity{0, -9.81, 0}};
   auto const rod = model.add(planar::Rigid(1.0, 1.0 / 12.0, Placement::planar(0.5, 0.0)));
   model.connect(Pin{}, model.ground().at({0, 0, 0}), rod.at(Vec2(-0.5, 0)));
   State x = model.reference_state();
-  auto run = simulate(model, x, DormandPrince<>{.relative_tolerance = 1e-11, .absolute_tolerance = 1e-12},
-                      {.until = 5.0,
-                       .step = 1e-3,
-                       .events = {{.name = "below", .value = [](State const& s) { return s.q[0]; }, .stops = true}}});
+  auto run =
+      simulate(model, x, DormandPrince<>{.relative_tolerance = 1e-11, .absolute_tolerance = 1e-12},
+               {.end_time = 5.0,
+                .step = 1e-3,
+                .events = {{.name = "below", .value = [](State const& s) { return s.q[0]; }, .terminal = true}}});
   run.run();
   // a quarter of the period of amplitude π/2: K(½) √(2L/3g)
   held({"R1", "time from the level to the lowest place [s]", By::closed_form, "K(½) √(2L/3g)",
@@ -238,14 +239,15 @@ TEST(RecursiveLoop, EventsSeeTheWholeState) {
 }
 
 TEST(RecursiveLoop, NamesTheJointThatClosesALoop) {
-  using Pin = Joint<planar::Revolute, Recursive>;
+  using Pin = Joint<planar::Revolute, JointCoordinates>;
   Model<Bodies<planar::Rigid>, Joints<Pin>> model;
   auto const a = model.add(planar::Rigid(1.0, 0.1)), b = model.add(planar::Rigid(1.0, 0.1));
   model.connect(Pin{}, model.ground().at({0, 0, 0}), a.at(Vec2(0, 0)));
   model.connect(Pin{}, a.at(Vec2(0, 0)), b.at(Vec2(0, 0)));
   model.connect(Pin{}, b.at(Vec2(0, 0)), model.ground().at({0, 0, 0}), "closing pin");
   State x = model.reference_state();
-  std::string const why = refusal([&] { simulate(model, x, RungeKutta4<Projection>{}, {.until = 1.0, .step = 1e-3}); });
+  std::string const why =
+      refusal([&] { simulate(model, x, RungeKutta4<Projection>{}, {.end_time = 1.0, .step = 1e-3}); });
   EXPECT_TRUE(has(why, "\"closing pin\" closes a loop"));
   EXPECT_TRUE(has(why, "Constraint"));
 }
@@ -262,8 +264,9 @@ TEST(RecursiveLoop, EliminationByBodiesNamesAForceThatItCannotTake) {
   State x = model.reference_state();
   EXPECT_NO_THROW(
       // M alone has no such block
-      simulate(model, x, RungeKutta4<Projection>{}, {.until = 1e-2, .step = 1e-3}).run());
-  std::string const why = refusal([&] { simulate(model, x, GeneralizedAlpha{}, {.until = 1.0, .step = 1e-3}).run(); });
+      simulate(model, x, RungeKutta4<Projection>{}, {.end_time = 1e-2, .step = 1e-3}).run());
+  std::string const why =
+      refusal([&] { simulate(model, x, GeneralisedAlpha{}, {.end_time = 1.0, .step = 1e-3}).run(); });
   EXPECT_TRUE(has(why, "\"c\""));
   EXPECT_TRUE(has(why, "Augmented"));
 }
@@ -272,13 +275,13 @@ template <class Policy>
 RunReport fall_of_a_chain() {
   Chain<InPlane<Policy>> chain(64, bar_link(0.1));
   State x = chain.model.reference_state();
-  return simulate(chain.model, x, GeneralizedAlpha{.rho_inf = 0.8}, {.until = 1.0, .step = 1e-3}).run();
+  return simulate(chain.model, x, GeneralisedAlpha{.rho_inf = 0.8}, {.end_time = 1.0, .step = 1e-3}).run();
 }
 // With −Tᵀr as the residual instead of the r of the bodies, 419 factorisations instead of 295.
 TEST(RecursiveLoop, KeepsAFactorisationAsLongAsItsBodiesWouldDo) {
-  RunReport const narrow = fall_of_a_chain<Recursive>(), whole = fall_of_a_chain<Constraint>();
-  EXPECT_LT(double(narrow.factorisations), 1.25 * double(whole.factorisations));
-  EXPECT_LT(double(narrow.iterations), 1.1 * double(whole.iterations));
+  RunReport const reduced = fall_of_a_chain<JointCoordinates>(), full = fall_of_a_chain<Constraint>();
+  EXPECT_LT(double(reduced.factorisations), 1.25 * double(full.factorisations));
+  EXPECT_LT(double(reduced.iterations), 1.1 * double(full.iterations));
 }
 
 /// The largest unbalanced force in the states of a falling chain.
@@ -286,26 +289,27 @@ template <class Policy>
 double out_of_balance() {
   Chain<InPlane<Policy>> chain(16, bar_link(0.1));
   State x = chain.model.reference_state();
-  auto run = simulate(chain.model, x, GeneralizedAlpha{.rho_inf = 0.8},
-                      {.until = 0.5, .step = 1e-3, .events = {{.name = "first link below", .value = [](State const& s) {
-                                                                 return s.q[1] + 0.02;
-                                                               }}}});
-  System whole(chain.model);
-  VecX r = VecX::Zero(whole.speeds()), held = r;
+  auto run =
+      simulate(chain.model, x, GeneralisedAlpha{.rho_inf = 0.8},
+               {.end_time = 0.5, .step = 1e-3, .events = {{.name = "first link below", .value = [](State const& s) {
+                                                             return s.q[1] + 0.02;
+                                                           }}}});
+  System full(chain.model);
+  VecX r = VecX::Zero(full.velocities()), held = r;
   double worst = 0.0;
   for (State const& shown : run) {
-    whole.evaluate(shown.q, shown.v, shown.t);
-    whole.residual(shown.a, shown.lambda, r);
-    whole.rows_transposed_times(shown.lambda, held);
+    full.evaluate(shown.q, shown.v, shown.t);
+    full.residual(shown.a, shown.lambda, r);
+    full.rows_transposed_times(shown.lambda, held);
     worst = std::max(worst, r.norm() / held.norm());
   }
   return worst;
 }
 // Recorded states use the multipliers of the step. The balance of each body shows the error of the state.
 TEST(RecursiveLoop, StatesAreInBalanceWithTheMultipliersOfTheStep) {
-  double const narrow = out_of_balance<Recursive>(), whole = out_of_balance<Constraint>();
-  EXPECT_LT(whole, 1e-7);
-  EXPECT_LT(narrow, 10.0 * whole);
+  double const reduced = out_of_balance<JointCoordinates>(), full = out_of_balance<Constraint>();
+  EXPECT_LT(full, 1e-7);
+  EXPECT_LT(reduced, 10.0 * full);
 }
 
 }  // namespace recursive_loop_test

@@ -4,12 +4,12 @@
 
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
+#include <polybody/joints/constant_orientation.hpp>
 #include <polybody/joints/cylindrical.hpp>
-#include <polybody/joints/orientation.hpp>
-#include <polybody/joints/plane_on_plane.hpp>
+#include <polybody/joints/planar_joint.hpp>
 #include <polybody/joints/point_in_plane.hpp>
 #include <polybody/joints/point_on_line.hpp>
-#include <polybody/joints/policies/recursive.hpp>
+#include <polybody/joints/policies/joint_coordinates.hpp>
 #include <polybody/joints/prismatic.hpp>
 #include <polybody/joints/revolute.hpp>
 #include <polybody/joints/screw.hpp>
@@ -26,8 +26,8 @@ using namespace polybody;
 
 namespace recursive_test {
 
-using Reduced = RecursiveBy<recursive::Reduced>;
-using ByBodies = RecursiveBy<recursive::ArticulatedBody>;
+using Reduced = JointCoordinatesBy<joint_coordinates::DenseMatrix>;
+using ByBodies = JointCoordinatesBy<joint_coordinates::ArticulatedBody>;
 
 Rigid<> link(double x, double y) {
   return Rigid<>({.mass = 2.0,
@@ -41,7 +41,7 @@ struct Branched {
   using J = Joint<G, Policy>;
   using ModelType =
       Model<Bodies<Rigid<>>, Joints<J<Revolute>, J<Prismatic>, J<Cylindrical>, J<Spherical>, J<Universal>, J<Screw>,
-                                    J<PlaneOnPlane>, J<PointOnLine>, J<PointInPlane>, J<Orientation>, J<Weld>>>;
+                                    J<PlanarJoint>, J<PointOnLine>, J<PointInPlane>, J<ConstantOrientation>, J<Weld>>>;
   ModelType model{Gravity{1, -2, -9.81}};
   std::vector<BodyHandle<Rigid<>>> links;
 
@@ -54,10 +54,10 @@ struct Branched {
     hang(J<Spherical>{}, 2, 3);
     hang(J<Universal>{{.first = Vec3::UnitX(), .second = Vec3::UnitY()}}, 1, 4);
     hang(J<Screw>{{.pitch = 0.2, .axis = Vec3::UnitX()}}, 4, 5);
-    hang(J<PlaneOnPlane>{{.normal = Vec3::UnitY()}}, 4, 6);
+    hang(J<PlanarJoint>{{.normal = Vec3::UnitY()}}, 4, 6);
     hang(J<PointOnLine>{{.axis = Vec3::UnitX()}}, 6, 7);
     hang(J<PointInPlane>{{.normal = Vec3::UnitZ()}}, 5, 8);
-    hang(J<Orientation>{}, 3, 9);
+    hang(J<ConstantOrientation>{}, 3, 9);
     hang(J<Weld>{}, 9, 10);
   }
   template <class Joint>
@@ -89,15 +89,15 @@ struct Branched {
 };
 
 template <class Policy, class I>
-State moved(Branched<Policy> const& tree, I integrator, double until, double step) {
+State moved(Branched<Policy> const& tree, I integrator, double end_time, double step) {
   State x = tree.moving();
-  simulate(tree.model, x, integrator, {.until = until, .step = step}).run();
+  simulate(tree.model, x, integrator, {.end_time = end_time, .step = step}).run();
   return x;
 }
 
-TEST(Recursive, MovesEveryJointAsMultipliersDo) {
+TEST(JointCoordinates, MovesEveryJointAsMultipliersDo) {
   Branched<Constraint> const tied;
-  Branched<Recursive> const free;
+  Branched<JointCoordinates> const free;
   State const x = moved(tied, RungeKutta4<Projection>{}, 0.3, 1e-3),
               y = moved(free, RungeKutta4<Projection>{}, 0.3, 1e-3);
   // Both have an error of h⁴: the difference to twice the step gives its size (Richardson).
@@ -116,11 +116,11 @@ TEST(Recursive, MovesEveryJointAsMultipliersDo) {
   apart("multipliers", x.lambda, y.lambda, 1e-6);
 }
 
-TEST(Recursive, JointsHoldToRounding) {
-  Branched<Recursive> const free;
+TEST(JointCoordinates, JointsHoldToRounding) {
+  Branched<JointCoordinates> const free;
   State const y = moved(free, RungeKutta4<Projection>{}, 0.3, 1e-3);
   System system(free.model);
-  Violation const open = violation(system, y);
+  Violation const open = largest_violation(system, y);
   auto const gap = [](char const* what, double value, double tolerance) {
     held_within({"closed forms", what, By::closed_form, "rows hold", "joint coordinates, Runge–Kutta 4"}, value,
                 tolerance, {.scale = 1.0});
@@ -130,8 +130,8 @@ TEST(Recursive, JointsHoldToRounding) {
   gap("its second derivative", open.acceleration, 1e-9);
 }
 
-TEST(Recursive, ThreeWaysToSolveAreOne) {
-  State const x = moved(Branched<Recursive>(), RungeKutta4<Projection>{}, 0.1, 1e-3);
+TEST(JointCoordinates, ThreeWaysToSolveAreOne) {
+  State const x = moved(Branched<JointCoordinates>(), RungeKutta4<Projection>{}, 0.1, 1e-3);
   State const dense = moved(Branched<Reduced>(), RungeKutta4<Projection>{}, 0.1, 1e-3);
   State const bodies = moved(Branched<ByBodies>(), RungeKutta4<Projection>{}, 0.1, 1e-3);
   for (State const* y : {&dense, &bodies}) {
@@ -163,44 +163,44 @@ VecX answer(Branched<Policy> const& tree) {
   solver.solve(loads, out);
   return out;
 }
-TEST(Recursive, AnswersLoadsAlikeWhicheverWayItSolves) {
-  VecX const sparse = answer(Branched<Recursive>()), dense = answer(Branched<Reduced>()),
+TEST(JointCoordinates, AnswersLoadsAlikeWhicheverWayItSolves) {
+  VecX const sparse = answer(Branched<JointCoordinates>()), dense = answer(Branched<Reduced>()),
              bodies = answer(Branched<ByBodies>());
   EXPECT_LT((dense - sparse).norm(), 1e-10 * sparse.norm());
   EXPECT_LT((bodies - sparse).norm(), 1e-10 * sparse.norm());
 }
 
-TEST(Recursive, CountsJointCoordinates) {
+TEST(JointCoordinates, CountsJointCoordinates) {
   // 1 + 1 + 2 + 3 + 2 + 1 + 3 + 4 + 5 + 3 + 0 degrees of freedom; each of four balls has one coordinate more than
   // velocities
-  Census const c = census(Branched<Recursive>().model);
+  ProblemSize const c = problem_size(Branched<JointCoordinates>().model);
   auto const count = [](char const* what, Index found, Index counted) {
     held({"closed forms", what, By::closed_form, "counted", "joint coordinates"}, double(found), double(counted), 0.0);
   };
-  count("speeds of a tree of eleven joints", c.speeds, 25);
+  count("speeds of a tree of eleven joints", c.velocities, 25);
   count("coordinates of a tree of eleven joints", c.coordinates, 28);
   EXPECT_EQ(c.rows, 0);
   count("degrees of freedom of a tree of eleven joints", c.degrees_of_freedom, 25);
-  EXPECT_EQ(census(Branched<Constraint>().model).degrees_of_freedom, 25);
+  EXPECT_EQ(problem_size(Branched<Constraint>().model).degrees_of_freedom, 25);
 }
 
-TEST(Recursive, NarrowAndWideStatesAreTheSame) {
-  Branched<Recursive> const free;
+TEST(JointCoordinates, NarrowAndWideStatesAreTheSame) {
+  Branched<JointCoordinates> const free;
   State const x = moved(free, RungeKutta4<Projection>{}, 0.2, 1e-3);
   System system = stepped_system(free.model);
-  State const narrow = reduce(system, x);
+  State const reduced = reduce(system, x);
   State again = x;
   again.lambda.setZero();
   VecX scratch;
-  expand(system, narrow, again, scratch);
+  expand(system, reduced, again, scratch);
   EXPECT_LT((x.q - again.q).norm(), 1e-12);
   EXPECT_LT((x.v - again.v).norm(), 1e-12 * x.v.norm());
   EXPECT_LT((x.a - again.a).norm(), 1e-11 * x.a.norm());
   EXPECT_LT((x.lambda - again.lambda).norm(), 1e-10 * x.lambda.norm());
 }
 
-TEST(Recursive, FreeTreesKeepTheirMomentum) {
-  using Ball = Joint<Spherical, Recursive>;
+TEST(JointCoordinates, FreeTreesKeepTheirMomentum) {
+  using Ball = Joint<Spherical, JointCoordinates>;
   Model<Bodies<Rigid<>>, Joints<Ball>> model;
   auto const a = model.add(Rigid<>(2.0, Vec3(0.02, 0.05, 0.06).asDiagonal()));
   auto const b = model.add(Rigid<>(1.0, Vec3(0.01, 0.02, 0.02).asDiagonal(), Placement::at({0.5, 0, 0})));
@@ -210,7 +210,7 @@ TEST(Recursive, FreeTreesKeepTheirMomentum) {
   model.set_velocity(x, b, {0, 1, 0}, {0, 0, 2});
   x.v.segment<3>(model.entry(b).v0 + 3) += Vec3(3, -1, 0.5);  // b rotates relative to a
   x.v.segment<3>(model.entry(b).v0) += Vec3(3, -1, 0.5).cross(Vec3(0.25, 0, 0));
-  EXPECT_EQ(census(model).degrees_of_freedom, 9);
+  EXPECT_EQ(problem_size(model).degrees_of_freedom, 9);
   auto const momenta = [&] {
     Vec6 p = Vec6::Zero();
     for (auto const* body : {&a, &b}) {
@@ -225,7 +225,7 @@ TEST(Recursive, FreeTreesKeepTheirMomentum) {
   };
   Vec6 const before = momenta();
   double const energy_before = energy(model, x).total();
-  simulate(model, x, RungeKutta4<>{}, {.until = 1.0, .step = 1e-3}).run();
+  simulate(model, x, RungeKutta4<>{}, {.end_time = 1.0, .step = 1e-3}).run();
   Claim const invariant{"I3", "momenta and energy of two free bodies on a ball joint", By::closed_form, "invariant",
                         "joint coordinates, Runge–Kutta 4"};
   held_within(invariant, (momenta() - before).norm(), 1e-9, {"momenta", before.norm()});

@@ -83,7 +83,7 @@ Asked ask(M const& m) {
     VecXOf<D> moved_q = q, r(x.v.size());
     model->for_each_body([&](auto const& e) {
       Index const n = e.body.coordinates();
-      e.body.template plus<D>(detail::body_part(q, e.q0, n), detail::body_part(delta, e.v0, e.body.speeds()),
+      e.body.template plus<D>(detail::body_part(q, e.q0, n), detail::body_part(delta, e.v0, e.body.velocities()),
                               detail::body_part_of(moved_q, e.q0, n));
     });
     BasicSystem<D> dual(*model);

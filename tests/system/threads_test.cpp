@@ -9,7 +9,7 @@
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/forces/contact.hpp>
 #include <polybody/forces/contact_group.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/run/simulate.hpp>
 
 #include "support/chain.hpp"
@@ -20,17 +20,17 @@ using namespace polybody;
 namespace threads_test {
 
 template <class M>
-State run(M const& model, int threads, double until) {
+State run(M const& model, int threads, double end_time) {
   State x = model.reference_state();
-  simulate(model, x, GeneralizedAlpha{}, {.until = until, .step = 1e-3, .threads = threads}).run();
+  simulate(model, x, GeneralisedAlpha{}, {.end_time = end_time, .step = 1e-3, .threads = threads}).run();
   return x;
 }
 
 template <class M>
-void expect_same_bits(M const& model, double until) {
-  State const alone = run(model, 1, until);
+void expect_same_bits(M const& model, double end_time) {
+  State const alone = run(model, 1, end_time);
   for (int const threads : {2, 3, 4}) {
-    State const shared = run(model, threads, until);
+    State const shared = run(model, threads, end_time);
     EXPECT_EQ(shared.q, alone.q) << threads;
     EXPECT_EQ(shared.v, alone.v) << threads;
     EXPECT_EQ(shared.a, alone.a) << threads;
@@ -97,9 +97,9 @@ TEST(Threads, GiveTheSameBitsForContacts) {
   auto const drum = model.add(Rigid<>(50.0, Mat3::Identity(), Placement::at({10.0, 0, -0.2})), "drum");
   auto const balls = model.apply(Balls{}, middles, "balls");
   SpringDamperContact const law{.stiffness = 1e4, .damping = 20.0};
-  model.pair_with(balls, OnGround{{.radius = 0.1}, law, {.coefficient = 0.3, .slip_speed = 0.1}},
-                  model.ground().at({0, 0, 0}), "ground");
-  model.pair_with(balls, OnDrum{{.radius = 0.1, .cylinder = 0.3}, law}, drum.at({0, 0, 0}), "drum");
+  model.add_partner(balls, OnGround{{.radius = 0.1}, law, {.coefficient = 0.3, .slip_speed = 0.1}},
+                    model.ground().at({0, 0, 0}), "ground");
+  model.add_partner(balls, OnDrum{{.radius = 0.1, .cylinder = 0.3}, law}, drum.at({0, 0, 0}), "drum");
   expect_same_bits(model, 0.1);
 }
 

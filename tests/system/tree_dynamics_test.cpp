@@ -51,7 +51,7 @@ void expect_trees_as_multipliers(unsigned first, unsigned last) {
   std::string const of =
       std::string(sprung ? " with springs" : " under weight") + (std::is_same_v<Body, Rigid<>> ? "" : " in air");
   Claim claim{"closed forms", "accelerations of random trees" + of + ", of their size", By::itself, "Constraint",
-              "RecursiveBy<ArticulatedBody>"};
+              "JointCoordinatesBy<ArticulatedBody>"};
   held_within(claim, worst_a, 1e-10, {.scale = 1.0});
   claim.what = "multipliers of random trees" + of + ", of their size";
   held_within(claim, worst_lambda, 1e-9, {.scale = 1.0});
@@ -101,7 +101,7 @@ TEST(TreeDynamics, PlanarTreesAccelerateAsMultipliersSay) {
     worst = std::max(worst, (x.a - tied.a).norm() / tied.a.norm());
   }
   held_within({"closed forms", "accelerations of random planar trees, of their size", By::itself, "Constraint",
-               "RecursiveBy<ArticulatedBody>"},
+               "JointCoordinatesBy<ArticulatedBody>"},
               worst, 1e-10, {.scale = 1.0});
 }
 
@@ -120,7 +120,7 @@ TEST(TreeDynamics, DualNumbersGiveTheDerivative) {
     auto const at = [&](double s) {
       TreeDynamicsOf<> dynamics(reduction.tree().bodies);
       VecX a = VecX::Zero(x.v.size());
-      EXPECT_EQ(dynamics.accelerations_by_weight(x.q + s * q_rate, x.v + s * v_rate, Vec3(0, 0, -9.81), a), -1);
+      EXPECT_EQ(dynamics.accelerations_under_gravity(x.q + s * q_rate, x.v + s * v_rate, Vec3(0, 0, -9.81), a), -1);
       return a;
     };
     using D = Dual<1>;
@@ -134,7 +134,7 @@ TEST(TreeDynamics, DualNumbersGiveTheDerivative) {
       v[i].d[0] = v_rate[i];
     }
     TreeDynamicsOf<D> dynamics(reduction.tree().bodies);
-    ASSERT_EQ(dynamics.accelerations_by_weight(q, v, Vec3(0, 0, -9.81), a), -1);
+    ASSERT_EQ(dynamics.accelerations_under_gravity(q, v, Vec3(0, 0, -9.81), a), -1);
     auto const central = [&](double s) { return VecX((at(s) - at(-s)) / (2.0 * s)); };
     VecX const slope = (4.0 * central(5e-4) - central(1e-3)) / 3.0;
     for (Index i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i].d[0], slope[i], 1e-7 * (1.0 + slope.norm())) << seed;
@@ -154,7 +154,7 @@ TEST(TreeDynamics, PendulumStartsAsItsClosedFormSays) {
     x.v[0] = 3.0;  // the angular velocity has no influence
     ForwardDynamics<>(system).accelerations(system, {x.q, x.v, 0.0}, x.a, x.lambda);
     held({"closed forms", "angular acceleration of a pendulum [rad/s²]", By::closed_form,
-          "m g c cos ϑ/(J + m c²), positive downwards", "RecursiveBy<ArticulatedBody>"},
+          "m g c cos ϑ/(J + m c²), positive downwards", "JointCoordinatesBy<ArticulatedBody>"},
          x.a[0], 3.0 * 9.81 * 0.4 * std::cos(angle) / (0.25 + 3.0 * 0.16), 1e-12, {equals("angle", angle)});
   }
 }
@@ -167,9 +167,9 @@ TEST(TreeDynamics, FreedomWithoutInertiaIsNamed) {
   model.connect(Pin{{.axis = Vec3::UnitY()}, {}}, model.ground().at({0, 0, 0}), point.at(Vec3(0, 0, 0)), "pin");
   State x = model.reference_state();
   try {
-    simulate(model, x, RungeKutta4<>{}, {.until = 1.0, .step = 0.01}).run();
+    simulate(model, x, RungeKutta4<>{}, {.end_time = 1.0, .step = 0.01}).run();
     ADD_FAILURE() << "no error";
-  } catch (LinearSolverSingular const& e) {
+  } catch (SingularMatrix const& e) {
     EXPECT_NE(std::string(e.what()).find("bob"), std::string::npos) << e.what();
   }
 }

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/rigid/planar_rigid.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/joints/planar/prismatic.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/solvers/tree_tangent.hpp>
@@ -19,9 +19,9 @@ namespace tree_tangent_test {
 using namespace random_tree;
 
 /// A random state and accelerations from a seed, in the unknowns of a time step.
-struct Drawn {
+struct DrawResult {
   VecX q, v, a, given;
-  Drawn(System& system, State const& x, Draws& draw) : q(x.q), v(x.v), a(x.v), given(x.v) {
+  DrawResult(System& system, State const& x, Draws& draw) : q(x.q), v(x.v), a(x.v), given(x.v) {
     VecX turn = x.v;
     for (VecX* const each : {&turn, &v, &a, &given})
       for (double& d : *each) d = draw.number(-2.0, 2.0);
@@ -35,9 +35,9 @@ template <class M>
 double tangent_off(M const& model, Draws& draw) {
   System system = stepped_system(model);
   ReductionOf<> const reduction(model);
-  Drawn const x(system, reduce(system, model.reference_state()), draw);
+  DrawResult const x(system, reduce(system, model.reference_state()), draw);
   TreeDynamicsOf<> dynamics(reduction.tree().bodies);
-  TreeTangentOf<> tangent(reduction.tree().bodies);
+  TreeTangentSolverOf<> tangent(reduction.tree().bodies);
   TangentCoefficients const c{1.2, 0.3, 0.2};
   VecX y = VecX::Zero(x.v.size());
   EXPECT_EQ(tangent.factor({x.q, x.v, 0.0}, x.a, model.gravity().g, c), -1);
@@ -59,7 +59,7 @@ template <class M>
 double balance_off(M const& model, Draws& draw) {
   System system = stepped_system(model);
   ReductionOf<> const reduction(model);
-  Drawn const x(system, reduce(system, model.reference_state()), draw);
+  DrawResult const x(system, reduce(system, model.reference_state()), draw);
   TreeDynamicsOf<> dynamics(reduction.tree().bodies);
   VecX wanted = x.v, out = x.v;
   system.evaluate(x.q, x.v, 0.0);
@@ -73,13 +73,13 @@ TEST(TreeTangent, IsTheDerivativeOfTheBalance) {
   for (unsigned seed = 1; seed < 200; ++seed) {
     Tree<Rigid<>, ByBodies, false> const tree(seed);
     Draws draw{std::mt19937(seed + 11)};
-    if (stepped_system(tree.model).speeds() == 0) continue;  // all bodies are welded to the ground
+    if (stepped_system(tree.model).velocities() == 0) continue;  // all bodies are welded to the ground
     double const off = tangent_off(tree.model, draw);
     EXPECT_LT(off, 1e-7) << "seed " << seed;
     worst = std::max(worst, off);
   }
   held_within({"closed forms", "tangent of a step of random trees, of its size", By::itself,
-               "differences of the balance", "RecursiveBy<ArticulatedBody>"},
+               "differences of the balance", "JointCoordinatesBy<ArticulatedBody>"},
               worst, 1e-7, {.scale = 1.0});
 }
 
@@ -91,7 +91,7 @@ TEST(TreeTangent, BalanceIsTheResidualOfTheWholeModel) {
     worst = std::max(worst, balance_off(tree.model, draw));
   }
   held_within({"closed forms", "balance of random trees, of its size", By::itself, "Tᵀ(M(T u̇ + b) − f)",
-               "RecursiveBy<ArticulatedBody>"},
+               "JointCoordinatesBy<ArticulatedBody>"},
               worst, 1e-12, {.scale = 1.0});
 }
 
@@ -136,7 +136,7 @@ double iterations(int links, NewtonOptions const& newton) {
     before = link;
   }
   State x = model.reference_state();
-  auto run = simulate(model, x, GeneralizedAlpha{.newton = newton}, {.until = 0.1, .step = 1e-3});
+  auto run = simulate(model, x, GeneralisedAlpha{.newton = newton}, {.end_time = 0.1, .step = 1e-3});
   return double(run.run().iterations) / double(run.report().steps);
 }
 

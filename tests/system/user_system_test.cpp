@@ -16,14 +16,14 @@ using namespace polybody;
 /// The solution of x¨ = −ω² x is x = cos ωt.
 struct Oscillator {
   double omega = 3.0;
-  Index speeds() const { return 1; }
+  Index velocities() const { return 1; }
   void mass(VecX const&, MatX& m) const { m(0, 0) = 2.0; }
   void force(VecX const& q, VecX const&, double, VecX& f) const { f[0] = -2.0 * omega * omega * q[0]; }
 };
 
 /// A point of mass m on a circle of radius 1 in the plane, Φ = ½ (x² + y² − 1).
 struct Pendulum {
-  Index speeds() const { return 2; }
+  Index velocities() const { return 2; }
   Index rows() const { return 1; }
   void mass(VecX const&, MatX& m) const { m = 3.0 * MatX::Identity(2, 2); }
   void force(VecX const&, VecX const&, double, VecX& f) const { f << 0.0, -3.0 * 9.81; }
@@ -33,21 +33,21 @@ struct Pendulum {
   void rate(VecX const&, double, VecX& phi_t) const { phi_t[0] = 0.0; }
   void gamma(VecX const&, VecX const& v, double, VecX& gamma) const { gamma[0] = v.squaredNorm(); }
 };
-static_assert(UserMechanics<Oscillator> && !OffersRows<Oscillator> && !OffersForceTangent<Oscillator>);
-static_assert(OffersRows<Pendulum> && OffersForceTangent<Pendulum> && !UserMechanics<int>);
+static_assert(UserMechanics<Oscillator> && !HasConstraintEquations<Oscillator> && !HasForceTangent<Oscillator>);
+static_assert(HasConstraintEquations<Pendulum> && HasForceTangent<Pendulum> && !UserMechanics<int>);
 
 State at(System const& system, VecX const& q) {
-  VecX const none = VecX::Zero(system.speeds());
+  VecX const none = VecX::Zero(system.velocities());
   return {q, none, none, VecX::Zero(system.rows()), 0.0, {}};
 }
 
 template <class I>
-State run(System& system, State x, I const& integrator, double h, double until) {
+State run(System& system, State x, I const& integrator, double h, double end_time) {
   auto const method = method_of(integrator);
   auto w = method.template workspace<BlockSolver>(system);
   integrator.check();
   method.start(system, x, h, w);
-  while (x.t < until - 1e-9) method.step(system, x, std::min(h, until - x.t), w);
+  while (x.t < end_time - 1e-9) method.step(system, x, std::min(h, end_time - x.t), w);
   return x;
 }
 
@@ -64,7 +64,7 @@ void expect_cosine(I const& integrator, double h, double tolerance) {
 }
 
 TEST(UserSystem, OscillatesUnderEveryKindOfIntegrator) {
-  expect_cosine(GeneralizedAlpha{.rho_inf = 1.0}, 1e-3, 3e-6);
+  expect_cosine(GeneralisedAlpha{.rho_inf = 1.0}, 1e-3, 3e-6);
   expect_cosine(HhtAlpha{}, 1e-3, 1e-4);
   expect_cosine(Radau{}, 0.02, 1e-8);
   expect_cosine(RungeKutta4<>{}, 0.01, 1e-6);
@@ -92,7 +92,7 @@ TEST(UserSystem, SwingsOnItsRow) {
                 std::abs(x.lambda[0] - 3.0 * (x.v.squaredNorm() - 9.81 * x.q[1])), 100.0 * tolerance,
                 {.scale = 3.0 * 9.81});
   };
-  check(GeneralizedAlpha{}, 1e-3, 1e-4);
+  check(GeneralisedAlpha{}, 1e-3, 1e-4);
   check(Radau{}, 0.01, 1e-7);
   check(RungeKutta4<Projection>{}, 1e-3, 1e-7);
 }
@@ -103,9 +103,9 @@ TEST(UserSystem, NamesItselfInErrors) {
   };
   System system = system_of(Broken{}, "rotor");
   try {
-    run(system, at(system, VecX::Ones(1)), GeneralizedAlpha{}, 1e-3, 0.1);
+    run(system, at(system, VecX::Ones(1)), GeneralisedAlpha{}, 1e-3, 0.1);
     FAIL();
-  } catch (NonFinite const& e) {
+  } catch (NonFiniteValue const& e) {
     EXPECT_NE(std::string(e.what()).find("body \"rotor\""), std::string::npos) << e.what();
   }
 }
@@ -119,7 +119,7 @@ struct Spiral {
 /// oscillator.
 struct LaggingSpring {
   double lag = 0.05;
-  Index speeds() const { return 1; }
+  Index velocities() const { return 1; }
   Index states() const { return 1; }
   void mass(VecX const&, MatX& m) const { m(0, 0) = 2.0; }
   void force(VecX const& q, VecX const& v, VecX const& z, double, VecX& f) const {
@@ -140,8 +140,8 @@ struct Robertson {
     h << middle - slow, slow - middle - fast, fast;
   }
 };
-static_assert(UserRates<Spiral> && UserMechanicsWithStates<LaggingSpring>);
-static_assert(!UserMechanics<LaggingSpring> && !UserRates<LaggingSpring> && UserEquations<Oscillator>);
+static_assert(UserFirstOrderEquations<Spiral> && UserMechanicsWithStates<LaggingSpring>);
+static_assert(!UserMechanics<LaggingSpring> && !UserFirstOrderEquations<LaggingSpring> && UserEquations<Oscillator>);
 
 template <class I>
 void expect_states(I const& integrator, double h, double tolerance) {
@@ -166,7 +166,7 @@ void expect_states(I const& integrator, double h, double tolerance) {
 }
 
 TEST(UserSystem, MayBeOfFirstOrder) {
-  expect_states(GeneralizedAlpha{.rho_inf = 1.0}, 1e-3, 3e-6);
+  expect_states(GeneralisedAlpha{.rho_inf = 1.0}, 1e-3, 3e-6);
   expect_states(HhtAlpha{}, 1e-3, 1e-5);
   expect_states(Radau{}, 0.02, 1e-8);
   expect_states(RungeKutta4<>{}, 0.01, 1e-6);
@@ -197,7 +197,7 @@ TEST(UserSystem, FollowsStiffReactions) {
 TEST(System, RefusesWhatItWasMadeWithout) {
   Model<Bodies<Rigid<>>, Joints<>> model;
   model.add(Rigid<>(1.0, Mat3::Identity()));
-  System system(model, with<Entries::motion>);
+  System system(model, with<Capabilities::motion>);
   State const x = model.reference_state();
   system.evaluate(x.q, x.v, x.t);
   PatternSink sink;
@@ -219,10 +219,10 @@ TEST(System, ProductsWithRowsAndTheirTransposeAgree) {
   auto const second = model.add(AncfCable<>::from(second_bar, 2), "second");
   model.connect(Pin{Revolute{.axis = {0, 1, 0}}, {}}, model.ground().at({0, 0, 0}), rod.at(0.0));
   model.connect(Ball{}, first.at(1.0), second.at(0.0));
-  System system(model, with<Entries::motion>);
+  System system(model, with<Capabilities::motion>);
   State const x = model.reference_state();
   system.evaluate(x.q, x.v, x.t);
-  Index const n = system.speeds(), m = system.rows();
+  Index const n = system.velocities(), m = system.rows();
   MatX g(m, n), gt(n, m);
   VecX row(m), column(n);
   for (Index j = 0; j < n; ++j) {

@@ -57,8 +57,9 @@ struct LightBlock : Block {
 struct WithoutBias : planar::Rigid {
   using planar::Rigid::Rigid;
   template <StateScalar T>
-  void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v, Published<T>& out) const {
-    planar::Rigid::publish<T>(p, axes, q, v, out);
+  void evaluate_marker(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v,
+                       MarkerKinematics<T>& out) const {
+    planar::Rigid::evaluate_marker<T>(p, axes, q, v, out);
     out.bias.setZero();
   }
 };
@@ -170,7 +171,7 @@ struct Bragging : SymplecticEuler {
 struct BraggingOnFreeBody {
   using Model = SprungBody;
   static auto integrators() { return std::vector<Bragging>(1); }
-  static constexpr double until = 1.0;
+  static constexpr double end_time = 1.0;
   static constexpr int steps = 64;
 };
 
@@ -181,7 +182,7 @@ TEST(IntegratorLaws, TellWhatIsWrong) {
 
 /// A point of mass 3 on a circle with growing radius, Φ = ½ (x² + y² − (1 + t)²), on a spring.
 struct Circle {
-  Index speeds() const { return 2; }
+  Index velocities() const { return 2; }
   Index rows() const { return 1; }
   void mass(VecX const&, MatX& m) const { m = 3.0 * MatX::Identity(2, 2); }
   void force(VecX const& q, VecX const& v, double, VecX& f) const { f = -5.0 * q - 0.2 * v; }

@@ -10,7 +10,7 @@ template <class Link>
 std::pair<Index, Index> kept_unknowns() {
   auto const tracks = vehicle<Link>(1.0);
   System system = stepped_system(tracks.model);
-  TangentSolver<KeptParts<BlockSolver>> tangent;
+  TangentSolver<ConstantBlockCache<BlockSolver>> tangent;
   tangent.linear_solver().keep(detail::constant_unknowns(system));
   tangent.analyse(system, 1, [&](BlockSink& sink) { system.masses(sink); });
   return {tangent.linear_solver().kept(), equations_of(system)};

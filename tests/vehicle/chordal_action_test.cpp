@@ -21,15 +21,15 @@
 #include <polybody/forces/contact_group.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/forces/spring_damper.hpp>
-#include <polybody/integrators/generalized_alpha.hpp>
-#include <polybody/joints/plane_on_plane.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
+#include <polybody/joints/planar_joint.hpp>
 #include <polybody/joints/prescribed_angle.hpp>
 #include <polybody/joints/prescribed_rate.hpp>
 #include <polybody/joints/revolute.hpp>
 #include <polybody/run/observe.hpp>
 #include <polybody/run/simulate.hpp>
 #include <polybody/vehicle/m113.hpp>
-#include <polybody/vehicle/pin_on_sprocket.hpp>
+#include <polybody/vehicle/pin_sprocket_contact.hpp>
 
 #include "support/held.hpp"
 
@@ -62,8 +62,8 @@ template <class Drive>
 struct Chain {
   using Hinge = Joint<Revolute, Constraint>;
   using Driven = Joint<Drive, Constraint>;
-  using InPlane = Joint<PlaneOnPlane, Constraint>;
-  using Teeth = ContactGroup<Contact<PinOnSprocket<>>>;
+  using InPlane = Joint<PlanarJoint, Constraint>;
+  using Teeth = ContactGroup<Contact<PinSprocketContact<>>>;
 
   Model<Bodies<Rigid<>>, Joints<Hinge, Driven, InPlane>, Forces<Teeth, PointForce<>, SpringDamper>> model;
   std::vector<BodyHandle<Rigid<>>> links;
@@ -77,9 +77,9 @@ struct Chain {
       pins.emplace_back(pitch_radius * std::sin(i * tooth), 0.0, pitch_radius * std::cos(i * tooth));
     for (int i = 1; i < 6; ++i) pins.emplace_back(-i * p, 0.0, -pitch_radius);
 
-    auto const sprocket =
-        model.add(Rigid<>(m113::thesis.sprocket.mass, Vec3(m113::thesis.sprocket.inertia).asDiagonal().toDenseMatrix()),
-                  "sprocket");
+    auto const sprocket = model.add(
+        Rigid<>(m113::wallin_2016.sprocket.mass, Vec3(m113::wallin_2016.sprocket.inertia).asDiagonal().toDenseMatrix()),
+        "sprocket");
     auto const ground = model.ground().at({0, 0, 0});
     model.connect(Hinge{Revolute{.axis = y}, {}}, ground, sprocket.at(Vec3(0, 0, 0)), "axle");
     model.connect(Driven{drive, {}}, ground, sprocket.at(Vec3(0, 0, 0)), "drive");
@@ -88,14 +88,14 @@ struct Chain {
       Placement at{.origin = 0.5 * (pins[i] + pins[i + 1])};
       Vec3 const x = (pins[i] - pins[i + 1]) / p;
       at.axes << x, y, x.cross(y);
-      links.push_back(
-          model.add(Rigid<>(m113::thesis.link.mass, Vec3(m113::thesis.link.inertia).asDiagonal().toDenseMatrix(), at)));
+      links.push_back(model.add(
+          Rigid<>(m113::wallin_2016.link.mass, Vec3(m113::wallin_2016.link.inertia).asDiagonal().toDenseMatrix(), at)));
       if (i > 0)
         model.connect(Hinge{Revolute{.axis = y}, {}}, links[i - 1].at(Vec3(-0.5 * p, 0, 0)),
                       links[i].at(Vec3(0.5 * p, 0, 0)));
       middles.push_back(links[i].at(Vec3(0, 0, 0)));
     }
-    model.connect(InPlane{PlaneOnPlane{.normal = y}, {}}, ground, middles[0], "plane");
+    model.connect(InPlane{PlanarJoint{.normal = y}, {}}, ground, middles[0], "plane");
     model.apply(PointForce<>{.force = Vec3(-tension, 0, 0)}, end(), "pull");
     model.apply(PointForce<>{.force = Vec3(-tension, 0, 0)}, links.back().at(Vec3(-0.5 * p, 0, 0)), "pull back");
     for (std::size_t const i : {0u, 1u, 2u, 11u, 12u, 13u}) {
@@ -110,11 +110,11 @@ struct Chain {
                                   .valley_radius = m113::valley_radius,
                                   .flank = m113::flank,
                                   .tip_radius = m113::tip_radius};
-    model.pair_with(
+    model.add_partner(
         model.apply(Teeth{}, middles, "chain"),
-        Contact<PinOnSprocket<>>{{.profile = profile, .valley = 0.0, .rings = {-m113::tooth_y, m113::tooth_y}},
-                                 {.stiffness = k, .damping = 2.5e-3 * k, .onset = m113::onset},
-                                 {.coefficient = m113::on_sprocket.friction, .slip_speed = m113::slip_speed}},
+        Contact<PinSprocketContact<>>{{.profile = profile, .valley = 0.0, .rings = {-m113::tooth_y, m113::tooth_y}},
+                                      {.stiffness = k, .damping = 2.5e-3 * k, .onset = m113::onset},
+                                      {.coefficient = m113::on_sprocket.friction, .slip_speed = m113::slip_speed}},
         sprocket.at(Vec3(0, 0, 0)), "sprocket");
   }
 
@@ -135,8 +135,8 @@ std::vector<double> travels(double k) {
   State x = chain.model.reference_state();
   std::vector<double> at_rest;
   double const last = Steps::start + 20.0 * Steps::each;
-  for (State const& now : simulate(chain.model, x, GeneralizedAlpha{.rho_inf = 0.0, .tolerance = 1e-8},
-                                   {.until = last, .step = 0.01, .halvings = 8}))
+  for (State const& now : simulate(chain.model, x, GeneralisedAlpha{.rho_inf = 0.0, .tolerance = 1e-8},
+                                   {.end_time = last, .step = 0.01, .max_step_halvings = 8}))
     if (double const passed = (now.t - Steps::start) / Steps::each;
         passed > -1e-9 && std::abs(passed - std::round(passed)) < 1e-9)
       at_rest.push_back(chain.travel(now));
@@ -193,14 +193,14 @@ TEST(ChordalAction, MeanSpeedIsAPitchForEachTooth) {
   Chain<Drive> const chain(2e6,
                            Drive{.law = {{.target = omega, .duration = rise, .start = start}}, .axis = Vec3::UnitY()});
   double const normal = 5.0 * 2.0 * tension * std::sin(0.5 * tooth),
-               mass = m113::thesis.link.mass * double(chain.links.size());
+               mass = m113::wallin_2016.link.mass * double(chain.links.size());
   double const swing = std::sqrt(normal / ((m113::valley_radius - m113::pin_radius) * mass));
   double const rocking = 2.0 * omega * pitch_radius * std::pow(std::sin(0.5 * tooth), 2) / swing;
   State x = chain.model.reference_state();
   double at_rest = 0.0, begin = 0.0, most = 0.0, first = 0.0;
-  double const from = start + rise, until = from + 2.0 * tooth / omega;
-  for (State const& now : simulate(chain.model, x, GeneralizedAlpha{.rho_inf = 0.0, .tolerance = 1e-8},
-                                   {.until = until, .step = 0.01, .halvings = 8})) {
+  double const from = start + rise, end_time = from + 2.0 * tooth / omega;
+  for (State const& now : simulate(chain.model, x, GeneralisedAlpha{.rho_inf = 0.0, .tolerance = 1e-8},
+                                   {.end_time = end_time, .step = 0.01, .max_step_halvings = 8})) {
     if (now.t <= start) at_rest = chain.travel(now);
     if (now.t < from - 1e-9) continue;
     double const turned = omega * (now.t - start - 0.5 * rise), travel = chain.travel(now) - at_rest;

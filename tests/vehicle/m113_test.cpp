@@ -74,18 +74,18 @@ void expect_mass(m113::LinkOf<B> const& links, double mass) {
 TEST(M113, BodiesAreThoseOfTheReference) {
   auto const bodies = rows("bodies.csv", 1);
   EXPECT_EQ(bodies.size(), 27u);  // 155 less 128 links
-  expect_body(bodies.at("chassis"), m113::thesis.chassis, m113::chassis, 0.0);
+  expect_body(bodies.at("chassis"), m113::wallin_2016.chassis, m113::chassis, 0.0);
   for (Side const side : {Side::left, Side::right}) {
     auto const row = [&](std::string const& name) {
       SCOPED_TRACE(name + letter(side));
       return bodies.at(name + letter(side));
     };
-    expect_body(row("sprocket"), m113::thesis.sprocket, m113::sprocket(side), 0.0);
-    expect_body(row("idler"), m113::thesis.idler, m113::idler(side), 0.0);
-    expect_body(row("tensioner"), m113::thesis.tensioner, m113::idler(side), 0.0);
+    expect_body(row("sprocket"), m113::wallin_2016.sprocket, m113::sprocket(side), 0.0);
+    expect_body(row("idler"), m113::wallin_2016.idler, m113::idler(side), 0.0);
+    expect_body(row("tensioner"), m113::wallin_2016.tensioner, m113::idler(side), 0.0);
     for (int i = 0; i < m113::wheels; ++i) {
-      expect_body(row("wheel" + std::to_string(i + 1)), m113::thesis.wheel, m113::wheel(i, side), 0.0);
-      expect_body(row("arm" + std::to_string(i + 1)), m113::thesis.arm, m113::arm(i, side), m113::arm_angle);
+      expect_body(row("wheel" + std::to_string(i + 1)), m113::wallin_2016.wheel, m113::wheel(i, side), 0.0);
+      expect_body(row("arm" + std::to_string(i + 1)), m113::wallin_2016.arm, m113::arm(i, side), m113::arm_angle);
     }
   }
 }
@@ -125,9 +125,9 @@ TEST(M113, JointsAndSpringsAreWhereTheReferenceHasThem) {
 TEST(M113, WeighsWhatTheReferenceSays) {
   held({"M113 data", "mass of the vehicle of the thesis [kg]", By::independent, "M113.md §3, added up by hand",
         "vehicle/m113.hpp"},
-       m113::thesis.total(), 15912.1, 0.05);
+       m113::wallin_2016.total(), 15912.1, 0.05);
   held({"M113 data", "mass of the real vehicle [kg]", By::published, "11.36 t, M113.md §10.1", "vehicle/m113.hpp"},
-       m113::public_data.total(), 11.36e3, 5.0);
+       m113::production_vehicle.total(), 11.36e3, 5.0);
 }
 
 // Every row of Wallin 2016, Table 3.1, is that of a homogeneous solid. A cylinder has m R²/2 about its axis and m
@@ -145,10 +145,10 @@ TEST(M113, InertiasAreThoseOfSolidsOfItsDimensions) {
          s.mass * (3.0 * radius * radius + width * width) / 12.0, 5e-4 * s.inertia.x, {equals("R", radius)});
     EXPECT_EQ(s.inertia.z, s.inertia.x);
   };
-  wheel(m113::thesis.wheel, m113::wheel_radius);
-  wheel(m113::thesis.idler, m113::idler_radius);
-  wheel(m113::thesis.sprocket, 0.2520);
-  m113::Solid const &arm = m113::thesis.arm, &link = m113::thesis.link, &chassis = m113::thesis.chassis;
+  wheel(m113::wallin_2016.wheel, m113::wheel_radius);
+  wheel(m113::wallin_2016.idler, m113::idler_radius);
+  wheel(m113::wallin_2016.sprocket, 0.2520);
+  m113::Solid const &arm = m113::wallin_2016.arm, &link = m113::wallin_2016.link, &chassis = m113::wallin_2016.chassis;
   EXPECT_NEAR(arm.inertia.x, 0.5 * arm.mass * 0.01, 5e-4 * arm.inertia.x);  // a bar of radius 0.1 m
   EXPECT_NEAR(arm.inertia.y, arm.mass * (0.03 + m113::arm_length * m113::arm_length) / 12.0, 5e-4 * arm.inertia.y);
   auto const box = [](m113::Solid const& s, Vec3 const& a) {  // a: its edges along x, y, z
@@ -170,10 +170,10 @@ TEST(M113, FollowsFromPitchAndTeeth) {
   };
   derived("pitch radius of the sprocket [m]", track.pitch_radius(), 0.246588, 5e-7);
   derived("rolling radius of the sprocket [m]", m113::rolling_radius, 0.242552, 5e-7);
-  derived("speed of the vehicle [m/s]", m113::rolling_radius * m113::chapter_3_speed, 6.064, 5e-4, "chapter 3");
-  derived("speed of the vehicle [m/s]", m113::rolling_radius * m113::chapter_4_speeds[0], 7.277, 5e-4,
+  derived("speed of the vehicle [m/s]", m113::rolling_radius * m113::moderate_sprocket_speed, 6.064, 5e-4, "chapter 3");
+  derived("speed of the vehicle [m/s]", m113::rolling_radius * m113::fast_sprocket_velocities[0], 7.277, 5e-4,
           "chapter 4, slow");
-  derived("speed of the vehicle [m/s]", m113::rolling_radius * m113::chapter_4_speeds[1], 19.404, 5e-4,
+  derived("speed of the vehicle [m/s]", m113::rolling_radius * m113::fast_sprocket_velocities[1], 19.404, 5e-4,
           "chapter 4, fast");
   EXPECT_NEAR(m113::cable_height, 0.0398, 5e-5);
   EXPECT_NEAR(m113::density * m113::cable_width * m113::cable_height * m113::pitch, 18.024, 1e-12);
@@ -207,7 +207,7 @@ TEST(M113, DriveRestsForOneSecondAndRampsForSeven) {
 
 // The horn's box is 75 mm high. The middle of its upper face touches a rim, as the links are on both sides of it.
 TEST(M113, HornReachesToTheTopOfItsBox) {
-  Vec3 const tip = m113::LinkContacts<Observes::frame>().on_rims(0.3).geometry.tip;
+  Vec3 const tip = m113::LinkContacts<MarkerKind::frame>().on_rims(0.3).geometry.tip;
   EXPECT_LT((tip - Vec3(0.045, 0.0, 0.0375 + 0.5 * 0.075)).norm(), 1e-15);
 }
 

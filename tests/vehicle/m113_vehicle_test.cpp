@@ -22,12 +22,12 @@ Car car(Drives const& drives, m113::VehicleOptions options = {}) {
 }
 
 // Lowest position of the hull during the run [m], below the start.
-double dip_of(m113::VehicleOptions const& options, double until) {
+double dip_of(m113::VehicleOptions const& options, double end_time) {
   Car const vehicle = car(still(), options);
   State x = vehicle.model.reference_state();
   double const start = hull_of(vehicle, x).r.z();
   double lowest = 0.0;
-  run_vehicle(vehicle.model, x, until, 1e-3,
+  run_vehicle(vehicle.model, x, end_time, 1e-3,
               [&](State const& now, auto&) { lowest = std::min(lowest, hull_of(vehicle, now).r.z() - start); });
   return -lowest;
 }
@@ -36,8 +36,9 @@ double dip_of(m113::VehicleOptions const& options, double until) {
 TEST(M113Vehicle, CountsAsTheThesisDoes) {
   m113::VehicleOptions const options{.ground_body = true};
   Vec<double, 5> const ones = Vec<double, 5>::Ones();
-  Census const ideal = census(m113::Vehicle<Rigid<EulerParameters>>(Constraint{}, still(), options).model);
-  auto const counts = [](char const* pins, Census const& found, Index coordinates, Index constraints, Index freedoms) {
+  ProblemSize const ideal = problem_size(m113::Vehicle<Rigid<EulerParameters>>(Constraint{}, still(), options).model);
+  auto const counts = [](char const* pins, ProblemSize const& found, Index coordinates, Index constraints,
+                         Index freedoms) {
     auto const same = [&](char const* what, Index value, Index printed) {
       held({"thesis, ch. 3", what, By::published, "thesis Table 3.4", pins}, double(value), double(printed), 0.0);
     };
@@ -46,15 +47,16 @@ TEST(M113Vehicle, CountsAsTheThesisDoes) {
     same("degrees of freedom of the vehicle", found.degrees_of_freedom, freedoms);
   };
   counts("Rigid<EulerParameters>, Constraint", ideal, 1092, 924, 168);
-  Census const penalty =
-      census(m113::Vehicle<Rigid<EulerParameters>, PenaltyPerRow<5>>({1e9 * ones, 1e5 * ones}, still(), options).model);
+  ProblemSize const penalty = problem_size(
+      m113::Vehicle<Rigid<EulerParameters>, PenaltyPerEquation<5>>({1e9 * ones, 1e5 * ones}, still(), options).model);
   counts("Rigid<EulerParameters>, Penalty", penalty, 1092, 294, 798);
   // unit quaternions have the same counts
-  EXPECT_EQ(census(m113::Vehicle<>(Constraint{}, still(), options).model).degrees_of_freedom, 168);
+  EXPECT_EQ(problem_size(m113::Vehicle<>(Constraint{}, still(), options).model).degrees_of_freedom, 168);
   // loops that are closed in their plane by two constraint equations have the actual degrees of freedom
-  EXPECT_EQ(census(Car(Constraint{}, still(), {.closure = m113::Closure::in_plane}).model).degrees_of_freedom, 164);
+  EXPECT_EQ(problem_size(Car(Constraint{}, still(), {.closure = m113::Closure::in_plane}).model).degrees_of_freedom,
+            164);
   // 128 links of 8 coordinates and 28 bodies of 7 (including the ground); Wallin 2016 has a 29th body: 1227, 1060, 167
-  Census const cable = census(m113::Vehicle<AncfCable<>, AncfLinear>({}, still(), options).model);
+  ProblemSize const cable = problem_size(m113::Vehicle<AncfCable<>, AncfLinear>({}, still(), options).model);
   EXPECT_EQ(cable.coordinates, 1220);
   EXPECT_EQ(cable.constraints, 166);
   EXPECT_EQ(cable.degrees_of_freedom, 1054);
@@ -103,7 +105,7 @@ TEST(M113Vehicle, StandsOnItsWeightAfterSettling) {
       ++samples;
     }
     for (auto const s : {m113::Side::left, m113::Side::right}) {
-      m113::TrackFault const fault = track_fault(vehicle, system, now, s, track_at_rest());
+      m113::TrackDerailment const fault = track_derailment(vehicle, system, now, s, track_at_rest());
       deepest = std::max(deepest, fault.depth);
       stray = std::max(stray, fault.sideways);
       off_path = std::max(off_path, fault.off_path);
@@ -111,7 +113,7 @@ TEST(M113Vehicle, StandsOnItsWeightAfterSettling) {
   });
   held({"M113 vehicle", "force of the ground on the vehicle that stands [N]", By::closed_form, "its weight",
         "Rigid, Constraint"},
-       up / samples, 9.81 * m113::thesis.total(), 0.01 * 9.81 * m113::thesis.total());
+       up / samples, 9.81 * m113::wallin_2016.total(), 0.01 * 9.81 * m113::wallin_2016.total());
   // the largest load at rest is that of a wheel, 15.9 t/10 on two rims: 2 mm; the first dip has three times as much
   EXPECT_LT(deepest, 0.0062);
   EXPECT_LT(stray, 1e-6);
@@ -135,8 +137,8 @@ TEST(M113Vehicle, AcceleratesWithItsTracksWhereTheyBelongAndNoEnergyUnaccounted)
     Vec3 const idler = position(vehicle.model, now, slider) - hull_of(vehicle, now).r;
     yielded = std::max(yielded, std::abs(idler.x() + m113::chassis.x - m113::idler_reference_x));
     for (auto const s : {m113::Side::left, m113::Side::right}) {
-      held = held && seating(vehicle, now, s).holds();
-      m113::TrackFault const fault = track_fault(vehicle, system, now, s, track_at_rest());
+      held = held && teeth_engaged(vehicle, now, s).holds();
+      m113::TrackDerailment const fault = track_derailment(vehicle, system, now, s, track_at_rest());
       depth = std::max(depth, fault.depth);
       off = std::max(off, fault.sideways);
     }
@@ -149,7 +151,7 @@ TEST(M113Vehicle, AcceleratesWithItsTracksWhereTheyBelongAndNoEnergyUnaccounted)
   held_within({"M113 vehicle", "unaccounted energy of the vehicle that sets out, of the largest", By::closed_form, "0",
                "Rigid, Constraint, h = 5e-4 s"},
               audit.relative(), 0.01, {.scale = 1.0});
-  EXPECT_GT(audit.work_of_drives(), 0.5 * m113::thesis.total() * 2.0);  // kinetic energy at about 1.45 m/s
+  EXPECT_GT(audit.work_of_drives(), 0.5 * m113::wallin_2016.total() * 2.0);  // kinetic energy at about 1.45 m/s
   EXPECT_LT(depth, 0.010);
   EXPECT_LT(off, 1e-3);
   EXPECT_LT(std::abs(hull_of(vehicle, x).r.y()), 1e-4);
@@ -181,7 +183,7 @@ TEST(M113Vehicle, TurnsToTheSideOfTheSlowerTrack) {
   EXPECT_LT(f.w.z(), -0.2 * track_speed / m113::track_y);    // turns to the right, with tracks that skid
   EXPECT_GT(f.w.z(), -1.0 * track_speed / m113::track_y);    // turns more slowly than with rolling tracks
   EXPECT_LT(Vec3(f.v).head<2>().norm(), 0.3 * track_speed);  // about its own middle
-  for (auto const s : {m113::Side::left, m113::Side::right}) EXPECT_TRUE(seating(pivot, x, s).holds());
+  for (auto const s : {m113::Side::left, m113::Side::right}) EXPECT_TRUE(teeth_engaged(pivot, x, s).holds());
 }
 
 // A slack track and a driving constraint with a high acceleration: the teeth pass under the pins.
@@ -192,15 +194,15 @@ TEST(M113Vehicle, TrackThatJumpsIsAnEventWithTimeAndLink) {
   Car const vehicle(Constraint{}, {snatch, snatch}, options);
   State x = vehicle.model.reference_state();
   auto run = simulate(vehicle.model, x, vehicle_integrator(),
-                      {.until = 3.0,
+                      {.end_time = 3.0,
                        .step = 5e-4,
-                       .events = {track_lost(vehicle, m113::Side::left), track_lost(vehicle, m113::Side::right)},
-                       .halvings = 8});
+                       .events = {derailed(vehicle, m113::Side::left), derailed(vehicle, m113::Side::right)},
+                       .max_step_halvings = 8});
   run.run();
   ASSERT_TRUE(run.report().stopped);
   EXPECT_TRUE(has(run.report().events[0].name, "track leaves its sprocket"));
   EXPECT_NEAR(run.report().events[0].time, x.t, 1e-9);
-  std::string const text = track_trouble(vehicle, x);
+  std::string const text = track_warning(vehicle, x);
   EXPECT_TRUE(has(text, "At t = ")) << text;
   EXPECT_TRUE(has(text, "track has")) << text;
   EXPECT_TRUE(x.q.allFinite() && x.v.allFinite());

@@ -22,7 +22,7 @@ struct Ride {
 };
 
 template <class Link, class P>
-Ride ride(P const& policy, double until, double speed, bool hold = false) {
+Ride ride(P const& policy, double end_time, double speed, bool hold = false) {
   m113::VehicleOptions options{.held = hold};
   options.start = track_at_rest();
   Ramp const drive = quick_drive(speed);
@@ -32,7 +32,7 @@ Ride ride(P const& policy, double until, double speed, bool hold = false) {
   double const start = hull_of(vehicle, x).r.z();
   Ride r;
   double samples = 0.0;
-  run_vehicle(vehicle.model, x, until, 5e-4, [&](State const& now, auto&) {
+  run_vehicle(vehicle.model, x, end_time, 5e-4, [&](State const& now, auto&) {
     r.dip = std::max(r.dip, start - hull_of(vehicle, now).r.z());
     for (std::size_t i = 1; i < 64; ++i) {
       double const open =
@@ -40,14 +40,14 @@ Ride ride(P const& policy, double until, double speed, bool hold = false) {
       r.largest_gap = std::max(r.largest_gap, open);
       if (i == 40) r.gap = open;
     }
-    if (now.t < 0.8 * until) return;
+    if (now.t < 0.8 * end_time) return;
     r.pull += reaction(vehicle.model, now, side.pins[40]).f.norm();
     ++samples;
   });
   r.pull /= samples;
   r.place = hull_of(vehicle, x).r;
   r.velocity = hull_of(vehicle, x).v;
-  r.held = seating(vehicle, x, m113::Side::left).holds() && seating(vehicle, x, m113::Side::right).holds();
+  r.held = teeth_engaged(vehicle, x, m113::Side::left).holds() && teeth_engaged(vehicle, x, m113::Side::right).holds();
   return r;
 }
 
@@ -72,7 +72,7 @@ TEST(TrackFormulations, MoveTheVehicleAlike) {
   alike(ride<Rigid<>>(m113::penalty_pin(m113::pin_stiffness), 0.6, 8.0), "penalty");
   alike(ride<Rigid<>>(m113::bushing_pin(m113::pin_stiffness), 0.6, 8.0), "bushing");
   alike(ride<AncfCable<>>(AncfLinear{}, 0.6, 8.0), "ANCF");
-  alike(ride<Rigid<>>(Recursive{}, 0.6, 8.0), "recursive");
+  alike(ride<Rigid<>>(JointCoordinates{}, 0.6, 8.0), "recursive");
 }
 
 // Wallin 2016, Figure 3.15: the constraint violation of penalties is less than 0.075 mm at 1e9 N/m and more than 1.5

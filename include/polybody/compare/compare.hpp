@@ -34,7 +34,7 @@ struct Scenario {
 /// Case that can be called with a formulation and returns a Scenario. The type of the model may depend on the
 /// formulation.
 template <class C, class F>
-concept CaseFor = requires(C const c, F const f) {
+concept ComparisonCase = requires(C const c, F const f) {
   { c(f).model };
   { c(f).start } -> std::convertible_to<State>;
   { c(f).sampling } -> std::convertible_to<double>;
@@ -78,7 +78,7 @@ struct CaseQuestions {
 
   template <class = void>  // compiled where it is used
   void note(State const& x, ComparedRun& out) {
-    Violation const& v = out.violations.emplace_back(violation(system, x));  // evaluates the system
+    Violation const& v = out.violations.emplace_back(largest_violation(system, x));  // evaluates the system
     out.violation.position = std::max(out.violation.position, v.position);
     out.violation.velocity = std::max(out.violation.velocity, v.velocity);
     out.violation.acceleration = std::max(out.violation.acceleration, v.acceleration);
@@ -95,7 +95,7 @@ struct CaseQuestions {
 template <class S>
 CaseQuestions questions_of(S& scenario) {
   auto const& model = scenario.model;
-  CaseQuestions questions{question_system(model)};
+  CaseQuestions questions{observation_system(model)};
   for (auto& o : scenario.outputs) questions.outputs.push_back([&](State const& x) { return o.value(model, x); });
   if (scenario.observer) questions.observer = [&](State const& x) { scenario.observer(model, x); };
   return questions;
@@ -124,7 +124,7 @@ void add_run(C const& make_case, F const& formulation, Comparison& c, std::strin
   auto scenario = make_case(formulation);
   ComparedRun out;
   out.name = name_beside(c.runs, name_of(formulation));
-  out.census = census(scenario.model);
+  out.problem_size = problem_size(scenario.model);
   for (auto const& o : scenario.outputs) out.output_names.push_back(o.name);
   check_outputs(out, c.runs);
   out.outputs.resize(scenario.outputs.size());
@@ -163,7 +163,7 @@ void compare_with_first(Comparison& c) {
 /// \throws ComparisonFailed if `simulate` or an output throws an `Error`. It is thrown after the other runs and
 /// contains their results.
 template <class C, class... Fs>
-  requires(CaseFor<C, Fs> && ...)
+  requires(ComparisonCase<C, Fs> && ...)
 Comparison compare(C const& make_case, Fs const&... formulations) {
   Comparison c;
   std::string failures;
@@ -175,7 +175,7 @@ Comparison compare(C const& make_case, Fs const&... formulations) {
 
 /// Overload for formulations whose parameters all have defaults: compare<F1, F2, …>(make_case).
 template <class... Fs, class C>
-  requires(sizeof...(Fs) > 0 && (CaseFor<C, Fs> && ...))
+  requires(sizeof...(Fs) > 0 && (ComparisonCase<C, Fs> && ...))
 Comparison compare(C const& make_case) {
   return compare(make_case, Fs{}...);
 }

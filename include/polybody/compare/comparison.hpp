@@ -16,7 +16,7 @@ namespace polybody {
 /// Results of one run, a column of the report.
 struct ComparedRun {
   std::string name;                          ///< name of the formulation
-  Census census;                             ///< problem size of the model
+  ProblemSize problem_size;                  ///< problem size of the model
   RunReport run;                             ///< steps, iterations and other counts of the run
   double cpu = 0.0;                          ///< CPU time of the steps [s]
   Violation violation;                       ///< largest violations over the run
@@ -62,10 +62,10 @@ struct History {
 template <class = void>  // compiled where it is used
 std::vector<Quantity> quantities(ComparedRun const& run, ComparedRun const& first) {
   double const steps = double(std::max(run.run.steps, 1L));
-  std::vector<Quantity> column{{"coordinates", double(run.census.coordinates)},
-                               {"constraints", double(run.census.constraints)},
-                               {"degrees of freedom", double(run.census.degrees_of_freedom)},
-                               {"multiplier rows", double(run.census.rows)},
+  std::vector<Quantity> column{{"coordinates", double(run.problem_size.coordinates)},
+                               {"constraints", double(run.problem_size.constraints)},
+                               {"degrees of freedom", double(run.problem_size.degrees_of_freedom)},
+                               {"multiplier rows", double(run.problem_size.rows)},
                                {"steps", double(run.run.steps)},
                                {"Newton iterations a step", double(run.run.iterations) / steps},
                                {"factorisations a step", double(run.run.factorisations) / steps},
@@ -168,8 +168,8 @@ std::ostream& operator<<(std::ostream& out, Comparison const& c) {
     out << '\n' << std::left << std::setw(int(label)) << columns.front()[i].name << std::right;
     for (auto const& column : columns) {
       double const x = column[i].value;
-      bool const whole = x == std::round(x) && std::abs(x) < 1e9;
-      out << std::setw(int(wide)) << (whole ? std::to_string(long(x)) : number(x, 4));
+      bool const full = x == std::round(x) && std::abs(x) < 1e9;
+      out << std::setw(int(wide)) << (full ? std::to_string(long(x)) : number(x, 4));
     }
   }
   out.copyfmt(state);

@@ -29,8 +29,8 @@ struct MeshOf<Meshed<B, count>> : Meshed<B, count> {};
 /// Formulation of a mechanism: a body formulation, a constraint policy and an integrator. `compare` runs one case
 /// under several formulations, one line each:
 ///
-///     using Ideal = Formulation<planar::Rigid, Constraint, GeneralizedAlpha>;
-///     using Cable = Formulation<Meshed<planar::AncfCable<>, 8>, Constraint, GeneralizedAlpha>;
+///     using Ideal = Formulation<planar::Rigid, Constraint, GeneralisedAlpha>;
+///     using Cable = Formulation<Meshed<planar::AncfCable<>, 8>, Constraint, GeneralisedAlpha>;
 ///     compare<Ideal, Cable>([](auto const& choice) { … model.add(choice.body(bar), "rod") … });
 template <class B, Policy P, class I>
   requires Body<typename detail::MeshOf<B>::BodyType>

@@ -67,7 +67,7 @@ std::vector<Vec3> implied_curve(Field&& rotation, double length, Index pieces, V
 
 /// Points of the implied curve for the rotation field of a beam at the coordinates q, from its first node: `samples`
 /// points in each element.
-template <FollowsNodes Interpolation, StrainQuadrature Quadrature>
+template <NodalInterpolation Interpolation, StrainQuadrature Quadrature>
 std::vector<Vec3> implied_curve(Lrvf<Interpolation, Quadrature> const& beam, std::span<double const> q,
                                 int samples = 1) {
   auto const rotation = [&](double s) { return beam.rotation_field(beam.at(s), q).R; };

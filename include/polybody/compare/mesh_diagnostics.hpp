@@ -98,7 +98,7 @@ MeshDiagnostics mesh_diagnostics(planar::Beam<Theory> const& beam, std::span<dou
 /// Position mesh and implied curve of a spatial beam at the coordinates q. The rotation field is that of the beam's
 /// interpolation. On a curved reference the position mesh is the polygon through the nodes. The implied curve
 /// includes the curvature of the reference.
-template <FollowsNodes Interpolation, StrainQuadrature Quadrature>
+template <NodalInterpolation Interpolation, StrainQuadrature Quadrature>
 SpatialMeshDiagnostics mesh_diagnostics(Lrvf<Interpolation, Quadrature> const& beam, std::span<double const> q) {
   SpatialMeshDiagnostics d;
   d.rotation_length = beam.length();

@@ -28,7 +28,7 @@ struct WorkPrecision {
 };
 
 /// Output of a recorded run, y(t), interpolated by cubics between its times.
-struct RecordedOutput {
+struct OutputHistory {
   std::vector<double> times, values;  ///< (n) t [s] and y [unit of the output]
   /// Interpolates y at time t [s].
   double operator()(double t) const { return detail::interpolate(times, values, t); }
@@ -63,7 +63,7 @@ auto const& output_of(S const& scenario, std::size_t output, std::string const& 
 template <class I>
 void set_accuracy(I& integrator, RunOptions& options, double setting) {
   require_positive(setting, "work_precision: a step or tolerance");
-  if constexpr (requires { I::controls_step; }) {
+  if constexpr (requires { I::adaptive_step; }) {
     integrator.absolute_tolerance *= setting / integrator.relative_tolerance;
     integrator.relative_tolerance = setting;
   } else {
@@ -77,18 +77,18 @@ void set_accuracy(I& integrator, RunOptions& options, double setting) {
 /// other integrators. The `setting` is a step [s] or a tolerance. The interpolation error between the times is about
 /// h⁴ d⁴y/dt⁴/43, so the step must be short. An integrator with step size control uses at least 4000 steps.
 template <class C, class F>
-  requires CaseFor<C, F>
-RecordedOutput reference_run(C const& make_case, F const& formulation, double setting, std::size_t output = 0) {
+  requires ComparisonCase<C, F>
+OutputHistory reference_run(C const& make_case, F const& formulation, double setting, std::size_t output = 0) {
   auto scenario = make_case(formulation);
   auto const& value = detail::output_of(scenario, output, "reference_run").value;
   auto integrator = formulation.integrator;
   RunOptions& options = scenario.options;
   detail::set_accuracy(integrator, options, setting);
   State x = scenario.start;
-  double const longest = (options.until - x.t) / 4000.0;
-  if constexpr (requires { decltype(integrator)::controls_step; })
-    if (longest > 0.0) options.largest_step = std::min(options.largest_step.value_or(longest), longest);
-  RecordedOutput out;
+  double const longest = (options.end_time - x.t) / 4000.0;
+  if constexpr (requires { decltype(integrator)::adaptive_step; })
+    if (longest > 0.0) options.max_step = std::min(options.max_step.value_or(longest), longest);
+  OutputHistory out;
   for (State const& now : simulate(scenario.model, x, integrator, options)) {
     out.times.push_back(now.t);
     out.values.push_back(value(scenario.model, now));
@@ -103,7 +103,7 @@ RecordedOutput reference_run(C const& make_case, F const& formulation, double se
 /// A step that fails, for example because it is too long, ends only its run; `failure` contains the message.
 /// \throws InvalidInput for settings that are not positive, no settings, and an output that does not exist.
 template <class C, class F>
-  requires CaseFor<C, F>
+  requires ComparisonCase<C, F>
 WorkCurve work_precision(C const& make_case, F const& formulation, std::vector<double> const& settings,
                          OutputReference const& reference, std::size_t output = 0) {
   auto scenario = make_case(formulation);
@@ -116,7 +116,7 @@ WorkCurve work_precision(C const& make_case, F const& formulation, std::vector<d
     WorkPoint& point = curve.points.emplace_back(WorkPoint{.setting = setting});
     auto const compare_at = [&](State const& x) {
       double const error = std::abs(y.value(scenario.model, x) - reference.at(x.t));
-      if (!std::isfinite(error)) throw NonFinite{"The error of ", y.name, " is not finite at t = ", x.t, " s."};
+      if (!std::isfinite(error)) throw NonFiniteValue{"The error of ", y.name, " is not finite at t = ", x.t, " s."};
       point.error = std::max(point.error, error);
     };
     State x = scenario.start, again = x;

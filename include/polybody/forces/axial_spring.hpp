@@ -9,8 +9,8 @@ namespace polybody {
 struct AxialSpring {
   static constexpr int markers = 2;
   static constexpr bool is_load = false;
-  static constexpr Observes needs = Observes::frame;
-  static constexpr Observes needs_of_second = Observes::point;
+  static constexpr MarkerKind needs = MarkerKind::frame;
+  static constexpr MarkerKind needs_of_second = MarkerKind::point;
 
   Required<double> stiffness;  ///< k [N/m]
   double damping = 0.0;        ///< c [N s/m]

@@ -12,7 +12,7 @@ namespace polybody {
 /// the force and of the potential. A share that varies with the position adds the force −(∫N dd) ∂share/∂place on a
 /// and the opposite force on b.
 template <StateScalar T>
-struct Handover {
+struct ContactBlend {
   T share = T(1.0);                            ///< part of the force and of the potential of this face, in [0, 1]
   Vec<T, 3> slope = {T(0.0), T(0.0), T(0.0)};  ///< (3) ∂share/∂place [1/m]; the position moves with a
   Vec<T, 3> place = {T(0.0), T(0.0), T(0.0)};  ///< (3) position [m]
@@ -21,10 +21,10 @@ struct Handover {
 /// Contact point: point in the overlap of body a and body b.
 template <StateScalar T>
 struct ContactPoint {
-  Vec<T, 3> place;            ///< (3) point of action of the force, world axes [m]
-  Vec<T, 3> normal;           ///< (3) unit vector from b to a
-  T depth;                    ///< penetration d > 0 [m]
-  Handover<T> handover = {};  ///< share of the face in the force; 1 if no other face is near
+  Vec<T, 3> place;                ///< (3) point of action of the force, world axes [m]
+  Vec<T, 3> normal;               ///< (3) unit vector from b to a
+  T depth;                        ///< penetration d > 0 [m]
+  ContactBlend<T> handover = {};  ///< share of the face in the force; 1 if no other face is near
 };
 
 namespace detail {
@@ -53,11 +53,11 @@ Vec<T, 3> shifted(Vec<T, 3> const& p, Vec<T, 3> const& n, T const& x) {
 
 /// Contact geometry: calls visit(point) for every contact point of the shapes at frames a and b. `may_touch` is a
 /// fast test: it is false only if the shapes cannot overlap. The optional `reach(b)` is an even faster test
-/// (`TellsReach`).
+/// (`HasReach`).
 template <class G>
 concept ContactGeometry =
     requires(G const geometry, Frame<double> const a, Frame<double> const b, std::string const name) {
-      { G::needs } -> std::convertible_to<Observes>;
+      { G::needs } -> std::convertible_to<MarkerKind>;
       { geometry.may_touch(a, b) } -> std::same_as<bool>;
       geometry.template for_each_point<double>(a, b, detail::AnyPoint{});
       geometry.check(name);
@@ -82,8 +82,8 @@ struct Contact {
   using Geometry = G;  ///< type of the geometry
   static constexpr int markers = 2;
   static constexpr bool is_load = false;
-  static constexpr Observes needs = G::needs;
-  static constexpr Observes needs_of_second = [] {
+  static constexpr MarkerKind needs = G::needs;
+  static constexpr MarkerKind needs_of_second = [] {
     if constexpr (requires { G::needs_of_second; })
       return G::needs_of_second;
     else
@@ -113,7 +113,7 @@ struct Contact {
     return geometry.passes(from, to);
   }
   ContactReach reach(Frame<double> const& b) const
-    requires TellsReach<G>
+    requires HasReach<G>
   {
     return geometry.reach(b);
   }
@@ -235,8 +235,8 @@ inline bool passes_through(Vec3 const& x, Vec3 const& y, double reach) {
 
 /// Sphere of radius `radius` about marker a on the plane z = 0 of marker b, on the side of positive z.
 struct SphereOnPlane {
-  static constexpr Observes needs = Observes::point;
-  static constexpr Observes needs_of_second = Observes::frame;
+  static constexpr MarkerKind needs = MarkerKind::point;
+  static constexpr MarkerKind needs_of_second = MarkerKind::frame;
   Required<double> radius;  ///< [m]
 
   void check(std::string const& name) const { require_not_negative(radius, name, ": the sphere's radius"); }
@@ -259,7 +259,7 @@ struct SphereOnPlane {
 
 /// Spheres about both markers. Concentric spheres have no normal.
 struct SphereOnSphere {
-  static constexpr Observes needs = Observes::point;
+  static constexpr MarkerKind needs = MarkerKind::point;
   Required<double> radius_a;  ///< [m]
   Required<double> radius_b;  ///< [m]
 
@@ -296,8 +296,8 @@ struct SphereOnSphere {
 /// Sphere of radius `radius` about marker a on the outside of a cylinder about the z axis of marker b. Points of a
 /// belt have the radius zero.
 struct SphereOnCylinder {
-  static constexpr Observes needs = Observes::point;
-  static constexpr Observes needs_of_second = Observes::frame;
+  static constexpr MarkerKind needs = MarkerKind::point;
+  static constexpr MarkerKind needs_of_second = MarkerKind::frame;
   Required<double> radius;    ///< of the sphere [m]
   Required<double> cylinder;  ///< radius of the cylinder [m]
 

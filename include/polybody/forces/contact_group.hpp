@@ -14,10 +14,10 @@ namespace polybody {
 /// Contacts between many markers and a few partners: links of a track and the rollers and ground under it, or balls
 /// and walls.
 ///   auto const track = model.apply(ContactGroup<OnRoller, OnGround>{}, links, "left track");   many markers
-///   model.pair_with(track, on_roller, wheel.at({0, 0, 0}), "wheel 1");                            one at a time
+///   model.add_partner(track, on_roller, wheel.at({0, 0, 0}), "wheel 1");                            one at a time
 /// A law is a force element of two markers: the first is one of the many, the second is a partner. It is evaluated
 /// only if its `may_touch(first, second)` is true. The cost of this test should be little more than that of a
-/// distance. If all laws have `reach(second)` (`TellsReach`), several markers are tested at once with SIMD
+/// distance. If all laws have `reach(second)` (`HasReach`), several markers are tested at once with SIMD
 /// operations.
 template <ForceElement... Laws>
   requires((Laws::markers == 2) && ...)
@@ -25,12 +25,12 @@ class ContactGroup {
  public:
   static constexpr int markers = any_number;
   static constexpr bool is_load = false;
-  static constexpr Observes needs = std::max({Laws::needs...});
+  static constexpr MarkerKind needs = std::max({Laws::needs...});
   static constexpr bool all_laws_store = (HasPotential<Laws> && ...);  ///< each law has a potential
 
   /// Contact partner of the many markers.
   template <class Law>
-  struct Opponent {
+  struct ContactPartner {
     Law law;           ///< contact law
     Index marker;      ///< number of its marker in the group
     std::string name;  ///< name of the partner in messages and results
@@ -48,13 +48,13 @@ class ContactGroup {
   /// Messages use `name`.
   template <class Law>
     requires(std::is_same_v<Law, Laws> || ...)
-  void pair_with(Law const& law, Index marker, std::string name) {
-    std::get<std::vector<Opponent<Law>>>(few_).push_back({law, marker, std::move(name)});
+  void add_partner(Law const& law, Index marker, std::string name) {
+    std::get<std::vector<ContactPartner<Law>>>(few_).push_back({law, marker, std::move(name)});
   }
 
   void check(std::string const& name) const;
 
-  /// Calls f(opponent) for each `Opponent`, ordered by the type of its law, then by the order of addition.
+  /// Calls f(opponent) for each `ContactPartner`, ordered by the type of its law, then by the order of addition.
   template <class F>
   void for_each_opponent(F&& f) const {
     std::apply([&](auto const&... few) { (each_of(few, f), ...); }, few_);
@@ -74,7 +74,7 @@ class ContactGroup {
   /// called for a pair.
   template <class FrameOf, class Visit>
   void for_each_pair(FrameOf&& frame, Visit&& visit, Index begin, Index end) const {
-    if constexpr ((TellsReach<Laws> && ...))
+    if constexpr ((HasReach<Laws> && ...))
       if (opponents() <= 64) return for_each_near_pair(frame, visit, begin, end);
     for (Index i = begin; i < end; ++i)
       for_each_opponent([&](auto const& few) {
@@ -136,7 +136,7 @@ class ContactGroup {
     for (auto const& one : few) f(one);
   }
 
-  std::tuple<std::vector<Opponent<Laws>>...> few_;
+  std::tuple<std::vector<ContactPartner<Laws>>...> few_;
   Index many_ = 0;
 };
 

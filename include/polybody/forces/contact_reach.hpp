@@ -49,7 +49,7 @@ struct ContactReach {
 /// Contact or contact geometry with a reach, as a function of the frame of its second marker. `may_touch` is false
 /// beyond the reach.
 template <class G>
-concept TellsReach = requires(G const geometry, Frame<double> const second) {
+concept HasReach = requires(G const geometry, Frame<double> const second) {
   { geometry.reach(second) } -> std::same_as<ContactReach>;
 };
 

@@ -21,7 +21,7 @@ struct BarRange {
 /// forces are named "`name`, point 1" and so on, or by the next unused names. The force types of the model must
 /// include `PointForce<Law>`. Returns the handles of the forces.
 /// \throws InvalidInput for a range that is empty or outside the bar, or fewer pieces than one.
-template <class M, class B, TimeLaw Law = Constant>
+template <class M, class B, TimeFunction Law = Constant>
 auto apply_distributed(M& model, BodyHandle<B> const& bar, PointForce<Law> const& per_length, BarRange const& range,
                        std::string const& name = "") {
   std::string const what = name.empty() ? "distributed force" : name;

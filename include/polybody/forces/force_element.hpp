@@ -20,7 +20,7 @@ constexpr int states_of() {
 
 /// Wrenches on the markers as a function of their frames.
 template <class F>
-concept GivesWrenches = requires(F const force, std::array<Frame<double>, F::markers> const frames, double t) {
+concept WrenchFunction = requires(F const force, std::array<Frame<double>, F::markers> const frames, double t) {
   { force.template wrenches<double>(frames, t) } -> std::same_as<std::array<Wrench<double>, F::markers>>;
 };
 /// Force element with first-order states z, such as a controller, a valve or a viscoelastic material. It provides
@@ -34,21 +34,21 @@ concept HasStates = states_of<F>() > 0 && requires(F const force, std::array<Fra
 };
 
 /// Concept of a force element. `apply` calls `check(name)` with the name of the element. The optional member `law`
-/// with `corners()` contains the breakpoints, at which steps end. `docs/extending.md` lists the other optional
+/// with `breakpoints()` contains the breakpoints, at which steps end. `docs/extending.md` lists the other optional
 /// members.
 template <class F>
 concept ForceElement = requires(F const force, std::string const name) {
   requires F::markers >= 1;
-  { F::needs } -> std::convertible_to<Observes>;
+  { F::needs } -> std::convertible_to<MarkerKind>;
   { F::is_load } -> std::convertible_to<bool>;  // scaled by the load factor of `equilibrium`
   force.check(name);
-} && (GivesWrenches<F> || HasStates<F>);
+} && (WrenchFunction<F> || HasStates<F>);
 
 /// Kinematics that a force element requires of its second marker: `needs_of_second`, or `needs` as for the first
 /// marker.
 template <class F>
   requires requires { F::markers; }
-constexpr Observes needs_of_second() {
+constexpr MarkerKind needs_of_second() {
   if constexpr (requires { F::needs_of_second; })
     return F::needs_of_second;
   else

@@ -33,7 +33,7 @@ struct AnyVisit {
 template <class F>
 concept ForceGroup = requires(F const group, std::string const name) {
   requires F::markers == any_number;
-  { F::needs } -> std::convertible_to<Observes>;
+  { F::needs } -> std::convertible_to<MarkerKind>;
   { F::is_load } -> std::convertible_to<bool>;
   group.for_each_pair(detail::AnyFrame{}, detail::AnyVisit{});
   group.for_each_candidate(detail::AnyVisit{});
@@ -43,7 +43,7 @@ concept ForceGroup = requires(F const group, std::string const name) {
 /// Group whose pairs can be visited in parts, which threads share: i is one of its first `many()` markers, j another
 /// marker.
 template <class F>
-concept PairsByParts = ForceGroup<F> && requires(F const group) {
+concept PartitionedForceGroup = ForceGroup<F> && requires(F const group) {
   { group.many() } -> std::convertible_to<Index>;
   group.for_each_pair(detail::AnyFrame{}, detail::AnyVisit{}, Index(0), Index(0));  // for i in [begin, end)
 };

@@ -11,7 +11,7 @@ template <HasStates F, StateScalar T>
 struct AtStates {
   static constexpr int markers = F::markers;
   static constexpr bool is_load = F::is_load;
-  static constexpr Observes needs = F::needs;
+  static constexpr MarkerKind needs = F::needs;
 
   F const& force;                     ///< element, which must outlive this object
   std::array<T, F::states> const& z;  ///< states, which must outlive this object
@@ -24,7 +24,7 @@ struct AtStates {
 };
 
 /// Factors of the derivatives with respect to poses, twists and states.
-struct SlopeFactors {
+struct TangentFactors {
   double pose, twist, states;  ///< factor of each derivative; the derivative is omitted if it is zero
 };
 
@@ -32,7 +32,7 @@ struct SlopeFactors {
 template <HasStates F>
 Mat<double, 6 * F::markers + F::states, 6 * F::markers + F::states> gradient_with_states(
     F const& force, std::array<Frame<double>, F::markers> const& frames, std::array<double, F::states> const& z,
-    double t, SlopeFactors const& factors) {
+    double t, TangentFactors const& factors) {
   constexpr int first = 6 * F::markers, n = first + F::states;
   auto const moved = detail::seeded_frames<n>(frames, factors.pose, factors.twist);
   std::array<Dual<n>, F::states> states;

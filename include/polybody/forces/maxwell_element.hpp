@@ -8,7 +8,7 @@ namespace polybody {
 struct MaxwellElement {
   static constexpr int markers = 2, states = 1;  ///< two markers; one state, the elongation z of the damper [m]
   static constexpr bool is_load = false;
-  static constexpr Observes needs = Observes::point;
+  static constexpr MarkerKind needs = MarkerKind::point;
 
   Required<double> stiffness;    ///< k [N/m]
   Required<double> damping;      ///< c [N s/m]

@@ -3,7 +3,7 @@
 /// Forces and moments on a marker: dead loads and follower loads.
 
 #include <polybody/forces/force_element.hpp>
-#include <polybody/math/time_laws.hpp>
+#include <polybody/math/time_functions.hpp>
 
 namespace polybody {
 
@@ -27,11 +27,11 @@ Vec<T, 3> load_in_world(Vec3 const& load, double scale, LoadAxes axes, Frame<T> 
 }  // namespace detail
 
 /// Force on a marker, `force` times a function of time.
-template <TimeLaw Law = Constant>
+template <TimeFunction Law = Constant>
 struct PointForce {
   static constexpr int markers = 1;
   static constexpr bool is_load = true;
-  static constexpr Observes needs = Observes::point;
+  static constexpr MarkerKind needs = MarkerKind::point;
 
   Vec3 force = Vec3::Zero();        ///< (3) [N]
   LoadAxes axes = LoadAxes::world;  ///< axes of the components
@@ -39,7 +39,7 @@ struct PointForce {
 
   void check(std::string const& name) const {
     require_finite(force, name, ": the force");
-    check_law(law, name + ": the law of time");
+    check_time_function(law, name + ": the law of time");
   }
 
   template <StateScalar T>
@@ -52,11 +52,11 @@ struct PointForce {
 
 /// Moment on a marker, `moment` times a function of time. In space a dead moment is not conservative. If a marker
 /// provides only its tangent, only the part of the moment orthogonal to the tangent acts.
-template <TimeLaw Law = Constant>
+template <TimeFunction Law = Constant>
 struct PointMoment {
   static constexpr int markers = 1;
   static constexpr bool is_load = true;
-  static constexpr Observes needs = Observes::axis;
+  static constexpr MarkerKind needs = MarkerKind::axis;
 
   Vec3 moment = Vec3::Zero();       ///< (3) [N m]
   LoadAxes axes = LoadAxes::world;  ///< axes of the components
@@ -64,7 +64,7 @@ struct PointMoment {
 
   void check(std::string const& name) const {
     require_finite(moment, name, ": the moment");
-    check_law(law, name + ": the law of time");
+    check_time_function(law, name + ": the law of time");
   }
 
   template <StateScalar T>

@@ -7,7 +7,7 @@ namespace polybody {
 struct SpringDamper {
   static constexpr int markers = 2;
   static constexpr bool is_load = false;
-  static constexpr Observes needs = Observes::point;
+  static constexpr MarkerKind needs = MarkerKind::point;
 
   Required<double> stiffness;    ///< k [N/m]
   double damping = 0.0;          ///< c [N s/m]

@@ -11,7 +11,7 @@ template <int N, class Law>
 struct UserForce {
   static constexpr int markers = N;
   static constexpr bool is_load = true;
-  static constexpr Observes needs = Observes::point;
+  static constexpr MarkerKind needs = MarkerKind::point;
 
   Law law;  ///< lambda of the wrenches
 
@@ -38,7 +38,7 @@ struct UserForceWithStates {
   static constexpr int markers = N;
   static constexpr int states = S;
   static constexpr bool is_load = true;
-  static constexpr Observes needs = Observes::point;
+  static constexpr MarkerKind needs = MarkerKind::point;
 
   Law law;          ///< lambda of the wrenches
   Rates rates_law;  ///< lambda of the rates

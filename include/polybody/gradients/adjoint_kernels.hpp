@@ -7,26 +7,26 @@
 #include <limits>
 
 #include <polybody/gradients/gmres.hpp>
-#include <polybody/math/recorded.hpp>
+#include <polybody/math/tape.hpp>
 #include <polybody/math/types.hpp>
 
 namespace polybody::detail {
 
 /// `to` becomes independent variables of these values.
 template <class = void>
-void set_variables(VecX const& from, VecXOf<Recorded>& to) {
+void set_variables(VecX const& from, VecXOf<ReverseVar>& to) {
   to.resize(from.size());
-  for (Index i = 0; i < from.size(); ++i) to[i] = Recorded::variable(from[i]);
+  for (Index i = 0; i < from.size(); ++i) to[i] = ReverseVar::variable(from[i]);
 }
 /// Before a sweep: what a result changes by with these numbers.
 template <class = void>
-void add_to_slopes(Recording& recording, VecXOf<Recorded> const& numbers, VecX const& slopes) {
-  for (Index i = 0; i < slopes.size(); ++i) recording.slope(numbers[i].number) += slopes[i];
+void add_to_derivatives(Tape& recording, VecXOf<ReverseVar> const& numbers, VecX const& derivatives) {
+  for (Index i = 0; i < derivatives.size(); ++i) recording.slope(numbers[i].number) += derivatives[i];
 }
 /// After a sweep: the same.
 template <class = void>
-void take_slopes(Recording& recording, VecXOf<Recorded> const& numbers, VecX& slopes) {
-  for (Index i = 0; i < numbers.size(); ++i) slopes[i] = recording.slope(numbers[i].number);
+void take_derivatives(Tape& recording, VecXOf<ReverseVar> const& numbers, VecX& derivatives) {
+  for (Index i = 0; i < numbers.size(); ++i) derivatives[i] = recording.slope(numbers[i].number);
 }
 
 /// Aᵀ μ = y by factors of a matrix near Aᵀ, from zero on: what is near the solution would cost a product more. Where

@@ -13,37 +13,37 @@
 ///
 /// Not in polybody.hpp: few programs ask for derivatives of whole runs.
 
-#include <polybody/gradients/gradient_report.hpp>
+#include <polybody/gradients/gradient_result.hpp>
 #include <polybody/gradients/objective.hpp>
 #include <polybody/gradients/recorded_run.hpp>
-#include <polybody/gradients/set_out_adjoint.hpp>
+#include <polybody/gradients/start_correction_adjoint.hpp>
 
 namespace polybody::detail {
 
 /// A run forwards and back. \tparam I of the generalised-α family
 template <class Make, class I>
-class AdjointThroughEvents {
+class AdjointEventHandler {
   using S = std::remove_cvref_t<decltype(std::declval<Make const&>()(std::declval<std::span<double const>>()))>;
-  using V = Variant<S, I>;
+  using V = PerturbedModel<S, I>;
   using M = typename V::Model;
-  using Variants = VariantsBeside<V>;
+  using Variants = PerturbedModels<V>;
 
  public:
-  [[gnu::cold]] AdjointThroughEvents(Make const& make, std::vector<Parameter> const& parameters,
-                                     AlphaMethod const& method)
+  [[gnu::cold]] AdjointEventHandler(Make const& make, std::vector<Parameter> const& parameters,
+                                    AlphaMethod const& method)
       : parameters_(parameters),
-        whole_(make(values_of(parameters)), method),
+        full_(make(values_of(parameters)), method),
         beside_(make, parameters, method, "gradient"),
-        run_(whole_),
-        adjoint_(whole_.scenario.model, whole_.system, method),
-        objective_(whole_.scenario.model) {
+        run_(full_),
+        adjoint_(full_.scenario.model, full_.system, method),
+        objective_(full_.scenario.model) {
     for (Parameter const& p : parameters) out_.parameters.push_back(p.name);
-    out_.slopes = VecX::Zero(Index(parameters.size()));
+    out_.derivatives = VecX::Zero(Index(parameters.size()));
   }
 
-  Gradient run(GradientOptions const& options) {
-    whole_.scenario.options.check(whole_.scenario.start.t);
-    require_assembled_start(whole_);
+  GradientResult run(GradientOptions const& options) {
+    full_.scenario.options.check(full_.scenario.start.t);
+    require_assembled_start(full_);
     run_.take(out_.run);
     State const& first = run_.first();
     beside_.require_touched(first);
@@ -57,7 +57,7 @@ class AdjointThroughEvents {
         [&](std::size_t k, State const& before, State const& after) { back(k, before, after, bar); });
     auto const start = [&](V& v, State& y, double h) { v.start_like(first, y, h); };
     for (std::size_t j = 0; j < parameters_.size(); ++j)
-      out_.slopes[Index(j)] +=
+      out_.derivatives[Index(j)] +=
           bar.dot(beside_.of_start(j, run_.next().h, length_slope(j, run_.next(), time_slope(j, first)), start));
     warn_of_zeros(out_);
     return std::move(out_);
@@ -68,7 +68,7 @@ class AdjointThroughEvents {
     still_ = {zeros_like(first), 0.0, VecX::Zero(lengths_of(first).size())};
     for (std::size_t j = 0; j < parameters_.size(); ++j) {
       step_slope_.push_back(beside_.of_number(j, [](V const& v) { return v.length(); }));
-      until_slope_.push_back(beside_.of_number(j, [](V const& v) { return double(v.scenario.options.until); }));
+      until_slope_.push_back(beside_.of_number(j, [](V const& v) { return double(v.scenario.options.end_time); }));
     }
   }
   /// How fast a time of x that is a corner's moves with parameter j.
@@ -81,14 +81,14 @@ class AdjointThroughEvents {
     return plan.lands ? target_slope(j, plan) - dt : step_slope_[j];
   }
   /// No change of a state but for that of its time.
-  RunTangent const& still(double dt) {
+  RunSensitivity const& still(double dt) {
     still_.dt = dt;
     return still_;
   }
   /// A corner at the end of the run ends it for nearby parameters too.
   void require_one_end() const {
     RecordedStep const& last = run_.steps().back();
-    if (!last.at_corner || last.end < whole_.scenario.options.until) return;
+    if (!last.at_corner || last.end < full_.scenario.options.end_time) return;
     for (std::size_t j = 0; j < parameters_.size(); ++j)
       if (std::abs(target_slope(j, last.plan) - until_slope_[j]) * parameters_[j].size() > 1e-9 * run_.length())
         refuse_corner_at_end(last.end, parameters_[j].name, "gradient");
@@ -112,7 +112,7 @@ class AdjointThroughEvents {
     }
     State const& x = s.restarts ? parted : after;
     if (s.restarts || last) out_.value += add_term(integrand, x, {half, s.at_corner}, bar);
-    double of_length = retreat(k, before, x, bar, out_.slopes);
+    double of_length = backward_step(k, before, x, bar, out_.derivatives);
     of_length += 0.5 * (rate_of_integral(before) + rate_of_integral(x));
     if (s.met.empty())
       spread_length(s.plan, of_length, bar);
@@ -125,35 +125,37 @@ class AdjointThroughEvents {
   /// What J changes by with the length of a step goes to what the length depends on.
   void spread_length(StepPlan::Next const& plan, double of_length, RunCostate& bar) {
     for (std::size_t j = 0; j < parameters_.size(); ++j)
-      out_.slopes[Index(j)] += of_length * length_slope(j, plan, 0.0);
+      out_.derivatives[Index(j)] += of_length * length_slope(j, plan, 0.0);
     if (plan.lands) bar.t -= of_length;
   }
   /// What J changes by with the time t of a corner goes to the parameters.
   void spread_time(double t, RunCostate& bar) {
-    for (std::size_t j = 0; j < parameters_.size(); ++j) out_.slopes[Index(j)] += bar.t * beside_.times(j).slope(t);
+    for (std::size_t j = 0; j < parameters_.size(); ++j)
+      out_.derivatives[Index(j)] += bar.t * beside_.times(j).slope(t);
     bar.t = 0.0;
   }
 
   /// The costate at the end x of step k becomes that before it, at fixed length; what parameters do in it goes to
-  /// `slopes`. Returns what changes with its length.
-  double retreat(std::size_t k, State& before, State const& x, RunCostate& bar, VecX& slopes) {
+  /// `derivatives`. Returns what changes with its length.
+  double backward_step(std::size_t k, State& before, State const& x, RunCostate& bar, VecX& derivatives) {
     RecordedStep const& s = run_.steps()[k];
     V& spare = beside_.itself();
-    bool const corrects = spare.method.set_out(spare.system, before, s.h, spare.work);
+    bool const corrects = spare.method.start_step(spare.system, before, s.h, spare.work);
     State corrected;
     if (corrects) {
       corrected = before;
       corrected.v = spare.work.v0;
     }
-    VecX const own_before = spare.work.a0, own_after = x.memory.head(x.v.size());
-    double const left = adjoint_.retreat({corrects ? corrected : before, x, own_before, own_after, s.h}, bar.at, mu_);
+    VecX const own_before = spare.work.a0, own_after = x.history.head(x.v.size());
+    double const left =
+        adjoint_.backward_step({corrects ? corrected : before, x, own_before, own_after, s.h}, bar.at, mu_);
     out_.left = std::max(out_.left, require_converged(left, x.t, "gradient"));
-    double of_length = adjoint_.by_length();
+    double of_length = adjoint_.step_length_derivative();
     beside_.begin_step();
-    for (std::size_t j = 0; j < parameters_.size(); ++j) slopes[Index(j)] -= of_equations(j, {x, s.h, 0.0, 0});
+    for (std::size_t j = 0; j < parameters_.size(); ++j) derivatives[Index(j)] -= of_equations(j, {x, s.h, 0.0, 0});
     bar.t -= of_equations(Variants::along_motion, {x, s.h, 1.0, 0});
     of_length += bar.t + bar.pull_push(before);
-    SetOutAdjoint<V> const sets_out(spare, before, s.h, corrects);
+    StartCorrectionAdjoint<V> const sets_out(spare, before, s.h, corrects);
     bool const free = (s.plan.lands || !s.met.empty()) && sets_out.shifted() > 0.0;  // of another length nearby
     if (!corrects && !free) return of_length;
     bool const from_corner = run_.begins_at_corner(k);
@@ -162,12 +164,12 @@ class AdjointThroughEvents {
       for (std::size_t j = 0; j < parameters_.size(); ++j) {
         State const change = beside_.of_map(j, before, still(from_corner ? time_slope(j, before) : 0.0), {s.h, 0.0},
                                             [&](V& of, State& y, double length) { sets_out.add(of, y, length); });
-        slopes[Index(j)] += v.dot(change.v) + own.dot(change.memory.head(own.size()));
+        derivatives[Index(j)] += v.dot(change.v) + own.dot(change.history.head(own.size()));
       }
     }
     return of_length + sets_out.pull(bar, !from_corner);
   }
-  double of_equations(std::size_t j, typename Variants::template PlaceInStep<State> const& at) {
+  double of_equations(std::size_t j, typename Variants::template PointInStep<State> const& at) {
     beside_.of_equations(j, at, by_);
     Index const nv = by_.balance.size();
     return mu_.head(nv).dot(by_.balance) + mu_.tail(by_.rows.size()).dot(by_.rows);
@@ -177,17 +179,17 @@ class AdjointThroughEvents {
   void add_event(std::size_t k, State& before, State const& x, double of_length, RunCostate& bar) {
     RecordedStep const& s = run_.steps()[k];
     std::size_t const i = s.met.front();
-    Event const& event = whole_.scenario.options.events[i];
+    Event const& event = full_.scenario.options.events[i];
     RunCostate of(x);
-    VecX slopes = VecX::Zero(out_.slopes.size());
-    objective_.add([&](M const&, State const& shown) { return event.value(shown); }, whole_.scenario.model, x, 1.0,
+    VecX derivatives = VecX::Zero(out_.derivatives.size());
+    objective_.add([&](M const&, State const& shown) { return event.value(shown); }, full_.scenario.model, x, 1.0,
                    of.at);
     auto const value = [i](V& v, State const& y) { return v.scenario.options.events[i].value(v.shown(y)); };
-    add_slopes_of_value(value, x, {1.0, false}, of, slopes);
-    double const rate = retreat(k, before, x, of, slopes);
+    add_derivatives_of_value(value, x, {1.0, false}, of, derivatives);
+    double const rate = backward_step(k, before, x, of, derivatives);
     if (!(std::abs(rate) * s.far > 1e-6 * s.largest)) refuse_touch(event.name, x.t, "gradient");
     bar.add(of, -of_length / rate);
-    out_.slopes -= of_length / rate * slopes;
+    out_.derivatives -= of_length / rate * derivatives;
   }
 
   /// The costate `bar` after a new beginning, `after`, becomes that of the state x before it.
@@ -204,11 +206,11 @@ class AdjointThroughEvents {
     };
     auto const size = [](VecX const& part) { return part.size() > 0 ? part.template lpNorm<Eigen::Infinity>() : 0.0; };
     double const of_a = size(x.a), of_v = std::max(size(x.v), run_.length() * of_a);
-    add_slopes_by({&State::q, 0, x.q.size(), size(x.q)}, x, h, result, bar.at.q);
-    add_slopes_by({&State::v, 0, x.v.size(), of_v}, x, h, result, bar.at.v);
+    add_derivatives_by({&State::q, 0, x.q.size(), size(x.q)}, x, h, result, bar.at.q);
+    add_derivatives_by({&State::v, 0, x.v.size(), of_v}, x, h, result, bar.at.v);
     if (run_.reads_forces(s, x)) {
-      add_slopes_by({&State::a, 0, x.a.size(), of_a}, x, h, result, bar.at.a);
-      add_slopes_by({&State::lambda, 0, x.lambda.size(), size(x.lambda)}, x, h, result, bar.at.lambda);
+      add_derivatives_by({&State::a, 0, x.a.size(), of_a}, x, h, result, bar.at.a);
+      add_derivatives_by({&State::lambda, 0, x.lambda.size(), size(x.lambda)}, x, h, result, bar.at.lambda);
     }
     double const longer = s.next.lands ? -1.0 : 0.0;
     auto const later = [longer](State& y, double& length, double by) {
@@ -218,7 +220,7 @@ class AdjointThroughEvents {
     if (!s.at_corner) bar.t += slope_along(x, h, 4e-3 * h, later, result);
     for (std::size_t j = 0; j < parameters_.size(); ++j) {
       double const dt = s.at_corner ? time_slope(j, x) : 0.0;
-      out_.slopes[Index(j)] += of.dot(beside_.of_map(j, x, still(dt), {h, length_slope(j, s.next, dt)}, begin));
+      out_.derivatives[Index(j)] += of.dot(beside_.of_map(j, x, still(dt), {h, length_slope(j, s.next, dt)}, begin));
     }
     x.t = before_it;
   }
@@ -230,27 +232,27 @@ class AdjointThroughEvents {
   /// A term of the objective at x. Returns its part of J. \param pick of a scenario
   template <class Pick>
   double add_term(Pick const& pick, State const& x, Weight weight, RunCostate& bar) {
-    if constexpr (std::same_as<std::remove_cvref_t<decltype(pick(whole_.scenario))>, NoTerm>) {
+    if constexpr (std::same_as<std::remove_cvref_t<decltype(pick(full_.scenario))>, NoTerm>) {
       return 0.0;
     } else {
       auto const value = [&](V& v, State const& y) { return term(pick(v.scenario), v.scenario.model, v.shown(y)); };
-      objective_.add(pick(whole_.scenario), whole_.scenario.model, x, weight.by, bar.at);
-      add_slopes_of_value(value, x, weight, bar, out_.slopes);
-      return weight.by * value(whole_, x);
+      objective_.add(pick(full_.scenario), full_.scenario.model, x, weight.by, bar.at);
+      add_derivatives_of_value(value, x, weight, bar, out_.derivatives);
+      return weight.by * value(full_, x);
     }
   }
   double rate_of_integral(State const& x) {
-    return term(whole_.scenario.integrand, whole_.scenario.model, whole_.shown(x));
+    return term(full_.scenario.integrand, full_.scenario.model, full_.shown(x));
   }
   /// What parameters, and the time, do to a value(variant, state) at x.
   template <class F>
-  void add_slopes_of_value(F const& value, State const& x, Weight weight, RunCostate& bar, VecX& slopes) {
+  void add_derivatives_of_value(F const& value, State const& x, Weight weight, RunCostate& bar, VecX& derivatives) {
     auto const values = [&](V& v, State const& y) { return VecX::Constant(1, value(v, y)).eval(); };
     double const h = run_.length();
     beside_.show(x);
     for (std::size_t j = 0; j < parameters_.size(); ++j) {
-      RunTangent const& tangent = still(weight.at_corner ? time_slope(j, x) : 0.0);
-      slopes[Index(j)] += weight.by * beside_.of_values(j, x, tangent, h, values)[0];
+      RunSensitivity const& tangent = still(weight.at_corner ? time_slope(j, x) : 0.0);
+      derivatives[Index(j)] += weight.by * beside_.of_values(j, x, tangent, h, values)[0];
     }
     if (weight.at_corner) return;
     auto const later = [](State& y, double&, double by) { y.t += by; };
@@ -259,16 +261,16 @@ class AdjointThroughEvents {
   }
 
   std::vector<Parameter> parameters_;
-  V whole_;
+  V full_;
   Variants beside_;
   RecordedRun<V> run_;
   AlphaStepAdjoint<> adjoint_;
-  ObjectiveSlopes<M> objective_;
-  RunTangent still_;
+  ObjectiveDerivatives<M> objective_;
+  RunSensitivity still_;
   std::vector<double> step_slope_, until_slope_;
-  EquationSlope by_;
+  EquationDerivative by_;
   VecX mu_;
-  Gradient out_;
+  GradientResult out_;
 };
 
 /// The start or end of a run depends on a parameter, or the length of its steps. \param chooses the method finds the
@@ -282,16 +284,16 @@ bool has_moving_times(Make const& make, std::vector<Parameter> const& parameters
     p[j] += parameters[j].distance();
     S const near = make(p);
     bool const same_steps = chooses || length_of_steps(near.options) == length_of_steps(here);
-    if (near.options.until != here.until || near.start.t != scenario.start.t || !same_steps) return true;
+    if (near.options.end_time != here.end_time || near.start.t != scenario.start.t || !same_steps) return true;
   }
   return false;
 }
 /// Events or corners may end steps of a run. \param corners of it, in no order [s]
 template <class S>
-bool is_interrupted(S const& scenario, std::vector<double> const& corners) {
+bool is_interrupted(S const& scenario, std::vector<double> const& breakpoints) {
   RunOptions const& o = scenario.options;
-  return !o.events.empty() ||
-         std::any_of(corners.begin(), corners.end(), [&](double t) { return t > scenario.start.t && t <= o.until; });
+  return !o.events.empty() || std::any_of(breakpoints.begin(), breakpoints.end(),
+                                          [&](double t) { return t > scenario.start.t && t <= o.end_time; });
 }
 
 }  // namespace polybody::detail

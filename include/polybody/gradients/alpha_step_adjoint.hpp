@@ -1,7 +1,8 @@
 #pragma once
 /// \file
-/// The adjoint of a converged step of the generalised-α family (gradients/alpha_step_slope.hpp has its tangent-linear):
-/// from what a result J of a run changes by with the state after a step to what it changes by with the state before.
+/// The adjoint of a converged step of the generalised-α family (gradients/alpha_linearised_step.hpp has its
+/// tangent-linear): from what a result J of a run changes by with the state after a step to what it changes by with the
+/// state before.
 ///
 /// With y = (a₁, λ₁), q₁ = q₀ ⊞ δ(y), v₁(y), v̇₁(y) by the formulas of the step, and its equations R(y; x₀, p) = 0,
 ///   ȳ = ∂J/∂y by x̄₁ and these formulas,   (∂R/∂y)ᵀ μ = ȳ,
@@ -12,7 +13,7 @@
 /// Not in polybody.hpp: few programs ask for derivatives of whole runs.
 
 #include <polybody/gradients/adjoint_kernels.hpp>
-#include <polybody/gradients/step_factors.hpp>
+#include <polybody/gradients/step_factorisations.hpp>
 
 namespace polybody {
 
@@ -31,7 +32,7 @@ struct Costate {
   /// What J changes by where the state changes by dx.
   double dot(State const& dx) const {
     double const sum = q.dot(dx.q) + v.dot(dx.v) + a.dot(dx.a) + lambda.dot(dx.lambda);
-    return dx.memory.size() >= own.size() ? sum + own.dot(dx.memory.head(own.size())) : sum;
+    return dx.history.size() >= own.size() ? sum + own.dot(dx.history.head(own.size())) : sum;
   }
 };
 
@@ -42,13 +43,13 @@ class AlphaStepAdjoint {
   /// The model must outlive it.
   template <class M>
   [[gnu::cold]] AlphaStepAdjoint(M const& model, System& system, AlphaMethod const& method)
-      : recorded_(stepped_system<Recorded>(model, with<Entries::motion>)),
+      : recorded_(stepped_system<ReverseVar>(model, with<Capabilities::motion>)),
         method_(method),
-        factors_(system, method, {{NearFactors::exact, 0.0}, {NearFactors::turned, 0.5}}) {
-    Index const nq = system.coordinates(), nv = system.speeds(), rows = system.rows();
-    from_ = q_ = Numbers::Constant(nq, Recorded(0.0));
-    delta_ = v_ = a_ = r_ = Numbers::Constant(nv, Recorded(0.0));
-    lambda_ = phi_ = rate_ = Numbers::Constant(rows, Recorded(0.0));
+        factors_(system, method, {{ApproximateFactors::exact, 0.0}, {ApproximateFactors::turned, 0.5}}) {
+    Index const nq = system.coordinates(), nv = system.velocities(), rows = system.rows();
+    from_ = q_ = Numbers::Constant(nq, ReverseVar(0.0));
+    delta_ = v_ = a_ = r_ = Numbers::Constant(nv, ReverseVar(0.0));
+    lambda_ = phi_ = rate_ = Numbers::Constant(rows, ReverseVar(0.0));
     mu_ = y_ = product_ = VecX::Zero(nv + rows);
     of_q_ = VecX::Zero(nq);
     of_delta_ = of_v_ = of_a_ = VecX::Zero(nv);
@@ -57,9 +58,9 @@ class AlphaStepAdjoint {
 
   /// Takes the costate of the state after the step to that of the state before it. Returns what the last correction of
   /// μ changed, relative to it. \param mu (nv + rows) what J changes by with what is
-  /// added to M v̇ − f + Gᵀλ, and to Φ, of velocity rows Φ̇, its sign changed. \throws LinearSolverSingular at a singular
+  /// added to M v̇ − f + Gᵀλ, and to Φ, of velocity rows Φ̇, its sign changed. \throws SingularMatrix at a singular
   /// position.
-  double retreat(StepEnds const& step, Costate& x, VecX& mu) {
+  double backward_step(StepEnds const& step, Costate& x, VecX& mu) {
     record(step);
     factors_.set(step);
     Index const nv = a_.size(), rows = lambda_.size();
@@ -90,31 +91,31 @@ class AlphaStepAdjoint {
     x.lambda.setZero();
     mu = mu_;
     mu.tail(rows) *= of_positions(h);
-    for (Index const i : recorded_.velocity_rows()) mu[nv + i] = mu_[nv + i] * of_speeds(h);
+    for (Index const i : recorded_.nonholonomic_equations()) mu[nv + i] = mu_[nv + i] * of_velocities(h);
     return left;
   }
 
   /// What J changes by with the length of the step that was gone back over last, where times of equations stay
   /// [J's unit/s].
-  double by_length() const { return by_length_; }
+  double step_length_derivative() const { return by_length_; }
 
  private:
-  using Numbers = VecXOf<Recorded>;
+  using Numbers = VecXOf<ReverseVar>;
   static constexpr Index most_products = 60;
 
   /// What Φ and Φ̇ are multiplied by in R.
   double of_positions(double h) const { return 1.0 / (method_.beta * h * h); }
-  double of_speeds(double h) const { return 1.0 / (method_.gamma * h); }
+  double of_velocities(double h) const { return 1.0 / (method_.gamma * h); }
 
-  void take(Numbers const& from, VecX& slopes) { detail::take_slopes(recording_, from, slopes); }
+  void take(Numbers const& from, VecX& derivatives) { detail::take_derivatives(recording_, from, derivatives); }
 
   /// q₁ = q₀ ⊞ δ, then M v̇ − f + Gᵀλ, Φ and, where velocity rows are, Φ̇ at the end of the step.
   void record(StepEnds const& step) {
     State const &before = step.before, &after = step.after;
-    Recording::On const on(recording_);
+    Tape::On const on(recording_);
     VecX const increment = step.increment(method_);
     detail::set_variables(before.q, from_);
-    for (Index i = 0; i < delta_.size(); ++i) delta_[i] = Recorded::variable(increment[i]);
+    for (Index i = 0; i < delta_.size(); ++i) delta_[i] = ReverseVar::variable(increment[i]);
     recorded_.plus(from_, delta_, q_);
     moved_ = recording_.size();
     detail::set_variables(after.v, v_);
@@ -123,13 +124,13 @@ class AlphaStepAdjoint {
     recorded_.evaluate(q_, v_, after.t);
     recorded_.residual(a_, lambda_, r_);
     if (phi_.size() > 0) recorded_.violation(phi_);
-    if (!recorded_.velocity_rows().empty()) recorded_.violation_rate(rate_);
+    if (!recorded_.nonholonomic_equations().empty()) recorded_.violation_rate(rate_);
   }
 
   /// (∂q₁/∂q₀)ᵀ q̄ and (∂q₁/∂δ)ᵀ q̄.
   void pull_position(VecX const& q) {
-    recording_.clear_slopes(moved_);
-    detail::add_to_slopes(recording_, q_, q);
+    recording_.clear_derivatives(moved_);
+    detail::add_to_derivatives(recording_, q_, q);
     recording_.sweep(moved_);
     take(from_, of_q_);
     take(delta_, of_delta_);
@@ -137,11 +138,11 @@ class AlphaStepAdjoint {
   /// Products of the transposed derivatives of R with μ.
   void pull_equations(StepEnds const& step, VecX const& mu) {
     Index const nv = r_.size();
-    recording_.clear_slopes(recording_.size());
+    recording_.clear_derivatives(recording_.size());
     for (Index i = 0; i < nv; ++i) recording_.slope(r_[i].number) += mu[i];
-    double const of_phi = of_positions(step.h), of_rate = of_speeds(step.h);
+    double const of_phi = of_positions(step.h), of_rate = of_velocities(step.h);
     for (Index i = 0; i < phi_.size(); ++i) recording_.slope(phi_[i].number) += of_phi * mu[nv + i];
-    for (Index const i : recorded_.velocity_rows()) recording_.slope(rate_[i].number) += of_rate * mu[nv + i];
+    for (Index const i : recorded_.nonholonomic_equations()) recording_.slope(rate_[i].number) += of_rate * mu[nv + i];
     recording_.sweep(recording_.size());
     take(from_, of_q_);
     take(delta_, of_delta_);
@@ -150,10 +151,10 @@ class AlphaStepAdjoint {
     take(lambda_, of_lambda_);
   }
 
-  BasicSystem<Recorded> recorded_;
+  BasicSystem<ReverseVar> recorded_;
   AlphaMethod method_;
-  StepFactors<Solver, Derivative::transposed> factors_;
-  Recording recording_;
+  StepFactorisations<Solver, Derivative::transposed> factors_;
+  Tape recording_;
   std::size_t moved_ = 0;  // operations until q₁ is there
   Numbers from_, delta_, q_, v_, a_, lambda_, r_, phi_, rate_;
   detail::TransposedSolution solution_;

@@ -3,12 +3,12 @@
 /// The derivatives of one result of a run, J = Φ(x_N) + ∫ g(x) dt, with respect to any number of parameters of its
 /// model, by the discrete adjoint:
 ///
-///     auto const make = [](std::span<double const> p) { … return rated(Scenario<M>{model, start, options}, end); };
-///     Gradient const g = gradient(make, {{"length [m]", 1.0}}, GeneralizedAlpha{});
-///     g.slopes[0];   // dJ/dp of the first parameter
+///     auto const make = [](std::span<double const> p) { … return with_objective(Scenario<M>{model, start, options},
+///     end); }; Gradient const g = gradient(make, {{"length [m]", 1.0}}, GeneralisedAlpha{}); g.slopes[0];   // dJ/dp
+///     of the first parameter
 ///
 /// The run is taken once forwards, then backwards from its end (`AlphaStepAdjoint`), through corners and events
-/// (`AdjointThroughEvents`); states on the way are kept in snapshots or computed again (`reverse_steps`). Parameters
+/// (`AdjointEventHandler`); states on the way are kept in snapshots or computed again (`reverse_steps`). Parameters
 /// are numbers of a factory, and equations at given unknowns are differenced by them, as in `sensitivities`; a step
 /// costs the same for one parameter and for many but for these differences, which parameters share that touch nothing
 /// in common (`Parameter::touches`). Every step begins with a factorisation of its own, so that it has the same bits
@@ -20,16 +20,16 @@
 #include <span>
 
 #include <polybody/gradients/adjoint_through_events.hpp>
-#include <polybody/gradients/gradient_report.hpp>
+#include <polybody/gradients/backward_sweeps.hpp>
+#include <polybody/gradients/gradient_result.hpp>
 #include <polybody/gradients/objective.hpp>
 #include <polybody/gradients/requirements.hpp>
-#include <polybody/gradients/ways_back.hpp>
 
 namespace polybody {
 
 /// A user's factory: a scenario with its objective for the values of the parameters, in their order.
 template <class F>
-concept MakesRatedScenarios = requires(F const make, std::span<double const> p) {
+concept ObjectiveFactory = requires(F const make, std::span<double const> p) {
   { make(p).model };
   { make(p).start } -> std::convertible_to<State>;
   { make(p).end };
@@ -46,34 +46,34 @@ class AdjointRun {
   using V = typename W::V;
   using M = typename V::Model;
   /// A scenario beside the one that is run, and what it shows of states.
-  struct Beside {
+  struct ParameterDifferences {
     S scenario;
-    ShownStates<M> shown;
-    explicit Beside(S of) : scenario(std::move(of)), shown(scenario.model) {}
+    FullStates<M> shown;
+    explicit ParameterDifferences(S of) : scenario(std::move(of)), shown(scenario.model) {}
   };
 
  public:
   [[gnu::cold]] AdjointRun(Make const& make, std::vector<Parameter> const& parameters, MethodOf<I> const& method)
       : make_(make),
         parameters_(parameters),
-        whole_(make(values_of(parameters)), method),
-        way_(whole_),
-        slopes_(whole_.scenario.model) {
-    require_plain(whole_.scenario.options, "gradient");
-    require_still(whole_.scenario.options);
+        full_(make(values_of(parameters)), method),
+        way_(full_),
+        derivatives_(full_.scenario.model) {
+    require_plain(full_.scenario.options, "gradient");
+    require_still(full_.scenario.options);
     for (Parameter const& p : parameters) out_.parameters.push_back(p.name);
-    out_.slopes = VecX::Zero(Index(parameters.size()));
+    out_.derivatives = VecX::Zero(Index(parameters.size()));
   }
 
-  Gradient run(GradientOptions const& options) {
-    double const from = whole_.scenario.start.t;
-    whole_.scenario.options.check(from);
-    require_assembled_start(whole_);
-    State x = whole_.started(begin_plan(from));
+  GradientResult run(GradientOptions const& options) {
+    double const from = full_.scenario.start.t;
+    full_.scenario.options.check(from);
+    require_assembled_start(full_);
+    State x = full_.started(begin_plan(from));
     plan(x);
-    out_.value += weight(0) * term(whole_.scenario.integrand, whole_.scenario.model, whole_.shown(x));
-    x = W::set_out(whole_, std::move(x), steps_.front().h);
-    EquationSlopes<V> equations(make_, parameters_, whole_);
+    out_.value += weight(0) * term(full_.scenario.integrand, full_.scenario.model, full_.shown(x));
+    x = W::start_step(full_, std::move(x), steps_.front().h);
+    EquationDerivatives<V> equations(make_, parameters_, full_);
     prepare(x, equations);
     Costate bar(x);
     bool at_end = false;
@@ -83,11 +83,11 @@ class AdjointRun {
         [&](std::size_t k, State const& before, State const& after) {
           if (!at_end) begin_at_end(after, bar);
           at_end = true;
-          double const left = way_.retreat({before, after, steps_[k].taken}, bar, equations, out_.slopes);
+          double const left = way_.backward_step({before, after, steps_[k].taken}, bar, equations, out_.derivatives);
           out_.left = std::max(out_.left, require_converged(left, after.t, "gradient"));
           if (k > 0) add_integrand(k, before, bar);
         });
-    for (std::size_t j = 0; j < parameters_.size(); ++j) out_.slopes[Index(j)] += bar.dot(starts_[j]);
+    for (std::size_t j = 0; j < parameters_.size(); ++j) out_.derivatives[Index(j)] += bar.dot(starts_[j]);
     warn_of_zeros(out_);
     return std::move(out_);
   }
@@ -96,28 +96,29 @@ class AdjointRun {
   struct Step {
     double h, taken, end;  ///< length that was asked for and that was taken, and time at which it ends [s]
   };
-  static constexpr bool chooses = requires { I::controls_step; };
+  static constexpr bool chooses = requires { I::adaptive_step; };
 
   /// What only runs under the generalised-α family have.
   static void require_still(RunOptions const& o) {
-    if (!o.events.empty() || !o.corners.empty())
+    if (!o.events.empty() || !o.breakpoints.empty())
       throw InvalidInput(
           "gradient: runs with events or corners go back under the generalised-α family alone. Take `sensitivities`.");
   }
   /// The length of the first step.
   double begin_plan(double t) {
-    RunOptions const& options = whole_.scenario.options;
-    if (!(t < options.until)) throw InvalidInput("gradient: the run has no step. Let it go on until after its start.");
-    plan_ = StepPlan(t, options.until, options.step, whole_.system.layout().corners);
-    largest_ = options.largest_step.value_or(std::numeric_limits<double>::infinity());
+    RunOptions const& options = full_.scenario.options;
+    if (!(t < options.end_time))
+      throw InvalidInput("gradient: the run has no step. Let it go on until after its start.");
+    plan_ = StepPlan(t, options.end_time, options.step, full_.system.layout().breakpoints);
+    largest_ = options.max_step.value_or(std::numeric_limits<double>::infinity());
     return plan_.next(t, std::min<double>(options.step, largest_)).h;
   }
   /// All steps from x on; where the integrator chooses them, by taking them.
   void plan(State x) {
-    RunOptions const& options = whole_.scenario.options;
+    RunOptions const& options = full_.scenario.options;
     double h = std::min<double>(options.step, largest_);
     StepRow row;
-    while (x.t < options.until) {
+    while (x.t < options.end_time) {
       StepPlan::Next const next = plan_.next(x.t, h);
       if (next.jumps)
         throw InvalidInput{"gradient: a drive or load has a corner at t = ", next.target,
@@ -125,13 +126,13 @@ class AdjointRun {
       Step step{next.h, next.h, 0.0};
       double const from = x.t;
       if constexpr (chooses) {
-        StepReport const report = W::step(whole_, x, next.h);
+        StepReport const report = W::step(full_, x, next.h);
         step.taken = report.taken;
         bool const reached = next.lands && report.taken == next.h;
         h = std::min(reached ? std::max(report.next, h) : report.next, largest_);
       }
       x.t = step.end = next.lands && step.taken == next.h ? next.target : row.after(from, step.taken);
-      if (W::asks_for_equal_steps(whole_) && !steps_.empty() && std::abs(step.h - steps_.back().h) > 1e-9 * step.h)
+      if (W::asks_for_equal_steps(full_) && !steps_.empty() && std::abs(step.h - steps_.back().h) > 1e-9 * step.h)
         throw InvalidInput{"gradient: the step to t = ", step.end,
                            " s has another length than the others. Give the options a step that divides the time of "
                            "the run, or set start_correction to false."};
@@ -145,7 +146,7 @@ class AdjointRun {
   }
 
   void take(std::size_t k, State& x) {
-    StepReport const report = W::step(whole_, x, steps_[k].h);
+    StepReport const report = W::step(full_, x, steps_[k].h);
     x.t = steps_[k].end;
     if (k == furthest_) {
       out_.run.add(report);
@@ -154,21 +155,22 @@ class AdjointRun {
   }
 
   void begin_at_end(State const& last, Costate& bar) {
-    out_.value += term(whole_.scenario.end, whole_.scenario.model, whole_.shown(last));
-    slopes_.add(whole_.scenario.end, whole_.scenario.model, last, 1.0, bar);
-    add_to_slopes([&](Beside& b) { return term(b.scenario.end, b.scenario.model, b.shown(last)); });
+    out_.value += term(full_.scenario.end, full_.scenario.model, full_.shown(last));
+    derivatives_.add(full_.scenario.end, full_.scenario.model, last, 1.0, bar);
+    add_to_derivatives([&](ParameterDifferences& b) { return term(b.scenario.end, b.scenario.model, b.shown(last)); });
     add_integrand(steps_.size(), last, bar);
   }
   /// The integrand of state number k.
   void add_integrand(std::size_t k, State const& x, Costate& bar) {
-    if constexpr (std::same_as<decltype(whole_.scenario.integrand), NoTerm>) return;
+    if constexpr (std::same_as<decltype(full_.scenario.integrand), NoTerm>) return;
     double const w = weight(k);
-    out_.value += w * term(whole_.scenario.integrand, whole_.scenario.model, whole_.shown(x));
-    slopes_.add(whole_.scenario.integrand, whole_.scenario.model, x, w, bar);
-    add_to_slopes([&](Beside& b) { return w * term(b.scenario.integrand, b.scenario.model, b.shown(x)); });
+    out_.value += w * term(full_.scenario.integrand, full_.scenario.model, full_.shown(x));
+    derivatives_.add(full_.scenario.integrand, full_.scenario.model, x, w, bar);
+    add_to_derivatives(
+        [&](ParameterDifferences& b) { return w * term(b.scenario.integrand, b.scenario.model, b.shown(x)); });
   }
   /// What each parameter does to the start of the run, and its scenarios. \param x from where the first step sets out
-  void prepare(State const& x, EquationSlopes<V> const& equations) {
+  void prepare(State const& x, EquationDerivatives<V> const& equations) {
     double const h = steps_.front().h;
     for (std::size_t j = 0; j < parameters_.size(); ++j) {
       Parameter const& p = parameters_[j];
@@ -177,46 +179,46 @@ class AdjointRun {
       for (std::size_t k = 0; k < FourPoints::places.size(); ++k) {
         std::vector<double> values = values_of(parameters_);
         values[j] += FourPoints::places[k] * p.distance();
-        V v(make_(values), whole_.method);
-        require_alike(whole_, v, p, "gradient");
-        if (k == 0) equations.require_touched(j, whole_, v, x);
+        V v(make_(values), full_.method);
+        require_alike(full_, v, p, "gradient");
+        if (k == 0) equations.require_touched(j, full_, v, x);
         double const by = FourPoints::weights[k] / p.distance();
         State y = v.started(h);
         of_integrand += by * term(v.scenario.integrand, v.scenario.model, v.shown(y));
-        y = W::set_out(v, std::move(y), h);
+        y = W::start_step(v, std::move(y), h);
         if (!W::begin_alike(x, y))
           throw InvalidInput{"gradient: the start of a run with another \"", p.name,
                              "\" is corrected otherwise. Set start_correction to false."};
         add(dx, y, by);
-        beside_.push_back(std::make_unique<Beside>(std::move(v.scenario)));
+        beside_.push_back(std::make_unique<ParameterDifferences>(std::move(v.scenario)));
       }
-      out_.slopes[Index(j)] += weight(0) * of_integrand;
+      out_.derivatives[Index(j)] += weight(0) * of_integrand;
       starts_.push_back(std::move(dx));
     }
   }
   /// Adds the derivative of f(what is beside) to each parameter's slope.
   template <class F>
-  void add_to_slopes(F&& f) {
+  void add_to_derivatives(F&& f) {
     for (std::size_t j = 0; j < parameters_.size(); ++j) {
       double slope = 0.0;
       for (std::size_t k = 0; k < FourPoints::places.size(); ++k)
         slope += FourPoints::weights[k] / parameters_[j].distance() * f(*beside_[4 * j + k]);
-      out_.slopes[Index(j)] += slope;
+      out_.derivatives[Index(j)] += slope;
     }
   }
 
   Make const& make_;
   std::vector<Parameter> parameters_;
-  V whole_;
+  V full_;
   W way_;
-  std::vector<std::unique_ptr<Beside>> beside_;  // four for each parameter
-  std::vector<State> starts_;                    // derivatives of where the first step sets out, by each parameter
+  std::vector<std::unique_ptr<ParameterDifferences>> beside_;  // four for each parameter
+  std::vector<State> starts_;  // derivatives of where the first step sets out, by each parameter
   StepPlan plan_;
   double largest_ = 0.0;
   std::vector<Step> steps_;
   std::size_t furthest_ = 0;  // steps that have been taken once
-  ObjectiveSlopes<M> slopes_;
-  Gradient out_;
+  ObjectiveDerivatives<M> derivatives_;
+  GradientResult out_;
 };
 
 }  // namespace detail
@@ -227,30 +229,30 @@ class AdjointRun {
 /// stays as it is; with radau_step_adjoint.hpp Radau. \throws InvalidInput for parameters or options that cannot be
 /// meant, a factory whose models differ in size, under methods of several stages events, corners or times that move,
 /// times without a derivative as `sensitivities`, two events at once, a last step of another length in a run without
-/// any of these; LinearSolverSingular at a singular position; NonFinite; and as `simulate`.
-template <MakesRatedScenarios Make, class I>
-Gradient gradient(Make const& make, std::vector<Parameter> const& parameters, I const& integrator,
-                  GradientOptions const& options = {}) {
-  if constexpr (detail::OfAlphaFamily<I>) {
-    AlphaMethod const method = detail::method_of_slopes(parameters, integrator, "gradient");
+/// any of these; SingularMatrix at a singular position; NonFiniteValue; and as `simulate`.
+template <ObjectiveFactory Make, class I>
+GradientResult gradient(Make const& make, std::vector<Parameter> const& parameters, I const& integrator,
+                        GradientOptions const& options = {}) {
+  if constexpr (detail::AlphaFamilyIntegrator<I>) {
+    AlphaMethod const method = detail::method_of_derivatives(parameters, integrator, "gradient");
     auto const scenario = make(detail::values_of(parameters));
     detail::require_plain(scenario.options, "gradient");
     System const system = system_for<I>(scenario.model);
-    if (detail::is_interrupted(scenario, detail::corners_of(system, scenario.options)) ||
+    if (detail::is_interrupted(scenario, detail::breakpoints_of(system, scenario.options)) ||
         detail::has_moving_times(make, parameters, scenario))
-      return detail::AdjointThroughEvents<Make, I>(make, parameters, method).run(options);
-    return detail::AdjointRun<Make, I, detail::AlphaWayBack>(make, parameters, method).run(options);
+      return detail::AdjointEventHandler<Make, I>(make, parameters, method).run(options);
+    return detail::AdjointRun<Make, I, detail::AlphaBackwardSweep>(make, parameters, method).run(options);
   } else {
-    static_assert(detail::HasAdjointsOfStages<I>,
-                  "The adjoint is of the generalised-α family (GeneralizedAlpha, HhtAlpha, Newmark, Trapezoidal); with "
+    static_assert(detail::HasStageAdjoints<I>,
+                  "The adjoint is of the generalised-α family (GeneralisedAlpha, HhtAlpha, Newmark, Trapezoidal); with "
                   "<polybody/gradients/runge_kutta_step_adjoint.hpp> of RungeKutta4 and DormandPrince, with "
                   "<polybody/gradients/radau_step_adjoint.hpp> of Radau.");
     MethodOf<I> const method = detail::method_of_stages(parameters, integrator);
-    if (detail::has_moving_times(make, parameters, make(detail::values_of(parameters)), requires { I::controls_step; }))
+    if (detail::has_moving_times(make, parameters, make(detail::values_of(parameters)), requires { I::adaptive_step; }))
       throw InvalidInput(
           "gradient: runs whose start, end or steps depend on a parameter go back under the generalised-α family "
           "alone. Take `sensitivities`.");
-    return detail::AdjointRun<Make, I, detail::StagesWayBack>(make, parameters, method).run(options);
+    return detail::AdjointRun<Make, I, detail::StageBackwardSweep>(make, parameters, method).run(options);
   }
 }
 

@@ -2,7 +2,7 @@
 /// \file
 /// What a run is rated by: J = Φ(x_N) + ∫ g(x) dt, the integral by the trapezoidal rule over the steps.
 ///
-///     return rated(Scenario<M>{model, start, options}, [tip](auto const& m, auto const& x) { … });
+///     return with_objective(Scenario<M>{model, start, options}, [tip](auto const& m, auto const& x) { … });
 ///
 /// A function that takes a state of any scalar (`auto const& x`) is differentiated by recording it; one that takes
 /// a `State const&` by differences in each of its numbers, four evaluations each.
@@ -11,9 +11,9 @@
 
 #include <polybody/compare/compare.hpp>
 #include <polybody/gradients/alpha_step_adjoint.hpp>
+#include <polybody/gradients/full_states.hpp>
 #include <polybody/gradients/parameter.hpp>
 #include <polybody/gradients/points.hpp>
-#include <polybody/gradients/shown_states.hpp>
 
 namespace polybody {
 
@@ -22,20 +22,20 @@ struct NoTerm {};
 
 /// A scenario with what its run is rated by.
 template <class M, class End, class Integrand = NoTerm>
-struct RatedScenario : Scenario<M> {
+struct ScenarioWithObjective : Scenario<M> {
   End end;                   ///< Φ(model, x) of the state at the end, or NoTerm
   Integrand integrand = {};  ///< g(model, x), or NoTerm
 };
 
 /// J = Φ(x_N), or with an integrand g, Φ(x_N) + ∫ g(x) dt. \param end Φ(model, state); \param integrand g(model, state)
 template <class M, class End, class Integrand = NoTerm>
-RatedScenario<M, End, Integrand> rated(Scenario<M> scenario, End end, Integrand integrand = {}) {
+ScenarioWithObjective<M, End, Integrand> with_objective(Scenario<M> scenario, End end, Integrand integrand = {}) {
   return {std::move(scenario), std::move(end), std::move(integrand)};
 }
 
 namespace detail {
 
-/// f of a state, zero where there is no such term. \throws NonFinite.
+/// f of a state, zero where there is no such term. \throws NonFiniteValue.
 template <class F, class M>
 double term(F const& f, M const& model, State const& x) {
   if constexpr (std::same_as<F, NoTerm>) {
@@ -43,19 +43,19 @@ double term(F const& f, M const& model, State const& x) {
   } else {
     double const value = value_of(f(model, x));
     if (!std::isfinite(value))
-      throw NonFinite{"gradient: the objective", how_not_finite(value), " at t = ", x.t, " s."};
+      throw NonFiniteValue{"gradient: the objective", non_finite_suffix(value), " at t = ", x.t, " s."};
     return value;
   }
 }
 
 /// Adds `weight` times the derivatives of f by the numbers of x to a costate.
 template <class F, class M>
-void add_slopes(F const& f, M const& model, State const& x, double weight, Recording& recording, Costate& bar) {
+void add_derivatives(F const& f, M const& model, State const& x, double weight, Tape& recording, Costate& bar) {
   if constexpr (std::same_as<F, NoTerm>) {
     return;
-  } else if constexpr (std::invocable<F const&, M const&, StateOf<Recorded> const&>) {
-    Recording::On const on(recording);
-    StateOf<Recorded> at;
+  } else if constexpr (std::invocable<F const&, M const&, StateOf<ReverseVar> const&>) {
+    Tape::On const on(recording);
+    StateOf<ReverseVar> at;
     at.t = x.t;
     auto const each = [&](auto&& call) {
       call(at.q, x.q, bar.q);
@@ -63,15 +63,15 @@ void add_slopes(F const& f, M const& model, State const& x, double weight, Recor
       call(at.a, x.a, bar.a);
       call(at.lambda, x.lambda, bar.lambda);
     };
-    each([](VecXOf<Recorded>& to, VecX const& from, VecX&) {
+    each([](VecXOf<ReverseVar>& to, VecX const& from, VecX&) {
       to.resize(from.size());
-      for (Index i = 0; i < from.size(); ++i) to[i] = Recorded::variable(from[i]);
+      for (Index i = 0; i < from.size(); ++i) to[i] = ReverseVar::variable(from[i]);
     });
-    Recorded const value = f(model, std::as_const(at));
-    recording.clear_slopes(recording.size());
+    ReverseVar const value = f(model, std::as_const(at));
+    recording.clear_derivatives(recording.size());
     recording.slope(value.number) += weight;
     recording.sweep(recording.size());
-    each([&](VecXOf<Recorded> const& from, VecX const&, VecX& to) {
+    each([&](VecXOf<ReverseVar> const& from, VecX const&, VecX& to) {
       for (Index i = 0; i < to.size(); ++i) to[i] += recording.slope(from[i].number);
     });
   } else {
@@ -98,9 +98,9 @@ void add_slopes(F const& f, M const& model, State const& x, double weight, Recor
 
 /// Derivatives of objectives by the numbers of states that are stepped. \tparam M a model
 template <class M>
-class ObjectiveSlopes {
+class ObjectiveDerivatives {
  public:
-  [[gnu::cold]] explicit ObjectiveSlopes(M const& model) : shown_(model), recorded_(model) {}
+  [[gnu::cold]] explicit ObjectiveDerivatives(M const& model) : shown_(model), recorded_(model) {}
 
   /// Adds `weight` times the derivatives of f(model, what is shown of x) by the numbers of x to a costate.
   template <class F>
@@ -109,42 +109,42 @@ class ObjectiveSlopes {
     if constexpr (M::eliminates) {
       State const& shown = shown_(x);
       Costate of_shown(shown);
-      add_slopes(f, model, shown, weight, recording_, of_shown);
+      add_derivatives(f, model, shown, weight, recording_, of_shown);
       pull(x, of_shown, bar);
     } else {
-      add_slopes(f, model, x, weight, recording_, bar);
+      add_derivatives(f, model, x, weight, recording_, bar);
     }
   }
 
  private:
   /// Adds to `bar` what J changes by with a stepped x, by what it changes by with what is shown of it.
   void pull(State const& x, Costate const& of_shown, Costate& bar) {
-    Recording::On const on(recording_);
-    StateOf<Recorded> from;
+    Tape::On const on(recording_);
+    StateOf<ReverseVar> from;
     from.t = x.t;
     set_variables(x.q, from.q);
     set_variables(x.v, from.v);
     set_variables(x.a, from.a);
     set_variables(x.lambda, from.lambda);
-    StateOf<Recorded> const& to = recorded_(from);
-    recording_.clear_slopes(recording_.size());
-    add_to_slopes(recording_, to.q, of_shown.q);
-    add_to_slopes(recording_, to.v, of_shown.v);
-    add_to_slopes(recording_, to.a, of_shown.a);
-    add_to_slopes(recording_, to.lambda, of_shown.lambda);
+    StateOf<ReverseVar> const& to = recorded_(from);
+    recording_.clear_derivatives(recording_.size());
+    add_to_derivatives(recording_, to.q, of_shown.q);
+    add_to_derivatives(recording_, to.v, of_shown.v);
+    add_to_derivatives(recording_, to.a, of_shown.a);
+    add_to_derivatives(recording_, to.lambda, of_shown.lambda);
     recording_.sweep(recording_.size());
-    add_slopes_of(from.q, bar.q);
-    add_slopes_of(from.v, bar.v);
-    add_slopes_of(from.a, bar.a);
-    add_slopes_of(from.lambda, bar.lambda);
+    add_derivatives_of(from.q, bar.q);
+    add_derivatives_of(from.v, bar.v);
+    add_derivatives_of(from.a, bar.a);
+    add_derivatives_of(from.lambda, bar.lambda);
   }
-  void add_slopes_of(VecXOf<Recorded> const& from, VecX& to) {
+  void add_derivatives_of(VecXOf<ReverseVar> const& from, VecX& to) {
     for (Index i = 0; i < from.size(); ++i) to[i] += recording_.slope(from[i].number);
   }
 
-  ShownStates<M> shown_;
-  ShownStates<M, Recorded> recorded_;
-  Recording recording_;
+  FullStates<M> shown_;
+  FullStates<M, ReverseVar> recorded_;
+  Tape recording_;
 };
 
 }  // namespace detail

@@ -22,7 +22,7 @@ struct Parameter {
   /// Names of the bodies, joints and forces whose equations it changes; where none are named, all of them may change. A
   /// length changes those of its body and of the joints at its end. Parameters that touch nothing in common are
   /// differenced together, in four evaluations of the equations for all of them.
-  std::vector<std::string> touches = {};
+  std::vector<std::string> affects = {};
 
   /// The scale, or where there is none the amount of the value.
   double size() const { return scale > 0.0 ? scale : std::abs(value); }

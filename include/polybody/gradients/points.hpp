@@ -1,11 +1,11 @@
 #pragma once
 /// \file
 /// Questions about points of bodies in states of any scalar, for objectives that are differentiated by recording them:
-/// the same calls as for a State (run/points.hpp).
+/// the same calls as for a State (run/marker_frames.hpp).
 ///
 /// Not in polybody.hpp: few programs ask for derivatives of whole runs.
 
-#include <polybody/run/points.hpp>
+#include <polybody/run/marker_frames.hpp>
 
 namespace polybody {
 
@@ -15,13 +15,13 @@ template <class M, class T, class B>
 Frame<T> frame(M const& model, StateOf<T> const& x, Marker<B> const& marker) {
   model.require_own(marker, "frame");
   auto const& entry = std::get<detail::BodyPool<B>>(model.body_pools()).entries[std::size_t(marker.body)];
-  Published<T> out;
+  MarkerKinematics<T> out;
   out.columns = point_columns(entry.body, marker.point);
   std::vector<T> jacobian(std::size_t(6 * out.columns));
   out.jacobian = jacobian.data();
-  entry.body.template publish<T>(marker.point, identity(),
-                                 std::span<T const>(x.q.data() + entry.q0, std::size_t(entry.body.coordinates())),
-                                 std::span<T const>(x.v.data() + entry.v0, std::size_t(entry.body.speeds())), out);
+  entry.body.template evaluate_marker<T>(
+      marker.point, identity(), std::span<T const>(x.q.data() + entry.q0, std::size_t(entry.body.coordinates())),
+      std::span<T const>(x.v.data() + entry.v0, std::size_t(entry.body.velocities())), out);
   return out.frame;
 }
 /// Position of a material point in state x [m]. \throws InvalidInput for a marker of another model.

@@ -5,12 +5,12 @@
 ///
 /// Not in polybody.hpp: few programs ask for derivatives of whole runs.
 
-#include <polybody/gradients/projection_slope.hpp>
+#include <polybody/gradients/projection_derivative.hpp>
 #include <polybody/gradients/radau_stages.hpp>
 
 namespace polybody::detail {
 
-/// The stages of one step after the other. \tparam Places SolvedPlaces or RecordedPlaces: the equations, and what
+/// The stages of one step after the other. \tparam Places SolvedPoints or RecordedPoints: the equations, and what
 /// solves them at the places that follow the stages
 template <class Places>
 class RadauStageSolution {
@@ -24,25 +24,25 @@ class RadauStageSolution {
     System& system = places.template system<double>();
     find_rows(system);
     rhs_ = correction_ = VecX::Zero(3 * system.size());
-    slopes_.analyse(system);
+    derivatives_.analyse(system);
     numbers_.resize(system);
     solver_.analyse(system, 3, [&](BlockSink& sink) { write(0.0, 1.0, sink); });
   }
 
-  /// Finds the stages of a step and the places after them. \throws NewtonStalled where its stages are not found again,
-  /// LinearSolverSingular at a singular position, NonFinite.
+  /// Finds the stages of a step and the places after them. \throws NewtonConvergenceFailure where its stages are not
+  /// found again, SingularMatrix at a singular position, NonFiniteValue.
   void find(StepTaken const& step) {
     predict(step);
     solve_stages(step);
     places_->forget();
-    finish(numbers_, step, [&](EquationPlace<>& at) {
+    finish(numbers_, step, [&](EvaluationPoint<>& at) {
       places_->solve(at);
       return places_->largest_row();
     });
   }
 
-  RadauStages<double> const& numbers() const { return numbers_; }                       ///< what was found
-  std::array<EquationPlace<>, 3> const& stage_places() const { return stage_places_; }  ///< where the stages are
+  RadauStages<double> const& numbers() const { return numbers_; }                         ///< what was found
+  std::array<EvaluationPoint<>, 3> const& stage_places() const { return stage_places_; }  ///< where the stages are
   /// −1 on the diagonal of a row of a stage that repeats others, whose multiplier is left alone; else zero.
   double slack(Index stage, Index row) const {
     return slack_[std::size_t(stage * Index(row_of_.size()) + equation_of_[std::size_t(row)])];
@@ -52,7 +52,7 @@ class RadauStageSolution {
   /// The equations of all stages of a step of h, which is in T where it moves. \param keep takes them, for the unknowns
   /// from `first` on
   template <StateScalar T, class H, class Keep>
-  void evaluate(RadauStages<T>& w, PlaceEquations<T>& equations, StepTaken const& step, H const& h, Keep&& keep) {
+  void evaluate(RadauStages<T>& w, PointEquations<T>& equations, StepTaken const& step, H const& h, Keep&& keep) {
     BasicSystem<T>& s = places_->template system<T>();
     w.find(s, h);
     for (std::size_t i = 0; i < 3; ++i) {
@@ -84,23 +84,23 @@ class RadauStageSolution {
   void write(double t, double h, BlockSink& sink) {
     System& s = places_->template system<double>();
     RadauStages<double>& w = numbers_;
-    Index const n = equations_of(s), speeds = equation_speeds_of(s), rows = n - speeds;
+    Index const n = equations_of(s), velocities = equation_velocities_of(s), rows = n - velocities;
     for (int i = 0; i < 3; ++i) {
       std::size_t const stage = std::size_t(i);
       double const at = t + T3::c[i] * h;
       s.plus(w.q0, w.delta[stage], w.at.q);
-      slopes_.measure(s, w.at.q, w.v[stage], w.vd[stage], at);
+      derivatives_.measure(s, w.at.q, w.v[stage], w.vd[stage], at);
       evaluate_for_tangent(s, {{w.at.q, w.v[stage], at}, w.vd[stage], w.lambda[stage]}, balance_);
       for (int j = 0; j < 3; ++j) {
-        StageSink part{sink, i * n, j * n, speeds};
+        StageBlockSink part{sink, i * n, j * n, velocities};
         s.tangent({i == j ? 1.0 : 0.0, h * T3::a[i][j], h * h * T3::squared(i, j)}, SecondOrder::included,
                   w.lambda[stage], part);
         for (Index k = 0; k < rows && i == j; ++k)
-          part.add(speeds + k, speeds + k,
+          part.add(velocities + k, velocities + k,
                    Eigen::Map<Mat<double, 1, 1> const>(&slack_[stage * std::size_t(rows) + std::size_t(k)]));
       }
       for (int j = 0; j < 3; ++j)
-        slopes_.write(h * T3::a[i][j], h * h * T3::squared(i, j), i * n + speeds, j * n, sink);
+        derivatives_.write(h * T3::a[i][j], h * h * T3::squared(i, j), i * n + velocities, j * n, sink);
     }
   }
 
@@ -124,7 +124,7 @@ class RadauStageSolution {
     places_->solve(w.at);
     std::fill(slack_.begin(), slack_.end(), 0.0);
     for (Index const k : places_->dropped()) {
-      Index const of_rows = k - equation_speeds_of(s), row = of_rows < 0 ? -1 : row_of_[std::size_t(of_rows)];
+      Index const of_rows = k - equation_velocities_of(s), row = of_rows < 0 ? -1 : row_of_[std::size_t(of_rows)];
       for (std::size_t i = 0; i < 3 && row >= 0; ++i) {
         slack_[i * row_of_.size() + std::size_t(of_rows)] = -1.0;
         w.lambda[i][row] = step.before.lambda[row];
@@ -133,19 +133,19 @@ class RadauStageSolution {
   }
   /// Which rows of a step are behind those of the equations, −1 for those of joints that carry bodies; and back.
   [[gnu::cold]] void find_rows(System const& s) {
-    Index const speeds = equation_speeds_of(s);
-    row_of_.assign(std::size_t(equations_of(s) - speeds), -1);
+    Index const velocities = equation_velocities_of(s);
+    row_of_.assign(std::size_t(equations_of(s) - velocities), -1);
     equation_of_.assign(std::size_t(s.rows()), -1);
     slack_.assign(3 * row_of_.size(), 0.0);
     Coordinates const& c = s.step_coordinates();
-    bool const others = c && !c.narrow->whole_unknown.empty();
+    bool const others = c && !c.reduced->full_unknown.empty();
     for (Index k = 0; k < Index(row_of_.size()); ++k) {
       Index row = k;
       if (others) {
-        Sequence<Index> const& stay = c.narrow->rows_that_stay;
-        Index const whole = c.narrow->whole_unknown[std::size_t(speeds + k)] - s.layout().speeds;
-        auto const found = std::lower_bound(stay.begin(), stay.end(), whole);
-        row = found != stay.end() && *found == whole ? Index(found - stay.begin()) : -1;
+        Sequence<Index> const& stay = c.reduced->remaining_equations;
+        Index const full = c.reduced->full_unknown[std::size_t(velocities + k)] - s.layout().velocities;
+        auto const found = std::lower_bound(stay.begin(), stay.end(), full);
+        row = found != stay.end() && *found == full ? Index(found - stay.begin()) : -1;
       }
       row_of_[std::size_t(k)] = row;
       if (row >= 0) equation_of_[std::size_t(row)] = k;
@@ -169,8 +169,8 @@ class RadauStageSolution {
         break;
       }
       if (!std::isfinite(change) || k == most_corrections)
-        throw NewtonStalled{"The stages of the step that ends at t = ", step.before.t + step.h,
-                            " s are not found again for its derivative. Take a smaller step."};
+        throw NewtonConvergenceFailure{"The stages of the step that ends at t = ", step.before.t + step.h,
+                                       " s are not found again for its derivative. Take a smaller step."};
       if (change > 0.1 * left) moved = std::numeric_limits<double>::infinity();
       left = change;
     }
@@ -194,8 +194,8 @@ class RadauStageSolution {
     numbers_.find(s, step.h);
     Index const bad = solver_.factor([&](BlockSink& sink) { write(step.before.t, step.h, sink); });
     if (bad >= 0)
-      throw LinearSolverSingular{"The derivative of the step that ends at t = ", step.before.t + step.h,
-                                 " s has no pivot at ", name_of_equation(s, bad % equations_of(s)), "."};
+      throw SingularMatrix{"The derivative of the step that ends at t = ", step.before.t + step.h,
+                           " s has no pivot at ", name_of_equation(s, bad % equations_of(s)), "."};
   }
   /// Corrects the stages. Returns the largest change of their accelerations and the largest of these [m/s²], [rad/s²].
   std::pair<double, double> correct() {
@@ -214,12 +214,12 @@ class RadauStageSolution {
   }
 
   Places* places_;
-  ProjectionSlope projection_;
+  ProjectionDerivative projection_;
   TangentSolver<AutoLu> solver_;
-  RowSlopes slopes_;
-  PlaceEquations<double> equations_;
+  ConstraintDerivatives derivatives_;
+  PointEquations<double> equations_;
   RadauStages<double> numbers_;
-  std::array<EquationPlace<>, 3> stage_places_;
+  std::array<EvaluationPoint<>, 3> stage_places_;
   Sequence<Index> row_of_, equation_of_;  // rows of a step behind those of the equations, and back
   Sequence<double> slack_;                // by stages and rows of the equations
   VecX rhs_, correction_, balance_;

@@ -4,7 +4,7 @@
 ///
 /// Not in polybody.hpp: few programs ask for derivatives of whole runs.
 
-#include <polybody/gradients/equation_place.hpp>
+#include <polybody/gradients/evaluation_point.hpp>
 #include <polybody/integrators/radau.hpp>
 
 namespace polybody::detail {
@@ -32,11 +32,11 @@ struct RadauStages {
   VecXOf<T> q0, v0;  // the start
   VecXOf<T> next;    // a sum, and at last v̇ of the end
   std::array<VecXOf<T>, 3> v, vd, lambda, delta, rate;
-  EquationPlace<T> at;  // a stage, and at last the end
+  EvaluationPoint<T> at;  // a stage, and at last the end
 
   void resize(BasicSystem<T> const& s) {
     q0 = at.q = VecXOf<T>::Constant(s.coordinates(), T(0.0));
-    v0 = next = VecXOf<T>::Constant(s.speeds(), T(0.0));
+    v0 = next = VecXOf<T>::Constant(s.velocities(), T(0.0));
     for (auto* const of : {&v, &vd, &delta, &rate}) of->fill(v0);
     lambda.fill(VecXOf<T>::Constant(s.rows(), T(0.0)));
   }

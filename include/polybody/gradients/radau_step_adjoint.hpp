@@ -1,27 +1,27 @@
 #pragma once
 /// \file
-/// The adjoint of a step of Radau (gradients/radau_step_slope.hpp has its tangent-linear): with y = (v̇_i, λ_i) of the
-/// three stages and R(y; x₀) their equations, (∂R/∂y)ᵀ μ = ȳ. The stages and what follows them are recorded once. The
-/// projection and the last change of v̇ go back place by place (gradients/recorded_places.hpp); μ is solved by factors
-/// of the transposed matrix of all stages, and corrected by sweeps over their recording until nothing changes.
+/// The adjoint of a step of Radau (gradients/radau_linearised_step.hpp has its tangent-linear): with y = (v̇_i, λ_i) of
+/// the three stages and R(y; x₀) their equations, (∂R/∂y)ᵀ μ = ȳ. The stages and what follows them are recorded once.
+/// The projection and the last change of v̇ go back place by place (gradients/recorded_points.hpp); μ is solved by
+/// factors of the transposed matrix of all stages, and corrected by sweeps over their recording until nothing changes.
 ///
 /// Not in polybody.hpp: few programs ask for derivatives of whole runs.
 
 #include <polybody/gradients/alpha_step_adjoint.hpp>
 #include <polybody/gradients/radau_stage_solution.hpp>
-#include <polybody/gradients/recorded_places.hpp>
+#include <polybody/gradients/recorded_points.hpp>
 
 namespace polybody {
 
-/// Adjoints of steps of Radau, from the last one to the first; of stages as in `RadauStepSlope`.
+/// Adjoints of steps of Radau, from the last one to the first; of stages as in `RadauLinearisedStep`.
 template <LinearSolver Solver = DefaultSolver>
 class RadauStepAdjoint {
  public:
-  /// The model must outlive it. \param system with `Entries::implicit_step`; \param method whose steps they are
+  /// The model must outlive it. \param system with `Capabilities::implicit_step`; \param method whose steps they are
   template <class M>
   [[gnu::cold]] RadauStepAdjoint(M const& model, System& system, Radau const& method)
       : places_(model, system), stages_(places_, method) {
-    recorded_.resize(places_.template system<Recorded>());
+    recorded_.resize(places_.template system<ReverseVar>());
     solver_.analyse(system, 3, [&](BlockSink& sink) { write_transposed(sink, 0.0, 1.0); });
     mu_ = y_ = product_ = VecX::Zero(3 * system.size());
   }
@@ -29,25 +29,25 @@ class RadauStepAdjoint {
 
   /// Takes the costate of the state after the step to that of the state before it. Returns what the last correction of
   /// μ changed, relative to it. \param told f(place, μ) for each place where the step solves equations: what the result
-  /// changes by with them, its sign changed. \throws NewtonStalled where its stages are not found again,
-  /// LinearSolverSingular at a singular position, NonFinite.
+  /// changes by with them, its sign changed. \throws NewtonConvergenceFailure where its stages are not found again,
+  /// SingularMatrix at a singular position, NonFiniteValue.
   template <class F>
-  double retreat(StepTaken const& step, Costate& x, F&& told) {
+  double backward_step(StepTaken const& step, Costate& x, F&& told) {
     stages_.find(step);
     factor(step);
-    Recording& recording = places_.recording();
-    Recording::On const on(recording);
+    Tape& recording = places_.recording();
+    Tape::On const on(recording);
     std::size_t const stages_end = record(step);
-    recording.clear_slopes(recording.size());
-    detail::add_to_slopes(recording, recorded_.at.q, x.q);
-    detail::add_to_slopes(recording, recorded_.at.v, x.v);
-    detail::add_to_slopes(recording, recorded_.next, x.a);
-    detail::add_to_slopes(recording, recorded_.lambda[2], x.lambda);
+    recording.clear_derivatives(recording.size());
+    detail::add_to_derivatives(recording, recorded_.at.q, x.q);
+    detail::add_to_derivatives(recording, recorded_.at.v, x.v);
+    detail::add_to_derivatives(recording, recorded_.next, x.a);
+    detail::add_to_derivatives(recording, recorded_.lambda[2], x.lambda);
     places_.sweep(told, stages_end);
     recording.sweep(stages_end, 1);
     take_stages(y_);
-    detail::take_slopes(recording, recorded_.q0, x.q);
-    detail::take_slopes(recording, recorded_.v0, x.v);
+    detail::take_derivatives(recording, recorded_.q0, x.q);
+    detail::take_derivatives(recording, recorded_.v0, x.v);
     double const left = solution_.solve(
         y_, mu_,
         [&](VecX const& of) -> VecX const& {
@@ -68,7 +68,7 @@ class RadauStepAdjoint {
   }
 
  private:
-  using Numbers = VecXOf<Recorded>;
+  using Numbers = VecXOf<ReverseVar>;
   static constexpr Index most_products = 60;
 
   Index size() { return places_.template system<double>().size(); }
@@ -81,7 +81,7 @@ class RadauStepAdjoint {
   void factor(StepTaken const& step) {
     Index const bad = solver_.factor([&](BlockSink& sink) { write_transposed(sink, step.before.t, step.h); });
     if (bad >= 0)
-      throw LinearSolverSingular{
+      throw SingularMatrix{
           "The adjoint of the step that ends at t = ", step.before.t + step.h, " s has no pivot at ",
           name_of_equation(places_.template system<double>(), bad % equations_of(places_.template system<double>())),
           "."};
@@ -96,7 +96,7 @@ class RadauStepAdjoint {
     for (std::size_t i = 0; i < 3; ++i) {
       detail::set_variables(found.vd[i], recorded_.vd[i]);
       detail::set_variables(found.lambda[i], recorded_.lambda[i]);
-      recorded_.delta[i].setConstant(Recorded(0.0));  // so that passes over it are as many as its derivatives need
+      recorded_.delta[i].setConstant(ReverseVar(0.0));  // so that passes over it are as many as its derivatives need
     }
     numbers_.clear();
     stages_.evaluate(recorded_, equations_, step, step.h, [&](Index) {
@@ -105,7 +105,7 @@ class RadauStepAdjoint {
     });
     std::size_t const end = places_.recording().size();
     places_.again();
-    stages_.finish(recorded_, step, [&](EquationPlace<Recorded>& at) {
+    stages_.finish(recorded_, step, [&](EvaluationPoint<ReverseVar>& at) {
       places_.solve(at);
       return 0.0;
     });
@@ -114,8 +114,8 @@ class RadauStepAdjoint {
 
   /// Products of the transposed derivatives of R with μ; those by y into `product_`.
   void pull(std::size_t stages_end, VecX const& mu) {
-    Recording& recording = places_.recording();
-    recording.clear_slopes(stages_end);
+    Tape& recording = places_.recording();
+    recording.clear_derivatives(stages_end);
     for (std::size_t i = 0; i < numbers_.size(); ++i) recording.slope(numbers_[i]) += mu[Index(i)];
     recording.sweep(stages_end, 1);
     take_stages(product_);
@@ -130,19 +130,19 @@ class RadauStepAdjoint {
       for (Numbers const* const of : {&recorded_.vd[i], &recorded_.lambda[i]})
         for (Index k = 0; k < of->size(); ++k) out[at++] = places_.recording().slope((*of)[k].number);
   }
-  RecordedPlaces<Solver> places_;
-  detail::RadauStageSolution<RecordedPlaces<Solver>> stages_;
-  PlaceEquations<Recorded> equations_;
-  detail::RadauStages<Recorded> recorded_;
-  TangentSolver<AutoLu> solver_;            // of the transposed matrix
-  std::vector<Recording::Number> numbers_;  // of the equations of all stages
+  RecordedPoints<Solver> places_;
+  detail::RadauStageSolution<RecordedPoints<Solver>> stages_;
+  PointEquations<ReverseVar> equations_;
+  detail::RadauStages<ReverseVar> recorded_;
+  TangentSolver<AutoLu> solver_;       // of the transposed matrix
+  std::vector<Tape::Number> numbers_;  // of the equations of all stages
   detail::TransposedSolution solution_;
   VecX mu_, y_, product_;
 };
 
 /// Adjoints of runs by Radau.
 template <>
-struct AdjointsOfStages<Radau> {
+struct StageAdjoints<Radau> {
   using Type = RadauStepAdjoint<>;  ///< of its steps
 };
 

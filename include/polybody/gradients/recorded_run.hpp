@@ -5,9 +5,9 @@
 ///
 /// Not in polybody.hpp: few programs ask for derivatives of whole runs.
 
-#include <polybody/gradients/refused_times.hpp>
-#include <polybody/gradients/run_tangent.hpp>
-#include <polybody/gradients/shown_states.hpp>
+#include <polybody/gradients/full_states.hpp>
+#include <polybody/gradients/nondifferentiable_times.hpp>
+#include <polybody/gradients/run_sensitivity.hpp>
 #include <polybody/run/event_action.hpp>
 #include <polybody/run/step_plan.hpp>
 
@@ -30,22 +30,22 @@ template <class V>
 class RecordedRun {
  public:
   /// Takes the run of this scenario, which must outlive it.
-  explicit RecordedRun(V& whole) : whole_(&whole) {}
+  explicit RecordedRun(V& full) : full_(&full) {}
 
   /// Takes the run once. \throws InvalidInput where it has no step, or an event and a corner at once; as `simulate`.
   void take(RunReport& report) {
-    h_ = whole_->length();
-    std::vector<double> const corners = whole_->corners();
-    State x = whole_->first();
-    plan_ = StepPlan(x.t, options().until, options().step, Sequence<double>(corners.begin(), corners.end()));
+    h_ = full_->length();
+    std::vector<double> const breakpoints = full_->breakpoints();
+    State x = full_->first();
+    plan_ = StepPlan(x.t, options().end_time, options().step, Sequence<double>(breakpoints.begin(), breakpoints.end()));
     x.t = plan_.pass(x.t);
-    if (!(x.t < options().until))
+    if (!(x.t < options().end_time))
       throw InvalidInput("gradient: the run has no step. Let it go on until after its start.");
     next_ = plan_.next(x.t, h_);
-    whole_->start(x, next_.h);
+    full_->start(x, next_.h);
     if (!options().events.empty()) watch_.start(options().events, x, motion());
     first_ = x;
-    while (!report.stopped && x.t < options().until) step(x, report);
+    while (!report.stopped && x.t < options().end_time) step(x, report);
   }
 
   State const& first() const { return first_; }                    ///< from which the first step sets out
@@ -58,7 +58,7 @@ class RecordedRun {
   /// Takes step k from x, with what comes after it.
   StepReport take(std::size_t k, State& x) {
     RecordedStep const& s = all_[k];
-    StepReport const report = whole_->step(x, s.h);
+    StepReport const report = full_->step(x, s.h);
     x.t = s.end;
     if (s.restarts) restart(s, x);
     return report;
@@ -66,7 +66,7 @@ class RecordedRun {
   /// The end of step k from x, before what an event does and a new beginning.
   State end(std::size_t k, State x) {
     double const end = x.t + all_[k].h;
-    (void)whole_->step(x, all_[k].h);
+    (void)full_->step(x, all_[k].h);
     x.t = end;
     return x;
   }
@@ -82,21 +82,21 @@ class RecordedRun {
     State others = x;
     others.a.array() = 1.5 * others.a.array() + 1.0;
     others.lambda.array() = 1.5 * others.lambda.array() + 1.0;
-    State const one = after(*whole_, s.acting, x), other = after(*whole_, s.acting, others);
+    State const one = after(*full_, s.acting, x), other = after(*full_, s.acting, others);
     return one.q != other.q || one.v != other.v;
   }
 
  private:
-  RunOptions const& options() const { return whole_->scenario.options; }
+  RunOptions const& options() const { return full_->scenario.options; }
   EventMotion motion() {
-    return {h_, [this](State const& x) -> State const& { return whole_->shown(x); }, drift_of(whole_->system)};
+    return {h_, [this](State const& x) -> State const& { return full_->shown(x); }, drift_of(full_->system)};
   }
 
   void step(State& x, RunReport& report) {
     State const before = x;
     RecordedStep s;
     s.plan = plan_.next(x.t, h_);
-    StepReport const taken = whole_->step(x, s.plan.h);
+    StepReport const taken = full_->step(x, s.plan.h);
     s.h = taken.taken;
     x.t = s.plan.lands ? s.plan.target : row_.after(before.t, s.h);
     bool const met = !options().events.empty() && meet(before, x, s, report);
@@ -107,9 +107,9 @@ class RecordedRun {
     s.end = x.t;
     s.restarts = met || s.at_corner || s.plan.h < 0.01 * h_;
     if (s.restarts) {
-      bool const done = report.stopped || x.t >= options().until;
+      bool const done = report.stopped || x.t >= options().end_time;
       s.next = done ? StepPlan::Next{x.t, h_, false, false} : plan_.next(x.t, h_);
-      if (!s.acting.empty()) (void)acted_state(*whole_, watch_, State(whole_->shown(x)));  // refuses what cannot be
+      if (!s.acting.empty()) (void)acted_state(*full_, watch_, State(full_->shown(x)));  // refuses what cannot be
       restart(s, x);
       if (!s.acting.empty()) watch_.settle(options().events, x, motion());
     }
@@ -122,8 +122,8 @@ class RecordedRun {
       double end, length;
     };
     std::vector<Trial> trials;
-    EventWatch::Step const again = [&](State& y, double part) {
-      double const taken = whole_->step(y, part).taken;
+    EventDetector::Step const again = [&](State& y, double part) {
+      double const taken = full_->step(y, part).taken;
       trials.push_back({y.t, taken});
       return taken;
     };
@@ -145,29 +145,29 @@ class RecordedRun {
                            x.t,
                            " s. Whether they part with a parameter is known to `sensitivities`. Look for one of them."};
       s.met.push_back(i);
-      if (event.then) s.acting.push_back(i);
-      s.largest = std::max(std::abs(event.value(whole_->shown(before))), std::abs(event.value(whole_->shown(far))));
+      if (event.action) s.acting.push_back(i);
+      s.largest = std::max(std::abs(event.value(full_->shown(before))), std::abs(event.value(full_->shown(far))));
     }
     return true;
   }
   void restart(RecordedStep const& s, State& x) {
-    if (!s.acting.empty()) x = after(*whole_, s.acting, x);
-    whole_->start(x, s.next.h);
+    if (!s.acting.empty()) x = after(*full_, s.acting, x);
+    full_->start(x, s.next.h);
   }
   /// What acting events make of a state of a variant.
   static State after(V& v, std::vector<std::size_t> const& acting, State const& x) {
     State y = v.shown(x);
-    for (std::size_t const i : acting) v.scenario.options.events[i].then(y);
+    for (std::size_t const i : acting) v.scenario.options.events[i].action(y);
     y.t = x.t;
     return stepped_state(v, std::move(y));
   }
 
-  V* whole_;
+  V* full_;
   State first_;
   StepPlan plan_;
   StepPlan::Next next_{};
   StepRow row_;
-  EventWatch watch_;
+  EventDetector watch_;
   double h_ = 0.0;
   std::vector<RecordedStep> all_;
 };

@@ -24,7 +24,7 @@ std::vector<double> values_of(std::vector<Parameter> const& parameters) {
 /// \throws InvalidInput, beginning with `who`, for options with what is not differentiated.
 template <class = void>
 void require_plain(RunOptions const& o, char const* who) {
-  if (o.halvings > 0 || o.minimum_norm)
+  if (o.max_step_halvings > 0 || o.minimum_norm)
     throw InvalidInput{
         who,
         ": a run with halved steps or multipliers of least norm is not differentiated. Leave them out of "
@@ -37,49 +37,49 @@ template <class V>
 void require_alike(V const& model, V const& other, Parameter const& p, char const* who) {
   auto const sizes = [](V const& v) {
     return std::array{v.system.coordinates(),
-                      v.system.speeds(),
+                      v.system.velocities(),
                       v.system.rows(),
                       Index(v.scenario.outputs.size()),
                       Index(v.scenario.options.events.size()),
-                      Index(v.corners().size())};
+                      Index(v.breakpoints().size())};
   };
   if (sizes(other) != sizes(model))
     throw InvalidInput{who, ": with another \"", p.name,
                        "\" the factory makes a model of other sizes. Let parameters change numbers, not what is "
                        "there."};
   Coordinates const &here = model.system.step_coordinates(), &there = other.system.step_coordinates();
-  if (here && there.narrow->whole_speed != here.narrow->whole_speed)
+  if (here && there.reduced->full_velocity != here.reduced->full_velocity)
     throw InvalidInput{who, ": with another \"", p.name,
                        "\" other coordinates are eliminated by AncfLinear, so that steps have other unknowns. Place "
                        "its markers off the middle between nodes, or give these joints Constraint."};
 }
 
-/// What slopes of a step that ends at t [s] still change by, relative to them. \throws NewtonStalled, beginning with
-/// `who`, where that is more than a millionth.
+/// What slopes of a step that ends at t [s] still change by, relative to them. \throws NewtonConvergenceFailure,
+/// beginning with `who`, where that is more than a millionth.
 template <class = void>
 double require_converged(double left, double t, char const* who) {
   if (left <= 1e-6) return left;
-  throw NewtonStalled{who,  ": derivatives of the step that ends at t = ",
-                      t,    " s do not converge: the last correction changed them by ",
-                      left, " of themselves. Take a smaller step there, or softer contacts."};
+  throw NewtonConvergenceFailure{who,  ": derivatives of the step that ends at t = ",
+                                 t,    " s do not converge: the last correction changed them by ",
+                                 left, " of themselves. Take a smaller step there, or softer contacts."};
 }
 
 /// Times at which a step of a run must end, in no order: those of drives and loads, then those of the options [s].
 template <class = void>
-std::vector<double> corners_of(System const& system, RunOptions const& options) {
-  Sequence<double> const& own = system.layout().corners;
+std::vector<double> breakpoints_of(System const& system, RunOptions const& options) {
+  Sequence<double> const& own = system.layout().breakpoints;
   std::vector<double> all(own.begin(), own.end());
-  all.insert(all.end(), options.corners.begin(), options.corners.end());
+  all.insert(all.end(), options.breakpoints.begin(), options.breakpoints.end());
   return all;
 }
 
 /// The length of steps that is asked for, or of the first one [s].
 template <class = void>
 double length_of_steps(RunOptions const& o) {
-  return o.largest_step ? std::min<double>(o.step, *o.largest_step) : double(o.step);
+  return o.max_step ? std::min<double>(o.step, *o.max_step) : double(o.step);
 }
 
-/// The outputs of a scenario at x. \throws NonFinite.
+/// The outputs of a scenario at x. \throws NonFiniteValue.
 template <class S>
 VecX values_of_outputs(S const& scenario, State const& x) {
   VecX out(Index(scenario.outputs.size()));
@@ -87,21 +87,21 @@ VecX values_of_outputs(S const& scenario, State const& x) {
     auto const& output = scenario.outputs[std::size_t(i)];
     out[i] = output.value(scenario.model, x);
     if (!std::isfinite(out[i]))
-      throw NonFinite{"sensitivities: \"", output.name, "\"", how_not_finite(out[i]), " at t = ", x.t, " s."};
+      throw NonFiniteValue{"sensitivities: \"", output.name, "\"", non_finite_suffix(out[i]), " at t = ", x.t, " s."};
   }
   return out;
 }
 
 /// I is of the generalised-α family.
 template <class I>
-concept OfAlphaFamily = requires(I const integrator) {
+concept AlphaFamilyIntegrator = requires(I const integrator) {
   { integrator.method() } -> std::convertible_to<AlphaMethod>;
 };
 
 /// The method by which a run is differentiated: its corrections go on to 1e-12. \throws InvalidInput, beginning with
 /// `who`, for parameters and integrators that cannot be meant.
-template <OfAlphaFamily I>
-AlphaMethod method_of_slopes(std::vector<Parameter> const& parameters, I const& integrator, char const* who) {
+template <AlphaFamilyIntegrator I>
+AlphaMethod method_of_derivatives(std::vector<Parameter> const& parameters, I const& integrator, char const* who) {
   integrator.check();
   check(parameters);
   AlphaMethod method = integrator.method();

@@ -6,25 +6,25 @@
 
 #include <polybody/gradients/alpha_step_adjoint.hpp>
 #include <polybody/gradients/parameter.hpp>
-#include <polybody/gradients/run_tangent.hpp>
+#include <polybody/gradients/run_sensitivity.hpp>
 
 namespace polybody::detail {
 
 /// The costate of a run under the generalised-α family.
 struct RunCostate {
   Costate at;      ///< of the state, with the method's own accelerations
-  VecX memory;     ///< (memory) of what is remembered beside them: points before, lengths of steps
+  VecX history;    ///< (history) of what is remembered beside them: points before, lengths of steps
   double t = 0.0;  ///< of the time [J's unit/s]
 
-  explicit RunCostate(State const& x) : at(x), memory(VecX::Zero(x.memory.size())) {}
+  explicit RunCostate(State const& x) : at(x), history(VecX::Zero(x.history.size())) {}
 
   /// What J changes by where the state changes by dx.
-  double dot(State const& dx) const { return at.dot(dx) + memory.dot(dx.memory); }
+  double dot(State const& dx) const { return at.dot(dx) + history.dot(dx.history); }
   /// Without rounding of what y and x have in common.
   double dot(State const& y, State const& x) const {
     Index const nv = at.own.size();
     return at.q.dot(y.q - x.q) + at.v.dot(y.v - x.v) + at.a.dot(y.a - x.a) + at.lambda.dot(y.lambda - x.lambda) +
-           at.own.dot(y.memory.head(nv) - x.memory.head(nv)) + memory.dot(y.memory - x.memory);
+           at.own.dot(y.history.head(nv) - x.history.head(nv)) + history.dot(y.history - x.history);
   }
   /// Adds another one, times a factor.
   void add(RunCostate const& of, double by) {
@@ -33,7 +33,7 @@ struct RunCostate {
     at.a += by * of.at.a;
     at.lambda += by * of.at.lambda;
     at.own += by * of.at.own;
-    memory += by * of.memory;
+    history += by * of.history;
     t += by * of.t;
   }
   /// Back over `StepHistory::push` of a step that set out from `before`, after `at` has gone back over it. Returns what
@@ -41,13 +41,13 @@ struct RunCostate {
   double pull_push(State const& before) {
     constexpr Index last = StepHistory::lengths - 1;
     Index const nv = at.own.size();
-    auto newest = memory.segment(nv, nv), change = memory.segment(2 * nv, nv);
+    auto newest = history.segment(nv, nv), change = history.segment(2 * nv, nv);
     bool const known = lengths_of(before)[last - 1] > 0.0;  // the point before this one
     at.a += newest;
     if (known) at.a += change;
     newest = known ? VecX(-change) : VecX(VecX::Zero(nv));
     change.setZero();
-    auto lengths = memory.tail(StepHistory::lengths);
+    auto lengths = history.tail(StepHistory::lengths);
     double const of_length = lengths[last - 1] + lengths[last];
     for (Index i = last; i > 0; --i) lengths[i] = i < last ? lengths[i - 1] : 0.0;
     lengths[0] = 0.0;
@@ -79,7 +79,7 @@ struct PartOfStates {
 /// of one where it is zero: wider, what stiff elements do to the jerk of a start is no polynomial of fourth degree, and
 /// narrower it rounds.
 template <class F>
-void add_slopes_by(PartOfStates const& of, State const& x, double h, F const& f, VecX& to) {
+void add_derivatives_by(PartOfStates const& of, State const& x, double h, F const& f, VecX& to) {
   double const e = 1e-4 * (of.size > 0.0 ? of.size : 1.0);
   for (Index i = of.first; i < of.first + of.count; ++i)
     to[i] += slope_along(x, h, e, [&](State& y, double&, double by) { (y.*of.part)[i] += by; }, f);

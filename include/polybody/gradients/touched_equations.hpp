@@ -16,31 +16,31 @@ namespace polybody::detail {
 /// What of the whole model's equations a parameter touches, by speeds, then by rows. \throws InvalidInput for a name
 /// that the model does not have.
 template <class = void>
-std::vector<char> touched_in_whole(ModelLayout const& layout, Parameter const& p) {
-  std::vector<char> touched(std::size_t(layout.speeds + layout.rows), p.touches.empty());
+std::vector<char> touched_in_full(ModelLayout const& layout, Parameter const& p) {
+  std::vector<char> touched(std::size_t(layout.velocities + layout.rows), p.affects.empty());
   auto const touch = [&](Index first, Index count) {
     for (Index i = first; i < first + count; ++i) touched[std::size_t(i)] = 1;
   };
   auto const touch_owner = [&](Index marker) {
     if (Index const body = marker < 0 ? -1 : layout.owners[std::size_t(marker)]; body >= 0)
-      touch(layout.bodies[std::size_t(body)].v0, layout.bodies[std::size_t(body)].speeds);
+      touch(layout.bodies[std::size_t(body)].v0, layout.bodies[std::size_t(body)].velocities);
   };
-  for (std::string const& name : p.touches) {
+  for (std::string const& name : p.affects) {
     bool found = false;
-    for (BodyPlace const& b : layout.bodies)
+    for (BodyLayout const& b : layout.bodies)
       if (b.name == name) {
-        touch(b.v0, b.speeds);
-        if (b.rows > 0) touch(layout.speeds + b.row, b.rows);
+        touch(b.v0, b.velocities);
+        if (b.rows > 0) touch(layout.velocities + b.row, b.rows);
         found = true;
       }
-    for (JointPlace const& j : layout.joints)
+    for (JointLayout const& j : layout.joints)
       if (j.name == name) {
-        if (j.rows > 0) touch(layout.speeds + j.row, j.rows);
+        if (j.rows > 0) touch(layout.velocities + j.row, j.rows);
         touch_owner(j.a);
         touch_owner(j.b);
         found = true;
       }
-    for (ForcePlace const& f : layout.forces)
+    for (ForceLayout const& f : layout.forces)
       if (f.name == name) {
         if (f.states > 0) touch(f.v0, f.states);
         for (Index const marker : f.markers) touch_owner(marker);
@@ -56,27 +56,27 @@ std::vector<char> touched_in_whole(ModelLayout const& layout, Parameter const& p
 /// on others go to these; a joint that is touched itself may change how, and with that all equations. In joint
 /// coordinates that depends on the place, and all are.
 template <class = void>
-std::vector<char> touched_in_step(System const& system, std::vector<char> const& whole) {
+std::vector<char> touched_in_step(System const& system, std::vector<char> const& full) {
   Coordinates const& c = system.step_coordinates();
-  if (!c) return whole;
-  if (!c.narrow->keeps_mass_constant) return std::vector<char>(std::size_t(system.size()), 1);
-  Index const speeds = system.layout().speeds;
-  std::vector<char> touched(std::size_t(system.size()), 0), stays(whole.size(), 0);
-  for (std::size_t i = 0; i < c.narrow->rows_that_stay.size(); ++i) {
-    std::size_t const row = std::size_t(speeds + c.narrow->rows_that_stay[i]);
+  if (!c) return full;
+  if (!c.reduced->keeps_mass_constant) return std::vector<char>(std::size_t(system.size()), 1);
+  Index const velocities = system.layout().velocities;
+  std::vector<char> touched(std::size_t(system.size()), 0), stays(full.size(), 0);
+  for (std::size_t i = 0; i < c.reduced->remaining_equations.size(); ++i) {
+    std::size_t const row = std::size_t(velocities + c.reduced->remaining_equations[i]);
     stays[row] = 1;
-    touched[std::size_t(system.speeds()) + i] = whole[row];
+    touched[std::size_t(system.velocities()) + i] = full[row];
   }
-  VecX force(speeds), narrow(system.speeds());
-  for (Index i = 0; i < Index(whole.size()); ++i) {
-    if (!whole[std::size_t(i)]) continue;
-    if (i >= speeds && !stays[std::size_t(i)]) return std::vector<char>(touched.size(), 1);
-    if (i >= speeds) continue;
+  VecX force(velocities), reduced(system.velocities());
+  for (Index i = 0; i < Index(full.size()); ++i) {
+    if (!full[std::size_t(i)]) continue;
+    if (i >= velocities && !stays[std::size_t(i)]) return std::vector<char>(touched.size(), 1);
+    if (i >= velocities) continue;
     force.setZero();
     force[i] = 1.0;
-    c.entries->reduce(c.self.get(), force, narrow);
-    for (Index k = 0; k < narrow.size(); ++k)
-      if (narrow[k] != 0.0) touched[std::size_t(k)] = 1;
+    c.entries->reduce(c.self.get(), force, reduced);
+    for (Index k = 0; k < reduced.size(); ++k)
+      if (reduced[k] != 0.0) touched[std::size_t(k)] = 1;
   }
   return touched;
 }
@@ -84,7 +84,7 @@ std::vector<char> touched_in_step(System const& system, std::vector<char> const&
 /// name that the model does not have.
 template <class = void>
 std::vector<Index> touched_equations(System const& system, Parameter const& p) {
-  std::vector<char> const touched = touched_in_step(system, touched_in_whole(system.layout(), p));
+  std::vector<char> const touched = touched_in_step(system, touched_in_full(system.layout(), p));
   std::vector<Index> equations;
   for (std::size_t i = 0; i < touched.size(); ++i)
     if (touched[i]) equations.push_back(Index(i));
@@ -98,14 +98,14 @@ template <class = void>
   std::string list;
   std::size_t count = 0;
   auto const look = [&](char const* kind, std::string const& name) {
-    if (std::find(p.touches.begin(), p.touches.end(), name) != p.touches.end()) return;
-    std::vector<Index> const of = touched_equations(system, {.name = p.name, .touches = {name}});
+    if (std::find(p.affects.begin(), p.affects.end(), name) != p.affects.end()) return;
+    std::vector<Index> const of = touched_equations(system, {.name = p.name, .affects = {name}});
     if (!std::binary_search(of.begin(), of.end(), i) || ++count > 5) return;
     list += sentence_of({list.empty() ? "" : ", ", kind, " \"", name, "\""});
   };
-  for (BodyPlace const& b : system.layout().bodies) look("body", b.name);
-  for (JointPlace const& j : system.layout().joints) look("joint", j.name);
-  for (ForcePlace const& f : system.layout().forces) look("force", f.name);
+  for (BodyLayout const& b : system.layout().bodies) look("body", b.name);
+  for (JointLayout const& j : system.layout().joints) look("joint", j.name);
+  for (ForceLayout const& f : system.layout().forces) look("force", f.name);
   return count > 5 ? sentence_of({list, " and ", count - 5, " more"}) : list;
 }
 

@@ -13,17 +13,17 @@ namespace polybody {
 /// with the error of order j taken as |c_j − c_{j−1} T_{j−1}| ‖D*_j‖. y₁ is of order k + 1. Two evaluations a step, one
 /// more for each step refused. Coordinates on a manifold are stepped as they stand, q˙ by `coordinate_rates`, and
 /// normalised by ⊞ 0.
-template <class Stabilisation = WithoutRows>
+template <class Stabilisation = UnconstrainedOnly>
 struct AdamsBashforthMoulton {
   static constexpr char const* name = "AdamsBashforthMoulton";
   static constexpr int order = AdamsHistory::highest;  ///< the highest
-  static constexpr bool accepts_rows = Stabilisation::accepts_rows;
-  static constexpr bool controls_step = true;
-  static constexpr Entries entries = Entries::coordinate_rates;
+  static constexpr bool accepts_constraints = Stabilisation::accepts_constraints;
+  static constexpr bool adaptive_step = true;
+  static constexpr Capabilities capabilities = Capabilities::coordinate_rates;
 
   double relative_tolerance = 1e-8;   ///< relative to the scale of each kind of unknown, as of `DormandPrince`
   double absolute_tolerance = 1e-10;  ///< added to the relative one, in the units of coordinates and speeds [m], [rad]
-  double smallest_step = 1e-12;       ///< that may be chosen [s]
+  double min_step = 1e-12;            ///< that may be chosen [s]
   int max_order = order;              ///< the highest that may be chosen, in [1, 12]
   Stabilisation stabilisation = {};   ///< how a step keeps to the rows
 
@@ -31,7 +31,7 @@ struct AdamsBashforthMoulton {
   void check() const {
     require_positive(relative_tolerance, "AdamsBashforthMoulton: the relative tolerance");
     require_positive(absolute_tolerance, "AdamsBashforthMoulton: the absolute tolerance");
-    require_positive(smallest_step, "AdamsBashforthMoulton: the smallest step");
+    require_positive(min_step, "AdamsBashforthMoulton: the smallest step");
     if (max_order < 1 || max_order > order)
       throw InvalidInput{"AdamsBashforthMoulton: max_order must lie in [1, 12], but is ", max_order, "."};
     stabilisation.check();
@@ -50,16 +50,16 @@ struct AdamsBashforthMoulton {
 
     /// Allocates all of it.
     explicit Workspace(System& s)
-        : y(VecX::Zero(s.coordinates() + s.speeds())),
+        : y(VecX::Zero(s.coordinates() + s.velocities())),
           f(y),
           correction(y),
           raw(VecX::Zero(s.coordinates())),
           q(raw),
-          v(VecX::Zero(s.speeds())),
+          v(VecX::Zero(s.velocities())),
           a(v),
           lambda(VecX::Zero(s.rows())),
           zero(v),
-          dual(VecXOf<Dual<1>>::Zero(2 * s.layout().coordinates + s.layout().speeds)),
+          dual(VecXOf<Dual<1>>::Zero(2 * s.layout().coordinates + s.layout().velocities)),
           q_rate(q),
           forward(s),
           norm(s, false),
@@ -72,7 +72,7 @@ struct AdamsBashforthMoulton {
       system.plus(raw, zero, q);
     }
     /// y˙ at (q, v, t) into f.
-    void rates(System& system, double t, RowFeedback const& feedback) {
+    void rates(System& system, double t, ConstraintFeedback const& feedback) {
       forward.accelerations(system, {q, v, t}, a, lambda, feedback);
       polybody::coordinate_rates(system, q, v, dual, q_rate);
       std::copy_n(q_rate.data(), q.size(), f.data());
@@ -93,14 +93,14 @@ struct AdamsBashforthMoulton {
     w.rates(system, x.t, stabilisation.feedback());
     x.a = w.a;
     x.lambda = w.lambda;
-    AdamsHistory::reset(x.memory, w.f);
+    AdamsHistory::reset(x.history, w.f);
   }
 
-  /// Takes at most h, less where the error asks for it. \throws StepTooSmall.
+  /// Takes at most h, less where the error asks for it. \throws MinimumStepReached.
   template <class W>
   StepReport step(System& system, State& x, double h, W& w) const {
-    AdamsHistory history(x.memory, w.y.size());
-    RowFeedback const feedback = stabilisation.feedback();
+    AdamsHistory history(x.history, w.y.size());
+    ConstraintFeedback const feedback = stabilisation.feedback();
     auto const age = history.ages();
     int const known = int(history.known());
     int k = std::min(int(history.order()), max_order);
@@ -124,9 +124,10 @@ struct AdamsBashforthMoulton {
         if (e.prefer_lower(k)) --k;
         h *= 0.5;
       }
-      if (!(h >= smallest_step))
-        throw StepTooSmall{"AdamsBashforthMoulton: the error asks for a step below ", smallest_step, " s at t = ", x.t,
-                           " s. The model is stiff or jumps here: use an implicit integrator or name the corner."};
+      if (!(h >= min_step))
+        throw MinimumStepReached{
+            "AdamsBashforthMoulton: the error asks for a step below ", min_step, " s at t = ", x.t,
+            " s. The model is stiff or jumps here: use an implicit integrator or name the corner."};
     }
     w.y += w.correction;
     w.split(system);
@@ -137,7 +138,7 @@ struct AdamsBashforthMoulton {
     report.taken = h;
     report.order = k;
     report.choices = detail::choices_of(w.scratch);
-    report.next = std::max(choose(e, h, k, known, rising), smallest_step);
+    report.next = std::max(choose(e, h, k, known, rising), min_step);
     w.forward.require_end(system, {w.q, w.v, w.lambda, x.t + h, h});
     history.push(h, w.f);
     history.order() = k;

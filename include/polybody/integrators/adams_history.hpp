@@ -7,7 +7,7 @@
 namespace polybody {
 
 /// The past of y˙ = f(t, y) as divided differences D_j = f[t₀, t₋₁, …, t₋ⱼ] over the last points, y of n entries. It
-/// stands in `State::memory`, so a copy of a state carries it along:
+/// stands in history, so a copy of a state carries it along:
 ///   [D₀ … D₁₂ | lengths of the last 12 steps, the last one first | points known | order | 1 while the order still
 ///   rises].
 class AdamsHistory {

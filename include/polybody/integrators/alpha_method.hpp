@@ -39,17 +39,17 @@ struct AlphaMethod {
   /// Everything that a step needs, allocated once.
   template <class Solver>
   struct Workspace : AlphaVectors {
-    StepTangent<SolverOfSteps<Solver>> tangent;  ///< the tangent of a step and its solver
-    ForwardDynamics<Solver> forward;             ///< [M, Gᵀ; G, 0]: accelerations of the start, μ
-    KeptFactor kept_factor;                      ///< whether the tangent's factors still serve
-    double h_factored = 0.0;                     ///< length of step for which the tangent was factored [s]
+    StepTangent<StepSolver<Solver>> tangent;  ///< the tangent of a step and its solver
+    ForwardDynamics<Solver> forward;          ///< [M, Gᵀ; G, 0]: accelerations of the start, μ
+    ReusedFactorisation kept_factor;          ///< whether the tangent's factors still serve
+    double h_factored = 0.0;                  ///< length of step for which the tangent was factored [s]
 
     /// Allocates all but the solver of second-order terms.
     explicit Workspace(System& s)
-        : AlphaVectors(s.coordinates(), s.speeds(), s.rows(), multipliers_of(s), s.layout().states), forward(s) {}
+        : AlphaVectors(s.coordinates(), s.velocities(), s.rows(), multipliers_of(s), s.layout().states), forward(s) {}
 
     /// The solver of the tangent as it is now, with second-order terms or without.
-    TangentSolver<SolverOfSteps<Solver>>& solver() { return tangent.solver(); }
+    TangentSolver<StepSolver<Solver>>& solver() { return tangent.solver(); }
   };
 
   template <class Solver>
@@ -68,7 +68,7 @@ struct AlphaMethod {
   template <class Solver>
   void start(System& system, State& x, double h, Workspace<Solver>& w) const {
     begin(system, x, h, w);
-    w.tangent.leave_out(w.forward.left_out());
+    w.tangent.mark_redundant(w.forward.left_out());
     // once here, so that a solver that changes its order does not do so within a step
     w.solver().evaluate(system, {x.q, x.v, x.t});
     (void)refactor(system, h, {{x.q, x.v, x.t}, x.a, x.lambda}, w);
@@ -88,14 +88,14 @@ struct AlphaMethod {
 
   template <class Solver>
   StepReport step(System& system, State& x, double h, Workspace<Solver>& w) const {
-    (void)set_out(system, x, h, w);
+    (void)start_step(system, x, h, w);
     return advance(system, x, h, w);
   }
 
   /// v₀ and a₀ of a step of h [s] from x, into w: the state's own, corrected where those were made for steps of another
   /// length. Returns whether they are. \param corrected as in `begin`
   template <class Solver>
-  bool set_out(System& system, State& x, double h, Workspace<Solver>& w, std::optional<bool> corrected = {}) const {
+  bool start_step(System& system, State& x, double h, Workspace<Solver>& w, std::optional<bool> corrected = {}) const {
     StepHistory const history(x);
     w.v0 = x.v;
     history.own(w.a0);
@@ -131,7 +131,7 @@ struct AlphaMethod {
     double const *const of_v0 = w.v0.data(), *const of_a0 = w.a0.data(), *const from = x.a.data(),
                         *const to = w.vd.data();
     double *const a = w.a.data(), *const v = w.v.data(), *const dq = w.dq.data();
-    for_packs(w.a.size(), [=, m = *this](auto at) {
+    for_each_simd_block(w.a.size(), [=, m = *this](auto at) {
       auto const v0 = at(of_v0), a0 = at(of_a0),
                  now = part * (m.alpha_f * at(from) + (1.0 - m.alpha_f) * at(to) - m.alpha_m * a0);
       at.set(a, now);
@@ -140,53 +140,56 @@ struct AlphaMethod {
     });
   }
   /// The same after a correction: a changes by the first part of y, λ by the rest.
-  void apply(double part, double h, bool two_sets, AlphaVectors& w) const {
+  void apply(double part, double h, bool both_multiplier_sets, AlphaVectors& w) const {
     if (part != 1.0) {
       w.y *= part;
-      if (two_sets) w.back *= part;
+      if (both_multiplier_sets) w.back *= part;
     }
     double const of_vd = mass(), of_v = h * gamma, of_dq = beta * h * h;
     double const* const y = w.y.data();
     double *const a = w.a.data(), *const vd = w.vd.data(), *const v = w.v.data(), *const dq = w.dq.data();
-    for_packs(w.v.size(), [=](auto at) {
+    for_each_simd_block(w.v.size(), [=](auto at) {
       auto const da = at(y);
       at.set(a, at(a) + da);
       at.set(vd, at(vd) + of_vd * da);
       at.set(v, at(v) + of_v * da);
       at.set(dq, at(dq) + of_dq * da);
     });
-    if (two_sets) w.dq += w.back;
+    if (both_multiplier_sets) w.dq += w.back;
     double const* const of_lambda = y + w.v.size();
     double* const lambda = w.lambda.data();
-    for_packs(w.lambda.size(), [=](auto at) { at.set(lambda, at(lambda) + at(of_lambda)); });
+    for_each_simd_block(w.lambda.size(), [=](auto at) { at.set(lambda, at(lambda) + at(of_lambda)); });
   }
-  CorrectionSize measure(double h, bool two_sets, AlphaVectors const& w) const {
+  CorrectionSize measure(double h, bool both_multiplier_sets, AlphaVectors const& w) const {
     Index const bodies = w.v.size() - w.states;
     double const s = beta * h * h, n = std::sqrt(double(std::max<Index>(bodies, 1)));
-    double const change = std::sqrt(squares(w.y.data(), bodies)) + (two_sets ? std::sqrt(squares(w.back)) / s : 0.0),
+    double const change = std::sqrt(squares(w.y.data(), bodies)) +
+                          (both_multiplier_sets ? std::sqrt(squares(w.back)) / s : 0.0),
                  moved = std::sqrt(squares(w.vd.data(), bodies));
     CorrectionSize const size{.norm = change / n,
                               .tolerated = tolerance * (1.0 + moved / n) + detail::rounding_of(w.q, s)};
     return detail::StatesInStep{w.states, w.v, w.vd, gamma * h}.join(size, tolerance, w.y.data());
   }
   /// The right-hand side of a correction: −r, and the rows as their multipliers answer them.
-  void right_hand_side(double h, bool two_sets, Sequence<Index> const& velocity_rows, AlphaVectors& w) const {
+  void right_hand_side(double h, bool both_multiplier_sets, Sequence<Index> const& nonholonomic_equations,
+                       AlphaVectors& w) const {
     Index const nv = w.v.size(), rows = w.phi.size();
-    double const *const r = w.r.data(), *const open = (two_sets ? w.rate : w.phi).data();
+    double const *const r = w.r.data(), *const open = (both_multiplier_sets ? w.rate : w.phi).data();
     double *const rhs = w.rhs.data(), *const of_rows = rhs + nv;
-    for_packs(nv, [=](auto at) { at.set(rhs, -at(r)); });
-    double const scale = -1.0 / (two_sets ? h * gamma : beta * h * h);
-    for_packs(rows, [=](auto at) { at.set(of_rows, scale * at(open)); });
-    if (!two_sets)
-      for (Index const i : velocity_rows) of_rows[i] = w.rate[i] / -(h * gamma);
+    for_each_simd_block(nv, [=](auto at) { at.set(rhs, -at(r)); });
+    double const scale = -1.0 / (both_multiplier_sets ? h * gamma : beta * h * h);
+    for_each_simd_block(rows, [=](auto at) { at.set(of_rows, scale * at(open)); });
+    if (!both_multiplier_sets)
+      for (Index const i : nonholonomic_equations) of_rows[i] = w.rate[i] / -(h * gamma);
   }
 
   /// Tangent and factorisation for steps of h at x, where `system` was evaluated last. −1, or the unknown without a
   /// pivot.
   template <class Solver>
-  Index refactor(System& system, double h, StepPlace const& x, Workspace<Solver>& w, bool stand_ins = true) const {
+  Index refactor(System& system, double h, StepPosition const& x, Workspace<Solver>& w,
+                 bool surrogate_friction = true) const {
     w.h_factored = h;
-    TangentCoefficients const c{mass(), h * gamma, beta * h * h, stand_ins};
+    TangentCoefficients const c{mass(), h * gamma, beta * h * h, surrogate_friction};
     return w.solver().factor_tangent(system, x, c, w.tangent.terms());
   }
 
@@ -198,19 +201,19 @@ struct AlphaMethod {
     State& x;
     Workspace<Solver>& w;
     double h, look_ahead;  ///< h [s]; the share of its expected life by which a factorisation is made ahead
-    bool two_sets, holds_anew, stand_ins;
+    bool both_multiplier_sets, recomputes_held, surrogate_friction;
     Index bad = -1;
 
-    StepPlace place() const { return {{w.q, w.v, x.t + h}, w.vd, w.lambda}; }
+    StepPosition place() const { return {{w.q, w.v, x.t + h}, w.vd, w.lambda}; }
     bool evaluate() { return evaluate_at(w.dq); }
     bool evaluate_at(VecX const& dq) {
       system.plus(x.q, dq, w.q);
       w.solver().evaluate(system, {w.q, w.v, x.t + h});
       w.solver().balance(system, place(), w.r);
       if (w.phi.size() > 0) system.violation(w.phi);
-      if (two_sets) w.open = w.phi;
-      if (two_sets || !system.velocity_rows().empty()) system.violation_rate(w.rate);
-      method.right_hand_side(h, two_sets, system.velocity_rows(), w);
+      if (both_multiplier_sets) w.open = w.phi;
+      if (both_multiplier_sets || !system.nonholonomic_equations().empty()) system.violation_rate(w.rate);
+      method.right_hand_side(h, both_multiplier_sets, system.nonholonomic_equations(), w);
       return all_finite(w.rhs) && w.solver().is_finite();
     }
     bool refactor() {
@@ -220,9 +223,9 @@ struct AlphaMethod {
         system.plus(x.q, w.ahead, w.q);
         w.solver().evaluate(system, {w.q, w.v, x.t + h});
       }
-      if (holds_anew) w.forward.hold(system, w.q, w.v, x.t + h);
-      bad = method.refactor(system, h, place(), w, stand_ins);
-      if (ahead > 0.0 && w.solver().keeps_multipliers()) {
+      if (recomputes_held) w.forward.hold(system, w.q, w.v, x.t + h);
+      bad = method.refactor(system, h, place(), w, surrogate_friction);
+      if (ahead > 0.0 && w.solver().carries_multipliers()) {
         system.plus(x.q, w.dq, w.q);
         w.solver().return_to({w.q, w.v, x.t + h});
       }
@@ -231,26 +234,27 @@ struct AlphaMethod {
     CorrectionSize solve() {
       w.solver().correct(w.rhs, w.y);
       bool const finite = all_finite(w.y);
-      if (two_sets && finite) {
+      if (both_multiplier_sets && finite) {
         w.phi = w.open;
-        for (Index i = 0; i < system.speeds(); ++i) w.back[i] = method.beta * h * h * w.y[i];
+        for (Index i = 0; i < system.velocities(); ++i) w.back[i] = method.beta * h * h * w.y[i];
         system.rows_times(w.back, w.rate);
         w.phi += w.rate;
-        for (Index const i : system.velocity_rows()) w.phi[i] = 0.0;  // μ is of positions
+        for (Index const i : system.nonholonomic_equations()) w.phi[i] = 0.0;  // μ is of positions
         w.forward.least_change(system, w.phi, w.back);
       }
-      return finite ? method.measure(h, two_sets, w) : CorrectionSize{std::numeric_limits<double>::quiet_NaN()};
+      return finite ? method.measure(h, both_multiplier_sets, w)
+                    : CorrectionSize{std::numeric_limits<double>::quiet_NaN()};
     }
     AndersonAcceleration& acceleration() { return w.acceleration; }
     VecX& correction() { return w.y; }
-    void apply(double part) { method.apply(part, h, two_sets, w); }
+    void apply(double part) { method.apply(part, h, both_multiplier_sets, w); }
     /// By a correction of this `norm` (root mean square of accelerations) the bodies move further than by their speeds.
-    bool is_far(double norm) const {
+    bool is_far_from_solution(double norm) const {
       Index const bodies = x.v.size() - w.states;
       return method.beta * h * norm * std::sqrt(double(bodies)) > std::sqrt(squares(x.v.data(), bodies));
     }
     void restart() { method.guess(x, h, false, w); }
-    bool is_rounding(double norm) {
+    bool is_round_off(double norm) {
       if (!detail::may_be_rounding(w.phi, method.beta * h * h * norm, x.q)) return false;
       w.kept_back = w.back;
       auto const moved = [&] {
@@ -259,13 +263,13 @@ struct AlphaMethod {
         detail::perturb(w.phi, w.q, w.phi);
         w.open = w.phi;
         detail::perturb(w.rate, w.v, w.rate);
-        method.right_hand_side(h, two_sets, system.velocity_rows(), w);
+        method.right_hand_side(h, both_multiplier_sets, system.nonholonomic_equations(), w);
         bool const finite = std::isfinite(solve().norm);
         w.back -= w.kept_back;
         return finite;
       };
-      bool const answer =
-          detail::is_rounding(w.y, norm, w.kept, moved, [&] { return method.measure(h, two_sets, w).norm; });
+      bool const answer = detail::is_round_off(w.y, norm, w.kept, moved,
+                                               [&] { return method.measure(h, both_multiplier_sets, w).norm; });
       w.back.swap(w.kept_back);
       return answer;
     }
@@ -286,32 +290,39 @@ struct AlphaMethod {
     StepHistory history(x);
     bool const careful = effort > 0;
     guess(x, h, careful, w);
-    bool const two_sets = stabilised && system.rows() > 0 && effort <= efforts(system);
-    if (two_sets) w.forward.hold(system, x.q, x.v, x.t);
+    bool const both_multiplier_sets = stabilised && system.rows() > 0 && effort <= efforts(system);
+    if (both_multiplier_sets) w.forward.hold(system, x.q, x.v, x.t);
     if (w.h_factored == 0.0 || std::abs(h - w.h_factored) > 0.25 * w.h_factored) w.kept_factor.usable = false;
 
     NewtonOptions options = newton;
     if (careful) {
       options.always_refactor = true;
-      options.growths = 8;  // damped, it recovers
+      options.max_growths = 8;  // damped, it recovers
       options.max_iterations *= 2;
     }
     // what μ moves is large and gone at once: how it shrinks tells nothing of the rest
-    options.predictive_stop = options.predictive_stop && !two_sets;
+    options.predictive_stop = options.predictive_stop && !both_multiplier_sets;
     // a factorisation that is to be kept is made for the middle of its life, as long as the last one's
-    Problem<Solver> problem{
-        *this, system, x, w, h, options.always_refactor ? 0.0 : 0.4, two_sets, two_sets && careful, effort != 1};
-    if (w.solver().keeps_multipliers()) w.kept_factor.theta = std::max(w.kept_factor.theta, 0.3);
+    Problem<Solver> problem{*this,
+                            system,
+                            x,
+                            w,
+                            h,
+                            options.always_refactor ? 0.0 : 0.4,
+                            both_multiplier_sets,
+                            both_multiplier_sets && careful,
+                            effort != 1};
+    if (w.solver().carries_multipliers()) w.kept_factor.theta = std::max(w.kept_factor.theta, 0.3);
     NewtonReport report = polybody::newton(problem, options, w.kept_factor);
     if (report.result != NewtonResult::converged && report.result != NewtonResult::singular &&
-        (effort < efforts(system) || (two_sets && loses_rank(system, x, h, w)))) {
+        (effort < efforts(system) || (both_multiplier_sets && loses_rank(system, x, h, w)))) {
       w.tangent.include(system, w.lambda);
       w.kept_factor.usable = false;
       return detail::with_attempt(report, advance(system, x, h, w, effort + 1));
     }
-    if (report.result != NewtonResult::converged && w.solver().keeps_multipliers()) {  // rhs, which names the largest
+    if (report.result != NewtonResult::converged && w.solver().carries_multipliers()) {  // rhs, which names the largest
       system.residual(w.vd, w.lambda, w.r);
-      right_hand_side(h, two_sets, system.velocity_rows(), w);
+      right_hand_side(h, both_multiplier_sets, system.nonholonomic_equations(), w);
     }
     if (report.result != NewtonResult::converged)
       detail::throw_stalled(name, system, x.t + h, report, {problem.bad, w.rhs, w.y});

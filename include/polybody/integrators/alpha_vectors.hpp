@@ -15,8 +15,8 @@ struct AlphaVectors {
   Index states;                       ///< first-order ones, the last of the speeds
 
   /// Zeros, as many as a system has coordinates, speeds, rows, multipliers that a step keeps, and `first_order` states.
-  AlphaVectors(Index coordinates, Index speeds, Index rows, Index multipliers, Index first_order)
-      : v0(VecX::Zero(speeds)),
+  AlphaVectors(Index coordinates, Index velocities, Index rows, Index multipliers, Index first_order)
+      : v0(VecX::Zero(velocities)),
         a0(v0),
         q(VecX::Zero(coordinates)),
         v(v0),
@@ -28,14 +28,14 @@ struct AlphaVectors {
         jerk(v0),
         ahead(v0),
         lambda(VecX::Zero(multipliers)),
-        rhs(VecX::Zero(speeds + multipliers)),
+        rhs(VecX::Zero(velocities + multipliers)),
         y(rhs),
         back(v0),
         rate(phi),
         open(phi),
         kept(rhs),
         kept_back(v0),
-        acceleration(rhs.size(), speeds - first_order),
+        acceleration(rhs.size(), velocities - first_order),
         states(first_order) {}
 
   /// ‖a‖ of the entries [i, end).

@@ -25,7 +25,7 @@ class AssemblyExtents {
   AssemblyExtents() = default;
   /// \param whole, stepped unknowns of the model and of a time step  \param assembly number of that of each body
   template <class = void>
-  [[gnu::cold]] AssemblyExtents(System const& system, UnknownPlaces const& whole, UnknownPlaces const& stepped,
+  [[gnu::cold]] AssemblyExtents(System const& system, UnknownPlaces const& full, UnknownPlaces const& stepped,
                                 Sequence<Index> const& assembly);
 
   /// Extents before and at the end (q, v) of a step, whichever is larger; a change of a velocity over the step counts
@@ -40,11 +40,11 @@ class AssemblyExtents {
       double& speed = boxes_[p.assembly].extent.speed;
       speed = std::max(speed, std::abs(v[p.entry] - before.v[p.entry]));
     }
-    if (whole_positions_.empty()) return;
+    if (full_positions_.empty()) return;
     Coordinates const& c = system.step_coordinates();
-    c.entries->expand(c.self.get(), q, v, whole_q_, whole_v_);
-    add(whole_positions_, whole_q_, &Box::ground, &Extent::length);
-    add(whole_velocities_, whole_v_, &Box::rest, &Extent::speed);
+    c.entries->expand(c.self.get(), q, v, full_q_, full_v_);
+    add(full_positions_, full_q_, &Box::ground, &Extent::length);
+    add(full_velocities_, full_v_, &Box::rest, &Extent::speed);
   }
   /// Those of an assembly, as measured last.
   Extent const& operator[](std::size_t assembly) const { return boxes_[assembly].extent; }
@@ -89,13 +89,13 @@ class AssemblyExtents {
   void add_ground(System const& system, Sequence<Index> const& assembly, Sequence<Index>& points);
 
   Sequence<Box> boxes_;
-  Sequence<Point> positions_, velocities_;              // of a time step
-  Sequence<Point> whole_positions_, whole_velocities_;  // of trees that float: a step holds the root alone
-  VecX whole_q_, whole_v_;
+  Sequence<Point> positions_, velocities_;            // of a time step
+  Sequence<Point> full_positions_, full_velocities_;  // of trees that float: a step holds the root alone
+  VecX full_q_, full_v_;
 };
 
 template <class>
-AssemblyExtents::AssemblyExtents(System const& system, UnknownPlaces const& whole, UnknownPlaces const& stepped,
+AssemblyExtents::AssemblyExtents(System const& system, UnknownPlaces const& full, UnknownPlaces const& stepped,
                                  Sequence<Index> const& assembly)
     : positions_(points_of(stepped.of_q, assembly)), velocities_(points_of(stepped.of_v, assembly)) {
   Index count = 0;
@@ -104,17 +104,17 @@ AssemblyExtents::AssemblyExtents(System const& system, UnknownPlaces const& whol
   Sequence<Index> points(std::size_t(count), 0);
   for (Point const& p : positions_) points[p.assembly] += p.axis == 0;
   if (system.step_coordinates()) {
-    Sequence<Point> const positions = points_of(whole.of_q, assembly), velocities = points_of(whole.of_v, assembly);
+    Sequence<Point> const positions = points_of(full.of_q, assembly), velocities = points_of(full.of_v, assembly);
     Sequence<Index> all(std::size_t(count), 0);
     for (Point const& p : positions) all[p.assembly] += p.axis == 0;
     auto const floats = [&](Point const& p) { return points[p.assembly] > 0 && points[p.assembly] < all[p.assembly]; };
     for (Point const& p : positions)
-      if (floats(p)) whole_positions_.push_back(p);
+      if (floats(p)) full_positions_.push_back(p);
     for (Point const& p : velocities)
-      if (floats(p)) whole_velocities_.push_back(p);
-    for (Point const& p : whole_positions_) points[p.assembly] = all[p.assembly];
-    whole_q_.setZero(system.layout().coordinates);
-    whole_v_.setZero(system.layout().speeds);
+      if (floats(p)) full_velocities_.push_back(p);
+    for (Point const& p : full_positions_) points[p.assembly] = all[p.assembly];
+    full_q_.setZero(system.layout().coordinates);
+    full_v_.setZero(system.layout().velocities);
   }
   add_ground(system, assembly, points);
 }
@@ -136,11 +136,11 @@ void AssemblyExtents::add_ground(System const& system, Sequence<Index> const& as
     add_rest(boxes_[k], system.data().markers[std::size_t(marker)].frame.r);
     ++points[k];
   };
-  for (JointPlace const& j : layout.joints) {
+  for (JointLayout const& j : layout.joints) {
     add_marker(j.a, owner(j.b));
     add_marker(j.b, owner(j.a));
   }
-  for (ForcePlace const& f : layout.forces) {
+  for (ForceLayout const& f : layout.forces) {
     Index body = -1;
     for (Index const marker : f.markers) body = std::max(body, owner(marker));
     for (Index const marker : f.markers) add_marker(marker, body);

@@ -7,13 +7,13 @@ namespace polybody {
 /// Explicit central differences in their one-step form,
 ///   v½ = v₀ + ½h v̇₀,  q₁ = q₀ ⊞ h v½,  v̇₁ = accelerations(q₁, v½ + ½h v̇₀),  v₁ = v½ + ½h v̇₁,
 /// of order two, stable for h < 2/ω_max [Hughes 2000, §9.1].
-template <class Stabilisation = WithoutRows>
+template <class Stabilisation = UnconstrainedOnly>
 struct CentralDifference {
   static constexpr char const* name = "CentralDifference";
   static constexpr int order = 2;
-  static constexpr bool accepts_rows = Stabilisation::accepts_rows;
-  static constexpr double stable_to = 2.0;  ///< ωh, a ratio
-  static double stable_step(double omega, double rate) { return stable_step_of_verlet(omega, rate); }
+  static constexpr bool accepts_constraints = Stabilisation::accepts_constraints;
+  static constexpr double stability_limit = 2.0;  ///< ωh, a ratio
+  static double stable_step(double omega, double rate) { return verlet_stability_limit(omega, rate); }
 
   Stabilisation stabilisation = {};  ///< how a step keeps to the rows
 

@@ -34,17 +34,17 @@ struct ConservingStep {
     VecX q, v, vd, lambda, r, phi, rhs, y, kept;  ///< in order: q, v, v̇, λ, r, Φ, −(r, Φ), two corrections
     VecX other_vd, other_lambda;                  ///< where the second try ended, while the third looks for less change
     StepSecants secants;                          ///< mean forces and rows of the step
-    TangentSolver<SolverOfSteps<Solver>> solver;  ///< solver of the tangent of `secants`
-    TangentSolver<SolverOfSteps<UnsymmetricSolver<Solver>>> exact;  ///< laid out by the first step that asks for it
-    ForwardDynamics<Solver> forward;                                ///< [M, Gᵀ; G, 0]: accelerations of the start
-    KeptFactor kept_factor;                                         ///< whether the tangent's factors still serve
-    bool has_exact = false;                                         ///< `exact` has been laid out
+    TangentSolver<StepSolver<Solver>> solver;     ///< solver of the tangent of `secants`
+    TangentSolver<StepSolver<UnsymmetricSolver<Solver>>> exact;  ///< laid out by the first step that asks for it
+    ForwardDynamics<Solver> forward;                             ///< [M, Gᵀ; G, 0]: accelerations of the start
+    ReusedFactorisation kept_factor;                             ///< whether the tangent's factors still serve
+    bool has_exact = false;                                      ///< `exact` has been laid out
     double h_factored = 0.0;  ///< length of step for which the tangent was factored [s]
 
     /// Allocates all but `exact`.
     explicit Workspace(System& s)
         : q(VecX::Zero(s.coordinates())),
-          v(VecX::Zero(s.speeds())),
+          v(VecX::Zero(s.velocities())),
           vd(v),
           lambda(VecX::Zero(s.rows())),
           r(v),
@@ -70,7 +70,7 @@ struct ConservingStep {
     StepHistory::reset(x);
     w.secants.evaluate(system, {&x.q, &x.q, x.t, h, chi, &x.v, &x.a});
     w.solver.analyse(system, 1, [&](BlockSink& sink) { w.secants.tangent(system, scale(h), sink); });
-    if (w.forward.leaves_out()) w.solver.leave_out(w.forward.left_out());
+    if (w.forward.leaves_out()) w.solver.mark_redundant(w.forward.left_out());
     w.kept_factor.usable = false;
     (void)refactor(system, h, w);  // so that a solver that changes its order does not do so within a step
   }
@@ -122,7 +122,7 @@ struct ConservingStep {
     bool refactor() {
       auto const write = [&](BlockSink& sink) { w.secants.exact_tangent(system, secant(), s, w.lambda, sink); };
       if (exact && !w.has_exact) w.exact.analyse(system, 1, write);
-      if (exact && !w.has_exact && w.forward.leaves_out()) w.exact.leave_out(w.forward.left_out());
+      if (exact && !w.has_exact && w.forward.leaves_out()) w.exact.mark_redundant(w.forward.left_out());
       w.has_exact = w.has_exact || exact;
       bad = exact ? w.exact.factor(write) : method.refactor(system, h, w);
       return bad < 0;
@@ -143,7 +143,7 @@ struct ConservingStep {
       for (Index i = 0; i < nv; ++i) w.vd[i] += w.y[i];
       for (Index i = 0; i < rows; ++i) w.lambda[i] += w.y[nv + i];
     }
-    bool is_rounding(double norm) {
+    bool is_round_off(double norm) {
       if (!detail::may_be_rounding(w.phi, s * norm, x.q)) return false;
       auto const moved = [&] {
         detail::perturb(w.q, w.q, w.q);
@@ -152,7 +152,7 @@ struct ConservingStep {
         for (Index i = 0; i < rows; ++i) w.rhs[nv + i] = w.phi[i] / -s;
         return std::isfinite(solve().norm);
       };
-      return detail::is_rounding(w.y, norm, w.kept, moved, [&] { return measure().norm; });
+      return detail::is_round_off(w.y, norm, w.kept, moved, [&] { return measure().norm; });
     }
   };
 
@@ -189,8 +189,8 @@ struct ConservingStep {
     if (std::abs(h - w.h_factored) > 0.25 * w.h_factored) w.kept_factor.usable = false;
     NewtonOptions options = newton;
     options.always_refactor = options.always_refactor || careful;
-    if (careful) options.growths = 10;
-    Problem<Solver> problem{*this, system, x, w, h, scale(h), system.speeds(), system.rows(), effort == 2};
+    if (careful) options.max_growths = 10;
+    Problem<Solver> problem{*this, system, x, w, h, scale(h), system.velocities(), system.rows(), effort == 2};
     NewtonReport report = polybody::newton(problem, options, w.kept_factor);
     if (effort == 1 && system.rows() > 0 && report.result == NewtonResult::converged &&
         change(x, h, w.vd) > 0.01 * squares(x.v)) {

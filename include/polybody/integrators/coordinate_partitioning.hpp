@@ -2,7 +2,7 @@
 #include <limits>
 #include <utility>
 
-#include <polybody/integrators/partitioned_rows.hpp>
+#include <polybody/integrators/partitioned_constraints.hpp>
 #include <polybody/integrators/sparse_partition.hpp>
 #include <polybody/integrators/stabilisation.hpp>
 
@@ -19,7 +19,7 @@ namespace polybody {
 /// equations are solved by corrections; where one leaves more than a fourth open, G_d is factored and the split looked
 /// at anew.
 struct CoordinatePartitioning {
-  static constexpr bool accepts_rows = true;
+  static constexpr bool accepts_constraints = true;
   double tolerance = 1e-12;     ///< of Φ, beside what rounding of q leaves
   int max_iterations = 10;      ///< of Newton's method for the positions, before it throws
   double largest_ratio = 10.0;  ///< of the rate of a dependent coordinate to that of an independent one
@@ -27,22 +27,22 @@ struct CoordinatePartitioning {
 
   /// What is kept from step to step: the choice of coordinates and its factorisation.
   struct Scratch {
-    PartitionedRows rows{0, 0};      ///< of positions; where there are no velocity rows, of speeds too
-    PartitionedRows all_rows{0, 0};  ///< of speeds where there are
+    PartitionedConstraints rows{0, 0};      ///< of positions; where there are no velocity rows, of speeds too
+    PartitionedConstraints all_rows{0, 0};  ///< of speeds where there are
     SparsePartitionOf<> sparse_rows, sparse_all_rows;  ///< the same splits where G is sparse
     VecX phi, rate, column, delta, next;               ///< in order: Φ, Φ̇, a column of G, Δq or Δv, q ⊞ Δq
     bool sparse = false, prepared = false;             ///< G is sparse; the choice between the two was made
     /// Allocates what both ways need.
     explicit Scratch(System const& s)
-        : sparse_rows(s.rows(), s.speeds()),
-          sparse_all_rows(s.rows(), s.speeds()),
+        : sparse_rows(s.rows(), s.velocities()),
+          sparse_all_rows(s.rows(), s.velocities()),
           phi(VecX::Zero(s.rows())),
           rate(phi),
           column(phi),
-          delta(VecX::Zero(s.speeds())),
+          delta(VecX::Zero(s.velocities())),
           next(VecX::Zero(s.coordinates())),
-          splits_speeds_(!s.velocity_rows().empty()) {
-      for (Index const i : s.velocity_rows()) sparse_rows.leave_out(i);
+          splits_velocities_(!s.nonholonomic_equations().empty()) {
+      for (Index const i : s.nonholonomic_equations()) sparse_rows.mark_redundant(i);
     }
     /// Chooses dense or sparse by the number of speeds, at most `most_dense` for dense, once, and allocates what that
     /// needs.
@@ -50,16 +50,18 @@ struct CoordinatePartitioning {
       if (std::exchange(prepared, true)) return;
       sparse = delta.size() > most_dense;
       if (sparse) return;
-      rows = PartitionedRows(phi.size(), delta.size());
-      if (splits_speeds_) all_rows = rows;
+      rows = PartitionedConstraints(phi.size(), delta.size());
+      if (splits_velocities_) all_rows = rows;
     }
-    PartitionedRows& of_speeds() { return splits_speeds_ ? all_rows : rows; }  ///< the split of speeds, dense
+    PartitionedConstraints& of_velocities() {
+      return splits_velocities_ ? all_rows : rows;
+    }  ///< the split of speeds, dense
     /// The split of speeds, sparse.
-    SparsePartitionOf<>& sparse_of_speeds() { return splits_speeds_ ? sparse_all_rows : sparse_rows; }
+    SparsePartitionOf<>& sparse_of_velocities() { return splits_velocities_ ? sparse_all_rows : sparse_rows; }
     /// Whether `speed` depends by all rows, of positions and speeds.
     bool is_dependent(Index speed) const {
-      if (sparse) return (splits_speeds_ ? sparse_all_rows : sparse_rows).is_dependent(speed);
-      return (splits_speeds_ ? all_rows : rows).is_dependent(speed);
+      if (sparse) return (splits_velocities_ ? sparse_all_rows : sparse_rows).is_dependent(speed);
+      return (splits_velocities_ ? all_rows : rows).is_dependent(speed);
     }
     /// How often a split was chosen or changed.
     long choices() const {
@@ -67,7 +69,7 @@ struct CoordinatePartitioning {
     }
 
    private:
-    bool splits_speeds_;
+    bool splits_velocities_;
   };
 
   /// \throws InvalidInput unless the tolerance is positive, max_iterations in [1, 10⁶] and the largest ratio at
@@ -87,7 +89,7 @@ struct CoordinatePartitioning {
     s.sparse_rows.forget();
     s.sparse_all_rows.forget();
   }
-  RowFeedback feedback() const { return {}; }
+  ConstraintFeedback feedback() const { return {}; }
 
   /// A split for (q, v, t) whatever was chosen before.
   template <class = void>
@@ -95,20 +97,20 @@ struct CoordinatePartitioning {
     s.prepare(dense_up_to);
     system.evaluate(q, v, t);
     if (s.sparse) {
-      for (auto* const each : {&s.sparse_rows, &s.sparse_of_speeds()}) {
+      for (auto* const each : {&s.sparse_rows, &s.sparse_of_velocities()}) {
         each->forget();
         write(system, s, *each);
         each->renew(largest_ratio);
       }
       return;
     }
-    for (auto* const each : {&s.rows, &s.of_speeds()}) {
+    for (auto* const each : {&s.rows, &s.of_velocities()}) {
       write(system, s, *each);
       each->choose();
     }
   }
 
-  /// \throws NewtonStalled when the positions cannot be brought back.
+  /// \throws NewtonConvergenceFailure when the positions cannot be brought back.
   template <class Solver>
   void apply(System& system, ForwardDynamics<Solver>& forward, Scratch& s, VecX& q, VecX& v, double t) const {
     if (system.rows() == 0) return;
@@ -116,19 +118,20 @@ struct CoordinatePartitioning {
     double const enough = tolerance + 16.0 * std::numeric_limits<double>::epsilon() * q.cwiseAbs().maxCoeff();
     if (s.sparse) {
       correct_positions(system, s, q, v, t, enough);
-      return correct_speeds(system, s, q, v, t);
+      return correct_velocities(system, s, q, v, t);
     }
     for (int k = 0;; ++k) {
       reduce(system, s, s.rows, q, v, t);
       if (s.phi.cwiseAbs().maxCoeff() <= enough) break;
       if (k == max_iterations)
-        throw NewtonStalled{"CoordinatePartitioning: the positions cannot be brought back to the joints at t = ", t,
-                            " s. Take a smaller step."};
+        throw NewtonConvergenceFailure{
+            "CoordinatePartitioning: the positions cannot be brought back to the joints at t = ", t,
+            " s. Take a smaller step."};
       s.rows.solution(0, s.delta);
       system.plus(q, s.delta, s.next);
       q.swap(s.next);
     }
-    if (!system.velocity_rows().empty()) return velocities(system, forward, s, q, v, t);
+    if (!system.nonholonomic_equations().empty()) return velocities(system, forward, s, q, v, t);
     s.rows.solution(1, s.delta);
     v += s.delta;
   }
@@ -138,9 +141,9 @@ struct CoordinatePartitioning {
     s.prepare(dense_up_to);
     if (s.sparse) {
       system.evaluate(q, v, t);
-      return correct_speeds(system, s, q, v, t);
+      return correct_velocities(system, s, q, v, t);
     }
-    PartitionedRows& rows = s.of_speeds();
+    PartitionedConstraints& rows = s.of_velocities();
     reduce(system, s, rows, q, v, t);
     rows.solution(1, s.delta);
     v += s.delta;
@@ -149,7 +152,7 @@ struct CoordinatePartitioning {
  private:
   /// Right-hand sides −Φ and −Φ̇ at (q, v, t), and one of the two reduced.
   template <class = void>
-  void reduce(System& system, Scratch& s, PartitionedRows& rows, VecX const& q, VecX const& v, double t) const {
+  void reduce(System& system, Scratch& s, PartitionedConstraints& rows, VecX const& q, VecX const& v, double t) const {
     system.evaluate(q, v, t);
     system.violation(s.phi);
     system.violation_rate(s.rate);
@@ -168,8 +171,9 @@ struct CoordinatePartitioning {
       double const open = largest_size(s.phi);
       if (open <= enough) return;
       if (k == 3 * max_iterations)
-        throw NewtonStalled{"CoordinatePartitioning: the positions cannot be brought back to the joints at t = ", t,
-                            " s. Take a smaller step."};
+        throw NewtonConvergenceFailure{
+            "CoordinatePartitioning: the positions cannot be brought back to the joints at t = ", t,
+            " s. Take a smaller step."};
       corrections.take(s.phi, open);
       system.plus(q, s.delta, s.next);
       q.swap(s.next);
@@ -177,15 +181,16 @@ struct CoordinatePartitioning {
   }
   /// The speeds likewise, where the system was evaluated last: to what rounding leaves of G v.
   template <class = void>
-  void correct_speeds(System& system, Scratch& s, VecX const& q, VecX& v, double t) const {
-    Corrections corrections{s.sparse_of_speeds(), system, s, largest_ratio};
+  void correct_velocities(System& system, Scratch& s, VecX const& q, VecX& v, double t) const {
+    Corrections corrections{s.sparse_of_velocities(), system, s, largest_ratio};
     for (int k = 0;; ++k) {
       system.violation_rate(s.rate);
       double const open = largest_size(s.rate), terms = (1.0 + corrections.partition.largest_entry()) * largest_size(v);
       if (open <= tolerance + 64.0 * std::numeric_limits<double>::epsilon() * (1.0 + terms)) return;
       if (k == 3 * max_iterations)
-        throw NewtonStalled{"CoordinatePartitioning: the speeds cannot be brought back to the joints at t = ", t,
-                            " s: rows that repeat others contradict them, or they lose rank there."};
+        throw NewtonConvergenceFailure{
+            "CoordinatePartitioning: the speeds cannot be brought back to the joints at t = ", t,
+            " s: rows that repeat others contradict them, or they lose rank there."};
       corrections.take(s.rate, open);
       v += s.delta;
       system.evaluate(q, v, t);
@@ -223,36 +228,37 @@ struct CoordinatePartitioning {
       system.masses(rows);
     } else {  // the matrix is in other unknowns
       s.delta.setZero();
-      for (Index j = 0; j < system.speeds(); ++j) {
+      for (Index j = 0; j < system.velocities(); ++j) {
         s.delta[j] = 1.0;
         system.rows_times(s.delta, s.column);
         s.delta[j] = 0.0;
-        rows.add(system.speeds(), j, s.column);
+        rows.add(system.velocities(), j, s.column);
       }
     }
-    if constexpr (std::same_as<Rows, PartitionedRows>) take_right_hand_sides(system, s, rows);
+    if constexpr (std::same_as<Rows, PartitionedConstraints>) take_right_hand_sides(system, s, rows);
   }
   template <class = void>
-  static void take_right_hand_sides(System& system, Scratch& s, PartitionedRows& rows) {
+  static void take_right_hand_sides(System& system, Scratch& s, PartitionedConstraints& rows) {
     for (Index i = 0; i < system.rows(); ++i) {
       rows.right(0, i) = -s.phi[i];
       rows.right(1, i) = -s.rate[i];
     }
     if (&rows == &s.rows)
-      for (Index const i : system.velocity_rows()) rows.leave_out(i);
+      for (Index const i : system.nonholonomic_equations()) rows.mark_redundant(i);
   }
 };
 
 /// The independent speeds that a run from x takes first, by the names of their bodies and their numbers there.
 template <class = void>
-std::vector<std::string> independent_speeds(System& system, State const& x, CoordinatePartitioning const& policy = {}) {
+std::vector<std::string> independent_velocities(System& system, State const& x,
+                                                CoordinatePartitioning const& policy = {}) {
   CoordinatePartitioning::Scratch scratch(system);
   policy.start(scratch);
   policy.choose(system, scratch, x.q, x.v, x.t);
   std::vector<std::string> names;
   std::string body;
   int number = 0;
-  for (Index i = 0; i < system.speeds(); ++i) {
+  for (Index i = 0; i < system.velocities(); ++i) {
     std::string const name = system.name_of(i);
     number = name == body ? number + 1 : 0;
     body = name;

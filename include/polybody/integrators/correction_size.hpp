@@ -39,7 +39,7 @@ inline bool may_be_rounding(VecX const& phi, double moved, VecX const& q) {
 /// larger, and so does that of stretches out of light nodes. \param moved solves for it there, into y, and says whether
 /// it is finite  \param measure the norm of what is in y  \param kept holds y meanwhile, which is the same afterwards
 template <class Moved, class Measure>
-bool is_rounding(VecX& y, double norm, VecX& kept, Moved&& moved, Measure&& measure) {
+bool is_round_off(VecX& y, double norm, VecX& kept, Moved&& moved, Measure&& measure) {
   kept = y;
   bool const finite = moved();
   y -= kept;

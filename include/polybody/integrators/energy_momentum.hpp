@@ -9,8 +9,8 @@ namespace polybody {
 struct EnergyMomentum {
   static constexpr char const* name = "EnergyMomentum";
   static constexpr int order = 2;
-  static constexpr bool accepts_rows = true;
-  static constexpr Entries entries = Entries::implicit_step | Entries::secants;
+  static constexpr bool accepts_constraints = true;
+  static constexpr Capabilities capabilities = Capabilities::implicit_step | Capabilities::secants;
 
   double tolerance = 1e-10;                       ///< of Newton's corrections, relative to the accelerations
   NewtonOptions newton = {.max_iterations = 50};  ///< when Newton's method stops, refactors and gives up
@@ -31,8 +31,8 @@ struct EnergyMomentum {
 struct EnergyDecaying {
   static constexpr char const* name = "EnergyDecaying";
   static constexpr int order = 1;
-  static constexpr bool accepts_rows = true;
-  static constexpr Entries entries = Entries::implicit_step | Entries::secants;
+  static constexpr bool accepts_constraints = true;
+  static constexpr Capabilities capabilities = Capabilities::implicit_step | Capabilities::secants;
 
   double rho_inf = 0.9;                           ///< of a mode of strain as ωh → ∞, in [0, 1]; 1 keeps energy
   double tolerance = 1e-10;                       ///< of Newton's corrections, relative to the accelerations

@@ -46,7 +46,7 @@ class ErrorNorm {
  public:
   /// Groups the unknowns of a time step. \param by_speeds errors of coordinates are numbered as speeds (δ of q ⊞ δ)
   template <class = void>
-  [[gnu::cold]] ErrorNorm(System const& system, bool by_speeds);
+  [[gnu::cold]] ErrorNorm(System const& system, bool by_velocities);
 
   /// Sets the scales from the state before and (q, v) after the step, at which the system was evaluated last.
   void set_scales(System const& system, ErrorTolerance const& tolerance, State const& before, VecX const& q,
@@ -62,7 +62,7 @@ class ErrorNorm {
       bool const length = g.kind == UnknownKind::length, rotation = g.kind == UnknownKind::rotation;
       double const rate = rotation && extent > 0.0 ? std::max(g.largest_v, speed / extent) : g.largest_v;
       g.in_q = share(tolerance.of(length ? extent : rotation ? 1.0 : g.largest_q, g.largest_q), g.errors);
-      g.in_v = share(tolerance.of(length ? speed : rate, g.largest_v), g.speeds);
+      g.in_v = share(tolerance.of(length ? speed : rate, g.largest_v), g.velocities);
     }
   }
 
@@ -81,7 +81,7 @@ class ErrorNorm {
   struct Group {
     UnknownKind kind = UnknownKind::other;
     std::uint32_t assembly = 0;
-    Index errors = 0, speeds = 0;             ///< entries of coordinates and of speeds
+    Index errors = 0, velocities = 0;         ///< entries of coordinates and of speeds
     double largest_q = 0.0, largest_v = 0.0;  ///< before and after the step
     double in_q = 0.0, in_v = 0.0;            ///< factor of an entry's square in the mean square
     std::array<double, 4> sum{};              ///< mean squares of several errors
@@ -111,11 +111,11 @@ class ErrorNorm {
 };
 
 template <class>
-ErrorNorm::ErrorNorm(System const& system, bool by_speeds) {
-  UnknownPlaces const whole = whole_places(system.layout());
-  UnknownPlaces const stepped = system.step_coordinates() ? stepped_places(system, whole) : whole;
+ErrorNorm::ErrorNorm(System const& system, bool by_velocities) {
+  UnknownPlaces const full = full_places(system.layout());
+  UnknownPlaces const stepped = system.step_coordinates() ? stepped_places(system, full) : full;
   Sequence<Index> const assembly = assemblies_of(system.layout());
-  extents_ = AssemblyExtents(system, whole, stepped, assembly);
+  extents_ = AssemblyExtents(system, full, stepped, assembly);
   Sequence<std::array<Index, 3>> number(assembly.size(), {-1, -1, -1});
   auto const group = [&](UnknownPlace const& x) {
     Index& n = number[std::size_t(x.body)][std::size_t(x.kind)];
@@ -131,10 +131,10 @@ ErrorNorm::ErrorNorm(System const& system, bool by_speeds) {
   }
   for (UnknownPlace const& x : stepped.of_v) {
     of_v_.push_back(group(x));
-    ++groups_[of_v_.back()].speeds;
+    ++groups_[of_v_.back()].velocities;
   }
-  if (by_speeds)
-    for (Group& g : groups_) g.errors = g.speeds;
+  if (by_velocities)
+    for (Group& g : groups_) g.errors = g.velocities;
 }
 
 }  // namespace polybody::detail

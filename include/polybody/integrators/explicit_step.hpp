@@ -11,13 +11,13 @@ struct ExplicitStep {
 
   explicit ExplicitStep(System& s)
       : q(VecX::Zero(s.coordinates())),
-        v(VecX::Zero(s.speeds())),
+        v(VecX::Zero(s.velocities())),
         a(v),
         dq(v),
         lambda(VecX::Zero(s.rows())),
         forward(s) {}
 
-  /// Makes it the state at t + h. \throws NonFinite, Diverged.
+  /// Makes it the state at t + h. \throws NonFiniteValue, Diverged.
   void accept(System& system, State& x, double h) {
     forward.require_end(system, {q, v, lambda, x.t + h, h});
     x.q.swap(q);

@@ -9,8 +9,8 @@ namespace polybody {
 struct HhtAlpha {
   static constexpr char const* name = "HhtAlpha";
   static constexpr int order = 2;
-  static constexpr bool accepts_rows = true;
-  static constexpr Entries entries = Entries::implicit_step;
+  static constexpr bool accepts_constraints = true;
+  static constexpr Capabilities capabilities = Capabilities::implicit_step;
 
   double alpha = -0.1;           ///< in [−1/3, 0]: −1/3 damps most, 0 is the trapezoidal rule. With rows stay below 0.
   double tolerance = 1e-8;       ///< of Newton's corrections, relative to the accelerations

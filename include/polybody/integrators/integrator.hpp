@@ -35,15 +35,15 @@ struct StepReport {
 /// The largest stable step of velocity Verlet, x₁ = x₀ + h v₀ + ½h² a₀, a₁ = −ω² x₁ − d (v₀ + h a₀), v₁ = v₀ + ½h (a₀ +
 /// a₁): beyond ω²h² + 4dh = 4 it has a multiplier below −1. \param omega ω [1/s]  \param rate d [1/s]
 template <class = void>
-double stable_step_of_verlet(double omega, double rate) {
+double verlet_stability_limit(double omega, double rate) {
   return 2.0 / (rate + std::sqrt(rate * rate + omega * omega));
 }
 
-/// An explicit integrator of fixed step tells when x¨ + d x˙ + ω² x = 0 grows without bound: `stable_to`, the largest
-/// ωh for d = 0, and `stable_step(ω, d)`, the largest h.
+/// An explicit integrator of fixed step tells when x¨ + d x˙ + ω² x = 0 grows without bound: `stability_limit`, the
+/// largest ωh for d = 0, and `stable_step(ω, d)`, the largest h.
 template <class I>
-concept NamesStableStep = requires(double omega, double rate) {
-  { I::stable_to } -> std::convertible_to<double>;
+concept HasStabilityLimit = requires(double omega, double rate) {
+  { I::stability_limit } -> std::convertible_to<double>;
   { I::stable_step(omega, rate) } -> std::convertible_to<double>;
 };
 
@@ -76,27 +76,27 @@ using MethodOf = decltype(method_of(std::declval<I const&>()));
 
 /// An integrator is a value with options, `check()`, and a method: `method()` makes it, or the integrator is one
 /// itself. Static members say what it is and what it asks:
-///   name, order, accepts_rows
-///   entries                   the groups of entries that a step calls (`Entries::motion` where it is not there)
-///   controls_step             it chooses its step                             } true, or not there
+///   name, order, accepts_constraints
+///   entries                   the groups of entries that a step calls (`Capabilities::motion` where it is not there)
+///   adaptive_step             it chooses its step                             } true, or not there
 ///   needs_constant_mass       it asks for bodies of constant mass             }
-///   solves_stages_together    one linear system holds the model several times }
+///   coupled_stages    one linear system holds the model several times }
 template <class I, class Solver = DefaultSolver>
 concept Integrator = requires(I const i) {
   { I::name } -> std::convertible_to<char const*>;
   { I::order } -> std::convertible_to<int>;
-  { I::accepts_rows } -> std::convertible_to<bool>;
+  { I::accepts_constraints } -> std::convertible_to<bool>;
   i.check();
   requires StepMethod<MethodOf<I>, Solver>;
 };
 
 /// The groups of entries that integrator I asks of a model.
 template <class I>
-constexpr Entries entries_of() {
-  if constexpr (requires { I::entries; })
-    return I::entries;
+constexpr Capabilities entries_of() {
+  if constexpr (requires { I::capabilities; })
+    return I::capabilities;
   else
-    return Entries::motion;
+    return Capabilities::motion;
 }
 
 }  // namespace polybody

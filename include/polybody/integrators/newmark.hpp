@@ -9,8 +9,8 @@ namespace polybody {
 struct Newmark {
   static constexpr char const* name = "Newmark";
   static constexpr int order = 1;
-  static constexpr bool accepts_rows = true;
-  static constexpr Entries entries = Entries::implicit_step;
+  static constexpr bool accepts_constraints = true;
+  static constexpr Capabilities capabilities = Capabilities::implicit_step;
 
   double gamma = 0.5;               ///< γ, a share
   double beta = 0.25;               ///< β, a share
@@ -39,8 +39,8 @@ struct Newmark {
 struct Trapezoidal {
   static constexpr char const* name = "Trapezoidal";
   static constexpr int order = 2;
-  static constexpr bool accepts_rows = true;
-  static constexpr Entries entries = Entries::implicit_step;
+  static constexpr bool accepts_constraints = true;
+  static constexpr Capabilities capabilities = Capabilities::implicit_step;
 
   double tolerance = 1e-8;          ///< of Newton's corrections, relative to the accelerations
   NewtonOptions newton = {};        ///< when Newton's method stops, refactors and gives up

@@ -30,7 +30,7 @@ StepReport report_of(double h, NewtonReport const& last, int each = 1, StepRepor
 
 /// Throws what says why Newton's method failed in the step of `integrator` to time t, and who is to blame. Where there
 /// is a pivot for each equation, and yet no finite solution, that is the body whose motion is wild.
-/// \throws LinearSolverSingular, NonFinite, NewtonStalled.
+/// \throws SingularMatrix, NonFiniteValue, NewtonConvergenceFailure.
 template <class = void>
 [[noreturn, gnu::cold]] void throw_stalled(std::string const& integrator, System const& system, double t,
                                            NewtonReport const& report, StepEquations const& last) {
@@ -41,37 +41,37 @@ template <class = void>
   };
   if (report.result == NewtonResult::singular && last.bad >= 0) {
     require_finite_place(system);
-    throw LinearSolverSingular{integrator,
-                               ": the tangent is singular",
-                               when,
-                               ", first at ",
-                               name_of_equation(system, last.bad % equations_of(system)),
-                               ". Look for a joint that repeats another, or a free body without inertia."};
+    throw SingularMatrix{integrator,
+                         ": the tangent is singular",
+                         when,
+                         ", first at ",
+                         name_of_equation(system, last.bad % equations_of(system)),
+                         ". Look for a joint that repeats another, or a free body without inertia."};
   }
   if (report.result == NewtonResult::singular)
-    throw NonFinite{integrator,
-                    ": the motion of ",
-                    owner(last.solution),
-                    " is not finite",
-                    when,
-                    ". Look at its speed and the forces on it before, or take a smaller step.",
-                    and_whose_force(system)};
+    throw NonFiniteValue{integrator,
+                         ": the motion of ",
+                         owner(last.solution),
+                         " is not finite",
+                         when,
+                         ". Look at its speed and the forces on it before, or take a smaller step.",
+                         and_whose_force(system)};
   if (report.result == NewtonResult::not_finite)
-    throw NonFinite{integrator,
-                    ": a force on ",
-                    owner(last.rhs),
-                    " is not finite",
-                    when,
-                    whose_force(system),
-                    ". Look at the forces applied to it, or take a smaller step."};
-  throw NewtonStalled{integrator,
-                      ": Newton's method did not converge",
-                      when,
-                      " after ",
-                      report.iterations,
-                      " iterations (contraction ",
-                      report.theta,
-                      "). Take a smaller step; the state is as before it."};
+    throw NonFiniteValue{integrator,
+                         ": a force on ",
+                         owner(last.rhs),
+                         " is not finite",
+                         when,
+                         whose_force(system),
+                         ". Look at the forces applied to it, or take a smaller step."};
+  throw NewtonConvergenceFailure{integrator,
+                                 ": Newton's method did not converge",
+                                 when,
+                                 " after ",
+                                 report.iterations,
+                                 " iterations (contraction ",
+                                 report.theta,
+                                 "). Take a smaller step; the state is as before it."};
 }
 
 }  // namespace polybody::detail

@@ -11,9 +11,9 @@
 #include <array>
 #include <utility>
 
+#include <polybody/integrators/constraint_derivatives.hpp>
 #include <polybody/integrators/newton_failure.hpp>
 #include <polybody/integrators/radau_tableau.hpp>
-#include <polybody/integrators/row_slopes.hpp>
 #include <polybody/integrators/stabilisation.hpp>
 #include <polybody/math/sequence.hpp>
 #include <polybody/solvers/auto_lu.hpp>
@@ -26,9 +26,9 @@ namespace polybody {
 struct Radau {
   static constexpr char const* name = "Radau";
   static constexpr int order = 5;
-  static constexpr bool accepts_rows = true;
-  static constexpr Entries entries = Entries::tangent;
-  static constexpr bool solves_stages_together = true;
+  static constexpr bool accepts_constraints = true;
+  static constexpr Capabilities capabilities = Capabilities::tangent;
+  static constexpr bool coupled_stages = true;
 
   double tolerance = 1e-10;                       ///< of Newton's corrections, relative to the accelerations
   NewtonOptions newton = {.max_iterations = 50};  ///< many: the matrix leaves out how rows turn
@@ -47,10 +47,10 @@ struct Radau {
     std::array<VecX, 3> v, vd, lambda, delta, rate;  ///< of the stages
     VecX q, r, phi, gamma, next, rhs, y, kept;  ///< in order: q, r, G v̇, γ, δ, −(r, Φ̈) of all stages, two corrections
     TangentSolver<AutoLu> solver, by_stage;     ///< `by_stage` is laid out by the first step that asks for it
-    RowSlopes slopes;                           ///< ∂/∂q and ∂/∂v of the rows as accelerations
+    ConstraintDerivatives slopes;               ///< ∂/∂q and ∂/∂v of the rows as accelerations
     ForwardDynamics<Solver> forward;            ///< [M, Gᵀ; G, 0]: accelerations of the start, projections
     Projection::Scratch projected;              ///< memory of `projection`: none
-    KeptFactor kept_factor;                     ///< whether the matrix' factors still serve
+    ReusedFactorisation kept_factor;            ///< whether the matrix' factors still serve
     bool has_by_stage = false;                  ///< `by_stage` has been laid out
     double h_factored = 0.0;                    ///< length of step for which the matrix was factored [s]; 0: of none
     double unsettled = 0.0;                     ///< what the last pass over the δ_i still changed, in the unit of δ
@@ -60,7 +60,7 @@ struct Radau {
     /// Allocates all but `by_stage`.
     explicit Workspace(System& s)
         : q(VecX::Zero(s.coordinates())),
-          r(VecX::Zero(s.speeds())),
+          r(VecX::Zero(s.velocities())),
           phi(VecX::Zero(s.rows())),
           gamma(phi),
           next(r),
@@ -69,7 +69,7 @@ struct Radau {
           kept(rhs),
           forward(s),
           projected(s),
-          slack(3 * std::size_t(equations_of(s) - equation_speeds_of(s)), 0.0) {
+          slack(3 * std::size_t(equations_of(s) - equation_velocities_of(s)), 0.0) {
       v.fill(r);
       vd.fill(r);
       delta.fill(r);
@@ -85,15 +85,15 @@ struct Radau {
     }
     /// Its rows i.
     void write_stage(System& s, double h, int i, BlockSink& sink) {
-      Index const n = equations_of(s), speeds = equation_speeds_of(s);
+      Index const n = equations_of(s), velocities = equation_velocities_of(s);
       using T = detail::RadauTableau;
       for (int j = 0; j < 3; ++j) {
-        detail::StageSink stage{sink, i * n, j * n, speeds};
+        detail::StageBlockSink stage{sink, i * n, j * n, velocities};
         s.tangent({i == j ? 1.0 : 0.0, h * T::a[i][j], h * h * T::squared(i, j)}, SecondOrder::omitted, phi, stage);
         if (i == j)
-          for (Index k = 0; k < n - speeds; ++k)
-            stage.add(speeds + k, speeds + k,
-                      Eigen::Map<Mat<double, 1, 1> const>(&slack[std::size_t(i * (n - speeds) + k)]));
+          for (Index k = 0; k < n - velocities; ++k)
+            stage.add(velocities + k, velocities + k,
+                      Eigen::Map<Mat<double, 1, 1> const>(&slack[std::size_t(i * (n - velocities) + k)]));
       }
     }
     /// How the rows i of G v̇ + γ turn as the stages move: h a_ij ∂Φ̈/∂v + h² (A²)_ij ∂Φ̈/∂q.
@@ -101,16 +101,16 @@ struct Radau {
       Index const n = equations_of(s);
       using T = detail::RadauTableau;
       for (int j = 0; j < 3; ++j)
-        slopes.write(h * T::a[i][j], h * h * T::squared(i, j), i * n + equation_speeds_of(s), j * n, sink);
+        slopes.write(h * T::a[i][j], h * h * T::squared(i, j), i * n + equation_velocities_of(s), j * n, sink);
     }
     /// Leaves the multipliers of these rows alone, which repeat others.
     void leave(System const& s, Sequence<Index> const& redundant) {
-      Index const speeds = equation_speeds_of(s), rows = equations_of(s) - speeds;
+      Index const velocities = equation_velocities_of(s), rows = equations_of(s) - velocities;
       for (Index const k : redundant)
-        for (Index i = 0; i < 3; ++i) slack[std::size_t(i * rows + k - speeds)] = -1.0;
+        for (Index i = 0; i < 3; ++i) slack[std::size_t(i * rows + k - velocities)] = -1.0;
     }
     /// v_i = v₀ + h Σ a_ij v̇_j.
-    void set_speeds(VecX const& v0, double h) {
+    void set_velocities(VecX const& v0, double h) {
       for (std::size_t i = 0; i < 3; ++i) {
         v[i] = v0;
         for (std::size_t j = 0; j < 3; ++j) v[i] += h * detail::RadauTableau::a[i][j] * vd[j];
@@ -175,8 +175,8 @@ struct Radau {
       if (careful || std::abs(h - w.h_factored) > 0.25 * w.h_factored) w.kept_factor.usable = false;
       NewtonOptions options = newton;
       options.always_refactor = options.always_refactor || careful;
-      if (careful) options.growths = 8;
-      Problem<Solver> problem{*this, system, x, w, reach, system.speeds(), system.rows(), effort >= 2};
+      if (careful) options.max_growths = 8;
+      Problem<Solver> problem{*this, system, x, w, reach, system.velocities(), system.rows(), effort >= 2};
       report = polybody::newton(problem, options, w.kept_factor);
       if (report.result == NewtonResult::converged) break;
       if (report.result == NewtonResult::not_finite || effort >= last)
@@ -220,7 +220,7 @@ struct Radau {
       w.lambda[i] = x.lambda;
       w.delta[i] = detail::RadauTableau::c[i] * h * x.v;
     }
-    w.set_speeds(x.v, h);
+    w.set_velocities(x.v, h);
   }
 
   /// Whether the rows are much nearer to losing rank at one of the stages than at x.
@@ -334,12 +334,12 @@ struct Radau {
         for (Index k = 0; k < nv; ++k) w.vd[i][k] += w.y[first + k];
         for (Index k = 0; k < rows; ++k) w.lambda[i][k] += w.y[first + nv + k];
       }
-      w.set_speeds(x.v, h);
+      w.set_velocities(x.v, h);
     }
-    bool is_rounding(double norm) {
+    bool is_round_off(double norm) {
       if (!detail::may_be_rounding(h * h * norm, x.q)) return false;
       auto const moved = [&] { return evaluate(true) && std::isfinite(solve().norm); };
-      return detail::is_rounding(w.y, norm, w.kept, moved, [&] { return measure().norm; });
+      return detail::is_round_off(w.y, norm, w.kept, moved, [&] { return measure().norm; });
     }
   };
 };

@@ -26,11 +26,11 @@ struct RadauTableau {
 
 /// Shifts the blocks of one stage to their place in the matrix of all stages; away from the diagonal it leaves out G
 /// and Gᵀ.
-struct StageSink {
+struct StageBlockSink {
   BlockSink& sink;
-  Index row0, col0, speeds;
+  Index row0, col0, velocities;
   void add(Index row, Index col, BlockView const& b) {
-    if (row0 == col0 || (row < speeds && col < speeds)) sink.add(row0 + row, col0 + col, b);
+    if (row0 == col0 || (row < velocities && col < velocities)) sink.add(row0 + row, col0 + col, b);
   }
 };
 

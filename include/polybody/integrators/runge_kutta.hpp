@@ -21,7 +21,7 @@ struct RungeKuttaWorkspace : ExplicitStep<Solver> {
   using Next::dq, Next::q, Next::v, Next::a, Next::lambda, Next::forward;
   std::array<VecX, stages> position_rate, acceleration;
   typename Stabilisation::Scratch scratch;
-  RowFeedback feedback;  ///< of the run
+  ConstraintFeedback feedback;  ///< of the run
 
   explicit RungeKuttaWorkspace(System& s) : Next(s), scratch(s) {
     position_rate.fill(v);
@@ -80,13 +80,13 @@ struct RungeKuttaWorkspace : ExplicitStep<Solver> {
 }  // namespace detail
 
 /// The classical method of order four.
-template <class Stabilisation = WithoutRows>
+template <class Stabilisation = UnconstrainedOnly>
 struct RungeKutta4 {
   static constexpr char const* name = "RungeKutta4";
   static constexpr int order = 4;
-  static constexpr bool accepts_rows = Stabilisation::accepts_rows;
-  static constexpr double stable_to = 2.8284271247461901;  ///< ωh, a ratio
-  using Tableau = detail::ClassicalTableau;                ///< its coefficients
+  static constexpr bool accepts_constraints = Stabilisation::accepts_constraints;
+  static constexpr double stability_limit = 2.8284271247461901;  ///< ωh, a ratio
+  using Tableau = detail::ClassicalTableau;                      ///< its coefficients
   /// Where |1 + z + z²/2 + z³/6 + z⁴/24| = 1 along z = hs, s the faster of the roots −d/2 ± √(d²/4 − ω²), d = `rate`
   /// [1/s], ω [rad/s] [Hairer & Wanner 1996, §IV.2].
   static double stable_step(double omega, double rate) {
@@ -124,19 +124,19 @@ struct RungeKutta4 {
 };
 
 /// The pair of order 5(4) with step control [Dormand & Prince 1980; Hairer, Nørsett & Wanner 1993, §II.4–5].
-template <class Stabilisation = WithoutRows>
+template <class Stabilisation = UnconstrainedOnly>
 struct DormandPrince {
   static constexpr char const* name = "DormandPrince";
   static constexpr int order = 5;
-  static constexpr bool accepts_rows = Stabilisation::accepts_rows;
-  static constexpr bool controls_step = true;
+  static constexpr bool accepts_constraints = Stabilisation::accepts_constraints;
+  static constexpr bool adaptive_step = true;
   using Tableau = detail::DormandPrinceTableau;  ///< its coefficients
 
   /// Error of a step relative to the scale of each kind of unknown of each body: the extent of the bodies that act on
   /// each other and that of their velocities, one radian and the body's angular velocity (`detail::ErrorNorm`).
   double relative_tolerance = 1e-8;
   double absolute_tolerance = 1e-10;  ///< added to the relative one, in the units of coordinates and speeds [m], [rad]
-  double smallest_step = 1e-12;       ///< that may be chosen [s]
+  double min_step = 1e-12;            ///< that may be chosen [s]
   Stabilisation stabilisation = {};   ///< how a step keeps to the rows
 
   /// Everything that a step needs, allocated once.
@@ -152,7 +152,7 @@ struct DormandPrince {
   void check() const {
     require_positive(relative_tolerance, "DormandPrince: the relative tolerance");
     require_positive(absolute_tolerance, "DormandPrince: the absolute tolerance");
-    require_positive(smallest_step, "DormandPrince: the smallest step");
+    require_positive(min_step, "DormandPrince: the smallest step");
     stabilisation.check();
   }
   template <class Solver>
@@ -165,7 +165,7 @@ struct DormandPrince {
     w.start(system, x, stabilisation);
   }
 
-  /// Takes at most h, less where the error asks for it. \throws StepTooSmall.
+  /// Takes at most h, less where the error asks for it. \throws MinimumStepReached.
   template <class W>
   StepReport step(System& system, State& x, double h, W& w) const {
     StepReport report;
@@ -186,14 +186,15 @@ struct DormandPrince {
         report.evaluations += w.accept(system, x, h, stabilisation, true);
         report.factorisations = report.evaluations;
         report.taken = h;
-        report.next = std::max(h * factor, smallest_step);
+        report.next = std::max(h * factor, min_step);
         return report;
       }
       ++report.rejected;
       h *= std::isfinite(error) ? factor : 0.2;
-      if (h < smallest_step)
-        throw StepTooSmall{"DormandPrince: the error asks for a step below ", smallest_step, " s at t = ", x.t,
-                           " s. The model is stiff or jumps here: use an implicit integrator or name the corner."};
+      if (h < min_step)
+        throw MinimumStepReached{
+            "DormandPrince: the error asks for a step below ", min_step, " s at t = ", x.t,
+            " s. The model is stiff or jumps here: use an implicit integrator or name the corner."};
     }
   }
 
@@ -204,7 +205,7 @@ struct DormandPrince {
     detail::ErrorTolerance const tolerance{absolute_tolerance, relative_tolerance};
     w.norm.set_scales(system, tolerance, x, w.q, w.v);
     return w.norm.mean_square(w.error, w.v_error) +
-           tolerance.mean_square_each(w.v_error, x.v, w.v, system.speeds() - system.layout().states);
+           tolerance.mean_square_each(w.v_error, x.v, w.v, system.velocities() - system.layout().states);
   }
 };
 

@@ -9,13 +9,12 @@
 
 namespace polybody {
 
-/// The split of `PartitionedRows` for large systems: rows G b = r (m×n) of rank k, b_d = G_d⁻¹ r for b_i = 0. The first
-/// split is that of a rank-revealing sparse QR factorisation, of G for its columns and of G_dᵀ for the rows that repeat
-/// no others. Each renewal looks at R = G_d⁻¹ G_i: where an entry exceeds the limit, its column i changes places with
-/// the dependent one of its row, which multiplies |det G_d| by that entry, until none does [Wehage & Haug 1982; the
-/// exchanges as in Knuth 1985]. Factors of G_d are kept between renewals. Itself the sink of the rows of a tangent
-/// [M, Gᵀ; G, 0].
-/// T is `double`: a template, so that a program without it compiles none of it.
+/// The split of `PartitionedConstraints` for large systems: rows G b = r (m×n) of rank k, b_d = G_d⁻¹ r for b_i = 0.
+/// The first split is that of a rank-revealing sparse QR factorisation, of G for its columns and of G_dᵀ for the rows
+/// that repeat no others. Each renewal looks at R = G_d⁻¹ G_i: where an entry exceeds the limit, its column i changes
+/// places with the dependent one of its row, which multiplies |det G_d| by that entry, until none does [Wehage & Haug
+/// 1982; the exchanges as in Knuth 1985]. Factors of G_d are kept between renewals. Itself the sink of the rows of a
+/// tangent [M, Gᵀ; G, 0]. T is `double`: a template, so that a program without it compiles none of it.
 template <class T = double>
 class SparsePartitionOf {
  public:
@@ -46,7 +45,7 @@ class SparsePartitionOf {
         for (Index j = 0; j < b.cols; ++j) entries_.emplace_back(int(row - columns_ + i), int(col + j), b(i, j));
   }
   /// Leaves a row out of account for good.
-  void leave_out(Index row) { left_out_[std::size_t(row)] = true; }
+  void mark_redundant(Index row) { left_out_[std::size_t(row)] = true; }
 
   /// Factors of G_d for the rows that were written; the split changes where it must. \param limit of |R|
   void renew(T limit) {
@@ -78,7 +77,7 @@ class SparsePartitionOf {
   using Lu = Eigen::SparseLU<Matrix, Eigen::COLAMDOrdering<int>>;
 
   [[noreturn]] static void throw_lost() {
-    throw LinearSolverSingular{
+    throw SingularMatrix{
         "CoordinatePartitioning: no set of dependent speeds solves the rows of the joints. They lose rank next to a "
         "singular position; begin elsewhere, or take an implicit integrator."};
   }

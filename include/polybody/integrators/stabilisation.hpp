@@ -31,7 +31,7 @@ struct NoCorrection {
   };
   void check() const {}
   void start(Scratch&) const {}
-  RowFeedback feedback() const { return {}; }
+  ConstraintFeedback feedback() const { return {}; }
   template <class Solver>
   void apply(System&, ForwardDynamics<Solver>&, Scratch&, VecX&, VecX&, double) const {}
   template <class Solver>
@@ -39,20 +39,20 @@ struct NoCorrection {
 };
 
 /// Where none is named: for models whose joints bring no rows.
-struct WithoutRows : NoCorrection {
-  static constexpr bool accepts_rows = false;
+struct UnconstrainedOnly : NoCorrection {
+  static constexpr bool accepts_constraints = false;
 };
 
 /// The augmented equations alone, Φ̈ = 0 [thesis Eq. 3.2]. What a step leaves of Φ̇ stays, and Φ drifts off as Φ̇ t: to
 /// show that, or for runs short enough.
 struct NoStabilisation : NoCorrection {
-  static constexpr bool accepts_rows = true;
+  static constexpr bool accepts_constraints = true;
 };
 
 /// The accelerations obey Φ̈ + 2α Φ̇ + β² Φ = 0: with α = β a violation dies away as e^{−αt} [Baumgarte 1972]. It is
 /// damped, not removed, and the step must resolve 1/α.
 struct Baumgarte {
-  static constexpr bool accepts_rows = true;
+  static constexpr bool accepts_constraints = true;
   using Scratch = NoCorrection::Scratch;  ///< nothing is kept
   Required<double> alpha;                 ///< [1/s]
   Required<double> beta;                  ///< [1/s]
@@ -62,7 +62,7 @@ struct Baumgarte {
     require_positive(beta, "Baumgarte: beta");
   }
   void start(Scratch&) const {}
-  RowFeedback feedback() const { return {.rate = 2.0 * alpha, .position = beta * beta}; }
+  ConstraintFeedback feedback() const { return {.rate = 2.0 * alpha, .position = beta * beta}; }
   template <class Solver>
   void apply(System&, ForwardDynamics<Solver>&, Scratch&, VecX&, VecX&, double) const {}
   template <class Solver>
@@ -72,7 +72,7 @@ struct Baumgarte {
 /// After every step the positions are brought back to Φ = 0 by Gauss–Newton and the velocities to Φ̇ = 0, both
 /// by the smallest change in the norm of M [Lubich 1991; Eich-Soellner & Führer 1998, §5.3].
 struct Projection {
-  static constexpr bool accepts_rows = true;
+  static constexpr bool accepts_constraints = true;
   using Scratch = NoCorrection::Scratch;  ///< nothing is kept
   double tolerance = 1e-12;               ///< of Φ, relative to 1 + max |q|
   int max_iterations = 10;                ///< of Gauss–Newton for the positions, before it throws
@@ -82,9 +82,9 @@ struct Projection {
     require_count(max_iterations, "Projection: max_iterations");
   }
   void start(Scratch&) const {}
-  RowFeedback feedback() const { return {}; }
+  ConstraintFeedback feedback() const { return {}; }
 
-  /// \throws NewtonStalled when the positions cannot be brought back.
+  /// \throws NewtonConvergenceFailure when the positions cannot be brought back.
   template <class Solver>
   void apply(System& system, ForwardDynamics<Solver>& forward, Scratch&, VecX& q, VecX& v, double t) const {
     if (system.rows() == 0) return;
@@ -92,8 +92,8 @@ struct Projection {
     for (int k = 0;; ++k) {
       if (forward.project_positions_once(system, q, v, t) <= enough) break;
       if (k == max_iterations)
-        throw NewtonStalled{"Projection: the positions cannot be brought back to the joints at t = ", t,
-                            " s. Take a smaller step."};
+        throw NewtonConvergenceFailure{"Projection: the positions cannot be brought back to the joints at t = ", t,
+                                       " s. Take a smaller step."};
     }
     forward.project_velocities(system, q, v, t);
   }

@@ -13,7 +13,7 @@ namespace polybody {
 /// the error with which the j points before t₋₁ predict f(t₋₁). At a further point t₀ they are [Krogh 1974; Hairer,
 /// Nørsett & Wanner 1993, §III.5]
 ///   D′₀ = f(t₀),  D′ⱼ₊₁ = D′ⱼ − βⱼ Dⱼ,  β₀ = 1,  βⱼ₊₁ = βⱼ (t₀ − t₋ⱼ₋₁)/(t₋₁ − t₋ⱼ₋₂).
-/// It stands in `State::memory`, so a copy of a state carries it along:
+/// It stands in history, so a copy of a state carries it along:
 ///   [the method's own nv entries | D₀ … D₄ of v̇ | those of λ | h₋₅ … h₋₁ | length for which the state is shifted].
 class StepHistory {
   static constexpr int kept = 5;
@@ -30,7 +30,7 @@ class StepHistory {
   static constexpr int lengths = kept + 1;  ///< entries at the end of the memory that are lengths of steps
 
   /// The history of a state after `reset`. \throws InvalidInput for a state without one.
-  explicit StepHistory(State& x) : nv_(x.a.size()), rows_(x.lambda.size()), memory_(x.memory) {
+  explicit StepHistory(State& x) : nv_(x.a.size()), rows_(x.lambda.size()), memory_(x.history) {
     if (memory_.size() != size(nv_, rows_))
       throw InvalidInput("This state has no memory of a run: call start before step.");
   }
@@ -38,8 +38,8 @@ class StepHistory {
   /// Nothing before x; the method's own entries are v̇.
   static void reset(State& x) {
     Index const nv = x.a.size();
-    x.memory.setZero(size(nv, x.lambda.size()));
-    copy(x.a.data(), nv, x.memory.data());
+    x.history.setZero(size(nv, x.lambda.size()));
+    copy(x.a.data(), nv, x.history.data());
   }
 
   /// The method's own entries into `out` (nv).
@@ -104,7 +104,7 @@ class StepHistory {
 
     /// The differences `d` (n each) at x, where f (n) is `now`.
     void push(double const* now, Index n, double* d) const {
-      for_packs(n, [=, last = std::min(known, kept) - 1, b = beta](auto at) {
+      for_each_simd_block(n, [=, last = std::min(known, kept) - 1, b = beta](auto at) {
         auto next = at(now);
         for (int j = 0; j < last; ++j) {
           auto const before = at(d + j * n);
@@ -117,8 +117,8 @@ class StepHistory {
 
     /// How many points, whose differences are d (n each), would have predicted `now` (n) best.
     int best_order(double const* now, double const* d, Index n) const {
-      std::array<PackSum, kept> errors;
-      for_packs(n, [&](auto at) {
+      std::array<SimdSum, kept> errors;
+      for_each_simd_block(n, [&](auto at) {
         auto error = at(now);
         for (int j = 0; j + 1 < known; ++j) {
           error -= beta[std::size_t(j)] * at(d + j * n);
@@ -139,7 +139,7 @@ class StepHistory {
       std::array<double, kept> gamma{1.0};
       for (std::size_t j = 1; j < std::size_t(points); ++j) gamma[j] = gamma[j - 1] * (h + age[j - 1]) / age[j];
       double* const to = out.data();
-      for_packs(n, [=, b = beta](auto at) {
+      for_each_simd_block(n, [=, b = beta](auto at) {
         auto difference = at(now), sum = difference;
         for (int j = 1; j < points; ++j) {
           difference -= b[std::size_t(j - 1)] * at(d + (j - 1) * n);

@@ -26,11 +26,11 @@ class StepTangent {
   }
 
   /// Every later factorisation drops these equations, which are redundant.
-  void leave_out(std::span<Index const> equations) {
+  void mark_redundant(std::span<Index const> equations) {
     if (std::equal(equations.begin(), equations.end(), left_out_.begin(), left_out_.end())) return;
     left_out_ = Sequence<Index>(equations.begin(), equations.end());
-    first_.leave_out(equations);
-    if (has_second_) second_.leave_out(equations);
+    first_.mark_redundant(equations);
+    if (has_second_) second_.mark_redundant(equations);
   }
 
   /// The solver of the tangent as it is now.
@@ -44,7 +44,7 @@ class StepTangent {
     if (!has_second_) {
       second_.analyse(system, 1,
                       [&](BlockSink& sink) { system.tangent({1.0, 1.0, 1.0}, SecondOrder::included, lambda, sink); });
-      second_.leave_out({left_out_.data(), left_out_.size()});
+      second_.mark_redundant({left_out_.data(), left_out_.size()});
     }
     has_second_ = included_ = true;
     stay_ = went_ && since_ <= stay_ ? std::min(2 * stay_, longest_stay) : shortest_stay;

@@ -12,9 +12,9 @@ namespace polybody {
 struct SymplecticEuler {
   static constexpr char const* name = "SymplecticEuler";
   static constexpr int order = 1;
-  static constexpr bool accepts_rows = false;
+  static constexpr bool accepts_constraints = false;
   static constexpr bool needs_constant_mass = true;
-  static constexpr double stable_to = 2.0;  ///< ωh, a ratio
+  static constexpr double stability_limit = 2.0;  ///< ωh, a ratio
   /// Where ω²h² + 2dh = 4, d = `rate` [1/s], ω = `omega` [rad/s], a multiplier passes −1.
   static double stable_step(double omega, double rate) {
     return 4.0 / (rate + std::sqrt(rate * rate + 4.0 * omega * omega));
@@ -48,10 +48,10 @@ struct SymplecticEuler {
 struct Rattle {
   static constexpr char const* name = "Rattle";
   static constexpr int order = 2;
-  static constexpr bool accepts_rows = true;
+  static constexpr bool accepts_constraints = true;
   static constexpr bool needs_constant_mass = true;
-  static constexpr double stable_to = 2.0;  ///< ωh
-  static double stable_step(double omega, double rate) { return stable_step_of_verlet(omega, rate); }
+  static constexpr double stability_limit = 2.0;  ///< ωh
+  static double stable_step(double omega, double rate) { return verlet_stability_limit(omega, rate); }
 
   double tolerance = 1e-12;  ///< of Φ, relative to 1 + max |q|
   int max_iterations = 50;   ///< each gains a factor of about 1/(hω)
@@ -77,7 +77,7 @@ struct Rattle {
     w.forward.accelerations(system, {x.q, x.v, x.t}, x.a, x.lambda);
   }
 
-  /// \throws NewtonStalled when the positions cannot be brought to the joints.
+  /// \throws NewtonConvergenceFailure when the positions cannot be brought to the joints.
   template <class W>
   StepReport step(System& system, State& x, double h, W& w) const {
     w.dq = h * x.v + (0.5 * h * h) * x.a;
@@ -110,8 +110,8 @@ struct Rattle {
       w.dq += w.change;
       system.plus(x.q, w.dq, w.q);
     }
-    throw NewtonStalled{"Rattle: the positions cannot be brought to the joints at t = ", x.t + h,
-                        " s. Take a smaller step."};
+    throw NewtonConvergenceFailure{"Rattle: the positions cannot be brought to the joints at t = ", x.t + h,
+                                   " s. Take a smaller step."};
   }
 };
 

@@ -31,14 +31,14 @@ struct UnknownPlaces {
 /// Lengths are positions where they come as many as the world has axes, with coordinates of other kinds between them;
 /// the last ones of a body that follow others are places of sliders.
 template <class = void>
-[[gnu::cold]] void classify(BodyPlace const& body, Index speeds, UnknownPlace* of_q, UnknownPlace* of_v) {
+[[gnu::cold]] void classify(BodyLayout const& body, Index velocities, UnknownPlace* of_q, UnknownPlace* of_v) {
   if (!body.units.of_coordinate) return;
   auto const unit = [&](Index i) { return std::string_view(body.units.of_coordinate(body.body, i)); };
   auto const turns = [&](Index j) {
     return body.units.of_speed && std::string_view(body.units.of_speed(body.body, j)) == "rad/s";
   };
   Index const axes = body.planar ? 2 : 3;
-  for (Index i = 0, j = 0; i < body.coordinates && j < speeds;) {
+  for (Index i = 0, j = 0; i < body.coordinates && j < velocities;) {
     if (unit(i) == "m") {
       Index n = 1;
       while (n < axes && i + n < body.coordinates && unit(i + n) == "m") ++n;
@@ -57,44 +57,46 @@ template <class = void>
 
 /// Places of the unknowns of the whole model.
 template <class = void>
-[[gnu::cold]] UnknownPlaces whole_places(ModelLayout const& layout) {
+[[gnu::cold]] UnknownPlaces full_places(ModelLayout const& layout) {
   UnknownPlaces out{Sequence<UnknownPlace>(std::size_t(layout.coordinates)),
-                    Sequence<UnknownPlace>(std::size_t(layout.body_speeds()))};
+                    Sequence<UnknownPlace>(std::size_t(layout.body_velocities()))};
   for (std::size_t k = 0; k < layout.bodies.size(); ++k) {
-    BodyPlace const& b = layout.bodies[k];
-    Index const speeds = std::min(b.speeds, layout.body_speeds() - b.v0);  // behind them: first-order states
+    BodyLayout const& b = layout.bodies[k];
+    Index const velocities =
+        std::min(b.velocities, layout.body_velocities() - b.v0);  // behind them: first-order states
     for (Index i = 0; i < b.coordinates; ++i) out.of_q[std::size_t(b.q0 + i)].body = Index(k);
-    for (Index i = 0; i < speeds; ++i) out.of_v[std::size_t(b.v0 + i)].body = Index(k);
-    classify(b, speeds, out.of_q.data() + b.q0, out.of_v.data() + b.v0);
+    for (Index i = 0; i < velocities; ++i) out.of_v[std::size_t(b.v0 + i)].body = Index(k);
+    classify(b, velocities, out.of_q.data() + b.q0, out.of_v.data() + b.v0);
   }
   return out;
 }
 
 /// From those of the whole model to those of a time step.
 template <class = void>
-[[gnu::cold]] UnknownPlaces stepped_places(System const& system, UnknownPlaces const& whole) {
-  NarrowLayout const& n = *system.step_coordinates().narrow;
+[[gnu::cold]] UnknownPlaces stepped_places(System const& system, UnknownPlaces const& full) {
+  ReducedLayout const& n = *system.step_coordinates().reduced;
   UnknownPlaces out{Sequence<UnknownPlace>(std::size_t(n.coordinates)),
-                    Sequence<UnknownPlace>(std::size_t(n.speeds - system.layout().states))};
+                    Sequence<UnknownPlace>(std::size_t(n.velocities - system.layout().states))};
   auto& [of_q, of_v] = out;
   for (std::size_t k = 0; k < n.places.size(); ++k) {
-    NarrowPlace const& at = n.places[k];
-    BodyPlace const& body = system.layout().bodies[k];
-    for (Index i = 0; i < at.speeds; ++i) {
+    ReducedPosition const& at = n.places[k];
+    BodyLayout const& body = system.layout().bodies[k];
+    for (Index i = 0; i < at.velocities; ++i) {
       UnknownPlace& kind = of_v[std::size_t(at.v + i)];
-      if (at.kind != NarrowPlace::Kind::carried) kind = whole.of_v[std::size_t(n.whole_speed[std::size_t(at.v + i)])];
+      if (at.kind != ReducedPosition::Kind::carried)
+        kind = full.of_v[std::size_t(n.full_velocity[std::size_t(at.v + i)])];
       kind.body = Index(k);
     }
     for (Index i = 0; i < at.coordinates; ++i) {
       UnknownPlace& kind = of_q[std::size_t(at.q + i)];
-      if (at.kind == NarrowPlace::Kind::as_it_is) kind = whole.of_q[std::size_t(body.q0 + i)];
-      if (at.kind == NarrowPlace::Kind::reduced) kind = of_v[std::size_t(at.v + i)];  // they add
+      if (at.kind == ReducedPosition::Kind::as_it_is) kind = full.of_q[std::size_t(body.q0 + i)];
+      if (at.kind == ReducedPosition::Kind::reduced) kind = of_v[std::size_t(at.v + i)];  // they add
       kind.body = Index(k);
     }
   }
-  for (NarrowLayout::Turn const& turn : n.turns) {
+  for (ReducedLayout::Turn const& turn : n.turns) {
     for (Index i = 0; i < turn.coordinates; ++i) of_q[std::size_t(turn.q + i)].kind = UnknownKind::rotation;
-    for (Index i = 0; i < turn.speeds; ++i) of_v[std::size_t(turn.v + i)].kind = UnknownKind::rotation;
+    for (Index i = 0; i < turn.velocities; ++i) of_v[std::size_t(turn.v + i)].kind = UnknownKind::rotation;
   }
   return out;
 }
@@ -112,8 +114,8 @@ template <class = void>
   auto const join = [&](Index a, Index b) {
     if (a >= 0 && b >= 0) root[std::size_t(find(a))] = find(b);
   };
-  for (JointPlace const& j : layout.joints) join(owner(j.a), owner(j.b));
-  for (ForcePlace const& f : layout.forces) {
+  for (JointLayout const& j : layout.joints) join(owner(j.a), owner(j.b));
+  for (ForceLayout const& f : layout.forces) {
     Index last = -1;
     for (Index const marker : f.markers) {
       join(owner(marker), last);

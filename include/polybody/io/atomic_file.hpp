@@ -31,9 +31,9 @@ class AtomicFile {
     namespace fs = std::filesystem;
     if (!file.has_filename()) throw IoError{"file '", name_, "': the name of a file is missing"};
     std::error_code reason;
-    fs::path const whole = fs::absolute(file, reason);
+    fs::path const full = fs::absolute(file, reason);
     if (reason) fail("its folder cannot be found", reason);
-    fs::path const target = detail::end_of_links(whole, reason);
+    fs::path const target = detail::end_of_links(full, reason);
     if (reason) fail("cannot be created", reason);
     fs::create_directories(target.parent_path(), reason);
     if (reason) fail("its folder cannot be created", reason);

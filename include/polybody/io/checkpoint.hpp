@@ -16,19 +16,19 @@ namespace detail {
 
 /// Visitor of all numbers of a snapshot, in the same order for writing and reading: `archive(x)` writes or reads one.
 template <class Archive>
-class SnapshotWalk {
+class SnapshotVisitor {
  public:
   Archive archive;
 
   template <class S>
   void walk(S& s) {
-    each(s.model.coordinates, s.model.speeds, s.model.rows, s.model.carrying_rows, s.model.names);
+    each(s.model.coordinates, s.model.velocities, s.model.rows, s.model.eliminated_equations, s.model.names);
     text(s.integrator);
-    numbers(s.state.q), numbers(s.state.v), numbers(s.state.a), numbers(s.state.lambda), numbers(s.state.memory);
+    numbers(s.state.q), numbers(s.state.v), numbers(s.state.a), numbers(s.state.lambda), numbers(s.state.history);
     each(s.state.t, s.step, s.row.start, s.row.length, s.row.count);
     list(s.sides, [&](auto& side) { archive(side); });
     each(s.report.steps, s.report.iterations, s.report.factorisations, s.report.evaluations, s.report.rejected,
-         s.report.cut_short, s.report.left, s.report.stopped);
+         s.report.over_budget, s.report.left, s.report.stopped);
     auto& last = s.report.last;
     each(last.taken, last.next, last.iterations, last.factorisations, last.evaluations, last.rejected);
     each(last.order, last.contraction, last.left);
@@ -114,10 +114,10 @@ void require_consistent(RunSnapshot const& s, std::size_t left, std::string cons
       throw IoError{inconsistent, "it has ", x.size(), " ", what, " in place of the model's ", size, remedy};
   };
   require(s.state.q, s.model.coordinates, "coordinates");
-  require(s.state.v, s.model.speeds, "speeds");
-  require(s.state.a, s.model.speeds, "rates of speeds");
+  require(s.state.v, s.model.velocities, "speeds");
+  require(s.state.a, s.model.velocities, "rates of speeds");
   bool const estimates = s.state.lambda.size() > s.model.rows;
-  require(s.state.lambda, s.model.rows + (estimates ? s.model.carrying_rows : 0), "multipliers");
+  require(s.state.lambda, s.model.rows + (estimates ? s.model.eliminated_equations : 0), "multipliers");
 }
 
 struct CheckpointHead {
@@ -132,11 +132,11 @@ inline constexpr CheckpointHead checkpoint_head{{'p', 'o', 'l', 'y', 'b', 'o', '
 /// Writes a checkpoint to the file `name`, which replaces an older one when it is complete:
 ///   if (run.report().steps % 1000 == 0) write_checkpoint("out/run.checkpoint", run.snapshot());
 /// Another process continues the run with bitwise identical results:
-///   auto run = resume(model, x, GeneralizedAlpha{}, options, read_checkpoint("out/run.checkpoint"));
+///   auto run = resume(model, x, GeneralisedAlpha{}, options, read_checkpoint("out/run.checkpoint"));
 /// \throws IoError.
 template <class = void>
 void write_checkpoint(std::filesystem::path const& name, RunSnapshot const& snapshot) {
-  detail::SnapshotWalk<detail::SnapshotWriter> content;
+  detail::SnapshotVisitor<detail::SnapshotWriter> content;
   content.walk(snapshot);
   detail::CheckpointHead head = detail::checkpoint_head;
   head.length = content.archive.bytes.size();
@@ -184,7 +184,7 @@ RunSnapshot read_checkpoint(std::filesystem::path const& file) {
   if (checksum(summed) != sum)
     throw IoError{"checkpoint '", name, "' is damaged: its checksum is not that of its content."};
   RunSnapshot snapshot;
-  detail::SnapshotWalk<detail::SnapshotReader> content{{summed.substr(sizeof head), name}};
+  detail::SnapshotVisitor<detail::SnapshotReader> content{{summed.substr(sizeof head), name}};
   content.walk(snapshot);
   detail::require_consistent(snapshot, content.archive.bytes.size(), name);
   return snapshot;

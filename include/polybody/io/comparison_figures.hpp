@@ -18,7 +18,7 @@ Figure over_time(Comparison const& c, std::string const& title, std::string cons
   Figure figure{.title = title, .x_label = "t [s]", .y_label = y_label, .width_px = 900, .height_px = 560};
   for (std::size_t i = 0; i < c.runs.size(); ++i) {
     ComparedRun const& run = c.runs[i];
-    Curve curve{.x = run.times, .label = run.name, .color = int(i)};
+    Curve curve{.x = run.times, .label = run.name, .colour = int(i)};
     curve.style = i == 0 ? "lines" : "dashed";
     curve.width = i == 0 ? 3.0 : 1.5;
     for (std::size_t k = 0; k < run.times.size(); ++k) curve.y.push_back(value(run, k));
@@ -181,7 +181,7 @@ void add_first_cost(ComparedRun const& first, Figure& figure) {
                                                  .y = {0.5 * low, 2.0 * high},
                                                  .label = first.name,
                                                  .style = "dashed",
-                                                 .color = 0});
+                                                 .colour = 0});
 }
 
 /// Figure of the largest difference of each run from the first, over its computing time. No figure is returned if no
@@ -204,7 +204,7 @@ std::vector<Figure> cost_figure(Comparison const& c) {
                                .y = {most},
                                .label = c.runs[k].name,
                                .style = "points",
-                               .color = int(k),
+                               .colour = int(k),
                                .width = 3.0});
   }
   if (figure.curves.empty()) return {};

@@ -18,11 +18,11 @@ void check(Comparison const& c, std::string const& what) {
   if (c.runs.empty()) throw InvalidInput{what, ": the comparison has no runs. Give `compare` a formulation."};
   for (ComparedRun const& run : c.runs) {
     std::size_t const n = run.times.size(), outputs = run.output_names.size();
-    bool whole = n > 0 && run.violations.size() == n && run.energies.size() == n && run.joint_forces.size() == n &&
-                 run.outputs.size() == outputs && run.difference.size() == outputs &&
-                 run.output_names == c.runs.front().output_names;
-    for (auto const& history : run.outputs) whole = whole && history.size() == n;
-    if (!whole)
+    bool full = n > 0 && run.violations.size() == n && run.energies.size() == n && run.joint_forces.size() == n &&
+                run.outputs.size() == outputs && run.difference.size() == outputs &&
+                run.output_names == c.runs.front().output_names;
+    for (auto const& history : run.outputs) full = full && history.size() == n;
+    if (!full)
       throw InvalidInput{
           what, ": the run \"", run.name,
           "\" lacks times, or its histories and outputs are not as many as its times and the first run's outputs. "
@@ -33,7 +33,7 @@ void check(Comparison const& c, std::string const& what) {
 /// `name` as part of a file name: letters, digits and non-ASCII characters remain. Each group of other characters
 /// becomes one '_'.
 template <class = void>
-std::string file_word(std::string const& name) {
+std::string word_for_file(std::string const& name) {
   std::string word;
   for (char const c : name) {
     bool const stays = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c & 0x80) != 0;
@@ -56,7 +56,7 @@ void draw_panels(std::vector<Figure> const& figures, int columns, std::filesyste
     std::vector<Figure> const page(begin, begin + std::ptrdiff_t(std::min(on_a_page, figures.size() - first)));
     std::filesystem::path place = stem;
     if (first > 0) place += '_' + std::to_string(first / on_a_page + 1);
-    bool const drawn = write_panels(page, columns, place, draw) == Drawn::png;
+    bool const drawn = write_panels(page, columns, place, draw) == DrawResult::png;
     written.push_back(with_ending(place, ".dat"));
     written.push_back(with_ending(place, ".gp"));
     if (drawn) written.push_back(with_ending(place, ".png"));
@@ -76,7 +76,7 @@ void write_csv(Comparison const& c, std::filesystem::path const& file) {
     heads.push_back(run.name);
     columns.push_back(quantities(run, c.runs.front()));
   }
-  Csv csv(file, std::move(heads), Csv::Keeps::whole_table);
+  Csv csv(file, std::move(heads), Csv::Keeps::full_table);
   std::vector<double> row(columns.size());
   for (std::size_t i = 0; i < columns.front().size(); ++i) {
     for (std::size_t j = 0; j < columns.size(); ++j) row[j] = columns[j][i].value;
@@ -95,8 +95,8 @@ std::vector<std::filesystem::path> write_histories(Comparison const& c, std::fil
     std::vector<History> const all = histories(run);
     std::vector<std::string> heads{"t [s]"};
     for (History const& h : all) heads.push_back(h.name);
-    written.push_back(folder /
-                      ("history_" + std::to_string(written.size() + 1) + '_' + detail::file_word(run.name) + ".csv"));
+    written.push_back(
+        folder / ("history_" + std::to_string(written.size() + 1) + '_' + detail::word_for_file(run.name) + ".csv"));
     Csv csv(written.back(), std::move(heads));
     std::vector<double> row(all.size() + 1);
     for (std::size_t k = 0; k < run.times.size(); ++k) {
@@ -163,7 +163,7 @@ std::vector<std::filesystem::path> write_report(Comparison const& c, std::filesy
 /// Writes the points of all completed runs to `file`, one row each. Throws IoError as `Csv`.
 template <class = void>
 void write_csv(WorkPrecision const& w, std::filesystem::path const& file) {
-  Csv csv(file, {"formulation", "step [s] or tolerance", "steps", "CPU time [s]", "error"}, Csv::Keeps::whole_table);
+  Csv csv(file, {"formulation", "step [s] or tolerance", "steps", "CPU time [s]", "error"}, Csv::Keeps::full_table);
   for (WorkCurve const& curve : w.curves)
     for (WorkPoint const& p : curve.points)
       if (p.failure.empty()) csv.row(curve.name, std::array{p.setting, double(p.steps), p.cpu, p.error});
@@ -189,7 +189,7 @@ Figure work_precision_figure(WorkPrecision const& w) {
                          "\", not \"",
                          w.curves.front().output,
                          "\". Draw it in another figure."};
-    Curve drawn{.label = curve.name, .style = "linespoints", .color = int(&curve - w.curves.data())};
+    Curve drawn{.label = curve.name, .style = "linespoints", .colour = int(&curve - w.curves.data())};
     for (WorkPoint const& p : curve.points)
       if (p.failure.empty()) {
         drawn.x.push_back(p.cpu);

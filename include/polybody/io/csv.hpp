@@ -28,7 +28,7 @@ namespace polybody {
 class Csv {
  public:
   /// Content of the file after an exception: the rows written so far, or no file if only a whole table is useful.
-  enum class Keeps { rows, whole_table };
+  enum class Keeps { rows, full_table };
 
   /// Creates `file` with its parent folders and writes the heads `columns`, with their units ("t [s]").
   /// \throws InvalidInput unless the heads are not empty and all different

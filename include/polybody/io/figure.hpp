@@ -20,7 +20,7 @@ struct Curve {
   std::vector<double> x{}, y{};  ///< (n) points, n >= 1 [units of the axes]
   std::string label{};           ///< text in the legend; empty: no entry
   std::string style = "lines";   ///< lines, points, linespoints, dashed, steps, or filled: the translucent area inside
-  int color = -1;                ///< index of one of 8 colours, cyclic; -1: index of the curve
+  int colour = -1;               ///< index of one of 8 colours, cyclic; -1: index of the curve
   double width = 1.5;            ///< line width [pt]
 };
 

@@ -86,9 +86,9 @@ class SceneContents {
   }
 
   std::string shape(FilmShape const& s) {
-    auto const whole = [](std::vector<int> const& v) { return std::vector<std::uint32_t>(v.begin(), v.end()); };
-    return "{\"points\":" + arrays_.add(s.points) + ",\"corners\":" + arrays_.add(whole(s.corners)) +
-           ",\"ends\":" + arrays_.add(whole(s.ends)) + '}';
+    auto const full = [](std::vector<int> const& v) { return std::vector<std::uint32_t>(v.begin(), v.end()); };
+    return "{\"points\":" + arrays_.add(s.points) + ",\"corners\":" + arrays_.add(full(s.corners)) +
+           ",\"ends\":" + arrays_.add(full(s.ends)) + '}';
   }
 
   std::string part(FilmPart const& p) {

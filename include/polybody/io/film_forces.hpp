@@ -11,11 +11,11 @@ namespace polybody {
 /// Adds to the last frame of a scene the force of each joint on its second body, as an arrow at the second marker.
 /// `system` must have been evaluated in state x.
 /// \param unit of the arrows [N], 1000 for kN
-/// \throws InvalidInput, NonFinite as `FilmScene::arrow`.
+/// \throws InvalidInput, NonFiniteValue as `FilmScene::arrow`.
 template <class = void>
 void add_reactions(FilmScene& scene, FilmArrows arrows, System const& system, State const& x, double unit = 1.0) {
-  for (RowBlock<double> const& block : system.data().rows) {
-    if (block.source == RowSource::body) continue;
+  for (ConstraintBlock<double> const& block : system.data().rows) {
+    if (block.source == ConstraintSource::body) continue;
     Index const marker = system.layout().joints[std::size_t(block.owner)].b;
     Vec3 const force = reaction_of(system, x, block.owner).f;
     scene.arrow(arrows, system.data().markers[std::size_t(marker)].frame.r, force / unit);

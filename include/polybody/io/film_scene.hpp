@@ -121,9 +121,9 @@ class FilmScene {
 
   /// Records a frame of `parts` at time t [s].
   /// \throws InvalidInput unless times increase and the parts are the same as in the first frame
-  /// \throws NonFinite for a time or part that is not finite.
+  /// \throws NonFiniteValue for a time or part that is not finite.
   void record(double t, std::vector<VisualPart> const& parts) {
-    if (!std::isfinite(t)) throw NonFinite{told(), "the time of a frame is not finite."};
+    if (!std::isfinite(t)) throw NonFiniteValue{told(), "the time of a frame is not finite."};
     if (!times_.empty() && !(t > times_.back()))
       throw InvalidInput{told(), "frames must rise in time, but t = ", t, " s follows ", times_.back(), " s."};
     if (parts.empty()) throw InvalidInput{told(), "there is nothing to be seen; attach shapes to the visual."};
@@ -140,23 +140,23 @@ class FilmScene {
   /// Adds an arrow to the last frame.
   /// \param place start of the arrow, world axes [m]
   /// \param vector in the unit of the set
-  /// \throws InvalidInput if there is no frame yet, or for arrows of another scene; NonFinite.
+  /// \throws InvalidInput if there is no frame yet, or for arrows of another scene; NonFiniteValue.
   void arrow(FilmArrows set, Vec3 const& place, Vec3 const& vector) {
     if (set.place >= arrows_.size() || times_.empty())
       throw InvalidInput{told(), "an arrow belongs to a set of this scene and to a frame; record one first."};
     detail::FilmArrowSet& arrows = arrows_[set.place];
     if (!place.allFinite() || !vector.allFinite())
-      throw NonFinite{told(), "an arrow of \"", arrows.label, "\" is not finite at t = ", times_.back(), " s."};
+      throw NonFiniteValue{told(), "an arrow of \"", arrows.label, "\" is not finite at t = ", times_.back(), " s."};
     ++arrows.counts.back();
     for (int i = 0; i < 3; ++i) arrows.places.push_back(float(place[i])), arrows.vectors.push_back(float(vector[i]));
   }
 
   /// Adds a point to the history `label`: a `value` in `unit` at any time t [s]. Histories of several scenes with the
   /// same label share a plot.
-  /// \throws InvalidInput unless the times of the history increase; NonFinite.
+  /// \throws InvalidInput unless the times of the history increase; NonFiniteValue.
   void plot(std::string const& label, std::string const& unit, double t, double value) {
     if (!std::isfinite(t) || !std::isfinite(value))
-      throw NonFinite{told(), "a point of the history \"", label, "\" is not finite at t = ", t, " s."};
+      throw NonFiniteValue{told(), "a point of the history \"", label, "\" is not finite at t = ", t, " s."};
     auto found = std::find_if(histories_.begin(), histories_.end(), [&](auto const& h) { return h.label == label; });
     if (found == histories_.end()) found = histories_.insert(found, {label, unit});
     if (!found->times.empty() && !(t > found->times.back()))
@@ -192,9 +192,10 @@ class FilmScene {
     for (std::size_t i = 0; same && i < parts.size(); ++i) {
       VisualPart const& part = parts[i];
       for (Vec3 const& p : part.surface.points)
-        if (!p.allFinite()) throw NonFinite{told(), "a point of \"", part.name, "\" is not finite at t = ", t, " s."};
+        if (!p.allFinite())
+          throw NonFiniteValue{told(), "a point of \"", part.name, "\" is not finite at t = ", t, " s."};
       if (!part.place.allFinite() || !part.axes.allFinite())
-        throw NonFinite{told(), "the frame of \"", part.name, "\" is not finite at t = ", t, " s."};
+        throw NonFiniteValue{told(), "the frame of \"", part.name, "\" is not finite at t = ", t, " s."};
       same = times_.empty() || (part.name == parts_[i].name && part.surface.points.size() == parts_[i].points.size());
     }
     if (!same) throw InvalidInput{told(), "the parts at t = ", t, " s are not those of the first frame."};

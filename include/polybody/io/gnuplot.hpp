@@ -72,7 +72,7 @@ void run_gnuplot(std::filesystem::path const& program, std::filesystem::path con
       fs::remove(file, ignored);
     }
   };
-  Temporary const drawing{temporary_beside(png)}, words{temporary_beside(png)};
+  Temporary const drawing{temporary_next_to(png)}, words{temporary_next_to(png)};
   fs::path const folder = fs::absolute(script).parent_path();
   std::string const command = "cd " + shell_word(folder.string()) + " && " + shell_word(program.string()) + " -d -e " +
                               shell_word("png='./" + drawing.file.filename().string() + "'") + ' ' +

@@ -22,7 +22,7 @@ namespace polybody {
 
 /// Result of `write_figure`. It is script_only if gnuplot is not on PATH or `draw` is false; a PNG of an earlier run
 /// is then not changed.
-enum class Drawn { png, script_only };
+enum class DrawResult { png, script_only };
 
 namespace detail {
 
@@ -91,7 +91,7 @@ std::string script_text(Figure const& figure, std::string const& data, std::size
   text += "set xrange " + range(figure.x_range) + "\nset yrange " + range(figure.y_range) + "\nplot ";
   for (std::size_t i = 0; i < figure.curves.size(); ++i) {
     Curve const& curve = figure.curves[i];
-    std::size_t const color = (curve.color < 0 ? i : std::size_t(curve.color)) % palette.size();
+    std::size_t const color = (curve.colour < 0 ? i : std::size_t(curve.colour)) % palette.size();
     auto const style = std::size_t(std::ranges::find(curve_styles, curve.style) - curve_styles.begin());
     text += (i ? ", \\\n     " : "") + gnuplot_text(data) + " index " + std::to_string(block + i) + " using 1:2 with " +
             std::string(gnuplot_styles[style]);
@@ -114,8 +114,8 @@ std::filesystem::path with_ending(std::filesystem::path stem, char const* ending
 /// file appears when it is complete. Throws InvalidInput with the figure and the curve before anything is written,
 /// IoError if writing or gnuplot fails.
 template <class = void>
-Drawn write_panels(std::vector<Figure> const& figures, int columns, std::filesystem::path const& stem,
-                   bool draw = true) {
+DrawResult write_panels(std::vector<Figure> const& figures, int columns, std::filesystem::path const& stem,
+                        bool draw = true) {
   std::string const name = stem.filename().string();
   if (name.empty() || std::ranges::any_of(name, [](unsigned char c) { return c < ' '; }))
     throw InvalidInput{"figure file '", stem.string(), "': the name is empty or has a control sign"};
@@ -152,14 +152,14 @@ Drawn write_panels(std::vector<Figure> const& figures, int columns, std::filesys
   data.close();
   commands.close();
   auto const gnuplot = draw ? find_gnuplot() : std::nullopt;
-  if (!gnuplot) return Drawn::script_only;
+  if (!gnuplot) return DrawResult::script_only;
   detail::run_gnuplot(*gnuplot, detail::with_ending(stem, ".gp"), detail::with_ending(stem, ".png"));
-  return Drawn::png;
+  return DrawResult::png;
 }
 
 /// Writes one figure to `stem`.dat, .gp and, if `draw`, .png; see `write_panels`.
 template <class = void>
-Drawn write_figure(Figure const& figure, std::filesystem::path const& stem, bool draw = true) {
+DrawResult write_figure(Figure const& figure, std::filesystem::path const& stem, bool draw = true) {
   return write_panels({figure}, 1, stem, draw);
 }
 

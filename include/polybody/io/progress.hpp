@@ -99,9 +99,9 @@ class Progress {
   /// Formats a time in seconds as h:mm:ss.
   static std::string h_mm_ss(double seconds) {
     if (!(seconds < 3.6e6)) return ">999:59:59";
-    auto const whole = static_cast<unsigned>(std::max(0.0, seconds));
+    auto const full = static_cast<unsigned>(std::max(0.0, seconds));
     char text[32];
-    std::snprintf(text, sizeof text, "%u:%02u:%02u", whole / 3600, whole / 60 % 60, whole % 60);
+    std::snprintf(text, sizeof text, "%u:%02u:%02u", full / 3600, full / 60 % 60, full % 60);
     return text;
   }
 
@@ -166,7 +166,7 @@ std::function<void(RunProgress const&)> progress_bar(Make make) {
 /// Progress bar with this `label` on stderr, drawn if stderr is a terminal.
 inline std::function<void(RunProgress const&)> progress_bar(std::string label = "") {
   return progress_bar([label = std::move(label)](RunProgress const& run) {
-    return std::make_unique<Progress>(run.start, run.until, label);
+    return std::make_unique<Progress>(run.start, run.end_time, label);
   });
 }
 

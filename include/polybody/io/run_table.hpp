@@ -75,7 +75,7 @@ std::vector<Figure> figures_of(Table const& table) {
 /// multiple of `sampling` [s] from the start, and the last state. If `sampling` is zero, every state is a row. The
 /// first column is "t [s]".
 /// \throws InvalidInput for columns without a name or value or with equal names, and a negative sampling.
-/// \throws NonFinite for a value that is not finite, and the exceptions of the run.
+/// \throws NonFiniteValue for a value that is not finite, and the exceptions of the run.
 template <class Run>
 Table tabulate(Run&& run, std::vector<TableColumn> const& columns, double sampling = 0.0) {
   detail::check(columns);
@@ -89,7 +89,7 @@ Table tabulate(Run&& run, std::vector<TableColumn> const& columns, double sampli
     for (TableColumn const& c : columns) {
       row.push_back(c.value(x));
       if (!std::isfinite(row.back()))
-        throw NonFinite{"tabulate: \"", c.name, "\"", how_not_finite(row.back()), " at t = ", x.t, " s."};
+        throw NonFiniteValue{"tabulate: \"", c.name, "\"", non_finite_suffix(row.back()), " at t = ", x.t, " s."};
     }
   }
   return table;
@@ -98,7 +98,7 @@ Table tabulate(Run&& run, std::vector<TableColumn> const& columns, double sampli
 /// Writes a table to `file`. `read_csv` returns the same doubles. Throws InvalidInput and IoError as `Csv`.
 template <class = void>
 void write_csv(Table const& table, std::filesystem::path const& file) {
-  Csv csv(file, table.columns, Csv::Keeps::whole_table);
+  Csv csv(file, table.columns, Csv::Keeps::full_table);
   for (auto const& row : table.rows) csv.row(row);
   csv.close();
 }
@@ -107,7 +107,7 @@ void write_csv(Table const& table, std::filesystem::path const& file) {
 /// .png. Columns with the same unit ("… [m]") share a panel. Throws InvalidInput for a table without rows or with
 /// less than two columns, and as `write_csv` and `write_panels`.
 template <class = void>
-Drawn plot(Table const& table, std::filesystem::path const& stem, bool draw = true) {
+DrawResult plot(Table const& table, std::filesystem::path const& stem, bool draw = true) {
   if (table.rows.empty() || table.columns.size() < 2)
     throw InvalidInput{"plot: the table for '",
                        stem.string(),

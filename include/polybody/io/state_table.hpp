@@ -9,15 +9,15 @@
 #include <unordered_map>
 
 #include <polybody/io/table.hpp>
-#include <polybody/run/fitting.hpp>
-#include <polybody/system/model_entries.hpp>
+#include <polybody/run/state_checks.hpp>
+#include <polybody/system/make_operations.hpp>
 
 namespace polybody {
 
 namespace detail {
 
 /// Name and unit of a number of a state, in a table.
-struct StateHead {
+struct StateColumnHead {
   std::string name = "t [s]";
   std::string unit = {};  ///< empty if unknown
 
@@ -27,22 +27,22 @@ struct StateHead {
 
 /// Heads of a state's columns, in the order t, q, v, λ.
 struct StateHeads {
-  std::vector<StateHead> all;
+  std::vector<StateColumnHead> all;
   std::size_t required;  ///< number of heads that a state requires; missing multipliers are zero
 
   template <class = void>  // compiled where it is used
   explicit StateHeads(ModelLayout const& layout)
-      : all(std::size_t(1 + layout.coordinates + layout.speeds + layout.rows)),
-        required(std::size_t(1 + layout.coordinates + layout.speeds)) {
-    Index const q = 1, v = q + layout.coordinates, lambda = v + layout.speeds;
-    for (BodyPlace const& b : layout.bodies) {
+      : all(std::size_t(1 + layout.coordinates + layout.velocities + layout.rows)),
+        required(std::size_t(1 + layout.coordinates + layout.velocities)) {
+    Index const q = 1, v = q + layout.coordinates, lambda = v + layout.velocities;
+    for (BodyLayout const& b : layout.bodies) {
       name(b.name, "q", q + b.q0, b.coordinates);
-      name(b.name, "v", v + b.v0, b.speeds);
+      name(b.name, "v", v + b.v0, b.velocities);
       name(b.name, "lambda", lambda + b.row, b.rows);
       if (b.units.of_coordinate) name_units(b, q + b.q0, v + b.v0);
     }
-    for (ForcePlace const& f : layout.forces) name(f.name, "z", v + f.v0, f.states);
-    for (JointPlace const& j : layout.joints) name(j.name, "lambda", lambda + j.row, j.rows);
+    for (ForceLayout const& f : layout.forces) name(f.name, "z", v + f.v0, f.states);
+    for (JointLayout const& j : layout.joints) name(j.name, "lambda", lambda + j.row, j.rows);
   }
 
  private:
@@ -53,9 +53,9 @@ struct StateHeads {
   }
   /// Sets the units of a body's coordinates, from index q, and of its velocities, from index v.
   template <class = void>
-  void name_units(BodyPlace const& b, Index q, Index v) {
+  void name_units(BodyLayout const& b, Index q, Index v) {
     for (Index i = 0; i < b.coordinates; ++i) all[std::size_t(q + i)].unit = b.units.of_coordinate(b.body, i);
-    for (Index i = 0; i < b.speeds; ++i)
+    for (Index i = 0; i < b.velocities; ++i)
       all[std::size_t(v + i)].unit =
           b.units.of_speed ? b.units.of_speed(b.body, i) : std::string(b.units.of_coordinate(b.body, i)) + "/s";
   }
@@ -74,19 +74,19 @@ class StateColumns {
   /// Index of the column of a number, with or without unit in its head; none if there is no such column.
   /// \throws InvalidInput if columns with and without unit exist, or if the unit differs.
   template <class = void>
-  std::optional<std::size_t> find(StateHead const& head) const {
-    auto const whole = places_.find(head.text()), bare = places_.find(head.name);
-    if (whole == places_.end() && bare == places_.end()) refuse_other_unit(head);
-    if (!head.unit.empty() && whole != places_.end() && bare != places_.end())
+  std::optional<std::size_t> find(StateColumnHead const& head) const {
+    auto const full = places_.find(head.text()), bare = places_.find(head.name);
+    if (full == places_.end() && bare == places_.end()) refuse_other_unit(head);
+    if (!head.unit.empty() && full != places_.end() && bare != places_.end())
       throw InvalidInput{"state_from: the columns \"", head.name, "\" and \"", head.text(),
                          "\" are of one number. Take one of them out of the table."};
-    if (whole != places_.end()) return whole->second;
+    if (full != places_.end()) return full->second;
     return bare != places_.end() ? std::optional(bare->second) : std::nullopt;
   }
 
  private:
   template <class = void>
-  void refuse_other_unit(StateHead const& head) const {
+  void refuse_other_unit(StateColumnHead const& head) const {
     if (head.unit.empty()) return;
     for (auto const& [column, place] : places_)
       if (column.starts_with(head.name + " [") && column.ends_with(']'))
@@ -105,7 +105,7 @@ class StateColumns {
 template <class = void>
 std::vector<std::string> state_columns(ModelLayout const& layout) {
   std::vector<std::string> texts;
-  for (StateHead const& head : StateHeads(layout).all) texts.push_back(head.text());
+  for (StateColumnHead const& head : StateHeads(layout).all) texts.push_back(head.text());
   return texts;
 }
 
@@ -113,7 +113,7 @@ template <class = void>
 Table state_table(ModelLayout const& layout, std::vector<State> const& states) {
   Table table{state_columns(layout), {}};
   for (State const& x : states) {
-    require_sizes(x, layout.coordinates, layout.speeds, layout.rows);
+    require_sizes(x, layout.coordinates, layout.velocities, layout.rows);
     auto& row = table.rows.emplace_back(1, x.t);
     for (VecX const* const part : {&x.q, &x.v, &x.lambda})
       row.insert(row.end(), part->data(), part->data() + part->size());
@@ -145,8 +145,8 @@ State state_from(ModelLayout const& layout, Table const& table, std::size_t row)
   State x;
   x.t = numbers.front();
   x.q = take(layout.coordinates);
-  x.v = take(layout.speeds);
-  x.a = VecX::Zero(layout.speeds);
+  x.v = take(layout.velocities);
+  x.a = VecX::Zero(layout.velocities);
   x.lambda = take(layout.rows);
   return x;
 }
@@ -156,8 +156,8 @@ State state_from(ModelLayout const& layout, Table const& table, std::size_t row)
 /// Heads of the columns of a state of a model. The first is "t [s]". The coordinates of all bodies follow ("rod q[0]
 /// [m]", …), then their velocities ("rod v[0] [m/s]", …). Then come the first-order states of forces ("valve z[0]",
 /// …) and the multipliers of the constraint equations ("pin lambda[0]", …). The order within a body is given in the
-/// body's header. Units are those that a body provides (NamesUnits). Heads of first-order states and multipliers have
-/// no unit.
+/// body's header. Units are those that a body provides (HasCoordinateUnits). Heads of first-order states and
+/// multipliers have no unit.
 template <class M>
 std::vector<std::string> state_columns(M const& model) {
   return detail::state_columns(layout_of(model));

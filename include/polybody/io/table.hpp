@@ -52,11 +52,11 @@ inline std::size_t formula_in(std::string_view text) {
 /// Field of comma-separated values (RFC 4180) for a text that is not a number. A single quote precedes a text that
 /// begins with =, +, - or @, because spreadsheets evaluate such texts as formulas.
 inline std::string csv_text(std::string const& text) {
-  std::string const whole = formula_in(text) == text.npos ? text : '\'' + text;
-  bool const edge = whole.starts_with(' ') || whole.ends_with(' ') || whole.starts_with("\xEF\xBB\xBF");
-  if (!edge && whole.find_first_of(",\"\r\n\t") == whole.npos) return whole;
+  std::string const full = formula_in(text) == text.npos ? text : '\'' + text;
+  bool const edge = full.starts_with(' ') || full.ends_with(' ') || full.starts_with("\xEF\xBB\xBF");
+  if (!edge && full.find_first_of(",\"\r\n\t") == full.npos) return full;
   std::string quoted = "\"";
-  for (char const c : whole) quoted.append(c == '"' ? 2u : 1u, c);
+  for (char const c : full) quoted.append(c == '"' ? 2u : 1u, c);
   return quoted + '"';
 }
 /// Text of a field written by `csv_text`.

@@ -21,7 +21,7 @@
 namespace polybody::detail {
 
 /// Unused hidden name in the folder of `file`: ".polybody-<16 hex digits>.tmp".
-inline std::filesystem::path temporary_beside(std::filesystem::path const& file) {
+inline std::filesystem::path temporary_next_to(std::filesystem::path const& file) {
   std::random_device random;
   std::string name = ".polybody-";
   for (int digit = 0; digit < 16; ++digit) name += "0123456789abcdef"[random() % 16];
@@ -35,7 +35,7 @@ class TemporaryFile {
   TemporaryFile() = default;  ///< No file.
   /// Creates a file in the existing folder of `target`. The caller checks `is_open`; errno contains the reason of a
   /// failure.
-  explicit TemporaryFile(std::filesystem::path const& target) : target_(target), name_(temporary_beside(target)) {
+  explicit TemporaryFile(std::filesystem::path const& target) : target_(target), name_(temporary_next_to(target)) {
 #ifdef O_TMPFILE
     std::filesystem::path const folder = target.parent_path();
     int const file = ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);

@@ -7,8 +7,8 @@
 
 #include <polybody/bodies/shared/sections.hpp>
 #include <polybody/io/surface.hpp>
-#include <polybody/run/points.hpp>
-#include <polybody/system/model_entries.hpp>
+#include <polybody/run/marker_frames.hpp>
+#include <polybody/system/make_operations.hpp>
 
 namespace polybody {
 
@@ -94,7 +94,7 @@ void Visual::attach(Marker<B> const& marker, Surface const& shape, std::string n
     Frame<double> const f{.r = marker.point.origin, .A = marker.point.axes};
     carry(shape, std::move(name), [f](State const&) { return f; });
   } else {
-    BodyPlace const place = layout_.bodies[std::size_t(index_of(layout_, marker, name))];
+    BodyLayout const place = layout_.bodies[std::size_t(index_of(layout_, marker, name))];
     carry(shape, std::move(name),
           [place, point = marker.point](State const& x) { return frame(body_in_state<B>(place, x), point); });
   }
@@ -102,7 +102,7 @@ void Visual::attach(Marker<B> const& marker, Surface const& shape, std::string n
 
 template <class B>
 void Visual::sweep(BodyHandle<B> const& body, Bar const& bar, int pieces, int sides) {
-  BodyPlace const place = layout_.bodies[std::size_t(index_of(layout_, body))];
+  BodyLayout const place = layout_.bodies[std::size_t(index_of(layout_, body))];
   if (pieces < 1) throw InvalidInput{"\"", body.name, "\": a sweep needs at least one piece."};
   std::vector<Vec2> const ring = outline(bar, sides);
   int const n = int(ring.size());

@@ -124,7 +124,7 @@ class VtkWriterOf {
 
   /// Writes the grid of state x and adds it to the collection.
   /// \throws InvalidInput unless times increase
-  /// \throws NonFinite for coordinates that are not finite, IoError.
+  /// \throws NonFiniteValue for coordinates that are not finite, IoError.
   void write(State const& x) {
     if (!(x.t > last_))
       throw InvalidInput{"VtkWriter: the states of '",
@@ -138,7 +138,7 @@ class VtkWriterOf {
     for (VisualPart const& part : parts)
       for (Vec3 const& p : part.surface.points)
         if (!p.allFinite())
-          throw NonFinite{"VtkWriter: a point of \"", part.name, "\" is not finite at t = ", x.t, " s."};
+          throw NonFiniteValue{"VtkWriter: a point of \"", part.name, "\" is not finite at t = ", x.t, " s."};
     std::string index = std::to_string(count_);
     index.insert(0, index.size() < 6 ? 6 - index.size() : 0, '0');
     std::filesystem::path const stem = file_.stem(), grid = stem / (stem.string() + "_" + index + ".vtu");

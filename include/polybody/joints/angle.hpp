@@ -6,9 +6,9 @@
 
 #include <numbers>
 
-#include <polybody/joints/rows.hpp>
+#include <polybody/joints/constraint_functions.hpp>
 
-namespace polybody::rows {
+namespace polybody::constraint_functions {
 
 /// The angle less the nearest number of full turns [rad].
 template <StateScalar T>
@@ -19,11 +19,11 @@ T wrapped(T const& angle) {
 
 /// θ in (−π, π] with its maps, from x and y with theirs. x = y = 0 has no angle.
 template <StateScalar T>
-Gap<1, T> angle(Gap<2, T> const& xy) {
+ConstraintTerms<1, T> angle(ConstraintTerms<2, T> const& xy) {
   using std::atan2;
   T const x = xy.g[0], y = xy.g[1], n2 = x * x + y * y;
   T const p = x / n2, q = y / n2;
-  Gap<1, T> gap;
+  ConstraintTerms<1, T> gap;
   gap.g[0] = atan2(y, x);
   for (int j = 0; j < 6; ++j) {
     gap.Ga(0, j) = p * xy.Ga(1, j) - q * xy.Ga(0, j);
@@ -34,7 +34,7 @@ Gap<1, T> angle(Gap<2, T> const& xy) {
 
 /// γ of θ from those of x and y: (x γ_y − y γ_x − 2 θ̇ (x ẋ + y ẏ))/n².
 template <StateScalar T>
-T angle_gamma(Gap<2, T> const& xy, Vec<T, 2> const& gamma, Frame<T> const& a, Frame<T> const& b) {
+T angle_gamma(ConstraintTerms<2, T> const& xy, Vec<T, 2> const& gamma, Frame<T> const& a, Frame<T> const& b) {
   T rate[2] = {T(0.0), T(0.0)};
   for (int i = 0; i < 2; ++i)
     for (int j = 0; j < 3; ++j)
@@ -47,7 +47,7 @@ T angle_gamma(Gap<2, T> const& xy, Vec<T, 2> const& gamma, Frame<T> const& a, Fr
 /// Adds −λ (G_θᵀ G_r + G_rᵀ G_θ), G_r = (x G_x + y G_y)/n²: what the wrench of θ changes by as x and y change in it.
 /// The rest is the change of their own maps under the multipliers λ (−y, x)/n², which are returned.
 template <class = void>  // compiled where it is used
-Vec2 angle_gradient(Gap<2> const& xy, double lambda, WrenchGradient& k) {
+Vec2 angle_gradient(ConstraintTerms<2> const& xy, double lambda, WrenchGradient& k) {
   double const x = xy.g[0], y = xy.g[1], n2 = x * x + y * y;
   double turning[12], growing[12];
   for (int j = 0; j < 12; ++j) {
@@ -63,15 +63,15 @@ Vec2 angle_gradient(Gap<2> const& xy, double lambda, WrenchGradient& k) {
 /// x = a₁·b₁ and y = a₂·b₁, whose angle is the turn of b against a about a₃. While b₁ stays in the plane of a₁, a₂ (as
 /// a Revolute keeps it) θ̇ = a₃·(ω_b − ω_a); perpendicular to it there is no angle.
 template <StateScalar T>
-Gap<2, T> turned(Frame<T> const& a, Frame<T> const& b) {
-  Gap<2, T> xy;
+ConstraintTerms<2, T> turned(Frame<T> const& a, Frame<T> const& b) {
+  ConstraintTerms<2, T> xy;
   for (int i = 0; i < 2; ++i) perpendicular(axis_of(a, i), axis_of(b, 0), xy, i);
   return xy;
 }
 
 /// γ of the turn θ of b against a about a₃; xy is `turned(a, b)`.
 template <StateScalar T>
-T turn_gamma(Gap<2, T> const& xy, Frame<T> const& a, Frame<T> const& b) {
+T turn_gamma(ConstraintTerms<2, T> const& xy, Frame<T> const& a, Frame<T> const& b) {
   Vec<T, 3> const axis = axis_of(b, 0);
   return angle_gamma<T>(
       xy, {perpendicular_gamma(axis_of(a, 0), axis, a, b), perpendicular_gamma(axis_of(a, 1), axis, a, b)}, a, b);
@@ -87,9 +87,10 @@ void turn_gradient(Frame<double> const& a, Frame<double> const& b, double lambda
 /// Writes to `row` g = u·d − p θ, u (3) fixed in a, θ the turn of b about a₃: one slide and one turn coupled, p
 /// [m/rad]. Full turns are counted by the slide, g = −p wrap(θ − u·d/p), so |g| ≤ π |p|.
 template <int m, StateScalar T>
-void slide_and_turn(Vec<T, 3> const& u, double p, Frame<T> const& a, Frame<T> const& b, Gap<m, T>& gap, int row) {
+void slide_and_turn(Vec<T, 3> const& u, double p, Frame<T> const& a, Frame<T> const& b, ConstraintTerms<m, T>& gap,
+                    int row) {
   no_slide<m, T>(u, a, b, gap, row);
-  Gap<1, T> const turn = angle(turned(a, b));
+  ConstraintTerms<1, T> const turn = angle(turned(a, b));
   gap.g[row] = -p * wrapped<T>(turn.g[0] - gap.g[row] / p);
   for (int j = 0; j < 6; ++j) {
     gap.Ga(row, j) -= turn.Ga(0, j) * p;
@@ -111,4 +112,4 @@ void slide_and_turn_gradient(Vec3 const& u, double p, Frame<double> const& a, Fr
   turn_gradient(a, b, -p * lambda, k);
 }
 
-}  // namespace polybody::rows
+}  // namespace polybody::constraint_functions

@@ -8,37 +8,37 @@ namespace polybody {
 struct Cylindrical {
   static constexpr char const* name = "Cylindrical";
   static constexpr int rows = 4;
-  static constexpr Observes needs = Observes::frame;
-  static constexpr Observes needs_of_second = Observes::axis;
+  static constexpr MarkerKind needs = MarkerKind::frame;
+  static constexpr MarkerKind needs_of_second = MarkerKind::axis;
   static constexpr World world = World::space;
-  static constexpr Freedoms free = {false, false, true, false, false, true};
+  static constexpr FreeDirections free = {false, false, true, false, false, true};
 
   JointAxis axis = {};  ///< (3) unit vector of the slide and the turn, world axes at the reference configuration
 
   template <class = void>  // compiled where it is used
   Mat3 triad() const {
-    return polybody::rows::triad_about(axis, "Cylindrical: the axis");
+    return polybody::constraint_functions::triad_about(axis, "Cylindrical: the axis");
   }
 
   template <StateScalar T>
-  Gap<4, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
-    Gap<4, T> gap;
-    polybody::rows::on_axis(a, b, gap, 0);
-    polybody::rows::same_direction(a, b, gap, 2);
+  ConstraintTerms<4, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
+    ConstraintTerms<4, T> gap;
+    polybody::constraint_functions::on_axis(a, b, gap, 0);
+    polybody::constraint_functions::same_direction(a, b, gap, 2);
     return gap;
   }
   template <StateScalar T>
   Vec<T, 4> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
-    Vec<T, 2> const on_axis = polybody::rows::on_axis_gamma(a, b),
-                    parallel = polybody::rows::same_direction_gamma(a, b);
+    Vec<T, 2> const on_axis = polybody::constraint_functions::on_axis_gamma(a, b),
+                    parallel = polybody::constraint_functions::same_direction_gamma(a, b);
     return {on_axis[0], on_axis[1], parallel[0], parallel[1]};
   }
   template <class = void>  // compiled where it is used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 4> const& lambda) const {
     auto k = detail::zeros<Mat<double, 12, 12>>();
-    polybody::rows::on_axis_gradient(a, b, {lambda[0], lambda[1]}, k);
-    polybody::rows::same_direction_gradient(a, b, {lambda[2], lambda[3]}, k);
+    polybody::constraint_functions::on_axis_gradient(a, b, {lambda[0], lambda[1]}, k);
+    polybody::constraint_functions::same_direction_gradient(a, b, {lambda[2], lambda[3]}, k);
     return k;
   }
 };

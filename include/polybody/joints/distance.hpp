@@ -1,5 +1,5 @@
 #pragma once
-#include <polybody/joints/rows.hpp>
+#include <polybody/joints/constraint_functions.hpp>
 
 namespace polybody {
 
@@ -10,7 +10,7 @@ namespace polybody {
 struct Distance {
   static constexpr char const* name = "Distance";
   static constexpr int rows = 1;
-  static constexpr Observes needs = Observes::point;
+  static constexpr MarkerKind needs = MarkerKind::point;
   static constexpr World world = World::both;
 
   Required<double> length;  ///< L [m]
@@ -23,20 +23,20 @@ struct Distance {
   }
 
   template <StateScalar T>
-  Gap<1, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
-    Gap<1, T> gap;
-    polybody::rows::distance(a, b, length, gap);
+  ConstraintTerms<1, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
+    ConstraintTerms<1, T> gap;
+    polybody::constraint_functions::distance(a, b, length, gap);
     return gap;
   }
   template <StateScalar T>
   Vec<T, 1> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
-    return Vec<T, 1>(polybody::rows::distance_gamma(a, b));
+    return Vec<T, 1>(polybody::constraint_functions::distance_gamma(a, b));
   }
   template <class = void>  // compiled where it is used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 1> const& lambda) const {
     auto k = detail::zeros<Mat<double, 12, 12>>();
-    polybody::rows::distance_gradient(a, b, lambda[0], k);
+    polybody::constraint_functions::distance_gradient(a, b, lambda[0], k);
     return k;
   }
 };

@@ -14,7 +14,7 @@ namespace polybody {
 struct Gear {
   static constexpr char const* name = "Gear";
   static constexpr int rows = 1;
-  static constexpr Observes needs = Observes::frame;
+  static constexpr MarkerKind needs = MarkerKind::frame;
   static constexpr World world = World::both;
 
   static constexpr int most_teeth = 1'000'000;  ///< largest number of teeth, without its sign
@@ -28,7 +28,7 @@ struct Gear {
   Mat3 triad() const {
     require_unit(axis.required("Gear: the axis"), "Gear: the axis");
     require_unit(centres.required("Gear: the line of centres"), "Gear: the line of centres");
-    return polybody::rows::triad_of(centres, axis, "Gear");
+    return polybody::constraint_functions::triad_of(centres, axis, "Gear");
   }
   void check(std::string const& what) const {
     if (teeth_a == 0 || teeth_b == 0 || (teeth_a < 0 && teeth_b < 0))
@@ -44,12 +44,14 @@ struct Gear {
   }
 
   template <StateScalar T>
-  Gap<1, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
+  ConstraintTerms<1, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
     Ratio const n = ratio();
-    Gap<1, T> const of_a = polybody::rows::angle(bearing(a, b)), of_b = polybody::rows::angle(bearing(b, a));
-    Gap<1, T> gap;
+    ConstraintTerms<1, T> const of_a = polybody::constraint_functions::angle(bearing(a, b)),
+                                of_b = polybody::constraint_functions::angle(bearing(b, a));
+    ConstraintTerms<1, T> gap;
     T const turns = of_a.g[0] * n.a + of_b.g[0] * n.b;
-    gap.g[0] = polybody::rows::wrapped(turns - std::numbers::pi * n.b) / n.b;  // b's bearing points the other way
+    gap.g[0] = polybody::constraint_functions::wrapped(turns - std::numbers::pi * n.b) /
+               n.b;  // b's bearing points the other way
     for (int j = 0; j < 6; ++j) {
       gap.Ga(0, j) = of_a.Ga(0, j) * (n.a / n.b) + of_b.Gb(0, j);
       gap.Gb(0, j) = of_a.Gb(0, j) * (n.a / n.b) + of_b.Ga(0, j);
@@ -85,20 +87,21 @@ struct Gear {
 
   /// The components of the vector from one wheel's centre to the other's in the first two axes of the one.
   template <StateScalar T>
-  static Gap<2, T> bearing(Frame<T> const& one, Frame<T> const& other) {
-    Gap<2, T> xy;
-    polybody::rows::on_axis(one, other, xy, 0);
+  static ConstraintTerms<2, T> bearing(Frame<T> const& one, Frame<T> const& other) {
+    ConstraintTerms<2, T> xy;
+    polybody::constraint_functions::on_axis(one, other, xy, 0);
     return xy;
   }
   template <StateScalar T>
   static T bearing_gamma(Frame<T> const& one, Frame<T> const& other) {
-    return polybody::rows::angle_gamma(bearing(one, other), polybody::rows::on_axis_gamma(one, other), one, other);
+    return polybody::constraint_functions::angle_gamma(
+        bearing(one, other), polybody::constraint_functions::on_axis_gamma(one, other), one, other);
   }
   template <class = void>  // compiled where it is used
   static void bearing_gradient(Frame<double> const& one, Frame<double> const& other, double lambda,
                                Mat<double, 12, 12>& k) {
-    Vec2 const each = polybody::rows::angle_gradient(bearing(one, other), lambda, k);
-    polybody::rows::on_axis_gradient(one, other, each, k);
+    Vec2 const each = polybody::constraint_functions::angle_gradient(bearing(one, other), lambda, k);
+    polybody::constraint_functions::on_axis_gradient(one, other, each, k);
   }
 };
 

@@ -20,16 +20,17 @@ constexpr auto measured_by() {
 
 /// G has what P measures: a bushing measures the directions that G does not name as free.
 template <class P, class G>
-concept MeasuresGeometry = NamesFreedoms<G> || !requires { typename P::template Measured<G>; };
+concept MeasurableGeometry = HasFreeDirections<G> || !requires { typename P::template Measured<G>; };
 
 /// P adds rows, or answers as many components by a force as it measures of G.
 template <class P, class G>
-concept AnswersGeometry =
-    AddsRows<P> || (MeasuresGeometry<P, G> && AnswersRows<P, decltype(detail::measured_by<G, P>())::type::rows>);
+concept EnforceableGeometry =
+    ConstrainingPolicy<P> ||
+    (MeasurableGeometry<P, G> && CompliantLaw<P, decltype(detail::measured_by<G, P>())::type::rows>);
 
 /// P adds rows, or G has a gap in each of its rows, which a force can answer.
 template <class P, class G>
-concept HasGapToAnswer = AddsRows<P> || velocity_rows<G>() == 0;
+concept HolonomicOrConstrained = ConstrainingPolicy<P> || nonholonomic_equations<G>() == 0;
 
 /// A joint is a geometry (which motions it stops) and a policy (how it stops them).
 template <class G, class P>
@@ -41,10 +42,10 @@ struct Joint {
   /// What the policy answers: G, or what P measures in its place.
   using Measured = typename decltype(detail::measured_by<G, P>())::type;
   static constexpr int rows = Measured::rows;
-  static_assert(!Policy<P> || !MeasuresGeometry<P, G> || AnswersGeometry<P, G>,
+  static_assert(!Policy<P> || !MeasurableGeometry<P, G> || EnforceableGeometry<P, G>,
                 "This policy has numbers for another number of rows than the joint's geometry has.");
   static_assert(
-      !Policy<P> || HasGapToAnswer<P, G>,
+      !Policy<P> || HolonomicOrConstrained<P, G>,
       "This geometry holds speeds, not positions (it rolls, or glides on a blade): there is no gap that a force could "
       "answer. Use Constraint.");
   G geometry = {};  ///< which motions are stopped

@@ -2,7 +2,7 @@
 /// \file
 /// The direction of a joint, which has no default: left out, the joint is refused as it is connected.
 
-#include <polybody/joints/rows.hpp>
+#include <polybody/joints/constraint_functions.hpp>
 
 namespace polybody {
 
@@ -45,11 +45,11 @@ class TurnAxis : public JointAxis {
 
 /// A geometry that turns about one.
 template <class G>
-concept HasTurnAxis = requires(G g) {
+concept HasRotationAxis = requires(G g) {
   { g.axis } -> std::same_as<TurnAxis&>;
 };
 
-namespace rows {
+namespace constraint_functions {
 
 /// Axes whose third one is `axis`. \throws InvalidInput for an axis that is left out or not of length one, by the name
 /// `what`.
@@ -58,5 +58,5 @@ Mat3 triad_about(JointAxis const& axis, std::string const& what) {
   return triad_about(axis.required(what), what);
 }
 
-}  // namespace rows
+}  // namespace constraint_functions
 }  // namespace polybody

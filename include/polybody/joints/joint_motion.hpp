@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include <polybody/joints/gap.hpp>
+#include <polybody/joints/constraint_terms.hpp>
 
 namespace polybody {
 
@@ -23,7 +23,7 @@ struct JointMotion {
   double pitch = 0.0;       ///< of a screw: slide for each radian [m/rad]
 
   int coordinates() const { return kind == Kind::ball ? 4 : 1; }
-  int speeds() const { return kind == Kind::ball ? 3 : 1; }
+  int velocities() const { return kind == Kind::ball ? 3 : 1; }
 };
 
 /// The motions of a joint, from a to b.
@@ -41,9 +41,9 @@ struct JointMotions {
     for (JointMotion const& m : *this) n += m.coordinates();
     return n;
   }
-  int speeds() const {
+  int velocities() const {
     int n = 0;
-    for (JointMotion const& m : *this) n += m.speeds();
+    for (JointMotion const& m : *this) n += m.velocities();
     return n;
   }
 };
@@ -53,7 +53,7 @@ struct JointMotions {
 template <class G>
 concept HasMotions = requires(G const g) {
   { g.motions() } -> std::same_as<JointMotions>;
-} || (NamesFreedoms<G> && detail::free_turns(G::free) != 2);
+} || (HasFreeDirections<G> && detail::free_turns(G::free) != 2);
 
 /// The motion that a geometry leaves, in joint coordinates.
 template <HasMotions G>

@@ -9,15 +9,15 @@
 namespace polybody::detail {
 
 template <class P, int m>
-concept GivesMultiplier = requires(P const p, Vec<double, m> const g) {
+concept HasMultiplier = requires(P const p, Vec<double, m> const g) {
   { p.template multiplier<m, double>(g, g) } -> std::convertible_to<Vec<double, m>>;
 };
 template <class P, int m>
-concept GivesSlope = requires(P const p, Vec<double, m> const g) {
+concept HasPolicyTangent = requires(P const p, Vec<double, m> const g) {
   { p.template slope<m>(1.0, 1.0, g, g) } -> std::convertible_to<Mat<double, m, m>>;
 };
 template <class P, int m>
-concept GivesPotential = requires(P const p, Vec<double, m> const g) {
+concept HasPolicyPotential = requires(P const p, Vec<double, m> const g) {
   { p.template potential<m>(g) } -> std::convertible_to<double>;
 };
 
@@ -27,7 +27,7 @@ struct GeometryRefusal {
   static_assert(
       requires {
         { G::name } -> std::convertible_to<char const*>;
-        { G::needs } -> std::convertible_to<Observes>;
+        { G::needs } -> std::convertible_to<MarkerKind>;
         { G::world } -> std::convertible_to<World>;
       }, "A joint geometry needs static constants: char const* name, Observes needs and World world.");
   static_assert(
@@ -39,7 +39,7 @@ struct GeometryRefusal {
       }, "A joint geometry needs triad() const: the joint's axes, world axes at the reference configuration.");
   static_assert(
       requires(G const g, Frame<double> const a, double t) {
-        { g.template gap<double>(a, a, t) } -> std::same_as<Gap<G::rows, double>>;
+        { g.template constraint_function<double>(a, a, t) } -> std::same_as<ConstraintTerms<G::rows, double>>;
       }, "A joint geometry needs gap<T>(a, b, t) const, which returns Gap<rows, T>.");
   static_assert(
       requires(G const g, Frame<double> const a, double t) {
@@ -55,25 +55,25 @@ template <class P>
 struct PolicyRefusal {
   template <int... m>
   static constexpr int members(std::integer_sequence<int, m...>) {
-    return ((GivesMultiplier<P, m + 1> ? 1 : 0) | ...) | ((GivesSlope<P, m + 1> ? 2 : 0) | ...) |
-           ((GivesPotential<P, m + 1> ? 4 : 0) | ...);
+    return ((HasMultiplier<P, m + 1> ? 1 : 0) | ...) | ((HasPolicyTangent<P, m + 1> ? 2 : 0) | ...) |
+           ((HasPolicyPotential<P, m + 1> ? 4 : 0) | ...);
   }
   static constexpr int given = members(std::make_integer_sequence<int, 6>{});
 
-  static_assert(!(AddsRows<P> && AddsForce<P>),
-                "A policy brings rows (adds_rows) or answers them by a force (multiplier), not both.");
-  static_assert(AddsRows<P> || given != 0,
-                "A policy has a static constant adds_rows = true; or it answers rows by a force and has check, "
+  static_assert(!(ConstrainingPolicy<P> && CompliantPolicy<P>),
+                "A policy brings rows (adds_constraints) or answers them by a force (multiplier), not both.");
+  static_assert(ConstrainingPolicy<P> || given != 0,
+                "A policy has a static constant adds_constraints = true; or it answers rows by a force and has check, "
                 "multiplier, slope and potential.");
-  static_assert(AddsRows<P> || given == 0 || (given & 1) != 0,
+  static_assert(ConstrainingPolicy<P> || given == 0 || (given & 1) != 0,
                 "A policy that answers rows needs multiplier<m, T>(g, rate) const, which returns lambda as Vec<T, m>.");
-  static_assert(AddsRows<P> || given == 0 || (given & 2) != 0,
+  static_assert(ConstrainingPolicy<P> || given == 0 || (given & 2) != 0,
                 "A policy that answers rows needs slope<m>(ck, cd, g, rate) const: ck d(lambda)/dg + cd "
                 "d(lambda)/d(rate), m x m.");
-  static_assert(AddsRows<P> || given == 0 || (given & 4) != 0,
+  static_assert(ConstrainingPolicy<P> || given == 0 || (given & 4) != 0,
                 "A policy that answers rows needs potential<m>(g) const: the energy that it stores.");
   static_assert(
-      AddsRows<P> || given != 7 || requires(P const p, std::string const what) { p.check(what); },
+      ConstrainingPolicy<P> || given != 7 || requires(P const p, std::string const what) { p.check(what); },
       "A policy that answers rows needs check(what) const, which throws InvalidInput for parameters that "
       "cannot be meant.");
   static constexpr bool asked = true;

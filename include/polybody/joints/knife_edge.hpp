@@ -9,20 +9,20 @@ namespace polybody {
 struct KnifeEdge {
   static constexpr char const* name = "KnifeEdge";
   static constexpr int rows = 1;
-  static constexpr int velocity_rows = 1;
-  static constexpr Observes needs = Observes::frame;
+  static constexpr int nonholonomic_equations = 1;
+  static constexpr MarkerKind needs = MarkerKind::frame;
   static constexpr World world = World::both;
 
   JointAxis across = {};  ///< (3) unit vector across the blade, world axes at the reference configuration; moves with b
 
   template <class = void>  // compiled where it is used
   Mat3 triad() const {
-    return polybody::rows::triad_about(across, "KnifeEdge: the direction across");
+    return polybody::constraint_functions::triad_about(across, "KnifeEdge: the direction across");
   }
 
   template <StateScalar T>
-  Gap<1, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
-    Gap<1, T> gap;
+  ConstraintTerms<1, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
+    ConstraintTerms<1, T> gap;
     Vec<T, 3> const n = axis_of(b, 2), d = b.r - a.r, c = n.cross(d);
     for (int i = 0; i < 3; ++i) {
       gap.Ga(0, i) = -n[i];

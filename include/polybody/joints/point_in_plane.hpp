@@ -9,33 +9,33 @@ namespace polybody {
 struct PointInPlane {
   static constexpr char const* name = "PointInPlane";
   static constexpr int rows = 1;
-  static constexpr Observes needs = Observes::frame;
-  static constexpr Observes needs_of_second = Observes::point;
+  static constexpr MarkerKind needs = MarkerKind::frame;
+  static constexpr MarkerKind needs_of_second = MarkerKind::point;
   static constexpr World world = World::both;
-  static constexpr Freedoms free = {true, true, false, true, true, true};
+  static constexpr FreeDirections free = {true, true, false, true, true, true};
 
   JointAxis normal = {};  ///< (3) unit vector, world axes at the reference configuration
 
   template <class = void>  // compiled where it is used
   Mat3 triad() const {
-    return polybody::rows::triad_about(normal, "PointInPlane: the normal");
+    return polybody::constraint_functions::triad_about(normal, "PointInPlane: the normal");
   }
 
   template <StateScalar T>
-  Gap<1, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
-    Gap<1, T> gap;
-    polybody::rows::no_slide(axis_of(a, 2), a, b, gap, 0);
+  ConstraintTerms<1, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
+    ConstraintTerms<1, T> gap;
+    polybody::constraint_functions::no_slide(axis_of(a, 2), a, b, gap, 0);
     return gap;
   }
   template <StateScalar T>
   Vec<T, 1> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
-    return Vec<T, 1>(polybody::rows::no_slide_gamma(axis_of(a, 2), a, b));
+    return Vec<T, 1>(polybody::constraint_functions::no_slide_gamma(axis_of(a, 2), a, b));
   }
   template <class = void>  // compiled where it is used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 1> const& lambda) const {
     auto k = detail::zeros<Mat<double, 12, 12>>();
-    polybody::rows::no_slide_gradient(axis_of(a, 2), a, b, lambda[0], k);
+    polybody::constraint_functions::no_slide_gradient(axis_of(a, 2), a, b, lambda[0], k);
     return k;
   }
 };

@@ -8,33 +8,33 @@ namespace polybody {
 struct PointOnLine {
   static constexpr char const* name = "PointOnLine";
   static constexpr int rows = 2;
-  static constexpr Observes needs = Observes::frame;
-  static constexpr Observes needs_of_second = Observes::point;
+  static constexpr MarkerKind needs = MarkerKind::frame;
+  static constexpr MarkerKind needs_of_second = MarkerKind::point;
   static constexpr World world = World::space;
-  static constexpr Freedoms free = {false, false, true, true, true, true};
+  static constexpr FreeDirections free = {false, false, true, true, true, true};
 
   JointAxis axis = {};  ///< (3) unit vector of the line, world axes at the reference configuration
 
   template <class = void>  // compiled where it is used
   Mat3 triad() const {
-    return polybody::rows::triad_about(axis, "PointOnLine: the axis");
+    return polybody::constraint_functions::triad_about(axis, "PointOnLine: the axis");
   }
 
   template <StateScalar T>
-  Gap<2, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
-    Gap<2, T> gap;
-    polybody::rows::on_axis(a, b, gap, 0);
+  ConstraintTerms<2, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
+    ConstraintTerms<2, T> gap;
+    polybody::constraint_functions::on_axis(a, b, gap, 0);
     return gap;
   }
   template <StateScalar T>
   Vec<T, 2> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
-    return polybody::rows::on_axis_gamma(a, b);
+    return polybody::constraint_functions::on_axis_gamma(a, b);
   }
   template <class = void>  // compiled where it is used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 2> const& lambda) const {
     auto k = detail::zeros<Mat<double, 12, 12>>();
-    polybody::rows::on_axis_gradient(a, b, lambda, k);
+    polybody::constraint_functions::on_axis_gradient(a, b, lambda, k);
     return k;
   }
 };

@@ -4,7 +4,7 @@
 
 #include <polybody/joints/angle.hpp>
 #include <polybody/joints/joint_axis.hpp>
-#include <polybody/math/time_laws.hpp>
+#include <polybody/math/time_functions.hpp>
 
 namespace polybody {
 
@@ -12,11 +12,11 @@ namespace polybody {
 ///   g = θ − ψ, θ = atan2(a₂·b₁, a₁·b₁)      [Haug 1989, §3.5]
 /// wrapped to [−π, π]; angles beyond a full turn need no counting. With b₁ in the plane of
 /// a₁, a₂ (as the Revolute keeps it) ġ = a₃·(ω_b − ω_a) − ψ̇ exactly.
-template <TimeLaw Law>
+template <TimeFunction Law>
 struct PrescribedAngle {
   static constexpr char const* name = "PrescribedAngle";
   static constexpr int rows = 1;
-  static constexpr Observes needs = Observes::frame;
+  static constexpr MarkerKind needs = MarkerKind::frame;
   static constexpr World world = World::both;
   static constexpr double period = 2.0 * std::numbers::pi;  ///< by which the law's value may jump [rad]
 
@@ -25,28 +25,29 @@ struct PrescribedAngle {
 
   template <class = void>  // compiled where it is used
   Mat3 triad() const {
-    return polybody::rows::triad_about(axis, "PrescribedAngle: the axis");
+    return polybody::constraint_functions::triad_about(axis, "PrescribedAngle: the axis");
   }
-  void check(std::string const& what) const { check_drive(law, what + ": the law of time"); }
-  std::vector<double> corners() const { return corners_of(law); }
+  void check(std::string const& what) const { check_driving_function(law, what + ": the law of time"); }
+  std::vector<double> breakpoints() const { return breakpoints_of(law); }
 
   template <StateScalar T>
-  Gap<1, T> gap(Frame<T> const& a, Frame<T> const& b, double t) const {
+  ConstraintTerms<1, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double t) const {
     Motion const psi = law(t);
-    Gap<1, T> gap = polybody::rows::angle(polybody::rows::turned(a, b));
-    gap.g[0] = polybody::rows::wrapped(gap.g[0] - psi.value);
+    ConstraintTerms<1, T> gap = polybody::constraint_functions::angle(polybody::constraint_functions::turned(a, b));
+    gap.g[0] = polybody::constraint_functions::wrapped(gap.g[0] - psi.value);
     gap.rate[0] = T(-psi.rate);
     return gap;
   }
   template <StateScalar T>
   Vec<T, 1> gamma(Frame<T> const& a, Frame<T> const& b, double t) const {
-    return Vec<T, 1>(polybody::rows::turn_gamma(polybody::rows::turned(a, b), a, b) - Motion(law(t)).acceleration);
+    return Vec<T, 1>(polybody::constraint_functions::turn_gamma(polybody::constraint_functions::turned(a, b), a, b) -
+                     Motion(law(t)).acceleration);
   }
   template <class = void>  // compiled where it is used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 1> const& lambda) const {
     auto k = detail::zeros<Mat<double, 12, 12>>();
-    polybody::rows::turn_gradient(a, b, lambda[0], k);
+    polybody::constraint_functions::turn_gradient(a, b, lambda[0], k);
     return k;
   }
 };

@@ -1,16 +1,16 @@
 #pragma once
-#include <polybody/joints/rows.hpp>
-#include <polybody/math/time_laws.hpp>
+#include <polybody/joints/constraint_functions.hpp>
+#include <polybody/math/time_functions.hpp>
 
 namespace polybody {
 
 /// Linear actuator between two points, in the plane and in space, 1 row
 ///   g = |r_b − r_a| − L − x(t)      [Haug 1989, §3.5, there squared].
-template <TimeLaw Law>
+template <TimeFunction Law>
 struct PrescribedDistance {
   static constexpr char const* name = "PrescribedDistance";
   static constexpr int rows = 1;
-  static constexpr Observes needs = Observes::point;
+  static constexpr MarkerKind needs = MarkerKind::point;
   static constexpr World world = World::both;
 
   Law law;                  ///< stroke x [m], rate and acceleration as functions of time [s]
@@ -19,27 +19,27 @@ struct PrescribedDistance {
   Mat3 triad() const { return identity(); }
   void check(std::string const& what) const {
     require_positive(length, what, ": the length");
-    check_drive(law, what + ": the law of time");
+    check_driving_function(law, what + ": the law of time");
   }
-  std::vector<double> corners() const { return corners_of(law); }
+  std::vector<double> breakpoints() const { return breakpoints_of(law); }
 
   template <StateScalar T>
-  Gap<1, T> gap(Frame<T> const& a, Frame<T> const& b, double t) const {
+  ConstraintTerms<1, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double t) const {
     Motion const x = law(t);
-    Gap<1, T> gap;
-    polybody::rows::distance(a, b, length + x.value, gap);
+    ConstraintTerms<1, T> gap;
+    polybody::constraint_functions::distance(a, b, length + x.value, gap);
     gap.rate[0] = T(-x.rate);
     return gap;
   }
   template <StateScalar T>
   Vec<T, 1> gamma(Frame<T> const& a, Frame<T> const& b, double t) const {
-    return Vec<T, 1>(polybody::rows::distance_gamma(a, b) - Motion(law(t)).acceleration);
+    return Vec<T, 1>(polybody::constraint_functions::distance_gamma(a, b) - Motion(law(t)).acceleration);
   }
   template <class = void>  // compiled where it is used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 1> const& lambda) const {
     auto k = detail::zeros<Mat<double, 12, 12>>();
-    polybody::rows::distance_gradient(a, b, lambda[0], k);
+    polybody::constraint_functions::distance_gradient(a, b, lambda[0], k);
     return k;
   }
 };

@@ -4,11 +4,11 @@
 /// markers:
 ///   Revolute = CoincidentPoints + ParallelAxes          Universal    = CoincidentPoints + PerpendicularAxes
 ///   Prismatic = PointOnLine + Orientation               Weld         = CoincidentPoints + Orientation
-///   Cylindrical = PointOnLine + ParallelAxes            PlaneOnPlane = PointInPlane + ParallelAxes
+///   Cylindrical = PointOnLine + ParallelAxes            PlanarJoint = PointInPlane + ParallelAxes
 ///   PointOnLine = two of PointInPlane                   Orientation  = ParallelAxes + PerpendicularAxes
 /// A named joint spares the repeated frames; the motions are the same.      [Haug 1989, §9.4]
 
-#include <polybody/joints/orientation.hpp>
+#include <polybody/joints/constant_orientation.hpp>
 #include <polybody/joints/point_in_plane.hpp>
 #include <polybody/joints/point_on_line.hpp>
 #include <polybody/joints/spherical.hpp>
@@ -22,8 +22,8 @@ using CoincidentPoints = Spherical;
 struct PerpendicularAxes {
   static constexpr char const* name = "PerpendicularAxes";
   static constexpr int rows = 1;
-  static constexpr Observes needs = Observes::frame;
-  static constexpr Observes needs_of_second = Observes::axis;
+  static constexpr MarkerKind needs = MarkerKind::frame;
+  static constexpr MarkerKind needs_of_second = MarkerKind::axis;
   static constexpr World world = World::space;
   static constexpr bool opposite_ends = true;
 
@@ -32,25 +32,26 @@ struct PerpendicularAxes {
 
   template <class = void>  // compiled where it is used
   Mat3 triad() const {
-    return polybody::rows::triad_of(first.required("PerpendicularAxes: the first axis"),
-                                    second.required("PerpendicularAxes: the second axis"), "PerpendicularAxes");
+    return polybody::constraint_functions::triad_of(first.required("PerpendicularAxes: the first axis"),
+                                                    second.required("PerpendicularAxes: the second axis"),
+                                                    "PerpendicularAxes");
   }
 
   template <StateScalar T>
-  Gap<1, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
-    Gap<1, T> gap;
-    polybody::rows::perpendicular(axis_of(a, 0), axis_of(b, 2), gap, 0);
+  ConstraintTerms<1, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
+    ConstraintTerms<1, T> gap;
+    polybody::constraint_functions::perpendicular(axis_of(a, 0), axis_of(b, 2), gap, 0);
     return gap;
   }
   template <StateScalar T>
   Vec<T, 1> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
-    return Vec<T, 1>(polybody::rows::perpendicular_gamma(axis_of(a, 0), axis_of(b, 2), a, b));
+    return Vec<T, 1>(polybody::constraint_functions::perpendicular_gamma(axis_of(a, 0), axis_of(b, 2), a, b));
   }
   template <class = void>  // compiled where it is used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 1> const& lambda) const {
     auto k = detail::zeros<Mat<double, 12, 12>>();
-    polybody::rows::perpendicular_gradient(axis_of(a, 0), axis_of(b, 2), lambda[0], k);
+    polybody::constraint_functions::perpendicular_gradient(axis_of(a, 0), axis_of(b, 2), lambda[0], k);
     return k;
   }
 };
@@ -59,34 +60,34 @@ struct PerpendicularAxes {
 struct ParallelAxes {
   static constexpr char const* name = "ParallelAxes";
   static constexpr int rows = 2;
-  static constexpr Observes needs = Observes::frame;
-  static constexpr Observes needs_of_second = Observes::axis;
+  static constexpr MarkerKind needs = MarkerKind::frame;
+  static constexpr MarkerKind needs_of_second = MarkerKind::axis;
   static constexpr World world = World::space;
   static constexpr bool opposite_ends = true;
-  static constexpr Freedoms free = {true, true, true, false, false, true};
+  static constexpr FreeDirections free = {true, true, true, false, false, true};
 
   JointAxis axis = {};  ///< (3) unit vector, world axes at the reference configuration
 
   template <class = void>  // compiled where it is used
   Mat3 triad() const {
-    return polybody::rows::triad_about(axis, "ParallelAxes: the axis");
+    return polybody::constraint_functions::triad_about(axis, "ParallelAxes: the axis");
   }
 
   template <StateScalar T>
-  Gap<2, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
-    Gap<2, T> gap;
-    polybody::rows::same_direction(a, b, gap, 0);
+  ConstraintTerms<2, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
+    ConstraintTerms<2, T> gap;
+    polybody::constraint_functions::same_direction(a, b, gap, 0);
     return gap;
   }
   template <StateScalar T>
   Vec<T, 2> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
-    return polybody::rows::same_direction_gamma(a, b);
+    return polybody::constraint_functions::same_direction_gamma(a, b);
   }
   template <class = void>  // compiled where it is used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 2> const& lambda) const {
     auto k = detail::zeros<Mat<double, 12, 12>>();
-    polybody::rows::same_direction_gradient(a, b, lambda, k);
+    polybody::constraint_functions::same_direction_gradient(a, b, lambda, k);
     return k;
   }
 };

@@ -8,38 +8,38 @@ namespace polybody {
 struct Prismatic {
   static constexpr char const* name = "Prismatic";
   static constexpr int rows = 5;
-  static constexpr Observes needs = Observes::frame;
+  static constexpr MarkerKind needs = MarkerKind::frame;
   static constexpr World world = World::space;
-  static constexpr Freedoms free = {false, false, true};
+  static constexpr FreeDirections free = {false, false, true};
 
   JointAxis axis = {};  ///< (3) unit vector of the slide, world axes at the reference configuration
 
   template <class = void>  // compiled where it is used
   Mat3 triad() const {
-    return polybody::rows::triad_about(axis, "Prismatic: the axis");
+    return polybody::constraint_functions::triad_about(axis, "Prismatic: the axis");
   }
 
   template <StateScalar T>
-  Gap<5, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
-    Gap<5, T> gap;
-    polybody::rows::no_slide(axis_of(a, 0), a, b, gap, 0);
-    polybody::rows::no_slide(axis_of(a, 1), a, b, gap, 1);
-    polybody::rows::parallel(a, b, gap, 2);
+  ConstraintTerms<5, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
+    ConstraintTerms<5, T> gap;
+    polybody::constraint_functions::no_slide(axis_of(a, 0), a, b, gap, 0);
+    polybody::constraint_functions::no_slide(axis_of(a, 1), a, b, gap, 1);
+    polybody::constraint_functions::parallel(a, b, gap, 2);
     return gap;
   }
   template <StateScalar T>
   Vec<T, 5> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
-    Vec<T, 2> const on_axis = polybody::rows::on_axis_gamma(a, b);
-    Vec<T, 3> const parallel = polybody::rows::parallel_gamma(a, b);
+    Vec<T, 2> const on_axis = polybody::constraint_functions::on_axis_gamma(a, b);
+    Vec<T, 3> const parallel = polybody::constraint_functions::parallel_gamma(a, b);
     return {on_axis[0], on_axis[1], parallel[0], parallel[1], parallel[2]};
   }
   template <class = void>  // compiled where it is used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 5> const& lambda) const {
     auto k = detail::zeros<Mat<double, 12, 12>>();
-    polybody::rows::no_slide_gradient(axis_of(a, 0), a, b, lambda[0], k);
-    polybody::rows::no_slide_gradient(axis_of(a, 1), a, b, lambda[1], k);
-    polybody::rows::parallel_gradient(a, b, {lambda[2], lambda[3], lambda[4]}, k);
+    polybody::constraint_functions::no_slide_gradient(axis_of(a, 0), a, b, lambda[0], k);
+    polybody::constraint_functions::no_slide_gradient(axis_of(a, 1), a, b, lambda[1], k);
+    polybody::constraint_functions::parallel_gradient(a, b, {lambda[2], lambda[3], lambda[4]}, k);
     return k;
   }
 };

@@ -12,7 +12,7 @@ namespace polybody {
 struct RackAndPinion {
   static constexpr char const* name = "RackAndPinion";
   static constexpr int rows = 1;
-  static constexpr Observes needs = Observes::frame;
+  static constexpr MarkerKind needs = MarkerKind::frame;
   static constexpr World world = World::both;
 
   Required<double> radius;   ///< R [m] of the pitch circle; the rack touches it on the side of axis × direction, or
@@ -24,7 +24,7 @@ struct RackAndPinion {
   Mat3 triad() const {
     require_unit(axis.required("RackAndPinion: the axis"), "RackAndPinion: the axis");
     require_unit(direction.required("RackAndPinion: the direction"), "RackAndPinion: the direction");
-    return polybody::rows::triad_of(direction, axis, "RackAndPinion");
+    return polybody::constraint_functions::triad_of(direction, axis, "RackAndPinion");
   }
   void check(std::string const& what) const {
     if (!std::isfinite(radius) || radius == 0.0)
@@ -32,20 +32,20 @@ struct RackAndPinion {
   }
 
   template <StateScalar T>
-  Gap<1, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
-    Gap<1, T> gap;
-    polybody::rows::slide_and_turn(axis_of(a, 0), radius, a, b, gap, 0);
+  ConstraintTerms<1, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
+    ConstraintTerms<1, T> gap;
+    polybody::constraint_functions::slide_and_turn(axis_of(a, 0), radius, a, b, gap, 0);
     return gap;
   }
   template <StateScalar T>
   Vec<T, 1> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
-    return Vec<T, 1>(polybody::rows::slide_and_turn_gamma(axis_of(a, 0), radius, a, b));
+    return Vec<T, 1>(polybody::constraint_functions::slide_and_turn_gamma(axis_of(a, 0), radius, a, b));
   }
   template <class = void>  // compiled where it is used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 1> const& lambda) const {
     auto k = detail::zeros<Mat<double, 12, 12>>();
-    polybody::rows::slide_and_turn_gradient(axis_of(a, 0), radius, a, b, lambda[0], k);
+    polybody::constraint_functions::slide_and_turn_gradient(axis_of(a, 0), radius, a, b, lambda[0], k);
     return k;
   }
 };

@@ -16,20 +16,20 @@ namespace polybody {
 struct RelativeCoordinates {
   static constexpr char const* name = "RelativeCoordinates";
   static constexpr int rows = 6;
-  static constexpr Observes needs = Observes::frame;
+  static constexpr MarkerKind needs = MarkerKind::frame;
   static constexpr World world = World::both;
-  static constexpr Freedoms free = {};
+  static constexpr FreeDirections free = {};
 
   TurnAxis axis = {};  ///< (3) unit vector of the third axis, world axes at the reference configuration
 
   template <class = void>  // compiled where it is used
   Mat3 triad() const {
-    return polybody::rows::triad_about(axis, "RelativeCoordinates: the axis");
+    return polybody::constraint_functions::triad_about(axis, "RelativeCoordinates: the axis");
   }
 
   template <StateScalar T>
-  Gap<6, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
-    Gap<6, T> gap;
+  ConstraintTerms<6, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
+    ConstraintTerms<6, T> gap;
     slide(a, b, gap);
     turn(a, b, gap);
     return gap;
@@ -37,12 +37,12 @@ struct RelativeCoordinates {
 
   /// Writes the first three rows.
   template <StateScalar T>
-  static void slide(Frame<T> const& a, Frame<T> const& b, Gap<6, T>& gap) {
-    for (int i = 0; i < 3; ++i) polybody::rows::no_slide(axis_of(a, i), a, b, gap, i);
+  static void slide(Frame<T> const& a, Frame<T> const& b, ConstraintTerms<6, T>& gap) {
+    for (int i = 0; i < 3; ++i) polybody::constraint_functions::no_slide(axis_of(a, i), a, b, gap, i);
   }
   /// Writes the last three.
   template <StateScalar T>
-  static void turn(Frame<T> const& a, Frame<T> const& b, Gap<6, T>& gap) {
+  static void turn(Frame<T> const& a, Frame<T> const& b, ConstraintTerms<6, T>& gap) {
     Turn<T> const x(a, b);
     Mat<T, 3, 3> const map = product<T>(x.map, transposed<T>(a.A));
     gap.g[3] = x.s[0];
@@ -69,7 +69,7 @@ struct RelativeCoordinates {
     left = times<T>(x.map, left);
     Vec<T, 6> gamma;
     for (int i = 0; i < 3; ++i) {
-      gamma[i] = polybody::rows::no_slide_gamma(axis_of(a, i), a, b);
+      gamma[i] = polybody::constraint_functions::no_slide_gamma(axis_of(a, i), a, b);
       gamma[3 + i] = left[i];
     }
     return gamma;
@@ -81,7 +81,8 @@ struct RelativeCoordinates {
   template <class = void>  // compiled where it is used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b, Vec6 const& lambda) const {
     auto k = detail::zeros<Mat<double, 12, 12>>();
-    polybody::rows::no_slide_gradient(times<double>(a.A, {lambda[0], lambda[1], lambda[2]}), a, b, 1.0, k);
+    polybody::constraint_functions::no_slide_gradient(times<double>(a.A, {lambda[0], lambda[1], lambda[2]}), a, b, 1.0,
+                                                      k);
     Turn<double> const x(a, b);
     Mat3 const inverse = right_jacobian_inverse<double>(x.s), n_fall = skew<double>(x.n);  // δn = −n_fall δθ
     Vec3 const l(lambda[3], lambda[4], lambda[5]), kappa = times<double>(inverse, l);
@@ -151,20 +152,20 @@ struct RelativeCoordinates {
 /// These coordinates of a joint with geometry G, without those that G leaves free: their rows are zero, so no force
 /// finds a way to them, however far they go.
 template <JointGeometry G>
-struct HeldCoordinates {
+struct ConstrainedCoordinates {
   static_assert(
-      NamesFreedoms<G>,
+      HasFreeDirections<G>,
       "A bushing stands in for a joint of bodies that says which of the six relative coordinates it leaves free "
       "(`free`). This geometry does not; use Constraint or Penalty.");
   static constexpr int rows = 6;
-  static constexpr Observes needs = Observes::frame;
-  static constexpr Observes needs_of_second = polybody::needs_of_second<G>();
+  static constexpr MarkerKind needs = MarkerKind::frame;
+  static constexpr MarkerKind needs_of_second = polybody::needs_of_second<G>();
   /// G leaves all three turns free: turns are not measured.
   static constexpr bool may_turn = G::free[3] && G::free[4] && G::free[5];
 
   template <StateScalar T>
-  Gap<6, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
-    Gap<6, T> gap;
+  ConstraintTerms<6, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
+    ConstraintTerms<6, T> gap;
     RelativeCoordinates::slide(a, b, gap);
     if constexpr (!may_turn) RelativeCoordinates::turn(a, b, gap);
     for (int i = 0; i < 6; ++i)
@@ -180,7 +181,7 @@ struct HeldCoordinates {
     if constexpr (!may_turn) return RelativeCoordinates{}.wrench_gradient(a, b, lambda);
     auto k = detail::zeros<Mat<double, 12, 12>>();
     Vec3 const force = RelativeCoordinates::times<double>(a.A, {lambda[0], lambda[1], lambda[2]});
-    polybody::rows::no_slide_gradient(force, a, b, 1.0, k);
+    polybody::constraint_functions::no_slide_gradient(force, a, b, 1.0, k);
     return k;
   }
 };

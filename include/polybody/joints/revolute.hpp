@@ -9,40 +9,40 @@ namespace polybody {
 struct Revolute {
   static constexpr char const* name = "Revolute";
   static constexpr int rows = 5;
-  static constexpr Observes needs = Observes::frame;
-  static constexpr Observes needs_of_second = Observes::axis;
+  static constexpr MarkerKind needs = MarkerKind::frame;
+  static constexpr MarkerKind needs_of_second = MarkerKind::axis;
   static constexpr World world = World::space;
   static constexpr bool opposite_ends = true;
-  static constexpr Freedoms free = {false, false, false, false, false, true};
+  static constexpr FreeDirections free = {false, false, false, false, false, true};
 
   JointAxis axis = {};  ///< (3) unit vector of the pin, world axes at the reference configuration
 
   template <class = void>  // compiled where it is used
   Mat3 triad() const {
-    return polybody::rows::triad_about(axis, "Revolute: the axis");
+    return polybody::constraint_functions::triad_about(axis, "Revolute: the axis");
   }
 
   template <StateScalar T>
-  Gap<5, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
-    Gap<5, T> gap;
-    polybody::rows::coincident(a, b, gap);
-    polybody::rows::perpendicular(axis_of(a, 0), axis_of(b, 2), gap, 3);
-    polybody::rows::perpendicular(axis_of(a, 1), axis_of(b, 2), gap, 4);
+  ConstraintTerms<5, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
+    ConstraintTerms<5, T> gap;
+    polybody::constraint_functions::coincident(a, b, gap);
+    polybody::constraint_functions::perpendicular(axis_of(a, 0), axis_of(b, 2), gap, 3);
+    polybody::constraint_functions::perpendicular(axis_of(a, 1), axis_of(b, 2), gap, 4);
     return gap;
   }
   template <StateScalar T>
   Vec<T, 5> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
     Vec<T, 5> gamma = detail::zeros<Vec<T, 5>>();
-    gamma[3] = polybody::rows::perpendicular_gamma(axis_of(a, 0), axis_of(b, 2), a, b);
-    gamma[4] = polybody::rows::perpendicular_gamma(axis_of(a, 1), axis_of(b, 2), a, b);
+    gamma[3] = polybody::constraint_functions::perpendicular_gamma(axis_of(a, 0), axis_of(b, 2), a, b);
+    gamma[4] = polybody::constraint_functions::perpendicular_gamma(axis_of(a, 1), axis_of(b, 2), a, b);
     return gamma;
   }
   template <class = void>  // compiled where it is used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 5> const& lambda) const {
     auto k = detail::zeros<Mat<double, 12, 12>>();
-    polybody::rows::perpendicular_gradient(axis_of(a, 0), axis_of(b, 2), lambda[3], k);
-    polybody::rows::perpendicular_gradient(axis_of(a, 1), axis_of(b, 2), lambda[4], k);
+    polybody::constraint_functions::perpendicular_gradient(axis_of(a, 0), axis_of(b, 2), lambda[3], k);
+    polybody::constraint_functions::perpendicular_gradient(axis_of(a, 1), axis_of(b, 2), lambda[4], k);
     return k;
   }
 };

@@ -10,8 +10,8 @@ namespace polybody {
 struct RevolutePin {
   static constexpr char const* name = "RevolutePin";
   static constexpr int rows = 5;
-  static constexpr Observes needs = Observes::frame;
-  static constexpr Observes needs_of_second = Observes::axis;
+  static constexpr MarkerKind needs = MarkerKind::frame;
+  static constexpr MarkerKind needs_of_second = MarkerKind::axis;
   static constexpr World world = World::space;
 
   Required<double> distance;  ///< L [m]
@@ -19,7 +19,7 @@ struct RevolutePin {
 
   template <class = void>  // compiled where it is used
   Mat3 triad() const {
-    return polybody::rows::triad_about(axis, "RevolutePin: the axis");
+    return polybody::constraint_functions::triad_about(axis, "RevolutePin: the axis");
   }
   void check(std::string const& what) const {
     if (!(distance > 0.0) || !std::isfinite(distance))
@@ -28,10 +28,10 @@ struct RevolutePin {
   }
 
   template <StateScalar T>
-  Gap<5, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
-    Gap<5, T> gap;
-    polybody::rows::same_direction(a, b, gap, 0);
-    polybody::rows::on_axis(a, b, gap, 2);
+  ConstraintTerms<5, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
+    ConstraintTerms<5, T> gap;
+    polybody::constraint_functions::same_direction(a, b, gap, 0);
+    polybody::constraint_functions::on_axis(a, b, gap, 2);
     Vec<T, 3> const d = b.r - a.r;
     gap.g[4] = d.dot(d) - double(distance) * distance;
     for (int i = 0; i < 3; ++i) {
@@ -42,8 +42,8 @@ struct RevolutePin {
   }
   template <StateScalar T>
   Vec<T, 5> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
-    Vec<T, 2> const parallel = polybody::rows::same_direction_gamma(a, b),
-                    on_axis = polybody::rows::on_axis_gamma(a, b);
+    Vec<T, 2> const parallel = polybody::constraint_functions::same_direction_gamma(a, b),
+                    on_axis = polybody::constraint_functions::on_axis_gamma(a, b);
     Vec<T, 3> const rate = b.v - a.v;
     return {parallel[0], parallel[1], on_axis[0], on_axis[1], T(rate.dot(rate) * 2.0)};
   }
@@ -51,8 +51,8 @@ struct RevolutePin {
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 5> const& lambda) const {
     auto k = detail::zeros<Mat<double, 12, 12>>();
-    polybody::rows::same_direction_gradient(a, b, {lambda[0], lambda[1]}, k);
-    polybody::rows::on_axis_gradient(a, b, {lambda[2], lambda[3]}, k);
+    polybody::constraint_functions::same_direction_gradient(a, b, {lambda[0], lambda[1]}, k);
+    polybody::constraint_functions::on_axis_gradient(a, b, {lambda[2], lambda[3]}, k);
     for (int i = 0; i < 3; ++i) {
       k(i, i) += 2.0 * lambda[4];
       k(i, i + 6) -= 2.0 * lambda[4];

@@ -14,8 +14,8 @@ namespace polybody {
 struct RollingDisc {
   static constexpr char const* name = "RollingDisc";
   static constexpr int rows = 3;
-  static constexpr int velocity_rows = 2;
-  static constexpr Observes needs = Observes::frame;
+  static constexpr int nonholonomic_equations = 2;
+  static constexpr MarkerKind needs = MarkerKind::frame;
   static constexpr World world = World::space;
 
   Required<double> radius;  ///< R [m]
@@ -31,14 +31,14 @@ struct RollingDisc {
     Vec3 const first = up.cross(own);
     if (first.norm() < 1e-6)
       throw InvalidInput("RollingDisc: the disc must not lie flat on the plane at the reference configuration.");
-    return polybody::rows::triad_of(first.normalized(), own, "RollingDisc");
+    return polybody::constraint_functions::triad_of(first.normalized(), own, "RollingDisc");
   }
   void check(std::string const& what) const { require_positive(radius, what, ": the radius"); }
 
   template <StateScalar T>
-  Gap<3, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
+  ConstraintTerms<3, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
     Contact<T> const c(*this, a, b);
-    Gap<3, T> gap;
+    ConstraintTerms<3, T> gap;
     gap.g[0] = c.n.dot(c.p);
     for (int i = 0; i < 3; ++i) {
       Vec<T, 3> const direction = c.direction(i);

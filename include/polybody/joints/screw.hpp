@@ -11,7 +11,7 @@ namespace polybody {
 struct Screw {
   static constexpr char const* name = "Screw";
   static constexpr int rows = 5;
-  static constexpr Observes needs = Observes::frame;
+  static constexpr MarkerKind needs = MarkerKind::frame;
   static constexpr World world = World::space;
 
   Required<double> pitch;  ///< p, slide for each radian [m/rad], the lead over 2π; negative for a left-handed thread
@@ -19,7 +19,7 @@ struct Screw {
 
   template <class = void>  // compiled where it is used
   Mat3 triad() const {
-    return polybody::rows::triad_about(axis, "Screw: the axis");
+    return polybody::constraint_functions::triad_about(axis, "Screw: the axis");
   }
   JointMotions motions() const { return {.list = {JointMotion{JointMotion::Kind::screw, 2, pitch}}, .count = 1}; }
   void check(std::string const& what) const {
@@ -29,27 +29,27 @@ struct Screw {
   }
 
   template <StateScalar T>
-  Gap<5, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
-    Gap<5, T> gap;
-    polybody::rows::on_axis(a, b, gap, 0);
-    polybody::rows::same_direction(a, b, gap, 2);
-    polybody::rows::slide_and_turn(axis_of(a, 2), pitch, a, b, gap, 4);
+  ConstraintTerms<5, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
+    ConstraintTerms<5, T> gap;
+    polybody::constraint_functions::on_axis(a, b, gap, 0);
+    polybody::constraint_functions::same_direction(a, b, gap, 2);
+    polybody::constraint_functions::slide_and_turn(axis_of(a, 2), pitch, a, b, gap, 4);
     return gap;
   }
   template <StateScalar T>
   Vec<T, 5> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
-    Vec<T, 2> const on_axis = polybody::rows::on_axis_gamma(a, b),
-                    parallel = polybody::rows::same_direction_gamma(a, b);
+    Vec<T, 2> const on_axis = polybody::constraint_functions::on_axis_gamma(a, b),
+                    parallel = polybody::constraint_functions::same_direction_gamma(a, b);
     return {on_axis[0], on_axis[1], parallel[0], parallel[1],
-            polybody::rows::slide_and_turn_gamma<T>(axis_of(a, 2), pitch, a, b)};
+            polybody::constraint_functions::slide_and_turn_gamma<T>(axis_of(a, 2), pitch, a, b)};
   }
   template <class = void>  // compiled where it is used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 5> const& lambda) const {
     auto k = detail::zeros<Mat<double, 12, 12>>();
-    polybody::rows::on_axis_gradient(a, b, {lambda[0], lambda[1]}, k);
-    polybody::rows::same_direction_gradient(a, b, {lambda[2], lambda[3]}, k);
-    polybody::rows::slide_and_turn_gradient(axis_of(a, 2), pitch, a, b, lambda[4], k);
+    polybody::constraint_functions::on_axis_gradient(a, b, {lambda[0], lambda[1]}, k);
+    polybody::constraint_functions::same_direction_gradient(a, b, {lambda[2], lambda[3]}, k);
+    polybody::constraint_functions::slide_and_turn_gradient(axis_of(a, 2), pitch, a, b, lambda[4], k);
     return k;
   }
 };

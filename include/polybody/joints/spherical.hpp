@@ -1,5 +1,5 @@
 #pragma once
-#include <polybody/joints/rows.hpp>
+#include <polybody/joints/constraint_functions.hpp>
 
 namespace polybody {
 
@@ -7,17 +7,17 @@ namespace polybody {
 struct Spherical {
   static constexpr char const* name = "Spherical";
   static constexpr int rows = 3;
-  static constexpr Observes needs = Observes::point;
+  static constexpr MarkerKind needs = MarkerKind::point;
   static constexpr World world = World::space;
   static constexpr bool opposite_ends = true;
-  static constexpr Freedoms free = {false, false, false, true, true, true};
+  static constexpr FreeDirections free = {false, false, false, true, true, true};
 
   Mat3 triad() const { return identity(); }
 
   template <StateScalar T>
-  Gap<3, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
-    Gap<3, T> gap;
-    polybody::rows::coincident(a, b, gap);
+  ConstraintTerms<3, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
+    ConstraintTerms<3, T> gap;
+    polybody::constraint_functions::coincident(a, b, gap);
     return gap;
   }
   template <StateScalar T>

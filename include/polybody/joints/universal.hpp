@@ -10,8 +10,8 @@ namespace polybody {
 struct Universal {
   static constexpr char const* name = "Universal";
   static constexpr int rows = 4;
-  static constexpr Observes needs = Observes::frame;
-  static constexpr Observes needs_of_second = Observes::axis;
+  static constexpr MarkerKind needs = MarkerKind::frame;
+  static constexpr MarkerKind needs_of_second = MarkerKind::axis;
   static constexpr World world = World::space;
   static constexpr bool opposite_ends = true;
 
@@ -20,8 +20,8 @@ struct Universal {
 
   template <class = void>  // compiled where it is used
   Mat3 triad() const {
-    return polybody::rows::triad_of(first.required("Universal: the first axis"),
-                                    second.required("Universal: the second axis"), "Universal");
+    return polybody::constraint_functions::triad_of(first.required("Universal: the first axis"),
+                                                    second.required("Universal: the second axis"), "Universal");
   }
   /// About a₁, then about b₃.
   JointMotions motions() const {
@@ -29,23 +29,23 @@ struct Universal {
   }
 
   template <StateScalar T>
-  Gap<4, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
-    Gap<4, T> gap;
-    polybody::rows::coincident(a, b, gap);
-    polybody::rows::perpendicular(axis_of(a, 0), axis_of(b, 2), gap, 3);
+  ConstraintTerms<4, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
+    ConstraintTerms<4, T> gap;
+    polybody::constraint_functions::coincident(a, b, gap);
+    polybody::constraint_functions::perpendicular(axis_of(a, 0), axis_of(b, 2), gap, 3);
     return gap;
   }
   template <StateScalar T>
   Vec<T, 4> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
     Vec<T, 4> gamma = detail::zeros<Vec<T, 4>>();
-    gamma[3] = polybody::rows::perpendicular_gamma(axis_of(a, 0), axis_of(b, 2), a, b);
+    gamma[3] = polybody::constraint_functions::perpendicular_gamma(axis_of(a, 0), axis_of(b, 2), a, b);
     return gamma;
   }
   template <class = void>  // compiled where it is used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 4> const& lambda) const {
     auto k = detail::zeros<Mat<double, 12, 12>>();
-    polybody::rows::perpendicular_gradient(axis_of(a, 0), axis_of(b, 2), lambda[3], k);
+    polybody::constraint_functions::perpendicular_gradient(axis_of(a, 0), axis_of(b, 2), lambda[3], k);
     return k;
   }
 };

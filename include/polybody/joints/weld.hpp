@@ -1,5 +1,5 @@
 #pragma once
-#include <polybody/joints/rows.hpp>
+#include <polybody/joints/constraint_functions.hpp>
 
 namespace polybody {
 
@@ -7,24 +7,24 @@ namespace polybody {
 struct Weld {
   static constexpr char const* name = "Weld";
   static constexpr int rows = 6;
-  static constexpr Observes needs = Observes::frame;
+  static constexpr MarkerKind needs = MarkerKind::frame;
   static constexpr World world = World::space;
   static constexpr bool opposite_ends = true;
-  static constexpr Freedoms free = {};
+  static constexpr FreeDirections free = {};
 
   Mat3 triad() const { return identity(); }
 
   template <StateScalar T>
-  Gap<6, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
-    Gap<6, T> gap;
-    polybody::rows::coincident(a, b, gap);
-    polybody::rows::parallel(a, b, gap, 3);
+  ConstraintTerms<6, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
+    ConstraintTerms<6, T> gap;
+    polybody::constraint_functions::coincident(a, b, gap);
+    polybody::constraint_functions::parallel(a, b, gap, 3);
     return gap;
   }
   template <StateScalar T>
   Vec<T, 6> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
     Vec<T, 6> gamma = detail::zeros<Vec<T, 6>>();
-    Vec<T, 3> const parallel = polybody::rows::parallel_gamma(a, b);
+    Vec<T, 3> const parallel = polybody::constraint_functions::parallel_gamma(a, b);
     for (int i = 0; i < 3; ++i) gamma[3 + i] = parallel[i];
     return gamma;
   }
@@ -32,7 +32,7 @@ struct Weld {
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 6> const& lambda) const {
     auto k = detail::zeros<Mat<double, 12, 12>>();
-    polybody::rows::parallel_gradient(a, b, {lambda[3], lambda[4], lambda[5]}, k);
+    polybody::constraint_functions::parallel_gradient(a, b, {lambda[3], lambda[4], lambda[5]}, k);
     return k;
   }
 };

@@ -35,7 +35,7 @@ struct PlacedWrench {
 };
 
 /// Kinematics that a marker provides: a point, a point and its first axis, or a full frame.
-enum class Observes { point, axis, frame };
+enum class MarkerKind { point, axis, frame };
 
 /// Dimension of a body: plane or space. A joint connects bodies of one dimension; the ground belongs to both.
 enum class World { plane, space, both };

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include <polybody/kinematics/body_entries.hpp>
+#include <polybody/kinematics/body_table.hpp>
 #include <polybody/kinematics/frame.hpp>
 #include <polybody/math/sequence.hpp>
 
@@ -23,9 +23,9 @@ inline void require_filled(std::uint64_t model) {
 /// Material point of a body of type B in a model with a given serial number.
 template <class B>
 struct Marker {
-  using BodyType = B;                                ///< type of its body
-  static constexpr World world = B::world;           ///< plane or space
-  static constexpr Observes observes = B::observes;  ///< provides a point, an axis or a frame
+  using BodyType = B;                                  ///< type of its body
+  static constexpr World world = B::world;             ///< plane or space
+  static constexpr MarkerKind observes = B::observes;  ///< provides a point, an axis or a frame
 
   std::uint64_t model = 0;       ///< serial number of the model that created it
   Index body = 0;                ///< number of the body among the bodies of its type
@@ -34,9 +34,9 @@ struct Marker {
 
 /// The world as a body without coordinates. Its points are placements.
 struct Ground {
-  static constexpr World world = World::both;            ///< connects to bodies of the plane and of space
-  static constexpr Observes observes = Observes::frame;  ///< its markers provide a full frame
-  using Point = Placement;                               ///< position and axes of a marker
+  static constexpr World world = World::both;                ///< connects to bodies of the plane and of space
+  static constexpr MarkerKind observes = MarkerKind::frame;  ///< its markers provide a full frame
+  using Point = Placement;                                   ///< position and axes of a marker
 
   /// Marker at `origin` [m] with axes parallel to the world axes.
   template <class = void>  // compiled where it is used
@@ -60,7 +60,7 @@ struct BodyHandle {
   Index index = 0;          ///< number among the bodies of its type
   std::string name = {};    ///< name given by the user
   /// Bodies of this type, shared with the model and not copied; null for the ground.
-  std::shared_ptr<Sequence<detail::BodyEntry<B>> const> bodies = {};
+  std::shared_ptr<Sequence<detail::BodyTableEntry<B>> const> bodies = {};
 
   /// Body in the model. The reference is valid until a body of this type is added to the model.
   /// \throws InvalidInput for a default-constructed handle.

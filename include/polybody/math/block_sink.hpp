@@ -66,22 +66,22 @@ struct BlockSlots {
 
 /// Receiver with a function `add(row, col, block)`, called for each block, always in the same order.
 template <class S>
-concept TakesBlocks = requires(S target, BlockView const& b) { target.add(Index(0), Index(0), b); };
+concept BlockReceiver = requires(S target, BlockView const& b) { target.add(Index(0), Index(0), b); };
 
 /// Receiver that accepts a block of zeros without its values.
 template <class S>
-concept SkipsZeros = requires(S target) { target.skip(Index(0), Index(0), Index(0), Index(0)); };
+concept ZeroSkippingReceiver = requires(S target) { target.skip(Index(0), Index(0), Index(0), Index(0)); };
 
 /// Receiver that already contains the values of some diagonal blocks. If `wants` is false for the unknowns of a
 /// diagonal block, a call of `skip` is sufficient.
 template <class S>
-concept ChoosesBlocks = requires(S target) {
+concept SelectiveReceiver = requires(S target) {
   { target.wants(Index(0), Index(0)) } -> std::convertible_to<bool>;
 };
 
 /// Receiver with a fixed storage layout. Block k is added directly to its parts in the storage.
 template <class S>
-concept OffersSlots = requires(S const target) {
+concept SlottedReceiver = requires(S const target) {
   { target.slots() } -> std::convertible_to<BlockSlots>;
 };
 
@@ -90,15 +90,15 @@ concept OffersSlots = requires(S const target) {
 class BlockSink {
  public:
   /// Passes blocks to `target`: into its `slots()` if it has them, otherwise by a call of its `add` for each block.
-  template <TakesBlocks S>
+  template <BlockReceiver S>
     requires(!std::same_as<std::remove_cvref_t<S>, BlockSink>)
   explicit BlockSink(S& target) : target_(&target) {
-    if constexpr (OffersSlots<S>) slots_ = target.slots();
-    if constexpr (ChoosesBlocks<S>)
+    if constexpr (SlottedReceiver<S>) slots_ = target.slots();
+    if constexpr (SelectiveReceiver<S>)
       wants_ = [](void* of, Index first, Index size) -> bool { return static_cast<S*>(of)->wants(first, size); };
     add_ = [](void* to, Index row, Index col, BlockView const& b) { static_cast<S*>(to)->add(row, col, b); };
     skip_ = [](void* to, Index row, Index col, Index rows, Index cols) {
-      if constexpr (SkipsZeros<S>) {
+      if constexpr (ZeroSkippingReceiver<S>) {
         static_cast<S*>(to)->skip(row, col, rows, cols);
       } else {
         static constexpr double zero = 0.0;

@@ -78,13 +78,13 @@ class InvalidInput : public Error {
 };
 
 /// Initial state that violates a constraint equation; `assemble` corrects it.
-class InconsistentStart : public Error {
+class InconsistentInitialConditions : public Error {
  public:
   using Error::Error;  ///< constructors from a text or its parts, as `Error`
 };
 
 /// Newton's method did not converge; the state is the one at the start of the step.
-class NewtonStalled : public Error {
+class NewtonConvergenceFailure : public Error {
  public:
   using Error::Error;  ///< constructors from a text or its parts, as `Error`
 };
@@ -97,25 +97,25 @@ class Diverged : public Error {
 };
 
 /// A point that slides along a body has passed the end of the body.
-class OffTheEnd : public Error {
+class SliderOutOfRange : public Error {
  public:
   using Error::Error;  ///< constructors from a text or its parts, as `Error`
 };
 
 /// The step control requires a step below the smallest allowed step.
-class StepTooSmall : public Error {
+class MinimumStepReached : public Error {
  public:
   using Error::Error;  ///< constructors from a text or its parts, as `Error`
 };
 
 /// A force, mass or coordinate is NaN or infinite.
-class NonFinite : public Error {
+class NonFiniteValue : public Error {
  public:
   using Error::Error;  ///< constructors from a text or its parts, as `Error`
 };
 
 /// The matrix of a linear system is singular.
-class LinearSolverSingular : public Error {
+class SingularMatrix : public Error {
  public:
   using Error::Error;  ///< constructors from a text or its parts, as `Error`
 };

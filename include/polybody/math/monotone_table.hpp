@@ -39,7 +39,7 @@ class MonotoneTable {
                            ". Sort the points and drop repeated ones."};
       knots_.push_back({p.x, p.y, 0.0, 0.0});
     }
-    set_slopes();
+    set_derivatives();
     for (std::size_t i = 1; i < knots_.size(); ++i)
       knots_[i].area = area(knots_[i - 1], knots_[i].x - knots_[i - 1].x, i);
     double const to_zero = integral(0.0);
@@ -74,7 +74,7 @@ class MonotoneTable {
   /// Computes the derivatives at the points. At an inner point it is the weighted harmonic mean of the secants δ on
   /// both sides, or zero if they differ in sign [Fritsch & Butland 1984]. At an end it is the derivative of the
   /// parabola through three points, limited to the range from zero to 3δ.
-  void set_slopes() {
+  void set_derivatives() {
     std::size_t const n = knots_.size();
     auto const width = [&](std::size_t i) { return knots_[i + 1].x - knots_[i].x; };
     auto const secant = [&](std::size_t i) { return (knots_[i + 1].y - knots_[i].y) / width(i); };

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <optional>
 
-#include <polybody/math/time_laws.hpp>
+#include <polybody/math/time_functions.hpp>
 
 namespace polybody {
 
@@ -46,7 +46,7 @@ class SmoothTable {
     }
     check_knots(what);
     for (Knot const& end : {knots_.front(), knots_.back()})
-      if (end.second != 0.0) corners_.push_back(end.time);
+      if (end.second != 0.0) breakpoints_.push_back(end.time);
     knots_.back().second = 0.0;
   }
 
@@ -60,7 +60,7 @@ class SmoothTable {
   /// Integral ∫ value dt from the first point to t.
   double integral(double t) const { return integral_to(piece(t), t); }
   /// Times of the ends at which the acceleration is discontinuous [s].
-  std::vector<double> corners() const { return corners_; }
+  std::vector<double> breakpoints() const { return breakpoints_; }
 
  private:
   /// Point with the derivatives of the piece that begins at it: [m], [m/s], [m/s²], [m/s³], or [rad] for [m].
@@ -146,7 +146,7 @@ class SmoothTable {
   }
 
   std::vector<Knot> knots_;
-  std::vector<double> corners_;
+  std::vector<double> breakpoints_;
 };
 
 }  // namespace polybody

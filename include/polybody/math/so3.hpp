@@ -79,10 +79,10 @@ struct RotationSeries : ExpSeries<T> {
 /// Derivatives of b and c with respect to x: db/dx = d − c/2 and dc/dx = (3e − d)/2 with d = (½ − b)/x,
 /// e = (1/6 − c)/x.
 template <class T>
-struct RotationSlopes {
+struct RotationDerivatives {
   T b, c;  ///< db/dx and dc/dx [1/rad²]
   /// Evaluates the derivatives at x = |φ|² [rad²].
-  explicit RotationSlopes(T const& x) {
+  explicit RotationDerivatives(T const& x) {
     RotationSeries<T> const s(x);
     bool const small = value_of(x) < 0.25;
     T const d = small ? s.series(x, 4) : T((0.5 - s.b) / x);
@@ -163,7 +163,7 @@ template <class T>
 Mat<T, 3, 3> right_jacobian_derivative(Vec<T, 3> const& phi, Vec<T, 3> const& x) {
   T const angle2 = squared_norm(phi), along_x = dot(phi, x);
   RotationSeries<T> const s(angle2);
-  RotationSlopes<T> const slope(angle2);
+  RotationDerivatives<T> const slope(angle2);
   Vec<T, 3> const once = cross(phi, x), twice = cross(phi, once);
   Mat<T, 3, 3> const of_x = skew(x), of_once = skew(once);
   Mat<T, 3, 3> d;

@@ -118,7 +118,7 @@ inline void require_size(double x, std::string_view what, std::string_view part 
 }
 /// Text " is not finite" for messages, or the excess of x over `largest_number`.
 template <class = void>  // compiled where it is used
-std::string how_not_finite(double x) {
+std::string non_finite_suffix(double x) {
   return std::isfinite(x) ? " is " + number(x) + ", beyond " + number(largest_number) + " whose square is not finite,"
                           : " is not finite";
 }

@@ -4,21 +4,21 @@
 
 #include <cstdint>
 
-#include <polybody/math/pack.hpp>
+#include <polybody/math/simd_vector.hpp>
 #include <polybody/math/types.hpp>
 
 namespace polybody {
 
 /// Position in vectors: `pack_size` entries from `first` on.
-struct PackPlace {
-  Index first;                                                                  ///< index of the first of these entries
-  Pack<> operator()(double const* x) const { return Pack<>::load(x + first); }  ///< loads them from x
-  Pack<> operator()(VecX const& x) const { return Pack<>::load(x.data() + first); }  ///< loads them from x
-  void set(double* x, Pack<> const& value) const { value.store(x + first); }         ///< stores them in x
-  void set(VecX& x, Pack<> const& value) const { value.store(x.data() + first); }    ///< stores them in x
+struct PackIndex {
+  Index first;  ///< index of the first of these entries
+  SimdVector<> operator()(double const* x) const { return SimdVector<>::load(x + first); }       ///< loads them from x
+  SimdVector<> operator()(VecX const& x) const { return SimdVector<>::load(x.data() + first); }  ///< loads them from x
+  void set(double* x, SimdVector<> const& value) const { value.store(x + first); }               ///< stores them in x
+  void set(VecX& x, SimdVector<> const& value) const { value.store(x.data() + first); }          ///< stores them in x
 };
 /// Position of one entry in vectors.
-struct EntryPlace {
+struct EntryIndex {
   Index first;                                                        ///< index of the entry
   double operator()(double const* x) const { return x[first]; }       ///< entry of x
   double operator()(VecX const& x) const { return x.data()[first]; }  ///< entry of x
@@ -30,17 +30,17 @@ struct EntryPlace {
 /// entries of x at this position, `at.set(x, value)` writes them. Variables that f captures by value remain in
 /// registers.
 template <class F>
-[[gnu::always_inline]] inline void for_packs(Index n, F f) {
+[[gnu::always_inline]] inline void for_each_simd_block(Index n, F f) {
   Index i = 0;
-  for (; i + pack_size <= n; i += pack_size) f(PackPlace{i});
-  for (; i < n; ++i) f(EntryPlace{i});
+  for (; i + pack_size <= n; i += pack_size) f(PackIndex{i});
+  for (; i < n; ++i) f(EntryIndex{i});
 }
 
-/// Sum over the entries of `for_packs`.
-class PackSum {
+/// Sum over the entries of `for_each_simd_block`.
+class SimdSum {
  public:
-  void add(Pack<> const& x) { packs_ += x; }  ///< adds a SIMD vector; its entries are summed in `total`
-  void add(double x) { rest_ += x; }          ///< adds the number `x`
+  void add(SimdVector<> const& x) { packs_ += x; }  ///< adds a SIMD vector; its entries are summed in `total`
+  void add(double x) { rest_ += x; }                ///< adds the number `x`
   /// Sum of all added numbers.
   double total() const {
     double sum = rest_;
@@ -49,14 +49,14 @@ class PackSum {
   }
 
  private:
-  Pack<> packs_ = Pack<>();
+  SimdVector<> packs_ = SimdVector<>();
   double rest_ = 0.0;
 };
 
 /// Sum of squares Σ xᵢ² of the n entries at `x`.
 inline double squares(double const* x, Index n) {
-  PackSum sum;
-  for_packs(n, [&](auto at) {
+  SimdSum sum;
+  for_each_simd_block(n, [&](auto at) {
     auto const entry = at(x);
     sum.add(entry * entry);
   });

@@ -17,12 +17,12 @@
 namespace polybody {
 
 /// Body of a loop over [begin, end) with erased type, so that `Workers` is compiled once.
-class LoopBody {
+class ParallelBody {
  public:
   /// Refers to f, which must outlive this object.
   template <class F>
-    requires(!std::same_as<std::remove_cvref_t<F>, LoopBody>)
-  explicit LoopBody(F&& f)
+    requires(!std::same_as<std::remove_cvref_t<F>, ParallelBody>)
+  explicit ParallelBody(F&& f)
       : body_(&f), call_([](void const* body, Index begin, Index end) {
           (*static_cast<std::remove_reference_t<F> const*>(body))(begin, end);
         }) {}
@@ -69,7 +69,7 @@ class Workers {
   /// Calls f(begin, end) for parts of [0, n) and returns when all parts are complete. Parts begin at multiples of
   /// four and have at least `least` entries. The calling thread executes a short loop alone. If parts throw, the
   /// exception of the first of these parts is thrown again.
-  void over(Index n, Index least, LoopBody const& f) {
+  void over(Index n, Index least, ParallelBody const& f) {
     Index const parts = std::clamp<Index>(n / std::max<Index>(least, 1), 1, size());
     if (parts == 1) {
       f(0, n);
@@ -95,7 +95,7 @@ class Workers {
   /// Overload for any f that is callable as f(begin, end): parts of [0, n) with at least `least` entries per thread.
   template <class F>
   void over(Index n, Index least, F const& f) {
-    over(n, least, LoopBody(f));
+    over(n, least, ParallelBody(f));
   }
 
  private:
@@ -145,7 +145,7 @@ class Workers {
 /// Calls f over parts of [0, n) with at least `least` entries per thread, by `workers`, or serially if it is null.
 template <class F>
 void share(Workers* workers, Index n, Index least, F const& f) {
-  LoopBody const body(f);
+  ParallelBody const body(f);
   if (workers)
     workers->over(n, least, body);
   else

@@ -2,12 +2,12 @@
 /// \file
 /// A model whose type is forgotten.
 
-#include <polybody/run/census.hpp>
+#include <polybody/run/problem_size.hpp>
 #include <polybody/run/simulate.hpp>
 
 namespace polybody {
 
-/// Names integrators in a constructor: `AnyModel(model, stepped_by<GeneralizedAlpha>)`.
+/// Names integrators in a constructor: `AnyModel(model, stepped_by<GeneralisedAlpha>)`.
 template <class... Is>
 struct SteppedBy {};
 /// The integrators Is, as an argument.
@@ -21,22 +21,23 @@ inline constexpr char integrator_tag = 0;
 
 /// What runs, comparisons and records ask of a model, whatever its type. Programs that drive many formulations compile
 /// what they do with them once:
-///   AnyModel const model(std::make_shared<MyModel const>(my_model), stepped_by<GeneralizedAlpha, Radau>);
+///   AnyModel const model(std::make_shared<MyModel const>(my_model), stepped_by<GeneralisedAlpha, Radau>);
 ///   State x = model.reference_state();
 ///   simulate(model, x, Radau{}, {.until = 1.0, .step = 1e-3}).run();
-/// It keeps the model. Handles of the model's bodies and joints find their places in `question_system(model).layout()`.
+/// It keeps the model. Handles of the model's bodies and joints find their places in
+/// `observation_system(model).layout()`.
 class AnyModel {
  public:
   /// Compiles what is asked of M, and its steps by each of the integrators Is; keeps the model.
   template <class M, class... Is>
   AnyModel(std::shared_ptr<M const> model, SteppedBy<Is...>)
-      : reference_(model->reference_state()), system_(&questions<M>), census_(polybody::census(*model)) {
+      : reference_(model->reference_state()), system_(&questions<M>), census_(polybody::problem_size(*model)) {
     (runs_.push_back({&detail::integrator_tag<Is>, &systems<Is, M>}), ...);
     model_ = std::move(model);
   }
 
   State const& reference_state() const { return reference_; }  ///< the bodies as placed, at rest
-  Census const& counts() const { return census_; }             ///< as counted when it was made
+  ProblemSize const& counts() const { return census_; }        ///< as counted when it was made
   /// The whole mechanism, with what is asked of its motion and its energies.
   System system() const { return system_(model_.get()); }
 
@@ -56,7 +57,7 @@ class AnyModel {
   };
   template <class M>
   [[gnu::cold]] static System questions(void const* model) {
-    return System(*static_cast<M const*>(model), with<Entries::energy>);
+    return System(*static_cast<M const*>(model), with<Capabilities::energy>);
   }
   template <class I, class M>
   [[gnu::cold]] static RunSystems systems(void const* model) {
@@ -66,7 +67,7 @@ class AnyModel {
   std::shared_ptr<void const> model_;
   State reference_;
   System (*system_)(void const*);
-  Census census_;
+  ProblemSize census_;
   Sequence<Run> runs_ = {};
 };
 
@@ -76,8 +77,8 @@ RunSystems run_systems(AnyModel const& model) {
   return model.systems_of<I>();
 }
 /// A system that answers questions about a state.
-inline System question_system(AnyModel const& model) { return model.system(); }
+inline System observation_system(AnyModel const& model) { return model.system(); }
 /// Coordinates, rows and degrees of freedom as counted when the model was made.
-inline Census census(AnyModel const& model) { return model.counts(); }
+inline ProblemSize problem_size(AnyModel const& model) { return model.counts(); }
 
 }  // namespace polybody

@@ -8,15 +8,15 @@
 #include <algorithm>
 #include <optional>
 
-#include <polybody/run/fitting.hpp>
-#include <polybody/system/model_entries.hpp>
-#include <polybody/system/places.hpp>
+#include <polybody/run/state_checks.hpp>
+#include <polybody/system/lookup.hpp>
+#include <polybody/system/make_operations.hpp>
 #include <polybody/system/system.hpp>
 
 namespace polybody {
 
 /// A wrench on a body, in the body's axes; the moment is about the point itself.
-struct RecordedLoad {
+struct LoadSample {
   Vec3 at = Vec3::Zero();  ///< (3) material point, from the body's origin [m]
   Vec3 f = Vec3::Zero();   ///< (3) [N]
   Vec3 m = Vec3::Zero();   ///< (3) [N m]
@@ -28,7 +28,7 @@ struct BodySample {
   Frame<double> frame;                       ///< of its origin (the centre of mass) and axes, world axes
   Vec3 acceleration = Vec3::Zero();          ///< (3) of the origin, world axes [m/s²]
   Vec3 angular_acceleration = Vec3::Zero();  ///< (3) world axes [rad/s²]
-  std::vector<RecordedLoad> loads;           ///< those that are not zero
+  std::vector<LoadSample> loads;             ///< those that are not zero
 };
 
 /// The samples of one body, in order.
@@ -71,11 +71,11 @@ concept HasRigidPoints = Body<B> && (requires(B const b) { b.at(Vec3()); } || re
 namespace detail {
 /// Motion of the centre of mass, twist˙ = J v̇ + bias.
 template <HasRigidPoints B>
-BodySample motion_of_centre(BodyPlace const& place, State const& x) {
+BodySample motion_of_centre(BodyLayout const& place, State const& x) {
   using U = std::conditional_t<B::world == World::plane, Vec2, Vec3>;
   BodyInState<B> const b = body_in_state<B>(place, x);
   Sequence<double> jacobian;
-  Published<double> const p = publish(b, b.body.at(U(U::Zero())), jacobian);
+  MarkerKinematics<double> const p = evaluate_marker(b, b.body.at(U(U::Zero())), jacobian);
   Vec6 const rate = p.push(x.a.data() + place.v0) + p.bias;
   return {x.t, p.frame, rate.head<3>(), rate.tail<3>(), {}};
 }
@@ -93,7 +93,7 @@ class LoadRecorderOf {
  public:
   /// The model must outlive the recorder and must not change after.
   template <class M>
-  explicit LoadRecorderOf(M const& model) : LoadRecorderOf(System(model, with<Entries::motion>)) {}
+  explicit LoadRecorderOf(M const& model) : LoadRecorderOf(System(model, with<Capabilities::motion>)) {}
   template <class M>
     requires(!std::same_as<M, System>)
   explicit LoadRecorderOf(M const&& model) = delete;  ///< a temporary model, which would not outlive the recorder
@@ -112,7 +112,7 @@ class LoadRecorderOf {
     Index& slot = recorded_[std::size_t(body)];
     if (slot >= 0) return;
     slot = Index(records_.size());
-    BodyPlace const& place = system_.layout().bodies[std::size_t(body)];
+    BodyLayout const& place = system_.layout().bodies[std::size_t(body)];
     Vec3 gravity = system_.layout().gravity;
     if (place.planar) gravity[2] = 0.0;
     records_.push_back({place.name, gravity, {}});
@@ -130,15 +130,15 @@ class LoadRecorderOf {
     system_.evaluate(x.q, x.v, x.t);
     for (std::size_t i = 0; i < records_.size(); ++i)
       records_[i].samples.push_back(motions_[i].of(system_.layout().bodies[std::size_t(motions_[i].body)], x));
-    for (RowBlock<double> const& block : system_.data().rows)
-      for (RowEnd<double> const* const end : {&block.a, &block.b}) {
+    for (ConstraintBlock<double> const& block : system_.data().rows)
+      for (ConstraintSide<double> const* const end : {&block.a, &block.b}) {
         if (end->marker < 0 || record_of(end->marker) < 0) continue;
         double w[6];
         wrench_at(block, *end, block.multiplier(x.lambda), w);
         add_load(end->marker, w, -1.0);
       }
     system_.push_forces();
-    for (Action<double> const& action : system_.data().actions) add_load(action.marker, action.w, 1.0);
+    for (AppliedWrench<double> const& action : system_.data().actions) add_load(action.marker, action.w, 1.0);
   }
 
   /// \throws InvalidInput for a body that was not recorded, or of which there is no sample yet.
@@ -159,7 +159,7 @@ class LoadRecorderOf {
   /// A recorded body, and what asks it for its motion.
   struct Recorded {
     Index body;
-    BodySample (*of)(BodyPlace const&, State const&);
+    BodySample (*of)(BodyLayout const&, State const&);
   };
 
   /// Place of the record of the body that a marker is on, or −1.

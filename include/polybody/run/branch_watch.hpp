@@ -16,7 +16,7 @@ class BranchWatch {
   /// Notes how nearly the constraint equations repeat each other at x, a usual position.
   template <class Solver>
   [[gnu::cold]] void begin(System& system, ForwardDynamics<Solver>& forward, State const& x) {
-    if (system.rows() > 0) usual_ = forward.row_gain(system, x.q, x.v, x.t);
+    if (system.rows() > 0) usual_ = forward.constraint_gain(system, x.q, x.v, x.t);
   }
 
   /// Adds a warning for the first step that ends at x next to a singular position, of those in which the velocities v
@@ -25,8 +25,8 @@ class BranchWatch {
   void look(System& system, ForwardDynamics<Solver>& forward, StepReport const& taken, VecX const& v, State const& x,
             std::vector<std::string>& warnings) {
     if (taken.factorisations == 0 || system.rows() == 0) return;
-    PackSum change;
-    for_packs(x.v.size(), [&](auto at) {
+    SimdSum change;
+    for_each_simd_block(x.v.size(), [&](auto at) {
       auto const by = at(x.v) - at(v);
       change.add(by * by);
     });
@@ -47,7 +47,7 @@ class BranchWatch {
                        "Compare the run with one of another step.");
   }
 
-  RowGain usual_;
+  ConstraintGain usual_;
 };
 
 }  // namespace polybody

@@ -4,7 +4,7 @@
 
 #include <functional>
 
-#include <polybody/system/places.hpp>
+#include <polybody/system/lookup.hpp>
 #include <polybody/system/system.hpp>
 
 namespace polybody {
@@ -37,7 +37,7 @@ void visit_touching(Law const& law, std::array<Frame<double>, 2> const& frames, 
 /// \throws InvalidInput for a handle of another model.
 template <class F>
 void for_each_contact(System const& system, ElementHandle<F> const& group, TouchingPointVisit const& visit) {
-  ForcePlace const& place = system.layout().forces[std::size_t(index_of_force(system.layout(), group))];
+  ForceLayout const& place = system.layout().forces[std::size_t(index_of_force(system.layout(), group))];
   F const& contact = *static_cast<F const*>(place.force);
   auto const frame = [&](Index k) -> Frame<double> const& {
     return system.data().markers[std::size_t(place.markers[std::size_t(k)])].frame;

@@ -1,6 +1,6 @@
 #pragma once
-#include <polybody/run/fitting.hpp>
-#include <polybody/system/model_entries.hpp>
+#include <polybody/run/state_checks.hpp>
+#include <polybody/system/make_operations.hpp>
 #include <polybody/system/system.hpp>
 
 namespace polybody {
@@ -16,7 +16,7 @@ Energy energy(System const& system, State const& x) {
 /// Energies of state x of a model. \throws InvalidInput for a state of another model.
 template <class M>
 Energy energy(M const& model, State const& x) {
-  System system(model, with<Entries::motion>);
+  System system(model, with<Capabilities::motion>);
   require_usable(system, x);
   system.evaluate(x.q, x.v, x.t);
   return energy(system, x);
@@ -42,18 +42,18 @@ struct ProductSink {
 };
 }  // namespace detail
 
-/// The momentum of a system that was made with `Entries::rigid_speeds`.
+/// The momentum of a system that was made with `Capabilities::rigid_velocities`.
 template <class = void>
 Momentum momentum(System& system, State const& x) {
-  VecX mv = VecX::Zero(system.speeds()), rigid = mv;
+  VecX mv = VecX::Zero(system.velocities()), rigid = mv;
   system.evaluate(x.q, x.v, x.t);
   system.masses(detail::ProductSink{x.v, mv});
-  auto const speeds = require_entry(system.entries().first.rigid_speeds, "speeds of rigid motions");
+  auto const velocities = require_entry(system.entries().first.rigid_velocities, "speeds of rigid motions");
   Momentum p;
   for (int i = 0; i < 3; ++i) {
-    speeds(system.entries().second, x.q, Vec3::Unit(i), Vec3::Zero(), rigid);
+    velocities(system.entries().second, x.q, Vec3::Unit(i), Vec3::Zero(), rigid);
     p.linear[i] = mv.dot(rigid);
-    speeds(system.entries().second, x.q, Vec3::Zero(), Vec3::Unit(i), rigid);
+    velocities(system.entries().second, x.q, Vec3::Zero(), Vec3::Unit(i), rigid);
     p.angular[i] = mv.dot(rigid);
   }
   return p;
@@ -61,7 +61,7 @@ Momentum momentum(System& system, State const& x) {
 /// Momenta of state x of a model. \throws InvalidInput for a state of another model.
 template <class M>
 Momentum momentum(M const& model, State const& x) {
-  System system(model, with<Entries::rigid_speeds>);
+  System system(model, with<Capabilities::rigid_velocities>);
   require_usable(system, x);
   return momentum(system, x);
 }

@@ -7,13 +7,13 @@
 #include <ostream>
 
 #include <polybody/run/energy.hpp>
-#include <polybody/run/fitting.hpp>
+#include <polybody/run/state_checks.hpp>
 
 namespace polybody {
 
-/// Powers in state x with its multipliers; `system` must have been evaluated at x, and made with `Entries::energy`.
-/// `backwards` (nv) is scratch. Rows of bodies (Euler parameters) and linear joints do no work and are left out. A
-/// potential is taken for a function of the frames alone.
+/// Powers in state x with its multipliers; `system` must have been evaluated at x, and made with
+/// `Capabilities::energy`. `backwards` (nv) is scratch. Rows of bodies (Euler parameters) and linear joints do no work
+/// and are left out. A potential is taken for a function of the frames alone.
 template <class = void>
 Powers powers(System const& system, State const& x, VecX& backwards) {
   backwards = -x.v;
@@ -42,12 +42,12 @@ class EnergyAuditOf {
  public:
   /// An account of this model's runs, which begins with the first state.
   template <class M>
-  explicit EnergyAuditOf(M const& model) : EnergyAuditOf(System(model, with<Entries::energy>)) {}
+  explicit EnergyAuditOf(M const& model) : EnergyAuditOf(System(model, with<Capabilities::energy>)) {}
   template <class M>
     requires(!std::same_as<M, System>)
   explicit EnergyAuditOf(M const&& model) = delete;  ///< a temporary model, which would not outlive the audit
-  /// \param system of the whole mechanism, made with `Entries::energy`
-  explicit EnergyAuditOf(System system) : system_(std::move(system)), backwards_(VecX::Zero(system_.speeds())) {}
+  /// \param system of the whole mechanism, made with `Capabilities::energy`
+  explicit EnergyAuditOf(System system) : system_(std::move(system)), backwards_(VecX::Zero(system_.velocities())) {}
 
   /// Begins anew at x. \throws InvalidInput when x does not fit the model.
   void start(State const& x) {
@@ -63,7 +63,7 @@ class EnergyAuditOf {
   /// another model, or earlier than the last one.
   void record(State const& x) {
     if (!started_) return start(x);
-    if (x.q.size() != system_.coordinates() || x.v.size() != system_.speeds() || x.lambda.size() != system_.rows())
+    if (x.q.size() != system_.coordinates() || x.v.size() != system_.velocities() || x.lambda.size() != system_.rows())
       require_fitting(system_, x);  // which words it
     require_computable(system_, x);
     double const h = x.t - t_;

@@ -5,7 +5,7 @@
 #include <array>
 
 #include <polybody/integrators/forward_dynamics.hpp>
-#include <polybody/run/event_watch.hpp>
+#include <polybody/run/event_detector.hpp>
 
 namespace polybody {
 
@@ -24,10 +24,10 @@ namespace detail {
 
 /// The largest |Φ| at x, and its equation.
 template <class = void>
-std::pair<double, Index> opening(System& whole, State const& x) {
-  whole.evaluate(x.q, x.v, x.t);
-  VecX phi = VecX::Zero(whole.rows());
-  whole.violation(phi);
+std::pair<double, Index> opening(System& full, State const& x) {
+  full.evaluate(x.q, x.v, x.t);
+  VecX phi = VecX::Zero(full.rows());
+  full.violation(phi);
   Index worst = 0;
   for (Index i = 1; i < phi.size(); ++i)
     if (std::abs(phi[i]) > std::abs(phi[worst])) worst = i;
@@ -37,7 +37,7 @@ std::pair<double, Index> opening(System& whole, State const& x) {
 /// Checks the state `after` the action of an event. \throws InvalidInput if its sizes differ from `before`, if a number
 /// is not finite, or if a joint is open by more than `tolerance` and by more than twice its opening before.
 template <class = void>
-[[gnu::cold]] void require_closed(System& whole, Event const& event, State const& before, State const& after,
+[[gnu::cold]] void require_closed(System& full, Event const& event, State const& before, State const& after,
                                   double tolerance) {
   auto const same = [&](VecX State::* part) { return (after.*part).size() == (before.*part).size(); };
   if (!same(&State::q) || !same(&State::v) || !same(&State::a) || !same(&State::lambda))
@@ -45,16 +45,16 @@ template <class = void>
                        " s changes the sizes of the state. Change the entries of q and v only."};
   require_finite(after.q, "The coordinates after the event \"" + event.name + "\"");
   require_finite(after.v, "The speeds after the event \"" + event.name + "\"");
-  if (whole.rows() == 0 || after.q == before.q) return;
-  auto const [open, row] = opening(whole, after);
-  if (open <= tolerance || open <= 2.0 * opening(whole, before).first) return;
+  if (full.rows() == 0 || after.q == before.q) return;
+  auto const [open, row] = opening(full, after);
+  if (open <= tolerance || open <= 2.0 * opening(full, before).first) return;
   throw InvalidInput{
       "The action of the event \"",
       event.name,
       "\" at t = ",
       before.t,
       " s opens ",
-      whole.name_of(whole.speeds() + row),
+      full.name_of(full.velocities() + row),
       " by ",
       open,
       ", where ",
@@ -66,8 +66,8 @@ template <class = void>
 /// change in the norm of M that keeps the joints closed. \throws InvalidInput if the value does not depend on what can
 /// move.
 template <LinearSolver Solver>
-[[gnu::cold]] void hold(Event const& event, System& whole, ForwardDynamics<Solver>& forward, State& x) {
-  Index const n = whole.speeds();
+[[gnu::cold]] void hold(Event const& event, System& full, ForwardDynamics<Solver>& forward, State& x) {
+  Index const n = full.velocities();
   VecX along = VecX::Zero(n), move = along, mu;
   for (int k = 0; k < 3; ++k) {
     State y = x;
@@ -75,15 +75,15 @@ template <LinearSolver Solver>
     double const by = 1e-6;
     for (Index i = 0; i < n; ++i) {
       turned[i] = by;
-      whole.plus(x.q, turned, y.q);
+      full.plus(x.q, turned, y.q);
       double const later = event.value(y);
       turned[i] = -by;
-      whole.plus(x.q, turned, y.q);
+      full.plus(x.q, turned, y.q);
       along[i] = (later - event.value(y)) / (2.0 * by);
       turned[i] = 0.0;
     }
-    forward.hold(whole, x.q, x.v, x.t);
-    forward.response(whole, along, move, mu);
+    forward.hold(full, x.q, x.v, x.t);
+    forward.response(full, along, move, mu);
     double const mobility = along.dot(move);
     if (!(mobility > 1e-12 * along.norm() * move.norm()))
       throw InvalidInput{"The event \"", event.name, "\" cannot be held at zero at t = ", x.t,
@@ -91,9 +91,9 @@ template <LinearSolver Solver>
     double const value = event.value(x);
     if (k > 0 && value == 0.0) break;
     State next = x;
-    whole.plus(x.q, VecX(-value / mobility * move), next.q);
+    full.plus(x.q, VecX(-value / mobility * move), next.q);
     next.v -= along.dot(x.v) / mobility * move;
-    (void)forward.project_positions_once(whole, next.q, next.v, next.t);
+    (void)forward.project_positions_once(full, next.q, next.v, next.t);
     x = std::move(next);
   }
   require_finite(x.q, "The coordinates at rest in the event \"" + event.name + "\"");
@@ -102,24 +102,24 @@ template <LinearSolver Solver>
 
 }  // namespace detail
 
-/// Holds the values of the events that rest at zero in x, a state of the `whole` model. Then those that were met last
+/// Holds the values of the events that rest at zero in x, a state of the `full` model. Then those that were met last
 /// change it, one after the other. \param tolerance by which an action may open a joint \throws InvalidInput for an
 /// action that leaves other sizes, numbers that are not finite or an open joint.
 template <LinearSolver Solver = DefaultSolver>
-[[gnu::cold]] void act(EventWatch const& watch, std::vector<Event> const& events, State& x, System& whole,
+[[gnu::cold]] void act(EventDetector const& watch, std::vector<Event> const& events, State& x, System& full,
                        double tolerance) {
   if (watch.first_held() < events.size()) {
-    ForwardDynamics<Solver> forward(whole);
+    ForwardDynamics<Solver> forward(full);
     for (int sweep = 0; sweep < 3; ++sweep)  // events that rest at once push each other
       for (std::size_t i = 0; i < events.size(); ++i)
-        if (watch.held(i)) detail::hold(events[i], whole, forward, x);
+        if (watch.held(i)) detail::hold(events[i], full, forward, x);
   }
   for (std::size_t i = 0; i < events.size(); ++i) {
-    if (!watch.met(i) || !events[i].then) continue;
+    if (!watch.met(i) || !events[i].action) continue;
     State const before = x;
-    events[i].then(x);
+    events[i].action(x);
     x.t = before.t;
-    detail::require_closed(whole, events[i], before, x, tolerance);
+    detail::require_closed(full, events[i], before, x, tolerance);
   }
 }
 
@@ -127,13 +127,13 @@ template <LinearSolver Solver = DefaultSolver>
 /// stepped one, and the whole one where that eliminates joints: then speeds are brought onto these before they are left
 /// out \param tolerance of constraint violations [m]
 template <LinearSolver Solver>
-[[gnu::cold]] State after_action(EventWatch const& watch, std::vector<Event> const& events, State x,
+[[gnu::cold]] State after_action(EventDetector const& watch, std::vector<Event> const& events, State x,
                                  std::array<System*, 2> systems, double tolerance) {
-  auto const [stepped, whole] = systems;
-  act<Solver>(watch, events, x, whole ? *whole : *stepped, tolerance);
-  if (!whole) return x;
-  ForwardDynamics<Solver> forward(*whole);
-  forward.project_velocities(*whole, x.q, x.v, x.t);
+  auto const [stepped, full] = systems;
+  act<Solver>(watch, events, x, full ? *full : *stepped, tolerance);
+  if (!full) return x;
+  ForwardDynamics<Solver> forward(*full);
+  forward.project_velocities(*full, x.q, x.v, x.t);
   return reduce(*stepped, x);
 }
 

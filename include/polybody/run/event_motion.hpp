@@ -14,10 +14,10 @@ struct EventMotion {
   /// Moves a state along its speeds and accelerations by so many seconds, forwards or back, without a step.
   std::function<void(State&, double)> drift;
 
-  /// The event's value at a state of the user's. \throws NonFinite.
+  /// The event's value at a state of the user's. \throws NonFiniteValue.
   static double value(Event const& event, State const& x) {
     double const y = event.value(x);
-    if (!std::isfinite(y)) throw NonFinite{"The event \"", event.name, "\" is not finite at t = ", x.t, " s."};
+    if (!std::isfinite(y)) throw NonFiniteValue{"The event \"", event.name, "\" is not finite at t = ", x.t, " s."};
     return y;
   }
   /// The rate of an event's value at x [1/s], by central differences over a tenth of a step of `asked`.

@@ -53,17 +53,20 @@ class MinimumNormOf {
     Vec3 mean = Vec3::Zero();
     double joints = 0.0, spread = 0.0;
     auto const each = [&](auto&& f) {
-      for (RowBlock<double> const& block : system.data().rows)
-        if (block.source == RowSource::joint) f(block, system.data().markers[std::size_t(block.b.marker)].frame.r);
+      for (ConstraintBlock<double> const& block : system.data().rows)
+        if (block.source == ConstraintSource::joint)
+          f(block, system.data().markers[std::size_t(block.b.marker)].frame.r);
     };
-    each([&](RowBlock<double> const&, Vec3 const& place) {
+    each([&](ConstraintBlock<double> const&, Vec3 const& place) {
       for (int i = 0; i < 3; ++i) mean[i] += place[i];
       joints += 1.0;
     });
     for (int i = 0; i < 3; ++i) mean[i] /= std::max(joints, 1.0);
-    each([&](RowBlock<double> const&, Vec3 const& place) { spread += squared_norm(difference(place, mean)) / joints; });
+    each([&](ConstraintBlock<double> const&, Vec3 const& place) {
+      spread += squared_norm(difference(place, mean)) / joints;
+    });
     double const arm2 = spread > 1e-20 * squared_norm(mean) ? spread : 1.0;
-    each([&](RowBlock<double> const& block, Vec3 const&) {
+    each([&](ConstraintBlock<double> const& block, Vec3 const&) {
       for (int i = 0; i < block.rows; ++i) {
         double f2 = 0.0, m2 = 0.0;
         for (int j = 0; j < 3; ++j) {
@@ -77,7 +80,7 @@ class MinimumNormOf {
     });
   }
 
-  detail::RowRelation<> relation_;
+  detail::ConstraintDependence<> relation_;
   VecX weight_;
   Sequence<VecX> basis_;
 };
@@ -98,7 +101,7 @@ VecX minimum_norm_multipliers(System& system, State const& x) {
 /// The same of a model.
 template <LinearSolver Solver = DefaultSolver, class M>
 VecX minimum_norm_multipliers(M const& model, State const& x) {
-  System system(model, with<Entries::motion>);
+  System system(model, with<Capabilities::motion>);
   return minimum_norm_multipliers<Solver>(system, x);
 }
 

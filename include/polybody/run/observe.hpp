@@ -2,10 +2,10 @@
 /// \file
 /// Questions about the joints in a single state: gaps, reactions, violations.
 
-#include <polybody/run/census.hpp>
-#include <polybody/run/fitting.hpp>
-#include <polybody/run/points.hpp>
-#include <polybody/system/model_entries.hpp>
+#include <polybody/run/marker_frames.hpp>
+#include <polybody/run/problem_size.hpp>
+#include <polybody/run/state_checks.hpp>
+#include <polybody/system/make_operations.hpp>
 #include <polybody/system/system.hpp>
 
 namespace polybody {
@@ -14,9 +14,9 @@ namespace detail {
 
 /// The rows of a joint, by its place in the layout.
 template <class = void>  // compiled where it is used
-RowBlock<double> const& rows_of(System const& system, Index joint) {
-  for (RowBlock<double> const& block : system.data().rows)
-    if (block.source != RowSource::body && block.owner == joint) return block;
+ConstraintBlock<double> const& rows_of(System const& system, Index joint) {
+  for (ConstraintBlock<double> const& block : system.data().rows)
+    if (block.source != ConstraintSource::body && block.owner == joint) return block;
   throw InvalidInput{"\"", system.layout().joints[std::size_t(joint)].name, "\" has no rows."};
 }
 
@@ -24,13 +24,13 @@ RowBlock<double> const& rows_of(System const& system, Index joint) {
 /// λ_α the moment r_α × λ_α. (What stretches r_α is no wrench.) The ground takes what its body gives: r_α is the
 /// body's.
 template <class T>  // compiled where it is used
-Vec<T, 6> linear_wrench(LinearRows const& rows, StateOf<T> const& x) {
+Vec<T, 6> linear_wrench(LinearConstraints const& rows, StateOf<T> const& x) {
   Vec<T, 6> w = Vec<T, 6>::Zero();
   Index const size = rows.positions;
   w.head(size) = x.lambda.segment(rows.row, size);
   LinearSide const& side = rows.b.map.cols() > 0 ? rows.b : rows.a;
   Index row = size;
-  for (LinearRows::Gradient const& g : rows.gradients) {
+  for (LinearConstraints::Gradient const& g : rows.gradients) {
     Vec<T, 3> now = Vec<T, 3>::Zero(), force = g.axis * x.lambda[rows.row + row];
     now.head(size) = g.map * x.q.segment(side.q0, g.map.cols());
     if (g.rows > 1) force.head(size) = x.lambda.segment(rows.row + row, size);
@@ -45,18 +45,18 @@ Vec<T, 6> linear_wrench(LinearRows const& rows, StateOf<T> const& x) {
 /// Violation of a joint's rows; `system` must have been evaluated at the state. \throws InvalidInput for a handle of
 /// another model.
 template <class J>
-  requires(!LinearInCoordinates<typename J::PolicyType>)
-Vec<double, J::rows> gap(System const& system, ElementHandle<J> const& joint) {
+  requires(!LinearPolicy<typename J::PolicyType>)
+Vec<double, J::rows> constraint_violation(System const& system, ElementHandle<J> const& joint) {
   return Vec<double, J::rows>(detail::rows_of(system, index_of_joint(system.layout(), joint)).g);
 }
 /// Violation of a joint's rows in state x. \throws InvalidInput as above.
 template <class M, class J>
-  requires(!LinearInCoordinates<typename J::PolicyType>)
-Vec<double, J::rows> gap(M const& model, State const& x, ElementHandle<J> const& joint) {
-  System system(model, with<Entries::motion>);
+  requires(!LinearPolicy<typename J::PolicyType>)
+Vec<double, J::rows> constraint_violation(M const& model, State const& x, ElementHandle<J> const& joint) {
+  System system(model, with<Capabilities::motion>);
   require_usable(system, x);
   system.evaluate(x.q, x.v, x.t);
-  return gap(system, joint);
+  return constraint_violation(system, joint);
 }
 
 /// Axes for the components of a reaction.
@@ -68,10 +68,10 @@ enum class ReactionAxes { world, joint };
 template <class T>  // compiled where it is used
 Wrench<T> reaction_of(BasicSystem<T> const& system, StateOf<T> const& x, Index joint,
                       ReactionAxes axes = ReactionAxes::world) {
-  JointPlace const& place = system.layout().joints[std::size_t(joint)];
-  RowBlock<double> const& block = detail::rows_of(system, joint);
+  JointLayout const& place = system.layout().joints[std::size_t(joint)];
+  ConstraintBlock<double> const& block = detail::rows_of(system, joint);
   Vec<T, 6> w;
-  if (block.source == RowSource::linear)
+  if (block.source == ConstraintSource::linear)
     w = detail::linear_wrench(*place.linear, x);
   else
     wrench_at(block, block.b, block.multiplier(x.lambda), w.data());
@@ -93,7 +93,7 @@ Wrench<double> reaction(System const& system, State const& x, ElementHandle<J> c
 template <class M, class J>
 Wrench<double> reaction(M const& model, State const& x, ElementHandle<J> const& joint,
                         ReactionAxes axes = ReactionAxes::world) {
-  System system(model, with<Entries::motion>);
+  System system(model, with<Capabilities::motion>);
   require_usable(system, x);
   system.evaluate(x.q, x.v, x.t);
   return reaction(system, x, joint, axes);
@@ -103,9 +103,9 @@ Wrench<double> reaction(M const& model, State const& x, ElementHandle<J> const& 
 template <class = void>
 double peak_joint_force(System const& system, State const& x) {
   double peak = 0.0;
-  for (RowBlock<double> const& block : system.data().rows) {
+  for (ConstraintBlock<double> const& block : system.data().rows) {
     double w[6];
-    if (block.source == RowSource::linear) {
+    if (block.source == ConstraintSource::linear) {
       for (int i = 0; i < 3; ++i) w[i] = i < block.positions ? x.lambda[block.row + i] : 0.0;
     } else {
       wrench_at(block, block.b, block.multiplier(x.lambda), w);
@@ -124,7 +124,7 @@ struct Violation {
 
 /// The violation of state x; `system` is evaluated there.
 template <class = void>
-Violation violation(System& system, State const& x) {
+Violation largest_violation(System& system, State const& x) {
   system.evaluate(x.q, x.v, x.t);
   if (system.rows() == 0) return {};
   VecX phi = VecX::Zero(system.rows()), rate = phi, second = phi;
@@ -139,10 +139,10 @@ Violation violation(System& system, State const& x) {
 /// \throws InvalidInput for a state of another model.
 template <class M>
   requires(!std::same_as<M, System>)
-Violation violation(M const& model, State const& x) {
-  System system(model, with<Entries::motion>);
+Violation largest_violation(M const& model, State const& x) {
+  System system(model, with<Capabilities::motion>);
   require_usable(system, x);
-  return violation(system, x);
+  return largest_violation(system, x);
 }
 
 }  // namespace polybody

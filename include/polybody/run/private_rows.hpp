@@ -23,15 +23,15 @@ class PrivateRows {
   static constexpr std::size_t most = 12;      ///< rows of one body that are tried at once
   static constexpr double independent = 0.01;  ///< least distance of a row from the span of those before it
 
-  PrivateRows(Sequence<BodyPlace> const& bodies, Index rows, Sequence<RowEntry> const& entries)
+  PrivateRows(Sequence<BodyLayout> const& bodies, Index rows, Sequence<RowEntry> const& entries)
       : bodies_(bodies), gone_(std::size_t(rows), 0), of_row_(std::size_t(rows)), rows_of_(bodies.size()) {
-    Index speeds = 0;
-    for (BodyPlace const& b : bodies) speeds = std::max(speeds, b.v0 + b.speeds);
-    Sequence<Index> body_of(std::size_t(speeds), -1);
+    Index velocities = 0;
+    for (BodyLayout const& b : bodies) velocities = std::max(velocities, b.v0 + b.velocities);
+    Sequence<Index> body_of(std::size_t(velocities), -1);
     for (std::size_t b = 0; b < bodies.size(); ++b)
-      std::fill_n(body_of.begin() + bodies[b].v0, bodies[b].speeds, Index(b));
+      std::fill_n(body_of.begin() + bodies[b].v0, bodies[b].velocities, Index(b));
     for (RowEntry const& e : entries) {
-      if (e.speed >= speeds || body_of[std::size_t(e.speed)] < 0) continue;  // of no body
+      if (e.speed >= velocities || body_of[std::size_t(e.speed)] < 0) continue;  // of no body
       of_row_[std::size_t(e.row)].push_back({body_of[std::size_t(e.speed)], e.speed, e.value});
       rows_of_[std::size_t(body_of[std::size_t(e.speed)])].push_back(e.row);
     }
@@ -58,7 +58,7 @@ class PrivateRows {
 
   void try_body(Index b) {
     std::size_t const count = count_[std::size_t(b)];
-    if (count == 0 || count > most || Index(count) > bodies_[std::size_t(b)].speeds) return;
+    if (count == 0 || count > most || Index(count) > bodies_[std::size_t(b)].velocities) return;
     Sequence<Index> rows;
     for (Index const r : rows_of_[std::size_t(b)])
       if (!gone_[std::size_t(r)]) rows.push_back(r);
@@ -76,10 +76,10 @@ class PrivateRows {
   }
   /// By the method of Gram and Schmidt, each projection twice.
   bool are_independent(Index b, Sequence<Index> const& rows) const {
-    BodyPlace const& body = bodies_[std::size_t(b)];
+    BodyLayout const& body = bodies_[std::size_t(b)];
     Sequence<VecX> basis;
     for (Index const r : rows) {
-      VecX x = VecX::Zero(body.speeds);
+      VecX x = VecX::Zero(body.velocities);
       for (Entry const& e : of_row_[std::size_t(r)])
         if (e.body == b) x[e.speed - body.v0] += e.value;
       for (int round = 0; round < 2; ++round)
@@ -96,7 +96,7 @@ class PrivateRows {
     return true;
   }
 
-  Sequence<BodyPlace> const& bodies_;
+  Sequence<BodyLayout> const& bodies_;
   Sequence<char> gone_;
   Sequence<Sequence<Entry>> of_row_;
   Sequence<Sequence<Index>> rows_of_;  ///< by bodies, ascending

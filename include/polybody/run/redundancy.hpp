@@ -24,23 +24,23 @@ struct Redundancy {
   std::vector<Share> repeated = {};
   /// Groups of joints (joint "a", joint "b", …) whose rows repeat each other but contradict: no small move closes them,
   /// no speeds and no accelerations satisfy them.
-  std::vector<std::string> in_positions = {}, in_speeds = {}, in_accelerations = {};  ///< one text for each group
+  std::vector<std::string> in_positions = {}, in_velocities = {}, in_accelerations = {};  ///< one text for each group
   /// Whether no rows contradict each other.
-  bool consistent() const { return in_positions.empty() && in_speeds.empty() && in_accelerations.empty(); }
+  bool consistent() const { return in_positions.empty() && in_velocities.empty() && in_accelerations.empty(); }
 };
 
 namespace detail {
 
 /// Takes G out of the blocks of a tangent, transposed.
 template <class = void>  // compiled where it is used
-struct RowsSink {
-  Index speeds;
+struct ConstraintSink {
+  Index velocities;
   std::vector<Eigen::Triplet<double>>& entries;
   void add(Index row, Index col, BlockView const& b) {
-    if (row >= speeds || col < speeds) return;
+    if (row >= velocities || col < velocities) return;
     for (Index j = 0; j < b.cols; ++j)
       for (Index i = 0; i < b.rows; ++i)
-        if (b(i, j) != 0.0) entries.emplace_back(int(row + i), int(col - speeds + j), b(i, j));
+        if (b(i, j) != 0.0) entries.emplace_back(int(row + i), int(col - velocities + j), b(i, j));
   }
 };
 
@@ -48,15 +48,15 @@ struct RowsSink {
 /// column of c = P [−R₁⁻¹R₂; 1]. Speeds are scaled first and rows then, so that every row of G has the norm 1 whatever
 /// its units; a row repeats those before it when it stands off their span by less than `threshold`.
 template <class Ordering = Eigen::NaturalOrdering<int>>  // rows in the order of their joints: the later ones are named
-class RowFactor {
+class ConstraintFactor {
  public:
   static constexpr double threshold = 1e-6;
 
   /// \param bodies whose rows are left out where they are private (`PrivateRows`)
-  RowFactor(Index speeds, Index rows, std::vector<Eigen::Triplet<double>> const& entries,
-            Sequence<BodyPlace> const& bodies = {})
+  ConstraintFactor(Index velocities, Index rows, std::vector<Eigen::Triplet<double>> const& entries,
+                   Sequence<BodyLayout> const& bodies = {})
       : scale_(std::size_t(rows), 0.0) {
-    std::vector<double> of_speed(std::size_t(speeds), 0.0);
+    std::vector<double> of_speed(std::size_t(velocities), 0.0);
     for (auto const& e : entries)
       of_speed[std::size_t(e.row())] = std::hypot(of_speed[std::size_t(e.row())], e.value());
     auto const scaled = [&](auto const& e) { return e.value() / of_speed[std::size_t(e.row())]; };
@@ -140,21 +140,21 @@ Redundancy redundancy(System& system, State const& x) {
   require_fitting(system, x);
   system.evaluate(x.q, x.v, x.t);
   std::vector<Eigen::Triplet<double>> entries;
-  detail::RowsSink<> sink{system.speeds(), entries};
+  detail::ConstraintSink<> sink{system.velocities(), entries};
   VecX phi = VecX::Zero(system.rows()), rate = phi, gamma = phi;
   system.masses(sink);
-  detail::RowFactor<> const factor(system.speeds(), system.rows(), entries,
-                                   system.step_coordinates() ? Sequence<BodyPlace>() : system.layout().bodies);
+  detail::ConstraintFactor<> const factor(system.velocities(), system.rows(), entries,
+                                          system.step_coordinates() ? Sequence<BodyLayout>() : system.layout().bodies);
   system.violation(phi);
   system.violation_rate(rate);
   system.acceleration_bias(gamma);
 
   Redundancy out{.rows = system.rows(),
                  .rank = factor.rank(),
-                 .degrees_of_freedom = system.layout().body_speeds() - factor.rank()};
+                 .degrees_of_freedom = system.layout().body_velocities() - factor.rank()};
   Sequence<VecX> null_vectors;
   detail::ContradictionLimits const limits;
-  double const in_speeds = limits.relative * (1.0 + largest_size(x.v)),
+  double const in_velocities = limits.relative * (1.0 + largest_size(x.v)),
                in_accelerations = limits.relative * (1.0 + largest_size(gamma));
   for (Index k = 0; k < factor.repeated(); ++k) {
     VecX const c = factor.relation(k);
@@ -163,11 +163,11 @@ Redundancy redundancy(System& system, State const& x) {
       if (std::abs(c.dot(b)) > limit * largest_size(c)) found.push_back(detail::names_in(system, c));
     };
     compare(phi, limits.position, out.in_positions);
-    compare(rate, in_speeds, out.in_speeds);
+    compare(rate, in_velocities, out.in_velocities);
     compare(gamma, in_accelerations, out.in_accelerations);
   }
   for (Index const row : detail::choose_redundant(null_vectors, {})) {
-    std::string const name = system.name_of(system.speeds() + row);
+    std::string const name = system.name_of(system.velocities() + row);
     if (out.repeated.empty() || out.repeated.back().name != name) out.repeated.push_back({name, 0});
     ++out.repeated.back().rows;
   }
@@ -177,7 +177,7 @@ Redundancy redundancy(System& system, State const& x) {
 /// The same of a model.
 template <class M>
 Redundancy redundancy(M const& model, State const& x) {
-  System system(model, with<Entries::motion>);
+  System system(model, with<Capabilities::motion>);
   return redundancy(system, x);
 }
 

@@ -42,11 +42,12 @@ class RedundancyWatch {
       StepReport const report = step();
       if (!is_open(system, forward.left_out(), x)) return report;
       x = before;
-    } catch (NewtonStalled const&) {  // the second attempt reports it if the dropped equations are not the cause
+    } catch (
+        NewtonConvergenceFailure const&) {  // the second attempt reports it if the dropped equations are not the cause
     }
     try {
       keeps_all_ = true;
-      forward.leave_out({});
+      forward.mark_redundant({});
       restart();
       return step();
     } catch (...) {
@@ -61,8 +62,8 @@ class RedundancyWatch {
     system.violation(phi);
     double open = 0.0;
     for (Index const i : left_out) {
-      open = std::max(open, std::abs(phi[i - system.speeds()]));
-      phi[i - system.speeds()] = 0.0;
+      open = std::max(open, std::abs(phi[i - system.velocities()]));
+      phi[i - system.velocities()] = 0.0;
     }
     return open > 1e-8 * (1.0 + largest_size(x.q)) + 100.0 * largest_size(phi);
   }

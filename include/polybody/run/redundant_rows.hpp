@@ -7,7 +7,7 @@
 /// 848–869]. A factorisation that drops rows in a fixed order has no such bound: it divides by the coefficient of its
 /// last row, which may pass zero during a motion.
 
-#include <polybody/run/repeated_rows.hpp>
+#include <polybody/run/redundant_constraints.hpp>
 
 namespace polybody {
 namespace detail {
@@ -49,9 +49,9 @@ template <class = void>  // compiled where it is used
 struct RowSizes {
   VecX of_speed, of_row;  ///< (nv), (rows); 1 where an equation or a velocity is alone
 
-  explicit RowSizes(System& system) : of_speed(VecX::Zero(system.speeds())), of_row(VecX::Zero(system.rows())) {
+  explicit RowSizes(System& system) : of_speed(VecX::Zero(system.velocities())), of_row(VecX::Zero(system.rows())) {
     for (int pass = 0; pass < 2; ++pass) {
-      Sink sink{system.speeds(), pass == 1, *this};
+      Sink sink{system.velocities(), pass == 1, *this};
       system.masses(sink);
       VecX& sizes = pass == 0 ? of_speed : of_row;
       for (Index i = 0; i < sizes.size(); ++i) sizes[i] = sizes[i] > 0.0 ? std::sqrt(sizes[i]) : 1.0;
@@ -60,16 +60,16 @@ struct RowSizes {
 
  private:
   struct Sink {
-    Index speeds;
+    Index velocities;
     bool rows;
     RowSizes& sizes;
     void add(Index row, Index col, BlockView const& b) {
-      if (row >= speeds || col < speeds) return;
+      if (row >= velocities || col < velocities) return;
       for (Index j = 0; j < b.cols; ++j)
         for (Index i = 0; i < b.rows; ++i) {
           double const by = sizes.of_speed[row + i], g = b(i, j);
           if (rows)
-            sizes.of_row[col - speeds + j] += g * g / (by * by);
+            sizes.of_row[col - velocities + j] += g * g / (by * by);
           else
             sizes.of_speed[row + i] += g * g;
         }
@@ -90,9 +90,9 @@ class NullVectors {
     Sequence<VecX> found;
     VecX n = VecX::Zero(system_.size());
     for (Index const i : forward_.redundant_rows()) {
-      if (i < system_.speeds() || !forward_.null_vector(i, n)) return false;
+      if (i < system_.velocities() || !forward_.null_vector(i, n)) return false;
       VecX c = n.tail(system_.rows());
-      for (Index k = 0; k < c.size(); ++k) c[k] *= sizes_.of_row[k] / sizes_.of_row[i - system_.speeds()];
+      for (Index k = 0; k < c.size(); ++k) c[k] *= sizes_.of_row[k] / sizes_.of_row[i - system_.velocities()];
       found.push_back(std::move(c));
     }
     vectors = std::move(found);
@@ -102,7 +102,7 @@ class NullVectors {
   void keep_dependent() {
     Sequence<VecX> left;
     for (VecX const& c : vectors) {
-      VecX w = VecX::Zero(system_.speeds());
+      VecX w = VecX::Zero(system_.velocities());
       system_.rows_transposed_times(unscaled(c), w);
       for (Index i = 0; i < w.size(); ++i) w[i] /= sizes_.of_speed[i];
       left.push_back(std::move(w));
@@ -110,9 +110,9 @@ class NullVectors {
     keep_null(left);
   }
   /// Leaves those combinations that are null vectors beside this state as well: c·γ(v) does not depend on velocities v
-  /// that satisfy the constraints (`RowBending`). The rank of G falls at a singular position by the others.
+  /// that satisfy the constraints (`ConstraintCurvature`). The rank of G falls at a singular position by the others.
   void keep_permanent() {
-    VecX const rest_v = VecX::Zero(system_.speeds());
+    VecX const rest_v = VecX::Zero(system_.velocities());
     VecX rest = VecX::Zero(system_.rows()), gamma = rest, w = rest_v, moved = rest_v;
     for (Index round = 0, tests = Index(vectors.size()); round <= tests && !vectors.empty(); ++round) {
       for (Index i = 0; i < w.size(); ++i)
@@ -199,8 +199,8 @@ bool choice_serves(ForwardDynamics<Solver> const& forward, Sequence<VecX> const&
 
 }  // namespace detail
 
-/// Chooses the redundant constraint equations at x for `ForwardDynamics::leave_out`, or keeps a present choice that
-/// remains valid. Equations that are redundant only at x, a singular position, are not chosen. Returns whether the
+/// Chooses the redundant constraint equations at x for `ForwardDynamics::mark_redundant`, or keeps a present choice
+/// that remains valid. Equations that are redundant only at x, a singular position, are not chosen. Returns whether the
 /// choice has changed. For models whose policies eliminate no bodies. \param lambda multipliers that an earlier choice
 /// left zero, which is made again; or null
 template <class Solver>
@@ -217,8 +217,8 @@ template <class Solver>
     for (Index i = 0; i < lambda->size(); ++i) preferred.push_back((*lambda)[i] == 0.0);
   auto const choose = [&] {
     Sequence<Index> rows = detail::choose_redundant(space.vectors, preferred);
-    for (Index& i : rows) i += system.speeds();
-    forward.leave_out(rows);
+    for (Index& i : rows) i += system.velocities();
+    forward.mark_redundant(rows);
     forward.hold(system, x.q, x.v, x.t);
   };
   space.keep_dependent();
@@ -230,7 +230,7 @@ template <class Solver>
   auto const dropped = forward.redundant_rows();
   for (Index const i : forward.left_out())  // some stay where they are eliminated with a singular body
     if (std::find(dropped.begin(), dropped.end(), i) == dropped.end()) {
-      forward.leave_out({});
+      forward.mark_redundant({});
       break;
     }
   return !std::equal(before.begin(), before.end(), forward.left_out().begin(), forward.left_out().end());

@@ -15,50 +15,50 @@ namespace polybody {
 
 /// How far a run has come [s].
 struct RunProgress {
-  double start;  ///< [s]
-  double until;  ///< [s]
-  double now;    ///< [s]
-  bool done;     ///< at `until`, or stopped by an event
+  double start;     ///< [s]
+  double end_time;  ///< [s]
+  double now;       ///< [s]
+  bool done;        ///< at `end_time`, or stopped by an event
 };
 
 /// What a run is asked for.
 struct RunOptions {
-  Required<double> until;                   ///< [s]
-  Required<double> step;                    ///< [s]; the first one for an integrator that controls its step
-  std::optional<double> largest_step = {};  ///< [s], for an integrator that controls its step
-  std::vector<double> corners = {};  ///< times at which a step must end, beside those of the drives and loads [s]
-  std::vector<Event> events = {};    ///< looked for in each step
-  double assembly_tolerance = 1e-8;  ///< |Φ| of the start [m], [rad]
-  int halvings = 0;                  ///< how often a step whose Newton iteration stalls may be halved, as at impacts
-  bool minimum_norm = false;         ///< every state gets the multipliers of `MinimumNorm`; costs a factorisation each
-  StepLimits limits = {};            ///< of a step's end: constraint violation, and energy that no work explains
+  Required<double> end_time;             ///< [s]
+  Required<double> step;                 ///< [s]; the first one for an integrator that controls its step
+  std::optional<double> max_step = {};   ///< [s], for an integrator that controls its step
+  std::vector<double> breakpoints = {};  ///< times at which a step must end, beside those of the drives and loads [s]
+  std::vector<Event> events = {};        ///< looked for in each step
+  double assembly_tolerance = 1e-8;      ///< |Φ| of the start [m], [rad]
+  int max_step_halvings = 0;       ///< how often a step whose Newton iteration stalls may be halved, as at impacts
+  bool minimum_norm = false;       ///< every state gets the multipliers of `MinimumNorm`; costs a factorisation each
+  PlausibilityLimits limits = {};  ///< of a step's end: constraint violation, and energy that no work explains
   int threads = 1;  ///< that share the loops of an evaluation; for large models, results stay the same bits
   std::function<void(RunProgress const&)> progress = {};  ///< told after each step; `progress_bar` of io makes one
 
   /// \throws InvalidInput for a run from `start` [s] that cannot be meant.
   [[gnu::cold]] void check(double start) const {
     require_positive(step, "simulate: the step");
-    if (largest_step) require_positive(*largest_step, "simulate: the largest step");
+    if (max_step) require_positive(*max_step, "simulate: the largest step");
     require_positive(assembly_tolerance, "simulate: assembly_tolerance");
-    if (!(until >= start) || !std::isfinite(until))
-      throw InvalidInput{"simulate: the end ", until, " s lies before the start ", start, " s."};
-    double const latest = std::max(std::abs(start), std::abs(until)),
+    if (!(end_time >= start) || !std::isfinite(end_time))
+      throw InvalidInput{"simulate: the end ", end_time, " s lies before the start ", start, " s."};
+    double const latest = std::max(std::abs(start), std::abs(end_time)),
                  resolved = std::nextafter(latest, std::numeric_limits<double>::infinity()) - latest;
     if (step < 32.0 * resolved)
       throw InvalidInput{"simulate: the clock resolves ",
                          resolved,
                          " s at t = ",
-                         until,
+                         end_time,
                          " s, too coarse for steps of ",
                          step,
                          " s. Count the time of the run from a start near zero."};
-    if (halvings < 0 || halvings > 30)
-      throw InvalidInput{"simulate: a step can be halved 0 to 30 times, but ", halvings, " is asked for."};
+    if (max_step_halvings < 0 || max_step_halvings > 30)
+      throw InvalidInput{"simulate: a step can be halved 0 to 30 times, but ", max_step_halvings, " is asked for."};
     if (!(limits.violation > 0.0) || !(limits.energy >= 1.0))
       throw InvalidInput{"simulate: limits.violation must be positive and limits.energy at least one, but they are ",
                          limits.violation, " and ", limits.energy, "."};
     require_positive(limits.warning, "simulate: limits.warning");
-    for (double const t : corners)
+    for (double const t : breakpoints)
       if (std::isnan(t)) throw InvalidInput("simulate: a corner must be a time [s], but is nan.");
     for (Event const& event : events) {
       if (!event.value) throw InvalidInput{"simulate: the event \"", event.name, "\" has no value."};
@@ -74,7 +74,7 @@ struct RunCounts {
   long factorisations = 0;  ///< of tangents and masses
   long evaluations = 0;     ///< of the forces
   long rejected = 0;        ///< trial steps
-  long cut_short = 0;       ///< steps that ended at Newton's budget
+  long over_budget = 0;     ///< steps that ended at Newton's budget
   double left = 0.0;        ///< the largest correction that one of them ended with, relative to what is tolerated
   StepReport last = {};     ///< the last step's
 
@@ -85,7 +85,7 @@ struct RunCounts {
     factorisations += step.factorisations;
     evaluations += step.evaluations;
     rejected += step.rejected;
-    if (step.left > 0.0) ++cut_short;
+    if (step.left > 0.0) ++over_budget;
     left = std::max(left, step.left);
     last = step;
   }
@@ -94,12 +94,12 @@ struct RunCounts {
 /// The cost of a run so far, and the events that it met.
 struct RunReport : RunCounts {
   /// An event that the run met, and when.
-  struct Met {
+  struct EventRecord {
     std::string name;  ///< the event's
     double time;       ///< [s]
   };
-  Sequence<Met> events = {};  ///< in the order of time
-  bool stopped = false;       ///< by an event before `until`
+  Sequence<EventRecord> events = {};  ///< in the order of time
+  bool stopped = false;               ///< by an event before `end_time`
   /// Joints with rows that repeat those of others at the last start: the motion is right, but how the reactions share
   /// the load is not determined.
   std::vector<std::string> redundant = {};

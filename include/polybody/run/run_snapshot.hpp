@@ -13,8 +13,9 @@ namespace polybody {
 /// What identifies the model of a snapshot: the numbers of its unknowns in a step, and the names of bodies, joints and
 /// forces in their order. Masses, lengths and loads are not compared.
 struct ModelIdentity {
-  Index coordinates = 0, speeds = 0, rows = 0;  ///< of a step, after elimination
-  Index carrying_rows = 0;  ///< eliminated, of whose multipliers a step may keep estimates behind those of the rows
+  Index coordinates = 0, velocities = 0, rows = 0;  ///< of a step, after elimination
+  Index eliminated_equations =
+      0;                    ///< eliminated, of whose multipliers a step may keep estimates behind those of the rows
   std::uint64_t names = 0;  ///< checksum
 
   bool operator==(ModelIdentity const&) const = default;  ///< whether counts and names are equal
@@ -24,13 +25,13 @@ struct ModelIdentity {
 template <class = void>
 ModelIdentity identity_of(System const& stepped) {
   std::string names;
-  for (BodyPlace const& b : stepped.layout().bodies) (names += b.name) += '\n';
+  for (BodyLayout const& b : stepped.layout().bodies) (names += b.name) += '\n';
   names += '\n';
-  for (JointPlace const& j : stepped.layout().joints) (names += j.name) += '\n';
+  for (JointLayout const& j : stepped.layout().joints) (names += j.name) += '\n';
   names += '\n';
-  for (ForcePlace const& f : stepped.layout().forces) (names += f.name) += '\n';
+  for (ForceLayout const& f : stepped.layout().forces) (names += f.name) += '\n';
   Index const rows = stepped.rows();
-  return {stepped.coordinates(), stepped.speeds(), rows, multipliers_of(stepped) - rows, checksum(names)};
+  return {stepped.coordinates(), stepped.velocities(), rows, multipliers_of(stepped) - rows, checksum(names)};
 }
 
 /// All that a run needs to go on, except its model, integrator and options, which must be the same.
@@ -50,15 +51,15 @@ struct RunSnapshot {
     polybody::require_finite(state.v, "resume: the speeds of the snapshot");
     polybody::require_finite(state.a, "resume: the accelerations of the snapshot");
     polybody::require_finite(state.lambda, "resume: the multipliers of the snapshot");
-    polybody::require_finite(state.memory, "resume: the integrator's memory in the snapshot");
+    polybody::require_finite(state.history, "resume: the integrator's memory in the snapshot");
   }
   /// \throws InvalidInput unless model, integrator (`by` its name) and count of events are these.
   template <class = void>
   void require(ModelIdentity const& of, std::string const& by, std::size_t events) const {
     auto const counts = [](ModelIdentity const& m) {
-      return sentence_of({m.coordinates, " coordinates, ", m.speeds, " speeds and ", m.rows, " rows"});
+      return sentence_of({m.coordinates, " coordinates, ", m.velocities, " speeds and ", m.rows, " rows"});
     };
-    if (model.coordinates != of.coordinates || model.speeds != of.speeds || model.rows != of.rows)
+    if (model.coordinates != of.coordinates || model.velocities != of.velocities || model.rows != of.rows)
       throw InvalidInput{"resume: the snapshot is of another model. It has ", counts(model), "; this one has ",
                          counts(of), "."};
     if (model != of)

@@ -8,7 +8,7 @@ namespace polybody {
 /// What a run steps, and the whole mechanism where policies eliminate unknowns of it.
 struct RunSystems {
   std::unique_ptr<System> stepped;  ///< what is stepped; by address, as workspaces refer to it
-  std::unique_ptr<System> whole;    ///< null where policies eliminate nothing
+  std::unique_ptr<System> full;     ///< null where policies eliminate nothing
 };
 
 }  // namespace polybody

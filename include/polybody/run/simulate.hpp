@@ -10,7 +10,7 @@ namespace polybody {
 /// The systems of a run of `model` by integrator I. The model must outlive them.
 template <class I, class M>
 [[gnu::cold]] RunSystems run_systems(M const& model) {
-  constexpr Entries warned = NamesStableStep<I> ? Entries::compliance : Entries::motion;
+  constexpr Capabilities warned = HasStabilityLimit<I> ? Capabilities::compliance : Capabilities::motion;
   if constexpr (M::eliminates)
     return {std::make_unique<System>(system_for<I>(model)), std::make_unique<System>(model, with<warned>)};
   else
@@ -19,20 +19,21 @@ template <class I, class M>
 
 /// The whole mechanism of `model`, for questions about its states. The model must outlive it.
 template <class M>
-[[gnu::cold]] System question_system(M const& model) {
-  return System(model, with<Entries::motion>);
+[[gnu::cold]] System observation_system(M const& model) {
+  return System(model, with<Capabilities::motion>);
 }
 
 /// Runs `model` from x by `integrator`: a range of states. x is moved along and holds the last state afterwards.
-/// \throws InconsistentStart, InvalidInput at once; NewtonStalled, NonFinite, … from the step that fails.
+/// \throws InconsistentInitialConditions, InvalidInput at once; NewtonConvergenceFailure, NonFiniteValue, … from the
+/// step that fails.
 template <LinearSolver Solver = DefaultSolver, class M, class I>
 Simulation<I, Solver> simulate(M const& model, State& x, I const& integrator, RunOptions options) {
   return Simulation<I, Solver>(run_systems<I>(model), x, integrator, std::move(options));
 }
 
 /// Takes a run up where its snapshot was made; x becomes its state. Model, integrator and options must be those of the
-/// run; a later `until` lets it go on for longer. \throws InvalidInput for a snapshot of another model, integrator or
-/// count of events.
+/// run; a later `end_time` lets it go on for longer. \throws InvalidInput for a snapshot of another model, integrator
+/// or count of events.
 template <LinearSolver Solver = DefaultSolver, class M, class I>
 Simulation<I, Solver> resume(M const& model, State& x, I const& integrator, RunOptions options,
                              RunSnapshot const& from) {
@@ -63,6 +64,6 @@ template <class I, class M>
 RunSystems run_systems(M const&& model) = delete;
 /// Refuses a temporary model, to which the system would keep a reference.
 template <class M>
-System question_system(M const&& model) = delete;
+System observation_system(M const&& model) = delete;
 
 }  // namespace polybody

@@ -4,7 +4,7 @@
 /// outside the class so that a program that links `polybody::compiled` does not compile it again.
 
 #include <polybody/math/sequence.hpp>
-#include <polybody/run/axial_watch.hpp>
+#include <polybody/run/axial_force_monitor.hpp>
 #include <polybody/run/branch_watch.hpp>
 #include <polybody/run/event_action.hpp>
 #include <polybody/run/minimum_norm.hpp>
@@ -42,8 +42,8 @@ class Simulation {
   RunReport report() && { return std::move(report_); }  ///< the report so far, moved out
   /// What is stepped: the model, or what its policies leave of it.
   System& system() { return *system_; }
-  System& whole() { return whole_ ? *whole_ : *system_; }                         ///< the whole mechanism
-  bool done() const { return report_.stopped || stepped().t >= options_.until; }  ///< the end, or a stop by an event
+  System& full() { return full_ ? *full_ : *system_; }                               ///< the whole mechanism
+  bool done() const { return report_.stopped || stepped().t >= options_.end_time; }  ///< the end, or a stop by an event
 
   /// Takes a step to the next grid point, or to a corner or event before it. When it throws, the state stays as it was.
   /// \throws InvalidInput where the model has changed since the run was made.
@@ -63,13 +63,13 @@ class Simulation {
   [[gnu::cold]] Simulation(Prepared, RunSystems systems, State& x, I const& integrator, RunOptions options,
                            double start)
       : system_(std::move(systems.stepped)),
-        whole_(std::move(systems.whole)),
+        full_(std::move(systems.full)),
         x_(&x),
         method_(method_of(integrator)),
         options_(std::move(options)),
         workspace_(method_.template workspace<Solver>(*system_)),
-        norm_(whole()),
-        axial_forces_(whole(), start, options_.until),
+        norm_(full()),
+        axial_forces_(full(), start, options_.end_time),
         start_(start) {
     options_.check(start);
     if (options_.threads != 1) system_->use_threads(options_.threads);
@@ -78,7 +78,7 @@ class Simulation {
              options_.minimum_norm || axial_forces_.asks();
   }
   /// A narrow state is stepped, of which `show` makes the user's; else that itself.
-  bool eliminates() const { return bool(whole_); }
+  bool eliminates() const { return bool(full_); }
   void advance(bool shown);  ///< shown: the user's state follows
 
   /// Replaces the workspace by one without data of earlier steps, ready for the next step. When that fails, all stays
@@ -94,18 +94,18 @@ class Simulation {
 
   /// The limits of steps hold from this state on.
   void bound() { workspace_.forward.bounds.begin(*system_, options_.limits, step_end()); }
-  StepEnd step_end() { return {stepped().q, stepped().v, stepped().lambda, stepped().t, h_}; }
+  StepResult step_end() { return {stepped().q, stepped().v, stepped().lambda, stepped().t, h_}; }
   /// Makes the balance of the energy up to here: before a restart or an action, and at the end.
   [[gnu::cold]] void settle() {
     Unexplained const found = workspace_.forward.bounds.settle(*system_, step_end());
     if (done()) report_.warn_of_energy(found, options_.limits.warning, {start_, stepped().t, halved_});
   }
-  State& stepped() { return eliminates() ? narrow_ : *x_; }
-  State const& stepped() const { return eliminates() ? narrow_ : *x_; }
-  /// Makes the user's state of the narrow one, in `seen_`. \throws NonFinite if a force fails as reactions are worked
-  /// out. \param seen events have been shown this one
+  State& stepped() { return eliminates() ? reduced_ : *x_; }
+  State const& stepped() const { return eliminates() ? reduced_ : *x_; }
+  /// Makes the user's state of the narrow one, in `seen_`. \throws NonFiniteValue if a force fails as reactions are
+  /// worked out. \param seen events have been shown this one
   void make_shown(bool seen) {
-    if (!seen) expand(*system_, narrow_, seen_, scratch_);
+    if (!seen) expand(*system_, reduced_, seen_, scratch_);
     require_finite_reactions(*system_, seen_);
   }
   void show() {  // the user's state follows the narrow one
@@ -113,24 +113,24 @@ class Simulation {
   }
 
   /// The narrow start, of speeds that keep to the joints, with the questions that only the whole model answers.
-  [[gnu::cold]] void narrow_start();
+  [[gnu::cold]] void reduced_start();
   /// Adds warnings to the report: of a start between branches, and where the step is too long for compliant joints.
   [[gnu::cold]] void warn(ForwardDynamics<Solver>& forward, State const& x) {
-    report_.add_warning(warn_of_start_between_branches(whole(), forward, x));
-    if constexpr (NamesStableStep<I>) report_.add_warning(warn_of_step<I>(whole(), forward, x, h_));
+    report_.add_warning(warn_of_ambiguous_branch(full(), forward, x));
+    if constexpr (HasStabilityLimit<I>) report_.add_warning(warn_of_step<I>(full(), forward, x, h_));
   }
 
   /// One step of h, or where it stalls two of h/2 from a fresh start, and so on. When it throws, the state is as it
   /// was.
-  StepReport step(double h, int halvings);
+  StepReport step(double h, int max_step_halvings);
 
-  double largest_step() const { return options_.largest_step.value_or(std::numeric_limits<double>::infinity()); }
-  double asked() const { return std::min<double>(options_.step, largest_step()); }  // length of steps [s]
+  double max_step() const { return options_.max_step.value_or(std::numeric_limits<double>::infinity()); }
+  double asked() const { return std::min<double>(options_.step, max_step()); }  // length of steps [s]
 
   /// Times at which the user, a drive or a load wants a step to end.
-  Sequence<double> corners() const {
-    Sequence<double> all = system_->layout().corners;
-    all.append(options_.corners.begin(), options_.corners.end());
+  Sequence<double> breakpoints() const {
+    Sequence<double> all = system_->layout().breakpoints;
+    all.append(options_.breakpoints.begin(), options_.breakpoints.end());
     return all;
   }
 
@@ -139,8 +139,7 @@ class Simulation {
   [[gnu::cold]] void restart(bool first = false);
 
   void choose_step(StepReport const& r, bool shortened) {
-    if constexpr (requires { I::controls_step; })
-      h_ = std::min(shortened ? std::max(r.next, h_) : r.next, largest_step());
+    if constexpr (requires { I::adaptive_step; }) h_ = std::min(shortened ? std::max(r.next, h_) : r.next, max_step());
   }
 
   EventMotion motion() {
@@ -154,31 +153,31 @@ class Simulation {
   /// Ends the step that was `taken` at the first event. Returns true if the run restarts there.
   bool meet_events(double taken) {
     undo_.events = true;
-    EventWatch::Step const again = [this](State& x, double h) {
+    EventDetector::Step const again = [this](State& x, double h) {
       return method_.step(*system_, x, h, workspace_).taken;
     };
     return watch_.meet(options_.events, {before_, taken, again, motion()}, stepped(), report_);
   }
   /// All that follows the end of a step, and may fail.
-  void follow(StepReport const& report, bool at_corner, bool crumb, bool shown);
+  void follow(StepReport const& report, bool at_corner, bool remainder_step, bool shown);
   [[gnu::cold]] void undo();  // restores the run after a failure in `follow`
   [[gnu::cold]] void tell_progress(StepReport const& report, bool shown);  // counts the step before
 
-  std::unique_ptr<System> system_, whole_;  // workspaces refer to it
+  std::unique_ptr<System> system_, full_;  // workspaces refer to it
   State* x_;
-  State narrow_, seen_, before_;  // two of models with eliminating policies; of a step after which something may fail
+  State reduced_, seen_, before_;  // two of models with eliminating policies; of a step after which something may fail
   MethodOf<I> method_;
   RunOptions options_;
   decltype(std::declval<MethodOf<I> const&>().template workspace<Solver>(std::declval<System&>())) workspace_;
   MinimumNormOf<> norm_;
-  AxialWatch axial_forces_;
+  AxialForceMonitor axial_forces_;
   long halved_ = 0;  // steps
   VecX scratch_;
   BranchWatch branches_;
   StepUndo undo_;
   StepPlan plan_;
   StepRow row_;
-  EventWatch watch_;
+  EventDetector watch_;
   RedundancyWatch<> redundancy_;
   bool keeps_ = false;      // every step keeps the state before it
   double h_ = 0.0, start_;  // [s]
@@ -188,12 +187,12 @@ class Simulation {
 template <Integrator I, class Solver>
 Simulation<I, Solver>::Simulation(RunSystems systems, State& x, I const& integrator, RunOptions options)
     : Simulation(Prepared{}, std::move(systems), x, integrator, std::move(options), x.t) {
-  require_fitting(whole(), x);
-  require_places(whole(), x);
-  require_computable(whole(), x);
-  plan_ = StepPlan(x.t, options_.until, options_.step, corners());
-  require_assembled(whole(), x, options_.assembly_tolerance);
-  if (eliminates()) narrow_start();
+  require_fitting(full(), x);
+  require_places(full(), x);
+  require_computable(full(), x);
+  plan_ = StepPlan(x.t, options_.end_time, options_.step, breakpoints());
+  require_assembled(full(), x, options_.assembly_tolerance);
+  if (eliminates()) reduced_start();
   stepped().t = plan_.pass(stepped().t);
   restart(true);
   if (!options_.events.empty()) watch_.start(options_.events, stepped(), motion());
@@ -214,10 +213,10 @@ Simulation<I, Solver>::Simulation(RunSystems systems, State& x, I const& integra
   if (eliminates()) x = {};
   stepped() = from.state;
   show();
-  plan_ = StepPlan(x.t, options_.until, options_.step, corners());
-  if constexpr (requires { I::controls_step; }) h_ = std::min(from.step, largest_step());
+  plan_ = StepPlan(x.t, options_.end_time, options_.step, breakpoints());
+  if constexpr (requires { I::adaptive_step; }) h_ = std::min(from.step, max_step());
   row_ = from.row;
-  watch_ = EventWatch(from.sides);
+  watch_ = EventDetector(from.sides);
   report_ = from.report;
   branches_.begin(*system_, workspace_.forward, stepped());
   renew();
@@ -241,21 +240,21 @@ void Simulation<I, Solver>::advance(bool shown) {
   system_->layout().watch.require_unchanged();
   double const from = stepped().t, length = watch_.rests() ? std::min(h_, asked()) : h_;
   auto const [target, h, lands, jumps] = plan_.next(from, length);
-  if (!(from + h > from) || !undo_.fits(stepped())) undo_.refuse_step(stepped(), options_.until, h);
-  bool const crumb = h < 0.01 * length;  // a tiny step, left over after a corner or an event
-  bool const keeps = keeps_ || lands || crumb;
+  if (!(from + h > from) || !undo_.fits(stepped())) undo_.refuse_step(stepped(), options_.end_time, h);
+  bool const remainder_step = h < 0.01 * length;  // a tiny step, left over after a corner or an event
+  bool const keeps = keeps_ || lands || remainder_step;
   if (keeps) before_ = stepped();
   undo_.begin(row_, h_, plan_, report_);
   auto trial = workspace_.forward.attempt();
   long const halved = halved_;
-  auto const take = [&] { return step(h, options_.halvings); };
+  auto const take = [&] { return step(h, options_.max_step_halvings); };
   try {
     StepReport const report =
         redundancy_.step(*system_, workspace_.forward, stepped(), before_, take, [&] { restart(); });
     bool const reached = lands && report.taken == h;
     stepped().t = reached ? target : row_.after(from, report.taken);
     choose_step(report, reached);
-    follow(report, jumps && reached, crumb, shown);
+    follow(report, jumps && reached, remainder_step, shown);
   } catch (...) {
     if (keeps) undo();
     halved_ = halved;
@@ -266,18 +265,18 @@ void Simulation<I, Solver>::advance(bool shown) {
 }
 
 template <Integrator I, class Solver>
-void Simulation<I, Solver>::follow(StepReport const& report, bool at_corner, bool crumb, bool shown) {
+void Simulation<I, Solver>::follow(StepReport const& report, bool at_corner, bool remainder_step, bool shown) {
   double const end = stepped().t;
   if (system_->rows() > 0) branches_.look(*system_, workspace_.forward, report, before_.v, stepped(), report_.warnings);
   bool const met = !options_.events.empty() && meet_events(report.taken);
   if (met) settle();
   bool const acts = met && watch_.acts(options_.events);
   if (acts)
-    stepped() = after_action<Solver>(watch_, options_.events, motion().seen(stepped()), {system_.get(), whole_.get()},
+    stepped() = after_action<Solver>(watch_, options_.events, motion().seen(stepped()), {system_.get(), full_.get()},
                                      options_.assembly_tolerance);
   at_corner = at_corner && stepped().t == end;
   if (at_corner) stepped().t = plan_.pass(stepped().t);
-  bool const anew = met || at_corner || crumb || redundancy_.changes(*system_, workspace_.forward, stepped());
+  bool const anew = met || at_corner || remainder_step || redundancy_.changes(*system_, workspace_.forward, stepped());
   if (!met && (done() || anew)) settle();
   if (anew) restart();
   if (acts) watch_.settle(options_.events, stepped(), motion());
@@ -286,7 +285,7 @@ void Simulation<I, Solver>::follow(StepReport const& report, bool at_corner, boo
     if (eliminates()) make_shown(!options_.events.empty() && !anew);
     if (State const& x = eliminates() ? seen_ : *x_; axial_forces_.is_due(x.t, done())) {
       if (options_.progress) undo_.keep_axial(axial_forces_, report_);
-      axial_forces_.look(whole(), x, report_.warnings);
+      axial_forces_.look(full(), x, report_.warnings);
     }
   }
   if (options_.progress) return tell_progress(report, shown);
@@ -310,7 +309,7 @@ void Simulation<I, Solver>::tell_progress(StepReport const& report, bool shown) 
     undo_.keep_shown(*x_);
     *x_ = seen_;
   }
-  options_.progress({start_, options_.until, stepped().t, done()});
+  options_.progress({start_, options_.end_time, stepped().t, done()});
 }
 
 template <Integrator I, class Solver>
@@ -330,32 +329,32 @@ RunReport const& Simulation<I, Solver>::run() & {
 }
 
 template <Integrator I, class Solver>
-void Simulation<I, Solver>::narrow_start() {
+void Simulation<I, Solver>::reduced_start() {
   if (options_.minimum_norm)
     throw InvalidInput(
         "simulate: minimum_norm is for models whose joints all keep their rows. Ask minimum_norm_multipliers for "
         "single states.");
   State start = *x_;
-  ForwardDynamics<Solver> forward(whole());
-  forward.project_velocities(whole(), start.q, start.v, start.t);
-  require_consistent_rows(whole(), forward, start);
+  ForwardDynamics<Solver> forward(full());
+  forward.project_velocities(full(), start.q, start.v, start.t);
+  require_consistent_redundancy(full(), forward, start);
   warn(forward, start);
-  narrow_ = reduce(*system_, start);
+  reduced_ = reduce(*system_, start);
 }
 
 template <Integrator I, class Solver>
-StepReport Simulation<I, Solver>::step(double h, int halvings) {
+StepReport Simulation<I, Solver>::step(double h, int max_step_halvings) {
   try {
     return method_.step(*system_, stepped(), h, workspace_);
-  } catch (NewtonStalled const&) {
-    if (halvings == 0) throw;
+  } catch (NewtonConvergenceFailure const&) {
+    if (max_step_halvings == 0) throw;
   }
   State const before = stepped();
   try {
     workspace_.forward.project_velocities(*system_, stepped().q, stepped().v, stepped().t);
     method_.start(*system_, stepped(), 0.5 * h, workspace_);
-    StepReport report = step(0.5 * h, halvings - 1);
-    StepReport const second = step(h - report.taken, halvings - 1);
+    StepReport report = step(0.5 * h, max_step_halvings - 1);
+    StepReport const second = step(h - report.taken, max_step_halvings - 1);
     report.append(second);
     ++halved_;
     return report;
@@ -371,7 +370,7 @@ void Simulation<I, Solver>::restart(bool first) {
   workspace_.forward.project_velocities(*system_, fresh.q, fresh.v, fresh.t);
   redundancy_.start(*system_, workspace_.forward, fresh);
   method_.start(*system_, fresh, done() ? h_ : plan_.next(fresh.t, h_).h, workspace_);
-  if (first && !eliminates()) require_consistent_rows(*system_, workspace_.forward, fresh);
+  if (first && !eliminates()) require_consistent_redundancy(*system_, workspace_.forward, fresh);
   stepped() = std::move(fresh);
   bound();
   if (first)
@@ -380,7 +379,7 @@ void Simulation<I, Solver>::restart(bool first) {
     undo_.keep_redundant(report_);
   redundancy_.name(workspace_.forward.redundant(*system_), workspace_.forward.leaves_out(), report_.redundant);
   if (eliminates())
-    for (std::string const& name : system_->step_coordinates().narrow->redundant)
+    for (std::string const& name : system_->step_coordinates().reduced->redundant)
       if (report_.redundant.empty() || report_.redundant.back() != name) report_.redundant.push_back(name);
 }
 

@@ -16,7 +16,7 @@ class CompliantMotion {
   CompliantMotion(System& system, ForwardDynamics<Solver>& forward)
       : system_(system),
         forward_(forward),
-        y_(VecX::Zero(system.speeds())),
+        y_(VecX::Zero(system.velocities())),
         w_(y_),
         other_(y_),
         mu_(VecX::Zero(system.rows())) {}
@@ -79,8 +79,8 @@ class CompliantMotion {
     int next_joint() {
       part = 0.0;
       for (;; ++block) {
-        RowBlock<double> const& r = system.data().rows[block];
-        if (r.source != RowSource::compliant) continue;
+        ConstraintBlock<double> const& r = system.data().rows[block];
+        if (r.source != ConstraintSource::compliant) continue;
         auto const& markers = system.data().markers;
         int const ends =
             int(markers[std::size_t(r.a.marker)].columns > 0) + int(markers[std::size_t(r.b.marker)].columns > 0);
@@ -107,10 +107,10 @@ class CompliantMotion {
 /// A sentence that warns of a step h beyond the limit of integrator I for the stiffness and damping of the compliant
 /// joints at x, or nothing. ω² = k g M⁻¹ gᵀ and d = c g M⁻¹ gᵀ are Rayleigh quotients, thus lower bounds of what the
 /// model has: a step that is warned of is unstable; springs and elastic bodies may need a smaller one still.
-template <NamesStableStep I, class Solver>
+template <HasStabilityLimit I, class Solver>
 std::string warn_of_step(System& system, ForwardDynamics<Solver>& forward, State const& x, double h) {
   bool const compliant = std::any_of(system.data().rows.begin(), system.data().rows.end(),
-                                     [](auto const& block) { return block.source == RowSource::compliant; });
+                                     [](auto const& block) { return block.source == ConstraintSource::compliant; });
   if (!compliant) return "";
   forward.hold(system, x.q, x.v, x.t);
   detail::CompliantMotion<Solver> motion(system, forward);

@@ -34,19 +34,20 @@ class StepPlan {
   };
 
   StepPlan() = default;
-  /// A run from `start` to `until` with steps of about `step` [s]; corners outside of it are left out.
-  [[gnu::cold]] StepPlan(double start, double until, double step, Sequence<double> corners)
-      : until_(until), step_(step), corners_(std::move(corners)) {
-    erase_if(corners_, [&](double t) { return !(t > start) || !(t <= until); });
-    sort_once(corners_);
+  /// A run from `start` to `end_time` with steps of about `step` [s]; corners outside of it are left out.
+  [[gnu::cold]] StepPlan(double start, double end_time, double step, Sequence<double> breakpoints)
+      : until_(end_time), step_(step), breakpoints_(std::move(breakpoints)) {
+    erase_if(breakpoints_, [&](double t) { return !(t > start) || !(t <= end_time); });
+    sort_once(breakpoints_);
   }
 
   /// Passes the corners up to t, and those that differ from it by rounding only (0.3 and 0.1 + 0.2 are one). Returns t,
   /// or the time of the last corner passed or of the end where it is that within rounding.
   double pass(double t) {
-    double const crumb = 1e-9 * step_ + rounding(t);
-    while (next_ < corners_.size() && corners_[next_] <= t + crumb) t = std::max(t, corners_[next_++]);
-    return until_ - t <= crumb ? until_ : t;
+    double const remainder_step = 1e-9 * step_ + rounding(t);
+    while (next_ < breakpoints_.size() && breakpoints_[next_] <= t + remainder_step)
+      t = std::max(t, breakpoints_[next_++]);
+    return until_ - t <= remainder_step ? until_ : t;
   }
 
   std::size_t passed() const { return next_; }          ///< how many corners were passed
@@ -54,8 +55,8 @@ class StepPlan {
 
   /// The step from t that would best be h long.
   Next next(double t, double h) const {
-    bool const corner = next_ < corners_.size();
-    double const target = corner ? corners_[next_] : until_, left = target - t;
+    bool const corner = next_ < breakpoints_.size();
+    double const target = corner ? breakpoints_[next_] : until_, left = target - t;
     // A step may be 1 % longer than asked for, so that no tiny one is left: rows divided by its square would be
     // rounding errors.
     bool const lands = 1.01 * h >= left;
@@ -74,7 +75,7 @@ class StepPlan {
   }
 
   double until_ = 0.0, step_ = 0.0;
-  Sequence<double> corners_;
+  Sequence<double> breakpoints_;
   std::size_t next_ = 0;
 };
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <polybody/run/axial_watch.hpp>
+#include <polybody/run/axial_force_monitor.hpp>
 #include <polybody/run/step_plan.hpp>
 
 namespace polybody {
@@ -21,13 +21,13 @@ struct StepUndo {
 
   void end(State const& x) { sizes_ = sizes_of(x); }                 ///< notes the state at the end of a step
   bool fits(State const& x) const { return sizes_ == sizes_of(x); }  ///< x has the sizes of that state
-  /// \throws InvalidInput for a step of h [s] from x: the sizes of x were changed, the run has ended at `until` [s], or
-  /// the clock does not resolve h.
-  [[noreturn, gnu::cold]] void refuse_step(State const& x, double until, double h) const {
+  /// \throws InvalidInput for a step of h [s] from x: the sizes of x were changed, the run has ended at `end_time` [s],
+  /// or the clock does not resolve h.
+  [[noreturn, gnu::cold]] void refuse_step(State const& x, double end_time, double h) const {
     if (!fits(x))
       throw InvalidInput{"The sizes of the state were changed since the last step, which ended at t = ", x.t,
                          " s. A run moves its state along: change entries of q and v in the `then` of an event."};
-    if (!(x.t < until))
+    if (!(x.t < end_time))
       throw InvalidInput{"advance: the run has ended at t = ", x.t, " s. Ask done() before, or give a later `until`."};
     throw InvalidInput{"The clock does not resolve a step of ", h, " s at t = ", x.t,
                        " s. Count the time of the run from a start near zero."};
@@ -57,13 +57,13 @@ struct StepUndo {
     restarted_ = true;
   }
   /// Notes the warnings before axial forces are looked at.
-  [[gnu::cold]] void keep_axial(AxialWatch const& axial, RunReport const& report) {
+  [[gnu::cold]] void keep_axial(AxialForceMonitor const& axial, RunReport const& report) {
     if (axial_) return;
     said_.assign(report.warnings.begin(), report.warnings.begin() + std::ptrdiff_t(warnings_));
     axial_ = axial;
   }
   /// Puts the run back as it was.
-  [[gnu::cold]] void put_back(StepRow& row, double& h, StepPlan& plan, RunReport& report, AxialWatch& axial) {
+  [[gnu::cold]] void put_back(StepRow& row, double& h, StepPlan& plan, RunReport& report, AxialForceMonitor& axial) {
     row = row_;
     h = h_;
     plan.go_back(passed_);
@@ -80,7 +80,7 @@ struct StepUndo {
  private:
   using Sizes = std::array<Index, 5>;
   static Sizes sizes_of(State const& x) {
-    return {x.q.size(), x.v.size(), x.a.size(), x.lambda.size(), x.memory.size()};
+    return {x.q.size(), x.v.size(), x.a.size(), x.lambda.size(), x.history.size()};
   }
 
   Sizes sizes_{};  // of q, v, a, λ and memory at the end of the last step
@@ -90,7 +90,7 @@ struct StepUndo {
   RunCounts counts_;
   bool counted_ = false, restarted_ = false;
   std::vector<std::string> redundant_, said_;
-  std::optional<AxialWatch> axial_;
+  std::optional<AxialForceMonitor> axial_;
 };
 
 }  // namespace polybody

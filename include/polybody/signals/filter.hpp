@@ -148,7 +148,7 @@ std::vector<double> low_pass(std::span<double const> times, std::span<double con
 
 /// Window function: weights of the samples of a record at the relative position x ∈ [0, 1) for the spectrum.
 template <class W>
-concept RecordWindow = requires(double x) {
+concept SpectralWindow = requires(double x) {
   { W::weight(x) } -> std::convertible_to<double>;
 };
 /// Rectangular window with weight one, exact for periods of the record.
@@ -171,7 +171,7 @@ struct Spectrum {
 /// Amplitude spectrum of equally spaced samples, `values` at `times` [s], without their mean, with a window: a_k =
 /// 2|Σ_i w_i x_i e^{−2πi k i/n}|/Σ_i w_i (without the factor 2 at the Nyquist frequency). \throws InvalidInput as
 /// `low_pass`.
-template <RecordWindow W = HannWindow>
+template <SpectralWindow W = HannWindow>
 Spectrum amplitude_spectrum(std::span<double const> times, std::span<double const> values, W const& = {}) {
   detail::require_history(times, values, 4, "amplitude_spectrum");
   double const step = detail::equal_step(times, "amplitude_spectrum");

@@ -48,8 +48,8 @@ class AndersonAcceleration {
 
   /// The last step was its correction: u₁ = f.
   AndersonFit fit_by_one(VecX const& f) {
-    PackSum ff, fd, dd, ss;
-    for_packs(measured_, [&, now = f.data(), last = last_.data()](auto at) {
+    SimdSum ff, fd, dd, ss;
+    for_each_simd_block(measured_, [&, now = f.data(), last = last_.data()](auto at) {
       auto const fi = at(now), s = at(last), d = fi - s;
       ff.add(fi * fi), fd.add(fi * d), dd.add(d * d), ss.add(s * s);
     });
@@ -58,12 +58,13 @@ class AndersonAcceleration {
     return {std::sqrt(ff.total() / ss.total()), share(gamma_ * fd.total(), ff.total())};
   }
   AndersonFit fit_by_two(VecX const& f) {
-    PackSum sum_ff, sum_fd, sum_dd, sum_ss, sum_uu, sum_fe, sum_de, sum_ee;
-    for_packs(measured_, [&, now = f.data(), last = last_.data(), c = c_.data(), before = d_.data()](auto at) {
-      auto const fi = at(now), l = at(last), ci = at(c), e = at(before), d = fi - l, s = l - ci, u = fi - ci;
-      sum_ff.add(fi * fi), sum_fd.add(fi * d), sum_dd.add(d * d), sum_ss.add(s * s), sum_uu.add(u * u);
-      sum_fe.add(fi * e), sum_de.add(d * e), sum_ee.add(e * e);
-    });
+    SimdSum sum_ff, sum_fd, sum_dd, sum_ss, sum_uu, sum_fe, sum_de, sum_ee;
+    for_each_simd_block(
+        measured_, [&, now = f.data(), last = last_.data(), c = c_.data(), before = d_.data()](auto at) {
+          auto const fi = at(now), l = at(last), ci = at(c), e = at(before), d = fi - l, s = l - ci, u = fi - ci;
+          sum_ff.add(fi * fi), sum_fd.add(fi * d), sum_dd.add(d * d), sum_ss.add(s * s), sum_uu.add(u * u);
+          sum_fe.add(fi * e), sum_de.add(d * e), sum_ee.add(e * e);
+        });
     double const fd = sum_fd.total(), dd = sum_dd.total(), fe = sum_fe.total(), de = sum_de.total(),
                  ee = sum_ee.total(), det = dd * ee - de * de;
     bool const apart = det > 0.01 * dd * ee;  // else the two tell the same
@@ -76,12 +77,12 @@ class AndersonAcceleration {
                   *const u = u_.data();
     double const g = gamma_, before = gamma_before_;
     if (known_ == 1)
-      for_packs(f.size(), [=](auto at) {
+      for_each_simd_block(f.size(), [=](auto at) {
         auto const fi = at(now), ci = g * fi;
         at.set(d, fi - at(last)), at.set(u, fi), at.set(c, ci), at.set(last, fi), at.set(now, fi - ci);
       });
     else
-      for_packs(f.size(), [=](auto at) {
+      for_each_simd_block(f.size(), [=](auto at) {
         auto const fi = at(now), ui = fi - at(c), ci = g * ui + before * at(u);
         at.set(d, fi - at(last)), at.set(u, ui), at.set(c, ci), at.set(last, fi), at.set(now, fi - ci);
       });

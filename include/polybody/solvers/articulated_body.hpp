@@ -35,19 +35,19 @@ class ArticulatedBodySolverOf {
     nodes_.resize(bodies.size());
     rows_.assign(std::size_t(m), Sequence<Vec6>(bodies.size(), Vec6::Zero()));
     for (std::size_t i = 0; i < bodies.size(); ++i) {
-      owner_.resize(std::max(owner_.size(), std::size_t(bodies[i].v0 + speeds_of(bodies[i]))), -1);
-      for (Index j = 0; j < speeds_of(bodies[i]); ++j) owner_[std::size_t(bodies[i].v0 + j)] = Index(i);
+      owner_.resize(std::max(owner_.size(), std::size_t(bodies[i].v0 + velocities_of(bodies[i]))), -1);
+      for (Index j = 0; j < velocities_of(bodies[i]); ++j) owner_[std::size_t(bodies[i].v0 + j)] = Index(i);
     }
     for (Index i = 0; i < m; ++i) {
-      std::size_t const row = std::size_t(reduction.rows_that_stay()[std::size_t(i)]);
+      std::size_t const row = std::size_t(reduction.remaining_equations()[std::size_t(i)]);
       row_of_.resize(std::max(row_of_.size(), row + 1), -1);
       row_of_[row] = i;
     }
-    answers_.setZero(reduction.speeds(), m);
+    answers_.setZero(reduction.velocities(), m);
     schur_.setZero(m, m);
     open_.setZero(m);
     lambda_.setZero(m);
-    none_.setZero(reduction.speeds());
+    none_.setZero(reduction.velocities());
     loops_.analyse(m, {});
   }
 
@@ -87,9 +87,10 @@ class ArticulatedBodySolverOf {
   /// neighbours.
   Index factor() {
     if (misplaced_ >= 0)
-      throw InvalidInput{"recursive::ArticulatedBody: a force couples body \"",
-                         reduction_->tree().bodies[std::size_t(misplaced_)].name,
-                         "\" with one that neither carries it nor is carried by it. Take recursive::Augmented."};
+      throw InvalidInput{
+          "joint_coordinates::ArticulatedBody: a force couples body \"",
+          reduction_->tree().bodies[std::size_t(misplaced_)].name,
+          "\" with one that neither carries it nor is carried by it. Take joint_coordinates::Augmented."};
     for (std::size_t i = nodes_.size(); i-- > 0;)
       if (Index const bad = eliminate(i); bad >= 0) return bad;
     Index const m = schur_.rows();
@@ -102,12 +103,12 @@ class ArticulatedBodySolverOf {
     loops_.begin();
     loops_.add(0, 0, schur_);
     Index const bad = loops_.factor();
-    return bad < 0 ? -1 : reduction_->speeds() + bad;
+    return bad < 0 ? -1 : reduction_->velocities() + bad;
   }
 
   /// [TᵀKT, (G T)ᵀ; G T, 0] x = rhs.
   void solve(VecX const& rhs, VecX& x) {
-    Index const n = reduction_->speeds(), m = schur_.rows();
+    Index const n = reduction_->velocities(), m = schur_.rows();
     for (Node& node : nodes_) node.f.setZero();
     run(rhs, x.head(n));
     if (m == 0) return;
@@ -122,16 +123,16 @@ class ArticulatedBodySolverOf {
     Mat6 k = Mat6::Zero(), b = k, c = k;           ///< K̂, B, C
     Mat6 s = k, inverse = k, left = k, right = k;  ///< S, D⁻¹, L by rows, R by columns
     Vec6 f = Vec6::Zero(), x = f, u = f;  ///< force on the body; [v; ω] and u: speeds, in the unit of the solution
-    int speeds = 0;
+    int velocities = 0;
 
     /// u += part · D⁻¹ given.
     void add_answer(double part, Vec6 const& given) {
-      for (int j = 0; j < speeds; ++j)
-        for (int i = 0; i < speeds; ++i) u[i] += part * (inverse(i, j) * given[j]);
+      for (int j = 0; j < velocities; ++j)
+        for (int i = 0; i < velocities; ++i) u[i] += part * (inverse(i, j) * given[j]);
     }
   };
 
-  static Index speeds_of(TreeBody const& body) { return body.layout == RigidLayout::plane ? 3 : 6; }
+  static Index velocities_of(TreeBody const& body) { return body.layout == RigidLayout::plane ? 3 : 6; }
   /// What speed k of body i moves, as [v; ω] in world axes.
   Vec6 axis_of(std::size_t i, Index k) const {
     Vec6 axis = Vec6::Zero();
@@ -149,13 +150,13 @@ class ArticulatedBodySolverOf {
     TreeBody const& body = reduction_->tree().bodies[i];
     TreeFrame const& frame = state_->frames[i];
     if (body.carried()) {
-      n.speeds = frame.speeds;
+      n.velocities = frame.velocities;
       n.s = frame.s;
     } else {
-      n.speeds = int(speeds_of(body));
-      for (int k = 0; k < n.speeds; ++k) n.s.col(k) = axis_of(i, k);
+      n.velocities = int(velocities_of(body));
+      for (int k = 0; k < n.velocities; ++k) n.s.col(k) = axis_of(i, k);
     }
-    int const d = n.speeds;
+    int const d = n.velocities;
     Mat6 const ks = n.k * n.s;
     double largest = 0.0;
     for (int r = 0; r < d; ++r)
@@ -183,13 +184,13 @@ class ArticulatedBodySolverOf {
     for (std::size_t i = nodes_.size(); i-- > 0;) {
       Node& n = nodes_[i];
       Vec6 given = Vec6::Zero();
-      for (int k = 0; k < n.speeds; ++k) given[k] = r[bodies[i].vn + k] + n.s.col(k).dot(n.f);
+      for (int k = 0; k < n.velocities; ++k) given[k] = r[bodies[i].vn + k] + n.s.col(k).dot(n.f);
       n.u.setZero();
       n.add_answer(1.0, given);  // D⁻¹ (r + Sᵀf)
       if (bodies[i].parent < 0) continue;
       Vec6& f = nodes_[std::size_t(bodies[i].parent)].f;
       add_back<T>(n.f, state_->frames[i].arm, f);
-      for (int k = 0; k < n.speeds; ++k) f -= n.u[k] * n.right.col(k);
+      for (int k = 0; k < n.velocities; ++k) f -= n.u[k] * n.right.col(k);
     }
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
       Node& n = nodes_[i];
@@ -197,11 +198,11 @@ class ArticulatedBodySolverOf {
       if (bodies[i].parent >= 0) {
         Vec6 const& p = nodes_[std::size_t(bodies[i].parent)].x;
         Vec6 by_parent = Vec6::Zero();
-        for (int k = 0; k < n.speeds; ++k) by_parent[k] = n.left.row(k).dot(p);
+        for (int k = 0; k < n.velocities; ++k) by_parent[k] = n.left.row(k).dot(p);
         n.add_answer(-1.0, by_parent);
         add_carried<T>(p, state_->frames[i].arm, n.x);
       }
-      for (int k = 0; k < n.speeds; ++k) {
+      for (int k = 0; k < n.velocities; ++k) {
         n.x += n.u[k] * n.s.col(k);
         u[bodies[i].vn + k] = n.u[k];
       }

@@ -104,17 +104,17 @@ class BlockFactor {
   /// How often the order was changed.
   std::size_t reorderings() const { return std::min(kept_, earlier_.size()); }
   /// Takes back all changes of the order but the first `count`. The factor stays until the next one is begun.
-  void keep_reorderings(std::size_t count) noexcept { kept_ = std::min(count, kept_); }
+  void limit_reorderings(std::size_t count) noexcept { kept_ = std::min(count, kept_); }
   /// Unknowns (rows of joints) that repeat others; their multipliers are zero.
   std::span<Index const> dropped() const { return {dropped_.data(), dropped_count_}; }
   /// Every later factorisation drops these unknowns (rows of joints), whatever their pivots. `analyse` forgets them.
   /// Rows that were eliminated together with a singular body stay.
-  [[gnu::cold]] void leave_out(std::span<Index const> unknowns) {
+  [[gnu::cold]] void mark_redundant(std::span<Index const> unknowns) {
     left_out_ = Sequence<Index>(unknowns.begin(), unknowns.end());
     place_left_out();
   }
-  /// Whether the last factorisation dropped more rows than `leave_out` names, or has a pivot below `share` of its parts
-  /// in a row that closes a loop.
+  /// Whether the last factorisation dropped more rows than `mark_redundant` names, or has a pivot below `share` of its
+  /// parts in a row that closes a loop.
   [[gnu::cold]] bool is_doubtful(double share) const;
   /// The vector n with n = 1 at a dropped unknown, 0 at all others dropped, and A n = 0 in all other rows, as of the
   /// last factorisation: a null vector of A where the row of that unknown repeats others.
@@ -330,7 +330,7 @@ bool BlockFactor<symmetry>::is_symmetric() const {
       off.compare(u + n.pad, l_.data() + n.l + r * n.width, n.width);
       off.enlarge(u[r]);
     }
-    if (!off.is_rounding()) return false;
+    if (!off.is_round_off()) return false;
   }
   return true;
 }

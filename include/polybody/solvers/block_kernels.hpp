@@ -5,8 +5,8 @@
 #include <Eigen/Core>
 #include <cstring>
 
-#include <polybody/math/pack.hpp>
 #include <polybody/math/sequence.hpp>
+#include <polybody/math/simd_vector.hpp>
 #include <polybody/math/with_constant.hpp>
 
 namespace polybody::detail {
@@ -164,7 +164,7 @@ struct Difference {
       lane_apart += d * d;
     }
   }
-  bool is_rounding() const { return apart + sum_of(lane_apart) <= 1e-24 * (sum + sum_of(lane_sum)); }
+  bool is_round_off() const { return apart + sum_of(lane_apart) <= 1e-24 * (sum + sum_of(lane_sum)); }
 };
 
 }  // namespace polybody::detail

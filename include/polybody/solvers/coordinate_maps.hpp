@@ -4,7 +4,7 @@
 /// and of linear joints (`LinearElimination`). Steps are in doubles; derivatives of steps go through the same maps in
 /// dual or recorded numbers.
 
-#include <polybody/solvers/held_multipliers.hpp>
+#include <polybody/solvers/recovered_multipliers.hpp>
 #include <polybody/system/coordinates.hpp>
 #include <polybody/system/joint_coordinates.hpp>
 #include <polybody/system/reduction.hpp>
@@ -18,46 +18,44 @@ class CoordinateMaps {
   using Vector = VecXOf<T>;
 
  public:
-  /// \throws InvalidInput, InconsistentStart as `Reduction`.
+  /// \throws InvalidInput, InconsistentInitialConditions as `Reduction`.
   template <class M>
   explicit CoordinateMaps(M const& model)
       : reduction_(model),
         state_(reduction_.tree().state()),
         q_(model.reference_state().q.template cast<T>()),
-        v_(Vector::Constant(model.speeds(), T(0.0))),
+        v_(Vector::Constant(model.velocities(), T(0.0))),
         a_(v_),
         last_r_(v_),
-        narrow_(Vector::Constant(reduction_.speeds(), T(0.0))) {}
+        reduced_(Vector::Constant(reduction_.velocities(), T(0.0))) {}
 
   /// What the maps alone tell of narrow vectors.
-  NarrowLayout narrow_layout() const {
-    NarrowLayout n{.coordinates = reduction_.coordinates(),
-                   .speeds = reduction_.speeds(),
-                   .rows = reduction_.rows(),
-                   .velocity_rows = reduction_.velocity_rows(),
-                   .places = reduction_.places(),
-                   .rows_that_stay = reduction_.rows_that_stay(),
-                   .keeps_mass_constant = !has_tree};
-    for (Index i = 0; i < n.speeds; ++i) n.whole_speed.push_back(reduction_.whole_speed(i));
+  ReducedLayout reduced_layout() const {
+    ReducedLayout n{.coordinates = reduction_.coordinates(),
+                    .velocities = reduction_.velocities(),
+                    .rows = reduction_.rows(),
+                    .nonholonomic_equations = reduction_.nonholonomic_equations(),
+                    .places = reduction_.places(),
+                    .remaining_equations = reduction_.remaining_equations(),
+                    .keeps_mass_constant = !has_tree};
+    for (Index i = 0; i < n.velocities; ++i) n.full_velocity.push_back(reduction_.full_velocity(i));
     if constexpr (has_tree)
       for_each_motion(reduction_.tree(), [&](JointMotion const& m, Index q, Index v) {
-        if (m.kind != JointMotion::Kind::slide) n.turns.push_back({q, v, m.coordinates(), m.speeds()});
+        if (m.kind != JointMotion::Kind::slide) n.turns.push_back({q, v, m.coordinates(), m.velocities()});
       });
     return n;
   }
 
   /// Enters the functions for a C that is, or derives from, these maps.
   template <class C>
-  static constexpr void enter(CoordinateMapEntries<T>& out) {
-    out.expand = [](void* c, Vector const& q, Vector const& v, Vector& whole_q, Vector& whole_v) {
+  static constexpr void enter(CoordinateMapOperations<T>& out) {
+    out.expand = [](void* c, Vector const& q, Vector const& v, Vector& full_q, Vector& full_v) {
       of<C>(c).place(q, v);
-      whole_q = of<C>(c).q_;
-      whole_v = of<C>(c).v_;
+      full_q = of<C>(c).q_;
+      full_v = of<C>(c).v_;
     };
-    out.expand_rates = [](void* c, Vector const& u, bool bias, Vector& whole) {
-      of<C>(c).expand_rates(u, bias, whole);
-    };
-    out.reduce = [](void* c, Vector& r, Vector& narrow) { of<C>(c).reduce(r, narrow); };
+    out.expand_rates = [](void* c, Vector const& u, bool bias, Vector& full) { of<C>(c).expand_rates(u, bias, full); };
+    out.reduce = [](void* c, Vector& r, Vector& reduced) { of<C>(c).reduce(r, reduced); };
     out.recover_multipliers = [](void* c, Data<T> const& data, Vector& lambda) {
       of<C>(c).recover_multipliers(data, lambda);
     };
@@ -80,13 +78,13 @@ class CoordinateMaps {
   /// q_, v_ and the tree from narrow coordinates and speeds.
   void place(Vector const& q, Vector const& v) {
     reduction_.expand_coordinates(q, q_);
-    reduction_.expand_speeds(v, v_);
+    reduction_.expand_velocities(v, v_);
     reduction_.linear().expand_coordinates(q_);
     reduction_.linear().expand_rates(v_);
     if constexpr (has_tree) reduction_.tree().expand_state(q, v, q_, v_, state_);
   }
   void expand_rates(Vector const& u, bool bias, Vector& out) {
-    reduction_.expand_speeds(u, out);
+    reduction_.expand_velocities(u, out);
     reduction_.linear().expand_rates(out);
     if constexpr (has_tree) reduction_.tree().expand_rates(state_, u, bias, out);
   }
@@ -94,17 +92,17 @@ class CoordinateMaps {
     last_r_ = r;
     reduction_.linear().reduce_forces(r);
     if constexpr (has_tree) reduction_.tree().reduce_forces(state_, r, out);
-    reduction_.reduce_speeds(r, out);
+    reduction_.reduce_velocities(r, out);
   }
   void recover_multipliers(Data<T> const& data, Vector& lambda) {
     reduction_.linear().multipliers(last_r_, lambda);
     if constexpr (has_tree) {
       a_ = last_r_;
-      reduction_.tree().reduce_forces(state_, a_, narrow_);
-      for (RowBlock<T> const& block : data.rows)
-        if (block.source == RowSource::joint && reduction_.carried_by(block.row) >= 0) {
+      reduction_.tree().reduce_forces(state_, a_, reduced_);
+      for (ConstraintBlock<T> const& block : data.rows)
+        if (block.source == ConstraintSource::joint && reduction_.carried_by(block.row) >= 0) {
           std::size_t const i = std::size_t(reduction_.carried_by(block.row));
-          RowEnd<T> const& end = reduction_.tree().bodies[i].backwards ? block.a : block.b;
+          ConstraintSide<T> const& end = reduction_.tree().bodies[i].backwards ? block.a : block.b;
           Vec<T, 3> const& at = data.markers[std::size_t(end.marker)].frame.r;
           add_multipliers_that_hold(block.rows, end.map, state_.held[i], difference<T>(at, state_.frames[i].r),
                                     lambda.data() + block.row);
@@ -116,13 +114,13 @@ class CoordinateMaps {
   TreeStateOf<T> state_;
   Vector q_, v_, a_;  // whole
   Vector last_r_;     // of the last residual that was reduced, whole
-  Vector narrow_;
+  Vector reduced_;
 };
 
 /// The functions of maps that stand alone.
 template <class Maps, StateScalar T>
-inline constexpr CoordinateMapEntries<T> map_entries = [] {
-  CoordinateMapEntries<T> out;
+inline constexpr CoordinateMapOperations<T> map_entries = [] {
+  CoordinateMapOperations<T> out;
   Maps::template enter<Maps>(out);
   return out;
 }();

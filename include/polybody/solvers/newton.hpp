@@ -19,7 +19,7 @@ struct NewtonOptions {
   /// last one served.
   double factorisation_cost = 3.0;
   bool always_refactor = false;  ///< full Newton
-  int growths = 2;               ///< of the corrections, after which it gives up
+  int max_growths = 2;           ///< of the corrections, after which it gives up
   /// What a solve should cost, in iterations, where a factorisation costs as many as above. At this bound it ends with
   /// the first iterate that is near, and reports what it left, as a loop in real time asks for. 0: no bound.
   double budget = 0.0;
@@ -29,7 +29,7 @@ struct NewtonOptions {
   /// factorisation and an iteration.
   [[gnu::cold]] void check(std::string const& who) const {
     require_count(max_iterations, who, ": newton.max_iterations");
-    require_count(growths, who, ": newton.growths");
+    require_count(max_growths, who, ": newton.growths");
     if (!(factorisation_cost >= 0.0))
       throw InvalidInput{who, ": newton.factorisation_cost must be zero or positive, but is ", factorisation_cost, "."};
     if (budget != 0.0 && !(budget >= factorisation_cost + 1.0))
@@ -55,7 +55,7 @@ struct NewtonReport {
 };
 
 /// What Newton's method keeps from solve to solve of problems that follow each other.
-struct KeptFactor {
+struct ReusedFactorisation {
   bool usable = false;  ///< a factorisation is at hand
   double theta = 1.0;   ///< its contraction rate, a ratio
   double fresh = 0.05;  ///< the ratio that is expected of a new one, as others had
@@ -100,7 +100,7 @@ struct NewtonProgress {
   }
   /// Whether a new factorisation saves more iterations than it costs, over as many solves as the last one served.
   /// \param theta the rate with the one at hand
-  static bool renewal_pays(CorrectionSize const& size, NewtonOptions const& options, KeptFactor const& kept,
+  static bool renewal_pays(CorrectionSize const& size, NewtonOptions const& options, ReusedFactorisation const& kept,
                            double theta) {
     if (theta <= 1.5 * kept.fresh) return false;  // no better than what is at hand
     double const by = size.norm / size.tolerated;
@@ -137,7 +137,7 @@ template <class Problem>
 struct NewtonSolve {
   Problem& problem;
   NewtonOptions const& options;
-  KeptFactor& kept;
+  ReusedFactorisation& kept;
   bool begins_anew;  ///< as the last solve found its factorisation of no use
   NewtonReport report = {};
   NewtonProgress progress = {};
@@ -164,7 +164,7 @@ struct NewtonSolve {
   /// Goes back to the first iterate where an earlier solve's factorisation led far from it.
   bool restart() {
     if constexpr (requires { problem.restart(); }) {
-      restarted = report.factorisations == 0 && problem.is_far(progress.largest);
+      restarted = report.factorisations == 0 && problem.is_far_from_solution(progress.largest);
       if (!restarted) return false;
       problem.restart();
       progress = {};
@@ -174,8 +174,8 @@ struct NewtonSolve {
   }
   /// What is left moves the iterate little beside what it moves by itself.
   bool is_near(double norm) const {
-    if constexpr (requires { problem.is_far(norm); })
-      return !problem.is_far(100.0 * norm);
+    if constexpr (requires { problem.is_far_from_solution(norm); })
+      return !problem.is_far_from_solution(100.0 * norm);
     else
       return norm <= 0.01 * progress.largest;
   }
@@ -208,9 +208,9 @@ struct NewtonSolve {
     double const to_come = rate_of_factorisation();
     report.theta = kept.theta;
     if (fresh && !renewed) kept.fresh = std::clamp(std::sqrt(kept.fresh * kept.theta), 0.01, 0.5);
-    if constexpr (requires { problem.is_rounding(size.norm); })
+    if constexpr (requires { problem.is_round_off(size.norm); })
       if (size.norm > size.tolerated && progress.stalls(size, shrinks)) {
-        rounding = problem.is_rounding(size.norm);
+        rounding = problem.is_round_off(size.norm);
         if (rounding) {
           kept.theta = rate_before;
           kept.seen = 0.0;
@@ -231,7 +231,7 @@ struct NewtonSolve {
       bool const first = report.factorisations == 1;  // what an earlier solve's one made tells nothing of this one's
       shrinks = first || size.norm < progress.before || size.norm <= size.tolerated;
     }
-    return shrinks || ++progress.grown < options.growths;
+    return shrinks || ++progress.grown < options.max_growths;
   }
 
   /// Takes the correction, combined with those before it where it is not the last one by itself. Whether it is.
@@ -300,10 +300,11 @@ struct NewtonSolve {
 ///   CorrectionSize solve()    the next correction; or double, its norm where 1 is tolerated. It may be asked twice of
 ///                             one right-hand side, by an old and by a new factorisation
 ///   void apply()              adds it; or void apply(double part), which full Newton damps
-///   bool is_rounding(double)  (or not there) whether a correction of this norm is what rounding of the iterate leaves
+///   bool is_round_off(double)  (or not there) whether a correction of this norm is what rounding of the iterate leaves
 ///   AndersonAcceleration& acceleration(), VecX& correction()  (or not there) what combines corrections, and the one
 ///                             that `solve` found and `apply` takes
-///   bool is_far(double), void restart()  (or not there) whether a correction of this norm leads further away than the
+///   bool is_far_from_solution(double), void restart()  (or not there) whether a correction of this norm leads further
+///   away than the
 ///                             solution may be; brings back the first iterate
 /// `kept` says whether an earlier factorisation may be used, and what is known of it.
 /// A correction that tells that the factorisation should be renewed is not taken: the new one is made where it was
@@ -315,7 +316,7 @@ struct NewtonSolve {
 /// grew: the rate θ after a large correction is small for any iterate and says nothing of convergence. Corrections of
 /// one factorisation are combined, but for full Newton and without `predictive_stop`: θ is then the factorisation's own
 /// rate, and ‖Δ‖ what the combination leaves of the last correction, or its geometric mean with ‖Δ‖ after the first
-/// two. It fails after as many growing corrections of new factorisations as `growths` says. Full Newton in a stiff
+/// two. It fails after as many growing corrections of new factorisations as `max_growths` says. Full Newton in a stiff
 /// direction contracts by turns (θ = 0.01, 0.8, 1e-4, …: bending, then the stretch that it left), so no single rate
 /// predicts the next correction: it stops when ‖Δ‖ ≤ 1 itself, and grows when ‖Δₖ‖ ≥ ‖Δₖ₋₂‖, by the norms themselves,
 /// as what is tolerated shrinks with a wild iterate's accelerations. Where it would go in circles, as between a contact
@@ -324,11 +325,11 @@ struct NewtonSolve {
 /// budget: its last correction moves it by less than a hundredth of what would be far, or of the largest one where the
 /// problem does not tell. What is not goes on, as iterates at impacts may be anywhere.
 template <class Problem>
-NewtonReport newton(Problem&& problem, NewtonOptions const& options, KeptFactor& kept) {
+NewtonReport newton(Problem&& problem, NewtonOptions const& options, ReusedFactorisation& kept) {
   detail::NewtonSolve<std::remove_reference_t<Problem>> solve{problem, options, kept, kept.stale};
   if (kept.stale) kept.usable = false;
   kept.theta = std::pow(std::max(kept.theta, 1e-4), 0.8);  // an old rate is trusted less with every solve
-  kept.fresh += 0.1 * (KeptFactor{}.fresh - kept.fresh);
+  kept.fresh += 0.1 * (ReusedFactorisation{}.fresh - kept.fresh);
   for (int k = 0; k < options.max_iterations; ++k)
     if (auto const result = solve.iterate(k)) {
       solve.report.result = *result;

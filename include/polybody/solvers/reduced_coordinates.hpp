@@ -10,7 +10,7 @@
 #include <polybody/solvers/tree_dynamics.hpp>
 #include <polybody/solvers/tree_tangent.hpp>
 #include <polybody/system/dense_reduction.hpp>
-#include <polybody/system/model_entries.hpp>
+#include <polybody/system/make_operations.hpp>
 #include <polybody/system/system.hpp>
 
 namespace polybody {
@@ -23,16 +23,19 @@ class ReducedCoordinates : public CoordinateMaps<Solution> {
 
  public:
   /// The dense system TᵀKT is solved, else the sparse one of all bodies with the tree's rows.
-  static constexpr bool solves_densely = std::is_same_v<Solution, recursive::Reduced>;
+  static constexpr bool solves_densely = std::is_same_v<Solution, joint_coordinates::DenseMatrix>;
   /// The tree itself is the solver: the tangent is written as it is for the whole model.
-  static constexpr bool solves_by_bodies = std::is_same_v<Solution, recursive::ArticulatedBody>;
+  static constexpr bool solves_by_bodies = std::is_same_v<Solution, joint_coordinates::ArticulatedBody>;
   /// The equations have the unknowns of a time step.
   static constexpr bool solves_as_it_is = solves_densely || solves_by_bodies || std::is_void_v<Solution>;
 
-  /// \throws InvalidInput, InconsistentStart as `Reduction`.
+  /// \throws InvalidInput, InconsistentInitialConditions as `Reduction`.
   template <class M>
   explicit ReducedCoordinates(M const& model)
-      : Maps(model), unit_(VecX::Zero(reduction_.speeds())), whole_speeds_(model.speeds()), whole_rows_(model.rows()) {
+      : Maps(model),
+        unit_(VecX::Zero(reduction_.velocities())),
+        full_velocities_(model.velocities()),
+        full_rows_(model.rows()) {
     if constexpr (solves_by_bodies) {
       dynamics_ = TreeDynamicsOf<>(reduction_.tree().bodies);
       weight_ = model.gravity().g;
@@ -40,22 +43,22 @@ class ReducedCoordinates : public CoordinateMaps<Solution> {
     if constexpr (solves_densely)
       prepare_dense();
     else if constexpr (!solves_by_bodies)
-      equations_ = BodyEquationsOf<>(reduction_, model.linear_rows(), whole_speeds_, whole_rows_);
+      equations_ = BodyEquationsOf<>(reduction_, model.linear_rows(), full_velocities_, full_rows_);
   }
 
-  NarrowLayout narrow_layout(ModelLayout const& whole) const;
+  ReducedLayout reduced_layout(ModelLayout const& full) const;
 
-  static CoordinatesEntries const table;
+  static CoordinateOperations const table;
 
  private:
   using Self = ReducedCoordinates;
   static Self& of(void* c) { return *static_cast<Self*>(c); }
 
-  static constexpr CoordinatesEntries make_table() {
-    CoordinatesEntries out;
+  static constexpr CoordinateOperations make_table() {
+    CoordinateOperations out;
     Maps::template enter<Self>(out);
     out.coordinate_rates = &coordinate_rates;
-    out.narrow = &narrow;
+    out.reduced = &reduced;
     out.write = &write;
     out.held = &held;
     out.hold = &hold;
@@ -76,13 +79,18 @@ class ReducedCoordinates : public CoordinateMaps<Solution> {
     polybody::coordinate_rates(of(c).reduction_.tree(), q, v, rate);
   }
 
-  static void narrow(void* c, State const& x, State& out) {
+  static void reduced(void* c, State const& x, State& out) {
     Self& s = of(c);
     ReductionOf<> const& r = s.reduction_;
-    out = {VecX::Zero(r.coordinates()), VecX::Zero(r.speeds()), VecX::Zero(r.speeds()), VecX::Zero(r.rows()), x.t, {}};
+    out = {VecX::Zero(r.coordinates()),
+           VecX::Zero(r.velocities()),
+           VecX::Zero(r.velocities()),
+           VecX::Zero(r.rows()),
+           x.t,
+           {}};
     r.reduce_coordinates(x.q, out.q);
-    r.reduce_speeds(x.v, out.v);
-    r.reduce_speeds(x.a, out.a);
+    r.reduce_velocities(x.v, out.v);
+    r.reduce_velocities(x.a, out.a);
     r.reduce_rows(x.lambda, out.lambda);
     read_coordinates(r.tree(), x.q, x.v, s.state_, out.q);
     s.place(out.q, out.v);
@@ -91,7 +99,7 @@ class ReducedCoordinates : public CoordinateMaps<Solution> {
     r.tree().reduce_rates(s.state_, x.a, true, out.a);
   }
 
-  static void write(void* c, BlockWriter const& write_whole, BlockSink& sink) {
+  static void write(void* c, BlockWriter const& write_full, BlockSink& sink) {
     Self& s = of(c);
     if constexpr (solves_densely) {
       for (Index j = 0; j < s.unit_.size(); ++j) {
@@ -102,12 +110,12 @@ class ReducedCoordinates : public CoordinateMaps<Solution> {
       }
       s.dense_.begin();
       BlockSink dense(s.dense_);
-      write_whole(dense);
+      write_full(dense);
       s.dense_.write(sink);
     } else if constexpr (solves_by_bodies) {
-      write_whole(sink);
+      write_full(sink);
     } else {
-      s.equations_.write(write_whole, sink);
+      s.equations_.write(write_full, sink);
     }
   }
 
@@ -115,15 +123,15 @@ class ReducedCoordinates : public CoordinateMaps<Solution> {
   struct Held {
     TreeState state;
     ArticulatedBodySolverOf<> solver;
-    TreeTangentOf<> tangent;
+    TreeTangentSolverOf<> tangent;
     bool of_balance = false;  ///< the last factors are those of the tangent
   };
-  static HeldPlace held(void* c) {
+  static FrozenState held(void* c) {
     if constexpr (solves_by_bodies) {
       auto held = std::make_shared<Held>();
       held->state = of(c).state_;
       held->solver.attach(of(c).reduction_, held->state);
-      held->tangent = TreeTangentOf<>(of(c).reduction_.tree().bodies);
+      held->tangent = TreeTangentSolverOf<>(of(c).reduction_.tree().bodies);
       return held;
     }
     return std::make_shared<TreeState>(of(c).state_);
@@ -139,15 +147,16 @@ class ReducedCoordinates : public CoordinateMaps<Solution> {
     if constexpr (solves_by_bodies) {
       Self& s = of(c);
       Index const body = unbalance ? s.dynamics_.accelerations(q, v, *unbalance, out)
-                                   : s.dynamics_.accelerations_by_weight(q, v, s.weight_ * load_factor, out);
+                                   : s.dynamics_.accelerations_under_gravity(q, v, s.weight_ * load_factor, out);
       return body < 0 ? -1 : s.reduction_.tree().bodies[std::size_t(body)].vn;
     }
     return -1;
   }
-  static void balance(void* c, StepPlace const& x, double load_factor, VecX& r) {
+  static void balance(void* c, StepPosition const& x, double load_factor, VecX& r) {
     if constexpr (solves_by_bodies) of(c).dynamics_.balance(x.at.q, x.at.v, x.a, of(c).weight_ * load_factor, r);
   }
-  static Index factor_balance(void* c, void* h, StepPlace const& x, double load_factor, TangentCoefficients const& k) {
+  static Index factor_balance(void* c, void* h, StepPosition const& x, double load_factor,
+                              TangentCoefficients const& k) {
     if constexpr (solves_by_bodies) {
       Held& held = *static_cast<Held*>(h);
       held.of_balance = true;
@@ -155,13 +164,13 @@ class ReducedCoordinates : public CoordinateMaps<Solution> {
     }
     return -1;
   }
-  static Index factor(void*, void* h, BlockWriter const& write_whole) {
+  static Index factor(void*, void* h, BlockWriter const& write_full) {
     if constexpr (solves_by_bodies) {
       Held& held = *static_cast<Held*>(h);
       held.of_balance = false;
       held.solver.begin();
       BlockSink sink(held.solver);
-      write_whole(sink);
+      write_full(sink);
       return held.solver.factor();
     }
     return -1;
@@ -178,13 +187,13 @@ class ReducedCoordinates : public CoordinateMaps<Solution> {
       out = rhs;
     } else {
       Self& s = of(c);
-      Index const nv = s.reduction_.speeds();
-      std::copy_n(rhs.data(), nv, s.narrow_.data());
+      Index const nv = s.reduction_.velocities();
+      std::copy_n(rhs.data(), nv, s.reduced_.data());
       s.a_.setZero();
-      s.reduction_.expand_speeds(s.narrow_, s.a_);
-      s.reduction_.tree().expand_forces(*static_cast<TreeState*>(h), s.narrow_, s.a_);
+      s.reduction_.expand_velocities(s.reduced_, s.a_);
+      s.reduction_.tree().expand_forces(*static_cast<TreeState*>(h), s.reduced_, s.a_);
       out.setZero();
-      s.equations_.from_speeds(s.a_, 1.0, out);
+      s.equations_.from_velocities(s.a_, 1.0, out);
       s.equations_.from_rows(rhs.data() + nv, out);
     }
   }
@@ -195,15 +204,15 @@ class ReducedCoordinates : public CoordinateMaps<Solution> {
       of(c).read_equations(*static_cast<TreeState*>(h), solution, out);
   }
   void read_equations(TreeState& at, VecX const& solution, VecX& out) {
-    equations_.to_speeds(solution, a_);
-    reduction_.reduce_speeds(a_, narrow_);
-    reduction_.tree().reduce_rates(at, a_, false, narrow_);
-    Index const nv = reduction_.speeds();
-    std::copy_n(narrow_.data(), nv, out.data());
+    equations_.to_velocities(solution, a_);
+    reduction_.reduce_velocities(a_, reduced_);
+    reduction_.tree().reduce_rates(at, a_, false, reduced_);
+    Index const nv = reduction_.velocities();
+    std::copy_n(reduced_.data(), nv, out.data());
     equations_.to_rows(solution, out.data() + nv);
   }
   static void balance_to_equations(void* c, VecX const& r, VecX& out) {
-    if constexpr (!solves_as_it_is) of(c).equations_.from_speeds(r, -1.0, out);
+    if constexpr (!solves_as_it_is) of(c).equations_.from_velocities(r, -1.0, out);
   }
   static void rows_to_equations(void* c, double const* rows, VecX& out) {
     if constexpr (!solves_as_it_is) of(c).equations_.from_rows(rows, out);
@@ -212,23 +221,24 @@ class ReducedCoordinates : public CoordinateMaps<Solution> {
     if constexpr (!solves_as_it_is) {
       Self& s = of(c);
       s.read_equations(s.state_, solution, out);
-      s.equations_.to_carrying_rows(solution, out.data() + s.reduction_.speeds() + s.reduction_.rows());
+      s.equations_.to_eliminated_equations(solution, out.data() + s.reduction_.velocities() + s.reduction_.rows());
     }
   }
 
   void prepare_dense() {
-    Sequence<Index> row_of(std::size_t(whole_rows_), -1);
-    for (Index i = 0; i < reduction_.rows(); ++i) row_of[std::size_t(reduction_.rows_that_stay()[std::size_t(i)])] = i;
-    dense_ = DenseReductionOf<>(whole_speeds_, reduction_.speeds(), reduction_.rows(), std::move(row_of));
+    Sequence<Index> row_of(std::size_t(full_rows_), -1);
+    for (Index i = 0; i < reduction_.rows(); ++i)
+      row_of[std::size_t(reduction_.remaining_equations()[std::size_t(i)])] = i;
+    dense_ = DenseReductionOf<>(full_velocities_, reduction_.velocities(), reduction_.rows(), std::move(row_of));
   }
 
   using Maps::a_;
-  using Maps::narrow_;
+  using Maps::reduced_;
   using Maps::reduction_;
   using Maps::state_;
 
   VecX unit_;
-  Index whole_speeds_, whole_rows_;
+  Index full_velocities_, full_rows_;
   BodyEquationsOf<> equations_;
   DenseReductionOf<> dense_;
   std::conditional_t<solves_by_bodies, TreeDynamicsOf<>, bool> dynamics_{};
@@ -236,57 +246,57 @@ class ReducedCoordinates : public CoordinateMaps<Solution> {
 };
 
 template <class Solution>
-NarrowLayout ReducedCoordinates<Solution>::narrow_layout(ModelLayout const& whole) const {
-  NarrowLayout n = Maps::narrow_layout();
+ReducedLayout ReducedCoordinates<Solution>::reduced_layout(ModelLayout const& full) const {
+  ReducedLayout n = Maps::reduced_layout();
   n.solves_by_bodies = solves_by_bodies;
   n.moves_by_newton_euler = true;
   for (TreeBody const& body : reduction_.tree().bodies) n.moves_by_newton_euler &= body.by_newton_euler;
   for (Index const row : reduction_.linear().redundant()) {
-    std::string name = whole.name_of(whole.speeds + row);
+    std::string name = full.name_of(full.velocities + row);
     if (n.redundant.empty() || n.redundant.back() != name) n.redundant.push_back(std::move(name));
   }
-  n.equations = n.speeds + n.rows;
-  n.equation_speeds = n.speeds;
+  n.equations = n.velocities + n.rows;
+  n.equation_velocities = n.velocities;
   if constexpr (!solves_densely && !solves_by_bodies) {
     n.equations = equations_.size();
-    n.equation_speeds = equations_.speeds();
-    n.whole_unknown = equations_.whole_unknowns();
-    n.carrying_rows = equations_.carrying_rows();
+    n.equation_velocities = equations_.velocities();
+    n.full_unknown = equations_.full_unknowns();
+    n.eliminated_equations = equations_.eliminated_equations();
   }
   return n;
 }
 
 template <class Solution>
-constinit CoordinatesEntries const ReducedCoordinates<Solution>::table = ReducedCoordinates::make_table();
+constinit CoordinateOperations const ReducedCoordinates<Solution>::table = ReducedCoordinates::make_table();
 
 }  // namespace detail
 
 /// Joints of M that are solved for body by body are in a model of rigid bodies, without first-order states.
 template <class M>
-concept SolvesItsBodies =
-    !std::is_same_v<typename M::Solution, recursive::ArticulatedBody> || (M::all_rigid && !M::has_states);
+concept ArticulatedBodySolvable =
+    !std::is_same_v<typename M::Solution, joint_coordinates::ArticulatedBody> || (M::all_rigid && !M::has_states);
 
 /// The coordinates of a time step of `model` in the scalar T; none where its joints eliminate nothing.
-/// \throws InvalidInput where recursive joints close a loop; InconsistentStart where linear joints contradict each
-/// other.
+/// \throws InvalidInput where recursive joints close a loop; InconsistentInitialConditions where linear joints
+/// contradict each other.
 template <StateScalar T = double, class M>
 CoordinatesOf<T> coordinates_of(M const& model) {
   if constexpr (M::eliminates) {
     using Solution = typename M::Solution;
-    static_assert(
-        SolvesItsBodies<M>,
-        "recursive::ArticulatedBody is for models of rigid bodies whose forces have no first-order states. Take "
-        "recursive::Augmented.");
+    static_assert(ArticulatedBodySolvable<M>,
+                  "joint_coordinates::ArticulatedBody is for models of rigid bodies whose forces have no first-order "
+                  "states. Take "
+                  "joint_coordinates::Augmented.");
     if constexpr (std::same_as<T, double>) {
       using Reduced = detail::ReducedCoordinates<Solution>;
       auto self = std::make_shared<Reduced>(model);
-      auto narrow = std::make_shared<NarrowLayout>(self->narrow_layout(layout_of(model)));
-      return {std::move(self), &Reduced::table, std::move(narrow)};
+      auto reduced = std::make_shared<ReducedLayout>(self->reduced_layout(layout_of(model)));
+      return {std::move(self), &Reduced::table, std::move(reduced)};
     } else {
       using Maps = detail::CoordinateMaps<Solution, T>;
       auto self = std::make_shared<Maps>(model);
-      auto narrow = std::make_shared<NarrowLayout>(self->narrow_layout());
-      return {std::move(self), &detail::map_entries<Maps, T>, std::move(narrow)};
+      auto reduced = std::make_shared<ReducedLayout>(self->reduced_layout());
+      return {std::move(self), &detail::map_entries<Maps, T>, std::move(reduced)};
     }
   } else {
     return {};
@@ -294,12 +304,12 @@ CoordinatesOf<T> coordinates_of(M const& model) {
 }
 
 /// What a time step is about: the mechanism without what its policies eliminate, in the scalar T.
-template <StateScalar T = double, class M, Entries wanted = Entries::implicit_step>
+template <StateScalar T = double, class M, Capabilities wanted = Capabilities::implicit_step>
 BasicSystem<T> stepped_system(M const& model, With<wanted> = {}) {
   return BasicSystem<T>(model, with<wanted>, coordinates_of<T>(model));
 }
 /// Refuses a temporary model, to which the system would keep a reference.
-template <StateScalar T = double, class M, Entries wanted = Entries::implicit_step>
+template <StateScalar T = double, class M, Capabilities wanted = Capabilities::implicit_step>
 BasicSystem<T> stepped_system(M const&& model, With<wanted> = {}) = delete;
 
 }  // namespace polybody

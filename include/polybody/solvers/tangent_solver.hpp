@@ -4,17 +4,17 @@
 #include <span>
 
 #include <polybody/math/vectors.hpp>
-#include <polybody/solvers/row_dropping.hpp>
+#include <polybody/solvers/redundancy_dropping.hpp>
 #include <polybody/system/system.hpp>
 
 namespace polybody {
 
 /// No force element, compliant joint or force of a body acts beside weight and inertia.
 template <class = void>
-[[gnu::cold]] bool pushed_by_weight_alone(System const& s) {
-  if (!s.step_coordinates().narrow->moves_by_newton_euler || !s.data().actions.empty()) return false;
-  for (RowBlock<double> const& block : s.data().rows)
-    if (block.source != RowSource::joint) return false;
+[[gnu::cold]] bool under_gravity_only(System const& s) {
+  if (!s.step_coordinates().reduced->moves_by_newton_euler || !s.data().actions.empty()) return false;
+  for (ConstraintBlock<double> const& block : s.data().rows)
+    if (block.source != ConstraintSource::joint) return false;
   return true;
 }
 
@@ -29,21 +29,22 @@ class TangentSolver {
     copies_ = copies;
     coordinates_ = system.step_coordinates();
     size_ = system.size();
-    equations_ = coordinates_ ? coordinates_.narrow->equations : size_;
+    equations_ = coordinates_ ? coordinates_.reduced->equations : size_;
     if (coordinates_) held_ = coordinates_.entries->held(coordinates_.self.get());
     walks_ = false;
     keeps_multipliers_ = copies == 1 && multipliers_of(system) > system.rows();
     if (keeps_multipliers_) {
       balance_.setZero(equations_);
-      whole_q_.setZero(system.layout().coordinates);
-      whole_v_.setZero(system.layout().speeds);
+      full_q_.setZero(system.layout().coordinates);
+      full_v_.setZero(system.layout().velocities);
     }
     if (solves_by_bodies()) {
-      walks_ = system.rows() == 0 && pushed_by_weight_alone(system);
+      walks_ = system.rows() == 0 && under_gravity_only(system);
       if (copies > 1)
         throw InvalidInput(
-            "recursive::ArticulatedBody solves for one set of accelerations at a time, not for the stages of a method "
-            "together. Take recursive::Augmented.");
+            "joint_coordinates::ArticulatedBody solves for one set of accelerations at a time, not for the stages of a "
+            "method "
+            "together. Take joint_coordinates::Augmented.");
     } else {
       PatternSink pattern;
       BlockSink sink(pattern);
@@ -65,10 +66,10 @@ class TangentSolver {
   }
   /// r = M a − f + Gᵀλ at x, where the system was evaluated last. Where multipliers are kept the whole model's is
   /// balanced and r is left zero; `residual` has it then.
-  void balance(System& system, StepPlace const& x, VecX& r) {
+  void balance(System& system, StepPosition const& x, VecX& r) {
     if (walks_) return coordinates_.entries->balance(coordinates_.self.get(), x, system.load_factor, r);
     if (!keeps_multipliers_) return system.residual(x.a, x.lambda, r);
-    coordinates_.entries->balance_to_equations(coordinates_.self.get(), balance_of_bodies(system, x.a, x.lambda),
+    coordinates_.entries->balance_to_equations(coordinates_.self.get(), residual_of_bodies(system, x.a, x.lambda),
                                                balance_);
     r.setZero();
   }
@@ -80,20 +81,20 @@ class TangentSolver {
   /// by the levers of its own time, and an error in that grows from joint to joint.
   void correct(VecX const& rhs, VecX& y) {
     if (!keeps_multipliers_) return solve(rhs, y);
-    coordinates_.entries->rows_to_equations(coordinates_.self.get(), rhs.data() + coordinates_.narrow->speeds,
+    coordinates_.entries->rows_to_equations(coordinates_.self.get(), rhs.data() + coordinates_.reduced->velocities,
                                             balance_);
     solver_.solve(balance_, x_);
     coordinates_.entries->correction_from_equations(coordinates_.self.get(), x_, y);
   }
   /// A correction also answers what the estimates lack, of which its own size tells nothing: a rate of contraction that
   /// was seen in another step does not predict the next correction.
-  bool keeps_multipliers() const { return keeps_multipliers_; }
+  bool carries_multipliers() const { return keeps_multipliers_; }
   /// The tree stands at this place again, after a factorisation at another one; for solvers that keep multipliers.
   void return_to(At<double> const& at) {
-    coordinates_.entries->expand(coordinates_.self.get(), at.q, at.v, whole_q_, whole_v_);
+    coordinates_.entries->expand(coordinates_.self.get(), at.q, at.v, full_q_, full_v_);
   }
   /// The factors of the tangent of that; the same as `factor` returns.
-  Index factor_tangent(System& system, StepPlace const& x, TangentCoefficients const& k, SecondOrder second) {
+  Index factor_tangent(System& system, StepPosition const& x, TangentCoefficients const& k, SecondOrder second) {
     if (walks_)
       return coordinates_.entries->factor_balance(coordinates_.self.get(), held_.get(), x, system.load_factor, k);
     return factor([&](BlockSink& sink) { system.tangent(k, second, x.lambda, sink); });
@@ -119,23 +120,23 @@ class TangentSolver {
       return 0;
   }
   /// Later factorisations are in the order of the first `count` changes.
-  void keep_reorderings(std::size_t count) noexcept {
-    if constexpr (requires { solver_.keep_reorderings(count); }) solver_.keep_reorderings(count);
+  void limit_reorderings(std::size_t count) noexcept {
+    if constexpr (requires { solver_.limit_reorderings(count); }) solver_.limit_reorderings(count);
   }
 
   /// The last factorisation dropped rows that an earlier one held: it is of a singular position, beside which those
   /// rows hold again, and it would leave them open.
   bool lost_rank() const { return dropped().size() > fewest_dropped_; }
 
-  /// Every later factorisation drops these equations (rows of joints). Solvers without `leave_out` ignore it.
-  [[gnu::cold]] void leave_out(std::span<Index const> equations) {
-    if constexpr (requires { solver_.leave_out(equations); }) {
+  /// Every later factorisation drops these equations (rows of joints). Solvers without `mark_redundant` ignore it.
+  [[gnu::cold]] void mark_redundant(std::span<Index const> equations) {
+    if constexpr (requires { solver_.mark_redundant(equations); }) {
       if (solves_by_bodies() || copies_ != 1) return;
-      solver_.leave_out(equations);
+      solver_.mark_redundant(equations);
       fewest_dropped_ = std::numeric_limits<std::size_t>::max();
     }
   }
-  /// Whether the last factorisation dropped more rows than `leave_out` names, or has small pivots (`BlockFactor`).
+  /// Whether the last factorisation dropped more rows than `mark_redundant` names, or has small pivots (`BlockFactor`).
   [[gnu::cold]] bool is_doubtful() const {
     if constexpr (requires { solver_.is_doubtful(1e-3); }) return !solves_by_bodies() && solver_.is_doubtful(1e-3);
     return false;
@@ -173,32 +174,32 @@ class TangentSolver {
   }
 
  private:
-  bool solves_by_bodies() const { return coordinates_ && coordinates_.narrow->solves_by_bodies; }
+  bool solves_by_bodies() const { return coordinates_ && coordinates_.reduced->solves_by_bodies; }
 
   Solver solver_;
   Coordinates coordinates_;
-  HeldPlace held_;
+  FrozenState held_;
   bool keeps_multipliers_ = false;  // estimates for the joints that carry bodies
   bool walks_ = false;              // balance and tangent by walks over a tree that solves its bodies
   std::size_t fewest_dropped_ = std::numeric_limits<std::size_t>::max();
   Index copies_ = 1, size_ = 0, equations_ = 0;
-  VecX rhs_, x_, part_, solution_, equation_, balance_, whole_q_, whole_v_;
+  VecX rhs_, x_, part_, solution_, equation_, balance_, full_q_, full_v_;
 };
 
 /// Unknowns of the linear equations of a system, of which those that stand for speeds come first.
 inline Index equations_of(System const& s) {
-  return s.step_coordinates() ? s.step_coordinates().narrow->equations : s.size();
+  return s.step_coordinates() ? s.step_coordinates().reduced->equations : s.size();
 }
 /// Those of them that stand for speeds.
-inline Index equation_speeds_of(System const& s) {
-  return s.step_coordinates() ? s.step_coordinates().narrow->equation_speeds : s.speeds();
+inline Index equation_velocities_of(System const& s) {
+  return s.step_coordinates() ? s.step_coordinates().reduced->equation_velocities : s.velocities();
 }
 /// Name of the body or joint behind unknown i of the equations.
 template <class = void>
 std::string name_of_equation(System const& s, Index i) {
-  if (!s.step_coordinates() || s.step_coordinates().narrow->whole_unknown.empty()) return s.name_of(i);
-  Index const whole = s.step_coordinates().narrow->whole_unknown[std::size_t(i)];
-  return whole >= 0 ? s.layout().name_of(whole) : "unknown";
+  if (!s.step_coordinates() || s.step_coordinates().reduced->full_unknown.empty()) return s.name_of(i);
+  Index const full = s.step_coordinates().reduced->full_unknown[std::size_t(i)];
+  return full >= 0 ? s.layout().name_of(full) : "unknown";
 }
 
 }  // namespace polybody

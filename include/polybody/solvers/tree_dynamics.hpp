@@ -10,7 +10,7 @@
 /// the parent gets I_p += XᵀI X, p_p += Xᵀp; on the way back u̇ = D⁻¹ (w − (I S)ᵀ x).
 /// Articulated inertias need no turn from body to body in world axes.
 
-#include <polybody/solvers/tree_walk.hpp>
+#include <polybody/solvers/tree_recursion.hpp>
 
 namespace polybody {
 
@@ -23,9 +23,9 @@ class TreeDynamicsOf {
   explicit TreeDynamicsOf(Sequence<TreeBody> const& bodies) : walk_(bodies) {}
 
   /// u̇ of all freedoms at (q, v) under weight alone. −1, or the body whose freedom has no inertia.
-  Index accelerations_by_weight(VecXOf<T> const& q, VecXOf<T> const& v, Vec3 const& gravity, VecXOf<T>& out) {
+  Index accelerations_under_gravity(VecXOf<T> const& q, VecXOf<T> const& v, Vec3 const& gravity, VecXOf<T>& out) {
     walk_.place(q, v);
-    walk_.push_by_motion();
+    walk_.add_velocity_forces();
     return solve(gravity, out);
   }
   /// The same under any forces: `unbalance` is M a − f of all bodies by their whole speeds at v̇ = 0, weight and
@@ -37,7 +37,7 @@ class TreeDynamicsOf {
       Body& b = walk_.bodies[i];
       T arm[3], axes[9], w[6];
       detail::set_product(b.axes, link.centre, 1, arm);
-      detail::set_product(b.axes, link.whole_axes, 3, axes);
+      detail::set_product(b.axes, link.full_axes, 3, axes);
       read_wrench(link, unbalance.data() + link.v0, axes, w);
       walk_.add_centrifugal(b);
       for (int k = 0; k < 3; ++k) {
@@ -52,7 +52,7 @@ class TreeDynamicsOf {
   void balance(VecXOf<T> const& q, VecXOf<T> const& v, VecXOf<T> const& a, Vec3 const& gravity, VecXOf<T>& out);
 
  private:
-  using Walk = TreeWalkOf<T>;
+  using Walk = TreeRecursionOf<T>;
   using Body = typename Walk::Body;
   using Freedom = typename Walk::Freedom;
   using Kind = typename Walk::Kind;
@@ -104,16 +104,16 @@ bool TreeDynamicsOf<T>::eliminate(Body& b, bool carried) {
   b.inertia.add_by_acceleration(b.c, b.p);
   b.inertia.add_by_angular(b.c + 3, b.p);
   Freedom* const f = walk_.freedoms.data() + b.first;
-  double whole[6] = {};  // D of each freedom while the others are held
+  double full[6] = {};  // D of each freedom while the others are held
   if (b.count > 1)
     for (int k = 0; k < b.count; ++k) {
       set_column(f[k], b.inertia);
-      whole[k] = value_of(Walk::along(f[k], f[k].u));
+      full[k] = value_of(Walk::along(f[k], f[k].u));
     }
   for (int k = b.count; k-- > 0;) {
     set_column(f[k], b.inertia);
     T const d = Walk::along(f[k], f[k].u);
-    if (!(value_of(d) > 1e-14 * whole[k])) return false;
+    if (!(value_of(d) > 1e-14 * full[k])) return false;
     f[k].inverse = 1.0 / d;
     f[k].w = -Walk::along(f[k], b.p);
     if (k == 0 && !carried) break;
@@ -154,7 +154,7 @@ template <StateScalar T>
 void TreeDynamicsOf<T>::balance(VecXOf<T> const& q, VecXOf<T> const& v, VecXOf<T> const& a, Vec3 const& gravity,
                                 VecXOf<T>& out) {
   walk_.place(q, v);
-  walk_.push_by_motion();
+  walk_.add_velocity_forces();
   let_ground_fall(gravity);
   for (std::size_t i = 0; i < walk_.links.size(); ++i) {
     Body& b = walk_.bodies[i];

@@ -18,7 +18,7 @@ struct TreeLink {
   double entry[9], arm[3];           ///< the joint's frame on the parent, in the axes of the parent's own joint
   double mass, first[3], second[6];  ///< [kg], [kg m], [kg m²]; moments about the reference point
   double centre[3];                  ///< the centre of mass, from the reference point [m]
-  double whole_axes[9];              ///< axes of the body's speeds (3×3 by columns)
+  double full_axes[9];               ///< axes of the body's speeds (3×3 by columns)
 };
 
 /// \param parent null: the ground
@@ -48,7 +48,7 @@ template <class T = double>  // compiled where it is used
     from.axes = M3(before.axes.transpose() * from.axes);
   }
   link.turned = !from.axes.isIdentity(0.0);
-  link.freedoms = link.motions.speeds();
+  link.freedoms = link.motions.velocities();
   Vec3 const c = to.axes.transpose() * Vec3(-to.origin);
   M3 inertia = to.axes.transpose() * body.inertia;  // about the reference point
   inertia = M3(inertia * to.axes);
@@ -61,7 +61,7 @@ template <class T = double>  // compiled where it is used
     link.first[k] = body.mass * c[k];
     for (int l = 0; l < 3; ++l) {
       link.entry[3 * l + k] = from.axes(k, l);
-      link.whole_axes[3 * l + k] = to.axes(l, k);
+      link.full_axes[3 * l + k] = to.axes(l, k);
       link.second[detail::symmetric_place[k][l]] = inertia(k, l);
     }
   }

@@ -18,18 +18,18 @@
 /// a₀, v₀ in place of v, (J u) ×ₘ s_v is a part of s_a, and D = Jᵀ r.
 
 #include <polybody/solvers/spatial.hpp>
-#include <polybody/solvers/tree_walk.hpp>
-#include <polybody/system/entries.hpp>
+#include <polybody/solvers/tree_recursion.hpp>
+#include <polybody/system/model_operations.hpp>
 
 namespace polybody {
 
 /// T is `double`: a template, so that a program without joint coordinates compiles none of it.
 template <class T = double>
-class TreeTangentOf {
+class TreeTangentSolverOf {
  public:
-  TreeTangentOf() = default;
+  TreeTangentSolverOf() = default;
   /// Allocates all there is to be.
-  explicit TreeTangentOf(Sequence<TreeBody> const& bodies)
+  explicit TreeTangentSolverOf(Sequence<TreeBody> const& bodies)
       : walk_(bodies), nodes_(bodies.size()), columns_(walk_.freedoms.size()) {}
 
   /// Factors at (q, v, a). −1, or the freedom without a pivot.
@@ -38,7 +38,7 @@ class TreeTangentOf {
   void solve(VecXOf<T> const& given, VecXOf<T>& y);
 
  private:
-  using Walk = TreeWalkOf<T>;
+  using Walk = TreeRecursionOf<T>;
   using Freedom = typename Walk::Freedom;
   struct Column {
     T sv[6], sa[6], l[12], r[6], rate[6], inverse[3];  ///< Jᵀ[A B′], J u and a row of D⁻¹ among them
@@ -70,7 +70,8 @@ class TreeTangentOf {
 };
 
 template <class T>
-Index TreeTangentOf<T>::factor(At<T> const& at, VecXOf<T> const& a, Vec3 const& gravity, TangentCoefficients const& c) {
+Index TreeTangentSolverOf<T>::factor(At<T> const& at, VecXOf<T> const& a, Vec3 const& gravity,
+                                     TangentCoefficients const& c) {
   walk_.place(at.q, at.v);
   for (int k = 0; k < 3; ++k) ground_.a[k] = -gravity[k];
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
@@ -94,7 +95,7 @@ Index TreeTangentOf<T>::factor(At<T> const& at, VecXOf<T> const& a, Vec3 const& 
 
 /// v and a of body i, and what its freedoms do to their changes.
 template <class T>
-void TreeTangentOf<T>::move(std::size_t i, VecXOf<T> const& v, VecXOf<T> const& a, TangentCoefficients const& k) {
+void TreeTangentSolverOf<T>::move(std::size_t i, VecXOf<T> const& v, VecXOf<T> const& a, TangentCoefficients const& k) {
   Node& n = nodes_[i];
   auto const& body = walk_.bodies[i];
   Index const parent = walk_.links[i].parent;
@@ -122,7 +123,7 @@ void TreeTangentOf<T>::move(std::size_t i, VecXOf<T> const& v, VecXOf<T> const& 
 
 /// Through one freedom, or those of a ball. \param before the columns are fixed on the carrier
 template <class T>
-void TreeTangentOf<T>::move_through(std::size_t first, bool before, Node& n, TangentCoefficients const& k) {
+void TreeTangentSolverOf<T>::move_through(std::size_t first, bool before, Node& n, TangentCoefficients const& k) {
   Column const& c = columns_[first];
   T v[6], a[6];
   for (int l = 0; l < 6; ++l) {
@@ -152,7 +153,7 @@ void TreeTangentOf<T>::move_through(std::size_t first, bool before, Node& n, Tan
 
 /// A, B and F of the body alone.
 template <class T>
-void TreeTangentOf<T>::set_inertia(std::size_t i) {
+void TreeTangentSolverOf<T>::set_inertia(std::size_t i) {
   Node& n = nodes_[i];
   auto const& inertia = walk_.bodies[i].inertia;
   T momentum[6] = {};
@@ -167,7 +168,7 @@ void TreeTangentOf<T>::set_inertia(std::size_t i) {
 
 /// One freedom, or those of a ball, out of A, B and F. False where one has no pivot.
 template <class T>
-bool TreeTangentOf<T>::eliminate(std::size_t first, bool before, double ck, Node& n) {
+bool TreeTangentSolverOf<T>::eliminate(std::size_t first, bool before, double ck, Node& n) {
   int const count = walk_.freedoms[first].together;
   n.pair.turn_back(columns_[first].rate);  // [A B′] from here on
   T d[9], size[3] = {};
@@ -197,7 +198,7 @@ bool TreeTangentOf<T>::eliminate(std::size_t first, bool before, double ck, Node
 }
 
 template <class T>
-bool TreeTangentOf<T>::invert(std::size_t first, int count, T const* d, T const* size) {
+bool TreeTangentSolverOf<T>::invert(std::size_t first, int count, T const* d, T const* size) {
   if (count == 1) {
     columns_[first].inverse[0] = 1.0 / d[0];
     return std::abs(d[0]) > 1e-14 * size[0];
@@ -213,7 +214,7 @@ bool TreeTangentOf<T>::invert(std::size_t first, int count, T const* d, T const*
 
 /// What the freedoms are given, less what those that they carry ask of them.
 template <class T>
-void TreeTangentOf<T>::collect(VecXOf<T> const& given) {
+void TreeTangentSolverOf<T>::collect(VecXOf<T> const& given) {
   for (Node& n : nodes_)
     for (T& x : n.c) x = T(0.0);
   for (std::size_t i = nodes_.size(); i-- > 0;) {
@@ -236,7 +237,7 @@ void TreeTangentOf<T>::collect(VecXOf<T> const& given) {
 }
 
 template <class T>
-void TreeTangentOf<T>::solve(VecXOf<T> const& given, VecXOf<T>& y) {
+void TreeTangentSolverOf<T>::solve(VecXOf<T> const& given, VecXOf<T>& y) {
   collect(given);
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     Node& n = nodes_[i];

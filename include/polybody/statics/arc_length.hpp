@@ -6,18 +6,18 @@
 #include <limits>
 #include <vector>
 
-#include <polybody/run/fitting.hpp>
+#include <polybody/run/state_checks.hpp>
 #include <polybody/solvers/default_solver.hpp>
-#include <polybody/statics/least_norm.hpp>
-#include <polybody/system/model_entries.hpp>
+#include <polybody/statics/minimum_norm_step.hpp>
+#include <polybody/system/make_operations.hpp>
 
 namespace polybody {
 
 /// Options of `equilibrium_path`: step lengths, number of points and Newton iteration.
 struct ArcLengthOptions {
   double step = 0.05;       ///< first step: load factor that it covers at the start
-  double largest = 0.05;    ///< largest step: a load factor
-  double smallest = 1e-6;   ///< smallest step: a load factor
+  double max_step = 0.05;   ///< largest step: a load factor
+  double min_step = 1e-6;   ///< smallest step: a load factor
   int points = 200;         ///< largest number of points
   double tolerance = 1e-9;  ///< of a correction, relative to 1 + max |q|
   int max_iterations = 12;  ///< largest number of iterations in a step
@@ -25,8 +25,8 @@ struct ArcLengthOptions {
   /// \throws InvalidInput unless the counts are in [1, 10⁶] and the other numbers are positive and finite.
   void check() const {
     require_positive(step, "equilibrium_path: the step");
-    require_positive(largest, "equilibrium_path: the largest step");
-    require_positive(smallest, "equilibrium_path: the smallest step");
+    require_positive(max_step, "equilibrium_path: the largest step");
+    require_positive(min_step, "equilibrium_path: the smallest step");
     require_count(points, "equilibrium_path: points");
     require_positive(tolerance, "equilibrium_path: the tolerance");
     require_count(max_iterations, "equilibrium_path: max_iterations");
@@ -45,19 +45,19 @@ namespace detail {
 template <class Solver>
 class PathEquations {
  public:
-  /// `start` is in equilibrium without loads. \throws LinearSolverSingular if the path has no tangent at `start`.
+  /// `start` is in equilibrium without loads. \throws SingularMatrix if the path has no tangent at `start`.
   PathEquations(System& system, PathPoint const& start)
       : system_(system),
-        nv_(system.speeds()),
+        nv_(system.velocities()),
         rows_(system.rows()),
         stiffness_(evaluated(start), start.x.lambda),
         least_(system, stiffness_) {
-    if (stiffness_.factor(start.x.lambda) >= 0 || stiffness_.growth() > LeastNorm<Solver>::suspicious) {
+    if (stiffness_.factor(start.x.lambda) >= 0 || stiffness_.growth() > MinimumNormStep<Solver>::suspicious) {
       takes_least_ = least_.factor(start.x.lambda) < 0 && !least_.pins().empty();
       if (!takes_least_) stiffness_.remove_springs(start.x.lambda);
     }
     if (!solve(start) || !(b_.head(nv_).norm() > 0.0))
-      throw LinearSolverSingular(
+      throw SingularMatrix(
           "equilibrium_path: there is no path to follow from here: the stiffness is singular at the start, or "
           "nothing is loaded.");
     c2_ = b_.head(nv_).squaredNorm();
@@ -100,7 +100,7 @@ class PathEquations {
     system_.evaluate(at.x.q, at.x.v, at.x.t);
     return system_;
   }
-  /// Computes a = −K⁻¹ r and b = −K⁻¹ r_p at a point; false if K is singular. \throws NonFinite.
+  /// Computes a = −K⁻¹ r and b = −K⁻¹ r_p at a point; false if K is singular. \throws NonFiniteValue.
   bool solve(PathPoint const& at) {
     evaluated(at);
     for (auto const& [factor, out] : {std::pair{0.0, &r0_}, std::pair{1.0, &r1_}, std::pair{at.load_factor, &r_}}) {
@@ -109,7 +109,7 @@ class PathEquations {
     }
     system_.violation(phi_);
     if (!r_.allFinite() || !phi_.allFinite())
-      throw NonFinite{"equilibrium_path: a force is not finite at load factor ", at.load_factor, "."};
+      throw NonFiniteValue{"equilibrium_path: a force is not finite at load factor ", at.load_factor, "."};
     if ((takes_least_ ? least_.factor(at.x.lambda) : stiffness_.factor(at.x.lambda)) >= 0) return false;
     return solve_for(-r_, -phi_, at, a_) && solve_for(r0_ - r1_, VecX::Zero(rows_), at, b_);
   }
@@ -135,7 +135,7 @@ class PathEquations {
   System& system_;
   Index nv_, rows_;
   StaticTangent<Solver> stiffness_;
-  LeastNorm<Solver> least_;
+  MinimumNormStep<Solver> least_;
   bool takes_least_ = false;
   VecX r_ = VecX::Zero(nv_), r0_ = r_, r1_ = r_, phi_ = VecX::Zero(rows_), q_;
   VecX a_ = VecX::Zero(nv_ + rows_), b_ = a_;
@@ -154,8 +154,8 @@ class PathEquations {
 ///   K Δ = −r − r_p Δp,  a = −K⁻¹ r,  b = −K⁻¹ r_p,  Δp = −t·a / (t·b + t_p),  Δ = a + b Δp.
 /// If the path starts with redundant constraints or with free motions that no load excites, a and b are solutions of
 /// minimum norm.
-/// \throws NewtonStalled naming the load factor if the steps become too short, LinearSolverSingular if the path has
-/// no tangent at the start, NonFinite.
+/// \throws NewtonConvergenceFailure naming the load factor if the steps become too short, SingularMatrix if the path
+/// has no tangent at the start, NonFiniteValue.
 template <LinearSolver Solver = DefaultStaticSolver>
 std::vector<PathPoint> equilibrium_path(System& system, State const& start, ArcLengthOptions const& options = {},
                                         std::function<bool(PathPoint const&)> const& done = {}) {
@@ -166,23 +166,24 @@ std::vector<PathPoint> equilibrium_path(System& system, State const& start, ArcL
   now.x.a.setZero();
   detail::PathEquations<Solver> equations(system, now);
   std::vector<PathPoint> path;
-  double length = std::min(options.step, options.largest);
+  double length = std::min(options.step, options.max_step);
   while (int(path.size()) < options.points) {
     PathPoint trial = now;
     equations.predict(trial, length);
     int const iterations = equations.correct(trial, options);
     if (iterations < 0) {
       length *= 0.5;
-      if (length < options.smallest)
-        throw NewtonStalled{"equilibrium_path: Newton's method did not converge beyond load factor ", now.load_factor,
-                            ". A bifurcation may be near; give the structure an imperfection, or end the path before."};
+      if (length < options.min_step)
+        throw NewtonConvergenceFailure{
+            "equilibrium_path: Newton's method did not converge beyond load factor ", now.load_factor,
+            ". A bifurcation may be near; give the structure an imperfection, or end the path before."};
       continue;
     }
     equations.turn();
     now = trial;
     path.push_back(now);
     if (done && done(now)) break;
-    if (iterations <= 5) length = std::min(1.5 * length, options.largest);
+    if (iterations <= 5) length = std::min(1.5 * length, options.max_step);
   }
   return path;
 }
@@ -191,7 +192,7 @@ std::vector<PathPoint> equilibrium_path(System& system, State const& start, ArcL
 template <LinearSolver Solver = DefaultStaticSolver, class M>
 std::vector<PathPoint> equilibrium_path(M const& model, State const& start, ArcLengthOptions const& options = {},
                                         std::function<bool(PathPoint const&)> const& done = {}) {
-  System system(model, with<Entries::implicit_step>);
+  System system(model, with<Capabilities::implicit_step>);
   return equilibrium_path<Solver>(system, start, options, done);
 }
 

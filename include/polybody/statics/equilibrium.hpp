@@ -3,13 +3,13 @@
 /// Static equilibrium by Newton's method with load steps.
 
 #include <polybody/integrators/forward_dynamics.hpp>
-#include <polybody/run/fitting.hpp>
+#include <polybody/run/state_checks.hpp>
 #include <polybody/solvers/default_solver.hpp>
 #include <polybody/statics/equilibrium_equations.hpp>
 #include <polybody/statics/load_steps.hpp>
 #include <polybody/statics/relaxation.hpp>
 #include <polybody/statics/stability.hpp>
-#include <polybody/system/model_entries.hpp>
+#include <polybody/system/make_operations.hpp>
 
 namespace polybody {
 
@@ -43,7 +43,7 @@ NewtonResult follow(EquilibriumPath<Solver>& path, EquilibriumOptions const& opt
     if (result == NewtonResult::converged && !(path.refuses_crossing && path.crosses)) {
       path.measure_rate(before, steps.next() - steps.reached());
       steps.reach_next();
-      ++report.parts;
+      ++report.load_steps;
       crosses = crosses || path.crosses;
       continue;
     }
@@ -150,12 +150,12 @@ template <class Solver>
 /// residuals. From a reference state the loads increase from zero; from an equilibrium under smaller loads they
 /// increase from those.
 ///
-/// If the tangent is singular, the path is followed again by minimum-norm corrections (`LeastNorm`). Redundant
+/// If the tangent is singular, the path is followed again by minimum-norm corrections (`MinimumNormStep`). Redundant
 /// constraints are omitted, and their multipliers are zero. Free motions that no load excites are as small as
 /// possible. The report names both.
 ///
-/// \throws NewtonStalled; LinearSolverSingular, naming the motion if a load excites a motion without stiffness;
-/// InconsistentStart for redundant constraints that contradict others; NonFinite. x is then unchanged.
+/// \throws NewtonConvergenceFailure; SingularMatrix, naming the motion if a load excites a motion without stiffness;
+/// InconsistentInitialConditions for redundant constraints that contradict others; NonFiniteValue. x is then unchanged.
 template <LinearSolver Solver = DefaultStaticSolver>
 EquilibriumReport equilibrium(System& system, State& x, EquilibriumOptions const& options = {}) {
   options.check();
@@ -166,7 +166,7 @@ EquilibriumReport equilibrium(System& system, State& x, EquilibriumOptions const
   State const start = trial;
   system.evaluate(trial.q, trial.v, trial.t);
   StaticTangent<Solver> tangent(system, trial.lambda);
-  LeastNorm<Solver> least(system, tangent);
+  MinimumNormStep<Solver> least(system, tangent);
   detail::EquilibriumPath<Solver> path{system, tangent, least, trial, options.tolerance};
   EquilibriumReport report;
   NewtonResult const result = detail::follow(path, options, report);
@@ -178,7 +178,7 @@ EquilibriumReport equilibrium(System& system, State& x, EquilibriumOptions const
     State const found = trial;
     if (neutral && !detail::follow_least(path, start, options, report)) {
       trial = found;
-      report.neutral.clear();
+      report.free_motions.clear();
     }
   } else {
     bool const singular =
@@ -193,7 +193,7 @@ EquilibriumReport equilibrium(System& system, State& x, EquilibriumOptions const
   }
   bool const crosses = path.crosses && !path.takes_least && !report.relaxed;
   detail::report_stability(path, report);
-  if (report.negative_pivots > 0 && !report.relaxed && report.parts > options.load_steps)
+  if (report.negative_pivots > 0 && !report.relaxed && report.load_steps > options.load_steps)
     detail::relax_unstable(path, start, options, report);
   else if (crosses && path.states == 0 && report.negative_pivots == 0)
     detail::follow_without_crossing(path, start, options, report);
@@ -204,7 +204,7 @@ EquilibriumReport equilibrium(System& system, State& x, EquilibriumOptions const
 /// Overload for a model. Joints of policies that eliminate unknowns are constraint equations here.
 template <LinearSolver Solver = DefaultStaticSolver, class M>
 EquilibriumReport equilibrium(M const& model, State& x, EquilibriumOptions const& options = {}) {
-  System system(model, with < Entries::implicit_step | Entries::rigid_speeds >);
+  System system(model, with < Capabilities::implicit_step | Capabilities::rigid_velocities >);
   return equilibrium<Solver>(system, x, options);
 }
 

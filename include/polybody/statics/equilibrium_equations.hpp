@@ -1,8 +1,8 @@
 #pragma once
 #include <polybody/solvers/newton.hpp>
 #include <polybody/statics/equilibrium_options.hpp>
-#include <polybody/statics/least_norm.hpp>
-#include <polybody/statics/neutral_motion.hpp>
+#include <polybody/statics/free_motion.hpp>
+#include <polybody/statics/minimum_norm_step.hpp>
 #include <polybody/system/state.hpp>
 
 namespace polybody::detail {
@@ -12,7 +12,7 @@ template <class Solver>
 struct EquilibriumPath {
   System& system;
   StaticTangent<Solver>& tangent;
-  LeastNorm<Solver>& least;
+  MinimumNormStep<Solver>& least;
   State& trial;
   double tolerance;
   bool takes_least = false;  ///< minimum-norm corrections by `least`
@@ -23,7 +23,7 @@ struct EquilibriumPath {
   double sign = 0.0;     ///< sign of the determinant at the start of this load step; 0: not computed
   double least_rate = std::numeric_limits<double>::infinity();  ///< smallest max |Δq|/Δs of the load steps
   double far = 1e6 * (1.0 + trial.q.cwiseAbs().maxCoeff());     ///< largest allowed coordinate and correction
-  Index nv = system.speeds(), rows = system.rows(), states = system.layout().states, bad = -1;
+  Index nv = system.velocities(), rows = system.rows(), states = system.layout().states, bad = -1;
   double first = 0.0, share = 0.0;  ///< p₀, s
   VecX r0 = VecX::Zero(nv), phi0 = VecX::Zero(rows), r = r0, phi = phi0, y = VecX::Zero(nv + rows), dq = r, q = trial.q;
   VecX moved = r;  ///< sum of the corrections of this load step
@@ -131,53 +131,54 @@ struct EquilibriumPath {
 
   /// True if the tangent is singular at the present state; `least` then contains its springs.
   bool is_singular() {
-    if (!(tangent.growth() > LeastNorm<Solver>::suspicious)) return false;
+    if (!(tangent.growth() > MinimumNormStep<Solver>::suspicious)) return false;
     return finds_springs();
   }
   bool finds_springs() {
     system.evaluate(trial.q, trial.v, trial.t);
     return least.factor(trial.lambda) < 0 && !least.pins().empty();
   }
-  /// \throws LinearSolverSingular naming the motion without stiffness that a load excites.
+  /// \throws SingularMatrix naming the motion without stiffness that a load excites.
   void refuse_excited() const {
     if (!takes_least || least.excited() < 0) return;
     std::size_t const k = std::size_t(least.excited());
     Index const i = least.pins()[k];
-    throw LinearSolverSingular{"equilibrium: the stiffness is singular",
-                               place(),
-                               ", first at ",
-                               system.name_of(i),
-                               ": nothing resists that ",
-                               name_of_motion(system, least.motion(k), i),
-                               ", and the loads excite this motion. Hold every body, or pass a limit point another "
-                               "way."};
+    throw SingularMatrix{"equilibrium: the stiffness is singular",
+                         place(),
+                         ", first at ",
+                         system.name_of(i),
+                         ": nothing resists that ",
+                         name_of_motion(system, least.motion(k), i),
+                         ", and the loads excite this motion. Hold every body, or pass a limit point another "
+                         "way."};
   }
-  /// \throws InconsistentStart naming a joint with redundant constraints that are violated.
+  /// \throws InconsistentInitialConditions naming a joint with redundant constraints that are violated.
   void require_closed() const {
     double const limit = 1e-8 * (1.0 + largest_size(trial.q));
     VecX open = phi;
     system.violation(open);
     for (Index const i : least.pins())
       if (i >= nv && !(std::abs(open[i - nv]) <= limit))
-        throw InconsistentStart{"equilibrium: ", system.name_of(i), " stays open by ", std::abs(open[i - nv]),
-                                ", as its rows repeat those of other joints but contradict them. Remove one of these "
-                                "joints, make their dimensions and laws agree, or give one a compliant policy such as "
-                                "Penalty."};
+        throw InconsistentInitialConditions{
+            "equilibrium: ", system.name_of(i), " stays open by ", std::abs(open[i - nv]),
+            ", as its rows repeat those of other joints but contradict them. Remove one of these "
+            "joints, make their dimensions and laws agree, or give one a compliant policy such as "
+            "Penalty."};
   }
   std::string place() const { return sentence_of({" at load factor ", system.load_factor}); }
-  /// \throws LinearSolverSingular, NonFinite, NewtonStalled according to `result`.
+  /// \throws SingularMatrix, NonFiniteValue, NewtonConvergenceFailure according to `result`.
   [[noreturn, gnu::cold]] void refuse(NewtonResult result, Index first_bad, std::string const& at) const {
     if (result == NewtonResult::singular)
-      throw LinearSolverSingular{"equilibrium: the stiffness is singular", at, ", first at ",
-                                 system.name_of(std::max<Index>(first_bad, 0)),
-                                 ". Hold every body, or pass a limit point another way."};
-    if (result == NewtonResult::not_finite) throw NonFinite{"equilibrium: a force is not finite", at, "."};
-    throw NewtonStalled{"equilibrium: Newton's method did not converge", at,
-                        ". Use more load steps, or start nearer to the solution."};
+      throw SingularMatrix{"equilibrium: the stiffness is singular", at, ", first at ",
+                           system.name_of(std::max<Index>(first_bad, 0)),
+                           ". Hold every body, or pass a limit point another way."};
+    if (result == NewtonResult::not_finite) throw NonFiniteValue{"equilibrium: a force is not finite", at, "."};
+    throw NewtonConvergenceFailure{"equilibrium: Newton's method did not converge", at,
+                                   ". Use more load steps, or start nearer to the solution."};
   }
   /// Adds the names of the motions and constraints with springs in `least` to the report.
   void report_springs(EquilibriumReport& report) const {
-    report.neutral.clear();
+    report.free_motions.clear();
     report.redundant.clear();
     auto const add_row = [&](Index i) {
       std::string name = system.name_of(i);
@@ -187,7 +188,7 @@ struct EquilibriumPath {
     for (Index const i : tangent.dropped()) add_row(i);
     for (std::size_t k = 0; k < least.pins().size(); ++k)
       if (Index const i = least.pins()[k]; i < nv)
-        report.neutral.push_back(name_of_motion(system, least.motion(k), i));
+        report.free_motions.push_back(name_of_motion(system, least.motion(k), i));
       else
         add_row(i);
   }
@@ -196,7 +197,7 @@ struct EquilibriumPath {
 /// Newton's method at the present fraction of the path; adds its iterations to the report.
 template <class Solver>
 NewtonResult correct(EquilibriumPath<Solver>& path, EquilibriumOptions const& options, EquilibriumReport& report) {
-  KeptFactor kept;
+  ReusedFactorisation kept;
   NewtonReport const n = newton(path, {.max_iterations = options.max_iterations, .always_refactor = true}, kept);
   report.iterations += n.iterations;
   return n.result;

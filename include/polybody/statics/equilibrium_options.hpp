@@ -12,7 +12,7 @@ namespace polybody {
 /// Options of `equilibrium`: load steps and Newton iteration.
 struct EquilibriumOptions {
   int load_steps = 1;  ///< number of equal load steps for loads and gravity
-  double smallest_part =
+  double min_load_step =
       1e-4;  ///< smallest load step [1]; a failed step is halved, and the step after it is doubled again
   double tolerance = 1e-11;  ///< of a correction, relative to 1 + max |q|
   int max_iterations = 50;   ///< largest number of iterations in a load step
@@ -20,7 +20,7 @@ struct EquilibriumOptions {
   /// \throws InvalidInput unless the counts are in [1, 10⁶] and the other numbers are positive and finite.
   void check() const {
     require_count(load_steps, "equilibrium: load_steps");
-    require_positive(smallest_part, "equilibrium: smallest_part");
+    require_positive(min_load_step, "equilibrium: min_load_step");
     require_positive(tolerance, "equilibrium: the tolerance");
     require_count(max_iterations, "equilibrium: max_iterations");
   }
@@ -28,11 +28,11 @@ struct EquilibriumOptions {
 
 /// Report of `equilibrium`: cost, free motions, redundant constraints and stability.
 struct EquilibriumReport {
-  int parts = 0;       ///< number of load steps
+  int load_steps = 0;  ///< number of load steps
   int iterations = 0;  ///< number of Newton iterations
   /// Free motions about the equilibrium, without stiffness and not excited by a load: body "payload" turns about (0,
   /// 0, 1) through (0, 0, -2). The displacement along them has minimum norm.
-  std::vector<std::string> neutral = {};
+  std::vector<std::string> free_motions = {};
   /// Names of joints and bodies with redundant constraints, one entry per name. The multipliers of these constraints
   /// are zero.
   std::vector<std::string> redundant = {};

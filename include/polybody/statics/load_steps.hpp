@@ -11,7 +11,7 @@ class LoadSteps {
  public:
   /// Starts at s = 0, with the number of steps and the smallest step of the options.
   explicit LoadSteps(EquilibriumOptions const& options)
-      : whole_(1.0 / std::max(options.load_steps, 1)), smallest_(options.smallest_part), part_(whole_) {}
+      : full_(1.0 / std::max(options.load_steps, 1)), smallest_(options.min_load_step), part_(full_) {}
 
   bool done() const { return done_ >= 1.0; }  ///< true if s = 1
   double reached() const { return done_; }    ///< s
@@ -20,7 +20,7 @@ class LoadSteps {
   /// Moves to `next()`, after a load step that converged.
   void reach_next() {
     done_ = next();
-    part_ = std::min(2.0 * part_, whole_);
+    part_ = std::min(2.0 * part_, full_);
   }
   /// Halves the load step; false if it becomes smaller than the smallest one.
   bool halve() {
@@ -31,7 +31,7 @@ class LoadSteps {
   void restart() { done_ = 0.0; }
 
  private:
-  double whole_, smallest_, part_;
+  double full_, smallest_, part_;
   double done_ = 0.0;
 };
 

@@ -3,7 +3,7 @@
 /// Null space of a matrix of statics.
 
 #include <polybody/math/sequence.hpp>
-#include <polybody/statics/null_column.hpp>
+#include <polybody/statics/null_vector.hpp>
 
 namespace polybody::detail {
 
@@ -29,7 +29,7 @@ class NullSpace {
   static constexpr int passes = 8;
 
   NullSpace(System& system, StaticTangent<Solver>& tangent)
-      : tangent_(tangent), nv_(system.speeds()), scale_(VecX::Zero(system.size())), y_(scale_), one_(1) {}
+      : tangent_(tangent), nv_(system.velocities()), scale_(VecX::Zero(system.size())), y_(scale_), one_(1) {}
 
   /// Computes `pins`, the unknowns that must be held to remove the null space. Returns −1, or an unknown without a
   /// pivot.

@@ -1,5 +1,5 @@
 #pragma once
-#include <polybody/system/model_entries.hpp>
+#include <polybody/system/make_operations.hpp>
 #include <polybody/system/system.hpp>
 
 namespace polybody {
@@ -15,8 +15,8 @@ struct Preload {
 template <class = void>
 std::vector<Preload> preloads(System const& system) {
   std::vector<Preload> out;
-  for (RowBlock<double> const& block : system.data().rows) {
-    if (block.source != RowSource::compliant) continue;
+  for (ConstraintBlock<double> const& block : system.data().rows) {
+    if (block.source != ConstraintSource::compliant) continue;
     double w[6];
     wrench_at(block, block.b, block.answer, w);
     out.push_back(
@@ -29,7 +29,7 @@ std::vector<Preload> preloads(System const& system) {
 template <class M>
 std::vector<Preload> preloads(M const& model) {
   State const x = model.reference_state();
-  System system(model, with<Entries::motion>);
+  System system(model, with<Capabilities::motion>);
   system.evaluate(x.q, x.v, x.t);
   return preloads<>(system);
 }

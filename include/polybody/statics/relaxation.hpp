@@ -89,7 +89,7 @@ template <class Solver>
     double const next = std::min(1.0, share + part);
     path.advance(next);
     step.moved.setZero();
-    KeptFactor kept;
+    ReusedFactorisation kept;
     NewtonReport const n = newton(step, few, kept);
     report.iterations += n.iterations;
     if (n.result != NewtonResult::converged) {

@@ -17,19 +17,19 @@ struct StaticEntries {
     int row, col;
     double value;
   };
-  Index speeds;
+  Index velocities;
   Sequence<Entry> stiffness = {}, rows = {};
 
   void add(Index row, Index col, BlockView const& b) {
-    if (col >= speeds) return;  // Gᵀ
+    if (col >= velocities) return;  // Gᵀ
     for (Index j = 0; j < b.cols; ++j)
       for (Index i = 0; i < b.rows; ++i)
         if (double const value = b(i, j); value != 0.0) {
           Entry const entry{int(row + i), int(col + j), value};
-          if (row < speeds)
+          if (row < velocities)
             stiffness.push_back(entry);
           else
-            rows.push_back({int(row + i - speeds), entry.col, value});
+            rows.push_back({int(row + i - velocities), entry.col, value});
         }
   }
 };
@@ -50,7 +50,7 @@ class DependentCoordinates {
   /// Computes the linear combinations; false if they have more than `most_terms`.
   template <class = void>  // compiled where it is used
   bool find(StaticEntries const& entries, Index rows) {
-    std::size_t const n = std::size_t(entries.speeds);
+    std::size_t const n = std::size_t(entries.velocities);
     order_.assign(n, -1);
     work_.assign(n, 0.0);
     used_.assign(n, 0);
@@ -169,11 +169,11 @@ bool is_negative(StaticEntries const& entries, VecX const& x) {
 template <LinearSolver Solver>
 Stability stability(System const& system, StaticTangent<Solver>& tangent, VecX const& lambda) {
   Stability out;
-  StaticEntries entries{system.speeds()};
+  StaticEntries entries{system.velocities()};
   tangent.write_scaled(lambda, entries);
   DependentCoordinates dependent;
   if (!dependent.find(entries, system.rows())) return out;
-  Sequence<int> place(std::size_t(system.speeds()), -1);
+  Sequence<int> place(std::size_t(system.velocities()), -1);
   int free = 0;
   for (std::size_t i = 0; i < place.size(); ++i)
     if (dependent.sum(int(i)) == nullptr) place[i] = free++;
@@ -199,7 +199,7 @@ Stability stability(System const& system, StaticTangent<Solver>& tangent, VecX c
   if (!pivots.factor(r)) return {};
   for (Index const k : pivots.negative()) {
     VecX const z = pivots.direction(k);
-    VecX x = VecX::Zero(system.speeds());
+    VecX x = VecX::Zero(system.velocities());
     for (std::size_t i = 0; i < place.size(); ++i) each(int(i), [&](int j, double a) { x[Index(i)] += a * z[j]; });
     if (!is_negative<>(entries, x)) continue;
     if (out.negative++ == 0) out.motion = std::move(x);

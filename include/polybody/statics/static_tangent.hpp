@@ -23,11 +23,11 @@ class StaticTangent {
  public:
   /// Constructor. `system` must outlive this object. All functions use its state last given to `System::evaluate`.
   StaticTangent(System& system, VecX const& lambda)
-      : system_(&system), nv_(system.speeds()), rhs_(VecX::Zero(system.size())) {
+      : system_(&system), nv_(system.velocities()), rhs_(VecX::Zero(system.size())) {
     analyse(lambda);
     solver_.begin();
     BlockSink solver(solver_);
-    Passing sink{solver, nv_};
+    MotionAccumulator sink{solver, nv_};
     write(lambda, unit_, sink);
     rescale(sink.largest);
   }
@@ -48,7 +48,7 @@ class StaticTangent {
   Index factor(VecX const& lambda) {
     double largest = 0.0;
     Index const bad = write_and_factor(solver_, [&](BlockSink& solver) {
-      Passing sink{solver, nv_};
+      MotionAccumulator sink{solver, nv_};
       write(lambda, unit_, sink);
       largest = unit_ * sink.largest;
       for (Index i = 0; i < springs_.size(); ++i) solver.add(i, i, BlockView(&springs_[i], 1, 1, 0, 0));
@@ -67,7 +67,7 @@ class StaticTangent {
   /// Computes y = (A + diag(springs))⁻¹ b.
   void solve_scaled(VecX const& b, VecX& y) { solver_.solve(b, y); }
   /// Writes the blocks of A, without springs, with the scale u of the last factorisation.
-  template <TakesBlocks S>
+  template <BlockReceiver S>
   void write_scaled(VecX const& lambda, S& sink) {
     write(lambda, factored_, sink);
   }
@@ -119,14 +119,14 @@ class StaticTangent {
 
  private:
   /// Passes blocks to a solver and records the largest entry of K.
-  struct Passing {
+  struct MotionAccumulator {
     BlockSink& solver;
-    Index speeds;
+    Index velocities;
     double largest = 0.0;  ///< largest |K_ij| so far, relative to u
 
     void add(Index row, Index col, BlockView const& b) {
       solver.add(row, col, b);
-      if (row >= speeds || col >= speeds) return;
+      if (row >= velocities || col >= velocities) return;
       for (Index j = 0; j < b.cols; ++j)
         for (Index i = 0; i < b.rows; ++i) largest = std::max(largest, std::abs(b(i, j)));
     }
@@ -138,7 +138,7 @@ class StaticTangent {
     for (Index i = 0; i < springs_.size(); ++i) pattern.blocks.push_back({i, i, 1, 1});
     solver_.analyse(system_->size(), pattern.blocks);
   }
-  template <TakesBlocks S>
+  template <BlockReceiver S>
   void write(VecX const& lambda, double unit, S& sink) {
     system_->tangent({.stiffness = 1.0 / unit, .states = 1.0 / unit}, SecondOrder::included, lambda, sink);
   }

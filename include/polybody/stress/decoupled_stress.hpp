@@ -77,13 +77,13 @@ class DecoupledStress {
     Structure::Beam const& beam = structure.beams[std::size_t(index)];
     bool const last = xi == 1.0;
     Vec3 const start = structure.nodes[std::size_t(beam.a)], cut = start + beam.axes.col(0) * (xi * beam.length);
-    auto const whole = mass_points(structure, beam), before = detail::mass_points_before(structure, beam, xi);
+    auto const full = mass_points(structure, beam), before = detail::mass_points_before(structure, beam, xi);
     BeamMatrix const k = beam_stiffness(beam, section_stiffness(beam.constants));
     std::vector<Vec6> out;
     for (std::size_t i = 0; i < times().size(); ++i) {
       Local const at = local(beam, i);
       Vec<double, 12> ends = k * at.e;  // forces of the other parts of the structure on the beam's ends
-      for (MassPoint const& g : whole) {
+      for (MassPoint const& g : full) {
         auto const [a, ay, az] = acceleration(at, g, beam);
         ends += g.m * (g.axis.transpose() * a) + g.my * (g.y.transpose() * ay) + g.mz * (g.z.transpose() * az);
       }

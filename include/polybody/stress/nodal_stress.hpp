@@ -123,10 +123,10 @@ class NodalStress {
  private:
   template <class = void>
   static std::vector<Spot> read_spots(std::string const& file, Index nodes) {
-    NumberLines lines(file, '#');
+    NumberReader lines(file, '#');
     std::vector<Spot> spots;
     Index node = 0;
-    NumberLines::Rest name;
+    NumberReader::Rest name;
     while (lines.next("the number of a node and its name", node, name)) {
       if (node < 0 || node >= nodes)
         lines.fail(sentence_of({"node ", node, " does not exist; the structure has nodes 0 to ", nodes - 1}));

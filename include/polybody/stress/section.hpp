@@ -4,7 +4,7 @@
 /// (bodies/shared/sections.hpp).
 
 #include <polybody/bodies/shared/sections.hpp>
-#include <polybody/system/places.hpp>
+#include <polybody/system/lookup.hpp>
 
 namespace polybody {
 

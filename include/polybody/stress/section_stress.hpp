@@ -50,9 +50,9 @@ inline Vec2 shear_of(Rectangle const& s, double torsion, Vec6 const& n, double y
     double const p = k * pi / h, sign = (k - 1) % 4 == 0 ? 1.0 : -1.0,
                  scale = sign * 8.0 * h * h / (pi * pi * pi) / std::pow(k, 3);
     double const up = std::exp(p * (std::abs(b) - 0.5 * w)), down = std::exp(-p * (std::abs(b) + 0.5 * w)),
-                 whole = 1.0 + std::exp(-p * w);
-    by_a += scale * p * (up + down) / whole * std::sin(p * a);
-    by_b -= scale * p * std::copysign(up - down, b) / whole * std::cos(p * a);
+                 full = 1.0 + std::exp(-p * w);
+    by_a += scale * p * (up + down) / full * std::sin(p * a);
+    by_b -= scale * p * std::copysign(up - down, b) / full * std::cos(p * a);
   }
   Vec2 const turn = (n[3] / torsion) * (swap ? Vec2(by_a, -by_b) : Vec2(by_b, -by_a));
   auto const parabola = [&](double q, double x, double side) {

@@ -72,7 +72,7 @@ class StructureLoads {
       times_.push_back(sample.t);
       motions_.push_back(motion(sample, record.gravity, place));
       loads_.emplace_back();
-      for (RecordedLoad const& l : sample.loads) {
+      for (LoadSample const& l : sample.loads) {
         Load load{.f = place.axes.transpose() * l.f, .m = place.axes.transpose() * l.m};
         Vec3 const at = place.axes.transpose() * (l.at - place.origin);
         if (s_.per_node == 3)
@@ -141,7 +141,7 @@ class StructureLoads {
     x.b = axes.transpose() * (sample.acceleration - gravity) + x.B * (place.axes.transpose() * place.origin);
     x.size = sample.acceleration.norm() + gravity.norm();
     if (!x.b.allFinite() || !x.B.allFinite())
-      throw NonFinite{who(), "the recorded motion at t = ", sample.t, " s is not finite."};
+      throw NonFiniteValue{who(), "the recorded motion at t = ", sample.t, " s is not finite."};
     return x;
   }
 

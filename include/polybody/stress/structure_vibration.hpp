@@ -162,10 +162,10 @@ VibrationHistory vibration_of(StructureLoads const& loads, I const& integrator, 
   keep(0);
   for (Index k = 1; k < samples; ++k) {
     double const from = x.t, target = loads.times()[std::size_t(k)], piece = (target - from) / how.substeps;
-    if constexpr (!requires { I::controls_step; }) next = piece;
+    if constexpr (!requires { I::adaptive_step; }) next = piece;
     while (target - x.t > 1e-9 * piece) {
       StepReport const report = method.step(system, x, std::min(next, target - x.t), workspace);
-      if constexpr (requires { I::controls_step; }) next = std::min(report.next, target - from);
+      if constexpr (requires { I::adaptive_step; }) next = std::min(report.next, target - from);
     }
     x.t = target;
     keep(k);

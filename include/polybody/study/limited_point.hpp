@@ -110,8 +110,8 @@ class PointProcess {
 
 /// Outcome of `found()`, computed in a separate process. The outcome is a failure if the process crashes, or does not
 /// end within `limit` [s].
-/// \throws Error with the message of an exception that is not of the library; StudyMisuse; Error if the system has no
-/// more processes.
+/// \throws Error with the message of an exception that is not of the library; StudyUsageError; Error if the system has
+/// no more processes.
 template <class F>
 Outcome outcome_within(double limit, std::size_t outputs, F const& found) {
   pid_t const parent = ::getpid();
@@ -122,7 +122,7 @@ Outcome outcome_within(double limit, std::size_t outputs, F const& found) {
     if (::getppid() != parent) ::_exit(1);
     try {
       return "o" + record_text(0, found()) + '\n';
-    } catch (StudyMisuse const& error) {
+    } catch (StudyUsageError const& error) {
       return std::string("m") + error.what() + '\n';
     } catch (std::exception const& error) {
       return std::string("e") + error.what() + '\n';
@@ -142,7 +142,7 @@ Outcome outcome_within(double limit, std::size_t outputs, F const& found) {
                          signal != 0 ? std::to_string(signal) : "", "."})};
   text->pop_back();
   std::string const rest = text->substr(1);
-  if (text->front() == 'm') throw StudyMisuse{rest};
+  if (text->front() == 'm') throw StudyUsageError{rest};
   if (text->front() == 'e') throw Error{rest};
   return outcome_in(rest, 1, outputs).value().second;
 }

@@ -17,7 +17,7 @@ namespace detail {
 /// Message to all ranks at the end: counts, and a line for each finished point.
 template <class = void>  // compiled where it is used
 std::string text_of(StudyResults const& results) {
-  std::string text = std::to_string(results.taken_over) + (results.torn ? " 1\n" : " 0\n");
+  std::string text = std::to_string(results.resumed) + (results.torn ? " 1\n" : " 0\n");
   for (std::size_t i = 0; i < results.outcomes.size(); ++i)
     if (results.outcomes[i]) text += record_text(i, *results.outcomes[i]) + '\n';
   return text;

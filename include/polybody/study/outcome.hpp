@@ -46,7 +46,7 @@ struct StudyResults {
   Points points;                                   ///< points of the study
   std::vector<StudyOutput> outputs;                ///< outputs of the study
   std::vector<std::optional<Outcome>> outcomes{};  ///< in the order of the points; none for an unfinished point
-  std::size_t taken_over = 0;                      ///< number of points that an earlier run has finished
+  std::size_t resumed = 0;                         ///< number of points that an earlier run has finished
   bool torn = false;                               ///< true if an earlier run was killed while it wrote a line
 
   /// Number of points that have an outcome, including failures.

@@ -18,7 +18,7 @@ namespace polybody {
 
 /// Error of a program that uses a study wrongly: its function reads a column that does not exist, or returns the
 /// wrong number of outputs. It ends the study and is not recorded as a failure of the point.
-class StudyMisuse : public InvalidInput {
+class StudyUsageError : public InvalidInput {
  public:
   using InvalidInput::InvalidInput;
 };
@@ -106,15 +106,16 @@ class Point {
   std::size_t index() const { return index_; }  ///< index of the row, from 0
 
   /// Value in a `column`, in the unit of the column.
-  /// \throws StudyMisuse if the column does not exist.
+  /// \throws StudyUsageError if the column does not exist.
   double operator[](std::string_view column) const { return points_->at(index_, place(column)); }
 
   /// Index of the point's choice in a `column`, from 0.
-  /// \throws StudyMisuse if the column does not exist or has no choices.
+  /// \throws StudyUsageError if the column does not exist or has no choices.
   std::size_t choice(std::string_view column) const {
     std::size_t const j = place(column);
     if (points_->columns()[j].choices.empty())
-      throw StudyMisuse{"study: column '", column, "' holds numbers, not choices. Ask for point[\"", column, "\"]."};
+      throw StudyUsageError{"study: column '", column, "' holds numbers, not choices. Ask for point[\"", column,
+                            "\"]."};
     return static_cast<std::size_t>(points_->at(index_, j));
   }
   /// Name of the point's choice in a `column`, as given to `formulations`.
@@ -123,14 +124,14 @@ class Point {
   }
 
   /// Calls f with the one of the arguments `first`, `others` that the point's choice in `column` selects, as in
-  /// `point.with("integrator", run, GeneralizedAlpha{}, Radau{})`.
-  /// \throws StudyMisuse unless there is one argument for each choice.
+  /// `point.with("integrator", run, GeneralisedAlpha{}, Radau{})`.
+  /// \throws StudyUsageError unless there is one argument for each choice.
   template <class F, class First, class... Others>
   auto with(std::string_view column, F const& f, First const& first, Others const&... others) const {
     std::size_t const k = choice(column), count = points_->columns()[place(column)].choices.size();
     if (count != 1 + sizeof...(others))
-      throw StudyMisuse{"study: column '",     column, "' has ", count, " choices, but the point's function knows ",
-                        1 + sizeof...(others), "."};
+      throw StudyUsageError{"study: column '",     column, "' has ", count, " choices, but the point's function knows ",
+                            1 + sizeof...(others), "."};
     return call_nth(k, f, first, others...);
   }
 
@@ -142,7 +143,7 @@ class Point {
       if (columns[j].name == name) return j;
       all += (j ? ", '" : "'") + columns[j].name + '\'';
     }
-    throw StudyMisuse{"study: there is no column '", name, "'; its points have ", all, "."};
+    throw StudyUsageError{"study: there is no column '", name, "'; its points have ", all, "."};
   }
   template <class F, class First, class... Others>
   static auto call_nth(std::size_t k, F const& f, First const& first, Others const&... others) {

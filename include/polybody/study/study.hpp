@@ -36,13 +36,13 @@ Outcome outcome_of(F const& f, Point const& point, std::vector<StudyOutput> cons
     else
       for (double const x : found) outcome.values.push_back(x);
     if (outcome.values.size() != outputs.size())
-      throw StudyMisuse{"study: the point's function gives ", outcome.values.size(), " numbers for ", outputs.size(),
-                        " outputs."};
+      throw StudyUsageError{"study: the point's function gives ", outcome.values.size(), " numbers for ",
+                            outputs.size(), " outputs."};
     for (std::size_t j = 0; j < outputs.size(); ++j)
       if (!std::isfinite(outcome.values[j]))
-        throw NonFinite{"The output '", outputs[j].head, "' is not finite (", outcome.values[j], ")."};
+        throw NonFiniteValue{"The output '", outputs[j].head, "' is not finite (", outcome.values[j], ")."};
     return outcome;
-  } catch (StudyMisuse const&) {
+  } catch (StudyUsageError const&) {
     throw;
   } catch (Error const& error) {
     std::string why = error.what();
@@ -133,7 +133,7 @@ class Study {
     if (!bytes) throw IoError{"file '", file_.file.string(), "' cannot be read"};
     detail::RecordContent content = detail::record_content(kind(), *bytes);
     StudyResults so_far = results(std::move(content.outcomes), 0, content.torn);
-    so_far.taken_over = so_far.finished();
+    so_far.resumed = so_far.finished();
     return so_far;
   }
 
@@ -148,9 +148,9 @@ class Study {
   }
   /// Label of the progress bar.
   std::string label() const { return file_.file.stem().string(); }
-  /// Results from outcomes, with the study to which they belong; `taken_over`, `torn` as in StudyResults.
-  StudyResults results(std::vector<std::optional<Outcome>> outcomes, std::size_t taken_over, bool torn) const {
-    return {points_, outputs_, std::move(outcomes), taken_over, torn};
+  /// Results from outcomes, with the study to which they belong; `resumed`, `torn` as in StudyResults.
+  StudyResults results(std::vector<std::optional<Outcome>> outcomes, std::size_t resumed, bool torn) const {
+    return {points_, outputs_, std::move(outcomes), resumed, torn};
   }
   ///@}
 

@@ -4,7 +4,7 @@
 /// actions. Nothing here knows a model.
 
 #include <polybody/system/layout.hpp>
-#include <polybody/system/pulled_blocks.hpp>
+#include <polybody/system/projected_stiffness.hpp>
 
 namespace polybody {
 
@@ -13,13 +13,13 @@ namespace detail {
 /// Calls f(block) for all blocks that are rows of the model now.
 template <StateScalar T, class F>
 void for_each_row_block(Data<T> const& data, F&& f) {
-  for (RowBlock<T> const& block : data.rows)
+  for (ConstraintBlock<T> const& block : data.rows)
     if (block.row >= 0 && !data.leaves_out(block)) f(block);
 }
 
 /// r += mapᵀ λ of both ends of a block; m as a constant, or block.rows where it is zero.
 template <int m, StateScalar T>
-void add_ends(RowBlock<T> const& block, T const* lambda, Data<T> const& data, T* r) {
+void add_ends(ConstraintBlock<T> const& block, T const* lambda, Data<T> const& data, T* r) {
   if constexpr (m > 0)
     if (block.opposite) {
       T w[6];
@@ -27,13 +27,13 @@ void add_ends(RowBlock<T> const& block, T const* lambda, Data<T> const& data, T*
       add_pulled(data.markers[std::size_t(block.a.marker)], w, 1.0, r);
       return add_pulled(data.markers[std::size_t(block.b.marker)], w, -1.0, r);
     }
-  for (RowEnd<T> const* const end : {&block.a, &block.b}) {
+  for (ConstraintSide<T> const* const end : {&block.a, &block.b}) {
     if (end->marker < 0) {
       int const rows = m > 0 ? m : block.rows;
       for (Index c = 0; c < end->columns; ++c)
         for (int k = 0; k < rows; ++k) r[end->first + c] += end->map[rows * c + k] * lambda[k];
     } else if constexpr (m > 0) {
-      Published<T> const& p = data.markers[std::size_t(end->marker)];
+      MarkerKinematics<T> const& p = data.markers[std::size_t(end->marker)];
       if (p.shape == JacobianShape::ground) continue;
       T w[6];
       wrench_of<m>(end->map, lambda, w);
@@ -43,13 +43,13 @@ void add_ends(RowBlock<T> const& block, T const* lambda, Data<T> const& data, T*
 }
 /// The same for m = block.rows.
 template <StateScalar T>
-void add_ends(RowBlock<T> const& block, T const* lambda, Data<T> const& data, T* r) {
+void add_ends(ConstraintBlock<T> const& block, T const* lambda, Data<T> const& data, T* r) {
   with_constant(block.rows, [&](auto m) { add_ends<m>(block, lambda, data, r); });
 }
 
 /// out (rows) += map · x of an end, x the twist that its marker has with the speeds v, or these themselves.
 template <StateScalar T>
-void add_rate(RowEnd<T> const& end, int rows, Data<T> const& data, VecXOf<T> const& v, T* out) {
+void add_rate(ConstraintSide<T> const& end, int rows, Data<T> const& data, VecXOf<T> const& v, T* out) {
   T twist[6];
   T const* x = v.data() + end.first;
   if (end.marker >= 0) {
@@ -60,11 +60,11 @@ void add_rate(RowEnd<T> const& end, int rows, Data<T> const& data, VecXOf<T> con
 }
 /// The same for rates b that the state does not have.
 template <StateScalar T>
-void add_product(RowEnd<T> const& end, int rows, Data<T> const& data, VecXOf<T> const& b, T* out) {
+void add_product(ConstraintSide<T> const& end, int rows, Data<T> const& data, VecXOf<T> const& b, T* out) {
   Vec<T, 6> twist;
   T const* x = b.data() + end.first;
   if (end.marker >= 0) {
-    Published<T> const& p = data.markers[std::size_t(end.marker)];
+    MarkerKinematics<T> const& p = data.markers[std::size_t(end.marker)];
     if (p.shape == JacobianShape::ground) return;
     twist = p.push(b.data() + p.first);
     x = twist.data();
@@ -77,7 +77,7 @@ void add_product(RowEnd<T> const& end, int rows, Data<T> const& data, VecXOf<T> 
 /// r += Gᵀλ of all rows, and −Jᵀw of what compliant joints answer.
 template <StateScalar T>
 void add_row_forces(Data<T> const& data, VecXOf<T> const& lambda, VecXOf<T>& r) {
-  for (RowBlock<T> const& block : data.rows) {
+  for (ConstraintBlock<T> const& block : data.rows) {
     if (data.leaves_out(block)) continue;
     T const* const l = block.multiplier(lambda);
     detail::add_ends(block, l, data, r.data());
@@ -87,7 +87,7 @@ void add_row_forces(Data<T> const& data, VecXOf<T> const& lambda, VecXOf<T>& r) 
 /// r −= Jᵀw of all force elements, loads times `load_factor`.
 template <StateScalar T>
 void add_actions(Data<T> const& data, ModelLayout const& layout, double load_factor, VecXOf<T>& r) {
-  for (Action<T> const& action : data.actions) {
+  for (AppliedWrench<T> const& action : data.actions) {
     double const scale = layout.forces[std::size_t(action.source)].is_load ? load_factor : 1.0;
     detail::add_pulled(data.markers[std::size_t(action.marker)], action.w, -scale, r.data());
   }
@@ -96,7 +96,7 @@ void add_actions(Data<T> const& data, ModelLayout const& layout, double load_fac
 /// Φ (rows); zero for velocity rows.
 template <StateScalar T>
 void violation(Data<T> const& data, VecXOf<T>& phi) {
-  detail::for_each_row_block(data, [&](RowBlock<T> const& block) {
+  detail::for_each_row_block(data, [&](ConstraintBlock<T> const& block) {
     for (int i = 0; i < block.rows; ++i) phi[block.row + i] = block.g[i];
   });
 }
@@ -104,7 +104,7 @@ void violation(Data<T> const& data, VecXOf<T>& phi) {
 /// `rate` = Φ̇ = G v + Φ_t (rows).
 template <StateScalar T>
 void violation_rate(Data<T> const& data, VecXOf<T> const& v, VecXOf<T>& rate) {
-  detail::for_each_row_block(data, [&](RowBlock<T> const& block) {
+  detail::for_each_row_block(data, [&](ConstraintBlock<T> const& block) {
     T* const out = rate.data() + block.row;
     for (int i = 0; i < block.rows; ++i) out[i] = block.rate ? block.rate[i] : T(0.0);
     detail::add_rate(block.a, block.rows, data, v, out);
@@ -115,8 +115,8 @@ void violation_rate(Data<T> const& data, VecXOf<T> const& v, VecXOf<T>& rate) {
 /// gamma += Ga · bias + Gb · bias: what the frames of moving bodies bring beyond J v̇.
 template <StateScalar T>
 void add_biases(Data<T> const& data, VecXOf<T>& gamma) {
-  detail::for_each_row_block(data, [&](RowBlock<T> const& block) {
-    for (RowEnd<T> const* const end : {&block.a, &block.b})
+  detail::for_each_row_block(data, [&](ConstraintBlock<T> const& block) {
+    for (ConstraintSide<T> const* const end : {&block.a, &block.b})
       if (end->marker >= 0)
         detail::add_mapped<0>(end->map, 6, data.markers[std::size_t(end->marker)].bias.data(), block.rows,
                               gamma.data() + block.row);
@@ -127,7 +127,7 @@ void add_biases(Data<T> const& data, VecXOf<T>& gamma) {
 template <StateScalar T>
 void rows_times(Data<T> const& data, VecXOf<T> const& b, VecXOf<T>& out) {
   for (Index i = 0; i < out.size(); ++i) out[i] = T(0.0);
-  detail::for_each_row_block(data, [&](RowBlock<T> const& block) {
+  detail::for_each_row_block(data, [&](ConstraintBlock<T> const& block) {
     detail::add_product(block.a, block.rows, data, b, out.data() + block.row);
     detail::add_product(block.b, block.rows, data, b, out.data() + block.row);
   });
@@ -138,15 +138,15 @@ template <StateScalar T>
 void rows_transposed_times(Data<T> const& data, VecXOf<T> const& b, VecXOf<T>& out) {
   for (Index i = 0; i < out.size(); ++i) out[i] = T(0.0);
   detail::for_each_row_block(
-      data, [&](RowBlock<T> const& block) { detail::add_ends(block, b.data() + block.row, data, out.data()); });
+      data, [&](ConstraintBlock<T> const& block) { detail::add_ends(block, b.data() + block.row, data, out.data()); });
 }
 
 /// Gᵀ and G, which begins at row `first`, block by block into `sink`.
 template <class = void>
 void write_rows(Data<double>& data, Index first, BlockSink& sink) {
-  detail::for_each_row_block(data, [&](RowBlock<double> const& block) {
+  detail::for_each_row_block(data, [&](ConstraintBlock<double> const& block) {
     Index const row = first + block.row;
-    for (RowEnd<double> const* const end : {&block.a, &block.b}) {
+    for (ConstraintSide<double> const* const end : {&block.a, &block.b}) {
       if (end->marker >= 0) {
         with_constant(block.rows, [&](auto m) {
           if constexpr (m > 0)

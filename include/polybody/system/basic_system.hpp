@@ -16,11 +16,11 @@
 
 namespace polybody {
 
-/// Names groups of entries in a constructor: `System(model, with<Entries::tangent>)`.
-template <Entries groups>
+/// Names groups of entries in a constructor: `System(model, with<Capabilities::tangent>)`.
+template <Capabilities groups>
 struct With {};
 /// The groups, as an argument.
-template <Entries groups>
+template <Capabilities groups>
 inline constexpr With<groups> with{};
 
 /// \throws InvalidInput where an entry was not asked for; `group` names what is missing.
@@ -42,16 +42,16 @@ class BasicSystem {
   using Vector = VecXOf<T>;  ///< of the system's scalar: coordinates, speeds or rows
 
   /// The whole mechanism. The model must outlive the system and must not change after: evaluations refuse that.
-  template <class M, Entries wanted = Entries::questions>
-    requires requires { sizeof(EntriesOf<M, T, wanted>); }
+  template <class M, Capabilities wanted = Capabilities::questions>
+    requires requires { sizeof(OperationsOf<M, T, wanted>); }
   explicit BasicSystem(M const& model, With<wanted> = {}, CoordinatesOf<T> coordinates = {})
-      : BasicSystem(&model, EntriesOf<M, T, wanted>::table, layout_of(model), EntriesOf<M, T, wanted>::make_data(model),
-                    std::move(coordinates)) {}
-  template <class M, Entries wanted = Entries::questions>
-    requires requires { sizeof(EntriesOf<M, T, wanted>); }
+      : BasicSystem(&model, OperationsOf<M, T, wanted>::table, layout_of(model),
+                    OperationsOf<M, T, wanted>::make_data(model), std::move(coordinates)) {}
+  template <class M, Capabilities wanted = Capabilities::questions>
+    requires requires { sizeof(OperationsOf<M, T, wanted>); }
   explicit BasicSystem(M const&& model, With<wanted> = {}, CoordinatesOf<T> = {}) = delete;  ///< a temporary model
   /// From entries of any origin, which are called with `model`.
-  [[gnu::cold]] BasicSystem(void const* model, ModelEntries<T> const& entries, ModelLayout layout, Data<T> data,
+  [[gnu::cold]] BasicSystem(void const* model, ModelOperations<T> const& entries, ModelLayout layout, Data<T> data,
                             CoordinatesOf<T> coordinates);
   BasicSystem(BasicSystem&&) noexcept;  ///< what refers to the one that is moved, such as a workspace, does not follow
   ~BasicSystem();
@@ -64,19 +64,19 @@ class BasicSystem {
   /// Scratch of the last evaluation: markers, row blocks, wrenches of force elements.
   Data<T> const& data() const { return data_; }
   /// The model's entries, and what they take for the model.
-  std::pair<ModelEntries<T> const&, void const*> entries() const { return {entries_, model_}; }
+  std::pair<ModelOperations<T> const&, void const*> entries() const { return {entries_, model_}; }
   /// Whole coordinates and speeds, and time, of the last evaluation.
   At<T> at() const { return {q_, v_, t_}; }
 
   /// nq of a time step.
-  Index coordinates() const { return coordinates_ ? coordinates_.narrow->coordinates : layout_.coordinates; }
+  Index coordinates() const { return coordinates_ ? coordinates_.reduced->coordinates : layout_.coordinates; }
   /// nv of a time step: speeds, and first-order states behind them.
-  Index speeds() const { return coordinates_ ? coordinates_.narrow->speeds : layout_.speeds; }
-  Index rows() const { return coordinates_ ? coordinates_.narrow->rows : layout_.rows; }  ///< rows Φ of a time step
-  Index size() const { return speeds() + rows(); }  ///< nv + rows: unknowns of its linear system
+  Index velocities() const { return coordinates_ ? coordinates_.reduced->velocities : layout_.velocities; }
+  Index rows() const { return coordinates_ ? coordinates_.reduced->rows : layout_.rows; }  ///< rows Φ of a time step
+  Index size() const { return velocities() + rows(); }  ///< nv + rows: unknowns of its linear system
   /// Rows without a position: Φ is zero there, Φ̇ and γ are not.
-  Sequence<Index> const& velocity_rows() const {
-    return coordinates_ ? coordinates_.narrow->velocity_rows : layout_.velocity_rows;
+  Sequence<Index> const& nonholonomic_equations() const {
+    return coordinates_ ? coordinates_.reduced->nonholonomic_equations : layout_.nonholonomic_equations;
   }
 
   /// A factor of gravity and loads; one except inside `equilibrium`.
@@ -106,27 +106,27 @@ class BasicSystem {
   void rows_transposed_times(Vector const& b, Vector& out);
 
   /// [cm M + cd D + ck K, Gᵀ; G, 0] (size × size), by the unknowns of the equations, into a receiver of blocks.
-  template <TakesBlocks S>
+  template <BlockReceiver S>
   void tangent(TangentCoefficients const& c, SecondOrder second, Vector const& lambda, S&& receiver) {
     with_sink(receiver, [&](BlockSink& sink) {
-      write_equations([&](BlockSink& whole) { write_tangent(c, second, lambda, whole); }, sink);
+      write_equations([&](BlockSink& full) { write_tangent(c, second, lambda, full); }, sink);
     });
   }
   /// [M, Gᵀ; G, 0], likewise.
-  template <TakesBlocks S>
+  template <BlockReceiver S>
   void masses(S&& receiver) {
     with_sink(receiver, [&](BlockSink& sink) {
       write_equations(
-          [&](BlockSink& whole) {
-            entries_.masses(model_, at(), data_, whole);
-            write_rows(data_, layout_.speeds, whole);
+          [&](BlockSink& full) {
+            entries_.masses(model_, at(), data_, full);
+            write_rows(data_, layout_.velocities, full);
           },
           sink);
     });
   }
   /// cd D + ck K of the compliant joints alone, joint by joint; or of the force elements, with second-order terms, and
   /// with those of the rows where their multipliers are given.
-  template <TakesBlocks S>
+  template <BlockReceiver S>
   void tangent_of(TangentPart part, TangentCoefficients c, S&& receiver, Vector const* lambda = nullptr) {
     with_sink(receiver, [&](BlockSink& sink) {
       if (part == TangentPart::compliant_joints)
@@ -150,10 +150,10 @@ class BasicSystem {
   template <class U>
   friend VecXOf<U> const& unbalance(BasicSystem<U>& system);
   template <class U>
-  friend VecXOf<U> const& balance_of_bodies(BasicSystem<U>& system, VecXOf<U> const& a, VecXOf<U> const& lambda);
+  friend VecXOf<U> const& residual_of_bodies(BasicSystem<U>& system, VecXOf<U> const& a, VecXOf<U> const& lambda);
 
  private:
-  NarrowPlace const* narrow_places() const { return coordinates_ ? coordinates_.narrow->places.data() : nullptr; }
+  ReducedPosition const* reduced_places() const { return coordinates_ ? coordinates_.reduced->places.data() : nullptr; }
 
   template <class S, class F>
   static void with_sink(S& receiver, F&& f) {
@@ -171,35 +171,35 @@ class BasicSystem {
       write(sink);
   }
 
-  void whole_residual(Vector const& a, Vector const& lambda, Vector& r);
+  void full_residual(Vector const& a, Vector const& lambda, Vector& r);
   void write_tangent(TangentCoefficients c, SecondOrder second, Vector const& given, BlockSink& sink);
-  Vector const& whole_multipliers(Vector const& lambda) {
-    expand_rows(lambda, whole_lambda_);
-    coordinates_.entries->recover_multipliers(coordinates_.self.get(), data_, whole_lambda_);
-    return whole_lambda_;
+  Vector const& full_multipliers(Vector const& lambda) {
+    expand_rows(lambda, full_lambda_);
+    coordinates_.entries->recover_multipliers(coordinates_.self.get(), data_, full_lambda_);
+    return full_lambda_;
   }
   void clear_loads() {
     for (Wrench<double>& w : data_.loads) w = {};
   }
 
   /// Rows of a step are written as they are, or taken from whole ones afterwards.
-  Vector& whole_rows(Vector& narrow) { return coordinates_ ? whole_rows_ : narrow; }
-  void take_rows(Vector& narrow) const {
+  Vector& full_constraints(Vector& reduced) { return coordinates_ ? full_rows_ : reduced; }
+  void add_constraint_rows(Vector& reduced) const {
     if (!coordinates_) return;
-    Sequence<Index> const& stay = coordinates_.narrow->rows_that_stay;
-    for (std::size_t i = 0; i < stay.size(); ++i) narrow[Index(i)] = whole_rows_[stay[i]];
+    Sequence<Index> const& stay = coordinates_.reduced->remaining_equations;
+    for (std::size_t i = 0; i < stay.size(); ++i) reduced[Index(i)] = full_rows_[stay[i]];
   }
-  void expand_rows(Vector const& narrow, Vector& whole) const { coordinates_.narrow->expand_rows(narrow, whole); }
+  void expand_rows(Vector const& reduced, Vector& full) const { coordinates_.reduced->expand_rows(reduced, full); }
 
   void const* model_;
-  ModelEntries<T> entries_;
+  ModelOperations<T> entries_;
   ModelLayout layout_;
   CoordinatesOf<T> coordinates_;
   std::unique_ptr<Workers> workers_;
   Data<T> data_;
   Vector q_, v_;  // whole
   double t_ = 0.0;
-  Vector whole_a_, whole_r_, whole_rows_, whole_lambda_, still_;  // scratch of a system with coordinates of its own
+  Vector full_a_, full_r_, full_rows_, full_lambda_, still_;  // scratch of a system with coordinates of its own
 };
 
 }  // namespace polybody

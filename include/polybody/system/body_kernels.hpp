@@ -6,8 +6,8 @@
 
 #include <polybody/bodies/shared/element_batches.hpp>
 #include <polybody/math/sequence.hpp>
-#include <polybody/system/entries.hpp>
 #include <polybody/system/layout.hpp>
+#include <polybody/system/model_operations.hpp>
 #include <polybody/system/pool_batches.hpp>
 
 namespace polybody {
@@ -18,7 +18,7 @@ namespace detail {
 template <class B, StateScalar T>
 struct BodyData {
   Sequence<typename PoseOf<B, T>::Type> poses;
-  Sequence<KeptScratch<B, T>> scratch;
+  Sequence<ThreadScratch<B, T>> scratch;
   PoolBatches batches;   ///< of numbers, where bodies compare their elements
   bool divides = false;  ///< threads share the elements of some body
 };
@@ -30,7 +30,7 @@ struct MarkerArena {
 
 /// What M a − f is asked for.
 template <StateScalar T>
-struct Unbalance {
+struct BodyResidual {
   At<T> at;
   VecXOf<T> const& a;
   Vec3 g;
@@ -41,10 +41,10 @@ struct Unbalance {
 /// The loops over the bodies of type B, for scalar T. Those of energies, masses and tangents are for numbers.
 template <class B, StateScalar T>
 struct BodyKernels {
-  using Pool = detail::BodyPool<B>;     ///< bodies of this type, in a model
-  using Entry = detail::BodyEntry<B>;   ///< one of them, with its places
-  using Kept = detail::BodyData<B, T>;  ///< scratch
-  using Vector = VecXOf<T>;             ///< numbers, or dual ones
+  using Pool = detail::BodyPool<B>;         ///< bodies of this type, in a model
+  using Entry = detail::BodyTableEntry<B>;  ///< one of them, with its places
+  using Kept = detail::BodyData<B, T>;      ///< scratch
+  using Vector = VecXOf<T>;                 ///< numbers, or dual ones
 
   /// First coordinate, first speed and first own row of a body, and the serial number of its model.
   struct Places {
@@ -54,8 +54,9 @@ struct BodyKernels {
   /// Puts a body into the pool.
   [[gnu::cold]] static void add(Pool& pool, B const& body, std::string const& name, Places const& at);
   /// What a body publishes of a point, its axes being those of the body. The Jacobian stands in `jacobian`.
-  static Published<double> publish_point(B const& body, typename B::Point const& point, std::span<double const> q,
-                                         std::span<double const> v, Sequence<double>& jacobian);
+  static MarkerKinematics<double> publish_point(B const& body, typename B::Point const& point,
+                                                std::span<double const> q, std::span<double const> v,
+                                                Sequence<double>& jacobian);
   /// Axes (3×3) at a marker's point, as placed.
   static Mat3 reference_axes(Pool const& pool, Marker<B> const& marker);
   /// Puts a marker into the pool, number `published` of all. Returns the size of its Jacobian.
@@ -72,24 +73,24 @@ struct BodyKernels {
   static void count_shared(Pool const& pool, std::size_t& forces, std::size_t& tangents);
 
   /// Every marker's frame, Jacobian and bias.
-  static void publish(Pool const& pool, Kept& kept, At<T> at, Data<T>& data);
+  static void evaluate_marker(Pool const& pool, Kept& kept, At<T> at, Data<T>& data);
   /// Gap and map of the bodies' own rows, from `next` on; returns the end. And their γ.
   static T* measure_own_rows(Pool const& pool, At<T> at, T* next);
   static void own_gamma(Pool const& pool, At<T> at, Vector& out);  ///< γ (rows), as `out[row]`
   /// q ⊞ δ and the rate of δ; with `places`, in narrow vectors. Return the place after the last body's.
-  static NarrowPlace const* plus(Pool const& pool, NarrowPlace const* places, Vector const& q, Vector const& delta,
-                                 Vector& out);
-  static NarrowPlace const* local_rate(Pool const& pool, NarrowPlace const* places, Vector const& delta,
-                                       Vector const& v, Vector& out);  ///< δ˙ of `delta`
+  static ReducedPosition const* plus(Pool const& pool, ReducedPosition const* places, Vector const& q,
+                                     Vector const& delta, Vector& out);
+  static ReducedPosition const* local_rate(Pool const& pool, ReducedPosition const* places, Vector const& delta,
+                                           Vector const& v, Vector& out);  ///< δ˙ of `delta`
   /// r += M a − f, at what u names.
-  static void add_forces(Pool const& pool, Kept& kept, detail::Unbalance<T> const& u, Data<T>& data, Vector& r);
+  static void add_forces(Pool const& pool, Kept& kept, detail::BodyResidual<T> const& u, Data<T>& data, Vector& r);
 
   /// `rate` = q˙ = d/dε (q ⊞ ε v) at ε = 0: v itself where a body has as many coordinates as speeds, else by dual
   /// numbers in `room` (2 nq + nv).
-  static NarrowPlace const* coordinate_rates(Pool const& pool, NarrowPlace const* places, VecX const& q, VecX const& v,
-                                             VecXOf<Dual<1>>& room, VecX& rate);
+  static ReducedPosition const* coordinate_rates(Pool const& pool, ReducedPosition const* places, VecX const& q,
+                                                 VecX const& v, VecXOf<Dual<1>>& room, VecX& rate);
   /// v of a rigid motion, v0 (3) at the world's origin [m/s] and `omega` (3) [rad/s], world axes.
-  static void rigid_speeds(Pool const& pool, VecX const& q, Vec3 const& v0, Vec3 const& omega, VecX& v);
+  static void rigid_velocities(Pool const& pool, VecX const& q, Vec3 const& v0, Vec3 const& omega, VecX& v);
   static void masses(Pool const& pool, Kept& kept, At<double> at, BlockSink& sink);  ///< M, element by element
   static void tangents(Pool const& pool, Kept& kept, At<double> at, TangentCoefficients const& c, Data<double>& data,
                        BlockSink& sink);  ///< cm M + cd D + ck K
@@ -109,30 +110,31 @@ struct BodyKernels {
   static constexpr Index least_bodies = n == Eigen::Dynamic ? 8 : HasRigidLayout<B> ? 1024 : 32;
   /// Threads share its bodies, of one element each.
   static bool shares_bodies(Pool const& pool) { return detail::has_single_elements(pool, 2 * least_bodies); }
-  static constexpr bool in_batches = ComparesElements<B> && !ChangesWithTime<B> && std::same_as<T, double>;
+  static constexpr bool in_batches = ComparableElements<B> && !TimeVaryingBody<B> && std::same_as<T, double>;
   /// M a − f of the elements of one body.
-  static void add_forces_of(Entry const& e, detail::KeptScratch<B, T>& kept, detail::Unbalance<T> const& u,
+  static void add_forces_of(Entry const& e, detail::ThreadScratch<B, T>& kept, detail::BodyResidual<T> const& u,
                             Data<T>& data, Vector& r);
-  static void tangents_of(Entry const& e, detail::KeptScratch<B, T>& kept, At<double> at, TangentCoefficients const& c,
-                          Data<double>& data, BlockSink& sink);
+  static void tangents_of(Entry const& e, detail::ThreadScratch<B, T>& kept, At<double> at,
+                          TangentCoefficients const& c, Data<double>& data, BlockSink& sink);
   /// x, M a − f of an element without weight, to the body's rows.
   template <class Scratch>
-  static void add_force(Entry const& e, Index i, detail::Unbalance<T> const& u, T const* x, Scratch& scratch,
+  static void add_force(Entry const& e, Index i, detail::BodyResidual<T> const& u, T const* x, Scratch& scratch,
                         Vector& r);
   static std::span<T const> coordinates(Entry const& e, Vector const& q) {
     return {q.data() + e.q0, std::size_t(e.body.coordinates())};
   }
-  static std::span<T const> speeds(Entry const& e, Vector const& v) {
-    return {v.data() + e.v0, std::size_t(e.body.speeds())};
+  static std::span<T const> velocities(Entry const& e, Vector const& v) {
+    return {v.data() + e.v0, std::size_t(e.body.velocities())};
   }
   /// Calls f(entry, place) for the bodies that stand in vectors which may be narrow. Returns the place after the
   /// last's.
   template <class F>
-  static NarrowPlace const* for_each_place(Pool const& pool, NarrowPlace const* places, F&& f) {
+  static ReducedPosition const* for_each_place(Pool const& pool, ReducedPosition const* places, F&& f) {
     for (Entry const& e : pool.entries) {
-      NarrowPlace const whole{NarrowPlace::Kind::as_it_is, e.q0, e.v0, e.body.coordinates(), e.body.speeds()};
-      NarrowPlace const& p = places ? *places++ : whole;
-      if (p.kind != NarrowPlace::Kind::carried) f(e, p);
+      ReducedPosition const full{ReducedPosition::Kind::as_it_is, e.q0, e.v0, e.body.coordinates(),
+                                 e.body.velocities()};
+      ReducedPosition const& p = places ? *places++ : full;
+      if (p.kind != ReducedPosition::Kind::carried) f(e, p);
     }
     return places;
   }
@@ -145,19 +147,19 @@ void BodyKernels<B, T>::add(Pool& pool, B const& body, std::string const& name, 
 template <class B, StateScalar T>
 Mat3 BodyKernels<B, T>::reference_axes(Pool const& pool, Marker<B> const& marker) {
   B const& body = pool.entries[std::size_t(marker.body)].body;
-  Sequence<double> q(std::size_t(body.coordinates())), v(std::size_t(body.speeds()), 0.0), jacobian;
+  Sequence<double> q(std::size_t(body.coordinates())), v(std::size_t(body.velocities()), 0.0), jacobian;
   body.reference(q);
   return publish_point(body, marker.point, q, v, jacobian).frame.A;
 }
 template <class B, StateScalar T>
-Published<double> BodyKernels<B, T>::publish_point(B const& body, typename B::Point const& point,
-                                                   std::span<double const> q, std::span<double const> v,
-                                                   Sequence<double>& jacobian) {
-  Published<double> out;
+MarkerKinematics<double> BodyKernels<B, T>::publish_point(B const& body, typename B::Point const& point,
+                                                          std::span<double const> q, std::span<double const> v,
+                                                          Sequence<double>& jacobian) {
+  MarkerKinematics<double> out;
   out.columns = point_columns(body, point);
   jacobian.resize(std::size_t(6 * out.columns));
   out.jacobian = jacobian.data();
-  body.template publish<double>(point, identity(), q, v, out);
+  body.template evaluate_marker<double>(point, identity(), q, v, out);
   return out;
 }
 template <class B, StateScalar T>
@@ -168,13 +170,13 @@ Index BodyKernels<B, T>::add_marker(Pool& pool, Marker<B> const& marker, Mat3 co
 template <class B, StateScalar T>
 void BodyKernels<B, T>::describe(Pool const& pool, ModelLayout& out) {
   Index own = 0, index = 0;
-  if constexpr (OwnsRows<B>) own = B::own_rows;
+  if constexpr (HasOwnEquations<B>) own = B::own_equations;
   for (auto const& m : pool.markers) out.owners[std::size_t(m.published)] = Index(out.bodies.size()) + m.body;
   for (Entry const& e : pool.entries)
-    out.bodies.push_back({e.name, e.q0, e.body.coordinates(), e.v0, e.body.speeds(), e.row, own,
+    out.bodies.push_back({e.name, e.q0, e.body.coordinates(), e.v0, e.body.velocities(), e.row, own,
                           B::world == World::plane, B::constant_mass, &detail::type_tag<B>, index++, &e.body, nullptr,
-                          units_of<B>(), e.made_in, HasRigidLayout<B>, ChangesWithTime<B>});
-  if constexpr (LeavesOutAxialForces<B>)
+                          units_of<B>(), e.made_in, HasRigidLayout<B>, TimeVaryingBody<B>});
+  if constexpr (WithoutGeometricStiffening<B>)
     for (std::size_t i = out.bodies.size() - pool.entries.size(); i < out.bodies.size(); ++i)
       out.bodies[i].axial_share = [](void const* body, std::span<double const> q, std::span<double const> v,
                                      std::span<double const> a, Vec3 const& g, std::span<PlacedWrench const> loads) {
@@ -191,7 +193,7 @@ void BodyKernels<B, T>::place_markers(Pool const& pool, Kept& kept, detail::Mark
   for (Entry const& e : pool.entries) kept.divides = kept.divides || e.body.elements() >= 2 * data.least_elements;
   for (auto const& m : pool.markers) {
     Entry const& e = pool.entries[std::size_t(m.body)];
-    Published<T>& p = data.markers[std::size_t(m.published)];
+    MarkerKinematics<T>& p = data.markers[std::size_t(m.published)];
     p.first = e.v0 + e.body.first_column(m.point);
     p.columns = point_columns(e.body, m.point);
     p.jacobian = data.jacobians.data() + arena.taken;
@@ -202,17 +204,17 @@ void BodyKernels<B, T>::place_markers(Pool const& pool, Kept& kept, detail::Mark
 
 template <class B, StateScalar T>
 Index BodyKernels<B, T>::own_size(Pool const& pool) {
-  if constexpr (OwnsRows<B>)
-    return Index(pool.entries.size()) * B::own_rows * (1 + n);
+  if constexpr (HasOwnEquations<B>)
+    return Index(pool.entries.size()) * B::own_equations * (1 + n);
   else
     return 0;
 }
 template <class B, StateScalar T>
 T* BodyKernels<B, T>::place_rows(Pool const& pool, Index owner, T* next, Data<T>& data) {
-  if constexpr (OwnsRows<B>)
+  if constexpr (HasOwnEquations<B>)
     for (Entry const& e : pool.entries) {
-      constexpr int m = B::own_rows;
-      data.rows.push_back({.source = RowSource::body,
+      constexpr int m = B::own_equations;
+      data.rows.push_back({.source = ConstraintSource::body,
                            .row = e.row,
                            .rows = m,
                            .owner = owner++,
@@ -236,37 +238,37 @@ void BodyKernels<B, T>::count_shared(Pool const& pool, std::size_t& forces, std:
 }
 
 template <class B, StateScalar T>
-void BodyKernels<B, T>::publish(Pool const& pool, Kept& kept, At<T> at, Data<T>& data) {
-  if constexpr (SharesPose<B, T>)
+void BodyKernels<B, T>::evaluate_marker(Pool const& pool, Kept& kept, At<T> at, Data<T>& data) {
+  if constexpr (HasSharedPose<B, T>)
     share(data.workers, Index(kept.poses.size()), data.least_markers, [&](Index begin, Index end) {
       for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i) {
         Entry const& e = pool.entries[i];
-        e.body.template pose<T>(coordinates(e, at.q), speeds(e, at.v), kept.poses[i]);
+        e.body.template pose<T>(coordinates(e, at.q), velocities(e, at.v), kept.poses[i]);
       }
     });
   share(data.workers, Index(pool.markers.size()), data.least_markers, [&](Index begin, Index end) {
     for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i) {
       auto const& p = pool.markers[i];
       if (!data.linear_rows && !data.read[std::size_t(p.published)]) continue;
-      Published<T>& out = data.markers[std::size_t(p.published)];
+      MarkerKinematics<T>& out = data.markers[std::size_t(p.published)];
       Entry const& e = pool.entries[std::size_t(p.body)];
-      if constexpr (SharesPose<B, T>)
-        e.body.publish(p.point, p.axes, kept.poses[std::size_t(p.body)], out);
+      if constexpr (HasSharedPose<B, T>)
+        e.body.evaluate_marker(p.point, p.axes, kept.poses[std::size_t(p.body)], out);
       else
-        e.body.template publish<T>(p.point, p.axes, coordinates(e, at.q), speeds(e, at.v), out);
+        e.body.template evaluate_marker<T>(p.point, p.axes, coordinates(e, at.q), velocities(e, at.v), out);
     }
   });
 }
 
 template <class B, StateScalar T>
 T* BodyKernels<B, T>::measure_own_rows(Pool const& pool, At<T> at, T* next) {
-  if constexpr (OwnsRows<B>)
+  if constexpr (HasOwnEquations<B>)
     for (Entry const& e : pool.entries) {
-      constexpr int m = B::own_rows;
+      constexpr int m = B::own_equations;
       Vec<T, m> own;
       Mat<T, m, n> map;
-      e.body.template own_gap<T>(coordinates(e, at.q), own);
-      e.body.template own_map<T>(coordinates(e, at.q), map);
+      e.body.template own_constraint<T>(coordinates(e, at.q), own);
+      e.body.template own_jacobian<T>(coordinates(e, at.q), map);
       for (int i = 0; i < m; ++i) *next++ = own[i];
       for (int i = 0; i < m * n; ++i) *next++ = map.data()[i];
     }
@@ -274,33 +276,33 @@ T* BodyKernels<B, T>::measure_own_rows(Pool const& pool, At<T> at, T* next) {
 }
 template <class B, StateScalar T>
 void BodyKernels<B, T>::own_gamma(Pool const& pool, At<T> at, Vector& out) {
-  if constexpr (OwnsRows<B>)
+  if constexpr (HasOwnEquations<B>)
     for (Entry const& e : pool.entries) {
-      Vec<T, B::own_rows> own;
-      e.body.template own_gamma<T>(coordinates(e, at.q), speeds(e, at.v), own);
-      for (int i = 0; i < B::own_rows; ++i) out[e.row + i] = own[i];
+      Vec<T, B::own_equations> own;
+      e.body.template own_gamma<T>(coordinates(e, at.q), velocities(e, at.v), own);
+      for (int i = 0; i < B::own_equations; ++i) out[e.row + i] = own[i];
     }
 }
 
 template <class B, StateScalar T>
-NarrowPlace const* BodyKernels<B, T>::plus(Pool const& pool, NarrowPlace const* places, Vector const& q,
-                                           Vector const& delta, Vector& out) {
-  return for_each_place(pool, places, [&](Entry const& e, NarrowPlace const& p) {
-    auto const qe = detail::body_part(q, p.q, p.coordinates), de = detail::body_part(delta, p.v, p.speeds);
+ReducedPosition const* BodyKernels<B, T>::plus(Pool const& pool, ReducedPosition const* places, Vector const& q,
+                                               Vector const& delta, Vector& out) {
+  return for_each_place(pool, places, [&](Entry const& e, ReducedPosition const& p) {
+    auto const qe = detail::body_part(q, p.q, p.coordinates), de = detail::body_part(delta, p.v, p.velocities);
     auto const to = detail::body_part_of(out, p.q, p.coordinates);
-    if (p.kind == NarrowPlace::Kind::as_it_is)
+    if (p.kind == ReducedPosition::Kind::as_it_is)
       e.body.template plus<T>(qe, de, to);
     else
       for (std::size_t i = 0; i < qe.size(); ++i) to[i] = qe[i] + de[i];
   });
 }
 template <class B, StateScalar T>
-NarrowPlace const* BodyKernels<B, T>::local_rate(Pool const& pool, NarrowPlace const* places, Vector const& delta,
-                                                 Vector const& v, Vector& out) {
-  return for_each_place(pool, places, [&](Entry const& e, NarrowPlace const& p) {
-    auto const de = detail::body_part(delta, p.v, p.speeds), ve = detail::body_part(v, p.v, p.speeds);
-    auto const to = detail::body_part_of(out, p.v, p.speeds);
-    if (p.kind == NarrowPlace::Kind::as_it_is)
+ReducedPosition const* BodyKernels<B, T>::local_rate(Pool const& pool, ReducedPosition const* places,
+                                                     Vector const& delta, Vector const& v, Vector& out) {
+  return for_each_place(pool, places, [&](Entry const& e, ReducedPosition const& p) {
+    auto const de = detail::body_part(delta, p.v, p.velocities), ve = detail::body_part(v, p.v, p.velocities);
+    auto const to = detail::body_part_of(out, p.v, p.velocities);
+    if (p.kind == ReducedPosition::Kind::as_it_is)
       e.body.template local_rate<T>(de, ve, to);
     else
       for (std::size_t i = 0; i < ve.size(); ++i) to[i] = ve[i];
@@ -309,8 +311,8 @@ NarrowPlace const* BodyKernels<B, T>::local_rate(Pool const& pool, NarrowPlace c
 
 template <class B, StateScalar T>
 template <class Scratch>
-void BodyKernels<B, T>::add_force(Entry const& e, Index i, detail::Unbalance<T> const& u, T const* x, Scratch& scratch,
-                                  Vector& r) {
+void BodyKernels<B, T>::add_force(Entry const& e, Index i, detail::BodyResidual<T> const& u, T const* x,
+                                  Scratch& scratch, Vector& r) {
   T* const rows = r.data() + e.v0 + e.body.first_column(i);
   int size = n;
   if constexpr (n == Eigen::Dynamic) size = int(scratch.weight.size());
@@ -321,11 +323,11 @@ void BodyKernels<B, T>::add_force(Entry const& e, Index i, detail::Unbalance<T> 
 }
 
 template <class B, StateScalar T>
-void BodyKernels<B, T>::add_forces_of(Entry const& e, detail::KeptScratch<B, T>& kept, detail::Unbalance<T> const& u,
-                                      Data<T>& data, Vector& r) {
-  BodyMotion<T> const motion{coordinates(e, u.at.q), speeds(e, u.at.v), speeds(e, u.a)};
+void BodyKernels<B, T>::add_forces_of(Entry const& e, detail::ThreadScratch<B, T>& kept,
+                                      detail::BodyResidual<T> const& u, Data<T>& data, Vector& r) {
+  BodyMotion<T> const motion{coordinates(e, u.at.q), velocities(e, u.at.v), velocities(e, u.a)};
   auto const& body = at_time(e.body, u.at.t);
-  if constexpr (AddsUnbalance<B, T>) return body.add_unbalance(motion, u.g, r.data() + e.v0);
+  if constexpr (HasBodyResidual<B, T>) return body.add_residual(motion, u.g, r.data() + e.v0);
   auto&& scratch = kept.force_scratch(body);
   if constexpr (n != Eigen::Dynamic)
     if (Index const elements = body.elements(); data.workers && elements >= 2 * data.least_elements) {
@@ -342,7 +344,7 @@ void BodyKernels<B, T>::add_forces_of(Entry const& e, detail::KeptScratch<B, T>&
 }
 
 template <class B, StateScalar T>
-void BodyKernels<B, T>::add_forces(Pool const& pool, Kept& kept, detail::Unbalance<T> const& u, Data<T>& data,
+void BodyKernels<B, T>::add_forces(Pool const& pool, Kept& kept, detail::BodyResidual<T> const& u, Data<T>& data,
                                    Vector& r) {
   // bodies write to rows of their own, so threads may take some each; those that share their elements do that
   Workers* const workers = kept.divides ? nullptr : data.workers;
@@ -362,8 +364,8 @@ void BodyKernels<B, T>::add_forces(Pool const& pool, Kept& kept, detail::Unbalan
     for (auto const& [entry, element] : kept.batches.singles) {
       Entry const& e = pool.entries[std::size_t(entry)];
       ForceScratch<B, T> scratch(e.body);
-      detail::unbalance_of_one<B, T>(e.body, element, {coordinates(e, u.at.q), speeds(e, u.at.v), speeds(e, u.a)},
-                                     scratch);
+      detail::unbalance_of_one<B, T>(e.body, element,
+                                     {coordinates(e, u.at.q), velocities(e, u.at.v), velocities(e, u.a)}, scratch);
       add_force(e, element, u, scratch.x.data(), scratch, r);
     }
     for (Index const b : kept.batches.bodies)

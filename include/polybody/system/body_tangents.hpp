@@ -7,13 +7,14 @@
 namespace polybody {
 
 template <class B, StateScalar T>
-NarrowPlace const* BodyKernels<B, T>::coordinate_rates(Pool const& pool, NarrowPlace const* places, VecX const& q,
-                                                       VecX const& v, VecXOf<Dual<1>>& room, VecX& rate) {
+ReducedPosition const* BodyKernels<B, T>::coordinate_rates(Pool const& pool, ReducedPosition const* places,
+                                                           VecX const& q, VecX const& v, VecXOf<Dual<1>>& room,
+                                                           VecX& rate) {
   using D = Dual<1>;
   D* const delta = room.data() + q.size();
   D* const out = delta + v.size();
-  return for_each_place(pool, places, [&](Entry const& e, NarrowPlace const& p) {
-    Index const width = p.coordinates, k = p.speeds;
+  return for_each_place(pool, places, [&](Entry const& e, ReducedPosition const& p) {
+    Index const width = p.coordinates, k = p.velocities;
     if (width == k) {
       for (Index i = 0; i < width; ++i) rate[p.q + i] = v[p.v + i];
       return;
@@ -31,9 +32,9 @@ NarrowPlace const* BodyKernels<B, T>::coordinate_rates(Pool const& pool, NarrowP
 }
 
 template <class B, StateScalar T>
-void BodyKernels<B, T>::rigid_speeds(Pool const& pool, VecX const& q, Vec3 const& v0, Vec3 const& omega, VecX& v) {
+void BodyKernels<B, T>::rigid_velocities(Pool const& pool, VecX const& q, Vec3 const& v0, Vec3 const& omega, VecX& v) {
   for (Entry const& e : pool.entries)
-    e.body.rigid_velocity(coordinates(e, q), v0, omega, detail::body_part_of(v, e.v0, e.body.speeds()));
+    e.body.rigid_velocity(coordinates(e, q), v0, omega, detail::body_part_of(v, e.v0, e.body.velocities()));
 }
 
 template <class B, StateScalar T>
@@ -43,7 +44,7 @@ void BodyKernels<B, T>::masses(Pool const& pool, Kept& kept, At<double> at, Bloc
     auto const& body = at_time(e.body, at.t);
     auto&& scratch = kept.scratch[b].tangent_scratch(body);
     bool const alike = detail::are_alike(body);
-    Index const columns = n == Eigen::Dynamic ? body.speeds() : Index(n);
+    Index const columns = n == Eigen::Dynamic ? body.velocities() : Index(n);
     bool const known = B::constant_mass && !sink.wants(e.v0 + body.first_column(0), columns);
     for (Index i = 0; i < body.elements(); ++i) {
       if (known) {
@@ -59,12 +60,12 @@ void BodyKernels<B, T>::masses(Pool const& pool, Kept& kept, At<double> at, Bloc
 }
 
 template <class B, StateScalar T>
-void BodyKernels<B, T>::tangents_of(Entry const& e, detail::KeptScratch<B, T>& kept, At<double> at,
+void BodyKernels<B, T>::tangents_of(Entry const& e, detail::ThreadScratch<B, T>& kept, At<double> at,
                                     TangentCoefficients const& c, Data<double>& data, BlockSink& sink) {
   ElementCoefficients const coefficients{c.mass, c.damping, c.stiffness};
   auto const& body = at_time(e.body, at.t);
   auto&& scratch = kept.tangent_scratch(body);
-  BodyMotion<> const motion{coordinates(e, at.q), speeds(e, at.v)};
+  BodyMotion<> const motion{coordinates(e, at.q), velocities(e, at.v)};
   Index const elements = body.elements();
   auto const add = [&](Index i, BlockView const& k) {
     Index const first = e.v0 + body.first_column(i);
@@ -106,7 +107,7 @@ void BodyKernels<B, T>::tangents(Pool const& pool, Kept& kept, At<double> at, Ta
     }
     for (auto const& [entry, element] : kept.batches.singles) {
       Entry const& e = pool.entries[std::size_t(entry)];
-      for_each_element_tangent<B>(e.body, {element, element + 1}, {coordinates(e, at.q), speeds(e, at.v)},
+      for_each_element_tangent<B>(e.body, {element, element + 1}, {coordinates(e, at.q), velocities(e, at.v)},
                                   {c.mass, c.damping, c.stiffness}, [&](Index i, Mat<double, n, n> const& k) {
                                     Index const first = e.v0 + e.body.first_column(i);
                                     sink.add(first, first, k);
@@ -121,7 +122,7 @@ void BodyKernels<B, T>::tangents(Pool const& pool, Kept& kept, At<double> at, Ta
         Entry const& e = pool.entries[b];
         auto const& body = at_time(e.body, at.t);
         auto&& scratch = kept.scratch[b].tangent_scratch(body);
-        for_each_element_tangent<B>(body, {0, 1}, {coordinates(e, at.q), speeds(e, at.v)},
+        for_each_element_tangent<B>(body, {0, 1}, {coordinates(e, at.q), velocities(e, at.v)},
                                     {c.mass, c.damping, c.stiffness}, scratch,
                                     [&]([[maybe_unused]] Index i, [[maybe_unused]] auto const& k) {
                                       if constexpr (n != Eigen::Dynamic)
@@ -146,10 +147,10 @@ void BodyKernels<B, T>::tangents(Pool const& pool, Kept& kept, At<double> at, Ta
 template <class B, StateScalar T>
 void BodyKernels<B, T>::own_stiffness(Pool const& pool, VecX const& lambda, detail::StiffnessAt const& x,
                                       BlockSink& sink) {
-  if constexpr (OwnsRows<B>)
+  if constexpr (HasOwnEquations<B>)
     for (Entry const& e : pool.entries) {
       Mat<double, n, n> k;
-      Vec<double, B::own_rows> const l(lambda.data() + e.row);
+      Vec<double, B::own_equations> const l(lambda.data() + e.row);
       e.body.own_stiffness(coordinates(e, x.at.q), l, k);
       k *= x.c.stiffness;
       sink.add(e.v0, e.v0, k);
@@ -161,7 +162,7 @@ void BodyKernels<B, T>::load_stiffness(Pool const& pool, Kept& kept, detail::Sti
                                        BlockSink& sink) {
   for (auto const& p : pool.markers) {
     Entry const& e = pool.entries[std::size_t(p.body)];
-    Published<double> const& marker = data.markers[std::size_t(p.published)];
+    MarkerKinematics<double> const& marker = data.markers[std::size_t(p.published)];
     Wrench<double> const& w = data.loads[std::size_t(p.published)];
     bool acts = false;
     for (int i = 0; i < 3; ++i) acts = acts || w.f[i] != 0.0 || w.m[i] != 0.0;
@@ -188,7 +189,7 @@ void BodyKernels<B, T>::load_stiffness(Pool const& pool, Kept& kept, detail::Sti
 template <class B, StateScalar T>
 void BodyKernels<B, T>::add_energy(Pool const& pool, At<double> at, Vec3 const& g, Energy& sum) {
   for (Entry const& e : pool.entries) {
-    auto const q = coordinates(e, at.q), v = speeds(e, at.v);
+    auto const q = coordinates(e, at.q), v = velocities(e, at.v);
     auto const& body = at_time(e.body, at.t);
     for (Index i = 0; i < body.elements(); ++i) {
       sum.kinetic += body.kinetic_energy(i, q, v);
@@ -205,7 +206,7 @@ double BodyKernels<B, T>::dissipated(Pool const& pool, Kept& kept, At<double> at
     for (std::size_t b = 0; b < pool.entries.size(); ++b) {
       Entry const& e = pool.entries[b];
       auto&& scratch = kept.scratch[b].force_scratch(e.body);
-      auto const q = coordinates(e, at.q), v = speeds(e, at.v), back = speeds(e, backwards);
+      auto const q = coordinates(e, at.q), v = velocities(e, at.v), back = velocities(e, backwards);
       for (Index i = 0; i < e.body.elements(); ++i) {
         e.body.template force<double>(i, q, v, scratch.force);
         e.body.template force<double>(i, q, back, scratch.x);

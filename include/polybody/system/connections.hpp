@@ -9,7 +9,7 @@
 #include <polybody/system/body_kernels.hpp>
 #include <polybody/system/composition.hpp>
 #include <polybody/system/drive_axes.hpp>
-#include <polybody/system/linear_rows.hpp>
+#include <polybody/system/linear_constraints.hpp>
 #include <polybody/system/markers.hpp>
 #include <polybody/system/names.hpp>
 
@@ -17,7 +17,7 @@ namespace polybody::detail {
 
 /// Counts of a model. A move leaves zeros, as the pools are empty then.
 struct ModelCounts {
-  Index coordinates = 0, speeds = 0, states = 0, rows = 0, markers = 0, jacobian_size = 0, bodies = 0;
+  Index coordinates = 0, velocities = 0, states = 0, rows = 0, markers = 0, jacobian_size = 0, bodies = 0;
 
   ModelCounts() = default;
   ModelCounts(ModelCounts const&) = default;
@@ -43,8 +43,8 @@ struct ModelParts : ModelCounts {
   Gravity gravity;
   ModelOrigin origin = {};
   Sequence<GroundMarker> ground = {};
-  Sequence<LinearRows> linear_rows = {};
-  Sequence<Index> velocity_rows = {};
+  Sequence<LinearConstraints> linear_rows = {};
+  Sequence<Index> nonholonomic_equations = {};
   Names body_names = {}, joint_names = {}, force_names = {};
   DriveAxes drive_axes = {};
 
@@ -67,8 +67,8 @@ struct PooledMarker<Ground> {
 };
 
 /// The entry that a handle names. \throws InvalidInput for a handle of another model, or one made by default.
-template <class Entries, class Handle>
-auto const& own_entry(Entries const& entries, Handle const& handle) {
+template <class Capabilities, class Handle>
+auto const& own_entry(Capabilities const& entries, Handle const& handle) {
   require_filled(handle.model);
   if (!holds(entries, handle.index, handle.model)) refuse_marker_of_another_model(handle.name);
   return entries[std::size_t(handle.index)];
@@ -134,11 +134,11 @@ BodyHandle<B> add_body(ModelParts& parts, BodyPool<B>& pool, B const& body, std:
   name = parts.body_names.given_or_next(std::move(name), "body", std::size_t(parts.bodies));
   parts.body_names.require_free(name, "body");
   parts.origin.change();
-  BodyKernels<B, double>::add(pool, body, name,
-                              {parts.coordinates, parts.speeds, OwnsRows<B> ? parts.rows : -1, parts.serial()});
-  if constexpr (OwnsRows<B>) parts.rows += B::own_rows;
+  BodyKernels<B, double>::add(
+      pool, body, name, {parts.coordinates, parts.velocities, HasOwnEquations<B> ? parts.rows : -1, parts.serial()});
+  if constexpr (HasOwnEquations<B>) parts.rows += B::own_equations;
   parts.coordinates += pool.entries.back().body.coordinates();
-  parts.speeds += pool.entries.back().body.speeds();
+  parts.velocities += pool.entries.back().body.velocities();
   ++parts.bodies;
   parts.body_names.take(name);
   return {parts.serial(), Index(pool.entries.size()) - 1, std::move(name), pool.entries.shared()};
@@ -150,44 +150,46 @@ template <class J, class A, class B>
                                          PooledMarker<A> const& a, PooledMarker<B> const& b, std::string name) {
   using G = typename J::Geometry;
   using P = typename J::PolicyType;
-  using Asks = typename J::Measured;
+  using Requirement = typename J::Measured;
   name = parts.joint_names.given_or_next(std::move(name), G::name, pool.size());
   require_own(parts, a, name);
   require_own(parts, b, name);
   require_apart(a.marker, b.marker, name);
   Mat3 const triad = checked_triad<(A::world == World::plane || B::world == World::plane)>(joint, name);
   Mat3 const axes_a = reference_axes(a), axes_b = reference_axes(b);
-  if constexpr (!LinearInCoordinates<P> && B::observes == Observes::axis && needs_of_second<Asks>() == Observes::axis)
+  if constexpr (!LinearPolicy<P> && B::observes == MarkerKind::axis &&
+                needs_of_second<Requirement>() == MarkerKind::axis)
     require_along_tangent(axes_b, triad, name);
-  require_observed(a.marker, Asks::needs, name);
-  require_observed(b.marker, needs_of_second<Asks>(), name);
+  require_observed(a.marker, Requirement::needs, name);
+  require_observed(b.marker, needs_of_second<Requirement>(), name);
   parts.joint_names.require_free(name, "joint");
   parts.origin.change();
-  if constexpr (LinearInCoordinates<P>) {  // before a marker is published: it may refuse
-    LinearRows rows{.name = name, .row = parts.rows};
+  if constexpr (LinearPolicy<P>) {  // before a marker is published: it may refuse
+    LinearConstraints rows{.name = name, .row = parts.rows};
     fill_linear_rows<G>(linear_side(a, B::world, rows.a, name), linear_side(b, A::world, rows.b, name), triad.col(2),
                         rows);
     parts.linear_rows.push_back(std::move(rows));
   }
-  if constexpr (AddsRows<P> && A::world != World::plane && B::world != World::plane &&
-                (LeavesOneTurn<G> || DrivesTurn<G>))
+  if constexpr (ConstrainingPolicy<P> && A::world != World::plane && B::world != World::plane &&
+                (OneRotationFree<G> || RotationDrive<G>))
     if constexpr ((HasRigidLayout<A> || std::is_same_v<A, Ground>) && (HasRigidLayout<B> || std::is_same_v<B, Ground>))
-      parts.drive_axes.add(DrivesTurn<G>, {first_speed(a), first_speed(b)}, Vec3(triad(0, 2), triad(1, 2), triad(2, 2)),
-                           name);
+      parts.drive_axes.add(RotationDrive<G>, {first_speed(a), first_speed(b)},
+                           Vec3(triad(0, 2), triad(1, 2), triad(2, 2)), name);
   Index const pa = publish_at(parts, a, transposed_product(axes_a, triad));
   Index const pb = publish_at(parts, b, transposed_product(axes_b, triad));
   JointEntry<J> entry{joint, pa, pb, -1, name};
   entry.made_in = parts.serial();
-  if constexpr (LinearInCoordinates<P>) {
+  if constexpr (LinearPolicy<P>) {
     entry.linear = Index(parts.linear_rows.size()) - 1;
     entry.rows = parts.linear_rows.back().rows();
-  } else if constexpr (AddsRows<P>) {
+  } else if constexpr (ConstrainingPolicy<P>) {
     entry.rows = J::rows;
   }
-  if constexpr (AddsRows<P>) {
+  if constexpr (ConstrainingPolicy<P>) {
     entry.row = parts.rows;
     parts.rows += entry.rows;
-    for (Index i = polybody::velocity_rows<G>(); i > 0; --i) parts.velocity_rows.push_back(parts.rows - i);
+    for (Index i = polybody::nonholonomic_equations<G>(); i > 0; --i)
+      parts.nonholonomic_equations.push_back(parts.rows - i);
   }
   pool.push_back(std::move(entry));
   parts.joint_names.take(name);
@@ -240,7 +242,7 @@ void add_opponent(ModelParts& parts, ForceEntry<F>& group, Law const& law, Poole
   require_observed(one.marker, needs_of_second<Law>(), group.name);
   parts.origin.change();
   group.markers.push_back(publish_at(parts, one, identity()));
-  group.force.pair_with(law, Index(group.markers.size()) - 1, std::move(name));
+  group.force.add_partner(law, Index(group.markers.size()) - 1, std::move(name));
 }
 
 /// Refuses, when it is compiled, a joint that cannot join markers of A and B.
@@ -248,23 +250,25 @@ template <class J, class A, class B>
 constexpr void require_pairing() {
   using G = typename J::Geometry;
   using P = typename J::PolicyType;
-  static_assert(MeetInOneWorld<G, A, B>,
+  static_assert(SameWorld<G, A, B>,
                 "A joint of the plane joins planar bodies and a joint of space joins spatial ones; the ground "
                 "belongs to both.");
-  static_assert(HasJointCoordinates<P, G>,
-                "Recursive needs a joint whose motion has coordinates, such as Revolute, Prismatic, Spherical or "
-                "Universal; a Distance or a Gear has none. Use Constraint for it.");
-  static_assert(!MakesJointCoordinates<P> || (MayBeEliminated<P, A> && MayBeEliminated<P, B>),
-                "Recursive makes joint coordinates between the ground, rigid bodies and bodies that float on a frame: "
-                "Rigid<>, Ffr, planar::Rigid, planar::Ffr; RecursiveBy<ArticulatedBody> between rigid ones only. Use "
-                "another policy for joints of other bodies.");
-  static_assert(!LinearInCoordinates<P> || (MayBeEliminated<P, A> && MayBeEliminated<P, B>),
+  static_assert(
+      JointCoordinatesIfRequired<P, G>,
+      "JointCoordinates needs a joint whose motion has coordinates, such as Revolute, Prismatic, Spherical or "
+      "Universal; a Distance or a Gear has none. Use Constraint for it.");
+  static_assert(
+      !JointCoordinatePolicy<P> || (EliminableBody<P, A> && EliminableBody<P, B>),
+      "JointCoordinates makes joint coordinates between the ground, rigid bodies and bodies that float on a frame: "
+      "Rigid<>, Ffr, planar::Rigid, planar::Ffr; JointCoordinatesBy<ArticulatedBody> between rigid ones only. Use "
+      "another policy for joints of other bodies.");
+  static_assert(!LinearPolicy<P> || (EliminableBody<P, A> && EliminableBody<P, B>),
                 "AncfLinear eliminates coordinates, so both markers must be linear in them: ANCF bodies and the ground "
                 "are, Rigid, Ffr and Lrvf in space are not. Use Constraint there.");
-  static_assert(HasLinearRows<P, G>,
+  static_assert(LinearIfRequired<P, G>,
                 "AncfLinear knows Spherical, Revolute and Weld; other joints are not linear in the coordinates.");
   static_assert(
-      TellsEnoughFirst<J, A> && TellsEnoughSecond<J, B>,
+      SufficientFirstMarker<J, A> && SufficientSecondMarker<J, B>,
       "This joint needs more than the marker tells (a full frame, say, of a body that only "
       "publishes a point or a tangent). Use a joint that needs less, such as Spherical; a cable is clamped by a "
       "Revolute about its tangent, with the cable's marker second.");

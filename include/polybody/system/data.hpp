@@ -5,10 +5,10 @@
 #include <memory>
 
 #include <polybody/kinematics/frame.hpp>
-#include <polybody/math/pack.hpp>
 #include <polybody/math/sequence.hpp>
+#include <polybody/math/simd_vector.hpp>
 #include <polybody/math/workers.hpp>
-#include <polybody/system/row_block.hpp>
+#include <polybody/system/constraint_block.hpp>
 
 namespace polybody {
 
@@ -22,12 +22,12 @@ struct Build {
 /// Scratch of an evaluation: markers, Jacobians, row blocks, actions. It is laid out once for a model.
 template <StateScalar T = double, Build build = Build{}>
 struct Data {
-  Sequence<Published<T>> markers;  ///< waist 1, one for each marker
-  Sequence<T> jacobians;           ///< arena of the dense Jacobians
-  Sequence<RowBlock<T>> rows;      ///< waist 2, one for each joint and each body that owns rows
-  Sequence<Action<T>> actions;     ///< what force elements do, one for each marker of each
-  Sequence<T> states, rates;       ///< first-order ones of force elements, z and ż
-  Index first_state = 0;           ///< among the speeds
+  Sequence<MarkerKinematics<T>> markers;  ///< waist 1, one for each marker
+  Sequence<T> jacobians;                  ///< arena of the dense Jacobians
+  Sequence<ConstraintBlock<T>> rows;      ///< waist 2, one for each joint and each body that owns rows
+  Sequence<AppliedWrench<T>> actions;     ///< what force elements do, one for each marker of each
+  Sequence<T> states, rates;              ///< first-order ones of force elements, z and ż
+  Index first_state = 0;                  ///< among the speeds
 
   Sequence<Wrench<double>> loads;             ///< per marker: what the tangent's second-order terms need
   Sequence<Mat<double, 6, 6>> own_stiffness;  ///< per marker of the largest force group
@@ -41,7 +41,7 @@ struct Data {
   Sequence<double> element_tangents;  ///< the same
   /// With workers: what the parts of a force group do to the few, before it is added in order.
   struct alignas(64) Opposite {
-    Sequence<Action<T>> actions;  ///< what one part does
+    Sequence<AppliedWrench<T>> actions;  ///< what one part does
   };
   Sequence<Opposite> opposite;                 ///< one for each thread
   static constexpr Index least_elements = 32;  ///< that are worth a thread
@@ -60,7 +60,9 @@ struct Data {
   /// Where row i stands among the unknowns, behind the speeds.
   Index unknown_of_row(Index i) const { return first_state + Index(states.size()) + i; }
   /// Whether this evaluation leaves a block out: one of a linear joint, while `linear_rows` is false.
-  bool leaves_out(RowBlock<T> const& block) const { return block.source == RowSource::linear && !linear_rows; }
+  bool leaves_out(ConstraintBlock<T> const& block) const {
+    return block.source == ConstraintSource::linear && !linear_rows;
+  }
 };
 
 }  // namespace polybody

@@ -12,15 +12,15 @@ template <class T = double>
 class DenseReductionOf {
  public:
   DenseReductionOf() = default;
-  /// For `whole_speeds` of a model and `speeds` of a step. \param row_of where each row of the model goes among `rows`;
-  /// −1 where it is left out
-  DenseReductionOf(Index whole_speeds, Index speeds, Index rows, Sequence<Index> row_of)
+  /// For `full_velocities` of a model and `velocities` of a step. \param row_of where each row of the model goes among
+  /// `rows`; −1 where it is left out
+  DenseReductionOf(Index full_velocities, Index velocities, Index rows, Sequence<Index> row_of)
       : row_of_(std::move(row_of)),
-        speeds_(whole_speeds),
-        transposed_(MatXOf<T>::Zero(speeds, whole_speeds)),
-        k_(MatXOf<T>::Zero(speeds, speeds)),
-        g_(MatXOf<T>::Zero(rows, speeds)),
-        half_(VecXOf<T>::Zero(speeds)) {}
+        velocities_(full_velocities),
+        transposed_(MatXOf<T>::Zero(velocities, full_velocities)),
+        k_(MatXOf<T>::Zero(velocities, velocities)),
+        g_(MatXOf<T>::Zero(rows, velocities)),
+        half_(VecXOf<T>::Zero(velocities)) {}
 
   /// Column j of T is `column` (speeds of the whole model).
   void set_column(Index j, VecX const& column) {
@@ -33,15 +33,15 @@ class DenseReductionOf {
   }
   /// Adds the block b of the whole matrix, whose first entry is at (row, col); that of Gᵀ is taken from G.
   void add(Index row, Index col, BlockView const& b) {
-    if (col >= speeds_) return;  // the mirror of G
+    if (col >= velocities_) return;  // the mirror of G
     for (Index i = 0; i < b.rows; ++i) {
       Index const at = row + i;
-      Index const to = at < speeds_ ? at : row_of_[std::size_t(at - speeds_)];
+      Index const to = at < velocities_ ? at : row_of_[std::size_t(at - velocities_)];
       if (to < 0) continue;
       half_.setZero();  // row i of b T
       for (Index j = 0; j < b.cols; ++j)
         if (double const e = b(i, j); e != 0.0) half_ += e * transposed_.col(col + j);
-      if (at >= speeds_) {
+      if (at >= velocities_) {
         for (Index j = 0; j < half_.size(); ++j) g_(to, j) += half_[j];
         continue;
       }
@@ -59,7 +59,7 @@ class DenseReductionOf {
 
  private:
   Sequence<Index> row_of_;
-  Index speeds_ = 0;
+  Index velocities_ = 0;
   MatXOf<T> transposed_, k_, g_;
   VecXOf<T> half_;
 };

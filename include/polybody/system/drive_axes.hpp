@@ -14,10 +14,10 @@ namespace polybody::detail {
 
 /// A geometry that leaves its bodies one turn, about its own axis.
 template <class G>
-concept LeavesOneTurn = NamesFreedoms<G> && !G::free[3] && !G::free[4] && G::free[5];
+concept OneRotationFree = HasFreeDirections<G> && !G::free[3] && !G::free[4] && G::free[5];
 /// A geometry that prescribes a turn.
 template <class G>
-concept DrivesTurn = HasTurnAxis<G> && requires(G g) { g.law; };
+concept RotationDrive = HasRotationAxis<G> && requires(G g) { g.law; };
 
 /// Pins and drives between rigid bodies. What a pin holds turns about its axis alone, so a drive about another one
 /// contradicts it.

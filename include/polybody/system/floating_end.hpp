@@ -5,7 +5,7 @@
 
 #include <numbers>
 
-#include <polybody/kinematics/published.hpp>
+#include <polybody/kinematics/marker_kinematics.hpp>
 #include <polybody/math/sequence.hpp>
 #include <polybody/system/tree_body.hpp>
 
@@ -15,10 +15,10 @@ namespace polybody {
 template <class T = double>
 struct FloatingEndOf {
   /// Publishes the marker of `end` on a body with coordinates q and speeds v of its own, both from its first on.
-  using Publish = void (*)(FloatingEndOf const& end, T const* q, T const* v, Published<T>& out);
+  using Publish = void (*)(FloatingEndOf const& end, T const* q, T const* v, MarkerKinematics<T>& out);
 
-  Publish publish = nullptr;                     ///< the marker where the body has these coordinates and speeds
-  void const *body = nullptr, *point = nullptr;  ///< the body and the point on it, whose types `publish` knows
+  Publish evaluate_marker = nullptr;             ///< the marker where the body has these coordinates and speeds
+  void const *body = nullptr, *point = nullptr;  ///< the body and the point on it, whose types `evaluate_marker` knows
   Mat3 axes = Mat3::Identity();                  ///< relative to the section's: the joint's axes
   RigidLayout layout = RigidLayout::quaternion;  ///< how the coordinates of the floating frame are written
   Index q0 = 0, v0 = 0;                          ///< of the body in whole vectors
@@ -28,18 +28,18 @@ struct FloatingEndOf {
   /// How many coordinates the body's floating frame has: (x, y, angle), or position and quaternion.
   Index frame_coordinates() const { return layout == RigidLayout::plane ? 3 : 7; }
   /// How many speeds it has: they come before those of the deformation.
-  Index frame_speeds() const { return layout == RigidLayout::plane ? 3 : 6; }
+  Index frame_velocities() const { return layout == RigidLayout::plane ? 3 : 6; }
   /// Lengthens what a tree's state holds for its ends: `columns`, q and v of a body, `jacobian`.
   template <class Columns, class Numbers>
   void make_room(Columns& columns, Numbers& q, Numbers& v, Numbers& jacobian) const {
-    std::size_t const speeds = std::size_t(frame_speeds() + deformations);
+    std::size_t const velocities = std::size_t(frame_velocities() + deformations);
     columns.resize(std::max(columns.size(), std::size_t(first_column + deformations)));
-    q.resize(std::max(q.size(), speeds + 1));
-    v.resize(std::max(v.size(), speeds));
-    jacobian.resize(std::max(jacobian.size(), 6 * speeds));
+    q.resize(std::max(q.size(), velocities + 1));
+    v.resize(std::max(v.size(), velocities));
+    jacobian.resize(std::max(jacobian.size(), 6 * velocities));
   }
   /// Where the first deformation's rate stands in whole speeds.
-  Index first_rate() const { return v0 + frame_speeds(); }
+  Index first_rate() const { return v0 + frame_velocities(); }
 };
 using FloatingEnd = FloatingEndOf<>;  ///< in doubles
 
@@ -47,10 +47,10 @@ namespace detail {
 
 /// The marker, with its Jacobian in the tree's scratch.
 template <class T>
-Published<T> place_end(FloatingEndOf<T> const& end, T const* q, T const* v, TreeStateOf<T>& s) {
-  Published<T> out;
+MarkerKinematics<T> place_end(FloatingEndOf<T> const& end, T const* q, T const* v, TreeStateOf<T>& s) {
+  MarkerKinematics<T> out;
   out.jacobian = s.jacobian.data();
-  end.publish(end, q, v, out);
+  end.evaluate_marker(end, q, v, out);
   return out;
 }
 /// The angle x without full turns, −π to π [rad].
@@ -83,12 +83,12 @@ Vec<T, 6> column_from(Vec<T, 3> const& r, Vec<T, 3> const& slide, Vec<T, 3> cons
 template <class T>
 void leave_body(FloatingEndOf<T> const& end, VecXOf<T> const& q, VecXOf<T> const& v, RunnerOf<T>& run, T& angle,
                 TreeStateOf<T>& s) {
-  Published<T> const p = place_end<T>(end, q.data() + end.q0, v.data() + end.v0, s);
+  MarkerKinematics<T> const p = place_end<T>(end, q.data() + end.q0, v.data() + end.v0, s);
   if (end.layout == RigidLayout::plane) angle += bent_by<T>(end, p.frame.A, q[end.q0 + 2]);
   run = {p.frame.r, p.frame.v, {p.bias[0], p.bias[1], p.bias[2]},
          p.frame.A, p.frame.w, {p.bias[3], p.bias[4], p.bias[5]}};
   for (Index k = 0; k < end.deformations; ++k) {
-    T const* const j = p.jacobian + 6 * (end.frame_speeds() + k);
+    T const* const j = p.jacobian + 6 * (end.frame_velocities() + k);
     s.columns[std::size_t(end.first_column + k)] = column_from<T>(run.r, {j[0], j[1], j[2]}, {j[3], j[4], j[5]});
   }
 }
@@ -101,14 +101,14 @@ void leave_body(FloatingEndOf<T> const& end, VecXOf<T> const& q, VecXOf<T> const
 template <class T>
 void arrive_on_body(FloatingEndOf<T> const& end, VecXOf<T> const& q, VecXOf<T> const& v, RunnerOf<T>& run, T& angle,
                     TreeStateOf<T>& s) {
-  Index const nq = end.frame_coordinates(), nv = end.frame_speeds();
+  Index const nq = end.frame_coordinates(), nv = end.frame_velocities();
   for (Index i = 0; i < nq; ++i) s.q[std::size_t(i)] = nq == 7 && i == 3 ? 1.0 : 0.0;
   for (Index i = 0; i < nv; ++i) s.v[std::size_t(i)] = 0.0;
   for (Index k = 0; k < end.deformations; ++k) {
     s.q[std::size_t(nq + k)] = q[end.q0 + nq + k];
     s.v[std::size_t(nv + k)] = v[end.v0 + nv + k];
   }
-  Published<T> const p = place_end<T>(end, s.q.data(), s.v.data(), s);
+  MarkerKinematics<T> const p = place_end<T>(end, s.q.data(), s.v.data(), s);
   if (end.layout == RigidLayout::plane) angle -= bent_by<T>(end, p.frame.A, T(0.0));
   Mat<T, 3, 3> const A = product<T>(run.A, transposed<T>(p.frame.A));
   auto const turned = [&](T const* x) { return product<T, 1>(A, Vec<T, 3>(x[0], x[1], x[2])); };

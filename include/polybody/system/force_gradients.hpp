@@ -34,7 +34,7 @@ template <class L>
 void add_gradient(L const& law, std::array<Index, L::markers> const& at, GradientAt const& x, Data<double>& data,
                   BlockSink& sink) {
   constexpr int n = L::markers;
-  std::array<Published<double> const*, std::size_t(n)> markers;
+  std::array<MarkerKinematics<double> const*, std::size_t(n)> markers;
   for (std::size_t k = 0; k < at.size(); ++k) markers[k] = &data.markers[std::size_t(at[k])];
   auto const frames = frames_at(at, data);
   Mat<double, 6 * n, 6 * n> s = wrench_gradient(law, frames, x.t, x.c.stiffness, x.c.damping);
@@ -67,14 +67,14 @@ void add_gradient(ForceEntry<F> const& e, GradientAt const& x, Data<double>& dat
   for (int i = first; i < size; ++i) s(i, i) += x.c.mass;
   double const* const entries = s.data();
   Index const at = data.first_state + e.state;
-  auto const marker = [&](int k) -> Published<double> const& {
+  auto const marker = [&](int k) -> MarkerKinematics<double> const& {
     return data.markers[std::size_t(e.markers[std::size_t(k)])];
   };
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j)
       add_pulled_pair(marker(i), marker(j), entries + 6 * i + 6 * size * j, size, data.scratch, sink);
   for (int k = 0; k < n; ++k) {
-    Published<double> const& p = marker(k);
+    MarkerKinematics<double> const& p = marker(k);
     if (p.columns == 0) continue;
     sink.add(p.first, at, pulled<m>(p, entries + 6 * k + size * first, 1, size, data.scratch));
     sink.add(at, p.first, pulled<m>(p, entries + first + 6 * size * k, size, 1, data.scratch).transposed());
@@ -92,7 +92,7 @@ void add_own_stiffness(L const& law, std::array<Index, 2> const& at, GradientAt 
   auto const frames = frames_at(at, data);
   if (x.c.full) add_loads(law.template wrenches<double>(frames, x.t), at, x.scale, data);
   if constexpr (HasOwnStiffness<L>)
-    if (x.c.stand_ins) return law.own_stiffness(frames, x.c.stiffness, x.c.damping, *to[0], *to[1]);
+    if (x.c.surrogate_friction) return law.own_stiffness(frames, x.c.stiffness, x.c.damping, *to[0], *to[1]);
   Mat<double, 12, 12> const s = wrench_gradient(law, frames, x.t, x.c.stiffness, x.c.damping);
   for (int col = 0; col < 6; ++col)
     for (int row = 0; row < 6; ++row) {

@@ -6,7 +6,7 @@
 #include <concepts>
 
 #include <polybody/math/sequence.hpp>
-#include <polybody/system/acting_pairs.hpp>
+#include <polybody/system/active_contact_pairs.hpp>
 #include <polybody/system/force_gradients.hpp>
 #include <polybody/system/pair_frames.hpp>
 
@@ -49,7 +49,7 @@ double power_of(std::array<Wrench<double>, n> const& w, std::array<Frame<double>
 /// Adds the wrenches to those of the markers' actions.
 template <class L, StateScalar T>
 void add_wrenches(L const& law, std::array<Index, L::markers> const& at, double t, Data<T> const& data,
-                  std::array<Action<T>*, L::markers> const& to) {
+                  std::array<AppliedWrench<T>*, L::markers> const& to) {
   std::array<Wrench<T>, L::markers> const w = law.template wrenches<T>(frames_at(at, data), t);
   for (std::size_t k = 0; k < w.size(); ++k)
     for (int i = 0; i < 3; ++i) {
@@ -105,7 +105,7 @@ struct ForceKernels {
   /// An action for each marker, and room; `owner` is the first force's place.
   [[gnu::cold]] static void place(Pool const& pool, Index owner, Data<T>& data);
   /// Wrenches of all, from action `next` on, and the rates of their states; returns the end of the actions.
-  static Action<T>* push(Pool const& pool, double t, Data<T>& data, Action<T>* next);
+  static AppliedWrench<T>* push(Pool const& pool, double t, Data<T>& data, AppliedWrench<T>* next);
 
   /// The identity, for the rates of their states, which begin at speed `first`.
   static void masses(Pool const& pool, Index first, BlockSink& sink);
@@ -120,7 +120,7 @@ struct ForceKernels {
  private:
   /// Wrenches of a group by the threads' parts: each marker of the many is in one of them, and what the few get is put
   /// aside and added in the order in which one thread would have.
-  static void push_by_parts(Entry const& e, double t, Data<T>& data, Action<T>* actions);
+  static void add_forces_in_parts(Entry const& e, double t, Data<T>& data, AppliedWrench<T>* actions);
   /// What each marker of a group feels of its own motion alone, block by block, zero where nothing acts; with stand-ins
   /// by a law's `own_stiffness` where it has one.
   static void group_tangent(Entry const& e, detail::GradientAt const& x, Data<double>& data, BlockSink& sink);
@@ -135,7 +135,7 @@ void ForceKernels<F, T>::describe(Pool const& pool, ModelLayout& out) {
     out.forces.push_back(
         {e.name, &detail::type_tag<F>, index++, &e.force, {e.markers.begin(), e.markers.end()}, F::is_load});
     if constexpr (HasStates<F>) {
-      out.forces.back().v0 = out.body_speeds() + e.state;
+      out.forces.back().v0 = out.body_velocities() + e.state;
       out.forces.back().states = F::states;
     }
     out.forces.back().stores = detail::stores<F>();
@@ -146,7 +146,7 @@ void ForceKernels<F, T>::describe(Pool const& pool, ModelLayout& out) {
       out.forces.back().passes = [](void const* force, Frame<double> const(&from)[2], Frame<double> const(&to)[2]) {
         return static_cast<F const*>(force)->passes(from, to);
       };
-    if constexpr (requires { e.force.law; }) detail::add_corners(e.force.law, out.corners);
+    if constexpr (requires { e.force.law; }) detail::add_breakpoints(e.force.law, out.breakpoints);
   }
 }
 
@@ -155,7 +155,7 @@ void ForceKernels<F, T>::place(Pool const& pool, Index owner, Data<T>& data) {
   for (Entry const& e : pool) {
     for (Index const k : e.markers) {
       data.read[std::size_t(k)] = 1;
-      Action<T> action;
+      AppliedWrench<T> action;
       action.source = owner;
       action.marker = k;
       data.actions.push_back(action);
@@ -171,19 +171,19 @@ void ForceKernels<F, T>::place(Pool const& pool, Index owner, Data<T>& data) {
 }
 
 template <class F, StateScalar T>
-Action<T>* ForceKernels<F, T>::push(Pool const& pool, double t, Data<T>& data, Action<T>* next) {
+AppliedWrench<T>* ForceKernels<F, T>::push(Pool const& pool, double t, Data<T>& data, AppliedWrench<T>* next) {
   for (Entry const& e : pool) {
-    Action<T>* const actions = next;
+    AppliedWrench<T>* const actions = next;
     next += e.markers.size();
-    for (Action<T>* p = actions; p != next; ++p)
+    for (AppliedWrench<T>* p = actions; p != next; ++p)
       for (T& w : p->w) w = T(0.0);
-    if constexpr (PairsByParts<F> && std::same_as<T, double>)
+    if constexpr (PartitionedForceGroup<F> && std::same_as<T, double>)
       if (data.workers && e.force.many() >= 2 * data.least_pairs) {
-        push_by_parts(e, t, data, actions);
+        add_forces_in_parts(e, t, data, actions);
         continue;
       }
     detail::for_each_action(e, data, [&](auto const& law, auto const& markers, auto const& at) {
-      std::array<Action<T>*, std::tuple_size_v<std::decay_t<decltype(at)>>> to;
+      std::array<AppliedWrench<T>*, std::tuple_size_v<std::decay_t<decltype(at)>>> to;
       for (std::size_t k = 0; k < to.size(); ++k) to[k] = actions + markers[k];
       detail::add_wrenches(law, at, t, data, to);
     });
@@ -196,13 +196,13 @@ Action<T>* ForceKernels<F, T>::push(Pool const& pool, double t, Data<T>& data, A
 }
 
 template <class F, StateScalar T>
-void ForceKernels<F, T>::push_by_parts(Entry const& e, double t, Data<T>& data, Action<T>* actions) {
-  if constexpr (PairsByParts<F> && std::same_as<T, double>) {
+void ForceKernels<F, T>::add_forces_in_parts(Entry const& e, double t, Data<T>& data, AppliedWrench<T>* actions) {
+  if constexpr (PartitionedForceGroup<F> && std::same_as<T, double>) {
     Index const many = e.force.many(), parts = data.workers->size();
     detail::PairFrames<F, T> const frame(e, data);
     data.workers->over(4 * parts, 4, [&](Index begin, Index end) {
       for (Index p = begin / 4; p < end / 4; ++p) {
-        Sequence<Action<T>>& aside = data.opposite[std::size_t(p)].actions;
+        Sequence<AppliedWrench<T>>& aside = data.opposite[std::size_t(p)].actions;
         aside.clear();
         e.force.for_each_pair(
             frame,
@@ -215,7 +215,7 @@ void ForceKernels<F, T>::push_by_parts(Entry const& e, double t, Data<T>& data, 
       }
     });
     for (auto const& part : data.opposite)
-      for (Action<T> const& aside : part.actions)
+      for (AppliedWrench<T> const& aside : part.actions)
         for (int k = 0; k < 6; ++k) actions[aside.marker].w[k] += aside.w[k];
   }
 }
@@ -271,7 +271,7 @@ void ForceKernels<F, T>::group_tangent(Entry const& e, detail::GradientAt const&
       detail::add_own_stiffness(law, at, x, data, {&own[std::size_t(markers[0])], &own[std::size_t(markers[1])]});
     });
     for (std::size_t k = 0; k < e.markers.size(); ++k) {
-      Published<double> const& p = data.markers[std::size_t(e.markers[k])];
+      MarkerKinematics<double> const& p = data.markers[std::size_t(e.markers[k])];
       double* const s = own[k].data();
       bool const acts = std::any_of(s, s + 36, [](double entry) { return entry != 0.0; });
       if (p.columns > 0 && !acts) {
@@ -291,7 +291,7 @@ void ForceKernels<F, T>::coupled_tangent(Entry const& e, detail::GradientAt cons
     detail::PairFrames<F, T> const frame(e, data);
     Index few = 0;
     if constexpr (requires { e.force.opponents(); }) few = e.force.opponents();
-    ActingPairs::Group* const held = x.c.pairs ? &x.c.pairs->group(few) : nullptr;
+    ActiveContactPairs::Group* const held = x.c.pairs ? &x.c.pairs->group(few) : nullptr;
     std::size_t pair = 0;
     e.force.for_each_candidate([&](Index i, Index j, auto const& law) {
       bool touches = true;

@@ -16,7 +16,7 @@ void for_each_motion(JointTreeOf<T> const& tree, F&& f) {
     for (JointMotion const& m : body.motions) {
       f(m, q, v);
       q += m.coordinates();
-      v += m.speeds();
+      v += m.velocities();
     }
   }
 }
@@ -25,7 +25,7 @@ template <class T, class F>
 void for_each_deformation(JointTreeOf<T> const& tree, F&& f) {
   for (TreeBody const& body : tree.bodies)
     for (Index k = 0; k < body.deformations && body.carried(); ++k)
-      f(body.qn + body.motions.coordinates() + k, body.vn + body.motions.speeds() + k);
+      f(body.qn + body.motions.coordinates() + k, body.vn + body.motions.velocities() + k);
 }
 
 /// Where frames a and b of a joint stand; in the plane, the angle between them as well.
@@ -48,7 +48,7 @@ JointFrames<T> joint_frames(JointTreeOf<T> const& tree, TreeBody const& body, Ve
                    product<T>(f.A, body.to.axes), f.angle - p.angle - body.angle};
   auto const bent = [&](Index e, Vec<T, 3>& r, Mat<T, 3, 3>& axes) {
     FloatingEndOf<T> const& end = tree.ends[std::size_t(e)];
-    Published<T> const m = place_end<T>(end, q.data() + end.q0, v.data() + end.v0, s);
+    MarkerKinematics<T> const m = place_end<T>(end, q.data() + end.q0, v.data() + end.v0, s);
     r = m.frame.r;
     axes = m.frame.A;
     return end.layout == RigidLayout::plane ? bent_by<T>(end, axes, q[end.q0 + 2]) : T(0.0);

@@ -7,16 +7,16 @@
 
 #include <polybody/joints/joint.hpp>
 #include <polybody/math/sequence.hpp>
-#include <polybody/math/time_laws.hpp>
+#include <polybody/math/time_functions.hpp>
 #include <polybody/system/body_tangents.hpp>
-#include <polybody/system/linear_rows.hpp>
-#include <polybody/system/pulled_blocks.hpp>
+#include <polybody/system/linear_constraints.hpp>
+#include <polybody/system/projected_stiffness.hpp>
 
 namespace polybody {
 
 /// ġ = Ga Va + Gb Vb + Φ_t of a gap between two frames.
 template <int m, StateScalar T>
-Vec<T, m> gap_rate(Gap<m, T> const& gap, Frame<T> const& a, Frame<T> const& b) {
+Vec<T, m> gap_rate(ConstraintTerms<m, T> const& gap, Frame<T> const& a, Frame<T> const& b) {
   Vec<T, 6> const va = twist(a), vb = twist(b);
   Vec<T, m> rate;
   for (int i = 0; i < m; ++i) {
@@ -35,15 +35,15 @@ namespace detail {
 /// Kept with a model's data for its joints of one type: a gap for each, and what it answers if it is compliant.
 template <class J, StateScalar T>
 struct JointData {
-  Sequence<Gap<J::rows, T>> gaps;
+  Sequence<ConstraintTerms<J::rows, T>> gaps;
   Sequence<Vec<T, J::rows>> answers;
 };
 
 /// Times at which a drive or a load wants a step to end.
 template <class Law>
-void add_corners(Law const& law, Sequence<double>& all) {
-  if constexpr (HasCorners<Law>)
-    for (double const t : law.corners()) all.push_back(t);
+void add_breakpoints(Law const& law, Sequence<double>& all) {
+  if constexpr (HasBreakpoints<Law>)
+    for (double const t : law.breakpoints()) all.push_back(t);
 }
 
 /// Adds −scale · w of wrenches to the loads of their markers.
@@ -90,8 +90,8 @@ Vec<double, m> rest_without_potential(P const& policy, Vec<double, m> rest) {
 /// ∂ġ/∂(poses), m×12: what positions do to ġ = G V at speeds that stay. Row i is Vᵀ ∂(Gᵀeᵢ)/∂(poses) +
 /// (G ∂V/∂(poses))ᵢ. A Φ_t that depends on positions is left out.
 template <class G>
-Mat<double, G::rows, 12> rates_by_poses(G const& geometry, Gap<G::rows, double> const& gap,
-                                        std::array<Published<double> const*, 2> const& markers, double t) {
+Mat<double, G::rows, 12> rates_by_poses(G const& geometry, ConstraintTerms<G::rows, double> const& gap,
+                                        std::array<MarkerKinematics<double> const*, 2> const& markers, double t) {
   constexpr int m = G::rows;
   Frame<double> const &a = markers[0]->frame, &b = markers[1]->frame;
   Vec<double, 6> const twists[2] = {twist(a), twist(b)};
@@ -109,8 +109,8 @@ Mat<double, G::rows, 12> rates_by_poses(G const& geometry, Gap<G::rows, double> 
 }
 /// s += ck Gᵀ ∂λ/∂ġ ∂ġ/∂(poses) of a compliant joint.
 template <class J>
-void add_rate_slopes(J const& joint, Gap<J::rows, double> const& gap,
-                     std::array<Published<double> const*, 2> const& markers, StiffnessAt const& x,
+void add_rate_slopes(J const& joint, ConstraintTerms<J::rows, double> const& gap,
+                     std::array<MarkerKinematics<double> const*, 2> const& markers, StiffnessAt const& x,
                      Mat<double, 12, 12>& s) {
   constexpr int m = J::rows;
   Mat<double, m, 12> const rates = rates_by_poses(joint.measure(), gap, markers, x.at.t);
@@ -125,13 +125,13 @@ void add_rate_slopes(J const& joint, Gap<J::rows, double> const& gap,
 }
 /// Adds ck/cd ∂ġ/∂(poses) to the last n rows, from `row` on, which are of speeds and stand beside G.
 template <int n, int m>
-void add_velocity_rows(Mat<double, m, 12> const& rates, std::array<Published<double> const*, 2> const& markers,
+void add_velocity_rows(Mat<double, m, 12> const& rates, std::array<MarkerKinematics<double> const*, 2> const& markers,
                        StiffnessAt const& x, Index row, Sequence<double>& scratch, BlockSink& sink) {
   double part[12 * n];  // entry i of row k at 12 k + i
   for (int k = 0; k < n; ++k)
     for (int i = 0; i < 12; ++i) part[12 * k + i] = x.c.stiffness / x.c.damping * rates(m - n + k, i);
   for (int end = 0; end < 2; ++end) {
-    Published<double> const& p = *markers[std::size_t(end)];
+    MarkerKinematics<double> const& p = *markers[std::size_t(end)];
     if (p.columns > 0) sink.add(row, p.first, pulled<n>(p, part + 6 * end, 1, 12, scratch).transposed());
   }
 }
@@ -145,10 +145,12 @@ struct JointKernels {
   using P = typename J::PolicyType;              ///< who answers or solves for the rows
   using Pool = Sequence<detail::JointEntry<J>>;  ///< joints of this type, in a model
   using Kept = detail::JointData<J, T>;          ///< scratch: gaps, and what compliant joints answer
-  static constexpr bool linear = LinearInCoordinates<P>, compliant = !AddsRows<P>;  ///< linear in q; answered by forces
+  static constexpr bool linear = LinearPolicy<P>,
+                        compliant = !ConstrainingPolicy<P>;  ///< linear in q; answered by forces
 
   /// Counts, places and names.
-  [[gnu::cold]] static void describe(Pool const& pool, Sequence<LinearRows> const& linear_rows, ModelLayout& out);
+  [[gnu::cold]] static void describe(Pool const& pool, Sequence<LinearConstraints> const& linear_rows,
+                                     ModelLayout& out);
   /// A gap and a block of rows for each joint; `owner` is the first joint's place. The blocks of linear joints stand
   /// from `first_linear` on, and learn their owners.
   [[gnu::cold]] static void place(Pool const& pool, Kept& kept, Index owner, Index first_linear, Data<T>& data);
@@ -174,14 +176,14 @@ struct JointKernels {
 };
 
 template <class J, StateScalar T>
-void JointKernels<J, T>::describe(Pool const& pool, Sequence<LinearRows> const& linear_rows, ModelLayout& out) {
+void JointKernels<J, T>::describe(Pool const& pool, Sequence<LinearConstraints> const& linear_rows, ModelLayout& out) {
   Index index = 0;
   for (auto const& e : pool) {
-    LinearRows const* const rows = e.linear < 0 ? nullptr : &linear_rows[std::size_t(e.linear)];
-    out.joints.push_back({e.name, e.a, e.b, e.row, e.rows, Eliminates<P>, &detail::type_tag<J>, index++, rows,
+    LinearConstraints const* const rows = e.linear < 0 ? nullptr : &linear_rows[std::size_t(e.linear)];
+    out.joints.push_back({e.name, e.a, e.b, e.row, e.rows, EliminatingPolicy<P>, &detail::type_tag<J>, index++, rows,
                           !compliant || detail::has_potential<P>(), e.made_in});
-    detail::add_corners(e.joint.geometry, out.corners);
-    JointPlace& place = out.joints.back();
+    detail::add_breakpoints(e.joint.geometry, out.breakpoints);
+    JointLayout& place = out.joints.back();
     place.joint = &e.joint;
     if constexpr (compliant) {
       place.lossless = false;
@@ -204,16 +206,16 @@ void JointKernels<J, T>::place(Pool const& pool, Kept& kept, Index owner, Index 
       data.rows[std::size_t(first_linear + e.linear)].owner = owner;
     } else {
       data.read[std::size_t(e.a)] = data.read[std::size_t(e.b)] = 1;
-      Gap<J::rows, T>& gap = kept.gaps[i];
-      RowBlock<T> block{.source = compliant ? RowSource::compliant : RowSource::joint,
-                        .opposite = has_opposite_ends<typename J::Measured>(),
-                        .row = e.row,
-                        .rows = J::rows,
-                        .owner = owner,
-                        .a = {e.a, 0, 6, gap.Ga.data()},
-                        .b = {e.b, 0, 6, gap.Gb.data()},
-                        .g = gap.g.data(),
-                        .rate = gap.rate.data()};
+      ConstraintTerms<J::rows, T>& gap = kept.gaps[i];
+      ConstraintBlock<T> block{.source = compliant ? ConstraintSource::compliant : ConstraintSource::joint,
+                               .opposite = has_opposite_ends<typename J::Measured>(),
+                               .row = e.row,
+                               .rows = J::rows,
+                               .owner = owner,
+                               .a = {e.a, 0, 6, gap.Ga.data()},
+                               .b = {e.b, 0, 6, gap.Gb.data()},
+                               .g = gap.g.data(),
+                               .rate = gap.rate.data()};
       if constexpr (compliant) block.answer = kept.answers[i].data();
       data.rows.push_back(block);
     }
@@ -227,9 +229,9 @@ void JointKernels<J, T>::measure(Pool const& pool, Kept& kept, double t, Data<T>
       for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i) {
         auto const& e = pool[i];
         Frame<T> const &a = data.markers[std::size_t(e.a)].frame, &b = data.markers[std::size_t(e.b)].frame;
-        using G = Gap<J::rows, T>;  // made where it stands: assigned, it would be copied
+        using G = ConstraintTerms<J::rows, T>;  // made where it stands: assigned, it would be copied
         static_assert(std::is_trivially_destructible_v<G>);
-        ::new (static_cast<void*>(&kept.gaps[i])) G(e.joint.measure().template gap<T>(a, b, t));
+        ::new (static_cast<void*>(&kept.gaps[i])) G(e.joint.measure().template constraint_function<T>(a, b, t));
         if constexpr (compliant)
           kept.answers[i] =
               e.joint.policy.template multiplier<J::rows, T>(kept.gaps[i].g, gap_rate(kept.gaps[i], a, b));
@@ -254,8 +256,8 @@ void JointKernels<J, T>::slopes(Pool const& pool, Kept const& kept, TangentCoeff
     for (std::size_t i = 0; i < pool.size(); ++i) {
       constexpr int m = J::rows;
       auto const& e = pool[i];
-      Gap<m, double> const& gap = kept.gaps[i];
-      Published<double> const &a = data.markers[std::size_t(e.a)], &b = data.markers[std::size_t(e.b)];
+      ConstraintTerms<m, double> const& gap = kept.gaps[i];
+      MarkerKinematics<double> const &a = data.markers[std::size_t(e.a)], &b = data.markers[std::size_t(e.b)];
       auto const slope =
           e.joint.policy.template slope<m>(c.stiffness, c.damping, gap.g, gap_rate(gap, a.frame, b.frame));
       double const* const maps[2] = {gap.Ga.data(), gap.Gb.data()};
@@ -273,14 +275,14 @@ void JointKernels<J, T>::stiffness(Pool const& pool, Kept const& kept, VecX cons
     for (std::size_t i = 0; i < pool.size(); ++i) {
       constexpr int m = J::rows;
       auto const& e = pool[i];
-      Gap<m, double> const& gap = kept.gaps[i];
+      ConstraintTerms<m, double> const& gap = kept.gaps[i];
       double const* const multipliers = compliant ? kept.answers[i].data() : lambda.data() + e.row;
-      Published<double> const &a = data.markers[std::size_t(e.a)], &b = data.markers[std::size_t(e.b)];
+      MarkerKinematics<double> const &a = data.markers[std::size_t(e.a)], &b = data.markers[std::size_t(e.b)];
       Vec<double, m> l;
       for (int k = 0; k < m; ++k) l[k] = multipliers[k];
       Mat<double, 12, 12> s = wrench_gradient(e.joint.measure(), a.frame, b.frame, x.at.t, l);
       for (int k = 0; k < 144; ++k) s.data()[k] *= x.c.stiffness;
-      if constexpr (constexpr int n = velocity_rows<typename J::Geometry>(); compliant || n > 0)
+      if constexpr (constexpr int n = nonholonomic_equations<typename J::Geometry>(); compliant || n > 0)
         if (x.c.exact) {
           if constexpr (compliant)
             detail::add_rate_slopes(e.joint, gap, {&a, &b}, x, s);
@@ -319,7 +321,7 @@ void JointKernels<J, T>::add_powers(Pool const& pool, Kept const& kept, VecX con
     for (std::size_t i = 0; i < pool.size(); ++i) {
       constexpr int m = J::rows;
       auto const& e = pool[i];
-      Gap<m, double> const& gap = kept.gaps[i];
+      ConstraintTerms<m, double> const& gap = kept.gaps[i];
       Vec<double, m> const rate =
           gap_rate(gap, data.markers[std::size_t(e.a)].frame, data.markers[std::size_t(e.b)].frame);
       if constexpr (compliant) {

@@ -10,8 +10,8 @@
 /// ones the joints and deformations. Everything is one walk from the roots to the tips or back.
 
 #include <polybody/system/floating_end.hpp>
-#include <polybody/system/joint_columns.hpp>
-#include <polybody/system/tree_twists.hpp>
+#include <polybody/system/joint_jacobian.hpp>
+#include <polybody/system/tree_velocities.hpp>
 #include <polybody/system/turning_joint.hpp>
 
 namespace polybody {
@@ -66,7 +66,7 @@ class JointTreeOf {
       Vec6& t = twist[i];
       for (int j = 0; j < 6; ++j) t[j] = bias ? f.bias[j] : T(0.0);
       if (body.parent >= 0) add_carried<T>(twist[std::size_t(body.parent)], f.arm, t);
-      for (int k = 0; k < f.speeds; ++k) detail::add_column<T>(f.column(k), u[body.vn + k], t);
+      for (int k = 0; k < f.velocities; ++k) detail::add_column<T>(f.column(k), u[body.vn + k], t);
       for_each_rate(
           body, [&](std::size_t column, Index rate) { detail::add_column<T>(s.columns[column].data(), out[rate], t); });
       detail::put_twist<T>(body, f, t, out);
@@ -88,10 +88,10 @@ class JointTreeOf {
         detail::add_column<T>(s.columns[column].data(), x[rate], carried);
       });
       for (int j = 0; j < 6; ++j) t[j] = s.twists[i][j] - (bias ? f.bias[j] : T(0.0)) - carried[j];
-      for (int k = 0; k < f.speeds; ++k) st[k] = detail::along_column<T>(f.column(k), t);
-      for (int k = 0; k < f.speeds; ++k) {
+      for (int k = 0; k < f.velocities; ++k) st[k] = detail::along_column<T>(f.column(k), t);
+      for (int k = 0; k < f.velocities; ++k) {
         T sum = 0.0;
-        for (int j = 0; j < f.speeds; ++j) sum += f.inverse(k, j) * st[j];
+        for (int j = 0; j < f.velocities; ++j) sum += f.inverse(k, j) * st[j];
         u[body.vn + k] = sum;
       }
     }
@@ -109,7 +109,7 @@ class JointTreeOf {
         detail::put_twist<T>(body, f, w, r);
         continue;
       }
-      for (int k = 0; k < f.speeds; ++k) out[body.vn + k] = detail::along_column<T>(f.column(k), w);
+      for (int k = 0; k < f.velocities; ++k) out[body.vn + k] = detail::along_column<T>(f.column(k), w);
       for_each_rate(body, [&](std::size_t column, Index rate) {
         r[rate] += detail::along_column<T>(s.columns[column].data(), w);
       });
@@ -126,9 +126,9 @@ class JointTreeOf {
       if (!body.carried()) continue;
       TreeFrame const& f = s.frames[i];
       auto w = detail::zeros<Vec6>(), carried = w;
-      for (int k = 0; k < f.speeds; ++k) {
+      for (int k = 0; k < f.velocities; ++k) {
         T sum = 0.0;
-        for (int j = 0; j < f.speeds; ++j) sum += f.inverse(k, j) * given[body.vn + j];
+        for (int j = 0; j < f.velocities; ++j) sum += f.inverse(k, j) * given[body.vn + j];
         detail::add_column<T>(f.column(k), sum, w);
       }
       for_each_rate(body, [&](std::size_t column, Index rate) {
@@ -171,19 +171,19 @@ class JointTreeOf {
     VecX const &q, &v;
   };
   /// The frame that one motion after the other leads to, from an end on the parent to one on the body.
-  void carry(TreeBody const& body, Vectors const& narrow, Vectors const& whole, TreeFrame& f, TreeState& s) const {
+  void carry(TreeBody const& body, Vectors const& reduced, Vectors const& full, TreeFrame& f, TreeState& s) const {
     TreeFrame const& p = parent_of(body, s);
     detail::RunnerOf<T> run{p.r, p.v, {0, 0, 0}, p.A, p.w, {0, 0, 0}};
     f.angle = p.angle + body.angle;
     if (body.from_end >= 0) {
-      detail::leave_body<T>(ends[std::size_t(body.from_end)], whole.q, whole.v, run, f.angle, s);
+      detail::leave_body<T>(ends[std::size_t(body.from_end)], full.q, full.v, run, f.angle, s);
     } else {
       if (body.from_turned) run.A = product<T, 3>(p.A, detail::in_scalar<T>(body.from.axes));
       run.go(product<T, 1>(p.A, detail::in_scalar<T>(body.from.origin)));
     }
-    detail::move_by_joint<T>(body, narrow.q.data() + body.qn, narrow.v.data() + body.vn, run, f);
+    detail::move_by_joint<T>(body, reduced.q.data() + body.qn, reduced.v.data() + body.vn, run, f);
     if (body.to_end >= 0) {
-      detail::arrive_on_body<T>(ends[std::size_t(body.to_end)], whole.q, whole.v, run, f.angle, s);
+      detail::arrive_on_body<T>(ends[std::size_t(body.to_end)], full.q, full.v, run, f.angle, s);
       f.A = run.A;
     } else {
       f.A = body.to_turned ? product<T, 3>(run.A, detail::in_scalar<T>(transposed<double>(body.to.axes))) : run.A;

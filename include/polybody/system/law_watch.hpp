@@ -18,10 +18,10 @@ namespace polybody {
 /// whose derivatives are those of another function.
 class LawWatch {
  public:
-  /// Restarts the check at time t [s]. Times that differ by less than `crumb` [s] are one breakpoint. \throws
+  /// Restarts the check at time t [s]. Times that differ by less than `remainder_step` [s] are one breakpoint. \throws
   /// InvalidInput for a law whose value jumps here.
   template <class = void>
-  [[gnu::cold]] void begin(ModelLayout const& layout, double t, double crumb);
+  [[gnu::cold]] void begin(ModelLayout const& layout, double t, double remainder_step);
   /// Compares the ends of a step of h [s] to t [s]. \throws InvalidInput naming the joint.
   template <class = void>
   void require(ModelLayout const& layout, double t, double h);
@@ -43,9 +43,9 @@ class LawWatch {
     Motion last, marked;
     double rate = 0.0, acceleration = 0.0;  ///< largest absolute values so far, unit of the value per s, per s²
   };
-  static Motion at(JointPlace const& joint, double t) { return joint.law(joint.joint, t); }
+  static Motion at(JointLayout const& joint, double t) { return joint.law(joint.joint, t); }
   /// The difference of two values, less whole periods.
-  static double change(JointPlace const& joint, double x) {
+  static double change(JointLayout const& joint, double x) {
     return joint.period > 0.0 ? std::remainder(x, joint.period) : x;
   }
   /// Changes of value and rate over a step, minus the changes that the derivatives predict.
@@ -54,7 +54,7 @@ class LawWatch {
     double by_rate, by_acceleration;  ///< predicted changes, unit of the value, and per s
     bool of_value, of_rate;           ///< beyond the bound
   };
-  static Misfit misfit(JointPlace const& joint, Watched& law, Motion const& from, Motion const& to, double h) {
+  static Misfit misfit(JointLayout const& joint, Watched& law, Motion const& from, Motion const& to, double h) {
     law.rate = std::max({law.rate, std::abs(from.rate), std::abs(to.rate)});
     law.acceleration = std::max({law.acceleration, std::abs(from.acceleration), std::abs(to.acceleration)});
     double const change_of_rate = to.rate - from.rate, by_rate = 0.5 * h * (from.rate + to.rate),
@@ -71,7 +71,7 @@ class LawWatch {
   }
   /// Looks at parts of a step that does not fit. \throws InvalidInput unless the parts fit.
   template <class = void>
-  [[gnu::cold]] static void require_smooth(JointPlace const& joint, Watched& law, Motion from, Motion to, double t,
+  [[gnu::cold]] static void require_smooth(JointLayout const& joint, Watched& law, Motion from, Motion to, double t,
                                            double h);
 
   Sequence<Watched> laws_;
@@ -79,17 +79,17 @@ class LawWatch {
 };
 
 template <class>
-void LawWatch::begin(ModelLayout const& layout, double t, double crumb) {
+void LawWatch::begin(ModelLayout const& layout, double t, double remainder_step) {
   bool const first = laws_.empty();
   if (first)
     for (std::size_t i = 0; i < layout.joints.size(); ++i)
       if (layout.joints[i].law) laws_.push_back({i, {}, {}});
   for (Watched& law : laws_) {
-    JointPlace const& joint = layout.joints[law.joint];
+    JointLayout const& joint = layout.joints[law.joint];
     Motion const before = law.last;
     law.last = at(joint, t);
     double const gap = t - last_;
-    if (first || std::abs(gap) > crumb) continue;
+    if (first || std::abs(gap) > remainder_step) continue;
     double const jump = change(joint, law.last.value - before.value),
                  most = std::max(std::abs(before.rate), std::abs(law.last.rate)) * std::abs(gap) +
                         1e-9 * (1.0 + std::abs(law.last.value));
@@ -111,7 +111,7 @@ void LawWatch::require(ModelLayout const& layout, double t, double h) {
   double const start = t - h;
   bool const follows = std::abs(start - last_) <= 1e-3 * h, again = std::abs(start - marked_) <= 1e-3 * h;
   for (Watched& law : laws_) {
-    JointPlace const& joint = layout.joints[law.joint];
+    JointLayout const& joint = layout.joints[law.joint];
     Motion const from = follows ? law.last : again ? law.marked : at(joint, start), to = at(joint, t);
     Misfit const off = misfit(joint, law, from, to, h);
     if (off.of_value || off.of_rate) require_smooth(joint, law, from, to, t, h);
@@ -121,8 +121,8 @@ void LawWatch::require(ModelLayout const& layout, double t, double h) {
 }
 
 template <class>
-void LawWatch::require_smooth(JointPlace const& joint, Watched& law, Motion from, Motion to, double t, double h) {
-  Misfit const whole = misfit(joint, law, from, to, h);
+void LawWatch::require_smooth(JointLayout const& joint, Watched& law, Motion from, Motion to, double t, double h) {
+  Misfit const full = misfit(joint, law, from, to, h);
   double part = h, end = t;
   for (int k = 0; k < 10; ++k) {
     part *= 0.5;
@@ -137,8 +137,8 @@ void LawWatch::require_smooth(JointPlace const& joint, Watched& law, Motion from
       return;
     }
   }
-  bool const of_value = whole.of_value;
-  double const expected = of_value ? whole.by_rate : whole.by_acceleration;
+  bool const of_value = full.of_value;
+  double const expected = of_value ? full.by_rate : full.by_acceleration;
   throw InvalidInput{"joint \"",
                      joint.name,
                      "\": in the step of ",
@@ -148,7 +148,7 @@ void LawWatch::require_smooth(JointPlace const& joint, Watched& law, Motion from
                      " s the prescribed ",
                      of_value ? "value" : "rate",
                      " changes by ",
-                     expected + (of_value ? whole.value : whole.rate),
+                     expected + (of_value ? full.value : full.rate),
                      ", where the law's ",
                      of_value ? "rate" : "acceleration",
                      " gives ",

@@ -10,26 +10,27 @@
 #include <polybody/bodies/shared/coordinate_units.hpp>
 #include <polybody/kinematics/frame.hpp>
 #include <polybody/math/sequence.hpp>
-#include <polybody/math/time_laws.hpp>
+#include <polybody/math/time_functions.hpp>
 #include <polybody/system/model_watch.hpp>
 
 namespace polybody {
 
-struct LinearRows;
+struct LinearConstraints;
 struct PlacedWrench;
 
 /// Where a body stands among all coordinates, speeds and rows.
-struct BodyPlace {
+struct BodyLayout {
   std::string name = {};          ///< its name in messages
   Index q0 = 0, coordinates = 0;  ///< its first coordinate, and how many it has
-  Index v0 = 0, speeds = 0;       ///< its first speed, and how many it has
+  Index v0 = 0, velocities = 0;   ///< its first speed, and how many it has
   Index row = -1, rows = 0;       ///< rows of its own
   bool planar = false;            ///< it moves in the plane
   bool constant_mass = false;     ///< M does not depend on q
   void const* type = nullptr;     ///< tells types of bodies apart
   Index index = 0;                ///< among the bodies of its type
   void const* body = nullptr;     ///< the body itself, in the model
-  /// At its q, v, v̇ under gravity and loads in world axes; none of a body that does not say it (LeavesOutAxialForces).
+  /// At its q, v, v̇ under gravity and loads in world axes; none of a body that does not say it
+  /// (WithoutGeometricStiffening).
   double (*axial_share)(void const* body, std::span<double const> q, std::span<double const> v,
                         std::span<double const> a, Vec3 const& gravity, std::span<PlacedWrench const> loads) = nullptr;
   CoordinateUnits units = {};  ///< of its coordinates and speeds
@@ -39,24 +40,24 @@ struct BodyPlace {
 };
 
 /// Where a joint stands: its markers, and its rows among all.
-struct JointPlace {
-  std::string name = {};          ///< its name in messages
-  Index a = -1, b = -1;           ///< published markers
-  Index row = -1, rows = 0;       ///< none of a compliant joint
-  bool eliminated = false;        ///< from a time step
-  void const* type = nullptr;     ///< tells types of joints apart
-  Index index = 0;                ///< among the joints of its type
-  LinearRows const* linear = {};  ///< rows of a joint that is linear in coordinates, in the model
-  bool stores = true;             ///< of a compliant joint: all rows have a potential
-  std::uint64_t made_in = 0;      ///< serial number of the model that it was added to
-  bool lossless = true;           ///< of a compliant joint: it has no damping
-  void const* joint = nullptr;    ///< the joint itself, in the model
+struct JointLayout {
+  std::string name = {};                 ///< its name in messages
+  Index a = -1, b = -1;                  ///< published markers
+  Index row = -1, rows = 0;              ///< none of a compliant joint
+  bool eliminated = false;               ///< from a time step
+  void const* type = nullptr;            ///< tells types of joints apart
+  Index index = 0;                       ///< among the joints of its type
+  LinearConstraints const* linear = {};  ///< rows of a joint that is linear in coordinates, in the model
+  bool stores = true;                    ///< of a compliant joint: all rows have a potential
+  std::uint64_t made_in = 0;             ///< serial number of the model that it was added to
+  bool lossless = true;                  ///< of a compliant joint: it has no damping
+  void const* joint = nullptr;           ///< the joint itself, in the model
   Motion (*law)(void const* joint, double t) = nullptr;  ///< prescribed at t [s]; null where nothing is
   double period = 0.0;  ///< by which the prescribed value may jump [rad]; 0: by nothing
 };
 
 /// Where a force element stands: its markers, and its first-order states.
-struct ForcePlace {
+struct ForceLayout {
   std::string name = {};         ///< its name in messages
   void const* type = nullptr;    ///< tells types of forces apart
   Index index = 0;               ///< among the forces of its type
@@ -75,40 +76,40 @@ struct ForcePlace {
 
 /// Counts, places and names of a model; bodies, joints and forces in the order of their types.
 struct ModelLayout {
-  std::uint64_t serial = 0;                     ///< of the model, as its handles know it
-  Sequence<std::uint64_t> ancestors = {};       ///< serial numbers of the models that it was copied from
-  ModelWatch watch = {};                        ///< notices changes of the model
-  Index coordinates = 0, speeds = 0, rows = 0;  ///< nq; nv, with first-order states behind; rows
-  Index states = 0;                             ///< first-order ones: the last of the speeds
-  Sequence<Index> velocity_rows = {};           ///< rows without a position, ascending
-  Sequence<BodyPlace> bodies = {};              ///< by types, in the order in which they were added
-  Sequence<JointPlace> joints = {};             ///< by types, in the order in which they were added
-  Sequence<ForcePlace> forces = {};             ///< by types, in the order in which they were added
-  Sequence<Index> owners = {};                  ///< of each published marker: the body, −1 for the ground
-  Vec3 gravity = Vec3::Zero();                  ///< (3) world axes [m/s²]
-  Sequence<double> corners = {};                ///< times at which a drive or a load wants a step to end
-  bool constant_mass = false;                   ///< M of no body depends on q
-  bool has_groups = false;                      ///< of forces
+  std::uint64_t serial = 0;                         ///< of the model, as its handles know it
+  Sequence<std::uint64_t> ancestors = {};           ///< serial numbers of the models that it was copied from
+  ModelWatch watch = {};                            ///< notices changes of the model
+  Index coordinates = 0, velocities = 0, rows = 0;  ///< nq; nv, with first-order states behind; rows
+  Index states = 0;                                 ///< first-order ones: the last of the speeds
+  Sequence<Index> nonholonomic_equations = {};      ///< rows without a position, ascending
+  Sequence<BodyLayout> bodies = {};                 ///< by types, in the order in which they were added
+  Sequence<JointLayout> joints = {};                ///< by types, in the order in which they were added
+  Sequence<ForceLayout> forces = {};                ///< by types, in the order in which they were added
+  Sequence<Index> owners = {};                      ///< of each published marker: the body, −1 for the ground
+  Vec3 gravity = Vec3::Zero();                      ///< (3) world axes [m/s²]
+  Sequence<double> breakpoints = {};                ///< times at which a drive or a load wants a step to end
+  bool constant_mass = false;                       ///< M of no body depends on q
+  bool has_groups = false;                          ///< of forces
 
   /// Speeds of the bodies alone; first-order states stand behind them.
-  Index body_speeds() const { return speeds - states; }
+  Index body_velocities() const { return velocities - states; }
 
   /// Name of the body that owns coordinate i.
   [[gnu::cold]] std::string name_of_coordinate(Index i) const {
-    for (BodyPlace const& b : bodies)
+    for (BodyLayout const& b : bodies)
       if (i >= b.q0 && i < b.q0 + b.coordinates) return sentence_of({"body \"", b.name, "\""});
     return "unknown";
   }
   /// Name of the body that owns speed i, or the force whose first-order state it is; or of the joint or body that owns
   /// row i − speeds.
   [[gnu::cold]] std::string name_of(Index i) const {
-    Index const row = i - speeds;
-    for (BodyPlace const& b : bodies)
-      if (row < 0 ? i >= b.v0 && i < b.v0 + b.speeds : row >= b.row && row < b.row + b.rows)
+    Index const row = i - velocities;
+    for (BodyLayout const& b : bodies)
+      if (row < 0 ? i >= b.v0 && i < b.v0 + b.velocities : row >= b.row && row < b.row + b.rows)
         return sentence_of({"body \"", b.name, "\""});
-    for (JointPlace const& j : joints)
+    for (JointLayout const& j : joints)
       if (row >= 0 && row >= j.row && row < j.row + j.rows) return sentence_of({"joint \"", j.name, "\""});
-    for (ForcePlace const& f : forces)
+    for (ForceLayout const& f : forces)
       if (row < 0 && i >= f.v0 && i < f.v0 + f.states) return sentence_of({"force \"", f.name, "\""});
     return "unknown";
   }

@@ -9,7 +9,7 @@
 #include <polybody/math/errors.hpp>
 #include <polybody/math/index_map.hpp>
 #include <polybody/math/sequence.hpp>
-#include <polybody/system/linear_rows.hpp>
+#include <polybody/system/linear_constraints.hpp>
 
 namespace polybody {
 
@@ -31,9 +31,9 @@ class LinearEliminationOf {
   };
 
   LinearEliminationOf() = default;
-  /// \throws InconsistentStart when rows contradict each other; those that repeat others are left out.
-  explicit LinearEliminationOf(Sequence<LinearRows> const& joints) {
-    for (LinearRows const& rows : joints)
+  /// \throws InconsistentInitialConditions when rows contradict each other; those that repeat others are left out.
+  explicit LinearEliminationOf(Sequence<LinearConstraints> const& joints) {
+    for (LinearConstraints const& rows : joints)
       for (Index i = 0; i < rows.rows(); ++i) take(rows, i);
     for (std::size_t k = pivots_.size(); k-- > 0;) solve_for(k);
   }
@@ -90,7 +90,7 @@ class LinearEliminationOf {
     Sequence<std::pair<std::size_t, double>> above = {};      ///< row'_j,dk of earlier rows
   };
 
-  void take(LinearRows const& joint, Index i) {
+  void take(LinearConstraints const& joint, Index i) {
     Pivot p{.row = joint.row + i, .entries = {}, .constant = joint.constant[i]};
     double scale = 0.0;
     for (LinearSide const* const side : {&joint.a, &joint.b})
@@ -109,9 +109,9 @@ class LinearEliminationOf {
       }
     if (largest <= 1e-10 * scale) {
       if (std::abs(p.constant) > 1e-8)
-        throw InconsistentStart{"\"", joint.name, "\": its linear rows contradict those of other joints by ",
-                                std::abs(p.constant),
-                                ". Place the bodies so that the loop closes, or leave a joint out."};
+        throw InconsistentInitialConditions{
+            "\"", joint.name, "\": its linear rows contradict those of other joints by ", std::abs(p.constant),
+            ". Place the bodies so that the loop closes, or leave a joint out."};
       redundant_.push_back(p.row);
       return;
     }

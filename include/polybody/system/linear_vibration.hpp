@@ -13,7 +13,7 @@ template <class L>
 concept LoadHistory = requires(L const load, double t, VecX f) { load(t, f); };
 /// A load that changes damping and stiffness (n×n) in time, too: it adds to them.
 template <class L>
-concept ChangesMatrices = requires(L const load, double t, MatX d, MatX k) { load.add_matrices(t, d, k); };
+concept TimeVaryingMatrices = requires(L const load, double t, MatX d, MatX k) { load.add_matrices(t, d, k); };
 
 /// M q̈ + D q̇ + K q = f(t) as equations of `UserMechanics`.
 template <LoadHistory Load>
@@ -23,7 +23,7 @@ struct LinearVibration {
   mutable MatX d = {}, k = {};           ///< scratch: both at one time
 
   /// How many coordinates the problem has: n.
-  Index speeds() const { return mass_matrix.rows(); }
+  Index velocities() const { return mass_matrix.rows(); }
   /// M (n×n), to m.
   void mass(VecX const&, MatX& m) const { m = mass_matrix; }
   /// f(t) − D q̇ − K q at t [s], into `f` (n).
@@ -43,7 +43,7 @@ struct LinearVibration {
   void update(double t) const {
     d = damping;
     k = stiffness;
-    if constexpr (ChangesMatrices<Load>) load.add_matrices(t, d, k);
+    if constexpr (TimeVaryingMatrices<Load>) load.add_matrices(t, d, k);
   }
 };
 

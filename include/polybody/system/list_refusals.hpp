@@ -19,7 +19,7 @@ struct BodyRefusal {
   static_assert(
       requires {
         { B::world } -> std::convertible_to<World>;
-        { B::observes } -> std::convertible_to<Observes>;
+        { B::observes } -> std::convertible_to<MarkerKind>;
         { B::constant_mass } -> std::convertible_to<bool>;
       }, "A body needs static constants: World world, Observes observes and bool constant_mass.");
   static_assert(
@@ -32,7 +32,7 @@ struct BodyRefusal {
   static_assert(
       requires(B const b) {
         { b.coordinates() } -> std::convertible_to<Index>;
-        { b.speeds() } -> std::convertible_to<Index>;
+        { b.velocities() } -> std::convertible_to<Index>;
         { b.elements() } -> std::convertible_to<Index>;
       }, "A body needs coordinates(), speeds() and elements() const: how many it has.");
   static_assert(
@@ -78,13 +78,13 @@ struct BodyRefusal {
         { b.gravity_energy(e, x, g) } -> std::convertible_to<double>;
       }, "A body needs kinetic_energy(e, q, v), strain_energy(e, q) and gravity_energy(e, q, g) const.");
   static_assert(
-      requires(B const b, typename B::Point p, Mat3 const& axes, In x, Published<double>& out) {
-        b.template publish<double>(p, axes, x, x, out);
+      requires(B const b, typename B::Point p, Mat3 const& axes, In x, MarkerKinematics<double>& out) {
+        b.template evaluate_marker<double>(p, axes, x, x, out);
       }, "A body needs publish<T>(p, axes, q, v, published) const: frame, Jacobian and bias of a marker.");
   static_assert(
       requires(B const b, typename B::Point p, In x, Wrench<double> w,
                Mat<double, B::point_columns, B::point_columns>& k) { b.load_stiffness(p, x, w, k); },
-      "A body needs load_stiffness(p, q, w, k) const: d(J'w)/dq of a marker, such as load_stiffness_by_duals.");
+      "A body needs load_stiffness(p, q, w, k) const: d(J'w)/dq of a marker, such as load_stiffness_by_dual_numbers.");
 };
 
 /// The members that the concept `ForceElement` asks.
@@ -95,11 +95,11 @@ struct ForceRefusal {
       "A force element needs a static constant: int markers, at least 1; a group of them, what ForceGroup asks.");
   static_assert(
       requires {
-        { F::needs } -> std::convertible_to<Observes>;
+        { F::needs } -> std::convertible_to<MarkerKind>;
         { F::is_load } -> std::convertible_to<bool>;
       }, "A force element needs static constants: Observes needs and bool is_load.");
   static_assert(
-      GivesWrenches<F> || states_of<F>() > 0,
+      WrenchFunction<F> || states_of<F>() > 0,
       "A force element needs wrenches<T>(std::array<Frame<T>, markers> frames, double t) const, which returns "
       "std::array<Wrench<T>, markers>.");
   static_assert(HasStates<F> || states_of<F>() == 0,

@@ -20,9 +20,9 @@ template <bool in_plane, class J>
 Mat3 checked_triad(J const& joint, std::string const& name) {
   std::string const quoted = sentence_of({"\"", name, "\""});
   if constexpr (requires { joint.geometry.check(name); }) joint.geometry.check(quoted);
-  if constexpr (AddsForce<typename J::PolicyType>) joint.policy.check(quoted);
+  if constexpr (CompliantPolicy<typename J::PolicyType>) joint.policy.check(quoted);
   try {
-    if constexpr (in_plane && HasTurnAxis<typename J::Geometry>)
+    if constexpr (in_plane && HasRotationAxis<typename J::Geometry>)
       if (!joint.geometry.axis.given()) {
         typename J::Geometry about_z = joint.geometry;
         about_z.axis = Vec3(0.0, 0.0, 1.0);
@@ -36,7 +36,7 @@ Mat3 checked_triad(J const& joint, std::string const& name) {
 
 /// \throws InvalidInput where a point of the body tells less than its others do.
 template <class B>
-void require_observed(Marker<B> const& m, Observes needs, std::string const& what) {
+void require_observed(Marker<B> const& m, MarkerKind needs, std::string const& what) {
   if constexpr (requires { B::observes_at(m.point); })
     if (B::observes_at(m.point) < needs)
       throw InvalidInput{"\"", what,

@@ -29,9 +29,10 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   using ForcePools = std::tuple<Sequence<detail::ForceEntry<Fs>>...>;  ///< a pool for each type of force element
 
   /// Some joint type brings rows into a time step, so an explicit stepper needs a stabilisation.
-  static constexpr bool may_have_rows = (KeepsRows<typename Js::PolicyType> || ...) || (OwnsRows<Bs> || ...);
+  static constexpr bool may_have_rows =
+      (MultiplierPolicy<typename Js::PolicyType> || ...) || (HasOwnEquations<Bs> || ...);
   /// Some joint type eliminates coordinates from a time step; and how.
-  static constexpr bool eliminates = (Eliminates<typename Js::PolicyType> || ...);
+  static constexpr bool eliminates = (EliminatingPolicy<typename Js::PolicyType> || ...);
   using Solution = detail::SolutionOf<typename Js::PolicyType...>;   ///< void, or how joint coordinates are solved for
   static constexpr bool all_rigid = (HasRigidLayout<Bs> && ...);     ///< bodies of all types are rigid
   static constexpr bool constant_mass = (Bs::constant_mass && ...);  ///< M of no body type depends on q
@@ -85,7 +86,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
         markers);
   }
 
-  /// Applies a group of forces to its many markers; `pair_with` brings the few in. \throws InvalidInput as `connect`.
+  /// Applies a group of forces to its many markers; `add_partner` brings the few in. \throws InvalidInput as `connect`.
   template <OneOf<Fs...> F, class A>
     requires ForceGroup<F>
   ElementHandle<F> apply(F const& group, std::vector<Marker<A>> const& many, std::string name = "") {
@@ -97,7 +98,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   /// One of the few that act on all of the many, by `law`, one of the group's. \throws InvalidInput as `connect`.
   template <OneOf<Fs...> F, class Law, class A>
     requires ForceGroup<F>
-  void pair_with(ElementHandle<F> const& group, Law const& law, Marker<A> const& one, std::string name = "") {
+  void add_partner(ElementHandle<F> const& group, Law const& law, Marker<A> const& one, std::string name = "") {
     static_assert(Marker<A>::observes >= needs_of_second<Law>(), "This force needs more than the marker tells.");
     (void)entry(group);
     detail::add_opponent(parts_, pool_of<F>()[std::size_t(group.index)], law, pooled(one), std::move(name));
@@ -105,13 +106,13 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
 
   /// The undeformed model as placed, at rest, t = 0, with the initial states of its forces.
   State reference_state() const {
-    State x{VecX::Zero(coordinates()), VecX::Zero(speeds()), VecX::Zero(speeds()), VecX::Zero(rows()), 0.0, {}};
+    State x{VecX::Zero(coordinates()), VecX::Zero(velocities()), VecX::Zero(velocities()), VecX::Zero(rows()), 0.0, {}};
     for_each_body([&](auto const& e) { e.body.reference(detail::body_part_of(x.q, e.q0, e.body.coordinates())); });
     if constexpr (has_states)
       for_each_force([&](auto const& e) {
         if constexpr (requires { e.force.initial_states(); }) {
           auto const z = e.force.initial_states();
-          std::copy(z.begin(), z.end(), x.v.data() + parts_.speeds + e.state);
+          std::copy(z.begin(), z.end(), x.v.data() + parts_.velocities + e.state);
         }
       });
     return x;
@@ -139,17 +140,17 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   void set_velocity(State& x, BodyHandle<B> const& handle, Vec3 const& v0, Vec3 const& omega) const {
     auto const& e = entry(handle);
     e.body.rigid_velocity(detail::checked_part(std::as_const(x.q), e.q0, e.body.coordinates()), v0, omega,
-                          detail::checked_part(x.v, e.v0, e.body.speeds()));
+                          detail::checked_part(x.v, e.v0, e.body.velocities()));
   }
 
   Gravity const& gravity() const { return parts_.gravity; }  ///< [m/s²], world axes
   Index coordinates() const { return parts_.coordinates; }   ///< nq: coordinates of all bodies
   /// Speeds of the bodies, and first-order states of forces behind them.
-  Index speeds() const { return parts_.speeds + parts_.states; }
+  Index velocities() const { return parts_.velocities + parts_.states; }
   Index states() const { return parts_.states; }  ///< first-order states of forces
   Index rows() const { return parts_.rows; }      ///< how many rows joints and bodies bring
   /// Those of the rows that hold speeds and no positions, ascending.
-  Sequence<Index> const& velocity_rows() const { return parts_.velocity_rows; }
+  Sequence<Index> const& nonholonomic_equations() const { return parts_.nonholonomic_equations; }
   Index markers() const { return parts_.markers; }              ///< how many markers there are
   Index jacobian_size() const { return parts_.jacobian_size; }  ///< numbers in their dense Jacobians
   Index body_count() const { return parts_.bodies; }            ///< how many bodies, the ground not counted
@@ -164,7 +165,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   ForcePools const& force_pools() const { return forces_; }                               ///< see `body_pools`
   Sequence<detail::GroundMarker> const& ground_markers() const { return parts_.ground; }  ///< markers on the ground
   /// Rows of joints that are linear in coordinates.
-  Sequence<LinearRows> const& linear_rows() const { return parts_.linear_rows; }
+  Sequence<LinearConstraints> const& linear_rows() const { return parts_.linear_rows; }
 
   /// \throws InvalidInput when the handle is of another model, or made by default.
   template <OneOf<Bs...> B>
@@ -212,7 +213,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
 
   template <class F, class Vector>
   auto states_in(Vector& v, detail::ForceEntry<F> const& e) const {
-    return detail::checked_part(v, parts_.speeds + e.state, F::states).template first<std::size_t(F::states)>();
+    return detail::checked_part(v, parts_.velocities + e.state, F::states).template first<std::size_t(F::states)>();
   }
   template <class Pool, class F>
   static void for_each_in(Pool const& pool, F& f) {

@@ -3,8 +3,8 @@
 /// Elements of several bodies side by side: a track of many links of one element each fills packs as one long body
 /// does.
 
-#include <polybody/bodies/shared/changes_with_time.hpp>
 #include <polybody/bodies/shared/element_batches.hpp>
+#include <polybody/bodies/shared/time_varying.hpp>
 #include <polybody/math/sequence.hpp>
 #include <polybody/system/pools.hpp>
 
@@ -53,7 +53,7 @@ template <class B>
       out.bodies.push_back(Index(b));
       continue;
     }
-    if (!alike.empty() && !body.same_elements(pool.entries[std::size_t(alike.back().entry)].body)) close();
+    if (!alike.empty() && !body.has_same_elements(pool.entries[std::size_t(alike.back().entry)].body)) close();
     out.alone = out.alone && body.elements() == 1;
     for (Index i = 0; i < body.elements(); ++i) alike.push_back({Index(b), i});
   }
@@ -63,9 +63,9 @@ template <class B>
 
 /// Where the numbers of a pack's elements begin, in vectors by coordinates, speeds and speeds.
 template <class B>
-PackMotion motion_of(BodyPool<B> const& pool, std::array<PlacedElement, std::size_t(pack_size)> const& pack,
+SimdMotion motion_of(BodyPool<B> const& pool, std::array<PlacedElement, std::size_t(pack_size)> const& pack,
                      double const* q, double const* v, double const* a) {
-  PackMotion motion;
+  SimdMotion motion;
   for (std::size_t l = 0; l < pack.size(); ++l) {
     auto const& e = pool.entries[std::size_t(pack[l].entry)];
     Index const column = e.body.first_column(pack[l].element);

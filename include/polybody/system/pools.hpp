@@ -9,7 +9,7 @@
 #include <polybody/bodies/shared/body.hpp>
 #include <polybody/forces/force_group.hpp>
 #include <polybody/joints/policies/ancf_linear.hpp>
-#include <polybody/joints/policies/recursive.hpp>
+#include <polybody/joints/policies/joint_coordinates.hpp>
 #include <polybody/kinematics/marker.hpp>
 #include <polybody/math/sequence.hpp>
 #include <polybody/system/state.hpp>
@@ -44,7 +44,7 @@ struct MarkerEntry {
 
 template <class B>
 struct BodyPool {
-  BodyEntries<B> entries;
+  BodyTable<B> entries;
   Sequence<MarkerEntry<B>> markers;
 };
 
@@ -88,10 +88,10 @@ struct SolutionAmong {
 };
 template <class P, class... Ps>
 struct SolutionAmong<P, Ps...> : SolutionAmong<Ps...> {};
-template <MakesJointCoordinates P, class... Ps>
+template <JointCoordinatePolicy P, class... Ps>
 struct SolutionAmong<P, Ps...> {
   using Type = typename P::Solution;
-  static_assert(((!MakesJointCoordinates<Ps> || std::is_same_v<typename SolutionAmong<Ps>::Type, void> ||
+  static_assert(((!JointCoordinatePolicy<Ps> || std::is_same_v<typename SolutionAmong<Ps>::Type, void> ||
                   std::is_same_v<typename SolutionAmong<Ps>::Type, Type>) &&
                  ...),
                 "The recursive joints of one model are solved for in one way.");
@@ -101,8 +101,8 @@ using SolutionOf = typename SolutionAmong<Ps...>::Type;
 
 /// Whether the entries hold a part with this index that was added to the model with the number `serial`. A copied model
 /// accepts the handles of the parts that it got from its original, and neither accepts those added to the other later.
-template <class Entries>
-bool holds(Entries const& entries, Index index, std::uint64_t serial) {
+template <class Capabilities>
+bool holds(Capabilities const& entries, Index index, std::uint64_t serial) {
   return index >= 0 && std::size_t(index) < entries.size() && entries[std::size_t(index)].made_in == serial;
 }
 

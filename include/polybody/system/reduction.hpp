@@ -8,10 +8,10 @@
 #include <algorithm>
 
 #include <polybody/math/sequence.hpp>
-#include <polybody/system/entries.hpp>
 #include <polybody/system/joint_tree.hpp>
 #include <polybody/system/linear_elimination.hpp>
 #include <polybody/system/model.hpp>
+#include <polybody/system/model_operations.hpp>
 
 namespace polybody {
 
@@ -20,68 +20,69 @@ namespace polybody {
 template <class T = double>
 class ReductionOf {
  public:
-  /// \throws InvalidInput where recursive joints close a loop; InconsistentStart where linear joints contradict each
-  /// other.
+  /// \throws InvalidInput where recursive joints close a loop; InconsistentInitialConditions where linear joints
+  /// contradict each other.
   template <class M>
   explicit ReductionOf(M const& model) : linear_(model.linear_rows()) {
     if constexpr (!std::is_void_v<typename M::Solution>) grow_tree(model);
     Sequence<Extent> extents;
-    model.for_each_body([&](auto const& e) { extents.push_back({e.q0, e.body.coordinates(), e.v0, e.body.speeds()}); });
-    number_unknowns(extents, model.coordinates(), model.speeds(), model.states());
+    model.for_each_body(
+        [&](auto const& e) { extents.push_back({e.q0, e.body.coordinates(), e.v0, e.body.velocities()}); });
+    number_unknowns(extents, model.coordinates(), model.velocities(), model.states());
     Sequence<bool> gone(std::size_t(model.rows()), false);
     model.for_each_joint([&](auto const& e) {
       using J = std::decay_t<decltype(e.joint)>;
-      if constexpr (Eliminates<typename J::PolicyType>) std::fill_n(gone.begin() + e.row, e.rows, true);
+      if constexpr (EliminatingPolicy<typename J::PolicyType>) std::fill_n(gone.begin() + e.row, e.rows, true);
     });
-    number_rows(gone, model.velocity_rows());
+    number_rows(gone, model.nonholonomic_equations());
   }
 
   Index coordinates() const { return coordinates_; }                ///< nq of narrow vectors
-  Index speeds() const { return speeds_; }                          ///< nv of narrow vectors
+  Index velocities() const { return velocities_; }                  ///< nv of narrow vectors
   Index rows() const { return Index(rows_.size()); }                ///< rows that stay
   JointTreeOf<T> const& tree() const { return tree_; }              ///< bodies that recursive joints carry
   LinearEliminationOf<T> const& linear() const { return linear_; }  ///< coordinates that linear joints eliminate
   /// In the order in which `for_each_body` goes.
-  Sequence<NarrowPlace> const& places() const { return places_; }
+  Sequence<ReducedPosition> const& places() const { return places_; }
   /// Rows that stay, by their number in the model.
-  Sequence<Index> const& rows_that_stay() const { return rows_; }
+  Sequence<Index> const& remaining_equations() const { return rows_; }
   /// Those of them that are of velocity level, by their narrow number.
-  Sequence<Index> const& velocity_rows() const { return velocity_rows_; }
+  Sequence<Index> const& nonholonomic_equations() const { return velocity_rows_; }
   /// The speed of the whole model behind the narrow one i: of a joint coordinate, the first of the body that it
   /// carries.
-  Index whole_speed(Index i) const { return whole_speed_[std::size_t(i)]; }
+  Index full_velocity(Index i) const { return full_speed_[std::size_t(i)]; }
   /// Place in the tree of the body that the joint with this first row carries.
   Index carried_by(Index row) const { return carried_by_[std::size_t(row)]; }
 
   /// What is the same in both, narrow to whole and back.
-  void expand_coordinates(VecXOf<T> const& narrow, VecXOf<T>& whole) const {
-    for (auto const& [n, w] : same_q_) whole[w] = narrow[n];
+  void expand_coordinates(VecXOf<T> const& reduced, VecXOf<T>& full) const {
+    for (auto const& [n, w] : same_q_) full[w] = reduced[n];
   }
   /// Coordinates that are the same in both, whole to narrow.
-  void reduce_coordinates(VecX const& whole, VecX& narrow) const {
-    for (auto const& [n, w] : same_q_) narrow[n] = whole[w];
+  void reduce_coordinates(VecX const& full, VecX& reduced) const {
+    for (auto const& [n, w] : same_q_) reduced[n] = full[w];
   }
   /// Speeds that are the same in both, narrow to whole.
-  void expand_speeds(VecXOf<T> const& narrow, VecXOf<T>& whole) const {
-    for (auto const& [n, w] : same_v_) whole[w] = narrow[n];
+  void expand_velocities(VecXOf<T> const& reduced, VecXOf<T>& full) const {
+    for (auto const& [n, w] : same_v_) full[w] = reduced[n];
   }
   /// Speeds that are the same in both, whole to narrow.
-  void reduce_speeds(VecXOf<T> const& whole, VecXOf<T>& narrow) const {
-    for (auto const& [n, w] : same_v_) narrow[n] = whole[w];
+  void reduce_velocities(VecXOf<T> const& full, VecXOf<T>& reduced) const {
+    for (auto const& [n, w] : same_v_) reduced[n] = full[w];
   }
-  /// `whole` multipliers from narrow ones: zero in rows that a policy eliminates.
-  void expand_rows(VecX const& narrow, VecX& whole) const {
-    whole.setZero();
-    for (std::size_t i = 0; i < rows_.size(); ++i) whole[rows_[i]] = narrow[Index(i)];
+  /// `full` multipliers from narrow ones: zero in rows that a policy eliminates.
+  void expand_rows(VecX const& reduced, VecX& full) const {
+    full.setZero();
+    for (std::size_t i = 0; i < rows_.size(); ++i) full[rows_[i]] = reduced[Index(i)];
   }
-  /// The rows that stay, `narrow`, out of whole ones.
-  void reduce_rows(VecX const& whole, VecX& narrow) const {
-    for (std::size_t i = 0; i < rows_.size(); ++i) narrow[Index(i)] = whole[rows_[i]];
+  /// The rows that stay, `reduced`, out of whole ones.
+  void reduce_rows(VecX const& full, VecX& reduced) const {
+    for (std::size_t i = 0; i < rows_.size(); ++i) reduced[Index(i)] = full[rows_[i]];
   }
 
  private:
   /// A joint of the tree before it hangs.
-  struct Hook {
+  struct BodyAttachment {
     Index body = -1;  ///< −1: the ground
     Placement frame;
     FloatingEndOf<T> end = {};  ///< instead of the frame, on a body that deforms
@@ -89,7 +90,7 @@ class ReductionOf {
   struct Link {
     std::string name;
     Index row;
-    Hook a, b;
+    BodyAttachment a, b;
     JointMotions motions;
   };
 
@@ -101,27 +102,28 @@ class ReductionOf {
   template <class M>
   void grow_tree(M const& model) {
     Sequence<TreeBody> bodies;
-    Sequence<Hook> hooks(std::size_t(model.markers()));
+    Sequence<BodyAttachment> hooks(std::size_t(model.markers()));
     std::apply([&](auto const&... pool) { (hook(pool, bodies, hooks), ...); }, model.body_pools());
     for (detail::GroundMarker const& g : model.ground_markers()) hooks[std::size_t(g.published)].frame = g.placement;
     Sequence<Link> links;
     model.for_each_joint([&](auto const& e) {
       using J = std::decay_t<decltype(e.joint)>;
-      if constexpr (MakesJointCoordinates<typename J::PolicyType>) {
-        Hook const &a = hooks[std::size_t(e.a)], &b = hooks[std::size_t(e.b)];
+      if constexpr (JointCoordinatePolicy<typename J::PolicyType>) {
+        BodyAttachment const &a = hooks[std::size_t(e.a)], &b = hooks[std::size_t(e.b)];
         bool const plane = bodies[std::size_t(a.body < 0 ? b.body : a.body)].layout == RigidLayout::plane;
         JointMotions const motions = motions_of(e.joint.geometry);
         links.push_back({e.name, e.row, a, b, plane ? in_plane(motions, a.frame.axes) : motions});
       }
     });
-    hang(bodies, links, model.reference_state().q, std::is_same_v<typename M::Solution, recursive::ArticulatedBody>);
+    hang(bodies, links, model.reference_state().q,
+         std::is_same_v<typename M::Solution, joint_coordinates::ArticulatedBody>);
     carried_by_.assign(std::size_t(model.rows()), -1);
     for (std::size_t i = 0; i < tree_.bodies.size(); ++i)
       if (tree_.bodies[i].carried()) carried_by_[std::size_t(tree_.bodies[i].row)] = Index(i);
   }
 
   template <class B>
-  static void hook(detail::BodyPool<B> const& pool, Sequence<TreeBody>& bodies, Sequence<Hook>& hooks) {
+  static void hook(detail::BodyPool<B> const& pool, Sequence<TreeBody>& bodies, Sequence<BodyAttachment>& hooks) {
     if constexpr (HasRigidLayout<B>) {
       Index const first = Index(bodies.size());
       for (auto const& e : pool.entries) {
@@ -130,18 +132,18 @@ class ReductionOf {
         read_masses(e.body, bodies.back());
       }
       for (auto const& m : pool.markers) {
-        Hook& h = hooks[std::size_t(m.published)];
+        BodyAttachment& h = hooks[std::size_t(m.published)];
         h.body = first + m.body;
         for (Index k = 0; k < m.point.u.size(); ++k) h.frame.origin[k] = m.point.u[k];
         h.frame.axes = m.axes;
       }
-    } else if constexpr (FloatsOnFrame<B>) {
+    } else if constexpr (FloatingFrameBody<B>) {
       Index const first = Index(bodies.size());
       for (auto const& e : pool.entries)
         bodies.push_back(
             {.name = e.name, .layout = B::frame_layout, .q0 = e.q0, .v0 = e.v0, .deformations = e.body.deformations()});
       for (auto const& m : pool.markers) {
-        Hook& h = hooks[std::size_t(m.published)];
+        BodyAttachment& h = hooks[std::size_t(m.published)];
         auto const& e = pool.entries[std::size_t(m.body)];
         h.body = first + m.body;
         h.frame.axes = m.axes;
@@ -150,15 +152,15 @@ class ReductionOf {
     }
   }
   template <class B>
-  static void publish_end(FloatingEndOf<T> const& end, T const* q, T const* v, Published<T>& out) {
+  static void publish_end(FloatingEndOf<T> const& end, T const* q, T const* v, MarkerKinematics<T>& out) {
     B const& body = *static_cast<B const*>(end.body);
-    body.template publish<T>(*static_cast<typename B::Point const*>(end.point), end.axes,
-                             std::span<T const>(q, std::size_t(body.coordinates())),
-                             std::span<T const>(v, std::size_t(body.speeds())), out);
+    body.template evaluate_marker<T>(*static_cast<typename B::Point const*>(end.point), end.axes,
+                                     std::span<T const>(q, std::size_t(body.coordinates())),
+                                     std::span<T const>(v, std::size_t(body.velocities())), out);
   }
   /// Its number in the tree; −1 for a frame on a rigid body or the ground.
-  Index add_end(Hook const& hook) {
-    if (!hook.end.publish) return -1;
+  Index add_end(BodyAttachment const& hook) {
+    if (!hook.end.evaluate_marker) return -1;
     FloatingEndOf<T> end = hook.end;
     end.first_column = tree_.ends.empty() ? 0 : tree_.ends.back().first_column + tree_.ends.back().deformations;
     tree_.ends.push_back(end);
@@ -180,16 +182,16 @@ class ReductionOf {
   }
 
   /// \throws InvalidInput naming the first joint, as they were connected, between bodies that joints before it connect.
-  static void refuse_loops(std::size_t bodies, Sequence<Link> const& links);
+  static void require_tree(std::size_t bodies, Sequence<Link> const& links);
 
   /// Breadth first from the ground, then from a body of each part that is left: every joint carries one body. Bodies
   /// without a recursive joint only with `all`, as roots.
   void hang(Sequence<TreeBody> const& bodies, Sequence<Link> const& links, VecX const& reference, bool all);
 
-  void number_unknowns(Sequence<Extent> const& extents, Index coordinates, Index speeds, Index states) {
-    Sequence<bool> dependent_v(std::size_t(speeds), false), dependent_q(std::size_t(coordinates), false);
+  void number_unknowns(Sequence<Extent> const& extents, Index coordinates, Index velocities, Index states) {
+    Sequence<bool> dependent_v(std::size_t(velocities), false), dependent_q(std::size_t(coordinates), false);
     for (auto const& d : linear_.dependents()) dependent_v[std::size_t(d.v)] = dependent_q[std::size_t(d.q)] = true;
-    Sequence<Index> in_tree(std::size_t(speeds) + 1, -1);  // by first speed
+    Sequence<Index> in_tree(std::size_t(velocities) + 1, -1);  // by first speed
     for (std::size_t i = 0; i < tree_.bodies.size(); ++i) in_tree[std::size_t(tree_.bodies[i].v0)] = Index(i);
     places_.resize(extents.size());
     Sequence<std::size_t> order(extents.size());
@@ -197,44 +199,44 @@ class ReductionOf {
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return extents[a].v0 < extents[b].v0; });
     for (std::size_t const i : order) {
       Extent const& x = extents[i];
-      NarrowPlace& place = places_[i];
+      ReducedPosition& place = places_[i];
       place.q = coordinates_;
-      place.v = speeds_;
+      place.v = velocities_;
       TreeBody* const body = x.nv == 0 || in_tree[std::size_t(x.v0)] < 0
                                  ? nullptr
                                  : &tree_.bodies[std::size_t(in_tree[std::size_t(x.v0)])];
       if (body) {
         body->qn = coordinates_;
-        body->vn = speeds_;
+        body->vn = velocities_;
       }
       if (body && body->carried()) {
-        place.kind = NarrowPlace::Kind::carried;
+        place.kind = ReducedPosition::Kind::carried;
         coordinates_ += body->motions.coordinates();
-        speeds_ += body->motions.speeds();
-        whole_speed_.resize(std::size_t(speeds_), x.v0);
+        velocities_ += body->motions.velocities();
+        full_speed_.resize(std::size_t(velocities_), x.v0);
         for (Index k = body->deformations; k > 0; --k) {
           same_q_.emplace_back(coordinates_++, x.q0 + x.nq - k);
-          same_v_.emplace_back(speeds_++, x.v0 + x.nv - k);
-          whole_speed_.push_back(x.v0 + x.nv - k);
+          same_v_.emplace_back(velocities_++, x.v0 + x.nv - k);
+          full_speed_.push_back(x.v0 + x.nv - k);
         }
       } else {
         for (Index j = x.q0; j < x.q0 + x.nq; ++j)
           if (!dependent_q[std::size_t(j)]) same_q_.emplace_back(coordinates_++, j);
         for (Index j = x.v0; j < x.v0 + x.nv; ++j) {
           if (dependent_v[std::size_t(j)]) {
-            place.kind = NarrowPlace::Kind::reduced;
+            place.kind = ReducedPosition::Kind::reduced;
             continue;
           }
-          same_v_.emplace_back(speeds_++, j);
-          whole_speed_.push_back(j);
+          same_v_.emplace_back(velocities_++, j);
+          full_speed_.push_back(j);
         }
       }
       place.coordinates = coordinates_ - place.q;
-      place.speeds = speeds_ - place.v;
+      place.velocities = velocities_ - place.v;
     }
-    for (Index j = speeds - states; j < speeds; ++j) {
-      same_v_.emplace_back(speeds_++, j);
-      whole_speed_.push_back(j);
+    for (Index j = velocities - states; j < velocities; ++j) {
+      same_v_.emplace_back(velocities_++, j);
+      full_speed_.push_back(j);
     }
   }
 
@@ -249,14 +251,14 @@ class ReductionOf {
   LinearEliminationOf<T> linear_;
   JointTreeOf<T> tree_;
   Sequence<Index> order_;
-  Index coordinates_ = 0, speeds_ = 0;
-  Sequence<NarrowPlace> places_;
+  Index coordinates_ = 0, velocities_ = 0;
+  Sequence<ReducedPosition> places_;
   Sequence<std::pair<Index, Index>> same_q_, same_v_;  // narrow, whole
-  Sequence<Index> whole_speed_, rows_, velocity_rows_, carried_by_;
+  Sequence<Index> full_speed_, rows_, velocity_rows_, carried_by_;
 };
 
 template <class T>
-void ReductionOf<T>::refuse_loops(std::size_t bodies, Sequence<Link> const& links) {
+void ReductionOf<T>::require_tree(std::size_t bodies, Sequence<Link> const& links) {
   Sequence<std::size_t> towards(bodies + 1);  // the ground is last
   for (std::size_t i = 0; i <= bodies; ++i) towards[i] = i;
   auto const part_of = [&](Index body) {
@@ -280,7 +282,7 @@ void ReductionOf<T>::refuse_loops(std::size_t bodies, Sequence<Link> const& link
 template <class T>
 void ReductionOf<T>::hang(Sequence<TreeBody> const& bodies, Sequence<Link> const& links, VecX const& reference,
                           bool all) {
-  refuse_loops(bodies.size(), links);
+  require_tree(bodies.size(), links);
   Sequence<Index> place(bodies.size(), -1);
   Sequence<bool> used(links.size(), false);
   Sequence<Sequence<std::size_t>> links_of(bodies.size() + 1);  // ascending; those of the ground are the first
@@ -294,8 +296,8 @@ void ReductionOf<T>::hang(Sequence<TreeBody> const& bodies, Sequence<Link> const
       if (used[k]) continue;
       used[k] = true;
       bool const backwards = link.a.body != body;
-      Hook const& from = backwards ? link.b : link.a;
-      Hook const& to = backwards ? link.a : link.b;
+      BodyAttachment const& from = backwards ? link.b : link.a;
+      BodyAttachment const& to = backwards ? link.a : link.b;
       TreeBody next = bodies[std::size_t(to.body)];
       next.row = link.row;
       next.parent = body < 0 ? -1 : place[std::size_t(body)];

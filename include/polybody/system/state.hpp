@@ -9,12 +9,12 @@ namespace polybody {
 /// bodies in v, and ż in a.
 template <StateScalar T = double>
 struct StateOf {
-  VecXOf<T> q;       ///< (nq) coordinates
-  VecXOf<T> v;       ///< (nv) speeds, then first-order states
-  VecXOf<T> a;       ///< (nv) rates of the speeds
-  VecXOf<T> lambda;  ///< (rows) multipliers; the joints' generalised force is −Gᵀλ
-  double t = 0.0;    ///< time [s]
-  VecXOf<T> memory;  ///< what the integrator carries from step to step beside the above
+  VecXOf<T> q;        ///< (nq) coordinates
+  VecXOf<T> v;        ///< (nv) speeds, then first-order states
+  VecXOf<T> a;        ///< (nv) rates of the speeds
+  VecXOf<T> lambda;   ///< (rows) multipliers; the joints' generalised force is −Gᵀλ
+  double t = 0.0;     ///< time [s]
+  VecXOf<T> history;  ///< what the integrator carries from step to step beside the above
 };
 
 using State = StateOf<double>;  ///< in doubles

@@ -8,7 +8,7 @@
 
 namespace polybody {
 
-/// A step of length h from q0 at t to q1; `decay` as in `StepMeans`.
+/// A step of length h from q0 at t to q1; `decay` as in `DiscreteDerivative`.
 struct SecantStep {
   VecX const* q0 = nullptr;              ///< (nq) coordinates at its begin
   VecX const* q1 = nullptr;              ///< (nq) coordinates at its end
@@ -18,7 +18,7 @@ struct SecantStep {
 };
 
 /// A model's entries for such steps; `self` is what `make` made.
-struct SecantEntries {
+struct SecantOperations {
   /// Room for a model's secants.
   std::shared_ptr<void> (*make)(void const* m, Data<double> const& data);
   void (*evaluate)(void* self, SecantStep const& step);  ///< sets the step at which the others are asked
@@ -31,18 +31,18 @@ struct SecantEntries {
 /// Mean forces, rows and tangents over a step, for methods that conserve energy.
 class StepSecants {
  public:
-  /// \throws InvalidInput for a system that was made without `Entries::secants`.
+  /// \throws InvalidInput for a system that was made without `Capabilities::secants`.
   explicit StepSecants(System const& system)
       : entries_(require_entry(system.entries().first.secants, "secants")),
         self_(entries_->make(system.entries().second, system.data())),
         middle_(VecX::Zero(system.coordinates())),
-        speed_(VecX::Zero(system.speeds())) {}
+        speed_(VecX::Zero(system.velocities())) {}
 
   /// Takes the step. Rows that depend on time are taken at its end; loads and first-order states in its middle, where
   /// `system` is then evaluated.
   void evaluate(System& system, SecantStep const& step) {
     h_ = step.h;
-    Index const bodies = system.layout().body_speeds();
+    Index const bodies = system.layout().body_velocities();
     for (Index i = 0; i < middle_.size(); ++i) middle_[i] = 0.5 * ((*step.q0)[i] + (*step.q1)[i]);
     for (Index i = 0; i < bodies; ++i) speed_[i] = ((*step.q1)[i] - (*step.q0)[i]) / step.h;
     for (Index i = bodies; i < speed_.size(); ++i) speed_[i] = (*step.v0)[i] + 0.5 * step.h * (*step.a)[i];
@@ -66,7 +66,7 @@ class StepSecants {
   /// in q. Where G loses rank within a step, Ḡ and G(q₁) do not even turn alike.
   void exact_tangent(System& system, SecantStep const& step, double s, VecX const& lambda, BlockSink& sink) {
     evaluate(system, step);
-    Half forces{sink, system.speeds(), true}, rows{sink, system.speeds(), false};
+    Half forces{sink, system.velocities(), true}, rows{sink, system.velocities(), false};
     BlockSink to_forces(forces), to_rows(rows);
     entries_->tangent(self_.get(), s, to_forces);
     system.tangent_of(TangentPart::force_elements, {.damping = s / h_, .stiffness = 0.5 * s, .states = 0.5 * h_}, sink,
@@ -81,14 +81,14 @@ class StepSecants {
   /// Passes on the equations of motion, or G.
   struct Half {
     BlockSink& sink;
-    Index speeds;
+    Index velocities;
     bool forces;
     void add(Index row, Index col, BlockView const& b) {
-      if (forces ? row < speeds : row >= speeds && col < speeds) sink.add(row, col, b);
+      if (forces ? row < velocities : row >= velocities && col < velocities) sink.add(row, col, b);
     }
   };
 
-  SecantEntries const* entries_;
+  SecantOperations const* entries_;
   std::shared_ptr<void> self_;
   double h_ = 0.0;
   VecX middle_, speed_;

@@ -58,10 +58,10 @@ class Subassembly<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     for (Marker<A> const& m : many) pooled_many.push_back(pooled(m));
     return detail::add_group(parts_, forces_of<F>(), group, pooled_many, std::move(name));
   }
-  /// As `Model::pair_with`, by `law`.
+  /// As `Model::add_partner`, by `law`.
   template <OneOf<Fs...> F, class Law, class A>
     requires ForceGroup<F>
-  void pair_with(ElementHandle<F> const& group, Law const& law, Marker<A> const& one, std::string name = "") {
+  void add_partner(ElementHandle<F> const& group, Law const& law, Marker<A> const& one, std::string name = "") {
     static_assert(Marker<A>::observes >= needs_of_second<Law>(), "This force needs more than the marker tells.");
     (void)detail::own_entry(forces_of<F>(), group);
     detail::add_opponent(parts_, forces_of<F>()[std::size_t(group.index)], law, pooled(one), std::move(name));

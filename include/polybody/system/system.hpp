@@ -16,12 +16,12 @@ using System = BasicSystem<double>;
 template <class = void>
 State reduce(System const& s, State const& x) {
   State out = x;
-  if (Coordinates const& c = s.step_coordinates()) c.entries->narrow(c.self.get(), x, out);
+  if (Coordinates const& c = s.step_coordinates()) c.entries->reduced(c.self.get(), x, out);
   return out;
 }
-/// Multipliers that a step may keep: of its rows, and estimates for the joints that carry bodies (`NarrowLayout`).
+/// Multipliers that a step may keep: of its rows, and estimates for the joints that carry bodies (`ReducedLayout`).
 inline Index multipliers_of(System const& s) {
-  return s.rows() + (s.step_coordinates() ? Index(s.step_coordinates().narrow->carrying_rows.size()) : 0);
+  return s.rows() + (s.step_coordinates() ? Index(s.step_coordinates().reduced->eliminated_equations.size()) : 0);
 }
 /// The whole state of a stepped one, with what eliminated joints hold as multipliers: those of the step where it keeps
 /// all of them, else worked out. `r` is scratch.
@@ -34,7 +34,7 @@ void expand(BasicSystem<T>& s, StateOf<T> const& stepped, StateOf<T>& x, VecXOf<
   }
   bool const keeps = stepped.lambda.size() == s.layout().rows;
   x.q.resize(s.layout().coordinates);
-  x.v.resize(s.layout().speeds);
+  x.v.resize(s.layout().velocities);
   x.a.resize(x.v.size());
   x.lambda.resize(s.layout().rows);
   if (keeps) {
@@ -43,14 +43,14 @@ void expand(BasicSystem<T>& s, StateOf<T> const& stepped, StateOf<T>& x, VecXOf<
     s.evaluate(stepped.q, stepped.v, stepped.t);
     x.q = s.at().q;
     x.v = s.at().v;
-    r.resize(s.speeds());
+    r.resize(s.velocities());
     s.residual(stepped.a, stepped.lambda, r);
   }
   c.entries->expand_rates(c.self.get(), stepped.a, true, x.a);
-  c.narrow->expand_rows(stepped.lambda, x.lambda);
+  c.reduced->expand_rows(stepped.lambda, x.lambda);
   if (!keeps) c.entries->recover_multipliers(c.self.get(), s.data(), x.lambda);
   x.t = stepped.t;
-  x.memory = stepped.memory;
+  x.history = stepped.history;
 }
 
 /// Puts estimates for the joints that carry bodies behind the multipliers of a stepped state with accelerations.
@@ -58,14 +58,14 @@ template <class = void>
 [[gnu::cold]] void append_multipliers(System& s, State& stepped) {
   if (multipliers_of(s) == s.rows()) return;
   Coordinates const& c = s.step_coordinates();
-  VecX whole = VecX::Zero(s.layout().rows), r(s.speeds());
+  VecX full = VecX::Zero(s.layout().rows), r(s.velocities());
   s.evaluate(stepped.q, stepped.v, stepped.t);
   s.residual(stepped.a, stepped.lambda, r);
-  c.entries->recover_multipliers(c.self.get(), s.data(), whole);
+  c.entries->recover_multipliers(c.self.get(), s.data(), full);
   VecX all(multipliers_of(s));
   std::copy_n(stepped.lambda.data(), s.rows(), all.data());
   Index at = s.rows();
-  for (Index const row : c.narrow->carrying_rows) all[at++] = whole[row];
+  for (Index const row : c.reduced->eliminated_equations) all[at++] = full[row];
   stepped.lambda.swap(all);
 }
 
@@ -75,7 +75,7 @@ void coordinate_rates(System const& s, VecX const& q, VecX const& v, VecXOf<Dual
   Coordinates const& c = s.step_coordinates();
   if (c) c.entries->coordinate_rates(c.self.get(), q, v, rate);
   auto const& [entries, model] = s.entries();
-  require_entry(entries.coordinate_rates, "rates of coordinates")(model, c ? c.narrow->places.data() : nullptr, q, v,
+  require_entry(entries.coordinate_rates, "rates of coordinates")(model, c ? c.reduced->places.data() : nullptr, q, v,
                                                                   room, rate);
 }
 
@@ -83,10 +83,10 @@ void coordinate_rates(System const& s, VecX const& q, VecX const& v, VecXOf<Dual
 template <class = void>
 std::string name_of_coordinate(System const& s, Index i) {
   Coordinates const& c = s.step_coordinates();
-  Sequence<BodyPlace> const& bodies = s.layout().bodies;
+  Sequence<BodyLayout> const& bodies = s.layout().bodies;
   for (std::size_t k = 0; k < bodies.size(); ++k) {
-    Index const first = c ? c.narrow->places[k].q : bodies[k].q0;
-    Index const count = c ? c.narrow->places[k].coordinates : bodies[k].coordinates;
+    Index const first = c ? c.reduced->places[k].q : bodies[k].q0;
+    Index const count = c ? c.reduced->places[k].coordinates : bodies[k].coordinates;
     if (i >= first && i < first + count) return sentence_of({"body \"", bodies[k].name, "\""});
   }
   return "unknown";
@@ -94,7 +94,7 @@ std::string name_of_coordinate(System const& s, Index i) {
 
 /// M does not depend on q.
 inline bool has_constant_mass(System const& s) {
-  return s.layout().constant_mass && (!s.step_coordinates() || s.step_coordinates().narrow->keeps_mass_constant);
+  return s.layout().constant_mass && (!s.step_coordinates() || s.step_coordinates().reduced->keeps_mass_constant);
 }
 
 }  // namespace polybody

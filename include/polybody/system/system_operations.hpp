@@ -8,23 +8,23 @@
 namespace polybody {
 
 template <StateScalar T>
-BasicSystem<T>::BasicSystem(void const* model, ModelEntries<T> const& entries, ModelLayout layout, Data<T> data,
+BasicSystem<T>::BasicSystem(void const* model, ModelOperations<T> const& entries, ModelLayout layout, Data<T> data,
                             CoordinatesOf<T> coordinates)
     : model_(model),
       entries_(entries),
       layout_(std::move(layout)),
       coordinates_(std::move(coordinates)),
       data_(std::move(data)) {
-  if (layout_.speeds == 0)
+  if (layout_.velocities == 0)
     throw InvalidInput(
         "The model has no body that moves: add one by model.add(body) before the model is asked or run.");
   q_.setConstant(layout_.coordinates, T(0.0));
-  v_.setConstant(layout_.speeds, T(0.0));
+  v_.setConstant(layout_.velocities, T(0.0));
   if (coordinates_) {
-    whole_a_ = whole_r_ = v_;
-    whole_rows_.setConstant(layout_.rows, T(0.0));
-    whole_lambda_ = whole_rows_;
-    still_.setConstant(speeds(), T(0.0));
+    full_a_ = full_r_ = v_;
+    full_rows_.setConstant(layout_.rows, T(0.0));
+    full_lambda_ = full_rows_;
+    still_.setConstant(velocities(), T(0.0));
   }
 }
 
@@ -45,7 +45,7 @@ void BasicSystem<T>::evaluate(Vector const& q, Vector const& v, double t) {
     v_ = v;
   }
   for (std::size_t i = 0; i < data_.states.size(); ++i) data_.states[i] = v_[data_.first_state + Index(i)];
-  entries_.publish(model_, at(), data_);
+  entries_.evaluate_marker(model_, at(), data_);
   entries_.measure_gaps(model_, at(), data_);
 }
 
@@ -58,55 +58,55 @@ void BasicSystem<T>::use_threads(int threads) {
 /// M a − f + Gᵀλ of the whole model where it was evaluated last, by the accelerations and multipliers of a step in
 /// joint coordinates.
 template <class T>
-VecXOf<T> const& balance_of_bodies(BasicSystem<T>& s, VecXOf<T> const& a, VecXOf<T> const& lambda) {
-  s.coordinates_.entries->expand_rates(s.coordinates_.self.get(), a, true, s.whole_a_);
-  s.expand_rows(lambda, s.whole_lambda_);
-  s.whole_residual(s.whole_a_, s.whole_lambda_, s.whole_r_);
-  return s.whole_r_;
+VecXOf<T> const& residual_of_bodies(BasicSystem<T>& s, VecXOf<T> const& a, VecXOf<T> const& lambda) {
+  s.coordinates_.entries->expand_rates(s.coordinates_.self.get(), a, true, s.full_a_);
+  s.expand_rows(lambda, s.full_lambda_);
+  s.full_residual(s.full_a_, s.full_lambda_, s.full_r_);
+  return s.full_r_;
 }
 
 template <StateScalar T>
 void BasicSystem<T>::residual(Vector const& a, Vector const& lambda, Vector& r) {
-  if (!coordinates_) return whole_residual(a, lambda, r);
-  balance_of_bodies(*this, a, lambda);
-  coordinates_.entries->reduce(coordinates_.self.get(), whole_r_, r);
+  if (!coordinates_) return full_residual(a, lambda, r);
+  residual_of_bodies(*this, a, lambda);
+  coordinates_.entries->reduce(coordinates_.self.get(), full_r_, r);
 }
 
 template <StateScalar T>
 void BasicSystem<T>::violation(Vector& phi) {
-  polybody::violation(data_, whole_rows(phi));
-  take_rows(phi);
+  polybody::violation(data_, full_constraints(phi));
+  add_constraint_rows(phi);
 }
 
 template <StateScalar T>
 void BasicSystem<T>::violation_rate(Vector& rate) {
-  polybody::violation_rate(data_, v_, whole_rows(rate));
-  take_rows(rate);
+  polybody::violation_rate(data_, v_, full_constraints(rate));
+  add_constraint_rows(rate);
 }
 
 template <StateScalar T>
 void BasicSystem<T>::acceleration_bias(Vector& gamma) {
-  Vector& whole = whole_rows(gamma);
-  for (RowBlock<T> const& block : data_.rows)
-    if (block.source == RowSource::linear)
-      for (int i = 0; i < block.rows; ++i) whole[block.row + i] = T(0.0);
-  entries_.measure_gamma(model_, at(), data_, whole);
-  add_biases(data_, whole);
+  Vector& full = full_constraints(gamma);
+  for (ConstraintBlock<T> const& block : data_.rows)
+    if (block.source == ConstraintSource::linear)
+      for (int i = 0; i < block.rows; ++i) full[block.row + i] = T(0.0);
+  entries_.measure_gamma(model_, at(), data_, full);
+  add_biases(data_, full);
   if (coordinates_) {  // γ + G b
-    coordinates_.entries->expand_rates(coordinates_.self.get(), still_, true, whole_a_);
-    whole_lambda_ = whole;
-    polybody::rows_times(data_, whole_a_, whole);
-    for (Index i = 0; i < whole.size(); ++i) whole[i] += whole_lambda_[i];
+    coordinates_.entries->expand_rates(coordinates_.self.get(), still_, true, full_a_);
+    full_lambda_ = full;
+    polybody::rows_times(data_, full_a_, full);
+    for (Index i = 0; i < full.size(); ++i) full[i] += full_lambda_[i];
   }
-  take_rows(gamma);
+  add_constraint_rows(gamma);
 }
 
 template <StateScalar T>
 void BasicSystem<T>::rows_times(Vector const& b, Vector& out) {
   if (coordinates_) {
-    coordinates_.entries->expand_rates(coordinates_.self.get(), b, false, whole_a_);
-    polybody::rows_times(data_, whole_a_, whole_rows_);
-    return take_rows(out);
+    coordinates_.entries->expand_rates(coordinates_.self.get(), b, false, full_a_);
+    polybody::rows_times(data_, full_a_, full_rows_);
+    return add_constraint_rows(out);
   }
   polybody::rows_times(data_, b, out);
 }
@@ -114,9 +114,9 @@ void BasicSystem<T>::rows_times(Vector const& b, Vector& out) {
 template <StateScalar T>
 void BasicSystem<T>::rows_transposed_times(Vector const& b, Vector& out) {
   if (coordinates_) {
-    expand_rows(b, whole_lambda_);
-    polybody::rows_transposed_times(data_, whole_lambda_, whole_r_);
-    return coordinates_.entries->reduce(coordinates_.self.get(), whole_r_, out);
+    expand_rows(b, full_lambda_);
+    polybody::rows_transposed_times(data_, full_lambda_, full_r_);
+    return coordinates_.entries->reduce(coordinates_.self.get(), full_r_, out);
   }
   polybody::rows_transposed_times(data_, b, out);
 }
@@ -124,25 +124,25 @@ void BasicSystem<T>::rows_transposed_times(Vector const& b, Vector& out) {
 template <StateScalar T>
 void BasicSystem<T>::plus(Vector const& q, Vector const& delta, Vector& out) const {
   if (coordinates_) coordinates_.entries->plus(coordinates_.self.get(), q, delta, out);
-  entries_.plus(model_, narrow_places(), q, delta, out);
+  entries_.plus(model_, reduced_places(), q, delta, out);
 }
 
 template <StateScalar T>
 void BasicSystem<T>::local_rate(Vector const& delta, Vector const& v, Vector& out) const {
   if (coordinates_) coordinates_.entries->local_rate(coordinates_.self.get(), delta, v, out);
-  entries_.local_rate(model_, narrow_places(), delta, v, out);
+  entries_.local_rate(model_, reduced_places(), delta, v, out);
 }
 
 template <StateScalar T>
 std::string BasicSystem<T>::name_of(Index i) const {
   if (!coordinates_) return layout_.name_of(i);
-  NarrowLayout const& n = *coordinates_.narrow;
-  return layout_.name_of(i < n.speeds ? n.whole_speed[std::size_t(i)]
-                                      : layout_.speeds + n.rows_that_stay[std::size_t(i - n.speeds)]);
+  ReducedLayout const& n = *coordinates_.reduced;
+  return layout_.name_of(i < n.velocities ? n.full_velocity[std::size_t(i)]
+                                          : layout_.velocities + n.remaining_equations[std::size_t(i - n.velocities)]);
 }
 
 template <StateScalar T>
-void BasicSystem<T>::whole_residual(Vector const& a, Vector const& lambda, Vector& r) {
+void BasicSystem<T>::full_residual(Vector const& a, Vector const& lambda, Vector& r) {
   for (Index i = 0; i < r.size(); ++i) r[i] = T(0.0);
   entries_.element_forces(model_, at(), a, load_factor, data_, r);
   add_row_forces(data_, lambda, r);
@@ -157,10 +157,10 @@ void BasicSystem<T>::whole_residual(Vector const& a, Vector const& lambda, Vecto
 template <StateScalar T>
 void BasicSystem<T>::write_tangent(TangentCoefficients c, SecondOrder second, Vector const& given, BlockSink& sink) {
   c.full = second == SecondOrder::included;
-  Vector const& lambda = c.full && coordinates_ ? whole_multipliers(given) : given;
+  Vector const& lambda = c.full && coordinates_ ? full_multipliers(given) : given;
   if (c.full) clear_loads();
   require_entry(entries_.element_tangents, "tangents")(model_, at(), c, data_, sink);
-  write_rows(data_, layout_.speeds, sink);
+  write_rows(data_, layout_.velocities, sink);
   entries_.compliant_tangents(model_, c, data_, sink);
   if (c.full) require_entry(entries_.joint_stiffness, "second-order terms")(model_, at(), lambda, c, data_, sink);
   entries_.force_tangents(model_, t_, load_factor, c, data_, sink);
@@ -170,11 +170,11 @@ void BasicSystem<T>::write_tangent(TangentCoefficients c, SecondOrder second, Ve
 /// M a − f of the whole model at v̇ = 0 where it was evaluated last, without the forces of its rows.
 template <class T>
 VecXOf<T> const& unbalance(BasicSystem<T>& s) {
-  s.whole_a_.setConstant(s.layout_.speeds, T(0.0));
-  s.whole_lambda_.setConstant(s.layout_.rows, T(0.0));
-  s.whole_r_.resize(s.layout_.speeds);
-  s.whole_residual(s.whole_a_, s.whole_lambda_, s.whole_r_);
-  return s.whole_r_;
+  s.full_a_.setConstant(s.layout_.velocities, T(0.0));
+  s.full_lambda_.setConstant(s.layout_.rows, T(0.0));
+  s.full_r_.resize(s.layout_.velocities);
+  s.full_residual(s.full_a_, s.full_lambda_, s.full_r_);
+  return s.full_r_;
 }
 
 }  // namespace polybody

@@ -51,7 +51,7 @@ struct TreeFrameOf {
   Mat<T, 3, 3> A = identity<T>();                              ///< its axes (3×3) in world axes
   Vec<T, 4> rotation{1, 0, 0, 0};                              ///< unit quaternion of A; in space only
   T angle = 0.0;                                               ///< of the plane: the turn of A [rad]
-  int speeds = 0;                                              ///< how many its joint has: columns of S
+  int velocities = 0;                                          ///< how many its joint has: columns of S
   Mat<T, 6, 6> s = detail::zeros<Mat<T, 6, 6>>();              ///< S = [S_r; S_ω] by columns
   Mat<T, 6, 6> inverse = detail::zeros<Mat<T, 6, 6>>();        ///< (SᵀS)⁻¹
   Vec<T, 6> bias = detail::zeros<Vec<T, 6>>();                 ///< [b_r; b_ω]

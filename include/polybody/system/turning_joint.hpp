@@ -73,7 +73,7 @@ void carry_by_turn(TreeBody const& body, TreeFrameOf<T> const& p, T const& x, T 
     f.s(3 + i, 0) = n[i];
     size += slide[i] * slide[i] + n[i] * n[i];
   }
-  f.speeds = 1;
+  f.velocities = 1;
   f.inverse(0, 0) = 1.0 / size;
 }
 

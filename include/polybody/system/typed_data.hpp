@@ -29,7 +29,7 @@ template <class... Bs, class... Js, class... Fs, StateScalar T>
 struct TypedData<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T> {
   std::tuple<BodyData<Bs, T>...> bodies;
   std::tuple<JointData<Js, T>...> joints;
-  Sequence<T> own_rows;  ///< arena of rows that bodies own, and of linear rows
+  Sequence<T> own_equations;  ///< arena of rows that bodies own, and of linear rows
 
   static TypedData& of(Data<T> const& data) { return *static_cast<TypedData*>(data.kept.get()); }
 };
@@ -52,19 +52,22 @@ void place_ground(Sequence<GroundMarker> const& ground, Index markers, Index jac
 
 /// Numbers of the rows and maps of all linear joints.
 template <class = void>
-Index size_of(Sequence<LinearRows> const& all) {
+Index size_of(Sequence<LinearConstraints> const& all) {
   Index size = 0;
-  for (LinearRows const& rows : all) size += rows.rows() * (1 + rows.a.map.cols() + rows.b.map.cols());
+  for (LinearConstraints const& rows : all) size += rows.rows() * (1 + rows.a.map.cols() + rows.b.map.cols());
   return size;
 }
 
 /// Blocks of all linear joints, their numbers from `next` on; the owners are found when the joints are gone through.
 template <StateScalar T>
-void place_linear_rows(Sequence<LinearRows> const& all, T* next, Data<T>& data) {
-  for (LinearRows const& rows : all) {
+void place_linear_rows(Sequence<LinearConstraints> const& all, T* next, Data<T>& data) {
+  for (LinearConstraints const& rows : all) {
     Index const m = rows.rows();
-    RowBlock<T> block{
-        .source = RowSource::linear, .row = rows.row, .rows = int(m), .positions = int(rows.positions), .g = next};
+    ConstraintBlock<T> block{.source = ConstraintSource::linear,
+                             .row = rows.row,
+                             .rows = int(m),
+                             .positions = int(rows.positions),
+                             .g = next};
     next += m;
     for (auto const& [side, end] : {std::pair(&rows.a, &block.a), std::pair(&rows.b, &block.b)}) {
       *end = {.first = side->v0, .columns = side->map.cols(), .map = next};
@@ -76,9 +79,9 @@ void place_linear_rows(Sequence<LinearRows> const& all, T* next, Data<T>& data) 
 
 /// g = C_a e_a + C_b e_b − c of all linear joints, their numbers from `next` on.
 template <StateScalar T>
-void measure_linear_rows(Sequence<LinearRows> const& all, VecXOf<T> const& q, Data<T> const& data, T* next) {
+void measure_linear_rows(Sequence<LinearConstraints> const& all, VecXOf<T> const& q, Data<T> const& data, T* next) {
   if (!data.linear_rows) return;
-  for (LinearRows const& rows : all) {
+  for (LinearConstraints const& rows : all) {
     int const m = int(rows.rows());
     for (int i = 0; i < m; ++i) next[i] = T(-rows.constant[i]);
     T const* map = next + m;
@@ -109,7 +112,7 @@ struct DataMaker<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T> {
     place_rows(model, *typed, data);
     data.states.assign(std::size_t(model.states()), T(0.0));
     data.rates = data.states;
-    data.first_state = model.speeds() - model.states();
+    data.first_state = model.velocities() - model.states();
     Index owner = 0;
     ((ForceKernels<Fs, T>::place(forces_of<Fs>(model), owner, data), owner += Index(forces_of<Fs>(model).size())), ...);
     data.kept = typed;
@@ -121,8 +124,8 @@ struct DataMaker<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T> {
   [[gnu::cold]] static void place_rows(M const& model, Typed& typed, Data<T>& data) {
     Index size = size_of(model.linear_rows());
     ((size += BodyKernels<Bs, T>::own_size(bodies_of<Bs>(model))), ...);
-    typed.own_rows.assign(std::size_t(size), T(0.0));
-    T* next = typed.own_rows.data();
+    typed.own_equations.assign(std::size_t(size), T(0.0));
+    T* next = typed.own_equations.data();
     Index owner = 0;
     ((next = BodyKernels<Bs, T>::place_rows(bodies_of<Bs>(model), owner, next, data),
       owner += Index(bodies_of<Bs>(model).entries.size())),
@@ -144,10 +147,10 @@ ModelLayout counts_of(M const& model) {
           .ancestors = model.ancestors(),
           .watch = model.watch(),
           .coordinates = model.coordinates(),
-          .speeds = model.speeds(),
+          .velocities = model.velocities(),
           .rows = model.rows(),
           .states = model.states(),
-          .velocity_rows = model.velocity_rows(),
+          .nonholonomic_equations = model.nonholonomic_equations(),
           .owners = Sequence<Index>(std::size_t(model.markers()), -1),
           .gravity = model.gravity().g,
           .constant_mass = M::constant_mass,

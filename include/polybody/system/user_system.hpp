@@ -22,14 +22,14 @@ namespace polybody {
 
 /// ż = h(z, t), to be written over (n).
 template <class E>
-concept UserRates = requires(E const e, VecX const& z, double t, VecX& h) {
+concept UserFirstOrderEquations = requires(E const e, VecX const& z, double t, VecX& h) {
   { e.states() } -> std::convertible_to<Index>;
   e.rates(z, t, h);
 };
 /// M(q) v̇ = f(q, v, z, t) with q̇ = v beside ż = h(q, v, z, t): mass matrix (n×n), force (n) and rates.
 template <class E>
 concept UserMechanicsWithStates = requires(E const e, VecX const& x, double t, MatX& m, VecX& f) {
-  { e.speeds() } -> std::convertible_to<Index>;
+  { e.velocities() } -> std::convertible_to<Index>;
   { e.states() } -> std::convertible_to<Index>;
   e.mass(x, m);
   e.force(x, x, x, t, f);
@@ -38,19 +38,19 @@ concept UserMechanicsWithStates = requires(E const e, VecX const& x, double t, M
 /// M(q) v̇ = f(q, v, t) with q̇ = v: mass matrix (n×n) and force (n), both to be written over.
 template <class E>
 concept UserMechanics = requires(E const e, VecX const& x, double t, MatX& m, VecX& f) {
-  { e.speeds() } -> std::convertible_to<Index>;
+  { e.velocities() } -> std::convertible_to<Index>;
   e.mass(x, m);
   e.force(x, x, t, f);
 };
 /// Equations of which `system_of` makes a system.
 template <class E>
-concept UserEquations = UserMechanics<E> || UserMechanicsWithStates<E> || UserRates<E>;
+concept UserEquations = UserMechanics<E> || UserMechanicsWithStates<E> || UserFirstOrderEquations<E>;
 /// It gives −(ck ∂f/∂q + cd ∂f/∂v) (n×n), which implicit steps ask for; else it comes from central differences.
 template <class E>
-concept OffersForceTangent = requires(E const e, VecX const& x, double t, MatX& k) { e.tangent(x, x, t, 1.0, 1.0, k); };
+concept HasForceTangent = requires(E const e, VecX const& x, double t, MatX& k) { e.tangent(x, x, t, 1.0, 1.0, k); };
 /// It has rows Φ(q, t) = 0 with G = ∂Φ/∂q, Φ_t, and γ in Φ̈ = G v̇ + γ.
 template <class E>
-concept OffersRows = requires(E const e, VecX const& x, double t, MatX& g, VecX& phi) {
+concept HasConstraintEquations = requires(E const e, VecX const& x, double t, MatX& g, VecX& phi) {
   { e.rows() } -> std::convertible_to<Index>;
   e.violation(x, t, phi);
   e.jacobian(x, t, g);
@@ -61,7 +61,7 @@ concept OffersRows = requires(E const e, VecX const& x, double t, MatX& g, VecX&
 namespace detail {
 
 template <UserEquations E>
-struct UserEntries {
+struct UserOperations {
   E mechanics;
   Index n = 0, states = 0;  ///< speeds without first-order states, and these
   mutable MatX m, k, m_n;   ///< of all; m_n, k_n: of the speeds alone
@@ -70,8 +70,8 @@ struct UserEntries {
   mutable MatX g, k_n;
   mutable VecX phi, rate, x_near, f_near;
 
-  explicit UserEntries(E e) : mechanics(std::move(e)) {
-    if constexpr (requires { mechanics.speeds(); }) n = mechanics.speeds();
+  explicit UserOperations(E e) : mechanics(std::move(e)) {
+    if constexpr (requires { mechanics.velocities(); }) n = mechanics.velocities();
     if constexpr (requires { mechanics.states(); }) states = mechanics.states();
     m.setIdentity(n + states, n + states);
     k = m;
@@ -80,30 +80,30 @@ struct UserEntries {
     ma = f_near = f;
     v_n = f_n = VecX::Zero(n);
     z = h = VecX::Zero(states);
-    if constexpr (OffersRows<E>) {
+    if constexpr (HasConstraintEquations<E>) {
       g.setZero(mechanics.rows(), n);
       phi.setZero(mechanics.rows());
       rate = phi;
     }
   }
-  static UserEntries const& of(void const* self) { return *static_cast<UserEntries const*>(self); }
+  static UserOperations const& of(void const* self) { return *static_cast<UserOperations const*>(self); }
 
   static void measure_gaps(void const* self, At<double> at, Data<double>&) {
-    if constexpr (OffersRows<E>) {
+    if constexpr (HasConstraintEquations<E>) {
       of(self).mechanics.violation(at.q, at.t, of(self).phi);
       of(self).mechanics.jacobian(at.q, at.t, of(self).g);
       of(self).mechanics.rate(at.q, at.t, of(self).rate);
     }
   }
   static void measure_gamma(void const* self, At<double> at, Data<double> const&, VecX& out) {
-    if constexpr (OffersRows<E>) {
+    if constexpr (HasConstraintEquations<E>) {
       of(self).v_n = at.v.head(of(self).n);
       of(self).mechanics.gamma(at.q, of(self).v_n, at.t, out);
     }
   }
   /// M with ones for the states; f and h.
   void find_mass(VecX const& q) const {
-    if constexpr (!UserRates<E>) {
+    if constexpr (!UserFirstOrderEquations<E>) {
       mechanics.mass(q, m_n);
       m.topLeftCorner(n, n) = m_n;
     }
@@ -115,14 +115,14 @@ struct UserEntries {
       mechanics.force(q, v_n, z, t, f_n);
       mechanics.rates(q, v_n, z, t, h);
       out << f_n, h;
-    } else if constexpr (UserRates<E>) {
+    } else if constexpr (UserFirstOrderEquations<E>) {
       mechanics.rates(v, t, out);
     } else {
       mechanics.force(q, v, t, out);
     }
   }
   static void element_forces(void const* self, At<double> at, VecX const& a, double, Data<double>&, VecX& r) {
-    UserEntries const& s = of(self);
+    UserOperations const& s = of(self);
     s.find_mass(at.q);
     s.find_force(at.q, at.v, at.t, s.f);
     s.ma.noalias() = s.m * a;
@@ -135,9 +135,9 @@ struct UserEntries {
   }
   static void element_tangents(void const* self, At<double> at, TangentCoefficients const& c, Data<double>&,
                                BlockSink& sink) {
-    UserEntries const& s = of(self);
+    UserOperations const& s = of(self);
     s.find_mass(at.q);
-    if constexpr (UserMechanics<E> && OffersForceTangent<E>) {
+    if constexpr (UserMechanics<E> && HasForceTangent<E>) {
       s.mechanics.tangent(at.q, at.v, at.t, c.stiffness, c.damping, s.k_n);
       s.k = s.k_n;
     } else {
@@ -164,19 +164,19 @@ struct UserEntries {
       x_near[j] = x[j];
     }
   }
-  static void plus(void const*, NarrowPlace const*, VecX const& q, VecX const& delta, VecX& out) {
+  static void plus(void const*, ReducedPosition const*, VecX const& q, VecX const& delta, VecX& out) {
     out = q + delta.head(q.size());
   }
-  static void local_rate(void const* self, NarrowPlace const*, VecX const&, VecX const& v, VecX& out) {
+  static void local_rate(void const* self, ReducedPosition const*, VecX const&, VecX const& v, VecX& out) {
     out.head(of(self).n) = v.head(of(self).n);
   }
-  static void coordinate_rates(void const*, NarrowPlace const*, VecX const&, VecX const& v, VecXOf<Dual<1>>&,
+  static void coordinate_rates(void const*, ReducedPosition const*, VecX const&, VecX const& v, VecXOf<Dual<1>>&,
                                VecX& rate) {
     rate = v.head(rate.size());
   }
 
-  static constexpr ModelEntries<double> entries() {
-    return {.publish = [](void const*, At<double>, Data<double>&) {},
+  static constexpr ModelOperations<double> entries() {
+    return {.evaluate_marker = [](void const*, At<double>, Data<double>&) {},
             .measure_gaps = &measure_gaps,
             .measure_gamma = &measure_gamma,
             .element_forces = &element_forces,
@@ -201,18 +201,18 @@ struct UserEntries {
 /// depend on q. The second-order terms of its rows, which some implicit steps ask for when they stall, are left out.
 template <UserEquations E>
 System system_of(E mechanics, std::string name = "system", bool constant_mass = false) {
-  auto self = std::make_shared<detail::UserEntries<E>>(std::move(mechanics));
+  auto self = std::make_shared<detail::UserOperations<E>>(std::move(mechanics));
   Index const n = self->n, states = self->states, rows = self->phi.size();
   ModelLayout layout{.coordinates = n,
-                     .speeds = n + states,
+                     .velocities = n + states,
                      .rows = rows,
                      .states = states,
-                     .constant_mass = constant_mass || UserRates<E>};
+                     .constant_mass = constant_mass || UserFirstOrderEquations<E>};
   layout.bodies.push_back({name, 0, n, 0, n + states});
   Data<double> data;
   if (rows > 0) {
     layout.joints.push_back({name, -1, -1, 0, rows});
-    data.rows.push_back({.source = RowSource::body,
+    data.rows.push_back({.source = ConstraintSource::body,
                          .row = 0,
                          .rows = int(rows),
                          .a = {.columns = n, .map = self->g.data()},
@@ -220,7 +220,7 @@ System system_of(E mechanics, std::string name = "system", bool constant_mass = 
                          .rate = self->rate.data()});
   }
   data.kept = self;
-  return System(self.get(), detail::UserEntries<E>::entries(), std::move(layout), std::move(data), {});
+  return System(self.get(), detail::UserOperations<E>::entries(), std::move(layout), std::move(data), {});
 }
 
 }  // namespace polybody

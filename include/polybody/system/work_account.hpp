@@ -12,7 +12,7 @@
 namespace polybody {
 
 /// The end of a step of length h, before it is accepted.
-struct StepEnd {
+struct StepResult {
   VecX const &q, &v, &lambda;  ///< q (nq), v (nv), λ (rows) there
   double t, h;                 ///< its time [s], its length [s]
 };
@@ -28,10 +28,10 @@ class WorkAccount {
  public:
   /// Resets the account at this place, at which `system` was evaluated last. `place.h` is not read.
   template <class = void>
-  [[gnu::cold]] void begin(System const& system, StepEnd const& place);
+  [[gnu::cold]] void begin(System const& system, StepResult const& place);
   /// Adds the work over a step, at whose end `system` was evaluated last.
   template <class = void>
-  void add(System const& system, StepEnd const& end);
+  void add(System const& system, StepResult const& end);
 
   bool counts() const { return !elements_.empty(); }  ///< anything is counted
   bool complete() const { return complete_; }         ///< no element stores a part of the energy that it takes
@@ -39,7 +39,7 @@ class WorkAccount {
   /// Time moves a joint whose work is not counted.
   bool misses_drives(Data<double> const& data) const {
     return std::any_of(at_rest_.begin(), at_rest_.end(), [&](Index i) {
-      RowBlock<double> const& block = data.rows[std::size_t(i)];
+      ConstraintBlock<double> const& block = data.rows[std::size_t(i)];
       return std::any_of(block.rate, block.rate + block.rows, [](double x) { return x != 0.0; });
     });
   }
@@ -106,7 +106,7 @@ class WorkAccount {
 };
 
 template <class>
-void WorkAccount::begin(System const& system, StepEnd const& place) {
+void WorkAccount::begin(System const& system, StepResult const& place) {
   Data<double> const& data = system.data();
   ModelLayout const& layout = system.layout();
   elements_.clear();
@@ -115,29 +115,29 @@ void WorkAccount::begin(System const& system, StepEnd const& place) {
   complete_ = true;
   Index source = -1;
   for (std::size_t i = 0; i < data.actions.size(); ++i) {
-    ForcePlace const& force = layout.forces[std::size_t(data.actions[i].source)];
+    ForceLayout const& force = layout.forces[std::size_t(data.actions[i].source)];
     if (force.stores) continue;
     add_element(Kind::force, Index(i), 0, numbers_of_force, data.actions[i].source == source);
     source = data.actions[i].source;
     complete_ = complete_ && !force.stores_in_part;
   }
-  Coordinates const& narrow = system.step_coordinates();
+  Coordinates const& reduced = system.step_coordinates();
   for (std::size_t i = 0; i < data.rows.size(); ++i) {
-    RowBlock<double> const& block = data.rows[i];
-    if (block.source == RowSource::compliant && !layout.joints[std::size_t(block.owner)].stores) {
+    ConstraintBlock<double> const& block = data.rows[i];
+    if (block.source == ConstraintSource::compliant && !layout.joints[std::size_t(block.owner)].stores) {
       add_element(Kind::compliant, Index(i), -1, std::size_t(2 * block.rows + 1), false);
       complete_ = false;
     }
     if (!block.rate) continue;
-    bool const driven = (block.source == RowSource::joint || block.source == RowSource::compliant) &&
+    bool const driven = (block.source == ConstraintSource::joint || block.source == ConstraintSource::compliant) &&
                         layout.joints[std::size_t(block.owner)].law;
     if (!driven && std::all_of(block.rate, block.rate + block.rows, [](double x) { return x == 0.0; })) {
       at_rest_.push_back(Index(i));
       continue;
     }
     Index row = block.row;
-    if (narrow && row >= 0) {
-      auto const& stay = narrow.narrow->rows_that_stay;
+    if (reduced && row >= 0) {
+      auto const& stay = reduced.reduced->remaining_equations;
       auto const at = std::find(stay.begin(), stay.end(), row);
       if (at == stay.end()) continue;
       row = at - stay.begin();
@@ -163,7 +163,7 @@ void WorkAccount::read(System const& system, VecX const& lambda, double t, Sampl
   for (Element const& e : elements_) {
     double* const to = out.numbers.data() + e.at;
     if (e.kind == Kind::force) {
-      Action<double> const& action = data.actions[std::size_t(e.index)];
+      AppliedWrench<double> const& action = data.actions[std::size_t(e.index)];
       Frame<double> const& f = data.markers[std::size_t(action.marker)].frame;
       double power = 0.0;
       for (int i = 0; i < 3; ++i) {
@@ -176,7 +176,7 @@ void WorkAccount::read(System const& system, VecX const& lambda, double t, Sampl
       to[22] = power;
       continue;
     }
-    RowBlock<double> const& block = data.rows[std::size_t(e.index)];
+    ConstraintBlock<double> const& block = data.rows[std::size_t(e.index)];
     double power = 0.0;
     if (e.kind == Kind::drive) {
       double const* const l = e.row < 0 ? block.answer : lambda.data() + e.row;
@@ -198,7 +198,7 @@ void WorkAccount::read(System const& system, VecX const& lambda, double t, Sampl
 }
 
 template <class>
-void WorkAccount::add(System const& system, StepEnd const& end) {
+void WorkAccount::add(System const& system, StepResult const& end) {
   Sample const* const from = start_of(end.t - end.h, end.h);
   Sample const& before = from ? *from : samples_[last_];
   std::size_t const at = std::size_t(&before - samples_), older = before.before;

@@ -15,8 +15,8 @@ void BodyLaws<Case>::mass_is_symmetric_and_positive() {
   VecX const q = configuration();
   MatX m = mass(q);
   EXPECT_LT(mismatch(m, m.transpose()), 1e-15);
-  if constexpr (OwnsRows<B>) {
-    MatX const g = own_map(q);
+  if constexpr (HasOwnEquations<B>) {
+    MatX const g = own_jacobian(q);
     m += g.transpose() * g;
   }
   EXPECT_GT(smallest_pivot(m), 1e-6 * m.diagonal().maxCoeff());
@@ -24,14 +24,14 @@ void BodyLaws<Case>::mass_is_symmetric_and_positive() {
 
 template <class Case>
 void BodyLaws<Case>::kinetic_energy_is_half_v_m_v() {
-  VecX const q = configuration(), v = speeds();
+  VecX const q = configuration(), v = velocities();
   double const expected = 0.5 * v.dot(mass(q) * v);
   EXPECT_NEAR(kinetic_energy(q, v), expected, 1e-14 * expected);
 }
 
 template <class Case>
 void BodyLaws<Case>::inertia_is_mass_times_acceleration() {
-  VecX const q = configuration(), a = speeds();
+  VecX const q = configuration(), a = velocities();
   VecX const expected = mass(q) * a;
   EXPECT_LT(mismatch(inertia<double>(q, a), expected), 1e-14);
   auto const dual = inertia<Dual<1>>(q.template cast<Dual<1>>(), along(VecX::Zero(nv), a));
@@ -94,7 +94,7 @@ void BodyLaws<Case>::elastic_force_is_the_gradient_of_the_strain_energy() {
 
 template <class Case>
 void BodyLaws<Case>::tangent_is_the_derivative_of_the_force_by_position() {
-  VecX const q = configuration(), v = speeds();
+  VecX const q = configuration(), v = velocities();
   MatX slope(nv, nv);
   for (Index j = 0; j < nv; ++j)
     slope.col(j) = epsilon_of(force<Dual<1>>(carried(q, VecX::Unit(nv, j)), v.template cast<Dual<1>>()));
@@ -103,7 +103,7 @@ void BodyLaws<Case>::tangent_is_the_derivative_of_the_force_by_position() {
 
 template <class Case>
 void BodyLaws<Case>::tangent_is_the_derivative_of_the_force_by_speed() {
-  VecX const q = configuration(), v = speeds();
+  VecX const q = configuration(), v = velocities();
   MatX slope(nv, nv);
   for (Index j = 0; j < nv; ++j)
     slope.col(j) = epsilon_of(force<Dual<1>>(q.template cast<Dual<1>>(), along(v, VecX::Unit(nv, j))));
@@ -112,7 +112,7 @@ void BodyLaws<Case>::tangent_is_the_derivative_of_the_force_by_speed() {
 
 template <class Case>
 void BodyLaws<Case>::tangent_mixes_its_two_parts_linearly() {
-  VecX const q = configuration(), v = speeds();
+  VecX const q = configuration(), v = velocities();
   MatX const expected = 0.7 * tangent(q, v, 1.0, 0.0) + 31.0 * tangent(q, v, 0.0, 1.0);
   EXPECT_LT(mismatch(tangent(q, v, 0.7, 31.0), expected), 1e-14);
 }
@@ -120,11 +120,11 @@ void BodyLaws<Case>::tangent_mixes_its_two_parts_linearly() {
 template <class Case>
 void BodyLaws<Case>::undamped_force_gives_back_the_strain_energy() {
   auto const elastic = Made::undamped();
-  VecX const q = configuration(), v = speeds();
+  VecX const q = configuration(), v = velocities();
   double const power = force_of<double>(elastic, q, v).dot(v);
   double const rate = slope_at_zero([&](double h) { return strain_energy(moved<double>(q, v * h)); }, 3e-4);
   double by_mass = 0.0;  // zero with own constraints: ⊞ keeps them, these v do not; v · Q_v of Euler parameters is zero
-  if constexpr (!OwnsRows<B>)
+  if constexpr (!HasOwnEquations<B>)
     by_mass = slope_at_zero([&](double h) { return kinetic_energy(moved<double>(q, v * h), v); }, 3e-4);
   EXPECT_NEAR(power, -rate - by_mass, 1e-8 * (1.0 + std::abs(rate) + std::abs(by_mass)));
 }
@@ -133,14 +133,14 @@ void BodyLaws<Case>::undamped_force_gives_back_the_strain_energy() {
 
 template <class Case>
 void BodyLaws<Case>::plus_of_nothing_changes_nothing() {
-  VecX const q = configuration(), zero = VecX::Zero(nv), v = speeds();
+  VecX const q = configuration(), zero = VecX::Zero(nv), v = velocities();
   EXPECT_LT((moved<double>(q, zero) - q).norm(), 1e-15 * q.norm());
   EXPECT_EQ(rates(zero, v), v);
 }
 
 template <class Case>
-void BodyLaws<Case>::local_rate_moves_the_body_with_its_speeds() {
-  VecX const q = configuration(), v = speeds();
+void BodyLaws<Case>::local_rate_moves_the_body_with_its_velocities() {
+  VecX const q = configuration(), v = velocities();
   VecX const delta = vector(nv, 0.8), rate = rates(delta, v);
   VecX const now = moved<double>(q, delta);
   VecXOf<Dual<1>> const passing = moved<Dual<1>>(q, along(delta, rate));
@@ -170,7 +170,7 @@ void BodyLaws<Case>::rigid_velocity_is_the_field_of_a_rigid_motion() {
 
 template <class Case>
 void BodyLaws<Case>::frame_is_orthonormal() {
-  VecX const q = configuration(), v = speeds();
+  VecX const q = configuration(), v = velocities();
   for (auto const& p : points()) {
     Mat3 const a = see<double>(p, turned(), q, v).marker.frame.A;
     EXPECT_LT((a.transpose() * a - Mat3::Identity()).norm(), 1e-14);
@@ -179,8 +179,8 @@ void BodyLaws<Case>::frame_is_orthonormal() {
 }
 
 template <class Case>
-void BodyLaws<Case>::twist_is_jacobian_times_speeds() {
-  VecX const q = configuration(), v = speeds();
+void BodyLaws<Case>::twist_is_jacobian_times_velocities() {
+  VecX const q = configuration(), v = velocities();
   for (auto const& p : points()) {
     auto const s = see<double>(p, turned(), q, v);
     EXPECT_EQ(s.marker.columns, point_columns(body, p));
@@ -204,8 +204,8 @@ void BodyLaws<Case>::jacobian_is_the_derivative_of_the_frame() {
 }
 
 template <class Case>
-void BodyLaws<Case>::bias_is_the_acceleration_at_constant_speeds() {
-  VecX const q = configuration(), v = speeds();
+void BodyLaws<Case>::bias_is_the_acceleration_at_constant_velocities() {
+  VecX const q = configuration(), v = velocities();
   VecXOf<Dual<1>> const passing = carried(q, rates(VecX::Zero(nv), v));
   for (auto const& p : points()) {
     auto const s = see<double>(p, turned(), q, v);
@@ -245,30 +245,30 @@ void BodyLaws<Case>::load_stiffness_is_the_derivative_of_the_pulled_wrench() {
 
 template <class Case>
 void BodyLaws<Case>::own_rows_hold_at_the_reference_and_their_maps_are_derivatives() {
-  if constexpr (!OwnsRows<B>) {
+  if constexpr (!HasOwnEquations<B>) {
     GTEST_SKIP() << "it owns no rows";
   } else {
-    constexpr int m = B::own_rows;
+    constexpr int m = B::own_equations;
     auto const gap = [&]<class T>(VecXOf<T> const& q) {
       Vec<T, m> phi;
-      body.template own_gap<T>(view(q), phi);
+      body.template own_constraint<T>(view(q), phi);
       return VecXOf<T>(phi);
     };
     EXPECT_LT(gap(reference()).norm(), 1e-15);
-    VecX const q = configuration(), v = speeds(), lambda = vector(m, 2.0);
-    MatX const g = own_map(q);
+    VecX const q = configuration(), v = velocities(), lambda = vector(m, 2.0);
+    MatX const g = own_jacobian(q);
     MatX stiffness(nv, nv);
     for (Index j = 0; j < nv; ++j) {
       VecXOf<Dual<1>> const moved = carried(q, VecX::Unit(nv, j));
       EXPECT_LT((epsilon_of(gap(moved)) - g.col(j)).norm(), 1e-14) << j;
       Mat<Dual<1>, m, n> map;
-      body.template own_map<Dual<1>>(view(moved), map);
+      body.template own_jacobian<Dual<1>>(view(moved), map);
       stiffness.col(j) = epsilon_of(map).transpose() * lambda;
     }
     // γ = Φ̈ − G v̇ = d/dt(G v) at v˙ = 0
     Mat<Dual<1>, m, n> moving;
     VecXOf<Dual<1>> const passing = carried(q, rates(VecX::Zero(nv), v));
-    body.template own_map<Dual<1>>(view(passing), moving);
+    body.template own_jacobian<Dual<1>>(view(passing), moving);
     Vec<double, m> gamma;
     body.template own_gamma<double>(view(q), view(v), gamma);
     EXPECT_LT((gamma - epsilon_of(moving) * v).norm(), 1e-13);

@@ -44,8 +44,8 @@ struct BodyLaws {
   using B = decltype(Made::body());                         ///< type of the body
   using D = Dual<1>;                                        ///< dual number with the derivative along one direction
   static constexpr bool planar = B::world == World::plane;  ///< true if the body moves in a plane
-  static constexpr bool rolls = B::observes == Observes::frame;     ///< true if markers have three axes
-  static constexpr bool directed = B::observes != Observes::point;  ///< true if markers have an axis
+  static constexpr bool rolls = B::observes == MarkerKind::frame;     ///< true if markers have three axes
+  static constexpr bool directed = B::observes != MarkerKind::point;  ///< true if markers have an axis
   /// True if a rigid motion of all coordinates is a rigid motion of the whole body; the default for a body without this
   /// member.
   static constexpr bool objective = [] {
@@ -57,9 +57,9 @@ struct BodyLaws {
   /// Generalised velocities of an element; `Eigen::Dynamic` for one element of run-time size.
   static constexpr int n = B::element_columns;
 
-  B const body = Made::body();                              ///< body under test, with its damping
-  Index const nq = body.coordinates(), nv = body.speeds();  ///< numbers of coordinates q and velocities v
-  std::mt19937 generator{20240607};                         ///< source of the random numbers; its seed is fixed
+  B const body = Made::body();                                  ///< body under test, with its damping
+  Index const nq = body.coordinates(), nv = body.velocities();  ///< numbers of coordinates q and velocities v
+  std::mt19937 generator{20240607};                             ///< source of the random numbers; its seed is fixed
 
   // --- random numbers with a fixed seed -------------------------------------------------------------------
 
@@ -81,7 +81,7 @@ struct BodyLaws {
     if constexpr (requires { Case::deformation; }) delta.tail(nv - (planar ? 3 : 6)) *= Case::deformation;
     return moved<double>(reference(), delta);
   }
-  VecX speeds() { return vector(nv, 1.5); }             ///< random generalised velocities (nv) in [−1.5, 1.5]
+  VecX velocities() { return vector(nv, 1.5); }         ///< random generalised velocities (nv) in [−1.5, 1.5]
   Mat3 turned() { return exp_so3<double>(vector3()); }  ///< random rotation (3×3)
   Wrench<double> wrench() { return {vector3() * 5.0, vector3() * 3.0}; }  ///< random force [N] and moment [N m]
 
@@ -208,11 +208,11 @@ struct BodyLaws {
     return assembled_matrix([&](Index e, auto& k) { body.tangent(e, view(q), view(v), ck, cd, k); });
   }
   /// Constraint Jacobian G of the body's own constraint equations.
-  MatX own_map(VecX const& q) const
-    requires OwnsRows<B>
+  MatX own_jacobian(VecX const& q) const
+    requires HasOwnEquations<B>
   {
-    Mat<double, B::own_rows, n> g;
-    body.template own_map<double>(view(q), g);
+    Mat<double, B::own_equations, n> g;
+    body.template own_jacobian<double>(view(q), g);
     return g;
   }
   /// Generalised force of the weight (nv) in the field g [m/s²].
@@ -247,7 +247,7 @@ struct BodyLaws {
   template <class T>
   struct Seen {
     Sequence<T> memory;                  ///< memory of the Jacobian; its address is constant under moves
-    Published<T> marker;                 ///< result of `publish`
+    MarkerKinematics<T> marker;          ///< result of `evaluate_marker`
     Mat<T, 6, Eigen::Dynamic> jacobian;  ///< Jacobian over all columns of the body
     /// Twist of the marker [ṙ; ω] in world axes [m/s], [rad/s].
     Vec<T, 6> twist() const {
@@ -261,10 +261,10 @@ struct BodyLaws {
   template <class T>
   Seen<T> see(typename B::Point const& p, Mat3 const& axes, VecXOf<T> const& q, VecXOf<T> const& v) const {
     Seen<T> s;
-    s.memory.assign(std::size_t(6 * point_columns(body, p)), T(1e9));
-    s.marker.jacobian = s.memory.data();
+    s.history.assign(std::size_t(6 * point_columns(body, p)), T(1e9));
+    s.marker.jacobian = s.history.data();
     s.marker.bias.setConstant(T(1e9));
-    body.template publish<T>(p, rolls ? axes : Mat3::Identity(), view(q), view(v), s.marker);
+    body.template evaluate_marker<T>(p, rolls ? axes : Mat3::Identity(), view(q), view(v), s.marker);
     s.jacobian = Mat<T, 6, Eigen::Dynamic>::Zero(6, nv);
     s.jacobian.middleCols(body.first_column(p), s.marker.columns) = s.marker.full();
     return s;
@@ -301,17 +301,17 @@ struct BodyLaws {
   /// q ⊞ 0 = q, and δ˙ = v at δ = 0.
   void plus_of_nothing_changes_nothing();
   /// If q ⊞ δ(t) moves with δ˙ = `local_rate`(δ, v), the velocity of each point is that of v.
-  void local_rate_moves_the_body_with_its_speeds();
+  void local_rate_moves_the_body_with_its_velocities();
   /// For v = `rigid_velocity`(q, v₀, ω) every point has ṙ = v₀ + ω × r and the angular velocity ω.
   void rigid_velocity_is_the_field_of_a_rigid_motion();
   /// AᵀA = 1, det A > 0.
   void frame_is_orthonormal();
   /// [ṙ; ω] = J v.
-  void twist_is_jacobian_times_speeds();
+  void twist_is_jacobian_times_velocities();
   /// δr = J_r δ and δA = (J_ω δ)~ A under q ⊞ δ.
   void jacobian_is_the_derivative_of_the_frame();
   /// bias = d/dt (J v) at v˙ = 0, computed from the Jacobian and from the frame's twist.
-  void bias_is_the_acceleration_at_constant_speeds();
+  void bias_is_the_acceleration_at_constant_velocities();
   /// `load_stiffness` = ∂(Jᵀw)/∂q for a constant wrench w.
   void load_stiffness_is_the_derivative_of_the_pulled_wrench();
   /// Φ(q₀) = 0, G = ∂Φ/∂q, γ = d/dt (G v) at v˙ = 0 and `own_stiffness` = ∂(Gᵀλ)/∂q for a body with own constraint
@@ -339,12 +339,12 @@ struct BodyLaws {
       {"TangentMixesItsTwoPartsLinearly", &BodyLaws::tangent_mixes_its_two_parts_linearly},
       {"UndampedForceGivesBackTheStrainEnergy", &BodyLaws::undamped_force_gives_back_the_strain_energy},
       {"PlusOfNothingChangesNothing", &BodyLaws::plus_of_nothing_changes_nothing},
-      {"LocalRateMovesTheBodyWithItsSpeeds", &BodyLaws::local_rate_moves_the_body_with_its_speeds},
+      {"LocalRateMovesTheBodyWithItsSpeeds", &BodyLaws::local_rate_moves_the_body_with_its_velocities},
       {"RigidVelocityIsTheFieldOfARigidMotion", &BodyLaws::rigid_velocity_is_the_field_of_a_rigid_motion},
       {"FrameIsOrthonormal", &BodyLaws::frame_is_orthonormal},
-      {"TwistIsJacobianTimesSpeeds", &BodyLaws::twist_is_jacobian_times_speeds},
+      {"TwistIsJacobianTimesSpeeds", &BodyLaws::twist_is_jacobian_times_velocities},
       {"JacobianIsTheDerivativeOfTheFrame", &BodyLaws::jacobian_is_the_derivative_of_the_frame},
-      {"BiasIsTheAccelerationAtConstantSpeeds", &BodyLaws::bias_is_the_acceleration_at_constant_speeds},
+      {"BiasIsTheAccelerationAtConstantSpeeds", &BodyLaws::bias_is_the_acceleration_at_constant_velocities},
       {"LoadStiffnessIsTheDerivativeOfThePulledWrench",
        &BodyLaws::load_stiffness_is_the_derivative_of_the_pulled_wrench},
       {"OwnRowsHoldAtTheReferenceAndTheirMapsAreDerivatives",

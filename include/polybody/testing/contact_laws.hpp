@@ -143,7 +143,7 @@ struct ContactLaws {
       touching += touched;
       apart += !may;
       EXPECT_TRUE(may || !touched);
-      if constexpr (TellsReach<G>) {
+      if constexpr (HasReach<G>) {
         EXPECT_TRUE(geometry.reach(f[1]).holds(f[0].r) || !may);
       }
     }

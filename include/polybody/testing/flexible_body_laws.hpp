@@ -46,7 +46,7 @@ struct FlexibleBodyLaws : BodyLaws<Case> {
 
 template <class Case>
 void FlexibleBodyLaws<Case>::deformation_is_resisted_and_damped() {
-  VecX const q = this->configuration(), v = this->speeds();
+  VecX const q = this->configuration(), v = this->velocities();
   EXPECT_GT(this->strain_energy(q), 0.1);
   EXPECT_GT(this->force_at_rest(q).norm(), 1.0);
   EXPECT_GT(mismatch(this->template force<double>(q, v), this->force_at_rest(q)), 1e-3);
@@ -74,7 +74,7 @@ void FlexibleBodyLaws<Case>::rigid_motion_strains_nothing() {
 template <class Case>
 void FlexibleBodyLaws<Case>::internal_forces_are_in_equilibrium() {
   if (!FlexibleBodyLaws::objective) GTEST_SKIP() << "it says that it is not objective";
-  VecX const q = this->configuration(), v = this->speeds();
+  VecX const q = this->configuration(), v = this->velocities();
   VecX const rigid = this->rigid_velocity(q, this->velocity(), this->spin());
   VecX const f = this->internal_force(q, v);
   EXPECT_LT(std::abs(f.dot(rigid)), 1e-13 * (1.0 + f.norm() * rigid.norm()));
@@ -91,7 +91,7 @@ void FlexibleBodyLaws<Case>::rigid_velocity_is_not_damped() {
 template <class Case>
 void FlexibleBodyLaws<Case>::damping_takes_energy() {
   for (int i = 0; i < 20; ++i) {
-    VecX const q = this->configuration(), v = this->speeds();
+    VecX const q = this->configuration(), v = this->velocities();
     double const power = this->damping_force(q, v).dot(v);
     MatX const d = this->tangent(q, v, 0.0, 1.0) - this->assembled_matrix([&](Index e, auto& k) {
       this->undamped.tangent(e, view(q), view(v), 0.0, 1.0, k);

@@ -59,7 +59,7 @@ MatX gradient_by_differences(F const& force, std::array<Frame<double>, F::marker
 /// Derivative of wrenches and rates by differences, the reference for `gradient_with_states`.
 template <HasStates F>
 MatX gradient_by_differences(F const& force, std::array<Frame<double>, F::markers> const& frames,
-                             std::array<double, F::states> const& z, double t, SlopeFactors const& by) {
+                             std::array<double, F::states> const& z, double t, TangentFactors const& by) {
   Index const first = 6 * F::markers, n = first + F::states;
   MatX gradient(n, n);
   double const step = 1e-3 / std::max({1.0, by.pose, by.twist, by.states});

@@ -62,7 +62,7 @@ struct ForceLaws {
     return law().template wrenches<double>(f, t);
   }
   /// Required kinematics of marker number `marker`.
-  static Observes needs(int marker) { return marker == 1 ? needs_of_second<F>() : F::needs; }
+  static MarkerKind needs(int marker) { return marker == 1 ? needs_of_second<F>() : F::needs; }
 
   /// `wrench_gradient` = ck ∂w/∂pose + cd ∂w/∂twist, and for elements with states `gradient_with_states`, compared with
   /// differences. A branch or a conversion in a template for any scalar type could lose a derivative; this law finds
@@ -86,13 +86,13 @@ struct ForceLaws {
     Frames const given = frames();
     Frames turned = given;
     for (int k = 0; k < markers; ++k)
-      if (needs(k) == Observes::point) {
+      if (needs(k) == MarkerKind::point) {
         turned[std::size_t(k)].A = exp_so3<double>(number.template vec<3>(2.0));
         turned[std::size_t(k)].w = number.template vec<3>();
       }
     EXPECT_EQ(stacked(turned), stacked(given));
     for (int k = 0; k < markers; ++k)
-      if (needs(k) == Observes::point) {
+      if (needs(k) == MarkerKind::point) {
         EXPECT_EQ(wrenches(given)[std::size_t(k)].m.norm(), 0.0);
       }
   }

@@ -12,12 +12,13 @@ namespace polybody::laws {
 
 /// Laws of a joint geometry of any type. V = [ṙ; ω] are the twists of both frames, and G = [Ga Gb].
 struct JointLawsOf {
-  static constexpr double tolerance = 1e-12;                         ///< largest error of numbers of size one
-  AnyGeometry const geometry;                                        ///< geometry under test
-  bool const planar = geometry.planar;                               ///< true if all frames stay in the plane z = 0
-  Index const m = geometry.rows, held = m - geometry.velocity_rows;  ///< constraint equations, and the holonomic ones
-  double const t = 1.3;                                              ///< time of the evaluation [s]
-  Numbers number;                                                    ///< random numbers with a fixed seed
+  static constexpr double tolerance = 1e-12;  ///< largest error of numbers of size one
+  AnyGeometry const geometry;                 ///< geometry under test
+  bool const planar = geometry.planar;        ///< true if all frames stay in the plane z = 0
+  Index const m = geometry.rows,
+              held = m - geometry.nonholonomic_equations;  ///< constraint equations, and the holonomic ones
+  double const t = 1.3;                                    ///< time of the evaluation [s]
+  Numbers number;                                          ///< random numbers with a fixed seed
 
   explicit JointLawsOf(AnyGeometry g) : geometry(std::move(g)) {}  ///< laws of the geometry g
 
@@ -122,7 +123,7 @@ inline MatX JointLawsOf::known() const {
 inline VecX JointLawsOf::multipliers() { return number.vector(m, 3.0); }
 
 inline VecX JointLawsOf::wrenches(FramePair const& p, VecX const& lambda) const {
-  return geometry.gap(p, t).G.transpose() * lambda;
+  return geometry.constraint_function(p, t).G.transpose() * lambda;
 }
 
 /// Moment of both wrenches, w (12), about a point.
@@ -132,9 +133,9 @@ inline Vec3 moment_about(FramePair const& p, VecX const& w, Vec3 const& about) {
 }
 
 inline void JointLawsOf::closed_frames_have_no_gap() {
-  for (FramePair const& p : closed()) EXPECT_LT(geometry.gap(p, t).g.norm(), 1e-14);
+  for (FramePair const& p : closed()) EXPECT_LT(geometry.constraint_function(p, t).g.norm(), 1e-14);
   if (held == 0) return;
-  for (FramePair const& p : open()) EXPECT_GT(geometry.gap(p, t).g.norm(), 1e-3);
+  for (FramePair const& p : open()) EXPECT_GT(geometry.constraint_function(p, t).g.norm(), 1e-3);
 }
 
 // The constraint function of nonholonomic constraints is zero, without derivatives.
@@ -148,8 +149,8 @@ inline void JointLawsOf::maps_are_the_derivative_of_the_gap() {
 
 inline void JointLawsOf::rate_is_the_derivative_of_the_gap_by_time() {
   for (FramePair const& p : all()) {
-    VecX const slope = slope_at_zero([&](double h) { return geometry.gap(p, t + h).g; });
-    EXPECT_LT((geometry.gap(p, t).rate - slope).norm(), tolerance);
+    VecX const slope = slope_at_zero([&](double h) { return geometry.constraint_function(p, t + h).g; });
+    EXPECT_LT((geometry.constraint_function(p, t).rate - slope).norm(), tolerance);
   }
 }
 
@@ -158,7 +159,7 @@ inline void JointLawsOf::gamma_is_the_second_derivative_without_accelerations() 
     VecX const v = p.twists();
     VecX const by_time = slope_at_zero(
         [&](double h) {
-          SeenGap const later = geometry.gap(p, t + h);
+          SeenGap const later = geometry.constraint_function(p, t + h);
           return VecX(later.G * v + later.rate);
         },
         1e-2);
@@ -184,7 +185,7 @@ inline void JointLawsOf::wrenches_are_equal_and_opposite() {
     if (planar) about[2] = 0.0;
     f.head(geometry.world_rows) = lambda.head(geometry.world_rows);
     EXPECT_LT((w.segment<3>(0) + w.segment<3>(6)).norm(), tolerance);
-    MatX const G = geometry.gap(p, t).G;
+    MatX const G = geometry.constraint_function(p, t).G;
     EXPECT_TRUE(!geometry.opposite_ends || G.leftCols(6) == -G.rightCols(6));
     EXPECT_LT((moment_about(p, w, about) - (p.b.r - p.a.r).cross(f)).norm(), 10 * tolerance);
   }
@@ -202,7 +203,7 @@ inline void JointLawsOf::does_not_see_a_rigid_motion_of_both_frames() {
     MatX rows = MatX::Identity(m, m), back = MatX::Zero(12, 12);
     rows.topLeftCorner(n, n) = turn.topLeftCorner(n, n);
     for (int i = 0; i < 12; i += 3) back.block<3, 3>(i, i) = turn.transpose();
-    SeenGap const before = geometry.gap(p, t), after = geometry.gap(q, t);
+    SeenGap const before = geometry.constraint_function(p, t), after = geometry.constraint_function(q, t);
     EXPECT_LT((after.g - rows * before.g).norm(), tolerance);
     EXPECT_LT((after.rate - rows * before.rate).norm(), tolerance);
     EXPECT_LT(((after.G - rows * before.G * back) * known()).norm(), tolerance);
@@ -223,7 +224,7 @@ inline void JointLawsOf::wrench_gradient_is_the_derivative_of_the_wrenches() {
 
 inline void JointLawsOf::rows_and_freedoms_make_up_all_motions() {
   MatX const k = known();
-  auto const smallest_part = [](MatX a) {  // part of a row that is independent of the previous rows
+  auto const min_load_step = [](MatX a) {  // part of a row that is independent of the previous rows
     double smallest = a.row(0).norm();
     for (Index i = 1; i < a.rows(); ++i) {
       a.row(i - 1).normalize();
@@ -234,9 +235,9 @@ inline void JointLawsOf::rows_and_freedoms_make_up_all_motions() {
   };
   for (FramePair const& p : closed()) {
     EXPECT_EQ(m + p.freedoms.cols(), k.cols() / 2);
-    MatX const g = geometry.gap(p, t).G;
-    EXPECT_GT(smallest_part(g * k), 0.3);
-    EXPECT_GT(smallest_part((g * k).rightCols(k.cols() / 2)), 0.3);
+    MatX const g = geometry.constraint_function(p, t).G;
+    EXPECT_GT(min_load_step(g * k), 0.3);
+    EXPECT_GT(min_load_step((g * k).rightCols(k.cols() / 2)), 0.3);
     EXPECT_LT((g.rightCols<6>() * p.freedoms).norm(), tolerance);
   }
 }

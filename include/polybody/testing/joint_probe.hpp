@@ -7,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-#include <polybody/joints/gap.hpp>
+#include <polybody/joints/constraint_terms.hpp>
 #include <polybody/testing/frames.hpp>
 
 namespace polybody::laws {
@@ -40,12 +40,12 @@ struct SeenGap {
 /// Joint geometry with its type erased.
 struct AnyGeometry {
   /// Numbers of constraint equations: in total, in world axes (the first ones), of velocities (the last ones).
-  Index rows = 0, world_rows = 0, velocity_rows = 0;
+  Index rows = 0, world_rows = 0, nonholonomic_equations = 0;
   bool planar = false;         ///< true if the frames stay in the plane z = 0
   bool opposite_ends = false;  ///< true if the geometry declares Gb = −Ga
   ///@{
   /// Constraint function at a time [s]; `gap_with_slopes` also computes the derivatives.
-  std::function<SeenGap(FramePair const&, double)> gap, gap_with_slopes;
+  std::function<SeenGap(FramePair const&, double)> constraint_function, gap_with_slopes;
   ///@}
   std::function<VecX(FramePair const&, double)> gamma;                  ///< γ (m) at a time [s]
   std::function<MatX(FramePair const&, double, VecX const&)> gradient;  ///< (12×12) ∂(Gᵀλ)/∂(motions)
@@ -59,18 +59,18 @@ AnyGeometry any_geometry() {
   using D = Dual<12>;
   static constexpr int m = G::rows;
   static auto const geometry = Case::geometry();
-  auto const gap = [](FramePair const& p, double t) {
-    Gap<m> const x = geometry.template gap<double>(p.a, p.b, t);
+  auto const constraint_function = [](FramePair const& p, double t) {
+    ConstraintTerms<m> const x = geometry.template constraint_function<double>(p.a, p.b, t);
     SeenGap seen{x.g, x.rate, MatX(m, 12), {}, {}};
     seen.G << x.Ga, x.Gb;
     return seen;
   };
-  auto const by_duals = [gap](FramePair const& p, double t) {
-    SeenGap seen = gap(p, t);
+  auto const by_duals = [constraint_function](FramePair const& p, double t) {
+    SeenGap seen = constraint_function(p, t);
     seen.slope.resize(m, 12);
     seen.G_rate.resize(m, 12);
     auto const see = [&](Frame<D> const& a, Frame<D> const& b, auto&& keep) {
-      Gap<m, D> const x = geometry.template gap<D>(a, b, t);
+      ConstraintTerms<m, D> const x = geometry.template constraint_function<D>(a, b, t);
       for (Index i = 0; i < m; ++i) keep(i, x);
     };
     Vec<D, 6> of_a, of_b;
@@ -91,10 +91,10 @@ AnyGeometry any_geometry() {
   };
   return {.rows = m,
           .world_rows = Case::world_rows,
-          .velocity_rows = velocity_rows<G>(),
+          .nonholonomic_equations = nonholonomic_equations<G>(),
           .planar = Case::planar,
           .opposite_ends = has_opposite_ends<G>(),
-          .gap = gap,
+          .gap = constraint_function,
           .gap_with_slopes = by_duals,
           .gamma = [](FramePair const& p, double t) { return VecX(geometry.template gamma<double>(p.a, p.b, t)); },
           .gradient = [](FramePair const& p, double t,

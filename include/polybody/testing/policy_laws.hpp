@@ -24,7 +24,7 @@ template <class Case>
 struct PolicyLaws {
   using P = decltype(Case::policy());   ///< type of the policy
   static constexpr int m = Case::rows;  ///< number of constraint equations
-  static_assert(AnswersRows<P, m> && Policy<P>);
+  static_assert(CompliantLaw<P, m> && Policy<P>);
   using Row = Vec<double, m>;  ///< one number for each constraint equation
 
   P const policy = Case::policy();  ///< policy under test

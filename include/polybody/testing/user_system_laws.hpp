@@ -25,10 +25,10 @@ struct UserSystemLaws {
   static_assert(UserMechanics<E>);
   static constexpr double wild = 1e9;  ///< initial value of all results, in any unit
 
-  E const equations = Case::equations();  ///< equations under test
-  Index const n = equations.speeds();     ///< number of generalised velocities
-  double const t = 1.3;                   ///< time of the evaluation [s]
-  Numbers number;                         ///< random numbers with a fixed seed
+  E const equations = Case::equations();   ///< equations under test
+  Index const n = equations.velocities();  ///< number of generalised velocities
+  double const t = 1.3;                    ///< time of the evaluation [s]
+  Numbers number;                          ///< random numbers with a fixed seed
 
   /// Coordinates q (n): coordinates of the case if it gives them, otherwise random numbers in [−1, 1].
   VecX coordinates() {
@@ -51,7 +51,7 @@ struct UserSystemLaws {
   }
   /// Number of constraint equations; zero if the equations have none.
   Index rows() const {
-    if constexpr (OffersRows<E>)
+    if constexpr (HasConstraintEquations<E>)
       return equations.rows();
     else
       return 0;
@@ -59,19 +59,19 @@ struct UserSystemLaws {
   /// Constraint violation Φ (rows) at time `at` [s].
   VecX violation(VecX const& q, double at) const {
     VecX phi = VecX::Constant(rows(), wild);
-    if constexpr (OffersRows<E>) equations.violation(q, at, phi);
+    if constexpr (HasConstraintEquations<E>) equations.violation(q, at, phi);
     return phi;
   }
   /// Constraint Jacobian ∂Φ/∂q (rows×n) at time `at` [s].
   MatX jacobian(VecX const& q, double at) const {
     MatX g = MatX::Constant(rows(), n, wild);
-    if constexpr (OffersRows<E>) equations.jacobian(q, at, g);
+    if constexpr (HasConstraintEquations<E>) equations.jacobian(q, at, g);
     return g;
   }
   /// Partial derivative ∂Φ/∂t (rows) at time `at` [s].
   VecX rate(VecX const& q, double at) const {
     VecX phi_t = VecX::Constant(rows(), wild);
-    if constexpr (OffersRows<E>) equations.rate(q, at, phi_t);
+    if constexpr (HasConstraintEquations<E>) equations.rate(q, at, phi_t);
     return phi_t;
   }
 
@@ -89,7 +89,7 @@ struct UserSystemLaws {
 
   /// `tangent` = −(ck ∂f/∂q + cd ∂f/∂v), if the equations have a tangent.
   void tangent_is_the_derivative_of_the_force() {
-    if constexpr (!OffersForceTangent<E>) {
+    if constexpr (!HasForceTangent<E>) {
       GTEST_SKIP() << "its tangent comes from differences";
     } else {
       VecX const q = coordinates(), v = number.vector(n);
@@ -122,7 +122,7 @@ struct UserSystemLaws {
 
   /// γ = d/dt (G v + Φ_t) along q + v t at constant v, so that Φ̈ = G v̇ + γ.
   void gamma_is_the_second_derivative_without_accelerations() {
-    if constexpr (!OffersRows<E>) {
+    if constexpr (!HasConstraintEquations<E>) {
       GTEST_SKIP() << "it has no rows";
     } else {
       VecX const q = coordinates(), v = number.vector(n);

@@ -37,9 +37,9 @@ Vec<T, 3> across(Vec<T, 3> const& a, Vec<T, 3> const& n) {
 /// Axes of a link (3×3): x from its rear pin to its front pin, y along its pins, z towards the wheels. The axes of a
 /// marker with a full frame are these axes. A cable has a tangent only. Its y is perpendicular to the tangent and as
 /// close as possible to `lateral`, the axle of the touching body.
-template <Observes observed, StateScalar T>
+template <MarkerKind observed, StateScalar T>
 Mat<T, 3, 3> link_axes(Frame<T> const& link, Vec<T, 3> const& lateral) {
-  if constexpr (observed == Observes::frame) {
+  if constexpr (observed == MarkerKind::frame) {
     return link.A;
   } else {
     using std::sqrt;

@@ -6,7 +6,7 @@
 
 #include <array>
 
-#include <polybody/run/points.hpp>
+#include <polybody/run/marker_frames.hpp>
 #include <polybody/stress/section.hpp>
 #include <polybody/vehicle/link_axes.hpp>
 #include <polybody/vehicle/track_links.hpp>
@@ -55,7 +55,8 @@ double link_bending(BodyHandle<B> const& link, State const& x, Vec3 const& later
 
 /// Strain (T₀ + m v²/p)/EA in a chain that moves at speed v [m/s] under the tension T₀ = `pull` [N]. Its links have
 /// the mass m [kg], the pitch p and this `height` [m].
-inline double running_strain(double speed, double pull, double height = cable_height, double mass = thesis.link.mass) {
+inline double running_strain(double speed, double pull, double height = cable_height,
+                             double mass = wallin_2016.link.mass) {
   return (pull + mass * speed * speed / pitch) / constants(link_bar({}, height)).EA;
 }
 

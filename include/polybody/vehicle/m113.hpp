@@ -18,13 +18,13 @@
 #include <array>
 #include <numbers>
 
-#include <polybody/math/time_laws.hpp>
+#include <polybody/math/time_functions.hpp>
 #include <polybody/vehicle/track_layout.hpp>
 
 namespace polybody::m113 {
 
 /// Three numbers along x, y, z as compile-time constants; vectors of Eigen are not.
-struct Triple {
+struct Vec3Storage {
   double x, y, z;  ///< components, in the unit of the quantity
   /// The components as a column (3).
   operator Vec3() const { return {x, y, z}; }  // NOLINT(google-explicit-constructor): reads as a vector
@@ -40,8 +40,8 @@ constexpr double sign(Side side) { return side == Side::left ? 1.0 : -1.0; }
 
 /// Mass [kg] and principal moments of inertia about the body's x, y, z [kg m²].
 struct Solid {
-  double mass;     ///< [kg]
-  Triple inertia;  ///< about the body's x, y, z [kg m²]
+  double mass;          ///< [kg]
+  Vec3Storage inertia;  ///< about the body's x, y, z [kg m²]
 };
 /// Mass and inertia of each kind of body.
 struct Solids {
@@ -58,7 +58,7 @@ struct Solids {
 /// are (Iyy, Ixx, Izz) here. The greatest moment of inertia of a wheel is about its axle. The least moment of an arm is
 /// about its own length, and the least moment of a link about its width. The row of the chassis has x longitudinal: its
 /// least moment is the roll inertia. A wheel of 561 kg is a solid drum as wide as the track.
-inline constexpr Solids thesis{
+inline constexpr Solids wallin_2016{
     .chassis = {5489.2, {1786.9, 10450.0, 10721.0}},  // T3.1
     .sprocket = {436.67, {12.216, 13.868, 12.216}},   // T3.1
     .idler = {429.57, {12.545, 14.698, 12.545}},      // T3.1
@@ -69,14 +69,14 @@ inline constexpr Solids thesis{
 };
 
 /// Masses of a real vehicle, 11.36 t in total. Springs that are tuned for the masses of `thesis` do not suit these.
-inline constexpr Solids public_data{
+inline constexpr Solids production_vehicle{
     .chassis = {7819.24, {13983.08, 27287.61, 28805.57}},  // C
     .sprocket = {27.68, {0.646, 0.883, 0.646}},            // C
     .idler = {25.76, {0.618, 1.12, 0.618}},                // C
     .wheel = {35.56, {1.14, 2.16, 1.14}},                  // C
-    .arm = thesis.arm,                                     // T3.1
-    .link = thesis.link,                                   // T3.1
-    .tensioner = thesis.tensioner,                         // A
+    .arm = wallin_2016.arm,                                // T3.1
+    .link = wallin_2016.link,                              // T3.1
+    .tensioner = wallin_2016.tensioner,                    // A
 };
 
 // --------------------------------------------------------------------------------------------------------------
@@ -101,7 +101,7 @@ inline constexpr double idler_radius = 0.2616;  ///< radius, derived from T3.1 i
 inline constexpr double rim_y = 0.058;
 inline constexpr double rim_width = 0.065;  ///< width of a rim [m]  [C]
 
-inline constexpr Triple chassis{-2.006, 0.0, 0.9921};  ///< centre of mass of the chassis [m]  [C]
+inline constexpr Vec3Storage chassis{-2.006, 0.0, 0.9921};  ///< centre of mass of the chassis [m]  [C]
 /// Height of the wheels' centres on links that lie on the ground  [D]
 inline constexpr double wheel_z = 2.0 * half_thickness + wheel_radius;
 inline constexpr double sprocket_z = wheel_z + 0.215;  ///< height of the sprockets' centres [m]  [C]
@@ -128,21 +128,23 @@ inline constexpr double arm_inboard = 0.12;  ///< distance of the arm from the t
 inline constexpr double shock_on_arm = 0.147;
 
 /// The sprocket's centre [m].
-constexpr Triple sprocket(Side side) { return {0.0, sign(side) * track_y, sprocket_z}; }
+constexpr Vec3Storage sprocket(Side side) { return {0.0, sign(side) * track_y, sprocket_z}; }
 /// Centres of the idler and of the tensioner [m], with the idler at `x`.
-constexpr Triple idler(Side side, double x = idler_start_x) { return {x, sign(side) * track_y, idler_z}; }
+constexpr Vec3Storage idler(Side side, double x = idler_start_x) { return {x, sign(side) * track_y, idler_z}; }
 /// Centre of wheel i [m]; i = 0 is in front, i = 4 at the rear.
-constexpr Triple wheel(int i, Side side) { return {first_wheel_x - i * wheel_spacing, sign(side) * track_y, wheel_z}; }
+constexpr Vec3Storage wheel(int i, Side side) {
+  return {first_wheel_x - i * wheel_spacing, sign(side) * track_y, wheel_z};
+}
 /// Point on the arm of wheel i, at the distance `from_pivot` [m] from its pivot on the chassis; the wheel is at
 /// arm_length.
-constexpr Triple arm_point(int i, Side side, double from_pivot) {
+constexpr Vec3Storage arm_point(int i, Side side, double from_pivot) {
   double const share = 1.0 - from_pivot / arm_length;
   return {wheel(i, side).x + share * arm_reach, sign(side) * (track_y - arm_inboard), wheel_z + share * arm_rise};
 }
 /// Pivot of the arm of wheel i on the chassis [m].
-constexpr Triple arm_pivot(int i, Side side) { return arm_point(i, side, 0.0); }
+constexpr Vec3Storage arm_pivot(int i, Side side) { return arm_point(i, side, 0.0); }
 /// Middle of the arm of wheel i, which is its centre of mass [m].
-constexpr Triple arm(int i, Side side) { return arm_point(i, side, 0.5 * arm_length); }
+constexpr Vec3Storage arm(int i, Side side) { return arm_point(i, side, 0.5 * arm_length); }
 
 /// Layout of the track of either side in its plane, for `wrap_track`. The idler is at −3.95 m [C] and may move 0.1 m to
 /// the rear. Wheels are listed for the ground and for the upper run, which has no rollers [P].
@@ -203,10 +205,10 @@ inline constexpr double slip_speed = 0.05;  ///< slip velocity at which friction
 inline constexpr double onset = 1.0e-4;     ///< penetration at which the damper reaches its full value [m]  [A]
 
 /// Corners of the pad on the ground, in a link's axes  [x: C, half the pad's length; y, z: D]
-inline constexpr std::array<Triple, 4> pad{{{0.055, 0.1905, -half_thickness},
-                                            {0.055, -0.1905, -half_thickness},
-                                            {-0.055, 0.1905, -half_thickness},
-                                            {-0.055, -0.1905, -half_thickness}}};
+inline constexpr std::array<Vec3Storage, 4> pad{{{0.055, 0.1905, -half_thickness},
+                                                 {0.055, -0.1905, -half_thickness},
+                                                 {-0.055, 0.1905, -half_thickness},
+                                                 {-0.055, -0.1905, -half_thickness}}};
 
 /// Profile of a valley between two teeth: an arc of ± `flank` about its bottom, then straight flanks up to the tip.
 /// Pins are round. A pin at the bottom lies on the pitch circle, so the arc's centre is on the radius Rp +
@@ -219,8 +221,8 @@ inline constexpr double tip_radius = 0.262;                       ///< outer rad
 inline constexpr double tooth_y = 0.1125;
 
 /// Horn that guides a link between the rims: a box in a link's axes  [C].
-inline constexpr Triple horn{0.045, 0.0, 0.0375};          ///< centre of the horn [m]
-inline constexpr Triple horn_size{0.0284, 0.0114, 0.075};  ///< half lengths of its edges [m]
+inline constexpr Vec3Storage horn{0.045, 0.0, 0.0375};          ///< centre of the horn [m]
+inline constexpr Vec3Storage horn_size{0.0284, 0.0114, 0.075};  ///< half lengths of its edges [m]
 /// Free lateral distance on either side between horn and rim: 0.051/2 − 0.0114/2  [C, D]
 inline constexpr double horn_play = 0.0198;
 
@@ -233,8 +235,8 @@ inline constexpr double horn_play = 0.0198;
 inline Ramp drive(double speed, double rounding = 0.0) {
   return {.target = speed, .duration = 7.0, .start = 1.0, .rounding = rounding};
 }
-inline constexpr double chapter_3_speed = 25.0;                       ///< [rad/s]  [T Fig. 3.6]
-inline constexpr std::array<double, 2> chapter_4_speeds{30.0, 80.0};  ///< [rad/s]  [T Fig. 4.3]
+inline constexpr double moderate_sprocket_speed = 25.0;                       ///< [rad/s]  [T Fig. 3.6]
+inline constexpr std::array<double, 2> fast_sprocket_velocities{30.0, 80.0};  ///< [rad/s]  [T Fig. 4.3]
 /// Forward velocity divided by the sprocket's angular velocity: N p/2π [m].
 inline constexpr double rolling_radius = teeth * pitch / (2.0 * std::numbers::pi);
 
@@ -246,6 +248,6 @@ inline constexpr double shear_modulus = 76.9e9;          ///< [Pa]  [T §3.6]
 inline constexpr double density = 7800.0;                ///< [kg/m³]  [T §3.6]
 inline constexpr double cable_width = 2.0 * half_width;  ///< equal to the width of a link  [A]
 /// Height of the cable's section, such that the cable has the mass of a link  [D].
-inline constexpr double cable_height = thesis.link.mass / (density * pitch * cable_width);
+inline constexpr double cable_height = wallin_2016.link.mass / (density * pitch * cable_width);
 
 }  // namespace polybody::m113

@@ -15,13 +15,13 @@ namespace polybody::m113 {
 /// links. `Link` is the body of a link; `PinPolicy` is the policy of the pins between links. If pins are constraints or
 /// joint coordinates, 63 pins of a track have this policy, and the last pin is chosen by `Closure`. If pins are forces
 /// or linear constraint equations, all 64 pins are alike.
-template <class Link = Rigid<>, Policy PinPolicy = Constraint, Terrain Ground = FlatGround, TimeLaw Drive = Ramp>
+template <class Link = Rigid<>, Policy PinPolicy = Constraint, Terrain Ground = FlatGround, TimeFunction Drive = Ramp>
 class Vehicle : public TrackedVehicle {
  public:
-  using LinkType = Link;                                ///< the body of a link
-  static constexpr Observes observed = Link::observes;  ///< observed quantities of markers on a link
+  using LinkType = Link;                                  ///< the body of a link
+  static constexpr MarkerKind observed = Link::observes;  ///< observed quantities of markers on a link
   /// True if all 64 pins of a track are alike.
-  static constexpr bool closes_alike = AddsForce<PinPolicy> || LinearInCoordinates<PinPolicy>;
+  static constexpr bool closes_alike = CompliantPolicy<PinPolicy> || LinearPolicy<PinPolicy>;
   /// Body of all parts except links.
   using Base = std::conditional_t<std::is_same_v<Link, Rigid<EulerParameters>>, Link, Rigid<>>;
   using Hull = HullTypes<Base, Drive>;     ///< types of the bodies and joints that carry the tracks

@@ -2,7 +2,7 @@
 /// \file
 /// Tracks at rest on a vehicle that does not yet load them. For vehicles; not included by polybody.hpp.
 
-#include <polybody/integrators/generalized_alpha.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/run/energy.hpp>
 #include <polybody/run/observe.hpp>
 #include <polybody/run/simulate.hpp>
@@ -16,7 +16,7 @@ namespace polybody::m113 {
 /// velocities are set to zero at each maximum of its kinetic energy, until it rests.
 /// \param ground terrain under the vehicle. If a program drives on the same type of ground, only one vehicle type is
 /// compiled.
-/// \throws InvalidInput, NewtonStalled; Error if the track does not come to rest.
+/// \throws InvalidInput, NewtonConvergenceFailure; Error if the track does not come to rest.
 template <Terrain Ground = FlatGround>
 TrackStart settled_track(VehicleOptions options = {}, Ground const& ground = {}) {
   options.held = true;
@@ -30,9 +30,9 @@ TrackStart settled_track(VehicleOptions options = {}, Ground const& ground = {})
   for (int again = 0; again < 300 && (again < 10 || fastest > 1e-3); ++again) {
     x.v.setZero();
     x.t = 0.0;
-    auto run = simulate(bench.model, x, GeneralizedAlpha{.rho_inf = 0.0, .tolerance = 1e-6},
-                        {.until = 1.0, .step = 2e-3, .halvings = 8});
-    System asked(bench.model, with<Entries::motion>);
+    auto run = simulate(bench.model, x, GeneralisedAlpha{.rho_inf = 0.0, .tolerance = 1e-6},
+                        {.end_time = 1.0, .step = 2e-3, .max_step_halvings = 8});
+    System asked(bench.model, with<Capabilities::motion>);
     double energy = 0.0, before = 0.0;
     fastest = 0.0;
     do {

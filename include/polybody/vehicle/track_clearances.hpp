@@ -7,7 +7,7 @@
 #include <limits>
 #include <span>
 
-#include <polybody/vehicle/track_walk.hpp>
+#include <polybody/vehicle/track_trace.hpp>
 
 namespace polybody {
 

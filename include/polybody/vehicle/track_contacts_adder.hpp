@@ -39,18 +39,18 @@ class TrackContactsAdder {
         in_the_middle ? rims : add_group(under(of_side, {-face, 0.0, face}, Face::wheels), name + "inner faces", track);
     auto const roller = [&](BodyHandle<Base> const& body, double radius) {
       auto const axle = body.at(Vec3(0, 0, 0));
-      part_.pair_with(rollers, of_links.on_roller(radius, face), axle, body.name);
-      part_.pair_with(rims, of_links.on_rims(radius), axle, body.name + " (horn)");
+      part_.add_partner(rollers, of_links.on_roller(radius, face), axle, body.name);
+      part_.add_partner(rims, of_links.on_rims(radius), axle, body.name + " (horn)");
     };
     for (BodyHandle<Base> const& wheel : carriers.wheels) roller(wheel, wheel_radius);
     roller(carriers.idler[0], idler_radius);
     auto const sprocket = carriers.sprocket[0].at(Vec3(0, 0, 0));
     auto const pins = in_the_middle ? rims : add_group(of_side.front, name + "pins on teeth", track);
-    part_.pair_with(pins, of_links.on_teeth(in_the_middle ? 0.5 * pitch : 0.0), sprocket, carriers.sprocket[0].name);
+    part_.add_partner(pins, of_links.on_teeth(in_the_middle ? 0.5 * pitch : 0.0), sprocket, carriers.sprocket[0].name);
     double const x = pad[0].x;
     auto const pads = in_the_middle ? rims : add_group(under(of_side, {-x, x}, Face::ground), name + "pads", track);
-    part_.pair_with(pads, of_links.on_terrain(ground, in_the_middle ? of_links.corners() : of_links.corners(x)),
-                    part_.ground().at({0, 0, 0}), "ground");
+    part_.add_partner(pads, of_links.on_terrain(ground, in_the_middle ? of_links.corners() : of_links.corners(x)),
+                      part_.ground().at({0, 0, 0}), "ground");
     return std::exchange(groups_, {});
   }
 

@@ -18,7 +18,7 @@ namespace polybody::m113 {
 enum class Face { wheels, ground };
 
 namespace detail {
-inline Mat3 principal(Triple const& moments) { return Vec3(moments).asDiagonal(); }
+inline Mat3 principal(Vec3Storage const& moments) { return Vec3(moments).asDiagonal(); }
 }  // namespace detail
 
 /// Steel link with the section of [Wallin 2016, §3.6], cable_width × cable_height, with x from the rear pin to the
@@ -36,7 +36,7 @@ inline Bar link_bar(Placement placement = {}, double height = cable_height) {
 
 /// Copies `masses` with the mass and inertia of links replaced by those of `link_bar`, of height h [m], as for flexible
 /// links. The inertia in T3.1 is the inertia of a box 1.7 times as high.
-inline Solids with_steel_links(Solids masses = thesis, double h = cable_height) {
+inline Solids with_steel_links(Solids masses = wallin_2016, double h = cable_height) {
   double const w = cable_width, m = density * w * h * pitch, twelfth = m / 12.0;
   masses.link = {m, {twelfth * (w * w + h * h), twelfth * (pitch * pitch + h * h), twelfth * (pitch * pitch + w * w)}};
   return masses;

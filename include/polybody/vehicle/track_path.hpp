@@ -197,7 +197,7 @@ inline TrackPath wrap_track(TrackLayout const& layout) {
   TrackLayout const& l = path.layout;
   detail::check_track_overlaps(l, true);
 
-  detail::TrackWalk const walk = detail::track_walk(l);
+  detail::TrackTrace const walk = detail::track_walk(l);
   path.first_valley = walk.first;
   path.seated = walk.last - walk.first + 1;
   for (int k = walk.first; k < walk.start; ++k) path.pins.push_back(l.seat(k));

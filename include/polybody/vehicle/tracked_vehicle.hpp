@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <polybody/run/contacts.hpp>
-#include <polybody/run/points.hpp>
+#include <polybody/run/marker_frames.hpp>
 #include <polybody/vehicle/m113.hpp>
 
 namespace polybody::m113 {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include <polybody/run/points.hpp>
+#include <polybody/run/marker_frames.hpp>
 #include <polybody/vehicle/hull.hpp>
 #include <polybody/vehicle/tracked_vehicle.hpp>
 

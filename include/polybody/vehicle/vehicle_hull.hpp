@@ -21,7 +21,7 @@ namespace polybody::m113 {
 
 /// Types of the hull: bodies of type Base, joints as constraints, springs, and driving constraints with the function of
 /// time `Drive`.
-template <class Base, TimeLaw Drive>
+template <class Base, TimeFunction Drive>
 struct HullTypes {
   using Hinge = Joint<Revolute, Constraint>;                ///< axles, and pivots of sprung arms
   using Slide = Joint<Prismatic, Constraint>;               ///< guide of a tensioner on the chassis

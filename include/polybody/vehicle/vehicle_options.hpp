@@ -21,7 +21,7 @@ struct TrackStart {
 /// Pins as penalties of `stiffness` [N/m]. For constraint equations that are direction cosines, the stiffness is equal
 /// to that of forces at both ends of the link's width.
 template <class = void>  // compiled only if it is used
-PenaltyPerRow<5> penalty_pin(double stiffness) {
+PenaltyPerEquation<5> penalty_pin(double stiffness) {
   Vec<double, 5> rows;
   rows << 1.0, 1.0, 1.0, pin_arm * pin_arm, pin_arm * pin_arm;
   return {.stiffness = Vec<double, 5>(stiffness * rows), .damping = Vec<double, 5>(pin_damping * rows)};
@@ -49,7 +49,7 @@ enum class ContactsAct {
 
 /// Options of the vehicle besides the formulation of its tracks. The defaults are the values of m113.hpp.
 struct VehicleOptions {
-  Solids masses = thesis;          ///< masses and inertias of all bodies
+  Solids masses = wallin_2016;     ///< masses and inertias of all bodies
   bool suspension = true;          ///< false: the arms are welded to the chassis, without springs
   double preload = m113::preload;  ///< preload of the tensioners [N]
   int cut = 0;                     ///< number of the pin that closes the loop of each track, if pins are constraints

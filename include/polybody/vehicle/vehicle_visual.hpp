@@ -86,7 +86,7 @@ void attach_link(Visual& visual, BodyHandle<Link> const& link, Marker<Link> cons
     visual.attach(middle, box({pitch, cable_width, cable_height}), link.name);
   } else {
     visual.sweep(link, link_bar(), 4);
-    if constexpr (Link::observes == Observes::frame)
+    if constexpr (Link::observes == MarkerKind::frame)
       visual.attach(link.at(0.5 * pitch + horn.x, 0.0, horn.z), box(horn_size), link.name + " horn");
   }
 }

@@ -13,9 +13,9 @@
 #include <Eigen/QR>
 
 #include <polybody/math/symmetric_pencil.hpp>
-#include <polybody/run/fitting.hpp>
+#include <polybody/run/state_checks.hpp>
 #include <polybody/solvers/linear_solver.hpp>
-#include <polybody/system/model_entries.hpp>
+#include <polybody/system/make_operations.hpp>
 #include <polybody/system/system.hpp>
 
 namespace polybody {
@@ -116,13 +116,13 @@ template <class = void>
 Linearisation linearise(System& system, State const& x) {
   require_usable(system, x);
   Index const states = system.layout().states;
-  VecX const speeds = x.v.head(x.v.size() - states);
-  if (speeds.size() && speeds.cwiseAbs().maxCoeff() > 1e-9)
+  VecX const velocities = x.v.head(x.v.size() - states);
+  if (velocities.size() && velocities.cwiseAbs().maxCoeff() > 1e-9)
     throw InvalidInput(
         "modes: the state must be at rest; take one from equilibrium(model, x). About a steady rotation use "
         "linearise(model, x, SteadyRotation{...}) of vibration/steady_rotation.hpp.");
   system.evaluate(x.q, x.v, x.t);
-  Index const nv = system.speeds(), rows = system.rows();
+  Index const nv = system.velocities(), rows = system.rows();
   Linearisation l;
   l.M = detail::dense_tangent(system, {.mass = 1.0}, x.lambda).topLeftCorner(nv, nv);
   l.D = detail::dense_tangent(system, {.damping = 1.0}, x.lambda).topLeftCorner(nv, nv);
@@ -137,7 +137,7 @@ Linearisation linearise(System& system, State const& x) {
 /// Overload for a model.
 template <class M>
 Linearisation linearise(M const& model, State const& x) {
-  System system(model, with<Entries::implicit_step>);
+  System system(model, with<Capabilities::implicit_step>);
   return linearise(system, x);
 }
 

@@ -10,10 +10,10 @@
 
 namespace polybody {
 
-/// Replacement of DenseModes in held_modes, free_interface_modes and craig_bampton: implicitly restarted Lanczos
-/// iteration on K⁻¹M, in the inner product of M [Ericsson & Ruhe 1980; Sorensen 1992]. The iteration may miss modes
-/// of a repeated frequency. The number of modes below the last one is therefore compared with the negative pivots of
-/// K − σM (Sylvester). If modes are missing, the iteration is repeated with twice the number of vectors, up to six
+/// Replacement of DenseModes in fixed_interface_modes, free_interface_modes and craig_bampton: implicitly restarted
+/// Lanczos iteration on K⁻¹M, in the inner product of M [Ericsson & Ruhe 1980; Sorensen 1992]. The iteration may miss
+/// modes of a repeated frequency. The number of modes below the last one is therefore compared with the negative pivots
+/// of K − σM (Sylvester). If modes are missing, the iteration is repeated with twice the number of vectors, up to six
 /// times.
 struct SpectraModes {
   Index restarts = 1000;     ///< largest number of restarts, for each number of vectors

@@ -40,7 +40,7 @@ class TurningFrame {
   TurningFrame(System& of, VecX const& q, SteadyRotation const& rotation)
       : system(of),
         rotation_(rotation),
-        none_(VecX::Zero(system.speeds())),
+        none_(VecX::Zero(system.velocities())),
         no_row_(VecX::Zero(system.rows())),
         w_(none_),
         a_(none_),
@@ -49,15 +49,15 @@ class TurningFrame {
     require_finite(rotation.point, "SteadyRotation: the point of the axis");
     if (system.layout().states > 0)
       throw InvalidInput("SteadyRotation: the model has first-order states, which a steady rotation does not know.");
-    for (BodyPlace const& body : system.layout().bodies)
+    for (BodyLayout const& body : system.layout().bodies)
       if (body.planar && !rotation.angular_velocity.head<2>().isZero(0.0))
         throw InvalidInput{"SteadyRotation: body \"", body.name,
                            "\" lives in the plane, so the axis must be parallel to z."};
-    gradient_ = by_speeds(q, [&](VecX const& at, VecX& w) { speeds(at, w); });
+    gradient_ = by_velocities(q, [&](VecX const& at, VecX& w) { velocities(at, w); });
     generator_ = gradient_;
     double const s = 1e-3 / std::max(rotation.angular_velocity.norm(), 1e-3);
     VecX w(none_), there(none_), back(none_), one(none_);
-    speeds(q, w);
+    velocities(q, w);
     for (Index j = 0; j < one.size(); ++j) {
       one[j] = 1.0;
       system.local_rate(s * w, one, there);
@@ -68,14 +68,14 @@ class TurningFrame {
   }
 
   /// Generalised velocities w(q) of the rotation.
-  void speeds(VecX const& q, VecX& w) const {
+  void velocities(VecX const& q, VecX& w) const {
     Vec3 const omega = share * rotation_.angular_velocity, origin = rotation_.point.cross(omega);
-    require_entry(system.entries().first.rigid_speeds, "speeds of rigid motions")(system.entries().second, q, origin,
-                                                                                  omega, w);
+    require_entry(system.entries().first.rigid_velocities, "speeds of rigid motions")(system.entries().second, q,
+                                                                                      origin, omega, w);
   }
   /// Residual R(q, w, Γw) with these multipliers. The state of the system becomes (q, w, t).
   void residual(VecX const& q, VecX const& lambda, double t, VecX& r) {
-    speeds(q, w_);
+    velocities(q, w_);
     a_.noalias() = share * generator_ * w_;
     system.evaluate(q, w_, t);
     system.residual(a_, lambda, r);
@@ -85,7 +85,7 @@ class TurningFrame {
     system.evaluate(x.q, none_, x.t);
     MatX k = dense_tangent(system, {.stiffness = 1.0}, x.lambda);
     VecX rest(none_);
-    k.topLeftCorner(none_.size(), none_.size()) += by_speeds(x.q, [&](VecX const& q, VecX& r) {
+    k.topLeftCorner(none_.size(), none_.size()) += by_velocities(x.q, [&](VecX const& q, VecX& r) {
       residual(q, no_row_, x.t, r);
       system.evaluate(q, none_, x.t);
       system.residual(none_, no_row_, rest);
@@ -100,12 +100,12 @@ class TurningFrame {
   /// \throws InvalidInput for constraint equations that do not rotate with the model: Φ˙ = G w + Φ_t must vanish.
   void require_turning_rows(State const& x) {
     VecX rate(no_row_);
-    speeds(x.q, w_);
+    velocities(x.q, w_);
     system.evaluate(x.q, w_, x.t);
     system.violation_rate(rate);
     Index i = 0;
     if (rate.size() && !(rate.cwiseAbs().maxCoeff(&i) <= 1e-8 * w_.cwiseAbs().maxCoeff()))
-      throw InvalidInput{"SteadyRotation: ", system.name_of(system.speeds() + i),
+      throw InvalidInput{"SteadyRotation: ", system.name_of(system.velocities() + i),
                          " does not turn with the model (its gap grows at a rate of ", rate[i],
                          "). Give it the axis, and a drive the rate, of the rotation."};
   }
@@ -113,7 +113,7 @@ class TurningFrame {
  private:
   /// Finite difference ∂f/∂ε (nv×nv) at q ⊞ ε: (8 (f(h) − f(−h)) − (f(2h) − f(−2h)))/12h.
   template <class F>
-  MatX by_speeds(VecX const& q, F&& f) {
+  MatX by_velocities(VecX const& q, F&& f) {
     double const h = 1e-3;
     Index const n = none_.size();
     MatX slopes = MatX::Zero(n, n);
@@ -172,7 +172,7 @@ struct TurningEquilibrium {
     trial.lambda += y.tail(rows);
   }
 
-  /// \throws LinearSolverSingular if a force acts along a motion without stiffness, which minimum-norm corrections
+  /// \throws SingularMatrix if a force acts along a motion without stiffness, which minimum-norm corrections
   /// omit.
   void require_balance() {
     evaluate();
@@ -180,15 +180,15 @@ struct TurningEquilibrium {
     double const small = 1e-6 * load + (tolerance + 1e-12) * unit * (1.0 + trial.q.cwiseAbs().maxCoeff());
     Index i = 0;
     if (!(r.cwiseAbs().maxCoeff(&i) <= small))
-      throw LinearSolverSingular{"relative_equilibrium: nothing resists a motion of ", frame.system.name_of(i),
-                                 " that forces excite as the model turns (", r[i], " is left). Hold every body."};
+      throw SingularMatrix{"relative_equilibrium: nothing resists a motion of ", frame.system.name_of(i),
+                           " that forces excite as the model turns (", r[i], " is left). Hold every body."};
   }
 
-  /// \throws NonFinite, NewtonStalled according to `result`.
+  /// \throws NonFiniteValue, NewtonConvergenceFailure according to `result`.
   [[noreturn, gnu::cold]] void refuse(NewtonResult result) const {
     std::string const at = sentence_of({" at ", frame.share, " of the angular velocity"});
-    if (result != NewtonResult::diverged) throw NonFinite{"relative_equilibrium: a force is not finite", at, "."};
-    throw NewtonStalled{
+    if (result != NewtonResult::diverged) throw NonFiniteValue{"relative_equilibrium: a force is not finite", at, "."};
+    throw NewtonConvergenceFailure{
         "relative_equilibrium: Newton's method did not converge", at,
         ". Use more load steps or start nearer to the solution; beyond a critical speed there may be none."};
   }
@@ -203,18 +203,18 @@ State rotating_state(System& system, State const& x, SteadyRotation const& rotat
   require_usable(system, x);
   detail::TurningFrame<> const frame(system, x.q, rotation);
   State out = x;
-  frame.speeds(x.q, out.v);
+  frame.velocities(x.q, out.v);
   out.a = frame.generator() * out.v;
   return out;
 }
 
 /// Moves x (coordinates, multipliers) into relative equilibrium, in which elastic, centrifugal and all other forces
 /// balance during steady rotation. The velocities and accelerations of x become those of the rotation. Constraint
-/// equations that depend on time are evaluated at x.t. `load_steps` and `smallest_part` apply to Ω. Corrections have
+/// equations that depend on time are evaluated at x.t. `load_steps` and `min_load_step` apply to Ω. Corrections have
 /// minimum norm if constraints are redundant or a motion has no stiffness. The solver is dense, for models of up to
 /// some hundred generalised velocities.
-/// \throws InvalidInput for constraint equations that do not rotate with the model; LinearSolverSingular naming a
-/// body with a force along a motion without stiffness; NewtonStalled, NonFinite. x is then unchanged.
+/// \throws InvalidInput for constraint equations that do not rotate with the model; SingularMatrix naming a
+/// body with a force along a motion without stiffness; NewtonConvergenceFailure, NonFiniteValue. x is then unchanged.
 template <class = void>
 EquilibriumReport relative_equilibrium(System& system, State& x, SteadyRotation const& rotation,
                                        EquilibriumOptions const& options = {}) {
@@ -227,12 +227,12 @@ EquilibriumReport relative_equilibrium(System& system, State& x, SteadyRotation 
   for (LoadSteps steps(options); !steps.done();) {
     State const before = problem.trial;
     problem.frame.share = steps.next();
-    KeptFactor kept;
+    ReusedFactorisation kept;
     NewtonReport const n = newton(problem, newton_options, kept);
     report.iterations += n.iterations;
     if (n.result == NewtonResult::converged) {
       steps.reach_next();
-      ++report.parts;
+      ++report.load_steps;
       continue;
     }
     problem.trial = before;
@@ -253,14 +253,14 @@ Linearisation linearise(System& system, State const& x, SteadyRotation const& ro
   require_usable(system, x);
   detail::TurningFrame<> frame(system, x.q, rotation);
   frame.require_turning_rows(x);
-  Index const nv = system.speeds(), rows = system.rows();
+  Index const nv = system.velocities(), rows = system.rows();
   MatX const k = frame.stiffness(x);
   Linearisation l;
   l.K = k.topLeftCorner(nv, nv);
   l.G = k.bottomLeftCorner(rows, nv);
   l.N = detail::free_motions(l.G);
   VecX w(nv), r(nv);
-  frame.speeds(x.q, w);
+  frame.velocities(x.q, w);
   frame.residual(x.q, x.lambda, x.t, r);
   l.M = detail::dense_tangent(system, {.mass = 1.0}, x.lambda).topLeftCorner(nv, nv);
   l.D = detail::dense_tangent(system, {.damping = 1.0}, x.lambda).topLeftCorner(nv, nv) + l.M * frame.rate_matrix();
@@ -285,7 +285,7 @@ Linearisation linearise(System& system, State const& x, SteadyRotation const& ro
 namespace detail {
 template <class M>
 System turning_system(M const& model) {
-  return System(model, with < Entries::implicit_step | Entries::rigid_speeds >);
+  return System(model, with < Capabilities::implicit_step | Capabilities::rigid_velocities >);
 }
 }  // namespace detail
 

@@ -20,14 +20,14 @@ double drop(Policy policy, I integrator) {
   auto const rod = model.add(Rigid<>{1.0, inertia, Placement::at({0.5, 0, 0})}, "rod");
   model.connect(Pin{Revolute{.axis = Vec3::UnitY()}, policy}, model.ground().at({0, 0, 0}), rod.at(Vec3(-0.5, 0, 0)));
   State x = model.reference_state();
-  simulate(model, x, integrator, {.until = 0.3, .step = 1e-3}).run();
+  simulate(model, x, integrator, {.end_time = 0.3, .step = 1e-3}).run();
   return -position(model, x, rod.at(Vec3(0.5, 0, 0)))[2];
 }
 
 int main() {
-  double const implicit = drop(Constraint{}, GeneralizedAlpha{}),
+  double const implicit = drop(Constraint{}, GeneralisedAlpha{}),
                stages = drop(Constraint{}, RungeKutta4<Projection>{});
-  double const joint = drop(Recursive{}, GeneralizedAlpha{});
+  double const joint = drop(JointCoordinates{}, GeneralisedAlpha{});
   // θ¨ = 1.5 g cos θ from rest, by a series in t²: θ = w t²/2 − w³ t⁶/240 + …, w = 1.5 g
   double const w = 1.5 * 9.81, t2 = 0.09;
   double const theta = w * t2 / 2 - std::pow(w * t2, 3) / 240.0;

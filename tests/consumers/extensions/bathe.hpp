@@ -16,8 +16,9 @@ using namespace polybody;
 struct Bathe {
   static constexpr char const* name = "Bathe";
   static constexpr int order = 2;
-  static constexpr bool accepts_rows = true;
-  static constexpr Entries entries = Entries::tangent;  ///< entries that it calls in addition to `Entries::motion`
+  static constexpr bool accepts_constraints = true;
+  static constexpr Capabilities capabilities =
+      Capabilities::tangent;  ///< entries that it calls in addition to `Capabilities::motion`
 
   double tolerance = 1e-13;  ///< relative tolerance of Newton's corrections of δ, scaled by 1 + max |q|
   int max_iterations = 30;
@@ -33,7 +34,7 @@ struct Bathe {
 
     explicit Workspace(System& s)
         : q(VecX::Zero(s.coordinates())),
-          v(VecX::Zero(s.speeds())),
+          v(VecX::Zero(s.velocities())),
           a(v),
           lambda(VecX::Zero(s.rows())),
           delta(v),
@@ -89,7 +90,7 @@ struct Bathe {
   /// unknowns are Δv̇ and Δλ: Δv = b Δv̇, Δδ = b² Δv̇. The constraint equations are divided by b².
   template <class W>
   void solve(System& system, State const& x, double t, double b, W& w, StepReport& report) const {
-    Index const nv = system.speeds(), rows = system.rows();
+    Index const nv = system.velocities(), rows = system.rows();
     double const enough = tolerance * (1.0 + x.q.cwiseAbs().maxCoeff());
     w.v = w.known_v + b * w.a;
     w.delta = w.known_delta + b * w.v;
@@ -100,21 +101,21 @@ struct Bathe {
       system.violation(w.phi);
       w.rhs.head(nv) = -w.r;
       w.rhs.tail(rows) = w.phi / -(b * b);
-      if (!system.velocity_rows().empty()) {  // these constraint equations have a rate only
+      if (!system.nonholonomic_equations().empty()) {  // these constraint equations have a rate only
         system.violation_rate(w.phi_rate);
-        for (Index const i : system.velocity_rows()) w.rhs[nv + i] = w.phi_rate[i] / -b;
+        for (Index const i : system.nonholonomic_equations()) w.rhs[nv + i] = w.phi_rate[i] / -b;
       }
       ++report.evaluations;
       if (!w.rhs.allFinite())
-        throw NonFinite("Bathe: the forces or the rows are not finite at t = " + number(t) +
-                        " s. Take a smaller step.");
+        throw NonFiniteValue("Bathe: the forces or the rows are not finite at t = " + number(t) +
+                             " s. Take a smaller step.");
       if (k == 0) {
         TangentCoefficients const c{.mass = 1.0, .damping = b, .stiffness = b * b};
         Index const bad =
             w.solver.factor([&](BlockSink& sink) { system.tangent(c, SecondOrder::omitted, w.lambda, sink); });
         if (bad >= 0)
-          throw LinearSolverSingular("Bathe: the step has no unique solution at t = " + number(t) + " s; see " +
-                                     name_of_equation(system, bad) + ".");
+          throw SingularMatrix("Bathe: the step has no unique solution at t = " + number(t) + " s; see " +
+                               name_of_equation(system, bad) + ".");
         ++report.factorisations;
       }
       w.solver.solve(w.rhs, w.y);
@@ -127,7 +128,8 @@ struct Bathe {
         return;
       }
     }
-    throw NewtonStalled("Bathe: Newton's method does not converge at t = " + number(t) + " s. Take a smaller step.");
+    throw NewtonConvergenceFailure("Bathe: Newton's method does not converge at t = " + number(t) +
+                                   " s. Take a smaller step.");
   }
   /// δ and q of the velocity v.
   template <class W>

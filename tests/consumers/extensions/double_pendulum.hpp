@@ -15,7 +15,7 @@ struct DoublePendulum {
   double length_1, length_2;  ///< [m]
   double g;                   ///< [m/s²]
 
-  Index speeds() const { return 2; }
+  Index velocities() const { return 2; }
   void mass(VecX const& q, MatX& m) const {
     m(0, 0) = (mass_1 / 3.0 + mass_2) * length_1 * length_1;
     m(1, 1) = mass_2 / 3.0 * length_2 * length_2;
@@ -46,6 +46,6 @@ struct DoublePendulum {
   double weight_2() const { return 0.5 * mass_2 * g * length_2; }
 };
 
-static_assert(UserMechanics<DoublePendulum> && OffersForceTangent<DoublePendulum>);
+static_assert(UserMechanics<DoublePendulum> && HasForceTangent<DoublePendulum>);
 
 }  // namespace own

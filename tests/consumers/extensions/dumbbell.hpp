@@ -11,7 +11,7 @@ using namespace polybody;
 class Dumbbell : public AddingCoordinates {  // q ⊞ δ = q + δ: `plus` and `local_rate`
  public:
   static constexpr World world = World::space;
-  static constexpr Observes observes = Observes::point;  ///< its markers have no axes
+  static constexpr MarkerKind observes = MarkerKind::point;  ///< its markers have no axes
   static constexpr bool constant_mass = true;
   static constexpr int element_columns = 6;  ///< one element of six velocities
   static constexpr int point_columns = 3;    ///< a marker moves with three of them
@@ -43,7 +43,7 @@ class Dumbbell : public AddingCoordinates {  // q ⊞ δ = q + δ: `plus` and `l
   }
 
   Index coordinates() const { return 6; }
-  Index speeds() const { return 6; }
+  Index velocities() const { return 6; }
   Index elements() const { return 1; }
   Index first_column(Index) const { return 0; }
   Index first_column(Point const& p) const { return 3 * p.end; }
@@ -104,7 +104,8 @@ class Dumbbell : public AddingCoordinates {  // q ⊞ δ = q + δ: `plus` and `l
 
   /// Position and velocity of the end. J = [1; 0] (6×3) is written to the memory that `out` points to.
   template <StateScalar T>
-  void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v, Published<T>& out) const {
+  void evaluate_marker(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v,
+                       MarkerKinematics<T>& out) const {
     out.frame.r = part<3>(q, 3 * p.end);
     out.frame.v = part<3>(v, 3 * p.end);
     out.frame.A = axes.template cast<T>();

@@ -1,5 +1,5 @@
 #pragma once
-// User-defined policy: the requirements of the concept `polybody::AnswersRows`, for any number of constraint
+// User-defined policy: the requirements of the concept `polybody::CompliantLaw`, for any number of constraint
 // equations.
 #include <polybody/polybody.hpp>
 
@@ -44,6 +44,6 @@ struct HardeningPenalty {
   }
 };
 
-static_assert(AddsForce<HardeningPenalty> && Policy<HardeningPenalty>);
+static_assert(CompliantPolicy<HardeningPenalty> && Policy<HardeningPenalty>);
 
 }  // namespace own

@@ -89,7 +89,7 @@ struct TopOnTheWire {
 struct BatheOnTheWire {
   using Model = TopOnTheWire;
   static auto integrators() { return std::vector<Bathe>(1); }
-  static constexpr double until = 0.5;
+  static constexpr double end_time = 0.5;
   static constexpr int steps = 64;
 };
 bool const bathe_obeys = obeys<BatheOnTheWire, IntegratorLaws>("BatheOnTheWire");

@@ -10,7 +10,7 @@ using namespace polybody;
 /// [Lennard-Jones 1924].
 struct LennardJones {
   static constexpr int markers = 2;
-  static constexpr Observes needs = Observes::point;
+  static constexpr MarkerKind needs = MarkerKind::point;
   static constexpr bool is_load = false;  ///< not scaled by the load factor of `equilibrium`
 
   Required<double> depth;     ///< ε [J]

@@ -54,7 +54,7 @@ void molecules(Checks& checks) {
   Momentum const before = momentum(model, x);
   double const start = energy(model, x).total();
   double const bound = energy(model, x).forces;
-  simulate(model, x, Bathe{}, {.until = 1.0, .step = 2e-3}).run();
+  simulate(model, x, Bathe{}, {.end_time = 1.0, .step = 2e-3}).run();
   Momentum const after = momentum(model, x);
   checks.small("molecules: energy", (energy(model, x).total() - start) / std::abs(bound), 1e-6);
   checks.small("molecules: momentum", (after.linear - before.linear).norm(), 1e-9);
@@ -64,7 +64,7 @@ void molecules(Checks& checks) {
 /// A bead on the wire z = x²/4f: the user-defined joint with constraint equations of the library, and with the
 /// user-defined policy.
 template <class Policy>
-double bead(Policy const& policy, double x0, double until, double* energy_change = nullptr) {
+double bead(Policy const& policy, double x0, double end_time, double* energy_change = nullptr) {
   using Wire = Joint<PointOnParabola, Policy>;
   double const f = 0.5;
   Model<Bodies<Rigid<>>, Joints<Wire>> model{Gravity{0, 0, -9.81}};
@@ -72,7 +72,7 @@ double bead(Policy const& policy, double x0, double until, double* energy_change
   model.connect(Wire{PointOnParabola{.focal_length = f}, policy}, model.ground().at({0, 0, 0}), mass.at({0, 0, 0}));
   State x = model.reference_state();
   double const start = energy(model, x).total();
-  simulate(model, x, Bathe{}, {.until = until, .step = 1e-3}).run();
+  simulate(model, x, Bathe{}, {.end_time = end_time, .step = 1e-3}).run();
   if (energy_change) *energy_change = energy(model, x).total() - start;
   return x.q[0];
 }
@@ -137,7 +137,7 @@ void pendulum(Checks& checks) {
   model.connect(Pin{}, model.ground().at({0, 0, 0}), upper.at(Vec2(-0.4, 0.0)));
   model.connect(Pin{}, upper.at(Vec2(0.4, 0.0)), lower.at(Vec2(-0.25, 0.0)));
   State bodies = model.reference_state();
-  simulate(model, bodies, Bathe{}, {.until = 1.0, .step = 1e-3}).run();
+  simulate(model, bodies, Bathe{}, {.end_time = 1.0, .step = 1e-3}).run();
   checks.small("pendulum: first angle", bodies.q[2] + 0.5 * std::numbers::pi - x.q[0], 1e-4);
   checks.small("pendulum: second angle", bodies.q[5] + 0.5 * std::numbers::pi - x.q[1], 1e-4);
 }

@@ -12,8 +12,8 @@ using namespace polybody;
 struct PointOnParabola {
   static constexpr char const* name = "PointOnParabola";
   static constexpr int rows = 2;
-  static constexpr Observes needs = Observes::frame;            ///< requirement on marker a, which carries the wire
-  static constexpr Observes needs_of_second = Observes::point;  ///< requirement on marker b
+  static constexpr MarkerKind needs = MarkerKind::frame;            ///< requirement on marker a, which carries the wire
+  static constexpr MarkerKind needs_of_second = MarkerKind::point;  ///< requirement on marker b
   static constexpr World world = World::space;
 
   Required<double> focal_length;  ///< f [m]
@@ -32,10 +32,10 @@ struct PointOnParabola {
   }
 
   template <StateScalar T>
-  Gap<2, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
-    Gap<3, T> const s = slides(a, b);
+  ConstraintTerms<2, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
+    ConstraintTerms<3, T> const s = slides(a, b);
     T const slope = s.g[0] / (2.0 * focal_length);
-    Gap<2, T> gap;
+    ConstraintTerms<2, T> gap;
     gap.g[0] = s.g[1];
     gap.g[1] = s.g[2] - 0.5 * s.g[0] * slope;
     for (int i = 0; i < 6; ++i) {
@@ -48,9 +48,9 @@ struct PointOnParabola {
   }
   template <StateScalar T>
   Vec<T, 2> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
-    Gap<3, T> const s = slides(a, b);
+    ConstraintTerms<3, T> const s = slides(a, b);
     T const rate = Vec<T, 6>(s.Ga.row(0)).dot(twist(a)) + Vec<T, 6>(s.Gb.row(0)).dot(twist(b));
-    auto const gamma_of = [&](int i) { return polybody::rows::no_slide_gamma(axis_of(a, i), a, b); };
+    auto const gamma_of = [&](int i) { return polybody::constraint_functions::no_slide_gamma(axis_of(a, i), a, b); };
     T const two_f(2.0 * focal_length);
     return {gamma_of(1), gamma_of(2) - s.g[0] / two_f * gamma_of(0) - rate * rate / two_f};
   }
@@ -58,9 +58,9 @@ struct PointOnParabola {
  private:
   /// sᵢ with their maps.
   template <StateScalar T>
-  static Gap<3, T> slides(Frame<T> const& a, Frame<T> const& b) {
-    Gap<3, T> s;
-    for (int i = 0; i < 3; ++i) polybody::rows::no_slide(axis_of(a, i), a, b, s, i);
+  static ConstraintTerms<3, T> slides(Frame<T> const& a, Frame<T> const& b) {
+    ConstraintTerms<3, T> s;
+    for (int i = 0; i < 3; ++i) polybody::constraint_functions::no_slide(axis_of(a, i), a, b, s, i);
     return s;
   }
 };

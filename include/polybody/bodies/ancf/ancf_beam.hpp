@@ -23,10 +23,10 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
  public:
   using Chain::coordinates, Chain::element_columns, Chain::elements, Chain::first_column, Chain::node_columns;
   static constexpr World world = World::space;
-  static constexpr Observes observes = Observes::frame;
+  static constexpr MarkerKind observes = MarkerKind::frame;
   static constexpr bool constant_mass = true;
   static_assert(element_columns == ancf::columns);
-  static constexpr bool packs_pay = true;
+  static constexpr bool vectorised_kernels = true;
   template <class T>
   using Element = Vec<T, element_columns>;
   using ElementMatrix = typename Chain::ElementMatrix;
@@ -98,7 +98,7 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
 
   void mass(Index e, std::span<double const>, ElementMatrix& m) const { m = inertia_of(e).mass; }
 
-  bool same_elements(AncfBeam const& other) const {
+  bool has_same_elements(AncfBeam const& other) const {
     return this->same_strains(other) && inertia_.size() == 1 && other.inertia_.size() == 1 &&
            inertia_[0].mass == other.inertia_[0].mass;
   }
@@ -143,7 +143,8 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
   /// (`Elastic::frame` of r_y and r_z). A point at a distance from the axis follows r(x, y, z), which includes the
   /// strain of the section.
   template <StateScalar T>
-  void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v, Published<T>& out) const {
+  void evaluate_marker(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v,
+                       MarkerKinematics<T>& out) const {
     Index const first = first_column(p);
     Mat<double, ancf::vectors, 4> const n = ancf::shape(p.xi, p.y, p.z, l_);
     Vec<T, 3> r[3], rate[3];  // r, r_y, r_z

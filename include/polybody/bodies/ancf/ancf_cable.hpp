@@ -33,9 +33,9 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
  public:
   using Chain::coordinates, Chain::elements, Chain::first_column;
   static constexpr World world = World::space;
-  static constexpr Observes observes = Observes::axis;
+  static constexpr MarkerKind observes = MarkerKind::axis;
   static constexpr bool constant_mass = true;
-  static constexpr bool packs_pay = true;
+  static constexpr bool vectorised_kernels = true;
   static constexpr char const* name = "AncfCable";  ///< prefix of its error messages
   template <class T>
   using Element = Vec<T, 12>;
@@ -97,7 +97,7 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
         for (int k = 0; k < 3; ++k) m(3 * i + k, 3 * j + k) = mass_(i, j);
   }
 
-  bool same_elements(AncfCable const& other) const { return this->same_strains(other) && mass_ == other.mass_; }
+  bool has_same_elements(AncfCable const& other) const { return this->same_strains(other) && mass_ == other.mass_; }
   /// Product M a with the accelerations of one element.
   template <KernelScalar T>
   void element_inertia(Element<T> const& a, Element<T>& out) const {
@@ -151,7 +151,8 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
   }
 
   template <StateScalar T>
-  void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v, Published<T>& out) const {
+  void evaluate_marker(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v,
+                       MarkerKinematics<T>& out) const {
     ShapeValues<4> const s = hermite_shape(p.xi, l_);
     Index const first = first_column(p);
     Vec<T, 3> r, slope, v_r, rate;

@@ -3,7 +3,7 @@
 /// Axial strain measures of cables as functions of p = r′ in the plane (d = 2) or in space (d = 3). Each has the power
 /// k of |r′| in the corresponding bending measure |r′ × r″|/|r′|ᵏ.
 
-#include <polybody/math/pack.hpp>
+#include <polybody/math/simd_vector.hpp>
 #include <polybody/math/types.hpp>
 
 namespace polybody {

@@ -15,7 +15,8 @@ namespace polybody {
 /// motion does not change. B can be any body with additive coordinates.
 ///
 /// Points that are linear in e are linear in p, so that `AncfLinear` can join such bodies. The elimination couples the
-/// bodies, and the mass matrix of the mechanism becomes TᵀT. Explicit steps factorise it once (solvers/kept_parts.hpp).
+/// bodies, and the mass matrix of the mechanism becomes TᵀT. Explicit steps factorise it once
+/// (solvers/constant_block_cache.hpp).
 ///
 /// L is banded like M, so a force costs a few additional operations per coordinate. L⁻¹ is full, therefore the tangent
 /// and the marker Jacobians are full. The class is meant for explicit integrators without constraints, and for
@@ -28,7 +29,7 @@ template <Body B>
 class CholeskyCoordinates : public AddingCoordinates {
  public:
   static constexpr World world = B::world;
-  static constexpr Observes observes = B::observes;
+  static constexpr MarkerKind observes = B::observes;
   static constexpr bool constant_mass = true;
   static constexpr int element_columns = Eigen::Dynamic;
   static constexpr int point_columns = Eigen::Dynamic;
@@ -49,7 +50,7 @@ class CholeskyCoordinates : public AddingCoordinates {
   }
   /// Wraps `body`.
   /// \throws InvalidInput for a body whose coordinates do not add, or whose mass matrix is not positive definite.
-  explicit CholeskyCoordinates(B body) : body_(std::move(body)), n_(body_.speeds()) {
+  explicit CholeskyCoordinates(B body) : body_(std::move(body)), n_(body_.velocities()) {
     if (body_.coordinates() != n_)
       throw InvalidInput("CholeskyCoordinates: the body's coordinates must add, without quaternions.");
     factor();
@@ -92,7 +93,7 @@ class CholeskyCoordinates : public AddingCoordinates {
   }
 
   Index coordinates() const { return n_; }
-  Index speeds() const { return n_; }
+  Index velocities() const { return n_; }
   Index elements() const { return 1; }
   Index first_column(Index) const { return 0; }
   Index first_column(Point const&) const { return 0; }
@@ -145,12 +146,13 @@ class CholeskyCoordinates : public AddingCoordinates {
 
   /// Marker kinematics with the Jacobian J_p = J_e L⁻ᵀ.
   template <StateScalar T>
-  void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v, Published<T>& out) const {
+  void evaluate_marker(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v,
+                       MarkerKinematics<T>& out) const {
     constexpr int width = B::point_columns;
-    Published<T> own;
+    MarkerKinematics<T> own;
     std::array<T, 6 * width> jacobian;
     own.jacobian = jacobian.data();
-    body_.template publish<T>(p, axes, span(base_of<T>(q, 0)), span(base_of<T>(v, 1)), own);
+    body_.template evaluate_marker<T>(p, axes, span(base_of<T>(q, 0)), span(base_of<T>(v, 1)), own);
     Eigen::Map<Mat<T, 6, Eigen::Dynamic>> j(out.jacobian, 6, n_);
     j.setZero();
     Index const first = body_.first_column(p);

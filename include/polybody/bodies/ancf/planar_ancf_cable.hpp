@@ -17,7 +17,7 @@ template <class Strain, int axial_points = 5, int bending_points = 3>
 struct HermiteCable {
   static constexpr char const* name = "planar::AncfCable";  ///< prefix of its error messages
   static constexpr int node_columns = 4;                    ///< (x, y, x′, y′)
-  static constexpr bool packs_pay = true;
+  static constexpr bool vectorised_kernels = true;
   static constexpr std::array<int, 2> section_rows = {0, 5};  ///< rows of axial strain and curvature
   static constexpr int gradients = 1;  ///< number of position gradients that are linear in the coordinates
 

@@ -5,7 +5,7 @@
 #include <array>
 
 #include <polybody/math/dual.hpp>
-#include <polybody/math/pack.hpp>
+#include <polybody/math/simd_vector.hpp>
 #include <polybody/math/types.hpp>
 
 namespace polybody {

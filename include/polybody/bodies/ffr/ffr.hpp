@@ -31,9 +31,9 @@ namespace polybody {
 class Ffr {
  public:
   static constexpr World world = World::space;
-  static constexpr Observes observes = Observes::frame;
+  static constexpr MarkerKind observes = MarkerKind::frame;
   static constexpr bool constant_mass = false;
-  static constexpr RigidLayout frame_layout = RigidLayout::quaternion;  ///< `Recursive` joints move the frame
+  static constexpr RigidLayout frame_layout = RigidLayout::quaternion;  ///< `JointCoordinates` joints move the frame
   static constexpr int element_columns = Eigen::Dynamic;                ///< one element: the whole body
   static constexpr int point_columns = Eigen::Dynamic;
 
@@ -112,9 +112,9 @@ class Ffr {
   }
 
   Index coordinates() const { return 7 + deformations(); }
-  Index speeds() const { return 6 + deformations(); }
+  Index velocities() const { return 6 + deformations(); }
   char const* coordinate_unit(Index i) const { return i < 3 ? "m" : "1"; }
-  char const* speed_unit(Index i) const { return i < 3 ? "m/s" : i < 6 ? "rad/s" : "1/s"; }
+  char const* velocity_unit(Index i) const { return i < 3 ? "m/s" : i < 6 ? "rad/s" : "1/s"; }
   Index elements() const { return 1; }
   Index first_column(Index) const { return 0; }
   Index first_column(Point const&) const { return 0; }
@@ -177,7 +177,7 @@ class Ffr {
   void force(Index, std::span<T const> q, std::span<T const> v, VecXOf<T>& out) const {
     FfrProducts<T> products = own_products<T>();
     products.at(q.data() + 7);
-    products.at_speeds(v.data() + 6);
+    products.at_velocities(v.data() + 6);
     FfrBalance<T>(integrals(), terms_, products, q).force(v, out);
   }
   /// Number of workspace entries for `unbalance`.
@@ -188,7 +188,7 @@ class Ffr {
   void unbalance(BodyMotion<T> const& x, VecXOf<T>& room, VecXOf<T>& forces, VecXOf<T>& out) const {
     FfrProducts<T> products(made_of_->integrals, made_of_->stack, room.data());
     products.at(x.q.data() + 7);
-    products.at_speeds(x.v.data() + 6);
+    products.at_velocities(x.v.data() + 6);
     products.at_rates(x.a.data() + 6);
     FfrBalance<T> const balance(integrals(), terms_, products, x.q);
     balance.inertia(x.a, out);
@@ -214,9 +214,9 @@ class Ffr {
   template <class = void>
   double kinetic_energy(Index, std::span<double const> q, std::span<double const> v) const {
     static thread_local VecX mv;  // energies are also evaluated within steps
-    mv.resize(speeds());
+    mv.resize(velocities());
     inertia<double>(0, q, v, mv);
-    return 0.5 * mv.dot(Eigen::Map<VecX const>(v.data(), speeds()));
+    return 0.5 * mv.dot(Eigen::Map<VecX const>(v.data(), velocities()));
   }
   template <class = void>
   double strain_energy(Index, std::span<double const> q) const {
@@ -233,7 +233,8 @@ class Ffr {
   /// Marker kinematics: r = r₀ + A u;  ω = A (Ω + Jl(θ) θ˙);  bias = A [Ω × (Ω × u) + 2 Ω × u˙ + u¨; Ω × Jl θ˙ + Jl˙
   /// θ˙].
   template <StateScalar T>
-  void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v, Published<T>& out) const {
+  void evaluate_marker(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v,
+                       MarkerKinematics<T>& out) const {
     Mat<T, 3, 3> const A = rotation_matrix<T>(part<4>(q, 3));
     Vec<T, 3> const omega = part<3>(v, 3);
     T const *const x = q.data() + 7, *const xd = v.data() + 6;
@@ -257,13 +258,13 @@ class Ffr {
       udd[Index(i)] = -detail::quadratic<T>(p.drawn[i], xd, xd);
     Mat<T, 3, 3> const turn = exp_so3<T>(theta), jl = left_jacobian<T>(theta);
     Vec<T, 3> const spin = jl * thetad;
-    Vec<T, 3> const back = -theta;
     out.frame.r = part<3>(q, 0) + A * u;
     out.frame.A = A * turn * axes.template cast<T>();
     out.frame.v = part<3>(v, 0) + A * (omega.cross(u) + ud);
     out.frame.w = A * (omega + spin);
     out.bias.template head<3>() = A * (omega.cross(omega.cross(u)) + omega.cross(ud) * T(2.0) + udd);
-    out.bias.template tail<3>() = A * (omega.cross(spin) - right_jacobian_derivative<T>(back, thetad) * thetad);
+    out.bias.template tail<3>() =
+        A * (omega.cross(spin) - right_jacobian_derivative<T>(Vec<T, 3>(-theta), thetad) * thetad);
     Mat<T, 3, 3> const ajl = A * jl;
     T* column = out.jacobian;
     auto const put = [&](Vec<T, 3> const& above, Vec<T, 3> const& below) {
@@ -273,8 +274,7 @@ class Ffr {
       }
       column += 6;
     };
-    Vec<T, 3> const none = Vec<T, 3>::Zero();
-    for (int i = 0; i < 3; ++i) put(Vec<T, 3>::Unit(i), none);
+    for (int i = 0; i < 3; ++i) put(Vec<T, 3>::Unit(i), Vec<T, 3>::Zero());
     for (int i = 0; i < 3; ++i) {  // −A ũ
       int const j = (i + 1) % 3, k = (i + 2) % 3;
       put(A.col(k) * u[j] - A.col(j) * u[k], A.col(i));

@@ -59,7 +59,7 @@ class FfrBalance {
     Vec<T, 3> const omega = part<3>(v, 3);
     T const* const xd = v.data() + 6;
     Index const n = of_.size();
-    bool const pushes = terms_.pushes_frame();
+    bool const pushes = terms_.couples_frame_velocity();
     Vec<T, 3> cd = Vec<T, 3>::Zero(), h = cd, cdd = cd, hd = cd;  // ċ, H q̇, Ċ q̇, H˙ q̇
     for (Index k = 0; k < n; ++k) {
       if (pushes) {

@@ -41,7 +41,7 @@ class ReferenceConditions {
     return *this;
   }
   /// Restricts the structure to displacements along x and y and rotations about z.
-  ReferenceConditions& in_plane() {
+  ReferenceConditions& restrict_to_plane() {
     in_plane_ = true;
     return *this;
   }
@@ -69,7 +69,7 @@ class ReferenceConditions {
       if (!fixed[std::size_t(i)]) free.push_back(i);
     return free;
   }
-  /// Number of rigid motions of the free structure: 3 if `in_plane`, otherwise 6.
+  /// Number of rigid motions of the free structure: 3 if restrict_to_plane, otherwise 6.
   int rigid_motions() const { return in_plane_ ? 3 : 6; }
 
  private:
@@ -127,8 +127,9 @@ MatX nodal_coordinates(Structure const& s, ReferenceConditions const& frame = Re
 /// Lowest `count` modes of the structure under the reference conditions, computed by `solve`.
 /// \throws InvalidInput if a rigid motion remains, and for a count above the number of modes.
 template <class Eigensolver = DenseModes>
-MatX held_modes(Structure const& s, Index count, ReferenceConditions const& frame = ReferenceConditions::clamped(),
-                Eigensolver const& solve = {}) {
+MatX fixed_interface_modes(Structure const& s, Index count,
+                           ReferenceConditions const& frame = ReferenceConditions::clamped(),
+                           Eigensolver const& solve = {}) {
   std::vector<Index> const free = frame.free_coordinates(s);
   detail::require_count(count, Index(free.size()));
   Structure::Sparse const k = submatrix(s.stiffness, free, free), m = submatrix(s.mass_matrix(), free, free);
@@ -157,9 +158,9 @@ MatX free_interface_modes(Structure const& s, Index count,
 }
 
 /// Basis of Craig & Bampton [1968]: constraint modes of the boundary nodes, and the `count` lowest fixed-interface
-/// modes, computed by `solve`. All coordinates are used, or those `in_plane`. The frame is tied to the first boundary
-/// node, whose constraint modes are omitted. With `mean_axes` it follows the mean motion instead: the basis then is
-/// transformed to the free modes of the reduced model, without the rigid ones.
+/// modes, computed by `solve`. All coordinates are used, or those restrict_to_plane. The frame is tied to the first
+/// boundary node, whose constraint modes are omitted. With `mean_axes` it follows the mean motion instead: the basis
+/// then is transformed to the free modes of the reduced model, without the rigid ones.
 /// \throws InvalidInput for boundary nodes that do not exist or are repeated, a count above the number of modes, or a
 /// frame tied to a node without rotations.
 template <class Eigensolver = DenseModes>
@@ -170,7 +171,7 @@ MatX craig_bampton(Structure const& s, std::vector<Index> const& boundary, Index
   if (!mean_axes && s.per_node != 6)
     throw InvalidInput("Ffr: nodes without rotations do not hold the frame; say mean_axes in craig_bampton.");
   ReferenceConditions everywhere = ReferenceConditions::none();
-  if (in_plane) everywhere.in_plane();
+  if (in_plane) everywhere.restrict_to_plane();
   std::vector<Index> const all = everywhere.free_coordinates(s);
   std::vector<Index> inner, outer;
   for (Index const node : boundary) s.require_node(node, "Ffr: a boundary node");

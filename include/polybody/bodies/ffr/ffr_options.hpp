@@ -32,9 +32,9 @@ struct FfrTerms {
   }
 
   /// Returns true if accelerations of the deformation act on the frame.
-  bool pulls_frame() const { return coupling && onto_frame; }
+  bool couples_to_frame() const { return coupling && onto_frame; }
   /// Returns true if velocities of the deformation act on the frame.
-  bool pushes_frame() const { return pulls_frame() && frame_velocities; }
+  bool couples_frame_velocity() const { return couples_to_frame() && frame_velocities; }
   bool changes_inertia() const { return deformed_inertia && frame_velocities; }  ///< the mass depends on q
   /// Selected part of ½ (J_p)_q, from its full value `slope` and its value `by` at q = 0.
   template <class T>

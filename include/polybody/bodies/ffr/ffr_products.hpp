@@ -12,7 +12,7 @@ namespace polybody {
 /// Transposed matrices of `FfrIntegrals`, stacked one below the other, for n deformation coordinates.
 struct FfrStack {
   MatX of_coordinates;  ///< (10n×n) 2 inertia_second_p, coupling_by_i, stiffness
-  MatX of_speeds;       ///< (4n×n) W_i, damping
+  MatX of_velocities;   ///< (4n×n) W_i, damping
   MatX of_rates;        ///< (n×n) mass matrix
 
   /// Stacks the matrices of a body.
@@ -25,10 +25,10 @@ struct FfrStack {
     for (Index k = 0; k < 3; ++k) {
       MatX const& by = i.coupling_by[std::size_t(k)];
       out.of_coordinates.middleRows((6 + k) * n, n) = by.transpose();
-      out.of_speeds.middleRows(k * n, n) = by.transpose() - by;
+      out.of_velocities.middleRows(k * n, n) = by.transpose() - by;
     }
     out.of_coordinates.bottomRows(n) = i.stiffness.transpose();
-    out.of_speeds.bottomRows(n) = i.damping.transpose();
+    out.of_velocities.bottomRows(n) = i.damping.transpose();
     return out;
   }
 };
@@ -43,8 +43,10 @@ class FfrProducts {
       : i_(integrals), stack_(stack), n_(integrals.size()), x_(room), xd_(room + 10 * n_), xdd_(room + 14 * n_) {}
 
   void at(T const* coordinates) { detail::times(stack_.of_coordinates, coordinates, x_); }  ///< q = `coordinates` (n)
-  void at_speeds(T const* speeds) { detail::times(stack_.of_speeds, speeds, xd_); }         ///< q̇ = `speeds` (n)
-  void at_rates(T const* rates) { detail::times(stack_.of_rates, rates, xdd_); }            ///< q̈ = `rates` (n)
+  void at_velocities(T const* velocities) {
+    detail::times(stack_.of_velocities, velocities, xd_);
+  }  ///< q̇ = `velocities` (n)
+  void at_rates(T const* rates) { detail::times(stack_.of_rates, rates, xdd_); }  ///< q̈ = `rates` (n)
 
   /// Derivative ∂J_p/∂q_k, for entry p in the order of `symmetric_row`; here and below k is a coordinate.
   T inertia_slope(std::size_t p, Index k) const { return x_[Index(p) * n_ + k] + i_.inertia_by[p][k]; }

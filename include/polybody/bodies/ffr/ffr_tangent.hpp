@@ -46,7 +46,7 @@ class FfrTangent {
     add_inertia(ck, cd, k);
     add_coupling(ck, cd, k);
     Vec3 w = omega_.cross(omega_.cross(at_.c)) + 2.0 * omega_.cross(c_rate_);
-    if (i_.stiffens() && terms_.pushes_frame()) add_foreshortening(ck, cd, w, k);
+    if (i_.stiffens() && terms_.couples_frame_velocity()) add_foreshortening(ck, cd, w, k);
     k.block<3, 3>(0, 3) =
         A_ * (-ck * skew<double>(w) - cd * (skew<double>(omega_.cross(at_.c).eval()) + spin_ * skew<double>(at_.c) +
                                             2.0 * skew<double>(c_rate_)));
@@ -61,7 +61,7 @@ class FfrTangent {
       Vec3 c, h;
       i_.columns<double>(x_.data(), i, c, h);
       if (terms_.deformed_inertia) k.block<3, 1>(0, 6 + i) += A_ * (ck * spin_ * (spin_ * c));
-      if (!terms_.pushes_frame()) continue;
+      if (!terms_.couples_frame_velocity()) continue;
       c_rate_ += c * xd_[i];
       h_ += h * xd_[i];
       k.block<3, 1>(0, 6 + i) += A_ * (2.0 * cd * spin_ * c);
@@ -101,7 +101,7 @@ class FfrTangent {
       MatX const& m = i_.coupling_by[std::size_t(i)];
       for (Index j = 0; j < i_.size(); ++j) {
         double const left = m.row(j).dot(xd_), right = m.col(j).dot(xd_);  // (m q̇)_j, (mᵀ q̇)_j
-        if (terms_.pushes_frame()) {
+        if (terms_.couples_frame_velocity()) {
           k.block<3, 1>(3, 6 + j) += ck * left * spin_.col(i);
           k(3 + i, 6 + j) += cd * (i_.stiffens() ? left + right : 0.0);
         }

@@ -9,7 +9,7 @@
 
 #include <Eigen/SparseCore>
 
-#include <polybody/bodies/ffr/number_lines.hpp>
+#include <polybody/bodies/ffr/number_reader.hpp>
 
 namespace polybody {
 
@@ -20,7 +20,7 @@ namespace polybody {
 /// \throws IoError for any other content, with the line.
 template <class = void>  // compiled only if used
 Eigen::SparseMatrix<double> read_matrix(std::string const& file, Index m, Index n, std::string const& need) {
-  NumberLines lines(file, '%');
+  NumberReader lines(file, '%');
   std::string banner;
   lines.raw(banner);
   for (char& c : banner) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;

@@ -9,7 +9,7 @@
 #include <Eigen/SparseCholesky>
 
 #include <polybody/bodies/ffr/matrix_file.hpp>
-#include <polybody/bodies/ffr/number_lines.hpp>
+#include <polybody/bodies/ffr/number_reader.hpp>
 #include <polybody/bodies/ffr/structure.hpp>
 
 namespace polybody {
@@ -60,7 +60,7 @@ void require_symmetric(Structure::Sparse const& m, Index n, std::string const& n
       if (!(std::abs(it.value()) <= largest_number))
         throw InvalidInput{"Structure: ",
                            name,
-                           how_not_finite(it.value()),
+                           non_finite_suffix(it.value()),
                            " in ",
                            entry_name(it.row(), j),
                            ". Write the matrices anew."};
@@ -203,7 +203,7 @@ Structure structure_of(Structure::Sparse const& mass, Structure::Sparse const& s
   for (std::size_t i = 0; i < nodes.size(); ++i)
     for (double const x : nodes[i])
       if (!(std::abs(x) <= largest_number))
-        throw InvalidInput{"Structure: node ", i, how_not_finite(x), ". Give x, y, z in metres."};
+        throw InvalidInput{"Structure: node ", i, non_finite_suffix(x), ". Give x, y, z in metres."};
   Structure s;
   s.per_node = 3;
   s.nodes = nodes;
@@ -241,7 +241,7 @@ namespace detail {
 /// \throws IoError for other lines, or none.
 template <class = void>
 std::vector<Vec3> read_nodes(std::string const& file) {
-  NumberLines lines(file, '#');
+  NumberReader lines(file, '#');
   std::vector<Vec3> nodes;
   Vec3 r;
   while (lines.next("x y z of a node", r[0], r[1], r[2])) nodes.push_back(r);

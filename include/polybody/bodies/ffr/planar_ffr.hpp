@@ -23,9 +23,9 @@ namespace polybody::planar {
 class Ffr : public AddingCoordinates {
  public:
   static constexpr World world = World::plane;
-  static constexpr Observes observes = Observes::frame;
+  static constexpr MarkerKind observes = MarkerKind::frame;
   static constexpr bool constant_mass = false;
-  static constexpr RigidLayout frame_layout = RigidLayout::plane;  ///< `Recursive` joints move the frame
+  static constexpr RigidLayout frame_layout = RigidLayout::plane;  ///< `JointCoordinates` joints move the frame
   static constexpr int element_columns = Eigen::Dynamic;
   static constexpr int point_columns = Eigen::Dynamic;
 
@@ -38,7 +38,7 @@ class Ffr : public AddingCoordinates {
   static Ffr from(Bar const& bar, Index n, Options options = {}) {
     options.placement = bar.placement;
     Structure const s = structure_in_plane(bar, n);
-    return Ffr(s, nodal_coordinates(s, ReferenceConditions::clamped().in_plane()), options);
+    return Ffr(s, nodal_coordinates(s, ReferenceConditions::clamped().restrict_to_plane()), options);
   }
   /// Structure of a bar with n elements, for use in the plane only.
   /// \throws InvalidInput as `structure_of`.
@@ -52,7 +52,7 @@ class Ffr : public AddingCoordinates {
     bar.constants = c;
     return structure_of(bar, n);
   }
-  /// Body of a structure in the plane of x and y with a basis `shapes` made `in_plane`.
+  /// Body of a structure in the plane of x and y with a basis `shapes` made restrict_to_plane.
   /// \throws InvalidInput for a basis that leaves the plane.
   template <class = void>
   Ffr(Structure structure, MatX shapes, Options const& options = {})
@@ -99,7 +99,7 @@ class Ffr : public AddingCoordinates {
   }
 
   Index coordinates() const { return 3 + deformations(); }
-  Index speeds() const { return 3 + deformations(); }
+  Index velocities() const { return 3 + deformations(); }
   char const* coordinate_unit(Index i) const { return i < 2 ? "m" : i == 2 ? "rad" : "1"; }
   Index elements() const { return 1; }
   Index first_column(Index) const { return 0; }
@@ -173,7 +173,7 @@ class Ffr : public AddingCoordinates {
     T const *const x = q.data() + 3, *const xd = v.data() + 3;
     FfrIntegrals::Moments<T> at;
     moments<T>(x, at);
-    bool const pushes = terms_.pushes_frame();
+    bool const pushes = terms_.couples_frame_velocity();
     T rate[2] = {T(0.0), T(0.0)}, j_rate(0.0);
     for (Index k = 0; k < deformations(); ++k) {
       T const slope = i_.template inertia_slope<T>(x, k);
@@ -203,7 +203,7 @@ class Ffr : public AddingCoordinates {
     Eigen::Map<VecX const> const x(q.data() + 3, n), xd(v.data() + 3, n);
     FfrIntegrals::Moments<double> at;
     moments<double>(x.data(), at);
-    double const pushes = terms_.pushes_frame() ? 1.0 : 0.0, deformed = terms_.deformed_inertia ? 1.0 : 0.0,
+    double const pushes = terms_.couples_frame_velocity() ? 1.0 : 0.0, deformed = terms_.deformed_inertia ? 1.0 : 0.0,
                  moving = terms_.changes_inertia() ? 1.0 : 0.0;
     k.setZero(3 + n, 3 + n);
     auto const turned = [&](Index column, double wx, double wy) {  // A w into the rows of r
@@ -220,7 +220,7 @@ class Ffr : public AddingCoordinates {
       j_rate += moving * slope * xd[i];
       double const two = pushes * 2.0 * cd * omega, square = deformed * ck * omega * omega;
       turned(3 + i, -square * cx - two * cy, -square * cy + two * cx);
-      for (std::size_t j = 0; j < 2 && i_.stiffens() && terms_.pushes_frame(); ++j) {
+      for (std::size_t j = 0; j < 2 && i_.stiffens() && terms_.couples_frame_velocity(); ++j) {
         double const drawn = i_.first_second[j].col(i).dot(xd);
         drawn_rate[j] += drawn * xd[i];
         double const by_rate = -2.0 * cd * drawn, by_place = -2.0 * ck * omega * drawn;
@@ -258,9 +258,9 @@ class Ffr : public AddingCoordinates {
   template <class = void>
   double kinetic_energy(Index, std::span<double const> q, std::span<double const> v) const {
     static thread_local VecX mv;  // energies are also evaluated within steps
-    mv.resize(speeds());
+    mv.resize(velocities());
     inertia<double>(0, q, v, mv);
-    return 0.5 * mv.dot(Eigen::Map<VecX const>(v.data(), speeds()));
+    return 0.5 * mv.dot(Eigen::Map<VecX const>(v.data(), velocities()));
   }
   template <class = void>
   double strain_energy(Index, std::span<double const> q) const {
@@ -278,7 +278,8 @@ class Ffr : public AddingCoordinates {
 
   /// Marker kinematics: r = r₀ + A u, the angle θ + R_z q;  bias = A [−θ̇² u + 2 θ̇ e × u˙ + u¨; 0].
   template <StateScalar T>
-  void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v, Published<T>& out) const {
+  void evaluate_marker(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v,
+                       MarkerKinematics<T>& out) const {
     using std::cos, std::sin;
     T const c = cos(q[2]), s = sin(q[2]), omega = v[2];
     T const *const x = q.data() + 3, *const xd = v.data() + 3;

@@ -10,7 +10,7 @@
 namespace polybody {
 
 /// Linear interpolation of the rotation vectors Ψ of the nodes relative to the placement R₀ of the bar: R(ξ) = R₀
-/// exp(Ψ(ξ)), K = Jr(Ψ) Ψ′  [thesis §2.3–2.5]. It is meant for comparison; `Objective` is recommended. The tests
+/// exp(Ψ(ξ)), K = Jr(Ψ) Ψ′  [thesis §2.3–2.5]. It is meant for comparison; `RelativeRotation` is recommended. The tests
 /// measure two faults:
 /// - It is not objective. The curvature and the energy of an element that bends by φ about one axis change if the
 ///   element rotates rigidly about another axis. The change is of order φ² (energy: 1 % of φ² after 2 rad).

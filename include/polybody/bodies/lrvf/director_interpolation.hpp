@@ -3,7 +3,7 @@
 /// Linear interpolation of directors, a policy of `Lrvf` for comparison [Romero & Armero 2002; Betsch & Steinmann
 /// 2002].
 ///
-/// Not in polybody.hpp: `Objective` is the recommended policy.
+/// Not in polybody.hpp: `RelativeRotation` is the recommended policy.
 
 #include <polybody/bodies/lrvf/elastic_elements.hpp>
 #include <polybody/bodies/lrvf/polar_interpolation.hpp>
@@ -130,7 +130,7 @@ class ElasticElements<Directors, Quadrature> {
     for (int i = 0; i < count; ++i) {
       detail::DirectorSection<T> at;
       set_section<T>(place(i), nodes, slope, at);
-      StrainedSection<T> s;
+      SectionStrains<T> s;
       s.gamma = transposed_product(at.directors, slope);
       detail::set_turning<T>(0, v, s.turning);
       s.at.spin = detail::zeros<Mat<T, 3, 6>>();  // `rate` contains all of Γ˙

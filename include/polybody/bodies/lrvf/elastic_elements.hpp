@@ -26,12 +26,12 @@ Quaternion<T> turned(std::span<T const> q, Index node) {
 /// Index in q of the stored section of element e, after the coordinates of the nodes.
 constexpr Index carried_at(Index elements, Index e) { return 7 * (elements + 1 + e); }
 template <StateScalar T>
-CarriedSection<T> carried_section(std::span<T const> q, Index elements, Index e) {
+CarriedSectionState<T> carried_section(std::span<T const> q, Index elements, Index e) {
   Index const first = carried_at(elements, e);
   return {entries<4>(q, first), entries<3>(q, first + 4)};
 }
 template <StateScalar T>
-void set_carried_section(std::span<T> q, Index elements, Index e, CarriedSection<T> const& section) {
+void set_carried_section(std::span<T> q, Index elements, Index e, CarriedSectionState<T> const& section) {
   Index const first = carried_at(elements, e);
   set_entries<4>(q, first, section.axes);
   set_entries<3>(q, first + 4, section.turn);
@@ -127,7 +127,7 @@ class ElasticElements {
     return count;
   }();
   static constexpr int stored = middle == count ? count + 1 : count;
-  static_assert(!CarriesSections<Interpolation> || (count == 1 && middle == 0),
+  static_assert(!PathDependentInterpolation<Interpolation> || (count == 1 && middle == 0),
                 "This interpolation carries one section along, in the middle of each element: strains are known there "
                 "only. Take Reduced.");
   /// Element in the reference configuration.
@@ -147,7 +147,7 @@ class ElasticElements {
   template <int i, StateScalar T>
   void place(Index e, std::span<T const> q, StrainSection<T>& at, Vec<T, 3>& gamma) const {
     Quaternion<T> const a = detail::turned<T>(q, e), b = detail::turned<T>(q, e + 1);
-    if constexpr (CarriesSections<Interpolation>)
+    if constexpr (PathDependentInterpolation<Interpolation>)
       interpolation_.template middle<T>(detail::carried_section<T>(q, size(), e), at);
     else if constexpr (i == middle)
       interpolation_.template middle<T>(a, b, at);
@@ -157,7 +157,7 @@ class ElasticElements {
   }
   /// Strains and section forces at point i of an element.
   template <int i, StateScalar T>
-  void strain(Index e, std::span<T const> q, std::span<T const> v, StrainedSection<T>& s) const {
+  void strain(Index e, std::span<T const> q, std::span<T const> v, SectionStrains<T>& s) const {
     Free const& free = free_[std::size_t(e)];
     s.chord = free.chord;
     place<i, T>(e, q, s.at, s.gamma);
@@ -171,7 +171,7 @@ class ElasticElements {
   }
   template <int i, StateScalar T, std::invocable<int> Moment>
   void point_force(Index e, std::span<T const> q, std::span<T const> v, Moment const& moment, Vec<T, 12>& out) const {
-    StrainedSection<T> s;
+    SectionStrains<T> s;
     strain<i, T>(e, q, v, s);
     Vec<T, 3> const pull = product(s.at.R, s.n), slide = cross(s.n, s.gamma), t = scaled<T>(slide, l_);
     Vec<T, 6> const of_t = transposed_product(s.at.spin, t), of_m = transposed_product(s.at.bend, s.m);
@@ -187,12 +187,12 @@ class ElasticElements {
   template <int i, class T>
   void point_tangent(Index e, std::span<double const> q, std::span<double const> v, double ck, double cd,
                      Mat<T, 12, 12>& k) const {
-    StrainedSection<T> s;
+    SectionStrains<T> s;
     strain<i, T>(e, q, v, s);
     StrainGradient by;
     Vec<T, 3> const t = scaled<T>(cross(s.n, s.gamma), l_);
     Quaternion<T> const a = detail::turned<T>(q, e), b = detail::turned<T>(q, e + 1);
-    if constexpr (CarriesSections<Interpolation>)
+    if constexpr (PathDependentInterpolation<Interpolation>)
       interpolation_.gradient(detail::carried_section<double>(q, size(), e), s.m, s.turning, by);
     else if constexpr (i == middle)
       interpolation_.gradient(a, b, t, s.m, s.turning, by);

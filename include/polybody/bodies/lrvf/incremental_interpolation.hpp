@@ -2,7 +2,7 @@
 /// \file
 /// Interpolation of the increments of the nodal rotations, a policy of `Lrvf` for comparison.
 ///
-/// Not in polybody.hpp: `Objective` is the recommended policy.
+/// Not in polybody.hpp: `RelativeRotation` is the recommended policy.
 
 #include <polybody/bodies/lrvf/rotation_interpolation.hpp>
 
@@ -16,9 +16,9 @@ namespace polybody {
 ///   R⁺ = R exp(δ),  l K⁺ = exp(−δ) l K + Jr(δ) (δ₂ − δ₁).
 /// The derivatives at δ = 0 are
 ///   δθ = ½ (δθ₁ + δθ₂),  δ(l K) = δθ₂ − δθ₁ + l K × δθ.
-/// In the reference both are those of `Objective`. Forces are the gradient of the energy with respect to the rotations
-/// of the nodes: for every path, their work equals the loss of energy. The energy is not a function of the nodal
-/// coordinates. The tests measure three faults:
+/// In the reference both are those of `RelativeRotation`. Forces are the gradient of the energy with respect to the
+/// rotations of the nodes: for every path, their work equals the loss of energy. The energy is not a function of the
+/// nodal coordinates. The tests measure three faults:
 /// - The strains depend on the path, and shorter steps do not remove this. After a closed path of the nodes the element
 ///   is bent, and its stress-free shape differs from the reference by terms of order l².
 /// - The strains depend on the steps: an integrator interpolates the increment of a whole step, `equilibrium` that of
@@ -38,13 +38,13 @@ class Incremental {
 
   /// Section in the middle in the reference, on the shortest path from node to node: l K = log(R₁ᵀR₂).
   template <class T>  // compiled only if used
-  static CarriedSection<T> between(Quaternion<T> const& a, Quaternion<T> const& b) {
+  static CarriedSectionState<T> between(Quaternion<T> const& a, Quaternion<T> const& b) {
     Vec<T, 3> const phi = quaternion_minus<T>(b, a);
     return {quaternion_plus<T>(a, scaled<T>(phi, 0.5)), phi};
   }
   /// Section after increments of its nodes, `first` and `second` (3), in their axes [rad].
   template <StateScalar T>
-  static CarriedSection<T> plus(CarriedSection<T> const& s, Vec<T, 3> const& first, Vec<T, 3> const& second) {
+  static CarriedSectionState<T> plus(CarriedSectionState<T> const& s, Vec<T, 3> const& first, Vec<T, 3> const& second) {
     Vec<T, 3> const mean(0.5 * (first[0] + second[0]), 0.5 * (first[1] + second[1]), 0.5 * (first[2] + second[2]));
     Vec<T, 3> const carried = transposed_product(exp_so3<T>(mean), s.turn),
                     bent = product(right_jacobian<T>(mean), difference<T>(second, first));
@@ -53,7 +53,7 @@ class Incremental {
 
   /// Section in the middle, with P = ½ [1, 1],  Q = [½ (l K)~ − 1, ½ (l K)~ + 1].
   template <StateScalar T>
-  static void middle(CarriedSection<T> const& s, StrainSection<T>& out) {
+  static void middle(CarriedSectionState<T> const& s, StrainSection<T>& out) {
     out.R = rotation_matrix<T>(s.axes);
     out.turn = s.turn;
     Mat<T, 3, 3> const x = skew<T>(s.turn);
@@ -68,7 +68,7 @@ class Incremental {
   /// Derivatives ∂P = 0;  ∂(Q w) = ∂(l K) × ½ (w₁ + w₂),  ∂(Qᵀ m) = [½ m × ∂(l K); ½ m × ∂(l K)], ∂(l K) = Q (δθ₁,
   /// δθ₂).
   template <class T>  // compiled only if used
-  static void gradient(CarriedSection<T> const& s, Vec<T, 3> const& m, Vec<T, 6> const& w, StrainGradient& out) {
+  static void gradient(CarriedSectionState<T> const& s, Vec<T, 3> const& m, Vec<T, 6> const& w, StrainGradient& out) {
     StrainSection<T> at;
     middle<T>(s, at);
     Vec<T, 3> half, back;
@@ -84,7 +84,7 @@ class Incremental {
 
   /// Section in the middle with Ω = ½ (Ω₁ + Ω₂) in its axes. Ω is constant if Ω₁ and Ω₂ are constant.
   template <StateScalar T>
-  static void section(CarriedSection<T> const& s, Section<T>& out) {
+  static void section(CarriedSectionState<T> const& s, Section<T>& out) {
     out.R = rotation_matrix<T>(s.axes);
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) out.spin(i, j) = out.spin(i, 3 + j) = T(i == j ? 0.5 : 0.0);

@@ -21,7 +21,7 @@ namespace polybody {
 /// The coordinates of a node are its position r (3) in world axes and a unit quaternion (4) of the section. Its
 /// generalised velocities are ṙ (3) and Ω (3), the angular velocity in the axes of the section. q ⊞ δ acts on each node
 /// as in `Rigid`, without a singular angle. After the nodes follow the sections that a policy stores
-/// (`CarriesSections`), one for each element.
+/// (`PathDependentInterpolation`), one for each element.
 ///
 /// The mass of the translation is consistent with the linear shapes, Aρ l/6 [2 1; 1 2]. The rotary inertia is lumped at
 /// the nodes, J = ½ l diag(Iρ_y + Iρ_z, Iρ_y, Iρ_z), so that M is constant. Without any rotary inertia M is singular,
@@ -31,17 +31,17 @@ namespace polybody {
 /// A curved reference is divided into n elements of arc length l whose nodes lie on the curve. With the chord c₀ of an
 /// element in the reference, r′ = (r₂ − r₁)/c₀, and K = axial(Rᵀ R′) with respect to l. Uniform stretch and uniform
 /// bending of a circular arc are then exact. Integrals extend over l.
-template <RotationInterpolation Interpolation = Objective, StrainQuadrature Quadrature = Reduced>
+template <RotationInterpolation Interpolation = RelativeRotation, StrainQuadrature Quadrature = ReducedQuadrature>
 class Lrvf {
  public:
   static constexpr World world = World::space;
-  static constexpr Observes observes = Observes::frame;
+  static constexpr MarkerKind observes = MarkerKind::frame;
   static constexpr bool constant_mass = true;
   static constexpr bool objective = Interpolation::objective;
   static constexpr int element_columns = 12;
   static constexpr int point_columns = 12;
   static constexpr int element_stride = 6;
-  static constexpr bool packs_pay = false;
+  static constexpr bool vectorised_kernels = false;
   template <class T>
   using Element = Vec<T, 12>;
   using ElementMatrix = Mat<double, 12, 12>;
@@ -79,17 +79,17 @@ class Lrvf {
     Index const e = std::min(Index(x + 1e-12), elements() - 1);
     double const xi = x - double(e);
     Point const p{e, xi < 1e-12 ? 0.0 : xi > 1.0 - 1e-12 ? 1.0 : xi, y, z};  // exact position of a node
-    if constexpr (CarriesSections<Interpolation>) interpolation_.require_known(p.xi, s);
+    if constexpr (PathDependentInterpolation<Interpolation>) interpolation_.require_known(p.xi, s);
     return p;
   }
 
   Index coordinates() const { return Index(reference_.size()); }
-  Index speeds() const { return 6 * (elements() + 1); }
+  Index velocities() const { return 6 * (elements() + 1); }
   char const* coordinate_unit(Index i) const {
     if (i < detail::carried_at(elements(), 0)) return i % 7 < 3 ? "m" : "1";
     return i % 7 < 4 ? "1" : "rad";  // of the section stored in an element
   }
-  char const* speed_unit(Index i) const { return i % 6 < 3 ? "m/s" : "rad/s"; }
+  char const* velocity_unit(Index i) const { return i % 6 < 3 ? "m/s" : "rad/s"; }
   Index elements() const { return elastic_.size(); }
   Index first_column(Index e) const { return 6 * e; }
   Index first_column(Point const& p) const { return first_column(p.element); }
@@ -103,7 +103,7 @@ class Lrvf {
         out[std::size_t(7 * i + k)] = q[std::size_t(7 * i + k)] + delta[std::size_t(6 * i + k)];
       set_entries<4>(out, 7 * i + 3, quaternion_plus<T>(turned<T>(q, i), entries<3>(delta, 6 * i + 3)));
     }
-    if constexpr (CarriesSections<Interpolation>)
+    if constexpr (PathDependentInterpolation<Interpolation>)
       for (Index e = 0; e < elements(); ++e)
         detail::set_carried_section<T>(
             out, elements(), e,
@@ -113,7 +113,7 @@ class Lrvf {
   /// Rate δ˙ if q ⊞ δ(t) moves with v: Ω = Jr(δ) δ˙ at each node.
   template <StateScalar T>
   void local_rate(std::span<T const> delta, std::span<T const> v, std::span<T> out) const {
-    for (Index i = 0; i < speeds(); i += 6) {
+    for (Index i = 0; i < velocities(); i += 6) {
       set_entries<3>(out, i, entries<3>(v, i));
       set_entries<3>(out, i + 3, product(right_jacobian_inverse<T>(entries<3>(delta, i + 3)), entries<3>(v, i + 3)));
     }
@@ -197,7 +197,7 @@ class Lrvf {
   }
   /// Rotation field at `p`, with its curvature including that of the reference.
   SectionTurn rotation_field(Point const& p, std::span<double const> q) const
-    requires FollowsNodes<Interpolation>
+    requires NodalInterpolation<Interpolation>
   {
     return interpolation_.turn(p.xi, l_, turned<double>(q, p.element), turned<double>(q, p.element + 1));
   }
@@ -205,7 +205,8 @@ class Lrvf {
   /// Marker kinematics: r = (1 − ξ) r₁ + ξ r₂ + ρ, ρ = R(ξ) (0, y, z);  ω = R Ω;  bias: ω˙ᵇ = R Ω˙ᵇ,
   /// ω˙ᵇ × ρ + ω × (ω × ρ).
   template <StateScalar T>
-  void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v, Published<T>& out) const {
+  void evaluate_marker(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v,
+                       MarkerKinematics<T>& out) const {
     Index const e = p.element;
     Section<T> s;
     section<T>(p, q, s);
@@ -286,7 +287,7 @@ class Lrvf {
   template <StateScalar T>
   void section(Point const& p, std::span<T const> q, Section<T>& out) const {
     Quaternion<T> const a = turned<T>(q, p.element), b = turned<T>(q, p.element + 1);
-    if constexpr (CarriesSections<Interpolation>) {
+    if constexpr (PathDependentInterpolation<Interpolation>) {
       if (inside(p))
         return interpolation_.template section<T>(detail::carried_section<T>(q, elements(), p.element), out);
     } else if (inside(p)) {
@@ -315,7 +316,7 @@ Lrvf<Interpolation, Quadrature>::Lrvf(Bar const& bar, BarConstants const& c, Ind
       interpolation_(bar.placement),
       section_(bar, c, l_),
       elastic_(section_, bar.placement, l_, n),
-      reference_(std::size_t(CarriesSections<Interpolation> ? detail::carried_at(n, n) : 7 * (n + 1))) {
+      reference_(std::size_t(PathDependentInterpolation<Interpolation> ? detail::carried_at(n, n) : 7 * (n + 1))) {
   sixth_ = c.mass_per_length * l_ / 6.0;
   Vec3 const inertias = rotary_inertias(c);
   for (int i = 0; i < 3; ++i) rotary_[i] = 0.5 * l_ * inertias[i];
@@ -328,7 +329,7 @@ Lrvf<Interpolation, Quadrature>::Lrvf(Bar const& bar, BarConstants const& c, Ind
     for (int k = 0; k < 3; ++k) q[7 * i + k] = bar.placement.origin[k] + along[k];
     set_entries<4>(q, 7 * i + 3, quaternion_of(product(axes, section.axes)));
   }
-  if constexpr (CarriesSections<Interpolation>)
+  if constexpr (PathDependentInterpolation<Interpolation>)
     for (Index e = 0; e < n; ++e)
       detail::set_carried_section<double>(
           q, n, e, interpolation_.between(detail::turned<double>(q, e), detail::turned<double>(q, e + 1)));

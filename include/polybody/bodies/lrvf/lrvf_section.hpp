@@ -11,7 +11,7 @@ namespace polybody {
 
 /// Strains of an element at one of its sections, in a state.
 template <StateScalar T>
-struct StrainedSection {
+struct SectionStrains {
   StrainSection<T> at;  ///< section, with its derivatives with respect to the nodes
   double chord = 1.0;   ///< c₀, distance of the nodes in the reference [m]
   Vec<T, 3> gamma;      ///< R_mᵀ r′
@@ -51,7 +51,7 @@ class LrvfSection {
 
   /// Stress = C (strain + τ strain˙). It replaces the strains in s.n and s.m.
   template <StateScalar T>
-  void stress(StrainedSection<T>& s) const {
+  void stress(SectionStrains<T>& s) const {
     if (damped_) {
       Vec<T, 3> const spin = detail::of_nodes(s.at.spin, s.turning), bend = detail::of_nodes(s.at.bend, s.turning);
       Vec<T, 3> const slide = cross(s.gamma, spin);
@@ -86,7 +86,7 @@ class LrvfSection {
   ///   δΓ = x + Γ̃ P θ,  δN = C (ck + cd τ) δΓ + ck C τ δΓ˙,  δt = l (N × δΓ − Γ × δN),
   ///   −δf_r = ∓ l/c₀ R_m (δN + ck Pθ × N),  −δf_θ = Pᵀ δt + Qᵀ δM + ck ∂(Pᵀt + Qᵀ M) θ.
   template <class T>  // compiled only if used
-  void tangent(StrainedSection<T> const& s, StrainGradient const& by, double ck, double cd, Mat<T, 12, 12>& k) const {
+  void tangent(SectionStrains<T> const& s, StrainGradient const& by, double ck, double cd, Mat<T, 12, 12>& k) const {
     Slopes<T> const by_state = slopes(s, by, ck, cd);
     Mat<T, 3, 3> const& nx = by_state.nx;
     Mat<T, 3, 6> const &nt = by_state.nt, &mt = by_state.mt;
@@ -106,16 +106,16 @@ class LrvfSection {
     Mat<T, 3, 3> const back = transposed(s.at.R), rr = transposed_product(back, product(nx, back));
     Mat<T, 3, 6> const rt = product(s.at.R, shift), tr = product(s.at.R, transposed_product(through, s.at.spin));
     Mat<T, 6, 6> const of_t = transposed_product(s.at.spin, moved), of_m = transposed_product(s.at.bend, mt);
-    double const by_force = l_ / s.chord, by_length = 1.0 / s.chord;
+    double const by_force = l_ / s.chord, step_length_derivative = 1.0 / s.chord;
     for (int i = 0; i < 2; ++i)
       for (int j = 0; j < 2; ++j) {
         double const si = i == 0 ? -1.0 : 1.0, sj = j == 0 ? -1.0 : 1.0;
         for (int c = 0; c < 3; ++c)
           for (int r = 0; r < 3; ++r) {
             int const a = 3 * i + r, b = 3 * j + c;
-            k(6 * i + r, 6 * j + c) = si * sj * by_force * by_length * rr(r, c);
+            k(6 * i + r, 6 * j + c) = si * sj * by_force * step_length_derivative * rr(r, c);
             k(6 * i + r, 6 * j + 3 + c) = si * by_force * rt(r, b);
-            k(6 * i + 3 + r, 6 * j + c) = sj * by_length * tr(c, a);
+            k(6 * i + 3 + r, 6 * j + c) = sj * step_length_derivative * tr(c, a);
             k(6 * i + 3 + r, 6 * j + 3 + c) = of_t(a, b) + of_m(a, b) + ck * by.pulled(a, b);
           }
       }
@@ -132,7 +132,7 @@ class LrvfSection {
   /// u = R_mᵀ (ṙ₂ − ṙ₁)/c₀:
   ///   δΓ˙ = u × Pθ + δΓ × Ω + Γ × δΩ.
   template <class T>
-  Slopes<T> slopes(StrainedSection<T> const& s, StrainGradient const& by, double ck, double cd) const {
+  Slopes<T> slopes(SectionStrains<T> const& s, StrainGradient const& by, double ck, double cd) const {
     Slopes<T> out;
     Mat<T, 3, 6> const slide = skew_product(s.gamma, s.at.spin);  // Γ̃ P
     for (int i = 0; i < 3; ++i) {

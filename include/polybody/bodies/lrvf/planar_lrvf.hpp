@@ -15,7 +15,7 @@ namespace polybody::planar {
 struct SimoVuQuoc {
   static constexpr char const* name = "planar::Lrvf";            ///< prefix of its error messages
   static constexpr int node_columns = 3;                         ///< (x, y, θ)
-  static constexpr bool packs_pay = false;                       ///< one sine and one cosine take most of the time
+  static constexpr bool vectorised_kernels = false;              ///< one sine and one cosine take most of the time
   static constexpr std::array<int, 3> section_rows = {0, 1, 5};  ///< rows of ε, γ and κ
   static constexpr int gradients = 0;  ///< number of position gradients that are linear in the coordinates
 
@@ -162,22 +162,22 @@ struct SimoVuQuocBy : SimoVuQuoc {
                                     std::conditional_t<together, Two, Three>>;  ///< fewest laws for the points
 };
 template <>
-struct SimoVuQuocBy<Reduced> : SimoVuQuoc {};
+struct SimoVuQuocBy<ReducedQuadrature> : SimoVuQuoc {};
 
 /// Planar geometrically exact beam with linear elements and the quadrature Q of the strains: `LrvfBy<Q>::from(bar, n)`.
 template <StrainQuadrature Q>
 using LrvfBy = Beam<SimoVuQuocBy<Q>>;
 
 /// Planar beam with all strains evaluated in the middle, which does not lock.
-using Lrvf = LrvfBy<Reduced>;
+using Lrvf = LrvfBy<ReducedQuadrature>;
 
 /// Planar beam with all strains evaluated at both Gauss points, for comparison. It locks: its bending stiffness is too
 /// large by the factor 1 + GA l²/(12 EI) [Hughes, Taylor & Kanoknukulchai 1977].
-using FullLrvf = LrvfBy<Full>;
+using FullLrvf = LrvfBy<FullQuadrature>;
 
 /// Planar beam with ε and γ evaluated in the middle, κ at both Gauss points. θ is linear and κ is constant in an
 /// element, so this equals `Lrvf` to round-off, at a higher cost. Selective and reduced quadrature of the literature
 /// coincide for this beam.
-using SelectiveLrvf = LrvfBy<Selective>;
+using SelectiveLrvf = LrvfBy<SelectiveQuadrature>;
 
 }  // namespace polybody::planar

@@ -2,7 +2,7 @@
 /// \file
 /// Interpolated directors that are made orthonormal, a policy of `Lrvf` for comparison [Romero 2004, §4].
 ///
-/// Not in polybody.hpp: `Objective` is the recommended policy.
+/// Not in polybody.hpp: `RelativeRotation` is the recommended policy.
 
 #include <polybody/bodies/lrvf/strain_gradient.hpp>
 
@@ -43,12 +43,12 @@ struct RelativeTurn {
 }  // namespace detail
 
 /// Interpolation with R(ξ) the rotation nearest to (1 − ξ) R₁ + ξ R₂ (polar decomposition) [Romero 2004, §4]. The axis
-/// n of the relative rotation is that of `Objective`, and the angle differs. In the plane normal to n, the mean of 1
-/// and e^{iφ} is 1 − ξ + ξ e^{iφ} = ρ e^{iα}, hence
+/// n of the relative rotation is that of `RelativeRotation`, and the angle differs. In the plane normal to n, the mean
+/// of 1 and e^{iφ} is 1 − ξ + ξ e^{iφ} = ρ e^{iα}, hence
 ///   R = R₁ exp(α n),  ρ² = 1 − 4 ξ (1 − ξ) s,  g = tan(α/2) n = ξ u/D,  D = ρ + 1 − 2 ξ s,  l K = α′ n = u/ρ²,
 /// with u = sin φ n, s = sin²(φ/2). The policy is objective, and its strains do not depend on the path. The difference
-/// of the angles is α − ξφ = −ξ (1 − ξ) (1 − 2ξ) φ³/6 + O(φ⁵). In the middle R is that of `Objective`, and l K = 2
-/// tan(φ/2) n. The relative rotation of an element must be less than π.
+/// of the angles is α − ξφ = −ξ (1 − ξ) (1 − 2ξ) φ³/6 + O(φ⁵). In the middle R is that of `RelativeRotation`, and l K =
+/// 2 tan(φ/2) n. The relative rotation of an element must be less than π.
 class Polar {
  public:
   static constexpr bool objective = true;

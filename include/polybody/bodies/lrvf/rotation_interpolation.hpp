@@ -70,14 +70,14 @@ Vec<T, 3> of_node(int node, Vec<T, 6> const& x) {
 
 /// Section in the middle of an element that stores it, because it does not follow from the nodes.
 template <StateScalar T>
-struct CarriedSection {
+struct CarriedSectionState {
   Quaternion<T> axes;  ///< axes in world axes
   Vec<T, 3> turn;      ///< l K [rad]
 };
 
 /// Policy for which the nodes determine every section of their element.
 template <class I>
-concept FollowsNodes =
+concept NodalInterpolation =
     requires(I const i, Quaternion<double> const a, Vec6 const w, Vec3 const x, StrainSection<double> strained,
              StrainGradient gradient, typename I::template Section<double> section) {
       i.template middle<double>(a, a, strained);   // ξ = ½
@@ -90,11 +90,13 @@ concept FollowsNodes =
 /// Policy for which the section in the middle depends on the path of the nodes. It is part of the coordinates of each
 /// element, and no other section is available.
 template <class I>
-concept CarriesSections =
-    requires(I const i, CarriedSection<double> const s, Quaternion<double> const a, Vec6 const w, Vec3 const x,
+concept PathDependentInterpolation =
+    requires(I const i, CarriedSectionState<double> const s, Quaternion<double> const a, Vec6 const w, Vec3 const x,
              StrainSection<double> strained, StrainGradient gradient, typename I::template Section<double> section) {
-      { i.between(a, a) } -> std::same_as<CarriedSection<double>>;                   // in the reference
-      { i.template plus<double>(s, x, x) } -> std::same_as<CarriedSection<double>>;  // increment by δ₁, δ₂ of q ⊞ δ
+      { i.between(a, a) } -> std::same_as<CarriedSectionState<double>>;  // in the reference
+      {
+        i.template plus<double>(s, x, x)
+      } -> std::same_as<CarriedSectionState<double>>;  // increment by δ₁, δ₂ of q ⊞ δ
       i.template middle<double>(s, strained);
       i.gradient(s, x, w, gradient);  // derivatives for fixed m and w; P is constant
       i.template section<double>(s, section);
@@ -103,7 +105,7 @@ concept CarriesSections =
 
 template <class I>
 concept RotationInterpolation =
-    (FollowsNodes<I> || CarriesSections<I>) && std::constructible_from<I, Placement> &&
+    (NodalInterpolation<I> || PathDependentInterpolation<I>) && std::constructible_from<I, Placement> &&
     requires(I const i, Vec6 const w, Vec3 const x, typename I::template Section<double> section,
              Mat<double, 6, 6> pulled) {
       requires std::derived_from<typename I::template Section<double>, SectionMotion<double>>;
@@ -121,10 +123,10 @@ concept RotationInterpolation =
 ///   δθ = ½ (δθ₁ + δθ₂) + ½ c × (δθ₂ − δθ₁),
 ///   δφ = Jr⁻¹(φ) δθ₂ − Jr⁻¹(−φ) δθ₁,  Jr⁻¹(±φ) = 1 ± 2a c̃ + h c̃²,  h = a + m  (`ArctanSeries`),
 ///   δc = G δθ₂ − Gᵀ δθ₁,  G = ¼ ((1 − c²) 1 + 2 c̃ + 2 c cᵀ).
-class Objective {
+class RelativeRotation {
  public:
   static constexpr bool objective = true;
-  explicit Objective(Placement const&) {}  ///< the placement has no influence
+  explicit RelativeRotation(Placement const&) {}  ///< the placement has no influence
 
   /// Section in a state, with intermediate results for its derivatives.
   template <StateScalar T>

@@ -23,7 +23,7 @@ Quaternion<Dual<n>> turning_quaternion(Quaternion<double> const& q, int first, d
 }
 
 /// Vectors that are constant in a derivative of the maps.
-struct HeldFixed {
+struct FixedRotation {
   Vec<double, 3> t, m;
   Vec<double, 6> w;
 };
@@ -31,7 +31,7 @@ struct HeldFixed {
 /// Derivatives of Pᵀ t + Qᵀ m, P w and Q w at ξ with respect to (δθ₁, δθ₂).
 template <class I, StateScalar D = Dual<6>>  // compiled only if used
 void strain_gradient(I const& interpolation, double xi, std::array<Quaternion<double>, 2> const& nodes,
-                     HeldFixed const& fixed, StrainGradient& out) {
+                     FixedRotation const& fixed, StrainGradient& out) {
   StrainSection<D> at;
   interpolation.template at<D>(xi, turning_quaternion<6>(nodes[0], 0), turning_quaternion<6>(nodes[1], 3), at);
   out.pulled = zeros<Mat<double, 6, 6>>();

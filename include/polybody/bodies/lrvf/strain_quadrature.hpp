@@ -67,7 +67,7 @@ template <class Q>
 concept StrainQuadrature = requires { requires detail::is_rule(Q::points); };
 
 /// All strains evaluated in the middle; the element does not lock.
-struct Reduced {
+struct ReducedQuadrature {
   /// Position ξ, and the weights of Γ₁, of Γ₂ and Γ₃, of K.
   static constexpr std::array<StrainPoint, 1> points = {{{0.5, 1.0, 1.0, 1.0}}};
 };
@@ -75,7 +75,7 @@ struct Reduced {
 /// All strains evaluated at both Gauss points, for comparison. The element locks. If the sections of its nodes differ
 /// by the angle φ, those of the Gauss points are inclined by ±φ/√12 to the straight chord. This angle acts as a shear
 /// strain. The bending stiffness is then too large by the factor 1 + GA l²/(12 EI).
-struct Full {
+struct FullQuadrature {
   /// Position ξ, and the weights of Γ₁, of Γ₂ and Γ₃, of K.
   static constexpr std::array<StrainPoint, 2> points = {
       {{gauss<2>[0].xi, 0.5, 0.5, 0.5}, {gauss<2>[1].xi, 0.5, 0.5, 0.5}}};
@@ -88,9 +88,9 @@ struct Full {
 ///   whereas the chord of an arc becomes shorter.
 /// - The difference of both points, 2 sin ψ sin(φ/√12), depends on the shear ψ: it adds EA φ²/12 to GA. On a curved
 ///   reference this also occurs in linear theory, with its angle φ₀ per element.
-/// `Objective` has a constant K in the element, and the planar beam a constant κ. This quadrature then equals
+/// `RelativeRotation` has a constant K in the element, and the planar beam a constant κ. This quadrature then equals
 /// `Reduced`; in space its cost is five to ten times higher.
-struct Selective {
+struct SelectiveQuadrature {
   /// Position ξ, and the weights of Γ₁, of Γ₂ and Γ₃, of K.
   static constexpr std::array<StrainPoint, 3> points = {
       {{gauss<2>[0].xi, 0.0, 0.0, 0.5}, {0.5, 1.0, 1.0, 0.0}, {gauss<2>[1].xi, 0.0, 0.0, 0.5}}};

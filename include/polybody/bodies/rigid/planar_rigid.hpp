@@ -4,7 +4,7 @@
 /// velocities.
 
 #include <polybody/bodies/shared/bar.hpp>
-#include <polybody/bodies/shared/step_means.hpp>
+#include <polybody/bodies/shared/discrete_force.hpp>
 
 namespace polybody::planar {
 
@@ -13,11 +13,12 @@ namespace polybody::planar {
 class Rigid : public AddingCoordinates {
  public:
   static constexpr World world = World::plane;
-  static constexpr Observes observes = Observes::frame;
+  static constexpr MarkerKind observes = MarkerKind::frame;
   static constexpr bool constant_mass = true;
   static constexpr int element_columns = 3;
   static constexpr int point_columns = 3;
-  static constexpr RigidLayout layout = RigidLayout::plane;  ///< (x, y, θ), which `Recursive` joints may prescribe
+  static constexpr RigidLayout layout =
+      RigidLayout::plane;  ///< (x, y, θ), which `JointCoordinates` joints may prescribe
 
   /// Material point, in body axes from the centre of mass [m].
   struct Point {
@@ -75,7 +76,7 @@ class Rigid : public AddingCoordinates {
   }
 
   Index coordinates() const { return 3; }
-  Index speeds() const { return 3; }
+  Index velocities() const { return 3; }
   char const* coordinate_unit(Index i) const { return i < 2 ? "m" : "rad"; }
   Index elements() const { return 1; }
   Index first_column(Index) const { return 0; }
@@ -112,11 +113,13 @@ class Rigid : public AddingCoordinates {
     k.setZero();
   }
   template <class = void>  // compiled only if used
-  void mean_force(Index, std::span<double const>, std::span<double const>, StepMeans const&, Vec3& out) const {
+  void discrete_force(Index, std::span<double const>, std::span<double const>, DiscreteDerivative const&,
+                      Vec3& out) const {
     out.setZero();
   }
   template <class = void>  // compiled only if used
-  void mean_tangent(Index, std::span<double const>, std::span<double const>, StepMeans const&, double, Mat3& k) const {
+  void discrete_tangent(Index, std::span<double const>, std::span<double const>, DiscreteDerivative const&, double,
+                        Mat3& k) const {
     k.setZero();
   }
   template <StateScalar T>
@@ -134,7 +137,8 @@ class Rigid : public AddingCoordinates {
 
   /// Marker kinematics: r = r_c + ρ, ρ = A u;  ṙ = ṙ_c + θ̇ e_z × ρ;  bias = −θ̇² ρ.
   template <StateScalar T>
-  void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v, Published<T>& out) const {
+  void evaluate_marker(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v,
+                       MarkerKinematics<T>& out) const {
     using std::cos, std::sin;
     T const c = cos(q[2]), s = sin(q[2]);
     T const x = c * p.u[0] - s * p.u[1], y = s * p.u[0] + c * p.u[1];

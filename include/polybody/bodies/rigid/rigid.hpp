@@ -75,7 +75,7 @@ template <class = void>  // compiled only if used
 class RigidShape {
  public:
   static constexpr World world = World::space;
-  static constexpr Observes observes = Observes::frame;
+  static constexpr MarkerKind observes = MarkerKind::frame;
 
   /// Material point, in body axes from the centre of mass [m].
   struct Point {
@@ -190,7 +190,7 @@ class Rigid<UnitQuaternion> : public RigidShape {
   static constexpr int element_columns = 6;
   static constexpr int point_columns = 6;
   static constexpr RigidLayout layout =
-      RigidLayout::quaternion;  ///< (r, quaternion), which `Recursive` joints may prescribe
+      RigidLayout::quaternion;  ///< (r, quaternion), which `JointCoordinates` joints may prescribe
 
   using RigidShape::inertia, RigidShape::mass, RigidShape::RigidShape;
 
@@ -201,9 +201,9 @@ class Rigid<UnitQuaternion> : public RigidShape {
   }
 
   Index coordinates() const { return 7; }
-  Index speeds() const { return 6; }
+  Index velocities() const { return 6; }
   char const* coordinate_unit(Index i) const { return i < 3 ? "m" : "1"; }
-  char const* speed_unit(Index i) const { return i < 3 ? "m/s" : "rad/s"; }
+  char const* velocity_unit(Index i) const { return i < 3 ? "m/s" : "rad/s"; }
 
   template <class = void>  // compiled only if used
   void reference(std::span<double> q) const {
@@ -264,7 +264,7 @@ class Rigid<UnitQuaternion> : public RigidShape {
 
   /// Adds the residual, `rows` (6) += [m (v̇ − g); J Ω˙ + Ω × J Ω].
   template <StateScalar T>
-  void add_unbalance(BodyMotion<T> const& x, Vec3 const& g, T* rows) const {
+  void add_residual(BodyMotion<T> const& x, Vec3 const& g, T* rows) const {
     Vec<T, 3> const omega(x.v[3], x.v[4], x.v[5]), spin = inertia_times<T>(omega),
                                                    moment = inertia_times<T>({x.a[3], x.a[4], x.a[5]});
     T turning[3];
@@ -327,7 +327,7 @@ class Rigid<UnitQuaternion> : public RigidShape {
 
   /// Marker kinematics of a body with the pose `at`: r = r_c + A u;  ṙ = ṙ_c + ω × A u;  bias = [ω × (ω × A u); 0].
   template <StateScalar T>
-  void publish(Point const& p, Mat3 const& axes, Pose<T> const& at, Published<T>& out) const {
+  void evaluate_marker(Point const& p, Mat3 const& axes, Pose<T> const& at, MarkerKinematics<T>& out) const {
     out.shape = JacobianShape::rigid;
     out.columns = 6;
     if constexpr (std::same_as<T, double>) return detail::write_rigid_marker(p.u, axes, at, out);
@@ -349,10 +349,11 @@ class Rigid<UnitQuaternion> : public RigidShape {
     out.body_axes = at.A;
   }
   template <StateScalar T>
-  void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v, Published<T>& out) const {
+  void evaluate_marker(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v,
+                       MarkerKinematics<T>& out) const {
     Pose<T> at;
     pose<T>(q, v, at);
-    publish(p, axes, at, out);
+    evaluate_marker(p, axes, at, out);
   }
 
   /// Load stiffness of Jᵀw = [f; Aᵀm + u × Aᵀf]. Under A ⊞ δ, δ(Aᵀm) = (Aᵀm)~ δ, hence (Aᵀm)~ + ũ (Aᵀf)~.

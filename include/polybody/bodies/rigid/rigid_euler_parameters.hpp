@@ -24,7 +24,7 @@ class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
   static constexpr bool constant_mass = false;
   static constexpr int element_columns = 7;
   static constexpr int point_columns = 7;
-  static constexpr int own_rows = 1;  ///< norm, |θ| = 1
+  static constexpr int own_equations = 1;  ///< norm, |θ| = 1
 
   using RigidShape::inertia, RigidShape::mass, RigidShape::RigidShape;
 
@@ -36,7 +36,7 @@ class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
 
   Point const& local(Point const& p) const { return p; }  ///< p itself: every point depends on all columns
   Index coordinates() const { return 7; }
-  Index speeds() const { return 7; }
+  Index velocities() const { return 7; }
   char const* coordinate_unit(Index i) const { return i < 3 ? "m" : "1"; }
 
   template <class = void>  // compiled only if used
@@ -131,12 +131,12 @@ class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
 
   /// Constraint function Φ = ½ (θᵀθ − 1), with G = [0, θᵀ], γ = θ̇ᵀθ̇, and ∂(Gᵀλ)/∂q = λ for θ.
   template <StateScalar T>
-  void own_gap(std::span<T const> q, Vec<T, 1>& phi) const {
+  void own_constraint(std::span<T const> q, Vec<T, 1>& phi) const {
     phi[0] = (q[3] * q[3] + q[4] * q[4] + q[5] * q[5] + q[6] * q[6]) * 0.5 - 0.5;
   }
   /// Constraint Jacobian G (1×7), written to g.
   template <StateScalar T>
-  void own_map(std::span<T const> q, Mat<T, 1, 7>& g) const {
+  void own_jacobian(std::span<T const> q, Mat<T, 1, 7>& g) const {
     for (int i = 0; i < 7; ++i) g(0, i) = i < 3 ? T(0.0) : q[i];
   }
   /// Acceleration bias γ of Φ̈ = G v̇ + γ.
@@ -154,8 +154,8 @@ class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
   /// Marker kinematics as in `Rigid<>`, where `marker` are the axes of the marker in body axes. With Ω = Ḡ θ̇,
   ///   Ω̇ = Ḡ θ̈ + Ḡ˙ θ̇,  Ḡ˙ θ̇ = −2 (θ·θ̇)/|θ|² Ω.
   template <StateScalar T>
-  void publish(Point const& p, Mat3 const& marker, std::span<T const> q, std::span<T const> v,
-               Published<T>& out) const {
+  void evaluate_marker(Point const& p, Mat3 const& marker, std::span<T const> q, std::span<T const> v,
+                       MarkerKinematics<T>& out) const {
     Mat<T, 3, 3> const a = axes<T>(q);
     Mat<T, 3, 4> const g = a * map<T>(q);
     Vec<T, 3> const arm = a * p.u.template cast<T>(), w = g * part<4>(v, 3);
@@ -176,7 +176,7 @@ class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
   }
   template <class T>  // compiled only if used
   void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, Mat<T, 7, 7>& k) const {
-    load_stiffness_by_duals(*this, p, q, w, k);
+    load_stiffness_by_dual_numbers(*this, p, q, w, k);
   }
 
  private:

@@ -2,15 +2,15 @@
 /// \file
 /// Marker of a rigid body in doubles. Markers are numerous and are written at every evaluation.
 
-#include <polybody/kinematics/published.hpp>
-#include <polybody/math/triple.hpp>
+#include <polybody/kinematics/marker_kinematics.hpp>
+#include <polybody/math/vec3_storage.hpp>
 
 namespace polybody::detail {
 
-/// Writes the marker kinematics of `Rigid::publish` to `out`, bitwise identical, for the point u with the axes `axes`,
-/// both in body axes, of a body with the pose `at`.
-template <class Pose, class V = Triple<>>  // compiled only if used
-void write_rigid_marker(Vec3 const& u, Mat3 const& axes, Pose const& at, Published<double>& out) {
+/// Writes the marker kinematics of `Rigid::evaluate_marker` to `out`, bitwise identical, for the point u with the axes
+/// `axes`, both in body axes, of a body with the pose `at`.
+template <class Pose, class V = Vec3Storage<>>  // compiled only if used
+void write_rigid_marker(Vec3 const& u, Mat3 const& axes, Pose const& at, MarkerKinematics<double>& out) {
   V const x = V::column(at.A, 0), y = V::column(at.A, 1), z = V::column(at.A, 2), w = V::load(at.w.data());
   auto const turned = [&](double const* by_body) { return V::combination(x, y, z, by_body); };
   V const arm = turned(u.data()), rate = cross(w, arm);

@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include <polybody/kinematics/published.hpp>
+#include <polybody/kinematics/marker_kinematics.hpp>
 
 namespace polybody {
 
@@ -46,7 +46,7 @@ concept HasRigidLayout = requires {
 /// frame come first, in the layout `frame_layout`. The coordinates of the deformation follow, and they add. The sizes
 /// of all its markers are known at run time only.
 template <class B>
-concept FloatsOnFrame = requires(B const b) {
+concept FloatingFrameBody = requires(B const b) {
   { B::frame_layout } -> std::convertible_to<RigidLayout>;
   { b.deformations() } -> std::convertible_to<Index>;
 };
@@ -71,14 +71,14 @@ concept HasLinearPoints = requires(B const b, typename B::Point p) {
 /// `at(…)` makes one. `docs/extending.md` describes each member, and the optional members.
 template <class B>
 concept Body = requires(B const b, Index e, std::span<double const> x, std::span<double> out, typename B::Point p,
-                        Published<double>& published, Vec<double, B::element_columns>& vector,
+                        MarkerKinematics<double>& published, Vec<double, B::element_columns>& vector,
                         Mat<double, B::element_columns, B::element_columns>& matrix,
                         Mat<double, B::point_columns, B::point_columns>& stiffness, Vec3 g) {
   { B::world } -> std::convertible_to<World>;
-  { B::observes } -> std::convertible_to<Observes>;
+  { B::observes } -> std::convertible_to<MarkerKind>;
   { B::constant_mass } -> std::convertible_to<bool>;
   { b.coordinates() } -> std::convertible_to<Index>;
-  { b.speeds() } -> std::convertible_to<Index>;
+  { b.velocities() } -> std::convertible_to<Index>;
   { b.elements() } -> std::convertible_to<Index>;
   { b.first_column(e) } -> std::convertible_to<Index>;
   b.reference(out);                             // q of the undeformed body as placed
@@ -94,28 +94,28 @@ concept Body = requires(B const b, Index e, std::span<double const> x, std::span
   { b.strain_energy(e, x) } -> std::convertible_to<double>;
   { b.gravity_energy(e, x, g) } -> std::convertible_to<double>;
   { b.first_column(p) } -> std::convertible_to<Index>;
-  b.template publish<double>(p, identity(), x, x, published);
+  b.template evaluate_marker<double>(p, identity(), x, x, published);
   b.load_stiffness(p, x, Wrench<double>{}, stiffness);  // ∂(Jᵀw)/∂q
 };
 
 /// Body with its own constraint equations between its coordinates, such as the norm of Euler parameters:
 ///   Φ(q) = 0,  G = ∂Φ/∂q,  Φ̈ = G v̇ + γ.
-/// G is own_rows × all generalised velocities of the body, whose number is fixed. The equations are counted and solved
-/// like those of a joint.
+/// G is own_equations × all generalised velocities of the body, whose number is fixed. The equations are counted and
+/// solved like those of a joint.
 template <class B>
-concept OwnsRows = requires(B const b, std::span<double const> x, Vec<double, B::own_rows>& rows,
-                            Mat<double, B::own_rows, B::element_columns>& map,
-                            Mat<double, B::element_columns, B::element_columns>& stiffness) {
-  b.template own_gap<double>(x, rows);                        // Φ
-  b.template own_map<double>(x, map);                         // G
-  b.template own_gamma<double>(x, x, rows);                   // γ(q, v)
-  b.own_stiffness(x, Vec<double, B::own_rows>(), stiffness);  // ∂(Gᵀλ)/∂q
+concept HasOwnEquations = requires(B const b, std::span<double const> x, Vec<double, B::own_equations>& rows,
+                                   Mat<double, B::own_equations, B::element_columns>& map,
+                                   Mat<double, B::element_columns, B::element_columns>& stiffness) {
+  b.template own_constraint<double>(x, rows);                      // Φ
+  b.template own_jacobian<double>(x, map);                         // G
+  b.template own_gamma<double>(x, x, rows);                        // γ(q, v)
+  b.own_stiffness(x, Vec<double, B::own_equations>(), stiffness);  // ∂(Gᵀλ)/∂q
 };
 
 /// Body that computes the ratio of the axial forces in its beams to their buckling forces, with a sign: at −1 the beams
 /// buckle. The deflection of such a body does not include the effect of these forces. A run warns of it.
 template <class B>
-concept LeavesOutAxialForces =
+concept WithoutGeometricStiffening =
     requires(B const b, std::span<double const> x, Vec3 g, std::span<PlacedWrench const> loads) {
       { b.axial_share(x, x, x, g, loads) } -> std::convertible_to<double>;  // at q, v, v̇
     };
@@ -124,7 +124,7 @@ concept LeavesOutAxialForces =
 /// `columns_of(point)`.
 template <class B>
 Index element_columns(B const& body) {
-  return B::element_columns == Eigen::Dynamic ? body.speeds() : Index(B::element_columns);
+  return B::element_columns == Eigen::Dynamic ? body.velocities() : Index(B::element_columns);
 }
 /// Number of columns of a marker at p of `body`.
 template <class B>
@@ -132,7 +132,7 @@ Index point_columns(B const& body, [[maybe_unused]] typename B::Point const& p) 
   if constexpr (requires { body.columns_of(p); })
     return body.columns_of(p);
   else
-    return B::point_columns == Eigen::Dynamic ? body.speeds() : Index(B::point_columns);
+    return B::point_columns == Eigen::Dynamic ? body.velocities() : Index(B::point_columns);
 }
 
 /// Coordinates, generalised velocities and accelerations of a body.
@@ -141,11 +141,11 @@ struct BodyMotion {
   std::span<T const> q, v, a = {};  ///< q, v and v̇ of the whole body
 };
 
-/// Body of one element that adds M v̇ − f, minus its weight under g, to its `speeds` rows. For a small body this is
+/// Body of one element that adds M v̇ − f, minus its weight under g, to its `velocities` rows. For a small body this is
 /// faster than to store the terms and read them again.
 template <class B, class T>
-concept AddsUnbalance =
-    requires(B const b, BodyMotion<T> const& x, Vec3 const& g, T* rows) { b.add_unbalance(x, g, rows); };
+concept HasBodyResidual =
+    requires(B const b, BodyMotion<T> const& x, Vec3 const& g, T* rows) { b.add_residual(x, g, rows); };
 
 /// Workspace of the loops over the elements of a body. It is on the stack if the sizes are known at compile time.
 /// Otherwise it is stored with the data of the body, so that no step allocates memory.
@@ -156,7 +156,7 @@ struct ForceScratch {
   /// Sets the sizes that are known at run time only from `body`.
   explicit ForceScratch([[maybe_unused]] B const& body) {
     if constexpr (B::element_columns == Eigen::Dynamic)
-      for (auto* const v : {&x, &force, &weight}) v->resize(body.speeds());
+      for (auto* const v : {&x, &force, &weight}) v->resize(body.velocities());
     if constexpr (requires { body.room(); }) room.resize(body.room());
   }
 };
@@ -167,17 +167,17 @@ struct TangentScratch {
   /// Sets the sizes that are known at run time only from `body`.
   explicit TangentScratch([[maybe_unused]] B const& body) {
     if constexpr (B::element_columns == Eigen::Dynamic)
-      for (auto* const matrix : {&k, &m}) matrix->resize(body.speeds(), body.speeds());
+      for (auto* const matrix : {&k, &m}) matrix->resize(body.velocities(), body.velocities());
   }
 };
 
 namespace detail {
 /// Workspace stored for each body of run-time size; without element data for the other bodies.
 template <class B, class T>
-struct KeptScratch {
+struct ThreadScratch {
   MatX of_point;  ///< for the load stiffness of a marker whose size is known at run time only
-  explicit KeptScratch([[maybe_unused]] B const& body) {
-    if constexpr (B::point_columns == Eigen::Dynamic) of_point.resize(body.speeds(), body.speeds());
+  explicit ThreadScratch([[maybe_unused]] B const& body) {
+    if constexpr (B::point_columns == Eigen::Dynamic) of_point.resize(body.velocities(), body.velocities());
   }
   ForceScratch<B, T> force_scratch(B const& body) const { return ForceScratch<B, T>(body); }
   TangentScratch<B> tangent_scratch(B const& body) const { return TangentScratch<B>(body); }
@@ -185,23 +185,23 @@ struct KeptScratch {
 };
 template <class B, class T>
   requires(B::element_columns == Eigen::Dynamic)
-struct KeptScratch<B, T> {
+struct ThreadScratch<B, T> {
   ForceScratch<B, T> force;
   TangentScratch<B> tangent;
-  explicit KeptScratch(B const& body) : force(body), tangent(body) {}
+  explicit ThreadScratch(B const& body) : force(body), tangent(body) {}
   ForceScratch<B, T>& force_scratch(B const&) { return force; }
   TangentScratch<B>& tangent_scratch(B const&) { return tangent; }
   MatX& point_scratch() { return tangent.k; }
 };
 }  // namespace detail
 
-/// Body whose points share costly intermediate results: `pose` computes them once, then `publish` uses them for each
-/// point.
+/// Body whose points share costly intermediate results: `pose` computes them once, then `evaluate_marker` uses them for
+/// each point.
 template <class B, class T>
-concept SharesPose = requires(B const b, std::span<T const> x, typename B::Point p, typename B::template Pose<T>& pose,
-                              Published<T>& out) {
+concept HasSharedPose = requires(B const b, std::span<T const> x, typename B::Point p,
+                                 typename B::template Pose<T>& pose, MarkerKinematics<T>& out) {
   b.template pose<T>(x, x, pose);
-  b.publish(p, identity(), pose, out);
+  b.evaluate_marker(p, identity(), pose, out);
 };
 
 namespace detail {
@@ -211,7 +211,7 @@ struct PoseOf {
   using Type = NoPose;
 };
 template <class B, class T>
-  requires SharesPose<B, T>
+  requires HasSharedPose<B, T>
 struct PoseOf<B, T> {
   using Type = typename B::template Pose<T>;
 };
@@ -221,8 +221,8 @@ struct PoseOf<B, T> {
 /// for a body without a closed form whose coordinates add, q ⊞ δ = q + δ. `body.local(p)` is p in a body that consists
 /// of the columns of the marker only.
 template <class B>
-void load_stiffness_by_duals(B const& body, typename B::Point const& p, std::span<double const> q,
-                             Wrench<double> const& w, Mat<double, B::point_columns, B::point_columns>& out) {
+void load_stiffness_by_dual_numbers(B const& body, typename B::Point const& p, std::span<double const> q,
+                                    Wrench<double> const& w, Mat<double, B::point_columns, B::point_columns>& out) {
   constexpr int n = B::point_columns;
   using D = Dual<n>;
   std::array<D, n> coordinates, at_rest;
@@ -232,12 +232,12 @@ void load_stiffness_by_duals(B const& body, typename B::Point const& p, std::spa
     coordinates[i] = D::variable(q[first + i], i);
     at_rest[i] = D(0.0);
   }
-  Published<D> published;
+  MarkerKinematics<D> published;
   published.jacobian = jacobian.data();
   published.columns = n;
   published.shape = JacobianShape::dense;
-  body.template publish<D>(body.local(p), identity(), std::span<D const>(coordinates), std::span<D const>(at_rest),
-                           published);
+  body.template evaluate_marker<D>(body.local(p), identity(), std::span<D const>(coordinates),
+                                   std::span<D const>(at_rest), published);
   Mat<D, 6, 1> wrench;
   for (int i = 0; i < 3; ++i) {
     wrench[i] = D(w.f[i]);

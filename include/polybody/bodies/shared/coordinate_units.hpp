@@ -11,7 +11,7 @@ namespace polybody {
 /// Body that declares the units of its coordinates, and those of its generalised velocities if they are not the rates
 /// of the coordinates. Tables of states show them in their heads (io/state_table.hpp).
 template <class B>
-concept NamesUnits = requires(B const b, Index i) {
+concept HasCoordinateUnits = requires(B const b, Index i) {
   { b.coordinate_unit(i) } -> std::convertible_to<char const*>;
 };
 
@@ -28,13 +28,13 @@ struct CoordinateUnits {
 template <class B>
 constexpr CoordinateUnits units_of() {
   CoordinateUnits units;
-  if constexpr (NamesUnits<B>)
+  if constexpr (HasCoordinateUnits<B>)
     units.of_coordinate = [](void const* body, Index i) -> char const* {
       return static_cast<B const*>(body)->coordinate_unit(i);
     };
-  if constexpr (requires(B const b) { b.speed_unit(Index()); })
+  if constexpr (requires(B const b) { b.velocity_unit(Index()); })
     units.of_speed = [](void const* body, Index i) -> char const* {
-      return static_cast<B const*>(body)->speed_unit(i);
+      return static_cast<B const*>(body)->velocity_unit(i);
     };
   return units;
 }

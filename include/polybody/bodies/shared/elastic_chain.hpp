@@ -47,16 +47,16 @@ class ElasticChain : public NodeChain<columns> {
     tangent_of<double, element_columns>(groups_of(e), of_element(e, q), of_element(e, v), ck, cd, k);
   }
 
-  /// Force over a step from q0 to q1 with the means `StepMeans`: f·Δq = −ΔU minus the dissipated energy.
-  void mean_force(Index e, std::span<double const> q0, std::span<double const> q1, StepMeans const& means,
-                  Element<double>& out) const {
+  /// Force over a step from q0 to q1 with the means `DiscreteDerivative`: f·Δq = −ΔU minus the dissipated energy.
+  void discrete_force(Index e, std::span<double const> q0, std::span<double const> q1, DiscreteDerivative const& means,
+                      Element<double>& out) const {
     Element<double> const x0 = of_element(e, q0), x1 = of_element(e, q1);
     out.setZero();
     for_each_group(e, [&](auto const& group) { group.add_mean_force(x0, x1, means, out); });
   }
-  /// Approximate tangent ck (−∂f/∂q1) of `mean_force` from q0 to q1; not symmetric.
-  void mean_tangent(Index e, std::span<double const> q0, std::span<double const> q1, StepMeans const& means, double ck,
-                    ElementMatrix& k) const {
+  /// Approximate tangent ck (−∂f/∂q1) of `discrete_force` from q0 to q1; not symmetric.
+  void discrete_tangent(Index e, std::span<double const> q0, std::span<double const> q1,
+                        DiscreteDerivative const& means, double ck, ElementMatrix& k) const {
     Element<double> const x0 = of_element(e, q0), x1 = of_element(e, q1);
     k.setZero();
     for_each_group(e, [&](auto const& group) { group.add_mean_tangent(x0, x1, means, ck, k); });

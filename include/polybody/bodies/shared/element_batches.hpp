@@ -7,7 +7,7 @@
 #include <array>
 
 #include <polybody/bodies/shared/body.hpp>
-#include <polybody/math/pack.hpp>
+#include <polybody/math/simd_vector.hpp>
 
 namespace polybody {
 
@@ -15,20 +15,21 @@ namespace polybody {
 /// take the coordinates of one element and can run on SIMD vectors. If the property depends on the data of the body,
 /// `alike()` returns it.
 template <class B>
-concept AlikeElements = requires(B const b, Vec<Pack<>, B::element_columns> x, Vec<Pack<>, B::element_columns>& out,
-                                 Mat<Pack<>, B::element_columns, B::element_columns>& k) {
-  requires B::packs_pay;                              // by measurement: the kernel is arithmetic, not sines
-  { B::element_stride } -> std::convertible_to<int>;  // from the first column of an element to that of the next
-  b.template element_inertia<Pack<>>(x, out);
-  b.template element_force<Pack<>>(x, x, out);
-  b.template element_tangent<Pack<>>(x, x, 1.0, 1.0, k);
-};
+concept IdenticalElements =
+    requires(B const b, Vec<SimdVector<>, B::element_columns> x, Vec<SimdVector<>, B::element_columns>& out,
+             Mat<SimdVector<>, B::element_columns, B::element_columns>& k) {
+      requires B::vectorised_kernels;                     // by measurement: the kernel is arithmetic, not sines
+      { B::element_stride } -> std::convertible_to<int>;  // from the first column of an element to that of the next
+      b.template element_inertia<SimdVector<>>(x, out);
+      b.template element_force<SimdVector<>>(x, x, out);
+      b.template element_tangent<SimdVector<>>(x, x, 1.0, 1.0, k);
+    };
 
 /// Body that compares its elements with those of another body, so that elements of several bodies can share a SIMD
 /// vector.
 template <class B>
-concept ComparesElements = AlikeElements<B> && requires(B const b) {
-  { b.same_elements(b) } -> std::convertible_to<bool>;
+concept ComparableElements = IdenticalElements<B> && requires(B const b) {
+  { b.has_same_elements(b) } -> std::convertible_to<bool>;
 };
 
 /// Elements [begin, end) of a body. `begin` is a multiple of `pack_size`. `end` is a multiple of `pack_size` or the
@@ -53,18 +54,18 @@ PackFrom neighbours(double const* x) {
   return from;
 }
 /// Addresses of the motion of `pack_size` elements.
-struct PackMotion {
+struct SimdMotion {
   PackFrom q, v, a;
 };
 
 /// SIMD vectors of the coordinates of `pack_size` elements.
 template <int n>
-Vec<Pack<>, n> side_by_side(PackFrom const& x) {
+Vec<SimdVector<>, n> side_by_side(PackFrom const& x) {
   static_assert(n % pack_size == 0);
-  Vec<Pack<>, n> packed;
-  std::array<Pack<>, pack_size> part;
+  Vec<SimdVector<>, n> packed;
+  std::array<SimdVector<>, pack_size> part;
   for (int k = 0; k < n; k += pack_size) {
-    for (int l = 0; l < pack_size; ++l) part[std::size_t(l)] = Pack<>::load(x[std::size_t(l)] + k);
+    for (int l = 0; l < pack_size; ++l) part[std::size_t(l)] = SimdVector<>::load(x[std::size_t(l)] + k);
     transpose(part);
     for (int l = 0; l < pack_size; ++l) packed[k + l] = part[std::size_t(l)];
   }
@@ -74,11 +75,11 @@ Vec<Pack<>, n> side_by_side(PackFrom const& x) {
 template <class Packed, class Each>
 void take_apart(Packed const& packed, Each const& same, std::array<Each, pack_size>& each) {
   static_assert(Packed::SizeAtCompileTime % pack_size == 0);
-  std::array<Pack<>, pack_size> part;
+  std::array<SimdVector<>, pack_size> part;
   for (int k = 0; k < Packed::SizeAtCompileTime; k += pack_size) {
     for (int l = 0; l < pack_size; ++l) part[std::size_t(l)] = packed.data()[k + l];
     transpose(part);
-    Pack<> const base = Pack<>::load(same.data() + k);
+    SimdVector<> const base = SimdVector<>::load(same.data() + k);
     for (int l = 0; l < pack_size; ++l) (part[std::size_t(l)] + base).store(each[std::size_t(l)].data() + k);
   }
 }
@@ -89,14 +90,14 @@ bool are_alike(B const& body) {
   if constexpr (requires { body.alike(); })
     return body.alike();
   else
-    return AlikeElements<B>;
+    return IdenticalElements<B>;
 }
 
 /// End of the elements of a range that are processed in SIMD vectors. Each SIMD vector begins at a multiple of
 /// `pack_size`, so that the kernel of an element does not depend on the subdivision of a loop.
 template <class B>
 Index packed_until(B const& body, ElementRange range) {
-  if constexpr (AlikeElements<B>) {
+  if constexpr (IdenticalElements<B>) {
     if (!are_alike(body)) return range.begin;
     Index const whole = body.elements() / pack_size * pack_size;
     return std::max(range.begin, std::min(range.end, whole));
@@ -107,12 +108,12 @@ Index packed_until(B const& body, ElementRange range) {
 
 /// Residuals M a − force of `pack_size` elements like those of `body`.
 template <class B>
-void unbalance_of_pack(B const& body, PackMotion const& x,
+void unbalance_of_pack(B const& body, SimdMotion const& x,
                        std::array<Vec<double, B::element_columns>, pack_size>& each) {
   constexpr int n = B::element_columns;
-  Vec<Pack<>, n> inertia, elastic;
-  body.template element_inertia<Pack<>>(side_by_side<n>(x.a), inertia);
-  body.template element_force<Pack<>>(side_by_side<n>(x.q), side_by_side<n>(x.v), elastic);
+  Vec<SimdVector<>, n> inertia, elastic;
+  body.template element_inertia<SimdVector<>>(side_by_side<n>(x.a), inertia);
+  body.template element_force<SimdVector<>>(side_by_side<n>(x.q), side_by_side<n>(x.v), elastic);
   for (int k = 0; k < n; ++k) inertia[k] -= elastic[k];
   Vec<double, n> const zero = Vec<double, n>::Zero();
   take_apart(inertia, zero, each);
@@ -131,18 +132,19 @@ void unbalance_of_one(B const& body, Index e, BodyMotion<T> const& x, ForceScrat
 
 /// Tangents `inertia` + cd D + ck K of `pack_size` elements like those of `body`.
 template <class B>
-void tangent_of_pack(B const& body, PackMotion const& x, ElementCoefficients c,
+void tangent_of_pack(B const& body, SimdMotion const& x, ElementCoefficients c,
                      Mat<double, B::element_columns, B::element_columns> const& inertia,
                      std::array<Mat<double, B::element_columns, B::element_columns>, pack_size>& each) {
   constexpr int n = B::element_columns;
-  Mat<Pack<>, n, n> packs;
-  body.template element_tangent<Pack<>>(side_by_side<n>(x.q), side_by_side<n>(x.v), c.stiffness, c.damping, packs);
+  Mat<SimdVector<>, n, n> packs;
+  body.template element_tangent<SimdVector<>>(side_by_side<n>(x.q), side_by_side<n>(x.v), c.stiffness, c.damping,
+                                              packs);
   take_apart(packs, inertia, each);
 }
 
 /// Addresses of the motion of `pack_size` neighbours in a body, from element `first` on.
 template <class B>
-PackMotion motion_of_neighbours(B const& body, Index first, BodyMotion<> const& x) {
+SimdMotion motion_of_neighbours(B const& body, Index first, BodyMotion<> const& x) {
   constexpr int stride = B::element_stride;
   Index const column = body.first_column(first);
   double const* const a = x.a.empty() ? nullptr : x.a.data() + column;
@@ -156,7 +158,7 @@ PackMotion motion_of_neighbours(B const& body, Index first, BodyMotion<> const& 
 template <Body B, StateScalar T, class F>
 void for_each_unbalance(B const& body, ElementRange range, BodyMotion<T> const& x, ForceScratch<B, T>& scratch, F&& f) {
   auto [e, end] = range;
-  if constexpr (AlikeElements<B> && std::same_as<T, double>) {
+  if constexpr (IdenticalElements<B> && std::same_as<T, double>) {
     Index const packed = detail::packed_until(body, range);
     std::array<Vec<double, B::element_columns>, pack_size> each;
     for (; e < packed; e += pack_size) {
@@ -193,7 +195,7 @@ void for_each_element_tangent(B const& body, ElementRange range, BodyMotion<> co
     first_mass = false;
   };
   auto [e, end] = range;
-  if constexpr (AlikeElements<B>) {
+  if constexpr (IdenticalElements<B>) {
     Index const packed = detail::packed_until(body, range);
     std::array<Mat<double, n, n>, pack_size> each;
     if (e < packed) inertia(e);

@@ -28,7 +28,7 @@ class NodeChain : public AddingCoordinates {
   static constexpr int element_stride = columns;
 
   Index coordinates() const { return (n_ + 1) * columns; }
-  Index speeds() const { return coordinates(); }
+  Index velocities() const { return coordinates(); }
   Index elements() const { return n_; }
   Index first_column(Index e) const { return e * columns; }
   /// First column of the element of the point p.

@@ -59,11 +59,11 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
 
  public:
   static constexpr World world = World::plane;
-  static constexpr Observes observes = Observes::frame;
+  static constexpr MarkerKind observes = MarkerKind::frame;
   static constexpr bool constant_mass = true;
   using Chain = ElasticChain<Theory::node_columns, typename Groups::type>;  ///< nodes and strain groups
   using Chain::coordinates, Chain::element_columns, Chain::elements, Chain::first_column, Chain::node_columns;
-  static constexpr bool packs_pay = Theory::packs_pay;
+  static constexpr bool vectorised_kernels = Theory::vectorised_kernels;
   template <class T>
   using Element = Vec<T, element_columns>;
   using ElementMatrix = Mat<double, element_columns, element_columns>;
@@ -146,7 +146,7 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
 
   void mass(Index, std::span<double const>, ElementMatrix& m) const { m = mass_; }
 
-  bool same_elements(Beam const& other) const { return this->same_strains(other) && mass_ == other.mass_; }
+  bool has_same_elements(Beam const& other) const { return this->same_strains(other) && mass_ == other.mass_; }
   /// Product M a with the accelerations of one element.
   template <KernelScalar T>
   void element_inertia(Element<T> const& a, Element<T>& out) const {
@@ -204,7 +204,8 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
   /// Marker kinematics: r = r₀ + y n, n = (−sin θ, cos θ);  ṙ = ṙ₀ − y t θ̇, t = (cos θ, sin θ);
   /// bias = −y (t θ̈ᵇ + n θ̇²), where θ̈ᵇ is the part of θ̈ without ë.
   template <StateScalar T>
-  void publish(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v, Published<T>& out) const {
+  void evaluate_marker(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v,
+                       MarkerKinematics<T>& out) const {
     using std::cos, std::sin;
     Element<T> const x = this->of_element(p.element, q), xd = this->of_element(p.element, v);
     Mat<double, 2, element_columns> const shape = Theory::position(p.xi, l_);

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include <polybody/math/pack.hpp>
+#include <polybody/math/simd_vector.hpp>
 #include <polybody/math/types.hpp>
 
 namespace polybody {

@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include <polybody/bodies/shared/step_means.hpp>
+#include <polybody/bodies/shared/discrete_force.hpp>
 #include <polybody/bodies/shared/strain_laws.hpp>
 #include <polybody/math/quadrature.hpp>
 #include <polybody/math/secant.hpp>
@@ -100,7 +100,7 @@ class StrainPoints {
   /// Strains that are components of a rotating vector enter by their square z: n_z = ½ C (1 + τ Δz/(2h(z̄ + κ₀²))),
   /// with κ₀ = 1e-3 1/m, which agrees with the damping of `objective_rate`. The part of `decay` then has a moment.
   template <int n>
-  void add_mean_force(Vec<double, n> const& x0, Vec<double, n> const& x1, StepMeans const& means,
+  void add_mean_force(Vec<double, n> const& x0, Vec<double, n> const& x1, DiscreteDerivative const& means,
                       Vec<double, n>& f) const {
     using S = Secant<np>;
     Coordinates<double, n> const e0(x0), e1(x1);
@@ -137,7 +137,7 @@ class StrainPoints {
   /// H̄ of the strains in the middle of the step replace the secants:
   ///   Pᵀ [B̄ᵀ C (½ + decay + τ/h) B(x1) + ½ Σ n_i H̄_i] P.
   template <int n>
-  void add_mean_tangent(Vec<double, n> const& x0, Vec<double, n> const& x1, StepMeans const& means, double ck,
+  void add_mean_tangent(Vec<double, n> const& x0, Vec<double, n> const& x1, DiscreteDerivative const& means, double ck,
                         Mat<double, n, n>& k) const {
     Coordinates<double, n> const e0(x0), e1(x1);
     for (int g = 0; g < Law::points; ++g) {

@@ -1,5 +1,5 @@
 #pragma once
-#include <polybody/joints/rows.hpp>
+#include <polybody/joints/constraint_functions.hpp>
 
 namespace polybody::planar {
 
@@ -8,9 +8,9 @@ namespace polybody::planar {
 struct Prismatic {
   static constexpr char const* name = "planar::Prismatic";
   static constexpr int rows = 2;
-  static constexpr Observes needs = Observes::frame;
+  static constexpr MarkerKind needs = MarkerKind::frame;
   static constexpr World world = World::plane;
-  static constexpr Freedoms free = {true};
+  static constexpr FreeDirections free = {true};
 
   Vec3 axis = Vec3::UnitX();  ///< (3) unit vector in the plane, world axes at the reference configuration
 
@@ -19,27 +19,27 @@ struct Prismatic {
   Mat3 triad() const {
     require_unit(axis, "planar::Prismatic: the axis");
     if (std::abs(axis.z()) > 1e-12) throw InvalidInput("planar::Prismatic: the axis must lie in the plane, z = 0.");
-    return polybody::rows::columns(axis, {-axis[1], axis[0], 0.0}, {0.0, 0.0, 1.0});
+    return polybody::constraint_functions::columns(axis, {-axis[1], axis[0], 0.0}, {0.0, 0.0, 1.0});
   }
 
   template <StateScalar T>
-  Gap<2, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
-    Gap<2, T> gap;
-    polybody::rows::no_slide(axis_of(a, 1), a, b, gap, 0);
-    polybody::rows::perpendicular(axis_of(a, 1), axis_of(b, 0), gap, 1);
+  ConstraintTerms<2, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
+    ConstraintTerms<2, T> gap;
+    polybody::constraint_functions::no_slide(axis_of(a, 1), a, b, gap, 0);
+    polybody::constraint_functions::perpendicular(axis_of(a, 1), axis_of(b, 0), gap, 1);
     return gap;
   }
   template <StateScalar T>
   Vec<T, 2> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
-    return {polybody::rows::no_slide_gamma(axis_of(a, 1), a, b),
-            polybody::rows::perpendicular_gamma(axis_of(a, 1), axis_of(b, 0), a, b)};
+    return {polybody::constraint_functions::no_slide_gamma(axis_of(a, 1), a, b),
+            polybody::constraint_functions::perpendicular_gamma(axis_of(a, 1), axis_of(b, 0), a, b)};
   }
   template <class = void>  // compiled where it is used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 2> const& lambda) const {
     auto k = detail::zeros<Mat<double, 12, 12>>();
-    polybody::rows::no_slide_gradient(axis_of(a, 1), a, b, lambda[0], k);
-    polybody::rows::perpendicular_gradient(axis_of(a, 1), axis_of(b, 0), lambda[1], k);
+    polybody::constraint_functions::no_slide_gradient(axis_of(a, 1), a, b, lambda[0], k);
+    polybody::constraint_functions::perpendicular_gradient(axis_of(a, 1), axis_of(b, 0), lambda[1], k);
     return k;
   }
 };

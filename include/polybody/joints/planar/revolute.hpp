@@ -1,5 +1,5 @@
 #pragma once
-#include <polybody/joints/rows.hpp>
+#include <polybody/joints/constraint_functions.hpp>
 
 namespace polybody::planar {
 
@@ -7,16 +7,16 @@ namespace polybody::planar {
 struct Revolute {
   static constexpr char const* name = "planar::Revolute";
   static constexpr int rows = 2;
-  static constexpr Observes needs = Observes::point;
+  static constexpr MarkerKind needs = MarkerKind::point;
   static constexpr World world = World::plane;
   static constexpr bool opposite_ends = true;
-  static constexpr Freedoms free = {false, false, false, false, false, true};
+  static constexpr FreeDirections free = {false, false, false, false, false, true};
 
   Mat3 triad() const { return identity(); }
 
   template <StateScalar T>
-  Gap<2, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
-    Gap<2, T> gap;
+  ConstraintTerms<2, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
+    ConstraintTerms<2, T> gap;
     for (int i = 0; i < 2; ++i) {
       gap.g[i] = b.r[i] - a.r[i];
       gap.Ga(i, i) = T(-1.0);

@@ -1,5 +1,5 @@
 #pragma once
-#include <polybody/joints/rows.hpp>
+#include <polybody/joints/constraint_functions.hpp>
 
 namespace polybody::planar {
 
@@ -7,35 +7,35 @@ namespace polybody::planar {
 struct Weld {
   static constexpr char const* name = "planar::Weld";
   static constexpr int rows = 3;
-  static constexpr Observes needs = Observes::frame;
+  static constexpr MarkerKind needs = MarkerKind::frame;
   static constexpr World world = World::plane;
   static constexpr bool opposite_ends = true;
-  static constexpr Freedoms free = {};
+  static constexpr FreeDirections free = {};
 
   Mat3 triad() const { return identity(); }
 
   template <StateScalar T>
-  Gap<3, T> gap(Frame<T> const& a, Frame<T> const& b, double) const {
-    Gap<3, T> gap;
+  ConstraintTerms<3, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
+    ConstraintTerms<3, T> gap;
     for (int i = 0; i < 2; ++i) {
       gap.g[i] = b.r[i] - a.r[i];
       gap.Ga(i, i) = T(-1.0);
       gap.Gb(i, i) = T(1.0);
     }
-    polybody::rows::perpendicular(axis_of(a, 1), axis_of(b, 0), gap, 2);
+    polybody::constraint_functions::perpendicular(axis_of(a, 1), axis_of(b, 0), gap, 2);
     return gap;
   }
   template <StateScalar T>
   Vec<T, 3> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
     Vec<T, 3> gamma = detail::zeros<Vec<T, 3>>();
-    gamma[2] = polybody::rows::perpendicular_gamma(axis_of(a, 1), axis_of(b, 0), a, b);
+    gamma[2] = polybody::constraint_functions::perpendicular_gamma(axis_of(a, 1), axis_of(b, 0), a, b);
     return gamma;
   }
   template <class = void>  // compiled where it is used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 3> const& lambda) const {
     auto k = detail::zeros<Mat<double, 12, 12>>();
-    polybody::rows::perpendicular_gradient(axis_of(a, 1), axis_of(b, 0), lambda[2], k);
+    polybody::constraint_functions::perpendicular_gradient(axis_of(a, 1), axis_of(b, 0), lambda[2], k);
     return k;
   }
 };

@@ -16,7 +16,7 @@ namespace polybody {
 ///   Weld:  r and all gradients that both have equal, as they stand to one another in the reference.
 struct AncfLinear {
   static constexpr char const* name = "AncfLinear";
-  static constexpr bool adds_rows = true;  ///< the joint has rows, whose multipliers are its reactions
+  static constexpr bool adds_constraints = true;  ///< the joint has rows, whose multipliers are its reactions
   /// The rows leave the equations together with the coordinates that depend on others.
   static constexpr bool eliminates = true;
   static constexpr bool linear = true;
@@ -24,10 +24,10 @@ struct AncfLinear {
 
 /// A policy whose rows are linear in the coordinates of the two bodies, and belong to them rather than to two frames.
 template <class P>
-concept LinearInCoordinates = Eliminates<P> && requires { requires P::linear; };
+concept LinearPolicy = EliminatingPolicy<P> && requires { requires P::linear; };
 
 /// A geometry that such rows can state: points coincide, and axes or whole frames with them.
 template <class G>
-concept LinearGeometry = NamesFreedoms<G> && detail::free_slides(G::free) == 0 && detail::free_turns(G::free) != 2;
+concept LinearGeometry = HasFreeDirections<G> && detail::free_slides(G::free) == 0 && detail::free_turns(G::free) != 2;
 
 }  // namespace polybody

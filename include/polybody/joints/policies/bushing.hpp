@@ -45,7 +45,7 @@ struct Bushing {
   static constexpr bool linear = true;  ///< in g and ġ
   /// What is measured in place of G's rows: the six `RelativeCoordinates`, zero where G leaves them free.
   template <JointGeometry G>
-  using Measured = HeldCoordinates<G>;
+  using Measured = ConstrainedCoordinates<G>;
   using Matrix = Mat<double, 6, 6>;  ///< (6×6) in the joint's axes, slides before turns
 
   Required<Matrix> stiffness;  ///< (6×6) K, blocks [N/m], [N/rad]; [N], [N m/rad]

@@ -7,7 +7,7 @@ namespace polybody {
 /// −Gᵀλ [thesis Eq. 3.2–3.3].
 struct Constraint {
   static constexpr char const* name = "Constraint";
-  static constexpr bool adds_rows = true;  ///< rows with multipliers
+  static constexpr bool adds_constraints = true;  ///< rows with multipliers
 };
 
 }  // namespace polybody

@@ -61,7 +61,7 @@ struct NonlinearBushing {
   static constexpr char const* name = "NonlinearBushing";
   /// What is measured in place of G's rows: the six `RelativeCoordinates`, zero where G leaves them free.
   template <JointGeometry G>
-  using Measured = HeldCoordinates<G>;
+  using Measured = ConstrainedCoordinates<G>;
 
   std::tuple<Laws...> laws;  ///< (6) slides along the joint's axes, then turns
 

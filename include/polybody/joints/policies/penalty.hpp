@@ -41,10 +41,10 @@ struct Penalty {
   }
 };
 
-/// The same with numbers for each of the n rows of a joint, `PenaltyPerRow<5>` for a Revolute, say.
+/// The same with numbers for each of the n rows of a joint, `PenaltyPerEquation<5>` for a Revolute, say.
 template <int n>
-struct PenaltyPerRow {
-  static constexpr char const* name = "PenaltyPerRow";
+struct PenaltyPerEquation {
+  static constexpr char const* name = "PenaltyPerEquation";
   static constexpr bool linear = true;  ///< in g and ġ
 
   Required<Vec<double, n>> stiffness;  ///< (n) k

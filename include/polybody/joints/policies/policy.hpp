@@ -2,26 +2,26 @@
 /// \file
 /// The kinds of joint policy. Each kind is one path in the assembler, however many policies there are.
 
-#include <polybody/joints/gap.hpp>
+#include <polybody/joints/constraint_terms.hpp>
 
 namespace polybody {
 
 /// Rows with multipliers.
 template <class P>
-concept AddsRows = requires { requires P::adds_rows; };
+concept ConstrainingPolicy = requires { requires P::adds_constraints; };
 
 /// Its rows leave the equations of a time step together with the coordinates that they determine; all other questions
 /// to a model treat them as rows with multipliers.
 template <class P>
-concept Eliminates = AddsRows<P> && requires { requires P::eliminates; };
+concept EliminatingPolicy = ConstrainingPolicy<P> && requires { requires P::eliminates; };
 
 /// Its rows stay in the equations of a time step.
 template <class P>
-concept KeepsRows = AddsRows<P> && !Eliminates<P>;
+concept MultiplierPolicy = ConstrainingPolicy<P> && !EliminatingPolicy<P>;
 
 /// Answers m rows by a force −Gᵀλ(g, ġ); the slope of λ is a matrix (m×m), full or diagonal.
 template <class P, int m>
-concept AnswersRows = requires(P const p, Vec<double, m> const g, std::string const what) {
+concept CompliantLaw = requires(P const p, Vec<double, m> const g, std::string const what) {
   p.check(what);
   { p.template multiplier<m, double>(g, g) } -> std::convertible_to<Vec<double, m>>;
   { p.template slope<m>(1.0, 1.0, g, g) } -> std::convertible_to<Mat<double, m, m>>;
@@ -30,11 +30,11 @@ concept AnswersRows = requires(P const p, Vec<double, m> const g, std::string co
 
 /// A force in place of rows. Some policies answer any number of rows, others one number only.
 template <class P>
-concept AddsForce = AnswersRows<P, 1> || AnswersRows<P, 2> || AnswersRows<P, 3> || AnswersRows<P, 4> ||
-                    AnswersRows<P, 5> || AnswersRows<P, 6>;
+concept CompliantPolicy = CompliantLaw<P, 1> || CompliantLaw<P, 2> || CompliantLaw<P, 3> || CompliantLaw<P, 4> ||
+                          CompliantLaw<P, 5> || CompliantLaw<P, 6>;
 
 /// Exactly one kind.
 template <class P>
-concept Policy = (int(AddsRows<P>) + int(AddsForce<P>) == 1);
+concept Policy = (int(ConstrainingPolicy<P>) + int(CompliantPolicy<P>) == 1);
 
 }  // namespace polybody

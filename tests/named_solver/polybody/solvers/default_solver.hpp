@@ -22,9 +22,9 @@ struct SolverInTests {
   virtual Index factor() = 0;
   virtual bool reordered() const = 0;
   virtual std::size_t reorderings() const = 0;
-  virtual void keep_reorderings(std::size_t count) noexcept = 0;
+  virtual void limit_reorderings(std::size_t count) noexcept = 0;
   virtual std::span<Index const> dropped() const = 0;
-  virtual void leave_out(std::span<Index const> unknowns) = 0;
+  virtual void mark_redundant(std::span<Index const> unknowns) = 0;
   virtual bool is_doubtful(double share) const = 0;
   virtual void null_vector(Index dropped, VecX& n) const = 0;
   virtual double sign_of_determinant() const = 0;
@@ -62,9 +62,9 @@ class NamedSolver {
     if constexpr (requires { default_.reorderings(); }) return default_.reorderings();
     return 0;
   }
-  void keep_reorderings(std::size_t count) noexcept {
-    if (other_) return other_->keep_reorderings(count);
-    if constexpr (requires { default_.keep_reorderings(count); }) default_.keep_reorderings(count);
+  void limit_reorderings(std::size_t count) noexcept {
+    if (other_) return other_->limit_reorderings(count);
+    if constexpr (requires { default_.limit_reorderings(count); }) default_.limit_reorderings(count);
   }
   std::span<Index const> dropped() const {
     if (other_) return other_->dropped();
@@ -72,10 +72,10 @@ class NamedSolver {
     return {};
   }
   void solve(VecX const& b, VecX& x) const { other_ ? other_->solve(b, x) : default_.solve(b, x); }
-  void leave_out(std::span<Index const> unknowns)
-    requires requires(Default s) { s.leave_out(unknowns); }
+  void mark_redundant(std::span<Index const> unknowns)
+    requires requires(Default s) { s.mark_redundant(unknowns); }
   {
-    other_ ? other_->leave_out(unknowns) : default_.leave_out(unknowns);
+    other_ ? other_->mark_redundant(unknowns) : default_.mark_redundant(unknowns);
   }
   bool is_doubtful(double share) const
     requires requires(Default const s) { s.is_doubtful(share); }

@@ -1,0 +1,71 @@
+#pragma once
+/// \file
+/// Rigid bodies whose mass changes with time, such as tanks that empty, rockets, and belts that are loaded.
+///
+/// Not in polybody.hpp: few bodies gain or lose mass.
+
+#include <array>
+#include <functional>
+#include <memory>
+
+#include <polybody/bodies/shared/body.hpp>
+#include <polybody/bodies/shared/time_varying.hpp>
+
+namespace polybody {
+
+/// Rigid body B with mass and inertia as functions of time. The centre of mass is fixed in the body:
+///
+///     Changing<Rigid<>> const stage([](double t) { return Rigid<>(mass(t), inertia(t)); });
+///
+/// The equation M(t) v̇ = f is valid if the mass that leaves or arrives has the velocity of the body at its point, so
+/// that it keeps its own momentum. Mass that leaves with another velocity exerts a force on the body: −ṁ u for a stream
+/// of ṁ [kg/s] at u [m/s] relative to the body. It is applied like any other force
+/// [Meshchersky 1897; Goldstein, Poole & Safko 2002, ch. 1]. Energies are those of the present mass.
+template <Body B>
+class VariableMass : public B {
+  static_assert(
+      HasRigidLayout<B>,
+      "Only rigid bodies whose coordinates are those of their centre of mass change: Rigid<> and planar::Rigid. A body "
+      "of your own may say at_time(t) itself.");
+
+ public:
+  static constexpr bool constant_mass = false;
+
+  /// Body at time t [s]. Every evaluation calls the function, from several threads if there are any.
+  using Law = std::function<B(double t)>;
+
+  /// Body with the function of time `law`.
+  /// \throws InvalidInput without a function, and any exception of the function for t = 0.
+  explicit VariableMass(Law law) : B(at_start(law)), law_(std::make_shared<Law const>(std::move(law))) {}
+
+  /// Body at time t [s].
+  /// \throws InvalidInput if the function changes the position of the centre of mass or the axes of the body.
+  VariableMass at_time(double t) const {
+    VariableMass now = *this;
+    static_cast<B&>(now) = (*law_)(t);
+    require_same_place(now, t);
+    return now;
+  }
+
+ private:
+  static B at_start(Law const& law) {
+    if (!law) throw InvalidInput("VariableMass: a law is needed that gives the body at every time.");
+    return law(0.0);
+  }
+  void require_same_place(B const& now, double t) const {
+    std::array<double, 7> here{}, there{};
+    B::reference(std::span<double>(here).first(std::size_t(B::coordinates())));
+    now.reference(std::span<double>(there).first(std::size_t(B::coordinates())));
+    for (std::size_t i = 0; i < here.size(); ++i)
+      if (!(std::abs(here[i] - there[i]) <= 1e-12 * (1.0 + std::abs(here[i])))) refuse_place(t);
+  }
+  [[noreturn, gnu::cold]] static void refuse_place(double t) {
+    throw InvalidInput{"VariableMass: at t = ", t,
+                       " s the law places the body elsewhere than at t = 0. Coordinates are those of the centre of "
+                       "mass: keep its placement, and let mass and inertia change about it."};
+  }
+
+  std::shared_ptr<Law const> law_;
+};
+
+}  // namespace polybody

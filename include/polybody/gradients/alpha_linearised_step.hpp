@@ -1,0 +1,279 @@
+#pragma once
+/// \file
+/// The tangent-linear of a converged step of the generalised-α family (integrators/alpha_method.hpp), exactly: with
+/// what Newton's matrix leaves out.
+///
+/// With y = (δa₁, δλ₁) and the changes of q₀, v₀, v̇₀, a₀ and of the equations by a parameter, those of q₁, v₁, v̇₁
+/// follow from the formulas of the step, and
+///   δ[M v̇₁ − f₁ + G₁ᵀλ₁] = 0,  δΦ(q₁)/βh² = 0  (of velocity rows δΦ̇/γh)
+/// is linear in y. Its left side comes from one pass of dual numbers through the residual, so no term is missing: not
+/// the derivative of ⊞, not ∂(Gᵀλ)/∂q. It is solved by factors that need only be near (`StepFactorisations`) and
+/// corrected until nothing changes, or until a probe tells that nothing would (`CorrectionErrorEstimate`).
+///
+/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+
+#include <array>
+#include <span>
+
+#include <polybody/gradients/correction_error_estimate.hpp>
+#include <polybody/gradients/step_factorisations.hpp>
+
+namespace polybody {
+
+/// Slopes of converged steps of a method, one step after the other.
+template <LinearSolver Solver = DefaultSolver>
+class AlphaLinearisedStep {
+ public:
+  using Factors = typename StepFactorisations<Solver, Derivative::direct>::OfStep;  ///< of the tangent of a step
+  /// Directions that go through the equations together, a part of a dual number each: with eight, what they leave
+  /// between joints and bodies no longer stays in the cache.
+  static constexpr int lanes = 4;
+
+  /// The model must outlive it.
+  template <class M>
+  [[gnu::cold]] AlphaLinearisedStep(M const& model, System& system, AlphaMethod const& method)
+      : dual_(stepped_system<D>(model, with<Capabilities::motion>)),
+        method_(method),
+        factors_(system, method, candidates()) {
+    Index const nq = system.coordinates(), nv = system.velocities(), rows = system.rows();
+    from_ = q_ = Dots::Constant(nq, D(0.0));
+    delta_ = v_ = a_ = r_ = Dots::Constant(nv, D(0.0));
+    lambda_ = phi_ = rate_ = Dots::Constant(rows, D(0.0));
+    for (std::size_t l = 0; l < y_.size(); ++l) y_[l] = rhs_[l] = correction_[l] = VecX::Zero(nv + rows);
+    guess_ = VecX::Zero(nv);
+    still_.q = VecX::Zero(nq);
+    still_.v = still_.a = still_.history = guess_;
+    at_rest_ = {{guess_, VecX::Zero(rows)}, &still_, 0.0};
+    probe_ = CorrectionErrorEstimate(nv, rows);
+  }
+
+  /// From now on slopes are those of this step. \param near factors of a matrix near its tangent, such as its own, or
+  /// none; what serves best, they or factors made at the end of the step, is learnt. \throws SingularMatrix at a
+  /// singular position.
+  void set(StepEnds const& step, Factors* near = nullptr) {
+    probe_.fade();
+    factors_.set(step, near);
+    State const &before = step.before, &after = step.after;
+    guess_ = step.increment(method_);
+    for (Index i = 0; i < from_.size(); ++i) from_[i].v = before.q[i];
+    for (Index i = 0; i < a_.size(); ++i) {
+      a_[i].v = after.a[i];
+      v_[i].v = after.v[i];
+      delta_[i].v = guess_[i];
+    }
+    for (Index i = 0; i < lambda_.size(); ++i) lambda_[i].v = after.lambda[i];
+    size_of_a_ = after.a.norm();
+    size_of_lambda_ = after.lambda.head(lambda_.size()).norm();
+  }
+
+  /// Takes up to `lanes` directions over the step; where the first ones are fewer, a probe goes with them. Returns what
+  /// a correction more would change at most, beside all, or beside a and λ over a parameter's scale where that is more.
+  /// \throws SingularMatrix as `set`.
+  double advance(StepEnds const& step, std::span<StepDirection const> directions) {
+    std::size_t const n = directions.size();
+    bool const far = passes_ > 2, probes = n < std::size_t(lanes) && !probe_.known() && probe_.draw(y_[n]);
+    for (std::size_t l = 0; l < n; ++l) guess(step, directions[l], far, y_[l]);
+    find_end(step, directions);
+    double left = std::numeric_limits<double>::infinity(), more = left;
+    for (passes_ = 1; passes_ <= most_passes; ++passes_) {
+      double const before = left;
+      left = correct(step, directions);
+      if (probes && passes_ == 1) measure(n);
+      more = probe_.known() ? std::min(left, left_after(directions)) : left;
+      bool const stays = passes_ > 2 && left >= 0.8 * before, shrinks = passes_ > 2 && left * left <= 1e-14 * before;
+      if (more <= (factors_.are_exact() ? 1e-11 : 1e-12) || ((stays || shrinks) && left <= 1e-10)) break;
+      if (passes_ == 1 || left <= slow * before || factors_.are_nearest()) continue;
+      factors_.set_nearest(step);
+      probe_.forget();
+    }
+    factors_.took(std::min(passes_, most_passes));
+    if (left > 1e-12) dual_.plus(from_, delta_, q_);  // else βh² times that is less than rounding of q
+    take_end(step, directions);
+    return more;
+  }
+
+ private:
+  using D = Dual<lanes>;
+  using Dots = VecXOf<D>;
+  using Partials = typename D::Partials;
+  static constexpr int most_passes = 30;
+  static constexpr double slow = 0.1;  // corrections that shrink by no more ask for the nearest factors
+
+  static std::vector<PreconditionerChoice::Candidate> candidates() {
+    return {{ApproximateFactors::of_step, 0.0},
+            {ApproximateFactors::of_end, 0.7},
+            {ApproximateFactors::exact, 2.0},
+            {ApproximateFactors::turned, 2.5}};
+  }
+
+  /// Vectors of the directions, an entry of each at a time; where there are fewer, the probe stands in.
+  struct Side {
+    std::array<double const*, std::size_t(lanes)> of;
+    Partials operator[](Index i) const {
+      Partials out;
+      for (std::size_t l = 0; l < of.size(); ++l) out[Index(l)] = of[l][i];
+      return out;
+    }
+  };
+  template <class F>
+  static Side side(std::size_t count, F const& vector_of) {
+    Side out;
+    for (std::size_t l = 0; l < out.of.size(); ++l) out.of[l] = vector_of(std::min(l, count)).data();
+    return out;
+  }
+
+  /// What lane l goes along: a direction, or where there are fewer nothing but y, which is the probe.
+  StepDirection const& along(std::span<StepDirection const> directions, std::size_t l) const {
+    return l < directions.size() ? directions[l] : at_rest_;
+  }
+
+  /// What changes of a₁ and λ₁ begin with: as they were, near what they become; extrapolated where that is far.
+  void guess(StepEnds const& step, StepDirection const& along, bool far, VecX& y) {
+    AlphaMethod const& m = method_;
+    State& dx = *along.dx;
+    Index const nv = a_.size(), rows = lambda_.size();
+    y.head(nv) = dx.history.head(nv);
+    y.tail(rows) = dx.lambda.head(rows);
+    if (!far) return;
+    multipliers_.resize(dx.lambda.size());
+    StepHistory(dx).extrapolate(dx, step.h, guess_, multipliers_);
+    y.head(nv) = ((1.0 - m.alpha_f) * guess_ + m.alpha_f * dx.a - m.alpha_m * dx.history.head(nv)) / (1.0 - m.alpha_m);
+    y.tail(rows) = multipliers_.head(rows);
+  }
+
+  /// Changes of δ, v₁, v̇₁ and λ₁ by the y of each direction.
+  void find_end(StepEnds const& step, std::span<StepDirection const> directions) {
+    AlphaMethod const& m = method_;
+    std::size_t const n = directions.size();
+    double const h = step.h, h2 = h * h, of_a0 = h2 * (0.5 - m.beta), of_a1 = h2 * m.beta;
+    auto const state = [&](std::size_t l) -> State const& { return *along(directions, l).dx; };
+    Side const q = side(n, [&](std::size_t l) -> VecX const& { return state(l).q; }),
+               v = side(n, [&](std::size_t l) -> VecX const& { return state(l).v; }),
+               a = side(n, [&](std::size_t l) -> VecX const& { return state(l).a; }),
+               own = side(n, [&](std::size_t l) -> VecX const& { return state(l).history; }),
+               y = side(n, [&](std::size_t l) -> VecX const& { return y_[l]; });
+    Partials dh;
+    for (std::size_t l = 0; l < std::size_t(lanes); ++l) dh[Index(l)] = along(directions, l).dh;
+    for (Index i = 0; i < from_.size(); ++i) from_[i].d = q[i];
+    for (Index i = 0; i < a_.size(); ++i) {
+      Partials const v0 = v[i], a0 = own[i], a1 = y[i];
+      double const own0 = step.own_before[i], own1 = step.own_after[i];
+      a_[i].d = ((1.0 - m.alpha_m) * a1 + m.alpha_m * a0 - m.alpha_f * a[i]) / (1.0 - m.alpha_f);
+      v_[i].d = v0 + h * ((1.0 - m.gamma) * a0 + m.gamma * a1) + dh * ((1.0 - m.gamma) * own0 + m.gamma * own1);
+      delta_[i].d = h * v0 + of_a0 * a0 + of_a1 * a1 +
+                    dh * (step.before.v[i] + h * ((1.0 - 2.0 * m.beta) * own0 + 2.0 * m.beta * own1));
+    }
+    for (Index i = 0; i < lambda_.size(); ++i) lambda_[i].d = y[a_.size() + i];
+  }
+
+  /// A pass through the equations, and what it corrects. Returns the largest relative correction.
+  double correct(StepEnds const& step, std::span<StepDirection const> directions) {
+    Index const nv = a_.size(), rows = lambda_.size();
+    evaluate(step);
+    right_hand_sides(step, directions);
+    double most = 0.0;
+    for (std::size_t l = 0; l < directions.size(); ++l) {
+      VecX &y = y_[l], &correction = correction_[l];
+      factors_.solve(rhs_[l], correction);
+      y += correction;
+      double const scale = directions[l].by.scale;
+      most = std::max({most, part(correction.head(nv), y.head(nv), size_of_a_ / scale),
+                       part(correction.tail(rows), y.tail(rows), size_of_lambda_ / scale)});
+    }
+    apply(step.h, directions.size());
+    return most;
+  }
+  /// After a pass with a probe as lane l.
+  void measure(std::size_t l) {
+    factors_.solve(rhs_[l], correction_[l]);
+    correction_[l] += y_[l];
+    probe_.measure(correction_[l]);
+  }
+  /// The largest relative correction that would come after this one.
+  double left_after(std::span<StepDirection const> directions) const {
+    Index const nv = a_.size(), rows = lambda_.size();
+    double most = 0.0;
+    for (std::size_t l = 0; l < directions.size(); ++l) {
+      double const scale = directions[l].by.scale;
+      CorrectionErrorEstimate::Parts const left = probe_.bound(correction_[l]);
+      most = std::max({most, relative(left.a, y_[l].head(nv), size_of_a_ / scale),
+                       relative(left.lambda, y_[l].tail(rows), size_of_lambda_ / scale)});
+    }
+    return most;
+  }
+  template <class B>
+  static double relative(double size, B const& y, double least) {
+    double const all = std::max(y.norm(), least);
+    return all > 0.0 ? size / all : size;
+  }
+  template <class A, class B>
+  static double part(A const& correction, B const& y, double least) {
+    return relative(correction.norm(), y, least);
+  }
+  /// M v̇ − f + Gᵀλ, Φ and, where velocity rows are, Φ̇ there.
+  void evaluate(StepEnds const& step) {
+    dual_.plus(from_, delta_, q_);
+    dual_.evaluate(q_, v_, step.after.t);
+    dual_.residual(a_, lambda_, r_);
+    if (phi_.size() > 0) dual_.violation(phi_);
+    if (!dual_.nonholonomic_equations().empty()) dual_.violation_rate(rate_);
+  }
+  /// −δ[M v̇ − f + Gᵀλ] and −δΦ/βh² (−δΦ̇/γh) of each direction, with what the parameter does.
+  void right_hand_sides(StepEnds const& step, std::span<StepDirection const> directions) {
+    double const of_position = -1.0 / (method_.beta * step.h * step.h), of_speed = -1.0 / (method_.gamma * step.h);
+    Index const nv = r_.size();
+    std::size_t const with_probe = std::min(directions.size() + 1, std::size_t(lanes));
+    for (std::size_t l = 0; l < with_probe; ++l) {
+      EquationDerivative const& of = along(directions, l).by;
+      for (Index i = 0; i < nv; ++i) rhs_[l][i] = -(r_[i].d[Index(l)] + of.balance[i]);
+      for (Index i = 0; i < phi_.size(); ++i) rhs_[l][nv + i] = of_position * (phi_[i].d[Index(l)] + of.rows[i]);
+      for (Index const i : dual_.nonholonomic_equations())
+        rhs_[l][nv + i] = of_speed * (rate_[i].d[Index(l)] + of.rows[i]);
+    }
+  }
+  /// The end of the step after a correction of y.
+  void apply(double h, std::size_t count) {
+    double const of_a = method_.mass(), of_v = method_.gamma * h, of_delta = method_.beta * h * h;
+    Side const by = side(count, [&](std::size_t l) -> VecX const& { return correction_[l]; });
+    for (Index i = 0; i < a_.size(); ++i) {
+      Partials const change = by[i];
+      a_[i].d += of_a * change;
+      v_[i].d += of_v * change;
+      delta_[i].d += of_delta * change;
+    }
+    for (Index i = 0; i < lambda_.size(); ++i) lambda_[i].d += by[a_.size() + i];
+  }
+
+  /// The derivatives of the state before the step become those of the state after it.
+  void take_end(StepEnds const& step, std::span<StepDirection const> directions) {
+    Index const nv = a_.size();
+    for (std::size_t l = 0; l < directions.size(); ++l) {
+      State& dx = *directions[l].dx;
+      guess_ = y_[l].head(nv);
+      StepHistory(dx).push(dx, step.h, guess_);
+      probe_.add(y_[l], directions[l].by.scale);
+    }
+    auto const take = [&](Dots const& from, VecX State::* part) {
+      for (Index i = 0; i < from.size(); ++i)
+        for (std::size_t l = 0; l < directions.size(); ++l) (directions[l].dx->*part)[i] = from[i].d[Index(l)];
+    };
+    take(q_, &State::q);
+    take(v_, &State::v);
+    take(a_, &State::a);
+    take(lambda_, &State::lambda);
+  }
+
+  BasicSystem<D> dual_;
+  AlphaMethod method_;
+  StepFactorisations<Solver, Derivative::direct> factors_;
+  CorrectionErrorEstimate probe_;
+  State still_;            // no change of the state before a step
+  StepDirection at_rest_;  // along which y alone changes
+  int passes_ = 1;         // of the last directions
+  double size_of_a_ = 0.0, size_of_lambda_ = 0.0;
+  Dots from_, delta_, q_, v_, a_, lambda_, r_, phi_, rate_;
+  std::array<VecX, std::size_t(lanes)> y_, rhs_, correction_;  // y: changes of a₁ and λ₁, of each direction
+  VecX guess_, multipliers_;
+};
+
+}  // namespace polybody

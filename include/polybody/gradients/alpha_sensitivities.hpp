@@ -1,0 +1,84 @@
+#pragma once
+/// \file
+/// Tangents of a run along its steps under the generalised-α family.
+///
+/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+
+#include <polybody/gradients/perturbed_model.hpp>
+#include <polybody/gradients/perturbed_models.hpp>
+#include <polybody/gradients/sensitivity_step.hpp>
+
+namespace polybody::detail {
+
+/// What takes tangents before a step to those at its end.
+template <class S, class I>
+class AlphaSensitivities {
+ public:
+  using V = PerturbedModel<S, I>;
+  using Variants = PerturbedModels<V>;
+
+  /// Along the steps of `full`, which must outlive it.
+  [[gnu::cold]] explicit AlphaSensitivities(V& full)
+      : full_(&full), slope_(full.scenario.model, full.system, full.method) {}
+
+  /// The tangents of `lanes` become those at the end of a step. Returns what a correction more would change.
+  double advance(SensitivityStep const& step, std::span<TangentColumn const> lanes, Variants& beside) {
+    auto const& [before, after, h, searched] = step;
+    V& spare = beside.itself();
+    bool const corrects = spare.method.start_step(spare.system, before, h, spare.work);
+    State corrected;
+    if (corrects) {
+      corrected = before;
+      corrected.v = spare.work.v0;
+    }
+    own_before_ = spare.work.a0;
+    own_after_ = after.history.head(after.v.size());
+    for (TangentColumn const& lane : lanes) start_step(before, h, lane, corrects, beside);
+    StepEnds const ends{corrects ? corrected : before, after, own_before_, own_after_, h};
+    slope_.set(ends, searched ? nullptr : full_->factors(h));
+    beside.begin_step();
+    constexpr std::size_t most = std::size_t(AlphaLinearisedStep<>::lanes);
+    directions_.resize(std::min(lanes.size(), most));
+    double left = 0.0;
+    for (std::size_t first = 0, count; first < lanes.size(); first += count) {
+      count = std::min(first == 0 ? most - 1 : most, lanes.size() - first);
+      for (std::size_t l = 0; l < count; ++l) {
+        TangentColumn const& lane = lanes[first + l];
+        lane.tangent->dt += lane.dh;
+        beside.template of_equations<State>(lane.j, {after, h, lane.tangent->dt, 0}, directions_[l].by);
+        directions_[l].dx = &lane.tangent->dx;
+        directions_[l].dh = lane.dh;
+      }
+      left = std::max(left, slope_.advance(ends, std::span(directions_).first(count)));
+    }
+    for (TangentColumn const& lane : lanes) push_length(*lane.tangent, lane.dh);
+    return left;
+  }
+
+ private:
+  /// The tangent of the speeds, and of the method's own accelerations, that a step from x sets out with.
+  static void start_step(State const& x, double h, TangentColumn const& lane, bool corrects, Variants& beside) {
+    RunSensitivity& tangent = *lane.tangent;
+    double const shifted = x.history[x.history.size() - 1];
+    if (!corrects && (shifted == 0.0 || lane.dh == tangent.lengths[StepHistory::lengths - 1])) return;
+    Index const nv = x.v.size();
+    std::optional<bool> const decided = V::decided(x, h, corrects);
+    State const change = beside.of_map(lane.j, x, tangent, {h, lane.dh},
+                                       [&](V& v, State& y, double length) { v.set_out_change(y, length, decided); });
+    tangent.dx.v += change.v;
+    tangent.dx.history.head(nv) += change.history.head(nv);
+  }
+  /// As `StepHistory::push` does with a length.
+  static void push_length(RunSensitivity& tangent, double dh) {
+    constexpr Index last = StepHistory::lengths - 1;
+    for (Index i = 0; i + 1 < last; ++i) tangent.lengths[i] = tangent.lengths[i + 1];
+    tangent.lengths[last - 1] = tangent.lengths[last] = dh;
+  }
+
+  V* full_;
+  AlphaLinearisedStep<> slope_;
+  VecX own_before_, own_after_;  // the method's own accelerations before and after
+  std::vector<StepDirection> directions_;
+};
+
+}  // namespace polybody::detail

@@ -1,0 +1,241 @@
+#pragma once
+/// \file
+/// What parameters do to the equations of a step while unknowns stay, ∂r/∂p and ∂Φ/∂p, by differences of models made
+/// for values beside theirs. Parameters that touch no equation in common share these models, as columns of a sparse
+/// Jacobian share one difference [Curtis, Powell & Reid 1974].
+///
+/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+
+#include <array>
+#include <functional>
+#include <memory>
+
+#include <polybody/gradients/perturbed_model.hpp>
+#include <polybody/gradients/requirements.hpp>
+#include <polybody/gradients/shared_equations.hpp>
+#include <polybody/gradients/touched_equations.hpp>
+
+namespace polybody::detail {
+
+/// Differences of the equations by all parameters, in which an equation is detected that a parameter changes without
+/// naming it (gradients/shared_equations.hpp). \tparam V a Variant or a PerturbedStageModel
+template <class V>
+class EquationDerivatives {
+ public:
+  /// In place of the number of a parameter: none is changed.
+  static constexpr std::size_t nobody = std::size_t(-1);
+  /// Gives the model at point k beside parameter j, or with j = `nobody` the model itself.
+  using Models = std::function<std::shared_ptr<V>(std::size_t j, std::size_t k)>;
+
+  /// A group for each set of parameters that touch nothing in common. \param make makes a scenario for values of the
+  /// parameters, and outlives the differences
+  template <class Make>
+  [[gnu::cold]] EquationDerivatives(Make const& make, std::vector<Parameter> const& parameters, V const& model)
+      : EquationDerivatives(make, parameters, model, {}) {
+    models_ = [&make, parameters, method = model.method](std::size_t j, std::size_t k) {
+      std::vector<double> p = values_of(parameters);
+      if (j != nobody) p[j] += FourPoints::places[k] * parameters[j].distance();
+      return std::make_shared<V>(make(p), method);
+    };
+  }
+  /// The same. \param alone has models that are there already
+  template <class Make>
+  [[gnu::cold]] EquationDerivatives(Make const& make, std::vector<Parameter> const& parameters, V const& model,
+                                    Models alone)
+      : parameters_(parameters), places_(parameters.size()), models_(std::move(alone)) {
+    Index const size = model.system.size();
+    for (std::size_t j = 0; j < parameters.size(); ++j) {
+      Place& place = places_[j];
+      place.distance = parameters[j].distance();
+      place.equations = touched_equations(model.system, parameters[j]);
+      auto const is_free = [&](Group const& in) { return in.equations.are_free(place.equations); };
+      place.group = std::size_t(std::find_if(groups_.begin(), groups_.end(), is_free) - groups_.begin());
+      if (place.group == groups_.size()) groups_.emplace_back(std::size_t(size));
+      groups_[place.group].equations.add(place.equations);
+      groups_[place.group].members.push_back(j);
+    }
+    for (Group& group : groups_) {
+      std::size_t const members = group.members.size();
+      for (std::size_t of_orders = 1; of_orders == 1 || of_orders < members; of_orders *= member_orders.size()) {
+        Set set;
+        for (std::size_t m = 0; m < points; ++m) {
+          std::vector<double> p = values_of(parameters);
+          for (std::size_t r = 0; r < members; ++r)
+            p[group.members[r]] +=
+                FourPoints::places[order_of_member(r, of_orders)[m]] * places_[group.members[r]].distance;
+          set.models[m] =
+              members == 1 && models_ ? models_(group.members[0], m) : std::make_shared<V>(make(p), model.method);
+        }
+        for (std::size_t i = 0; i < group.equations.size(); ++i) {
+          std::size_t const r = group.equations.owner(i);
+          set.orders.push_back(order_of_member(r == SharedEquations::nobody ? 0 : r, of_orders));
+        }
+        group.sets.push_back(std::move(set));
+      }
+    }
+  }
+
+  /// How many groups there are: each takes four evaluations.
+  std::size_t groups() const { return groups_.size(); }
+
+  /// What follows is asked of another step.
+  void forget() {
+    for (Group& group : groups_) group.known = 0;
+  }
+  /// Differences at x, a state or what else the equations are asked at, of which everything else is asked.
+  /// \throws InvalidInput as `get`.
+  template <class Place>
+  void evaluate(Place const& x) {
+    forget();
+    for (Group& group : groups_) evaluate(group, x, 0);
+  }
+  /// ∂r/∂p and ∂Φ/∂p of parameter j, which `out` has the sizes of, at x, place number `number` of a step: the first
+  /// parameter of a group evaluates them, at one place after the other. \throws InvalidInput where a parameter of the
+  /// group changes an equation that it does not name.
+  template <class X>
+  void get(std::size_t j, X const& x, std::size_t number, EquationDerivative& out) {
+    Place const& place = places_[j];
+    Group& group = groups_[place.group];
+    if (number >= group.known) evaluate(group, x, number);
+    VecX const& difference = group.differences[number];
+    Index const velocities = out.balance.size();
+    out.balance.setZero();
+    out.rows.setZero();
+    for (Index const i : place.equations)
+      (i < velocities ? out.balance[i] : out.rows[i - velocities]) = difference[i] / place.distance;
+  }
+  /// μᵀ ∂r/∂p of parameter j. \param mu by speeds, then by rows
+  double dot(std::size_t j, VecX const& mu) const {
+    double sum = 0.0;
+    VecX const& difference = groups_[places_[j].group].differences.front();
+    for (Index const i : places_[j].equations) sum += mu[i] * difference[i];
+    return sum / places_[j].distance;
+  }
+  /// Takes μᵀ ∂r/∂p of each parameter from its slope.
+  void take_from(VecX& derivatives, VecX const& mu) const {
+    for (std::size_t j = 0; j < places_.size(); ++j) derivatives[Index(j)] -= dot(j, mu);
+  }
+
+  /// \throws InvalidInput where parameter j changes an equation at x that it does not touch, by more than rounding.
+  /// \param other the model with another value of it
+  template <class X>
+  void require_touched(std::size_t j, V& model, V& other, X const& x) const {
+    Parameter const& p = parameters_[j];
+    if (p.affects.empty()) return;
+    double const force = force_at(model, x);
+    EquationDerivative const here = model.equations(x), there = other.equations(x);
+    Index const velocities = here.balance.size();
+    auto const change = [&](Index i) {
+      return i < velocities ? std::abs(there.balance[i] - here.balance[i])
+                            : std::abs(there.rows[i - velocities] - here.rows[i - velocities]);
+    };
+    double most[2] = {1e-11 * force, 1e-13};  // of balance and rows: what they touch, or rounding
+    std::vector<char> touched(std::size_t(model.system.size()), 0);
+    for (Index const i : places_[j].equations) {
+      touched[std::size_t(i)] = 1;
+      most[i < velocities ? 0 : 1] = std::max(most[i < velocities ? 0 : 1], 1e-7 * change(i));
+    }
+    for (Index i = 0; i < model.system.size(); ++i)
+      if (!touched[std::size_t(i)] && change(i) > most[i < velocities ? 0 : 1]) refuse_unnamed(model.system, p, i, x.t);
+  }
+
+ private:
+  static constexpr std::size_t points = FourPoints::places.size();
+
+  struct Place {
+    std::size_t group = 0;
+    double distance = 1.0;
+    std::vector<Index> equations;  // by speeds, then by rows
+  };
+  struct Set {
+    std::array<std::shared_ptr<V>, 4> models;
+    std::vector<MemberOrder> orders;  // by equations: the order of the owner
+  };
+  struct Group {
+    SharedEquations equations;
+    std::vector<std::size_t> members;  // parameters
+    std::vector<Set> sets;             // evaluations use them cyclically
+    std::array<VecX, 4> values;        // of the equations of its models
+    std::vector<VecX> differences;     // at each place, Σ of the four, weighted; over a distance it is a derivative
+    std::size_t known = 0;             // of them, of this step
+
+    explicit Group(std::size_t size) : equations(size) {}
+
+    ValuesAtPlaces at_places(Set const& set, std::size_t i) const {
+      ValuesAtPlaces f;
+      for (std::size_t m = 0; m < points; ++m) f[set.orders[i][m]] = values[m][Index(i)];
+      return f;
+    }
+  };
+
+  template <class X>
+  static double force_at(V& model, X const& x) {
+    X still = x;
+    still.a.setZero();
+    still.lambda.setZero();
+    return model.equations(still).balance.template lpNorm<Eigen::Infinity>();
+  }
+  template <class X>
+  [[gnu::cold]] void note_rounding(X const& x) {
+    rounding_ = {1e-11 * force_at(*models_(nobody, 0), x), 1e-12 * size_of_rows(x)};
+  }
+
+  template <class X>
+  void evaluate(Group& group, X const& x, std::size_t number) {
+    group.known = number + 1;
+    if (group.differences.size() < group.known) group.differences.resize(group.known);
+    VecX& difference = group.differences[number];
+    Set const& set = group.sets[group.equations.begin() % group.sets.size()];
+    if (group.equations.is_complete()) return sum_up(set, x, difference);
+    Index velocities = 0;
+    for (std::size_t m = 0; m < points; ++m) {
+      EquationDerivative const& of = set.models[m]->equations(x);
+      velocities = of.balance.size();
+      group.values[m].resize(velocities + of.rows.size());
+      group.values[m].head(velocities) = of.balance;
+      group.values[m].tail(of.rows.size()) = of.rows;
+    }
+    if (rounding_.balance < 0.0) note_rounding(x);
+    difference.resize(group.values[0].size());
+    bool doubtful = false;
+    for (Index i = 0; i < difference.size(); ++i) {
+      ValuesAtPlaces const f = group.at_places(set, std::size_t(i));
+      double sum = 0.0;
+      for (std::size_t k = 0; k < points; ++k) sum += FourPoints::weights[k] * f[k];
+      difference[i] = sum;
+      doubtful |= group.equations.is_doubtful(std::size_t(i), f, i < velocities ? rounding_.balance : rounding_.rows);
+    }
+    if (doubtful) settle(group, set, x, velocities);
+  }
+  /// The same for one parameter that touches all equations.
+  template <class X>
+  static void sum_up(Set const& set, X const& x, VecX& difference) {
+    for (std::size_t k = 0; k < points; ++k) {
+      EquationDerivative const& of = set.models[k]->equations(x);
+      if (k == 0) difference.setZero(of.balance.size() + of.rows.size());
+      difference.head(of.balance.size()) += FourPoints::weights[k] * of.balance;
+      difference.tail(of.rows.size()) += FourPoints::weights[k] * of.rows;
+    }
+  }
+  /// Changes every member alone. \throws InvalidInput where one changes an equation at x that it does not name.
+  template <class X>
+  [[gnu::cold]] void settle(Group& group, Set const& set, X const& x, Index velocities) {
+    std::shared_ptr<V> const itself = models_(nobody, 0);
+    for (std::size_t const j : group.members)
+      for (std::size_t k = 0; k < 2; ++k) require_touched(j, *itself, *models_(j, k), x);
+    note_rounding(x);
+    for (std::size_t i = 0; i < group.equations.size(); ++i) {
+      ValuesAtPlaces const f = group.at_places(set, i);
+      double const rounding = Index(i) < velocities ? rounding_.balance : rounding_.rows;
+      if (group.equations.is_doubtful(i, f, rounding)) group.equations.allow(i, f);
+    }
+  }
+
+  std::vector<Parameter> parameters_;
+  std::vector<Place> places_;
+  std::vector<Group> groups_;
+  Models models_;
+  RoundingOfEquations rounding_;
+};
+
+}  // namespace polybody::detail

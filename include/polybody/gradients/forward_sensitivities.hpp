@@ -1,0 +1,286 @@
+#pragma once
+/// \file
+/// A run that takes its derivatives along, step by step.
+///
+/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+
+#include <polybody/gradients/nondifferentiable_times.hpp>
+#include <polybody/gradients/perturbed_models.hpp>
+#include <polybody/gradients/sensitivity_result.hpp>
+#include <polybody/gradients/sensitivity_step.hpp>
+
+namespace polybody {
+
+namespace detail {
+
+/// A run and its derivatives, step by step, as `Simulation` takes the steps. A step whose length the method chooses by
+/// its error keeps it, unless a corner, an event or the end of the run ends it. \tparam Way takes tangents along steps
+template <class Make, class I, template <class, class> class Way>
+class ForwardSensitivities {
+  using S = std::remove_cvref_t<decltype(std::declval<Make const&>()(std::declval<std::span<double const>>()))>;
+  using V = typename Way<S, I>::V;
+  using Variants = PerturbedModels<V>;
+
+ public:
+  [[gnu::cold]] ForwardSensitivities(Make const& make, std::vector<Parameter> const& parameters,
+                                     MethodOf<I> const& method)
+      : parameters_(parameters),
+        full_(make(values_of(parameters)), method),
+        way_(full_),
+        beside_(make, parameters, method, "sensitivities") {
+    require_plain(full_.scenario.options, "sensitivities");
+  }
+
+  SensitivityResult run() {
+    options().check(full_.scenario.start.t);
+    require_assembled_start(full_);
+    x_ = full_.first();
+    h_ = full_.length();
+    std::vector<double> const breakpoints = full_.breakpoints();
+    plan_ =
+        StepPlan(x_.t, options().end_time, options().step, Sequence<double>(breakpoints.begin(), breakpoints.end()));
+    x_.t = plan_.pass(x_.t);
+    begin();
+    beside_.require_touched(x_);
+    note();
+    while (!done()) {
+      step();
+      note();
+    }
+    beside_.require_touched(x_);
+    warn_of_untouched(parameters_, touched_, out_.run);
+    return std::move(out_);
+  }
+
+ private:
+  static constexpr bool chooses = requires { I::adaptive_step; };
+
+  RunOptions const& options() const { return full_.scenario.options; }
+  bool done() const { return out_.run.stopped || x_.t >= options().end_time; }
+
+  void begin() {
+    touched_.assign(parameters_.size(), 0);
+    for (Parameter const& p : parameters_) out_.parameters.push_back(p.name);
+    for (auto const& o : full_.scenario.outputs) out_.outputs.push_back(o.name);
+    for (std::size_t j = 0; j < parameters_.size(); ++j) {
+      tangents_.push_back({zeros_like(x_), beside_.of_number(j, [](V const& v) { return v.scenario.start.t; }), {}});
+      step_slope_.push_back(chooses ? 0.0 : beside_.of_number(j, [](V const& v) { return v.length(); }));
+      until_slope_.push_back(beside_.of_number(j, [](V const& v) { return double(v.scenario.options.end_time); }));
+    }
+    start([&](std::size_t j, double h, double dh, auto const& f) { return beside_.of_start(j, h, dh, f); }, {});
+    if (!options().events.empty()) watch_.start(options().events, x_, motion());
+  }
+  /// Makes x_ a start, after some events act on it, with all tangents. \param differenced (parameter, length of the
+  /// next step, its slope, map) gives the derivative of the map
+  template <class Differenced>
+  void start(Differenced const& differenced, std::vector<std::size_t> const& acting) {
+    StepPlan::Next const next = done() ? StepPlan::Next{x_.t, h_, false, false} : plan_.next(x_.t, h_);
+    State fresh = x_;
+    if (!acting.empty()) {
+      fresh = full_.shown(x_);
+      fresh = acted_state(full_, watch_, std::move(fresh));
+    }
+    full_.start(fresh, next.h);
+    auto const map = [&](V& v, State& y, double h) {
+      if (!acting.empty()) y = after(v, acting, y);
+      v.start_like(fresh, y, h);
+    };
+    for (std::size_t j = 0; j < parameters_.size(); ++j) {
+      RunSensitivity& tangent = tangents_[j];
+      tangent.dx = differenced(j, next.h, length_slope(j, next, tangent), map);
+      tangent.lengths = lengths_of(tangent.dx);
+      lengths_of(tangent.dx) = lengths_of(fresh);
+    }
+    x_ = std::move(fresh);
+  }
+  /// What acting events make of a state of a variant.
+  static State after(V& v, std::vector<std::size_t> const& acting, State const& x) {
+    State y = v.shown(x);
+    for (std::size_t const i : acting) v.scenario.options.events[i].action(y);
+    y.t = x.t;
+    return stepped_state(v, std::move(y));
+  }
+  /// The slope of the length of the next step.
+  double length_slope(std::size_t j, StepPlan::Next const& next, RunSensitivity const& from) const {
+    if (!next.lands) return step_slope_[j];
+    return (next.jumps ? beside_.times(j).slope(next.target) : until_slope_[j]) - from.dt;
+  }
+
+  /// A step to the next place of the plan, or to an event before it.
+  void step() {
+    before_ = x_;
+    StepPlan::Next next = plan_.next(x_.t, h_);
+    bool const remainder_step = next.h < 0.01 * h_;
+    StepReport const report = full_.step(x_, next.h);
+    next.lands = next.lands && report.taken == next.h;
+    x_.t = next.lands ? next.target : row_.after(before_.t, report.taken);
+    choose_step(report, next.lands);
+    lengths_.assign(1, report.taken);
+    State far;
+    if (!options().events.empty()) far = x_;
+    bool const met = !options().events.empty() && meet();
+    double const end = x_.t;
+    if (met && next.lands && end == next.target) refuse_event_at_corner(x_.t, "sensitivities");
+    RunSensitivity step_length_derivative;
+    differentiate(next, met, step_length_derivative);
+    if (met) move_to_event(step_length_derivative, before_, far);
+    x_.t = end;
+    bool const at_corner = next.jumps && end == next.target;
+    if (at_corner) x_.t = plan_.pass(end);
+    if (at_corner) require_one_end();
+    if (met || at_corner || remainder_step) restart(met);
+    out_.run.add(report);
+  }
+  void restart(bool met) {
+    State const x = x_;
+    std::vector<std::size_t> acting;
+    for (std::size_t i = 0; met && i < options().events.size(); ++i)
+      if (watch_.met(i) && options().events[i].action) acting.push_back(i);
+    start([&](std::size_t j, double h, double dh,
+              auto const& f) { return beside_.of_map(j, x, tangents_[j], {h, dh}, f); },
+          acting);
+    if (!acting.empty()) watch_.settle(options().events, x_, motion());
+  }
+  /// A corner at the end of the run ends it for nearby parameters too.
+  void require_one_end() const {
+    if (x_.t < options().end_time) return;
+    for (std::size_t j = 0; j < parameters_.size(); ++j)
+      if (std::abs(tangents_[j].dt - until_slope_[j]) * parameters_[j].size() > 1e-9 * h_)
+        refuse_corner_at_end(x_.t, parameters_[j].name, "sensitivities");
+  }
+
+  EventMotion motion() {
+    return {full_.length(), [this](State const& x) -> State const& { return full_.shown(x); }, drift_of(full_.system)};
+  }
+  void choose_step(StepReport const& report, bool landed) {
+    if constexpr (chooses)
+      h_ = std::min<double>(landed ? std::max(report.next, h_) : report.next,
+                            options().max_step.value_or(std::numeric_limits<double>::infinity()));
+  }
+  /// Ends the step to x_ at the first event within it; then `lengths_` lead there.
+  bool meet() {
+    struct Trial {
+      double end;
+      std::vector<double> lengths;
+    };
+    std::vector<Trial> trials;
+    EventDetector::Step const again = [&](State& x, double part) {
+      if (x.t == before_.t) trials.emplace_back();
+      double const taken = full_.step(x, part).taken;
+      trials.back().lengths.push_back(taken);
+      trials.back().end = x.t;
+      return taken;
+    };
+    double const far = x_.t;
+    bool const met = watch_.meet(options().events, {before_, lengths_.front(), again, motion()}, x_, out_.run);
+    require_moving(options().events, watch_, x_.t, "sensitivities");
+    if (met && x_.t != far)
+      lengths_ =
+          std::find_if(trials.begin(), trials.end(), [&](Trial const& trial) { return trial.end == x_.t; })->lengths;
+    return met;
+  }
+
+  /// The tangents before the steps of `lengths_` become those at x_. The length of the last one moves with what is
+  /// `next`. Where an event is met it stays, and `step_length_derivative` becomes the derivative by it.
+  void differentiate(StepPlan::Next const& next, bool met, RunSensitivity& step_length_derivative) {
+    for (std::size_t i = 0; i + 1 < lengths_.size(); ++i) {  // where the error asked for less than up to the event
+      State part = before_;
+      (void)full_.step(part, lengths_[i]);
+      set_lanes([](std::size_t) { return 0.0; });
+      advance({before_, part, lengths_[i], true});
+      before_ = std::move(part);
+    }
+    x_.t = before_.t + lengths_.back();  // just before a corner
+    set_lanes([&](std::size_t j) { return met ? 0.0 : length_slope(j, next, tangents_[j]); });
+    if (met) {
+      step_length_derivative = {zeros_like(before_), 0.0, VecX::Zero(lengths_of(before_).size())};
+      lengths_of(step_length_derivative.dx) = lengths_of(before_);
+      lanes_.push_back({Variants::along_motion, &step_length_derivative, 1.0});
+    }
+    advance({before_, x_, lengths_.back(), met});
+  }
+  template <class F>
+  void set_lanes(F const& dh_of) {
+    lanes_.clear();
+    for (std::size_t j = 0; j < parameters_.size(); ++j) lanes_.push_back({j, &tangents_[j], dh_of(j)});
+  }
+  void advance(SensitivityStep const& step) {
+    double const left = way_.advance(step, lanes_, beside_);
+    out_.left = std::max(out_.left, require_converged(left, x_.t, "sensitivities"));
+  }
+  /// Adds to the derivatives at the end of a step of fixed length what the event's time does: the value stays zero.
+  void move_to_event(RunSensitivity const& step_length_derivative, State const& before, State const& far) {
+    std::vector<double> dh(parameters_.size());
+    std::string const* first = nullptr;
+    beside_.show(x_);
+    for (std::size_t i = 0; i < options().events.size(); ++i) {
+      if (!watch_.met(i)) continue;
+      Event const& event = options().events[i];
+      auto const value = [i](V& v, State const& x) {
+        return VecX::Constant(1, v.scenario.options.events[i].value(v.shown(x))).eval();
+      };
+      double const rate = beside_.of_values(Variants::along_motion, x_, step_length_derivative, h_, value)[0],
+                   most = std::max(std::abs(event.value(full_.shown(before))), std::abs(event.value(full_.shown(far))));
+      if (!(std::abs(rate) * (far.t - before.t) > 1e-6 * most)) refuse_touch(event.name, x_.t, "sensitivities");
+      for (std::size_t j = 0; j < parameters_.size(); ++j) {
+        double const own = -beside_.of_values(j, x_, tangents_[j], h_, value)[0] / rate;
+        if (first && std::abs(own - dh[j]) > 1e-6 * (std::abs(own) + h_ / parameters_[j].size()))
+          throw InvalidInput{"sensitivities: the events \"",
+                             *first,
+                             "\" and \"",
+                             event.name,
+                             "\" are met at once at t = ",
+                             x_.t,
+                             " s and part with \"",
+                             parameters_[j].name,
+                             "\": there is no derivative there. Look for one of them."};
+        if (!first) dh[j] = own;
+      }
+      first = &event.name;
+    }
+    for (std::size_t j = 0; j < parameters_.size(); ++j) {
+      add(tangents_[j].dx, step_length_derivative.dx, dh[j]);
+      tangents_[j].dt += dh[j];
+    }
+  }
+
+  /// Values and slopes of the outputs at x.
+  void note() {
+    beside_.show(x_);
+    MatX derivatives = MatX::Zero(Index(out_.outputs.size()), Index(parameters_.size()));
+    VecX of_time(Index(parameters_.size()));
+    auto const outputs = [](V& v, State const& x) { return v.outputs(x); };
+    for (std::size_t j = 0; j < parameters_.size(); ++j) {
+      RunSensitivity const& tangent = tangents_[j];
+      State const& dx = tangent.dx;
+      of_time[Index(j)] = tangent.dt;
+      derivatives.col(Index(j)) = beside_.of_values(j, x_, tangent, h_, outputs);
+      if (!touched_[j])
+        touched_[j] = std::abs(tangent.dt) > 0.0 || !derivatives.col(Index(j)).isZero(0.0) ||
+                      dx.q.squaredNorm() + dx.v.squaredNorm() + dx.a.squaredNorm() > 0.0;
+    }
+    out_.times.push_back(x_.t);
+    out_.values.push_back(full_.outputs(x_));
+    out_.derivatives.push_back(std::move(derivatives));
+    out_.time_derivatives.push_back(std::move(of_time));
+  }
+
+  std::vector<Parameter> parameters_;
+  V full_;
+  Way<S, I> way_;
+  Variants beside_;
+  State x_, before_;             // now, and before the step
+  std::vector<double> lengths_;  // of the steps between them
+  std::vector<TangentColumn> lanes_;
+  std::vector<RunSensitivity> tangents_;  // of each parameter
+  std::vector<double> step_slope_, until_slope_;
+  StepPlan plan_;
+  StepRow row_;
+  EventDetector watch_;
+  double h_ = 0.0;
+  std::vector<char> touched_;
+  SensitivityResult out_;
+};
+
+}  // namespace detail
+}  // namespace polybody

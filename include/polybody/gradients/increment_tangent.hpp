@@ -1,0 +1,154 @@
+#pragma once
+/// \file
+/// What ⊞ does to the derivative of a step's equations.
+///
+/// A step ends at q₁ = q₀ ⊞ δ. Where coordinates turn, a change dδ moves q₁ by u = T dδ in increments at q₁, and
+/// `local_rate`(δ, u) = T⁻¹ u [Arnold, Brüls & Cardona 2015]. The tangent C = cm M + cd D + ck K of a system has K by
+/// increments at q₁, so with y = (δa₁, δλ₁) the derivative of a step is
+///   [cm M + cd D + ck K T, Gᵀ; G T, 0] = [C + (cm M + cd D) W, Gᵀ; G, 0] diag(T, 1),  W = T⁻¹ − 1,
+/// of velocity rows with G + G W in place of G. Newton's method leaves W out, which is about hω/2: its factors leave as
+/// much of every correction of a slope.
+///
+/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+
+#include <algorithm>
+#include <vector>
+
+#include <polybody/system/system.hpp>
+
+namespace polybody {
+
+/// W of the unknowns of a step, by columns: 3 × 3 for each body or node that turns.
+class IncrementTangent {
+ public:
+  /// Finds which unknowns turn; of a step that eliminates joints, none is looked for. \param system the step's
+  [[gnu::cold]] explicit IncrementTangent(System const& system) : columns_(std::size_t(system.velocities())) {
+    if (system.step_coordinates()) return;
+    velocities_ = system.velocities();
+    turns_row_.assign(std::size_t(system.size()), 0);
+    std::fill_n(turns_row_.begin(), velocities_, char(1));
+    for (Index const i : system.nonholonomic_equations()) turns_row_[std::size_t(velocities_ + i)] = 1;
+    delta_ = VecX::LinSpaced(velocities_, 0.1, 0.2);
+    one_ = rate_ = VecX::Zero(velocities_);
+    none_ = VecX::Zero(system.rows());
+    Index const of_bodies = system.layout().body_velocities();  // first-order states stand behind them
+    for (Index j = 0; j < of_bodies; ++j) {
+      one_[j] = 1.0;
+      system.local_rate(delta_, one_, rate_);
+      one_[j] = 0.0;
+      for (Index i = 0; i < of_bodies; ++i)
+        if (rate_[i] != (i == j ? 1.0 : 0.0)) columns_[std::size_t(j)].push_back({i, 0.0});
+    }
+    give_colours();
+  }
+
+  /// Whether any unknown turns.
+  bool any() const { return !colours_.empty(); }
+  /// From now on W is that of a step by delta (speeds).
+  void set(System const& system, VecX const& delta) {
+    for (std::vector<Index> const& colour : colours_) {
+      one_.setZero();
+      for (Index const j : colour) one_[j] = 1.0;
+      system.local_rate(delta, one_, rate_);
+      for (Index const j : colour)
+        for (Entry& e : columns_[std::size_t(j)]) e.value = rate_[e.row] - (e.row == j ? 1.0 : 0.0);
+    }
+  }
+  /// u by speeds becomes T⁻¹ u = u + W u; unknowns behind the speeds stay.
+  void to_increments(VecX& u) {
+    if (!any()) return;
+    rate_.setZero();
+    for (std::vector<Index> const& colour : colours_)
+      for (Index const j : colour)
+        for (Entry const& e : columns_[std::size_t(j)]) rate_[e.row] += e.value * u[j];
+    u.head(velocities_) += rate_;
+  }
+  /// y by speeds becomes T⁻ᵀ y.
+  void transpose_to_increments(VecX& y) {
+    if (!any()) return;
+    rate_.setZero();
+    for (std::vector<Index> const& colour : colours_)
+      for (Index const j : colour)
+        for (Entry const& e : columns_[std::size_t(j)]) rate_[j] += e.value * y[e.row];
+    y.head(velocities_) += rate_;
+  }
+  /// Writes (cm M + cd D) W, and of velocity rows G W, where `system` was evaluated last. \param k of which only those
+  /// of mass and damping act
+  template <BlockReceiver S>
+  void write(System& system, TangentCoefficients const& k, S& receiver) {
+    if (!any()) return;
+    Sink<S> sink{*this, receiver};
+    system.tangent({.mass = k.mass, .damping = k.damping, .exact = k.exact, .pairs = k.pairs}, SecondOrder::omitted,
+                   none_, sink);
+  }
+
+ private:
+  struct Entry {
+    Index row;
+    double value;  ///< of W, a factor
+  };
+  /// Takes blocks of [cm M + cd D, Gᵀ; G, 0] and passes their products with W on.
+  template <BlockReceiver S>
+  struct Sink {
+    IncrementTangent& by;
+    S& target;
+    void add(Index row, Index col, BlockView const& b) {
+      if (!by.turns(row, col, b.rows, b.cols)) return;
+      target.add(row, col, by.product(row, col, b));
+    }
+    void skip(Index row, Index col, Index rows, Index cols) {
+      static constexpr double zero = 0.0;
+      if (by.turns(row, col, rows, cols)) target.add(row, col, BlockView(&zero, rows, cols, 0, 0));
+    }
+  };
+
+  bool turns(Index row, Index col, Index rows, Index cols) const {
+    auto const turns_row = [&](char turns) { return turns != 0; };
+    auto const turns_column = [](std::vector<Entry> const& column) { return !column.empty(); };
+    return col < velocities_ && std::any_of(turns_row_.begin() + row, turns_row_.begin() + row + rows, turns_row) &&
+           std::any_of(columns_.begin() + col, columns_.begin() + col + cols, turns_column);
+  }
+  /// b W in the columns of b. What turns with unknowns beside them is left out.
+  BlockView product(Index row, Index col, BlockView const& b) {
+    product_.assign(std::size_t(b.rows * b.cols), 0.0);
+    for (Index j = 0; j < b.cols; ++j)
+      for (Entry const& e : columns_[std::size_t(col + j)]) {
+        Index const i = e.row - col;
+        if (i < 0 || i >= b.cols) continue;
+        for (Index r = 0; r < b.rows; ++r)
+          if (turns_row_[std::size_t(row + r)]) product_[std::size_t(r * b.cols + j)] += b(r, i) * e.value;
+      }
+    return {product_.data(), b.rows, b.cols, b.cols, 1};
+  }
+  /// Columns that have no row in common share a colour, so that one question tells all of them [Curtis, Powell & Reid
+  /// 1974].
+  [[gnu::cold]] void give_colours() {
+    std::vector<std::vector<char>> taken;
+    for (Index j = 0; j < velocities_; ++j) {
+      std::vector<Entry> const& column = columns_[std::size_t(j)];
+      if (column.empty()) continue;
+      auto const is_free = [&](std::vector<char> const& rows) {
+        return !rows[std::size_t(j)] &&
+               std::none_of(column.begin(), column.end(), [&](Entry const& e) { return rows[std::size_t(e.row)]; });
+      };
+      std::size_t const c = std::size_t(std::find_if(taken.begin(), taken.end(), is_free) - taken.begin());
+      if (c == taken.size()) {
+        taken.emplace_back(std::size_t(velocities_), 0);
+        colours_.emplace_back();
+      }
+      colours_[c].push_back(j);
+      taken[c][std::size_t(j)] = 1;
+      for (Entry const& e : column) taken[c][std::size_t(e.row)] = 1;
+    }
+  }
+
+  Index velocities_ = 0;
+  std::vector<std::vector<Entry>> columns_;  // of W, by speeds
+  std::vector<std::vector<Index>> colours_;  // columns without a row in common
+  std::vector<char> turns_row_;              // by unknowns: balances and velocity rows
+  VecX delta_, one_, rate_;
+  VecX none_;  // multipliers, which act on second-order terms alone
+  std::vector<double> product_;
+};
+
+}  // namespace polybody

@@ -1,0 +1,77 @@
+#pragma once
+/// \file
+/// A scenario and those beside it, four for each parameter.
+///
+/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+
+#include <memory>
+#include <span>
+
+#include <polybody/gradients/requirements.hpp>
+#include <polybody/gradients/time_map.hpp>
+
+namespace polybody::detail {
+
+/// Scenarios for the values of the parameters, and at the four points beside each of them. \tparam V a Variant or a
+/// PerturbedStageModel
+template <class V>
+class NearbyModels {
+ public:
+  /// \param who refusals begin with this
+  template <class Make, class Method>
+  [[gnu::cold]] NearbyModels(Make const& make, std::vector<Parameter> const& parameters, Method const& method,
+                             char const* who)
+      : parameters_(parameters), itself_(make(values_of(parameters)), method) {
+    for (std::size_t j = 0; j < parameters.size(); ++j)
+      for (double const place : FourPoints::places) {
+        std::vector<double> p = values_of(parameters);
+        p[j] += place * parameters[j].distance();
+        beside_.push_back(std::make_shared<V>(make(p), method));
+        require_alike(itself_, *beside_.back(), parameters[j], who);
+      }
+    find_times(who);
+  }
+
+  V& itself() { return itself_; }                                               ///< for the values of the parameters
+  TimeMap const& times(std::size_t j) const { return times_[j]; }               ///< of runs with another parameter j
+  V& beside(std::size_t j, std::size_t k) { return *beside_[points * j + k]; }  ///< at point k beside parameter j
+  /// The same, for who keeps it.
+  std::shared_ptr<V> shared(std::size_t j, std::size_t k) const { return beside_[points * j + k]; }
+  Parameter const& parameter(std::size_t j) const { return parameters_[j]; }  ///< number j
+
+  /// A step of h from t, in variant k, which sets out at `from`: it ends where the other does.
+  double length(std::size_t j, std::size_t k, double t, double h, double from) const {
+    double const end = times_[j](k, t + h);
+    if (from == t && end == t + h) return h;
+    double length = end - from;
+    while (from + length > end) length = std::nextafter(length, 0.0);
+    return length;
+  }
+
+ private:
+  static constexpr std::size_t points = FourPoints::places.size();
+
+  [[gnu::cold]] void find_times(char const* who) {
+    std::vector<double> const here = itself_.breakpoints();
+    double const start = itself_.scenario.start.t;
+    for (std::size_t j = 0; j < parameters_.size(); ++j) {
+      std::vector<TimeMap::Moving> times;
+      auto const add_time = [&](double t, auto const& of) {
+        if (!std::isfinite(t)) return;
+        TimeMap::Moving m{t, {}};
+        for (std::size_t k = 0; k < points; ++k) m.there[k] = of(*beside_[points * j + k]);
+        times.push_back(m);
+      };
+      add_time(start, [](V const& v) { return v.scenario.start.t; });
+      for (std::size_t i = 0; i < here.size(); ++i) add_time(here[i], [i](V const& v) { return v.breakpoints()[i]; });
+      times_.emplace_back(std::move(times), parameters_[j], 1e-9 * itself_.length(), who);
+    }
+  }
+
+  std::vector<Parameter> parameters_;
+  V itself_;
+  std::vector<std::shared_ptr<V>> beside_;  // four for each parameter
+  std::vector<TimeMap> times_;
+};
+
+}  // namespace polybody::detail

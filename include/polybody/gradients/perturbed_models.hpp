@@ -1,0 +1,259 @@
+#pragma once
+/// \file
+/// What is differenced along a parameter, and along the motion where times move with it.
+///
+/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+
+#include <optional>
+
+#include <polybody/gradients/equation_derivatives.hpp>
+#include <polybody/gradients/nearby_models.hpp>
+
+namespace polybody::detail {
+
+/// Differences of what scenarios do. Where a function is differenced by parameter j
+/// in a state whose time moves with j, the change of the state has two parts. One is at a time that stays: variants
+/// beside go along with it, so that what is stiff in them stays at rest. The other follows the motion; it may be longer
+/// than a step, so it is differenced over a small part of one, in the scenario itself. \tparam V a Variant or a
+/// PerturbedStageModel
+template <class V>
+class PerturbedModels {
+ public:
+  static constexpr std::size_t along_motion = std::size_t(-1);  ///< in place of a parameter: the motion alone
+
+  /// \param who refusals begin with this
+  template <class Make, class Method>
+  [[gnu::cold]] PerturbedModels(Make const& make, std::vector<Parameter> const& parameters, Method const& method,
+                                char const* who)
+      : n_(make, parameters, method, who) {
+    std::vector<Parameter> still;
+    number_.assign(parameters.size(), moving);
+    for (std::size_t j = 0; j < parameters.size(); ++j)
+      if (!n_.times(j).moves()) {
+        number_[j] = still.size();
+        still_.push_back(j);
+        still.push_back(parameters[j]);
+      }
+    auto const make_still = [&](std::span<double const> p) {
+      std::vector<double> all = values_of(parameters);
+      for (std::size_t i = 0; i < p.size(); ++i) all[still_[i]] = p[i];
+      return make(all);
+    };
+    derivatives_.emplace(make_still, still, n_.itself(), [this](std::size_t i, std::size_t k) {
+      bool const itself = i == EquationDerivatives<V>::nobody;
+      return itself ? std::shared_ptr<V>(std::shared_ptr<V>(), &n_.itself()) : n_.shared(still_[i], k);
+    });
+  }
+  PerturbedModels(PerturbedModels const&) = delete;
+  PerturbedModels& operator=(PerturbedModels const&) = delete;
+
+  V& itself() { return n_.itself(); }                                ///< for the values of the parameters
+  TimeMap const& times(std::size_t j) const { return n_.times(j); }  ///< of runs with another parameter j
+  /// The size of parameter j, or the length h of a step along the motion.
+  double size(std::size_t j, double h) const { return j == along_motion ? h : n_.parameter(j).size(); }
+
+  /// The derivative of a number of the scenario by parameter j: zero, without rounding, where it stays.
+  template <class F>
+  double of_number(std::size_t j, F const& f) {
+    double const here = f(n_.itself());
+    double sum = 0.0;
+    for (std::size_t k = 0; k < points; ++k) sum += weight(j, k) * (f(n_.beside(j, k)) - here);
+    return sum;
+  }
+
+  /// That of what f(variant, state, length) makes of each variant's own start, where the next step is h long.
+  template <class F>
+  State of_start(std::size_t j, double h, double dh, F const& f) {
+    State const x = n_.itself().first();
+    State sum;
+    for (std::size_t k = 0; k < points; ++k) {
+      State y = n_.beside(j, k).first();
+      double const length = n_.length(j, k, x.t, h, y.t);
+      take(sum, f, {n_.beside(j, k), std::move(y), length}, weight(j, k));
+    }
+    double const longer = dh - (n_.times(j).slope(x.t + h) - n_.times(j).slope(x.t));
+    if (std::abs(longer) * size(j, h) <= negligible * h) return sum;
+    double const reach = reach_of(j, h, std::abs(longer));
+    for (std::size_t k = 0; k < points; ++k)
+      take(sum, f, {n_.itself(), x, h + FourPoints::places[k] * reach * longer}, FourPoints::weights[k] / reach);
+    return sum;
+  }
+
+  /// That of what f(variant, state, length) makes of x and a length h, where these change by `tangent` and dh.
+  template <class F>
+  State of_map(std::size_t j, State const& x, RunSensitivity const& tangent, std::array<double, 2> h_and_dh,
+               F const& f) {
+    auto const [h, dh] = h_and_dh;
+    Parts const p = parts(j, x, tangent, h, dh);
+    State const& with = p.reach > 0.0 ? p.with : tangent.dx;
+    State sum;
+    if (j != along_motion)
+      for (std::size_t k = 0; k < points; ++k) {
+        State y = detail::beside(x, with, FourPoints::places[k] * n_.parameter(j).distance());
+        y.t = n_.times(j)(k, x.t);
+        double const length = n_.length(j, k, x.t, h, y.t);
+        take(sum, f, {n_.beside(j, k), std::move(y), length}, weight(j, k));
+      }
+    if (p.reach == 0.0) return sum;
+    for (std::size_t k = 0; k < points; ++k) {
+      double const e = FourPoints::places[k] * p.reach;
+      State y = detail::beside(x, p.along, e);
+      lengths_of(y) += e * tangent.lengths;
+      y.t += e * p.dt;
+      take(sum, f, {n_.itself(), std::move(y), h + e * p.dh}, FourPoints::weights[k] / p.reach);
+    }
+    return sum;
+  }
+
+  /// From now on values are asked at x.
+  void show(State const& x) { shown_ = x; }
+  /// That of numbers f(variant, state) at x. \param h length of steps [s]
+  template <class F>
+  VecX of_values(std::size_t j, State const& x, RunSensitivity const& tangent, double h, F const& f) {
+    Parts const p = parts(j, x, tangent, h, 0.0);
+    State const& with = p.reach > 0.0 ? p.with : tangent.dx;
+    VecX sum;
+    auto const add_value = [&](VecX const& value, double by) {
+      if (sum.size() == 0) sum.setZero(value.size());
+      sum += by * value;
+    };
+    if (j != along_motion)
+      for (std::size_t k = 0; k < points; ++k) {
+        add_motion(shown_, with, FourPoints::places[k] * n_.parameter(j).distance(), x);
+        shown_.t = n_.times(j)(k, x.t);
+        add_value(f(n_.beside(j, k), shown_), weight(j, k));
+      }
+    if (p.reach == 0.0) return sum;
+    for (std::size_t k = 0; k < points; ++k) {
+      double const e = FourPoints::places[k] * p.reach;
+      add_motion(shown_, p.along, e, x);
+      shown_.t = x.t + e * p.dt;
+      add_value(f(n_.itself(), shown_), FourPoints::weights[k] / p.reach);
+    }
+    return sum;
+  }
+
+  /// From now on equations are asked of another step.
+  void begin_step() {
+    derivatives_->forget();
+    for (EquationDerivative& of : by_time_) of.scale = 0.0;
+  }
+  /// A place where equations are asked: the end of a step of h, or where it solves some.
+  template <class X>
+  struct PointInStep {
+    X const& x;
+    double h;            ///< [s]
+    double dt;           ///< by which its time moves [s]
+    std::size_t number;  ///< of the place, one after the other
+  };
+  /// ∂r/∂p and ∂Φ/∂p at a place while unknowns stay, where its time moves, into `sum`.
+  template <class X>
+  void of_equations(std::size_t j, PointInStep<X> const& at, EquationDerivative& sum) {
+    auto const& [x, h, dt, number] = at;
+    sum.balance.setZero(n_.itself().system.velocities());
+    sum.rows.setZero(n_.itself().system.rows());
+    sum.scale = size(j, h);
+    double later = dt;
+    if (j != along_motion && number_[j] != moving) {
+      derivatives_->get(number_[j], x, number, sum);
+    } else if (j != along_motion) {
+      for (std::size_t k = 0; k < points; ++k)
+        add(sum, n_.beside(j, k).equations(x, n_.times(j)(k, x.t)), weight(j, k));
+      later -= n_.times(j).slope(x.t);
+    }
+    if (later == 0.0) return;
+    if (number >= by_time_.size()) by_time_.resize(number + 1, {{}, {}, 0.0});
+    EquationDerivative& by_time = by_time_[number];
+    if (by_time.scale == 0.0) by_time = rate_of_equations(x, h);
+    add(sum, by_time, later);
+  }
+  /// \throws InvalidInput where a parameter changes an equation at x that it does not touch.
+  void require_touched(State const& x) {
+    for (std::size_t i = 0; i < still_.size(); ++i)
+      derivatives_->require_touched(i, n_.itself(), n_.beside(still_[i], 0), x);
+  }
+
+ private:
+  static constexpr std::size_t points = FourPoints::places.size();
+  static constexpr std::size_t moving = std::size_t(-1);
+  static constexpr double negligible = 1e-13;  // of a step
+  // of a step: no corner is within a hundredth of one of the end of another step
+  static constexpr double largest_part = 4e-3;
+
+  struct Parts {
+    State with, along;  // at times that stay; along the motion: not made where `reach` is 0
+    double dt, dh;      // of the latter
+    double reach;       // distance of its differences; 0 where there is none and all is at times that stay
+  };
+  struct Asked {
+    V& variant;
+    State x;
+    double h;
+  };
+
+  double weight(std::size_t j, std::size_t k) const { return FourPoints::weights[k] / n_.parameter(j).distance(); }
+  double reach_of(std::size_t j, double h, double longest) const {
+    double const part = largest_part * h / longest;
+    return j == along_motion ? part : std::min(part, n_.parameter(j).distance());
+  }
+  Parts parts(std::size_t j, State const& x, RunSensitivity const& tangent, double h, double dh) {
+    if (j == along_motion) {
+      double const longest = std::max({std::abs(tangent.dt), std::abs(dh), std::numeric_limits<double>::min()});
+      return {{}, tangent.dx, tangent.dt, dh, reach_of(j, h, longest)};
+    }
+    double const s = n_.times(j).slope(x.t), dt = tangent.dt - s, longer = dh - (n_.times(j).slope(x.t + h) - s);
+    double longest = std::max(std::abs(dt), std::abs(longer));
+    if (tangent.lengths.size() > 0) longest = std::max(longest, tangent.lengths.cwiseAbs().maxCoeff());
+    if (longest * size(j, h) <= negligible * h) return {{}, {}, dt, longer, 0.0};
+    Parts out{tangent.dx, {}, dt, longer, 0.0};
+    out.along = motion(x, dt, 1e-3 * h);
+    add(out.with, out.along, -1.0);
+    out.reach = reach_of(j, h, longest);
+    return out;
+  }
+  /// What moves in dt along the motion: coordinates and speeds. \param e distance of the differences [s]
+  State motion(State const& x, double dt, double e) {
+    State out = zeros_like(x);
+    VecX ahead = x.q, back = x.q;
+    VecX const there = e * x.v, here = -there;
+    n_.itself().system.plus(x.q, there, ahead);
+    n_.itself().system.plus(x.q, here, back);
+    out.q = dt / (2.0 * e) * (ahead - back);
+    out.v = dt * x.a;
+    return out;
+  }
+  /// ∂r/∂t and ∂Φ/∂t at a place of a step, by differences of fourth order that look back within it [Fornberg 1988].
+  template <class Place>
+  EquationDerivative rate_of_equations(Place const& x, double h) {
+    constexpr std::array<double, 5> weights{25.0 / 12.0, -4.0, 3.0, -4.0 / 3.0, 0.25};
+    double const e = 0.02 * h;
+    EquationDerivative sum = no_slope();
+    for (std::size_t i = 0; i < weights.size(); ++i)
+      add(sum, n_.itself().equations(x, x.t - double(i) * e), weights[i] / e);
+    return sum;
+  }
+
+  EquationDerivative no_slope() {
+    System const& s = n_.itself().system;
+    return {VecX::Zero(s.velocities()), VecX::Zero(s.rows())};
+  }
+  static void add(EquationDerivative& sum, EquationDerivative const& of, double by) {
+    sum.balance += by * of.balance;
+    sum.rows += by * of.rows;
+  }
+  static void add(State& sum, State const& of, double by) { detail::add(sum, of, by); }
+  template <class F>
+  static void take(State& sum, F const& f, Asked of, double by) {
+    f(of.variant, of.x, of.h);
+    if (sum.q.size() == 0) sum = zeros_like(of.x);
+    add(sum, of.x, by);
+  }
+
+  NearbyModels<V> n_;
+  std::vector<std::size_t> number_, still_;            // of each parameter among those under which no time moves; these
+  std::optional<EquationDerivatives<V>> derivatives_;  // by these
+  std::vector<EquationDerivative> by_time_;  // ∂/∂t at each place of a step; where it is not known the scale is zero
+  State shown_;
+};
+
+}  // namespace polybody::detail

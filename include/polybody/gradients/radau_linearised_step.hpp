@@ -1,0 +1,148 @@
+#pragma once
+/// \file
+/// The tangent-linear of a step of Radau (integrators/radau.hpp), exactly: with what Newton's matrix leaves out.
+///
+/// With y = (δv̇_i, δλ_i) of the three stages the changes of q_i and v_i follow from their formulas, and
+///   δ[M v̇_i − f_i + G_iᵀλ_i] = 0,  δ[G_i v̇_i + γ_i] = 0
+/// is linear in y. Its left side comes from a pass of dual numbers through each stage. It is solved by the factors of a
+/// matrix of all stages, each with its own tangent with second-order terms and slopes of the rows, and corrected until
+/// nothing changes. The projection at the end, and the change of v̇ that follows it, are differentiated as solutions of
+/// linear equations at their places (gradients/solved_points.hpp).
+///
+/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+
+#include <polybody/gradients/radau_stage_solution.hpp>
+#include <polybody/gradients/solved_points.hpp>
+
+namespace polybody {
+
+/// Slopes of steps of Radau, one step after the other, also by their lengths. The stages of a step are not in its
+/// states, so they are solved for once more. Where a step stalled and was taken with stages longer than itself, slopes
+/// are those of a step with stages of its own length; the two differ as their errors do.
+template <LinearSolver Solver = DefaultSolver>
+class RadauLinearisedStep {
+ public:
+  /// Directions that go through the equations together, a part of a dual number each.
+  static constexpr int lanes = SolvedPoints<Solver>::lanes;
+
+  /// The model must outlive it. \param system with `Capabilities::implicit_step`; \param method whose steps they are
+  template <class M>
+  [[gnu::cold]] RadauLinearisedStep(M const& model, System& system, Radau const& method)
+      : places_(model, system), stages_(places_, method) {
+    correction_ = VecX::Zero(3 * system.size());
+    along_.fill(correction_);
+    duals_.resize(places_.template system<D>());
+  }
+  RadauLinearisedStep(RadauLinearisedStep const&) = delete;  // its parts refer to each other
+
+  /// From now on slopes are those of this step. \throws NewtonConvergenceFailure where its stages are not found again,
+  /// SingularMatrix at a singular position, NonFiniteValue.
+  void set(StepTaken const& step) { stages_.find(step); }
+
+  /// Takes up to `lanes` derivatives of the state before the step to those of the state after it. Returns what the last
+  /// corrections changed at most, beside all, or beside v̇ and λ over a parameter's scale where that is more. \param
+  /// slope what the parameter of a direction, and the time that moves along it, do to the equations at each place where
+  /// the step solves some; \param dh the derivative of the step's length along each direction [s], or none where it
+  /// stays
+  template <EquationDerivativeFunction F>
+  double advance(StepTaken const& step, std::span<State* const> directions, F&& slope,
+                 std::span<double const> dh = {}) {
+    begin(step, directions);
+    D const h = detail::lift<lanes>(step.h, dh);
+    auto const by = derivatives_of_stages(directions.size(), slope);
+    double left = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < most_corrections; ++k) {
+      stages_.evaluate(duals_, dual_equations_, step, h,
+                       [&](Index first) { keep_derivatives(first, directions.size(), by); });
+      double now = 0.0;
+      for (std::size_t l = 0; l < directions.size(); ++l) now = std::max(now, correct(l, by));
+      bool const done = now <= 1e-15 || (k > 1 && now <= 1e-10 && now >= 0.3 * left);
+      left = now;
+      if (done) break;
+    }
+    duals_.find(places_.template system<D>(), h);
+    places_.again();
+    stages_.finish(duals_, step, [&](EvaluationPoint<D>& at) {
+      places_.solve(at, directions.size(), slope);
+      return 0.0;
+    });
+    detail::take_derivatives(duals_.at.q, directions, &State::q);
+    detail::take_derivatives(duals_.at.v, directions, &State::v);
+    detail::take_derivatives(duals_.next, directions, &State::a);
+    detail::take_derivatives(duals_.lambda[2], directions, &State::lambda);
+    return left;
+  }
+
+ private:
+  using D = typename SolvedPoints<Solver>::D;
+  using StageDerivatives = std::array<std::array<EquationDerivative, 3>, std::size_t(lanes)>;
+  static constexpr int most_corrections = 60;
+
+  /// The start, values of the stages, and derivatives as they were: near what they become.
+  void begin(StepTaken const& step, std::span<State* const> directions) {
+    detail::lift(step.before.q, directions, &State::q, duals_.q0);
+    detail::lift(step.before.v, directions, &State::v, duals_.v0);
+    for (std::size_t i = 0; i < 3; ++i) {
+      detail::lift(stages_.numbers().vd[i], directions, &State::a, duals_.vd[i]);
+      detail::lift(stages_.numbers().lambda[i], directions, &State::lambda, duals_.lambda[i]);
+      duals_.delta[i] = stages_.numbers().delta[i].template cast<D>();
+    }
+  }
+  template <class F>
+  StageDerivatives derivatives_of_stages(std::size_t directions, F&& slope) {
+    StageDerivatives out;
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t l = 0; l < directions; ++l) out[l][i] = slope(stages_.stage_places()[i], l);
+    return out;
+  }
+
+  /// −δ of the equations of a stage, with what the parameters do, into `along_`.
+  void keep_derivatives(Index first, std::size_t directions, StageDerivatives const& by) {
+    VecXOf<D> const &balance = dual_equations_.balance, &rows = dual_equations_.rows;
+    std::size_t const stage = std::size_t(first / places_.template system<double>().size());
+    for (std::size_t l = 0; l < directions; ++l) {
+      EquationDerivative const& of = by[l][stage];
+      double* const to = along_[l].data() + first;
+      for (Index i = 0; i < balance.size(); ++i) to[i] = -(balance[i].d[Index(l)] + of.balance[i]);
+      for (Index i = 0; i < rows.size(); ++i) to[balance.size() + i] = -(rows[i].d[Index(l)] + of.rows[i]);
+    }
+  }
+  /// Corrects δv̇ and δλ of the stages along direction l. Returns by how much, beside all.
+  double correct(std::size_t l, StageDerivatives const& by) {
+    stages_.solver().solve(along_[l], correction_);
+    Index const n = places_.template system<double>().size(), nv = stages_.numbers().v0.size(), k = Index(l);
+    double now = 0.0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      double const scale = by[l][i].scale;
+      VecX const of_a = correction_.segment(Index(i) * n, nv),
+                 of_lambda = correction_.segment(Index(i) * n + nv, n - nv);
+      now = std::max({now, add_slope(of_a, k, scale, duals_.vd[i]), add_slope(of_lambda, k, scale, duals_.lambda[i])});
+    }
+    return now;
+  }
+  static double add_slope(VecX const& correction, Index l, double scale, VecXOf<D>& to) {
+    double derivatives = 0.0, values = 0.0;
+    for (Index i = 0; i < to.size(); ++i) {
+      to[i].d[l] += correction[i];
+      derivatives = std::hypot(derivatives, to[i].d[l]);
+      values = std::hypot(values, to[i].v);
+    }
+    double const all = std::max(derivatives, values / scale);
+    return all > 0.0 ? correction.norm() / all : correction.norm();
+  }
+
+  SolvedPoints<Solver> places_;
+  detail::RadauStageSolution<SolvedPoints<Solver>> stages_;
+  PointEquations<D> dual_equations_;
+  detail::RadauStages<D> duals_;
+  std::array<VecX, std::size_t(lanes)> along_;
+  VecX correction_;
+};
+
+/// Slopes of runs by Radau.
+template <>
+struct StageDerivatives<Radau> {
+  using Type = RadauLinearisedStep<>;  ///< of its steps
+};
+
+}  // namespace polybody

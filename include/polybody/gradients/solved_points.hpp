@@ -1,0 +1,177 @@
+#pragma once
+/// \file
+/// Places of a step where linear equations are solved (gradients/evaluation_point.hpp), and the derivatives of their
+/// solutions: of K x = b, K = [M, Gᵀ; G, 0],
+///   K δx = δb − δK x,
+/// whose right side is one pass of dual numbers through the equations at x that stays. A step is written once, for
+/// doubles, whose places are solved and factored, and for duals, which meet the same places in the same order.
+///
+/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <polybody/gradients/evaluation_point.hpp>
+#include <polybody/integrators/forward_dynamics.hpp>
+
+namespace polybody {
+
+/// The places of a step in doubles, with factors of their matrices.
+template <LinearSolver Solver = DefaultSolver>
+class SolutionPoints {
+ public:
+  /// A place with its solution and the factors of K there.
+  struct Found {
+    EvaluationPoint<> place;                    ///< with its solution
+    TangentSolver<StepSolver<Solver>> factors;  ///< of K, which is symmetric
+  };
+
+  /// Places of steps of `system`, which must outlive it.
+  [[gnu::cold]] explicit SolutionPoints(System& system) : system_(&system) {
+    rhs_ = solution_ = VecX::Zero(system.size());
+  }
+
+  /// What the places are of.
+  System& system() { return *system_; }
+  /// What follows is solved at new places.
+  void forget() { used_ = 0; }
+  /// How many places there are.
+  std::size_t size() const { return used_; }
+  /// Place number i.
+  Found& operator[](std::size_t i) { return *found_[i]; }
+
+  /// Solves at another place, into its a and λ. \throws SingularMatrix, NonFiniteValue.
+  void solve(EvaluationPoint<>& x) {
+    if (used_ == found_.size()) {
+      found_.push_back(std::make_unique<Found>());
+      found_.back()->factors.analyse(*system_, 1, [&](BlockSink& sink) { system_->masses(sink); });
+    }
+    Found& here = *found_[used_++];
+    Index const nv = system_->velocities(), rows = system_->rows();
+    x.a.setZero(nv);
+    x.lambda.setZero(rows);
+    equations_.evaluate(*system_, x);
+    Index const bad = here.factors.factor([&](BlockSink& sink) { system_->masses(sink); });
+    for (Index i = 0; i < nv; ++i) rhs_[i] = -equations_.balance[i];
+    for (Index i = 0; i < rows; ++i) rhs_[nv + i] = -equations_.rows[i];
+    if (bad >= 0) detail::throw_unsolvable(*system_, rhs_, name_of_equation(*system_, bad));
+    here.factors.solve(rhs_, solution_);
+    if (Index const i = first_not_finite(solution_); i >= 0)
+      detail::throw_unsolvable(*system_, rhs_, system_->name_of(i));
+    x.a = solution_.head(nv);
+    x.lambda = solution_.tail(rows);
+    here.place = x;
+  }
+  /// |rows| at a = 0 where it solved last, at most.
+  double largest_row() const { return largest_size(equations_.rows); }
+  /// Equations that repeat others where it solved last.
+  std::span<Index const> dropped() const { return found_[used_ - 1]->factors.dropped(); }
+
+ private:
+  System* system_;
+  PointEquations<double> equations_;
+  std::vector<std::unique_ptr<Found>> found_;  // they stay for later steps
+  std::size_t used_ = 0;
+  VecX rhs_, solution_;
+};
+
+/// The places of a step with derivatives of their solutions.
+template <LinearSolver Solver = DefaultSolver>
+class SolvedPoints {
+ public:
+  /// Directions that go through the equations together, a part of a dual number each.
+  static constexpr int lanes = 4;
+  using D = Dual<lanes>;         ///< a value with its derivatives
+  using Dots = VecXOf<Dual<4>>;  ///< a vector of them
+
+  /// The model must outlive it.
+  template <class M>
+  [[gnu::cold]] SolvedPoints(M const& model, System& system)
+      : found_(system), dual_(stepped_system<D>(model, with<Capabilities::motion>)) {
+    rhs_ = solution_ = VecX::Zero(system.size());
+  }
+
+  /// The system in the scalar T.
+  template <StateScalar T>
+  BasicSystem<T>& system() {
+    if constexpr (std::same_as<T, double>)
+      return found_.system();
+    else
+      return dual_;
+  }
+
+  /// What follows is solved at new places.
+  void forget() {
+    found_.forget();
+    passed_ = 0;
+  }
+  /// What follows goes through the same places from the first one on.
+  void again() { passed_ = 0; }
+
+  /// Solves at another place, into its a and λ. \throws SingularMatrix, NonFiniteValue.
+  void solve(EvaluationPoint<>& x) { found_.solve(x); }
+  /// |rows| at a = 0 where it solved last, at most.
+  double largest_row() const { return found_.largest_row(); }
+  /// Equations that repeat others where it solved last.
+  std::span<Index const> dropped() const { return found_.dropped(); }
+
+  /// Into a and λ of x, whose q, v and `also` come with derivatives along `directions` of them, the solution of the
+  /// next place with its own.
+  template <EquationDerivativeFunction F>
+  void solve(EvaluationPoint<D>& x, std::size_t directions, F&& slope) {
+    auto& here = found_[passed_++];
+    Index const nv = here.place.a.size(), rows = here.place.lambda.size();
+    x.a = here.place.a.template cast<D>();
+    x.lambda = here.place.lambda.template cast<D>();
+    dual_equations_.evaluate(dual_, x);
+    for (std::size_t l = 0; l < directions; ++l) {
+      EquationDerivative const by = slope(here.place, l);
+      Index const k = Index(l);
+      for (Index i = 0; i < nv; ++i) rhs_[i] = -(dual_equations_.balance[i].d[k] + by.balance[i]);
+      for (Index i = 0; i < rows; ++i) rhs_[nv + i] = -(dual_equations_.rows[i].d[k] + by.rows[i]);
+      here.factors.solve(rhs_, solution_);
+      for (Index i = 0; i < nv; ++i) x.a[i].d[k] = solution_[i];
+      for (Index i = 0; i < rows; ++i) x.lambda[i].d[k] = solution_[nv + i];
+    }
+  }
+
+ private:
+  SolutionPoints<Solver> found_;
+  BasicSystem<D> dual_;
+  PointEquations<D> dual_equations_;
+  std::size_t passed_ = 0;
+  VecX rhs_, solution_;
+};
+
+namespace detail {
+
+/// `to` becomes one part of a state, with its derivatives along all directions.
+template <int N>
+void lift(VecX const& part, std::span<State* const> dx, VecX State::* of, VecXOf<Dual<N>>& to) {
+  to.resize(part.size());
+  for (Index i = 0; i < part.size(); ++i) {
+    to[i] = Dual<N>(part[i]);
+    for (std::size_t l = 0; l < dx.size(); ++l) to[i].d[Index(l)] = (dx[l]->*of)[i];
+  }
+}
+/// A length of a step with its derivatives dh, or none.
+template <int N>
+Dual<N> lift(double h, std::span<double const> dh) {
+  Dual<N> out(h);
+  for (std::size_t l = 0; l < dh.size(); ++l) out.d[Index(l)] = dh[l];
+  return out;
+}
+/// The derivatives in `from` become those of one part of a state.
+template <int N>
+void take_derivatives(VecXOf<Dual<N>> const& from, std::span<State* const> dx, VecX State::* of) {
+  for (std::size_t l = 0; l < dx.size(); ++l) {
+    VecX& to = dx[l]->*of;
+    to.resize(from.size());
+    for (Index i = 0; i < from.size(); ++i) to[i] = from[i].d[Index(l)];
+  }
+}
+
+}  // namespace detail
+
+}  // namespace polybody

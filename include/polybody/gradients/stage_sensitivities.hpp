@@ -1,0 +1,60 @@
+#pragma once
+/// \file
+/// Tangents of a run along its steps under methods of several stages.
+///
+/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+
+#include <polybody/gradients/perturbed_models.hpp>
+#include <polybody/gradients/perturbed_stage_model.hpp>
+#include <polybody/gradients/sensitivity_step.hpp>
+
+namespace polybody::detail {
+
+/// What takes tangents before a step to those at its end.
+template <class S, class I>
+class StageSensitivities {
+ public:
+  using V = PerturbedStageModel<S, I>;
+  using Variants = PerturbedModels<V>;
+
+  /// Along the steps of `full`, which must outlive it.
+  [[gnu::cold]] explicit StageSensitivities(V& full) : derivatives_(full.scenario.model, full.system, full.method) {}
+
+  /// The tangents of `lanes` become those at the end of a step. Returns what the last corrections changed.
+  double advance(SensitivityStep const& step, std::span<TangentColumn const> lanes, Variants& beside) {
+    StepTaken const taken{step.before, step.after, step.h};
+    derivatives_.set(taken);
+    double left = 0.0;
+    beside.begin_step();
+    for (std::size_t first = 0; first < lanes.size(); first += directions_.size()) {
+      std::size_t const count = std::min(std::size_t(Slopes::lanes), lanes.size() - first);
+      directions_.clear();
+      dh_.clear();
+      for (TangentColumn const& lane : lanes.subspan(first, count)) {
+        directions_.push_back(&lane.tangent->dx);
+        dh_.push_back(lane.dh);
+      }
+      std::size_t places = 0;
+      auto const slope = [&](EvaluationPoint<> const& x, std::size_t l) -> EquationDerivative const& {
+        if (l == 0) ++places;
+        TangentColumn const& lane = lanes[first + l];
+        double const dt = lane.tangent->dt + (x.t - step.before.t) / step.h * lane.dh;
+        beside.template of_equations<EvaluationPoint<>>(lane.j, {x, step.h, dt, places - 1}, by_);
+        return by_;
+      };
+      left = std::max(left, derivatives_.advance(taken, directions_, slope, dh_));
+    }
+    for (TangentColumn const& lane : lanes) lane.tangent->dt += lane.dh;
+    return left;
+  }
+
+ private:
+  using Slopes = typename StageDerivatives<I>::Type;
+
+  Slopes derivatives_;
+  std::vector<State*> directions_;
+  std::vector<double> dh_;
+  EquationDerivative by_;
+};
+
+}  // namespace polybody::detail

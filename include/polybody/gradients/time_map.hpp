@@ -1,0 +1,83 @@
+#pragma once
+/// \file
+/// Times of runs whose corners move with a parameter.
+///
+/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <polybody/gradients/parameter.hpp>
+
+namespace polybody::detail {
+
+/// Which times of the runs beside a parameter answer to times of the run itself: the start to the start, corners to
+/// corners, linear in between. A law that is asked at answering times is asked on one side of its corner in all runs,
+/// however far the corner moves: so it is differenced, and what the change of time did is taken off afterwards.
+class TimeMap {
+ public:
+  /// A time of the run that moves, and where it is in the four runs beside it.
+  struct Moving {
+    double here;                                          ///< [s]
+    std::array<double, FourPoints::places.size()> there;  ///< [s]
+  };
+
+  TimeMap() = default;
+  /// \param crumb times that are less apart are one [s]; \param who refusals begin with this. \throws InvalidInput
+  /// where times change their order, or part.
+  [[gnu::cold]] TimeMap(std::vector<Moving> times, Parameter const& p, double remainder_step, char const* who)
+      : times_(std::move(times)), distance_(p.distance()) {
+    std::sort(times_.begin(), times_.end(), [](Moving const& a, Moving const& b) { return a.here < b.here; });
+    for (std::size_t i = 1; i < times_.size(); ++i)
+      for (std::size_t k = 0; k < times_[i].there.size(); ++k) {
+        Moving const &a = times_[i - 1], &b = times_[i];
+        double const gap = b.here - a.here, beside = b.there[k] - a.there[k];
+        if (gap <= remainder_step && std::abs(beside - gap) > 1e-9 * remainder_step + 1e-14 * std::abs(b.here))
+          throw InvalidInput{
+              who,    ": two corners, or one and the start, are both at t = ",        b.here, " s and part with \"",
+              p.name, "\": there is no derivative there. Move one of them by a step."};
+        if (gap > remainder_step && !(beside > 0.0))
+          throw InvalidInput{who,    ": the corners at t = ",
+                             a.here, " s and ",
+                             b.here, " s change their order with \"",
+                             p.name, "\" as far as it is differenced. Give it a smaller scale."};
+      }
+    for (Moving const& m : times_)
+      for (double const t : m.there) moves_ = moves_ || t != m.here;
+  }
+
+  bool moves() const { return moves_; }  ///< some time does
+
+  /// The time in run k that answers to t.
+  double operator()(std::size_t k, double t) const {
+    if (!moves_) return t;
+    auto const after =
+        std::upper_bound(times_.begin(), times_.end(), t, [](double at, Moving const& m) { return at < m.here; });
+    bool const first = after == times_.begin(), last = after == times_.end();
+    Moving const &a = first ? *after : *std::prev(after), &b = last ? a : *after;
+    if (!first && t == a.here) return a.there[k];
+    double const at_a = a.there[k] - a.here, at_b = b.there[k] - b.here, gap = b.here - a.here;
+    double there = t + at_a + (gap > 0.0 ? (at_b - at_a) * ((t - a.here) / gap) : 0.0);
+    if (!first) there = std::max(there, a.there[k]);
+    if (!last) there = std::min(there, std::nextafter(b.there[k], -std::numeric_limits<double>::infinity()));
+    return there;
+  }
+  /// How fast the answering time moves with the parameter [s over its unit].
+  double slope(double t) const {
+    double sum = 0.0;
+    if (moves_)
+      for (std::size_t k = 0; k < FourPoints::places.size(); ++k)
+        sum += FourPoints::weights[k] / distance_ * ((*this)(k, t) - t);
+    return sum;
+  }
+
+ private:
+  std::vector<Moving> times_;
+  double distance_ = 1.0;
+  bool moves_ = false;
+};
+
+}  // namespace polybody::detail

@@ -1,0 +1,126 @@
+#pragma once
+#include <polybody/math/sequence.hpp>
+#include <polybody/solvers/linear_solver.hpp>
+
+namespace polybody {
+
+/// Rows G b = r (m×n) of rank k whose columns are split into k dependent ones and the others,
+///   b_d = G_d⁻¹ r − R b_i,   R = G_d⁻¹ G_i,
+/// by Gauss–Jordan elimination. A new split is chosen by full pivoting, which leaves rows that repeat others for the
+/// end and out of account [Wehage & Haug 1982; Shabana 2020]. A split is kept while no entry of R exceeds a limit:
+/// |R_di| is the factor by which |det G_d| would grow were column i to change places with d. Dense, m² n operations.
+/// Itself the sink of the rows of a tangent [M, Gᵀ; G, 0].
+class PartitionedConstraints {
+ public:
+  static constexpr int sides = 2;  ///< right-hand sides that are carried along
+
+  /// Room for m rows and n columns; allocates.
+  PartitionedConstraints(Index rows, Index columns)
+      : rows_(rows),
+        columns_(columns),
+        width_(columns + sides),
+        a_(std::size_t(rows * width_)),
+        dependents_(std::size_t(rows)),
+        state_(std::size_t(columns)) {}
+
+  long choices = 0;  ///< how often a split was chosen
+
+  Index rank() const { return rank_; }  ///< k, the dependent columns; −1 before a split is chosen
+  /// Whether a column is a dependent one, as the split stands.
+  bool is_dependent(Index column) const { return state_[std::size_t(column)] != Column::independent; }
+  /// The next `reduce` chooses anew.
+  void forget() { rank_ = none; }
+
+  void begin() { std::fill(a_.begin(), a_.end(), 0.0); }  ///< all entries of G and r become zero
+  /// Adds a block of a tangent [M, Gᵀ; G, 0] whose first entry is at (row, col); only G is taken.
+  void add(Index row, Index col, BlockView const& b) {
+    if (row < columns_ || col >= columns_) return;
+    for (Index i = 0; i < b.rows; ++i)
+      for (Index j = 0; j < b.cols; ++j) at(row - columns_ + i, col + j) += b(i, j);
+  }
+  /// Leaves a row out of account.
+  void mark_redundant(Index row) { std::fill_n(&at(row, 0), width_, 0.0); }
+  /// Entry `row` of the right-hand side.
+  double& right(int side, Index row) { return at(row, columns_ + side); }
+
+  /// Solves for b_d with b_i = 0, by the split that is kept. False where it no longer fits or none was chosen: then the
+  /// rows are lost and must be written again, for `choose`. \param limit of |R|
+  bool reduce(double limit) {
+    if (rank_ == none) return false;
+    for (Column& c : state_)
+      if (c == Column::used) c = Column::dependent;
+    double const enough = repeats * largest(0, columns_);
+    for (Index k = 0; k < rank_; ++k)
+      if (!eliminate(k, Column::dependent, enough)) return false;
+    if (largest(rank_, columns_) > enough) return false;  // rows that repeated others no longer do
+    for (Index k = 0; k < rank_; ++k)
+      for (Index j = 0; j < columns_; ++j)
+        if (!is_dependent(j) && !(std::abs(at(k, j)) <= limit)) return false;
+    return true;
+  }
+
+  /// Chooses a split and solves for b_d with b_i = 0.
+  void choose() {
+    ++choices;
+    std::fill(state_.begin(), state_.end(), Column::independent);
+    double const enough = repeats * largest(0, columns_);
+    for (rank_ = 0; rank_ < rows_ && eliminate(rank_, Column::independent, enough);) ++rank_;
+  }
+
+  /// b for right-hand side number `side`, with b_i = 0.
+  void solution(int side, VecX& b) {
+    b.setZero();
+    for (Index k = 0; k < rank_; ++k) b[dependents_[std::size_t(k)]] = right(side, k);
+  }
+
+ private:
+  enum class Column : char { independent, dependent, used };  ///< used: dependent, and has had its pivot
+  static constexpr Index none = -1;
+  static constexpr double repeats =
+      1e-9;  ///< a pivot below this share of the largest entry belongs to a row that repeats others
+
+  double& at(Index i, Index j) { return a_[std::size_t(i * width_ + j)]; }
+
+  /// Largest entry of the rows from `first` on.
+  double largest(Index first, Index columns) {
+    double most = 0.0;
+    for (Index i = first; i < rows_; ++i)
+      for (Index j = 0; j < columns; ++j) most = std::max(most, std::abs(at(i, j)));
+    return most;
+  }
+
+  /// Step k: the largest pivot in columns of state `from` and rows from k on; its column becomes the k-th of the
+  /// identity. False when it is not above `enough`.
+  bool eliminate(Index k, Column from, double enough) {
+    double most = enough;
+    Index row = none, column = none;
+    for (Index i = k; i < rows_; ++i)
+      for (Index j = 0; j < columns_; ++j)
+        if (state_[std::size_t(j)] == from && std::abs(at(i, j)) > most) {
+          most = std::abs(at(i, j));
+          row = i;
+          column = j;
+        }
+    if (row == none) return false;
+    state_[std::size_t(column)] = Column::used;
+    dependents_[std::size_t(k)] = column;
+    double* const pivot = &at(k, 0);
+    if (row != k) std::swap_ranges(pivot, pivot + width_, &at(row, 0));
+    double const inverse = 1.0 / pivot[column];
+    for (Index j = 0; j < width_; ++j) pivot[j] *= inverse;
+    for (Index i = 0; i < rows_; ++i) {
+      double const f = at(i, column);
+      if (i == k || f == 0.0) continue;
+      for (Index j = 0; j < width_; ++j) at(i, j) -= f * pivot[j];
+    }
+    return true;
+  }
+
+  Index rows_, columns_, width_;
+  Index rank_ = none;
+  Sequence<double> a_;  // by rows, right-hand sides last
+  Sequence<Index> dependents_;
+  Sequence<Column> state_;
+};
+
+}  // namespace polybody

@@ -1,0 +1,36 @@
+#pragma once
+#include <polybody/joints/constraint_functions.hpp>
+
+namespace polybody {
+
+/// The axes of b stay parallel to those of a, the points are free, 3 rows g = [a₁·b₂; a₂·b₃; a₃·b₁].
+struct ConstantOrientation {
+  static constexpr char const* name = "ConstantOrientation";
+  static constexpr int rows = 3;
+  static constexpr MarkerKind needs = MarkerKind::frame;
+  static constexpr World world = World::space;
+  static constexpr bool opposite_ends = true;
+  static constexpr FreeDirections free = {true, true, true};
+
+  Mat3 triad() const { return identity(); }
+
+  template <StateScalar T>
+  ConstraintTerms<3, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
+    ConstraintTerms<3, T> gap;
+    polybody::constraint_functions::parallel(a, b, gap, 0);
+    return gap;
+  }
+  template <StateScalar T>
+  Vec<T, 3> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
+    return polybody::constraint_functions::parallel_gamma(a, b);
+  }
+  template <class = void>  // compiled where it is used
+  Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
+                                      Vec<double, 3> const& lambda) const {
+    auto k = detail::zeros<Mat<double, 12, 12>>();
+    polybody::constraint_functions::parallel_gradient(a, b, lambda, k);
+    return k;
+  }
+};
+
+}  // namespace polybody

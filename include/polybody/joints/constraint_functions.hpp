@@ -1,0 +1,234 @@
+#pragma once
+/// \file
+/// The rows from which joint geometries are put together, each with its maps and its γ. With d = r_b − r_a:
+///   coincident points   g = d
+///   perpendicular axes  g = u·w, u fixed in a, w fixed in b
+///   no slide along u    g = u·d, u fixed in a
+///   distance            g = |d| − L
+/// γ is the part of g̈ that the accelerations of the frames do not explain.
+/// [Haug 1989, §2.4 and §9.4; thesis Eq. 3.8–3.10 and §3.5.1]
+
+#include <polybody/joints/constraint_terms.hpp>
+
+namespace polybody::constraint_functions {
+
+/// Writes g = r_b − r_a into rows [row, row + 3).
+template <int m, StateScalar T>
+void coincident(Frame<T> const& a, Frame<T> const& b, ConstraintTerms<m, T>& gap, int row = 0) {
+  for (int i = 0; i < 3; ++i) {
+    gap.g[row + i] = b.r[i] - a.r[i];
+    gap.Ga(row + i, i) = T(-1.0);
+    gap.Gb(row + i, i) = T(1.0);
+  }
+}
+
+/// Writes g = u·w to `row`: ġ = (u × w)·(ω_a − ω_b).
+template <int m, StateScalar T>
+[[gnu::always_inline]] inline void perpendicular(Vec<T, 3> const& u, Vec<T, 3> const& w, ConstraintTerms<m, T>& gap,
+                                                 int row) {
+  Vec<T, 3> const c = cross(u, w);
+  gap.g[row] = dot(u, w);
+  for (int i = 0; i < 3; ++i) {
+    gap.Ga(row, 3 + i) = c[i];
+    gap.Gb(row, 3 + i) = -c[i];
+  }
+}
+
+/// γ of `perpendicular`: 2 (ω_a × u)·(ω_b × w) + (ω_a × (ω_a × u))·w + u·(ω_b × (ω_b × w)).
+template <StateScalar T>
+inline T perpendicular_gamma(Vec<T, 3> const& u, Vec<T, 3> const& w, Frame<T> const& a, Frame<T> const& b) {
+  Vec<T, 3> const ud = cross(a.w, u), wd = cross(b.w, w), udd = cross(a.w, ud), wdd = cross(b.w, wd);
+  return 2.0 * dot(ud, wd) + dot(udd, w) + dot(u, wdd);
+}
+
+/// Writes g = u·d to `row`: ġ = u·(v_b − v_a) + (u × d)·ω_a.
+template <int m, StateScalar T>
+void no_slide(Vec<T, 3> const& u, Frame<T> const& a, Frame<T> const& b, ConstraintTerms<m, T>& gap, int row) {
+  Vec<T, 3> const d = difference(b.r, a.r), c = cross(u, d);
+  gap.g[row] = dot(u, d);
+  for (int i = 0; i < 3; ++i) {
+    gap.Ga(row, i) = -u[i];
+    gap.Ga(row, 3 + i) = c[i];
+    gap.Gb(row, i) = u[i];
+  }
+}
+
+/// γ of `no_slide`: 2 (ω_a × u)·(v_b − v_a) + (ω_a × (ω_a × u))·d.
+template <StateScalar T>
+inline T no_slide_gamma(Vec<T, 3> const& u, Frame<T> const& a, Frame<T> const& b) {
+  Vec<T, 3> const ud = cross(a.w, u), udd = cross(a.w, ud), d = difference(b.r, a.r), rate = difference(b.v, a.v);
+  return 2.0 * dot(ud, rate) + dot(udd, d);
+}
+
+/// Writes the three rows from `row` on, a₁·b₂, a₂·b₃, a₃·b₁, that hold the axes of b parallel to those of a.
+template <int m, StateScalar T>
+void parallel(Frame<T> const& a, Frame<T> const& b, ConstraintTerms<m, T>& gap, int row) {
+  for (int i = 0; i < 3; ++i) perpendicular(axis_of(a, i), axis_of(b, (i + 1) % 3), gap, row + i);
+}
+
+/// γ of `parallel`.
+template <StateScalar T>
+Vec<T, 3> parallel_gamma(Frame<T> const& a, Frame<T> const& b) {
+  Vec<T, 3> gamma;
+  for (int i = 0; i < 3; ++i) gamma[i] = perpendicular_gamma(axis_of(a, i), axis_of(b, (i + 1) % 3), a, b);
+  return gamma;
+}
+
+/// Writes a₁·b₃ and a₂·b₃ from `row` on, which hold the third axes parallel.
+template <int m, StateScalar T>
+void same_direction(Frame<T> const& a, Frame<T> const& b, ConstraintTerms<m, T>& gap, int row) {
+  for (int i = 0; i < 2; ++i) perpendicular(axis_of(a, i), axis_of(b, 2), gap, row + i);
+}
+
+/// γ of `same_direction`.
+template <StateScalar T>
+Vec<T, 2> same_direction_gamma(Frame<T> const& a, Frame<T> const& b) {
+  Vec<T, 3> const axis = axis_of(b, 2);
+  return {perpendicular_gamma(axis_of(a, 0), axis, a, b), perpendicular_gamma(axis_of(a, 1), axis, a, b)};
+}
+
+/// Writes a₁·d and a₂·d from `row` on, which hold the point of b on the third axis of a.
+template <int m, StateScalar T>
+void on_axis(Frame<T> const& a, Frame<T> const& b, ConstraintTerms<m, T>& gap, int row) {
+  for (int i = 0; i < 2; ++i) no_slide(axis_of(a, i), a, b, gap, row + i);
+}
+
+/// γ of the two rows that keep a point on the axis a₃.
+template <StateScalar T>
+Vec<T, 2> on_axis_gamma(Frame<T> const& a, Frame<T> const& b) {
+  return {no_slide_gamma(axis_of(a, 0), a, b), no_slide_gamma(axis_of(a, 1), a, b)};
+}
+
+/// Writes g = |d| − length to `row`: ġ = e·(v_b − v_a), e = d/|d|. Points that coincide have no direction; x stands in
+/// for it, so that `assemble` can part them.
+template <int m, StateScalar T>
+void distance(Frame<T> const& a, Frame<T> const& b, double length, ConstraintTerms<m, T>& gap, int row = 0) {
+  using std::sqrt;
+  Vec<T, 3> const line = difference(b.r, a.r);
+  T const d = sqrt(squared_norm(line));
+  gap.g[row] = d - length;
+  for (int i = 0; i < 3; ++i) {
+    T const e = value_of(d) > 0.0 ? T(line[i] / d) : T(i == 0 ? 1.0 : 0.0);
+    gap.Ga(row, i) = -e;
+    gap.Gb(row, i) = e;
+  }
+}
+
+/// γ of `distance`: (|ḋ|² − (e·ḋ)²)/|d|.
+template <StateScalar T>
+T distance_gamma(Frame<T> const& a, Frame<T> const& b) {
+  using std::sqrt;
+  Vec<T, 3> const d = difference(b.r, a.r), rate = difference(b.v, a.v);
+  T const d2 = squared_norm(d), along = dot(d, rate);
+  return (squared_norm(rate) - along * along / d2) / sqrt(d2);
+}
+
+/// ∂[wa; wb]/∂(δr_a, δφ_a, δr_b, δφ_b), 12×12: the wrenches of rows with multipliers, rotations in world axes.
+using WrenchGradient = Mat<double, 12, 12>;
+
+/// Adds λ times that of `perpendicular`: c = u × w, δc = (u wᵀ − (u·w) 1) δφ_a + ((u·w) 1 − w uᵀ) δφ_b.
+template <class = void>  // compiled where it is used
+void perpendicular_gradient(Vec3 const& u, Vec3 const& w, double lambda, WrenchGradient& k) {
+  double const uw = dot(u, w);
+  for (int j = 0; j < 3; ++j)
+    for (int i = 0; i < 3; ++i) {
+      double const one = i == j ? uw : 0.0, a = lambda * (u[i] * w[j] - one), b = lambda * (one - w[i] * u[j]);
+      k(3 + i, 3 + j) += a;
+      k(3 + i, 9 + j) += b;
+      k(9 + i, 3 + j) -= a;
+      k(9 + i, 9 + j) -= b;
+    }
+}
+
+/// Adds λ times that of `no_slide`: δu = −ũ δφ_a and δ(u × d) = (u dᵀ − (u·d) 1) δφ_a + ũ (δr_b − δr_a).
+template <class = void>  // compiled where it is used
+void no_slide_gradient(Vec3 const& u, Frame<double> const& a, Frame<double> const& b, double lambda,
+                       WrenchGradient& k) {
+  Vec3 const d = difference(b.r, a.r);
+  double const ud = dot(u, d);
+  Mat3 const across = skew<double>(u);
+  for (int j = 0; j < 3; ++j)
+    for (int i = 0; i < 3; ++i) {
+      double const turn = lambda * across(i, j);
+      k(i, 3 + j) += turn;
+      k(3 + i, j) -= turn;
+      k(3 + i, 3 + j) += lambda * (u[i] * d[j] - (i == j ? ud : 0.0));
+      k(3 + i, 6 + j) += turn;
+      k(6 + i, 3 + j) -= turn;
+    }
+}
+
+/// Adds that of `parallel` for three multipliers.
+template <class = void>  // compiled where it is used
+void parallel_gradient(Frame<double> const& a, Frame<double> const& b, Vec3 const& lambda, WrenchGradient& k) {
+  for (int i = 0; i < 3; ++i) perpendicular_gradient(axis_of(a, i), axis_of(b, (i + 1) % 3), lambda[i], k);
+}
+
+/// Adds that of `same_direction` for two multipliers.
+template <class = void>  // compiled where it is used
+void same_direction_gradient(Frame<double> const& a, Frame<double> const& b, Vec2 const& lambda, WrenchGradient& k) {
+  for (int i = 0; i < 2; ++i) perpendicular_gradient(axis_of(a, i), axis_of(b, 2), lambda[i], k);
+}
+
+/// Adds that of `on_axis` for two multipliers.
+template <class = void>  // compiled where it is used
+void on_axis_gradient(Frame<double> const& a, Frame<double> const& b, Vec2 const& lambda, WrenchGradient& k) {
+  for (int i = 0; i < 2; ++i) no_slide_gradient(axis_of(a, i), a, b, lambda[i], k);
+}
+
+/// Adds λ times that of `distance`: δe = (1 − e eᵀ)(δr_b − δr_a)/|d|.
+template <class = void>  // compiled where it is used
+void distance_gradient(Frame<double> const& a, Frame<double> const& b, double lambda, WrenchGradient& k) {
+  Vec3 const d = difference(b.r, a.r);
+  double const d2 = squared_norm(d), tension = lambda / std::sqrt(d2);
+  for (int j = 0; j < 3; ++j)
+    for (int i = 0; i < 3; ++i) {
+      double const turn = tension * ((i == j ? 1.0 : 0.0) - d[i] * d[j] / d2);
+      k(i, j) += turn;
+      k(i, 6 + j) -= turn;
+      k(6 + i, j) -= turn;
+      k(6 + i, 6 + j) += turn;
+    }
+}
+
+/// The matrix with the columns x, y, z (3).
+template <class = void>  // compiled where it is used
+Mat3 columns(Vec3 const& x, Vec3 const& y, Vec3 const& z) {
+  Mat3 m;
+  for (int i = 0; i < 3; ++i) {
+    m(i, 0) = x[i];
+    m(i, 1) = y[i];
+    m(i, 2) = z[i];
+  }
+  return m;
+}
+
+/// A right-handed triad with both axes in it: \p first its first, \p third its third; `what` names the joint.
+/// \throws InvalidInput unless they are unit vectors at right angles (to 1e-9).
+template <class = void>  // compiled where it is used
+Mat3 triad_of(Vec3 const& first, Vec3 const& third, std::string const& what) {
+  require_unit(first, what, ": the first axis");
+  require_unit(third, what, ": the second axis");
+  if (std::abs(dot(first, third)) > 1e-9)
+    throw InvalidInput{what,
+                       ": the two axes must be perpendicular at the reference configuration, but their scalar product "
+                       "is ",
+                       dot(first, third), "."};
+  return columns(first, cross(third, first), third);
+}
+
+/// A right-handed triad whose third axis is `axis`. \throws InvalidInput unless it is a unit vector.
+template <class = void>  // compiled where it is used
+Mat3 triad_about(Vec3 const& axis, std::string const& what) {
+  require_unit(axis, what);
+  int smallest = 0;
+  for (int i = 1; i < 3; ++i)
+    if (std::abs(axis[i]) < std::abs(axis[smallest])) smallest = i;
+  Vec3 first;
+  for (int i = 0; i < 3; ++i) first[i] = (i == smallest ? 1.0 : 0.0) - axis[smallest] * axis[i];
+  double const length = std::sqrt(squared_norm(first));
+  for (int i = 0; i < 3; ++i) first[i] /= length;
+  return columns(first, cross(axis, first), axis);
+}
+
+}  // namespace polybody::constraint_functions

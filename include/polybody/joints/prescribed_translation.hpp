@@ -1,0 +1,50 @@
+#pragma once
+#include <polybody/joints/joint_axis.hpp>
+#include <polybody/math/time_functions.hpp>
+
+namespace polybody {
+
+/// One row: the point of b stands s(t) before that of a along the axis fixed in a. Use it beside a joint that slides.
+///   g = a₃·(r_b − r_a) − s      [Haug 1989, §3.5].
+/// World::both: in the plane the axis lies in it.
+template <TimeFunction Law>
+struct PrescribedTranslation {
+  static constexpr char const* name = "PrescribedTranslation";
+  static constexpr int rows = 1;
+  static constexpr MarkerKind needs = MarkerKind::frame;
+  static constexpr MarkerKind needs_of_second = MarkerKind::point;
+  static constexpr World world = World::both;
+
+  Law law;              ///< slide s [m], rate and acceleration as functions of time [s]
+  JointAxis axis = {};  ///< (3) unit vector, world axes at the reference configuration
+
+  template <class = void>  // compiled where it is used
+  Mat3 triad() const {
+    return polybody::constraint_functions::triad_about(axis, "PrescribedTranslation: the axis");
+  }
+  void check(std::string const& what) const { check_driving_function(law, what + ": the law of time"); }
+  std::vector<double> breakpoints() const { return breakpoints_of(law); }
+
+  template <StateScalar T>
+  ConstraintTerms<1, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double t) const {
+    Motion const s = law(t);
+    ConstraintTerms<1, T> gap;
+    polybody::constraint_functions::no_slide(axis_of(a, 2), a, b, gap, 0);
+    gap.g[0] -= s.value;
+    gap.rate[0] = T(-s.rate);
+    return gap;
+  }
+  template <StateScalar T>
+  Vec<T, 1> gamma(Frame<T> const& a, Frame<T> const& b, double t) const {
+    return Vec<T, 1>(polybody::constraint_functions::no_slide_gamma(axis_of(a, 2), a, b) - Motion(law(t)).acceleration);
+  }
+  template <class = void>  // compiled where it is used
+  Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
+                                      Vec<double, 1> const& lambda) const {
+    auto k = detail::zeros<Mat<double, 12, 12>>();
+    polybody::constraint_functions::no_slide_gradient(axis_of(a, 2), a, b, lambda[0], k);
+    return k;
+  }
+};
+
+}  // namespace polybody

@@ -1,0 +1,109 @@
+#pragma once
+/// \file
+/// Marker kinematics with erased body type: arrays for joints, forces and solvers.
+
+#include <algorithm>
+#include <cassert>
+
+#include <polybody/kinematics/frame.hpp>
+
+namespace polybody {
+
+/// Storage format of a marker's Jacobian.
+enum class JacobianShape : unsigned char {
+  ground,  ///< no columns
+  rigid,   ///< [1, −A ũ; 0, A] for [ṙ; ω_body]; only A and the moment arm ρ = A u are stored
+  dense    ///< 6×n matrix
+};
+
+/// Marker kinematics: frame, Jacobian J and bias acceleration of a marker; twist [ṙ; ω] = J v, twist˙ = J v̇ + bias.
+template <StateScalar T = double>
+struct MarkerKinematics {
+  Frame<T> frame;                          ///< position, axes and velocities
+  Vec<T, 6> bias = Vec<T, 6>::Zero();      ///< twist˙ for v̇ = 0, world axes [m/s²], [rad/s²]
+  Mat<T, 3, 3> body_axes = identity<T>();  ///< rigid only: A of the body
+  Vec<T, 3> arm = Vec<T, 3>::Zero();       ///< rigid only: ρ = A u, world axes [m]
+  T* jacobian = nullptr;                   ///< dense only: 6×columns, column-major, in memory of the evaluated data
+  Index first = 0;                         ///< first velocity with a nonzero column
+  Index columns = 0;                       ///< number of columns
+  JacobianShape shape = JacobianShape::ground;  ///< storage format of J
+
+  using DenseMap = Eigen::Map<Mat<T, 6, Eigen::Dynamic> const>;      ///< 6×columns
+  DenseMap dense() const { return DenseMap(jacobian, 6, columns); }  ///< J of the dense format
+
+  /// Generalised forces of k wrenches: out (columns×k) = Jᵀ `wrenches`, with `wrenches` (6×k) as columns [force;
+  /// moment].
+  template <class In, class Out>
+  void pull(In const& wrenches, Out&& out) const {
+    switch (shape) {
+      case JacobianShape::ground:
+        return;
+      case JacobianShape::rigid:
+        multiply_transposed_rigid(wrenches, out);
+        return;
+      case JacobianShape::dense:  // plain loops: a matrix product of Eigen compiles and runs more slowly
+        for (Index k = 0; k < wrenches.cols(); ++k)
+          for (Index c = 0; c < columns; ++c) {
+            T const* const j = jacobian + 6 * c;
+            T sum = j[0] * wrenches(0, k);
+            for (int i = 1; i < 6; ++i) sum += j[i] * wrenches(i, k);
+            out(c, k) = sum;
+          }
+    }
+  }
+
+  /// `pull` for the rigid format, w (6×k) to out (6×k): [f; Aᵀ(m + ρ × f)]. The loops over all wrenches are
+  /// innermost, so that they vectorise.
+  template <class In, class Out>
+  void multiply_transposed_rigid(In const& w, Out& out) const {
+    constexpr int fixed = In::ColsAtCompileTime;
+    constexpr int room = fixed > 0 ? fixed : 6;
+    for (Index begin = 0; begin < w.cols(); begin += room) {
+      int const count = fixed > 0 ? fixed : int(std::min<Index>(room, w.cols() - begin));
+      T f[3][room], m[3][room];
+      for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < count; ++k) {
+          out(i, begin + k) = f[i][k] = w(i, begin + k);
+          m[i][k] = w(3 + i, begin + k);
+        }
+      for (int i = 0; i < 3; ++i) {
+        int const j = (i + 1) % 3, l = (i + 2) % 3;
+        for (int k = 0; k < count; ++k) m[i][k] += arm[j] * f[l][k] - arm[l] * f[j][k];
+      }
+      for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < count; ++k)
+          out(3 + i, begin + k) = body_axes(0, i) * m[0][k] + body_axes(1, i) * m[1][k] + body_axes(2, i) * m[2][k];
+    }
+  }
+
+  /// Twist J b (6) of generalised velocities b, one per column of J.
+  Vec<T, 6> push(T const* b) const {
+    Vec<T, 6> t;
+    for (int i = 0; i < 6; ++i) t[i] = T(0.0);
+    if (shape == JacobianShape::rigid) {
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) t[3 + i] += body_axes(i, j) * b[3 + j];
+      for (int i = 0; i < 3; ++i)
+        t[i] = b[i] + t[3 + (i + 1) % 3] * arm[(i + 2) % 3] - t[3 + (i + 2) % 3] * arm[(i + 1) % 3];
+    } else {
+      for (Index c = 0; c < columns; ++c)
+        for (int i = 0; i < 6; ++i) t[i] += jacobian[6 * c + i] * b[c];
+    }
+    return t;
+  }
+
+  /// J as a full 6×columns matrix, for tests and analyses.
+  Mat<T, 6, Eigen::Dynamic> full() const {
+    Mat<T, 6, Eigen::Dynamic> j = Mat<T, 6, Eigen::Dynamic>::Zero(6, columns);
+    if (shape == JacobianShape::rigid) {
+      j.template leftCols<3>().template topRows<3>().setIdentity();
+      j.template rightCols<3>().template topRows<3>() = -skew<T>(arm) * body_axes;
+      j.template rightCols<3>().template bottomRows<3>() = body_axes;
+    } else if (shape == JacobianShape::dense) {
+      j = dense();
+    }
+    return j;
+  }
+};
+
+}  // namespace polybody

@@ -1,0 +1,221 @@
+#pragma once
+/// \file
+/// Functions of time with rate and acceleration, for driving constraints and loads.
+
+#include <algorithm>
+#include <array>
+#include <concepts>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include <polybody/math/types.hpp>
+
+namespace polybody {
+
+/// Prescribed value with its first and second derivative with respect to time.
+struct Motion {
+  double value = 0.0;         ///< [m] or [rad]
+  double rate = 0.0;          ///< [m/s] or [rad/s]
+  double acceleration = 0.0;  ///< [m/s²] or [rad/s²]
+};
+
+/// Function of time t [s] that returns a Motion, for example a lambda.
+template <class L>
+concept TimeFunction = requires(L const law, double t) {
+  { law(t) } -> std::convertible_to<Motion>;
+};
+
+/// Function of time with known breakpoints of its rate [s]; `simulate` ends a step at each of them.
+template <class L>
+concept HasBreakpoints = requires(L const law) {
+  { law.breakpoints() } -> std::convertible_to<std::vector<double>>;
+};
+
+/// Calls `law.check(what)` if the law has this member. \throws InvalidInput for invalid values.
+template <TimeFunction Law>
+void check_time_function(Law const& law, std::string const& what) {
+  if constexpr (requires { law.check(what); }) law.check(what);
+}
+
+/// Breakpoints of a law [s]; none if it has no member `breakpoints()`.
+template <TimeFunction Law>
+std::vector<double> breakpoints_of(Law const& law) {
+  if constexpr (HasBreakpoints<Law>)
+    return law.breakpoints();
+  else
+    return {};
+}
+
+/// Checks a law that prescribes a motion. \throws InvalidInput as `check_time_function`, and if its value is
+/// discontinuous.
+template <TimeFunction Law>
+void check_driving_function(Law const& law, std::string const& what) {
+  check_time_function(law, what);
+  for (double const t : breakpoints_of(law)) {
+    if (!std::isfinite(t)) continue;
+    double const before = Motion(law(std::nextafter(t, -std::numeric_limits<double>::infinity()))).value;
+    double const after = Motion(law(t)).value;
+    if (!(std::abs(after - before) <= 1e-9 * (1.0 + std::abs(after))))
+      throw InvalidInput{what,   ": its value jumps from ",
+                         before, " to ",
+                         after,  " at t = ",
+                         t,      " s, but no body can. Go there in a while, by a Ramp or SmoothRamp."};
+  }
+}
+
+/// Function of time with a known integral ∫ value dt from a fixed time.
+template <class L>
+concept HasIntegral = TimeFunction<L> && requires(L const law, double t) {
+  { law.integral(t) } -> std::convertible_to<double>;
+};
+
+/// Integral ∫ value dt from t = 0: a displacement if the law is a velocity, an angle if it is an angular velocity.
+template <HasIntegral Law>
+struct IntegralOf {
+  Law law;  ///< integrand
+
+  void check(std::string const& what) const { check_time_function(law, what); }
+  /// Integral as value; value and rate of the law as rate and acceleration.
+  Motion operator()(double t) const {
+    Motion const speed = law(t);
+    return {law.integral(t) - law.integral(0.0), speed.value, speed.rate};
+  }
+  std::vector<double> breakpoints() const { return breakpoints_of(law); }  ///< breakpoints of the law [s]
+};
+
+namespace detail {
+
+inline void check_ramp(double target, double duration, double start, std::string const& what) {
+  require_positive(duration, what, ": the duration");
+  if (!std::isfinite(target) || !std::isfinite(start))
+    throw InvalidInput{what, ": target and start must be finite, but are ", target, " and ", start, "."};
+}
+
+}  // namespace detail
+
+/// Ramp from 0 at `start` to `target` within `duration`, constant afterwards. The rate is discontinuous at both ends.
+/// At a breakpoint the value is that of the following piece.
+///
+/// With a `rounding` w a parabola replaces each breakpoint, from w/2 before to w/2 after it: value = slope s²/(2w),
+/// s = t − corner + w/2. Only the acceleration is then discontinuous. After both parabolas, value and integral equal
+/// those without rounding.
+struct Ramp {
+  Required<double> target;    ///< [m] or [rad]
+  Required<double> duration;  ///< [s]
+  double start = 0.0;         ///< [s]
+  double rounding = 0.0;      ///< w [s], at most `duration`
+
+  void check(std::string const& what) const {
+    detail::check_ramp(target, duration, start, what);
+    require_not_negative(rounding, what, ": the rounding");
+    if (rounding > duration)
+      throw InvalidInput{what, ": the rounding ", rounding, " s must not exceed the duration ", duration, " s."};
+  }
+  /// Value, rate and acceleration at t [s].
+  Motion operator()(double t) const {
+    if (t < start - 0.5 * rounding) return {};
+    if (t >= start + duration + 0.5 * rounding) return {target, 0.0, 0.0};
+    Motion const begin = corner(t - start), end = corner(t - start - duration);
+    return {target * (begin.value - end.value) / duration, target * (begin.rate - end.rate) / duration,
+            target * (begin.acceleration - end.acceleration) / duration};
+  }
+  /// Integral ∫ value dt from −∞ to t: [m s] or [rad s].
+  double integral(double t) const {
+    double const x = t - start, y = x - duration;
+    if (y >= 0.5 * rounding) return target * 0.5 * (x + y);
+    return target * (corner_integral(x) - corner_integral(y)) / duration;
+  }
+  /// Breakpoints [s]; none if they are rounded.
+  std::vector<double> breakpoints() const {
+    if (rounding > 0.0) return {};
+    return {start, start + duration};
+  }
+
+ private:
+  /// max(0, x) with the rounding.
+  Motion corner(double x) const {
+    double const s = x + 0.5 * rounding;
+    if (x >= 0.5 * rounding) return {x, 1.0, 0.0};
+    if (s <= 0.0) return {};
+    return {0.5 * s * s / rounding, s / rounding, 1.0 / rounding};
+  }
+  /// Integral of `corner`: s³/(6w) within the rounding, then x²/2 + w²/24.
+  double corner_integral(double x) const {
+    double const s = x + 0.5 * rounding;
+    if (x >= 0.5 * rounding) return 0.5 * x * x + rounding * rounding / 24.0;
+    return s <= 0.0 ? 0.0 : s * s * s / (6.0 * rounding);
+  }
+};
+
+/// Smooth ramp from 0 to `target` within `duration`, with continuous rate and acceleration:
+/// value = target (10 x³ − 15 x⁴ + 6 x⁵), x = (t − start)/duration.
+struct SmoothRamp {
+  Required<double> target;    ///< [m] or [rad]
+  Required<double> duration;  ///< [s]
+  double start = 0.0;         ///< [s]
+
+  void check(std::string const& what) const { detail::check_ramp(target, duration, start, what); }
+  /// Value, rate and acceleration at t [s].
+  Motion operator()(double t) const {
+    if (t < start) return {};
+    if (t >= start + duration) return {target, 0.0, 0.0};
+    double const d = duration, x = (t - start) / d, x2 = x * x;
+    return {target * x2 * x * (10.0 - 15.0 * x + 6.0 * x2), target * 30.0 * x2 * (1.0 - 2.0 * x + x2) / d,
+            target * 60.0 * x * (1.0 - 3.0 * x + 2.0 * x2) / (d * d)};
+  }
+  /// Integral ∫ value dt from −∞ to t: [m s] or [rad s].
+  double integral(double t) const {
+    double const d = duration, x = std::clamp((t - start) / d, 0.0, 1.0), x2 = x * x;
+    return target * (d * x2 * x2 * (2.5 - 3.0 * x + x2) + std::max(0.0, t - start - d));
+  }
+};
+
+/// Spin-up of Kane, Ryan & Banerjee 1987 from rest to the rate `speed` within `duration`:
+/// ψ = (speed/T)[t²/2 + (T/2π)²(cos(2πt/T) − 1)], then ψ = speed (t − T/2).
+struct SpinUp {
+  Required<double> speed;     ///< [rad/s]
+  Required<double> duration;  ///< T [s]
+
+  void check(std::string const& what) const { detail::check_ramp(speed, duration, 0.0, what); }
+  /// Angle ψ [rad], its rate and its acceleration at t [s].
+  Motion operator()(double t) const {
+    if (t <= 0.0) return {};
+    double const period = duration;
+    if (t >= period) return {speed * (t - 0.5 * period), speed, 0.0};
+    double const w = 2.0 * std::numbers::pi / period;
+    return {speed / period * (0.5 * t * t + (std::cos(w * t) - 1.0) / (w * w)),
+            speed / period * (t - std::sin(w * t) / w), speed / period * (1.0 - std::cos(w * t))};
+  }
+};
+
+/// Constant function of time, `value`.
+struct Constant {
+  double value = 1.0;  ///< value at all times; a factor if it scales a load
+
+  void check(std::string const& what) const {
+    if (!std::isfinite(value)) throw InvalidInput{what, ": the value must be finite, but is ", value, "."};
+  }
+  Motion operator()(double) const { return {value, 0.0, 0.0}; }  ///< rate and acceleration are zero
+  double integral(double t) const { return value * t; }          ///< integral from zero to t
+};
+
+/// Load that is switched on and off: `value` for from ≤ t < to, else 0.
+struct Window {
+  double from = 0.0;                                    ///< [s]
+  double to = std::numeric_limits<double>::infinity();  ///< [s]
+  double value = 1.0;                                   ///< value between `from` and `to`; a factor if it scales a load
+
+  void check(std::string const& what) const {
+    if (!(from < to) || !std::isfinite(value))
+      throw InvalidInput{what,  ": a window needs from < to and a finite value, but has from = ",
+                         from,  ", to = ",
+                         to,    ", value = ",
+                         value, "."};
+  }
+  /// `value` within the interval, else zero; the rate is zero.
+  Motion operator()(double t) const { return {t >= from && t < to ? value : 0.0, 0.0, 0.0}; }
+  std::vector<double> breakpoints() const { return {from, to}; }  ///< both ends [s]
+};
+
+}  // namespace polybody

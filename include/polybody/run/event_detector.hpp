@@ -1,0 +1,213 @@
+#pragma once
+/// \file
+/// Detection of the zeros of event values within the steps of a run.
+
+#include <algorithm>
+#include <cmath>
+
+#include <polybody/run/event_place.hpp>
+#include <polybody/run/event_step.hpp>
+#include <polybody/run/run_options.hpp>
+
+namespace polybody {
+
+/// Stores the sign of each event's value, and finds the first event within a step. Steps are taken through a function,
+/// so that this is compiled once for all models.
+class EventDetector {
+ public:
+  using Step = EventStep::Again;  ///< takes a step
+  using Taken = EventStep;        ///< a step that a run has taken
+
+  EventDetector() = default;
+  /// Events with these signs, as `sides` returns them.
+  explicit EventDetector(Sequence<int> const& sides) {
+    for (int const side : sides) places_.push_back({.side = side});
+    met_.assign(places_.size(), 0);
+  }
+  /// The sign of each event's value: −1, 0 (not known) or 1. −2 and 2: the value is held at zero and was negative or
+  /// positive before.
+  Sequence<int> sides() const {
+    Sequence<int> all;
+    for (EventPlace const& place : places_) all.push_back(place.side);
+    return all;
+  }
+
+  /// Stores the signs of the events' values at the start x of a run. \throws NonFiniteValue.
+  [[gnu::cold]] void start(std::vector<Event> const& events, State const& x, EventMotion const& motion);
+
+  /// Ends a step to x at the first event within it, by bisection on its length; the report names it. Returns whether
+  /// the run must restart at x: an event was met, or one is held at zero. If not, the last state that was shown is x.
+  /// \throws NonFiniteValue; InvalidInput for impacts that accumulate.
+  bool meet(std::vector<Event> const& events, Taken const& step, State& x, RunReport& report) {
+    before_.places = places_;
+    before_.events = report.events.size();
+    before_.stopped = report.stopped;
+    look(events, x, step.motion);
+    bool any = false;
+    for (std::size_t i = 0; i < places_.size(); ++i)
+      any = any || places_[i].passed(now_[i]) || places_[i].may_turn(now_[i], step.length);
+    if (any) return search(events, step, x, report);
+    go_on(step.length);
+    return false;
+  }
+  /// Restores signs and report from before the last `meet`.
+  [[gnu::cold]] void put_back(RunReport& report) {
+    places_ = before_.places;
+    report.events.truncate(before_.events);
+    report.stopped = before_.stopped;
+  }
+
+  bool met(std::size_t i) const { return met_[i] == 1; }   ///< event i was met in the step that was looked at last
+  bool held(std::size_t i) const { return met_[i] == 2; }  ///< event i is to be held at zero at the end of that step
+  /// An event is held at zero from step to step.
+  bool rests() const {
+    for (EventPlace const& place : places_)
+      if (place.rests()) return true;
+    return false;
+  }
+  /// The number of an event that is held at zero, or the count of all events.
+  std::size_t first_held() const {
+    std::size_t i = 0;
+    while (i < met_.size() && !held(i)) ++i;
+    return i;
+  }
+  /// One of the `events` that was met changes the state.
+  bool acts(std::vector<Event> const& events) const {
+    for (std::size_t i = 0; i < events.size(); ++i)
+      if (held(i) || (met(i) && events[i].action)) return true;
+    return false;
+  }
+  /// Stores the signs of the events' values at x, after the actions of the events and a restart. \throws
+  /// NonFiniteValue.
+  [[gnu::cold]] void settle(std::vector<Event> const& events, State const& x, EventMotion const& motion);
+  /// Forgets all but the sides, so that the run goes on as one that is resumed.
+  [[gnu::cold]] void forget() {
+    for (EventPlace& place : places_) place = {.side = place.side};
+  }
+
+ private:
+  struct Before {
+    Sequence<EventPlace> places;
+    std::size_t events = 0;
+    bool stopped = false;
+  };
+
+  [[gnu::cold]] bool search(std::vector<Event> const& events, Taken const& step, State& x, RunReport& report);
+
+  /// Stores the values at the end of a step of h in which nothing was met.
+  void go_on(double h) {
+    met_.assign(places_.size(), 0);
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+      EventPlace& place = places_[i];
+      place.rate = (now_[i] - place.value) / h;
+      place.span = place.known ? h : 0.0;
+      place.stand(now_[i]);
+    }
+  }
+  /// Values of the events at x, of which the user's state is made once.
+  void look(std::vector<Event> const& events, State const& x, EventMotion const& motion) {
+    now_.clear();
+    State const& shown = motion.seen(x);
+    for (Event const& event : events) now_.push_back(EventMotion::value(event, shown));
+  }
+  Sequence<EventPlace> places_;  // at the end of the last step: each is met once, however a restart rounds
+  Before before_;
+  Sequence<double> now_;
+  Sequence<int> met_;  // 1: met, 2: held
+};
+
+inline void EventDetector::start(std::vector<Event> const& events, State const& x, EventMotion const& motion) {
+  places_.assign(events.size(), {});
+  met_.assign(events.size(), 0);
+  if (events.empty()) return;
+  look(events, x, motion);
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    places_[i].stand(now_[i]);
+    if (!events[i].action || now_[i] > 0.0) continue;
+    State y = x;
+    motion.drift(y, 0.05 * motion.asked);
+    double const moves = events[i].value(motion.seen(y)) - now_[i];
+    // at zero within rounding, and not on its way up: such a body rests on what the event stands for, or falls into it
+    if (now_[i] == 0.0 || (moves <= 0.0 && -now_[i] < -1e-6 * moves)) places_[i].side = 1;
+  }
+}
+
+inline bool EventDetector::search(std::vector<Event> const& events, Taken const& step, State& x, RunReport& report) {
+  State first = x;
+  Sequence<double> const ends = now_;
+  bool found = false;
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    if (places_[i].rests()) continue;
+    double lo = 0.0, hi = places_[i].passed(ends[i]) ? step.length : step.turn(events[i], places_[i].side, x);
+    if (!(hi > 0.0)) continue;
+    found = true;
+    if (hi < step.length)
+      if (State trial = step.after(hi); trial.t < first.t) first = std::move(trial);
+    while (hi - lo > events[i].tolerance) {
+      double const mid = 0.5 * (lo + hi);
+      if (mid <= lo || mid >= hi) break;
+      State trial = step.after(mid);
+      if (!places_[i].passed(EventMotion::value(events[i], step.motion.seen(trial)))) {
+        lo = mid;
+        continue;
+      }
+      hi = mid;
+      if (trial.t < first.t) first = std::move(trial);
+    }
+  }
+  if (found) x = std::move(first);
+  look(events, x, step.motion);
+  bool held_anew = false;
+  for (std::size_t i = 0; i < places_.size(); ++i)
+    held_anew = held_anew || (places_[i].rests() && places_[i].passed(now_[i]));
+  if (!found && !held_anew) {
+    go_on(step.length);
+    return false;
+  }
+  met_.assign(places_.size(), 0);
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    EventPlace& place = places_[i];
+    place.span = 0.0;
+    if (!place.passed(now_[i])) {
+      place.stand(now_[i]);
+      continue;
+    }
+    met_[i] = place.rests() ? 2 : 1;
+    if (place.rests()) continue;
+    report.stopped = report.stopped || events[i].terminal;
+    if (events[i].action) {
+      place.scale = std::max(std::abs(step.motion.rate(events[i], x)),
+                             place.known ? std::abs(ends[i] - place.value) / step.length : 0.0);
+      place.off = std::abs(now_[i]);
+      if (!report.stopped) place.count(events[i], std::min(step.motion.asked, step.length), x.t);
+    }
+    if (place.rests()) met_[i] = 2;
+    report.events.push_back({place.rests() ? events[i].name + " comes to rest" : events[i].name, x.t});
+    if (!events[i].action) place.stand(now_[i]);
+  }
+  return true;
+}
+
+inline void EventDetector::settle(std::vector<Event> const& events, State const& x, EventMotion const& motion) {
+  look(events, x, motion);
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    EventPlace& place = places_[i];
+    int const from = place.side;
+    if (place.rests()) {
+      place.value = now_[i];
+      continue;
+    }
+    place.stand(now_[i]);
+    if (!met(i) || !events[i].action) continue;
+    if (std::abs(now_[i]) > 2.0 * std::max(place.off, place.scale * events[i].tolerance)) continue;
+    if (EventMotion::reads_forces(events[i], motion.seen(x))) {
+      place.side = 0;
+      continue;
+    }
+    double const moves = from * motion.rate(events[i], x);
+    place.stays = std::abs(moves) <= 1e-3 * place.scale;
+    place.side = moves < -1e-3 * place.scale ? -from : from;
+  }
+}
+
+}  // namespace polybody

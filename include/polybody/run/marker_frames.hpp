@@ -1,0 +1,56 @@
+#pragma once
+/// \file
+/// Questions about a single body in a state: frames of its points, its coordinates and speeds.
+
+#include <functional>
+
+#include <polybody/math/sequence.hpp>
+#include <polybody/system/lookup.hpp>
+
+namespace polybody {
+
+/// Frame of a material point of a body.
+template <class B>
+Frame<double> frame(BodyInState<B> const& body, typename B::Point const& point) {
+  Sequence<double> jacobian;
+  return evaluate_marker(body, point, jacobian).frame;
+}
+/// Frame of a material point in state x. \throws InvalidInput for a marker of another model.
+template <class M, class B>
+Frame<double> frame(M const& model, State const& x, Marker<B> const& marker) {
+  return frame(body_in_state(model, x, marker, "frame"), marker.point);
+}
+/// Frame of a marker on the ground.
+template <class M>
+Frame<double> frame(M const& model, State const&, Marker<Ground> const& marker) {
+  model.require_own(marker, "frame");
+  return {.r = marker.point.origin, .A = marker.point.axes};
+}
+
+/// The frame of a material point as a question to any state, without the types of the body and its model.
+using FrameIn = std::function<Frame<double>(State const&)>;
+
+/// The question keeps the body, and serves the states of the model that made the handle. \param marker on that body
+template <class B>
+FrameIn frame_in(BodyHandle<B> const& body, Marker<B> const& marker) {
+  return [body, point = marker.point](State const& x) { return frame(body_in_state(body, x), point); };
+}
+
+/// Position of a material point [m].
+template <class M, class B>
+Vec3 position(M const& model, State const& x, Marker<B> const& marker) {
+  return frame(model, x, marker).r;
+}
+
+/// Coordinates of one body in state x, to be handed to the body's own questions (strains, centre line).
+template <class M, class B>
+std::span<double const> coordinates_of(M const& model, State const& x, BodyHandle<B> const& handle) {
+  return body_in_state(model, x, handle).q;
+}
+/// Speeds of one body in state x.
+template <class M, class B>
+std::span<double const> velocities_of(M const& model, State const& x, BodyHandle<B> const& handle) {
+  return body_in_state(model, x, handle).v;
+}
+
+}  // namespace polybody

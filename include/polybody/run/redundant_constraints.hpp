@@ -1,0 +1,231 @@
+#pragma once
+/// \file
+/// Rows that repeat others and that a factorisation of [M, Gᵀ; G, 0] drops: their relations to other rows, and whether
+/// they contradict. This uses the factorisation of a run; run/redundancy.hpp makes one of its own.
+
+#include <polybody/integrators/forward_dynamics.hpp>
+
+namespace polybody {
+namespace detail {
+
+/// The largest |c·b| over max |c| of rows with Gᵀc = 0 that counts as rounding, for b of a state's Φ, Φ̇ and γ.
+struct ContradictionLimits {
+  double position = 1e-8;
+  double relative = 1e-6;  ///< for Φ̇ to 1 + max |v|, for γ to 1 + max |γ|
+};
+
+/// Names of the joints that take part in c (rows), each once: joint "a", joint "b".
+template <class = void>
+std::string names_in(System const& system, VecX const& c) {
+  std::string names, last;
+  double const enough = 1e-6 * largest_size(c);
+  for (Index i = 0; i < c.size(); ++i) {
+    if (std::abs(c[i]) <= enough) continue;
+    std::string const name = system.name_of(system.velocities() + i);
+    if (name == last) continue;
+    names += (names.empty() ? "" : ", ") + name;
+    last = name;
+  }
+  return names;
+}
+
+/// The relation Gᵀc = 0 in which a dropped row stands to the others: with w = Gᵀe of that row, M a + Gᵀμ = w and G a =
+/// 0 have a = 0, and c = e − μ.
+template <class = void>  // compiled where it is used
+struct ConstraintDependence {
+  VecX c;  ///< (rows), 1 in the row itself and 0 in all others that were dropped
+
+  explicit ConstraintDependence(System const& s)
+      : c(VecX::Zero(s.rows())), mu_(c), w_(VecX::Zero(s.velocities())), a_(w_) {}
+
+  /// For unknown i of `redundant_rows()` where `forward` was factored last. False where that row repeats the others
+  /// only nearly.
+  template <class Solver>
+  [[gnu::cold]] bool find(System& system, ForwardDynamics<Solver>& forward, Index i) {
+    if (i < system.velocities()) return false;
+    c.setZero();
+    c[i - system.velocities()] = 1.0;
+    system.rows_transposed_times(c, w_);
+    double const size = largest_size(w_);
+    forward.response(system, w_, a_, mu_);
+    c -= mu_;
+    system.rows_transposed_times(c, w_);
+    return size == 0.0 || largest_size(w_) <= 1e-6 * size;
+  }
+
+ private:
+  VecX mu_, w_, a_;
+};
+
+/// b − G a by rows, for a motion a with G a = b in all rows that were not dropped: in a dropped row, c·b with its
+/// relation c. As max |c| ≥ 1, |c·b|/max |c| is at most as large. One solution thus compares all rows with a limit;
+/// only rows beyond the limit need their relations. `forward` is as factored last, at the place of `system`.
+template <class Solver>
+[[gnu::cold]] VecX left_of(System& system, ForwardDynamics<Solver>& forward, VecX const& b) {
+  VecX a = VecX::Zero(system.velocities()), left = VecX::Zero(system.rows());
+  forward.least_change(system, b, a);  // G a = −b
+  system.rows_times(a, left);
+  left += b;
+  return left;
+}
+
+/// How rows that repeat others at (q, t) bend with the motion: c·γ(v) − c·γ(0), a quadratic form of v. Where it
+/// vanishes for all v with G v = 0, they repeat others everywhere; else only here, and the position is singular:
+/// motions branch there, and only speeds with c·γ(v) = c·γ(0) belong to one.
+template <class = void>
+struct ConstraintCurvature {
+  VecX w;  ///< (nv) speeds without order, with G w = 0
+
+  /// With `forward` as factored last; `system` stands at (q, w, t) afterwards.
+  template <class Solver>
+  ConstraintCurvature(System& system, ForwardDynamics<Solver>& forward, State const& x)
+      : w(VecX::Zero(system.velocities())),
+        x_(x),
+        rest_(VecX::Zero(system.rows())),
+        gamma_(rest_),
+        other_(rest_),
+        zero_(w),
+        moved_(w) {
+    for (Index i = 0; i < w.size(); ++i) moved_[i] = scattered_sign(i) * (1.0 + 1.0 / double(i + 2));
+    system.rows_times(moved_, gamma_);
+    forward.least_change(system, gamma_, w);
+    for (Index i = 0; i < w.size(); ++i) w[i] += moved_[i];
+    bias(system, zero_, rest_);
+  }
+  /// c·γ(w) − c·γ(0) by dropped rows, relative to the larger γ; `limit` of `is_singular` is the least that counts.
+  template <class Solver>
+  VecX bent(System& system, ForwardDynamics<Solver>& forward) {
+    bias(system, w, gamma_);
+    double const scale = std::max(largest_size(gamma_), largest_size(rest_));
+    VecX left = left_of(system, forward, gamma_ - rest_);
+    if (scale > 0.0) left /= scale;
+    return left;
+  }
+  static constexpr double limit = 1e-6;  ///< of differences of c·γ, relative to max |c| max |γ|
+  /// Whether the row of c repeats others only here.
+  bool is_singular(System& system, VecX const& c) {
+    bias(system, w, gamma_);
+    return differ(c, gamma_, rest_);
+  }
+  /// Whether speeds v of a branch do not tell it from the others: as far as w goes, the form does not change beside v.
+  bool leaves_open(System& system, VecX const& c) {
+    double const size = largest_size(x_.v);
+    if (!(size > 0.0)) return true;
+    double const share = size / std::max(largest_size(w), 1e-300);
+    for (Index i = 0; i < w.size(); ++i) moved_[i] = x_.v[i] + share * w[i];
+    bias(system, moved_, gamma_);
+    for (Index i = 0; i < w.size(); ++i) moved_[i] = x_.v[i] - share * w[i];
+    bias(system, moved_, other_);
+    return !differ(c, gamma_, other_);
+  }
+
+ private:
+  void bias(System& system, VecX const& v, VecX& gamma) {
+    system.evaluate(x_.q, v, x_.t);
+    system.acceleration_bias(gamma);
+  }
+  static bool differ(VecX const& c, VecX const& a, VecX const& b) {
+    double sum = 0.0;
+    for (Index i = 0; i < c.size(); ++i) sum += c[i] * (a[i] - b[i]);
+    double const scale = largest_size(c) * std::max(largest_size(a), largest_size(b));
+    return std::abs(sum) > limit * scale;
+  }
+
+  State const& x_;
+  VecX rest_, gamma_, other_, zero_, moved_;
+};
+
+}  // namespace detail
+
+/// A sentence where x is a singular position, at which the motion can branch, and its speeds do not say which branch:
+/// at rest, or with speeds that branches share. Empty elsewhere. \param forward as factored at x
+template <class Solver>
+[[gnu::cold]] std::string warn_of_ambiguous_branch(System& system, ForwardDynamics<Solver>& forward, State const& x) {
+  if (system.rows() == 0) return "";
+  forward.hold(system, x.q, x.v, x.t);
+  if (forward.redundant_rows().empty()) return "";
+  detail::ConstraintDependence<> relation(system);
+  detail::ConstraintCurvature<> bending(system, forward, x);
+  VecX const bent = bending.bent(system, forward);
+  for (Index const i : forward.redundant_rows()) {
+    if (i < system.velocities() || std::abs(bent[i - system.velocities()]) <= bending.limit) continue;
+    if (!relation.find(system, forward, i) || !bending.is_singular(system, relation.c) ||
+        !bending.leaves_open(system, relation.c))
+      continue;
+    return sentence_of({"The run starts in a singular position at t = ", x.t, " s: the rows of ",
+                        detail::names_in(system, relation.c),
+                        " repeat each other there and nowhere beside it, so the motion can go on along several "
+                        "branches, and the speeds of the start belong to none of them alone. On which one it goes on "
+                        "is up to the step and the integrator. Start beside this position, or with speeds of one "
+                        "branch."});
+  }
+  return "";
+}
+
+/// Rows that repeat each other must ask for the same: c·b = 0 for every c with Gᵀc = 0, where b is Φ, Φ̇ or γ of
+/// `system` as evaluated and `forward` as factored. \param what those are called  \param limit of |c·b|/max |c|
+/// \throws InconsistentInitialConditions naming the joints that do not.
+template <class Solver>
+[[gnu::cold]] void require_consistent_constraints(System& system, ForwardDynamics<Solver>& forward, VecX const& b,
+                                                  double limit, std::string const& what) {
+  if (forward.redundant_rows().empty()) return;
+  detail::ConstraintDependence<> relation(system);
+  VecX const at_most = first_not_finite(b) < 0 ? detail::left_of(system, forward, b) : b;
+  for (Index const i : forward.redundant_rows()) {
+    if (i < system.velocities() || std::abs(at_most[i - system.velocities()]) <= limit) continue;
+    if (!relation.find(system, forward, i)) continue;
+    double sum = 0.0;
+    for (Index k = 0; k < b.size(); ++k) sum += relation.c[k] * b[k];
+    double const left = sum / largest_size(relation.c);
+    if (std::abs(left) <= limit) continue;
+    throw InconsistentInitialConditions{
+        "The rows of ",
+        detail::names_in(system, relation.c),
+        " repeat each other but contradict by ",
+        std::abs(left),
+        " in their ",
+        what,
+        " at t = ",
+        system.at().t,
+        " s. Remove one of these joints, make their dimensions and laws agree, give one a compliant policy such as "
+        "Penalty, or, in a singular position, start with the speeds of one branch."};
+  }
+}
+
+/// Rows that a factorisation drops are closed by the others, whose speeds are projected, to `limit`; but not where they
+/// repeat them only nearly. \param rate Φ̇ at the projected speeds \throws InconsistentInitialConditions naming the
+/// joint that stays open.
+template <class Solver>
+[[gnu::cold]] void require_dropped_constraints_closed(System const& system, ForwardDynamics<Solver> const& forward,
+                                                      VecX const& rate, double limit) {
+  for (Index const i : forward.redundant_rows())
+    if (i >= system.velocities() && std::abs(rate[i - system.velocities()]) > limit)
+      throw InconsistentInitialConditions{
+          "The rows of ",
+          system.name_of(i),
+          " repeat those of other joints so nearly that they are left out, and they stay open by ",
+          std::abs(rate[i - system.velocities()]),
+          " in their speeds at t = ",
+          system.at().t,
+          " s. Move the joint away from this position, bring the masses of the bodies that it "
+          "joins closer together, or give it a compliant policy such as Penalty."};
+}
+
+/// The start of a run, its speeds projected: no contradiction in the speeds and accelerations that the rows ask for,
+/// and no row left open. \throws InconsistentInitialConditions.
+template <class Solver>
+[[gnu::cold]] void require_consistent_redundancy(System& system, ForwardDynamics<Solver>& forward, State const& x) {
+  if (system.rows() == 0) return;
+  forward.hold(system, x.q, x.v, x.t);
+  if (forward.redundant_rows().empty()) return;
+  detail::ContradictionLimits const limits;
+  VecX b = VecX::Zero(system.rows());
+  system.violation_rate(b);
+  double const limit = limits.relative * (1.0 + largest_size(x.v));
+  require_consistent_constraints(system, forward, b, limit, "speeds");
+  require_dropped_constraints_closed(system, forward, b, limit);
+  system.acceleration_bias(b);
+  require_consistent_constraints(system, forward, b, limits.relative * (1.0 + largest_size(b)), "accelerations");
+}
+
+}  // namespace polybody

@@ -1,0 +1,82 @@
+#pragma once
+/// \file
+/// Whether a state is one of a model.
+
+#include <polybody/system/state.hpp>
+#include <polybody/system/system.hpp>
+
+namespace polybody {
+
+namespace detail {
+/// \throws InvalidInput unless x has these sizes and finite coordinates and speeds.
+template <class = void>
+void require_sizes(State const& x, Index coordinates, Index velocities, Index rows) {
+  if (x.q.size() != coordinates || x.v.size() != velocities || x.a.size() != velocities || x.lambda.size() != rows)
+    refuse_unfitting_state();
+  require_finite(x.q, "The coordinates of the state");
+  require_finite(x.v, "The speeds of the state");
+}
+}  // namespace detail
+
+/// \throws InvalidInput unless x is a state of this model, as it stands after its last body and joint, with finite
+/// coordinates and speeds.
+template <class M>
+[[gnu::cold]] void require_fitting(M const& model, State const& x) {
+  detail::require_sizes(x, model.coordinates(), model.velocities(), model.rows());
+}
+/// The same for a system.
+template <class = void>
+[[gnu::cold]] void require_fitting(System const& system, State const& x) {
+  ModelLayout const& full = system.layout();
+  full.watch.require_unchanged();
+  detail::require_sizes(x, full.coordinates, full.velocities, full.rows);
+}
+
+/// \throws InvalidInput naming a body whose coordinates are those of no place, as a quaternion whose norm is not one:
+/// ⊞ 0 would change them. \param x of the whole model
+template <class = void>
+[[gnu::cold]] void require_places(System const& system, State const& x) {
+  VecX const none = VecX::Zero(x.v.size());
+  VecX there = x.q;
+  system.plus(x.q, none, there);
+  for (Index i = 0; i < there.size(); ++i)
+    if (!(std::abs(there[i] - x.q[i]) <= 1e-6 * (1.0 + std::abs(x.q[i]))))
+      throw InvalidInput{"The coordinates of ", name_of_coordinate(system, i),
+                         " are those of no place: a quaternion must have norm one. Take them from reference_state(), "
+                         "and turn a body by unit quaternions."};
+}
+
+/// \throws InvalidInput naming a body whose coordinates or speeds are so large that squares of them, and with them
+/// energies, are not finite. \param x of the whole model
+template <class = void>
+[[gnu::cold]] void require_computable(System const& system, State const& x) {
+  ModelLayout const& full = system.layout();
+  Index const in_q = first_not_finite(x.q), in_v = first_not_finite(x.v);
+  if (in_q < 0 && in_v < 0) return;
+  throw InvalidInput{"A ",
+                     (in_v < 0 ? "coordinate of " + full.name_of_coordinate(in_q) : "speed of " + full.name_of(in_v)),
+                     non_finite_suffix(in_v < 0 ? x.q[in_q] : x.v[in_v]), " in the state. Give a smaller one."};
+}
+
+/// \throws NonFiniteValue naming a joint of `system` whose reaction in x is not finite.
+inline void require_finite_reactions(System const& system, State const& x) {
+  if (Index const i = first_not_finite(x.lambda); i >= 0)
+    throw NonFiniteValue{"The reaction of ",
+                         system.layout().name_of(system.layout().velocities + i),
+                         non_finite_suffix(x.lambda[i]),
+                         " at t = ",
+                         x.t,
+                         " s. Look at the forces on the bodies that it carries."};
+}
+
+/// \throws InvalidInput unless something can be computed from x: as the three above, and for multipliers that are not
+/// finite. \param x of the whole model
+template <class = void>
+void require_usable(System const& system, State const& x) {
+  require_fitting(system, x);
+  require_places(system, x);
+  require_computable(system, x);
+  require_finite(x.lambda, "The multipliers of the state");
+}
+
+}  // namespace polybody

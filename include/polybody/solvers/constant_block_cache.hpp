@@ -1,0 +1,179 @@
+#pragma once
+/// \file
+/// Parts of a matrix that stay the same are factored once: tracks of ANCF links, whose mass matrix TᵀMT is constant
+/// once linear joints have eliminated what depends on others, beside a hull whose joints turn [thesis §3.5.4, §4.4].
+/// With TᵀMT = L Lᵀ the coordinates p = Lᵀ e of such a part have the identity for a mass matrix, for all of it and with
+/// its joints; an explicit step in p is that in e, for L is constant.
+
+#include <algorithm>
+#include <span>
+
+#include <polybody/math/sequence.hpp>
+#include <polybody/solvers/linear_solver.hpp>
+
+namespace polybody {
+
+/// A solver of a matrix whose unknowns fall into parts that no block connects. Parts of which every unknown is said to
+/// be constant are factored at the first factorisation only, by a `Solver` of their own; another one solves the rest.
+/// Without such parts it is that solver.
+template <LinearSolver Solver>
+class ConstantBlockCache {
+ public:
+  /// \param constant by unknowns: whether the blocks in its row and column always have the same numbers. To be set
+  /// before `analyse`.
+  void keep(Sequence<bool> constant) { constant_ = std::move(constant); }
+
+  void analyse(Index size, std::span<Block const> blocks) {
+    find_parts(size, blocks);
+    kept_factored_ = false;
+    if (kept_size_ == 0) return rest_.analyse(size, blocks);
+    Sequence<Block> of_kept, of_rest;
+    in_kept_.clear();
+    for (Block b : blocks) {
+      bool const kept = kept_[std::size_t(b.row)];
+      in_kept_.push_back(kept);
+      b.row = place_[std::size_t(b.row)];
+      b.col = place_[std::size_t(b.col)];
+      (kept ? of_kept : of_rest).push_back(b);
+    }
+    kept_solver_.analyse(kept_size_, of_kept);
+    rest_.analyse(size - kept_size_, of_rest);
+    kept_rhs_.setZero(kept_size_);
+    rest_rhs_.setZero(size - kept_size_);
+    kept_x_ = kept_rhs_;
+    rest_x_ = rest_rhs_;
+  }
+  void begin() {
+    next_ = 0;
+    rest_.begin();
+    if (kept_size_ == 0) return;
+    to_rest_ = BlockSink(rest_);
+    if (kept_factored_) return;
+    kept_solver_.begin();
+    to_kept_ = BlockSink(kept_solver_);
+  }
+  BlockSlots slots() const {
+    if constexpr (SlottedReceiver<Solver>)
+      if (kept_size_ == 0) return rest_.slots();
+    return {};
+  }
+  void add(Index row, Index col, BlockView const& b) {
+    if (kept_size_ == 0) return rest_.add(row, col, b);
+    bool const kept = in_kept_[next_++];
+    if (kept && kept_factored_) return;
+    (kept ? to_kept_ : to_rest_).add(place_[std::size_t(row)], place_[std::size_t(col)], b);
+  }
+
+  /// False for unknowns from `first` on that have been factored once and for all.
+  bool wants(Index first, Index) const { return kept_size_ == 0 || !kept_factored_ || !kept_[std::size_t(first)]; }
+  void skip(Index row, Index col, Index rows, Index cols) {
+    if (kept_size_ == 0) {
+      BlockSink(rest_).skip(row, col, rows, cols);
+    } else if (bool const kept = in_kept_[next_++]; !kept || !kept_factored_) {
+      (kept ? to_kept_ : to_rest_).skip(place_[std::size_t(row)], place_[std::size_t(col)], rows, cols);
+    }
+  }
+
+  /// −1, or the unknown without a usable pivot.
+  Index factor() {
+    if (kept_size_ > 0 && !kept_factored_) {
+      if (Index const bad = kept_solver_.factor(); bad >= 0) return unknown(bad, true);
+      kept_factored_ = true;
+    }
+    Index const bad = rest_.factor();
+    dropped_.clear();
+    if constexpr (requires { rest_.dropped(); })
+      for (Index const i : rest_.dropped()) dropped_.push_back(unknown(i, false));
+    return bad < 0 ? bad : unknown(bad, false);
+  }
+  /// x = A⁻¹ b; both may be the same, where they may be so for `Solver`, or parts are kept.
+  void solve(VecX const& b, VecX& x) {
+    if (kept_size_ == 0) return rest_.solve(b, x);
+    for (std::size_t i = 0; i < place_.size(); ++i) (kept_[i] ? kept_rhs_ : rest_rhs_)[place_[i]] = b[Index(i)];
+    kept_solver_.solve(kept_rhs_, kept_x_);
+    rest_.solve(rest_rhs_, rest_x_);
+    x.resize(Index(place_.size()));
+    for (std::size_t i = 0; i < place_.size(); ++i) x[Index(i)] = (kept_[i] ? kept_x_ : rest_x_)[place_[i]];
+  }
+
+  /// Unknowns in parts that are factored once.
+  Index kept() const { return kept_size_; }
+  std::span<Index const> dropped() const { return {dropped_.data(), dropped_.size()}; }
+  /// Drops these `unknowns` in every later factorisation, as `BlockFactor`, except rows of parts that are factored
+  /// once.
+  [[gnu::cold]] void mark_redundant(std::span<Index const> unknowns) {
+    if constexpr (requires { rest_.mark_redundant(unknowns); }) {
+      Sequence<Index> rows;
+      for (Index const i : unknowns)
+        if (kept_size_ == 0 || !kept_[std::size_t(i)]) rows.push_back(kept_size_ == 0 ? i : place_[std::size_t(i)]);
+      rest_.mark_redundant(std::span<Index const>(rows.data(), rows.size()));
+    }
+  }
+  /// True if a pivot is below `share`, as in `BlockFactor`.
+  [[gnu::cold]] bool is_doubtful(double share) const {
+    if constexpr (requires { rest_.is_doubtful(share); }) return rest_.is_doubtful(share);
+    return false;
+  }
+  /// Null vector `n` of the `dropped` equation, as in `BlockFactor`. Returns false if the solver finds none.
+  [[gnu::cold]] bool null_vector(Index dropped, VecX& n) {
+    if constexpr (requires { rest_.null_vector(dropped, n); }) {
+      if (kept_size_ == 0) return rest_.null_vector(dropped, n), true;
+      rest_.null_vector(place_[std::size_t(dropped)], rest_x_);
+      for (std::size_t i = 0; i < place_.size(); ++i) n[Index(i)] = kept_[i] ? 0.0 : rest_x_[place_[i]];
+      return true;
+    }
+    return false;
+  }
+  bool reordered() const {
+    if constexpr (requires { rest_.reordered(); }) return rest_.reordered() || kept_solver_.reordered();
+    return false;
+  }
+  std::size_t reorderings() const {
+    if constexpr (requires { rest_.reorderings(); }) return rest_.reorderings();
+    return 0;
+  }
+  void limit_reorderings(std::size_t count) noexcept {
+    if constexpr (requires { rest_.limit_reorderings(count); }) rest_.limit_reorderings(count);
+  }
+
+ private:
+  /// Unknowns that blocks connect have one root.
+  Index root(Index i) {
+    while (root_[std::size_t(i)] != i) i = root_[std::size_t(i)] = root_[std::size_t(root_[std::size_t(i)])];
+    return i;
+  }
+  void find_parts(Index size, std::span<Block const> blocks) {
+    root_.clear();
+    for (Index i = 0; i < size; ++i) root_.push_back(i);
+    for (Block const& b : blocks) {
+      Index const first = root(b.row);
+      for (Index i = 0; i < b.rows; ++i) root_[std::size_t(root(b.row + i))] = root(first);
+      for (Index j = 0; j < b.cols; ++j) root_[std::size_t(root(b.col + j))] = root(first);
+    }
+    constant_.resize(std::size_t(size), false);
+    kept_.assign(std::size_t(size), true);
+    for (Index i = 0; i < size; ++i)
+      if (!constant_[std::size_t(i)]) kept_[std::size_t(root(i))] = false;
+    for (Index i = 0; i < size; ++i) kept_[std::size_t(i)] = kept_[std::size_t(root(i))];
+    kept_size_ = 0;
+    place_.clear();
+    for (Index i = 0; i < size; ++i) place_.push_back(kept_[std::size_t(i)] ? kept_size_++ : i - kept_size_);
+    if (kept_size_ == size) kept_size_ = 0;  // there is no rest: the whole is as good as its own part
+  }
+  Index unknown(Index place, bool kept) const {
+    for (std::size_t i = 0; i < place_.size(); ++i)
+      if (kept_[i] == kept && place_[i] == place) return Index(i);
+    return place;
+  }
+
+  Solver rest_, kept_solver_;
+  Sequence<bool> constant_, kept_, in_kept_;  // by unknowns; by blocks
+  Sequence<Index> root_, place_, dropped_;    // by unknowns; place_: in its own solver
+  Index kept_size_ = 0;
+  bool kept_factored_ = false;
+  std::size_t next_ = 0;
+  BlockSink to_rest_{rest_}, to_kept_{kept_solver_};
+  VecX kept_rhs_, rest_rhs_, kept_x_, rest_x_;
+};
+
+}  // namespace polybody

@@ -1,0 +1,236 @@
+#pragma once
+/// \file
+/// The walk over a tree of rigid bodies from the roots to the tips: places, spins, and how a joint's freedoms move what
+/// they carry. A body's reference point is the point of the joint that carries it; all is in world axes, d being the
+/// arm from the parent's reference point. Reference points at the joints keep the numbers those of the bodies, however
+/// far they are from the world's origin.
+
+#include <cmath>
+
+#include <polybody/math/quaternion.hpp>
+#include <polybody/solvers/articulated_inertia.hpp>
+#include <polybody/solvers/tree_link.hpp>
+#include <polybody/system/state.hpp>
+
+namespace polybody {
+
+/// T is the scalar of the state: dual numbers give the derivatives of the same walks.
+template <StateScalar T = double>
+struct TreeRecursionOf {
+  /** What a freedom moves: a turn, a slide, or anything. */ enum class Kind : unsigned char { turn, slide, general };
+  /// One speed: the columns S of [v; ω] that it moves; and I S, D⁻¹ and a force, which belong to who eliminates it.
+  struct Freedom {
+    T s[6], u[6], inverse, w;  ///< in order: S, I S, D⁻¹, the force along S
+    Kind kind;                 ///< what it moves; the rest of S is zero
+    unsigned char together;    ///< freedoms from here on that turn about axes of one frame: 3 of a ball, else 1
+    Index speed;               ///< its place in narrow speeds
+  };
+  /// A body's joint axes (3×3 by columns), d, ω, the acceleration c = [a; α] for u̇ = 0 and a parent at rest, and the
+  /// force p and the acceleration x of who walks on.
+  struct Body {
+    T axes[9], d[3], w[3], c[6], p[6], x[6];  ///< named above, in world axes
+    detail::ArticulatedInertia<T> inertia;    ///< articulated, about the reference point
+    std::size_t first;                        ///< of its freedoms
+    int count;                                ///< how many freedoms it has
+  };
+
+  Sequence<TreeLink> links;    ///< constants, one for each body
+  Sequence<Body> bodies;       ///< where they are, parents before children
+  Sequence<Freedom> freedoms;  ///< of all bodies, body by body
+  Body ground = {};            ///< at rest; what roots are carried by
+
+  TreeRecursionOf() = default;
+  /// The constants of the bodies; allocates all there is to be.
+  explicit TreeRecursionOf(Sequence<TreeBody> const& tree);
+  /// What carries body i: its parent, or the ground.
+  Body& carrier(std::size_t i) { return links[i].parent < 0 ? ground : bodies[std::size_t(links[i].parent)]; }
+  /// Places all bodies; p and x are left.
+  void place(VecXOf<T> const& q, VecXOf<T> const& v) {
+    for (std::size_t i = 0; i < links.size(); ++i) {
+      place(links[i], carrier(i), q.data() + links[i].qn, v.data() + links[i].vn, bodies[i]);
+      set_inertia(links[i], bodies[i]);
+    }
+  }
+  /// p of all bodies: what weightless bodies need at u̇ = 0, ω × (ω × m c) and ω × Θ ω.
+  void add_velocity_forces() {
+    for (Body& b : bodies) {
+      T spin[6] = {T(0.0), T(0.0), T(0.0), T(0.0), T(0.0), T(0.0)};
+      b.inertia.add_by_angular(b.w, spin);
+      detail::add_cross(b.w, spin + 3, b.p + 3);
+      add_centrifugal(b);
+    }
+  }
+  /// p += ω × (ω × m c).
+  static void add_centrifugal(Body& b) {
+    T const* const h = b.inertia.first;
+    T const mc[3] = {h[5], h[6], h[1]};
+    T rate[3] = {T(0.0), T(0.0), T(0.0)};
+    detail::add_cross(b.w, mc, rate);
+    detail::add_cross(b.w, rate, b.p);
+  }
+  /** Sᵀx, x (6). */ static T along(Freedom const& f, T const* x) {
+    switch (f.kind) {
+      case Kind::turn:
+        return detail::dot(f.s + 3, x + 3, 3);
+      case Kind::slide:
+        return detail::dot(f.s, x, 3);
+      default:
+        return detail::dot(f.s, x, 6);
+    }
+  }
+
+ private:
+  void place(TreeLink const& link, Body const& parent, T const* q, T const* u, Body& b);
+  void move(JointMotion const& m, double sign, T const* x, T const* u, Body& b);
+  /// The reference point goes along `by`, at rest in the frame that has arrived.
+  void go(T const* by, Body& b);
+  Freedom& add_freedom(Kind kind, Body& b) {
+    Freedom& f = freedoms[b.first + std::size_t(b.count++)];
+    f.kind = kind;
+    f.together = 1;
+    for (T& x : f.s) x = T(0.0);
+    return f;
+  }
+  static void turn(int axis, T const& angle, T* axes);
+  static void set_inertia(TreeLink const& link, Body& b);
+};
+
+template <StateScalar T>
+TreeRecursionOf<T>::TreeRecursionOf(Sequence<TreeBody> const& tree) : bodies(tree.size()) {
+  for (int i = 0; i < 3; ++i) ground.axes[4 * i] = T(1.0);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < tree.size(); ++i) {
+    bool const has_parent = tree[i].parent >= 0;
+    links.push_back(tree_link(tree[i], has_parent ? &tree[std::size_t(tree[i].parent)] : nullptr));
+    bodies[i].first = count;
+    count += std::size_t(links.back().freedoms);
+  }
+  freedoms.resize(count);
+}
+
+template <StateScalar T>
+void TreeRecursionOf<T>::place(TreeLink const& link, Body const& parent, T const* q, T const* u, Body& b) {
+  if (link.turned)
+    detail::set_product(parent.axes, link.entry, 3, b.axes);
+  else
+    for (int i = 0; i < 9; ++i) b.axes[i] = parent.axes[i];
+  for (int i = 0; i < 3; ++i) b.w[i] = parent.w[i];
+  for (int i = 0; i < 3; ++i) b.d[i] = b.c[i] = b.c[3 + i] = T(0.0);
+  b.count = 0;
+  T arm[3];
+  detail::set_product(parent.axes, link.arm, 1, arm);
+  go(arm, b);
+  Index speed = link.vn;
+  if (link.backwards) {
+    q += link.motions.coordinates();
+    int k = link.freedoms;
+    for (int i = link.motions.count; i-- > 0;) {
+      JointMotion const& m = link.motions.list[std::size_t(i)];
+      k -= m.velocities();
+      int const before = b.count;
+      move(m, -1.0, q -= m.coordinates(), u + k, b);
+      for (int j = before; j < b.count; ++j) freedoms[b.first + std::size_t(j)].speed = speed + k + (j - before);
+    }
+    return;
+  }
+  for (JointMotion const& m : link.motions) {
+    move(m, 1.0, q, u, b);
+    q += m.coordinates();
+    u += m.velocities();
+  }
+  for (int j = 0; j < b.count; ++j) freedoms[b.first + std::size_t(j)].speed = speed + j;
+}
+
+template <StateScalar T>
+void TreeRecursionOf<T>::go(T const* by, Body& b) {
+  T rate[3] = {T(0.0), T(0.0), T(0.0)};
+  detail::add_cross(b.w, by, rate);
+  detail::add_cross(b.w, rate, b.c);
+  detail::add_cross(b.c + 3, by, b.c);
+  for (int i = 0; i < 3; ++i) b.d[i] += by[i];
+  for (int j = 0; j < b.count; ++j) {
+    Freedom& f = freedoms[b.first + std::size_t(j)];
+    if (f.kind == Kind::slide) continue;
+    detail::add_cross(f.s + 3, by, f.s);
+    f.kind = Kind::general;
+  }
+}
+
+template <StateScalar T>
+void TreeRecursionOf<T>::move(JointMotion const& m, double sign, T const* x, T const* u, Body& b) {
+  if (m.kind == JointMotion::Kind::ball) {
+    Mat<T, 3, 3> const turned = rotation_matrix<T>(Quaternion<T>(x[0], x[1], x[2], x[3]));
+    T before[9], spin[3] = {T(0.0), T(0.0), T(0.0)};
+    for (int i = 0; i < 9; ++i) before[i] = b.axes[i];
+    Mat<T, 3, 3> const back = turned.transpose();
+    detail::set_product(before, sign > 0.0 ? turned.data() : back.data(), 3, b.axes);
+    T const* const axes = sign > 0.0 ? b.axes : before;  // of frame b
+    for (int k = 0; k < 3; ++k) {
+      Freedom& f = add_freedom(Kind::turn, b);
+      f.together = k == 0 ? 3 : 0;
+      for (int i = 0; i < 3; ++i) {
+        f.s[3 + i] = axes[3 * k + i] * sign;
+        spin[i] += f.s[3 + i] * u[k];
+      }
+    }
+    detail::add_cross(b.w, spin, b.c + 3);
+    for (int i = 0; i < 3; ++i) b.w[i] += spin[i];
+    return;
+  }
+  T n[3], by[3];
+  for (int i = 0; i < 3; ++i) n[i] = b.axes[3 * m.axis + i] * sign;
+  if (m.kind != JointMotion::Kind::turn) {
+    bool const slide = m.kind == JointMotion::Kind::slide;
+    double const part = slide ? 1.0 : m.pitch;
+    T const twice = u[0] * (2.0 * part);
+    for (int i = 0; i < 3; ++i) by[i] = n[i] * (x[0] * part);
+    go(by, b);
+    for (int i = 0; i < 3; ++i) by[i] = n[i] * twice;
+    detail::add_cross(b.w, by, b.c);
+    Freedom& f = add_freedom(slide ? Kind::slide : Kind::general, b);
+    for (int i = 0; i < 3; ++i) {
+      f.s[i] = n[i] * part;
+      if (!slide) f.s[3 + i] = n[i];
+    }
+    if (slide) return;
+  } else {
+    Freedom& f = add_freedom(Kind::turn, b);
+    for (int i = 0; i < 3; ++i) f.s[3 + i] = n[i];
+  }
+  for (int i = 0; i < 3; ++i) by[i] = n[i] * u[0];
+  detail::add_cross(b.w, by, b.c + 3);
+  for (int i = 0; i < 3; ++i) b.w[i] += by[i];
+  turn(m.axis, x[0] * sign, b.axes);
+}
+
+/// axes turned by an angle about one of themselves.
+template <StateScalar T>
+void TreeRecursionOf<T>::turn(int axis, T const& angle, T* axes) {
+  using std::cos, std::sin;
+  T const c = cos(angle), s = sin(angle);
+  T *const i = axes + 3 * ((axis + 1) % 3), *const j = axes + 3 * ((axis + 2) % 3);
+  for (int k = 0; k < 3; ++k) {
+    T const from_i = i[k], from_j = j[k];
+    i[k] = from_i * c + from_j * s;
+    j[k] = from_j * c - from_i * s;
+  }
+}
+
+/// The body's own inertia in world axes, A Θ Aᵀ; p is zero.
+template <StateScalar T>
+void TreeRecursionOf<T>::set_inertia(TreeLink const& link, Body& b) {
+  T mc[3], half[9];
+  detail::set_product(b.axes, link.first, 1, mc);
+  b.inertia.set(link.mass, mc);
+  double full[9];
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) full[3 * j + i] = link.second[detail::symmetric_place[i][j]];
+  detail::set_product(b.axes, full, 3, half);
+  for (int i = 0; i < 3; ++i)
+    for (int j = i; j < 3; ++j)
+      b.inertia.second[detail::symmetric_place[i][j]] =
+          half[i] * b.axes[j] + half[3 + i] * b.axes[3 + j] + half[6 + i] * b.axes[6 + j];
+  for (T& x : b.p) x = T(0.0);
+}
+
+}  // namespace polybody

@@ -1,0 +1,155 @@
+#pragma once
+/// \file
+/// Singular equations of statics.
+
+#include <polybody/math/sequence.hpp>
+#include <polybody/statics/null_space.hpp>
+
+namespace polybody {
+
+namespace detail {
+/// Size of the terms that cancel in an equilibrium: the largest of the multipliers, the forces of compliant joints
+/// and the wrenches of force elements.
+template <class = void>
+double largest_load(System const& system, VecX const& lambda) {
+  double largest = largest_size(lambda);
+  for (ConstraintBlock<double> const& block : system.data().rows)
+    if (block.source == ConstraintSource::compliant)
+      for (int i = 0; i < block.rows; ++i) largest = std::max(largest, std::abs(block.answer[i]));
+  for (AppliedWrench<double> const& action : system.data().actions)
+    for (double const w : action.w) largest = std::max(largest, std::abs(w));
+  return largest;
+}
+}  // namespace detail
+
+/// Minimum-norm solution of singular equations of statics A y = b. The cause is redundant constraints or free
+/// motions, which have no stiffness. As many unknowns p as the rank deficiency of A are held by a unit spring each
+/// [Farhat & Géradin 1998]:
+///   A′ = A + P Pᵀ,  Z = A′⁻¹ P,  y′ = A′⁻¹ b.
+/// Then A Z = 0 and PᵀZ = 1, because every W with WᵀA = 0 has WᵀP = WᵀA′Z = WᵀP PᵀZ. Z therefore spans the null space
+/// of A, motions and multipliers. The force in the springs is Pᵀy′ = (WᵀP)⁻¹Wᵀb. It is zero if A y = b has a
+/// solution, and then y′ − Z c is a solution for every c. The multipliers of constraint equations with a spring are
+/// made zero, as in a time step with redundant constraints. The solution has the least |x| is
+/// computed.
+template <LinearSolver Solver>
+class MinimumNormStep {
+ public:
+  /// Growth factor of a solution above which the matrix may be singular.
+  static constexpr double suspicious = 1e8;
+  /// Largest force on a spring under balanced loads, relative to the largest load.
+  static constexpr double balanced = 1e-9;
+
+  /// Constructor; `system` and `tangent` must outlive this object.
+  MinimumNormStep(System& system, StaticTangent<Solver>& tangent)
+      : system_(&system), tangent_(&tangent), nv_(system.velocities()), b_(VecX::Zero(system.size())) {}
+
+  /// Computes the springs that the matrix requires at the state last evaluated, and Z. Returns −1, or an unknown
+  /// without a pivot if springs are not sufficient.
+  Index factor(VecX const& lambda) {
+    excited_ = -1;
+    set_springs(lambda);
+    if (tangent_->factor(lambda) < 0 && columns_are_null(lambda) && !(tangent_->growth() > suspicious)) {
+      make_basis();
+      return -1;
+    }
+    detail::NullSpace<Solver> null_space(*system_, *tangent_);
+    if (Index const bad = null_space.find(lambda, pins_); bad >= 0) return bad;
+    set_springs(lambda);
+    if (Index const bad = tangent_->factor(lambda); bad >= 0) return bad;
+    if (!columns_are_null(lambda)) return pins_.back();
+    make_basis();
+    return -1;
+  }
+
+  /// Solves for `out` (size) = (x, μ) with forces f (velocities) and violations φ (constraint equations). If the
+  /// loads excite a free motion, `excited` returns it.
+  void solve(VecX const& f, VecX const& phi, VecX const& lambda, VecX& out) {
+    double const unit = tangent_->unit();
+    for (Index i = 0; i < nv_; ++i) b_[i] = f[i] / unit;
+    for (Index i = nv_; i < b_.size(); ++i) b_[i] = phi[i - nv_];
+    tangent_->solve_scaled(b_, out);
+    find_excited(out, std::max(largest_size(f), detail::largest_load(*system_, lambda)));
+    take_rows_off(out);
+    for (VecX const& z : basis_) detail::add_scaled(-detail::dot_of_first(nv_, z, out), z, out);
+    for (Index i = nv_; i < out.size(); ++i) out[i] *= unit;
+  }
+
+  /// Unknowns with a spring.
+  Sequence<Index> const& pins() const { return pins_; }
+  VecX const& motion(std::size_t k) const { return columns_[k].z; }  ///< Z of spring k (size)
+  /// Number of the spring whose free motion the loads excite most, beyond round-off; −1 if the loads are balanced.
+  Index excited() const { return excited_; }
+  /// Replaces λ by multipliers with the same forces that are zero for constraint equations with a spring.
+  void drop_multipliers(VecX& lambda) {
+    for (Index i = 0; i < b_.size(); ++i) b_[i] = i < nv_ ? 0.0 : lambda[i - nv_];
+    take_rows_off(b_);
+    for (Index i = nv_; i < b_.size(); ++i) lambda[i - nv_] = b_[i];
+  }
+
+ private:
+  void set_springs(VecX const& lambda) {
+    for (Index i = 0; i < b_.size(); ++i) b_[i] = 0.0;
+    for (Index const i : pins_) b_[i] = 1.0;
+    tangent_->set_springs(b_, lambda);
+  }
+
+  /// Computes Z of the last factorisation; true if A Z = 0.
+  bool columns_are_null(VecX const& lambda) {
+    columns_.resize(pins_.size());
+    for (std::size_t k = 0; k < columns_.size(); ++k) {
+      for (Index i = 0; i < b_.size(); ++i) b_[i] = 0.0;
+      b_[pins_[k]] = 1.0;
+      columns_[k].z.resize(b_.size());
+      tangent_->solve_scaled(b_, columns_[k].z);
+    }
+    detail::multiply(*tangent_, lambda, columns_);
+    return std::all_of(columns_.begin(), columns_.end(), [](auto const& c) { return c.is_null(); });
+  }
+
+  /// Orthonormal basis of the motions in Z.
+  void make_basis() {
+    basis_.clear();
+    for (std::size_t k = 0; k < columns_.size(); ++k) {
+      if (pins_[k] >= nv_) continue;
+      basis_.push_back(columns_[k].z);
+      detail::make_orthonormal(basis_, nv_);
+    }
+  }
+
+  /// Computes `excited_`. Tolerances are the round-off of f, ε |K| (1 + |q|) at each entry, and the remainder of
+  /// loads that cancel.
+  void find_excited(VecX const& y, double load) {
+    double const reach = 1.0 + largest_size(system_->at().q), unit = tangent_->unit();
+    double worst = 1.0;
+    excited_ = -1;
+    for (std::size_t k = 0; k < columns_.size(); ++k) {
+      if (pins_[k] >= nv_) continue;
+      double sum = 0.0, most = 0.0;
+      for (Index i = 0; i < nv_; ++i) {
+        sum += columns_[k].size[i];
+        most = std::max(most, std::abs(columns_[k].z[i]));
+      }
+      double const borne = unit * std::abs(y[pins_[k]]), allowed = balanced * load * most + 1e-14 * unit * sum * reach;
+      if (borne <= worst * allowed) continue;
+      excited_ = Index(k);
+      worst = borne / std::max(allowed, std::numeric_limits<double>::min());
+    }
+  }
+
+  void take_rows_off(VecX& y) {
+    for (std::size_t k = 0; k < columns_.size(); ++k)
+      if (pins_[k] >= nv_) detail::add_scaled(-y[pins_[k]], columns_[k].z, y);
+    for (Index const i : pins_)
+      if (i >= nv_) y[i] = 0.0;
+  }
+
+  System* system_;
+  StaticTangent<Solver>* tangent_;
+  Index nv_, excited_ = -1;
+  Sequence<Index> pins_;
+  Sequence<detail::NullColumn> columns_;  ///< Z
+  Sequence<VecX> basis_;
+  VecX b_;
+};
+
+}  // namespace polybody

@@ -1,0 +1,306 @@
+#pragma once
+/// \file
+/// Limits that every step of a run keeps: the violation of constraints, energy that no work explains, prescribed values
+/// that fit their rates, and contacts that a step jumps over. Newton's method stops relative to the size of the
+/// accelerations, so the steps of a motion that explodes also converge.
+
+#include <cmath>
+#include <limits>
+
+#include <polybody/math/sequence.hpp>
+#include <polybody/math/vectors.hpp>
+#include <polybody/system/law_watch.hpp>
+#include <polybody/system/system.hpp>
+#include <polybody/system/work_account.hpp>
+
+namespace polybody {
+
+/// Limits of a run; an infinite limit switches its check off.
+struct PlausibilityLimits {
+  double violation = 0.1;  ///< |Φ| of a constraint equation, relative to the extent of the markers and to one
+  double energy = 1.0;     ///< unexplained energy at which a step is refused, relative to S (`PlausibilityCheck`)
+  double warning =
+      0.05;  ///< unexplained energy at which the report warns at the end of a run, relative to `Unexplained::scale`
+};
+
+/// Energy of a run that no work explains.
+struct Unexplained {
+  double energy = 0.0;  ///< gained, or negative where it is lost [J]
+  double doubt = 0.0;   ///< estimated error of the works, large if a force jumps [J]
+  double worst = 0.0;   ///< largest such error of one step [J]
+  double scale = 0.0;   ///< T₀ + what potentials released + 2 W + 10⁻³ V₀⁺ (`PlausibilityCheck`), at most so far [J]
+  bool known = false;   ///< the model has such a balance
+};
+
+/// The limits of a run, with a balance of the energy E = T + V since the last start. A step is refused for E − E₀ − W
+/// > limit · S, S = T₀ + max(V₀⁺, V₀ − V) + 2 W, V₀⁺ what was stored at the start, without gravity, W the work that
+/// forces without a potential, drives and compliant joints without a potential have put in (`WorkAccount`). W counts
+/// twice in S: of the work of a force that is switched on within a step, the quadratures see half. The balance is
+/// made whenever the speeds have doubled, so the cost of other steps is a sum of squares and the powers of such
+/// elements. Dissipation is not counted: only a gain is refused. At the end of a run, and before each restart,
+/// `settle` makes the balance with the signs of all works. It counts losses where no part of the model dissipates. A
+/// potential that depends on time has no such balance, and no verdict.
+class PlausibilityCheck {
+ private:
+  static constexpr double never = std::numeric_limits<double>::infinity();
+  struct Account {
+    double open = never;    ///< the limit for |Φ|, in the unit of the constraint equation: [m], or a cosine
+    double energy = never;  ///< the limit, a factor
+    double judged = never;  ///< Σ v² beyond which the energy is looked at, mixed units
+    double fastest = 0.0;   ///< largest Σ v² that was looked at, mixed units
+    double scale = 0.0;     ///< S, at most since the start [J]
+    double moved = 0.0;     ///< T₀ + what potentials released + 2 W, at most since the start [J]
+    Energy start;           ///< E₀
+    double began = 0.0;     ///< at this time [s]
+    Unexplained settled;    ///< by earlier accounts of the run
+  };
+
+ public:
+  /// Resets the limits and the balance at `place`, with h of the next step. Without this call nothing is checked.
+  template <class = void>  // compiled where it is used
+  [[gnu::cold]] void begin(System& system, PlausibilityLimits const& limits, StepResult const& place);
+
+  /// \throws Diverged for a step that ends beyond a limit, InvalidInput for a prescribed value that does not fit its
+  /// rate, NewtonConvergenceFailure for a step that jumps over a contact. `system` may have been evaluated near the end
+  /// only: what looks wrong there is judged at the end itself. \param squares Σ v²
+  template <class = void>
+  void require(System& system, StepResult const& end, double squares) {
+    if (laws_.watches()) laws_.require(system.layout(), end.t, end.h);
+    if (!contacts_.empty()) require_no_passage(system, end);
+    if (work_.counts()) work_.add(system, end);
+    if (squares > account_.judged || any_open()) check_step(system, end, squares);
+  }
+
+  /// Makes the balance up to here, where `begin` is to follow or the run ends. Returns that of the run so far.
+  /// \throws Diverged for an end beyond the limit.
+  template <class = void>
+  [[gnu::cold]] Unexplained settle(System& system, StepResult const& end);
+
+  /// Puts the account back as it was, unless what is tried is kept.
+  class Trial {
+   public:
+    /// Remembers the account as it is.
+    explicit Trial(PlausibilityCheck& bounds) : bounds_(bounds), before_(bounds.account_) {
+      bounds_.replaced_ = false;
+      bounds_.work_.mark();
+      bounds_.laws_.mark();
+    }
+    Trial(Trial const&) = delete;
+    ~Trial() {
+      if (kept_) return;
+      bounds_.account_ = before_;
+      if (bounds_.replaced_) bounds_.work_ = std::move(bounds_.earlier_);
+      bounds_.work_.go_back();
+      bounds_.laws_.go_back();
+    }
+    void keep() { kept_ = true; }  ///< the trial counts
+
+   private:
+    PlausibilityCheck& bounds_;
+    Account before_;
+    bool kept_ = false;
+  };
+
+ private:
+  bool any_open() const {
+    for (Gaps const& gaps : gaps_)
+      for (int i = 0; i < gaps.rows; ++i)
+        if (std::abs(gaps.g[i]) > account_.open) return true;
+    return false;
+  }
+  template <class = void>
+  void check_step(System& system, StepResult const& end, double squares);
+  template <class = void>
+  [[noreturn, gnu::cold]] void refuse_open(System const& system, double t) const;
+  /// The balance at the end, where `system` is evaluated. \throws Diverged.
+  template <class = void>
+  Unexplained check_energy(System& system, StepResult const& end);
+  template <class = void>
+  void require_no_passage(System const& system, StepResult const& end);
+
+  /// The constraint equations of a block, in the data of the system.
+  struct Gaps {
+    double const* g;
+    int rows;
+    Index first;
+  };
+  /// A contact of two markers, and their frames at the end of the last step.
+  struct Passing {
+    std::size_t force;
+    Frame<double> last[2], now[2];
+    double t = 0.0;  ///< time of `last` [s]
+  };
+  static void read_frames(System const& system, ForceLayout const& force, Frame<double> (&out)[2]) {
+    for (std::size_t k = 0; k < 2; ++k) {
+      Frame<double> const& f = system.data().markers[std::size_t(force.markers[k])].frame;
+      out[k].r = f.r;
+      out[k].A = f.A;
+    }
+  }
+
+  Account account_;
+  Sequence<Gaps> gaps_;
+  Sequence<Passing> contacts_;  ///< that a step may jump over
+  WorkAccount work_, earlier_;  ///< since the last start; before it, while a trial may fail
+  bool replaced_ = false;       ///< `begin` was called since the trial began
+  LawWatch laws_;
+  bool lossless_ = false;  ///< no part of the model dissipates
+};
+
+template <class>
+void PlausibilityCheck::begin(System& system, PlausibilityLimits const& limits, StepResult const& place) {
+  system.evaluate(place.q, place.v, place.t);
+  Data<double> const& data = system.data();
+  ModelLayout const& layout = system.layout();
+  Vec3 least = Vec3::Zero(), most = least;
+  for (std::size_t k = 0; k < data.markers.size(); ++k)
+    for (int i = 0; i < 3; ++i) {
+      double const r = data.markers[k].frame.r[i];
+      least[i] = k == 0 ? r : std::min(least[i], r);
+      most[i] = k == 0 ? r : std::max(most[i], r);
+    }
+  account_.open = limits.violation * std::max({1.0, most[0] - least[0], most[1] - least[1], most[2] - least[2]});
+  auto const& [entries, model] = system.entries();
+  account_.energy = entries.energy ? limits.energy : never;
+  if (entries.energy) account_.start = entries.energy(model, system.at(), data);
+  account_.began = place.t;
+  account_.fastest = squares(place.v);
+  account_.judged = account_.energy < never ? 4.0 * account_.fastest : never;
+  account_.scale = account_.moved = 0.0;
+  gaps_.clear();
+  contacts_.clear();
+  if (!replaced_) earlier_ = std::move(work_);
+  replaced_ = true;
+  work_ = {};
+  for (std::size_t i = 0; i < data.rows.size(); ++i) {
+    ConstraintBlock<double> const& block = data.rows[i];
+    if (block.row >= 0 && !data.leaves_out(block)) gaps_.push_back({block.g, block.rows, block.row});
+  }
+  if (account_.energy < never) work_.begin(system, place);
+  laws_.begin(layout, place.t, 1e-6 * place.h);
+  lossless_ = work_.complete();
+  for (BodyLayout const& body : layout.bodies) {
+    lossless_ = lossless_ && body.lossless;
+    if (body.changes) account_.energy *= 100.0;  // its energy changes without work
+  }
+  for (JointLayout const& joint : layout.joints) lossless_ = lossless_ && (!joint.stores || joint.lossless);
+  for (std::size_t i = 0; i < layout.forces.size(); ++i) {
+    ForceLayout const& force = layout.forces[i];
+    lossless_ = lossless_ && (!force.stores || force.lossless);
+    if (!force.passes) continue;
+    contacts_.push_back({i, {}, {}, place.t});
+    read_frames(system, force, contacts_.back().last);
+  }
+}
+
+/// Refuses a step at whose ends a contact is open and within which it closes and opens again.
+template <class>
+void PlausibilityCheck::require_no_passage(System const& system, StepResult const& end) {
+  for (Passing& contact : contacts_) {
+    ForceLayout const& force = system.layout().forces[contact.force];
+    read_frames(system, force, contact.now);
+    bool const follows = std::abs(end.t - end.h - contact.t) <= 1e-3 * end.h;
+    if (follows && force.passes(force.force, contact.last, contact.now))
+      throw NewtonConvergenceFailure{
+          "The step of ",
+          end.h,
+          " s to t = ",
+          end.t,
+          " s jumps over the contact \"",
+          force.name,
+          "\": the bodies touch within it, but not at its ends. Take smaller steps, or halvings in the "
+          "options of the run."};
+  }
+  for (Passing& contact : contacts_) {
+    std::copy_n(contact.now, 2, contact.last);
+    contact.t = end.t;
+  }
+}
+
+template <class>
+void PlausibilityCheck::check_step(System& system, StepResult const& end, double squares) {
+  system.evaluate(end.q, end.v, end.t);
+  if (any_open()) refuse_open(system, end.t);
+  if (!(squares > account_.judged)) return;
+  (void)check_energy(system, end);
+  account_.fastest = squares;
+  account_.judged = 4.0 * squares;
+}
+
+template <class>
+void PlausibilityCheck::refuse_open(System const& system, double t) const {
+  Index row = 0;
+  double largest = 0.0;
+  for (Gaps const& gaps : gaps_)
+    for (int i = 0; i < gaps.rows; ++i)
+      if (std::abs(gaps.g[i]) > largest) {
+        largest = std::abs(gaps.g[i]);
+        row = gaps.first + i;
+      }
+  throw Diverged{"The step to t = ",
+                 t,
+                 " s leaves ",
+                 system.layout().name_of(system.layout().velocities + row),
+                 " open by ",
+                 largest,
+                 ": the integration diverges. Take a smaller step, or raise the run's limits.violation, by which ",
+                 account_.open,
+                 " is allowed."};
+}
+
+template <class>
+Unexplained PlausibilityCheck::check_energy(System& system, StepResult const& end) {
+  auto const& [entries, model] = system.entries();
+  Energy const now = entries.energy(model, system.at(), system.data()), &start = account_.start;
+  At<double> const& at = system.at();
+  if (work_.misses_drives(system.data())) return {};
+  if (entries.energy(model, {at.q, at.v, account_.began}, system.data()).forces != now.forces) return {};
+  double const gained = now.total() - start.total(), put_in = work_.counts() ? work_.put_in() : 0.0;
+  double const held = std::max(0.0, start.strain) + std::max(0.0, start.joints) + std::max(0.0, start.forces),
+               released = std::max(0.0, start.potential() - now.potential());
+  account_.scale = std::max(account_.scale, start.kinetic + std::max(held, released) + 2.0 * put_in);
+  account_.moved = std::max(account_.moved, start.kinetic + released + 2.0 * put_in);
+  Index fastest = 0;
+  for (Index i = 1; i < end.v.size(); ++i)
+    if (std::abs(end.v[i]) > std::abs(end.v[fastest])) fastest = i;
+  double const unexplained = gained - put_in;
+  // The error estimate of the works compares steps, so it is not reliable in the first steps after a start.
+  double const few = end.t - account_.began < 4.5 * end.h ? 10.0 : 1.0;
+  // The energy of a motion that is slow relative to its coordinates is round-off and not an instability.
+  if (unexplained > few * account_.energy * account_.scale &&
+      std::abs(end.v[fastest]) * end.h >= 1e-3 * (1.0 + largest_size(end.q)))
+    throw Diverged{"The step to t = ",
+                   end.t,
+                   " s ends with ",
+                   unexplained,
+                   " J gained since the last start that no work explains: gravity, loads, drives and the energy of the "
+                   "start give ",
+                   account_.scale,
+                   " J; ",
+                   system.name_of(fastest),
+                   " moves fastest. The integration diverges: take a smaller step or softer joints, or raise the run's "
+                   "limits.energy."};
+  double const net = work_.counts() ? (work_.complete() ? work_.net() : put_in) : 0.0;
+  double const rounding = 1e-9 * (std::abs(now.gravity) + std::abs(now.strain) + std::abs(now.joints)) + 1e-3 * held;
+  bool const counts = work_.counts();
+  return {gained - net, counts ? work_.doubt() : 0.0, counts ? work_.worst() : 0.0, account_.moved + rounding, true};
+}
+
+template <class>
+Unexplained PlausibilityCheck::settle(System& system, StepResult const& end) {
+  Unexplained& sum = account_.settled;
+  if (!(account_.energy < never)) return sum;
+  system.evaluate(end.q, end.v, end.t);
+  Unexplained const last = check_energy(system, end);
+  double const fastest = std::sqrt(std::max(account_.fastest, squares(end.v)));
+  bool const moves = fastest * (end.t - account_.began) > 1e-6 * (1.0 + largest_size(end.q));
+  if (!last.known || !moves) return sum;
+  sum.energy += lossless_ ? last.energy : std::max(0.0, last.energy);
+  sum.doubt += last.doubt;
+  sum.worst = std::max(sum.worst, last.worst);
+  sum.scale = std::max(sum.scale, last.scale);
+  sum.known = true;
+  return sum;
+}
+
+}  // namespace polybody

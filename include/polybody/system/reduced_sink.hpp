@@ -1,0 +1,227 @@
+#pragma once
+/// \file
+/// A sink between the blocks of a whole tangent and a system in which some unknowns depend on others, x = P y, and some
+/// rows are left out: blocks arrive as Pᵀ b P.
+
+#include <algorithm>
+#include <list>
+
+#include <polybody/math/block_sink.hpp>
+#include <polybody/math/sequence.hpp>
+#include <polybody/system/reduced_slots.hpp>
+
+namespace polybody {
+
+/// Where the unknowns of a whole system go.
+template <class T = double>  // compiled where it is used
+class UnknownMapOf {
+ public:
+  /// An unknown and its factor.
+  struct Target {
+    Index unknown;  ///< in the system that is left
+    T factor;       ///< its entry of P, a factor
+  };
+
+  /// `targets[i]` of whole unknown i: one with factor one for most, several for a dependent one, none for one that is
+  /// left out.
+  explicit UnknownMapOf(Sequence<Sequence<Target>> targets = {})
+      : targets_(std::move(targets)), run_end_(targets_.size()) {
+    for (std::size_t i = targets_.size(); i-- > 0;) {
+      bool const goes_on = i + 1 < targets_.size() && plain(i) && plain(i + 1) &&
+                           targets_[i + 1][0].unknown == targets_[i][0].unknown + 1;
+      run_end_[i] = !plain(i) ? Index(i) : goes_on ? run_end_[i + 1] : Index(i) + 1;
+    }
+  }
+
+  /// The target of unknown `first` where `size` unknowns from it on go to consecutive targets with factor one; else −1.
+  Index run(Index first, Index size) const {
+    return run_end_[std::size_t(first)] >= first + size ? targets_[std::size_t(first)][0].unknown : -1;
+  }
+  /// How many whole unknowns there are.
+  Index size() const { return Index(targets_.size()); }
+  /// The unknowns that whole unknown i goes to, with their factors.
+  Sequence<Target> const& targets(Index i) const { return targets_[std::size_t(i)]; }
+
+  /// All unknowns that a range touches, in runs.
+  struct Range {
+    /// Consecutive unknowns that a range touches, from the local number `local` on.
+    struct Run {
+      Index first, size, local;  ///< in order: first unknown, how many, first local number
+    };
+    /// Neighbours that become neighbours, with factor one: `size` from the local number `source` on.
+    struct Part {
+      Index first, size, source;  ///< in order: first unknown, how many, first neighbour of the range
+    };
+    Index full_size = 0, size = 0;       ///< how many whole unknowns it has; how many unknowns it touches
+    Sequence<Run> runs;                  ///< these unknowns, ascending
+    Sequence<Sequence<Target>> targets;  ///< of each whole unknown, by local number
+    Sequence<Part> parts;  ///< all of it, where no whole unknown has more than one target nor another factor than one
+    bool copied = false;   ///< it is so
+  };
+  /// What whole unknowns from `first` on touch; `size` is how many. Searches and allocates.
+  Range range(Index first, Index size) const {
+    Sequence<Index> touched;
+    for (Index i = first; i < first + size; ++i)
+      for (Target const& t : targets(i)) touched.push_back(t.unknown);
+    sort_once(touched);
+    auto const local = [&](Index unknown) {
+      return Index(std::lower_bound(touched.begin(), touched.end(), unknown) - touched.begin());
+    };
+    Range out;
+    for (Index const unknown : touched) {
+      Index const number = out.size++;
+      if (!out.runs.empty() && out.runs.back().first + out.runs.back().size == unknown)
+        ++out.runs.back().size;
+      else
+        out.runs.push_back({unknown, 1, number});
+    }
+    out.copied = true;
+    for (Index i = first; i < first + size; ++i) {
+      out.targets.emplace_back();
+      for (Target const& t : targets(i)) out.targets.back().push_back({local(t.unknown), t.factor});
+      out.copied = out.copied && (targets(i).empty() || plain(std::size_t(i)));
+    }
+    out.full_size = size;
+    for (Index i = 0; i < size && out.copied; ++i) {
+      if (targets(first + i).empty()) continue;
+      Index const to = targets(first + i)[0].unknown;
+      if (!out.parts.empty() && out.parts.back().source + out.parts.back().size == i &&
+          out.parts.back().first + out.parts.back().size == to)
+        ++out.parts.back().size;
+      else
+        out.parts.push_back({to, 1, i});
+    }
+    return out;
+  }
+
+ private:
+  bool plain(std::size_t i) const { return targets_[i].size() == 1 && targets_[i][0].factor == 1.0; }
+  Sequence<Sequence<Target>> targets_;
+  Sequence<Index> run_end_;  // behind the last unknown of the run that i is in; i itself when it is not plain
+};
+
+/// What a mapped sink keeps from pass to pass: ranges by their first unknown, and room for blocks, by rows.
+template <class T = double>
+struct ReducedBlocksOf {
+  Sequence<std::list<typename UnknownMapOf<T>::Range>> ranges;  ///< found so far, by their first whole unknown
+  Sequence<T> half, full;                                       ///< a block times P; Pᵀ times that
+
+  /// The first `size` entries of `room`, as zeros; the room grows where it must.
+  static T* zeros(Sequence<T>& room, Index size) {
+    if (room.size() < std::size_t(size)) room.resize(std::size_t(size));
+    std::fill_n(room.begin(), size, 0.0);
+    return room.data();
+  }
+};
+
+/// A sink that writes blocks of a whole system into the matrix of a step's own unknowns.
+template <class T = double>
+class ReducedSinkOf {
+  using Map = UnknownMapOf<T>;
+  using Kept = ReducedBlocksOf<T>;
+  using Range = typename Map::Range;
+  using Target = typename Map::Target;
+
+ public:
+  /// \param slots are told of the way of all blocks, where the sink has slots
+  ReducedSinkOf(Map const& map, Kept& kept, BlockSink& sink, ReducedSlotsOf<T>* slots = nullptr)
+      : map_(map), kept_(kept), sink_(sink), slots_(slots) {
+    kept_.ranges.resize(std::size_t(map.size()));
+  }
+
+  /// Adds Pᵀ b P, b being a block of the whole system whose first entry is at (row, col).
+  void add(Index row, Index col, BlockView const& b) {
+    if (slots_) [[unlikely]]
+      record(row, col, b.rows, b.cols);
+    Index const to_row = map_.run(row, b.rows), to_col = map_.run(col, b.cols);
+    if (to_row >= 0 && to_col >= 0) {
+      sink_.add(to_row, to_col, b);
+      return;
+    }
+    Range const& rows = range(row, b.rows);
+    Range const& cols = range(col, b.cols);
+    if (rows.size == 0 || cols.size == 0) return;
+    if (rows.copied && cols.copied) {
+      for (auto const& r : rows.parts)
+        for (auto const& c : cols.parts)
+          sink_.add(r.first, c.first,
+                    {b.data + r.source * b.row_step + c.source * b.col_step, r.size, c.size, b.row_step, b.col_step});
+      return;
+    }
+    double* const full = Kept::zeros(kept_.full, rows.size * cols.size);
+    multiply(b, rows, cols, full);
+    for (auto const& r : rows.runs)
+      for (auto const& c : cols.runs)
+        sink_.add(r.first, c.first, BlockView(full + r.local * cols.size + c.local, r.size, c.size, cols.size, 1));
+  }
+  /// All blocks went as they are, and the slots know how.
+  bool recorded() const { return slots_ && copies_; }
+  /// Whether the sink wants the diagonal block of the unknowns that these whole ones, [first, first + size), go to.
+  bool wants(Index first, Index size) {
+    if (Index const to = map_.run(first, size); to >= 0) return sink_.wants(to, size);
+    auto const& runs = range(first, size).runs;
+    return runs.empty() || sink_.wants(runs[0].first, runs[0].size);
+  }
+  /// A block of height × width zeros.
+  void skip(Index row, Index col, Index height, Index width) {
+    if (slots_) [[unlikely]]
+      record(row, col, height, width);
+    Index const to_row = map_.run(row, height), to_col = map_.run(col, width);
+    if (to_row >= 0 && to_col >= 0) return sink_.skip(to_row, to_col, height, width);
+    Range const &rows = range(row, height), &cols = range(col, width);
+    if (rows.copied && cols.copied)
+      skip_all(rows.parts, cols.parts);
+    else
+      skip_all(rows.runs, cols.runs);
+  }
+
+ private:
+  [[gnu::cold]] void record(Index row, Index col, Index height, Index width) {
+    if (!copies_) return;
+    slots_->begin_block();
+    if (map_.run(row, height) >= 0 && map_.run(col, width) >= 0) {
+      slots_->take(0, 0);
+    } else {
+      Range const &rows = range(row, height), &cols = range(col, width);
+      copies_ = (rows.copied && cols.copied) || rows.size == 0 || cols.size == 0;
+      if (!copies_) return;
+      for (auto const& r : rows.parts)
+        for (auto const& c : cols.parts) slots_->take(r.source, c.source);
+    }
+    slots_->end_block(height, width);
+  }
+  template <class Ranges>
+  void skip_all(Ranges const& rows, Ranges const& cols) {
+    for (auto const& r : rows)
+      for (auto const& c : cols) sink_.skip(r.first, c.first, r.size, c.size);
+  }
+  void multiply(BlockView const& b, Range const& rows, Range const& cols, double* full) {
+    double* const half = Kept::zeros(kept_.half, rows.size * b.cols);
+    for (Index i = 0; i < b.rows; ++i)
+      for (Target const& t : rows.targets[std::size_t(i)])
+        for (Index j = 0; j < b.cols; ++j) half[t.unknown * b.cols + j] += t.factor * b(i, j);
+    for (Index j = 0; j < b.cols; ++j)
+      for (Target const& t : cols.targets[std::size_t(j)])
+        for (Index i = 0; i < rows.size; ++i) full[i * cols.size + t.unknown] += t.factor * half[i * b.cols + j];
+  }
+
+  /// Found in the first pass, kept for the others.
+  Range const& range(Index first, Index size) {
+    auto& known = kept_.ranges[std::size_t(first)];
+    for (Range const& r : known)
+      if (r.full_size == size) return r;
+    return known.emplace_back(map_.range(first, size));
+  }
+
+  Map const& map_;
+  Kept& kept_;
+  BlockSink& sink_;
+  ReducedSlotsOf<T>* slots_;
+  bool copies_ = true;
+};
+
+using UnknownMap = UnknownMapOf<>;       ///< in doubles
+using MappedBlocks = ReducedBlocksOf<>;  ///< in doubles
+using MappedSink = ReducedSinkOf<>;      ///< in doubles
+
+}  // namespace polybody
