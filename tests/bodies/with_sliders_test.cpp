@@ -148,7 +148,7 @@ TYPED_TEST(SlidingLaws, StandingStillIsAMaterialPoint) {
 TEST(WithSliders, RefusesPlacesAndSlidersThatItHasNot) {
   auto const line = AncfCable<>::from(bar(false), 3);
   EXPECT_TRUE(
-      has(refusal([&] { WithSliders(line, {0.1, 1.6}); }), "Sliding: the place: s = 1.6 lies outside the body"));
+      has(refusal([&] { WithSliders(line, {0.1, 1.6}); }), "WithSliders: the place: s = 1.6 lies outside the body"));
   WithSliders const body(line, {0.1});
   EXPECT_TRUE(has(refusal([&] { (void)body.at(Slider{1}); }), "there is no slider 1; the body has 1"));
 }

@@ -55,24 +55,24 @@ TEST(Eliminated, BodiesThatParametersTouchAreFoundAmongWhatIsLeft) {
   auto const make = [](std::span<double const> p) {
     return hung_cables<AncfLinear, true>()(std::array{p[0], 1000.0, p[1], p[2], 2.0});
   };
-  auto const of_touches = [](bool with_touches) {
+  auto const of_affects = [](bool with_affects) {
     std::vector<Parameter> all{{"young [Pa]", 1e7, 0.0, {"first", "second"}},
                                {"place [m]", 0.31, 0.0, {"pin", "rod", "second"}},
                                {"gravity [m/s²]", 9.81, 0.0, {"first", "second"}}};
-    if (!with_touches)
+    if (!with_affects)
       for (Parameter& p : all) p.affects.clear();
     return all;
   };
-  GradientResult const with_touches = gradient(make, of_touches(true), GeneralisedAlpha{}),
-                       without = gradient(make, of_touches(false), GeneralisedAlpha{});
+  GradientResult const with_affects = gradient(make, of_affects(true), GeneralisedAlpha{}),
+                       without = gradient(make, of_affects(false), GeneralisedAlpha{});
   for (Index j = 0; j < 3; ++j) {
-    double const size = of_touches(true)[std::size_t(j)].size();
-    EXPECT_NEAR(size * with_touches.derivatives[j], size * without.derivatives[j], 1e-12) << j;
+    double const size = of_affects(true)[std::size_t(j)].size();
+    EXPECT_NEAR(size * with_affects.derivatives[j], size * without.derivatives[j], 1e-12) << j;
     EXPECT_GT(std::abs(size * without.derivatives[j]), 1e-5) << j;
   }
   auto const said = [&](std::vector<std::string> affects) {
-    auto few = of_touches(true);
-    few[2].affects = std::move(touches);
+    auto few = of_affects(true);
+    few[2].affects = std::move(affects);
     return refusal([&] { gradient(make, few, GeneralisedAlpha{}); });
   };
   EXPECT_TRUE(has(said({"first"}), "\"gravity [m/s²]\" changes the equations of body \"second\""));

@@ -179,13 +179,13 @@ TEST(GradientResult, IsTheSameWhereParametersSayWhatTheyTouch) {
 }
 
 TEST(GradientResult, DirectDifferentiationIsTheSameWhereParametersSayWhatTheyTouch) {
-  expect_same_derivatives_with_touches(GeneralisedAlpha{});
+  expect_same_derivatives_with_affects(GeneralisedAlpha{});
 }
 
 TEST(GradientResult, DirectDifferentiationRefusesParametersThatTouchMoreThanTheySay) {
   auto const said = [](std::size_t j, std::vector<std::string> affects) {
     auto parameters = of_chain(true);
-    parameters[j].affects = std::move(touches);
+    parameters[j].affects = std::move(affects);
     return refusal([&] { sensitivities(chain_with_angle, parameters, GeneralisedAlpha{}); });
   };
   EXPECT_TRUE(has(said(3, {"rod 7"}), "touches \"rod 7\", but the model has no body, joint or force of that name"));
@@ -210,7 +210,7 @@ TEST(GradientResult, ParametersThatTouchNothingInCommonShareTheirModels) {
 TEST(GradientResult, RefusesParametersThatTouchMoreThanTheySay) {
   auto const said = [](std::vector<std::string> affects) {
     auto parameters = of_chain(true);
-    parameters[3].affects = std::move(touches);  // the parameter is a length
+    parameters[3].affects = std::move(affects);  // the parameter is a length
     return refusal([&] { gradient(chain, parameters, GeneralisedAlpha{}); });
   };
   EXPECT_TRUE(has(said({"rod 7"}), "touches \"rod 7\", but the model has no body, joint or force of that name"));

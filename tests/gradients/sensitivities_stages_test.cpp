@@ -91,8 +91,8 @@ TEST(SensitivitiesOfStages, RigidOnConstraintByDormandPrinceWithItsChoiceOfSteps
 }
 
 TEST(SensitivitiesOfStages, AreTheSameWhereParametersSayWhatTheyTouch) {
-  touched_chain::expect_same_derivatives_with_touches(RungeKutta4<>{});
-  touched_chain::expect_same_derivatives_with_touches(Radau{});
+  touched_chain::expect_same_derivatives_with_affects(RungeKutta4<>{});
+  touched_chain::expect_same_derivatives_with_affects(Radau{});
 }
 TEST(SensitivitiesOfStages, RefuseParametersThatTouchMoreThanTheySay) {
   auto parameters = touched_chain::of_chain(true);

@@ -1,4 +1,4 @@
-// Parameters whose `touches` omit an object that depends on them later in the run: a contact before its first touch,
+// Parameters whose `affects` omit an object that depends on them later in the run: a contact before its first touch,
 // a load before its start.
 #include <polybody/gradients/gradient.hpp>
 
@@ -22,7 +22,7 @@
 
 using namespace polybody;
 
-namespace touches_test {
+namespace affects_test {
 
 using Names = std::vector<std::string>;
 using Touch = Contact<SphereOnPlane>;
@@ -184,4 +184,4 @@ TEST(Touches, ChangeNothingInJointCoordinates) {
   EXPECT_EQ(a, b);
 }
 
-}  // namespace touches_test
+}  // namespace affects_test

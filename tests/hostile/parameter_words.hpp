@@ -116,7 +116,7 @@ inline constexpr auto words_of<TabulatedLaw> = words("force", "damping");
 // integrators
 template <>
 inline constexpr auto words_of<NewtonOptions> =
-    words("max_iterations", "factorisation_cost", "always_refactor", "growths", "budget", "predictive_stop");
+    words("max_iterations", "factorisation_cost", "always_refactor", "max_growths", "budget", "predictive_stop");
 template <>
 inline constexpr auto words_of<GeneralisedAlpha> =
     words("rho_inf", "tolerance", "newton", "start_correction", "second_order_terms", "stabilised");

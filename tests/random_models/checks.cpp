@@ -221,7 +221,7 @@ class Examination {
       double const sign = owner(j.b) < 0 ? -1.0 : 1.0;
       total.add(sign * w.f, sign * w.m, frame(j.b).r);
     }
-    for (Action<double> const& action : s.data().actions) {
+    for (AppliedWrench<double> const& action : s.data().actions) {
       bool const alone = layout.forces[std::size_t(action.source)].markers.size() == 1;
       Index const on = owner(action.marker);
       Frame<double> const& at = frame(action.marker);

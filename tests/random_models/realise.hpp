@@ -379,7 +379,7 @@ struct Realiser<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>> {
   static RunSystems systems_of_run(M const& model) {
     constexpr auto asked = with < Capabilities::compliance | Capabilities::coordinate_rates > ;
     RunSystems out{std::make_unique<System>(stepped_system(model, asked)), nullptr};
-    if constexpr (M::eliminates) out.whole = std::make_unique<System>(model, with<Capabilities::compliance>);
+    if constexpr (M::eliminates) out.full = std::make_unique<System>(model, with<Capabilities::compliance>);
     return out;
   }
   static Built realise(Plan const& plan, Trap& trap) {

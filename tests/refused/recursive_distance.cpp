@@ -1,4 +1,4 @@
-// refused: Recursive needs a joint whose motion has coordinates
+// refused: JointCoordinates needs a joint whose motion has coordinates
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/joints/distance.hpp>
 #include <polybody/joints/policies/joint_coordinates.hpp>

@@ -39,7 +39,7 @@ void expect_impact_of_cables(double h, I const& integrator) {
   MatX const expected = by_differences(make, of_impact, integrator);
   for (Index j = 0; j < expected.cols(); ++j) {
     double const size = of_impact[std::size_t(j)].size();
-    EXPECT_LT(size * (s.slopes.back().col(j) - expected.col(j)).norm(), 1e-7) << of_impact[std::size_t(j)].name;
+    EXPECT_LT(size * (s.derivatives.back().col(j) - expected.col(j)).norm(), 1e-7) << of_impact[std::size_t(j)].name;
     EXPECT_GT(size * expected.col(j).norm(), 1e-3) << of_impact[std::size_t(j)].name;
   }
 }
@@ -67,7 +67,7 @@ inline std::vector<Parameter> const of_nut{
     {"pitch [m/rad]", 0.02}, {"mass [kg]", 2.0}, {"spin [rad/s]", 20.0}, {"stop [m]", 0.03}};
 /// The derivatives equal those of the closed form.
 template <class I>
-void expect_slopes_of_nut(I const& integrator) {
+void expect_derivatives_of_nut(I const& integrator) {
   // J ω˙ + m p² ω˙ = −m g p, first from ω₀ and then, at p θ = z₁, from −ω/2
   auto const closed_form = [](std::vector<double> const& p) {
     double const rate = -p[1] * 9.81 * p[0] / (0.01 + p[1] * p[0] * p[0]);
@@ -87,7 +87,7 @@ void expect_slopes_of_nut(I const& integrator) {
       near[j] *= 1.0 + 1e-3 * FourPoints::places[k];
       slope += FourPoints::weights[k] / (1e-3 * p[j]) * closed_form(near);
     }
-    EXPECT_LT((s.slopes.back().col(Index(j)) - slope).norm(), 1e-8 * slope.norm()) << parameters[j].name;
+    EXPECT_LT((s.derivatives.back().col(Index(j)) - slope).norm(), 1e-8 * slope.norm()) << parameters[j].name;
   }
 }
 

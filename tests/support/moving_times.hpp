@@ -78,10 +78,10 @@ void expect_fall(I const& integrator) {
   EXPECT_NEAR(by[1], 0.5 * t, 1e-11);
   EXPECT_EQ(by[2], 0.0);
   // at the end of the run the ball is on the floor for all parameters, with the speed √(2gh)
-  EXPECT_NEAR(s.slopes.back()(0, 0), 0.0, 1e-11);
-  EXPECT_NEAR(s.slopes.back()(0, 1), 0.0, 1e-11);
-  EXPECT_NEAR(s.slopes.back()(1, 0), -1.0 / std::sqrt(2.0 * g), 1e-11);
-  EXPECT_NEAR(s.slopes.back()(1, 1), -g / std::sqrt(2.0 * g), 1e-11);
+  EXPECT_NEAR(s.derivatives.back()(0, 0), 0.0, 1e-11);
+  EXPECT_NEAR(s.derivatives.back()(0, 1), 0.0, 1e-11);
+  EXPECT_NEAR(s.derivatives.back()(1, 0), -1.0 / std::sqrt(2.0 * g), 1e-11);
+  EXPECT_NEAR(s.derivatives.back()(1, 1), -g / std::sqrt(2.0 * g), 1e-11);
   // times before the impact do not depend on the parameters
   EXPECT_TRUE(s.time_derivatives[s.times.size() / 2].isZero(0.0));
 }
@@ -106,7 +106,7 @@ void expect_bounces(I const& integrator) {
   for (std::size_t j = 0; j < 3; ++j) {
     EXPECT_NEAR(s.time_derivatives.back()[Index(j)], 0.0, 1e-12);
     for (std::size_t i = 0; i < 2; ++i)
-      EXPECT_NEAR(s.slopes.back()(Index(i), Index(j)),
+      EXPECT_NEAR(s.derivatives.back()(Index(i), Index(j)),
                   slope_of([&](auto const& q) { return flight(q, 2, 1.7)[i]; }, p, j), 1e-9)
           << i << ' ' << j;
   }
@@ -142,7 +142,7 @@ void expect_push(I const& integrator) {
   // the finite difference moves the breakpoint by 0.06 steps, or by 6
   for (double const scale : {0.75, 75.0}) {
     SensitivityResult const s = sensitivities(pushed, {{"T [s]", T, scale}, {"F [N]", F}, {"m [kg]", m}}, integrator);
-    MatX const& by = s.slopes.back();
+    MatX const& by = s.derivatives.back();
     EXPECT_NEAR(by(0, 0), F / m * (end - T), 1e-11);
     EXPECT_NEAR(by(1, 0), F / m, 1e-11);
     EXPECT_NEAR(by(2, 0), 0.0, 1e-11);
@@ -152,8 +152,8 @@ void expect_push(I const& integrator) {
     std::size_t const at = std::size_t(std::find(s.times.begin(), s.times.end(), T) - s.times.begin());
     ASSERT_LT(at, s.times.size());
     EXPECT_NEAR(s.time_derivatives[at][0], 1.0, 1e-12);
-    EXPECT_NEAR(s.slopes[at](0, 0), F * T / m, 1e-11);
-    EXPECT_NEAR(s.slopes[at](2, 0), 0.0, 1e-11);  // after the end of the push
+    EXPECT_NEAR(s.derivatives[at](0, 0), F * T / m, 1e-11);
+    EXPECT_NEAR(s.derivatives[at](2, 0), 0.0, 1e-11);  // after the end of the push
     EXPECT_NEAR(s.time_derivatives.back()[0], 0.0, 1e-12);
   }
 }
@@ -191,15 +191,15 @@ inline std::vector<Parameter> const of_drive{
 /// Comparison with finite differences of runs. The differences, scaled by `scales`, keep each breakpoint and event
 /// within its step.
 template <class Make, class I>
-void expect_slopes_of_moving_runs(Make const& make, std::vector<Parameter> const& parameters, I const& integrator,
-                                  double tolerance, std::vector<double> const& scales) {
+void expect_derivatives_of_moving_runs(Make const& make, std::vector<Parameter> const& parameters, I const& integrator,
+                                       double tolerance, std::vector<double> const& scales) {
   SensitivityResult const s = sensitivities(make, parameters, integrator);
   auto near = parameters;
   for (std::size_t j = 0; j < scales.size(); ++j) near[j].scale = scales[j];
   MatX const expected = by_differences(make, near, integrator);
   for (Index j = 0; j < expected.cols(); ++j)
-    EXPECT_LT((s.slopes.back().col(j) - expected.col(j)).norm(), tolerance * expected.col(j).norm())
-        << parameters[std::size_t(j)].name << ": " << s.slopes.back().col(j).transpose() << " for "
+    EXPECT_LT((s.derivatives.back().col(j) - expected.col(j)).norm(), tolerance * expected.col(j).norm())
+        << parameters[std::size_t(j)].name << ": " << s.derivatives.back().col(j).transpose() << " for "
         << expected.col(j).transpose();
 }
 
@@ -284,9 +284,9 @@ void expect_lengths_as_parameters(I const& integrator, double step) {
   EXPECT_NEAR(s.time_derivatives[1][2], 1.0, 1e-12);
   EXPECT_NEAR(s.time_derivatives[2][1], 2.0, 1e-12);
   // the round-off is one unit in the last place of 100 m, over the size of the differences
-  EXPECT_NEAR(s.slopes.back()(0, 0), v, 1e-9);
-  EXPECT_NEAR(s.slopes.back()(0, 1), 0.0, 1e-9);
-  EXPECT_NEAR(s.slopes.back()(0, 2), -v, 1e-9);
+  EXPECT_NEAR(s.derivatives.back()(0, 0), v, 1e-9);
+  EXPECT_NEAR(s.derivatives.back()(0, 1), 0.0, 1e-9);
+  EXPECT_NEAR(s.derivatives.back()(0, 2), -v, 1e-9);
   // also of a rod, whose error depends on the step length; finite differences of its runs scatter by 2e-7
   auto const swung = [](P p) {
     auto scenario = stopped<Constraint>(std::array{1.2, 9.81, 10.0, 0.5});
@@ -294,8 +294,8 @@ void expect_lengths_as_parameters(I const& integrator, double step) {
     scenario.options.step = p[1];
     return scenario;
   };
-  expect_slopes_of_moving_runs(swung, {{"until [s]", 0.508}, {"step [s]", step}}, integrator, 5e-7,
-                               {0.025, 0.5 * step});
+  expect_derivatives_of_moving_runs(swung, {{"until [s]", 0.508}, {"step [s]", step}}, integrator, 5e-7,
+                                    {0.025, 0.5 * step});
 }
 
 // --- refusals ----------------------------------------------------------------------------------------------------

@@ -35,22 +35,22 @@ auto rated_links(double held) {
 }
 
 template <class Make, class I>
-void expect_direct_slopes(Make const& make, I const& integrator, double within) {
+void expect_direct_derivatives(Make const& make, I const& integrator, double within) {
   std::vector<Parameter> const& parameters = parameters_of_two_links;
   SensitivityResult const direct = sensitivities(make, parameters, integrator);
-  Gradient const g = gradient(make, parameters, integrator);
+  GradientResult const g = gradient(make, parameters, integrator);
   EXPECT_LT(g.left, 1e-10);
   double value = direct.values.back()[0];
-  VecX expected = direct.slopes.back().row(0).transpose();
+  VecX expected = direct.derivatives.back().row(0).transpose();
   for (std::size_t k = 1; k < direct.times.size(); ++k) {
     double const half = 0.5 * (direct.times[k] - direct.times[k - 1]);
     value += half * (direct.values[k][1] + direct.values[k - 1][1]);
-    expected += half * (direct.slopes[k].row(1) + direct.slopes[k - 1].row(1)).transpose();
+    expected += half * (direct.derivatives[k].row(1) + direct.derivatives[k - 1].row(1)).transpose();
   }
   EXPECT_NEAR(g.value, value, 1e-13 * std::abs(value));
   for (Index j = 0; j < expected.size(); ++j) {
     double const size = parameters[std::size_t(j)].size();
-    EXPECT_NEAR(size * g.slopes[j], size * expected[j], within * (std::abs(size * expected[j]) + 1.0))
+    EXPECT_NEAR(size * g.derivatives[j], size * expected[j], within * (std::abs(size * expected[j]) + 1.0))
         << parameters[std::size_t(j)].name;
   }
 }

@@ -145,7 +145,7 @@ struct DampedMass {
     return 2.0 + std::exp(-delta * t) * (std::cos(w * t) + delta / w * std::sin(w * t));
   }
   /// ∂x/∂k and ∂x/∂c, by fourth-order differences of the closed form.
-  static std::array<double, 2> slopes(double k, double c, double t) {
+  static std::array<double, 2> derivatives(double k, double c, double t) {
     std::array<double, 2> out{};
     double const e = 1e-3;
     for (std::size_t i = 0; i < 4; ++i) {
@@ -191,8 +191,8 @@ State stepped(S& full, State x, double h) {
 /// A run of steps of one length, with its derivatives by linearised steps and by finite differences of the run.
 struct DerivedSteps {
   State end;
-  std::vector<State> slopes, differences;  // derivatives with respect to the parameters
-  double left = 0.0;                       // error estimate from the last corrections of the steps
+  std::vector<State> derivatives, differences;  // derivatives with respect to the parameters
+  double left = 0.0;                            // error estimate from the last corrections of the steps
 };
 
 /// The increment of the differences.
@@ -227,7 +227,7 @@ DerivedSteps derive_steps(Make const& make, std::vector<Parameter> const& parame
   };
 
   DerivedSteps out;
-  out.slopes = differences();
+  out.derivatives = differences();
   Slope slope(full.made.model, full.system, full.method);
   for (int n = 0; n < count; ++n) {
     State const before = full.x;
@@ -237,7 +237,7 @@ DerivedSteps derive_steps(Make const& make, std::vector<Parameter> const& parame
     for (std::size_t first = 0; first < parameters.size(); first += Slope::lanes) {
       std::vector<State*> directions;
       for (std::size_t j = first; j < std::min(first + Slope::lanes, parameters.size()); ++j)
-        directions.push_back(&out.slopes[j]);
+        directions.push_back(&out.derivatives[j]);
       out.left = std::max(out.left, slope.advance(step, directions, [&](EvaluationPoint<> const& x, std::size_t l) {
         std::size_t const j = first + l;
         for (std::size_t k = 0; k < 4; ++k) beside[4 * j + k]->equations.evaluate(beside[4 * j + k]->system, x);
@@ -257,14 +257,15 @@ DerivedSteps derive_steps(Make const& make, std::vector<Parameter> const& parame
 /// round-off of the velocities, accelerations and multipliers of a state over a thousandth. This round-off is large
 /// because these values are sums of large forces. Differences divide by a thousandth of the size of the parameter.
 /// Coordinates have 5e-12.
-inline void expect_slopes_of_steps(DerivedSteps const& run, std::vector<Parameter> const& parameters, double rounding) {
+inline void expect_derivatives_of_steps(DerivedSteps const& run, std::vector<Parameter> const& parameters,
+                                        double rounding) {
   EXPECT_LT(run.left, 1e-9);
   for (std::size_t j = 0; j < parameters.size(); ++j)
     for (auto const& [name, part, of_state] : {std::tuple{"q", &State::q, 5e-12},
                                                {"v", &State::v, rounding},
                                                {"a", &State::a, rounding},
                                                {"λ", &State::lambda, rounding}}) {
-      VecX const &slope = run.slopes[j].*part, &expected = run.differences[j].*part;
+      VecX const &slope = run.derivatives[j].*part, &expected = run.differences[j].*part;
       double const off = (slope - expected).norm(), size = expected.norm(),
                    state = (run.end.*part).norm() / parameters[j].size();
       EXPECT_LE(off, 1e-8 * size + of_state * state) << parameters[j].name << ", " << name;
@@ -299,8 +300,8 @@ State slope_by_length(S& full, Slope& slope, State const& x, double h) {
 /// The derivative with respect to the length of the third step equals that of differences of steps of nearby lengths.
 /// The tolerance is 1e-8 relative, plus `rounding` of the state over the increment of the differences.
 template <class Slope, class Make, class I>
-void expect_slopes_by_length(Make const& make, std::vector<Parameter> const& parameters, I const& integrator, double h,
-                             double rounding) {
+void expect_derivatives_by_length(Make const& make, std::vector<Parameter> const& parameters, I const& integrator,
+                                  double h, double rounding) {
   std::vector<double> values;
   for (Parameter const& p : parameters) values.push_back(p.value);
   Steps<decltype(make(std::span<double const>())), I> full(make(values), integrator, h);
@@ -321,17 +322,18 @@ void expect_slopes_by_length(Make const& make, std::vector<Parameter> const& par
 
 /// The error of (k ∂x/∂k, c ∂x/∂c) at t = 1 s with steps of one length.
 template <class Slope, class I>
-double error_of_slopes(I const& integrator, int steps) {
+double error_of_derivatives(I const& integrator, int steps) {
   double const k = 50.0, c = 3.0;
   std::vector<Parameter> const parameters{{"k [N/m]", k}, {"c [N s/m]", c}};
   DerivedSteps const run = derive_steps<Slope>(DampedMass{}, parameters, integrator, 1.0 / steps, steps);
-  auto const expected = DampedMass::slopes(k, c, 1.0);
-  return std::hypot(k * (run.slopes[0].q[0] - expected[0]), c * (run.slopes[1].q[0] - expected[1]));
+  auto const expected = DampedMass::derivatives(k, c, 1.0);
+  return std::hypot(k * (run.derivatives[0].q[0] - expected[0]), c * (run.derivatives[1].q[0] - expected[1]));
 }
 /// Half the step leaves 2^−order of the error.
 template <class Slope, class I>
-void expect_order_of_slopes(I const& integrator, int steps) {
-  double const coarse = error_of_slopes<Slope>(integrator, steps), fine = error_of_slopes<Slope>(integrator, 2 * steps);
+void expect_order_of_derivatives(I const& integrator, int steps) {
+  double const coarse = error_of_derivatives<Slope>(integrator, steps),
+               fine = error_of_derivatives<Slope>(integrator, 2 * steps);
   EXPECT_NEAR(std::log2(coarse / fine), I::order, 0.2) << coarse << ", " << fine;
 }
 

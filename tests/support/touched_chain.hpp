@@ -42,7 +42,7 @@ inline auto const chain = [](P p) {
   State const start = model.reference_state();
   return with_objective(Scenario<M>{std::move(model), start, {.end_time = 0.1, .step = 2e-3}}, height);
 };
-inline std::vector<Parameter> of_chain(bool with_touches) {
+inline std::vector<Parameter> of_chain(bool with_affects) {
   std::vector<Parameter> all;
   for (int i = 0; i < 5; ++i) {
     std::string const n = std::to_string(i), next = std::to_string(i + 1);
@@ -52,8 +52,8 @@ inline std::vector<Parameter> of_chain(bool with_touches) {
     all.push_back({"density " + n + " [kg/m³]", 7800.0, 0.0, {"rod " + n}});
     all.push_back({"stiffness " + n + " [N/m]", 1e5, 0.0, {"pin " + n}});
   }
-  if (!with_touches)
-    for (Parameter& p : all) p.touches.clear();
+  if (!with_affects)
+    for (Parameter& p : all) p.affects.clear();
   return all;
 }
 
@@ -64,15 +64,15 @@ inline auto chain_with_angle(P p) {
   return scenario;
 }
 
-/// Derivatives of runs of the chain do not depend on the names in `touches`.
+/// Derivatives of runs of the chain do not depend on the names in `affects`.
 template <class I>
-void expect_same_slopes_with_touches(I const& integrator) {
+void expect_same_derivatives_with_affects(I const& integrator) {
   SensitivityResult const a = sensitivities(chain_with_angle, of_chain(true), integrator),
                           b = sensitivities(chain_with_angle, of_chain(false), integrator);
   for (Index j = 0; j < 15; ++j) {
     double const size = of_chain(true)[std::size_t(j)].size();
-    EXPECT_NEAR(size * a.slopes.back()(0, j), size * b.slopes.back()(0, j), 1e-11) << j;
-    EXPECT_GT(std::abs(size * a.slopes.back()(0, j)), 1e-8) << j;
+    EXPECT_NEAR(size * a.derivatives.back()(0, j), size * b.derivatives.back()(0, j), 1e-11) << j;
+    EXPECT_GT(std::abs(size * a.derivatives.back()(0, j)), 1e-8) << j;
   }
 }
 

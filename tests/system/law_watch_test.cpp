@@ -26,10 +26,10 @@ constexpr double pi = std::numbers::pi;
 /// Any function of time, with declared breakpoints.
 struct Any {
   std::function<Motion(double)> motion;
-  std::vector<double> breakpoints = {};
+  std::vector<double> jumps = {};
 
   Motion operator()(double t) const { return motion(t); }
-  std::vector<double> breakpoints() const { return breakpoints; }
+  std::vector<double> breakpoints() const { return jumps; }
 };
 Any step_to(double value) {
   return {[=](double t) { return Motion{t < 0.5 ? 0.0 : value, 0.0, 0.0}; }};
@@ -106,7 +106,7 @@ TEST(LawWatch, RefusesDerivativesOfAnotherFunction) {
 
 TEST(LawWatch, AcceptsABreakpointThatIsDeclared) {
   Any declared = kink;
-  declared.breakpoints = {0.5};
+  declared.jumps = {0.5};
   EXPECT_EQ(said(GeneralisedAlpha{}, declared).message, "");
   EXPECT_EQ(said(EnergyMomentum{}, declared).message, "");
   Said const s = said(RungeKutta4<Projection>{}, kink, 1e-3, {0.5});  // declared in the options of the run

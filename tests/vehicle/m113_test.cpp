@@ -202,7 +202,7 @@ TEST(M113, DriveRestsForOneSecondAndRampsForSeven) {
           drive.integral(10.0) * m113::rolling_radius, distance, 0.05,
           {equals("speed", speed) + equals(", rounding", rounding)});
     }
-  EXPECT_EQ(m113::drive(25.0).corners(), (std::vector{1.0, 8.0}));
+  EXPECT_EQ(m113::drive(25.0).breakpoints(), (std::vector{1.0, 8.0}));
 }
 
 // The horn's box is 75 mm high. The middle of its upper face touches a rim, as the links are on both sides of it.

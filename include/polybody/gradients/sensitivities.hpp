@@ -3,7 +3,7 @@
 /// Derivatives of a whole run with respect to numbers of its model, by direct differentiation of its steps:
 ///
 ///     auto const make = [](std::span<double const> p) { … return Scenario<M>{model, start, options, outputs}; };
-///     Sensitivities const s = sensitivities(make, {{"length [m]", 1.0}}, GeneralisedAlpha{});
+///     SensitivityResult const s = sensitivities(make, {{"length [m]", 1.0}}, GeneralisedAlpha{});
 ///     s.slopes.back()(0, 0);   // of the first output by the first parameter at the end of the run
 ///
 /// They are those of the discrete run: of the numbers that its steps give, not of the motion that these approximate. A

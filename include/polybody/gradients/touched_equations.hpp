@@ -118,9 +118,9 @@ template <class = void>
                      system.name_of(i),
                      " at t = ",
                      t,
-                     " s, and its `touches` names nothing that acts there. Add the object that depends on it (",
+                     " s, and its `affects` names nothing that acts there. Add the object that depends on it (",
                      unnamed_at(system, p, i),
-                     "), or leave `touches` empty."};
+                     "), or leave `affects` empty."};
 }
 
 }  // namespace polybody::detail

@@ -29,7 +29,7 @@ struct GeometryRefusal {
         { G::name } -> std::convertible_to<char const*>;
         { G::needs } -> std::convertible_to<MarkerKind>;
         { G::world } -> std::convertible_to<World>;
-      }, "A joint geometry needs static constants: char const* name, Observes needs and World world.");
+      }, "A joint geometry needs static constants: char const* name, MarkerKind needs and World world.");
   static_assert(
       requires { requires 1 <= G::rows&& G::rows <= 6; },
       "A joint geometry needs a static constant: int rows, from 1 to 6.");
@@ -40,13 +40,14 @@ struct GeometryRefusal {
   static_assert(
       requires(G const g, Frame<double> const a, double t) {
         { g.template constraint_function<double>(a, a, t) } -> std::same_as<ConstraintTerms<G::rows, double>>;
-      }, "A joint geometry needs gap<T>(a, b, t) const, which returns Gap<rows, T>.");
+      }, "A joint geometry needs constraint_function<T>(a, b, t) const, which returns ConstraintTerms<rows, T>.");
   static_assert(
       requires(G const g, Frame<double> const a, double t) {
         { g.template gamma<double>(a, a, t) } -> std::same_as<Vec<double, G::rows>>;
       },
-      "A joint geometry needs gamma<T>(a, b, t) const, which returns Vec<T, rows>: what its gap's second derivative "
-      "has beyond the accelerations.");
+      "A joint geometry needs gamma<T>(a, b, t) const, which returns Vec<T, rows>: the terms of the second derivative "
+      "of "
+      "its constraint function without accelerations.");
   static constexpr bool asked = true;
 };
 

@@ -28,7 +28,8 @@ struct StepUndo {
       throw InvalidInput{"The sizes of the state were changed since the last step, which ended at t = ", x.t,
                          " s. A run moves its state along: change entries of q and v in the `then` of an event."};
     if (!(x.t < end_time))
-      throw InvalidInput{"advance: the run has ended at t = ", x.t, " s. Ask done() before, or give a later `until`."};
+      throw InvalidInput{"advance: the run has ended at t = ", x.t,
+                         " s. Ask done() before, or give a later `end_time`."};
     throw InvalidInput{"The clock does not resolve a step of ", h, " s at t = ", x.t,
                        " s. Count the time of the run from a start near zero."};
   }

@@ -29,7 +29,7 @@ struct NewtonOptions {
   /// factorisation and an iteration.
   [[gnu::cold]] void check(std::string const& who) const {
     require_count(max_iterations, who, ": newton.max_iterations");
-    require_count(max_growths, who, ": newton.growths");
+    require_count(max_growths, who, ": newton.max_growths");
     if (!(factorisation_cost >= 0.0))
       throw InvalidInput{who, ": newton.factorisation_cost must be zero or positive, but is ", factorisation_cost, "."};
     if (budget != 0.0 && !(budget >= factorisation_cost + 1.0))

@@ -28,7 +28,7 @@ template <class F>
 F require_entry(F entry, char const* group) {
   if (!entry)
     throw InvalidInput{"This system was made without ", group,
-                       ". Name them where it is made: System(model, with<Entries::...>)."};
+                       ". Name them where it is made: System(model, with<Capabilities::...>)."};
   return entry;
 }
 

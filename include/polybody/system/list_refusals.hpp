@@ -21,7 +21,7 @@ struct BodyRefusal {
         { B::world } -> std::convertible_to<World>;
         { B::observes } -> std::convertible_to<MarkerKind>;
         { B::constant_mass } -> std::convertible_to<bool>;
-      }, "A body needs static constants: World world, Observes observes and bool constant_mass.");
+      }, "A body needs static constants: World world, MarkerKind observes and bool constant_mass.");
   static_assert(
       requires {
         { B::element_columns } -> std::convertible_to<int>;
@@ -80,7 +80,7 @@ struct BodyRefusal {
   static_assert(
       requires(B const b, typename B::Point p, Mat3 const& axes, In x, MarkerKinematics<double>& out) {
         b.template evaluate_marker<double>(p, axes, x, x, out);
-      }, "A body needs publish<T>(p, axes, q, v, published) const: frame, Jacobian and bias of a marker.");
+      }, "A body needs evaluate_marker<T>(p, axes, q, v, published) const: frame, Jacobian and bias of a marker.");
   static_assert(
       requires(B const b, typename B::Point p, In x, Wrench<double> w,
                Mat<double, B::point_columns, B::point_columns>& k) { b.load_stiffness(p, x, w, k); },
@@ -97,7 +97,7 @@ struct ForceRefusal {
       requires {
         { F::needs } -> std::convertible_to<MarkerKind>;
         { F::is_load } -> std::convertible_to<bool>;
-      }, "A force element needs static constants: Observes needs and bool is_load.");
+      }, "A force element needs static constants: MarkerKind needs and bool is_load.");
   static_assert(
       WrenchFunction<F> || states_of<F>() > 0,
       "A force element needs wrenches<T>(std::array<Frame<T>, markers> frames, double t) const, which returns "

@@ -208,7 +208,7 @@ void PlausibilityCheck::require_no_passage(System const& system, StepResult cons
           end.t,
           " s jumps over the contact \"",
           force.name,
-          "\": the bodies touch within it, but not at its ends. Take smaller steps, or halvings in the "
+          "\": the bodies touch within it, but not at its ends. Take smaller steps, or max_step_halvings in the "
           "options of the run."};
   }
   for (Passing& contact : contacts_) {

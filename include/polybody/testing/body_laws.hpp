@@ -261,8 +261,8 @@ struct BodyLaws {
   template <class T>
   Seen<T> see(typename B::Point const& p, Mat3 const& axes, VecXOf<T> const& q, VecXOf<T> const& v) const {
     Seen<T> s;
-    s.history.assign(std::size_t(6 * point_columns(body, p)), T(1e9));
-    s.marker.jacobian = s.history.data();
+    s.memory.assign(std::size_t(6 * point_columns(body, p)), T(1e9));
+    s.marker.jacobian = s.memory.data();
     s.marker.bias.setConstant(T(1e9));
     body.template evaluate_marker<T>(p, rolls ? axes : Mat3::Identity(), view(q), view(v), s.marker);
     s.jacobian = Mat<T, 6, Eigen::Dynamic>::Zero(6, nv);

@@ -94,7 +94,7 @@ AnyGeometry any_geometry() {
           .nonholonomic_equations = nonholonomic_equations<G>(),
           .planar = Case::planar,
           .opposite_ends = has_opposite_ends<G>(),
-          .gap = constraint_function,
+          .constraint_function = constraint_function,
           .gap_with_slopes = by_duals,
           .gamma = [](FramePair const& p, double t) { return VecX(geometry.template gamma<double>(p.a, p.b, t)); },
           .gradient = [](FramePair const& p, double t,

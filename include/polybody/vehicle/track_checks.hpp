@@ -68,7 +68,7 @@ template <class = void>
 Event derailed(TrackedVehicle const& vehicle, Side side) {
   return {.name = std::string(side == Side::left ? "the left" : "the right") + " track leaves its sprocket",
           .value = [&vehicle, side](State const& x) { return teeth_engaged(vehicle, x, side).holds() ? 1.0 : -1.0; },
-          .stops = true,
+          .terminal = true,
           .tolerance = 1e-4};
 }
 

@@ -60,7 +60,7 @@ class WithSliders : public B {
   /// Adds sliders at the positions `places` [m] to the body `line`.
   /// \throws InvalidInput for positions outside the body.
   WithSliders(B line, std::vector<double> places) : B(std::move(line)), places_(std::move(places)) {
-    for (double& s : places_) s = require_inside(s, B::length(), "Sliding: the place");
+    for (double& s : places_) s = require_inside(s, B::length(), "WithSliders: the place");
   }
 
   Index sliders() const { return Index(places_.size()); }  ///< number of sliders
@@ -68,7 +68,7 @@ class WithSliders : public B {
   /// \throws InvalidInput for a slider that the body does not have.
   Index column_of(Slider slider) const {
     if (slider.index < 0 || slider.index >= sliders())
-      throw InvalidInput{"Sliding: there is no slider ", slider.index, "; the body has ", sliders(),
+      throw InvalidInput{"WithSliders: there is no slider ", slider.index, "; the body has ", sliders(),
                          ", counted from 0."};
     return B::coordinates() + slider.index;
   }
@@ -145,7 +145,7 @@ class WithSliders : public B {
   Place place(double s) const {
     double const l = B::element_length();
     if (!(s >= -l && s <= B::length() + l) && std::isfinite(s))
-      throw SliderOutOfRange{"Sliding: a point has gone off the end of its body, to s = ", s, " on a length of ",
+      throw SliderOutOfRange{"WithSliders: a point has gone off the end of its body, to s = ", s, " on a length of ",
                              B::length(), ". End the run there by the event slider_end_event, or hold the point."};
     Index const last = B::elements() - 1, e = std::isfinite(s) ? std::clamp(Index(s / l), Index(0), last) : 0;
     return {B::first_column(e), B::axis_shape(s / l - double(e))};
