@@ -131,7 +131,7 @@ void work_for_accuracy() {
   for (int const links : {4, 16, 64}) {
     Tip const reference = second(links, 1e-12).tip;
     std::string const name = ", " + std::to_string(links) + " links";
-    Curve ours{.label = "polybody, Dormand-Prince" + name, .style = "linespoints", .colour = color};
+    Curve ours{.label = "polybody, Dormand-Prince" + name, .style = "linespoints", .colour = colour};
     for (double tolerance = 1e-4; tolerance > 1e-11; tolerance *= 0.1) {
       Second const one = second(links, tolerance);
       ours.x.push_back(apart(one.tip, reference));
@@ -140,7 +140,7 @@ void work_for_accuracy() {
     std::printf("  %4d links  %8.1f", links, 1e3 * time_at(ours, 1e-7));
 #ifdef POLYBODY_HAS_SIMBODY
     Tip const their_reference = simbody_second(links, 1e-12).tip;
-    Curve theirs{.label = "Simbody, Runge-Kutta-Merson" + name, .style = "dashed", .colour = color};
+    Curve theirs{.label = "Simbody, Runge-Kutta-Merson" + name, .style = "dashed", .colour = colour};
     for (double accuracy = 1e-3; accuracy > 1e-9; accuracy *= 0.1) {
       Second const one = simbody_second(links, accuracy);
       theirs.x.push_back(apart(one.tip, their_reference));
@@ -153,7 +153,7 @@ void work_for_accuracy() {
 #endif
     std::printf("\n");
     figure.curves.push_back(std::move(ours));
-    ++color;
+    ++colour;
   }
   write_panels({figure}, 1, "trees");
 }

@@ -125,8 +125,8 @@ double roll_up(Options const& o, Figure& shapes, std::string const& name, Index 
   EquilibriumReport const report = equilibrium(beam.model, x, {.load_steps = 10});
   Curve c = shape_of(beam.model, x, beam.beam, length, 120);
   c.label = name;
-  c.colour = color;
-  c.style = color == 0 ? "lines" : "dashed";
+  c.colour = colour;
+  c.style = colour == 0 ? "lines" : "dashed";
   shapes.curves.push_back(c);
   double const open = position(beam.model, x, beam.beam.at(length)).norm();
   say("roll-up of " + name, "elements", double(elements));

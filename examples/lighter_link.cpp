@@ -48,7 +48,7 @@ void print_crosswise(std::vector<Candidate> const& candidates, std::vector<Light
 }
 
 Curve counted(std::vector<double> const& y, std::string label, int colour, std::string style) {
-  Curve c{.y = y, .label = std::move(label), .style = std::move(style), .colour = color};
+  Curve c{.y = y, .label = std::move(label), .style = std::move(style), .colour = colour};
   for (std::size_t i = 0; i < y.size(); ++i) c.x.push_back(double(i + 1));
   return c;
 }

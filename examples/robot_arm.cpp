@@ -55,13 +55,13 @@ void figure_2_4(Options const& o) {
   int colour = 0;
   for (double ramp : {o.slow_ramp, 4.5}) {
     Ramp const law{.target = angle, .duration = ramp};
-    Curve c{.label = color == 0 ? "slow (Figures 2.5, 2.6)" : "fast (Figures 2.7, 2.8)", .colour = color};
+    Curve c{.label = colour == 0 ? "slow (Figures 2.5, 2.6)" : "fast (Figures 2.7, 2.8)", .colour = colour};
     for (double t : {0.0, ramp, o.slow_ramp * 1.2}) {
       c.x.push_back(t);
       c.y.push_back(law(t).value);
     }
     f.curves.push_back(c);
-    ++color;
+    ++colour;
   }
   draw(f, o.out / "figure_2_4_angle", !o.no_plot);
 }

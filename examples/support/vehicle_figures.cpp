@@ -61,7 +61,7 @@ double yaw_rate(Runs const& runs, std::size_t run, double from) {
 // A curve of every `every`-th sample, so that files stay small.
 Curve curve(std::string label, std::vector<double> const& x, std::vector<double> const& y, int colour, double scale,
             std::size_t every) {
-  Curve c{.label = std::move(label), .colour = color};
+  Curve c{.label = std::move(label), .colour = colour};
   for (std::size_t i = 0; i < std::min(x.size(), y.size()); i += every) {
     c.x.push_back(x[i]);
     c.y.push_back(scale * y[i]);

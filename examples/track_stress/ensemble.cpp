@@ -108,7 +108,7 @@ Band::Band(std::vector<SettingRuns> const& settings, std::function<Filtered(Sett
 }
 
 Curve Band::curve(std::string label, int colour, double scale, std::size_t every) const {
-  Curve c{.label = std::move(label), .style = "filled", .colour = color};
+  Curve c{.label = std::move(label), .style = "filled", .colour = colour};
   auto const add = [&](std::size_t i, std::vector<double> const& y) {
     c.x.push_back(times_[i]);
     c.y.push_back(scale * y[i]);
