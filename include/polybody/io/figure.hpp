@@ -63,7 +63,7 @@ void check(Figure const& figure) {
   check_range(figure.y_range, figure.log_y, "y_range");
   bool visible = false;
   std::string const title = where;
-  for (auto const& [x, y, label, style, color, width] : figure.curves) {
+  for (auto const& [x, y, label, style, colour, width] : figure.curves) {
     (where = title).append(", curve '").append(label).append("'");
     need(x.size() == y.size(), "x has " + std::to_string(x.size()) + " numbers and y has " + std::to_string(y.size()) +
                                    "; they must be as many");
@@ -72,7 +72,7 @@ void check(Figure const& figure) {
     need(std::ranges::all_of(y, is_finite), "a number in y is not finite");
     need(std::ranges::count(curve_styles, style) == 1,
          "style '" + style + "' is none of lines, points, linespoints, dashed, steps, filled");
-    need(color >= -1, "color must be 0, 1, 2 ... or -1 for one by its place");
+    need(colour >= -1, "colour must be 0, 1, 2 ... or -1 for one by its place");
     need(is_finite(width) && width > 0, "width must be positive");
     for (std::size_t i = 0; i < x.size() && !visible; ++i)
       visible = (!figure.log_x || x[i] > 0) && (!figure.log_y || y[i] > 0);

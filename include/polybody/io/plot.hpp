@@ -91,12 +91,12 @@ std::string script_text(Figure const& figure, std::string const& data, std::size
   text += "set xrange " + range(figure.x_range) + "\nset yrange " + range(figure.y_range) + "\nplot ";
   for (std::size_t i = 0; i < figure.curves.size(); ++i) {
     Curve const& curve = figure.curves[i];
-    std::size_t const color = (curve.colour < 0 ? i : std::size_t(curve.colour)) % palette.size();
+    std::size_t const colour = (curve.colour < 0 ? i : std::size_t(curve.colour)) % palette.size();
     auto const style = std::size_t(std::ranges::find(curve_styles, curve.style) - curve_styles.begin());
     text += (i ? ", \\\n     " : "") + gnuplot_text(data) + " index " + std::to_string(block + i) + " using 1:2 with " +
             std::string(gnuplot_styles[style]);
-    text += " linewidth " + all_digits(curve.width) + " linecolor rgb '" + std::string(palette[color]) + "'";
-    if (curve.style.ends_with("points")) text += " pointtype " + std::to_string(point_types[color]) + " pointsize 1.5";
+    text += " linewidth " + all_digits(curve.width) + " linecolor rgb '" + std::string(palette[colour]) + "'";
+    if (curve.style.ends_with("points")) text += " pointtype " + std::to_string(point_types[colour]) + " pointsize 1.5";
     text += curve.label.empty() ? " notitle" : " title " + gnuplot_text(curve.label);
   }
   return text + '\n';
