@@ -2,6 +2,8 @@
 /// \file
 /// All headers of polybody: one model, every formulation.
 
+#include <polybody/math/compiler.hpp>  // first: a compiler that does not fit gets one sentence
+
 // The headers that reject invalid combinations come first: a compiler's message begins with the chain of includes.
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/relative_coordinates.hpp>

@@ -1,6 +1,7 @@
 """House rules for the headers:  check.py RULE INCLUDE_DIR [--shrink]
 
 floors     a header includes only its own layer or a lower one
+compiler   a header that includes no other one of polybody includes math/compiler.hpp, the check of compiler and options
 words      no #define and no `virtual` in the code (comments may use the words)
 length     no header above 400 lines; reports the median and the 90 % line
 umbrella   polybody.hpp reaches every header, except those that give a reason
@@ -92,6 +93,15 @@ def floors(texts):
                     f"{name} (floor {FLOORS[folder(name)]}) looks up at "
                     f"{other} (floor {FLOORS[folder(other)]})"
                 )
+
+
+def compiler(texts):
+    check = "polybody/math/compiler.hpp"
+    if check not in texts:
+        yield f"{check} does not exist"
+    for name in texts:
+        if name not in (check, "polybody/version.hpp") and not any(other in texts for other in includes(name, texts)):
+            yield f"{name} includes no header of polybody: include {check}, so that old compilers get its sentence"
 
 
 def words(texts):
@@ -286,7 +296,7 @@ def system(texts):
         yield f"{name}: BasicSystem has {count} public member functions, more than {MAX_SYSTEM_FUNCTIONS}"
 
 
-RULES = {f.__name__: f for f in (floors, words, length, umbrella, functions, waist, comments, system)}
+RULES = {f.__name__: f for f in (floors, compiler, words, length, umbrella, functions, waist, comments, system)}
 
 
 def main(rule, root, shrinks=False):

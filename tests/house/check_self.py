@@ -10,8 +10,9 @@ import cpp_reader
 GOOD = {
     "polybody/polybody.hpp": "#include <polybody/bodies/rigid/rigid.hpp>\n",
     "polybody/bodies/rigid/rigid.hpp": '#include "polybody/math/so3.hpp"\n#include "mass.hpp"\n',
-    "polybody/bodies/rigid/mass.hpp": "#include <Eigen/Dense>\n#include <vector>\n",
-    "polybody/math/so3.hpp": '// no #define, virtual work\n/* virtual */ auto s = "virtual";\n',
+    "polybody/bodies/rigid/mass.hpp": "#include <Eigen/Dense>\n#include <vector>\n#include <polybody/math/compiler.hpp>\n",
+    "polybody/math/compiler.hpp": "#if __cplusplus < 202002L\n#error\n#endif\n",
+    "polybody/math/so3.hpp": '#include <polybody/math/compiler.hpp>\n// no #define, virtual work\n/* virtual */ auto s = "virtual";\n',
 }
 
 
@@ -42,6 +43,12 @@ class Check(unittest.TestCase):
             self.assertEqual(len(self.found("floors", math__so3=line)), 1, line)
         self.assertEqual(len(self.found("floors", cellar__x="")), 1)
         self.assertEqual(self.found("floors", math__so3="// #include <polybody/bodies/rigid/rigid.hpp>"), [])
+
+    def test_compiler(self):
+        for text in ("", "#include <vector>\n", "// #include <polybody/math/compiler.hpp>"):
+            self.assertEqual(len(self.found("compiler", math__so3=text)), 1, text)
+        self.assertEqual(self.found("compiler", math__so3='#include "mass.hpp"\n#include <polybody/bodies/rigid/mass.hpp>'), [])
+        self.assertEqual(self.found("compiler", version=""), [])
 
     def test_words(self):
         self.assertEqual(len(self.found("words", math__so3="int a;\n# define PI 3\n")), 1)

@@ -1,13 +1,20 @@
 # cmake -DCOMPILER=<c++> -DSOURCE=<file.cpp> -DINCLUDES=<dir|dir|...> -DPRECOMPILED=<header or nothing> -DLINES=<n> -P
 # check.cmake
 # Succeeds if the compiler accepts SOURCE, or refuses it with the sentence of its first line among the first n lines
-# of the message.
+# of the message. The compiler takes the options of the second line, `// options: …`, or -std=c++20.
 
 file(STRINGS ${SOURCE} first_line LIMIT_COUNT 1)
 if(first_line MATCHES "^// refused: (.+)$")
   set(expected "${CMAKE_MATCH_1}")
 elseif(NOT first_line STREQUAL "// accepted")
   message(FATAL_ERROR "${SOURCE}: the first line must be '// refused: <regex>' or '// accepted'")
+endif()
+
+file(STRINGS ${SOURCE} options REGEX "^// options: ")
+set(language -std=c++20)
+if(options)
+  string(REGEX REPLACE "^// options: " "" options "${options}")
+  separate_arguments(language UNIX_COMMAND "${options}")
 endif()
 
 string(REGEX REPLACE "([^|]+)\\|?" "-isystem;\\1;" include_flags "${INCLUDES}")
@@ -18,7 +25,7 @@ endif()
 
 # Only the options that a program needs, so the message is that of a user's build. LC_ALL gives plain ASCII quotes.
 execute_process(
-  COMMAND ${CMAKE_COMMAND} -E env LC_ALL=C ${COMPILER} -std=c++20 -fsyntax-only ${include_flags} ${SOURCE}
+  COMMAND ${CMAKE_COMMAND} -E env LC_ALL=C ${COMPILER} ${language} -fsyntax-only ${include_flags} ${SOURCE}
   RESULT_VARIABLE result
   OUTPUT_VARIABLE message
   ERROR_VARIABLE message)

@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include <polybody/math/compiler.hpp>
+
 namespace polybody {
 
 /// What going back over the steps of a run took.

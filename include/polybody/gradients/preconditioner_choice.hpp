@@ -8,6 +8,8 @@
 #include <limits>
 #include <vector>
 
+#include <polybody/math/compiler.hpp>
+
 namespace polybody {
 
 /// Factors near the derivative of a step.

@@ -1,6 +1,8 @@
 #pragma once
 #include <array>
 
+#include <polybody/math/compiler.hpp>
+
 namespace polybody::detail {
 
 /// c_i, a_ij and b_j of the classical method of order four.

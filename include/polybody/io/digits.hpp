@@ -2,6 +2,8 @@
 #include <charconv>
 #include <string>
 
+#include <polybody/math/compiler.hpp>
+
 namespace polybody::detail {
 
 /// Appends x to a text, in the shortest form that reads back to the same double.

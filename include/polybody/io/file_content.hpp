@@ -7,6 +7,8 @@
 #include <optional>
 #include <string>
 
+#include <polybody/math/compiler.hpp>
+
 namespace polybody::detail {
 
 /// Returns the content of a file, or nothing if it cannot be read, for example because it is a folder.

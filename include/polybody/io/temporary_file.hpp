@@ -18,6 +18,8 @@
 #include <string>
 #include <utility>
 
+#include <polybody/math/compiler.hpp>
+
 namespace polybody::detail {
 
 /// Unused hidden name in the folder of `file`: ".polybody-<16 hex digits>.tmp".

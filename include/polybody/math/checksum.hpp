@@ -2,6 +2,8 @@
 #include <cstdint>
 #include <string_view>
 
+#include <polybody/math/compiler.hpp>
+
 namespace polybody {
 
 /// FNV-1a hash of 64 bits [Fowler, Noll & Vo; draft-eastlake-fnv]: h ← (h xor byte)·p for each of `bytes`. A change

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <concepts>
 
+#include <polybody/math/compiler.hpp>
+
 namespace polybody {
 
 /// Dual number x + Σ dᵢ εᵢ with εᵢεⱼ = 0: a value `v` and `N` partial derivatives `d`.

@@ -9,6 +9,8 @@
 #include <string>
 #include <string_view>
 
+#include <polybody/math/compiler.hpp>
+
 namespace polybody {
 
 /// Text of `x` in messages: up to `digits` digits, with a decimal point in every locale.

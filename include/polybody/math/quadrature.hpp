@@ -5,6 +5,8 @@
 
 #include <array>
 
+#include <polybody/math/compiler.hpp>
+
 namespace polybody {
 
 /// Integration point ξ ∈ [0, 1] and its weight. The weights of a rule have the sum one.

@@ -11,6 +11,8 @@
 #include <type_traits>
 #include <utility>
 
+#include <polybody/math/compiler.hpp>
+
 namespace polybody {
 namespace detail {
 

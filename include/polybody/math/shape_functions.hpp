@@ -4,6 +4,8 @@
 
 #include <array>
 
+#include <polybody/math/compiler.hpp>
+
 namespace polybody {
 
 /// Values of `n` shape functions and their derivatives with respect to the arc length x = ξ l.

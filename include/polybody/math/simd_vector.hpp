@@ -9,6 +9,8 @@
 #include <concepts>
 #include <cstring>
 
+#include <polybody/math/compiler.hpp>
+
 namespace polybody {
 
 namespace detail {

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <type_traits>
 
+#include <polybody/math/compiler.hpp>
+
 namespace polybody {
 
 /// List of types.

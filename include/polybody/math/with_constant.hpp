@@ -4,6 +4,8 @@
 
 #include <type_traits>
 
+#include <polybody/math/compiler.hpp>
+
 namespace polybody {
 
 /// Calls f with the compile-time constant N = n for n = 1 … 6, and with 0 for other numbers.

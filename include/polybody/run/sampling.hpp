@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include <polybody/math/compiler.hpp>
+
 namespace polybody {
 
 /// The first state on or after each multiple of an interval from the start on; every state where the interval is zero.

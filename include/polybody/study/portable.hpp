@@ -11,6 +11,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <polybody/math/compiler.hpp>
+
 namespace polybody::detail {
 
 /// Logarithm ln x of a positive x, by m·2ᵏ with √½ ≤ m < √2 and ln m = 2 artanh((m − 1)/(m + 1)).

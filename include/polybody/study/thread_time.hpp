@@ -6,6 +6,8 @@
 
 #include <ctime>
 
+#include <polybody/math/compiler.hpp>
+
 namespace polybody {
 
 /// Processor time of the calling thread so far [s]. In contrast, std::clock adds the times of all threads.

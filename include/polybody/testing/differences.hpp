@@ -4,6 +4,8 @@
 ///
 /// For tests; not included by polybody.hpp.
 
+#include <polybody/math/compiler.hpp>
+
 namespace polybody::laws {
 
 /// Derivative f′(0) of a function of one number, with values in double or in Eigen vectors:

@@ -30,6 +30,8 @@
 #include <string>
 #include <utility>
 
+#include <polybody/math/compiler.hpp>
+
 namespace polybody::laws {
 
 /// Law: its name, and the member function of its suite that tests it.

@@ -4,6 +4,8 @@
 
 #include <concepts>
 
+#include <polybody/math/compiler.hpp>
+
 namespace polybody {
 
 /// Body whose mass and forces change with time. `at_time(t)` returns the body at time t. Its coordinates and points do
