@@ -11,13 +11,18 @@ install(EXPORT polybodyTargets NAMESPACE polybody:: DESTINATION ${package_dir} C
 install(TARGETS polybody_testing EXPORT polybodyTestingTargets FILE_SET HEADERS COMPONENT testing)
 install(EXPORT polybodyTestingTargets NAMESPACE polybody:: DESTINATION ${package_dir} COMPONENT testing)
 
-# polybodyConfig.cmake, good for both trees: it loads polybodyTargets.cmake, polybodyPrecompile.cmake and
-# polybodyCompiled.cmake beside it.
+# polybodyConfig.cmake, good for both trees: it loads polybodyCompiler.cmake, polybodyTargets.cmake,
+# polybodyPrecompile.cmake and polybodyCompiled.cmake beside it.
 configure_package_config_file(
   cmake/polybodyConfig.cmake.in polybodyConfig.cmake INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(
   polybodyConfigVersion.cmake COMPATIBILITY SameMinorVersion ARCH_INDEPENDENT)
+# EXACT compares versions as numbers, 0.2 with 0.2.0. The file returns early, so it begins with these lines.
+file(READ ${PROJECT_BINARY_DIR}/polybodyConfigVersion.cmake version_file)
+file(WRITE ${PROJECT_BINARY_DIR}/polybodyConfigVersion.cmake
+     "if(PACKAGE_FIND_VERSION VERSION_EQUAL ${PROJECT_VERSION})\n  set(PACKAGE_VERSION_EXACT TRUE)\nendif()\n${version_file}")
 configure_file(cmake/polybodyPrecompile.cmake polybodyPrecompile.cmake COPYONLY)
+configure_file(cmake/polybodyCompiler.cmake polybodyCompiler.cmake COPYONLY)
 configure_file(cmake/polybodyCompiled.cmake polybodyCompiled.cmake COPYONLY)
 file(GLOB compiled_sources RELATIVE ${PROJECT_SOURCE_DIR}/cmake CONFIGURE_DEPENDS cmake/compiled/*.cpp
      cmake/compiled_vehicle/*.cpp)
@@ -27,7 +32,7 @@ endforeach()
 install(DIRECTORY cmake/compiled cmake/compiled_vehicle DESTINATION ${package_dir} COMPONENT compiled)
 install(FILES cmake/polybodyCompiled.cmake DESTINATION ${package_dir} COMPONENT compiled)
 install(FILES ${PROJECT_BINARY_DIR}/polybodyConfig.cmake ${PROJECT_BINARY_DIR}/polybodyConfigVersion.cmake
-              cmake/polybodyPrecompile.cmake DESTINATION ${package_dir} COMPONENT headers)
+              cmake/polybodyCompiler.cmake cmake/polybodyPrecompile.cmake DESTINATION ${package_dir} COMPONENT headers)
 
 # The build tree: -Dpolybody_DIR=<build directory>.
 export(EXPORT polybodyTargets NAMESPACE polybody:: FILE polybodyTargets.cmake)
