@@ -1,32 +1,35 @@
 #pragma once
 #include <polybody/integrators/correction_size.hpp>
+#include <polybody/integrators/tree_rows.hpp>
 #include <polybody/system/system.hpp>
 
 namespace polybody {
 
-/// ∂Φ̈/∂q and ∂Φ̈/∂v of Φ̈ = G v̇ + γ, in the places of the blocks of G, by differences. Speeds that no row shares are
-/// moved together [Curtis, Powell & Reid 1974], so the cost does not grow with the number of joints.
+/// ∂Φ̈/∂q and ∂Φ̈/∂v of Φ̈ = G v̇ + γ, by the unknowns of a time step, in the places of the blocks of G, by differences.
+/// Speeds that no row shares are moved together [Curtis, Powell & Reid 1974], so the cost does not grow with the number
+/// of joints. With joint coordinates it grows with the number of joints between a row's bodies and the root.
 class ConstraintDerivatives {
  public:
-  /// Reads the places of G. Without them where policies eliminate unknowns: then the slopes are left out.
+  /// Reads the places of G. The system has been evaluated before.
   template <class = void>  // compiled where it is used
   void analyse(System& system) {
     blocks_.clear();
     velocities_ = system.velocities();
-    colour_.assign(std::size_t(velocities_), 0);
-    colours_ = 0;
-    if (system.step_coordinates()) return;
+    entries_ = 0;
+    in_tree_ = detail::TreeRows::are_in(system);
     PatternSink pattern;
     system.masses(pattern);
-    Index entries = 0;
-    for (Block const& b : pattern.blocks) {
-      if (b.row < velocities_ || b.col >= velocities_) continue;
-      blocks_.push_back({{b.row - velocities_, b.col, b.rows, b.cols}, entries});
-      entries += b.rows * b.cols;
+    if (in_tree_) {
+      tree_.analyse(system, pattern.blocks);
+      for (Index i = 0; i < system.rows(); ++i)
+        for (Index const j : tree_.speeds(i)) add_place({i, j, 1, 1});
+    } else {
+      for (Block const& b : pattern.blocks)
+        if (b.row >= velocities_ && b.col < velocities_) add_place({b.row - velocities_, b.col, b.rows, b.cols});
     }
-    by_q_.assign(std::size_t(entries), 0.0);
+    by_q_.assign(std::size_t(entries_), 0.0);
     by_v_ = by_q_;
-    for (Index k = 0; k < velocities_; ++k) give_colour(system.rows(), k);
+    give_colours(system.rows());
     step_.setZero(velocities_);
     q_.setZero(system.coordinates());
     v_ = step_;
@@ -54,16 +57,27 @@ class ConstraintDerivatives {
     }
   }
 
-  /// cv ∂Φ̈/∂v + cq ∂Φ̈/∂q into `sink`, whose first row and column are row0 and col0.
+  /// cv ∂Φ̈/∂v + cq ∂Φ̈/∂q where the system was evaluated last, into `sink`. The first equation of a row and the first
+  /// column are `row0` and `col0`; if the equations hold a tree, row0 is the first equation of all.
   template <class = void>  // compiled where it is used
   void write(double cv, double cq, Index row0, Index col0, BlockSink& sink) {
-    for (auto const& [b, first] : blocks_) {
-      sum_.resize(std::size_t(b.rows * b.cols));
+    if (in_tree_) tree_.hold();
+    for (std::size_t k = 0; k < blocks_.size();) {
+      auto const& [b, first] = blocks_[k];
+      // the places of a row of the tree follow one another
+      Index const count = in_tree_ ? Index(tree_.speeds(b.row).size()) : b.rows * b.cols;
+      sum_.resize(std::size_t(count));
       for (std::size_t i = 0; i < sum_.size(); ++i)
         sum_[i] = cv * by_v_[std::size_t(first) + i] + cq * by_q_[std::size_t(first) + i];
-      sink.add(row0 + b.row, col0 + b.col, BlockView(sum_.data(), b.rows, b.cols, 1, b.rows));
+      if (in_tree_)
+        tree_.write(b.row, sum_.data(), row0, col0, sink);
+      else
+        sink.add(row0 + b.row, col0 + b.col, BlockView(sum_.data(), b.rows, b.cols, 1, b.rows));
+      k += in_tree_ ? std::size_t(count) : 1;
     }
   }
+  /// The rows of `write` are counted from the first equation of all, not from the first row.
+  bool counts_equations() const { return in_tree_; }
 
  private:
   struct Place {
@@ -71,22 +85,35 @@ class ConstraintDerivatives {
     Index first;
   };
 
-  /// The first colour that no row of speed k has yet.
+  void add_place(Block const& block) {
+    blocks_.push_back({block, entries_});
+    entries_ += block.rows * block.cols;
+  }
+
+  /// Each speed gets the first colour that no row of it has yet.
   template <class = void>
-  void give_colour(Index rows, Index k) {
-    Sequence<char> touched(std::size_t(rows), 0), taken(std::size_t(colours_) + 1, 0);
-    auto const touches = [&](Block const& b, Index speed) { return speed >= b.col && speed < b.col + b.cols; };
+  void give_colours(Index rows) {
+    Sequence<Sequence<Index>> speeds_of, rows_of;
+    speeds_of.resize(std::size_t(rows));
+    rows_of.resize(std::size_t(velocities_));
     for (Place const& p : blocks_)
-      if (touches(p.block, k)) std::fill_n(touched.begin() + p.block.row, p.block.rows, 1);
-    for (Place const& p : blocks_)
-      for (Index i = 0; i < p.block.rows; ++i)
-        if (touched[std::size_t(p.block.row + i)])
-          for (Index j = p.block.col; j < std::min(k, p.block.col + p.block.cols); ++j)
-            taken[std::size_t(colour_[std::size_t(j)])] = 1;
-    int colour = 0;
-    while (taken[std::size_t(colour)]) ++colour;
-    colour_[std::size_t(k)] = colour;
-    colours_ = std::max(colours_, colour + 1);
+      for (Index i = p.block.row; i < p.block.row + p.block.rows; ++i)
+        for (Index j = p.block.col; j < p.block.col + p.block.cols; ++j) {
+          speeds_of[std::size_t(i)].push_back(j);
+          rows_of[std::size_t(j)].push_back(i);
+        }
+    colour_.assign(std::size_t(velocities_), 0);
+    colours_ = 0;
+    for (Index k = 0; k < velocities_; ++k) {
+      Sequence<char> taken(std::size_t(colours_) + 1, 0);
+      for (Index const i : rows_of[std::size_t(k)])
+        for (Index const j : speeds_of[std::size_t(i)])
+          if (j < k) taken[std::size_t(colour_[std::size_t(j)])] = 1;
+      int colour = 0;
+      while (taken[std::size_t(colour)]) ++colour;
+      colour_[std::size_t(k)] = colour;
+      colours_ = std::max(colours_, colour + 1);
+    }
   }
   template <class = void>
   void rates(System& system, VecX const& vd, VecX& out) {
@@ -103,8 +130,10 @@ class ConstraintDerivatives {
             slopes[std::size_t(first + j * b.rows + i)] = (there_[b.row + i] - here_[b.row + i]) / step;
   }
 
-  Index velocities_ = 0;
+  Index velocities_ = 0, entries_ = 0;
   int colours_ = 0;
+  bool in_tree_ = false;  ///< the equations hold all bodies of a tree
+  detail::TreeRows tree_;
   Sequence<Place> blocks_;
   Sequence<int> colour_;  ///< of each speed
   Sequence<double> by_q_, by_v_, sum_;

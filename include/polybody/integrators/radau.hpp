@@ -98,10 +98,9 @@ struct Radau {
     }
     /// How the rows i of G v̇ + γ turn as the stages move: h a_ij ∂Φ̈/∂v + h² (A²)_ij ∂Φ̈/∂q.
     void write_slopes(System& s, double h, int i, BlockSink& sink) {
-      Index const n = equations_of(s);
+      Index const n = equations_of(s), first = slopes.counts_equations() ? 0 : equation_velocities_of(s);
       using T = detail::RadauTableau;
-      for (int j = 0; j < 3; ++j)
-        slopes.write(h * T::a[i][j], h * h * T::squared(i, j), i * n + equation_velocities_of(s), j * n, sink);
+      for (int j = 0; j < 3; ++j) slopes.write(h * T::a[i][j], h * h * T::squared(i, j), i * n + first, j * n, sink);
     }
     /// Leaves the multipliers of these rows alone, which repeat others.
     void leave(System const& s, Sequence<Index> const& redundant) {
@@ -289,6 +288,7 @@ struct Radau {
         system.plus(x.q, w.delta[k], w.q);
         w.slopes.measure(system, w.q, w.v[k], w.vd[k], time(k));
         evaluate_stage(k, w.delta[k]);
+        w.by_stage.hold_copy(k);
         w.write_stage(system, h, i, sink);
         w.write_slopes(system, h, i, sink);
       }

@@ -109,6 +109,14 @@ class TangentSolver {
     return bad;
   }
 
+  /// Call it while a matrix is written: copy k takes the coordinates of the last evaluation of the system. Without it
+  /// all copies have those of the last evaluation before `factor`.
+  [[gnu::cold]] void hold_copy(std::size_t k) {
+    if (!coordinates_) return;
+    while (by_copy_.size() <= k) by_copy_.push_back(coordinates_.entries->held(coordinates_.self.get()));
+    coordinates_.entries->hold(coordinates_.self.get(), by_copy_[k].get());
+  }
+
   /// What `analyse` lays out.
   Solver& linear_solver() { return solver_; }
 
@@ -154,13 +162,13 @@ class TangentSolver {
     Index const n = size_, m = equations_;
     for (Index k = 0; k < copies_; ++k) {
       std::copy_n(rhs.data() + k * n, n, part_.data());
-      coordinates_.entries->to_equations(coordinates_.self.get(), held_.get(), part_, equation_);
+      coordinates_.entries->to_equations(coordinates_.self.get(), held_of(k), part_, equation_);
       std::copy_n(equation_.data(), m, rhs_.data() + k * m);
     }
     solver_.solve(rhs_, x_);
     for (Index k = 0; k < copies_; ++k) {
       std::copy_n(x_.data() + k * m, m, equation_.data());
-      coordinates_.entries->from_equations(coordinates_.self.get(), held_.get(), equation_, solution_);
+      coordinates_.entries->from_equations(coordinates_.self.get(), held_of(k), equation_, solution_);
       std::copy_n(solution_.data(), n, x.data() + k * n);
     }
   }
@@ -174,11 +182,16 @@ class TangentSolver {
   }
 
  private:
+  /// Coordinates of copy k.
+  void* held_of(Index k) const {
+    return std::size_t(k) < by_copy_.size() ? by_copy_[std::size_t(k)].get() : held_.get();
+  }
   bool solves_by_bodies() const { return coordinates_ && coordinates_.reduced->solves_by_bodies; }
 
   Solver solver_;
   Coordinates coordinates_;
   FrozenState held_;
+  Sequence<FrozenState> by_copy_;   // where `hold_copy` was called
   bool keeps_multipliers_ = false;  // estimates for the joints that carry bodies
   bool walks_ = false;              // balance and tangent by walks over a tree that solves its bodies
   std::size_t fewest_dropped_ = std::numeric_limits<std::size_t>::max();
