@@ -1,12 +1,13 @@
 #pragma once
-#include <polybody/integrators/explicit_step.hpp>
+#include <polybody/integrators/free_rotations.hpp>
 #include <polybody/integrators/stabilisation.hpp>
 
 namespace polybody {
 
 /// Explicit central differences in their one-step form,
 ///   v½ = v₀ + ½h v̇₀,  q₁ = q₀ ⊞ h v½,  v̇₁ = accelerations(q₁, v½ + ½h v̇₀),  v₁ = v½ + ½h v̇₁,
-/// of order two, stable for h < 2/ω_max [Hughes 2000, §9.1].
+/// of order two, stable for h < 2/ω_max [Hughes 2000, §9.1]. Rigid bodies rotate by `FreeRotations` between the half
+/// steps of v, so a free rotation conserves its energy.
 template <class Stabilisation = UnconstrainedOnly>
 struct CentralDifference {
   static constexpr char const* name = "CentralDifference";
@@ -19,9 +20,11 @@ struct CentralDifference {
 
   /// Everything that a step needs, allocated once.
   template <class Solver>
-  struct Workspace : detail::ExplicitStep<Solver> {
-    typename Stabilisation::Scratch scratch;                                        ///< memory of the stabilisation
-    explicit Workspace(System& s) : detail::ExplicitStep<Solver>(s), scratch(s) {}  ///< allocates all of it
+  struct Workspace : detail::RotatingStep<Solver> {
+    typename Stabilisation::Scratch scratch;  ///< memory of the stabilisation
+    VecX half;                                ///< v½ after the free rotations
+    /// Allocates all of it.
+    explicit Workspace(System& s) : detail::RotatingStep<Solver>(s), scratch(s), half(this->v) {}
   };
 
   void check() const { stabilisation.check(); }
@@ -36,14 +39,21 @@ struct CentralDifference {
   }
   template <class W>
   StepReport step(System& system, State& x, double h, W& w) const {
-    w.v = x.v + 0.5 * h * x.a;
+    w.find_applied(x);
+    w.v = x.v + 0.5 * h * w.applied;
     w.dq = h * w.v;
-    system.plus(x.q, w.dq, w.q);
-    w.v += 0.5 * h * x.a;  // predicted, for forces that depend on speed
+    w.move(system, x, x.t + h);
+    w.half = w.v;
+    w.v += 0.5 * h * w.applied;  // predicted, for forces that depend on speed
     stabilisation.apply(system, w.forward, w.scratch, w.q, w.v, x.t + h);
     w.forward.accelerations(system, {w.q, w.v, x.t + h}, w.a, w.lambda, stabilisation.feedback());
-    w.v = x.v + 0.5 * h * (x.a + w.a);
+    w.rotations.add_gyroscopic(w.v, w.a);
+    if (w.rotations.empty())
+      w.v = x.v + 0.5 * h * (x.a + w.a);
+    else
+      w.v = w.half + 0.5 * h * w.a;
     stabilisation.velocities(system, w.forward, w.scratch, w.q, w.v, x.t + h);
+    w.rotations.subtract_gyroscopic(w.v, w.a);
     w.accept(system, x, h);
     return {.taken = h, .next = h, .factorisations = 1, .evaluations = 1};
   }

@@ -1,10 +1,11 @@
 #pragma once
 /// \file
 /// Explicit methods whose energy error stays bounded: symplectic where coordinates form a vector space, the mass is
-/// constant and forces depend on positions alone (planar rigid bodies, cables, springs). Bodies that turn in space and
-/// damped forces are taken too, at the same order, but without that promise.
+/// constant and forces depend on positions alone (planar rigid bodies, cables, springs). Rigid bodies in space rotate
+/// by `FreeRotations`: reversible in time, with the energy of a free rotation conserved. Other bodies that rotate in
+/// space and damped forces are taken at the same order, but without that promise.
 
-#include <polybody/integrators/explicit_step.hpp>
+#include <polybody/integrators/free_rotations.hpp>
 
 namespace polybody {
 
@@ -23,7 +24,7 @@ struct SymplecticEuler {
   void check() const {}
   template <class Solver>
   auto workspace(System& system) const {
-    return detail::ExplicitStep<Solver>(system);
+    return detail::RotatingStep<Solver>(system);
   }
   template <class W>
   void start(System& system, State& x, double, W& w) const {
@@ -31,9 +32,10 @@ struct SymplecticEuler {
   }
   template <class W>
   StepReport step(System& system, State& x, double h, W& w) const {
-    w.v = x.v + h * x.a;
+    w.find_applied(x);
+    w.v = x.v + h * w.applied;
     w.dq = h * w.v;
-    system.plus(x.q, w.dq, w.q);
+    w.move(system, x, x.t + h);
     w.forward.accelerations(system, {w.q, w.v, x.t + h}, w.a, w.lambda);
     w.accept(system, x, h);
     return {.taken = h, .next = h, .factorisations = 1, .evaluations = 1};
@@ -43,8 +45,8 @@ struct SymplecticEuler {
 /// RATTLE, of order two [Andersen 1983; Hairer, Lubich & Wanner 2006, §VII.1.4]:
 ///   v½ = v₀ + ½h M⁻¹(f₀ − G₀ᵀλ),  q₁ = q₀ ⊞ h v½,   λ such that Φ(q₁) = 0,
 ///   v₁ = v½ + ½h M⁻¹(f₁ − G₁ᵀμ),                    μ such that G₁ v₁ + Φ_t = 0.
-/// λ by Newton with the matrix of q₀ throughout, so that every correction lies along M⁻¹G₀ᵀ. Forces at t₁ see the
-/// speeds v½ + ½h v̇₀.
+/// λ by Newton with the matrix of q₀ throughout, so that every correction of h v½ lies along M⁻¹G₀ᵀ. Forces at t₁ are
+/// those of the speeds v½ + ½h v̇₀.
 struct Rattle {
   static constexpr char const* name = "Rattle";
   static constexpr int order = 2;
@@ -58,10 +60,12 @@ struct Rattle {
 
   /// Everything that a step needs, allocated once.
   template <class Solver>
-  struct Workspace : detail::ExplicitStep<Solver> {
+  struct Workspace : detail::RotatingStep<Solver> {
     VecX change, phi;  ///< a correction of dq (nv); Φ (rows)
+    VecX moved;        ///< h v½ with the rotation vectors of free rotations
     /// Allocates all of it.
-    explicit Workspace(System& s) : detail::ExplicitStep<Solver>(s), change(this->v), phi(this->lambda) {}
+    explicit Workspace(System& s)
+        : detail::RotatingStep<Solver>(s), change(this->v), phi(this->lambda), moved(this->v) {}
   };
 
   void check() const {
@@ -80,23 +84,34 @@ struct Rattle {
   /// \throws NewtonConvergenceFailure when the positions cannot be brought to the joints.
   template <class W>
   StepReport step(System& system, State& x, double h, W& w) const {
-    w.dq = h * x.v + (0.5 * h * h) * x.a;
-    system.plus(x.q, w.dq, w.q);
+    w.find_applied(x);
+    w.dq = h * x.v + (0.5 * h * h) * w.applied;
+    move(system, x, h, w);
     StepReport report{.taken = h, .next = h, .factorisations = 1, .evaluations = 1};
     if (system.rows() > 0) {
       report.iterations = close(system, x, h, w);
       report.factorisations = 3;
     }
     w.dq /= h;  // v½
-    w.v = w.dq + 0.5 * h * x.a;
+    w.rotations.carry(w.moved, w.dq);
+    w.v = w.dq + 0.5 * h * w.applied;
     w.forward.accelerations(system, {w.q, w.v, x.t + h}, w.a, w.lambda);
+    w.rotations.add_gyroscopic(w.v, w.a);
     w.v = w.dq + 0.5 * h * w.a;
     w.forward.project_velocities(system, w.q, w.v, x.t + h);
+    w.rotations.subtract_gyroscopic(w.v, w.a);
     w.accept(system, x, h);
     return report;
   }
 
  private:
+  /// q = q₀ ⊞ dq after the free rotations.
+  template <class W>
+  static void move(System& system, State const& x, double h, W& w) {
+    w.moved = w.dq;
+    w.rotations.find_rotations(system, x.t + h, w.moved);
+    system.plus(x.q, w.moved, w.q);
+  }
   /// Moves dq along M⁻¹G₀ᵀ until Φ(q₀ ⊞ dq) = 0; how many corrections it took.
   template <class W>
   int close(System& system, State const& x, double h, W& w) const {
@@ -108,7 +123,7 @@ struct Rattle {
       if (w.phi.cwiseAbs().maxCoeff() <= enough) return k;
       w.forward.least_change(system, w.phi, w.change);
       w.dq += w.change;
-      system.plus(x.q, w.dq, w.q);
+      move(system, x, h, w);
     }
     throw NewtonConvergenceFailure{"Rattle: the positions cannot be brought to the joints at t = ", x.t + h,
                                    " s. Take a smaller step."};

@@ -1,0 +1,167 @@
+#pragma once
+/// \file
+/// Free rotations of rigid bodies in explicit steps. Half steps of Ω by v̇ do not conserve the energy of a rotation: Ω˙
+/// contains the product J⁻¹(Ω × J Ω). These methods split it off. Forces change Ω by h J⁻¹ m. Between these changes a
+/// body rotates freely,
+///   q₁ = q₀ ⊞ θ,   Π₁ = exp(−θ̃) Π₀,   θ = ½h J⁻¹(Π₀ + Π₁),   Π = J Ω in body axes [Simo & Wong 1991].
+/// |Π|, the momentum in world axes and the energy ½ ΩᵀJΩ are conserved, as (Π₁ − Π₀)·θ = 0. A rotation about a
+/// principal axis is exact. The step is of order two and reversible in time.
+
+#include <cmath>
+#include <limits>
+
+#include <polybody/integrators/explicit_step.hpp>
+#include <polybody/integrators/unknown_kinds.hpp>
+#include <polybody/math/sequence.hpp>
+#include <polybody/math/so3.hpp>
+
+namespace polybody::detail {
+
+/// Rigid bodies whose generalised velocities are (ṙ, Ω), with their J. Functions change the entries of Ω alone; models
+/// without such bodies keep their vectors.
+class FreeRotations {
+ public:
+  /// Reads J from the mass matrix. Bodies are left out if J is singular, and in systems whose steps have other
+  /// coordinates.
+  template <class = void>
+  [[gnu::cold]] explicit FreeRotations(System& system) {
+    if (system.step_coordinates()) return;
+    UnknownPlaces const places = full_places(system.layout());
+    Sequence<Body> all;
+    Sink sink{all, Sequence<Index>(std::size_t(system.velocities()), -1)};
+    for (BodyLayout const& b : system.layout().bodies) {
+      if (!b.constant_mass || b.changes || b.planar || b.coordinates != 7 || b.velocities != 6) continue;
+      if (places.of_q[std::size_t(b.q0 + 3)].kind != UnknownKind::rotation ||
+          places.of_v[std::size_t(b.v0 + 3)].kind != UnknownKind::rotation)
+        continue;
+      for (Index i = 3; i < 6; ++i) sink.body_of[std::size_t(b.v0 + i)] = Index(all.size());
+      all.push_back({.v = b.v0 + 3});
+    }
+    if (all.empty()) return;
+    system.masses(sink);
+    for (Body& b : all) {
+      double const size = b.inertia(0, 0) + b.inertia(1, 1) + b.inertia(2, 2);
+      if (!(b.inertia.determinant() > 1e-14 * size * size * size)) continue;
+      b.inverse = b.inertia.inverse();
+      bodies_.push_back(b);
+    }
+  }
+
+  bool empty() const { return bodies_.empty(); }  ///< no body of the model rotates by it
+
+  /// a += J⁻¹(Ω × J Ω): J⁻¹ m from Ω˙.
+  void add_gyroscopic(VecX const& v, VecX& a) const {
+    for (Body const& b : bodies_) put(b, at(b, a) + gyroscopic(b, at(b, v)), a);
+  }
+  /// a −= J⁻¹(Ω × J Ω): Ω˙ from J⁻¹ m.
+  void subtract_gyroscopic(VecX const& v, VecX& a) const {
+    for (Body const& b : bodies_) put(b, at(b, a) - gyroscopic(b, at(b, v)), a);
+  }
+  /// θ from h Ω in `moved`, speeds times h. \throws NewtonConvergenceFailure for a body that rotates too far in the
+  /// step to t [s].
+  void find_rotations(System const& system, double t, VecX& moved) const {
+    for (Body const& b : bodies_) {
+      Vec3 const turn = at(b, moved);
+      Vec3 theta = turn;
+      if (!solve(b, turn, theta)) refuse(system, b, turn, t);
+      put(b, theta, moved);
+    }
+  }
+  /// Ω after the rotation by θ of `moved` from Ω before it.
+  void carry(VecX const& moved, VecX& v) const {
+    for (Body const& b : bodies_)
+      put(b, product<double, 1>(b.inverse, carried(at(b, moved), product<double, 1>(b.inertia, at(b, v)))), v);
+  }
+
+ private:
+  static constexpr double farthest = 3.0;  ///< rotation of a step [rad]; from π on θ is not unique
+  struct Body {
+    Index v = 0;  ///< first entry of Ω
+    Mat3 inertia = Mat3::Zero(), inverse = Mat3::Zero();
+  };
+  /// Takes J out of M.
+  struct Sink {
+    Sequence<Body>& bodies;
+    Sequence<Index> body_of;  ///< of each speed; −1 for none
+    void add(Index row, Index col, BlockView const& m) {
+      for (Index j = 0; j < m.cols; ++j)
+        for (Index i = 0; i < m.rows; ++i) {
+          if (row + i >= Index(body_of.size()) || col + j >= Index(body_of.size())) continue;
+          Index const k = body_of[std::size_t(row + i)];
+          if (k < 0 || k != body_of[std::size_t(col + j)]) continue;
+          Body& b = bodies[std::size_t(k)];
+          b.inertia(row + i - b.v, col + j - b.v) += m(i, j);
+        }
+    }
+  };
+
+  static Vec3 at(Body const& b, VecX const& x) { return {x[b.v], x[b.v + 1], x[b.v + 2]}; }
+  static void put(Body const& b, Vec3 const& value, VecX& x) {
+    for (Index i = 0; i < 3; ++i) x[b.v + i] = value[i];
+  }
+  static Vec3 gyroscopic(Body const& b, Vec3 const& spin) {
+    return product<double, 1>(b.inverse, cross<double>(spin, product<double, 1>(b.inertia, spin)));
+  }
+  /// exp(−θ̃) Π.
+  static Vec3 carried(Vec3 const& theta, Vec3 const& momentum) {
+    return product<double, 1>(exp_so3<double>(Vec3(-theta)), momentum);
+  }
+  /// θ − ½ J⁻¹(Π + exp(−θ̃) Π) = 0 with Π = J `turn`, by Newton's method:
+  ///   d(exp(−θ̃) Π) = (exp(−θ̃) Π) × Jr(θ) dθ.
+  static bool solve(Body const& b, Vec3 const& turn, Vec3& theta) {
+    Vec3 const before = product<double, 1>(b.inertia, turn);
+    double last = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < 30; ++k) {
+      Vec3 const after = carried(theta, before);
+      Vec3 const open = theta - 0.5 * (turn + product<double, 1>(b.inverse, after));
+      Mat3 const slope = product<double, 3>(b.inverse, skew_product<double, 3>(after, right_jacobian<double>(theta)));
+      Mat3 const matrix = Mat3::Identity() - 0.5 * slope;
+      Vec3 const correction = matrix.inverse() * open;
+      double const size = std::sqrt(squared_norm<double>(correction));
+      if (!(size <= 10.0)) return false;
+      theta -= correction;
+      double const angle = std::sqrt(squared_norm<double>(theta));
+      bool const ends = size <= 1e-12 * angle && !(size < 0.1 * last);
+      if (size <= 1e-15 * angle || ends) return angle <= farthest;
+      last = size;
+    }
+    return false;
+  }
+  [[noreturn, gnu::cold]] static void refuse(System const& system, Body const& b, Vec3 const& turn, double t) {
+    throw NewtonConvergenceFailure{"The rotation of ",
+                                   system.name_of(b.v),
+                                   " in the step to t = ",
+                                   t,
+                                   " s is not found: |Ω|h is ",
+                                   std::sqrt(squared_norm<double>(turn)),
+                                   " rad, and a step takes at most ",
+                                   farthest,
+                                   " rad. Take a smaller step."};
+  }
+
+  Sequence<Body> bodies_;
+};
+
+/// Memory of an explicit step with free rotations.
+template <class Solver>
+struct RotatingStep : ExplicitStep<Solver> {
+  FreeRotations rotations;
+  VecX applied;  ///< v̇ at the start of a step, with J⁻¹ m for Ω˙
+
+  explicit RotatingStep(System& s) : ExplicitStep<Solver>(s), rotations(s), applied(this->v) {}
+
+  /// `applied` at x.
+  void find_applied(State const& x) {
+    applied = x.a;
+    rotations.add_gyroscopic(x.v, applied);
+  }
+  /// q = q₀ ⊞ dq in the step to t [s]. Before it v contains the speeds before the free rotations, and dq is h v;
+  /// afterwards v contains the speeds after them, and dq their θ.
+  void move(System& system, State const& x, double t) {
+    rotations.find_rotations(system, t, this->dq);
+    system.plus(x.q, this->dq, this->q);
+    rotations.carry(this->dq, this->v);
+  }
+};
+
+}  // namespace polybody::detail
