@@ -1,7 +1,11 @@
 #pragma once
 /// \file
-/// Rows of G that are independent of all others because they alone reach the speeds of a body.
+/// Rows of G whose dependence follows from few bodies: rows that alone reach the speeds of a body are independent, and
+/// rows between the same bodies repeat each other.
 
+#include <algorithm>
+
+#include <polybody/math/index_map.hpp>
 #include <polybody/math/sequence.hpp>
 #include <polybody/math/vectors.hpp>
 #include <polybody/system/layout.hpp>
@@ -12,6 +16,100 @@ namespace polybody::detail {
 struct RowEntry {
   Index row, speed;
   double value;
+};
+
+/// A row that repeats others: Gᵀc = 0 for the scaled rows, with 1 at the row itself.
+struct RowRelation {
+  Index row = -1;
+  IndexMap<double> c = {};  ///< coefficients by rows
+};
+
+/// Finds rows that repeat earlier rows between the same bodies, by the method of Gram and Schmidt. The work is linear
+/// in the number of rows.
+template <class = void>  // compiled where it is used
+class RepeatedRows {
+ public:
+  static constexpr std::size_t most = 12;  ///< independent rows of a group of bodies that others are compared with
+
+  /// \param threshold distance of a row from the span of the earlier ones below which it repeats them
+  RepeatedRows(Sequence<BodyLayout> const& bodies, Index rows, Sequence<RowEntry> const& entries, double threshold)
+      : threshold_(threshold) {
+    Index speeds = 0;
+    for (RowEntry const& e : entries) speeds = std::max(speeds, e.speed + 1);
+    Sequence<Index> body_of(std::size_t(speeds), -1);
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+      for (Index j = bodies[b].v0; j < std::min(speeds, bodies[b].v0 + bodies[b].velocities); ++j)
+        body_of[std::size_t(j)] = Index(b);
+    Sequence<Row> all;
+    all.resize(std::size_t(rows));
+    for (Index i = 0; i < rows; ++i) all[std::size_t(i)].row = i;
+    for (RowEntry const& e : entries) {
+      all[std::size_t(e.row)].bodies.push_back(body_of[std::size_t(e.speed)]);
+      all[std::size_t(e.row)].entries[e.speed] += e.value;
+    }
+    for (Row& row : all) sort_once(row.bodies);
+    std::stable_sort(all.begin(), all.end(), [](Row const& a, Row const& b) {
+      return std::lexicographical_compare(a.bodies.begin(), a.bodies.end(), b.bodies.begin(), b.bodies.end());
+    });
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (i == 0 || !(all[i].bodies == all[i - 1].bodies)) basis_.clear();
+      take(all[i]);
+    }
+    std::sort(relations_.begin(), relations_.end(),
+              [](RowRelation const& a, RowRelation const& b) { return a.row < b.row; });
+  }
+
+  Sequence<RowRelation> const& relations() const { return relations_; }  ///< of the rows found, ascending
+
+ private:
+  struct Row {
+    Index row = -1;
+    Sequence<Index> bodies = {};
+    IndexMap<double> entries = {};
+  };
+  /// q_k with row_k = Σ_j r_jk q_j.
+  struct Direction {
+    Index row;
+    IndexMap<double> q;
+    Sequence<double> r;
+  };
+
+  void take(Row const& row) {
+    if (row.bodies.empty() || basis_.size() == most) return;
+    Direction next{row.row, row.entries, Sequence<double>(basis_.size() + 1, 0.0)};
+    for (int round = 0; round < 2; ++round)
+      for (std::size_t k = 0; k < basis_.size(); ++k) {
+        double along = 0.0;
+        for (auto const& [j, value] : basis_[k].q)
+          if (double const* const x = next.q.find(j)) along += value * *x;
+        for (auto const& [j, value] : basis_[k].q) next.q[j] -= along * value;
+        next.r[k] += along;
+      }
+    double squared = 0.0;
+    for (auto const& [j, value] : next.q) squared += value * value;
+    double const left = std::sqrt(squared);
+    if (left < threshold_) return relate(next);
+    next.r.back() = left;
+    IndexMap<double> q;
+    for (auto const& [j, value] : next.q) q[j] = value / left;
+    next.q = std::move(q);
+    basis_.push_back(std::move(next));
+  }
+  /// c from R c = −r.
+  void relate(Direction& repeated) {
+    RowRelation out{repeated.row};
+    out.c[repeated.row] = 1.0;
+    for (std::size_t k = basis_.size(); k-- > 0;) {
+      double const x = repeated.r[k] / basis_[k].r[k];
+      for (std::size_t j = 0; j < k; ++j) repeated.r[j] -= basis_[k].r[j] * x;
+      if (x != 0.0) out.c[basis_[k].row] = -x;
+    }
+    relations_.push_back(std::move(out));
+  }
+
+  double threshold_;
+  Sequence<Direction> basis_;  // of the rows between the bodies at hand
+  Sequence<RowRelation> relations_;
 };
 
 /// Removes, body by body, all rows that reach a body if they are independent in its speeds alone: Gᵀc = 0 then requires

@@ -3,6 +3,7 @@
 /// How many of a model's rows are independent: the rank of G by a sparse rank-revealing QR factorisation of Gᵀ.
 
 #include <Eigen/SparseQR>
+#include <algorithm>
 
 #include <polybody/run/initial_conditions.hpp>
 #include <polybody/run/private_rows.hpp>
@@ -52,10 +53,54 @@ class ConstraintFactor {
  public:
   static constexpr double threshold = 1e-6;
 
-  /// \param bodies whose rows are left out where they are private (`PrivateRows`)
+  /// \param bodies whose rows are left out where they repeat earlier rows between the same bodies (`RepeatedRows`) or
+  /// are private (`PrivateRows`); empty to factorise all rows
   ConstraintFactor(Index velocities, Index rows, std::vector<Eigen::Triplet<double>> const& entries,
                    Sequence<BodyLayout> const& bodies = {})
       : scale_(std::size_t(rows), 0.0) {
+    Sequence<RowEntry> const all = scaled_entries(velocities, entries);
+    Sequence<char> gone(std::size_t(rows), 0);
+    if (!bodies.empty()) leave_out(bodies, all, gone);
+    Sequence<int> column, place(std::size_t(velocities), -1);  // of rows that stay, of speeds that these touch
+    for (Index i = 0; i < rows; ++i) {
+      column.push_back(gone[std::size_t(i)] ? -1 : int(stays_.size()));
+      if (!gone[std::size_t(i)]) stays_.push_back(i);
+    }
+    for (RowEntry const& e : all)
+      if (!gone[std::size_t(e.row)]) place[std::size_t(e.speed)] = 0;
+    Index touched = 0;
+    for (int& p : place) p = p < 0 ? -1 : int(touched++);
+    std::vector<Eigen::Triplet<double>> kept;
+    for (RowEntry const& e : all)
+      if (!gone[std::size_t(e.row)])
+        kept.emplace_back(place[std::size_t(e.speed)], column[std::size_t(e.row)], e.value);
+    Eigen::SparseMatrix<double> transposed(touched, Index(stays_.size()));
+    transposed.setFromTriplets(kept.begin(), kept.end());
+    qr_.setPivotThreshold(threshold);
+    if (touched > 0) qr_.compute(transposed);
+    rank_ = touched > 0 ? qr_.rank() : 0;
+    find_relations();
+  }
+
+  Index rank() const { return Index(scale_.size()) - repeated(); }
+  Index repeated() const { return Index(relations_.size()); }
+  Index factored() const { return Index(stays_.size()); }  ///< rows that are neither private nor repeated locally
+  /// The k-th row that repeats others, ascending.
+  Index row(Index k) const { return relations_[std::size_t(k)].row; }
+  /// Its c in scaled rows, 1 at the row itself.
+  IndexMap<double> const& scaled_relation(Index k) const { return relations_[std::size_t(k)].c; }
+  /// Its c.
+  IndexMap<double> relation(Index k) const {
+    IndexMap<double> c;
+    for (auto const& [i, value] : scaled_relation(k)) c[i] = scale_[std::size_t(i)] * value;
+    return c;
+  }
+
+ private:
+  using Qr = Eigen::SparseQR<Eigen::SparseMatrix<double>, Ordering>;
+
+  /// Entries of G with speeds and rows of size 1; sets `scale_`.
+  Sequence<RowEntry> scaled_entries(Index velocities, std::vector<Eigen::Triplet<double>> const& entries) {
     std::vector<double> of_speed(std::size_t(velocities), 0.0);
     for (auto const& e : entries)
       of_speed[std::size_t(e.row())] = std::hypot(of_speed[std::size_t(e.row())], e.value());
@@ -65,68 +110,64 @@ class ConstraintFactor {
     Sequence<RowEntry> all;
     for (auto const& e : entries)
       all.push_back({Index(e.col()), Index(e.row()), scaled(e) * scale_[std::size_t(e.col())]});
-    PrivateRows<> const left_out(bodies, rows, bodies.empty() ? Sequence<RowEntry>() : all);
-    std::vector<int> column, place(of_speed.size(), -1);  // of rows that stay, of speeds that these touch
-    for (Index i = 0; i < rows; ++i) {
-      column.push_back(left_out[i] ? -1 : int(stays_.size()));
-      if (!left_out[i]) stays_.push_back(i);
-    }
-    for (RowEntry const& e : all)
-      if (!left_out[e.row]) place[std::size_t(e.speed)] = 0;
-    Index touched = 0;
-    for (int& p : place) p = p < 0 ? -1 : int(touched++);
-    std::vector<Eigen::Triplet<double>> kept;
-    for (RowEntry const& e : all)
-      if (!left_out[e.row]) kept.emplace_back(place[std::size_t(e.speed)], column[std::size_t(e.row)], e.value);
-    Eigen::SparseMatrix<double> transposed(touched, Index(stays_.size()));
-    transposed.setFromTriplets(kept.begin(), kept.end());
-    qr_.setPivotThreshold(threshold);
-    if (touched > 0) qr_.compute(transposed);
-    rank_ = touched > 0 ? qr_.rank() : 0;
+    return all;
   }
-
-  Index rank() const { return Index(scale_.size()) - repeated(); }
-  Index repeated() const { return factored() - rank_; }
-  Index factored() const { return Index(stays_.size()); }  ///< rows that are not private
-  /// The k-th row that repeats others.
-  Index row(Index k) const { return original(rank_ + k); }
-  /// c times the sizes of the rows.
-  VecX scaled(VecX c) const {
-    for (Index i = 0; i < c.size(); ++i) c[i] /= scale_[std::size_t(i)];
-    return c;
+  /// Marks the rows that need no factorisation.
+  void leave_out(Sequence<BodyLayout> const& bodies, Sequence<RowEntry> const& all, Sequence<char>& gone) {
+    relations_ = RepeatedRows<>(bodies, Index(gone.size()), all, threshold).relations();
+    for (RowRelation const& r : relations_) gone[std::size_t(r.row)] = 1;
+    Sequence<RowEntry> left;
+    for (RowEntry const& e : all)
+      if (!gone[std::size_t(e.row)]) left.push_back(e);
+    PrivateRows<> const own(bodies, Index(gone.size()), left);
+    for (Index i = 0; i < Index(gone.size()); ++i) gone[std::size_t(i)] |= char(own[i]);
   }
-  /// c (rows) of it.
-  VecX relation(Index k) const {
-    VecX x = VecX::Zero(rank_), c = VecX::Zero(Index(scale_.size()));
-    c[row(k)] = scale_[std::size_t(row(k))];
-    if (rank_ == 0) return c;
+  /// c = P [−R₁⁻¹R₂; 1] of the factor. Each solution visits the entries of c alone, the last one first.
+  void find_relations() {
     auto const& r = qr_.matrixR();
-    auto const column = [&](Index j, auto&& f) {
-      for (typename Qr::QRMatrixType::InnerIterator e(r, j); e; ++e)
-        if (e.row() < rank_) f(e.row(), e.value());
+    Sequence<double> x(std::size_t(rank_), 0.0);
+    Sequence<Index> waiting;
+    Sequence<char> waits(std::size_t(rank_), 0);
+    auto const add = [&](Index i, double value) {
+      x[std::size_t(i)] += value;
+      if (waits[std::size_t(i)]) return;
+      waits[std::size_t(i)] = 1;
+      waiting.push_back(i);
+      std::push_heap(waiting.begin(), waiting.end());
     };
-    column(rank_ + k, [&](Index i, double value) { x[i] = value; });
-    for (Index j = rank_; j-- > 0;) {
-      double pivot = 0.0;
-      column(j, [&](Index i, double value) { pivot = i == j ? value : pivot; });
-      x[j] /= pivot;
-      column(j, [&](Index i, double value) { x[i] -= i < j ? value * x[j] : 0.0; });
+    for (Index k = rank_; k < factored(); ++k) {
+      RowRelation relation{original(k)};
+      relation.c[relation.row] = 1.0;
+      if (rank_ > 0)
+        for (typename Qr::QRMatrixType::InnerIterator e(r, k); e; ++e)
+          if (e.row() < rank_) add(e.row(), e.value());
+      while (!waiting.empty()) {
+        std::pop_heap(waiting.begin(), waiting.end());
+        Index const j = waiting.back();
+        waiting.pop_back();
+        double pivot = 0.0;
+        for (typename Qr::QRMatrixType::InnerIterator e(r, j); e; ++e) pivot = e.row() == j ? e.value() : pivot;
+        double const value = x[std::size_t(j)] / pivot;
+        x[std::size_t(j)] = 0.0;
+        waits[std::size_t(j)] = 0;
+        if (value == 0.0) continue;
+        relation.c[original(j)] = -value;
+        for (typename Qr::QRMatrixType::InnerIterator e(r, j); e; ++e)
+          if (e.row() < j) add(e.row(), -e.value() * value);
+      }
+      relations_.push_back(std::move(relation));
     }
-    for (Index j = 0; j < rank_; ++j) {
-      Index const i = original(j);
-      c[i] = -scale_[std::size_t(i)] * x[j];
-    }
-    return c;
+    std::sort(relations_.begin(), relations_.end(),
+              [](RowRelation const& a, RowRelation const& b) { return a.row < b.row; });
   }
-
- private:
-  using Qr = Eigen::SparseQR<Eigen::SparseMatrix<double>, Ordering>;
   /// The row of G in column j of the factor.
   Index original(Index j) const { return stays_[std::size_t(rank_ > 0 ? qr_.colsPermutation().indices()[j] : j)]; }
+
   std::vector<double> scale_;
-  std::vector<Index> stays_;  // rows that are factored, ascending
+  Sequence<Index> stays_;  // rows that are factored, ascending
   Qr qr_;
-  Index rank_ = 0;
+  Index rank_ = 0;  // of these
+  Sequence<RowRelation> relations_;
 };
 
 }  // namespace detail
@@ -138,6 +179,7 @@ class ConstraintFactor {
 template <class = void>
 Redundancy redundancy(System& system, State const& x) {
   require_fitting(system, x);
+  require_places(system, x);
   system.evaluate(x.q, x.v, x.t);
   std::vector<Eigen::Triplet<double>> entries;
   detail::ConstraintSink<> sink{system.velocities(), entries};
@@ -152,15 +194,22 @@ Redundancy redundancy(System& system, State const& x) {
   Redundancy out{.rows = system.rows(),
                  .rank = factor.rank(),
                  .degrees_of_freedom = system.layout().body_velocities() - factor.rank()};
-  Sequence<VecX> null_vectors;
+  Sequence<IndexMap<double>> null_vectors;
   detail::ContradictionLimits const limits;
   double const in_velocities = limits.relative * (1.0 + largest_size(x.v)),
                in_accelerations = limits.relative * (1.0 + largest_size(gamma));
   for (Index k = 0; k < factor.repeated(); ++k) {
-    VecX const c = factor.relation(k);
-    null_vectors.push_back(factor.scaled(c));
+    IndexMap<double> const c = factor.relation(k);
+    null_vectors.push_back(factor.scaled_relation(k));
+    double largest = 0.0;
+    for (auto const& [i, value] : c) largest = std::max(largest, std::abs(value));
     auto const compare = [&](VecX const& b, double limit, std::vector<std::string>& found) {
-      if (std::abs(c.dot(b)) > limit * largest_size(c)) found.push_back(detail::names_in(system, c));
+      double sum = 0.0;
+      for (auto const& [i, value] : c) sum += value * b[i];
+      if (std::abs(sum) <= limit * largest) return;
+      VecX all = VecX::Zero(system.rows());
+      for (auto const& [i, value] : c) all[i] = value;
+      found.push_back(detail::names_in(system, all));
     };
     compare(phi, limits.position, out.in_positions);
     compare(rate, in_velocities, out.in_velocities);

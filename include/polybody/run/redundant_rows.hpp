@@ -7,6 +7,7 @@
 /// 848–869]. A factorisation that drops rows in a fixed order has no such bound: it divides by the coefficient of its
 /// last row, which may pass zero during a motion.
 
+#include <polybody/math/index_map.hpp>
 #include <polybody/run/redundant_constraints.hpp>
 
 namespace polybody {
@@ -24,20 +25,41 @@ struct RedundantLimits {
 /// vectors
 /// \param preferred for each equation: chosen first if its coefficient is above the limit `kept`; or empty
 template <class = void>
-[[gnu::cold]] Sequence<Index> choose_redundant(Sequence<VecX>& c, Sequence<char> const& preferred) {
+[[gnu::cold]] Sequence<Index> choose_redundant(Sequence<IndexMap<double>>& c, Sequence<char> const& preferred) {
   RedundantLimits const limits;
+  Sequence<Sequence<Index>> with_entry;  // vectors by equations, some more than once
+  auto const enter = [&](Index i, std::size_t k) {
+    while (with_entry.size() <= std::size_t(i)) with_entry.emplace_back();
+    with_entry[std::size_t(i)].push_back(Index(k));
+  };
+  for (std::size_t k = 0; k < c.size(); ++k)
+    for (auto const& [i, value] : c[k]) enter(i, k);
   Sequence<Index> chosen;
   for (std::size_t k = 0; k < c.size(); ++k) {
-    double const largest = largest_size(c[k]);
-    Index best = -1;
-    for (Index i = c[k].size(); i-- > 0 && best < 0;)
-      if (!preferred.empty() && preferred[std::size_t(i)] && std::abs(c[k][i]) >= limits.kept * largest) best = i;
-    for (Index i = c[k].size(); i-- > 0 && best < 0;)
-      if (std::abs(c[k][i]) >= limits.chosen * largest) best = i;
+    double largest = 0.0;
+    for (auto const& [i, value] : c[k]) largest = std::max(largest, std::abs(value));
+    Index last = -1, last_preferred = -1;
+    for (auto const& [i, value] : c[k]) {
+      if (std::abs(value) >= limits.chosen * largest) last = i;
+      if (!preferred.empty() && preferred[std::size_t(i)] && std::abs(value) >= limits.kept * largest)
+        last_preferred = i;
+    }
+    Index const best = last_preferred >= 0 ? last_preferred : last;
     chosen.push_back(best);
-    c[k] /= c[k][best];
-    for (std::size_t j = 0; j < c.size(); ++j)
-      if (double const part = c[j][best]; j != k && part != 0.0) c[j] -= part * c[k];
+    IndexMap<double> divided;
+    double const by = *c[k].find(best);
+    for (auto const& [i, value] : c[k]) divided[i] = value / by;
+    c[k] = std::move(divided);
+    for (Index const other : Sequence<Index>(with_entry[std::size_t(best)])) {
+      std::size_t const j = std::size_t(other);
+      double const* const part = c[j].find(best);
+      if (j == k || !part || *part == 0.0) continue;
+      double const of = *part;
+      for (auto const& [i, value] : c[k]) {
+        if (!c[j].find(i)) enter(i, j);
+        c[j][i] -= of * value;
+      }
+    }
   }
   sort_once(chosen);
   return chosen;
@@ -216,7 +238,13 @@ template <class Solver>
   if (lambda && lambda->size() == system.rows())
     for (Index i = 0; i < lambda->size(); ++i) preferred.push_back((*lambda)[i] == 0.0);
   auto const choose = [&] {
-    Sequence<Index> rows = detail::choose_redundant(space.vectors, preferred);
+    Sequence<IndexMap<double>> vectors;
+    for (VecX const& c : space.vectors) {
+      vectors.emplace_back();
+      for (Index i = 0; i < c.size(); ++i)
+        if (c[i] != 0.0) vectors.back()[i] = c[i];
+    }
+    Sequence<Index> rows = detail::choose_redundant(vectors, preferred);
     for (Index& i : rows) i += system.velocities();
     forward.mark_redundant(rows);
     forward.hold(system, x.q, x.v, x.t);
