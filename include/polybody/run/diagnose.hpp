@@ -118,6 +118,7 @@ void name_stable_steps(double omega, std::vector<Diagnosis::StableStep>& out) {
 template <class = void>
 Diagnosis diagnose(System& system, State const& x) {
   require_fitting(system, x);
+  require_places(system, x);
   Diagnosis out{.violation = largest_violation(system, x), .redundancy = redundancy(system, x)};
   if (out.violation.position > 0.0) {
     VecX phi = VecX::Zero(system.rows());

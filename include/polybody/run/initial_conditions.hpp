@@ -2,6 +2,9 @@
 /// \file
 /// Consistent starts: assembly of positions, projection of velocities, accelerations and multipliers.
 
+#include <limits>
+
+#include <polybody/integrators/unknown_kinds.hpp>
 #include <polybody/math/vectors.hpp>
 #include <polybody/run/redundant_constraints.hpp>
 #include <polybody/run/state_checks.hpp>
@@ -20,18 +23,108 @@ Index most_open(VecX const& phi) {
 }
 }  // namespace detail
 
-/// \throws InconsistentInitialConditions naming the joint that is violated most, when by more than `tolerance`.
+namespace detail {
+
+/// Violations of a state. In an assembly of bodies smaller than one metre, violations of lengths are divided by the
+/// largest extent of its bodies and joint markers along an axis of the world.
+template <class = void>  // compiled where it is used
+struct RelativeViolation {
+  VecX absolute;  ///< Φ (rows) [m], [rad]
+  VecX phi;       ///< Φ (rows), lengths over `extent`
+  VecX extent;    ///< (rows) [m]; 1 where a violation is not relative
+  Index worst;    ///< row with the largest |phi|; 0 if there is none
+
+  /// `system` is evaluated at x.
+  RelativeViolation(System& system, State const& x)
+      : absolute(VecX::Zero(system.rows())), phi(absolute), extent(VecX::Constant(system.rows(), 1.0)), worst(0) {
+    system.evaluate(x.q, x.v, x.t);
+    system.violation(absolute);
+    phi = absolute;
+    if (largest_size(phi) > 0.0 && !system.step_coordinates()) relate(system, x);
+    worst = most_open(phi);
+  }
+  double size() const { return phi.size() == 0 ? 0.0 : std::abs(phi[worst]); }  ///< largest |phi|
+
+ private:
+  struct Box {
+    Vec3 least = Vec3::Constant(std::numeric_limits<double>::infinity()), most = -least;
+    void stretch(Index axis, double at) {
+      least[axis] = std::min(least[axis], at);
+      most[axis] = std::max(most[axis], at);
+    }
+    double extent() const {
+      double out = 0.0;
+      for (Index i = 0; i < 3; ++i) out = std::max(out, most[i] - least[i]);
+      return out;
+    }
+    double farthest() const { return std::max(largest_size(least), largest_size(most)); }
+  };
+
+  void relate(System const& system, State const& x) {
+    ModelLayout const& layout = system.layout();
+    Sequence<Index> const assembly = assemblies_of(layout);
+    Sequence<Box> boxes(assembly.size());
+    auto const owner = [&](Index marker) { return marker < 0 ? Index(-1) : layout.owners[std::size_t(marker)]; };
+    auto const box_of = [&](JointLayout const& j) -> Box* {
+      Index const body = std::max(owner(j.a), owner(j.b));
+      return body < 0 ? nullptr : &boxes[std::size_t(assembly[std::size_t(body)])];
+    };
+    for (JointLayout const& j : layout.joints)
+      for (Index const marker : {j.a, j.b})
+        if (Box* const box = box_of(j); box && marker >= 0)
+          for (Index i = 0; i < 3; ++i) box->stretch(i, system.data().markers[std::size_t(marker)].frame.r[i]);
+    UnknownPlaces const places = full_places(layout);
+    for (std::size_t i = 0; i < places.of_q.size(); ++i)
+      if (UnknownPlace const& at = places.of_q[i]; at.axis >= 0)
+        boxes[std::size_t(assembly[std::size_t(at.body)])].stretch(at.axis, x.q[Index(i)]);
+    for (ConstraintBlock<double> const& block : system.data().rows) {
+      if (block.row < 0 || block.source != ConstraintSource::joint) continue;
+      Box const* const box = box_of(layout.joints[std::size_t(block.owner)]);
+      if (!box) continue;
+      // left absolute: round-off, and violations that make up the extent themselves
+      double const of_box = box->extent(), rounding = 16.0 * std::numeric_limits<double>::epsilon() * box->farthest();
+      for (int i = 0; i < block.rows; ++i) {
+        double const open = std::abs(absolute[block.row + i]);
+        if (!is_length(block, i) || !(of_box < 1.0) || 100.0 * open > of_box || open <= rounding) continue;
+        extent[block.row + i] = of_box;
+        phi[block.row + i] /= of_box;
+      }
+    }
+  }
+  /// True if row i of a joint depends on the position of a marker.
+  static bool is_length(ConstraintBlock<double> const& block, int i) {
+    for (ConstraintSide<double> const* const end : {&block.a, &block.b})
+      for (int k = 0; k < 3 && end->marker >= 0 && end->columns == 6; ++k)
+        if (std::abs(end->map[k * block.rows + i]) > 0.5e-3) return true;
+    return false;
+  }
+};
+
+}  // namespace detail
+
+/// \throws InconsistentInitialConditions naming the joint that is violated most, if by more than `tolerance` [m],
+/// [rad]. Lengths in an assembly of bodies smaller than one metre are relative to its extent.
 template <class = void>
 [[gnu::cold]] void require_assembled(System& system, State const& x, double tolerance = 1e-8) {
-  system.evaluate(x.q, x.v, x.t);
-  VecX phi = VecX::Zero(system.rows());
-  system.violation(phi);
-  Index const worst = detail::most_open(phi);
-  if (phi.size() == 0 || std::abs(phi[worst]) <= tolerance) return;
-  throw InconsistentInitialConditions{"At the start ", system.name_of(system.velocities() + worst), " is open by ",
-                                      std::abs(phi[worst]),
-                                      ". Place the bodies so that it closes, or call "
-                                      "assemble(model, x)."};
+  detail::RelativeViolation<> const open(system, x);
+  if (open.size() <= tolerance) return;
+  std::string const name = system.name_of(system.velocities() + open.worst);
+  double const by = std::abs(open.absolute[open.worst]), extent = open.extent[open.worst];
+  if (by > tolerance)
+    throw InconsistentInitialConditions{"At the start ", name, " is open by ", by,
+                                        ". Place the bodies so that it closes, or call "
+                                        "assemble(model, x)."};
+  throw InconsistentInitialConditions{"At the start ",
+                                      name,
+                                      " is open by ",
+                                      by,
+                                      " m, more than ",
+                                      tolerance * extent,
+                                      " m, the tolerance ",
+                                      tolerance,
+                                      " times the extent of its bodies of ",
+                                      extent,
+                                      " m. Place the bodies so that it closes, or call assemble(model, x)."};
 }
 
 /// \throws InconsistentInitialConditions naming joints that stay open because their rows repeat each other with other
@@ -46,19 +139,23 @@ template <class Solver>
 }
 
 /// Moves the coordinates by the smallest change in the norm of M until every joint closes (Gauss–Newton) to
-/// `tolerance`, in at most `max_iterations`, then projects the speeds. \throws InconsistentInitialConditions naming the
-/// joint that cannot be closed, or the joints whose rows repeat each other but contradict; x is then untouched.
+/// `tolerance`, and to 1e-9 of the extent of an assembly of bodies smaller than one metre, in at most `max_iterations`,
+/// then projects the speeds. \throws InconsistentInitialConditions naming the joint that cannot be closed, or the
+/// joints whose rows repeat each other but contradict; InvalidInput for a quaternion whose norm is not one; x is then
+/// untouched.
 template <LinearSolver Solver = DefaultSolver>
 void assemble(System& system, State& x, double tolerance = 1e-12, int max_iterations = 50) {
   require_positive(tolerance, "assemble: the tolerance");
   require_count(max_iterations, "assemble: max_iterations");
   require_fitting(system, x);
+  require_places(system, x);
   ForwardDynamics<Solver> forward(system);
   State trial = x;
   double before = 0.0;
   for (int k = 0;; ++k) {
+    bool const closed = detail::RelativeViolation<>(system, trial).size() <= std::max(tolerance, 1e-9);
     before = forward.project_positions_once(system, trial.q, trial.v, trial.t);
-    if (before <= tolerance) break;
+    if (before <= tolerance && (closed || k == max_iterations)) break;
     if (k == max_iterations || !std::isfinite(before)) {
       require_closable(system, forward, trial);
       require_assembled(system, trial, tolerance);

@@ -2,6 +2,7 @@
 /// \file
 /// Questions about a single body in a state: frames of its points, its coordinates and speeds.
 
+#include <cmath>
 #include <functional>
 
 #include <polybody/math/sequence.hpp>
@@ -15,10 +16,33 @@ Frame<double> frame(BodyInState<B> const& body, typename B::Point const& point) 
   Sequence<double> jacobian;
   return evaluate_marker(body, point, jacobian).frame;
 }
-/// Frame of a material point in state x. \throws InvalidInput for a marker of another model.
+namespace detail {
+/// \throws InvalidInput if a body that rotates by a quaternion has axes whose length is not one. \param name returns
+/// the name of the body
+template <class B, class Name>
+void require_unit_axes(B const& body, Frame<double> const& f, Name const& name) {
+  double squared = 0.0;
+  for (Index i = 0; i < 3; ++i) squared += f.A(i, 0) * f.A(i, 0);
+  if (std::abs(squared - 1.0) <= 1e-5 || body.coordinates() == body.velocities()) return;
+  throw InvalidInput{"frame: the quaternion of body \"",
+                     name(),
+                     "\" has the norm ",
+                     std::pow(squared, 0.25),
+                     ", so its axes have the length ",
+                     std::sqrt(squared),
+                     ". The norm must be one within 2e-6. Normalise the quaternion in the state."};
+}
+}  // namespace detail
+
+/// Frame of a material point in state x. \throws InvalidInput for a marker of another model, and for a body that
+/// rotates by a quaternion whose norm is not one.
 template <class M, class B>
 Frame<double> frame(M const& model, State const& x, Marker<B> const& marker) {
-  return frame(body_in_state(model, x, marker, "frame"), marker.point);
+  BodyInState<B> const b = body_in_state(model, x, marker, "frame");
+  Frame<double> const f = frame(b, marker.point);
+  if constexpr (B::observes == MarkerKind::frame)
+    detail::require_unit_axes(b.body, f, [&] { return body_name(model, marker); });
+  return f;
 }
 /// Frame of a marker on the ground.
 template <class M>

@@ -92,6 +92,7 @@ using MinimumNorm = MinimumNormOf<>;  ///< multipliers of least norm
 template <LinearSolver Solver = DefaultSolver>
 VecX minimum_norm_multipliers(System& system, State const& x) {
   require_fitting(system, x);
+  require_places(system, x);
   ForwardDynamics<Solver> forward(system);
   State shared = x;
   if (system.rows() > 0) leave_out_redundant(system, forward, x);

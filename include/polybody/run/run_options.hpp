@@ -28,7 +28,8 @@ struct RunOptions {
   std::optional<double> max_step = {};   ///< [s], for an integrator that controls its step
   std::vector<double> breakpoints = {};  ///< times at which a step must end, beside those of the drives and loads [s]
   std::vector<Event> events = {};        ///< looked for in each step
-  double assembly_tolerance = 1e-8;      ///< |Φ| of the start [m], [rad]
+  /// |Φ| of the start [m], [rad]. Lengths in an assembly of bodies smaller than one metre are relative to its extent.
+  double assembly_tolerance = 1e-8;
   int max_step_halvings = 0;       ///< how often a step whose Newton iteration stalls may be halved, as at impacts
   bool minimum_norm = false;       ///< every state gets the multipliers of `MinimumNorm`; costs a factorisation each
   PlausibilityLimits limits = {};  ///< of a step's end: constraint violation, and energy that no work explains

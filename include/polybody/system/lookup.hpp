@@ -93,6 +93,12 @@ BodyInState<B> body_in_state(M const& model, State const& x, Marker<B> const& ma
                                    x);
 }
 
+/// Name of the body of a marker of this model.
+template <class M, class B>
+std::string body_name(M const& model, Marker<B> const& marker) {
+  return std::get<detail::BodyPool<B>>(model.body_pools()).entries[std::size_t(marker.body)].name;
+}
+
 /// What a body publishes of a point, its axes being those of the body. The Jacobian stands in `jacobian`.
 template <class B>
 MarkerKinematics<double> evaluate_marker(BodyInState<B> const& b, typename B::Point const& point,
