@@ -103,7 +103,7 @@ void chains(char const* title) {
 void pins() {
   std::printf("\npins at one point [s] (exponent)\n    pins  simulate          redundancy\n");
   Table table;
-  for (int const n : {100, 200, 400}) {
+  for (int const n : {100, 200, 400, 800, 1600}) {
     Chain<Constraint> const model = pinned(n);
     State x = model.reference_state();
     double const start = seconds([&] { simulate(model, x, GeneralisedAlpha{}, {.end_time = 1.0, .step = 1e-3}); });
