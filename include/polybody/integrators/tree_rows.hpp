@@ -13,7 +13,7 @@ namespace polybody::detail {
 /// equations, so f v̇ = A u̇ for every solution.
 class TreeRows {
  public:
-  /// Whether the equations of the system hold all bodies of a tree.
+  /// True if the equations of the system have the speeds of all bodies of a tree.
   static bool are_in(System const& system) {
     return system.step_coordinates() && !system.step_coordinates().reduced->eliminated_equations.empty();
   }

@@ -80,6 +80,7 @@ void BlockFactor<symmetry>::null_vector(Index dropped, VecX& x) const {
     if (n != &own) continue;
     y[row] = 1.0;  // which `ascend` has left zero, and which moves those before it
     for (int r = row - 1; r >= 0; --r) {
+      if (s.inverse[r] == 0.0) continue;  // dropped
       double sum = s.u[r * stride + row];
       for (int p = r + 1; p < row; ++p) sum += s.u[r * stride + p] * part[std::size_t(p)];
       part[std::size_t(r)] = -s.inverse[r] * sum;

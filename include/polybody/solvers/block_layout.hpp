@@ -3,6 +3,7 @@
 /// The symbolic half of a block factorisation: nodes in the order of elimination, where each block of the matrix and of
 /// the fill stands, and which block each elimination changes. Found once; then numbers run through flat lists.
 
+#include <algorithm>
 #include <span>
 
 #include <polybody/math/sequence.hpp>
@@ -64,6 +65,8 @@ class BlockLayout {
   }
 
  private:
+  static constexpr std::size_t fewest_alike = 8;  ///< up to so many joints between the same bodies are separate nodes
+
   static Sequence<int> number_nodes(BlockPattern const& pattern, std::span<Block const> blocks,
                                     NodeHints const& hints) {
     auto const& segments = pattern.segments();
@@ -106,6 +109,7 @@ class BlockLayout {
         }
     }
     for (Sequence<int>& of : touched) sort_once(of);
+    join_alike_joints(pattern, touched, node_of, count);
     for (std::size_t s = 0; s < segments.size(); ++s) {
       if (node_of[s] >= 0 || segments[s].joint) continue;
       Index size = segments[s].size;
@@ -116,6 +120,28 @@ class BlockLayout {
         node_of[s] = node_of[std::size_t(t)] = count;
       }
       if (node_of[s] >= 0) ++count;
+    }
+  }
+
+  /// Many joints that close loops between the same bodies are eliminated at once: most of their rows repeat others. As
+  /// separate nodes each would have an update for every pair of those after it.
+  [[gnu::cold]] static void join_alike_joints(BlockPattern const& pattern, Sequence<Sequence<int>> const& touched,
+                                              Sequence<int>& node_of, int& count) {
+    auto const& segments = pattern.segments();
+    Sequence<int> joints;
+    for (std::size_t s = 0; s < segments.size(); ++s)
+      if (node_of[s] < 0 && segments[s].joint && segments[s].closes_loop) joints.push_back(int(s));
+    auto const before = [&](int a, int b) {
+      Sequence<int> const &x = touched[std::size_t(a)], &y = touched[std::size_t(b)];
+      if (x == y) return a < b;
+      return std::lexicographical_compare(x.begin(), x.end(), y.begin(), y.end());
+    };
+    std::sort(joints.begin(), joints.end(), before);
+    for (std::size_t first = 0, end = 0; first < joints.size(); first = end) {
+      while (end < joints.size() && touched[std::size_t(joints[end])] == touched[std::size_t(joints[first])]) ++end;
+      if (end - first <= fewest_alike) continue;
+      for (std::size_t k = first; k < end; ++k) node_of[std::size_t(joints[k])] = count;
+      ++count;
     }
   }
 

@@ -137,6 +137,8 @@ int eliminate_node(NodeStorage const& n, bool symmetric, double threshold, doubl
       if (!(std::abs(pivot) > threshold * scale[r])) {
         if (reject(r, pivot)) return r;
         n.inverse[r] = 0.0;
+        for (int s = r + 1; s < n.size; ++s) n.f[s * n.size + r] = 0.0;
+        continue;
       }
       int const begin = (r + 1) & ~(lane_size - 1);
       for (int s = r + 1; s < n.size; ++s) {
