@@ -129,11 +129,8 @@ double energy_drift(I const& integrator, double step) {
     worst = std::max(worst, std::abs(energy(top.model, now).total() - start));
   return worst / start;
 }
-// ½ J Ω² of the spin is 200 J. The energy oscillates and does not grow.
-TEST(FreeSpin, OfAHeavyTopKeepsItsEnergyUnderExplicitSteps) {
-  EXPECT_LT(energy_drift(Rattle{}, 2e-3), 1e-3);
-  EXPECT_LT(energy_drift(CentralDifference<Projection>{}, 2e-3), 1e-3);
-}
+// ½ J Ω² of the spin is 200 J.
+TEST(FreeSpin, OfAHeavyTopKeepsItsEnergyUnderRattle) { EXPECT_LT(energy_drift(Rattle{}, 2e-3), 1e-3); }
 
 TEST(FreeSpin, WithAStepThatDoesNotResolveItIsRefused) {
   FreeTop free;
