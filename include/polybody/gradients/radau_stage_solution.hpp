@@ -24,7 +24,9 @@ class RadauStageSolution {
     System& system = places.template system<double>();
     find_rows(system);
     rhs_ = correction_ = VecX::Zero(3 * system.size());
+    if (!system.step_coordinates()) derivatives_.analyse(system);
     numbers_.resize(system);
+    solver_.analyse(system, 3, [&](BlockSink& sink) { write(0.0, 1.0, sink); });
   }
 
   /// Finds the stages of a step and the places after them. \throws NewtonConvergenceFailure where its stages are not
@@ -82,15 +84,13 @@ class RadauStageSolution {
   void write(double t, double h, BlockSink& sink) {
     System& s = places_->template system<double>();
     RadauStages<double>& w = numbers_;
-    Index const n = equations_of(s), velocities = equation_velocities_of(s), rows = n - velocities,
-                first = derivatives_.counts_equations() ? 0 : velocities;
+    Index const n = equations_of(s), velocities = equation_velocities_of(s), rows = n - velocities;
     for (int i = 0; i < 3; ++i) {
       std::size_t const stage = std::size_t(i);
       double const at = t + T3::c[i] * h;
       s.plus(w.q0, w.delta[stage], w.at.q);
       derivatives_.measure(s, w.at.q, w.v[stage], w.vd[stage], at);
       evaluate_for_tangent(s, {{w.at.q, w.v[stage], at}, w.vd[stage], w.lambda[stage]}, balance_);
-      solver_.hold_copy(stage);
       for (int j = 0; j < 3; ++j) {
         StageBlockSink part{sink, i * n, j * n, velocities};
         s.tangent({i == j ? 1.0 : 0.0, h * T3::a[i][j], h * h * T3::squared(i, j)}, SecondOrder::included,
@@ -100,7 +100,7 @@ class RadauStageSolution {
                    Eigen::Map<Mat<double, 1, 1> const>(&slack_[stage * std::size_t(rows) + std::size_t(k)]));
       }
       for (int j = 0; j < 3; ++j)
-        derivatives_.write(h * T3::a[i][j], h * h * T3::squared(i, j), i * n + first, j * n, sink);
+        derivatives_.write(h * T3::a[i][j], h * h * T3::squared(i, j), i * n + velocities, j * n, sink);
     }
   }
 
@@ -192,13 +192,7 @@ class RadauStageSolution {
   void factor(StepTaken const& step) {
     System& s = places_->template system<double>();
     numbers_.find(s, step.h);
-    auto const write_stages = [&](BlockSink& sink) { write(step.before.t, step.h, sink); };
-    if (!analysed_) {  // an evaluated system: derivatives of a tree follow from its motions
-      derivatives_.analyse(s);
-      solver_.analyse(s, 3, write_stages);
-      analysed_ = true;
-    }
-    Index const bad = solver_.factor(write_stages);
+    Index const bad = solver_.factor([&](BlockSink& sink) { write(step.before.t, step.h, sink); });
     if (bad >= 0)
       throw SingularMatrix{"The derivative of the step that ends at t = ", step.before.t + step.h,
                            " s has no pivot at ", name_of_equation(s, bad % equations_of(s)), "."};
@@ -229,7 +223,6 @@ class RadauStageSolution {
   Sequence<Index> row_of_, equation_of_;  // rows of a step behind those of the equations, and back
   Sequence<double> slack_;                // by stages and rows of the equations
   VecX rhs_, correction_, balance_;
-  bool analysed_ = false;  // the matrix is laid out
 };
 
 }  // namespace polybody::detail
