@@ -3,5 +3,5 @@
 #include <polybody/bodies/lrvf/incremental_interpolation.hpp>
 #include <polybody/bodies/lrvf/lrvf.hpp>
 
-polybody::Lrvf<polybody::Incremental, polybody::Full> const beam =
-    polybody::Lrvf<polybody::Incremental, polybody::Full>::from({.length = 1.0}, 2);
+polybody::Lrvf<polybody::Incremental, polybody::FullQuadrature> const beam =
+    polybody::Lrvf<polybody::Incremental, polybody::FullQuadrature>::from({.length = 1.0}, 2);

@@ -14,7 +14,8 @@ struct AlphaVectors {
   AndersonAcceleration acceleration;  ///< of y, by the accelerations of bodies
   Index states;                       ///< first-order ones, the last of the speeds
 
-  /// Zeros, as many as a system has coordinates, speeds, rows, multipliers that a step keeps, and `first_order` states.
+  /// Zeros, as many as a system has coordinates, velocities, rows, multipliers that a step keeps, and `first_order`
+  /// states.
   AlphaVectors(Index coordinates, Index velocities, Index rows, Index multipliers, Index first_order)
       : v0(VecX::Zero(velocities)),
         a0(v0),

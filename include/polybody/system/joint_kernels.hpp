@@ -142,11 +142,11 @@ void add_velocity_rows(Mat<double, m, 12> const& rates, std::array<MarkerKinemat
 /// have no gap: their rows are the model's (linear_rows.hpp).
 template <class J, StateScalar T>
 struct JointKernels {
-  using P = typename J::PolicyType;              ///< who answers or solves for the rows
-  using Pool = Sequence<detail::JointEntry<J>>;  ///< joints of this type, in a model
-  using Kept = detail::JointData<J, T>;          ///< scratch: gaps, and what compliant joints answer
-  static constexpr bool linear = LinearPolicy<P>,
-                        compliant = !ConstrainingPolicy<P>;  ///< linear in q; answered by forces
+  using P = typename J::PolicyType;                          ///< who answers or solves for the rows
+  using Pool = Sequence<detail::JointEntry<J>>;              ///< joints of this type, in a model
+  using Kept = detail::JointData<J, T>;                      ///< scratch: gaps, and what compliant joints answer
+  static constexpr bool linear = LinearPolicy<P>;            ///< true if the equations are linear in q
+  static constexpr bool compliant = !ConstrainingPolicy<P>;  ///< true if forces enforce the equations
 
   /// Counts, places and names.
   [[gnu::cold]] static void describe(Pool const& pool, Sequence<LinearConstraints> const& linear_rows,

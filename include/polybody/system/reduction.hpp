@@ -54,28 +54,28 @@ class ReductionOf {
   /// Place in the tree of the body that the joint with this first row carries.
   Index carried_by(Index row) const { return carried_by_[std::size_t(row)]; }
 
-  /// What is the same in both, narrow to whole and back.
+  /// Copies the coordinates that both states have from the `reduced` to the `full` ones.
   void expand_coordinates(VecXOf<T> const& reduced, VecXOf<T>& full) const {
     for (auto const& [n, w] : same_q_) full[w] = reduced[n];
   }
-  /// Coordinates that are the same in both, whole to narrow.
+  /// Copies the coordinates that both states have from the `full` to the `reduced` ones.
   void reduce_coordinates(VecX const& full, VecX& reduced) const {
     for (auto const& [n, w] : same_q_) reduced[n] = full[w];
   }
-  /// Speeds that are the same in both, narrow to whole.
+  /// Copies the generalised velocities that both states have from the `reduced` to the `full` ones.
   void expand_velocities(VecXOf<T> const& reduced, VecXOf<T>& full) const {
     for (auto const& [n, w] : same_v_) full[w] = reduced[n];
   }
-  /// Speeds that are the same in both, whole to narrow.
+  /// Copies the generalised velocities that both states have from the `full` to the `reduced` ones.
   void reduce_velocities(VecXOf<T> const& full, VecXOf<T>& reduced) const {
     for (auto const& [n, w] : same_v_) reduced[n] = full[w];
   }
-  /// `full` multipliers from narrow ones: zero in rows that a policy eliminates.
+  /// Multipliers of the `full` state from the `reduced` ones. Equations that a policy eliminates get zero.
   void expand_rows(VecX const& reduced, VecX& full) const {
     full.setZero();
     for (std::size_t i = 0; i < rows_.size(); ++i) full[rows_[i]] = reduced[Index(i)];
   }
-  /// The rows that stay, `reduced`, out of whole ones.
+  /// Multipliers of the `reduced` state: the entries of `full` whose equations stay.
   void reduce_rows(VecX const& full, VecX& reduced) const {
     for (std::size_t i = 0; i < rows_.size(); ++i) reduced[Index(i)] = full[rows_[i]];
   }

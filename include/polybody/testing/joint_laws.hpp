@@ -12,11 +12,11 @@ namespace polybody::laws {
 
 /// Laws of a joint geometry of any type. V = [ṙ; ω] are the twists of both frames, and G = [Ga Gb].
 struct JointLawsOf {
-  static constexpr double tolerance = 1e-12;  ///< largest error of numbers of size one
-  AnyGeometry const geometry;                 ///< geometry under test
-  bool const planar = geometry.planar;        ///< true if all frames stay in the plane z = 0
-  Index const m = geometry.rows,
-              held = m - geometry.nonholonomic_equations;  ///< constraint equations, and the holonomic ones
+  static constexpr double tolerance = 1e-12;               ///< largest error of numbers of size one
+  AnyGeometry const geometry;                              ///< geometry under test
+  bool const planar = geometry.planar;                     ///< true if all frames stay in the plane z = 0
+  Index const m = geometry.rows;                           ///< number of constraint equations
+  Index const held = m - geometry.nonholonomic_equations;  ///< number of holonomic ones
   double const t = 1.3;                                    ///< time of the evaluation [s]
   Numbers number;                                          ///< random numbers with a fixed seed
 

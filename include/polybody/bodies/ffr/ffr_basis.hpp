@@ -158,9 +158,9 @@ MatX free_interface_modes(Structure const& s, Index count,
 }
 
 /// Basis of Craig & Bampton [1968]: constraint modes of the boundary nodes, and the `count` lowest fixed-interface
-/// modes, computed by `solve`. All coordinates are used, or those restrict_to_plane. The frame is tied to the first
-/// boundary node, whose constraint modes are omitted. With `mean_axes` it follows the mean motion instead: the basis
-/// then is transformed to the free modes of the reduced model, without the rigid ones.
+/// modes, computed by `solve`. All coordinates are used, or the ones of the plane of x and y if `in_plane`. The frame
+/// is tied to the first boundary node, whose constraint modes are omitted. With `mean_axes` it follows the mean motion
+/// instead: the basis then is transformed to the free modes of the reduced model, without the rigid ones.
 /// \throws InvalidInput for boundary nodes that do not exist or are repeated, a count above the number of modes, or a
 /// frame tied to a node without rotations.
 template <class Eigensolver = DenseModes>
