@@ -97,8 +97,9 @@ TEST(InitialConditions, TheToleranceDecides) {
   EXPECT_NO_THROW(require_assembled(system, p.x));
   p.x.q[1] += 1e-6;
   EXPECT_THROW(require_assembled(system, p.x), InconsistentInitialConditions);
-  EXPECT_THROW(require_assembled(system, p.x, 0.99e-6), InconsistentInitialConditions);
-  EXPECT_NO_THROW(require_assembled(system, p.x, 1.01e-6));
+  // the extent of the bodies is 0.5 m
+  EXPECT_THROW(require_assembled(system, p.x, 1.98e-6), InconsistentInitialConditions);
+  EXPECT_NO_THROW(require_assembled(system, p.x, 2.02e-6));
 }
 
 // --- assemble -------------------------------------------------------------------------------------------------
