@@ -1,4 +1,5 @@
 #pragma once
+#include <polybody/integrators/integrator.hpp>
 #include <polybody/run/redundant_rows.hpp>
 
 namespace polybody {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <polybody/run/axial_force_monitor.hpp>
+#include <polybody/run/run_options.hpp>
 #include <polybody/run/step_plan.hpp>
 
 namespace polybody {
