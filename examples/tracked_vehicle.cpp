@@ -147,7 +147,7 @@ class Figures {
   // Positions, speeds and paths of all formulations.
   void formulations() {
     Runs const all = runs_(o_, {ideal_pins(), penalty_pins(m113::pin_stiffness), bushing_pins(o_.penalty), cable_pins(),
-                                joint_coordinates()});
+                                joint_coordinate_pins()});
     std::size_t const count = all.comparison.runs.size();
     if (wanted("3.8"))
       over_time(all, "forward position [m]", "Figure 3.8: chassis forward position", "position [m]", "8");
@@ -251,7 +251,7 @@ void single(Options const& o) {
                                                  {"penalty", penalty_pins(o.penalty)},
                                                  {"bushing", bushing_pins(o.penalty)},
                                                  {"ancf", cable_pins()},
-                                                 {"recursive", joint_coordinates()}};
+                                                 {"recursive", joint_coordinate_pins()}};
   show(o, RunsMade{}(o, {formulations.at(o.track)}));
 }
 

@@ -1,3 +1,3 @@
 #include "pins_by.hpp"
 
-chapter3::Pins chapter3::joint_coordinates() { return pins_by<Rigid<>>("recursive", JointCoordinates{}, 1e-4); }
+chapter3::Pins chapter3::joint_coordinate_pins() { return pins_by<Rigid<>>("recursive", JointCoordinates{}, 1e-4); }

@@ -34,6 +34,6 @@ Pins ideal_pins();
 Pins penalty_pins(double stiffness);
 Pins bushing_pins(double stiffness);
 Pins cable_pins();
-Pins joint_coordinates();
+Pins joint_coordinate_pins();
 
 }  // namespace chapter3
