@@ -94,8 +94,8 @@ void chains(char const* title) {
       run.reset(new Run(simulate(*model, x, GeneralisedAlpha{}, RunOptions{.end_time = 1.0, .step = 1e-3})));
     }));
     times.push_back(seconds([&] { run->advance(); }));
-    times.push_back(seconds([&] { benchmark::DoNotOptimize(outline(*model)); }));
-    times.push_back(seconds([&] { benchmark::DoNotOptimize(check(*model, start)); }));
+    times.push_back(seconds([&] { benchmark::DoNotOptimize(summary(*model)); }));
+    times.push_back(seconds([&] { benchmark::DoNotOptimize(diagnose(*model, start)); }));
     table.add(bodies, times);
   }
 }
