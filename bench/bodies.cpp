@@ -130,7 +130,7 @@ void all_bodies(benchmark::State& state) {
     measure("AncfCable<>", AncfCable<>::from(bar(), n));
     measure("AncfBeam<ElasticLine>", AncfBeam<ElasticLine>::from(bar(), n));
     measure("AncfBeam<Continuum<>>", AncfBeam<Continuum<>>::from(bar(), n));
-    measure("Lrvf<Objective>", Lrvf<>::from(bar(), n));
+    measure("Lrvf<RelativeRotation>", Lrvf<>::from(bar(), n));
     measure("Lrvf<Direct>", Lrvf<Direct>::from(bar(), n));
     Structure const s = structure_of(bar(), 8);
     measure("Ffr, 6 modes", Ffr(s, fixed_interface_modes(s, 6)));

@@ -47,7 +47,7 @@ auto const policies =
 auto const bodies = std::tuple(
     Type<Rigid<>>{"Rigid<>"}, Type<Rigid<EulerParameters>>{"Rigid<EulerParameters>"}, Type<AncfCable<>>{"AncfCable"},
     Type<AncfBeam<ElasticLine>>{"AncfBeam<ElasticLine>"}, Type<AncfBeam<Continuum<>>>{"AncfBeam<Continuum>"},
-    Type<Lrvf<RelativeRotation>>{"Lrvf<Objective>"}, Type<Lrvf<Direct>>{"Lrvf<Direct>"}, Type<Ffr>{"Ffr"},
+    Type<Lrvf<RelativeRotation>>{"Lrvf<RelativeRotation>"}, Type<Lrvf<Direct>>{"Lrvf<Direct>"}, Type<Ffr>{"Ffr"},
     Type<planar::Rigid>{"planar::Rigid"}, Type<planar::AncfCable<>>{"planar::AncfCable"},
     Type<planar::Lrvf>{"planar::Lrvf"}, Type<planar::Ffr>{"planar::Ffr"});
 

@@ -5,7 +5,7 @@ namespace polybody::random_models {
 
 WideType frame_and_rotation_joints() {
   return wide_type<Bodies<Rigid<>, Lrvf<>, Lrvf<Direct>, Ffr>, AllInSpace<Constraint>, AllForces>(
-      "joints of floating frames and rotation fields", {"Rigid<>", "Lrvf<Objective>", "Lrvf<Direct>", "Ffr"},
+      "joints of floating frames and rotation fields", {"Rigid<>", "Lrvf<RelativeRotation>", "Lrvf<Direct>", "Ffr"},
       names_of_all_forces);
 }
 

@@ -11,7 +11,7 @@ WideType policies_of_bodies() {
                             JointsBy<Constraint, Spherical, Distance>>,
                    AllForces>("policies of bodies in space",
                               {"Rigid<>", "Rigid<EulerParameters>", "AncfCable", "AncfBeam<ElasticLine>",
-                               "AncfBeam<Continuum>", "Lrvf<Objective>", "Lrvf<Direct>", "Ffr"},
+                               "AncfBeam<Continuum>", "Lrvf<RelativeRotation>", "Lrvf<Direct>", "Ffr"},
                               names_of_all_forces);
 }
 
