@@ -84,11 +84,14 @@
 #include <polybody/math/monotone_table.hpp>
 #include <polybody/math/smooth_table.hpp>
 #include <polybody/math/time_functions.hpp>
+#include <polybody/run/accelerations.hpp>
 #include <polybody/run/any_model.hpp>
+#include <polybody/run/applied_wrenches.hpp>
 #include <polybody/run/contacts.hpp>
 #include <polybody/run/energy.hpp>
 #include <polybody/run/energy_audit.hpp>
 #include <polybody/run/initial_conditions.hpp>
+#include <polybody/run/joint_position.hpp>
 #include <polybody/run/marker_frames.hpp>
 #include <polybody/run/minimum_norm.hpp>
 #include <polybody/run/observe.hpp>

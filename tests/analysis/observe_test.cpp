@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <polybody/bodies/ancf/ancf_cable.hpp>
+#include <polybody/bodies/lrvf/lrvf.hpp>
+#include <polybody/bodies/rigid/rigid_euler_parameters.hpp>
 #include <polybody/run/energy.hpp>
 
 #include "support/mixed_models.hpp"
@@ -45,6 +48,65 @@ TEST(Momentum, IsThatOfTheHandCalculation) {
   EXPECT_LT((p.linear - Vec3(6.0, 0.0, 0.0)).norm(), 1e-13);
   // r × m v + I ω = 0.5 · 0 − 0.25 · 6 − 4
   EXPECT_LT((p.angular - Vec3(0, 0, -5.5)).norm(), 1e-13);
+}
+
+// The marker at the centre of mass, and mass, position and velocity of the centre of mass of one body and of all.
+TEST(CentreOfMass, OfRigidBodiesIsThatOfTheHandCalculation) {
+  Model<Bodies<planar::Rigid>, Joints<>> plane;
+  auto const a = plane.add(planar::Rigid(3.0, 1.0, Placement::planar(0.5, 0.25, 0.7)), "a");
+  auto const b = plane.add(planar::Rigid(1.0, 2.0, Placement::planar(-1.5, 4.25)), "b");
+  State x = plane.reference_state();
+  x.v << 1.0, 2.0, 5.0, -3.0, 6.0, 7.0;
+  EXPECT_LT((position(plane, x, a.centre()) - Vec3(0.5, 0.25, 0)).norm(), 1e-15);
+  CentreOfMass const one = centre_of_mass(plane, x, b), all = centre_of_mass(plane, x);
+  EXPECT_NEAR(one.mass, 1.0, 1e-14);
+  EXPECT_LT((one.position - Vec3(-1.5, 4.25, 0)).norm(), 1e-14);
+  EXPECT_LT((one.velocity - Vec3(-3.0, 6.0, 0)).norm(), 1e-14);
+  EXPECT_NEAR(all.mass, 4.0, 1e-14);
+  EXPECT_LT((all.position - Vec3(0.0, 1.25, 0)).norm(), 1e-14);
+  EXPECT_LT((all.velocity - Vec3(0.0, 3.0, 0)).norm(), 1e-14);
+
+  Model<Bodies<Rigid<>, Rigid<EulerParameters>>, Joints<>> space;
+  Mat3 const inertia = Vec3(1.0, 2.0, 2.5).asDiagonal();
+  auto const c = space.add(Rigid<>(2.0, inertia, Placement::at({1, 2, 3}, {0.3, -0.2, 0.5})), "c");
+  auto const d = space.add(Rigid<EulerParameters>(6.0, inertia, Placement::at({-1, 0, 1}, {0.1, 0.4, 0.5})), "d");
+  State const y = space.reference_state();
+  EXPECT_LT((position(space, y, c.centre()) - Vec3(1, 2, 3)).norm(), 1e-15);
+  EXPECT_LT((position(space, y, d.centre()) - Vec3(-1, 0, 1)).norm(), 1e-15);
+  EXPECT_NEAR(centre_of_mass(space, y, d).mass, 6.0, 1e-13);
+  EXPECT_LT((centre_of_mass(space, y, d).position - Vec3(-1, 0, 1)).norm(), 1e-13);
+  EXPECT_LT((centre_of_mass(space, y).position - Vec3(-0.5, 0.5, 1.5)).norm(), 1e-13);
+  EXPECT_TRUE(has(refusal([&] { (void)centre_of_mass(space, x); }), "does not fit"));
+  EXPECT_TRUE(has(refusal([&] { (void)centre_of_mass(plane, x, Rod().rod); }), "handle of another model"));
+}
+
+// The potential of gravity is −m g·r, so three fields give the centre of mass of a deformed body in another way. The
+// velocity is the linear momentum divided by the mass.
+TEST(CentreOfMass, OfFlexibleBodiesAgreesWithTheirPotential) {
+  auto const model_in = [](Vec3 const& g) {
+    Model<Bodies<AncfCable<>, Lrvf<>>, Joints<>> model{Gravity{g}};
+    Bar bar{.length = 1.0,
+            .constants =
+                BarConstants{.EA = 90, .EI = 4, .mass_per_length = 2.0, .GA = 30, .GJ = 3, .rotary_inertia = 0.05}};
+    auto const cable = model.add(AncfCable<>::from(bar, 2), "cable");
+    bar.placement = Placement::at({0.3, -0.4, 0.7}, {0.2, 0.5, -0.3});
+    auto const beam = model.add(Lrvf<>::from(bar, 3), "beam");
+    return std::tuple(std::move(model), cable, beam);
+  };
+  auto const [model, cable, beam] = model_in(Vec3::Zero());
+  State const x = scrambled(model);
+  CentreOfMass const all = centre_of_mass(model, x), one = centre_of_mass(model, x, cable),
+                     two = centre_of_mass(model, x, beam);
+  EXPECT_NEAR(all.mass, 4.0, 1e-12);
+  EXPECT_NEAR(one.mass, 2.0, 1e-12);
+  for (int i = 0; i < 3; ++i) {
+    auto const [heavy, same_cable, same_beam] = model_in(Vec3::Unit(i));
+    EXPECT_NEAR(energy(heavy, x).gravity, -4.0 * all.position[i], 1e-12);
+  }
+  EXPECT_LT((all.position - 0.5 * (one.position + two.position)).norm(), 1e-13);
+  EXPECT_LT((all.velocity - momentum(model, x).linear / 4.0).norm(), 1e-13);
+  State const straight = model.reference_state();
+  EXPECT_LT((centre_of_mass(model, straight, cable).position - Vec3(0.5, 0, 0)).norm(), 1e-13);
 }
 
 // Pin with a violation of 0.25 m on a rotating and moving bar: ‖Φ‖, ‖Φ̇‖ and ‖Φ̈‖ by the largest entry.

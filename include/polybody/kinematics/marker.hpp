@@ -93,6 +93,13 @@ struct BodyHandle {
   {
     return named([&](B const& on) { return on.at(point); });
   }
+  /// Marker at the centre of mass, for bodies in which it is a material point (rigid bodies). The position of the
+  /// centre of mass of every body is computed by `centre_of_mass` (run/energy.hpp).
+  Marker<B> centre() const
+    requires requires(B const b) { b.centre(); }
+  {
+    return named([](B const& on) { return on.centre(); });
+  }
 
  private:
   template <class F>

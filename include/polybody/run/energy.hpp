@@ -1,5 +1,6 @@
 #pragma once
 #include <polybody/run/state_checks.hpp>
+#include <polybody/system/lookup.hpp>
 #include <polybody/system/make_operations.hpp>
 #include <polybody/system/system.hpp>
 
@@ -64,6 +65,72 @@ Momentum momentum(M const& model, State const& x) {
   System system(model, with<Capabilities::rigid_velocities>);
   require_usable(system, x);
   return momentum(system, x);
+}
+
+/// Mass and centre of mass of a body or of a model in one state.
+struct CentreOfMass {
+  double mass = 0.0;             ///< [kg]
+  Vec3 position = Vec3::Zero();  ///< (3) world axes [m]
+  Vec3 velocity = Vec3::Zero();  ///< (3) world axes [m/s]
+};
+
+namespace detail {
+/// Centre of mass of the bodies with the generalised velocities [first, first + count). With the velocities u_i of a
+/// unit translation along axis i and w_i of a unit rotation about it, through the origin of the world,
+///   m = u_xᵀ M u_x,  m r = (w_zᵀ M u_y, −w_zᵀ M u_x, w_yᵀ M u_x),  m ṙ_i = u_iᵀ M v.
+/// In the plane w_y is zero, and so is r_z.
+template <class = void>
+CentreOfMass centre_of_mass(System& system, State const& x, Index first, Index count) {
+  auto const velocities = require_entry(system.entries().first.rigid_velocities, "speeds of rigid motions");
+  system.evaluate(x.q, x.v, x.t);
+  VecX mv = VecX::Zero(system.velocities()), rigid = mv, u = mv;
+  auto const motion = [&](Vec3 const& v0, Vec3 const& omega) {
+    velocities(system.entries().second, x.q, v0, omega, rigid);
+    return rigid.segment(first, count);
+  };
+  auto const momentum_of = [&](VecX const& v) {
+    mv.setZero();
+    system.masses(ProductSink{v, mv});
+    return mv.segment(first, count);
+  };
+  CentreOfMass out;
+  auto const translation = [&](int axis) {
+    u.segment(first, count) = motion(Vec3::Unit(axis), Vec3::Zero());
+    return momentum_of(u);
+  };
+  VecX const x_momentum = translation(0), y_momentum = translation(1);
+  Vec3 const zero = Vec3::Zero();
+  out.mass = x_momentum.dot(motion(Vec3::UnitX(), zero));
+  if (!(out.mass > 0.0)) return out;
+  out.position = Vec3(y_momentum.dot(motion(zero, Vec3::UnitZ())), -x_momentum.dot(motion(zero, Vec3::UnitZ())),
+                      x_momentum.dot(motion(zero, Vec3::UnitY()))) /
+                 out.mass;
+  VecX const all = momentum_of(x.v);
+  for (int i = 0; i < 3; ++i) out.velocity[i] = all.dot(motion(Vec3::Unit(i), zero)) / out.mass;
+  return out;
+}
+}  // namespace detail
+
+/// Mass and centre of mass of all bodies in state x, rigid and flexible. `system` must have been made with
+/// `Capabilities::rigid_velocities`. All zero for a model without bodies.
+template <class = void>
+CentreOfMass centre_of_mass(System& system, State const& x) {
+  return detail::centre_of_mass(system, x, 0, system.layout().body_velocities());
+}
+/// Mass and centre of mass of one body in state x. \throws InvalidInput for a handle of another model.
+template <class B>
+CentreOfMass centre_of_mass(System& system, State const& x, BodyHandle<B> const& body) {
+  BodyLayout const& place = system.layout().bodies[std::size_t(index_of(system.layout(), body))];
+  return detail::centre_of_mass(system, x, place.v0, place.velocities);
+}
+/// Mass and centre of mass of all bodies of a model in state x, or of the body `body` only.
+/// \throws InvalidInput for a state or a handle of another model.
+template <class M, class... B>
+  requires(!std::same_as<M, System> && sizeof...(B) <= 1)
+CentreOfMass centre_of_mass(M const& model, State const& x, BodyHandle<B> const&... body) {
+  System system(model, with<Capabilities::rigid_velocities>);
+  require_usable(system, x);
+  return centre_of_mass(system, x, body...);
 }
 
 }  // namespace polybody

@@ -171,7 +171,12 @@ template <class B, StateScalar T>
 void BodyKernels<B, T>::describe(Pool const& pool, ModelLayout& out) {
   Index own = 0, index = 0;
   if constexpr (HasOwnEquations<B>) own = B::own_equations;
-  for (auto const& m : pool.markers) out.owners[std::size_t(m.published)] = Index(out.bodies.size()) + m.body;
+  for (auto const& m : pool.markers) {
+    out.owners[std::size_t(m.published)] = Index(out.bodies.size()) + m.body;
+    out.observes[std::size_t(m.published)] = B::observes;
+    if constexpr (requires { B::observes_at(m.point); })
+      out.observes[std::size_t(m.published)] = B::observes_at(m.point);
+  }
   for (Entry const& e : pool.entries)
     out.bodies.push_back({e.name, e.q0, e.body.coordinates(), e.v0, e.body.velocities(), e.row, own,
                           B::world == World::plane, B::constant_mass, &detail::type_tag<B>, index++, &e.body, nullptr,

@@ -86,6 +86,7 @@ struct ModelLayout {
   Sequence<JointLayout> joints = {};                ///< by types, in the order in which they were added
   Sequence<ForceLayout> forces = {};                ///< by types, in the order in which they were added
   Sequence<Index> owners = {};                      ///< of each published marker: the body, −1 for the ground
+  Sequence<MarkerKind> observes = {};               ///< kinematics that each published marker provides
   Vec3 gravity = Vec3::Zero();                      ///< (3) world axes [m/s²]
   Sequence<double> breakpoints = {};                ///< times at which a drive or a load wants a step to end
   bool constant_mass = false;                       ///< M of no body depends on q

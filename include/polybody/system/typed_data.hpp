@@ -152,6 +152,7 @@ ModelLayout counts_of(M const& model) {
           .states = model.states(),
           .nonholonomic_equations = model.nonholonomic_equations(),
           .owners = Sequence<Index>(std::size_t(model.markers()), -1),
+          .observes = Sequence<MarkerKind>(std::size_t(model.markers()), MarkerKind::frame),
           .gravity = model.gravity().g,
           .constant_mass = M::constant_mass,
           .has_groups = M::has_groups};

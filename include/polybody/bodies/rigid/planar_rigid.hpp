@@ -74,6 +74,8 @@ class Rigid : public AddingCoordinates {
     require_finite(u, "planar::Rigid: the point");
     return {u};
   }
+  /// Centre of mass.
+  Point centre() const { return {}; }
 
   Index coordinates() const { return 3; }
   Index velocities() const { return 3; }

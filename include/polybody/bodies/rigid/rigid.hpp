@@ -119,6 +119,8 @@ class RigidShape {
     require_finite(u, "Rigid: the point");
     return {u};
   }
+  /// Centre of mass.
+  Point centre() const { return {}; }
 
   Index elements() const { return 1; }
   Index first_column(Index) const { return 0; }

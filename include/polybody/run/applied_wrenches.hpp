@@ -1,0 +1,104 @@
+#pragma once
+/// \file
+/// Wrenches of force elements in a state, and the powers of force elements and drives.
+
+#include <array>
+#include <vector>
+
+#include <polybody/run/observe.hpp>
+
+namespace polybody {
+
+namespace detail {
+
+/// Calls visit(k, action) for each action of force element `force`, where k counts its markers.
+template <class Visit>
+void for_each_action_of(System const& system, Index force, Visit&& visit) {
+  std::size_t k = 0;
+  for (AppliedWrench<double> const& action : system.data().actions)
+    if (action.source == force) visit(k++, action);
+}
+
+/// Evaluated system with the wrenches of its force elements. \throws InvalidInput for a state of another model.
+template <class = void>
+System with_forces(System system, State const& x) {
+  require_usable(system, x);
+  system.evaluate(x.q, x.v, x.t);
+  system.push_forces();
+  return system;
+}
+
+template <class = void>
+double power_of_force(System const& system, Index force) {
+  double sum = 0.0;
+  for_each_action_of(system, force, [&](std::size_t, AppliedWrench<double> const& action) {
+    Frame<double> const& f = system.data().markers[std::size_t(action.marker)].frame;
+    for (int i = 0; i < 3; ++i) sum += action.w[i] * f.v[i] + action.w[3 + i] * f.w[i];
+  });
+  return sum;
+}
+
+template <class = void>
+double power_of_joint(System const& system, State const& x, Index joint) {
+  ConstraintBlock<double> const& block = rows_of(system, joint);
+  double const* const lambda = block.multiplier(x.lambda);
+  double sum = 0.0;
+  for (int i = 0; block.rate && i < block.rows; ++i) sum += lambda[i] * block.rate[i];
+  return sum;
+}
+
+}  // namespace detail
+
+/// Forces [N] and moments [N m] of a force element on its markers, in the order of the markers: each about the origin
+/// of its marker, world axes. A group of forces returns a vector with the sum of its pairs for each marker. `system`
+/// must have been evaluated at the state, with `System::push_forces` afterwards.
+/// \throws InvalidInput for a handle of another model.
+template <class F>
+auto applied_wrenches(System const& system, ElementHandle<F> const& force) {
+  auto const index = index_of_force(system.layout(), force);
+  auto const at = [](auto& out, std::size_t k, AppliedWrench<double> const& action) {
+    out[k] = {Vec3(action.w[0], action.w[1], action.w[2]), Vec3(action.w[3], action.w[4], action.w[5])};
+  };
+  if constexpr (ForceElement<F>) {
+    std::array<Wrench<double>, F::markers> out;
+    detail::for_each_action_of(system, index, [&](std::size_t k, auto const& action) { at(out, k, action); });
+    return out;
+  } else {
+    std::vector<Wrench<double>> out(system.layout().forces[std::size_t(index)].markers.size());
+    detail::for_each_action_of(system, index, [&](std::size_t k, auto const& action) { at(out, k, action); });
+    return out;
+  }
+}
+/// Wrenches of a force element in state x of a model, with its first-order states; see above.
+/// \throws InvalidInput for a handle or a state of another model.
+template <class M, class F>
+auto applied_wrenches(M const& model, State const& x, ElementHandle<F> const& force) {
+  return applied_wrenches(detail::with_forces(System(model, with<Capabilities::motion>), x), force);
+}
+
+/// Power of a force element on the bodies [W], Σ f·v + m·ω over its markers: positive if it adds energy to them.
+/// `system` must have been evaluated at x, with `System::push_forces` afterwards. \throws InvalidInput for a handle of
+/// another model.
+template <class F>
+  requires(!requires { typename F::Geometry; })
+double power(System const& system, State const&, ElementHandle<F> const& force) {
+  return detail::power_of_force(system, index_of_force(system.layout(), force));
+}
+/// Power of a drive on the bodies [W], λᵀΦ_t: the multipliers times the prescribed rates, positive if the drive adds
+/// energy. For ġ = θ̇ − ψ̇(t) it is the driving moment −λ times ψ̇. It is zero for joints without a function of time. In a
+/// compliant joint λ(g, ġ) takes the place of the multipliers. `system` must have been evaluated at x, whose
+/// multipliers belong to its own time (see `EnergyAudit`). \throws InvalidInput for a handle of another model.
+template <class J>
+  requires requires { typename J::Geometry; }
+double power(System const& system, State const& x, ElementHandle<J> const& joint) {
+  return detail::power_of_joint(system, x, index_of_joint(system.layout(), joint));
+}
+/// Power of a force element or of a drive in state x of a model [W]; see above.
+/// \throws InvalidInput for a handle or a state of another model.
+template <class M, class E>
+  requires(!std::same_as<M, System>)
+double power(M const& model, State const& x, ElementHandle<E> const& element) {
+  return power(detail::with_forces(System(model, with<Capabilities::motion>), x), x, element);
+}
+
+}  // namespace polybody

@@ -1,0 +1,238 @@
+#pragma once
+/// \file
+/// Position of a joint in a state: angle, translation and their rates. Full turns are counted over the states of a run.
+
+#include <cmath>
+#include <numbers>
+
+#include <polybody/joints/joint_axis.hpp>
+#include <polybody/joints/joint_motion.hpp>
+#include <polybody/run/state_checks.hpp>
+#include <polybody/system/lookup.hpp>
+#include <polybody/system/make_operations.hpp>
+#include <polybody/system/system.hpp>
+
+namespace polybody {
+
+/// Geometry with a joint angle: it permits one rotation about an axis of the joint, or prescribes one.
+template <class G>
+concept HasJointAngle = (HasFreeDirections<G> && int(G::free[3]) + int(G::free[4]) + int(G::free[5]) == 1) ||
+                        HasRotationAxis<G> || (!HasFreeDirections<G> && requires(G const g) { g.motions(); });
+
+/// Geometry with a joint translation: it permits one translation along an axis of the joint, or prescribes one.
+template <class G>
+concept HasJointTranslation = (HasFreeDirections<G> && int(G::free[0]) + int(G::free[1]) + int(G::free[2]) == 1) ||
+                              (!HasFreeDirections<G> && requires(G const g) { g.motions(); }) || requires(G g) {
+                                { g.axis } -> std::same_as<JointAxis&>;
+                                g.law;
+                              };
+
+namespace detail {
+
+/// Value and rate of a joint angle [rad], [rad/s] or of a joint translation [m], [m/s].
+struct JointValue {
+  double value = 0.0, rate = 0.0;
+};
+
+/// Index of the axis of the one rotation or translation that a geometry permits or prescribes; −1: it has none or
+/// several.
+template <class G>
+int axis_of_motion(G const& geometry, JointMotion::Kind kind) {
+  bool const turns = kind == JointMotion::Kind::turn;
+  if constexpr (HasFreeDirections<G>) {
+    int const first = turns ? 3 : 0;
+    for (int i = 0; i < 3; ++i)
+      if (G::free[std::size_t(first + i)]) return i;
+  } else if constexpr (requires { geometry.motions(); }) {
+    int axis = -1, count = 0;
+    for (JointMotion const& m : geometry.motions())
+      if (m.kind == kind || m.kind == JointMotion::Kind::screw) axis = m.axis, ++count;
+    return count == 1 ? axis : -1;
+  } else {
+    return 2;  // a driving constraint or a gear: the axis of the joint
+  }
+  return -1;
+}
+
+/// Axis of the motion of a joint of type J in a system. \throws InvalidInput if it has none or several.
+template <class J>
+[[gnu::cold]] int axis_of_joint(JointLayout const& place, JointMotion::Kind kind) {
+  int const axis = axis_of_motion(static_cast<J const*>(place.joint)->geometry, kind);
+  if (axis >= 0) return axis;
+  throw InvalidInput{"\"", place.name, "\" does not permit exactly one ",
+                     kind == JointMotion::Kind::turn
+                         ? "rotation. Read the rotation matrices by frame(model, x, marker)."
+                         : "translation. Read the points by position(model, x, marker)."};
+}
+
+/// Relative angle about axis k of marker a: θ = atan2(a_{k+2}·b_{k+1}, a_{k+1}·b_{k+1}) in (−π, π], θ̇ = a_k·(ω_b −
+/// ω_a).
+/// \throws InvalidInput for a marker without axes.
+template <class = void>
+JointValue turn_of(System const& system, Index joint, int k) {
+  JointLayout const& place = system.layout().joints[std::size_t(joint)];
+  for (Index const marker : {place.a, place.b})
+    if (system.layout().observes[std::size_t(marker)] != MarkerKind::frame)
+      throw InvalidInput{"\"", place.name,
+                         "\" has no angle: one of its markers provides no axes across the joint's axis (a cable, or a "
+                         "point that slides along a body). Read a direction by frame(model, x, marker)."};
+  Frame<double> const &a = system.data().markers[std::size_t(place.a)].frame,
+                      &b = system.data().markers[std::size_t(place.b)].frame;
+  Vec3 const first = b.A.col((k + 1) % 3);
+  return {std::atan2(first.dot(a.A.col((k + 2) % 3)), first.dot(a.A.col((k + 1) % 3))), a.A.col(k).dot(b.w - a.w)};
+}
+
+/// Relative translation along axis u = a_k of marker a: s = u·d, ṡ = u·(v_b − v_a) + (u × d)·ω_a, d = r_b − r_a.
+template <class = void>
+JointValue slide_of(System const& system, Index joint, int k) {
+  JointLayout const& place = system.layout().joints[std::size_t(joint)];
+  Frame<double> const &a = system.data().markers[std::size_t(place.a)].frame,
+                      &b = system.data().markers[std::size_t(place.b)].frame;
+  Vec3 const u = a.A.col(k), d = b.r - a.r;
+  return {u.dot(d), u.dot(b.v - a.v) + u.cross(d).dot(a.w)};
+}
+
+template <class J>
+JointValue angle_of(System const& system, ElementHandle<J> const& joint) {
+  static_assert(HasJointAngle<typename J::Geometry>,
+                "A joint angle needs a joint that permits or prescribes exactly one rotation, such as Revolute or "
+                "Cylindrical. Read the rotation matrices of other joints by frame(model, x, marker).");
+  Index const i = index_of_joint(system.layout(), joint);
+  return turn_of(system, i, axis_of_joint<J>(system.layout().joints[std::size_t(i)], JointMotion::Kind::turn));
+}
+template <class J>
+JointValue translation_of(System const& system, ElementHandle<J> const& joint) {
+  static_assert(HasJointTranslation<typename J::Geometry>,
+                "A joint translation needs a joint that permits or prescribes exactly one translation, such as "
+                "Prismatic or Cylindrical. Read the points of other joints by position(model, x, marker).");
+  Index const i = index_of_joint(system.layout(), joint);
+  return slide_of(system, i, axis_of_joint<J>(system.layout().joints[std::size_t(i)], JointMotion::Kind::slide));
+}
+
+/// System for a question about state x, evaluated there. \throws InvalidInput for a state of another model.
+template <class = void>
+System evaluated(System system, State const& x) {
+  require_usable(system, x);
+  system.evaluate(x.q, x.v, x.t);
+  return system;
+}
+
+}  // namespace detail
+
+/// Angle of a joint in (−π, π] [rad]: rotation of the second marker relative to the first about the axis of the joint,
+/// zero in the reference configuration. One state does not contain the number of full turns; `TurnCounter` counts them
+/// over a run. The joint permits one rotation (`Revolute`, `Cylindrical`, `Screw`, `PlanarJoint`, `planar::Revolute` …)
+/// or prescribes one (`PrescribedAngle`, `PrescribedRate`). In a compliant joint the axis is that of the first marker.
+/// `system` must have been evaluated at the state.
+/// \throws InvalidInput for a handle of another model, and for a marker without axes (cables, sliders).
+template <class J>
+double joint_angle(System const& system, ElementHandle<J> const& joint) {
+  return detail::angle_of(system, joint).value;
+}
+/// Angle of a joint in state x of a model, in (−π, π] [rad]; see above.
+template <class M, class J>
+double joint_angle(M const& model, State const& x, ElementHandle<J> const& joint) {
+  return joint_angle(detail::evaluated(System(model, with<Capabilities::motion>), x), joint);
+}
+
+/// Rate of a joint angle [rad/s]: a₃·(ω_b − ω_a), with the axis a₃ of the joint in the first marker. `system` must have
+/// been evaluated at the state. \throws InvalidInput as `joint_angle`.
+template <class J>
+double joint_angle_rate(System const& system, ElementHandle<J> const& joint) {
+  return detail::angle_of(system, joint).rate;
+}
+/// Rate of a joint angle in state x of a model [rad/s].
+template <class M, class J>
+double joint_angle_rate(M const& model, State const& x, ElementHandle<J> const& joint) {
+  return joint_angle_rate(detail::evaluated(System(model, with<Capabilities::motion>), x), joint);
+}
+
+/// Translation in a joint [m]: position of the second marker relative to the first along the axis of the joint, which
+/// is fixed in the first. It is zero if the markers coincide. The joint permits one translation (`Prismatic`,
+/// `Cylindrical`, `Screw`, `PointOnLine`, `planar::Prismatic` …) or prescribes one (`PrescribedTranslation`). `system`
+/// must have been evaluated at the state. \throws InvalidInput for a handle of another model.
+template <class J>
+double joint_translation(System const& system, ElementHandle<J> const& joint) {
+  return detail::translation_of(system, joint).value;
+}
+/// Translation in a joint in state x of a model [m].
+template <class M, class J>
+double joint_translation(M const& model, State const& x, ElementHandle<J> const& joint) {
+  return joint_translation(detail::evaluated(System(model, with<Capabilities::motion>), x), joint);
+}
+
+/// Rate of a joint translation [m/s], relative to the axis in the first marker. `system` must have been evaluated at
+/// the state. \throws InvalidInput as `joint_translation`.
+template <class J>
+double joint_translation_rate(System const& system, ElementHandle<J> const& joint) {
+  return detail::translation_of(system, joint).rate;
+}
+/// Rate of a joint translation in state x of a model [m/s].
+template <class M, class J>
+double joint_translation_rate(M const& model, State const& x, ElementHandle<J> const& joint) {
+  return joint_translation_rate(detail::evaluated(System(model, with<Capabilities::motion>), x), joint);
+}
+
+/// Angle of a joint with its full turns, over the states of a run:
+///   TurnCounter turns(model, crank);
+///   for (State const& now : simulate(…)) angle = turns.record(now);
+/// The first state has the angle in (−π, π]. From state to state, θ₁ = θ₀ + Δ, where Δ agrees with the angles of the
+/// two states up to full turns and is nearest to ½ (θ̇₀ + θ̇₁)(t₁ − t₀). The count is right if this estimate has an error
+/// below half a turn. That is so for each step of a run, and between states of any distance if the rate is constant. A
+/// record does not allocate memory. The model must outlive the counter and must not change after its construction.
+template <class = void>  // compiled where it is used
+class TurnCounterOf {
+ public:
+  /// Counter without states for a joint of `model`. \throws InvalidInput as `joint_angle`.
+  template <class M, class J>
+  TurnCounterOf(M const& model, ElementHandle<J> const& joint)
+      : TurnCounterOf(System(model, with<Capabilities::motion>), joint) {}
+  template <class M, class J>
+    requires(!std::same_as<M, System>)
+  TurnCounterOf(M const&& model, ElementHandle<J> const& joint) = delete;  ///< deleted: a temporary model
+  /// Counter for a joint of `system`, a system of the whole model.
+  template <class J>
+  TurnCounterOf(System system, ElementHandle<J> const& joint)
+      : system_(std::move(system)), joint_(index_of_joint(system_.layout(), joint)) {
+    static_assert(HasJointAngle<typename J::Geometry>,
+                  "TurnCounter needs a joint that permits or prescribes exactly one rotation, such as Revolute.");
+    axis_ = detail::axis_of_joint<J>(system_.layout().joints[std::size_t(joint_)], JointMotion::Kind::turn);
+  }
+
+  /// Starts again at state x. Returns the angle in (−π, π] [rad]. \throws InvalidInput for a state of another model.
+  double start(State const& x) {
+    started_ = false;
+    return record(x);
+  }
+  /// Adds state x. Returns the angle with its full turns [rad].
+  /// \throws InvalidInput for a state of another model, or earlier than the last one.
+  double record(State const& x) {
+    require_usable(system_, x);
+    if (started_ && !(x.t >= t_))
+      throw InvalidInput{"TurnCounter: the state at t = ", x.t, " s is earlier than the last one at t = ", t_,
+                         " s. Call start() for another run."};
+    system_.evaluate(x.q, x.v, x.t);
+    detail::JointValue const now = detail::turn_of(system_, joint_, axis_);
+    double const turn = 2.0 * std::numbers::pi;
+    double const expected = angle_ + 0.5 * (rate_ + now.rate) * (x.t - t_);
+    angle_ = started_ ? now.value + turn * std::nearbyint((expected - now.value) / turn) : now.value;
+    rate_ = now.rate;
+    t_ = x.t;
+    started_ = true;
+    return angle_;
+  }
+
+  double angle() const { return angle_; }  ///< angle of the last state with its full turns [rad]
+  double rate() const { return rate_; }    ///< rate of the angle in the last state [rad/s]
+
+ private:
+  System system_;
+  Index joint_;
+  int axis_ = 2;
+  double angle_ = 0.0, rate_ = 0.0, t_ = 0.0;
+  bool started_ = false;
+};
+
+using TurnCounter = TurnCounterOf<>;  ///< angle of a joint with its full turns
+
+}  // namespace polybody
