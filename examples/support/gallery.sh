@@ -62,7 +62,7 @@ title_of() { grep -m 1 -ao '<title>[^<]*' "$1" | sed 's/^<title>//; s/ · film$/
 
 # write_index OUT: OUT/index.html of all pictures and films below it. Written to a temporary file and moved, so it is never incomplete.
 write_index() {
-  local out=$1 page=$1/index.html.part name picture path
+  local out=$1 page=$1/index.html.part name picture path films
   mkdir -p "$out"
   {
     cat << 'HEAD'
@@ -84,11 +84,13 @@ HEAD
       [ -d "$out/$name" ] || continue
       echo "<h2>$name</h2>"
       echo "<p>$(escaped "${shows[$name]}")</p>"
-      echo "<p><code>build/examples/examples/$(escaped "$(command_of "$name" "$out")")</code></p>"
+      # The command that makes the films below it needs the film player.
+      films=$(films_of "$out/$name")
+      echo "<p><code>build/examples/examples/$(escaped "$(command_of "$name" "$out" "${films:+build/examples/polybody_viewer.html}")")</code></p>"
       while IFS= read -r picture; do
         path=$(escaped "${picture#"$out"/}")
         echo "<p class=\"film\"><a href=\"$path\">&#9654; $(title_of "$picture")</a> <small>$path</small></p>"
-      done < <(films_of "$out/$name")
+      done < <([ -z "$films" ] || echo "$films")
       echo '<div class="figures">'
       while IFS= read -r picture; do
         path=$(escaped "${picture#"$out"/}")
