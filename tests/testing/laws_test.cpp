@@ -5,7 +5,6 @@
 #include <polybody/joints/point_on_line.hpp>
 #include <polybody/joints/policies/penalty.hpp>
 
-#include <gtest/gtest-spi.h>
 #include <gtest/gtest.h>
 
 #include <polybody/testing/body_laws.hpp>
@@ -15,31 +14,12 @@
 #include <polybody/testing/policy_laws.hpp>
 #include <polybody/testing/user_system_laws.hpp>
 
+#include "support/broken_laws.hpp"
 #include "support/integrator_cases.hpp"
 
 namespace polybody {
 using namespace laws;
 namespace laws_test {
-
-/// Names of the laws of a suite that a case breaks.
-template <class Laws>
-std::vector<std::string> broken() {
-  std::vector<std::string> names;
-  for (Law<Laws> const& law : Laws::laws) {
-    ::testing::TestPartResultArray results;
-    {
-      ::testing::ScopedFakeTestPartResultReporter const caught(
-          ::testing::ScopedFakeTestPartResultReporter::INTERCEPT_ONLY_CURRENT_THREAD, &results);
-      Laws laws;
-      (laws.*law.holds)();
-    }
-    bool failed = false;
-    for (int i = 0; i < results.size(); ++i) failed = failed || results.GetTestPartResult(i).failed();
-    if (failed) names.push_back(law.name);
-  }
-  return names;
-}
-using Names = std::vector<std::string>;
 
 // --- bodies -----------------------------------------------------------------------------------------------------
 

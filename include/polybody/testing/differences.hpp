@@ -1,20 +1,49 @@
 #pragma once
 /// \file
-/// Derivatives by central differences of fourth order.
+/// Derivatives by central differences, extrapolated to a step of zero.
 ///
 /// For tests; not included by polybody.hpp.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include <polybody/math/compiler.hpp>
 
 namespace polybody::laws {
 
-/// Derivative f′(0) of a function of one number, with values in double or in Eigen vectors:
-/// [8 (f(h) − f(−h)) − (f(2h) − f(−2h))]/12h, error h⁴ f⁽⁵⁾/30  [Abramowitz & Stegun 1964, 25.3.21].
+/// Derivative f′(0) of a function of one number, with values in double or in Eigen vectors. Central differences of the
+/// steps h, h/2 … h/16 are extrapolated to zero, and the value with the least estimated error is returned
+/// [Ridders 1982]. `h` is the largest step. The smallest step, h/16, must be small against the length over which f
+/// changes.
 template <class F>
 auto slope_at_zero(F&& f, double h = 1e-3) {
   using Value = decltype(f(h));
-  Value const near = f(h) - f(-h), far = f(2 * h) - f(-2 * h);
-  return Value((near * 8.0 - far) / (12.0 * h));
+  auto const size = [](Value const& x) {
+    if constexpr (requires { x.norm(); })
+      return double(x.norm());
+    else
+      return std::abs(double(x));
+  };
+  constexpr int steps = 5;
+  Value row[steps], last[steps];  // extrapolations that end at the present step and at the one before, by their order
+  Value best = Value((f(h) - f(-h)) / (2.0 * h));
+  double least = std::numeric_limits<double>::infinity();
+  last[0] = best;
+  for (int i = 1; i < steps; ++i) {
+    h /= 2.0;
+    row[0] = Value((f(h) - f(-h)) / (2.0 * h));
+    for (int j = 1; j <= i; ++j) {
+      row[j] = Value(row[j - 1] + (row[j - 1] - last[j - 1]) / (std::ldexp(1.0, 2 * j) - 1.0));
+      double const error = std::max(size(Value(row[j] - row[j - 1])), size(Value(row[j] - last[j - 1])));
+      if (error < least) {
+        least = error;
+        best = row[j];
+      }
+    }
+    std::copy(row, row + i + 1, last);
+  }
+  return best;
 }
 
 }  // namespace polybody::laws

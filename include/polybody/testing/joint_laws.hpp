@@ -12,7 +12,7 @@ namespace polybody::laws {
 
 /// Laws of a joint geometry of any type. V = [ṙ; ω] are the twists of both frames, and G = [Ga Gb].
 struct JointLawsOf {
-  static constexpr double tolerance = 1e-12;               ///< largest error of numbers of size one
+  static constexpr double tolerance = 1e-12;               ///< largest relative error, except for differences
   AnyGeometry const geometry;                              ///< geometry under test
   bool const planar = geometry.planar;                     ///< true if all frames stay in the plane z = 0
   Index const m = geometry.rows;                           ///< number of constraint equations
@@ -30,6 +30,15 @@ struct JointLawsOf {
   MatX known() const;
   VecX multipliers();                                           ///< random λ (m) in [−3, 3]
   VecX wrenches(FramePair const& p, VecX const& lambda) const;  ///< Gᵀλ (12): [f; m] on a, then on b
+  MatX jacobian(FramePair const& p) const { return geometry.constraint_function(p, t).G; }  ///< G (m×12) at time t
+
+  /// Allowed error of a quantity of two frames, `quantity(p)`: `relative` (1 + its norm), and its change in a motion of
+  /// 10⁻¹⁴. Positions are rounded, so a constraint function with the gradient G has the error |G| ε |r|.
+  template <class Quantity>
+  double allowed(FramePair const& p, Quantity&& quantity, double relative = tolerance) const {
+    auto const here = quantity(p), near = quantity(p.moved_by(known() * VecX::LinSpaced(known().cols(), -1e-7, 1e-7)));
+    return relative * (1.0 + here.norm()) + 1e-14 * (near - here).norm() / 1e-7;
+  }
 
   /// g = 0 for closed frames; g ≠ 0 after a motion of b.
   void closed_frames_have_no_gap();
@@ -48,7 +57,8 @@ struct JointLawsOf {
   /// Invariance under a rotation and displacement of both frames and their twists. Constraint equations in world axes
   /// rotate with the frames; the others do not change.
   void does_not_see_a_rigid_motion_of_both_frames();
-  /// `wrench_gradient` = ∂(Gᵀλ)/∂(motions of the frames), in closed form or by dual numbers, compared with differences.
+  /// `wrench_gradient` = ∂(Gᵀλ)/∂(motions of the frames), in closed form or by dual numbers, compared with
+  /// extrapolated differences: the derivative by each motion has an error below 10⁻⁹ (1 + its norm).
   void wrench_gradient_is_the_derivative_of_the_wrenches();
   /// In closed frames G has full rank, and G T = 0 for the free directions T of the case. The numbers of constraint
   /// equations and of free directions add up to the number of motions of b.
@@ -65,8 +75,9 @@ struct JointLawsOf {
 ///     };
 ///     bool const revolute_obeys = obeys<RevoluteCase, JointLaws>("Revolute");
 ///
-/// Derivatives are computed with dual numbers along motions of the frames, [δr; φ] in world axes. The laws access the
-/// geometry through a few functions, so that a file compiles them once for all of its geometries.
+/// Derivatives are computed with dual numbers along motions of the frames, [δr; φ] in world axes. Tolerances are
+/// relative and include the rounding of positions, so a geometry may have lengths from 1 mm to 10 m. The laws access
+/// the geometry through a few functions, so that a file compiles them once for all of its geometries.
 template <class Case>
 struct JointLaws : JointLawsOf {
   JointLaws() : JointLawsOf(any_geometry<Case>()) {}
@@ -133,16 +144,18 @@ inline Vec3 moment_about(FramePair const& p, VecX const& w, Vec3 const& about) {
 }
 
 inline void JointLawsOf::closed_frames_have_no_gap() {
-  for (FramePair const& p : closed()) EXPECT_LT(geometry.constraint_function(p, t).g.norm(), 1e-14);
+  auto const g = [&](FramePair const& p) { return geometry.constraint_function(p, t).g; };
+  for (FramePair const& p : closed()) EXPECT_LT(g(p).norm(), allowed(p, g, 1e-14));
   if (held == 0) return;
-  for (FramePair const& p : open()) EXPECT_GT(geometry.constraint_function(p, t).g.norm(), 1e-3);
+  for (FramePair const& p : open()) EXPECT_GT(g(p).norm(), 1e-3);
 }
 
 // The constraint function of nonholonomic constraints is zero, without derivatives.
 inline void JointLawsOf::maps_are_the_derivative_of_the_gap() {
   for (FramePair const& p : all()) {
     SeenGap const seen = geometry.gap_with_slopes(p, t);
-    EXPECT_LT(((seen.G - seen.slope).topRows(held) * known()).norm(), tolerance);
+    double const most = allowed(p, [&](FramePair const& at) { return jacobian(at); });
+    EXPECT_LT(((seen.G - seen.slope).topRows(held) * known()).norm(), most);
     EXPECT_TRUE(seen.g.tail(m - held).isZero(0.0) && seen.slope.bottomRows(m - held).isZero(0.0));
   }
 }
@@ -150,7 +163,7 @@ inline void JointLawsOf::maps_are_the_derivative_of_the_gap() {
 inline void JointLawsOf::rate_is_the_derivative_of_the_gap_by_time() {
   for (FramePair const& p : all()) {
     VecX const slope = slope_at_zero([&](double h) { return geometry.constraint_function(p, t + h).g; });
-    EXPECT_LT((geometry.constraint_function(p, t).rate - slope).norm(), tolerance);
+    EXPECT_LT((geometry.constraint_function(p, t).rate - slope).norm(), tolerance * (1.0 + slope.norm()));
   }
 }
 
@@ -164,7 +177,8 @@ inline void JointLawsOf::gamma_is_the_second_derivative_without_accelerations() 
         },
         1e-2);
     VecX const expected = geometry.gap_with_slopes(p, t).G_rate * v + by_time;
-    EXPECT_LT((geometry.gamma(p, t) - expected).norm(), tolerance * (1.0 + expected.norm()));
+    double const most = allowed(p, [&](FramePair const& at) { return geometry.gamma(at, t); });
+    EXPECT_LT((geometry.gamma(p, t) - expected).norm(), most);
   }
 }
 
@@ -174,7 +188,8 @@ inline void JointLawsOf::wrenches_have_the_power_of_the_multipliers() {
     SeenGap const seen = geometry.gap_with_slopes(p, t);
     VecX rate = seen.slope * v;
     rate.tail(m - held) = seen.G.bottomRows(m - held) * v;
-    EXPECT_NEAR(wrenches(p, lambda).dot(v), lambda.dot(rate), tolerance * (1.0 + lambda.norm() * rate.norm()));
+    EXPECT_NEAR(wrenches(p, lambda).dot(v), lambda.dot(rate),
+                tolerance * (1.0 + lambda.norm() * seen.G.norm() * v.norm()));
   }
 }
 
@@ -184,13 +199,16 @@ inline void JointLawsOf::wrenches_are_equal_and_opposite() {
     Vec3 f = Vec3::Zero(), about = number.vec<3>(5.0);
     if (planar) about[2] = 0.0;
     f.head(geometry.world_rows) = lambda.head(geometry.world_rows);
-    EXPECT_LT((w.segment<3>(0) + w.segment<3>(6)).norm(), tolerance);
-    MatX const G = geometry.constraint_function(p, t).G;
+    double const most = tolerance * (1.0 + w.norm());
+    EXPECT_LT((w.segment<3>(0) + w.segment<3>(6)).norm(), most);
+    MatX const G = jacobian(p);
     EXPECT_TRUE(!geometry.opposite_ends || G.leftCols(6) == -G.rightCols(6));
-    EXPECT_LT((moment_about(p, w, about) - (p.b.r - p.a.r).cross(f)).norm(), 10 * tolerance);
+    EXPECT_LT((moment_about(p, w, about) - (p.b.r - p.a.r).cross(f)).norm(), 10 * most);
   }
-  for (FramePair const& p : closed())
-    EXPECT_LT(moment_about(p, wrenches(p, multipliers()), Vec3::Zero()).norm(), 10 * tolerance);
+  for (FramePair const& p : closed()) {
+    VecX const w = wrenches(p, multipliers());
+    EXPECT_LT(moment_about(p, w, Vec3::Zero()).norm(), 10 * tolerance * (1.0 + w.norm()));
+  }
 }
 
 inline void JointLawsOf::does_not_see_a_rigid_motion_of_both_frames() {
@@ -204,10 +222,14 @@ inline void JointLawsOf::does_not_see_a_rigid_motion_of_both_frames() {
     rows.topLeftCorner(n, n) = turn.topLeftCorner(n, n);
     for (int i = 0; i < 12; i += 3) back.block<3, 3>(i, i) = turn.transpose();
     SeenGap const before = geometry.constraint_function(p, t), after = geometry.constraint_function(q, t);
-    EXPECT_LT((after.g - rows * before.g).norm(), tolerance);
-    EXPECT_LT((after.rate - rows * before.rate).norm(), tolerance);
-    EXPECT_LT(((after.G - rows * before.G * back) * known()).norm(), tolerance);
-    EXPECT_LT((geometry.gamma(q, t) - rows * geometry.gamma(p, t)).norm(), 10 * tolerance);
+    auto const g = [&](FramePair const& at) { return geometry.constraint_function(at, t).g; };
+    auto const rate = [&](FramePair const& at) { return geometry.constraint_function(at, t).rate; };
+    auto const G = [&](FramePair const& at) { return jacobian(at); };
+    auto const gamma = [&](FramePair const& at) { return geometry.gamma(at, t); };
+    EXPECT_LT((after.g - rows * before.g).norm(), allowed(p, g));
+    EXPECT_LT((after.rate - rows * before.rate).norm(), allowed(p, rate));
+    EXPECT_LT(((after.G - rows * before.G * back) * known()).norm(), allowed(p, G));
+    EXPECT_LT((gamma(q) - rows * gamma(p)).norm(), 10 * allowed(p, gamma));
   }
 }
 
@@ -215,10 +237,11 @@ inline void JointLawsOf::wrench_gradient_is_the_derivative_of_the_wrenches() {
   MatX const k = known();
   for (FramePair const& p : all()) {
     VecX const lambda = multipliers();
-    MatX slope(12, k.cols());
-    for (Index j = 0; j < k.cols(); ++j)
-      slope.col(j) = slope_at_zero([&](double h) { return wrenches(p.moved_by(k.col(j) * h), lambda); });
-    EXPECT_LT((k.transpose() * (geometry.gradient(p, t, lambda) * k - slope)).norm(), 1e-9);
+    MatX const gradient = geometry.gradient(p, t, lambda) * k;
+    for (Index j = 0; j < k.cols(); ++j) {
+      VecX const slope = slope_at_zero([&](double h) { return wrenches(p.moved_by(k.col(j) * h), lambda); });
+      EXPECT_LT((k.transpose() * (gradient.col(j) - slope)).norm(), 1e-9 * (1.0 + slope.norm())) << "motion " << j;
+    }
   }
 }
 
@@ -235,10 +258,10 @@ inline void JointLawsOf::rows_and_freedoms_make_up_all_motions() {
   };
   for (FramePair const& p : closed()) {
     EXPECT_EQ(m + p.freedoms.cols(), k.cols() / 2);
-    MatX const g = geometry.constraint_function(p, t).G;
+    MatX const g = jacobian(p);
     EXPECT_GT(min_load_step(g * k), 0.3);
     EXPECT_GT(min_load_step((g * k).rightCols(k.cols() / 2)), 0.3);
-    EXPECT_LT((g.rightCols<6>() * p.freedoms).norm(), tolerance);
+    EXPECT_LT((g.rightCols<6>() * p.freedoms).norm(), allowed(p, [&](FramePair const& at) { return jacobian(at); }));
   }
 }
 
