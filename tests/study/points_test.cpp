@@ -45,6 +45,13 @@ TEST(StudyPoints, ScalesHaveTheirEndsAndRoundNumbersBetween) {
   EXPECT_EQ(linear(-1.0 / 3.0, 1.0 / 3.0, 2), (std::vector{-1.0 / 3.0, 1.0 / 3.0}));  // end values have no round-off
 }
 
+TEST(StudyPoints, AGridOfOneAxisIsTheAxis) {
+  Points const one = axis("step", "s", {1e-3, 1e-4}), same = grid(one);
+  ASSERT_EQ(same.size(), 2u);
+  EXPECT_EQ(same.columns().size(), 1u);
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(same.at(i, 0), one.at(i, 0));
+}
+
 TEST(StudyPoints, WhatCannotBeMeantIsRefused) {
   EXPECT_TRUE(has(refusal([] { linear(0.0, nan, 3); }), "finite ends"));
   EXPECT_TRUE(has(refusal([] { linear(0.0, 1.0, 1); }), "two values"));

@@ -64,6 +64,11 @@ Points list(std::vector<Column> columns, std::vector<std::vector<double>> const&
   return {std::move(columns), std::move(values), "list"};
 }
 
+/// Returns a set of points itself: the grid of one axis.
+template <class = void>
+Points grid(Points const& points) {
+  return points;
+}
 /// Product of two sets of points: every point of the first with every point of the second. The second varies faster.
 template <class = void>
 Points grid(Points const& first, Points const& second) {
