@@ -39,7 +39,7 @@ class BarFilm {
     if (!scene_->due(x.t)) return;
     Visual visual(model);
     visual.sweep(body_, bar_, 40);
-    scene_->record(x.t, visual.at(x));
+    scene_->record(visual, x);
     System system(model, with<Capabilities::motion>);
     system.evaluate(x.q, x.v, x.t);
     add_reactions(*scene_, reactions_, system, x, 1e3);

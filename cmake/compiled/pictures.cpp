@@ -22,7 +22,7 @@ template Frame<double> frame(BodyInState<Lrvf<>> const&, Lrvf<>::Point const&);
 template FrameIn frame_in(BodyHandle<Lrvf<>> const&, Marker<Lrvf<>> const&);
 template void Visual::attach(Marker<Lrvf<>> const&, Surface const&, std::string);
 template void Visual::sweep(BodyHandle<Lrvf<>> const&, Bar const&, int, int);
-template void Visual::carry<void>(Surface const&, std::string, FrameIn);
+template void Visual::carry<void>(Index, Surface const&, std::string, FrameIn);
 template std::vector<Vec2> outline<void>(Bar const&, int);
 template Surface swept<void>(int, int);
 template Surface cylinder<double>(double, double, Vec3 const&, int);

@@ -74,7 +74,7 @@ extern template detail::LinearPointOf<double> detail::linear_point<AncfBeam<Cont
 extern template void detail::fill_linear_rows<Revolute, double>(detail::LinearPointOf<double> const&,
                                                                 detail::LinearPointOf<double> const&, Vec3 const&,
                                                                 LinearConstraints&);
-extern template void Visual::carry<void>(Surface const&, std::string, FrameIn);
+extern template void Visual::carry<void>(Index, Surface const&, std::string, FrameIn);
 extern template std::vector<Vec2> outline<void>(Bar const&, int);
 extern template Surface swept<void>(int, int);
 extern template Surface cylinder<double>(double, double, Vec3 const&, int);

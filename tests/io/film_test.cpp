@@ -13,6 +13,7 @@
 #include <source_location>
 
 #include <polybody/bodies/ancf/ancf_cable.hpp>
+#include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/io/vtk.hpp>
 
@@ -195,6 +196,70 @@ TEST_F(FilmFiles, SharesShapesAndFollowsTheNumberOfFrames) {
   EXPECT_TRUE(scene.due(0.1));
   EXPECT_EQ(scene.parts()[0].shape, scene.parts()[1].shape);
   EXPECT_EQ(scene.shapes().size(), 2u);
+}
+
+/// Bytes of a film in its page [RFC 4648, §4], as text: the table of contents can be searched.
+std::string content_of_film(fs::path const& file) {
+  std::string const page = text_of(file), head = "id=\"film\">";
+  std::string const digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string bytes;
+  unsigned buffer = 0;
+  int bits = 0;
+  for (std::size_t i = page.find(head) + head.size(); page[i] != '<' && page[i] != '='; ++i) {
+    buffer = (buffer << 6) | unsigned(digits.find(page[i]));
+    bits += 6;
+    if (bits < 8) continue;
+    bits -= 8;
+    bytes += char((buffer >> bits) & 255u);
+  }
+  return bytes;
+}
+
+/// Content of a film of one frame of a model with one rod.
+template <class Body, class M, class Centre>
+std::string content_of_rod(M& model, Body const& body, Centre const& centre, FilmOptions const& options,
+                           fs::path const& file) {
+  auto const rod = model.add(body, "rod");
+  Visual visual(model);
+  visual.attach(model.ground().at(Vec3::Zero()), box({0.1, 0.1, 0.1}), "stand");
+  visual.attach(rod.at(centre), box({1, 0.1, 0.1}), "shape of the rod");
+  Film film(options);
+  film.scene("one").record(visual, model.reference_state());
+  film.write(file);
+  return content_of_film(file);
+}
+
+TEST_F(FilmFiles, ShowPlanarModelsUprightAndOthersFromTheSide) {
+  FilmOptions options{.viewer = bare_viewer};
+  fs::path const file = folder / "film.html";
+  auto const plane = [&] {
+    Model<Bodies<planar::Rigid>, Joints<>> flat;
+    return content_of_rod(flat, planar::Rigid(1.0, 0.1), Vec2(0, 0), options, file);
+  };
+  auto const space = [&] {
+    Model<Bodies<Rigid<>>, Joints<>> deep;
+    return content_of_rod(deep, Rigid<>(1.0, Mat3::Identity()), Vec3(0, 0, 0), options, file);
+  };
+  EXPECT_TRUE(has(plane(), "\"lookFrom\":[0,0,1],\"up\":[0,1,0],\"follow\":\"\",\"floor\":\"behind\""));
+  EXPECT_TRUE(has(space(), "\"lookFrom\":[-2,-3,1.5],\"up\":[0,0,1],\"follow\":\"\",\"floor\":\"ground\""));
+  options.look_from = Vec3(1, 0, 1);
+  options.floor = FilmFloor::none;
+  EXPECT_TRUE(has(plane(), "\"lookFrom\":[1,0,1],\"up\":[0,1,0],\"follow\":\"\",\"floor\":\"none\""));
+  options.look_from = Vec3(0, 1, 0);  // upwards in the plane, but not in space
+  EXPECT_TRUE(has(refusal([&] { (void)plane(); }), "look_from and up"));
+  EXPECT_TRUE(has(space(), "\"lookFrom\":[0,1,0],\"up\":[0,0,1]"));
+}
+
+TEST_F(FilmFiles, NameTheBodiesWithoutAShape) {
+  EXPECT_EQ(visual.bodies_without_shape(), std::vector<std::string>{});
+  Visual part(model);
+  EXPECT_EQ(part.bodies_without_shape(), (std::vector<std::string>{"brick", "cable"}));
+  part.attach(brick.at({1, 0, 0}), box({0.2, 0.4, 0.6}));
+  EXPECT_EQ(part.bodies_without_shape(), std::vector<std::string>{"cable"});
+  Film film({.viewer = bare_viewer});
+  film.scene("one").record(part, x);
+  film.write(folder / "film.html");
+  EXPECT_TRUE(has(content_of_film(folder / "film.html"), "\"withoutShape\":[\"cable\"]"));
 }
 
 TEST_F(FilmFiles, RefuseAViewerThatIsNotThere) {

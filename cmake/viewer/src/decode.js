@@ -149,7 +149,7 @@ function readArrows(r, a, frames) {
 function readScene(r, s) {
   const times = r.rising(r.array(s.times, ['f8']));
   if (times.length === 0) r.refuse('a scene has no frame');
-  const scene = {name: r.text(s.name), times};
+  const scene = {name: r.text(s.name), times, withoutShape: r.list(s.withoutShape ?? []).map((name) => r.text(name))};
   scene.scalars = r.list(s.scalars).map(
       (c) => ({label: r.text(c.label), unit: r.text(c.unit), low: r.number(c.low), high: r.number(c.high)}));
   scene.shapes = r.list(s.shapes).map((shape) => readShape(r, shape));

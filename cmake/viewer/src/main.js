@@ -81,6 +81,11 @@ class Player {
         name.prepend(dot);
       }
       cell.append(name);
+      if (scene.withoutShape.length > 0) {
+        const note = document.createElement('p');
+        note.textContent = `without a shape: ${scene.withoutShape.join(', ')}`;
+        cell.append(note);
+      }
       return cell;
     }));
     const arrows = this.theatre.arrowSets;

@@ -3,8 +3,11 @@
 /// Film of a run as one HTML file that plays in any browser, without a network. Not in polybody.hpp: few programs
 /// need it.
 
+#include <algorithm>
+#include <array>
 #include <deque>
 #include <filesystem>
+#include <optional>
 
 #include <polybody/io/atomic_file.hpp>
 #include <polybody/io/file_content.hpp>
@@ -20,13 +23,14 @@ struct FilmOptions {
   /// HTML page of the viewer, `polybody_viewer.html`. CMake's target `viewer` builds it in the build folder and
   /// installs it in share/polybody/viewer.
   std::filesystem::path viewer;
-  std::string title = "polybody";      ///< title of the page
-  double frames_per_second = 30.0;     ///< frames per second of simulated time [1/s]
-  Vec3 look_from = Vec3(-2, -3, 1.5);  ///< (3) direction from the scene to the camera, world axes
-  Vec3 up = Vec3::UnitZ();             ///< (3) upward direction in the picture, world axes
-  std::string follow = {};             ///< name of the part that the camera follows; empty: none
-  /// Grid normal to `up` below the scene, or normal to `look_from` behind it.
-  FilmFloor floor = FilmFloor::ground;
+  std::string title = "polybody";   ///< title of the page
+  double frames_per_second = 30.0;  ///< frames per second of simulated time [1/s]
+  /// (3) direction from the scene to the camera, world axes. Empty: (−2, −3, 1.5), or z if all scenes are planar.
+  std::optional<Vec3> look_from = {};
+  std::optional<Vec3> up = {};  ///< (3) upward direction in the picture, world axes. Empty: z, or y if planar.
+  std::string follow = {};      ///< name of the part that the camera follows; empty: none
+  /// Grid normal to `up` below the scene, or normal to `look_from` behind it. Empty: below, or behind if planar.
+  std::optional<FilmFloor> floor = {};
 };
 
 namespace detail {
@@ -65,7 +69,7 @@ std::string html_text(std::string const& text) {
 ///   Film film({.viewer = "polybody_viewer.html", .title = "The arm"});
 ///   FilmScene& scene = film.scene("LRVF");
 ///   for (State const& now : simulate(…))
-///     if (scene.due(now.t)) scene.record(now.t, visual.at(now));
+///     if (scene.due(now.t)) scene.record(visual, now);
 ///   film.write("out/arm.html");
 /// A part with constant shape needs 20 bytes a frame. A deformable part needs 3 or 6 more bytes for each point, and 2
 /// for each colour.
@@ -77,9 +81,7 @@ class Film {
   /// \throws IoError if the viewer does not exist.
   explicit Film(FilmOptions options) : options_(std::move(options)) {
     require_positive(options_.frames_per_second, "Film: the frames per second");
-    double const across = options_.look_from.cross(options_.up).norm();
-    if (!(across > 1e-6 * options_.look_from.norm() * options_.up.norm()))
-      throw InvalidInput{"Film: look_from and up must be finite and not along each other."};
+    if (options_.look_from || options_.up) require_view(view(false));
     page_ = detail::viewer_page(options_.viewer);
   }
 
@@ -101,6 +103,7 @@ class Film {
   std::size_t write(std::filesystem::path const& file) const {
     if (scenes_.empty()) throw InvalidInput{"Film '", options_.title, "' has no scene."};
     for (FilmScene const& scene : scenes_) require_complete(scene);
+    require_view(view(planar()));
     std::size_t const slot = page_.find(detail::film_slot);
     std::string text = page_.substr(0, slot);
     std::size_t const title = text.find("<title>");
@@ -124,16 +127,31 @@ class Film {
       throw InvalidInput{"Film: the scene \"", scene.name(), "\" has no part \"", options_.follow, "\" to follow."};
   }
 
+  bool planar() const { return std::ranges::all_of(scenes_, &FilmScene::planar); }
+
+  /// Directions to the camera and upwards.
+  std::array<Vec3, 2> view(bool planar) const {
+    return {options_.look_from.value_or(planar ? Vec3(0, 0, 1) : Vec3(-2, -3, 1.5)),
+            options_.up.value_or(planar ? Vec3(0, 1, 0) : Vec3(0, 0, 1))};
+  }
+  static void require_view(std::array<Vec3, 2> const& view) {
+    if (!(view[0].cross(view[1]).norm() > 1e-6 * view[0].norm() * view[1].norm()))
+      throw InvalidInput{"Film: look_from and up must be finite and not along each other."};
+  }
+
   /// Members of the table of contents except the scenes.
   std::string contents() const {
     auto const vector = [](Vec3 const& v) {
       return '[' + detail::all_digits(v[0]) + ',' + detail::all_digits(v[1]) + ',' + detail::all_digits(v[2]) + ']';
     };
+    bool const flat = planar();
+    auto const [look_from, up] = view(flat);
+    FilmFloor const floor = options_.floor.value_or(flat ? FilmFloor::behind : FilmFloor::ground);
     char const* const floors[] = {"ground", "behind", "none"};
     return "\"title\":" + detail::json_text(options_.title) +
            ",\"framesPerSecond\":" + detail::all_digits(options_.frames_per_second) +
-           ",\"lookFrom\":" + vector(options_.look_from) + ",\"up\":" + vector(options_.up) +
-           ",\"follow\":" + detail::json_text(options_.follow) + ",\"floor\":\"" + floors[int(options_.floor)] + '"';
+           ",\"lookFrom\":" + vector(look_from) + ",\"up\":" + vector(up) +
+           ",\"follow\":" + detail::json_text(options_.follow) + ",\"floor\":\"" + floors[int(floor)] + '"';
   }
 
   FilmOptions options_;

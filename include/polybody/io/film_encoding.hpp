@@ -64,6 +64,7 @@ class SceneContents {
 
   std::string json() {
     std::string text = "{\"name\":" + json_text(scene_.name()) + ",\"times\":" + arrays_.add(scene_.times());
+    text += ",\"withoutShape\":" + json_list(scene_.invisible(), [](std::string const& s) { return json_text(s); });
     text += ",\"scalars\":[";
     for (std::size_t k = 0; k < ranges_.size(); ++k) text += (k ? "," : "") + scalar(k);
     text += "],\"shapes\":" + json_list(scene_.shapes(), [&](FilmShape const& s) { return shape(s); });

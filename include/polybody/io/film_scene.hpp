@@ -2,6 +2,7 @@
 /// \file
 /// Scene of a film: the frames of a run, with arrows and histories. Not in polybody.hpp: it belongs to io/film.hpp.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -89,7 +90,7 @@ struct FilmArrows {
 ///   for (State const& now : simulate(…)) {
 ///     scene.plot("pin force", "N", now.t, force);
 ///     if (!scene.due(now.t)) continue;
-///     scene.record(now.t, visual.at(now));
+///     scene.record(visual, now);
 ///     scene.arrow(contacts, place, force);
 ///   }
 class FilmScene {
@@ -128,13 +129,23 @@ class FilmScene {
       throw InvalidInput{told(), "frames must rise in time, but t = ", t, " s follows ", times_.back(), " s."};
     if (parts.empty()) throw InvalidInput{told(), "there is nothing to be seen; attach shapes to the visual."};
     check_parts(t, parts);
-    if (times_.empty())
+    if (times_.empty()) {
       for (VisualPart const& part : parts) add_part(part);
+      auto const in = [&](World world) { return std::ranges::count(parts, world, &VisualPart::world) > 0; };
+      planar_ = in(World::plane) && !in(World::space);
+    }
     for (std::size_t i = 0; i < parts.size(); ++i) add_frame(t, parts[i], parts_[i]);
     for (detail::FilmArrowSet& set : arrows_) set.counts.push_back(0);
     if (times_.empty()) next_ = t;
     times_.push_back(t);
     next_ = next_ + interval_ > t ? next_ + interval_ : t + interval_;
+  }
+
+  /// Records a frame of `visual` in state x. The film lists the bodies that have no shape.
+  template <class = void>
+  void record(Visual& visual, State const& x) {
+    if (times_.empty()) invisible_ = visual.bodies_without_shape();
+    record(x.t, visual.at(x));
   }
 
   /// Adds an arrow to the last frame.
@@ -168,6 +179,9 @@ class FilmScene {
 
   std::string const& name() const { return name_; }            ///< name given to `Film::scene`
   std::vector<double> const& times() const { return times_; }  ///< times of the frames [s]
+  bool planar() const { return planar_; }                      ///< true if all bodies with a shape are planar
+  /// Names of the bodies without a shape, if frames are recorded by a `Visual`.
+  std::vector<std::string> const& invisible() const { return invisible_; }
 
   /// \name Data that a film writes
   ///@{
@@ -252,6 +266,8 @@ class FilmScene {
 
   std::string name_;
   double interval_, next_ = -std::numeric_limits<double>::infinity();
+  bool planar_ = false;
+  std::vector<std::string> invisible_;
   std::vector<double> times_;
   std::vector<FilmScalar> scalars_;
   std::vector<detail::FilmShape> shapes_;

@@ -3,6 +3,7 @@
 /// Visual geometry of a model in a state: shapes fixed to markers, and sections swept along bars.
 
 #include <functional>
+#include <optional>
 #include <string>
 
 #include <polybody/bodies/shared/sections.hpp>
@@ -23,6 +24,7 @@ struct VisualPart {
   Vec3 place = Vec3::Zero();          ///< (3) origin of the frame, world axes [m]
   Mat3 axes = Mat3::Identity();       ///< (3×3) rotation from axes of the frame to world axes
   std::vector<Vec3> carried = {};     ///< points of a fixed shape in axes of its frame [m]; else empty
+  std::optional<World> world = {};    ///< world of its body; empty for a part of the ground
 };
 
 namespace detail {
@@ -45,7 +47,8 @@ class Visual {
  public:
   /// Geometry of a complete model, without shapes.
   template <class M>
-  explicit Visual(M const& model) : layout_(layout_of(model)), reference_(model.reference_state()) {}
+  explicit Visual(M const& model)
+      : layout_(layout_of(model)), reference_(model.reference_state()), shown_(layout_.bodies.size()) {}
   template <class M>
     requires(!std::same_as<M, Visual>)
   explicit Visual(M const&& model) = delete;  ///< deleted: a temporary model does not outlive the geometry
@@ -63,6 +66,15 @@ class Visual {
   template <class B>
   void sweep(BodyHandle<B> const& body, Bar const& bar, int pieces, int sides = 24);
 
+  /// Names of the bodies without a shape, in the order of the model's types. They are invisible.
+  template <class = void>
+  std::vector<std::string> bodies_without_shape() const {
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < shown_.size(); ++i)
+      if (!shown_[i]) names.push_back(layout_.bodies[i].name);
+    return names;
+  }
+
   /// Reference state: the bodies are undeformed and placed as built.
   State const& reference() const { return reference_; }
 
@@ -75,12 +87,19 @@ class Visual {
   }
 
  private:
-  /// Adds a part whose points are fixed in the axes of a frame.
+  /// Adds a part whose points are fixed in the axes of a frame, to body number `body` of the layout (−1: the ground).
   template <class = void>
-  void carry(Surface const& shape, std::string name, FrameIn frame_in);
+  void carry(Index body, Surface const& shape, std::string name, FrameIn frame_in);
+  /// Marks the last part as a part of body number `body`.
+  template <class = void>
+  void show(Index body) {
+    parts_.back().world = layout_.bodies[std::size_t(body)].planar ? World::plane : World::space;
+    shown_[std::size_t(body)] = true;
+  }
 
   ModelLayout layout_;
   State reference_;
+  std::vector<bool> shown_;  // for each body: it has a shape
   std::vector<VisualPart> parts_;
   std::vector<std::function<void(State const&, VisualPart&)>> moves_;
 };
@@ -92,17 +111,19 @@ void Visual::attach(Marker<B> const& marker, Surface const& shape, std::string n
   if constexpr (std::is_same_v<B, Ground>) {
     require_own(layout_, marker, name);
     Frame<double> const f{.r = marker.point.origin, .A = marker.point.axes};
-    carry(shape, std::move(name), [f](State const&) { return f; });
+    carry(-1, shape, std::move(name), [f](State const&) { return f; });
   } else {
-    BodyLayout const place = layout_.bodies[std::size_t(index_of(layout_, marker, name))];
-    carry(shape, std::move(name),
+    Index const body = index_of(layout_, marker, name);
+    BodyLayout const place = layout_.bodies[std::size_t(body)];
+    carry(body, shape, std::move(name),
           [place, point = marker.point](State const& x) { return frame(body_in_state<B>(place, x), point); });
   }
 }
 
 template <class B>
 void Visual::sweep(BodyHandle<B> const& body, Bar const& bar, int pieces, int sides) {
-  BodyLayout const place = layout_.bodies[std::size_t(index_of(layout_, body))];
+  Index const number = index_of(layout_, body);
+  BodyLayout const place = layout_.bodies[std::size_t(number)];
   if (pieces < 1) throw InvalidInput{"\"", body.name, "\": a sweep needs at least one piece."};
   std::vector<Vec2> const ring = outline(bar, sides);
   int const n = int(ring.size());
@@ -110,6 +131,7 @@ void Visual::sweep(BodyHandle<B> const& body, Bar const& bar, int pieces, int si
   std::size_t const points = std::size_t((pieces + 1) * n);
   parts_.push_back(
       {body.name, swept(pieces + 1, n), std::vector<double>(stressed ? points : 0), std::vector<Vec3>(points)});
+  show(number);
   moves_.push_back([place, body, bar, pieces, ring](State const& x, VisualPart& part) {
     BodyInState<B> const b = body_in_state<B>(place, x);
     Frame<double> const middle = frame(b, body.at(0.5 * bar.length).point);
@@ -135,9 +157,10 @@ void Visual::sweep(BodyHandle<B> const& body, Bar const& bar, int pieces, int si
 }
 
 template <class>
-void Visual::carry(Surface const& shape, std::string name, FrameIn frame_in) {
+void Visual::carry(Index body, Surface const& shape, std::string name, FrameIn frame_in) {
   parts_.push_back({std::move(name), shape, {}, std::vector<Vec3>(shape.points.size())});
   parts_.back().carried = shape.points;
+  if (body >= 0) show(body);
   moves_.push_back([frame_in = std::move(frame_in)](State const& x, VisualPart& part) {
     Frame<double> const f = frame_in(x);
     part.place = f.r;
