@@ -34,14 +34,6 @@ inline Bar bar(Stiffness const& s, double density) {
                                     .rotary_inertia = density * area / 12.0}};
 }
 
-template <class B>
-B make_body(Bar const& spec, Index elements) {
-  if constexpr (std::is_same_v<B, planar::Rigid>)
-    return B::from(spec);
-  else
-    return B::from(spec, elements);
-}
-
 // The arm turns about the origin: a pin, and the angle of its first section prescribed.
 // An axial force of constant size may follow the tip.
 template <class B, class P = Constraint>
@@ -55,8 +47,8 @@ struct RobotArm {
   ElementHandle<Pin> pin;
 
   RobotArm(Bar const& spec, Index elements, double ramp, double axial_force = 0.0, P policy = {})
-      : arm(model.add(make_body<B>(spec, elements), "arm")),
-        pin(model.connect(Pin{{}, policy}, model.ground().at({0, 0, 0}), arm.at(0.0), "pin")) {
+      : arm(model.add(B::from(spec, {.elements = elements}), "arm")),
+        pin(model.connect(Joint{planar::Revolute{}, policy}, model.ground().at({0, 0, 0}), arm.at(0.0), "pin")) {
     model.connect(Drive{{Ramp{.target = angle, .duration = ramp}}, {}}, model.ground().at({0, 0, 0}), arm.at(0.0),
                   "drive");
     if (axial_force != 0.0)
@@ -73,7 +65,8 @@ struct Cantilever {
   Model model;
   BodyHandle<B> beam;
 
-  Cantilever(Bar const& spec, Index elements, double moment) : beam(model.add(make_body<B>(spec, elements), "beam")) {
+  Cantilever(Bar const& spec, Index elements, double moment)
+      : beam(model.add(B::from(spec, {.elements = elements}), "beam")) {
     model.connect(Clamp{}, model.ground().at({0, 0, 0}), beam.at(0.0), "clamp");
     model.apply(PointMoment<>{.moment = {0, 0, moment}}, beam.at(double(spec.length)), "tip moment");
   }

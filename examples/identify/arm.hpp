@@ -42,11 +42,7 @@ struct Arm {
     using M = Model<Bodies<B>, Joints<Mount>>;
     M model{Gravity{0, -9.81, 0}};
     Bar const bar = strip();
-    BodyHandle<B> arm;
-    if constexpr (requires { B::from(bar, elements); })
-      arm = model.add(B::from(bar, elements), "arm");
-    else
-      arm = model.add(B::from(bar), "arm");
+    auto const arm = model.add(B::from(bar, {.elements = elements}), "arm");
     Vec3 const slides(p[0], p[0], 0.0), slows(p[1], p[1], 0.0), turns(0.0, 0.0, p[2]), brakes(0.0, 0.0, p[3]);
     model.connect(Mount{{}, {Bushing::diagonal(slides, turns), Bushing::diagonal(slows, brakes)}},
                   model.ground().at({0, 0, 0}), arm.at(0.0), "mount");

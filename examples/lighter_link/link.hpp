@@ -101,12 +101,7 @@ struct Link {
   }
 
  private:
-  B body(Bar const& bar) const {
-    if constexpr (requires { B::from(bar, elements); })
-      return B::from(bar, elements);
-    else
-      return B::from(bar);
-  }
+  B body(Bar const& bar) const { return B::from(bar, {.elements = elements}); }
 };
 
 inline GeneralisedAlpha const method{.rho_inf = 0.8, .tolerance = 1e-12, .start_correction = false};

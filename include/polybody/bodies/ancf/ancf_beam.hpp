@@ -31,6 +31,7 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
   using Element = Vec<T, element_columns>;
   using ElementMatrix = typename Chain::ElementMatrix;
   using PointMap = Mat<double, 3, element_columns>;  ///< S of r = S e, 3×24
+  static constexpr Index default_elements = 16;      ///< of `from(bar)`, see `BarMesh`
   static constexpr int gradients = 3;  ///< number of position gradients that are linear in the coordinates
 
   /// Material point: element, position ξ ∈ [0, 1] along it, and distances y, z from the axis in the reference [m].
@@ -45,6 +46,10 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
   /// \throws InvalidInput for n < 1 or a constant that the bar does not give.
   static AncfBeam from(Bar const& bar, Index n) {
     return AncfBeam(bar, n, [](double s) { return Placement{Vec3(s, 0, 0)}; }, true);
+  }
+  /// Beam from the straight bar, with the number of elements of `mesh`.
+  static AncfBeam from(Bar const& bar, BarMesh const& mesh = {}) {
+    return from(bar, mesh.elements.value_or(default_elements));
   }
   /// Beam from the bar with a curved or twisted reference, n elements, free of stress except for the pretension. The
   /// nodes have the positions and axes of `curve`. Between the nodes the field of the element interpolates the

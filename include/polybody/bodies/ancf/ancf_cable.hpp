@@ -41,6 +41,7 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
   using Element = Vec<T, 12>;
   using ElementMatrix = typename Chain::ElementMatrix;
   using PointMap = Mat<RealFor<Strain>, 3, 12>;  ///< S of r = S e, 3×12
+  static constexpr Index default_elements = 8;   ///< of `from(bar)`, see `BarMesh`
   static constexpr int gradients = 1;            ///< number of position gradients that are linear in the coordinates
 
   /// Material point of the axis: element, and position ξ ∈ [0, 1] along it.
@@ -53,6 +54,10 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
   /// \throws InvalidInput for n < 1.
   static AncfCable from(Bar const& bar, Index n) {
     return from(bar, n, [](double s) { return Placement::at({s, 0, 0}); });
+  }
+  /// Cable from the straight bar, with the number of elements of `mesh`.
+  static AncfCable from(Bar const& bar, BarMesh const& mesh = {}) {
+    return from(bar, mesh.elements.value_or(default_elements));
   }
   /// Cable of n elements along `curve`, with nodes at equal arc lengths. The undeformed shape remains straight, so the
   /// initial configuration is bent.

@@ -48,6 +48,11 @@ class CholeskyCoordinates : public AddingCoordinates {
   static CholeskyCoordinates from(Args const&... args) {
     return CholeskyCoordinates(B::from(args...));
   }
+  /// Creates the body from a bar with the number of elements of `mesh`.
+  /// \throws InvalidInput as the constructor.
+  static CholeskyCoordinates from(Bar const& bar, BarMesh const& mesh) {
+    return CholeskyCoordinates(B::from(bar, mesh));
+  }
   /// Wraps `body`.
   /// \throws InvalidInput for a body whose coordinates do not add, or whose mass matrix is not positive definite.
   explicit CholeskyCoordinates(B body) : body_(std::move(body)), n_(body_.velocities()) {

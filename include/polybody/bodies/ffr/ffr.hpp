@@ -36,6 +36,7 @@ class Ffr {
   static constexpr RigidLayout frame_layout = RigidLayout::quaternion;  ///< `JointCoordinates` joints move the frame
   static constexpr int element_columns = Eigen::Dynamic;                ///< one element: the whole body
   static constexpr int point_columns = Eigen::Dynamic;
+  static constexpr Index default_elements = 8;  ///< of `from(bar)`, see `BarMesh`
 
   using Point = FfrPoint;      ///< material point in the axes of the frame
   using Options = FfrOptions;  ///< placement, terms of the inertia, stiffening and damping
@@ -47,6 +48,11 @@ class Ffr {
     options.placement = bar.placement;
     Structure const s = structure_of(bar, n);
     return Ffr(s, nodal_coordinates(s), options);
+  }
+  /// Body of the bar with the number of elements of `mesh`, otherwise as above.
+  template <class = void>  // compiled only if used
+  static Ffr from(Bar const& bar, BarMesh const& mesh = {}, Options options = {}) {
+    return from(bar, mesh.elements.value_or(default_elements), options);
   }
   /// Body of a structure with the basis `shapes` of ffr_basis.hpp (N×n).
   /// \throws InvalidInput for a basis that does not fit or is linearly dependent.

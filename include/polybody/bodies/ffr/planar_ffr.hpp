@@ -28,6 +28,7 @@ class Ffr : public AddingCoordinates {
   static constexpr RigidLayout frame_layout = RigidLayout::plane;  ///< `JointCoordinates` joints move the frame
   static constexpr int element_columns = Eigen::Dynamic;
   static constexpr int point_columns = Eigen::Dynamic;
+  static constexpr Index default_elements = 8;  ///< of `from(bar)`, see `BarMesh`
 
   using Point = FfrPoint;      ///< material point in the axes of the frame
   using Options = FfrOptions;  ///< placement, terms of the inertia, stiffening and damping
@@ -39,6 +40,11 @@ class Ffr : public AddingCoordinates {
     options.placement = bar.placement;
     Structure const s = structure_in_plane(bar, n);
     return Ffr(s, nodal_coordinates(s, ReferenceConditions::clamped().restrict_to_plane()), options);
+  }
+  /// Body of the bar with the number of elements of `mesh`, otherwise as above.
+  template <class = void>  // compiled only if used
+  static Ffr from(Bar const& bar, BarMesh const& mesh = {}, Options options = {}) {
+    return from(bar, mesh.elements.value_or(default_elements), options);
   }
   /// Structure of a bar with n elements, for use in the plane only.
   /// \throws InvalidInput as `structure_of`.

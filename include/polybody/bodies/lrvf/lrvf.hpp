@@ -42,6 +42,7 @@ class Lrvf {
   static constexpr int point_columns = 12;
   static constexpr int element_stride = 6;
   static constexpr bool vectorised_kernels = false;
+  static constexpr Index default_elements = 32;  ///< of `from(bar)`, see `BarMesh`
   template <class T>
   using Element = Vec<T, 12>;
   using ElementMatrix = Mat<double, 12, 12>;
@@ -57,6 +58,10 @@ class Lrvf {
   /// \throws InvalidInput for n < 1 or a missing stiffness (GA, GJ, ...).
   static Lrvf from(Bar const& bar, Index n) {
     return from(bar, n, [](double s) { return Placement{.origin = Vec3(s, 0, 0)}; });
+  }
+  /// Beam from the straight bar, with the number of elements of `mesh`.
+  static Lrvf from(Bar const& bar, BarMesh const& mesh = {}) {
+    return from(bar, mesh.elements.value_or(default_elements));
   }
   /// Beam of n elements with the stress-free shape `curve`, bent and twisted, whose parameter is its arc length.
   /// \throws InvalidInput as above, and for a curve on which nodes coincide or are farther apart than the arc between

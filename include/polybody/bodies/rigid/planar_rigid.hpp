@@ -49,9 +49,11 @@ class Rigid : public AddingCoordinates {
   Rigid(double mass, double inertia, Placement const& placement = {})
       : Rigid(Parameters{.mass = mass, .inertia = inertia, .placement = placement}) {}
 
-  /// Rigid body of the bar; its origin is the middle of the bar.
+  /// Rigid body of the bar; its origin is the middle of the bar. The mesh has no effect.
+  /// \throws InvalidInput for a mesh of less than one element.
   template <class = void>  // compiled only if used
-  static Rigid from(Bar const& bar) {
+  static Rigid from(Bar const& bar, BarMesh const& mesh = {}) {
+    require_elements(mesh.elements.value_or(1), "planar::Rigid");
     BarConstants const c = constants(bar);
     double const l = bar.length, m = c.mass_per_length * l;
     Placement place = bar.placement;

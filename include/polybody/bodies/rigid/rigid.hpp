@@ -196,9 +196,12 @@ class Rigid<UnitQuaternion> : public RigidShape {
 
   using RigidShape::inertia, RigidShape::mass, RigidShape::RigidShape;
 
-  /// Rigid body of the bar; its axes are those of the bar, its origin is the middle of the bar.
+  /// Rigid body of the bar; its axes are those of the bar, its origin is the middle of the bar. The
+  /// mesh has no effect.
+  /// \throws InvalidInput for a mesh of less than one element.
   template <class = void>  // compiled only if used
-  static Rigid from(Bar const& bar) {
+  static Rigid from(Bar const& bar, BarMesh const& mesh = {}) {
+    require_elements(mesh.elements.value_or(1), "Rigid");
     return Rigid(bar);
   }
 

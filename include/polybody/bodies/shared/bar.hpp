@@ -71,6 +71,16 @@ struct Bar {
   std::optional<double> shear_factor = {};  ///< factor k of the shear stiffness k G A; by Cowper's formula if not given
 };
 
+/// Mesh of a body that is made from a bar: `B::from(bar, {.elements = 8})`. Every body accepts it. A rigid body has no
+/// elements, so the number has no effect on it.
+///
+/// Without a number, `B::from(bar)` uses `B::default_elements`: 8 elements if the axis is cubic without shear (ANCF
+/// cables, floating frames), 16 if it is cubic with shear (`AncfBeam`), 32 if it is linear (`Lrvf`). The lowest bending
+/// frequency of a pinned bar is then within 0.2 % of its exact value, and the second one within 0.7 %.
+struct BarMesh {
+  std::optional<Index> elements = {};  ///< number of elements of equal length, at least 1
+};
+
 /// Curved reference: the placement of the section at arc length s ∈ [0, length], in the axes of the bar (x along the
 /// tangent). At s = 0 it usually is `Placement{}`.
 using ReferenceCurve = std::function<Placement(double)>;

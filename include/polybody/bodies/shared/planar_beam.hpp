@@ -69,6 +69,8 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
   using ElementMatrix = Mat<double, element_columns, element_columns>;
   using PointMap = Mat<double, 2, element_columns>;    ///< S of r = S e, 2×n
   static constexpr int gradients = Theory::gradients;  ///< number of gradients linear in the coordinates
+  /// Number of elements of `from(bar)`, see `BarMesh`: gradients as coordinates go with cubic displacements.
+  static constexpr Index default_elements = gradients > 0 ? 8 : 32;
 
   /// Material point: element, position ξ ∈ [0, 1] along it, and distance y from the axis [m].
   struct Point {
@@ -85,6 +87,11 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
     BarConstants const c = polybody::constants(bar);
     Theory::check(c);
     return Beam(bar, c, n);
+  }
+
+  /// Beam from the straight bar, with the number of elements of `mesh`.
+  static Beam from(Bar const& bar, BarMesh const& mesh = {}) {
+    return from(bar, mesh.elements.value_or(default_elements));
   }
 
   /// Beam of n elements along `curve`, with nodes at equal arc lengths. The undeformed shape remains straight, so that
