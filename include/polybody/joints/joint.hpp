@@ -32,7 +32,9 @@ concept EnforceableGeometry =
 template <class P, class G>
 concept HolonomicOrConstrained = ConstrainingPolicy<P> || nonholonomic_equations<G>() == 0;
 
-/// A joint is a geometry (which motions it stops) and a policy (how it stops them).
+/// A joint is a geometry (which motions it stops) and a policy (how it stops them). `Joint{Revolute{.axis = axis}}` has
+/// the policy `Constraint`, and `Joint{Revolute{.axis = axis}, Penalty{.stiffness = k, .damping = c}}` names another
+/// one. If a policy has no numbers, `Joint<G, P>{geometry}` needs no policy.
 template <class G, class P>
 struct Joint {
   static_assert(JointGeometry<G> || detail::GeometryRefusal<G>::asked);
@@ -59,5 +61,10 @@ struct Joint {
       return Measured{};
   }
 };
+
+template <class G>
+Joint(G) -> Joint<G, Constraint>;
+template <class G, class P>
+Joint(G, P) -> Joint<G, P>;
 
 }  // namespace polybody

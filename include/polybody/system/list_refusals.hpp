@@ -110,22 +110,35 @@ struct ForceRefusal {
       "A force element needs check(name) const, which throws InvalidInput for parameters that cannot be meant.");
 };
 
+/// No type of a list is const.
+template <class... Ts>
+inline constexpr bool no_const = (!std::is_const_v<Ts> && ...);
+
 template <class List>
 struct ListRefusal {
   static_assert(sizeof(List) == 0, "A model is named by lists: Model<Bodies<...>, Joints<...>, Forces<...>>.");
 };
 template <class... Bs>
 struct ListRefusal<Bodies<Bs...>> {
+  static_assert(no_const<Bs...>,
+                "A type in a model's Bodies is const. decltype of an object that is declared `auto const` is const; "
+                "declare the object by `auto`.");
   static_assert(Distinct<Bs...>, "A body type stands twice in a model's Bodies; once serves any number of bodies.");
   static constexpr bool asked = ((Body<Bs> || sizeof(BodyRefusal<Bs>) > 0) && ...);
 };
 template <class... Js>
 struct ListRefusal<Joints<Js...>> {
+  static_assert(no_const<Js...>,
+                "A type in a model's Joints is const. decltype of an object that is declared `auto const` is const; "
+                "declare the object by `auto`.");
   static_assert(Distinct<Js...>, "A joint type stands twice in a model's Joints; once serves any number of joints.");
   static constexpr bool asked = true;
 };
 template <class... Fs>
 struct ListRefusal<Forces<Fs...>> {
+  static_assert(no_const<Fs...>,
+                "A type in a model's Forces is const. decltype of an object that is declared `auto const` is const; "
+                "declare the object by `auto`.");
   static_assert(Distinct<Fs...>, "A force type stands twice in a model's Forces; once serves any number of forces.");
   static constexpr bool asked = ((AppliedForce<Fs> || sizeof(ForceRefusal<Fs>) > 0) && ...);
 };

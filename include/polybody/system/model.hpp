@@ -21,7 +21,7 @@ class Model {
 
 /// `Model<Bodies<…>, Joints<…>, Forces<…>> model{Gravity{0, 0, -9.81}};` then `add`, `connect`, `apply`.
 template <Body... Bs, class... Js, AppliedForce... Fs>
-  requires Distinct<Bs...> && Distinct<Js...> && Distinct<Fs...>
+  requires Distinct<Bs...> && Distinct<Js...> && Distinct<Fs...> && detail::no_const<Bs..., Js..., Fs...>
 class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
  public:
   using BodyPools = std::tuple<detail::BodyPool<Bs>...>;               ///< a pool for each type of body

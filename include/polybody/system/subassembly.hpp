@@ -8,9 +8,9 @@ namespace polybody {
 
 /// Adds to a model what needs these types only, so that what builds a hull or a suspension is compiled once, for all
 /// models that have them among their types:
-///   Subassembly<Bodies<Rigid<>>, Joints<Joint<Revolute>>, Forces<SpringDamper>> hull(model);
+///   Subassembly<Bodies<Rigid<>>, Joints<Joint<Revolute, Constraint>>, Forces<SpringDamper>> hull(model);
 ///   auto const wheel = hull.add(body, "wheel");
-///   hull.connect(Joint<Revolute>{}, arm.at({0, 0, 0}), wheel.at({0, 0, 0}), "axle");
+///   hull.connect(Joint{Revolute{.axis = axis}}, arm.at({0, 0, 0}), wheel.at({0, 0, 0}), "axle");
 /// Handles are those of the model, which must outlive it.
 template <class BodyList, class JointList = Joints<>, class ForceList = Forces<>>
 class Subassembly;

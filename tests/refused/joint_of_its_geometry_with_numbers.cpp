@@ -1,0 +1,7 @@
+// refused: Required
+// The geometry alone makes no joint if the policy has numbers.
+#include <polybody/joints/joint.hpp>
+#include <polybody/joints/revolute.hpp>
+
+using namespace polybody;
+Joint<Revolute, Penalty> const hinge{Revolute{.axis = {0, 1, 0}}};
