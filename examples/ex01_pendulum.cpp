@@ -3,18 +3,17 @@
 #include <polybody/polybody.hpp>
 using namespace polybody;
 
-using Rod = Rigid<>;                        // body formulation
-using Hinge = Joint<Revolute, Constraint>;  // geometry, policy
-using Stepper = GeneralisedAlpha;           // integrator
-
 int main() {
+  using Rod = Rigid<>;                                            // body formulation
+  auto hinge = Joint{Revolute{.axis = {0, 1, 0}}, Constraint{}};  // joint: geometry, policy
+  auto stepper = GeneralisedAlpha{.rho_inf = 0.8};                // integrator
+
   Bar const bar{.length = 1.0, .section = Circle{.radius = 0.01}, .material = Material{.density = 7800, .young = 2e11}};
-  Model<Bodies<Rod>, Joints<Hinge>> model{Gravity{0, 0, -9.81}};
+  Model<Bodies<Rod>, Joints<decltype(hinge)>> model{Gravity{0, 0, -9.81}};
   auto const rod = model.add(Rod::from(bar), "rod");
-  auto const pin =
-      model.connect(Hinge{Revolute{.axis = {0, 1, 0}}, Constraint{}}, model.ground().at({0, 0, 0}), rod.at(0.0), "pin");
+  auto const pin = model.connect(hinge, model.ground().at({0, 0, 0}), rod.at(0.0), "pin");
   State x = model.reference_state();
-  for (State const& now : simulate(model, x, Stepper{.rho_inf = 0.8}, {.end_time = 2.0, .step = 1e-3}))
+  for (State const& now : simulate(model, x, stepper, {.end_time = 2.0, .step = 1e-3}))
     if (now.t >= 2.0)
       std::cout << now.t << ' ' << energy(model, now).total() << ' ' << constraint_violation(model, now, pin).norm()
                 << '\n';
