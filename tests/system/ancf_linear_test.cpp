@@ -99,6 +99,20 @@ TEST(AncfLinear, PinsACableInSpace) {
   EXPECT_EQ(problem_size(pinned.model).coordinates, 3 * 18 - 3 * 4);
 }
 
+TEST(AncfLinear, ViolationIsTheDistanceAndTheDifferenceOfGradients) {
+  Chain<AncfBeam<>, Revolute, AncfLinear> chain({.axis = Vec3::UnitZ()}, 2);
+  EXPECT_LT(constraint_violation(chain.model, chain.x, chain.pins[1]).norm(), 1e-15);
+  // node 0 of the second beam: position, then r_z, which lies along the pin
+  Index const node = chain.model.coordinates() / 2;
+  chain.x.q.segment<3>(node) += Vec3(0.01, -0.02, 0.03);
+  chain.x.q.segment<3>(node + 9) += Vec3(0.1, 0.2, -0.3);
+  VecX const open = constraint_violation(chain.model, chain.x, chain.pins[1]);
+  ASSERT_EQ(open.size(), 6);
+  EXPECT_LT((open.head<3>() - Vec3(0.01, -0.02, 0.03)).norm(), 1e-15);
+  EXPECT_LT((open.tail<3>() - Vec3(0.1, 0.2, -0.3)).norm(), 1e-15);
+  EXPECT_LT(constraint_violation(chain.model, chain.x, chain.pins[0]).norm(), 1e-15);
+}
+
 TEST(AncfLinear, PinsAFullyParameterisedBeamBySixEquations) {
   Chain<AncfBeam<>, Revolute, Constraint> held({.axis = Vec3::UnitZ()}, 2);
   Chain<AncfBeam<>, Revolute, AncfLinear> free({.axis = Vec3::UnitZ()}, 2);

@@ -49,10 +49,17 @@ template <class J>
 Vec<double, J::rows> constraint_violation(System const& system, ElementHandle<J> const& joint) {
   return Vec<double, J::rows>(detail::rows_of(system, index_of_joint(system.layout(), joint)).g);
 }
+/// Violation of the equations of an `AncfLinear` joint, first those of the position, then those of gradients. Their
+/// number depends on the bodies. \throws InvalidInput as above.
+template <class J>
+  requires LinearPolicy<typename J::PolicyType>
+VecX constraint_violation(System const& system, ElementHandle<J> const& joint) {
+  ConstraintBlock<double> const& block = detail::rows_of(system, index_of_joint(system.layout(), joint));
+  return Eigen::Map<VecX const>(block.g, block.rows);
+}
 /// Violation of a joint's rows in state x. \throws InvalidInput as above.
 template <class M, class J>
-  requires(!LinearPolicy<typename J::PolicyType>)
-Vec<double, J::rows> constraint_violation(M const& model, State const& x, ElementHandle<J> const& joint) {
+auto constraint_violation(M const& model, State const& x, ElementHandle<J> const& joint) {
   System system(model, with<Capabilities::motion>);
   require_usable(system, x);
   system.evaluate(x.q, x.v, x.t);
