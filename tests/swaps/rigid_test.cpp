@@ -1,0 +1,13 @@
+// README.md's program with rigid bodies, under each policy and integrator.
+#include "support/swapped_pendulum.hpp"
+
+namespace polybody::rigid_test {
+
+using swaps::Count;
+
+TEST(SwapsOfTheReadme, RigidBody) { EXPECT_EQ(swaps::run_all<Rigid<>>(), (Count{132, 48})); }
+TEST(SwapsOfTheReadme, RigidBodyWithEulerParameters) {
+  EXPECT_EQ(swaps::run_all<Rigid<EulerParameters>>(), (Count{60, 120}));
+}
+
+}  // namespace polybody::rigid_test
