@@ -176,10 +176,10 @@ void comparison(Options const& o) {
   if (!o.film.empty())
     film = std::make_shared<Film>(
         film_options(o.viewer, "The clamped beam, " + number(1e-3 * o.moment) + " kN m at its tip"));
-  Comparison const c = compare(
+  Comparison const c = require_complete(compare(
       BeamCase{o, film}, Formulation<planar::Lrvf, Constraint, GeneralisedAlpha>{"LRVF", {}, implicit},
       Formulation<planar::AncfCable<GreenStrain>, Constraint, GeneralisedAlpha>{"ANCF Green", {}, implicit},
-      Formulation<planar::AncfCable<EngineeringStrain>, Constraint, GeneralisedAlpha>{"ANCF engin.", {}, implicit});
+      Formulation<planar::AncfCable<EngineeringStrain>, Constraint, GeneralisedAlpha>{"ANCF engin.", {}, implicit}));
   std::cout << "\nThe clamped beam under the tip moment, three formulations:\n\n";
   report(c, o.out / "comparison", !o.no_plot);
   if (film) film->write(o.film);

@@ -178,12 +178,12 @@ void comparison(Options const& o) {
   GeneralisedAlpha const implicit{.rho_inf = 0.8};
   Penalty const stiff{.stiffness = 1e9, .damping = 1e5};
   std::shared_ptr<Film> const film = film_of(o);
-  Comparison const c = compare(
+  Comparison const c = require_complete(compare(
       ArmCase{o, medium, 4.5, film}, Formulation<planar::Lrvf, Constraint, GeneralisedAlpha>{"LRVF", {}, implicit},
       Formulation<planar::Lrvf, Penalty, GeneralisedAlpha>{"LRVF, penalty", stiff, implicit},
       Formulation<planar::AncfCable<GreenStrain>, Constraint, GeneralisedAlpha>{"ANCF Green", {}, implicit},
       Formulation<planar::AncfCable<EngineeringStrain>, Constraint, GeneralisedAlpha>{"ANCF engin.", {}, implicit},
-      Formulation<planar::Rigid, Constraint, GeneralisedAlpha>{"rigid", {}, implicit});
+      Formulation<planar::Rigid, Constraint, GeneralisedAlpha>{"rigid", {}, implicit}));
   std::cout << "\nThe arm of medium stiffness, 1.5 rad in 4.5 s, under five formulations:\n\n";
   report(c, o.out / "comparison", !o.no_plot);
   if (film) film->write(o.film);

@@ -42,8 +42,8 @@ StressRuns run_by(Options const& o, std::string const& name, Make const& make, I
   auto const history = runs.links.emplace_back(std::make_shared<LinkHistory>());
   Recording recording;
   StressScene film(o, name, built.vehicle, link);
-  runs.comparison = compare(StressCase<I>{o, link, &runs.outcomes, history, &recording, film.scene()},
-                            Driven<I>{name, built, integrator});
+  runs.comparison = require_complete(compare(StressCase<I>{o, link, &runs.outcomes, history, &recording, film.scene()},
+                                             Driven<I>{name, built, integrator}));
   if (recording.recorder) recover(o, recording, *history);
   film.finish(o, runs.times(0), *history);
   return runs;

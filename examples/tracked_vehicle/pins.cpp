@@ -14,7 +14,8 @@ Runs run_by(Options o, Pins const& pins, I const& integrator, double step = impl
   if (o.first_step > 0.0 || o.step < implicit_step) o.sampling = std::max(o.step, implicit_step);
   Runs runs;
   runs.sampling = o.sampling;
-  runs.comparison = compare(TrackCase{o, &runs.outcomes}, Driven<I>{pins.name, build(o, pins.make), integrator});
+  runs.comparison =
+      require_complete(compare(TrackCase{o, &runs.outcomes}, Driven<I>{pins.name, build(o, pins.make), integrator}));
   return runs;
 }
 

@@ -171,17 +171,59 @@ TEST(Compare, RefusesOutputsThatCannotBePutSideBySide) {
                   "\"of its own mind\" has other outputs than \"ideal\""));
 }
 
+/// The pendulum with steps of 0.1 s for the run "absurd". The run "stops short" fails in its output after 0.2 s.
+constexpr auto coarse = [](auto const& f) {
+  auto scenario = Pendulum{}(f);
+  if (f.name == "absurd") scenario.options.step = 0.1;
+  if (f.name == "absurd") scenario.options.max_step_halvings = 0;
+  if (f.name == "stops short")
+    scenario.outputs[0].value = [tip = scenario.outputs[0].value](auto const& model, State const& x) {
+      if (x.t > 0.2) throw NonFiniteValue("the output fails");
+      return tip(model, x);
+    };
+  return scenario;
+};
+Stiff const absurd{"absurd", {.stiffness = 1e16, .damping = 0.0}, {.newton = {.max_iterations = 1}}};
+
 // A penalty of 1e16 with steps of 0.1 s diverges. The results of the other runs are kept. The first complete run is
 // the reference.
-TEST(Compare, NamesTheRunThatFailedAndKeepsTheOthers) {
-  auto const coarse = [](auto const& f) {
-    auto scenario = Pendulum{}(f);
-    if (f.name == "absurd") scenario.options.step = 0.1;
-    return scenario;
-  };
-  Stiff const absurd{"absurd", {.stiffness = 1e16, .damping = 0.0}, {.newton = {.max_iterations = 1}}};
+TEST(Compare, EndsWithAllRunsAndMarksTheFailedOnes) {
+  Comparison const c = compare(coarse, absurd, Ideal{"ideal"}, Ideal{"stops short"}, Explicit{"explicit", {}, {}});
+  ASSERT_EQ(c.runs.size(), 4u);
+  EXPECT_TRUE(has(c.runs[0].failure, "at t = 0.1 s")) << c.runs[0].failure;
+  EXPECT_EQ(c.runs[0].times, std::vector<double>{0.0});
+  EXPECT_EQ(&c.reference(), &c.runs[1]);
+  for (std::size_t const k : {1u, 3u}) {
+    EXPECT_EQ(c.runs[k].failure, "");
+    EXPECT_NEAR(c.runs[k].outputs[0].back(), -std::cos(end_angle), 2e-5) << c.runs[k].name;
+    EXPECT_EQ(c.runs[k].difference.size(), 1u);
+  }
+  ComparedRun const& halfway = c.runs[2];  // 200 steps and the start; the step to 0.201 s has no output
+  EXPECT_EQ(halfway.failure, "the output fails");
+  ASSERT_EQ(halfway.times.size(), 201u);
+  EXPECT_EQ(halfway.outputs[0].size(), 201u);
+  EXPECT_EQ(halfway.energies.size(), 201u);
+  EXPECT_EQ(halfway.difference[0], 0.0);
+  EXPECT_NEAR(halfway.outputs[0].back(), exact_tip(0.2), 2e-5);
+  std::ostringstream table;
+  table << c;
+  EXPECT_TRUE(has(table.str(), "absurd failed after t = 0 s: GeneralisedAlpha")) << table.str();
+  EXPECT_TRUE(has(table.str(), "stops short failed after t = 0.2 s: the output fails"));
+  EXPECT_EQ(join({c}).runs[2].failure, "the output fails");
+}
+
+TEST(Compare, AComparisonOfFailedRunsHasNoDifferences) {
+  Comparison const c = compare(coarse, absurd, absurd);
+  ASSERT_EQ(c.runs.size(), 2u);
+  EXPECT_TRUE(std::isnan(c.runs[1].difference[0]));
+  std::ostringstream table;
+  EXPECT_NO_THROW(table << c);
+}
+
+TEST(Compare, RequiresAllRunsIfTheProgramAsks) {
+  EXPECT_EQ(require_complete(compare(coarse, Ideal{"ideal"})).runs.size(), 1u);
   try {
-    compare(coarse, absurd, Ideal{"ideal"}, Explicit{"explicit", {}, {}});
+    (void)require_complete(compare(coarse, absurd, Ideal{"ideal"}, Explicit{"explicit", {}, {}}));
     FAIL() << "a run that failed went unnoticed";
   } catch (ComparisonFailed const& failed) {
     EXPECT_TRUE(has(failed.what(), "compare: runs failed. \"absurd\": "));

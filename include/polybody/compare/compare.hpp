@@ -101,26 +101,45 @@ CaseQuestions questions_of(S& scenario) {
   return questions;
 }
 
-/// Completes a run and records its first and last state, and the states between them that `sampling` selects. Only
-/// the steps are timed.
+/// Removes the last recorded state if an evaluation in it failed.
+template <class = void>
+void drop_incomplete_state(ComparedRun& run) {
+  std::size_t n = std::min({run.times.size(), run.violations.size(), run.energies.size(), run.joint_forces.size()});
+  for (auto const& history : run.outputs) n = std::min(n, history.size());
+  run.times.resize(n);
+  run.violations.resize(n);
+  run.energies.resize(n);
+  run.joint_forces.resize(n);
+  for (auto& history : run.outputs) history.resize(n);
+}
+
+/// Completes a run and records its first and last state, and the states between them that `sampling` selects. A step
+/// that fails ends the run, and `failure` contains its message. Only the steps are timed.
 template <class Run>
 void record_run(Run& run, CaseQuestions& questions, double sampling, ComparedRun& out) {
   RunSampling asked(run.state().t, sampling);
-  questions.note(run.state(), out);
-  while (!run.done()) {
-    std::clock_t const begin = std::clock();
-    run.advance();
-    out.cpu += double(std::clock() - begin) / CLOCKS_PER_SEC;
-    if (asked.takes(run.state().t) || run.done()) questions.note(run.state(), out);
+  try {
+    questions.note(run.state(), out);
+    while (!run.done()) {
+      std::clock_t const begin = std::clock();
+      run.advance();
+      out.cpu += double(std::clock() - begin) / CLOCKS_PER_SEC;
+      if (asked.takes(run.state().t) || run.done()) questions.note(run.state(), out);
+    }
+  } catch (Error const& failed) {
+    out.failure = failed.what();
   }
-  out.energy_start = out.energies.front().total();
-  out.energy_end = out.energies.back().total();
+  drop_incomplete_state(out);
+  if (!out.energies.empty()) {
+    out.energy_start = out.energies.front().total();
+    out.energy_end = out.energies.back().total();
+  }
   out.run = run.report();
 }
 
-/// Adds the run of a formulation to c, or a message to `failures`.
+/// Adds the run of a formulation to c.
 template <class F, class C>
-void add_run(C const& make_case, F const& formulation, Comparison& c, std::string& failures) {
+void add_run(C const& make_case, F const& formulation, Comparison& c) {
   auto scenario = make_case(formulation);
   ComparedRun out;
   out.name = name_beside(c.runs, name_of(formulation));
@@ -135,20 +154,24 @@ void add_run(C const& make_case, F const& formulation, Comparison& c, std::strin
     CaseQuestions questions = questions_of(scenario);
     record_run(run, questions, scenario.sampling, out);
   } catch (Error const& failed) {
-    failures += sentence_of({" \"", out.name, "\": ", failed.what()});
-    return;
+    out.failure = failed.what();
   }
   c.runs.push_back(std::move(out));
 }
 
-/// Computes the largest differences between the outputs of each run and the outputs of the first run.
+/// Computes the largest differences between the outputs of each run and the outputs of the first complete run.
 template <class = void>
 void compare_with_first(Comparison& c) {
   if (c.runs.empty()) return;
-  ComparedRun const& first = c.runs.front();
+  ComparedRun const& first = c.reference();
   for (ComparedRun& run : c.runs)
     for (std::size_t i = 0; i < run.outputs.size(); ++i) {
-      double most = 0.0;
+      bool const known = first.failure.empty() && !run.times.empty();
+      double most = known ? 0.0 : std::numeric_limits<double>::quiet_NaN();
+      if (!known) {
+        run.difference.push_back(most);
+        continue;
+      }
       for (std::size_t k = 0; k < run.times.size(); ++k)
         most = std::max(most, std::abs(run.outputs[i][k] - interpolate(first.times, first.outputs[i], run.times[k])));
       run.difference.push_back(most);
@@ -159,17 +182,15 @@ void compare_with_first(Comparison& c) {
 
 /// Runs the case that `make_case(formulation)` returns for each of the `formulations`. They are passed as values,
 /// because some policies have parameters without defaults.
+/// If `simulate` or an output throws an `Error`, the run contains its message in `failure` and the results up to it,
+/// and the other runs go on. `require_complete(compare(…))` throws if a run failed.
 /// \throws InvalidInput for outputs that are not the same for all formulations, and exceptions of the case.
-/// \throws ComparisonFailed if `simulate` or an output throws an `Error`. It is thrown after the other runs and
-/// contains their results.
 template <class C, class... Fs>
   requires(ComparisonCase<C, Fs> && ...)
 Comparison compare(C const& make_case, Fs const&... formulations) {
   Comparison c;
-  std::string failures;
-  (detail::add_run(make_case, formulations, c, failures), ...);
+  (detail::add_run(make_case, formulations, c), ...);
   detail::compare_with_first(c);
-  if (!failures.empty()) throw ComparisonFailed("compare: runs failed." + failures, std::move(c));
   return c;
 }
 

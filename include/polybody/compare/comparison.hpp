@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
+#include <limits>
 #include <ostream>
 
 #include <polybody/run/energy.hpp>
@@ -13,9 +14,10 @@
 
 namespace polybody {
 
-/// Results of one run, a column of the report.
+/// Results of one run, a column of the report. A failed run contains the results up to its failure.
 struct ComparedRun {
   std::string name;                          ///< name of the formulation
+  std::string failure = {};                  ///< message of the exception that ended the run; empty if it is complete
   ProblemSize problem_size;                  ///< problem size of the model
   RunReport run;                             ///< steps, iterations and other counts of the run
   double cpu = 0.0;                          ///< CPU time of the steps [s]
@@ -29,15 +31,25 @@ struct ComparedRun {
   std::vector<double> joint_forces;          ///< (n) largest force of all joints at each time [N]
   std::vector<std::string> output_names;     ///< names in the order of `outputs`
   std::vector<std::vector<double>> outputs;  ///< one history (n) for each output
-  std::vector<double> difference;            ///< largest difference from the first run [unit of the output]
+  /// (outputs) Largest difference from the first complete run [unit of the output]; NaN without such a run, and for a
+  /// run that failed before its first state.
+  std::vector<double> difference;
 };
 
 /// Runs of one case under several formulations.
 struct Comparison {
   std::vector<ComparedRun> runs;  ///< runs in the order of the formulations
+
+  /// The first complete run, with which the others are compared; if all failed, the first run. There must be a run.
+  ComparedRun const& reference() const {
+    auto const complete = [](ComparedRun const& run) { return run.failure.empty(); };
+    auto const found = std::find_if(runs.begin(), runs.end(), complete);
+    return found == runs.end() ? runs.front() : *found;
+  }
 };
 
-/// Error of a comparison in which runs failed. The message gives each failed run with its reason.
+/// Error of a comparison in which runs failed, thrown by `require_complete`. The message gives each failed run with its
+/// reason.
 class ComparisonFailed : public Error {
  public:
   /// Error with a `message` about the failed runs, and the completed runs `others`.
@@ -45,6 +57,17 @@ class ComparisonFailed : public Error {
 
   Comparison finished;  ///< completed runs
 };
+
+/// Returns the comparison if all runs are complete. \throws ComparisonFailed otherwise, with the complete runs.
+template <class = void>  // compiled where it is used
+Comparison require_complete(Comparison c) {
+  std::string failures;
+  for (ComparedRun const& run : c.runs)
+    if (!run.failure.empty()) failures += sentence_of({" \"", run.name, "\": ", run.failure});
+  if (failures.empty()) return c;
+  std::erase_if(c.runs, [](ComparedRun const& run) { return !run.failure.empty(); });
+  throw ComparisonFailed("compare: runs failed." + failures, std::move(c));
+}
 
 /// Number with name and unit.
 struct Quantity {
@@ -58,7 +81,8 @@ struct History {
   std::vector<double> values;  ///< values in that unit, one for each time
 };
 
-/// Column of the report for one run. Differences are relative to the `first` run.
+/// Column of the report for one run. Differences are relative to the `first` run. Values that a failed run has not
+/// computed are NaN.
 template <class = void>  // compiled where it is used
 std::vector<Quantity> quantities(ComparedRun const& run, ComparedRun const& first) {
   double const steps = double(std::max(run.run.steps, 1L));
@@ -77,7 +101,8 @@ std::vector<Quantity> quantities(ComparedRun const& run, ComparedRun const& firs
                                {"energy at the end - at the start [J]", run.energy_end - run.energy_start},
                                {"peak joint force [N]", run.peak_joint_force}};
   for (std::size_t i = 0; i < run.outputs.size(); ++i) {
-    column.push_back({"end: " + run.output_names[i], run.outputs[i].back()});
+    column.push_back({"end: " + run.output_names[i],
+                      run.outputs[i].empty() ? std::numeric_limits<double>::quiet_NaN() : run.outputs[i].back()});
     column.push_back({"most off the first: " + run.output_names[i], run.difference[i]});
   }
   return column;
@@ -148,15 +173,15 @@ double interpolate(std::vector<double> const& times, std::vector<double> const& 
 
 }  // namespace detail
 
-/// Prints the report as a table with one line per quantity and one column per formulation, and the warnings of the
-/// runs below it.
+/// Prints the report as a table with one line per quantity and one column per formulation. The failures and the
+/// warnings of the runs follow.
 template <class = void>
 std::ostream& operator<<(std::ostream& out, Comparison const& c) {
   if (c.runs.empty()) return out;
   std::vector<std::vector<Quantity>> columns;
   std::size_t wide = 14, label = 0;
   for (ComparedRun const& run : c.runs) {
-    columns.push_back(quantities(run, c.runs.front()));
+    columns.push_back(quantities(run, c.reference()));
     wide = std::max(wide, run.name.size() + 2);
     for (Quantity const& q : columns.back()) label = std::max(label, q.name.size() + 1);
   }
@@ -173,8 +198,15 @@ std::ostream& operator<<(std::ostream& out, Comparison const& c) {
     }
   }
   out.copyfmt(state);
-  for (ComparedRun const& run : c.runs)
+  for (ComparedRun const& run : c.runs) {
+    if (!run.failure.empty()) {
+      out << '\n' << run.name << " failed";
+      if (!run.times.empty()) out << " after t = " << number(run.times.back(), 6) << " s";
+      out << ": " << run.failure;
+      continue;  // the message contains the warnings
+    }
     for (std::string const& warning : run.run.warnings) out << '\n' << run.name << ": " << warning;
+  }
   return out << '\n';
 }
 

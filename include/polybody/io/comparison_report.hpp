@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Tables, histories and figures of comparisons and work-precision studies, written to files.
+/// Tables, histories and figures of comparisons and work-precision studies, written to files. Failed runs of a
+/// comparison are left out.
 
 #include <polybody/compare/work_precision.hpp>
 #include <polybody/io/comparison_figures.hpp>
@@ -11,11 +12,20 @@ namespace polybody {
 
 namespace detail {
 
+/// The comparison without its failed runs.
+template <class = void>
+Comparison complete_runs(Comparison c) {
+  std::erase_if(c.runs, [](ComparedRun const& run) { return !run.failure.empty(); });
+  return c;
+}
+
 /// Checks that a comparison has runs, complete histories, and in each run the outputs of the first.
 /// \throws InvalidInput otherwise.
 template <class = void>  // compiled where it is used
 void check(Comparison const& c, std::string const& what) {
-  if (c.runs.empty()) throw InvalidInput{what, ": the comparison has no runs. Give `compare` a formulation."};
+  if (c.runs.empty())
+    throw InvalidInput{
+        what, ": the comparison has no runs, or all of them failed. Give `compare` a formulation whose run completes."};
   for (ComparedRun const& run : c.runs) {
     std::size_t const n = run.times.size(), outputs = run.output_names.size();
     bool full = n > 0 && run.violations.size() == n && run.energies.size() == n && run.joint_forces.size() == n &&
@@ -68,7 +78,8 @@ void draw_panels(std::vector<Figure> const& figures, int columns, std::filesyste
 /// Writes to `file` the table that `<<` prints, in full precision: one row per quantity, one column per run. Throws
 /// InvalidInput for a comparison without runs and for numbers that are not finite, IoError as `Csv`.
 template <class = void>
-void write_csv(Comparison const& c, std::filesystem::path const& file) {
+void write_csv(Comparison const& all, std::filesystem::path const& file) {
+  Comparison const c = detail::complete_runs(all);
   detail::check(c, "write_csv");
   std::vector<std::string> heads{"quantity"};
   std::vector<std::vector<Quantity>> columns;
@@ -88,20 +99,21 @@ void write_csv(Comparison const& c, std::filesystem::path const& file) {
 /// Writes the histories of each run to a separate file in `folder`, history_<number>_<name>.csv. The columns are "t
 /// [s]" and the histories of `histories`. Returns the files in the order of the runs. Throws as `write_csv`.
 template <class = void>
-std::vector<std::filesystem::path> write_histories(Comparison const& c, std::filesystem::path const& folder) {
+std::vector<std::filesystem::path> write_histories(Comparison const& all, std::filesystem::path const& folder) {
+  Comparison const c = detail::complete_runs(all);
   detail::check(c, "write_histories");
   std::vector<std::filesystem::path> written;
   for (ComparedRun const& run : c.runs) {
-    std::vector<History> const all = histories(run);
+    std::vector<History> const columns = histories(run);
     std::vector<std::string> heads{"t [s]"};
-    for (History const& h : all) heads.push_back(h.name);
+    for (History const& h : columns) heads.push_back(h.name);
     written.push_back(
         folder / ("history_" + std::to_string(written.size() + 1) + '_' + detail::word_for_file(run.name) + ".csv"));
     Csv csv(written.back(), std::move(heads));
-    std::vector<double> row(all.size() + 1);
+    std::vector<double> row(columns.size() + 1);
     for (std::size_t k = 0; k < run.times.size(); ++k) {
       row[0] = run.times[k];
-      for (std::size_t i = 0; i < all.size(); ++i) row[i + 1] = all[i].values[k];
+      for (std::size_t i = 0; i < columns.size(); ++i) row[i + 1] = columns[i].values[k];
       csv.row(row);
     }
     csv.close();
@@ -120,8 +132,9 @@ std::vector<std::filesystem::path> write_histories(Comparison const& c, std::fil
 /// gnuplot is found and `draw` is set. A figure without data is not written. Returns the files. Throws as `write_csv`,
 /// and IoError if gnuplot fails.
 template <class = void>
-std::vector<std::filesystem::path> write_figures(Comparison const& c, std::filesystem::path const& folder,
+std::vector<std::filesystem::path> write_figures(Comparison const& all, std::filesystem::path const& folder,
                                                  bool draw = true) {
+  Comparison const c = detail::complete_runs(all);
   detail::check(c, "write_figures");
   using Run = ComparedRun const&;
   std::vector<std::filesystem::path> written;
@@ -150,8 +163,9 @@ std::vector<std::filesystem::path> write_figures(Comparison const& c, std::files
 
 /// Writes table.csv, histories and figures to `folder`, figures also as .png if `draw`. Returns the files.
 template <class = void>
-std::vector<std::filesystem::path> write_report(Comparison const& c, std::filesystem::path const& folder,
+std::vector<std::filesystem::path> write_report(Comparison const& all, std::filesystem::path const& folder,
                                                 bool draw = true) {
+  Comparison const c = detail::complete_runs(all);
   detail::check(c, "write_report");
   std::vector<std::filesystem::path> written{folder / "table.csv"};
   write_csv(c, written.front());
