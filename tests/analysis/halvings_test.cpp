@@ -1,6 +1,8 @@
 // Halving of steps that do not converge, if the run permits it.
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <polybody/gradients/requirements.hpp>
 #include <polybody/polybody.hpp>
 
 #include "support/refusal.hpp"
@@ -54,6 +56,17 @@ TEST(Halvings, LetLandingsThroughThatStall) {
   }
   EXPECT_GT(stalled, 0);
   EXPECT_EQ(halved, stalled);
+}
+
+/// Message of the exception that f throws; empty if it throws none.
+template <class F>
+std::string failure_of(F&& f) {
+  try {
+    f();
+  } catch (Error const& failure) {
+    return failure.what();
+  }
+  return "";
 }
 
 /// Two rods on pins in space at 20 to 59 rad/s. The energy is constant.
@@ -185,6 +198,141 @@ TEST(Halvings, APendulumAtAStepOfASecondIsRefused) {
   EXPECT_FALSE(message_of<Diverged>([&] {
                  simulate(model, x, GeneralisedAlpha{}, {.end_time = 10.0, .step = 1.0}).run();
                }).empty());
+}
+
+// The attempts that fail at the landing are part of the costs of the step. Their number is that of the message of a run
+// without halvings.
+TEST(Halvings, CountsTheCostOfFailedAttempts) {
+  int compared = 0;
+  for (int i = 0; i < 100; ++i) {
+    double const height = 0.02 + 2e-4 * i;
+    Landing refused(height), halved(height);
+    std::string const message = failure_of([&] { refused.run(0); });
+    if (message.empty()) continue;
+    int const after = std::stoi(message.substr(message.find(" after ") + 7));
+    auto run = simulate(halved.model, halved.x, GeneralisedAlpha{}, {.end_time = 0.15, .step = 2e-3});
+    RunCounts sum;
+    long steps_with_halves = 0;
+    while (!run.done()) {
+      run.advance();
+      StepReport const& last = run.report().last;
+      sum.iterations += last.iterations;
+      sum.factorisations += last.factorisations;
+      sum.evaluations += last.evaluations;
+      sum.halved += last.halved;
+      steps_with_halves += last.halved > 0;
+      // three Newton solves at least: one or more failed ones, and those of the halves
+      if (last.halved > 0) EXPECT_GE(last.iterations, after + 2 * (last.halved + 1)) << height;
+      EXPECT_EQ(last.halved, last.rejected);
+    }
+    RunReport const& report = run.report();
+    EXPECT_EQ(report.iterations, sum.iterations);
+    EXPECT_EQ(report.factorisations, sum.factorisations);
+    EXPECT_EQ(report.evaluations, sum.evaluations);
+    EXPECT_EQ(report.halved, sum.halved);
+    EXPECT_GT(steps_with_halves, 0);
+    ++compared;
+  }
+  EXPECT_GT(compared, 0);
+}
+
+/// Links of 0.1 m and 1 kg on pins, released from the horizontal.
+struct Links {
+  using Pin = Joint<Revolute, Constraint>;
+  Model<Bodies<Rigid<>>, Joints<Pin>> model{Gravity{0, 0, -9.81}};
+  State x;
+
+  explicit Links(int n) {
+    Pin const pin{Revolute{.axis = Vec3::UnitY()}, {}};
+    Mat3 const inertia = Vec3(1e-4, 1e-3, 1e-3).asDiagonal();
+    std::optional<BodyHandle<Rigid<>>> before;
+    for (int i = 0; i < n; ++i) {
+      auto const link = model.add(Rigid<>(1.0, inertia, Placement::at({0.1 * i + 0.05, 0, 0})));
+      if (before)
+        model.connect(pin, before->at(Vec3(0.05, 0, 0)), link.at(Vec3(-0.05, 0, 0)));
+      else
+        model.connect(pin, model.ground().at({0, 0, 0}), link.at(Vec3(-0.05, 0, 0)));
+      before = link;
+    }
+    x = model.reference_state();
+  }
+};
+
+TEST(Halvings, OfTheDefaultLetAChainOf64LinksFallFor5Seconds) {
+  Links strict(64), links(64);
+  EXPECT_FALSE(message_of<NewtonConvergenceFailure>([&] {
+                 simulate(strict.model, strict.x, GeneralisedAlpha{},
+                          {.end_time = 5.0, .step = 1e-3, .max_step_halvings = 0})
+                     .run();
+               }).empty());
+  RunReport const report = simulate(links.model, links.x, GeneralisedAlpha{}, {.end_time = 5.0, .step = 1e-3}).run();
+  EXPECT_EQ(links.x.t, 5.0);
+  EXPECT_EQ(report.steps, 5000);
+  EXPECT_GT(report.halved, 0);
+  EXPECT_LT(report.halved, 50);
+}
+
+TEST(Halvings, OfTheDefaultLeaveTheBitsOfARunWithoutFailures) {
+  Links strict(16), links(16);
+  simulate(strict.model, strict.x, GeneralisedAlpha{}, {.end_time = 2.0, .step = 1e-3, .max_step_halvings = 0}).run();
+  RunReport const report = simulate(links.model, links.x, GeneralisedAlpha{}, {.end_time = 2.0, .step = 1e-3}).run();
+  EXPECT_EQ(links.x.q, strict.x.q);
+  EXPECT_EQ(links.x.v, strict.x.v);
+  EXPECT_EQ(report.halved, 0);
+}
+
+// 10 s of chains, or a refusal with a type. POLYBODY_HOSTILE=all: all lengths and steps.
+TEST(Halvings, ChainsUnderDefaultOptionsPassOrEndInARefusal) {
+  char const* const asked = std::getenv("POLYBODY_HOSTILE");
+  bool const all = asked && std::string(asked) == "all";
+  for (int const n : all ? std::vector{4, 8, 16, 32, 64, 128, 256} : std::vector{4, 16, 32})
+    for (double const h : all ? std::vector{5e-4, 1e-3, 2e-3, 4e-3, 1e-2} : std::vector{1e-3}) {
+      SCOPED_TRACE(std::to_string(n) + " links, step " + number(h));
+      Links links(n);
+      auto run = simulate(links.model, links.x, GeneralisedAlpha{}, {.end_time = 10.0, .step = h});
+      try {
+        run.run();
+        EXPECT_EQ(links.x.t, 10.0);
+      } catch (Diverged const& refused) {
+        EXPECT_TRUE(has(refused.what(), "limits.energy")) << refused.what();
+      } catch (NewtonConvergenceFailure const& refused) {
+        EXPECT_TRUE(has(refused.what(), "was halved 6 times")) << refused.what();
+      }
+      EXPECT_TRUE(links.x.q.allFinite());
+      bool const passes = h <= (n <= 32 ? 1e-3 : 5e-4);
+      EXPECT_TRUE(!passes || links.x.t == 10.0) << links.x.t;
+    }
+}
+
+// The halved steps, and a warning of the start.
+TEST(Halvings, AndWarningsAreInTheMessageOfTheExceptionThatEndsTheRun) {
+  Links links(64);
+  auto run = simulate(links.model, links.x, GeneralisedAlpha{}, {.end_time = 10.0, .step = 2e-3});
+  std::string const message = message_of<Diverged>([&] { run.run(); });
+  EXPECT_GT(run.report().halved, 0);
+  EXPECT_TRUE(has(message, "The integration diverges")) << message;
+  EXPECT_TRUE(has(message, std::to_string(run.report().halved) + " step")) << message;
+
+  using Soft = Joint<planar::Revolute, Penalty>;
+  Model<Bodies<planar::Rigid>, Joints<Soft>> model{Gravity{0, -9.81, 0}};
+  auto const rod = model.add(planar::Rigid(1.0, 0.1, Placement::planar(0.5, 0)), "rod");
+  model.connect(Soft{{}, {.stiffness = 1e9, .damping = 0.0}}, model.ground().at({0, 0, 0}), rod.at(Vec2(-0.5, 0)),
+                "pin");
+  State x = model.reference_state();
+  auto long_steps = simulate(model, x, RungeKutta4<>{}, {.end_time = 1.0, .step = 1e-2});
+  ASSERT_EQ(long_steps.report().warnings.size(), 1u);
+  std::string const warning = long_steps.report().warnings[0], said = failure_of([&] { long_steps.run(); });
+  EXPECT_TRUE(has(said, "diverges")) << said;
+  EXPECT_TRUE(has(said, "Warning of the run: " + warning)) << said;
+  EXPECT_EQ(long_steps.report().warnings.size(), 1u);
+}
+
+TEST(Halvings, OfTheDefaultAreNotInheritedByRunsThatAreDifferentiated) {
+  EXPECT_NO_THROW(detail::require_plain({.end_time = 1.0, .step = 0.1}, "gradient"));
+  EXPECT_NO_THROW(detail::require_plain({.end_time = 1.0, .step = 0.1, .max_step_halvings = 0}, "gradient"));
+  EXPECT_TRUE(
+      has(refusal([] { detail::require_plain({.end_time = 1.0, .step = 0.1, .max_step_halvings = 6}, "gradient"); }),
+          "gradient: a run with halved steps"));
 }
 
 TEST(Halvings, RefusesNumbersThatCannotBeMeant) {

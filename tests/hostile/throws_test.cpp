@@ -75,8 +75,8 @@ bool same(RunReport const& a, RunReport const& b) {
   for (std::size_t i = 0; i < a.events.size(); ++i)
     if (a.events[i].time != b.events[i].time) return false;
   return a.steps == b.steps && a.iterations == b.iterations && a.factorisations == b.factorisations &&
-         a.evaluations == b.evaluations && a.rejected == b.rejected && a.left == b.left && a.stopped == b.stopped &&
-         a.redundant == b.redundant && a.warnings == b.warnings;
+         a.evaluations == b.evaluations && a.rejected == b.rejected && a.halved == b.halved && a.left == b.left &&
+         a.stopped == b.stopped && a.redundant == b.redundant && a.warnings == b.warnings;
 }
 
 /// Events with an event function, an event action and a terminal condition; all of them are callbacks.

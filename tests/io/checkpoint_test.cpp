@@ -42,8 +42,9 @@ RunSnapshot rich() {
              0.7,
              {}};
   static_cast<RunCounts&>(s.report) = {
-      .steps = 10, .iterations = 21, .factorisations = 3, .evaluations = 22, .rejected = 1};
-  s.report.last = {.taken = 1e-3, .next = 2e-3, .iterations = 2, .factorisations = 1, .evaluations = 2, .rejected = 1};
+      .steps = 10, .iterations = 21, .factorisations = 3, .evaluations = 22, .rejected = 1, .halved = 1};
+  s.report.last = {
+      .taken = 1e-3, .next = 2e-3, .iterations = 2, .factorisations = 1, .evaluations = 2, .rejected = 1, .halved = 1};
   s.report.last.order = 5;
   s.report.last.contraction = 0.1;
   s.report.over_budget = 2;
@@ -118,7 +119,7 @@ TEST_F(Checkpoints, EveryDamageIsNoticed) {
   std::string other = good;
   std::uint32_t const nine = 9;
   std::memcpy(other.data() + 12, &nine, sizeof nine);
-  EXPECT_TRUE(has(told(other), "is of version 9, but this program reads version 5"));
+  EXPECT_TRUE(has(told(other), "is of version 9, but this program reads version 6"));
   other = good;
   std::reverse(other.begin() + 8, other.begin() + 12);
   EXPECT_TRUE(has(told(other), "another byte order"));

@@ -25,8 +25,8 @@ inline std::vector<std::uint64_t> bits(State const& x) {
 
 inline void expect_same(RunReport const& a, RunReport const& b) {
   auto const counts = [](RunReport const& r) {
-    return std::vector<long>{r.steps,    r.iterations,  r.factorisations, r.evaluations,
-                             r.rejected, r.over_budget, r.stopped};
+    return std::vector<long>{r.steps,    r.iterations, r.factorisations, r.evaluations,
+                             r.rejected, r.halved,     r.over_budget,    r.stopped};
   };
   EXPECT_EQ(counts(a), counts(b));
   EXPECT_EQ(a.redundant, b.redundant);

@@ -59,7 +59,8 @@ auto const& output_of(S const& scenario, std::size_t output, std::string const& 
   return scenario.outputs[output];
 }
 
-/// Sets the step, or the relative tolerance, to `setting`. The absolute tolerance changes in proportion.
+/// Sets the step, or the relative tolerance, to `setting`. The absolute tolerance changes in proportion. Steps of a
+/// given length are not halved, unless the options say so.
 template <class I>
 void set_accuracy(I& integrator, RunOptions& options, double setting) {
   require_positive(setting, "work_precision: a step or tolerance");
@@ -68,6 +69,7 @@ void set_accuracy(I& integrator, RunOptions& options, double setting) {
     integrator.relative_tolerance = setting;
   } else {
     options.step = setting;
+    options.max_step_halvings = options.max_step_halvings.value_or(0);
   }
 }
 

@@ -24,7 +24,7 @@ std::vector<double> values_of(std::vector<Parameter> const& parameters) {
 /// \throws InvalidInput, beginning with `who`, for options with what is not differentiated.
 template <class = void>
 void require_plain(RunOptions const& o, char const* who) {
-  if (o.max_step_halvings > 0 || o.minimum_norm)
+  if (o.max_step_halvings.value_or(0) > 0 || o.minimum_norm)
     throw InvalidInput{
         who,
         ": a run with halved steps or multipliers of least norm is not differentiated. Leave them out of "

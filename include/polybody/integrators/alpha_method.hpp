@@ -318,17 +318,20 @@ struct AlphaMethod {
         (effort < efforts(system) || (both_multiplier_sets && loses_rank(system, x, h, w)))) {
       w.tangent.include(system, w.lambda);
       w.kept_factor.usable = false;
-      return detail::with_attempt(report, advance(system, x, h, w, effort + 1));
+      return detail::retried(w.forward.failed, report, [&] { return advance(system, x, h, w, effort + 1); });
     }
     if (report.result != NewtonResult::converged && w.solver().carries_multipliers()) {  // rhs, which names the largest
       system.residual(w.vd, w.lambda, w.r);
       right_hand_side(h, both_multiplier_sets, system.nonholonomic_equations(), w);
     }
-    if (report.result != NewtonResult::converged)
-      detail::throw_stalled(name, system, x.t + h, report, {problem.bad, w.rhs, w.y});
-    // the last correction moved dq: bring q to it
-    system.plus(x.q, w.dq, w.q);
-    w.forward.require_end(system, {w.q, w.v, w.lambda, x.t + h, h});
+    StepReport const step = detail::report_of(h, report);
+    detail::count_if_failed(w.forward.failed, step, [&] {
+      if (report.result != NewtonResult::converged)
+        detail::throw_stalled(name, system, x.t + h, report, {problem.bad, w.rhs, w.y});
+      // the last correction moved dq: bring q to it
+      system.plus(x.q, w.dq, w.q);
+      w.forward.require_end(system, {w.q, w.v, w.lambda, x.t + h, h});
+    });
     if (w.solver().lost_rank() || w.tangent.end_step()) w.kept_factor.usable = false;
     if (w.forward.leaves_out() && w.solver().is_doubtful()) [[unlikely]]
       w.forward.note_doubt();
@@ -338,7 +341,7 @@ struct AlphaMethod {
     x.a.swap(w.vd);
     x.lambda.swap(w.lambda);
     x.t += h;
-    return detail::report_of(h, report);
+    return step;
   }
 
   /// The method's a and v stand off those of the solution by Δ h v̈ and h² P (C v̈ + [v, v̇]/12) (Δ = α_m − α_f,

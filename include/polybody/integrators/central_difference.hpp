@@ -54,8 +54,9 @@ struct CentralDifference {
       w.v = w.half + 0.5 * h * w.a;
     stabilisation.velocities(system, w.forward, w.scratch, w.q, w.v, x.t + h);
     w.rotations.subtract_gyroscopic(w.v, w.a);
-    w.accept(system, x, h);
-    return {.taken = h, .next = h, .factorisations = 1, .evaluations = 1};
+    StepReport const report{.taken = h, .next = h, .factorisations = 1, .evaluations = 1};
+    w.accept(system, x, h, report);
+    return report;
   }
 };
 

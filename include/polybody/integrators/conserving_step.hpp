@@ -197,7 +197,7 @@ struct ConservingStep {
       w.other_vd.swap(w.vd);
       w.other_lambda.swap(w.lambda);
       w.kept_factor.usable = false;
-      return detail::with_attempt(report, advance(system, x, h, w, 2, true));
+      return detail::retried(w.forward.failed, report, [&] { return advance(system, x, h, w, 2, true); });
     }
     if (has_other && takes_other(x, h, w, report.result != NewtonResult::converged)) {
       (void)problem.evaluate();
@@ -205,14 +205,17 @@ struct ConservingStep {
     }
     if (report.result != NewtonResult::converged && effort < (system.rows() > 0 ? 2 : 1)) {
       w.kept_factor.usable = false;
-      return detail::with_attempt(report, advance(system, x, h, w, effort + 1));
+      return detail::retried(w.forward.failed, report, [&] { return advance(system, x, h, w, effort + 1); });
     }
-    if (report.result != NewtonResult::converged)
-      detail::throw_stalled(name, system, x.t + h, report, {problem.bad, w.rhs, w.y});
-    problem.move();
-    for (Index i = 0; i < w.v.size(); ++i) w.v[i] = x.v[i] + h * w.vd[i];
-    system.push_forces();  // the discrete gradients pass them by
-    w.forward.require_end(system, {w.q, w.v, w.lambda, x.t + h, h});
+    StepReport const step = detail::report_of(h, report);
+    detail::count_if_failed(w.forward.failed, step, [&] {
+      if (report.result != NewtonResult::converged)
+        detail::throw_stalled(name, system, x.t + h, report, {problem.bad, w.rhs, w.y});
+      problem.move();
+      for (Index i = 0; i < w.v.size(); ++i) w.v[i] = x.v[i] + h * w.vd[i];
+      system.push_forces();  // the discrete gradients pass them by
+      w.forward.require_end(system, {w.q, w.v, w.lambda, x.t + h, h});
+    });
     if (w.solver.lost_rank() || effort == 2) w.kept_factor.usable = false;
     history.push(x, h, w.vd);
     x.q.swap(w.q);
@@ -220,7 +223,7 @@ struct ConservingStep {
     x.a.swap(w.vd);
     x.lambda.swap(w.lambda);
     x.t += h;
-    return detail::report_of(h, report);
+    return step;
   }
 };
 

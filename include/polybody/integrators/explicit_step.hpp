@@ -17,9 +17,9 @@ struct ExplicitStep {
         lambda(VecX::Zero(s.rows())),
         forward(s) {}
 
-  /// Makes it the state at t + h. \throws NonFiniteValue, Diverged.
-  void accept(System& system, State& x, double h) {
-    forward.require_end(system, {q, v, lambda, x.t + h, h});
+  /// Makes it the state at t + h. \param cost of the step, counted if it fails  \throws NonFiniteValue, Diverged.
+  void accept(System& system, State& x, double h, StepReport const& cost = {}) {
+    count_if_failed(forward.failed, cost, [&] { forward.require_end(system, {q, v, lambda, x.t + h, h}); });
     x.q.swap(q);
     x.v.swap(v);
     x.a.swap(a);

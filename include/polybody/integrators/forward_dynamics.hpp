@@ -132,6 +132,11 @@ Sequence<bool> constant_unknowns(System const& s) {
 
 }  // namespace detail
 
+/// Cost of attempts at a step that failed.
+struct AttemptCost {
+  int iterations = 0, factorisations = 0, evaluations = 0;  ///< as in `StepReport`
+};
+
 /// Accelerations, multipliers and projections by one factorisation of [M, Gᵀ; G, 0].
 template <LinearSolver Solver = DefaultSolver>
 class ForwardDynamics {
@@ -155,6 +160,7 @@ class ForwardDynamics {
   }
 
   PlausibilityCheck bounds;  ///< of the run; without limits until it begins
+  AttemptCost failed;        ///< sum over failed attempts since the run reset it
 
   /// A step that is tried. Unless it is kept, the account of the bounds and the solver's order of elimination are as
   /// before it, so that a step taken again has the same bits.

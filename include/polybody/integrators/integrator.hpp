@@ -13,24 +13,45 @@ struct StepReport {
   int iterations = 0;        ///< Newton iterations; 0 for an explicit step
   int factorisations = 0;    ///< of the tangent or the mass matrix
   int evaluations = 0;       ///< of the forces
-  int rejected = 0;          ///< trial steps thrown away by the step control
+  int rejected = 0;          ///< trial steps thrown away by the step control, and steps that were halved
+  int halved = 0;            ///< steps that failed and were repeated by halves (`RunOptions::max_step_halvings`)
   int order = 0;             ///< at which the step was taken, of a method that chooses it; else 0
   double contraction = 0.0;  ///< last contraction rate of Newton's method, a ratio
   long choices = 0;          ///< of independent coordinates since the start, by coordinate partitioning
   double left = 0.0;  ///< correction that it ended with relative to the tolerated one, at Newton's budget; else 0
 
+  /// Adds the costs `of` failed attempts.
+  void add(AttemptCost const& of) {
+    iterations += of.iterations;
+    factorisations += of.factorisations;
+    evaluations += of.evaluations;
+  }
   /// Adds the second half of a step that was halved.
   void append(StepReport const& second) {
     taken += second.taken;
     next = second.next;
-    iterations += second.iterations;
-    factorisations += second.factorisations;
-    evaluations += second.evaluations;
-    rejected += second.rejected + 1;
+    add({second.iterations, second.factorisations, second.evaluations});
+    rejected += second.rejected;
+    halved += second.halved;
     contraction = second.contraction;
     left = std::max(left, second.left);
   }
 };
+
+namespace detail {
+/// Calls `rest` of an attempt at a step. If it throws, `failed` counts the attempt's cost so far.
+template <class Rest>
+auto count_if_failed(AttemptCost& failed, StepReport const& cost, Rest&& rest) {
+  try {
+    return rest();
+  } catch (...) {
+    failed.iterations += cost.iterations;
+    failed.factorisations += cost.factorisations;
+    failed.evaluations += cost.evaluations;
+    throw;
+  }
+}
+}  // namespace detail
 
 /// The largest stable step of velocity Verlet, x₁ = x₀ + h v₀ + ½h² a₀, a₁ = −ω² x₁ − d (v₀ + h a₀), v₁ = v₀ + ½h (a₀ +
 /// a₁): beyond ω²h² + 4dh = 4 it has a multiplier below −1. \param omega ω [1/s]  \param rate d [1/s]

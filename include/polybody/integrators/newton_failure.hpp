@@ -28,6 +28,22 @@ StepReport report_of(double h, NewtonReport const& last, int each = 1, StepRepor
   return step;
 }
 
+/// Result of the step `again()` with the cost of the failed `attempt` before it. If `again` throws, `failed` counts the
+/// attempt.
+template <class Again>
+StepReport retried(AttemptCost& failed, NewtonReport const& attempt, Again&& again) {
+  return count_if_failed(failed, with_attempt(attempt, {}), [&] { return with_attempt(attempt, again()); });
+}
+
+/// Remedy for friction, for a model with a force that dissipates.
+template <class = void>
+[[gnu::cold]] std::string remedy_of_friction(System const& system) {
+  for (ForceLayout const& force : system.layout().forces)
+    if (!force.lossless && !force.is_load)
+      return sentence_of({", or a larger slip speed if \"", force.name, "\" has friction"});
+  return "";
+}
+
 /// Throws what says why Newton's method failed in the step of `integrator` to time t, and who is to blame. Where there
 /// is a pivot for each equation, and yet no finite solution, that is the body whose motion is wild.
 /// \throws SingularMatrix, NonFiniteValue, NewtonConvergenceFailure.
@@ -71,7 +87,9 @@ template <class = void>
                                  report.iterations,
                                  " iterations (contraction ",
                                  report.theta,
-                                 "). Take a smaller step; the state is as before it."};
+                                 "). Take a smaller step",
+                                 remedy_of_friction(system),
+                                 "; the state is as before it."};
 }
 
 }  // namespace polybody::detail

@@ -178,12 +178,15 @@ struct Radau {
       Problem<Solver> problem{*this, system, x, w, reach, system.velocities(), system.rows(), effort >= 2};
       report = polybody::newton(problem, options, w.kept_factor);
       if (report.result == NewtonResult::converged) break;
-      if (report.result == NewtonResult::not_finite || effort >= last)
-        detail::throw_stalled(name, system, x.t + h, report, {problem.bad, w.rhs, w.y});
       tried = detail::with_attempt(report, tried, 3);
+      if (report.result == NewtonResult::not_finite || effort >= last)
+        detail::count_if_failed(w.forward.failed, tried, [&] {
+          detail::throw_stalled(name, system, x.t + h, report, {problem.bad, w.rhs, w.y});
+        });
     }
-    finish(system, x, h, reach, w);
-    return detail::report_of(h, report, 3, tried);
+    StepReport const step = detail::report_of(h, report, 3, tried);
+    detail::count_if_failed(w.forward.failed, step, [&] { finish(system, x, h, reach, w); });
+    return step;
   }
 
  private:

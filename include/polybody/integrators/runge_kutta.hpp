@@ -118,8 +118,10 @@ struct RungeKutta4 {
     w.first_stage(system, x);
     for (std::size_t i = 1; i < 4; ++i) w.stage(system, x, h, Tableau::c[i], Tableau::a[i], int(i));
     w.combine(x, h, Tableau::b, 4);
-    w.accept(system, x, h, stabilisation, false);
-    return {.taken = h, .next = h, .factorisations = 4, .evaluations = 4, .choices = detail::choices_of(w.scratch)};
+    StepReport report{.taken = h, .next = h, .factorisations = 4, .evaluations = 4};
+    detail::count_if_failed(w.forward.failed, report, [&] { w.accept(system, x, h, stabilisation, false); });
+    report.choices = detail::choices_of(w.scratch);
+    return report;
   }
 };
 
@@ -183,7 +185,9 @@ struct DormandPrince {
       double const factor = std::clamp(0.9 * std::pow(std::max(error, 1e-10), -0.2), 0.2, 5.0);
       if (error <= 1.0) {
         w.combine(x, h, Tableau::b, Tableau::stages);
-        report.evaluations += w.accept(system, x, h, stabilisation, true);
+        report.evaluations += detail::count_if_failed(
+            w.forward.failed, {.factorisations = report.evaluations, .evaluations = report.evaluations},
+            [&] { return w.accept(system, x, h, stabilisation, true); });
         report.factorisations = report.evaluations;
         report.taken = h;
         report.next = std::max(h * factor, min_step);

@@ -37,8 +37,9 @@ struct SymplecticEuler {
     w.dq = h * w.v;
     w.move(system, x, x.t + h);
     w.forward.accelerations(system, {w.q, w.v, x.t + h}, w.a, w.lambda);
-    w.accept(system, x, h);
-    return {.taken = h, .next = h, .factorisations = 1, .evaluations = 1};
+    StepReport const report{.taken = h, .next = h, .factorisations = 1, .evaluations = 1};
+    w.accept(system, x, h, report);
+    return report;
   }
 };
 
@@ -89,8 +90,10 @@ struct Rattle {
     move(system, x, h, w);
     StepReport report{.taken = h, .next = h, .factorisations = 1, .evaluations = 1};
     if (system.rows() > 0) {
-      report.iterations = close(system, x, h, w);
       report.factorisations = 3;
+      report.iterations = detail::count_if_failed(
+          w.forward.failed, {.iterations = max_iterations, .factorisations = 1, .evaluations = max_iterations + 1},
+          [&] { return close(system, x, h, w); });
     }
     w.dq /= h;  // v½
     w.rotations.carry(w.moved, w.dq);
@@ -100,7 +103,7 @@ struct Rattle {
     w.v = w.dq + 0.5 * h * w.a;
     w.forward.project_velocities(system, w.q, w.v, x.t + h);
     w.rotations.subtract_gyroscopic(w.v, w.a);
-    w.accept(system, x, h);
+    w.accept(system, x, h, report);
     return report;
   }
 

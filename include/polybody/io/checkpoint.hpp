@@ -28,9 +28,9 @@ class SnapshotVisitor {
     each(s.state.t, s.step, s.row.start, s.row.length, s.row.count);
     list(s.sides, [&](auto& side) { archive(side); });
     each(s.report.steps, s.report.iterations, s.report.factorisations, s.report.evaluations, s.report.rejected,
-         s.report.over_budget, s.report.left, s.report.stopped);
+         s.report.halved, s.report.over_budget, s.report.left, s.report.stopped);
     auto& last = s.report.last;
-    each(last.taken, last.next, last.iterations, last.factorisations, last.evaluations, last.rejected);
+    each(last.taken, last.next, last.iterations, last.factorisations, last.evaluations, last.rejected, last.halved);
     each(last.order, last.contraction, last.left);
     list(s.report.events, [&](auto& met) { text(met.name), archive(met.time); });
     list(s.report.redundant, [&](auto& name) { text(name); });
@@ -125,7 +125,7 @@ struct CheckpointHead {
   std::uint32_t order, version;
   std::uint64_t length;
 };
-inline constexpr CheckpointHead checkpoint_head{{'p', 'o', 'l', 'y', 'b', 'o', 'd', 'y'}, 0x01020304u, 5u, 0u};
+inline constexpr CheckpointHead checkpoint_head{{'p', 'o', 'l', 'y', 'b', 'o', 'd', 'y'}, 0x01020304u, 6u, 0u};
 
 }  // namespace detail
 

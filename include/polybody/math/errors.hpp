@@ -71,6 +71,11 @@ class Error : public std::runtime_error {
   using std::runtime_error::runtime_error;
   /// Constructs the exception from the parts of its text, which `sentence_of` joins.
   Error(std::initializer_list<MessagePart> parts) : std::runtime_error(sentence_of(parts)) {}
+
+  /// Appends `sentences` to the message, for code that catches the exception by reference and rethrows it.
+  [[gnu::cold]] void append(std::string const& sentences) {
+    std::runtime_error::operator=(std::runtime_error(what() + (' ' + sentences)));
+  }
 };
 
 /// Invalid number, name or combination: negative mass, zero axis, s outside the body.

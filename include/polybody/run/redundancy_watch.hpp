@@ -39,9 +39,11 @@ class RedundancyWatch {
   template <class Solver, class Step, class Restart>
   [[gnu::cold]] StepReport watched(System& system, ForwardDynamics<Solver>& forward, State& x, State const& before,
                                    Step& step, Restart& restart) {
+    AttemptCost tried;
     try {
       StepReport const report = step();
       if (!is_open(system, forward.left_out(), x)) return report;
+      tried = {report.iterations, report.factorisations, report.evaluations};
       x = before;
     } catch (
         NewtonConvergenceFailure const&) {  // the second attempt reports it if the dropped equations are not the cause
@@ -50,7 +52,9 @@ class RedundancyWatch {
       keeps_all_ = true;
       forward.mark_redundant({});
       restart();
-      return step();
+      StepReport repeated = step();
+      repeated.add(tried);
+      return repeated;
     } catch (...) {
       x = before;
       throw;

@@ -30,11 +30,16 @@ struct RunOptions {
   std::vector<Event> events = {};        ///< looked for in each step
   /// |Φ| of the start [m], [rad]. Lengths in an assembly of bodies smaller than one metre are relative to its extent.
   double assembly_tolerance = 1e-8;
-  int max_step_halvings = 0;       ///< how often a step whose Newton iteration stalls may be halved, as at impacts
+  /// Number of times that a step which fails with `NewtonConvergenceFailure` is halved, in [0, 30]; empty: 6 in
+  /// `simulate`, and 0 in runs that are differentiated. The report counts halved steps. 0: such a step ends the run.
+  std::optional<int> max_step_halvings = {};
   bool minimum_norm = false;       ///< every state gets the multipliers of `MinimumNorm`; costs a factorisation each
   PlausibilityLimits limits = {};  ///< of a step's end: constraint violation, and energy that no work explains
   int threads = 1;  ///< that share the loops of an evaluation; for large models, results stay the same bits
   std::function<void(RunProgress const&)> progress = {};  ///< told after each step; `progress_bar` of io makes one
+
+  /// `max_step_halvings`, or its default.
+  int allowed_halvings() const { return max_step_halvings.value_or(6); }
 
   /// \throws InvalidInput for a run from `start` [s] that cannot be meant.
   [[gnu::cold]] void check(double start) const {
@@ -53,8 +58,8 @@ struct RunOptions {
                          " s, too coarse for steps of ",
                          step,
                          " s. Count the time of the run from a start near zero."};
-    if (max_step_halvings < 0 || max_step_halvings > 30)
-      throw InvalidInput{"simulate: a step can be halved 0 to 30 times, but ", max_step_halvings, " is asked for."};
+    if (allowed_halvings() < 0 || allowed_halvings() > 30)
+      throw InvalidInput{"simulate: a step can be halved 0 to 30 times, but ", allowed_halvings(), " is asked for."};
     if (!(limits.violation > 0.0) || !(limits.energy >= 1.0))
       throw InvalidInput{"simulate: limits.violation must be positive and limits.energy at least one, but they are ",
                          limits.violation, " and ", limits.energy, "."};
@@ -68,13 +73,15 @@ struct RunOptions {
   }
 };
 
-/// The cost of a run so far in numbers.
+/// The cost of a run so far in numbers. Failed attempts count if a shorter step succeeds; a step that ends the run by
+/// an exception does not count.
 struct RunCounts {
   long steps = 0;           ///< taken
   long iterations = 0;      ///< of Newton's method
   long factorisations = 0;  ///< of tangents and masses
   long evaluations = 0;     ///< of the forces
-  long rejected = 0;        ///< trial steps
+  long rejected = 0;        ///< trial steps, and steps that were halved
+  long halved = 0;          ///< steps that failed and were repeated by halves
   long over_budget = 0;     ///< steps that ended at Newton's budget
   double left = 0.0;        ///< the largest correction that one of them ended with, relative to what is tolerated
   StepReport last = {};     ///< the last step's
@@ -86,6 +93,7 @@ struct RunCounts {
     factorisations += step.factorisations;
     evaluations += step.evaluations;
     rejected += step.rejected;
+    halved += step.halved;
     if (step.left > 0.0) ++over_budget;
     left = std::max(left, step.left);
     last = step;
@@ -116,6 +124,15 @@ struct RunReport : RunCounts {
   /// A warning begins with these words.
   bool warns(char const* words) const {
     return std::any_of(warnings.begin(), warnings.end(), [&](std::string const& w) { return w.starts_with(words); });
+  }
+  /// Sentences for the message of an exception that ends the run: number of halved steps, and the warnings. Empty if
+  /// there are none.
+  [[gnu::cold]] std::string warned() const {
+    std::string all;
+    if (halved > 0) all = sentence_of({"Before, ", halved, halved == 1 ? " step was halved." : " steps were halved."});
+    for (std::string const& warning : warnings)
+      all += (all.empty() ? "Warning of the run: " : " Warning of the run: ") + warning;
+    return all;
   }
   /// Times of a run [s], and how many of its steps were halved.
   struct Course {

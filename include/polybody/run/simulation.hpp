@@ -96,9 +96,10 @@ class Simulation {
   void bound() { workspace_.forward.bounds.begin(*system_, options_.limits, step_end()); }
   StepResult step_end() { return {stepped().q, stepped().v, stepped().lambda, stepped().t, h_}; }
   /// Makes the balance of the energy up to here: before a restart or an action, and at the end.
-  [[gnu::cold]] void settle() {
+  /// \param halved steps that were halved, beside those in the report
+  [[gnu::cold]] void settle(int halved) {
     Unexplained const found = workspace_.forward.bounds.settle(*system_, step_end());
-    if (done()) report_.warn_of_energy(found, options_.limits.warning, {start_, stepped().t, halved_});
+    if (done()) report_.warn_of_energy(found, options_.limits.warning, {start_, stepped().t, report_.halved + halved});
   }
   State& stepped() { return eliminates() ? reduced_ : *x_; }
   State const& stepped() const { return eliminates() ? reduced_ : *x_; }
@@ -120,8 +121,8 @@ class Simulation {
     if constexpr (HasStabilityLimit<I>) report_.add_warning(warn_of_step<I>(full(), forward, x, h_));
   }
 
-  /// One step of h, or where it stalls two of h/2 from a fresh start, and so on. When it throws, the state is as it
-  /// was.
+  /// One step of h. If it fails with `NewtonConvergenceFailure`, two steps of h/2 from a new start, and so on for the
+  /// halves; an integrator that controls its step takes only the first half. When it throws, the state is as it was.
   StepReport step(double h, int max_step_halvings);
 
   double max_step() const { return options_.max_step.value_or(std::numeric_limits<double>::infinity()); }
@@ -171,7 +172,6 @@ class Simulation {
   decltype(std::declval<MethodOf<I> const&>().template workspace<Solver>(std::declval<System&>())) workspace_;
   MinimumNormOf<> norm_;
   AxialForceMonitor axial_forces_;
-  long halved_ = 0;  // steps
   VecX scratch_;
   BranchWatch branches_;
   StepUndo undo_;
@@ -246,18 +246,21 @@ void Simulation<I, Solver>::advance(bool shown) {
   if (keeps) before_ = stepped();
   undo_.begin(row_, h_, plan_, report_);
   auto trial = workspace_.forward.attempt();
-  long const halved = halved_;
-  auto const take = [&] { return step(h, options_.max_step_halvings); };
+  workspace_.forward.failed = {};
+  auto const take = [&] { return step(h, options_.allowed_halvings()); };
   try {
-    StepReport const report =
-        redundancy_.step(*system_, workspace_.forward, stepped(), before_, take, [&] { restart(); });
+    StepReport report = redundancy_.step(*system_, workspace_.forward, stepped(), before_, take, [&] { restart(); });
+    report.add(workspace_.forward.failed);
     bool const reached = lands && report.taken == h;
     stepped().t = reached ? target : row_.after(from, report.taken);
     choose_step(report, reached);
     follow(report, jumps && reached, remainder_step, shown);
+  } catch (Error& failure) {
+    if (keeps) undo();
+    if (std::string const warned = report_.warned(); !warned.empty()) failure.append(warned);
+    throw;
   } catch (...) {
     if (keeps) undo();
-    halved_ = halved;
     throw;
   }
   trial.keep();
@@ -269,7 +272,7 @@ void Simulation<I, Solver>::follow(StepReport const& report, bool at_corner, boo
   double const end = stepped().t;
   if (system_->rows() > 0) branches_.look(*system_, workspace_.forward, report, before_.v, stepped(), report_.warnings);
   bool const met = !options_.events.empty() && meet_events(report.taken);
-  if (met) settle();
+  if (met) settle(report.halved);
   bool const acts = met && watch_.acts(options_.events);
   if (acts)
     stepped() = after_action<Solver>(watch_, options_.events, motion().seen(stepped()), {system_.get(), full_.get()},
@@ -277,7 +280,7 @@ void Simulation<I, Solver>::follow(StepReport const& report, bool at_corner, boo
   at_corner = at_corner && stepped().t == end;
   if (at_corner) stepped().t = plan_.pass(stepped().t);
   bool const anew = met || at_corner || remainder_step || redundancy_.changes(*system_, workspace_.forward, stepped());
-  if (!met && (done() || anew)) settle();
+  if (!met && (done() || anew)) settle(report.halved);
   if (anew) restart();
   if (acts) watch_.settle(options_.events, stepped(), motion());
   if (!eliminates() && options_.minimum_norm) norm_.apply(*system_, workspace_.forward, *x_);
@@ -346,17 +349,21 @@ template <Integrator I, class Solver>
 StepReport Simulation<I, Solver>::step(double h, int max_step_halvings) {
   try {
     return method_.step(*system_, stepped(), h, workspace_);
-  } catch (NewtonConvergenceFailure const&) {
-    if (max_step_halvings == 0) throw;
+  } catch (NewtonConvergenceFailure& failure) {
+    if (max_step_halvings == 0) {
+      if (int const times = options_.allowed_halvings(); times > 0)
+        failure.append(sentence_of({"The step of the run was halved ", times, times == 1 ? " time." : " times."}));
+      throw;
+    }
   }
   State const before = stepped();
   try {
     workspace_.forward.project_velocities(*system_, stepped().q, stepped().v, stepped().t);
     method_.start(*system_, stepped(), 0.5 * h, workspace_);
     StepReport report = step(0.5 * h, max_step_halvings - 1);
-    StepReport const second = step(h - report.taken, max_step_halvings - 1);
-    report.append(second);
-    ++halved_;
+    ++report.halved;
+    ++report.rejected;
+    if constexpr (!requires { I::adaptive_step; }) report.append(step(h - report.taken, max_step_halvings - 1));
     return report;
   } catch (...) {
     stepped() = before;

@@ -1,4 +1,5 @@
 #pragma once
+#include <polybody/integrators/unknown_kinds.hpp>
 #include <polybody/solvers/newton.hpp>
 #include <polybody/statics/equilibrium_options.hpp>
 #include <polybody/statics/free_motion.hpp>
@@ -6,6 +7,30 @@
 #include <polybody/system/state.hpp>
 
 namespace polybody::detail {
+
+/// Remedy for a body whose neighbouring nodes differ by a rotation above 2.5 rad: the interpolation between two nodes
+/// is unique only below half a turn.
+template <class = void>
+[[gnu::cold]] std::string remedy_of_elements(ModelLayout const& layout, VecX const& q) {
+  UnknownPlaces const places = full_places(layout);
+  for (BodyLayout const& body : layout.bodies) {
+    Index last = -1;
+    Index const entries = body.planar ? 1 : 4;
+    for (Index i = body.q0; i + entries <= body.q0 + body.coordinates; ++i) {
+      if (places.of_q[std::size_t(i)].kind != UnknownKind::rotation) continue;
+      double along = 0.0;
+      for (Index k = 0; last >= 0 && k < entries; ++k) along += q[last + k] * q[i + k];
+      double const turn = body.planar ? std::abs(q[i] - q[std::max<Index>(last, body.q0)])
+                                      : 2.0 * std::acos(std::min(1.0, std::abs(along)));
+      if (last >= 0 && turn > 2.5)
+        return sentence_of({". Neighbouring nodes of body \"", body.name, "\" differ by a rotation of ", turn,
+                            " rad, but an element permits less than half a turn: use more elements"});
+      last = i;
+      i += entries - 1;
+    }
+  }
+  return "";
+}
 
 /// Equations of `equilibrium` for Newton's method, at the fraction s of the path.
 template <class Solver>
@@ -174,6 +199,7 @@ struct EquilibriumPath {
                            ". Hold every body, or pass a limit point another way."};
     if (result == NewtonResult::not_finite) throw NonFiniteValue{"equilibrium: a force is not finite", at, "."};
     throw NewtonConvergenceFailure{"equilibrium: Newton's method did not converge", at,
+                                   remedy_of_elements(system.layout(), trial.q),
                                    ". Use more load steps, or start nearer to the solution."};
   }
   /// Adds the names of the motions and constraints with springs in `least` to the report.

@@ -1,0 +1,75 @@
+// Remedies in the messages of iterations that do not converge.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include <polybody/bodies/lrvf/lrvf.hpp>
+#include <polybody/bodies/rigid/rigid.hpp>
+#include <polybody/forces/contact.hpp>
+#include <polybody/forces/point_load.hpp>
+#include <polybody/integrators/generalised_alpha.hpp>
+#include <polybody/joints/joint.hpp>
+#include <polybody/joints/weld.hpp>
+#include <polybody/run/simulate.hpp>
+#include <polybody/statics/equilibrium.hpp>
+
+#include "support/refusal.hpp"
+
+using namespace polybody;
+
+namespace remedies_test {
+
+/// Message of the failure of a cantilever of 1 m under an end moment that bends it by 1.5 turns; empty without failure.
+std::string failure_of_cantilever(Index elements) {
+  using Beam = Lrvf<>;
+  using Clamp = Joint<Weld, Constraint>;
+  Model<Bodies<Beam>, Joints<Clamp>, Forces<PointMoment<>>> model;
+  auto const beam = model.add(Beam::from({.length = 1.0,
+                                          .section = Rectangle{.height = 0.01, .width = 0.01},
+                                          .material = Material{.density = 7800, .young = 2e11}},
+                                         elements),
+                              "beam");
+  model.connect(Clamp{}, model.ground().at({0, 0, 0}), beam.at(0.0), "clamp");
+  double const stiffness = 2e11 * 1e-8 / 12.0;
+  model.apply(PointMoment<>{.moment = Vec3(0, 0, stiffness * 3.0 * std::numbers::pi)}, beam.at(1.0), "moment");
+  State x = model.reference_state();
+  try {
+    equilibrium(model, x, {.load_steps = 60});
+  } catch (NewtonConvergenceFailure const& failure) {
+    return failure.what();
+  }
+  return "";
+}
+
+TEST(Remedies, AnElementThatTurnsByHalfATurnNeedsMoreElements) {
+  std::string const message = failure_of_cantilever(2);
+  EXPECT_TRUE(has(message, "use more elements")) << message;
+  EXPECT_TRUE(has(message, "body \"beam\"")) << message;
+  EXPECT_EQ(failure_of_cantilever(16), "");
+}
+
+// A ball of 1 kg slides at 1 m/s on a rough floor and begins to roll. With a slip speed of 1e-12 m/s the friction turns
+// within round-off, so no step length helps.
+TEST(Remedies, FrictionNeedsALargerSlipSpeed) {
+  using Floor = Contact<SphereOnPlane>;
+  auto const roll = [](double slip_speed) -> std::string {
+    Model<Bodies<Rigid<>>, Joints<>, Forces<Floor>> model{Gravity{0, 0, -9.81}};
+    Mat3 const inertia = 0.004 * Mat3::Identity();
+    auto const ball = model.add(Rigid<>(1.0, inertia, Placement::at({0, 0, 0.1 - 9.81e-5})), "ball");
+    Floor const rough{{0.1}, {.stiffness = 1e5, .damping = 100.0}, {.coefficient = 0.5, .slip_speed = slip_speed}};
+    model.apply(rough, ball.at(Vec3(0, 0, 0)), model.ground().at({0, 0, 0}), "rough floor");
+    State x = model.reference_state();
+    x.v[0] = 1.0;
+    try {
+      simulate(model, x, GeneralisedAlpha{}, {.end_time = 0.5, .step = 1e-3}).run();
+    } catch (NewtonConvergenceFailure const& failure) {
+      return failure.what();
+    }
+    return "";
+  };
+  std::string const message = roll(1e-12);
+  EXPECT_TRUE(has(message, "or a larger slip speed if \"rough floor\" has friction")) << message;
+  EXPECT_EQ(roll(1e-2), "");
+}
+
+}  // namespace remedies_test
