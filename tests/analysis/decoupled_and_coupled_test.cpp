@@ -156,7 +156,7 @@ TEST(DecoupledAndCoupled, PartByTheArmOfCentrifugalForcesAsTheSpeedSquared) {
 
 /// Tip displacement across the arm, in the arm's axes, for a run of three seconds in steps of 5 ms.
 std::vector<double> coupled_tip(Turn const& turn, Push const& push) {
-  OnHub<Ffr> flexible(Ffr::from(blade(1e4), 3), turn);
+  OnHub<Ffr> flexible(Ffr::from(blade(1e4), 3, {.frame = FfrFrame::clamped, .stiffening = false}), turn);
   flexible.model.apply(push, flexible.arm.at(1.0), "tip");
   std::vector<double> out;
   for (State const& now : simulate(flexible.model, flexible.x, GeneralisedAlpha{}, {.end_time = 3.0, .step = 5e-3}))

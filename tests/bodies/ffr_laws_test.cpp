@@ -21,7 +21,7 @@ struct NodalFfrCase {
             .placement = Placement::at({0.4, -0.3, 0.2}, {0.3, -0.5, 0.9}),
             .damping = {.axial = 0.02, .shear = 0.03, .bending = 0.01}};
   }
-  static Ffr body(Bar const& bar) { return Ffr::from(bar, 2); }
+  static Ffr body(Bar const& bar) { return Ffr::from(bar, 2, {.stiffening = false}); }
 };
 struct StiffenedFfrCase : NodalFfrCase {
   static constexpr double deformation = 0.03;  // second-order theory

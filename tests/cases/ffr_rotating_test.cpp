@@ -169,7 +169,7 @@ Ffr unit_blade(FfrTerms terms = {}, bool stiffening = true) {
   Bar const bar{
       .length = 1.0,
       .constants = BarConstants{.EA = 1e6, .EI = 1.0, .mass_per_length = 1.0, .GJ = 0.1, .rotary_inertia = 1e-6}};
-  return Ffr::from(bar, 10, {.terms = terms, .stiffening = stiffening});
+  return Ffr::from(bar, 10, {.terms = terms, .frame = FfrFrame::clamped, .stiffening = stiffening});
 }
 
 // E3: first three flap and chord frequencies of an inextensible cantilever. Here EA = 1e6 EI/L², with a rotary

@@ -49,7 +49,7 @@ FfrTerms const none{.coupling = false,
 
 template <class B>
 B body(FfrTerms const& terms, bool stiffening = true) {
-  return B::from(bar, 2, {.terms = terms, .stiffening = stiffening});
+  return B::from(bar, 2, {.terms = terms, .frame = FfrFrame::clamped, .stiffening = stiffening});
 }
 
 /// Moving and deformed body: coordinates, velocities and accelerations.
@@ -253,7 +253,7 @@ double defect(FfrTerms const& terms) {
   c.GJ = 200.0;
   stiff.constants = c;
   Model<Bodies<Ffr>, Joints<>> model;
-  model.add(Ffr::from(stiff, 2, {.terms = terms, .stiffening = true}));
+  model.add(Ffr::from(stiff, 2, {.terms = terms, .frame = FfrFrame::clamped, .stiffening = true}));
   State x = model.reference_state();
   x.v.head<6>() << 0.3, -0.2, 0.5, 4.0, 6.0, -3.0;
   x.v[7] = 0.4;

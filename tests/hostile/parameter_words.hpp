@@ -196,7 +196,7 @@ template <>
 inline constexpr auto words_of<FfrTerms> =
     words("coupling", "onto frame", "deformed inertia", "frame velocities", "coriolis", "centrifugal", "spin");
 template <>
-inline constexpr auto words_of<FfrOptions> = words("placement", "terms", "stiffening", "damping");
+inline constexpr auto words_of<FfrOptions> = words("placement", "terms", "frame", "stiffening", "modes", "damping");
 template <>
 inline constexpr auto words_of<FfrIntegrals> =
     words("mass", "first", "first_by", "first_second", "inertia", "inertia_by", "inertia_second", "coupling",

@@ -293,13 +293,18 @@ struct Realiser<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>> {
       return B(m, 0.1 * m, b.place);
     else if constexpr (detail::is_rigid<B>)
       return B(m, Vec3(0.08 * m, 0.1 * m, 0.12 * m).asDiagonal(), b.place);
-    else
-      return B::from(Bar{.length = b.length,
-                         .section = Rectangle{.height = 0.12, .width = 0.1},
-                         .material = Material{.density = 100.0, .young = 1e5},
-                         .placement = b.place,
-                         .damping = {.axial = 1e-4, .shear = 1e-4, .bending = 1e-4}},
-                     2);
+    else {
+      Bar const bar{.length = b.length,
+                    .section = Rectangle{.height = 0.12, .width = 0.1},
+                    .material = Material{.density = 100.0, .young = 1e5},
+                    .placement = b.place,
+                    .damping = {.axial = 1e-4, .shear = 1e-4, .bending = 1e-4}};
+      // The mass of a stiffened frame is complete to first order only, and these soft bars deform by large amounts.
+      if constexpr (std::is_same_v<B, Ffr> || std::is_same_v<B, polybody::planar::Ffr>)
+        return B::from(bar, 2, {.frame = FfrFrame::clamped, .stiffening = false});
+      else
+        return B::from(bar, 2);
+    }
   }
 
   template <class B>

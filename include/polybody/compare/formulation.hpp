@@ -16,6 +16,16 @@ struct Meshed {
   static constexpr int elements = count;  ///< number of elements or modes, the second argument of `from`
 };
 
+/// Floating frame of a bar with `count` elements, reduced to the static shapes of its ends and `inner` modes between
+/// them (the option `modes` of `Ffr`).
+template <class B, int count, int inner>
+  requires(count > 0 && inner >= 0)
+struct Modal {
+  using BodyType = B;                     ///< body without mesh
+  static constexpr int elements = count;  ///< number of elements, the second argument of `from`
+  static constexpr int modes = inner;     ///< number of modes between the ends
+};
+
 namespace detail {
 /// Body type and mesh of a formulation's body: a body itself, or one with a mesh.
 template <class B>
@@ -24,6 +34,8 @@ struct MeshOf {
 };
 template <class B, int count>
 struct MeshOf<Meshed<B, count>> : Meshed<B, count> {};
+template <class B, int count, int inner>
+struct MeshOf<Modal<B, count, inner>> : Modal<B, count, inner> {};
 }  // namespace detail
 
 /// Formulation of a mechanism: a body formulation, a constraint policy and an integrator. `compare` runs one case
@@ -44,11 +56,16 @@ struct Formulation {
   I integrator = {};  ///< integrator with its options
 
   /// Creates the body by its function `from`. The arguments are `shape`, such as a bar, then the number of elements
-  /// if the body is `Meshed`, and `others`.
+  /// if the body is `Meshed` or `Modal`, and `others`.
   template <class Shape, class... Others>
   static BodyType body(Shape const& shape, Others&&... others) {
-    if constexpr (requires { detail::MeshOf<B>::elements; })
-      return BodyType::from(shape, detail::MeshOf<B>::elements, std::forward<Others>(others)...);
+    using Mesh = detail::MeshOf<B>;
+    constexpr bool is_modal = requires { Mesh::modes; }, is_meshed = requires { Mesh::elements; };
+    if constexpr (is_modal)
+      return BodyType::from(shape, Mesh::elements, typename BodyType::Options{.modes = Mesh::modes},
+                            std::forward<Others>(others)...);
+    else if constexpr (is_meshed)
+      return BodyType::from(shape, Mesh::elements, std::forward<Others>(others)...);
     else
       return BodyType::from(shape, std::forward<Others>(others)...);
   }

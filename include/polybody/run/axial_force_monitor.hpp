@@ -57,7 +57,7 @@ class AxialForceMonitor {
           {"The beams of \"", system.layout().bodies[i].name, "\" are ", (share < 0.0 ? "pressed" : "pulled"),
            " at t = ", x.t, " s with ", 100.0 * largest_,
            " % of the load that buckles them, which its deflection leaves out: it is off by about that part. Make "
-           "the body with .stiffening = true."});
+           "the body with .stiffening = true and .frame = FfrFrame::mean_axes, as `from` does."});
       warnings.push_back(said_);
     }
   }

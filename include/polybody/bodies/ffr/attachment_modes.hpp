@@ -8,20 +8,6 @@
 
 namespace polybody {
 
-/// Rigid motions of the structure (N×6): displacements along x, y, z, and rotations about these axes through the centre
-/// of mass.
-template <class = void>  // compiled only if used
-MatX rigid_motions(Structure const& s) {
-  MatX out = MatX::Zero(s.size(), 6);
-  Vec3 const centre = s.first / s.mass;
-  for (Index i = 0; i < Index(s.nodes.size()); ++i) {
-    out.block<3, 3>(s.per_node * i, 0).setIdentity();
-    out.block<3, 3>(s.per_node * i, 3) = -skew<double>(Vec3(s.nodes[std::size_t(i)] - centre));
-    if (s.per_node == 6) out.block<3, 3>(6 * i + 3, 3).setIdentity();
-  }
-  return out;
-}
-
 namespace detail {
 
 /// Shapes with unit modal mass that span the columns of `shapes`, by ascending frequency. Linearly dependent columns
@@ -76,8 +62,7 @@ MatX attachment_modes(Structure const& s, MatX const& loads, Index count, Eigens
     shapes.leftCols(loads.cols()) = scatter_rows(factor.solve(held), free, s.size());
   }
   if (count > 0) shapes.rightCols(count) = free_interface_modes(s, count, ReferenceConditions::none(), solve);
-  shapes -= rigid * mass.solve(heavy.transpose() * shapes);
-  return detail::orthogonal_basis(s, std::move(shapes));
+  return detail::orthogonal_basis(s, in_frame(s, std::move(shapes), FfrFrame::mean_axes));
 }
 
 }  // namespace polybody

@@ -41,24 +41,28 @@ class Ffr {
   using Point = FfrPoint;      ///< material point in the axes of the frame
   using Options = FfrOptions;  ///< placement, terms of the inertia, stiffening and damping
 
-  /// Body of the bar in n elements, with the frame tied to its first end and all 6 n nodal coordinates.
+  /// Body of the bar in n elements, in mean axes, with geometric stiffening. The 6 n coordinates q are the
+  /// displacements and rotations of the nodes relative to the first end, or less with the option `modes`. They are
+  /// valid for any joints, because the frame needs no condition at a joint. The placement is that of the bar.
   /// \throws InvalidInput as `structure_of`.
   template <class = void>  // compiled only if used
   static Ffr from(Bar const& bar, Index n, Options options = {}) {
-    options.placement = bar.placement;
+    options.complete_for(bar.placement);
     Structure const s = structure_of(bar, n);
-    return Ffr(s, nodal_coordinates(s), options);
+    return Ffr(s, bar_shapes(s, n, options, false), options);
   }
   /// Body of the bar with the number of elements of `mesh`, otherwise as above.
   template <class = void>  // compiled only if used
   static Ffr from(Bar const& bar, BarMesh const& mesh = {}, Options options = {}) {
     return from(bar, mesh.elements.value_or(default_elements), options);
   }
-  /// Body of a structure with the basis `shapes` of ffr_basis.hpp (N×n).
+  /// Body of a structure with the basis `shapes` of ffr_basis.hpp (N×n), in the frame of the options if they have one.
   /// \throws InvalidInput for a basis that does not fit or is linearly dependent.
   template <class = void>
   Ffr(Structure structure, MatX shapes, Options const& options = {})
-      : Ffr(integrals_of(structure, shapes, options.stiffening), options) {
+      : Ffr(integrals_of(structure, shapes = in_frame(structure, std::move(shapes), options),
+                         options.stiffening.value_or(false)),
+            options) {
     points_ = std::make_shared<FfrPoints const>(std::move(structure), std::move(shapes), stiffens());
   }
   /// Body from the user's own integrals.

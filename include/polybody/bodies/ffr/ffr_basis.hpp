@@ -7,9 +7,11 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include <Eigen/Eigenvalues>
 
+#include <polybody/bodies/ffr/ffr_options.hpp>
 #include <polybody/bodies/ffr/structure_factor.hpp>
 #include <polybody/math/symmetric_pencil.hpp>
 
@@ -157,6 +159,63 @@ MatX free_interface_modes(Structure const& s, Index count,
   return scatter_rows(modes.shapes.rightCols(count), free, s.size());
 }
 
+/// Rigid motions of the structure (N×6): displacements along x, y, z, and rotations about these axes through the centre
+/// of mass.
+template <class = void>  // compiled only if used
+MatX rigid_motions(Structure const& s) {
+  MatX out = MatX::Zero(s.size(), 6);
+  Vec3 const centre = s.first / s.mass;
+  for (Index i = 0; i < Index(s.nodes.size()); ++i) {
+    out.block<3, 3>(s.per_node * i, 0).setIdentity();
+    out.block<3, 3>(s.per_node * i, 3) = -skew<double>(Vec3(s.nodes[std::size_t(i)] - centre));
+    if (s.per_node == 6) out.block<3, 3>(6 * i + 3, 3).setIdentity();
+  }
+  return out;
+}
+
+/// Basis of the same deformations in another frame: `shapes` (N×n) minus the rigid motion R x that the frame has. With
+/// the conditions W e = 0 of the frame, x = (W R)⁻¹ W e. In mean axes W = Rᵀ M. By R K = 0 the stiffness ΦᵀKΦ is the
+/// same in all frames [Agrawal & Shabana 1986; Schwertassek, Wallrapp & Shabana 1999].
+/// \throws InvalidInput for shapes of another size, and for a frame that nodes without rotations or the last node do
+/// not hold.
+template <class = void>
+MatX in_frame(Structure const& s, MatX shapes, FfrFrame frame) {
+  if (shapes.rows() != s.size())
+    throw InvalidInput{"Ffr: the shapes have ", shapes.rows(), " rows, but the structure has ", s.size(),
+                       " nodal coordinates."};
+  MatX const rigid = rigid_motions(s);
+  if (frame == FfrFrame::mean_axes) {
+    MatX const heavy = s.mass_matrix() * rigid;
+    shapes -= rigid * Eigen::LDLT<MatX>(rigid.transpose() * heavy).solve(heavy.transpose() * shapes);
+    return shapes;
+  }
+  if (s.per_node != 6)
+    throw InvalidInput("Ffr: nodes without rotations do not hold the frame; use FfrFrame::mean_axes.");
+  Index const last = s.size() - 6;
+  std::array<Index, 6> held = {0, 1, 2, 3, 4, 5};
+  if (frame == FfrFrame::simply_supported) held = {0, 1, 2, 3, last + 1, last + 2};
+  MatX of_frame(6, shapes.cols()), of_rigid(6, 6);
+  for (Index i = 0; i < 6; ++i) {
+    of_frame.row(i) = shapes.row(held[std::size_t(i)]);
+    of_rigid.row(i) = rigid.row(held[std::size_t(i)]);
+  }
+  Eigen::FullPivLU<MatX> const solver(of_rigid);
+  if (!solver.isInvertible())
+    throw InvalidInput("Ffr: FfrFrame::simply_supported needs a last node at a distance along x from the first.");
+  shapes -= rigid * solver.solve(of_frame);
+  for (Index const i : held) shapes.row(i).setZero();
+  return shapes;
+}
+
+/// Basis of a body from a structure: `shapes` in the frame of the options, or unchanged if they have none.
+/// \throws InvalidInput for options with a number of modes.
+template <class = void>
+MatX in_frame(Structure const& s, MatX shapes, FfrOptions const& options) {
+  if (options.modes)
+    throw InvalidInput("Ffr: the option `modes` is for a body from a bar; give shapes with so many modes instead.");
+  return options.frame ? in_frame(s, std::move(shapes), *options.frame) : std::move(shapes);
+}
+
 /// Basis of Craig & Bampton [1968]: constraint modes of the boundary nodes, and the `count` lowest fixed-interface
 /// modes, computed by `solve`. All coordinates are used, or the ones of the plane of x and y if `in_plane`. The frame
 /// is tied to the first boundary node, whose constraint modes are omitted. With `mean_axes` it follows the mean motion
@@ -200,6 +259,17 @@ MatX craig_bampton(Structure const& s, std::vector<Index> const& boundary, Index
   MatX const k = shapes.transpose() * (s.stiffness * shapes), m = shapes.transpose() * (s.mass_matrix() * shapes);
   Eigen::GeneralizedSelfAdjointEigenSolver<MatX> const reduced(k, m);
   return shapes * reduced.eigenvectors().rightCols(shapes.cols() - everywhere.rigid_motions());
+}
+
+/// Basis of a body from one bar of n elements, the structure `s`: nodal coordinates, or the modes of the options, which
+/// it removes. \param in_plane for displacements along x and y and rotations about z only
+template <class = void>
+MatX bar_shapes(Structure const& s, Index n, FfrOptions& options, bool in_plane) {
+  std::optional<Index> const modes = std::exchange(options.modes, {});
+  if (modes) return craig_bampton(s, {0, n}, *modes, false, in_plane);
+  ReferenceConditions frame = ReferenceConditions::clamped();
+  if (in_plane) frame.restrict_to_plane();
+  return nodal_coordinates(s, frame);
 }
 
 }  // namespace polybody

@@ -4,6 +4,8 @@
 ///
 /// Not in polybody.hpp: bodies/ffr/ffr.hpp includes it.
 
+#include <optional>
+
 #include <polybody/kinematics/frame.hpp>
 
 namespace polybody {
@@ -43,12 +45,36 @@ struct FfrTerms {
   }
 };
 
-/// Placement of a body, terms of its inertia, stiffening and damping.
+/// Frames to which the deformation of a body refers. The deformation excludes one rigid motion of the structure, and
+/// the frame has that motion [Shabana 2020, ch. 5; Agrawal & Shabana 1986]. The undeformed body has the same placement
+/// in all frames.
+enum class FfrFrame {
+  mean_axes,         ///< mean motion: momentum and angular momentum of q̇ relative to the frame vanish at q = 0
+  clamped,           ///< motion of the first node, whose displacement and rotation vanish
+  simply_supported,  ///< origin at the first node, x axis through the last; for a bar along x
+};
+
+/// Placement of a body, terms of its inertia, frame, stiffening and damping.
 struct FfrOptions {
-  Placement placement = {};        ///< initial placement of the frame
-  FfrTerms terms = {};             ///< selected terms of the inertia
-  bool stiffening = false;         ///< geometric stiffening (beams only)
+  Placement placement = {};  ///< initial placement of the frame
+  FfrTerms terms = {};       ///< selected terms of the inertia
+  /// Frame of the deformation. Without a value it is `mean_axes` for a body from a bar, and the frame of the shapes for
+  /// a body from a structure.
+  std::optional<FfrFrame> frame = {};
+  /// Geometric stiffening, for beams only. Without a value it is on for a body from a bar, and off for a body from a
+  /// structure.
+  std::optional<bool> stiffening = {};
+  /// Number of modes of a bar between its held ends, for a body from a bar only. Together with the static shapes of
+  /// both ends they replace the nodal coordinates [Craig & Bampton 1968]. They are valid for joints at the ends.
+  std::optional<Index> modes = {};
   double stiffness_damping = 0.0;  ///< adds this time [s] × K to the damping
+
+  /// Sets the placement of a bar, and the frame and stiffening of a body from a bar where they have no value.
+  void complete_for(Placement const& bar) {
+    placement = bar;
+    if (!frame) frame = FfrFrame::mean_axes;
+    if (!stiffening) stiffening = true;
+  }
 };
 
 }  // namespace polybody

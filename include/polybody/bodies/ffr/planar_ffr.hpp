@@ -33,13 +33,13 @@ class Ffr : public AddingCoordinates {
   using Point = FfrPoint;      ///< material point in the axes of the frame
   using Options = FfrOptions;  ///< placement, terms of the inertia, stiffening and damping
 
-  /// Body of the bar in n elements, with the frame tied to its first end and all 3 n nodal coordinates in the plane.
-  /// The bar needs no GJ.
+  /// Body of the bar in n elements, in mean axes, with geometric stiffening, as in space. It has 3 n coordinates q. The
+  /// bar needs no GJ.
   template <class = void>  // compiled only if used
   static Ffr from(Bar const& bar, Index n, Options options = {}) {
-    options.placement = bar.placement;
+    options.complete_for(bar.placement);
     Structure const s = structure_in_plane(bar, n);
-    return Ffr(s, nodal_coordinates(s, ReferenceConditions::clamped().restrict_to_plane()), options);
+    return Ffr(s, bar_shapes(s, n, options, true), options);
   }
   /// Body of the bar with the number of elements of `mesh`, otherwise as above.
   template <class = void>  // compiled only if used
@@ -62,7 +62,9 @@ class Ffr : public AddingCoordinates {
   /// \throws InvalidInput for a basis that leaves the plane.
   template <class = void>
   Ffr(Structure structure, MatX shapes, Options const& options = {})
-      : Ffr(FfrIntegrals::of(integrals_of(structure, shapes, options.stiffening)), options) {
+      : Ffr(FfrIntegrals::of(integrals_of(structure, shapes = in_frame(structure, std::move(shapes), options),
+                                          options.stiffening.value_or(false))),
+            options) {
     for (Index i = 0; i < shapes.rows(); ++i)
       if (int const c = int(i) % structure.per_node; c >= 2 && c < 5 && !shapes.row(i).isZero(0.0))
         throw InvalidInput("planar::Ffr: the basis leaves the plane; make it in_plane.");
