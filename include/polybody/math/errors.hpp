@@ -1,10 +1,12 @@
 #pragma once
 /// \file
-/// Exceptions of the library. Each message names the object, the time if it is known, and the remedy.
+/// Exceptions of the library and their data: code, object, value and time.
 
 #include <charconv>
 #include <concepts>
+#include <cstddef>
 #include <initializer_list>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -13,11 +15,17 @@
 
 namespace polybody {
 
+namespace detail {
+struct Message;
+}  // namespace detail
+
 /// Text of `x` in messages: up to `digits` digits, with a decimal point in every locale.
 inline std::string number(double x, int digits = 9) {
   char text[32];
   return {text, std::to_chars(text, text + sizeof text, x, std::chars_format::general, digits).ptr};
 }
+
+class Error;
 
 /// Part of a message: a number, or a text that must outlive the part.
 class MessagePart {
@@ -39,44 +47,167 @@ class MessagePart {
       kind_ = Kind::real, real_ = x;
   }
 
-  /// Appends the part to `message`.
-  [[gnu::cold]] void write_to(std::string& message) const {
-    if (kind_ == Kind::text)
-      message += text_;
-    else
-      message += kind_ == Kind::real ? number(real_) : std::to_string(count_);
-  }
+ protected:
+  /// Role of the part in the data of an error.
+  enum class Role : unsigned char { text, object, value, time, cause };
+  /// The `part` in the given `role`.
+  MessagePart(MessagePart const& part, Role role) : MessagePart(part) { role_ = role; }
+  /// The message of an error, in the role of the cause. The error must outlive the part.
+  explicit MessagePart(Error const& cause) : kind_(Kind::error), role_(Role::cause), cause_(&cause) {}
 
  private:
-  enum class Kind { text, real, count };
+  friend struct detail::Message;
+  enum class Kind : unsigned char { text, real, count, error };
   Kind kind_ = Kind::text;
+  Role role_ = Role::text;
   union {
     std::string_view text_;
     double real_;
     long long count_;
+    Error const* cause_;
   };
 };
 
+/// Part of a message that names the object of the error: a body, joint, force, file, type or option. If the text
+/// contains a name in double quotes, the name is the object; otherwise a colon ends the object.
+struct ErrorObject : MessagePart {
+  /// Object that the text `part` names.
+  explicit ErrorObject(MessagePart const& part) : MessagePart(part, Role::object) {}
+};
+
+/// Part of a message that is the refused number.
+struct ErrorValue : MessagePart {
+  /// Refused number `part`.
+  explicit ErrorValue(MessagePart const& part) : MessagePart(part, Role::value) {}
+};
+
+/// Part of a message that is the time of the error [s].
+struct ErrorTime : MessagePart {
+  /// Time `part` [s].
+  explicit ErrorTime(MessagePart const& part) : MessagePart(part, Role::time) {}
+};
+
+/// Part of a message that is the message of another error. The data of that error are used as far as no earlier part
+/// gives them.
+struct ErrorCause : MessagePart {
+  /// Message and data of `cause`, which must outlive the part.
+  explicit ErrorCause(Error const& cause) : MessagePart(cause) {}
+};
+
+namespace detail {
+/// Text of an error, and its data. The object is a piece of the text.
+struct Message {
+  std::string text;             ///< joined parts
+  char const* code = "";        ///< identifier, empty if none is given
+  std::size_t object_begin{};   ///< first letter of the object in `text`
+  std::size_t object_size{};    ///< letters of the object, zero if none is given
+  std::optional<double> time;   ///< time [s]
+  std::optional<double> value;  ///< refused number
+
+  /// Joins the parts. `identifier` must be a string literal.
+  [[gnu::cold]] Message(char const* identifier, std::initializer_list<MessagePart> parts) : code(identifier) {
+    for (MessagePart const& part : parts) add(part);
+  }
+
+ private:
+  using Kind = MessagePart::Kind;
+  using Role = MessagePart::Role;
+
+  [[gnu::cold]] void add(MessagePart const& part) {
+    std::size_t const begin = text.size();
+    if (part.role_ == Role::cause) return add(*part.cause_);
+    if (part.kind_ == Kind::text)
+      text += part.text_;
+    else
+      text += part.kind_ == Kind::real ? number(part.real_) : std::to_string(part.count_);
+    if (part.role_ == Role::object)
+      find_object(begin);
+    else if (part.kind_ != Kind::text)
+      keep(part, part.kind_ == Kind::real ? part.real_ : double(part.count_));
+  }
+  [[gnu::cold]] void keep(MessagePart const& part, double x) {
+    if (part.role_ == Role::value && !value) value = x;
+    if (part.role_ == Role::time && !time) time = x;
+  }
+  /// Sets the object to the name in the text from `begin` on, if there is none yet.
+  [[gnu::cold]] void find_object(std::size_t begin) {
+    if (object_size > 0) return;
+    std::string_view name = std::string_view(text).substr(begin);
+    if (std::size_t const open = name.find('"'); open < name.size()) {
+      begin += open + 1;
+      name = name.substr(open + 1, name.find('"', open + 1) - open - 1);
+    } else {
+      for (std::size_t k = name.find(':'); k < name.size(); k = name.find(':', k)) {  // "planar::Rigid: the mass"
+        if (name.substr(k, 2) != "::") name = name.substr(0, k);
+        k += 2;
+      }
+    }
+    object_begin = begin;
+    object_size = name.size();
+  }
+  [[gnu::cold]] inline void add(Error const& cause);
+};
+}  // namespace detail
+
 /// Joins the parts of a message. A chain of `+` would compile to three times as much code.
 [[gnu::cold]] inline std::string sentence_of(std::initializer_list<MessagePart> parts) {
-  std::string all;
-  for (MessagePart const& part : parts) part.write_to(all);
-  return all;
+  return detail::Message("", parts).text;
 }
 
-/// Base class of all exceptions that polybody throws. It is constructed from a text or from the parts of a text:
-/// `throw InvalidInput{"The mass must be positive, but is ", mass, "."}`.
+/// Base class of all exceptions that polybody throws. It is constructed from a code and the parts of its text:
+/// `throw InvalidInput("rigid.mass", {"The mass must be positive, but is ", ErrorValue{mass}, " kg."})`.
+/// The code, the object, the value and the time let a program distinguish errors without reading the text.
 class Error : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
-  /// Constructs the exception from the parts of its text, which `sentence_of` joins.
-  Error(std::initializer_list<MessagePart> parts) : std::runtime_error(sentence_of(parts)) {}
+  /// Constructs the exception from its `text`, without data.
+  explicit Error(std::string const& text) : Error(detail::Message("", {text})) {}
+  /// Constructs the exception from the parts of its text. An `ErrorCause` among them gives the code.
+  Error(std::initializer_list<MessagePart> parts) : Error(detail::Message("", parts)) {}
+  /// Constructs the exception from its `code`, a string literal, and the parts of its text.
+  Error(char const* code, std::initializer_list<MessagePart> parts) : Error(detail::Message(code, parts)) {}
 
-  /// Appends `sentences` to the message, for code that catches the exception by reference and rethrows it.
+  /// Stable identifier `<area>.<fault>`; the guide lists all of them. Empty if the error was made from a text alone.
+  std::string_view code() const noexcept { return code_; }
+  /// Name of the body, joint, force, file, type or option; empty if there is none. It is a piece of `what()`.
+  std::string_view object() const noexcept { return {what() + object_begin_, object_size_}; }
+  /// Time of the error in the run [s], if the error has one.
+  std::optional<double> time() const noexcept { return time_; }
+  /// Refused number, in the unit that the message names, if the error has one.
+  std::optional<double> value() const noexcept { return value_; }
+
+  /// Appends `sentences` to the message, for code that catches the exception by reference and rethrows it. The data
+  /// remain.
   [[gnu::cold]] void append(std::string const& sentences) {
     std::runtime_error::operator=(std::runtime_error(what() + (' ' + sentences)));
   }
+
+ private:
+  explicit Error(detail::Message const& m)
+      : std::runtime_error(m.text),
+        code_(m.code),
+        object_begin_(m.object_begin),
+        object_size_(m.object_size),
+        time_(m.time),
+        value_(m.value) {}
+
+  char const* code_;
+  std::size_t object_begin_;
+  std::size_t object_size_;
+  std::optional<double> time_;
+  std::optional<double> value_;
 };
+
+inline void detail::Message::add(Error const& cause) {
+  std::size_t const begin = text.size();
+  text += cause.what();
+  if (*code == '\0') code = cause.code().data();
+  if (object_size == 0 && !cause.object().empty()) {
+    object_begin = begin + std::size_t(cause.object().data() - cause.what());
+    object_size = cause.object().size();
+  }
+  if (!time) time = cause.time();
+  if (!value) value = cause.value();
+}
 
 /// Invalid number, name or combination: negative mass, zero axis, s outside the body.
 class InvalidInput : public Error {

@@ -78,18 +78,23 @@ struct Required {
 /// \throws InvalidInput unless `x` is finite and positive. The message begins with `what`, the object and the
 /// quantity, followed by `part`.
 inline void require_positive(double x, std::string_view what, std::string_view part = {}) {
-  if (!(x > 0.0) || !std::isfinite(x)) throw InvalidInput{what, part, " must be positive and finite, but is ", x, "."};
+  if (!(x > 0.0) || !std::isfinite(x))
+    throw InvalidInput("value.not_positive",
+                       {ErrorObject{what}, part, " must be positive and finite, but is ", ErrorValue{x}, "."});
 }
 
 /// \throws InvalidInput unless `x` is finite and not negative.
 inline void require_not_negative(double x, std::string_view what, std::string_view part = {}) {
   if (!(x >= 0.0) || !std::isfinite(x))
-    throw InvalidInput{what, part, " must be zero or positive and finite, but is ", x, "."};
+    throw InvalidInput("value.negative",
+                       {ErrorObject{what}, part, " must be zero or positive and finite, but is ", ErrorValue{x}, "."});
 }
 
 /// \throws InvalidInput unless 1 ≤ n ≤ 10⁶, the allowed range of a number of repetitions.
 inline void require_count(int n, std::string_view what, std::string_view part = {}) {
-  if (n < 1 || n > 1'000'000) throw InvalidInput{what, part, " must lie in [1, 1000000], but is ", n, "."};
+  if (n < 1 || n > 1'000'000)
+    throw InvalidInput("value.count",
+                       {ErrorObject{what}, part, " must lie in [1, 1000000], but is ", ErrorValue{n}, "."});
 }
 
 /// \throws InvalidInput unless every entry of `x` is finite.
@@ -98,7 +103,9 @@ void require_finite(Eigen::MatrixBase<Derived> const& x, std::string_view what, 
   typename Derived::PlainObject const& m = x.derived();  // evaluates an expression; loops compile fast
   for (Index j = 0; j < m.cols(); ++j)
     for (Index i = 0; i < m.rows(); ++i)
-      if (!std::isfinite(m(i, j))) throw InvalidInput{what, part, " must be finite, but has a NaN or an infinity."};
+      if (!std::isfinite(m(i, j)))
+        throw InvalidInput("value.not_finite",
+                           {ErrorObject{what}, part, " must be finite, but has an entry ", ErrorValue{m(i, j)}, "."});
 }
 
 /// Largest allowed number. Squares of larger numbers, and with them energies and norms, are not finite.
@@ -113,8 +120,10 @@ inline Index first_not_finite(VecX const& x) {
 /// \throws InvalidInput if `x` is not zero and its square overflows or underflows.
 inline void require_size(double x, std::string_view what, std::string_view part = {}) {
   if (x != 0.0 && !(std::abs(x) >= 1.0 / largest_number && std::abs(x) <= largest_number))
-    throw InvalidInput{what, part, " must be of a size in [1e-150, 1e+150], where squares are numbers, but is ", x,
-                       "."};
+    throw InvalidInput("value.magnitude",
+                       {ErrorObject{what}, part,
+                        " must be zero or have a magnitude in [1e-150, 1e+150], so that its square is finite, but is ",
+                        ErrorValue{x}, "."});
 }
 /// Text " is not finite" for messages, or the excess of x over `largest_number`.
 template <class = void>  // compiled where it is used
@@ -139,7 +148,9 @@ inline void require_unit(Vec3 const& axis, std::string_view what, std::string_vi
   require_finite(axis, what, part);
   double const length = std::sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
   if (std::abs(length - 1.0) > 1e-9)
-    throw InvalidInput{what, part, " must be a unit vector, but has length ", length, ". Normalise it."};
+
+    throw InvalidInput("value.not_unit", {ErrorObject{what}, part, " must be a unit vector, but has length ",
+                                          ErrorValue{length}, ". Normalise it."});
 }
 
 }  // namespace polybody
