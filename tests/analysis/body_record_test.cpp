@@ -188,11 +188,11 @@ TEST(BodyRecord, RefusesInSentences) {
   recorder.add(a);
   EXPECT_TRUE(
       has(refusal([&] { recorder.of(b); }), "body \"b\" was not recorded. Add it to the recorder before the run."));
-  EXPECT_TRUE(has(refusal([&] { recorder.of(a); }), "there is no sample of \"a\" yet"));
+  EXPECT_TRUE(has(refusal([&] { recorder.of(a); }), "there is no sample of \"a\""));
   State x = model.reference_state();
   recorder.record(x);
-  EXPECT_TRUE(has(refusal([&] { recorder.record(x); }), "a state at 0 s comes after one at 0 s"));
-  EXPECT_TRUE(has(refusal([&] { recorder.add(b); }), "\"b\" comes after the first sample"));
+  EXPECT_TRUE(has(refusal([&] { recorder.record(x); }), "a state at t = 0 s follows a state at 0 s"));
+  EXPECT_TRUE(has(refusal([&] { recorder.add(b); }), "\"b\" is added after the first sample"));
   State other = x;
   other.q.resize(3);
   EXPECT_TRUE(has(refusal([&] { recorder.record(other); }), "does not fit the model"));

@@ -142,7 +142,8 @@ TEST(Compare, JoinsRunsThatWereMadeApart) {
   // A duplicate name, and different outputs.
   EXPECT_EQ(join({at_once, at_once}).runs[3].name, "stiff (2)");
   Comparison const other = compare(Pendulum{.outputs = {"y [m]"}}, ideal);
-  EXPECT_TRUE(has(refusal([&] { join({at_once, other}); }), "\"ideal (2)\" has other outputs than \"ideal\""));
+  EXPECT_TRUE(
+      has(refusal([&] { join({at_once, other}); }), "the outputs of \"ideal (2)\" differ from those of \"ideal\""));
 }
 
 TEST(Compare, TypesAloneDoWhereEveryNumberHasADefault) {
@@ -164,11 +165,10 @@ TEST(Compare, TellsRunsOfTheSameNameApart) {
 }
 
 TEST(Compare, RefusesOutputsThatCannotBePutSideBySide) {
-  EXPECT_TRUE(
-      has(refusal([] { compare(Pendulum{{"tip", "tip"}}, Ideal{"ideal"}); }), "\"ideal\" need names, each its own"));
+  EXPECT_TRUE(has(refusal([] { compare(Pendulum{{"tip", "tip"}}, Ideal{"ideal"}); }), "\"ideal\" need distinct names"));
   EXPECT_TRUE(has(refusal([] { compare(Pendulum{{""}}, Ideal{}); }), "need names"));
   EXPECT_TRUE(has(refusal([] { compare(Pendulum{}, Ideal{"ideal"}, Ideal{"of its own mind"}); }),
-                  "\"of its own mind\" has other outputs than \"ideal\""));
+                  "the outputs of \"of its own mind\" differ from those of \"ideal\""));
 }
 
 /// The pendulum with steps of 0.1 s for the run "absurd". The run "stops short" fails in its output after 0.2 s.
@@ -310,11 +310,12 @@ TEST(WorkPrecision, GoesOnWhereOneRunFails) {
 }
 
 TEST(WorkPrecision, RefusesWhatIsNoSetting) {
-  EXPECT_TRUE(has(refusal([] { work_precision(Pendulum{}, Ideal{}, {}, 0.0); }), "give one step or tolerance"));
+  EXPECT_TRUE(
+      has(refusal([] { work_precision(Pendulum{}, Ideal{}, {}, 0.0); }), "at least one step or tolerance is needed"));
   EXPECT_TRUE(
       has(refusal([] { work_precision(Pendulum{}, Ideal{}, {0.0}, 0.0); }), "a step or tolerance must be positive"));
   EXPECT_TRUE(has(refusal([] { work_precision(Pendulum{}, Ideal{}, {1e-3}, 0.0, 1); }),
-                  "there is no output 1; the case has 1"));
+                  "output 1 does not exist; the case has 1"));
 }
 
 }  // namespace compare_test

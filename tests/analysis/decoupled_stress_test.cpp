@@ -422,8 +422,8 @@ TEST(DecoupledStress, OfNodesWithoutRotationsIsCarriedByAPatch) {
   EXPECT_LT((again - stress.displacements()).norm(), 1e-6 * stress.displacements().norm());
   EXPECT_TRUE(
       has(refusal([&] { DecoupledStress::quasi_static(block, run); }),
-          "nodes within 0 m of a load: a patch has three nodes or more that are not in line, but this one has 0. "
-          "Widen the patch."));
+          "nodes within 0 m of a load: a patch needs at least three nodes that are not in line, but this patch has 0. "
+          "Enlarge the patch."));
 }
 
 /// Clamped rod whose tip force grows by `rate` per second, in one mode φ with φᵀMφ = 1 and ω² = φᵀKφ: q¨ + ω²q =
@@ -521,7 +521,7 @@ TEST(DecoupledStress, RefusesInSentences) {
   EXPECT_TRUE(has(refusal([&] { stress.section_forces(2.0); }), "lies outside the body"));
   EXPECT_TRUE(has(refusal([&] { stress.section_forces(0.5, 1); }), "bar 1 does not exist"));
   EXPECT_TRUE(has(refusal([&] { low_pass(stress.times(), stress.axial_strain(0.5), {.cut_off = 60.0}); }),
-                  "the cut-off of 60 Hz is above Nyquist's frequency of 50 Hz, as samples are 0.01 s apart. Record in "
+                  "the cut-off of 60 Hz is above Nyquist's frequency of 50 Hz for samples 0.01 s apart. Record in "
                   "smaller steps"));
   EXPECT_EQ(low_pass(stress.times(), stress.axial_strain(0.5), {.cut_off = 15.0}).size(), run.samples.size());
 
@@ -530,11 +530,11 @@ TEST(DecoupledStress, RefusesInSentences) {
                         structure, run, Trapezoidal{},
                         {.shapes = fixed_interface_modes(structure, 2, ReferenceConditions::clamped(2))});
                   }),
-                  "the shapes move node 0, which the reference conditions hold"));
+                  "the shapes move node 0, which the reference conditions fix"));
   MatX twice = fixed_interface_modes(structure, 2);
   twice.col(1) = twice.col(0);
   EXPECT_TRUE(has(refusal([&] { DecoupledStress::vibrating(structure, run, Trapezoidal{}, {.shapes = twice}); }),
-                  "shapes that repeat others"));
+                  "linearly dependent shapes"));
   EXPECT_TRUE(has(refusal([&] { DecoupledStress::vibrating(structure, run, Trapezoidal{}, {.substeps = 0}); }),
                   "at least one substep"));
   EXPECT_TRUE(

@@ -571,7 +571,7 @@ TEST(EnergyAudit, BeginsAnewAndRefusesTimeThatRunsBackAndStatesOfOtherModels) {
   auto audit = crane.run(RungeKutta4<Projection>{}, 0.01);
   EXPECT_GT(audit.work_of_drives(), 1.0);
   State const x = crane.model.reference_state();
-  EXPECT_TRUE(has(refusal([&] { audit.record(x); }), "is earlier than the last one at t = 0.6 s. Call start()"));
+  EXPECT_TRUE(has(refusal([&] { audit.record(x); }), "is earlier than the last state at t = 0.6 s. Call start()"));
   audit.start(x);
   EXPECT_EQ(audit.work_of_drives(), 0.0);
   EXPECT_EQ(audit.unaccounted(), 0.0);

@@ -208,7 +208,7 @@ TEST(EventAction, ImpactsThatAccumulateAreRefusedUnlessTheValueMayRest) {
   for (double const e : {0.0, 0.5}) {
     std::string const said =
         refusal([&] { bounce(GeneralisedAlpha{}, e, 1.0, {.end_time = 10.0, .step = 1e-2, .events = {only_time}}); });
-    EXPECT_TRUE(has(said, "The event \"floor\" is met again within its tolerance of 1e-10 s after its action at t = " +
+    EXPECT_TRUE(has(said, "The event \"floor\" occurs again within its tolerance of 1e-10 s after its action at t = " +
                               number(t1 * (1.0 + e) / (1.0 - e)).substr(0, 6)));
     EXPECT_TRUE(has(said, "Set `rests` of the event"));
   }
@@ -216,7 +216,7 @@ TEST(EventAction, ImpactsThatAccumulateAreRefusedUnlessTheValueMayRest) {
   for (double const height : {0.0, 0.3 - 0.1 - 0.2}) {
     EXPECT_TRUE(has(
         refusal([&] { bounce(RungeKutta4<>{}, 0.5, height, {.end_time = 1.0, .step = 1e-2, .events = {only_time}}); }),
-        "The event \"floor\" is met again"));
+        "The event \"floor\" occurs again"));
     State const rested = bounce(RungeKutta4<>{}, 0.5, height, {.end_time = 1.0, .step = 1e-2});
     EXPECT_NEAR(rested.q[1], 0.0, 1e-12);
     EXPECT_NEAR(rested.v[1], 0.0, 1e-12);
@@ -293,8 +293,8 @@ TEST(EventAction, MustKeepJointsClosed) {
     return std::string();
   };
   EXPECT_TRUE(has(opened(1e-3), "The action of the event \"push\" at t = 0.1503"));
-  EXPECT_TRUE(has(opened(1e-3), "opens joint \""));
-  EXPECT_TRUE(has(opened(1e-6), "opens joint \""));
+  EXPECT_TRUE(has(opened(1e-3), "violates joint \""));
+  EXPECT_TRUE(has(opened(1e-6), "violates joint \""));
   EXPECT_EQ(opened(1e-10), "");
 }
 

@@ -151,7 +151,8 @@ TEST(Filters, RefuseWhatTheyCannotUse) {
   EXPECT_TRUE(has(refused(f, [](Record& r) { r.times[9] = r.times[8]; }), "times must rise"));
   EXPECT_TRUE(has(refused(f, [](Record& r) { r.values[9] = std::nan(""); }), "sample 9 at t = 2.09 s is not finite"));
   EXPECT_TRUE(has(refused(f, [](Record& r) { r.values.pop_back(); }), "100 times for 99 values"));
-  EXPECT_TRUE(has(refused(f, [](Record& r) { r.times.resize(3), r.values.resize(3); }), "3 samples are too few"));
+  EXPECT_TRUE(
+      has(refused(f, [](Record& r) { r.times.resize(3), r.values.resize(3); }), "samples are needed, but there are 3"));
   std::vector<double> const times{0.0, 0.1, 0.4}, values{0.0, 0.0, 0.0};
   EXPECT_TRUE(has(refusal([&] { resampled(times, values, 0.1); }), "between 0.1 s and 0.4 s"));
   EXPECT_TRUE(has(refusal([&] { resampled(times, values, 0.0); }), "the step"));

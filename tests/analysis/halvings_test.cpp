@@ -337,7 +337,7 @@ TEST(Halvings, OfTheDefaultAreNotInheritedByRunsThatAreDifferentiated) {
 
 TEST(Halvings, RefusesNumbersThatCannotBeMeant) {
   Landing landing(0.1);
-  EXPECT_TRUE(has(refusal([&] { landing.run(-1); }), "a step can be halved 0 to 30 times, but -1 is asked for"));
+  EXPECT_TRUE(has(refusal([&] { landing.run(-1); }), "max_step_halvings must lie in [0, 30], but is -1"));
   EXPECT_TRUE(has(refusal([&] { landing.run(31); }), "but 31 is asked for"));
 }
 

@@ -47,7 +47,7 @@ std::vector<Hostile> hostile_states(State const& sane) {
   all[4].x.v[0] = -1e200;
   all[4].named = "A speed of body \"bob\" is -1e+200";
   all[5].x.q.tail<4>().setZero();
-  all[5].named = "body \"bob\" are those of no place";
+  all[5].named = "body \"bob\" are invalid";
   all[6].x.lambda[2] = nan;
   all[6].named = "The multipliers of the state must be finite";
   all[7].x.q.conservativeResize(3);

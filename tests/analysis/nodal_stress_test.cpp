@@ -297,9 +297,9 @@ TEST_F(NodalStressFiles, ThatAreBrokenAreNamedByFileAndLine) {
   EXPECT_TRUE(
       has(told(names, "1 end\n2 beyond\n"), in_names + "2: node 2 does not exist; the structure has nodes 0 to 1"));
   EXPECT_TRUE(has(told(names, "-1 end\n"), in_names + "1: node -1 does not exist"));
-  EXPECT_TRUE(has(told(names, "0 end\n1 end\n"), in_names + "2: a node before is called 'end', too"));
-  EXPECT_TRUE(has(told(names, "0\n"), in_names + "1: '0' is not the number of a node and its name"));
-  EXPECT_TRUE(has(told(names, "end\n"), in_names + "1: 'end' is not the number"));
+  EXPECT_TRUE(has(told(names, "0 end\n1 end\n"), in_names + "2: duplicate node name \"end\""));
+  EXPECT_TRUE(has(told(names, "0\n"), in_names + "1: \"0\" is not the number of a node and its name"));
+  EXPECT_TRUE(has(told(names, "end\n"), in_names + "1: \"end\" is not the number"));
   EXPECT_TRUE(has(told(names, "# none\n"), in_names + "2: the file names no nodes"));
   EXPECT_TRUE(has(told(names, "0 near\n"),
                   in_matrix + "2: the matrix is 12×6, but the 1 nodes of " + names + " need 6×6, six stresses each"));
@@ -313,7 +313,8 @@ TEST_F(NodalStressFiles, ThatAreBrokenAreNamedByFileAndLine) {
   EXPECT_TRUE(has(told(matrix, "%%MatrixMarket matrix coordinate real symmetric\n12 6 1\n1 1 5.0\n"),
                   in_matrix + "2: a symmetric matrix has as many rows as columns"));
   std::filesystem::remove(matrix);
-  EXPECT_TRUE(has(message_of<IoError>([&] { NodalStress::read(matrix, names, 6); }), matrix + ": it cannot be opened"));
+  EXPECT_TRUE(
+      has(message_of<IoError>([&] { NodalStress::read(matrix, names, 6); }), matrix + ": the file cannot be opened"));
 }
 
 TEST_F(NodalStressFiles, ThatDoNotFitTheQuestionAreRefused) {
@@ -334,7 +335,7 @@ TEST_F(NodalStressFiles, ThatDoNotFitTheQuestionAreRefused) {
   m.insert(4, 2) = NAN;
   EXPECT_TRUE(has(refusal([&] { NodalStress(m, {{0, "a"}}); }), "row 4, column 2 of its matrix is "));
   EXPECT_TRUE(has(refusal([&] { NodalStress(NodalStress::Matrix(12, 3), {{0, "a"}, {1, "a"}}); }),
-                  "two nodes are called \"a\""));
+                  "duplicate node name \"a\""));
 }
 
 }  // namespace nodal_stress_test

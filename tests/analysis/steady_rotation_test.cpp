@@ -203,9 +203,9 @@ TEST(SteadyRotation, RefusesWhatIsNotSteady) {
   Blade level(7.0, 0.3, 2.0, {0, 1, 0});
   SteadyRotation const right = about_z(7.0);
   State start = level.x;
-  EXPECT_TRUE(has(refusal([&] { linearise(level.model, start, right); }), "do not balance as the model turns"));
+  EXPECT_TRUE(has(refusal([&] { linearise(level.model, start, right); }), "do not balance as the model rotates"));
   EXPECT_TRUE(has(refusal([&] { linearise(level.model, start, about_z(6.9)); }),
-                  "joint \"drive\" does not turn with the model"));
+                  "joint \"drive\" does not rotate with the model"));
   SteadyRotation const tilted{.angular_velocity = {0, 7, 0}};
   EXPECT_TRUE(has(refusal([&] { relative_equilibrium(level.model, start, tilted); }), "joint \"shaft\" does not turn"));
   EXPECT_EQ(start.q, level.x.q);
@@ -215,12 +215,12 @@ TEST(SteadyRotation, RefusesWhatIsNotSteady) {
   // gravity normal to the axis pulls the rod back and forth
   Blade across(7.0, 0.3, 2.0, {0, 0, 1}, Gravity{-1.0, 0, 0});
   relative_equilibrium(across.model, across.x, right);
-  EXPECT_TRUE(has(refusal([&] { linearise(across.model, across.x, right); }), "do not turn with the model"));
+  EXPECT_TRUE(has(refusal([&] { linearise(across.model, across.x, right); }), "do not rotate with the model"));
 
   PlaneModel plane;
   plane.add(planar::Rigid(1.0, 1.0), "disc");
   EXPECT_TRUE(has(refusal([&] { rotating_state(plane, plane.reference_state(), {.angular_velocity = {1, 0, 1}}); }),
-                  "body \"disc\" lives in the plane"));
+                  "body \"disc\" is planar"));
 }
 
 // Least-norm corrections leave free motions unchanged: a body that falls along the axis is not a steady rotation.

@@ -60,8 +60,8 @@ TEST(AttachmentModes, LeaveOutWhatRepeats) {  // two equal loads; forces at both
 TEST(AttachmentModes, RefuseWhatDoesNotFit) {
   Structure const s = bar();
   EXPECT_TRUE(has(refusal([&] { attachment_modes(s, MatX::Zero(5, 1), 1); }), "finite nodal loads of 42 rows"));
-  EXPECT_TRUE(has(refusal([&] { attachment_modes(s, MatX(s.size(), 0), 0); }), "a load or a mode at least"));
-  EXPECT_TRUE(has(refusal([&] { attachment_modes(s, MatX(s.size(), 0), 37); }), "37 modes are asked for"));
+  EXPECT_TRUE(has(refusal([&] { attachment_modes(s, MatX(s.size(), 0), 0); }), "at least one load or one mode"));
+  EXPECT_TRUE(has(refusal([&] { attachment_modes(s, MatX(s.size(), 0), 37); }), "37 modes are requested"));
 }
 
 }  // namespace attachment_modes_test

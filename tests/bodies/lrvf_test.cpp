@@ -201,7 +201,7 @@ TEST(SpatialLrvf, RefusesWhatItCannotMean) {
   auto const fast = [](double s) { return Placement{.origin = Vec3(2 * s, 0, 0)}; };
   auto const still = [](double) { return Placement{}; };
   EXPECT_TRUE(has(refusal([&] { (void)Lrvf<>::from(bar, 3, fast); }), "must be its arc length"));
-  EXPECT_TRUE(has(refusal([&] { (void)Lrvf<>::from(bar, 3, still); }), "has a chord of 0"));
+  EXPECT_TRUE(has(refusal([&] { (void)Lrvf<>::from(bar, 3, still); }), "has a chord of 0 m"));
 }
 
 }  // namespace lrvf_test

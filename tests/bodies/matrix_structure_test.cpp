@@ -154,7 +154,7 @@ TEST(MatrixStructure, CraigBamptonStretchesAsABar) {
 
 TEST(MatrixStructure, AFrameIsNotTiedToANodeWithoutRotations) {
   Structure const s = Block(2, 0.3).structure();
-  EXPECT_TRUE(has(refusal([&] { craig_bampton(s, {0, 11}, 0); }), "say mean_axes"));
+  EXPECT_TRUE(has(refusal([&] { craig_bampton(s, {0, 11}, 0); }), "Give mean_axes"));
   EXPECT_TRUE(has(refusal([&] { fixed_interface_modes(s, 2); }), "Fix enough coordinates"));
 }
 
@@ -364,17 +364,17 @@ TEST_F(MatrixFiles, BrokenMatricesAreNamedByFileAndLine) {
   std::string const where = mass + ", line ";
   EXPECT_TRUE(has(told(1, "%%MatrixMarket matrix array real general"), where + "1: this is not"));
   EXPECT_TRUE(has(told(1, "1 2 3"), where + "1: this is not"));
-  EXPECT_TRUE(has(told(3, "24 24"), where + "3: '24 24' is not the number of rows"));
+  EXPECT_TRUE(has(told(3, "24 24"), where + "3: \"24 24\" is not the number of rows"));
   EXPECT_TRUE(has(told(3, "27 27 108"), where + "3: the matrix is 27×27, but the 8 nodes of " + nodes + " need 24×24"));
   EXPECT_TRUE(has(told(3, "24 24 107"),
-                  where + "111: '24 24 0.10666666666666667' is not the end of the file after 107 entries"));
+                  where + "111: \"24 24 0.10666666666666667\" is not the end of the file after 107 entries"));
   EXPECT_TRUE(has(told(3, "24 24 109"), where + "112: the file ends after 108 of 109 entries; it is truncated"));
-  EXPECT_TRUE(has(told(7, "7 1"), where + "7: '7 1' is not a row, a column and a finite number"));
+  EXPECT_TRUE(has(told(7, "7 1"), where + "7: \"7 1\" is not a row, a column and a finite number"));
   EXPECT_TRUE(has(told(7, "7 1 nan"), where + "7: "));
   EXPECT_TRUE(has(told(7, "7 1 1e999"), where + "7: "));
   EXPECT_TRUE(has(told(7, "7 1 1.0 2.0"), where + "7: "));
-  EXPECT_TRUE(has(told(111, "24 24 1.0\n\v\f\n7 1 1.0"), where + "113: '7 1 1.0' is not the end of the file"));
-  EXPECT_TRUE(has(told(7, "7 1.5"), where + "7: '7 1.5' is not a row"));  // a blank ends a number
+  EXPECT_TRUE(has(told(111, "24 24 1.0\n\v\f\n7 1 1.0"), where + "113: \"7 1 1.0\" is not the end of the file"));
+  EXPECT_TRUE(has(told(7, "7 1.5"), where + "7: \"7 1.5\" is not a row"));  // a blank ends a number
   EXPECT_TRUE(has(told(7, "7 1-2"), where + "7: "));
   EXPECT_TRUE(has(told(7, "7-1 2"), where + "7: "));
   EXPECT_TRUE(has(told(3, "24 24 -1"), where + "3: the number of entries must not be negative, but is -1"));
@@ -391,18 +391,18 @@ TEST_F(MatrixFiles, TruncatedAndMissingFilesAreNamed) {
   write(mass, {banner, "% no more"});
   EXPECT_TRUE(has(told_now(), mass + ", line 3: the file ends before the number of rows"));
   std::filesystem::remove(mass);
-  EXPECT_TRUE(has(told_now(), mass + ": it cannot be opened"));
+  EXPECT_TRUE(has(told_now(), mass + ": the file cannot be opened"));
   write(nodes, {"# none"});
   EXPECT_TRUE(has(told_now(), nodes + ", line 2: the file has no nodes"));
   write(nodes, {"0 0 0", "1 0"});
-  EXPECT_TRUE(has(told_now(), nodes + ", line 2: '1 0' is not x y z of a node"));
+  EXPECT_TRUE(has(told_now(), nodes + ", line 2: \"1 0\" is not x y z of a node"));
   write(nodes, {"0 0 0", "1.5.5.5"});
-  EXPECT_TRUE(has(told_now(), nodes + ", line 2: '1.5.5.5' is not x y z of a node"));
+  EXPECT_TRUE(has(told_now(), nodes + ", line 2: \"1.5.5.5\" is not x y z of a node"));
   write(nodes, {"0 0 0", "1 2-3"});
-  EXPECT_TRUE(has(told_now(), nodes + ", line 2: '1 2-3' is not x y z of a node"));
+  EXPECT_TRUE(has(told_now(), nodes + ", line 2: \"1 2-3\" is not x y z of a node"));
   std::filesystem::remove(nodes);
   std::filesystem::create_directories(nodes);
-  EXPECT_TRUE(has(told_now(), nodes + ": it cannot be opened"));
+  EXPECT_TRUE(has(told_now(), nodes + ": the file cannot be opened"));
 }
 
 TEST_F(MatrixFiles, NodesOfAnotherModelAreNamed) {

@@ -111,7 +111,7 @@ TYPED_TEST(PlanarBeam, RefusesToLeaveThePlane) {
   for (Placement const& p : {Placement::at({0, 0, 0.1}), Placement::at({0, 0, 0}, {0.1, 0, 0})}) {
     Bar bar = this->bar();
     bar.placement = p;
-    EXPECT_TRUE(has(refusal([&] { (void)TypeParam::from(bar, 2); }), "a planar body stands in the plane"));
+    EXPECT_TRUE(has(refusal([&] { (void)TypeParam::from(bar, 2); }), "a planar body must lie in the plane"));
   }
 }
 

@@ -59,10 +59,10 @@ TEST(PlanarRigid, RefusesMassAndInertiaThatAreNone) {
 
 TEST(PlanarRigid, RefusesToLeaveThePlane) {
   for (Placement const& p : {Placement::at({0, 0, 0.1}), Placement::at({0, 0, 0}, {0.1, 0, 0})}) {
-    EXPECT_TRUE(has(refusal([&] { planar::Rigid(1.0, 1.0, p); }), "planar::Rigid: a planar body stands"));
+    EXPECT_TRUE(has(refusal([&] { planar::Rigid(1.0, 1.0, p); }), "planar::Rigid: a planar body must lie"));
     Bar bar = PlanarRigidCase::bar();
     bar.placement = p;
-    EXPECT_TRUE(has(refusal([&] { (void)planar::Rigid::from(bar); }), "planar::Rigid: a planar body stands"));
+    EXPECT_TRUE(has(refusal([&] { (void)planar::Rigid::from(bar); }), "planar::Rigid: a planar body must lie"));
   }
 }
 

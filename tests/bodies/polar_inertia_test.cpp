@@ -55,7 +55,7 @@ TEST(PolarInertia, IsRefusedWhereMassStandsInPoints) {
   EXPECT_NO_THROW(AncfBeam<>::from(bar_with(0.08), 2));
   EXPECT_TRUE(has(refusal([] { AncfBeam<>::from(bar_with(0.3), 2); }), "the polar inertia is 0.3 kg m"));
   EXPECT_NO_THROW(structure_of(bar_with(0.08), 2));
-  EXPECT_TRUE(has(refusal([] { structure_of(bar_with(0.3), 2); }), "take Lrvf or Rigid"));
+  EXPECT_TRUE(has(refusal([] { structure_of(bar_with(0.3), 2); }), "use Lrvf or Rigid"));
   EXPECT_TRUE(has(refusal([] { Lrvf<>::from(bar_with(-1.0), 2); }), "polar_inertia"));
 }
 

@@ -111,10 +111,10 @@ TEST(VariableMass, APendulumSwingsAsOneWhoseMassStays) {
 }
 
 TEST(VariableMass, RefusesALawThatMovesTheBodyOrLosesItsMass) {
-  EXPECT_TRUE(has(refusal([] { Plane(Plane::Law{}); }), "a law is needed"));
+  EXPECT_TRUE(has(refusal([] { Plane(Plane::Law{}); }), "a function is needed"));
   EXPECT_TRUE(has(refusal([] { Plane([](double) { return planar::Rigid(0.0, 0.0); }); }), "mass"));
   Plane const moves([](double t) { return planar::Rigid(1.0, 1.0, Placement::at({t, 0, 0})); });
-  EXPECT_TRUE(has(refusal([&] { (void)moves.at_time(0.5); }), "at t = 0.5 s the law places the body elsewhere"));
+  EXPECT_TRUE(has(refusal([&] { (void)moves.at_time(0.5); }), "at t = 0.5 s the function places the body elsewhere"));
   Model<Bodies<Plane>, Joints<>> model{Gravity{0, -9.81, 0}};
   model.add(leaking(), "tank");
   State x = model.reference_state();

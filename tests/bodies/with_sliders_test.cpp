@@ -148,9 +148,9 @@ TYPED_TEST(SlidingLaws, StandingStillIsAMaterialPoint) {
 TEST(WithSliders, RefusesPlacesAndSlidersThatItHasNot) {
   auto const line = AncfCable<>::from(bar(false), 3);
   EXPECT_TRUE(
-      has(refusal([&] { WithSliders(line, {0.1, 1.6}); }), "WithSliders: the place: s = 1.6 lies outside the body"));
+      has(refusal([&] { WithSliders(line, {0.1, 1.6}); }), "WithSliders: the place: s = 1.6 m lies outside the body"));
   WithSliders const body(line, {0.1});
-  EXPECT_TRUE(has(refusal([&] { (void)body.at(Slider{1}); }), "there is no slider 1; the body has 1"));
+  EXPECT_TRUE(has(refusal([&] { (void)body.at(Slider{1}); }), "slider 1 does not exist; the body has 1"));
 }
 
 // The line continues for one element beyond its ends, and an error follows beyond that.
@@ -161,7 +161,7 @@ TEST(WithSliders, SaysThatAPointHasGoneOffTheEnd) {
   EXPECT_NO_THROW(bent.at(bent.q, jacobian));
   bent.q[bent.n - 1] = 1.5 + 0.51;
   EXPECT_TRUE(has(message_of<SliderOutOfRange>([&] { bent.at(bent.q, jacobian); }),
-                  "gone off the end of its body, to s = 2.01"));
+                  "a point has passed the end of its body: s = 2.01"));
   bent.q[bent.n - 1] = -0.51;
   EXPECT_THROW(bent.at(bent.q, jacobian), SliderOutOfRange);
 }
@@ -175,7 +175,7 @@ TEST(WithSliders, GivesItsPointsNoAxes) {
   EXPECT_NO_THROW(model.connect(Ball{}, ground, beam.at(Slider{}), "ball"));
   EXPECT_NO_THROW(model.connect(Pin{{.axis = Vec3::UnitZ()}, {}}, ground, beam.at(0.0), "pin at the end"));
   EXPECT_TRUE(has(refusal([&] { model.connect(Pin{{.axis = Vec3::UnitZ()}, {}}, ground, beam.at(Slider{}), "pin"); }),
-                  "\"pin\" needs axes, but a point that"));
+                  "\"pin\" needs axes, but a sliding point"));
 }
 
 static_assert(Body<WithSliders<AncfCable<>>> && Body<WithSliders<planar::AncfCable<>>>);

@@ -215,7 +215,7 @@ TEST(FlexibleSliderCrank, HasThemInJointCoordinates) {
 TEST(FlexibleSliderCrank, AsksForACouplingThatIsSkew) {
   planar::FfrIntegrals bad = rod_integrals();
   bad.coupling_by(0, 2) *= -1.0;
-  EXPECT_TRUE(has(refusal([&] { planar::Ffr(bad, {}); }), "must be skew"));
+  EXPECT_TRUE(has(refusal([&] { planar::Ffr(bad, {}); }), "must be skew-symmetric"));
 }
 
 // The force is the derivative of the energy, and the tangent is the derivative of the force.

@@ -119,7 +119,7 @@ TEST(SpatialClamp, RefusesAPinAcrossTheTangent) {
                     model.connect(Clamp{Revolute{.axis = Vec3::UnitY()}, {}}, model.ground().at({0, 0, 0}),
                                   cable.at(0.0), "pin");
                   }),
-                  "\"pin\": its second marker knows its tangent only"));
+                  "\"pin\": the second marker has a tangent but no axes"));
 }
 
 // S11: elastic catenary, 10 m of 10 N/m with supports at equal heights 8 m apart; 20 elements, EI = 1e-3 N m². The

@@ -287,10 +287,11 @@ TEST(ContactGroup, RefusesMarkersAndHandlesOfAnotherModel) {
   EXPECT_TRUE(has(refusal([&] { a.model.add_partner(group, on_plane, b.model.ground().at({0, 0, 0})); }),
                   "\"marbles\"" + told));
   ElementHandle<Group> const unset;
-  EXPECT_TRUE(has(refusal([&] { a.model.add_partner(unset, on_plane, floor); }), "A handle made by default"));
+  EXPECT_TRUE(has(refusal([&] { a.model.add_partner(unset, on_plane, floor); }), "A default-constructed handle"));
   System const system(a.model, with<Capabilities::motion>);
   EXPECT_TRUE(has(refusal([&] { for_each_contact(system, of_b, [](auto const&) {}); }), "\"others\"" + told));
-  EXPECT_TRUE(has(refusal([&] { for_each_contact(system, unset, [](auto const&) {}); }), "A handle made by default"));
+  EXPECT_TRUE(
+      has(refusal([&] { for_each_contact(system, unset, [](auto const&) {}); }), "A default-constructed handle"));
   // a refused call has changed nothing
   EXPECT_EQ(a.model.entry(group).markers.size(), 1u);
   EXPECT_EQ(std::get<0>(a.model.force_pools()).size(), 1u);

@@ -209,15 +209,15 @@ TEST(NormalForces, RefuseNumbersThatCannotBeMeantByName) {
     EXPECT_TRUE(has(told(HuntCrossleyContact{.stiffness = bad, .damping = 0.0}), "\"bumper\": the contact stiffness"));
     EXPECT_TRUE(has(told(HuntCrossleyContact{.stiffness = 1.0, .damping = bad}), "\"bumper\": the contact damping"));
     EXPECT_TRUE(has(told(HuntCrossleyContact{.stiffness = 1.0, .exponent = bad, .damping = 0.0}),
-                    "\"bumper\": the exponent of the overlap must be 1 or more, but is " + number(bad)));
+                    "\"bumper\": the exponent of the contact law must be at least 1, but is " + number(bad)));
   }
   EXPECT_TRUE(has(told(HuntCrossleyContact{.stiffness = 1.0, .exponent = 0.5, .damping = 0.0}),
-                  "must be 1 or more, but is 0.5"));
+                  "must be at least 1, but is 0.5"));
   with_each_law([](auto const& law, char const*) { EXPECT_NO_THROW(law.check("\"bumper\"")); });
 }
 
 TEST(NormalForces, RefuseRestitutionsThatNoImpactHas) {
-  std::string const range = "Contact: the coefficient of restitution must lie above 0 and not above 1, but is ";
+  std::string const range = "Contact: the coefficient of restitution must lie in (0, 1], but is ";
   for (double const bad : {0.0, -0.5, 1.01, nan, infinity}) {
     EXPECT_TRUE(has(refusal([&] { SpringDamperContact::with_restitution(1e5, 1.0, bad); }),
                     "SpringDamper" + range + number(bad)));

@@ -70,9 +70,9 @@ TEST(PointLoads, GradientIsThatOfTheLoadThatTurns) {
 
 TEST(PointLoads, RefuseALawThatCannotBeMeant) {
   PointForce<Ramp> const force{.force = load, .law = {.target = 1.0, .duration = -1.0}};
-  EXPECT_TRUE(has(refusal([&] { force.check("\"push\""); }), "\"push\": the law of time: the duration"));
+  EXPECT_TRUE(has(refusal([&] { force.check("\"push\""); }), "\"push\": the time function: the duration"));
   PointMoment<Window> const moment{.moment = load, .law = {.from = 1.0, .to = 1.0}};
-  EXPECT_TRUE(has(refusal([&] { moment.check("\"turn\""); }), "\"turn\": the law of time: a window"));
+  EXPECT_TRUE(has(refusal([&] { moment.check("\"turn\""); }), "\"turn\": the time function: a window"));
 }
 
 TEST(PointLoads, RefuseNanByName) {

@@ -9,7 +9,7 @@ namespace polybody::fuzz {
 void read(std::string_view bytes) {
   std::string const file = folder().put("run.checkpoint", bytes);
   auto const snapshot = accepted([&] { return read_checkpoint(file); },
-                                 [&](std::string const& message) { return has(message, "'" + file + "'"); });
+                                 [&](std::string const& message) { return has(message, "\"" + file + "\""); });
   if (!snapshot) return;
   std::string const again = folder().file("again.checkpoint");
   write_checkpoint(again, *snapshot);

@@ -39,8 +39,8 @@ extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size
   std::string const file = folder().put("table.csv", text_of(data, size));
   auto const table = accepted([&] { return polybody::read_csv(file); },
                               [&](std::string const& message) {
-                                return has(message, "file '" + file + "', line ") ||
-                                       message == "file '" + file + "' is empty; a head line is needed";
+                                return has(message, "file \"" + file + "\", line ") ||
+                                       message == "file \"" + file + "\" is empty; a head line is needed";
                               });
   if (table) check(*table);
   return 0;

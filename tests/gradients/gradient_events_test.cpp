@@ -207,18 +207,18 @@ TEST(GradientThroughEvents, RefusesWhatHasNoDerivative) {
                     o.events = {event("first", [p](double t) { return t - p - 0.003; }),
                                 event("second", [](double t) { return t - 0.503; })};
                   }),
-                  "gradient: the events \"first\" and \"second\" are met at once at t = 0.503"));
+                  "gradient: events \"first\" and \"second\" coincide at t = 0.503"));
   EXPECT_TRUE(
       has(said([&](RunOptions& o, double p) { o.events = {event("end", [p](double t) { return t - p - 0.3; })}; }),
-          "an event, and a corner or the end"));
+          "an event coincides with a breakpoint or with the end of the run at t ="));
   EXPECT_TRUE(has(said([](RunOptions& o, double p) { o.breakpoints = {p, 0.5}; }), "gradient: two corners"));
-  EXPECT_TRUE(
-      has(said([](RunOptions& o, double p) { o.breakpoints = {p, 0.5003}; }), "change their order with \"p [s]\""));
+  EXPECT_TRUE(has(said([](RunOptions& o, double p) { o.breakpoints = {p, 0.5003}; }),
+                  "change their order within the difference step of \"p [s]\""));
   EXPECT_TRUE(has(said([](RunOptions& o, double p) {
                     o.end_time = 0.5;
                     o.breakpoints = {p};
                   }),
-                  "gradient: a corner at the end of the run, t = 0.5 s, moves"));
+                  "gradient: a breakpoint at the end of the run, t = 0.5 s, moves"));
   EXPECT_TRUE(has(said([](RunOptions& o, double) { o.max_step_halvings = 3; }), "gradient: a run with halved steps"));
 }
 

@@ -65,7 +65,7 @@ TEST(GradientOfStages, RefusesTimesThatEndItsSteps) {
   EXPECT_TRUE(has(said([](RunOptions& o, double) {
                     o.events = {{.name = "event", .value = [](State const& x) { return x.t - 0.01; }}};
                   }),
-                  "gradient: runs with events or corners go back under the generalised-α family alone"));
+                  "gradient: runs with events or breakpoints need a method of the generalised-α family"));
   EXPECT_TRUE(
       has(said([](RunOptions& o, double p) { o.end_time = 0.05 * p; }), "gradient: runs whose start, end or steps"));
 }

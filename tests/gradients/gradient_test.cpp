@@ -233,7 +233,7 @@ TEST(GradientResult, RefusesWhatItDoesNotDifferentiate) {
   for (double const memory : {0.0, 10.0, std::nan("")})
     EXPECT_TRUE(has(said(make, {.memory = memory}), "a snapshot of a state takes"));
   EXPECT_TRUE(has(said(make, {}, {.stabilised = true}), "gradient: a stabilised step"));
-  EXPECT_TRUE(has(said(oscillator(0.105, 1e-2)), "the step to t = 0.105 s has another length"));
+  EXPECT_TRUE(has(said(oscillator(0.105, 1e-2)), "the length of the step to t = 0.105 s differs"));
   EXPECT_TRUE(has(said(oscillator(0.0, 1e-2)), "has no step"));
   auto const halved = [&](P p) {
     auto scenario = make(p);

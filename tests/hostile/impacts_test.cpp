@@ -67,7 +67,7 @@ void expect_bounces(I const& integrator, std::vector<double> const& restitutions
         if (e < 1.0) {
           std::string const said = refusal([&] { bounce(integrator, e, step, 1.0, false); });
           if (comes_to_rest(e) < 9.0) {
-            EXPECT_TRUE(has(said, "The event \"floor\" is met again"));
+            EXPECT_TRUE(has(said, "The event \"floor\" occurs again"));
           }
         }
       } catch (std::exception const& error) {

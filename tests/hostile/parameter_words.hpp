@@ -72,7 +72,7 @@ inline constexpr auto words_of<SprocketProfile> =
     words("teeth|tips", "pitch|tips|valleys", "pins|tips", "valleys", "arc of a valley|valleys", "tip");
 template <MarkerKind observed>
 inline constexpr auto words_of<PinSprocketContact<observed>> =
-    words("profile", "valley", "ring", "way from the marker");
+    words("profile", "valley", "ring", "position of the pin");
 
 // joints
 template <>

@@ -264,7 +264,7 @@ TEST(AdamsBashforthMoulton, RefusesOptionsThatCannotBeMeant) {
   System system(body.model);
   AdamsBashforthMoulton<> const integrator;
   auto workspace = integrator.workspace<DenseLu>(system);
-  EXPECT_TRUE(has(refusal([&] { integrator.step(system, x, 0.1, workspace); }), "call start before step"));
+  EXPECT_TRUE(has(refusal([&] { integrator.step(system, x, 0.1, workspace); }), "The state has no integrator history"));
 }
 
 // f = t³ on an uneven grid: the divided differences are those of a cubic, and Σ c_j D_j is its integral.

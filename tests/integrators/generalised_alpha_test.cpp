@@ -111,7 +111,7 @@ TEST(GeneralisedAlpha, RefusesAStepWithoutAStart) {
   GeneralisedAlpha const integrator;
   auto const method = method_of(integrator);
   auto workspace = method.workspace<DenseLu>(system);
-  EXPECT_TRUE(has(refusal([&] { method.step(system, o.x, 0.1, workspace); }), "call start before step"));
+  EXPECT_TRUE(has(refusal([&] { method.step(system, o.x, 0.1, workspace); }), "The state has no integrator history"));
 }
 
 // The state contains the integrator history: a copy continues exactly like the original.

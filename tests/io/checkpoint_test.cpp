@@ -115,7 +115,7 @@ TEST_F(Checkpoints, EveryDamageIsNoticed) {
   EXPECT_TRUE(has(told("t,x\n0,1\n"), "is not a checkpoint of polybody"));
   EXPECT_TRUE(has(told(good.substr(0, 20)), "cut off within its head"));
   std::string const size = std::to_string(good.size()), longer = std::to_string(good.size() + 1);
-  EXPECT_TRUE(has(told(good + "x"), "has " + longer + " bytes in place of " + size));
+  EXPECT_TRUE(has(told(good + "x"), "has " + longer + " bytes instead of " + size));
   std::string other = good;
   std::uint32_t const nine = 9;
   std::memcpy(other.data() + 12, &nine, sizeof nine);
@@ -175,17 +175,17 @@ TEST_F(Checkpoints, OfInconsistentContentAreRefused) {
     return told([&](std::string& bad) { std::memcpy(bad.data() + at, &to, sizeof to); });
   };
   std::size_t const begin = sizeof(detail::CheckpointHead);
-  std::string const inconsistent = "checkpoint '" + file.string() + "' is inconsistent: ";
-  EXPECT_TRUE(has(number(begin, 4), inconsistent + "it has 3 coordinates in place of the model's 4. Write it anew."));
-  EXPECT_TRUE(has(number(begin + 8, 1), inconsistent + "it has 2 speeds in place of the model's 1."));
-  EXPECT_TRUE(has(number(begin + 16, 0), inconsistent + "it has 1 multipliers in place of the model's 0."));
+  std::string const inconsistent = "checkpoint \"" + file.string() + "\" is inconsistent: ";
+  EXPECT_TRUE(has(number(begin, 4), inconsistent + "it has 3 coordinates, but the model has 4. Write it again."));
+  EXPECT_TRUE(has(number(begin + 8, 1), inconsistent + "it has 2 velocities, but the model has 1."));
+  EXPECT_TRUE(has(number(begin + 16, 0), inconsistent + "it has 1 multipliers, but the model has 0."));
   // estimates of eliminated constraint equations follow those of the state: for all equations, or for none
   EXPECT_TRUE(has(told([&](std::string& bad) {
                     std::int64_t const rows[2] = {0, 2};
                     std::memcpy(bad.data() + begin + 16, rows, sizeof rows);
                   }),
-                  inconsistent + "it has 1 multipliers in place of the model's 2."));
-  EXPECT_TRUE(has(number(begin + 48, 300), inconsistent + "300 is out of the range of its place."));  // a letter
+                  inconsistent + "it has 1 multipliers, but the model has 2."));
+  EXPECT_TRUE(has(number(begin + 48, 300), inconsistent + "300 is out of the range of its entry."));  // a letter
   EXPECT_TRUE(has(number(begin + 40, -1), "ends before its content does"));
   EXPECT_TRUE(has(number(begin + 40, std::int64_t(1) << 60), "ends before its content does"));
   EXPECT_TRUE(has(told([](std::string& bad) { bad += "12345678"; }), inconsistent + "8 bytes follow its content."));

@@ -336,7 +336,7 @@ TEST_F(ComparisonReport, RefusesWhatIsNoComparison) {
   EXPECT_FALSE(fs::exists(folder));
   c = oscillators();
   c.runs[1].peak_joint_force = std::numeric_limits<double>::infinity();
-  EXPECT_TRUE(has(refusal([&] { write_report(c, folder); }), "column 'stiff/ρ': the value is not finite"));
+  EXPECT_TRUE(has(refusal([&] { write_report(c, folder); }), "column \"stiff/ρ\": the value is not finite"));
   EXPECT_TRUE(fs::is_empty(folder));
 }
 

@@ -69,7 +69,7 @@ TEST_F(CsvFiles, WritesATextBeforeNumbers) {
   EXPECT_TRUE(has(refusal([&] { csv.row("mass [kg]", few); }), "row 3: 2 values for 3 columns"));
   csv.close();
   EXPECT_EQ(text_of(file), "quantity,soft,stiff\n\"tip, x [m]\",1,0.1\n,1,0.1\n");
-  EXPECT_TRUE(has(message_of<IoError>([&] { read_csv(file); }), "'tip, x [m]' is not a finite number"));
+  EXPECT_TRUE(has(message_of<IoError>([&] { read_csv(file); }), "\"tip, x [m]\" is not a finite number"));
 }
 
 TEST_F(CsvFiles, NumbersReadBackBitForBit) {
@@ -145,7 +145,7 @@ TEST_F(CsvFiles, RefusesHeadsThatCannotBeMeant) {
   using Heads = std::vector<std::string>;
   EXPECT_TRUE(has(message_of<InvalidInput>([&] { Csv(file, Heads{}); }), "at least one column"));
   EXPECT_TRUE(has(message_of<InvalidInput>([&] { Csv(file, Heads{"x", ""}); }), "head is empty"));
-  EXPECT_TRUE(has(message_of<InvalidInput>([&] { Csv(file, Heads{"x", "y", "x"}); }), "'x'"));
+  EXPECT_TRUE(has(message_of<InvalidInput>([&] { Csv(file, Heads{"x", "y", "x"}); }), "\"x\""));
   EXPECT_EQ(files(), 0u);
 }
 
@@ -161,9 +161,9 @@ TEST_F(CsvFiles, RefusesBadRowsByNameAndGoesOnUnharmed) {
   auto const nan = message_of<InvalidInput>([&] { csv.row(1, std::nan("")); });
   EXPECT_TRUE(has(nan, file.string()));
   EXPECT_TRUE(has(nan, "row 2"));
-  EXPECT_TRUE(has(nan, "'x [m]'"));
+  EXPECT_TRUE(has(nan, "\"x [m]\""));
   auto const infinity = std::numeric_limits<double>::infinity();
-  EXPECT_TRUE(has(message_of<InvalidInput>([&] { csv.row({-infinity, 1}); }), "'t [s]'"));
+  EXPECT_TRUE(has(message_of<InvalidInput>([&] { csv.row({-infinity, 1}); }), "\"t [s]\""));
   csv.row(1, 1);
   csv.close();
   EXPECT_EQ(text_of(file), "t [s],x [m]\n0,0\n1,1\n");
@@ -253,7 +253,7 @@ TEST_F(CsvFiles, SystemRefusalsNameTheFileAndTheReason) {
   {
     Csv csv(file, {"x"});
     fs::create_directories(file / "in the way");
-    EXPECT_TRUE(has(message_of<IoError>([&] { csv.close(); }), "cannot be put in place: "));
+    EXPECT_TRUE(has(message_of<IoError>([&] { csv.close(); }), "cannot be moved to its place: "));
   }
   EXPECT_EQ(files(), 3u);  // plain, taken, run.csv/: no temporary file
 }
@@ -458,9 +458,9 @@ TEST_F(CsvFiles, ReadingNamesFileAndLine) {
   EXPECT_TRUE(has(refusal("a,b\n1,2\n3\n"), "line 3: 1 fields for 2 columns"));
   EXPECT_TRUE(has(refusal("a,b\n1,2,\n"), "line 2: 3 fields"));
   EXPECT_TRUE(has(refusal("a,b\n\n1,2,3\n"), "line 3: 3 fields"));
-  EXPECT_TRUE(has(refusal("\"a\nb\",c\n1,2\n1,x\n"), "line 4: column 'c': 'x'"));
+  EXPECT_TRUE(has(refusal("\"a\nb\",c\n1,2\n1,x\n"), "line 4: column \"c\": \"x\""));
   for (auto const* bad : {"nan", "inf", "1e999", "1.5m", "0x10", "--1", "+-1", "+", "1 2", "", "1;2"})
-    EXPECT_TRUE(has(refusal(std::string("a,b\n1,2\n3,") + bad + "\n"), "line 3: column 'b'"));
+    EXPECT_TRUE(has(refusal(std::string("a,b\n1,2\n3,") + bad + "\n"), "line 3: column \"b\""));
   EXPECT_TRUE(has(refusal("a\n\"1\n"), "line 2: a quote is never closed"));
   EXPECT_TRUE(has(refusal("a\n\"1\"2\n"), "line 2: text follows a closing quote"));
   EXPECT_TRUE(has(refusal(""), "is empty"));
@@ -474,8 +474,7 @@ TEST_F(CsvFiles, ReadingNamesFileAndLine) {
 TEST(CsvTable, ColumnMustBeThereOnce) {
   Table const table{{"t", "x", "x"}, {{1, 2, 3}, {4, 5, 6}}};
   EXPECT_EQ(table.column("t"), (std::vector<double>{1, 4}));
-  EXPECT_TRUE(
-      has(message_of<InvalidInput>([&] { table.column("y"); }), "no column is called 'y'; the table has 't', 'x'"));
+  EXPECT_TRUE(has(message_of<InvalidInput>([&] { table.column("y"); }), "no column \"y\"; the table has \"t\", \"x\""));
   EXPECT_TRUE(has(message_of<InvalidInput>([&] { table.column("x"); }), "more than one"));
   EXPECT_TRUE(has(message_of<InvalidInput>([] { Table{}.column("t"); }), "has none"));
 }

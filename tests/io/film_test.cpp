@@ -264,10 +264,10 @@ TEST_F(FilmFiles, NameTheBodiesWithoutAShape) {
 
 TEST_F(FilmFiles, RefuseAViewerThatIsNotThere) {
   EXPECT_TRUE(
-      has(message_of<IoError>([] { Film({.viewer = {}}); }), "no viewer is named. Build polybody's CMake target"));
+      has(message_of<IoError>([] { Film({.viewer = {}}); }), "the viewer is missing. Build polybody's CMake target"));
   EXPECT_TRUE(
       has(message_of<IoError>([&] { Film({.viewer = folder / "none.html"}); }), "none.html'. Build polybody's"));
-  EXPECT_TRUE(has(message_of<IoError>([&] { Film({.viewer = folder}); }), "there is no viewer"));
+  EXPECT_TRUE(has(message_of<IoError>([&] { Film({.viewer = folder}); }), "does not exist"));
   std::ofstream(folder / "page.html") << "<p>";
   EXPECT_TRUE(has(message_of<IoError>([&] { Film({.viewer = folder / "page.html"}); }), "is not a viewer of films"));
   EXPECT_TRUE(has(refusal([&] { Film({.viewer = bare_viewer, .frames_per_second = 0.0}); }), "frames per second"));
@@ -279,7 +279,7 @@ TEST_F(FilmFiles, LeaveNothingHalfWritten) {
   EXPECT_TRUE(has(refusal([&] { film.write(folder / "film.html"); }), "has no scene"));
   FilmScene& scene = film.scene("one");
   EXPECT_TRUE(has(refusal([&] { film.write(folder / "film.html"); }), "\"one\" has no frame"));
-  EXPECT_TRUE(has(refusal([&] { film.scene("one"); }), "two scenes are called \"one\""));
+  EXPECT_TRUE(has(refusal([&] { film.scene("one"); }), "duplicate scene name \"one\""));
   scene.record(0.0, visual.at(x));
   std::ofstream(folder / "plain") << "x";
   EXPECT_TRUE(has(message_of<IoError>([&] { film.write(folder / "plain" / "film.html"); }), "film.html"));
@@ -300,14 +300,15 @@ TEST_F(FilmFiles, RefuseWhatCannotBeShown) {
                 }});
   EXPECT_TRUE(has(refusal([&] { scene.colour({"one too few", "-", {}}); }), "there twice"));
   EXPECT_TRUE(has(refusal([&] { scene.arrow({0}, Vec3::Zero(), Vec3::Zero()); }), "record one first"));
-  EXPECT_TRUE(has(refusal([&] { scene.record(0.0, {}); }), "nothing to be seen"));
-  EXPECT_TRUE(has(refusal([&] { scene.record(0.0, visual.at(x)); }), "of \"cable\" are not one for each point"));
+  EXPECT_TRUE(has(refusal([&] { scene.record(0.0, {}); }), "there is nothing to draw"));
+  EXPECT_TRUE(
+      has(refusal([&] { scene.record(0.0, visual.at(x)); }), "of \"cable\" differs from the number of its points"));
   FilmScene& two = film.scene("two");
   FilmArrows const forces = two.arrows("force", "N");
   two.record(0.5, visual.at(x));
-  EXPECT_TRUE(has(refusal([&] { two.arrows("late", "N"); }), "comes after the first frame"));
+  EXPECT_TRUE(has(refusal([&] { two.arrows("late", "N"); }), "is named after the first frame"));
   EXPECT_TRUE(has(refusal([&] { two.record(0.5, visual.at(x)); }), "t = 0.5 s follows 0.5 s"));
-  EXPECT_TRUE(has(refusal([&] { two.record(1.0, {visual.at(x)[0]}); }), "not those of the first frame"));
+  EXPECT_TRUE(has(refusal([&] { two.record(1.0, {visual.at(x)[0]}); }), "differ from the parts of the first frame"));
   Vec3 const nan = Vec3::Constant(std::nan(""));
   EXPECT_TRUE(
       has(message_of<NonFiniteValue>([&] { two.arrow(forces, nan, Vec3::Zero()); }), "\"force\" is not finite"));

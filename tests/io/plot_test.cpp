@@ -212,7 +212,7 @@ TEST_F(Plots, RefusalsNameTheFigureAndTheCurveAndWriteNothing) {
   EXPECT_TRUE(has(refusal([](Figure& f) { f.curves[0].x.clear(), f.curves[0].y.clear(); }), "at least one point"));
   EXPECT_TRUE(has(refusal([&](Figure& f) { f.curves[0].x[3] = nan; }), "in x is not finite"));
   EXPECT_TRUE(has(refusal([&](Figure& f) { f.curves[0].y[3] = infinity; }), "in y is not finite"));
-  EXPECT_TRUE(has(refusal([](Figure& f) { f.curves[0].style = "dots"; }), "'dots'"));
+  EXPECT_TRUE(has(refusal([](Figure& f) { f.curves[0].style = "dots"; }), "\"dots\""));
   EXPECT_TRUE(has(refusal([](Figure& f) { f.curves[0].colour = -2; }), "colour"));
   EXPECT_TRUE(has(refusal([](Figure& f) { f.curves[0].width = 0; }), "width"));
   EXPECT_TRUE(has(refusal([](Figure& f) { f.height_px = 0; }), "pixels"));

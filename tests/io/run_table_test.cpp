@@ -76,8 +76,8 @@ TEST_F(RunTable, RefusesColumnsThatCannotBeTold) {
   auto const zero = [](State const&) { return 0.0; };
   EXPECT_TRUE(has(said({{"", zero}}), "column 1 lacks a name or a value"));
   EXPECT_TRUE(has(said({{"x [m]", zero}, {"y [m]", {}}}), "column 2 lacks"));
-  EXPECT_TRUE(has(said({{"x [m]", zero}, {"x [m]", zero}}), "two columns are called \"x [m]\""));
-  EXPECT_TRUE(has(said({{"t [s]", zero}}), "two columns are called \"t [s]\""));
+  EXPECT_TRUE(has(said({{"x [m]", zero}, {"x [m]", zero}}), "duplicate column \"x [m]\""));
+  EXPECT_TRUE(has(said({{"t [s]", zero}}), "duplicate column \"t [s]\""));
   EXPECT_TRUE(has(said({{"x [m]", zero}}, -1.0), "sampling"));
   EXPECT_EQ(x.t, 0.0);
   try {

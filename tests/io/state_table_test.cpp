@@ -138,13 +138,14 @@ TEST_F(StateTable, RefusesAnotherUnitAndOneNumberTwice) {
   Table const table = state_table(model, {model.reference_state()});
   Table other = table;
   *std::ranges::find(other.columns, "upper q[0] [m]") = "upper q[0] [mm]";
-  EXPECT_TRUE(has(refusal([&] { state_from(model, other, 0); }),
-                  "\"upper q[0] [mm]\" has another unit than [m]. Convert its numbers and call it \"upper q[0] [m]\""));
+  EXPECT_TRUE(
+      has(refusal([&] { state_from(model, other, 0); }),
+          "the unit of the column \"upper q[0] [mm]\" is not [m]. Convert its numbers and call it \"upper q[0] [m]\""));
   Table twice = table;
   twice.columns.push_back("upper q[0]");
   twice.rows[0].push_back(0.0);
-  EXPECT_TRUE(
-      has(refusal([&] { state_from(model, twice, 0); }), "\"upper q[0]\" and \"upper q[0] [m]\" are of one number"));
+  EXPECT_TRUE(has(refusal([&] { state_from(model, twice, 0); }),
+                  "\"upper q[0]\" and \"upper q[0] [m]\" contain the same quantity"));
 }
 
 /// For every body, the coordinates and velocities in [m], [m/s], and no others, scale with the lengths of the body
@@ -240,10 +241,10 @@ TEST(UnitsOfStates, AreLeftOutWhereABodyNamesNone) {
 
 TEST_F(StateTable, RefusesWhatIsNoStateOfTheModel) {
   Table table = state_table(model, {model.reference_state()});
-  EXPECT_TRUE(has(refusal([&] { state_from(model, table, 1); }), "row 1 is asked of a table of 1"));
+  EXPECT_TRUE(has(refusal([&] { state_from(model, table, 1); }), "row 1 does not exist; the table has 1 rows"));
   Table twice = table;
   twice.columns.back() = "t [s]";
-  EXPECT_TRUE(has(refusal([&] { state_from(model, twice, 0); }), "two columns are called \"t [s]\""));
+  EXPECT_TRUE(has(refusal([&] { state_from(model, twice, 0); }), "duplicate column \"t [s]\""));
   for (char const* needed : {"t [s]", "upper q[6] [1]", "lower v[6] [1/s]", "valve z[0]"}) {
     Table lacking = table;
     *std::ranges::find(lacking.columns, needed) = "something";

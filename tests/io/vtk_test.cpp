@@ -174,7 +174,7 @@ TEST_F(VtkFiles, AKillLeavesNoTemporaryFile) {
 }
 
 TEST_F(VtkFiles, RefuseANameThatParaViewWouldNotKnow) {
-  EXPECT_TRUE(has(refusal([&] { VtkWriter(folder / "run.vtk", visual); }), "ends in .pvd, but this is"));
+  EXPECT_TRUE(has(refusal([&] { VtkWriter(folder / "run.vtk", visual); }), "must end in .pvd, but is"));
   std::ofstream(folder / "plain") << "x";
   EXPECT_TRUE(has(message_of<IoError>([&] { VtkWriter(folder / "plain" / "run.pvd", visual); }), "plain"));
 }

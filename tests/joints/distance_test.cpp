@@ -89,10 +89,10 @@ TEST(PrescribedDistance, RefusesWhatNoActuatorCanDo) {
   EXPECT_TRUE(
       has(refusal([] { Actuator{.law = actuator.law, .length = 0.0}.check("\"ram\""); }), "\"ram\": the length"));
   EXPECT_TRUE(has(refusal([] { Actuator{.law = {.target = 1.0, .duration = 0.0}, .length = 1.0}.check("\"ram\""); }),
-                  "\"ram\": the law of time: the duration"));
+                  "\"ram\": the time function: the duration"));
   PrescribedDistance<Window> const jump{.law = {.from = 1.0, .to = 2.0}, .length = 1.0};
-  EXPECT_TRUE(
-      has(refusal([&] { jump.check("\"ram\""); }), "\"ram\": the law of time: its value jumps from 0 to 1 at t = 1 s"));
+  EXPECT_TRUE(has(refusal([&] { jump.check("\"ram\""); }),
+                  "\"ram\": the time function: the value jumps from 0 to 1 at t = 1 s"));
 }
 
 TEST(PrescribedDistance, TellsTheCornersOfItsLaw) {

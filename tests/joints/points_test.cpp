@@ -69,7 +69,7 @@ TEST(PrescribedTranslation, TellsTheCornersOfItsLawAndRefusesAJump) {
   EXPECT_NO_THROW(ramp.check("\"slide\""));
   PrescribedTranslation<Window> const jump{.law = {.from = 1.0, .to = 2.0, .value = -3.0}};
   EXPECT_TRUE(has(refusal([&] { jump.check("\"slide\""); }),
-                  "\"slide\": the law of time: its value jumps from 0 to -3 at t = 1 s"));
+                  "\"slide\": the time function: the value jumps from 0 to -3 at t = 1 s"));
 }
 
 TEST(Points, RefuseAxesThatAreNotUnitVectors) {

@@ -81,13 +81,13 @@ TEST(PrescribedAngle, TellsTheCornersOfItsLaw) {
 
 TEST(PrescribedAngle, RefusesALawThatCannotBeMeant) {
   PrescribedAngle<Ramp> const lame{.law = {.target = 1.0, .duration = 0.0}};
-  EXPECT_TRUE(has(refusal([&] { lame.check("\"drive\""); }), "\"drive\": the law of time: the duration"));
+  EXPECT_TRUE(has(refusal([&] { lame.check("\"drive\""); }), "\"drive\": the time function: the duration"));
 }
 
 TEST(PrescribedAngle, RefusesALawThatJumps) {
   PrescribedAngle<Window> const jump{.law = {.from = 1.0, .to = 2.0, .value = 0.5}};
   EXPECT_TRUE(has(refusal([&] { jump.check("\"drive\""); }),
-                  "\"drive\": the law of time: its value jumps from 0 to 0.5 at t = 1 s"));
+                  "\"drive\": the time function: the value jumps from 0 to 0.5 at t = 1 s"));
   EXPECT_NO_THROW(
       (PrescribedAngle<Ramp>{.law = {.target = 100.0, .duration = 1e-3, .start = 50.0}}.check("\"drive\"")));
 }

@@ -41,7 +41,7 @@ TEST(PrescribedRate, BeginsAtZeroAndTellsTheCornersOfItsLaw) {
 
 TEST(PrescribedRate, RefusesALawThatCannotBeMeant) {
   PrescribedRate<SmoothRamp> const drive{.law = {{.target = 1.0, .duration = 0.0}}};
-  EXPECT_TRUE(has(refusal([&] { drive.check("\"drive\""); }), "\"drive\": the law of time: the duration"));
+  EXPECT_TRUE(has(refusal([&] { drive.check("\"drive\""); }), "\"drive\": the time function: the duration"));
 }
 
 }  // namespace prescribed_rate_test

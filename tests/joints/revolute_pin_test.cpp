@@ -36,7 +36,7 @@ TEST(RevolutePin, WouldHaveRankFourAtOnePoint) {
   EXPECT_EQ((RevolutePin{.distance = 0.0}.constraint_function<double>({}, {}, 0.0).Gb.row(4).norm()), 0.0);
   for (double const l : {0.0, -0.1, double(NAN)})
     EXPECT_TRUE(has(refusal([&] { RevolutePin{.distance = l}.check("\"pin\""); }),
-                    "\"pin\": its points must stand a positive"));
+                    "\"pin\": the distance of its points along the axis must be positive"));
 }
 
 TEST(RevolutePin, RefusesAnAxisThatIsNotAUnitVector) {

@@ -80,7 +80,7 @@ TEST(Placement, RefusesToLeaveThePlane) {
        {Placement::at({0, 0, 0.1}), Placement::at({0, 0, 0}, {tilt, 0, 0}), Placement::at({0, 0, 0}, {0, tilt, 0.4}),
         Placement::at({0, 0, 0}, {std::numbers::pi, 0, 0})}) {
     EXPECT_NO_THROW(p.check("rod"));  // valid in space
-    EXPECT_TRUE(has(refusal([&] { (void)p.planar_angle("rod"); }), "rod: a planar body stands in the plane"));
+    EXPECT_TRUE(has(refusal([&] { (void)p.planar_angle("rod"); }), "rod: a planar body must lie in the plane"));
   }
 }
 

@@ -99,7 +99,7 @@ TEST(MonotoneTable, RefusesPointsThatMakeNoFunction) {
   using Points = std::vector<MonotoneTable::Point>;
   double const nan = std::numeric_limits<double>::quiet_NaN();
   auto const said = [](Points const& points) { return refusal([&] { MonotoneTable(points, "\"mount\""); }); };
-  EXPECT_TRUE(has(said({}), "\"mount\": a table needs two points at least, but has 0"));
+  EXPECT_TRUE(has(said({}), "\"mount\": a table needs at least two points, but has 0"));
   EXPECT_TRUE(has(said({{1.0, 2.0}}), "but has 1"));
   EXPECT_TRUE(has(said({{0.0, 0.0}, {1.0, 2.0}, {0.5, 3.0}}),
                   "the abscissae of the table must increase, but point 3 has 0.5 after 1. Sort the points"));

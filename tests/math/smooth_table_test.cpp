@@ -89,7 +89,7 @@ TEST(SmoothTable, RefusesPointsThatMakeNoTable) {
   auto const said = [](Points const& points) { return refusal([&] { SmoothTable{points}; }); };
   EXPECT_TRUE(has(said({}), "SmoothTable: at least two points are needed, but there are 0."));
   EXPECT_TRUE(has(said({{1.0, 2.0}}), "but there are 1."));
-  EXPECT_TRUE(has(said({{0.0, 0.0}, {1.0, 0.0}, {1.0, 2.0}}), "point 3 at t = 1 s follows one at 1 s"));
+  EXPECT_TRUE(has(said({{0.0, 0.0}, {1.0, 0.0}, {1.0, 2.0}}), "point 3 at t = 1 s follows a point at 1 s"));
   EXPECT_TRUE(has(said({{0.0, 0.0}, {-1.0, 0.0}}), "the times must increase, but point 2 at t = -1 s"));
   EXPECT_TRUE(has(said({{0.0, 0.0}, {1.0, NAN}}), "point 2 must be finite"));
   EXPECT_TRUE(has(said({{-HUGE_VAL, 0.0}, {1.0, 0.0}}), "point 1 must be finite"));

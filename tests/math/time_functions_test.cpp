@@ -176,7 +176,7 @@ TEST(IntegralOf, IsThePlaceOfASpeedFromTimeZero) {
 
 TEST(TimeLaws, RefuseToDriveThroughAJump) {
   EXPECT_TRUE(has(refusal([] { check_driving_function(Window{.from = 1.0, .value = 2.0}, "drive"); }),
-                  "drive: its value jumps from 0 to 2 at t = 1 s"));
+                  "drive: the value jumps from 0 to 2 at t = 1 s"));
   EXPECT_TRUE(has(refusal([] { check_driving_function(Ramp{.target = 1.0, .duration = 0.0}, "drive"); }),
                   "drive: the duration"));
   EXPECT_NO_THROW(check_driving_function(Ramp{.target = 1e3, .duration = 1e-2, .start = 10.0}, "drive"));

@@ -112,7 +112,7 @@ TEST_F(StudyFiles, FailedPointsAreTriedAgainOnDemand) {
 TEST_F(StudyFiles, AnOutputThatIsNotFiniteIsAFailure) {
   Study const one({file}, axis("x", "", {0.0, 1.0}), outputs("1/x [1/m]"));
   StudyResults const found = one.run([](Point const& p) { return 1.0 / p["x"]; }, with_threads(1));
-  EXPECT_EQ(found.outcomes[0]->failure, "The output '1/x [1/m]' is not finite (inf).");
+  EXPECT_EQ(found.outcomes[0]->failure, "The output \"1/x [1/m]\" is not finite (inf).");
   EXPECT_EQ(found.outcomes[1]->values, std::vector{1.0});
 }
 
@@ -128,7 +128,7 @@ TEST_F(StudyFiles, OtherExceptionsEndTheStudy) {
   EXPECT_EQ(study.recorded().finished(), 5u);
   EXPECT_TRUE(has(message_of<StudyUsageError>(
                       [&] { study.run(stops_at(7, [](Point const& p) { p["no such"]; }), with_threads(2)); }),
-                  "no column 'no such'"));
+                  "no column \"no such\""));
   EXPECT_GE(study.recorded().finished(), 7u);
   EXPECT_TRUE(
       has(message_of<StudyUsageError>([&] { study.run([](Point const&) { return 1.0; }); }), "1 numbers for 2"));
@@ -198,7 +198,7 @@ TEST_F(StudyFiles, AChangedByteIsRefusedWithItsLine) {
     put(file, changed);
     std::size_t const line = 1 + std::size_t(std::count(record.begin(), record.begin() + std::ptrdiff_t(at), '\n'));
     std::string const message = message_of<IoError>([&] { study.run(values_at, with_threads(1)); });
-    ASSERT_TRUE(has(message, "file '" + file.string() + "', line " + std::to_string(line) + ": ")) << at << message;
+    ASSERT_TRUE(has(message, "file \"" + file.string() + "\", line " + std::to_string(line) + ": ")) << at << message;
     ASSERT_EQ(text_of(file), changed);  // unchanged
   }
   std::string cut = record;  // a missing line in the middle
@@ -221,7 +221,7 @@ TEST_F(StudyFiles, LinesThatNoStudyWritesAreRefused) {
   };
   for (char const* line : {"12: 1 2", "3: 1", "3: 1 2 3", "3: 1 nan", "3: 1 inf", "3: 1 2x", "3:1 2",
                            "3 failed: ", "3 failed", "-3: 1 2", "x", "", "3: 1e999 2", "3: 1  2", "3"})
-    EXPECT_TRUE(has(refused({"1: 1 2", line}), "line " + std::to_string(kind.head.size() + 2) + ": '" + line)) << line;
+    EXPECT_TRUE(has(refused({"1: 1 2", line}), "line " + std::to_string(kind.head.size() + 2) + ": \"" + line)) << line;
   EXPECT_TRUE(has(refused({"1: 1 2", "1: 1 2"}), "point 1 is there twice"));
   EXPECT_TRUE(has(refused({"1: 1 2", "1 failed: x"}), "point 1 is there twice"));
 }
@@ -234,7 +234,7 @@ TEST_F(StudyFiles, TheRecordOfAnotherStudyIsRefused) {
   std::string const record = text_of(file);
   EXPECT_TRUE(has(message(make(points, "another sum")),
                   "line 2: the record is of another study: it has 'about: a sum of "
-                  "functions', this study 'about: another sum'"));
+                  "functions\", this study \"about: another sum\""));
   Points const other_unit = grid(axis("stiffness", "kN/m", {1e6, 1e8, 2.5e9}),
                                  formulations("integrator", {"Radau", "a, b"}), axis("step", "s", {1e-2, 1e-3}));
   EXPECT_TRUE(has(message(make(other_unit)), "line 3: the record is of another study"));
@@ -264,7 +264,7 @@ TEST_F(StudyFiles, AFileThatIsNoRecordIsLeftAsItIs) {
   }
   detail::RecordChain chain;
   put(file, chain.line("polybody study 2"));
-  EXPECT_TRUE(has(message_of<IoError>([&] { study.recorded(); }), "line 1: it is 'polybody study 2'"));
+  EXPECT_TRUE(has(message_of<IoError>([&] { study.recorded(); }), "line 1: it is \"polybody study 2\""));
 }
 
 TEST_F(StudyFiles, WhatCannotBeWrittenIsRefusedAndLeavesNothing) {
@@ -297,7 +297,7 @@ TEST_F(StudyFiles, AFullDiskLosesTheLineThatItDoesNotTake) {
     ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
     std::string const message = message_of<IoError>([&] { study.run(values_at, with_threads(2)); });
     setrlimit(RLIMIT_FSIZE, &old);
-    EXPECT_TRUE(has(message, "file '" + file.string() + "' cannot be written: File too large"));
+    EXPECT_TRUE(has(message, "file \"" + file.string() + "\" cannot be written: File too large"));
     EXPECT_EQ(fs::exists(file), room >= head);  // a file without a line is removed
     EXPECT_TRUE(!fs::exists(file) || text_of(file).ends_with("\n"));
     EXPECT_EQ(table_of(study.run(values_at, with_threads(2))), whole);
@@ -321,9 +321,9 @@ TEST_F(StudyFiles, TwoRunsAtOnceAreRefused) {
 }
 
 TEST_F(StudyFiles, StudiesThatCannotBeMeantAreRefused) {
-  EXPECT_TRUE(has(refusal([&] { Study({file}, points, {}); }), "one output at least"));
-  EXPECT_TRUE(has(refusal([&] { Study({file}, points, outputs("y", "y")); }), "two columns are called 'y'"));
-  EXPECT_TRUE(has(refusal([&] { Study({file}, points, outputs("step [s]")); }), "two columns are called 'step [s]'"));
+  EXPECT_TRUE(has(refusal([&] { Study({file}, points, {}); }), "at least one output"));
+  EXPECT_TRUE(has(refusal([&] { Study({file}, points, outputs("y", "y")); }), "duplicate column \"y\""));
+  EXPECT_TRUE(has(refusal([&] { Study({file}, points, outputs("step [s]")); }), "duplicate column \"step [s]\""));
   EXPECT_TRUE(has(refusal([&] { Study({file}, points, outputs("")); }), "not printable"));
   EXPECT_TRUE(has(refusal([&] { make(points, "two\nlines"); }), "words on one line"));
   EXPECT_TRUE(has(refusal([&] { study.run(values_at, with_threads(0)); }), "at least one thread"));
@@ -345,8 +345,9 @@ TEST_F(StudyFiles, CurvesAreToldApartByParameters) {
   std::vector<Curve> const all = curves_of(found, "stiffness [N/m]", "sum [m]");
   ASSERT_EQ(all.size(), 1u);
   EXPECT_EQ(all[0].x.size(), 10u);
-  EXPECT_TRUE(has(refusal([&] { curves_of(found, "x", "sum [m]"); }), "no column 'x'; there are 'stiffness [N/m]'"));
-  EXPECT_TRUE(has(refusal([&] { curves_of(found, "step", "sum [m]", {"sum [m]"}); }), "names of parameters"));
+  EXPECT_TRUE(
+      has(refusal([&] { curves_of(found, "x", "sum [m]"); }), "no column \"x\"; there are \"stiffness [N/m]\""));
+  EXPECT_TRUE(has(refusal([&] { curves_of(found, "step", "sum [m]", {"sum [m]"}); }), "is not a parameter"));
 }
 
 TEST_F(StudyFiles, TextsThatASpreadsheetEvaluatesGetASingleQuoteAndNumbersDoNot) {
@@ -469,7 +470,7 @@ TEST_F(StudyFiles, StatisticsAreThoseOfTheFinishedPoints) {
   EXPECT_DOUBLE_EQ(y.quantile(1.0), 16.0);
   EXPECT_DOUBLE_EQ(rank_correlation(found, "x", "y"), 1.0);
   EXPECT_DOUBLE_EQ(rank_correlation(found, "y", "z"), -1.0);
-  EXPECT_TRUE(has(refusal([&] { statistics(found, "w"); }), "no column 'w'; there are 'x', 'y', 'z'"));
+  EXPECT_TRUE(has(refusal([&] { statistics(found, "w"); }), "no column \"w\"; there are \"x\", \"y\", \"z\""));
   EXPECT_TRUE(has(refusal([&] { y.quantile(1.5); }), "0 … 1"));
   // Ranks 1 2 3 4 and 1.5 1.5 3.5 3.5: Σab = 4, Σaa = 5, Σbb = 4.
   Study const ties({folder / "b.study"}, axis("x", "", {1.0, 2.0, 3.0, 4.0}), outputs("y"));

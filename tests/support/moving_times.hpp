@@ -317,8 +317,9 @@ void expect_refusals(I const& integrator) {
                   "the event \"first\" only touches zero at t = 0.501"));
   Event const second{.name = "second", .value = [](State const& x) { return x.t - 0.503; }};
   EXPECT_TRUE(has(said([](State const& x, double p) { return x.t - p - 0.003; }, {second}),
-                  "the events \"first\" and \"second\" are met at once at t = 0.503"));
-  EXPECT_TRUE(has(said([](State const& x, double p) { return x.t - p - 1.2; }), "an event, and a corner or the end"));
+                  "events \"first\" and \"second\" coincide at t = 0.503"));
+  EXPECT_TRUE(has(said([](State const& x, double p) { return x.t - p - 1.2; }),
+                  "an event coincides with a breakpoint or with the end of the run at t ="));
 
   auto const scenario_with = [](auto const& change) {
     return [change](P p) {
@@ -333,12 +334,12 @@ void expect_refusals(I const& integrator) {
   EXPECT_TRUE(
       has(refused(scenario_with([](RunOptions& o, double p) { o.breakpoints = {p, 0.5}; })), "part with \"p [s]\""));
   EXPECT_TRUE(has(refused(scenario_with([](RunOptions& o, double p) { o.breakpoints = {p, 0.5003}; })),
-                  "change their order with \"p [s]\""));
+                  "change their order within the difference step of \"p [s]\""));
   EXPECT_TRUE(has(refused(scenario_with([](RunOptions& o, double p) {
                     o.end_time = 0.5;
                     o.breakpoints = {p};
                   })),
-                  "a corner at the end of the run, t = 0.5 s, moves"));
+                  "a breakpoint at the end of the run, t = 0.5 s, moves"));
   EXPECT_TRUE(has(refused(scenario_with([](RunOptions& o, double) { o.max_step_halvings = 3; })), "halved steps"));
 }
 

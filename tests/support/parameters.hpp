@@ -199,8 +199,8 @@ int try_hostile(T sane, std::string const& type, Run const& run, Share share = {
       EXPECT_TRUE(names_one_of(error.what(), words + "|coordinate of body|the prescribed |the clock resolves"))
           << where << ": " << error.what();
     } catch (Error const& error) {
-      EXPECT_TRUE(names_one_of(error.what(), words + "| t = | load factor |is open by") &&
-                  !names_one_of(error.what(), "is open by nan"))
+      EXPECT_TRUE(names_one_of(error.what(), words + "| t = | load factor |violates") &&
+                  !names_one_of(error.what(), "by nan"))
           << where << ": " << error.what();
     } catch (std::exception const& error) {
       ADD_FAILURE() << where << ": a foreign exception, " << error.what();

@@ -266,9 +266,9 @@ TEST(AncfLinear, RefusesWhatIsNotLinear) {
   Model<Bodies<planar::AncfCable<>>, Joints<Pin>> model;
   auto const a = model.add(planar::AncfCable<>::from(bar({}), 2)),
              b = model.add(planar::AncfCable<>::from(bar(Placement::planar(0.5, 0)), 2));
-  EXPECT_TRUE(
-      has(refusal([&] { model.connect(Pin{}, a.at(0.5, 0.01), b.at(0.0), "hinge"); }),
-          "\"hinge\": planar::AncfCable: a point off the axis is not linear in the coordinates. Use Constraint here."));
+  EXPECT_TRUE(has(refusal([&] { model.connect(Pin{}, a.at(0.5, 0.01), b.at(0.0), "hinge"); }),
+                  "\"hinge\": planar::AncfCable: the position of a point off the axis is not linear in the "
+                  "coordinates. Use Constraint here."));
   EXPECT_EQ(model.markers(), 0);  // the refused joint adds no marker
   using Clamp = Joint<Weld, AncfLinear>;
   Model<Bodies<AncfCable<>>, Joints<Clamp, Joint<Revolute, AncfLinear>>> space;

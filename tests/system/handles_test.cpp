@@ -18,7 +18,7 @@ using Ball = Joint<Spherical, Constraint>;
 using Spring = SpringDamper;
 using M = Model<Bodies<Rigid<>, Ffr>, Joints<Ball>, Forces<Spring>>;
 
-char const* const empty = "A handle made by default names nothing in a model.";
+char const* const empty = "A default-constructed handle refers to no object of a model.";
 
 Rigid<> cube(double mass, Vec3 const& at = {0, 0, 0}) {
   return Rigid<>({.mass = mass, .inertia = Mat3::Identity(), .placement = Placement::at(at)});

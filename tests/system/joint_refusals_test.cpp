@@ -58,7 +58,7 @@ TEST(RefusedJoint, HasANegativeStiffness) {
 
 TEST(RefusedJoint, IsDrivenThroughAJump) {
   Window const window{.from = 1.0, .to = 2.0, .value = 0.5};
-  std::string const why = "\"elbow\": the law of time: its value jumps from 0 to 0.5 at t = 1 s";
+  std::string const why = "\"elbow\": the time function: the value jumps from 0 to 0.5 at t = 1 s";
   Refused refused;
   EXPECT_TRUE(has(refused(Turn{{.law = window}, {}}), why));
   EXPECT_TRUE(has(refused(Push{{.law = window}, {}}), why));
@@ -71,7 +71,7 @@ TEST(RefusedJoint, HasATableThatGoesBack) {
       has(refusal([] { (void)TabulatedLaw{MonotoneTable({{0.0, 0.0}, {0.2, 1.0}, {0.1, 2.0}}, "\"elbow\""), 0.0}; }),
           "\"elbow\": the abscissae of the table must increase, but point 3 has 0.1 after 0.2"));
   EXPECT_TRUE(has(refusal([] { (void)SmoothTable({{0.0, 0.0}, {0.2, 1.0}, {0.2, 2.0}}, {}, "\"elbow\""); }),
-                  "\"elbow\": the times must increase, but point 3 at t = 0.2 s follows one at 0.2 s."));
+                  "\"elbow\": the times must increase, but point 3 at t = 0.2 s follows a point at 0.2 s."));
 }
 
 template <class G>
@@ -109,7 +109,7 @@ TEST(RefusedJoint, LeavesItsAxisOut) {
          Universal, RelativeCoordinates, Gear, RackAndPinion, RollingDisc, KnifeEdge, Motor, Ramming>
       space(Rigid<>(1.0, Mat3::Identity()));
   std::string const hint =
-      "is not given. It has no default: give it as a unit vector, world axes at the reference "
+      "is missing. Give a unit vector in world axes at the reference "
       "configuration, such as {0, 0, 1}.";
   EXPECT_EQ(space(Revolute{}, "pin"), "\"pin\": Revolute: the axis " + hint);
   EXPECT_EQ(space(Motor{.law = ramp}, "drive"), "\"drive\": PrescribedAngle: the axis " + hint);
@@ -137,14 +137,15 @@ TEST(RefusedJoint, NeedsNoAxisOfATurnInThePlane) {
   Joined<planar::Rigid, Motor, RelativeCoordinates, Ramming, PointInPlane> plane(planar::Rigid(1.0, 1.0));
   EXPECT_EQ(plane(Motor{.law = ramp}, "drive"), "");
   EXPECT_EQ(plane(RelativeCoordinates{}, "mount"), "");
-  EXPECT_TRUE(has(plane(Ramming{.law = ramp}, "ram"), "PrescribedTranslation: the axis is not given"));
-  EXPECT_TRUE(has(plane(PointInPlane{}, "foot"), "PointInPlane: the normal is not given"));
+  EXPECT_TRUE(has(plane(Ramming{.law = ramp}, "ram"), "PrescribedTranslation: the axis is missing"));
+  EXPECT_TRUE(has(plane(PointInPlane{}, "foot"), "PointInPlane: the normal is missing"));
 }
 
 TEST(RefusedJoint, DrivesATurnThatItsPinDoesNotLeave) {
   using Space = Joined<Rigid<>, Revolute, Spherical, Motor>;
   std::string const why =
-      "\"drive\" drives a turn about (0, 0, 1), but \"pin\" leaves these bodies a turn about (0, 1, 0) alone (world "
+      "\"drive\" drives a rotation about (0, 0, 1), but \"pin\" allows only a rotation about (0, 1, 0) between these "
+      "bodies (world "
       "axes "
       "at the reference configuration). Give the drive the axis of the pin.";
   Revolute const pin{.axis = {0, 1, 0}};

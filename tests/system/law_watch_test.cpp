@@ -98,7 +98,7 @@ TEST(LawWatch, RefusesDerivativesOfAnotherFunction) {
       [](double t) { return Motion{0.1 * (1.0 - std::cos(5.0 * t)), 0.5 * std::sin(5.0 * t)}; }};
   for (Any const& law : {without_rate, half_the_rate}) {
     EXPECT_TRUE(has(said(GeneralisedAlpha{}, law).message, "joint \"drive\""));
-    EXPECT_TRUE(has(said(RungeKutta4<Projection>{}, law).message, "Give the derivatives"));
+    EXPECT_TRUE(has(said(RungeKutta4<Projection>{}, law).message, "Correct the derivatives"));
     EXPECT_LT(said(Radau{}, law).t, 0.02);
   }
   EXPECT_TRUE(has(said(GeneralisedAlpha{}, without_acceleration).message, "the prescribed rate"));

@@ -167,7 +167,7 @@ TEST(ModelChanges, OfAnEmptiedModelAreAsOfANewOne) {
   auto const there = std::move(model);
   State none = model.reference_state();  // NOLINT(bugprone-use-after-move): the state after a move is what is tested
   EXPECT_EQ(none.q.size(), 0);
-  EXPECT_TRUE(has(refusal([&] { (void)simulate(model, none, GeneralisedAlpha{}, options); }), "no body that moves"));
+  EXPECT_TRUE(has(refusal([&] { (void)simulate(model, none, GeneralisedAlpha{}, options); }), "no moving body"));
   auto const a = model.add(planar::Rigid(1, 0.1, Placement::planar(0.5, 0)), "a");
   model.connect(Pin<Constraint>{}, model.ground().at({0, 0, 0}), a.at(Vec2(-0.5, 0)), "pin");
   State x = model.reference_state(), y = there.reference_state();

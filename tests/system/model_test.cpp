@@ -60,7 +60,7 @@ TEST(Model, RefusesANameThatIsTaken) {
   Model<Bodies<planar::Rigid>, Joints<Pin, Soft>, Forces<PointForce<>, PointMoment<>>> model;
   auto const boom = model.add(bar(), "boom");
   auto const ground = model.ground().at({0, 0, 0});
-  EXPECT_TRUE(has(refusal([&] { model.add(bar(), "boom"); }), "There is a body \"boom\" already"));
+  EXPECT_TRUE(has(refusal([&] { model.add(bar(), "boom"); }), "Duplicate name of a body: \"boom\""));
   model.connect(Pin{}, ground, boom.at(Vec2(0, 0)), "boom");  // a joint may have the same name as a body
   Soft const soft{{}, Penalty{.stiffness = 1.0, .damping = 0.0}};
   EXPECT_TRUE(has(refusal([&] { model.connect(soft, ground, boom.at(Vec2(0, 0)), "boom"); }), "a joint \"boom\""));
@@ -119,7 +119,7 @@ TEST(Model, RefusesMarkersAndHandlesOfAnotherModel) {
   auto const own = model.add(bar(), "own"), foreign = another.add(bar(), "foreign");
   auto const at = foreign.at(Vec2(0, 0));
   State x = model.reference_state();
-  char const* const said = "of another model; take it from a body added to this one.";
+  char const* const said = "of another model. Take it from a body of this model.";
   EXPECT_TRUE(has(refusal([&] { model.connect(Pin{}, own.at(Vec2(0, 0)), at, "elbow"); }), "\"elbow\""));
   EXPECT_TRUE(has(refusal([&] { model.connect(Pin{}, own.at(Vec2(0, 0)), at); }), said));
   EXPECT_TRUE(has(refusal([&] { model.connect(Pin{}, another.ground().at({0, 0, 0}), own.at(Vec2(0, 0))); }), said));
@@ -142,7 +142,7 @@ TEST(Model, NamesTheJointWhoseParametersCannotBeMeant) {
     return refusal([&] { model.connect(drive, model.ground().at({0, 0, 0}), a.at(Vec2(0, 0)), "drive"); });
   };
   EXPECT_TRUE(has(connect({{.law = {.target = 1.0, .duration = 1.0}, .axis = {0, 0, 0}}, {}}), "\"drive\": "));
-  EXPECT_TRUE(has(connect({{.law = {.target = 1.0, .duration = -1.0}}, {}}), "\"drive\": the law of time"));
+  EXPECT_TRUE(has(connect({{.law = {.target = 1.0, .duration = -1.0}}, {}}), "\"drive\": the time function"));
   EXPECT_EQ(model.rows(), 0);
 }
 

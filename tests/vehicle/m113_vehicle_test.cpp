@@ -219,12 +219,12 @@ TEST(M113Vehicle, SpeedThatStepsDoNotResolveIsWarnedOf) {
 
 TEST(M113Vehicle, RefusesAStartThatCannotBeMeant) {
   auto const made = [](m113::VehicleOptions const& o) { return refusal([&] { Car(Constraint{}, still(), o); }); };
-  EXPECT_TRUE(has(made({.cut = 64}), "one of 0 … 63, but 64 is asked for"));
+  EXPECT_TRUE(has(made({.cut = 64}), "must lie in [0, 63], but is 64"));
   EXPECT_TRUE(has(made({.friction_factor = -0.1}), "the factor of the coefficients of friction"));
   EXPECT_TRUE(has(made({.cut = -1}), "but -1 is asked for"));
   m113::VehicleOptions short_track;
   short_track.start.links.pop_back();
-  EXPECT_TRUE(has(made(short_track), "the start needs the places of 64 links, but has 63"));
+  EXPECT_TRUE(has(made(short_track), "the start needs the positions of 64 links, but has 63"));
   EXPECT_TRUE(has(made({.preload = std::numeric_limits<double>::quiet_NaN()}), "the preload must be finite"));
 }
 

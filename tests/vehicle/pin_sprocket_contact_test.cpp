@@ -384,14 +384,15 @@ TEST(PinSprocketContact, RefusesNumbersThatCannotBeMeantByName) {
   }
   EXPECT_TRUE(
       has(told([](auto& g) { g.profile.teeth = 3; }), "\"sprocket\": a sprocket needs at least four teeth, but has 3"));
-  EXPECT_TRUE(has(told([](auto& g) { g.profile.valley_radius = m113::pin_radius; }), "must be larger than the pins'"));
+  EXPECT_TRUE(
+      has(told([](auto& g) { g.profile.valley_radius = m113::pin_radius; }), "must exceed the radius of the pins"));
   EXPECT_TRUE(has(told([](auto& g) { g.profile.flank = 0.5 * pi; }), "a right angle"));
   EXPECT_TRUE(has(told([](auto& g) { g.profile.tip_radius = 0.2459; }),
                   "0.24596"));  // f of the independent computation: |(0.244088, 0.030311)| = 0.24596
   EXPECT_TRUE(has(told([](auto& g) { g.profile.tip_radius = 0.5; }), "leave nothing of the teeth"));
   EXPECT_TRUE(has(told([](auto& g) { g.valley = nan; }), "\"sprocket\": the angle of a valley"));
   EXPECT_TRUE(has(told([](auto& g) { g.rings.clear(); }), "\"sprocket\": a sprocket needs at least one ring"));
-  EXPECT_TRUE(has(told([](auto& g) { g.rings[0] = infinity; }), "\"sprocket\": the place of a ring"));
+  EXPECT_TRUE(has(told([](auto& g) { g.rings[0] = infinity; }), "\"sprocket\": the position of a ring"));
   EXPECT_NO_THROW(two_rings.check("\"sprocket\""));
 }
 

@@ -447,15 +447,15 @@ TEST(BumpCourse, RefusesWhatIsNoBump) {
   EXPECT_TRUE(has(said({.x = 0.0, .length = 1.0, .height = 0.1, .y = infinity}),
                   "bump 2: its middle and height must be finite"));
   for (double const width : {-1.0, 0.0, nan})
-    EXPECT_TRUE(
-        has(said({.x = 0.0, .length = 1.0, .height = 0.1, .y = 0.0, .width = width}),
-            "bump 2: the width must be positive, but is " + number(width) + ". Leave it out for a bump right across."));
+    EXPECT_TRUE(has(said({.x = 0.0, .length = 1.0, .height = 0.1, .y = 0.0, .width = width}),
+                    "bump 2: the width must be positive, but is " + number(width) +
+                        " m. Omit it for a bump across the whole ground."));
 }
 
 TEST(RoadProfile, RefusesPointsThatMakeNoRoad) {
   using Points = std::vector<RoadProfile::Point>;
   auto const said = [](Points const& points) { return refusal([&] { RoadProfile(points, "\"road\""); }); };
-  EXPECT_TRUE(has(said({}), "\"road\": a table needs two points at least, but has 0"));
+  EXPECT_TRUE(has(said({}), "\"road\": a table needs at least two points, but has 0"));
   EXPECT_TRUE(has(said({{1.0, 2.0}}), "but has 1"));
   EXPECT_TRUE(has(said({{0.0, 0.0}, {1.0, nan}}), "\"road\": point 2 of the table must be finite, but is (1, nan)"));
   EXPECT_TRUE(has(said({{-infinity, 0.0}, {1.0, 0.0}}), "point 1 of the table must be finite"));
@@ -478,7 +478,7 @@ TEST(HeightField, RefusesWhatIsNoGrid) {
   EXPECT_TRUE(has(said([](Grid& g) { g.heights(2, 3) = nan; }),
                   "\"hill\": heights(2, 3) must be finite, but is nan. Fill gaps"));
   EXPECT_TRUE(has(said([](Grid& g) { g.heights = MatX::Zero(1, 5); }),
-                  "\"hill\": a grid needs two points at least along x and along y, but has 1 by 5. For what"));
+                  "\"hill\": a grid needs at least two points along x and along y, but has 1 by 5. For"));
   EXPECT_TRUE(has(said([](Grid& g) { g.heights = MatX(); }), "but has 0 by 0"));
 }
 

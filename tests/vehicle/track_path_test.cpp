@@ -296,7 +296,7 @@ TEST(TrackPath, RefusesANumberOfLinksThatDoesNotFit) {
   layout.links = 62;
   std::string const few = refusal([&] { wrap_track(layout); });
   EXPECT_TRUE(has(few, "62 links are too few"));
-  EXPECT_TRUE(has(few, "'idler'"));
+  EXPECT_TRUE(has(few, "\"idler\""));
   layout.links = 70;
   EXPECT_TRUE(has(refusal([&] { wrap_track(layout); }), "70 links are too many"));
   layout.links = 0;
@@ -306,24 +306,24 @@ TEST(TrackPath, RefusesANumberOfLinksThatDoesNotFit) {
 TEST(TrackPath, RefusesWheelsThatOverlap) {
   TrackLayout layout = tank(false);
   layout.circles[6].centre[0] += 0.1;  // wheels 2 and 3 are 0.73 − 2 · 0.32 = 0.09 m apart
-  EXPECT_TRUE(has(refusal([&] { wrap_track(layout); }), "'wheel 2' and 'wheel 3' overlap by 0.01 m"));
+  EXPECT_TRUE(has(refusal([&] { wrap_track(layout); }), "\"wheel 2\" and \"wheel 3\" overlap by 0.01 m"));
   layout = m113::track();
   layout.circles[0].radius = 0.31;
-  EXPECT_TRUE(has(refusal([&] { wrap_track(layout); }), "two circles are called 'wheel 1'"));
+  EXPECT_TRUE(has(refusal([&] { wrap_track(layout); }), "duplicate circle name \"wheel 1\""));
   layout = m113::track();
   layout.tensioner.least = -0.2;  // forward of −3.95 m + 0.025 m the idler touches wheel 5
   layout.links = 62;
-  EXPECT_TRUE(has(refusal([&] { wrap_track(layout); }), "'wheel 5' and 'idler' overlap"));
+  EXPECT_TRUE(has(refusal([&] { wrap_track(layout); }), "\"wheel 5\" and \"idler\" overlap"));
   layout = m113::track();
   layout.circles.insert(layout.circles.begin(), {"guard", Vec2(-0.3, 0.6), 0.1});
-  EXPECT_TRUE(has(refusal([&] { wrap_track(layout); }), "'guard' and 'sprocket' overlap"));
+  EXPECT_TRUE(has(refusal([&] { wrap_track(layout); }), "\"guard\" and \"sprocket\" overlap"));
 }
 
 TEST(TrackPath, RefusesAPitchTooLongForAWheel) {
   TrackLayout layout = belt(4, 0.5, 0.2, 3.0, 0.02);  // 0.71 m around a circle of 0.2 m
   layout.tensioner.most = 1.0;
   layout.links = int(std::ceil(track_length(layout, 0.0)));
-  EXPECT_TRUE(has(refusal([&] { wrap_track(layout); }), "too long for 'idler'"));
+  EXPECT_TRUE(has(refusal([&] { wrap_track(layout); }), "too long for \"idler\""));
   layout.sprocket.teeth = 3;
   EXPECT_TRUE(has(refusal([&] { wrap_track(layout); }), "at least four teeth"));
 }
@@ -332,11 +332,11 @@ TEST(TrackPath, RefusesCirclesOutOfOrder) {
   TrackLayout layout = m113::track();
   layout.circles.erase(layout.circles.begin() + 6, layout.circles.end());
   std::reverse(layout.circles.begin(), layout.circles.end());
-  EXPECT_TRUE(has(refusal([&] { wrap_track(layout); }), "does not touch 'idler'"));
+  EXPECT_TRUE(has(refusal([&] { wrap_track(layout); }), "does not touch \"idler\""));
   layout = m113::track();
   layout.circles.erase(layout.circles.begin() + 6, layout.circles.end());
   layout.circles[2].centre[1] = 0.6;  // wheel 3 penetrates the upper run, for which it is not listed
-  EXPECT_TRUE(has(refusal([&] { wrap_track(layout); }), "deep through 'wheel 3'"));
+  EXPECT_TRUE(has(refusal([&] { wrap_track(layout); }), "deep through \"wheel 3\""));
 }
 
 TEST(TrackPath, RefusesAWheelOnItsWrongSide) {
@@ -344,7 +344,7 @@ TEST(TrackPath, RefusesAWheelOnItsWrongSide) {
   // In front of all other circles, but the track turns down at the sprocket.
   layout.circles.insert(layout.circles.begin(), {"nose", Vec2(1.0, 0.6), 0.3});
   layout.sprocket.centre[1] = 0.4;
-  EXPECT_TRUE(has(refusal([&] { wrap_track(layout); }), "'nose' is to lie inside the track"));
+  EXPECT_TRUE(has(refusal([&] { wrap_track(layout); }), "\"nose\" must lie inside the track"));
 }
 
 // The highest seat of the sprocket is at z = 0.4, below the tangent to two wheels of 0.5 m on both of its sides.
@@ -354,18 +354,18 @@ TEST(TrackPath, RefusesASprocketWithinTheRun) {
   layout.circles.insert(layout.circles.begin(), {"front", Vec2(2.0, 0.0), 0.48});
   layout.tensioner.most = 0.2;
   layout.links = int(std::ceil(track_length(layout, 0.0)));
-  EXPECT_TRUE(has(refusal([&] { wrap_track(layout); }), "no pin can sit on 'sprocket'"));
+  EXPECT_TRUE(has(refusal([&] { wrap_track(layout); }), "no pin can sit on \"sprocket\""));
 }
 
 TEST(TrackPath, RefusesATensionerThatDoesNotTighten) {
   TrackLayout layout = m113::track();
   layout.tensioner.circle = "roller";
-  EXPECT_TRUE(has(refusal([&] { wrap_track(layout); }), "'roller' is none of the circles"));
+  EXPECT_TRUE(has(refusal([&] { wrap_track(layout); }), "\"roller\" is not a circle of the track"));
   layout.tensioner.circle = "wheel 3";
   layout.tensioner.direction = Vec2(0.0, 1.0);
   layout.tensioner.least = 0.0;
   layout.tensioner.most = 0.05;  // the ground run is 11 mm below it, the upper run 89 mm above
-  EXPECT_TRUE(has(refusal([&] { wrap_track(layout); }), "does not touch 'wheel 3'"));
+  EXPECT_TRUE(has(refusal([&] { wrap_track(layout); }), "does not touch \"wheel 3\""));
   layout.tensioner.direction = Vec2(0.0, 0.0);
   EXPECT_TRUE(has(refusal([&] { wrap_track(layout); }), "needs a direction"));
 }

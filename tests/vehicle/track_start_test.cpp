@@ -174,8 +174,8 @@ TEST(SettledTrack, RefusesWhatCannotBeMeant) {
   double const nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(has(refusal([&] { m113::settled_track({.preload = nan}); }),
                   "\"left tensioner spring\": the preload must be finite"));
-  EXPECT_TRUE(
-      has(refusal([&] { m113::settled_track({.cut = 64}); }), "the pin that closes a track is one of 0 … 63, but 64"));
+  EXPECT_TRUE(has(refusal([&] { m113::settled_track({.cut = 64}); }),
+                  "the pin that closes a track must lie in [0, 63], but is 64"));
   EXPECT_TRUE(has(refusal([&] { m113::settled_track({.cut = -1}); }), "but -1"));
   m113::VehicleOptions options;
   options.masses.link.mass = 0.0;
@@ -183,7 +183,7 @@ TEST(SettledTrack, RefusesWhatCannotBeMeant) {
   m113::VehicleOptions few;
   few.start.links.pop_back();
   EXPECT_TRUE(has(refusal([&] { m113::Vehicle<>(Constraint{}, {m113::drive(0.0), m113::drive(0.0)}, few); }),
-                  "needs the places of 64 links, but has 63"));
+                  "needs the positions of 64 links, but has 63"));
 }
 
 // A preload is refused if it pulls the track through its wheels, or pushes the idler into the last wheel.

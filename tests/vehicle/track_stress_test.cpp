@@ -153,7 +153,7 @@ TEST(TrackStress, TwoElementsBendAsTheDecoupledAnalysisSays) {
 TEST(TrackStress, RefusesLessThanOneElement) {
   using Track = m113::Vehicle<AncfCable<>, AncfLinear>;
   EXPECT_TRUE(has(refusal([] { Track(AncfLinear{}, {setting_out(), setting_out()}, options(false, -1)); }),
-                  "one element or more"));
+                  "at least one element"));
 }
 
 // Tracks that run around a fixed vehicle without driving resistance. The tensioner applies T₀ to either run, and the

@@ -64,10 +64,13 @@ void check_outputs(ComparedRun const& run, std::vector<ComparedRun> const& earli
   std::sort(names.begin(), names.end());
   bool const named = names.empty() || !names.front().empty();
   if (!named || std::adjacent_find(names.begin(), names.end()) != names.end())
-    throw InvalidInput{"compare: the outputs of \"", run.name, "\" need names, each its own."};
+    throw InvalidInput("compare.outputs",
+                       {ErrorObject{"compare"}, ": the outputs of \"", run.name, "\" need distinct names."});
   if (!earlier.empty() && run.output_names != earlier.front().output_names)
-    throw InvalidInput{"compare: \"", run.name, "\" has other outputs than \"", earlier.front().name,
-                       "\". Let the case name the same ones, in the same order, for every formulation."};
+    throw InvalidInput(
+        "compare.outputs",
+        {ErrorObject{"compare"}, ": the outputs of \"", run.name, "\" differ from those of \"", earlier.front().name,
+         "\". The case must return the same outputs in the same order for every formulation."});
 }
 
 /// Evaluations in each sampled state of a run, independent of the type of the case's model.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <iomanip>
 #include <limits>
 #include <ostream>
@@ -52,8 +53,9 @@ struct Comparison {
 /// reason.
 class ComparisonFailed : public Error {
  public:
-  /// Error with a `message` about the failed runs, and the completed runs `others`.
-  ComparisonFailed(std::string const& message, Comparison others) : Error(message), finished(std::move(others)) {}
+  /// Error with a `code`, the `parts` of a message about the failed runs, and the completed runs `others`.
+  ComparisonFailed(char const* code, std::initializer_list<MessagePart> parts, Comparison others)
+      : Error(code, parts), finished(std::move(others)) {}
 
   Comparison finished;  ///< completed runs
 };
@@ -66,7 +68,7 @@ Comparison require_complete(Comparison c) {
     if (!run.failure.empty()) failures += sentence_of({" \"", run.name, "\": ", run.failure});
   if (failures.empty()) return c;
   std::erase_if(c.runs, [](ComparedRun const& run) { return !run.failure.empty(); });
-  throw ComparisonFailed("compare: runs failed." + failures, std::move(c));
+  throw ComparisonFailed("compare.failed", {"compare: runs failed.", failures}, std::move(c));
 }
 
 /// Number with name and unit.

@@ -51,7 +51,10 @@ template <class Field>
   requires std::is_invocable_r_v<Mat3, Field&, double>
 std::vector<Vec3> implied_curve(Field&& rotation, double length, Index pieces, Vec3 const& start = Vec3::Zero()) {
   require_positive(length, "implied_curve: the length");
-  if (pieces < 1) throw InvalidInput("implied_curve: at least one piece is needed.");
+  if (pieces < 1)
+    throw InvalidInput(
+        "implied_curve.pieces",
+        {ErrorObject{"implied_curve"}, ": at least one piece is needed, but there are ", ErrorValue{pieces}, "."});
   double const part = length / double(pieces);
   std::vector<Vec3> curve{start};
   for (Index i = 0; i < pieces; ++i) {

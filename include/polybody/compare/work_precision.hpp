@@ -54,8 +54,9 @@ namespace detail {
 template <class S>
 auto const& output_of(S const& scenario, std::size_t output, std::string const& what) {
   if (output >= scenario.outputs.size())
-    throw InvalidInput{
-        what, ": there is no output ", output, "; the case has ", scenario.outputs.size(), ", counted from 0."};
+    throw InvalidInput("compare.output_index",
+                       {ErrorObject{what}, ": output ", ErrorValue{output}, " does not exist; the case has ",
+                        scenario.outputs.size(), " outputs, counted from 0."});
   return scenario.outputs[output];
 }
 
@@ -110,7 +111,9 @@ WorkCurve work_precision(C const& make_case, F const& formulation, std::vector<d
                          OutputReference const& reference, std::size_t output = 0) {
   auto scenario = make_case(formulation);
   auto const& y = detail::output_of(scenario, output, "work_precision");
-  if (settings.empty()) throw InvalidInput("work_precision: give one step or tolerance at least.");
+  if (settings.empty())
+    throw InvalidInput("work_precision.settings",
+                       {ErrorObject{"work_precision"}, ": at least one step or tolerance is needed."});
   WorkCurve curve{detail::name_of(formulation), y.name};
   for (double const setting : settings) {
     auto integrator = formulation.integrator;
@@ -118,7 +121,9 @@ WorkCurve work_precision(C const& make_case, F const& formulation, std::vector<d
     WorkPoint& point = curve.points.emplace_back(WorkPoint{.setting = setting});
     auto const compare_at = [&](State const& x) {
       double const error = std::abs(y.value(scenario.model, x) - reference.at(x.t));
-      if (!std::isfinite(error)) throw NonFiniteValue{"The error of ", y.name, " is not finite at t = ", x.t, " s."};
+      if (!std::isfinite(error))
+        throw NonFiniteValue("compare.error_not_finite", {"The error of \"", ErrorObject{y.name},
+                                                          "\" is not finite at t = ", ErrorTime{x.t}, " s."});
       point.error = std::max(point.error, error);
     };
     State x = scenario.start, again = x;

@@ -28,8 +28,13 @@ auto apply_distributed(M& model, BodyHandle<B> const& bar, PointForce<Law> const
   double const from = range.from, to = range.to;
   Index const pieces = range.pieces;
   if (!(to > from) || !std::isfinite(from) || !std::isfinite(to))
-    throw InvalidInput{"\"", what, "\": a distributed force needs a range from < to, but has ", from, " to ", to, "."};
-  if (pieces < 1) throw InvalidInput{"\"", what, "\": a distributed force needs at least one piece."};
+    throw InvalidInput("distributed_force.range",
+                       {"\"", ErrorObject{what}, "\": a distributed force needs a range from < to, but has from = ",
+                        from, " m, to = ", to, " m."});
+  if (pieces < 1)
+    throw InvalidInput("distributed_force.pieces",
+                       {"\"", ErrorObject{what}, "\": a distributed force needs at least one piece, but has ",
+                        ErrorValue{pieces}, "."});
   double const l = (to - from) / double(pieces);
   std::vector<decltype(model.apply(per_length, bar.at(from), name))> handles;
   for (Index i = 0; i < pieces; ++i)

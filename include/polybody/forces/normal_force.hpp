@@ -22,7 +22,9 @@ namespace detail {
 /// \throws InvalidInput unless 0 < e ≤ 1; `of` names the law.
 inline void require_restitution(double e, char const* of) {
   if (!(e > 0.0 && e <= 1.0))
-    throw InvalidInput{of, ": the coefficient of restitution must lie above 0 and not above 1, but is ", e, "."};
+    throw InvalidInput(
+        "contact.restitution",
+        {ErrorObject{of}, ": the coefficient of restitution must lie in (0, 1], but is ", ErrorValue{e}, "."});
 }
 /// Root of the decreasing function `f` with f(from) > 0, by bisection.
 template <class F>
@@ -145,7 +147,9 @@ struct HuntCrossleyContact {
     require_positive(stiffness, name, ": the contact stiffness");
     require_not_negative(damping, name, ": the contact damping");
     if (!(exponent >= 1.0) || !std::isfinite(exponent))
-      throw InvalidInput{name, ": the exponent of the overlap must be 1 or more, but is ", exponent, "."};
+      throw InvalidInput("contact.exponent",
+                         {ErrorObject{name}, ": the exponent of the contact law must be at least 1, but is ",
+                          ErrorValue{exponent}, "."});
   }
   bool is_lossless() const { return damping == 0.0; }  ///< true if an impact conserves energy
   /// Force N ≥ 0 [N] at penetration d [m] with the rate `rate` [m/s].

@@ -39,7 +39,7 @@ struct PointForce {
 
   void check(std::string const& name) const {
     require_finite(force, name, ": the force");
-    check_time_function(law, name + ": the law of time");
+    check_time_function(law, name + ": the time function");
   }
 
   template <StateScalar T>
@@ -64,7 +64,7 @@ struct PointMoment {
 
   void check(std::string const& name) const {
     require_finite(moment, name, ": the moment");
-    check_time_function(law, name + ": the law of time");
+    check_time_function(law, name + ": the time function");
   }
 
   template <StateScalar T>

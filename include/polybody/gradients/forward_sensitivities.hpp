@@ -225,15 +225,10 @@ class ForwardSensitivities {
       for (std::size_t j = 0; j < parameters_.size(); ++j) {
         double const own = -beside_.of_values(j, x_, tangents_[j], h_, value)[0] / rate;
         if (first && std::abs(own - dh[j]) > 1e-6 * (std::abs(own) + h_ / parameters_[j].size()))
-          throw InvalidInput{"sensitivities: the events \"",
-                             *first,
-                             "\" and \"",
-                             event.name,
-                             "\" are met at once at t = ",
-                             x_.t,
-                             " s and part with \"",
-                             parameters_[j].name,
-                             "\": there is no derivative there. Look for one of them."};
+          throw InvalidInput("derivative.coincident_times",
+                             {"sensitivities: events \"", ErrorObject{*first}, "\" and \"", event.name,
+                              "\" coincide at t = ", ErrorTime{x_.t}, " s, but separate with \"", parameters_[j].name,
+                              "\", so that there is no derivative there. Remove one of the events."});
         if (!first) dh[j] = own;
       }
       first = &event.name;

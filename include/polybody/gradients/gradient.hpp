@@ -102,13 +102,16 @@ class AdjointRun {
   static void require_still(RunOptions const& o) {
     if (!o.events.empty() || !o.breakpoints.empty())
       throw InvalidInput(
-          "gradient: runs with events or corners go back under the generalised-α family alone. Take `sensitivities`.");
+          "gradient.method",
+          {ErrorObject{"gradient"},
+           ": runs with events or breakpoints need a method of the generalised-α family. Use `sensitivities`."});
   }
   /// The length of the first step.
   double begin_plan(double t) {
     RunOptions const& options = full_.scenario.options;
     if (!(t < options.end_time))
-      throw InvalidInput("gradient: the run has no step. Let it go on until after its start.");
+      throw InvalidInput("gradient.no_step",
+                         {ErrorObject{"gradient"}, ": the run has no step. Give an end time after the start."});
     plan_ = StepPlan(t, options.end_time, options.step, full_.system.layout().breakpoints);
     largest_ = options.max_step.value_or(std::numeric_limits<double>::infinity());
     return plan_.next(t, std::min<double>(options.step, largest_)).h;
@@ -121,8 +124,10 @@ class AdjointRun {
     while (x.t < options.end_time) {
       StepPlan::Next const next = plan_.next(x.t, h);
       if (next.jumps)
-        throw InvalidInput{"gradient: a drive or load has a corner at t = ", next.target,
-                           " s, where a run begins anew. Give smooth laws, or end the run before."};
+        throw InvalidInput(
+            "gradient.breakpoint",
+            {ErrorObject{"gradient"}, ": a drive or load has a breakpoint at t = ", ErrorTime{next.target},
+             " s, where the method restarts. Use smooth time functions, or end the run before."});
       Step step{next.h, next.h, 0.0};
       double const from = x.t;
       if constexpr (chooses) {
@@ -133,9 +138,10 @@ class AdjointRun {
       }
       x.t = step.end = next.lands && step.taken == next.h ? next.target : row.after(from, step.taken);
       if (W::asks_for_equal_steps(full_) && !steps_.empty() && std::abs(step.h - steps_.back().h) > 1e-9 * step.h)
-        throw InvalidInput{"gradient: the step to t = ", step.end,
-                           " s has another length than the others. Give the options a step that divides the time of "
-                           "the run, or set start_correction to false."};
+        throw InvalidInput("gradient.step_length",
+                           {ErrorObject{"gradient"}, ": the length of the step to t = ", ErrorTime{step.end},
+                            " s differs from the other steps. Give a step that divides the time of the run, or set "
+                            "start_correction to false."});
       steps_.push_back(step);
     }
   }
@@ -187,8 +193,9 @@ class AdjointRun {
         of_integrand += by * term(v.scenario.integrand, v.scenario.model, v.shown(y));
         y = W::start_step(v, std::move(y), h);
         if (!W::begin_alike(x, y))
-          throw InvalidInput{"gradient: the start of a run with another \"", p.name,
-                             "\" is corrected otherwise. Set start_correction to false."};
+          throw InvalidInput("gradient.start_correction",
+                             {ErrorObject{"gradient"}, ": the start correction changes with \"", p.name,
+                              "\". Set start_correction to false."});
         add(dx, y, by);
         beside_.push_back(std::make_unique<ParameterDifferences>(std::move(v.scenario)));
       }
@@ -249,9 +256,9 @@ GradientResult gradient(Make const& make, std::vector<Parameter> const& paramete
                   "<polybody/gradients/radau_step_adjoint.hpp> of Radau.");
     MethodOf<I> const method = detail::method_of_stages(parameters, integrator);
     if (detail::has_moving_times(make, parameters, make(detail::values_of(parameters)), requires { I::adaptive_step; }))
-      throw InvalidInput(
-          "gradient: runs whose start, end or steps depend on a parameter go back under the generalised-α family "
-          "alone. Take `sensitivities`.");
+      throw InvalidInput("gradient.method", {ErrorObject{"gradient"},
+                                             ": runs whose start, end or steps depend on a parameter need a method of "
+                                             "the generalised-α family. Use `sensitivities`."});
     return detail::AdjointRun<Make, I, detail::StageBackwardSweep>(make, parameters, method).run(options);
   }
 }

@@ -36,8 +36,9 @@ template <class = void>
 std::size_t snapshots_of(GradientOptions const& options, double size) {
   if (options.snapshots > 0) return options.snapshots;
   if (!(options.memory >= size))
-    throw InvalidInput{"gradient: a snapshot of a state takes ", size, " bytes, but the memory is ", options.memory,
-                       " bytes. Give more of it."};
+    throw InvalidInput("gradient.memory",
+                       {ErrorObject{"gradient"}, ": a snapshot of a state takes ", size,
+                        " bytes, but the allowed memory is ", ErrorValue{options.memory}, " bytes. Increase it."});
   return std::size_t(std::min(options.memory / size, 1e15));
 }
 /// Memory of a snapshot of x [bytes].

@@ -13,24 +13,24 @@ namespace polybody::detail {
 /// \throws InvalidInput, beginning with `who`: at t [s] a step ends at an event and at a corner or the end of the run.
 template <class = void>
 [[noreturn, gnu::cold]] void refuse_event_at_corner(double t, char const* who) {
-  throw InvalidInput{who, ": at t = ", t,
-                     " s there is an event, and a corner or the end of the run: there is no derivative there. Move "
-                     "one of them by a step."};
+  throw InvalidInput("derivative.coincident_times",
+                     {ErrorObject{who}, ": an event coincides with a breakpoint or with the end of the run at t = ",
+                      ErrorTime{t}, " s, so that there is no derivative there. Move one of them by a step."});
 }
 /// \throws InvalidInput, beginning with `who`: the run ends at t [s] at a corner that moves with the parameter `name`.
 template <class = void>
 [[noreturn, gnu::cold]] void refuse_corner_at_end(double t, std::string const& name, char const* who) {
-  throw InvalidInput{
-      who,  ": a corner at the end of the run, t = ",
-      t,    " s, moves with \"",
-      name, "\", and the end does not: there is no derivative there. End the run a step before or after."};
+  throw InvalidInput(
+      "derivative.coincident_times",
+      {ErrorObject{who}, ": a breakpoint at the end of the run, t = ", ErrorTime{t}, " s, moves with \"", name,
+       "\", but the end does not, so that there is no derivative there. End the run a step before or after."});
 }
 /// \throws InvalidInput, beginning with `who`: the value of the event `name` does not pass through zero at t [s].
 template <class = void>
 [[noreturn, gnu::cold]] void refuse_touch(std::string const& name, double t, char const* who) {
-  throw InvalidInput{who,  ": the event \"",
-                     name, "\" only touches zero at t = ",
-                     t,    " s, so its time has no derivative. Look for a value that passes through zero at a rate."};
+  throw InvalidInput("derivative.event",
+                     {ErrorObject{who}, ": the event \"", name, "\" only touches zero at t = ", ErrorTime{t},
+                      " s, so that its time has no derivative. Use a value that passes through zero at a rate."});
 }
 
 /// \throws InvalidInput, beginning with `who`: one of the `events` is held at zero from t [s] on.
@@ -39,12 +39,9 @@ template <class = void>
                                   char const* who) {
   std::size_t const i = watch.first_held();
   if (i < events.size())
-    throw InvalidInput{who,
-                       ": the event \"",
-                       events[i].name,
-                       "\" comes to rest at t = ",
-                       t,
-                       " s. Impacts that accumulate have no derivative there. End the run before."};
+    throw InvalidInput("derivative.event",
+                       {ErrorObject{who}, ": the event \"", events[i].name, "\" comes to rest at t = ", ErrorTime{t},
+                        " s. Impacts that accumulate have no derivative there. End the run before."});
 }
 
 }  // namespace polybody::detail

@@ -43,7 +43,8 @@ double term(F const& f, M const& model, State const& x) {
   } else {
     double const value = value_of(f(model, x));
     if (!std::isfinite(value))
-      throw NonFiniteValue{"gradient: the objective", non_finite_suffix(value), " at t = ", x.t, " s."};
+      throw NonFiniteValue("output.not_finite", {ErrorObject{"gradient"}, ": the objective", non_finite_suffix(value),
+                                                 " at t = ", ErrorTime{x.t}, " s."});
     return value;
   }
 }

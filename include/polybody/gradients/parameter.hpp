@@ -36,13 +36,18 @@ void check(std::vector<Parameter> const& parameters) {
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     Parameter const& p = parameters[i];
     for (std::size_t j = 0; j < i; ++j)
-      if (p.name == parameters[j].name) throw InvalidInput{"Two parameters are called \"", p.name, "\"."};
-    if (p.name.empty()) throw InvalidInput{"Parameter ", i, " has no name."};
+      if (p.name == parameters[j].name)
+        throw InvalidInput("parameter.name", {"Duplicate parameter name \"", ErrorObject{p.name}, "\"."});
+    if (p.name.empty()) throw InvalidInput("parameter.name", {"Parameter ", ErrorValue{i}, " has no name."});
     if (!std::isfinite(p.value) || !std::isfinite(p.scale) || p.scale < 0.0)
-      throw InvalidInput{"The parameter \"", p.name, "\" must have a finite value and no negative scale."};
+      throw InvalidInput("parameter.value",
+                         {"Parameter \"", ErrorObject{p.name},
+                          "\": the value must be finite, and the scale finite and not negative, but they are ",
+                          ErrorValue{p.value}, " and ", p.scale, "."});
     if (!(p.distance() > 0.0))
-      throw InvalidInput{"The parameter \"", p.name,
-                         "\" is zero and has no scale. Give the size over which the model changes with it."};
+      throw InvalidInput("parameter.scale",
+                         {"Parameter \"", ErrorObject{p.name},
+                          "\" is zero and has no scale. Give the size over which the model changes with it."});
   }
 }
 

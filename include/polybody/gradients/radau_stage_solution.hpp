@@ -169,8 +169,9 @@ class RadauStageSolution {
         break;
       }
       if (!std::isfinite(change) || k == most_corrections)
-        throw NewtonConvergenceFailure{"The stages of the step that ends at t = ", step.before.t + step.h,
-                                       " s are not found again for its derivative. Take a smaller step."};
+        throw NewtonConvergenceFailure("derivative.not_converged",
+                                       {"The stages of the step to t = ", ErrorTime{step.before.t + step.h},
+                                        " s do not converge again for its derivative. Take a smaller step."});
       if (change > 0.1 * left) moved = std::numeric_limits<double>::infinity();
       left = change;
     }
@@ -194,8 +195,9 @@ class RadauStageSolution {
     numbers_.find(s, step.h);
     Index const bad = solver_.factor([&](BlockSink& sink) { write(step.before.t, step.h, sink); });
     if (bad >= 0)
-      throw SingularMatrix{"The derivative of the step that ends at t = ", step.before.t + step.h,
-                           " s has no pivot at ", name_of_equation(s, bad % equations_of(s)), "."};
+      throw SingularMatrix("derivative.singular",
+                           {"The derivative of the step to t = ", ErrorTime{step.before.t + step.h},
+                            " s has no pivot at ", ErrorObject{name_of_equation(s, bad % equations_of(s))}, "."});
   }
   /// Corrects the stages. Returns the largest change of their accelerations and the largest of these [m/s²], [rad/s²].
   std::pair<double, double> correct() {

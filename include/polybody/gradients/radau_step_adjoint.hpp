@@ -81,10 +81,11 @@ class RadauStepAdjoint {
   void factor(StepTaken const& step) {
     Index const bad = solver_.factor([&](BlockSink& sink) { write_transposed(sink, step.before.t, step.h); });
     if (bad >= 0)
-      throw SingularMatrix{
-          "The adjoint of the step that ends at t = ", step.before.t + step.h, " s has no pivot at ",
-          name_of_equation(places_.template system<double>(), bad % equations_of(places_.template system<double>())),
-          "."};
+      throw SingularMatrix("derivative.singular",
+                           {"The adjoint of the step to t = ", ErrorTime{step.before.t + step.h}, " s has no pivot at ",
+                            ErrorObject{name_of_equation(places_.template system<double>(),
+                                                         bad % equations_of(places_.template system<double>()))},
+                            "."});
   }
 
   /// The start and the stages as variables, their equations, then the places after them. Returns how many operations

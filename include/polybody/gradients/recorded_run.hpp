@@ -40,7 +40,8 @@ class RecordedRun {
     plan_ = StepPlan(x.t, options().end_time, options().step, Sequence<double>(breakpoints.begin(), breakpoints.end()));
     x.t = plan_.pass(x.t);
     if (!(x.t < options().end_time))
-      throw InvalidInput("gradient: the run has no step. Let it go on until after its start.");
+      throw InvalidInput("gradient.no_step",
+                         {ErrorObject{"gradient"}, ": the run has no step. Give an end time after the start."});
     next_ = plan_.next(x.t, h_);
     full_->start(x, next_.h);
     if (!options().events.empty()) watch_.start(options().events, x, motion());
@@ -137,13 +138,11 @@ class RecordedRun {
       if (!watch_.met(i)) continue;
       Event const& event = options().events[i];
       if (!s.met.empty())
-        throw InvalidInput{"gradient: the events \"",
-                           options().events[s.met.front()].name,
-                           "\" and \"",
-                           event.name,
-                           "\" are met at once at t = ",
-                           x.t,
-                           " s. Whether they part with a parameter is known to `sensitivities`. Look for one of them."};
+        throw InvalidInput("derivative.coincident_times",
+                           {"gradient: events \"", ErrorObject{options().events[s.met.front()].name}, "\" and \"",
+                            event.name, "\" coincide at t = ", ErrorTime{x.t},
+                            " s. Remove one of the events, or use `sensitivities`, which finds out if they separate "
+                            "with a parameter."});
       s.met.push_back(i);
       if (event.action) s.acting.push_back(i);
       s.largest = std::max(std::abs(event.value(full_->shown(before))), std::abs(event.value(full_->shown(far))));

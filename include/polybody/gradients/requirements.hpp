@@ -25,10 +25,10 @@ std::vector<double> values_of(std::vector<Parameter> const& parameters) {
 template <class = void>
 void require_plain(RunOptions const& o, char const* who) {
   if (o.max_step_halvings.value_or(0) > 0 || o.minimum_norm)
-    throw InvalidInput{
-        who,
-        ": a run with halved steps or multipliers of least norm is not differentiated. Leave them out of "
-        "the options."};
+    throw InvalidInput(
+        "derivative.options",
+        {ErrorObject{who},
+         ": a run with halved steps or with multipliers of least norm has no derivative. Remove these options."});
 }
 
 /// \throws InvalidInput, beginning with `who`, unless the model of another value of p has as many unknowns, outputs,
@@ -44,14 +44,15 @@ void require_alike(V const& model, V const& other, Parameter const& p, char cons
                       Index(v.breakpoints().size())};
   };
   if (sizes(other) != sizes(model))
-    throw InvalidInput{who, ": with another \"", p.name,
-                       "\" the factory makes a model of other sizes. Let parameters change numbers, not what is "
-                       "there."};
+    throw InvalidInput("derivative.sizes", {ErrorObject{who}, ": with another \"", p.name,
+                                            "\" the factory makes a model of other sizes. Parameters may change "
+                                            "numbers, but not the bodies, joints and forces."});
   Coordinates const &here = model.system.step_coordinates(), &there = other.system.step_coordinates();
   if (here && there.reduced->full_velocity != here.reduced->full_velocity)
-    throw InvalidInput{who, ": with another \"", p.name,
-                       "\" other coordinates are eliminated by AncfLinear, so that steps have other unknowns. Place "
-                       "its markers off the middle between nodes, or give these joints Constraint."};
+    throw InvalidInput("derivative.elimination",
+                       {ErrorObject{who}, ": changing \"", p.name,
+                        "\" changes which coordinates AncfLinear eliminates (a marker crosses the middle between two "
+                        "nodes). Move the marker, or give these joints Constraint."});
 }
 
 /// What slopes of a step that ends at t [s] still change by, relative to them. \throws NewtonConvergenceFailure,
@@ -59,9 +60,10 @@ void require_alike(V const& model, V const& other, Parameter const& p, char cons
 template <class = void>
 double require_converged(double left, double t, char const* who) {
   if (left <= 1e-6) return left;
-  throw NewtonConvergenceFailure{who,  ": derivatives of the step that ends at t = ",
-                                 t,    " s do not converge: the last correction changed them by ",
-                                 left, " of themselves. Take a smaller step there, or softer contacts."};
+  throw NewtonConvergenceFailure("derivative.not_converged",
+                                 {ErrorObject{who}, ": the derivatives of the step to t = ", ErrorTime{t},
+                                  " s do not converge; the relative change in the last correction is ",
+                                  ErrorValue{left}, ". Take a smaller step there, or softer contacts."});
 }
 
 /// Times at which a step of a run must end, in no order: those of drives and loads, then those of the options [s].
@@ -87,7 +89,8 @@ VecX values_of_outputs(S const& scenario, State const& x) {
     auto const& output = scenario.outputs[std::size_t(i)];
     out[i] = output.value(scenario.model, x);
     if (!std::isfinite(out[i]))
-      throw NonFiniteValue{"sensitivities: \"", output.name, "\"", non_finite_suffix(out[i]), " at t = ", x.t, " s."};
+      throw NonFiniteValue("output.not_finite", {"sensitivities: \"", ErrorObject{output.name}, "\"",
+                                                 non_finite_suffix(out[i]), " at t = ", ErrorTime{x.t}, " s."});
   }
   return out;
 }
@@ -106,7 +109,8 @@ AlphaMethod method_of_derivatives(std::vector<Parameter> const& parameters, I co
   check(parameters);
   AlphaMethod method = integrator.method();
   if (method.stabilised)
-    throw InvalidInput{who, ": a stabilised step is not differentiated. Set `stabilised` to false."};
+    throw InvalidInput("derivative.options",
+                       {ErrorObject{who}, ": a stabilised step has no derivative. Set `stabilised` to false."});
   method.tolerance = std::min(method.tolerance, 1e-12);
   method.newton.budget = 0.0;
   return method;

@@ -134,8 +134,9 @@ class StepFactorisations {
       bool const lacks = own.pairs.lacks();
       again = lacks || (bad >= 0 && own.factors->reorderings() != reordered);
       if (bad >= 0 && !again)
-        throw SingularMatrix{"The derivative of the step that ends at t = ", end.at.t, " s has no pivot at ",
-                             name_of_equation(*system_, bad), "."};
+        throw SingularMatrix("derivative.singular",
+                             {"The derivative of the step to t = ", ErrorTime{end.at.t}, " s has no pivot at ",
+                              ErrorObject{name_of_equation(*system_, bad)}, "."});
       if (!lacks) continue;
       own.pairs.hold();
       lay_out(kind, end.lambda);

@@ -36,14 +36,15 @@ class TimeMap {
         Moving const &a = times_[i - 1], &b = times_[i];
         double const gap = b.here - a.here, beside = b.there[k] - a.there[k];
         if (gap <= remainder_step && std::abs(beside - gap) > 1e-9 * remainder_step + 1e-14 * std::abs(b.here))
-          throw InvalidInput{
-              who,    ": two corners, or one and the start, are both at t = ",        b.here, " s and part with \"",
-              p.name, "\": there is no derivative there. Move one of them by a step."};
+          throw InvalidInput("derivative.coincident_times",
+                             {ErrorObject{who}, ": two breakpoints, or a breakpoint and the start, coincide at t = ",
+                              ErrorTime{b.here}, " s, but separate with \"", p.name,
+                              "\", so that there is no derivative there. Move one of them by a step."});
         if (gap > remainder_step && !(beside > 0.0))
-          throw InvalidInput{who,    ": the corners at t = ",
-                             a.here, " s and ",
-                             b.here, " s change their order with \"",
-                             p.name, "\" as far as it is differenced. Give it a smaller scale."};
+          throw InvalidInput(
+              "derivative.coincident_times",
+              {ErrorObject{who}, ": the breakpoints at t = ", ErrorTime{a.here}, " s and ", b.here,
+               " s change their order within the difference step of \"", p.name, "\". Give it a smaller scale."});
       }
     for (Moving const& m : times_)
       for (double const t : m.there) moves_ = moves_ || t != m.here;

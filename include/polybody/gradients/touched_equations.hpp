@@ -47,8 +47,8 @@ std::vector<char> touched_in_full(ModelLayout const& layout, Parameter const& p)
         found = true;
       }
     if (!found)
-      throw InvalidInput{"The parameter \"", p.name, "\" touches \"", name,
-                         "\", but the model has no body, joint or force of that name."};
+      throw InvalidInput("parameter.affects", {"Parameter \"", ErrorObject{p.name}, "\" touches \"", name,
+                                               "\", but the model has no body, joint or force of that name."});
   }
   return touched;
 }
@@ -112,15 +112,11 @@ template <class = void>
 /// \throws InvalidInput: at time t [s] a parameter changes equation i and does not name an object that acts there.
 template <class = void>
 [[noreturn, gnu::cold]] void refuse_unnamed(System const& system, Parameter const& p, Index i, double t) {
-  throw InvalidInput{"The parameter \"",
-                     p.name,
-                     "\" changes the equations of ",
-                     system.name_of(i),
-                     " at t = ",
-                     t,
-                     " s, and its `affects` names nothing that acts there. Add the object that depends on it (",
-                     unnamed_at(system, p, i),
-                     "), or leave `affects` empty."};
+  throw InvalidInput(
+      "parameter.affects",
+      {"Parameter \"", ErrorObject{p.name}, "\" changes the equations of ", system.name_of(i), " at t = ", ErrorTime{t},
+       " s, but its `affects` contains no object that acts there. Add the object that depends on it (",
+       unnamed_at(system, p, i), "), or leave `affects` empty."});
 }
 
 }  // namespace polybody::detail

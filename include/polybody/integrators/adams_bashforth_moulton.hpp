@@ -33,7 +33,8 @@ struct AdamsBashforthMoulton {
     require_positive(absolute_tolerance, "AdamsBashforthMoulton: the absolute tolerance");
     require_positive(min_step, "AdamsBashforthMoulton: the smallest step");
     if (max_order < 1 || max_order > order)
-      throw InvalidInput{"AdamsBashforthMoulton: max_order must lie in [1, 12], but is ", max_order, "."};
+      throw InvalidInput("integrator.option", {ErrorObject{"AdamsBashforthMoulton"},
+                                               ": max_order must lie in [1, 12], but is ", ErrorValue{max_order}, "."});
     stabilisation.check();
   }
 
@@ -125,9 +126,11 @@ struct AdamsBashforthMoulton {
         h *= 0.5;
       }
       if (!(h >= min_step))
-        throw MinimumStepReached{
-            "AdamsBashforthMoulton: the error asks for a step below ", min_step, " s at t = ", x.t,
-            " s. The model is stiff or jumps here: use an implicit integrator or name the corner."};
+        throw MinimumStepReached(
+            "step.minimum",
+            {ErrorObject{"AdamsBashforthMoulton"}, ": the tolerance requires a step below ", min_step,
+             " s at t = ", ErrorTime{x.t},
+             " s. The model is stiff or jumps here: use an implicit integrator or declare the breakpoint."});
     }
     w.y += w.correction;
     w.split(system);

@@ -24,7 +24,8 @@ class AdamsHistory {
   /// The history of n numbers in a state's `memory` after `reset`. \throws InvalidInput for a memory without one.
   AdamsHistory(VecX& memory, Index n) : memory_(memory), n_(n) {
     if (memory.size() != (highest + 1) * n + highest + 3)
-      throw InvalidInput("This state has no memory of a run: call start before step.");
+      throw InvalidInput("state.no_history",
+                         {"The state has no integrator history. Call method.start(system, x, h, w) before step()."});
   }
 
   /// D_j (n entries), j ≤ 12.

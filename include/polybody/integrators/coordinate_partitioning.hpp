@@ -78,9 +78,13 @@ struct CoordinatePartitioning {
     require_positive(tolerance, "CoordinatePartitioning: the tolerance");
     require_count(max_iterations, "CoordinatePartitioning: max_iterations");
     if (dense_up_to < 0)
-      throw InvalidInput{"CoordinatePartitioning: dense_up_to must not be negative, but is ", dense_up_to, "."};
+      throw InvalidInput("integrator.option",
+                         {ErrorObject{"CoordinatePartitioning"}, ": dense_up_to must not be negative, but is ",
+                          ErrorValue{dense_up_to}, "."});
     if (!(largest_ratio >= 1.0))
-      throw InvalidInput{"CoordinatePartitioning: largest_ratio must be at least 1, but is ", largest_ratio, "."};
+      throw InvalidInput("integrator.option",
+                         {ErrorObject{"CoordinatePartitioning"}, ": largest_ratio must be at least 1, but is ",
+                          ErrorValue{largest_ratio}, "."});
   }
   void start(Scratch& s) const {
     s.prepare(dense_up_to);
@@ -124,9 +128,11 @@ struct CoordinatePartitioning {
       reduce(system, s, s.rows, q, v, t);
       if (s.phi.cwiseAbs().maxCoeff() <= enough) break;
       if (k == max_iterations)
-        throw NewtonConvergenceFailure{
-            "CoordinatePartitioning: the positions cannot be brought back to the joints at t = ", t,
-            " s. Take a smaller step."};
+        throw NewtonConvergenceFailure(
+            "projection.not_converged",
+            {ErrorObject{"CoordinatePartitioning"},
+             ": the projection of the positions onto the constraint equations does not converge at t = ", ErrorTime{t},
+             " s. Take a smaller step."});
       s.rows.solution(0, s.delta);
       system.plus(q, s.delta, s.next);
       q.swap(s.next);
@@ -171,9 +177,11 @@ struct CoordinatePartitioning {
       double const open = largest_size(s.phi);
       if (open <= enough) return;
       if (k == 3 * max_iterations)
-        throw NewtonConvergenceFailure{
-            "CoordinatePartitioning: the positions cannot be brought back to the joints at t = ", t,
-            " s. Take a smaller step."};
+        throw NewtonConvergenceFailure(
+            "projection.not_converged",
+            {ErrorObject{"CoordinatePartitioning"},
+             ": the projection of the positions onto the constraint equations does not converge at t = ", ErrorTime{t},
+             " s. Take a smaller step."});
       corrections.take(s.phi, open);
       system.plus(q, s.delta, s.next);
       q.swap(s.next);
@@ -188,9 +196,12 @@ struct CoordinatePartitioning {
       double const open = largest_size(s.rate), terms = (1.0 + corrections.partition.largest_entry()) * largest_size(v);
       if (open <= tolerance + 64.0 * std::numeric_limits<double>::epsilon() * (1.0 + terms)) return;
       if (k == 3 * max_iterations)
-        throw NewtonConvergenceFailure{
-            "CoordinatePartitioning: the speeds cannot be brought back to the joints at t = ", t,
-            " s: rows that repeat others contradict them, or they lose rank there."};
+        throw NewtonConvergenceFailure(
+            "projection.not_converged",
+            {ErrorObject{"CoordinatePartitioning"},
+             ": the projection of the velocities onto the constraint equations does not converge at t = ", ErrorTime{t},
+             " s, because redundant constraint equations contradict the others, or the configuration is singular. Take "
+             "a smaller step, or run diagnose(model, x)."});
       corrections.take(s.rate, open);
       v += s.delta;
       system.evaluate(q, v, t);

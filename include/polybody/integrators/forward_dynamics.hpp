@@ -48,39 +48,29 @@ std::string and_whose_force(System const& s) {
 template <class = void>
 void require_finite_force(System const& s, VecX const& x) {
   if (Index const i = first_not_finite(x); i >= 0)
-    throw NonFiniteValue{"A force on ",
-                         s.name_of(i),
-                         non_finite_suffix(x[i]),
-                         " at t = ",
-                         s.at().t,
-                         " s",
-                         whose_force(s),
-                         ". Look at the forces applied to it, whose markers may coincide, and at the state before."};
+    throw NonFiniteValue(
+        "force.not_finite",
+        {"A force on ", ErrorObject{s.name_of(i)}, non_finite_suffix(x[i]), " at t = ", ErrorTime{s.at().t}, " s",
+         whose_force(s), ". Check the forces applied to it, whose markers may coincide, and the state before."});
 }
 /// \throws NonFiniteValue naming joint and time when an entry of x (by rows) is NaN or infinite.
 template <class = void>
 void require_finite_rows(System const& s, VecX const& x) {
   if (Index const i = first_not_finite(x); i >= 0)
-    throw NonFiniteValue{"The motion at ",
-                         s.name_of(s.velocities() + i),
-                         non_finite_suffix(x[i]),
-                         " at t = ",
-                         s.at().t,
-                         " s. Look at the state before, or take a smaller step.",
-                         and_whose_force(s)};
+    throw NonFiniteValue(
+        "motion.not_finite",
+        {"The motion at ", ErrorObject{s.name_of(s.velocities() + i)}, non_finite_suffix(x[i]),
+         " at t = ", ErrorTime{s.at().t}, " s. Check the state before, or take a smaller step.", and_whose_force(s)});
 }
 /// What a step ends at. \throws NonFiniteValue naming body and time when a coordinate or a speed is NaN or infinite.
 template <class = void>
 void require_finite_end(System const& s, VecX const& q, VecX const& v, double t) {
   Index const in_v = first_not_finite(v), in_q = in_v < 0 ? first_not_finite(q) : -1;
   if (in_v < 0 && in_q < 0) return;
-  throw NonFiniteValue{"The motion of ",
-                       (in_v < 0 ? name_of_coordinate(s, in_q) : s.name_of(in_v)),
-                       non_finite_suffix(in_v < 0 ? q[in_q] : v[in_v]),
-                       " at t = ",
-                       t,
-                       " s. Look at its speed and the forces on it before.",
-                       and_whose_force(s)};
+  throw NonFiniteValue("motion.not_finite",
+                       {"The motion of ", ErrorObject{in_v < 0 ? name_of_coordinate(s, in_q) : s.name_of(in_v)},
+                        non_finite_suffix(in_v < 0 ? q[in_q] : v[in_v]), " at t = ", ErrorTime{t},
+                        " s. Check its velocity and the forces on it before.", and_whose_force(s)});
 }
 /// \throws NonFiniteValue when the place of the last evaluation is none: before a matrix is called singular there.
 template <class = void>
@@ -88,13 +78,11 @@ void require_finite_place(System const& s) {
   auto const& [q, v, t] = s.at();
   Index const in_v = first_not_finite(v), in_q = in_v < 0 ? first_not_finite(q) : -1;
   if (in_v < 0 && in_q < 0) return;
-  throw NonFiniteValue{"The motion of ",
-                       (in_v < 0 ? s.layout().name_of_coordinate(in_q) : s.layout().name_of(in_v)),
-                       non_finite_suffix(in_v < 0 ? q[in_q] : v[in_v]),
-                       " at t = ",
-                       t,
-                       " s. Look at the forces on it, or take a smaller step.",
-                       and_whose_force(s)};
+  throw NonFiniteValue(
+      "motion.not_finite",
+      {"The motion of ", ErrorObject{in_v < 0 ? s.layout().name_of_coordinate(in_q) : s.layout().name_of(in_v)},
+       non_finite_suffix(in_v < 0 ? q[in_q] : v[in_v]), " at t = ", ErrorTime{t},
+       " s. Check the forces on it, or take a smaller step.", and_whose_force(s)});
 }
 /// The equations at the last evaluation, whose right-hand side is `rhs`, have no finite solution. Where numbers in them
 /// are too large, that is the reason; else the matrix is singular, first noticed at `who`.
@@ -104,15 +92,12 @@ template <class = void>
   double const t = s.at().t;
   require_finite_place(s);
   if (Index const i = first_not_finite(rhs); i >= 0)
-    throw NonFiniteValue{"The right-hand side of ",
-                         s.name_of(i),
-                         non_finite_suffix(rhs[i]),
-                         " at t = ",
-                         t,
-                         " s. Look at the forces on it and at its speed.",
-                         and_whose_force(s)};
-  throw SingularMatrix{"The equations of motion have no unique acceleration at t = ", t, " s; the pivot is lost at ",
-                       who, ". Look for a joint that repeats another, or a body without inertia that is free to move."};
+    throw NonFiniteValue("force.not_finite", {"The right-hand side of ", ErrorObject{s.name_of(i)},
+                                              non_finite_suffix(rhs[i]), " at t = ", ErrorTime{t},
+                                              " s. Check the forces on it and its velocity.", and_whose_force(s)});
+  throw SingularMatrix("motion.singular", {"The equations of motion have no unique acceleration at t = ", ErrorTime{t},
+                                           " s; the pivot is lost at ", ErrorObject{who},
+                                           ". Check for a redundant joint, or for a free body without inertia."});
 }
 
 /// By the unknowns of the linear equations: those that are speeds of bodies whose mass matrix is constant.

@@ -28,7 +28,8 @@ struct GeneralisedAlpha {
   /// \throws InvalidInput unless 0 ≤ ρ∞ ≤ 1 and the tolerance is positive.
   void check() const {
     if (!(rho_inf >= 0.0 && rho_inf <= 1.0))
-      throw InvalidInput{"GeneralisedAlpha: rho_inf must lie in [0, 1], but is ", rho_inf, "."};
+      throw InvalidInput("integrator.option", {ErrorObject{"GeneralisedAlpha"}, ": rho_inf must lie in [0, 1], but is ",
+                                               ErrorValue{rho_inf}, "."});
     require_positive(tolerance, "GeneralisedAlpha: the tolerance");
     newton.check(name);
   }

@@ -22,7 +22,8 @@ struct HhtAlpha {
   /// \throws InvalidInput unless −1/3 ≤ α ≤ 0 and the tolerance is positive.
   void check() const {
     if (!(alpha >= -1.0 / 3.0 && alpha <= 0.0))
-      throw InvalidInput{"HhtAlpha: alpha must lie in [-1/3, 0], but is ", alpha, "."};
+      throw InvalidInput("integrator.option",
+                         {ErrorObject{"HhtAlpha"}, ": alpha must lie in [-1/3, 0], but is ", ErrorValue{alpha}, "."});
     require_positive(tolerance, "HhtAlpha: the tolerance");
     newton.check(name);
   }

@@ -22,7 +22,8 @@ struct Newmark {
   /// \throws InvalidInput unless γ ≥ ½, β > 0 and the tolerance is positive.
   void check() const {
     if (!(gamma >= 0.5) || !std::isfinite(gamma))
-      throw InvalidInput{"Newmark: gamma must be at least 1/2, but is ", gamma, ": below, every motion grows."};
+      throw InvalidInput("integrator.option", {ErrorObject{"Newmark"}, ": gamma must be at least 1/2, but is ",
+                                               ErrorValue{gamma}, ". A smaller value makes every motion grow."});
     require_positive(beta, "Newmark: beta (for an explicit method take CentralDifference)");
     require_positive(tolerance, "Newmark: the tolerance");
     newton.check(name);

@@ -50,46 +50,31 @@ template <class = void>
 template <class = void>
 [[noreturn, gnu::cold]] void throw_stalled(std::string const& integrator, System const& system, double t,
                                            NewtonReport const& report, StepEquations const& last) {
-  std::string const when = sentence_of({" at t = ", t, " s"});
   auto const owner = [&](VecX const& x) {
     Index const i = first_not_finite(x);
     return system.name_of((i < 0 ? x.size() - 1 : i) % system.size());
   };
   if (report.result == NewtonResult::singular && last.bad >= 0) {
     require_finite_place(system);
-    throw SingularMatrix{integrator,
-                         ": the tangent is singular",
-                         when,
-                         ", first at ",
-                         name_of_equation(system, last.bad % equations_of(system)),
-                         ". Look for a joint that repeats another, or a free body without inertia."};
+    throw SingularMatrix("newton.singular",
+                         {integrator, ": the tangent is singular", " at t = ", ErrorTime{t}, " s, first at ",
+                          ErrorObject{name_of_equation(system, last.bad % equations_of(system))},
+                          ". Check for a redundant joint, or for a free body without inertia."});
   }
   if (report.result == NewtonResult::singular)
-    throw NonFiniteValue{integrator,
-                         ": the motion of ",
-                         owner(last.solution),
-                         " is not finite",
-                         when,
-                         ". Look at its speed and the forces on it before, or take a smaller step.",
-                         and_whose_force(system)};
+    throw NonFiniteValue(
+        "motion.not_finite",
+        {integrator, ": the motion of ", ErrorObject{owner(last.solution)}, " is not finite", " at t = ", ErrorTime{t},
+         " s. Check its velocity and the forces on it before, or take a smaller step.", and_whose_force(system)});
   if (report.result == NewtonResult::not_finite)
-    throw NonFiniteValue{integrator,
-                         ": a force on ",
-                         owner(last.rhs),
-                         " is not finite",
-                         when,
-                         whose_force(system),
-                         ". Look at the forces applied to it, or take a smaller step."};
-  throw NewtonConvergenceFailure{integrator,
-                                 ": Newton's method did not converge",
-                                 when,
-                                 " after ",
-                                 report.iterations,
-                                 " iterations (contraction ",
-                                 report.theta,
-                                 "). Take a smaller step",
-                                 remedy_of_friction(system),
-                                 "; the state is as before it."};
+    throw NonFiniteValue("force.not_finite", {integrator, ": a force on ", ErrorObject{owner(last.rhs)},
+                                              " is not finite", " at t = ", ErrorTime{t}, " s", whose_force(system),
+                                              ". Check the forces applied to it, or take a smaller step."});
+  throw NewtonConvergenceFailure(
+      "newton.not_converged",
+      {ErrorObject{integrator}, ": Newton's method did not converge", " at t = ", ErrorTime{t}, " s after ",
+       report.iterations, " iterations (contraction ", report.theta, "). Take a smaller step",
+       remedy_of_friction(system), "; the state is unchanged."});
 }
 
 }  // namespace polybody::detail

@@ -196,9 +196,11 @@ struct DormandPrince {
       ++report.rejected;
       h *= std::isfinite(error) ? factor : 0.2;
       if (h < min_step)
-        throw MinimumStepReached{
-            "DormandPrince: the error asks for a step below ", min_step, " s at t = ", x.t,
-            " s. The model is stiff or jumps here: use an implicit integrator or name the corner."};
+        throw MinimumStepReached(
+            "step.minimum",
+            {ErrorObject{"DormandPrince"}, ": the tolerance requires a step below ", min_step,
+             " s at t = ", ErrorTime{x.t},
+             " s. The model is stiff or jumps here: use an implicit integrator or declare the breakpoint."});
     }
   }
 

@@ -77,9 +77,10 @@ class SparsePartitionOf {
   using Lu = Eigen::SparseLU<Matrix, Eigen::COLAMDOrdering<int>>;
 
   [[noreturn]] static void throw_lost() {
-    throw SingularMatrix{
-        "CoordinatePartitioning: no set of dependent speeds solves the rows of the joints. They lose rank next to a "
-        "singular position; begin elsewhere, or take an implicit integrator."};
+    throw SingularMatrix("partition.singular",
+                         {ErrorObject{"CoordinatePartitioning"},
+                          ": no set of dependent velocities solves the constraint equations, because the configuration "
+                          "is close to a singular configuration. Start elsewhere, or use an implicit integrator."});
   }
 
   /// Columns of g that are independent, by their numbers. A factorisation takes a column where it adds more than its

@@ -92,8 +92,11 @@ struct Projection {
     for (int k = 0;; ++k) {
       if (forward.project_positions_once(system, q, v, t) <= enough) break;
       if (k == max_iterations)
-        throw NewtonConvergenceFailure{"Projection: the positions cannot be brought back to the joints at t = ", t,
-                                       " s. Take a smaller step."};
+        throw NewtonConvergenceFailure(
+            "projection.not_converged",
+            {ErrorObject{"Projection"},
+             ": the projection of the positions onto the constraint equations does not converge at t = ", ErrorTime{t},
+             " s. Take a smaller step."});
     }
     forward.project_velocities(system, q, v, t);
   }

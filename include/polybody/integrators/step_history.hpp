@@ -32,7 +32,8 @@ class StepHistory {
   /// The history of a state after `reset`. \throws InvalidInput for a state without one.
   explicit StepHistory(State& x) : nv_(x.a.size()), rows_(x.lambda.size()), memory_(x.history) {
     if (memory_.size() != size(nv_, rows_))
-      throw InvalidInput("This state has no memory of a run: call start before step.");
+      throw InvalidInput("state.no_history",
+                         {"The state has no integrator history. Call method.start(system, x, h, w) before step()."});
   }
 
   /// Nothing before x; the method's own entries are v̇.

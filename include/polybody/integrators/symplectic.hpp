@@ -128,8 +128,11 @@ struct Rattle {
       w.dq += w.change;
       move(system, x, h, w);
     }
-    throw NewtonConvergenceFailure{"Rattle: the positions cannot be brought to the joints at t = ", x.t + h,
-                                   " s. Take a smaller step."};
+    throw NewtonConvergenceFailure(
+        "projection.not_converged",
+        {ErrorObject{"Rattle"},
+         ": the projection of the positions onto the constraint equations does not converge at t = ",
+         ErrorTime{x.t + h}, " s. Take a smaller step."});
   }
 };
 

@@ -29,7 +29,8 @@ class AtomicFile {
   /// include a name that is too long, links that form a loop, and a `file` that exists and is not a regular file.
   explicit AtomicFile(std::filesystem::path const& file) : name_(file.string()) {
     namespace fs = std::filesystem;
-    if (!file.has_filename()) throw IoError{"file '", name_, "': the name of a file is missing"};
+    if (!file.has_filename())
+      throw IoError("file.name", {"file \"", ErrorObject{name_}, "\": the name of a file is missing"});
     std::error_code reason;
     fs::path const full = fs::absolute(file, reason);
     if (reason) fail("its folder cannot be found", reason);
@@ -41,7 +42,8 @@ class AtomicFile {
     if (status.type() == fs::file_type::none) fail("cannot be created", reason);
     bool const exists = status.type() != fs::file_type::not_found;
     if (exists && !fs::is_regular_file(status))
-      throw IoError{"file '", name_, "' exists and is not a regular file; choose another name"};
+      throw IoError("file.write",
+                    {"file \"", ErrorObject{name_}, "\" exists and is not a regular file; choose another name"});
     file_ = detail::TemporaryFile(target);
     if (!file_.is_open()) fail("cannot be created", {errno, std::generic_category()});
     if (exists) file_.set_permissions(status.permissions());
@@ -75,7 +77,8 @@ class AtomicFile {
   /// Appends `bytes`. Throws IoError if the system refuses them (for example if the disk is full), and InvalidInput
   /// if the file is closed.
   void write(std::string_view bytes) {
-    if (!is_open()) throw InvalidInput{"file '", name_, "' is already closed; nothing can be added"};
+    if (!is_open())
+      throw InvalidInput("file.closed", {"file \"", ErrorObject{name_}, "\" is already closed; nothing can be added"});
     errno = 0;
     if (std::fwrite(bytes.data(), 1, bytes.size(), file_.stream()) == bytes.size()) return;
     failed_ = true;
@@ -106,7 +109,7 @@ class AtomicFile {
 
  private:
   [[noreturn, gnu::cold]] void fail(std::string const& what, std::error_code reason) const {
-    throw IoError{"file '", name_, "' ", what, (reason ? ": " + reason.message() : "")};
+    throw IoError("file.write", {"file \"", ErrorObject{name_}, "\" ", what, (reason ? ": " + reason.message() : "")});
   }
 
   std::string name_;

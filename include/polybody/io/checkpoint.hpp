@@ -79,14 +79,16 @@ struct SnapshotReader {
   template <class T>
   void operator()(T& x) {
     std::conditional_t<std::is_floating_point_v<T>, double, std::int64_t> wide;
-    if (bytes.size() < sizeof wide) throw IoError{"checkpoint '", name, "' ends before its content does."};
+    if (bytes.size() < sizeof wide)
+      throw IoError("checkpoint.damaged",
+                    {"checkpoint \"", ErrorObject{name}, "\" ends before its content does. Write it again."});
     std::memcpy(&wide, bytes.data(), sizeof wide);
     bytes.remove_prefix(sizeof wide);
     x = static_cast<T>(wide);
     if constexpr (!std::is_floating_point_v<T>)
       if (static_cast<std::int64_t>(x) != wide)
-        throw IoError{"checkpoint '", name, "' is inconsistent: ", wide,
-                      " is out of the range of its place. Write it anew."};
+        throw IoError("checkpoint.damaged", {"checkpoint \"", ErrorObject{name}, "\" is inconsistent: ", wide,
+                                             " is out of the range of its entry. Write it again."});
   }
   void operator()(char& c) {
     unsigned char byte = 0;
@@ -97,7 +99,9 @@ struct SnapshotReader {
   void resize(List& of) {
     std::size_t count = 0;
     (*this)(count);
-    if (count > bytes.size() / sizeof(double)) throw IoError{"checkpoint '", name, "' ends before its content does."};
+    if (count > bytes.size() / sizeof(double))
+      throw IoError("checkpoint.damaged",
+                    {"checkpoint \"", ErrorObject{name}, "\" ends before its content does. Write it again."});
     of.resize(static_cast<decltype(of.size())>(count));
   }
 };
@@ -107,14 +111,16 @@ struct SnapshotReader {
 /// \throws IoError otherwise.
 template <class = void>
 void require_consistent(RunSnapshot const& s, std::size_t left, std::string const& name) {
-  std::string const inconsistent = "checkpoint '" + name + "' is inconsistent: ", remedy = ". Write it anew.";
-  if (left != 0) throw IoError{inconsistent, left, " bytes follow its content", remedy};
+  std::string const inconsistent = "checkpoint \"" + name + "\" is inconsistent: ", remedy = ". Write it again.";
+  if (left != 0)
+    throw IoError("checkpoint.damaged", {ErrorObject{inconsistent}, left, " bytes follow its content", remedy});
   auto const require = [&](VecX const& x, Index size, std::string const& what) {
     if (x.size() != size)
-      throw IoError{inconsistent, "it has ", x.size(), " ", what, " in place of the model's ", size, remedy};
+      throw IoError("checkpoint.damaged",
+                    {ErrorObject{inconsistent}, "it has ", x.size(), " ", what, ", but the model has ", size, remedy});
   };
   require(s.state.q, s.model.coordinates, "coordinates");
-  require(s.state.v, s.model.velocities, "speeds");
+  require(s.state.v, s.model.velocities, "velocities");
   require(s.state.a, s.model.velocities, "rates of speeds");
   bool const estimates = s.state.lambda.size() > s.model.rows;
   require(s.state.lambda, s.model.rows + (estimates ? s.model.eliminated_equations : 0), "multipliers");
@@ -156,33 +162,32 @@ template <class = void>
 RunSnapshot read_checkpoint(std::filesystem::path const& file) {
   std::string const name = file.string();
   std::optional<std::string> const content_of_file = detail::content_of(file);
-  if (!content_of_file) throw IoError{"checkpoint '", name, "' cannot be read."};
+  if (!content_of_file) throw IoError("file.open", {"checkpoint \"", ErrorObject{name}, "\" cannot be read."});
   std::string const& all = *content_of_file;
   detail::CheckpointHead const ours = detail::checkpoint_head;
   detail::CheckpointHead head = {};
   std::memcpy(&head, all.data(), std::min(all.size(), sizeof head));
   if (std::memcmp(head.kind, ours.kind, sizeof head.kind) != 0)
-    throw IoError{"file '", name, "' is not a checkpoint of polybody."};
-  if (all.size() < sizeof head) throw IoError{"checkpoint '", name, "' is cut off within its head."};
+    throw IoError("checkpoint.format", {"file \"", ErrorObject{name}, "\" is not a checkpoint of polybody."});
+  if (all.size() < sizeof head)
+    throw IoError("checkpoint.damaged", {"checkpoint \"", ErrorObject{name}, "\" is cut off within its head."});
   if (head.order == 0x04030201u)
-    throw IoError{"checkpoint '", name, "' was written by a machine of another byte order."};
+    throw IoError("checkpoint.format",
+                  {"checkpoint \"", ErrorObject{name}, "\" was written by a machine of another byte order."});
   if (head.version != ours.version)
-    throw IoError{"checkpoint '",
-                  name,
-                  "' is of version ",
-                  head.version,
-                  ", but this program reads version ",
-                  ours.version,
-                  ". Read it with the program that wrote it."};
+    throw IoError("checkpoint.format",
+                  {"checkpoint \"", ErrorObject{name}, "\" is of version ", ErrorValue{head.version},
+                   ", but this program reads version ", ours.version, ". Read it with the program that wrote it."});
   std::uint64_t sum = 0;
   std::size_t const beside = sizeof head + sizeof sum;
   if (all.size() < beside || all.size() - beside != head.length)
-    throw IoError{"checkpoint '",       name, "' is cut off or has grown: it has ", all.size(), " bytes in place of ",
-                  head.length + beside, "."};
+    throw IoError("checkpoint.damaged", {"checkpoint \"", ErrorObject{name}, "\" is cut off or has grown: it has ",
+                                         all.size(), " bytes instead of ", head.length + beside, "."});
   std::memcpy(&sum, all.data() + all.size() - sizeof sum, sizeof sum);
   std::string_view const summed = std::string_view(all).substr(0, all.size() - sizeof sum);
   if (checksum(summed) != sum)
-    throw IoError{"checkpoint '", name, "' is damaged: its checksum is not that of its content."};
+    throw IoError("checkpoint.damaged", {"checkpoint \"", ErrorObject{name},
+                                         "\" is damaged: its checksum differs from the checksum of its content."});
   RunSnapshot snapshot;
   detail::SnapshotVisitor<detail::SnapshotReader> content{{summed.substr(sizeof head), name}};
   content.walk(snapshot);

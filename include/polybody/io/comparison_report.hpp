@@ -24,8 +24,9 @@ Comparison complete_runs(Comparison c) {
 template <class = void>  // compiled where it is used
 void check(Comparison const& c, std::string const& what) {
   if (c.runs.empty())
-    throw InvalidInput{
-        what, ": the comparison has no runs, or all of them failed. Give `compare` a formulation whose run completes."};
+    throw InvalidInput("comparison.runs", {ErrorObject{what},
+                                           ": the comparison has no runs, or all of them failed. Give `compare` a "
+                                           "formulation whose run completes."});
   for (ComparedRun const& run : c.runs) {
     std::size_t const n = run.times.size(), outputs = run.output_names.size();
     bool full = n > 0 && run.violations.size() == n && run.energies.size() == n && run.joint_forces.size() == n &&
@@ -33,10 +34,9 @@ void check(Comparison const& c, std::string const& what) {
                 run.output_names == c.runs.front().output_names;
     for (auto const& history : run.outputs) full = full && history.size() == n;
     if (!full)
-      throw InvalidInput{
-          what, ": the run \"", run.name,
-          "\" lacks times, or its histories and outputs are not as many as its times and the first run's outputs. "
-          "Take it from `compare`."};
+      throw InvalidInput("comparison.runs", {ErrorObject{what}, ": the run \"", run.name,
+                                             "\" lacks times, or the sizes of its histories and outputs differ from "
+                                             "its times and from the first run's outputs. Take it from `compare`."});
   }
 }
 
@@ -188,7 +188,8 @@ void write_csv(WorkPrecision const& w, std::filesystem::path const& file) {
 template <class = void>
 Figure work_precision_figure(WorkPrecision const& w) {
   if (w.curves.empty())
-    throw InvalidInput("work_precision_figure: there are no curves. Add those of `work_precision`.");
+    throw InvalidInput("figure.content", {ErrorObject{"work_precision_figure"},
+                                          ": there are no curves. Add the curves of `work_precision`."});
   Figure figure{.title = "Work and precision",
                 .x_label = "CPU time [s]",
                 .y_label = "error of " + w.curves.front().output,
@@ -196,13 +197,9 @@ Figure work_precision_figure(WorkPrecision const& w) {
                 .log_y = true};
   for (WorkCurve const& curve : w.curves) {
     if (curve.output != w.curves.front().output)
-      throw InvalidInput{"work_precision_figure: \"",
-                         curve.name,
-                         "\" is for the output \"",
-                         curve.output,
-                         "\", not \"",
-                         w.curves.front().output,
-                         "\". Draw it in another figure."};
+      throw InvalidInput("figure.content",
+                         {ErrorObject{"work_precision_figure"}, ": \"", curve.name, "\" is for the output \"",
+                          curve.output, "\", not \"", w.curves.front().output, "\". Draw it in another figure."});
     Curve drawn{.label = curve.name, .style = "linespoints", .colour = int(&curve - w.curves.data())};
     for (WorkPoint const& p : curve.points)
       if (p.failure.empty()) {

@@ -70,23 +70,29 @@ class Csv {
 
  private:
   static void check_heads(std::filesystem::path const& file, std::vector<std::string> const& columns) {
-    if (columns.empty()) throw InvalidInput{"file '", file.string(), "': a table needs at least one column"};
+    if (columns.empty())
+      throw InvalidInput("table.columns",
+                         {"file \"", ErrorObject{file.string()}, "\": a table needs at least one column"});
     std::set<std::string_view> seen;
     for (auto const& head : columns) {
-      if (head.empty()) throw InvalidInput{"file '", file.string(), "': a column head is empty"};
+      if (head.empty())
+        throw InvalidInput("table.columns", {"file \"", ErrorObject{file.string()}, "\": a column head is empty"});
       if (!seen.insert(head).second)
-        throw InvalidInput{"file '", file.string(), "': two columns are called '", head, "'"};
+        throw InvalidInput("table.columns",
+                           {"file \"", ErrorObject{file.string()}, "\": duplicate column \"", head, "\""});
     }
   }
 
   /// Appends `values` to `line_`, which contains the texts of the first `texts` columns, and writes the line.
   void write_row(std::span<double const> values, std::size_t texts) {
-    auto const where = [&] { return "file '" + file_.name() + "', row " + std::to_string(rows_ + 1); };
+    auto const where = [&] { return "file \"" + file_.name() + "\", row " + std::to_string(rows_ + 1); };
     if (values.size() + texts != columns_.size())
-      throw InvalidInput{where(), ": ", values.size() + texts, " values for ", columns_.size(), " columns"};
+      throw InvalidInput("table.row_size", {ErrorObject{where()}, ": ", values.size() + texts, " values for ",
+                                            columns_.size(), " columns"});
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (!std::isfinite(values[i]))
-        throw InvalidInput{where(), ", column '", columns_[i + texts], "': the value is not finite (", values[i], ")"};
+        throw InvalidInput("value.not_finite", {ErrorObject{where()}, ", column \"", columns_[i + texts],
+                                                "\": the value is not finite (", ErrorValue{values[i]}, ")"});
       detail::append_digits(line_, values[i]);
       line_ += ',';
     }

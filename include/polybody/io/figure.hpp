@@ -43,9 +43,9 @@ inline constexpr std::array<std::string_view, 6> curve_styles{"lines",  "points"
 /// Checks that all curves can be drawn. Throws InvalidInput with the figure's title and the curve's label otherwise.
 template <class = void>  // compiled where it is used
 void check(Figure const& figure) {
-  std::string where = "figure '" + figure.title + "'";
+  std::string where = "figure \"" + figure.title + "\"";
   auto const need = [&](bool good, std::string_view rule) {
-    if (!good) throw InvalidInput{where, ": ", rule};
+    if (!good) throw InvalidInput("figure.content", {ErrorObject{where}, ": ", rule});
   };
   auto const in = [](int value, int low, int high) { return low <= value && value <= high; };
   auto const is_finite = [](double value) { return std::isfinite(value); };
@@ -64,14 +64,14 @@ void check(Figure const& figure) {
   bool visible = false;
   std::string const title = where;
   for (auto const& [x, y, label, style, colour, width] : figure.curves) {
-    (where = title).append(", curve '").append(label).append("'");
+    (where = title).append(", curve \"").append(label).append("\"");
     need(x.size() == y.size(), "x has " + std::to_string(x.size()) + " numbers and y has " + std::to_string(y.size()) +
                                    "; they must be as many");
     need(!x.empty(), "a curve needs at least one point");
     need(std::ranges::all_of(x, is_finite), "a number in x is not finite");
     need(std::ranges::all_of(y, is_finite), "a number in y is not finite");
     need(std::ranges::count(curve_styles, style) == 1,
-         "style '" + style + "' is none of lines, points, linespoints, dashed, steps, filled");
+         "style \"" + style + "\" is none of lines, points, linespoints, dashed, steps, filled");
     need(colour >= -1, "colour must be 0, 1, 2 ... or -1 for one by its place");
     need(is_finite(width) && width > 0, "width must be positive");
     for (std::size_t i = 0; i < x.size() && !visible; ++i)

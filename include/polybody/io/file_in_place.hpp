@@ -56,7 +56,7 @@ class FileInPlace {
     if (!done) fail("cannot be written", {errno, std::generic_category()});
   }
   [[noreturn, gnu::cold]] void fail(std::string const& what, std::error_code reason) const {
-    throw IoError{"file '", name_, "' ", what, (reason ? ": " + reason.message() : "")};
+    throw IoError("file.write", {"file \"", ErrorObject{name_}, "\" ", what, (reason ? ": " + reason.message() : "")});
   }
 
   std::string name_;

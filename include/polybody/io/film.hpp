@@ -46,12 +46,14 @@ std::string viewer_page(std::filesystem::path const& file) {
       " Build polybody's CMake target 'viewer', which needs npm, and name polybody_viewer.html of the build folder, or "
       "of "
       "share/polybody/viewer where polybody is installed, in FilmOptions::viewer.";
-  if (file.empty()) throw IoError{"Film: no viewer is named.", remedy};
+  if (file.empty()) throw IoError("film.viewer", {ErrorObject{"Film"}, ": the viewer is missing.", remedy});
   std::optional<std::string> page = content_of(file);
-  if (!page) throw IoError{"Film: there is no viewer '", file.string(), "'.", remedy};
+  if (!page)
+    throw IoError("film.viewer", {"Film: the viewer \"", ErrorObject{file.string()}, "\" does not exist.", remedy});
   std::size_t const slot = page->find(film_slot);
   if (slot == page->npos || page->find(film_slot, slot + 1) != page->npos)
-    throw IoError{"Film: '", file.string(), "' is not a viewer of films of polybody.", remedy};
+    throw IoError("film.viewer",
+                  {"Film: \"", ErrorObject{file.string()}, "\" is not a viewer of films of polybody.", remedy});
   return std::move(*page);
 }
 
@@ -89,7 +91,8 @@ class Film {
   /// \throws InvalidInput if another scene has the same name.
   FilmScene& scene(std::string name) {
     for (FilmScene const& other : scenes_)
-      if (other.name() == name) throw InvalidInput{"Film: two scenes are called \"", name, "\"."};
+      if (other.name() == name)
+        throw InvalidInput("film.scene", {"Film: duplicate scene name \"", ErrorObject{name}, "\"."});
     return scenes_.emplace_back(std::move(name), options_.frames_per_second);
   }
 
@@ -101,7 +104,7 @@ class Film {
   /// `follow`.
   /// \throws IoError if the file cannot be written.
   std::size_t write(std::filesystem::path const& file) const {
-    if (scenes_.empty()) throw InvalidInput{"Film '", options_.title, "' has no scene."};
+    if (scenes_.empty()) throw InvalidInput("film.scene", {"Film \"", ErrorObject{options_.title}, "\" has no scene."});
     for (FilmScene const& scene : scenes_) require_complete(scene);
     require_view(view(planar()));
     std::size_t const slot = page_.find(detail::film_slot);
@@ -120,11 +123,13 @@ class Film {
 
  private:
   void require_complete(FilmScene const& scene) const {
-    if (scene.times().empty()) throw InvalidInput{"Film: the scene \"", scene.name(), "\" has no frame."};
+    if (scene.times().empty())
+      throw InvalidInput("film.scene", {"Film: the scene \"", ErrorObject{scene.name()}, "\" has no frame."});
     bool found = options_.follow.empty();
     for (detail::FilmPart const& part : scene.parts()) found = found || part.name == options_.follow;
     if (!found)
-      throw InvalidInput{"Film: the scene \"", scene.name(), "\" has no part \"", options_.follow, "\" to follow."};
+      throw InvalidInput("film.scene", {"Film: the scene \"", ErrorObject{scene.name()}, "\" has no part \"",
+                                        options_.follow, "\" to follow."});
   }
 
   bool planar() const { return std::ranges::all_of(scenes_, &FilmScene::planar); }
@@ -136,7 +141,7 @@ class Film {
   }
   static void require_view(std::array<Vec3, 2> const& view) {
     if (!(view[0].cross(view[1]).norm() > 1e-6 * view[0].norm() * view[1].norm()))
-      throw InvalidInput{"Film: look_from and up must be finite and not along each other."};
+      throw InvalidInput("film.camera", {ErrorObject{"Film"}, ": look_from and up must be finite and not parallel."});
   }
 
   /// Members of the table of contents except the scenes.

@@ -104,7 +104,8 @@ class FilmScene {
     require_start(scalar.label);
     for (FilmScalar const& other : scalars_)
       if (other.label == scalar.label)
-        throw InvalidInput{told(), "the colours \"", scalar.label, "\" are there twice."};
+        throw InvalidInput("film.scene",
+                           {ErrorObject{told()}, "the name \"", scalar.label, "\" of colours occurs twice."});
     scalars_.push_back(std::move(scalar));
   }
 
@@ -124,10 +125,13 @@ class FilmScene {
   /// \throws InvalidInput unless times increase and the parts are the same as in the first frame
   /// \throws NonFiniteValue for a time or part that is not finite.
   void record(double t, std::vector<VisualPart> const& parts) {
-    if (!std::isfinite(t)) throw NonFiniteValue{told(), "the time of a frame is not finite."};
+    if (!std::isfinite(t))
+      throw NonFiniteValue("film.not_finite", {ErrorObject{told()}, "the time of a frame is not finite."});
     if (!times_.empty() && !(t > times_.back()))
-      throw InvalidInput{told(), "frames must rise in time, but t = ", t, " s follows ", times_.back(), " s."};
-    if (parts.empty()) throw InvalidInput{told(), "there is nothing to be seen; attach shapes to the visual."};
+      throw InvalidInput("film.time_order", {ErrorObject{told()}, "frames must rise in time, but t = ", ErrorTime{t},
+                                             " s follows ", times_.back(), " s."});
+    if (parts.empty())
+      throw InvalidInput("film.scene", {ErrorObject{told()}, "there is nothing to draw. Attach shapes to the visual."});
     check_parts(t, parts);
     if (times_.empty()) {
       for (VisualPart const& part : parts) add_part(part);
@@ -154,10 +158,13 @@ class FilmScene {
   /// \throws InvalidInput if there is no frame yet, or for arrows of another scene; NonFiniteValue.
   void arrow(FilmArrows set, Vec3 const& place, Vec3 const& vector) {
     if (set.place >= arrows_.size() || times_.empty())
-      throw InvalidInput{told(), "an arrow belongs to a set of this scene and to a frame; record one first."};
+      throw InvalidInput(
+          "film.arrow",
+          {ErrorObject{told()}, "an arrow needs a set of arrows of this scene and a frame. Record a frame first."});
     detail::FilmArrowSet& arrows = arrows_[set.place];
     if (!place.allFinite() || !vector.allFinite())
-      throw NonFiniteValue{told(), "an arrow of \"", arrows.label, "\" is not finite at t = ", times_.back(), " s."};
+      throw NonFiniteValue("film.not_finite", {ErrorObject{told()}, "an arrow of \"", arrows.label,
+                                               "\" is not finite at t = ", ErrorTime{times_.back()}, " s."});
     ++arrows.counts.back();
     for (int i = 0; i < 3; ++i) arrows.places.push_back(float(place[i])), arrows.vectors.push_back(float(vector[i]));
   }
@@ -167,12 +174,14 @@ class FilmScene {
   /// \throws InvalidInput unless the times of the history increase; NonFiniteValue.
   void plot(std::string const& label, std::string const& unit, double t, double value) {
     if (!std::isfinite(t) || !std::isfinite(value))
-      throw NonFiniteValue{told(), "a point of the history \"", label, "\" is not finite at t = ", t, " s."};
+      throw NonFiniteValue("film.not_finite", {ErrorObject{told()}, "a point of the history \"", label,
+                                               "\" is not finite at t = ", ErrorTime{t}, " s."});
     auto found = std::find_if(histories_.begin(), histories_.end(), [&](auto const& h) { return h.label == label; });
     if (found == histories_.end()) found = histories_.insert(found, {label, unit});
     if (!found->times.empty() && !(t > found->times.back()))
-      throw InvalidInput{told(),        "the history \"",    label, "\" must rise in time, but t = ", t,
-                         " s follows ", found->times.back(), " s."};
+      throw InvalidInput("film.time_order",
+                         {ErrorObject{told()}, "the history \"", label, "\" must rise in time, but t = ", ErrorTime{t},
+                          " s follows ", found->times.back(), " s."});
     found->times.push_back(t);
     found->values.push_back(float(value));
   }
@@ -198,7 +207,9 @@ class FilmScene {
   std::string told() const { return "Film, scene \"" + name_ + "\": "; }
 
   void require_start(std::string const& what) const {
-    if (!times_.empty()) throw InvalidInput{told(), "\"", what, "\" comes after the first frame; name it before."};
+    if (!times_.empty())
+      throw InvalidInput("film.late",
+                         {ErrorObject{told()}, "\"", what, "\" is named after the first frame. Name it before."});
   }
 
   void check_parts(double t, std::vector<VisualPart> const& parts) const {
@@ -207,12 +218,16 @@ class FilmScene {
       VisualPart const& part = parts[i];
       for (Vec3 const& p : part.surface.points)
         if (!p.allFinite())
-          throw NonFiniteValue{told(), "a point of \"", part.name, "\" is not finite at t = ", t, " s."};
+          throw NonFiniteValue("film.not_finite", {ErrorObject{told()}, "a point of \"", part.name,
+                                                   "\" is not finite at t = ", ErrorTime{t}, " s."});
       if (!part.place.allFinite() || !part.axes.allFinite())
-        throw NonFiniteValue{told(), "the frame of \"", part.name, "\" is not finite at t = ", t, " s."};
+        throw NonFiniteValue("film.not_finite", {ErrorObject{told()}, "the frame of \"", part.name,
+                                                 "\" is not finite at t = ", ErrorTime{t}, " s."});
       same = times_.empty() || (part.name == parts_[i].name && part.surface.points.size() == parts_[i].points.size());
     }
-    if (!same) throw InvalidInput{told(), "the parts at t = ", t, " s are not those of the first frame."};
+    if (!same)
+      throw InvalidInput("film.parts", {ErrorObject{told()}, "the parts at t = ", ErrorTime{t},
+                                        " s differ from the parts of the first frame."});
   }
 
   void add_part(VisualPart const& part) {
@@ -251,15 +266,9 @@ class FilmScene {
       std::size_t const before = out.scalars[s].size(), wanted = times_.size() * out.points.size();
       bool const fits = values.empty() ? before == 0 : before == wanted && values.size() == out.points.size();
       if (!fits)
-        throw InvalidInput{told(),
-                           "the colours \"",
-                           scalars_[s].label,
-                           "\" of \"",
-                           part.name,
-                           "\" are not one for each "
-                           "point at t = ",
-                           t,
-                           " s."};
+        throw InvalidInput("film.parts",
+                           {ErrorObject{told()}, "the number of colours \"", scalars_[s].label, "\" of \"", part.name,
+                            "\" differs from the number of its points at t = ", ErrorTime{t}, " s."});
       for (double const x : values) out.scalars[s].push_back(float(x));
     }
   }

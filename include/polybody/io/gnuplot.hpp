@@ -82,10 +82,13 @@ void run_gnuplot(std::filesystem::path const& program, std::filesystem::path con
   std::error_code reason;
   if (!ran || fs::file_size(drawing.file, reason) == 0 || reason) {
     std::ifstream said(words.file);
-    throw IoError{"gnuplot failed on '", script.string(), "': ", std::string(std::istreambuf_iterator<char>(said), {})};
+    throw IoError("gnuplot.failed", {"gnuplot failed on \"", ErrorObject{script.string()},
+                                     "\": ", std::string(std::istreambuf_iterator<char>(said), {})});
   }
   fs::rename(drawing.file, png, reason);
-  if (reason) throw IoError{"file '", png.string(), "' cannot be put in place: ", reason.message()};
+  if (reason)
+    throw IoError("file.write",
+                  {"file \"", ErrorObject{png.string()}, "\" cannot be moved to its place: ", reason.message()});
 }
 
 }  // namespace detail

@@ -57,7 +57,7 @@ class Progress {
         terminal_(terminal),
         clock_(std::move(clock)) {
     if (!std::isfinite(start) || !std::isfinite(end))
-      throw InvalidInput{"progress '", label_, "': start and end must be finite"};
+      throw InvalidInput("value.not_finite", {"progress \"", ErrorObject{label_}, "\": start and end must be finite"});
     if (terminal_) began_ = clock_();
   }
 

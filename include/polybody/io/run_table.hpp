@@ -29,12 +29,15 @@ template <class = void>  // compiled where it is used
 void check(std::vector<TableColumn> const& columns) {
   std::vector<std::string> names{"t [s]"};
   for (TableColumn const& c : columns) {
-    if (c.name.empty() || !c.value) throw InvalidInput{"tabulate: column ", names.size(), " lacks a name or a value."};
+    if (c.name.empty() || !c.value)
+      throw InvalidInput("table.columns",
+                         {ErrorObject{"tabulate"}, ": column ", names.size(), " lacks a name or a value."});
     names.push_back(c.name);
   }
   std::ranges::sort(names);
   if (auto const twice = std::ranges::adjacent_find(names); twice != names.end())
-    throw InvalidInput{"tabulate: two columns are called \"", *twice, "\". The first one is \"t [s]\"."};
+    throw InvalidInput("table.columns", {ErrorObject{"tabulate"}, ": duplicate column \"", *twice,
+                                         "\". The first column is \"t [s]\"."});
 }
 
 /// Unit at the end of a column's head: "m/s" of "speed [m/s]"; empty if the head has no unit.
@@ -89,7 +92,8 @@ Table tabulate(Run&& run, std::vector<TableColumn> const& columns, double sampli
     for (TableColumn const& c : columns) {
       row.push_back(c.value(x));
       if (!std::isfinite(row.back()))
-        throw NonFiniteValue{"tabulate: \"", c.name, "\"", non_finite_suffix(row.back()), " at t = ", x.t, " s."};
+        throw NonFiniteValue("output.not_finite", {"tabulate: \"", ErrorObject{c.name}, "\"",
+                                                   non_finite_suffix(row.back()), " at t = ", ErrorTime{x.t}, " s."});
     }
   }
   return table;
@@ -109,13 +113,9 @@ void write_csv(Table const& table, std::filesystem::path const& file) {
 template <class = void>
 DrawResult plot(Table const& table, std::filesystem::path const& stem, bool draw = true) {
   if (table.rows.empty() || table.columns.size() < 2)
-    throw InvalidInput{"plot: the table for '",
-                       stem.string(),
-                       "' has ",
-                       table.rows.size(),
-                       " rows of ",
-                       table.columns.size(),
-                       " columns. Give it two columns and a row at least."};
+    throw InvalidInput("figure.content",
+                       {"plot: the table for \"", ErrorObject{stem.string()}, "\" has ", table.rows.size(), " rows of ",
+                        table.columns.size(), " columns; it needs at least one row and two columns."});
   std::vector<Figure> const figures = detail::figures_of(table);
   write_csv(table, detail::with_ending(stem, ".csv"));
   return write_panels(figures, figures.size() < 4 ? 1 : 2, stem, draw);

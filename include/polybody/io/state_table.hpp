@@ -68,7 +68,8 @@ class StateColumns {
   explicit StateColumns(Table const& table) {
     for (std::size_t j = 0; j < table.columns.size(); ++j)
       if (!places_.emplace(table.columns[j], j).second)
-        throw InvalidInput{"state_from: two columns are called \"", table.columns[j], "\"."};
+        throw InvalidInput("table.columns",
+                           {ErrorObject{"state_from"}, ": duplicate column \"", table.columns[j], "\"."});
   }
 
   /// Index of the column of a number, with or without unit in its head; none if there is no such column.
@@ -78,8 +79,8 @@ class StateColumns {
     auto const full = places_.find(head.text()), bare = places_.find(head.name);
     if (full == places_.end() && bare == places_.end()) refuse_other_unit(head);
     if (!head.unit.empty() && full != places_.end() && bare != places_.end())
-      throw InvalidInput{"state_from: the columns \"", head.name, "\" and \"", head.text(),
-                         "\" are of one number. Take one of them out of the table."};
+      throw InvalidInput("table.columns", {ErrorObject{"state_from"}, ": the columns \"", head.name, "\" and \"",
+                                           head.text(), "\" contain the same quantity. Remove one of them."});
     if (full != places_.end()) return full->second;
     return bare != places_.end() ? std::optional(bare->second) : std::nullopt;
   }
@@ -90,13 +91,8 @@ class StateColumns {
     if (head.unit.empty()) return;
     for (auto const& [column, place] : places_)
       if (column.starts_with(head.name + " [") && column.ends_with(']'))
-        throw InvalidInput{"state_from: the column \"",
-                           column,
-                           "\" has another unit than [",
-                           head.unit,
-                           "]. Convert its numbers and call it \"",
-                           head.text(),
-                           "\"."};
+        throw InvalidInput("table.unit", {"state_from: the unit of the column \"", ErrorObject{column}, "\" is not [",
+                                          head.unit, "]. Convert its numbers and call it \"", head.text(), "\"."});
   }
 
   std::unordered_map<std::string, std::size_t> places_;
@@ -124,15 +120,18 @@ Table state_table(ModelLayout const& layout, std::vector<State> const& states) {
 template <class = void>
 State state_from(ModelLayout const& layout, Table const& table, std::size_t row) {
   if (row >= table.rows.size())
-    throw InvalidInput{"state_from: row ", row, " is asked of a table of ", table.rows.size(), ", counted from 0."};
+    throw InvalidInput("table.row", {ErrorObject{"state_from"}, ": row ", ErrorValue{row},
+                                     " does not exist; the table has ", table.rows.size(), " rows, counted from 0."});
   StateColumns const columns(table);
   StateHeads const heads(layout);
   std::vector<double> numbers;
   for (std::size_t i = 0; i < heads.all.size(); ++i) {
     std::optional<std::size_t> const found = columns.find(heads.all[i]);
     if (!found && i < heads.required)
-      throw InvalidInput{"state_from: the table has no column \"", heads.all[i].text(),
-                         "\". A state needs the time and every coordinate and speed of its model; see state_columns."};
+      throw InvalidInput(
+          "table.no_column",
+          {"state_from: the table has no column \"", ErrorObject{heads.all[i].text()},
+           "\". A state needs the time and every coordinate and velocity of its model; see state_columns."});
     numbers.push_back(found ? table.rows[row].at(*found) : 0.0);
   }
   auto next = numbers.begin() + 1;

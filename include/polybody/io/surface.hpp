@@ -48,9 +48,13 @@ std::vector<Vec2> outline(Bar const& bar, int sides = 24) {
     double const y = 0.5 * r->height, z = 0.5 * r->width;
     return {Vec2(y, z), Vec2(-y, z), Vec2(-y, -z), Vec2(y, -z)};
   }
-  if (sides < 3) throw InvalidInput("outline: a circle needs at least three sides.");
+  if (sides < 3)
+    throw InvalidInput("outline.sides", {ErrorObject{"outline"}, ": a circle needs at least three sides, but has ",
+                                         ErrorValue{sides}, "."});
   auto const* c = std::get_if<Circle>(&bar.section);
-  if (!c) throw InvalidInput("outline: the bar has no section, only constants; give the outline itself.");
+  if (!c)
+    throw InvalidInput("bar.no_section",
+                       {ErrorObject{"outline"}, ": the bar has constants, but no section. Give the outline itself."});
   double const step = 2.0 * std::numbers::pi / sides, radius = c->radius * std::sqrt(step / std::sin(step));
   std::vector<Vec2> points;
   for (int i = 0; i < sides; ++i) points.emplace_back(radius * std::cos(i * step), radius * std::sin(i * step));

@@ -27,12 +27,13 @@ struct Table {
     std::string heads;
     std::size_t found = 0, place = 0;
     for (std::size_t j = 0; j < columns.size(); ++j) {
-      heads += (j ? ", '" : "'") + columns[j] + "'";
+      heads += (j ? ", \"" : "\"") + columns[j] + "\"";
       if (columns[j] == name) ++found, place = j;
     }
     if (found != 1)
-      throw InvalidInput{(found ? "more than one column is called '" : "no column is called '"), name,
-                         "'; the table has ", (heads.empty() ? "none" : heads)};
+      throw InvalidInput(found ? "table.columns" : "table.no_column",
+                         {(found ? "duplicate column \"" : "no column \""), ErrorObject{name}, "\"; the table has ",
+                          (heads.empty() ? "none" : heads)});
     std::vector<double> values;
     for (auto const& row : rows) values.push_back(row.at(place));
     return values;
@@ -72,7 +73,7 @@ struct CsvReader {
   std::size_t line = 1;
 
   [[noreturn, gnu::cold]] void fail(std::size_t at, std::string const& what) const {
-    throw IoError{"file '", name, "', line ", at, ": ", what};
+    throw IoError("file.content", {"file \"", ErrorObject{name}, "\", line ", at, ": ", what});
   }
 
   /// Returns the next record, which is empty at the end of the text. `at` becomes the line in which the record
@@ -140,13 +141,15 @@ inline Table read_csv(std::filesystem::path const& file) {
   errno = 0;
   std::optional<std::string> const text = detail::content_of(file);
   if (!text)
-    throw IoError{"file '", name, "' cannot be read", (errno ? ": " + std::generic_category().message(errno) : "")};
+    throw IoError("file.open", {"file \"", ErrorObject{name}, "\" cannot be read",
+                                (errno ? ": " + std::generic_category().message(errno) : "")});
   detail::CsvReader reader{*text, name};
   if (reader.text.starts_with("\xEF\xBB\xBF")) reader.text.remove_prefix(3);
   std::size_t line = 1;
   Table table{reader.record(line), {}};
   for (std::string& head : table.columns) head = detail::text_of_csv(head);
-  if (table.columns.empty()) throw IoError{"file '", name, "' is empty; a head line is needed"};
+  if (table.columns.empty())
+    throw IoError("file.content", {"file \"", ErrorObject{name}, "\" is empty; a head line is needed"});
   for (auto fields = reader.record(line); !fields.empty(); fields = reader.record(line)) {
     if (fields.size() != table.columns.size())
       reader.fail(line,
@@ -158,8 +161,8 @@ inline Table read_csv(std::filesystem::path const& file) {
       double value = 0.0;
       auto const [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
       if (error != std::errc{} || end != digits.data() + digits.size() || !std::isfinite(value))
-        reader.fail(line,
-                    "column '" + table.columns[j] + "': '" + fields[j] + "' is not a finite number a double can hold");
+        reader.fail(line, "column \"" + table.columns[j] + "\": \"" + fields[j] +
+                              "\" is not a finite number a double can hold");
       row.push_back(value);
     }
   }

@@ -127,18 +127,15 @@ class VtkWriterOf {
   /// \throws NonFiniteValue for coordinates that are not finite, IoError.
   void write(State const& x) {
     if (!(x.t > last_))
-      throw InvalidInput{"VtkWriter: the states of '",
-                         file_.string(),
-                         "' must rise in time, but t = ",
-                         x.t,
-                         " s follows ",
-                         last_,
-                         " s."};
+      throw InvalidInput("film.time_order",
+                         {"VtkWriter: the states of \"", ErrorObject{file_.string()},
+                          "\" must rise in time, but t = ", ErrorTime{x.t}, " s follows ", last_, " s."});
     std::vector<VisualPart> const& parts = visual_->at(x);
     for (VisualPart const& part : parts)
       for (Vec3 const& p : part.surface.points)
         if (!p.allFinite())
-          throw NonFiniteValue{"VtkWriter: a point of \"", part.name, "\" is not finite at t = ", x.t, " s."};
+          throw NonFiniteValue("film.not_finite", {"VtkWriter: a point of \"", ErrorObject{part.name},
+                                                   "\" is not finite at t = ", ErrorTime{x.t}, " s."});
     std::string index = std::to_string(count_);
     index.insert(0, index.size() < 6 ? 6 - index.size() : 0, '0');
     std::filesystem::path const stem = file_.stem(), grid = stem / (stem.string() + "_" + index + ".vtu");
@@ -154,7 +151,8 @@ class VtkWriterOf {
  private:
   static void check(std::filesystem::path const& file) {
     if (file.extension() != ".pvd")
-      throw InvalidInput{"VtkWriter: the name of a collection ends in .pvd, but this is '", file.string(), "'."};
+      throw InvalidInput("file.name", {"VtkWriter: the name of a collection must end in .pvd, but is \"",
+                                       ErrorObject{file.string()}, "\"."});
   }
   /// Overwrites the end of the collection by an entry and a new end, in one system call.
   void add(std::string const& entry) {

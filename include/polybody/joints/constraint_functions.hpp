@@ -210,10 +210,11 @@ Mat3 triad_of(Vec3 const& first, Vec3 const& third, std::string const& what) {
   require_unit(first, what, ": the first axis");
   require_unit(third, what, ": the second axis");
   if (std::abs(dot(first, third)) > 1e-9)
-    throw InvalidInput{what,
-                       ": the two axes must be perpendicular at the reference configuration, but their scalar product "
-                       "is ",
-                       dot(first, third), "."};
+    throw InvalidInput(
+        "joint.axes_not_perpendicular",
+        {ErrorObject{what},
+         ": the two axes must be perpendicular at the reference configuration, but their scalar product is ",
+         ErrorValue{dot(first, third)}, "."});
   return columns(first, cross(third, first), third);
 }
 

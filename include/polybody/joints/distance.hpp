@@ -18,8 +18,9 @@ struct Distance {
   Mat3 triad() const { return identity(); }
   void check(std::string const& what) const {
     if (!(length > 0.0) || !std::isfinite(length))
-      throw InvalidInput{what, ": the length must be positive and finite, but is ", length,
-                         ". Points that coincide are held by a Spherical or, in the plane, a planar::Revolute."};
+      throw InvalidInput("distance.length",
+                         {ErrorObject{what}, ": the length must be positive and finite, but is ", ErrorValue{length},
+                          " m. For coincident points use Spherical or, in the plane, planar::Revolute."});
   }
 
   template <StateScalar T>

@@ -32,15 +32,19 @@ struct Gear {
   }
   void check(std::string const& what) const {
     if (teeth_a == 0 || teeth_b == 0 || (teeth_a < 0 && teeth_b < 0))
-      throw InvalidInput{what,
-                         ": both wheels need teeth, and only one of them can be a ring gear, with a negative number."};
+      throw InvalidInput(
+          "gear.teeth",
+          {ErrorObject{what},
+           ": both wheels need a number of teeth, and at most one of them can be a ring gear (a negative number)."});
     for (int const teeth : {int(teeth_a), int(teeth_b)})
       if (teeth < -most_teeth || teeth > most_teeth)
-        throw InvalidInput{what, ": a wheel has at most ", most_teeth, " teeth, but the number is ", teeth, "."};
+        throw InvalidInput("gear.teeth", {ErrorObject{what}, ": a wheel has at most ", most_teeth,
+                                          " teeth, but the number is ", ErrorValue{teeth}, "."});
     if ((teeth_a < 0 || teeth_b < 0) && teeth_a + teeth_b >= 0)
-      throw InvalidInput{what,    ": a ring gear must have more teeth than the wheel inside it, but the numbers are ",
-                         teeth_a, " and ",
-                         teeth_b, "."};
+      throw InvalidInput(
+          "gear.teeth",
+          {ErrorObject{what}, ": a ring gear must have more teeth than the wheel inside it, but the numbers are ",
+           teeth_a, " and ", teeth_b, "."});
   }
 
   template <StateScalar T>

@@ -26,9 +26,10 @@ class JointAxis {
   /// \throws InvalidInput where it was left out; `what` names joint and direction.
   Vec3 const& required(std::string const& what) const {
     if (!given_)
-      throw InvalidInput{what,
-                         " is not given. It has no default: give it as a unit vector, world axes at the reference "
-                         "configuration, such as {0, 0, 1}."};
+      throw InvalidInput(
+          "joint.no_axis",
+          {ErrorObject{what},
+           " is missing. Give a unit vector in world axes at the reference configuration, such as {0, 0, 1}."});
     return value_;
   }
 

@@ -27,7 +27,7 @@ struct PrescribedAngle {
   Mat3 triad() const {
     return polybody::constraint_functions::triad_about(axis, "PrescribedAngle: the axis");
   }
-  void check(std::string const& what) const { check_driving_function(law, what + ": the law of time"); }
+  void check(std::string const& what) const { check_driving_function(law, what + ": the time function"); }
   std::vector<double> breakpoints() const { return breakpoints_of(law); }
 
   template <StateScalar T>

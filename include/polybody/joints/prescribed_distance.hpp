@@ -19,7 +19,7 @@ struct PrescribedDistance {
   Mat3 triad() const { return identity(); }
   void check(std::string const& what) const {
     require_positive(length, what, ": the length");
-    check_driving_function(law, what + ": the law of time");
+    check_driving_function(law, what + ": the time function");
   }
   std::vector<double> breakpoints() const { return breakpoints_of(law); }
 

@@ -22,7 +22,7 @@ struct PrescribedTranslation {
   Mat3 triad() const {
     return polybody::constraint_functions::triad_about(axis, "PrescribedTranslation: the axis");
   }
-  void check(std::string const& what) const { check_driving_function(law, what + ": the law of time"); }
+  void check(std::string const& what) const { check_driving_function(law, what + ": the time function"); }
   std::vector<double> breakpoints() const { return breakpoints_of(law); }
 
   template <StateScalar T>

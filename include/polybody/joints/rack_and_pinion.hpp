@@ -28,7 +28,9 @@ struct RackAndPinion {
   }
   void check(std::string const& what) const {
     if (!std::isfinite(radius) || radius == 0.0)
-      throw InvalidInput{what, ": the radius must be finite and not zero, but is ", radius, "."};
+      throw InvalidInput(
+          "rack_and_pinion.radius",
+          {ErrorObject{what}, ": the radius must be finite and not zero, but is ", ErrorValue{radius}, " m."});
   }
 
   template <StateScalar T>

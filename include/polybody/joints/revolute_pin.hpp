@@ -23,8 +23,10 @@ struct RevolutePin {
   }
   void check(std::string const& what) const {
     if (!(distance > 0.0) || !std::isfinite(distance))
-      throw InvalidInput{what, ": its points must stand a positive, finite distance apart along the axis, but it is ",
-                         distance, ". Points that coincide are joined by a Revolute."};
+      throw InvalidInput(
+          "revolute_pin.distance",
+          {ErrorObject{what}, ": the distance of its points along the axis must be positive and finite, but is ",
+           ErrorValue{distance}, " m. For coincident points use Revolute."});
   }
 
   template <StateScalar T>

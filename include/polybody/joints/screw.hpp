@@ -24,8 +24,8 @@ struct Screw {
   JointMotions motions() const { return {.list = {JointMotion{JointMotion::Kind::screw, 2, pitch}}, .count = 1}; }
   void check(std::string const& what) const {
     if (!std::isfinite(pitch) || pitch == 0.0)
-      throw InvalidInput{what, ": the pitch must be finite and not zero, but is ", pitch,
-                         ". A screw without pitch is a Revolute."};
+      throw InvalidInput("screw.pitch", {ErrorObject{what}, ": the pitch must be finite and not zero, but is ",
+                                         ErrorValue{pitch}, " m. A screw without pitch is a Revolute."});
   }
 
   template <StateScalar T>

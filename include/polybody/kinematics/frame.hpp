@@ -65,8 +65,8 @@ struct Placement {
     require_finite(origin, what, ": the placement's origin");
     for (int i = 0; i < 3; ++i)
       if (std::abs(origin[i]) > largest_number)
-        throw InvalidInput{what, ": the placement's origin has a coordinate of ", origin[i],
-                           " m, whose square is not finite."};
+        throw InvalidInput("value.magnitude", {ErrorObject{what}, ": the origin of the placement has a coordinate of ",
+                                               ErrorValue{origin[i]}, " m, but its square must be finite."});
     require_finite(axes, what, ": the placement's axes");
     double off = 0.0, determinant = 0.0;  // off: |AᵀA − 1|²
     for (int i = 0; i < 3; ++i) {
@@ -78,7 +78,8 @@ struct Placement {
       }
     }
     if (std::sqrt(off) > 1e-9 || determinant < 0.0)
-      throw InvalidInput{what, ": the placement's axes must be orthonormal and right-handed."};
+      throw InvalidInput("placement.axes",
+                         {ErrorObject{what}, ": the placement's axes must be orthonormal and right-handed."});
   }
 
   /// Angle about world z of a planar placement [rad].
@@ -87,7 +88,9 @@ struct Placement {
   double planar_angle(std::string const& what) const {
     check(what);
     if (std::abs(origin.z()) > 1e-12 || std::abs(axes(2, 2) - 1.0) > 1e-12)
-      throw InvalidInput{what, ": a planar body stands in the plane z = 0 and turns about z only."};
+      throw InvalidInput(
+          "placement.out_of_plane",
+          {ErrorObject{what}, ": a planar body must lie in the plane z = 0 and may rotate about z only."});
     return std::atan2(axes(1, 0), axes(0, 0));
   }
 };

@@ -15,8 +15,8 @@ namespace detail {
 /// \throws InvalidInput for the serial number 0, which belongs to no model.
 inline void require_filled(std::uint64_t model) {
   if (model == 0)
-    throw InvalidInput(
-        "A handle made by default names nothing in a model. Assign it what add, connect or apply returned.");
+    throw InvalidInput("model.empty_handle", {"A default-constructed handle refers to no object of a model. Assign the "
+                                              "result of add, connect or apply to it."});
 }
 }  // namespace detail
 
@@ -108,7 +108,7 @@ struct BodyHandle {
     try {
       return {model, index, point(on)};
     } catch (InvalidInput const& e) {
-      throw InvalidInput{"\"", name, "\": ", e.what()};
+      throw InvalidInput({"\"", ErrorObject{name}, "\": ", ErrorCause{e}});
     }
   }
 };

@@ -23,20 +23,18 @@ class MonotoneTable {
   /// and the derivatives and areas between them are finite.
   explicit MonotoneTable(std::vector<Point> const& points, std::string const& what = "MonotoneTable") {
     if (points.size() < 2)
-      throw InvalidInput{what, ": a table needs two points at least, but has ", points.size(), "."};
+      throw InvalidInput("table.too_few_points", {ErrorObject{what}, ": a table needs at least two points, but has ",
+                                                  ErrorValue{points.size()}, "."});
     for (std::size_t i = 0; i < points.size(); ++i) {
       Point const& p = points[i];
       if (!std::isfinite(p.x) || !std::isfinite(p.y))
-        throw InvalidInput{what, ": point ", i + 1, " of the table must be finite, but is (", p.x, ", ", p.y, ")."};
+        throw InvalidInput("value.not_finite", {ErrorObject{what}, ": point ", i + 1,
+                                                " of the table must be finite, but is (", p.x, ", ", p.y, ")."});
       if (i > 0 && !(p.x > points[i - 1].x))
-        throw InvalidInput{what,
-                           ": the abscissae of the table must increase, but point ",
-                           i + 1,
-                           " has ",
-                           p.x,
-                           " after ",
-                           points[i - 1].x,
-                           ". Sort the points and drop repeated ones."};
+        throw InvalidInput(
+            "table.not_increasing",
+            {ErrorObject{what}, ": the abscissae of the table must increase, but point ", i + 1, " has ",
+             ErrorValue{p.x}, " after ", points[i - 1].x, ". Sort the points and remove repeated ones."});
       knots_.push_back({p.x, p.y, 0.0, 0.0});
     }
     set_derivatives();
@@ -106,14 +104,10 @@ class MonotoneTable {
       double const y = std::abs(k.y) + h * (slope + h * (std::abs(c.a) + h * std::abs(c.b)));
       for (double const x : {slope, c.a, c.b, y, h * y, next.area, 1.0 / (h * h)})
         if (!(std::abs(x) <= largest_number))
-          throw InvalidInput{what,
-                             ": a value, slope or area of the table between its points ",
-                             i,
-                             " and ",
-                             i + 1,
-                             " is beyond ",
-                             largest_number,
-                             ". Give smaller numbers, or abscissae that are farther apart."};
+          throw InvalidInput(
+              "table.magnitude",
+              {ErrorObject{what}, ": a value, slope or area of the table between its points ", i, " and ", i + 1,
+               " is beyond ", largest_number, ". Give smaller numbers, or abscissae that are farther apart."});
     }
   }
 

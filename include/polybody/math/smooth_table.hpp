@@ -71,22 +71,18 @@ class SmoothTable {
 
   static void check_points(std::vector<Point> const& points, Ends const& ends, std::string const& what) {
     if (points.size() < 2)
-      throw InvalidInput{what, ": at least two points are needed, but there are ", points.size(), "."};
+      throw InvalidInput("table.too_few_points", {ErrorObject{what}, ": at least two points are needed, but there are ",
+                                                  ErrorValue{points.size()}, "."});
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (!std::isfinite(points[i].time) || !std::isfinite(points[i].value))
-        throw InvalidInput{what, ": point ", i + 1, " must be finite."};
+        throw InvalidInput("value.not_finite", {ErrorObject{what}, ": point ", i + 1, " must be finite."});
       if (i > 0 && !(points[i].time > points[i - 1].time))
-        throw InvalidInput{what,
-                           ": the times must increase, but point ",
-                           i + 1,
-                           " at t = ",
-                           points[i].time,
-                           " s follows one at ",
-                           points[i - 1].time,
-                           " s."};
+        throw InvalidInput("table.not_increasing", {ErrorObject{what}, ": the times must increase, but point ", i + 1,
+                                                    " at t = ", ErrorValue{points[i].time}, " s follows a point at ",
+                                                    points[i - 1].time, " s."});
     }
     if (!std::isfinite(ends.first_rate.value_or(0.0)) || !std::isfinite(ends.last_rate.value_or(0.0)))
-      throw InvalidInput{what, ": the rates at the ends must be finite."};
+      throw InvalidInput("value.not_finite", {ErrorObject{what}, ": the rates at the ends must be finite."});
   }
 
   /// Checks that all coefficients are finite. The rates grow as value/time, and neighbouring times may differ in the
@@ -100,10 +96,10 @@ class SmoothTable {
       double const value = std::abs(k.value) + h * (rate + h * (second + h * third));
       for (double const x : {rate, second, third, value, h * value, std::abs(k.integral)})
         if (!(x <= largest_number))
-          throw InvalidInput{what,           ": a value, rate, acceleration or integral of the spline at point ",
-                             i + 1,          ", t = ",
-                             k.time,         " s, is beyond ",
-                             largest_number, ". Give smaller values, or times that are farther apart."};
+          throw InvalidInput("table.magnitude",
+                             {ErrorObject{what}, ": a value, rate, acceleration or integral of the spline at point ",
+                              i + 1, ", t = ", k.time, " s, is beyond ", largest_number,
+                              ". Give smaller values, or times that are farther apart."});
     }
   }
 

@@ -88,8 +88,8 @@ class Tape {
   };
   [[gnu::cold]] void grow() {
     if (this == &none_)
-      throw InvalidInput(
-          "A recorded number was made while no recording was on. Let Recording::On live around the calculation.");
+      throw InvalidInput("tape.not_recording", {"A recorded number was made while no recording was active. Keep a "
+                                                "Recording::On alive during the calculation."});
     operations_.resize(std::max<std::size_t>(2 * operations_.size(), 4096));
   }
 

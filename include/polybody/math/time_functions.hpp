@@ -57,10 +57,9 @@ void check_driving_function(Law const& law, std::string const& what) {
     double const before = Motion(law(std::nextafter(t, -std::numeric_limits<double>::infinity()))).value;
     double const after = Motion(law(t)).value;
     if (!(std::abs(after - before) <= 1e-9 * (1.0 + std::abs(after))))
-      throw InvalidInput{what,   ": its value jumps from ",
-                         before, " to ",
-                         after,  " at t = ",
-                         t,      " s, but no body can. Go there in a while, by a Ramp or SmoothRamp."};
+      throw InvalidInput("time_function.jump",
+                         {ErrorObject{what}, ": the value jumps from ", before, " to ", ErrorValue{after}, " at t = ",
+                          ErrorTime{t}, " s, but a body cannot jump. Reach the value by a Ramp or SmoothRamp."});
   }
 }
 
@@ -89,7 +88,8 @@ namespace detail {
 inline void check_ramp(double target, double duration, double start, std::string const& what) {
   require_positive(duration, what, ": the duration");
   if (!std::isfinite(target) || !std::isfinite(start))
-    throw InvalidInput{what, ": target and start must be finite, but are ", target, " and ", start, "."};
+    throw InvalidInput("value.not_finite",
+                       {ErrorObject{what}, ": target and start must be finite, but are ", target, " and ", start, "."});
 }
 
 }  // namespace detail
@@ -110,7 +110,8 @@ struct Ramp {
     detail::check_ramp(target, duration, start, what);
     require_not_negative(rounding, what, ": the rounding");
     if (rounding > duration)
-      throw InvalidInput{what, ": the rounding ", rounding, " s must not exceed the duration ", duration, " s."};
+      throw InvalidInput("time_function.rounding", {ErrorObject{what}, ": the rounding ", ErrorValue{rounding},
+                                                    " s must not exceed the duration ", duration, " s."});
   }
   /// Value, rate and acceleration at t [s].
   Motion operator()(double t) const {
@@ -194,7 +195,9 @@ struct Constant {
   double value = 1.0;  ///< value at all times; a factor if it scales a load
 
   void check(std::string const& what) const {
-    if (!std::isfinite(value)) throw InvalidInput{what, ": the value must be finite, but is ", value, "."};
+    if (!std::isfinite(value))
+      throw InvalidInput("value.not_finite",
+                         {ErrorObject{what}, ": the value must be finite, but is ", ErrorValue{value}, "."});
   }
   Motion operator()(double) const { return {value, 0.0, 0.0}; }  ///< rate and acceleration are zero
   double integral(double t) const { return value * t; }          ///< integral from zero to t
@@ -208,10 +211,9 @@ struct Window {
 
   void check(std::string const& what) const {
     if (!(from < to) || !std::isfinite(value))
-      throw InvalidInput{what,  ": a window needs from < to and a finite value, but has from = ",
-                         from,  ", to = ",
-                         to,    ", value = ",
-                         value, "."};
+      throw InvalidInput("time_function.window",
+                         {ErrorObject{what}, ": a window needs from < to and a finite value, but has from = ", from,
+                          " s, to = ", to, " s, value = ", value, "."});
   }
   /// `value` within the interval, else zero; the rate is zero.
   Motion operator()(double t) const { return {t >= from && t < to ? value : 0.0, 0.0, 0.0}; }

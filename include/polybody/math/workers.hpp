@@ -42,22 +42,21 @@ class Workers {
   /// Starts `threads` − 1 threads; the calling thread is the first one. \throws InvalidInput for less than one, and
   /// for more threads than the system starts.
   [[gnu::cold]] explicit Workers(int threads) : thrown_(std::size_t(std::clamp(threads, 0, most))) {
-    if (threads < 1) throw InvalidInput{"Workers: at least one thread is needed, but ", threads, " are asked for."};
+    if (threads < 1)
+      throw InvalidInput("workers.count", {ErrorObject{"Workers"}, ": at least one thread is needed, but ",
+                                           ErrorValue{threads}, " are requested."});
     if (threads > most)
-      throw InvalidInput{"Workers: ", threads, " threads are asked for, more than the ", most,
-                         " that are served. Ask for no more than there are processors."};
+      throw InvalidInput("workers.count", {ErrorObject{"Workers"}, ": ", ErrorValue{threads},
+                                           " threads are requested, but the largest number is ", most,
+                                           ". Request at most as many as there are processors."});
     try {
       for (int i = 1; i < threads; ++i) others_.emplace_back([this, i] { serve(i); });
     } catch (std::system_error const& error) {
       std::size_t const started = others_.size() + 1;
       end();
-      throw InvalidInput{"Workers: of ",
-                         threads,
-                         " threads the system starts ",
-                         started,
-                         " only (",
-                         error.what(),
-                         "). Ask for no more than it has processors."};
+      throw InvalidInput("workers.start",
+                         {ErrorObject{"Workers"}, ": the system starts only ", ErrorValue{started}, " of ", threads,
+                          " threads (", error.what(), "). Request at most as many as there are processors."});
     }
   }
   Workers(Workers const&) = delete;

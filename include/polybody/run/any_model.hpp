@@ -46,8 +46,9 @@ class AnyModel {
   [[gnu::cold]] RunSystems systems_of() const {
     for (Run const& run : runs_)
       if (run.integrator == &detail::integrator_tag<I>) return run.make(model_.get());
-    throw InvalidInput{"AnyModel was made without ", I::name,
-                       ". Name it where it is made: AnyModel(model, stepped_by<...>)."};
+    throw InvalidInput("system.missing_capability",
+                       {"AnyModel was made without ", ErrorObject{I::name},
+                        ". Give it to the constructor: AnyModel(model, stepped_by<...>)."});
   }
 
  private:

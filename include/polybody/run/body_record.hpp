@@ -42,7 +42,8 @@ struct BodyRecord {
 /// intervals longer than `largest` [s]; 0: than 1.5 times the median.
 template <class = void>  // compiled where it is used
 void require_no_gaps(BodyRecord const& record, double largest, std::string const& who) {
-  if (record.samples.size() < 2) throw InvalidInput{who, "its record has fewer than two samples."};
+  if (record.samples.size() < 2)
+    throw InvalidInput("record.samples", {ErrorObject{who}, "the record has fewer than two samples."});
   require_not_negative(largest, who, "the largest gap");
   auto const between = [&](std::size_t k) {
     return sentence_of({record.samples[k].t, " s and ", record.samples[k + 1].t, " s"});
@@ -51,7 +52,8 @@ void require_no_gaps(BodyRecord const& record, double largest, std::string const
   for (std::size_t k = 0; k + 1 < record.samples.size(); ++k) {
     intervals.push_back(record.samples[k + 1].t - record.samples[k].t);
     if (!(intervals[k] > 0.0))
-      throw InvalidInput{who, "the samples at ", between(k), " do not follow each other in time."};
+      throw InvalidInput("record.time_order",
+                         {ErrorObject{who}, "the samples at ", between(k), " do not follow each other in time."});
   }
   std::vector<double> sorted = intervals;
   auto const middle = sorted.begin() + std::ptrdiff_t(sorted.size() / 2);
@@ -59,9 +61,10 @@ void require_no_gaps(BodyRecord const& record, double largest, std::string const
   double const gap = largest > 0.0 ? largest : 1.5 * *middle;
   for (std::size_t k = 0; k < intervals.size(); ++k)
     if (intervals[k] > gap * (1.0 + 1e-9))
-      throw InvalidInput{who,        "there is no sample between ",
-                         between(k), ", a gap of more than ",
-                         gap,        " s. Record every step, or name a largest_gap to draw a line across it."};
+      throw InvalidInput(
+          "record.gap",
+          {ErrorObject{who}, "there is no sample between ", between(k), ", a gap of more than ", ErrorValue{gap},
+           " s. Record every step, or give a largest_gap up to which samples are interpolated."});
 }
 
 /// A rigid body, in the plane or in space: its points are `at(u)`, u from its centre of mass in its axes.
@@ -107,8 +110,8 @@ class LoadRecorderOf {
                   "Loads are recorded of rigid bodies; a flexible body knows its own stress (stress/section.hpp).");
     Index const body = index_of(system_.layout(), handle);
     if (!records_.empty() && !records_.front().samples.empty())
-      throw InvalidInput{"LoadRecorder: \"", handle.name,
-                         "\" comes after the first sample. Add all bodies before the run."};
+      throw InvalidInput("record.late", {"LoadRecorder: \"", ErrorObject{handle.name},
+                                         "\" is added after the first sample. Add all bodies before the run."});
     Index& slot = recorded_[std::size_t(body)];
     if (slot >= 0) return;
     slot = Index(records_.size());
@@ -125,8 +128,9 @@ class LoadRecorderOf {
     require_fitting(system_, x);
     for (BodyRecord const& r : records_)
       if (!r.samples.empty() && !(x.t > r.samples.back().t))
-        throw InvalidInput{"LoadRecorder: a state at ", x.t, " s comes after one at ", r.samples.back().t,
-                           " s. Record each state once, in the order of the run."};
+        throw InvalidInput("record.time_order",
+                           {ErrorObject{"LoadRecorder"}, ": a state at t = ", ErrorTime{x.t}, " s follows a state at ",
+                            r.samples.back().t, " s. Record each state once, in the order of the run."});
     system_.evaluate(x.q, x.v, x.t);
     for (std::size_t i = 0; i < records_.size(); ++i)
       records_[i].samples.push_back(motions_[i].of(system_.layout().bodies[std::size_t(motions_[i].body)], x));
@@ -146,12 +150,12 @@ class LoadRecorderOf {
   BodyRecord const& of(BodyHandle<B> const& handle) const {
     Index const slot = recorded_[std::size_t(index_of(system_.layout(), handle))];
     if (slot < 0)
-      throw InvalidInput{"LoadRecorder: body \"", handle.name,
-                         "\" was not recorded. Add it to the recorder before the run."};
+      throw InvalidInput("record.no_body", {"LoadRecorder: body \"", ErrorObject{handle.name},
+                                            "\" was not recorded. Add it to the recorder before the run."});
     BodyRecord const& r = records_[std::size_t(slot)];
     if (r.samples.empty())
-      throw InvalidInput{"LoadRecorder: there is no sample of \"", handle.name,
-                         "\" yet. Call record for each state of the run."};
+      throw InvalidInput("record.samples", {"LoadRecorder: there is no sample of \"", ErrorObject{handle.name},
+                                            "\". Call record for each state of the run."});
     return r;
   }
 

@@ -68,8 +68,9 @@ class EnergyAuditOf {
     require_computable(system_, x);
     double const h = x.t - t_;
     if (!(h >= 0.0))
-      throw InvalidInput{"EnergyAudit: the state at t = ", x.t, " s is earlier than the last one at t = ", t_,
-                         " s. Call start() for another run."};
+      throw InvalidInput("record.time_order",
+                         {ErrorObject{"EnergyAudit"}, ": the state at t = ", ErrorTime{x.t},
+                          " s is earlier than the last state at t = ", t_, " s. Call start() for another run."});
     Powers const before = powers_;
     see(x);
     work_.drives += 0.5 * h * (before.drives + powers_.drives);

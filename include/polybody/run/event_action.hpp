@@ -41,25 +41,19 @@ template <class = void>
                                   double tolerance) {
   auto const same = [&](VecX State::* part) { return (after.*part).size() == (before.*part).size(); };
   if (!same(&State::q) || !same(&State::v) || !same(&State::a) || !same(&State::lambda))
-    throw InvalidInput{"The action of the event \"", event.name, "\" at t = ", before.t,
-                       " s changes the sizes of the state. Change the entries of q and v only."};
+    throw InvalidInput("event.action",
+                       {"The action of the event \"", ErrorObject{event.name}, "\" at t = ", ErrorTime{before.t},
+                        " s changes the sizes of the state. Change the entries of q and v only."});
   require_finite(after.q, "The coordinates after the event \"" + event.name + "\"");
   require_finite(after.v, "The speeds after the event \"" + event.name + "\"");
   if (full.rows() == 0 || after.q == before.q) return;
   auto const [open, row] = opening(full, after);
   if (open <= tolerance || open <= 2.0 * opening(full, before).first) return;
-  throw InvalidInput{
-      "The action of the event \"",
-      event.name,
-      "\" at t = ",
-      before.t,
-      " s opens ",
-      full.name_of(full.velocities() + row),
-      " by ",
-      open,
-      ", where ",
-      tolerance,
-      " is allowed (`assembly_tolerance`). Let it change speeds alone, or call assemble(model, x) in it."};
+  throw InvalidInput(
+      "event.action",
+      {"The action of the event \"", ErrorObject{event.name}, "\" at t = ", ErrorTime{before.t}, " s violates ",
+       full.name_of(full.velocities() + row), " by ", ErrorValue{open}, ", but the limit is ", tolerance,
+       " (`assembly_tolerance`). Change velocities only, or call assemble(model, x) in the action."});
 }
 
 /// Moves coordinates and speeds of x to where the event's value and its rate by the speeds are zero, by the smallest
@@ -86,8 +80,9 @@ template <LinearSolver Solver>
     forward.response(full, along, move, mu);
     double const mobility = along.dot(move);
     if (!(mobility > 1e-12 * along.norm() * move.norm()))
-      throw InvalidInput{"The event \"", event.name, "\" cannot be held at zero at t = ", x.t,
-                         " s: its value does not change with coordinates that can move. Leave out `rests`."};
+      throw InvalidInput("event.rests",
+                         {"The event \"", ErrorObject{event.name}, "\" cannot be held at zero at t = ", ErrorTime{x.t},
+                          " s, because its value does not change with coordinates that can move. Omit `rests`."});
     double const value = event.value(x);
     if (k > 0 && value == 0.0) break;
     State next = x;

@@ -17,7 +17,9 @@ struct EventMotion {
   /// The event's value at a state of the user's. \throws NonFiniteValue.
   static double value(Event const& event, State const& x) {
     double const y = event.value(x);
-    if (!std::isfinite(y)) throw NonFiniteValue{"The event \"", event.name, "\" is not finite at t = ", x.t, " s."};
+    if (!std::isfinite(y))
+      throw NonFiniteValue("event.not_finite", {"The event \"", ErrorObject{event.name},
+                                                "\" is not finite at t = ", ErrorTime{x.t}, " s."});
     return y;
   }
   /// The rate of an event's value at x [1/s], by central differences over a tenth of a step of `asked`.

@@ -64,14 +64,10 @@ struct EventPlace {
     if (event.rests) return;
     std::string const why = repeated ? sentence_of({"within its tolerance of ", event.tolerance, " s after its action"})
                                      : sentence_of({actions, " times within the length of one step"});
-    throw InvalidInput{"The event \"",
-                       event.name,
-                       "\" is met again ",
-                       why,
-                       " at t = ",
-                       t,
-                       " s: the impacts accumulate, and the body comes to rest. Set `rests` of the event to hold its "
-                       "value at zero from there on, or end the run before."};
+    throw InvalidInput("event.accumulates",
+                       {"The event \"", ErrorObject{event.name}, "\" occurs again ", why, " at t = ", ErrorTime{t},
+                        " s: the impacts accumulate, and the body comes to rest. Set `rests` of the event to hold its "
+                        "value at zero from there on, or end the run before."});
   }
 };
 

@@ -111,20 +111,14 @@ template <class = void>
   std::string const name = system.name_of(system.velocities() + open.worst);
   double const by = std::abs(open.absolute[open.worst]), extent = open.extent[open.worst];
   if (by > tolerance)
-    throw InconsistentInitialConditions{"At the start ", name, " is open by ", by,
-                                        ". Place the bodies so that it closes, or call "
-                                        "assemble(model, x)."};
-  throw InconsistentInitialConditions{"At the start ",
-                                      name,
-                                      " is open by ",
-                                      by,
-                                      " m, more than ",
-                                      tolerance * extent,
-                                      " m, the tolerance ",
-                                      tolerance,
-                                      " times the extent of its bodies of ",
-                                      extent,
-                                      " m. Place the bodies so that it closes, or call assemble(model, x)."};
+    throw InconsistentInitialConditions("initial_state.violation",
+                                        {"The initial state violates ", ErrorObject{name}, " by ", ErrorValue{by},
+                                         ". Place the bodies so that it closes, or call assemble(model, x)."});
+  throw InconsistentInitialConditions(
+      "initial_state.violation",
+      {"The initial state violates ", ErrorObject{name}, " by ", ErrorValue{by}, " m, but the limit is ",
+       tolerance * extent, " m, the tolerance ", tolerance, " times the extent of its bodies of ", extent,
+       " m. Place the bodies so that it closes, or call assemble(model, x)."});
 }
 
 /// \throws InconsistentInitialConditions naming joints that stay open because their rows repeat each other with other
@@ -159,7 +153,10 @@ void assemble(System& system, State& x, double tolerance = 1e-12, int max_iterat
     if (k == max_iterations || !std::isfinite(before)) {
       require_closable(system, forward, trial);
       require_assembled(system, trial, tolerance);
-      throw InconsistentInitialConditions("assemble: the joints cannot be closed from this start.");
+      throw InconsistentInitialConditions("assemble.not_converged",
+                                          {ErrorObject{"assemble"},
+                                           ": no closed configuration was found from this start. Place the bodies "
+                                           "closer to one, or check the lengths."});
     }
   }
   forward.project_velocities(system, trial.q, trial.v, trial.t);

@@ -17,7 +17,8 @@ template <class = void>  // compiled where it is used
 ConstraintBlock<double> const& rows_of(System const& system, Index joint) {
   for (ConstraintBlock<double> const& block : system.data().rows)
     if (block.source != ConstraintSource::body && block.owner == joint) return block;
-  throw InvalidInput{"\"", system.layout().joints[std::size_t(joint)].name, "\" has no rows."};
+  throw InvalidInput("joint.no_equations", {"\"", ErrorObject{system.layout().joints[std::size_t(joint)].name},
+                                            "\" has no constraint equations."});
 }
 
 /// Gbᵀλ of linear rows as a wrench about the joint point: those of the position give the force, a gradient r_α with its

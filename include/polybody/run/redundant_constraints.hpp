@@ -178,17 +178,13 @@ template <class Solver>
     for (Index k = 0; k < b.size(); ++k) sum += relation.c[k] * b[k];
     double const left = sum / largest_size(relation.c);
     if (std::abs(left) <= limit) continue;
-    throw InconsistentInitialConditions{
-        "The rows of ",
-        detail::names_in(system, relation.c),
-        " repeat each other but contradict by ",
-        std::abs(left),
-        " in their ",
-        what,
-        " at t = ",
-        system.at().t,
-        " s. Remove one of these joints, make their dimensions and laws agree, give one a compliant policy such as "
-        "Penalty, or, in a singular position, start with the speeds of one branch."};
+    throw InconsistentInitialConditions(
+        "constraints.contradiction",
+        {"The constraint equations of ", ErrorObject{detail::names_in(system, relation.c)},
+         " are redundant but contradict by ", ErrorValue{std::abs(left)}, " in their ", what,
+         " at t = ", ErrorTime{system.at().t},
+         " s. Remove one of these joints, make their dimensions and time functions agree, give one a compliant policy "
+         "such as Penalty, or, in a singular configuration, start with the velocities of one branch."});
   }
 }
 
@@ -200,15 +196,13 @@ template <class Solver>
                                                       VecX const& rate, double limit) {
   for (Index const i : forward.redundant_rows())
     if (i >= system.velocities() && std::abs(rate[i - system.velocities()]) > limit)
-      throw InconsistentInitialConditions{
-          "The rows of ",
-          system.name_of(i),
-          " repeat those of other joints so nearly that they are left out, and they stay open by ",
-          std::abs(rate[i - system.velocities()]),
-          " in their speeds at t = ",
-          system.at().t,
-          " s. Move the joint away from this position, bring the masses of the bodies that it "
-          "joins closer together, or give it a compliant policy such as Penalty."};
+      throw InconsistentInitialConditions(
+          "constraints.nearly_redundant",
+          {"The constraint equations of ", ErrorObject{system.name_of(i)},
+           " are nearly redundant and were omitted, but their velocities are violated by ",
+           ErrorValue{std::abs(rate[i - system.velocities()])}, " at t = ", ErrorTime{system.at().t},
+           " s. Move the joint away from this configuration, bring the masses of its bodies closer together, or give "
+           "it a compliant policy such as Penalty."});
 }
 
 /// The start of a run, its speeds projected: no contradiction in the speeds and accelerations that the rows ask for,

@@ -47,27 +47,29 @@ struct RunOptions {
     if (max_step) require_positive(*max_step, "simulate: the largest step");
     require_positive(assembly_tolerance, "simulate: assembly_tolerance");
     if (!(end_time >= start) || !std::isfinite(end_time))
-      throw InvalidInput{"simulate: the end ", end_time, " s lies before the start ", start, " s."};
+      throw InvalidInput("run.end_time", {ErrorObject{"simulate"}, ": the end time ", ErrorValue{end_time},
+                                          " s lies before the start ", start, " s."});
     double const latest = std::max(std::abs(start), std::abs(end_time)),
                  resolved = std::nextafter(latest, std::numeric_limits<double>::infinity()) - latest;
     if (step < 32.0 * resolved)
-      throw InvalidInput{"simulate: the clock resolves ",
-                         resolved,
-                         " s at t = ",
-                         end_time,
-                         " s, too coarse for steps of ",
-                         step,
-                         " s. Count the time of the run from a start near zero."};
+      throw InvalidInput("run.clock", {ErrorObject{"simulate"}, ": the clock resolves ", resolved,
+                                       " s at t = ", ErrorTime{end_time}, " s, which is too coarse for steps of ",
+                                       ErrorValue{step}, " s. Count the time of the run from a start near zero."});
     if (allowed_halvings() < 0 || allowed_halvings() > 30)
-      throw InvalidInput{"simulate: a step can be halved 0 to 30 times, but ", allowed_halvings(), " is asked for."};
+      throw InvalidInput("run.option", {ErrorObject{"simulate"}, ": max_step_halvings must lie in [0, 30], but is ",
+                                        ErrorValue{allowed_halvings()}, "."});
     if (!(limits.violation > 0.0) || !(limits.energy >= 1.0))
-      throw InvalidInput{"simulate: limits.violation must be positive and limits.energy at least one, but they are ",
-                         limits.violation, " and ", limits.energy, "."};
+      throw InvalidInput(
+          "run.option",
+          {ErrorObject{"simulate"}, ": limits.violation must be positive and limits.energy at least one, but they are ",
+           limits.violation, " and ", limits.energy, "."});
     require_positive(limits.warning, "simulate: limits.warning");
     for (double const t : breakpoints)
-      if (std::isnan(t)) throw InvalidInput("simulate: a corner must be a time [s], but is nan.");
+      if (std::isnan(t))
+        throw InvalidInput("run.option", {ErrorObject{"simulate"}, ": a breakpoint must be a time [s], but is nan."});
     for (Event const& event : events) {
-      if (!event.value) throw InvalidInput{"simulate: the event \"", event.name, "\" has no value."};
+      if (!event.value)
+        throw InvalidInput("event.no_value", {"simulate: the event \"", ErrorObject{event.name}, "\" has no value."});
       require_positive(event.tolerance, "simulate: the tolerance of the event \"" + event.name + "\"");
     }
   }

@@ -60,15 +60,18 @@ struct RunSnapshot {
       return sentence_of({m.coordinates, " coordinates, ", m.velocities, " speeds and ", m.rows, " rows"});
     };
     if (model.coordinates != of.coordinates || model.velocities != of.velocities || model.rows != of.rows)
-      throw InvalidInput{"resume: the snapshot is of another model. It has ", counts(model), "; this one has ",
-                         counts(of), "."};
+      throw InvalidInput("resume.model", {ErrorObject{"resume"}, ": the snapshot belongs to another model. It has ",
+                                          counts(model), "; this model has ", counts(of), "."});
     if (model != of)
-      throw InvalidInput(
-          "resume: the snapshot is of another model: its bodies, joints or forces have other names than this one's.");
-    if (integrator != by) throw InvalidInput{"resume: the snapshot is of a run by ", integrator, ", not by ", by, "."};
+      throw InvalidInput("resume.model",
+                         {ErrorObject{"resume"},
+                          ": the snapshot belongs to another model, with other names of bodies, joints or forces."});
+    if (integrator != by)
+      throw InvalidInput("resume.integrator", {ErrorObject{"resume"}, ": the snapshot belongs to a run by ", integrator,
+                                               ", not by ", by, "."});
     if (sides.size() != events)
-      throw InvalidInput{"resume: the snapshot is of a run with ", sides.size(), " events, but the options have ",
-                         events, "."};
+      throw InvalidInput("resume.events", {ErrorObject{"resume"}, ": the snapshot belongs to a run with ",
+                                           ErrorValue{sides.size()}, " events, but the options have ", events, "."});
   }
 };
 

@@ -334,9 +334,9 @@ RunReport const& Simulation<I, Solver>::run() & {
 template <Integrator I, class Solver>
 void Simulation<I, Solver>::reduced_start() {
   if (options_.minimum_norm)
-    throw InvalidInput(
-        "simulate: minimum_norm is for models whose joints all keep their rows. Ask minimum_norm_multipliers for "
-        "single states.");
+    throw InvalidInput("run.minimum_norm", {ErrorObject{"simulate"},
+                                            ": minimum_norm needs a model in which no constraint equation is "
+                                            "eliminated. Use minimum_norm_multipliers for single states."});
   State start = *x_;
   ForwardDynamics<Solver> forward(full());
   forward.project_velocities(full(), start.q, start.v, start.t);

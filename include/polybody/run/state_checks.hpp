@@ -41,9 +41,9 @@ template <class = void>
   system.plus(x.q, none, there);
   for (Index i = 0; i < there.size(); ++i)
     if (!(std::abs(there[i] - x.q[i]) <= 1e-6 * (1.0 + std::abs(x.q[i]))))
-      throw InvalidInput{"The coordinates of ", name_of_coordinate(system, i),
-                         " are those of no place: a quaternion must have norm one. Take them from reference_state(), "
-                         "and turn a body by unit quaternions."};
+      throw InvalidInput("state.quaternion", {"The coordinates of ", ErrorObject{name_of_coordinate(system, i)},
+                                              " are invalid: the norm of a quaternion must be one. Start from "
+                                              "reference_state(), and rotate a body by unit quaternions."});
 }
 
 /// \throws InvalidInput naming a body whose coordinates or speeds are so large that squares of them, and with them
@@ -53,20 +53,20 @@ template <class = void>
   ModelLayout const& full = system.layout();
   Index const in_q = first_not_finite(x.q), in_v = first_not_finite(x.v);
   if (in_q < 0 && in_v < 0) return;
-  throw InvalidInput{"A ",
-                     (in_v < 0 ? "coordinate of " + full.name_of_coordinate(in_q) : "speed of " + full.name_of(in_v)),
-                     non_finite_suffix(in_v < 0 ? x.q[in_q] : x.v[in_v]), " in the state. Give a smaller one."};
+  throw InvalidInput(
+      "state.not_finite",
+      {"A ",
+       ErrorObject{in_v < 0 ? "coordinate of " + full.name_of_coordinate(in_q) : "velocity of " + full.name_of(in_v)},
+       non_finite_suffix(in_v < 0 ? x.q[in_q] : x.v[in_v]), " in the state. Give a smaller number."});
 }
 
 /// \throws NonFiniteValue naming a joint of `system` whose reaction in x is not finite.
 inline void require_finite_reactions(System const& system, State const& x) {
   if (Index const i = first_not_finite(x.lambda); i >= 0)
-    throw NonFiniteValue{"The reaction of ",
-                         system.layout().name_of(system.layout().velocities + i),
-                         non_finite_suffix(x.lambda[i]),
-                         " at t = ",
-                         x.t,
-                         " s. Look at the forces on the bodies that it carries."};
+    throw NonFiniteValue(
+        "multiplier.not_finite",
+        {"The reaction of ", ErrorObject{system.layout().name_of(system.layout().velocities + i)},
+         non_finite_suffix(x.lambda[i]), " at t = ", ErrorTime{x.t}, " s. Check the forces on its bodies."});
 }
 
 /// \throws InvalidInput unless something can be computed from x: as the three above, and for multipliers that are not

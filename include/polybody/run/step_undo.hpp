@@ -26,13 +26,15 @@ struct StepUndo {
   /// or the clock does not resolve h.
   [[noreturn, gnu::cold]] void refuse_step(State const& x, double end_time, double h) const {
     if (!fits(x))
-      throw InvalidInput{"The sizes of the state were changed since the last step, which ended at t = ", x.t,
-                         " s. A run moves its state along: change entries of q and v in the `then` of an event."};
+      throw InvalidInput(
+          "state.size",
+          {"The sizes of the state were changed since the last step, which ended at t = ", ErrorTime{x.t},
+           " s. Only the run may change the sizes; the `then` of an event may change entries of q and v."});
     if (!(x.t < end_time))
-      throw InvalidInput{"advance: the run has ended at t = ", x.t,
-                         " s. Ask done() before, or give a later `end_time`."};
-    throw InvalidInput{"The clock does not resolve a step of ", h, " s at t = ", x.t,
-                       " s. Count the time of the run from a start near zero."};
+      throw InvalidInput("run.ended", {ErrorObject{"advance"}, ": the run has ended at t = ", ErrorTime{x.t},
+                                       " s. Check done() before, or give a later `end_time`."});
+    throw InvalidInput("run.clock", {"The clock does not resolve a step of ", ErrorValue{h}, " s at t = ",
+                                     ErrorTime{x.t}, " s. Count the time of the run from a start near zero."});
   }
   /// Notes the run before a step.
   void begin(StepRow const& row, double h, StepPlan const& plan, RunReport const& report) {

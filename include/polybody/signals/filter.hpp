@@ -32,11 +32,9 @@ double equal_step(std::span<double const> times, std::string const& who) {
   std::nth_element(sorted.begin(), middle, sorted.end());
   for (std::size_t i = 0; i < intervals.size(); ++i)
     if (std::abs(intervals[i] - *middle) > 1e-3 * *middle)
-      throw InvalidInput{who,          ": the samples at ",
-                         times[i],     " s and ",
-                         times[i + 1], " s lie ",
-                         intervals[i], " s apart, others ",
-                         *middle,      " s. Make them equally spaced with resampled, or close the gap."};
+      throw InvalidInput("samples.spacing", {ErrorObject{who}, ": the samples at ", times[i], " s and ", times[i + 1],
+                                             " s are ", ErrorValue{intervals[i]}, " s apart, but others ", *middle,
+                                             " s. Make them equally spaced with resampled, or close the gap."});
   return (times.back() - times.front()) / double(intervals.size());
 }
 
@@ -67,13 +65,9 @@ std::vector<double> resampled(std::span<double const> times, std::span<double co
   double const gap = largest_gap > 0.0 ? largest_gap : 1.5 * step;
   for (std::size_t i = 1; i < times.size(); ++i)
     if (times[i] - times[i - 1] > gap)
-      throw InvalidInput{"resampled: there is no sample between ",
-                         times[i - 1],
-                         " s and ",
-                         times[i],
-                         " s, a gap of more than ",
-                         gap,
-                         " s. Name a largest_gap to draw a line across it."};
+      throw InvalidInput("samples.gap", {ErrorObject{"resampled"}, ": there is no sample between ", times[i - 1],
+                                         " s and ", times[i], " s, a gap of more than ", ErrorValue{gap},
+                                         " s. Give a largest_gap up to which samples are interpolated."});
   std::size_t const count = std::size_t((times.back() - times.front()) / step + 1e-6) + 1;
   std::vector<double> out;
   std::size_t after = 1;
@@ -119,17 +113,14 @@ std::vector<double> low_pass(std::span<double const> times, std::span<double con
   require_not_negative(filter.roll_off, "low_pass: the roll-off");
   double const step = detail::equal_step(times, "low_pass"), nyquist = 0.5 / step;
   if (filter.cut_off > nyquist * (1.0 + 1e-9))
-    throw InvalidInput{"low_pass: the cut-off of ",
-                       filter.cut_off,
-                       " Hz is above Nyquist's frequency of ",
-                       nyquist,
-                       " Hz, as samples are ",
-                       step,
-                       " s apart. Record in smaller steps or lower the cut-off."};
+    throw InvalidInput("filter.cut_off", {ErrorObject{"low_pass"}, ": the cut-off of ", ErrorValue{filter.cut_off},
+                                          " Hz is above Nyquist's frequency of ", nyquist, " Hz for samples ", step,
+                                          " s apart. Record in smaller steps or lower the cut-off."});
   if (filter.cut_off * step * double(values.size()) < 1.0)
-    throw InvalidInput{"low_pass: the record of ", step * double(values.size()),
-                       " s is shorter than a period of the cut-off, ", 1.0 / filter.cut_off,
-                       " s. Record for longer or raise the cut-off."};
+    throw InvalidInput("filter.cut_off",
+                       {ErrorObject{"low_pass"}, ": the record of ", ErrorValue{step * double(values.size())},
+                        " s is shorter than a period of the cut-off, ", 1.0 / filter.cut_off,
+                        " s. Record for longer or raise the cut-off."});
 
   std::vector<double> period(values.begin(), values.end());
   if (filter.mirrored) period.insert(period.end(), values.rbegin() + 1, values.rend() - 1);

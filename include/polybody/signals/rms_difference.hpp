@@ -43,8 +43,12 @@ class RmsDifference {
   /// Relative difference [1]. \throws InvalidInput if no sample was compared, or if b is zero in all of them.
   double value() const {
     if (samples_ == 0)
-      throw InvalidInput{"RmsDifference: there is no sample of both histories from ", from_, " to ", to_, " s."};
-    if (all_ == 0.0) throw InvalidInput("RmsDifference: the history that differences are measured by is zero.");
+      throw InvalidInput(
+          "samples.too_few",
+          {ErrorObject{"RmsDifference"}, ": there is no sample of both histories from ", from_, " s to ", to_, " s."});
+    if (all_ == 0.0)
+      throw InvalidInput("samples.zero", {ErrorObject{"RmsDifference"},
+                                          ": the reference history is zero, so that there is no relative difference."});
     return std::sqrt(off_ / all_);
   }
 

@@ -25,14 +25,18 @@ template <class = void>
 void require_history(std::span<double const> times, std::span<double const> values, std::size_t least,
                      std::string const& who) {
   if (times.size() != values.size())
-    throw InvalidInput{who, ": ", times.size(), " times for ", values.size(), " values."};
+    throw InvalidInput("samples.size",
+                       {ErrorObject{who}, ": ", times.size(), " times for ", ErrorValue{values.size()}, " values."});
   if (values.size() < least)
-    throw InvalidInput{who, ": ", values.size(), " samples are too few; it takes ", least, "."};
+    throw InvalidInput("samples.too_few", {ErrorObject{who}, ": at least ", least,
+                                           " samples are needed, but there are ", ErrorValue{values.size()}, "."});
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!std::isfinite(values[i]) || !std::isfinite(times[i]))
-      throw InvalidInput{who, ": sample ", i, " at t = ", times[i], " s is not finite."};
+      throw InvalidInput("samples.not_finite",
+                         {ErrorObject{who}, ": sample ", i, " at t = ", ErrorTime{times[i]}, " s is not finite."});
     if (i > 0 && !(times[i] > times[i - 1]))
-      throw InvalidInput{who, ": times must rise, but ", times[i], " s follows ", times[i - 1], " s."};
+      throw InvalidInput("samples.not_increasing", {ErrorObject{who}, ": the times must rise, but t = ",
+                                                    ErrorTime{times[i]}, " s follows ", times[i - 1], " s."});
   }
 }
 

@@ -87,10 +87,10 @@ class ArticulatedBodySolverOf {
   /// neighbours.
   Index factor() {
     if (misplaced_ >= 0)
-      throw InvalidInput{
-          "joint_coordinates::ArticulatedBody: a force couples body \"",
-          reduction_->tree().bodies[std::size_t(misplaced_)].name,
-          "\" with one that neither carries it nor is carried by it. Take joint_coordinates::Augmented."};
+      throw InvalidInput("solver.force_coupling", {"joint_coordinates::ArticulatedBody: a force couples body \"",
+                                                   ErrorObject{reduction_->tree().bodies[std::size_t(misplaced_)].name},
+                                                   "\" with a body that is neither its ancestor nor its descendant in "
+                                                   "the tree. Use joint_coordinates::Augmented."});
     for (std::size_t i = nodes_.size(); i-- > 0;)
       if (Index const bad = eliminate(i); bad >= 0) return bad;
     Index const m = schur_.rows();

@@ -124,8 +124,9 @@ class EigenLdlt {
     Matrix const t = a.transpose();
     double const off = (a - t).norm(), size = a.norm();
     if (off > largest_asymmetry * size)
-      throw InvalidInput{"EigenLdlt: the tangent is not symmetric (", off / size,
-                         " of its norm). Use EigenSparseLu or the default BlockSolver."};
+      throw InvalidInput("solver.not_symmetric",
+                         {ErrorObject{"EigenLdlt"}, ": the tangent is not symmetric (relative asymmetry ",
+                          ErrorValue{off / size}, "). Use EigenSparseLu or the default BlockSolver."});
   }
   /// The unknown whose pivot is not above `threshold` of the largest entry of its column.
   Index first_bad(double threshold) const {

@@ -104,7 +104,9 @@ class Klu {
     std::sort(sorted.begin(), sorted.end());
     bool right = Index(sorted.size()) == size;
     for (std::size_t i = 0; right && i < sorted.size(); ++i) right = sorted[i] == int(i);
-    if (!right) throw InvalidInput{"Klu: the order does not name each of the ", size, " unknowns once."};
+    if (!right)
+      throw InvalidInput("solver.order", {ErrorObject{"Klu"}, ": the elimination order must contain each of the ", size,
+                                          " unknowns once."});
   }
   /// As KLU wants them: not const, though it does not change them.
   Arrays arrays() const {

@@ -31,14 +31,15 @@ struct NewtonOptions {
     require_count(max_iterations, who, ": newton.max_iterations");
     require_count(max_growths, who, ": newton.max_growths");
     if (!(factorisation_cost >= 0.0))
-      throw InvalidInput{who, ": newton.factorisation_cost must be zero or positive, but is ", factorisation_cost, "."};
+      throw InvalidInput("newton.option",
+                         {ErrorObject{who}, ": newton.factorisation_cost must be zero or positive, but is ",
+                          ErrorValue{factorisation_cost}, "."});
     if (budget != 0.0 && !(budget >= factorisation_cost + 1.0))
-      throw InvalidInput{who,
-                         ": newton.budget must be zero, for none, or pay a factorisation and an iteration, ",
-                         factorisation_cost + 1.0,
-                         ", but is ",
-                         budget,
-                         "."};
+      throw InvalidInput(
+          "newton.option",
+          {ErrorObject{who},
+           ": newton.budget must be zero (none) or at least the cost of a factorisation and an iteration, ",
+           factorisation_cost + 1.0, ", but is ", ErrorValue{budget}, "."});
   }
 };
 

@@ -41,10 +41,9 @@ class TangentSolver {
     if (solves_by_bodies()) {
       walks_ = system.rows() == 0 && under_gravity_only(system);
       if (copies > 1)
-        throw InvalidInput(
-            "joint_coordinates::ArticulatedBody solves for one set of accelerations at a time, not for the stages of a "
-            "method "
-            "together. Take joint_coordinates::Augmented.");
+        throw InvalidInput("solver.stages", {ErrorObject{"joint_coordinates::ArticulatedBody"},
+                                             ": it solves for one set of accelerations at a time, not for all stages "
+                                             "of a method together. Use joint_coordinates::Augmented."});
     } else {
       PatternSink pattern;
       BlockSink sink(pattern);

@@ -58,8 +58,9 @@ class PathEquations {
     }
     if (!solve(start) || !(b_.head(nv_).norm() > 0.0))
       throw SingularMatrix(
-          "equilibrium_path: there is no path to follow from here: the stiffness is singular at the start, or "
-          "nothing is loaded.");
+          "path.no_direction",
+          {ErrorObject{"equilibrium_path"},
+           ": the path has no direction, because the stiffness is singular at the start, or nothing is loaded."});
     c2_ = b_.head(nv_).squaredNorm();
     t_ = b_;
     turn();
@@ -109,7 +110,9 @@ class PathEquations {
     }
     system_.violation(phi_);
     if (!r_.allFinite() || !phi_.allFinite())
-      throw NonFiniteValue{"equilibrium_path: a force is not finite at load factor ", at.load_factor, "."};
+      throw NonFiniteValue("equilibrium.not_finite",
+                           {ErrorObject{"equilibrium_path"}, ": a force is not finite at load factor ",
+                            ErrorValue{at.load_factor}, "."});
     if ((takes_least_ ? least_.factor(at.x.lambda) : stiffness_.factor(at.x.lambda)) >= 0) return false;
     return solve_for(-r_, -phi_, at, a_) && solve_for(r0_ - r1_, VecX::Zero(rows_), at, b_);
   }
@@ -174,9 +177,11 @@ std::vector<PathPoint> equilibrium_path(System& system, State const& start, ArcL
     if (iterations < 0) {
       length *= 0.5;
       if (length < options.min_step)
-        throw NewtonConvergenceFailure{
-            "equilibrium_path: Newton's method did not converge beyond load factor ", now.load_factor,
-            ". A bifurcation may be near; give the structure an imperfection, or end the path before."};
+        throw NewtonConvergenceFailure(
+            "equilibrium.not_converged",
+            {ErrorObject{"equilibrium_path"}, ": Newton's method did not converge beyond load factor ",
+             ErrorValue{now.load_factor},
+             ". A bifurcation may be near: give the structure an imperfection, or end the path before."});
       continue;
     }
     equations.turn();

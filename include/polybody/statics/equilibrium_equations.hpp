@@ -168,14 +168,11 @@ struct EquilibriumPath {
     if (!takes_least || least.excited() < 0) return;
     std::size_t const k = std::size_t(least.excited());
     Index const i = least.pins()[k];
-    throw SingularMatrix{"equilibrium: the stiffness is singular",
-                         place(),
-                         ", first at ",
-                         system.name_of(i),
-                         ": nothing resists that ",
-                         name_of_motion(system, least.motion(k), i),
-                         ", and the loads excite this motion. Hold every body, or pass a limit point another "
-                         "way."};
+    throw SingularMatrix(
+        "equilibrium.singular",
+        {"equilibrium: the stiffness is singular", place(), ", first at ", ErrorObject{system.name_of(i)},
+         ": nothing resists that ", name_of_motion(system, least.motion(k), i),
+         ", and the loads excite this motion. Fix every body, or pass a limit point by equilibrium_path."});
   }
   /// \throws InconsistentInitialConditions naming a joint with redundant constraints that are violated.
   void require_closed() const {
@@ -184,23 +181,25 @@ struct EquilibriumPath {
     system.violation(open);
     for (Index const i : least.pins())
       if (i >= nv && !(std::abs(open[i - nv]) <= limit))
-        throw InconsistentInitialConditions{
-            "equilibrium: ", system.name_of(i), " stays open by ", std::abs(open[i - nv]),
-            ", as its rows repeat those of other joints but contradict them. Remove one of these "
-            "joints, make their dimensions and laws agree, or give one a compliant policy such as "
-            "Penalty."};
+        throw InconsistentInitialConditions(
+            "constraints.contradiction",
+            {"equilibrium: ", ErrorObject{system.name_of(i)}, " is violated by ", ErrorValue{std::abs(open[i - nv])},
+             ", because its constraint equations contradict those of other joints. Remove one of these joints, make "
+             "their dimensions and time functions agree, or give one a compliant policy such as Penalty."});
   }
   std::string place() const { return sentence_of({" at load factor ", system.load_factor}); }
   /// \throws SingularMatrix, NonFiniteValue, NewtonConvergenceFailure according to `result`.
   [[noreturn, gnu::cold]] void refuse(NewtonResult result, Index first_bad, std::string const& at) const {
     if (result == NewtonResult::singular)
-      throw SingularMatrix{"equilibrium: the stiffness is singular", at, ", first at ",
-                           system.name_of(std::max<Index>(first_bad, 0)),
-                           ". Hold every body, or pass a limit point another way."};
-    if (result == NewtonResult::not_finite) throw NonFiniteValue{"equilibrium: a force is not finite", at, "."};
-    throw NewtonConvergenceFailure{"equilibrium: Newton's method did not converge", at,
-                                   remedy_of_elements(system.layout(), trial.q),
-                                   ". Use more load steps, or start nearer to the solution."};
+      throw SingularMatrix("equilibrium.singular", {"equilibrium: the stiffness is singular", at, ", first at ",
+                                                    ErrorObject{system.name_of(std::max<Index>(first_bad, 0))},
+                                                    ". Fix every body, or pass a limit point by equilibrium_path."});
+    if (result == NewtonResult::not_finite)
+      throw NonFiniteValue("equilibrium.not_finite", {ErrorObject{"equilibrium"}, ": a force is not finite", at, "."});
+    throw NewtonConvergenceFailure("equilibrium.not_converged",
+                                   {ErrorObject{"equilibrium"}, ": Newton's method did not converge", at,
+                                    remedy_of_elements(system.layout(), trial.q),
+                                    ". Use more load steps, or start closer to the solution."});
   }
   /// Adds the names of the motions and constraints with springs in `least` to the report.
   void report_springs(EquilibriumReport& report) const {

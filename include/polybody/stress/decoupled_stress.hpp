@@ -146,9 +146,9 @@ class DecoupledStress {
   template <class = void>
   explicit DecoupledStress(StructureLoads loads) : loads_(std::move(loads)) {
     if (!loads_.structure().initial_force.isZero(0.0))
-      throw InvalidInput{"Stress of \"", loads_.name(),
-                         "\": a pretension is not recovered. Make the structure without it, and add its "
-                         "stress afterwards."};
+      throw InvalidInput("stress.pretension", {"Stress of \"", ErrorObject{loads_.name()},
+                                               "\": the stress of a pretension is not recovered. Make the structure "
+                                               "without it, and add its stress afterwards."});
   }
 
   /// Solves K e = loads with the restraints of `frame`. If they permit a rigid motion, the restraints of
@@ -176,8 +176,9 @@ class DecoupledStress {
     Structure const& structure = loads_.structure();
     std::string const who = sentence_of({"Stress of \"", loads_.name(), "\""});
     if (bar < 0 || bar >= Index(structure.bar_lengths.size()))
-      throw InvalidInput{
-          who, ": bar ", bar, " does not exist; the structure is made of ", structure.bar_lengths.size(), " bars."};
+      throw InvalidInput("ffr.no_bar",
+                         {ErrorObject{who}, ": bar ", ErrorValue{bar}, " does not exist; the structure has ",
+                          structure.bar_lengths.size(), " bars, counted from 0."});
     double const inside = require_inside(s, structure.bar_lengths[std::size_t(bar)], who);
     Index found = -1;
     for (std::size_t i = 0; i < structure.beams.size(); ++i) {

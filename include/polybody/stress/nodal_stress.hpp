@@ -40,23 +40,22 @@ class NodalStress {
   template <class = void>  // compiled where it is used
   NodalStress(Matrix const& matrix, std::vector<Spot> spots) : matrix_(matrix), spots_(std::move(spots)) {
     Index const k = Index(spots_.size());
-    if (k == 0) throw InvalidInput("NodalStress: it has no nodes. Name one at least.");
+    if (k == 0)
+      throw InvalidInput("nodal_stress.nodes", {ErrorObject{"NodalStress"}, ": at least one node is needed."});
     if (matrix_.rows() != 6 * k)
-      throw InvalidInput{"NodalStress: its matrix has ", matrix_.rows(), " rows, but ", k, " nodes need ", 6 * k,
-                         ", six stresses each."};
+      throw InvalidInput("nodal_stress.size",
+                         {ErrorObject{"NodalStress"}, ": its matrix has ", ErrorValue{matrix_.rows()}, " rows, but ", k,
+                          " nodes need ", 6 * k, ", six stresses each."});
     for (Index row = 0; row < matrix_.rows(); ++row)
       for (Matrix::InnerIterator it(matrix_, row); it; ++it)
         if (!std::isfinite(it.value()))
-          throw InvalidInput{"NodalStress: row ",
-                             row,
-                             ", column ",
-                             it.col(),
-                             " of its matrix is ",
-                             it.value(),
-                             ". Give finite numbers, in Pa/m."};
+          throw InvalidInput("value.not_finite",
+                             {ErrorObject{"NodalStress"}, ": row ", row, ", column ", it.col(), " of its matrix is ",
+                              ErrorValue{it.value()}, ". Give finite numbers, in Pa/m."});
     for (auto spot = spots_.begin(); spot != spots_.end(); ++spot)
       if (spot != find(spot->name))
-        throw InvalidInput{"NodalStress: two nodes are called \"", spot->name, "\". Give each a name of its own."};
+        throw InvalidInput("nodal_stress.nodes", {ErrorObject{"NodalStress"}, ": duplicate node name \"", spot->name,
+                                                  "\". Give each node another name."});
   }
 
   /// Reads `matrix_file` in the Matrix Market format (6k×`coordinates`) and `names_file`, a text with a line
@@ -67,9 +66,9 @@ class NodalStress {
   template <class = void>
   static NodalStress read(std::string const& matrix_file, std::string const& names_file, Index coordinates) {
     if (coordinates < 3 || coordinates % 3 != 0 || coordinates > std::numeric_limits<int>::max())
-      throw InvalidInput{"NodalStress: ", coordinates,
-                         " coordinates are not three displacements of each node. Give Structure::size() of a structure "
-                         "from matrices."};
+      throw InvalidInput("nodal_stress.size", {ErrorObject{"NodalStress"}, ": ", ErrorValue{coordinates},
+                                               " coordinates are not three displacements of each node. Give "
+                                               "Structure::size() of a structure from matrices."});
     std::vector<Spot> spots = read_spots(names_file, coordinates / 3);
     Index const rows = 6 * Index(spots.size());
     return {read_matrix(matrix_file, rows, coordinates,
@@ -132,7 +131,7 @@ class NodalStress {
         lines.fail(sentence_of({"node ", node, " does not exist; the structure has nodes 0 to ", nodes - 1}));
       for (Spot const& other : spots)
         if (other.name == name.text)
-          lines.fail("a node before is called '" + name.text + "', too; give each a name of its own");
+          lines.fail("duplicate node name \"" + name.text + "\"; give each node another name");
       spots.push_back({node, name.text});
     }
     if (spots.empty()) lines.fail("the file names no nodes; give the number of one and its name in each line");
@@ -149,18 +148,15 @@ class NodalStress {
     if (spot != spots_.end()) return 6 * Index(spot - spots_.begin());
     std::string known;
     for (Spot const& s : spots_) known += (known.empty() ? "\"" : ", \"") + s.name + '"';
-    throw InvalidInput{"NodalStress: no node is called \"", std::string(name), "\". There are ", known, "."};
+    throw InvalidInput("nodal_stress.no_node", {"NodalStress: no node is called \"", ErrorObject{std::string(name)},
+                                                "\". There are ", known, "."});
   }
   template <class = void>
   void require_rows(MatX const& x, char const* what) const {
     if (x.rows() != matrix_.cols())
-      throw InvalidInput{"NodalStress: the ",
-                         what,
-                         " have ",
-                         x.rows(),
-                         " rows, but its matrix has ",
-                         matrix_.cols(),
-                         " columns. Give a row for each coordinate of the structure."};
+      throw InvalidInput("nodal_stress.size", {ErrorObject{"NodalStress"}, ": the ", what, " have ",
+                                               ErrorValue{x.rows()}, " rows, but its matrix has ", matrix_.cols(),
+                                               " columns. Give a row for each coordinate of the structure."});
   }
 
   Matrix matrix_;  ///< (6k×N)

@@ -71,12 +71,14 @@ SectionStress section_stress(Bar const& bar, Vec6 const& forces, double y, doubl
   out.axial = fibre_stress(bar, forces, y, z);
   if (auto const* c = std::get_if<Circle>(&bar.section)) {
     if (!(std::hypot(y, z) <= c->radius * (1.0 + 1e-9)))
-      throw InvalidInput{"section_stress: the point (", y, ", ", z, ") lies outside the circle."};
+      throw InvalidInput("section.outside",
+                         {ErrorObject{"section_stress"}, ": the point (", y, ", ", z, ") m lies outside the circle."});
     out.shear = detail::shear_of(*c, bar.material->poisson, forces, y, z);
   } else {
     Rectangle const& s = std::get<Rectangle>(bar.section);
     if (!(std::abs(y) <= 0.5 * s.height * (1.0 + 1e-9) && std::abs(z) <= 0.5 * s.width * (1.0 + 1e-9)))
-      throw InvalidInput{"section_stress: the point (", y, ", ", z, ") lies outside the rectangle."};
+      throw InvalidInput("section.outside", {ErrorObject{"section_stress"}, ": the point (", y, ", ", z,
+                                             ") m lies outside the rectangle."});
     BarConstants const k = constants(bar);
     double const g = bar.material->young / (2.0 * (1.0 + bar.material->poisson));
     out.shear = detail::shear_of(s, k.GJ / g, forces, y, z);

@@ -141,7 +141,9 @@ class StructureLoads {
     x.b = axes.transpose() * (sample.acceleration - gravity) + x.B * (place.axes.transpose() * place.origin);
     x.size = sample.acceleration.norm() + gravity.norm();
     if (!x.b.allFinite() || !x.B.allFinite())
-      throw NonFiniteValue{who(), "the recorded motion at t = ", sample.t, " s is not finite."};
+      throw NonFiniteValue(
+          "stress.motion_not_finite",
+          {ErrorObject{who()}, "the recorded motion at t = ", ErrorTime{sample.t}, " s is not finite."});
     return x;
   }
 
@@ -225,11 +227,11 @@ class StructureLoads {
       }
     }
     if (worst > part * most)
-      throw InvalidInput{
-          who(), "the recorded loads do not balance the inertia of the structure: ",
-          worst, " N of ",
-          most,  " N are left over at t = ",
-          when,  " s. Give the structure the mass, inertia and placement of the recorded body, or raise `unbalance`."};
+      throw InvalidInput(
+          "stress.unbalanced",
+          {ErrorObject{who()}, "the recorded loads do not balance the inertia of the structure: ", ErrorValue{worst},
+           " N of ", most, " N remain at t = ", ErrorTime{when},
+           " s. Give the structure the mass, inertia and placement of the recorded body, or raise `unbalance`."});
   }
 
   static constexpr double same_place = 1e-6;  ///< largest distance between a load and its patch [m]

@@ -104,14 +104,14 @@ namespace detail {
 template <class = void>
 void require_fitting_shapes(Structure const& s, Vibration const& how, std::string const& who) {
   if (how.shapes.rows() != s.size())
-    throw InvalidInput{who,      "the shapes have ",   how.shapes.rows(), " rows, but the structure has ",
-                       s.size(), " nodal coordinates."};
+    throw InvalidInput("ffr.shape_size", {ErrorObject{who}, "the shapes have ", ErrorValue{how.shapes.rows()},
+                                          " rows, but the structure has ", s.size(), " nodal coordinates."});
   std::vector<char> held(std::size_t(s.size()), 1);
   for (Index const i : how.frame.free_coordinates(s)) held[std::size_t(i)] = 0;
   for (Index i = 0; i < s.size(); ++i)
     if (held[std::size_t(i)] && !how.shapes.row(i).isZero(0.0))
-      throw InvalidInput{who, "the shapes move node ", i / s.per_node,
-                         ", which the reference conditions hold. Name the conditions that the shapes were made with."};
+      throw InvalidInput("stress.shapes", {ErrorObject{who}, "the shapes move node ", i / s.per_node,
+                                           ", which the reference conditions fix. Give the conditions of the shapes."});
 }
 
 }  // namespace detail
@@ -123,7 +123,9 @@ VibrationHistory vibration_of(StructureLoads const& loads, I const& integrator, 
   Structure const& s = loads.structure();
   std::string const who = sentence_of({"Stress of \"", loads.name(), "\": "});
   require_not_negative(how.stiffness_damping, who, "the damping time");
-  if (how.substeps < 1) throw InvalidInput{who, "each interval needs at least one substep."};
+  if (how.substeps < 1)
+    throw InvalidInput("stress.substeps", {ErrorObject{who}, "each interval needs at least one substep, but has ",
+                                           ErrorValue{how.substeps}, "."});
   if (how.shapes.size() == 0) how.shapes = nodal_coordinates(s, how.frame);
   detail::require_fitting_shapes(s, how, who);
   MatX const& shapes = how.shapes;
@@ -142,9 +144,10 @@ VibrationHistory vibration_of(StructureLoads const& loads, I const& integrator, 
     for (std::size_t p = 0; p < 6; ++p) problem.load.products[p] = carried(s.inertia[p]);
   Eigen::LDLT<MatX> const factor(problem.stiffness);
   if (!(factor.vectorD().minCoeff() > 1e-13 * factor.vectorD().maxCoeff()))
-    throw InvalidInput{
-        who,
-        "nothing resists some of the shapes. Leave out motions of the whole structure, and shapes that repeat others."};
+    throw InvalidInput(
+        "stress.shapes",
+        {ErrorObject{who},
+         "nothing resists some of the shapes. Omit rigid motions of the structure, and linearly dependent shapes."});
 
   System system = system_of(problem, loads.name(), true);
   State x{VecX::Zero(n), VecX::Zero(n), VecX::Zero(n), VecX::Zero(0), loads.times().front(), {}};

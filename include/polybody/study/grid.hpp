@@ -15,8 +15,8 @@ namespace polybody {
 template <class = void>  // compiled where it is used
 std::vector<double> linear(double first, double last, std::size_t count) {
   if (count < 2 || !std::isfinite(first) || !std::isfinite(last))
-    throw InvalidInput{
-        "study: linear(", first, ", ", last, ", ", count, ") needs finite ends and two values at least."};
+    throw InvalidInput("points.range", {"study: linear(", first, ", ", last, ", ", ErrorValue{count},
+                                        ") needs finite ends and at least two values."});
   std::vector<double> values(count, first);
   for (std::size_t k = 1; k + 1 < count; ++k)
     values[k] = detail::of_twelve_digits(std::fma(double(k) / double(count - 1), last - first, first));
@@ -29,7 +29,8 @@ std::vector<double> linear(double first, double last, std::size_t count) {
 template <class = void>
 std::vector<double> logarithmic(double first, double last, std::size_t count) {
   if (!(first > 0.0 && last > 0.0))
-    throw InvalidInput{"study: logarithmic(", first, ", ", last, ", ", count, ") needs positive ends."};
+    throw InvalidInput("points.range",
+                       {"study: logarithmic(", ErrorValue{first}, ", ", last, ", ", count, ") needs positive ends."});
   std::vector<double> values = linear(first, last, count);  // checks the arguments; the ends remain
   double const from = detail::portable_log(first), to = detail::portable_log(last);
   for (std::size_t k = 1; k + 1 < count; ++k)
@@ -58,7 +59,8 @@ Points list(std::vector<Column> columns, std::vector<std::vector<double>> const&
   std::vector<double> values;
   for (std::vector<double> const& row : rows) {
     if (row.size() != columns.size())
-      throw InvalidInput{"study: a point of the list has ", row.size(), " values for ", columns.size(), " columns."};
+      throw InvalidInput("points.size", {"study: a point of the list has ", ErrorValue{row.size()}, " values for ",
+                                         columns.size(), " columns."});
     values.insert(values.end(), row.begin(), row.end());
   }
   return {std::move(columns), std::move(values), "list"};

@@ -91,7 +91,8 @@ class PointProcess {
 
  private:
   [[noreturn, gnu::cold]] static void fail(char const* what, int why = errno) {
-    throw Error{"study: the system has no more ", what, " for a point with a time limit: ", std::strerror(why), "."};
+    throw Error("study.process", {"study: the system has no more ", ErrorObject{what},
+                                  " for a point with a time limit: ", std::strerror(why), "."});
   }
   /// Sends the answer and ends the process of the point, without the exit handlers of the program.
   [[noreturn]] static void send(int pipe, std::string const& text) {
@@ -142,8 +143,8 @@ Outcome outcome_within(double limit, std::size_t outputs, F const& found) {
                          signal != 0 ? std::to_string(signal) : "", "."})};
   text->pop_back();
   std::string const rest = text->substr(1);
-  if (text->front() == 'm') throw StudyUsageError{rest};
-  if (text->front() == 'e') throw Error{rest};
+  if (text->front() == 'm') throw StudyUsageError("study.point", {rest});
+  if (text->front() == 'e') throw Error("study.point", {rest});
   return outcome_in(rest, 1, outputs).value().second;
 }
 

@@ -69,7 +69,7 @@ StudyResults work_for_first(Study const& study, F const& f, StudyOptions const& 
     }
   }
   if (own) std::rethrow_exception(own);
-  if (message.tag == RankTag::refused) throw IoError{message.text};
+  if (message.tag == RankTag::refused) throw IoError("study.rank", {message.text});
   return results_in(message.text, study);
 }
 
@@ -97,8 +97,9 @@ void require_same_study(Study const& study) {
   MPI_Allreduce(&own, &least, 1, MPI_UNSIGNED_LONG_LONG, MPI_MIN, MPI_COMM_WORLD);
   MPI_Allreduce(&own, &most, 1, MPI_UNSIGNED_LONG_LONG, MPI_MAX, MPI_COMM_WORLD);
   if (least != most)
-    throw InvalidInput{"study '", study.kind().file,
-                       "': the ranks have different studies. Give all the same program and options."};
+    throw InvalidInput("study.ranks_differ",
+                       {"study \"", ErrorObject{study.kind().file},
+                        "\": the ranks have different studies. Give all the same program and options."});
 }
 
 }  // namespace detail

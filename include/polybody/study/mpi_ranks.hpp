@@ -29,7 +29,7 @@ class MpiRanks {
     MPI_Initialized(&ready);
     if (ready == 0) {
       if (MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &threads) != MPI_SUCCESS)
-        throw Error{"MPI does not start. Is its mpirun that of the library this program is linked to?"};
+        throw Error("study.mpi", {"MPI does not start. Use the mpirun of the library that this program is linked to."});
       own_ = true;
     }
     MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
@@ -76,7 +76,8 @@ struct RankMessage {
 template <class = void>  // compiled where it is used
 void send(int to, RankTag tag, std::string const& text) {
   if (text.size() > std::size_t(std::numeric_limits<int>::max()))
-    throw InvalidInput{"study: ", text.size(), " bytes are too many for one message to another rank."};
+    throw InvalidInput("study.message_size",
+                       {"study: ", ErrorValue{text.size()}, " bytes are too many for one message to another rank."});
   MPI_Send(text.data(), static_cast<int>(text.size()), MPI_CHAR, to, static_cast<int>(tag), MPI_COMM_WORLD);
 }
 

@@ -76,9 +76,10 @@ struct StudyResults {
     for (std::size_t j = 0; j < outputs.size(); ++j)
       if (outputs[j].head == name) return take([&](std::size_t i) { return outcomes[i]->values[j]; });
     std::string all;
-    for (Column const& column : points.columns()) all += '\'' + column.head() + "', ";
-    for (StudyOutput const& output : outputs) all += '\'' + output.head + "', ";
-    throw InvalidInput{"study: it has no column '", name, "'; there are ", all.substr(0, all.size() - 2), "."};
+    for (Column const& column : points.columns()) all += '"' + column.head() + "\", ";
+    for (StudyOutput const& output : outputs) all += '"' + output.head + "\", ";
+    throw InvalidInput("study.no_column", {"study: no column \"", ErrorObject{name}, "\"; there are ",
+                                           all.substr(0, all.size() - 2), "."});
   }
 };
 

@@ -45,11 +45,12 @@ class Points {
   /// that are not finite or outside of the choices.
   Points(std::vector<Column> columns, std::vector<double> values, std::string origin)
       : columns_(std::move(columns)), values_(std::move(values)), origin_(std::move(origin)) {
-    if (columns_.empty()) throw InvalidInput{"study: its points need one column at least."};
+    if (columns_.empty()) throw InvalidInput("points.columns", {"study: the points need at least one column."});
     for (std::size_t j = 0; j < columns_.size(); ++j) require_good(j);
     if (values_.empty() || values_.size() % columns_.size() != 0)
-      throw InvalidInput{"study: ", values_.size(), " values do not fill the rows of ", columns_.size(),
-                         " columns. Give a value for each column of each point, and one point at least."};
+      throw InvalidInput("points.size",
+                         {"study: ", ErrorValue{values_.size()}, " values do not fill the rows of ", columns_.size(),
+                          " columns. Give a value for each column of each point, and at least one point."});
     for (std::size_t k = 0; k < values_.size(); ++k) require_good_value(columns_[k % columns_.size()], values_[k]);
   }
 
@@ -72,24 +73,23 @@ class Points {
     bool good = printable(column.name) && (column.unit.empty() || printable(column.unit));
     for (std::string const& choice : column.choices) good = good && printable(choice);
     if (!good)
-      throw InvalidInput{"study: column '", column.name,
-                         "' has a name, unit or choice that is empty or not printable. Give it words on one line."};
+      throw InvalidInput("points.columns",
+                         {"study: column \"", ErrorObject{column.name},
+                          "\" has a name, unit or choice that is empty or not printable. Give it words on one line."});
     for (std::size_t k = 0; k < j; ++k)
       if (columns_[k].name == column.name)
-        throw InvalidInput{"study: two columns are called '", column.name, "'. Give each a name of its own."};
+        throw InvalidInput("points.columns", {"study: duplicate column \"", ErrorObject{column.name},
+                                              "\". Give each column another name."});
   }
   static void require_good_value(Column const& column, double value) {
     if (!std::isfinite(value))
-      throw InvalidInput{"study: a value of column '", column.name, "' is not finite (", value, ")."};
+      throw InvalidInput("value.not_finite", {"study: a value of column \"", ErrorObject{column.name},
+                                              "\" is not finite (", ErrorValue{value}, ")."});
     if (!column.choices.empty() &&
         !(value >= 0.0 && value < double(column.choices.size()) && value == std::floor(value)))
-      throw InvalidInput{"study: ",
-                         value,
-                         " is none of the ",
-                         column.choices.size(),
-                         " choices of column '",
-                         column.name,
-                         "', which are counted from 0."};
+      throw InvalidInput("points.choice",
+                         {"study: ", ErrorValue{value}, " is none of the ", column.choices.size(),
+                          " choices of column \"", ErrorObject{column.name}, "\", which are counted from 0."});
   }
 
   std::vector<Column> columns_;
@@ -114,8 +114,8 @@ class Point {
   std::size_t choice(std::string_view column) const {
     std::size_t const j = place(column);
     if (points_->columns()[j].choices.empty())
-      throw StudyUsageError{"study: column '", column, "' holds numbers, not choices. Ask for point[\"", column,
-                            "\"]."};
+      throw StudyUsageError("study.column_kind", {"study: column \"", ErrorObject{column},
+                                                  "\" contains numbers, not choices. Use point[\"", column, "\"]."});
     return static_cast<std::size_t>(points_->at(index_, j));
   }
   /// Name of the point's choice in a `column`, as given to `formulations`.
@@ -130,8 +130,8 @@ class Point {
   auto with(std::string_view column, F const& f, First const& first, Others const&... others) const {
     std::size_t const k = choice(column), count = points_->columns()[place(column)].choices.size();
     if (count != 1 + sizeof...(others))
-      throw StudyUsageError{"study: column '",     column, "' has ", count, " choices, but the point's function knows ",
-                            1 + sizeof...(others), "."};
+      throw StudyUsageError("study.choices", {"study: column \"", ErrorObject{column}, "\" has ", ErrorValue{count},
+                                              " choices, but the point's function has ", 1 + sizeof...(others), "."});
     return call_nth(k, f, first, others...);
   }
 
@@ -141,9 +141,10 @@ class Point {
     std::string all;
     for (std::size_t j = 0; j < columns.size(); ++j) {
       if (columns[j].name == name) return j;
-      all += (j ? ", '" : "'") + columns[j].name + '\'';
+      all += (j ? ", \"" : "\"") + columns[j].name + '"';
     }
-    throw StudyUsageError{"study: there is no column '", name, "'; its points have ", all, "."};
+    throw StudyUsageError("study.no_column",
+                          {"study: no column \"", ErrorObject{name}, "\"; the points have ", all, "."});
   }
   template <class F, class First, class... Others>
   static auto call_nth(std::size_t k, F const& f, First const& first, Others const&... others) {

@@ -67,18 +67,21 @@ class StudyRecord {
   using Clock = std::chrono::steady_clock;
 
   [[noreturn, gnu::cold]] void fail(std::string const& what, int reason = errno) const {
-    throw IoError{"file '", kind_.file, "' ", what, ": ", std::generic_category().message(reason)};
+    throw IoError("file.write",
+                  {"file \"", ErrorObject{kind_.file}, "\" ", what, ": ", std::generic_category().message(reason)});
   }
 
   void open() {
     namespace fs = std::filesystem;
     fs::path const path = kind_.file;
-    if (!path.has_filename()) throw IoError{"file '", kind_.file, "': the name of a file is missing"};
+    if (!path.has_filename())
+      throw IoError("file.name", {"file \"", ErrorObject{kind_.file}, "\": the name of a file is missing"});
     std::error_code reason;
     if (path.has_parent_path()) fs::create_directories(path.parent_path(), reason);
     if (reason) fail("has a folder that cannot be created", reason.value());
     if (fs::exists(path, reason) && !fs::is_regular_file(path, reason))
-      throw IoError{"file '", kind_.file, "' exists and is not a regular file; choose another name"};
+      throw IoError("file.write",
+                    {"file \"", ErrorObject{kind_.file}, "\" exists and is not a regular file; choose another name"});
     existed_ = fs::exists(path, reason);
     do {
       close();
@@ -91,8 +94,9 @@ class StudyRecord {
   [[noreturn, gnu::cold]] void refuse_lock(int why) {
     ::close(std::exchange(file_, -1));
     if (why != EWOULDBLOCK) fail("cannot be locked", why);
-    throw IoError{"file '", kind_.file,
-                  "' is written by another run of the study. Wait until that ends, or choose another file"};
+    throw IoError("file.locked",
+                  {"file \"", ErrorObject{kind_.file},
+                   "\" is written by another run of the study. Wait until that ends, or choose another file"});
   }
 
   /// Returns true if the open file still has its name. A run that has written no line removes the file that it

@@ -25,7 +25,7 @@ struct RecordContent {
 };
 
 [[noreturn, gnu::cold]] inline void refuse_record(RecordKind const& kind, std::size_t line, std::string const& why) {
-  throw IoError{"file '", kind.file, "', line ", line, ": ", why};
+  throw IoError("file.content", {"file \"", ErrorObject{kind.file}, "\", line ", line, ": ", why});
 }
 
 /// Text of the head in the file.
@@ -40,17 +40,17 @@ template <class = void>
 void require_head_line(RecordKind const& kind, std::size_t line, std::string const& text) {
   std::string const& ours = kind.head[line - 1];
   if (text == ours) return;
-  if (line == 1) refuse_record(kind, line, "it is '" + text + "', but this program reads '" + ours + "'");
+  if (line == 1) refuse_record(kind, line, "it is \"" + text + "\", but this program reads \"" + ours + "\"");
   refuse_record(kind, line,
-                "the record is of another study: it has '" + text + "', this study '" + ours +
-                    "'. Give this study another file, or remove the old one");
+                "the record is of another study: it has \"" + text + "\", this study \"" + ours +
+                    "\". Give this study another file, or remove the old one");
 }
 
 /// Stores the outcome of a line. A failed point may occur again if a later run has computed it again.
 template <class = void>
 void take_outcome(RecordKind const& kind, std::size_t line, std::string const& text, RecordContent& content) {
   auto found = outcome_in(text, kind.points, kind.outputs);
-  if (!found) refuse_record(kind, line, "'" + text + "' is no outcome of this study");
+  if (!found) refuse_record(kind, line, "\"" + text + "\" is not an outcome of this study");
   std::optional<Outcome>& place = content.outcomes[found->first];
   if (place && !place->failed()) refuse_record(kind, line, "point " + std::to_string(found->first) + " is there twice");
   place = std::move(found->second);

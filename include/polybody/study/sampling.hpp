@@ -25,7 +25,9 @@ struct RandomAxis {
 template <class = void>  // compiled where it is used
 RandomAxis uniform(std::string name, std::string unit, double low, double high) {
   if (!(low < high && std::isfinite(high - low)))
-    throw InvalidInput{"study: '", name, "' is to lie between ", low, " and ", high, ". Give the lower end first."};
+    throw InvalidInput("distribution.range",
+                       {"study: the range of \"", ErrorObject{name},
+                        "\" must be finite with the lower end first, but is ", ErrorValue{low}, " to ", high, "."});
   return {{.name = std::move(name), .unit = std::move(unit)}, [=](double u) { return std::fma(u, high - low, low); }};
 }
 
@@ -34,13 +36,9 @@ RandomAxis uniform(std::string name, std::string unit, double low, double high) 
 template <class = void>
 RandomAxis log_uniform(std::string name, std::string unit, double low, double high) {
   if (!(low > 0.0 && low < high && std::isfinite(high)))
-    throw InvalidInput{"study: '",
-                       name,
-                       "' is to lie between ",
-                       low,
-                       " and ",
-                       high,
-                       " on a logarithmic scale. Give two positive ends, the lower first."};
+    throw InvalidInput("distribution.range", {"study: the logarithmic range of \"", ErrorObject{name},
+                                              "\" must be positive and finite with the lower end first, but is ",
+                                              ErrorValue{low}, " to ", high, "."});
   double const from = detail::portable_log(low), to = detail::portable_log(high);
   return {{.name = std::move(name), .unit = std::move(unit)},
           [=](double u) { return std::clamp(detail::portable_exp(std::fma(u, to - from, from)), low, high); }};
@@ -51,13 +49,10 @@ RandomAxis log_uniform(std::string name, std::string unit, double low, double hi
 template <class = void>
 RandomAxis normal(std::string name, std::string unit, double mean, double deviation) {
   if (!(deviation > 0.0 && std::isfinite(deviation) && std::isfinite(mean)))
-    throw InvalidInput{"study: '",
-                       name,
-                       "' has the mean ",
-                       mean,
-                       " and the standard deviation ",
-                       deviation,
-                       ", which must be finite and positive."};
+    throw InvalidInput(
+        "distribution.deviation",
+        {"study: \"", ErrorObject{name}, "\" needs a finite mean and a positive, finite standard deviation, but has ",
+         mean, " and ", ErrorValue{deviation}, "."});
   return {{.name = std::move(name), .unit = std::move(unit)},
           [=](double u) { return std::fma(detail::normal_quantile(u), deviation, mean); }};
 }
@@ -108,7 +103,8 @@ Points monte_carlo(std::size_t count, std::uint64_t seed, std::vector<RandomAxis
 template <class = void>
 Points latin_hypercube(std::size_t count, std::uint64_t seed, std::vector<RandomAxis> const& axes) {
   if (count > 1u << 20)
-    throw InvalidInput{"study: a Latin hypercube has 1048576 points at most, but ", count, " are asked for."};
+    throw InvalidInput("points.size", {"study: a Latin hypercube has at most 1048576 points, but ", ErrorValue{count},
+                                       " are requested."});
   std::mt19937_64 generator(seed);
   std::vector<double> u(count * axes.size());
   std::vector<std::size_t> strata(count);

@@ -19,7 +19,9 @@ struct Statistics {
 
   /// Quantile at a share p in [0, 1], interpolated linearly: 0 is the minimum, 0.5 the median.
   double quantile(double p) const {
-    if (!(p >= 0.0 && p <= 1.0)) throw InvalidInput{"study: a quantile is at a share of 0 … 1, not at ", p, "."};
+    if (!(p >= 0.0 && p <= 1.0))
+      throw InvalidInput("statistics.quantile",
+                         {"study: the share of a quantile must lie in [0, 1], but is ", ErrorValue{p}, "."});
     double const place = p * double(count - 1);
     std::size_t const k = std::min(std::size_t(place), count - 1), next = std::min(k + 1, count - 1);
     return sorted[k] + (place - double(k)) * (sorted[next] - sorted[k]);
@@ -33,8 +35,9 @@ Statistics statistics(StudyResults const& found, std::string_view column) {
   Statistics s{.sorted = found.column(column)};
   s.count = s.sorted.size();
   if (s.count < 2)
-    throw InvalidInput{"study: statistics of '", column, "' need two finished points at least, but there are ", s.count,
-                       "."};
+    throw InvalidInput("statistics.too_few",
+                       {"study: statistics of \"", ErrorObject{column},
+                        "\" need at least two finished points, but there are ", ErrorValue{s.count}, "."});
   for (double const x : s.sorted) s.mean += x / double(s.count);
   double squares = 0.0;
   for (double const x : s.sorted) squares += (x - s.mean) * (x - s.mean);
@@ -67,7 +70,8 @@ std::vector<double> ranks_of(std::vector<double> const& x) {
 template <class = void>
 double rank_correlation(StudyResults const& found, std::string_view one, std::string_view other) {
   std::vector<double> const a = detail::ranks_of(found.column(one)), b = detail::ranks_of(found.column(other));
-  if (a.size() < 2) throw InvalidInput{"study: a correlation needs two finished points at least."};
+  if (a.size() < 2)
+    throw InvalidInput("statistics.too_few", {"study: a correlation needs at least two finished points."});
   double const mean = 0.5 * double(a.size() + 1);
   double ab = 0.0, aa = 0.0, bb = 0.0;
   for (std::size_t k = 0; k < a.size(); ++k) {

@@ -36,11 +36,12 @@ Outcome outcome_of(F const& f, Point const& point, std::vector<StudyOutput> cons
     else
       for (double const x : found) outcome.values.push_back(x);
     if (outcome.values.size() != outputs.size())
-      throw StudyUsageError{"study: the point's function gives ", outcome.values.size(), " numbers for ",
-                            outputs.size(), " outputs."};
+      throw StudyUsageError("study.outputs", {"study: the point's function returns ", ErrorValue{outcome.values.size()},
+                                              " numbers for ", outputs.size(), " outputs."});
     for (std::size_t j = 0; j < outputs.size(); ++j)
       if (!std::isfinite(outcome.values[j]))
-        throw NonFiniteValue{"The output '", outputs[j].head, "' is not finite (", outcome.values[j], ")."};
+        throw NonFiniteValue("output.not_finite", {"The output \"", ErrorObject{outputs[j].head}, "\" is not finite (",
+                                                   ErrorValue{outcome.values[j]}, ")."});
     return outcome;
   } catch (StudyUsageError const&) {
     throw;
@@ -63,10 +64,12 @@ Outcome outcome_of(F const& f, Point const& point, std::vector<StudyOutput> cons
 template <class = void>
 void check(StudyOptions const& options) {
   if (options.threads < 1)
-    throw InvalidInput{"study: at least one thread is needed, but ", options.threads, " are asked for."};
+    throw InvalidInput("workers.count",
+                       {"study: at least one thread is needed, but ", ErrorValue{options.threads}, " are requested."});
   if (!(options.time_limit >= 0.0) || !std::isfinite(options.time_limit))
-    throw InvalidInput{"study: the time limit of a point must be positive, or zero for none, but is ",
-                       options.time_limit, " s."};
+    throw InvalidInput("study.time_limit",
+                       {"study: the time limit of a point must be positive, or zero for none, but is ",
+                        ErrorValue{options.time_limit}, " s."});
 }
 
 }  // namespace detail
@@ -88,11 +91,14 @@ class Study {
     std::vector<Column> heads;
     for (Column const& column : points_.columns()) heads.push_back({column.head()});
     for (StudyOutput const& output : outputs_) heads.push_back({output.head});
-    if (outputs_.empty()) throw InvalidInput{"study '", file_.file.string(), "': it needs one output at least."};
+    if (outputs_.empty())
+      throw InvalidInput("study.outputs",
+                         {"study \"", ErrorObject{file_.file.string()}, "\": at least one output is needed."});
     std::vector<double> const one_row(heads.size());
     Points(std::move(heads), one_row, "");  // checks the names
     if (std::ranges::any_of(file_.about, [](unsigned char c) { return c < ' ' || c == 127; }))
-      throw InvalidInput{"study '", file_.file.string(), "': what it is about must be words on one line."};
+      throw InvalidInput("study.about", {"study \"", ErrorObject{file_.file.string()},
+                                         "\": its description must be words on one line."});
   }
 
   /// Calls f(point) for each unfinished point, from several threads at once: f must not change shared data. The
@@ -130,7 +136,7 @@ class Study {
   template <class = void>  // compiled where it is used
   StudyResults recorded() const {
     auto const bytes = detail::content_of(file_.file);
-    if (!bytes) throw IoError{"file '", file_.file.string(), "' cannot be read"};
+    if (!bytes) throw IoError("file.open", {"file \"", ErrorObject{file_.file.string()}, "\" cannot be read"});
     detail::RecordContent content = detail::record_content(kind(), *bytes);
     StudyResults so_far = results(std::move(content.outcomes), 0, content.torn);
     so_far.resumed = so_far.finished();

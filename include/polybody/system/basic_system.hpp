@@ -27,8 +27,9 @@ inline constexpr With<groups> with{};
 template <class F>
 F require_entry(F entry, char const* group) {
   if (!entry)
-    throw InvalidInput{"This system was made without ", group,
-                       ". Name them where it is made: System(model, with<Capabilities::...>)."};
+    throw InvalidInput("system.missing_capability",
+                       {"This system was made without ", ErrorObject{group},
+                        ". Give them to its constructor: System(model, with<Capabilities::...>)."});
   return entry;
 }
 

@@ -124,7 +124,7 @@ LinearPoint linear_side(PooledMarker<B> const& m, World other, LinearSide& side,
     try {
       return linear_point(e.body, m.marker.point);
     } catch (InvalidInput const& error) {
-      throw InvalidInput{"\"", what, "\": ", error.what(), " Use Constraint here."};
+      throw InvalidInput({"\"", ErrorObject{what}, "\": ", ErrorCause{error}, " Use Constraint here."});
     }
   }
 }

@@ -31,15 +31,11 @@ class DriveAxes {
       if (other.bodies != bodies || parallel(axis, other.axis)) continue;
       Turn const mine{bodies, axis, name};
       Turn const &drive = drives ? mine : other, &pin = drives ? other : mine;
-      throw InvalidInput{"\"",
-                         drive.name,
-                         "\" drives a turn about ",
-                         text(drive.axis),
-                         ", but \"",
-                         pin.name,
-                         "\" leaves these bodies a turn about ",
-                         text(pin.axis),
-                         " alone (world axes at the reference configuration). Give the drive the axis of the pin."};
+      throw InvalidInput(
+          "drive.axis",
+          {"\"", ErrorObject{drive.name}, "\" drives a rotation about ", text(drive.axis), ", but \"", pin.name,
+           "\" allows only a rotation about ", text(pin.axis),
+           " between these bodies (world axes at the reference configuration). Give the drive the axis of the pin."});
     }
     turns_[drives ? 1 : 0].push_back({bodies, axis, name});
   }

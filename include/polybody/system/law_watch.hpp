@@ -94,13 +94,10 @@ void LawWatch::begin(ModelLayout const& layout, double t, double remainder_step)
                  most = std::max(std::abs(before.rate), std::abs(law.last.rate)) * std::abs(gap) +
                         1e-9 * (1.0 + std::abs(law.last.value));
     if (!(std::abs(jump) <= most))
-      throw InvalidInput{"joint \"",
-                         joint.name,
-                         "\": the prescribed value jumps by ",
-                         jump,
-                         " at the breakpoint t = ",
-                         t,
-                         " s, but no body can. Go there in a while, by a Ramp or SmoothRamp."};
+      throw InvalidInput("time_function.jump",
+                         {"joint \"", ErrorObject{joint.name}, "\": the prescribed value jumps by ", ErrorValue{jump},
+                          " at the breakpoint t = ", ErrorTime{t},
+                          " s, but a body cannot jump. Reach the value by a Ramp or SmoothRamp."});
   }
   last_ = marked_ = t;
   for (Watched& law : laws_) law.marked = law.last;
@@ -139,22 +136,13 @@ void LawWatch::require_smooth(JointLayout const& joint, Watched& law, Motion fro
   }
   bool const of_value = full.of_value;
   double const expected = of_value ? full.by_rate : full.by_acceleration;
-  throw InvalidInput{"joint \"",
-                     joint.name,
-                     "\": in the step of ",
-                     h,
-                     " s to t = ",
-                     t,
-                     " s the prescribed ",
-                     of_value ? "value" : "rate",
-                     " changes by ",
-                     expected + (of_value ? full.value : full.rate),
-                     ", where the law's ",
-                     of_value ? "rate" : "acceleration",
-                     " gives ",
-                     expected,
-                     ". Give the derivatives of the law's value, and declare a breakpoint where its rate jumps, by "
-                     "corners() of the law or in the options of the run. No body follows a jump of the value."};
+  throw InvalidInput(
+      "time_function.derivatives",
+      {"joint \"", ErrorObject{joint.name}, "\": in the step of ", h, " s to t = ", ErrorTime{t}, " s the prescribed ",
+       of_value ? "value" : "rate", " changes by ", ErrorValue{expected + (of_value ? full.value : full.rate)},
+       ", but the ", of_value ? "rate" : "acceleration", " of the time function gives ", expected,
+       ". Correct the derivatives of the time function, and declare a breakpoint where its rate jumps, by "
+       "breakpoints() of the function or in the options of the run. The value itself must not jump."});
 }
 
 }  // namespace polybody

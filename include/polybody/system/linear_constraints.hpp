@@ -143,19 +143,23 @@ void fill_linear_rows(LinearPointOf<T> const& a, LinearPointOf<T> const& b, std:
     } else {
       V const t_a = a.complete() ? b.J.col(0) : a.J.col(0), t_b = b.complete() ? a.J.col(0) : b.J.col(0);
       if (std::abs(n.dot(t_a)) > 1e-9 || std::abs(n.dot(t_b)) > 1e-9)
-        throw InvalidInput{"\"", rows.name, "\": the pin of a cable must be perpendicular to it."};
+        throw InvalidInput("ancf_linear.pin_axis", {"\"", ErrorObject{rows.name},
+                                                    "\": the pin of a cable must be perpendicular to the cable."});
       share(t_a, t_b, true);
     }
   } else if (a.complete() && b.complete()) {
     for (int k = 0; k < size; ++k) share(V::Unit(k), V::Unit(k), false);
   } else if (a.gradient_count == 0 || b.gradient_count == 0) {
-    throw InvalidInput{"\"", rows.name, "\": AncfLinear welds bodies with position gradients. Use Constraint here."};
+    throw InvalidInput("ancf_linear.weld",
+                       {"\"", ErrorObject{rows.name},
+                        "\": AncfLinear welds only bodies with position gradients. Use Constraint here."});
   } else {
     V const t = a.complete() ? b.J.col(0) : a.J.col(0);
     if (!a.complete() && !b.complete() && (a.J.col(0) - b.J.col(0)).norm() > 1e-9)
-      throw InvalidInput{
-          "\"", rows.name,
-          "\": AncfLinear welds two cables only where one goes on as the other; weld a corner by Constraint."};
+      throw InvalidInput(
+          "ancf_linear.weld",
+          {"\"", ErrorObject{rows.name},
+           "\": AncfLinear welds two cables only if their tangents agree. Use Constraint for a corner."});
     share(t, t, false);
   }
 }

@@ -109,9 +109,10 @@ class LinearEliminationOf {
       }
     if (largest <= 1e-10 * scale) {
       if (std::abs(p.constant) > 1e-8)
-        throw InconsistentInitialConditions{
-            "\"", joint.name, "\": its linear rows contradict those of other joints by ", std::abs(p.constant),
-            ". Place the bodies so that the loop closes, or leave a joint out."};
+        throw InconsistentInitialConditions(
+            "ancf_linear.contradiction",
+            {"\"", ErrorObject{joint.name}, "\": the linear constraint equations contradict those of other joints by ",
+             ErrorValue{std::abs(p.constant)}, ". Place the bodies so that the loop closes, or omit a joint."});
       redundant_.push_back(p.row);
       return;
     }

@@ -30,7 +30,7 @@ Mat3 checked_triad(J const& joint, std::string const& name) {
       }
     return joint.geometry.triad();
   } catch (InvalidInput const& e) {
-    throw InvalidInput{quoted, ": ", e.what()};
+    throw InvalidInput({ErrorObject{quoted}, ": ", ErrorCause{e}});
   }
 }
 
@@ -39,9 +39,9 @@ template <class B>
 void require_observed(Marker<B> const& m, MarkerKind needs, std::string const& what) {
   if constexpr (requires { B::observes_at(m.point); })
     if (B::observes_at(m.point) < needs)
-      throw InvalidInput{"\"", what,
-                         "\" needs axes, but a point that slides along a body has none. Use a joint or force that "
-                         "needs a point only, such as Spherical or planar::Revolute."};
+      throw InvalidInput("marker.no_axes", {"\"", ErrorObject{what},
+                                            "\" needs axes, but a sliding point has none. Use a joint or force that "
+                                            "needs a point only, such as Spherical or planar::Revolute."});
 }
 
 /// \throws InvalidInput where the ground or a rigid body is joined to itself.
@@ -49,24 +49,28 @@ template <class A, class B>
 void require_apart([[maybe_unused]] Marker<A> const& a, [[maybe_unused]] Marker<B> const& b,
                    [[maybe_unused]] std::string const& name) {
   if constexpr (std::is_same_v<A, Ground> && std::is_same_v<B, Ground>)
-    throw InvalidInput{"\"", name, "\" joins the ground to itself. Give it a marker of a body."};
+    throw InvalidInput("joint.same_body",
+                       {"\"", ErrorObject{name}, "\" joins the ground to itself. Give it a marker of a body."});
   else if constexpr (std::is_same_v<A, B> && HasRigidLayout<A>)
     if (a.body == b.body)
-      throw InvalidInput{"\"", name, "\" joins a rigid body to itself. Give it markers of two bodies."};
+      throw InvalidInput("joint.same_body",
+                         {"\"", ErrorObject{name}, "\" joins a rigid body to itself. Give it markers of two bodies."});
 }
 
 /// \throws InvalidInput where a second marker that knows its tangent only does not lie along the joint's axis.
 inline void require_along_tangent(Mat3 const& axes, Mat3 const& triad, std::string const& name) {
   if (axes.col(0).cross(triad.col(2)).norm() > 1e-6)
-    throw InvalidInput{"\"", name,
-                       "\": its second marker knows its tangent only, so the joint's axis must lie along it at the "
-                       "reference configuration."};
+    throw InvalidInput("joint.axis_not_tangent",
+                       {"\"", ErrorObject{name},
+                        "\": the second marker has a tangent but no axes, so the joint's axis must be parallel to the "
+                        "tangent at the reference configuration."});
 }
 
 /// \throws InvalidInput.
 [[noreturn, gnu::cold]] inline void refuse_marker_of_another_model(std::string const& what) {
-  throw InvalidInput{"\"", what,
-                     "\" was given a marker or handle of another model; take it from a body added to this one."};
+  throw InvalidInput("model.foreign_handle",
+                     {"\"", ErrorObject{what},
+                      "\" was given a marker or handle of another model. Take it from a body of this model."});
 }
 
 }  // namespace polybody::detail

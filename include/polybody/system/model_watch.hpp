@@ -48,16 +48,15 @@ class ModelWatch {
   template <class = void>
   [[noreturn, gnu::cold]] void refuse() const {
     if (history_->moved > changes_)
-      throw InvalidInput(
-          "The model was moved to another object while a run, system or recorder refers to it. Make that after the "
-          "model has its final place, for instance by a std::unique_ptr to the model.");
+      throw InvalidInput("model.moved",
+                         {"The model was moved to another object while a run, system or recorder refers to it. Make "
+                          "these after the last move, or hold the model by a std::unique_ptr."});
     if (history_->ended)
-      throw InvalidInput(
-          "The model was destroyed or assigned to while a run, system or recorder refers to it. Keep the model in a "
-          "variable that lives longer than these.");
-    throw InvalidInput(
-        "A body, joint or force was added to the model while a run, system or recorder refers to it. Make that after "
-        "the last addition, or give it a copy of the model.");
+      throw InvalidInput("model.destroyed", {"The model was destroyed or assigned to while a run, system or recorder "
+                                             "refers to it. Keep the model in a variable that outlives them."});
+    throw InvalidInput("model.changed",
+                       {"A body, joint or force was added to the model while a run, system or recorder refers to it. "
+                        "Make these after the last addition, or give them a copy of the model."});
   }
 
   std::shared_ptr<detail::ModelHistory const> history_;

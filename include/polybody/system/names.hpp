@@ -26,9 +26,8 @@ class Names {
   template <class = void>
   void require_free(std::string const& name, char const* what) const {
     if (has(name))
-      throw InvalidInput{"There is a ", what, " \"", name,
-                         "\" already, and messages, records and files tell them apart by their names. Give each its "
-                         "own, or none and it gets one."};
+      throw InvalidInput("model.duplicate_name", {"Duplicate name of a ", what, ": \"", ErrorObject{name},
+                                                  "\". Use another name, or leave it empty to have one generated."});
   }
   template <class = void>
   [[gnu::cold]] void take(std::string const& name) {

@@ -201,15 +201,11 @@ void PlausibilityCheck::require_no_passage(System const& system, StepResult cons
     read_frames(system, force, contact.now);
     bool const follows = std::abs(end.t - end.h - contact.t) <= 1e-3 * end.h;
     if (follows && force.passes(force.force, contact.last, contact.now))
-      throw NewtonConvergenceFailure{
-          "The step of ",
-          end.h,
-          " s to t = ",
-          end.t,
-          " s jumps over the contact \"",
-          force.name,
-          "\": the bodies touch within it, but not at its ends. Take smaller steps, or max_step_halvings in the "
-          "options of the run."};
+      throw NewtonConvergenceFailure(
+          "step.missed_contact", {"The step of ", end.h, " s to t = ", ErrorTime{end.t}, " s jumps over the contact \"",
+                                  ErrorObject{force.name},
+                                  "\": the bodies touch during the step, but not at its ends. Take a smaller step, or "
+                                  "max_step_halvings in the options of the run."});
   }
   for (Passing& contact : contacts_) {
     std::copy_n(contact.now, 2, contact.last);
@@ -237,15 +233,11 @@ void PlausibilityCheck::refuse_open(System const& system, double t) const {
         largest = std::abs(gaps.g[i]);
         row = gaps.first + i;
       }
-  throw Diverged{"The step to t = ",
-                 t,
-                 " s leaves ",
-                 system.layout().name_of(system.layout().velocities + row),
-                 " open by ",
-                 largest,
-                 ": the integration diverges. Take a smaller step, or raise the run's limits.violation, by which ",
-                 account_.open,
-                 " is allowed."};
+  throw Diverged("step.violation",
+                 {"The step to t = ", ErrorTime{t}, " s leaves ",
+                  ErrorObject{system.layout().name_of(system.layout().velocities + row)}, " violated by ",
+                  ErrorValue{largest}, ", but the limit is ", account_.open,
+                  ". The integration diverges. Take a smaller step, or raise limits.violation of the run."});
 }
 
 template <class>
@@ -269,17 +261,14 @@ Unexplained PlausibilityCheck::check_energy(System& system, StepResult const& en
   // The energy of a motion that is slow relative to its coordinates is round-off and not an instability.
   if (unexplained > few * account_.energy * account_.scale &&
       std::abs(end.v[fastest]) * end.h >= 1e-3 * (1.0 + largest_size(end.q)))
-    throw Diverged{"The step to t = ",
-                   end.t,
-                   " s ends with ",
-                   unexplained,
-                   " J gained since the last start that no work explains: gravity, loads, drives and the energy of the "
-                   "start give ",
-                   account_.scale,
-                   " J; ",
-                   system.name_of(fastest),
-                   " moves fastest. The integration diverges: take a smaller step or softer joints, or raise the run's "
-                   "limits.energy."};
+    throw Diverged(
+        "step.energy_gain",
+        {"The step to t = ", ErrorTime{end.t}, " s ends with an energy gain of ", ErrorValue{unexplained},
+         " J since the last start that no work explains; gravity, loads, drives and the energy of the start give ",
+         account_.scale, " J. ", ErrorObject{system.name_of(fastest)},
+         " moves fastest. The integration diverges. Take a smaller step or softer joints, or raise limits.energy of "
+         "the "
+         "run."});
   double const net = work_.counts() ? (work_.complete() ? work_.net() : put_in) : 0.0;
   double const rounding = 1e-9 * (std::abs(now.gravity) + std::abs(now.strain) + std::abs(now.joints)) + 1e-3 * held;
   bool const counts = work_.counts();

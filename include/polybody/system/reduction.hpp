@@ -272,9 +272,9 @@ void ReductionOf<T>::require_tree(std::size_t bodies, Sequence<Link> const& link
   for (Link const* const link : order) {
     std::size_t const a = part_of(link->a.body), b = part_of(link->b.body);
     if (a == b)
-      throw InvalidInput{"\"", link->name,
-                         "\" closes a loop of recursive joints. Give one joint of the loop another policy, such as "
-                         "Constraint."};
+      throw InvalidInput("joint_coordinates.loop", {"\"", ErrorObject{link->name},
+                                                    "\" closes a loop of joints with joint coordinates. Give one joint "
+                                                    "of the loop another policy, such as Constraint."});
     towards[a] = b;
   }
 }

@@ -22,7 +22,8 @@ using State = StateOf<double>;  ///< in doubles
 namespace detail {
 [[noreturn, gnu::cold]] inline void refuse_unfitting_state() {
   throw InvalidInput(
-      "The state does not fit the model; take it from reference_state() after the last body and joint were added.");
+      "state.size",
+      {"The state does not fit the model. Take it from reference_state() after the last body and joint were added."});
 }
 }  // namespace detail
 

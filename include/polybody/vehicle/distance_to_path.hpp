@@ -18,7 +18,7 @@ namespace polybody {
 /// \throws InvalidInput for a path without corners
 template <class = void>  // compiled only if it is used
 double distance_to_path(Vec2 const& p, std::span<Vec2 const> corners) {
-  if (corners.empty()) throw InvalidInput("A path without corners is near to nothing. Give it one corner or more.");
+  if (corners.empty()) throw InvalidInput("path.empty", {"The path has no point. Give at least one point."});
   double nearest = (p - corners.front()).squaredNorm();
   for (std::size_t i = 0; i + 1 < corners.size(); ++i) {
     Vec2 const along = corners[i + 1] - corners[i], to = p - corners[i];

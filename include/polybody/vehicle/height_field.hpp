@@ -30,14 +30,15 @@ class HeightField {
     require_positive(grid.dx, what, ": the spacing dx");
     require_positive(grid.dy, what, ": the spacing dy");
     if (z.rows() < 2 || z.cols() < 2)
-      throw InvalidInput{what,     ": a grid needs two points at least along x and along y, but has ",
-                         z.rows(), " by ",
-                         z.cols(), ". For what does not change across take RoadProfile."};
+      throw InvalidInput("terrain.grid",
+                         {ErrorObject{what}, ": a grid needs at least two points along x and along y, but has ",
+                          z.rows(), " by ", z.cols(), ". For a ground that does not change across use RoadProfile."});
     for (Index j = 0; j < z.cols(); ++j)
       for (Index i = 0; i < z.rows(); ++i)
         if (!std::isfinite(z(i, j)))
-          throw InvalidInput{
-              what, ": heights(", i, ", ", j, ") must be finite, but is ", z(i, j), ". Fill gaps in the data first."};
+          throw InvalidInput("value.not_finite",
+                             {ErrorObject{what}, ": heights(", i, ", ", j, ") must be finite, but is ",
+                              ErrorValue{z(i, j)}, ". Fill gaps in the data first."});
     x_ = {.start = grid.x0 - grid.dx, .spacing = grid.dx, .cells = z.rows() + 1};
     y_ = {.start = grid.y0 - grid.dy, .spacing = grid.dy, .cells = z.cols() + 1};
     nodes_ = std::make_shared<MatX const>(with_slopes(with_slopes(z, grid.dx).transpose(), grid.dy).transpose());
@@ -45,8 +46,8 @@ class HeightField {
     bool computable = largest_number * finest * finest >= 1.0;
     for (double const x : nodes_->reshaped()) computable = computable && std::abs(x) <= largest_number;
     if (!computable)
-      throw InvalidInput{what, ": its slopes or curvatures are beyond ", largest_number,
-                         ". Give heights and spacings in metres."};
+      throw InvalidInput("terrain.magnitude", {ErrorObject{what}, ": its slopes or curvatures are beyond ",
+                                               largest_number, ". Give heights and spacings in metres."});
     highest_ = z.maxCoeff();
     Mat<double, 4, 4> const bx = x_.bezier(), by = y_.bezier();
     for (Index j = 0; j < y_.cells; ++j)

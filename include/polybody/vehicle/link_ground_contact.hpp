@@ -25,7 +25,8 @@ struct LinkGroundContact {
 
   void check(std::string const& name) const {
     terrain.check(name);
-    if (pad.empty()) throw InvalidInput{name, ": a link needs points that touch the ground."};
+    if (pad.empty())
+      throw InvalidInput("track_contact.points", {ErrorObject{name}, ": a link needs points that touch the ground."});
     for (Vec3 const& p : pad) require_finite(p, name, ": a point of the pad");
   }
   bool may_touch(Frame<double> const& link, Frame<double> const& ground) const {

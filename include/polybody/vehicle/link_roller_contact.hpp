@@ -42,11 +42,15 @@ struct LinkRollerContact {
     require_positive(radius, name, ": the radius of the roller");
     require_not_negative(chamfer, name, ": the chamfer of the link's edges");
     if (!(handover > 0.0 && handover < 0.5 * pitch))
-      throw InvalidInput{name, ": the zone of the handover must be positive and below half the pitch, but is ",
-                         handover, " m."};
-    if (rims.empty()) throw InvalidInput{name, ": a roller needs at least one rim."};
+      throw InvalidInput(
+          "track_contact.handover",
+          {ErrorObject{name}, ": the zone of the handover must be positive and below half the pitch, but is ",
+           ErrorValue{handover}, " m."});
+    if (rims.empty())
+      throw InvalidInput("track_contact.rims", {ErrorObject{name}, ": a roller needs at least one rim."});
     for (double const y : rims)
-      if (!std::isfinite(y)) throw InvalidInput{name, ": the place of a rim must be finite."};
+      if (!std::isfinite(y))
+        throw InvalidInput("value.not_finite", {ErrorObject{name}, ": the position of a rim must be finite."});
   }
   bool may_touch(Frame<double> const& link, Frame<double> const& roller) const {
     double const far = farthest_rim(), within = farthest(far);

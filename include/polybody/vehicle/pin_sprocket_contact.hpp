@@ -37,23 +37,30 @@ struct SprocketProfile {
 
   /// \throws InvalidInput if the numbers do not define a tooth.
   void check(std::string const& name) const {
-    if (teeth < 4) throw InvalidInput{name, ": a sprocket needs at least four teeth, but has ", int(teeth), "."};
+    if (teeth < 4)
+      throw InvalidInput("sprocket.teeth", {ErrorObject{name}, ": a sprocket needs at least four teeth, but has ",
+                                            ErrorValue{int(teeth)}, "."});
     require_positive(pitch, name, ": the pitch of the track");
     require_positive(pin_radius, name, ": the pins' radius");
     if (!(valley_radius > pin_radius) || !std::isfinite(valley_radius))
-      throw InvalidInput{name, ": the radius of the valleys must be larger than the pins', but is ", valley_radius,
-                         " m."};
+      throw InvalidInput("sprocket.valley",
+                         {ErrorObject{name}, ": the radius of the valleys must exceed the radius of the pins, but is ",
+                          ErrorValue{valley_radius}, " m."});
     if (!(flank > 0.0 && flank < 0.5 * std::numbers::pi))
-      throw InvalidInput{name, ": the arc of a valley must end between 0 and a right angle, but ends at ", flank,
-                         " rad."};
+      throw InvalidInput("sprocket.valley",
+                         {ErrorObject{name}, ": the arc of a valley must end between 0 and a right angle, but ends at ",
+                          ErrorValue{flank}, " rad."});
     double const foot = std::hypot(arc_centre() - valley_radius * std::cos(flank), valley_radius * std::sin(flank));
     if (!(tip_radius > foot) || !std::isfinite(tip_radius))
-      throw InvalidInput{name, ": the tips must lie outside the arcs of the valleys, whose ends are ", foot,
-                         " m from the axle."};
+      throw InvalidInput("sprocket.valley",
+                         {ErrorObject{name}, ": the tips must lie outside the arcs of the valleys, whose ends are ",
+                          ErrorValue{foot}, " m from the axle."});
     Vec2 const k = corner();
     if (std::atan2(k[1], k[0]) >= std::numbers::pi / teeth)
-      throw InvalidInput{
-          name, ": the valleys leave nothing of the teeth. Take a smaller valley, a lower tip or fewer teeth."};
+      throw InvalidInput(
+          "sprocket.valley",
+          {ErrorObject{name},
+           ": the valleys leave nothing of the teeth. Use a smaller valley, a lower tip or fewer teeth."});
   }
 
   /// Penetration d and normal (radial, tangential) of a pin at X along the middle of a valley and Y ≥ 0 across it. d
@@ -101,11 +108,16 @@ struct PinSprocketContact {
   double to_pin() const { return ahead ? *ahead : 0.5 * profile.pitch; }
   void check(std::string const& name) const {
     profile.check(name);
-    if (!std::isfinite(valley)) throw InvalidInput{name, ": the angle of a valley must be finite."};
-    if (!std::isfinite(to_pin())) throw InvalidInput{name, ": the way from the marker to the pin must be finite."};
-    if (rings.empty()) throw InvalidInput{name, ": a sprocket needs at least one ring of teeth."};
+    if (!std::isfinite(valley))
+      throw InvalidInput("value.not_finite", {ErrorObject{name}, ": the angle of a valley must be finite."});
+    if (!std::isfinite(to_pin()))
+      throw InvalidInput("value.not_finite",
+                         {ErrorObject{name}, ": the position of the pin relative to its marker must be finite."});
+    if (rings.empty())
+      throw InvalidInput("sprocket.rings", {ErrorObject{name}, ": a sprocket needs at least one ring of teeth."});
     for (double const y : rings)
-      if (!std::isfinite(y)) throw InvalidInput{name, ": the place of a ring must be finite."};
+      if (!std::isfinite(y))
+        throw InvalidInput("value.not_finite", {ErrorObject{name}, ": the position of a ring must be finite."});
   }
   bool may_touch(Frame<double> const& link, Frame<double> const& sprocket) const {
     Vec3 const x = detail::column<double>(link.A, 0), axle = detail::column<double>(sprocket.A, 1);

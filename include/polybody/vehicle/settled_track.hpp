@@ -45,23 +45,20 @@ TrackStart settled_track(VehicleOptions options = {}, Ground const& ground = {})
     } while (!run.done() && energy > before);
   }
   if (fastest > 1e-3)
-    throw Error{"M113: the track does not come to rest; let go, it still reaches ", fastest,
-                " m/s. Look at its length and its tensioner."};
+    throw Error("m113.not_settled",
+                {ErrorObject{"M113"}, ": the track does not come to rest; after its release it reaches ",
+                 ErrorValue{fastest}, " m/s. Check its length and its tensioner."});
 
   TrackStart start{.idler_x = position(bench.model, x, side.idler[0].at(Vec3(0, 0, 0))).x(), .links = {}};
   TrackLayout const layout = track();
   for (TrackCircle const& c : layout.circles) {
     double const travel = (start.idler_x - c.centre[0]) * layout.tensioner.direction[0];
     if (c.name == layout.tensioner.circle && !(travel >= layout.tensioner.least && travel <= layout.tensioner.most))
-      throw InvalidInput{"M113: under a preload of ",
-                         options.preload,
-                         " N the idler comes to rest ",
-                         travel,
-                         " m from its place in the layout, beyond its travel of ",
-                         layout.tensioner.least,
-                         " to ",
-                         layout.tensioner.most,
-                         " m. Take a preload of 0 to 60 kN."};
+      throw InvalidInput(
+          "m113.preload",
+          {ErrorObject{"M113"}, ": under a preload of ", ErrorValue{options.preload}, " N the idler comes to rest ",
+           travel, " m from its position in the layout, beyond its travel of ", layout.tensioner.least, " to ",
+           layout.tensioner.most, " m. Use a preload of 0 to 60 kN."});
   }
   std::vector<Vec2> pins;
   for (auto const& front : side.front) {

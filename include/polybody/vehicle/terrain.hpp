@@ -54,7 +54,9 @@ struct FlatGround {
   double z = 0.0;  ///< height of the plane [m]
 
   void check(std::string const& name) const {
-    if (!std::isfinite(z)) throw InvalidInput{name, ": the height of the ground must be finite, but is ", z, "."};
+    if (!std::isfinite(z))
+      throw InvalidInput("value.not_finite",
+                         {ErrorObject{name}, ": the height of the ground must be finite, but is ", ErrorValue{z}, "."});
   }
   double highest() const { return z; }  ///< height of the plane [m]
   /// Height h = z with zero slopes.
@@ -106,8 +108,8 @@ class BumpCourse {
       require_finite(Vec3(b.x, b.y, b.height), bump, ": its middle and height");
       require_positive(b.length, bump, ": the length");
       if (!(b.width > 0.0))
-        throw InvalidInput{bump, ": the width must be positive, but is ", b.width,
-                           ". Leave it out for a bump right across."};
+        throw InvalidInput("terrain.bump", {ErrorObject{bump}, ": the width must be positive, but is ",
+                                            ErrorValue{b.width}, " m. Omit it for a bump across the whole ground."});
       double together = 0.0;  // every bump that covers a point of this bump overlaps it
       for (Bump const& other : bumps_)
         if (std::abs(other.x - b.x) < 0.5 * (other.length + b.length) &&

@@ -75,7 +75,7 @@ struct TrackLayout {
 
 namespace detail {
 
-inline std::string track_name(TrackCircle const& c) { return sentence_of({"'", c.name, "'"}); }
+inline std::string track_name(TrackCircle const& c) { return sentence_of({"\"", c.name, "\""}); }
 
 /// Checks a layout for overlapping circles and repeated names. \throws InvalidInput if two circles overlap, or if two
 /// wheels have one name. The sprocket has the radius of its pitch circle; the tensioner's circle is checked only if
@@ -89,18 +89,14 @@ inline void check_track_overlaps(TrackLayout const& layout, bool placed) {
       double const apart = (a.centre - b.centre).norm();
       if (a.name == b.name) {
         if (apart > 0.0 || a.radius != b.radius)
-          throw InvalidInput{"Track: two circles are called ", track_name(a),
-                             ". Give each wheel a name of its own; one that ",
-                             "is listed twice has the same centre and radius both times."};
+          throw InvalidInput("track.circle", {"Track: duplicate circle name ", ErrorObject{track_name(a)},
+                                              ". Give each wheel another name. The centre and radius of a wheel that "
+                                              "is listed twice must be the same both times."});
       } else if (double const deep = a.radius + b.radius - apart;
                  deep > 0.0 && (placed || (a.name != layout.tensioner.circle && b.name != layout.tensioner.circle))) {
-        throw InvalidInput{"Track: ",
-                           track_name(a),
-                           " and ",
-                           track_name(b),
-                           " overlap by ",
-                           deep,
-                           " m. Move them apart or make them smaller."};
+        throw InvalidInput("track.overlap",
+                           {"Track: ", ErrorObject{track_name(a)}, " and ", track_name(b), " overlap by ",
+                            ErrorValue{deep}, " m. Move them apart or make them smaller."});
       }
     }
 }
@@ -111,9 +107,10 @@ inline void check_track(TrackLayout const& layout) {
   require_positive(layout.pitch, "Track: the pitch");
   require_not_negative(layout.half_thickness, "Track: the links' half thickness");
   TrackSprocket const& s = layout.sprocket;
-  require_finite(s.centre, "Track: the centre of '" + s.name + "'");
+  require_finite(s.centre, "Track: the centre of \"" + s.name + "\"");
   if (s.teeth < 4 || !std::isfinite(s.valley))
-    throw InvalidInput{"Track: '", s.name, "' needs at least four teeth and a finite angle of a valley."};
+    throw InvalidInput("sprocket.teeth", {"Track: \"", ErrorObject{s.name},
+                                          "\" needs at least four teeth and a finite angle of a valley."});
   bool found = false;
   for (TrackCircle const& c : layout.circles) {
     require_positive(c.radius, "Track: the radius of " + track_name(c));
@@ -121,11 +118,13 @@ inline void check_track(TrackLayout const& layout) {
     found = found || c.name == layout.tensioner.circle;
   }
   TrackTensioner const& t = layout.tensioner;
-  if (!found) throw InvalidInput{"Track: the tensioner's circle '", t.circle, "' is none of the circles of the track."};
+  if (!found)
+    throw InvalidInput("track.tensioner",
+                       {"Track: the tensioner's circle \"", ErrorObject{t.circle}, "\" is not a circle of the track."});
   if (!(t.direction.norm() > 0.0) || !t.direction.allFinite() || !(t.least <= t.most) ||
       !std::isfinite(t.most - t.least))
-    throw InvalidInput{"Track: the tensioner's circle '", t.circle,
-                       "' needs a direction and a finite range of travel, least ≤ most."};
+    throw InvalidInput("track.tensioner", {"Track: the tensioner's circle \"", ErrorObject{t.circle},
+                                           "\" needs a direction and a finite range of travel, least ≤ most."});
   check_track_overlaps(layout, false);
 }
 

@@ -89,36 +89,31 @@ inline void check_wrapped(TrackPath const& path) {
   std::size_t const n = path.pins.size();
   for (TrackCircle const& c : layout.circles)
     if (bool const inside = c.side == TrackSide::inside; inside != track_encloses(path.pins, c.centre))
-      throw InvalidInput{"Track: ", track_name(c), " is to lie ", (inside ? "inside" : "outside"),
-                         " the track, which passes it on its other side. List the circles in the order in which the "
-                         "track meets them, each with its side."};
+      throw InvalidInput("track.side",
+                         {"Track: ", ErrorObject{track_name(c)}, " must lie ", (inside ? "inside" : "outside"),
+                          " the track, but the track passes it on the other side. List the circles in the order in "
+                          "which the track meets them, each with its side."});
   for (std::size_t i = 0; i < n; ++i) {
     Vec2 const before = path.pins[i] - path.pins[(i + n - 1) % n], after = path.pins[(i + 1) % n] - path.pins[i];
     double const turn = std::atan2(track_cross(before, after), before.dot(after));
     if (int(i) < path.seated && turn > 1e-9)
-      throw InvalidInput{"Track: no pin can sit on '", layout.sprocket.name,
-                         "', which lies inside the run that passes it. Move it outwards."};
+      throw InvalidInput("track.sprocket", {"Track: no pin can sit on \"", ErrorObject{layout.sprocket.name},
+                                            "\", which lies inside the run that passes it. Move it outwards."});
     if (std::abs(turn) > 0.5 * std::numbers::pi + 1e-9) {
       int const on = std::max(path.links[i].touches, path.links[(i + n - 1) % n].touches);
-      throw InvalidInput{"Track: the pitch ",
-                         layout.pitch,
-                         " m is too long for ",
-                         (on < 0 ? "'" + layout.sprocket.name + "'" : track_name(layout.circles[on])),
-                         ": there two links make an angle of ",
-                         std::abs(turn) * 180.0 / std::numbers::pi,
-                         " deg, more than a right one."};
+      throw InvalidInput("track.pitch",
+                         {"Track: the pitch ", ErrorValue{layout.pitch}, " m is too long for ",
+                          ErrorObject{on < 0 ? "\"" + layout.sprocket.name + "\"" : track_name(layout.circles[on])},
+                          ": two links make an angle of ", std::abs(turn) * 180.0 / std::numbers::pi,
+                          " deg there; the limit is 90 deg."});
     }
   }
   TrackClearances const gaps = clearances(path);
   if (gaps.circles < -1e-9 * layout.pitch)
-    throw InvalidInput{"Track: link ",
-                       gaps.link,
-                       " passes ",
-                       -gaps.circles,
-                       " m deep through ",
-                       track_name(layout.circles[gaps.circle]),
-                       ". List a wheel wherever the track meets it, with its side, and leave room for the links "
-                       "between it and its neighbours."};
+    throw InvalidInput("track.overlap", {"Track: link ", gaps.link, " passes ", ErrorValue{-gaps.circles},
+                                         " m deep through ", ErrorObject{track_name(layout.circles[gaps.circle])},
+                                         ". List a wheel wherever the track meets it, with its side, and leave room "
+                                         "for the links between it and its neighbours."});
 }
 
 /// Travel at which `links` links close the loop, by a scan in steps of p/16 and bisection. If there are several
@@ -143,23 +138,17 @@ inline double track_travel(TrackLayout const& layout) {
     before = length;
   }
   if (!std::isfinite(best)) {
-    std::string const name = sentence_of({"'", tensioner.circle, "'"});
+    std::string const name = sentence_of({"\"", tensioner.circle, "\""});
     if (range > 0.0 && longest - shortest < 1e-9)
-      throw InvalidInput{"Track: it does not touch ", name,
-                         ", which therefore cannot tighten it. List the circles in the order in which the track meets "
-                         "them, a wheel that it meets above and below twice."};
+      throw InvalidInput("track.tensioner",
+                         {"Track: it does not touch ", ErrorObject{name},
+                          ", which therefore cannot tighten it. List the circles in the order in which the track meets "
+                          "them; list a wheel twice if the track meets it above and below."});
     bool const few = layout.links <= shortest;
-    throw InvalidInput{"Track: ",
-                       layout.links,
-                       " links are too ",
-                       (few ? "few" : "many"),
-                       ". With ",
-                       name,
-                       " within its travel the path takes ",
-                       shortest,
-                       " to ",
-                       longest,
-                       " links. Change their number, or the tensioner's travel."};
+    throw InvalidInput("track.links",
+                       {ErrorObject{"Track"}, ": ", ErrorValue{layout.links}, " links are too ", (few ? "few" : "many"),
+                        ". With ", name, " within its travel the path needs ", shortest, " to ", longest,
+                        " links. Change their number, or the tensioner's travel."});
   }
   for (int i = 0; i < 60; ++i) {
     double const middle = 0.5 * (below + above);

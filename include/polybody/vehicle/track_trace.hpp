@@ -124,8 +124,9 @@ inline TrackTrace track_walk(TrackLayout const& layout) {
     if (at < 0) ++walk.last;
     walk.pins.push_back(at < 0 ? layout.seat(walk.last) : Vec2(walk.pins.back() + layout.pitch * heading));
     if (walk.pins.size() > 100000)
-      throw InvalidInput{"Track: it does not come back to '", layout.sprocket.name,
-                         "'. List the circles in the order in which the track meets them, each with its side."};
+      throw InvalidInput("track.sprocket",
+                         {"Track: it does not return to \"", ErrorObject{layout.sprocket.name},
+                          "\". List the circles in the order in which the track meets them, each with its side."});
   }
   double const run = (layout.seat(walk.first) - walk.pins.back()).norm() / layout.pitch;
   walk.length = double(walk.pins.size() - 1) + run + double(start - walk.first);

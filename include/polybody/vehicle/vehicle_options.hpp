@@ -67,12 +67,15 @@ struct VehicleOptions {
 template <class = void>  // compiled only if it is used
 void check(VehicleOptions const& options) {
   if (options.start.links.size() != std::size_t(links))
-    throw InvalidInput{"M113: the start needs the places of ", links, " links, but has ", options.start.links.size(),
-                       "."};
+    throw InvalidInput("m113.option", {ErrorObject{"M113"}, ": the start needs the positions of ", links,
+                                       " links, but has ", ErrorValue{options.start.links.size()}, "."});
   if (options.cut < 0 || options.cut >= links)
-    throw InvalidInput{"M113: the pin that closes a track is one of 0 … 63, but ", options.cut, " is asked for."};
+    throw InvalidInput("m113.option",
+                       {ErrorObject{"M113"}, ": the pin that closes a track must lie in [0, 63], but is ",
+                        ErrorValue{options.cut}, "."});
   if (options.link_elements < 0)
-    throw InvalidInput{"M113: a flexible link has one element or more, but ", options.link_elements, " are asked for."};
+    throw InvalidInput("m113.option", {ErrorObject{"M113"}, ": a flexible link needs at least one element, but has ",
+                                       ErrorValue{options.link_elements}, "."});
   require_not_negative(options.friction_factor, "M113: the factor of the coefficients of friction");
 }
 

@@ -80,7 +80,9 @@ MatX smallest_solution(MatX const& a, MatX const& b, double threshold) {
 
 /// \throws InvalidInput unless `count` is at least 1; `who` names the function.
 inline void require_modes(Index count, std::string const& who) {
-  if (count < 1) throw InvalidInput{who, ": the count of modes must be at least 1, but is ", count, "."};
+  if (count < 1)
+    throw InvalidInput("modes.count",
+                       {ErrorObject{who}, ": the count of modes must be at least 1, but is ", ErrorValue{count}, "."});
 }
 
 /// Stiffness K with a spring on each motion without inertia and without stiffness. The columns of v are the motions
@@ -118,9 +120,10 @@ Linearisation linearise(System& system, State const& x) {
   Index const states = system.layout().states;
   VecX const velocities = x.v.head(x.v.size() - states);
   if (velocities.size() && velocities.cwiseAbs().maxCoeff() > 1e-9)
-    throw InvalidInput(
-        "modes: the state must be at rest; take one from equilibrium(model, x). About a steady rotation use "
-        "linearise(model, x, SteadyRotation{...}) of vibration/steady_rotation.hpp.");
+    throw InvalidInput("modes.not_at_rest",
+                       {ErrorObject{"modes"},
+                        ": the state must be at rest. Use a state from equilibrium(model, x). About a steady rotation "
+                        "use linearise(model, x, SteadyRotation{...}) of vibration/steady_rotation.hpp."});
   system.evaluate(x.q, x.v, x.t);
   Index const nv = system.velocities(), rows = system.rows();
   Linearisation l;
@@ -156,8 +159,9 @@ template <class = void>  // compiled where it is used
 Modes modes(Linearisation const& l, Index count = 10) {
   detail::require_modes(count, "modes");
   if (l.states > 0)
-    throw InvalidInput(
-        "modes: the model has first-order states, with which undamped modes do not exist. Take damped_modes.");
+    throw InvalidInput("modes.first_order_states",
+                       {ErrorObject{"modes"},
+                        ": the model has first-order states, so that undamped modes do not exist. Use damped_modes."});
   MatX const full = detail::of_free_motions(l.N, l.K), k = 0.5 * (full + full.transpose()),
              m = detail::of_free_motions(l.N, l.M);
   if (m.rows() == 0) return {};
@@ -228,7 +232,9 @@ DampedModes damped_modes(Linearisation const& l, Index count = 10) {
     Eigen::LLT<MatX> const inertia(m_bodies);
     VecX const pivots = inertia.matrixLLT().diagonal();
     if (inertia.info() != Eigen::Success || pivots.minCoeff() <= 1e-7 * pivots.maxCoeff())
-      throw InvalidInput("damped_modes: a free motion of the model has no inertia; hold it or give it some.");
+      throw InvalidInput(
+          "modes.no_inertia",
+          {ErrorObject{"damped_modes"}, ": a free motion of the model has no inertia. Fix it or give it inertia."});
     slowest = detail::smallest_solution(k_bodies, m_bodies, 1e-9).norm();  // at least 1/ω²
   }
   double const tau = slowest > 0.0 ? 0.7 / std::sqrt(slowest) : 1.0;

@@ -43,13 +43,9 @@ struct SpectraModes {
         }
       }
     }
-    throw Error{"SpectraModes: ",
-                converged,
-                " of ",
-                count,
-                " modes converged in ",
-                restarts,
-                " restarts, which leaves some out. Allow more restarts, a larger tolerance, or use DenseModes."};
+    throw Error("modes.not_converged",
+                {ErrorObject{"SpectraModes"}, ": only ", ErrorValue{converged}, " of ", count, " modes converged in ",
+                 restarts, " restarts. Allow more restarts or a larger tolerance, or use DenseModes."});
   }
 
  private:

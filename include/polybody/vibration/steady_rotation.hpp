@@ -48,11 +48,12 @@ class TurningFrame {
     require_finite(rotation.angular_velocity, "SteadyRotation: the angular velocity");
     require_finite(rotation.point, "SteadyRotation: the point of the axis");
     if (system.layout().states > 0)
-      throw InvalidInput("SteadyRotation: the model has first-order states, which a steady rotation does not know.");
+      throw InvalidInput("steady_rotation.first_order_states",
+                         {ErrorObject{"SteadyRotation"}, ": models with first-order states are not supported."});
     for (BodyLayout const& body : system.layout().bodies)
       if (body.planar && !rotation.angular_velocity.head<2>().isZero(0.0))
-        throw InvalidInput{"SteadyRotation: body \"", body.name,
-                           "\" lives in the plane, so the axis must be parallel to z."};
+        throw InvalidInput("steady_rotation.axis", {"SteadyRotation: body \"", ErrorObject{body.name},
+                                                    "\" is planar, so the axis must be parallel to z."});
     gradient_ = by_velocities(q, [&](VecX const& at, VecX& w) { velocities(at, w); });
     generator_ = gradient_;
     double const s = 1e-3 / std::max(rotation.angular_velocity.norm(), 1e-3);
@@ -105,9 +106,10 @@ class TurningFrame {
     system.violation_rate(rate);
     Index i = 0;
     if (rate.size() && !(rate.cwiseAbs().maxCoeff(&i) <= 1e-8 * w_.cwiseAbs().maxCoeff()))
-      throw InvalidInput{"SteadyRotation: ", system.name_of(system.velocities() + i),
-                         " does not turn with the model (its gap grows at a rate of ", rate[i],
-                         "). Give it the axis, and a drive the rate, of the rotation."};
+      throw InvalidInput("steady_rotation.joint",
+                         {"SteadyRotation: ", ErrorObject{system.name_of(system.velocities() + i)},
+                          " does not rotate with the model (its constraint violation grows at a rate of ",
+                          ErrorValue{rate[i]}, "). Give the joint the axis of the rotation, and a drive its rate."});
   }
 
  private:
@@ -180,17 +182,22 @@ struct TurningEquilibrium {
     double const small = 1e-6 * load + (tolerance + 1e-12) * unit * (1.0 + trial.q.cwiseAbs().maxCoeff());
     Index i = 0;
     if (!(r.cwiseAbs().maxCoeff(&i) <= small))
-      throw SingularMatrix{"relative_equilibrium: nothing resists a motion of ", frame.system.name_of(i),
-                           " that forces excite as the model turns (", r[i], " is left). Hold every body."};
+      throw SingularMatrix(
+          "equilibrium.singular",
+          {"relative_equilibrium: nothing resists a motion of ", ErrorObject{frame.system.name_of(i)},
+           " that forces excite as the model rotates (remaining force ", ErrorValue{r[i]}, "). Fix every body."});
   }
 
   /// \throws NonFiniteValue, NewtonConvergenceFailure according to `result`.
   [[noreturn, gnu::cold]] void refuse(NewtonResult result) const {
     std::string const at = sentence_of({" at ", frame.share, " of the angular velocity"});
-    if (result != NewtonResult::diverged) throw NonFiniteValue{"relative_equilibrium: a force is not finite", at, "."};
-    throw NewtonConvergenceFailure{
-        "relative_equilibrium: Newton's method did not converge", at,
-        ". Use more load steps or start nearer to the solution; beyond a critical speed there may be none."};
+    if (result != NewtonResult::diverged)
+      throw NonFiniteValue("equilibrium.not_finite",
+                           {ErrorObject{"relative_equilibrium"}, ": a force is not finite", at, "."});
+    throw NewtonConvergenceFailure(
+        "equilibrium.not_converged",
+        {ErrorObject{"relative_equilibrium"}, ": Newton's method did not converge", at,
+         ". Use more load steps or start closer to the solution; beyond a critical speed there may be none."});
   }
 };
 
@@ -272,13 +279,17 @@ Linearisation linearise(System& system, State const& x, SteadyRotation const& ro
                        1e-13 * l.K.cwiseAbs().maxCoeff() * (1.0 + x.q.cwiseAbs().maxCoeff());
   Index i = 0;
   if (!(r.cwiseAbs().maxCoeff(&i) <= small))
-    throw InvalidInput{"linearise: forces on ", system.name_of(i), " do not balance as the model turns (", r[i],
-                       " is left); take the state from relative_equilibrium(model, x, rotation)."};
+    throw InvalidInput("steady_rotation.unbalanced",
+                       {"linearise: forces on ", ErrorObject{system.name_of(i)},
+                        " do not balance as the model rotates (remaining force ", ErrorValue{r[i]},
+                        "). Take the state from relative_equilibrium(model, x, rotation)."});
   // K w is the rate of R during the rotation; only constraint forces may change
   VecX const turned = l.N * (l.N.transpose() * (l.K * w));
   if (!(turned.cwiseAbs().maxCoeff(&i) <= small * omega))
-    throw InvalidInput{"linearise: forces on ", system.name_of(i),
-                       " do not turn with the model, as gravity or a load across the axis; no state of it is steady."};
+    throw InvalidInput(
+        "steady_rotation.force",
+        {"linearise: forces on ", ErrorObject{system.name_of(i)},
+         " do not rotate with the model, such as gravity or a load across the axis, so that no state is steady."});
   return l;
 }
 

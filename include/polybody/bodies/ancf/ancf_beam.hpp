@@ -68,7 +68,7 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
   Point at(double s, double y = 0.0, double z = 0.0) const {
     double const x = require_inside(s, bar_.length, Elastic::name) / l_;
     if (!std::isfinite(y) || !std::isfinite(z))
-      throw InvalidInput{Elastic::name, ": y and z of a point must be finite."};
+      throw InvalidInput("value.not_finite", {ErrorObject{Elastic::name}, ": y and z of a point must be finite."});
     Index const e = std::min(Index(x), elements() - 1);
     return {e, x - double(e), y, z};
   }
@@ -140,7 +140,11 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
   PointMap position_map(Point const& p) const { return map_of(p, 0); }
   /// Matrix S_α of the gradient S_α e = ∂r/∂x, ∂r/∂y, ∂r/∂z at `p` for `alpha` = 0, 1, 2; 3×24 and constant.
   PointMap gradient_map(Point const& p, int alpha) const {
-    if (alpha < 0 || alpha > 2) throw InvalidInput("AncfBeam: the gradient's direction must be 0, 1 or 2 for x, y, z.");
+    if (alpha < 0 || alpha > 2)
+      throw InvalidInput(
+          "ancf.gradient_direction",
+          {ErrorObject{"AncfBeam"}, ": the direction of the gradient must be 0, 1 or 2 for x, y, z, but is ",
+           ErrorValue{alpha}, "."});
     return map_of(p, alpha + 1);
   }
 
@@ -267,9 +271,15 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
   void check_reference(ancf::Reference const& ref, Index e) const {
     std::string const what = sentence_of({Elastic::name, ": element ", e});
     double const chord = std::hypot(ref.x[12] - ref.x[0], ref.x[13] - ref.x[1], ref.x[14] - ref.x[2]);
-    if (!(chord > 1e-6 * l_)) throw InvalidInput{what, " begins where it ends. Use more elements, or another curve."};
+    if (!(chord > 1e-6 * l_))
+      throw InvalidInput(
+          "reference_curve.element",
+          {ErrorObject{what}, ": the ends of the element coincide. Use more elements, or another curve."});
     if (chord > (1.0 + 1e-6) * l_)
-      throw InvalidInput{what, " is longer than its part of the bar: the curve's argument must be its arc length."};
+      throw InvalidInput(
+          "reference_curve.arc_length",
+          {ErrorObject{what},
+           ": the element is longer than its part of the bar. The argument of the curve must be its arc length."});
     double height = 0.0, width = 0.0;  // half height and half width
     if (auto const* r = std::get_if<Rectangle>(&bar_.section)) {
       height = 0.5 * r->height;
@@ -282,9 +292,10 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
                    z = ref.determinant(xi, 0.0, width) - middle;
       double const drop = std::holds_alternative<Circle>(bar_.section) ? std::hypot(y, z) : std::abs(y) + std::abs(z);
       if (!(middle - drop > 0.0))
-        throw InvalidInput{what,
-                           " is turned inside out in the reference: the curve bends more sharply than the section's "
-                           "size allows, or than one element can follow. Use more elements, or another curve."};
+        throw InvalidInput("reference_curve.element",
+                           {ErrorObject{what},
+                            ": the element is turned inside out in the reference, because the curve bends too sharply "
+                            "for the section or for one element. Use more elements, or another curve."});
     }
   }
 

@@ -296,8 +296,10 @@ AncfCable<Strain, axial_points, bending_points>::AncfCable(Bar const& bar, BarCo
     for (GaussPoint const& g : gauss<3>) {
       double const off = axial().strains(g.xi, l_, element_of({e, g.xi}, reference_))[0];
       if (!(std::abs(off) < 0.1))
-        throw InvalidInput{"AncfCable: element ", e + 1, " of the reference curve is strained by ", off,
-                           ". Give the curve by its arc length, from 0 to the bar's length, or take more elements."};
+        throw InvalidInput(
+            "reference_curve.arc_length",
+            {ErrorObject{"AncfCable"}, ": element ", e + 1, " of the reference curve is strained by ", ErrorValue{off},
+             ". Parametrise the curve by its arc length, from 0 to the bar's length, or use more elements."});
     }
     axes_.push_back(axes * curve((double(e) + 0.5) * l_).axes);
   }

@@ -174,15 +174,17 @@ struct Continuum {
   /// \throws InvalidInput without section and material, for ν ≥ 0.5, and for a shear factor under `Locking::present`.
   static void check(Bar const& bar, BarConstants const&) {
     if (!bar.material)
-      throw InvalidInput{name,
-                         ": the continuum needs the bar's section and material. Give them, or take "
-                         "AncfBeam<ElasticLine>, which is content with constants."};
+      throw InvalidInput("bar.no_section", {ErrorObject{name},
+                                            ": the continuum needs the bar's section and material. Give them, or use "
+                                            "AncfBeam<ElasticLine>, which accepts constants."});
     if (!(bar.material->poisson < 0.5))
-      throw InvalidInput{name, ": Poisson's ratio must be below 0.5, where the bulk modulus is infinite."};
+      throw InvalidInput(
+          "bar.poisson_ratio",
+          {ErrorObject{name}, ": Poisson's ratio must be below 0.5, because the bulk modulus is infinite there."});
     if (!cured && bar.shear_factor)
-      throw InvalidInput{name,
-                         ": with Locking::present shear obeys Hooke's law in full, without a shear factor. Leave it "
-                         "out, or take Continuum<Locking::cured>."};
+      throw InvalidInput("bar.shear_factor", {ErrorObject{name},
+                                              ": Locking::present uses Hooke's law for shear, without a shear factor. "
+                                              "Omit the factor, or use Continuum<Locking::cured>."});
   }
 
   /// Strain groups of an element with the reference `ref`.

@@ -57,7 +57,8 @@ class CholeskyCoordinates : public AddingCoordinates {
   /// \throws InvalidInput for a body whose coordinates do not add, or whose mass matrix is not positive definite.
   explicit CholeskyCoordinates(B body) : body_(std::move(body)), n_(body_.velocities()) {
     if (body_.coordinates() != n_)
-      throw InvalidInput("CholeskyCoordinates: the body's coordinates must add, without quaternions.");
+      throw InvalidInput("cholesky.quaternions", {ErrorObject{"CholeskyCoordinates"},
+                                                  ": the body's coordinates must add, without quaternions."});
     factor();
   }
 
@@ -215,7 +216,8 @@ class CholeskyCoordinates : public AddingCoordinates {
         double sum = at(i, j);
         for (Index k = std::max<Index>(0, i - band_); k < j; ++k) sum -= at(i, k) * at(j, k);
         if (j == i && !(sum > 0.0))
-          throw InvalidInput("CholeskyCoordinates: the body's mass matrix is not positive definite.");
+          throw InvalidInput("body.mass_matrix", {ErrorObject{"CholeskyCoordinates"},
+                                                  ": the body's mass matrix is not positive definite."});
         at(i, j) = j < i ? sum / at(j, j) : std::sqrt(sum);
       }
   }

@@ -45,10 +45,10 @@ MatX orthogonal_basis(Structure const& s, MatX shapes) {
 template <class Eigensolver = DenseModes>
 MatX attachment_modes(Structure const& s, MatX const& loads, Index count, Eigensolver const& solve = {}) {
   if (loads.rows() != s.size() || !loads.allFinite())
-    throw InvalidInput{"Ffr: attachment modes need finite nodal loads of ", s.size(), " rows, but are given ",
-                       loads.rows(), "."};
+    throw InvalidInput("ffr.modes", {ErrorObject{"Ffr"}, ": attachment modes need finite nodal loads of ", s.size(),
+                                     " rows, but the loads have ", ErrorValue{loads.rows()}, " rows."});
   if (count < 0 || loads.cols() + count == 0)
-    throw InvalidInput("Ffr: attachment modes need a load or a mode at least.");
+    throw InvalidInput("ffr.modes", {ErrorObject{"Ffr"}, ": attachment modes need at least one load or one mode."});
   MatX const rigid = rigid_motions(s), heavy = s.mass_matrix() * rigid;
   Eigen::LDLT<MatX> const mass(rigid.transpose() * heavy);
   std::vector<Index> const free = statically_determinate(s).free_coordinates(s);

@@ -16,7 +16,8 @@ namespace polybody {
 template <class = void>  // compiled only if used
 Mat3 intermediate_axes(Vec3 const& direction) {
   double const length = direction.norm();
-  if (!(length > 0.0)) throw InvalidInput("Structure: a beam needs two different nodes.");
+  if (!(length > 0.0))
+    throw InvalidInput("structure.beam", {ErrorObject{"Structure"}, ": a beam needs two different nodes."});
   Vec3 const c = direction / length;
   double const level = std::hypot(c[0], c[2]);
   Mat3 axes;
@@ -82,7 +83,8 @@ inline constexpr double same_node = 1e-9;
 template <class = void>
 Structure structure_of(std::vector<Bar> const& bars, std::vector<Index> const& elements) {
   if (bars.empty() || bars.size() != elements.size())
-    throw InvalidInput("Structure: give at least one bar, and a number of elements for each.");
+    throw InvalidInput("structure.beam", {ErrorObject{"Structure"},
+                                          ": at least one bar is needed, and a number of elements for each bar."});
   Structure s;
   double longest = 0.0;
   for (Bar const& bar : bars) longest = std::max(longest, double(bar.length));
@@ -154,7 +156,9 @@ class AxialForceStiffness {
   explicit AxialForceStiffness(Structure const& s, Index node = 0) : structure_(&s) {
     if (s.beams.empty())
       throw InvalidInput(
-          "Structure: geometric stiffening needs beams; a structure from matrices does not know its axial forces.");
+          "structure.no_beams",
+          {ErrorObject{"Structure"},
+           ": geometric stiffening needs beams, because the axial forces of a structure from matrices are unknown."});
     s.require_node(node, "Structure: the held node");
     Structure::Sparse k = s.stiffness;
     Index const first = 6 * node;
@@ -162,7 +166,9 @@ class AxialForceStiffness {
     for (Index i = 0; i < 6; ++i) k.coeffRef(held_[i] = first + i, first + i) = 1.0;
     solver_.compute(k);
     if (solver_.info() != Eigen::Success || solver_.vectorD().minCoeff() <= 0.0)
-      throw InvalidInput("Structure: its beams are not all joined, or their stiffness is not positive.");
+      throw InvalidInput(
+          "structure.not_joined",
+          {ErrorObject{"Structure"}, ": its beams are not all joined, or their stiffness is not positive."});
   }
 
   /// Geometric stiffness due to one load: `load` (N) at the nodes, and `spread(beam)`, the nodal forces (12, body axes)

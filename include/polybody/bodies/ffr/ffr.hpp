@@ -117,7 +117,9 @@ class Ffr {
   /// \throws InvalidInput for matrices that are not 3×n.
   Point at(Point const& p) const {
     if (p.S.cols() != deformations() || p.R.cols() != deformations())
-      throw InvalidInput("Ffr: S and R of a point must be 3×n, n the number of deformation coordinates.");
+      throw InvalidInput(
+          "ffr.point_size",
+          {ErrorObject{"Ffr"}, ": S and R of a point must be 3×n, n the number of deformation coordinates."});
     return p;
   }
 
@@ -376,7 +378,10 @@ class Ffr {
     return {made_of_->integrals, made_of_->stack, numbers.data()};
   }
   FfrPoints const& made() const {
-    if (!points_) throw InvalidInput("Ffr: this body is made of integrals only; describe the point by a Point.");
+    if (!points_)
+      throw InvalidInput(
+          "ffr.integrals_only",
+          {ErrorObject{"Ffr"}, ": this body consists of integrals only. Describe the point by a Point."});
     return *points_;
   }
 

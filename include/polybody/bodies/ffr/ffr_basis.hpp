@@ -56,8 +56,8 @@ class ReferenceConditions {
     auto const mark = [&](Index node, int component) {
       s.require_node(node, "Ffr: a reference condition");
       if (component < 0 || component >= s.per_node)
-        throw InvalidInput{"Ffr: a reference condition names component ", component, ", but nodes have ", s.per_node,
-                           " (from 0)."};
+        throw InvalidInput("ffr.component", {ErrorObject{"Ffr"}, ": a reference condition names component ",
+                                             ErrorValue{component}, ", but nodes have ", s.per_node, " (from 0)."});
       fixed[std::size_t(s.per_node * node + component)] = 1;
     };
     for (Index const node : nodes_)
@@ -106,7 +106,8 @@ namespace detail {
 template <class = void>
 void require_count(Index count, Index most) {
   if (count < 1 || count > most)
-    throw InvalidInput{"Ffr: ", count, " modes are asked for, but the model has 1 to ", most, " to offer."};
+    throw InvalidInput("ffr.modes", {ErrorObject{"Ffr"}, ": ", ErrorValue{count},
+                                     " modes are requested, but the number must lie in [1, ", most, "]."});
 }
 
 template <class = void>
@@ -226,9 +227,11 @@ template <class Eigensolver = DenseModes>
 MatX craig_bampton(Structure const& s, std::vector<Index> const& boundary, Index count, bool mean_axes = false,
                    bool in_plane = false, Eigensolver const& solve = {}) {
   if (boundary.empty() || std::set<Index>(boundary.begin(), boundary.end()).size() != boundary.size())
-    throw InvalidInput("Ffr: Craig-Bampton needs boundary nodes, each once.");
+    throw InvalidInput("ffr.boundary", {ErrorObject{"Ffr"}, ": Craig-Bampton needs boundary nodes, each listed once."});
   if (!mean_axes && s.per_node != 6)
-    throw InvalidInput("Ffr: nodes without rotations do not hold the frame; say mean_axes in craig_bampton.");
+    throw InvalidInput("ffr.boundary",
+                       {ErrorObject{"Ffr"},
+                        ": boundary nodes without rotations do not fix the frame. Give mean_axes to craig_bampton."});
   ReferenceConditions everywhere = ReferenceConditions::none();
   if (in_plane) everywhere.restrict_to_plane();
   std::vector<Index> const all = everywhere.free_coordinates(s);

@@ -92,7 +92,9 @@ struct FfrIntegrals {
     for (auto const& x : inertia_second) fits = fits && square(x);
     for (auto const& x : coupling_by) fits = fits && square(x);
     for (auto const& x : first_second) fits = fits && (x.size() == 0 || square(x));
-    if (!fits) throw InvalidInput{what, ": its integrals are not all of one size, that of the mass matrix."};
+    if (!fits)
+      throw InvalidInput("ffr.integral_size",
+                         {ErrorObject{what}, ": the integrals must all have the size of the mass matrix."});
     require_positive(mass, what, ": the mass");
     require_finite(mass_matrix, what, ": the mass matrix");
     require_finite(stiffness, what, ": the stiffness matrix");
@@ -105,7 +107,9 @@ struct FfrIntegrals {
         for (Index i = k + 1; i < n; ++i) l(i, j) -= l(i, k) * l(k, j) / l(k, k);
     }
     if (!positive)
-      throw InvalidInput{what, ": the mass matrix of its deformation is not symmetric and positive definite."};
+      throw InvalidInput(
+          "body.mass_matrix",
+          {ErrorObject{what}, ": the mass matrix of the deformation is not symmetric and positive definite."});
   }
   /// Checks the entries of all integrals.
   /// \throws InvalidInput naming `what` and the integral that has a NaN, or an entry whose square is not finite.
@@ -114,8 +118,8 @@ struct FfrIntegrals {
     auto const require = [&](double const* x, Index count, char const* name) {
       for (Index i = 0; i < count; ++i)
         if (!(std::abs(x[i]) <= largest_number))
-          throw InvalidInput{
-              what, ": its integral `", name, "` has an entry of ", x[i], ", whose square is not finite."};
+          throw InvalidInput("value.magnitude", {ErrorObject{what}, ": the integral \"", name, "\" has an entry of ",
+                                                 ErrorValue{x[i]}, ", but its square must be finite."});
     };
     require(first.data(), 3, "first");
     require(first_by.data(), first_by.size(), "first_by");
@@ -195,8 +199,8 @@ struct FfrIntegrals {
 template <class = void>
 FfrIntegrals integrals_of(Structure const& s, MatX const& shapes, bool stiffening = false) {
   if (shapes.rows() != s.size())
-    throw InvalidInput{"Ffr: the shapes have ", shapes.rows(), " rows, but the structure has ", s.size(),
-                       " nodal coordinates."};
+    throw InvalidInput("ffr.shape_size", {ErrorObject{"Ffr"}, ": the shapes have ", ErrorValue{shapes.rows()},
+                                          " rows, but the structure has ", s.size(), " nodal coordinates."});
   FfrIntegrals x = FfrIntegrals::zero(shapes.cols());
   auto const carried = [&](Structure::Sparse const& m) { return MatX(shapes.transpose() * (m * shapes)); };
   x.mass = s.mass;

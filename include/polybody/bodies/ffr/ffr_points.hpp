@@ -42,7 +42,8 @@ struct FfrPoint {
   /// \throws InvalidInput for a point that is not on a beam.
   template <class = void>  // compiled only if used
   Vec6 section_strains(double const* q) const {
-    if (strain.cols() != S.cols()) throw InvalidInput("Ffr: strains are known in points of beams only.");
+    if (strain.cols() != S.cols())
+      throw InvalidInput("ffr.no_strain", {ErrorObject{"Ffr"}, ": strains are available in points of beams only."});
     Vec6 sum = Vec6::Zero();
     for (Index k = 0; k < strain.cols(); ++k)
       for (int i = 0; i < 4; ++i) sum[i == 0 ? 0 : i + 2] += strain(i, k) * q[k];
@@ -87,18 +88,22 @@ class FfrPoints {
   /// Length of the first bar [m].
   /// \throws InvalidInput without bars.
   double length() const {
-    if (s_.beams.empty()) throw InvalidInput("Ffr: only a body made of bars has a length.");
+    if (s_.beams.empty())
+      throw InvalidInput("ffr.no_bar", {ErrorObject{"Ffr"}, ": only a body made of bars has a length."});
     return s_.bar_lengths.front();
   }
   /// Point at distance s from the first end of bar `bar`, at (y, z) from its axis [m].
   /// \throws InvalidInput outside the bar.
   template <class = void>
   FfrPoint at(double s, double y, double z, Index bar) const {
-    if (s_.beams.empty()) throw InvalidInput("Ffr: at(s) needs a body made from bars; use node(i).");
+    if (s_.beams.empty())
+      throw InvalidInput("ffr.no_bar", {ErrorObject{"Ffr"}, ": at(s) needs a body made of bars. Use node(i)."});
     if (bar < 0 || bar >= Index(s_.bar_lengths.size()))
-      throw InvalidInput{"Ffr: bar ", bar, " does not exist; the body is made of ", s_.bar_lengths.size(), "."};
+      throw InvalidInput("ffr.no_bar", {ErrorObject{"Ffr"}, ": bar ", ErrorValue{bar}, " does not exist; the body has ",
+                                        s_.bar_lengths.size(), " bars, counted from 0."});
     double const inside = require_inside(s, s_.bar_lengths[std::size_t(bar)], "Ffr");
-    if (!std::isfinite(y) || !std::isfinite(z)) throw InvalidInput("Ffr: y and z of a point must be finite.");
+    if (!std::isfinite(y) || !std::isfinite(z))
+      throw InvalidInput("value.not_finite", {ErrorObject{"Ffr"}, ": y and z of a point must be finite."});
     Structure::Beam const* beam = nullptr;
     for (Structure::Beam const& b : s_.beams)
       if (b.bar == bar && (!beam || b.start <= inside)) beam = &b;
@@ -148,7 +153,9 @@ class FfrPoints {
   template <class = void>
   FfrPoint patch(NodePatch const& nodes, Vec3 const& at) const {
     if (axial_)
-      throw InvalidInput("Ffr: with geometric stiffening points are sections or nodes, not patches of nodes.");
+      throw InvalidInput("ffr.patch",
+                         {ErrorObject{"Ffr"},
+                          ": with geometric stiffening a point must be a section or a node, not a patch of nodes."});
     NodePatch::Motion const motion = nodes.motion(at, shapes_);
     FfrPoint p;
     p.u = at;

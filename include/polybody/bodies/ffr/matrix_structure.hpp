@@ -39,36 +39,24 @@ double largest_entry(Structure::Sparse const& m) {
 template <class = void>
 void require_symmetric(Structure::Sparse const& m, Index n, std::string const& name) {
   if (m.rows() != n || m.cols() != n)
-    throw InvalidInput{"Structure: ",
-                       name,
-                       " is ",
-                       m.rows(),
-                       "×",
-                       m.cols(),
-                       ", but ",
-                       n / 3,
-                       " nodes with three displacements each need ",
-                       n,
-                       "×",
-                       n,
-                       ". Give every node of the model, without elements that have rotations and without held "
-                       "displacements left out."};
+    throw InvalidInput(
+        "structure.matrix_size",
+        {ErrorObject{"Structure"}, ": ", name, " is ", ErrorValue{m.rows()}, "×", m.cols(), ", but ", n / 3,
+         " nodes with three displacements each need ", n, "×", n,
+         ". Give every node of the model, without elements that have rotations, and do not omit fixed displacements."});
   double const least = 1e-9 * largest_entry(m);
   Structure::Sparse const turned = m.transpose();
   for (Index j = 0; j < n; ++j) {
     for (Structure::Sparse::InnerIterator it(m, j); it; ++it) {
       if (!(std::abs(it.value()) <= largest_number))
-        throw InvalidInput{"Structure: ",
-                           name,
-                           non_finite_suffix(it.value()),
-                           " in ",
-                           entry_name(it.row(), j),
-                           ". Write the matrices anew."};
+        throw InvalidInput("value.not_finite", {ErrorObject{"Structure"}, ": ", name, non_finite_suffix(it.value()),
+                                                " in ", entry_name(it.row(), j), ". Write the matrices again."});
       double const other = turned.coeff(it.row(), j);
       if (!(std::abs(it.value() - other) <= least))
-        throw InvalidInput{"Structure: ",           name,   " is not symmetric: ",
-                           entry_name(it.row(), j), " is ", it.value(),
-                           ", its mirror image ",   other,  ". Of a matrix kept as one triangle give both."};
+        throw InvalidInput("structure.not_symmetric",
+                           {ErrorObject{"Structure"}, ": ", name, " is not symmetric: ", entry_name(it.row(), j),
+                            " is ", ErrorValue{it.value()}, ", its mirror image ", other,
+                            ". If a matrix is stored as one triangle, give both triangles."});
     }
   }
 }
@@ -88,15 +76,17 @@ Structure::Sparse scalar_mass(Structure::Sparse const& mass) {
       Index const i = it.row();
       if (i % 3 != j % 3) {
         if (std::abs(it.value()) > least)
-          throw InvalidInput{"Structure: the mass matrix couples different directions in ", entry_name(i, j), remedy};
+          throw InvalidInput("structure.mass",
+                             {ErrorObject{"Structure"}, ": the mass matrix couples different directions in ",
+                              entry_name(i, j), remedy});
         continue;
       }
       Index const next = j % 3 == 2 ? -2 : 1;
       double const other = mass.coeff(i + next, j + next);
       if (std::abs(it.value() - other) > least)
-        throw InvalidInput{
-            "Structure: the mass matrix has ", it.value(), " in ", entry_name(i, j), ", but ", other, " in ",
-            entry_name(i + next, j + next),    remedy};
+        throw InvalidInput("structure.mass",
+                           {ErrorObject{"Structure"}, ": the mass matrix has ", ErrorValue{it.value()}, " in ",
+                            entry_name(i, j), ", but ", other, " in ", entry_name(i + next, j + next), remedy});
       entries.emplace_back(int(i / 3), int(j / 3),
                            it.value() / 6.0);  // mean over the three directions and over (i, j), (j, i)
       entries.emplace_back(int(j / 3), int(i / 3), it.value() / 6.0);
@@ -106,9 +96,10 @@ Structure::Sparse scalar_mass(Structure::Sparse const& mass) {
   Eigen::SimplicialLDLT<Structure::Sparse> const factor(m);
   for (Index k = 0; k < n; ++k)
     if (!(factor.vectorD()[k] > 1e-13 * largest))
-      throw InvalidInput{"Structure: the mass matrix is not positive definite; it fails at node ",
-                         factor.permutationPinv().indices()[k],
-                         ". Every node needs mass: leave out nodes of no element."};
+      throw InvalidInput(
+          "structure.mass",
+          {ErrorObject{"Structure"}, ": the mass matrix is not positive definite; it fails at node ",
+           factor.permutationPinv().indices()[k], ". Every node needs mass: omit nodes that belong to no element."});
   return m;
 }
 
@@ -129,13 +120,11 @@ void require_free_of_rigid_work(Structure::Sparse const& stiffness, std::vector<
     if (force.norm() <= 1e-6 * norm * shape.norm()) continue;
     Index worst = 0;
     force.cwiseAbs().maxCoeff(&worst);
-    throw InvalidInput{"Structure: a rigid ",
-                       motion < 3 ? "displacement along " : "rotation about ",
-                       "xyz"[motion % 3],
-                       " strains the structure, most in row ",
-                       coordinate_name(worst),
-                       " of the stiffness matrix. Give the nodes in the order of the matrices and in the units of the "
-                       "stiffness, and hold nothing in the finite element model."};
+    throw InvalidInput("structure.rigid_motion",
+                       {ErrorObject{"Structure"}, ": a rigid ", motion < 3 ? "displacement along " : "rotation about ",
+                        "xyz"[motion % 3], " strains the structure, most in row ", coordinate_name(worst),
+                        " of the stiffness matrix. Give the nodes in the order of the matrices and in the units of the "
+                        "stiffness, and fix nothing in the finite element model."});
   }
 }
 
@@ -164,11 +153,12 @@ double wave_speed(Structure::Sparse const& m, Structure::Sparse const& stiffness
 template <class = void>
 void require_units_of_solids(double speed, double fastest) {
   if (!(speed > fastest) || !std::isfinite(speed)) return;
-  throw InvalidInput{"Structure: nodes, masses and stiffness have different units: waves would travel at ", speed,
-                     " m/s, above ", fastest,
-                     " m/s; diamond has 1.8e4. Give nodes in metres, masses in kilograms and the stiffness in N/m "
-                     "(nodes in millimetres make waves 1000 times as fast), or a larger fastest_wave for a material "
-                     "of your own."};
+  throw InvalidInput(
+      "structure.units",
+      {ErrorObject{"Structure"}, ": nodes, masses and stiffness have different units: waves would travel at ",
+       ErrorValue{speed}, " m/s, above ", fastest,
+       " m/s; diamond has 1.8e4. Give nodes in metres, masses in kilograms and the stiffness in N/m (nodes in "
+       "millimetres make waves 1000 times as fast), or a larger fastest_wave for a material of your own."});
 }
 
 /// Checks that the moments of mass are finite.
@@ -179,8 +169,9 @@ void require_finite_moments(Structure const& s) {
   for (auto const& moment : s.moment)
     for (VecX const& shape : moment) finite = finite && shape.allFinite();
   if (!finite)
-    throw InvalidInput(
-        "Structure: the moments of its mass are not finite. Give nodes in metres and masses in kilograms.");
+    throw InvalidInput("value.not_finite",
+                       {ErrorObject{"Structure"},
+                        ": the moments of its mass are not finite. Give nodes in metres and masses in kilograms."});
 }
 
 }  // namespace detail
@@ -199,11 +190,12 @@ void require_finite_moments(Structure const& s) {
 template <class = void>
 Structure structure_of(Structure::Sparse const& mass, Structure::Sparse const& stiffness,
                        std::vector<Vec3> const& nodes, double fastest_wave = 1e5) {
-  if (nodes.empty()) throw InvalidInput("Structure: it has no nodes.");
+  if (nodes.empty()) throw InvalidInput("structure.no_nodes", {ErrorObject{"Structure"}, ": it has no nodes."});
   for (std::size_t i = 0; i < nodes.size(); ++i)
     for (double const x : nodes[i])
       if (!(std::abs(x) <= largest_number))
-        throw InvalidInput{"Structure: node ", i, non_finite_suffix(x), ". Give x, y, z in metres."};
+        throw InvalidInput("value.not_finite",
+                           {ErrorObject{"Structure"}, ": node ", i, non_finite_suffix(x), ". Give x, y, z in metres."});
   Structure s;
   s.per_node = 3;
   s.nodes = nodes;
@@ -269,7 +261,7 @@ Structure read_structure(std::string const& mass_file, std::string const& stiffn
   try {
     return structure_of(mass, stiffness, nodes, fastest_wave);
   } catch (InvalidInput const& error) {
-    throw InvalidInput{mass_file, ", ", stiffness_file, ", ", nodes_file, ": ", error.what()};
+    throw InvalidInput({ErrorObject{mass_file}, ", ", stiffness_file, ", ", nodes_file, ": ", ErrorCause{error}});
   }
 }
 

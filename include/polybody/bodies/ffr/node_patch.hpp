@@ -47,8 +47,10 @@ class NodePatch {
       spread += weights_[k] * (d.squaredNorm() * Mat3::Identity() - d * d.transpose());
     }
     if (!(spread.determinant() > 1e-9 * std::pow(spread.trace() / 3.0, 3)))
-      throw InvalidInput{who, ": a patch has three nodes or more that are not in line, but this one has ",
-                         nodes_.size(), ". Widen the patch."};
+      throw InvalidInput(
+          "structure.patch",
+          {ErrorObject{who}, ": a patch needs at least three nodes that are not in line, but this patch has ",
+           ErrorValue{nodes_.size()}, ". Enlarge the patch."});
     by_moment_ = spread.inverse();
   }
 
@@ -92,7 +94,8 @@ class NodePatch {
   void normalise(std::string const& who) {
     if (weights_.empty()) weights_.assign(nodes_.size(), 1.0);
     if (weights_.size() != nodes_.size())
-      throw InvalidInput{who, ": a patch of ", nodes_.size(), " nodes has ", weights_.size(), " weights."};
+      throw InvalidInput("structure.patch", {ErrorObject{who}, ": a patch of ", nodes_.size(), " nodes has ",
+                                             ErrorValue{weights_.size()}, " weights."});
     double sum = 0.0;
     for (double const w : weights_) {
       require_positive(w, who, ": the weight of a node");

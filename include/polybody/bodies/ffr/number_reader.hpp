@@ -30,7 +30,8 @@ class NumberReader {
   NumberReader(std::string const& file, char comment) : file_(file), in_(file), comment_(comment) {
     if (in_) in_.peek();  // a folder can be opened, but not read
     if (!in_.is_open() || in_.bad())
-      throw IoError{file, ": it cannot be opened. Check the path, and that it may be read."};
+      throw IoError("file.open",
+                    {ErrorObject{file}, ": the file cannot be opened. Check the path and the permission to read it."});
     in_.clear();
   }
   /// Reads the next line without changes, up to LF, CR LF or CR; returns false at the end.
@@ -59,13 +60,13 @@ class NumberReader {
     std::istringstream words(line);
     words.imbue(std::locale::classic());
     std::string rest;
-    if (!(read(words, values) && ...) || (words >> rest)) fail("'" + line.substr(0, 60) + "' is not " + expected);
+    if (!(read(words, values) && ...) || (words >> rest)) fail("\"" + line.substr(0, 60) + "\" is not " + expected);
     return true;
   }
   /// Reports an error.
   /// \throws IoError with the file, the line and `what`.
   [[noreturn, gnu::cold]] void fail(std::string const& what) const {
-    throw IoError{file_, ", line ", line_, ": ", what, "."};
+    throw IoError("file.content", {ErrorObject{file_}, ", line ", line_, ": ", what, "."});
   }
 
  private:

@@ -67,7 +67,8 @@ class Ffr : public AddingCoordinates {
             options) {
     for (Index i = 0; i < shapes.rows(); ++i)
       if (int const c = int(i) % structure.per_node; c >= 2 && c < 5 && !shapes.row(i).isZero(0.0))
-        throw InvalidInput("planar::Ffr: the basis leaves the plane; make it in_plane.");
+        throw InvalidInput("ffr.out_of_plane", {ErrorObject{"planar::Ffr"},
+                                                ": the shapes of the basis leave the plane. Make the basis in_plane."});
     points_ = std::make_shared<FfrPoints const>(std::move(structure), std::move(shapes), i_.stiffens());
   }
   /// Body from the user's own integrals.
@@ -102,7 +103,9 @@ class Ffr : public AddingCoordinates {
   /// \throws InvalidInput for matrices that are not 3×n.
   Point at(Point const& p) const {
     if (p.S.cols() != deformations() || p.R.cols() != deformations())
-      throw InvalidInput("planar::Ffr: S and R of a point must be 3×n, n the number of deformation coordinates.");
+      throw InvalidInput(
+          "ffr.point_size",
+          {ErrorObject{"planar::Ffr"}, ": S and R of a point must be 3×n, n the number of deformation coordinates."});
     return p;
   }
 
@@ -381,7 +384,9 @@ class Ffr : public AddingCoordinates {
 
   FfrPoints const& made() const {
     if (!points_)
-      throw InvalidInput("planar::Ffr: this body is made of integrals only; describe the point by a Point.");
+      throw InvalidInput(
+          "ffr.integrals_only",
+          {ErrorObject{"planar::Ffr"}, ": this body consists of integrals only. Describe the point by a Point."});
     return *points_;
   }
 

@@ -78,8 +78,10 @@ struct FfrIntegrals {
         odd = std::max(odd, std::abs(coupling_by(i, j) + coupling_by(j, i)));
       }
     if (odd > 1e-9 * largest)
-      throw InvalidInput{what, ": coupling_by, ∫ρ (S_xᵀ S_y − S_yᵀ S_x), must be skew; it and its transpose add up to ",
-                         odd, " in an entry."};
+      throw InvalidInput("ffr.not_skew", {ErrorObject{what},
+                                          ": coupling_by, ∫ρ (S_xᵀ S_y − S_yᵀ S_x), must be skew-symmetric, but the "
+                                          "sum of it and its transpose has an entry of ",
+                                          ErrorValue{odd}, "."});
     require_positive(inertia, what, ": the inertia about the frame's origin");
   }
 

@@ -78,8 +78,9 @@ struct Structure {
   template <class = void>
   void require_node(Index node, std::string const& what) const {
     if (node < 0 || node >= Index(nodes.size()))
-      throw InvalidInput{
-          what, ": node ", node, " does not exist; the structure has nodes 0 to ", Index(nodes.size()) - 1, "."};
+      throw InvalidInput("structure.node",
+                         {ErrorObject{what}, ": node ", ErrorValue{node},
+                          " does not exist; the structure has nodes 0 to ", Index(nodes.size()) - 1, "."});
   }
 };
 

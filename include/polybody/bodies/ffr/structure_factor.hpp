@@ -40,7 +40,7 @@ template <class = void>
 void factor_positive(SparseFactor& factor, Structure::Sparse const& m, std::string const& what) {
   factor.compute(m);
   if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 1e-13 * factor.vectorD().maxCoeff()))
-    throw InvalidInput{"Ffr: ", what};
+    throw InvalidInput("structure.not_positive_definite", {ErrorObject{"Ffr"}, ": ", what});
 }
 /// Checks the stiffness under reference conditions.
 /// \throws InvalidInput unless it is positive definite.

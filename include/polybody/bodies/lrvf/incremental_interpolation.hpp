@@ -103,8 +103,9 @@ class Incremental {
   /// \throws InvalidInput unless ξ is a node or the middle, because other rotations are not stored.
   static void require_known(double xi, double s) {
     if (xi != 0.0 && xi != 1.0 && !(xi > 0.5 - 1e-12 && xi < 0.5 + 1e-12))
-      throw InvalidInput{"Lrvf<Incremental>: at s = ", s,
-                         " no rotation is known: increments turn the nodes and the middle of each element only."};
+      throw InvalidInput("lrvf.no_rotation",
+                         {ErrorObject{"Lrvf<Incremental>"}, ": the rotation at s = ", ErrorValue{s},
+                          " m is unknown. It is known at the nodes and at the middle of each element only."});
   }
 };
 

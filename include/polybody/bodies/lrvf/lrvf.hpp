@@ -68,7 +68,7 @@ class Lrvf {
   /// them.
   static Lrvf from(Bar const& bar, Index n, ReferenceCurve const& curve) {
     require_elements(n, "Lrvf");
-    if (!curve) throw InvalidInput("Lrvf: the reference curve is empty.");
+    if (!curve) throw InvalidInput("reference_curve.missing", {ErrorObject{"Lrvf"}, ": the reference curve is empty."});
     return Lrvf(bar, polybody::constants(bar), n, curve);
   }
 
@@ -80,7 +80,8 @@ class Lrvf {
   /// \throws InvalidInput outside the bar.
   Point at(double s, double y = 0.0, double z = 0.0) const {
     double const x = require_inside(s, length_, "Lrvf") / l_;
-    if (!std::isfinite(y) || !std::isfinite(z)) throw InvalidInput("Lrvf: y and z of a point must be finite.");
+    if (!std::isfinite(y) || !std::isfinite(z))
+      throw InvalidInput("value.not_finite", {ErrorObject{"Lrvf"}, ": y and z of a point must be finite."});
     Index const e = std::min(Index(x + 1e-12), elements() - 1);
     double const xi = x - double(e);
     Point const p{e, xi < 1e-12 ? 0.0 : xi > 1.0 - 1e-12 ? 1.0 : xi, y, z};  // exact position of a node
@@ -343,7 +344,8 @@ Lrvf<Interpolation, Quadrature>::Lrvf(Bar const& bar, BarConstants const& c, Ind
   for (Index e = 0; e < n; ++e) {
     double const chord = std::sqrt(squared_norm(difference(entries<3>(q, 7 * e + 7), entries<3>(q, 7 * e))));
     if (!(chord > 1e-6 * l_ && chord < (1.0 + 1e-6) * l_))
-      throw InvalidInput{"Lrvf: element ", double(e), " of arc length ", l_, " has a chord of ", chord, advice};
+      throw InvalidInput("reference_curve.arc_length", {ErrorObject{"Lrvf"}, ": element ", double(e), " of arc length ",
+                                                        l_, " m has a chord of ", ErrorValue{chord}, " m", advice});
     elastic_.set_free(e, std::span<double const>(q), chord);
   }
 }

@@ -67,7 +67,9 @@ class Rigid : public AddingCoordinates {
   /// \throws InvalidInput outside the bar.
   template <class = void>  // compiled only if used
   Point at(double s, double y = 0.0) const {
-    if (length_ == 0.0) throw InvalidInput("planar::Rigid: at(s) needs a body made from a Bar; use at(Vec2).");
+    if (length_ == 0.0)
+      throw InvalidInput("rigid.no_bar",
+                         {ErrorObject{"planar::Rigid"}, ": at(s) needs a body made from a Bar. Use at(Vec2)."});
     return at(Vec2(require_inside(s, length_, "planar::Rigid") - 0.5 * length_, y));
   }
   /// Point u in body axes from the centre of mass [m].

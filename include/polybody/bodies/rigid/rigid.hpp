@@ -50,24 +50,24 @@ template <class = void>  // compiled only if used
                                 std::abs(inertia(0, 1)), std::abs(inertia(0, 2)), std::abs(inertia(1, 2))});
   if (size == 0.0) return;
   if (size > largest_number)
-    throw InvalidInput{what, ": the inertia has an entry of ", size, " kg m², whose square is not finite."};
+    throw InvalidInput("value.magnitude", {ErrorObject{what}, ": the inertia has an entry of ", ErrorValue{size},
+                                           " kg m², but its square must be finite."});
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < i; ++j)
       if (std::abs(inertia(i, j) - inertia(j, i)) > 1e-9 * size)
-        throw InvalidInput{what, ": the inertia tensor must be symmetric."};
+        throw InvalidInput("rigid.inertia", {ErrorObject{what}, ": the inertia tensor must be symmetric."});
   if (!detail::is_definite(inertia, 1e-9 * size))
-    throw InvalidInput{what, ": a principal moment of inertia is negative (", detail::principal_values(inertia)[2],
-                       ")."};
+    throw InvalidInput("rigid.inertia", {ErrorObject{what}, ": a principal moment of inertia is negative (",
+                                         ErrorValue{detail::principal_values(inertia)[2]}, " kg m²)."});
   Mat3 second;
   double const half_trace = 0.5 * (inertia(0, 0) + inertia(1, 1) + inertia(2, 2));
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) second(i, j) = i == j ? half_trace - inertia(i, j) : -inertia(i, j);
   if (!detail::is_definite(second, 1e-9 * size)) {
     std::array<double, 3> const i = detail::principal_values(inertia);
-    throw InvalidInput{what, ": the principal moments of inertia ",
-                       i[0], ", ",
-                       i[1], ", ",
-                       i[2], " violate the triangle inequality; no body has them."};
+    throw InvalidInput("rigid.inertia",
+                       {ErrorObject{what}, ": the principal moments of inertia ", i[0], ", ", i[1], ", ", i[2],
+                        " kg m² violate the triangle inequality, so that no body has them."});
   }
 }
 
@@ -110,7 +110,9 @@ class RigidShape {
   template <class = void>  // compiled only if used
   Point at(double s, double y = 0.0, double z = 0.0) const {
     if (length_ == 0.0)
-      throw InvalidInput("Rigid: at(s) needs a body made from a Bar; use at(Vec3) from the centre of mass.");
+      throw InvalidInput(
+          "rigid.no_bar",
+          {ErrorObject{"Rigid"}, ": at(s) needs a body made from a Bar. Use at(Vec3) from the centre of mass."});
     return at(Vec3(require_inside(s, length_, "Rigid") - 0.5 * length_, y, z));
   }
   /// Point u in body axes from the centre of mass [m].

@@ -49,7 +49,9 @@ class VariableMass : public B {
 
  private:
   static B at_start(Law const& law) {
-    if (!law) throw InvalidInput("VariableMass: a law is needed that gives the body at every time.");
+    if (!law)
+      throw InvalidInput("variable_mass.no_function",
+                         {ErrorObject{"VariableMass"}, ": a function is needed that returns the body at every time."});
     return law(0.0);
   }
   void require_same_place(B const& now, double t) const {
@@ -60,9 +62,10 @@ class VariableMass : public B {
       if (!(std::abs(here[i] - there[i]) <= 1e-12 * (1.0 + std::abs(here[i])))) refuse_place(t);
   }
   [[noreturn, gnu::cold]] static void refuse_place(double t) {
-    throw InvalidInput{"VariableMass: at t = ", t,
-                       " s the law places the body elsewhere than at t = 0. Coordinates are those of the centre of "
-                       "mass: keep its placement, and let mass and inertia change about it."};
+    throw InvalidInput("variable_mass.moved",
+                       {ErrorObject{"VariableMass"}, ": at t = ", ErrorTime{t},
+                        " s the function places the body elsewhere than at t = 0. The coordinates are those of the "
+                        "centre of mass: do not change the placement, and give mass and inertia about it."});
   }
 
   std::shared_ptr<Law const> law_;

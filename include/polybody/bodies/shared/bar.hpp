@@ -93,7 +93,8 @@ template <class = void>  // compiled only if used
   require_positive(m.density, "Bar: the material's density");
   require_positive(m.young, "Bar: Young's modulus");
   if (!(m.poisson > -1.0 && m.poisson <= 0.5))
-    throw InvalidInput{"Bar: Poisson's ratio must lie in (-1, 0.5], but is ", m.poisson, "."};
+    throw InvalidInput("bar.poisson_ratio", {ErrorObject{"Bar"}, ": Poisson's ratio must lie in (-1, 0.5], but is ",
+                                             ErrorValue{m.poisson}, "."});
   double const nu = m.poisson;
   double area = 0, iz = 0, iy = 0, torsion = 0, shear = 0;
   if (auto const* c = std::get_if<Circle>(&bar.section)) {
@@ -122,7 +123,9 @@ template <class = void>  // compiled only if used
   if (bar.shear_factor) {
     shear = *bar.shear_factor;
     if (!(shear >= 1e-9 && shear <= 1e9))
-      throw InvalidInput{"Bar: the shear factor must lie in [1e-09, 1e+09], but is ", shear, "."};
+      throw InvalidInput(
+          "bar.shear_factor",
+          {ErrorObject{"Bar"}, ": the shear factor must lie in [1e-09, 1e+09], but is ", ErrorValue{shear}, "."});
   }
   double const e = m.young, g = e / (2.0 * (1.0 + nu)), rho = m.density;
   return {.EA = e * area,
@@ -176,7 +179,9 @@ template <class = void>  // compiled only if used
 template <class = void>  // compiled only if used
 void require_damping_time(double time, std::string const& what) {
   require_not_negative(time, what);
-  if (time > largest_number) throw InvalidInput{what, " must be at most ", largest_number, " s, but is ", time, " s."};
+  if (time > largest_number)
+    throw InvalidInput(
+        "bar.period", {ErrorObject{what}, " must be at most ", largest_number, " s, but is ", ErrorValue{time}, " s."});
 }
 
 }  // namespace detail
@@ -187,19 +192,28 @@ template <class = void>  // compiled only if used
 [[gnu::cold]] BarConstants constants(Bar const& bar) {
   require_positive(bar.length, "Bar: the length");
   if (!(bar.length >= 1e-100 && bar.length <= 1e100))
-    throw InvalidInput{"Bar: the length must lie in [1e-100, 1e+100] m, but is ", bar.length, " m."};
+    throw InvalidInput("bar.length", {ErrorObject{"Bar"}, ": the length must lie in [1e-100, 1e+100] m, but is ",
+                                      ErrorValue{bar.length}, " m."});
   bar.placement.check("Bar");
   detail::require_damping_time(bar.damping.axial, "Bar: the axial damping time");
   detail::require_damping_time(bar.damping.shear, "Bar: the shear damping time");
   detail::require_damping_time(bar.damping.bending, "Bar: the bending damping time");
-  if (!std::isfinite(bar.pretension)) throw InvalidInput("Bar: the pretension must be finite.");
+  if (!std::isfinite(bar.pretension))
+    throw InvalidInput("value.not_finite", {ErrorObject{"Bar"}, ": the pretension must be finite, but is ",
+                                            ErrorValue{bar.pretension}, " N."});
   if (std::abs(bar.pretension) > largest_number)
-    throw InvalidInput{"Bar: the pretension is ", bar.pretension, " N, whose square is not finite."};
+    throw InvalidInput("value.magnitude", {ErrorObject{"Bar"}, ": the pretension is ", ErrorValue{bar.pretension},
+                                           " N, but its square must be finite."});
   bool const by_section = !std::holds_alternative<std::monostate>(bar.section);
   if (by_section != bar.material.has_value() || by_section == bar.constants.has_value())
-    throw InvalidInput("Bar: give either a section with a material, or constants; not both, not half.");
+    throw InvalidInput(
+        "bar.section_or_constants",
+        {ErrorObject{"Bar"},
+         ": give either a section with a material, or constants; not both, and not a section without a material."});
   if (bar.shear_factor && !by_section)
-    throw InvalidInput("Bar: the shear factor belongs to a section. Constants give the shear stiffness GA itself.");
+    throw InvalidInput("bar.shear_factor",
+                       {ErrorObject{"Bar"},
+                        ": the shear factor belongs to a section. Constants contain the shear stiffness GA itself."});
   if (by_section) {
     BarConstants const c = detail::constants_of_section(bar);
     detail::require_section_sizes(bar, c);
@@ -227,20 +241,20 @@ template <class = void>  // compiled only if used
 void require_polar_inertia_of_points(BarConstants const& c, std::string const& what) {
   Vec3 const i = rotary_inertias(c);
   if (std::abs(i[0] - (i[1] + i[2])) > 1e-9 * (i[1] + i[2]))
-    throw InvalidInput{what,
-                       ": the polar inertia is ",
-                       i[0],
-                       " kg m, but that of its material points is ",
-                       "Iρ_y + Iρ_z = ",
-                       i[1] + i[2],
-                       " kg m. Leave it out, or take Lrvf or Rigid, whose sections are rigid."};
+    throw InvalidInput("bar.polar_inertia", {ErrorObject{what}, ": the polar inertia is ", ErrorValue{i[0]},
+                                             " kg m, but its material points have ", "Iρ_y + Iρ_z = ", i[1] + i[2],
+                                             " kg m. Omit it, or use Lrvf or Rigid, whose sections are rigid."});
 }
 
 /// Checks the number n of elements of a bar.
 /// \throws InvalidInput naming `what` unless n = 1 … 10⁷.
 inline void require_elements(Index n, std::string_view what) {
-  if (n < 1) throw InvalidInput{what, ": at least one element is needed."};
-  if (n > 10'000'000) throw InvalidInput{what, ": ", n, " elements are more than memory holds. Use at most 10000000."};
+  if (n < 1)
+    throw InvalidInput("body.elements",
+                       {ErrorObject{what}, ": at least one element is needed, but there are ", ErrorValue{n}, "."});
+  if (n > 10'000'000)
+    throw InvalidInput("body.elements", {ErrorObject{what}, ": ", ErrorValue{n},
+                                         " elements do not fit into the memory. Use at most 10000000."});
 }
 
 /// Returns s limited to the bar, 0 ≤ s ≤ length.
@@ -248,7 +262,8 @@ inline void require_elements(Index n, std::string_view what) {
 inline double require_inside(double s, double length, std::string_view what) {
   double const slack = 1e-12 * length;
   if (!(s >= -slack && s <= length + slack))
-    throw InvalidInput{what, ": s = ", s, " lies outside the body, 0 <= s <= ", length, "."};
+    throw InvalidInput("body.outside", {ErrorObject{what}, ": s = ", ErrorValue{s},
+                                        " m lies outside the body, 0 <= s <= ", length, " m."});
   return std::min(std::max(s, 0.0), length);
 }
 

@@ -24,18 +24,21 @@ ReferenceCurve catenary(Vec3 const& end, double length, Vec3 const& down) {
   require_finite(down, "catenary: the direction of the weight");
   require_positive(length, "catenary: the length");
   double const size = down.norm();
-  if (!(size > 0.0)) throw InvalidInput("catenary: the direction of the weight is zero.");
+  if (!(size > 0.0))
+    throw InvalidInput("catenary.weight", {ErrorObject{"catenary"}, ": the direction of the weight is zero."});
   Vec3 const up = -down / size;
   double const h = up.dot(end);
   Vec3 along = end - h * up;
   double const d = along.norm();
   if (!(length > (1.0 + 1e-9) * end.norm()))
-    throw InvalidInput{"catenary: the length of ", length, " m must exceed the distance of the ends, ", end.norm(),
-                       " m. A taut cable starts straight."};
+    throw InvalidInput("catenary.length", {ErrorObject{"catenary"}, ": the length of ", ErrorValue{length},
+                                           " m must exceed the distance of the ends, ", end.norm(),
+                                           " m. Use a straight line for a taut cable."});
   if (!(d > 1e-6 * length))
-    throw InvalidInput{"catenary: the ends are one above the other, ", d,
-                       " m apart along the horizontal. Give them a horizontal distance of at least ", 1e-6 * length,
-                       " m."};
+    throw InvalidInput(
+        "catenary.vertical",
+        {ErrorObject{"catenary"}, ": one end is above the other, ", ErrorValue{d},
+         " m apart along the horizontal. Give them a horizontal distance of at least ", 1e-6 * length, " m."});
   along /= d;
   // Newton's method for sinh x = r x from above, where sinh x − r x is convex: x² < 6 (r − 1), x = ln 2r + ln x + …
   double const r = std::sqrt((length - h) * (length + h)) / d;

@@ -125,7 +125,8 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
   /// \throws InvalidInput outside the bar.
   Point at(double s, double y = 0.0) const {
     double const x = require_inside(s, length_, Theory::name) / l_;
-    if (!std::isfinite(y)) throw InvalidInput{Theory::name, ": y of a point must be finite."};
+    if (!std::isfinite(y))
+      throw InvalidInput("value.not_finite", {ErrorObject{Theory::name}, ": y of a point must be finite."});
     Index const e = std::min(Index(x), elements() - 1);
     return {e, x - double(e), y};
   }
@@ -183,7 +184,10 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
   /// Matrix S of r = S e at `p`, 2×n and constant. The coordinates e begin at `first_column(p)`.
   /// \throws InvalidInput for a point off the axis, because it rotates with the section.
   PointMap position_map(Point const& p) const {
-    if (p.y != 0.0) throw InvalidInput{Theory::name, ": a point off the axis is not linear in the coordinates."};
+    if (p.y != 0.0)
+      throw InvalidInput(
+          "body.point_off_axis",
+          {ErrorObject{Theory::name}, ": the position of a point off the axis is not linear in the coordinates."});
     return Theory::position(p.xi, l_);
   }
   /// Matrix S′ of r′ = S′ e at `p`, 2×n and constant.
@@ -304,7 +308,8 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
 
   /// Coordinates of the nodes on a curve.
   std::vector<double> nodes_on(Placement const& place, ReferenceCurve const& curve) const {
-    if (!curve) throw InvalidInput{Theory::name, ": the curve is empty."};
+    if (!curve)
+      throw InvalidInput("reference_curve.missing", {ErrorObject{Theory::name}, ": the reference curve is empty."});
     std::vector<double> nodes(std::size_t(this->coordinates()));
     double angle = angle_;  // includes full revolutions
     for (Index i = 0; i <= elements(); ++i) {
@@ -329,10 +334,10 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
     for (GaussPoint const& g : gauss<3>) {
       double const off = std::get<0>(this->groups_of(0)).strains(g.xi, l_, rest)[0];
       if (!(std::abs(off) < 0.1))
-        throw InvalidInput{
-            Theory::name, ": element ",
-            e + 1,        " of the curve is strained by ",
-            off,          ". Give the curve by its arc length, from 0 to the bar's length, or take more elements."};
+        throw InvalidInput(
+            "reference_curve.arc_length",
+            {ErrorObject{Theory::name}, ": element ", e + 1, " of the curve is strained by ", ErrorValue{off},
+             ". Parametrise the curve by its arc length, from 0 to the bar's length, or use more elements."});
     }
   }
 

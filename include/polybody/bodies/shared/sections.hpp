@@ -41,7 +41,8 @@ inline double fibre_strain(Vec6 const& strains, double y, double z) {
 template <class = void>
 double fibre_stress(Bar const& bar, Vec6 const& forces, double y, double z) {
   if (!bar.material)
-    throw InvalidInput("fibre_stress: the bar is given by constants; stresses need its section and material.");
+    throw InvalidInput("bar.no_section", {ErrorObject{"fibre_stress"},
+                                          ": the bar has constants only; stresses need its section and material."});
   BarConstants const c = constants(bar);
   return bar.material->young * (forces[0] / c.EA - y * forces[5] / c.EI + z * forces[4] / *c.EI_y);
 }

@@ -68,8 +68,8 @@ class WithSliders : public B {
   /// \throws InvalidInput for a slider that the body does not have.
   Index column_of(Slider slider) const {
     if (slider.index < 0 || slider.index >= sliders())
-      throw InvalidInput{"WithSliders: there is no slider ", slider.index, "; the body has ", sliders(),
-                         ", counted from 0."};
+      throw InvalidInput("slider.index", {ErrorObject{"WithSliders"}, ": slider ", ErrorValue{slider.index},
+                                          " does not exist; the body has ", sliders(), " sliders, counted from 0."});
     return B::coordinates() + slider.index;
   }
 
@@ -145,8 +145,10 @@ class WithSliders : public B {
   Place place(double s) const {
     double const l = B::element_length();
     if (!(s >= -l && s <= B::length() + l) && std::isfinite(s))
-      throw SliderOutOfRange{"WithSliders: a point has gone off the end of its body, to s = ", s, " on a length of ",
-                             B::length(), ". End the run there by the event slider_end_event, or hold the point."};
+      throw SliderOutOfRange("slider.out_of_range",
+                             {ErrorObject{"WithSliders"},
+                              ": a point has passed the end of its body: s = ", ErrorValue{s}, " m, but the length is ",
+                              B::length(), " m. End the run there by the event slider_end_event, or fix the point."});
     Index const last = B::elements() - 1, e = std::isfinite(s) ? std::clamp(Index(s / l), Index(0), last) : 0;
     return {B::first_column(e), B::axis_shape(s / l - double(e))};
   }

@@ -18,7 +18,9 @@ struct Prismatic {
   template <class = void>  // compiled where it is used
   Mat3 triad() const {
     require_unit(axis, "planar::Prismatic: the axis");
-    if (std::abs(axis.z()) > 1e-12) throw InvalidInput("planar::Prismatic: the axis must lie in the plane, z = 0.");
+    if (std::abs(axis.z()) > 1e-12)
+      throw InvalidInput("joint.axis_out_of_plane",
+                         {ErrorObject{"planar::Prismatic"}, ": the axis must lie in the plane, z = 0."});
     return polybody::constraint_functions::columns(axis, {-axis[1], axis[0], 0.0}, {0.0, 0.0, 1.0});
   }
 

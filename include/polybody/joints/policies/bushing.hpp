@@ -12,7 +12,9 @@ template <class = void>  // compiled where it is used
 void require_semidefinite(Mat<double, 6, 6> const& k, std::string const& what) {
   double l[6][6];
   auto const refuse = [&](std::string const& why) {
-    throw InvalidInput{what, " must be finite, symmetric and positive semidefinite (6×6), but ", why, "."};
+    throw InvalidInput(
+        "bushing.matrix",
+        {ErrorObject{what}, " must be finite, symmetric and positive semidefinite (6×6), but ", why, "."});
   };
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j) {
