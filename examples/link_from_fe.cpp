@@ -41,7 +41,7 @@ struct Reference {
 
 Reference read_reference(std::string const& file) {
   std::ifstream in(file);
-  if (!in) throw IoError(file + ": it cannot be opened.");
+  if (!in) throw IoError(file + ": the file cannot be opened.");
   std::vector<double> numbers;
   for (std::string line; std::getline(in, line);) {
     std::istringstream words(line);

@@ -8,7 +8,7 @@
 std::vector<drive::Order> drive::read_orders(std::filesystem::path const& file) {
   using polybody::IoError;
   std::optional<std::string> const text = polybody::detail::content_of(file);
-  if (!text) throw IoError{"The drive '", file.string(), "' cannot be read."};
+  if (!text) throw IoError{"The drive \"", file.string(), "\" cannot be read."};
   std::vector<Order> orders;
   std::istringstream lines(*text);
   std::string line;
@@ -28,9 +28,9 @@ std::vector<drive::Order> drive::read_orders(std::filesystem::path const& file) 
           line,
           "'."};
     if (!orders.empty() && order.t < orders.back().t)
-      throw IoError{"The drive '", file.string(), "', line ", number, ": the times must not go back."};
+      throw IoError{"The drive \"", file.string(), "\", line ", number, ": the times must not go back."};
     orders.push_back(order);
   }
-  if (orders.empty()) throw IoError{"The drive '", file.string(), "' has no line below its head."};
+  if (orders.empty()) throw IoError{"The drive \"", file.string(), "\" has no line below its head."};
   return orders;
 }

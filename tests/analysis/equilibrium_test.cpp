@@ -122,7 +122,7 @@ TEST(Equilibrium, NamesTheBodyThatNothingHolds) {
       s.model.apply(PointForce<>{.force = {0, 1, 0}}, body.at(1.0));
       std::string const text = refused<SingularMatrix>(s.model, s.model.reference_state());
       EXPECT_TRUE(has(text, "body \"loose\"")) << n;
-      EXPECT_TRUE(has(text, "Hold every body")) << n;
+      EXPECT_TRUE(has(text, "Fix every body")) << n;
     }
 }
 

@@ -191,7 +191,7 @@ TEST(Contradiction, InSpeedsIsRefusedByAssembleAndSimulate) {
         message_of<InconsistentInitialConditions>([&] { starts ? void(wheel.run()) : assemble(wheel.model, wheel.x); });
     EXPECT_TRUE(has(message, "joint \"motor\", joint \"brake\""));
     EXPECT_FALSE(has(message, "pin"));
-    EXPECT_TRUE(has(message, "0.5 in their speeds"));
+    EXPECT_TRUE(has(message, "0.5 in their velocities"));
     EXPECT_EQ(wheel.x.q, before.q);
     EXPECT_EQ(wheel.x.v, before.v);
   }

@@ -88,7 +88,7 @@ TEST(NodePatch, RefusesNodesThatTakeNoMoment) {
   EXPECT_TRUE(
       has(refusal([&] { NodePatch(s, {0, 1, 2}, "Link"); }),
           "Link: a patch needs at least three nodes that are not in line, but this patch has 3. Enlarge the patch."));
-  EXPECT_TRUE(has(refusal([&] { NodePatch(s, {}, "Link"); }), "but this one has 0."));
+  EXPECT_TRUE(has(refusal([&] { NodePatch(s, {}, "Link"); }), "but this patch has 0."));
   EXPECT_TRUE(has(refusal([&] { NodePatch(s, {0, 1, 7}, "Link"); }), "Link: node 7 does not exist"));
   EXPECT_TRUE(has(refusal([&] { NodePatch(s, {0, 1, 3}, "Link", {1.0, 1.0}); }), "of 3 nodes has 2 weights."));
   EXPECT_TRUE(has(refusal([&] { NodePatch(s, {0, 1, 3}, "Link", {1.0, 0.0, 1.0}); }), "the weight of a node"));

@@ -299,7 +299,7 @@ TEST_F(FilmFiles, RefuseWhatCannotBeShown) {
                   return std::vector<double>(part.name == "cable" ? part.velocities.size() - 1 : 0);
                 }});
   EXPECT_TRUE(has(refusal([&] { scene.colour({"one too few", "-", {}}); }), "there twice"));
-  EXPECT_TRUE(has(refusal([&] { scene.arrow({0}, Vec3::Zero(), Vec3::Zero()); }), "record one first"));
+  EXPECT_TRUE(has(refusal([&] { scene.arrow({0}, Vec3::Zero(), Vec3::Zero()); }), "Record a frame first"));
   EXPECT_TRUE(has(refusal([&] { scene.record(0.0, {}); }), "there is nothing to draw"));
   EXPECT_TRUE(
       has(refusal([&] { scene.record(0.0, visual.at(x)); }), "of \"cable\" differs from the number of its points"));

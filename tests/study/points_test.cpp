@@ -76,7 +76,7 @@ TEST(StudyPoints, WhatCannotBeMeantIsRefused) {
   Points const points = axis("step", "s", {1.0});
   EXPECT_TRUE(
       has(message_of<StudyUsageError>([&] { points[0]["stop"]; }), "no column \"stop\"; the points have \"step\""));
-  EXPECT_TRUE(has(message_of<StudyUsageError>([&] { points[0].choice("step"); }), "holds numbers"));
+  EXPECT_TRUE(has(message_of<StudyUsageError>([&] { points[0].choice("step"); }), "contains numbers"));
 }
 
 TEST(StudySampling, TheGeneratorIsThatOfTheStandard) {

@@ -216,7 +216,7 @@ template <class Solver>
   VecX b = VecX::Zero(system.rows());
   system.violation_rate(b);
   double const limit = limits.relative * (1.0 + largest_size(x.v));
-  require_consistent_constraints(system, forward, b, limit, "speeds");
+  require_consistent_constraints(system, forward, b, limit, "velocities");
   require_dropped_constraints_closed(system, forward, b, limit);
   system.acceleration_bias(b);
   require_consistent_constraints(system, forward, b, limits.relative * (1.0 + largest_size(b)), "accelerations");
