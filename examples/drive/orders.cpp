@@ -20,13 +20,13 @@ std::vector<drive::Order> drive::read_orders(std::filesystem::path const& file) 
     if (std::sscanf(at, "%lf,%lf,%lf%n", &order.t, &order.left, &order.right, &taken) != 3 || at[taken] != '\0' ||
         !std::isfinite(order.t) || !std::isfinite(order.left) || !std::isfinite(order.right))
       throw IoError{
-          "The drive '",
+          "The drive \"",
           file.string(),
-          "', line ",
+          "\", line ",
           number,
-          ": a time [s] and the speeds of the left and right drive [rad/s] are asked for, with commas, but there is '",
+          ": expected a time [s] and the speeds of the left and right drive [rad/s], with commas, but there is \"",
           line,
-          "'."};
+          "\"."};
     if (!orders.empty() && order.t < orders.back().t)
       throw IoError{"The drive \"", file.string(), "\", line ", number, ": the times must not go back."};
     orders.push_back(order);

@@ -1,4 +1,4 @@
-// refused: AncfLinear knows Spherical, Revolute and Weld
+// refused: AncfLinear supports Spherical, Revolute and Weld
 // Distance does not name its free directions.
 #include <polybody/bodies/ancf/ancf_beam.hpp>
 #include <polybody/joints/distance.hpp>

@@ -1,4 +1,4 @@
-// refused: both markers must be linear in them
+// refused: AncfLinear needs markers that are linear in the coordinates
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/joints/policies/ancf_linear.hpp>
 #include <polybody/joints/spherical.hpp>

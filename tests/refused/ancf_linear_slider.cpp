@@ -1,4 +1,4 @@
-// refused: AncfLinear knows Spherical, Revolute and Weld
+// refused: AncfLinear supports Spherical, Revolute and Weld
 #include <polybody/bodies/ancf/ancf_beam.hpp>
 #include <polybody/joints/policies/ancf_linear.hpp>
 #include <polybody/joints/prismatic.hpp>

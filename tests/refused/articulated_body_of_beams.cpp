@@ -1,4 +1,4 @@
-// refused: joint_coordinates::ArticulatedBody is for models of rigid bodies
+// refused: joint_coordinates::ArticulatedBody needs rigid bodies
 #include <polybody/bodies/ancf/planar_ancf_cable.hpp>
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>

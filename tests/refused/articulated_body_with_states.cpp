@@ -1,4 +1,4 @@
-// refused: joint_coordinates::ArticulatedBody is for models of rigid bodies whose forces have no first-order states
+// refused: joint_coordinates::ArticulatedBody needs rigid bodies and forces without first-order states
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/forces/maxwell_element.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>

@@ -1,4 +1,4 @@
-// refused: A body type stands twice
+// refused: A body type occurs twice
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/system/model.hpp>
 

@@ -1,4 +1,4 @@
-// refused: A bushing stands in for a joint of bodies
+// refused: Bushing does not support this geometry
 // A driving constraint prescribes a motion; it has no free or constrained coordinates.
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/policies/bushing.hpp>

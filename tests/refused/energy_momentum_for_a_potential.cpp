@@ -1,4 +1,4 @@
-// refused: asks a force's potential on secants
+// refused: EnergyMomentum needs the potential of a force for general scalars
 // Its potential accepts doubles only.
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/integrators/energy_momentum.hpp>

@@ -1,4 +1,4 @@
-// refused: A step that conserves energy takes no force groups
+// refused: EnergyMomentum does not support force groups
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/forces/contact.hpp>
 #include <polybody/forces/contact_group.hpp>

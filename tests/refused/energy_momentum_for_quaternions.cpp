@@ -1,4 +1,4 @@
-// refused: whose coordinates form a vector space
+// refused: EnergyMomentum needs bodies with a constant mass matrix
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/integrators/energy_momentum.hpp>
 #include <polybody/run/simulate.hpp>

@@ -1,4 +1,4 @@
-// refused: carries one section along, in the middle
+// refused: stores one section per element, in its middle
 // Rotation and strain are undefined between the nodes and the middle.
 #include <polybody/bodies/lrvf/incremental_interpolation.hpp>
 #include <polybody/bodies/lrvf/lrvf.hpp>

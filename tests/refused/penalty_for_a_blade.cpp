@@ -1,4 +1,4 @@
-// refused: there is no gap that a force could
+// refused: This geometry is nonholonomic
 // A penalty on a velocity would be a damper.
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/knife_edge.hpp>

@@ -1,4 +1,4 @@
-// refused: numbers for another number of rows
+// refused: The number of parameters of this policy must equal
 // A ball joint has three constraint equations.
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/spherical.hpp>

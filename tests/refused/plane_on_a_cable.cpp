@@ -1,4 +1,4 @@
-// refused: This force needs more than the marker tells
+// refused: This force needs a marker with
 #include <polybody/bodies/ancf/ancf_cable.hpp>
 #include <polybody/forces/contact.hpp>
 #include <polybody/system/model.hpp>

@@ -1,4 +1,4 @@
-// refused: A policy that answers rows needs potential
+// refused: A compliant policy needs potential
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/spherical.hpp>
 

@@ -1,4 +1,4 @@
-// refused: not for the stages of a step together
+// refused: not for all stages of a step together
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/integrators/radau.hpp>
 #include <polybody/joints/planar/revolute.hpp>

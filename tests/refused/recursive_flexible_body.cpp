@@ -1,4 +1,4 @@
-// refused: JointCoordinates makes joint coordinates between the ground, rigid bodies and bodies that float on a frame
+// refused: JointCoordinates supports joints between the ground, rigid bodies and floating frames
 #include <polybody/bodies/ancf/ancf_beam.hpp>
 #include <polybody/joints/policies/joint_coordinates.hpp>
 #include <polybody/joints/revolute.hpp>

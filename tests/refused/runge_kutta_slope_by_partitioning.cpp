@@ -1,4 +1,4 @@
-// refused: Dependent coordinates that are chosen in a run are not
+// refused: CoordinatePartitioning is not supported
 #include <polybody/gradients/runge_kutta_linearised_step.hpp>
 #include <polybody/integrators/coordinate_partitioning.hpp>
 

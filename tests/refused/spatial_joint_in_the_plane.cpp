@@ -1,4 +1,4 @@
-// refused: A joint of the plane joins planar bodies
+// refused: A planar joint connects planar bodies
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/joints/spherical.hpp>
 #include <polybody/system/model.hpp>

@@ -1,4 +1,4 @@
-// refused: asks for bodies of constant mass
+// refused: This integrator needs bodies with a constant mass matrix
 #include <polybody/bodies/rigid/rigid_euler_parameters.hpp>
 #include <polybody/integrators/symplectic.hpp>
 #include <polybody/run/simulate.hpp>

@@ -1,4 +1,4 @@
-// refused: The recursive joints of one model are solved for in one way
+// refused: must use the same JointCoordinatesBy
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/joints/planar/prismatic.hpp>
 #include <polybody/joints/planar/revolute.hpp>

@@ -1,4 +1,4 @@
-// refused: A joint of the plane joins planar bodies
+// refused: A planar joint connects planar bodies
 // With the umbrella header a compiler's message may begin with a long list of includes.
 #include <polybody/polybody.hpp>
 

@@ -1,4 +1,4 @@
-// refused: This joint needs more than the marker tells
+// refused: This joint needs a marker with axes
 #include <polybody/bodies/ancf/ancf_cable.hpp>
 #include <polybody/joints/universal.hpp>
 #include <polybody/system/model.hpp>

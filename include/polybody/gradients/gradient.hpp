@@ -251,9 +251,9 @@ GradientResult gradient(Make const& make, std::vector<Parameter> const& paramete
     return detail::AdjointRun<Make, I, detail::AlphaBackwardSweep>(make, parameters, method).run(options);
   } else {
     static_assert(detail::HasStageAdjoints<I>,
-                  "The adjoint is of the generalised-α family (GeneralisedAlpha, HhtAlpha, Newmark, Trapezoidal); with "
-                  "<polybody/gradients/runge_kutta_step_adjoint.hpp> of RungeKutta4 and DormandPrince, with "
-                  "<polybody/gradients/radau_step_adjoint.hpp> of Radau.");
+                  "gradient supports GeneralisedAlpha, HhtAlpha, Newmark and Trapezoidal; with "
+                  "<polybody/gradients/runge_kutta_step_adjoint.hpp> also RungeKutta4 and DormandPrince, with "
+                  "<polybody/gradients/radau_step_adjoint.hpp> also Radau.");
     MethodOf<I> const method = detail::method_of_stages(parameters, integrator);
     if (detail::has_moving_times(make, parameters, make(detail::values_of(parameters)), requires { I::adaptive_step; }))
       throw InvalidInput("gradient.method", {ErrorObject{"gradient"},

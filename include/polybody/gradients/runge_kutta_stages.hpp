@@ -29,10 +29,9 @@ template <class Method>
 class RungeKuttaStages {
   using Stabilisation = decltype(Method::stabilisation);
   static constexpr bool projects = std::same_as<Stabilisation, Projection>;
-  static_assert(
-      projects || std::derived_from<Stabilisation, NoCorrection> || std::same_as<Stabilisation, Baumgarte>,
-      "Steps of Runge–Kutta methods are differentiated with Projection, Baumgarte or NoStabilisation. Dependent "
-      "coordinates that are chosen in a run are not.");
+  static_assert(projects || std::derived_from<Stabilisation, NoCorrection> || std::same_as<Stabilisation, Baumgarte>,
+                "Derivatives of Runge–Kutta steps need Projection, Baumgarte or NoStabilisation. "
+                "CoordinatePartitioning is not supported.");
   using Tableau = typename Method::Tableau;
   static constexpr std::size_t stages = Tableau::stages;
 

@@ -44,9 +44,9 @@ SensitivityResult sensitivities(Make const& make, std::vector<Parameter> const& 
     return detail::ForwardSensitivities<Make, I, detail::AlphaSensitivities>(make, parameters, method).run();
   } else {
     static_assert(detail::HasStageDerivatives<I>,
-                  "Runs are differentiated under the generalised-α family (GeneralisedAlpha, HhtAlpha, Newmark, "
-                  "Trapezoidal); with <polybody/gradients/runge_kutta_linearised_step.hpp> under RungeKutta4 and "
-                  "DormandPrince, with <polybody/gradients/radau_linearised_step.hpp> under Radau.");
+                  "sensitivities supports GeneralisedAlpha, HhtAlpha, Newmark and Trapezoidal; with "
+                  "<polybody/gradients/runge_kutta_linearised_step.hpp> also RungeKutta4 and DormandPrince, with "
+                  "<polybody/gradients/radau_linearised_step.hpp> also Radau.");
     MethodOf<I> const method = detail::method_of_stages(parameters, integrator);
     return detail::ForwardSensitivities<Make, I, detail::StageSensitivities>(make, parameters, method).run();
   }

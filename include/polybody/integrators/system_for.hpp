@@ -37,39 +37,34 @@ System system_for(M const&& model) = delete;
 template <class I, Capabilities more = Capabilities::motion, class M>
 System system_for(M const& model) {
   static_assert(ConstraintCompatible<I, M>,
-                "This explicit integrator has no stabilisation, but joints with the Constraint policy add rows. Use "
-                "it with Projection, such as RungeKutta4<Projection>, or use an implicit integrator.");
+                "This explicit integrator has no stabilisation, but joints with the Constraint policy add constraint "
+                "equations. Use it with Projection, such as RungeKutta4<Projection>, or use an implicit integrator.");
   static_assert(ConstantMassCompatible<I, M>,
-                "This integrator asks for bodies of constant mass matrix. Use RungeKutta4.");
-  static_assert(
-      ArticulatedBodySolvable<M>,
-      "joint_coordinates::ArticulatedBody is for models of rigid bodies whose forces have no first-order states. Take "
-      "joint_coordinates::Augmented.");
-  static_assert(
-      CoupledStageCompatible<I, M>,
-      "joint_coordinates::ArticulatedBody solves for one set of accelerations at a time, not for the stages of a "
-      "step together. Take joint_coordinates::Augmented.");
+                "This integrator needs bodies with a constant mass matrix. Use RungeKutta4.");
+  static_assert(ArticulatedBodySolvable<M>,
+                "joint_coordinates::ArticulatedBody needs rigid bodies and forces without first-order states. Use "
+                "joint_coordinates::Augmented.");
+  static_assert(CoupledStageCompatible<I, M>,
+                "joint_coordinates::ArticulatedBody solves for one set of accelerations at a time, not for all stages "
+                "of a step together. Use joint_coordinates::Augmented.");
   if constexpr (contains(entries_of<I>(), Capabilities::secants)) {
     using CompatibilityReport = SecantSupport<M>;
     static_assert(FullStateModel<M>,
-                  "A step that conserves energy asks for joints that eliminate nothing: Constraint in place of "
-                  "AncfLinear, say.");
+                  "EnergyMomentum does not support policies that eliminate coordinates, such as AncfLinear and "
+                  "JointCoordinates. Use Constraint.");
+    static_assert(CompatibilityReport::bodies,
+                  "EnergyMomentum needs bodies with a constant mass matrix and a mean force over a step: cables, ANCF "
+                  "beams, planar rigid bodies and planar beams. Use GeneralisedAlpha for other bodies.");
     static_assert(
-        CompatibilityReport::bodies,
-        "A step that conserves energy asks for bodies of constant mass whose coordinates form a vector space and "
-        "which give their mean force over a step: cables, ANCF beams, planar rigid bodies and beams. For others use "
-        "GeneralisedAlpha.");
-    static_assert(CompatibilityReport::policies || !FullStateModel<M>,
-                  "A step that conserves energy takes joints with Constraint, Penalty or Bushing. "
-                  "For others use GeneralisedAlpha.");
-    static_assert(CompatibilityReport::positions,
-                  "A step that conserves energy knows rows by the change of their gap, and RollingDisc and KnifeEdge "
-                  "have none. Use GeneralisedAlpha.");
-    static_assert(CompatibilityReport::elements,
-                  "A step that conserves energy takes no force groups. Use GeneralisedAlpha.");
+        CompatibilityReport::policies || !FullStateModel<M>,
+        "EnergyMomentum supports the policies Constraint, Penalty and Bushing. Use GeneralisedAlpha for others.");
+    static_assert(
+        CompatibilityReport::positions,
+        "EnergyMomentum does not support nonholonomic joints (RollingDisc, KnifeEdge). Use GeneralisedAlpha.");
+    static_assert(CompatibilityReport::elements, "EnergyMomentum does not support force groups. Use GeneralisedAlpha.");
     static_assert(CompatibilityReport::potentials,
-                  "A step that conserves energy asks a force's potential on secants: let potential(frames, t) be a "
-                  "template on the scalar of the frames.");
+                  "EnergyMomentum needs the potential of a force for general scalars: declare potential(frames, t) as "
+                  "a template on the scalar of the frames.");
   }
   if constexpr (CompatibleIntegrator<I, M>) return stepped_system(model, with < entries_of<I>() | more >);
 }

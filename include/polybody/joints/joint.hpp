@@ -44,12 +44,12 @@ struct Joint {
   /// What the policy answers: G, or what P measures in its place.
   using Measured = typename decltype(detail::measured_by<G, P>())::type;
   static constexpr int rows = Measured::rows;
-  static_assert(!Policy<P> || !MeasurableGeometry<P, G> || EnforceableGeometry<P, G>,
-                "This policy has numbers for another number of rows than the joint's geometry has.");
   static_assert(
-      !Policy<P> || HolonomicOrConstrained<P, G>,
-      "This geometry holds speeds, not positions (it rolls, or glides on a blade): there is no gap that a force could "
-      "answer. Use Constraint.");
+      !Policy<P> || !MeasurableGeometry<P, G> || EnforceableGeometry<P, G>,
+      "The number of parameters of this policy must equal the number of constraint equations of the joint's geometry.");
+  static_assert(!Policy<P> || HolonomicOrConstrained<P, G>,
+                "This geometry is nonholonomic (it constrains velocities), so that a compliant policy has no violation "
+                "to act on. Use Constraint.");
   G geometry = {};  ///< which motions are stopped
   P policy = {};    ///< how they are stopped
 

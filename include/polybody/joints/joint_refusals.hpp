@@ -62,21 +62,21 @@ struct PolicyRefusal {
   static constexpr int given = members(std::make_integer_sequence<int, 6>{});
 
   static_assert(!(ConstrainingPolicy<P> && CompliantPolicy<P>),
-                "A policy brings rows (adds_constraints) or answers them by a force (multiplier), not both.");
+                "A policy must either add constraint equations (adds_constraints) or replace them by a force "
+                "(multiplier), not both.");
   static_assert(ConstrainingPolicy<P> || given != 0,
-                "A policy has a static constant adds_constraints = true; or it answers rows by a force and has check, "
-                "multiplier, slope and potential.");
+                "A policy needs a static constant adds_constraints = true; or, if it replaces constraint equations by "
+                "a force, check, multiplier, slope and potential.");
   static_assert(ConstrainingPolicy<P> || given == 0 || (given & 1) != 0,
-                "A policy that answers rows needs multiplier<m, T>(g, rate) const, which returns lambda as Vec<T, m>.");
-  static_assert(ConstrainingPolicy<P> || given == 0 || (given & 2) != 0,
-                "A policy that answers rows needs slope<m>(ck, cd, g, rate) const: ck d(lambda)/dg + cd "
-                "d(lambda)/d(rate), m x m.");
+                "A compliant policy needs multiplier<m, T>(g, rate) const, which returns lambda as Vec<T, m>.");
+  static_assert(
+      ConstrainingPolicy<P> || given == 0 || (given & 2) != 0,
+      "A compliant policy needs slope<m>(ck, cd, g, rate) const: ck d(lambda)/dg + cd d(lambda)/d(rate), m x m.");
   static_assert(ConstrainingPolicy<P> || given == 0 || (given & 4) != 0,
-                "A policy that answers rows needs potential<m>(g) const: the energy that it stores.");
+                "A compliant policy needs potential<m>(g) const: the energy that it stores.");
   static_assert(
       ConstrainingPolicy<P> || given != 7 || requires(P const p, std::string const what) { p.check(what); },
-      "A policy that answers rows needs check(what) const, which throws InvalidInput for parameters that "
-      "cannot be meant.");
+      "A compliant policy needs check(what) const, which throws InvalidInput for invalid parameters.");
   static constexpr bool asked = true;
 };
 

@@ -153,10 +153,9 @@ struct RelativeCoordinates {
 /// finds a way to them, however far they go.
 template <JointGeometry G>
 struct ConstrainedCoordinates {
-  static_assert(
-      HasFreeDirections<G>,
-      "A bushing stands in for a joint of bodies that says which of the six relative coordinates it leaves free "
-      "(`free`). This geometry does not; use Constraint or Penalty.");
+  static_assert(HasFreeDirections<G>,
+                "Bushing does not support this geometry, because it does not declare its free directions (static "
+                "member `free`). Use Constraint or Penalty.");
   static constexpr int rows = 6;
   static constexpr MarkerKind needs = MarkerKind::frame;
   static constexpr MarkerKind needs_of_second = polybody::needs_of_second<G>();

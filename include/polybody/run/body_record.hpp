@@ -107,7 +107,8 @@ class LoadRecorderOf {
   template <class B>
   void add(BodyHandle<B> const& handle) {
     static_assert(HasRigidPoints<B>,
-                  "Loads are recorded of rigid bodies; a flexible body knows its own stress (stress/section.hpp).");
+                  "LoadRecorder supports rigid bodies only. For a flexible body use the stress of its sections "
+                  "(stress/section.hpp).");
     Index const body = index_of(system_.layout(), handle);
     if (!records_.empty() && !records_.front().samples.empty())
       throw InvalidInput("record.late", {"LoadRecorder: \"", ErrorObject{handle.name},

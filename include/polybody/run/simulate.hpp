@@ -44,8 +44,8 @@ namespace detail {
 template <class M>
 constexpr void refuse_temporary() {
   static_assert(std::is_void_v<M>,
-                "A run keeps a reference to its model, so a temporary model is refused: put the model into a variable "
-                "that lives longer than the run.");
+                "A run keeps a reference to its model, so that a temporary model is refused. Put the model into a "
+                "variable that outlives the run.");
 }
 }  // namespace detail
 

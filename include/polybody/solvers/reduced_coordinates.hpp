@@ -284,8 +284,7 @@ CoordinatesOf<T> coordinates_of(M const& model) {
   if constexpr (M::eliminates) {
     using Solution = typename M::Solution;
     static_assert(ArticulatedBodySolvable<M>,
-                  "joint_coordinates::ArticulatedBody is for models of rigid bodies whose forces have no first-order "
-                  "states. Take "
+                  "joint_coordinates::ArticulatedBody needs rigid bodies and forces without first-order states. Use "
                   "joint_coordinates::Augmented.");
     if constexpr (std::same_as<T, double>) {
       using Reduced = detail::ReducedCoordinates<Solution>;

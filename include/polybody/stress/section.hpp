@@ -12,7 +12,7 @@ namespace detail {
 template <class M, class B, class F>
 auto ask_section(M const& model, State const& x, Marker<B> const& marker, F&& f) {
   static_assert(HasSections<B>,
-                "Sections are asked of a flexible beam's marker; a rigid body and the ground do not strain.");
+                "This function needs the marker of a flexible beam; a rigid body and the ground do not deform.");
   BodyInState<B> const b = body_in_state(model, x, marker, "section");
   return f(b.body, marker.point, b.q);
 }

@@ -251,27 +251,25 @@ constexpr void require_pairing() {
   using G = typename J::Geometry;
   using P = typename J::PolicyType;
   static_assert(SameWorld<G, A, B>,
-                "A joint of the plane joins planar bodies and a joint of space joins spatial ones; the ground "
+                "A planar joint connects planar bodies, and a spatial joint connects spatial bodies; the ground "
                 "belongs to both.");
   static_assert(
       JointCoordinatesIfRequired<P, G>,
       "JointCoordinates needs a joint whose motion has coordinates, such as Revolute, Prismatic, Spherical or "
       "Universal; a Distance or a Gear has none. Use Constraint for it.");
-  static_assert(
-      !JointCoordinatePolicy<P> || (EliminableBody<P, A> && EliminableBody<P, B>),
-      "JointCoordinates makes joint coordinates between the ground, rigid bodies and bodies that float on a frame: "
-      "Rigid<>, Ffr, planar::Rigid, planar::Ffr; JointCoordinatesBy<ArticulatedBody> between rigid ones only. Use "
-      "another policy for joints of other bodies.");
+  static_assert(!JointCoordinatePolicy<P> || (EliminableBody<P, A> && EliminableBody<P, B>),
+                "JointCoordinates supports joints between the ground, rigid bodies and floating frames: Rigid<>, Ffr, "
+                "planar::Rigid, planar::Ffr; JointCoordinatesBy<ArticulatedBody> supports rigid bodies only. Use "
+                "another policy for other bodies.");
   static_assert(!LinearPolicy<P> || (EliminableBody<P, A> && EliminableBody<P, B>),
-                "AncfLinear eliminates coordinates, so both markers must be linear in them: ANCF bodies and the ground "
-                "are, Rigid, Ffr and Lrvf in space are not. Use Constraint there.");
+                "AncfLinear needs markers that are linear in the coordinates, such as those of ANCF bodies and the "
+                "ground; Rigid, Ffr and spatial Lrvf are not. Use Constraint there.");
   static_assert(LinearIfRequired<P, G>,
-                "AncfLinear knows Spherical, Revolute and Weld; other joints are not linear in the coordinates.");
+                "AncfLinear supports Spherical, Revolute and Weld; other joints are not linear in the coordinates.");
   static_assert(
       SufficientFirstMarker<J, A> && SufficientSecondMarker<J, B>,
-      "This joint needs more than the marker tells (a full frame, say, of a body that only "
-      "publishes a point or a tangent). Use a joint that needs less, such as Spherical; a cable is clamped by a "
-      "Revolute about its tangent, with the cable's marker second.");
+      "This joint needs a marker with axes, but this body provides only a point or a tangent. Use a joint that needs "
+      "less, such as Spherical. A cable is clamped by a Revolute about its tangent, with the cable's marker second.");
 }
 
 }  // namespace polybody::detail

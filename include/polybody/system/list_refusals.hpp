@@ -15,7 +15,7 @@ using Out = std::span<double>;
 /// speeds, spans of a scalar T where the member is a template, e an element, p a `Point`.
 template <class B>
 struct BodyRefusal {
-  static_assert(requires { typename B::Point; }, "A body needs a type Point: a place on it where a marker may stand.");
+  static_assert(requires { typename B::Point; }, "A body needs a type Point: a position on it for a marker.");
   static_assert(
       requires {
         { B::world } -> std::convertible_to<World>;
@@ -92,7 +92,8 @@ template <class F>
 struct ForceRefusal {
   static_assert(
       requires { requires F::markers >= 1; },
-      "A force element needs a static constant: int markers, at least 1; a group of them, what ForceGroup asks.");
+      "A force element needs a static constant: int markers, at least 1; a force group needs the members of "
+      "ForceGroup.");
   static_assert(
       requires {
         { F::needs } -> std::convertible_to<MarkerKind>;
@@ -107,7 +108,7 @@ struct ForceRefusal {
                 "states> z, double t) const and rates<T> of the same arguments, which returns std::array<T, states>.");
   static_assert(
       requires(F const f, std::string name) { f.check(name); },
-      "A force element needs check(name) const, which throws InvalidInput for parameters that cannot be meant.");
+      "A force element needs check(name) const, which throws InvalidInput for invalid parameters.");
 };
 
 /// No type of a list is const.
@@ -116,14 +117,15 @@ inline constexpr bool no_const = (!std::is_const_v<Ts> && ...);
 
 template <class List>
 struct ListRefusal {
-  static_assert(sizeof(List) == 0, "A model is named by lists: Model<Bodies<...>, Joints<...>, Forces<...>>.");
+  static_assert(sizeof(List) == 0, "A model needs lists of types: Model<Bodies<...>, Joints<...>, Forces<...>>.");
 };
 template <class... Bs>
 struct ListRefusal<Bodies<Bs...>> {
   static_assert(no_const<Bs...>,
                 "A type in a model's Bodies is const. decltype of an object that is declared `auto const` is const; "
                 "declare the object by `auto`.");
-  static_assert(Distinct<Bs...>, "A body type stands twice in a model's Bodies; once serves any number of bodies.");
+  static_assert(Distinct<Bs...>,
+                "A body type occurs twice in a model's Bodies. List it once; it is used for any number of bodies.");
   static constexpr bool asked = ((Body<Bs> || sizeof(BodyRefusal<Bs>) > 0) && ...);
 };
 template <class... Js>
@@ -131,7 +133,8 @@ struct ListRefusal<Joints<Js...>> {
   static_assert(no_const<Js...>,
                 "A type in a model's Joints is const. decltype of an object that is declared `auto const` is const; "
                 "declare the object by `auto`.");
-  static_assert(Distinct<Js...>, "A joint type stands twice in a model's Joints; once serves any number of joints.");
+  static_assert(Distinct<Js...>,
+                "A joint type occurs twice in a model's Joints. List it once; it is used for any number of joints.");
   static constexpr bool asked = true;
 };
 template <class... Fs>
@@ -139,7 +142,8 @@ struct ListRefusal<Forces<Fs...>> {
   static_assert(no_const<Fs...>,
                 "A type in a model's Forces is const. decltype of an object that is declared `auto const` is const; "
                 "declare the object by `auto`.");
-  static_assert(Distinct<Fs...>, "A force type stands twice in a model's Forces; once serves any number of forces.");
+  static_assert(Distinct<Fs...>,
+                "A force type occurs twice in a model's Forces. List it once; it is used for any number of forces.");
   static constexpr bool asked = ((AppliedForce<Fs> || sizeof(ForceRefusal<Fs>) > 0) && ...);
 };
 

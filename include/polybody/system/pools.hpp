@@ -94,7 +94,7 @@ struct SolutionAmong<P, Ps...> {
   static_assert(((!JointCoordinatePolicy<Ps> || std::is_same_v<typename SolutionAmong<Ps>::Type, void> ||
                   std::is_same_v<typename SolutionAmong<Ps>::Type, Type>) &&
                  ...),
-                "The recursive joints of one model are solved for in one way.");
+                "All joints with joint coordinates of a model must use the same JointCoordinatesBy<...> option.");
 };
 template <class... Ps>
 using SolutionOf = typename SolutionAmong<Ps...>::Type;

@@ -71,10 +71,8 @@ inline double pulled(MarkerSecant const& m, double const* by_frame, Index column
 
 template <class M>
 class TypedSecants {
-  static_assert(
-      HasSecants<M>,
-      "This model does not offer what a step that conserves energy asks for: system_for<EnergyMomentum>(model) "
-      "says what it is.");
+  static_assert(HasSecants<M>,
+                "This model does not support EnergyMomentum. system_for<EnergyMomentum>(model) reports the reason.");
 
  public:
   static constexpr SecantOperations entries() {

@@ -23,10 +23,9 @@ namespace polybody {
 /// [Meshchersky 1897; Goldstein, Poole & Safko 2002, ch. 1]. Energies are those of the present mass.
 template <Body B>
 class VariableMass : public B {
-  static_assert(
-      HasRigidLayout<B>,
-      "Only rigid bodies whose coordinates are those of their centre of mass change: Rigid<> and planar::Rigid. A body "
-      "of your own may say at_time(t) itself.");
+  static_assert(HasRigidLayout<B>,
+                "VariableMass needs a rigid body with the coordinates of its centre of mass: Rigid<> or planar::Rigid. "
+                "A user-defined body can define at_time(t) instead.");
 
  public:
   static constexpr bool constant_mass = false;

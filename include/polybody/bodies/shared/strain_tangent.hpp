@@ -36,8 +36,9 @@ void tangent_of(std::tuple<Groups...> const& groups, Vec<T, n> const& x, Vec<T, 
                 Mat<T, n, n>& k) {
   using P = typename std::tuple_element_t<0, std::tuple<Groups...>>::P;
   constexpr int d = P::d, difference = std::max({Groups::P::difference...}), first = difference > 0 ? 1 : 0;
-  static_assert(((Groups::P::difference == difference || !Groups::P::reads(0)) && ...),
-                "Of the groups of an element one reads places and one their difference.");
+  static_assert(
+      ((Groups::P::difference == difference || !Groups::P::reads(0)) && ...),
+      "An element may have at most two strain groups: one of nodal positions and one of position differences.");
   bool const symmetric = std::apply([](auto const&... group) { return !(group.damped() || ...); }, groups);
   std::tuple<typename Groups::template Prepared<T>...> prepared;
   auto const for_each = [&]<std::size_t... I>(std::index_sequence<I...>, auto&& f) {

@@ -42,10 +42,9 @@ struct Slider {
 /// has the event.
 template <Body B>
 class WithSliders : public B {
-  static_assert(
-      SmoothAxis<B>,
-      "The axis of this body has corners at its nodes, where a sliding point would be struck. Use a body of cubic "
-      "elements: AncfCable, AncfBeam or planar::AncfCable.");
+  static_assert(SmoothAxis<B>,
+                "WithSliders needs a body with a smooth (C1) axis: AncfCable, AncfBeam or planar::AncfCable. The axis "
+                "of this body has kinks at its nodes.");
 
  public:
   static constexpr int point_columns = Eigen::Dynamic;
