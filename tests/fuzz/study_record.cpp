@@ -26,7 +26,7 @@ std::string lines_of(detail::RecordContent const& content) {
 
 void check(std::string_view bytes) {
   auto const content = accepted([&] { return detail::record_content(kind(), bytes); },
-                                [](std::string const& message) { return has(message, "file 'fuzz.study', line "); });
+                                [](std::string const& message) { return has(message, "file \"fuzz.study\", line "); });
   if (!content) return;
   require(content->outcomes.size() == 5, "there is a place for each point");
   require(content->whole <= bytes.size(), "the whole part is not longer than all");
