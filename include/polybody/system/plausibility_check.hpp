@@ -265,7 +265,7 @@ Unexplained PlausibilityCheck::check_energy(System& system, StepResult const& en
         "step.energy_gain",
         {"The step to t = ", ErrorTime{end.t}, " s ends with an energy gain of ", ErrorValue{unexplained},
          " J since the last start that no work explains; gravity, loads, drives and the energy of the start give ",
-         account_.scale, " J. ", ErrorObject{system.name_of(fastest)},
+         account_.scale, " J; ", ErrorObject{system.name_of(fastest)},
          " moves fastest. The integration diverges. Take a smaller step or softer joints, or raise limits.energy of "
          "the "
          "run."});
