@@ -156,7 +156,7 @@ TEST(Filters, RefuseWhatTheyCannotUse) {
   std::vector<double> const times{0.0, 0.1, 0.4}, values{0.0, 0.0, 0.0};
   EXPECT_TRUE(has(refusal([&] { resampled(times, values, 0.1); }), "between 0.1 s and 0.4 s"));
   EXPECT_TRUE(has(refusal([&] { resampled(times, values, 0.0); }), "the step"));
-  EXPECT_TRUE(has(refusal([&] { amplitude_spectrum(times, values); }), "too few"));
+  EXPECT_TRUE(has(refusal([&] { amplitude_spectrum(times, values); }), "samples are needed"));
 }
 
 }  // namespace filter_test

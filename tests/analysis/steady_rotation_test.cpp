@@ -207,7 +207,8 @@ TEST(SteadyRotation, RefusesWhatIsNotSteady) {
   EXPECT_TRUE(has(refusal([&] { linearise(level.model, start, about_z(6.9)); }),
                   "joint \"drive\" does not rotate with the model"));
   SteadyRotation const tilted{.angular_velocity = {0, 7, 0}};
-  EXPECT_TRUE(has(refusal([&] { relative_equilibrium(level.model, start, tilted); }), "joint \"shaft\" does not turn"));
+  EXPECT_TRUE(
+      has(refusal([&] { relative_equilibrium(level.model, start, tilted); }), "joint \"shaft\" does not rotate"));
   EXPECT_EQ(start.q, level.x.q);
   State const moving = rotating_state(level.model, start, right);
   EXPECT_TRUE(has(refusal([&] { damped_modes(level.model, moving); }), "linearise(model, x, SteadyRotation{...})"));

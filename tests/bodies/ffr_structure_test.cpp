@@ -190,7 +190,7 @@ TEST(Ffr, RefusesWhatCannotBeMeant) {
   EXPECT_TRUE(has(refusal([&] { fixed_interface_modes(s, 25); }), "25 modes"));
   EXPECT_TRUE(has(refusal([&] { free_interface_modes(s, 25); }), "25 modes"));
   EXPECT_TRUE(has(refusal([&] { craig_bampton(s, {0, 7}, 2); }), "node 7 does not exist"));
-  EXPECT_TRUE(has(refusal([&] { craig_bampton(s, {0, 0}, 2); }), "each once"));
+  EXPECT_TRUE(has(refusal([&] { craig_bampton(s, {0, 0}, 2); }), "each listed once"));
   EXPECT_TRUE(has(refusal([&] { nodal_coordinates(s, ReferenceConditions::clamped(9)); }), "node 9 does not exist"));
   EXPECT_TRUE(has(refusal([&] { nodal_coordinates(s, ReferenceConditions().fix(0, 7)); }), "component 7"));
   EXPECT_TRUE(has(refusal([&] { nodal_coordinates(s, ReferenceConditions().fix(0, 0)); }), "not positive definite"));

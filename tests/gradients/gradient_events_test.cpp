@@ -211,7 +211,7 @@ TEST(GradientThroughEvents, RefusesWhatHasNoDerivative) {
   EXPECT_TRUE(
       has(said([&](RunOptions& o, double p) { o.events = {event("end", [p](double t) { return t - p - 0.3; })}; }),
           "an event coincides with a breakpoint or with the end of the run at t ="));
-  EXPECT_TRUE(has(said([](RunOptions& o, double p) { o.breakpoints = {p, 0.5}; }), "gradient: two corners"));
+  EXPECT_TRUE(has(said([](RunOptions& o, double p) { o.breakpoints = {p, 0.5}; }), "gradient: two breakpoints"));
   EXPECT_TRUE(has(said([](RunOptions& o, double p) { o.breakpoints = {p, 0.5003}; }),
                   "change their order within the difference step of \"p [s]\""));
   EXPECT_TRUE(has(said([](RunOptions& o, double p) {

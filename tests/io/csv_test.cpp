@@ -475,7 +475,7 @@ TEST(CsvTable, ColumnMustBeThereOnce) {
   Table const table{{"t", "x", "x"}, {{1, 2, 3}, {4, 5, 6}}};
   EXPECT_EQ(table.column("t"), (std::vector<double>{1, 4}));
   EXPECT_TRUE(has(message_of<InvalidInput>([&] { table.column("y"); }), "no column \"y\"; the table has \"t\", \"x\""));
-  EXPECT_TRUE(has(message_of<InvalidInput>([&] { table.column("x"); }), "more than one"));
+  EXPECT_TRUE(has(message_of<InvalidInput>([&] { table.column("x"); }), "duplicate column"));
   EXPECT_TRUE(has(message_of<InvalidInput>([] { Table{}.column("t"); }), "has none"));
 }
 

@@ -265,8 +265,8 @@ TEST_F(FilmFiles, NameTheBodiesWithoutAShape) {
 TEST_F(FilmFiles, RefuseAViewerThatIsNotThere) {
   EXPECT_TRUE(
       has(message_of<IoError>([] { Film({.viewer = {}}); }), "the viewer is missing. Build polybody's CMake target"));
-  EXPECT_TRUE(
-      has(message_of<IoError>([&] { Film({.viewer = folder / "none.html"}); }), "none.html'. Build polybody's"));
+  EXPECT_TRUE(has(message_of<IoError>([&] { Film({.viewer = folder / "none.html"}); }),
+                  "none.html\" does not exist. Build polybody's"));
   EXPECT_TRUE(has(message_of<IoError>([&] { Film({.viewer = folder}); }), "does not exist"));
   std::ofstream(folder / "page.html") << "<p>";
   EXPECT_TRUE(has(message_of<IoError>([&] { Film({.viewer = folder / "page.html"}); }), "is not a viewer of films"));
@@ -298,7 +298,7 @@ TEST_F(FilmFiles, RefuseWhatCannotBeShown) {
   scene.colour({"one too few", "-", [](VisualPart const& part) {
                   return std::vector<double>(part.name == "cable" ? part.velocities.size() - 1 : 0);
                 }});
-  EXPECT_TRUE(has(refusal([&] { scene.colour({"one too few", "-", {}}); }), "there twice"));
+  EXPECT_TRUE(has(refusal([&] { scene.colour({"one too few", "-", {}}); }), "occurs twice"));
   EXPECT_TRUE(has(refusal([&] { scene.arrow({0}, Vec3::Zero(), Vec3::Zero()); }), "Record a frame first"));
   EXPECT_TRUE(has(refusal([&] { scene.record(0.0, {}); }), "there is nothing to draw"));
   EXPECT_TRUE(

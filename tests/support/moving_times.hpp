@@ -331,8 +331,8 @@ void expect_refusals(I const& integrator) {
   auto const refused = [&](auto const& make) {
     return refusal([&] { sensitivities(make, {{"p [s]", 0.5}}, integrator); });
   };
-  EXPECT_TRUE(
-      has(refused(scenario_with([](RunOptions& o, double p) { o.breakpoints = {p, 0.5}; })), "part with \"p [s]\""));
+  EXPECT_TRUE(has(refused(scenario_with([](RunOptions& o, double p) { o.breakpoints = {p, 0.5}; })),
+                  "separate with \"p [s]\""));
   EXPECT_TRUE(has(refused(scenario_with([](RunOptions& o, double p) { o.breakpoints = {p, 0.5003}; })),
                   "change their order within the difference step of \"p [s]\""));
   EXPECT_TRUE(has(refused(scenario_with([](RunOptions& o, double p) {

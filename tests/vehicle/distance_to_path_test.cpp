@@ -55,7 +55,7 @@ TEST(DistanceToPath, TakesCornersThatCoincide) {
 }
 
 TEST(DistanceToPath, RefusesAPathWithoutCorners) {
-  EXPECT_TRUE(has(refusal([] { distance_to_path(Vec2(0.0, 0.0), std::span<Vec2 const>()); }), "path without corners"));
+  EXPECT_TRUE(has(refusal([] { distance_to_path(Vec2(0.0, 0.0), std::span<Vec2 const>()); }), "The path has no point"));
 }
 
 }  // namespace distance_to_path_test
