@@ -25,13 +25,10 @@ void require_unit_axes(B const& body, Frame<double> const& f, Name const& name) 
   double squared = 0.0;
   for (Index i = 0; i < 3; ++i) squared += f.A(i, 0) * f.A(i, 0);
   if (std::abs(squared - 1.0) <= 0.04 || body.coordinates() == body.velocities()) return;
-  throw InvalidInput{"frame: the quaternion of body \"",
-                     name(),
-                     "\" has the norm ",
-                     std::pow(squared, 0.25),
-                     ", so its axes have the length ",
-                     std::sqrt(squared),
-                     ". The norm must be one within 0.01. Normalise the quaternion in the state."};
+  throw InvalidInput("state.quaternion",
+                     {"frame: the quaternion of body \"", ErrorObject{name()}, "\" has the norm ",
+                      ErrorValue{std::pow(squared, 0.25)}, ", so that its axes have the length ", std::sqrt(squared),
+                      ". The norm must be one within 0.01. Normalise the quaternion in the state."});
 }
 }  // namespace detail
 
