@@ -198,7 +198,7 @@ TEST(BucklingModes, RefuseStatesAndModelsWithoutAnAnswer) {
   };
   Column const column(2, Ends::clamped_free, {-1, 0, 0}), unloaded(2, Ends::clamped_free, {0, 0, 0}),
       follower(4, Ends::clamped_free, {-1, 0, 0}, 0.0, LoadAxes::marker);
-  EXPECT_TRUE(has(told(column, {.count = 0}), "count of modes must be at least 1, but is 0"));
+  EXPECT_TRUE(has(told(column, {.count = 0}), "number of modes must be at least 1, but is 0"));
   EXPECT_TRUE(has(told(column, {.load_factor = 1.0}), "not an equilibrium at load factor 1"));
   EXPECT_TRUE(has(told(unloaded), "the model has no load"));
   EXPECT_TRUE(has(told(follower), "not symmetric"));

@@ -119,14 +119,14 @@ TEST(ModePictures, RefuseWhatCannotBeDrawn) {
   fs::path const stem = b.folder / "none";
   EXPECT_TRUE(has(refusal([&] { write_modes(b.visual, b.x, MatX::Zero(6, 1), stem); }),
                   "a mode has 6 velocities, but the state has 12"));
-  EXPECT_TRUE(has(refusal([&] { write_modes(b.visual, b.x, MatX(12, 0), stem); }), "there is no mode"));
+  EXPECT_TRUE(has(refusal([&] { write_modes(b.visual, b.x, MatX(12, 0), stem); }), "the shapes have no mode"));
   EXPECT_TRUE(has(refusal([&] { write_modes(b.visual, b.x, b.shapes, stem, {.size = 0.0}); }), "size"));
-  EXPECT_TRUE(has(refusal([&] { write_modes(b.visual, b.x, b.shapes, stem, {.look_from = {0, 0, 2}}); }),
-                  "not along each other"));
+  EXPECT_TRUE(
+      has(refusal([&] { write_modes(b.visual, b.x, b.shapes, stem, {.look_from = {0, 0, 2}}); }), "not parallel"));
   Visual empty(b.model);
-  EXPECT_TRUE(has(refusal([&] { write_modes(empty, b.x, b.shapes, stem); }), "nothing to be seen"));
+  EXPECT_TRUE(has(refusal([&] { write_modes(empty, b.x, b.shapes, stem); }), "the Visual has no shape"));
   FilmScene scene("mode", 30.0);
-  EXPECT_TRUE(has(refusal([&] { record_mode(scene, b.visual, b.x, b.shapes, 2); }), "there is no mode 2"));
+  EXPECT_TRUE(has(refusal([&] { record_mode(scene, b.visual, b.x, b.shapes, 2); }), "mode 2 does not exist"));
   EXPECT_FALSE(fs::exists(stem.string() + ".dat"));
 }
 

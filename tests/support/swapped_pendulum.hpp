@@ -44,8 +44,7 @@ concept Connectable =
 
 /// Implicit integrators use the step of the README. Explicit ones use a step below their stability limit.
 template <class I>
-concept implicit =
-    OneOf<I, GeneralisedAlpha, HhtAlpha, Newmark, Trapezoidal, Radau, EnergyMomentum, EnergyDecaying>;
+concept implicit = OneOf<I, GeneralisedAlpha, HhtAlpha, Newmark, Trapezoidal, Radau, EnergyMomentum, EnergyDecaying>;
 
 /// Number of combinations of a body.
 struct Count {
@@ -73,7 +72,8 @@ void run_program(J const& hinge, I const& stepper, double step) {
   // The centre of mass falls by at most ½ g t²; the error of the energy is below the work of gravity.
   double const fall = 0.5 * 9.81 * x.t * x.t, weight = 9.81 * 7800.0 * std::numbers::pi * 1e-4;
   EXPECT_LE(std::abs(energy(model, x).total() - before), 0.5 * weight * fall);
-  EXPECT_LE(constraint_violation(model, x, pin).norm(), (ConstrainingPolicy<typename J::PolicyType> ? 0.1 : 4.0) * fall);
+  EXPECT_LE(constraint_violation(model, x, pin).norm(),
+            (ConstrainingPolicy<typename J::PolicyType> ? 0.1 : 4.0) * fall);
 }
 
 /// Runs the program of body `Rod` with geometry `pin` under each policy and integrator that can be combined, and counts

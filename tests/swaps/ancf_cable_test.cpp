@@ -1,5 +1,5 @@
-// README.md's program with an ANCF cable, under each policy and integrator. The cable has no axis across its tangent, so
-// the geometry is `Spherical`.
+// README.md's program with an ANCF cable, under each policy and integrator. The cable has no axis across its tangent,
+// so the geometry is `Spherical`.
 #include "support/refusal.hpp"
 #include "support/swapped_pendulum.hpp"
 

@@ -1,5 +1,5 @@
-// The arm and the cantilever of Chapter 2 (examples/chapter2.hpp) for each planar body and integrator; the pin of the arm
-// is ideal or stiff.
+// The arm and the cantilever of Chapter 2 (examples/chapter2.hpp) for each planar body and integrator; the pin of the
+// arm is ideal or stiff.
 #include <polybody/bodies/ffr/planar_ffr.hpp>
 
 #include "../examples/chapter2.hpp"

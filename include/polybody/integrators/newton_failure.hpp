@@ -71,10 +71,9 @@ template <class = void>
                                               " is not finite", " at t = ", ErrorTime{t}, " s", whose_force(system),
                                               ". Check the forces applied to it, or take a smaller step."});
   throw NewtonConvergenceFailure(
-      "newton.not_converged",
-      {ErrorObject{integrator}, ": Newton's method did not converge", " at t = ", ErrorTime{t}, " s after ",
-       report.iterations, " iterations (contraction ", report.theta, "). Take a smaller step",
-       remedy_of_friction(system), "; the state is unchanged."});
+      "newton.not_converged", {ErrorObject{integrator}, ": Newton's method did not converge", " at t = ", ErrorTime{t},
+                               " s after ", report.iterations, " iterations (contraction ", report.theta,
+                               "). Take a smaller step", remedy_of_friction(system), "; the state is unchanged."});
 }
 
 }  // namespace polybody::detail

@@ -30,7 +30,8 @@ void require_picture(ModePictureOptions const& options) {
   require_positive(options.size, "mode pictures: the size of the displacements");
   double const across = options.look_from.cross(options.up).norm();
   if (!(across > 1e-6 * options.look_from.norm() * options.up.norm()))
-    throw InvalidInput{"mode pictures: look_from and up must be finite and not along each other."};
+    throw InvalidInput("film.camera",
+                       {ErrorObject{"mode pictures"}, ": look_from and up must be finite and not parallel."});
 }
 
 /// Parts of a model in state x and their displacements in one mode.
@@ -40,8 +41,9 @@ class ModeShape {
   /// velocities of the points at v = shape are the linear displacements.
   ModeShape(Visual& visual, State const& x, MatX::ConstColXpr const& shape, double size) {
     if (shape.size() != x.v.size())
-      throw InvalidInput{"mode pictures: a mode has ", shape.size(), " velocities, but the state has ", x.v.size(),
-                         ". Give the state of the modes."};
+      throw InvalidInput("mode.size",
+                         {ErrorObject{"mode pictures"}, ": a mode has ", ErrorValue{shape.size()},
+                          " velocities, but the state has ", x.v.size(), ". Give the state of the modes."});
     State y = x;
     y.v = shape;
     parts_ = visual.at(y);
@@ -54,7 +56,8 @@ class ModeShape {
         largest = std::max(largest, part.velocities[i].norm());
       }
     if (parts_.empty())
-      throw InvalidInput("mode pictures: there is nothing to be seen. Add shapes to the Visual by sweep or attach.");
+      throw InvalidInput("visual.empty",
+                         {ErrorObject{"mode pictures"}, ": the Visual has no shape. Add shapes by sweep or attach."});
     scale_ = largest > 0.0 ? size * (high - low).norm() / largest : 0.0;
   }
   std::vector<VisualPart> const& parts() const { return parts_; }
@@ -196,7 +199,8 @@ template <class = void>
 DrawResult write_modes(Visual& visual, State const& x, MatX const& shapes, std::filesystem::path const& stem,
                        ModePictureOptions const& options = {}) {
   detail::require_picture<>(options);
-  if (shapes.cols() == 0) throw InvalidInput("mode pictures: there is no mode.");
+  if (shapes.cols() == 0)
+    throw InvalidInput("mode.number", {ErrorObject{"mode pictures"}, ": the shapes have no mode."});
   std::vector<Figure> panels;
   for (Index k = 0; k < shapes.cols(); ++k)
     panels.push_back(detail::mode_figure<>(detail::ModeShape(visual, x, shapes.col(k), options.size), options,
@@ -213,7 +217,8 @@ template <class = void>
 void record_mode(FilmScene& scene, Visual& visual, State const& x, MatX const& shapes, Index mode, double size = 0.1) {
   detail::require_picture<>({.size = size});
   if (mode < 0 || mode >= shapes.cols())
-    throw InvalidInput{"record_mode: there is no mode ", mode, "; the shapes have ", shapes.cols(), "."};
+    throw InvalidInput("mode.number", {ErrorObject{"record_mode"}, ": mode ", ErrorValue{mode},
+                                       " does not exist; the shapes have ", shapes.cols(), " modes."});
   detail::ModeShape const displaced(visual, x, shapes.col(mode), size);
   for (int k = 0; k <= 60; ++k)
     if (double const t = k / 30.0; scene.due(t)) scene.record(t, displaced.displaced(std::sin(std::numbers::pi * t)));

@@ -50,9 +50,10 @@ template <class = void>
     for (double const w : action.w) scale = std::max(scale, std::abs(w));
   Index const bodies = system.layout().body_velocities();
   if (!(largest_size(VecX(r.head(bodies))) > 1e-6 * scale) || scale == 0.0) return;
-  throw InvalidInput{"The state at t = ", x.t,
-                     " s has no accelerations: all are zero, but its forces are not in equilibrium. Call "
-                     "compute_accelerations(model, x), or take a state of simulate."};
+  throw InvalidInput("state.accelerations",
+                     {"The state at t = ", ErrorTime{x.t},
+                      " s has no accelerations: all are zero, but its forces are not in equilibrium. Call "
+                      "compute_accelerations(model, x), or take a state of simulate."});
 }
 
 /// Twist rate J v̇ + bias of a point (6), world axes.

@@ -59,10 +59,10 @@ template <class J>
 [[gnu::cold]] int axis_of_joint(JointLayout const& place, JointMotion::Kind kind) {
   int const axis = axis_of_motion(static_cast<J const*>(place.joint)->geometry, kind);
   if (axis >= 0) return axis;
-  throw InvalidInput{"\"", place.name, "\" does not permit exactly one ",
-                     kind == JointMotion::Kind::turn
-                         ? "rotation. Read the rotation matrices by frame(model, x, marker)."
-                         : "translation. Read the points by position(model, x, marker)."};
+  throw InvalidInput("joint.no_angle", {"\"", ErrorObject{place.name}, "\" does not permit exactly one ",
+                                        kind == JointMotion::Kind::turn
+                                            ? "rotation. Read the rotation matrices by frame(model, x, marker)."
+                                            : "translation. Read the points by position(model, x, marker)."});
 }
 
 /// Relative angle about axis k of marker a: θ = atan2(a_{k+2}·b_{k+1}, a_{k+1}·b_{k+1}) in (−π, π], θ̇ = a_k·(ω_b −
@@ -73,9 +73,10 @@ JointValue turn_of(System const& system, Index joint, int k) {
   JointLayout const& place = system.layout().joints[std::size_t(joint)];
   for (Index const marker : {place.a, place.b})
     if (system.layout().observes[std::size_t(marker)] != MarkerKind::frame)
-      throw InvalidInput{"\"", place.name,
-                         "\" has no angle: one of its markers provides no axes across the joint's axis (a cable, or a "
-                         "point that slides along a body). Read a direction by frame(model, x, marker)."};
+      throw InvalidInput("joint.no_angle",
+                         {"\"", ErrorObject{place.name},
+                          "\" has no angle: one of its markers provides no axes across the joint's axis (a cable, or a "
+                          "point that slides along a body). Read a direction by frame(model, x, marker)."});
   Frame<double> const &a = system.data().markers[std::size_t(place.a)].frame,
                       &b = system.data().markers[std::size_t(place.b)].frame;
   Vec3 const first = b.A.col((k + 1) % 3);
@@ -209,8 +210,9 @@ class TurnCounterOf {
   double record(State const& x) {
     require_usable(system_, x);
     if (started_ && !(x.t >= t_))
-      throw InvalidInput{"TurnCounter: the state at t = ", x.t, " s is earlier than the last one at t = ", t_,
-                         " s. Call start() for another run."};
+      throw InvalidInput("turn_counter.time_order",
+                         {ErrorObject{"TurnCounter"}, ": the state at t = ", ErrorTime{x.t},
+                          " s is earlier than the last one at t = ", t_, " s. Call start() for another run."});
     system_.evaluate(x.q, x.v, x.t);
     detail::JointValue const now = detail::turn_of(system_, joint_, axis_);
     double const turn = 2.0 * std::numbers::pi;

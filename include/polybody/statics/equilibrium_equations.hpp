@@ -196,10 +196,10 @@ struct EquilibriumPath {
                                                     ". Fix every body, or pass a limit point by equilibrium_path."});
     if (result == NewtonResult::not_finite)
       throw NonFiniteValue("equilibrium.not_finite", {ErrorObject{"equilibrium"}, ": a force is not finite", at, "."});
-    throw NewtonConvergenceFailure("equilibrium.not_converged",
-                                   {ErrorObject{"equilibrium"}, ": Newton's method did not converge", at,
-                                    remedy_of_elements(system.layout(), trial.q),
-                                    ". Use more load steps, or start closer to the solution."});
+    throw NewtonConvergenceFailure(
+        "equilibrium.not_converged",
+        {ErrorObject{"equilibrium"}, ": Newton's method did not converge", at,
+         remedy_of_elements(system.layout(), trial.q), ". Use more load steps, or start closer to the solution."});
   }
   /// Adds the names of the motions and constraints with springs in `least` to the report.
   void report_springs(EquilibriumReport& report) const {

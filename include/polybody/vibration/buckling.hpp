@@ -74,22 +74,27 @@ class PrebucklingPath {
   void require_balance(VecX const& r) const {
     double const scale = largest_size(loads_);
     if (scale == 0.0)
-      throw InvalidInput(
-          "buckling_modes: the model has no load. Apply a force of the direction of interest; the result is its "
-          "factor.");
+      throw InvalidInput("buckling.no_load",
+                         {ErrorObject{"buckling_modes"},
+                          ": the model has no load. Apply a force in the direction of interest; the result is its "
+                          "factor."});
     if (largest_size(r) <= 1e-6 * scale) return;
-    throw InvalidInput{"buckling_modes: the state is not an equilibrium at load factor ", factor_,
-                       ". Give the unloaded state with load_factor = 0, or a state of equilibrium(model, x) with "
-                       "load_factor = 1."};
+    throw InvalidInput(
+        "buckling.no_equilibrium",
+        {ErrorObject{"buckling_modes"}, ": the state is not an equilibrium at load factor ", ErrorValue{factor_},
+         ". Give the unloaded state with load_factor = 0, or a state of equilibrium(model, x) with "
+         "load_factor = 1."});
   }
   void factorise() {
     stable_.compute(a_);
     if (stable_.info() == Eigen::Success &&
         (stable_.matrixLLT().diagonal().array().square() > 1e-13 * a_.diagonal().array().abs()).all())
       return;
-    throw InvalidInput{"buckling_modes: the structure is not stable at load factor ", factor_,
-                       ": a motion has no stiffness or a negative one. Hold free motions by joints or springs, or "
-                       "start from a smaller load factor."};
+    throw InvalidInput(
+        "buckling.unstable",
+        {ErrorObject{"buckling_modes"}, ": the structure is not stable at load factor ", ErrorValue{factor_},
+         ": a motion has no stiffness or a negative one. Fix free motions by joints or springs, or "
+         "start from a smaller load factor."});
   }
   /// (B(h) − B(−h))/2h, B = Nᵀ K N with N = N₀ + p N′.
   MatX difference(double h) const {
@@ -141,11 +146,15 @@ class PrebucklingPath {
 template <class = void>  // compiled where it is used
 BucklingModes buckling_modes(System& system, State const& x, BucklingOptions const& options = {}) {
   if (options.count < 1)
-    throw InvalidInput{"buckling_modes: the count of modes must be at least 1, but is ", options.count, "."};
-  if (!std::isfinite(options.load_factor)) throw InvalidInput{"buckling_modes: the load factor must be finite."};
+    throw InvalidInput("buckling.option",
+                       {ErrorObject{"buckling_modes"}, ": the number of modes must be at least 1, but is ",
+                        ErrorValue{options.count}, "."});
+  if (!std::isfinite(options.load_factor))
+    throw InvalidInput("buckling.option", {ErrorObject{"buckling_modes"}, ": the load factor must be finite."});
   require_usable(system, x);
   if (largest_size(x.v) > 1e-9 || system.layout().states > 0)
-    throw InvalidInput("buckling_modes: the state must be at rest, in a model without first-order states.");
+    throw InvalidInput("buckling.state", {ErrorObject{"buckling_modes"},
+                                          ": the state must be at rest, in a model without first-order states."});
   detail::PrebucklingPath const path(system, x, options.load_factor);
   MatX const& a = path.stiffness();
   Eigen::GeneralizedSelfAdjointEigenSolver<MatX> solver;
@@ -153,9 +162,10 @@ BucklingModes buckling_modes(System& system, State const& x, BucklingOptions con
   for (int pass = 0; pass < 4; ++pass) {
     MatX const b = path.rate(step);
     if (pass > 0 && (b - b.transpose()).norm() > 1e-4 * b.norm())
-      throw InvalidInput(
-          "buckling_modes: the stiffness of the loads is not symmetric, as for follower forces and for moments in "
-          "space. Follow the path by equilibrium, and compute damped_modes at each load.");
+      throw InvalidInput("buckling.not_symmetric",
+                         {ErrorObject{"buckling_modes"},
+                          ": the stiffness of the loads is not symmetric, as for follower forces and for moments in "
+                          "space. Follow the path by equilibrium, and compute damped_modes at each load."});
     solver.compute(-0.5 * (b + b.transpose()), a,  // −K_g z = θ K z, p − p₀ = 1/θ
                    (pass == 0 ? Eigen::EigenvaluesOnly : Eigen::ComputeEigenvectors) | Eigen::Ax_lBx);
     double const largest = solver.eigenvalues().cwiseAbs().maxCoeff(), next = 0.01 / largest;

@@ -52,8 +52,7 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
     return from(bar, mesh.elements.value_or(default_elements));
   }
   /// Beam from the bar with a curved or twisted reference, n elements, free of stress except for the pretension. The
-  /// nodes have the positions and axes of `curve`. Between the nodes the field of the element interpolates the
-  /// reference.
+  /// nodes have the positions and axes of `curve`. Between them the field of the element interpolates the reference.
   /// \throws InvalidInput also if the determinant of the reference gradients is not positive, or if `curve` is not
   /// parameterised by its arc length.
   static AncfBeam from(Bar const& bar, Index n, ReferenceCurve const& curve) { return AncfBeam(bar, n, curve, false); }
@@ -281,12 +280,10 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
           {ErrorObject{what},
            ": the element is longer than its part of the bar. The argument of the curve must be its arc length."});
     double height = 0.0, width = 0.0;  // half height and half width
-    if (auto const* r = std::get_if<Rectangle>(&bar_.section)) {
-      height = 0.5 * r->height;
-      width = 0.5 * r->width;
-    } else if (auto const* c = std::get_if<Circle>(&bar_.section)) {
+    if (auto const* r = std::get_if<Rectangle>(&bar_.section))
+      height = 0.5 * r->height, width = 0.5 * r->width;
+    else if (auto const* c = std::get_if<Circle>(&bar_.section))
       height = width = c->radius;
-    }
     for (double const xi : {0.0, 0.5, 1.0}) {
       double const middle = ref.determinant(xi, 0.0, 0.0), y = ref.determinant(xi, height, 0.0) - middle,
                    z = ref.determinant(xi, 0.0, width) - middle;

@@ -182,8 +182,8 @@ MatX rigid_motions(Structure const& s) {
 template <class = void>
 MatX in_frame(Structure const& s, MatX shapes, FfrFrame frame) {
   if (shapes.rows() != s.size())
-    throw InvalidInput{"Ffr: the shapes have ", shapes.rows(), " rows, but the structure has ", s.size(),
-                       " nodal coordinates."};
+    throw InvalidInput("ffr.shape_size", {ErrorObject{"Ffr"}, ": the shapes have ", ErrorValue{shapes.rows()},
+                                          " rows, but the structure has ", s.size(), " nodal coordinates."});
   MatX const rigid = rigid_motions(s);
   if (frame == FfrFrame::mean_axes) {
     MatX const heavy = s.mass_matrix() * rigid;
@@ -191,7 +191,8 @@ MatX in_frame(Structure const& s, MatX shapes, FfrFrame frame) {
     return shapes;
   }
   if (s.per_node != 6)
-    throw InvalidInput("Ffr: nodes without rotations do not hold the frame; use FfrFrame::mean_axes.");
+    throw InvalidInput(
+        "ffr.frame", {ErrorObject{"Ffr"}, ": nodes without rotations do not fix the frame. Use FfrFrame::mean_axes."});
   Index const last = s.size() - 6;
   std::array<Index, 6> held = {0, 1, 2, 3, 4, 5};
   if (frame == FfrFrame::simply_supported) held = {0, 1, 2, 3, last + 1, last + 2};
@@ -202,7 +203,9 @@ MatX in_frame(Structure const& s, MatX shapes, FfrFrame frame) {
   }
   Eigen::FullPivLU<MatX> const solver(of_rigid);
   if (!solver.isInvertible())
-    throw InvalidInput("Ffr: FfrFrame::simply_supported needs a last node at a distance along x from the first.");
+    throw InvalidInput(
+        "ffr.frame",
+        {ErrorObject{"Ffr"}, ": FfrFrame::simply_supported needs a last node at a distance along x from the first."});
   shapes -= rigid * solver.solve(of_frame);
   for (Index const i : held) shapes.row(i).setZero();
   return shapes;
@@ -213,7 +216,9 @@ MatX in_frame(Structure const& s, MatX shapes, FfrFrame frame) {
 template <class = void>
 MatX in_frame(Structure const& s, MatX shapes, FfrOptions const& options) {
   if (options.modes)
-    throw InvalidInput("Ffr: the option `modes` is for a body from a bar; give shapes with so many modes instead.");
+    throw InvalidInput(
+        "ffr.modes",
+        {ErrorObject{"Ffr"}, ": the option `modes` applies to bodies from a bar. Give as many shapes instead."});
   return options.frame ? in_frame(s, std::move(shapes), *options.frame) : std::move(shapes);
 }
 
