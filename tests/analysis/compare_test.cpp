@@ -306,7 +306,7 @@ TEST(WorkPrecision, GoesOnWhereOneRunFails) {
   EXPECT_EQ(curve.points[1].failure, "");
   EXPECT_LT(curve.points[1].error, 1e-5);
   WorkCurve const lost = work_precision(Pendulum{}, Ideal{}, {0.05}, nowhere);
-  EXPECT_TRUE(has(lost.points[0].failure, "The error of tip y [m] is not finite at t = 0 s"));
+  EXPECT_TRUE(has(lost.points[0].failure, "The error of \"tip y [m]\" is not finite at t = 0 s"));
 }
 
 TEST(WorkPrecision, RefusesWhatIsNoSetting) {

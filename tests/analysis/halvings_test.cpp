@@ -338,7 +338,7 @@ TEST(Halvings, OfTheDefaultAreNotInheritedByRunsThatAreDifferentiated) {
 TEST(Halvings, RefusesNumbersThatCannotBeMeant) {
   Landing landing(0.1);
   EXPECT_TRUE(has(refusal([&] { landing.run(-1); }), "max_step_halvings must lie in [0, 30], but is -1"));
-  EXPECT_TRUE(has(refusal([&] { landing.run(31); }), "but 31 is asked for"));
+  EXPECT_TRUE(has(refusal([&] { landing.run(31); }), "must lie in [0, 30], but is 31"));
 }
 
 }  // namespace halvings_test

@@ -45,7 +45,7 @@ std::vector<Hostile> hostile_states(State const& sane) {
   all[3].x.q[0] = 1e200;
   all[3].named = "A coordinate of body \"bob\" is 1e+200";
   all[4].x.v[0] = -1e200;
-  all[4].named = "A speed of body \"bob\" is -1e+200";
+  all[4].named = "A velocity of body \"bob\" is -1e+200";
   all[5].x.q.tail<4>().setZero();
   all[5].named = "body \"bob\" are invalid";
   all[6].x.lambda[2] = nan;
@@ -82,7 +82,7 @@ TEST(HostileStates, DoNotEnterAnAccountOfEnergy) {
   EnergyAudit audit(h.model);
   audit.record(x);
   x.v[3] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_TRUE(has(refusal([&] { audit.record(x); }), "A speed of body \"bob\" is not finite"));
+  EXPECT_TRUE(has(refusal([&] { audit.record(x); }), "A velocity of body \"bob\" is not finite"));
   x.v[3] = 0.0;
   x.t = 0.1;
   audit.record(x);

@@ -330,7 +330,7 @@ TEST_F(NodalStressFiles, ThatDoNotFitTheQuestionAreRefused) {
     EXPECT_TRUE(has(refusal([&] { NodalStress::read(matrix, names, n); }),
                     std::to_string(n) + " coordinates are not three displacements of each node"));
   NodalStress::Matrix m(6, 3);
-  EXPECT_TRUE(has(refusal([&] { NodalStress(m, {}); }), "it has no nodes"));
+  EXPECT_TRUE(has(refusal([&] { NodalStress(m, {}); }), "at least one node is needed"));
   EXPECT_TRUE(has(refusal([&] { NodalStress(m, {{0, "a"}, {1, "b"}}); }), "has 6 rows, but 2 nodes need 12"));
   m.insert(4, 2) = NAN;
   EXPECT_TRUE(has(refusal([&] { NodalStress(m, {{0, "a"}}); }), "row 4, column 2 of its matrix is "));

@@ -166,7 +166,7 @@ TEST(Rigid, RefusesAnInertiaThatNoBodyHas) {
   Mat3 const turn = exp_so3<double>(Vec3(0.4, -0.8, 0.3));
   EXPECT_TRUE(has(said(turn * Vec3(1, 1, 2.01).asDiagonal() * turn.transpose()), "triangle inequality"));
   Mat3 const negative = turn * Vec3(2, 1.5, -0.25).asDiagonal() * turn.transpose();
-  EXPECT_TRUE(has(said(0.5 * (negative + negative.transpose())), "negative (-0.25)"));
+  EXPECT_TRUE(has(said(0.5 * (negative + negative.transpose())), "negative (-0.25 kg m²)"));
 }
 
 TEST(Rigid, AllowsThinRodsPlatesAndPoints) {

@@ -215,7 +215,8 @@ TEST(AResumedRun, IsRefusedToAnother) {
   RunOptions const options{.end_time = 0.1, .step = 0.004}, over{.end_time = -1.0, .step = 0.004};
   auto run = simulate(chain.model, x, GeneralisedAlpha{}, options);
   RunSnapshot const s = run.snapshot();
-  EXPECT_TRUE(has(refusal([&] { resume(shorter.model, y, GeneralisedAlpha{}, options, s); }), "of another model"));
+  EXPECT_TRUE(
+      has(refusal([&] { resume(shorter.model, y, GeneralisedAlpha{}, options, s); }), "belongs to another model"));
   EXPECT_TRUE(
       has(refusal([&] { resume(chain.model, y, HhtAlpha{}, options, s); }), "by GeneralisedAlpha, not by HhtAlpha"));
   EXPECT_TRUE(has(refusal([&] { resume(chain.model, y, GeneralisedAlpha{}, over, s); }), "before the start"));

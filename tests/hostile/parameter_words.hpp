@@ -78,7 +78,7 @@ inline constexpr auto words_of<PinSprocketContact<observed>> =
 template <>
 inline constexpr auto words_of<Distance> = words("length");
 template <>
-inline constexpr auto words_of<RevolutePin> = words("stand|apart", "axis");
+inline constexpr auto words_of<RevolutePin> = words("distance of its points", "axis");
 template <>
 inline constexpr auto words_of<Screw> = words("pitch", "axis");
 template <>
@@ -162,8 +162,8 @@ template <>
 inline constexpr auto words_of<Event> = words("name", "value", "stops", "tolerance", "then", "rests");
 template <>
 inline constexpr auto words_of<RunOptions> =
-    words("end", "step", "largest step", "corner", "event", "assembly_tolerance", "halve", "minimum_norm", "limits",
-          "thread", "progress");
+    words("end", "step", "largest step", "breakpoint", "event", "assembly_tolerance", "max_step_halvings",
+          "minimum_norm", "limits", "thread", "progress");
 template <>
 inline constexpr auto words_of<EquilibriumOptions> =
     words("load_steps", "min_load_step", "tolerance", "max_iterations");
@@ -186,7 +186,8 @@ inline constexpr auto words_of<BarConstants> =
     words("EA", "EI", "mass per length", "GA", "GJ", "rotary inertia", "EI_y", "GA_z",
           "rotary_inertia_y|rotary inertia of the bar about y", "polar_inertia|polar inertia");
 template <>
-inline constexpr auto words_of<Placement> = words("placement's origin|plane z = 0", "placement's axes|plane z = 0");
+inline constexpr auto words_of<Placement> =
+    words("origin of the placement|plane z = 0", "placement's axes|plane z = 0");
 template <>
 inline constexpr auto words_of<Damping> = words("axial damping", "shear damping", "bending damping");
 template <>

@@ -207,9 +207,10 @@ TEST_F(Checkpoints, OfAnotherRunAreRefused) {
     return refusal([&] { s.require(model, integrator, events); });
   };
   EXPECT_TRUE(has(told(identity_of(System(shorter.model)), "Radau", 1),
-                  "12 coordinates, 12 speeds and 8 rows; this one has 9 coordinates, 9 speeds and 6 rows"));
+                  "12 coordinates, 12 generalised velocities and 8 constraint equations; this model has 9 coordinates, "
+                  "9 generalised velocities and 6 constraint equations"));
   EXPECT_TRUE(has(told(identity_of(System(renamed)), "Radau", 1), "other names"));
-  EXPECT_TRUE(has(told(right, "Newmark", 1), "of a run by Radau, not by Newmark"));
+  EXPECT_TRUE(has(told(right, "Newmark", 1), "belongs to a run by Radau, not by Newmark"));
   EXPECT_TRUE(has(told(right, "Radau", 2), "with 1 events, but the options have 2"));
 }
 

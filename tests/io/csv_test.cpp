@@ -253,7 +253,7 @@ TEST_F(CsvFiles, SystemRefusalsNameTheFileAndTheReason) {
   {
     Csv csv(file, {"x"});
     fs::create_directories(file / "in the way");
-    EXPECT_TRUE(has(message_of<IoError>([&] { csv.close(); }), "cannot be moved to its place: "));
+    EXPECT_TRUE(has(message_of<IoError>([&] { csv.close(); }), "cannot be put in place: "));
   }
   EXPECT_EQ(files(), 3u);  // plain, taken, run.csv/: no temporary file
 }

@@ -201,13 +201,13 @@ TEST_F(Plots, RefusalsNameTheFigureAndTheCurveAndWriteNothing) {
     figure.title = "Energy";
     spoil(figure);
     auto const said = message_of<InvalidInput>([&] { write_figure(figure, folder / "new" / "f"); });
-    EXPECT_TRUE(has(said, "'Energy'"));
+    EXPECT_TRUE(has(said, "\"Energy\""));
     return said;
   };
   double const nan = std::nan(""), infinity = std::numeric_limits<double>::infinity();
   EXPECT_TRUE(has(refusal([](Figure& f) { f.curves.clear(); }), "at least one curve"));
   auto const sizes = refusal([](Figure& f) { f.curves[1].y.pop_back(); });
-  EXPECT_TRUE(has(sizes, "'ANCF, n = 8'"));
+  EXPECT_TRUE(has(sizes, "\"ANCF, n = 8\""));
   EXPECT_TRUE(has(sizes, "x has 201 numbers and y has 200"));
   EXPECT_TRUE(has(refusal([](Figure& f) { f.curves[0].x.clear(), f.curves[0].y.clear(); }), "at least one point"));
   EXPECT_TRUE(has(refusal([&](Figure& f) { f.curves[0].x[3] = nan; }), "in x is not finite"));

@@ -42,8 +42,8 @@ TYPED_TEST(EveryError, DerivesFromNoOtherKind) { EXPECT_EQ(All<Kinds>::template 
 // A program distinguishes errors by their data, without reading the text.
 TYPED_TEST(EveryError, CarriesCodeObjectValueAndTime) {
   std::string const name = "pin";
-  TypeParam const error("joint.open", { "joint \"",   ErrorObject{name}, "\" is open by ",
-                        ErrorValue{0.25},        " m at t = ", ErrorTime{1.5},    " s."};
+  TypeParam const error("joint.open", {"joint \"", ErrorObject{name}, "\" is open by ", ErrorValue{0.25},
+                                       " m at t = ", ErrorTime{1.5}, " s."});
   EXPECT_STREQ(error.what(), "joint \"pin\" is open by 0.25 m at t = 1.5 s.");
   EXPECT_EQ(error.code(), "joint.open");
   EXPECT_EQ(error.object(), "pin");

@@ -55,21 +55,22 @@ TEST(StudyPoints, AGridOfOneAxisIsTheAxis) {
 TEST(StudyPoints, WhatCannotBeMeantIsRefused) {
   EXPECT_TRUE(has(refusal([] { linear(0.0, nan, 3); }), "finite ends"));
   EXPECT_TRUE(has(refusal([] { linear(0.0, 1.0, 1); }), "two values"));
-  EXPECT_TRUE(has(refusal([] { logarithmic(0.0, 1.0, 3); }), "positive ends"));
+  EXPECT_TRUE(has(refusal([] { logarithmic(0.0, 1.0, 3); }), "must be positive and finite"));
   EXPECT_TRUE(has(refusal([] { logarithmic(1.0, infinite, 3); }), "finite ends"));
   EXPECT_TRUE(has(refusal([] { axis("step", "s", {}); }), "at least one point"));
   EXPECT_TRUE(has(refusal([] { axis("step", "s", {1.0, nan}); }), "column \"step\" is not finite"));
   EXPECT_TRUE(has(refusal([] { axis("", "s", {1.0}); }), "empty or not printable"));
   EXPECT_TRUE(has(refusal([] { axis("step\n", "s", {1.0}); }), "empty or not printable"));
-  EXPECT_TRUE(has(refusal([] { grid(axis("step", "s", {1.0}), axis("step", "s", {1.0})); }), "two columns"));
+  EXPECT_TRUE(
+      has(refusal([] { grid(axis("step", "s", {1.0}), axis("step", "s", {1.0})); }), "duplicate column \"step\""));
   EXPECT_TRUE(has(refusal([] { list({{"a"}, {"b"}}, {{1.0, 2.0}, {1.0}}); }), "1 values for 2 columns"));
   EXPECT_TRUE(has(refusal([] { list({{"a", "", {"one"}}}, {{1.0}}); }), "none of the 1 choices"));
   EXPECT_TRUE(has(refusal([] { list({{"a", "", {"one", "two"}}}, {{0.5}}); }), "none of the 2 choices"));
   EXPECT_TRUE(has(refusal([] { list({}, {}); }), "at least one column"));
   EXPECT_TRUE(has(refusal([] { uniform("k", "", 2.0, 1.0); }), "lower end first"));
   EXPECT_TRUE(has(refusal([] { uniform("k", "", 0.0, infinite); }), "lower end first"));
-  EXPECT_TRUE(has(refusal([] { log_uniform("k", "", 0.0, 1.0); }), "positive ends"));
-  EXPECT_TRUE(has(refusal([] { normal("k", "", 0.0, 0.0); }), "standard deviation 0"));
+  EXPECT_TRUE(has(refusal([] { log_uniform("k", "", 0.0, 1.0); }), "must be positive and finite"));
+  EXPECT_TRUE(has(refusal([] { normal("k", "", 0.0, 0.0); }), "positive, finite standard deviation, but has 0 and 0"));
   EXPECT_TRUE(has(refusal([] { monte_carlo(0, 1, {uniform("k", "", 0.0, 1.0)}); }), "at least one point"));
   EXPECT_TRUE(has(refusal([] { latin_hypercube(3, 1, {}); }), "one column"));
   EXPECT_TRUE(has(refusal([] { latin_hypercube((1u << 20) + 1, 1, {uniform("k", "", 0.0, 1.0)}); }), "1048576"));

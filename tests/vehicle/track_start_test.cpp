@@ -176,7 +176,7 @@ TEST(SettledTrack, RefusesWhatCannotBeMeant) {
                   "\"left tensioner spring\": the preload must be finite"));
   EXPECT_TRUE(has(refusal([&] { m113::settled_track({.cut = 64}); }),
                   "the pin that closes a track must lie in [0, 63], but is 64"));
-  EXPECT_TRUE(has(refusal([&] { m113::settled_track({.cut = -1}); }), "but -1"));
+  EXPECT_TRUE(has(refusal([&] { m113::settled_track({.cut = -1}); }), "but is -1"));
   m113::VehicleOptions options;
   options.masses.link.mass = 0.0;
   EXPECT_TRUE(has(refusal([&] { m113::settled_track(options); }), "the mass must be positive"));

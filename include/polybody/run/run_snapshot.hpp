@@ -57,7 +57,8 @@ struct RunSnapshot {
   template <class = void>
   void require(ModelIdentity const& of, std::string const& by, std::size_t events) const {
     auto const counts = [](ModelIdentity const& m) {
-      return sentence_of({m.coordinates, " coordinates, ", m.velocities, " speeds and ", m.rows, " rows"});
+      return sentence_of({m.coordinates, " coordinates, ", m.velocities, " generalised velocities and ", m.rows,
+                          " constraint equations"});
     };
     if (model.coordinates != of.coordinates || model.velocities != of.velocities || model.rows != of.rows)
       throw InvalidInput("resume.model", {ErrorObject{"resume"}, ": the snapshot belongs to another model. It has ",
