@@ -6,30 +6,30 @@
 
 namespace polybody {
 
-/// Which pairs of a model's force groups have blocks in a matrix that is written again and again: those that touched
-/// shortly before it was laid out, and pairs of the same opponent with markers beside theirs in the order of the many,
-/// as links of a track touch one after another.
+/// Selection of the pairs of a model's force groups that have blocks in a matrix with many evaluations. A pair is
+/// selected if it touched in a recent evaluation, or if such a pair has the same contact partner and a neighbouring
+/// marker. Neighbours are included because, for example, links of a track touch one after another.
 class ActiveContactPairs {
  public:
-  /// The pairs of one group, number i few + j for marker i of the many and opponent j.
+  /// Pairs of one group. The pair of marker i of the many and partner j has the number i few + j.
   struct Group {
-    Index few = 0;           ///< opponents; 0: not known, so nothing is beside a pair
-    Sequence<char> held;     ///< by pairs: has blocks
-    Sequence<long> touched;  ///< by pairs: the number of the writing in which it touched last
+    Index few = 0;           ///< number of partners; 0 if unknown: pairs then have no neighbours
+    Sequence<char> held;     ///< for each pair: it has blocks
+    Sequence<long> touched;  ///< for each pair: number of the last evaluation in which it touched
   };
 
-  /// The matrix is about to be written.
+  /// Starts an evaluation of the matrix.
   void begin() {
     next_ = 0;
     lacks_ = false;
     ++writing_;
   }
-  /// The next group of the model. \param few its opponents, 0 where it does not tell
+  /// Returns the next group of the model. \param few number of its partners, 0 if unknown
   Group& group(Index few) {
     if (next_ == groups_.size()) groups_.push_back({few, {}, {}});
     return groups_[next_++];
   }
-  /// Notes whether pair k of a group touches. Returns whether it has blocks.
+  /// Records the contact `touches` of pair k of a group. Returns true if the pair has blocks.
   bool note(Group& group, std::size_t k, bool touches) {
     if (k == group.held.size()) {
       group.held.push_back(0);
@@ -39,9 +39,9 @@ class ActiveContactPairs {
     if (touches && !group.held[k]) lacks_ = true;
     return group.held[k];
   }
-  /// A pair that touched when the matrix was written last has no blocks in it.
+  /// In the last evaluation a pair without blocks touched.
   bool lacks() const { return lacks_; }
-  /// From now on those that touched of late have blocks, with those beside them: the matrix has another pattern.
+  /// Selects the pairs that touched recently and their neighbours. This changes the sparsity pattern of the matrix.
   void hold() {
     for (Group& g : groups_) {
       std::fill(g.held.begin(), g.held.end(), char(0));
@@ -55,8 +55,8 @@ class ActiveContactPairs {
   }
 
  private:
-  static constexpr Index beside = 2;  // markers on each side
-  static constexpr long kept = 50;    // writings for which a pair that parts is held, as it may touch again
+  static constexpr Index beside = 2;  // neighbouring markers on each side
+  static constexpr long kept = 50;    // evaluations for which a separated pair keeps its blocks: it may touch again
 
   Sequence<Group> groups_;
   std::size_t next_ = 0;

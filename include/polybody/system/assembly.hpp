@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Sums over waist 2: every operation with G, Φ and λ, and the right-hand sides, as plain loops over row blocks and
-/// actions. Nothing here knows a model.
+/// Assembly of all operations with G, Φ and λ and of the right-hand sides, as loops over constraint blocks and applied
+/// wrenches. The loops do not depend on the type of the model.
 
 #include <polybody/system/layout.hpp>
 #include <polybody/system/projected_stiffness.hpp>
@@ -10,14 +10,14 @@ namespace polybody {
 
 namespace detail {
 
-/// Calls f(block) for all blocks that are rows of the model now.
+/// Calls f(block) for all blocks with constraint equations of the model, except those that the evaluation omits.
 template <StateScalar T, class F>
 void for_each_row_block(Data<T> const& data, F&& f) {
   for (ConstraintBlock<T> const& block : data.rows)
     if (block.row >= 0 && !data.leaves_out(block)) f(block);
 }
 
-/// r += mapᵀ λ of both ends of a block; m as a constant, or block.rows where it is zero.
+/// r += mapᵀ λ of both ends of a block. \tparam m number of constraint equations; 0 stands for block.rows
 template <int m, StateScalar T>
 void add_ends(ConstraintBlock<T> const& block, T const* lambda, Data<T> const& data, T* r) {
   if constexpr (m > 0)
@@ -41,13 +41,14 @@ void add_ends(ConstraintBlock<T> const& block, T const* lambda, Data<T> const& d
     }
   }
 }
-/// The same for m = block.rows.
+/// Overload for m = block.rows.
 template <StateScalar T>
 void add_ends(ConstraintBlock<T> const& block, T const* lambda, Data<T> const& data, T* r) {
   with_constant(block.rows, [&](auto m) { add_ends<m>(block, lambda, data, r); });
 }
 
-/// out (rows) += map · x of an end, x the twist that its marker has with the speeds v, or these themselves.
+/// out (rows) += map · x of an end; x is the twist of its marker in the evaluated state. Without a marker, x are
+/// the velocities of the end in v.
 template <StateScalar T>
 void add_rate(ConstraintSide<T> const& end, int rows, Data<T> const& data, VecXOf<T> const& v, T* out) {
   T twist[6];
@@ -58,7 +59,8 @@ void add_rate(ConstraintSide<T> const& end, int rows, Data<T> const& data, VecXO
   }
   add_mapped<0>(end.map, end.columns, x, rows, out);
 }
-/// The same for rates b that the state does not have.
+/// out (rows) += map · x of an end; x is the twist J b of its marker for any vector b (nv). Without a marker, x
+/// are the entries of the end in b.
 template <StateScalar T>
 void add_product(ConstraintSide<T> const& end, int rows, Data<T> const& data, VecXOf<T> const& b, T* out) {
   Vec<T, 6> twist;
@@ -74,7 +76,7 @@ void add_product(ConstraintSide<T> const& end, int rows, Data<T> const& data, Ve
 
 }  // namespace detail
 
-/// r += Gᵀλ of all rows, and −Jᵀw of what compliant joints answer.
+/// r += Gᵀλ of all constraint equations and of compliant joints, whose λ(g, ġ) is the force of their policy.
 template <StateScalar T>
 void add_row_forces(Data<T> const& data, VecXOf<T> const& lambda, VecXOf<T>& r) {
   for (ConstraintBlock<T> const& block : data.rows) {
@@ -84,7 +86,7 @@ void add_row_forces(Data<T> const& data, VecXOf<T> const& lambda, VecXOf<T>& r) 
   }
 }
 
-/// r −= Jᵀw of all force elements, loads times `load_factor`.
+/// r −= Jᵀw of all force elements. The wrenches of loads are multiplied by `load_factor`.
 template <StateScalar T>
 void add_actions(Data<T> const& data, ModelLayout const& layout, double load_factor, VecXOf<T>& r) {
   for (AppliedWrench<T> const& action : data.actions) {
@@ -93,7 +95,7 @@ void add_actions(Data<T> const& data, ModelLayout const& layout, double load_fac
   }
 }
 
-/// Φ (rows); zero for velocity rows.
+/// Φ (rows); zero for nonholonomic equations.
 template <StateScalar T>
 void violation(Data<T> const& data, VecXOf<T>& phi) {
   detail::for_each_row_block(data, [&](ConstraintBlock<T> const& block) {
@@ -112,7 +114,7 @@ void violation_rate(Data<T> const& data, VecXOf<T> const& v, VecXOf<T>& rate) {
   });
 }
 
-/// gamma += Ga · bias + Gb · bias: what the frames of moving bodies bring beyond J v̇.
+/// gamma (rows) += Ga · bias + Gb · bias, the contribution of the bias accelerations of the markers.
 template <StateScalar T>
 void add_biases(Data<T> const& data, VecXOf<T>& gamma) {
   detail::for_each_row_block(data, [&](ConstraintBlock<T> const& block) {
@@ -123,7 +125,7 @@ void add_biases(Data<T> const& data, VecXOf<T>& gamma) {
   });
 }
 
-/// out = G b (rows) for b by speeds.
+/// out = G b (rows) for b (nv).
 template <StateScalar T>
 void rows_times(Data<T> const& data, VecXOf<T> const& b, VecXOf<T>& out) {
   for (Index i = 0; i < out.size(); ++i) out[i] = T(0.0);
@@ -133,7 +135,7 @@ void rows_times(Data<T> const& data, VecXOf<T> const& b, VecXOf<T>& out) {
   });
 }
 
-/// out = Gᵀ b (speeds) for b by rows.
+/// out = Gᵀ b (nv) for b (rows).
 template <StateScalar T>
 void rows_transposed_times(Data<T> const& data, VecXOf<T> const& b, VecXOf<T>& out) {
   for (Index i = 0; i < out.size(); ++i) out[i] = T(0.0);
@@ -141,7 +143,7 @@ void rows_transposed_times(Data<T> const& data, VecXOf<T> const& b, VecXOf<T>& o
       data, [&](ConstraintBlock<T> const& block) { detail::add_ends(block, b.data() + block.row, data, out.data()); });
 }
 
-/// Gᵀ and G, which begins at row `first`, block by block into `sink`.
+/// Writes the blocks of Gᵀ and G into `sink`. \param first first row of G in the matrix
 template <class = void>
 void write_rows(Data<double>& data, Index first, BlockSink& sink) {
   detail::for_each_row_block(data, [&](ConstraintBlock<double> const& block) {

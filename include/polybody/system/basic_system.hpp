@@ -1,11 +1,11 @@
 #pragma once
 /// \file
-/// Waist 3: what an integrator or a solver sees of the mechanics,
+/// Equations of motion as integrators and solvers evaluate them,
 ///   M(q) v̇ = f(q, v, t) − Gᵀλ,   Φ(q, t) = 0,   q moves by ⊞.
-/// First-order states, ż = h(q, v, z, t), are the last of the speeds: speeds whose mass is one and which move no
-/// coordinate. What integrates v with its rates integrates z.
-/// Models' types end here: one table of functions fills arrays, which are assembled into these equations. Where
-/// policies eliminate unknowns, the equations are those of what is left,
+/// First-order states, ż = h(q, v, z, t), are the last entries of v. They are velocities with unit mass that move no
+/// coordinate, and every integrator of v also integrates them.
+/// The type of the model is erased here: one table of functions fills arrays, from which the equations are assembled.
+/// If policies eliminate unknowns, the equations contain only the remaining ones,
 ///   Tᵀ(M(T u̇ + b) − f) + (G T)ᵀλ = 0,   v = T u,  v̇ = T u̇ + b.
 
 #include <cmath>
@@ -16,14 +16,15 @@
 
 namespace polybody {
 
-/// Names groups of entries in a constructor: `System(model, with<Capabilities::tangent>)`.
+/// Groups of evaluations as a constructor argument: `System(model, with<Capabilities::tangent>)`.
 template <Capabilities groups>
 struct With {};
-/// The groups, as an argument.
+/// Value of `With` for these groups.
 template <Capabilities groups>
 inline constexpr With<groups> with{};
 
-/// \throws InvalidInput where an entry was not asked for; `group` names what is missing.
+/// Returns `entry`. \param group name of its group in the message
+/// \throws InvalidInput for a null entry: the system was constructed without its group.
 template <class F>
 F require_entry(F entry, char const* group) {
   if (!entry)
@@ -33,16 +34,16 @@ F require_entry(F entry, char const* group) {
   return entry;
 }
 
-/// Parts of the tangent that may be asked for alone.
+/// Parts of the tangent that `tangent_of` evaluates separately.
 enum class TangentPart { compliant_joints, force_elements };
 
-/// The equations of a model with their scratch. `evaluate` sets the state at which everything else is asked.
+/// Equations of motion of a model with their workspace. All other functions refer to the state of the last `evaluate`.
 template <StateScalar T>
 class BasicSystem {
  public:
-  using Vector = VecXOf<T>;  ///< of the system's scalar: coordinates, speeds or rows
+  using Vector = VecXOf<T>;  ///< coordinates, velocities or constraint equations, of the scalar T
 
-  /// The whole mechanism. The model must outlive the system and must not change after: evaluations refuse that.
+  /// Equations of the model. The model must outlive the system. If it changes afterwards, evaluations throw.
   template <class M, Capabilities wanted = Capabilities::questions>
     requires requires { sizeof(OperationsOf<M, T, wanted>); }
   explicit BasicSystem(M const& model, With<wanted> = {}, CoordinatesOf<T> coordinates = {})
@@ -50,70 +51,71 @@ class BasicSystem {
                     OperationsOf<M, T, wanted>::make_data(model), std::move(coordinates)) {}
   template <class M, Capabilities wanted = Capabilities::questions>
     requires requires { sizeof(OperationsOf<M, T, wanted>); }
-  explicit BasicSystem(M const&& model, With<wanted> = {}, CoordinatesOf<T> = {}) = delete;  ///< a temporary model
-  /// From entries of any origin, which are called with `model`.
+  explicit BasicSystem(M const&& model, With<wanted> = {}, CoordinatesOf<T> = {}) = delete;  ///< refuses a temporary
+  /// Equations from functions of any origin, which receive `model` as their first argument.
   [[gnu::cold]] BasicSystem(void const* model, ModelOperations<T> const& entries, ModelLayout layout, Data<T> data,
                             CoordinatesOf<T> coordinates);
-  BasicSystem(BasicSystem&&) noexcept;  ///< what refers to the one that is moved, such as a workspace, does not follow
+  BasicSystem(BasicSystem&&) noexcept;  ///< invalidates references to the moved system, such as those of a workspace
   ~BasicSystem();
 
-  /// Places and names in the whole model.
+  /// Positions and names of the parts of the model.
   ModelLayout const& layout() const { return layout_; }
-  /// Functions between the unknowns of a time step and those of the whole model; they convert to false where there are
-  /// none.
+  /// Maps between the unknowns of a time step and those of the model. They convert to false if nothing is eliminated.
   CoordinatesOf<T> const& step_coordinates() const { return coordinates_; }
-  /// Scratch of the last evaluation: markers, row blocks, wrenches of force elements.
+  /// Arrays of the last evaluation: markers, constraint blocks, wrenches of force elements.
   Data<T> const& data() const { return data_; }
-  /// The model's entries, and what they take for the model.
+  /// Functions of the model, and the model as their first argument.
   std::pair<ModelOperations<T> const&, void const*> entries() const { return {entries_, model_}; }
-  /// Whole coordinates and speeds, and time, of the last evaluation.
+  /// Full coordinates and velocities, and time, of the last evaluation.
   At<T> at() const { return {q_, v_, t_}; }
 
-  /// nq of a time step.
+  /// Number nq of coordinates of a time step.
   Index coordinates() const { return coordinates_ ? coordinates_.reduced->coordinates : layout_.coordinates; }
-  /// nv of a time step: speeds, and first-order states behind them.
+  /// Number nv of velocities of a time step; the last ones are the first-order states.
   Index velocities() const { return coordinates_ ? coordinates_.reduced->velocities : layout_.velocities; }
-  Index rows() const { return coordinates_ ? coordinates_.reduced->rows : layout_.rows; }  ///< rows Φ of a time step
-  Index size() const { return velocities() + rows(); }  ///< nv + rows: unknowns of its linear system
-  /// Rows without a position: Φ is zero there, Φ̇ and γ are not.
+  /// Number of constraint equations Φ of a time step.
+  Index rows() const { return coordinates_ ? coordinates_.reduced->rows : layout_.rows; }
+  Index size() const { return velocities() + rows(); }  ///< number of unknowns of a time step, nv + rows
+  /// Numbers of the nonholonomic equations. Their Φ is zero, but not their Φ̇ and γ.
   Sequence<Index> const& nonholonomic_equations() const {
     return coordinates_ ? coordinates_.reduced->nonholonomic_equations : layout_.nonholonomic_equations;
   }
 
-  /// A factor of gravity and loads; one except inside `equilibrium`.
+  /// Factor of gravity and loads; one except inside `equilibrium`.
   double load_factor = 1.0;
 
-  /// Sets the state: coordinates q (nq), speeds v (nv), time t [s]. Computes all markers and gaps there.
-  /// \throws InvalidInput where the model has changed since the system was made.
+  /// Sets the state: coordinates q (nq), velocities v (nv), time t [s]. Computes all markers and constraint functions.
+  /// \throws InvalidInput if the model has changed since the construction of the system.
   void evaluate(Vector const& q, Vector const& v, double t);
 
-  /// From now on so many threads share the loops over elements, markers and joints, this one among them; the results
-  /// are the same to the last bit. \throws InvalidInput for fewer than one.
+  /// Sets the number of threads that share the loops over elements, markers and joints, including the calling thread.
+  /// Results are bitwise identical for any number. \throws InvalidInput for fewer than one.
   void use_threads(int threads);
 
   /// r = M a − f + Gᵀλ (nv).
   void residual(Vector const& a, Vector const& lambda, Vector& r);
-  /// The wrenches of the force elements into `data().actions`, as `residual` does.
+  /// Writes the wrenches and state rates of the force elements to `data()`; `residual` includes this.
   void push_forces() { entries_.push_forces(model_, t_, data_); }
-  /// Φ (rows); zero for velocity rows.
+  /// Φ (rows); zero for nonholonomic equations.
   void violation(Vector& phi);
   /// `rate` = Φ̇ = G v + Φ_t (rows).
   void violation_rate(Vector& rate);
   /// γ (rows): Φ̈ = G v̇ + γ.
   void acceleration_bias(Vector& gamma);
-  /// out = G b (rows) for b by speeds.
+  /// out = G b (rows) for b (nv).
   void rows_times(Vector const& b, Vector& out);
-  /// out = Gᵀ b (speeds) for b by rows.
+  /// out = Gᵀ b (nv) for b (rows).
   void rows_transposed_times(Vector const& b, Vector& out);
 
-  /// [cm M + cd D + ck K, Gᵀ; G, 0] (size × size), by the unknowns of the equations, into a receiver of blocks.
+  /// Writes the blocks of [cm M + cd D + ck K, Gᵀ; G, 0] into `receiver`, in the unknowns of the linear system, which
+  /// may be more than those of a time step.
   template <BlockReceiver S>
   void tangent(TangentCoefficients const& c, SecondOrder second, Vector const& lambda, S&& receiver) {
     with_sink(receiver, [&](BlockSink& sink) {
       write_equations([&](BlockSink& full) { write_tangent(c, second, lambda, full); }, sink);
     });
   }
-  /// [M, Gᵀ; G, 0], likewise.
+  /// Writes the blocks of [M, Gᵀ; G, 0] into `receiver`, in the unknowns of the linear system.
   template <BlockReceiver S>
   void masses(S&& receiver) {
     with_sink(receiver, [&](BlockSink& sink) {
@@ -125,8 +127,8 @@ class BasicSystem {
           sink);
     });
   }
-  /// cd D + ck K of the compliant joints alone, joint by joint; or of the force elements, with second-order terms, and
-  /// with those of the rows where their multipliers are given.
+  /// Writes the blocks of cd D + ck K of one part into `receiver`: of each compliant joint, or of all force elements
+  /// with second-order terms. For force elements, multipliers `lambda` add the second-order terms of the constraints.
   template <BlockReceiver S>
   void tangent_of(TangentPart part, TangentCoefficients c, S&& receiver, Vector const* lambda = nullptr) {
     with_sink(receiver, [&](BlockSink& sink) {
@@ -142,10 +144,10 @@ class BasicSystem {
 
   /// out = q ⊞ delta.
   void plus(Vector const& q, Vector const& delta, Vector& out) const;
-  /// The rate of delta in q ⊞ delta when the model moves with speeds v.
+  /// out = rate of delta in q ⊞ delta, while the model moves with velocities v.
   void local_rate(Vector const& delta, Vector const& v, Vector& out) const;
 
-  /// Name of the body that owns speed i, or of the joint that owns row i − nv.
+  /// Name of the body or force element with velocity i, or of the body or joint with constraint equation i − nv.
   std::string name_of(Index i) const;
 
   template <class U>
@@ -183,7 +185,7 @@ class BasicSystem {
     for (Wrench<double>& w : data_.loads) w = {};
   }
 
-  /// Rows of a step are written as they are, or taken from whole ones afterwards.
+  /// Output for constraint equations: `reduced` itself, or full equations from which `add_constraint_rows` copies.
   Vector& full_constraints(Vector& reduced) { return coordinates_ ? full_rows_ : reduced; }
   void add_constraint_rows(Vector& reduced) const {
     if (!coordinates_) return;
@@ -198,9 +200,9 @@ class BasicSystem {
   CoordinatesOf<T> coordinates_;
   std::unique_ptr<Workers> workers_;
   Data<T> data_;
-  Vector q_, v_;  // whole
+  Vector q_, v_;  // full
   double t_ = 0.0;
-  Vector full_a_, full_r_, full_rows_, full_lambda_, still_;  // scratch of a system with coordinates of its own
+  Vector full_a_, full_r_, full_rows_, full_lambda_, still_;  // workspace of a system with reduced coordinates
 };
 
 }  // namespace polybody

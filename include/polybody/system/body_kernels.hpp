@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// What a model does with all its bodies of one type: loops that know the type of the body and not that of the model. A
-/// program compiles them once for all its models; `extern template struct BodyKernels<MyBody, double>;` leaves even
-/// that to another object file (see polybody/compiled.hpp).
+/// Loops over all bodies of one type in a model. They depend on the type of the body, but not on that of the model. A
+/// program therefore compiles them once for all models. With `extern template struct BodyKernels<MyBody, double>;`
+/// another object file contains them (see polybody/compiled.hpp).
 
 #include <polybody/bodies/shared/element_batches.hpp>
 #include <polybody/math/sequence.hpp>
@@ -14,21 +14,21 @@ namespace polybody {
 
 namespace detail {
 
-/// Kept with a model's data for its bodies of one type: a pose for each body whose points share one, and scratch.
+/// Workspace for all bodies of one type: arrays for each body, and its pose if its points share one.
 template <class B, StateScalar T>
 struct BodyData {
   Sequence<typename PoseOf<B, T>::Type> poses;
   Sequence<ThreadScratch<B, T>> scratch;
-  PoolBatches batches;   ///< of numbers, where bodies compare their elements
-  bool divides = false;  ///< threads share the elements of some body
+  PoolBatches batches;   ///< elements in SIMD vectors; for doubles and comparable elements only
+  bool divides = false;  ///< threads share the elements of at least one body
 };
 
-/// How much of the arena of Jacobians is taken, and the columns of the widest marker.
+/// Number of used entries of the array of Jacobians, and number of columns of the widest marker, at least 12.
 struct MarkerArena {
   Index taken = 0, widest = 12;
 };
 
-/// What M a − f is asked for.
+/// Arguments of M a − f: state, accelerations a (nv) and gravity g (3) in world axes [m/s²].
 template <StateScalar T>
 struct BodyResidual {
   At<T> at;
@@ -38,85 +38,88 @@ struct BodyResidual {
 
 }  // namespace detail
 
-/// The loops over the bodies of type B, for scalar T. Those of energies, masses and tangents are for numbers.
+/// Loops over the bodies of type B, for the scalar T. Energies, masses and tangents exist for doubles only.
 template <class B, StateScalar T>
 struct BodyKernels {
   using Pool = detail::BodyPool<B>;         ///< bodies of this type, in a model
-  using Entry = detail::BodyTableEntry<B>;  ///< one of them, with its places
-  using Kept = detail::BodyData<B, T>;      ///< scratch
-  using Vector = VecXOf<T>;                 ///< numbers, or dual ones
+  using Entry = detail::BodyTableEntry<B>;  ///< one body with its positions in the vectors
+  using Kept = detail::BodyData<B, T>;      ///< workspace
+  using Vector = VecXOf<T>;                 ///< coordinates, velocities or constraint equations, of the scalar T
 
-  /// First coordinate, first speed and first own row of a body, and the serial number of its model.
+  /// Positions of a body in the vectors of its model, and the serial number of this model.
   struct Places {
     Index q0, v0, row;      ///< indices of the first coordinate, velocity and own constraint equation
     std::uint64_t made_in;  ///< serial number of the model
   };
-  /// Puts a body into the pool.
+  /// Adds a body to the pool.
   [[gnu::cold]] static void add(Pool& pool, B const& body, std::string const& name, Places const& at);
-  /// What a body publishes of a point, its axes being those of the body. The Jacobian stands in `jacobian`.
+  /// Kinematics of a marker at a point, with the axes of the body. The Jacobian is stored in `jacobian`.
   static MarkerKinematics<double> publish_point(B const& body, typename B::Point const& point,
                                                 std::span<double const> q, std::span<double const> v,
                                                 Sequence<double>& jacobian);
-  /// Axes (3×3) at a marker's point, as placed.
+  /// Axes (3×3) at a marker's point in the reference state, in world axes.
   static Mat3 reference_axes(Pool const& pool, Marker<B> const& marker);
-  /// Puts a marker into the pool, number `published` of all. Returns the size of its Jacobian.
+  /// Adds a marker to the pool. Returns the size of its Jacobian.
+  /// \param axes (3×3) axes of the marker relative to those of the body at its point \param published number of the
+  /// marker in the model
   static Index add_marker(Pool& pool, Marker<B> const& marker, Mat3 const& axes, Index published);
 
-  /// Counts, places and names.
+  /// Appends counts, positions and names to `out`.
   [[gnu::cold]] static void describe(Pool const& pool, ModelLayout& out);
-  /// Room in `arena` for what is kept, and a place for each marker.
+  /// Allocates the workspace `kept` and assigns the columns and the Jacobian's storage of each marker.
   [[gnu::cold]] static void place_markers(Pool const& pool, Kept& kept, detail::MarkerArena& arena, Data<T>& data);
-  static Index own_size(Pool const& pool);  ///< numbers that the rows of the bodies take in their arena
-  /// A block for the rows of each body, from `next` on, `owner` being the first body's place. Returns the end.
+  static Index own_size(Pool const& pool);  ///< number of entries for Φ and G of the bodies' own equations
+  /// Appends a constraint block for the own equations of each body, with Φ and G stored from `next` on. Returns the end
+  /// of this storage. \param owner position of the first body in the layout
   [[gnu::cold]] static T* place_rows(Pool const& pool, Index owner, T* next, Data<T>& data);
-  /// The numbers that threads write for the elements of one body: forces, tangents.
+  /// Increases `forces` and `tangents` to the number of entries that threads need for the elements of one body.
   static void count_shared(Pool const& pool, std::size_t& forces, std::size_t& tangents);
 
-  /// Every marker's frame, Jacobian and bias.
+  /// Evaluates frame, Jacobian and bias of every marker.
   static void evaluate_marker(Pool const& pool, Kept& kept, At<T> at, Data<T>& data);
-  /// Gap and map of the bodies' own rows, from `next` on; returns the end. And their γ.
+  /// Evaluates Φ and G of the bodies' own equations and stores them from `next` on. Returns the end of this storage.
   static T* measure_own_rows(Pool const& pool, At<T> at, T* next);
-  static void own_gamma(Pool const& pool, At<T> at, Vector& out);  ///< γ (rows), as `out[row]`
-  /// q ⊞ δ and the rate of δ; with `places`, in narrow vectors. Return the place after the last body's.
+  static void own_gamma(Pool const& pool, At<T> at, Vector& out);  ///< writes γ of own equation i to `out[i]`
+  /// out = q ⊞ δ. With `places`, vectors are reduced. Returns the position after the last body.
   static ReducedPosition const* plus(Pool const& pool, ReducedPosition const* places, Vector const& q,
                                      Vector const& delta, Vector& out);
   static ReducedPosition const* local_rate(Pool const& pool, ReducedPosition const* places, Vector const& delta,
-                                           Vector const& v, Vector& out);  ///< δ˙ of `delta`
-  /// r += M a − f, at what u names.
+                                           Vector const& v, Vector& out);  ///< out = δ˙ in q ⊞ δ
+  /// r += M a − f for the arguments u.
   static void add_forces(Pool const& pool, Kept& kept, detail::BodyResidual<T> const& u, Data<T>& data, Vector& r);
 
-  /// `rate` = q˙ = d/dε (q ⊞ ε v) at ε = 0: v itself where a body has as many coordinates as speeds, else by dual
-  /// numbers in `room` (2 nq + nv).
+  /// `rate` = q˙ = d/dε (q ⊞ ε v) at ε = 0. It equals v if a body has as many coordinates as velocities. Otherwise dual
+  /// numbers in the workspace `room` (2 nq + nv) give it.
   static ReducedPosition const* coordinate_rates(Pool const& pool, ReducedPosition const* places, VecX const& q,
                                                  VecX const& v, VecXOf<Dual<1>>& room, VecX& rate);
-  /// v of a rigid motion, v0 (3) at the world's origin [m/s] and `omega` (3) [rad/s], world axes.
+  /// Velocities v of a rigid motion: v0 (3) at the world's origin [m/s] and `omega` (3) [rad/s], in world axes.
   static void rigid_velocities(Pool const& pool, VecX const& q, Vec3 const& v0, Vec3 const& omega, VecX& v);
   static void masses(Pool const& pool, Kept& kept, At<double> at, BlockSink& sink);  ///< M, element by element
   static void tangents(Pool const& pool, Kept& kept, At<double> at, TangentCoefficients const& c, Data<double>& data,
                        BlockSink& sink);  ///< cm M + cd D + ck K
-  /// ck ∂(Gᵀλ)/∂q of the bodies' own rows, at what x names.
+  /// ck ∂(Gᵀλ)/∂q of the bodies' own equations at the state and coefficients x.
   static void own_stiffness(Pool const& pool, VecX const& lambda, detail::StiffnessAt const& x, BlockSink& sink);
-  /// ck ∂(Jᵀw)/∂q at x for the wrenches w in data.loads, marker by marker.
+  /// ck ∂(Jᵀw)/∂q of each marker for its wrench w in data.loads, at the state and coefficients x.
   static void load_stiffness(Pool const& pool, Kept& kept, detail::StiffnessAt const& x, Data<double>& data,
                              BlockSink& sink);
   static void add_energy(Pool const& pool, At<double> at, Vec3 const& g, Energy& sum);  ///< [J]
-  /// What damping takes from the bodies: of their forces f(q, v), elastic ones do not know v and those of inertia are
-  /// even in it, while damping is odd; so −½ v·(f(q, v) − f(q, −v)). `backwards` is −v.
+  /// Power that damping dissipates in the bodies [W], −½ v·(f(q, v) − f(q, −v)). Of the forces f(q, v), elastic ones do
+  /// not depend on v, inertial ones are even in v, and only damping is odd. \param backwards −v
   static double dissipated(Pool const& pool, Kept& kept, At<double> at, VecX const& backwards);
 
  private:
   static constexpr int n = B::element_columns;
-  /// That are worth a thread.
+  /// Least number of bodies per thread.
   static constexpr Index least_bodies = n == Eigen::Dynamic ? 8 : HasRigidLayout<B> ? 1024 : 32;
-  /// Threads share its bodies, of one element each.
+  /// Threads share the bodies of the pool, which have one element each.
   static bool shares_bodies(Pool const& pool) { return detail::has_single_elements(pool, 2 * least_bodies); }
   static constexpr bool in_batches = ComparableElements<B> && !TimeVaryingBody<B> && std::same_as<T, double>;
-  /// M a − f of the elements of one body.
+  /// r += M a − f of the elements of one body.
   static void add_forces_of(Entry const& e, detail::ThreadScratch<B, T>& kept, detail::BodyResidual<T> const& u,
                             Data<T>& data, Vector& r);
   static void tangents_of(Entry const& e, detail::ThreadScratch<B, T>& kept, At<double> at,
                           TangentCoefficients const& c, Data<double>& data, BlockSink& sink);
-  /// x, M a − f of an element without weight, to the body's rows.
+  /// Adds x, which is M a − f of element i without gravity, to r, and subtracts the gravity forces.
   template <class Scratch>
   static void add_force(Entry const& e, Index i, detail::BodyResidual<T> const& u, T const* x, Scratch& scratch,
                         Vector& r);
@@ -126,8 +129,8 @@ struct BodyKernels {
   static std::span<T const> velocities(Entry const& e, Vector const& v) {
     return {v.data() + e.v0, std::size_t(e.body.velocities())};
   }
-  /// Calls f(entry, place) for the bodies that stand in vectors which may be narrow. Returns the place after the
-  /// last's.
+  /// Calls f(entry, place) for each body with entries of its own in the vectors, which are reduced if `places` is not
+  /// null. Returns the position after the last body.
   template <class F>
   static ReducedPosition const* for_each_place(Pool const& pool, ReducedPosition const* places, F&& f) {
     for (Entry const& e : pool.entries) {
@@ -351,7 +354,7 @@ void BodyKernels<B, T>::add_forces_of(Entry const& e, detail::ThreadScratch<B, T
 template <class B, StateScalar T>
 void BodyKernels<B, T>::add_forces(Pool const& pool, Kept& kept, detail::BodyResidual<T> const& u, Data<T>& data,
                                    Vector& r) {
-  // bodies write to rows of their own, so threads may take some each; those that share their elements do that
+  // Bodies write to different entries of r, so threads can share the bodies, unless they already share elements.
   Workers* const workers = kept.divides ? nullptr : data.workers;
   if constexpr (in_batches) {
     share(kept.batches.alone ? workers : nullptr, Index(kept.batches.packs.size()), data.least_packs,

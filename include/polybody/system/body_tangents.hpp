@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// The kernels of bodies that are for numbers: rates, masses, tangents and energies (declared in body_kernels.hpp).
+/// Definitions of the body kernels that exist for doubles only: rates, masses, tangents and energies (declared in
+/// body_kernels.hpp).
 
 #include <polybody/system/body_kernels.hpp>
 
@@ -134,7 +135,7 @@ void BodyKernels<B, T>::tangents(Pool const& pool, Kept& kept, At<double> at, Ta
       Entry const& e = pool.entries[b];
       Index const first = e.v0 + e.body.first_column(0);
       if constexpr (n == Eigen::Dynamic)
-        sink.add(first, first, kept.scratch[b].tangent_scratch(e.body).k);  // where it was left
+        sink.add(first, first, kept.scratch[b].tangent_scratch(e.body).k);  // stored by the loop above
       else
         sink.add(first, first, BlockView(slots + n * n * b, n, n, 1, n));
     }

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// What a model does as its bodies are added, joined and loaded. These functions know the types of a joint or force and
-/// of its bodies, and not the model's: a program compiles them once for all its models.
+/// Addition of bodies, joints and forces to a model. These functions depend on the types of a joint or force and of its
+/// bodies, but not on that of the model. A program therefore compiles them once for all models.
 
 #include <polybody/forces/gravity.hpp>
 #include <polybody/joints/joint.hpp>
@@ -15,7 +15,7 @@
 
 namespace polybody::detail {
 
-/// Counts of a model. A move leaves zeros, as the pools are empty then.
+/// Counts of a model. A moved-from model has zeros, because its pools are empty.
 struct ModelCounts {
   Index coordinates = 0, velocities = 0, states = 0, rows = 0, markers = 0, jacobian_size = 0, bodies = 0;
 
@@ -36,7 +36,7 @@ struct ModelCounts {
   }
 };
 
-/// What a model counts, and what it keeps beside the pools of its types.
+/// Data of a model that do not depend on its type: counts, names, ground markers and linear constraint equations.
 struct ModelParts : ModelCounts {
   explicit ModelParts(Gravity const& g) : gravity(g) {}
 
@@ -49,13 +49,13 @@ struct ModelParts : ModelCounts {
   DriveAxes drive_axes = {};
 
   std::uint64_t serial() const { return origin.serial(); }
-  /// \throws InvalidInput naming `what` unless the ground of the model with the number `given` is that of this one.
+  /// Requires that the ground with the serial number `given` belongs to this model. \throws InvalidInput naming `what`.
   void require_own_ground(std::uint64_t given, std::string const& what) const {
     if (!accepts(serial(), origin.ancestors(), given)) refuse_marker_of_another_model(what);
   }
 };
 
-/// A marker beside the pool of its body; the ground has none.
+/// Marker with the pool of its body; without a pool for the ground.
 template <class B>
 struct PooledMarker {
   Marker<B> const& marker;
@@ -66,7 +66,7 @@ struct PooledMarker<Ground> {
   Marker<Ground> const& marker;
 };
 
-/// The entry that a handle names. \throws InvalidInput for a handle of another model, or one made by default.
+/// Entry of a handle. \throws InvalidInput for a handle of another model or a default-constructed one.
 template <class Capabilities, class Handle>
 auto const& own_entry(Capabilities const& entries, Handle const& handle) {
   require_filled(handle.model);
@@ -74,7 +74,7 @@ auto const& own_entry(Capabilities const& entries, Handle const& handle) {
   return entries[std::size_t(handle.index)];
 }
 
-/// \throws InvalidInput naming `what` unless the marker's body is in its pool.
+/// Requires that the body of the marker belongs to this model. \throws InvalidInput naming `what`.
 template <class B>
 void require_own(ModelParts const& parts, PooledMarker<B> const& m, std::string const& what) {
   if constexpr (std::is_same_v<B, Ground>)
@@ -83,7 +83,7 @@ void require_own(ModelParts const& parts, PooledMarker<B> const& m, std::string 
     refuse_marker_of_another_model(what);
 }
 
-/// Axes (3×3) at a marker's point, as placed.
+/// Axes (3×3) at a marker's point in the reference state, in world axes.
 template <class B>
 Mat3 reference_axes(PooledMarker<B> const& m) {
   if constexpr (std::is_same_v<B, Ground>)
@@ -92,7 +92,7 @@ Mat3 reference_axes(PooledMarker<B> const& m) {
     return BodyKernels<B, double>::reference_axes(m.pool, m.marker);
 }
 
-/// Where the speeds of a rigid body begin; −1 of the ground.
+/// First velocity of the marker's body; −1 for the ground.
 template <class B>
 Index first_speed(PooledMarker<B> const& m) {
   if constexpr (std::is_same_v<B, Ground>)
@@ -101,7 +101,7 @@ Index first_speed(PooledMarker<B> const& m) {
     return m.pool.entries[std::size_t(m.marker.body)].v0;
 }
 
-/// The number of the published marker that stands at m with these axes.
+/// Adds a marker at m with the given axes relative to those of m. Returns its number.
 template <class B>
 Index publish_at(ModelParts& parts, PooledMarker<B> const& m, Mat3 const& axes) {
   if constexpr (std::is_same_v<B, Ground>)
@@ -111,7 +111,8 @@ Index publish_at(ModelParts& parts, PooledMarker<B> const& m, Mat3 const& axes) 
   return parts.markers++;
 }
 
-/// The linear point of a marker, and where its body stands; the ground takes the world of the other.
+/// Linear point of a marker. Writes the indices of the point's first coordinate and velocity to `side`. The ground has
+/// as many dimensions as `other`, the world of the other body.
 /// \throws InvalidInput naming the joint `what` for a point that is not linear in the coordinates.
 template <class B>
 LinearPoint linear_side(PooledMarker<B> const& m, World other, LinearSide& side, std::string const& what) {
@@ -144,7 +145,7 @@ BodyHandle<B> add_body(ModelParts& parts, BodyPool<B>& pool, B const& body, std:
   return {parts.serial(), Index(pool.entries.size()) - 1, std::move(name), pool.entries.shared()};
 }
 
-/// \throws InvalidInput naming the joint.
+/// Adds a joint between two markers. \throws InvalidInput naming the joint.
 template <class J, class A, class B>
 [[gnu::cold]] ElementHandle<J> add_joint(ModelParts& parts, Sequence<JointEntry<J>>& pool, J const& joint,
                                          PooledMarker<A> const& a, PooledMarker<B> const& b, std::string name) {
@@ -164,7 +165,7 @@ template <class J, class A, class B>
   require_observed(b.marker, needs_of_second<Requirement>(), name);
   parts.joint_names.require_free(name, "joint");
   parts.origin.change();
-  if constexpr (LinearPolicy<P>) {  // before a marker is published: it may refuse
+  if constexpr (LinearPolicy<P>) {  // before markers are added, because it may throw
     LinearConstraints rows{.name = name, .row = parts.rows};
     fill_linear_rows<G>(linear_side(a, B::world, rows.a, name), linear_side(b, A::world, rows.b, name), triad.col(2),
                         rows);
@@ -196,7 +197,7 @@ template <class J, class A, class B>
   return {parts.serial(), Index(pool.size()) - 1, std::move(name)};
 }
 
-/// A force element among the markers. \throws InvalidInput naming it.
+/// Adds a force element on the markers. \throws InvalidInput naming it.
 template <class F, class... Bs>
 ElementHandle<F> add_force(ModelParts& parts, Sequence<ForceEntry<F>>& pool, F const& force, std::string name,
                            PooledMarker<Bs> const&... markers) {
@@ -212,7 +213,7 @@ ElementHandle<F> add_force(ModelParts& parts, Sequence<ForceEntry<F>>& pool, F c
   return {parts.serial(), Index(pool.size()) - 1, std::move(name)};
 }
 
-/// A group of forces with its many markers. \throws InvalidInput naming it.
+/// Adds a force group with its many markers. \throws InvalidInput naming it.
 template <class F, class B>
 ElementHandle<F> add_group(ModelParts& parts, Sequence<ForceEntry<F>>& pool, F const& group,
                            Sequence<PooledMarker<B>> const& many, std::string name) {
@@ -232,7 +233,7 @@ ElementHandle<F> add_group(ModelParts& parts, Sequence<ForceEntry<F>>& pool, F c
   return {parts.serial(), Index(pool.size()) - 1, std::move(name)};
 }
 
-/// One of the few of a group, with its law. \throws InvalidInput naming the group.
+/// Adds a contact partner with its law to a force group. \throws InvalidInput naming the group.
 template <class F, class Law, class B>
 void add_opponent(ModelParts& parts, ForceEntry<F>& group, Law const& law, PooledMarker<B> const& one,
                   std::string name) {
@@ -245,7 +246,7 @@ void add_opponent(ModelParts& parts, ForceEntry<F>& group, Law const& law, Poole
   group.force.add_partner(law, Index(group.markers.size()) - 1, std::move(name));
 }
 
-/// Refuses, when it is compiled, a joint that cannot join markers of A and B.
+/// Refuses at compile time a joint that cannot connect markers of A and B.
 template <class J, class A, class B>
 constexpr void require_pairing() {
   using G = typename J::Geometry;

@@ -1,54 +1,55 @@
 #pragma once
 /// \file
-/// Waist 2 as data: the rows of joints and bodies, and who pushes which marker, after geometries and policies have
-/// spoken. Their types are gone.
+/// Constraint equations of joints and bodies, and wrenches of force elements, as arrays. The types of geometries,
+/// policies and forces are erased.
 
 #include <polybody/kinematics/marker_kinematics.hpp>
 #include <polybody/math/with_constant.hpp>
 
 namespace polybody {
 
-/// One end of a block of rows: a marker whose twist the rows read, or speeds that they read themselves.
+/// One end of a constraint block: a marker whose twist the equations contain, or velocities that they contain directly.
 template <StateScalar T = double>
 struct ConstraintSide {
-  Index marker = -1;       ///< −1: none; the map's columns are speeds
-  Index first = 0;         ///< first of these speeds
-  Index columns = 0;       ///< of the map: six of a marker; none for an end that is fixed to the ground
-  T const* map = nullptr;  ///< (rows × columns) by columns
+  Index marker = -1;       ///< number of the marker; −1 if the map multiplies velocities
+  Index first = 0;         ///< first of these velocities
+  Index columns = 0;       ///< columns of the map: six for a marker, zero for an end that is fixed to the ground
+  T const* map = nullptr;  ///< (rows × columns) derivative of ġ by the twist or velocities, column-major
 };
 
-/// Who brings rows.
+/// Source of constraint equations.
 enum class ConstraintSource : unsigned char {
-  body,      ///< rows that a body owns, such as the norm of Euler parameters
-  linear,    ///< rows of a joint that are linear in coordinates
-  joint,     ///< rows of a joint between frames
-  compliant  ///< what a compliant joint measures and answers by a force: no rows of the model
+  body,      ///< own equations of a body, such as the norm of Euler parameters
+  linear,    ///< equations of a joint that are linear in the coordinates
+  joint,     ///< equations of a joint between frames
+  compliant  ///< constraint function of a compliant joint, enforced by a force: no equations of the model
 };
 
-/// Up to six rows of one source: ġ = a.map · (twist or speeds of a) + b.map · (…) + rate. A linear joint may have more.
+/// Constraint equations of one source, ġ = a.map · (twist or velocities of a) + b.map · (…) + rate. A linear joint may
+/// have more than six equations, other sources have up to six.
 template <StateScalar T = double>
 struct ConstraintBlock {
-  ConstraintSource source = ConstraintSource::joint;  ///< who brings them
+  ConstraintSource source = ConstraintSource::joint;  ///< type of the source
   bool opposite = false;                              ///< both ends are markers, and the map of b is that of a times −1
-  Index row = -1;                                     ///< first row of the model; −1 for a compliant joint
-  int rows = 0;                                       ///< m
-  int positions = 0;                 ///< of a linear joint: its first rows, which are those of the position
-  Index owner = 0;                   ///< the body or the joint, by its place in the model's layout
+  Index row = -1;                                     ///< first equation in the model; −1 for a compliant joint
+  int rows = 0;                                       ///< number m of equations
+  int positions = 0;                 ///< for a linear joint: number of position equations, which are the first ones
+  Index owner = 0;                   ///< position of the body or joint in the model's layout
   ConstraintSide<T> a = {}, b = {};  ///< its two ends
-  T const* g = nullptr;              ///< (m) violation
-  T const* rate = nullptr;           ///< (m) Φ_t; null where rows do not know time
+  T const* g = nullptr;              ///< (m) constraint violation
+  T const* rate = nullptr;           ///< (m) Φ_t; null if the equations do not depend on time
   T const* answer = nullptr;         ///< (m) λ(g, ġ) of a compliant joint
 
-  /// λ (m): the multipliers of the rows, or what the joint's policy answers.
+  /// Multipliers λ (m) of the equations, or λ(g, ġ) of a compliant joint.
   T const* multiplier(VecXOf<T> const& lambda) const { return row >= 0 ? lambda.data() + row : answer; }
 };
 
-/// A wrench on a marker, about its origin, in world axes.
+/// Wrench of a force element on a marker, about its origin, in world axes.
 template <StateScalar T = double>
 struct AppliedWrench {
-  Index source = 0;  ///< the force element, by its place in the model's layout
-  Index marker = 0;  ///< published
-  T w[6] = {};       ///< [f; m] [N, N m]; loads are not yet scaled
+  Index source = 0;  ///< position of the force element in the model's layout
+  Index marker = 0;  ///< number of the marker
+  T w[6] = {};       ///< [f; m] [N, N m], without the load factor
 };
 
 namespace detail {
@@ -79,7 +80,7 @@ void add_pulled(MarkerKinematics<T> const& p, T const* w, double sign, T* r) {
   }
 }
 
-/// [f; m] = mapᵀ λ of a marker's end.
+/// w = [f; m] = mapᵀ λ, the wrench of m multipliers on the marker of an end.
 template <int m, StateScalar T>
 void wrench_of(T const* map, T const* lambda, T* w) {
   for (int i = 0; i < 6; ++i) {
@@ -89,7 +90,7 @@ void wrench_of(T const* map, T const* lambda, T* w) {
   }
 }
 
-/// [ṙ; ω] of a frame.
+/// w = [ṙ; ω], the twist of a frame.
 template <StateScalar T>
 void read_twist(Frame<T> const& f, T* w) {
   for (int i = 0; i < 3; ++i) {
@@ -98,7 +99,7 @@ void read_twist(Frame<T> const& f, T* w) {
   }
 }
 
-/// out (m) += map · x; m as a constant, or `rows` where it is zero.
+/// out (m) += map · x. \tparam m number of rows of the map; 0 stands for `rows`
 template <int m, StateScalar T>
 void add_mapped(T const* map, Index columns, T const* x, int rows, T* out) {
   int const n = m > 0 ? m : rows;
@@ -108,7 +109,7 @@ void add_mapped(T const* map, Index columns, T const* x, int rows, T* out) {
 
 }  // namespace detail
 
-/// out (6) = mapᵀ λ: the wrench that λ puts on an end of a block, where it is a marker; else zero.
+/// out (6) = mapᵀ λ, the wrench of the multipliers on the marker of an end; zero for an end without a marker.
 template <StateScalar T>
 void wrench_at(ConstraintBlock<T> const& block, ConstraintSide<T> const& end, T const* lambda, T* out) {
   for (int i = 0; i < 6; ++i) out[i] = T(0.0);

@@ -1,7 +1,8 @@
 #pragma once
 /// \file
-/// Between the unknowns of a time step and those of the whole model, where policies eliminate some: v = T u,
-/// v̇ = T u̇ + b. A table of functions, so that programs whose joints eliminate nothing compile none of it.
+/// Maps between the unknowns of a time step (reduced vectors) and those of the model (full vectors) if policies
+/// eliminate unknowns: v = T u, v̇ = T u̇ + b. The maps are a table of functions, so that programs without such
+/// policies do not compile them.
 
 #include <polybody/math/block_sink.hpp>
 #include <polybody/math/sequence.hpp>
@@ -10,32 +11,38 @@
 
 namespace polybody {
 
-/// What is known of narrow vectors beside the functions.
+/// Sizes and positions in reduced vectors.
 struct ReducedLayout {
-  Index coordinates = 0, velocities = 0, rows = 0;  ///< counts in narrow vectors; states are speeds
-  Sequence<Index> nonholonomic_equations = {};      ///< narrow
-  Sequence<ReducedPosition> places = {};            ///< of the bodies, in the order of the layout
-  Sequence<Index> full_velocity = {};  ///< behind a narrow one; of a joint coordinate, the first of the carried body
-  Sequence<Index> remaining_equations = {};  ///< by their number in the model
-  /// A turn of a joint, in narrow vectors.
+  /// Sizes of reduced vectors; velocities include first-order states.
+  Index coordinates = 0, velocities = 0, rows = 0;
+  Sequence<Index> nonholonomic_equations = {};  ///< numbers among the reduced equations
+  Sequence<ReducedPosition> places = {};        ///< positions of the bodies, in the order of the model's layout
+  /// Full velocity of each reduced one. For a joint coordinate it is the first velocity of the body that the joint
+  /// moves.
+  Sequence<Index> full_velocity = {};
+  Sequence<Index> remaining_equations = {};  ///< numbers in the model of the equations of a step
+  /// Position of a rotation of a joint in reduced vectors.
   struct Turn {
-    Index q, v;                     ///< its first coordinate and speed
-    Index coordinates, velocities;  ///< how many of both it has
+    Index q, v;                     ///< its first coordinate and velocity
+    Index coordinates, velocities;  ///< its numbers of coordinates and velocities
   };
-  Sequence<Turn> turns = {};  ///< among the joint coordinates; the others are slides and deformations
-  /// Eliminated rows of joints that carry bodies, where the equations hold them: a step may keep estimates of their
-  /// multipliers behind those of its rows. They move nothing; they bring the residual of the whole model near zero.
+  Sequence<Turn> turns = {};  ///< all motions of joints except translations
+  /// Numbers in the model of the equations of joints with joint coordinates that the linear system still contains. A
+  /// step may store estimates of their multipliers after the multipliers of its own equations. The estimates do not
+  /// affect the motion; they make the residual of the full model almost zero.
   Sequence<Index> eliminated_equations = {};
-  std::vector<std::string> redundant = {};  ///< joints whose linear rows repeat others
+  std::vector<std::string> redundant = {};  ///< joints with redundant linear constraint equations
 
-  /// A linear system of equations may have other unknowns than a time step; those that stand for speeds come first.
-  Index equations = 0, equation_velocities = 0;  ///< unknowns of the equations; of these, speeds
-  Sequence<Index> full_unknown = {};             ///< behind an equation; empty where they are those of a step
-  bool solves_by_bodies = false;                 ///< the tree itself is the solver
-  bool moves_by_newton_euler = false;            ///< its bodies have no forces of their own
-  bool keeps_mass_constant = false;              ///< T is constant
+  /// Number of unknowns of the linear system, which may differ from that of a step, and of the velocities among them,
+  /// which are the first ones.
+  Index equations = 0, equation_velocities = 0;
+  /// Full unknown of each unknown of the linear system; empty if these are the unknowns of a step.
+  Sequence<Index> full_unknown = {};
+  bool solves_by_bodies = false;       ///< the articulated-body algorithm solves the linear system
+  bool moves_by_newton_euler = false;  ///< bodies of the tree have no elastic or other own forces
+  bool keeps_mass_constant = false;    ///< T is constant
 
-  /// The `full` multipliers of all rows from those `of_step`; zero for eliminated ones of which it has no estimates.
+  /// Computes the `full` multipliers from those `of_step`. Eliminated equations without an estimate get zero.
   template <StateScalar T>
   void expand_rows(VecXOf<T> const& of_step, VecXOf<T>& full) const {
     for (Index i = 0; i < full.size(); ++i) full[i] = T(0.0);
@@ -46,88 +53,86 @@ struct ReducedLayout {
   }
 };
 
-/// What a factorisation keeps of the state at which its matrix was written; for trees that are their own solver, that
-/// solver.
+/// State of a tree at which a matrix was written, stored with its factorisation. For the articulated-body algorithm it
+/// also contains the solver with its factors.
 using FrozenState = std::shared_ptr<void>;
 
-/// Where an implicit step stands: (q, v, t), v̇ and λ in its own unknowns.
+/// Iterate of an implicit step.
 struct StepPosition {
-  At<double> at;           ///< q, v and t, narrow
-  VecX const &a, &lambda;  ///< v̇ (nv) and λ (rows), narrow
+  At<double> at;           ///< q, v and t, reduced
+  VecX const &a, &lambda;  ///< v̇ (nv) and λ (rows), reduced
 };
 
-/// The functions between narrow and whole vectors of the scalar T; `c` is the elimination that made them.
+/// Maps between reduced and full vectors of the scalar T. `c` is the elimination that provides them.
 template <StateScalar T>
 struct CoordinateMapOperations {
-  using Vector = VecXOf<T>;  ///< of coordinates, speeds or rows
+  using Vector = VecXOf<T>;  ///< coordinates, velocities or constraint equations
 
-  /// Whole q, v from narrow ones; this place is kept for what follows.
+  /// Full q, v from reduced ones. The other functions use the positions of this call.
   void (*expand)(void* c, Vector const& q, Vector const& v, Vector& full_q, Vector& full_v) = nullptr;
-  /// T u, or T u + b.
+  /// out = T u, with `bias` T u + b.
   void (*expand_rates)(void* c, Vector const& u, bool bias, Vector& out) = nullptr;
-  /// out = Tᵀ r; r is used up, and kept as it was for the multipliers.
+  /// out = Tᵀ r. Stores a copy of r for `recover_multipliers`, then overwrites r.
   void (*reduce)(void* c, Vector& r, Vector& out) = nullptr;
-  /// Adds to estimates of the multipliers of eliminated joints what they lack in the last r that was reduced, M a − f +
-  /// Gᵀλ with these estimates.
+  /// Corrects the estimates `lambda` of the multipliers of eliminated joints, so that they balance the r of the last
+  /// `reduce`. That r = M a − f + Gᵀλ contains the same estimates.
   void (*recover_multipliers)(void* c, Data<T> const& data, Vector& lambda) = nullptr;
-  /// q ⊞ δ and its rate for joint coordinates; other bodies see to their own.
+  /// out = q ⊞ δ for joint coordinates only.
   void (*plus)(void* c, Vector const& q, Vector const& delta, Vector& out) = nullptr;
-  /// δ˙ while q ⊞ δ moves with the narrow speeds v, for joint coordinates.
+  /// out = δ˙ while q ⊞ δ moves with the reduced velocities v, for joint coordinates only.
   void (*local_rate)(void* c, Vector const& delta, Vector const& v, Vector& out) = nullptr;
 };
 
-/// The functions that coordinates of a step's own offer in doubles.
+/// Additional functions for reduced coordinates in doubles.
 struct CoordinateOperations : CoordinateMapOperations<double> {
-  /// q˙ of joint coordinates.
+  /// `rate` = q˙ of joint coordinates.
   void (*coordinate_rates)(void* c, VecX const& q, VecX const& v, VecX& rate) = nullptr;
-  /// The narrow state next to a whole one: exact where this one keeps to the eliminated joints.
+  /// out = reduced state nearest to the full state x; exact if x satisfies the equations of the eliminated joints.
   void (*reduced)(void* c, State const& x, State& out) = nullptr;
 
-  /// The whole tangent that `write` gives, in the unknowns of the equations.
+  /// Writes the full tangent of `write` into `sink`, in the unknowns of the linear system.
   void (*write)(void* c, BlockWriter const& write, BlockSink& sink) = nullptr;
-  /// Makes a place to keep; `hold` copies the state of the last `expand` into it.
+  /// Allocates storage for `hold`.
   FrozenState (*held)(void* c) = nullptr;
-  void (*hold)(void* c, void* held) = nullptr;  ///< see `held`
-  /// A right-hand side of a time step as one of the equations, and a solution of these as one of the step's unknowns.
+  void (*hold)(void* c, void* held) = nullptr;  ///< copies the state of the last `expand` to `held`
+  /// out = right-hand side of the linear system from that of a step, at the state `held`.
   void (*to_equations)(void* c, void* held, VecX const& rhs, VecX& out) = nullptr;
-  /// Unknowns of the step from a solution of the equations, at the place that is held.
+  /// out = unknowns of the step from a solution of the linear system, at the state `held`.
   void (*from_equations)(void* c, void* held, VecX const& solution, VecX& out) = nullptr;
-  /// Where there are `eliminated_equations`: −r of the whole model into the equations; the rows of a step into them; a
-  /// solution as one of the step's unknowns at the place of the last `expand`, and behind these the multipliers of the
-  /// carrying rows.
+  /// For `eliminated_equations`: writes −r of the full model to the right-hand side `out` of the linear system.
   void (*balance_to_equations)(void* c, VecX const& r, VecX& out) = nullptr;
-  /// Adds the rows of a step to a right-hand side of the equations.
+  /// For `eliminated_equations`: writes the equations of a step to the right-hand side `out` of the linear system.
   void (*rows_to_equations)(void* c, double const* rows, VecX& out) = nullptr;
-  /// A correction of a step, and behind it the multipliers of the carrying rows, from a solution of the equations.
+  /// For `eliminated_equations`: out = unknowns of the step from a solution of the linear system, at the state of the
+  /// last `expand`, followed by the multipliers of the eliminated equations.
   void (*correction_from_equations)(void* c, VecX const& solution, VecX& out) = nullptr;
-  /// For trees that are their own solver: u̇ where no rows stay, under weight alone or with `unbalance` (of the
-  /// whole model); −1, or the speed whose freedom has no inertia.
+  /// Articulated-body algorithm, without constraint equations: out = u̇ under gravity only, or for the residual
+  /// `unbalance` of the full model. Returns −1, or a velocity without inertia.
   Index (*accelerations)(void* c, VecX const& q, VecX const& v, double load_factor, VecX const* unbalance,
                          VecX& out) = nullptr;
-  /// For them under weight alone: r = Tᵀ(M(T u̇ + b) − f) at a step's place; and the factors of its exact tangent there,
-  /// −1 or the speed without a pivot.
+  /// Articulated-body algorithm under gravity only: r = Tᵀ(M(T u̇ + b) − f) at the iterate x.
   void (*balance)(void* c, StepPosition const& x, double load_factor, VecX& r) = nullptr;
-  /// The factors of this balance's tangent; `k` has its coefficients.
+  /// Factorises the exact tangent of `balance` with the coefficients k. Returns −1, or the velocity without a pivot.
   Index (*factor_balance)(void* c, void* held, StepPosition const& x, double load_factor,
                           TangentCoefficients const& k) = nullptr;
-  /// Factors the whole tangent that `write` gives: −1, or the speed without a pivot.
+  /// Articulated-body algorithm: factorises the full tangent of `write`. Returns −1, or the velocity without a pivot.
   Index (*factor)(void* c, void* held, BlockWriter const& write) = nullptr;
-  /// Solves with the last factors, of `factor` or `factor_balance`; in the unknowns of a step.
+  /// Solves with the factors of the last `factor` or `factor_balance`, in the unknowns of a step.
   void (*solve)(void* held, VecX const& rhs, VecX& x) = nullptr;
 };
 
-/// Coordinates of the scalar T with their functions; none where a policy eliminates nothing.
+/// Reduced coordinates of the scalar T; empty if no policy eliminates unknowns.
 template <StateScalar T>
 struct CoordinatesOf {
-  /// The functions: of doubles more than the maps.
+  /// Type of the table of functions.
   using Table = std::conditional_t<std::same_as<T, double>, CoordinateOperations, CoordinateMapOperations<T>>;
 
-  std::shared_ptr<void> self;                                    ///< the elimination, which `entries` take as `c`
-  Table const* entries = nullptr;                                ///< null: nothing is eliminated
-  std::shared_ptr<ReducedLayout const> reduced;                  ///< what is known of the narrow vectors
-  explicit operator bool() const { return entries != nullptr; }  ///< whether a policy eliminates anything
+  std::shared_ptr<void> self;                                    ///< elimination, the argument `c` of the functions
+  Table const* entries = nullptr;                                ///< functions; null if nothing is eliminated
+  std::shared_ptr<ReducedLayout const> reduced;                  ///< sizes and positions in reduced vectors
+  explicit operator bool() const { return entries != nullptr; }  ///< true if a policy eliminates unknowns
 };
 
-using Coordinates = CoordinatesOf<double>;  ///< in doubles
+using Coordinates = CoordinatesOf<double>;  ///< for doubles
 
 }  // namespace polybody

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Everything that is computed from a state, as arrays. The model itself stays const.
+/// Arrays of all results of an evaluation. An evaluation does not change the model.
 
 #include <memory>
 
@@ -12,54 +12,55 @@
 
 namespace polybody {
 
-/// How code is compiled where it decides what data look like: numbers in a pack, and the alignment of fixed-size
-/// matrices [bytes]. It is a part of the type, so that objects compiled for different machines do not link.
+/// Compiler settings that determine the memory layout of `Data`. They are part of its type, so that object files with
+/// different settings do not link.
 struct Build {
-  int pack = pack_size;                   ///< numbers in a pack
+  int pack = pack_size;                   ///< numbers in a SIMD vector
   int alignment = EIGEN_MAX_ALIGN_BYTES;  ///< of fixed-size matrices [bytes]
 };
 
-/// Scratch of an evaluation: markers, Jacobians, row blocks, actions. It is laid out once for a model.
+/// Arrays of an evaluation: markers, Jacobians, constraint blocks, applied wrenches. They are allocated once for a
+/// model.
 template <StateScalar T = double, Build build = Build{}>
 struct Data {
-  Sequence<MarkerKinematics<T>> markers;  ///< waist 1, one for each marker
-  Sequence<T> jacobians;                  ///< arena of the dense Jacobians
-  Sequence<ConstraintBlock<T>> rows;      ///< waist 2, one for each joint and each body that owns rows
-  Sequence<AppliedWrench<T>> actions;     ///< what force elements do, one for each marker of each
-  Sequence<T> states, rates;              ///< first-order ones of force elements, z and ż
-  Index first_state = 0;                  ///< among the speeds
+  Sequence<MarkerKinematics<T>> markers;  ///< kinematics of each marker
+  Sequence<T> jacobians;                  ///< storage of the dense Jacobians
+  Sequence<ConstraintBlock<T>> rows;      ///< one for each joint and each body with own constraint equations
+  Sequence<AppliedWrench<T>> actions;     ///< one for each marker of each force element
+  Sequence<T> states, rates;              ///< first-order states z of force elements, and ż
+  Index first_state = 0;                  ///< index of the first one among the velocities
 
-  Sequence<Wrench<double>> loads;             ///< per marker: what the tangent's second-order terms need
-  Sequence<Mat<double, 6, 6>> own_stiffness;  ///< per marker of the largest force group
-  Sequence<double> scratch;                   ///< for pulled blocks: n×18 and n×n of the widest marker
+  Sequence<Wrench<double>> loads;             ///< wrench of each marker in r, for the second-order terms of the tangent
+  Sequence<Mat<double, 6, 6>> own_stiffness;  ///< for each marker of the largest force group
+  Sequence<double> scratch;                   ///< for projected blocks: n×18 and n×n of the widest marker
 
-  bool linear_rows = true;  ///< else rows of linear joints are left out, and markers that these alone read
-  Sequence<char> read;      ///< per marker: by anything but linear joints
+  bool linear_rows = true;  ///< if false, linear joints and markers of linear joints only are omitted
+  Sequence<char> read;      ///< for each marker: it belongs to a force element or a joint that is not linear
 
-  Workers* workers = nullptr;         ///< threads that share the loops; none by default
-  Sequence<T> element_forces;         ///< with workers: of all elements of a body, before they are added in order
-  Sequence<double> element_tangents;  ///< the same
-  /// With workers: what the parts of a force group do to the few, before it is added in order.
+  Workers* workers = nullptr;         ///< threads that share the loops; null for one thread
+  Sequence<T> element_forces;         ///< with workers: forces of all elements of a body, added later in fixed order
+  Sequence<double> element_tangents;  ///< with workers: tangents of the elements, added later in fixed order
+  /// With workers: wrenches of a part of a force group on its contact partners, added later in fixed order.
   struct alignas(64) Opposite {
-    Sequence<AppliedWrench<T>> actions;  ///< what one part does
+    Sequence<AppliedWrench<T>> actions;  ///< wrenches of one part
   };
   Sequence<Opposite> opposite;                 ///< one for each thread
-  static constexpr Index least_elements = 32;  ///< that are worth a thread
-  static constexpr Index least_pairs = 32;     ///< markers of the many of a group
-  static constexpr Index least_packs = 16;     ///< packs of alike elements that are worth a thread
-  static constexpr Index least_markers = 128;  ///< published markers that are worth a thread
+  static constexpr Index least_elements = 32;  ///< least number of elements per thread
+  static constexpr Index least_pairs = 32;     ///< least number of the many markers of a group per thread
+  static constexpr Index least_packs = 16;     ///< least number of SIMD vectors of elements per thread
+  static constexpr Index least_markers = 128;  ///< least number of markers per thread
 
-  std::shared_ptr<void> kept;  ///< what depends on the types of bodies and joints: poses, gaps, scratch
+  std::shared_ptr<void> kept;  ///< arrays that depend on the types of bodies and joints: poses, constraint functions
 
   Data() = default;
-  Data(Data const&) = delete;  // markers and rows point into the arenas
+  Data(Data const&) = delete;  // markers and constraint blocks contain pointers into the arrays
   Data& operator=(Data const&) = delete;
-  Data(Data&&) = default;             ///< takes the buffers over: pointers into them stay valid
-  Data& operator=(Data&&) = default;  ///< takes the buffers over, as above
+  Data(Data&&) = default;             ///< moves the arrays; pointers into them stay valid
+  Data& operator=(Data&&) = default;  ///< moves the arrays; pointers into them stay valid
 
-  /// Where row i stands among the unknowns, behind the speeds.
+  /// Number of the unknown λ_i, after all velocities.
   Index unknown_of_row(Index i) const { return first_state + Index(states.size()) + i; }
-  /// Whether this evaluation leaves a block out: one of a linear joint, while `linear_rows` is false.
+  /// The evaluation omits this block: it belongs to a linear joint, and `linear_rows` is false.
   bool leaves_out(ConstraintBlock<T> const& block) const {
     return block.source == ConstraintSource::linear && !linear_rows;
   }

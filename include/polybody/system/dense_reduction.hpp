@@ -5,15 +5,15 @@
 
 namespace polybody {
 
-/// [TᵀKT, (G T)ᵀ; G T, 0] as a dense matrix from the blocks of [K, Gᵀ; G, 0]: itself the sink of these. Of the rows
-/// those that stay are taken.
-/// Compiled where it is used.
+/// Dense matrix [TᵀKT, (G T)ᵀ; G T, 0] with the remaining constraint equations. It receives the blocks of
+/// [K, Gᵀ; G, 0]. A template, so that it is compiled only if used.
 template <class T = double>
 class DenseReductionOf {
  public:
   DenseReductionOf() = default;
-  /// For `full_velocities` of a model and `velocities` of a step. \param row_of where each row of the model goes among
-  /// `rows`; −1 where it is left out
+  /// \param full_velocities number of velocities of the model \param velocities number of velocities of a step
+  /// \param rows number of constraint equations of a step \param row_of number of each equation of the model among
+  /// these; −1 if it is eliminated
   DenseReductionOf(Index full_velocities, Index velocities, Index rows, Sequence<Index> row_of)
       : row_of_(std::move(row_of)),
         velocities_(full_velocities),
@@ -22,18 +22,18 @@ class DenseReductionOf {
         g_(MatXOf<T>::Zero(rows, velocities)),
         half_(VecXOf<T>::Zero(velocities)) {}
 
-  /// Column j of T is `column` (speeds of the whole model).
+  /// Sets column j of T to `column` (nv of the model).
   void set_column(Index j, VecX const& column) {
     for (Index i = 0; i < column.size(); ++i) transposed_(j, i) = column[i];
   }
-  /// All entries are zero; T stays.
+  /// Sets all entries to zero, but keeps T.
   void begin() {
     k_.setZero();
     g_.setZero();
   }
-  /// Adds the block b of the whole matrix, whose first entry is at (row, col); that of Gᵀ is taken from G.
+  /// Adds block b of the full matrix with its first entry at (row, col). Blocks of Gᵀ are ignored; G gives them.
   void add(Index row, Index col, BlockView const& b) {
-    if (col >= velocities_) return;  // the mirror of G
+    if (col >= velocities_) return;  // block of Gᵀ
     for (Index i = 0; i < b.rows; ++i) {
       Index const at = row + i;
       Index const to = at < velocities_ ? at : row_of_[std::size_t(at - velocities_)];
@@ -49,7 +49,7 @@ class DenseReductionOf {
         if (double const e = half_[j]; e != 0.0) k_.col(j) += e * transposed_.col(at);
     }
   }
-  /// The matrix, block by block.
+  /// Writes the blocks of the matrix into `sink`.
   void write(BlockSink& sink) const {
     sink.add(0, 0, k_);
     if (g_.rows() == 0) return;
@@ -64,6 +64,6 @@ class DenseReductionOf {
   VecXOf<T> half_;
 };
 
-using DenseReduction = DenseReductionOf<>;  ///< in doubles
+using DenseReduction = DenseReductionOf<>;  ///< for doubles
 
 }  // namespace polybody

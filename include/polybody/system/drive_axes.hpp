@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Whether drives turn about the axes of their pins.
+/// Check that driving constraints rotate about the axes of the revolute joints between the same bodies.
 
 #include <array>
 #include <string>
@@ -12,19 +12,21 @@
 
 namespace polybody::detail {
 
-/// A geometry that leaves its bodies one turn, about its own axis.
+/// Geometry whose only free rotation is about its own axis.
 template <class G>
 concept OneRotationFree = HasFreeDirections<G> && !G::free[3] && !G::free[4] && G::free[5];
-/// A geometry that prescribes a turn.
+/// Geometry that prescribes a rotation.
 template <class G>
 concept RotationDrive = HasRotationAxis<G> && requires(G g) { g.law; };
 
-/// Pins and drives between rigid bodies. What a pin holds turns about its axis alone, so a drive about another one
-/// contradicts it.
+/// Pins (joints with one free rotation) and driving constraints between rigid bodies. A drive about an axis that
+/// differs from that of a pin contradicts the pin.
 class DriveAxes {
  public:
-  /// \throws InvalidInput naming both joints where a drive's axis is not that of a pin between the same bodies.
-  template <class = void>  // compiled where it is used
+  /// Adds a drive if `drives`, otherwise a pin. \param bodies first velocities of both bodies, −1 for the ground
+  /// \param axis (3) unit vector in world axes of the reference state \param name name of the joint
+  /// \throws InvalidInput naming both joints if a drive and a pin between the same bodies have different axes.
+  template <class = void>  // compiled only if used
   [[gnu::cold]] void add(bool drives, std::pair<Index, Index> bodies, Vec3 const& axis, std::string const& name) {
     if (bodies.first > bodies.second) std::swap(bodies.first, bodies.second);
     for (Turn const& other : turns_[drives ? 0 : 1]) {
@@ -42,7 +44,7 @@ class DriveAxes {
 
  private:
   struct Turn {
-    std::pair<Index, Index> bodies;  ///< where their speeds begin; −1 is the ground
+    std::pair<Index, Index> bodies;  ///< first velocities of the bodies; −1 for the ground
     Vec3 axis;
     std::string name;
   };
@@ -56,7 +58,7 @@ class DriveAxes {
   }
   [[gnu::cold]] static std::string text(Vec3 const& x) { return sentence_of({"(", x[0], ", ", x[1], ", ", x[2], ")"}); }
 
-  std::array<Sequence<Turn>, 2> turns_;  ///< of pins, of drives
+  std::array<Sequence<Turn>, 2> turns_;  ///< pins, drives
 };
 
 }  // namespace polybody::detail

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Where a joint of a `JointTree` meets a body that floats on a frame: the end moves with the body's deformation, so
-/// the rates of this one move what the joint carries beside the joint's own speeds.
+/// End of a joint of a `JointTree` on a body with a floating frame. The end moves with the deformation of the body, so
+/// the motion of the carried body depends on deformation rates in addition to the joint's velocities.
 
 #include <numbers>
 
@@ -11,25 +11,25 @@
 
 namespace polybody {
 
-/// A marker of a floating body, without the body's type. \tparam T scalar of the body's coordinates
+/// Marker of a body with a floating frame, with erased body type. \tparam T scalar of the body's coordinates
 template <class T = double>
 struct FloatingEndOf {
-  /// Publishes the marker of `end` on a body with coordinates q and speeds v of its own, both from its first on.
+  /// Evaluates the marker of `end` for a body with coordinates q and velocities v, both of the body alone.
   using Publish = void (*)(FloatingEndOf const& end, T const* q, T const* v, MarkerKinematics<T>& out);
 
-  Publish evaluate_marker = nullptr;             ///< the marker where the body has these coordinates and speeds
-  void const *body = nullptr, *point = nullptr;  ///< the body and the point on it, whose types `evaluate_marker` knows
-  Mat3 axes = Mat3::Identity();                  ///< relative to the section's: the joint's axes
-  RigidLayout layout = RigidLayout::quaternion;  ///< how the coordinates of the floating frame are written
-  Index q0 = 0, v0 = 0;                          ///< of the body in whole vectors
-  Index deformations = 0;                        ///< behind its frame
-  Index first_column = 0;                        ///< in the state of the tree
+  Publish evaluate_marker = nullptr;             ///< function for the types of `body` and `point`
+  void const *body = nullptr, *point = nullptr;  ///< body and point on it, with erased types
+  Mat3 axes = Mat3::Identity();                  ///< (3×3) axes of the joint relative to those of the section
+  RigidLayout layout = RigidLayout::quaternion;  ///< coordinates of the floating frame
+  Index q0 = 0, v0 = 0;                          ///< first coordinate and velocity of the body in full vectors
+  Index deformations = 0;                        ///< number of deformation coordinates, after those of the frame
+  Index first_column = 0;                        ///< its first column in `TreeStateOf::columns`
 
-  /// How many coordinates the body's floating frame has: (x, y, angle), or position and quaternion.
+  /// Number of coordinates of the floating frame: (x, y, angle), or position and quaternion.
   Index frame_coordinates() const { return layout == RigidLayout::plane ? 3 : 7; }
-  /// How many speeds it has: they come before those of the deformation.
+  /// Number of velocities of the floating frame, which are the first ones of the body.
   Index frame_velocities() const { return layout == RigidLayout::plane ? 3 : 6; }
-  /// Lengthens what a tree's state holds for its ends: `columns`, q and v of a body, `jacobian`.
+  /// Enlarges the arrays of a tree's state for its ends: `columns`, q and v of a body, `jacobian`.
   template <class Columns, class Numbers>
   void make_room(Columns& columns, Numbers& q, Numbers& v, Numbers& jacobian) const {
     std::size_t const velocities = std::size_t(frame_velocities() + deformations);
@@ -38,14 +38,14 @@ struct FloatingEndOf {
     v.resize(std::max(v.size(), velocities));
     jacobian.resize(std::max(jacobian.size(), 6 * velocities));
   }
-  /// Where the first deformation's rate stands in whole speeds.
+  /// Index of the first deformation rate in full velocities.
   Index first_rate() const { return v0 + frame_velocities(); }
 };
-using FloatingEnd = FloatingEndOf<>;  ///< in doubles
+using FloatingEnd = FloatingEndOf<>;  ///< for doubles
 
 namespace detail {
 
-/// The marker, with its Jacobian in the tree's scratch.
+/// Evaluates the marker of an end, with its Jacobian in the workspace s.
 template <class T>
 MarkerKinematics<T> place_end(FloatingEndOf<T> const& end, T const* q, T const* v, TreeStateOf<T>& s) {
   MarkerKinematics<T> out;
@@ -53,21 +53,22 @@ MarkerKinematics<T> place_end(FloatingEndOf<T> const& end, T const* q, T const* 
   end.evaluate_marker(end, q, v, out);
   return out;
 }
-/// The angle x without full turns, −π to π [rad].
+/// Angle x modulo 2π, from −π to π [rad].
 inline double within_a_turn(double x) { return std::remainder(x, 2.0 * std::numbers::pi); }
 template <class T>
 T within_a_turn(T const& x) {
   return x + (within_a_turn(value_of(x)) - value_of(x));
 }
-/// The turn of the joint's frame against the body's reference axes at this angle, in the plane: small, as deformations
-/// are.
+/// Rotation of a marker's section relative to the floating frame at `angle` [rad], in the plane. It is small, because
+/// it is due to deformation. \param a (3×3) axes of the marker
 template <class T>
 T bent_by(FloatingEndOf<T> const& end, Mat<T, 3, 3> const& a, T angle) {
   using std::atan2;
   Mat<T, 3, 3> const section = product<T, 3>(a, in_scalar<T>(transposed<double>(end.axes)));
   return within_a_turn(atan2(section(1, 0), section(0, 0)) - angle);
 }
-/// A column of a motion at r, at the world's origin until `finish_columns`.
+/// Column of a motion with the translation `slide` at r and the rotation `turn`, about the world's origin.
+/// `finish_columns` moves it to the body's origin.
 template <class T>
 Vec<T, 6> column_from(Vec<T, 3> const& r, Vec<T, 3> const& slide, Vec<T, 3> const& turn) {
   Vec<T, 3> const carried = cross<T>(r, turn);
@@ -79,7 +80,8 @@ Vec<T, 6> column_from(Vec<T, 3> const& r, Vec<T, 3> const& slide, Vec<T, 3> cons
   return out;
 }
 
-/// From the frame of the parent to the joint's frame on it. `q`, `v` are whole, and hold the parent.
+/// Moves `run` from the frame of the parent to the joint's frame on the parent. q and v are full and already contain
+/// the parent's state.
 template <class T>
 void leave_body(FloatingEndOf<T> const& end, VecXOf<T> const& q, VecXOf<T> const& v, RunnerOf<T>& run, T& angle,
                 TreeStateOf<T>& s) {
@@ -93,11 +95,11 @@ void leave_body(FloatingEndOf<T> const& end, VecXOf<T> const& q, VecXOf<T> const
   }
 }
 
-/// From the joint's frame on a body to the frame on which this one floats: with u, R, ω_d of the marker in the frame's
-/// axes, all by deformation alone,
+/// Moves `run` from the joint's frame on a body to the floating frame of the body. With the position u, rotation R and
+/// angular velocity ω_d of the marker relative to the floating frame, in its axes,
 ///   A = A_m Rᵀ,  ω = ω_m − A ω_d,  r = r_m − A u,  ṙ = ṙ_m − ω × A u − A u˙,
 ///   ω˙ = ω˙_m − ω × A ω_d − A ω˙_d,  r̈ = r̈_m − ω˙ × A u − ω × (ω × A u) − 2 ω × A u˙ − A u¨.
-/// `q`, `v` are whole, and hold the body's deformation.
+/// q and v are full and already contain the body's deformation.
 template <class T>
 void arrive_on_body(FloatingEndOf<T> const& end, VecXOf<T> const& q, VecXOf<T> const& v, RunnerOf<T>& run, T& angle,
                     TreeStateOf<T>& s) {

@@ -1,13 +1,13 @@
 #pragma once
 /// \file
-/// Slopes of a force element, or of one pair of a force group by its law, as blocks of the tangent.
+/// Derivatives of the wrenches of a force element, or of one pair of a force group, as blocks of the tangent.
 
 #include <polybody/forces/force_states.hpp>
 #include <polybody/system/joint_kernels.hpp>
 
 namespace polybody::detail {
 
-/// Frames of published markers.
+/// Frames of the markers with the numbers `at`.
 template <std::size_t n, StateScalar T>
 std::array<Frame<T>, n> frames_at(std::array<Index, n> const& at, Data<T> const& data) {
   std::array<Frame<T>, n> frames;
@@ -22,14 +22,14 @@ std::array<T, F::states> states_in(ForceEntry<F> const& e, Data<T> const& data) 
   return z;
 }
 
-/// When, by which factor and of what a gradient is taken.
+/// Arguments of a gradient: time [s], factor of the wrenches, and coefficients.
 struct GradientAt {
   double t, scale;
   TangentCoefficients const& c;
 };
 
-/// Adds −scale · the exact gradient; where it is whole (`c.full`), with the blocks that couple the bodies and the
-/// loads.
+/// Adds −scale · (ck ∂w/∂pose + cd ∂w/∂twist) to `sink`. Blocks that couple the bodies are omitted if the law permits
+/// it, except with `c.full` or `c.exact`. With `c.full` the wrenches are also added to data.loads.
 template <class L>
 void add_gradient(L const& law, std::array<Index, L::markers> const& at, GradientAt const& x, Data<double>& data,
                   BlockSink& sink) {
@@ -48,8 +48,8 @@ void add_gradient(L const& law, std::array<Index, L::markers> const& at, Gradien
   if (x.c.full) add_loads(law.template wrenches<double>(frames, x.t), at, x.scale, data);
 }
 
-/// The same of a force element with states, w its wrenches, h the rates and x the frames: blocks −Jᵀ ∂w/∂x J, −Jᵀ
-/// ∂w/∂z, −∂h/∂x J and cm − ∂h/∂z, all by their coefficients.
+/// Overload for a force element with first-order states z, wrenches w, rates h and frames x: blocks −Jᵀ ∂w/∂x J,
+/// −Jᵀ ∂w/∂z, −∂h/∂x J and cm − ∂h/∂z, each with its coefficient.
 template <HasStates F>
 void add_gradient(ForceEntry<F> const& e, GradientAt const& x, Data<double>& data, BlockSink& sink) {
   constexpr int n = F::markers, m = F::states, first = 6 * n, size = first + m;
@@ -84,8 +84,8 @@ void add_gradient(ForceEntry<F> const& e, GradientAt const& x, Data<double>& dat
     add_loads(AtStates<F, double>{e.force, z}.template wrenches<double>(frames, x.t), e.markers, x.scale, data);
 }
 
-/// Adds what each marker of a pair feels of its own motion alone; by the law's `own_stiffness` where it has one. With
-/// the loads where the gradient is whole.
+/// Adds the stiffness of each marker of a pair with respect to its own motion to `to`. If permitted, the law's
+/// approximate `own_stiffness` replaces the exact one. With `c.full` the wrenches are also added to data.loads.
 template <class L>
 void add_own_stiffness(L const& law, std::array<Index, 2> const& at, GradientAt const& x, Data<double>& data,
                        std::array<Mat<double, 6, 6>*, 2> const& to) {

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What a model does with all its force elements of one type: loops that know the type of the force and not that of the
+/// Loops over all force elements of one type in a model. They depend on the type of the force, but not on that of the
 /// model (compare body_kernels.hpp).
 
 #include <concepts>
@@ -14,8 +14,8 @@ namespace polybody {
 
 namespace detail {
 
-/// Calls visit(force, markers, at) for the force elements of an entry: itself, at its states as they are, or the pairs
-/// of a group that may act now. Markers are places among the entry's, `at` where they are published.
+/// Calls visit(force, markers, at) for an entry's force element at its present states, or for each pair of a group that
+/// may interact in the present positions. `markers` are numbers within the entry, `at` numbers in the model.
 template <class F, StateScalar T, class Visit>
 void for_each_action(ForceEntry<F> const& e, Data<T> const& data, Visit&& visit) {
   if constexpr (ForceGroup<F>) {
@@ -43,10 +43,10 @@ double power_of(std::array<Wrench<double>, n> const& w, std::array<Frame<double>
   return sum;
 }
 
-/// What follows is worked out for one force element, or for one pair of a group by its law. It knows no group: groups
-/// with a law in common share it.
+// The following functions evaluate one force element, or one pair of a group under its law. They do not depend on the
+// group, so groups with the same law share them.
 
-/// Adds the wrenches to those of the markers' actions.
+/// Adds the wrenches to those in `to`.
 template <class L, StateScalar T>
 void add_wrenches(L const& law, std::array<Index, L::markers> const& at, double t, Data<T> const& data,
                   std::array<AppliedWrench<T>*, L::markers> const& to) {
@@ -58,7 +58,7 @@ void add_wrenches(L const& law, std::array<Index, L::markers> const& at, double 
     }
 }
 
-/// All that F does has a potential; a group says it of its laws.
+/// True if all wrenches of F have a potential; for a group, if all its laws have one.
 template <class F>
 constexpr bool stores() {
   if constexpr (HasStates<F>)
@@ -76,8 +76,9 @@ double potential_of(L const& law, std::array<Index, L::markers> const& at, doubl
     return 0.0;
 }
 
-/// With a potential, what wrenches are at rest is stored, and what motion adds is lost. A potential is taken for a
-/// function of the frames alone.
+/// Adds the power of the wrenches to p. With a potential, the wrenches at zero velocity change the stored energy, and
+/// the remaining part dissipates energy. The potential is assumed to depend on the frames only. Without a potential,
+/// the power is counted as that of loads.
 template <class L>
 void add_power(L const& law, std::array<Index, L::markers> const& at, double t, double scale, Data<double> const& data,
                Powers& p) {
@@ -94,37 +95,39 @@ void add_power(L const& law, std::array<Index, L::markers> const& at, double t, 
 
 }  // namespace detail
 
-/// The loops over the force elements of type F, for scalar T; those of energies and tangents are for numbers.
+/// Loops over the force elements of type F, for the scalar T. Energies and tangents exist for doubles only.
 template <class F, StateScalar T>
 struct ForceKernels {
   using Entry = detail::ForceEntry<F>;  ///< a force element with its markers
-  using Pool = Sequence<Entry>;         ///< those of this type in a model
+  using Pool = Sequence<Entry>;         ///< force elements of this type in a model
 
-  /// Places and names.
+  /// Appends positions and names to `out`.
   [[gnu::cold]] static void describe(Pool const& pool, ModelLayout& out);
-  /// An action for each marker, and room; `owner` is the first force's place.
+  /// Appends an applied wrench for each marker and enlarges the workspace. \param owner position of the first force
   [[gnu::cold]] static void place(Pool const& pool, Index owner, Data<T>& data);
-  /// Wrenches of all, from action `next` on, and the rates of their states; returns the end of the actions.
+  /// Writes all wrenches from `next` on, and the rates of the states. Returns the end of the wrenches.
   static AppliedWrench<T>* push(Pool const& pool, double t, Data<T>& data, AppliedWrench<T>* next);
 
-  /// The identity, for the rates of their states, which begin at speed `first`.
+  /// Writes the unit mass of each first-order state. \param first index of the first state of the model
   static void masses(Pool const& pool, Index first, BlockSink& sink);
-  /// ck K + cd D at t [s], blocks between all speeds that the markers of an element read; loads times `load_factor`.
+  /// ck K + cd D at t [s], with blocks between all velocities of an element's markers. Loads are multiplied by
+  /// `load_factor`.
   static void tangents(Pool const& pool, double t, double load_factor, TangentCoefficients const& c, Data<double>& data,
                        BlockSink& sink);
-  /// Stored energy of those that have a potential [J].
+  /// Stored energy of all elements with a potential [J].
   static double energy(Pool const& pool, double t, Data<double> const& data);
-  /// Adds the powers of loads, times `load_factor`, and of forces without a potential [W].
+  /// Adds the powers of all elements [W]. Loads are multiplied by `load_factor`.
   static void add_powers(Pool const& pool, double t, double load_factor, Data<double> const& data, Powers& p);
 
  private:
-  /// Wrenches of a group by the threads' parts: each marker of the many is in one of them, and what the few get is put
-  /// aside and added in the order in which one thread would have.
+  /// Wrenches of a group, divided among threads by its many markers. Wrenches on contact partners are stored for each
+  /// part and then added in the order of a single thread, so that the sums are bitwise identical.
   static void add_forces_in_parts(Entry const& e, double t, Data<T>& data, AppliedWrench<T>* actions);
-  /// What each marker of a group feels of its own motion alone, block by block, zero where nothing acts; with stand-ins
-  /// by a law's `own_stiffness` where it has one.
+  /// Writes the stiffness of each marker of a group with respect to its own motion; zero without interaction. A law's
+  /// approximate `own_stiffness` replaces the exact one if permitted.
   static void group_tangent(Entry const& e, detail::GradientAt const& x, Data<double>& data, BlockSink& sink);
-  /// The exact slopes of a group, with blocks for all pairs that may ever act, zero where they do not.
+  /// Writes the exact tangent of a group, with blocks for all pairs that can ever interact, or for the selected
+  /// `TangentCoefficients::pairs`. Blocks are zero without interaction.
   static void coupled_tangent(Entry const& e, detail::GradientAt const& x, Data<double>& data, BlockSink& sink);
 };
 
@@ -237,7 +240,7 @@ void ForceKernels<F, T>::tangents(Pool const& pool, double t, double load_factor
       detail::add_gradient(e, x, data, sink);
     else if constexpr (!ForceGroup<F>)
       detail::add_gradient(e.force, e.markers, x, data, sink);
-    else if (c.exact || (c.full && c.mass == 0.0))  // or statics and linearisation
+    else if (c.exact || (c.full && c.mass == 0.0))  // the second condition: statics and linearisation
       coupled_tangent(e, x, data, sink);
     else
       group_tangent(e, x, data, sink);

@@ -1,14 +1,14 @@
 #pragma once
 /// \file
-/// The coordinates of a `JointTree` as such: what they are in a whole state, how they add, and how they change. A
-/// carried body has those of its joint's motions, and behind these its deformation.
+/// Joint coordinates of a `JointTree`: computation from full coordinates, retraction and rates. A carried body has the
+/// coordinates of its joint's motions, followed by those of its deformation.
 
 #include <polybody/system/joint_tree.hpp>
 
 namespace polybody {
 namespace detail {
 
-/// f(motion, coordinate, speed), in narrow vectors.
+/// Calls f(motion, q, v) for each joint motion with the reduced indices of its first coordinate and velocity.
 template <class T, class F>
 void for_each_motion(JointTreeOf<T> const& tree, F&& f) {
   for (TreeBody const& body : tree.bodies) {
@@ -20,7 +20,7 @@ void for_each_motion(JointTreeOf<T> const& tree, F&& f) {
     }
   }
 }
-/// f(coordinate, speed) for the deformations of carried bodies, in narrow vectors.
+/// Calls f(q, v) for each deformation of the carried bodies with the reduced indices of its coordinate and velocity.
 template <class T, class F>
 void for_each_deformation(JointTreeOf<T> const& tree, F&& f) {
   for (TreeBody const& body : tree.bodies)
@@ -28,7 +28,8 @@ void for_each_deformation(JointTreeOf<T> const& tree, F&& f) {
       f(body.qn + body.motions.coordinates() + k, body.vn + body.motions.velocities() + k);
 }
 
-/// Where frames a and b of a joint stand; in the plane, the angle between them as well.
+/// Positions (3) and axes (3×3) of frames a and b of a joint in world axes; in the plane also the angle of b relative
+/// to a [rad].
 template <class T>
 struct JointFrames {
   Vec<T, 3> ra, rb;
@@ -65,7 +66,7 @@ JointFrames<T> joint_frames(JointTreeOf<T> const& tree, TreeBody const& body, Ve
 
 }  // namespace detail
 
-/// Joint coordinates qn from whole ones.
+/// Computes the joint coordinates qn from the full coordinates q. \param v full velocities
 template <class T>
 void read_coordinates(JointTreeOf<T> const& tree, VecXOf<T> const& q, VecXOf<T> const& v, TreeStateOf<T>& s,
                       VecXOf<T>& qn) {
@@ -89,7 +90,7 @@ void read_coordinates(JointTreeOf<T> const& tree, VecXOf<T> const& q, VecXOf<T> 
                    : detail::first_turn<T>(m.axis, turned, k + 1 < body.motions.count, body.motions, k);
           turned = product<T>(detail::turn_about<T>(m.axis, -*x), turned);
           break;
-        case JointMotion::Kind::screw: {  // the slide counts the turns
+        case JointMotion::Kind::screw: {  // the translation gives the number of full turns
           double const rest = detail::first_turn<T>(m.axis, turned, false, body.motions, k),
                        full = 2.0 * std::numbers::pi;
           *x = rest + full * std::round((d[m.axis] / m.pitch - rest) / full);
@@ -105,7 +106,7 @@ void read_coordinates(JointTreeOf<T> const& tree, VecXOf<T> const& q, VecXOf<T> 
   }
 }
 
-/// out = q ⊞ δ of the joint coordinates.
+/// out = q ⊞ δ for the joint coordinates.
 template <class T>
 void plus(JointTreeOf<T> const& tree, VecXOf<T> const& q, VecXOf<T> const& delta, VecXOf<T>& out) {
   detail::for_each_deformation(tree, [&](Index qn, Index vn) { out[qn] = q[qn] + delta[vn]; });
@@ -117,7 +118,7 @@ void plus(JointTreeOf<T> const& tree, VecXOf<T> const& q, VecXOf<T> const& delta
     set_quaternion_plus<T>(q.data() + qn, delta.data() + vn, out.data() + qn);
   });
 }
-/// The rate of δ in q ⊞ δ.
+/// out = rate of δ in q ⊞ δ, while the joint coordinates move with velocities v.
 template <class T>
 void local_rate(JointTreeOf<T> const& tree, VecXOf<T> const& delta, VecXOf<T> const& v, VecXOf<T>& out) {
   detail::for_each_deformation(tree, [&](Index, Index vn) { out[vn] = v[vn]; });
@@ -132,7 +133,7 @@ void local_rate(JointTreeOf<T> const& tree, VecXOf<T> const& delta, VecXOf<T> co
   });
 }
 
-/// `rate` = q˙ of the joint coordinates; that of a ball is ½ q ∘ (0, Ω).
+/// `rate` = q˙ of the joint coordinates; for a spherical motion ½ q ∘ (0, Ω).
 template <class T>
 void coordinate_rates(JointTreeOf<T> const& tree, VecXOf<T> const& q, VecXOf<T> const& v, VecXOf<T>& rate) {
   detail::for_each_deformation(tree, [&](Index qn, Index vn) { rate[qn] = v[vn]; });

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The columns of a joint: what each of its speeds moves of the body that it carries.
+/// Jacobian S of a joint: motion of the carried body due to each velocity of the joint.
 
 #include <utility>
 
@@ -9,13 +9,14 @@
 
 namespace polybody::detail {
 
-/// One motion; its columns as [moment arm's origin; axis] until `finish_columns` knows where the body's centre comes
-/// to lie.
+/// Moves `run` by one joint motion and appends its columns to f.s. The columns refer to the world's origin until
+/// `finish_columns`, because the position of the body is not yet known.
+/// \param sign −1 from frame b to frame a \param x, u coordinates and velocities of the motion
 template <class T>
 void move(JointMotion const& m, double sign, T const* x, T const* u, RunnerOf<T>& run, TreeFrameOf<T>& f) {
   Vec<T, 3> const none(0, 0, 0), n(sign * run.A(0, m.axis), sign * run.A(1, m.axis), sign * run.A(2, m.axis));
   auto const column = [&](Vec<T, 3> const& slide, Vec<T, 3> const& turn) {
-    Vec<T, 3> const carried = cross<T>(run.r, turn);  // at the world's origin
+    Vec<T, 3> const carried = cross<T>(run.r, turn);  // velocity at the world's origin
     for (int i = 0; i < 3; ++i) {
       f.s(i, f.velocities) = slide[i] + carried[i];
       f.s(3 + i, f.velocities) = turn[i];
@@ -33,18 +34,18 @@ void move(JointMotion const& m, double sign, T const* x, T const* u, RunnerOf<T>
       if (m.kind == JointMotion::Kind::screw) run.slide(n, m.pitch * x[0], m.pitch * u[0]);
       run.turn(times<T>(n, u[0]));
       turn_columns<T>(m.axis, sign * x[0], run.A);
-      f.angle += n[2] * x[0];  // in the plane the axis is the normal, this way or that
+      f.angle += n[2] * x[0];  // in the plane n[2] is 1 or −1
       break;
     case JointMotion::Kind::ball: {
       Mat<T, 3, 3> const turned = rotation_matrix<T>(Quaternion<T>(x[0], x[1], x[2], x[3]));
-      Mat<T, 3, 3> const b = sign > 0.0 ? product<T>(run.A, turned) : run.A;  // the axes of frame b
+      Mat<T, 3, 3> const b = sign > 0.0 ? product<T>(run.A, turned) : run.A;  // axes of frame b
       for (int k = 0; k < 3; ++k) column(none, {sign * b(0, k), sign * b(1, k), sign * b(2, k)});
       run.turn(scaled<T>(product<T, 1>(b, Vec<T, 3>(u[0], u[1], u[2])), sign));
       run.A = sign > 0.0 ? b : product<T>(run.A, transposed<T>(turned));
     }
   }
 }
-/// JointMotions were gone through from the last: columns into the order of the coordinates.
+/// Sorts columns that were computed from the last motion to the first into the order of the coordinates.
 template <class T>
 void reverse_columns(TreeBody const& body, TreeFrameOf<T>& f) {
   Mat<T, 6, 6> const back = f.s;
@@ -55,7 +56,8 @@ void reverse_columns(TreeBody const& body, TreeFrameOf<T>& f) {
       for (int i = 0; i < 6; ++i) f.s(i, to) = back(i, end + k);
   }
 }
-/// The motions of a joint one after another, from frame a to frame b or back. \param x, u coordinates and speeds
+/// Moves `run` by all motions of a joint, from frame a to frame b or back. \param x, u coordinates and velocities of
+/// the joint
 template <class T>
 void move_by_joint(TreeBody const& body, T const* x, T const* u, RunnerOf<T>& run, TreeFrameOf<T>& f) {
   f.velocities = 0;
@@ -75,13 +77,13 @@ void move_by_joint(TreeBody const& body, T const* x, T const* u, RunnerOf<T>& ru
   }
   reverse_columns<T>(body, f);
 }
-/// A column from the world's origin to r.
+/// Changes the reference point of a column from the world's origin to r.
 template <class T>
 void move_column(Vec<T, 3> const& r, T* column) {
   Vec<T, 3> const carried = cross<T>({column[3], column[4], column[5]}, r);
   for (int i = 0; i < 3; ++i) column[i] += carried[i];
 }
-/// From the world's origin to that of the body; and (SᵀS)⁻¹.
+/// Changes the reference point of all columns to the origin of the body, and computes (SᵀS)⁻¹.
 template <class T>
 void finish_columns(TreeFrameOf<T>& f) {
   for (int k = 0; k < f.velocities; ++k) move_column<T>(f.r, f.column(k));

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What a model does with all its joints of one type: loops that know the type of the joint and not that of the model
+/// Loops over all joints of one type in a model. They depend on the type of the joint, but not on that of the model
 /// (compare body_kernels.hpp).
 
 #include <new>
@@ -14,7 +14,7 @@
 
 namespace polybody {
 
-/// ġ = Ga Va + Gb Vb + Φ_t of a gap between two frames.
+/// Rate ġ = Ga Va + Gb Vb + Φ_t of a constraint function between two frames.
 template <int m, StateScalar T>
 Vec<T, m> gap_rate(ConstraintTerms<m, T> const& gap, Frame<T> const& a, Frame<T> const& b) {
   Vec<T, 6> const va = twist(a), vb = twist(b);
@@ -32,21 +32,21 @@ Vec<T, m> gap_rate(ConstraintTerms<m, T> const& gap, Frame<T> const& a, Frame<T>
 
 namespace detail {
 
-/// Kept with a model's data for its joints of one type: a gap for each, and what it answers if it is compliant.
+/// Workspace for all joints of one type: constraint terms of each joint, and λ(g, ġ) of each compliant joint.
 template <class J, StateScalar T>
 struct JointData {
   Sequence<ConstraintTerms<J::rows, T>> gaps;
   Sequence<Vec<T, J::rows>> answers;
 };
 
-/// Times at which a drive or a load wants a step to end.
+/// Appends the breakpoints of a function of time, at which steps end.
 template <class Law>
 void add_breakpoints(Law const& law, Sequence<double>& all) {
   if constexpr (HasBreakpoints<Law>)
     for (double const t : law.breakpoints()) all.push_back(t);
 }
 
-/// Adds −scale · w of wrenches to the loads of their markers.
+/// Adds −scale · w of each wrench w to the load of its marker.
 template <std::size_t n>
 void add_loads(std::array<Wrench<double>, n> const& w, std::array<Index, n> const& markers, double scale,
                Data<double>& data) {
@@ -61,7 +61,7 @@ void add_loads(std::array<Wrench<double>, n> const& w, std::array<Index, n> cons
 
 template <class L>
 inline constexpr bool law_has_potential = requires(L const& law) { law.potential(0.0); };
-/// Every law of a bushing has a potential; other policies have one by their concept.
+/// True if every law of a bushing has a potential. Other policies have one by their concept.
 template <class P>
 constexpr bool has_potential() {
   if constexpr (requires(P const& p) { std::get<0>(p.laws); })
@@ -72,7 +72,7 @@ constexpr bool has_potential() {
     return true;
 }
 
-/// λ(g, 0) in the rows that store no energy: laws of a bushing without a potential.
+/// λ(g, 0) of the laws of a bushing without a potential; zero for all others.
 template <class P, int m>
 Vec<double, m> rest_without_potential(P const& policy, Vec<double, m> rest) {
   if constexpr (requires { std::get<0>(policy.laws); })
@@ -87,8 +87,8 @@ Vec<double, m> rest_without_potential(P const& policy, Vec<double, m> rest) {
   return rest;
 }
 
-/// ∂ġ/∂(poses), m×12: what positions do to ġ = G V at speeds that stay. Row i is Vᵀ ∂(Gᵀeᵢ)/∂(poses) +
-/// (G ∂V/∂(poses))ᵢ. A Φ_t that depends on positions is left out.
+/// ∂ġ/∂(poses) (m×12) of ġ = G V at constant velocities of the bodies. Row i is Vᵀ ∂(Gᵀeᵢ)/∂(poses) +
+/// (G ∂V/∂(poses))ᵢ. A dependence of Φ_t on the poses is neglected.
 template <class G>
 Mat<double, G::rows, 12> rates_by_poses(G const& geometry, ConstraintTerms<G::rows, double> const& gap,
                                         std::array<MarkerKinematics<double> const*, 2> const& markers, double t) {
@@ -123,7 +123,8 @@ void add_rate_slopes(J const& joint, ConstraintTerms<J::rows, double> const& gap
       for (int j = 0; j < 12; ++j) s(j, k) += (j < 6 ? gap.Ga(i, j) : gap.Gb(i, j - 6)) * answer;
     }
 }
-/// Adds ck/cd ∂ġ/∂(poses) to the last n rows, from `row` on, which are of speeds and stand beside G.
+/// Adds ck/cd ∂ġ/∂(poses) to G in the n nonholonomic equations, which are the last ones of the joint. \param row first
+/// of them in the matrix
 template <int n, int m>
 void add_velocity_rows(Mat<double, m, 12> const& rates, std::array<MarkerKinematics<double> const*, 2> const& markers,
                        StiffnessAt const& x, Index row, Sequence<double>& scratch, BlockSink& sink) {
@@ -138,40 +139,40 @@ void add_velocity_rows(Mat<double, m, 12> const& rates, std::array<MarkerKinemat
 
 }  // namespace detail
 
-/// The loops over the joints of type J, for scalar T; those of energies and tangents are for numbers. Linear joints
-/// have no gap: their rows are the model's (linear_rows.hpp).
+/// Loops over the joints of type J, for the scalar T. Energies and tangents exist for doubles only. Linear joints have
+/// no constraint terms; the model stores their equations (linear_constraints.hpp).
 template <class J, StateScalar T>
 struct JointKernels {
-  using P = typename J::PolicyType;                          ///< who answers or solves for the rows
+  using P = typename J::PolicyType;                          ///< policy that enforces the equations
   using Pool = Sequence<detail::JointEntry<J>>;              ///< joints of this type, in a model
-  using Kept = detail::JointData<J, T>;                      ///< scratch: gaps, and what compliant joints answer
+  using Kept = detail::JointData<J, T>;                      ///< workspace
   static constexpr bool linear = LinearPolicy<P>;            ///< true if the equations are linear in q
   static constexpr bool compliant = !ConstrainingPolicy<P>;  ///< true if forces enforce the equations
 
-  /// Counts, places and names.
+  /// Appends counts, positions and names to `out`.
   [[gnu::cold]] static void describe(Pool const& pool, Sequence<LinearConstraints> const& linear_rows,
                                      ModelLayout& out);
-  /// A gap and a block of rows for each joint; `owner` is the first joint's place. The blocks of linear joints stand
-  /// from `first_linear` on, and learn their owners.
+  /// Allocates constraint terms and appends a constraint block for each joint. For linear joints, whose blocks already
+  /// exist from `first_linear` on, it sets the owner. \param owner position of the first joint in the layout
   [[gnu::cold]] static void place(Pool const& pool, Kept& kept, Index owner, Index first_linear, Data<T>& data);
 
-  /// Every gap, and what compliant joints answer.
+  /// Evaluates the constraint terms of every joint, and λ(g, ġ) of compliant joints.
   static void measure(Pool const& pool, Kept& kept, double t, Data<T>& data);
-  /// γ of the rows without the markers' biases.
+  /// Writes γ without the bias accelerations of the markers to `out` (rows).
   static void gamma(Pool const& pool, double t, Data<T> const& data, VecXOf<T>& out);
 
-  /// K and D of compliant joints, by the slope of what they answer.
+  /// ck K + cd D of compliant joints, from the derivatives of λ(g, ġ).
   static void slopes(Pool const& pool, Kept const& kept, TangentCoefficients const& c, Data<double>& data,
                      BlockSink& sink);
-  /// ck ∂(Gᵀλ)/∂q, at what x names; adds Gᵀλ to the loads.
+  /// ck ∂(Gᵀλ)/∂q at the state and coefficients x. It also adds Gᵀλ to data.loads.
   static void stiffness(Pool const& pool, Kept const& kept, VecX const& lambda, detail::StiffnessAt const& x,
                         Data<double>& data, BlockSink& sink);
-  /// What compliant joints store.
+  /// Energy stored in compliant joints [J].
   static double energy(Pool const& pool, Kept const& kept);
-  /// What a joint does whose gap moves by ġ = G v + Φ_t; the bodies feel −Gᵀλ.
-  ///   Rows:       −λ·G v goes to the bodies; on the rows G v = −Φ_t, and it is λ·Φ_t, zero without a drive.
-  ///   Compliant:  so does −λ·G v = λ·Φ_t − λ(g, 0)·ġ − (λ − λ(g, 0))·ġ: work of the drive, less what is stored, less
-  ///   what is lost.
+  /// Adds the powers of the joints [W]. The forces −Gᵀλ on the bodies have the power −λ·G v, with ġ = G v + Φ_t.
+  ///   Constraint equations:  ġ = 0, so −λ·G v = λ·Φ_t, the power of the drive; zero without a drive.
+  ///   Compliant joints:      −λ·G v = λ·Φ_t − λ(g, 0)·ġ − (λ − λ(g, 0))·ġ: power of the drive, less the rate of the
+  ///   stored energy, less the dissipated power. For laws without a potential, −λ(g, 0)·ġ is a power of loads.
   static void add_powers(Pool const& pool, Kept const& kept, VecX const& lambda, Data<double> const& data, Powers& p);
 };
 
@@ -229,7 +230,7 @@ void JointKernels<J, T>::measure(Pool const& pool, Kept& kept, double t, Data<T>
       for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i) {
         auto const& e = pool[i];
         Frame<T> const &a = data.markers[std::size_t(e.a)].frame, &b = data.markers[std::size_t(e.b)].frame;
-        using G = ConstraintTerms<J::rows, T>;  // made where it stands: assigned, it would be copied
+        using G = ConstraintTerms<J::rows, T>;  // constructed in place, because assignment copies it
         static_assert(std::is_trivially_destructible_v<G>);
         ::new (static_cast<void*>(&kept.gaps[i])) G(e.joint.measure().template constraint_function<T>(a, b, t));
         if constexpr (compliant)

@@ -1,13 +1,14 @@
 #pragma once
 /// \file
-/// Bodies that carry one another through joint coordinates [thesis Eq. 3.4–3.5; Shabana 2020, §3]: a body's pose is its
-/// parent's followed by the joint's motions, and with D the arm from the parent's origin to its own,
+/// Tree of bodies with joint coordinates [thesis Eq. 3.4–3.5; Shabana 2020, §3]. The pose of a body is that of its
+/// parent followed by the motions of the joint. With the arm D from the parent's origin to the body's origin,
 ///   ω = ω_p + S_ω u,   ṙ = ṙ_p + ω_p × D + S_r u,
 ///   ω˙ = ω˙_p + S_ω u̇ + b_ω,   r̈ = r̈_p + ω˙_p × D + S_r u̇ + b_r,
-/// all in world axes; b is what is left for u̇ = 0 and a parent without accelerations. The origin of a rigid body is its
-/// centre of mass. A body that floats on a frame is carried by this frame; its deformation q stays as it is, and an end
-/// of a joint on it moves with q: then S_D q̇ comes in beside S u (`FloatingEnd`). Whole vectors hold every body, narrow
-/// ones the joints and deformations. Everything is one walk from the roots to the tips or back.
+/// all in world axes; b is the acceleration for u̇ = 0 and a parent without acceleration. The origin of a rigid body is
+/// its centre of mass. For a body with a floating frame, the joint carries the frame, and the deformation coordinates q
+/// remain unknowns. An end of a joint on such a body moves with q, which adds S_D q̇ to S u (`FloatingEnd`). Full
+/// vectors contain all bodies, reduced ones the joint coordinates and deformations. Each function is one loop from the
+/// roots to the tips or back.
 
 #include <polybody/system/floating_end.hpp>
 #include <polybody/system/joint_jacobian.hpp>
@@ -16,7 +17,7 @@
 
 namespace polybody {
 
-/// \tparam T scalar of the vectors
+/// Tree of bodies with joint coordinates. A joint carries each body except the roots. \tparam T scalar of the vectors
 template <class T = double>
 class JointTreeOf {
   using Vec3 = Vec<T, 3>;
@@ -27,15 +28,15 @@ class JointTreeOf {
   using FloatingEnd = FloatingEndOf<T>;
 
  public:
-  /// Bodies in an order in which each stands behind its parent.
+  /// Bodies of the tree; each parent precedes its children.
   Sequence<TreeBody> bodies;
-  Sequence<FloatingEnd> ends;  ///< of joints on bodies that deform
+  Sequence<FloatingEnd> ends;  ///< ends of joints on bodies with a floating frame
 
-  /// Whether no body is carried: there is no tree.
+  /// True if the tree has no bodies.
   bool empty() const { return bodies.empty(); }
 
-  /// Poses and speeds of the carried bodies from the joints' coordinates qn and speeds vn; those of roots are read.
-  /// `q`, `v` are whole.
+  /// Computes poses and velocities of the carried bodies from the reduced coordinates qn and velocities vn and writes
+  /// them to the full vectors q, v. The state of roots and deformations must already be in q, v.
   void expand_state(VecX const& qn, VecX const& vn, VecX& q, VecX& v, TreeState& s) const {
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       TreeBody const& body = bodies[i];
@@ -53,7 +54,8 @@ class JointTreeOf {
     }
   }
 
-  /// out = T u, or T u + b with `bias`: whole from narrow, where the parts of roots stand already.
+  /// out = T u, or T u + b with `bias`; u is reduced, out is full. Entries of roots and deformations must already be in
+  /// `out`.
   void expand_rates(TreeState& s, VecX const& u, bool bias, VecX& out) const {
     Sequence<Vec6>& twist = s.twists;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -73,8 +75,8 @@ class JointTreeOf {
     }
   }
 
-  /// The u with T u next to x (whole): exact where x keeps to the joints. Parts of roots are left to the caller. With
-  /// `bias`, of x − b.
+  /// Computes u (reduced) with T u nearest to x (full), or to x − b with `bias`. It is exact if x satisfies the joints.
+  /// Entries of roots and deformations are not written.
   void reduce_rates(TreeState& s, VecX const& x, bool bias, VecX& u) const {
     for (std::size_t i = 0; i < bodies.size(); ++i) s.twists[i] = detail::twist_of<T>(bodies[i], s.frames[i], x);
     for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -97,8 +99,8 @@ class JointTreeOf {
     }
   }
 
-  /// out = Tᵀ r: narrow from whole. Parts of roots and of deformations: in r, where the caller reads them. Generalised
-  /// forces and wrenches change in the same way as speeds and twists, for A is orthogonal.
+  /// out = Tᵀ r; r is full, out is reduced. Entries of roots and deformations are written to r only; the caller copies
+  /// them. Generalised forces and wrenches transform like velocities and twists, because A is orthogonal.
   void reduce_forces(TreeState& s, VecX& r, VecX& out) const {
     for (std::size_t i = 0; i < bodies.size(); ++i) s.held[i] = detail::twist_of<T>(bodies[i], s.frames[i], r);
     for (std::size_t i = bodies.size(); i-- > 0;) {
@@ -117,7 +119,7 @@ class JointTreeOf {
     }
   }
 
-  /// A whole r with Tᵀ r = `given` (narrow); parts of roots and of deformations stand already.
+  /// Computes a full r with Tᵀ r = `given` (reduced). Entries of roots and deformations must already be in r.
   void expand_forces(TreeState& s, VecX const& given, VecX& r) const {
     for (std::size_t i = 0; i < bodies.size(); ++i)
       s.held[i] = bodies[i].carried() ? detail::zeros<Vec6>() : detail::twist_of<T>(bodies[i], s.frames[i], r);
@@ -146,7 +148,7 @@ class JointTreeOf {
   TreeFrame const& parent_of(TreeBody const& body, TreeState const& s) const {
     return body.parent < 0 ? ground_ : s.frames[std::size_t(body.parent)];
   }
-  /// Scratch for this tree, as large as it will ever be.
+  /// Workspace for this tree, in its final size.
   TreeState state() const {
     TreeState s;
     s.frames.resize(bodies.size());
@@ -156,7 +158,8 @@ class JointTreeOf {
     return s;
   }
 
-  /// f(column in the state, rate in whole speeds) for the deformations that move a carried body.
+  /// Calls f(column, rate) for each deformation that moves a carried body, with its index in `TreeState::columns` and
+  /// the index of its rate in full velocities.
   template <class F>
   void for_each_rate(TreeBody const& body, F&& f) const {
     for (Index const e : {body.from_end, body.to_end}) {
@@ -170,7 +173,7 @@ class JointTreeOf {
   struct Vectors {
     VecX const &q, &v;
   };
-  /// The frame that one motion after the other leads to, from an end on the parent to one on the body.
+  /// Computes the frame f of a body by all motions from the end on the parent to the end on the body.
   void carry(TreeBody const& body, Vectors const& reduced, Vectors const& full, TreeFrame& f, TreeState& s) const {
     TreeFrame const& p = parent_of(body, s);
     detail::RunnerOf<T> run{p.r, p.v, {0, 0, 0}, p.A, p.w, {0, 0, 0}};
@@ -202,6 +205,6 @@ class JointTreeOf {
   TreeFrame ground_ = {};
 };
 
-using JointTree = JointTreeOf<>;  ///< the tree of joint coordinates
+using JointTree = JointTreeOf<>;  ///< for doubles
 
 }  // namespace polybody
