@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// What adjoints of steps have in common: vectors of recorded numbers, and the solution of their transposed equations.
+/// Common parts of the adjoints of steps: vectors of recorded numbers, and the solution of the transposed equations.
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <limits>
 
@@ -12,29 +12,30 @@
 
 namespace polybody::detail {
 
-/// `to` becomes independent variables of these values.
+/// Records an independent variable in `to` for each value of `from`.
 template <class = void>
 void set_variables(VecX const& from, VecXOf<ReverseVar>& to) {
   to.resize(from.size());
   for (Index i = 0; i < from.size(); ++i) to[i] = ReverseVar::variable(from[i]);
 }
-/// Before a sweep: what a result changes by with these numbers.
+/// Before a sweep: adds the derivatives of a result by `numbers` to the tape.
 template <class = void>
 void add_to_derivatives(Tape& recording, VecXOf<ReverseVar> const& numbers, VecX const& derivatives) {
   for (Index i = 0; i < derivatives.size(); ++i) recording.slope(numbers[i].number) += derivatives[i];
 }
-/// After a sweep: the same.
+/// After a sweep: stores the derivatives of a result by `numbers` in `derivatives`.
 template <class = void>
 void take_derivatives(Tape& recording, VecXOf<ReverseVar> const& numbers, VecX& derivatives) {
   for (Index i = 0; i < numbers.size(); ++i) derivatives[i] = recording.slope(numbers[i].number);
 }
 
-/// Aᵀ μ = y by factors of a matrix near Aᵀ, from zero on: what is near the solution would cost a product more. Where
-/// the first correction of what they give is not rounding, by GMRES. The last product is of the last μ.
+/// Solution of Aᵀ μ = y with the factorisation of a matrix close to Aᵀ. The iteration starts from zero, since any other
+/// start costs one more product. If the first correction exceeds round-off, GMRES continues. The last computed product
+/// is Aᵀ μ of the final μ.
 class TransposedSolution {
  public:
-  /// Returns the last correction relative to μ. \param product gives Aᵀ x of a given x; \param solve solve(rhs, x) by
-  /// the factors; \param most products between two corrections
+  /// Returns the norm of the last computed correction relative to μ. \param product product(x) returns Aᵀ x; \param
+  /// solve solve(rhs, x) solves with the factorisation; \param most largest number of products between two corrections
   template <class Product, class Solve>
   double solve(VecX const& y, VecX& mu, Product&& product, Solve&& solve, Index most) {
     mu.resize(y.size());
@@ -59,7 +60,7 @@ class TransposedSolution {
     }
   }
 
-  /// How many products the last solution took.
+  /// Number of products of the last solution.
   int products() const { return products_; }
 
  private:

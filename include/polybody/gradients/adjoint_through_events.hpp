@@ -1,17 +1,19 @@
 #pragma once
 /// \file
-/// The discrete adjoint of a run through corners of drives and loads and through events, whose times may move with the
-/// parameters, under the generalised-α family.
+/// Discrete adjoint of a run with breakpoints and events under the generalised-α family. The times of breakpoints and
+/// events may depend on the parameters.
 ///
-/// With h a step's length, t the time of its end, x̄ and t̄ what a result J changes by with the state and time there,
+/// A step of length h starts at the time t₀. The derivatives of a result J by the state x and the time at its end are x̄
+/// and t̄, and
 ///   ∂J/∂h = x̄ᵀ ∂x/∂h + t̄.
-/// A step to a corner or to the end of the run has dh = dT − dt. One that an event g = 0 ends has
-///   dh = −(∂g/∂p dp + ∂g/∂x dx)/ġ, of fixed length,
-/// so g goes back over the step as J does, ∂g/∂h = ġ, and −(∂J/∂h)/ġ times its costate and slopes is added to those of
-/// J: the transposed saltation relation of the discrete run. A new beginning is a map from the state before it, of
-/// which the costate is differenced.
+/// If the step ends at a breakpoint or at the end of the run, at time T, then dh = dT − dt₀. If it ends at an event
+/// g = 0, then
+///   dh = −(∂g/∂p dp + ∂g/∂x dx)/ġ, with the derivatives of g at fixed h.
+/// The backward sweep over such a step therefore also computes the adjoint variables of g, with ∂g/∂h = ġ. It adds
+/// −(∂J/∂h)/ġ times the adjoint variables and parameter derivatives of g to those of J: the transposed saltation
+/// relation of the discrete run. A restart is a map from the state before it; its adjoint is computed by differences.
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/gradients/gradient_result.hpp>
 #include <polybody/gradients/objective.hpp>
@@ -20,7 +22,7 @@
 
 namespace polybody::detail {
 
-/// A run forwards and back. \tparam I of the generalised-α family
+/// Forward run and backward sweep of a run with breakpoints or events. \tparam I integrator of the generalised-α family
 template <class Make, class I>
 class AdjointEventHandler {
   using S = std::remove_cvref_t<decltype(std::declval<Make const&>()(std::declval<std::span<double const>>()))>;
@@ -71,21 +73,21 @@ class AdjointEventHandler {
       until_slope_.push_back(beside_.of_number(j, [](V const& v) { return double(v.scenario.options.end_time); }));
     }
   }
-  /// How fast a time of x that is a corner's moves with parameter j.
+  /// Derivative by parameter j of the time of x, which is the time of a breakpoint or the start.
   double time_slope(std::size_t j, State const& x) const { return beside_.times(j).slope(x.t); }
   double target_slope(std::size_t j, StepPlan::Next const& plan) const {
     return plan.jumps ? beside_.times(j).slope(plan.target) : until_slope_[j];
   }
-  /// How fast the length of a step that is planned moves, where the time of its start moves by dt.
+  /// Derivative of the length of a planned step by parameter j. \param dt derivative of its start time
   double length_slope(std::size_t j, StepPlan::Next const& plan, double dt) const {
     return plan.lands ? target_slope(j, plan) - dt : step_slope_[j];
   }
-  /// No change of a state but for that of its time.
+  /// Derivative of a run in which only the time changes, by dt.
   RunSensitivity const& still(double dt) {
     still_.dt = dt;
     return still_;
   }
-  /// A corner at the end of the run ends it for nearby parameters too.
+  /// Refuses a breakpoint at the end of the run if its time and the end time have different derivatives.
   void require_one_end() const {
     RecordedStep const& last = run_.steps().back();
     if (!last.at_corner || last.end < full_.scenario.options.end_time) return;
@@ -94,7 +96,7 @@ class AdjointEventHandler {
         refuse_corner_at_end(last.end, parameters_[j].name, "gradient");
   }
 
-  /// The costate after step k, with what comes after it, becomes that before it.
+  /// Converts the adjoint variables after step k, and after the restart that may follow it, to those before it.
   void back(std::size_t k, State before, State const& after, RunCostate& bar) {
     RecordedStep const& s = run_.steps()[k];
     bool const last = k + 1 == run_.steps().size(), from_corner = run_.begins_at_corner(k);
@@ -122,21 +124,21 @@ class AdjointEventHandler {
     out_.value += add_term(integrand, before, {half + joined, from_corner}, bar);
     if (from_corner) spread_time(before.t, bar);
   }
-  /// What J changes by with the length of a step goes to what the length depends on.
+  /// Adds ∂J/∂h of a step, `of_length`, to the derivatives by the parameters and by the start time of the step.
   void spread_length(StepPlan::Next const& plan, double of_length, RunCostate& bar) {
     for (std::size_t j = 0; j < parameters_.size(); ++j)
       out_.derivatives[Index(j)] += of_length * length_slope(j, plan, 0.0);
     if (plan.lands) bar.t -= of_length;
   }
-  /// What J changes by with the time t of a corner goes to the parameters.
+  /// Adds the effect of the time t of a breakpoint to the derivatives by the parameters.
   void spread_time(double t, RunCostate& bar) {
     for (std::size_t j = 0; j < parameters_.size(); ++j)
       out_.derivatives[Index(j)] += bar.t * beside_.times(j).slope(t);
     bar.t = 0.0;
   }
 
-  /// The costate at the end x of step k becomes that before it, at fixed length; what parameters do in it goes to
-  /// `derivatives`. Returns what changes with its length.
+  /// Converts the adjoint variables at the end x of step k to those before it, at fixed length, and adds the effect of
+  /// the parameters to `derivatives`. Returns the derivative by the length of the step.
   double backward_step(std::size_t k, State& before, State const& x, RunCostate& bar, VecX& derivatives) {
     RecordedStep const& s = run_.steps()[k];
     V& spare = beside_.itself();
@@ -156,7 +158,8 @@ class AdjointEventHandler {
     bar.t -= of_equations(Variants::along_motion, {x, s.h, 1.0, 0});
     of_length += bar.t + bar.pull_push(before);
     StartCorrectionAdjoint<V> const sets_out(spare, before, s.h, corrects);
-    bool const free = (s.plan.lands || !s.met.empty()) && sets_out.shifted() > 0.0;  // of another length nearby
+    bool const free =
+        (s.plan.lands || !s.met.empty()) && sets_out.shifted() > 0.0;  // the length depends on the parameters
     if (!corrects && !free) return of_length;
     bool const from_corner = run_.begins_at_corner(k);
     if (corrects) {
@@ -175,7 +178,7 @@ class AdjointEventHandler {
     return mu_.head(nv).dot(by_.balance) + mu_.tail(by_.rows.size()).dot(by_.rows);
   }
 
-  /// What the time of the event that ends step k at x does to J.
+  /// Adds the effect on J of the time of the event that ends step k at x.
   void add_event(std::size_t k, State& before, State const& x, double of_length, RunCostate& bar) {
     RecordedStep const& s = run_.steps()[k];
     std::size_t const i = s.met.front();
@@ -192,10 +195,10 @@ class AdjointEventHandler {
     out_.derivatives -= of_length / rate * derivatives;
   }
 
-  /// The costate `bar` after a new beginning, `after`, becomes that of the state x before it.
+  /// Converts the adjoint variables `bar` of the state `after` a restart to those of the state x before it.
   void pull_beginning(RecordedStep const& s, State& x, State const& after, RunCostate& bar) {
     double const before_it = x.t, h = s.next.h;
-    x.t = s.end;  // where it is a corner, on its other side
+    x.t = s.end;  // at a breakpoint: the time after it
     RunCostate const of = bar;
     bar = RunCostate(x);
     bar.t = of.t;
@@ -227,9 +230,9 @@ class AdjointEventHandler {
 
   struct Weight {
     double by;
-    bool at_corner;  // the time of the state is a corner's
+    bool at_corner;  // the time of the state is that of a breakpoint
   };
-  /// A term of the objective at x. Returns its part of J. \param pick of a scenario
+  /// Adds a term of the objective function at x. Returns its part of J. \param pick selects the term of a scenario
   template <class Pick>
   double add_term(Pick const& pick, State const& x, Weight weight, RunCostate& bar) {
     if constexpr (std::same_as<std::remove_cvref_t<decltype(pick(full_.scenario))>, NoTerm>) {
@@ -244,7 +247,7 @@ class AdjointEventHandler {
   double rate_of_integral(State const& x) {
     return term(full_.scenario.integrand, full_.scenario.model, full_.shown(x));
   }
-  /// What parameters, and the time, do to a value(variant, state) at x.
+  /// Adds the derivatives of value(model, state) at x by the parameters and by the time.
   template <class F>
   void add_derivatives_of_value(F const& value, State const& x, Weight weight, RunCostate& bar, VecX& derivatives) {
     auto const values = [&](V& v, State const& y) { return VecX::Constant(1, value(v, y)).eval(); };
@@ -273,8 +276,8 @@ class AdjointEventHandler {
   GradientResult out_;
 };
 
-/// The start or end of a run depends on a parameter, or the length of its steps. \param chooses the method finds the
-/// latter itself
+/// Returns true if the start time, the end time or the step length of a run depends on a parameter. \param chooses the
+/// method chooses the step length itself
 template <class Make, class S>
 bool has_moving_times(Make const& make, std::vector<Parameter> const& parameters, S const& scenario,
                       bool chooses = false) {
@@ -288,7 +291,7 @@ bool has_moving_times(Make const& make, std::vector<Parameter> const& parameters
   }
   return false;
 }
-/// Events or corners may end steps of a run. \param corners of it, in no order [s]
+/// Returns true if events or breakpoints may end steps of a run. \param breakpoints their times, unordered [s]
 template <class S>
 bool is_interrupted(S const& scenario, std::vector<double> const& breakpoints) {
   RunOptions const& o = scenario.options;

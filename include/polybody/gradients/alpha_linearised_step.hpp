@@ -1,16 +1,17 @@
 #pragma once
 /// \file
-/// The tangent-linear of a converged step of the generalised-α family (integrators/alpha_method.hpp), exactly: with
-/// what Newton's matrix leaves out.
+/// Exact tangent-linear form of a converged step of the generalised-α family (integrators/alpha_method.hpp), with all
+/// terms that the matrix of Newton's method omits.
 ///
-/// With y = (δa₁, δλ₁) and the changes of q₀, v₀, v̇₀, a₀ and of the equations by a parameter, those of q₁, v₁, v̇₁
-/// follow from the formulas of the step, and
-///   δ[M v̇₁ − f₁ + G₁ᵀλ₁] = 0,  δΦ(q₁)/βh² = 0  (of velocity rows δΦ̇/γh)
-/// is linear in y. Its left side comes from one pass of dual numbers through the residual, so no term is missing: not
-/// the derivative of ⊞, not ∂(Gᵀλ)/∂q. It is solved by factors that need only be near (`StepFactorisations`) and
-/// corrected until nothing changes, or until a probe tells that nothing would (`CorrectionErrorEstimate`).
+/// The changes of q₀, v₀, v̇₀, a₀ and of the equations by a parameter are given. With y = (δa₁, δλ₁), the changes of
+/// q₁, v₁, v̇₁ follow from the formulas of the step, and the equations
+///   δ[M v̇₁ − f₁ + G₁ᵀλ₁] = 0,  δΦ(q₁)/βh² = 0  (nonholonomic: δΦ̇/γh = 0)
+/// are linear in y. Their left-hand sides are evaluated with dual numbers, so that they contain all terms, among them
+/// the derivative of ⊞ and ∂(Gᵀλ)/∂q. They are solved by iterative refinement with an approximate factorisation
+/// (`StepFactorisations`). The iteration ends if the last correction, or an estimate of the next one
+/// (`CorrectionErrorEstimate`), is at the level of round-off.
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <array>
 #include <span>
@@ -20,16 +21,17 @@
 
 namespace polybody {
 
-/// Slopes of converged steps of a method, one step after the other.
+/// Derivatives of converged steps of a method, one step after the other.
 template <LinearSolver Solver = DefaultSolver>
 class AlphaLinearisedStep {
  public:
-  using Factors = typename StepFactorisations<Solver, Derivative::direct>::OfStep;  ///< of the tangent of a step
-  /// Directions that go through the equations together, a part of a dual number each: with eight, what they leave
-  /// between joints and bodies no longer stays in the cache.
+  using Factors =
+      typename StepFactorisations<Solver, Derivative::direct>::OfStep;  ///< factorisation of a step's tangent
+  /// Number of directions in one evaluation of the equations; each is a partial derivative of the dual numbers. With
+  /// eight directions, the intermediate results between joints and bodies exceed the cache.
   static constexpr int lanes = 4;
 
-  /// The model must outlive it.
+  /// The model must outlive this object.
   template <class M>
   [[gnu::cold]] AlphaLinearisedStep(M const& model, System& system, AlphaMethod const& method)
       : dual_(stepped_system<D>(model, with<Capabilities::motion>)),
@@ -47,9 +49,9 @@ class AlphaLinearisedStep {
     probe_ = CorrectionErrorEstimate(nv, rows);
   }
 
-  /// From now on slopes are those of this step. \param near factors of a matrix near its tangent, such as its own, or
-  /// none; what serves best, they or factors made at the end of the step, is learnt. \throws SingularMatrix at a
-  /// singular position.
+  /// Sets the step to be differentiated. \param near approximate factorisation of its tangent, such as that of the step
+  /// itself, or none. It or a factorisation at the end of the step is used, according to the measured costs. \throws
+  /// SingularMatrix in a singular configuration.
   void set(StepEnds const& step, Factors* near = nullptr) {
     probe_.fade();
     factors_.set(step, near);
@@ -66,8 +68,9 @@ class AlphaLinearisedStep {
     size_of_lambda_ = after.lambda.head(lambda_.size()).norm();
   }
 
-  /// Takes up to `lanes` directions over the step; where the first ones are fewer, a probe goes with them. Returns what
-  /// a correction more would change at most, beside all, or beside a and λ over a parameter's scale where that is more.
+  /// Replaces the derivatives of the state before the step, along up to `lanes` directions, by those of the state after
+  /// it. A free lane can evaluate the probe of the error estimate. Returns an upper estimate of the next correction. It
+  /// is relative to the derivatives of a and λ, or to a and λ divided by the parameter's scale if these are larger.
   /// \throws SingularMatrix as `set`.
   double advance(StepEnds const& step, std::span<StepDirection const> directions) {
     std::size_t const n = directions.size();
@@ -87,7 +90,7 @@ class AlphaLinearisedStep {
       probe_.forget();
     }
     factors_.took(std::min(passes_, most_passes));
-    if (left > 1e-12) dual_.plus(from_, delta_, q_);  // else βh² times that is less than rounding of q
+    if (left > 1e-12) dual_.plus(from_, delta_, q_);  // otherwise the change of q is below its round-off
     take_end(step, directions);
     return more;
   }
@@ -97,7 +100,7 @@ class AlphaLinearisedStep {
   using Dots = VecXOf<D>;
   using Partials = typename D::Partials;
   static constexpr int most_passes = 30;
-  static constexpr double slow = 0.1;  // corrections that shrink by no more ask for the nearest factors
+  static constexpr double slow = 0.1;  // contraction rate above which the closest factorisation is used
 
   static std::vector<PreconditionerChoice::Candidate> candidates() {
     return {{ApproximateFactors::of_step, 0.0},
@@ -106,7 +109,7 @@ class AlphaLinearisedStep {
             {ApproximateFactors::turned, 2.5}};
   }
 
-  /// Vectors of the directions, an entry of each at a time; where there are fewer, the probe stands in.
+  /// Vectors of all lanes, read one entry of each at a time. Lanes without a direction read the probe.
   struct Side {
     std::array<double const*, std::size_t(lanes)> of;
     Partials operator[](Index i) const {
@@ -122,12 +125,12 @@ class AlphaLinearisedStep {
     return out;
   }
 
-  /// What lane l goes along: a direction, or where there are fewer nothing but y, which is the probe.
+  /// Direction of lane l. A lane without one has a direction in which only y changes, for the probe.
   StepDirection const& along(std::span<StepDirection const> directions, std::size_t l) const {
     return l < directions.size() ? directions[l] : at_rest_;
   }
 
-  /// What changes of a₁ and λ₁ begin with: as they were, near what they become; extrapolated where that is far.
+  /// Initial values for the changes of a₁ and λ₁: those of the step before, or if `far` their extrapolation.
   void guess(StepEnds const& step, StepDirection const& along, bool far, VecX& y) {
     AlphaMethod const& m = method_;
     State& dx = *along.dx;
@@ -141,7 +144,7 @@ class AlphaLinearisedStep {
     y.tail(rows) = multipliers_.head(rows);
   }
 
-  /// Changes of δ, v₁, v̇₁ and λ₁ by the y of each direction.
+  /// Computes the changes of δ, v₁, v̇₁ and λ₁ from the y of each direction.
   void find_end(StepEnds const& step, std::span<StepDirection const> directions) {
     AlphaMethod const& m = method_;
     std::size_t const n = directions.size();
@@ -166,7 +169,7 @@ class AlphaLinearisedStep {
     for (Index i = 0; i < lambda_.size(); ++i) lambda_[i].d = y[a_.size() + i];
   }
 
-  /// A pass through the equations, and what it corrects. Returns the largest relative correction.
+  /// Evaluates the equations and corrects y. Returns the largest relative correction.
   double correct(StepEnds const& step, std::span<StepDirection const> directions) {
     Index const nv = a_.size(), rows = lambda_.size();
     evaluate(step);
@@ -183,13 +186,13 @@ class AlphaLinearisedStep {
     apply(step.h, directions.size());
     return most;
   }
-  /// After a pass with a probe as lane l.
+  /// Passes the result of the probe in lane l to the error estimate.
   void measure(std::size_t l) {
     factors_.solve(rhs_[l], correction_[l]);
     correction_[l] += y_[l];
     probe_.measure(correction_[l]);
   }
-  /// The largest relative correction that would come after this one.
+  /// Estimate of the largest relative correction in the next iteration.
   double left_after(std::span<StepDirection const> directions) const {
     Index const nv = a_.size(), rows = lambda_.size();
     double most = 0.0;
@@ -210,7 +213,7 @@ class AlphaLinearisedStep {
   static double part(A const& correction, B const& y, double least) {
     return relative(correction.norm(), y, least);
   }
-  /// M v̇ − f + Gᵀλ, Φ and, where velocity rows are, Φ̇ there.
+  /// Evaluates M v̇ − f + Gᵀλ, Φ and, for nonholonomic constraints, Φ̇ at the end of the step.
   void evaluate(StepEnds const& step) {
     dual_.plus(from_, delta_, q_);
     dual_.evaluate(q_, v_, step.after.t);
@@ -218,7 +221,7 @@ class AlphaLinearisedStep {
     if (phi_.size() > 0) dual_.violation(phi_);
     if (!dual_.nonholonomic_equations().empty()) dual_.violation_rate(rate_);
   }
-  /// −δ[M v̇ − f + Gᵀλ] and −δΦ/βh² (−δΦ̇/γh) of each direction, with what the parameter does.
+  /// Computes −δ[M v̇ − f + Gᵀλ] and −δΦ/βh² (nonholonomic: −δΦ̇/γh) of each direction, with the effect of its parameter.
   void right_hand_sides(StepEnds const& step, std::span<StepDirection const> directions) {
     double const of_position = -1.0 / (method_.beta * step.h * step.h), of_speed = -1.0 / (method_.gamma * step.h);
     Index const nv = r_.size();
@@ -231,7 +234,7 @@ class AlphaLinearisedStep {
         rhs_[l][nv + i] = of_speed * (rate_[i].d[Index(l)] + of.rows[i]);
     }
   }
-  /// The end of the step after a correction of y.
+  /// Applies the correction of y to the end of the step.
   void apply(double h, std::size_t count) {
     double const of_a = method_.mass(), of_v = method_.gamma * h, of_delta = method_.beta * h * h;
     Side const by = side(count, [&](std::size_t l) -> VecX const& { return correction_[l]; });
@@ -244,7 +247,7 @@ class AlphaLinearisedStep {
     for (Index i = 0; i < lambda_.size(); ++i) lambda_[i].d += by[a_.size() + i];
   }
 
-  /// The derivatives of the state before the step become those of the state after it.
+  /// Replaces the derivatives of the state before the step by those of the state after it.
   void take_end(StepEnds const& step, std::span<StepDirection const> directions) {
     Index const nv = a_.size();
     for (std::size_t l = 0; l < directions.size(); ++l) {
@@ -267,9 +270,9 @@ class AlphaLinearisedStep {
   AlphaMethod method_;
   StepFactorisations<Solver, Derivative::direct> factors_;
   CorrectionErrorEstimate probe_;
-  State still_;            // no change of the state before a step
-  StepDirection at_rest_;  // along which y alone changes
-  int passes_ = 1;         // of the last directions
+  State still_;            // zero change of the state before a step
+  StepDirection at_rest_;  // direction in which only y changes
+  int passes_ = 1;         // evaluations for the last directions
   double size_of_a_ = 0.0, size_of_lambda_ = 0.0;
   Dots from_, delta_, q_, v_, a_, lambda_, r_, phi_, rate_;
   std::array<VecX, std::size_t(lanes)> y_, rhs_, correction_;  // y: changes of a₁ and λ₁, of each direction

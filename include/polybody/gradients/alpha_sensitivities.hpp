@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// Tangents of a run along its steps under the generalised-α family.
+/// Propagation of forward sensitivities over the steps of the generalised-α family.
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/gradients/perturbed_model.hpp>
 #include <polybody/gradients/perturbed_models.hpp>
@@ -10,18 +10,19 @@
 
 namespace polybody::detail {
 
-/// What takes tangents before a step to those at its end.
+/// Propagates the forward sensitivities of a run over its steps.
 template <class S, class I>
 class AlphaSensitivities {
  public:
   using V = PerturbedModel<S, I>;
   using Variants = PerturbedModels<V>;
 
-  /// Along the steps of `full`, which must outlive it.
+  /// For the steps of `full`, which must outlive this object.
   [[gnu::cold]] explicit AlphaSensitivities(V& full)
       : full_(&full), slope_(full.scenario.model, full.system, full.method) {}
 
-  /// The tangents of `lanes` become those at the end of a step. Returns what a correction more would change.
+  /// Replaces the sensitivities of `lanes` by those at the end of a step. Returns an upper estimate of the next
+  /// relative correction.
   double advance(SensitivityStep const& step, std::span<TangentColumn const> lanes, Variants& beside) {
     auto const& [before, after, h, searched] = step;
     V& spare = beside.itself();
@@ -56,7 +57,7 @@ class AlphaSensitivities {
   }
 
  private:
-  /// The tangent of the speeds, and of the method's own accelerations, that a step from x sets out with.
+  /// Adds the derivative of the correction of velocities and algorithmic accelerations at the start of a step from x.
   static void start_step(State const& x, double h, TangentColumn const& lane, bool corrects, Variants& beside) {
     RunSensitivity& tangent = *lane.tangent;
     double const shifted = x.history[x.history.size() - 1];
@@ -68,7 +69,7 @@ class AlphaSensitivities {
     tangent.dx.v += change.v;
     tangent.dx.history.head(nv) += change.history.head(nv);
   }
-  /// As `StepHistory::push` does with a length.
+  /// Appends the derivative of a step length, as `StepHistory::push` appends the length.
   static void push_length(RunSensitivity& tangent, double dh) {
     constexpr Index last = StepHistory::lengths - 1;
     for (Index i = 0; i + 1 < last; ++i) tangent.lengths[i] = tangent.lengths[i + 1];
@@ -77,7 +78,7 @@ class AlphaSensitivities {
 
   V* full_;
   AlphaLinearisedStep<> slope_;
-  VecX own_before_, own_after_;  // the method's own accelerations before and after
+  VecX own_before_, own_after_;  // algorithmic accelerations before and after the step
   std::vector<StepDirection> directions_;
 };
 

@@ -1,46 +1,47 @@
 #pragma once
 /// \file
-/// The adjoint of a converged step of the generalised-α family (gradients/alpha_linearised_step.hpp has its
-/// tangent-linear): from what a result J of a run changes by with the state after a step to what it changes by with the
-/// state before.
+/// Adjoint of a converged step of the generalised-α family: converts the derivatives of a result J of a run by the
+/// state after a step to those by the state before it. The tangent-linear form is in
+/// gradients/alpha_linearised_step.hpp.
 ///
 /// With y = (a₁, λ₁), q₁ = q₀ ⊞ δ(y), v₁(y), v̇₁(y) by the formulas of the step, and its equations R(y; x₀, p) = 0,
 ///   ȳ = ∂J/∂y by x̄₁ and these formulas,   (∂R/∂y)ᵀ μ = ȳ,
 ///   x̄₀ = (∂x₁/∂x₀)ᵀ x̄₁ − (∂R/∂x₀)ᵀ μ,   dJ/dp −= μᵀ ∂R/∂p  [Cao, Li, Petzold & Serban 2003, discrete].
-/// Products with transposed derivatives come from one recording of the residual, so no term is missing; μ is solved by
-/// factors of the transposed tangent at the end of the step, and corrected until nothing changes.
+/// Products with transposed derivatives are computed from one tape of the residual, so that they contain all terms. The
+/// equations for μ are solved with a factorisation of the transposed tangent at the end of the step and corrected down
+/// to round-off.
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/gradients/adjoint_kernels.hpp>
 #include <polybody/gradients/step_factorisations.hpp>
 
 namespace polybody {
 
-/// What a result J of a run changes by with a state: its derivatives by the numbers of the state as they stand.
+/// Adjoint variables: derivatives of a result J of a run by the stored numbers of a state, not by increments.
 struct Costate {
   VecX q;       ///< (nq) ∂J/∂q
   VecX v;       ///< (nv) ∂J/∂v
   VecX a;       ///< (nv) ∂J/∂v̇
   VecX lambda;  ///< (rows) ∂J/∂λ
-  VecX own;     ///< (nv) ∂J/∂a, the method's own accelerations
+  VecX own;     ///< (nv) ∂J/∂a, with the algorithmic accelerations a
 
-  /// Zeros: no state changes the result. \param x a state, of which the sizes are taken
+  /// Zeros: the result does not depend on the state. \param x state with the same sizes
   [[gnu::cold]] explicit Costate(State const& x)
       : q(VecX::Zero(x.q.size())), v(VecX::Zero(x.v.size())), a(v), lambda(VecX::Zero(x.lambda.size())), own(v) {}
 
-  /// What J changes by where the state changes by dx.
+  /// Change of J for a change dx of the state.
   double dot(State const& dx) const {
     double const sum = q.dot(dx.q) + v.dot(dx.v) + a.dot(dx.a) + lambda.dot(dx.lambda);
     return dx.history.size() >= own.size() ? sum + own.dot(dx.history.head(own.size())) : sum;
   }
 };
 
-/// Adjoints of converged steps of a method, one step after the other, from the last one to the first.
+/// Adjoints of converged steps of a method, from the last step to the first.
 template <LinearSolver Solver = DefaultSolver>
 class AlphaStepAdjoint {
  public:
-  /// The model must outlive it.
+  /// The model must outlive this object.
   template <class M>
   [[gnu::cold]] AlphaStepAdjoint(M const& model, System& system, AlphaMethod const& method)
       : recorded_(stepped_system<ReverseVar>(model, with<Capabilities::motion>)),
@@ -56,10 +57,9 @@ class AlphaStepAdjoint {
     of_lambda_ = VecX::Zero(rows);
   }
 
-  /// Takes the costate of the state after the step to that of the state before it. Returns what the last correction of
-  /// μ changed, relative to it. \param mu (nv + rows) what J changes by with what is
-  /// added to M v̇ − f + Gᵀλ, and to Φ, of velocity rows Φ̇, its sign changed. \throws SingularMatrix at a singular
-  /// position.
+  /// Converts the adjoint variables of the state after the step to those of the state before it. Returns the last
+  /// correction of μ, relative to μ. \param mu (nv + rows) derivatives of J, with opposite sign, by additions to
+  /// M v̇ − f + Gᵀλ and to Φ (nonholonomic: Φ̇). \throws SingularMatrix in a singular configuration.
   double backward_step(StepEnds const& step, Costate& x, VecX& mu) {
     record(step);
     factors_.set(step);
@@ -95,21 +95,20 @@ class AlphaStepAdjoint {
     return left;
   }
 
-  /// What J changes by with the length of the step that was gone back over last, where times of equations stay
-  /// [J's unit/s].
+  /// ∂J/∂h with the length h of the step in the last `backward_step`, at fixed times in the equations [J's unit/s].
   double step_length_derivative() const { return by_length_; }
 
  private:
   using Numbers = VecXOf<ReverseVar>;
   static constexpr Index most_products = 60;
 
-  /// What Φ and Φ̇ are multiplied by in R.
+  /// Factors of Φ and Φ̇ in R.
   double of_positions(double h) const { return 1.0 / (method_.beta * h * h); }
   double of_velocities(double h) const { return 1.0 / (method_.gamma * h); }
 
   void take(Numbers const& from, VecX& derivatives) { detail::take_derivatives(recording_, from, derivatives); }
 
-  /// q₁ = q₀ ⊞ δ, then M v̇ − f + Gᵀλ, Φ and, where velocity rows are, Φ̇ at the end of the step.
+  /// Records q₁ = q₀ ⊞ δ, then M v̇ − f + Gᵀλ, Φ and, for nonholonomic constraints, Φ̇ at the end of the step.
   void record(StepEnds const& step) {
     State const &before = step.before, &after = step.after;
     Tape::On const on(recording_);
@@ -127,7 +126,7 @@ class AlphaStepAdjoint {
     if (!recorded_.nonholonomic_equations().empty()) recorded_.violation_rate(rate_);
   }
 
-  /// (∂q₁/∂q₀)ᵀ q̄ and (∂q₁/∂δ)ᵀ q̄.
+  /// Computes (∂q₁/∂q₀)ᵀ q̄ and (∂q₁/∂δ)ᵀ q̄.
   void pull_position(VecX const& q) {
     recording_.clear_derivatives(moved_);
     detail::add_to_derivatives(recording_, q_, q);
@@ -135,7 +134,7 @@ class AlphaStepAdjoint {
     take(from_, of_q_);
     take(delta_, of_delta_);
   }
-  /// Products of the transposed derivatives of R with μ.
+  /// Computes the products of the transposed derivatives of R with μ.
   void pull_equations(StepEnds const& step, VecX const& mu) {
     Index const nv = r_.size();
     recording_.clear_derivatives(recording_.size());
@@ -155,7 +154,7 @@ class AlphaStepAdjoint {
   AlphaMethod method_;
   StepFactorisations<Solver, Derivative::transposed> factors_;
   Tape recording_;
-  std::size_t moved_ = 0;  // operations until q₁ is there
+  std::size_t moved_ = 0;  // number of operations up to q₁
   Numbers from_, delta_, q_, v_, a_, lambda_, r_, phi_, rate_;
   detail::TransposedSolution solution_;
   VecX mu_, y_, product_;

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// How a run goes back over its steps, by the family of its integrator.
+/// Backward sweeps over the steps of a run, one class for each family of integrators.
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/gradients/alpha_step_adjoint.hpp>
 #include <polybody/gradients/equation_derivatives.hpp>
@@ -11,7 +11,7 @@
 
 namespace polybody::detail {
 
-/// Under the generalised-α family.
+/// Backward sweep for the generalised-α family.
 template <class S, class I>
 class AlphaBackwardSweep {
  public:
@@ -19,20 +19,21 @@ class AlphaBackwardSweep {
 
   explicit AlphaBackwardSweep(V& v) : adjoint_(v.scenario.model, v.system, v.method) {}
 
-  /// The state from which the first step, of h, sets out.
+  /// State at the start of the first step, of length h, with corrected velocities and algorithmic accelerations.
   static State start_step(V& v, State started, double h) {
     (void)v.start_step(started, h);
     return started;
   }
-  /// Both starts were corrected, or none.
+  /// Returns true if both states have a start correction or both have none.
   static bool begin_alike(State const& x, State const& y) {
     return x.history.tail(StepHistory::lengths) == y.history.tail(StepHistory::lengths);
   }
-  /// Steps must be of one length.
+  /// Returns true if all steps must have the same length.
   static bool asks_for_equal_steps(V const& v) { return v.method.start_correction; }
   static StepReport step(V& v, State& x, double h) { return v.step(x, h); }
 
-  /// Takes a costate back over a step; what parameters do in it is taken from their slopes.
+  /// Converts the adjoint variables after a step to those before it, and adds the effect of the parameters to
+  /// `derivatives`. Returns the last relative correction.
   double backward_step(StepTaken const& step, Costate& bar, EquationDerivatives<V>& equations, VecX& derivatives) {
     Index const nv = step.before.v.size();
     VecX const own_before = step.before.history.head(nv), own_after = step.after.history.head(nv);
@@ -47,7 +48,7 @@ class AlphaBackwardSweep {
   VecX mu_;
 };
 
-/// Under methods of several stages.
+/// Backward sweep for Runge–Kutta methods.
 template <class S, class I>
 class StageBackwardSweep {
  public:

@@ -1,10 +1,10 @@
 #pragma once
 /// \file
-/// The steps of a run taken backwards with few snapshots of its states: the binomial schedule, which computes the least
-/// steps again [Griewank & Walther 2000, Algorithm 799]. With s snapshots, of which one is at the start, and no step
-/// taken more than r times, as many as C(s + r, s) steps can be gone back.
+/// Backward sweep over the steps of a run with few snapshots of its states. The binomial schedule repeats the fewest
+/// steps [Griewank & Walther 2000, Algorithm 799]. With s snapshots, one of them at the start, and at most r
+/// computations of each step, a sweep over C(s + r, s) steps is possible.
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <algorithm>
 #include <cstddef>
@@ -16,22 +16,22 @@
 
 namespace polybody {
 
-/// What going back over the steps of a run took.
+/// Cost of the backward sweep over a run.
 struct CheckpointingReport {
-  std::size_t steps = 0;      ///< of the run, how many are gone back over
-  std::size_t taken = 0;      ///< steps that were computed, each of them once at least
-  std::size_t snapshots = 0;  ///< the largest count of states that were kept at a time
+  std::size_t steps = 0;      ///< steps of the run in the backward sweep
+  std::size_t taken = 0;      ///< computed steps; each step is computed at least once
+  std::size_t snapshots = 0;  ///< largest number of states stored at the same time
 };
 
-/// C(s + r, s) steps, s = `snapshots` and r = `times`, or the largest number where that is more.
+/// C(s + r, s) with s = `snapshots` and r = `times`; from 1e15 on the largest number of the type.
 inline std::size_t binomial_steps(std::size_t snapshots, std::size_t times) {
   double count = 1.0;
   for (std::size_t k = 1; k <= std::min(snapshots, times); ++k) count *= double(snapshots + times - k + 1) / double(k);
   return count < 1e15 ? std::size_t(count + 0.5) : std::numeric_limits<std::size_t>::max();
 }
 
-/// From the first of so many steps, kept in a snapshot, the step before which the next snapshot is best taken.
-/// \param snapshots those that may be kept of these steps, the first one among them: two at least
+/// Optimal number of steps from one snapshot to the next. \param steps number of steps after the snapshot; \param
+/// snapshots number of snapshots for these steps, the first one included: at least two
 inline std::size_t next_checkpoint(std::size_t steps, std::size_t snapshots) {
   std::size_t times = 1;
   while (binomial_steps(snapshots, times) < steps) ++times;
@@ -40,8 +40,9 @@ inline std::size_t next_checkpoint(std::size_t steps, std::size_t snapshots) {
   return std::max<std::size_t>(1, std::min({binomial_steps(snapshots, times - 1), most, steps - 1}));
 }
 
-/// Calls back(k, x_k, x_k+1) for k from `steps` − 1 down to zero. \param first x₀; \param take take(k, x): x_k becomes
-/// x_k+1, always with the same bits; \param snapshots of states that are kept at a time, one at least
+/// Calls back(k, x_k, x_k+1) for k from `steps` − 1 down to zero. \param first x₀; \param take take(k, x) replaces x_k
+/// by x_k+1, with bitwise identical results in each call; \param snapshots largest number of stored states, at least
+/// one
 template <class X, class Take, class Back>
 CheckpointingReport reverse_steps(X const& first, std::size_t steps, std::size_t snapshots, Take&& take, Back&& back) {
   struct Kept {
@@ -49,14 +50,14 @@ CheckpointingReport reverse_steps(X const& first, std::size_t steps, std::size_t
     X x;
   };
   CheckpointingReport report{.steps = steps};
-  std::vector<Kept> kept;  // the first `count` are in use, the memory of the others is used again
+  std::vector<Kept> kept;  // the first `count` are in use; the memory of the others is reused
   std::size_t count = 1;
   kept.push_back({0, first});
   auto const advance = [&](X& x, std::size_t from, std::size_t to) {
     for (std::size_t k = from; k < to; ++k, ++report.taken) take(k, x);
   };
   bool at_end = false;
-  X before = first, after = first;  // of the last step that is left
+  X before = first, after = first;  // of the last step that remains
   for (std::size_t end = steps; end > 0;) {
     report.snapshots = std::max(report.snapshots, count);
     Kept& last = kept[count - 1];

@@ -1,15 +1,15 @@
 #pragma once
 /// \file
-/// What a correction by factors of a matrix near the derivative of a step leaves, found without another pass through
-/// the equations.
+/// Error estimate of a correction by an approximate factorisation, without another evaluation of the equations.
 ///
-/// With factors F near the derivative K, a correction c leaves E c with E = 1 − F⁻¹K. A probe z = w ∘ ξ, with weights w
-/// and independent ξ of variance 1/3, goes through the equations beside the directions, and F⁻¹K z gives E z. The mean
-/// of |E z|² is Σ E_ij² w_j²/3 [Hutchinson, Commun. Statist. Simul. 18, 1989]. Where |c_j| ≤ κ w_j for all n unknowns,
-/// Cauchy's inequality gives |E c| ≤ κ √(3 n mean |E z|²). One probe stands for the mean. Weights are what unknowns
-/// have been of late, so that a probe leaves alone what directions leave alone: a motion in a plane stays in it.
+/// With a factorisation F of a matrix close to the derivative K of a step, the error after a correction c is E c, with
+/// E = 1 − F⁻¹K. A probe z = w ∘ ξ has weights w and independent ξ of variance 1/3. It is evaluated together with the
+/// directions, and F⁻¹K z gives E z. The mean of |E z|² is Σ E_ij² w_j²/3 [Hutchinson, Commun. Statist. Simul. 18,
+/// 1989]. If |c_j| ≤ κ w_j for all n unknowns, Cauchy's inequality gives |E c| ≤ κ √(3 n mean |E z|²). One probe
+/// replaces the mean. The weights are recent sizes of the unknowns, so that a probe hardly changes unknowns that the
+/// directions do not change: a planar motion remains planar.
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <cmath>
 #include <cstdint>
@@ -18,32 +18,32 @@
 
 namespace polybody {
 
-/// What corrections of the changes of a₁ (nv) and λ₁ (rows) leave. Directions are scaled to the size of their
+/// Error estimate of corrections to the changes of a₁ (nv) and λ₁ (rows). Directions are scaled to the size of their
 /// parameters.
 class CorrectionErrorEstimate {
  public:
-  /// Norms of a change.
+  /// Norms of the two parts of a change.
   struct Parts {
     double a = 0.0;       ///< of accelerations [m/s²], [rad/s²]
     double lambda = 0.0;  ///< of multipliers [N], [N m]
   };
 
-  /// For so many unknowns. \param nv speeds; \param rows of which there are multipliers
+  /// \param nv number of generalised velocities; \param rows number of constraint equations with multipliers
   explicit CorrectionErrorEstimate(Index nv = 0, Index rows = 0)
       : nv_(nv), weights_(VecX::Zero(nv + rows)), drawn_(weights_) {}
 
-  /// Another step begins: weights fade.
+  /// Begins another step: discards the estimate and reduces the weights by 10 %.
   void fade() {
     forget();
     weights_ *= 0.9;
   }
-  /// Other factors: nothing is known of them.
+  /// Discards the estimate after a new factorisation.
   void forget() { known_ = false; }
-  /// What corrections leave is known.
+  /// Returns true if an estimate exists.
   bool known() const { return known_; }
-  /// A direction has had y (nv + rows) as its changes; `scale` is that of its parameter.
+  /// Increases the weights to the changes y (nv + rows) of a direction; `scale` is the size of its parameter.
   void add(VecX const& y, double scale) { weights_ = weights_.cwiseMax(scale * y.cwiseAbs()); }
-  /// Makes z (nv + rows). Returns false before there are weights.
+  /// Draws a probe z (nv + rows). Returns false if there are no weights yet.
   bool draw(VecX& z) {
     double const least = 1e-14 * weights_.maxCoeff();
     if (!(least > 0.0)) return false;
@@ -54,13 +54,13 @@ class CorrectionErrorEstimate {
     }
     return true;
   }
-  /// After the pass. \param left (nv + rows) E z
+  /// Computes the estimate from a probe. \param left (nv + rows) E z
   void measure(VecX const& left) {
     double const by = std::sqrt(3.0 * double(left.size()));
     leaves_ = {by * left.head(nv_).norm(), by * left.tail(left.size() - nv_).norm()};
     known_ = std::isfinite(leaves_.a + leaves_.lambda);
   }
-  /// Norms that a correction (nv + rows) leaves at most.
+  /// Estimated upper bounds of the error norms after a `correction` (nv + rows).
   Parts bound(VecX const& correction) const {
     double const kappa = (correction.array().abs() / drawn_.array()).maxCoeff();
     return {kappa * leaves_.a, kappa * leaves_.lambda};
@@ -68,7 +68,7 @@ class CorrectionErrorEstimate {
 
  private:
   Index nv_ = 0;
-  VecX weights_, drawn_;  // as they are, and as they were for z
+  VecX weights_, drawn_;  // present weights, and weights of the last probe
   Parts leaves_;
   bool known_ = false;
   std::uint64_t random_ = 0;

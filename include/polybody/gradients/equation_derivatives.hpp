@@ -1,10 +1,10 @@
 #pragma once
 /// \file
-/// What parameters do to the equations of a step while unknowns stay, ∂r/∂p and ∂Φ/∂p, by differences of models made
-/// for values beside theirs. Parameters that touch no equation in common share these models, as columns of a sparse
-/// Jacobian share one difference [Curtis, Powell & Reid 1974].
+/// Derivatives of the equations of a step by parameters at fixed unknowns, ∂r/∂p and ∂Φ/∂p, by differences of perturbed
+/// models. Parameters that affect no common equation share these models, as columns of a sparse Jacobian share one
+/// difference [Curtis, Powell & Reid 1974].
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <array>
 #include <functional>
@@ -17,18 +17,19 @@
 
 namespace polybody::detail {
 
-/// Differences of the equations by all parameters, in which an equation is detected that a parameter changes without
-/// naming it (gradients/shared_equations.hpp). \tparam V a Variant or a PerturbedStageModel
+/// Differences of the equations by all parameters. The differences also reveal equations that a parameter changes
+/// although `Parameter::affects` does not name their objects (gradients/shared_equations.hpp). \tparam V PerturbedModel
+/// or PerturbedStageModel
 template <class V>
 class EquationDerivatives {
  public:
-  /// In place of the number of a parameter: none is changed.
+  /// In place of the number of a parameter: no parameter is perturbed.
   static constexpr std::size_t nobody = std::size_t(-1);
-  /// Gives the model at point k beside parameter j, or with j = `nobody` the model itself.
+  /// Returns the model at difference point k of parameter j, or with j = `nobody` the unperturbed model.
   using Models = std::function<std::shared_ptr<V>(std::size_t j, std::size_t k)>;
 
-  /// A group for each set of parameters that touch nothing in common. \param make makes a scenario for values of the
-  /// parameters, and outlives the differences
+  /// Forms groups of parameters that affect no common equation. \param make makes a scenario for values of the
+  /// parameters, and must outlive this object
   template <class Make>
   [[gnu::cold]] EquationDerivatives(Make const& make, std::vector<Parameter> const& parameters, V const& model)
       : EquationDerivatives(make, parameters, model, {}) {
@@ -38,7 +39,7 @@ class EquationDerivatives {
       return std::make_shared<V>(make(p), method);
     };
   }
-  /// The same. \param alone has models that are there already
+  /// Forms the same groups with existing models. \param alone returns the models in which one parameter is perturbed
   template <class Make>
   [[gnu::cold]] EquationDerivatives(Make const& make, std::vector<Parameter> const& parameters, V const& model,
                                     Models alone)
@@ -75,23 +76,23 @@ class EquationDerivatives {
     }
   }
 
-  /// How many groups there are: each takes four evaluations.
+  /// Number of groups; each group needs four evaluations of the equations.
   std::size_t groups() const { return groups_.size(); }
 
-  /// What follows is asked of another step.
+  /// Discards the stored differences. Call it before another step.
   void forget() {
     for (Group& group : groups_) group.known = 0;
   }
-  /// Differences at x, a state or what else the equations are asked at, of which everything else is asked.
-  /// \throws InvalidInput as `get`.
+  /// Computes the differences at x, a state or an evaluation point, for `dot` and `take_from`. \throws InvalidInput as
+  /// `get`.
   template <class Place>
   void evaluate(Place const& x) {
     forget();
     for (Group& group : groups_) evaluate(group, x, 0);
   }
-  /// ∂r/∂p and ∂Φ/∂p of parameter j, which `out` has the sizes of, at x, place number `number` of a step: the first
-  /// parameter of a group evaluates them, at one place after the other. \throws InvalidInput where a parameter of the
-  /// group changes an equation that it does not name.
+  /// Stores ∂r/∂p and ∂Φ/∂p of parameter j at x in `out`, which has their sizes. x is evaluation point `number` of a
+  /// step. The first call for a group evaluates its differences, in the order of the points. \throws InvalidInput if a
+  /// parameter of the group changes an equation of objects that it does not name.
   template <class X>
   void get(std::size_t j, X const& x, std::size_t number, EquationDerivative& out) {
     Place const& place = places_[j];
@@ -104,20 +105,20 @@ class EquationDerivatives {
     for (Index const i : place.equations)
       (i < velocities ? out.balance[i] : out.rows[i - velocities]) = difference[i] / place.distance;
   }
-  /// μᵀ ∂r/∂p of parameter j. \param mu by speeds, then by rows
+  /// μᵀ ∂r/∂p of parameter j. \param mu (nv + rows) for the equations of motion, then for the constraints
   double dot(std::size_t j, VecX const& mu) const {
     double sum = 0.0;
     VecX const& difference = groups_[places_[j].group].differences.front();
     for (Index const i : places_[j].equations) sum += mu[i] * difference[i];
     return sum / places_[j].distance;
   }
-  /// Takes μᵀ ∂r/∂p of each parameter from its slope.
+  /// Subtracts μᵀ ∂r/∂p of each parameter from its derivative.
   void take_from(VecX& derivatives, VecX const& mu) const {
     for (std::size_t j = 0; j < places_.size(); ++j) derivatives[Index(j)] -= dot(j, mu);
   }
 
-  /// \throws InvalidInput where parameter j changes an equation at x that it does not touch, by more than rounding.
-  /// \param other the model with another value of it
+  /// \throws InvalidInput if parameter j changes an equation of objects at x that it does not name, by more than
+  /// round-off. \param other model with another value of parameter j
   template <class X>
   void require_touched(std::size_t j, V& model, V& other, X const& x) const {
     Parameter const& p = parameters_[j];
@@ -129,7 +130,7 @@ class EquationDerivatives {
       return i < velocities ? std::abs(there.balance[i] - here.balance[i])
                             : std::abs(there.rows[i - velocities] - here.rows[i - velocities]);
     };
-    double most[2] = {1e-11 * force, 1e-13};  // of balance and rows: what they touch, or rounding
+    double most[2] = {1e-11 * force, 1e-13};  // limits for balance and rows: round-off, or a part of the named changes
     std::vector<char> touched(std::size_t(model.system.size()), 0);
     for (Index const i : places_[j].equations) {
       touched[std::size_t(i)] = 1;
@@ -145,19 +146,19 @@ class EquationDerivatives {
   struct Place {
     std::size_t group = 0;
     double distance = 1.0;
-    std::vector<Index> equations;  // by speeds, then by rows
+    std::vector<Index> equations;  // equations of motion, then constraint equations
   };
   struct Set {
     std::array<std::shared_ptr<V>, 4> models;
-    std::vector<MemberOrder> orders;  // by equations: the order of the owner
+    std::vector<MemberOrder> orders;  // of each equation: the order of its owner
   };
   struct Group {
     SharedEquations equations;
     std::vector<std::size_t> members;  // parameters
-    std::vector<Set> sets;             // evaluations use them cyclically
-    std::array<VecX, 4> values;        // of the equations of its models
-    std::vector<VecX> differences;     // at each place, Σ of the four, weighted; over a distance it is a derivative
-    std::size_t known = 0;             // of them, of this step
+    std::vector<Set> sets;             // used in turn by the evaluations
+    std::array<VecX, 4> values;        // of the equations, one vector for each model
+    std::vector<VecX> differences;     // at each point, weighted sum of the values: derivative times distance
+    std::size_t known = 0;             // number of differences that belong to this step
 
     explicit Group(std::size_t size) : equations(size) {}
 
@@ -207,7 +208,7 @@ class EquationDerivatives {
     }
     if (doubtful) settle(group, set, x, velocities);
   }
-  /// The same for one parameter that touches all equations.
+  /// Computes the difference of a group with one parameter, which affects all equations.
   template <class X>
   static void sum_up(Set const& set, X const& x, VecX& difference) {
     for (std::size_t k = 0; k < points; ++k) {
@@ -217,7 +218,7 @@ class EquationDerivatives {
       difference.tail(of.rows.size()) += FourPoints::weights[k] * of.rows;
     }
   }
-  /// Changes every member alone. \throws InvalidInput where one changes an equation at x that it does not name.
+  /// Perturbs each member of the group alone. \throws InvalidInput as `require_touched`.
   template <class X>
   [[gnu::cold]] void settle(Group& group, Set const& set, X const& x, Index velocities) {
     std::shared_ptr<V> const itself = models_(nobody, 0);

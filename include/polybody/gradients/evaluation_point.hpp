@@ -1,17 +1,18 @@
 #pragma once
 /// \file
-/// The linear equations that steps of several stages solve, place by place:
+/// Linear equations that Runge–Kutta steps solve at each evaluation point:
 ///   M a + Gᵀλ = force f,   G (a + also) + bias γ + rate Φ̇ + position Φ = 0.
-/// Accelerations have all of f and γ. A projection has neither: with position = 1/h² the coordinates move by δ = h² a,
-/// with rate = 1/h the speeds by h a. So all of them are as large as accelerations, and lose no digits beside f.
+/// Accelerations have force = bias = 1 and rate = position = 0. A projection has force = bias = 0. With
+/// position = 1/h², it changes the coordinates by δ = h² a; with rate = 1/h, it changes the velocities by h a. The
+/// unknowns a of a projection thus have the size of accelerations and do not lose digits when f is subtracted.
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/gradients/alpha_linearised_step.hpp>
 
 namespace polybody {
 
-/// What stands in the equations of a place; what is set where nothing is said are those of accelerations.
+/// Factors of the terms in the equations of an evaluation point. The default values are those of accelerations.
 struct EquationTerms {
   double force = 1.0;     ///< factor of f: one, or zero
   double bias = 1.0;      ///< factor of γ
@@ -19,26 +20,26 @@ struct EquationTerms {
   double position = 0.0;  ///< factor of Φ [1/s²]
 };
 
-/// A place where equations are solved, with their solution.
+/// Evaluation point of the equations, with their solution.
 template <StateScalar T = double>
 struct EvaluationPoint {
   VecXOf<T> q;          ///< (nq) coordinates
-  VecXOf<T> v;          ///< (nv) speeds, and first-order states behind them
+  VecXOf<T> v;          ///< (nv) generalised velocities, then first-order states
   double t = 0.0;       ///< time [s]
-  EquationTerms terms;  ///< of the equations
-  VecXOf<T> also;       ///< (nv) accelerations that the rows see beside a; empty where there are none
+  EquationTerms terms;  ///< factors of the terms of the equations
+  VecXOf<T> also;       ///< (nv) accelerations added to a in the constraint equations; empty if there are none
   VecXOf<T> a;          ///< (nv) accelerations: the solution
   VecXOf<T> lambda;     ///< (rows) multipliers: the solution
 };
 
-/// The left sides of the equations at a place.
+/// Left-hand sides of the equations at an evaluation point.
 template <StateScalar T = double>
 class PointEquations {
  public:
   VecXOf<T> balance;  ///< (nv) M a + Gᵀλ − force f
   VecXOf<T> rows;     ///< (rows) G (a + also) + bias γ + rate Φ̇ + position Φ
 
-  /// Evaluates them by the a and λ of the place.
+  /// Evaluates the left-hand sides with a and λ of the point x.
   void evaluate(BasicSystem<T>& system, EvaluationPoint<T> const& x) {
     resize(system);
     system.evaluate(x.q, x.v, x.t);
@@ -79,34 +80,33 @@ class PointEquations {
   VecXOf<T> none_, no_rows_, part_, of_rows_;
 };
 
-/// What a parameter does to the equations of place x, while x and its solution stay: f(x, l) for direction number l.
+/// Function f(x, l): derivative of the equations at a fixed point x by the parameter of direction number l.
 template <class F>
 concept EquationDerivativeFunction = requires(F f, EvaluationPoint<> const& x, std::size_t l) {
   { f(x, l) } -> std::convertible_to<EquationDerivative>;
 };
 
-/// The slopes of the steps of integrator I, `Type`, where it solves equations at places; specialised on the header of
-/// these slopes.
+/// `Type` is the linearised step of the Runge–Kutta method I. The header of each linearised step specialises it.
 template <class I>
 struct StageDerivatives;
 
-/// The adjoints of the steps of integrator I, `Type`, likewise.
+/// `Type` is the adjoint of a step of the Runge–Kutta method I. The header of each adjoint specialises it.
 template <class I>
 struct StageAdjoints;
 
 namespace detail {
-/// The header of the adjoints of integrator I is there.
+/// The header with the adjoint of a step of integrator I is included.
 template <class I>
 concept HasStageAdjoints = requires { typename StageAdjoints<I>::Type; };
-/// The header of the slopes of integrator I is there.
+/// The header with the linearised step of integrator I is included.
 template <class I>
 concept HasStageDerivatives = requires { typename StageDerivatives<I>::Type; };
 }  // namespace detail
 
-/// A step that was taken.
+/// Step of a run.
 struct StepTaken {
-  State const& before;  ///< at its start
-  State const& after;   ///< at its end
+  State const& before;  ///< state at its start
+  State const& after;   ///< state at its end
   double h;             ///< its length [s]
 };
 

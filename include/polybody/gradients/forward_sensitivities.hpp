@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// A run that takes its derivatives along, step by step.
+/// Run with forward sensitivities, integrated step by step.
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/gradients/nondifferentiable_times.hpp>
 #include <polybody/gradients/perturbed_models.hpp>
@@ -13,8 +13,9 @@ namespace polybody {
 
 namespace detail {
 
-/// A run and its derivatives, step by step, as `Simulation` takes the steps. A step whose length the method chooses by
-/// its error keeps it, unless a corner, an event or the end of the run ends it. \tparam Way takes tangents along steps
+/// Run with forward sensitivities; the steps are those of `Simulation`. A step length that the method chooses from its
+/// error estimate is a constant in the derivatives. The length of a step to a breakpoint, an event or the end of the
+/// run depends on the parameters. \tparam Way propagates sensitivities over steps
 template <class Make, class I, template <class, class> class Way>
 class ForwardSensitivities {
   using S = std::remove_cvref_t<decltype(std::declval<Make const&>()(std::declval<std::span<double const>>()))>;
@@ -70,8 +71,8 @@ class ForwardSensitivities {
     start([&](std::size_t j, double h, double dh, auto const& f) { return beside_.of_start(j, h, dh, f); }, {});
     if (!options().events.empty()) watch_.start(options().events, x_, motion());
   }
-  /// Makes x_ a start, after some events act on it, with all tangents. \param differenced (parameter, length of the
-  /// next step, its slope, map) gives the derivative of the map
+  /// Starts the run and all sensitivities at x_, after the actions of the events `acting`. \param differenced
+  /// differenced(parameter, length of the next step, derivative of this length, map) returns the derivative of the map
   template <class Differenced>
   void start(Differenced const& differenced, std::vector<std::size_t> const& acting) {
     StepPlan::Next const next = done() ? StepPlan::Next{x_.t, h_, false, false} : plan_.next(x_.t, h_);
@@ -93,20 +94,20 @@ class ForwardSensitivities {
     }
     x_ = std::move(fresh);
   }
-  /// What acting events make of a state of a variant.
+  /// State of the model v after the actions of the events `acting` in the state x.
   static State after(V& v, std::vector<std::size_t> const& acting, State const& x) {
     State y = v.shown(x);
     for (std::size_t const i : acting) v.scenario.options.events[i].action(y);
     y.t = x.t;
     return stepped_state(v, std::move(y));
   }
-  /// The slope of the length of the next step.
+  /// Derivative of the length of the next step by parameter j.
   double length_slope(std::size_t j, StepPlan::Next const& next, RunSensitivity const& from) const {
     if (!next.lands) return step_slope_[j];
     return (next.jumps ? beside_.times(j).slope(next.target) : until_slope_[j]) - from.dt;
   }
 
-  /// A step to the next place of the plan, or to an event before it.
+  /// Takes a step to the next time of the plan, or to an event before it.
   void step() {
     before_ = x_;
     StepPlan::Next next = plan_.next(x_.t, h_);
@@ -141,7 +142,7 @@ class ForwardSensitivities {
           acting);
     if (!acting.empty()) watch_.settle(options().events, x_, motion());
   }
-  /// A corner at the end of the run ends it for nearby parameters too.
+  /// Refuses a breakpoint at the end of the run if its time and the end time have different derivatives.
   void require_one_end() const {
     if (x_.t < options().end_time) return;
     for (std::size_t j = 0; j < parameters_.size(); ++j)
@@ -157,7 +158,7 @@ class ForwardSensitivities {
       h_ = std::min<double>(landed ? std::max(report.next, h_) : report.next,
                             options().max_step.value_or(std::numeric_limits<double>::infinity()));
   }
-  /// Ends the step to x_ at the first event within it; then `lengths_` lead there.
+  /// Ends the step to x_ at the first event within it. `lengths_` then contains the steps up to the event.
   bool meet() {
     struct Trial {
       double end;
@@ -180,17 +181,18 @@ class ForwardSensitivities {
     return met;
   }
 
-  /// The tangents before the steps of `lengths_` become those at x_. The length of the last one moves with what is
-  /// `next`. Where an event is met it stays, and `step_length_derivative` becomes the derivative by it.
+  /// Propagates the sensitivities over the steps of `lengths_` to x_. The length of the last step varies with the time
+  /// of its target, `next`. At an event, the length is fixed, and `step_length_derivative` becomes the derivative by
+  /// it.
   void differentiate(StepPlan::Next const& next, bool met, RunSensitivity& step_length_derivative) {
-    for (std::size_t i = 0; i + 1 < lengths_.size(); ++i) {  // where the error asked for less than up to the event
+    for (std::size_t i = 0; i + 1 < lengths_.size(); ++i) {  // if the error estimate divides the step to the event
       State part = before_;
       (void)full_.step(part, lengths_[i]);
       set_lanes([](std::size_t) { return 0.0; });
       advance({before_, part, lengths_[i], true});
       before_ = std::move(part);
     }
-    x_.t = before_.t + lengths_.back();  // just before a corner
+    x_.t = before_.t + lengths_.back();  // just before a breakpoint
     set_lanes([&](std::size_t j) { return met ? 0.0 : length_slope(j, next, tangents_[j]); });
     if (met) {
       step_length_derivative = {zeros_like(before_), 0.0, VecX::Zero(lengths_of(before_).size())};
@@ -208,7 +210,8 @@ class ForwardSensitivities {
     double const left = way_.advance(step, lanes_, beside_);
     out_.left = std::max(out_.left, require_converged(left, x_.t, "sensitivities"));
   }
-  /// Adds to the derivatives at the end of a step of fixed length what the event's time does: the value stays zero.
+  /// Adds the effect of the event time, at which the event value is zero, to the derivatives after a step of fixed
+  /// length.
   void move_to_event(RunSensitivity const& step_length_derivative, State const& before, State const& far) {
     std::vector<double> dh(parameters_.size());
     std::string const* first = nullptr;
@@ -239,7 +242,7 @@ class ForwardSensitivities {
     }
   }
 
-  /// Values and slopes of the outputs at x.
+  /// Stores the values and derivatives of the outputs at x_.
   void note() {
     beside_.show(x_);
     MatX derivatives = MatX::Zero(Index(out_.outputs.size()), Index(parameters_.size()));
@@ -264,7 +267,7 @@ class ForwardSensitivities {
   V full_;
   Way<S, I> way_;
   Variants beside_;
-  State x_, before_;             // now, and before the step
+  State x_, before_;             // present state, and state before the step
   std::vector<double> lengths_;  // of the steps between them
   std::vector<TangentColumn> lanes_;
   std::vector<RunSensitivity> tangents_;  // of each parameter

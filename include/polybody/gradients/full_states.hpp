@@ -1,9 +1,9 @@
 #pragma once
 /// \file
-/// A run steps narrow states where policies eliminate unknowns, and its user sees whole ones: between the two, in
-/// doubles and recorded numbers.
+/// Conversion between the reduced states of a run, in which policies eliminate unknowns, and full states, for doubles
+/// and recorded numbers.
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/integrators/forward_dynamics.hpp>
 #include <polybody/run/event_action.hpp>
@@ -12,8 +12,8 @@
 
 namespace polybody::detail {
 
-/// Whole states of stepped ones, with the multipliers of eliminated joints. \tparam M a model; where its joints
-/// eliminate nothing, both are the same
+/// Full states of the reduced states of a run, with the multipliers of eliminated joints. \tparam M model; if its
+/// joints eliminate no unknowns, both states are the same
 template <class M, StateScalar T = double>
 class FullStates {
  public:
@@ -25,8 +25,8 @@ template <class M, StateScalar T>
 class FullStates<M, T> {
  public:
   [[gnu::cold]] explicit FullStates(M const& model) : system_(stepped_system<T>(model, with<Capabilities::motion>)) {}
-  /// It stays until the next one is shown. Estimates that a step keeps for joints that carry bodies have no
-  /// derivatives: what these joints hold is worked out.
+  /// Returns the full state of x, which is valid until the next call. The multipliers of joints in joint coordinates
+  /// are computed, since their estimates in x have no derivatives.
   StateOf<T> const& operator()(StateOf<T> const& x) {
     stepped_ = x;
     stepped_.lambda.conservativeResize(system_.rows());
@@ -40,8 +40,8 @@ class FullStates<M, T> {
   VecXOf<T> scratch_;
 };
 
-/// The state that a variant steps, next to a whole one, whose speeds are brought onto the joints before these are left
-/// out.
+/// Reduced state of the model v for a full state x. The velocities are projected onto the constraint equations before
+/// the elimination.
 template <class V>
 [[gnu::cold]] State stepped_state(V const& v, State x) {
   if constexpr (V::Model::eliminates) {
@@ -54,7 +54,7 @@ template <class V>
   }
 }
 
-/// The state that a variant steps after the events that were met last have acted on the whole one x. \throws
+/// Reduced state of the model v after the actions of the events that were met last in the full state x. \throws
 /// InvalidInput as `act`.
 template <class V>
 [[gnu::cold]] State acted_state(V& v, EventDetector const& watch, State x) {
@@ -68,7 +68,7 @@ template <class V>
   return stepped_state(v, std::move(x));
 }
 
-/// \throws InconsistentInitialConditions where a joint is open at the start of a variant's scenario, eliminated or not.
+/// \throws InconsistentInitialConditions if the initial state of a scenario violates a joint, eliminated or not.
 template <class V>
 [[gnu::cold]] void require_assembled_start(V& v) {
   State const& x = v.scenario.start;

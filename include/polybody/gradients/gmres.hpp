@@ -1,11 +1,13 @@
 #pragma once
 /// \file
-/// GMRES [Saad & Schultz 1986], step by step, so that several systems may share the passes that give their products:
-///   B x = b, with B = M⁻¹ A and b = M⁻¹ r where M, near A, has been factored.
-/// After n products x is the combination of b, B b, … Bⁿ⁻¹ b that leaves least of b. With M = A one product does; where
-/// M lacks a few blocks of A, a few more than there are of these do, whether or not corrections by M alone contract.
+/// GMRES [Saad & Schultz 1986], one product at a time, so that several systems can share the evaluations of their
+/// products. It solves
+///   B x = b, with B = M⁻¹ A and b = M⁻¹ r, where M is a factorised matrix close to A.
+/// After n products, x is the combination of b, B b, … Bⁿ⁻¹ b with the least residual. If M = A, one product is enough.
+/// If M lacks a few blocks of A, a few more products than missing blocks are enough, even if iterative refinement with
+/// M diverges.
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <cmath>
 #include <vector>
@@ -14,10 +16,10 @@
 
 namespace polybody::detail {
 
-/// One system of equations. Vectors are kept from one solution to the next.
+/// Iterative solution of one system of equations. Its vectors keep their memory for the next solution.
 class Gmres {
  public:
-  /// From now on B x = b is solved. \param tolerated norm of what may be left of b; \param most products
+  /// Begins the solution of B x = b. \param tolerated permitted norm of the residual; \param most limit of products
   void begin(VecX const& b, double tolerated, Index most) {
     tolerated_ = tolerated;
     most_ = most;
@@ -30,15 +32,15 @@ class Gmres {
     cosines_.setZero(most);
     sines_.setZero(most);
   }
-  /// What is left is within the tolerance, or no further product may be asked for.
+  /// Returns true if the residual is within the tolerance, or if the largest number of products is reached.
   bool is_done() const { return left_ <= tolerated_ || count_ == most_; }
-  /// The vector whose product with B is wanted next.
+  /// Vector to be multiplied by B next.
   VecX const& next() const { return basis_[std::size_t(count_)]; }
-  /// Takes this product. \param product (n), used up
+  /// Processes this product. \param product (n) B times `next()`; it is overwritten
   void take(VecX& product) {
     double const before = product.norm();
     Vec<double, Eigen::Dynamic> column = VecX::Zero(count_ + 2);
-    for (int twice = 0; twice < 2; ++twice)  // once leaves too much along the others [Giraud et al. 2005]
+    for (int twice = 0; twice < 2; ++twice)  // once is not accurate enough [Giraud et al. 2005]
       for (Index i = 0; i <= count_; ++i) {
         double const along = basis_[std::size_t(i)].dot(product);
         product -= along * basis_[std::size_t(i)];
@@ -55,10 +57,11 @@ class Gmres {
     turned_[count_ + 1] = -sines_[count_] * turned_[count_];
     turned_[count_] *= cosines_[count_];
     ++count_;
-    left_ = rest <= 1e-15 * before ? 0.0 : std::abs(turned_[count_]);  // nothing new: x is in what there is
+    left_ =
+        rest <= 1e-15 * before ? 0.0 : std::abs(turned_[count_]);  // no new direction: x is in the span of the basis
     set(count_, product, rest);
   }
-  /// Adds x.
+  /// Adds the solution to x.
   void add_to(VecX& x) const {
     VecX parts = turned_.head(count_);
     upper_.topLeftCorner(count_, count_).triangularView<Eigen::Upper>().solveInPlace(parts);
