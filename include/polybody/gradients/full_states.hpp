@@ -25,8 +25,8 @@ template <class M, StateScalar T>
 class FullStates<M, T> {
  public:
   [[gnu::cold]] explicit FullStates(M const& model) : system_(stepped_system<T>(model, with<Capabilities::motion>)) {}
-  /// Returns the full state of x, which is valid until the next call. The multipliers of joints in joint coordinates
-  /// are computed, since their estimates in x have no derivatives.
+  /// Returns the full state of x, which is valid until the next call. Multipliers of joints in joint coordinates are
+  /// evaluated from the equations, because their estimates in x have no derivatives.
   StateOf<T> const& operator()(StateOf<T> const& x) {
     stepped_ = x;
     stepped_.lambda.conservativeResize(system_.rows());

@@ -1,20 +1,22 @@
 #pragma once
 /// \file
-/// The derivatives of one result of a run, J = Φ(x_N) + ∫ g(x) dt, with respect to any number of parameters of its
-/// model, by the discrete adjoint:
+/// Gradient of one result of a run, J = Φ(x_N) + ∫ g(x) dt, with respect to any number of parameters of its model, by
+/// the discrete adjoint:
 ///
-///     auto const make = [](std::span<double const> p) { … return with_objective(Scenario<M>{model, start, options},
-///     end); }; Gradient const g = gradient(make, {{"length [m]", 1.0}}, GeneralisedAlpha{}); g.slopes[0];   // dJ/dp
-///     of the first parameter
+///     auto const make = [](std::span<double const> p) {
+///       return with_objective(Scenario<M>{model_of(p), start, options}, end);
+///     };
+///     GradientResult const g = gradient(make, {{"length [m]", 1.0}}, GeneralisedAlpha{});
+///     g.derivatives[0];  // dJ/dp of the first parameter
 ///
-/// The run is taken once forwards, then backwards from its end (`AlphaStepAdjoint`), through corners and events
-/// (`AdjointEventHandler`); states on the way are kept in snapshots or computed again (`reverse_steps`). Parameters
-/// are numbers of a factory, and equations at given unknowns are differenced by them, as in `sensitivities`; a step
-/// costs the same for one parameter and for many but for these differences, which parameters share that touch nothing
-/// in common (`Parameter::touches`). Every step begins with a factorisation of its own, so that it has the same bits
-/// whenever it is taken.
+/// A forward run is followed by a backward sweep from its end (`AlphaStepAdjoint`), also over breakpoints and events
+/// (`AdjointEventHandler`). The states of the run are stored in snapshots or computed again (`reverse_steps`).
+/// A factory makes models from parameters. Their equations at given unknowns are differenced, as in `sensitivities`.
+/// Parameters that affect no common equation share these differences (`Parameter::affects`). All other costs of a step
+/// are independent of the number of parameters. Each step begins with its own factorisation, so that repeated steps are
+/// bitwise identical.
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <memory>
 #include <span>
@@ -27,7 +29,7 @@
 
 namespace polybody {
 
-/// A user's factory: a scenario with its objective for the values of the parameters, in their order.
+/// Factory of the user: makes a scenario with an objective from the values of the parameters, in their order.
 template <class F>
 concept ObjectiveFactory = requires(F const make, std::span<double const> p) {
   { make(p).model };
@@ -38,14 +40,14 @@ concept ObjectiveFactory = requires(F const make, std::span<double const> p) {
 
 namespace detail {
 
-/// A run forwards and back. \tparam Way how it goes back
+/// Forward run and backward sweep. \tparam Way backward sweep for the integrator's family
 template <class Make, class I, template <class, class> class Way>
 class AdjointRun {
   using S = std::remove_cvref_t<decltype(std::declval<Make const&>()(std::declval<std::span<double const>>()))>;
   using W = Way<S, I>;
   using V = typename W::V;
   using M = typename V::Model;
-  /// A scenario beside the one that is run, and what it shows of states.
+  /// Scenario with one perturbed parameter, and its conversion to full states.
   struct ParameterDifferences {
     S scenario;
     FullStates<M> shown;
@@ -94,11 +96,11 @@ class AdjointRun {
 
  private:
   struct Step {
-    double h, taken, end;  ///< length that was asked for and that was taken, and time at which it ends [s]
+    double h, taken, end;  ///< requested length, actual length and end time [s]
   };
   static constexpr bool chooses = requires { I::adaptive_step; };
 
-  /// What only runs under the generalised-α family have.
+  /// Refuses events and breakpoints, which only the generalised-α family supports.
   static void require_still(RunOptions const& o) {
     if (!o.events.empty() || !o.breakpoints.empty())
       throw InvalidInput(
@@ -106,7 +108,7 @@ class AdjointRun {
           {ErrorObject{"gradient"},
            ": runs with events or breakpoints need a method of the generalised-α family. Use `sensitivities`."});
   }
-  /// The length of the first step.
+  /// Begins the plan of the run at the time t. Returns the length of the first step [s].
   double begin_plan(double t) {
     RunOptions const& options = full_.scenario.options;
     if (!(t < options.end_time))
@@ -116,7 +118,7 @@ class AdjointRun {
     largest_ = options.max_step.value_or(std::numeric_limits<double>::infinity());
     return plan_.next(t, std::min<double>(options.step, largest_)).h;
   }
-  /// All steps from x on; where the integrator chooses them, by taking them.
+  /// Plans all steps from x. If the integrator chooses their lengths, the steps are computed.
   void plan(State x) {
     RunOptions const& options = full_.scenario.options;
     double h = std::min<double>(options.step, largest_);
@@ -145,7 +147,7 @@ class AdjointRun {
       steps_.push_back(step);
     }
   }
-  /// The part of the run's time for which a state stands in an integral.
+  /// Weight of a state in the trapezoidal rule of the integral [s].
   double weight(std::size_t state) const {
     double const before = state > 0 ? steps_[state - 1].taken : 0.0;
     return 0.5 * (before + (state < steps_.size() ? steps_[state].taken : 0.0));
@@ -166,7 +168,7 @@ class AdjointRun {
     add_to_derivatives([&](ParameterDifferences& b) { return term(b.scenario.end, b.scenario.model, b.shown(last)); });
     add_integrand(steps_.size(), last, bar);
   }
-  /// The integrand of state number k.
+  /// Adds the integrand at the state x, number k, and its derivatives.
   void add_integrand(std::size_t k, State const& x, Costate& bar) {
     if constexpr (std::same_as<decltype(full_.scenario.integrand), NoTerm>) return;
     double const w = weight(k);
@@ -175,7 +177,7 @@ class AdjointRun {
     add_to_derivatives(
         [&](ParameterDifferences& b) { return w * term(b.scenario.integrand, b.scenario.model, b.shown(x)); });
   }
-  /// What each parameter does to the start of the run, and its scenarios. \param x from where the first step sets out
+  /// Computes the derivatives of the initial state and stores the perturbed scenarios. \param x start of the first step
   void prepare(State const& x, EquationDerivatives<V> const& equations) {
     double const h = steps_.front().h;
     for (std::size_t j = 0; j < parameters_.size(); ++j) {
@@ -203,7 +205,7 @@ class AdjointRun {
       starts_.push_back(std::move(dx));
     }
   }
-  /// Adds the derivative of f(what is beside) to each parameter's slope.
+  /// Adds the derivative of f(perturbed scenario) by each parameter to dJ/dp.
   template <class F>
   void add_to_derivatives(F&& f) {
     for (std::size_t j = 0; j < parameters_.size(); ++j) {
@@ -219,24 +221,25 @@ class AdjointRun {
   V full_;
   W way_;
   std::vector<std::unique_ptr<ParameterDifferences>> beside_;  // four for each parameter
-  std::vector<State> starts_;  // derivatives of where the first step sets out, by each parameter
+  std::vector<State> starts_;  // derivatives of the start of the first step, by each parameter
   StepPlan plan_;
   double largest_ = 0.0;
   std::vector<Step> steps_;
-  std::size_t furthest_ = 0;  // steps that have been taken once
+  std::size_t furthest_ = 0;  // number of steps computed at least once
   ObjectiveDerivatives<M> derivatives_;
   GradientResult out_;
 };
 
 }  // namespace detail
 
-/// Runs the scenario that `make` gives for the parameters' values and differentiates its objective with respect to
-/// each. Newton's corrections go on to 1e-12 or to what rounding leaves. \param integrator one of the generalised-α
-/// family, without `stabilised`; with runge_kutta_step_adjoint.hpp RungeKutta4, or DormandPrince, whose choice of steps
-/// stays as it is; with radau_step_adjoint.hpp Radau. \throws InvalidInput for parameters or options that cannot be
-/// meant, a factory whose models differ in size, under methods of several stages events, corners or times that move,
-/// times without a derivative as `sensitivities`, two events at once, a last step of another length in a run without
-/// any of these; SingularMatrix at a singular position; NonFiniteValue; and as `simulate`.
+/// Runs the scenario that `make` returns for the values of the parameters, and differentiates its objective with
+/// respect to each. Newton's method iterates down to corrections of 1e-12 or round-off. \param integrator integrator of
+/// the generalised-α family, without `stabilised`; with runge_kutta_step_adjoint.hpp RungeKutta4, or DormandPrince with
+/// its step lengths as constants; with radau_step_adjoint.hpp Radau. \throws InvalidInput for invalid parameters or
+/// options; for a factory with models of different sizes; for times without a derivative, as `sensitivities`; for two
+/// coincident events; for a start correction and steps of different lengths in a run without events, breakpoints and
+/// moving times; for events, breakpoints or moving times under Runge–Kutta methods. \throws SingularMatrix in a
+/// singular configuration. \throws NonFiniteValue; and as `simulate`.
 template <ObjectiveFactory Make, class I>
 GradientResult gradient(Make const& make, std::vector<Parameter> const& parameters, I const& integrator,
                         GradientOptions const& options = {}) {

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// What `gradient` is asked and answers.
+/// Options and result of `gradient`.
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <string>
 #include <vector>
@@ -12,26 +12,26 @@
 
 namespace polybody {
 
-/// How the states of a run are kept for the way back.
+/// Storage of the states of a run for the backward sweep.
 struct GradientOptions {
-  std::size_t snapshots = 0;  ///< states that are kept at a time at most; zero: as many as fit into `memory`
-  double memory = 1e9;        ///< for snapshots where their count is not given [bytes]
+  std::size_t snapshots = 0;  ///< largest number of stored states; zero: as many as fit into `memory`
+  double memory = 1e9;        ///< memory limit of the snapshots if their number is not given [bytes]
 };
 
-/// A result of a run and its derivatives.
+/// Result of a run and its derivatives.
 struct GradientResult {
   std::vector<std::string> parameters;  ///< names, with units
   double value = 0.0;                   ///< J, in the objective's unit
-  VecX derivatives;                     ///< (parameters) dJ/dp, J's unit over the parameter's
-  double left = 0.0;                    ///< the largest relative change by a last correction of a step's multipliers
-  CheckpointingReport reversal;         ///< steps, those taken again, snapshots
+  VecX derivatives;                     ///< (parameters) dJ/dp [unit of J / unit of p]
+  double left = 0.0;                    ///< largest relative change of a step's multipliers μ in the last correction
+  CheckpointingReport reversal;         ///< number of steps, repeated steps and snapshots
   double snapshot_size = 0.0;           ///< memory of one snapshot [bytes]
-  RunReport run;                        ///< of the steps as they were taken first
+  RunReport run;                        ///< report of the forward run
 };
 
 namespace detail {
 
-/// States that are kept at a time. \param size of one [bytes]. \throws InvalidInput where none fits into the memory.
+/// Number of stored states. \param size size of one state [bytes]. \throws InvalidInput if none fits into the memory.
 template <class = void>
 std::size_t snapshots_of(GradientOptions const& options, double size) {
   if (options.snapshots > 0) return options.snapshots;
@@ -46,7 +46,7 @@ template <class = void>
 double size_of_snapshot(State const& x) {
   return 8.0 * double(x.q.size() + x.v.size() + x.a.size() + x.lambda.size() + x.history.size());
 }
-/// Warns of a parameter that the objective does not depend on.
+/// Adds a warning for each parameter without effect on the objective.
 template <class = void>
 void warn_of_zeros(GradientResult& g) {
   for (std::size_t j = 0; j < g.parameters.size(); ++j)

@@ -1,15 +1,15 @@
 #pragma once
 /// \file
-/// What ⊞ does to the derivative of a step's equations.
+/// Effect of ⊞ on the derivative of a step's equations.
 ///
-/// A step ends at q₁ = q₀ ⊞ δ. Where coordinates turn, a change dδ moves q₁ by u = T dδ in increments at q₁, and
-/// `local_rate`(δ, u) = T⁻¹ u [Arnold, Brüls & Cardona 2015]. The tangent C = cm M + cd D + ck K of a system has K by
-/// increments at q₁, so with y = (δa₁, δλ₁) the derivative of a step is
+/// A step ends at q₁ = q₀ ⊞ δ. For rotational coordinates, a change dδ changes q₁ by u = T dδ, an increment at q₁, and
+/// `local_rate`(δ, u) = T⁻¹ u [Arnold, Brüls & Cardona 2015]. The tangent C = cm M + cd D + ck K of a system contains K
+/// with respect to increments at q₁. With y = (δa₁, δλ₁), the derivative of a step is therefore
 ///   [cm M + cd D + ck K T, Gᵀ; G T, 0] = [C + (cm M + cd D) W, Gᵀ; G, 0] diag(T, 1),  W = T⁻¹ − 1,
-/// of velocity rows with G + G W in place of G. Newton's method leaves W out, which is about hω/2: its factors leave as
-/// much of every correction of a slope.
+/// for nonholonomic constraints with G + G W in place of G. Newton's method omits W, which has the size hω/2. A
+/// correction of derivatives with the factorisation of Newton's method has a relative error of the same size.
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <algorithm>
 #include <vector>
@@ -18,10 +18,10 @@
 
 namespace polybody {
 
-/// W of the unknowns of a step, by columns: 3 × 3 for each body or node that turns.
+/// Matrix W of a step, stored by columns: a 3 × 3 block for each rotation of a body or node.
 class IncrementTangent {
  public:
-  /// Finds which unknowns turn; of a step that eliminates joints, none is looked for. \param system the step's
+  /// Finds the rotational unknowns. W is omitted if the system eliminates unknowns. \param system system of the step
   [[gnu::cold]] explicit IncrementTangent(System const& system) : columns_(std::size_t(system.velocities())) {
     if (system.step_coordinates()) return;
     velocities_ = system.velocities();
@@ -31,7 +31,7 @@ class IncrementTangent {
     delta_ = VecX::LinSpaced(velocities_, 0.1, 0.2);
     one_ = rate_ = VecX::Zero(velocities_);
     none_ = VecX::Zero(system.rows());
-    Index const of_bodies = system.layout().body_velocities();  // first-order states stand behind them
+    Index const of_bodies = system.layout().body_velocities();  // first-order states follow them
     for (Index j = 0; j < of_bodies; ++j) {
       one_[j] = 1.0;
       system.local_rate(delta_, one_, rate_);
@@ -42,9 +42,9 @@ class IncrementTangent {
     give_colours();
   }
 
-  /// Whether any unknown turns.
+  /// Returns true if any unknown is rotational.
   bool any() const { return !colours_.empty(); }
-  /// From now on W is that of a step by delta (speeds).
+  /// Computes W for a step with the increment delta (nv).
   void set(System const& system, VecX const& delta) {
     for (std::vector<Index> const& colour : colours_) {
       one_.setZero();
@@ -54,7 +54,7 @@ class IncrementTangent {
         for (Entry& e : columns_[std::size_t(j)]) e.value = rate_[e.row] - (e.row == j ? 1.0 : 0.0);
     }
   }
-  /// u by speeds becomes T⁻¹ u = u + W u; unknowns behind the speeds stay.
+  /// Replaces the first nv entries of u by T⁻¹ u = u + W u. Other entries remain unchanged.
   void to_increments(VecX& u) {
     if (!any()) return;
     rate_.setZero();
@@ -63,7 +63,7 @@ class IncrementTangent {
         for (Entry const& e : columns_[std::size_t(j)]) rate_[e.row] += e.value * u[j];
     u.head(velocities_) += rate_;
   }
-  /// y by speeds becomes T⁻ᵀ y.
+  /// Replaces the first nv entries of y by T⁻ᵀ y.
   void transpose_to_increments(VecX& y) {
     if (!any()) return;
     rate_.setZero();
@@ -72,8 +72,8 @@ class IncrementTangent {
         for (Entry const& e : columns_[std::size_t(j)]) rate_[j] += e.value * y[e.row];
     y.head(velocities_) += rate_;
   }
-  /// Writes (cm M + cd D) W, and of velocity rows G W, where `system` was evaluated last. \param k of which only those
-  /// of mass and damping act
+  /// Writes (cm M + cd D) W, and G W for nonholonomic constraints, for the last evaluation of `system`. \param k
+  /// factors of the tangent; only those of mass and damping are used
   template <BlockReceiver S>
   void write(System& system, TangentCoefficients const& k, S& receiver) {
     if (!any()) return;
@@ -85,9 +85,9 @@ class IncrementTangent {
  private:
   struct Entry {
     Index row;
-    double value;  ///< of W, a factor
+    double value;  ///< entry of W [1]
   };
-  /// Takes blocks of [cm M + cd D, Gᵀ; G, 0] and passes their products with W on.
+  /// Receives blocks of [cm M + cd D, Gᵀ; G, 0] and passes their products with W to `target`.
   template <BlockReceiver S>
   struct Sink {
     IncrementTangent& by;
@@ -108,7 +108,7 @@ class IncrementTangent {
     return col < velocities_ && std::any_of(turns_row_.begin() + row, turns_row_.begin() + row + rows, turns_row) &&
            std::any_of(columns_.begin() + col, columns_.begin() + col + cols, turns_column);
   }
-  /// b W in the columns of b. What turns with unknowns beside them is left out.
+  /// b W in the columns of b. Entries of W in rows outside these columns are omitted.
   BlockView product(Index row, Index col, BlockView const& b) {
     product_.assign(std::size_t(b.rows * b.cols), 0.0);
     for (Index j = 0; j < b.cols; ++j)
@@ -120,8 +120,8 @@ class IncrementTangent {
       }
     return {product_.data(), b.rows, b.cols, b.cols, 1};
   }
-  /// Columns that have no row in common share a colour, so that one question tells all of them [Curtis, Powell & Reid
-  /// 1974].
+  /// Gives columns without a common row the same colour. One evaluation then yields all columns of a colour [Curtis,
+  /// Powell & Reid 1974].
   [[gnu::cold]] void give_colours() {
     std::vector<std::vector<char>> taken;
     for (Index j = 0; j < velocities_; ++j) {
@@ -143,11 +143,11 @@ class IncrementTangent {
   }
 
   Index velocities_ = 0;
-  std::vector<std::vector<Entry>> columns_;  // of W, by speeds
-  std::vector<std::vector<Index>> colours_;  // columns without a row in common
-  std::vector<char> turns_row_;              // by unknowns: balances and velocity rows
+  std::vector<std::vector<Entry>> columns_;  // of W, one for each generalised velocity
+  std::vector<std::vector<Index>> colours_;  // columns without a common row
+  std::vector<char> turns_row_;              // 1 for equations of motion and nonholonomic constraints
   VecX delta_, one_, rate_;
-  VecX none_;  // multipliers, which act on second-order terms alone
+  VecX none_;  // zero multipliers; only second-order terms depend on multipliers
   std::vector<double> product_;
 };
 

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// A scenario and those beside it, four for each parameter.
+/// Scenario of a run, and perturbed scenarios, four for each parameter.
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <memory>
 #include <span>
@@ -12,12 +12,12 @@
 
 namespace polybody::detail {
 
-/// Scenarios for the values of the parameters, and at the four points beside each of them. \tparam V a Variant or a
-/// PerturbedStageModel
+/// Model for the values of the parameters, and models at the four difference points of each parameter. \tparam V
+/// PerturbedModel or PerturbedStageModel
 template <class V>
 class NearbyModels {
  public:
-  /// \param who refusals begin with this
+  /// \param who name of the calling function in messages
   template <class Make, class Method>
   [[gnu::cold]] NearbyModels(Make const& make, std::vector<Parameter> const& parameters, Method const& method,
                              char const* who)
@@ -32,14 +32,16 @@ class NearbyModels {
     find_times(who);
   }
 
-  V& itself() { return itself_; }                                               ///< for the values of the parameters
-  TimeMap const& times(std::size_t j) const { return times_[j]; }               ///< of runs with another parameter j
-  V& beside(std::size_t j, std::size_t k) { return *beside_[points * j + k]; }  ///< at point k beside parameter j
-  /// The same, for who keeps it.
+  V& itself() { return itself_; }                                  ///< model for the values of the parameters
+  TimeMap const& times(std::size_t j) const { return times_[j]; }  ///< times of the runs with perturbed parameter j
+  /// Model at difference point k of parameter j.
+  V& beside(std::size_t j, std::size_t k) { return *beside_[points * j + k]; }
+  /// Model at difference point k of parameter j, with shared ownership.
   std::shared_ptr<V> shared(std::size_t j, std::size_t k) const { return beside_[points * j + k]; }
-  Parameter const& parameter(std::size_t j) const { return parameters_[j]; }  ///< number j
+  Parameter const& parameter(std::size_t j) const { return parameters_[j]; }  ///< parameter number j
 
-  /// A step of h from t, in variant k, which sets out at `from`: it ends where the other does.
+  /// Length of a step from the time `from` in the run with point k of parameter j [s]. Its end corresponds to t + h,
+  /// the end of a step from t in the unperturbed run.
   double length(std::size_t j, std::size_t k, double t, double h, double from) const {
     double const end = times_[j](k, t + h);
     if (from == t && end == t + h) return h;

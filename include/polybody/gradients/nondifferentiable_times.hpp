@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// Times of runs that have no derivative; refusals in words.
+/// Error messages for times of runs without a derivative. They begin with `who`, the name of the calling function.
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <string>
 
@@ -10,14 +10,14 @@
 
 namespace polybody::detail {
 
-/// \throws InvalidInput, beginning with `who`: at t [s] a step ends at an event and at a corner or the end of the run.
+/// \throws InvalidInput always: an event coincides with a breakpoint or the end of the run at t [s].
 template <class = void>
 [[noreturn, gnu::cold]] void refuse_event_at_corner(double t, char const* who) {
   throw InvalidInput("derivative.coincident_times",
                      {ErrorObject{who}, ": an event coincides with a breakpoint or with the end of the run at t = ",
                       ErrorTime{t}, " s, so that there is no derivative there. Move one of them by a step."});
 }
-/// \throws InvalidInput, beginning with `who`: the run ends at t [s] at a corner that moves with the parameter `name`.
+/// \throws InvalidInput always: the run ends at t [s] at a breakpoint that moves with the parameter `name`.
 template <class = void>
 [[noreturn, gnu::cold]] void refuse_corner_at_end(double t, std::string const& name, char const* who) {
   throw InvalidInput(
@@ -25,7 +25,7 @@ template <class = void>
       {ErrorObject{who}, ": a breakpoint at the end of the run, t = ", ErrorTime{t}, " s, moves with \"", name,
        "\", but the end does not, so that there is no derivative there. End the run a step before or after."});
 }
-/// \throws InvalidInput, beginning with `who`: the value of the event `name` does not pass through zero at t [s].
+/// \throws InvalidInput always: the value of the event `name` touches zero at t [s] and does not pass through it.
 template <class = void>
 [[noreturn, gnu::cold]] void refuse_touch(std::string const& name, double t, char const* who) {
   throw InvalidInput("derivative.event",
@@ -33,7 +33,7 @@ template <class = void>
                       " s, so that its time has no derivative. Use a value that passes through zero at a rate."});
 }
 
-/// \throws InvalidInput, beginning with `who`: one of the `events` is held at zero from t [s] on.
+/// \throws InvalidInput if the value of one of the `events` remains at zero from t [s] on.
 template <class = void>
 [[gnu::cold]] void require_moving(std::vector<Event> const& events, EventDetector const& watch, double t,
                                   char const* who) {

@@ -1,13 +1,13 @@
 #pragma once
 /// \file
-/// What a run is rated by: J = Φ(x_N) + ∫ g(x) dt, the integral by the trapezoidal rule over the steps.
+/// Objective function of a run: J = Φ(x_N) + ∫ g(x) dt, with the trapezoidal rule over the steps.
 ///
 ///     return with_objective(Scenario<M>{model, start, options}, [tip](auto const& m, auto const& x) { … });
 ///
-/// A function that takes a state of any scalar (`auto const& x`) is differentiated by recording it; one that takes
-/// a `State const&` by differences in each of its numbers, four evaluations each.
+/// A function of a state of any scalar type (`auto const& x`) is differentiated with a tape. A function of a
+/// `State const&` is differentiated by differences, with four evaluations for each number of the state.
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/compare/compare.hpp>
 #include <polybody/gradients/alpha_step_adjoint.hpp>
@@ -17,17 +17,18 @@
 
 namespace polybody {
 
-/// No such part of an objective.
+/// Absent term of an objective function.
 struct NoTerm {};
 
-/// A scenario with what its run is rated by.
+/// Scenario with the objective function of its run.
 template <class M, class End, class Integrand = NoTerm>
 struct ScenarioWithObjective : Scenario<M> {
-  End end;                   ///< Φ(model, x) of the state at the end, or NoTerm
+  End end;                   ///< Φ(model, x) for the state at the end, or NoTerm
   Integrand integrand = {};  ///< g(model, x), or NoTerm
 };
 
-/// J = Φ(x_N), or with an integrand g, Φ(x_N) + ∫ g(x) dt. \param end Φ(model, state); \param integrand g(model, state)
+/// Adds the objective function J = Φ(x_N) + ∫ g(x) dt to a scenario; without an integrand J = Φ(x_N). \param end
+/// Φ(model, state); \param integrand g(model, state)
 template <class M, class End, class Integrand = NoTerm>
 ScenarioWithObjective<M, End, Integrand> with_objective(Scenario<M> scenario, End end, Integrand integrand = {}) {
   return {std::move(scenario), std::move(end), std::move(integrand)};
@@ -35,7 +36,7 @@ ScenarioWithObjective<M, End, Integrand> with_objective(Scenario<M> scenario, En
 
 namespace detail {
 
-/// f of a state, zero where there is no such term. \throws NonFiniteValue.
+/// Value of f in the state x; zero for NoTerm. \throws NonFiniteValue.
 template <class F, class M>
 double term(F const& f, M const& model, State const& x) {
   if constexpr (std::same_as<F, NoTerm>) {
@@ -49,7 +50,7 @@ double term(F const& f, M const& model, State const& x) {
   }
 }
 
-/// Adds `weight` times the derivatives of f by the numbers of x to a costate.
+/// Adds `weight` times the derivatives of f by the numbers of x to the adjoint variables `bar`.
 template <class F, class M>
 void add_derivatives(F const& f, M const& model, State const& x, double weight, Tape& recording, Costate& bar) {
   if constexpr (std::same_as<F, NoTerm>) {
@@ -97,13 +98,13 @@ void add_derivatives(F const& f, M const& model, State const& x, double weight, 
   }
 }
 
-/// Derivatives of objectives by the numbers of states that are stepped. \tparam M a model
+/// Derivatives of objective functions by the numbers of the reduced states of a run. \tparam M model
 template <class M>
 class ObjectiveDerivatives {
  public:
   [[gnu::cold]] explicit ObjectiveDerivatives(M const& model) : shown_(model), recorded_(model) {}
 
-  /// Adds `weight` times the derivatives of f(model, what is shown of x) by the numbers of x to a costate.
+  /// Adds `weight` times the derivatives of f(model, full state of x) by the numbers of x to `bar`.
   template <class F>
   void add(F const& f, M const& model, State const& x, double weight, Costate& bar) {
     if constexpr (std::same_as<F, NoTerm>) return;
@@ -118,7 +119,7 @@ class ObjectiveDerivatives {
   }
 
  private:
-  /// Adds to `bar` what J changes by with a stepped x, by what it changes by with what is shown of it.
+  /// Adds the adjoint variables of the reduced state x to `bar`, computed from those of its full state, `of_shown`.
   void pull(State const& x, Costate const& of_shown, Costate& bar) {
     Tape::On const on(recording_);
     StateOf<ReverseVar> from;

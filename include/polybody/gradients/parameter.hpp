@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// Numbers of a model with respect to which a run is differentiated, and differences along them.
+/// Parameters of a model with respect to which a run is differentiated, and difference formulas for them.
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <array>
 #include <cmath>
@@ -14,23 +14,23 @@
 
 namespace polybody {
 
-/// A number that a user's factory makes a model of: a length, a stiffness, a mass, an initial speed.
+/// Number from which the factory of the user makes a model: a length, a stiffness, a mass, an initial speed.
 struct Parameter {
   std::string name;    ///< with its unit
-  double value = 0.0;  ///< at which derivatives are taken, in the unit that its name tells
-  double scale = 0.0;  ///< over which the model changes as a whole, in that unit; zero: as much as `value`
-  /// Names of the bodies, joints and forces whose equations it changes; where none are named, all of them may change. A
-  /// length changes those of its body and of the joints at its end. Parameters that touch nothing in common are
-  /// differenced together, in four evaluations of the equations for all of them.
+  double value = 0.0;  ///< value at which derivatives are computed, in the unit given in `name`
+  double scale = 0.0;  ///< size of a change that alters the model as a whole, in that unit; zero: |value|
+  /// Names of the bodies, joints and forces with equations that depend on the parameter; if empty, all equations may
+  /// depend on it. A length affects its body and the joints at its end. Parameters that affect no common equation are
+  /// differenced together, with four evaluations of the equations for all of them.
   std::vector<std::string> affects = {};
 
-  /// The scale, or where there is none the amount of the value.
+  /// The scale, or |value| if the scale is zero.
   double size() const { return scale > 0.0 ? scale : std::abs(value); }
-  /// The distance of the differences by which the equations, never the run, are differentiated.
+  /// Distance of the differences of the equations. The run itself is not differenced.
   double distance() const { return 4e-4 * size(); }
 };
 
-/// \throws InvalidInput unless parameters have names, all different, finite values and a scale where they are zero.
+/// \throws InvalidInput unless parameters have different names, finite values, and a scale if the value is zero.
 template <class = void>  // compiled where it is used
 void check(std::vector<Parameter> const& parameters) {
   for (std::size_t i = 0; i < parameters.size(); ++i) {
@@ -52,11 +52,11 @@ void check(std::vector<Parameter> const& parameters) {
 }
 
 /// f′(0) = [8 (f(e) − f(−e)) − (f(2e) − f(−2e))]/12e, of vectors, error e⁴ f⁽⁵⁾/30 [Abramowitz & Stegun 1964,
-/// 25.3.21]: Σ weights f(places e)/e. In this order what does not change adds up to zero exactly.
+/// 25.3.21]: Σ weights f(places e)/e. In this order, the sum for a constant f is exactly zero.
 struct FourPoints {
-  /// Places of the points, in distances e.
+  /// Positions of the points, in multiples of e.
   static constexpr std::array<double, 4> places{-1.0, 1.0, -2.0, 2.0};
-  /// Weights of the values there, over e.
+  /// Weights of the values at the points; to be divided by e.
   static constexpr std::array<double, 4> weights{-8.0 / 12.0, 8.0 / 12.0, 1.0 / 12.0, -1.0 / 12.0};
 };
 

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// A model for one choice of its parameters, with what its steps and questions need.
+/// Model for given values of the parameters, with the data for its steps and evaluations.
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/compare/compare.hpp>
 #include <polybody/gradients/alpha_linearised_step.hpp>
@@ -12,7 +12,8 @@
 
 namespace polybody::detail {
 
-/// A scenario for one choice of the parameters, with what its steps and questions need. It stays where it is.
+/// Scenario for given values of the parameters, with the data for its steps and evaluations. It must not be moved or
+/// copied.
 template <class S, class I>
 struct PerturbedModel {
   using Model = decltype(S::model);
@@ -22,7 +23,7 @@ struct PerturbedModel {
   FullStates<Model> shown;
   AlphaMethod method;
   AlphaMethod::Workspace<DefaultSolver> work;
-  bool steps = false;  ///< a step was taken, for which the tangent was laid out: most variants never take one
+  bool steps = false;  ///< a step was computed and the tangent analysed; most perturbed models never take a step
   EquationDerivative at_place;
 
   PerturbedModel(S made, AlphaMethod const& m)
@@ -33,27 +34,28 @@ struct PerturbedModel {
         work(system),
         at_place{VecX::Zero(system.velocities()), VecX::Zero(system.rows())} {}
 
-  /// Consistent accelerations and multipliers, as a run begins. \param corrected as in `AlphaMethod::begin`
+  /// Computes consistent velocities, accelerations and multipliers at the start of a run. \param corrected as in
+  /// `AlphaMethod::begin`
   void start(State& x, double h, std::optional<bool> corrected = {}) {
     work.forward.project_velocities(system, x.q, x.v, x.t);
     method.begin(system, x, h, work, corrected);
   }
-  /// The same for y, as it was done for x.
+  /// Starts y as x was started: with or without the start correction.
   void start_like(State const& x, State& y, double h) { start(y, h, x.history[x.history.size() - 2] > 0.0); }
-  /// Times at which a step must end, in no order: those of drives and loads, then those of the options [s].
+  /// Times of the breakpoints, unordered: first those of drives and loads, then those of the options [s].
   std::vector<double> breakpoints() const { return breakpoints_of(system, scenario.options); }
-  /// The length of steps that is asked for [s].
+  /// Requested step length [s].
   double length() const { return length_of_steps(scenario.options); }
-  /// The first state that is stepped, before it is started.
+  /// Initial state of the run, reduced, before `start`.
   State first() const { return stepped_state(*this, scenario.start); }
-  /// The state in which the run begins, for steps of h.
+  /// Initial state of the run after `start`, for steps of h.
   State started(double h) {
     State x = first();
     start(x, h);
     return x;
   }
-  /// Puts the speeds and own accelerations from which a step of h sets out into x, so that the step is a plain one.
-  /// Returns whether they are others than before.
+  /// Applies the correction at the start of a step of h to the velocities and algorithmic accelerations of x. The step
+  /// itself then needs no correction. Returns true if there is a correction.
   bool start_step(State& x, double h) {
     bool const corrected = method.start_step(system, x, h, work);
     if (corrected) {
@@ -63,7 +65,7 @@ struct PerturbedModel {
     }
     return corrected;
   }
-  /// Speeds and own accelerations of y become what is added to them where a step of h sets out from it. \param
+  /// Replaces velocities and algorithmic accelerations of y by their correction at the start of a step of h. \param
   /// corrected as in `AlphaMethod::begin`
   void set_out_change(State& y, double h, std::optional<bool> corrected) {
     (void)method.start_step(system, y, h, work, corrected);
@@ -71,13 +73,13 @@ struct PerturbedModel {
     auto own = y.history.head(y.v.size());
     own = work.a0 - own;
   }
-  /// Whether variants that stand beside x set out corrected, as the run itself does, which `corrects`; none where that
-  /// changes with the length of the step.
+  /// Decision for perturbed models near x: correction at the start of the step if the run itself `corrects`. Returns no
+  /// decision if a correction depends on the length of the step.
   static std::optional<bool> decided(State const& x, double h, bool corrects) {
     double const shifted = x.history[x.history.size() - 1];
     return std::abs(h - shifted) > 1e-9 * h ? std::optional<bool>(corrects) : std::nullopt;
   }
-  /// A step of h that depends on x alone: with factors of its own, in the first order of elimination.
+  /// Takes a step of h that depends on x alone: with its own factorisation, in the first elimination order.
   StepReport step(State& x, double h) {
     if (!steps) method.analyse(system, work);
     steps = true;
@@ -87,13 +89,13 @@ struct PerturbedModel {
     return method.step(system, x, h, work);
   }
   VecX outputs(State const& x) { return values_of_outputs(scenario, shown(x)); }
-  /// The factors of the last step, if it was one of h and they serve.
+  /// Factorisation of the last step if it has the length h and is usable, else null.
   TangentSolver<StepSolver<DefaultSolver>>* factors(double h) {
     return work.kept_factor.usable && work.h_factored == h ? &work.solver() : nullptr;
   }
-  /// r and Φ (of velocity rows Φ̇) at x, until they are asked again.
+  /// r and Φ (nonholonomic: Φ̇) at x. The reference is valid until the next call.
   EquationDerivative const& equations(State const& x) { return equations(x, x.t); }
-  /// The same at another time t [s].
+  /// r and Φ (nonholonomic: Φ̇) for the state x at another time t [s].
   EquationDerivative const& equations(State const& x, double t) {
     system.evaluate(x.q, x.v, t);
     system.residual(x.a, x.lambda, at_place.balance);

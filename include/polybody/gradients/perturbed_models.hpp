@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// What is differenced along a parameter, and along the motion where times move with it.
+/// Differences of models along parameters, and along the motion if times depend on parameters.
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <optional>
 
@@ -11,17 +11,17 @@
 
 namespace polybody::detail {
 
-/// Differences of what scenarios do. Where a function is differenced by parameter j
-/// in a state whose time moves with j, the change of the state has two parts. One is at a time that stays: variants
-/// beside go along with it, so that what is stiff in them stays at rest. The other follows the motion; it may be longer
-/// than a step, so it is differenced over a small part of one, in the scenario itself. \tparam V a Variant or a
-/// PerturbedStageModel
+/// Derivatives of functions of scenarios by differences. If the time of a state depends on parameter j, the change of
+/// the state with j has two parts. The first part is at fixed time. The perturbed models are evaluated in states with
+/// this change, so that their stiff elements remain at rest. The second part follows the motion. It can be
+/// longer than a step, so it is differenced over a small part of a step, in the unperturbed scenario. \tparam V
+/// PerturbedModel or PerturbedStageModel
 template <class V>
 class PerturbedModels {
  public:
-  static constexpr std::size_t along_motion = std::size_t(-1);  ///< in place of a parameter: the motion alone
+  static constexpr std::size_t along_motion = std::size_t(-1);  ///< in place of a parameter number: along the motion
 
-  /// \param who refusals begin with this
+  /// \param who name of the calling function in messages
   template <class Make, class Method>
   [[gnu::cold]] PerturbedModels(Make const& make, std::vector<Parameter> const& parameters, Method const& method,
                                 char const* who)
@@ -47,12 +47,12 @@ class PerturbedModels {
   PerturbedModels(PerturbedModels const&) = delete;
   PerturbedModels& operator=(PerturbedModels const&) = delete;
 
-  V& itself() { return n_.itself(); }                                ///< for the values of the parameters
-  TimeMap const& times(std::size_t j) const { return n_.times(j); }  ///< of runs with another parameter j
-  /// The size of parameter j, or the length h of a step along the motion.
+  V& itself() { return n_.itself(); }                                ///< model for the values of the parameters
+  TimeMap const& times(std::size_t j) const { return n_.times(j); }  ///< times of the runs with perturbed parameter j
+  /// Size of parameter j, or the step length h for `along_motion`.
   double size(std::size_t j, double h) const { return j == along_motion ? h : n_.parameter(j).size(); }
 
-  /// The derivative of a number of the scenario by parameter j: zero, without rounding, where it stays.
+  /// Derivative of a number f(model) by parameter j. It is exactly zero if the number does not change.
   template <class F>
   double of_number(std::size_t j, F const& f) {
     double const here = f(n_.itself());
@@ -61,7 +61,8 @@ class PerturbedModels {
     return sum;
   }
 
-  /// That of what f(variant, state, length) makes of each variant's own start, where the next step is h long.
+  /// Derivative of the state that f(model, state, length) makes of the initial state of each model. The next step has
+  /// the length h with the derivative dh.
   template <class F>
   State of_start(std::size_t j, double h, double dh, F const& f) {
     State const x = n_.itself().first();
@@ -79,7 +80,8 @@ class PerturbedModels {
     return sum;
   }
 
-  /// That of what f(variant, state, length) makes of x and a length h, where these change by `tangent` and dh.
+  /// Derivative of the state that f(model, state, length) makes of x and a length h. Their derivatives are `tangent`
+  /// and dh.
   template <class F>
   State of_map(std::size_t j, State const& x, RunSensitivity const& tangent, std::array<double, 2> h_and_dh,
                F const& f) {
@@ -105,9 +107,9 @@ class PerturbedModels {
     return sum;
   }
 
-  /// From now on values are asked at x.
+  /// Sets the state x for `of_values`.
   void show(State const& x) { shown_ = x; }
-  /// That of numbers f(variant, state) at x. \param h length of steps [s]
+  /// Derivative of the numbers f(model, state) at x. \param h length of steps [s]
   template <class F>
   VecX of_values(std::size_t j, State const& x, RunSensitivity const& tangent, double h, F const& f) {
     Parts const p = parts(j, x, tangent, h, 0.0);
@@ -133,20 +135,20 @@ class PerturbedModels {
     return sum;
   }
 
-  /// From now on equations are asked of another step.
+  /// Begins another step: discards the stored derivatives of the equations.
   void begin_step() {
     derivatives_->forget();
     for (EquationDerivative& of : by_time_) of.scale = 0.0;
   }
-  /// A place where equations are asked: the end of a step of h, or where it solves some.
+  /// Evaluation point of a step: its end, or another point with equations to be solved.
   template <class X>
   struct PointInStep {
     X const& x;
-    double h;            ///< [s]
-    double dt;           ///< by which its time moves [s]
-    std::size_t number;  ///< of the place, one after the other
+    double h;            ///< length of the step [s]
+    double dt;           ///< derivative of its time [s]
+    std::size_t number;  ///< number of the point in the step, in ascending order
   };
-  /// ∂r/∂p and ∂Φ/∂p at a place while unknowns stay, where its time moves, into `sum`.
+  /// Stores the derivatives of r and Φ at a point by parameter j, at fixed unknowns and with its moving time, in `sum`.
   template <class X>
   void of_equations(std::size_t j, PointInStep<X> const& at, EquationDerivative& sum) {
     auto const& [x, h, dt, number] = at;
@@ -167,7 +169,7 @@ class PerturbedModels {
     if (by_time.scale == 0.0) by_time = rate_of_equations(x, h);
     add(sum, by_time, later);
   }
-  /// \throws InvalidInput where a parameter changes an equation at x that it does not touch.
+  /// \throws InvalidInput if a parameter changes an equation of objects at x that it does not name.
   void require_touched(State const& x) {
     for (std::size_t i = 0; i < still_.size(); ++i)
       derivatives_->require_touched(i, n_.itself(), n_.beside(still_[i], 0), x);
@@ -176,14 +178,14 @@ class PerturbedModels {
  private:
   static constexpr std::size_t points = FourPoints::places.size();
   static constexpr std::size_t moving = std::size_t(-1);
-  static constexpr double negligible = 1e-13;  // of a step
-  // of a step: no corner is within a hundredth of one of the end of another step
+  static constexpr double negligible = 1e-13;  // relative to a step
+  // relative to a step: a step that does not end at a breakpoint ends at least 1 % of a step before it
   static constexpr double largest_part = 4e-3;
 
   struct Parts {
-    State with, along;  // at times that stay; along the motion: not made where `reach` is 0
-    double dt, dh;      // of the latter
-    double reach;       // distance of its differences; 0 where there is none and all is at times that stay
+    State with, along;  // at fixed time; along the motion, empty if `reach` is 0
+    double dt, dh;      // of the part along the motion
+    double reach;       // distance of the differences along the motion; 0 if the whole change is at fixed time
   };
   struct Asked {
     V& variant;
@@ -211,7 +213,7 @@ class PerturbedModels {
     out.reach = reach_of(j, h, longest);
     return out;
   }
-  /// What moves in dt along the motion: coordinates and speeds. \param e distance of the differences [s]
+  /// Change of coordinates and velocities along the motion in the time dt. \param e distance of the differences [s]
   State motion(State const& x, double dt, double e) {
     State out = zeros_like(x);
     VecX ahead = x.q, back = x.q;
@@ -222,7 +224,7 @@ class PerturbedModels {
     out.v = dt * x.a;
     return out;
   }
-  /// ∂r/∂t and ∂Φ/∂t at a place of a step, by differences of fourth order that look back within it [Fornberg 1988].
+  /// ∂r/∂t and ∂Φ/∂t at a point of a step, by backward differences of fourth order within the step [Fornberg 1988].
   template <class Place>
   EquationDerivative rate_of_equations(Place const& x, double h) {
     constexpr std::array<double, 5> weights{25.0 / 12.0, -4.0, 3.0, -4.0 / 3.0, 0.25};
@@ -250,9 +252,9 @@ class PerturbedModels {
   }
 
   NearbyModels<V> n_;
-  std::vector<std::size_t> number_, still_;            // of each parameter among those under which no time moves; these
-  std::optional<EquationDerivatives<V>> derivatives_;  // by these
-  std::vector<EquationDerivative> by_time_;  // ∂/∂t at each place of a step; where it is not known the scale is zero
+  std::vector<std::size_t> number_, still_;  // place of each parameter in `still_`; parameters without moving times
+  std::optional<EquationDerivatives<V>> derivatives_;  // by the parameters in `still_`
+  std::vector<EquationDerivative> by_time_;            // ∂/∂t at each point of a step; scale 0 if unknown
   State shown_;
 };
 

@@ -1,9 +1,9 @@
 #pragma once
 /// \file
-/// Questions about points of bodies in states of any scalar, for objectives that are differentiated by recording them:
-/// the same calls as for a State (run/marker_frames.hpp).
+/// Frames and positions of points of bodies in states of any scalar type, for objective functions that are
+/// differentiated with a tape. The calls are the same as for a State (run/marker_frames.hpp).
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/run/marker_frames.hpp>
 
