@@ -158,8 +158,7 @@ class AdjointEventHandler {
     bar.t -= of_equations(Variants::along_motion, {x, s.h, 1.0, 0});
     of_length += bar.t + bar.pull_push(before);
     StartCorrectionAdjoint<V> const sets_out(spare, before, s.h, corrects);
-    bool const free =
-        (s.plan.lands || !s.met.empty()) && sets_out.shifted() > 0.0;  // the length depends on the parameters
+    bool const free = (s.plan.lands || !s.met.empty()) && sets_out.shifted() > 0.0;  // h depends on parameters
     if (!corrects && !free) return of_length;
     bool const from_corner = run_.begins_at_corner(k);
     if (corrects) {

@@ -25,8 +25,7 @@ namespace polybody {
 template <LinearSolver Solver = DefaultSolver>
 class AlphaLinearisedStep {
  public:
-  using Factors =
-      typename StepFactorisations<Solver, Derivative::direct>::OfStep;  ///< factorisation of a step's tangent
+  using Factors = typename StepFactorisations<Solver, Derivative::direct>::OfStep;  ///< of the tangent of a step
   /// Number of directions in one evaluation of the equations; each is a partial derivative of the dual numbers. With
   /// eight directions, the intermediate results between joints and bodies exceed the cache.
   static constexpr int lanes = 4;

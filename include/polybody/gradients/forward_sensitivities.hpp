@@ -182,8 +182,7 @@ class ForwardSensitivities {
   }
 
   /// Propagates the sensitivities over the steps of `lengths_` to x_. The length of the last step varies with the time
-  /// of its target, `next`. At an event, the length is fixed, and `step_length_derivative` becomes the derivative by
-  /// it.
+  /// of its target, `next`. At an event, it is fixed, and `step_length_derivative` receives the derivative by it.
   void differentiate(StepPlan::Next const& next, bool met, RunSensitivity& step_length_derivative) {
     for (std::size_t i = 0; i + 1 < lengths_.size(); ++i) {  // if the error estimate divides the step to the event
       State part = before_;

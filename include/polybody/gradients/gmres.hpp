@@ -57,8 +57,7 @@ class Gmres {
     turned_[count_ + 1] = -sines_[count_] * turned_[count_];
     turned_[count_] *= cosines_[count_];
     ++count_;
-    left_ =
-        rest <= 1e-15 * before ? 0.0 : std::abs(turned_[count_]);  // no new direction: x is in the span of the basis
+    left_ = rest <= 1e-15 * before ? 0.0 : std::abs(turned_[count_]);  // no new direction: the basis contains x
     set(count_, product, rest);
   }
   /// Adds the solution to x.

@@ -14,7 +14,7 @@
 
 namespace polybody {
 
-/// Number from which the factory of the user makes a model: a length, a stiffness, a mass, an initial speed.
+/// Number from which the factory of the user makes a model: a length, a stiffness, a mass, an initial velocity.
 struct Parameter {
   std::string name;    ///< with its unit
   double value = 0.0;  ///< value at which derivatives are computed, in the unit given in `name`

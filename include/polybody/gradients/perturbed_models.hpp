@@ -252,7 +252,7 @@ class PerturbedModels {
   }
 
   NearbyModels<V> n_;
-  std::vector<std::size_t> number_, still_;  // place of each parameter in `still_`; parameters without moving times
+  std::vector<std::size_t> number_, still_;  // index of each parameter in `still_`; parameters without moving times
   std::optional<EquationDerivatives<V>> derivatives_;  // by the parameters in `still_`
   std::vector<EquationDerivative> by_time_;            // ∂/∂t at each point of a step; scale 0 if unknown
   State shown_;
