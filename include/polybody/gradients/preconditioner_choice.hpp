@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// By which factors slopes of steps are solved, learnt from what they cost.
+/// Choice of the approximate factorisation for the derivatives of steps, by its measured cost.
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <algorithm>
 #include <limits>
@@ -12,32 +12,33 @@
 
 namespace polybody {
 
-/// Factors near the derivative of a step.
+/// Approximate factorisations of the matrix of a linearised step.
 enum class ApproximateFactors {
-  of_step,  ///< those by which the step itself was solved: they cost nothing
-  of_end,   ///< of its tangent at its end
-  exact,    ///< of that with all that steps leave out, second-order terms among it
-  turned,   ///< of that with what ⊞ does to its columns (gradients/increment_tangent.hpp)
+  of_step,  ///< factorisation from the solution of the step itself, without further cost
+  of_end,   ///< of the tangent matrix at the end of the step
+  exact,    ///< of the tangent matrix with all terms that steps omit, such as second-order terms
+  turned,   ///< of the same matrix with the derivative of ⊞ (gradients/increment_tangent.hpp)
 };
 
-/// The factors that have taken the least, passes through the equations and what they cost themselves. Each are tried
-/// in turn, as long as there is something to save, and again after a hundred steps.
+/// Chooses the kind of factorisation with the lowest cost. The cost is the number of passes through the equations, plus
+/// the cost of the factorisation. The candidates are tried in turn until one pass per group of directions is
+/// sufficient, and again every hundred steps.
 class PreconditionerChoice {
  public:
-  /// Factors that may be taken.
+  /// Candidate for the choice.
   struct Candidate {
-    ApproximateFactors factors;  ///< which
-    double cost;                 ///< what they cost themselves [passes with their solutions]
+    ApproximateFactors factors;  ///< kind of factorisation
+    double cost;                 ///< cost of the factorisation [passes with their solutions]
   };
 
   /// \param candidates at least one, the cheapest first
   [[gnu::cold]] explicit PreconditionerChoice(std::vector<Candidate> candidates)
       : candidates_(std::move(candidates)), taken_(candidates_.size(), never) {}
 
-  /// Another step begins: its factors.
+  /// Begins another step. Returns its kind of factorisation.
   ApproximateFactors next() {
     if (step_ > 0) taken_[now_] = passes_ + candidates_[now_].cost + also_;
-    bool const least = passes_ == directions_;  // one correction each
+    bool const least = passes_ == directions_;  // one pass for each group
     if (step_ == 0 || step_ == period) {
       now_ = 0;
       step_ = 0;
@@ -51,14 +52,14 @@ class PreconditionerChoice {
     also_ = 0.0;
     return now();
   }
-  /// Those of the step.
+  /// Kind of factorisation of the current step.
   ApproximateFactors now() const { return candidates_[now_].factors; }
-  /// Those that were taken did not do: others were made within the step.
+  /// Adds the cost of another kind, factorised within the step if the chosen one is not sufficient.
   void make(ApproximateFactors others) {
     for (Candidate const& c : candidates_)
       if (c.factors == others) also_ += c.cost;
   }
-  /// Directions of the step that went through the equations together took so many passes.
+  /// Adds the passes through the equations of one group of directions of the step.
   void add(int passes) {
     passes_ += passes;
     ++directions_;
@@ -69,9 +70,9 @@ class PreconditionerChoice {
   static constexpr double never = std::numeric_limits<double>::infinity();
 
   std::vector<Candidate> candidates_;
-  std::vector<double> taken_;  // by candidates: passes of a step
+  std::vector<double> taken_;  // by candidates: cost of a step [passes]
   std::size_t now_ = 0;
-  double also_ = 0.0;  // what other factors in the step cost [passes]
+  double also_ = 0.0;  // cost of other factorisations in the step [passes]
   bool tries_ = true;
   int step_ = 0, passes_ = 0, directions_ = 0;
 };

@@ -1,22 +1,23 @@
 #pragma once
 /// \file
-/// A projection at the end of a step (integrators/stabilisation.hpp) in doubles and duals, for the step's derivative.
+/// Projection at the end of a step (integrators/stabilisation.hpp) in any scalar type, for the derivatives of the step.
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/gradients/evaluation_point.hpp>
 #include <polybody/integrators/stabilisation.hpp>
 
 namespace polybody {
 
-/// `Projection::apply` at the end of a step of h, for doubles and duals.
+/// `Projection::apply` at the end of a step of length h, in any scalar type.
 class ProjectionDerivative {
  public:
-  /// With the options of the step's own projection.
+  /// \param options options of the projection in the step itself
   explicit ProjectionDerivative(Projection const& options) : options_(options) {}
 
-  /// Brings q and v of x back to the rows. Doubles tell how many steps of Gauss–Newton it takes, and duals take as
-  /// many. \param solve what solves the equations at x
+  /// Projects q and v of x onto the constraint equations. Doubles determine the number of Gauss–Newton iterations; the
+  /// other scalar types repeat this number. \param solve solves the equations at x; for doubles it returns the largest
+  /// constraint residual
   template <StateScalar T, class Solve>
   void apply(BasicSystem<T> const& system, EvaluationPoint<T>& x, double h, Solve&& solve) {
     if (system.rows() == 0) return;
@@ -46,7 +47,7 @@ class ProjectionDerivative {
   }
 
   Projection options_;
-  int steps_ = 0;  // after the first one
+  int steps_ = 0;  // iterations after the first one
 };
 
 }  // namespace polybody

@@ -1,31 +1,35 @@
 #pragma once
 /// \file
-/// The tangent-linear of a step of Radau (integrators/radau.hpp), exactly: with what Newton's matrix leaves out.
+/// Linearised step of Radau (integrators/radau.hpp). It is exact: it contains the terms that the matrix of Newton's
+/// method omits.
 ///
-/// With y = (δv̇_i, δλ_i) of the three stages the changes of q_i and v_i follow from their formulas, and
+/// With y = (δv̇_i, δλ_i) of the three stages, the formulas of the method give the changes of q_i and v_i, and
 ///   δ[M v̇_i − f_i + G_iᵀλ_i] = 0,  δ[G_i v̇_i + γ_i] = 0
-/// is linear in y. Its left side comes from a pass of dual numbers through each stage. It is solved by the factors of a
-/// matrix of all stages, each with its own tangent with second-order terms and slopes of the rows, and corrected until
-/// nothing changes. The projection at the end, and the change of v̇ that follows it, are differentiated as solutions of
-/// linear equations at their places (gradients/solved_points.hpp).
+/// is linear in y. One pass of dual numbers through each stage evaluates the left-hand side. Iterative refinement with
+/// a factorised matrix of all stages solves for y, until the corrections are round-off. Each stage contributes its own
+/// tangent matrix with second-order terms, and the derivatives of its constraint equations. The projection at the end
+/// of the step and the subsequent change of v̇ are solutions of linear equations; gradients/solved_points.hpp
+/// differentiates them.
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/gradients/radau_stage_solution.hpp>
 #include <polybody/gradients/solved_points.hpp>
 
 namespace polybody {
 
-/// Slopes of steps of Radau, one step after the other, also by their lengths. The stages of a step are not in its
-/// states, so they are solved for once more. Where a step stalled and was taken with stages longer than itself, slopes
-/// are those of a step with stages of its own length; the two differ as their errors do.
+/// Derivatives of successive steps of Radau, also with respect to the step lengths. A state does not contain the stages
+/// of a step, so they are computed again. If Newton's method does not converge for a step, `Radau` uses stages longer
+/// than the step. The derivatives then belong to a step with stages of its own length; the difference has the order of
+/// the integration errors.
 template <LinearSolver Solver = DefaultSolver>
 class RadauLinearisedStep {
  public:
-  /// Directions that go through the equations together, a part of a dual number each.
+  /// Number of directions in one pass through the equations: one for each derivative of a dual number.
   static constexpr int lanes = SolvedPoints<Solver>::lanes;
 
-  /// The model must outlive it. \param system with `Capabilities::implicit_step`; \param method whose steps they are
+  /// The model must outlive this object. \param system with `Capabilities::implicit_step`; \param method integrator of
+  /// the steps
   template <class M>
   [[gnu::cold]] RadauLinearisedStep(M const& model, System& system, Radau const& method)
       : places_(model, system), stages_(places_, method) {
@@ -33,17 +37,17 @@ class RadauLinearisedStep {
     along_.fill(correction_);
     duals_.resize(places_.template system<D>());
   }
-  RadauLinearisedStep(RadauLinearisedStep const&) = delete;  // its parts refer to each other
+  RadauLinearisedStep(RadauLinearisedStep const&) = delete;  // its members refer to each other
 
-  /// From now on slopes are those of this step. \throws NewtonConvergenceFailure where its stages are not found again,
-  /// SingularMatrix at a singular position, NonFiniteValue.
+  /// Prepares the derivatives of this step. \throws NewtonConvergenceFailure if its stages do not converge again,
+  /// SingularMatrix in a singular configuration, NonFiniteValue.
   void set(StepTaken const& step) { stages_.find(step); }
 
-  /// Takes up to `lanes` derivatives of the state before the step to those of the state after it. Returns what the last
-  /// corrections changed at most, beside all, or beside v̇ and λ over a parameter's scale where that is more. \param
-  /// slope what the parameter of a direction, and the time that moves along it, do to the equations at each place where
-  /// the step solves some; \param dh the derivative of the step's length along each direction [s], or none where it
-  /// stays
+  /// Converts, in place, up to `lanes` derivatives of the state before the step to derivatives of the state after it.
+  /// Returns the largest relative change in the last corrections. The reference is the norm of the derivatives, or the
+  /// norm of v̇ or λ over the scale of the parameter if it is larger. \param slope derivative of the equations at each
+  /// evaluation point, for the parameter of a direction and the change of time along it; \param dh derivative of the
+  /// step length along each direction [s], or none if the length is constant
   template <EquationDerivativeFunction F>
   double advance(StepTaken const& step, std::span<State* const> directions, F&& slope,
                  std::span<double const> dh = {}) {
@@ -78,7 +82,8 @@ class RadauLinearisedStep {
   using StageDerivatives = std::array<std::array<EquationDerivative, 3>, std::size_t(lanes)>;
   static constexpr int most_corrections = 60;
 
-  /// The start, values of the stages, and derivatives as they were: near what they become.
+  /// Sets the start and the values of the stages. The derivatives of v̇ and λ at the start are the initial guess for
+  /// the stages.
   void begin(StepTaken const& step, std::span<State* const> directions) {
     detail::lift(step.before.q, directions, &State::q, duals_.q0);
     detail::lift(step.before.v, directions, &State::v, duals_.v0);
@@ -96,7 +101,7 @@ class RadauLinearisedStep {
     return out;
   }
 
-  /// −δ of the equations of a stage, with what the parameters do, into `along_`.
+  /// Stores −δ of the equations of a stage in `along_`, including the derivatives with respect to the parameters.
   void keep_derivatives(Index first, std::size_t directions, StageDerivatives const& by) {
     VecXOf<D> const &balance = dual_equations_.balance, &rows = dual_equations_.rows;
     std::size_t const stage = std::size_t(first / places_.template system<double>().size());
@@ -107,7 +112,7 @@ class RadauLinearisedStep {
       for (Index i = 0; i < rows.size(); ++i) to[balance.size() + i] = -(rows[i].d[Index(l)] + of.rows[i]);
     }
   }
-  /// Corrects δv̇ and δλ of the stages along direction l. Returns by how much, beside all.
+  /// Corrects δv̇ and δλ of the stages along direction l. Returns the largest relative correction.
   double correct(std::size_t l, StageDerivatives const& by) {
     stages_.solver().solve(along_[l], correction_);
     Index const n = places_.template system<double>().size(), nv = stages_.numbers().v0.size(), k = Index(l);
@@ -139,10 +144,10 @@ class RadauLinearisedStep {
   VecX correction_;
 };
 
-/// Slopes of runs by Radau.
+/// Linearised step for runs with Radau.
 template <>
 struct StageDerivatives<Radau> {
-  using Type = RadauLinearisedStep<>;  ///< of its steps
+  using Type = RadauLinearisedStep<>;  ///< linearised step
 };
 
 }  // namespace polybody

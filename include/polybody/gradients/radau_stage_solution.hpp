@@ -1,24 +1,24 @@
 #pragma once
 /// \file
-/// The stages of a step of Radau found once more, since no state holds them, with the matrix of all of them; for the
-/// step's derivatives.
+/// Solution of the stages of a Radau step, with the matrix of all stages. The derivatives of the step require it, since
+/// no state contains the stages.
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/gradients/projection_derivative.hpp>
 #include <polybody/gradients/radau_stages.hpp>
 
 namespace polybody::detail {
 
-/// The stages of one step after the other. \tparam Places SolvedPoints or RecordedPoints: the equations, and what
-/// solves them at the places that follow the stages
+/// Computes the stages of successive steps. \tparam Places SolvedPoints or RecordedPoints: the equations, and their
+/// solution at the evaluation points after the stages
 template <class Places>
 class RadauStageSolution {
   using T3 = RadauTableau;
   static constexpr int most_corrections = 60;
 
  public:
-  /// Stages of steps by `method` at `places`, which must outlive it.
+  /// \param places must outlive this object; \param method integrator of the steps
   [[gnu::cold]] RadauStageSolution(Places& places, Radau const& method)
       : places_(&places), projection_(method.projection) {
     System& system = places.template system<double>();
@@ -29,8 +29,8 @@ class RadauStageSolution {
     solver_.analyse(system, 3, [&](BlockSink& sink) { write(0.0, 1.0, sink); });
   }
 
-  /// Finds the stages of a step and the places after them. \throws NewtonConvergenceFailure where its stages are not
-  /// found again, SingularMatrix at a singular position, NonFiniteValue.
+  /// Computes the stages of a step and solves the equations at the points after them. \throws NewtonConvergenceFailure
+  /// if the stages do not converge again, SingularMatrix in a singular configuration, NonFiniteValue.
   void find(StepTaken const& step) {
     predict(step);
     solve_stages(step);
@@ -41,16 +41,17 @@ class RadauStageSolution {
     });
   }
 
-  RadauStages<double> const& numbers() const { return numbers_; }                         ///< what was found
-  std::array<EvaluationPoint<>, 3> const& stage_places() const { return stage_places_; }  ///< where the stages are
-  /// −1 on the diagonal of a row of a stage that repeats others, whose multiplier is left alone; else zero.
+  RadauStages<double> const& numbers() const { return numbers_; }                         ///< values of the stages
+  std::array<EvaluationPoint<>, 3> const& stage_places() const { return stage_places_; }  ///< points of the stages
+  /// Diagonal entry of the matrix for a constraint equation of a stage: −1 if the equation is redundant, so that its
+  /// multiplier does not change; else zero.
   double slack(Index stage, Index row) const {
     return slack_[std::size_t(stage * Index(row_of_.size()) + equation_of_[std::size_t(row)])];
   }
-  TangentSolver<AutoLu>& solver() { return solver_; }  ///< the factors of the matrix of all stages
+  TangentSolver<AutoLu>& solver() { return solver_; }  ///< factors of the matrix of all stages
 
-  /// The equations of all stages of a step of h, which is in T where it moves. \param keep takes them, for the unknowns
-  /// from `first` on
+  /// Evaluates the equations of all stages of a step. \param h step length, of type T if it varies [s]; \param keep
+  /// keep(first) takes the equations of each stage from `equations`; `first` is the index of its first unknown
   template <StateScalar T, class H, class Keep>
   void evaluate(RadauStages<T>& w, PointEquations<T>& equations, StepTaken const& step, H const& h, Keep&& keep) {
     BasicSystem<T>& s = places_->template system<T>();
@@ -62,8 +63,8 @@ class RadauStageSolution {
     }
   }
 
-  /// The end from the third stage: q and v in w.at, back on the rows, and v̇, by the rows where they moved to, in
-  /// w.next.
+  /// Computes the end of the step from the third stage: the projected q and v in w.at, and v̇ in w.next. A correction
+  /// adapts v̇ to the constraint equations after the projection.
   template <StateScalar T, class Solve>
   void finish(RadauStages<T>& w, StepTaken const& step, Solve&& solve) {
     BasicSystem<T>& s = places_->template system<T>();
@@ -79,7 +80,7 @@ class RadauStageSolution {
     w.next += w.at.a;
   }
 
-  /// The matrix of all stages: block (i, j) is
+  /// Writes the matrix of all stages: block (i, j) is
   ///   δ_ij [M, Gᵀ; G, slack] + h a_ij [D; ∂Φ̈/∂v] + h² (A²)_ij [K; ∂Φ̈/∂q] at stage i.
   void write(double t, double h, BlockSink& sink) {
     System& s = places_->template system<double>();
@@ -105,8 +106,8 @@ class RadauStageSolution {
   }
 
  private:
-  /// Stages between the accelerations before and after. Rows that repeat others at the middle stage have multipliers
-  /// that stay as they were.
+  /// Initial guess: interpolates v̇ and λ of the stages between the start and the end of the step. Multipliers of
+  /// equations that are redundant at the middle stage keep their value at the start.
   void predict(StepTaken const& step) {
     System& s = places_->template system<double>();
     RadauStages<double>& w = numbers_;
@@ -131,7 +132,8 @@ class RadauStageSolution {
       }
     }
   }
-  /// Which rows of a step are behind those of the equations, −1 for those of joints that carry bodies; and back.
+  /// Maps the constraint equations of the linear system to the constraint equations of the step, −1 for joints in joint
+  /// coordinates, and vice versa.
   [[gnu::cold]] void find_rows(System const& s) {
     Index const velocities = equation_velocities_of(s);
     row_of_.assign(std::size_t(equations_of(s) - velocities), -1);
@@ -152,10 +154,11 @@ class RadauStageSolution {
     }
   }
 
-  /// Newton's method until rounding is left. A matrix serves as long as corrections shrink to a tenth; the one that
-  /// stays, by which slopes are solved, is of stages within 10⁻⁸ of those that were found.
+  /// Newton's method until the corrections are round-off. A factorisation is reused while each correction is at most a
+  /// tenth of the last one. The final factorisation also solves for the derivatives; it belongs to stages within a
+  /// relative distance of 10⁻⁸ from the solution.
   void solve_stages(StepTaken const& step) {
-    double left = std::numeric_limits<double>::infinity(), moved = left;  // moved: since the matrix was made
+    double left = std::numeric_limits<double>::infinity(), moved = left;  // moved: change since the factorisation
     for (int k = 0;; ++k) {
       find_right_hand_side(step);
       if (moved == std::numeric_limits<double>::infinity()) {
@@ -189,7 +192,7 @@ class RadauStageSolution {
       rhs_.segment(first + equations_.balance.size(), equations_.rows.size()) = -equations_.rows;
     });
   }
-  /// The matrix of the stages as they are.
+  /// Factorises the matrix at the current stages.
   void factor(StepTaken const& step) {
     System& s = places_->template system<double>();
     numbers_.find(s, step.h);
@@ -199,7 +202,8 @@ class RadauStageSolution {
                            {"The derivative of the step to t = ", ErrorTime{step.before.t + step.h},
                             " s has no pivot at ", ErrorObject{name_of_equation(s, bad % equations_of(s))}, "."});
   }
-  /// Corrects the stages. Returns the largest change of their accelerations and the largest of these [m/s²], [rad/s²].
+  /// Corrects the stages. Returns the norm of the largest change of v̇ of a stage, and the largest norm of v̇ [m/s²],
+  /// [rad/s²].
   std::pair<double, double> correct() {
     RadauStages<double>& w = numbers_;
     Index const nv = w.v0.size(), n = rhs_.size() / 3;
@@ -222,8 +226,8 @@ class RadauStageSolution {
   PointEquations<double> equations_;
   RadauStages<double> numbers_;
   std::array<EvaluationPoint<>, 3> stage_places_;
-  Sequence<Index> row_of_, equation_of_;  // rows of a step behind those of the equations, and back
-  Sequence<double> slack_;                // by stages and rows of the equations
+  Sequence<Index> row_of_, equation_of_;  // equation of the step for each of the linear system, and vice versa
+  Sequence<double> slack_;                // by stages and constraint equations of the linear system
   VecX rhs_, correction_, balance_;
 };
 

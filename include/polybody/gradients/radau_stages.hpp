@@ -1,15 +1,15 @@
 #pragma once
 /// \file
-/// The stages of a step of Radau (integrators/radau.hpp) in doubles and duals, for its derivative.
+/// Stages of a Radau step (integrators/radau.hpp) in any scalar type, for the derivatives of the step.
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/gradients/evaluation_point.hpp>
 #include <polybody/integrators/radau.hpp>
 
 namespace polybody::detail {
 
-/// Largest sizes of entries of a vector: of values and of each derivative.
+/// Largest absolute values of the entries of a vector: of the values and of each derivative.
 template <StateScalar T>
 struct LargestParts {
   double value = 0.0;
@@ -26,13 +26,13 @@ struct LargestParts<Dual<N>> {
   bool within(double share, LargestParts const& of) const { return (parts <= share * of.parts).all(); }
 };
 
-/// v̇_i and λ_i of the three stages, with what follows from them.
+/// Unknowns v̇_i and λ_i of the three stages, and the quantities that depend on them.
 template <StateScalar T>
 struct RadauStages {
-  VecXOf<T> q0, v0;  // the start
-  VecXOf<T> next;    // a sum, and at last v̇ of the end
+  VecXOf<T> q0, v0;  // at the start
+  VecXOf<T> next;    // a sum; finally v̇ at the end
   std::array<VecXOf<T>, 3> v, vd, lambda, delta, rate;
-  EvaluationPoint<T> at;  // a stage, and at last the end
+  EvaluationPoint<T> at;  // a stage; finally the end
 
   void resize(BasicSystem<T> const& s) {
     q0 = at.q = VecXOf<T>::Constant(s.coordinates(), T(0.0));
@@ -41,8 +41,8 @@ struct RadauStages {
     lambda.fill(VecXOf<T>::Constant(s.rows(), T(0.0)));
   }
 
-  /// v_i = v₀ + h Σ a_ij v̇_j and δ_i = h Σ a_ij δ˙(δ_j, v_j), whose passes end when nothing changes but by rounding.
-  /// \param h in T where the length of the step moves [s]
+  /// Computes v_i = v₀ + h Σ a_ij v̇_j and δ_i = h Σ a_ij δ˙(δ_j, v_j). Passes over δ_i end when the changes are
+  /// round-off. \param h step length, of type T if it varies [s]
   template <class H>
   void find(BasicSystem<T> const& s, H const& h) {
     for (std::size_t i = 0; i < 3; ++i) {
@@ -66,7 +66,7 @@ struct RadauStages {
     }
   }
 
-  /// Stage i of the step becomes the place where equations are asked.
+  /// Sets the evaluation point to stage i of the step.
   void put(BasicSystem<T> const& s, std::size_t i, StepTaken const& step) {
     at.also.resize(0);
     at.terms = {};

@@ -1,11 +1,12 @@
 #pragma once
 /// \file
-/// The adjoint of a step of Radau (gradients/radau_linearised_step.hpp has its tangent-linear): with y = (v̇_i, λ_i) of
-/// the three stages and R(y; x₀) their equations, (∂R/∂y)ᵀ μ = ȳ. The stages and what follows them are recorded once.
-/// The projection and the last change of v̇ go back place by place (gradients/recorded_points.hpp); μ is solved by
-/// factors of the transposed matrix of all stages, and corrected by sweeps over their recording until nothing changes.
+/// Adjoint of a step of Radau; gradients/radau_linearised_step.hpp has the linearised step. With y = (v̇_i, λ_i) of the
+/// three stages and R(y; x₀) their equations, μ is the solution of (∂R/∂y)ᵀ μ = ȳ. A tape records the stages and the
+/// operations after them once. The backward sweep over the projection and the last change of v̇ solves linear equations
+/// point by point (gradients/recorded_points.hpp). A factorisation of the transposed matrix of all stages approximates
+/// μ. Products from sweeps over the tape of the stages correct μ until the corrections are round-off.
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/gradients/alpha_step_adjoint.hpp>
 #include <polybody/gradients/radau_stage_solution.hpp>
@@ -13,11 +14,13 @@
 
 namespace polybody {
 
-/// Adjoints of steps of Radau, from the last one to the first; of stages as in `RadauLinearisedStep`.
+/// Adjoints of successive steps of Radau, from the last one to the first. The stages are computed as in
+/// `RadauLinearisedStep`.
 template <LinearSolver Solver = DefaultSolver>
 class RadauStepAdjoint {
  public:
-  /// The model must outlive it. \param system with `Capabilities::implicit_step`; \param method whose steps they are
+  /// The model must outlive this object. \param system with `Capabilities::implicit_step`; \param method integrator of
+  /// the steps
   template <class M>
   [[gnu::cold]] RadauStepAdjoint(M const& model, System& system, Radau const& method)
       : places_(model, system), stages_(places_, method) {
@@ -25,12 +28,13 @@ class RadauStepAdjoint {
     solver_.analyse(system, 3, [&](BlockSink& sink) { write_transposed(sink, 0.0, 1.0); });
     mu_ = y_ = product_ = VecX::Zero(3 * system.size());
   }
-  RadauStepAdjoint(RadauStepAdjoint const&) = delete;  // its parts refer to each other
+  RadauStepAdjoint(RadauStepAdjoint const&) = delete;  // its members refer to each other
 
-  /// Takes the costate of the state after the step to that of the state before it. Returns what the last correction of
-  /// μ changed, relative to it. \param told f(place, μ) for each place where the step solves equations: what the result
-  /// changes by with them, its sign changed. \throws NewtonConvergenceFailure where its stages are not found again,
-  /// SingularMatrix at a singular position, NonFiniteValue.
+  /// Converts, in place, the adjoint variables of the state after the step to adjoint variables of the state before it.
+  /// Calls `told(place, μ)` for each point where the step solves equations; −μ is the derivative of the objective
+  /// function with respect to these equations. Returns the relative size of the last correction of μ. \throws
+  /// NewtonConvergenceFailure if its stages do not converge again, SingularMatrix in a singular configuration,
+  /// NonFiniteValue.
   template <class F>
   double backward_step(StepTaken const& step, Costate& x, F&& told) {
     stages_.find(step);
@@ -88,8 +92,8 @@ class RadauStepAdjoint {
                             "."});
   }
 
-  /// The start and the stages as variables, their equations, then the places after them. Returns how many operations
-  /// the stages take.
+  /// Records the start and the stages as variables, their equations, and then the points after them. Returns the number
+  /// of operations of the stages.
   std::size_t record(StepTaken const& step) {
     detail::RadauStages<double> const& found = stages_.numbers();
     detail::set_variables(step.before.q, recorded_.q0);
@@ -97,7 +101,7 @@ class RadauStepAdjoint {
     for (std::size_t i = 0; i < 3; ++i) {
       detail::set_variables(found.vd[i], recorded_.vd[i]);
       detail::set_variables(found.lambda[i], recorded_.lambda[i]);
-      recorded_.delta[i].setConstant(ReverseVar(0.0));  // so that passes over it are as many as its derivatives need
+      recorded_.delta[i].setConstant(ReverseVar(0.0));  // zero: derivatives need all passes over it
     }
     numbers_.clear();
     stages_.evaluate(recorded_, equations_, step, step.h, [&](Index) {
@@ -113,7 +117,7 @@ class RadauStepAdjoint {
     return end;
   }
 
-  /// Products of the transposed derivatives of R with μ; those by y into `product_`.
+  /// Computes the products of the transposed derivatives of R with μ. The products with ∂R/∂y are stored in `product_`.
   void pull(std::size_t stages_end, VecX const& mu) {
     Tape& recording = places_.recording();
     recording.clear_derivatives(stages_end);
@@ -124,7 +128,7 @@ class RadauStepAdjoint {
     for (Index i = 0; i < 3; ++i)
       for (Index k = 0; k < rows; ++k) product_[i * n + nv + k] += stages_.slack(i, k) * mu[i * n + nv + k];
   }
-  /// Slopes of v̇_i and λ_i.
+  /// Copies the derivatives with respect to v̇_i and λ_i to `out`.
   void take_stages(VecX& out) {
     Index at = 0;
     for (std::size_t i = 0; i < 3; ++i)
@@ -141,10 +145,10 @@ class RadauStepAdjoint {
   VecX mu_, y_, product_;
 };
 
-/// Adjoints of runs by Radau.
+/// Adjoint of the steps of runs with Radau.
 template <>
 struct StageAdjoints<Radau> {
-  using Type = RadauStepAdjoint<>;  ///< of its steps
+  using Type = RadauStepAdjoint<>;  ///< adjoint of a step
 };
 
 }  // namespace polybody

@@ -1,23 +1,23 @@
 #pragma once
 /// \file
-/// Places of a recorded step where linear equations are solved: of K x = b, K = [M, Gᵀ; G, 0],
-///   K δx = δb − δK x,  so  μ = K⁻ᵀ x̄ = K⁻¹ x̄
-/// is what a result changes by with −b at a place, where x̄ is what it changes by with the solution. A step is written
-/// once: doubles find and factor its places, recorded numbers meet them in the same order, and going back each place is
-/// answered by its multipliers μ.
+/// Points of a recorded step where it solves linear equations K x = b, K = [M, Gᵀ; G, 0]. From
+///   K δx = δb − δK x  follows  b̄ = μ = K⁻ᵀ x̄ = K⁻¹ x̄,
+/// where x̄ and b̄ are the derivatives of the objective function with respect to x and b. The step is one function
+/// template. Doubles solve the equations and factorise K at each point. Tape variables pass through the same points in
+/// the same order. The backward sweep computes the multipliers μ of each point.
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/gradients/adjoint_kernels.hpp>
 #include <polybody/gradients/solved_points.hpp>
 
 namespace polybody {
 
-/// The places of a step with multipliers of their solutions.
+/// Evaluation points of a step with the multipliers of their solutions.
 template <LinearSolver Solver = DefaultSolver>
 class RecordedPoints {
  public:
-  /// The model must outlive it.
+  /// The model must outlive this object.
   template <class M>
   [[gnu::cold]] RecordedPoints(M const& model, System& system)
       : found_(system), recorded_(stepped_system<ReverseVar>(model, with<Capabilities::motion>)) {
@@ -32,22 +32,22 @@ class RecordedPoints {
     else
       return recorded_;
   }
-  /// The recording of the step.
+  /// Tape of the step.
   Tape& recording() { return recording_; }
 
-  /// What follows is solved at new places.
+  /// Discards all points.
   void forget() { found_.forget(); }
-  /// What follows is recorded, from the first place on.
+  /// Restarts the recording at the first point.
   void again() { passed_.clear(); }
 
-  /// Solves at another place, into its a and λ. \throws SingularMatrix, NonFiniteValue.
+  /// Adds x as another point, and stores the solution in its a and λ. \throws SingularMatrix, NonFiniteValue.
   void solve(EvaluationPoint<>& x) { found_.solve(x); }
-  /// |rows| at a = 0 where it solved last, at most.
+  /// Largest |constraint equation| for a = 0 at the last point.
   double largest_row() const { return found_.largest_row(); }
-  /// Equations that repeat others where it solved last.
+  /// Redundant equations at the last point.
   std::span<Index const> dropped() const { return found_.dropped(); }
 
-  /// Into a and λ of x, as variables, the solution of the next place; its equations are recorded.
+  /// Records the next point: sets a and λ of x to its solution, as variables, and evaluates the equations.
   void solve(EvaluationPoint<ReverseVar>& x) {
     auto const& place = found_[passed_.size()].place;
     Passed here{.begin = recording_.size()};
@@ -62,8 +62,9 @@ class RecordedPoints {
     passed_.push_back(std::move(here));
   }
 
-  /// Takes the recording backwards to operation `begin`, before the first place, from slopes that the results of the
-  /// step have. \param told f(place, μ) for each place, from the last one on; μ (nv + rows) by speeds, then by rows
+  /// Sweeps backward to operation `begin`, which precedes the first point. The derivatives with respect to the results
+  /// of the step are the input. Calls `told(place, μ)` for each point, from the last one to the first; μ (nv + rows)
+  /// has the order of the velocities, then of the constraint equations.
   template <class F>
   void sweep(F&& told, std::size_t begin = 1) {
     std::size_t end = recording_.size();

@@ -1,9 +1,8 @@
 #pragma once
 /// \file
-/// A run through corners and events that is taken once and written down, so that each of its steps can be taken again
-/// with the same bits.
+/// Record of a run with breakpoints and events. Each step can be repeated from it with bitwise identical results.
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/gradients/full_states.hpp>
 #include <polybody/gradients/nondifferentiable_times.hpp>
@@ -13,26 +12,27 @@
 
 namespace polybody::detail {
 
-/// A step of a run, and what ends it.
+/// Step of a run, with the events and the breakpoint that end it.
 struct RecordedStep {
-  StepPlan::Next plan;                   ///< where it was to go
-  double h = 0.0;                        ///< its length [s]
-  double end = 0.0;                      ///< time of the run after it [s]
-  double far = 0.0, largest = 0.0;       ///< where events are met: length before they were looked for [s], |value|
-  std::vector<std::size_t> met, acting;  ///< numbers of the events that end it, and of those that change the state
-  bool at_corner = false;                ///< it ends at a corner
-  bool restarts = false;                 ///< the run begins anew after it
-  StepPlan::Next next;                   ///< what the step after a new beginning was to be
+  StepPlan::Next plan;                   ///< planned end
+  double h = 0.0;                        ///< length [s]
+  double end = 0.0;                      ///< time after it [s]
+  double far = 0.0, largest = 0.0;       ///< with events: length of the full step [s], largest |event value|
+  std::vector<std::size_t> met, acting;  ///< indices of the events that end it, and of the events with an action
+  bool at_corner = false;                ///< it ends at a breakpoint
+  bool restarts = false;                 ///< the integrator starts again after it
+  StepPlan::Next next;                   ///< plan of the next step, if the integrator starts again
 };
 
-/// The steps of a run under a method of fixed steps. \tparam V a Variant
+/// Steps of a run with a method of constant step length. \tparam V a PerturbedModel
 template <class V>
 class RecordedRun {
  public:
-  /// Takes the run of this scenario, which must outlive it.
+  /// \param full model of the run; must outlive this object
   explicit RecordedRun(V& full) : full_(&full) {}
 
-  /// Takes the run once. \throws InvalidInput where it has no step, or an event and a corner at once; as `simulate`.
+  /// Computes and records the run. \throws InvalidInput if it has no step, or if an event coincides with a breakpoint
+  /// or another event; as `simulate`.
   void take(RunReport& report) {
     h_ = full_->length();
     std::vector<double> const breakpoints = full_->breakpoints();
@@ -49,14 +49,14 @@ class RecordedRun {
     while (!report.stopped && x.t < options().end_time) step(x, report);
   }
 
-  State const& first() const { return first_; }                    ///< from which the first step sets out
-  StepPlan::Next const& next() const { return next_; }             ///< what that step was to be
-  std::vector<RecordedStep> const& steps() const { return all_; }  ///< all of them
-  double length() const { return h_; }                             ///< that is asked for [s]
-  /// The time of the state before step k is that of a corner, or of the start.
+  State const& first() const { return first_; }                    ///< state before the first step
+  StepPlan::Next const& next() const { return next_; }             ///< plan of the first step
+  std::vector<RecordedStep> const& steps() const { return all_; }  ///< all steps
+  double length() const { return h_; }                             ///< requested step length [s]
+  /// True if step k begins at a breakpoint or at the start of the run.
   bool begins_at_corner(std::size_t k) const { return k == 0 || all_[k - 1].at_corner; }
 
-  /// Takes step k from x, with what comes after it.
+  /// Repeats step k from x, with the event actions and the restart after it.
   StepReport take(std::size_t k, State& x) {
     RecordedStep const& s = all_[k];
     StepReport const report = full_->step(x, s.h);
@@ -64,20 +64,20 @@ class RecordedRun {
     if (s.restarts) restart(s, x);
     return report;
   }
-  /// The end of step k from x, before what an event does and a new beginning.
+  /// End of step k from x, before event actions and a restart.
   State end(std::size_t k, State x) {
     double const end = x.t + all_[k].h;
     (void)full_->step(x, all_[k].h);
     x.t = end;
     return x;
   }
-  /// What the events that act after a step, and the new beginning for a step of h, make of the state y of a variant; as
-  /// they made `fresh` in this run.
+  /// Applies the event actions after a step, and the restart for a step of length h, to a state y of a perturbed model.
+  /// The restart uses the start correction if the restarted state `fresh` of this run has it.
   static void begin_anew(RecordedStep const& s, V& v, State const& fresh, State& y, double h) {
     if (!s.acting.empty()) y = after(v, s.acting, y);
     v.start_like(fresh, y, h);
   }
-  /// What events make of the state x depends on its accelerations or multipliers.
+  /// True if the event actions at the state x depend on its accelerations or multipliers.
   bool reads_forces(RecordedStep const& s, State const& x) {
     if (s.acting.empty()) return false;
     State others = x;
@@ -110,7 +110,7 @@ class RecordedRun {
     if (s.restarts) {
       bool const done = report.stopped || x.t >= options().end_time;
       s.next = done ? StepPlan::Next{x.t, h_, false, false} : plan_.next(x.t, h_);
-      if (!s.acting.empty()) (void)acted_state(*full_, watch_, State(full_->shown(x)));  // refuses what cannot be
+      if (!s.acting.empty()) (void)acted_state(*full_, watch_, State(full_->shown(x)));  // throws for an invalid action
       restart(s, x);
       if (!s.acting.empty()) watch_.settle(options().events, x, motion());
     }
@@ -153,7 +153,7 @@ class RecordedRun {
     if (!s.acting.empty()) x = after(*full_, s.acting, x);
     full_->start(x, s.next.h);
   }
-  /// What acting events make of a state of a variant.
+  /// State of a perturbed model after the actions of some events.
   static State after(V& v, std::vector<std::size_t> const& acting, State const& x) {
     State y = v.shown(x);
     for (std::size_t const i : acting) v.scenario.options.events[i].action(y);

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// What runs must be to be differentiated; refusals in words.
+/// Requirements of runs with derivatives, and the exceptions if they are not satisfied.
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <array>
 #include <string>
@@ -21,7 +21,7 @@ std::vector<double> values_of(std::vector<Parameter> const& parameters) {
   return p;
 }
 
-/// \throws InvalidInput, beginning with `who`, for options with what is not differentiated.
+/// \throws InvalidInput if the options contain step halving or minimum-norm multipliers. The message begins with `who`.
 template <class = void>
 void require_plain(RunOptions const& o, char const* who) {
   if (o.max_step_halvings.value_or(0) > 0 || o.minimum_norm)
@@ -31,8 +31,8 @@ void require_plain(RunOptions const& o, char const* who) {
          ": a run with halved steps or with multipliers of least norm has no derivative. Remove these options."});
 }
 
-/// \throws InvalidInput, beginning with `who`, unless the model of another value of p has as many unknowns, outputs,
-/// events and corners.
+/// \throws InvalidInput if the model for another value of p has a different number of unknowns, outputs, events or
+/// breakpoints, or eliminates other coordinates. The message begins with `who`.
 template <class V>
 void require_alike(V const& model, V const& other, Parameter const& p, char const* who) {
   auto const sizes = [](V const& v) {
@@ -55,8 +55,8 @@ void require_alike(V const& model, V const& other, Parameter const& p, char cons
                         "nodes). Move the marker, or give these joints Constraint."});
 }
 
-/// What slopes of a step that ends at t [s] still change by, relative to them. \throws NewtonConvergenceFailure,
-/// beginning with `who`, where that is more than a millionth.
+/// Returns `left`, the relative change of the derivatives in the last correction of the step to t [s]. \throws
+/// NewtonConvergenceFailure if it is above 10⁻⁶. The message begins with `who`.
 template <class = void>
 double require_converged(double left, double t, char const* who) {
   if (left <= 1e-6) return left;
@@ -66,7 +66,7 @@ double require_converged(double left, double t, char const* who) {
                                   ErrorValue{left}, ". Take a smaller step there, or softer contacts."});
 }
 
-/// Times at which a step of a run must end, in no order: those of drives and loads, then those of the options [s].
+/// Breakpoints of a run [s], not sorted: first of driving constraints and loads, then of the options.
 template <class = void>
 std::vector<double> breakpoints_of(System const& system, RunOptions const& options) {
   Sequence<double> const& own = system.layout().breakpoints;
@@ -75,13 +75,13 @@ std::vector<double> breakpoints_of(System const& system, RunOptions const& optio
   return all;
 }
 
-/// The length of steps that is asked for, or of the first one [s].
+/// Requested length of the steps, or of the first step if the integrator chooses the lengths [s].
 template <class = void>
 double length_of_steps(RunOptions const& o) {
   return o.max_step ? std::min<double>(o.step, *o.max_step) : double(o.step);
 }
 
-/// The outputs of a scenario at x. \throws NonFiniteValue.
+/// Values of the outputs of a scenario at x. \throws NonFiniteValue.
 template <class S>
 VecX values_of_outputs(S const& scenario, State const& x) {
   VecX out(Index(scenario.outputs.size()));
@@ -95,14 +95,15 @@ VecX values_of_outputs(S const& scenario, State const& x) {
   return out;
 }
 
-/// I is of the generalised-α family.
+/// Integrator of the generalised-α family.
 template <class I>
 concept AlphaFamilyIntegrator = requires(I const integrator) {
   { integrator.method() } -> std::convertible_to<AlphaMethod>;
 };
 
-/// The method by which a run is differentiated: its corrections go on to 1e-12. \throws InvalidInput, beginning with
-/// `who`, for parameters and integrators that cannot be meant.
+/// Method for a run with derivatives: its tolerance is at most 10⁻¹², without a budget of iterations. \throws
+/// InvalidInput as `check` of the parameters and the integrator, and for a stabilised integrator; the message then
+/// begins with `who`.
 template <AlphaFamilyIntegrator I>
 AlphaMethod method_of_derivatives(std::vector<Parameter> const& parameters, I const& integrator, char const* who) {
   integrator.check();
@@ -116,7 +117,7 @@ AlphaMethod method_of_derivatives(std::vector<Parameter> const& parameters, I co
   return method;
 }
 
-/// The same of a method of several stages. \throws InvalidInput for parameters and integrators that cannot be meant.
+/// Overload for methods with several stages. \throws InvalidInput as `check` of the parameters and the integrator.
 template <class I>
 MethodOf<I> method_of_stages(std::vector<Parameter> const& parameters, I const& integrator) {
   check(parameters);

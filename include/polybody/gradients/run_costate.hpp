@@ -1,8 +1,9 @@
 #pragma once
 /// \file
-/// What a result of a run changes by where the run stands: with its state, what an integrator remembers, and its time.
+/// Adjoint variables of a run: derivatives of the objective function with respect to the state, the integrator history
+/// and the time.
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/gradients/alpha_step_adjoint.hpp>
 #include <polybody/gradients/parameter.hpp>
@@ -10,23 +11,23 @@
 
 namespace polybody::detail {
 
-/// The costate of a run under the generalised-α family.
+/// Adjoint variables of a run with the generalised-α family.
 struct RunCostate {
-  Costate at;      ///< of the state, with the method's own accelerations
-  VecX history;    ///< (history) of what is remembered beside them: points before, lengths of steps
+  Costate at;      ///< of the state and the method's own accelerations
+  VecX history;    ///< (history) of the other entries of the history: earlier points, step lengths
   double t = 0.0;  ///< of the time [J's unit/s]
 
   explicit RunCostate(State const& x) : at(x), history(VecX::Zero(x.history.size())) {}
 
-  /// What J changes by where the state changes by dx.
+  /// Change of J due to a change dx of the state.
   double dot(State const& dx) const { return at.dot(dx) + history.dot(dx.history); }
-  /// Without rounding of what y and x have in common.
+  /// Change of J from the state x to y, without round-off from their common part.
   double dot(State const& y, State const& x) const {
     Index const nv = at.own.size();
     return at.q.dot(y.q - x.q) + at.v.dot(y.v - x.v) + at.a.dot(y.a - x.a) + at.lambda.dot(y.lambda - x.lambda) +
            at.own.dot(y.history.head(nv) - x.history.head(nv)) + history.dot(y.history - x.history);
   }
-  /// Adds another one, times a factor.
+  /// Adds `by` times the adjoint variables `of`.
   void add(RunCostate const& of, double by) {
     at.q += by * of.at.q;
     at.v += by * of.at.v;
@@ -36,13 +37,13 @@ struct RunCostate {
     history += by * of.history;
     t += by * of.t;
   }
-  /// Back over `StepHistory::push` of a step that set out from `before`, after `at` has gone back over it. Returns what
-  /// J changes by with the length that was pushed.
+  /// Backward sweep over `StepHistory::push` of a step from `before`, after the backward sweep of `at`. Returns the
+  /// derivative of J with respect to the step length in the history.
   double pull_push(State const& before) {
     constexpr Index last = StepHistory::lengths - 1;
     Index const nv = at.own.size();
     auto newest = history.segment(nv, nv), change = history.segment(2 * nv, nv);
-    bool const known = lengths_of(before)[last - 1] > 0.0;  // the point before this one
+    bool const known = lengths_of(before)[last - 1] > 0.0;  // there is an earlier point
     at.a += newest;
     if (known) at.a += change;
     newest = known ? VecX(-change) : VecX(VecX::Zero(nv));
@@ -55,8 +56,9 @@ struct RunCostate {
   }
 };
 
-/// The derivative of a result of a map from states, x and a length h, where `move` moves these by e times a direction.
-/// \param f f(y, length): the result, of a copy; \param e distance of the differences
+/// Derivative of a result of a state x and a length h along a direction, by differences. `move` adds e times the
+/// direction to both. \param f f(y, length): the result; it may change the copy y of the state; \param e distance of
+/// the differences
 template <class Move, class F>
 double slope_along(State const& x, double h, double e, Move const& move, F const& f) {
   double sum = 0.0;
@@ -69,15 +71,16 @@ double slope_along(State const& x, double h, double e, Move const& move, F const
   return sum;
 }
 
-/// Numbers of a part of states.
+/// Range of entries of a vector of the state.
 struct PartOfStates {
   VecX State::* part;
   Index first, count;
-  double size;  ///< of the numbers
+  double size;  ///< magnitude of the entries
 };
-/// The same by the numbers of a part, added to `to` at their places. They are differenced over 1e-4 of their size, or
-/// of one where it is zero: wider, what stiff elements do to the jerk of a start is no polynomial of fourth degree, and
-/// narrower it rounds.
+/// Adds the derivatives with respect to each entry of a range to the entries of `to` with the same indices. The
+/// distance of the differences is 10⁻⁴ of the magnitude, or 10⁻⁴ if the magnitude is zero. At larger distances, the
+/// effect of stiff elements on the jerk at a start is not a polynomial of degree four. At smaller distances, round-off
+/// dominates.
 template <class F>
 void add_derivatives_by(PartOfStates const& of, State const& x, double h, F const& f, VecX& to) {
   double const e = 1e-4 * (of.size > 0.0 ? of.size : 1.0);

@@ -1,21 +1,21 @@
 #pragma once
 /// \file
-/// Derivatives of a run's state, and sums of states.
+/// Derivatives of the state of a run, and sums of states.
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/integrators/step_history.hpp>
 
 namespace polybody::detail {
 
-/// The derivative of a run where it stands, by a parameter or by the length of a step.
+/// Derivative of the current state of a run with respect to a parameter or to the length of a step.
 struct RunSensitivity {
-  State dx;         ///< of the state; lengths of steps in its memory are those of the run
+  State dx;         ///< of the state; its history contains the step lengths of the run itself
   double dt = 0.0;  ///< of the time [s]
-  VecX lengths;     ///< of those lengths [s]
+  VecX lengths;     ///< of these step lengths [s]
 };
 
-/// The lengths of steps that an integrator remembers in a state or its derivative [s]; none without a memory.
+/// Step lengths in the integrator history of a state or its derivative [s]; empty without a history.
 template <class = void>
 auto lengths_of(State& x) {
   return x.history.tail(std::min<Index>(StepHistory::lengths, x.history.size()));
@@ -33,7 +33,7 @@ void add(State& sum, State const& x, double by) {
   sum.lambda += by * x.lambda;
   sum.history += by * x.history;
 }
-/// shown = x + e dx but for what an integrator remembers.
+/// shown = x + e dx, without the integrator history.
 template <class = void>
 void add_motion(State& shown, State const& dx, double e, State const& x) {
   shown.q = x.q + e * dx.q;
@@ -48,7 +48,7 @@ State zeros_like(State const& x) {
   return out;
 }
 
-/// x + e dx, with the lengths of steps that x remembers.
+/// x + e dx, with the step lengths in the history of x.
 template <class = void>
 State beside(State const& x, State const& dx, double e) {
   State out = x;

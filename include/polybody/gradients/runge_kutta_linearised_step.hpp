@@ -1,32 +1,32 @@
 #pragma once
 /// \file
-/// The tangent-linear of a step of an explicit Runge–Kutta method, exactly: the step is walked through in dual numbers
-/// (gradients/runge_kutta_stages.hpp), and what it solves for are solutions of linear equations at their places
-/// (gradients/solved_points.hpp). Nothing is iterated.
+/// Linearised step of an explicit Runge–Kutta method. It is exact and needs no iteration. Dual numbers pass through the
+/// step (gradients/runge_kutta_stages.hpp). Its accelerations and projections are solutions of linear equations;
+/// gradients/solved_points.hpp differentiates them.
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/gradients/runge_kutta_stages.hpp>
 #include <polybody/gradients/solved_points.hpp>
 
 namespace polybody {
 
-/// Slopes of steps of RungeKutta4 or DormandPrince, one step after the other, also by their lengths. What the error
-/// makes of a length is not part of them.
+/// Derivatives of successive steps of RungeKutta4 or DormandPrince, also with respect to the step lengths. The choice
+/// of the step lengths by the error is not differentiated.
 template <class Method, LinearSolver Solver = DefaultSolver>
 class RungeKuttaLinearisedStep {
   using D = typename SolvedPoints<Solver>::D;
 
  public:
-  /// Directions that go through the equations together.
+  /// Number of directions in one pass through the equations.
   static constexpr int lanes = SolvedPoints<Solver>::lanes;
 
-  /// Slopes of steps by `method`. The model must outlive it.
+  /// The model must outlive this object. \param method integrator of the steps
   template <class M>
   [[gnu::cold]] RungeKuttaLinearisedStep(M const& model, System& system, Method const& method)
       : places_(model, system), walk_(method) {}
 
-  /// From now on slopes are those of this step. \throws SingularMatrix at a singular position, NonFiniteValue.
+  /// Prepares the derivatives of this step. \throws SingularMatrix in a singular configuration, NonFiniteValue.
   void set(StepTaken const& step) {
     State const& x = step.before;
     numbers_.q0 = x.q;
@@ -39,10 +39,10 @@ class RungeKuttaLinearisedStep {
     });
   }
 
-  /// Takes up to `lanes` derivatives of the state before the step to those of the state after it. Returns what a last
-  /// correction changed: zero, for there is none. \param slope what the parameter of a direction, and the time that
-  /// moves along it, do to the equations at each place where the step solves some; \param dh the derivative of the
-  /// step's length along each direction [s], or none where it stays
+  /// Converts, in place, up to `lanes` derivatives of the state before the step to derivatives of the state after it.
+  /// Returns zero, since there is no iterative correction. \param slope derivative of the equations at each evaluation
+  /// point, for the parameter of a direction and the change of time along it; \param dh derivative of the step length
+  /// along each direction [s], or none if the length is constant
   template <EquationDerivativeFunction F>
   double advance(StepTaken const& step, std::span<State* const> directions, F&& slope,
                  std::span<double const> dh = {}) {
@@ -69,15 +69,15 @@ class RungeKuttaLinearisedStep {
   RungeKuttaNumbers<Method, D> duals_;
 };
 
-/// Slopes of runs by RungeKutta4.
+/// Linearised step for runs with RungeKutta4.
 template <class Stabilisation>
 struct StageDerivatives<RungeKutta4<Stabilisation>> {
-  using Type = RungeKuttaLinearisedStep<RungeKutta4<Stabilisation>>;  ///< of its steps
+  using Type = RungeKuttaLinearisedStep<RungeKutta4<Stabilisation>>;  ///< linearised step
 };
-/// Slopes of runs by DormandPrince.
+/// Linearised step for runs with DormandPrince.
 template <class Stabilisation>
 struct StageDerivatives<DormandPrince<Stabilisation>> {
-  using Type = RungeKuttaLinearisedStep<DormandPrince<Stabilisation>>;  ///< of its steps
+  using Type = RungeKuttaLinearisedStep<DormandPrince<Stabilisation>>;  ///< linearised step
 };
 
 }  // namespace polybody
