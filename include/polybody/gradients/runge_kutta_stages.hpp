@@ -1,30 +1,30 @@
 #pragma once
 /// \file
-/// A step of an explicit Runge–Kutta method (integrators/runge_kutta.hpp) written once in a scalar T, for its
-/// derivatives: with k = (δ˙, v̇) of the stages
-///   δ_i = h Σ a_ij δ˙_j,  v_i = v₀ + h Σ a_ij v̇_j,  q_i = q₀ ⊞ δ_i,
-/// where each v̇_i, every step of Gauss–Newton of a projection and its step of the speeds solve linear equations at
-/// their place.
+/// Step of an explicit Runge–Kutta method (integrators/runge_kutta.hpp) in any scalar type T, for its derivatives. With
+/// k = (δ˙, v̇) of the stages
+///   δ_i = h Σ a_ij δ˙_j,  v_i = v₀ + h Σ a_ij v̇_j,  q_i = q₀ ⊞ δ_i.
+/// Each v̇_i, each Gauss–Newton iteration of a projection and its correction of the velocities is a solution of linear
+/// equations.
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/gradients/projection_derivative.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 
 namespace polybody {
 
-/// A step's numbers in the scalar T.
+/// Values of a step in the scalar type T.
 template <class Method, StateScalar T>
 struct RungeKuttaNumbers {
-  VecXOf<T> q0;                                                 ///< (nq) at the start
-  VecXOf<T> v0;                                                 ///< (nv) at the start
-  VecXOf<T> delta;                                              ///< (nv) δ of a stage
+  VecXOf<T> q0;                                                 ///< (nq) coordinates at the start
+  VecXOf<T> v0;                                                 ///< (nv) velocities at the start
+  VecXOf<T> delta;                                              ///< (nv) increment δ of a stage
   std::array<VecXOf<T>, Method::Tableau::stages> rate;          ///< (nv) δ˙ of the stages
   std::array<VecXOf<T>, Method::Tableau::stages> acceleration;  ///< (nv) v̇ of the stages
-  EvaluationPoint<T> at;                                        ///< the stage, and at last the end
+  EvaluationPoint<T> at;                                        ///< a stage; finally the end of the step
 };
 
-/// Steps of a method in any scalar.
+/// Computes steps of a Runge–Kutta method in any scalar type.
 template <class Method>
 class RungeKuttaStages {
   using Stabilisation = decltype(Method::stabilisation);
@@ -36,12 +36,13 @@ class RungeKuttaStages {
   static constexpr std::size_t stages = Tableau::stages;
 
  public:
-  /// Steps by `method`.
+  /// \param method integrator of the steps
   explicit RungeKuttaStages(Method const& method)
       : feedback_(method.stabilisation.feedback()), projection_(projection_of(method)) {}
 
-  /// The step from q₀, v₀ and v̇ there to its end, which stands in w.at. \param system the equations in T; \param t
-  /// the time of its start [s]; \param h its length, in T where that moves [s]; \param solve solves them at a place
+  /// Computes the step from q₀, v₀ and the v̇ of the first stage; the end is stored in w.at. \param system the
+  /// equations in T; \param t time at the start [s]; \param h step length, of type T if it varies [s]; \param solve
+  /// solves the equations at a point
   template <StateScalar T, class H, class Solve>
   void operator()(BasicSystem<T>& system, RungeKuttaNumbers<Method, T>& w, double t, H const& h, Solve&& solve) {
     w.delta = VecXOf<T>::Constant(w.v0.size(), T(0.0));

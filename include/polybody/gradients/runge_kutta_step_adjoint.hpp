@@ -1,9 +1,10 @@
 #pragma once
 /// \file
-/// The adjoint of a step of an explicit Runge–Kutta method, exactly: the step is walked through in recorded numbers
-/// (gradients/runge_kutta_stages.hpp) and taken backwards (gradients/recorded_points.hpp). Nothing is iterated.
+/// Adjoint of a step of an explicit Runge–Kutta method. It is exact and needs no iteration. A tape records the step
+/// (gradients/runge_kutta_stages.hpp), and the backward sweep solves linear equations point by point
+/// (gradients/recorded_points.hpp).
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/gradients/alpha_step_adjoint.hpp>
 #include <polybody/gradients/recorded_points.hpp>
@@ -11,19 +12,20 @@
 
 namespace polybody {
 
-/// Adjoints of steps of RungeKutta4 or DormandPrince, from the last one to the first. The length of a step stays as it
-/// was chosen.
+/// Adjoints of successive steps of RungeKutta4 or DormandPrince, from the last one to the first. The step lengths are
+/// constants.
 template <class Method, LinearSolver Solver = DefaultSolver>
 class RungeKuttaStepAdjoint {
  public:
-  /// Adjoints of steps by `method`. The model must outlive it.
+  /// The model must outlive this object. \param method integrator of the steps
   template <class M>
   [[gnu::cold]] RungeKuttaStepAdjoint(M const& model, System& system, Method const& method)
       : places_(model, system), walk_(method) {}
 
-  /// Takes the costate of the state after the step to that of the state before it. Returns what a last correction
-  /// changed: zero, for there is none. \param told f(place, μ) for each place where the step solves equations: what the
-  /// result changes by with them, its sign changed. \throws SingularMatrix at a singular position, NonFiniteValue.
+  /// Converts, in place, the adjoint variables of the state after the step to adjoint variables of the state before it.
+  /// Calls `told(place, μ)` for each point where the step solves equations; −μ is the derivative of the objective
+  /// function with respect to these equations. Returns zero, since there is no iterative correction. \throws
+  /// SingularMatrix in a singular configuration, NonFiniteValue.
   template <class F>
   double backward_step(StepTaken const& step, Costate& x, F&& told) {
     State const& before = step.before;
@@ -65,15 +67,15 @@ class RungeKuttaStepAdjoint {
   RungeKuttaNumbers<Method, ReverseVar> recorded_;
 };
 
-/// Adjoints of runs by RungeKutta4.
+/// Adjoint of the steps of runs with RungeKutta4.
 template <class Stabilisation>
 struct StageAdjoints<RungeKutta4<Stabilisation>> {
-  using Type = RungeKuttaStepAdjoint<RungeKutta4<Stabilisation>>;  ///< of its steps
+  using Type = RungeKuttaStepAdjoint<RungeKutta4<Stabilisation>>;  ///< adjoint of a step
 };
-/// Adjoints of runs by DormandPrince.
+/// Adjoint of the steps of runs with DormandPrince.
 template <class Stabilisation>
 struct StageAdjoints<DormandPrince<Stabilisation>> {
-  using Type = RungeKuttaStepAdjoint<DormandPrince<Stabilisation>>;  ///< of its steps
+  using Type = RungeKuttaStepAdjoint<DormandPrince<Stabilisation>>;  ///< adjoint of a step
 };
 
 }  // namespace polybody

@@ -1,26 +1,27 @@
 #pragma once
 /// \file
-/// A step that tangents of a run go along.
+/// Inputs for propagating forward sensitivities over one time step.
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/gradients/run_sensitivity.hpp>
 
 namespace polybody::detail {
 
-/// A direction along which a step is differentiated: a parameter, what it does, and the slope of the step's length.
+/// Direction of differentiation of a step: number j of the parameter, derivative of the run, derivative of the step
+/// length.
 struct TangentColumn {
   std::size_t j;
   RunSensitivity* tangent;
   double dh;
 };
 
-/// A step that a run has taken.
+/// Completed step of a run.
 struct SensitivityStep {
-  State& before;       ///< at its start
-  State const& after;  ///< at its end
+  State& before;       ///< state at its start
+  State const& after;  ///< state at its end
   double h;            ///< its length [s]
-  bool searched;       ///< others were tried after it
+  bool searched;       ///< an event search computed other steps after it
 };
 
 }  // namespace polybody::detail

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// The equations of parameters that are differenced together, with a check that each changes with its owner only.
+/// Equations of parameters that are differenced together, with a check that each equation changes with its owner only.
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <algorithm>
 #include <array>
@@ -14,10 +14,10 @@
 
 namespace polybody::detail {
 
-/// The places of the four models of a group for one member.
+/// Difference points (`FourPoints`) of the four models of a group, for one member.
 using MemberOrder = std::array<std::uint8_t, 4>;
 
-/// Orders of members. No order is another one or its mirror image.
+/// Orders of members. No order equals another one or its mirror image.
 inline constexpr std::array<MemberOrder, 12> member_orders{{{0, 1, 2, 3},
                                                             {0, 1, 3, 2},
                                                             {0, 2, 1, 3},
@@ -30,16 +30,16 @@ inline constexpr std::array<MemberOrder, 12> member_orders{{{0, 1, 2, 3},
                                                             {2, 1, 3, 0},
                                                             {2, 3, 0, 1},
                                                             {2, 3, 1, 0}}};
-/// The order of member r in the set of models that separates the members by the digits of r/`of_orders`.
+/// Order of member r in the set of models that separates the members by the digits of r/`of_orders`.
 constexpr MemberOrder const& order_of_member(std::size_t r, std::size_t of_orders) {
   return member_orders[r / of_orders % member_orders.size()];
 }
 
 /// Changes of equations that may be due to round-off.
 struct RoundingOfEquations {
-  double balance = -1.0, rows = 0.0;  ///< negative: not known
+  double balance = -1.0, rows = 0.0;  ///< negative: unknown
 };
-/// The size of the numbers that cancel in the rows at x, a state or a place of a step.
+/// Magnitude of the terms that cancel in the constraint equations at x, a state or an evaluation point.
 template <class X>
 double size_of_rows(X const& x) {
   double const size = std::max({1.0, largest_size(x.q), largest_size(x.v), largest_size(x.a)});
@@ -47,41 +47,40 @@ double size_of_rows(X const& x) {
   return size;
 }
 
-/// Values of an equation at the four places of its own parameter.
+/// Values of an equation at the four difference points of its own parameter.
 using ValuesAtPlaces = std::array<double, 4>;
 
-/// The equations of a group of parameters. An equation without an owner must not change. An equation with an owner
-/// must change with its owner only: the contribution of a second member, which has another order, is not linear in
-/// the place of the owner. Curvature of an equation has the same effect, so a difference here does not prove a
-/// dependence.
+/// Equations of a group of parameters. An equation without an owner must not change. An equation with an owner must
+/// change with its owner only. A second member has another order, so its contribution is not linear in the difference
+/// points of the owner. Curvature of an equation has the same effect, so a deviation does not prove a dependence.
 class SharedEquations {
  public:
-  static constexpr std::size_t nobody = std::size_t(-1);  ///< in place of the rank of an owner
+  static constexpr std::size_t nobody = std::size_t(-1);  ///< rank that means no owner
 
-  /// As many equations, without owners.
+  /// Makes `size` equations without owners.
   explicit SharedEquations(std::size_t size) : owner_(size, nobody), doubts_(size) {}
 
-  std::size_t size() const { return owner_.size(); }            ///< how many equations there are
-  std::size_t owner(std::size_t i) const { return owner_[i]; }  ///< the rank of the member that names equation i
+  std::size_t size() const { return owner_.size(); }            ///< number of equations
+  std::size_t owner(std::size_t i) const { return owner_[i]; }  ///< rank of the member that names equation i
   bool is_complete() const { return is_complete_; }             ///< one member owns all equations
-  bool are_free(std::vector<Index> const& equations) const {    ///< no member owns one of them
+  bool are_free(std::vector<Index> const& equations) const {    ///< none has an owner
     return std::all_of(equations.begin(), equations.end(), [&](Index i) { return owner_[std::size_t(i)] == nobody; });
   }
-  /// Another member becomes the owner of `equations`.
+  /// Adds a member, which owns `equations`.
   void add(std::vector<Index> const& equations) {
     for (Index const i : equations) owner_[std::size_t(i)] = members_;
     ++members_;
     is_complete_ = equations.size() == owner_.size();
   }
-  /// Another evaluation begins. Returns its number.
+  /// Begins another evaluation. Returns its number.
   std::size_t begin() { return evaluations_++; }
 
-  /// The values of equation i change as if a second parameter changed it, by more than `rounding`.
+  /// True if the change of equation i indicates a second parameter, by more than `rounding`.
   bool is_doubtful(std::size_t i, ValuesAtPlaces const& f, double rounding) const {
     auto const [left, change] = unexplained(i, f);
     return left > rounding + doubts_[i].tolerance * change && evaluations_ >= doubts_[i].next;
   }
-  /// A doubt has turned out to be curvature: the tolerance of the equation grows, or after a kink its check pauses.
+  /// Accepts a doubt as curvature: increases the tolerance of the equation, or after a kink pauses its check.
   [[gnu::cold]] void allow(std::size_t i, ValuesAtPlaces const& f) {
     Doubt& doubt = doubts_[i];
     if (auto const [left, change] = unexplained(i, f); left < 1e-2 * change) {
@@ -94,11 +93,11 @@ class SharedEquations {
 
  private:
   struct Doubt {
-    double tolerance = 1e-5;          // relative to the change by the owner: the effect of curvature
-    std::size_t next = 0, pause = 0;  // number of the evaluation with the next check, and of evaluations without one
+    double tolerance = 1e-5;          // relative to the change by the owner: effect of curvature
+    std::size_t next = 0, pause = 0;  // number of the evaluation with the next check; count of skipped checks
   };
 
-  /// The part of the values that is not due to the owner, and their change.
+  /// Part of the change that is not due to the owner, and the change itself.
   std::array<double, 2> unexplained(std::size_t i, ValuesAtPlaces const& f) const {
     double const near = f[1] - f[0], far = f[3] - f[2];
     if (owner_[i] == nobody) return {std::abs(near) + std::abs(far), 0.0};

@@ -1,12 +1,13 @@
 #pragma once
 /// \file
-/// Places of a step where linear equations are solved (gradients/evaluation_point.hpp), and the derivatives of their
-/// solutions: of K x = b, K = [M, Gᵀ; G, 0],
-///   K δx = δb − δK x,
-/// whose right side is one pass of dual numbers through the equations at x that stays. A step is written once, for
-/// doubles, whose places are solved and factored, and for duals, which meet the same places in the same order.
+/// Points of a step where it solves linear equations (gradients/evaluation_point.hpp), and the derivatives of the
+/// solutions. From K x = b, K = [M, Gᵀ; G, 0],
+///   K δx = δb − δK x.
+/// One pass of dual numbers through the equations at constant x evaluates the right-hand side. The step is one function
+/// template. Doubles solve the equations and factorise K at each point. Dual numbers pass through the same points in
+/// the same order.
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <memory>
 #include <span>
@@ -17,31 +18,31 @@
 
 namespace polybody {
 
-/// The places of a step in doubles, with factors of their matrices.
+/// Evaluation points of a step in doubles, with factors of their matrices.
 template <LinearSolver Solver = DefaultSolver>
 class SolutionPoints {
  public:
-  /// A place with its solution and the factors of K there.
+  /// Point with its solution and the factors of K there.
   struct Found {
-    EvaluationPoint<> place;                    ///< with its solution
+    EvaluationPoint<> place;                    ///< point with its solution
     TangentSolver<StepSolver<Solver>> factors;  ///< of K, which is symmetric
   };
 
-  /// Places of steps of `system`, which must outlive it.
+  /// \param system must outlive this object
   [[gnu::cold]] explicit SolutionPoints(System& system) : system_(&system) {
     rhs_ = solution_ = VecX::Zero(system.size());
   }
 
-  /// What the places are of.
+  /// System of the steps.
   System& system() { return *system_; }
-  /// What follows is solved at new places.
+  /// Discards all points.
   void forget() { used_ = 0; }
-  /// How many places there are.
+  /// Number of points.
   std::size_t size() const { return used_; }
-  /// Place number i.
+  /// Point number i.
   Found& operator[](std::size_t i) { return *found_[i]; }
 
-  /// Solves at another place, into its a and λ. \throws SingularMatrix, NonFiniteValue.
+  /// Adds x as another point, and stores the solution in its a and λ. \throws SingularMatrix, NonFiniteValue.
   void solve(EvaluationPoint<>& x) {
     if (used_ == found_.size()) {
       found_.push_back(std::make_unique<Found>());
@@ -63,29 +64,29 @@ class SolutionPoints {
     x.lambda = solution_.tail(rows);
     here.place = x;
   }
-  /// |rows| at a = 0 where it solved last, at most.
+  /// Largest |constraint equation| for a = 0 at the last point.
   double largest_row() const { return largest_size(equations_.rows); }
-  /// Equations that repeat others where it solved last.
+  /// Redundant equations at the last point.
   std::span<Index const> dropped() const { return found_[used_ - 1]->factors.dropped(); }
 
  private:
   System* system_;
   PointEquations<double> equations_;
-  std::vector<std::unique_ptr<Found>> found_;  // they stay for later steps
+  std::vector<std::unique_ptr<Found>> found_;  // reused in later steps
   std::size_t used_ = 0;
   VecX rhs_, solution_;
 };
 
-/// The places of a step with derivatives of their solutions.
+/// Evaluation points of a step with the derivatives of their solutions.
 template <LinearSolver Solver = DefaultSolver>
 class SolvedPoints {
  public:
-  /// Directions that go through the equations together, a part of a dual number each.
+  /// Number of directions in one pass through the equations: one for each derivative of a dual number.
   static constexpr int lanes = 4;
-  using D = Dual<lanes>;         ///< a value with its derivatives
-  using Dots = VecXOf<Dual<4>>;  ///< a vector of them
+  using D = Dual<lanes>;         ///< value with its derivatives
+  using Dots = VecXOf<Dual<4>>;  ///< vector of them
 
-  /// The model must outlive it.
+  /// The model must outlive this object.
   template <class M>
   [[gnu::cold]] SolvedPoints(M const& model, System& system)
       : found_(system), dual_(stepped_system<D>(model, with<Capabilities::motion>)) {
@@ -101,23 +102,23 @@ class SolvedPoints {
       return dual_;
   }
 
-  /// What follows is solved at new places.
+  /// Discards all points.
   void forget() {
     found_.forget();
     passed_ = 0;
   }
-  /// What follows goes through the same places from the first one on.
+  /// Returns to the first point.
   void again() { passed_ = 0; }
 
-  /// Solves at another place, into its a and λ. \throws SingularMatrix, NonFiniteValue.
+  /// Adds x as another point, and stores the solution in its a and λ. \throws SingularMatrix, NonFiniteValue.
   void solve(EvaluationPoint<>& x) { found_.solve(x); }
-  /// |rows| at a = 0 where it solved last, at most.
+  /// Largest |constraint equation| for a = 0 at the last point.
   double largest_row() const { return found_.largest_row(); }
-  /// Equations that repeat others where it solved last.
+  /// Redundant equations at the last point.
   std::span<Index const> dropped() const { return found_.dropped(); }
 
-  /// Into a and λ of x, whose q, v and `also` come with derivatives along `directions` of them, the solution of the
-  /// next place with its own.
+  /// Sets a and λ of x to the solution of the next point, with its derivatives. q, v and `also` of x contain
+  /// derivatives along `directions` directions.
   template <EquationDerivativeFunction F>
   void solve(EvaluationPoint<D>& x, std::size_t directions, F&& slope) {
     auto& here = found_[passed_++];
@@ -146,7 +147,7 @@ class SolvedPoints {
 
 namespace detail {
 
-/// `to` becomes one part of a state, with its derivatives along all directions.
+/// Sets `to` to one vector of a state, with its derivatives along all directions.
 template <int N>
 void lift(VecX const& part, std::span<State* const> dx, VecX State::* of, VecXOf<Dual<N>>& to) {
   to.resize(part.size());
@@ -155,14 +156,14 @@ void lift(VecX const& part, std::span<State* const> dx, VecX State::* of, VecXOf
     for (std::size_t l = 0; l < dx.size(); ++l) to[i].d[Index(l)] = (dx[l]->*of)[i];
   }
 }
-/// A length of a step with its derivatives dh, or none.
+/// Step length with its derivatives dh; without derivatives if dh is empty.
 template <int N>
 Dual<N> lift(double h, std::span<double const> dh) {
   Dual<N> out(h);
   for (std::size_t l = 0; l < dh.size(); ++l) out.d[Index(l)] = dh[l];
   return out;
 }
-/// The derivatives in `from` become those of one part of a state.
+/// Copies the derivatives in `from` to one vector of the derivatives of a state.
 template <int N>
 void take_derivatives(VecXOf<Dual<N>> const& from, std::span<State* const> dx, VecX State::* of) {
   for (std::size_t l = 0; l < dx.size(); ++l) {

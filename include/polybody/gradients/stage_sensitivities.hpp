@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// Tangents of a run along its steps under methods of several stages.
+/// Forward sensitivities along the steps of methods with several stages.
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/gradients/perturbed_models.hpp>
 #include <polybody/gradients/perturbed_stage_model.hpp>
@@ -10,17 +10,18 @@
 
 namespace polybody::detail {
 
-/// What takes tangents before a step to those at its end.
+/// Propagates forward sensitivities over a step.
 template <class S, class I>
 class StageSensitivities {
  public:
   using V = PerturbedStageModel<S, I>;
   using Variants = PerturbedModels<V>;
 
-  /// Along the steps of `full`, which must outlive it.
+  /// \param full model of the run; must outlive this object
   [[gnu::cold]] explicit StageSensitivities(V& full) : derivatives_(full.scenario.model, full.system, full.method) {}
 
-  /// The tangents of `lanes` become those at the end of a step. Returns what the last corrections changed.
+  /// Converts, in place, the sensitivities in `lanes` before a step to sensitivities at its end. Returns the largest
+  /// relative change in the last corrections.
   double advance(SensitivityStep const& step, std::span<TangentColumn const> lanes, Variants& beside) {
     StepTaken const taken{step.before, step.after, step.h};
     derivatives_.set(taken);

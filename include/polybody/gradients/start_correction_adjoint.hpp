@@ -1,31 +1,32 @@
 #pragma once
 /// \file
-/// The adjoint of the speeds, and of the method's own accelerations, that a step of the generalised-α family sets out
-/// with (`AlphaMethod::start_step`), by differences of them.
+/// Adjoint of the start correction of a step of the generalised-α family (`AlphaMethod::start_step`). The correction
+/// changes velocities and the method's own accelerations. Differences approximate its derivatives.
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/gradients/perturbed_models.hpp>
 #include <polybody/gradients/run_costate.hpp>
 
 namespace polybody::detail {
 
-/// What is added to speeds and own accelerations where a step of h sets out from x. \tparam V a Variant
+/// Start correction of velocities and own accelerations for a step of length h from x. \tparam V a PerturbedModel
 template <class V>
 class StartCorrectionAdjoint {
  public:
-  /// \param spare a variant of the run itself, which must outlive it; \param corrects the step adds something
+  /// \param spare model of the run itself; must outlive this object; \param corrects the step has a correction
   StartCorrectionAdjoint(V& spare, State const& x, double h, bool corrects)
       : spare_(&spare), x_(&x), h_(h), corrects_(corrects), decided_(V::decided(x, h, corrects)) {}
 
-  /// The length for which x is shifted [s]; zero after a start.
+  /// Step length for which the own accelerations of x are shifted [s]; zero after a start.
   double shifted() const { return (*x_).history[(*x_).history.size() - 1]; }
 
-  /// Speeds and own accelerations of a variant's y become what is added to them.
+  /// Replaces velocities and own accelerations of a state y of model v by their correction.
   void add(V& v, State& y, double length) const { v.set_out_change(y, length, decided_); }
 
-  /// Takes the costate of speeds and own accelerations that a step sets out with, in `bar`, to that of x. Returns what
-  /// J changes by with the length of the step. \param by_time the time of x is not that of a corner
+  /// Converts, in place, the adjoint variables `bar` of the corrected velocities and own accelerations to adjoint
+  /// variables of x. Returns the derivative of J with respect to the step length. \param by_time include the time of x;
+  /// false if it is a breakpoint
   double pull(RunCostate& bar, bool by_time) const {
     VecX const v = bar.at.v, own = bar.at.own;
     auto const result = [&](State& y, double length) {

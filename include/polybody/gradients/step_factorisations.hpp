@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// Factors near the derivative of a step's equations by its unknowns, or near the transposed one.
+/// Approximate factorisations of the matrix of a linearised step, or of its transpose.
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <array>
 #include <optional>
@@ -14,14 +14,14 @@
 
 namespace polybody {
 
-/// Passes blocks on with rows and columns exchanged.
+/// Receiver that passes blocks on with rows and columns exchanged.
 template <BlockReceiver S>
 class TransposedSink {
  public:
-  explicit TransposedSink(S& target) : target_(target) {}  ///< to `target`
-  /// Block b at (row, col) of the matrix, (col, row) of the transposed one.
+  explicit TransposedSink(S& target) : target_(target) {}  ///< passes blocks to `target`
+  /// Adds block b at (row, col) of the matrix, hence at (col, row) of the transposed matrix.
   void add(Index row, Index col, BlockView const& b) { target_.add(col, row, b.transposed()); }
-  /// Zeros at (row, col), `rows` × `cols`.
+  /// Adds zeros at (row, col), `rows` × `cols`.
   void skip(Index row, Index col, Index rows, Index cols)
     requires ZeroSkippingReceiver<S>
   {
@@ -32,38 +32,39 @@ class TransposedSink {
   S& target_;
 };
 
-/// Which derivative.
+/// The matrix of a linearised step, or its transpose.
 enum class Derivative { direct, transposed };
 
-/// The factors of a step, of the kind that has taken the fewest passes; those of each kind are laid out when they are
-/// first asked for.
+/// Approximate factorisations for successive steps, of the kind with the lowest cost (`PreconditionerChoice`). The
+/// structure of each kind is analysed at its first use.
 template <LinearSolver Solver, Derivative derivative>
 class StepFactorisations {
  public:
-  using OfStep = TangentSolver<StepSolver<Solver>>;  ///< by which a step is solved
+  using OfStep = TangentSolver<StepSolver<Solver>>;  ///< solver of the step itself
 
-  /// The system must outlive it. \param candidates among which to choose, of `turned` only where unknowns turn
+  /// The system must outlive this object. \param candidates kinds of factorisation; `turned` is only used if the model
+  /// has rotations
   [[gnu::cold]] StepFactorisations(System& system, AlphaMethod const& method,
                                    std::vector<PreconditionerChoice::Candidate> candidates)
       : system_(&system), method_(method), turned_(system), choice_(of_use(std::move(candidates))) {}
 
-  /// From now on they are of this step. \param near those of the step itself, or none. \throws SingularMatrix at
-  /// a singular position.
+  /// Chooses and computes the factorisation of this step. \param near factorisation from the solution of the step
+  /// itself, or none. \throws SingularMatrix in a singular configuration.
   void set(StepEnds const& step, OfStep* near = nullptr) {
     kind_ = choice_.next();
     near_ = near;
     if (kind_ != ApproximateFactors::of_step || !near) factor(step, std::max(kind_, ApproximateFactors::of_end));
   }
-  /// Takes the nearest ones that there are. \throws SingularMatrix likewise.
+  /// Computes the most accurate factorisation. \throws SingularMatrix as `set`.
   void set_nearest(StepEnds const& step) {
     choice_.make(nearest());
     factor(step, nearest());
   }
-  /// They are the nearest ones.
+  /// The factorisation is the most accurate kind.
   bool are_nearest() const { return kind_ == nearest(); }
-  /// They are of the tangent with all terms that steps leave out.
+  /// The factorised matrix contains all terms that steps omit.
   bool are_exact() const { return kind_ >= ApproximateFactors::exact; }
-  /// x for the right-hand side `rhs`, both by the unknowns of the step.
+  /// Solves for x with the right-hand side `rhs`; both have the order of the unknowns of the step.
   void solve(VecX const& rhs, VecX& x) {
     if (kind_ == ApproximateFactors::of_step) return near_->solve(rhs, x);
     if (kind_ != ApproximateFactors::turned) return factors_->solve(rhs, x);
@@ -76,7 +77,7 @@ class StepFactorisations {
       turned_.to_increments(x);
     }
   }
-  /// Solutions of the step took so many passes, for directions that went together.
+  /// Adds the passes of one group of directions to the cost of the step.
   void took(int passes) { choice_.add(passes); }
 
  private:
@@ -92,7 +93,7 @@ class StepFactorisations {
     return kind == ApproximateFactors::of_end ? SecondOrder::omitted : SecondOrder::included;
   }
 
-  /// The coefficients of a kind, with the pairs of force groups that act.
+  /// Tangent coefficients of a kind, with the active pairs of its force groups.
   TangentCoefficients coefficients(ApproximateFactors kind, double mass, double damping, double stiffness) {
     return {.mass = mass,
             .damping = damping,
@@ -100,7 +101,7 @@ class StepFactorisations {
             .exact = kind >= ApproximateFactors::exact,
             .pairs = &own_[std::size_t(kind)].pairs};
   }
-  /// Writes the tangent of a kind where the system was evaluated last.
+  /// Writes the tangent matrix of a kind for the last evaluation of the system.
   void write(ApproximateFactors kind, TangentCoefficients const& k, VecX const& lambda, BlockSink& sink) {
     auto const write_into = [&](auto& receiver) {
       k.pairs->begin();
@@ -116,7 +117,7 @@ class StepFactorisations {
       write_into(sink);
     }
   }
-  /// Lays the factors of a kind out, for the pairs that are held.
+  /// Analyses the structure of the matrix of a kind, with its stored contact pairs.
   [[gnu::cold]] void lay_out(ApproximateFactors kind, VecX const& lambda) {
     TangentCoefficients const k = coefficients(kind, 1.0, 1.0, 1.0);
     own_[std::size_t(kind)].factors.emplace().analyse(*system_, 1,
@@ -154,7 +155,7 @@ class StepFactorisations {
     return factors.factor([&](BlockSink& sink) { write(kind, k, end.lambda, sink); });
   }
 
-  /// Factors of a kind, and the pairs whose blocks they have.
+  /// Factorisation of a kind, with the contact pairs that have blocks in it.
   struct Own {
     std::optional<Factors> factors;
     ActiveContactPairs pairs;
@@ -165,8 +166,8 @@ class StepFactorisations {
   IncrementTangent turned_;
   PreconditionerChoice choice_;
   ApproximateFactors kind_ = ApproximateFactors::of_step;
-  std::array<Own, 4> own_;      // by their kind
-  Factors* factors_ = nullptr;  // one of these
+  std::array<Own, 4> own_;      // by kind
+  Factors* factors_ = nullptr;  // current one
   OfStep* near_ = nullptr;
   VecX balance_, turned_rhs_;
 };

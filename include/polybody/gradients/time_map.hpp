@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// Times of runs whose corners move with a parameter.
+/// Map between the times of runs with breakpoints that depend on a parameter.
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <algorithm>
 #include <array>
@@ -14,20 +14,21 @@
 
 namespace polybody::detail {
 
-/// Which times of the runs beside a parameter answer to times of the run itself: the start to the start, corners to
-/// corners, linear in between. A law that is asked at answering times is asked on one side of its corner in all runs,
-/// however far the corner moves: so it is differenced, and what the change of time did is taken off afterwards.
+/// Corresponding times of a run and of the four runs with perturbed parameter values. The start corresponds to the
+/// start, and each breakpoint to the same breakpoint; between them the map is linear. At corresponding times, all runs
+/// evaluate a function of time on the same side of its breakpoint, for any shift of the breakpoint. The differences are
+/// therefore smooth; the effect of the shift of time is subtracted afterwards.
 class TimeMap {
  public:
-  /// A time of the run that moves, and where it is in the four runs beside it.
+  /// Time of the run that depends on the parameter, and the corresponding times of the four perturbed runs.
   struct Moving {
-    double here;                                          ///< [s]
-    std::array<double, FourPoints::places.size()> there;  ///< [s]
+    double here;                                          ///< time of the run [s]
+    std::array<double, FourPoints::places.size()> there;  ///< times of the perturbed runs [s]
   };
 
   TimeMap() = default;
-  /// \param crumb times that are less apart are one [s]; \param who refusals begin with this. \throws InvalidInput
-  /// where times change their order, or part.
+  /// \param remainder_step smallest distance of distinct times [s]; \param who beginning of messages. \throws
+  /// InvalidInput if times change their order, or if coincident times separate.
   [[gnu::cold]] TimeMap(std::vector<Moving> times, Parameter const& p, double remainder_step, char const* who)
       : times_(std::move(times)), distance_(p.distance()) {
     std::sort(times_.begin(), times_.end(), [](Moving const& a, Moving const& b) { return a.here < b.here; });
@@ -50,9 +51,9 @@ class TimeMap {
       for (double const t : m.there) moves_ = moves_ || t != m.here;
   }
 
-  bool moves() const { return moves_; }  ///< some time does
+  bool moves() const { return moves_; }  ///< a time depends on the parameter
 
-  /// The time in run k that answers to t.
+  /// Time of run k that corresponds to t.
   double operator()(std::size_t k, double t) const {
     if (!moves_) return t;
     auto const after =
@@ -66,7 +67,7 @@ class TimeMap {
     if (!last) there = std::min(there, std::nextafter(b.there[k], -std::numeric_limits<double>::infinity()));
     return there;
   }
-  /// How fast the answering time moves with the parameter [s over its unit].
+  /// Derivative of the corresponding time with respect to the parameter [s over its unit].
   double slope(double t) const {
     double sum = 0.0;
     if (moves_)

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// The equations of a step that a parameter touches, by the names of bodies, joints and forces.
+/// Equations of a step that depend on a parameter, by names of bodies, joints and forces.
 ///
-/// Not in polybody.hpp: few programs ask for derivatives of whole runs.
+/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <algorithm>
 #include <string>
@@ -13,8 +13,8 @@
 
 namespace polybody::detail {
 
-/// What of the whole model's equations a parameter touches, by speeds, then by rows. \throws InvalidInput for a name
-/// that the model does not have.
+/// Marks the equations of the full model that depend on a parameter: balance equations by velocities, then constraint
+/// equations. \throws InvalidInput for a name that the model does not have.
 template <class = void>
 std::vector<char> touched_in_full(ModelLayout const& layout, Parameter const& p) {
   std::vector<char> touched(std::size_t(layout.velocities + layout.rows), p.affects.empty());
@@ -52,9 +52,10 @@ std::vector<char> touched_in_full(ModelLayout const& layout, Parameter const& p)
   }
   return touched;
 }
-/// Touched equations of a time step, from the touched equations of the full model. Forces on coordinates that depend
-/// on others go to these; a joint that is touched itself may change how, and with that all equations. In joint
-/// coordinates that depends on the place, and all are.
+/// Marks the equations of a time step, from the marked equations of the full model. Forces on eliminated coordinates
+/// act on the independent coordinates. If an eliminated joint depends on the parameter, its elimination may change, and
+/// all equations are marked. In joint coordinates the assignment depends on the configuration, and all equations are
+/// marked.
 template <class = void>
 std::vector<char> touched_in_step(System const& system, std::vector<char> const& full) {
   Coordinates const& c = system.step_coordinates();
@@ -80,8 +81,8 @@ std::vector<char> touched_in_step(System const& system, std::vector<char> const&
   }
   return touched;
 }
-/// The equations of a step that a parameter touches, ascending: by speeds, then by rows. \throws InvalidInput for a
-/// name that the model does not have.
+/// Numbers of the equations of a step that depend on a parameter, ascending: balance equations by velocities, then
+/// constraint equations. \throws InvalidInput for a name that the model does not have.
 template <class = void>
 std::vector<Index> touched_equations(System const& system, Parameter const& p) {
   std::vector<char> const touched = touched_in_step(system, touched_in_full(system.layout(), p));
@@ -91,7 +92,7 @@ std::vector<Index> touched_equations(System const& system, Parameter const& p) {
   return equations;
 }
 
-/// The objects that act on equation i of a step and that a parameter does not name, for a message: `body "rod", force
+/// Objects that act on equation i of a step and that the parameter does not name, for a message: `body "rod", force
 /// "spring"`, five at most.
 template <class = void>
 [[gnu::cold]] std::string unnamed_at(System const& system, Parameter const& p, Index i) {
@@ -109,7 +110,7 @@ template <class = void>
   return count > 5 ? sentence_of({list, " and ", count - 5, " more"}) : list;
 }
 
-/// \throws InvalidInput: at time t [s] a parameter changes equation i and does not name an object that acts there.
+/// \throws InvalidInput: parameter p changes equation i at time t [s], but names no object that acts there.
 template <class = void>
 [[noreturn, gnu::cold]] void refuse_unnamed(System const& system, Parameter const& p, Index i, double t) {
   throw InvalidInput(
