@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Checks along a run that the values of prescribed motions fit their rates and accelerations.
+/// Checks during a run that the values of prescribed motions agree with their rates and accelerations.
 
 #include <algorithm>
 #include <cmath>
@@ -10,29 +10,30 @@
 
 namespace polybody {
 
-/// Compares the change of each prescribed value over a step with its rates at both ends, and the change of the rate
-/// with the accelerations:
+/// Comparison of the change of each prescribed value ψ over a step with its rates at both ends, and of the change of
+/// the rate with the accelerations:
 ///   |Δψ − ½h (ψ̇₀ + ψ̇₁)| ≤ ½h |ψ̇₁ − ψ̇₀| + h² â + 10⁻³ h r̂,   |Δψ̇ − ½h (ψ̈₀ + ψ̈₁)| ≤ h â,
-/// â and r̂ the largest |ψ̈| and |ψ̇| so far. A smooth law keeps to these bounds over a step that resolves it. Otherwise
-/// the bounds are checked for parts of the step, down to h/1024. A law that jumps fails at every length. So does a law
-/// whose derivatives are those of another function.
+/// where â and r̂ are the largest |ψ̈| and |ψ̇| so far. A smooth function of time satisfies these bounds over a step that
+/// resolves it. If a step violates them, they are checked for parts of the step, down to h/1024. A function with a jump
+/// or with wrong derivatives violates them at every length.
 class LawWatch {
  public:
-  /// Restarts the check at time t [s]. Times that differ by less than `remainder_step` [s] are one breakpoint. \throws
-  /// InvalidInput for a law whose value jumps here.
+  /// Restarts the check at time t [s]. Times that differ by at most `remainder_step` [s] are one breakpoint. \throws
+  /// InvalidInput if a prescribed value jumps at t.
   template <class = void>
   [[gnu::cold]] void begin(ModelLayout const& layout, double t, double remainder_step);
-  /// Compares the ends of a step of h [s] to t [s]. \throws InvalidInput naming the joint.
+  /// Compares the two ends of the step of length h [s] that ends at t [s]. \throws InvalidInput naming the joint if the
+  /// bounds are violated.
   template <class = void>
   void require(ModelLayout const& layout, double t, double h);
 
-  bool watches() const { return !laws_.empty(); }  ///< the model has prescribed motions
+  bool watches() const { return !laws_.empty(); }  ///< true if the model has prescribed motions
 
-  void mark() {  ///< begins a trial
+  void mark() {  ///< begins a trial step
     for (Watched& law : laws_) law.marked = law.last;
     marked_ = last_;
   }
-  void go_back() {  ///< drops the trial
+  void go_back() {  ///< discards the trial step
     for (Watched& law : laws_) law.last = law.marked;
     last_ = marked_;
   }
@@ -41,18 +42,18 @@ class LawWatch {
   struct Watched {
     std::size_t joint;
     Motion last, marked;
-    double rate = 0.0, acceleration = 0.0;  ///< largest absolute values so far, unit of the value per s, per s²
+    double rate = 0.0, acceleration = 0.0;  ///< largest absolute values so far [unit of the value per s and per s²]
   };
   static Motion at(JointLayout const& joint, double t) { return joint.law(joint.joint, t); }
-  /// The difference of two values, less whole periods.
+  /// Difference x of two values without whole periods.
   static double change(JointLayout const& joint, double x) {
     return joint.period > 0.0 ? std::remainder(x, joint.period) : x;
   }
   /// Changes of value and rate over a step, minus the changes that the derivatives predict.
   struct Misfit {
-    double value, rate;               ///< misfits, unit of the value, and per s
-    double by_rate, by_acceleration;  ///< predicted changes, unit of the value, and per s
-    bool of_value, of_rate;           ///< beyond the bound
+    double value, rate;               ///< misfits [unit of the value, and per s]
+    double by_rate, by_acceleration;  ///< predicted changes [unit of the value, and per s]
+    bool of_value, of_rate;           ///< true if the misfit exceeds its bound
   };
   static Misfit misfit(JointLayout const& joint, Watched& law, Motion const& from, Motion const& to, double h) {
     law.rate = std::max({law.rate, std::abs(from.rate), std::abs(to.rate)});
@@ -69,7 +70,7 @@ class LawWatch {
             !(std::abs(value) <= most),
             !(std::abs(rate) <= h * law.acceleration + 1e-9 * law.rate + 1e-12)};
   }
-  /// Looks at parts of a step that does not fit. \throws InvalidInput unless the parts fit.
+  /// Checks parts of a step that violates the bounds. \throws InvalidInput if the parts also violate them.
   template <class = void>
   [[gnu::cold]] static void require_smooth(JointLayout const& joint, Watched& law, Motion from, Motion to, double t,
                                            double h);

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Where the parts of a model stand in its vectors, and what they are called: all that is asked about a model without
-/// its type.
+/// Layout of a model: positions of its parts in the vectors, their names and their properties, without the model's C++
+/// type.
 
 #include <cstdint>
 #include <span>
@@ -18,81 +18,81 @@ namespace polybody {
 struct LinearConstraints;
 struct PlacedWrench;
 
-/// Where a body stands among all coordinates, speeds and rows.
+/// Position of a body among all coordinates, generalised velocities and constraint equations, and its properties.
 struct BodyLayout {
-  std::string name = {};          ///< its name in messages
-  Index q0 = 0, coordinates = 0;  ///< its first coordinate, and how many it has
-  Index v0 = 0, velocities = 0;   ///< its first speed, and how many it has
-  Index row = -1, rows = 0;       ///< rows of its own
-  bool planar = false;            ///< it moves in the plane
-  bool constant_mass = false;     ///< M does not depend on q
-  void const* type = nullptr;     ///< tells types of bodies apart
-  Index index = 0;                ///< among the bodies of its type
-  void const* body = nullptr;     ///< the body itself, in the model
-  /// At its q, v, v̇ under gravity and loads in world axes; none of a body that does not say it
-  /// (WithoutGeometricStiffening).
+  std::string name = {};          ///< name in messages
+  Index q0 = 0, coordinates = 0;  ///< first generalised coordinate, and number of coordinates
+  Index v0 = 0, velocities = 0;   ///< first generalised velocity, and number of velocities
+  Index row = -1, rows = 0;       ///< first constraint equation of the body itself, and number of equations
+  bool planar = false;            ///< true if the body moves in the plane
+  bool constant_mass = false;     ///< true if M does not depend on q
+  void const* type = nullptr;     ///< address that identifies the type of the body
+  Index index = 0;                ///< index among the bodies of its type
+  void const* body = nullptr;     ///< the body in the model
+  /// Share of the axial force for the body's q, v, v̇ under gravity and loads in world axes. Null for bodies that do
+  /// not satisfy `WithoutGeometricStiffening`.
   double (*axial_share)(void const* body, std::span<double const> q, std::span<double const> v,
                         std::span<double const> a, Vec3 const& gravity, std::span<PlacedWrench const> loads) = nullptr;
-  CoordinateUnits units = {};  ///< of its coordinates and speeds
-  std::uint64_t made_in = 0;   ///< serial number of the model that it was added to
-  bool lossless = false;       ///< nothing in it dissipates: it is rigid
-  bool changes = false;        ///< its mass depends on time
+  CoordinateUnits units = {};  ///< units of coordinates and velocities
+  std::uint64_t made_in = 0;   ///< serial number of the model to which the body was added
+  bool lossless = false;       ///< true if the body does not dissipate energy, as it is rigid
+  bool changes = false;        ///< true if the mass depends on time
 };
 
-/// Where a joint stands: its markers, and its rows among all.
+/// Markers of a joint, position of its constraint equations among all, and its properties.
 struct JointLayout {
-  std::string name = {};                 ///< its name in messages
-  Index a = -1, b = -1;                  ///< published markers
-  Index row = -1, rows = 0;              ///< none of a compliant joint
-  bool eliminated = false;               ///< from a time step
-  void const* type = nullptr;            ///< tells types of joints apart
-  Index index = 0;                       ///< among the joints of its type
-  LinearConstraints const* linear = {};  ///< rows of a joint that is linear in coordinates, in the model
-  bool stores = true;                    ///< of a compliant joint: all rows have a potential
-  std::uint64_t made_in = 0;             ///< serial number of the model that it was added to
-  bool lossless = true;                  ///< of a compliant joint: it has no damping
-  void const* joint = nullptr;           ///< the joint itself, in the model
-  Motion (*law)(void const* joint, double t) = nullptr;  ///< prescribed at t [s]; null where nothing is
-  double period = 0.0;  ///< by which the prescribed value may jump [rad]; 0: by nothing
+  std::string name = {};                 ///< name in messages
+  Index a = -1, b = -1;                  ///< marker indices
+  Index row = -1, rows = 0;              ///< first constraint equation and their number; −1, 0 for a compliant joint
+  bool eliminated = false;               ///< true if a time step eliminates the equations
+  void const* type = nullptr;            ///< address that identifies the type of the joint
+  Index index = 0;                       ///< index among the joints of its type
+  LinearConstraints const* linear = {};  ///< equations that are linear in coordinates, stored in the model; or null
+  bool stores = true;                    ///< for a compliant joint: true if all its forces have a potential
+  std::uint64_t made_in = 0;             ///< serial number of the model to which the joint was added
+  bool lossless = true;                  ///< for a compliant joint: true if it has no damping
+  void const* joint = nullptr;           ///< the joint in the model
+  Motion (*law)(void const* joint, double t) = nullptr;  ///< prescribed motion at t [s]; null without one
+  double period = 0.0;  ///< period of the prescribed value [rad], by which it may jump; 0: no jump allowed
 };
 
-/// Where a force element stands: its markers, and its first-order states.
+/// Markers of a force element, position of its first-order states, and its properties.
 struct ForceLayout {
-  std::string name = {};         ///< its name in messages
-  void const* type = nullptr;    ///< tells types of forces apart
-  Index index = 0;               ///< among the forces of its type
-  void const* force = nullptr;   ///< the force element itself, in the model
-  Sequence<Index> markers = {};  ///< published
-  bool is_load = false;          ///< scaled by the load factor of `equilibrium`
-  Index v0 = -1, states = 0;     ///< first-order states of its own, among the speeds
-  bool stores = false;           ///< it has a potential
-  std::uint64_t made_in = 0;     ///< serial number of the model that it was added to
-  bool stores_in_part = false;   ///< a group of which some laws have one
-  bool lossless = false;         ///< all work that it takes goes into its potential
-  /// Two markers a and b: whether they move through a contact from frames [a, b] to [a, b] by which neither end of the
-  /// step is touched; null for other forces.
+  std::string name = {};         ///< name in messages
+  void const* type = nullptr;    ///< address that identifies the type of the force element
+  Index index = 0;               ///< index among the force elements of its type
+  void const* force = nullptr;   ///< the force element in the model
+  Sequence<Index> markers = {};  ///< marker indices
+  bool is_load = false;          ///< true if the load factor of `equilibrium` scales it
+  Index v0 = -1, states = 0;     ///< first of its first-order states among the velocities, and number of states
+  bool stores = false;           ///< true if it has a potential
+  std::uint64_t made_in = 0;     ///< serial number of the model to which the force was added
+  bool stores_in_part = false;   ///< true for a group in which not all laws have a potential
+  bool lossless = false;         ///< true if its potential stores all work that is done on the element
+  /// For a contact of two markers a and b: true if they pass through the contact between the frames `from` [a, b] and
+  /// `to` [a, b], but do not touch at either end of the step. Null for other forces.
   bool (*passes)(void const* force, Frame<double> const (&from)[2], Frame<double> const (&to)[2]) = nullptr;
 };
 
-/// Counts, places and names of a model; bodies, joints and forces in the order of their types.
+/// Counts, positions and names of the parts of a model. Bodies, joints and forces are listed by type.
 struct ModelLayout {
-  std::uint64_t serial = 0;                         ///< of the model, as its handles know it
-  Sequence<std::uint64_t> ancestors = {};           ///< serial numbers of the models that it was copied from
-  ModelWatch watch = {};                            ///< notices changes of the model
-  Index coordinates = 0, velocities = 0, rows = 0;  ///< nq; nv, with first-order states behind; rows
-  Index states = 0;                                 ///< first-order ones: the last of the speeds
-  Sequence<Index> nonholonomic_equations = {};      ///< rows without a position, ascending
-  Sequence<BodyLayout> bodies = {};                 ///< by types, in the order in which they were added
-  Sequence<JointLayout> joints = {};                ///< by types, in the order in which they were added
-  Sequence<ForceLayout> forces = {};                ///< by types, in the order in which they were added
-  Sequence<Index> owners = {};                      ///< of each published marker: the body, −1 for the ground
-  Sequence<MarkerKind> observes = {};               ///< kinematics that each published marker provides
+  std::uint64_t serial = 0;                         ///< serial number of the model, which its handles contain
+  Sequence<std::uint64_t> ancestors = {};           ///< serial numbers of the models from which it was copied
+  ModelWatch watch = {};                            ///< detects changes of the model
+  Index coordinates = 0, velocities = 0, rows = 0;  ///< nq; nv, first-order states included; constraint equations
+  Index states = 0;                                 ///< number of first-order states, the last of the velocities
+  Sequence<Index> nonholonomic_equations = {};      ///< indices of the nonholonomic equations, ascending
+  Sequence<BodyLayout> bodies = {};                 ///< by type, in the order of addition
+  Sequence<JointLayout> joints = {};                ///< by type, in the order of addition
+  Sequence<ForceLayout> forces = {};                ///< by type, in the order of addition
+  Sequence<Index> owners = {};                      ///< body of each marker; −1 for the ground
+  Sequence<MarkerKind> observes = {};               ///< kinematics that each marker provides
   Vec3 gravity = Vec3::Zero();                      ///< (3) world axes [m/s²]
-  Sequence<double> breakpoints = {};                ///< times at which a drive or a load wants a step to end
-  bool constant_mass = false;                       ///< M of no body depends on q
-  bool has_groups = false;                          ///< of forces
+  Sequence<double> breakpoints = {};                ///< breakpoints of drives and loads, at which a step ends [s]
+  bool constant_mass = false;                       ///< true if M of no body depends on q
+  bool has_groups = false;                          ///< true if the model can have force groups
 
-  /// Speeds of the bodies alone; first-order states stand behind them.
+  /// Number of generalised velocities of the bodies. The first-order states follow them.
   Index body_velocities() const { return velocities - states; }
 
   /// Name of the body that owns coordinate i.
@@ -101,8 +101,8 @@ struct ModelLayout {
       if (i >= b.q0 && i < b.q0 + b.coordinates) return sentence_of({"body \"", b.name, "\""});
     return "unknown";
   }
-  /// Name of the body that owns speed i, or the force whose first-order state it is; or of the joint or body that owns
-  /// row i − speeds.
+  /// Name of the owner of unknown i. For i < `velocities` this is the body of generalised velocity i or the force of
+  /// that first-order state, otherwise the joint or body of constraint equation i − `velocities`.
   [[gnu::cold]] std::string name_of(Index i) const {
     Index const row = i - velocities;
     for (BodyLayout const& b : bodies)
@@ -117,7 +117,7 @@ struct ModelLayout {
 };
 
 namespace detail {
-/// An address for each type.
+/// Object with a different address for each type.
 template <class>
 inline constexpr char type_tag = 0;
 }  // namespace detail

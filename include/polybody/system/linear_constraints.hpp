@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Rows of linear joints, Φ = C_a e_a + C_b e_b − c, with C constant [thesis §3.5.4].
+/// Constraint equations of linear joints, Φ = C_a e_a + C_b e_b − c, with constant C [thesis §3.5.4].
 
 #include <string>
 
@@ -10,49 +10,50 @@
 
 namespace polybody {
 
-/// One body's part in linear rows.
+/// Part of one body in linear constraint equations.
 struct LinearSide {
-  Index q0 = 0, v0 = 0;  ///< the first coordinate and speed that it reads
+  Index q0 = 0, v0 = 0;  ///< first coordinate and first generalised velocity of the columns
   MatX map;              ///< (rows × columns) C; no columns for the ground
 };
 
-/// The rows of one joint: first those of the position, then those of gradients.
+/// Linear constraint equations of one joint: first those of the position, then those of gradients.
 struct LinearConstraints {
-  std::string name;           ///< the joint's name in messages
-  Index row = 0;              ///< the first of its rows in the model
-  LinearSide a = {}, b = {};  ///< the two markers' bodies
+  std::string name;           ///< name of the joint in messages
+  Index row = 0;              ///< first of its equations in the model
+  LinearSide a = {}, b = {};  ///< bodies of the two markers
   VecX constant = {};         ///< (rows) c
-  Index positions = 0;        ///< rows of the position
-  /// A gradient that a and b share, or its component along an axis.
+  Index positions = 0;        ///< number of position equations
+  /// Position gradient that a and b have in common, or its component along an axis.
   struct Gradient {
-    Index rows;  ///< how many rows it has
-    MatX map;    ///< of b; of a where b is the ground
-    Vec3 axis;   ///< (3) unit vector: of a single row, in world axes
+    Index rows;  ///< number of its equations
+    MatX map;    ///< map of the gradient of b, or of a if b is the ground
+    Vec3 axis;   ///< (3) unit vector in world axes, used for a single equation
   };
-  Sequence<Gradient> gradients = {};  ///< in the order of their rows
-  /// How many rows the joint has.
+  Sequence<Gradient> gradients = {};  ///< in the order of their equations
+  /// Number of equations of the joint.
   Index rows() const { return constant.size(); }
 };
 
 namespace detail {
 
-/// Position and gradients of a linear point, with their values in the reference.
+/// Linear maps of the position and the gradients of a point, with their values in the reference configuration.
 template <class T>
 struct LinearPointOf {
   using Vec3 = Vec<T, 3>;
   using Mat3 = Mat<T, 3, 3>;
   using MatX = MatXOf<T>;
 
-  int size = 3;  ///< components: three, or two in the plane
+  int size = 3;  ///< number of components: three, or two in the plane
   Index columns = 0;
   MatX position;  ///< (size × columns)
   std::array<MatX, 3> gradients;
-  int gradient_count = 0;  ///< 3 and no columns for the ground
-  Vec3 at = Vec3::Zero();  ///< r
-  Mat3 J = identity();     ///< [r_x r_y r_z] in the reference, as far as there are gradients
+  int gradient_count = 0;  ///< number of gradients; the ground has three, without columns
+  Vec3 at = Vec3::Zero();  ///< r in the reference configuration
+  Mat3 J = identity();     ///< [r_x r_y r_z] in the reference configuration; unit vectors for missing gradients
 
   bool complete() const { return gradient_count == 3; }
-  /// The map of J J₀⁻¹ w: what has become of the direction w of the reference. A body with r′ alone knows that of r′.
+  /// Map of J J₀⁻¹ w, the current direction of the material line that has direction w in the reference configuration.
+  /// For a body with incomplete gradients it is the map of r′ for every w.
   MatX carried(Vec3 const& w) const {
     if (columns == 0) return MatX(size, 0);
     if (!complete()) return gradients[0];
@@ -108,8 +109,8 @@ void append_rows(LinearConstraints& rows, MatXOf<T> const& a, MatXOf<T> const& b
   append(rows.constant, 1.0, c);
 }
 
-/// The rows of geometry G with its third axis along n between two linear points. \throws InvalidInput with the joint's
-/// name.
+/// Fills in the constraint equations of geometry G, with its third axis along n, between two linear points. \throws
+/// InvalidInput naming the joint if the equations are not linear.
 template <LinearGeometry G, class T>
 void fill_linear_rows(LinearPointOf<T> const& a, LinearPointOf<T> const& b, std::type_identity_t<Vec<T, 3>> const& n,
                       LinearConstraints& rows) {
@@ -120,7 +121,7 @@ void fill_linear_rows(LinearPointOf<T> const& a, LinearPointOf<T> const& b, std:
   int const size = b.size;
   rows.a.map.resize(0, a.columns);
   rows.b.map.resize(0, b.columns);
-  // the ground's part stands in the constants: r_a − r_b of what has no columns
+  // The constants contain the part of the ground: r_a − r_b of the points without columns.
   V const still = (a.columns == 0 ? a.at : V(V::Zero())) - (b.columns == 0 ? b.at : V(V::Zero()));
   append_rows<T>(rows, a.position, b.position, still.head(size));
   rows.positions = size;

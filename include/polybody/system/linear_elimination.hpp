@@ -1,9 +1,9 @@
 #pragma once
 /// \file
-/// Dependent coordinates of linear rows C e = c, e_d = Σ f_k e_k + c_d, by elimination once before a run [thesis
-/// §3.5.4]. A row is freed of the dependents of earlier rows, row'_k = row_k − Σ_j m_kj row'_j, and its largest entry
-/// p_k makes the next one. What the rows hold follows from the balance Cᵀλ = −r of the dependent coordinates, by the
-/// same numbers:
+/// Elimination of dependent coordinates, e_d = Σ f_k e_k + c_d, by linear constraint equations C e = c, once before a
+/// run [thesis §3.5.4]. The dependent coordinates of earlier rows are eliminated from row k, row'_k = row_k − Σ_j m_kj
+/// row'_j. The coordinate of its largest entry p_k becomes the next dependent one. The multipliers follow from the
+/// balance Cᵀλ = −r of the dependent coordinates with the same factors:
 ///   p_k λ'_k = −r_dk − Σ_{j<k} row'_j,dk λ'_j,   λ_j = λ'_j − Σ_{k>j} m_kj λ_k.
 
 #include <polybody/math/errors.hpp>
@@ -13,39 +13,40 @@
 
 namespace polybody {
 
-/// Dependent coordinates as linear functions of independent ones, q_d = c + Σ f q_i, from the rows of linear joints.
-/// \tparam T scalar of the vectors; factors are doubles
+/// Dependent coordinates as linear functions of independent ones, q_d = c + Σ f q_i, from the equations of linear
+/// joints. \tparam T scalar of the vectors; factors are doubles
 template <class T = double>
 class LinearEliminationOf {
  public:
-  /// An independent coordinate and its factor.
+  /// Independent coordinate and its factor.
   struct Term {
-    Index q, v;     ///< its places among coordinates and speeds
-    double factor;  ///< f [unit of the dependent one over that of this one]
+    Index q, v;     ///< indices among coordinates and generalised velocities
+    double factor;  ///< f [unit of the dependent coordinate per unit of the independent one]
   };
-  /// A dependent coordinate: its constant and its terms.
+  /// Dependent coordinate with its constant and its terms.
   struct Dependent {
-    Index q, v;            ///< its places among coordinates and speeds
+    Index q, v;            ///< indices among coordinates and generalised velocities
     double constant;       ///< c [unit of the coordinate]
     Sequence<Term> terms;  ///< Σ f q_i
   };
 
   LinearEliminationOf() = default;
-  /// \throws InconsistentInitialConditions when rows contradict each other; those that repeat others are left out.
+  /// Eliminates coordinates by the equations of `joints`. Redundant equations are omitted. \throws
+  /// InconsistentInitialConditions if equations contradict each other.
   explicit LinearEliminationOf(Sequence<LinearConstraints> const& joints) {
     for (LinearConstraints const& rows : joints)
       for (Index i = 0; i < rows.rows(); ++i) take(rows, i);
     for (std::size_t k = pivots_.size(); k-- > 0;) solve_for(k);
   }
 
-  /// Whether no coordinate depends on others.
+  /// True if no coordinate is dependent.
   bool empty() const { return dependents_.empty(); }
-  /// The dependent coordinates, each with its terms.
+  /// Dependent coordinates with their terms.
   Sequence<Dependent> const& dependents() const { return dependents_; }
-  /// Rows that repeat others.
+  /// Indices of redundant equations.
   Sequence<Index> const& redundant() const { return redundant_; }
 
-  /// Dependent coordinates, and speeds or accelerations, from the independent ones.
+  /// Computes the dependent coordinates from the independent ones: q_d = c + Σ f q_i.
   void expand_coordinates(VecXOf<T>& q) const {
     for (Dependent const& d : dependents_) {
       T sum(d.constant);
@@ -53,7 +54,7 @@ class LinearEliminationOf {
       q[d.q] = sum;
     }
   }
-  /// The same for speeds or accelerations: v_d = Σ f v_i.
+  /// Computes the dependent velocities or accelerations from the independent ones: v_d = Σ f v_i.
   void expand_rates(VecXOf<T>& v) const {
     for (Dependent const& d : dependents_) {
       T sum(0.0);
@@ -61,12 +62,13 @@ class LinearEliminationOf {
       v[d.v] = sum;
     }
   }
-  /// Forces of dependent coordinates, in r (speeds), go to those on which they depend.
+  /// Adds the generalised forces of dependent coordinates, in r (nv), to those of the independent ones: r_i += f r_d.
   void reduce_forces(VecXOf<T>& r) const {
     for (Dependent const& d : dependents_)
       for (Term const& t : d.terms) r[t.v] += t.factor * r[d.v];
   }
-  /// λ of the rows, for r = M a − f + … without them. Zero for rows that repeat others.
+  /// Computes the multipliers λ (rows) of the linear equations. r (nv) is the residual M a − f + … without their
+  /// forces. Redundant equations get zero.
   void multipliers(VecXOf<T> const& r, VecXOf<T>& lambda) const {
     for (Index const i : redundant_) lambda[i] = T(0.0);
     for (std::size_t k = 0; k < pivots_.size(); ++k) {
@@ -80,14 +82,14 @@ class LinearEliminationOf {
   }
 
  private:
-  /// A row after elimination, and how it came about.
+  /// Equation after elimination, with the factors of the elimination.
   struct Pivot {
-    Index row;                                                ///< of the model
-    Index v = -1;                                             ///< its dependent
-    IndexMap<double> entries;                                 ///< by speeds
-    double constant;                                          ///< of the row [its unit]
-    Sequence<std::pair<std::size_t, double>> multiples = {};  ///< m_kj
-    Sequence<std::pair<std::size_t, double>> above = {};      ///< row'_j,dk of earlier rows
+    Index row;                                                ///< index of the equation in the model
+    Index v = -1;                                             ///< velocity index of its dependent coordinate
+    IndexMap<double> entries;                                 ///< coefficients by velocity index
+    double constant;                                          ///< right-hand side [unit of the equation]
+    Sequence<std::pair<std::size_t, double>> multiples = {};  ///< j and m_kj
+    Sequence<std::pair<std::size_t, double>> above = {};      ///< j and row'_j,dk of earlier equations
   };
 
   void take(LinearConstraints const& joint, Index i) {
@@ -122,7 +124,8 @@ class LinearEliminationOf {
     pivots_.push_back(std::move(p));
   }
 
-  /// Frees a row of all dependents so far, the earliest first: a row' may bring in later ones only.
+  /// Eliminates all previous dependent coordinates from a row, the earliest first. A row' can introduce later ones
+  /// only.
   void eliminate(Pivot& p) const {
     for (;;) {
       std::size_t first = pivots_.size();
@@ -141,7 +144,7 @@ class LinearEliminationOf {
     }
   }
 
-  /// e_d of pivot k by independent coordinates; later pivots are solved for.
+  /// Expresses e_d of pivot k by independent coordinates. The later pivots are solved already.
   void solve_for(std::size_t k) {
     Pivot const& p = pivots_[k];
     double const pivot = *p.entries.find(p.v);
@@ -168,10 +171,10 @@ class LinearEliminationOf {
   Sequence<Pivot> pivots_;
   Sequence<Dependent> dependents_;
   Sequence<Index> redundant_;
-  IndexMap<Index> coordinate_;  // of a speed
+  IndexMap<Index> coordinate_;  // coordinate of a velocity index
   IndexMap<std::size_t> pivot_of_, solved_;
 };
 
-using LinearElimination = LinearEliminationOf<>;  ///< in doubles
+using LinearElimination = LinearEliminationOf<>;  ///< for vectors of doubles
 
 }  // namespace polybody

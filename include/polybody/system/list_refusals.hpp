@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Why a list of types makes no model, in a sentence that names what is missing.
+/// Compile-time messages for lists of types that cannot form a model. Each message names the missing member.
 
 #include <polybody/bodies/shared/body.hpp>
 #include <polybody/math/type_list.hpp>
@@ -11,8 +11,9 @@ namespace polybody::detail {
 using In = std::span<double const>;
 using Out = std::span<double>;
 
-/// The members that the concept `Body` asks, one by one. In the sentences q and v are the body's coordinates and
-/// speeds, spans of a scalar T where the member is a template, e an element, p a `Point`.
+/// Separate checks of the members that the concept `Body` requires. In the messages q and v are the body's coordinates
+/// and generalised velocities, e is an element and p a `Point`. If the member is a template, q and v are spans of a
+/// scalar T.
 template <class B>
 struct BodyRefusal {
   static_assert(requires { typename B::Point; }, "A body needs a type Point: a position on it for a marker.");
@@ -87,7 +88,7 @@ struct BodyRefusal {
       "A body needs load_stiffness(p, q, w, k) const: d(J'w)/dq of a marker, such as load_stiffness_by_dual_numbers.");
 };
 
-/// The members that the concept `ForceElement` asks.
+/// Separate checks of the members that the concept `ForceElement` requires.
 template <class F>
 struct ForceRefusal {
   static_assert(
@@ -111,7 +112,7 @@ struct ForceRefusal {
       "A force element needs check(name) const, which throws InvalidInput for invalid parameters.");
 };
 
-/// No type of a list is const.
+/// True if no type of a list is const.
 template <class... Ts>
 inline constexpr bool no_const = (!std::is_const_v<Ts> && ...);
 

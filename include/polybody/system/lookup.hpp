@@ -1,7 +1,6 @@
 #pragma once
 /// \file
-/// Where a handle's body, joint or force stands in a layout, and a body with its part of a state: what questions about
-/// one part of a model are answered from.
+/// Lookup of a handle's body, joint or force in a layout, and of a body's part of a state.
 
 #include <span>
 
@@ -12,52 +11,54 @@
 
 namespace polybody {
 
-/// \throws InvalidInput naming `what` for a marker on the ground of another model.
+/// Requires a ground marker of this model. \throws InvalidInput naming `what` for a marker of another model.
 template <class = void>
 void require_own(ModelLayout const& layout, Marker<Ground> const& marker, std::string const& what) {
   if (!detail::accepts(layout.serial, layout.ancestors, marker.model)) detail::refuse_marker_of_another_model(what);
 }
 
 namespace detail {
-/// The place of the T with this index among those of its type. \throws InvalidInput naming `what` where that was not
-/// added to the model with the number `serial`.
+/// Position in `places` of the part of type T with this index among the parts of its type. \throws InvalidInput naming
+/// `what` if no such part was added to the model with the number `serial`.
 template <class T, class Place>
 Index index_of(Sequence<Place> const& places, std::uint64_t serial, Index index, std::string const& what) {
-  for (std::size_t i = std::size_t(std::max<Index>(index, 0)); i < places.size(); ++i)  // no index is smaller
+  for (std::size_t i = std::size_t(std::max<Index>(index, 0)); i < places.size(); ++i)  // index ≤ i for every part
     if (places[i].type == &type_tag<T> && places[i].index == index && places[i].made_in == serial) return Index(i);
   refuse_marker_of_another_model(what);
 }
 }  // namespace detail
 
-/// Index of a body in `layout.bodies`. \throws InvalidInput for a handle of another model, or one made by default.
+/// Index of a body in `layout.bodies`. \throws InvalidInput for a default-constructed handle or one of another model.
 template <class B>
 Index index_of(ModelLayout const& layout, BodyHandle<B> const& handle) {
   detail::require_filled(handle.model);
   return detail::index_of<B>(layout.bodies, handle.model, handle.index, handle.name);
 }
-/// Index of a marker's body in `layout.bodies`. \throws InvalidInput naming `what` for a marker of another model.
+/// Index of the body of a marker in `layout.bodies`. \throws InvalidInput naming `what` for a marker of another model.
 template <class B>
 Index index_of(ModelLayout const& layout, Marker<B> const& marker, std::string const& what) {
   return detail::index_of<B>(layout.bodies, marker.model, marker.body, what);
 }
-/// Index of a joint in `layout.joints`, `ConstraintBlock::owner` of its rows. \throws InvalidInput as above.
+/// Index of a joint in `layout.joints`, equal to `ConstraintBlock::owner` of its equations. \throws InvalidInput for a
+/// default-constructed handle or one of another model.
 template <class J>
 Index index_of_joint(ModelLayout const& layout, ElementHandle<J> const& handle) {
   detail::require_filled(handle.model);
   return detail::index_of<J>(layout.joints, handle.model, handle.index, handle.name);
 }
-/// Index of a force element in `layout.forces`, `AppliedWrench::source` of its wrenches. \throws InvalidInput as above.
+/// Index of a force element in `layout.forces`, equal to `AppliedWrench::source` of its wrenches. \throws InvalidInput
+/// for a default-constructed handle or one of another model.
 template <class F>
 Index index_of_force(ModelLayout const& layout, ElementHandle<F> const& handle) {
   detail::require_filled(handle.model);
   return detail::index_of<F>(layout.forces, handle.model, handle.index, handle.name);
 }
 
-/// A body with its own coordinates and speeds in a state; it refers to both.
+/// References to a body and to its coordinates and generalised velocities in a state.
 template <class B>
 struct BodyInState {
-  B const& body;                 ///< in the model
-  std::span<double const> q, v;  ///< its own coordinates and speeds, in the state
+  B const& body;                 ///< body in the model
+  std::span<double const> q, v;  ///< generalised coordinates and velocities of the body in the state
 };
 
 namespace detail {
@@ -67,25 +68,28 @@ BodyInState<B> entry_in_state(Entry const& e, State const& x) {
 }
 }  // namespace detail
 
-/// \param place of a body of type B
+/// Body with its part of the state x. \param place layout of a body of type B. \throws InvalidInput if the state is too
+/// short.
 template <class B>
 BodyInState<B> body_in_state(BodyLayout const& place, State const& x) {
   return {*static_cast<B const*>(place.body), detail::checked_part(x.q, place.q0, place.coordinates),
           detail::checked_part(x.v, place.v0, place.velocities)};
 }
-/// \param x a state of the model that made the handle \throws InvalidInput for a handle made by default, or for a state
-/// that is too short.
+/// Body of a handle with its part of the state x. \param x state of the handle's model. \throws InvalidInput for a
+/// default-constructed handle, or if the state is too short.
 template <class B>
 BodyInState<B> body_in_state(BodyHandle<B> const& handle, State const& x) {
   (void)handle.body();
   return detail::entry_in_state<B>((*handle.bodies)[std::size_t(handle.index)], x);
 }
-/// \throws InvalidInput for a handle of another model, or for a state that is too short.
+/// Body of a handle with its part of the state x. \throws InvalidInput for a handle of another model, or if the state
+/// is too short.
 template <class M, class B>
 BodyInState<B> body_in_state(M const& model, State const& x, BodyHandle<B> const& handle) {
   return detail::entry_in_state<B>(model.entry(handle), x);
 }
-/// The body of a marker. \throws InvalidInput for one of another model, naming `question`.
+/// Body of a marker with its part of the state x. \throws InvalidInput naming `question` for a marker of another model,
+/// or if the state is too short.
 template <class M, class B>
 BodyInState<B> body_in_state(M const& model, State const& x, Marker<B> const& marker, std::string const& question) {
   model.require_own(marker, question);
@@ -99,7 +103,7 @@ std::string body_name(M const& model, Marker<B> const& marker) {
   return std::get<detail::BodyPool<B>>(model.body_pools()).entries[std::size_t(marker.body)].name;
 }
 
-/// What a body publishes of a point, its axes being those of the body. The Jacobian stands in `jacobian`.
+/// Marker kinematics of a point with the axes of the body. The result refers to `jacobian`, which stores the Jacobian.
 template <class B>
 MarkerKinematics<double> evaluate_marker(BodyInState<B> const& b, typename B::Point const& point,
                                          Sequence<double>& jacobian) {

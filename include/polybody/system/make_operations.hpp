@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// The table of a model's entries, and its layout: the only place where a model's type turns into functions and data.
-/// The loops are those of its types (body_kernels.hpp, joint_kernels.hpp, force_kernels.hpp), one after another.
+/// Function table and layout of a model: the only place with type erasure of a model. Each function runs the loops of
+/// the model's types (body_kernels.hpp, joint_kernels.hpp, force_kernels.hpp) one after another.
 
 #include <polybody/math/sequence.hpp>
 #include <polybody/system/secant_operations.hpp>
@@ -11,7 +11,7 @@ namespace polybody {
 
 namespace detail {
 
-/// The entries of a model, for scalar T. A list of joints or forces may be empty: hence arguments that may be unused.
+/// Functions of a model's table for scalar T. Arguments can be unused, as a list of joints or forces may be empty.
 template <class M, StateScalar T>
 struct ModelLoops;
 template <class... Bs, class... Js, class... Fs, StateScalar T>
@@ -44,7 +44,8 @@ struct ModelLoops<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T> {
   static void evaluate_marker(void const* m, At<T> at, Data<T>& data) {
     (BodyKernels<Bs, T>::evaluate_marker(bodies<Bs>(m), of_bodies<Bs>(data), at, data), ...);
   }
-  /// Every joint's gap, what compliant joints answer, and the rows that bodies own or that are linear.
+  /// Constraint functions of all joints, forces of compliant joints, and constraint equations of bodies and linear
+  /// joints.
   static void measure_gaps(void const* m, At<T> at, Data<T>& data) {
     T* next = Typed::of(data).own_equations.data();
     ((next = BodyKernels<Bs, T>::measure_own_rows(bodies<Bs>(m), at, next)), ...);
@@ -122,7 +123,7 @@ struct ModelLoops<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T> {
     ((sum.forces += ForceKernels<Fs, double>::energy(forces<Fs>(m), at.t, data)), ...);
     return sum;
   }
-  /// Rows of bodies (Euler parameters) and linear joints do no work and are left out.
+  /// Powers without the constraint equations of bodies (Euler parameters) and linear joints, which do no work.
   static Powers powers(void const* m, At<double> at, VecX const& backwards, VecX const& lambda,
                        [[maybe_unused]] double load_factor, Data<double> const& data) {
     Powers p;
@@ -135,13 +136,13 @@ struct ModelLoops<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T> {
 
 }  // namespace detail
 
-/// The entries of model type M for the groups `wanted`.
+/// Function table of a model type with the groups `wanted`.
 template <class... Bs, class... Js, class... Fs, StateScalar T, Capabilities wanted>
 struct OperationsOf<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T, wanted> {
-  using M = Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>;  ///< the model's type
-  using Loops = detail::ModelLoops<M, T>;                        ///< the functions of its table
+  using M = Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>;  ///< type of the model
+  using Loops = detail::ModelLoops<M, T>;                        ///< functions of the table
 
-  /// The table at compile time: functions of groups that are not wanted stay null.
+  /// Makes the table at compile time. Functions of groups that are not in `wanted` are null.
   static constexpr ModelOperations<T> make() {
     ModelOperations<T> out{.evaluate_marker = &Loops::evaluate_marker,
                            .measure_gaps = &Loops::measure_gaps,
@@ -154,8 +155,8 @@ struct OperationsOf<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T, wante
     if constexpr (std::same_as<T, double>) add_for_numbers(out);
     return out;
   }
-  static constexpr ModelOperations<T> table = make();  ///< what `System` takes for the model
-  /// Scratch for a model, laid out once.
+  static constexpr ModelOperations<T> table = make();  ///< function table that `System` requires
+  /// Allocates the data of a model.
   static Data<T> make_data(M const& model) { return detail::DataMaker<M, T>::make(model); }
 
  private:
@@ -179,7 +180,7 @@ struct OperationsOf<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T, wante
   }
 };
 
-/// Counts, places and names of `model`, which must outlive what is done with them.
+/// Layout of `model`: counts, positions and names. It refers to `model`, which must outlive it.
 template <class... Bs, class... Js, class... Fs>
 ModelLayout layout_of(Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> const& model) {
   ModelLayout out = detail::counts_of(model);

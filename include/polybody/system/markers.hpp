@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What a model works out of markers and joints as they are added. None of it depends on the model's type.
+/// Checks of markers and joints during their addition to a model. They do not depend on the model's type.
 
 #include <utility>
 
@@ -9,13 +9,14 @@
 
 namespace polybody::detail {
 
-/// The name, or the next one of its kind where it is empty.
+/// Returns the name, or "kind n" with n = `before` + 1 if the name is empty.
 inline std::string name_or_next(std::string name, char const* kind, std::size_t before) {
   return name.empty() ? kind + (" " + std::to_string(before + 1)) : std::move(name);
 }
 
-/// The joint's axes as parameters tell, after all of them are checked. In the plane an axis that serves both worlds is
-/// its normal. \throws InvalidInput naming the joint.
+/// Joint axes (3×3) from the parameters of the joint, which are checked first. If a planar joint has a rotation axis
+/// that is not given, the axis is the normal of the plane. \throws InvalidInput naming the joint for invalid
+/// parameters.
 template <bool in_plane, class J>
 Mat3 checked_triad(J const& joint, std::string const& name) {
   std::string const quoted = sentence_of({"\"", name, "\""});
@@ -34,7 +35,7 @@ Mat3 checked_triad(J const& joint, std::string const& name) {
   }
 }
 
-/// \throws InvalidInput where a point of the body tells less than its others do.
+/// Requires a point of the body that provides the kinematics `needs`. \throws InvalidInput for a point without axes.
 template <class B>
 void require_observed(Marker<B> const& m, MarkerKind needs, std::string const& what) {
   if constexpr (requires { B::observes_at(m.point); })
@@ -44,7 +45,8 @@ void require_observed(Marker<B> const& m, MarkerKind needs, std::string const& w
                                             "needs a point only, such as Spherical or planar::Revolute."});
 }
 
-/// \throws InvalidInput where the ground or a rigid body is joined to itself.
+/// Requires markers that can move relative to each other. \throws InvalidInput if both are on the ground, or on the
+/// same rigid body.
 template <class A, class B>
 void require_apart([[maybe_unused]] Marker<A> const& a, [[maybe_unused]] Marker<B> const& b,
                    [[maybe_unused]] std::string const& name) {
@@ -57,7 +59,8 @@ void require_apart([[maybe_unused]] Marker<A> const& a, [[maybe_unused]] Marker<
                          {"\"", ErrorObject{name}, "\" joins a rigid body to itself. Give it markers of two bodies."});
 }
 
-/// \throws InvalidInput where a second marker that knows its tangent only does not lie along the joint's axis.
+/// Requires a tangent parallel to the joint's axis at a second marker without axes. \throws InvalidInput naming the
+/// joint if the sine of the angle between them exceeds 1e-6.
 inline void require_along_tangent(Mat3 const& axes, Mat3 const& triad, std::string const& name) {
   if (axes.col(0).cross(triad.col(2)).norm() > 1e-6)
     throw InvalidInput("joint.axis_not_tangent",
@@ -66,7 +69,7 @@ inline void require_along_tangent(Mat3 const& axes, Mat3 const& triad, std::stri
                         "tangent at the reference configuration."});
 }
 
-/// \throws InvalidInput.
+/// Refuses a marker or handle of another model. \throws InvalidInput naming `what`.
 [[noreturn, gnu::cold]] inline void refuse_marker_of_another_model(std::string const& what) {
   throw InvalidInput("model.foreign_handle",
                      {"\"", ErrorObject{what},

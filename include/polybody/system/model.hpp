@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The model: typed pools of bodies, joints and forces, put together by the user and then only read.
+/// Model: typed pools of bodies, joints and forces. The user adds the parts; the library only reads them.
 
 #include <tuple>
 
@@ -12,48 +12,51 @@
 
 namespace polybody {
 
-/// Chosen only for lists that make no model: says why.
+/// Primary template for invalid lists of types: a static assertion gives the reason.
 template <class BodyList, class JointList, class ForceList = Forces<>>
 class Model {
   static_assert(detail::ListRefusal<BodyList>::asked && detail::ListRefusal<JointList>::asked &&
                 detail::ListRefusal<ForceList>::asked);
 };
 
-/// `Model<Bodies<…>, Joints<…>, Forces<…>> model{Gravity{0, 0, -9.81}};` then `add`, `connect`, `apply`.
+/// Bodies, joints and forces of one mechanism: `Model<Bodies<…>, Joints<…>, Forces<…>> model{Gravity{0, 0, -9.81}};`.
+/// `add`, `connect` and `apply` add the parts.
 template <Body... Bs, class... Js, AppliedForce... Fs>
   requires Distinct<Bs...> && Distinct<Js...> && Distinct<Fs...> && detail::no_const<Bs..., Js..., Fs...>
 class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
  public:
-  using BodyPools = std::tuple<detail::BodyPool<Bs>...>;               ///< a pool for each type of body
-  using JointPools = std::tuple<Sequence<detail::JointEntry<Js>>...>;  ///< a pool for each type of joint
-  using ForcePools = std::tuple<Sequence<detail::ForceEntry<Fs>>...>;  ///< a pool for each type of force element
+  using BodyPools = std::tuple<detail::BodyPool<Bs>...>;               ///< one pool for each type of body
+  using JointPools = std::tuple<Sequence<detail::JointEntry<Js>>...>;  ///< one pool for each type of joint
+  using ForcePools = std::tuple<Sequence<detail::ForceEntry<Fs>>...>;  ///< one pool for each type of force element
 
-  /// Some joint type brings rows into a time step, so an explicit stepper needs a stabilisation.
+  /// True if a joint or body type has constraint equations in a time step. An explicit integrator then needs a
+  /// constraint stabilisation.
   static constexpr bool may_have_rows =
       (MultiplierPolicy<typename Js::PolicyType> || ...) || (HasOwnEquations<Bs> || ...);
-  /// Some joint type eliminates coordinates from a time step; and how.
+  /// True if a joint type eliminates coordinates from a time step.
   static constexpr bool eliminates = (EliminatingPolicy<typename Js::PolicyType> || ...);
-  using Solution = detail::SolutionOf<typename Js::PolicyType...>;   ///< void, or how joint coordinates are solved for
-  static constexpr bool all_rigid = (HasRigidLayout<Bs> && ...);     ///< bodies of all types are rigid
-  static constexpr bool constant_mass = (Bs::constant_mass && ...);  ///< M of no body type depends on q
-  static constexpr bool has_groups = (ForceGroup<Fs> || ...);        ///< of forces
-  static constexpr bool has_states = (HasStates<Fs> || ...);         ///< first-order states of forces
+  using Solution = detail::SolutionOf<typename Js::PolicyType...>;   ///< solution method for joint coordinates, or void
+  static constexpr bool all_rigid = (HasRigidLayout<Bs> && ...);     ///< true if all body types are rigid
+  static constexpr bool constant_mass = (Bs::constant_mass && ...);  ///< true if M of no body type depends on q
+  static constexpr bool has_groups = (ForceGroup<Fs> || ...);        ///< true if there is a type of force group
+  static constexpr bool has_states = (HasStates<Fs> || ...);         ///< true if a force type has first-order states
 
-  /// A model without parts. Gravity in world axes [m/s²]; none by default.
+  /// Constructs a model without parts. Gravity is in world axes [m/s²] and zero by default.
   explicit Model(Gravity const& gravity = {}) : parts_(gravity) {}
 
-  /// Adds a body; the name appears in every message about it, and no other body has it. Without a name it gets one.
+  /// Adds a body. Messages contain its name, which must be unique among the bodies; an empty name is replaced by a
+  /// generated one. \throws InvalidInput for a duplicate name.
   template <OneOf<Bs...> B>
   BodyHandle<B> add(B const& body, std::string name = "") {
     return detail::add_body(parts_, std::get<detail::BodyPool<B>>(bodies_), body, std::move(name));
   }
 
-  /// What does not move: `model.ground().at(r)` is a marker at r, world axes [m].
+  /// Handle of the ground. `model.ground().at(r)` is a marker at r in world axes [m].
   BodyHandle<Ground> ground() const { return {parts_.serial(), 0, "ground"}; }
 
-  /// Joins marker a to marker b. The joint's axes are those of its geometry in world axes at the reference
-  /// configuration. \throws InvalidInput naming the joint for a marker of another model, a rigid body
-  /// or the ground joined to itself, or parameters that cannot be meant.
+  /// Joins marker a to marker b. The joint's axes are those of its geometry, in world axes at the reference
+  /// configuration. \throws InvalidInput naming the joint for a marker of another model, for two markers on one rigid
+  /// body or on the ground, and for invalid parameters.
   template <OneOf<Js...> J, class A, class B>
   ElementHandle<J> connect(J const& joint, Marker<A> const& a, Marker<B> const& b, std::string name = "") {
     detail::require_pairing<J, A, B>();
@@ -61,19 +64,21 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
                              std::move(name));
   }
 
-  /// Applies a force element to one marker, or between two. \throws InvalidInput as `connect`.
+  /// Applies a force element to one marker. \throws InvalidInput for a marker of another model or invalid parameters.
   template <OneOf<Fs...> F, class A>
     requires(F::markers == 1)
   ElementHandle<F> apply(F const& force, Marker<A> const& a, std::string name = "") {
     return apply(force, std::tuple(a), std::move(name));
   }
-  /// Between two markers: the first one is that of the force's first wrench.
+  /// Applies a force element between two markers. Its first wrench acts on marker a. \throws InvalidInput for a marker
+  /// of another model or invalid parameters.
   template <OneOf<Fs...> F, class A, class B>
     requires(F::markers == 2)
   ElementHandle<F> apply(F const& force, Marker<A> const& a, Marker<B> const& b, std::string name = "") {
     return apply(force, std::tuple(a, b), std::move(name));
   }
-  /// Applies a force element to the markers of a tuple. \throws InvalidInput as `connect`.
+  /// Applies a force element to the markers of a tuple. \throws InvalidInput for a marker of another model or invalid
+  /// parameters.
   template <OneOf<Fs...> F, class... Ms>
     requires(F::markers == sizeof...(Ms))
   ElementHandle<F> apply(F const& force, std::tuple<Ms...> const& markers, std::string name = "") {
@@ -85,7 +90,8 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
         markers);
   }
 
-  /// Applies a group of forces to its many markers; `add_partner` brings the few in. \throws InvalidInput as `connect`.
+  /// Applies a force group to its many markers. `add_partner` adds the partners. \throws InvalidInput for a marker of
+  /// another model or invalid parameters.
   template <OneOf<Fs...> F, class A>
     requires ForceGroup<F>
   ElementHandle<F> apply(F const& group, std::vector<Marker<A>> const& many, std::string name = "") {
@@ -95,7 +101,8 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     for (Marker<A> const& m : many) pooled_many.push_back(pooled(m));
     return detail::add_group(parts_, pool_of<F>(), group, pooled_many, std::move(name));
   }
-  /// One of the few that act on all of the many, by `law`, one of the group's. \throws InvalidInput as `connect`.
+  /// Adds a partner at marker `one`, which acts on all of the group's many markers by `law`. The type of `law` is one
+  /// of the group's. \throws InvalidInput for a handle or marker of another model or invalid parameters.
   template <OneOf<Fs...> F, class Law, class A>
     requires ForceGroup<F>
   void add_partner(ElementHandle<F> const& group, Law const& law, Marker<A> const& one, std::string name = "") {
@@ -105,7 +112,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     detail::add_opponent(parts_, pool_of<F>()[std::size_t(group.index)], law, pooled(one), std::move(name));
   }
 
-  /// The undeformed model as placed, at rest, t = 0, with the initial states of its forces.
+  /// Reference state: undeformed bodies as placed, at rest, t = 0, with the initial states of the forces.
   State reference_state() const {
     State x{VecX::Zero(coordinates()), VecX::Zero(velocities()), VecX::Zero(velocities()), VecX::Zero(rows()), 0.0, {}};
     for_each_body([&](auto const& e) { e.body.reference(detail::body_part_of(x.q, e.q0, e.body.coordinates())); });
@@ -119,22 +126,23 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     return x;
   }
 
-  /// The first-order states of a force element in x. \throws InvalidInput as `entry`.
+  /// First-order states of a force element in x. \throws InvalidInput for a default-constructed handle, one of another
+  /// model, or a state that is too short.
   template <OneOf<Fs...> F>
     requires HasStates<F>
   std::span<double, F::states> states(State& x, ElementHandle<F> const& force) const {
     return states_in<F>(x.v, entry(force));
   }
-  /// The same of a state that is not written.
+  /// Overload for a constant state.
   template <OneOf<Fs...> F>
     requires HasStates<F>
   std::span<double const, F::states> states(State const& x, ElementHandle<F> const& force) const {
     return states_in<F>(x.v, entry(force));
   }
   template <OneOf<Fs...> F>
-  std::span<double const, F::states> states(State&& x, ElementHandle<F> const& force) const = delete;  ///< x would end
+  std::span<double const, F::states> states(State&& x, ElementHandle<F> const& force) const = delete;  ///< no temporary
 
-  /// Gives a body the speeds of a rigid motion: `v0` is the velocity of the body-fixed point that is at the
+  /// Sets the generalised velocities of a body to a rigid motion. `v0` is the velocity of the body-fixed point at the
   /// world's origin [m/s], `omega` the angular velocity [rad/s], both in world axes. \throws InvalidInput for a handle
   /// or state of another model.
   template <OneOf<Bs...> B>
@@ -144,62 +152,61 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
                           detail::checked_part(x.v, e.v0, e.body.velocities()));
   }
 
-  Gravity const& gravity() const { return parts_.gravity; }  ///< [m/s²], world axes
-  Index coordinates() const { return parts_.coordinates; }   ///< nq: coordinates of all bodies
-  /// Speeds of the bodies, and first-order states of forces behind them.
+  Gravity const& gravity() const { return parts_.gravity; }  ///< gravity in world axes [m/s²]
+  Index coordinates() const { return parts_.coordinates; }   ///< number nq of coordinates of all bodies
+  /// Number nv of generalised velocities of the bodies and first-order states of forces, which follow the velocities.
   Index velocities() const { return parts_.velocities + parts_.states; }
-  Index states() const { return parts_.states; }  ///< first-order states of forces
-  Index rows() const { return parts_.rows; }      ///< how many rows joints and bodies bring
-  /// Those of the rows that hold speeds and no positions, ascending.
+  Index states() const { return parts_.states; }  ///< number of first-order states of forces
+  Index rows() const { return parts_.rows; }      ///< number of constraint equations of joints and bodies
+  /// Indices of the nonholonomic constraint equations, ascending.
   Sequence<Index> const& nonholonomic_equations() const { return parts_.nonholonomic_equations; }
-  Index markers() const { return parts_.markers; }              ///< how many markers there are
-  Index jacobian_size() const { return parts_.jacobian_size; }  ///< numbers in their dense Jacobians
-  Index body_count() const { return parts_.bodies; }            ///< how many bodies, the ground not counted
-  std::uint64_t serial() const { return parts_.serial(); }      ///< number that the handles of the model carry
-  /// Serial numbers of the models that it was copied from.
+  Index markers() const { return parts_.markers; }              ///< number of markers
+  Index jacobian_size() const { return parts_.jacobian_size; }  ///< size of their dense Jacobians, in numbers
+  Index body_count() const { return parts_.bodies; }            ///< number of bodies without the ground
+  std::uint64_t serial() const { return parts_.serial(); }      ///< serial number, which the model's handles contain
+  /// Serial numbers of the models from which this one was copied.
   Sequence<std::uint64_t> const& ancestors() const { return parts_.origin.ancestors(); }
-  ModelWatch watch() const { return parts_.origin.watch(); }  ///< notices later changes of the model
+  ModelWatch watch() const { return parts_.origin.watch(); }  ///< detects later changes of the model
 
-  /// Bodies, joints and forces as they are stored, by types.
-  BodyPools const& body_pools() const { return bodies_; }
-  JointPools const& joint_pools() const { return joints_; }                               ///< see `body_pools`
-  ForcePools const& force_pools() const { return forces_; }                               ///< see `body_pools`
+  BodyPools const& body_pools() const { return bodies_; }                                 ///< stored bodies by type
+  JointPools const& joint_pools() const { return joints_; }                               ///< stored joints by type
+  ForcePools const& force_pools() const { return forces_; }                               ///< stored forces by type
   Sequence<detail::GroundMarker> const& ground_markers() const { return parts_.ground; }  ///< markers on the ground
-  /// Rows of joints that are linear in coordinates.
+  /// Constraint equations of joints that are linear in coordinates.
   Sequence<LinearConstraints> const& linear_rows() const { return parts_.linear_rows; }
 
-  /// \throws InvalidInput when the handle is of another model, or made by default.
+  /// Stored entry of a body. \throws InvalidInput for a default-constructed handle or one of another model.
   template <OneOf<Bs...> B>
   auto const& entry(BodyHandle<B> const& handle) const {
     return detail::own_entry(std::get<detail::BodyPool<B>>(bodies_).entries, handle);
   }
-  /// A joint as it is stored. \throws InvalidInput as above.
+  /// Stored entry of a joint. \throws InvalidInput for a default-constructed handle or one of another model.
   template <OneOf<Js...> J>
   auto const& entry(ElementHandle<J> const& handle) const {
     return detail::own_entry(std::get<Sequence<detail::JointEntry<J>>>(joints_), handle);
   }
-  /// A force element as it is stored. \throws InvalidInput as above.
+  /// Stored entry of a force element. \throws InvalidInput for a default-constructed handle or one of another model.
   template <OneOf<Fs...> F>
   auto const& entry(ElementHandle<F> const& handle) const {
     return detail::own_entry(std::get<Sequence<detail::ForceEntry<F>>>(forces_), handle);
   }
-  /// Calls f(entry) for every body, in the order of the types.
+  /// Calls f(entry) for every body, type by type.
   template <class F>
   void for_each_body(F&& f) const {
     std::apply([&](auto const&... pool) { (for_each_in(pool.entries, f), ...); }, bodies_);
   }
-  /// Calls f(entry) for every joint, in the order of the types.
+  /// Calls f(entry) for every joint, type by type.
   template <class F>
   void for_each_joint(F&& f) const {
     std::apply([&](auto const&... pool) { (for_each_in(pool, f), ...); }, joints_);
   }
-  /// Calls f(entry) for every force element, in the order of the types.
+  /// Calls f(entry) for every force element, type by type.
   template <class F>
   void for_each_force(F&& f) const {
     std::apply([&](auto const&... pool) { (for_each_in(pool, f), ...); }, forces_);
   }
 
-  /// \throws InvalidInput naming `what` for a marker of another model.
+  /// Requires a marker of this model. \throws InvalidInput naming `what` for a marker of another model.
   template <class B>
   void require_own(Marker<B> const& marker, std::string const& what) const {
     if constexpr (std::is_same_v<B, Ground>)

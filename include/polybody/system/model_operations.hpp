@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// The door between a model and everything above it: one table of plain functions, made where the model's type is
-/// known. Each is a loop over the model's pools; what they compute stands in `Data` afterwards.
+/// Interface between a model and the layers above: a table of plain functions, made where the model's type is known.
+/// Each function loops over the model's pools and stores its results in `Data` or in its output arguments.
 
 #include <polybody/math/block_sink.hpp>
 #include <polybody/math/dual.hpp>
@@ -12,156 +12,160 @@ namespace polybody {
 
 class ActiveContactPairs;
 
-/// Coefficients of the tangent cm M + cd D + ck K, D = −∂f/∂v, K = −∂f/∂q.
+/// Coefficients of the tangent cm M + cd D + ck K with D = −∂f/∂v and K = −∂f/∂q.
 struct TangentCoefficients {
   double mass = 0.0;               ///< factor of M
   double damping = 0.0;            ///< factor of −∂f/∂v
   double stiffness = 0.0;          ///< factor of −∂f/∂q
-  bool surrogate_friction = true;  ///< force groups may put a cheap matrix in place of a slope (`own_stiffness`)
-  bool full = false;               ///< with second-order terms; a system sets it
-  /// With all that steps leave out: blocks between the markers of a force group's pairs, and what positions do to
-  /// rates.
+  bool surrogate_friction = true;  ///< true if force groups may approximate a derivative by `own_stiffness` of a law
+  bool full = false;               ///< true with second-order terms; set by a system
+  /// True with the terms that time steps omit: blocks between the two markers of each pair of a force group, and
+  /// derivatives of rates with respect to positions.
   bool exact = false;
   ActiveContactPairs* pairs =
-      nullptr;              ///< pairs of groups that have such blocks; null: all (system/active_contact_pairs.hpp)
-  double states = damping;  ///< factor of −∂f/∂z and −∂h/∂z, z first-order states; a step takes them with its speeds
+      nullptr;              ///< pairs of groups with such blocks; null: all pairs (system/active_contact_pairs.hpp)
+  double states = damping;  ///< factor of −∂f/∂z and −∂h/∂z, with the first-order states z
 };
 
-/// Terms ∂(Gᵀλ)/∂q and ∂(Jᵀw)/∂q: a time step may leave them out while Newton contracts; statics may not.
+/// Treatment of the second-order terms ∂(Gᵀλ)/∂q and ∂(Jᵀw)/∂q of a tangent. A time step may omit them as long as
+/// Newton's method contracts; statics requires them.
 enum class SecondOrder { omitted, included };
 
-/// Which groups of entries a table holds. An algorithm names what it needs, and no more is compiled.
+/// Groups of functions in a table. An algorithm names the groups that it requires; other groups are not compiled.
 enum class Capabilities : unsigned {
-  motion = 0,             ///< markers, gaps, forces, M, ⊞, energies: always there
+  motion = 0,             ///< markers, constraint functions, forces, M, ⊞, energies: always included
   tangent = 1,            ///< cm M + cd D + ck K
-  second_order = 2,       ///< the tangent's second-order terms
-  coordinate_rates = 4,   ///< q˙
+  second_order = 2,       ///< second-order terms of the tangent
+  coordinate_rates = 4,   ///< q̇
   energy = 8,             ///< powers
-  rigid_velocities = 16,  ///< speeds of a rigid motion
-  secants = 32,           ///< means over a step, for steps that conserve energy
-  compliance = 64,        ///< the slopes of compliant joints; part of `tangent`
+  rigid_velocities = 16,  ///< generalised velocities of a rigid motion
+  secants = 32,           ///< mean forces over a step, for energy-conserving integration
+  compliance = 64,        ///< tangents of compliant joints; part of `tangent`
   implicit_step = 3,      ///< tangent and second_order
-  questions = 15,         ///< what a system is made with where nothing else is named
+  questions = 15,         ///< default of a system: tangent, second_order, coordinate_rates and energy
 };
-/// Both groups.
+/// Union of two sets of groups.
 constexpr Capabilities operator|(Capabilities a, Capabilities b) { return Capabilities(unsigned(a) | unsigned(b)); }
-/// Whether all of `some` are among `all`.
+/// True if `all` contains every group of `some`.
 constexpr bool contains(Capabilities all, Capabilities some) {
   return (unsigned(all) & unsigned(some)) == unsigned(some);
 }
 
 /// Energies of a state [J].
 struct Energy {
-  double kinetic = 0.0;  ///< of all bodies, ½ v·M v
-  double strain = 0.0;   ///< of flexible bodies
-  double gravity = 0.0;  ///< zero at the world's origin
-  double joints = 0.0;   ///< stored in compliant joints
-  double forces = 0.0;   ///< stored in force elements that have a potential
-  /// V: all that is stored.
+  double kinetic = 0.0;  ///< kinetic energy T = ½ v·M v of all bodies [J]
+  double strain = 0.0;   ///< strain energy of flexible bodies [J]
+  double gravity = 0.0;  ///< potential energy of gravity, zero at the world's origin [J]
+  double joints = 0.0;   ///< energy stored in compliant joints [J]
+  double forces = 0.0;   ///< energy stored in force elements with a potential [J]
+  /// Potential energy V [J].
   double potential() const { return strain + gravity + joints + forces; }
-  /// T + V.
+  /// Total energy T + V [J].
   double total() const { return kinetic + potential(); }
 };
 
-/// Powers in a state [W]; gravity, and what stores energy, are counted by `energy`.
+/// Powers in a state [W], without gravity and elements that store energy: `Energy` contains these.
 struct Powers {
-  double drives = 0.0;      ///< of what time prescribes in joints, on bodies and compliant joints
-  double loads = 0.0;       ///< of loads, and of forces that have no potential
-  double dissipated = 0.0;  ///< in damped bodies, compliant joints, dampers and contacts; positive when lost
+  double drives = 0.0;      ///< power of prescribed motions in joints, on bodies and compliant joints [W]
+  double loads = 0.0;       ///< power of loads, and of forces without a potential [W]
+  double dissipated = 0.0;  ///< power lost in damped bodies, compliant joints, dampers and contacts, positive [W]
 };
 
-/// Where one body stands in narrow vectors, those of a time step that policies have taken unknowns from.
+/// Position of one body in the reduced vectors, which do not contain the unknowns that policies eliminate.
 struct ReducedPosition {
-  /// What narrow vectors hold of a body.
+  /// Coordinates of a body in the reduced vectors.
   enum class Kind : unsigned char {
     as_it_is,  ///< all its coordinates
-    reduced,   ///< some of them; they add
-    carried    ///< those of its joint
+    reduced,   ///< some of its coordinates, with addition as retraction
+    carried    ///< coordinates of the joint that carries it
   };
-  Kind kind = Kind::as_it_is;                           ///< what they hold
-  Index q = 0, v = 0, coordinates = 0, velocities = 0;  ///< its first coordinate and speed; how many of both it has
+  Kind kind = Kind::as_it_is;                           ///< kind of its coordinates
+  Index q = 0, v = 0, coordinates = 0, velocities = 0;  ///< first coordinate and velocity; number of both
 };
 
-/// A state as entries are handed it: q (nq), v (nv), t.
+/// State as the table's functions receive it: q (nq), v (nv), t.
 template <StateScalar T>
 struct At {
-  VecXOf<T> const& q;  ///< (nq) coordinates
-  VecXOf<T> const& v;  ///< (nv) speeds, and first-order states behind them
+  VecXOf<T> const& q;  ///< (nq) generalised coordinates
+  VecXOf<T> const& v;  ///< (nv) generalised velocities, then first-order states
   double t;            ///< time [s]
 };
 
 namespace detail {
-/// Where and by which factors second-order terms are taken.
+/// State and factors for the evaluation of second-order terms.
 struct StiffnessAt {
   At<double> at;
   TangentCoefficients const& c;
 };
 }  // namespace detail
 
-/// The mean forces of a step, by secants (system/secant_operations.hpp).
+/// Mean forces over a step (system/secant_operations.hpp).
 struct SecantOperations;
 
-/// The functions; `m` is the model. Those of a group that was not asked for are null.
+/// Function table of a model `m`. Functions of groups that were not requested are null.
 template <StateScalar T>
 struct ModelOperations {
-  using Vector = VecXOf<T>;  ///< of coordinates, speeds or rows
+  using Vector = VecXOf<T>;  ///< vector of coordinates, velocities or multipliers
 
-  /// Markers; then the gaps of all row blocks and what compliant joints answer.
+  /// Evaluates the kinematics of all markers.
   void (*evaluate_marker)(void const* m, At<T> at, Data<T>& data) = nullptr;
-  /// Gaps and their rates of all joints and own rows; the markers must have been published.
+  /// Evaluates constraint functions and their rates for all joints and bodies, and the forces of compliant joints.
+  /// Requires evaluated markers.
   void (*measure_gaps)(void const* m, At<T> at, Data<T>& data) = nullptr;
-  /// γ of all rows without G's markers' biases, into out.
+  /// Writes γ of all constraint equations to out, without the bias accelerations of the markers.
   void (*measure_gamma)(void const* m, At<T> at, Data<T> const& data, Vector& out) = nullptr;
-  /// r += M a − f of all bodies, gravity times `load_factor`.
+  /// r += M a − f of all bodies, with gravity times `load_factor`.
   void (*element_forces)(void const* m, At<T> at, Vector const& a, double load_factor, Data<T>& data,
                          Vector& r) = nullptr;
-  /// The wrenches of all force elements into data.actions.
+  /// Writes the wrenches of all force elements to data.actions.
   void (*push_forces)(void const* m, double t, Data<T>& data) = nullptr;
-  /// q ⊞ δ and the rate of δ; with `places`, in narrow vectors.
+  /// Writes q ⊞ δ to out. The vectors are reduced ones if `places` is not null.
   void (*plus)(void const* m, ReducedPosition const* places, Vector const& q, Vector const& delta,
                Vector& out) = nullptr;
-  /// δ˙ while q ⊞ δ moves with v.
+  /// Writes δ̇ to out, at which q ⊞ δ moves with the velocities v. The vectors are reduced ones if `places` is not null.
   void (*local_rate)(void const* m, ReducedPosition const* places, Vector const& delta, Vector const& v,
                      Vector& out) = nullptr;
-  /// From now on the threads share the loops; what is computed stays the same to the last bit.
+  /// Distributes the loops over threads from now on. The results are bitwise identical.
   void (*share_loops)(void const* m, Data<T>& data, Workers& threads) = nullptr;
-  /// M, element by element.
+  /// Adds M to the sink, element by element.
   void (*masses)(void const* m, At<T> at, Data<T>& data, BlockSink& sink) = nullptr;
 
-  /// The tangent of bodies, of compliant joints and of force elements; with second-order terms,
-  /// wrenches are added to data.loads.
+  /// Adds the tangent of the bodies' elements to the sink.
   void (*element_tangents)(void const* m, At<T> at, TangentCoefficients const& c, Data<T>& data,
                            BlockSink& sink) = nullptr;
-  /// The part of compliant joints, Gᵀ(ck ∂λ/∂g + cd ∂λ/∂ġ)G.
+  /// Adds the tangent of compliant joints, Gᵀ(ck ∂λ/∂g + cd ∂λ/∂ġ)G, to the sink.
   void (*compliant_tangents)(void const* m, TangentCoefficients const& c, Data<T>& data, BlockSink& sink) = nullptr;
-  /// The part of force elements at t [s], loads times `load_factor`.
+  /// Adds the tangent of force elements at t [s] to the sink, with loads times `load_factor`. If c.full is true, it
+  /// also adds their wrenches to data.loads.
   void (*force_tangents)(void const* m, double t, double load_factor, TangentCoefficients const& c, Data<T>& data,
                          BlockSink& sink) = nullptr;
 
-  /// ck ∂(Gᵀλ)/∂q of joints, of what compliant ones answer too, and of bodies' own rows; ck ∂(Jᵀw)/∂q of data.loads.
+  /// Adds ck ∂(Gᵀλ)/∂q of joints, compliant ones included, and of the bodies' constraint equations to the sink. It also
+  /// adds the wrenches of joints to data.loads.
   void (*joint_stiffness)(void const* m, At<T> at, Vector const& lambda, TangentCoefficients const& c, Data<T>& data,
                           BlockSink& sink) = nullptr;
-  /// ck ∂(Jᵀw)/∂q for the wrenches in data.loads.
+  /// Adds ck ∂(Jᵀw)/∂q for the wrenches in data.loads to the sink.
   void (*load_stiffness)(void const* m, At<T> at, TangentCoefficients const& c, Data<T>& data,
                          BlockSink& sink) = nullptr;
 
-  /// q˙; `room` (2 nq + nv) is scratch.
+  /// Writes q̇ to `rate`. `room` (2 nq + nv) is workspace. The vectors are reduced ones if `places` is not null.
   void (*coordinate_rates)(void const* m, ReducedPosition const* places, Vector const& q, Vector const& v,
                            VecXOf<Dual<1>>& room, Vector& rate) = nullptr;
 
   /// Energies of the evaluated state [J].
   Energy (*energy)(void const* m, At<T> at, Data<T> const& data) = nullptr;
-  /// `backwards` is −v.
+  /// Powers of the evaluated state [W]. `backwards` is −v.
   Powers (*powers)(void const* m, At<T> at, VecX const& backwards, VecX const& lambda, double load_factor,
                    Data<T> const& data) = nullptr;
 
-  /// v of a rigid motion: `v0` [m/s] of the body-fixed point at the world's origin, `omega` [rad/s], world axes.
+  /// Writes the generalised velocities v of a rigid motion. `v0` is the velocity of the body-fixed point at the world's
+  /// origin [m/s], `omega` the angular velocity [rad/s], both in world axes.
   void (*rigid_velocities)(void const* m, Vector const& q, Vec3 const& v0, Vec3 const& omega, Vector& v) = nullptr;
 
-  SecantOperations const* secants = nullptr;  ///< mean forces of a step; null where they were not asked for
+  SecantOperations const* secants = nullptr;  ///< mean forces over a step; null if not requested
 };
 
-/// The table for a model of type M; specialised where model types are known (system/make_operations.hpp).
+/// Function table for a model of type M. The specialisation is in system/make_operations.hpp.
 template <class M, StateScalar T, Capabilities wanted>
 struct OperationsOf;
 

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Identity of a model: serial numbers tell its handles from those of other models, and a count of its changes is
-/// compared by whoever keeps a reference to it.
+/// Identity of a model. Serial numbers distinguish its handles from those of other models. A count of its changes
+/// reveals changes to objects that keep a reference to the model.
 
 #include <atomic>
 #include <cstdint>
@@ -15,31 +15,33 @@ namespace polybody {
 
 namespace detail {
 
-/// Tells models apart.
+/// Returns a new serial number for a model.
 inline std::uint64_t next_serial() noexcept {
   static std::atomic<std::uint64_t> last{0};
   return ++last;
 }
 
-/// Counts the changes of a model. The count outlives the model as long as a watch keeps it.
+/// Count of the changes of a model. It outlives the model as long as a watch refers to it.
 struct ModelHistory {
-  std::uint64_t changes = 1;  ///< additions, moves and the destruction
+  std::uint64_t changes = 1;  ///< number of additions, moves and destructions, plus one
   std::uint64_t moved = 0;    ///< value of `changes` at the last move to another object; 0: none
-  bool ended = false;         ///< the model was destroyed, or another one was assigned to it
+  bool ended = false;         ///< true after the model is destroyed or another one is assigned to it
 };
 
 }  // namespace detail
 
-/// Notices changes of a model to which a run or a question keeps a reference. A watch made by default notices none.
+/// Detector of changes of a model to which a run, system or recorder keeps a reference. A default-constructed watch
+/// detects none.
 class ModelWatch {
  public:
   ModelWatch() = default;
-  /// \param history of the model, from now on
+  /// Starts to watch a model. \param history change count of the model
   explicit ModelWatch(std::shared_ptr<detail::ModelHistory const> history) : history_(std::move(history)) {
     if (history_) changes_ = history_->changes;
   }
 
-  /// \throws InvalidInput when the model has grown, moved or been destroyed since the watch began.
+  /// \throws InvalidInput if a part was added, or the model was moved or destroyed, after the construction of the
+  /// watch.
   void require_unchanged() const {
     if (history_ && history_->changes != changes_) refuse();
   }
@@ -65,8 +67,8 @@ class ModelWatch {
 
 namespace detail {
 
-/// The identity of one model. A copy gets a serial number of its own and keeps those of its ancestors. A move takes the
-/// identity along and leaves that of a new, empty model.
+/// Identity of one model. A copy gets a new serial number and keeps those of its ancestors. A move transfers the
+/// identity and gives the source that of a new, empty model.
 class ModelOrigin {
  public:
   ModelOrigin() = default;
@@ -77,7 +79,7 @@ class ModelOrigin {
         history_(std::move(other.history_)) {
     if (history_) history_->moved = ++history_->changes;
   }
-  ModelOrigin& operator=(ModelOrigin other) noexcept {  // whose destructor ends what was here
+  ModelOrigin& operator=(ModelOrigin other) noexcept {  // the destructor of `other` ends the previous identity
     std::swap(serial_, other.serial_);
     ancestors_.swap(other.ancestors_);
     history_.swap(other.history_);
@@ -91,7 +93,7 @@ class ModelOrigin {
 
   std::uint64_t serial() const { return serial_; }
   Sequence<std::uint64_t> const& ancestors() const { return ancestors_; }
-  /// Called before a part is added.
+  /// Counts a change, before the addition of a part.
   void change() {
     if (!history_) history_ = std::make_shared<ModelHistory>();
     ++history_->changes;
@@ -104,8 +106,8 @@ class ModelOrigin {
   std::shared_ptr<ModelHistory> history_;  ///< none before the first part
 };
 
-/// Whether a model with these serial numbers, its own and those of its ancestors, accepts parts of no pool (the ground)
-/// of the model with the number `given`.
+/// True if a model accepts ground markers of the model with serial number `given`. `serial` and `ancestors` are its own
+/// number and those of its ancestors.
 inline bool accepts(std::uint64_t serial, Sequence<std::uint64_t> const& ancestors, std::uint64_t given) {
   return given == serial || std::find(ancestors.begin(), ancestors.end(), given) != ancestors.end();
 }

@@ -10,10 +10,11 @@
 
 namespace polybody::detail {
 
-/// Names in the order in which they were taken, with a hash table of open addressing: a name is found in constant time.
+/// Names in the order of their addition, with a hash table of open addressing for a search in constant time.
 class Names {
  public:
-  /// Returns a given name as it is. An empty one becomes "kind n" with the first n > `before` that makes a free name.
+  /// Returns a given name unchanged, and "kind n" for an empty one. n is the first number above `before` that gives a
+  /// free name.
   template <class = void>  // compiled where it is used
   [[gnu::cold]] std::string given_or_next(std::string name, char const* kind, std::size_t before) {
     if (!name.empty()) return name;
@@ -22,7 +23,7 @@ class Names {
     for (;; ++taken.to)
       if (name = kind + (" " + std::to_string(taken.to + 1)); !has(name)) return name;
   }
-  /// \throws InvalidInput when something is called so already. \param what "body", "joint" or "force"
+  /// \param what "body", "joint" or "force" \throws InvalidInput if the name is in use.
   template <class = void>
   void require_free(std::string const& name, char const* what) const {
     if (has(name))
@@ -41,7 +42,7 @@ class Names {
   }
 
  private:
-  /// "kind n" is taken for from < n ≤ to.
+  /// Range of used numbers: "kind n" is in use for from < n ≤ to.
   struct Run {
     std::string kind;
     std::size_t from = 0, to = 0;
@@ -53,7 +54,7 @@ class Names {
     return runs_.back();
   }
 
-  /// The slot that holds the name, or the free one where it belongs.
+  /// Index of the slot of the name, or of the free slot for it.
   std::size_t slot_of(std::string const& name) const {
     std::size_t i = std::hash<std::string>{}(name) % slots_.size();
     while (slots_[i] != 0 && names_[slots_[i] - 1] != name) i = (i + 1) % slots_.size();
@@ -62,8 +63,8 @@ class Names {
   bool has(std::string const& name) const { return !slots_.empty() && slots_[slot_of(name)] != 0; }
 
   Sequence<std::string> names_;
-  Sequence<std::size_t> slots_;  ///< places in `names_` from one on; zero is free
-  Sequence<Run> runs_;           ///< of numbers that were found taken
+  Sequence<std::size_t> slots_;  ///< indices into `names_` plus one; zero: free slot
+  Sequence<Run> runs_;           ///< used numbers of each kind
 };
 
 }  // namespace polybody::detail

@@ -7,7 +7,8 @@
 
 namespace polybody::detail {
 
-/// Frames of the markers of a group's entry, by whose values it tells which of its pairs act: frame(k) is marker k's.
+/// Values of the frames of a force group's markers, by which the group selects its active pairs. frame(k) is the frame
+/// of marker k.
 template <class F, StateScalar T>
 class PairFrames {
  public:
