@@ -175,6 +175,6 @@ class LinearEliminationOf {
   IndexMap<std::size_t> pivot_of_, solved_;
 };
 
-using LinearElimination = LinearEliminationOf<>;  ///< for vectors of doubles
+using LinearElimination = LinearEliminationOf<>;  ///< with scalar double
 
 }  // namespace polybody

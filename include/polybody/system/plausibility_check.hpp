@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// Limits that every step of a run keeps: the violation of constraints, energy that no work explains, prescribed values
-/// that fit their rates, and contacts that a step jumps over. Newton's method stops relative to the size of the
-/// accelerations, so the steps of a motion that explodes also converge.
+/// Checks of every step of a run: constraint violations, unexplained energy, prescribed values that agree with their
+/// rates, and contacts that a step jumps over. Newton's method stops relative to the size of the accelerations, so the
+/// steps of a diverging motion also converge.
 
 #include <cmath>
 #include <limits>
@@ -15,54 +15,56 @@
 
 namespace polybody {
 
-/// Limits of a run; an infinite limit switches its check off.
+/// Limits of a run. An infinite limit disables its check.
 struct PlausibilityLimits {
-  double violation = 0.1;  ///< |Φ| of a constraint equation, relative to the extent of the markers and to one
-  double energy = 1.0;     ///< unexplained energy at which a step is refused, relative to S (`PlausibilityCheck`)
+  double violation = 0.1;  ///< limit of |Φ| per constraint equation, relative to max(1, extent of the markers in m) [1]
+  double energy = 1.0;     ///< limit of the unexplained energy of a step, relative to S (`PlausibilityCheck`) [1]
   double warning =
-      0.05;  ///< unexplained energy at which the report warns at the end of a run, relative to `Unexplained::scale`
+      0.05;  ///< unexplained energy that causes a warning at the end of a run, relative to `Unexplained::scale` [1]
 };
 
 /// Energy of a run that no work explains.
 struct Unexplained {
-  double energy = 0.0;  ///< gained, or negative where it is lost [J]
+  double energy = 0.0;  ///< gained energy, negative for a loss [J]
   double doubt = 0.0;   ///< estimated error of the works, large if a force jumps [J]
   double worst = 0.0;   ///< largest such error of one step [J]
-  double scale = 0.0;   ///< T₀ + what potentials released + 2 W + 10⁻³ V₀⁺ (`PlausibilityCheck`), at most so far [J]
-  bool known = false;   ///< the model has such a balance
+  double scale = 0.0;   ///< largest T₀ + max(0, V₀ − V) + 2 W + 10⁻³ V₀⁺ so far (`PlausibilityCheck`) [J]
+  bool known = false;   ///< true if the model has such a balance
 };
 
-/// The limits of a run, with a balance of the energy E = T + V since the last start. A step is refused for E − E₀ − W
-/// > limit · S, S = T₀ + max(V₀⁺, V₀ − V) + 2 W, V₀⁺ what was stored at the start, without gravity, W the work that
-/// forces without a potential, drives and compliant joints without a potential have put in (`WorkAccount`). W counts
-/// twice in S: of the work of a force that is switched on within a step, the quadratures see half. The balance is
-/// made whenever the speeds have doubled, so the cost of other steps is a sum of squares and the powers of such
-/// elements. Dissipation is not counted: only a gain is refused. At the end of a run, and before each restart,
-/// `settle` makes the balance with the signs of all works. It counts losses where no part of the model dissipates. A
-/// potential that depends on time has no such balance, and no verdict.
+/// Check of the limits of a run, with a balance of the energy E = T + V since the last start. A step is refused if
+///   E − E₀ − W > limit · S,   S = T₀ + max(V₀⁺, V₀ − V) + 2 W.
+/// V₀⁺ is the energy stored at the start, without gravity. W is the work input of forces without a potential, of drives
+/// and of compliant joints without a potential (`WorkAccount`). S contains 2 W because the quadratures find half of the
+/// work of a force that is switched on within a step. The balance is evaluated each time the velocities have doubled.
+/// Other steps evaluate only a sum of squares and the powers of these elements. Only a gain is refused, so dissipation
+/// is not counted. At the end of a run and before each restart, `settle` evaluates the balance with the signs of all
+/// works. It counts losses if no part of the model dissipates. Models with a potential that depends on time have no
+/// such balance and are not checked.
 class PlausibilityCheck {
  private:
   static constexpr double never = std::numeric_limits<double>::infinity();
   struct Account {
-    double open = never;    ///< the limit for |Φ|, in the unit of the constraint equation: [m], or a cosine
-    double energy = never;  ///< the limit, a factor
-    double judged = never;  ///< Σ v² beyond which the energy is looked at, mixed units
-    double fastest = 0.0;   ///< largest Σ v² that was looked at, mixed units
-    double scale = 0.0;     ///< S, at most since the start [J]
-    double moved = 0.0;     ///< T₀ + what potentials released + 2 W, at most since the start [J]
+    double open = never;    ///< limit of |Φ| in the unit of the constraint equation: [m], or a cosine
+    double energy = never;  ///< limit of the unexplained energy relative to S [1]
+    double judged = never;  ///< Σ v² that triggers the next balance, mixed units
+    double fastest = 0.0;   ///< Σ v² at the last balance, mixed units
+    double scale = 0.0;     ///< largest S since the start [J]
+    double moved = 0.0;     ///< largest T₀ + max(0, V₀ − V) + 2 W since the start [J]
     Energy start;           ///< E₀
-    double began = 0.0;     ///< at this time [s]
-    Unexplained settled;    ///< by earlier accounts of the run
+    double began = 0.0;     ///< time of the start [s]
+    Unexplained settled;    ///< sum of the earlier balances of the run
   };
 
  public:
-  /// Resets the limits and the balance at `place`, with h of the next step. Without this call nothing is checked.
+  /// Resets the limits and the balance at `place`; `place.h` is the length of the next step. Nothing is checked before
+  /// the first call.
   template <class = void>  // compiled where it is used
   [[gnu::cold]] void begin(System& system, PlausibilityLimits const& limits, StepResult const& place);
 
-  /// \throws Diverged for a step that ends beyond a limit, InvalidInput for a prescribed value that does not fit its
-  /// rate, NewtonConvergenceFailure for a step that jumps over a contact. `system` may have been evaluated near the end
-  /// only: what looks wrong there is judged at the end itself. \param squares Σ v²
+  /// Checks a step. `system` may be evaluated near the end of the step; it is evaluated at the end before a refusal.
+  /// \param squares Σ v², mixed units \throws Diverged if the end violates a limit, InvalidInput if a prescribed value
+  /// disagrees with its rate, NewtonConvergenceFailure if the step jumps over a contact.
   template <class = void>
   void require(System& system, StepResult const& end, double squares) {
     if (laws_.watches()) laws_.require(system.layout(), end.t, end.h);
@@ -71,15 +73,15 @@ class PlausibilityCheck {
     if (squares > account_.judged || any_open()) check_step(system, end, squares);
   }
 
-  /// Makes the balance up to here, where `begin` is to follow or the run ends. Returns that of the run so far.
-  /// \throws Diverged for an end beyond the limit.
+  /// Evaluates the balance at the end of the run or before a call of `begin`. Returns the balance of the run so far.
+  /// \throws Diverged if the end violates the energy limit.
   template <class = void>
   [[gnu::cold]] Unexplained settle(System& system, StepResult const& end);
 
-  /// Puts the account back as it was, unless what is tried is kept.
+  /// Scope of a trial step. Its destructor restores the check to its previous state unless `keep` was called.
   class Trial {
    public:
-    /// Remembers the account as it is.
+    /// Stores the present state of the check.
     explicit Trial(PlausibilityCheck& bounds) : bounds_(bounds), before_(bounds.account_) {
       bounds_.replaced_ = false;
       bounds_.work_.mark();
@@ -93,7 +95,7 @@ class PlausibilityCheck {
       bounds_.work_.go_back();
       bounds_.laws_.go_back();
     }
-    void keep() { kept_ = true; }  ///< the trial counts
+    void keep() { kept_ = true; }  ///< accepts the trial step
 
    private:
     PlausibilityCheck& bounds_;
@@ -112,19 +114,19 @@ class PlausibilityCheck {
   void check_step(System& system, StepResult const& end, double squares);
   template <class = void>
   [[noreturn, gnu::cold]] void refuse_open(System const& system, double t) const;
-  /// The balance at the end, where `system` is evaluated. \throws Diverged.
+  /// Balance at the end of a step, at which `system` must be evaluated. \throws Diverged if it violates the limit.
   template <class = void>
   Unexplained check_energy(System& system, StepResult const& end);
   template <class = void>
   void require_no_passage(System const& system, StepResult const& end);
 
-  /// The constraint equations of a block, in the data of the system.
+  /// Constraint functions of a block, in the data of the system.
   struct Gaps {
     double const* g;
     int rows;
     Index first;
   };
-  /// A contact of two markers, and their frames at the end of the last step.
+  /// Contact of two markers, with their frames at the ends of the last and the present step.
   struct Passing {
     std::size_t force;
     Frame<double> last[2], now[2];
@@ -140,11 +142,11 @@ class PlausibilityCheck {
 
   Account account_;
   Sequence<Gaps> gaps_;
-  Sequence<Passing> contacts_;  ///< that a step may jump over
-  WorkAccount work_, earlier_;  ///< since the last start; before it, while a trial may fail
-  bool replaced_ = false;       ///< `begin` was called since the trial began
+  Sequence<Passing> contacts_;  ///< contacts that a step may jump over
+  WorkAccount work_, earlier_;  ///< account since the last start, and the one before it for a trial step that fails
+  bool replaced_ = false;       ///< true if `begin` was called since the start of the trial step
   LawWatch laws_;
-  bool lossless_ = false;  ///< no part of the model dissipates
+  bool lossless_ = false;  ///< true if no part of the model dissipates
 };
 
 template <class>
@@ -193,7 +195,7 @@ void PlausibilityCheck::begin(System& system, PlausibilityLimits const& limits, 
   }
 }
 
-/// Refuses a step at whose ends a contact is open and within which it closes and opens again.
+/// Refuses a step during which a contact closes and opens again.
 template <class>
 void PlausibilityCheck::require_no_passage(System const& system, StepResult const& end) {
   for (Passing& contact : contacts_) {

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Elements of several bodies side by side: a track of many links of one element each fills packs as one long body
-/// does.
+/// Batches of elements of several bodies. A track of many links with one element each then fills SIMD vectors like one
+/// long body.
 
 #include <polybody/bodies/shared/element_batches.hpp>
 #include <polybody/bodies/shared/time_varying.hpp>
@@ -10,18 +10,18 @@
 
 namespace polybody::detail {
 
-/// An element of a pool.
+/// Element of a pool: index of its body's entry, and index in the body.
 struct PlacedElement {
   Index entry, element;
 };
 
-/// How the elements of a pool go through their kernels. Bodies with fewer elements than fill a pack share packs with
-/// the bodies behind them, as far as these have the same elements; the others go by themselves.
+/// Distribution of the elements of a pool over the kernels. Bodies with fewer elements than a SIMD vector share one
+/// with the next bodies that have the same elements. Other bodies are evaluated separately.
 struct PoolBatches {
-  Sequence<Index> bodies;  ///< that go by themselves
+  Sequence<Index> bodies;  ///< bodies that are evaluated separately
   Sequence<std::array<PlacedElement, std::size_t(pack_size)>> packs;
-  Sequence<PlacedElement> singles;  ///< that are left over
-  bool alone = true;                ///< no body is in two packs
+  Sequence<PlacedElement> singles;  ///< elements that do not fill a SIMD vector
+  bool alone = true;                ///< true if no body is in two SIMD vectors
 };
 
 /// At least so many bodies, of one element each.
@@ -61,7 +61,7 @@ template <class B>
   return out;
 }
 
-/// Where the numbers of a pack's elements begin, in vectors by coordinates, speeds and speeds.
+/// Pointers to the first coordinate, velocity and acceleration of each element of a SIMD vector.
 template <class B>
 SimdMotion motion_of(BodyPool<B> const& pool, std::array<PlacedElement, std::size_t(pack_size)> const& pack,
                      double const* q, double const* v, double const* a) {

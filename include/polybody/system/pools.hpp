@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What a model stores of each body, marker, joint and force: typed pools, one per type.
+/// Typed pools of the bodies, markers, joints and forces of a model, one per type.
 
 #include <array>
 #include <cstdint>
@@ -16,7 +16,7 @@
 
 namespace polybody {
 
-/// The types that a model may hold.
+/// Lists of the types of bodies, joints and forces that a model can contain.
 template <class... Bs>
 struct Bodies {};
 template <class... Js>
@@ -24,22 +24,22 @@ struct Joints {};
 template <class... Fs>
 struct Forces {};
 
-/// Handle of a joint or a force element in a model. One made by default names nothing and is refused.
+/// Handle of a joint or a force element in a model. A default-constructed handle refers to nothing and is refused.
 template <class Element>
 struct ElementHandle {
-  std::uint64_t model = 0;  ///< the model's serial number; 0: none
-  Index index = 0;          ///< among the joints or forces of its type
-  std::string name = {};    ///< its name in messages
+  std::uint64_t model = 0;  ///< serial number of the model; 0: none
+  Index index = 0;          ///< index among the joints or forces of its type
+  std::string name = {};    ///< name in messages
 };
 
 namespace detail {
 
 template <class B>
 struct MarkerEntry {
-  Index body;  ///< in the pool of its type
+  Index body;  ///< index of the body in the pool of its type
   typename B::Point point;
-  Mat3 axes;        ///< (3×3) the marker's axes in the body's at that point
-  Index published;  ///< where its data stand
+  Mat3 axes;        ///< (3×3) axes of the marker relative to those of the body at that point
+  Index published;  ///< index of its data in `Data::markers`
 };
 
 template <class B>
@@ -57,31 +57,31 @@ template <class J>
 struct JointEntry {
   using JointType = J;
   J joint;
-  Index a, b;      ///< published markers
-  Index row = -1;  ///< first row; −1 for a joint without rows
+  Index a, b;      ///< marker indices
+  Index row = -1;  ///< first constraint equation; −1 for a joint without equations
   std::string name;
-  Index rows = 0;             ///< how many
-  Index linear = -1;          ///< of a linear joint: its place among the model's linear rows
-  std::uint64_t made_in = 0;  ///< serial number of the model that it was added to
+  Index rows = 0;             ///< number of constraint equations
+  Index linear = -1;          ///< for a linear joint: index among the model's `LinearConstraints`
+  std::uint64_t made_in = 0;  ///< serial number of the model to which the joint was added
 };
 
 template <class F>
 struct ForceEntry {
   F force;
-  std::array<Index, F::markers> markers;  ///< published
+  std::array<Index, F::markers> markers;  ///< marker indices
   std::string name;
-  Index state = 0;            ///< first of its own, among the model's first-order states
-  std::uint64_t made_in = 0;  ///< serial number of the model that it was added to
+  Index state = 0;            ///< index of its first state among the model's first-order states
+  std::uint64_t made_in = 0;  ///< serial number of the model to which the force was added
 };
 template <ForceGroup F>
 struct ForceEntry<F> {
   F force;
   Sequence<Index> markers;
   std::string name;
-  std::uint64_t made_in = 0;  ///< as above
+  std::uint64_t made_in = 0;  ///< serial number of the model to which the group was added
 };
 
-/// How the joint coordinates of a model are solved for: what the first policy says that makes any.
+/// Solution method for the joint coordinates of a model, given by the first policy with joint coordinates; else void.
 template <class... Ps>
 struct SolutionAmong {
   using Type = void;
@@ -99,14 +99,15 @@ struct SolutionAmong<P, Ps...> {
 template <class... Ps>
 using SolutionOf = typename SolutionAmong<Ps...>::Type;
 
-/// Whether the entries hold a part with this index that was added to the model with the number `serial`. A copied model
-/// accepts the handles of the parts that it got from its original, and neither accepts those added to the other later.
+/// True if `entries` has a part with this index that was added to the model with the number `serial`. A copied model
+/// accepts the handles of parts that it has from its original. Neither accepts handles of parts added to the other
+/// later.
 template <class Capabilities>
 bool holds(Capabilities const& entries, Index index, std::uint64_t serial) {
   return index >= 0 && std::size_t(index) < entries.size() && entries[std::size_t(index)].made_in == serial;
 }
 
-/// Coordinates or speeds of one body.
+/// Coordinates or velocities of one body.
 template <class Vector>
 auto body_part(Vector const& x, Index first, Index size) {
   using T = typename Vector::Scalar;
@@ -117,7 +118,7 @@ auto body_part_of(Vector& x, Index first, Index size) {
   using T = typename Vector::Scalar;
   return std::span<T>(x.data() + first, std::size_t(size));
 }
-/// A part of a vector of the user's state. \throws InvalidInput where the vector ends before.
+/// Part of a vector of the user's state. \throws InvalidInput if the vector is too short.
 template <class Vector>
 auto checked_part(Vector& x, Index first, Index size) {
   if (first + size > x.size()) refuse_unfitting_state();

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// What acts on markers, carried to the columns of their bodies: blocks of the tangent. In plain loops: matrix products
-/// of Eigen cost more, to compile and to run, at these sizes.
+/// Projection of marker wrenches and marker stiffness onto generalised coordinates, Jᵀ w and Jᵀ S J, as blocks of the
+/// tangent. At these sizes, plain loops compile and run faster than Eigen's matrix products.
 
 #include <array>
 #include <utility>
@@ -12,7 +12,8 @@
 
 namespace polybody::detail {
 
-/// out = Jᵀ w of n wrenches, J of a rigid marker: entry i of wrench k is w[down i + right k]; out (6×n) by rows.
+/// out = Jᵀ w for n wrenches and the Jacobian J of a rigid marker. Entry i of wrench k is w[down i + right k]. out
+/// (6×n) is stored by rows.
 template <int n>
 void multiply_transposed_rigid(MarkerKinematics<double> const& p, double const* w, Index down, Index right,
                                double* out) {
@@ -30,7 +31,8 @@ void multiply_transposed_rigid(MarkerKinematics<double> const& p, double const* 
     for (int k = 0; k < n; ++k)
       out[n * (3 + i) + k] = p.body_axes(0, i) * m[0][k] + p.body_axes(1, i) * m[1][k] + p.body_axes(2, i) * m[2][k];
 }
-/// The same through a stored Jacobian; out (columns×n) by columns.
+/// out = Jᵀ w for n wrenches and a stored Jacobian. Entry i of wrench k is w[down i + right k]. out (columns×n) is
+/// stored by columns.
 template <class = void>
 void pull_dense(MarkerKinematics<double> const& p, double const* w, Index down, Index right, int n, double* out) {
   for (int k = 0; k < n; ++k)
@@ -42,11 +44,11 @@ void pull_dense(MarkerKinematics<double> const& p, double const* w, Index down, 
     }
 }
 
-/// Jᵀ w of m wrenches, columns×m, in `scratch`; entry i of wrench k is w[down i + right k].
+/// Jᵀ w (columns×m) for m wrenches, stored in `scratch`. Entry i of wrench k is w[down i + right k].
 template <int m>
 BlockView pulled(MarkerKinematics<double> const& p, double const* w, Index down, Index right,
                  Sequence<double>& scratch) {
-  if (p.shape == JacobianShape::rigid) {  // by rows, as sinks store a body before its joint
+  if (p.shape == JacobianShape::rigid) {  // by rows, since sinks store a body before its joint
     multiply_transposed_rigid<m>(p, w, down, right, scratch.data());
     return {scratch.data(), 6, m, m, 1};
   }
@@ -54,7 +56,7 @@ BlockView pulled(MarkerKinematics<double> const& p, double const* w, Index down,
   return {scratch.data(), p.columns, m, 1, p.columns};
 }
 
-/// Writes (map J)ᵀ and its mirror for the m rows of a marker's end from `row` on.
+/// Adds (map J)ᵀ and its transpose to the sink for the m constraint equations from `row` on, at one marker.
 template <int m>
 void add_pulled_rows(MarkerKinematics<double> const& p, double const* map, Index row, Sequence<double>& scratch,
                      BlockSink& sink) {
@@ -64,7 +66,7 @@ void add_pulled_rows(MarkerKinematics<double> const& p, double const* map, Index
   sink.add(row, p.first, columns.transposed());
 }
 
-/// sink += JaᵀS Jb; entry (i, j) of S stands at s[i + stride j].
+/// sink += JaᵀS Jb. Entry (i, j) of S is s[i + stride j].
 template <class = void>
 void add_pulled_pair(MarkerKinematics<double> const& a, MarkerKinematics<double> const& b, double const* s,
                      Index stride, Sequence<double>& scratch, BlockSink& sink) {
@@ -84,7 +86,7 @@ void add_pulled_pair(MarkerKinematics<double> const& a, MarkerKinematics<double>
   } else {
     pull_dense(a, s, 1, stride, 6, half);
   }
-  double* const out = half + 6 * a.columns;  // its rows through Jb: (b.columns × a.columns)
+  double* const out = half + 6 * a.columns;  // (JaᵀS Jb)ᵀ, b.columns×a.columns
   for (Index r = 0; r < a.columns; ++r) {
     double const* const row = half + down * r;
     double* const to = out + b.columns * r;
@@ -96,7 +98,7 @@ void add_pulled_pair(MarkerKinematics<double> const& a, MarkerKinematics<double>
   sink.add(a.first, b.first, BlockView(out, a.columns, b.columns, b.columns, 1));
 }
 
-/// sink += Jiᵀ S_ij Jj for all pairs of n markers, or for i = j only; S is 6n×6n by columns.
+/// sink += Jiᵀ S_ij Jj for all pairs of n markers, or only for i = j if `couples` is false. S is 6n×6n by columns.
 template <int n>
 void add_pulled_pairs(std::array<MarkerKinematics<double> const*, std::size_t(n)> const& markers, double const* s,
                       bool couples, Sequence<double>& scratch, BlockSink& sink) {
@@ -107,7 +109,7 @@ void add_pulled_pairs(std::array<MarkerKinematics<double> const*, std::size_t(n)
                         sink);
 }
 
-/// The same where nothing acts: blocks of zeros in the same places and order.
+/// Skips the blocks of all pairs of n markers in a sink, in the order of `add_pulled_pairs`, if no force acts.
 template <int n>
 void skip_pulled_pairs(std::array<MarkerKinematics<double> const*, std::size_t(n)> const& markers, BlockSink& sink) {
   for (MarkerKinematics<double> const* a : markers)
@@ -115,9 +117,11 @@ void skip_pulled_pairs(std::array<MarkerKinematics<double> const*, std::size_t(n
       if (a->columns > 0 && b->columns > 0) sink.skip(a->first, b->first, a->columns, b->columns);
 }
 
-/// Derivatives by a marker's pose get what it does to the twist while the speeds of its body stay. On a rigid body v =
-/// ṙ₀ + ω × ρ, and a small turn e changes ω by e × ω, v by (e × ω) × ρ + ω × (e × ρ) = e × (ω × ρ), by Jacobi's
-/// identity. Of markers of other bodies that is left out. \param of_twist, of_pose (rows × 6), by columns
+/// Adds to derivatives with respect to a marker's pose the effect of the pose on the twist at constant velocities of
+/// its body. On a rigid body v = ṙ₀ + ω × ρ. A small rotation e changes ω by e × ω, and v by
+///   (e × ω) × ρ + ω × (e × ρ) = e × (ω × ρ)   (Jacobi's identity).
+/// The effect is omitted for markers of other bodies. \param of_twist, of_pose derivatives with respect to twist and
+/// pose (rows × 6), by columns
 template <int rows>
 void add_rates_of_pose(MarkerKinematics<double> const& p, double const* of_twist, double* of_pose) {
   if (p.shape != JacobianShape::rigid) return;
@@ -133,7 +137,7 @@ void add_rates_of_pose(MarkerKinematics<double> const& p, double const* of_twist
   }
 }
 
-/// out (rows×cols) = a (rows×m) bᵀ, b cols×m, all by columns.
+/// out (rows×cols) = a (rows×m) bᵀ with b (cols×m), all stored by columns.
 template <int m>
 void times_transposed(double const* a, double const* b, Index rows, Index cols, double* out) {
   for (Index j = 0; j < cols; ++j)
@@ -144,7 +148,7 @@ void times_transposed(double const* a, double const* b, Index rows, Index cols, 
     }
 }
 
-/// (map J)ᵀ for the m rows of a marker's end, columns×m by columns.
+/// Writes (map J)ᵀ (columns×m), by columns, for m constraint equations at one marker.
 template <int m>
 void pull_rows(MarkerKinematics<double> const& p, double const* map, double* out) {
   if (p.shape != JacobianShape::rigid) return pull_dense(p, map, m, 1, m, out);
@@ -154,16 +158,16 @@ void pull_rows(MarkerKinematics<double> const& p, double const* map, double* out
     for (int i = 0; i < 6; ++i) out[6 * k + i] = by_rows[m * i + k];
 }
 
-/// sink += (Gi Ji)ᵀ k (Gj Jj) for the slope k (m×m by columns, or its diagonal) of a force in the m rows of a gap
-/// between two markers: rows are pulled before k is multiplied, which takes m wrenches for each marker and not six for
-/// each pair.
+/// sink += (Gi Ji)ᵀ k (Gj Jj) for a compliant joint with m constraint functions between two markers. Its tangent k is
+/// m×m by columns, or its diagonal. The rows are projected before the multiplication by k. This requires m wrenches for
+/// each marker instead of six for each pair.
 template <int m, bool diagonal>
 void add_pulled_slope(std::array<MarkerKinematics<double> const*, 2> const& markers, double const* const (&maps)[2],
                       double const* slope, Sequence<double>& scratch, BlockSink& sink) {
   double* place = scratch.data();
   auto const take = [&](Index size) { return std::exchange(place, place + size); };
   double* const rows[2] = {take(m * markers[0]->columns), take(m * markers[1]->columns)};  // (Gi Ji)ᵀ, columns×m
-  double* const bent = take(m * std::max(markers[0]->columns, markers[1]->columns));       // the same times kᵀ
+  double* const bent = take(m * std::max(markers[0]->columns, markers[1]->columns));       // (Gj Jj)ᵀ kᵀ
   for (std::size_t i = 0; i < 2; ++i)
     if (markers[i]->columns > 0) pull_rows<m>(*markers[i], maps[i], rows[i]);
   for (std::size_t j = 0; j < 2; ++j) {

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// A sink between the blocks of a whole tangent and a system in which some unknowns depend on others, x = P y, and some
-/// rows are left out: blocks arrive as Pᵀ b P.
+/// Sink between the blocks of a full tangent and a reduced system. In the reduced system some unknowns depend on
+/// others, x = P y, and some rows are omitted. The sink adds a block b as Pᵀ b P.
 
 #include <algorithm>
 #include <list>
@@ -12,18 +12,18 @@
 
 namespace polybody {
 
-/// Where the unknowns of a whole system go.
+/// Map from the unknowns of the full system to those of the reduced system.
 template <class T = double>  // compiled where it is used
 class UnknownMapOf {
  public:
-  /// An unknown and its factor.
+  /// Unknown and its factor.
   struct Target {
-    Index unknown;  ///< in the system that is left
-    T factor;       ///< its entry of P, a factor
+    Index unknown;  ///< index in the reduced system
+    T factor;       ///< entry of P
   };
 
-  /// `targets[i]` of whole unknown i: one with factor one for most, several for a dependent one, none for one that is
-  /// left out.
+  /// `targets[i]` are the reduced unknowns of full unknown i. Most unknowns have one target with factor one. Dependent
+  /// unknowns have several targets, omitted ones none.
   explicit UnknownMapOf(Sequence<Sequence<Target>> targets = {})
       : targets_(std::move(targets)), run_end_(targets_.size()) {
     for (std::size_t i = targets_.size(); i-- > 0;) {
@@ -33,32 +33,32 @@ class UnknownMapOf {
     }
   }
 
-  /// The target of unknown `first` where `size` unknowns from it on go to consecutive targets with factor one; else −1.
+  /// Target of full unknown `first` if `size` unknowns from it on have consecutive targets with factor one; else −1.
   Index run(Index first, Index size) const {
     return run_end_[std::size_t(first)] >= first + size ? targets_[std::size_t(first)][0].unknown : -1;
   }
-  /// How many whole unknowns there are.
+  /// Number of full unknowns.
   Index size() const { return Index(targets_.size()); }
-  /// The unknowns that whole unknown i goes to, with their factors.
+  /// Reduced unknowns of full unknown i, with their factors.
   Sequence<Target> const& targets(Index i) const { return targets_[std::size_t(i)]; }
 
-  /// All unknowns that a range touches, in runs.
+  /// Range of full unknowns with their reduced unknowns, which have local numbers 0, 1, … in ascending order.
   struct Range {
-    /// Consecutive unknowns that a range touches, from the local number `local` on.
+    /// Consecutive reduced unknowns of the range.
     struct Run {
-      Index first, size, local;  ///< in order: first unknown, how many, first local number
+      Index first, size, local;  ///< first reduced unknown, number of unknowns, local number of the first
     };
-    /// Neighbours that become neighbours, with factor one: `size` from the local number `source` on.
+    /// Consecutive full unknowns with consecutive targets and factor one.
     struct Part {
-      Index first, size, source;  ///< in order: first unknown, how many, first neighbour of the range
+      Index first, size, source;  ///< first target, number of unknowns, index of the first full unknown in the range
     };
-    Index full_size = 0, size = 0;       ///< how many whole unknowns it has; how many unknowns it touches
-    Sequence<Run> runs;                  ///< these unknowns, ascending
-    Sequence<Sequence<Target>> targets;  ///< of each whole unknown, by local number
-    Sequence<Part> parts;  ///< all of it, where no whole unknown has more than one target nor another factor than one
-    bool copied = false;   ///< it is so
+    Index full_size = 0, size = 0;       ///< number of full unknowns, and of reduced unknowns
+    Sequence<Run> runs;                  ///< all reduced unknowns of the range, ascending
+    Sequence<Sequence<Target>> targets;  ///< targets of each full unknown, by local number
+    Sequence<Part> parts;                ///< the whole range if `copied` is true
+    bool copied = false;  ///< true if each full unknown of the range has at most one target, with factor one
   };
-  /// What whole unknowns from `first` on touch; `size` is how many. Searches and allocates.
+  /// Range of the `size` full unknowns from `first` on. Searches and allocates.
   Range range(Index first, Index size) const {
     Sequence<Index> touched;
     for (Index i = first; i < first + size; ++i)
@@ -97,16 +97,16 @@ class UnknownMapOf {
  private:
   bool plain(std::size_t i) const { return targets_[i].size() == 1 && targets_[i][0].factor == 1.0; }
   Sequence<Sequence<Target>> targets_;
-  Sequence<Index> run_end_;  // behind the last unknown of the run that i is in; i itself when it is not plain
+  Sequence<Index> run_end_;  // end of the run that contains unknown i; i itself if it is not plain
 };
 
-/// What a mapped sink keeps from pass to pass: ranges by their first unknown, and room for blocks, by rows.
+/// Cache of a reduced sink between passes: ranges of unknowns, and workspace for blocks, by rows.
 template <class T = double>
 struct ReducedBlocksOf {
-  Sequence<std::list<typename UnknownMapOf<T>::Range>> ranges;  ///< found so far, by their first whole unknown
-  Sequence<T> half, full;                                       ///< a block times P; Pᵀ times that
+  Sequence<std::list<typename UnknownMapOf<T>::Range>> ranges;  ///< previous ranges by their first full unknown
+  Sequence<T> half, full;                                       ///< Pᵀ b; Pᵀ b P
 
-  /// The first `size` entries of `room`, as zeros; the room grows where it must.
+  /// Sets the first `size` entries of the workspace `room` to zero and returns them. The workspace grows if necessary.
   static T* zeros(Sequence<T>& room, Index size) {
     if (room.size() < std::size_t(size)) room.resize(std::size_t(size));
     std::fill_n(room.begin(), size, 0.0);
@@ -114,7 +114,7 @@ struct ReducedBlocksOf {
   }
 };
 
-/// A sink that writes blocks of a whole system into the matrix of a step's own unknowns.
+/// Sink that adds blocks of the full system to the matrix of a time step's reduced unknowns.
 template <class T = double>
 class ReducedSinkOf {
   using Map = UnknownMapOf<T>;
@@ -123,13 +123,13 @@ class ReducedSinkOf {
   using Target = typename Map::Target;
 
  public:
-  /// \param slots are told of the way of all blocks, where the sink has slots
+  /// \param slots record the destinations of all blocks; null for a sink without slots
   ReducedSinkOf(Map const& map, Kept& kept, BlockSink& sink, ReducedSlotsOf<T>* slots = nullptr)
       : map_(map), kept_(kept), sink_(sink), slots_(slots) {
     kept_.ranges.resize(std::size_t(map.size()));
   }
 
-  /// Adds Pᵀ b P, b being a block of the whole system whose first entry is at (row, col).
+  /// Adds Pᵀ b P for a block b of the full system whose first entry is at (row, col).
   void add(Index row, Index col, BlockView const& b) {
     if (slots_) [[unlikely]]
       record(row, col, b.rows, b.cols);
@@ -154,15 +154,15 @@ class ReducedSinkOf {
       for (auto const& c : cols.runs)
         sink_.add(r.first, c.first, BlockView(full + r.local * cols.size + c.local, r.size, c.size, cols.size, 1));
   }
-  /// All blocks went as they are, and the slots know how.
+  /// True if the slots have recorded all blocks. This requires that every block is copied without factors.
   bool recorded() const { return slots_ && copies_; }
-  /// Whether the sink wants the diagonal block of the unknowns that these whole ones, [first, first + size), go to.
+  /// True if the receiver needs the values of the diagonal block of the full unknowns [first, first + size).
   bool wants(Index first, Index size) {
     if (Index const to = map_.run(first, size); to >= 0) return sink_.wants(to, size);
     auto const& runs = range(first, size).runs;
     return runs.empty() || sink_.wants(runs[0].first, runs[0].size);
   }
-  /// A block of height × width zeros.
+  /// Adds a block of height × width zeros at (row, col).
   void skip(Index row, Index col, Index height, Index width) {
     if (slots_) [[unlikely]]
       record(row, col, height, width);
@@ -205,7 +205,7 @@ class ReducedSinkOf {
         for (Index i = 0; i < rows.size; ++i) full[i * cols.size + t.unknown] += t.factor * half[i * b.cols + j];
   }
 
-  /// Found in the first pass, kept for the others.
+  /// Range of unknowns, computed in the first pass and cached for later ones.
   Range const& range(Index first, Index size) {
     auto& known = kept_.ranges[std::size_t(first)];
     for (Range const& r : known)
@@ -220,8 +220,8 @@ class ReducedSinkOf {
   bool copies_ = true;
 };
 
-using UnknownMap = UnknownMapOf<>;       ///< in doubles
-using MappedBlocks = ReducedBlocksOf<>;  ///< in doubles
-using MappedSink = ReducedSinkOf<>;      ///< in doubles
+using UnknownMap = UnknownMapOf<>;       ///< with scalar double
+using MappedBlocks = ReducedBlocksOf<>;  ///< with scalar double
+using MappedSink = ReducedSinkOf<>;      ///< with scalar double
 
 }  // namespace polybody

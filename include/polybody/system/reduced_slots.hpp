@@ -1,28 +1,28 @@
 #pragma once
 /// \file
-/// The way of whole blocks through a map of unknowns into the storage of a solver, found once: `MappedSink` looks up
-/// each block and cuts it where its unknowns part, and the solver cuts it where its nodes do. What an element of a
-/// cable leaves after that are some sixty pieces of one to nine entries.
+/// Destinations of full blocks in the storage of a solver, recorded once. `MappedSink` looks up each block and divides
+/// it by runs of reduced unknowns; the solver divides it by its nodes. A block of a cable element becomes about sixty
+/// pieces of one to nine entries.
 
 #include <polybody/math/block_sink.hpp>
 #include <polybody/math/sequence.hpp>
 
 namespace polybody {
 
-/// Receives whole blocks in the order in which it was told of them.
+/// Receiver of full blocks in the order of their recording.
 template <class T = double>  // compiled where it is used
 class ReducedSlotsOf {
  public:
   ReducedSlotsOf() = default;
-  ReducedSlotsOf(ReducedSlotsOf const&) = delete;  // its targets point to its own
+  ReducedSlotsOf(ReducedSlotsOf const&) = delete;  // targets point into `nowhere_`
   ReducedSlotsOf& operator=(ReducedSlotsOf const&) = delete;
-  ReducedSlotsOf(ReducedSlotsOf&&) = default;             ///< the targets stay where they are
-  ReducedSlotsOf& operator=(ReducedSlotsOf&&) = default;  ///< the targets stay where they are
+  ReducedSlotsOf(ReducedSlotsOf&&) = default;             ///< pointers to targets remain valid
+  ReducedSlotsOf& operator=(ReducedSlotsOf&&) = default;  ///< pointers to targets remain valid
 
-  /// It has been told of all blocks that go into this layout.
+  /// True if all blocks of this storage layout are recorded.
   bool leads_to(std::uint64_t layout) const { return complete_ && layout_ == layout; }
 
-  /// The first pass. \param slots of the receiver, where it begins to write
+  /// Begins the recording in the first pass. \param slots slots of the receiver before the first block
   void record(BlockSlots const& slots) {
     slots_ = slots;
     layout_ = slots.layout;
@@ -31,9 +31,9 @@ class ReducedSlotsOf {
     targets_.clear();
     blocks_.clear();
   }
-  /// The first pass comes to the next whole block; its parts follow by `take`.
+  /// Begins the recording of the next full block. `take` records its parts.
   void begin_block() { first_ = pieces_.size(); }
-  /// The next block of the receiver takes the part of the whole one from (row, col) on.
+  /// Records that the next block of the receiver is the part of the full block from (row, col) on.
   void take(Index row, Index col) {
     int const end = *++slots_.first;
     for (int k = slots_.first[-1]; k < end; ++k) {
@@ -42,7 +42,7 @@ class ReducedSlotsOf {
       pieces_.back().col += int(col);
     }
   }
-  /// That was all of this block of rows×cols entries. What is cut into many small pieces is scattered entry by entry.
+  /// Ends the recording of a block of rows×cols entries. A block of many small pieces is scattered entry by entry.
   void end_block(Index rows, Index cols) {
     std::size_t const count = pieces_.size() - first_;
     bool const scatters = count > 4 && std::size_t(rows * cols) < 8 * count;
@@ -60,12 +60,12 @@ class ReducedSlotsOf {
     pieces_.resize(first_);
     blocks_.back().end = first_;
   }
-  /// The first pass has ended: all blocks are known.
+  /// Ends the recording.
   void complete() { complete_ = true; }
 
-  /// The blocks come anew, from the first on.
+  /// Begins a later pass with the first block.
   void begin() { next_ = 0; }
-  /// Adds the next block to the receiver's storage; places were found in the first pass.
+  /// Adds the next block to the receiver's storage, at the recorded destinations.
   void add(Index, Index, BlockView const& b) {
     Block const& block = blocks_[next_++];
     for (std::size_t k = block.first; k < block.end; ++k) pieces_[k].add(b);
@@ -77,24 +77,24 @@ class ReducedSlotsOf {
       to += b.cols;
     }
   }
-  /// The next block is zero.
+  /// Skips the next block, which is zero.
   void skip(Index, Index, Index, Index) { ++next_; }
 
  private:
   struct Block {
-    std::size_t first, end, target;  ///< pieces, or where its entries go
-    bool scatters;
+    std::size_t first, end, target;  ///< range of pieces, and index of the first target
+    bool scatters;                   ///< true if the targets are used, not the pieces
   };
   BlockSlots slots_;
   std::uint64_t layout_ = 0;
   bool complete_ = false;
   Sequence<Block> blocks_;
   Sequence<BlockPiece> pieces_;
-  Sequence<T*> targets_;  // of entries, row by row
-  Sequence<T> nowhere_ = Sequence<T>(1);
+  Sequence<T*> targets_;                  // destinations of single entries, row by row
+  Sequence<T> nowhere_ = Sequence<T>(1);  // destination of entries without a piece
   std::size_t first_ = 0, next_ = 0;
 };
 
-using MappedSlots = ReducedSlotsOf<>;  ///< in doubles
+using MappedSlots = ReducedSlotsOf<>;  ///< with scalar double
 
 }  // namespace polybody

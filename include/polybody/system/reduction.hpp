@@ -1,9 +1,9 @@
 #pragma once
 /// \file
-/// Which unknowns of a model a time step has once policies have eliminated others: narrow vectors hold them, whole ones
-/// everything.
-///   q, v: coordinates of bodies that no joint carries, without those that depend on others; joint coordinates and
-///   deformations of carried bodies; first-order states. rows: those of joints and bodies that stay.
+/// Reduction of a model's unknowns to those of a time step. Reduced vectors contain the unknowns that no policy
+/// eliminates, full vectors contain all unknowns. Reduced vectors q and v consist of the independent coordinates of
+/// bodies without a carrying joint, of the joint coordinates and deformations of carried bodies, and in v of
+/// first-order states. The reduced multipliers are those of the remaining constraint equations of joints and bodies.
 
 #include <algorithm>
 
@@ -15,12 +15,12 @@
 
 namespace polybody {
 
-/// Which coordinates leave the equations of a step: those of recursive joints, by a tree, and those of linear joints.
-/// \tparam T scalar of the vectors
+/// Elimination of coordinates from a time step: by joints with joint coordinates, which form a tree, and by linear
+/// joints. \tparam T scalar of the vectors
 template <class T = double>
 class ReductionOf {
  public:
-  /// \throws InvalidInput where recursive joints close a loop; InconsistentInitialConditions where linear joints
+  /// \throws InvalidInput if joints with joint coordinates close a loop, InconsistentInitialConditions if linear joints
   /// contradict each other.
   template <class M>
   explicit ReductionOf(M const& model) : linear_(model.linear_rows()) {
@@ -37,21 +37,20 @@ class ReductionOf {
     number_rows(gone, model.nonholonomic_equations());
   }
 
-  Index coordinates() const { return coordinates_; }                ///< nq of narrow vectors
-  Index velocities() const { return velocities_; }                  ///< nv of narrow vectors
-  Index rows() const { return Index(rows_.size()); }                ///< rows that stay
-  JointTreeOf<T> const& tree() const { return tree_; }              ///< bodies that recursive joints carry
-  LinearEliminationOf<T> const& linear() const { return linear_; }  ///< coordinates that linear joints eliminate
-  /// In the order in which `for_each_body` goes.
+  Index coordinates() const { return coordinates_; }                ///< number of reduced coordinates
+  Index velocities() const { return velocities_; }                  ///< number of reduced velocities
+  Index rows() const { return Index(rows_.size()); }                ///< number of remaining constraint equations
+  JointTreeOf<T> const& tree() const { return tree_; }              ///< tree of bodies with joint coordinates
+  LinearEliminationOf<T> const& linear() const { return linear_; }  ///< elimination by linear joints
+  /// Positions of the bodies in the reduced vectors, in the order of `for_each_body`.
   Sequence<ReducedPosition> const& places() const { return places_; }
-  /// Rows that stay, by their number in the model.
+  /// Indices of the remaining constraint equations in the model.
   Sequence<Index> const& remaining_equations() const { return rows_; }
-  /// Those of them that are of velocity level, by their narrow number.
+  /// Indices of the nonholonomic equations among the remaining ones.
   Sequence<Index> const& nonholonomic_equations() const { return velocity_rows_; }
-  /// The speed of the whole model behind the narrow one i: of a joint coordinate, the first of the body that it
-  /// carries.
+  /// Full velocity index of reduced velocity i. For a joint coordinate this is the first velocity of the carried body.
   Index full_velocity(Index i) const { return full_speed_[std::size_t(i)]; }
-  /// Place in the tree of the body that the joint with this first row carries.
+  /// Index in the tree of the body that is carried by the joint whose first constraint equation is `row`.
   Index carried_by(Index row) const { return carried_by_[std::size_t(row)]; }
 
   /// Copies the coordinates that both states have from the `reduced` to the `full` ones.
@@ -70,22 +69,22 @@ class ReductionOf {
   void reduce_velocities(VecXOf<T> const& full, VecXOf<T>& reduced) const {
     for (auto const& [n, w] : same_v_) reduced[n] = full[w];
   }
-  /// Multipliers of the `full` state from the `reduced` ones. Equations that a policy eliminates get zero.
+  /// Copies the `reduced` multipliers to the `full` ones. Multipliers of eliminated equations are set to zero.
   void expand_rows(VecX const& reduced, VecX& full) const {
     full.setZero();
     for (std::size_t i = 0; i < rows_.size(); ++i) full[rows_[i]] = reduced[Index(i)];
   }
-  /// Multipliers of the `reduced` state: the entries of `full` whose equations stay.
+  /// Copies the `full` multipliers of the remaining equations to the `reduced` ones.
   void reduce_rows(VecX const& full, VecX& reduced) const {
     for (std::size_t i = 0; i < rows_.size(); ++i) reduced[Index(i)] = full[rows_[i]];
   }
 
  private:
-  /// A joint of the tree before it hangs.
+  /// Attachment of a joint to a body, before the construction of the tree.
   struct BodyAttachment {
-    Index body = -1;  ///< −1: the ground
+    Index body = -1;  ///< index of the body; −1: the ground
     Placement frame;
-    FloatingEndOf<T> end = {};  ///< instead of the frame, on a body that deforms
+    FloatingEndOf<T> end = {};  ///< replaces the frame on a flexible body
   };
   struct Link {
     std::string name;
@@ -94,7 +93,7 @@ class ReductionOf {
     JointMotions motions;
   };
 
-  /// Where a body stands in the whole model.
+  /// First coordinate and velocity of a body in the model, and their numbers.
   struct Extent {
     Index q0, nq, v0, nv;
   };
@@ -158,7 +157,7 @@ class ReductionOf {
                                      std::span<T const>(q, std::size_t(body.coordinates())),
                                      std::span<T const>(v, std::size_t(body.velocities())), out);
   }
-  /// Its number in the tree; −1 for a frame on a rigid body or the ground.
+  /// Adds a floating end to the tree and returns its index; −1 for a frame on a rigid body or the ground.
   Index add_end(BodyAttachment const& hook) {
     if (!hook.end.evaluate_marker) return -1;
     FloatingEndOf<T> end = hook.end;
@@ -167,7 +166,7 @@ class ReductionOf {
     return Index(tree_.ends.size()) - 1;
   }
 
-  /// Mass and inertia from the body's mass matrix, which is constant.
+  /// Reads mass and inertia from the constant mass matrix of the body.
   template <class B>
   static void read_masses(B const& body, TreeBody& out) {
     constexpr int n = B::element_columns;
@@ -181,17 +180,18 @@ class ReductionOf {
       for (int j = 0; j < turns; ++j) out.inertia(3 - turns + i, 3 - turns + j) = m(n - turns + i, n - turns + j);
   }
 
-  /// \throws InvalidInput naming the first joint, as they were connected, between bodies that joints before it connect.
+  /// Requires links without loops. \throws InvalidInput naming the first joint, in the order of connection, that closes
+  /// a loop.
   static void require_tree(std::size_t bodies, Sequence<Link> const& links);
 
-  /// Breadth first from the ground, then from a body of each part that is left: every joint carries one body. Bodies
-  /// without a recursive joint only with `all`, as roots.
+  /// Builds the tree breadth first, from the ground and then from one body of each remaining part. Every joint carries
+  /// one body. If `all` is true, bodies without such a joint become roots.
   void hang(Sequence<TreeBody> const& bodies, Sequence<Link> const& links, VecX const& reference, bool all);
 
   void number_unknowns(Sequence<Extent> const& extents, Index coordinates, Index velocities, Index states) {
     Sequence<bool> dependent_v(std::size_t(velocities), false), dependent_q(std::size_t(coordinates), false);
     for (auto const& d : linear_.dependents()) dependent_v[std::size_t(d.v)] = dependent_q[std::size_t(d.q)] = true;
-    Sequence<Index> in_tree(std::size_t(velocities) + 1, -1);  // by first speed
+    Sequence<Index> in_tree(std::size_t(velocities) + 1, -1);  // by first velocity
     for (std::size_t i = 0; i < tree_.bodies.size(); ++i) in_tree[std::size_t(tree_.bodies[i].v0)] = Index(i);
     places_.resize(extents.size());
     Sequence<std::size_t> order(extents.size());
@@ -240,7 +240,7 @@ class ReductionOf {
     }
   }
 
-  /// \param gone the rows that policies eliminate
+  /// \param gone true for each constraint equation that a policy eliminates
   void number_rows(Sequence<bool> const& gone, Sequence<Index> const& of_velocity) {
     for (Index i = 0; i < Index(gone.size()); ++i)
       if (!gone[std::size_t(i)]) rows_.push_back(i);
@@ -253,7 +253,7 @@ class ReductionOf {
   Sequence<Index> order_;
   Index coordinates_ = 0, velocities_ = 0;
   Sequence<ReducedPosition> places_;
-  Sequence<std::pair<Index, Index>> same_q_, same_v_;  // narrow, whole
+  Sequence<std::pair<Index, Index>> same_q_, same_v_;  // reduced index, full index
   Sequence<Index> full_speed_, rows_, velocity_rows_, carried_by_;
 };
 
@@ -285,7 +285,7 @@ void ReductionOf<T>::hang(Sequence<TreeBody> const& bodies, Sequence<Link> const
   require_tree(bodies.size(), links);
   Sequence<Index> place(bodies.size(), -1);
   Sequence<bool> used(links.size(), false);
-  Sequence<Sequence<std::size_t>> links_of(bodies.size() + 1);  // ascending; those of the ground are the first
+  Sequence<Sequence<std::size_t>> links_of(bodies.size() + 1);  // entry 0: links of the ground; entry i + 1: of body i
   for (std::size_t k = 0; k < links.size(); ++k) {
     links_of[std::size_t(links[k].a.body + 1)].push_back(k);
     links_of[std::size_t(links[k].b.body + 1)].push_back(k);
@@ -337,6 +337,6 @@ void ReductionOf<T>::hang(Sequence<TreeBody> const& bodies, Sequence<Link> const
     if (place[i] < 0) tree_.bodies.push_back(bodies[i]);
 }
 
-using Reduction = ReductionOf<>;  ///< in doubles
+using Reduction = ReductionOf<>;  ///< with scalar double
 
 }  // namespace polybody
