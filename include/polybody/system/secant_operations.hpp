@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// A model over a step from q₀ to q₁: forces, rows and markers by secants, so that the step knows the change of every
-/// potential and of every row to rounding [Gonzalez 1996, 1999]:
-///   f·Δq = −ΔV less what is damped,   Ḡ Δq = ΔΦ.
+/// Evaluation of a model over a step from q₀ to q₁: forces, constraint functions and markers by secants. The changes of
+/// every potential and constraint function are then exact to round-off [Gonzalez 1996, 1999]:
+///   f·Δq = −ΔV minus the dissipated energy,   Ḡ Δq = ΔΦ.
 
 #include <polybody/math/secant.hpp>
 #include <polybody/math/sequence.hpp>
@@ -13,7 +13,7 @@
 
 namespace polybody::detail {
 
-/// Calls f(pool, vector) for the pools of a model and what stands beside them.
+/// Calls f(pool, entry) for each pool of a model and its entry of the parallel tuple `vectors`.
 template <class Pools, class Vectors, class F>
 void for_each_pool_beside(Pools const& pools, Vectors& vectors, F&& f) {
   [&]<std::size_t... I>(std::index_sequence<I...>) {
@@ -21,7 +21,8 @@ void for_each_pool_beside(Pools const& pools, Vectors& vectors, F&& f) {
   }(std::make_index_sequence<std::tuple_size_v<Pools>>{});
 }
 
-/// Place and axes of a marker (r, then A column by column) at both ends, and their slopes by its columns.
+/// Position and axes of a marker (r, then A column by column) at both ends of a step, and their secant slopes with
+/// respect to its columns.
 struct MarkerSecant {
   std::array<double, 12> from = {}, to = {};
   double* slopes = nullptr;  ///< 12×columns
@@ -31,8 +32,8 @@ struct MarkerSecant {
 template <int m>
 struct GapSecant {
   Vec<double, m> from, to;
-  double* rows_a = nullptr;  ///< Ḡ by the columns of marker a, m×columns
-  double* rows_b = nullptr;
+  double* rows_a = nullptr;  ///< Ḡ with respect to the columns of marker a, m×columns
+  double* rows_b = nullptr;  ///< Ḡ with respect to the columns of marker b, m×columns
 };
 
 template <class B>
@@ -48,7 +49,7 @@ struct NearbySecants<std::tuple<BodyPool<Bs>...>, std::tuple<Sequence<JointEntry
   using Gaps = std::tuple<Sequence<GapSecant<Js::rows>>...>;
 };
 
-/// The frame of a marker whose twelve numbers are variables of S, a `Secant`, from `first` on.
+/// Frame of a marker with its twelve numbers as variables `first`, `first` + 1, … of S, a `Secant`.
 template <class S>
 Frame<S> frame_of(MarkerSecant const& m, int first) {
   Frame<S> f;
@@ -62,7 +63,7 @@ Frame<S> frame_of(MarkerSecant const& m, int first) {
   return f;
 }
 
-/// By the columns of a marker, what is given by its twelve numbers.
+/// Slope with respect to a column of a marker, from the slopes `by_frame` (12) with respect to its twelve numbers.
 inline double pulled(MarkerSecant const& m, double const* by_frame, Index column) {
   double sum = 0.0;
   for (int j = 0; j < 12; ++j) sum += by_frame[j] * m.slopes[12 * column + j];
@@ -137,7 +138,8 @@ class TypedSecants {
   TypedSecants(TypedSecants const&) = delete;  // markers and gaps point into the arenas
   TypedSecants& operator=(TypedSecants const&) = delete;
 
-  /// Takes the step. Rows that depend on time are taken at its end; loads in its middle, at which the system stands.
+  /// Sets the step, and evaluates markers and constraint functions. Constraint functions of time are evaluated at its
+  /// end. Loads are evaluated at its midpoint, like the data of the system.
   void evaluate(SecantStep const& step) {
     step_ = step;
     means_ = {1.0 / step.h, step.decay};
@@ -189,8 +191,9 @@ class TypedSecants {
     });
   }
 
-  /// [M + s K̄, Ḡᵀ; Ḡ, 0] into `sink`, K̄ = −∂f/∂q₁ nearly: symmetric, without the change of Ḡ; Ḡ stands for ∂Φ/∂q₁. Both
-  /// are off by the share of a turn that a body makes in the step, and so Newton's method contracts.
+  /// Adds [M + s K̄, Ḡᵀ; Ḡ, 0] to `sink`. K̄ is a symmetric approximation of −∂f/∂q₁ without the change of Ḡ, and Ḡ
+  /// approximates ∂Φ/∂q₁. Their relative errors are about the fraction of a revolution that a body makes in the step.
+  /// Newton's method therefore contracts.
   void tangent(double s, BlockSink& sink) {
     Index const row0 = model_.velocities();
     model_.for_each_body([&](auto const& e) {
@@ -314,8 +317,8 @@ class TypedSecants {
     sink.add(a.first, b.first, k);
   }
 
-  /// r −= what force element e does: a potential by secants and beside it what depends on the speeds, in the middle;
-  /// else the whole force in the middle.
+  /// Subtracts the generalised forces of force element e from r. With a potential they are its negative discrete
+  /// gradient plus the velocity-dependent forces at the midpoint of the step, otherwise all forces at the midpoint.
   template <class Entry>
   void add_force(Data<double> const& data, Entry const& e, VecX& r) const {
     using F = std::decay_t<decltype(e.force)>;
@@ -357,7 +360,7 @@ class TypedSecants {
   using Beside = NearbySecants<typename M::BodyPools, typename M::JointPools>;
   typename Beside::Scratch bodies_;
   typename Beside::Gaps gaps_;
-  Sequence<double> slopes_, rows_, scratch_;  ///< arenas of the markers and the gaps; room for one block
+  Sequence<double> slopes_, rows_, scratch_;  ///< arenas of markers and constraint functions; workspace for one block
   VecX middle_;
 };
 

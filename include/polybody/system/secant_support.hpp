@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What bodies, policies and forces must offer a step that conserves energy.
+/// Requirements of energy-conserving integration on bodies, policies and forces.
 
 #include <polybody/bodies/shared/discrete_force.hpp>
 #include <polybody/math/secant.hpp>
@@ -9,12 +9,12 @@
 
 namespace polybody {
 
-/// A policy whose force is linear in the gap, so that its mean over a step is that of the mean gap; or one that brings
-/// rows.
+/// Policy with constraint equations, or with a force that is linear in the constraint violation. The mean of a linear
+/// force over a step is the force at the mean violation.
 template <class P>
 concept HasMeanMultiplier = ConstrainingPolicy<P> || requires { requires P::linear; };
 
-/// A force element whose potential may be asked on secants.
+/// Force element with a potential that can be evaluated with secants.
 template <class F>
 concept HasSecantPotential =
     requires(F const force, std::array<Frame<Secant<12 * F::markers>>, F::markers> const frames, double t) {
@@ -23,7 +23,8 @@ concept HasSecantPotential =
 
 namespace detail {
 
-/// A force that stores energy gives it on secants, too; a group of forces is judged by itself.
+/// True if a force element has no potential, or one that can be evaluated with secants. `SecantSupportOf::elements`
+/// excludes force groups.
 template <class F>
 constexpr bool gives_secants() {
   if constexpr (ForceGroup<F>)
@@ -47,15 +48,15 @@ struct SecantSupportOf<std::tuple<BodyPool<Bs>...>, std::tuple<Sequence<JointEnt
 
 }  // namespace detail
 
-/// A model that is stepped whole, as no policy eliminates anything.
+/// Model without policies that eliminate unknowns. Its time steps use the full state.
 template <class M>
 concept FullStateModel = !M::eliminates;
 
-/// What model M offers a step that conserves energy.
+/// Support of energy-conserving integration by the parts of model M.
 template <class M>
 using SecantSupport = detail::SecantSupportOf<typename M::BodyPools, typename M::JointPools, typename M::ForcePools>;
 
-/// What a step that conserves energy asks of a model.
+/// Model that supports energy-conserving integration.
 template <class M>
 concept HasSecants = FullStateModel<M> && SecantSupport<M>::all;
 

@@ -5,19 +5,19 @@
 
 namespace polybody {
 
-/// The state of a model. First-order states z are speeds without a coordinate: they stand behind the speeds of the
-/// bodies in v, and ż in a.
+/// State of a model. First-order states z have no coordinate. They follow the generalised velocities of the bodies in
+/// v, and ż follows the accelerations in a.
 template <StateScalar T = double>
 struct StateOf {
-  VecXOf<T> q;        ///< (nq) coordinates
-  VecXOf<T> v;        ///< (nv) speeds, then first-order states
-  VecXOf<T> a;        ///< (nv) rates of the speeds
-  VecXOf<T> lambda;   ///< (rows) multipliers; the joints' generalised force is −Gᵀλ
+  VecXOf<T> q;        ///< (nq) generalised coordinates
+  VecXOf<T> v;        ///< (nv) generalised velocities, then first-order states
+  VecXOf<T> a;        ///< (nv) time derivative of v
+  VecXOf<T> lambda;   ///< (rows) multipliers; the generalised force of the joints is −Gᵀλ
   double t = 0.0;     ///< time [s]
-  VecXOf<T> history;  ///< what the integrator carries from step to step beside the above
+  VecXOf<T> history;  ///< integrator history: further numbers that the integrator needs in the next step
 };
 
-using State = StateOf<double>;  ///< in doubles
+using State = StateOf<double>;  ///< with scalar double
 
 namespace detail {
 [[noreturn, gnu::cold]] inline void refuse_unfitting_state() {

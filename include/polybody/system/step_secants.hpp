@@ -1,45 +1,45 @@
 #pragma once
 /// \file
-/// A system over a step from q₀ to q₁: forces, rows and markers by secants, so that the step knows the change of every
-/// potential and of every row to rounding [Gonzalez 1996, 1999]:
-///   f·Δq = −ΔV less what is damped,   Ḡ Δq = ΔΦ.
+/// Evaluation of a system over a step from q₀ to q₁: forces, constraint functions and markers by secants. The changes
+/// of every potential and constraint function are then exact to round-off [Gonzalez 1996, 1999]:
+///   f·Δq = −ΔV minus the dissipated energy,   Ḡ Δq = ΔΦ.
 
 #include <polybody/system/system.hpp>
 
 namespace polybody {
 
-/// A step of length h from q0 at t to q1; `decay` as in `DiscreteDerivative`.
+/// Step of length h from q0 at time t to q1.
 struct SecantStep {
-  VecX const* q0 = nullptr;              ///< (nq) coordinates at its begin
+  VecX const* q0 = nullptr;              ///< (nq) coordinates at its beginning
   VecX const* q1 = nullptr;              ///< (nq) coordinates at its end
-  double t = 0.0, h = 0.0, decay = 0.0;  ///< t [s], h [s], and the factor of lost strain energy
-  VecX const* v0 = nullptr;              ///< the first-order states behind the speeds at t
-  VecX const* a = nullptr;               ///< and their rates over the step
+  double t = 0.0, h = 0.0, decay = 0.0;  ///< t [s], h [s], factor of dissipated strain energy (`DiscreteDerivative`)
+  VecX const* v0 = nullptr;              ///< (nv) velocities at t; only the first-order states are read
+  VecX const* a = nullptr;               ///< (nv) rates over the step; only those of first-order states are read
 };
 
-/// A model's entries for such steps; `self` is what `make` made.
+/// Functions of a model for such steps. `self` is the result of `make`.
 struct SecantOperations {
-  /// Room for a model's secants.
+  /// Allocates the workspace for the secants of a model.
   std::shared_ptr<void> (*make)(void const* m, Data<double> const& data);
-  void (*evaluate)(void* self, SecantStep const& step);  ///< sets the step at which the others are asked
+  void (*evaluate)(void* self, SecantStep const& step);  ///< sets the step for the other functions
   /// r = M a − f + Ḡᵀλ over the step.
   void (*residual)(void* self, Data<double> const& data, VecX const& a, VecX const& lambda, VecX& r);
   void (*violation)(void* self, VecX& phi);                    ///< Φ(q₁)
   void (*tangent)(void* self, double scale, BlockSink& sink);  ///< [M + scale K̄, Ḡᵀ; Ḡ, 0]
 };
 
-/// Mean forces, rows and tangents over a step, for methods that conserve energy.
+/// Mean forces, constraint Jacobians and tangents over a step, for energy-conserving integration.
 class StepSecants {
  public:
-  /// \throws InvalidInput for a system that was made without `Capabilities::secants`.
+  /// Allocates the workspace. \throws InvalidInput for a system that was made without `Capabilities::secants`.
   explicit StepSecants(System const& system)
       : entries_(require_entry(system.entries().first.secants, "secants")),
         self_(entries_->make(system.entries().second, system.data())),
         middle_(VecX::Zero(system.coordinates())),
         speed_(VecX::Zero(system.velocities())) {}
 
-  /// Takes the step. Rows that depend on time are taken at its end; loads and first-order states in its middle, where
-  /// `system` is then evaluated.
+  /// Sets the step. Constraint functions of time are evaluated at its end, loads and first-order states at its
+  /// midpoint. Afterwards `system` is evaluated at the midpoint.
   void evaluate(System& system, SecantStep const& step) {
     h_ = step.h;
     Index const bodies = system.layout().body_velocities();
@@ -55,15 +55,17 @@ class StepSecants {
   }
   /// Φ(q₁).
   void violation(VecX& phi) const { entries_->violation(self_.get(), phi); }
-  /// [M + s K̄, Ḡᵀ; Ḡ, 0] into `sink`, K̄ = −∂f/∂q₁ nearly: symmetric, without the change of Ḡ; Ḡ stands for ∂Φ/∂q₁. Both
-  /// are off by the share of a turn that a body makes in the step, and so Newton's method contracts.
+  /// Adds [M + s K̄, Ḡᵀ; Ḡ, 0] to `sink`. K̄ is a symmetric approximation of −∂f/∂q₁ without the change of Ḡ, and Ḡ
+  /// approximates ∂Φ/∂q₁. Their relative errors are about the fraction of a revolution that a body makes in the step.
+  /// Newton's method therefore contracts.
   void tangent(System& system, double s, BlockSink& sink) {
     entries_->tangent(self_.get(), s, sink);
     system.tangent_of(TangentPart::force_elements, {.damping = s / h_, .stiffness = 0.5 * s, .states = 0.5 * h_}, sink);
   }
 
-  /// [M + s K̄, Ḡᵀ; G(q₁), 0] of `step`, K̄ with ½ ∂(Gᵀλ)/∂q in the middle, as Ḡ is G there for rows that are quadratic
-  /// in q. Where G loses rank within a step, Ḡ and G(q₁) do not even turn alike.
+  /// Adds [M + s K̄, Ḡᵀ; G(q₁), 0] of `step` to `sink`. K̄ includes ½ ∂(Gᵀλ)/∂q at the midpoint, since Ḡ equals G there
+  /// for constraint functions that are quadratic in q. If G loses rank within the step, Ḡ does not approximate G(q₁):
+  /// even their directions of rotation can differ.
   void exact_tangent(System& system, SecantStep const& step, double s, VecX const& lambda, BlockSink& sink) {
     evaluate(system, step);
     Half forces{sink, system.velocities(), true}, rows{sink, system.velocities(), false};
@@ -71,14 +73,14 @@ class StepSecants {
     entries_->tangent(self_.get(), s, to_forces);
     system.tangent_of(TangentPart::force_elements, {.damping = s / h_, .stiffness = 0.5 * s, .states = 0.5 * h_}, sink,
                       &lambda);
-    SecantStep end = step;  // of no length, so that its secants are tangents
+    SecantStep end = step;  // step of zero length: its secants are tangents
     end.q0 = step.q1;
     entries_->evaluate(self_.get(), end);
     entries_->tangent(self_.get(), s, to_rows);
   }
 
  private:
-  /// Passes on the equations of motion, or G.
+  /// Sink that passes on the rows of the equations of motion, or those of G.
   struct Half {
     BlockSink& sink;
     Index velocities;

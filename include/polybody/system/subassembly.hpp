@@ -1,24 +1,24 @@
 #pragma once
 /// \file
-/// A model seen by some of its types.
+/// Access to a model by some of its types.
 
 #include <polybody/system/model.hpp>
 
 namespace polybody {
 
-/// Adds to a model what needs these types only, so that what builds a hull or a suspension is compiled once, for all
-/// models that have them among their types:
+/// Part of a model that uses some of its types only. A function that builds a hull or a suspension is then compiled
+/// once for all models with these types:
 ///   Subassembly<Bodies<Rigid<>>, Joints<Joint<Revolute, Constraint>>, Forces<SpringDamper>> hull(model);
 ///   auto const wheel = hull.add(body, "wheel");
 ///   hull.connect(Joint{Revolute{.axis = axis}}, arm.at({0, 0, 0}), wheel.at({0, 0, 0}), "axle");
-/// Handles are those of the model, which must outlive it.
+/// The handles are those of the model. The model must outlive the subassembly.
 template <class BodyList, class JointList = Joints<>, class ForceList = Forces<>>
 class Subassembly;
-/// Bodies, joints and forces that are made once and added to several models.
+/// Subassembly with bodies, joints and forces of these types.
 template <Body... Bs, class... Js, AppliedForce... Fs>
 class Subassembly<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
  public:
-  /// Adds to `model`, which must have all types of the subassembly.
+  /// Refers to `model`, which must have all types of the subassembly.
   template <class AllBodies, class AllJoints, class AllForces>
   explicit Subassembly(Model<AllBodies, AllJoints, AllForces>& model)
       : parts_(model.parts_),
@@ -26,7 +26,7 @@ class Subassembly<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
         joints_(&std::get<Sequence<detail::JointEntry<Js>>>(model.joints_)...),
         forces_(&std::get<Sequence<detail::ForceEntry<Fs>>>(model.forces_)...) {}
 
-  /// As `Model::add`.
+  /// Adds a body, like `Model::add`.
   template <OneOf<Bs...> B>
   BodyHandle<B> add(B const& body, std::string name = "") {
     return detail::add_body(parts_, pool_of<B>(), body, std::move(name));
@@ -34,7 +34,7 @@ class Subassembly<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
 
   BodyHandle<Ground> ground() const { return {parts_.serial(), 0, "ground"}; }  ///< the ground of the model
 
-  /// As `Model::connect`.
+  /// Joins marker a to marker b, like `Model::connect`.
   template <OneOf<Js...> J, class A, class B>
   ElementHandle<J> connect(J const& joint, Marker<A> const& a, Marker<B> const& b, std::string name = "") {
     detail::require_pairing<J, A, B>();
@@ -42,7 +42,7 @@ class Subassembly<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
                              std::move(name));
   }
 
-  /// As `Model::apply`, between two markers.
+  /// Applies a force element between two markers, like `Model::apply`.
   template <OneOf<Fs...> F, class A, class B>
     requires(F::markers == 2)
   ElementHandle<F> apply(F const& force, Marker<A> const& a, Marker<B> const& b, std::string name = "") {
@@ -50,7 +50,7 @@ class Subassembly<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
                   "This force needs a marker with axes or a tangent, but this body provides less.");
     return detail::add_force(parts_, forces_of<F>(), force, std::move(name), pooled(a), pooled(b));
   }
-  /// As `Model::apply`, of a group to its many markers.
+  /// Applies a force group to its many markers, like `Model::apply`.
   template <OneOf<Fs...> F, class A>
     requires ForceGroup<F>
   ElementHandle<F> apply(F const& group, std::vector<Marker<A>> const& many, std::string name = "") {
@@ -60,7 +60,7 @@ class Subassembly<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     for (Marker<A> const& m : many) pooled_many.push_back(pooled(m));
     return detail::add_group(parts_, forces_of<F>(), group, pooled_many, std::move(name));
   }
-  /// As `Model::add_partner`, by `law`.
+  /// Adds a partner at marker `one` to a force group, like `Model::add_partner`.
   template <OneOf<Fs...> F, class Law, class A>
     requires ForceGroup<F>
   void add_partner(ElementHandle<F> const& group, Law const& law, Marker<A> const& one, std::string name = "") {

@@ -1,30 +1,31 @@
 #pragma once
 /// \file
-/// `System`, waist 3, whole: the class (`basic_system.hpp`), what its functions do (`system_operations.hpp`), and what
-/// one asks of it beside.
+/// `System`, the interface between models and algorithms: the class (`basic_system.hpp`), its member functions
+/// (`system_operations.hpp`) and related free functions.
 
 #include <polybody/math/sequence.hpp>
 #include <polybody/system/system_operations.hpp>
 
 namespace polybody {
 
-/// The equations of a model or of a user, as integrators, solvers and analyses see them: `BasicSystem` in doubles.
+/// Equations of a model or of a user for integrators, solvers and analyses: `BasicSystem` with scalar double.
 using System = BasicSystem<double>;
 
-/// The state of a time step next to a whole one: exact where this one keeps to the eliminated joints. The integrator
-/// starts afresh.
+/// Reduced state of a time step for the full state x. It is exact if x satisfies the constraint equations of the
+/// eliminated joints. If policies eliminate unknowns, the result has no integrator history.
 template <class = void>
 State reduce(System const& s, State const& x) {
   State out = x;
   if (Coordinates const& c = s.step_coordinates()) c.entries->reduced(c.self.get(), x, out);
   return out;
 }
-/// Multipliers that a step may keep: of its rows, and estimates for the joints that carry bodies (`ReducedLayout`).
+/// Number of multipliers that a step can keep: those of its constraint equations, and estimates for the joints that
+/// carry bodies (`ReducedLayout`).
 inline Index multipliers_of(System const& s) {
   return s.rows() + (s.step_coordinates() ? Index(s.step_coordinates().reduced->eliminated_equations.size()) : 0);
 }
-/// The whole state of a stepped one, with what eliminated joints hold as multipliers: those of the step where it keeps
-/// all of them, else worked out. `r` is scratch.
+/// Writes the full state of the reduced state `stepped` to x, with the multipliers of eliminated joints. These are
+/// copied if the step keeps all multipliers, otherwise computed. `r` is workspace.
 template <StateScalar T>
 void expand(BasicSystem<T>& s, StateOf<T> const& stepped, StateOf<T>& x, VecXOf<T>& r) {
   CoordinatesOf<T> const& c = s.step_coordinates();
@@ -53,7 +54,7 @@ void expand(BasicSystem<T>& s, StateOf<T> const& stepped, StateOf<T>& x, VecXOf<
   x.history = stepped.history;
 }
 
-/// Puts estimates for the joints that carry bodies behind the multipliers of a stepped state with accelerations.
+/// Appends estimates for the joints that carry bodies to the multipliers of a reduced state with known accelerations.
 template <class = void>
 [[gnu::cold]] void append_multipliers(System& s, State& stepped) {
   if (multipliers_of(s) == s.rows()) return;
@@ -69,7 +70,7 @@ template <class = void>
   stepped.lambda.swap(all);
 }
 
-/// `rate` = q˙ when the model moves with speeds v; `room` (2 nq + nv of the whole model) is scratch.
+/// Writes q̇ for the generalised velocities v to `rate`. `room` (2 nq + nv of the full model) is workspace.
 template <class = void>
 void coordinate_rates(System const& s, VecX const& q, VecX const& v, VecXOf<Dual<1>>& room, VecX& rate) {
   Coordinates const& c = s.step_coordinates();
@@ -79,7 +80,7 @@ void coordinate_rates(System const& s, VecX const& q, VecX const& v, VecXOf<Dual
                                                                   room, rate);
 }
 
-/// Name of the body that coordinate i of the system's steps belongs to.
+/// Name of the body of coordinate i of the system's time steps.
 template <class = void>
 std::string name_of_coordinate(System const& s, Index i) {
   Coordinates const& c = s.step_coordinates();
@@ -92,7 +93,7 @@ std::string name_of_coordinate(System const& s, Index i) {
   return "unknown";
 }
 
-/// M does not depend on q.
+/// True if M does not depend on q.
 inline bool has_constant_mass(System const& s) {
   return s.layout().constant_mass && (!s.step_coordinates() || s.step_coordinates().reduced->keeps_mass_constant);
 }

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What the functions of `BasicSystem` do. They stand outside the class so that a program that links
+/// Member functions of `BasicSystem`. Their definitions are outside the class so that a program that links
 /// `polybody::compiled` does not compile them again.
 
 #include <polybody/system/basic_system.hpp>
@@ -54,8 +54,8 @@ void BasicSystem<T>::use_threads(int threads) {
   entries_.share_loops(model_, data_, *workers_);
 }
 
-/// M a − f + Gᵀλ of the whole model where it was evaluated last, by the accelerations and multipliers of a step in
-/// joint coordinates.
+/// Residual M a − f + Gᵀλ of the full model in the last evaluated state, for the accelerations and multipliers of a
+/// reduced step.
 template <class T>
 VecXOf<T> const& residual_of_bodies(BasicSystem<T>& s, VecXOf<T> const& a, VecXOf<T> const& lambda) {
   s.coordinates_.entries->expand_rates(s.coordinates_.self.get(), a, true, s.full_a_);
@@ -166,7 +166,7 @@ void BasicSystem<T>::write_tangent(TangentCoefficients c, SecondOrder second, Ve
   if (c.full) entries_.load_stiffness(model_, at(), c, data_, sink);
 }
 
-/// M a − f of the whole model at v̇ = 0 where it was evaluated last, without the forces of its rows.
+/// Residual M v̇ − f + Gᵀλ of the full model in the last evaluated state, at v̇ = 0 and λ = 0.
 template <class T>
 VecXOf<T> const& unbalance(BasicSystem<T>& s) {
   s.full_a_.setConstant(s.layout_.velocities, T(0.0));

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The parts of a `JointTree`: its bodies, where they are, and how a frame runs through the motions of a joint.
+/// Parts of a `JointTree`: its bodies, their frames, and the kinematics of a frame along the motions of a joint.
 
 #include <string>
 
@@ -11,47 +11,47 @@
 
 namespace polybody {
 
-/// A joint of one turn x in constants: in the parent's axes n, and in space the quaternion from the parent's axes to
-/// the body's, still cos(x/2) + turning sin(x/2).
+/// Constants of a joint with a single rotation by x. Its axis is n in the parent's axes. In space, the quaternion from
+/// the parent's axes to those of the body is still cos(x/2) + turning sin(x/2).
 struct JointTurn {
-  bool only = false;                                      ///< the joint is of this kind
+  bool only = false;                                      ///< true if the joint is of this kind
   Vec<double, 3> axis{0, 0, 0};                           ///< n, unit vector in the parent's axes
-  Vec<double, 4> still{1, 0, 0, 0}, turning{0, 0, 0, 0};  ///< quaternions of the turn, (w, x, y, z)
+  Vec<double, 4> still{1, 0, 0, 0}, turning{0, 0, 0, 0};  ///< quaternions of the rotation, (w, x, y, z)
 };
 
-/// A body of a tree: how its pose is written, and the joint that carries it.
+/// Body of a tree: layout of its pose, and the joint that carries it.
 struct TreeBody {
-  std::string name;                              ///< its name in messages
-  RigidLayout layout = RigidLayout::quaternion;  ///< how its coordinates are written
-  Index q0 = 0, v0 = 0;                          ///< in whole vectors
-  Index row = -1;                                ///< first of the joint's rows; −1: a root, which nothing carries
-  Index parent = -1;                             ///< in the tree; −1: the ground
-  Placement from = {};                           ///< the joint's frame in the parent's axes
-  Placement to = {};                             ///< the joint's frame in the body's own axes
-  bool from_turned = true, to_turned = true;     ///< axes of these that are not the body's
-  JointMotions motions = {};                     ///< from frame a to frame b
-  Index from_end = -1, to_end = -1;              ///< in the tree's floating ends, for frames on bodies that deform
-  Index deformations = 0;                        ///< coordinates of the body behind those of its frame
-  JointTurn turn = {};                           ///< of a joint of one turn between rigid bodies
-  bool backwards = false;                        ///< frame b is the parent's
-  double angle = 0.0;            ///< in the plane: its turn relative to the parent in the reference [rad]
-  bool by_newton_euler = false;  ///< nothing but weight and its inertia moves it where nothing acts
+  std::string name;                              ///< name in messages
+  RigidLayout layout = RigidLayout::quaternion;  ///< layout of its coordinates
+  Index q0 = 0, v0 = 0;                          ///< first coordinate and velocity in full vectors
+  Index row = -1;                                ///< first constraint equation of its joint; −1: a root, without joint
+  Index parent = -1;                             ///< index in the tree; −1: the ground
+  Placement from = {};                           ///< frame of the joint in the axes of the parent
+  Placement to = {};                             ///< frame of the joint in the axes of the body
+  bool from_turned = true, to_turned = true;     ///< true if the frame is rotated relative to these axes
+  JointMotions motions = {};                     ///< motions from frame a to frame b
+  Index from_end = -1, to_end = -1;              ///< indices of floating ends, for frames on flexible bodies; −1: none
+  Index deformations = 0;                        ///< number of deformation coordinates, which follow those of the frame
+  JointTurn turn = {};                           ///< constants of a single rotation between rigid bodies
+  bool backwards = false;                        ///< true if frame b is on the parent
+  double angle = 0.0;            ///< in the plane: rotation relative to the parent in the reference state [rad]
+  bool by_newton_euler = false;  ///< true if only weight and inertia act on it without joints and force elements
   double mass = 0.0;             ///< [kg]
-  Mat3 inertia = Mat3::Zero();   ///< about the centre of mass, in the body's own axes
-  Index qn = 0, vn = 0;          ///< in narrow vectors
+  Mat3 inertia = Mat3::Zero();   ///< about the centre of mass, in the axes of the body [kg m²]
+  Index qn = 0, vn = 0;          ///< first coordinate and velocity in reduced vectors
 
-  /// Whether a joint carries it; else it is a root.
+  /// True if a joint carries the body; otherwise it is a root.
   bool carried() const { return row >= 0; }
 };
 
-/// Where a body of a tree is and how it may move.
+/// Pose and twist of a body of a tree, and the motions that its joint permits.
 template <class T>
 struct TreeFrameOf {
   Vec<T, 3> r{0, 0, 0}, v{0, 0, 0}, w{0, 0, 0}, arm{0, 0, 0};  ///< origin [m], ṙ [m/s], ω [rad/s], D [m]; world axes
-  Mat<T, 3, 3> A = identity<T>();                              ///< its axes (3×3) in world axes
-  Vec<T, 4> rotation{1, 0, 0, 0};                              ///< unit quaternion of A; in space only
-  T angle = 0.0;                                               ///< of the plane: the turn of A [rad]
-  int velocities = 0;                                          ///< how many its joint has: columns of S
+  Mat<T, 3, 3> A = identity<T>();                              ///< axes (3×3) in world axes
+  Vec<T, 4> rotation{1, 0, 0, 0};                              ///< unit quaternion of A, in space only
+  T angle = 0.0;                                               ///< rotation angle of A, in the plane only [rad]
+  int velocities = 0;                                          ///< number of joint velocities: columns of S
   Mat<T, 6, 6> s = detail::zeros<Mat<T, 6, 6>>();              ///< S = [S_r; S_ω] by columns
   Mat<T, 6, 6> inverse = detail::zeros<Mat<T, 6, 6>>();        ///< (SᵀS)⁻¹
   Vec<T, 6> bias = detail::zeros<Vec<T, 6>>();                 ///< [b_r; b_ω]
@@ -59,21 +59,21 @@ struct TreeFrameOf {
   T* column(int k) { return s.data() + 6 * k; }              ///< column k of S
   T const* column(int k) const { return s.data() + 6 * k; }  ///< column k of S
 };
-using TreeFrame = TreeFrameOf<double>;  ///< in doubles
+using TreeFrame = TreeFrameOf<double>;  ///< with scalar double
 
-/// Scratch of a tree.
+/// Workspace of a tree.
 template <class T>
 struct TreeStateOf {
-  Sequence<TreeFrameOf<T>> frames;  ///< of each body
-  Sequence<Vec<T, 6>> twists;       ///< scratch: a twist, wrench or rate of each body
-  Sequence<Vec<T, 6>> held;         ///< as of the last `reduce_forces`: the wrench [f; m] about its frame's origin with
-                                    ///< which a body and all that it carries are out of balance, which its joint holds
-  Sequence<Vec<T, 6>> columns;      ///< of the floating ends: what each deformation moves of the carried body
-  Sequence<T> q, v, jacobian;       ///< scratch of the floating ends
+  Sequence<TreeFrameOf<T>> frames;  ///< frame of each body
+  Sequence<Vec<T, 6>> twists;       ///< workspace: a twist, wrench or rate of each body
+  Sequence<Vec<T, 6>> held;         ///< result of the last `reduce_forces`: residual [f; m] of each body and of all
+                                    ///< bodies that it carries, about the origin of its frame; its joint transmits it
+  Sequence<Vec<T, 6>> columns;      ///< for the floating ends: twist of the carried body per rate of each deformation
+  Sequence<T> q, v, jacobian;       ///< workspace of the floating ends
 };
-using TreeState = TreeStateOf<double>;  ///< in doubles
+using TreeState = TreeStateOf<double>;  ///< with scalar double
 
-/// a → a⁻¹ for the leading n×n of a positive definite matrix, by Gauss–Jordan elimination.
+/// Inverts the leading n×n block of a positive definite matrix in place, by Gauss–Jordan elimination.
 template <class T>
 void invert_leading(Mat<T, 6, 6>& a, int n) {
   for (int k = 0; k < n; ++k) {
@@ -89,7 +89,8 @@ void invert_leading(Mat<T, 6, 6>& a, int n) {
   }
 }
 
-/// The same of any matrix a, by pivoting. −1, or the column of the n that has no pivot beside entries of this size.
+/// Inverts the leading n×n block of any matrix in place, with pivoting. Returns −1, or the first column without a pivot
+/// above 1e-14 `size`; in this case a is not the inverse. \param size magnitude of the entries
 template <class T>
 int invert_with_pivots(Mat<T, 6, 6>& a, int n, double size) {
   auto out = detail::zeros<Mat<T, 6, 6>>();
@@ -116,7 +117,7 @@ int invert_with_pivots(Mat<T, 6, 6>& a, int n, double size) {
 
 namespace detail {
 
-/// The matrix m of doubles in the scalar T: itself where that is double.
+/// Matrix m of doubles, converted to scalar T. If T is double, it is m.
 template <class T, class M>
 decltype(auto) in_scalar(M const& m) {
   if constexpr (std::same_as<T, double>)
@@ -124,13 +125,13 @@ decltype(auto) in_scalar(M const& m) {
   else
     return m.template cast<T>().eval();
 }
-/// s n.
+/// Product s n.
 template <class T>
 Vec<T, 3> times(Vec<T, 3> const& n, T const& s) {
   return {n[0] * s, n[1] * s, n[2] * s};
 }
 
-/// A · (the turn by an angle about axis k of the frame itself).
+/// Multiplies A from the right by the rotation about axis k by `angle` [rad].
 template <class T>
 void turn_columns(int k, T angle, Mat<T, 3, 3>& a) {
   using std::cos, std::sin;
@@ -142,7 +143,7 @@ void turn_columns(int k, T angle, Mat<T, 3, 3>& a) {
     a(row, j) = y * c - x * s;
   }
 }
-/// That turn itself.
+/// Rotation matrix (3×3) of the rotation about axis k by `angle` [rad].
 template <class T>
 Mat<T, 3, 3> turn_about(int k, T angle) {
   Mat<T, 3, 3> m = identity<T>();
@@ -150,16 +151,17 @@ Mat<T, 3, 3> turn_about(int k, T angle) {
   return m;
 }
 
-/// The first of one or two turns that make R: R = turn(axis) or turn(axis) turn(other).
+/// Angle [rad] of the first of one or two rotations with product R: R = turn(axis), or turn(axis) turn(other) if
+/// `followed` is true.
 template <class T>
 double first_turn(int axis, Mat<T, 3, 3> const& r, bool followed, JointMotions const& motions, int k) {
   int const i = (axis + 1) % 3, j = (axis + 2) % 3;
   if (!followed) return std::atan2(r(j, i), r(i, i));
-  // the second axis, as the first turn leaves it
+  // Direction of the second axis after the first rotation.
   return motions.list[std::size_t(k + 1)].axis == i ? std::atan2(r(j, i), r(i, i)) : std::atan2(-r(i, j), r(j, j));
 }
 
-/// A frame on its way through the motions of a joint, with what its own acceleration has beyond u̇.
+/// Frame that is moved along the motions of a joint in sequence, with the terms of its acceleration without u̇.
 template <class T>
 struct RunnerOf {
   using Vec3 = Vec<T, 3>;
@@ -169,7 +171,7 @@ struct RunnerOf {
   Mat3 A;
   Vec3 w, alpha;
 
-  /// To a point of the same rigid piece, `along` away.
+  /// Moves to the point of the same rigid part at the distance vector `along`.
   [[gnu::always_inline]] void go(Vec3 const& along) {
     Vec3 const rate = cross<T>(w, along), sideways = cross<T>(alpha, along), inwards = cross<T>(w, rate);
     for (int i = 0; i < 3; ++i) {

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Between the whole vectors of a model and the poses and twists of a tree's bodies.
+/// Conversion between the full vectors of a model and the poses and twists of a tree's bodies.
 
 #include <polybody/math/quaternion.hpp>
 #include <polybody/system/tree_body.hpp>
@@ -8,7 +8,7 @@
 namespace polybody {
 namespace detail {
 
-/// Three entries of a whole vector.
+/// Three entries of a full vector.
 template <class T>
 Vec<T, 3> triple(VecXOf<T> const& x, Index first) {
   return {x[first], x[first + 1], x[first + 2]};
@@ -18,7 +18,7 @@ void set_pair(Vec<T, 3> const& a, Vec<T, 3> const& b, Vec<T, 6>& out) {
   for (int i = 0; i < 6; ++i) out[i] = i < 3 ? a[i] : b[i - 3];
 }
 
-/// [v; ω] of a whole vector of speeds or accelerations, in world axes.
+/// [v; ω] of a body from a full vector of velocities or accelerations, in world axes.
 template <class T>
 [[gnu::always_inline]] inline Vec<T, 6> twist_of(TreeBody const& body, TreeFrameOf<T> const& f, VecXOf<T> const& x) {
   T const* const u = x.data() + body.v0;
@@ -48,14 +48,14 @@ template <class T>
 
 }  // namespace detail
 
-/// t += the rigid motion of the parent at a body `arm` away.
+/// t += rigid motion of the parent, with twist `parent` (6), at a body at `arm` (3) from it.
 template <class T>
 void add_carried(Vec<T, 6> const& parent, Vec<T, 3> const& arm, Vec<T, 6>& t) {
   Vec<T, 3> const rate = cross<T>({parent[3], parent[4], parent[5]}, arm);
   for (int i = 0; i < 6; ++i) t[i] += parent[i];
   for (int i = 0; i < 3; ++i) t[i] += rate[i];
 }
-/// parent += the wrench w (6) of the body, [f; m], `arm` (3) away.
+/// parent += wrench w = [f; m] (6) of a body at `arm` (3) from the parent.
 template <class T>
 void add_back(Vec<T, 6> const& w, Vec<T, 3> const& arm, Vec<T, 6>& parent) {
   Vec<T, 3> const moment = cross<T>(arm, {w[0], w[1], w[2]});
@@ -65,7 +65,7 @@ void add_back(Vec<T, 6> const& w, Vec<T, 3> const& arm, Vec<T, 6>& parent) {
 
 namespace detail {
 
-/// t += column · factor, and column · t; by the place of the column's first entry.
+/// t += column · factor. `column` points to the first of six entries. `along_column` is the dot product column · t.
 template <class T>
 void add_column(T const* column, T factor, Vec<T, 6>& t) {
   for (int i = 0; i < 6; ++i) t[i] += column[i] * factor;
@@ -77,7 +77,7 @@ T along_column(T const* column, Vec<T, 6> const& t) {
   return sum;
 }
 
-/// The frame of a body from whole vectors; and back.
+/// Reads the frame of a body from full vectors. `write_frame` is the inverse operation.
 template <class T>
 void read_frame(TreeBody const& body, VecXOf<T> const& q, VecXOf<T> const& v, TreeFrameOf<T>& f) {
   if (body.layout == RigidLayout::plane) {

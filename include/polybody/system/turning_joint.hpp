@@ -1,15 +1,15 @@
 #pragma once
 /// \file
-/// A rigid body on a pin: the common case of `JointTree`, without a walk through motions.
+/// Rigid body on a revolute joint: the most frequent case of `JointTree`, without a loop over the motions of a joint.
 
 #include <polybody/math/quaternion.hpp>
 #include <polybody/system/tree_body.hpp>
 
 namespace polybody {
 
-/// Fills `body.turn` where the joint leaves one turn and nothing else. The quaternions of body and parent keep the
-/// signs that they have in `reference`, a whole configuration. \param parent first coordinate of the parent; −1: the
-/// ground
+/// Fills in `body.turn` if the joint permits a single rotation only. The signs of the quaternions of body and parent
+/// remain those of `reference`, the full coordinates of the reference state. \param parent first coordinate of the
+/// parent; −1: the ground
 template <class = void>
 [[gnu::cold]] void prepare_turn(TreeBody& body, double const* reference, Index parent) {
   if (body.motions.count != 1 || body.motions.list[0].kind != JointMotion::Kind::turn) return;
@@ -40,7 +40,8 @@ template <class = void>
 
 namespace detail {
 
-/// A body on a joint of one turn. \param x, u the angle and its rate
+/// Computes the frame f of a body on a joint with a single rotation from the frame p of the parent. \param x, u angle
+/// [rad] and its rate [rad/s]
 template <class T>
 void carry_by_turn(TreeBody const& body, TreeFrameOf<T> const& p, T const& x, T const& u, TreeFrameOf<T>& f) {
   using std::cos, std::sin;

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What `Data` keeps of a model's own types, and how its arrays are laid out.
+/// Part of `Data` that depends on the types of a model, and allocation of the arrays of `Data`.
 
 #include <polybody/math/sequence.hpp>
 #include <polybody/system/force_kernels.hpp>
@@ -8,7 +8,7 @@
 
 namespace polybody::detail {
 
-/// The pools of a model by the types that they hold.
+/// Pools of a model by the type of their entries.
 template <class B, class M>
 BodyPool<B> const& bodies_of(M const& model) {
   return std::get<BodyPool<B>>(model.body_pools());
@@ -22,19 +22,19 @@ Sequence<ForceEntry<F>> const& forces_of(M const& model) {
   return std::get<Sequence<ForceEntry<F>>>(model.force_pools());
 }
 
-/// What a model's data keep for its types of bodies and joints.
+/// Data of a model for its types of bodies and joints.
 template <class M, StateScalar T>
 struct TypedData;
 template <class... Bs, class... Js, class... Fs, StateScalar T>
 struct TypedData<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T> {
   std::tuple<BodyData<Bs, T>...> bodies;
   std::tuple<JointData<Js, T>...> joints;
-  Sequence<T> own_equations;  ///< arena of rows that bodies own, and of linear rows
+  Sequence<T> own_equations;  ///< arena of the constraint equations of bodies and of linear joints
 
   static TypedData& of(Data<T> const& data) { return *static_cast<TypedData*>(data.kept.get()); }
 };
 
-/// Room for `markers` markers, and the places of those on the ground.
+/// Allocates memory for `markers` markers and sets the frames of those on the ground.
 template <StateScalar T>
 void place_ground(Sequence<GroundMarker> const& ground, Index markers, Index jacobian_size, Data<T>& data) {
   data.markers.resize(std::size_t(markers));
@@ -50,7 +50,7 @@ void place_ground(Sequence<GroundMarker> const& ground, Index markers, Index jac
   }
 }
 
-/// Numbers of the rows and maps of all linear joints.
+/// Count of numbers in the constraint functions and maps of all linear joints.
 template <class = void>
 Index size_of(Sequence<LinearConstraints> const& all) {
   Index size = 0;
@@ -58,7 +58,8 @@ Index size_of(Sequence<LinearConstraints> const& all) {
   return size;
 }
 
-/// Blocks of all linear joints, their numbers from `next` on; the owners are found when the joints are gone through.
+/// Appends the constraint blocks of all linear joints, with their numbers from `next` on. The loops over the joints set
+/// the owners later.
 template <StateScalar T>
 void place_linear_rows(Sequence<LinearConstraints> const& all, T* next, Data<T>& data) {
   for (LinearConstraints const& rows : all) {
@@ -77,7 +78,7 @@ void place_linear_rows(Sequence<LinearConstraints> const& all, T* next, Data<T>&
   }
 }
 
-/// g = C_a e_a + C_b e_b − c of all linear joints, their numbers from `next` on.
+/// Evaluates g = C_a e_a + C_b e_b − c of all linear joints, with their numbers from `next` on.
 template <StateScalar T>
 void measure_linear_rows(Sequence<LinearConstraints> const& all, VecXOf<T> const& q, Data<T> const& data, T* next) {
   if (!data.linear_rows) return;
@@ -93,7 +94,7 @@ void measure_linear_rows(Sequence<LinearConstraints> const& all, VecXOf<T> const
   }
 }
 
-/// Lays out the data of a model.
+/// Allocation of the data of a model.
 template <class M, StateScalar T>
 struct DataMaker;
 template <class... Bs, class... Js, class... Fs, StateScalar T>
@@ -120,7 +121,7 @@ struct DataMaker<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T> {
   }
 
  private:
-  /// Those of bodies, of linear joints, of joints between frames.
+  /// Appends the constraint blocks of bodies, then of linear joints, then of joints between frames.
   [[gnu::cold]] static void place_rows(M const& model, Typed& typed, Data<T>& data) {
     Index size = size_of(model.linear_rows());
     ((size += BodyKernels<Bs, T>::own_size(bodies_of<Bs>(model))), ...);
@@ -140,7 +141,7 @@ struct DataMaker<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T> {
   }
 };
 
-/// The counts of a model's layout.
+/// Layout of a model with its counts and properties, without its parts.
 template <class M>
 ModelLayout counts_of(M const& model) {
   return {.serial = model.serial(),
