@@ -1,14 +1,13 @@
 #pragma once
 /// \file
-/// A system from equations that a user writes down, without bodies and joints: every integrator and solver of the
-/// library takes it.
+/// System from equations of a user, without bodies and joints, for every integrator and solver of the library.
 ///   struct Oscillator {
-///     Index speeds() const { return 1; }
+///     Index velocities() const { return 1; }
 ///     void mass(VecX const& q, MatX& m) const { m(0, 0) = 2.0; }
 ///     void force(VecX const& q, VecX const& v, double t, VecX& f) const { f[0] = -50.0 * q[0]; }
 ///   };
 ///   System system = system_of(Oscillator{});
-/// First-order equations ż = h(z, t), alone or beside these:
+/// First-order equations ż = h(z, t), alone or together with equations of motion:
 ///   struct VanDerPol {
 ///     Index states() const { return 2; }
 ///     void rates(VecX const& z, double t, VecX& h) const { h << z[1], (1.0 - z[0] * z[0]) * z[1] - z[0]; }
@@ -20,13 +19,14 @@
 
 namespace polybody {
 
-/// ż = h(z, t), to be written over (n).
+/// First-order equations ż = h(z, t). `rates` overwrites h (n).
 template <class E>
 concept UserFirstOrderEquations = requires(E const e, VecX const& z, double t, VecX& h) {
   { e.states() } -> std::convertible_to<Index>;
   e.rates(z, t, h);
 };
-/// M(q) v̇ = f(q, v, z, t) with q̇ = v beside ż = h(q, v, z, t): mass matrix (n×n), force (n) and rates.
+/// Equations of motion M(q) v̇ = f(q, v, z, t), q̇ = v with first-order equations ż = h(q, v, z, t). The functions
+/// overwrite the mass matrix (n×n), the force (n) and the rates.
 template <class E>
 concept UserMechanicsWithStates = requires(E const e, VecX const& x, double t, MatX& m, VecX& f) {
   { e.velocities() } -> std::convertible_to<Index>;
@@ -35,20 +35,20 @@ concept UserMechanicsWithStates = requires(E const e, VecX const& x, double t, M
   e.force(x, x, x, t, f);
   e.rates(x, x, x, t, f);
 };
-/// M(q) v̇ = f(q, v, t) with q̇ = v: mass matrix (n×n) and force (n), both to be written over.
+/// Equations of motion M(q) v̇ = f(q, v, t), q̇ = v. The functions overwrite the mass matrix (n×n) and the force (n).
 template <class E>
 concept UserMechanics = requires(E const e, VecX const& x, double t, MatX& m, VecX& f) {
   { e.velocities() } -> std::convertible_to<Index>;
   e.mass(x, m);
   e.force(x, x, t, f);
 };
-/// Equations of which `system_of` makes a system.
+/// Equations that `system_of` accepts.
 template <class E>
 concept UserEquations = UserMechanics<E> || UserMechanicsWithStates<E> || UserFirstOrderEquations<E>;
-/// It gives −(ck ∂f/∂q + cd ∂f/∂v) (n×n), which implicit steps ask for; else it comes from central differences.
+/// Equations with the tangent −(ck ∂f/∂q + cd ∂f/∂v) (n×n) for implicit steps. The alternative is central differences.
 template <class E>
 concept HasForceTangent = requires(E const e, VecX const& x, double t, MatX& k) { e.tangent(x, x, t, 1.0, 1.0, k); };
-/// It has rows Φ(q, t) = 0 with G = ∂Φ/∂q, Φ_t, and γ in Φ̈ = G v̇ + γ.
+/// Equations with constraint equations Φ(q, t) = 0, with G = ∂Φ/∂q, Φ_t, and γ in Φ̈ = G v̇ + γ.
 template <class E>
 concept HasConstraintEquations = requires(E const e, VecX const& x, double t, MatX& g, VecX& phi) {
   { e.rows() } -> std::convertible_to<Index>;
@@ -63,8 +63,8 @@ namespace detail {
 template <UserEquations E>
 struct UserOperations {
   E mechanics;
-  Index n = 0, states = 0;  ///< speeds without first-order states, and these
-  mutable MatX m, k, m_n;   ///< of all; m_n, k_n: of the speeds alone
+  Index n = 0, states = 0;  ///< number of velocities without first-order states; number of these states
+  mutable MatX m, k, m_n;   ///< matrices of all unknowns; m_n, k_n: of the velocities only
   mutable VecX f, ma;
   mutable VecX v_n, z, f_n, h;  ///< parts of v and f
   mutable MatX g, k_n;
@@ -101,7 +101,7 @@ struct UserOperations {
       of(self).mechanics.gamma(at.q, of(self).v_n, at.t, out);
     }
   }
-  /// M with ones for the states; f and h.
+  /// Evaluates M. Its diagonal has ones for the first-order states.
   void find_mass(VecX const& q) const {
     if constexpr (!UserFirstOrderEquations<E>) {
       mechanics.mass(q, m_n);
@@ -149,7 +149,7 @@ struct UserOperations {
     s.k += c.mass * s.m;
     sink.add(0, 0, s.k);
   }
-  /// k −= factor ∂(f, h)/∂x for `count` entries of x, which is q or v, of second order in the step of 1e-6.
+  /// k −= factor ∂(f, h)/∂x for `count` entries of x, which is q or v. Central differences with relative step 1e-6.
   void differences(At<double> at, double factor, VecX const& x, Index first, Index count) const {
     if (factor == 0.0) return;
     x_near = x;
@@ -197,8 +197,9 @@ struct UserOperations {
 
 }  // namespace detail
 
-/// The system of these equations, which it keeps. `name` is what messages call it, `constant_mass` says that M does not
-/// depend on q. The second-order terms of its rows, which some implicit steps ask for when they stall, are left out.
+/// Makes a system of equations, which it stores. The second-order terms of its constraint equations are omitted. Some
+/// implicit steps use such terms if they do not converge. \param name name in messages \param constant_mass true if M
+/// does not depend on q
 template <UserEquations E>
 System system_of(E mechanics, std::string name = "system", bool constant_mass = false) {
   auto self = std::make_shared<detail::UserOperations<E>>(std::move(mechanics));

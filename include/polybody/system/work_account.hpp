@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Work of forces, drives and compliant joints that have no potential, step by step.
+/// Work of forces, drives and compliant joints without a potential, step by step.
 
 #include <algorithm>
 #include <cmath>
@@ -11,46 +11,47 @@
 
 namespace polybody {
 
-/// The end of a step of length h, before it is accepted.
+/// End of a step of length h before its acceptance.
 struct StepResult {
-  VecX const &q, &v, &lambda;  ///< q (nq), v (nv), λ (rows) there
-  double t, h;                 ///< its time [s], its length [s]
+  VecX const &q, &v, &lambda;  ///< q (nq), v (nv), λ (rows) at the end
+  double t, h;                 ///< time of the end [s], length of the step [s]
 };
 
-/// Signed work [J] since the start of an account, element by element, by two quadratures over each step:
-///   along the path, ½ (f₀ + f₁)·Δr, exact for a force that is linear in the place, at any length of the step;
-///   over time, ½ h (P₀ + P₁), never positive for a damper, at any length of the step.
-/// A spring or a damper that an integrator cannot follow puts in no energy by one of them, so it does not explain the
-/// energy that it gains. Both are right to O(h²). The error of the first is estimated by comparing two
-/// steps with one of twice the length [Richardson 1911]. The estimate is zero for a force that is linear in the place,
-/// and large for a force that jumps. Elements with a potential are not counted. An addition does not allocate.
+/// Signed work [J] of each element since the start of an account, by two quadratures over each step:
+///   along the path, ½ (f₀ + f₁)·Δr: exact for a force that is linear in the position, at any step length;
+///   over time, ½ h (P₀ + P₁): never positive for a damper, at any step length.
+/// If the step does not resolve a spring or a damper, one of the two finds no work input. An energy gain due to such an
+/// element therefore remains unexplained. Both quadratures have an error of O(h²). The error of the first is estimated
+/// by comparison of two steps with one of twice the length [Richardson 1911]. The estimate is zero for a force that is
+/// linear in the position, and large for a force that jumps. Elements with a potential are not counted. `add` does not
+/// allocate memory.
 class WorkAccount {
  public:
-  /// Resets the account at this place, at which `system` was evaluated last. `place.h` is not read.
+  /// Resets the account at `place`, the last evaluated state of `system`. `place.h` is not read.
   template <class = void>
   [[gnu::cold]] void begin(System const& system, StepResult const& place);
-  /// Adds the work over a step, at whose end `system` was evaluated last.
+  /// Adds the work over a step. `system` must be evaluated at its end.
   template <class = void>
   void add(System const& system, StepResult const& end);
 
-  bool counts() const { return !elements_.empty(); }  ///< anything is counted
-  bool complete() const { return complete_; }         ///< no element stores a part of the energy that it takes
+  bool counts() const { return !elements_.empty(); }  ///< true if an element is counted
+  bool complete() const { return complete_; }         ///< true if no counted element can store energy
 
-  /// Time moves a joint whose work is not counted.
+  /// True if a joint whose work is not counted has a prescribed rate Φ_t ≠ 0.
   bool misses_drives(Data<double> const& data) const {
     return std::any_of(at_rest_.begin(), at_rest_.end(), [&](Index i) {
       ConstraintBlock<double> const& block = data.rows[std::size_t(i)];
       return std::any_of(block.rate, block.rate + block.rows, [](double x) { return x != 0.0; });
     });
   }
-  /// Σ max(0, W) over the elements, W the smaller of the two quadratures.
+  /// Σ max(0, W) over the elements, with the smaller W of the two quadratures [J].
   double put_in() const {
     double sum = 0.0;
     double const* const work = samples_[last_].work.data();
     for (std::size_t i = 0; i < 2 * sums_; i += 2) sum += std::max(0.0, std::min(work[i], work[i + 1]));
     return sum;
   }
-  /// Σ of the works along the path, with their signs.
+  /// Sum of the signed works along the path [J].
   double net() const {
     double sum = 0.0;
     for (std::size_t i = 0; i < 2 * sums_; i += 2) sum += samples_[last_].work[i];
@@ -60,20 +61,20 @@ class WorkAccount {
   double doubt() const { return samples_[last_].doubt; }  ///< estimated error of `net` [J]
   double worst() const { return samples_[last_].worst; }  ///< largest estimated error of one step [J]
 
-  void mark() { marked_ = last_; }     ///< begins a trial
-  void go_back() { last_ = marked_; }  ///< drops the trial
+  void mark() { marked_ = last_; }     ///< begins a trial step
+  void go_back() { last_ = marked_; }  ///< discards the trial step
 
  private:
   enum class Kind : unsigned char { force, drive, compliant };
   struct Element {
     Kind kind;
-    Index index, row;     ///< of the action or the block; of λ, −1 for a compliant joint
-    std::size_t at, sum;  ///< its first number in a sample; its works
+    Index index, row;     ///< index of the wrench or the block; index of its λ, −1 for a compliant joint
+    std::size_t at, sum;  ///< index of its first number in a sample; index of its works
   };
-  /// What elements do at an instant, and their works up to it.
+  /// Wrenches, motions and powers of the elements at an instant, and their works up to it.
   struct Sample {
     double t = 0.0, doubt = 0.0, worst = 0.0;  ///< [s], [J], [J]
-    std::size_t before = 0;  ///< the sample from which the step to this one began; itself where it is lost
+    std::size_t before = 0;  ///< index of the sample at the beginning of the step; its own index if that is unknown
     Sequence<double> numbers, work;
   };
   static constexpr std::size_t numbers_of_force = 23;  ///< r, A, [f; m], ω, work of the last step, power
@@ -83,7 +84,7 @@ class WorkAccount {
     elements_.push_back({kind, index, row, size_, sum});
     size_ += numbers;
   }
-  /// The sample from which a step begins at t, or null.
+  /// Sample at time t, the beginning of a step of length h, or null.
   Sample const* start_of(double t, double h) const {
     for (std::size_t const k : {last_, marked_})
       if (std::abs(samples_[k].t - t) <= 1e-3 * h) return &samples_[k];
@@ -98,9 +99,9 @@ class WorkAccount {
   void read(System const& system, VecX const& lambda, double t, Sample& out) const;
 
   Sequence<Element> elements_;
-  Sequence<Index> at_rest_;  // blocks that no law prescribes and that time did not move at the start: not counted
+  Sequence<Index> at_rest_;  // blocks without a prescribed motion and with Φ_t = 0 at the start: not counted
   std::size_t size_ = 0, sums_ = 0;
-  Sample samples_[4];  // last step, the one before, start of the trial, next step
+  Sample samples_[4];  // last step, step before it, start of the trial step, next step
   std::size_t last_ = 0, marked_ = 0;
   bool complete_ = true;
 };
@@ -155,7 +156,8 @@ void WorkAccount::begin(System const& system, StepResult const& place) {
   read(system, place.lambda, place.t, samples_[0]);
 }
 
-/// Power of an element, last of its numbers: w · twist of a force, λ · Φ_t of a drive, −λ · ġ of a compliant joint.
+/// Reads the numbers of the elements. The last number of an element is its power: w · twist of a force, λ · Φ_t of a
+/// drive, −λ · ġ of a compliant joint.
 template <class>
 void WorkAccount::read(System const& system, VecX const& lambda, double t, Sample& out) const {
   Data<double> const& data = system.data();
@@ -227,7 +229,7 @@ void WorkAccount::add(System const& system, StepResult const& end) {
       along_path = 0.0;
       for (std::size_t k = 0, m = last / 2; k < m; ++k) along_path -= 0.5 * (x[m + k] + y[m + k]) * (y[k] - x[k]);
     }
-    // a force that is NaN is refused where it acts
+    // Other code refuses a force that is not finite.
     if (!std::isfinite(over_time) || !std::isfinite(along_path)) continue;
     to.work[2 * e.sum] += along_path;
     to.work[2 * e.sum + 1] += over_time;

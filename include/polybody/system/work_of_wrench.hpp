@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Work of a force and a moment over a step, from their values at its two ends.
+/// Work of a force and a moment over a step, from their values at both ends.
 
 #include <cmath>
 
@@ -8,8 +8,8 @@
 
 namespace polybody::detail {
 
-/// Rotation vector (3) [rad], world axes, from axes `a0` to `a1` (3×3 by columns). Full turns are chosen to fit the
-/// mean turn (3) [rad] that the angular velocities give.
+/// Rotation vector (3) from axes `a0` to `a1` (3×3 by columns), in world axes [rad]. The number of full revolutions
+/// agrees with `mean` (3), the rotation by the mean angular velocity [rad].
 inline Vec3 turn_between(double const* a0, double const* a1, Vec3 const& mean) {
   Vec3 s = Vec3::Zero();
   double trace = 0.0;
@@ -28,7 +28,8 @@ inline Vec3 turn_between(double const* a0, double const* a1, Vec3 const& mean) {
   return s * ((angle + (std::isfinite(turns) ? turns : 0.0) * turn) / sine);
 }
 
-/// ½ (f₀ + f₁)·Δr + ½ (m₀ + m₁)·Δφ of an action with the numbers x at the beginning of a step of h and y at its end.
+/// ½ (f₀ + f₁)·Δr + ½ (m₀ + m₁)·Δφ [J] of an applied wrench over a step of length h [s]. x and y are its numbers at the
+/// beginning and the end of the step: r, A, [f; m], ω.
 inline double work_along_path(double const* x, double const* y, double h) {
   double work = 0.0;
   bool turns = false;
