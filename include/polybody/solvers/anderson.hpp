@@ -1,9 +1,9 @@
 #pragma once
 /// \file
-/// Anderson's acceleration of depth two [Anderson 1965; Walker & Ni 2011] of iterations x ← x + f(x) that contract,
+/// Anderson acceleration of depth two [Anderson 1965; Walker & Ni 2011] for contracting iterations x ← x + f(x):
 ///   x ← x + s,  s = f − c,  c = γ₁ u₁ + γ₂ u₂,  where γ₁ and γ₂ minimise ‖f − γ₁ d₁ − γ₂ d₂‖,
-/// d₁ = f − f₋₁, u₁ = s₋₁ + d₁ = f − c₋₁, and d₂, u₂ are those of the iterate before. Were the map linear, u₁ would be
-/// what the iteration leaves of the last step, J s₋₁, and the next correction would be J (f − γ₁ d₁ − γ₂ d₂).
+/// d₁ = f − f₋₁, u₁ = s₋₁ + d₁ = f − c₋₁, and d₂, u₂ are the d₁, u₁ of the previous iterate. For a linear map x + f(x)
+/// with Jacobian J, u₁ is the image J s₋₁ of the last step, and the next correction is J (f − γ₁ d₁ − γ₂ d₂).
 
 #include <algorithm>
 #include <cmath>
@@ -12,29 +12,31 @@
 
 namespace polybody {
 
-/// What Anderson's acceleration finds of a correction f.
+/// Result of the least-squares fit of a correction f.
 struct AndersonFit {
-  double contraction;  ///< ‖u₁‖/‖s₋₁‖, how the iteration alone shrinks the last step, a ratio
-  double left;         ///< ‖f − γ₁ d₁ − γ₂ d₂‖/‖f‖, a ratio, at least 0.1, as no map is linear
+  double contraction;  ///< ‖u₁‖/‖s₋₁‖, contraction rate of the iteration without acceleration, a ratio
+  double left;         ///< ‖f − γ₁ d₁ − γ₂ d₂‖/‖f‖, a ratio; at least 0.1, because maps are not exactly linear
 };
 
-/// The corrections of an iteration that the next one is combined with.
+/// Stores the previous corrections of an iteration and combines the next one with them.
 class AndersonAcceleration {
  public:
-  /// Allocates all there is to be. \param n numbers of a correction  \param measured the first of them, whose norm is
-  /// minimised
+  /// Allocates all memory. \param n number of entries of a correction  \param measured number of leading entries of
+  /// which the norm is minimised
   AndersonAcceleration(Index n, Index measured)
       : measured_(measured), last_(VecX::Zero(n)), c_(last_), d_(last_), u_(last_) {}
 
-  /// The next correction is the first one of its map.
+  /// Discards the stored corrections: the next correction is the first one of a new map.
   void forget() { known_ = 0; }
-  /// The last step was a combination, so that its correction and the next one tell no rate of contraction.
+  /// True if the last step is a combination. The ratio of the next correction to the last one is then not a contraction
+  /// rate.
   bool combined() const { return known_ > 1; }
 
-  /// Fits the correction `f` by the ones before it, at least one.
+  /// Fits the correction `f` by the stored ones, of which there must be at least one.
   AndersonFit fit(VecX const& f) { return known_ > 1 ? fit_by_two(f) : fit_by_one(f); }
 
-  /// f becomes the step, as it was fitted, and is kept for the next fit; the first one of a map stays as it is.
+  /// Replaces f by the step of the last `fit`, and stores f for the next fit. The first correction of a map is
+  /// unchanged.
   void combine(VecX& f) {
     if (known_ == 0)
       last_ = f;
@@ -46,7 +48,7 @@ class AndersonAcceleration {
  private:
   static double share(double fitted, double ff) { return std::sqrt(std::max(0.01, 1.0 - fitted / ff)); }
 
-  /// The last step was its correction: u₁ = f.
+  /// The last step is the last correction, without combination: u₁ = f.
   AndersonFit fit_by_one(VecX const& f) {
     SimdSum ff, fd, dd, ss;
     for_each_simd_block(measured_, [&, now = f.data(), last = last_.data()](auto at) {
@@ -67,7 +69,7 @@ class AndersonAcceleration {
         });
     double const fd = sum_fd.total(), dd = sum_dd.total(), fe = sum_fe.total(), de = sum_de.total(),
                  ee = sum_ee.total(), det = dd * ee - de * de;
-    bool const apart = det > 0.01 * dd * ee;  // else the two tell the same
+    bool const apart = det > 0.01 * dd * ee;  // else d₁ and d₂ are nearly parallel
     gamma_ = apart ? (fd * ee - fe * de) / det : dd > 0.0 ? fd / dd : 0.0;
     gamma_before_ = apart ? (fe * dd - fd * de) / det : 0.0;
     return {std::sqrt(sum_uu.total() / sum_ss.total()), share(gamma_ * fd + gamma_before_ * fe, sum_ff.total())};
@@ -89,7 +91,7 @@ class AndersonAcceleration {
   }
 
   Index measured_;
-  int known_ = 0;  // corrections of the map, up to two: so many minus one have a d and a u
+  int known_ = 0;  // stored corrections of the map, at most two; all except the first have d and u
   double gamma_ = 0.0, gamma_before_ = 0.0;
   VecX last_, c_, d_, u_;
 };

@@ -1,12 +1,13 @@
 #pragma once
 /// \file
-/// Elimination of TᵀKT body by body from the tips of a tree to its roots [Featherstone 1983; 2008, §7], for any K whose
-/// blocks lie on bodies and between a body and its parent. With x = [v; ω] of a body about its centre of mass, x = X
-/// x_p + S u, a body's equation after those of all that it carries being K̂ x + C x_p = f, B and C the blocks between
-/// parent and body,
+/// Articulated-body algorithm: eliminates TᵀKT body by body from the tips of a tree to its roots [Featherstone 1983;
+/// 2008, §7]. K has blocks of single bodies and blocks between a body and its parent. The twist x = [v; ω] of a body
+/// about its centre of mass is x = X x_p + S u. After the elimination of its descendants, the equation of a body is
+/// K̂ x + C x_p = f, where B and C are the blocks (parent, body) and (body, parent):
 ///   D u = r + Sᵀf − L x_p,    D = SᵀK̂ S,  L = Sᵀ(K̂ X + C),  R = (XᵀK̂ + B) S,
 ///   K̂_p += Xᵀ(K̂ X + C) + B X − R D⁻¹ L,    f_p += Xᵀf − R D⁻¹(r + Sᵀf).
-/// A root is carried by nothing, with S = 1. Rows that stay are added by their Schur complement G T (TᵀKT)⁻¹ (G T)ᵀ.
+/// A root has no parent, and S = 1. The remaining constraint equations are solved by their Schur complement
+/// G T (TᵀKT)⁻¹ (G T)ᵀ.
 
 #include <polybody/math/sequence.hpp>
 #include <polybody/solvers/dense_lu.hpp>
@@ -14,7 +15,7 @@
 
 namespace polybody {
 
-/// T is `double`: a template, so that a program without joint coordinates compiles none of it.
+/// T is always `double`. The class is a template so that programs without joint coordinates do not compile it.
 template <class T = double>
 class ArticulatedBodySolverOf {
   using Vec3 = Vec<T, 3>;
@@ -26,7 +27,8 @@ class ArticulatedBodySolverOf {
   using TreeState = TreeStateOf<T>;
 
  public:
-  /// Whose tree it is, and where its bodies are; both must outlive the use of the solver. Allocates all there is to be.
+  /// Sets the reduction with its tree and the state of the bodies. Both must outlive the use of the solver. Allocates
+  /// all memory.
   void attach(ReductionOf<> const& reduction, TreeState const& state) {
     reduction_ = &reduction;
     state_ = &state;
@@ -57,10 +59,10 @@ class ArticulatedBodySolverOf {
     misplaced_ = -1;
   }
 
-  /// A block of the whole [K, Gᵀ; G, 0].
+  /// Adds a block of the full matrix [K, Gᵀ; G, 0].
   void add(Index row, Index col, BlockView const& b) {
     Index const nv = Index(owner_.size());
-    if (col >= nv) return;  // the mirror of G
+    if (col >= nv) return;  // Gᵀ
     std::size_t const j = std::size_t(owner_[std::size_t(col)]);
     std::size_t const i = row < nv ? std::size_t(owner_[std::size_t(row)]) : 0;
     Sequence<TreeBody> const& bodies = reduction_->tree().bodies;
@@ -70,7 +72,7 @@ class ArticulatedBodySolverOf {
                      : bodies[j].parent == Index(i) ? &nodes_[j].b
                                                     : nullptr;
     for (Index l = 0; l < b.rows; ++l) {
-      Vec6 g = Vec6::Zero();  // row l by the world's axes
+      Vec6 g = Vec6::Zero();  // row l in world axes
       for (Index k = 0; k < b.cols; ++k) g += b(l, k) * axis_of(j, col + k - bodies[j].v0);
       if (row >= nv) {
         std::size_t const at = std::size_t(row + l - nv);
@@ -83,8 +85,8 @@ class ArticulatedBodySolverOf {
     }
   }
 
-  /// −1, or the unknown (of a time step) without a pivot. \throws InvalidInput for a block between bodies that are not
-  /// neighbours.
+  /// Returns −1, or the unknown (of a time step) without a pivot. \throws InvalidInput for a nonzero block between two
+  /// bodies if neither is the parent of the other.
   Index factor() {
     if (misplaced_ >= 0)
       throw InvalidInput("solver.force_coupling", {"joint_coordinates::ArticulatedBody: a force couples body \"",
@@ -106,7 +108,7 @@ class ArticulatedBodySolverOf {
     return bad < 0 ? -1 : reduction_->velocities() + bad;
   }
 
-  /// [TᵀKT, (G T)ᵀ; G T, 0] x = rhs.
+  /// Solves [TᵀKT, (G T)ᵀ; G T, 0] x = rhs.
   void solve(VecX const& rhs, VecX& x) {
     Index const n = reduction_->velocities(), m = schur_.rows();
     for (Node& node : nodes_) node.f.setZero();
@@ -122,7 +124,7 @@ class ArticulatedBodySolverOf {
   struct Node {
     Mat6 k = Mat6::Zero(), b = k, c = k;           ///< K̂, B, C
     Mat6 s = k, inverse = k, left = k, right = k;  ///< S, D⁻¹, L by rows, R by columns
-    Vec6 f = Vec6::Zero(), x = f, u = f;  ///< force on the body; [v; ω] and u: speeds, in the unit of the solution
+    Vec6 f = Vec6::Zero(), x = f, u = f;  ///< force on the body; [v; ω] and u: velocities, in the unit of the solution
     int velocities = 0;
 
     /// u += part · D⁻¹ given.
@@ -133,7 +135,7 @@ class ArticulatedBodySolverOf {
   };
 
   static Index velocities_of(TreeBody const& body) { return body.layout == RigidLayout::plane ? 3 : 6; }
-  /// What speed k of body i moves, as [v; ω] in world axes.
+  /// Twist [v; ω] of body i for a unit value of its generalised velocity k, in world axes.
   Vec6 axis_of(std::size_t i, Index k) const {
     Vec6 axis = Vec6::Zero();
     if (reduction_->tree().bodies[i].layout == RigidLayout::plane)
@@ -177,7 +179,7 @@ class ArticulatedBodySolverOf {
     return -1;
   }
 
-  /// u of all joints for generalised forces r and the nodes' f (used up); the nodes' x.
+  /// Computes u of all joints and x of all nodes for generalised forces r and the f of the nodes; overwrites these f.
   template <class Out>
   void run(VecX const& r, Out&& u) {
     Sequence<TreeBody> const& bodies = reduction_->tree().bodies;
@@ -208,7 +210,7 @@ class ArticulatedBodySolverOf {
       }
     }
   }
-  /// G x of row j for the nodes' x.
+  /// Row j of G x for the x of the nodes.
   double row_times(Index j) const {
     double sum = 0.0;
     for (std::size_t i = 0; i < nodes_.size(); ++i) sum += rows_[std::size_t(j)][i].dot(nodes_[i].x);
@@ -218,8 +220,8 @@ class ArticulatedBodySolverOf {
   ReductionOf<> const* reduction_ = nullptr;
   TreeState const* state_ = nullptr;
   Sequence<Node> nodes_;
-  Sequence<Index> owner_, row_of_;  // body of a whole speed; narrow row of a whole one
-  Sequence<Sequence<Vec6>> rows_;   // G by bodies
+  Sequence<Index> owner_, row_of_;  // body of each full velocity; reduced row of each full row
+  Sequence<Sequence<Vec6>> rows_;   // G, by rows and bodies
   MatX answers_, schur_;
   VecX open_, lambda_, none_;
   DenseLu loops_;

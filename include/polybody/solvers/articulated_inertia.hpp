@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// The inertia of a body with all that it carries, about a reference point, and the few products of three numbers that
-/// walks over a tree need: on bare arrays, for any scalar of a state.
+/// Articulated inertia of a body with its descendants about a reference point, and products of 3-vectors for recursions
+/// over a tree. All functions work on plain arrays, with any scalar type of a state.
 
 #include <polybody/math/types.hpp>
 
@@ -22,21 +22,21 @@ T dot(A const* a, T const* b, int n) {
   for (int i = 1; i < n; ++i) sum += a[i] * b[i];
   return sum;
 }
-/// out = a b (3×3 by columns, times `columns` columns).
+/// out = a b for a 3×3 matrix a and a matrix b with `columns` columns; all are stored by columns.
 template <class T, class B>
 void set_product(T const* a, B const* b, int columns, T* out) {
   for (int j = 0; j < columns; ++j)
     for (int i = 0; i < 3; ++i) out[3 * j + i] = a[i] * b[3 * j] + a[3 + i] * b[3 * j + 1] + a[6 + i] * b[3 * j + 2];
 }
-/// Place of entry (i, j) of a symmetric 3×3 matrix among six.
+/// Index of entry (i, j) of a symmetric 3×3 matrix among its six stored entries.
 inline constexpr int symmetric_place[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
 
-/// I: [f; m] = [M a + Hᵀα; H a + Θα], M and Θ symmetric.
+/// Inertia I in [f; m] = I [a; α] = [M a + Hᵀα; H a + Θα], where M and Θ are symmetric.
 template <class T>
 struct ArticulatedInertia {
   T mass[6], first[9], second[6];  ///< H by columns
 
-  /// That of a body with mass `m` and first moment `mc`; its second moments are left to the caller.
+  /// Sets M and H for a body with mass `m` and first moment `mc`. The caller sets the second moments.
   void set(double m, T const* mc) {
     for (int i = 0; i < 6; ++i) mass[i] = T(0.0);
     mass[0] = mass[3] = mass[5] = T(m);
@@ -48,7 +48,7 @@ struct ArticulatedInertia {
     first[1] = mc[2];
     first[3] = -mc[2];
   }
-  /// out += M a, + H a, + Hᵀα, + Θα.
+  /// out += [M a; H a]; `add_by_angular`: out += [Hᵀα; Θα].
   void add_by_acceleration(T const* a, T* out) const {
     add_symmetric(mass, a, out);
     for (int i = 0; i < 3; ++i) out[3 + i] += first[i] * a[0] + first[3 + i] * a[1] + first[6 + i] * a[2];
@@ -68,8 +68,8 @@ struct ArticulatedInertia {
       for (int j = 0; j < 3; ++j) first[3 * i + j] -= f * u[3 + j];
     }
   }
-  /// this += XᵀI X of an inertia whose reference point is `d` away: with H' = H + d̃ M,
-  /// M + M, H + H', Θ + Θ − H'd̃ + d̃ Hᵀ.
+  /// Adds XᵀI X of an inertia I with its reference point at the distance `d`. With H' = H + d̃ M of I, it adds M, H' and
+  /// Θ − H'd̃ + d̃ Hᵀ.
   void add_carried(ArticulatedInertia const& from, T const* d) {
     T moved[9];
     for (int j = 0; j < 3; ++j) {

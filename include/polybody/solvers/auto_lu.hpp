@@ -7,11 +7,11 @@
 
 namespace polybody {
 
-/// One solver up to `limit` unknowns, another above.
+/// Uses the solver `Small` up to `limit` unknowns, and the solver `Large` above.
 template <class Small, class Large>
 class SolverBySize {
  public:
-  static constexpr Index limit = 64;  ///< unknowns that `Small` solves for at most
+  static constexpr Index limit = 64;  ///< largest number of unknowns for `Small`
 
   void analyse(Index size, std::span<Block const> blocks) {
     small_ = size <= limit;
@@ -34,7 +34,7 @@ class SolverBySize {
   Large many_;
 };
 
-/// LU with pivoting over the whole matrix: for statics, where no block need have a pivot of its own.
+/// LU factorisation with pivoting over the whole matrix, for statics: single blocks may be without a pivot there.
 using AutoLu = SolverBySize<DenseLu, EigenSparseLu>;
 
 }  // namespace polybody

@@ -1,13 +1,15 @@
 #pragma once
 /// \file
-/// Factorisation of [A, Gᵀ; G, 0] by fixed blocks: the order and every place of the fill are found once, the numbers
-/// run through a flat list of block operations without searching, pivoting or allocation.
+/// Block factorisation of the saddle-point matrix [A, Gᵀ; G, 0]. The elimination order and the positions of the fill
+/// are computed once. Each factorisation runs through a flat list of block operations without search, allocation or
+/// pivoting between blocks.
 ///
-/// A node's rows stand as U = [D | W], D its own block, W its row of later ones, and its columns as Lt, transposed.
-/// With D = L Δ R (pivots Δ, unit triangles L, R) elimination makes W ← L⁻¹ W, Lt ← Δ⁻¹ R⁻ᵀ Lt, and C_kl −= Lt_kᵀ W_l
-/// for all later k, l. In a symmetric matrix Lt = Δ⁻¹ W and only l ≥ k is made. For the solutions small nodes then keep
-/// multipliers, D⁻¹ W and D⁻ᵀ Lt of the original blocks, so that no triangle stands between a node and the next. Where
-/// D is nearly singular the sums of such products would cancel, and a node keeps what its elimination made.
+/// The rows of a node are stored as U = [D | W], where D is its diagonal block and W its blocks with later nodes. Its
+/// blocks below D are stored transposed, as Lt. With D = L Δ R (pivots Δ, unit triangular L and R), elimination
+/// computes W ← L⁻¹ W, Lt ← Δ⁻¹ R⁻ᵀ Lt, and C_kl −= Lt_kᵀ W_l for all later k, l. In a symmetric matrix Lt = Δ⁻¹ W, and
+/// only blocks with l ≥ k are computed. Small nodes then store the elimination multipliers D⁻¹ W and D⁻ᵀ Lt of the
+/// original blocks, so that in a solution no node waits for the triangular solve of another one. If D is nearly
+/// singular, sums of such products would cancel, and the node stores the W and Lt of its elimination.
 
 #include <algorithm>
 #include <cmath>
@@ -20,29 +22,29 @@
 
 namespace polybody {
 
-/// How a block factorisation treats the half below the diagonal.
+/// Treatment of the half below the diagonal in a block factorisation.
 enum class Symmetry {
   assumed,   ///< only the upper half is read
-  none,      ///< both halves are
-  measured,  ///< both are read, and half the work is done when they agree
+  none,      ///< both halves are read
+  measured,  ///< both halves are read; half the work if they agree
 };
 
-/// The block solver; see `BlockLdlt`, `BlockLu`, `BlockSolver` for its three ways.
+/// The block solver; `BlockLdlt`, `BlockLu` and `BlockSolver` are its three variants.
 template <Symmetry symmetry>
 class BlockFactor {
  public:
-  /// Below this part of what it was made of, a pivot counts as lost: of a body, and of the rows of a joint.
-  static constexpr double body_threshold = 1e-13, row_threshold = 1e-9;  ///< shares of what a pivot was made of
-  /// Systems up to this size fall back on one dense block with pivoting.
+  /// A pivot of a body, or of the rows of a joint, counts as zero below this part of the sum of its terms' magnitudes.
+  static constexpr double body_threshold = 1e-13, row_threshold = 1e-9;  ///< ratios, pivot to sum of its terms
+  /// Systems with up to this many unknowns fall back on one dense block with pivoting.
   static constexpr Index dense_limit = 64;
   /// The block solver that reads both halves.
   using Unsymmetric = BlockFactor<symmetry == Symmetry::assumed ? Symmetry::none : symmetry>;
 
   BlockFactor() = default;
-  BlockFactor(BlockFactor const&) = delete;  // its slots point into its storage
+  BlockFactor(BlockFactor const&) = delete;  // the slots point into the storage
   BlockFactor& operator=(BlockFactor const&) = delete;
-  BlockFactor(BlockFactor&&) = default;             ///< its slots stay where they are
-  BlockFactor& operator=(BlockFactor&&) = default;  ///< its slots stay where they are
+  BlockFactor(BlockFactor&&) = default;             ///< the slots remain valid
+  BlockFactor& operator=(BlockFactor&&) = default;  ///< the slots remain valid
 
   [[gnu::cold]] void analyse(Index size, std::span<Block const> blocks) {
     size_ = size;
@@ -65,18 +67,18 @@ class BlockFactor {
     next_ = 0;
   }
 
-  /// Adds a block; the blocks come in the analysed order.
+  /// Adds the next block in the analysed order.
   void add(Index, Index, BlockView const& b) {
     int const end = layout_.first_piece[++next_];
     for (int k = layout_.first_piece[next_ - 1]; k < end; ++k) slots_[std::size_t(k)].add(b);
   }
-  /// A block of zeros.
+  /// Skips the next block in the analysed order; its entries are zero.
   void skip(Index, Index, Index, Index) { ++next_; }
-  /// Where blocks go; as long as the solver is not analysed again and does not change its order (`reordered`).
+  /// Destinations of the blocks. They are valid until the next `analyse` or change of the order (`reordered`).
   BlockSlots slots() const { return {slots_.data(), layout_.first_piece.data(), number_}; }
 
-  /// −1, or the unknown without a usable pivot. Rows of a loop that repeat others are dropped: see `dropped`.
-  /// After a failure `reordered` may ask for the same matrix once more.
+  /// Returns −1, or the unknown without a usable pivot. Redundant rows of a loop are dropped: see `dropped`.
+  /// If `reordered` is true after a failure, the same matrix can be written and factorised again.
   Index factor() {
     reordered_ = false;
     dropped_count_ = 0;
@@ -99,43 +101,43 @@ class BlockFactor {
     return -1;
   }
 
-  /// The order was changed since the last failure; write and factor the same matrix again.
+  /// True if the last factorisation failed and changed the elimination order: write and factorise the matrix again.
   bool reordered() const { return reordered_; }
-  /// How often the order was changed.
+  /// Number of changes of the elimination order.
   std::size_t reorderings() const { return std::min(kept_, earlier_.size()); }
-  /// Takes back all changes of the order but the first `count`. The factor stays until the next one is begun.
+  /// Reverts all changes of the order except the first `count`. The factor remains valid until the next `begin`.
   void limit_reorderings(std::size_t count) noexcept { kept_ = std::min(count, kept_); }
-  /// Unknowns (rows of joints) that repeat others; their multipliers are zero.
+  /// Redundant unknowns (rows of joints); their multipliers are zero.
   std::span<Index const> dropped() const { return {dropped_.data(), dropped_count_}; }
-  /// Every later factorisation drops these unknowns (rows of joints), whatever their pivots. `analyse` forgets them.
-  /// Rows that were eliminated together with a singular body stay.
+  /// Every later factorisation drops these unknowns (rows of joints), whatever their pivots, until the next `analyse`.
+  /// Rows in one node with a singular body are not dropped.
   [[gnu::cold]] void mark_redundant(std::span<Index const> unknowns) {
     left_out_ = Sequence<Index>(unknowns.begin(), unknowns.end());
     place_left_out();
   }
-  /// Whether the last factorisation dropped more rows than `mark_redundant` names, or has a pivot below `share` of its
-  /// parts in a row that closes a loop.
+  /// True if the last factorisation dropped more rows than `mark_redundant` lists, or if a row that closes a loop has a
+  /// pivot below `share` of the sum of its terms.
   [[gnu::cold]] bool is_doubtful(double share) const;
-  /// The vector n with n = 1 at a dropped unknown, 0 at all others dropped, and A n = 0 in all other rows, as of the
-  /// last factorisation: a null vector of A where the row of that unknown repeats others.
+  /// Vector n with n = 1 at the unknown `dropped`, 0 at all other dropped unknowns, and A n = 0 in all other rows,
+  /// where A is the last factorised matrix. If the row of that unknown is redundant, n is a null vector of A.
   [[gnu::cold]] void null_vector(Index dropped, VecX& n) const;
-  /// Whether the last factorisation did the half of the work.
+  /// True if the last factorisation used symmetry, with half the work.
   bool was_symmetric() const { return symmetric_; }
 
-  /// x = A⁻¹ b; both may be the same.
+  /// x = A⁻¹ b; b and x may be the same vector.
   void solve(VecX const& b, VecX& x) const { solve(b.data(), x.data()); }
   /// x = A⁻¹ b, column by column.
   void solve(MatX const& b, MatX& x) const {
     for (Index j = 0; j < b.cols(); ++j) solve(b.col(j).data(), x.col(j).data());
   }
-  void solve(double const* b, double* x) const;  ///< b and x of the system's size; may be the same
+  void solve(double const* b, double* x) const;  ///< b and x have the size of the system and may be the same
 
-  /// Multiplications and additions of a symmetric factorisation as last compiled.
+  /// Number of multiplications and additions of a symmetric factorisation in the current elimination order.
   double flops() const;
-  /// Entries of the factor without padding.
+  /// Number of entries of the factor, without padding.
   Index fill() const;
-  Index nodes() const { return Index(layout_.nodes.size()); }  ///< how many blocks are eliminated
-  /// The unknowns as they are eliminated.
+  Index nodes() const { return Index(layout_.nodes.size()); }  ///< number of eliminated blocks
+  /// Unknowns in the order of their elimination.
   Sequence<int> order() const {
     Sequence<int> all;
     for (Index const i : layout_.unknown)
@@ -184,7 +186,7 @@ class BlockFactor {
   }
   bool is_symmetric() const;
 
-  /// Symmetric nodes need Lt = Δ⁻¹ W only while they are eliminated.
+  /// A symmetric node needs Lt = Δ⁻¹ W only during its elimination.
   bool keeps_columns(Node const& n) const { return n.pivoted || !symmetric_; }
   detail::NodeStorage storage(Node const& n) const {
     double* const l = keeps_columns(n) ? l_.data() + n.l : scaled_.data();
@@ -193,7 +195,7 @@ class BlockFactor {
   }
   std::size_t number(Node const& n) const { return std::size_t(&n - layout_.nodes.data()); }
 
-  /// What a solution passes over.
+  /// Arrays of the factor, and the forward and backward substitution of a node.
   struct Solution {
     double *u, *l, *f, *inverse, *w, *scaled;
     char* direct;
@@ -254,11 +256,11 @@ class BlockFactor {
 
   template <int N>
   int eliminate(Node const& n, bool symmetric) {
-    double* const scale = scales_.data() + n.x;  // what eliminations have added to the diagonal
+    double* const scale = scales_.data() + n.x;  // magnitudes that eliminations added to the diagonal
     if (n.pivoted) return detail::eliminate_pivoted(storage(n), symmetric, body_threshold, scale, swaps_.data() + n.x);
     return detail::eliminate_node<N>(storage(n), symmetric, n.joint ? row_threshold : body_threshold, scale,
                                      [&](int r, double pivot) {
-                                       // only a joint that waits for its whole loop may be redundant
+                                       // only joints that are eliminated after their whole loop may be redundant
                                        if (!std::isfinite(pivot)) return true;
                                        if (!n.droppable && !is_left_out(int(n.x) + r)) return true;
                                        dropped_[dropped_count_++] = layout_.unknown[n.x + std::size_t(r)];
@@ -308,15 +310,15 @@ class BlockFactor {
   Sequence<detail::BlockLayout::NodeHints> earlier_;  // before each change of the order
   std::size_t kept_ = no_limit;                       // changes that the next factorisation keeps
   bool reordered_ = false, symmetric_ = false;
-  std::size_t next_ = 0;        // block to be added
-  std::uint64_t number_ = 0;    // of the layout
-  Sequence<BlockPiece> slots_;  // of the pieces of all blocks
+  std::size_t next_ = 0;        // next block to be added
+  std::uint64_t number_ = 0;    // number of the layout
+  Sequence<BlockPiece> slots_;  // destinations of the pieces of all blocks
   Sequence<int> swaps_;
-  mutable Sequence<char> direct_;  // of each node: its size, or 0 where it has no multipliers
+  mutable Sequence<char> direct_;  // size of each node, or 0 if it stores no elimination multipliers
   Sequence<Index> dropped_, left_out_;
-  Sequence<int> left_out_places_;  // of those in nodes without pivoting
+  Sequence<int> left_out_places_;  // places of those in nodes without pivoting
   std::size_t dropped_count_ = 0;
-  mutable detail::AlignedDoubles u_, l_, f_, inverse_, scaled_, work_;  // a solve changes the last two only
+  mutable detail::AlignedDoubles u_, l_, f_, inverse_, scaled_, work_;  // a solve changes only the last two
   detail::AlignedDoubles scales_;
 };
 

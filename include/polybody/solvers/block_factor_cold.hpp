@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Functions of the block factorisation that are not called in a usual step: changes of the order of elimination, null
+/// Functions of the block factorisation that are not called in a usual step: changes of the elimination order, null
 /// vectors of redundant rows, counts.
 
 #include <polybody/solvers/block_factor.hpp>
@@ -16,13 +16,13 @@ template <Symmetry symmetry>
   auto const& segments = pattern_.segments();
   auto const& segment = segments[std::size_t(pattern_.of(unknown))];
   bool changed = false;
-  if (!n.pivoted && n.joint) {  // its neighbours cannot eliminate it alone: it is eliminated last
+  if (!n.pivoted && n.joint) {  // its neighbours alone give no pivot: eliminate it last
     for (std::size_t s = 0; s < segments.size(); ++s)
       if (segments[s].first == segment.first && !hints_.late[s]) {
         hints_.late[s] = 1;
         changed = true;
       }
-  } else if (!n.pivoted) {  // a singular body: it and its joint become one; so do those like it
+  } else if (!n.pivoted) {  // a singular body: merge it, and bodies like it, with their joints
     auto const rows = [&](int body) {
       int const primary = pattern_.primary(body);
       return primary < 0 ? 0 : segments[std::size_t(primary)].size;
@@ -78,7 +78,7 @@ void BlockFactor<symmetry>::null_vector(Index dropped, VecX& x) const {
     --n;
     with_constant(direct_[number(*n)], [&](auto size) { solution.template ascend<size>(*n); });
     if (n != &own) continue;
-    y[row] = 1.0;  // which `ascend` has left zero, and which moves those before it
+    y[row] = 1.0;  // `ascend` leaves it zero; it changes the earlier rows of the node
     for (int r = row - 1; r >= 0; --r) {
       if (s.inverse[r] == 0.0) continue;  // dropped
       double sum = s.u[r * stride + row];
@@ -96,7 +96,7 @@ double BlockFactor<symmetry>::flops() const {
   for (Node const& n : layout_.nodes) {
     double later = 0.0;
     for (int a = 0; a < n.neighbours; ++a) later += layout_.neighbours[std::size_t(n.first_neighbour + a)].size;
-    for (int r = 1; r < n.size; ++r) count += r * (r + 4.0 * later);  // the node's own half, and its row twice
+    for (int r = 1; r < n.size; ++r) count += r * (r + 4.0 * later);  // half of D; W twice: L⁻¹ W, R⁻¹ Δ⁻¹ W
     count += n.size * later * (later + 2.0);
   }
   return count;

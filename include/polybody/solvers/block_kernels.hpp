@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Products of small blocks that stand by rows, padded to whole vectors of the machine.
+/// Products of small blocks that are stored by rows. The rows are padded to whole SIMD vectors.
 
 #include <Eigen/Core>
 #include <cstring>
@@ -13,7 +13,7 @@ namespace polybody::detail {
 
 using Index = Eigen::Index;
 
-/// All rows of a block are padded with zeros to a multiple of what the machine takes at once.
+/// SIMD vector length [doubles]. All rows of a block are padded with zeros to a multiple of it.
 constexpr int lane_size = pack_size;
 using Lane [[gnu::vector_size(8 * lane_size), gnu::may_alias]] = double;
 static_assert(sizeof(Lane) == 8 * lane_size, "The block solvers need the vector extensions of g++ or clang++.");
@@ -21,7 +21,7 @@ constexpr int padded(int n) { return (n + lane_size - 1) & ~(lane_size - 1); }
 inline Lane* lanes(double* x) { return reinterpret_cast<Lane*>(x); }
 inline Lane const* lanes(double const* x) { return reinterpret_cast<Lane const*>(x); }
 
-/// Doubles on a boundary of 32 bytes.
+/// Array of doubles, aligned to 32 bytes.
 class AlignedDoubles {
  public:
   AlignedDoubles() = default;
@@ -39,19 +39,19 @@ class AlignedDoubles {
   Sequence<Four> quads_;
 };
 
-/// Rows of a block: the first one, and from each to the next.
+/// Rows of a block: address of the first row, and distance between rows.
 template <class T>
 struct RowsOf {
   T* first;
   Index stride;
   T* operator[](Index i) const { return first + i * stride; }
-  /// The same rows from column k on.
+  /// Rows without their first k columns.
   RowsOf operator+(Index k) const { return {first + k, stride}; }
 };
 using BlockRows = RowsOf<double>;
 using ConstBlockRows = RowsOf<double const>;
 
-/// `strip` rows of C −= Aᵀ B, held in registers.
+/// Computes `strip` rows of C −= Aᵀ B in registers.
 template <int strip, int count, int inner>
 inline void subtract_strip(double* __restrict c, Index stride, ConstBlockRows a, ConstBlockRows b, int n) {
   Lane s[strip][count];
@@ -73,8 +73,8 @@ inline void subtract_strip(double* __restrict c, Index stride, ConstBlockRows a,
     for (int k = 0; k < count; ++k) lanes(c + i * stride)[k] = s[i][k];
 }
 
-/// C (m × count lanes) −= Aᵀ B; A (n × m) and B (n × count lanes) by rows; `inner` is n, or 0 when known at run time
-/// only.
+/// C −= Aᵀ B with A (n × m), B (n × `count` SIMD vectors) and C (m × `count` SIMD vectors), all stored by rows. `inner`
+/// is n, or 0 if n is known only at run time.
 template <int count, int inner>
 void subtract_product(BlockRows c, ConstBlockRows a, ConstBlockRows b, int n, int m) {
   int i = 0;
@@ -82,7 +82,7 @@ void subtract_product(BlockRows c, ConstBlockRows a, ConstBlockRows b, int n, in
   for (; i < m; ++i) subtract_strip<1, count, inner>(c[i], c.stride, a + i, b, n);
 }
 
-/// The same for any padded width.
+/// C −= Aᵀ B for any padded `width` of B and C.
 template <int inner>
 void subtract_product(BlockRows c, ConstBlockRows a, ConstBlockRows b, int n, int m, int width) {
   constexpr int most = lane_size == 2 ? 3 : 2, step = most * lane_size;
@@ -93,7 +93,7 @@ void subtract_product(BlockRows c, ConstBlockRows a, ConstBlockRows b, int n, in
     subtract_product<1, inner>(c, a, b, n, m);
 }
 
-/// y −= f x, `width` padded.
+/// y −= f x for a padded `width`.
 inline void subtract_row(double* __restrict y, double f, double const* __restrict x, int width) {
   for (int k = 0; k < width / lane_size; ++k) lanes(y)[k] -= f * lanes(x)[k];
 }
@@ -103,7 +103,7 @@ inline void scale_row(double* y, double f, double const* x, int width) {
   for (int k = 0; k < width / lane_size; ++k) lanes(y)[k] = f * lanes(x)[k];
 }
 
-/// y += Σ |a_r b_r| over n rows, entry by entry; `inner` is n, or 0 when known at run time only.
+/// y += Σ |a_r b_r| over n rows, entry by entry; `inner` is n, or 0 if n is known only at run time.
 template <int inner>
 void add_sizes(double* y, ConstBlockRows a, ConstBlockRows b, int n, int width) {
   using Bits [[gnu::vector_size(8 * lane_size)]] = long long;
@@ -112,7 +112,7 @@ void add_sizes(double* y, ConstBlockRows a, ConstBlockRows b, int n, int width) 
 #pragma GCC unroll 8
     for (int r = 0; r < (inner > 0 ? inner : n); ++r) {
       Bits const product = Bits(Lane(lanes(a[r])[k] * lanes(b[r])[k]));
-      sum += Lane(product & 0x7fffffffffffffffLL);  // without its sign
+      sum += Lane(product & 0x7fffffffffffffffLL);  // clears the sign
     }
     lanes(y)[k] = sum;
   }
@@ -124,7 +124,7 @@ inline double sum_of(Lane const& x) {
   return total;
 }
 
-/// Numbers side by side, without a way through memory.
+/// Assembles consecutive numbers into a SIMD vector in registers, without a store to memory.
 template <class L>
 L lane_of(double const* x) {
   if constexpr (sizeof(L) == 16)
@@ -133,7 +133,7 @@ L lane_of(double const* x) {
     return L{x[0], x[1], x[2], x[3]};
 }
 
-/// The sums of as many lanes as they have entries, side by side.
+/// Sums of the entries of x[0], x[1], … in one SIMD vector; x has as many elements as a vector has entries.
 template <class L>
 L sums_of(L const* x) {
   if constexpr (sizeof(L) == 16) {
@@ -147,7 +147,7 @@ L sums_of(L const* x) {
   }
 }
 
-/// How far apart the halves of a matrix are, in the Frobenius norm.
+/// Difference between the halves of a matrix in the Frobenius norm.
 struct Difference {
   Lane lane_sum = {}, lane_apart = {};
   double sum = 0.0, apart = 0.0;

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// The symbolic half of a block factorisation: nodes in the order of elimination, where each block of the matrix and of
-/// the fill stands, and which block each elimination changes. Found once; then numbers run through flat lists.
+/// Symbolic phase of a block factorisation. It computes once the nodes in elimination order, the position of each block
+/// of the matrix and of the fill, and the blocks that each elimination changes. The numeric phase uses only flat lists.
 
 #include <algorithm>
 #include <span>
@@ -16,28 +16,28 @@ class BlockLayout {
  public:
   /// A later node that shares a block with an earlier one.
   struct Neighbour {
-    int node, column, size;  ///< place in the order, first column within W, unknowns
+    int node, column, size;  ///< position in the order, first column within W, number of unknowns
   };
-  /// Its rows stand as [D | W], D its own block and W its row of later ones; its column of later ones, transposed, as
-  /// Lt.
+  /// A node of the elimination. Its rows are stored as [D | W], where D is its diagonal block and W its blocks with
+  /// later nodes; its blocks below D are stored transposed, as Lt.
   struct Node {
-    int size, pad, width;    ///< unknowns, padded, and columns of W
-    std::size_t u, l, f, x;  ///< begin of its rows [D | W], of Lt if it has one, of its triangle, of its vectors
+    int size, pad, width;    ///< unknowns, unknowns with padding, columns of W
+    std::size_t u, l, f, x;  ///< offsets of its rows [D | W], of Lt if present, of its factor L, of its vectors
     int first_neighbour, neighbours;
-    int first_target;  ///< for each pair of neighbours k before l: the column of l in W of k
+    int first_target;  ///< first index in `targets`; per pair of neighbours k before l: the column of l in W of k
     bool pivoted, joint, droppable;
     int stride() const { return pad + width; }
   };
-  /// The part of an added block between two segments, and where it goes.
+  /// Part of an added block between two segments, with its destination.
   struct Piece {
     std::size_t to;
     int row, col, rows, cols;  ///< within the added block
-    int stride;                ///< of what it is added to
-    bool lower;                ///< into Lt, transposed
+    int stride;                ///< of the destination
+    bool lower;                ///< the destination is Lt; the part is transposed
   };
-  /// Changes of the elimination order after missing pivots: segments with body and joint in one node, joints that are
-  /// eliminated last, further joints of such a body in separate nodes (they may be redundant), all unknowns in one
-  /// node.
+  /// Changes of the elimination order after missing pivots: bodies in one node with their joint (`merged`), joints that
+  /// are eliminated last (`late`), further joints of such a body in separate nodes because they may be redundant
+  /// (`apart`), all unknowns in one node (`dense`).
   struct NodeHints {
     Sequence<char> merged, late;
     bool apart = false;
@@ -48,9 +48,9 @@ class BlockLayout {
   Sequence<Neighbour> neighbours;
   Sequence<int> targets;
   Sequence<Piece> pieces;
-  Sequence<int> first_piece;  ///< of each added block, and one past the last
-  Sequence<Index> unknown;    ///< of each place in padded vectors; −1 for padding
-  Sequence<int> place;        ///< of each unknown in padded vectors
+  Sequence<int> first_piece;  ///< first piece of each added block, and one past the last piece
+  Sequence<Index> unknown;    ///< unknown at each place of padded vectors; −1 for padding
+  Sequence<int> place;        ///< place of each unknown in padded vectors
   std::size_t size_u = 0, size_l = 0, size_f = 0;
   int largest_w = 0;  ///< entries of the largest W, or unknowns of the largest node
 
@@ -65,7 +65,7 @@ class BlockLayout {
   }
 
  private:
-  static constexpr std::size_t fewest_alike = 8;  ///< up to so many joints between the same bodies are separate nodes
+  static constexpr std::size_t fewest_alike = 8;  ///< up to this many joints between the same bodies are separate nodes
 
   static Sequence<int> number_nodes(BlockPattern const& pattern, std::span<Block const> blocks,
                                     NodeHints const& hints) {
@@ -94,8 +94,8 @@ class BlockLayout {
     return node_of;
   }
 
-  /// Segments of a body that touch the same others are eliminated at once, as many unknowns as kernels take that know
-  /// their number: one after another they would make no more fill, and pass over the same neighbours each.
+  /// Merges segments of a body with the same neighbours into one node, up to the largest size of kernels with constant
+  /// size. Separate nodes would have the same fill, and each would pass over the same neighbours.
   [[gnu::cold]] static void join_alike(BlockPattern const& pattern, std::span<Block const> blocks,
                                        Sequence<int>& node_of, int& count) {
     auto const& segments = pattern.segments();
@@ -123,8 +123,8 @@ class BlockLayout {
     }
   }
 
-  /// Many joints that close loops between the same bodies are eliminated at once: most of their rows repeat others. As
-  /// separate nodes each would have an update for every pair of those after it.
+  /// Merges many joints that close loops between the same bodies into one node: most of their rows are redundant. As
+  /// separate nodes each would have an update for every pair of later ones.
   [[gnu::cold]] static void join_alike_joints(BlockPattern const& pattern, Sequence<Sequence<int>> const& touched,
                                               Sequence<int>& node_of, int& count) {
     auto const& segments = pattern.segments();
@@ -246,7 +246,7 @@ class BlockLayout {
     }
   }
 
-  Sequence<int> local_, place_;  // of each segment: first place within its node, its node
+  Sequence<int> local_, place_;  // for each segment: first place within its node, and its node
 };
 
 }  // namespace polybody::detail

@@ -3,9 +3,9 @@
 
 namespace polybody {
 
-/// Block LDLᵀ of a symmetric matrix; the half below the diagonal is not read. Where the tangent is not symmetric, as
-/// with friction, or damping of flexible bodies that turn, Newton's method converges by a rate of 0.6 and worse:
-/// `BlockSolver` measures that and reads both halves.
+/// Block LDLᵀ factorisation of a symmetric matrix; the half below the diagonal is not read. The tangent is unsymmetric
+/// with friction, or with damping of rotating flexible bodies. Newton's method then contracts with a rate of 0.6 or
+/// worse; `BlockSolver` reads both halves and measures the asymmetry.
 using BlockLdlt = BlockFactor<Symmetry::assumed>;
 
 }  // namespace polybody

@@ -3,9 +3,9 @@
 
 namespace polybody {
 
-/// Block LU in the order of `BlockLdlt`, for unsymmetric tangents.
+/// Block LU factorisation in the elimination order of `BlockLdlt`, for unsymmetric tangents.
 using BlockLu = BlockFactor<Symmetry::none>;
-/// Block LU that does the half of the work when the matrix is symmetric.
+/// Block LU factorisation that does half the work if the matrix is symmetric.
 using BlockSolver = BlockFactor<Symmetry::measured>;
 
 }  // namespace polybody

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// What a block factorisation does at one node, with its N unknowns a constant where it can (N = 0: at run time). The
-/// node's rows are U = [D | W], its columns Lt; see `BlockFactor`.
+/// Operations of a block factorisation at one node. The number N of unknowns is a constant for small nodes; N = 0 if it
+/// is known only at run time. The rows of the node are U = [D | W], its columns Lt; see `BlockFactor`.
 
 #include <algorithm>
 
@@ -9,21 +9,22 @@
 
 namespace polybody::detail {
 
-/// Where the numbers of a node stand.
+/// Sizes and addresses of the arrays of a node.
 struct NodeStorage {
-  int size, pad, width;  ///< unknowns, padded, and columns of W
-  double *u, *l;         ///< rows [D | W] (size × stride); Lt (size × width), or room for Δ⁻¹ W
+  int size, pad, width;  ///< unknowns, unknowns with padding, columns of W
+  double *u, *l;         ///< rows [D | W] (size × stride); Lt (size × width), or memory for Δ⁻¹ W
   double* f;             ///< factors of L, by rows (size × size)
-  double* inverse;       ///< of the pivots
-  char* direct;          ///< its size, or 0 where it keeps no multipliers: large, pivoted or nearly singular
+  double* inverse;       ///< inverses of the pivots (size)
+  char* direct;  ///< size, or 0 without elimination multipliers: if the node is large, pivoted or nearly singular
   int stride() const { return pad + width; }
 };
 
-/// A pivot below this part of what it was made of makes a node weak: D⁻¹ is large beside what it answers.
+/// A node is nearly singular if a pivot is below this part of the sum of its terms' magnitudes: D⁻¹ is then large
+/// compared with the solutions.
 inline constexpr double weak_threshold = 1e-5;
 
-/// D = L Δ R in the registers. `reject(r, pivot)` is asked about pivots not above threshold · (scale[r] + |D_rr|): true
-/// ends it (r is returned), false drops the row. −1 when all is done.
+/// Factorises D = L Δ R in registers and returns −1 on success. It calls `reject(r, pivot)` for a pivot not above
+/// threshold · (scale[r] + |D_rr|): true ends the factorisation, which returns r; false drops the row.
 template <int N, class Reject>
 int factor_block(NodeStorage const& n, double threshold, double const* scale, Reject&& reject) {
   constexpr int count = padded(N) / lane_size;
@@ -66,7 +67,7 @@ int factor_block(NodeStorage const& n, double threshold, double const* scale, Re
   return -1;
 }
 
-/// `count` lanes of columns: W ← L⁻¹ W, and Lt ← Δ⁻¹ W or, without symmetry, Lt ← Δ⁻¹ R⁻ᵀ Lt.
+/// For `count` SIMD vectors of columns: W ← L⁻¹ W, and Lt ← Δ⁻¹ W or, without symmetry, Lt ← Δ⁻¹ R⁻ᵀ Lt.
 template <int N, int count, bool symmetric>
 inline void finish_panel(NodeStorage const& n, int column) {
   double* const w = n.u + n.pad + column;
@@ -121,7 +122,7 @@ inline void finish_columns(NodeStorage const& n) {
   }
 }
 
-/// The node's own elimination, without pivoting; see `factor_block`.
+/// Eliminates a node without pivoting; see `factor_block`.
 template <int N, class Reject>
 int eliminate_node(NodeStorage const& n, bool symmetric, double threshold, double* scale, Reject&& reject) {
   if constexpr (N > 0) {
@@ -155,7 +156,8 @@ int eliminate_node(NodeStorage const& n, bool symmetric, double threshold, doubl
   return -1;
 }
 
-/// With partial pivoting among the node's rows; a pivot must be above `threshold` of its column.
+/// Eliminates a node with partial pivoting among its rows. A pivot must be above `threshold` times the largest entry of
+/// its column.
 inline int eliminate_pivoted(NodeStorage const& n, bool symmetric, double threshold, double const* scale, int* swaps) {
   *n.direct = 0;
   int const stride = n.stride();
@@ -191,15 +193,15 @@ inline int eliminate_pivoted(NodeStorage const& n, bool symmetric, double thresh
   return -1;
 }
 
-/// An upper triangle, t_rp = t[r · row + p · column].
+/// Upper triangular matrix with the entries t_rp = t[r · row + p · column].
 struct Triangle {
   double const* t;
   int row, column;
   double operator()(int r, int p) const { return t[r * row + p * column]; }
 };
 
-/// `count` lanes of columns: x_r ← x_r − Σ t_rp x_p over p > r, from the last row up, times the pivots' inverses if
-/// there are any.
+/// For `count` SIMD vectors of columns: x_r ← x_r − Σ t_rp x_p over p > r, from the last row up. If `inverse` is given,
+/// each row is then multiplied by the inverse of its pivot.
 template <int N, int count>
 inline void substitute_back(double* x, int stride, Triangle t, double const* inverse) {
   Lane y[N][count];
@@ -226,8 +228,8 @@ void substitute_back(double* x, int width, int stride, Triangle t, double const*
   if (column < width) substitute_back<N, 1>(x + column, stride, t, inverse);
 }
 
-/// Multipliers of a node whose part of later blocks has been subtracted: W ← R⁻¹ Δ⁻¹ W and, where the columns are kept,
-/// Lt ← L⁻ᵀ Lt, which is D⁻¹ and D⁻ᵀ times what they were before its elimination.
+/// Elimination multipliers of a node, after the update of the later blocks: W ← R⁻¹ Δ⁻¹ W and, if `columns`,
+/// Lt ← L⁻ᵀ Lt. The results are D⁻¹ and D⁻ᵀ times the W and Lt before the elimination of the node.
 template <int N>
 void finish_node(NodeStorage const& n, bool columns) {
   substitute_back<N>(n.u + n.pad, n.width, n.stride(), {n.u, n.stride(), 1}, n.inverse);
@@ -246,7 +248,7 @@ inline void solve_lower(NodeStorage const& n, double* y) {
   }
 }
 
-/// z = R⁻¹ Δ⁻¹ y, with Δ R = D's upper half; both may be the same.
+/// z = R⁻¹ Δ⁻¹ y, where Δ R is the upper half of D; y and z may be the same.
 template <int N>
 inline void solve_upper(NodeStorage const& n, double const* y, double* z) {
 #pragma GCC unroll 8
@@ -258,7 +260,7 @@ inline void solve_upper(NodeStorage const& n, double const* y, double* z) {
   }
 }
 
-/// The later nodes that share blocks with one, and the numbers of all nodes in `w`.
+/// Later nodes that share blocks with a node. `w` stores the vector entries of all nodes.
 template <class Neighbour, class Node>
 struct LaterNodes {
   Neighbour const* first;
@@ -270,8 +272,8 @@ struct LaterNodes {
   double* of(Neighbour const& k) const { return w + nodes[k.node].x; }
 };
 
-/// x −= Cᵀ y for all later nodes' x; c are the multipliers C, `size` rows. Two sums each, as a sum waits for its last
-/// product.
+/// x −= Cᵀ y for the x of all later nodes, where `c` are the elimination multipliers C with `size` rows. Two sums per
+/// entry shorten the chain of dependent additions.
 template <int N, class Later>
 inline void pass_down(double const* c, int stride, int size, double const* y, Later later) {
   constexpr int at_once = N > 0 ? N : 4;
@@ -297,7 +299,7 @@ inline void pass_down(double const* c, int stride, int size, double const* y, La
   }
 }
 
-/// sums = W x of `rows` rows (N where it is not zero) from `first` on, over all later nodes.
+/// Adds W x over all later nodes to `sums`, for `rows` rows from `first` on (N rows if N > 0).
 template <int N, class Later>
 inline void pull_up(NodeStorage const& n, int first, int rows, Later later, Lane* sums) {
   for (auto const& k : later) {
@@ -310,8 +312,8 @@ inline void pull_up(NodeStorage const& n, int first, int rows, Later later, Lane
   }
 }
 
-/// y ← R⁻¹ Δ⁻¹ y − W x, W the multipliers. What is stored a number at a time is not loaded as lanes soon after, which
-/// would wait for all stores: so y is put together in the registers.
+/// y ← R⁻¹ Δ⁻¹ y − W x, where W are the elimination multipliers. It assembles y in registers: a SIMD load soon after
+/// stores of single numbers to the same memory would wait for all of these stores.
 template <int N, class Later>
 inline void pass_up(NodeStorage const& n, Later later, double* y) {
   constexpr int count = padded(N) / lane_size;
@@ -323,7 +325,7 @@ inline void pass_up(NodeStorage const& n, Later later, double* y) {
   for (int k = 0; k < count; ++k) lanes(y)[k] = lane_of<Lane>(z + k * lane_size) - sums_of(sums + k * lane_size);
 }
 
-/// The same of a node that has no multipliers, of any size: y ← R⁻¹ Δ⁻¹ (y − W x).
+/// y ← R⁻¹ Δ⁻¹ (y − W x) for a node of any size without elimination multipliers.
 template <class Later>
 void pull_and_solve(NodeStorage const& n, Later later, double* y) {
   for (int first = 0; first < n.size; first += lane_size) {

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What the blocks of [A, Gᵀ; G, 0] tell of bodies and joints, and on which joint each body hangs.
+/// Bodies and joints in the block pattern of [A, Gᵀ; G, 0], and the joint between each body and its parent.
 
 #include <algorithm>
 #include <numeric>
@@ -12,8 +12,8 @@
 
 namespace polybody::detail {
 
-/// What the pattern of a matrix tells of bodies and joints. A segment is a run of unknowns that no block cuts; it is of
-/// a joint when nothing stands on its diagonal.
+/// Finds bodies and joints in the block pattern of a matrix. A segment is a range of unknowns without a block boundary
+/// inside. It belongs to a joint if the matrix has no block on its diagonal.
 class BlockPattern {
  public:
   static constexpr Index largest_segment = 6;
@@ -22,10 +22,10 @@ class BlockPattern {
     Index first = 0;
     int size = 0;
     bool joint = true;
-    int body = -1;             ///< its body's number (of bodies)
-    Sequence<int> child;       ///< of a joint: segments of the hanging body that it touches
-    Sequence<int> after;       ///< of a joint: segments to be eliminated before
-    bool closes_loop = false;  ///< and waits for all that moves it, so that it may be found to repeat others
+    int body = -1;             ///< number of its body; −1 for joints
+    Sequence<int> child;       ///< for a joint: segments of the child body that it touches
+    Sequence<int> after;       ///< for a joint: segments that are eliminated before it
+    bool closes_loop = false;  ///< the joint is eliminated after its whole loop and may be redundant
   };
 
   [[gnu::cold]] void analyse(Index size, std::span<Block const> blocks) {
@@ -37,15 +37,15 @@ class BlockPattern {
 
   Sequence<Segment> const& segments() const { return segments_; }
   int of(Index unknown) const { return segment_of_[std::size_t(unknown)]; }
-  /// Segments from `begin` up to `end`, without it.
+  /// Segments from `begin` to `end` − 1.
   struct Range {
     int begin, end;
   };
-  /// Segments that a block covers by its `count` rows or columns from the unknown `first` on.
+  /// Segments of the `count` rows or columns of a block that begin at the unknown `first`.
   Range covered(Index first, Index count) const {
     return count > 0 ? Range{of(first), of(first + count - 1) + 1} : Range{0, 0};
   }
-  /// The joint on which a body hangs, and others of it alone; −1 and none for a free one.
+  /// Joint between a body and its parent (−1 for a free body), and further joints of this body alone (`secondary`).
   int primary(int body) const { return bodies_[std::size_t(body)].primary; }
   Sequence<int> const& secondary(int body) const { return bodies_[std::size_t(body)].secondary; }
   Sequence<int> const& segments_of(int body) const { return bodies_[std::size_t(body)].segments; }
@@ -58,7 +58,7 @@ class BlockPattern {
   };
   struct Joint {
     int segment;
-    Sequence<std::pair<int, Sequence<int>>> ends;  // body and the segments touched there
+    Sequence<std::pair<int, Sequence<int>>> ends;  // body, and its segments that the joint touches
     bool used = false;
     bool meets_rows = false;  ///< a block couples it with the rows of a joint
   };
@@ -78,7 +78,7 @@ class BlockPattern {
     }
   }
 
-  /// Cuts bodies that are larger than kernels with constants take into as few equal parts as they do take.
+  /// Divides bodies with more than `largest_segment` unknowns into the least number of equal parts.
   [[gnu::cold]] static void divide(std::span<Block const> blocks, Sequence<char>& begins) {
     Index const size = Index(begins.size()) - 1;
     Sequence<char> diagonal(begins.size(), 0);
@@ -100,7 +100,7 @@ class BlockPattern {
     }
   }
 
-  /// Bodies are what the square blocks on the diagonal tie together.
+  /// Collects bodies and joints. Segments under the same square diagonal block belong to one body.
   [[gnu::cold]] void link(std::span<Block const> blocks) {
     Sequence<int> root(segments_.size());
     std::iota(root.begin(), root.end(), 0);
@@ -140,7 +140,7 @@ class BlockPattern {
       for (auto const& end : joints_[j].ends) bodies_[std::size_t(end.first)].joints.push_back(int(j));
   }
 
-  /// A block in the rows of a joint is one end of it: the columns of one marker.
+  /// Adds the columns of a block in the rows of a joint to the ends of the joint. All of them belong to one marker.
   [[gnu::cold]] void touch(Joint& joint, Range columns) {
     for (int s = columns.begin; s < columns.end; ++s) {
       int const body = segments_[std::size_t(s)].body;
@@ -156,11 +156,12 @@ class BlockPattern {
     }
   }
 
-  /// A joint of one body and one row: a norm row, or a drive against the ground. No tree hangs on it.
+  /// True for a joint with one body and one row: a norm constraint, or a driving constraint against the ground. It is
+  /// not part of the tree.
   bool is_own(Joint const& j) const { return j.ends.size() == 1 && segments_[std::size_t(j.segment)].size == 1; }
 
-  /// Hangs every body on one joint, breadth first from the ground, then from a body of each part that does not touch
-  /// it.
+  /// Assigns each body its parent and joint, breadth first from the ground, then from one body of each part without
+  /// connection to the ground.
   [[gnu::cold]] void match() {
     Sequence<int> queue;
     auto const hang = [&](Joint& j, std::size_t end, int parent) {
@@ -189,7 +190,7 @@ class BlockPattern {
       }
     };
     spread();
-    Sequence<std::pair<long, int>> left;  // −joints, body: the one with most joints comes first
+    Sequence<std::pair<long, int>> left;  // −number of joints, body: most joints first
     for (std::size_t b = 0; b < bodies_.size(); ++b)
       if (!bodies_[b].visited) left.push_back({-long(bodies_[b].joints.size()), int(b)});
     sort_once(left);
@@ -203,17 +204,17 @@ class BlockPattern {
       if (!j.used) close(j);
   }
 
-  /// A joint that is not of the tree waits for all of its loop.
+  /// Closing joint: it is eliminated after all bodies and joints of its loop.
   [[gnu::cold]] void close(Joint& j) {
     Segment& s = segments_[std::size_t(j.segment)];
-    if (j.ends.empty() && j.meets_rows) {  // an unknown that rows alone hold, such as a slider's place, waits for all
+    if (j.ends.empty() && j.meets_rows) {  // an unknown in constraints only, such as a slider's, is eliminated last
       for (Joint const& other : joints_)
         if (!other.ends.empty()) s.after.push_back(other.segment);
       for (Body const& body : bodies_) s.after.append(body.segments.begin(), body.segments.end());
       return;
     }
     Sequence<int> loop;
-    int carrier = -1;  // of the loop, which does not wait for it
+    int carrier = -1;  // body that carries the loop; the joint does not wait for it
     if (j.ends.size() == 2) {
       int a = j.ends[0].first, b = j.ends[1].first;
       while (a != b) {
@@ -222,7 +223,7 @@ class BlockPattern {
         deeper = bodies_[std::size_t(deeper)].parent;
       }
       carrier = a;
-    } else {  // against the ground, or among many bodies: everything on the way there
+    } else {  // against the ground, or between more than two bodies: all bodies on the paths to the ground
       for (auto const& end : j.ends) {
         if (is_own(j)) loop.push_back(end.first), carrier = bodies_[std::size_t(end.first)].parent;
         for (int u = end.first; u >= 0 && !is_own(j); u = bodies_[std::size_t(u)].parent) loop.push_back(u);
@@ -230,7 +231,7 @@ class BlockPattern {
     }
     sort_once(loop);
     for (auto const& [body, touched] : j.ends) {
-      if (loop.size() == 1 && body != loop[0]) continue;  // beside the joint on which it hangs: a drive, a norm row
+      if (loop.size() == 1 && body != loop[0]) continue;  // parallel to the tree joint: a drive, a norm constraint
       s.after.append(touched.begin(), touched.end());
       if (loop.size() == 1) s.child = touched;
     }
@@ -240,7 +241,7 @@ class BlockPattern {
       if (body.primary >= 0) s.after.push_back(body.primary);
       if (loop.size() == 1) body.secondary.push_back(j.segment);
     }
-    s.closes_loop = carrier < 0 || (!is_own(j) && is_rigid(carrier));  // which moves a loop along; a bar may open it
+    s.closes_loop = carrier < 0 || (!is_own(j) && is_rigid(carrier));  // a flexible carrier may deform the loop
   }
   bool is_rigid(int body) const {
     int unknowns = 0;

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// The order in which a block factorisation eliminates [A, Gᵀ; G, 0]: bodies by minimum degree, a joint's rows only
-/// after the body that hangs on it [Baraff 1996], the rows that close a loop only after all bodies and joints of the
-/// loop. Then A ≻ 0 makes every pivot definite and no pivoting between blocks is needed.
+/// Elimination order of a block factorisation of [A, Gᵀ; G, 0]. Bodies are eliminated by minimum degree, the rows of a
+/// joint after its child body [Baraff 1996], and the rows of a closing joint after all bodies and joints of its loop.
+/// If A ≻ 0, every pivot is then definite, and no pivoting between blocks is needed.
 
 #include <iterator>
 #include <span>
@@ -13,16 +13,17 @@
 
 namespace polybody::detail {
 
-/// A node is what is eliminated at once: one segment, or several that were merged.
+/// Computes the elimination order of nodes. A node is one segment, or several merged segments, eliminated together.
 class EliminationOrder {
  public:
   struct Node {
     Sequence<int> segments;
-    Sequence<int> neighbours;  ///< by place in the order, ascending; all later than the node itself
+    Sequence<int> neighbours;  ///< positions of the neighbours in the order, ascending; all after the node
   };
-  Sequence<Node> nodes;  ///< in the order of elimination
+  Sequence<Node> nodes;  ///< in elimination order
 
-  /// `node_of` gives each segment's node, numbered from zero without gaps. A joint in `late` waits for all that is not.
+  /// `node_of` gives the node of each segment, numbered from zero without gaps. Joints marked in `late` are eliminated
+  /// after all other nodes.
   [[gnu::cold]] void compute(BlockPattern const& pattern, std::span<Block const> blocks, Sequence<int> const& node_of,
                              Sequence<char> const& late) {
     std::size_t const count = node_of.empty() ? 0 : std::size_t(*std::max_element(node_of.begin(), node_of.end())) + 1;
@@ -47,13 +48,13 @@ class EliminationOrder {
 
  private:
   struct Candidate {
-    Node node;                  ///< neighbours by number
+    Node node;                  ///< its neighbours are node numbers here
     Sequence<int> releases;     ///< nodes that wait for this one
     long size = 0, degree = 0;  ///< unknowns of the node, and of its neighbours
-    int waits = 0;              ///< for so many nodes
-    int place = -1;             ///< in the order, once eliminated
+    int waits = 0;              ///< number of nodes that must be eliminated before it
+    int place = -1;             ///< position in the order, once eliminated
     bool late = false;
-    bool ready = false;  ///< waits for nothing and is not eliminated
+    bool ready = false;  ///< waits for no node and is not eliminated
   };
 
   Candidate& at(int n) { return left_[std::size_t(n)]; }
@@ -102,8 +103,8 @@ class EliminationOrder {
   }
   bool may_go(Candidate const& n) const { return n.waits <= 0 && (!n.late || remaining_early_ == 0); }
 
-  /// The node of least degree among those that wait for nothing. Joints may wait for each other, across loops: then the
-  /// first of those that wait for the fewest.
+  /// Ready node of least degree. Joints of different loops may wait for each other; if no node is ready, the first node
+  /// that waits for the fewest others.
   int next() {
     while (!ready_.empty()) {
       std::pop_heap(ready_.begin(), ready_.end());
@@ -120,7 +121,8 @@ class EliminationOrder {
     return best;
   }
 
-  /// Gives node n the next place. Its neighbours become neighbours of each other, and what waited for it may go.
+  /// Gives node n the next position. Its neighbours become neighbours of each other, and nodes that waited only for it
+  /// become ready.
   [[gnu::cold]] void eliminate(int n) {
     Candidate& gone = at(n);
     gone.place = int(nodes.size());
@@ -144,7 +146,7 @@ class EliminationOrder {
 
   Sequence<Candidate> left_;
   std::size_t remaining_early_ = 0;       ///< nodes that are not late
-  Sequence<std::pair<long, int>> ready_;  ///< a heap of (−degree, −node), some with a degree of before
+  Sequence<std::pair<long, int>> ready_;  ///< heap of (−degree, −node); degrees may be outdated
   Sequence<int> merged_;
 };
 
