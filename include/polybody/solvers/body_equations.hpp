@@ -1,7 +1,8 @@
 #pragma once
 /// \file
-/// The sparse equations that are solved in place of those in joint coordinates: of all bodies, with the rows of the
-/// joints that carry them. Dependents of linear joints are spread, the rows of these are left out.
+/// Sparse equations that replace the dense equations in joint coordinates. Their unknowns are the velocities of all
+/// bodies and the multipliers of the joints with joint coordinates. Entries of dependent coordinates of linear joints
+/// are distributed among the independent ones; the rows of linear joints are omitted.
 
 #include <array>
 
@@ -11,7 +12,7 @@
 
 namespace polybody::detail {
 
-/// A template, so that a program without them compiles none of it.
+/// The class is a template so that programs without joint coordinates do not compile it.
 template <class = void>
 class BodyEquationsOf {
  public:
@@ -44,9 +45,9 @@ class BodyEquationsOf {
 
   Index size() const { return velocities_ + rows_; }
   Index velocities() const { return velocities_; }
-  /// Rows of the joints that carry bodies, by their number in the model.
+  /// Rows of the joints with joint coordinates, by their number in the model.
   Sequence<Index> const& eliminated_equations() const { return carrying_rows_; }
-  /// The whole unknown behind each equation.
+  /// Full unknown of each equation.
   Sequence<Index> full_unknowns() const {
     Sequence<Index> out(std::size_t(size()), -1);
     for (Index i = Index(of_.size()); i-- > 0;)
@@ -72,17 +73,17 @@ class BodyEquationsOf {
     next_slots_ = (next_slots_ + 1) % slots_.size();
   }
 
-  /// out = factor · a vector by whole speeds; rows are left as they are.
+  /// Sets the velocities of `out` to factor · `full`, a vector of full velocities; the other entries are unchanged.
   void from_velocities(VecX const& full, double factor, VecX& out) const {
     for (Index i = 0; i < full.size(); ++i)
       if (Index const to = of_[std::size_t(i)]; to >= 0) out[to] = factor * full[i];
   }
-  /// The rows that stay, from `rows`; zero for those of the joints that carry.
+  /// Sets the rows of `out`: the remaining rows from `rows`, and zero for joints with joint coordinates.
   void from_rows(double const* rows, VecX& out) const {
     for (Index i = velocities_; i < out.size(); ++i) out[i] = 0.0;
     for (std::size_t i = 0; i < rows_that_stay_.size(); ++i) out[of_row(rows_that_stay_[i])] = rows[i];
   }
-  /// By whole speeds; zero for what is spread.
+  /// Full velocities of a `solution`; zero for dependent velocities.
   void to_velocities(VecX const& solution, VecX& full) const {
     for (Index i = 0; i < full.size(); ++i) {
       Index const from = of_[std::size_t(i)];
@@ -101,9 +102,9 @@ class BodyEquationsOf {
   Index full_velocities_ = 0, velocities_ = 0, rows_ = 0;
   UnknownMap map_;
   Sequence<Index> of_, rows_that_stay_,
-      carrying_rows_;  // of_: place of a whole unknown, −1 where it is spread or left out
+      carrying_rows_;  // of_: place of each full unknown; −1 if it is distributed or omitted
   MappedBlocks mapped_;
-  std::array<ReducedSlotsOf<>, 4> slots_;  // of the solvers that were written to last
+  std::array<ReducedSlotsOf<>, 4> slots_;  // of the last solvers that received the matrix
   std::size_t next_slots_ = 0;
 };
 

@@ -1,9 +1,9 @@
 #pragma once
 /// \file
-/// Parts of a matrix that stay the same are factored once: tracks of ANCF links, whose mass matrix TᵀMT is constant
-/// once linear joints have eliminated what depends on others, beside a hull whose joints turn [thesis §3.5.4, §4.4].
-/// With TᵀMT = L Lᵀ the coordinates p = Lᵀ e of such a part have the identity for a mass matrix, for all of it and with
-/// its joints; an explicit step in p is that in e, for L is constant.
+/// Constant parts of a matrix are factorised once. Example: in a vehicle with tracks of ANCF links and a hull with
+/// rotating joints, the mass matrix TᵀMT of a track is constant if linear joints eliminate the dependent coordinates
+/// [thesis §3.5.4, §4.4]. With TᵀMT = L Lᵀ, the mass matrix of a whole track with its joints is the identity in the
+/// coordinates p = Lᵀ e. Since L is constant, an explicit step in p is equal to a step in e.
 
 #include <algorithm>
 #include <span>
@@ -13,14 +13,13 @@
 
 namespace polybody {
 
-/// A solver of a matrix whose unknowns fall into parts that no block connects. Parts of which every unknown is said to
-/// be constant are factored at the first factorisation only, by a `Solver` of their own; another one solves the rest.
-/// Without such parts it is that solver.
+/// Solver of a matrix with parts that no block connects. The first factorisation factorises the constant parts, with a
+/// separate `Solver`; later ones reuse the factors. A part is constant if all of its unknowns are declared constant.
+/// Another `Solver` factorises the rest, or the whole matrix if there are no constant parts.
 template <LinearSolver Solver>
 class ConstantBlockCache {
  public:
-  /// \param constant by unknowns: whether the blocks in its row and column always have the same numbers. To be set
-  /// before `analyse`.
+  /// Call it before `analyse`. \param constant for each unknown: true if the blocks in its row and column are constant
   void keep(Sequence<bool> constant) { constant_ = std::move(constant); }
 
   void analyse(Index size, std::span<Block const> blocks) {
@@ -64,7 +63,7 @@ class ConstantBlockCache {
     (kept ? to_kept_ : to_rest_).add(place_[std::size_t(row)], place_[std::size_t(col)], b);
   }
 
-  /// False for unknowns from `first` on that have been factored once and for all.
+  /// False if the unknowns from `first` on belong to constant parts that are already factorised.
   bool wants(Index first, Index) const { return kept_size_ == 0 || !kept_factored_ || !kept_[std::size_t(first)]; }
   void skip(Index row, Index col, Index rows, Index cols) {
     if (kept_size_ == 0) {
@@ -74,7 +73,7 @@ class ConstantBlockCache {
     }
   }
 
-  /// −1, or the unknown without a usable pivot.
+  /// Returns −1, or the unknown without a usable pivot.
   Index factor() {
     if (kept_size_ > 0 && !kept_factored_) {
       if (Index const bad = kept_solver_.factor(); bad >= 0) return unknown(bad, true);
@@ -86,7 +85,7 @@ class ConstantBlockCache {
       for (Index const i : rest_.dropped()) dropped_.push_back(unknown(i, false));
     return bad < 0 ? bad : unknown(bad, false);
   }
-  /// x = A⁻¹ b; both may be the same, where they may be so for `Solver`, or parts are kept.
+  /// x = A⁻¹ b; b and x may be the same vector if `Solver` permits it or if there are constant parts.
   void solve(VecX const& b, VecX& x) {
     if (kept_size_ == 0) return rest_.solve(b, x);
     for (std::size_t i = 0; i < place_.size(); ++i) (kept_[i] ? kept_rhs_ : rest_rhs_)[place_[i]] = b[Index(i)];
@@ -96,11 +95,10 @@ class ConstantBlockCache {
     for (std::size_t i = 0; i < place_.size(); ++i) x[Index(i)] = (kept_[i] ? kept_x_ : rest_x_)[place_[i]];
   }
 
-  /// Unknowns in parts that are factored once.
+  /// Number of unknowns in constant parts.
   Index kept() const { return kept_size_; }
   std::span<Index const> dropped() const { return {dropped_.data(), dropped_.size()}; }
-  /// Drops these `unknowns` in every later factorisation, as `BlockFactor`, except rows of parts that are factored
-  /// once.
+  /// Drops these `unknowns` in every later factorisation, as in `BlockFactor`, except rows of constant parts.
   [[gnu::cold]] void mark_redundant(std::span<Index const> unknowns) {
     if constexpr (requires { rest_.mark_redundant(unknowns); }) {
       Sequence<Index> rows;
@@ -137,7 +135,7 @@ class ConstantBlockCache {
   }
 
  private:
-  /// Unknowns that blocks connect have one root.
+  /// Root of an unknown; all unknowns of a part have the same root.
   Index root(Index i) {
     while (root_[std::size_t(i)] != i) i = root_[std::size_t(i)] = root_[std::size_t(root_[std::size_t(i)])];
     return i;
@@ -158,7 +156,7 @@ class ConstantBlockCache {
     kept_size_ = 0;
     place_.clear();
     for (Index i = 0; i < size; ++i) place_.push_back(kept_[std::size_t(i)] ? kept_size_++ : i - kept_size_);
-    if (kept_size_ == size) kept_size_ = 0;  // there is no rest: the whole is as good as its own part
+    if (kept_size_ == size) kept_size_ = 0;  // no rest: one solver factorises the whole matrix
   }
   Index unknown(Index place, bool kept) const {
     for (std::size_t i = 0; i < place_.size(); ++i)
@@ -167,8 +165,8 @@ class ConstantBlockCache {
   }
 
   Solver rest_, kept_solver_;
-  Sequence<bool> constant_, kept_, in_kept_;  // by unknowns; by blocks
-  Sequence<Index> root_, place_, dropped_;    // by unknowns; place_: in its own solver
+  Sequence<bool> constant_, kept_, in_kept_;  // for each unknown; in_kept_: for each block
+  Sequence<Index> root_, place_, dropped_;    // root_, place_: for each unknown; place_: index in its solver
   Index kept_size_ = 0;
   bool kept_factored_ = false;
   std::size_t next_ = 0;

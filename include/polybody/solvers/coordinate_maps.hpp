@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// Between narrow and whole vectors of any scalar, where policies eliminate unknowns: T of joint trees (`JointTree`)
-/// and of linear joints (`LinearElimination`). Steps are in doubles; derivatives of steps go through the same maps in
-/// dual or recorded numbers.
+/// Maps between reduced and full vectors for models with policies that eliminate unknowns: T of joint trees
+/// (`JointTree`) and of linear joints (`LinearElimination`). Steps use doubles; derivatives of steps use the same maps
+/// with dual or recorded numbers.
 
 #include <polybody/solvers/recovered_multipliers.hpp>
 #include <polybody/system/coordinates.hpp>
@@ -11,8 +11,8 @@
 
 namespace polybody::detail {
 
-/// v = T u, v̇ = T u̇ + b and Tᵀ where they were placed last. \tparam Solution says how the equations of joint
-/// coordinates are solved, void where there are linear joints only; \tparam T scalar
+/// v = T u, v̇ = T u̇ + b and Tᵀ in the state of the last `expand`. \tparam Solution solution method of the equations of
+/// joint coordinates, void if there are only linear joints; \tparam T scalar
 template <class Solution, StateScalar T = double>
 class CoordinateMaps {
   using Vector = VecXOf<T>;
@@ -29,7 +29,7 @@ class CoordinateMaps {
         last_r_(v_),
         reduced_(Vector::Constant(reduction_.velocities(), T(0.0))) {}
 
-  /// What the maps alone tell of narrow vectors.
+  /// Layout of reduced vectors, as far as the maps define it.
   ReducedLayout reduced_layout() const {
     ReducedLayout n{.coordinates = reduction_.coordinates(),
                     .velocities = reduction_.velocities(),
@@ -46,7 +46,7 @@ class CoordinateMaps {
     return n;
   }
 
-  /// Enters the functions for a C that is, or derives from, these maps.
+  /// Sets the functions of `out` for a class C that is, or derives from, these maps.
   template <class C>
   static constexpr void enter(CoordinateMapOperations<T>& out) {
     out.expand = [](void* c, Vector const& q, Vector const& v, Vector& full_q, Vector& full_v) {
@@ -70,12 +70,12 @@ class CoordinateMaps {
  protected:
   static constexpr bool has_tree = !std::is_void_v<Solution>;
 
-  /// The maps of the elimination that functions take as `c`.
+  /// Maps at the address `c`, the first argument of the functions.
   template <class C>
   static CoordinateMaps& of(void* c) {
     return *static_cast<C*>(c);
   }
-  /// q_, v_ and the tree from narrow coordinates and speeds.
+  /// Computes q_, v_ and the state of the tree from reduced coordinates and velocities.
   void place(Vector const& q, Vector const& v) {
     reduction_.expand_coordinates(q, q_);
     reduction_.expand_velocities(v, v_);
@@ -112,12 +112,12 @@ class CoordinateMaps {
 
   ReductionOf<T> reduction_;
   TreeStateOf<T> state_;
-  Vector q_, v_, a_;  // whole
-  Vector last_r_;     // of the last residual that was reduced, whole
+  Vector q_, v_, a_;  // full vectors
+  Vector last_r_;     // full residual of the last `reduce`
   Vector reduced_;
 };
 
-/// The functions of maps that stand alone.
+/// Functions of maps that are used without linear equations.
 template <class Maps, StateScalar T>
 inline constexpr CoordinateMapOperations<T> map_entries = [] {
   CoordinateMapOperations<T> out;

@@ -1,15 +1,15 @@
 #pragma once
 /// \file
-/// The linear solvers that are used where none is named. The tests put other ones here (tests/named_solver).
+/// Default linear solvers. Some tests replace this header (tests/named_solver).
 
 #include <polybody/solvers/auto_lu.hpp>
 #include <polybody/solvers/block_lu.hpp>
 
 namespace polybody {
 
-/// The solver of time steps.
+/// Solver of time steps.
 using DefaultSolver = BlockSolver;
-/// The solver of statics, where a block may be without a pivot of its own.
+/// Solver of statics. It also solves matrices with blocks that have no pivot of their own.
 using DefaultStaticSolver = AutoLu;
 
 }  // namespace polybody

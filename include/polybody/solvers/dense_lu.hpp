@@ -9,8 +9,8 @@
 
 namespace polybody {
 
-/// Dense LU with partial pivoting [Golub & Van Loan 2013, Algorithm 3.4.1]: for small systems and for checking the
-/// others.
+/// Dense LU factorisation with partial pivoting [Golub & Van Loan 2013, Algorithm 3.4.1], for small systems and as a
+/// reference for the other solvers.
 class DenseLu {
  public:
   void analyse(Index size, std::span<Block const>) {
@@ -25,7 +25,7 @@ class DenseLu {
       for (Index i = 0; i < b.rows; ++i) a_(row + i, col + j) += b(i, j);
   }
 
-  /// −1, or the first column whose pivot is below 1e-14 of the column's largest entry.
+  /// Returns −1, or the first column with a pivot below 1e-14 of its largest entry.
   Index factor() {
     Index const n = a_.cols();
     double* const lu = lu_.data();  // by rows
@@ -57,9 +57,9 @@ class DenseLu {
     return -1;
   }
 
-  /// The least pivot of the last factorisation beside the largest entry of its column.
+  /// Least ratio of a pivot of the last factorisation to the largest entry of its column.
   double least_pivot() const { return least_pivot_; }
-  /// ±1, the sign of the determinant.
+  /// Sign of the determinant: ±1.
   double sign_of_determinant() const {
     Index const n = a_.cols();
     double sign = 1.0;

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Not in polybody.hpp: Eigen's sparse Cholesky costs every translation unit; include it where it is used.
+/// Not part of polybody.hpp, because Eigen's sparse Cholesky increases the compile time of every translation unit.
 
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCholesky>
@@ -16,18 +16,18 @@
 
 namespace polybody {
 
-/// Eigen's sparse LDLᵀ (AMD order) for symmetric tangents [A, Gᵀ; G, 0] with A ≻ 0: rows without a diagonal block get
-/// −ε, which makes the matrix quasi-definite, so that it has a factorisation in any order [Vanderbei 1995]; refinement
-/// against the matrix itself removes ε again. Slight asymmetry (gyroscopic terms, damping of bodies that turn) is
-/// refined away as well; where refinement does not contract, by BiCGSTAB with the factors as its preconditioner [van
-/// der Vorst 1992].
+/// Eigen's sparse LDLᵀ factorisation (AMD order) for symmetric tangents [A, Gᵀ; G, 0] with A ≻ 0. Rows without a
+/// diagonal block get −ε: the matrix is then quasi-definite and has a factorisation in any order [Vanderbei 1995].
+/// Iterative refinement with the matrix itself removes the error due to ε and to slight asymmetry (gyroscopic terms,
+/// damping of rotating bodies). If refinement does not contract, BiCGSTAB solves the equations with the factors as
+/// preconditioner [van der Vorst 1992].
 class EigenLdlt {
  public:
-  static constexpr double shift = 1e-9;             ///< ε beside g²/a, of the largest entries of G and A
-  static constexpr double largest_asymmetry = 0.1;  ///< ‖A − Aᵀ‖ beside ‖A‖; above it `factor` throws
-  static constexpr int most_refinements = 20;       ///< steps of refinement at most, in a solution
-  static constexpr int most_iterations = 60;        ///< of BiCGSTAB between two of these steps
-  using Unsymmetric = EigenSparseLu;                ///< takes its place where the tangent is not symmetric
+  static constexpr double shift = 1e-9;  ///< ratio of ε to g²/a, where g and a are the largest entries of G and A
+  static constexpr double largest_asymmetry = 0.1;  ///< largest ratio ‖A − Aᵀ‖/‖A‖; above it `factor` throws
+  static constexpr int most_refinements = 20;       ///< largest number of refinement steps of a solution
+  static constexpr int most_iterations = 60;        ///< largest number of BiCGSTAB iterations in a refinement step
+  using Unsymmetric = EigenSparseLu;                ///< replaces this solver if the tangent is not symmetric
 
   void analyse(Index size, std::span<Block const> blocks) {
     Sequence<char> has_diagonal(std::size_t(size), 0);
@@ -47,7 +47,8 @@ class EigenLdlt {
   void begin() { sink_.begin(); }
   void add(Index row, Index col, BlockView const& b) { sink_.add(row, col, b); }
 
-  /// −1, or an unknown without a usable pivot. \throws InvalidInput for a matrix that is far from symmetric.
+  /// Returns −1, or an unknown without a usable pivot. \throws InvalidInput if the asymmetry is above
+  /// `largest_asymmetry`.
   Index factor() {
     Matrix const& a = sink_.matrix();
     if (a.cols() == 0) return -1;
@@ -70,8 +71,8 @@ class EigenLdlt {
     return first_bad(1e-14);
   }
 
-  /// The least pivot of a row without a diagonal block beside g²/a, of the largest entries of G and A: not below
-  /// `shift`, which is the pivot of a row that repeats others.
+  /// Least ratio of the pivot of a row without a diagonal block to g²/a, where g and a are the largest entries of G and
+  /// A. It is at least `shift`, which is the ratio of a redundant row.
   double least_pivot() const {
     VecX const& d = ldlt_->pivots();
     double least = epsilon_ / shift;
@@ -79,7 +80,7 @@ class EigenLdlt {
     return rows_.empty() ? 1.0 : least * shift / epsilon_;
   }
 
-  /// x = A⁻¹ b; both may be the same.
+  /// x = A⁻¹ b; b and x may be the same vector.
   void solve(VecX const& b, VecX& x) const {
     if (b.size() == 0) return;
     VecX const rhs = b;
@@ -97,7 +98,7 @@ class EigenLdlt {
  private:
   using Matrix = SparseSink::Matrix;
 
-  /// Adds corrections dx_ for what x leaves, r_, as long as each halves it. Returns the norm of what is left.
+  /// Adds corrections dx_ for the residual r_ of x, as long as each halves its norm. Returns the norm of the residual.
   template <class Correct>
   double refine(VecX const& rhs, VecX& x, Correct&& correct) const {
     double left = leave(rhs, x);
@@ -113,7 +114,7 @@ class EigenLdlt {
     }
     return left;
   }
-  /// r_ = rhs − A x by the matrix without ε. Returns its norm.
+  /// Computes r_ = rhs − A x with the matrix without ε. Returns its norm.
   double leave(VecX const& rhs, VecX const& x) const {
     r_ = rhs - sink_.matrix() * x;
     for (Index const i : rows_) r_[i] -= epsilon_ * x[i];
@@ -128,7 +129,7 @@ class EigenLdlt {
                          {ErrorObject{"EigenLdlt"}, ": the tangent is not symmetric (relative asymmetry ",
                           ErrorValue{off / size}, "). Use EigenSparseLu or the default BlockSolver."});
   }
-  /// The unknown whose pivot is not above `threshold` of the largest entry of its column.
+  /// First unknown with a pivot not above `threshold` times the largest entry of its column; −1 if there is none.
   Index first_bad(double threshold) const {
     VecX const& d = ldlt_->pivots();
     for (Index i = 0; i < d.size(); ++i) {
@@ -144,9 +145,9 @@ class EigenLdlt {
   double epsilon_ = 0.0;
   mutable VecX r_, dx_;
   struct Ldlt : Eigen::SimplicialLDLT<Matrix, Eigen::Lower> {
-    VecX const& pivots() const { return this->m_diag; }  // of a factorisation that failed, too
+    VecX const& pivots() const { return this->m_diag; }  // also after a failed factorisation
   };
-  /// The factors as Eigen's iterative solvers take a preconditioner.
+  /// Adapter from the factors to the preconditioners of Eigen's iterative solvers.
   struct Factors {
     Ldlt const* ldlt = nullptr;
 
@@ -154,7 +155,7 @@ class EigenLdlt {
     VecX solve(VecX const& b) const { return ldlt->solve(b); }
     Eigen::ComputationInfo info() const { return Eigen::Success; }
   };
-  std::unique_ptr<Ldlt> ldlt_ = std::make_unique<Ldlt>();  // Eigen's does not move
+  std::unique_ptr<Ldlt> ldlt_ = std::make_unique<Ldlt>();  // Eigen's class is not movable
 };
 
 }  // namespace polybody

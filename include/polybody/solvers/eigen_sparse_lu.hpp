@@ -8,12 +8,12 @@
 
 namespace polybody {
 
-/// Eigen's sparse LU; the pattern is analysed once and blocks are scattered through a table, without searching. Eigen
-/// itself allocates inside `factor`. \tparam Ordering one of Eigen's.
+/// Eigen's sparse LU factorisation. The pattern is analysed once, and blocks are added through an index table, without
+/// search. Eigen itself allocates memory in `factor`. \tparam Ordering an ordering method of Eigen
 template <class Ordering>
 class EigenSparseLuBy {
  public:
-  using Matrix = SparseSink::Matrix;  ///< a sparse matrix by columns
+  using Matrix = SparseSink::Matrix;  ///< sparse matrix, stored by columns
 
   void analyse(Index size, std::span<Block const> blocks) {
     sink_.analyse(size, blocks);
@@ -21,14 +21,14 @@ class EigenSparseLuBy {
   }
   void begin() { sink_.begin(); }
   void add(Index row, Index col, BlockView const& b) { sink_.add(row, col, b); }
-  /// −1, or the first column, as they are eliminated, whose pivot is below 1e-14 of the column's largest entry.
+  /// Returns −1, or the first column in elimination order with a pivot below 1e-14 of its largest entry.
   Index factor() {
     Matrix const& a = sink_.matrix();
     if (a.cols() == 0) return -1;
     lu_->factorize(a);
-    auto const& place = lu_->colsPermutation().indices();  // of a column in the order of elimination
+    auto const& place = lu_->colsPermutation().indices();  // of each column in the elimination order
     if (lu_->info() != Eigen::Success) {
-      // Eigen tells a pivot that is exactly zero by its place, counted from one, at the end of a message.
+      // For a pivot that is exactly zero, Eigen's message ends with its place, counted from one.
       std::string const message = lu_->lastErrorMessage();
       std::size_t const first = message.find_last_not_of("0123456789") + 1;
       if (first == message.size()) return 0;
@@ -36,7 +36,7 @@ class EigenSparseLuBy {
         if (place[i] + 1 == std::stol(message.substr(first))) return i;
       return 0;
     }
-    auto const upper = lu_->matrixU();  // its diagonal stands in the supernodes of L
+    auto const upper = lu_->matrixU();  // its diagonal is stored in the supernodes of L
     Index lost = -1;
     least_pivot_ = 1.0;
     for (Index i = 0; i < a.cols(); ++i) {
@@ -53,9 +53,9 @@ class EigenSparseLuBy {
     }
     return lost;
   }
-  /// The least pivot of the last factorisation beside the largest entry of its column.
+  /// Least ratio of a pivot of the last factorisation to the largest entry of its column.
   double least_pivot() const { return least_pivot_; }
-  /// ±1, the sign of the determinant.
+  /// Sign of the determinant: ±1.
   double sign_of_determinant() const { return sink_.matrix().cols() == 0 ? 1.0 : lu_->signDeterminant(); }
   void solve(VecX const& b, VecX& x) const {
     if (b.size() > 0) x = lu_->solve(b);
@@ -66,10 +66,10 @@ class EigenSparseLuBy {
   SparseSink sink_;
   double least_pivot_ = 1.0;
   using Lu = Eigen::SparseLU<Matrix, Ordering>;
-  std::unique_ptr<Lu> lu_ = std::make_unique<Lu>();  // Eigen's does not move
+  std::unique_ptr<Lu> lu_ = std::make_unique<Lu>();  // Eigen's class is not movable
 };
 
-/// Eigen's sparse LU in the order of COLAMD.
+/// Eigen's sparse LU factorisation in the COLAMD order.
 using EigenSparseLu = EigenSparseLuBy<Eigen::COLAMDOrdering<int>>;
 
 }  // namespace polybody

@@ -7,8 +7,8 @@
 namespace polybody {
 
 /// Any solver, with one step of iterative refinement after each solution: x += A⁻¹(b − A x) [Higham 2002, §12.1]. It
-/// keeps the blocks, so a solution costs about twice as much; worth it where masses or stiffnesses differ by ten orders
-/// and more.
+/// stores the blocks, and a solution costs about twice as much. Use it if masses or stiffnesses differ by ten orders of
+/// magnitude or more.
 template <LinearSolver Solver>
 class IterativeRefinement {
  public:
@@ -30,10 +30,10 @@ class IterativeRefinement {
       for (Index i = 0; i < b.rows; ++i) *value++ = b(i, j);
     solver_.add(row, col, b);
   }
-  /// −1, or the column without a usable pivot.
+  /// Returns −1, or the column without a usable pivot.
   Index factor() { return solver_.factor(); }
 
-  /// x = A⁻¹ b; both may be the same.
+  /// x = A⁻¹ b; b and x may be the same vector.
   void solve(VecX const& b, VecX& x) const {
     r_ = b;
     solver_.solve(b, x);
@@ -93,7 +93,7 @@ class IterativeRefinement {
  private:
   Solver solver_;
   Sequence<Block> blocks_;
-  Sequence<std::size_t> first_;  // of each block's values, and one past the last
+  Sequence<std::size_t> first_;  // index of each block's first value, and one past the last value
   Sequence<double> values_;
   std::size_t next_ = 0;
   mutable VecX r_, dx_;

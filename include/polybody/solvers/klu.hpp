@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// SuiteSparse's KLU. Not in polybody.hpp: it needs klu.h and -lklu (Debian: libsuitesparse-dev).
+/// KLU of SuiteSparse. Not part of polybody.hpp, because it needs klu.h and -lklu (Debian: libsuitesparse-dev).
 
 #if __has_include(<klu.h>)
 #include <klu.h>
@@ -18,22 +18,22 @@
 
 namespace polybody {
 
-/// KLU, called so that it really refactors: pivots are chosen in the first factorisation and kept, in place, until
-/// their growth or the condition shows that they no longer serve [Davis & Palamadai Natarajan 2010]. `solve` does not
-/// allocate.
+/// Sparse LU factorisation by KLU [Davis & Palamadai Natarajan 2010]. The first factorisation chooses the pivots. Later
+/// ones reuse pivots and memory until the pivot growth or the condition number requires new pivots. `solve` does not
+/// allocate memory.
 class Klu {
  public:
-  /// Pivots are chosen anew where KLU's reciprocal of their growth falls to this part of what it was when they were
-  /// chosen: they lose two digits more than new ones do.
+  /// New pivots are chosen if KLU's reciprocal pivot growth falls to this part of its value at the choice of the
+  /// pivots: reused pivots then lose two digits more than new ones.
   static constexpr double least_growth = 1e-2;
-  /// Pivots are refused where its reciprocal of the condition is below this.
+  /// Pivots are rejected if KLU's estimate of the reciprocal condition number is not above this.
   static constexpr double least_condition = 1e-16;
 
   Klu() = default;
-  /// With the unknowns in this order (each once) instead of KLU's own (block triangular, AMD).
+  /// Uses this elimination order (each unknown once) instead of KLU's own (block triangular form, AMD).
   explicit Klu(std::span<int const> order) : order_(order.begin(), order.end()) {}
 
-  /// \throws InvalidInput when an order was given that is not one of `size` unknowns.
+  /// \throws InvalidInput if a given order does not contain each of the `size` unknowns once.
   void analyse(Index size, std::span<Block const> blocks) {
     sink_.analyse(size, blocks);
     klu_ = std::make_unique<Handle>();
@@ -46,7 +46,7 @@ class Klu {
   void begin() { sink_.begin(); }
   void add(Index row, Index col, BlockView const& b) { sink_.add(row, col, b); }
 
-  /// −1, or a column without a usable pivot.
+  /// Returns −1, or a column without a usable pivot.
   Index factor() {
     if (sink_.matrix().cols() == 0) return -1;
     if (klu_->symbolic == nullptr) return empty_column();
@@ -67,10 +67,10 @@ class Klu {
     return bad;
   }
 
-  /// The least pivot of the last factorisation beside the largest one, of rows that are scaled alike.
+  /// Ratio of the least to the largest pivot of the last factorisation, for the matrix with scaled rows.
   double least_pivot() const { return klu_->numeric == nullptr ? 1.0 : klu_->common.rcond; }
 
-  /// x = A⁻¹ b; both may be the same.
+  /// x = A⁻¹ b; b and x may be the same vector.
   void solve(VecX const& b, VecX& x) const {
     if (b.size() == 0) return;
     x = b;
@@ -83,7 +83,7 @@ class Klu {
     klu_common common;
     klu_symbolic* symbolic = nullptr;
     klu_numeric* numeric = nullptr;
-    double growth = 0.0;  ///< its reciprocal, as the pivots were chosen, a ratio
+    double growth = 0.0;  ///< reciprocal pivot growth at the choice of the pivots, a ratio
 
     Handle() { klu_defaults(&common); }
     Handle(Handle const&) = delete;
@@ -108,7 +108,7 @@ class Klu {
       throw InvalidInput("solver.order", {ErrorObject{"Klu"}, ": the elimination order must contain each of the ", size,
                                           " unknowns once."});
   }
-  /// As KLU wants them: not const, though it does not change them.
+  /// Arrays for KLU. Its interface requires non-const pointers, but it does not change the arrays.
   Arrays arrays() const {
     auto const& a = sink_.matrix();
     return {int(a.cols()), const_cast<int*>(a.outerIndexPtr()), const_cast<int*>(a.innerIndexPtr()),
@@ -121,7 +121,7 @@ class Klu {
     if (growth == 0.0) return true;
     return klu_rgrowth(columns, rows, values, k.symbolic, k.numeric, &k.common) != 0 && k.common.rgrowth > growth;
   }
-  /// A column of zeros, else the first.
+  /// First column of zeros, or 0 if there is none.
   Index empty_column() const {
     auto const& a = sink_.matrix();
     for (Index j = 0; j < a.cols(); ++j) {

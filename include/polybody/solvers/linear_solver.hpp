@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What a linear solver offers: it receives the blocks of the matrix, by `add` or in the slots that it names.
+/// Interface of linear solvers. A solver receives the blocks of the matrix by `add` or through its slots.
 
 #include <algorithm>
 #include <span>
@@ -11,7 +11,7 @@
 
 namespace polybody {
 
-/// analyse (once, allocates) → begin → add… → factor → solve…; the blocks come in the analysed order.
+/// Order of calls: analyse (once, allocates) → begin → add… → factor → solve…. Blocks are added in the analysed order.
 template <class S>
 concept LinearSolver = requires(S s, std::span<Block const> blocks, Mat3 const block, VecX const b, VecX x) {
   s.analyse(Index(1), blocks);
@@ -29,11 +29,11 @@ template <class S>
 struct ReadsBothHalves<S> : std::type_identity<typename S::Unsymmetric> {};
 }  // namespace detail
 
-/// What takes the place of S for matrices that are not symmetric: `S::Unsymmetric`, where S reads one half only.
+/// Solver for unsymmetric matrices: `S::Unsymmetric` if S reads only one half of the matrix, else S.
 template <LinearSolver S>
 using UnsymmetricSolver = typename detail::ReadsBothHalves<S>::type;
 
-/// Writes the matrix into the solver and factors it; twice where the solver asks for it in another order.
+/// Writes the matrix into the solver and factorises it, and repeats both if the solver changes its elimination order.
 /// Returns −1, or the column without a usable pivot.
 template <LinearSolver S>
 Index write_and_factor(S& solver, BlockWriter const& write) {

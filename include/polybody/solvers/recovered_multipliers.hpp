@@ -1,14 +1,14 @@
 #pragma once
 /// \file
-/// Multipliers of an eliminated joint from the wrench that it holds.
+/// Multipliers of an eliminated joint from its reaction wrench.
 
 #include <polybody/system/tree_body.hpp>
 
 namespace polybody::detail {
 
-/// Adds to λ (m) what it lacks for Gᵀλ to be next to what the joint holds, by least squares of the rows. \param map G
-/// of the carried body, m×6 by columns, about the marker \param held [f; m] that is left, about the body's centre of
-/// mass \param arm from there to the marker
+/// Adds to λ (m) the correction δ that minimises ‖Gᵀδ + `held`‖. \param map G of the carried body, m×6 by columns,
+/// about the marker \param held residual wrench [f; m] of the body about its centre of mass \param arm vector from the
+/// centre of mass to the marker
 template <class T>
 void add_multipliers_that_hold(int m, T const* map, Vec<T, 6> held, Vec<T, 3> const& arm, T* lambda) {
   for (int k = 0; k < 3; ++k)

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// The coordinates of a time step of models whose policies eliminate unknowns: T of joint trees (`JointTree`) and of
-/// linear joints (`LinearElimination`). Bodies, joints and forces do not notice.
+/// Coordinates of a time step for models with policies that eliminate unknowns: T of joint trees (`JointTree`) and of
+/// linear joints (`LinearElimination`). Bodies, joints and forces do not depend on the elimination.
 
 #include <polybody/math/sequence.hpp>
 #include <polybody/solvers/articulated_body.hpp>
@@ -16,17 +16,18 @@
 namespace polybody {
 namespace detail {
 
-/// `Solution` says how the equations of joint coordinates are solved; void where there are linear joints only.
+/// \tparam Solution solution method of the equations of joint coordinates; void if there are only linear joints
 template <class Solution>
 class ReducedCoordinates : public CoordinateMaps<Solution> {
   using Maps = CoordinateMaps<Solution>;
 
  public:
-  /// The dense system TᵀKT is solved, else the sparse one of all bodies with the tree's rows.
+  /// True if the dense system TᵀKT is solved.
   static constexpr bool solves_densely = std::is_same_v<Solution, joint_coordinates::DenseMatrix>;
-  /// The tree itself is the solver: the tangent is written as it is for the whole model.
+  /// True if the articulated-body algorithm solves the equations; it receives the tangent of the full model.
   static constexpr bool solves_by_bodies = std::is_same_v<Solution, joint_coordinates::ArticulatedBody>;
-  /// The equations have the unknowns of a time step.
+  /// True if the linear equations have the unknowns of a time step. If false, the sparse system of all bodies with the
+  /// rows of the tree is solved.
   static constexpr bool solves_as_it_is = solves_densely || solves_by_bodies || std::is_void_v<Solution>;
 
   /// \throws InvalidInput, InconsistentInitialConditions as `Reduction`.
@@ -119,12 +120,12 @@ class ReducedCoordinates : public CoordinateMaps<Solution> {
     }
   }
 
-  /// What a factorisation keeps.
+  /// State and factors of a factorisation.
   struct Held {
     TreeState state;
     ArticulatedBodySolverOf<> solver;
     TreeTangentSolverOf<> tangent;
-    bool of_balance = false;  ///< the last factors are those of the tangent
+    bool of_balance = false;  ///< the last factorisation is that of `tangent`
   };
   static FrozenState held(void* c) {
     if constexpr (solves_by_bodies) {
@@ -271,13 +272,13 @@ constinit CoordinateOperations const ReducedCoordinates<Solution>::table = Reduc
 
 }  // namespace detail
 
-/// Joints of M that are solved for body by body are in a model of rigid bodies, without first-order states.
+/// A model with `joint_coordinates::ArticulatedBody` has only rigid bodies and no first-order states.
 template <class M>
 concept ArticulatedBodySolvable =
     !std::is_same_v<typename M::Solution, joint_coordinates::ArticulatedBody> || (M::all_rigid && !M::has_states);
 
-/// The coordinates of a time step of `model` in the scalar T; none where its joints eliminate nothing.
-/// \throws InvalidInput where recursive joints close a loop; InconsistentInitialConditions where linear joints
+/// Coordinates of a time step of `model` in the scalar T; empty if its joints eliminate no unknowns.
+/// \throws InvalidInput if joints with joint coordinates close a loop; InconsistentInitialConditions if linear joints
 /// contradict each other.
 template <StateScalar T = double, class M>
 CoordinatesOf<T> coordinates_of(M const& model) {
@@ -302,12 +303,12 @@ CoordinatesOf<T> coordinates_of(M const& model) {
   }
 }
 
-/// What a time step is about: the mechanism without what its policies eliminate, in the scalar T.
+/// Equations of a time step of `model`, without the unknowns that its policies eliminate, in the scalar T.
 template <StateScalar T = double, class M, Capabilities wanted = Capabilities::implicit_step>
 BasicSystem<T> stepped_system(M const& model, With<wanted> = {}) {
   return BasicSystem<T>(model, with<wanted>, coordinates_of<T>(model));
 }
-/// Refuses a temporary model, to which the system would keep a reference.
+/// Refuses a temporary model, because the system keeps a reference to its model.
 template <StateScalar T = double, class M, Capabilities wanted = Capabilities::implicit_step>
 BasicSystem<T> stepped_system(M const&& model, With<wanted> = {}) = delete;
 

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What time steps make of solvers that do not drop rows by themselves.
+/// Wrapper that drops redundant rows for solvers that do not drop them.
 
 #include <algorithm>
 #include <span>
@@ -11,22 +11,22 @@
 
 namespace polybody {
 
-/// A solver that leaves out rows that repeat others by itself, and tells which.
+/// Solver that drops redundant rows and lists them.
 template <class S>
 concept RedundancyAwareSolver = LinearSolver<S> && requires(S const s) {
   { s.dropped() } -> std::convertible_to<std::span<Index const>>;
 };
 
-/// Any solver of [A, Gᵀ; G, 0] so that rows that repeat others are left out: their multipliers are zero. Which rows
-/// these are is the judgement of the block solver. It is asked when `Solver` finds no pivot, or one that is weak
-/// (`least_pivot`, where `Solver` has it), and from then on as long as rows are left out. `Solver` then gets the
-/// matrix with ones on the diagonal in place of these rows and their columns. What `Solver` cannot factor even so (thin
-/// rods, whose M is singular, by `EigenLdlt`), the block solver solves. Costs a copy of the blocks.
+/// Any solver of [A, Gᵀ; G, 0], with redundant rows dropped: their multipliers are zero. The block solver determines
+/// the redundant rows. It factorises the matrix if `Solver` finds no pivot or a weak one (`least_pivot`, if `Solver`
+/// has it), and in every later factorisation as long as rows are dropped. `Solver` then factorises the matrix with
+/// these rows and their columns replaced by ones on the diagonal. If this fails (`EigenLdlt` for thin rods, whose M is
+/// singular), the block solver solves the equations. The wrapper stores a copy of the blocks.
 template <LinearSolver Solver>
 class RedundancyDropping {
  public:
-  /// Below this part of the largest entry of its column a pivot is weak. A row at the distance σ from those that it
-  /// repeats has pivots of σ² or twice σ, by the order; the block solver drops it from σ² = 1e-9 on.
+  /// A pivot below this part of the largest entry of its column is weak. A row at the distance σ from the span of other
+  /// rows has one pivot of σ² or two of σ, depending on the elimination order. The block solver drops it if σ² ≤ 1e-9.
   static constexpr double weak = 1e-3;
 
   void analyse(Index size, std::span<Block const> blocks) {
@@ -48,7 +48,7 @@ class RedundancyDropping {
       for (Index i = 0; i < b.rows; ++i) *value++ = b(i, j);
   }
 
-  /// −1, or the column without a usable pivot.
+  /// Returns −1, or the column without a usable pivot.
   Index factor() {
     by_judge_ = false;
     bool judged = !dropped_.empty() && check_step();
@@ -62,7 +62,7 @@ class RedundancyDropping {
     return by_judge_ ? -1 : bad;
   }
 
-  /// x = A⁻¹ b; both may be the same.
+  /// x = A⁻¹ b; b and x may be the same vector.
   void solve(VecX const& b, VecX& x) const {
     if (by_judge_) return judge_.solve(b, x);
     if (dropped_.empty()) return solver_.solve(b, x);
@@ -72,7 +72,7 @@ class RedundancyDropping {
   }
   std::span<Index const> dropped() const { return {dropped_.data(), dropped_.size()}; }
 
-  /// Drops these `unknowns` in every later factorisation, as `BlockFactor`, by the block solver.
+  /// Drops these `unknowns` in every later factorisation, as in `BlockFactor`.
   [[gnu::cold]] void mark_redundant(std::span<Index const> unknowns) {
     left_out_ = Sequence<Index>(unknowns.begin(), unknowns.end());
     if (judges_) judge_.mark_redundant(unknowns);
@@ -94,7 +94,7 @@ class RedundancyDropping {
     return {values_.data() + first_[k], blocks_[k].rows, blocks_[k].cols, 1, blocks_[k].rows};
   }
 
-  /// Asks the block solver which rows repeat others. False where it does not know.
+  /// Determines the redundant rows with the block solver. Returns false if its factorisation fails.
   [[gnu::cold]] bool check_step() {
     if (!judges_) {
       judge_.analyse(rhs_.size(), blocks_);
@@ -107,7 +107,7 @@ class RedundancyDropping {
     if (bad < 0) drop(judge_.dropped());
     return bad < 0;
   }
-  /// Leaves out these rows and no others.
+  /// Drops these rows and no others.
   void drop(std::span<Index const> rows) {
     if (std::equal(rows.begin(), rows.end(), dropped_.begin(), dropped_.end())) return;
     dropped_ = Sequence<Index>(rows.begin(), rows.end());
@@ -149,18 +149,18 @@ class RedundancyDropping {
 
   Solver solver_;
   BlockSolver judge_;
-  bool judges_ = false;    // is laid out
-  bool by_judge_ = false;  // the last factorisation is the block solver's
+  bool judges_ = false;    // the block solver is analysed
+  bool by_judge_ = false;  // the last factorisation is of the block solver
   Sequence<Block> blocks_;
-  Sequence<std::size_t> first_;  // of each block's values, and one past the last
+  Sequence<std::size_t> first_;  // index of each block's first value, and one past the last value
   Sequence<double> values_, part_;
-  Sequence<char> out_;  // by unknowns
+  Sequence<char> out_;  // for each unknown: 1 if it is dropped
   Sequence<Index> dropped_, left_out_;
   std::size_t next_ = 0;
   mutable VecX rhs_;
 };
 
-/// What time steps make of a solver: one that leaves out rows that repeat others.
+/// Solver of time steps: `Solver` itself if it drops redundant rows, else its wrapper.
 template <LinearSolver Solver>
 using StepSolver = std::conditional_t<RedundancyAwareSolver<Solver>, std::type_identity<Solver>,
                                       std::type_identity<RedundancyDropping<Solver>>>::type;

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The tangent as a sparse matrix by columns: the sink of the solvers that need one.
+/// Assembly of the tangent as a sparse matrix by columns, for the solvers that need one.
 
 #include <Eigen/SparseCore>
 #include <cstdint>
@@ -11,13 +11,14 @@
 
 namespace polybody {
 
-/// A sink that collects blocks as triplets of a sparse matrix.
-template <class T = double>  // compiled where it is used
+/// Sink that adds blocks to a sparse matrix.
+template <class T = double>  // a template, so that only its users compile it
 class SparseSinkOf {
  public:
-  using Matrix = Eigen::SparseMatrix<T, Eigen::ColMajor, int>;  ///< a sparse matrix by columns
+  using Matrix = Eigen::SparseMatrix<T, Eigen::ColMajor, int>;  ///< sparse matrix, stored by columns
 
-  /// Finds each entry's place in the values of a matrix of `size` unknowns once, so that `add` never searches.
+  /// Computes the position of each block entry in the values of a matrix of `size` unknowns, so that `add` needs no
+  /// search.
   void analyse(Index size, std::span<Block const> blocks) {
     Sequence<Sequence<int>> columns(static_cast<std::size_t>(size));
     for (Block const& b : blocks)
@@ -59,6 +60,6 @@ class SparseSinkOf {
   std::size_t cursor_ = 0;
 };
 
-using SparseSink = SparseSinkOf<>;  ///< in doubles
+using SparseSink = SparseSinkOf<>;  ///< sink of doubles
 
 }  // namespace polybody

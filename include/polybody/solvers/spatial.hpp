@@ -1,46 +1,46 @@
 #pragma once
 /// \file
-/// Spatial algebra of motions [v; ω] and forces [f; m] about one point, in world axes, on bare arrays of six numbers
-/// [Featherstone 2008, §2]; and of a pair [A B] of matrices from motions to forces, 6×12 by rows, in loops of twelve.
+/// Spatial algebra [Featherstone 2008, §2] of motions [v; ω] and forces [f; m] about one point, in world axes, on plain
+/// arrays of six numbers; and of pairs [A B] of matrices from motions to forces, 6×12 by rows, in loops of twelve.
 
 #include <polybody/solvers/articulated_inertia.hpp>
 
 namespace polybody::detail {
 
-/// out += m ×ₘ s, the rate of a motion s that is carried by the motion m.
+/// out += m ×ₘ s, the rate of a motion s that is constant in a frame with the motion m.
 template <class T>
 void add_motion_cross(T const* m, T const* s, T* out) {
   add_cross(m + 3, s, out);
   add_cross(m, s + 3, out);
   add_cross(m + 3, s + 3, out + 3);
 }
-/// out += m ×* f, the rate of a force f that is carried by the motion m.
+/// out += m ×* f, the rate of a force f that is constant in a frame with the motion m.
 template <class T>
 void add_force_cross(T const* m, T const* f, T* out) {
   add_cross(m + 3, f, out);
   add_cross(m + 3, f + 3, out + 3);
   add_cross(m, f, out + 3);
 }
-/// out = X x: the motion at a point d away.
+/// out = X x: the motion x about a point displaced by d.
 template <class T>
 void carry_motion(T const* x, T const* d, T* out) {
   for (int i = 0; i < 6; ++i) out[i] = x[i];
   add_cross(x + 3, d, out);
 }
-/// out += Xᵀ f: the force f, which acts about a point d away.
+/// out += Xᵀ f: a force f about a point displaced by d.
 template <class T>
 void add_carried_force(T const* f, T const* d, T* out) {
   for (int i = 0; i < 6; ++i) out[i] += f[i];
   add_cross(d, f, out + 3);
 }
 
-/// [A B], row i at m[12 i].
+/// Pair [A B] of matrices; row i begins at m[12 i].
 template <class T>
 struct MatrixPair {
   T m[72];
 
   T* row(int i) { return m + 12 * i; }
-  /// A = I, B = (·) ×* I v + v ×* I of a body that moves by v.
+  /// A = I, B = (·) ×* I v + v ×* I for a rigid body with the motion v and the `momentum` I v.
   void set_rigid(ArticulatedInertia<T> const& inertia, T const* v, T const* momentum);
   /// B −= A (w ×ₘ).
   void turn_back(T const* w) {
@@ -51,7 +51,7 @@ struct MatrixPair {
       add_cross(w + 3, a + 3, a + 9);
     }
   }
-  /// A a + B v.
+  /// out = A a + B v.
   void multiply(T const* a, T const* v, T* out) const {
     for (int i = 0; i < 6; ++i) out[i] = dot(m + 12 * i, a, 6) + dot(m + 12 * i + 6, v, 6);
   }
@@ -61,12 +61,12 @@ struct MatrixPair {
     for (int i = 1; i < 6; ++i)
       for (int j = 0; j < 12; ++j) out[j] += s[i] * m[12 * i + j];
   }
-  /// −= r lᵀ.
+  /// [A B] −= r lᵀ.
   void subtract_product(T const* r, T const* l) {
     for (int i = 0; i < 6; ++i)
       for (int j = 0; j < 12; ++j) m[12 * i + j] -= r[i] * l[j];
   }
-  /// to += Xᵀ [A B] X; this one is used up.
+  /// to += Xᵀ [A B] X; it overwrites this pair.
   void add_carried(T const* d, MatrixPair& to) {
     for (int i = 0; i < 6; ++i) {
       T* const a = row(i);
@@ -84,8 +84,8 @@ struct MatrixPair {
   }
 };
 
-/// With the mass m, its first moment h and Θ, f and g being force and moment of the momentum, columns for a change of
-/// v and of ω are  [m ω̃; h̃ ω̃]  and  [−f̃ − ω̃ h̃; −g̃ + ω̃ Θ − ṽ h̃],  and ã b̃ = b aᵀ − (a·b) 1.
+/// With the mass m, its first moment h, its second moment Θ and the momentum [f; g], the columns of B for a change of v
+/// and of ω are  [m ω̃; h̃ ω̃]  and  [−f̃ − ω̃ h̃; −g̃ + ω̃ Θ − ṽ h̃],  with ã b̃ = b aᵀ − (a·b) 1.
 template <class T>
 void MatrixPair<T>::set_rigid(ArticulatedInertia<T> const& inertia, T const* v, T const* momentum) {
   T const *const w = v + 3, *const first = inertia.first, mass = inertia.mass[0];
@@ -107,7 +107,7 @@ void MatrixPair<T>::set_rigid(ArticulatedInertia<T> const& inertia, T const* v, 
     moment[6 + i] -= wh;
     moment[9 + i] += vh;
   }
-  for (int i = 0; i < 3; ++i) {  // the crosses: ã has −a_k at (i, j) and a_j at (i, k)
+  for (int i = 0; i < 3; ++i) {  // cross products: ã has −a_k at (i, j) and a_j at (i, k)
     int const j = (i + 1) % 3, k = (i + 2) % 3;
     row(i)[6 + j] -= mass * w[k];
     row(i)[6 + k] += mass * w[j];
