@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Newton's method that keeps its factorisation while it contracts [Hairer & Wanner 1996, §IV.8].
+/// Modified Newton method: it reuses a factorisation as long as the iteration contracts [Hairer & Wanner 1996, §IV.8].
 
 #include <algorithm>
 #include <cmath>
@@ -12,21 +12,22 @@
 
 namespace polybody {
 
-/// When to stop, refactor and give up.
+/// Conditions to stop, to factorise again and to fail.
 struct NewtonOptions {
-  int max_iterations = 20;  ///< at which it gives up, in [1, 10⁶]
-  /// What a factorisation costs, in iterations: it is renewed where that saves more of them over as many solves as the
-  /// last one served.
+  int max_iterations = 20;  ///< number of iterations at which a solve fails, in [1, 10⁶]
+  /// Cost of a factorisation, in iterations. It is renewed if this saves more iterations, over as many solves as the
+  /// last factorisation completed.
   double factorisation_cost = 3.0;
   bool always_refactor = false;  ///< full Newton
-  int max_growths = 2;           ///< of the corrections, after which it gives up
-  /// What a solve should cost, in iterations, where a factorisation costs as many as above. At this bound it ends with
-  /// the first iterate that is near, and reports what it left, as a loop in real time asks for. 0: no bound.
+  int max_growths = 2;           ///< number of growing corrections at which a solve fails
+  /// Budget of a solve for real-time loops, in iterations; a factorisation counts as `factorisation_cost` iterations.
+  /// At the budget the solve ends with the first iterate near the solution and reports its last correction. 0: no
+  /// budget.
   double budget = 0.0;
-  bool predictive_stop = true;  ///< stop on what θ tells of the next correction, not on the last one itself
+  bool predictive_stop = true;  ///< stop by the next correction as predicted from θ, not by the last correction itself
 
-  /// \throws InvalidInput naming `who` for counts outside [1, 10⁶], a cost that is no number ≥ 0, or a budget below a
-  /// factorisation and an iteration.
+  /// \throws InvalidInput naming `who` if a count is outside [1, 10⁶], if the cost is negative or NaN, or if the budget
+  /// is below the cost of a factorisation and an iteration.
   [[gnu::cold]] void check(std::string const& who) const {
     require_count(max_iterations, who, ": newton.max_iterations");
     require_count(max_growths, who, ": newton.max_growths");
@@ -43,50 +44,51 @@ struct NewtonOptions {
   }
 };
 
-/// Singular or not finite is what the first iterate is; where a later one is, Newton diverged.
+/// `singular` and `not_finite` refer to the first iterate. If a later iterate is singular or not finite, the result is
+/// `diverged`.
 enum class NewtonResult { converged, diverged, singular, not_finite };
 
-/// What a solve cost and how well it contracted.
+/// Cost and contraction of a solve.
 struct NewtonReport {
-  NewtonResult result = NewtonResult::converged;  ///< how it ended
-  int iterations = 0;                             ///< evaluations of the right-hand side that were solved for
-  int factorisations = 0;                         ///< tangents that were factored
+  NewtonResult result = NewtonResult::converged;  ///< result of the solve
+  int iterations = 0;                             ///< number of right-hand sides that were evaluated and solved for
+  int factorisations = 0;                         ///< number of factorised tangents
   double theta = 0.0;                             ///< last contraction rate ‖Δₖ‖/‖Δₖ₋₁‖, a ratio
-  double left = 0.0;  ///< where it ended for its budget, the last correction relative to what is tolerated; else 0
+  double left = 0.0;  ///< if the budget ended the solve: last correction relative to its tolerance, a ratio; else 0
 };
 
-/// What Newton's method keeps from solve to solve of problems that follow each other.
+/// Data that Newton's method passes from one solve to the next in a sequence of similar problems.
 struct ReusedFactorisation {
-  bool usable = false;  ///< a factorisation is at hand
+  bool usable = false;  ///< a factorisation is available
   double theta = 1.0;   ///< its contraction rate, a ratio
-  double fresh = 0.05;  ///< the ratio that is expected of a new one, as others had
-  int served = 0;       ///< solves that it has ended
-  double seen = 0.0;    ///< the rate that its corrections showed last, a ratio; 0: none
-  bool stale = false;  ///< the last solve found at once that one had to be made, as where contacts change in every step
+  double fresh = 0.05;  ///< expected contraction rate of a new factorisation, a ratio, from previous ones
+  int served = 0;       ///< number of solves that it completed
+  double seen = 0.0;    ///< last contraction rate of its corrections, a ratio; 0: none
+  bool stale = false;   ///< the next solve begins with a new factorisation, as for contacts that change every step
 };
 
-/// The norm of a correction, and how much of it is tolerated, which may depend on the iterate.
+/// Norm of a correction and its tolerance, which may depend on the iterate.
 struct CorrectionSize {
-  double norm, tolerated = 1.0;  ///< ‖Δ‖ and what of it is tolerated, both in the unit of the problem
+  double norm, tolerated = 1.0;  ///< ‖Δ‖ and its tolerance, both in the unit of the problem
 };
 
 namespace detail {
 
-/// Iterations that are still to come after a correction that is `rated` times what is tolerated, at the rate θ.
+/// Number of further iterations after a correction of `rated` times its tolerance, at the contraction rate `theta`.
 inline double iterations_to_come(double rated, double theta) {
   if (!(theta < 1.0)) return std::numeric_limits<double>::infinity();
   return std::max(0.0, std::log(rated * theta / (1.0 - theta)) / -std::log(theta));
 }
 
-/// How the corrections of Newton's method shrink, and the part of them that is taken.
+/// Contraction of the corrections of Newton's method, and the part of a correction that is applied.
 struct NewtonProgress {
-  double before = 0.0, earlier = 0.0;  ///< norms of the last correction and of the one before it
-  double largest = 0.0;                ///< of all
-  double rated = 0.0;                  ///< the last one beside what was tolerated
+  double before = 0.0, earlier = 0.0;  ///< norms of the last and of the last but one correction
+  double largest = 0.0;                ///< largest norm of all corrections
+  double rated = 0.0;                  ///< ratio of the last correction to its tolerance
   double part = 1.0;
   int grown = 0;
 
-  /// Rates the next correction by the last one. False where it grew.
+  /// Computes the ratio θ of the next correction to the last one. Returns false if it grew and is above its tolerance.
   bool rate(CorrectionSize const& size, NewtonOptions const& options, double& theta) {
     double const norm = size.norm, beside_tolerated = norm / size.tolerated;
     theta = beside_tolerated / rated;
@@ -99,61 +101,61 @@ struct NewtonProgress {
     bool const grows = options.always_refactor ? earlier > 0.0 && norm >= earlier : theta >= 1.0;
     return !(grows && beside_tolerated > 1.0);
   }
-  /// Whether a new factorisation saves more iterations than it costs, over as many solves as the last one served.
-  /// \param theta the rate with the one at hand
+  /// True if a new factorisation saves more iterations than it costs, over as many solves as the last one completed.
+  /// \param theta contraction rate of the current factorisation
   static bool renewal_pays(CorrectionSize const& size, NewtonOptions const& options, ReusedFactorisation const& kept,
                            double theta) {
-    if (theta <= 1.5 * kept.fresh) return false;  // no better than what is at hand
+    if (theta <= 1.5 * kept.fresh) return false;  // a new one is not better
     double const by = size.norm / size.tolerated;
     double const saved = iterations_to_come(by, theta) - iterations_to_come(by, kept.fresh);
     return saved * std::max(kept.served, 1) > options.factorisation_cost;
   }
 
-  /// Whether corrections stay where they are, so that it may be rounding that they consist of.
+  /// True if the corrections have stopped shrinking, so that they may consist of round-off.
   bool stalls(CorrectionSize const& size, bool shrinks) const {
     bool const grew = size.norm >= before, twice = size.norm > 0.5 * before && before > 0.5 * earlier && earlier > 0.0;
     return !shrinks || ((grew || twice) && size.norm <= 1e4 * size.tolerated);
   }
 
-  /// The correction is taken.
+  /// Records the norm of a correction that is applied.
   void take(CorrectionSize const& size) {
     earlier = before;
     before = size.norm;
     largest = std::max(largest, size.norm);
     rated = size.norm / size.tolerated;
   }
-  /// Whether the correction that is taken is the last one. \param renewed the factorisation is of this iterate
-  /// \param left the share of it that the next one comes from, by a fit of past ones
+  /// True if the applied correction is the last one. \param renewed true if the factorisation is of this iterate
+  /// \param left part of the correction that determines the next one, from the fit by previous ones; a ratio
   bool ends(NewtonOptions const& options, bool renewed, double theta, double left = 1.0) const {
     if (options.always_refactor || !options.predictive_stop) return rated <= 1.0;
     double const contraction = std::min(theta, 0.99);
-    bool const small = rated <= 0.1;  // rounding no longer contracts
+    bool const small = rated <= 0.1;  // round-off does not contract
     double const expected = contraction / (1.0 - contraction) * left * rated;
     return small || ((!renewed || grown == 0) && theta < 1.0 && expected <= 1.0);
   }
 };
 
-/// A solve: what it has at hand, and where it stands.
+/// Inputs and state of one solve.
 template <class Problem>
 struct NewtonSolve {
   Problem& problem;
   NewtonOptions const& options;
   ReusedFactorisation& kept;
-  bool begins_anew;  ///< as the last solve found its factorisation of no use
+  bool begins_anew;  ///< the solve begins with a new factorisation
   NewtonReport report = {};
   NewtonProgress progress = {};
-  bool fresh = false, renewed = false;  ///< a factorisation was made at the last iterate, at this one
-  bool rounding = false;                ///< the correction is what rounding leaves
+  bool fresh = false, renewed = false;  ///< the tangent was factorised at the last iterate; at this one
+  bool rounding = false;                ///< the correction consists of round-off
   bool restarted = false;               ///< the iterate is the first one again
-  bool follows = false;                 ///< the last correction was by the factorisation at hand
-  std::optional<AndersonFit> fit = {};  ///< of this correction by the ones before it
+  bool follows = false;                 ///< the last correction used the current factorisation
+  std::optional<AndersonFit> fit = {};  ///< fit of this correction by the previous ones
 
-  /// What has been spent and `more` stay within the budget.
+  /// True if the cost of the solve plus `more` iterations is within the budget.
   bool affords(double more) const {
     return options.budget == 0.0 ||
            report.iterations + options.factorisation_cost * report.factorisations + more <= options.budget;
   }
-  /// \return whether the tangent has a factorisation
+  /// Factorises the tangent. Returns false if it is singular.
   bool renew() {
     if (!problem.refactor()) return false;
     ++report.factorisations;
@@ -162,7 +164,7 @@ struct NewtonSolve {
     follows = false;
     return kept.usable = renewed = true;
   }
-  /// Goes back to the first iterate where an earlier solve's factorisation led far from it.
+  /// Returns to the first iterate if corrections with the factorisation of an earlier solve were too large.
   bool restart() {
     if constexpr (requires { problem.restart(); }) {
       restarted = report.factorisations == 0 && problem.is_far_from_solution(progress.largest);
@@ -173,7 +175,8 @@ struct NewtonSolve {
     }
     return restarted;
   }
-  /// What is left moves the iterate little beside what it moves by itself.
+  /// True if a correction of this norm is small compared with the motion during the step, or with the largest
+  /// correction.
   bool is_near(double norm) const {
     if constexpr (requires { problem.is_far_from_solution(norm); })
       return !problem.is_far_from_solution(100.0 * norm);
@@ -182,14 +185,14 @@ struct NewtonSolve {
   }
   static bool is_finite(CorrectionSize const& size) { return std::isfinite(size.norm / size.tolerated); }
 
-  /// Fits the correction by those before it of the same factorisation.
+  /// Fits the correction by previous ones of the same factorisation.
   void fit_correction() {
     if constexpr (requires { problem.acceleration(); })
       if (follows && !fit) fit = problem.acceleration().fit(problem.correction());
   }
-  /// After a combined step ‖Δₖ‖/‖Δₖ₋₁‖ is no rate of the factorisation: that is what the fit tells. As one ratio may be
-  /// small by chance, a rate θ is followed by one of at least θ^1.5. Returns that of corrections to come, combined
-  /// ones.
+  /// Updates the contraction rate of the factorisation. After a combined step the fit gives this rate, because
+  /// ‖Δₖ‖/‖Δₖ₋₁‖ is not a contraction rate. Since one ratio may be small by chance, a rate θ is followed by a rate of
+  /// at least θ^1.5. Returns the expected rate of the next, combined corrections.
   double rate_of_factorisation() {
     double const ratio = kept.theta;
     if constexpr (requires { problem.acceleration(); })
@@ -201,8 +204,8 @@ struct NewtonSolve {
     return std::min(ratio, kept.theta);
   }
 
-  /// Rates the next correction, renews the factorisation where it asks for that, and solves again. False where it
-  /// diverges.
+  /// Rates the correction. If the factorisation has to be renewed, it factorises and solves again. Returns false if the
+  /// iteration diverges.
   bool rate(int k, CorrectionSize& size) {
     double const rate_before = kept.theta;
     bool shrinks = progress.rate(size, options, kept.theta);
@@ -217,7 +220,7 @@ struct NewtonSolve {
           kept.seen = 0.0;
           return true;
         }
-        if (!problem.evaluate()) return false;  // it was asked of places beside the iterate
+        if (!problem.evaluate()) return false;  // `is_round_off` evaluates other iterates
       }
     bool const asks = !renewed && (!shrinks || progress.renewal_pays(size, options, kept, to_come)) &&
                       affords(options.factorisation_cost);
@@ -226,25 +229,26 @@ struct NewtonSolve {
     if (asks && restart()) return true;
     if (asks) {
       if (!renew()) return false;
-      kept.theta = 1.0;  // of the new one nothing is known
+      kept.theta = 1.0;  // the rate of the new one is unknown
       size = CorrectionSize{problem.solve()};
       if (!is_finite(size)) return false;
-      bool const first = report.factorisations == 1;  // what an earlier solve's one made tells nothing of this one's
+      bool const first = report.factorisations == 1;  // not comparable with an earlier solve's factorisation
       shrinks = first || size.norm < progress.before || size.norm <= size.tolerated;
     }
     return shrinks || ++progress.grown < options.max_growths;
   }
 
-  /// Takes the correction, combined with those before it where it is not the last one by itself. Whether it is.
+  /// Takes the correction and combines it with previous ones, unless it is the last one without combination. Returns
+  /// true if it is the last one.
   bool take(CorrectionSize const& size) {
     progress.take(size);
     bool last = progress.ends(options, renewed, kept.theta);
     if constexpr (requires { problem.acceleration(); }) {
       if ((last && !fit) || options.always_refactor || !options.predictive_stop) return last;
       fit_correction();
-      if (fit && fit->contraction > 0.8) follows = false;  // a combination would lead far
+      if (fit && fit->contraction > 0.8) follows = false;  // a combination would be large
       if (!follows) problem.acceleration().forget();
-      bool const measured = problem.acceleration().combined();  // else θ is a ratio, as of contacts that have changed
+      bool const measured = problem.acceleration().combined();  // else θ is a ratio, as after a change of contacts
       problem.acceleration().combine(problem.correction());
       double const left = !follows ? 1.0 : measured ? fit->left : std::sqrt(fit->left);
       last = last || progress.ends(options, renewed, kept.theta, left);
@@ -253,7 +257,7 @@ struct NewtonSolve {
     return last;
   }
 
-  /// One iteration. What it ends with, if it does.
+  /// Executes one iteration. Returns the result if the solve ends with it.
   std::optional<NewtonResult> iterate(int k) {
     if (!problem.evaluate()) {
       kept.usable = kept.usable && k == 0;
@@ -295,41 +299,47 @@ struct NewtonSolve {
 
 }  // namespace detail
 
-/// Solves by corrections Δ. The problem offers
-///   bool evaluate()           the right-hand side at the iterate; false when it is not finite
-///   bool refactor()           the tangent there; false when it is singular
-///   CorrectionSize solve()    the next correction; or double, its norm where 1 is tolerated. It may be asked twice of
-///                             one right-hand side, by an old and by a new factorisation
-///   void apply()              adds it; or void apply(double part), which full Newton damps
-///   bool is_round_off(double)  (or not there) whether a correction of this norm is what rounding of the iterate leaves
-///   AndersonAcceleration& acceleration(), VecX& correction()  (or not there) what combines corrections, and the one
-///                             that `solve` found and `apply` takes
-///   bool is_far_from_solution(double), void restart()  (or not there) whether a correction of this norm leads further
-///   away than the
-///                             solution may be; brings back the first iterate
-/// `kept` says whether an earlier factorisation may be used, and what is known of it.
-/// A correction that tells that the factorisation should be renewed is not taken: the new one is made where it was
-/// found, and answers the same right-hand side. It should be where corrections grow, and where it saves more iterations
-/// than it costs (`NewtonOptions`). Where corrections of an earlier solve's factorisation led far away, the solve
-/// begins again with a new one: from there it may find another solution, as rods that turn over have. Where the first
-/// correction shows that, the next solves begin with a new one, until their second corrections are small again. With
-/// ‖Δ‖ beside what is tolerated it stops when θ/(1 − θ) ‖Δ‖ ≤ 1, for a new factorisation only as long as no correction
-/// grew: the rate θ after a large correction is small for any iterate and says nothing of convergence. Corrections of
-/// one factorisation are combined, but for full Newton and without `predictive_stop`: θ is then the factorisation's own
-/// rate, and ‖Δ‖ what the combination leaves of the last correction, or its geometric mean with ‖Δ‖ after the first
-/// two. It fails after as many growing corrections of new factorisations as `max_growths` says. Full Newton in a stiff
-/// direction contracts by turns (θ = 0.01, 0.8, 1e-4, …: bending, then the stretch that it left), so no single rate
-/// predicts the next correction: it stops when ‖Δ‖ ≤ 1 itself, and grows when ‖Δₖ‖ ≥ ‖Δₖ₋₂‖, by the norms themselves,
-/// as what is tolerated shrinks with a wild iterate's accelerations. Where it would go in circles, as between a contact
-/// and none, half of a correction is enough: the part that is taken is halved, down to 1/64, when ‖Δ‖ shrinks by less
-/// than a tenth of that part, and doubled when it shrinks by what the part explains. What is near, at the end of the
-/// budget: its last correction moves it by less than a hundredth of what would be far, or of the largest one where the
-/// problem does not tell. What is not goes on, as iterates at impacts may be anywhere.
+/// Solves a nonlinear problem by corrections Δ. The problem provides
+///   bool evaluate()           evaluates the right-hand side at the iterate; false if it is not finite
+///   bool refactor()           factorises the tangent at the iterate; false if it is singular
+///   CorrectionSize solve()    computes the next correction; or double: its norm, with the tolerance 1. A second call
+///                             for one right-hand side follows a new factorisation
+///   void apply()              adds the correction; or void apply(double part), for damping in full Newton
+///   bool is_round_off(double)  (optional) true if a correction of this norm consists of round-off of the iterate
+///   AndersonAcceleration& acceleration(), VecX& correction()  (optional) the acceleration, and the correction that
+///                             `solve` computes and `apply` adds
+///   bool is_far_from_solution(double), void restart()  (optional) true if a correction of this norm is larger than the
+///                             distance to the solution can be; returns to the first iterate
+/// `kept` describes the factorisation of earlier solves.
+///
+/// Factorisation: it is renewed if corrections grow, or if this saves more iterations than it costs (`NewtonOptions`).
+/// The correction that causes the renewal is discarded; the new factorisation at the same iterate solves for the same
+/// right-hand side. If corrections with the factorisation of an earlier solve are too large, the solve restarts at its
+/// first iterate with a new one. From the distant iterate it may converge to another solution, as with rods that turn
+/// over. If the second correction of a solve requires a renewal, the next solves begin with a new factorisation, until
+/// their second corrections are small again.
+///
+/// Stop: with ‖Δ‖ relative to its tolerance, the solve stops if θ/(1 − θ) ‖Δ‖ ≤ 1 or ‖Δ‖ ≤ 0.1. With a new
+/// factorisation the first condition requires that no correction of the solve grew: θ after a large correction is small
+/// for any iterate and does not prove convergence. Corrections of one factorisation are combined, except in full Newton
+/// and without `predictive_stop`. θ is then the contraction rate of the factorisation alone. ‖Δ‖ is replaced by the
+/// residual of the fit, or after the first two corrections by the geometric mean of both. The solve fails after
+/// `max_growths` growing corrections of new factorisations.
+///
+/// Full Newton: in stiff directions its rate alternates (θ = 0.01, 0.8, 1e-4, …: bending, then the stretch due to it),
+/// so that one rate does not predict the next correction. It stops if ‖Δ‖ ≤ 1. A correction grows if ‖Δₖ‖ ≥ ‖Δₖ₋₂‖,
+/// without tolerances, because the tolerance shrinks with the accelerations of an iterate far from the solution. A part
+/// of each correction is applied, to prevent cycles, as between a contact and none. The part is halved, down to 1/64,
+/// if ‖Δ‖ shrinks by less than a tenth of the part, and doubled if ‖Δ‖ shrinks in proportion to the part.
+///
+/// Budget: an iterate is near the solution if its last correction is below a hundredth of a far one, or of the largest
+/// one if the problem has no `is_far_from_solution`. If it is not near, the solve continues beyond the budget, because
+/// iterates at impacts may be anywhere.
 template <class Problem>
 NewtonReport newton(Problem&& problem, NewtonOptions const& options, ReusedFactorisation& kept) {
   detail::NewtonSolve<std::remove_reference_t<Problem>> solve{problem, options, kept, kept.stale};
   if (kept.stale) kept.usable = false;
-  kept.theta = std::pow(std::max(kept.theta, 1e-4), 0.8);  // an old rate is trusted less with every solve
+  kept.theta = std::pow(std::max(kept.theta, 1e-4), 0.8);  // an old rate is less reliable after every solve
   kept.fresh += 0.1 * (ReusedFactorisation{}.fresh - kept.fresh);
   for (int k = 0; k < options.max_iterations; ++k)
     if (auto const result = solve.iterate(k)) {

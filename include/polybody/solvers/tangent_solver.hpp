@@ -9,7 +9,7 @@
 
 namespace polybody {
 
-/// No force element, compliant joint or force of a body acts beside weight and inertia.
+/// True if weight and inertia are the only forces: no force element, compliant joint or force of a body acts.
 template <class = void>
 [[gnu::cold]] bool under_gravity_only(System const& s) {
   if (!s.step_coordinates().reduced->moves_by_newton_euler || !s.data().actions.empty()) return false;
@@ -18,13 +18,12 @@ template <class = void>
   return true;
 }
 
-/// The linear systems of an integrator: written by the mechanics, factored and solved by a linear solver, in whatever
-/// unknowns the mechanics choose for them. Trees that are their own solver are solved by their own elimination,
-/// whatever the solver.
+/// Linear equations of an integrator. The system chooses their unknowns and writes them; a linear solver factorises and
+/// solves them. Trees with the articulated-body algorithm use this algorithm for any choice of the linear solver.
 template <LinearSolver Solver>
 class TangentSolver {
  public:
-  /// Allocates all there is to be. \param copies of the unknowns, side by side, as a method of several stages has them
+  /// Allocates all memory. \param copies number of copies of the unknowns, as for the stages of a method
   [[gnu::cold]] void analyse(System& system, Index copies, BlockWriter const& write) {
     copies_ = copies;
     coordinates_ = system.step_coordinates();
@@ -59,12 +58,12 @@ class TangentSolver {
     }
   }
 
-  /// Evaluates the system, unless the walks of a tree under weight alone need nothing of it.
+  /// Evaluates the system, unless it is a tree under weight alone, whose recursions do not need the evaluation.
   void evaluate(System& system, At<double> const& at) const {
     if (!walks_) system.evaluate(at.q, at.v, at.t);
   }
-  /// r = M a − f + Gᵀλ at x, where the system was evaluated last. Where multipliers are kept the whole model's is
-  /// balanced and r is left zero; `residual` has it then.
+  /// r = M a − f + Gᵀλ at x, the state of the last evaluation. If multiplier estimates are stored, it stores the
+  /// residual of the full model instead and sets r to zero; `System::residual` computes r then.
   void balance(System& system, StepPosition const& x, VecX& r) {
     if (walks_) return coordinates_.entries->balance(coordinates_.self.get(), x, system.load_factor, r);
     if (!keeps_multipliers_) return system.residual(x.a, x.lambda, r);
@@ -72,12 +71,13 @@ class TangentSolver {
                                                balance_);
     r.setZero();
   }
-  /// What was balanced last is finite, as far as r does not tell.
+  /// False if the residual that the last `balance` stored is not finite.
   bool is_finite() const { return !keeps_multipliers_ || all_finite(balance_); }
-  /// A correction y of a step by what was balanced last: (−r, rows) = `rhs` → (accelerations, multipliers), of as many
-  /// multipliers as the system has. Where joints carry bodies the whole model's r is answered by all bodies and then by
-  /// the joints at the iterate: were −Tᵀr answered, a factorisation that is kept would carry forces from body to body
-  /// by the levers of its own time, and an error in that grows from joint to joint.
+  /// Correction y of a step for the residual of the last `balance`: (−r, rows) = `rhs` → (accelerations, multipliers),
+  /// with all multipliers of the system. For joint coordinates it solves the equations of all bodies for the residual
+  /// of the full model, and projects the solution on the joints of the current iterate. With −Tᵀr as right-hand side, a
+  /// reused factorisation would transfer forces from body to body with outdated moment arms, and this error grows from
+  /// joint to joint.
   void correct(VecX const& rhs, VecX& y) {
     if (!keeps_multipliers_) return solve(rhs, y);
     coordinates_.entries->rows_to_equations(coordinates_.self.get(), rhs.data() + coordinates_.reduced->velocities,
@@ -85,21 +85,23 @@ class TangentSolver {
     solver_.solve(balance_, x_);
     coordinates_.entries->correction_from_equations(coordinates_.self.get(), x_, y);
   }
-  /// A correction also answers what the estimates lack, of which its own size tells nothing: a rate of contraction that
-  /// was seen in another step does not predict the next correction.
+  /// True if multiplier estimates of eliminated joints are stored. A correction then also reduces the error of the
+  /// estimates, which its size does not include: the contraction rate of another step does not predict the next
+  /// correction.
   bool carries_multipliers() const { return keeps_multipliers_; }
-  /// The tree stands at this place again, after a factorisation at another one; for solvers that keep multipliers.
+  /// Returns the tree to the state `at` after a factorisation in another state; only if `carries_multipliers()`.
   void return_to(At<double> const& at) {
     coordinates_.entries->expand(coordinates_.self.get(), at.q, at.v, full_q_, full_v_);
   }
-  /// The factors of the tangent of that; the same as `factor` returns.
+  /// Factorises the tangent of the residual at x. Returns the same as `factor`.
   Index factor_tangent(System& system, StepPosition const& x, TangentCoefficients const& k, SecondOrder second) {
     if (walks_)
       return coordinates_.entries->factor_balance(coordinates_.self.get(), held_.get(), x, system.load_factor, k);
     return factor([&](BlockSink& sink) { system.tangent(k, second, x.lambda, sink); });
   }
 
-  /// Writes and factors where `system` was evaluated last. −1, or the equation without a pivot (`name_of_equation`).
+  /// Writes and factorises the matrix in the state of the last evaluation of the system. Returns −1, or the equation
+  /// without a pivot (`name_of_equation`).
   Index factor(BlockWriter const& write) {
     if (coordinates_) coordinates_.entries->hold(coordinates_.self.get(), held_.get());
     if (solves_by_bodies()) return coordinates_.entries->factor(coordinates_.self.get(), held_.get(), write);
@@ -108,31 +110,31 @@ class TangentSolver {
     return bad;
   }
 
-  /// Call it while a matrix is written: copy k takes the coordinates of the last evaluation of the system. Without it
-  /// all copies have those of the last evaluation before `factor`.
+  /// Call it while a matrix is written: copy k uses the coordinates of the last evaluation of the system. Without this
+  /// call all copies use those of the last evaluation before `factor`.
   [[gnu::cold]] void hold_copy(std::size_t k) {
     if (!coordinates_) return;
     while (by_copy_.size() <= k) by_copy_.push_back(coordinates_.entries->held(coordinates_.self.get()));
     coordinates_.entries->hold(coordinates_.self.get(), by_copy_[k].get());
   }
 
-  /// What `analyse` lays out.
+  /// Linear solver that `analyse` sets up.
   Solver& linear_solver() { return solver_; }
 
-  /// How often the solver has changed its order of elimination; 0 for solvers that never do.
+  /// Number of changes of the elimination order; 0 for solvers with a fixed order.
   std::size_t reorderings() const {
     if constexpr (requires { solver_.reorderings(); })
       return solver_.reorderings();
     else
       return 0;
   }
-  /// Later factorisations are in the order of the first `count` changes.
+  /// Later factorisations use the elimination order after the first `count` changes.
   void limit_reorderings(std::size_t count) noexcept {
     if constexpr (requires { solver_.limit_reorderings(count); }) solver_.limit_reorderings(count);
   }
 
-  /// The last factorisation dropped rows that an earlier one held: it is of a singular position, beside which those
-  /// rows hold again, and it would leave them open.
+  /// True if the last factorisation dropped rows that an earlier one did not drop. It belongs to a singular
+  /// configuration; at other states these rows are independent, and the factorisation would not enforce them.
   bool lost_rank() const { return dropped().size() > fewest_dropped_; }
 
   /// Every later factorisation drops these equations (rows of joints). Solvers without `mark_redundant` ignore it.
@@ -143,18 +145,19 @@ class TangentSolver {
       fewest_dropped_ = std::numeric_limits<std::size_t>::max();
     }
   }
-  /// Whether the last factorisation dropped more rows than `mark_redundant` names, or has small pivots (`BlockFactor`).
+  /// True if the last factorisation dropped more rows than `mark_redundant` lists, or has small pivots (`BlockFactor`).
   [[gnu::cold]] bool is_doubtful() const {
     if constexpr (requires { solver_.is_doubtful(1e-3); }) return !solves_by_bodies() && solver_.is_doubtful(1e-3);
     return false;
   }
-  /// Null vector `n` of the `dropped` equation, as in `BlockFactor`, by equations. Returns false if there is none.
+  /// Null vector `n` of the `dropped` equation, as in `BlockFactor`, in the unknowns of the equations. Returns false if
+  /// there is none.
   [[gnu::cold]] bool null_vector(Index dropped, VecX& n) {
     if constexpr (requires { bool(solver_.null_vector(dropped, n)); }) return solver_.null_vector(dropped, n);
     return false;
   }
 
-  /// x for the right-hand side `rhs`, both by the unknowns of the time step.
+  /// Solution x for the right-hand side `rhs`, both in the unknowns of the time step.
   void solve(VecX const& rhs, VecX& x) {
     if (!coordinates_) return solver_.solve(rhs, x);
     if (solves_by_bodies()) return coordinates_.entries->solve(held_.get(), rhs, x);
@@ -172,7 +175,7 @@ class TangentSolver {
     }
   }
 
-  /// Equations that repeat others, as of the last factorisation. Empty for solvers that do not tell.
+  /// Redundant equations of the last factorisation; empty for solvers that do not list them.
   std::span<Index const> dropped() const {
     if constexpr (requires { solver_.dropped(); })
       return solver_.dropped();
@@ -181,7 +184,7 @@ class TangentSolver {
   }
 
  private:
-  /// Coordinates of copy k.
+  /// State of the coordinates for copy k.
   void* held_of(Index k) const {
     return std::size_t(k) < by_copy_.size() ? by_copy_[std::size_t(k)].get() : held_.get();
   }
@@ -190,23 +193,23 @@ class TangentSolver {
   Solver solver_;
   Coordinates coordinates_;
   FrozenState held_;
-  Sequence<FrozenState> by_copy_;   // where `hold_copy` was called
-  bool keeps_multipliers_ = false;  // estimates for the joints that carry bodies
-  bool walks_ = false;              // balance and tangent by walks over a tree that solves its bodies
+  Sequence<FrozenState> by_copy_;   // for copies with `hold_copy`
+  bool keeps_multipliers_ = false;  // multiplier estimates of joints with joint coordinates are stored
+  bool walks_ = false;              // residual and tangent by recursions over the tree
   std::size_t fewest_dropped_ = std::numeric_limits<std::size_t>::max();
   Index copies_ = 1, size_ = 0, equations_ = 0;
   VecX rhs_, x_, part_, solution_, equation_, balance_, full_q_, full_v_;
 };
 
-/// Unknowns of the linear equations of a system, of which those that stand for speeds come first.
+/// Number of unknowns of the linear equations of a system; the velocities are the first of them.
 inline Index equations_of(System const& s) {
   return s.step_coordinates() ? s.step_coordinates().reduced->equations : s.size();
 }
-/// Those of them that stand for speeds.
+/// Number of velocities among the unknowns of the linear equations of a system.
 inline Index equation_velocities_of(System const& s) {
   return s.step_coordinates() ? s.step_coordinates().reduced->equation_velocities : s.velocities();
 }
-/// Name of the body or joint behind unknown i of the equations.
+/// Name of the body or joint of unknown i of the equations.
 template <class = void>
 std::string name_of_equation(System const& s, Index i) {
   if (!s.step_coordinates() || s.step_coordinates().reduced->full_unknown.empty()) return s.name_of(i);

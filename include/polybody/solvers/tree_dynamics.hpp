@@ -1,35 +1,36 @@
 #pragma once
 /// \file
-/// Accelerations of a tree of rigid bodies by three walks [Featherstone 1983; 2008, §7.3]: places, spins and biases
-/// from the roots to the tips, articulated inertias back to the roots, accelerations to the tips. A joint is a row of
-/// single freedoms with columns S, so that nothing larger than a number is inverted. With x = [a; α] of a body's
-/// reference point (tree_walk.hpp), all in world axes,
-///   x = X x_p + Σ S u̇ + c,   X x = [a + α × d; α],   [f; m] = I x + p,
-/// p + I c takes the place of p, and each freedom from the last to the first
-///   D = Sᵀ I S,  w = −Sᵀ p,   I − (I S) D⁻¹ (I S)ᵀ that of I,  p + (I S) D⁻¹ w that of p;
-/// the parent gets I_p += XᵀI X, p_p += Xᵀp; on the way back u̇ = D⁻¹ (w − (I S)ᵀ x).
-/// Articulated inertias need no turn from body to body in world axes.
+/// Accelerations of a tree of rigid bodies by three recursions [Featherstone 1983; 2008, §7.3]: positions, angular
+/// velocities and biases from the roots to the tips, articulated inertias back to the roots, accelerations to the tips.
+/// A joint is a sequence of single degrees of freedom with columns S, so that only scalars are inverted. With
+/// x = [a; α] of the reference point of a body (tree_recursion.hpp), all in world axes,
+///   x = X x_p + Σ S u̇ + c,   X x = [a + α × d; α],   [f; m] = I x + p,   p ← p + I c.
+/// Each degree of freedom, from the last to the first, gives
+///   D = Sᵀ I S,  w = −Sᵀ p,   I ← I − (I S) D⁻¹ (I S)ᵀ,  p ← p + (I S) D⁻¹ w,
+/// then the parent I_p += XᵀI X, p_p += Xᵀp. The last recursion computes u̇ = D⁻¹ (w − (I S)ᵀ x).
+/// In world axes the articulated inertias need no rotation from body to body.
 
 #include <polybody/solvers/tree_recursion.hpp>
 
 namespace polybody {
 
-/// T is the scalar of the state: dual numbers give the derivatives of the same walks.
+/// T is the scalar of the state; dual numbers give derivatives of the accelerations.
 template <StateScalar T = double>
 class TreeDynamicsOf {
  public:
   TreeDynamicsOf() = default;
-  /// The constants of the bodies; allocates all there is to be.
+  /// Computes the constants of the bodies and allocates all memory.
   explicit TreeDynamicsOf(Sequence<TreeBody> const& bodies) : walk_(bodies) {}
 
-  /// u̇ of all freedoms at (q, v) under weight alone. −1, or the body whose freedom has no inertia.
+  /// Computes u̇ of all degrees of freedom at (q, v) under weight alone. Returns −1, or the body with a degree of
+  /// freedom without inertia.
   Index accelerations_under_gravity(VecXOf<T> const& q, VecXOf<T> const& v, Vec3 const& gravity, VecXOf<T>& out) {
     walk_.place(q, v);
     walk_.add_velocity_forces();
     return solve(gravity, out);
   }
-  /// The same under any forces: `unbalance` is M a − f of all bodies by their whole speeds at v̇ = 0, weight and
-  /// gyroscopic moments among f.
+  /// As `accelerations_under_gravity`, for any forces: `unbalance` is M a − f of all bodies in full velocities at
+  /// v̇ = 0, where f includes weight and gyroscopic moments.
   Index accelerations(VecXOf<T> const& q, VecXOf<T> const& v, VecXOf<T> const& unbalance, VecXOf<T>& out) {
     walk_.place(q, v);
     for (std::size_t i = 0; i < walk_.links.size(); ++i) {
@@ -48,7 +49,7 @@ class TreeDynamicsOf {
     }
     return solve(Vec3(0, 0, 0), out);
   }
-  /// out = Tᵀ(M(T u̇ + b) − f) by the freedoms under weight alone: the generalised forces that the motion wants.
+  /// out = Tᵀ(M(T u̇ + b) − f) under weight alone: the generalised forces that the motion requires.
   void balance(VecXOf<T> const& q, VecXOf<T> const& v, VecXOf<T> const& a, Vec3 const& gravity, VecXOf<T>& out);
 
  private:
@@ -70,11 +71,11 @@ class TreeDynamicsOf {
   Index solve(Vec3 const& gravity, VecXOf<T>& out);
   bool eliminate(Body& b, bool carried);
   static void set_column(Freedom& f, detail::ArticulatedInertia<T> const& inertia);
-  /// A frame that falls with the weight.
+  /// Replaces the weight by an acceleration of the ground.
   void let_ground_fall(Vec3 const& gravity) {
     for (int k = 0; k < 3; ++k) walk_.ground.x[k] = T(-gravity[k]);
   }
-  /// x = X x_p of the carrier.
+  /// x = X x_p for the carrier p.
   static void carry(Body const& p, Body& b) {
     for (int k = 0; k < 6; ++k) b.x[k] = p.x[k];
     detail::add_cross(p.x + 3, b.d, b.x);
@@ -98,13 +99,13 @@ void TreeDynamicsOf<T>::set_column(Freedom& f, detail::ArticulatedInertia<T> con
   if (f.kind != Kind::slide) inertia.add_by_angular(f.s + 3, f.u);
 }
 
-/// The freedoms of a body out of its inertia and its force. False where one moves no inertia.
+/// Eliminates the degrees of freedom of a body from its inertia and force. Returns false if one has no inertia.
 template <StateScalar T>
 bool TreeDynamicsOf<T>::eliminate(Body& b, bool carried) {
   b.inertia.add_by_acceleration(b.c, b.p);
   b.inertia.add_by_angular(b.c + 3, b.p);
   Freedom* const f = walk_.freedoms.data() + b.first;
-  double full[6] = {};  // D of each freedom while the others are held
+  double full[6] = {};  // D of each degree of freedom with the others fixed
   if (b.count > 1)
     for (int k = 0; k < b.count; ++k) {
       set_column(f[k], b.inertia);

@@ -1,28 +1,29 @@
 #pragma once
 /// \file
-/// What stays constant of a body of a tree, in the axes of the joint that carries it and about that joint's point.
+/// Constants of a body in a tree, in the axes of the joint that carries it and about the point of this joint.
 
 #include <polybody/solvers/articulated_inertia.hpp>
 #include <polybody/system/tree_body.hpp>
 
 namespace polybody {
 
-/// A root has six freedoms, or three in the plane, from the ground; its reference point is its centre of mass.
+/// Constants of a body. A root has six degrees of freedom relative to the ground, or three in the plane; its reference
+/// point is its centre of mass.
 struct TreeLink {
-  Index parent, qn, vn, v0;          ///< as those of TreeBody
-  RigidLayout layout;                ///< how the body's coordinates are written
-  bool backwards;                    ///< the joint's frame b is the parent's
-  bool turned;                       ///< the joint's axes are not those of the parent
-  int freedoms;                      ///< speeds of the joint; of a root, of the body
-  JointMotions motions;              ///< of the joint, from frame a to frame b
-  double entry[9], arm[3];           ///< the joint's frame on the parent, in the axes of the parent's own joint
+  Index parent, qn, vn, v0;          ///< as in TreeBody
+  RigidLayout layout;                ///< layout of the body's coordinates
+  bool backwards;                    ///< frame b of the joint belongs to the parent
+  bool turned;                       ///< the axes of the joint differ from those of the parent
+  int freedoms;                      ///< number of velocities of the joint, or of the body if it is a root
+  JointMotions motions;              ///< motions of the joint, from frame a to frame b
+  double entry[9], arm[3];           ///< axes and origin of the joint's frame, in the axes of the parent's joint
   double mass, first[3], second[6];  ///< [kg], [kg m], [kg m²]; moments about the reference point
-  double centre[3];                  ///< the centre of mass, from the reference point [m]
-  double full_axes[9];               ///< axes of the body's speeds (3×3 by columns)
+  double centre[3];                  ///< centre of mass, from the reference point [m]
+  double full_axes[9];               ///< axes of the body's velocities (3×3 by columns)
 };
 
-/// \param parent null: the ground
-template <class T = double>  // compiled where it is used
+/// Computes the constants of `body`. \param parent null for the ground
+template <class T = double>  // a template, so that only its users compile it
 [[gnu::cold]] TreeLink tree_link(TreeBody const& body, TreeBody const* parent) {
   using M3 = Mat<T, 3, 3>;
   TreeLink link;

@@ -1,9 +1,9 @@
 #pragma once
 /// \file
-/// The walk over a tree of rigid bodies from the roots to the tips: places, spins, and how a joint's freedoms move what
-/// they carry. A body's reference point is the point of the joint that carries it; all is in world axes, d being the
-/// arm from the parent's reference point. Reference points at the joints keep the numbers those of the bodies, however
-/// far they are from the world's origin.
+/// Recursion over a tree of rigid bodies from the roots to the tips. It computes positions, angular velocities, and the
+/// motion of each body due to the degrees of freedom of its joint. The reference point of a body is the point of the
+/// joint that carries it; d is the vector to it from the parent's reference point. All vectors are in world axes. With
+/// reference points at the joints, the distance of the bodies from the world's origin does not affect round-off.
 
 #include <cmath>
 
@@ -14,44 +14,48 @@
 
 namespace polybody {
 
-/// T is the scalar of the state: dual numbers give the derivatives of the same walks.
+/// T is the scalar of the state; dual numbers give derivatives.
 template <StateScalar T = double>
 struct TreeRecursionOf {
-  /** What a freedom moves: a turn, a slide, or anything. */ enum class Kind : unsigned char { turn, slide, general };
-  /// One speed: the columns S of [v; ω] that it moves; and I S, D⁻¹ and a force, which belong to who eliminates it.
-  struct Freedom {
-    T s[6], u[6], inverse, w;  ///< in order: S, I S, D⁻¹, the force along S
-    Kind kind;                 ///< what it moves; the rest of S is zero
-    unsigned char together;    ///< freedoms from here on that turn about axes of one frame: 3 of a ball, else 1
-    Index speed;               ///< its place in narrow speeds
+  /** Motion of a degree of freedom: rotation, translation, or both. */ enum class Kind : unsigned char {
+    turn,
+    slide,
+    general
   };
-  /// A body's joint axes (3×3 by columns), d, ω, the acceleration c = [a; α] for u̇ = 0 and a parent at rest, and the
-  /// force p and the acceleration x of who walks on.
+  /// One degree of freedom: its column S of [v; ω]; and I S, D⁻¹ and a force, which belong to the calling algorithm.
+  struct Freedom {
+    T s[6], u[6], inverse, w;  ///< S, I S, D⁻¹, the force along S
+    Kind kind;                 ///< its motion; the other entries of S are zero
+    unsigned char together;    ///< 3 for the first degree of freedom of a ball joint and 0 for its others, else 1
+    Index speed;               ///< index in the reduced velocities
+  };
+  /// Joint axes of a body (3×3 by columns), d, ω, the acceleration c = [a; α] for u̇ = 0 and a parent without
+  /// acceleration, and the force p and acceleration x, which belong to the calling algorithm.
   struct Body {
     T axes[9], d[3], w[3], c[6], p[6], x[6];  ///< named above, in world axes
     detail::ArticulatedInertia<T> inertia;    ///< articulated, about the reference point
-    std::size_t first;                        ///< of its freedoms
-    int count;                                ///< how many freedoms it has
+    std::size_t first;                        ///< its first degree of freedom
+    int count;                                ///< number of its degrees of freedom
   };
 
   Sequence<TreeLink> links;    ///< constants, one for each body
-  Sequence<Body> bodies;       ///< where they are, parents before children
-  Sequence<Freedom> freedoms;  ///< of all bodies, body by body
-  Body ground = {};            ///< at rest; what roots are carried by
+  Sequence<Body> bodies;       ///< states of the bodies, parents before children
+  Sequence<Freedom> freedoms;  ///< degrees of freedom of all bodies, body by body
+  Body ground = {};            ///< at rest; carrier of the roots
 
   TreeRecursionOf() = default;
-  /// The constants of the bodies; allocates all there is to be.
+  /// Computes the constants of the bodies and allocates all memory.
   explicit TreeRecursionOf(Sequence<TreeBody> const& tree);
-  /// What carries body i: its parent, or the ground.
+  /// Carrier of body i: its parent, or the ground.
   Body& carrier(std::size_t i) { return links[i].parent < 0 ? ground : bodies[std::size_t(links[i].parent)]; }
-  /// Places all bodies; p and x are left.
+  /// Computes the kinematics and the inertia of all bodies and sets p to zero; x is unchanged.
   void place(VecXOf<T> const& q, VecXOf<T> const& v) {
     for (std::size_t i = 0; i < links.size(); ++i) {
       place(links[i], carrier(i), q.data() + links[i].qn, v.data() + links[i].vn, bodies[i]);
       set_inertia(links[i], bodies[i]);
     }
   }
-  /// p of all bodies: what weightless bodies need at u̇ = 0, ω × (ω × m c) and ω × Θ ω.
+  /// Adds to p the forces that the motion of all bodies requires at u̇ = 0 without weight: ω × (ω × m c) and ω × Θ ω.
   void add_velocity_forces() {
     for (Body& b : bodies) {
       T spin[6] = {T(0.0), T(0.0), T(0.0), T(0.0), T(0.0), T(0.0)};
@@ -82,7 +86,7 @@ struct TreeRecursionOf {
  private:
   void place(TreeLink const& link, Body const& parent, T const* q, T const* u, Body& b);
   void move(JointMotion const& m, double sign, T const* x, T const* u, Body& b);
-  /// The reference point goes along `by`, at rest in the frame that has arrived.
+  /// Moves the reference point by the vector `by`, which is fixed in the current frame of the joint.
   void go(T const* by, Body& b);
   Freedom& add_freedom(Kind kind, Body& b) {
     Freedom& f = freedoms[b.first + std::size_t(b.count++)];
@@ -164,7 +168,7 @@ void TreeRecursionOf<T>::move(JointMotion const& m, double sign, T const* x, T c
     for (int i = 0; i < 9; ++i) before[i] = b.axes[i];
     Mat<T, 3, 3> const back = turned.transpose();
     detail::set_product(before, sign > 0.0 ? turned.data() : back.data(), 3, b.axes);
-    T const* const axes = sign > 0.0 ? b.axes : before;  // of frame b
+    T const* const axes = sign > 0.0 ? b.axes : before;  // axes of frame b
     for (int k = 0; k < 3; ++k) {
       Freedom& f = add_freedom(Kind::turn, b);
       f.together = k == 0 ? 3 : 0;
@@ -203,7 +207,7 @@ void TreeRecursionOf<T>::move(JointMotion const& m, double sign, T const* x, T c
   turn(m.axis, x[0] * sign, b.axes);
 }
 
-/// axes turned by an angle about one of themselves.
+/// Rotates `axes` by an angle about one of these axes.
 template <StateScalar T>
 void TreeRecursionOf<T>::turn(int axis, T const& angle, T* axes) {
   using std::cos, std::sin;
@@ -216,7 +220,7 @@ void TreeRecursionOf<T>::turn(int axis, T const& angle, T* axes) {
   }
 }
 
-/// The body's own inertia in world axes, A Θ Aᵀ; p is zero.
+/// Sets the inertia of the body alone in world axes, A Θ Aᵀ, and p = 0.
 template <StateScalar T>
 void TreeRecursionOf<T>::set_inertia(TreeLink const& link, Body& b) {
   T mc[3], half[9];

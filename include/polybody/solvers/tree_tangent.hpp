@@ -1,21 +1,23 @@
 #pragma once
 /// \file
-/// The tangent of an implicit step of a tree of rigid bodies under weight, eliminated freedom by freedom from the tips
-/// to the roots: the derivative of Tᵀ(M(T u̇ + b) − f) where a change y of the freedoms moves coordinates by ck y,
-/// speeds by cd y and accelerations by cm y. It is exact: inertia, Coriolis and centrifugal terms, and what tension
-/// does as joints turn [derived; the derivatives of inverse dynamics as in Carpentier & Mansard 2018].
+/// Tangent of an implicit step of a tree of rigid bodies under weight, eliminated one degree of freedom after the other
+/// from the tips to the roots. It is the derivative of Tᵀ(M(T u̇ + b) − f) if a change y of the degrees of freedom
+/// changes coordinates by ck y, velocities by cd y and accelerations by cm y. It is exact: it contains inertia,
+/// Coriolis and centrifugal terms, and the geometric stiffness of rotating joints under tension [derived; derivatives
+/// of inverse dynamics as in Carpentier & Mansard 2018].
 ///
-/// Seen from a body, a place has no change: with changes of [v; ω] and its rate as the body sees them, δv and δa, a
-/// freedom with columns J and speed u takes its carrier's v₀, a₀ (weight being an acceleration of the ground) to
+/// Let δv and δa be the changes of [v; ω] and of its rate in the axes of a body, in which positions do not change. Let
+/// v₀ and a₀ be the motion and the acceleration of its carrier; weight is an acceleration of the ground. A degree of
+/// freedom with columns J and velocity u gives
 ///   δv = δv₀ + s_v y,                      s_v = cd J + ck v₀ ×ₘ J,
-///   δa = δa₀ − (J u) ×ₘ δv + s_a y,        s_a = cm J + cd v ×ₘ J + ck a₀ ×ₘ J,
-/// and the force that a body with all that it carries wants, F, changes by δF = A δa + B δv. A body alone has
+///   δa = δa₀ − (J u) ×ₘ δv + s_a y,        s_a = cm J + cd v ×ₘ J + ck a₀ ×ₘ J.
+/// The force F that a body with its descendants requires changes by δF = A δa + B δv. A body alone has
 ///   A = I,   B = (·) ×* I v + v ×* I.
-/// The freedom's equation is Jᵀ δF = given, and its carrier feels δF + ck y J ×* F, so that with B′ = B − A (J u) ×ₘ
+/// The equation of the degree of freedom is Jᵀ δF = given. Its carrier gets δF + ck y J ×* F. With B′ = B − A (J u) ×ₘ
 ///   D = Jᵀ h,   h = A s_a + B′ s_v,   r = h + ck J ×* F,
 ///   A₀ = A − r D⁻¹ JᵀA,   B₀ = B′ − r D⁻¹ JᵀB′.
-/// A ball's three columns are one such freedom. Where they are fixed on the carrier, v and a stand in place of v₀ and
-/// a₀, v₀ in place of v, (J u) ×ₘ s_v is a part of s_a, and D = Jᵀ r.
+/// The three columns of a ball joint are eliminated together. If the columns are fixed on the carrier, v and a replace
+/// v₀ and a₀, v₀ replaces v, s_a has the additional term (J u) ×ₘ s_v, and D = Jᵀ r.
 
 #include <polybody/solvers/spatial.hpp>
 #include <polybody/solvers/tree_recursion.hpp>
@@ -23,25 +25,25 @@
 
 namespace polybody {
 
-/// T is `double`: a template, so that a program without joint coordinates compiles none of it.
+/// T is always `double`. The class is a template so that programs without joint coordinates do not compile it.
 template <class T = double>
 class TreeTangentSolverOf {
  public:
   TreeTangentSolverOf() = default;
-  /// Allocates all there is to be.
+  /// Allocates all memory.
   explicit TreeTangentSolverOf(Sequence<TreeBody> const& bodies)
       : walk_(bodies), nodes_(bodies.size()), columns_(walk_.freedoms.size()) {}
 
-  /// Factors at (q, v, a). −1, or the freedom without a pivot.
+  /// Factorises the tangent at (q, v, a). Returns −1, or the degree of freedom without a pivot.
   Index factor(At<T> const& at, VecXOf<T> const& a, Vec3 const& gravity, TangentCoefficients const& c);
-  /// y for given generalised forces.
+  /// Computes y for the generalised forces `given`.
   void solve(VecXOf<T> const& given, VecXOf<T>& y);
 
  private:
   using Walk = TreeRecursionOf<T>;
   using Freedom = typename Walk::Freedom;
   struct Column {
-    T sv[6], sa[6], l[12], r[6], rate[6], inverse[3];  ///< Jᵀ[A B′], J u and a row of D⁻¹ among them
+    T sv[6], sa[6], l[12], r[6], rate[6], inverse[3];  ///< s_v, s_a, Jᵀ[A B′], r, J u, row of D⁻¹
     T w;
   };
   struct Node {
@@ -55,7 +57,7 @@ class TreeTangentSolverOf {
   bool eliminate(std::size_t first, bool before, double ck, Node& n);
   bool invert(std::size_t first, int count, T const* d, T const* size);
   void collect(VecXOf<T> const& given);
-  /// Row k of D⁻¹ w of a freedom, or of those of a ball.
+  /// Row k of D⁻¹ w for one degree of freedom, or for those of a ball joint.
   T answer(std::size_t first, int k) const {
     T sum = T(0.0);
     for (int j = 0; j < walk_.freedoms[first].together; ++j)
@@ -93,7 +95,7 @@ Index TreeTangentSolverOf<T>::factor(At<T> const& at, VecXOf<T> const& a, Vec3 c
   return -1;
 }
 
-/// v and a of body i, and what its freedoms do to their changes.
+/// Computes v and a of body i, and s_v and s_a of its degrees of freedom.
 template <class T>
 void TreeTangentSolverOf<T>::move(std::size_t i, VecXOf<T> const& v, VecXOf<T> const& a, TangentCoefficients const& k) {
   Node& n = nodes_[i];
@@ -115,13 +117,14 @@ void TreeTangentSolverOf<T>::move(std::size_t i, VecXOf<T> const& v, VecXOf<T> c
     }
     for (int l = 0; l < 6; ++l) {
       c.rate[l] = rate[l];
-      c.r[l] = faster[l];  // until it is eliminated
+      c.r[l] = faster[l];  // J u̇, until the elimination
     }
     move_through(first, walk_.links[i].backwards, n, k);
   }
 }
 
-/// Through one freedom, or those of a ball. \param before the columns are fixed on the carrier
+/// Adds one degree of freedom, or those of a ball joint, to v and a. \param before true if the columns are fixed on the
+/// carrier
 template <class T>
 void TreeTangentSolverOf<T>::move_through(std::size_t first, bool before, Node& n, TangentCoefficients const& k) {
   Column const& c = columns_[first];
@@ -151,7 +154,7 @@ void TreeTangentSolverOf<T>::move_through(std::size_t first, bool before, Node& 
   }
 }
 
-/// A, B and F of the body alone.
+/// Sets A, B and F of the body alone.
 template <class T>
 void TreeTangentSolverOf<T>::set_inertia(std::size_t i) {
   Node& n = nodes_[i];
@@ -166,7 +169,7 @@ void TreeTangentSolverOf<T>::set_inertia(std::size_t i) {
   n.pair.set_rigid(inertia, n.v, momentum);
 }
 
-/// One freedom, or those of a ball, out of A, B and F. False where one has no pivot.
+/// Eliminates one degree of freedom, or those of a ball joint, from A and B. Returns false if one has no pivot.
 template <class T>
 bool TreeTangentSolverOf<T>::eliminate(std::size_t first, bool before, double ck, Node& n) {
   int const count = walk_.freedoms[first].together;
@@ -212,7 +215,7 @@ bool TreeTangentSolverOf<T>::invert(std::size_t first, int count, T const* d, T 
   return true;
 }
 
-/// What the freedoms are given, less what those that they carry ask of them.
+/// Computes w, the forces `given` on the degrees of freedom less the forces that the descendants transmit to them.
 template <class T>
 void TreeTangentSolverOf<T>::collect(VecXOf<T> const& given) {
   for (Node& n : nodes_)
