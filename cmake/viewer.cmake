@@ -1,7 +1,7 @@
-# The page that plays films (include/polybody/io/film.hpp): target `viewer` fetches its packages by npm, as its lock file
-# names them, and bundles them with cmake/viewer/src into one file, polybody_viewer.html of the build folder.
-#   POLYBODY_VIEWER  AUTO: where npm is found, as part of `all`; where that fails, the rest is built all the same
-#                    ON: it must succeed;  OFF: there is none
+# The page that plays films (include/polybody/io/film.hpp). Target `viewer` fetches the packages of its lock file by npm
+# and bundles them with cmake/viewer/src into one file, polybody_viewer.html in the build folder.
+#   POLYBODY_VIEWER  AUTO: the viewer is part of `all` if npm is found; a failure does not stop the build
+#                    ON: a failure stops the build;  OFF: no viewer
 set(viewer_default OFF)
 if(PROJECT_IS_TOP_LEVEL)
   set(viewer_default AUTO)

@@ -1,6 +1,6 @@
-// The tables "Combinations" of docs/joints.md, read off the concepts that Joint, Model::connect and simulate
-// state.
-//   composition_matrix FILE            fails where the block between the two marks in FILE is another one
+// The tables "Combinations" of docs/joints.md, computed from the concepts that Joint, Model::connect and simulate
+// require.
+//   composition_matrix FILE            fails if the block between the two marks in FILE differs
 //   composition_matrix FILE --write    writes the block
 // A new geometry, policy, body or integrator needs a line here.
 #include <cstdio>
@@ -20,7 +20,7 @@ struct Type {
 };
 
 using Laws = NonlinearBushing<LinearLaw, LinearLaw, LinearLaw, LinearLaw, LinearLaw, LinearLaw>;
-/// Stands for `PenaltyPerEquation` with as many numbers as the geometry has rows.
+/// Placeholder for `PenaltyPerEquation`, whose number of parameters is the number of equations of the geometry.
 struct PerRow {};
 template <class P, class G>
 using PolicyFor = std::conditional_t<std::is_same_v<P, PerRow>, PenaltyPerEquation<G::rows>, P>;
@@ -51,7 +51,7 @@ auto const bodies = std::tuple(
     Type<planar::Rigid>{"planar::Rigid"}, Type<planar::AncfCable<>>{"planar::AncfCable"},
     Type<planar::Lrvf>{"planar::Lrvf"}, Type<planar::Ffr>{"planar::Ffr"});
 
-/// An integrator, and why it refuses what it does not take for other reasons than rows.
+/// An integrator; `refuses` is the cell for models that it refuses for other reasons than their constraint equations.
 template <class I>
 struct Stepper {
   char const* name;
@@ -115,13 +115,13 @@ char const* step_cell(Stepper<I> const& stepper) {
     return stepper.refuses;
 }
 
-/// A body in the plane that does not stand in the way of any integrator, on a joint of policy P.
+/// A planar body that every integrator accepts, on a joint of policy P.
 template <class P>
 using Held = Model<Bodies<std::conditional_t<LinearPolicy<P>, planar::AncfCable<>, planar::Rigid>>,
                    Joints<Joint<planar::Revolute, PolicyFor<P, planar::Revolute>>>>;
 using OnABlade = Model<Bodies<planar::Rigid>, Joints<Joint<KnifeEdge, Constraint>>>;
 
-/// Rows of text; equal columns become one, so do equal rows.
+/// Rows of text. Equal columns are merged, and equal rows if `merges_rows`.
 struct Table {
   std::vector<std::string> columns;
   std::vector<std::vector<std::string>> rows;  ///< the name, then a cell for each column

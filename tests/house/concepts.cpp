@@ -1,4 +1,4 @@
-// Every type of the library keeps to its concept. The headers do not ask, so that programs do not compile the answers.
+// Every type of the library satisfies its concept. The headers do not check it, so that programs compile faster.
 #include <polybody/bodies/ancf/ancf_beam.hpp>
 #include <polybody/bodies/ancf/ancf_cable.hpp>
 #include <polybody/bodies/ancf/planar_ancf_cable.hpp>

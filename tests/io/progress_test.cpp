@@ -177,7 +177,7 @@ TEST_F(ProgressBar, OddRangesAreBounded) {
   EXPECT_EQ(shown(0, 1, 7), "100%");
   EXPECT_EQ(shown(0, 1, -7), "  0%");
   EXPECT_EQ(shown(1, 0, 0.75), " 25%");  // backwards
-  EXPECT_EQ(shown(3, 3, 3), "100%");     // nothing to do
+  EXPECT_EQ(shown(3, 3, 3), "100%");     // empty range
   EXPECT_EQ(shown(0, 1, 0.29), " 29%");
   EXPECT_EQ(shown(0, 1, 0.9999), " 99%");
   auto const before = lines().size();

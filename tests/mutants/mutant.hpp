@@ -2,7 +2,7 @@
 // Mutants chosen at run time: `Site<17>{} * x` is x, unless POLYBODY_MUTANT=17:f, then f x. tests/mutants/run puts such
 // sites into a copy of the headers, in front of the terms of formulas.
 //   POLYBODY_MUTANT=SITE:FACTOR      the mutant of this process: factor -1, 0 or 1.01
-//   POLYBODY_MUTANT_REACHED=FILE     writes which sites the process reached, and whether they can change a number
+//   POLYBODY_MUTANT_REACHED=FILE     writes the sites that the process reached; 1: the site changes a number, 2: none
 
 #include <Eigen/Core>
 #include <concepts>
@@ -14,11 +14,11 @@ namespace polybody::mutants {
 
 inline constexpr int most_sites = 4096;
 
-/// What the environment asks of this process, and what the process has reached.
+/// Mutant of this process from the environment, and the sites that the process reached.
 struct Book {
   int site = -1;
   double factor = 1.0;
-  unsigned char reached[most_sites] = {};  ///< 1: a number, 2: only things that are not numbers
+  unsigned char reached[most_sites] = {};  ///< 1: with a number, 2: only with values that are not numbers
 
   Book() {
     if (char const* asked = std::getenv("POLYBODY_MUTANT")) {
@@ -42,7 +42,7 @@ struct Book {
 };
 inline Book book;
 
-/// The factor of site `id`; notes that it is reached.
+/// Returns the factor of site `id` and records that the process reached it.
 inline double factor_of(int id) {
   book.reached[id] = 1;
   return book.site == id ? book.factor : 1.0;
@@ -59,7 +59,7 @@ template <class T>
 concept NumberLike =
     std::is_class_v<T> && !std::derived_from<T, Eigen::EigenBase<T>> && requires(T const& x) { T(1.0 * x); };
 
-/// In front of a term.
+/// Factor in front of a term.
 template <int Id>
 struct Site {
   static_assert(Id < most_sites);
@@ -93,7 +93,7 @@ struct Site {
     return f == 1.0 ? std::remove_cvref_t<T>(x) : std::remove_cvref_t<T>(f * x);
   }
 
-  /// Integers, pointers, views, …: as they are.
+  /// Integers, pointers, views and other types remain unchanged.
   template <class T>
   friend constexpr T operator*(Site, T&& x) {
     if (!std::is_constant_evaluated() && book.reached[Id] == 0) {

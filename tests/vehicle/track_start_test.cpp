@@ -115,8 +115,8 @@ TEST(SettledTrack, SinksNoDeeperThanItsTensionPresses) {
   }
 }
 
-// The idler is further out than the reference's, but by at most the deformation of the contacts: 3.0 mm at 20 kN, 7.2
-// mm at 40 kN.
+// The idler is further out than in the reference. The difference is at most the deformation of the contacts: 3.0 mm at
+// 20 kN, 7.2 mm at 40 kN.
 TEST(SettledTrack, HasItsIdlerWhereTheReferenceHas) {
   for (Reference const& row : table) {
     double const out = row.idler_x - settled(row.preload).idler_x;
