@@ -6,26 +6,26 @@
 
 namespace polybody {
 
-/// Predictor and corrector of Adams with variable order k = 1 … 12 and step, in the mode PECE [Shampine & Gordon 1975;
-/// Hairer, Nørsett & Wanner 1993, §III.5]. Of y = (q, v), in divided differences D_j of the past of y˙ (`AdamsHistory`)
-/// and with T_j = h + t₀ − t₋ⱼ:
-///   p = y₀ + Σ_{j<k} c_j D_j,   D*₀ = y˙(p),  D*ⱼ₊₁ = (D*ⱼ − D_j)/T_j,   y₁ = p + c_k D*_k,
-/// with the error of order j taken as |c_j − c_{j−1} T_{j−1}| ‖D*_j‖. y₁ is of order k + 1. Two evaluations a step, one
-/// more for each step refused. Coordinates on a manifold are stepped as they stand, q˙ by `coordinate_rates`, and
-/// normalised by ⊞ 0.
+/// Adams predictor–corrector method with variable order k = 1 … 12 and variable step, in PECE mode [Shampine & Gordon
+/// 1975; Hairer, Nørsett & Wanner 1993, §III.5]. With y = (q, v), the divided differences D_j of past values of y˙
+/// (`AdamsHistory`) and T_j = h + t₀ − t₋ⱼ, a step computes
+///   p = y₀ + Σ_{j<k} c_j D_j,   D*₀ = y˙(p),  D*ⱼ₊₁ = (D*ⱼ − D_j)/T_j,   y₁ = p + c_k D*_k.
+/// The error estimate of order j is |c_j − c_{j−1} T_{j−1}| ‖D*_j‖. The result y₁ has order k + 1. A step needs two
+/// evaluations, and one more for each rejected trial. Coordinates on a manifold are integrated component by component,
+/// with q˙ from `coordinate_rates`, and then normalised by ⊞ 0.
 template <class Stabilisation = UnconstrainedOnly>
 struct AdamsBashforthMoulton {
   static constexpr char const* name = "AdamsBashforthMoulton";
-  static constexpr int order = AdamsHistory::highest;  ///< the highest
+  static constexpr int order = AdamsHistory::highest;  ///< highest order
   static constexpr bool accepts_constraints = Stabilisation::accepts_constraints;
   static constexpr bool adaptive_step = true;
   static constexpr Capabilities capabilities = Capabilities::coordinate_rates;
 
-  double relative_tolerance = 1e-8;   ///< relative to the scale of each kind of unknown, as of `DormandPrince`
-  double absolute_tolerance = 1e-10;  ///< added to the relative one, in the units of coordinates and speeds [m], [rad]
-  double min_step = 1e-12;            ///< that may be chosen [s]
-  int max_order = order;              ///< the highest that may be chosen, in [1, 12]
-  Stabilisation stabilisation = {};   ///< how a step keeps to the rows
+  double relative_tolerance = 1e-8;   ///< relative to the scale of each kind of unknown, as in `DormandPrince`
+  double absolute_tolerance = 1e-10;  ///< absolute part, in the units of coordinates and velocities [m], [rad]
+  double min_step = 1e-12;            ///< smallest permitted step [s]
+  int max_order = order;              ///< highest permitted order, in [1, 12]
+  Stabilisation stabilisation = {};   ///< constraint stabilisation
 
   /// \throws InvalidInput for tolerances and steps that are not positive, or a highest order outside [1, 12].
   void check() const {
@@ -38,18 +38,18 @@ struct AdamsBashforthMoulton {
     stabilisation.check();
   }
 
-  /// Everything that a step needs, allocated once.
+  /// Memory of a step, allocated once.
   template <class Solver>
   struct Workspace {
-    VecX y, f, correction;                    ///< of (q, v)
+    VecX y, f, correction;                    ///< by (q, v)
     VecX raw, q, v, a, lambda, zero;          ///< in order: q of y before ⊞ 0; q, v, v̇, λ of the step; zeros (nv)
-    VecXOf<Dual<1>> dual;                     ///< room for the rates of coordinates
+    VecXOf<Dual<1>> dual;                     ///< workspace of `coordinate_rates`
     VecX q_rate;                              ///< q˙ (nq)
     ForwardDynamics<Solver> forward;          ///< accelerations, by the mass matrix
-    detail::ErrorNorm norm;                   ///< of the error
+    detail::ErrorNorm norm;                   ///< norm of the error
     typename Stabilisation::Scratch scratch;  ///< memory of the stabilisation
 
-    /// Allocates all of it.
+    /// Allocates all members.
     explicit Workspace(System& s)
         : y(VecX::Zero(s.coordinates() + s.velocities())),
           f(y),
@@ -66,13 +66,13 @@ struct AdamsBashforthMoulton {
           norm(s, false),
           scratch(s) {}
 
-    /// y into q, normalised, and v.
+    /// Copies y to q, normalised, and to v.
     void split(System const& system) {
       std::copy_n(y.data(), raw.size(), raw.data());
       std::copy_n(y.data() + raw.size(), v.size(), v.data());
       system.plus(raw, zero, q);
     }
-    /// y˙ at (q, v, t) into f.
+    /// Evaluates y˙ at (q, v, t) and stores it in f.
     void rates(System& system, double t, ConstraintFeedback const& feedback) {
       forward.accelerations(system, {q, v, t}, a, lambda, feedback);
       polybody::coordinate_rates(system, q, v, dual, q_rate);
@@ -97,7 +97,7 @@ struct AdamsBashforthMoulton {
     AdamsHistory::reset(x.history, w.f);
   }
 
-  /// Takes at most h, less where the error asks for it. \throws MinimumStepReached.
+  /// Integrates over h, or over a shorter step if the tolerance requires it. \throws MinimumStepReached.
   template <class W>
   StepReport step(System& system, State& x, double h, W& w) const {
     AdamsHistory history(x.history, w.y.size());
@@ -155,16 +155,17 @@ struct AdamsBashforthMoulton {
   }
 
  private:
-  /// Errors over the tolerance at orders k − 2, k − 1, k and k + 1; infinite where the past does not reach that far.
+  /// Error estimates of orders k − 2, k − 1, k and k + 1; infinite if too few past points are known.
   struct Errors {
     double two_below = 0.0, below = 0.0, here = 0.0, above = 0.0;  ///< relative to the tolerance
-    /// Beside order k the lower orders do as well [Shampine & Gordon 1975].
+    /// True if the estimates favour order k − 1 over order k [Shampine & Gordon 1975].
     bool prefer_lower(int k) const {
       return k > 2 ? std::max(two_below, below) <= here : k == 2 && below <= 0.5 * here;
     }
   };
 
-  /// A step of length h at order k, with the weights of its differences and the ages of the `known` points before it.
+  /// Trial step of length h at order k, with the weights `c` of the differences and the `age` of each `known` past
+  /// point.
   struct Trial {
     std::array<double, order + 2> const &c, &age;
     double h;  ///< [s]
@@ -181,8 +182,8 @@ struct AdamsBashforthMoulton {
     }
   }
 
-  /// c_k D*_k into w.correction, and the errors: by `ErrorNorm`, and means over first-order states, each relative to
-  /// itself.
+  /// Stores c_k D*_k in w.correction and returns the error estimates: `ErrorNorm` of coordinates and velocities, plus
+  /// the mean square over first-order states, each relative to its own tolerance.
   template <class W>
   Errors correct(System const& system, AdamsHistory const& history, Trial const& trial, State const& x, W& w) const {
     auto const& [c, age, h, k, known] = trial;
@@ -221,9 +222,9 @@ struct AdamsBashforthMoulton {
     };
     return {error(k - 2), error(k - 1), error(k), k < order ? error(k + 1) : std::numeric_limits<double>::infinity()};
   }
-  /// The next order into k, and the next step. While the order rises from the start it goes up with every step, and the
-  /// step doubles; then the order goes where the error is least, and the step doubles, stays or shrinks as that error
-  /// asks.
+  /// Returns the next step, and stores the next order in k. While `rising` after a start, each step raises the order by
+  /// one and doubles the step. Later, the order with the smallest error estimate is selected, and this estimate decides
+  /// if the step is doubled, kept or reduced.
   double choose(Errors const& e, double h, int& k, int known, bool& rising) const {
     double error = e.here;
     bool const higher = k > 1 ? e.above < error && error < std::max(e.two_below, e.below) : e.above < 0.5 * error;

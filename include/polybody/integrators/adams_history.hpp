@@ -6,22 +6,22 @@
 
 namespace polybody {
 
-/// The past of y˙ = f(t, y) as divided differences D_j = f[t₀, t₋₁, …, t₋ⱼ] over the last points, y of n entries. It
-/// stands in history, so a copy of a state carries it along:
-///   [D₀ … D₁₂ | lengths of the last 12 steps, the last one first | points known | order | 1 while the order still
-///   rises].
+/// Divided differences D_j = f[t₀, t₋₁, …, t₋ⱼ] of y˙ = f(t, y) over the last points, for y of n entries. They are
+/// stored in the history of a state, so a copy of the state includes them:
+///   [D₀ … D₁₂ | lengths of the last 12 steps, the last one first | known points | order | 1 while the order rises].
 class AdamsHistory {
  public:
-  static constexpr int highest = 12;  ///< order
+  static constexpr int highest = 12;  ///< highest order
 
-  /// `memory` holds f at the present point only, order 1.
+  /// Sets `memory` to a single point, the present one with the value f, and to order 1.
   static void reset(VecX& memory, VecX const& f) {
     memory.setZero((highest + 1) * f.size() + highest + 3);
     memory.head(f.size()) = f;
     memory.tail<3>().setOnes();
   }
 
-  /// The history of n numbers in a state's `memory` after `reset`. \throws InvalidInput for a memory without one.
+  /// Access to the history of n numbers in the `memory` of a state after `reset`. \throws InvalidInput if `memory` has
+  /// another size.
   AdamsHistory(VecX& memory, Index n) : memory_(memory), n_(n) {
     if (memory.size() != (highest + 1) * n + highest + 3)
       throw InvalidInput("state.no_history",
@@ -30,21 +30,21 @@ class AdamsHistory {
 
   /// D_j (n entries), j ≤ 12.
   double* difference(int j) const { return memory_.data() + j * n_; }
-  /// How many points are known, the present one among them: 1 to 13, as a number of the memory.
+  /// Number of known points including the present one, 1 to 13, stored as a floating-point number.
   double& known() const { return memory_[memory_.size() - 3]; }
-  /// The order k of the next step.
+  /// Order k of the next step.
   double& order() const { return memory_[memory_.size() - 2]; }
-  /// One while the order still rises from the start, else zero.
+  /// 1 while the order rises after a start, otherwise 0.
   double& rising() const { return memory_[memory_.size() - 1]; }
 
-  /// t₀ − t₋ⱼ for j < `known`, 0 beyond.
+  /// t₀ − t₋ⱼ [s] for j < `known`, otherwise 0.
   std::array<double, highest + 2> ages() const {
     std::array<double, highest + 2> age{};
     for (int j = 1; j < int(known()); ++j) age[std::size_t(j)] = age[std::size_t(j - 1)] + length(j - 1);
     return age;
   }
 
-  /// The point a step h later, where y˙ is f, becomes the present one: D′₀ = f, D′ⱼ₊₁ = (D′ⱼ − Dⱼ)/(h + t₀ − t₋ⱼ).
+  /// Advances by a step h to a point with y˙ = f: D′₀ = f, D′ⱼ₊₁ = (D′ⱼ − Dⱼ)/(h + t₀ − t₋ⱼ).
   void push(double h, VecX const& f) {
     auto const age = ages();
     int const points = int(known());
@@ -62,8 +62,8 @@ class AdamsHistory {
     known() = std::min(points, highest) + 1;
   }
 
-  /// c_j = ∫₀ʰ Π_{i<j} (τ + t₀ − t₋ᵢ) dτ, t₀ − t₋ᵢ as `age` [s], j up to 13: by the rule of Gauss that is exact for
-  /// degree 13. All terms are positive.
+  /// Weights c_j = ∫₀ʰ Π_{i<j} (τ + t₀ − t₋ᵢ) dτ for j ≤ 13, with t₀ − t₋ᵢ from `age` [s]. The Gauss rule is exact for
+  /// degree 13, and all its terms are positive.
   static std::array<double, highest + 2> weights(double h, std::array<double, highest + 2> const& age) {
     std::array<double, highest + 2> c{};
     for (GaussPoint const& p : gauss<7>) {

@@ -1,20 +1,22 @@
 #pragma once
 /// \file
-/// The family of generalised-α on Lie groups for index-3 equations [Arnold & Brüls 2007; Brüls, Cardona & Arnold 2012]:
+/// Family of generalised-α methods on Lie groups for index-3 equations [Arnold & Brüls 2007; Brüls, Cardona & Arnold
+/// 2012]:
 ///   M v̇₁ = f₁ − Gᵀλ₁,  Φ(q₁) = 0,
 ///   (1 − α_m) a₁ + α_m a₀ = (1 − α_f) v̇₁ + α_f v̇₀,
 ///   v₁ = v₀ + h((1 − γ) a₀ + γ a₁),   q₁ = q₀ ⊞ (h v₀ + h²((½ − β) a₀ + β a₁)).
-/// One Newton unknown y = Δa₁ with Δq = βh² y, Δv = γh y, Δv̇ = (1 − α_m)/(1 − α_f) y; with the rows divided
-/// by βh² every entry of the tangent keeps the size of M and G for any h. Velocity rows, G v + Φ_t = 0 at the end of
-/// the step, are divided by γh, and the tangent is the same. First-order states follow the formulas of a and v, which
-/// are those of the family for ż = h(z, t) [Jansen, Whiting & Hulbert 2000]. Generalised-α, HHT-α, Newmark's method and
-/// the trapezoidal rule differ in the four coefficients only.
+/// The Newton unknown is y = Δa₁, with Δq = βh² y, Δv = γh y and Δv̇ = (1 − α_m)/(1 − α_f) y. The constraint equations
+/// are divided by βh², so that the entries of the tangent have the magnitude of M and G for any h. Nonholonomic
+/// equations, G v + Φ_t = 0 at the end of the step, are divided by γh; their part of the tangent is the same.
+/// First-order states use the formulas of a and v, which are the formulas of the family for ż = h(z, t) [Jansen,
+/// Whiting & Hulbert 2000]. Generalised-α, HHT-α, Newmark's method and the trapezoidal rule differ only in the four
+/// coefficients.
 ///
-/// Stabilised, a step keeps the rows of the speeds too, Φ̇(q₁, v₁) = 0, by a second set of multipliers μ [Gear, Gupta &
-/// Leimkuhler 1985; Arnold, Brüls & Cardona 2015]:
+/// A stabilised step also satisfies the derivatives of the constraint equations, Φ̇(q₁, v₁) = 0, by a second set of
+/// multipliers μ [Gear, Gupta & Leimkuhler 1985; Arnold, Brüls & Cardona 2015]:
 ///   q₁ = q₀ ⊞ (h v₀ + h²((½ − β) a₀ + β a₁) − M⁻¹(q₀) Gᵀ(q₀) μ).
-/// λ then answers Φ̇ = 0 and μ answers Φ = 0: Newton's method takes the first pair through the tangent, the second
-/// through [M, Gᵀ; G, 0] at q₀, and each sees the other through the next right-hand side.
+/// λ then enforces Φ̇ = 0, and μ enforces Φ = 0. Newton's method solves for λ with the tangent and for μ with the matrix
+/// [M, Gᵀ; G, 0] at q₀. The next right-hand side contains the effect of each solution on the other equations.
 
 #include <optional>
 
@@ -26,29 +28,29 @@
 
 namespace polybody {
 
-/// A member of the family: its coefficients, and how Newton's method is to solve its steps.
+/// Member of the family: coefficients and options of Newton's method.
 struct AlphaMethod {
-  char const* name;                      ///< the integrator's name in messages
+  char const* name;                      ///< name of the integrator in messages
   double alpha_m, alpha_f, gamma, beta;  ///< the four coefficients, shares of a step
-  double tolerance;                      ///< of Newton's corrections, relative to the accelerations
-  NewtonOptions newton;                  ///< when Newton's method stops, refactors and gives up
-  bool start_correction;    ///< multipliers of second order from the first step on, and across changes of h
-  bool second_order_terms;  ///< ∂(Gᵀλ)/∂q is in the tangent from the start
-  bool stabilised;          ///< the rows of the speeds are kept, too, by μ
+  double tolerance;                      ///< tolerance of Newton's corrections, relative to the accelerations
+  NewtonOptions newton;                  ///< options of Newton's method
+  bool start_correction;    ///< multipliers have second order from the first step on, and across changes of h
+  bool second_order_terms;  ///< the tangent includes ∂(Gᵀλ)/∂q from the start
+  bool stabilised;          ///< μ enforces Φ = 0, and λ enforces Φ̇ = 0
 
-  /// Everything that a step needs, allocated once.
+  /// Memory of a step, allocated once.
   template <class Solver>
   struct Workspace : AlphaVectors {
-    StepTangent<StepSolver<Solver>> tangent;  ///< the tangent of a step and its solver
-    ForwardDynamics<Solver> forward;          ///< [M, Gᵀ; G, 0]: accelerations of the start, μ
-    ReusedFactorisation kept_factor;          ///< whether the tangent's factors still serve
-    double h_factored = 0.0;                  ///< length of step for which the tangent was factored [s]
+    StepTangent<StepSolver<Solver>> tangent;  ///< tangent of a step, with its solver
+    ForwardDynamics<Solver> forward;          ///< [M, Gᵀ; G, 0]: accelerations at the start, μ
+    ReusedFactorisation kept_factor;          ///< state of the reused factorisation of the tangent
+    double h_factored = 0.0;                  ///< step length of the last factorisation of the tangent [s]
 
-    /// Allocates all but the solver of second-order terms.
+    /// Allocates the vectors and `forward`; `analyse` allocates the tangent.
     explicit Workspace(System& s)
         : AlphaVectors(s.coordinates(), s.velocities(), s.rows(), multipliers_of(s), s.layout().states), forward(s) {}
 
-    /// The solver of the tangent as it is now, with second-order terms or without.
+    /// Solver of the present tangent, with or without second-order terms.
     TangentSolver<StepSolver<Solver>>& solver() { return tangent.solver(); }
   };
 
@@ -58,23 +60,23 @@ struct AlphaMethod {
     analyse(system, w);
     return w;
   }
-  /// Lays the tangent of steps out, which the constructor of a workspace does not.
+  /// Analyses the tangent of steps; required after the constructor of a workspace.
   template <class Solver>
   void analyse(System& system, Workspace<Solver>& w) const {
     w.tangent.analyse(system, second_order_terms ? SecondOrder::included : SecondOrder::omitted, w.lambda);
   }
 
-  /// Begins, with a factorisation for steps of h [s].
+  /// Starts a run, and factorises the tangent for steps of h [s].
   template <class Solver>
   void start(System& system, State& x, double h, Workspace<Solver>& w) const {
     begin(system, x, h, w);
     w.tangent.mark_redundant(w.forward.left_out());
-    // once here, so that a solver that changes its order does not do so within a step
+    // factorised here, so that the solver does not change its elimination order within the first step
     w.solver().evaluate(system, {x.q, x.v, x.t});
     (void)refactor(system, h, {{x.q, x.v, x.t}, x.a, x.lambda}, w);
   }
-  /// Consistent v̇ and λ at x, which forgets earlier steps; nothing is laid out for steps yet. \param corrected whether
-  /// by `start_correction`; else h tells
+  /// Computes consistent v̇ and λ at x and discards the history of earlier steps. The tangent is not analysed. \param
+  /// corrected applies or omits the start correction; if empty, `jerk_at_start` decides for steps of h
   template <class Solver>
   void begin(System& system, State& x, double h, Workspace<Solver>& w, std::optional<bool> corrected = {}) const {
     w.tangent.forget();
@@ -92,30 +94,30 @@ struct AlphaMethod {
     return advance(system, x, h, w);
   }
 
-  /// v₀ and a₀ of a step of h [s] from x, into w: the state's own, corrected where those were made for steps of another
-  /// length. Returns whether they are. \param corrected as in `begin`
+  /// Stores v₀ and a₀ of a step of h [s] from x in w. If the history is shifted for another step length, v₀ and a₀ are
+  /// corrected. Returns true if they are corrected. \param corrected as in `begin`
   template <class Solver>
   bool start_step(System& system, State& x, double h, Workspace<Solver>& w, std::optional<bool> corrected = {}) const {
     StepHistory const history(x);
     w.v0 = x.v;
     history.own(w.a0);
-    double const shifted = history.shifted();  // the length for which v and a stand off; 0 after a start
+    double const shifted = history.shifted();  // step length of the shift of v and a; 0 after a start
     bool const corrects =
         start_correction && std::abs(h - shifted) > 1e-9 * h && history.jerk(x, w.jerk) &&
-        corrected.value_or(shifted == 0.0 || w.of_each_part([&](Index first, Index end) {  // else it is not resolved
+        corrected.value_or(shifted == 0.0 || w.of_each_part([&](Index first, Index end) {  // else not resolved by h
           return h * w.norm(w.jerk, first, end) <= 0.5 * w.norm(x.a, first, end);
         }));
     if (corrects) correct(system, x, shifted, h, w);
     return corrects;
   }
-  /// v̇ changes by this much with a.
+  /// Derivative ∂v̇/∂a of the step, a ratio.
   double mass() const { return (1.0 - alpha_m) / (1.0 - alpha_f); }
 
  private:
-  /// How often a step may be tried again.
+  /// Number of repetitions of a step that does not converge, except the last one without μ (`advance`).
   static int efforts(System const& s) { return s.layout().has_groups ? 2 : 1; }
 
-  /// What Newton's method begins a step with: extrapolated, or where it is to take care the last v̇ and λ.
+  /// Initial iterate of Newton's method: extrapolated v̇ and λ, or those of the last step if `careful`.
   void guess(State& x, double h, bool careful, AlphaVectors& w) const {
     if (careful) {
       w.vd = x.a;
@@ -125,7 +127,7 @@ struct AlphaMethod {
     }
     predict(x, h, w);
   }
-  /// a, v and Δq of a step of h from x where v̇ becomes w.vd.
+  /// Computes a, v and Δq of a step of h from x with the final v̇ in w.vd.
   void predict(State const& x, double h, AlphaVectors& w) const {
     double const part = 1.0 / (1.0 - alpha_m);
     double const *const of_v0 = w.v0.data(), *const of_a0 = w.a0.data(), *const from = x.a.data(),
@@ -139,7 +141,7 @@ struct AlphaMethod {
       at.set(dq, h * v0 + h * h * ((0.5 - m.beta) * a0 + m.beta * now));
     });
   }
-  /// The same after a correction: a changes by the first part of y, λ by the rest.
+  /// Adds `part` of the correction y: its first entries to a, and the others to λ. v̇, v and Δq change accordingly.
   void apply(double part, double h, bool both_multiplier_sets, AlphaVectors& w) const {
     if (part != 1.0) {
       w.y *= part;
@@ -170,7 +172,7 @@ struct AlphaMethod {
                               .tolerated = tolerance * (1.0 + moved / n) + detail::rounding_of(w.q, s)};
     return detail::StatesInStep{w.states, w.v, w.vd, gamma * h}.join(size, tolerance, w.y.data());
   }
-  /// The right-hand side of a correction: −r, and the rows as their multipliers answer them.
+  /// Right-hand side of a correction: −r, and the scaled violations of the constraint equations.
   void right_hand_side(double h, bool both_multiplier_sets, Sequence<Index> const& nonholonomic_equations,
                        AlphaVectors& w) const {
     Index const nv = w.v.size(), rows = w.phi.size();
@@ -183,8 +185,8 @@ struct AlphaMethod {
       for (Index const i : nonholonomic_equations) of_rows[i] = w.rate[i] / -(h * gamma);
   }
 
-  /// Tangent and factorisation for steps of h at x, where `system` was evaluated last. −1, or the unknown without a
-  /// pivot.
+  /// Evaluates and factorises the tangent for steps of h at x, where `system` was evaluated last. Returns the unknown
+  /// without a pivot, or −1.
   template <class Solver>
   Index refactor(System& system, double h, StepPosition const& x, Workspace<Solver>& w,
                  bool surrogate_friction = true) const {
@@ -193,14 +195,14 @@ struct AlphaMethod {
     return w.solver().factor_tangent(system, x, c, w.tangent.terms());
   }
 
-  /// A step as Newton's method sees it.
+  /// Problem of Newton's method in one step.
   template <class Solver>
   struct Problem {
     AlphaMethod const& method;
     System& system;
     State& x;
     Workspace<Solver>& w;
-    double h, look_ahead;  ///< h [s]; the share of its expected life by which a factorisation is made ahead
+    double h, look_ahead;  ///< h [s]; share of the expected use of a factorisation at which its tangent is evaluated
     bool both_multiplier_sets, recomputes_held, surrogate_friction;
     Index bad = -1;
 
@@ -239,7 +241,7 @@ struct AlphaMethod {
         for (Index i = 0; i < system.velocities(); ++i) w.back[i] = method.beta * h * h * w.y[i];
         system.rows_times(w.back, w.rate);
         w.phi += w.rate;
-        for (Index const i : system.nonholonomic_equations()) w.phi[i] = 0.0;  // μ is of positions
+        for (Index const i : system.nonholonomic_equations()) w.phi[i] = 0.0;  // μ corrects positions only
         w.forward.least_change(system, w.phi, w.back);
       }
       return finite ? method.measure(h, both_multiplier_sets, w)
@@ -248,7 +250,8 @@ struct AlphaMethod {
     AndersonAcceleration& acceleration() { return w.acceleration; }
     VecX& correction() { return w.y; }
     void apply(double part) { method.apply(part, h, both_multiplier_sets, w); }
-    /// By a correction of this `norm` (root mean square of accelerations) the bodies move further than by their speeds.
+    /// True if a correction of this `norm` (root mean square of accelerations) moves the bodies further than their
+    /// velocities do within the step.
     bool is_far_from_solution(double norm) const {
       Index const bodies = x.v.size() - w.states;
       return method.beta * h * norm * std::sqrt(double(bodies)) > std::sqrt(squares(x.v.data(), bodies));
@@ -282,9 +285,11 @@ struct AlphaMethod {
     return w.forward.loses_rank(system, {x.q, x.v, x.t}, {w.q, x.v, x.t + h});
   }
 
-  /// One step from x, which changes only when Newton converged. What stalls is tried again: 1, by full Newton with
-  /// every term, without extrapolation, μ along Gᵀ of the iterate (beside singular positions G turns far within a
-  /// step); 2, with stand-ins for the forces of groups, which jump with friction; last, where rank is lost, without μ.
+  /// Performs one step from x, which changes only if Newton's method converges. A step that does not converge is
+  /// repeated without extrapolation, by the full Newton method with all terms of the tangent. μ then acts along Gᵀ of
+  /// the iterate, because near singular positions G rotates far within a step. The second repetition uses the
+  /// approximate stiffness of force groups, because friction jumps. If the rank of G decreases within the step, the
+  /// last repetition omits μ.
   template <class Solver>
   StepReport advance(System& system, State& x, double h, Workspace<Solver>& w, int effort = 0) const {
     StepHistory history(x);
@@ -297,12 +302,12 @@ struct AlphaMethod {
     NewtonOptions options = newton;
     if (careful) {
       options.always_refactor = true;
-      options.max_growths = 8;  // damped, it recovers
+      options.max_growths = 8;  // the damped iteration recovers
       options.max_iterations *= 2;
     }
-    // what μ moves is large and gone at once: how it shrinks tells nothing of the rest
+    // corrections of μ are large and vanish quickly, so their contraction does not predict the other corrections
     options.predictive_stop = options.predictive_stop && !both_multiplier_sets;
-    // a factorisation that is to be kept is made for the middle of its life, as long as the last one's
+    // a new tangent is evaluated near the middle of its expected use, estimated from the use of the last factorisation
     Problem<Solver> problem{*this,
                             system,
                             x,
@@ -320,7 +325,7 @@ struct AlphaMethod {
       w.kept_factor.usable = false;
       return detail::retried(w.forward.failed, report, [&] { return advance(system, x, h, w, effort + 1); });
     }
-    if (report.result != NewtonResult::converged && w.solver().carries_multipliers()) {  // rhs, which names the largest
+    if (report.result != NewtonResult::converged && w.solver().carries_multipliers()) {  // rhs of the message
       system.residual(w.vd, w.lambda, w.r);
       right_hand_side(h, both_multiplier_sets, system.nonholonomic_equations(), w);
     }
@@ -328,7 +333,7 @@ struct AlphaMethod {
     detail::count_if_failed(w.forward.failed, step, [&] {
       if (report.result != NewtonResult::converged)
         detail::throw_stalled(name, system, x.t + h, report, {problem.bad, w.rhs, w.y});
-      // the last correction moved dq: bring q to it
+      // q follows the last correction of dq
       system.plus(x.q, w.dq, w.q);
       w.forward.require_end(system, {w.q, w.v, w.lambda, x.t + h, h});
     });
@@ -344,16 +349,18 @@ struct AlphaMethod {
     return step;
   }
 
-  /// The method's a and v stand off those of the solution by Δ h v̈ and h² P (C v̈ + [v, v̇]/12) (Δ = α_m − α_f,
-  /// C = 1/6 − β − Δ/2, P the part that the rows force); start there, and follow it when h changes. The defect of
-  /// a step is h³ (C v̈ + [v, v̇]/12): q(t + h) = q ⊞ (h v + ½h² v̇ + h³(v̈/6 + [v, v̇]/12)), and the rows undo it.
-  /// [derived from Arnold & Brüls 2007, Lemma 1; the bracket as in Arnold, Brüls & Cardona 2015]
+  /// Corrects v₀ and a₀ for a change of the step from h_old to h_new. The a and v of the method differ from those of
+  /// the solution by Δ h v̈ and h² P (C v̈ + [v, v̇]/12). Here Δ = α_m − α_f, C = 1/6 − β − Δ/2, and P projects onto the
+  /// directions of the constraint forces. A start applies these differences, and a change of h updates them. The local
+  /// error of a step is h³ (C v̈ + [v, v̇]/12), because q(t + h) = q ⊞ (h v + ½h² v̇ + h³(v̈/6 + [v, v̇]/12)); the
+  /// constraint equations compensate it. [derived from Arnold & Brüls 2007, Lemma 1; the bracket as in Arnold, Brüls &
+  /// Cardona 2015]
   template <class Solver>
   void correct(System& system, State const& x, double h_old, double h_new, Workspace<Solver>& w) const {
     double const delta = alpha_m - alpha_f, c = 1.0 / 6.0 - beta - 0.5 * delta;
     for (Index i = 0; i < w.a0.size(); ++i) w.a0[i] += delta * (h_new - h_old) * w.jerk[i];
-    if (system.rows() == 0 || stabilised) return;  // μ moves no speeds
-    // [v, v̇]/12: rates in coordinates ⊞ are v + ½[δ, v] + even terms of δ
+    if (system.rows() == 0 || stabilised) return;  // μ does not change velocities
+    // [v, v̇]/12, because rates in coordinates ⊞ are v + ½[δ, v] + even terms of δ
     for (Index i = 0; i < w.dq.size(); ++i) w.dq[i] = h_new * x.v[i];
     system.local_rate(w.dq, x.a, w.v);
     for (Index i = 0; i < w.dq.size(); ++i) w.dq[i] = -w.dq[i];
@@ -363,10 +370,10 @@ struct AlphaMethod {
     for (Index i = 0; i < w.v0.size(); ++i) w.v0[i] += (h_new * h_new - h_old * h_old) * w.v[i];
   }
 
-  /// q⃛ at x by one-sided differences of the accelerations along the motion, at two distances. False where
-  /// the two disagree, or where following q⃛ itself for h would change the acceleration by as much as q⃛ does
-  /// (ωh above 1.7 in an oscillator: after an impulse the stiff part carries q⃛). Then the motion is not
-  /// resolved by steps of h and a correction would be noise.
+  /// Computes q⃛ at x by one-sided differences of the accelerations along the motion, at two distances. Returns false if
+  /// the two results disagree, or if a motion with constant q⃛ changes the acceleration after h by more than ½ h ‖q⃛‖ (ωh
+  /// above 1.7 in an oscillator: after an impulse, stiff components dominate q⃛). Steps of h then do not resolve the
+  /// motion, and a correction would add noise.
   template <class Solver>
   bool jerk_at_start(System& system, State const& x, double h, Workspace<Solver>& w) const {
     w.jerk.setZero();

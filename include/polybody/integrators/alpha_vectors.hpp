@@ -4,18 +4,18 @@
 
 namespace polybody {
 
-/// What a step of the family computes with, of whatever model.
+/// Vectors of a step of the generalised-α family, independent of the type of the model.
 struct AlphaVectors {
-  VecX v0, a0;                                ///< speeds and algorithmic acceleration from which the step sets out
-  VecX q, v, vd, a, dq, r, phi, jerk, ahead;  ///< in order: q, v, v̇, a, Δq, r, Φ, q⃛, a Δq elsewhere
-  VecX lambda, rhs, y;                        ///< of all multipliers that the step keeps; `phi` is of its rows
-  VecX back, rate, open;  ///< of a stabilised step: what μ moves, a vector by rows, and rows before μ answers them
-  VecX kept, kept_back;   ///< corrections while others are looked at
-  AndersonAcceleration acceleration;  ///< of y, by the accelerations of bodies
-  Index states;                       ///< first-order ones, the last of the speeds
+  VecX v0, a0;  ///< generalised velocities and algorithmic accelerations at the start of the step
+  VecX q, v, vd, a, dq, r, phi, jerk, ahead;  ///< in order: q, v, v̇, a, Δq, r, Φ, q⃛, a second Δq
+  VecX lambda, rhs, y;    ///< λ, right-hand side, correction: with all multipliers of a step; `phi` has those of Φ only
+  VecX back, rate, open;  ///< of a stabilised step: change of Δq by μ, Φ̇, Φ before the correction by μ
+  VecX kept, kept_back;   ///< copies of y and `back` during the test for round-off
+  AndersonAcceleration acceleration;  ///< acceleration of y, in the norm of the accelerations of bodies
+  Index states;                       ///< number of first-order states, the last entries of v
 
-  /// Zeros, as many as a system has coordinates, velocities, rows, multipliers that a step keeps, and `first_order`
-  /// states.
+  /// Zero vectors for the given numbers of coordinates, velocities, rows (constraint equations), multipliers of a step
+  /// and `first_order` states.
   AlphaVectors(Index coordinates, Index velocities, Index rows, Index multipliers, Index first_order)
       : v0(VecX::Zero(velocities)),
         a0(v0),
@@ -41,15 +41,15 @@ struct AlphaVectors {
 
   /// ‖a‖ of the entries [i, end).
   static double norm(VecX const& a, Index i, Index end) { return std::sqrt(squares(a.data() + i, end - i)); }
-  /// Δq and v after e seconds [s] from x with `jerk`.
+  /// Computes Δq and v after e seconds [s] from x with constant `jerk`.
   void follow(State const& x, double e) {
     for (Index i = 0; i < v.size(); ++i) {
       dq[i] = e * x.v[i] + 0.5 * e * e * x.a[i] + e * e * e / 6.0 * jerk[i];
       v[i] = x.v[i] + e * x.a[i] + 0.5 * e * e * jerk[i];
     }
   }
-  /// `jerk` by one-sided differences of accelerations `now`, a `quarter` and a `half` of h [s] later and a `full` h
-  /// later. Whether both distances agree.
+  /// Computes `jerk` by one-sided differences of accelerations: `now`, after a `quarter` and a `half` of h [s], and
+  /// after the `full` h. Returns true if the results of both distances agree.
   bool find_jerk(VecX const& now, VecX const& quarter, VecX const& half, VecX const& full, double h) {
     VecX mismatch(now.size());
     for (Index i = 0; i < now.size(); ++i) {
@@ -61,7 +61,7 @@ struct AlphaVectors {
            });
   }
 
-  /// f(first, end) holds of the speeds of bodies and of the first-order states.
+  /// True if f(first, end) is true for the velocities of bodies and for the first-order states.
   template <class F>
   bool of_each_part(F&& f) const {
     Index const bodies = v.size() - states;

@@ -11,25 +11,25 @@
 
 namespace polybody::detail {
 
-/// Extents of positions and velocities of the assemblies that joints and forces make of bodies. A common translation
-/// and a common velocity do not change them. Markers on the ground are points of an assembly, at rest. An assembly of a
-/// single point is measured from the world's origin.
+/// Extents of the positions and velocities of each assembly of bodies that joints and forces connect. A common
+/// translation and a common velocity do not change the extents. Markers on the ground are points of an assembly, at
+/// rest. If an assembly has a single point, the world's origin is its second point.
 class AssemblyExtents {
  public:
-  /// The largest extents along an axis of the world.
+  /// Largest extents along the world axes.
   struct Extent {
     double length = 0.0;  ///< [m]
     double speed = 0.0;   ///< [m/s]
   };
 
   AssemblyExtents() = default;
-  /// \param whole, stepped unknowns of the model and of a time step  \param assembly number of that of each body
+  /// \param full, stepped unknowns of the model and of a time step \param assembly number of the assembly of each body
   template <class = void>
   [[gnu::cold]] AssemblyExtents(System const& system, UnknownPlaces const& full, UnknownPlaces const& stepped,
                                 Sequence<Index> const& assembly);
 
-  /// Extents before and at the end (q, v) of a step, whichever is larger; a change of a velocity over the step counts
-  /// as an extent. The bodies of a tree that floats are measured at the end alone.
+  /// Computes the extents before and at the end (q, v) of a step, and keeps the larger ones. A change of a velocity
+  /// over the step also counts as an extent. The bodies of a floating tree are included at the end only.
   void measure(System const& system, State const& before, VecX const& q, VecX const& v) {
     for (Box& box : boxes_) box.extent = {};
     add(positions_, before.q, &Box::ground, &Extent::length);
@@ -46,12 +46,12 @@ class AssemblyExtents {
     add(full_positions_, full_q_, &Box::ground, &Extent::length);
     add(full_velocities_, full_v_, &Box::rest, &Extent::speed);
   }
-  /// Those of an assembly, as measured last.
+  /// Extents of an assembly, from the last `measure`.
   Extent const& operator[](std::size_t assembly) const { return boxes_[assembly].extent; }
 
  private:
   static constexpr double never = std::numeric_limits<double>::infinity();
-  /// Bounds along the axes of the world; those of no point are empty.
+  /// Bounds along the world axes; empty without points.
   struct Bounds {
     std::array<double, 3> least{never, never, never}, most{-never, -never, -never};
     void stretch(std::size_t axis, double x) {
@@ -60,11 +60,11 @@ class AssemblyExtents {
     }
   };
   struct Box {
-    Bounds ground, rest;  ///< of the points at rest: their positions, their velocities
+    Bounds ground, rest;  ///< bounds of the points at rest: positions, velocities
     Bounds bounds;        ///< scratch
     Extent extent;
   };
-  /// An entry of a position or velocity.
+  /// Entry of a position or velocity.
   struct Point {
     Index entry;
     std::uint32_t assembly;
@@ -90,7 +90,7 @@ class AssemblyExtents {
 
   Sequence<Box> boxes_;
   Sequence<Point> positions_, velocities_;            // of a time step
-  Sequence<Point> full_positions_, full_velocities_;  // of trees that float: a step holds the root alone
+  Sequence<Point> full_positions_, full_velocities_;  // of floating trees: a step has the coordinates of the root only
   VecX full_q_, full_v_;
 };
 

@@ -16,14 +16,14 @@ struct CentralDifference {
   static constexpr double stability_limit = 2.0;  ///< ωh, a ratio
   static double stable_step(double omega, double rate) { return verlet_stability_limit(omega, rate); }
 
-  Stabilisation stabilisation = {};  ///< how a step keeps to the rows
+  Stabilisation stabilisation = {};  ///< constraint stabilisation
 
-  /// Everything that a step needs, allocated once.
+  /// Memory of a step, allocated once.
   template <class Solver>
   struct Workspace : detail::RotatingStep<Solver> {
     typename Stabilisation::Scratch scratch;  ///< memory of the stabilisation
     VecX half;                                ///< v½ after the free rotations
-    /// Allocates all of it.
+    /// Allocates all members.
     explicit Workspace(System& s) : detail::RotatingStep<Solver>(s), scratch(s), half(this->v) {}
   };
 
@@ -44,7 +44,7 @@ struct CentralDifference {
     w.dq = h * w.v;
     w.move(system, x, x.t + h);
     w.half = w.v;
-    w.v += 0.5 * h * w.applied;  // predicted, for forces that depend on speed
+    w.v += 0.5 * h * w.applied;  // predicted, for velocity-dependent forces
     stabilisation.apply(system, w.forward, w.scratch, w.q, w.v, x.t + h);
     w.forward.accelerations(system, {w.q, w.v, x.t + h}, w.a, w.lambda, stabilisation.feedback());
     w.rotations.add_gyroscopic(w.v, w.a);

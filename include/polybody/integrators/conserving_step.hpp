@@ -1,18 +1,19 @@
 #pragma once
 /// \file
-/// Steps that keep energy and momenta, and steps that only ever lose energy, for coordinates that form a vector space
+/// Steps that conserve energy and momenta, and steps that dissipate energy, for coordinates that form a vector space
 /// and constant M:
 ///   M Δv = h (f̄ − Ḡᵀλ),   Δq = h (v̄ + χ Δv),   Φ(q₁) = 0,   v̄ = ½ (v₀ + v₁).
-/// f̄ and Ḡ are discrete gradients [Gonzalez 1996, 1999], made of secants (math/secant.hpp) of strains, gaps and
-/// potentials:
+/// f̄ and Ḡ are discrete gradients [Gonzalez 1996, 1999], computed by secants (math/secant.hpp) of strains, constraint
+/// functions and potentials:
 ///   f̄·Δq = −ΔV − χ ΔεᵀCΔε − (damping),   Ḡ Δq = ΔΦ = 0.
 /// Hence, for the kinetic energy T, ΔT = v̄ᵀMΔv = (Δq/h − χ Δv)ᵀMΔv and
 ///   ΔT + ΔV = −χ (ΔvᵀMΔv + ΔεᵀCΔε) − (damping) + (work of the loads).
-/// χ = 0: energy stays. The linear momentum changes by the loads' impulse for every χ. The angular momentum does so for
-/// χ = 0 where f̄ and Ḡ have no moment of their own: for what is made of scalar products of coordinates. These are ANCF
-/// cables and the ANCF beam of `Continuum`, springs and joints between points on their axes. Angles as coordinates,
-/// section frames (`ElasticLine`) and joints of axes keep energy too, but angular momentum to the method's order only.
-/// First-order states take the midpoint, Δz = h · h(q̄, v̄, z̄, t̄).
+/// With χ = 0, energy is conserved. The linear momentum changes by the impulse of the loads for every χ. The angular
+/// momentum changes by their impulse if χ = 0 and f̄ and Ḡ have no moment of their own. This condition holds for
+/// functions of scalar products of coordinates: ANCF cables and the ANCF beam of `Continuum`, springs, and joints
+/// between points on their axes. With angles as coordinates, section frames (`ElasticLine`) and joints of axes, energy
+/// is also conserved, but angular momentum only to the order of the method. First-order states use the midpoint rule,
+/// Δz = h · h(q̄, v̄, z̄, t̄).
 
 #include <polybody/integrators/newton_failure.hpp>
 #include <polybody/integrators/step_history.hpp>
@@ -20,28 +21,28 @@
 
 namespace polybody {
 
-/// A member of the family. `State::a` and `State::lambda` after a step belong to the middle of it; with χ = 0, λ
-/// alternates by O(h) about the reaction, and the mean of two steps is right to O(h²).
+/// Member of the family. `State::a` and `State::lambda` after a step are values at its middle. With χ = 0, λ alternates
+/// by O(h) about the reaction, and the mean over two steps has an error of O(h²).
 struct ConservingStep {
-  char const* name;      ///< the integrator's name in messages
-  double chi;            ///< χ, a share of the step: 0 keeps energy, ½ loses most
-  double tolerance;      ///< of Newton's corrections, relative to the accelerations
-  NewtonOptions newton;  ///< when Newton's method stops, refactors and gives up
+  char const* name;      ///< name of the integrator in messages
+  double chi;            ///< χ, a share of the step: 0 conserves energy, ½ dissipates most
+  double tolerance;      ///< tolerance of Newton's corrections, relative to the accelerations
+  NewtonOptions newton;  ///< options of Newton's method
 
-  /// Everything that a step needs, allocated once.
+  /// Memory of a step, allocated once.
   template <class Solver>
   struct Workspace {
     VecX q, v, vd, lambda, r, phi, rhs, y, kept;  ///< in order: q, v, v̇, λ, r, Φ, −(r, Φ), two corrections
-    VecX other_vd, other_lambda;                  ///< where the second try ended, while the third looks for less change
-    StepSecants secants;                          ///< mean forces and rows of the step
+    VecX other_vd, other_lambda;                  ///< result of the second attempt, during the third
+    StepSecants secants;                          ///< mean forces and constraint Jacobian of the step
     TangentSolver<StepSolver<Solver>> solver;     ///< solver of the tangent of `secants`
-    TangentSolver<StepSolver<UnsymmetricSolver<Solver>>> exact;  ///< laid out by the first step that asks for it
-    ForwardDynamics<Solver> forward;                             ///< [M, Gᵀ; G, 0]: accelerations of the start
-    ReusedFactorisation kept_factor;                             ///< whether the tangent's factors still serve
-    bool has_exact = false;                                      ///< `exact` has been laid out
-    double h_factored = 0.0;  ///< length of step for which the tangent was factored [s]
+    TangentSolver<StepSolver<UnsymmetricSolver<Solver>>> exact;  ///< analysed if required
+    ForwardDynamics<Solver> forward;                             ///< [M, Gᵀ; G, 0]: accelerations at the start
+    ReusedFactorisation kept_factor;                             ///< state of the reused factorisation of the tangent
+    bool has_exact = false;                                      ///< `exact` is analysed
+    double h_factored = 0.0;  ///< step length of the last factorisation of the tangent [s]
 
-    /// Allocates all but `exact`.
+    /// Allocates all members except `exact`.
     explicit Workspace(System& s)
         : q(VecX::Zero(s.coordinates())),
           v(VecX::Zero(s.velocities())),
@@ -63,7 +64,7 @@ struct ConservingStep {
     return Workspace<Solver>(system);
   }
 
-  /// Consistent v̇ and λ at x; the memory of earlier steps is cleared.
+  /// Computes consistent v̇ and λ at x, and clears the history of earlier steps.
   template <class Solver>
   void start(System& system, State& x, double h, Workspace<Solver>& w) const {
     w.forward.accelerations(system, {x.q, x.v, x.t}, x.a, x.lambda);
@@ -72,17 +73,17 @@ struct ConservingStep {
     w.solver.analyse(system, 1, [&](BlockSink& sink) { w.secants.tangent(system, scale(h), sink); });
     if (w.forward.leaves_out()) w.solver.mark_redundant(w.forward.left_out());
     w.kept_factor.usable = false;
-    (void)refactor(system, h, w);  // so that a solver that changes its order does not do so within a step
+    (void)refactor(system, h, w);  // so that the elimination order does not change within the first step
   }
 
-  /// x changes only when Newton's method converged.
+  /// Performs one step; x changes only if Newton's method converges.
   template <class Solver>
   StepReport step(System& system, State& x, double h, Workspace<Solver>& w) const {
     return advance(system, x, h, w);
   }
 
  private:
-  /// Δq = h v₀ + s a with Δv = h a.
+  /// Factor s [s²] of Δq = h v₀ + s a, with Δv = h a.
   double scale(double h) const { return (0.5 + chi) * h * h; }
 
   template <class Solver>
@@ -91,7 +92,7 @@ struct ConservingStep {
     return w.solver.factor([&](BlockSink& sink) { w.secants.tangent(system, scale(h), sink); });
   }
 
-  /// A step as Newton's method sees it.
+  /// Problem of Newton's method in one step.
   template <class Solver>
   struct Problem {
     ConservingStep const& method;
@@ -162,7 +163,8 @@ struct ConservingStep {
     for (Index i = 0; i < vd.size(); ++i) sum += (vd[i] - x.a[i]) * (vd[i] - x.a[i]);
     return h * h * sum;
   }
-  /// Goes back to where the second try ended, if the third failed or changes speeds by more.
+  /// Restores the result of the second attempt, and returns true, if the third attempt `failed` or changes the
+  /// velocities by more.
   template <class Solver>
   static bool takes_other(State const& x, double h, Workspace<Solver>& w, bool failed) {
     if (!failed && change(x, h, w.vd) <= change(x, h, w.other_vd)) return false;
@@ -171,9 +173,10 @@ struct ConservingStep {
     return true;
   }
 
-  /// One step from x. What stalls is tried again with more effort: 1, full Newton, from no acceleration at all; 2, from
-  /// the last one, with the exact tangent, as next to a singular position. There a step has one end on each branch: of
-  /// the ends that both tries find, the one is taken that changes the speeds least, where the first turns them.
+  /// Performs one step from x. If Newton's method does not converge, the second attempt uses full Newton from zero
+  /// accelerations. The third attempt starts from the last accelerations and uses the exact tangent, as required near a
+  /// singular position. There a step has one solution on each branch. If the second attempt changes the direction of
+  /// the velocities, the third also runs, and the solution with the smaller change of the velocities is accepted.
   template <class Solver>
   StepReport advance(System& system, State& x, double h, Workspace<Solver>& w, int effort = 0,
                      bool has_other = false) const {
@@ -181,7 +184,7 @@ struct ConservingStep {
     bool const careful = effort > 0;
     if (careful) {
       w.vd = x.a;
-      if (effort == 1) w.vd.setZero();  // the mean of what a step does not resolve
+      if (effort == 1) w.vd.setZero();  // mean of unresolved accelerations
       w.lambda = x.lambda;
     } else {
       history.extrapolate(x, h, w.vd, w.lambda);
@@ -213,7 +216,7 @@ struct ConservingStep {
         detail::throw_stalled(name, system, x.t + h, report, {problem.bad, w.rhs, w.y});
       problem.move();
       for (Index i = 0; i < w.v.size(); ++i) w.v[i] = x.v[i] + h * w.vd[i];
-      system.push_forces();  // the discrete gradients pass them by
+      system.push_forces();  // the discrete gradients do not evaluate them
       w.forward.require_end(system, {w.q, w.v, w.lambda, x.t + h, h});
     });
     if (w.solver.lost_rank() || effort == 2) w.kept_factor.usable = false;

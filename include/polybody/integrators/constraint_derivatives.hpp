@@ -5,12 +5,13 @@
 
 namespace polybody {
 
-/// ∂Φ̈/∂q and ∂Φ̈/∂v of Φ̈ = G v̇ + γ, by the unknowns of a time step, in the places of the blocks of G, by differences.
-/// Speeds that no row shares are moved together [Curtis, Powell & Reid 1974], so the cost does not grow with the number
-/// of joints. With joint coordinates it grows with the number of joints between a row's bodies and the root.
+/// Derivatives ∂Φ̈/∂q and ∂Φ̈/∂v of Φ̈ = G v̇ + γ with respect to the unknowns of a time step, by finite differences. They
+/// have the block pattern of G. Velocities without a common constraint equation are perturbed together [Curtis, Powell
+/// & Reid 1974], so the cost does not grow with the number of joints. With joint coordinates it grows with the number
+/// of joints between the root and the bodies of a constraint equation.
 class ConstraintDerivatives {
  public:
-  /// Reads the places of G. The system has been evaluated before.
+  /// Reads the block pattern of G. The system must have been evaluated before.
   template <class = void>  // compiled where it is used
   void analyse(System& system) {
     blocks_.clear();
@@ -37,7 +38,7 @@ class ConstraintDerivatives {
     gamma_ = there_ = here_;
   }
 
-  /// At q, v, v̇ = `vd` and t; `system` stands elsewhere afterwards.
+  /// Computes the derivatives at q, v, v̇ = `vd` and t; afterwards `system` is evaluated at another state.
   template <class = void>  // compiled where it is used
   void measure(System& system, VecX const& q, VecX const& v, VecX const& vd, double t) {
     if (colours_ == 0) return;
@@ -57,14 +58,15 @@ class ConstraintDerivatives {
     }
   }
 
-  /// cv ∂Φ̈/∂v + cq ∂Φ̈/∂q where the system was evaluated last, into `sink`. The first equation of a row and the first
-  /// column are `row0` and `col0`; if the equations hold a tree, row0 is the first equation of all.
+  /// Adds cv ∂Φ̈/∂v + cq ∂Φ̈/∂q of the last `measure` to `sink`, at the state of the last evaluation of the system. The
+  /// first constraint equation and the first column are `row0` and `col0`. If the equations include the bodies of a
+  /// tree, row0 is the first equation of all.
   template <class = void>  // compiled where it is used
   void write(double cv, double cq, Index row0, Index col0, BlockSink& sink) {
     if (in_tree_) tree_.hold();
     for (std::size_t k = 0; k < blocks_.size();) {
       auto const& [b, first] = blocks_[k];
-      // the places of a row of the tree follow one another
+      // the places of a row of the tree are contiguous
       Index const count = in_tree_ ? Index(tree_.speeds(b.row).size()) : b.rows * b.cols;
       sum_.resize(std::size_t(count));
       for (std::size_t i = 0; i < sum_.size(); ++i)
@@ -76,7 +78,7 @@ class ConstraintDerivatives {
       k += in_tree_ ? std::size_t(count) : 1;
     }
   }
-  /// The rows of `write` are counted from the first equation of all, not from the first row.
+  /// True if `write` counts rows from the first equation of all, not from the first constraint equation.
   bool counts_equations() const { return in_tree_; }
 
  private:
@@ -90,7 +92,7 @@ class ConstraintDerivatives {
     entries_ += block.rows * block.cols;
   }
 
-  /// Each speed gets the first colour that no row of it has yet.
+  /// Assigns to each velocity the first colour that no other velocity of its constraint equations has.
   template <class = void>
   void give_colours(Index rows) {
     Sequence<Sequence<Index>> speeds_of, rows_of;
@@ -132,10 +134,10 @@ class ConstraintDerivatives {
 
   Index velocities_ = 0, entries_ = 0;
   int colours_ = 0;
-  bool in_tree_ = false;  ///< the equations hold all bodies of a tree
+  bool in_tree_ = false;  ///< the equations include all bodies of a tree
   detail::TreeRows tree_;
   Sequence<Place> blocks_;
-  Sequence<int> colour_;  ///< of each speed
+  Sequence<int> colour_;  ///< colour of each velocity
   Sequence<double> by_q_, by_v_, sum_;
   VecX step_, q_, v_, here_, there_, gamma_;
 };

@@ -8,31 +8,32 @@
 
 namespace polybody {
 
-/// Generalised coordinate partitioning: what a step gives the independent speeds and coordinates stands, the dependent
-/// ones follow from the rows,
+/// Generalised coordinate partitioning: a step integrates the independent velocities and coordinates, and the dependent
+/// ones follow from the constraint equations,
 ///   G_d Δq_d = −Φ  (Newton),   G_d v_d = −G_i v_i − Φ_t      [Wehage & Haug 1982; thesis §3.3.1].
-/// Independent are the columns of G that full pivoting leaves over. They are chosen anew when a dependent one would
-/// move more than `largest_ratio` times as fast as an independent one, that is when G_d⁻¹ G_i, and with it the
-/// condition of G_d, has grown too large; and when the rank of G changes. Velocity rows make speeds dependent, not
-/// coordinates: with them the two are split apart. Ratios compare metres with radians.
-/// Up to `dense_up_to` speeds G is eliminated in each evaluation. Beyond, factors of a sparse G_d are kept and both
-/// equations are solved by corrections; where one leaves more than a fourth open, G_d is factored and the split looked
-/// at anew.
+/// Full pivoting selects the dependent columns of G; the remaining columns are independent. They are selected again if
+/// the rank of G changes, or if a dependent coordinate would move more than `largest_ratio` times as fast as an
+/// independent one. G_d⁻¹ G_i, and with it the condition number of G_d, is then too large. Nonholonomic equations make
+/// velocities dependent, but not coordinates; velocities then have a partition of their own. Ratios compare metres with
+/// radians.
+/// Up to `dense_up_to` velocities, each evaluation eliminates G. In larger systems, the factorisation of a sparse G_d
+/// is reused, and both equations are solved by corrections. If a correction leaves more than a quarter of the
+/// violation, G_d is factorised again and the partition is checked.
 struct CoordinatePartitioning {
   static constexpr bool accepts_constraints = true;
-  double tolerance = 1e-12;     ///< of Φ, beside what rounding of q leaves
-  int max_iterations = 10;      ///< of Newton's method for the positions, before it throws
-  double largest_ratio = 10.0;  ///< of the rate of a dependent coordinate to that of an independent one
-  int dense_up_to = 60;         ///< speeds
+  double tolerance = 1e-12;     ///< tolerance of Φ, in addition to the round-off of q
+  int max_iterations = 10;      ///< limit of Newton iterations for the positions
+  double largest_ratio = 10.0;  ///< largest rate of a dependent coordinate relative to that of an independent one
+  int dense_up_to = 60;         ///< number of velocities up to which G is dense
 
-  /// What is kept from step to step: the choice of coordinates and its factorisation.
+  /// Memory between steps: the partition of the coordinates and its factorisation.
   struct Scratch {
-    PartitionedConstraints rows{0, 0};      ///< of positions; where there are no velocity rows, of speeds too
-    PartitionedConstraints all_rows{0, 0};  ///< of speeds where there are
-    SparsePartitionOf<> sparse_rows, sparse_all_rows;  ///< the same splits where G is sparse
+    PartitionedConstraints rows{0, 0};  ///< partition of positions; without nonholonomic equations, also of velocities
+    PartitionedConstraints all_rows{0, 0};             ///< partition of velocities, if there are nonholonomic equations
+    SparsePartitionOf<> sparse_rows, sparse_all_rows;  ///< partitions for sparse G
     VecX phi, rate, column, delta, next;               ///< in order: Φ, Φ̇, a column of G, Δq or Δv, q ⊞ Δq
-    bool sparse = false, prepared = false;             ///< G is sparse; the choice between the two was made
-    /// Allocates what both ways need.
+    bool sparse = false, prepared = false;             ///< G is sparse; the choice between dense and sparse is made
+    /// Allocates the common memory of dense and sparse partitions.
     explicit Scratch(System const& s)
         : sparse_rows(s.rows(), s.velocities()),
           sparse_all_rows(s.rows(), s.velocities()),
@@ -44,8 +45,8 @@ struct CoordinatePartitioning {
           splits_velocities_(!s.nonholonomic_equations().empty()) {
       for (Index const i : s.nonholonomic_equations()) sparse_rows.mark_redundant(i);
     }
-    /// Chooses dense or sparse by the number of speeds, at most `most_dense` for dense, once, and allocates what that
-    /// needs.
+    /// At the first call, chooses dense partitions for at most `most_dense` velocities, otherwise sparse ones, and
+    /// allocates their memory.
     void prepare(int most_dense) {
       if (std::exchange(prepared, true)) return;
       sparse = delta.size() > most_dense;
@@ -53,17 +54,16 @@ struct CoordinatePartitioning {
       rows = PartitionedConstraints(phi.size(), delta.size());
       if (splits_velocities_) all_rows = rows;
     }
-    PartitionedConstraints& of_velocities() {
-      return splits_velocities_ ? all_rows : rows;
-    }  ///< the split of speeds, dense
-    /// The split of speeds, sparse.
+    /// Dense partition of the velocities.
+    PartitionedConstraints& of_velocities() { return splits_velocities_ ? all_rows : rows; }
+    /// Sparse partition of the velocities.
     SparsePartitionOf<>& sparse_of_velocities() { return splits_velocities_ ? sparse_all_rows : sparse_rows; }
-    /// Whether `speed` depends by all rows, of positions and speeds.
+    /// True if the velocity number `speed` is dependent under all constraint equations, including nonholonomic ones.
     bool is_dependent(Index speed) const {
       if (sparse) return (splits_velocities_ ? sparse_all_rows : sparse_rows).is_dependent(speed);
       return (splits_velocities_ ? all_rows : rows).is_dependent(speed);
     }
-    /// How often a split was chosen or changed.
+    /// Number of times that a partition was selected or changed.
     long choices() const {
       return sparse ? sparse_rows.choices + sparse_all_rows.choices : rows.choices + all_rows.choices;
     }
@@ -72,8 +72,8 @@ struct CoordinatePartitioning {
     bool splits_velocities_;
   };
 
-  /// \throws InvalidInput unless the tolerance is positive, max_iterations in [1, 10⁶] and the largest ratio at
-  /// least 1.
+  /// \throws InvalidInput unless the tolerance is positive, max_iterations in [1, 10⁶], dense_up_to not negative, and
+  /// the largest ratio at least 1.
   void check() const {
     require_positive(tolerance, "CoordinatePartitioning: the tolerance");
     require_count(max_iterations, "CoordinatePartitioning: max_iterations");
@@ -95,7 +95,7 @@ struct CoordinatePartitioning {
   }
   ConstraintFeedback feedback() const { return {}; }
 
-  /// A split for (q, v, t) whatever was chosen before.
+  /// Selects a partition at (q, v, t), independent of earlier ones.
   template <class = void>
   void choose(System& system, Scratch& s, VecX const& q, VecX const& v, double t) const {
     s.prepare(dense_up_to);
@@ -114,7 +114,7 @@ struct CoordinatePartitioning {
     }
   }
 
-  /// \throws NewtonConvergenceFailure when the positions cannot be brought back.
+  /// Corrects positions and velocities. \throws NewtonConvergenceFailure if a correction does not converge.
   template <class Solver>
   void apply(System& system, ForwardDynamics<Solver>& forward, Scratch& s, VecX& q, VecX& v, double t) const {
     if (system.rows() == 0) return;
@@ -156,7 +156,7 @@ struct CoordinatePartitioning {
   }
 
  private:
-  /// Right-hand sides −Φ and −Φ̇ at (q, v, t), and one of the two reduced.
+  /// Evaluates the right-hand sides −Φ and −Φ̇ at (q, v, t), and reduces one of the two partitions, `rows`.
   template <class = void>
   void reduce(System& system, Scratch& s, PartitionedConstraints& rows, VecX const& q, VecX const& v, double t) const {
     system.evaluate(q, v, t);
@@ -167,7 +167,7 @@ struct CoordinatePartitioning {
     write(system, s, rows);
     rows.choose();
   }
-  /// The positions by Newton's method with kept factors. The system is evaluated at what comes out.
+  /// Corrects the positions by Newton's method with a reused factorisation. The system is then evaluated at the result.
   template <class = void>
   void correct_positions(System& system, Scratch& s, VecX& q, VecX const& v, double t, double enough) const {
     Corrections corrections{s.sparse_rows, system, s, largest_ratio};
@@ -187,7 +187,8 @@ struct CoordinatePartitioning {
       q.swap(s.next);
     }
   }
-  /// The speeds likewise, where the system was evaluated last: to what rounding leaves of G v.
+  /// Corrects the velocities with a reused factorisation, up to the round-off of G v. The system must be evaluated at
+  /// (q, v, t).
   template <class = void>
   void correct_velocities(System& system, Scratch& s, VecX const& q, VecX& v, double t) const {
     Corrections corrections{s.sparse_of_velocities(), system, s, largest_ratio};
@@ -207,14 +208,14 @@ struct CoordinatePartitioning {
       system.evaluate(q, v, t);
     }
   }
-  /// Solves with kept factors, and renews them where a correction left more than a fourth open: first with the split
-  /// that there is, then with a new one.
+  /// Solves with a reused factorisation. It is renewed if a correction leaves more than a quarter of the violation:
+  /// first with the present partition, then with a new one.
   struct Corrections {
     SparsePartitionOf<>& partition;
     System& system;
     Scratch& s;
-    double limit;                                             ///< of |R|, a ratio
-    double before = std::numeric_limits<double>::infinity();  ///< what the last one found open, in the unit of the rows
+    double limit;                                             ///< limit of |R|, a ratio
+    double before = std::numeric_limits<double>::infinity();  ///< last violation, in its unit
     int renewals = 0;
 
     template <class = void>
@@ -237,7 +238,7 @@ struct CoordinatePartitioning {
     rows.begin();
     if (!system.step_coordinates()) {
       system.masses(rows);
-    } else {  // the matrix is in other unknowns
+    } else {  // the matrix has other unknowns
       s.delta.setZero();
       for (Index j = 0; j < system.velocities(); ++j) {
         s.delta[j] = 1.0;
@@ -259,7 +260,7 @@ struct CoordinatePartitioning {
   }
 };
 
-/// The independent speeds that a run from x takes first, by the names of their bodies and their numbers there.
+/// Names of the first independent velocities of a run from x: body and number within the body.
 template <class = void>
 std::vector<std::string> independent_velocities(System& system, State const& x,
                                                 CoordinatePartitioning const& policy = {}) {

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// How large a correction of Newton's method is, beside what is tolerated, where parts of it have other units than the
+/// Size of a correction of Newton's method relative to its tolerance, if some unknowns have other units than
 /// accelerations.
 
 #include <algorithm>
@@ -11,33 +11,35 @@
 
 namespace polybody::detail {
 
-/// By how much rounding moves the coordinates in the mean: coordinate i by ε |q_i|, what stands for a direction or an
-/// arm by ε. A mean, as corrections are measured by theirs: one angle of many turns does not speak for all.
+/// Mean round-off of the coordinates: ε times the root mean square of q, plus ε for directions and moment arms.
+/// Corrections are measured by a mean as well. Therefore a single angle of many revolutions does not determine the
+/// result.
 inline double rounding_of(VecX const& q) {
   return std::numeric_limits<double>::epsilon() * (1.0 + std::sqrt(squares(q) / double(std::max<Index>(q.size(), 1))));
 }
-/// What that leaves of a correction that moves q by s times as much.
+/// Round-off of a correction that changes q by s times its own size.
 inline double rounding_of(VecX const& q, double s) { return rounding_of(q) / s; }
 
-/// out = x, moved by some last places of what it is made of, `q`. The signs follow no pattern that a model could share.
-/// x and out may be the same.
+/// Sets out to x, perturbed by a few units of the round-off of `q`. The signs are irregular, so that they match no
+/// pattern of a model. x and out may be the same vector.
 inline void perturb(VecX const& x, VecX const& q, VecX& out) {
   double const size = 4.0 * rounding_of(q);
   for (Index i = 0; i < x.size(); ++i) out[i] = x[i] + scattered_sign(i) * size;
 }
-/// Whether a correction that moves the coordinates in the mean by `moved` may be rounding. Next to a singular position
-/// rounding ε comes out of the rows' inverse as √ε and some powers of ten; an iterate that flew away is moved by
-/// metres, and whatever it tolerates has grown with it.
+/// True if a correction that changes the coordinates by `moved` in the mean may be round-off. Near a singular position,
+/// the inverse of the constraint Jacobian amplifies the round-off ε to √ε times some powers of ten. A diverged iterate
+/// changes by metres, and its tolerance is correspondingly large.
 inline bool may_be_rounding(double moved, VecX const& q) { return moved <= 1e10 * rounding_of(q); }
-/// The same of a step from q whose rows of positions, phi, may be open by no more than rounding.
+/// Overload for a step from q: the violation phi of the position constraints must also be within round-off.
 inline bool may_be_rounding(VecX const& phi, double moved, VecX const& q) {
   return largest_size(phi) <= 1e3 * rounding_of(q) && may_be_rounding(moved, q);
 }
 
-/// Whether rounding is what the correction y, of the size `norm`, consists of: it is another one as coordinates and
-/// rows move by some last places. Next to a singular position the rows' rounding comes out of their inverse many times
-/// larger, and so does that of stretches out of light nodes. \param moved solves for it there, into y, and says whether
-/// it is finite  \param measure the norm of what is in y  \param kept holds y meanwhile, which is the same afterwards
+/// True if the correction y with the norm `norm` consists of round-off: it changes if coordinates and constraint
+/// functions change by a few units of round-off. Near a singular position, the inverse of the constraint Jacobian
+/// amplifies round-off many times. Light nodes amplify the round-off of strains in the same way. \param moved computes
+/// the perturbed correction in y and returns true if it is finite \param measure returns the norm of y \param kept
+/// workspace for y, which is the same afterwards
 template <class Moved, class Measure>
 bool is_round_off(VecX& y, double norm, VecX& kept, Moved&& moved, Measure&& measure) {
   kept = y;
@@ -48,14 +50,14 @@ bool is_round_off(VecX& y, double norm, VecX& kept, Moved&& moved, Measure&& mea
   return differs;
 }
 
-/// First-order states, the last `count` of the speeds `v` with their rates. Each has a unit of its own.
+/// First-order states: the last `count` of the velocities `v`, with their rates. Each state has its own unit.
 struct StatesInStep {
   Index count;
   VecX const &v, &rate;
-  double s;  ///< a correction of the rates moves the states by s times as much
+  double s;  ///< change of the states per correction of their rates [s]
 
-  /// Joins corrections y of the rates to those of the accelerations: each is measured beside tolerance (1 + |z| + |ż|)
-  /// of its own state, and beside what rounding of z leaves.
+  /// Combines corrections y of the rates with those of the accelerations. The tolerance of each state is `tolerance`
+  /// times (1 + |z| + |ż|), plus the round-off of z.
   CorrectionSize join(CorrectionSize size, double tolerance, double const* y) const {
     double worst = 0.0;
     for (Index i = v.size() - count; i < v.size(); ++i) {

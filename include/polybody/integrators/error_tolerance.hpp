@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The norm in which integrators of variable step measure the error of a step.
+/// Error norm of integrators with variable step.
 
 #include <array>
 
@@ -11,15 +11,16 @@ namespace polybody::detail {
 struct ErrorTolerance {
   double absolute, relative;
 
-  /// Tolerated error of unknowns of this scale. \param largest their largest entry, whose round-off is tolerated too
+  /// Tolerated error of unknowns of this `scale`. \param largest magnitude of their largest entry, whose round-off is
+  /// added
   double of(double scale, double largest) const {
     return absolute + relative * scale + 4.0 * std::numeric_limits<double>::epsilon() * largest;
   }
-  /// Tolerated error of one entry, relative to its own size: for first-order states, which differ in their units.
+  /// Tolerated error of one entry, relative to its own size: for first-order states, which have different units.
   double of_one(double before, double after) const {
     return absolute + relative * std::max(std::abs(before), std::abs(after));
   }
-  /// Mean square of the errors from `first` on, each over its own tolerance.
+  /// Mean square of the errors from `first` on, each relative to its own tolerance.
   double mean_square_each(VecX const& error, VecX const& before, VecX const& after, Index first) const {
     double sum = 0.0;
     for (Index i = first; i < error.size(); ++i) {
@@ -32,23 +33,25 @@ struct ErrorTolerance {
 
 /// Scaled error of a step [Hairer, Nørsett & Wanner 1993, §II.4], with a scale for each kind of unknown of each body:
 ///   ‖e‖² = max_g ½ (mean over q in g of (e_q / tol(s_q))² + mean over v in g of (e_v / tol(s_v))²),
-///   tol(s) = Atol + Rtol s + 4ε max_g |x|,
-/// a group g holds the unknowns of one kind of one body. The scales are the largest before and after the step of
+///   tol(s) = Atol + Rtol s + 4ε max_g |x|.
+/// A group g contains the unknowns of one kind of one body. The scales are the maxima before and after the step of
 ///   lengths:    s_q the extent of the positions of the assembly, s_v that of their velocities, or the change of a
 ///               velocity over the step;
 ///   rotations:  s_q = 1 (a quaternion, or one radian), s_v the largest rate of the group, or the extent of the
 ///               velocities of the assembly over its extent;
 ///   others:     the largest entries of the group: gradients, deformations, slides, coordinates of unknown unit.
-/// An assembly holds the bodies that joints and forces connect; markers on the ground are points of it, at rest. So
-/// bodies do not change the scales of bodies that they do not act on, and a common velocity, a common translation and
-/// accumulated turns change none. An assembly of a single point is measured from the world's origin.
+/// An assembly consists of bodies that joints and forces connect; markers on the ground are its points, at rest. Bodies
+/// without mutual forces therefore do not affect each other's scales. A common velocity, a common translation and full
+/// revolutions do not change the scales. If an assembly has a single point, the world's origin is its second point.
 class ErrorNorm {
  public:
-  /// Groups the unknowns of a time step. \param by_speeds errors of coordinates are numbered as speeds (δ of q ⊞ δ)
+  /// Groups the unknowns of a time step. \param by_velocities errors of coordinates are numbered as velocities (δ of q
+  /// ⊞ δ)
   template <class = void>
   [[gnu::cold]] ErrorNorm(System const& system, bool by_velocities);
 
-  /// Sets the scales from the state before and (q, v) after the step, at which the system was evaluated last.
+  /// Computes the scales from the state before and (q, v) after the step. The system must have been evaluated last at
+  /// (q, v).
   void set_scales(System const& system, ErrorTolerance const& tolerance, State const& before, VecX const& q,
                   VecX const& v) {
     extents_.measure(system, before, q, v);
@@ -66,7 +69,7 @@ class ErrorNorm {
     }
   }
 
-  /// ‖e‖² of errors of coordinates and speeds, both numbered as speeds; not finite if an error is not.
+  /// ‖e‖² of errors of coordinates and velocities, both numbered as velocities; not finite if an error is not finite.
   double mean_square(VecX const& q_error, VecX const& v_error) {
     for (Group& g : groups_) g.sum[0] = 0.0;
     for (std::size_t i = 0; i < of_v_.size(); ++i) {
@@ -77,22 +80,22 @@ class ErrorNorm {
     return 0.5 * largest_sums()[0];
   }
 
-  /// A group of unknowns.
+  /// Group of unknowns.
   struct Group {
     UnknownKind kind = UnknownKind::other;
     std::uint32_t assembly = 0;
-    Index errors = 0, velocities = 0;         ///< entries of coordinates and of speeds
-    double largest_q = 0.0, largest_v = 0.0;  ///< before and after the step
-    double in_q = 0.0, in_v = 0.0;            ///< factor of an entry's square in the mean square
+    Index errors = 0, velocities = 0;         ///< numbers of coordinates and of velocities
+    double largest_q = 0.0, largest_v = 0.0;  ///< largest magnitudes before and after the step
+    double in_q = 0.0, in_v = 0.0;            ///< factors of squared entries in the mean square
     std::array<double, 4> sum{};              ///< mean squares of several errors
   };
   Group& of_coordinate(Index i) { return groups_[of_q_[std::size_t(i)]]; }  ///< group of coordinate i
-  Group& of_speed(Index i) { return groups_[of_v_[std::size_t(i)]]; }       ///< group of speed i
+  Group& of_speed(Index i) { return groups_[of_v_[std::size_t(i)]]; }       ///< group of velocity i
   /// Sets all sums to zero.
   void clear() {
     for (Group& g : groups_) g.sum.fill(0.0);
   }
-  /// The largest of the sums over all groups; not finite if one is not.
+  /// Largest sums over all groups; not finite if a sum is not finite.
   std::array<double, 4> largest_sums() const {
     std::array<double, 4> largest{};
     for (Group const& g : groups_)
@@ -105,7 +108,7 @@ class ErrorNorm {
   static double share(double tolerated, Index n) { return n > 0 ? 1.0 / (tolerated * tolerated * double(n)) : 0.0; }
   static void raise(double& largest, double x) { largest = std::max(largest, std::abs(x)); }
 
-  Sequence<std::uint32_t> of_q_, of_v_;  // group of each coordinate and speed
+  Sequence<std::uint32_t> of_q_, of_v_;  // group of each coordinate and velocity
   Sequence<Group> groups_;
   AssemblyExtents extents_;
 };

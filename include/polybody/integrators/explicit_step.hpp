@@ -3,7 +3,7 @@
 
 namespace polybody::detail {
 
-/// The next state of an explicit one-step method, and what it takes to get there.
+/// Next state of an explicit one-step method, with the memory for its computation.
 template <class Solver>
 struct ExplicitStep {
   VecX q, v, a, dq, lambda;
@@ -17,7 +17,8 @@ struct ExplicitStep {
         lambda(VecX::Zero(s.rows())),
         forward(s) {}
 
-  /// Makes it the state at t + h. \param cost of the step, counted if it fails  \throws NonFiniteValue, Diverged.
+  /// Stores it in x as the state at t + h. \param cost cost of the step, counted if it fails \throws NonFiniteValue,
+  /// Diverged.
   void accept(System& system, State& x, double h, StepReport const& cost = {}) {
     count_if_failed(forward.failed, cost, [&] { forward.require_end(system, {q, v, lambda, x.t + h, h}); });
     x.q.swap(q);

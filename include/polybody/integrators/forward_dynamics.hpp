@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Accelerations and multipliers of a state, and projections onto the rows: all through the matrix
-/// [M, Gᵀ; G, 0] [thesis Eq. 3.2].
+/// Accelerations and multipliers of a state, and projections onto the constraint equations, by the matrix [M, Gᵀ; G, 0]
+/// [thesis Eq. 3.2].
 
 #include <algorithm>
 #include <span>
@@ -14,22 +14,23 @@
 
 namespace polybody {
 
-/// What accelerations feed back of a violation of the rows: Φ̈ + rate Φ̇ + position Φ = 0.
+/// Feedback of a constraint violation in the accelerations: Φ̈ + rate Φ̇ + position Φ = 0.
 struct ConstraintFeedback {
   double rate = 0.0;      ///< [1/s]
   double position = 0.0;  ///< [1/s²]
 };
 
-/// How nearly the rows of a place repeat each other.
+/// Measure of the distance from a singular configuration.
 struct ConstraintGain {
-  double moved = 0.0;       ///< largest change of a speed by which rows open by ±1 are closed, relative to that 1
-  std::size_t dropped = 0;  ///< rows that do
-  /// Whether it is a singular position beside a usual one: rows repeat others there, or moves are ten times as large.
+  double moved = 0.0;       ///< largest change of a velocity due to violations of ±1, relative to 1
+  std::size_t dropped = 0;  ///< number of redundant constraint equations
+  /// True if the configuration is singular compared with a `usual` one: it has more redundant equations, or changes are
+  /// ten times as large.
   bool far_above(ConstraintGain const& usual) const { return dropped > usual.dropped || moved > 10.0 * usual.moved; }
 };
 
 namespace detail {
-/// Names the force element that pushes with a force that is NaN, infinite or too large, where one does.
+/// Part of a message that names the force element with a NaN, infinite or too large force; empty if there is none.
 template <class = void>
 std::string whose_force(System const& s) {
   for (AppliedWrench<double> const& action : s.data().actions)
@@ -38,13 +39,14 @@ std::string whose_force(System const& s) {
         return sentence_of({", that of \"", s.layout().forces[std::size_t(action.source)].name, "\""});
   return "";
 }
-/// The same as a sentence of its own, for motions that it may have caused.
+/// Sentence that names such a force element as a possible cause of a motion; empty if there is none.
 template <class = void>
 std::string and_whose_force(System const& s) {
   std::string const whose = whose_force(s);
   return whose.empty() ? "" : " A force is not finite or too large" + whose + '.';
 }
-/// \throws NonFiniteValue naming body, force element and time when an entry of x (by speeds) is NaN or infinite.
+/// \throws NonFiniteValue naming body, force element and time if an entry of x (by velocities) is NaN, infinite or too
+/// large.
 template <class = void>
 void require_finite_force(System const& s, VecX const& x) {
   if (Index const i = first_not_finite(x); i >= 0)
@@ -53,7 +55,8 @@ void require_finite_force(System const& s, VecX const& x) {
         {"A force on ", ErrorObject{s.name_of(i)}, non_finite_suffix(x[i]), " at t = ", ErrorTime{s.at().t}, " s",
          whose_force(s), ". Check the forces applied to it, whose markers may coincide, and the state before."});
 }
-/// \throws NonFiniteValue naming joint and time when an entry of x (by rows) is NaN or infinite.
+/// \throws NonFiniteValue naming joint and time if an entry of x (by constraint equations) is NaN, infinite or too
+/// large.
 template <class = void>
 void require_finite_rows(System const& s, VecX const& x) {
   if (Index const i = first_not_finite(x); i >= 0)
@@ -62,7 +65,8 @@ void require_finite_rows(System const& s, VecX const& x) {
         {"The motion at ", ErrorObject{s.name_of(s.velocities() + i)}, non_finite_suffix(x[i]),
          " at t = ", ErrorTime{s.at().t}, " s. Check the state before, or take a smaller step.", and_whose_force(s)});
 }
-/// What a step ends at. \throws NonFiniteValue naming body and time when a coordinate or a speed is NaN or infinite.
+/// Checks the end of a step. \throws NonFiniteValue naming body and time if a coordinate or velocity is NaN, infinite
+/// or too large.
 template <class = void>
 void require_finite_end(System const& s, VecX const& q, VecX const& v, double t) {
   Index const in_v = first_not_finite(v), in_q = in_v < 0 ? first_not_finite(q) : -1;
@@ -72,7 +76,8 @@ void require_finite_end(System const& s, VecX const& q, VecX const& v, double t)
                         non_finite_suffix(in_v < 0 ? q[in_q] : v[in_v]), " at t = ", ErrorTime{t},
                         " s. Check its velocity and the forces on it before.", and_whose_force(s)});
 }
-/// \throws NonFiniteValue when the place of the last evaluation is none: before a matrix is called singular there.
+/// Checks the state of the last evaluation, before its matrix is reported as singular. \throws NonFiniteValue if a
+/// coordinate or velocity is NaN, infinite or too large.
 template <class = void>
 void require_finite_place(System const& s) {
   auto const& [q, v, t] = s.at();
@@ -84,9 +89,9 @@ void require_finite_place(System const& s) {
        non_finite_suffix(in_v < 0 ? q[in_q] : v[in_v]), " at t = ", ErrorTime{t},
        " s. Check the forces on it, or take a smaller step.", and_whose_force(s)});
 }
-/// The equations at the last evaluation, whose right-hand side is `rhs`, have no finite solution. Where numbers in them
-/// are too large, that is the reason; else the matrix is singular, first noticed at `who`.
-/// \throws NonFiniteValue, SingularMatrix.
+/// Reports that the equations at the last evaluation, with right-hand side `rhs`, have no finite solution. The reason
+/// is an entry that is NaN, infinite or too large; otherwise the matrix is singular, with the first missing pivot at
+/// `who`.
 template <class = void>
 [[noreturn, gnu::cold]] void throw_unsolvable(System const& s, VecX const& rhs, std::string const& who) {
   double const t = s.at().t;
@@ -100,7 +105,7 @@ template <class = void>
                                            ". Check for a redundant joint, or for a free body without inertia."});
 }
 
-/// By the unknowns of the linear equations: those that are speeds of bodies whose mass matrix is constant.
+/// Flags of the unknowns of the linear equations: true for velocities of bodies with a constant mass matrix.
 template <class = void>
 Sequence<bool> constant_unknowns(System const& s) {
   Sequence<bool> out(std::size_t(equations_of(s)), false);
@@ -126,7 +131,7 @@ struct AttemptCost {
 template <LinearSolver Solver = DefaultSolver>
 class ForwardDynamics {
  public:
-  /// Allocates all there is to be for the system, which must outlive it.
+  /// Allocates all memory for the system, which must outlive this object.
   [[gnu::cold]] explicit ForwardDynamics(System& system)
       : zero_a_(VecX::Zero(system.velocities())),
         zero_lambda_(VecX::Zero(system.rows())),
@@ -144,20 +149,20 @@ class ForwardDynamics {
     solver_.analyse(system, 1, [&](BlockSink& sink) { system.masses(sink); });
   }
 
-  PlausibilityCheck bounds;  ///< of the run; without limits until it begins
+  PlausibilityCheck bounds;  ///< limits of the run; inactive until the run begins
   AttemptCost failed;        ///< sum over failed attempts since the run reset it
 
-  /// A step that is tried. Unless it is kept, the account of the bounds and the solver's order of elimination are as
-  /// before it, so that a step taken again has the same bits.
+  /// Trial of a step. Without `keep`, its destructor restores the account of the bounds and the elimination order of
+  /// the solver, so that a repeated step is bitwise identical.
   class Trial {
    public:
-    /// Remembers the account and the order of elimination as they are.
+    /// Stores the account and the elimination order.
     explicit Trial(ForwardDynamics& of) : of_(of), bounds_(of.bounds), reorderings_(of.solver_.reorderings()) {}
     Trial(Trial const&) = delete;
     ~Trial() {
       if (!kept_) of_.solver_.limit_reorderings(reorderings_);
     }
-    /// What is tried counts: nothing is put back.
+    /// Accepts the trial: the destructor restores nothing.
     void keep() {
       bounds_.keep();
       kept_ = true;
@@ -169,18 +174,18 @@ class ForwardDynamics {
     std::size_t reorderings_;
     bool kept_ = false;
   };
-  Trial attempt() { return Trial(*this); }  ///< begins to try a step
+  Trial attempt() { return Trial(*this); }  ///< begins the trial of a step
 
-  /// What every step asks before it accepts its end. \throws NonFiniteValue, Diverged.
+  /// Checks the end of a step before the step is accepted. \throws NonFiniteValue, Diverged.
   void require_end(System& system, StepResult const& end) {
     double const of_velocities = squares(end.v);
     if (!(of_velocities + squares(end.q) <= largest_number * largest_number))
-      detail::require_finite_end(system, end.q, end.v, end.t);  // number by number
+      detail::require_finite_end(system, end.q, end.v, end.t);  // checks each number
     bounds.require(system, end, of_velocities);
   }
 
-  /// M a + Gᵀλ = f, G a = −γ − what is fed back, at the coordinates, speeds and time `at`. \throws
-  /// SingularMatrix, NonFiniteValue.
+  /// Solves M a + Gᵀλ = f, G a = −γ − `feedback` at the coordinates, velocities and time `at`. \throws SingularMatrix,
+  /// NonFiniteValue.
   void accelerations(System& system, At<double> const& at, VecX& a, VecX& lambda,
                      ConstraintFeedback const& feedback = {}) {
     if (by_tree_ && accelerations_of_tree(system, at, a)) return lambda.resize(0);
@@ -203,7 +208,7 @@ class ForwardDynamics {
     take(system.velocities(), system.rows(), lambda);
   }
 
-  /// The smallest change of v (in the norm of M) that satisfies G v + Φ_t = 0. Returns max |change|.
+  /// Applies to v the smallest change (in the norm of M) that satisfies G v + Φ_t = 0. Returns max |change|.
   double project_velocities(System& system, VecX const& q, VecX& v, double t) {
     if (system.rows() == 0) return 0.0;
     system.evaluate(q, v, t);
@@ -215,7 +220,8 @@ class ForwardDynamics {
     return largest_size(delta_);
   }
 
-  /// One Gauss–Newton step of the smallest change of q (in the norm of M) towards Φ = 0; returns |Φ| before.
+  /// Performs one Gauss–Newton step towards Φ = 0 with the smallest change of q (in the norm of M). Returns max |Φ|
+  /// before the step.
   double project_positions_once(System& system, VecX& q, VecX const& v, double t) {
     system.evaluate(q, v, t);
     system.violation(phi_);
@@ -230,13 +236,13 @@ class ForwardDynamics {
     return before;
   }
 
-  /// Factors the matrix at (q, v, t) for `least_change`.
+  /// Evaluates the system at (q, v, t) and factorises the matrix for `least_change`.
   void hold(System& system, VecX const& q, VecX const& v, double t) {
     system.evaluate(q, v, t);
     factor(system);
   }
 
-  /// out = −M⁻¹Gᵀ(G M⁻¹Gᵀ)⁻¹ φ: the smallest change (in the norm of M) with G out = −φ, with M and G as of the last
+  /// out = −M⁻¹Gᵀ(G M⁻¹Gᵀ)⁻¹ φ: smallest change (in the norm of M) with G out = −φ, for M and G of the last
   /// factorisation.
   void least_change(System& system, VecX const& phi, VecX& out) {
     phi_ = phi;
@@ -244,8 +250,8 @@ class ForwardDynamics {
     take(0, system.velocities(), out);
   }
 
-  /// What rows that are open by ±1 move at (q, v, t): as 1/σ next to a singular position, σ the least singular value of
-  /// the rows.
+  /// Change of the velocities due to constraint violations of ±1 at (q, v, t). Near a singular position it grows as
+  /// 1/σ, with the least singular value σ of the constraint Jacobian.
   ConstraintGain constraint_gain(System& system, VecX const& q, VecX const& v, double t) {
     hold(system, q, v, t);
     for (Index i = 0; i < open_.size(); ++i) open_[i] = scattered_sign(i);
@@ -253,15 +259,15 @@ class ForwardDynamics {
     return {largest_size(delta_), redundant_rows().size()};
   }
 
-  /// Whether the rows are much nearer to losing rank at `there` than at a place of `usual` gain.
+  /// True if the constraint Jacobian is much closer to a loss of rank at `there` than at a place with the gain `usual`.
   bool is_singular(System& system, At<double> const& there, ConstraintGain const& usual) {
     try {
       return constraint_gain(system, there.q, there.v, there.t).far_above(usual);
-    } catch (SingularMatrix const&) {  // of a solver that drops no rows
+    } catch (SingularMatrix const&) {  // from a solver that drops no redundant equations
       return true;
     }
   }
-  /// Whether the rows are much nearer to losing rank at `there` than at `here`.
+  /// True if the constraint Jacobian is much closer to a loss of rank at `there` than at `here`.
   bool loses_rank(System& system, At<double> const& here, At<double> const& there) {
     try {
       return is_singular(system, there, constraint_gain(system, here.q, here.v, here.t));
@@ -270,8 +276,8 @@ class ForwardDynamics {
     }
   }
 
-  /// P b: the part of b that the rows of positions force, P = M⁻¹Gᵀ(G M⁻¹Gᵀ)⁻¹ G, at (q, v, t); velocity rows have it
-  /// zero.
+  /// out = P b with P = M⁻¹Gᵀ(G M⁻¹Gᵀ)⁻¹ G at (q, v, t): the part of b that the position constraints determine. The
+  /// rows of G out for nonholonomic equations are zero.
   void constrained_part(System& system, VecX const& q, VecX const& v, double t, VecX const& b, VecX& out) {
     system.evaluate(q, v, t);
     factor(system);
@@ -281,8 +287,8 @@ class ForwardDynamics {
     take(0, system.velocities(), out);
   }
 
-  /// M a + Gᵀμ = w, G a = 0 with M and G as of the last factorisation: what a force w (nv) moves and what the rows hold
-  /// of it; μ of rows that repeat others is zero.
+  /// Solves M a + Gᵀμ = w, G a = 0 with M and G of the last factorisation: acceleration and reactions due to a force w
+  /// (nv). Multipliers μ of redundant equations are zero.
   void response(System& system, VecX const& w, VecX& a, VecX& mu) {
     r_ = w;
     phi_.setZero();
@@ -291,24 +297,24 @@ class ForwardDynamics {
     take(system.velocities(), system.rows(), mu);
   }
 
-  /// Equations that repeat others (see `name_of_equation`), as of the last factorisation: their multipliers are
-  /// not unique and are taken as zero. Empty for solvers that do not tell.
+  /// Redundant equations of the last factorisation (see `name_of_equation`). Their multipliers are not unique and are
+  /// set to zero. Empty for solvers that do not report them.
   std::span<Index const> redundant_rows() const { return solver_.dropped(); }
-  /// Every later factorisation drops these equations, which are redundant (`leave_out_redundant` chooses them).
+  /// Every later factorisation drops these redundant `equations` (`leave_out_redundant` selects them).
   [[gnu::cold]] void mark_redundant(Sequence<Index> equations) {
     left_out_ = std::move(equations);
     solver_.mark_redundant(left_out());
   }
-  bool leaves_out() const { return !left_out_.empty(); }                                    ///< any equation
-  std::span<Index const> left_out() const { return {left_out_.data(), left_out_.size()}; }  ///< the last ones
-  /// Whether the choice of `mark_redundant` must be checked: the last factorisation dropped other equations or found a
-  /// small pivot, or `note_doubt` was called.
+  bool leaves_out() const { return !left_out_.empty(); }  ///< true if equations are marked as redundant
+  std::span<Index const> left_out() const { return {left_out_.data(), left_out_.size()}; }  ///< these equations
+  /// True if the selection of `mark_redundant` must be checked: the last factorisation dropped other equations or found
+  /// a small pivot, or `note_doubt` was called.
   bool is_doubtful() const { return doubtful_ || solver_.is_doubtful(); }
-  void note_doubt() { doubtful_ = true; }    ///< `is_doubtful` until `clear_doubt`
-  void clear_doubt() { doubtful_ = false; }  ///< a choice is made
+  void note_doubt() { doubtful_ = true; }    ///< sets `is_doubtful` until `clear_doubt`
+  void clear_doubt() { doubtful_ = false; }  ///< resets it after a new selection
   /// Null vector `n` of the `dropped` equation of the last factorisation, by equations. See `BlockFactor::null_vector`.
   bool null_vector(Index dropped, VecX& n) { return solver_.null_vector(dropped, n); }
-  /// Names of the joints and bodies that they belong to.
+  /// Names of the joints and bodies with redundant equations.
   std::vector<std::string> redundant(System const& system) const {
     std::vector<std::string> names;
     for (Index const i : solver_.dropped()) {
@@ -319,8 +325,8 @@ class ForwardDynamics {
   }
 
  private:
-  /// The same by a tree that is its own solver. False where this has no finite result: the equations of the whole model
-  /// then say why.
+  /// Computes the accelerations by the articulated-body algorithm. Returns false if they are not finite; the equations
+  /// of the full model then identify the reason.
   bool accelerations_of_tree(System& system, At<double> const& at, VecX& a) {
     Coordinates const& c = system.step_coordinates();
     VecX const* unbalance = nullptr;
@@ -349,7 +355,7 @@ class ForwardDynamics {
     if (Index const i = first_not_finite(x_); i >= 0) detail::throw_unsolvable(system, rhs_, system.name_of(i));
   }
 
-  /// out = x_ from entry `first` on.
+  /// Copies n entries of x_ from entry `first` on to out.
   void take(Index first, Index n, VecX& out) const {
     out.resize(n);
     std::copy_n(x_.data() + first, n, out.data());

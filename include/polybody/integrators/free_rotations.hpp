@@ -17,12 +17,12 @@
 
 namespace polybody::detail {
 
-/// Rigid bodies whose generalised velocities are (ṙ, Ω), with their J. Functions change the entries of Ω alone; models
-/// without such bodies keep their vectors.
+/// Rigid bodies with the generalised velocities (ṙ, Ω), and their J. The functions change the entries of Ω only.
+/// Without such bodies they change nothing.
 class FreeRotations {
  public:
-  /// Reads J from the mass matrix. Bodies are left out if J is singular, and in systems whose steps have other
-  /// coordinates.
+  /// Reads J from the mass matrix. Bodies with a singular J are omitted. If the steps of the system have other
+  /// coordinates, all bodies are omitted.
   template <class = void>
   [[gnu::cold]] explicit FreeRotations(System& system) {
     if (system.step_coordinates()) return;
@@ -47,7 +47,7 @@ class FreeRotations {
     }
   }
 
-  bool empty() const { return bodies_.empty(); }  ///< no body of the model rotates by it
+  bool empty() const { return bodies_.empty(); }  ///< true if no body of the model rotates by this method
 
   /// a += J⁻¹(Ω × J Ω): J⁻¹ m from Ω˙.
   void add_gyroscopic(VecX const& v, VecX& a) const {
@@ -57,8 +57,8 @@ class FreeRotations {
   void subtract_gyroscopic(VecX const& v, VecX& a) const {
     for (Body const& b : bodies_) put(b, at(b, a) - gyroscopic(b, at(b, v)), a);
   }
-  /// θ from h Ω in `moved`, speeds times h. \throws NewtonConvergenceFailure for a body that rotates too far in the
-  /// step to t [s].
+  /// Computes θ from h Ω in `moved`, velocities times h. \throws NewtonConvergenceFailure for a body that rotates too
+  /// far in the step to t [s].
   void find_rotations(System const& system, double t, VecX& moved) const {
     for (Body const& b : bodies_) {
       Vec3 const turn = at(b, moved);
@@ -67,22 +67,22 @@ class FreeRotations {
       put(b, theta, moved);
     }
   }
-  /// Ω after the rotation by θ of `moved` from Ω before it.
+  /// Computes Ω in `v` after the rotation by θ in `moved`, from Ω before it.
   void carry(VecX const& moved, VecX& v) const {
     for (Body const& b : bodies_)
       put(b, product<double, 1>(b.inverse, carried(at(b, moved), product<double, 1>(b.inertia, at(b, v)))), v);
   }
 
  private:
-  static constexpr double farthest = 3.0;  ///< rotation of a step [rad]; from π on θ is not unique
+  static constexpr double farthest = 3.0;  ///< largest rotation in a step [rad]; from π on θ is not unique
   struct Body {
     Index v = 0;  ///< first entry of Ω
     Mat3 inertia = Mat3::Zero(), inverse = Mat3::Zero();
   };
-  /// Takes J out of M.
+  /// Collects J from M.
   struct Sink {
     Sequence<Body>& bodies;
-    Sequence<Index> body_of;  ///< of each speed; −1 for none
+    Sequence<Index> body_of;  ///< body of each velocity; −1 for none
     void add(Index row, Index col, BlockView const& m) {
       for (Index j = 0; j < m.cols; ++j)
         for (Index i = 0; i < m.rows; ++i) {
@@ -146,13 +146,13 @@ struct RotatingStep : ExplicitStep<Solver> {
 
   explicit RotatingStep(System& s) : ExplicitStep<Solver>(s), rotations(s), applied(this->v) {}
 
-  /// `applied` at x.
+  /// Computes `applied` at x.
   void find_applied(State const& x) {
     applied = x.a;
     rotations.add_gyroscopic(x.v, applied);
   }
-  /// q = q₀ ⊞ dq in the step to t [s]. Before it v contains the speeds before the free rotations, and dq is h v;
-  /// afterwards v contains the speeds after them, and dq their θ.
+  /// Computes q = q₀ ⊞ dq in the step to t [s]. On entry, v contains the velocities before the free rotations, and dq
+  /// is h v. On return, v contains the velocities after them, and dq contains their θ.
   void move(System& system, State const& x, double t) {
     rotations.find_rotations(system, t, this->dq);
     system.plus(x.q, this->dq, this->q);

@@ -12,18 +12,20 @@ struct GeneralisedAlpha {
   static constexpr bool accepts_constraints = true;
   static constexpr Capabilities capabilities = Capabilities::implicit_step;
 
-  /// Spectral radius at infinity, in [0, 1]: 1 keeps energy, 0 damps most. With rows stay below 1 (0.99 will do): there
-  /// the multipliers are only marginally stable, alternate in sign and grow over some thousand steps.
+  /// Spectral radius at infinity, in [0, 1]: 1 conserves energy, 0 damps most. With constraint equations, use a value
+  /// below 1 (0.99 is sufficient). At 1 the multipliers are only marginally stable: they alternate in sign and grow
+  /// over some thousand steps.
   double rho_inf = 0.8;
-  /// Tolerance of Newton's corrections, relative to the accelerations. At 1e-5 the error that is left of a smooth
-  /// motion is still far below the error of a step of ωh = 0.1, and a step takes two iterations less. Near singular
-  /// configurations, which amplify that error, leave it at 1e-8.
+  /// Tolerance of Newton's corrections, relative to the accelerations. At 1e-5 the remaining error of a smooth motion
+  /// is far below the error of a step of ωh = 0.1, and a step needs two iterations fewer. Near singular configurations,
+  /// which amplify this error, use 1e-8.
   double tolerance = 1e-8;
-  NewtonOptions newton = {};        ///< when Newton's method stops, refactors and gives up
-  bool start_correction = true;     ///< second-order multipliers from the first step and across changes of h
-  bool second_order_terms = false;  ///< put ∂(Gᵀλ)/∂q into the tangent from the start
-  bool stabilised =
-      false;  ///< keep the rows of the speeds too, at the cost of one factorisation of [M, Gᵀ; G, 0] a step
+  NewtonOptions newton = {};        ///< options of Newton's method
+  bool start_correction = true;     ///< multipliers of second order from the first step and across changes of h
+  bool second_order_terms = false;  ///< include ∂(Gᵀλ)/∂q in the tangent from the start
+  /// Also satisfy the derivatives of the constraint equations, Φ̇ = 0, by one more factorisation, of [M, Gᵀ; G, 0], per
+  /// step.
+  bool stabilised = false;
 
   /// \throws InvalidInput unless 0 ≤ ρ∞ ≤ 1 and the tolerance is positive.
   void check() const {

@@ -3,21 +3,21 @@
 
 namespace polybody {
 
-/// HHT-α: the forces of a step stand between those at its ends,
-///   M a₁ = (1 + α) f₁ − α f₀,   γ = ½ − α,   β = ¼(1 − α)²   [Hilber, Hughes & Taylor 1977],
-/// which is generalised-α with α_m = 0, α_f = −α. Spectral radius at infinity (1 + α)/(1 − α).
+/// HHT-α method: a step uses forces between those at its two ends,
+///   M a₁ = (1 + α) f₁ − α f₀,   γ = ½ − α,   β = ¼(1 − α)²   [Hilber, Hughes & Taylor 1977].
+/// It is the generalised-α method with α_m = 0, α_f = −α. Its spectral radius at infinity is (1 + α)/(1 − α).
 struct HhtAlpha {
   static constexpr char const* name = "HhtAlpha";
   static constexpr int order = 2;
   static constexpr bool accepts_constraints = true;
   static constexpr Capabilities capabilities = Capabilities::implicit_step;
 
-  double alpha = -0.1;           ///< in [−1/3, 0]: −1/3 damps most, 0 is the trapezoidal rule. With rows stay below 0.
-  double tolerance = 1e-8;       ///< of Newton's corrections, relative to the accelerations
-  NewtonOptions newton = {};     ///< when Newton's method stops, refactors and gives up
-  bool start_correction = true;  ///< second-order multipliers from the first step and across changes of h
-  bool second_order_terms = false;  ///< put ∂(Gᵀλ)/∂q into the tangent from the start
-  bool stabilised = false;          ///< keep the rows of the speeds too
+  double alpha = -0.1;           ///< in [−1/3, 0]: −1/3 damps most, 0 is the trapezoidal rule; below 0 with constraints
+  double tolerance = 1e-8;       ///< tolerance of Newton's corrections, relative to the accelerations
+  NewtonOptions newton = {};     ///< options of Newton's method
+  bool start_correction = true;  ///< multipliers of second order from the first step and across changes of h
+  bool second_order_terms = false;  ///< include ∂(Gᵀλ)/∂q in the tangent from the start
+  bool stabilised = false;          ///< also satisfy Φ̇ = 0
 
   /// \throws InvalidInput unless −1/3 ≤ α ≤ 0 and the tolerance is positive.
   void check() const {

@@ -1,32 +1,32 @@
 #pragma once
 /// \file
-/// What an integrator offers, and what it reports of a step.
+/// Concept of an integrator, and the report of a step.
 
 #include <polybody/integrators/forward_dynamics.hpp>
 
 namespace polybody {
 
-/// What one accepted step cost.
+/// Cost of one accepted step.
 struct StepReport {
   double taken = 0.0;        ///< length of the step [s]
-  double next = 0.0;         ///< length suggested for the next one [s]
+  double next = 0.0;         ///< suggested length of the next step [s]
   int iterations = 0;        ///< Newton iterations; 0 for an explicit step
-  int factorisations = 0;    ///< of the tangent or the mass matrix
-  int evaluations = 0;       ///< of the forces
-  int rejected = 0;          ///< trial steps thrown away by the step control, and steps that were halved
-  int halved = 0;            ///< steps that failed and were repeated by halves (`RunOptions::max_step_halvings`)
-  int order = 0;             ///< at which the step was taken, of a method that chooses it; else 0
+  int factorisations = 0;    ///< factorisations of the tangent or the mass matrix
+  int evaluations = 0;       ///< evaluations of the forces
+  int rejected = 0;          ///< trial steps that the step control rejected, and halved steps
+  int halved = 0;            ///< failed steps that were repeated as two halves (`RunOptions::max_step_halvings`)
+  int order = 0;             ///< order of the step, of a method with variable order; else 0
   double contraction = 0.0;  ///< last contraction rate of Newton's method, a ratio
-  long choices = 0;          ///< of independent coordinates since the start, by coordinate partitioning
-  double left = 0.0;  ///< correction that it ended with relative to the tolerated one, at Newton's budget; else 0
+  long choices = 0;          ///< selections of independent coordinates since the start, by coordinate partitioning
+  double left = 0.0;         ///< last correction relative to its tolerance, if Newton's budget ended the step; else 0
 
-  /// Adds the costs `of` failed attempts.
+  /// Adds the cost `of` failed attempts.
   void add(AttemptCost const& of) {
     iterations += of.iterations;
     factorisations += of.factorisations;
     evaluations += of.evaluations;
   }
-  /// Adds the second half of a step that was halved.
+  /// Adds the `second` half of a halved step.
   void append(StepReport const& second) {
     taken += second.taken;
     next = second.next;
@@ -39,7 +39,8 @@ struct StepReport {
 };
 
 namespace detail {
-/// Calls `rest` of an attempt at a step. If it throws, `failed` counts the attempt's cost so far.
+/// Calls `rest`, the remaining part of an attempt at a step. If it throws, `failed` counts the cost of the attempt so
+/// far.
 template <class Rest>
 auto count_if_failed(AttemptCost& failed, StepReport const& cost, Rest&& rest) {
   try {
@@ -53,25 +54,25 @@ auto count_if_failed(AttemptCost& failed, StepReport const& cost, Rest&& rest) {
 }
 }  // namespace detail
 
-/// The largest stable step of velocity Verlet, x₁ = x₀ + h v₀ + ½h² a₀, a₁ = −ω² x₁ − d (v₀ + h a₀), v₁ = v₀ + ½h (a₀ +
-/// a₁): beyond ω²h² + 4dh = 4 it has a multiplier below −1. \param omega ω [1/s]  \param rate d [1/s]
+/// Largest stable step of velocity Verlet, x₁ = x₀ + h v₀ + ½h² a₀, a₁ = −ω² x₁ − d (v₀ + h a₀), v₁ = v₀ + ½h (a₀ +
+/// a₁): beyond ω²h² + 4dh = 4 an amplification factor lies below −1. \param omega ω [1/s] \param rate d [1/s]
 template <class = void>
 double verlet_stability_limit(double omega, double rate) {
   return 2.0 / (rate + std::sqrt(rate * rate + omega * omega));
 }
 
-/// An explicit integrator of fixed step tells when x¨ + d x˙ + ω² x = 0 grows without bound: `stability_limit`, the
-/// largest ωh for d = 0, and `stable_step(ω, d)`, the largest h.
+/// Explicit integrator of fixed step with a known stability limit for x¨ + d x˙ + ω² x = 0: `stability_limit` is the
+/// largest ωh for d = 0, and `stable_step(ω, d)` is the largest h.
 template <class I>
 concept HasStabilityLimit = requires(double omega, double rate) {
   { I::stability_limit } -> std::convertible_to<double>;
   { I::stable_step(omega, rate) } -> std::convertible_to<double>;
 };
 
-/// A method takes steps of a `System`, of whatever origin. Its workspace is allocated once:
+/// Method that performs steps of any `System`. Its workspace is allocated once:
 ///   auto w = method.template workspace<Solver>(system);
 ///   method.start(system, x, h, w);      after a start, a jump or an event
-///   method.step(system, x, h, w);       x is untouched when it throws; takes at most h
+///   method.step(system, x, h, w);       advances by at most h; x is unchanged if it throws
 /// The workspace has a member `forward`, a `ForwardDynamics<Solver>`.
 template <class Method, class Solver = DefaultSolver>
 concept StepMethod = requires(Method const m, System& system, State& x, double h,
@@ -81,8 +82,8 @@ concept StepMethod = requires(Method const m, System& system, State& x, double h
   { workspace.forward } -> std::same_as<ForwardDynamics<Solver>&>;
 };
 
-/// What takes an integrator's steps: the method that its `method()` makes of its options, or the integrator itself.
-/// \throws InvalidInput for options that its `check` refuses.
+/// Method of an integrator: the result of its `method()`, or the integrator itself. \throws InvalidInput for options
+/// that its `check` refuses.
 template <class I>
 auto method_of(I const& integrator) {
   integrator.check();
@@ -91,17 +92,17 @@ auto method_of(I const& integrator) {
   else
     return integrator;
 }
-/// The type of what takes the steps of integrator I.
+/// Type of the method of integrator I.
 template <class I>
 using MethodOf = decltype(method_of(std::declval<I const&>()));
 
-/// An integrator is a value with options, `check()`, and a method: `method()` makes it, or the integrator is one
-/// itself. Static members say what it is and what it asks:
+/// An integrator is a value with options, `check()`, and a method: `method()` returns it, or the integrator is itself
+/// the method. Its static members are
 ///   name, order, accepts_constraints
-///   entries                   the groups of entries that a step calls (`Capabilities::motion` where it is not there)
-///   adaptive_step             it chooses its step                             } true, or not there
-///   needs_constant_mass       it asks for bodies of constant mass             }
-///   coupled_stages    one linear system holds the model several times }
+///   capabilities          groups of evaluations that a step calls (default: `Capabilities::motion`)
+///   adaptive_step         it selects the length of its steps             } true, or absent
+///   needs_constant_mass   it requires bodies with a constant mass matrix }
+///   coupled_stages        one linear system contains the model several times }
 template <class I, class Solver = DefaultSolver>
 concept Integrator = requires(I const i) {
   { I::name } -> std::convertible_to<char const*>;
@@ -111,7 +112,7 @@ concept Integrator = requires(I const i) {
   requires StepMethod<MethodOf<I>, Solver>;
 };
 
-/// The groups of entries that integrator I asks of a model.
+/// Groups of evaluations that integrator I requires of a model.
 template <class I>
 constexpr Capabilities entries_of() {
   if constexpr (requires { I::capabilities; })

@@ -3,9 +3,9 @@
 
 namespace polybody {
 
-/// Newmark's method, a = v̇ [Newmark 1959]. Of order two for γ = ½, else of order one: γ > ½ damps. Stable for every h
-/// when 2β ≥ γ ≥ ½, below that for ωh < (γ/2 − β)^−½ (γ = ½). With rows take γ > ½ and 2β ≥ γ, best β = ¼(γ + ½)²; at γ
-/// = ½ the multipliers are only marginally stable [Cardona & Géradin 1989].
+/// Newmark's method, a = v̇ [Newmark 1959]. It has order two for γ = ½, otherwise order one; γ > ½ damps. It is stable
+/// for every h if 2β ≥ γ ≥ ½, and for γ = ½ with smaller β if ωh < (γ/2 − β)^−½. With constraint equations, use γ > ½
+/// and 2β ≥ γ, preferably β = ¼(γ + ½)²; at γ = ½ the multipliers are only marginally stable [Cardona & Géradin 1989].
 struct Newmark {
   static constexpr char const* name = "Newmark";
   static constexpr int order = 1;
@@ -14,10 +14,10 @@ struct Newmark {
 
   double gamma = 0.5;               ///< γ, a share
   double beta = 0.25;               ///< β, a share
-  double tolerance = 1e-8;          ///< of Newton's corrections, relative to the accelerations
-  NewtonOptions newton = {};        ///< when Newton's method stops, refactors and gives up
-  bool second_order_terms = false;  ///< put ∂(Gᵀλ)/∂q into the tangent from the start
-  bool stabilised = false;          ///< keep the rows of the speeds too
+  double tolerance = 1e-8;          ///< tolerance of Newton's corrections, relative to the accelerations
+  NewtonOptions newton = {};        ///< options of Newton's method
+  bool second_order_terms = false;  ///< include ∂(Gᵀλ)/∂q in the tangent from the start
+  bool stabilised = false;          ///< also satisfy Φ̇ = 0
 
   /// \throws InvalidInput unless γ ≥ ½, β > 0 and the tolerance is positive.
   void check() const {
@@ -35,19 +35,19 @@ struct Newmark {
   }
 };
 
-/// The trapezoidal rule, Newmark's method with γ = ½, β = ¼: keeps the energy of linear models. For models without
-/// rows, or for few steps: rows are only marginally stable under it, as under generalised-α with ρ∞ = 1.
+/// Trapezoidal rule, Newmark's method with γ = ½, β = ¼: conserves the energy of linear models. Use it without
+/// constraint equations, or for few steps: multipliers are only marginally stable, as in generalised-α with ρ∞ = 1.
 struct Trapezoidal {
   static constexpr char const* name = "Trapezoidal";
   static constexpr int order = 2;
   static constexpr bool accepts_constraints = true;
   static constexpr Capabilities capabilities = Capabilities::implicit_step;
 
-  double tolerance = 1e-8;          ///< of Newton's corrections, relative to the accelerations
-  NewtonOptions newton = {};        ///< when Newton's method stops, refactors and gives up
-  bool start_correction = true;     ///< second-order multipliers from the first step and across changes of h
-  bool second_order_terms = false;  ///< put ∂(Gᵀλ)/∂q into the tangent from the start
-  bool stabilised = false;          ///< keep the rows of the speeds too
+  double tolerance = 1e-8;          ///< tolerance of Newton's corrections, relative to the accelerations
+  NewtonOptions newton = {};        ///< options of Newton's method
+  bool start_correction = true;     ///< multipliers of second order from the first step and across changes of h
+  bool second_order_terms = false;  ///< include ∂(Gᵀλ)/∂q in the tangent from the start
+  bool stabilised = false;          ///< also satisfy Φ̇ = 0
 
   /// \throws InvalidInput unless the tolerance is positive.
   void check() const {

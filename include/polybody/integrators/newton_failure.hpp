@@ -4,13 +4,13 @@
 
 namespace polybody::detail {
 
-/// The linear equations that Newton's method solved last, of one stage after another.
+/// Last linear equations of Newton's method, with the stages one after another.
 struct StepEquations {
-  Index bad;  ///< the one without a pivot; −1 where none is known
+  Index bad;  ///< equation without a pivot; −1 if unknown
   VecX const &rhs, &solution;
 };
 
-/// The report of a step with what an attempt at it cost. \param each evaluations an iteration
+/// Report `step` with the cost of an `attempt` added. \param each evaluations per iteration
 template <class = void>
 StepReport with_attempt(NewtonReport const& attempt, StepReport step, int each = 1) {
   step.iterations += attempt.iterations;
@@ -18,7 +18,8 @@ StepReport with_attempt(NewtonReport const& attempt, StepReport step, int each =
   step.evaluations += each * attempt.iterations;
   return step;
 }
-/// The report of a step of h by the attempt that ended it. \param before what others cost
+/// Report of a step of h, from the `last` attempt. \param each evaluations per iteration \param before cost of earlier
+/// attempts
 template <class = void>
 StepReport report_of(double h, NewtonReport const& last, int each = 1, StepReport const& before = {}) {
   StepReport step = with_attempt(last, before, each);
@@ -28,14 +29,14 @@ StepReport report_of(double h, NewtonReport const& last, int each = 1, StepRepor
   return step;
 }
 
-/// Result of the step `again()` with the cost of the failed `attempt` before it. If `again` throws, `failed` counts the
-/// attempt.
+/// Result of the step `again()`, with the cost of the failed `attempt` before it. If `again` throws, `failed` counts
+/// the attempt.
 template <class Again>
 StepReport retried(AttemptCost& failed, NewtonReport const& attempt, Again&& again) {
   return count_if_failed(failed, with_attempt(attempt, {}), [&] { return with_attempt(attempt, again()); });
 }
 
-/// Remedy for friction, for a model with a force that dissipates.
+/// Remedy for friction, if the model has a force that dissipates energy.
 template <class = void>
 [[gnu::cold]] std::string remedy_of_friction(System const& system) {
   for (ForceLayout const& force : system.layout().forces)
@@ -44,9 +45,9 @@ template <class = void>
   return "";
 }
 
-/// Throws what says why Newton's method failed in the step of `integrator` to time t, and who is to blame. Where there
-/// is a pivot for each equation, and yet no finite solution, that is the body whose motion is wild.
-/// \throws SingularMatrix, NonFiniteValue, NewtonConvergenceFailure.
+/// Throws the error of a step of `integrator` to time t in which Newton's method failed. The message names the reason
+/// and the body, joint or force element. If each equation has a pivot but the solution is not finite, it names the body
+/// with the non-finite motion. \throws SingularMatrix, NonFiniteValue, NewtonConvergenceFailure.
 template <class = void>
 [[noreturn, gnu::cold]] void throw_stalled(std::string const& integrator, System const& system, double t,
                                            NewtonReport const& report, StepEquations const& last) {

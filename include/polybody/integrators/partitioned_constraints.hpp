@@ -4,17 +4,17 @@
 
 namespace polybody {
 
-/// Rows G b = r (m×n) of rank k whose columns are split into k dependent ones and the others,
+/// Constraint equations G b = r (m×n) of rank k, with a partition into k dependent columns and the independent ones,
 ///   b_d = G_d⁻¹ r − R b_i,   R = G_d⁻¹ G_i,
-/// by Gauss–Jordan elimination. A new split is chosen by full pivoting, which leaves rows that repeat others for the
-/// end and out of account [Wehage & Haug 1982; Shabana 2020]. A split is kept while no entry of R exceeds a limit:
-/// |R_di| is the factor by which |det G_d| would grow were column i to change places with d. Dense, m² n operations.
-/// Itself the sink of the rows of a tangent [M, Gᵀ; G, 0].
+/// by Gauss–Jordan elimination. Full pivoting selects the partition; redundant equations remain to the end and are
+/// ignored [Wehage & Haug 1982; Shabana 2020]. A partition is kept while no entry of R exceeds a limit: |R_di| is the
+/// factor by which |det G_d| would grow if columns i and d were exchanged. Dense, m² n operations. The class is also
+/// the block sink of the constraint equations of a tangent [M, Gᵀ; G, 0].
 class PartitionedConstraints {
  public:
-  static constexpr int sides = 2;  ///< right-hand sides that are carried along
+  static constexpr int sides = 2;  ///< number of right-hand sides
 
-  /// Room for m rows and n columns; allocates.
+  /// Allocates memory for m rows and n columns.
   PartitionedConstraints(Index rows, Index columns)
       : rows_(rows),
         columns_(columns),
@@ -23,28 +23,29 @@ class PartitionedConstraints {
         dependents_(std::size_t(rows)),
         state_(std::size_t(columns)) {}
 
-  long choices = 0;  ///< how often a split was chosen
+  long choices = 0;  ///< number of selected partitions
 
-  Index rank() const { return rank_; }  ///< k, the dependent columns; −1 before a split is chosen
-  /// Whether a column is a dependent one, as the split stands.
+  Index rank() const { return rank_; }  ///< k, number of dependent columns; −1 before a partition is selected
+  /// True if the column is dependent in the present partition.
   bool is_dependent(Index column) const { return state_[std::size_t(column)] != Column::independent; }
-  /// The next `reduce` chooses anew.
+  /// Discards the partition, so that the next `reduce` returns false.
   void forget() { rank_ = none; }
 
-  void begin() { std::fill(a_.begin(), a_.end(), 0.0); }  ///< all entries of G and r become zero
-  /// Adds a block of a tangent [M, Gᵀ; G, 0] whose first entry is at (row, col); only G is taken.
+  void begin() { std::fill(a_.begin(), a_.end(), 0.0); }  ///< sets all entries of G and r to zero
+  /// Adds a block of a tangent [M, Gᵀ; G, 0] with its first entry at (row, col); only entries of G are used.
   void add(Index row, Index col, BlockView const& b) {
     if (row < columns_ || col >= columns_) return;
     for (Index i = 0; i < b.rows; ++i)
       for (Index j = 0; j < b.cols; ++j) at(row - columns_ + i, col + j) += b(i, j);
   }
-  /// Leaves a row out of account.
+  /// Excludes a row, by setting its entries to zero.
   void mark_redundant(Index row) { std::fill_n(&at(row, 0), width_, 0.0); }
-  /// Entry `row` of the right-hand side.
+  /// Entry `row` of right-hand side number `side`.
   double& right(int side, Index row) { return at(row, columns_ + side); }
 
-  /// Solves for b_d with b_i = 0, by the split that is kept. False where it no longer fits or none was chosen: then the
-  /// rows are lost and must be written again, for `choose`. \param limit of |R|
+  /// Solves for b_d with b_i = 0 in the present partition. Returns false if the partition does not fit or none is
+  /// selected. The entries are then overwritten, and must be added again for `choose`. \param limit largest permitted
+  /// |R|
   bool reduce(double limit) {
     if (rank_ == none) return false;
     for (Column& c : state_)
@@ -52,14 +53,14 @@ class PartitionedConstraints {
     double const enough = repeats * largest(0, columns_);
     for (Index k = 0; k < rank_; ++k)
       if (!eliminate(k, Column::dependent, enough)) return false;
-    if (largest(rank_, columns_) > enough) return false;  // rows that repeated others no longer do
+    if (largest(rank_, columns_) > enough) return false;  // redundant equations are now independent
     for (Index k = 0; k < rank_; ++k)
       for (Index j = 0; j < columns_; ++j)
         if (!is_dependent(j) && !(std::abs(at(k, j)) <= limit)) return false;
     return true;
   }
 
-  /// Chooses a split and solves for b_d with b_i = 0.
+  /// Selects a partition and solves for b_d with b_i = 0.
   void choose() {
     ++choices;
     std::fill(state_.begin(), state_.end(), Column::independent);
@@ -67,17 +68,17 @@ class PartitionedConstraints {
     for (rank_ = 0; rank_ < rows_ && eliminate(rank_, Column::independent, enough);) ++rank_;
   }
 
-  /// b for right-hand side number `side`, with b_i = 0.
+  /// Computes b for right-hand side number `side`, with b_i = 0.
   void solution(int side, VecX& b) {
     b.setZero();
     for (Index k = 0; k < rank_; ++k) b[dependents_[std::size_t(k)]] = right(side, k);
   }
 
  private:
-  enum class Column : char { independent, dependent, used };  ///< used: dependent, and has had its pivot
+  enum class Column : char { independent, dependent, used };  ///< used: dependent, and its pivot is found
   static constexpr Index none = -1;
-  static constexpr double repeats =
-      1e-9;  ///< a pivot below this share of the largest entry belongs to a row that repeats others
+  /// A pivot below this share of the largest entry belongs to a redundant equation.
+  static constexpr double repeats = 1e-9;
 
   double& at(Index i, Index j) { return a_[std::size_t(i * width_ + j)]; }
 
@@ -89,8 +90,8 @@ class PartitionedConstraints {
     return most;
   }
 
-  /// Step k: the largest pivot in columns of state `from` and rows from k on; its column becomes the k-th of the
-  /// identity. False when it is not above `enough`.
+  /// Elimination step k: finds the largest pivot in columns of state `from` and in rows from k on, and transforms its
+  /// column to column k of the identity. Returns false if no pivot exceeds `enough`.
   bool eliminate(Index k, Column from, double enough) {
     double most = enough;
     Index row = none, column = none;

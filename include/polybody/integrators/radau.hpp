@@ -1,12 +1,12 @@
 #pragma once
 /// \file
-/// RADAU IIA with three stages on the manifold: order five, L-stable, stiffly accurate [Hairer & Wanner 1996, §IV.5,
-/// §IV.8]:
+/// Radau IIA method with three stages on the manifold: order five, L-stable, stiffly accurate [Hairer & Wanner 1996,
+/// §IV.5, §IV.8]:
 ///   M(q_i) v̇_i = f(q_i, v_i, t_i) − Gᵀλ_i,   G v̇_i = −γ(q_i, v_i, t_i),   t_i = t₀ + c_i h,
 ///   v_i = v₀ + h Σ a_ij v̇_j,   q_i = q₀ ⊞ δ_i,   δ_i = h Σ a_ij δ˙(δ_j, v_j),   and the third stage is the end.
-/// The rows stand as accelerations, so that multipliers keep the order of the speeds; `Projection` takes away what
-/// drifts. Newton's unknowns are v̇_i and λ_i of all stages at once; δ_i follows them. First-order states are among the
-/// v_i.
+/// The constraint equations are satisfied as accelerations, so that multipliers have the order of the velocities;
+/// `Projection` removes the drift. The Newton unknowns are v̇_i and λ_i of all stages together; δ_i follow from them.
+/// First-order states are part of v_i.
 
 #include <array>
 #include <utility>
@@ -20,9 +20,9 @@
 
 namespace polybody {
 
-/// The reference among the integrators: for few, accurate steps, also of stiff models. The matrix of a step has three
-/// times the unknowns of the model and goes to `AutoLu` whatever solver the run names; above 64 unknowns that one takes
-/// memory in a step.
+/// Reference integrator for few, accurate steps, also of stiff models. The matrix of a step has three times the
+/// unknowns of the model and is factorised by `AutoLu`, for any solver of the run. Above 64 unknowns, `AutoLu`
+/// allocates memory in a step.
 struct Radau {
   static constexpr char const* name = "Radau";
   static constexpr int order = 5;
@@ -30,34 +30,34 @@ struct Radau {
   static constexpr Capabilities capabilities = Capabilities::tangent;
   static constexpr bool coupled_stages = true;
 
-  double tolerance = 1e-10;                       ///< of Newton's corrections, relative to the accelerations
-  NewtonOptions newton = {.max_iterations = 50};  ///< many: the matrix leaves out how rows turn
-  Projection projection = {};                     ///< takes away what rows drift
+  double tolerance = 1e-10;                       ///< tolerance of Newton's corrections, relative to the accelerations
+  NewtonOptions newton = {.max_iterations = 50};  ///< many iterations, since the matrix neglects changes of G
+  Projection projection = {};                     ///< removes the drift of the constraint equations
 
-  /// \throws InvalidInput unless the tolerance is positive, and as `NewtonOptions` and `Projection`.
+  /// \throws InvalidInput unless the tolerance is positive, and for invalid options of `newton` and `projection`.
   void check() const {
     require_positive(tolerance, "Radau: the tolerance");
     newton.check(name);
     projection.check();
   }
 
-  /// Everything that a step needs, allocated once.
+  /// Memory of a step, allocated once.
   template <class Solver>
   struct Workspace {
     std::array<VecX, 3> v, vd, lambda, delta, rate;  ///< of the stages
     VecX q, r, phi, gamma, next, rhs, y, kept;  ///< in order: q, r, G v̇, γ, δ, −(r, Φ̈) of all stages, two corrections
-    TangentSolver<AutoLu> solver, by_stage;     ///< `by_stage` is laid out by the first step that asks for it
-    ConstraintDerivatives slopes;               ///< ∂/∂q and ∂/∂v of the rows as accelerations
-    ForwardDynamics<Solver> forward;            ///< [M, Gᵀ; G, 0]: accelerations of the start, projections
+    TangentSolver<AutoLu> solver, by_stage;     ///< `by_stage` is analysed by the first step that requires it
+    ConstraintDerivatives slopes;               ///< ∂Φ̈/∂q and ∂Φ̈/∂v of the constraint equations
+    ForwardDynamics<Solver> forward;            ///< [M, Gᵀ; G, 0]: accelerations at the start, projections
     Projection::Scratch projected;              ///< memory of `projection`: none
-    ReusedFactorisation kept_factor;            ///< whether the matrix' factors still serve
-    bool has_by_stage = false;                  ///< `by_stage` has been laid out
-    double h_factored = 0.0;                    ///< length of step for which the matrix was factored [s]; 0: of none
-    double unsettled = 0.0;                     ///< what the last pass over the δ_i still changed, in the unit of δ
-    Sequence<double> slack;  ///< by stages and rows: −1 on the diagonal of a row that repeats others leaves its
-                             ///< multiplier alone
+    ReusedFactorisation kept_factor;            ///< state of the reused factorisation
+    bool has_by_stage = false;                  ///< `by_stage` is analysed
+    double h_factored = 0.0;                    ///< step length of the last factorisation [s]; 0: none
+    double unsettled = 0.0;                     ///< last change of the δ_i by their iteration, in the unit of δ
+    Sequence<double> slack;  ///< by stages and constraint equations: −1 on the diagonal of a redundant equation keeps
+                             ///< its multiplier unchanged
 
-    /// Allocates all but `by_stage`.
+    /// Allocates all members except `by_stage`.
     explicit Workspace(System& s)
         : q(VecX::Zero(s.coordinates())),
           r(VecX::Zero(s.velocities())),
@@ -78,12 +78,12 @@ struct Radau {
       solver.analyse(s, 3, [&](BlockSink& pattern) { write(s, 1.0, pattern); });
     }
 
-    /// The matrix of Newton's method where `s` was evaluated last: block (i, j) is
+    /// Writes the matrix of Newton's method at the last evaluation of `s`: block (i, j) is
     ///   δ_ij [M, Gᵀ; G, slack] + h a_ij D + h² (A²)_ij K.
     void write(System& s, double h, BlockSink& sink) {
       for (int i = 0; i < 3; ++i) write_stage(s, h, i, sink);
     }
-    /// Its rows i.
+    /// Writes the block row i of this matrix.
     void write_stage(System& s, double h, int i, BlockSink& sink) {
       Index const n = equations_of(s), velocities = equation_velocities_of(s);
       using T = detail::RadauTableau;
@@ -96,13 +96,13 @@ struct Radau {
                       Eigen::Map<Mat<double, 1, 1> const>(&slack[std::size_t(i * (n - velocities) + k)]));
       }
     }
-    /// How the rows i of G v̇ + γ turn as the stages move: h a_ij ∂Φ̈/∂v + h² (A²)_ij ∂Φ̈/∂q.
+    /// Adds the derivatives of G v̇ + γ at stage i with respect to the stages: h a_ij ∂Φ̈/∂v + h² (A²)_ij ∂Φ̈/∂q.
     void write_slopes(System& s, double h, int i, BlockSink& sink) {
       Index const n = equations_of(s), first = slopes.counts_equations() ? 0 : equation_velocities_of(s);
       using T = detail::RadauTableau;
       for (int j = 0; j < 3; ++j) slopes.write(h * T::a[i][j], h * h * T::squared(i, j), i * n + first, j * n, sink);
     }
-    /// Leaves the multipliers of these rows alone, which repeat others.
+    /// Keeps the multipliers of these `redundant` equations unchanged.
     void leave(System const& s, Sequence<Index> const& redundant) {
       Index const velocities = equation_velocities_of(s), rows = equations_of(s) - velocities;
       for (Index const k : redundant)
@@ -115,8 +115,8 @@ struct Radau {
         for (std::size_t j = 0; j < 3; ++j) v[i] += h * detail::RadauTableau::a[i][j] * vd[j];
       }
     }
-    /// δ_i = h Σ a_ij δ˙(δ_j, v_j), by two passes from the last δ: the rate hardly depends on δ, and not at all without
-    /// rotations.
+    /// δ_i = h Σ a_ij δ˙(δ_j, v_j), by two fixed-point iterations from the last δ. The rate depends little on δ, and
+    /// without rotations not at all.
     void set_positions(System& s, double h) {
       for (int pass = 0; pass < 2; ++pass) {
         unsettled = 0.0;
@@ -130,7 +130,7 @@ struct Radau {
         }
       }
     }
-    /// The third stage becomes what the polynomials of the stages, from v0 on, are at the share s of h.
+    /// Replaces the third stage by the values of the stage polynomials, from v0 on, at the share s of h.
     void end_at(VecX const& v0, double s, double h) {
       v[2] = v0;
       delta[2].setZero();
@@ -163,9 +163,9 @@ struct Radau {
   StepReport step(System& system, State& x, double h, Workspace<Solver>& w) const {
     NewtonReport report;
     StepReport tried;
-    double reach = h;  // of the stages
+    double reach = h;  // length of the stages [s]
     bool stage_beside = false;
-    // what stalls is tried again by full Newton, then with every stage's own matrix, and with stages of another length
+    // repetitions: full Newton; then a matrix for each stage, with stages over h or 1.25 h, then over the other length
     for (int effort = 0, last = system.rows() > 0 ? 3 : 1;; ++effort) {
       bool const careful = effort > 0;
       if (effort == 2) stage_beside = loses_rank(system, x, h, w);
@@ -190,15 +190,15 @@ struct Radau {
   }
 
  private:
-  /// Takes for the end what the stages' polynomials are at x.t + h, where `reach` is their length, and brings it back
-  /// to the rows.
+  /// Evaluates the polynomials of stages of length `reach` at x.t + h, and projects this end onto the constraint
+  /// equations.
   template <class Solver>
   void finish(System& system, State& x, double h, double reach, Workspace<Solver>& w) const {
     w.set_positions(system, reach);
     if (reach != h) w.end_at(x.v, h / reach, reach);
     system.plus(x.q, w.delta[2], w.q);
     projection.apply(system, w.forward, w.projected, w.q, w.v[2], x.t + h);
-    if (system.rows() > 0) {  // v̇ too, to where the projection moved the rows
+    if (system.rows() > 0) {  // also projects v̇, at the projected positions and velocities
       w.forward.hold(system, w.q, w.v[2], x.t + h);
       system.acceleration_bias(w.gamma);
       system.rows_times(w.vd[2], w.phi);
@@ -214,7 +214,7 @@ struct Radau {
     x.t += h;
   }
 
-  /// Stages as they are with the accelerations and speeds at x.
+  /// Initial stages, with the acceleration and velocity of x.
   template <class Solver>
   static void predict(State const& x, double h, Workspace<Solver>& w) {
     for (std::size_t i = 0; i < 3; ++i) {
@@ -225,7 +225,7 @@ struct Radau {
     w.set_velocities(x.v, h);
   }
 
-  /// Whether the rows are much nearer to losing rank at one of the stages than at x.
+  /// True if the constraint Jacobian is much closer to a loss of rank at one of the stages than at x.
   template <class Solver>
   static bool loses_rank(System& system, State const& x, double h, Workspace<Solver>& w) {
     predict(x, h, w);
@@ -237,8 +237,9 @@ struct Radau {
     return false;
   }
 
-  /// Leaves the multipliers alone of the rows that repeat others at the start. Where fewer do in the middle of the
-  /// first step the start is a singular position, and those in the middle count.
+  /// Keeps the multipliers of equations that are redundant at the start unchanged. If fewer equations are redundant at
+  /// the second stage of the first step, the start is a singular position, and the equations of the second stage are
+  /// used.
   template <class Solver>
   static void leave_redundant(System& system, State const& x, double h, Workspace<Solver>& w) {
     auto const at_start = w.forward.redundant_rows();
@@ -251,7 +252,7 @@ struct Radau {
     w.leave(system, rows);
   }
 
-  /// A step as Newton's method sees it.
+  /// Problem of Newton's method in one step.
   template <class Solver>
   struct Problem {
     Radau const& method;
@@ -283,8 +284,8 @@ struct Radau {
       }
       return all_finite(w.rhs);
     }
-    /// The matrix with every row where its own stage is. Next to a singular position G differs as much between the
-    /// stages as it does from one that has lost rank.
+    /// Writes the matrix with each block row at its own stage. Near a singular position, G differs as much between two
+    /// stages as from a matrix of lower rank.
     void write_by_stage(BlockSink& sink) {
       for (int i = 0; i < 3; ++i) {
         auto const k = std::size_t(i);

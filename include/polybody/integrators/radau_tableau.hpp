@@ -3,7 +3,7 @@
 
 namespace polybody::detail {
 
-/// a_ij and c_i [Hairer & Wanner 1996, Table IV.5.6].
+/// Coefficients a_ij and c_i [Hairer & Wanner 1996, Table IV.5.6].
 struct RadauTableau {
   static constexpr double r6 = 2.449489742783178;
   static constexpr double c[3] = {(4.0 - r6) / 10.0, (4.0 + r6) / 10.0, 1.0};
@@ -14,7 +14,7 @@ struct RadauTableau {
   /// (A²)_ij.
   static constexpr double squared(int i, int j) { return a[i][0] * a[0][j] + a[i][1] * a[1][j] + a[i][2] * a[2][j]; }
 
-  /// Lagrange's polynomial of node j at s, and its integral from 0 to s.
+  /// Lagrange polynomial of node j at s, and its integral from 0 to s.
   struct Inside {
     double value, integral;
   };
@@ -24,8 +24,8 @@ struct RadauTableau {
   }
 };
 
-/// Shifts the blocks of one stage to their place in the matrix of all stages; away from the diagonal it leaves out G
-/// and Gᵀ.
+/// Shifts the blocks of one stage to their position in the matrix of all stages. Off-diagonal stage blocks omit G and
+/// Gᵀ.
 struct StageBlockSink {
   BlockSink& sink;
   Index row0, col0, velocities;

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Explicit Runge–Kutta methods on the manifold: with q = q₀ ⊞ δ the pair (δ, v) lives in a vector space and
-/// δ˙ = local_rate(δ, v), v̇ = accelerations(q₀ ⊞ δ, v, t) [Munthe-Kaas 1999].
+/// Explicit Runge–Kutta methods on the manifold. With q = q₀ ⊞ δ, the pair (δ, v) is in a vector space, and δ˙ =
+/// local_rate(δ, v), v̇ = accelerations(q₀ ⊞ δ, v, t) [Munthe-Kaas 1999].
 
 #include <array>
 #include <complex>
@@ -14,14 +14,14 @@
 namespace polybody {
 namespace detail {
 
-/// Stages of an explicit method: positions, speeds and their rates.
+/// Memory of an explicit method: rates of positions and accelerations of all stages.
 template <class Solver, class Stabilisation, int stages>
 struct RungeKuttaWorkspace : ExplicitStep<Solver> {
   using Next = ExplicitStep<Solver>;
   using Next::dq, Next::q, Next::v, Next::a, Next::lambda, Next::forward;
   std::array<VecX, stages> position_rate, acceleration;
   typename Stabilisation::Scratch scratch;
-  ConstraintFeedback feedback;  ///< of the run
+  ConstraintFeedback feedback;  ///< feedback of the run
 
   explicit RungeKuttaWorkspace(System& s) : Next(s), scratch(s) {
     position_rate.fill(v);
@@ -34,13 +34,13 @@ struct RungeKuttaWorkspace : ExplicitStep<Solver> {
     forward.accelerations(system, {x.q, x.v, x.t}, x.a, x.lambda, feedback);
   }
 
-  /// Rates at x into stage 0: x knows its accelerations.
+  /// Computes the rates at x as stage 0, with the accelerations of x.
   void first_stage(System& system, State const& x) {
     dq.setZero();
     system.local_rate(dq, x.v, position_rate[0]);
     acceleration[0] = x.a;
   }
-  /// Rates at x + h Σ row[j] k_j into stage i.
+  /// Computes the rates at x + h Σ row[j] k_j as stage i.
   template <std::size_t n>
   void stage(System& system, State const& x, double h, double c, std::array<double, n> const& row, int i) {
     combine(x, h, row, i);
@@ -61,8 +61,8 @@ struct RungeKuttaWorkspace : ExplicitStep<Solver> {
     }
   }
 
-  /// Projects the combined result and makes it the state at t + h. \param evaluated the last stage is of the combined
-  /// result. Returns the evaluations that it takes.
+  /// Projects the combined result and stores it in x as the state at t + h. Returns the number of evaluations. \param
+  /// evaluated true if the last stage is at the combined result
   int accept(System& system, State& x, double h, Stabilisation const& stabilisation, bool evaluated) {
     bool const again = !evaluated || system.rows() > 0;  // a projection moves the state
     system.plus(x.q, dq, q);
@@ -79,16 +79,16 @@ struct RungeKuttaWorkspace : ExplicitStep<Solver> {
 
 }  // namespace detail
 
-/// The classical method of order four.
+/// Classical Runge–Kutta method of order four.
 template <class Stabilisation = UnconstrainedOnly>
 struct RungeKutta4 {
   static constexpr char const* name = "RungeKutta4";
   static constexpr int order = 4;
   static constexpr bool accepts_constraints = Stabilisation::accepts_constraints;
   static constexpr double stability_limit = 2.8284271247461901;  ///< ωh, a ratio
-  using Tableau = detail::ClassicalTableau;                      ///< its coefficients
-  /// Where |1 + z + z²/2 + z³/6 + z⁴/24| = 1 along z = hs, s the faster of the roots −d/2 ± √(d²/4 − ω²), d = `rate`
-  /// [1/s], ω [rad/s] [Hairer & Wanner 1996, §IV.2].
+  using Tableau = detail::ClassicalTableau;                      ///< coefficients of the method
+  /// Largest h with |1 + z + z²/2 + z³/6 + z⁴/24| ≤ 1 for z = hs. The number s is the faster of the roots −d/2 ± √(d²/4
+  /// − ω²), with d = `rate` [1/s] and ω = `omega` [rad/s] [Hairer & Wanner 1996, §IV.2].
   static double stable_step(double omega, double rate) {
     double const under = omega * omega - 0.25 * rate * rate;
     std::complex<double> const s =
@@ -102,7 +102,7 @@ struct RungeKutta4 {
     return lo / std::abs(s);
   }
 
-  Stabilisation stabilisation = {};  ///< how a step keeps to the rows
+  Stabilisation stabilisation = {};  ///< constraint stabilisation
 
   void check() const { stabilisation.check(); }
   template <class Solver>
@@ -125,28 +125,29 @@ struct RungeKutta4 {
   }
 };
 
-/// The pair of order 5(4) with step control [Dormand & Prince 1980; Hairer, Nørsett & Wanner 1993, §II.4–5].
+/// Dormand–Prince pair of order 5(4) with step control [Dormand & Prince 1980; Hairer, Nørsett & Wanner 1993, §II.4–5].
 template <class Stabilisation = UnconstrainedOnly>
 struct DormandPrince {
   static constexpr char const* name = "DormandPrince";
   static constexpr int order = 5;
   static constexpr bool accepts_constraints = Stabilisation::accepts_constraints;
   static constexpr bool adaptive_step = true;
-  using Tableau = detail::DormandPrinceTableau;  ///< its coefficients
+  using Tableau = detail::DormandPrinceTableau;  ///< coefficients of the method
 
-  /// Error of a step relative to the scale of each kind of unknown of each body: the extent of the bodies that act on
-  /// each other and that of their velocities, one radian and the body's angular velocity (`detail::ErrorNorm`).
+  /// Tolerated error of a step relative to the scale of each kind of unknown of each body. The scales are the extents
+  /// of the positions and velocities of an assembly, one radian, and the angular velocity of the body
+  /// (`detail::ErrorNorm`).
   double relative_tolerance = 1e-8;
-  double absolute_tolerance = 1e-10;  ///< added to the relative one, in the units of coordinates and speeds [m], [rad]
-  double min_step = 1e-12;            ///< that may be chosen [s]
-  Stabilisation stabilisation = {};   ///< how a step keeps to the rows
+  double absolute_tolerance = 1e-10;  ///< absolute part, in the units of coordinates and velocities [m], [rad]
+  double min_step = 1e-12;            ///< smallest permitted step [s]
+  Stabilisation stabilisation = {};   ///< constraint stabilisation
 
-  /// Everything that a step needs, allocated once.
+  /// Memory of a step, allocated once.
   template <class Solver>
   struct Workspace : detail::RungeKuttaWorkspace<Solver, Stabilisation, 7> {
-    VecX error, v_error;     ///< of coordinates, by speeds; of speeds
-    detail::ErrorNorm norm;  ///< of these
-    /// Allocates all of it.
+    VecX error, v_error;     ///< errors of coordinates, numbered as velocities, and of velocities
+    detail::ErrorNorm norm;  ///< norm of these errors
+    /// Allocates all members.
     explicit Workspace(System& s)
         : detail::RungeKuttaWorkspace<Solver, Stabilisation, 7>(s), error(this->v), v_error(this->v), norm(s, true) {}
   };
@@ -167,7 +168,7 @@ struct DormandPrince {
     w.start(system, x, stabilisation);
   }
 
-  /// Takes at most h, less where the error asks for it. \throws MinimumStepReached.
+  /// Integrates over h, or over a shorter step if the tolerance requires it. \throws MinimumStepReached.
   template <class W>
   StepReport step(System& system, State& x, double h, W& w) const {
     StepReport report;
@@ -205,7 +206,7 @@ struct DormandPrince {
   }
 
  private:
-  /// ‖error‖² (`ErrorNorm`), and the mean square of the errors of first-order states.
+  /// ‖error‖² (`ErrorNorm`), plus the mean square of the errors of first-order states.
   template <class W>
   double mean_square(System const& system, State const& x, W& w) const {
     detail::ErrorTolerance const tolerance{absolute_tolerance, relative_tolerance};

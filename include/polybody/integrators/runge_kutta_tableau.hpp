@@ -5,7 +5,7 @@
 
 namespace polybody::detail {
 
-/// c_i, a_ij and b_j of the classical method of order four.
+/// Coefficients c_i, a_ij and b_j of the classical method of order four.
 struct ClassicalTableau {
   static constexpr int stages = 4;
   using Row = std::array<double, 4>;
@@ -14,10 +14,10 @@ struct ClassicalTableau {
   static constexpr Row b{1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0};
 };
 
-/// c_i, a_ij and b_j of order five, with the weights of the error [Dormand & Prince 1980]. The seventh stage, which the
-/// error alone takes, stands at the result.
+/// Coefficients c_i, a_ij and b_j of order five, with the weights of the error [Dormand & Prince 1980]. The seventh
+/// stage is evaluated at the result and contributes to the error only.
 struct DormandPrinceTableau {
-  static constexpr int stages = 6;  ///< that the result takes
+  static constexpr int stages = 6;  ///< number of stages in the result
   using Row = std::array<double, 7>;
   static constexpr Row c{0.0, 0.2, 0.3, 0.8, 8.0 / 9.0, 1.0, 1.0};
   static constexpr std::array<Row, 7> a{Row{},

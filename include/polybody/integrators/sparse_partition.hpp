@@ -9,45 +9,47 @@
 
 namespace polybody {
 
-/// The split of `PartitionedConstraints` for large systems: rows G b = r (m×n) of rank k, b_d = G_d⁻¹ r for b_i = 0.
-/// The first split is that of a rank-revealing sparse QR factorisation, of G for its columns and of G_dᵀ for the rows
-/// that repeat no others. Each renewal looks at R = G_d⁻¹ G_i: where an entry exceeds the limit, its column i changes
-/// places with the dependent one of its row, which multiplies |det G_d| by that entry, until none does [Wehage & Haug
-/// 1982; the exchanges as in Knuth 1985]. Factors of G_d are kept between renewals. Itself the sink of the rows of a
-/// tangent [M, Gᵀ; G, 0]. T is `double`: a template, so that a program without it compiles none of it.
+/// Partition as in `PartitionedConstraints`, for large systems: constraint equations G b = r (m×n) of rank k, with b_d
+/// = G_d⁻¹ r for b_i = 0. The first partition results from rank-revealing sparse QR factorisations: of G for the
+/// columns, and of G_dᵀ for the independent equations. Each renewal computes R = G_d⁻¹ G_i. If an entry exceeds the
+/// limit, its column i and the dependent column of its row are exchanged, which multiplies |det G_d| by that entry.
+/// Exchanges continue until no entry exceeds the limit [Wehage & Haug 1982; the exchanges as in Knuth 1985]. The
+/// factorisation of G_d is reused between renewals. The class is also the block sink of the constraint equations of a
+/// tangent [M, Gᵀ; G, 0]. T is `double`; a program that does not use this template does not compile it.
 template <class T = double>
 class SparsePartitionOf {
  public:
-  using Matrix = Eigen::SparseMatrix<T, Eigen::ColMajor, int>;  ///< G and its parts
+  using Matrix = Eigen::SparseMatrix<T, Eigen::ColMajor, int>;  ///< type of G and its parts
 
-  /// For m rows and n columns.
+  /// Partition for m rows and n columns.
   SparsePartitionOf(Index rows, Index columns)
       : rows_(rows), columns_(columns), left_out_(std::size_t(rows), false), g_(rows, columns) {}
 
-  long choices = 0;         ///< how often the split changed
-  long factorisations = 0;  ///< of G_d
+  long choices = 0;         ///< number of changes of the partition
+  long factorisations = 0;  ///< number of factorisations of G_d
 
-  Index rank() const { return Index(dependents_.size()); }  ///< k, the dependent columns
-  /// Whether a column is a dependent one, as the split stands; none is before the first split.
+  Index rank() const { return Index(dependents_.size()); }  ///< k, number of dependent columns
+  /// True if the column is dependent in the present partition; false before the first partition.
   bool is_dependent(Index column) const { return chosen_ && place_[std::size_t(column)] >= 0; }
-  /// The largest entry of G at the last renewal; zero before.
+  /// Largest entry of G at the last renewal; zero before the first one.
   T largest_entry() const { return largest_entry_; }
-  bool has_factors() const { return factored_; }  ///< G_d has been factored since the last `forget`
-  /// The next renewal chooses from nothing.
+  bool has_factors() const { return factored_; }  ///< true if G_d has been factorised since the last `forget`
+  /// Discards the partition: the next renewal selects a new one.
   void forget() { factored_ = chosen_ = false; }
 
-  void begin() { entries_.clear(); }  ///< the rows are written anew
-  /// Adds a block of a tangent [M, Gᵀ; G, 0] whose first entry is at (row, col); only G is taken.
+  void begin() { entries_.clear(); }  ///< discards the entries of G
+  /// Adds a block of a tangent [M, Gᵀ; G, 0] with its first entry at (row, col); only entries of G are used.
   void add(Index row, Index col, BlockView const& b) {
     if (row < columns_ || col >= columns_) return;
     for (Index i = 0; i < b.rows; ++i)
       if (!left_out_[std::size_t(row - columns_ + i)])
         for (Index j = 0; j < b.cols; ++j) entries_.emplace_back(int(row - columns_ + i), int(col + j), b(i, j));
   }
-  /// Leaves a row out of account for good.
+  /// Excludes a row permanently.
   void mark_redundant(Index row) { left_out_[std::size_t(row)] = true; }
 
-  /// Factors of G_d for the rows that were written; the split changes where it must. \param limit of |R|
+  /// Factorises G_d of the entries added since `begin`, and changes the partition if necessary. \param limit largest
+  /// permitted |R|
   void renew(T limit) {
     g_.setFromTriplets(entries_.begin(), entries_.end());
     largest_entry_ = largest(g_);
@@ -61,7 +63,7 @@ class SparsePartitionOf {
     }
   }
 
-  /// b = [b_d, 0] with G_d b_d = given, in the rows that repeat no others.
+  /// Solves G_d b_d = `given` in the independent equations: b = [b_d, 0].
   void solve(VecXOf<T> const& given, VecXOf<T>& b) {
     b.setZero();
     if (rank() == 0) return;
@@ -72,7 +74,8 @@ class SparsePartitionOf {
 
  private:
   using Qr = Eigen::SparseQR<Matrix, Eigen::COLAMDOrdering<int>>;
-  /// Shares of the largest entry: a column that adds less repeats others; one that adds more is taken at sight.
+  /// Pivot thresholds relative to the largest entry: a column with a smaller pivot than `repeats` is dependent, and
+  /// `adds_enough` is the first threshold of the selection.
   static constexpr T repeats = 1e-9, adds_enough = 0.1;
   using Lu = Eigen::SparseLU<Matrix, Eigen::COLAMDOrdering<int>>;
 
@@ -83,12 +86,12 @@ class SparsePartitionOf {
                           "is close to a singular configuration. Start elsewhere, or use an implicit integrator."});
   }
 
-  /// Columns of g that are independent, by their numbers. A factorisation takes a column where it adds more than its
-  /// threshold, in the order that keeps the factors sparse: the highest threshold that still finds all columns there
-  /// are, so that none is taken that hardly adds anything.
+  /// Numbers of linearly independent columns of g. A factorisation selects each column whose pivot exceeds a threshold,
+  /// in an order that keeps the factors sparse. The highest threshold with the full number of columns is used, to avoid
+  /// nearly dependent columns.
   static Sequence<Index> independent_columns(Matrix g) {
     T const most = largest(g);
-    if (most == 0.0) return {};  // no rows, or none of them acts
+    if (most == 0.0) return {};  // no entries, or all are zero
     g.makeCompressed();
     Qr qr;
     qr.analyzePattern(g);
@@ -131,7 +134,7 @@ class SparsePartitionOf {
     chosen_ = true;
     analysed_ = false;
   }
-  /// G_d, and where its columns stand.
+  /// Assembles G_d, and stores the places of its columns.
   void take_columns() {
     some_.clear();
     for (std::size_t k = 0; k < dependents_.size(); ++k) {
@@ -154,7 +157,7 @@ class SparsePartitionOf {
     return factored_ = lu_->info() == Eigen::Success;
   }
 
-  /// Columns change places until no entry of R exceeds the limit. Whether one did.
+  /// Exchanges columns until no entry of R exceeds the limit. Returns true if there was an exchange.
   bool exchange(T limit) {
     Index const k = rank(), n = columns_ - k;
     free_.clear();
@@ -172,7 +175,7 @@ class SparsePartitionOf {
     for (;;) {
       Index row = 0, col = 0;
       T const most = r_.cwiseAbs().maxCoeff(&row, &col);
-      if (!(most > limit)) break;  // also where it is no number, which the factors will tell
+      if (!(most > limit)) break;  // also for NaN, which the factorisation detects
       pivot(row, col);
       place_[std::size_t(dependents_[std::size_t(row)])] = -1;
       std::swap(dependents_[std::size_t(row)], free_[std::size_t(col)]);
@@ -182,7 +185,7 @@ class SparsePartitionOf {
     }
     return changed;
   }
-  /// R after the dependent of a row and the independent of a column have changed places.
+  /// Updates R after the exchange of the dependent column of `row` with the independent column of `col`.
   void pivot(Index row, Index col) {
     T const inverse = 1.0 / r_(row, col);
     r_.row(row) *= inverse;
@@ -199,8 +202,8 @@ class SparsePartitionOf {
   Sequence<bool> left_out_;
   std::vector<Eigen::Triplet<T>> entries_, some_;
   Matrix g_, gd_;
-  std::unique_ptr<Lu> lu_ = std::make_unique<Lu>();                    // does not move
-  Sequence<Index> dependents_, free_, kept_rows_, place_, row_place_;  ///< places: among dependents, among kept rows
+  std::unique_ptr<Lu> lu_ = std::make_unique<Lu>();                    // cannot be moved
+  Sequence<Index> dependents_, free_, kept_rows_, place_, row_place_;  ///< places: in dependents_, in kept_rows_
   T largest_entry_ = 0.0;
   MatXOf<T> r_;
   VecXOf<T> right_, solution_;

@@ -1,19 +1,19 @@
 #pragma once
 /// \file
-/// How an explicit step keeps to the rows. A policy is a value with options:
-///   policy.check();                                         throws for options that cannot be meant
-///   Policy::Scratch scratch(system);                        its memory, allocated once
-///   policy.start(scratch);                                  at the start of a run: earlier steps are forgotten
-///   policy.feedback()                                       what the accelerations feed back
-///   policy.apply(system, forward, scratch, q, v, t);        positions and velocities after a step, back to the rows
-///   policy.velocities(system, forward, scratch, q, v, t);   the velocities alone
+/// Constraint stabilisation of explicit steps. A policy is a value with options:
+///   policy.check();                                         throws if an option is not in its range
+///   Policy::Scratch scratch(system);                        memory of the policy, allocated once
+///   policy.start(scratch);                                  start of a run: discards earlier steps
+///   policy.feedback()                                       feedback of the violation in the accelerations
+///   policy.apply(system, forward, scratch, q, v, t);        corrects positions and velocities after a step
+///   policy.velocities(system, forward, scratch, q, v, t);   corrects velocities only
 
 #include <polybody/integrators/integrator.hpp>
 
 namespace polybody {
 
 namespace detail {
-/// How often a policy chose independent coordinates; zero for one that chooses none.
+/// Number of times that a policy selected independent coordinates; zero for other policies.
 template <class Scratch>
 long choices_of(Scratch const& scratch) {
   if constexpr (requires { scratch.choices(); })
@@ -23,11 +23,11 @@ long choices_of(Scratch const& scratch) {
 }
 }  // namespace detail
 
-/// What policies have in common that need no memory and correct nothing.
+/// Common members of policies without memory and without corrections.
 struct NoCorrection {
-  /// Nothing is kept.
+  /// Empty memory.
   struct Scratch {
-    explicit Scratch(System const&) {}  ///< needs no room
+    explicit Scratch(System const&) {}  ///< allocates nothing
   };
   void check() const {}
   void start(Scratch&) const {}
@@ -38,22 +38,22 @@ struct NoCorrection {
   void velocities(System&, ForwardDynamics<Solver>&, Scratch&, VecX const&, VecX&, double) const {}
 };
 
-/// Where none is named: for models whose joints bring no rows.
+/// Default policy, for models with joints that add no constraint equations.
 struct UnconstrainedOnly : NoCorrection {
   static constexpr bool accepts_constraints = false;
 };
 
-/// The augmented equations alone, Φ̈ = 0 [thesis Eq. 3.2]. What a step leaves of Φ̇ stays, and Φ drifts off as Φ̇ t: to
-/// show that, or for runs short enough.
+/// Augmented equations without stabilisation, Φ̈ = 0 [thesis Eq. 3.2]. The error of Φ̇ after a step persists, and Φ
+/// drifts by Φ̇ t. Use it to show this drift, or for short runs.
 struct NoStabilisation : NoCorrection {
   static constexpr bool accepts_constraints = true;
 };
 
-/// The accelerations obey Φ̈ + 2α Φ̇ + β² Φ = 0: with α = β a violation dies away as e^{−αt} [Baumgarte 1972]. It is
-/// damped, not removed, and the step must resolve 1/α.
+/// Baumgarte stabilisation: the accelerations satisfy Φ̈ + 2α Φ̇ + β² Φ = 0. With α = β, a violation decays as e^{−αt}
+/// [Baumgarte 1972]. It is damped but not removed, and the step must resolve 1/α.
 struct Baumgarte {
   static constexpr bool accepts_constraints = true;
-  using Scratch = NoCorrection::Scratch;  ///< nothing is kept
+  using Scratch = NoCorrection::Scratch;  ///< empty
   Required<double> alpha;                 ///< [1/s]
   Required<double> beta;                  ///< [1/s]
 
@@ -69,13 +69,14 @@ struct Baumgarte {
   void velocities(System&, ForwardDynamics<Solver>&, Scratch&, VecX const&, VecX&, double) const {}
 };
 
-/// After every step the positions are brought back to Φ = 0 by Gauss–Newton and the velocities to Φ̇ = 0, both
-/// by the smallest change in the norm of M [Lubich 1991; Eich-Soellner & Führer 1998, §5.3].
+/// Projection after every step: Gauss–Newton iterations correct the positions to Φ = 0, and then the velocities are
+/// corrected to Φ̇ = 0. Both changes are the smallest ones in the norm of M [Lubich 1991; Eich-Soellner & Führer 1998,
+/// §5.3].
 struct Projection {
   static constexpr bool accepts_constraints = true;
-  using Scratch = NoCorrection::Scratch;  ///< nothing is kept
-  double tolerance = 1e-12;               ///< of Φ, relative to 1 + max |q|
-  int max_iterations = 10;                ///< of Gauss–Newton for the positions, before it throws
+  using Scratch = NoCorrection::Scratch;  ///< empty
+  double tolerance = 1e-12;               ///< tolerance of Φ, relative to 1 + max |q|
+  int max_iterations = 10;                ///< limit of Gauss–Newton iterations for the positions
 
   void check() const {
     require_positive(tolerance, "Projection: the tolerance");
@@ -84,7 +85,7 @@ struct Projection {
   void start(Scratch&) const {}
   ConstraintFeedback feedback() const { return {}; }
 
-  /// \throws NewtonConvergenceFailure when the positions cannot be brought back.
+  /// Corrects positions and velocities. \throws NewtonConvergenceFailure if the positions do not converge.
   template <class Solver>
   void apply(System& system, ForwardDynamics<Solver>& forward, Scratch&, VecX& q, VecX& v, double t) const {
     if (system.rows() == 0) return;

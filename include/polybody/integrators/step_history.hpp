@@ -7,14 +7,14 @@
 
 namespace polybody {
 
-/// The last points of a run: what extrapolation and differences in time need. Of v̇ and λ at t₋₁ > t₋₂ > …, the ends
-/// of earlier steps, it keeps scaled divided differences
+/// Last points of a run, for extrapolation and for differences in time. For v̇ and λ at the ends t₋₁ > t₋₂ > … of
+/// earlier steps, it stores scaled divided differences
 ///   Dⱼ = f[t₋₁, …, t₋₁₋ⱼ] Πᵢ (t₋₁ − t₋ᵢ), i = 2 … j + 1:
-/// the error with which the j points before t₋₁ predict f(t₋₁). At a further point t₀ they are [Krogh 1974; Hairer,
-/// Nørsett & Wanner 1993, §III.5]
+/// the error of a prediction of f(t₋₁) from the j points before t₋₁. At a further point t₀ they are [Krogh 1974;
+/// Hairer, Nørsett & Wanner 1993, §III.5]
 ///   D′₀ = f(t₀),  D′ⱼ₊₁ = D′ⱼ − βⱼ Dⱼ,  β₀ = 1,  βⱼ₊₁ = βⱼ (t₀ − t₋ⱼ₋₁)/(t₋₁ − t₋ⱼ₋₂).
-/// It stands in history, so a copy of a state carries it along:
-///   [the method's own nv entries | D₀ … D₄ of v̇ | those of λ | h₋₅ … h₋₁ | length for which the state is shifted].
+/// They are stored in the history of a state, so a copy of the state includes them:
+///   [nv entries of the method | D₀ … D₄ of v̇ | D₀ … D₄ of λ | h₋₅ … h₋₁ | step length of the shift of the state].
 class StepHistory {
   static constexpr int kept = 5;
   static Index size(Index nv, Index rows) { return (kept + 1) * nv + kept * rows + kept + 1; }
@@ -27,35 +27,35 @@ class StepHistory {
   VecX& memory_;
 
  public:
-  static constexpr int lengths = kept + 1;  ///< entries at the end of the memory that are lengths of steps
+  static constexpr int lengths = kept + 1;  ///< number of step lengths at the end of the memory
 
-  /// The history of a state after `reset`. \throws InvalidInput for a state without one.
+  /// Access to the history of a state after `reset`. \throws InvalidInput for a state without a history.
   explicit StepHistory(State& x) : nv_(x.a.size()), rows_(x.lambda.size()), memory_(x.history) {
     if (memory_.size() != size(nv_, rows_))
       throw InvalidInput("state.no_history",
                          {"The state has no integrator history. Call method.start(system, x, h, w) before step()."});
   }
 
-  /// Nothing before x; the method's own entries are v̇.
+  /// Starts a history without points before x. The entries of the method are v̇.
   static void reset(State& x) {
     Index const nv = x.a.size();
     x.history.setZero(size(nv, x.lambda.size()));
     copy(x.a.data(), nv, x.history.data());
   }
 
-  /// The method's own entries into `out` (nv).
+  /// Copies the entries of the method to `out` (nv).
   void own(VecX& out) const { copy(memory_.data(), nv_, out.data()); }
-  /// Length of step for which the method's own entries stand off those of the solution [s]; 0 after a start.
+  /// Step length [s] for which the entries of the method are shifted relative to the solution; 0 after a start.
   double shifted() const { return memory_[memory_.size() - 1]; }
 
-  /// As if a step h had ended at x and v̇ had changed at the rate `jerk` in it.
+  /// Adds a point before x, as if a step h had ended at x and v̇ had changed at the rate `jerk` in it.
   void pretend(State const& x, VecX const& jerk, double h) {
     for (Index i = 0; i < nv_; ++i) a()[i] = x.a[i] - h * jerk[i];
     copy(x.lambda.data(), rows_, lambda());
     length(1) = h;
   }
 
-  /// Makes x, from which a step h was taken, the last one; `own` are the method's entries after it.
+  /// Adds x, the start of a step h, as the last point. `own` contains the entries of the method after the step.
   void push(State const& x, double h, VecX const& own) {
     copy(own.data(), nv_, memory_.data());
     Past const past(*this);
@@ -66,17 +66,17 @@ class StepHistory {
     memory_[memory_.size() - 1] = h;
   }
 
-  /// v̇ and λ at x.t + h, to `vd` and l, each by the polynomial through as many of the last points as would have
-  /// predicted its present value best: many where the motion is smooth, few where what Newton left over would be blown
-  /// up.
+  /// Extrapolates v̇ and λ to x.t + h, into `vd` and `l`. Each polynomial uses as many of the last points as would have
+  /// given the best prediction of its present value: many in smooth motions, few if extrapolation would amplify the
+  /// remaining errors of Newton's method.
   void extrapolate(State const& x, double h, VecX& vd, VecX& l) const {
     Past past(*this);
-    if (h > 2.0 * length(1)) past.known = 1;  // what was learnt over short steps does not reach that far
+    if (h > 2.0 * length(1)) past.known = 1;  // differences over short steps are not valid for long ones
     past.extrapolate(h, x.a.data(), a(), vd);
     past.extrapolate(h, x.lambda.data(), lambda(), l);
   }
 
-  /// v̈ at x, of second order where two steps are known. False where none is.
+  /// Computes v̈ at x in `out`, of second order if two steps are known. Returns false if no step is known.
   bool jerk(State const& x, VecX& out) const {
     double const h1 = length(1), h2 = length(2);
     if (h1 == 0.0) return false;
@@ -89,9 +89,9 @@ class StepHistory {
   }
 
  private:
-  /// The points at x and before, as factors.
+  /// Points up to x, as factors of the formulas.
   struct Past {
-    int known = 1;                       ///< points, with that at x
+    int known = 1;                       ///< number of points, including x
     std::array<double, kept + 1> age{};  ///< t₀ − t₋ⱼ
     std::array<double, kept> beta{};
 
@@ -103,7 +103,7 @@ class StepHistory {
       }
     }
 
-    /// The differences `d` (n each) at x, where f (n) is `now`.
+    /// Updates the differences `d` (n each) for f = `now` (n) at x.
     void push(double const* now, Index n, double* d) const {
       for_each_simd_block(n, [=, last = std::min(known, kept) - 1, b = beta](auto at) {
         auto next = at(now);
@@ -116,7 +116,7 @@ class StepHistory {
       });
     }
 
-    /// How many points, whose differences are d (n each), would have predicted `now` (n) best.
+    /// Number of points, with the differences d (n each), that would have given the best prediction of `now` (n).
     int best_order(double const* now, double const* d, Index n) const {
       std::array<SimdSum, kept> errors;
       for_each_simd_block(n, [&](auto at) {
@@ -132,8 +132,8 @@ class StepHistory {
       return best;
     }
 
-    /// f(t₀ + h) = Σ γⱼ D′ⱼ, γ₀ = 1, γⱼ₊₁ = γⱼ (h + t₀ − t₋ⱼ)/(t₀ − t₋ⱼ₋₁), by the best number of points; f is `now`, D
-    /// are at d.
+    /// f(t₀ + h) = Σ γⱼ D′ⱼ, γ₀ = 1, γⱼ₊₁ = γⱼ (h + t₀ − t₋ⱼ)/(t₀ − t₋ⱼ₋₁), with the best number of points; f(t₀) is
+    /// `now`, and `d` contains D.
     void extrapolate(double h, double const* now, double const* d, VecX& out) const {
       Index const n = out.size();
       int const points = best_order(now, d, n);

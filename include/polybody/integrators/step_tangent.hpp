@@ -3,14 +3,14 @@
 
 namespace polybody {
 
-/// The tangent of an implicit step and its solver, without second-order terms ck ∂(Gᵀλ)/∂q, ∂(Jᵀw)/∂q or with them.
-/// They cost as much as the rest and seldom save an iteration. Steps that stall call for them; then they stay for eight
-/// steps, and twice as long each time that they are called for again within as many steps after they went, as beside
-/// singular positions.
+/// Tangent of an implicit step and its solver, with or without the second-order terms ck ∂(Gᵀλ)/∂q, ∂(Jᵀw)/∂q. These
+/// terms cost as much as all other terms and seldom save an iteration. A step that does not converge activates them for
+/// eight steps. If they are activated again within as many steps as their last period had, the period doubles, as
+/// happens near singular positions.
 template <LinearSolver Solver>
 class StepTangent {
  public:
-  /// Allocates all there is to be for steps without them, or with them. \param lambda of any values
+  /// Allocates all memory for steps with or without second-order `terms`. \param lambda of any values
   [[gnu::cold]] void analyse(System& system, SecondOrder terms, VecX const& lambda) {
     begins_with_ = terms == SecondOrder::included;
     has_second_ = false;
@@ -18,7 +18,7 @@ class StepTangent {
     left_out_.clear();
     forget();
   }
-  /// A start: no step has called for anything yet.
+  /// Start of a run: deactivates the activated terms and resets their period.
   void forget() {
     included_ = went_ = false;
     left_ = since_ = 0;
@@ -33,12 +33,12 @@ class StepTangent {
     if (has_second_) second_.mark_redundant(equations);
   }
 
-  /// The solver of the tangent as it is now.
+  /// Solver of the present tangent.
   TangentSolver<Solver>& solver() { return included_ ? second_ : first_; }
-  /// Whether the tangent has second-order terms now.
+  /// Second-order terms of the present tangent: included or omitted.
   SecondOrder terms() const { return included_ || begins_with_ ? SecondOrder::included : SecondOrder::omitted; }
 
-  /// A step calls for second-order terms; \param lambda of any values.
+  /// Activates second-order terms. \param lambda of any values
   [[gnu::cold]] void include(System& system, VecX const& lambda) {
     if (begins_with_ || included_) return;
     if (!has_second_) {
@@ -50,7 +50,7 @@ class StepTangent {
     stay_ = went_ && since_ <= stay_ ? std::min(2 * stay_, longest_stay) : shortest_stay;
     left_ = stay_;
   }
-  /// A step has ended. True where second-order terms go, and their factorisation with them.
+  /// Counts a step. Returns true if second-order terms end, and with them the factorisation.
   bool end_step() {
     ++since_;
     if (!included_ || --left_ > 0) return false;
@@ -66,9 +66,9 @@ class StepTangent {
   TangentSolver<Solver> first_, second_;
   Sequence<Index> left_out_;
   bool begins_with_ = false, has_second_ = false, included_ = false, went_ = false;
-  long stay_ = shortest_stay;  ///< steps for which they stay
-  long left_ = 0;              ///< of these
-  long since_ = 0;             ///< steps since they went
+  long stay_ = shortest_stay;  ///< length of their period, in steps
+  long left_ = 0;              ///< remaining steps of the period
+  long since_ = 0;             ///< steps since the end of the last period
 };
 
 }  // namespace polybody

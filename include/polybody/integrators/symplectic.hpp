@@ -1,22 +1,25 @@
 #pragma once
 /// \file
-/// Explicit methods whose energy error stays bounded: symplectic where coordinates form a vector space, the mass is
-/// constant and forces depend on positions alone (planar rigid bodies, cables, springs). Rigid bodies in space rotate
-/// by `FreeRotations`: reversible in time, with the energy of a free rotation conserved. Other bodies that rotate in
-/// space and damped forces are taken at the same order, but without that promise.
+/// Explicit methods with bounded energy error. They are symplectic if coordinates form a vector space, the mass is
+/// constant and forces depend on positions only (planar rigid bodies, cables, springs). Rigid bodies in space rotate by
+/// `FreeRotations`: reversible in time, with the energy of a free rotation conserved. Other bodies that rotate in
+/// space, and damped forces, are integrated at the same order, but without a bound of the energy error.
 
 #include <polybody/integrators/free_rotations.hpp>
 
 namespace polybody {
 
-/// v₁ = v₀ + h v̇₀,  q₁ = q₀ ⊞ h v₁, of order one, one evaluation a step [Hairer, Lubich & Wanner 2006, §I.1.2].
+/// Symplectic Euler method,
+///   v₁ = v₀ + h v̇₀,  q₁ = q₀ ⊞ h v₁,
+/// of order one, with one evaluation per step [Hairer, Lubich & Wanner 2006, §I.1.2].
 struct SymplecticEuler {
   static constexpr char const* name = "SymplecticEuler";
   static constexpr int order = 1;
   static constexpr bool accepts_constraints = false;
   static constexpr bool needs_constant_mass = true;
   static constexpr double stability_limit = 2.0;  ///< ωh, a ratio
-  /// Where ω²h² + 2dh = 4, d = `rate` [1/s], ω = `omega` [rad/s], a multiplier passes −1.
+  /// Largest stable step: beyond ω²h² + 2dh = 4, with d = `rate` [1/s] and ω = `omega` [rad/s], an amplification factor
+  /// lies below −1.
   static double stable_step(double omega, double rate) {
     return 4.0 / (rate + std::sqrt(rate * rate + 4.0 * omega * omega));
   }
@@ -43,11 +46,11 @@ struct SymplecticEuler {
   }
 };
 
-/// RATTLE, of order two [Andersen 1983; Hairer, Lubich & Wanner 2006, §VII.1.4]:
+/// RATTLE method, of order two [Andersen 1983; Hairer, Lubich & Wanner 2006, §VII.1.4]:
 ///   v½ = v₀ + ½h M⁻¹(f₀ − G₀ᵀλ),  q₁ = q₀ ⊞ h v½,   λ such that Φ(q₁) = 0,
 ///   v₁ = v½ + ½h M⁻¹(f₁ − G₁ᵀμ),                    μ such that G₁ v₁ + Φ_t = 0.
-/// λ by Newton with the matrix of q₀ throughout, so that every correction of h v½ lies along M⁻¹G₀ᵀ. Forces at t₁ are
-/// those of the speeds v½ + ½h v̇₀.
+/// Newton's method solves for λ with the matrix at q₀ in all iterations, so that every correction of h v½ lies along
+/// M⁻¹G₀ᵀ. Forces at t₁ are evaluated with the velocities v½ + ½h v̇₀.
 struct Rattle {
   static constexpr char const* name = "Rattle";
   static constexpr int order = 2;
@@ -56,15 +59,15 @@ struct Rattle {
   static constexpr double stability_limit = 2.0;  ///< ωh
   static double stable_step(double omega, double rate) { return verlet_stability_limit(omega, rate); }
 
-  double tolerance = 1e-12;  ///< of Φ, relative to 1 + max |q|
-  int max_iterations = 50;   ///< each gains a factor of about 1/(hω)
+  double tolerance = 1e-12;  ///< tolerance of Φ, relative to 1 + max |q|
+  int max_iterations = 50;   ///< limit of iterations; each reduces Φ by a factor of about 1/(hω)
 
-  /// Everything that a step needs, allocated once.
+  /// Memory of a step, allocated once.
   template <class Solver>
   struct Workspace : detail::RotatingStep<Solver> {
     VecX change, phi;  ///< a correction of dq (nv); Φ (rows)
     VecX moved;        ///< h v½ with the rotation vectors of free rotations
-    /// Allocates all of it.
+    /// Allocates all members.
     explicit Workspace(System& s)
         : detail::RotatingStep<Solver>(s), change(this->v), phi(this->lambda), moved(this->v) {}
   };
@@ -82,7 +85,7 @@ struct Rattle {
     w.forward.accelerations(system, {x.q, x.v, x.t}, x.a, x.lambda);
   }
 
-  /// \throws NewtonConvergenceFailure when the positions cannot be brought to the joints.
+  /// \throws NewtonConvergenceFailure if the positions do not converge to the constraint equations.
   template <class W>
   StepReport step(System& system, State& x, double h, W& w) const {
     w.find_applied(x);
@@ -108,14 +111,14 @@ struct Rattle {
   }
 
  private:
-  /// q = q₀ ⊞ dq after the free rotations.
+  /// Computes q = q₀ ⊞ dq after the free rotations.
   template <class W>
   static void move(System& system, State const& x, double h, W& w) {
     w.moved = w.dq;
     w.rotations.find_rotations(system, x.t + h, w.moved);
     system.plus(x.q, w.moved, w.q);
   }
-  /// Moves dq along M⁻¹G₀ᵀ until Φ(q₀ ⊞ dq) = 0; how many corrections it took.
+  /// Moves dq along M⁻¹G₀ᵀ until Φ(q₀ ⊞ dq) = 0. Returns the number of corrections.
   template <class W>
   int close(System& system, State const& x, double h, W& w) const {
     double const enough = tolerance * (1.0 + x.q.cwiseAbs().maxCoeff());

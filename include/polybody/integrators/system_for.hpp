@@ -1,39 +1,39 @@
 #pragma once
 /// \file
-/// The door between models and integrators: which steps which, and the system that is stepped.
+/// Interface between models and integrators: compatible pairs, and the system of a model for an integrator.
 
 #include <polybody/integrators/integrator.hpp>
 #include <polybody/solvers/reduced_coordinates.hpp>
 
 namespace polybody {
 
-/// Joints bring no rows into a step of model M, or integrator I keeps to them.
+/// Joints of model M add no constraint equations, or integrator I satisfies constraint equations.
 template <class I, class M>
 concept ConstraintCompatible = I::accepts_constraints || !M::may_have_rows;
 
-/// M has a constant mass matrix in the unknowns of a step, or I does not ask for one.
+/// M has a constant mass matrix in the unknowns of a step, or I does not require it.
 template <class I, class M>
 concept ConstantMassCompatible =
     !requires { requires I::needs_constant_mass; } || (M::constant_mass && std::is_void_v<typename M::Solution>);
 
-/// One linear system may hold M as often as I needs it.
+/// One linear system can contain M several times, or I does not require it.
 template <class I, class M>
 concept CoupledStageCompatible = !requires { requires I::coupled_stages; } ||
                                  !std::is_same_v<typename M::Solution, joint_coordinates::ArticulatedBody>;
 
-/// M gives means over a step, or I does not ask for them.
+/// M provides mean forces over a step, or I does not require them.
 template <class I, class M>
 concept SecantCompatible = !contains(entries_of<I>(), Capabilities::secants) || HasSecants<M>;
 
-/// I steps M.
+/// Integrator I can integrate model M.
 template <class I, class M>
 concept CompatibleIntegrator = ConstraintCompatible<I, M> && ConstantMassCompatible<I, M> &&
                                ArticulatedBodySolvable<M> && CoupledStageCompatible<I, M> && SecantCompatible<I, M>;
 
-/// Refuses a temporary model, to which the system would keep a reference.
+/// Refuses a temporary model, because the system refers to the model.
 template <class I, Capabilities more = Capabilities::motion, class M>
 System system_for(M const&& model) = delete;
-/// What integrator I steps of `model`, with the entries that it calls and `more`. The model must outlive it.
+/// System of `model` for integrator I, with the capabilities that I requires and `more`. The model must outlive it.
 template <class I, Capabilities more = Capabilities::motion, class M>
 System system_for(M const& model) {
   static_assert(ConstraintCompatible<I, M>,

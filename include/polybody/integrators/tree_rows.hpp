@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Rows by joint coordinates in the equations of all bodies of a tree.
+/// Constraint equations in joint coordinates, as equations in the velocities of all bodies of a tree.
 
 #include <algorithm>
 
@@ -9,17 +9,16 @@
 
 namespace polybody::detail {
 
-/// Rows A u̇ of joint coordinates, v̇ = T u̇, as rows f v̇ of all bodies, with fT = A. The rows of the tree hold in these
-/// equations, so f v̇ = A u̇ for every solution.
+/// Rows A u̇ in joint coordinates, with v̇ = T u̇, as rows f v̇ of all bodies, with fT = A. The equations of all bodies
+/// include the constraint equations of the tree. Therefore f v̇ = A u̇ for every solution.
 class TreeRows {
  public:
-  /// True if the equations of the system have the speeds of all bodies of a tree.
+  /// True if the equations of the system contain the velocities of all bodies of a tree.
   static bool are_in(System const& system) {
     return system.step_coordinates() && !system.step_coordinates().reduced->eliminated_equations.empty();
   }
 
-  /// Finds the speeds of a time step that each row depends on: those that move a body of the row.
-  /// \param equations blocks of the matrix of all bodies
+  /// Finds the velocities of a time step that each row depends on: they move a body of the row.
   template <class = void>  // compiled where it is used
   void analyse(System& system, Sequence<Block> const& equations) {
     coordinates_ = system.step_coordinates();
@@ -53,12 +52,12 @@ class TreeRows {
         if (columns[i][k]) rows_[i].columns.push_back(bodies_[k]);
   }
 
-  /// Speeds of a time step that row i depends on, ascending.
+  /// Velocities of a time step that row i depends on, ascending.
   Sequence<Index> const& speeds(Index i) const { return rows_[std::size_t(i)].speeds; }
 
-  /// Takes the positions of the last evaluation of the system for `write`.
+  /// Stores the positions of the last evaluation of the system for `write`.
   void hold() { coordinates_.entries->hold(coordinates_.self.get(), held_.get()); }
-  /// Adds row i, whose entries at `speeds(i)` are `row`, into `sink`, whose first equation and column are row0 and
+  /// Adds row i with the entries `row` at `speeds(i)` to `sink`. The first equation and column of the sink are row0 and
   /// col0.
   template <class = void>  // compiled where it is used
   void write(Index i, double const* row, Index row0, Index col0, BlockSink& sink) {
@@ -76,9 +75,9 @@ class TreeRows {
     Index first = 0, count = 0;
   };
   struct Row {
-    Index equation = 0;           ///< its number among the equations
-    Sequence<Index> speeds = {};  ///< of a time step, ascending
-    Sequence<Part> columns = {};  ///< of the bodies that f acts on
+    Index equation = 0;           ///< number among the equations
+    Sequence<Index> speeds = {};  ///< velocities of a time step, ascending
+    Sequence<Part> columns = {};  ///< columns of the bodies that f acts on
   };
 
   static bool has_entry(VecX const& x, Index first, Index count) {
@@ -93,7 +92,8 @@ class TreeRows {
         if (full >= bodies[k].v0 && full < bodies[k].v0 + bodies[k].velocities) bodies_[k] = {e, bodies_[k].count + 1};
     }
   }
-  /// By rows of a time step, whose equations are found, and by bodies.
+  /// Flags by rows of a time step and by bodies: true if the row contains the body. Also stores the equation of each
+  /// row.
   Sequence<Sequence<char>> bodies_of_rows(System const& system, Sequence<Block> const& equations) {
     ReducedLayout const& layout = *coordinates_.reduced;
     Sequence<Index> const& stay = layout.remaining_equations;

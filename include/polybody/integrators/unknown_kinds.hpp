@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Kinds of unknowns of a time step, and the assemblies that joints and forces make of bodies.
+/// Kinds of unknowns of a time step, and the assemblies of bodies that joints and forces connect.
 
 #include <string_view>
 
@@ -8,28 +8,29 @@
 
 namespace polybody::detail {
 
-/// Kinds of unknowns whose errors compare: of coordinates, and of their rates.
+/// Kinds of unknowns with comparable errors, of coordinates and of their rates.
 enum class UnknownKind : unsigned char {
-  length,    ///< of a position in the world
+  length,    ///< component of a position in the world
   rotation,  ///< an angle, or an entry of a unit quaternion
   other      ///< any other: gradients, deformations, slides, coordinates of unknown unit
 };
 
-/// An unknown: the body that it belongs to, its kind, and the axis of the world of a position, else −1.
+/// Unknown: its body, its kind, and the world axis of a position component, else −1.
 struct UnknownPlace {
   Index body = 0;
   UnknownKind kind = UnknownKind::other;
   signed char axis = -1;
 };
 
-/// Places of the coordinates and speeds of bodies, first-order states left out.
+/// Places of the coordinates and velocities of bodies, without first-order states.
 struct UnknownPlaces {
   Sequence<UnknownPlace> of_q, of_v;
 };
 
-/// By the units of a body. Three speeds in rad/s beside four coordinates without a unit are those of a quaternion.
-/// Lengths are positions where they come as many as the world has axes, with coordinates of other kinds between them;
-/// the last ones of a body that follow others are places of sliders.
+/// Classifies the unknowns of a body by their units. Four coordinates without a unit are a quaternion if three
+/// velocities in rad/s belong to them. Lengths are a position if there is one for each world axis, and if they are the
+/// first coordinates or other coordinates follow. Lengths at the end of a body, after other coordinates, are places of
+/// sliders.
 template <class = void>
 [[gnu::cold]] void classify(BodyLayout const& body, Index velocities, UnknownPlace* of_q, UnknownPlace* of_v) {
   if (!body.units.of_coordinate) return;
@@ -55,15 +56,14 @@ template <class = void>
   }
 }
 
-/// Places of the unknowns of the whole model.
+/// Places of the unknowns of the full model.
 template <class = void>
 [[gnu::cold]] UnknownPlaces full_places(ModelLayout const& layout) {
   UnknownPlaces out{Sequence<UnknownPlace>(std::size_t(layout.coordinates)),
                     Sequence<UnknownPlace>(std::size_t(layout.body_velocities()))};
   for (std::size_t k = 0; k < layout.bodies.size(); ++k) {
     BodyLayout const& b = layout.bodies[k];
-    Index const velocities =
-        std::min(b.velocities, layout.body_velocities() - b.v0);  // behind them: first-order states
+    Index const velocities = std::min(b.velocities, layout.body_velocities() - b.v0);  // first-order states follow
     for (Index i = 0; i < b.coordinates; ++i) out.of_q[std::size_t(b.q0 + i)].body = Index(k);
     for (Index i = 0; i < velocities; ++i) out.of_v[std::size_t(b.v0 + i)].body = Index(k);
     classify(b, velocities, out.of_q.data() + b.q0, out.of_v.data() + b.v0);
@@ -71,7 +71,7 @@ template <class = void>
   return out;
 }
 
-/// From those of the whole model to those of a time step.
+/// Places of the unknowns of a time step, from those of the full model.
 template <class = void>
 [[gnu::cold]] UnknownPlaces stepped_places(System const& system, UnknownPlaces const& full) {
   ReducedLayout const& n = *system.step_coordinates().reduced;
@@ -90,7 +90,7 @@ template <class = void>
     for (Index i = 0; i < at.coordinates; ++i) {
       UnknownPlace& kind = of_q[std::size_t(at.q + i)];
       if (at.kind == ReducedPosition::Kind::as_it_is) kind = full.of_q[std::size_t(body.q0 + i)];
-      if (at.kind == ReducedPosition::Kind::reduced) kind = of_v[std::size_t(at.v + i)];  // they add
+      if (at.kind == ReducedPosition::Kind::reduced) kind = of_v[std::size_t(at.v + i)];  // additive
       kind.body = Index(k);
     }
   }
@@ -101,7 +101,7 @@ template <class = void>
   return out;
 }
 
-/// Number of the assembly of each body: of bodies that joints and forces connect.
+/// Number of the assembly of each body. Joints and forces connect the bodies of an assembly.
 template <class = void>
 [[gnu::cold]] Sequence<Index> assemblies_of(ModelLayout const& layout) {
   Sequence<Index> root(layout.bodies.size());
