@@ -8,9 +8,9 @@ namespace polybody {
 struct AlphaVectors {
   VecX v0, a0;  ///< generalised velocities and algorithmic accelerations at the start of the step
   VecX q, v, vd, a, dq, r, phi, jerk, ahead;  ///< in order: q, v, v̇, a, Δq, r, Φ, q⃛, a second Δq
-  VecX lambda, rhs, y;    ///< λ, right-hand side, correction: with all multipliers of a step; `phi` has those of Φ only
-  VecX back, rate, open;  ///< of a stabilised step: change of Δq by μ, Φ̇, Φ before the correction by μ
-  VecX kept, kept_back;   ///< copies of y and `back` during the test for round-off
+  VecX lambda, rhs, y;                ///< in order: λ, right-hand side, correction; λ may have more entries than Φ
+  VecX back, rate, open;              ///< of a stabilised step: change of Δq by μ, Φ̇, Φ before the correction by μ
+  VecX kept, kept_back;               ///< copies of y and `back` during the test for round-off
   AndersonAcceleration acceleration;  ///< acceleration of y, in the norm of the accelerations of bodies
   Index states;                       ///< number of first-order states, the last entries of v
 

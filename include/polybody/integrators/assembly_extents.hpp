@@ -61,7 +61,7 @@ class AssemblyExtents {
   };
   struct Box {
     Bounds ground, rest;  ///< bounds of the points at rest: positions, velocities
-    Bounds bounds;        ///< scratch
+    Bounds bounds;        ///< workspace
     Extent extent;
   };
   /// Entry of a position or velocity.

@@ -157,7 +157,7 @@ struct ConservingStep {
     }
   };
 
-  /// ‖Δv − h v̇₀‖².
+  /// Squared deviation of the velocities from constant acceleration, ‖Δv − h v̇₀‖².
   static double change(State const& x, double h, VecX const& vd) {
     double sum = 0.0;
     for (Index i = 0; i < vd.size(); ++i) sum += (vd[i] - x.a[i]) * (vd[i] - x.a[i]);

@@ -12,7 +12,7 @@ namespace polybody {
 class ConstraintDerivatives {
  public:
   /// Reads the block pattern of G. The system must have been evaluated before.
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   void analyse(System& system) {
     blocks_.clear();
     velocities_ = system.velocities();
@@ -39,7 +39,7 @@ class ConstraintDerivatives {
   }
 
   /// Computes the derivatives at q, v, v̇ = `vd` and t; afterwards `system` is evaluated at another state.
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   void measure(System& system, VecX const& q, VecX const& v, VecX const& vd, double t) {
     if (colours_ == 0) return;
     system.evaluate(q, v, t);
@@ -61,7 +61,7 @@ class ConstraintDerivatives {
   /// Adds cv ∂Φ̈/∂v + cq ∂Φ̈/∂q of the last `measure` to `sink`, at the state of the last evaluation of the system. The
   /// first constraint equation and the first column are `row0` and `col0`. If the equations include the bodies of a
   /// tree, row0 is the first equation of all.
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   void write(double cv, double cq, Index row0, Index col0, BlockSink& sink) {
     if (in_tree_) tree_.hold();
     for (std::size_t k = 0; k < blocks_.size();) {

@@ -1,10 +1,10 @@
 #pragma once
 /// \file
 /// Free rotations of rigid bodies in explicit steps. Half steps of Ω by v̇ do not conserve the energy of a rotation: Ω˙
-/// contains the product J⁻¹(Ω × J Ω). These methods split it off. Forces change Ω by h J⁻¹ m. Between these changes a
-/// body rotates freely,
+/// contains the product J⁻¹(Ω × J Ω). These methods integrate this product separately. Forces change Ω by h J⁻¹ m.
+/// Between these changes a body rotates freely,
 ///   q₁ = q₀ ⊞ θ,   Π₁ = exp(−θ̃) Π₀,   θ = ½h J⁻¹(Π₀ + Π₁),   Π = J Ω in body axes [Simo & Wong 1991].
-/// |Π|, the momentum in world axes and the energy ½ ΩᵀJΩ are conserved, as (Π₁ − Π₀)·θ = 0. A rotation about a
+/// |Π|, the momentum in world axes and the energy ½ ΩᵀJΩ are conserved, because (Π₁ − Π₀)·θ = 0. A rotation about a
 /// principal axis is exact. The step is of order two and reversible in time.
 
 #include <cmath>

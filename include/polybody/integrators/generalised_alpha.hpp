@@ -23,8 +23,7 @@ struct GeneralisedAlpha {
   NewtonOptions newton = {};        ///< options of Newton's method
   bool start_correction = true;     ///< multipliers of second order from the first step and across changes of h
   bool second_order_terms = false;  ///< include ∂(Gᵀλ)/∂q in the tangent from the start
-  /// Also satisfy the derivatives of the constraint equations, Φ̇ = 0, by one more factorisation, of [M, Gᵀ; G, 0], per
-  /// step.
+  /// Also satisfy Φ̇ = 0, at the cost of one factorisation of [M, Gᵀ; G, 0] per step.
   bool stabilised = false;
 
   /// \throws InvalidInput unless 0 ≤ ρ∞ ≤ 1 and the tolerance is positive.

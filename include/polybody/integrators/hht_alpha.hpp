@@ -3,7 +3,7 @@
 
 namespace polybody {
 
-/// HHT-α method: a step uses forces between those at its two ends,
+/// HHT-α method: a step uses a weighted mean of the forces at its two ends,
 ///   M a₁ = (1 + α) f₁ − α f₀,   γ = ½ − α,   β = ¼(1 − α)²   [Hilber, Hughes & Taylor 1977].
 /// It is the generalised-α method with α_m = 0, α_f = −α. Its spectral radius at infinity is (1 + α)/(1 − α).
 struct HhtAlpha {

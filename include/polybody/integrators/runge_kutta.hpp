@@ -64,7 +64,7 @@ struct RungeKuttaWorkspace : ExplicitStep<Solver> {
   /// Projects the combined result and stores it in x as the state at t + h. Returns the number of evaluations. \param
   /// evaluated true if the last stage is at the combined result
   int accept(System& system, State& x, double h, Stabilisation const& stabilisation, bool evaluated) {
-    bool const again = !evaluated || system.rows() > 0;  // a projection moves the state
+    bool const again = !evaluated || system.rows() > 0;  // a projection changes the state
     system.plus(x.q, dq, q);
     if (again) {
       stabilisation.apply(system, forward, scratch, q, v, x.t + h);

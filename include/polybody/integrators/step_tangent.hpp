@@ -25,7 +25,7 @@ class StepTangent {
     stay_ = shortest_stay;
   }
 
-  /// Every later factorisation drops these equations, which are redundant.
+  /// Every later factorisation drops these redundant `equations`.
   void mark_redundant(std::span<Index const> equations) {
     if (std::equal(equations.begin(), equations.end(), left_out_.begin(), left_out_.end())) return;
     left_out_ = Sequence<Index>(equations.begin(), equations.end());

@@ -56,7 +56,7 @@ struct Rattle {
   static constexpr int order = 2;
   static constexpr bool accepts_constraints = true;
   static constexpr bool needs_constant_mass = true;
-  static constexpr double stability_limit = 2.0;  ///< ωh
+  static constexpr double stability_limit = 2.0;  ///< ωh, a ratio
   static double stable_step(double omega, double rate) { return verlet_stability_limit(omega, rate); }
 
   double tolerance = 1e-12;  ///< tolerance of Φ, relative to 1 + max |q|
@@ -65,7 +65,7 @@ struct Rattle {
   /// Memory of a step, allocated once.
   template <class Solver>
   struct Workspace : detail::RotatingStep<Solver> {
-    VecX change, phi;  ///< a correction of dq (nv); Φ (rows)
+    VecX change, phi;  ///< correction of dq (nv); Φ
     VecX moved;        ///< h v½ with the rotation vectors of free rotations
     /// Allocates all members.
     explicit Workspace(System& s)

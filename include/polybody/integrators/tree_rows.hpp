@@ -19,7 +19,7 @@ class TreeRows {
   }
 
   /// Finds the velocities of a time step that each row depends on: they move a body of the row.
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   void analyse(System& system, Sequence<Block> const& equations) {
     coordinates_ = system.step_coordinates();
     ReducedLayout const& layout = *coordinates_.reduced;
@@ -59,7 +59,7 @@ class TreeRows {
   void hold() { coordinates_.entries->hold(coordinates_.self.get(), held_.get()); }
   /// Adds row i with the entries `row` at `speeds(i)` to `sink`. The first equation and column of the sink are row0 and
   /// col0.
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   void write(Index i, double const* row, Index row0, Index col0, BlockSink& sink) {
     Row const& r = rows_[std::size_t(i)];
     for (std::size_t k = 0; k < r.speeds.size(); ++k) unit_[r.speeds[k]] = row[k];
@@ -70,7 +70,7 @@ class TreeRows {
   }
 
  private:
-  /// Unknowns of the equations.
+  /// Range of unknowns of the equations.
   struct Part {
     Index first = 0, count = 0;
   };

@@ -29,8 +29,8 @@ struct UnknownPlaces {
 
 /// Classifies the unknowns of a body by their units. Four coordinates without a unit are a quaternion if three
 /// velocities in rad/s belong to them. Lengths are a position if there is one for each world axis, and if they are the
-/// first coordinates or other coordinates follow. Lengths at the end of a body, after other coordinates, are places of
-/// sliders.
+/// first coordinates or other coordinates follow. Lengths at the end of a body, after other coordinates, are positions
+/// of sliders.
 template <class = void>
 [[gnu::cold]] void classify(BodyLayout const& body, Index velocities, UnknownPlace* of_q, UnknownPlace* of_v) {
   if (!body.units.of_coordinate) return;
