@@ -1,8 +1,9 @@
 #pragma once
 /// \file
-/// The rows of angles: that of a vector in a's first two axes, θ = atan2(y, x), where x and y are two rows of rows.hpp.
+/// Constraint functions of angles. The angle of a vector in the first two axes of a is θ = atan2(y, x), with x and y
+/// from constraint_functions.hpp.
 ///   θ̇ = (x ẏ − y ẋ)/n²,   n² = x² + y².
-/// Angles are compared modulo a full turn, so nothing need be remembered from step to step.
+/// Angles are compared modulo a full turn, so that no data are stored between steps.
 
 #include <numbers>
 
@@ -10,14 +11,14 @@
 
 namespace polybody::constraint_functions {
 
-/// The angle less the nearest number of full turns [rad].
+/// Angle minus the nearest multiple of a full turn [rad].
 template <StateScalar T>
 T wrapped(T const& angle) {
   double const turn = 2.0 * std::numbers::pi;
   return angle - turn * std::nearbyint(value_of(angle) / turn);
 }
 
-/// θ in (−π, π] with its maps, from x and y with theirs. x = y = 0 has no angle.
+/// θ in (−π, π] with its Jacobians, from x and y with their Jacobians. θ is undefined for x = y = 0.
 template <StateScalar T>
 ConstraintTerms<1, T> angle(ConstraintTerms<2, T> const& xy) {
   using std::atan2;
@@ -32,7 +33,7 @@ ConstraintTerms<1, T> angle(ConstraintTerms<2, T> const& xy) {
   return gap;
 }
 
-/// γ of θ from those of x and y: (x γ_y − y γ_x − 2 θ̇ (x ẋ + y ẏ))/n².
+/// γ of θ from γ of x and y: (x γ_y − y γ_x − 2 θ̇ (x ẋ + y ẏ))/n².
 template <StateScalar T>
 T angle_gamma(ConstraintTerms<2, T> const& xy, Vec<T, 2> const& gamma, Frame<T> const& a, Frame<T> const& b) {
   T rate[2] = {T(0.0), T(0.0)};
@@ -44,9 +45,9 @@ T angle_gamma(ConstraintTerms<2, T> const& xy, Vec<T, 2> const& gamma, Frame<T> 
   return (x * gamma[1] - y * gamma[0] - 2.0 * turning * (x * rate[0] + y * rate[1])) / n2;
 }
 
-/// Adds −λ (G_θᵀ G_r + G_rᵀ G_θ), G_r = (x G_x + y G_y)/n²: what the wrench of θ changes by as x and y change in it.
-/// The rest is the change of their own maps under the multipliers λ (−y, x)/n², which are returned.
-template <class = void>  // compiled where it is used
+/// Adds −λ (G_θᵀ G_r + G_rᵀ G_θ), G_r = (x G_x + y G_y)/n²: the change of the wrench of θ due to changes of x and y.
+/// Changes of G_x and G_y add their wrench gradients with the multipliers λ (−y, x)/n², which are returned.
+template <class = void>  // compiled only if used
 Vec2 angle_gradient(ConstraintTerms<2> const& xy, double lambda, WrenchGradient& k) {
   double const x = xy.g[0], y = xy.g[1], n2 = x * x + y * y;
   double turning[12], growing[12];
@@ -60,8 +61,8 @@ Vec2 angle_gradient(ConstraintTerms<2> const& xy, double lambda, WrenchGradient&
   return {-y * (lambda / n2), x * (lambda / n2)};
 }
 
-/// x = a₁·b₁ and y = a₂·b₁, whose angle is the turn of b against a about a₃. While b₁ stays in the plane of a₁, a₂ (as
-/// a Revolute keeps it) θ̇ = a₃·(ω_b − ω_a); perpendicular to it there is no angle.
+/// x = a₁·b₁ and y = a₂·b₁; their angle is the rotation of b relative to a about a₃. If b₁ is in the plane of a₁, a₂
+/// (as with a Revolute), θ̇ = a₃·(ω_b − ω_a). If b₁ is perpendicular to this plane, the angle is undefined.
 template <StateScalar T>
 ConstraintTerms<2, T> turned(Frame<T> const& a, Frame<T> const& b) {
   ConstraintTerms<2, T> xy;
@@ -69,7 +70,7 @@ ConstraintTerms<2, T> turned(Frame<T> const& a, Frame<T> const& b) {
   return xy;
 }
 
-/// γ of the turn θ of b against a about a₃; xy is `turned(a, b)`.
+/// γ of the rotation θ of b relative to a about a₃; xy is `turned(a, b)`.
 template <StateScalar T>
 T turn_gamma(ConstraintTerms<2, T> const& xy, Frame<T> const& a, Frame<T> const& b) {
   Vec<T, 3> const axis = axis_of(b, 0);
@@ -77,15 +78,16 @@ T turn_gamma(ConstraintTerms<2, T> const& xy, Frame<T> const& a, Frame<T> const&
       xy, {perpendicular_gamma(axis_of(a, 0), axis, a, b), perpendicular_gamma(axis_of(a, 1), axis, a, b)}, a, b);
 }
 
-/// Adds λ ∂²θ of the turn θ to the wrench gradient k.
-template <class = void>  // compiled where it is used
+/// Adds λ ∂²θ of the rotation θ to the wrench gradient k.
+template <class = void>  // compiled only if used
 void turn_gradient(Frame<double> const& a, Frame<double> const& b, double lambda, WrenchGradient& k) {
   Vec2 const each = angle_gradient(turned(a, b), lambda, k);
   for (int i = 0; i < 2; ++i) perpendicular_gradient(axis_of(a, i), axis_of(b, 0), each[i], k);
 }
 
-/// Writes to `row` g = u·d − p θ, u (3) fixed in a, θ the turn of b about a₃: one slide and one turn coupled, p
-/// [m/rad]. Full turns are counted by the slide, g = −p wrap(θ − u·d/p), so |g| ≤ π |p|.
+/// Writes g = u·d − p θ to `row`: a coupled translation and rotation. u (3) is fixed in a, θ is the rotation of b about
+/// a₃, and p has the unit [m/rad]. The translation determines the number of full turns, g = −p wrap(θ − u·d/p), so that
+/// |g| ≤ π |p|.
 template <int m, StateScalar T>
 void slide_and_turn(Vec<T, 3> const& u, double p, Frame<T> const& a, Frame<T> const& b, ConstraintTerms<m, T>& gap,
                     int row) {
@@ -105,7 +107,7 @@ T slide_and_turn_gamma(Vec<T, 3> const& u, double p, Frame<T> const& a, Frame<T>
 }
 
 /// Adds the wrench gradient of `slide_and_turn` along u (3) with p [m/rad] under λ to k.
-template <class = void>  // compiled where it is used
+template <class = void>  // compiled only if used
 void slide_and_turn_gradient(Vec3 const& u, double p, Frame<double> const& a, Frame<double> const& b, double lambda,
                              WrenchGradient& k) {
   no_slide_gradient(u, a, b, lambda, k);

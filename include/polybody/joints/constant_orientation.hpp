@@ -3,7 +3,8 @@
 
 namespace polybody {
 
-/// The axes of b stay parallel to those of a, the points are free, 3 rows g = [a₁·b₂; a₂·b₃; a₃·b₁].
+/// The axes of b stay parallel to the axes of a; translations are free. 3 constraint equations g = [a₁·b₂; a₂·b₃;
+/// a₃·b₁].
 struct ConstantOrientation {
   static constexpr char const* name = "ConstantOrientation";
   static constexpr int rows = 3;
@@ -24,7 +25,7 @@ struct ConstantOrientation {
   Vec<T, 3> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
     return polybody::constraint_functions::parallel_gamma(a, b);
   }
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 3> const& lambda) const {
     auto k = detail::zeros<Mat<double, 12, 12>>();

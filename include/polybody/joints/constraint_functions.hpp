@@ -1,12 +1,12 @@
 #pragma once
 /// \file
-/// The rows from which joint geometries are put together, each with its maps and its γ. With d = r_b − r_a:
+/// Constraint functions of joint geometries, each with its Jacobians and its γ. With d = r_b − r_a:
 ///   coincident points   g = d
 ///   perpendicular axes  g = u·w, u fixed in a, w fixed in b
 ///   no slide along u    g = u·d, u fixed in a
 ///   distance            g = |d| − L
-/// γ is the part of g̈ that the accelerations of the frames do not explain.
-/// [Haug 1989, §2.4 and §9.4; thesis Eq. 3.8–3.10 and §3.5.1]
+/// γ is the part of g̈ that does not depend on the accelerations of the frames. [Haug 1989, §2.4 and §9.4; thesis Eq.
+/// 3.8–3.10 and §3.5.1]
 
 #include <polybody/joints/constraint_terms.hpp>
 
@@ -60,7 +60,7 @@ inline T no_slide_gamma(Vec<T, 3> const& u, Frame<T> const& a, Frame<T> const& b
   return 2.0 * dot(ud, rate) + dot(udd, d);
 }
 
-/// Writes the three rows from `row` on, a₁·b₂, a₂·b₃, a₃·b₁, that hold the axes of b parallel to those of a.
+/// Writes a₁·b₂, a₂·b₃, a₃·b₁ to three rows from `row` on: the axes of b are parallel to the axes of a.
 template <int m, StateScalar T>
 void parallel(Frame<T> const& a, Frame<T> const& b, ConstraintTerms<m, T>& gap, int row) {
   for (int i = 0; i < 3; ++i) perpendicular(axis_of(a, i), axis_of(b, (i + 1) % 3), gap, row + i);
@@ -74,7 +74,7 @@ Vec<T, 3> parallel_gamma(Frame<T> const& a, Frame<T> const& b) {
   return gamma;
 }
 
-/// Writes a₁·b₃ and a₂·b₃ from `row` on, which hold the third axes parallel.
+/// Writes a₁·b₃ and a₂·b₃ to two rows from `row` on: the third axes are parallel.
 template <int m, StateScalar T>
 void same_direction(Frame<T> const& a, Frame<T> const& b, ConstraintTerms<m, T>& gap, int row) {
   for (int i = 0; i < 2; ++i) perpendicular(axis_of(a, i), axis_of(b, 2), gap, row + i);
@@ -87,20 +87,20 @@ Vec<T, 2> same_direction_gamma(Frame<T> const& a, Frame<T> const& b) {
   return {perpendicular_gamma(axis_of(a, 0), axis, a, b), perpendicular_gamma(axis_of(a, 1), axis, a, b)};
 }
 
-/// Writes a₁·d and a₂·d from `row` on, which hold the point of b on the third axis of a.
+/// Writes a₁·d and a₂·d to two rows from `row` on: the point of b is on the third axis of a.
 template <int m, StateScalar T>
 void on_axis(Frame<T> const& a, Frame<T> const& b, ConstraintTerms<m, T>& gap, int row) {
   for (int i = 0; i < 2; ++i) no_slide(axis_of(a, i), a, b, gap, row + i);
 }
 
-/// γ of the two rows that keep a point on the axis a₃.
+/// γ of `on_axis`.
 template <StateScalar T>
 Vec<T, 2> on_axis_gamma(Frame<T> const& a, Frame<T> const& b) {
   return {no_slide_gamma(axis_of(a, 0), a, b), no_slide_gamma(axis_of(a, 1), a, b)};
 }
 
-/// Writes g = |d| − length to `row`: ġ = e·(v_b − v_a), e = d/|d|. Points that coincide have no direction; x stands in
-/// for it, so that `assemble` can part them.
+/// Writes g = |d| − length to `row`: ġ = e·(v_b − v_a), e = d/|d|. If the points coincide, e is the x axis, so that
+/// `assemble` can separate them.
 template <int m, StateScalar T>
 void distance(Frame<T> const& a, Frame<T> const& b, double length, ConstraintTerms<m, T>& gap, int row = 0) {
   using std::sqrt;
@@ -123,11 +123,11 @@ T distance_gamma(Frame<T> const& a, Frame<T> const& b) {
   return (squared_norm(rate) - along * along / d2) / sqrt(d2);
 }
 
-/// ∂[wa; wb]/∂(δr_a, δφ_a, δr_b, δφ_b), 12×12: the wrenches of rows with multipliers, rotations in world axes.
+/// ∂[wa; wb]/∂(δr_a, δφ_a, δr_b, δφ_b), 12×12: derivative of the wrenches Gaᵀλ and Gbᵀλ, rotations in world axes.
 using WrenchGradient = Mat<double, 12, 12>;
 
-/// Adds λ times that of `perpendicular`: c = u × w, δc = (u wᵀ − (u·w) 1) δφ_a + ((u·w) 1 − w uᵀ) δφ_b.
-template <class = void>  // compiled where it is used
+/// Adds λ times the gradient of `perpendicular`: c = u × w, δc = (u wᵀ − (u·w) 1) δφ_a + ((u·w) 1 − w uᵀ) δφ_b.
+template <class = void>  // compiled only if used
 void perpendicular_gradient(Vec3 const& u, Vec3 const& w, double lambda, WrenchGradient& k) {
   double const uw = dot(u, w);
   for (int j = 0; j < 3; ++j)
@@ -140,8 +140,8 @@ void perpendicular_gradient(Vec3 const& u, Vec3 const& w, double lambda, WrenchG
     }
 }
 
-/// Adds λ times that of `no_slide`: δu = −ũ δφ_a and δ(u × d) = (u dᵀ − (u·d) 1) δφ_a + ũ (δr_b − δr_a).
-template <class = void>  // compiled where it is used
+/// Adds λ times the gradient of `no_slide`: δu = −ũ δφ_a and δ(u × d) = (u dᵀ − (u·d) 1) δφ_a + ũ (δr_b − δr_a).
+template <class = void>  // compiled only if used
 void no_slide_gradient(Vec3 const& u, Frame<double> const& a, Frame<double> const& b, double lambda,
                        WrenchGradient& k) {
   Vec3 const d = difference(b.r, a.r);
@@ -158,26 +158,26 @@ void no_slide_gradient(Vec3 const& u, Frame<double> const& a, Frame<double> cons
     }
 }
 
-/// Adds that of `parallel` for three multipliers.
-template <class = void>  // compiled where it is used
+/// Adds the gradient of `parallel` for three multipliers.
+template <class = void>  // compiled only if used
 void parallel_gradient(Frame<double> const& a, Frame<double> const& b, Vec3 const& lambda, WrenchGradient& k) {
   for (int i = 0; i < 3; ++i) perpendicular_gradient(axis_of(a, i), axis_of(b, (i + 1) % 3), lambda[i], k);
 }
 
-/// Adds that of `same_direction` for two multipliers.
-template <class = void>  // compiled where it is used
+/// Adds the gradient of `same_direction` for two multipliers.
+template <class = void>  // compiled only if used
 void same_direction_gradient(Frame<double> const& a, Frame<double> const& b, Vec2 const& lambda, WrenchGradient& k) {
   for (int i = 0; i < 2; ++i) perpendicular_gradient(axis_of(a, i), axis_of(b, 2), lambda[i], k);
 }
 
-/// Adds that of `on_axis` for two multipliers.
-template <class = void>  // compiled where it is used
+/// Adds the gradient of `on_axis` for two multipliers.
+template <class = void>  // compiled only if used
 void on_axis_gradient(Frame<double> const& a, Frame<double> const& b, Vec2 const& lambda, WrenchGradient& k) {
   for (int i = 0; i < 2; ++i) no_slide_gradient(axis_of(a, i), a, b, lambda[i], k);
 }
 
-/// Adds λ times that of `distance`: δe = (1 − e eᵀ)(δr_b − δr_a)/|d|.
-template <class = void>  // compiled where it is used
+/// Adds λ times the gradient of `distance`: δe = (1 − e eᵀ)(δr_b − δr_a)/|d|.
+template <class = void>  // compiled only if used
 void distance_gradient(Frame<double> const& a, Frame<double> const& b, double lambda, WrenchGradient& k) {
   Vec3 const d = difference(b.r, a.r);
   double const d2 = squared_norm(d), tension = lambda / std::sqrt(d2);
@@ -191,8 +191,8 @@ void distance_gradient(Frame<double> const& a, Frame<double> const& b, double la
     }
 }
 
-/// The matrix with the columns x, y, z (3).
-template <class = void>  // compiled where it is used
+/// Matrix with the columns x, y, z (3).
+template <class = void>  // compiled only if used
 Mat3 columns(Vec3 const& x, Vec3 const& y, Vec3 const& z) {
   Mat3 m;
   for (int i = 0; i < 3; ++i) {
@@ -203,9 +203,9 @@ Mat3 columns(Vec3 const& x, Vec3 const& y, Vec3 const& z) {
   return m;
 }
 
-/// A right-handed triad with both axes in it: \p first its first, \p third its third; `what` names the joint.
+/// Right-handed triad with \p first as its first and \p third as its third axis; `what` names the joint.
 /// \throws InvalidInput unless they are unit vectors at right angles (to 1e-9).
-template <class = void>  // compiled where it is used
+template <class = void>  // compiled only if used
 Mat3 triad_of(Vec3 const& first, Vec3 const& third, std::string const& what) {
   require_unit(first, what, ": the first axis");
   require_unit(third, what, ": the second axis");
@@ -218,8 +218,8 @@ Mat3 triad_of(Vec3 const& first, Vec3 const& third, std::string const& what) {
   return columns(first, cross(third, first), third);
 }
 
-/// A right-handed triad whose third axis is `axis`. \throws InvalidInput unless it is a unit vector.
-template <class = void>  // compiled where it is used
+/// Right-handed triad with the third axis `axis`. \throws InvalidInput unless it is a unit vector.
+template <class = void>  // compiled only if used
 Mat3 triad_about(Vec3 const& axis, std::string const& what) {
   require_unit(axis, what);
   int smallest = 0;

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Waist 2: the gap, all that a policy knows of a joint.
+/// Interface between joint geometries and policies: constraint function, Jacobians and prescribed rate of a joint.
 
 #include <array>
 #include <utility>
@@ -10,8 +10,8 @@
 namespace polybody {
 
 namespace detail {
-/// Zeros, each by a store of its own, of which compilers make registers. Of a loop g++ -O2 makes a string instruction,
-/// which takes as long to begin as a joint's gap to be measured.
+/// Zero matrix with one assignment for each entry, so that compilers keep the entries in registers. For a loop, g++ -O2
+/// emits a string instruction, whose startup needs as much time as the evaluation of a joint's constraint function.
 template <class M>
 M stored_zeros() {
   M m;
@@ -22,26 +22,26 @@ M stored_zeros() {
 }
 }  // namespace detail
 
-/// The violation of m rows between frame a and frame b:
+/// Constraint function of m equations between frame a and frame b, with its Jacobians:
 ///   ġ = Ga Va + Gb Vb + Φ_t,   V = [ṙ; ω] in world axes.
-/// Rows are of positions (holonomic), but for those that a geometry names as `nonholonomic_equations`: of these only
-/// the rate has a meaning, and g is zero.
+/// The equations are holonomic, except the last `nonholonomic_equations` of a geometry: these define only a rate, and
+/// their g is zero.
 template <int m, StateScalar T = double>
 struct ConstraintTerms {
   static constexpr int rows = m;
   Vec<T, m> g = detail::zeros<Vec<T, m>>();                ///< (m) violation [m], [rad] or [1]
-  Mat<T, m, 6> Ga = detail::stored_zeros<Mat<T, m, 6>>();  ///< (m×6) map of frame a's twist
-  Mat<T, m, 6> Gb = detail::stored_zeros<Mat<T, m, 6>>();  ///< (m×6) map of frame b's twist
-  Vec<T, m> rate = detail::zeros<Vec<T, m>>();             ///< (m) Φ_t: the rate that is prescribed by time alone
+  Mat<T, m, 6> Ga = detail::stored_zeros<Mat<T, m, 6>>();  ///< (m×6) Jacobian for the twist of frame a
+  Mat<T, m, 6> Gb = detail::stored_zeros<Mat<T, m, 6>>();  ///< (m×6) Jacobian for the twist of frame b
+  Vec<T, m> rate = detail::zeros<Vec<T, m>>();  ///< (m) Φ_t: the part of ġ that is prescribed as a function of time
 };
 
-/// Axis i of a frame, a column of A.
+/// Axis i of a frame: column i of A.
 template <StateScalar T>
 Vec<T, 3> axis_of(Frame<T> const& frame, int i) {
   return {frame.A(0, i), frame.A(1, i), frame.A(2, i)};
 }
 
-/// [ṙ; ω] of a frame.
+/// Twist [ṙ; ω] of a frame.
 template <StateScalar T>
 Vec<T, 6> twist(Frame<T> const& frame) {
   Vec<T, 6> v;
@@ -52,16 +52,16 @@ Vec<T, 6> twist(Frame<T> const& frame) {
   return v;
 }
 
-/// Pose and twist of b seen from a, in a's axes: what a compliant joint needs beyond the rows.
+/// Pose and twist of b relative to a, in the axes of a.
 template <StateScalar T = double>
 struct RelativeMotion {
   Vec<T, 3> d;     ///< (3) r_b − r_a in a's axes [m]
   Mat<T, 3, 3> R;  ///< (3×3) AaᵀAb
-  Vec<T, 3> v;     ///< (3) rate of r_b − r_a seen in a's axes [m/s]
+  Vec<T, 3> v;     ///< (3) rate of r_b − r_a relative to a, in a's axes [m/s]
   Vec<T, 3> w;     ///< (3) ω_b − ω_a in a's axes [rad/s]
 };
 
-/// Pose and twist of b seen from a.
+/// Pose and twist of b relative to a, in the axes of a.
 template <StateScalar T>
 RelativeMotion<T> relative(Frame<T> const& a, Frame<T> const& b) {
   Vec<T, 3> const d = b.r - a.r;
@@ -69,7 +69,7 @@ RelativeMotion<T> relative(Frame<T> const& a, Frame<T> const& b) {
           a.A.transpose() * (b.w - a.w)};
 }
 
-/// A function from two frames to a gap, which a policy answers.
+/// Function from two frames to constraint terms, on which a policy acts.
 template <class G>
 concept ConstraintFunction = requires(G const g, Frame<double> const a, Frame<double> const b, double t) {
   requires 1 <= G::rows&& G::rows <= 6;
@@ -77,10 +77,10 @@ concept ConstraintFunction = requires(G const g, Frame<double> const a, Frame<do
   { g.template constraint_function<double>(a, b, t) } -> std::same_as<ConstraintTerms<G::rows, double>>;
 };
 
-/// A joint geometry measures the motions that it stops. Its markers get axes that coincide at the reference
-/// configuration: `triad()` in world axes; the joint's axis is the third. It may have `check(name)`, which `connect`
-/// calls with the joint's name, and `breakpoints()`, times at which steps are to end; `docs/extending.md` lists what
-/// else.
+/// Geometry of a joint: its constraint function contains the motions that the joint prevents. Its markers get axes that
+/// coincide at the reference configuration: `triad()` in world axes, with the joint axis as the third. Optional members
+/// are `check(name)`, which `connect` calls with the joint's name, and `breakpoints()`, times at which steps end.
+/// `docs/extending.md` lists all members.
 template <class G>
 concept JointGeometry =
     ConstraintFunction<G> && requires(G const g, Frame<double> const a, Frame<double> const b, double t) {
@@ -90,8 +90,8 @@ concept JointGeometry =
       { g.template gamma<double>(a, b, t) } -> std::same_as<Vec<double, G::rows>>;
     };
 
-/// How many of a geometry's rows, the last ones, hold speeds and no positions (nonholonomic: rolling, a blade); most
-/// have none.
+/// Number of nonholonomic equations of a geometry, which constrain velocities only (rolling, a blade). They are its
+/// last equations. Zero for most geometries.
 template <class G>
 constexpr int nonholonomic_equations() {
   if constexpr (requires { G::nonholonomic_equations; })
@@ -100,8 +100,8 @@ constexpr int nonholonomic_equations() {
     return 0;
 }
 
-/// Whether Gb = −Ga in all rows, as a geometry says by `opposite_ends`: forces of its rows then work out one wrench for
-/// both ends. Most say nothing.
+/// True if the geometry declares Gb = −Ga in all rows (member `opposite_ends`; default false). Forces of such equations
+/// compute one wrench for both ends.
 template <class G>
 constexpr bool has_opposite_ends() {
   if constexpr (requires { G::opposite_ends; })
@@ -110,8 +110,8 @@ constexpr bool has_opposite_ends() {
     return false;
 }
 
-/// Which motions of b against a a geometry leaves free (its member `free`): slides along the joint's axes, then turns
-/// about them.
+/// Motions of b relative to a that a geometry leaves free (its member `free`): translations along the joint's axes,
+/// then rotations about them.
 using FreeDirections = std::array<bool, 6>;
 template <class G>
 concept HasFreeDirections = requires {
@@ -123,7 +123,7 @@ constexpr int free_slides(FreeDirections const& free) { return int(free[0]) + in
 constexpr int free_turns(FreeDirections const& free) { return int(free[3]) + int(free[4]) + int(free[5]); }
 }  // namespace detail
 
-/// What the second marker of a geometry must observe: `needs_of_second`, or `needs` as for the first.
+/// Marker kind that a geometry requires of its second marker: `needs_of_second`, or by default `needs`.
 template <ConstraintFunction G>
 constexpr MarkerKind needs_of_second() {
   if constexpr (requires { G::needs_of_second; })
@@ -159,13 +159,13 @@ Mat<double, 12, 12> wrench_gradient_by_dual_numbers(G const& geometry, Frame<dou
   return k;
 }
 
-/// A geometry that gives this gradient in closed form.
+/// Geometry with a wrench gradient in closed form.
 template <class G>
 concept HasWrenchGradient = requires(G const g, Frame<double> const f, Vec<double, G::rows> const l) {
   { g.wrench_gradient(f, f, l) } -> std::convertible_to<Mat<double, 12, 12>>;
 };
 
-/// The same by the geometry's closed form where it has one, else by dual numbers.
+/// Wrench gradient: the closed form of the geometry if it has one, otherwise by dual numbers.
 template <ConstraintFunction G>
 Mat<double, 12, 12> wrench_gradient(G const& geometry, Frame<double> const& a, Frame<double> const& b, double t,
                                     Vec<double, G::rows> const& lambda) {

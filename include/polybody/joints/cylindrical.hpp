@@ -3,7 +3,7 @@
 
 namespace polybody {
 
-/// Pin that slides: b turns about and slides along the axis fixed in a, 4 rows
+/// Cylindrical joint: b rotates about the axis fixed in a and slides along it. 4 constraint equations
 ///   g = [a₁·d; a₂·d; a₁·b₃; a₂·b₃],  d = r_b − r_a      [Haug 1989, §9.4].
 struct Cylindrical {
   static constexpr char const* name = "Cylindrical";
@@ -13,9 +13,9 @@ struct Cylindrical {
   static constexpr World world = World::space;
   static constexpr FreeDirections free = {false, false, true, false, false, true};
 
-  JointAxis axis = {};  ///< (3) unit vector of the slide and the turn, world axes at the reference configuration
+  JointAxis axis = {};  ///< (3) unit vector of translation and rotation, world axes at the reference configuration
 
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   Mat3 triad() const {
     return polybody::constraint_functions::triad_about(axis, "Cylindrical: the axis");
   }
@@ -33,7 +33,7 @@ struct Cylindrical {
                     parallel = polybody::constraint_functions::same_direction_gamma(a, b);
     return {on_axis[0], on_axis[1], parallel[0], parallel[1]};
   }
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 4> const& lambda) const {
     auto k = detail::zeros<Mat<double, 12, 12>>();

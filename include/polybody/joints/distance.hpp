@@ -3,10 +3,10 @@
 
 namespace polybody {
 
-/// Massless rod with a ball joint at each end, in the plane and in space, 1 row
+/// Massless rod with a spherical joint at each end, in the plane and in space. 1 constraint equation
 ///   g = |r_b − r_a| − L      [Haug 1989, §9.4, there squared].
-/// Without the square g is a length, λ the tension of the rod [N] and a Penalty a linear spring, however far it gives;
-/// the price is a direction that points which coincide do not have.
+/// Without the square, g is a length, λ is the tension of the rod [N], and a Penalty is a linear spring for any
+/// elongation. The direction of the rod is undefined if the points coincide.
 struct Distance {
   static constexpr char const* name = "Distance";
   static constexpr int rows = 1;
@@ -33,7 +33,7 @@ struct Distance {
   Vec<T, 1> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
     return Vec<T, 1>(polybody::constraint_functions::distance_gamma(a, b));
   }
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 1> const& lambda) const {
     auto k = detail::zeros<Mat<double, 12, 12>>();

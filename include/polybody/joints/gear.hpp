@@ -6,11 +6,13 @@
 
 namespace polybody {
 
-/// Spur gears on parallel axes, in the plane and in space, 1 row
-///   g = (N_a ψ_a + N_b ψ_b)/N_b,   ψ_a, ψ_b the angles of the line of centres d = r_b − r_a in the axes of a and of b
-/// [Haug 1989, §3.4]. The line of centres turns with whatever carries the wheels, so the same row does for wheels on
-/// the ground and for a planet's. Teeth are whole numbers: turns are counted by the teeth, g is wrapped to half of the
-/// least common step π/n_b, n_b = N_b/gcd. The axes are kept parallel and the centres apart by other joints.
+/// Spur gears on parallel axes, in the plane and in space. 1 constraint equation
+///   g = (N_a ψ_a + N_b ψ_b)/N_b.
+/// ψ_a and ψ_b are the angles of the line of centres d = r_b − r_a in the axes of a and of b [Haug 1989, §3.4]. The
+/// line of centres rotates with the carrier of the wheels, so that the same equation applies to wheels on the ground
+/// and to planet wheels. Numbers of teeth are integers: the teeth determine the number of full turns, and g is wrapped
+/// to half of the least common step, π/n_b, n_b = N_b/gcd. Other joints keep the axes parallel and the distance of the
+/// centres constant.
 struct Gear {
   static constexpr char const* name = "Gear";
   static constexpr int rows = 1;
@@ -20,11 +22,12 @@ struct Gear {
   static constexpr int most_teeth = 1'000'000;  ///< largest number of teeth, without its sign
 
   Required<int> teeth_a;   ///< N_a
-  Required<int> teeth_b;   ///< N_b; of an internal (ring) gear the number is negative
-  TurnAxis axis = {};      ///< (3) unit vector of both wheels' axes, world axes at the reference configuration
-  JointAxis centres = {};  ///< (3) unit vector from a's centre to b's there, perpendicular to it
+  Required<int> teeth_b;   ///< N_b; negative for an internal (ring) gear
+  TurnAxis axis = {};      ///< (3) unit vector of the axes of both wheels, world axes at the reference configuration
+  JointAxis centres = {};  ///< (3) unit vector from the centre of a to the centre of b at the reference configuration,
+                           ///< perpendicular to `axis`
 
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   Mat3 triad() const {
     require_unit(axis.required("Gear: the axis"), "Gear: the axis");
     require_unit(centres.required("Gear: the line of centres"), "Gear: the line of centres");
@@ -55,7 +58,7 @@ struct Gear {
     ConstraintTerms<1, T> gap;
     T const turns = of_a.g[0] * n.a + of_b.g[0] * n.b;
     gap.g[0] = polybody::constraint_functions::wrapped(turns - std::numbers::pi * n.b) /
-               n.b;  // b's bearing points the other way
+               n.b;  // the line from b to a has the opposite direction
     for (int j = 0; j < 6; ++j) {
       gap.Ga(0, j) = of_a.Ga(0, j) * (n.a / n.b) + of_b.Gb(0, j);
       gap.Gb(0, j) = of_a.Gb(0, j) * (n.a / n.b) + of_b.Ga(0, j);
@@ -67,7 +70,7 @@ struct Gear {
     Ratio const n = ratio();
     return Vec<T, 1>(bearing_gamma(a, b) * (n.a / n.b) + bearing_gamma(b, a));
   }
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 1> const& lambda) const {
     Ratio const n = ratio();
@@ -80,16 +83,16 @@ struct Gear {
   }
 
  private:
-  /// The teeth in lowest terms.
+  /// Numbers of teeth without their common factor.
   struct Ratio {
-    double a, b;  ///< N_a and N_b without their common factor
+    double a, b;  ///< N_a/gcd and N_b/gcd
   };
   Ratio ratio() const {
     int const common = std::gcd(int(teeth_a), int(teeth_b));
     return {double(int(teeth_a)) / common, double(int(teeth_b)) / common};
   }
 
-  /// The components of the vector from one wheel's centre to the other's in the first two axes of the one.
+  /// Components of the vector from the centre of `one` to the centre of `other` in the first two axes of `one`.
   template <StateScalar T>
   static ConstraintTerms<2, T> bearing(Frame<T> const& one, Frame<T> const& other) {
     ConstraintTerms<2, T> xy;
@@ -101,7 +104,7 @@ struct Gear {
     return polybody::constraint_functions::angle_gamma(
         bearing(one, other), polybody::constraint_functions::on_axis_gamma(one, other), one, other);
   }
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   static void bearing_gradient(Frame<double> const& one, Frame<double> const& other, double lambda,
                                Mat<double, 12, 12>& k) {
     Vec2 const each = polybody::constraint_functions::angle_gradient(bearing(one, other), lambda, k);

@@ -8,7 +8,7 @@
 namespace polybody {
 
 namespace detail {
-/// The measure that policy P takes of geometry G: its rows, unless P names another one.
+/// Constraint function that policy P uses for geometry G: G itself, unless P defines `Measured<G>`.
 template <class G, class P>
 constexpr auto measured_by() {
   if constexpr (requires { typename P::template Measured<G>; })
@@ -18,30 +18,31 @@ constexpr auto measured_by() {
 }
 }  // namespace detail
 
-/// G has what P measures: a bushing measures the directions that G does not name as free.
+/// G declares its free directions if P needs them: a bushing acts on all other directions.
 template <class P, class G>
 concept MeasurableGeometry = HasFreeDirections<G> || !requires { typename P::template Measured<G>; };
 
-/// P adds rows, or answers as many components by a force as it measures of G.
+/// P adds constraint equations, or its force has one component for each equation of its constraint function for G.
 template <class P, class G>
 concept EnforceableGeometry =
     ConstrainingPolicy<P> ||
     (MeasurableGeometry<P, G> && CompliantLaw<P, decltype(detail::measured_by<G, P>())::type::rows>);
 
-/// P adds rows, or G has a gap in each of its rows, which a force can answer.
+/// P adds constraint equations, or all equations of G are holonomic, so that a force can act on their violation.
 template <class P, class G>
 concept HolonomicOrConstrained = ConstrainingPolicy<P> || nonholonomic_equations<G>() == 0;
 
-/// A joint is a geometry (which motions it stops) and a policy (how it stops them). `Joint{Revolute{.axis = axis}}` has
-/// the policy `Constraint`, and `Joint{Revolute{.axis = axis}, Penalty{.stiffness = k, .damping = c}}` names another
-/// one. If a policy has no numbers, `Joint<G, P>{geometry}` needs no policy.
+/// A joint consists of a geometry (the motions that it prevents) and a policy (the enforcement of its constraint
+/// equations). `Joint{Revolute{.axis = axis}}` has the policy `Constraint`, and `Joint{Revolute{.axis = axis},
+/// Penalty{.stiffness = k, .damping = c}}` has another policy. If a policy has no parameters, `Joint<G, P>{geometry}`
+/// needs no policy.
 template <class G, class P>
 struct Joint {
   static_assert(JointGeometry<G> || detail::GeometryRefusal<G>::asked);
   static_assert(Policy<P> || detail::PolicyRefusal<P>::asked);
-  using Geometry = G;    ///< which motions are stopped
-  using PolicyType = P;  ///< how they are stopped
-  /// What the policy answers: G, or what P measures in its place.
+  using Geometry = G;    ///< motions that the joint prevents
+  using PolicyType = P;  ///< enforcement of the constraint equations
+  /// Constraint function of the policy: G, or `Measured<G>` of P.
   using Measured = typename decltype(detail::measured_by<G, P>())::type;
   static constexpr int rows = Measured::rows;
   static_assert(
@@ -50,10 +51,10 @@ struct Joint {
   static_assert(!Policy<P> || HolonomicOrConstrained<P, G>,
                 "This geometry is nonholonomic (it constrains velocities), so that a compliant policy has no violation "
                 "to act on. Use Constraint.");
-  G geometry = {};  ///< which motions are stopped
-  P policy = {};    ///< how they are stopped
+  G geometry = {};  ///< motions that the joint prevents
+  P policy = {};    ///< enforcement of the constraint equations
 
-  /// The measure whose gap the policy answers: the geometry itself for most policies.
+  /// Constraint function of the policy: the geometry itself for most policies.
   decltype(auto) measure() const {
     if constexpr (std::is_same_v<Measured, G>)
       return (geometry);

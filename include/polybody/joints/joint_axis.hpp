@@ -1,29 +1,29 @@
 #pragma once
 /// \file
-/// The direction of a joint, which has no default: left out, the joint is refused as it is connected.
+/// Direction of a joint. It has no default: `connect` refuses a joint without direction.
 
 #include <polybody/joints/constraint_functions.hpp>
 
 namespace polybody {
 
-/// A unit vector (3), world axes at the reference configuration. The joint's own axes, in which its rows are written,
-/// do not depend on it.
+/// Unit vector (3), world axes at the reference configuration. The constraint equations contain the marker axes of
+/// `triad()`, not this vector.
 class JointAxis {
  public:
-  JointAxis() = default;  ///< left out
-  /// From the vector v (3). Its length is checked where the joint is connected, not here.
+  JointAxis() = default;  ///< no direction given
+  /// Direction v (3). `connect` checks its length.
   JointAxis(Vec3 const& v) : value_(v), given_(true) {}  // NOLINT: reads as a vector
-  /// From three components: x, y, z.
+  /// Direction with the components x, y, z.
   JointAxis(double x, double y, double z) : value_(x, y, z), given_(true) {}  // NOLINT
-  /// From an expression `x` that makes a vector (3).
+  /// Direction from an expression `x` with a vector (3) as its value.
   template <class X>
     requires std::is_class_v<X> && (!std::is_base_of_v<JointAxis, X>) && std::is_convertible_v<X const&, Vec3>
   JointAxis(X const& x) : value_(x), given_(true) {}  // NOLINT: from an expression that makes a vector
 
-  bool given() const { return given_; }  ///< whether it was given
-  /// The direction, not checked; (0, 0, 1) where it was left out.
+  bool given() const { return given_; }  ///< true if a direction is given
+  /// Direction without a check; (0, 0, 1) if none is given.
   operator Vec3 const&() const { return value_; }  // NOLINT
-  /// \throws InvalidInput where it was left out; `what` names joint and direction.
+  /// \throws InvalidInput if no direction is given; `what` names joint and direction.
   Vec3 const& required(std::string const& what) const {
     if (!given_)
       throw InvalidInput(
@@ -38,13 +38,13 @@ class JointAxis {
   bool given_ = false;
 };
 
-/// The axis of a turn that serves the plane, too. There it is the plane's normal, which needs no telling.
+/// Rotation axis of a geometry for space and for the plane. In the plane it is the normal and may be omitted.
 class TurnAxis : public JointAxis {
  public:
-  using JointAxis::JointAxis;  ///< from a vector v, from x, y, z, as `JointAxis`
+  using JointAxis::JointAxis;  ///< from a vector v, or from x, y, z, as `JointAxis`
 };
 
-/// A geometry that turns about one.
+/// Geometry with a rotation about a `TurnAxis`.
 template <class G>
 concept HasRotationAxis = requires(G g) {
   { g.axis } -> std::same_as<TurnAxis&>;
@@ -52,9 +52,9 @@ concept HasRotationAxis = requires(G g) {
 
 namespace constraint_functions {
 
-/// Axes whose third one is `axis`. \throws InvalidInput for an axis that is left out or not of length one, by the name
-/// `what`.
-template <class = void>  // compiled where it is used
+/// Right-handed triad with the third axis `axis`. \throws InvalidInput, with the name `what`, if the axis is missing or
+/// its length is not one.
+template <class = void>  // compiled only if used
 Mat3 triad_about(JointAxis const& axis, std::string const& what) {
   return triad_about(axis.required(what), what);
 }

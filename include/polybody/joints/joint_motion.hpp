@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// The motion that a joint leaves, in coordinates: elementary motions made one after another that lead from frame a to
-/// frame b. Slides come before turns.
+/// Relative motion that a joint permits, in coordinates: a sequence of elementary motions from frame a to frame b.
+/// Translations come before rotations.
 
 #include <array>
 
@@ -9,30 +9,30 @@
 
 namespace polybody {
 
-/// One elementary motion, along or about an axis of the frame as the earlier ones have left it.
+/// Elementary motion along or about an axis of the frame that results from the preceding motions.
 struct JointMotion {
-  /// What moves along or about the axis, and by which coordinates.
+  /// Type of motion and its coordinates.
   enum class Kind : unsigned char {
     slide,  ///< along the axis, one coordinate [m]
     turn,   ///< about the axis, one coordinate [rad]
     screw,  ///< about and along the axis, one coordinate [rad]
-    ball    ///< about all axes, a unit quaternion; speeds in the axes of frame b [rad/s]
+    ball    ///< about all axes, a unit quaternion; generalised velocities in the axes of frame b [rad/s]
   };
-  Kind kind = Kind::slide;  ///< slide, turn, screw or ball
+  Kind kind = Kind::slide;  ///< type of motion
   int axis = 2;             ///< 0, 1 or 2
-  double pitch = 0.0;       ///< of a screw: slide for each radian [m/rad]
+  double pitch = 0.0;       ///< of a screw: translation per radian [m/rad]
 
   int coordinates() const { return kind == Kind::ball ? 4 : 1; }
   int velocities() const { return kind == Kind::ball ? 3 : 1; }
 };
 
-/// The motions of a joint, from a to b.
+/// Motions of a joint, from frame a to frame b.
 struct JointMotions {
-  /// In the order in which they lead from a to b; only the first `count` are meant.
+  /// Motions in the order from a to b; only the first `count` are valid.
   std::array<JointMotion, 4> list = {};
-  int count = 0;  ///< how many motions, 0 to 4
+  int count = 0;  ///< number of motions, 0 to 4
 
-  /// Appends a motion, the fourth at most.
+  /// Appends a motion; four at most.
   constexpr void add(JointMotion const& m) { list[std::size_t(count++)] = m; }
   auto begin() const { return list.begin(); }        ///< first motion
   auto end() const { return list.begin() + count; }  ///< behind the last one
@@ -48,14 +48,14 @@ struct JointMotions {
   }
 };
 
-/// A geometry whose motion has coordinates: it says which (`motions()`), or what it leaves free has one turn, all or
-/// none.
+/// Geometry whose motion has coordinates: it defines `motions()`, or its free directions contain zero, one or three
+/// rotations.
 template <class G>
 concept HasMotions = requires(G const g) {
   { g.motions() } -> std::same_as<JointMotions>;
 } || (HasFreeDirections<G> && detail::free_turns(G::free) != 2);
 
-/// The motion that a geometry leaves, in joint coordinates.
+/// Motions that a geometry permits, in joint coordinates.
 template <HasMotions G>
 JointMotions motions_of(G const& geometry) {
   if constexpr (requires { geometry.motions(); }) {
@@ -74,9 +74,9 @@ JointMotions motions_of(G const& geometry) {
   }
 }
 
-/// Those that stay in the plane, of a joint of both worlds: slides across the normal and the turn about it, which is
-/// one of the joint's axes. \param axes (3×3) of the joint
-template <class = void>  // compiled where it is used
+/// Motions of a joint for space and plane that stay in the plane: translations perpendicular to the normal, and the
+/// rotation about it. The normal is one of the joint's axes. \param axes (3×3) of the joint
+template <class = void>  // compiled only if used
 JointMotions in_plane(JointMotions const& motions, Mat3 const& axes) {
   auto const is_normal = [&](int axis) { return std::abs(axes(2, axis)) > 0.5; };
   JointMotions out;

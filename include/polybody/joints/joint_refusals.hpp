@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Why a type is no geometry or no policy, in a sentence that names what is missing.
+/// Error messages for types that are not a geometry or not a policy; each names the missing member.
 
 #include <utility>
 
@@ -21,7 +21,7 @@ concept HasPolicyPotential = requires(P const p, Vec<double, m> const g) {
   { p.template potential<m>(g) } -> std::convertible_to<double>;
 };
 
-/// The members that the concept `JointGeometry` asks, one by one; a and b are frames of a scalar T.
+/// Checks the members that the concept `JointGeometry` requires, one by one; a and b are frames of a scalar T.
 template <class G>
 struct GeometryRefusal {
   static_assert(
@@ -51,7 +51,7 @@ struct GeometryRefusal {
   static constexpr bool asked = true;
 };
 
-/// Instantiated for what is no `Policy`.
+/// Instantiated for a type that is not a `Policy`.
 template <class P>
 struct PolicyRefusal {
   template <int... m>

@@ -3,9 +3,11 @@
 
 namespace polybody {
 
-/// A blade or skate on b that glides on a and does not move across, in the plane and in space, 1 velocity row
-///   ġ = b₃·u,  u = ṙ_b − ṙ_a − ω_a × d,  d = r_b − r_a      [Neimark & Fufaev 1972, ch. I],
-/// u the velocity of b's point seen from a. No place and no turn is out of reach, so there is no g.
+/// Blade or skate on b that glides on a without motion across the blade, in the plane and in space. 1 nonholonomic
+/// equation
+///   ġ = b₃·u,  u = ṙ_b − ṙ_a − ω_a × d,  d = r_b − r_a      [Neimark & Fufaev 1972, ch. I].
+/// u is the velocity of the point of b relative to a. The blade can reach every position and direction, so that there
+/// is no g.
 struct KnifeEdge {
   static constexpr char const* name = "KnifeEdge";
   static constexpr int rows = 1;
@@ -15,7 +17,7 @@ struct KnifeEdge {
 
   JointAxis across = {};  ///< (3) unit vector across the blade, world axes at the reference configuration; moves with b
 
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   Mat3 triad() const {
     return polybody::constraint_functions::triad_about(across, "KnifeEdge: the direction across");
   }

@@ -3,9 +3,9 @@
 
 namespace polybody {
 
-/// The planar joint of space: a plane of b slides and turns on a plane of a, 3 rows
+/// Planar joint in space: a plane of b slides and rotates on a plane of a. 3 constraint equations
 ///   g = [a₃·d; a₁·b₃; a₂·b₃],  d = r_b − r_a      [Haug 1989, §9.4].
-/// Its name leaves the word planar to the bodies and joints of the plane.
+/// The name is not `Planar`, because namespace `planar` contains the bodies and joints in the plane.
 struct PlanarJoint {
   static constexpr char const* name = "PlanarJoint";
   static constexpr int rows = 3;
@@ -16,7 +16,7 @@ struct PlanarJoint {
 
   JointAxis normal = {};  ///< (3) unit vector, world axes at the reference configuration
 
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   Mat3 triad() const {
     return polybody::constraint_functions::triad_about(normal, "PlanarJoint: the normal");
   }
@@ -33,7 +33,7 @@ struct PlanarJoint {
     Vec<T, 2> const parallel = polybody::constraint_functions::same_direction_gamma(a, b);
     return {polybody::constraint_functions::no_slide_gamma(axis_of(a, 2), a, b), parallel[0], parallel[1]};
   }
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 3> const& lambda) const {
     auto k = detail::zeros<Mat<double, 12, 12>>();

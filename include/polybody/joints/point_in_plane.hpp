@@ -3,9 +3,9 @@
 
 namespace polybody {
 
-/// The point of b stays in the plane through a's point whose normal is fixed in a, 1 row
+/// The point of b stays in the plane through the point of a whose normal is fixed in a. 1 constraint equation
 ///   g = a₃·d,  d = r_b − r_a      [Haug 1989, §9.4].
-/// World::both: in the plane the normal lies in it, and the point stays on the line across the normal.
+/// World::both: in the plane, the normal is a vector in the plane, and the point stays on the line perpendicular to it.
 struct PointInPlane {
   static constexpr char const* name = "PointInPlane";
   static constexpr int rows = 1;
@@ -16,7 +16,7 @@ struct PointInPlane {
 
   JointAxis normal = {};  ///< (3) unit vector, world axes at the reference configuration
 
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   Mat3 triad() const {
     return polybody::constraint_functions::triad_about(normal, "PointInPlane: the normal");
   }
@@ -31,7 +31,7 @@ struct PointInPlane {
   Vec<T, 1> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
     return Vec<T, 1>(polybody::constraint_functions::no_slide_gamma(axis_of(a, 2), a, b));
   }
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 1> const& lambda) const {
     auto k = detail::zeros<Mat<double, 12, 12>>();

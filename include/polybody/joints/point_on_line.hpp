@@ -3,7 +3,7 @@
 
 namespace polybody {
 
-/// Bead on a wire: the point of b stays on the line through a's point along the axis fixed in a, 2 rows
+/// The point of b stays on the line through the point of a along the axis fixed in a. 2 constraint equations
 ///   g = [a₁·d; a₂·d],  d = r_b − r_a      [Haug 1989, §9.4].
 struct PointOnLine {
   static constexpr char const* name = "PointOnLine";
@@ -15,7 +15,7 @@ struct PointOnLine {
 
   JointAxis axis = {};  ///< (3) unit vector of the line, world axes at the reference configuration
 
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   Mat3 triad() const {
     return polybody::constraint_functions::triad_about(axis, "PointOnLine: the axis");
   }
@@ -30,7 +30,7 @@ struct PointOnLine {
   Vec<T, 2> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
     return polybody::constraint_functions::on_axis_gamma(a, b);
   }
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 2> const& lambda) const {
     auto k = detail::zeros<Mat<double, 12, 12>>();

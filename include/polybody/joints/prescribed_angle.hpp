@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A relative angle prescribed as a function of time, in the plane and in space.
+/// Driving constraint for a relative angle, in the plane and in space.
 
 #include <polybody/joints/angle.hpp>
 #include <polybody/joints/joint_axis.hpp>
@@ -8,22 +8,23 @@
 
 namespace polybody {
 
-/// One row: b has turned against a by ψ(t) about the common third axis. Use it beside a Revolute.
+/// Driving constraint: b is rotated relative to a by ψ(t) about the common third axis. Use it together with a
+/// Revolute. 1 constraint equation
 ///   g = θ − ψ, θ = atan2(a₂·b₁, a₁·b₁)      [Haug 1989, §3.5]
-/// wrapped to [−π, π]; angles beyond a full turn need no counting. With b₁ in the plane of
-/// a₁, a₂ (as the Revolute keeps it) ġ = a₃·(ω_b − ω_a) − ψ̇ exactly.
+/// wrapped to [−π, π], so that full turns need no count. If b₁ is in the plane of a₁, a₂ (as with the Revolute), ġ =
+/// a₃·(ω_b − ω_a) − ψ̇ exactly.
 template <TimeFunction Law>
 struct PrescribedAngle {
   static constexpr char const* name = "PrescribedAngle";
   static constexpr int rows = 1;
   static constexpr MarkerKind needs = MarkerKind::frame;
   static constexpr World world = World::both;
-  static constexpr double period = 2.0 * std::numbers::pi;  ///< by which the law's value may jump [rad]
+  static constexpr double period = 2.0 * std::numbers::pi;  ///< permitted jump of the prescribed angle [rad]
 
   Law law;             ///< angle [rad], rate and acceleration as functions of time [s]
   TurnAxis axis = {};  ///< (3) unit vector, world axes at the reference configuration
 
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   Mat3 triad() const {
     return polybody::constraint_functions::triad_about(axis, "PrescribedAngle: the axis");
   }
@@ -43,7 +44,7 @@ struct PrescribedAngle {
     return Vec<T, 1>(polybody::constraint_functions::turn_gamma(polybody::constraint_functions::turned(a, b), a, b) -
                      Motion(law(t)).acceleration);
   }
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 1> const& lambda) const {
     auto k = detail::zeros<Mat<double, 12, 12>>();

@@ -4,7 +4,7 @@
 
 namespace polybody {
 
-/// Linear actuator between two points, in the plane and in space, 1 row
+/// Linear actuator between two points, in the plane and in space. 1 constraint equation
 ///   g = |r_b − r_a| − L − x(t)      [Haug 1989, §3.5, there squared].
 template <TimeFunction Law>
 struct PrescribedDistance {
@@ -35,7 +35,7 @@ struct PrescribedDistance {
   Vec<T, 1> gamma(Frame<T> const& a, Frame<T> const& b, double t) const {
     return Vec<T, 1>(polybody::constraint_functions::distance_gamma(a, b) - Motion(law(t)).acceleration);
   }
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 1> const& lambda) const {
     auto k = detail::zeros<Mat<double, 12, 12>>();

@@ -4,9 +4,10 @@
 
 namespace polybody {
 
-/// One row: the point of b stands s(t) before that of a along the axis fixed in a. Use it beside a joint that slides.
+/// Driving constraint: the point of b has the position s(t) relative to the point of a along the axis fixed in a. Use
+/// it together with a joint that permits this translation. 1 constraint equation
 ///   g = a₃·(r_b − r_a) − s      [Haug 1989, §3.5].
-/// World::both: in the plane the axis lies in it.
+/// World::both: in the plane, the axis is a vector in the plane.
 template <TimeFunction Law>
 struct PrescribedTranslation {
   static constexpr char const* name = "PrescribedTranslation";
@@ -15,10 +16,10 @@ struct PrescribedTranslation {
   static constexpr MarkerKind needs_of_second = MarkerKind::point;
   static constexpr World world = World::both;
 
-  Law law;              ///< slide s [m], rate and acceleration as functions of time [s]
+  Law law;              ///< translation s [m], rate and acceleration as functions of time [s]
   JointAxis axis = {};  ///< (3) unit vector, world axes at the reference configuration
 
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   Mat3 triad() const {
     return polybody::constraint_functions::triad_about(axis, "PrescribedTranslation: the axis");
   }
@@ -38,7 +39,7 @@ struct PrescribedTranslation {
   Vec<T, 1> gamma(Frame<T> const& a, Frame<T> const& b, double t) const {
     return Vec<T, 1>(polybody::constraint_functions::no_slide_gamma(axis_of(a, 2), a, b) - Motion(law(t)).acceleration);
   }
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 1> const& lambda) const {
     auto k = detail::zeros<Mat<double, 12, 12>>();

@@ -1,12 +1,11 @@
 #pragma once
 /// \file
-/// Geometries of one idea each, from which any joint can be put together by connecting several between the same
-/// markers:
-///   Revolute = CoincidentPoints + ParallelAxes          Universal    = CoincidentPoints + PerpendicularAxes
-///   Prismatic = PointOnLine + Orientation               Weld         = CoincidentPoints + Orientation
-///   Cylindrical = PointOnLine + ParallelAxes            PlanarJoint = PointInPlane + ParallelAxes
-///   PointOnLine = two of PointInPlane                   Orientation  = ParallelAxes + PerpendicularAxes
-/// A named joint spares the repeated frames; the motions are the same.      [Haug 1989, §9.4]
+/// Primitive geometries. Several of them between the same two markers form other joints:
+///   Revolute = CoincidentPoints + ParallelAxes            Universal   = CoincidentPoints + PerpendicularAxes
+///   Prismatic = PointOnLine + ConstantOrientation         Weld        = CoincidentPoints + ConstantOrientation
+///   Cylindrical = PointOnLine + ParallelAxes              PlanarJoint = PointInPlane + ParallelAxes
+///   PointOnLine = two of PointInPlane                     ConstantOrientation = ParallelAxes + PerpendicularAxes
+/// The named joint has the same motion and evaluates its frames only once.      [Haug 1989, §9.4]
 
 #include <polybody/joints/constant_orientation.hpp>
 #include <polybody/joints/point_in_plane.hpp>
@@ -15,10 +14,10 @@
 
 namespace polybody {
 
-/// Two points stay together: the ball joint under the name of its primitive.
+/// Two points coincide. Alias of the spherical joint as a primitive.
 using CoincidentPoints = Spherical;
 
-/// The first axis, fixed in a, stays perpendicular to the second, fixed in b, 1 row g = a₁·b₃.
+/// The first axis, fixed in a, stays perpendicular to the second axis, fixed in b. 1 constraint equation g = a₁·b₃.
 struct PerpendicularAxes {
   static constexpr char const* name = "PerpendicularAxes";
   static constexpr int rows = 1;
@@ -28,9 +27,9 @@ struct PerpendicularAxes {
   static constexpr bool opposite_ends = true;
 
   JointAxis first = {};   ///< (3) unit vector a₁, world axes at the reference configuration
-  JointAxis second = {};  ///< (3) unit vector b₃, perpendicular to it
+  JointAxis second = {};  ///< (3) unit vector b₃, perpendicular to `first`
 
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   Mat3 triad() const {
     return polybody::constraint_functions::triad_of(first.required("PerpendicularAxes: the first axis"),
                                                     second.required("PerpendicularAxes: the second axis"),
@@ -47,7 +46,7 @@ struct PerpendicularAxes {
   Vec<T, 1> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
     return Vec<T, 1>(polybody::constraint_functions::perpendicular_gamma(axis_of(a, 0), axis_of(b, 2), a, b));
   }
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 1> const& lambda) const {
     auto k = detail::zeros<Mat<double, 12, 12>>();
@@ -56,7 +55,7 @@ struct PerpendicularAxes {
   }
 };
 
-/// An axis of b stays parallel to one of a, 2 rows g = [a₁·b₃; a₂·b₃].
+/// An axis of b stays parallel to an axis of a. 2 constraint equations g = [a₁·b₃; a₂·b₃].
 struct ParallelAxes {
   static constexpr char const* name = "ParallelAxes";
   static constexpr int rows = 2;
@@ -68,7 +67,7 @@ struct ParallelAxes {
 
   JointAxis axis = {};  ///< (3) unit vector, world axes at the reference configuration
 
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   Mat3 triad() const {
     return polybody::constraint_functions::triad_about(axis, "ParallelAxes: the axis");
   }
@@ -83,7 +82,7 @@ struct ParallelAxes {
   Vec<T, 2> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
     return polybody::constraint_functions::same_direction_gamma(a, b);
   }
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 2> const& lambda) const {
     auto k = detail::zeros<Mat<double, 12, 12>>();

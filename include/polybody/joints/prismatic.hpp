@@ -3,7 +3,7 @@
 
 namespace polybody {
 
-/// Slider in space: b slides along the axis fixed in a and does not turn, 5 rows
+/// Prismatic joint in space: b slides along the axis fixed in a without rotation. 5 constraint equations
 ///   g = [a₁·d; a₂·d; a₁·b₂; a₂·b₃; a₃·b₁],  d = r_b − r_a.
 struct Prismatic {
   static constexpr char const* name = "Prismatic";
@@ -12,9 +12,9 @@ struct Prismatic {
   static constexpr World world = World::space;
   static constexpr FreeDirections free = {false, false, true};
 
-  JointAxis axis = {};  ///< (3) unit vector of the slide, world axes at the reference configuration
+  JointAxis axis = {};  ///< (3) unit vector of the translation, world axes at the reference configuration
 
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   Mat3 triad() const {
     return polybody::constraint_functions::triad_about(axis, "Prismatic: the axis");
   }
@@ -33,7 +33,7 @@ struct Prismatic {
     Vec<T, 3> const parallel = polybody::constraint_functions::parallel_gamma(a, b);
     return {on_axis[0], on_axis[1], parallel[0], parallel[1], parallel[2]};
   }
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 5> const& lambda) const {
     auto k = detail::zeros<Mat<double, 12, 12>>();

@@ -4,23 +4,23 @@
 
 namespace polybody {
 
-/// Pinion b on the rack a, in the plane and in space, 1 row: a slide and a turn coupled,
+/// Pinion b on the rack a, in the plane and in space: a coupled translation and rotation. 1 constraint equation
 ///   g = a₁·d − R θ,  d = r_b − r_a      [Haug 1989, §3.4].
-/// θ, the turn of b about a₃, is zero at the reference configuration when a₁·d is; full turns are counted by the slide.
-/// The pinion's height over the rack and its axis are held by other joints. A rack on the ground makes a wheel that
-/// rolls.
+/// θ is the rotation of b about a₃; it is zero at the reference configuration if a₁·d is zero. The translation
+/// determines the number of full turns. Other joints constrain the pinion's height over the rack and its axis. With a
+/// rack on the ground, the pinion is a wheel that rolls.
 struct RackAndPinion {
   static constexpr char const* name = "RackAndPinion";
   static constexpr int rows = 1;
   static constexpr MarkerKind needs = MarkerKind::frame;
   static constexpr World world = World::both;
 
-  Required<double> radius;   ///< R [m] of the pitch circle; the rack touches it on the side of axis × direction, or
-                             ///< for R < 0 on the other
-  TurnAxis axis = {};        ///< (3) unit vector of the pinion's axis, world axes at the reference configuration
-  JointAxis direction = {};  ///< (3) unit vector along the rack, perpendicular to it
+  Required<double> radius;  ///< R [m] of the pitch circle; the rack is on the side of axis × direction, or on the other
+                            ///< side for R < 0
+  TurnAxis axis = {};       ///< (3) unit vector of the pinion's axis, world axes at the reference configuration
+  JointAxis direction = {};  ///< (3) unit vector along the rack, perpendicular to `axis`
 
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   Mat3 triad() const {
     require_unit(axis.required("RackAndPinion: the axis"), "RackAndPinion: the axis");
     require_unit(direction.required("RackAndPinion: the direction"), "RackAndPinion: the direction");
@@ -43,7 +43,7 @@ struct RackAndPinion {
   Vec<T, 1> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
     return Vec<T, 1>(polybody::constraint_functions::slide_and_turn_gamma(axis_of(a, 0), radius, a, b));
   }
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 1> const& lambda) const {
     auto k = detail::zeros<Mat<double, 12, 12>>();

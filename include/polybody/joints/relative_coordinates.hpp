@@ -1,17 +1,18 @@
 #pragma once
 /// \file
-/// Six coordinates of one frame against another, good for any slide and turn: what a bushing measures.
+/// Six coordinates of one frame relative to another, for any translation and rotation. A bushing acts on them.
 
 #include <polybody/joints/joint_axis.hpp>
 
 namespace polybody {
 
-/// Place and turn of b against a in the joint's axes, which are fixed in a; 6 rows
+/// Translation and rotation of b relative to a in the joint's axes, which are fixed in a; 6 coordinates
 ///   x = [d; s₁; s₂; ψ],  d = Aaᵀ(r_b − r_a) [m],  AaᵀAb = exp(s̃) exp(ψ ẽ₃),  s = (s₁, s₂, 0) [rad]:
-/// b turns by ψ in (−π, π] about the joint's axis and then swings by |s| < π about a line across it. One turn about any
-/// of the three axes is the angle itself. With w = Aaᵀ(ω_b − ω_a), n = AaᵀAb e₃ and y = (e₃ + n)/(1 + n₃),
+/// b rotates by ψ in (−π, π] about the joint's axis and then swings by |s| < π about a line perpendicular to it. For a
+/// rotation about one of the three axes, the coordinate is the angle itself. With w = Aaᵀ(ω_b − ω_a), n = AaᵀAb e₃ and
+/// y = (e₃ + n)/(1 + n₃),
 ///   w = Jl(s) ṡ + ψ̇ n,  y·n = 1,  y·Jl(s) ṡ = 0,  hence  ψ̇ = y·w,  ṡ = Jl⁻¹(w − ψ̇ n)   [Jl: math/so3.hpp].
-/// As a geometry of its own it stops everything: a weld with axes. \throws InvalidInput unless the axis is a unit
+/// As a joint geometry it leaves no motion free: a weld with axes. \throws InvalidInput unless the axis is a unit
 /// vector.
 struct RelativeCoordinates {
   static constexpr char const* name = "RelativeCoordinates";
@@ -22,7 +23,7 @@ struct RelativeCoordinates {
 
   TurnAxis axis = {};  ///< (3) unit vector of the third axis, world axes at the reference configuration
 
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   Mat3 triad() const {
     return polybody::constraint_functions::triad_about(axis, "RelativeCoordinates: the axis");
   }
@@ -35,12 +36,12 @@ struct RelativeCoordinates {
     return gap;
   }
 
-  /// Writes the first three rows.
+  /// Writes the three translations.
   template <StateScalar T>
   static void slide(Frame<T> const& a, Frame<T> const& b, ConstraintTerms<6, T>& gap) {
     for (int i = 0; i < 3; ++i) polybody::constraint_functions::no_slide(axis_of(a, i), a, b, gap, i);
   }
-  /// Writes the last three.
+  /// Writes the three rotations.
   template <StateScalar T>
   static void turn(Frame<T> const& a, Frame<T> const& b, ConstraintTerms<6, T>& gap) {
     Turn<T> const x(a, b);
@@ -55,7 +56,7 @@ struct RelativeCoordinates {
       }
   }
 
-  /// The turn has w = Jl ṡ + ψ̇ n, and ẇ = −ω_a × w while the frames keep their ω, so that
+  /// γ of the rotations: w = Jl ṡ + ψ̇ n, and ẇ = −ω_a × w for constant ω_a and ω_b, so that
   ///   [s̈; ψ̈] = B (ẇ − J̇l ṡ − ψ̇ ṅ),  ṅ = w × n.
   template <StateScalar T>
   Vec<T, 6> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
@@ -75,10 +76,10 @@ struct RelativeCoordinates {
     return gamma;
   }
 
-  /// The moment of the turn on b is Aa μ, μ = Bᵀλ = κ + y (λ₃ − n·κ) with Jr(s) κ = λ; for δθ of b against a in a's
-  /// axes
+  /// The moment of the rotations on b is Aa μ, μ = Bᵀλ = κ + y (λ₃ − n·κ) with Jr(s) κ = λ. For a rotation δθ of b
+  /// relative to a in a's axes,
   ///   δn = δθ × n,  δκ = −Jr⁻¹ ∂(Jr κ)/∂s δs,  δy = (δn − y δn₃)/(1 + n₃).
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b, Vec6 const& lambda) const {
     auto k = detail::zeros<Mat<double, 12, 12>>();
     polybody::constraint_functions::no_slide_gradient(times<double>(a.A, {lambda[0], lambda[1], lambda[2]}), a, b, 1.0,
@@ -115,7 +116,7 @@ struct RelativeCoordinates {
     return k;
   }
 
-  /// m x.
+  /// Product m x.
   template <StateScalar T>
   static Vec<T, 3> times(Mat<T, 3, 3> const& m, Vec<T, 3> const& x) {
     return {m(0, 0) * x[0] + m(0, 1) * x[1] + m(0, 2) * x[2], m(1, 0) * x[0] + m(1, 1) * x[1] + m(1, 2) * x[2],
@@ -149,8 +150,8 @@ struct RelativeCoordinates {
   };
 };
 
-/// These coordinates of a joint with geometry G, without those that G leaves free: their rows are zero, so no force
-/// finds a way to them, however far they go.
+/// Relative coordinates of a joint with geometry G. The rows of its free directions are zero, so that no force acts on
+/// these directions at any displacement.
 template <JointGeometry G>
 struct ConstrainedCoordinates {
   static_assert(HasFreeDirections<G>,
@@ -159,7 +160,7 @@ struct ConstrainedCoordinates {
   static constexpr int rows = 6;
   static constexpr MarkerKind needs = MarkerKind::frame;
   static constexpr MarkerKind needs_of_second = polybody::needs_of_second<G>();
-  /// G leaves all three turns free: turns are not measured.
+  /// True if G leaves all three rotations free: then no rotation is evaluated.
   static constexpr bool may_turn = G::free[3] && G::free[4] && G::free[5];
 
   template <StateScalar T>

@@ -3,9 +3,10 @@
 
 namespace polybody {
 
-/// Pin in space: two points stay together and the axis stays parallel, 5 rows
+/// Revolute joint in space: two points coincide and the axis stays parallel. 5 constraint equations
 ///   g = [r_b − r_a; a₁·b₃; a₂·b₃]   [thesis §3.5.1, the special case of the spherical joint].
-/// The second marker may be a cable's, which knows its tangent only, when the pin is along the tangent: a clamp.
+/// The second marker needs only an axis. A cable, whose markers have only a tangent, can be the second body if the
+/// joint axis is along the tangent (a clamp).
 struct Revolute {
   static constexpr char const* name = "Revolute";
   static constexpr int rows = 5;
@@ -15,9 +16,9 @@ struct Revolute {
   static constexpr bool opposite_ends = true;
   static constexpr FreeDirections free = {false, false, false, false, false, true};
 
-  JointAxis axis = {};  ///< (3) unit vector of the pin, world axes at the reference configuration
+  JointAxis axis = {};  ///< (3) unit vector of the joint axis, world axes at the reference configuration
 
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   Mat3 triad() const {
     return polybody::constraint_functions::triad_about(axis, "Revolute: the axis");
   }
@@ -37,7 +38,7 @@ struct Revolute {
     gamma[4] = polybody::constraint_functions::perpendicular_gamma(axis_of(a, 1), axis_of(b, 2), a, b);
     return gamma;
   }
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 5> const& lambda) const {
     auto k = detail::zeros<Mat<double, 12, 12>>();

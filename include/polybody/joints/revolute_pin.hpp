@@ -3,10 +3,10 @@
 
 namespace polybody {
 
-/// The pin of thesis Eq. 3.8, between two points of the joint axis that stand a distance L apart, 5 rows
+/// Revolute joint of thesis Eq. 3.8, between two points of the joint axis at a distance L. 5 constraint equations
 ///   g = [a₁·b₃; a₂·b₃; a₁·d; a₂·d; d·d − k_θ],  d = r_b − r_a,  k_θ = L².
-/// The last row holds d along the axis. For L = 0 it would hold nothing (rank 4), so L must be positive. The
-/// motions are those of a Revolute [thesis §3.5.1]; its force along the axis is 2 L λ₅.
+/// The last equation constrains d along the axis. For L = 0 its Jacobian is zero (rank 4), so that L must be positive.
+/// The motions are those of a Revolute [thesis §3.5.1]; the force along the axis is 2 L λ₅.
 struct RevolutePin {
   static constexpr char const* name = "RevolutePin";
   static constexpr int rows = 5;
@@ -15,9 +15,9 @@ struct RevolutePin {
   static constexpr World world = World::space;
 
   Required<double> distance;  ///< L [m]
-  JointAxis axis = {};        ///< (3) unit vector of the pin, world axes at the reference configuration
+  JointAxis axis = {};        ///< (3) unit vector of the joint axis, world axes at the reference configuration
 
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   Mat3 triad() const {
     return polybody::constraint_functions::triad_about(axis, "RevolutePin: the axis");
   }
@@ -49,7 +49,7 @@ struct RevolutePin {
     Vec<T, 3> const rate = b.v - a.v;
     return {parallel[0], parallel[1], on_axis[0], on_axis[1], T(rate.dot(rate) * 2.0)};
   }
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 5> const& lambda) const {
     auto k = detail::zeros<Mat<double, 12, 12>>();

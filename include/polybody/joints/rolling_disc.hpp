@@ -3,14 +3,15 @@
 
 namespace polybody {
 
-/// A thin disc b that rolls on a plane of a without slip, 3 rows, the last two of velocity level
+/// Thin disc b that rolls without slip on a plane of a. 3 constraint equations; the last two constrain velocities
 ///   g₁ = n·d − R √(1 − (n·b₃)²),  ġ = [n, t₁, t₂]ᵀ u,  u = ṙ_b + ω_b × ρ − ṙ_a − ω_a × p  [Neimark & Fufaev 1972].
-/// d = r_b − r_a; n the plane's normal and t₁, t₂ two directions in the plane, all fixed in a; b₃ the disc's axis. The
-/// rim comes nearest to the plane at the contact point, from the disc's centre ρ = −R e, e = m/|m| with m = n − (n·b₃)
-/// b₃, and from a's point p = d + ρ. u is the velocity of the disc's material there seen from a; as ρ is where n·ρ is
-/// least, n·u is indeed ġ₁. λ are the forces along n, t₁, t₂, the first negative while the plane pushes. A disc that
-/// lies flat has no such point, and steps near it fail as not finite. Nothing keeps the disc from leaving the plane or
-/// slipping when the forces ask for it.
+/// d = r_b − r_a; n is the plane's normal, t₁ and t₂ are two directions in the plane, all fixed in a; b₃ is the disc's
+/// axis. The contact point is the point of the rim nearest to the plane. Its vector from the disc's centre is ρ = −R e,
+/// e = m/|m| with m = n − (n·b₃) b₃, and its vector from the point of a is p = d + ρ. u is the velocity relative to a
+/// of the disc's material point there; since n·ρ is minimal at ρ, n·u equals ġ₁. λ are the forces along n, t₁, t₂; the
+/// first is negative if the plane pushes. A disc that lies flat has no contact point, and steps near this configuration
+/// fail with values that are not finite. Lift-off and slip are not modelled: the joint also pulls, and transmits any
+/// tangential force.
 struct RollingDisc {
   static constexpr char const* name = "RollingDisc";
   static constexpr int rows = 3;
@@ -20,10 +21,11 @@ struct RollingDisc {
 
   Required<double> radius;  ///< R [m]
   JointAxis axis = {};      ///< (3) unit vector of the disc's axis, world axes at the reference configuration
-  JointAxis normal = {};    ///< (3) unit vector from the plane towards the disc; a's point lies in the plane
+  JointAxis normal = {};    ///< (3) unit vector from the plane towards the disc; the point of a is in the plane
 
-  /// First axis n × axis: n = a₂ |n × axis| + a₃ n·axis. \throws InvalidInput unless both are units, not parallel.
-  template <class = void>  // compiled where it is used
+  /// First axis n × axis: n = a₂ |n × axis| + a₃ n·axis. \throws InvalidInput unless both are unit vectors and not
+  /// parallel.
+  template <class = void>  // compiled only if used
   Mat3 triad() const {
     Vec3 const &own = axis.required("RollingDisc: the axis"), &up = normal.required("RollingDisc: the normal");
     require_unit(own, "RollingDisc: the axis");
@@ -80,8 +82,8 @@ struct RollingDisc {
  private:
   template <StateScalar T>
   struct Contact {
-    Vec<T, 3> n, t1, t2;  ///< normal and directions in the plane
-    Vec<T, 3> e, rho, p;  ///< up the disc; the contact point from the disc's centre and from a's point
+    Vec<T, 3> n, t1, t2;  ///< normal and two directions in the plane
+    Vec<T, 3> e, rho, p;  ///< direction e; vectors to the contact point from the disc's centre and from the point of a
     T steep;              ///< |m|, the sine of the angle between the disc's axis and the normal
     Contact(RollingDisc const& disc, Frame<T> const& a, Frame<T> const& b) {
       using std::sqrt;

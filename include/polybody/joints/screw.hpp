@@ -5,19 +5,20 @@
 
 namespace polybody {
 
-/// Nut b on the thread of a: a cylindrical joint whose slide is p times its turn, 5 rows
+/// Nut b on the thread of a: a cylindrical joint whose translation is p times its rotation. 5 constraint equations
 ///   g = [a₁·d; a₂·d; a₁·b₃; a₂·b₃; a₃·d − p θ],  d = r_b − r_a      [Haug 1989, §9.4].
-/// θ is zero at the reference configuration when d is; full turns are counted by the slide, any number of them.
+/// θ is zero at the reference configuration if d is zero. The translation determines the number of full turns, which is
+/// not limited.
 struct Screw {
   static constexpr char const* name = "Screw";
   static constexpr int rows = 5;
   static constexpr MarkerKind needs = MarkerKind::frame;
   static constexpr World world = World::space;
 
-  Required<double> pitch;  ///< p, slide for each radian [m/rad], the lead over 2π; negative for a left-handed thread
+  Required<double> pitch;  ///< p, translation per radian [m/rad]: the lead over 2π; negative for a left-handed thread
   JointAxis axis = {};     ///< (3) unit vector, world axes at the reference configuration
 
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   Mat3 triad() const {
     return polybody::constraint_functions::triad_about(axis, "Screw: the axis");
   }
@@ -43,7 +44,7 @@ struct Screw {
     return {on_axis[0], on_axis[1], parallel[0], parallel[1],
             polybody::constraint_functions::slide_and_turn_gamma<T>(axis_of(a, 2), pitch, a, b)};
   }
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 5> const& lambda) const {
     auto k = detail::zeros<Mat<double, 12, 12>>();

@@ -3,7 +3,7 @@
 
 namespace polybody {
 
-/// Ball joint in space: two points stay together, 3 rows in world axes.
+/// Spherical joint in space: two points coincide. 3 constraint equations in world axes.
 struct Spherical {
   static constexpr char const* name = "Spherical";
   static constexpr int rows = 3;
@@ -24,7 +24,7 @@ struct Spherical {
   Vec<T, 3> gamma(Frame<T> const&, Frame<T> const&, double) const {
     return detail::zeros<Vec<T, 3>>();
   }
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const&, Frame<double> const&, Vec<double, 3> const&) const {
     return detail::zeros<Mat<double, 12, 12>>();
   }

@@ -4,8 +4,8 @@
 
 namespace polybody {
 
-/// Cardan joint: two points stay together, and the first axis, fixed in a, stays perpendicular to the second, fixed in
-/// b; the two are the arms of the cross. 4 rows
+/// Universal joint (Cardan joint): two points coincide, and the first axis, fixed in a, stays perpendicular to the
+/// second axis, fixed in b. The axes are the arms of the cross. 4 constraint equations
 ///   g = [r_b − r_a; a₁·b₃]      [Haug 1989, §9.4].
 struct Universal {
   static constexpr char const* name = "Universal";
@@ -16,14 +16,14 @@ struct Universal {
   static constexpr bool opposite_ends = true;
 
   JointAxis first = {};   ///< (3) unit vector a₁, world axes at the reference configuration
-  JointAxis second = {};  ///< (3) unit vector b₃, perpendicular to it
+  JointAxis second = {};  ///< (3) unit vector b₃, perpendicular to `first`
 
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   Mat3 triad() const {
     return polybody::constraint_functions::triad_of(first.required("Universal: the first axis"),
                                                     second.required("Universal: the second axis"), "Universal");
   }
-  /// About a₁, then about b₃.
+  /// Rotation about a₁, then about b₃.
   JointMotions motions() const {
     return {.list = {JointMotion{JointMotion::Kind::turn, 0}, JointMotion{JointMotion::Kind::turn, 2}}, .count = 2};
   }
@@ -41,7 +41,7 @@ struct Universal {
     gamma[3] = polybody::constraint_functions::perpendicular_gamma(axis_of(a, 0), axis_of(b, 2), a, b);
     return gamma;
   }
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 4> const& lambda) const {
     auto k = detail::zeros<Mat<double, 12, 12>>();

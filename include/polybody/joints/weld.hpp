@@ -3,7 +3,8 @@
 
 namespace polybody {
 
-/// Rigid connection in space: points together, axes parallel, 6 rows g = [r_b − r_a; a₁·b₂; a₂·b₃; a₃·b₁].
+/// Rigid connection in space: points coincide and axes are parallel. 6 constraint equations
+///   g = [r_b − r_a; a₁·b₂; a₂·b₃; a₃·b₁].
 struct Weld {
   static constexpr char const* name = "Weld";
   static constexpr int rows = 6;
@@ -28,7 +29,7 @@ struct Weld {
     for (int i = 0; i < 3; ++i) gamma[3 + i] = parallel[i];
     return gamma;
   }
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 6> const& lambda) const {
     auto k = detail::zeros<Mat<double, 12, 12>>();

@@ -3,7 +3,7 @@
 
 namespace polybody::planar {
 
-/// Slider in the plane: b slides along the direction fixed in a and does not turn, 2 rows
+/// Prismatic joint in the plane: b slides along the direction fixed in a without rotation. 2 constraint equations
 ///   g = [a₂·d; a₂·b₁],  d = r_b − r_a, a₁ the direction.
 struct Prismatic {
   static constexpr char const* name = "planar::Prismatic";
@@ -15,7 +15,7 @@ struct Prismatic {
   Vec3 axis = Vec3::UnitX();  ///< (3) unit vector in the plane, world axes at the reference configuration
 
   /// \throws InvalidInput unless the direction is a unit vector in the plane.
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   Mat3 triad() const {
     require_unit(axis, "planar::Prismatic: the axis");
     if (std::abs(axis.z()) > 1e-12)
@@ -36,7 +36,7 @@ struct Prismatic {
     return {polybody::constraint_functions::no_slide_gamma(axis_of(a, 1), a, b),
             polybody::constraint_functions::perpendicular_gamma(axis_of(a, 1), axis_of(b, 0), a, b)};
   }
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 2> const& lambda) const {
     auto k = detail::zeros<Mat<double, 12, 12>>();

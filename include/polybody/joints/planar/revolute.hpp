@@ -3,7 +3,7 @@
 
 namespace polybody::planar {
 
-/// Pin in the plane: two points stay together, 2 rows.
+/// Revolute joint in the plane: two points coincide. 2 constraint equations.
 struct Revolute {
   static constexpr char const* name = "planar::Revolute";
   static constexpr int rows = 2;
@@ -28,7 +28,7 @@ struct Revolute {
   Vec<T, 2> gamma(Frame<T> const&, Frame<T> const&, double) const {
     return detail::zeros<Vec<T, 2>>();
   }
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const&, Frame<double> const&, Vec<double, 2> const&) const {
     return detail::zeros<Mat<double, 12, 12>>();
   }

@@ -3,7 +3,8 @@
 
 namespace polybody::planar {
 
-/// Rigid connection in the plane: points together, no relative turn, 3 rows g = [r_b − r_a; a₂·b₁].
+/// Rigid connection in the plane: points coincide without relative rotation. 3 constraint equations
+///   g = [r_b − r_a; a₂·b₁].
 struct Weld {
   static constexpr char const* name = "planar::Weld";
   static constexpr int rows = 3;
@@ -31,7 +32,7 @@ struct Weld {
     gamma[2] = polybody::constraint_functions::perpendicular_gamma(axis_of(a, 1), axis_of(b, 0), a, b);
     return gamma;
   }
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 3> const& lambda) const {
     auto k = detail::zeros<Mat<double, 12, 12>>();

@@ -5,10 +5,10 @@
 namespace polybody {
 
 namespace detail {
-/// \throws InvalidInput naming `what` unless k (6×6) is finite, symmetric and positive semidefinite: symmetric
-/// elimination of k with its diagonal scaled to ones meets no negative pivot, and nothing beside a pivot that is zero
-/// [Higham 2002, §10.3].
-template <class = void>  // compiled where it is used
+/// \throws InvalidInput, with the name `what`, unless k (6×6) is finite, symmetric and positive semidefinite. Symmetric
+/// elimination of k, with its diagonal scaled to one, must have no negative pivot, and a zero pivot requires a zero
+/// column [Higham 2002, §10.3].
+template <class = void>  // compiled only if used
 void require_semidefinite(Mat<double, 6, 6> const& k, std::string const& what) {
   double l[6][6];
   auto const refuse = [&](std::string const& why) {
@@ -37,24 +37,24 @@ void require_semidefinite(Mat<double, 6, 6> const& k, std::string const& what) {
 }
 }  // namespace detail
 
-/// Linear bushing [thesis Eq. 3.15]: λ = K x + C ẋ instead of the joint's rows, x the six `RelativeCoordinates` of b
-/// against a in the joint's axes, fixed in a: slides [m], then turns [rad], for any size of either. What the joint's
-/// geometry leaves free stays free: its rows and columns of K and C do not count. To act on these directions too (a
-/// torsional spring in a pin, within half a turn) take `RelativeCoordinates` as the geometry, which leaves nothing
-/// free. The potential ½ xᵀK x is exact.
+/// Linear bushing [thesis Eq. 3.15]: λ = K x + C ẋ instead of constraint equations. x are the six `RelativeCoordinates`
+/// of b relative to a in the joint's axes, fixed in a: translations [m], then rotations [rad], of any size. The free
+/// directions of the geometry stay free: their rows and columns of K and C have no effect. For a stiffness in all
+/// directions (a torsional spring in a revolute joint, within half a turn), use `RelativeCoordinates` as the geometry,
+/// which has no free direction. The potential ½ xᵀK x is exact.
 struct Bushing {
   static constexpr char const* name = "Bushing";
-  static constexpr bool linear = true;  ///< in g and ġ
-  /// What is measured in place of G's rows: the six `RelativeCoordinates`, zero where G leaves them free.
+  static constexpr bool linear = true;  ///< linear in g and ġ
+  /// Constraint function: the six `RelativeCoordinates`, zero in the free directions of G.
   template <JointGeometry G>
   using Measured = ConstrainedCoordinates<G>;
-  using Matrix = Mat<double, 6, 6>;  ///< (6×6) in the joint's axes, slides before turns
+  using Matrix = Mat<double, 6, 6>;  ///< (6×6) in the joint's axes, translations before rotations
 
   Required<Matrix> stiffness;  ///< (6×6) K, blocks [N/m], [N/rad]; [N], [N m/rad]
-  Required<Matrix> damping;    ///< (6×6) C, the same times seconds
+  Required<Matrix> damping;    ///< (6×6) C, blocks [N s/m], [N s/rad]; [N s], [N m s/rad]
 
-  /// A matrix with these numbers along and about the joint's axes and no coupling.
-  template <class = void>  // compiled where it is used
+  /// Diagonal matrix with the given values along and about the joint's axes.
+  template <class = void>  // compiled only if used
   static Matrix diagonal(Vec3 const& along, Vec3 const& about) {
     auto k = detail::zeros<Matrix>();
     for (int i = 0; i < 3; ++i) {
@@ -65,7 +65,7 @@ struct Bushing {
   }
 
   /// \throws InvalidInput unless K and C are symmetric and positive semidefinite; `what` is the joint's name.
-  template <class = void>  // compiled where it is used
+  template <class = void>  // compiled only if used
   void check(std::string const& what) const {
     detail::require_semidefinite(stiffness.value, what + ": the bushing's stiffness");
     detail::require_semidefinite(damping.value, what + ": the bushing's damping");
@@ -89,8 +89,8 @@ struct Bushing {
       for (int i = 0; i < m; ++i) slope(i, j) = ck * stiffness.value(i, j) + cd * damping.value(i, j);
     return slope;
   }
-  bool is_lossless() const { return damping.value.isZero(0.0); }  ///< all work that it takes is stored
-  /// ½ xᵀK x [J].
+  bool is_lossless() const { return damping.value.isZero(0.0); }  ///< true without damping
+  /// Potential ½ xᵀK x [J].
   template <int m>
     requires(m == 6)
   double potential(Vec<double, m> const& x) const {

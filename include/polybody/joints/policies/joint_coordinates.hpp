@@ -4,35 +4,37 @@
 
 namespace polybody {
 
-/// Ways to solve the equations of joint coordinates, v = T u, v̇ = T u̇ + Ṫ u, that all give the same motion.
+/// Solution methods for the equations of joint coordinates, v = T u, v̇ = T u̇ + Ṫ u. All give the same motion.
 namespace joint_coordinates {
-/// The sparse augmented system [M, Gᵀ; G, 0] of all bodies, whose solution is projected on the joints: T u̇ = v̇ − Ṫu
-/// [thesis Eq. 3.5]. Linear in the number of bodies with a sparse solver, for trees and loops alike.
+/// Sparse augmented system [M, Gᵀ; G, 0] of all bodies. Its solution is projected onto the joint coordinates: T u̇ = v̇
+/// − Ṫu [thesis Eq. 3.5]. With a sparse solver the cost is linear in the number of bodies, for trees and loops.
 struct Augmented {};
-/// The dense reduced system TᵀM T u̇ = Tᵀ(f − M Ṫ u) [thesis Eq. 3.4]: for some dozen joints.
+/// Dense reduced system TᵀM T u̇ = Tᵀ(f − M Ṫ u) [thesis Eq. 3.4], for about a dozen joints.
 struct DenseMatrix {};
-/// TᵀM T u̇ = … by elimination body by body from the tips to the roots [Featherstone 1983]: linear in the number of
-/// bodies of a tree. Rows beside the tree are added one by one, so few of them.
+/// Solution of TᵀM T u̇ = … by elimination, body by body from the tips to the root [Featherstone 1983]. The cost is
+/// linear in the number of bodies of a tree. Constraint equations outside the tree are added one by one, so that they
+/// should be few.
 struct ArticulatedBody {};
 }  // namespace joint_coordinates
 
-/// Joint coordinates: body b is carried by body a, its pose is a's pose followed by the motion that the joint leaves
-/// free, and the unknowns of a time step are the coordinates of this motion alone. The joint's rows hold by
-/// construction; their multipliers and reactions are computed afterwards, as for `Constraint`. Joints form trees from
-/// the ground, or from a free body; a joint that closes a loop takes another policy. For rigid bodies [Shabana 2020,
-/// §3; thesis §3.3.2].
+/// Joint coordinates: the pose of body b is the pose of body a followed by the relative motion of the joint. The
+/// unknowns of a time step are the coordinates of this motion alone. They satisfy the joint's constraint equations
+/// exactly; multipliers and reactions are computed afterwards, as for `Constraint`. Joints form trees from the ground,
+/// or from a free body; a joint that closes a loop needs another policy. For rigid bodies [Shabana 2020, §3; thesis
+/// §3.3.2].
 template <class Path>
 struct JointCoordinatesBy {
   static constexpr char const* name = "JointCoordinates";
-  static constexpr bool adds_constraints = true;  ///< the joint has rows, whose multipliers are its reactions
-  static constexpr bool eliminates = true;        ///< the rows leave the equations: joint coordinates take their place
-  using Solution = Path;  ///< a type of namespace `recursive`: how the equations of joint coordinates are solved
+  static constexpr bool adds_constraints = true;  ///< the joint has constraint equations; their multipliers are its
+                                                  ///< reactions
+  static constexpr bool eliminates = true;        ///< joint coordinates replace the constraint equations
+  using Solution = Path;                          ///< a type of namespace `joint_coordinates`: the solution method
 };
 
-/// Joint coordinates whose equations are solved in the sparse augmented form, the default.
+/// Joint coordinates with the sparse augmented system, the default.
 using JointCoordinates = JointCoordinatesBy<joint_coordinates::Augmented>;
 
-/// A policy that makes joint coordinates.
+/// Policy with joint coordinates.
 template <class P>
 concept JointCoordinatePolicy = EliminatingPolicy<P> && requires { typename P::Solution; };
 

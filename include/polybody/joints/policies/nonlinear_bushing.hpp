@@ -7,15 +7,15 @@
 
 namespace polybody {
 
-/// A force as a function of one coordinate x and its rate: `law(x, ẋ)` in double and in dual numbers; a generic lambda
-/// will do. It may have `potential(x)`, whose slope it is at rest, and `check(what)`.
+/// Force as a function of one coordinate x and its rate: `law(x, ẋ)` for double and dual numbers, such as a generic
+/// lambda. Optional members are `potential(x)`, whose derivative is the force at rest, and `check(what)`.
 template <class L>
 concept ForceLaw = requires(L const law, Dual<1> const x) {
   { law(0.0, 0.0) } -> std::convertible_to<double>;
   { law(x, x) } -> std::convertible_to<Dual<1>>;
 };
 
-/// k x + c ẋ.
+/// Linear force law k x + c ẋ.
 struct LinearLaw {
   Required<double> stiffness;  ///< k [N/m], [N m/rad]
   Required<double> damping;    ///< c [N s/m], [N m s/rad]
@@ -30,11 +30,11 @@ struct LinearLaw {
   T operator()(T const& x, T const& rate) const {
     return x * stiffness.value + rate * damping.value;
   }
-  /// The energy stored at x [m] or [rad] [J].
+  /// Energy stored at x [m] or [rad] [J].
   double potential(double x) const { return 0.5 * stiffness * x * x; }
 };
 
-/// f(x) + c ẋ, f from a table.
+/// Force law f(x) + c ẋ with f from a table.
 struct TabulatedLaw {
   MonotoneTable force;       ///< f [N] or [N m] over [m] or [rad]
   Required<double> damping;  ///< c [N s/m], [N m s/rad]
@@ -46,26 +46,27 @@ struct TabulatedLaw {
   T operator()(T const& x, T const& rate) const {
     return force(x) + rate * damping.value;
   }
-  /// The energy stored at x [m] or [rad] [J].
+  /// Energy stored at x [m] or [rad] [J].
   double potential(double x) const { return force.integral(x); }
 };
 
-/// A bushing with a law for each component, in the order slides along the joint's axes, then turns: λᵢ = fᵢ(xᵢ, ẋᵢ), x
-/// the six `RelativeCoordinates`. What the geometry leaves free stays free, and its law has no effect. Slopes come from
-/// dual numbers. Laws without `potential` do work that `energy` does not count.
+/// Bushing with a force law for each component, translations along the joint's axes first, then rotations: force
+/// λᵢ = fᵢ(xᵢ, ẋᵢ). The xᵢ are the six `RelativeCoordinates`. The free directions of the geometry stay free, and their
+/// laws have no effect. Derivatives are computed by dual numbers. `energy` does not count the work of laws without
+/// `potential`.
 ///   NonlinearBushing const rubber{TabulatedLaw{…}, LinearLaw{…}, [](auto x, auto rate) { return …; }, …};
 ///   using Pin = Joint<Revolute, decltype(rubber)>;
 template <ForceLaw... Laws>
   requires(sizeof...(Laws) == 6)
 struct NonlinearBushing {
   static constexpr char const* name = "NonlinearBushing";
-  /// What is measured in place of G's rows: the six `RelativeCoordinates`, zero where G leaves them free.
+  /// Constraint function: the six `RelativeCoordinates`, zero in the free directions of G.
   template <JointGeometry G>
   using Measured = ConstrainedCoordinates<G>;
 
-  std::tuple<Laws...> laws;  ///< (6) slides along the joint's axes, then turns
+  std::tuple<Laws...> laws;  ///< (6) translations along the joint's axes, then rotations
 
-  /// From six laws: slides along the joint's axes, then turns.
+  /// Bushing of six laws: translations along the joint's axes, then rotations.
   NonlinearBushing(Laws const&... six) : laws(six...) {}
 
   /// Checks the laws that have a check; `what` is the joint's name.
@@ -76,7 +77,7 @@ struct NonlinearBushing {
     });
   }
 
-  /// The forces and moments f (6) [N], [N m] at displacements x (6) [m], [rad] and their `rate` ẋ.
+  /// Forces and moments f (6) [N], [N m] at displacements x (6) [m], [rad] and their `rate` ẋ.
   template <int m, StateScalar T>
     requires(m == 6)
   Vec<T, m> multiplier(Vec<T, m> const& x, Vec<T, m> const& rate) const {
@@ -96,7 +97,7 @@ struct NonlinearBushing {
     });
     return slope;
   }
-  /// The energy at x (6) of the laws that have a potential [J].
+  /// Energy at x (6) of the laws that have a potential [J].
   template <int m>
     requires(m == 6)
   double potential(Vec<double, m> const& x) const {

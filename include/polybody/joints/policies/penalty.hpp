@@ -3,11 +3,12 @@
 
 namespace polybody {
 
-/// Stiff joint: λ = k g + c ġ instead of a multiplier, force −Gᵀλ [thesis Eq. 3.11–3.14]. Row by row in the
-/// rows' own units: [N/m], [N s/m] for lengths, [N m], [N m s] for angles and direction cosines.
+/// Spring and damper on each constraint violation: λ = k g + c ġ instead of a multiplier, force −Gᵀλ [thesis Eq.
+/// 3.11–3.14]. Units are those of the equation: [N/m], [N s/m] for lengths, [N m], [N m s] for angles and direction
+/// cosines.
 struct Penalty {
   static constexpr char const* name = "Penalty";
-  static constexpr bool linear = true;  ///< in g and ġ
+  static constexpr bool linear = true;  ///< linear in g and ġ
 
   Required<double> stiffness;  ///< k [N/m], [N m/rad]
   Required<double> damping;    ///< c [N s/m], [N m s/rad]
@@ -31,8 +32,8 @@ struct Penalty {
     for (int i = 0; i < m; ++i) slope.diagonal()[i] = ck * stiffness + cd * damping;
     return slope;
   }
-  bool is_lossless() const { return damping == 0.0; }  ///< all work that it takes is stored
-  /// The energy that the spring stores at the gaps g [J].
+  bool is_lossless() const { return damping == 0.0; }  ///< true without damping
+  /// Energy of the spring at the violations g [J].
   template <int m>
   double potential(Vec<double, m> const& g) const {
     double sum = 0.0;
@@ -41,16 +42,17 @@ struct Penalty {
   }
 };
 
-/// The same with numbers for each of the n rows of a joint, `PenaltyPerEquation<5>` for a Revolute, say.
+/// Penalty with parameters for each of the n constraint equations of a joint, such as `PenaltyPerEquation<5>` for a
+/// Revolute.
 template <int n>
 struct PenaltyPerEquation {
   static constexpr char const* name = "PenaltyPerEquation";
-  static constexpr bool linear = true;  ///< in g and ġ
+  static constexpr bool linear = true;  ///< linear in g and ġ
 
   Required<Vec<double, n>> stiffness;  ///< (n) k
   Required<Vec<double, n>> damping;    ///< (n) c
 
-  /// \throws InvalidInput unless k > 0 and c ≥ 0 in every row; `what` is the joint's name.
+  /// \throws InvalidInput unless k > 0 and c ≥ 0 for every equation; `what` is the joint's name.
   void check(std::string const& what) const {
     for (int i = 0; i < n; ++i) {
       std::string const row = sentence_of({" of row ", i + 1});
@@ -74,8 +76,8 @@ struct PenaltyPerEquation {
     for (int i = 0; i < m; ++i) slope.diagonal()[i] = ck * stiffness.value[i] + cd * damping.value[i];
     return slope;
   }
-  bool is_lossless() const { return damping.value.isZero(0.0); }  ///< all work that it takes is stored
-  /// The energy that the springs store at the gaps g [J].
+  bool is_lossless() const { return damping.value.isZero(0.0); }  ///< true without damping
+  /// Energy of the springs at the violations g [J].
   template <int m>
     requires(m == n)
   double potential(Vec<double, m> const& g) const {
