@@ -24,8 +24,7 @@ struct Gear {
   Required<int> teeth_a;   ///< N_a
   Required<int> teeth_b;   ///< N_b; negative for an internal (ring) gear
   TurnAxis axis = {};      ///< (3) unit vector of the axes of both wheels, world axes at the reference configuration
-  JointAxis centres = {};  ///< (3) unit vector from the centre of a to the centre of b at the reference configuration,
-                           ///< perpendicular to `axis`
+  JointAxis centres = {};  ///< (3) unit vector from the centre of a to the centre of b there, perpendicular to `axis`
 
   template <class = void>  // compiled only if used
   Mat3 triad() const {

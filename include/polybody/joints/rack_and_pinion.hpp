@@ -15,9 +15,8 @@ struct RackAndPinion {
   static constexpr MarkerKind needs = MarkerKind::frame;
   static constexpr World world = World::both;
 
-  Required<double> radius;  ///< R [m] of the pitch circle; the rack is on the side of axis × direction, or on the other
-                            ///< side for R < 0
-  TurnAxis axis = {};       ///< (3) unit vector of the pinion's axis, world axes at the reference configuration
+  Required<double> radius;   ///< R of the pitch circle [m]; the rack is on the side of axis × direction for R > 0
+  TurnAxis axis = {};        ///< (3) unit vector of the pinion's axis, world axes at the reference configuration
   JointAxis direction = {};  ///< (3) unit vector along the rack, perpendicular to `axis`
 
   template <class = void>  // compiled only if used

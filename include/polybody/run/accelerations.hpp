@@ -73,10 +73,11 @@ inline bool lacks_accelerations(State const& x) { return largest_size(x.a) == 0.
 
 /// Rate of the twist of a material point: acceleration [m/s²] and angular acceleration [rad/s²] (6), world axes,
 ///   J v̇ + bias, with v̇ = x.a.
-/// v̇ belongs to the state after `compute_accelerations`, after `equilibrium`, and in the states of `simulate` with all
-/// integrators except `EnergyMomentum` and `EnergyDecaying`, whose accelerations are the mean of the last step. Call
-/// `compute_accelerations` for those, and for `reference_state()`, `assemble` and states that were changed by hand.
-/// Implicit integrators and `Rattle` satisfy G v̇ = −γ to the order of the step only, and forward dynamics exactly.
+/// x.a contains the accelerations of the state after `compute_accelerations`, after `equilibrium`, and in the states of
+/// `simulate` with all integrators except `EnergyMomentum` and `EnergyDecaying`, whose accelerations are the mean of
+/// the last step. Call `compute_accelerations` for those, and for `reference_state()`, `assemble` and states that were
+/// changed by hand. Implicit integrators and `Rattle` satisfy G v̇ = −γ to the order of the step only, and forward
+/// dynamics exactly.
 /// \throws InvalidInput for a marker or state of another model, and for a state without accelerations: all are zero,
 /// but the forces are not in equilibrium.
 template <class M, class B>
@@ -112,6 +113,6 @@ std::span<double const> accelerations_of(M const& model, State const& x, BodyHan
   return std::span(x.a.data() + (v.data() - x.v.data()), v.size());
 }
 template <class M, class B>
-std::span<double const> accelerations_of(M const&, State&&, BodyHandle<B> const&) = delete;  ///< x would end
+std::span<double const> accelerations_of(M const&, State&&, BodyHandle<B> const&) = delete;  ///< temporary x
 
 }  // namespace polybody

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A model whose type is forgotten.
+/// Model with an erased C++ type.
 
 #include <polybody/run/problem_size.hpp>
 #include <polybody/run/simulate.hpp>
@@ -19,16 +19,15 @@ template <class I>
 inline constexpr char integrator_tag = 0;
 }  // namespace detail
 
-/// What runs, comparisons and records ask of a model, whatever its type. Programs that drive many formulations compile
-/// what they do with them once:
+/// Type-erased model for runs, comparisons and records. Programs with many formulations compile these functions once:
 ///   AnyModel const model(std::make_shared<MyModel const>(my_model), stepped_by<GeneralisedAlpha, Radau>);
 ///   State x = model.reference_state();
-///   simulate(model, x, Radau{}, {.until = 1.0, .step = 1e-3}).run();
-/// It keeps the model. Handles of the model's bodies and joints find their places in
-/// `observation_system(model).layout()`.
+///   simulate(model, x, Radau{}, {.end_time = 1.0, .step = 1e-3}).run();
+/// It shares ownership of the model. `observation_system(model).layout()` gives the indices of the model's bodies and
+/// joints for their handles.
 class AnyModel {
  public:
-  /// Compiles what is asked of M, and its steps by each of the integrators Is; keeps the model.
+  /// Stores the model, with the evaluations of M and its steps by each of the integrators Is.
   template <class M, class... Is>
   AnyModel(std::shared_ptr<M const> model, SteppedBy<Is...>)
       : reference_(model->reference_state()), system_(&questions<M>), census_(polybody::problem_size(*model)) {
@@ -37,11 +36,11 @@ class AnyModel {
   }
 
   State const& reference_state() const { return reference_; }  ///< the bodies as placed, at rest
-  ProblemSize const& counts() const { return census_; }        ///< as counted when it was made
-  /// The whole mechanism, with what is asked of its motion and its energies.
+  ProblemSize const& counts() const { return census_; }        ///< counts at construction
+  /// System of the full model, with the evaluation of motion and energies.
   System system() const { return system_(model_.get()); }
 
-  /// \throws InvalidInput where the model was made without integrator I.
+  /// Systems of a run by integrator I. \throws InvalidInput if the constructor was called without integrator I.
   template <class I>
   [[gnu::cold]] RunSystems systems_of() const {
     for (Run const& run : runs_)
@@ -72,14 +71,15 @@ class AnyModel {
   Sequence<Run> runs_ = {};
 };
 
-/// The systems in which integrator I steps the model. \throws InvalidInput for an integrator that it was not made with.
+/// Systems of a run of the model by integrator I. \throws InvalidInput if the constructor was called without this
+/// integrator.
 template <class I>
 RunSystems run_systems(AnyModel const& model) {
   return model.systems_of<I>();
 }
-/// A system that answers questions about a state.
+/// System for evaluations of a state.
 inline System observation_system(AnyModel const& model) { return model.system(); }
-/// Coordinates, rows and degrees of freedom as counted when the model was made.
+/// Coordinates, constraint equations and degrees of freedom at the construction of the model.
 inline ProblemSize problem_size(AnyModel const& model) { return model.counts(); }
 
 }  // namespace polybody

@@ -11,7 +11,7 @@ namespace polybody {
 
 namespace detail {
 
-/// Calls visit(k, action) for each action of force element `force`, where k counts its markers.
+/// Calls visit(k, action) for each wrench of force element `force`, with the index k of its marker.
 template <class Visit>
 void for_each_action_of(System const& system, Index force, Visit&& visit) {
   std::size_t k = 0;
@@ -84,10 +84,11 @@ template <class F>
 double power(System const& system, State const&, ElementHandle<F> const& force) {
   return detail::power_of_force(system, index_of_force(system.layout(), force));
 }
-/// Power of a drive on the bodies [W], λᵀΦ_t: the multipliers times the prescribed rates, positive if the drive adds
-/// energy. For ġ = θ̇ − ψ̇(t) it is the driving moment −λ times ψ̇. It is zero for joints without a function of time. In a
-/// compliant joint λ(g, ġ) takes the place of the multipliers. `system` must have been evaluated at x, whose
-/// multipliers belong to its own time (see `EnergyAudit`). \throws InvalidInput for a handle of another model.
+/// Power of a driving constraint on the bodies [W], λᵀΦ_t: the multipliers times the prescribed rates, positive if the
+/// drive adds energy. For ġ = θ̇ − ψ̇(t) it is the driving moment −λ times ψ̇. It is zero for joints without a function
+/// of time. In a compliant joint, λ(g, ġ) replaces the multipliers. `system` must have been evaluated at x. The
+/// multipliers of x must belong to its own time (see `EnergyAudit`). \throws InvalidInput for a handle of another
+/// model.
 template <class J>
   requires requires { typename J::Geometry; }
 double power(System const& system, State const& x, ElementHandle<J> const& joint) {

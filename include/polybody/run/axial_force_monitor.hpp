@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Warns of beams whose deflection leaves out axial forces that come near to buckling them: those of `Ffr` without
-/// geometric stiffening.
+/// Warns of beams with axial forces near buckling that their deflection neglects: those of `Ffr` without geometric
+/// stiffening.
 
 #include <string>
 #include <vector>
@@ -12,28 +12,30 @@
 
 namespace polybody {
 
-/// Asks fifty times in a run, and keeps one warning: that of the largest share.
+/// Evaluates axial forces fifty times in a run, and keeps one warning: that of the largest fraction of the buckling
+/// load.
 class AxialForceMonitor {
  public:
-  static constexpr double worth_warning = 0.05;  ///< share of the load that buckles
+  static constexpr double worth_warning = 0.05;  ///< fraction of the buckling load
 
-  /// For a run from `start` to `end_time` [s].
+  /// Monitor for a run from `start` to `end_time` [s].
   AxialForceMonitor(System const& system, double start, double end_time)
       : every_(0.02 * (end_time - start)), next_(start + every_) {
     for (BodyLayout const& body : system.layout().bodies) asks_ = asks_ || body.axial_share;
   }
 
-  /// Some body of the model says what its axial forces are.
+  /// True if a body of the model can compute its axial forces.
   bool asks() const { return asks_; }
 
-  /// The state at the end of a step at t [s] is to be looked at. \param last of the run
+  /// True if the state at the end of a step at t [s] must be evaluated. \param last true for the last step of the run
   bool is_due(double t, bool last) const { return asks_ && (last || t >= next_); }
 
-  /// Adds a finding in x to `warnings`; x has accelerations and multipliers. When a question throws, nothing changes.
-  template <class = void>  // compiled where it is used
+  /// Adds a finding in x to `warnings`; x must have accelerations and multipliers. If an evaluation throws, nothing
+  /// changes.
+  template <class = void>  // compiled only if used
   [[gnu::cold]] void look(System& system, State const& x, std::vector<std::string>& warnings) {
     collect(system, x);
-    Sequence<double> shares(loads_.size(), 0.0);  // all of them first: one that throws leaves the rest as it was
+    Sequence<double> shares(loads_.size(), 0.0);  // computed before any change, so that an exception changes nothing
     for (std::size_t i = 0; i < loads_.size(); ++i) {
       BodyLayout const& body = system.layout().bodies[i];
       if (!body.axial_share) continue;
@@ -63,8 +65,8 @@ class AxialForceMonitor {
   }
 
  private:
-  /// What joints and forces do to each body.
-  template <class = void>  // compiled where it is used
+  /// Collects the wrenches of joints and forces on each body.
+  template <class = void>  // compiled only if used
   [[gnu::cold]] void collect(System& system, State const& x) {
     loads_.resize(system.layout().bodies.size());
     for (auto& of_body : loads_) of_body.clear();
@@ -79,7 +81,7 @@ class AxialForceMonitor {
     system.push_forces();
     for (AppliedWrench<double> const& action : system.data().actions) add(system, action.marker, action.w, 1.0);
   }
-  /// sign · w = [f; m] about the marker, world axes.
+  /// Adds sign · w = [f; m] about the marker, world axes.
   [[gnu::cold]] void add(System const& system, Index marker, double const* w, double sign) {
     Index const body = system.layout().owners[std::size_t(marker)];
     if (body < 0) return;

@@ -1,9 +1,9 @@
 #pragma once
 /// \file
-/// Records of chosen rigid bodies in a run: their motion, and every wrench on them with the material point it acts on.
-/// A stress analysis after the run starts from them (decoupled_stress.hpp).
+/// Records of selected rigid bodies in a run: their motion, and every wrench on them with its material point. They are
+/// the input of a stress analysis after the run (decoupled_stress.hpp).
 ///
-/// Not in polybody.hpp: few programs need it.
+/// Not in polybody.hpp, because few programs need it.
 
 #include <algorithm>
 #include <optional>
@@ -15,32 +15,32 @@
 
 namespace polybody {
 
-/// A wrench on a body, in the body's axes; the moment is about the point itself.
+/// Wrench on a body, in the body's axes; the moment is about the point itself.
 struct LoadSample {
   Vec3 at = Vec3::Zero();  ///< (3) material point, from the body's origin [m]
   Vec3 f = Vec3::Zero();   ///< (3) [N]
   Vec3 m = Vec3::Zero();   ///< (3) [N m]
 };
 
-/// A body at one time. Gravity, a field, is not among the loads.
+/// Motion and loads of a body at one time. The loads do not include gravity.
 struct BodySample {
   double t = 0.0;                            ///< [s]
   Frame<double> frame;                       ///< of its origin (the centre of mass) and axes, world axes
   Vec3 acceleration = Vec3::Zero();          ///< (3) of the origin, world axes [m/s²]
   Vec3 angular_acceleration = Vec3::Zero();  ///< (3) world axes [rad/s²]
-  std::vector<LoadSample> loads;             ///< those that are not zero
+  std::vector<LoadSample> loads;             ///< nonzero loads
 };
 
-/// The samples of one body, in order.
+/// Samples of one body, in order.
 struct BodyRecord {
-  std::string name;                 ///< the body's
-  Vec3 gravity = Vec3::Zero();      ///< (3) that the body feels, world axes [m/s²]
+  std::string name;                 ///< name of the body
+  Vec3 gravity = Vec3::Zero();      ///< (3) gravity on the body, world axes [m/s²]
   std::vector<BodySample> samples;  ///< in the order of time
 };
 
-/// \throws InvalidInput, which begins with `who`, for fewer than two samples, samples that do not rise in time and
-/// intervals longer than `largest` [s]; 0: than 1.5 times the median.
-template <class = void>  // compiled where it is used
+/// \throws InvalidInput, which begins with `who`, for fewer than two samples, for samples that do not increase in time,
+/// and for intervals longer than `largest` [s], or than 1.5 times the median if `largest` is 0.
+template <class = void>  // compiled only if used
 void require_no_gaps(BodyRecord const& record, double largest, std::string const& who) {
   if (record.samples.size() < 2)
     throw InvalidInput("record.samples", {ErrorObject{who}, "the record has fewer than two samples."});
@@ -67,7 +67,7 @@ void require_no_gaps(BodyRecord const& record, double largest, std::string const
            " s. Record every step, or give a largest_gap up to which samples are interpolated."});
 }
 
-/// A rigid body, in the plane or in space: its points are `at(u)`, u from its centre of mass in its axes.
+/// Rigid body, in the plane or in space: its points are `at(u)`, u from its centre of mass in its axes.
 template <class B>
 concept HasRigidPoints = Body<B> && (requires(B const b) { b.at(Vec3()); } || requires(B const b) { b.at(Vec2()); });
 
@@ -84,26 +84,26 @@ BodySample motion_of_centre(BodyLayout const& place, State const& x) {
 }
 }  // namespace detail
 
-/// Records what acts on the bodies of interest:
+/// Records the loads and motions of selected bodies:
 ///   LoadRecorder recorder(model);
 ///   recorder.add(link);
 ///   for (State const& now : simulate(model, x, …)) recorder.record(now);
 ///   recorder.of(link)   the record
-/// The loads are −Gᵀλ of each joint on either marker [thesis Eq. 3.3, 4.4] and the wrenches of force elements; m a = Σ
-/// F holds in each sample as accurately as the integrator solves it.
-template <class = void>  // compiled where it is used
+/// The loads are −Gᵀλ of each joint on either marker [thesis Eq. 3.3, 4.4] and the wrenches of force elements. Each
+/// sample satisfies m a = Σ F to the accuracy of the integrator.
+template <class = void>  // compiled only if used
 class LoadRecorderOf {
  public:
-  /// The model must outlive the recorder and must not change after.
+  /// Recorder for a model. The model must outlive the recorder and must not change after its construction.
   template <class M>
   explicit LoadRecorderOf(M const& model) : LoadRecorderOf(System(model, with<Capabilities::motion>)) {}
   template <class M>
     requires(!std::same_as<M, System>)
-  explicit LoadRecorderOf(M const&& model) = delete;  ///< a temporary model, which would not outlive the recorder
-  /// \param system of the whole mechanism
+  explicit LoadRecorderOf(M const&& model) = delete;  ///< deleted: a temporary model would not outlive the recorder
+  /// \param system of the full model
   explicit LoadRecorderOf(System system) : system_(std::move(system)), recorded_(system_.layout().bodies.size(), -1) {}
 
-  /// From now on this body is recorded. \throws InvalidInput after the first sample, and for a body of another model.
+  /// Adds a body to the record. \throws InvalidInput after the first sample, and for a body of another model.
   template <class B>
   void add(BodyHandle<B> const& handle) {
     static_assert(HasRigidPoints<B>,
@@ -123,8 +123,8 @@ class LoadRecorderOf {
     motions_.push_back({body, &detail::motion_of_centre<B>});
   }
 
-  /// One more sample of all of them. \throws InvalidInput for a state of another model, one that is not finite or not
-  /// later than the last.
+  /// Adds a sample for each recorded body. \throws InvalidInput for a state of another model, and for a state that is
+  /// not finite or not later than the last one.
   void record(State const& x) {
     require_fitting(system_, x);
     for (BodyRecord const& r : records_)
@@ -146,7 +146,7 @@ class LoadRecorderOf {
     for (AppliedWrench<double> const& action : system_.data().actions) add_load(action.marker, action.w, 1.0);
   }
 
-  /// \throws InvalidInput for a body that was not recorded, or of which there is no sample yet.
+  /// Record of a body. \throws InvalidInput for a body that was not recorded, or that has no sample yet.
   template <class B>
   BodyRecord const& of(BodyHandle<B> const& handle) const {
     Index const slot = recorded_[std::size_t(index_of(system_.layout(), handle))];
@@ -161,19 +161,19 @@ class LoadRecorderOf {
   }
 
  private:
-  /// A recorded body, and what asks it for its motion.
+  /// Recorded body, and the function that evaluates its motion.
   struct Recorded {
     Index body;
     BodySample (*of)(BodyLayout const&, State const&);
   };
 
-  /// Place of the record of the body that a marker is on, or −1.
+  /// Index of the record of a marker's body, or −1.
   Index record_of(Index marker) const {
     Index const body = system_.layout().owners[std::size_t(marker)];
     return body < 0 ? -1 : recorded_[std::size_t(body)];
   }
 
-  /// sign · w = [f; m] about the marker, world axes.
+  /// Adds sign · w = [f; m] about the marker, world axes.
   void add_load(Index marker, double const* w, double sign) {
     Index const slot = record_of(marker);
     if (slot < 0 || std::all_of(w, w + 6, [](double e) { return e == 0.0; })) return;
@@ -185,11 +185,11 @@ class LoadRecorderOf {
   }
 
   System system_;
-  std::vector<Index> recorded_;  ///< of each body: its record, or −1
+  std::vector<Index> recorded_;  ///< for each body: index of its record, or −1
   std::vector<Recorded> motions_;
   std::vector<BodyRecord> records_;
 };
 
-using LoadRecorder = LoadRecorderOf<>;  ///< records what acts on bodies, and how they move
+using LoadRecorder = LoadRecorderOf<>;  ///< records loads and motions of bodies
 
 }  // namespace polybody

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Warns of singular positions at which the motion may have gone over to another branch.
+/// Warns of singular configurations at which the motion may have changed to another branch.
 
 #include <string>
 #include <vector>
@@ -13,14 +13,15 @@ namespace polybody {
 /// Compares the constraint equations at the ends of steps with those at the start of the run.
 class BranchWatch {
  public:
-  /// Notes how nearly the constraint equations repeat each other at x, a usual position.
+  /// Stores a measure of near redundancy of the constraint equations at x, as the reference of a regular configuration.
   template <class Solver>
   [[gnu::cold]] void begin(System& system, ForwardDynamics<Solver>& forward, State const& x) {
     if (system.rows() > 0) usual_ = forward.constraint_gain(system, x.q, x.v, x.t);
   }
 
-  /// Adds a warning for the first step that ends at x next to a singular position, of those in which the velocities v
-  /// turned by more than a tenth and a matrix was factorised. \param warnings of the run
+  /// Adds a warning for the first step that ends at x near a singular configuration. It examines only steps in which
+  /// the velocities v changed by more than a tenth and a matrix was factorised. \param v velocities before the step
+  /// \param warnings of the run
   template <class Solver>
   void look(System& system, ForwardDynamics<Solver>& forward, StepReport const& taken, VecX const& v, State const& x,
             std::vector<std::string>& warnings) {

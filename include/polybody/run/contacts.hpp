@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Where the bodies of a contact group touch, and how hard.
+/// Contact points and contact forces of a contact group.
 
 #include <functional>
 
@@ -9,20 +9,20 @@
 
 namespace polybody {
 
-/// A point of contact as it is in a state.
+/// Contact point in a state.
 struct TouchingPoint {
-  Index body;                  ///< among the group's many, from 0
-  std::string const* against;  ///< name of the one of the few
-  Vec3 place;                  ///< (3) world axes [m]
-  Vec3 normal;                 ///< (3) unit vector to the body
-  double depth;                ///< [m]
+  Index body;                  ///< index among the many markers of the group, from 0
+  std::string const* against;  ///< name of the partner, one of the few
+  Vec3 place;                  ///< (3) position, world axes [m]
+  Vec3 normal;                 ///< (3) unit vector towards the body
+  double depth;                ///< penetration [m]
   Vec3 force;                  ///< (3) on the body [N]
 };
 
-using TouchingPointVisit = std::function<void(TouchingPoint const&)>;  ///< what is called for each point in contact
+using TouchingPointVisit = std::function<void(TouchingPoint const&)>;  ///< called for each contact point
 
 namespace detail {
-/// The points of one pair that press.
+/// Calls `visit` for the contact points of one pair with a positive normal force.
 template <class Law>
 void visit_touching(Law const& law, std::array<Frame<double>, 2> const& frames, Index body, std::string const& against,
                     TouchingPointVisit const& visit) {
@@ -32,8 +32,8 @@ void visit_touching(Law const& law, std::array<Frame<double>, 2> const& frames, 
 }
 }  // namespace detail
 
-/// Calls visit(TouchingPoint) for every point of a contact group that presses; `system` must have been evaluated at the
-/// state.
+/// Calls visit(TouchingPoint) for every contact point of a contact group with a positive normal force; `system` must
+/// have been evaluated at the state.
 /// \throws InvalidInput for a handle of another model.
 template <class F>
 void for_each_contact(System const& system, ElementHandle<F> const& group, TouchingPointVisit const& visit) {

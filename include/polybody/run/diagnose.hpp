@@ -1,9 +1,9 @@
 #pragma once
 /// \file
-/// What a model is like at a state, before it runs: how well its joints hold, which rows repeat others, what hangs in
-/// the air, and how small the steps of explicit integrators have to be.
+/// Diagnosis of a model at a state, before a run: constraint violations, redundant constraint equations, unconnected
+/// bodies, and stable steps of explicit integrators.
 ///
-/// Not in polybody.hpp: it comes with Eigen's sparse module.
+/// Not in polybody.hpp, because it includes Eigen's sparse module.
 
 #include <ostream>
 
@@ -17,33 +17,33 @@
 
 namespace polybody {
 
-/// What a model is like at a state.
+/// Diagnosis of a model at a state.
 struct Diagnosis {
-  Violation violation;                               ///< how far its rows are off
-  std::string largest_violated_joint = {};           ///< joint "a" or body "b", by position; empty where no row is off
-  Redundancy redundancy;                             ///< rows that repeat others or contradict them
-  std::vector<std::string> unconnected_bodies = {};  ///< bodies that no joint joins to the ground, in steps or at once
-  double stiffest = 0.0;  ///< largest angular frequency of undamped small motions [rad/s], 0 where nothing is elastic
-  std::string stiffest_at = {};  ///< the body with the most kinetic energy in it
-  std::string unsolved = {};     ///< why no accelerations follow from the forces, where that is so
+  Violation violation;                      ///< largest constraint violations
+  std::string largest_violated_joint = {};  ///< joint "a" or body "b" with the largest |Φ|; empty without violation
+  Redundancy redundancy;                    ///< redundant and contradictory constraint equations
+  std::vector<std::string> unconnected_bodies = {};  ///< bodies without a path of joints to the ground
+  double stiffest = 0.0;         ///< largest angular frequency of undamped small motions [rad/s]; 0 without elasticity
+  std::string stiffest_at = {};  ///< body with the largest kinetic energy in this motion
+  std::string unsolved = {};     ///< reason if the forces determine no accelerations; otherwise empty
 
-  /// An explicit integrator and the largest step that is stable with it.
+  /// An explicit integrator and its largest stable step.
   struct StableStep {
-    std::string integrator;  ///< the integrator's name
-    double step;             ///< the largest that is stable without damping [s]
+    std::string integrator;  ///< name of the integrator
+    double step;             ///< largest stable step without damping [s]
   };
-  std::vector<StableStep> stable_steps = {};  ///< of explicit integrators, where anything is elastic
+  std::vector<StableStep> stable_steps = {};  ///< of explicit integrators; empty without elasticity
 };
 
 namespace detail {
 
-/// Small motions under K = −∂f/∂q alone: M a + Gᵀμ = K y, G a = 0.
+/// Small motions under the stiffness K = −∂f/∂q alone: M a + Gᵀμ = K y, G a = 0.
 class StiffestMotion {
  public:
   using Matrix = Eigen::SparseMatrix<double>;
 
-  /// Power iteration for the largest aᵀK a/aᵀM a, which finds it from below, to a thousandth where the next one is not
-  /// nearer. `forward` must be factored at the state where `system` was evaluated.
+  /// Power iteration for the largest aᵀK a/aᵀM a. It converges from below, to a relative error of 1e-3 unless the next
+  /// eigenvalue is nearer. `forward` must be factorised at the state at which `system` was evaluated.
   template <class = void>
   StiffestMotion(System& system, ForwardDynamics<DefaultSolver>& forward) {
     Matrix const elastic = matrix_of(system, [&](auto& sink) {
@@ -68,7 +68,7 @@ class StiffestMotion {
     }
   }
   double frequency() const { return std::sqrt(squared_); }
-  /// The body that has the most kinetic energy.
+  /// Body with the largest kinetic energy.
   template <class = void>
   std::string body(System& system) const {
     Matrix const mass = matrix_of(system, [&](auto& sink) { system.masses(sink); });
@@ -113,8 +113,8 @@ void name_stable_steps(double omega, std::vector<Diagnosis::StableStep>& out) {
 
 }  // namespace detail
 
-/// Looks a model over at x, its place, speeds and time; nothing is changed. \throws InvalidInput for a state of another
-/// model.
+/// Diagnosis of a model at x (coordinates, velocities and time), which does not change. \throws InvalidInput for a
+/// state of another model.
 template <class = void>
 Diagnosis diagnose(System& system, State const& x) {
   require_fitting(system, x);
@@ -143,14 +143,14 @@ Diagnosis diagnose(System& system, State const& x) {
   }
   return out;
 }
-/// The same of a model.
+/// Diagnosis of a model at x; see above.
 template <class M>
 Diagnosis diagnose(M const& model, State const& x) {
   System system(model);
   return diagnose(system, x);
 }
 
-/// A line for each finding.
+/// Writes a line for each finding.
 template <class = void>
 std::ostream& operator<<(std::ostream& out, Diagnosis const& c) {
   out << sentence_of({"rows off by ", c.violation.position, " (positions), ", c.violation.velocity, " (speeds)",

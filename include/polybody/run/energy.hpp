@@ -6,8 +6,8 @@
 
 namespace polybody {
 
-/// Energies of state x; `system` must have been evaluated there. Dead loads have no potential here; their work is not
-/// counted. Without allocation.
+/// Energies of state x; `system` must have been evaluated there. Dead loads have no potential, and their work is not
+/// counted. This function does not allocate memory.
 template <class = void>
 Energy energy(System const& system, State const& x) {
   return require_entry(system.entries().first.energy, "energies")(system.entries().second, {x.q, x.v, x.t},
@@ -31,7 +31,7 @@ struct Momentum {
 };
 
 namespace detail {
-/// out += A x for the blocks of A among the speeds.
+/// out += A x for the blocks of A in the velocities.
 struct ProductSink {
   VecX const& x;
   VecX& out;
@@ -43,7 +43,7 @@ struct ProductSink {
 };
 }  // namespace detail
 
-/// The momentum of a system that was made with `Capabilities::rigid_velocities`.
+/// Momentum in state x of a system with `Capabilities::rigid_velocities`.
 template <class = void>
 Momentum momentum(System& system, State const& x) {
   VecX mv = VecX::Zero(system.velocities()), rigid = mv;
@@ -59,7 +59,7 @@ Momentum momentum(System& system, State const& x) {
   }
   return p;
 }
-/// Momenta of state x of a model. \throws InvalidInput for a state of another model.
+/// Momentum in state x of a model. \throws InvalidInput for a state of another model.
 template <class M>
 Momentum momentum(M const& model, State const& x) {
   System system(model, with<Capabilities::rigid_velocities>);

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// Where the energy of a run comes from and where it goes:
+/// Energy audit of a run:
 ///   work of the drives + of the loads + of gravity = Δ kinetic + Δ stored + dissipated + unaccounted.
-/// For exact motions nothing is unaccounted.
+/// The unaccounted energy of exact motions is zero.
 
 #include <ostream>
 
@@ -12,44 +12,44 @@
 namespace polybody {
 
 /// Powers in state x with its multipliers; `system` must have been evaluated at x, and made with
-/// `Capabilities::energy`. `backwards` (nv) is scratch. Rows of bodies (Euler parameters) and linear joints do no work
-/// and are left out. A potential is taken for a function of the frames alone.
+/// `Capabilities::energy`. `backwards` (nv) is workspace. Constraint equations of bodies (Euler parameters) and linear
+/// joints do no work and are omitted. A potential is assumed to be a function of the frames alone.
 template <class = void>
 Powers powers(System const& system, State const& x, VecX& backwards) {
   backwards = -x.v;
   return require_entry(system.entries().first.powers, "energies")(system.entries().second, {x.q, x.v, x.t}, backwards,
                                                                   x.lambda, system.load_factor, system.data());
 }
-/// The same with scratch of its own.
+/// Powers in state x, without workspace from the caller.
 template <class = void>
 Powers powers(System const& system, State const& x) {
   VecX backwards;
   return powers(system, x, backwards);
 }
 
-/// An account of a run, state by state; powers are integrated by the trapezoidal rule, energies are exact:
+/// Energy audit of a run, state by state. Powers are integrated by the trapezoidal rule; energies are exact:
 ///   EnergyAudit audit(model);
 ///   for (State const& now : simulate(model, x, integrator, options)) audit.record(now);
-/// What is unaccounted is numerical: what the integrator loses or gains, and the error of the trapezoidal rule. The
-/// rule errs by h²/12 times the growth of the powers' slopes [Euler and Maclaurin], and by about ½ h times each jump
-/// (loads at corners, contacts with dampers at touch). States must have the multipliers of their own time. The states
-/// of `simulate` have them, also for joints whose rows are eliminated (Recursive, AncfLinear). States put together by
-/// hand do not have them, nor do those of `EnergyMomentum` and `EnergyDecaying`, whose multipliers belong to the middle
-/// of the step: there the work of drives is right to O(h). A record does not allocate. The model must outlive the audit
-/// and must not change after.
-template <class = void>  // compiled where it is used
+/// The unaccounted energy is numerical: gains or losses of the integrator, and the error of the trapezoidal rule. The
+/// error of the rule is h²/12 times the increase of the slopes of the powers [Euler and Maclaurin], and about ½ h times
+/// each jump (loads at breakpoints, contacts with dampers at touch). States must have the multipliers of their own
+/// time. The states of `simulate` have them, also for joints with eliminated equations (JointCoordinates, AncfLinear).
+/// States that are constructed by hand do not have them. The multipliers of `EnergyMomentum` and `EnergyDecaying`
+/// belong to the middle of the step, so that the work of drives has an error of O(h). `record` does not allocate
+/// memory. The model must outlive the audit and must not change after its construction.
+template <class = void>  // compiled only if used
 class EnergyAuditOf {
  public:
-  /// An account of this model's runs, which begins with the first state.
+  /// Audit for runs of this model, which begins with the first state.
   template <class M>
   explicit EnergyAuditOf(M const& model) : EnergyAuditOf(System(model, with<Capabilities::energy>)) {}
   template <class M>
     requires(!std::same_as<M, System>)
-  explicit EnergyAuditOf(M const&& model) = delete;  ///< a temporary model, which would not outlive the audit
-  /// \param system of the whole mechanism, made with `Capabilities::energy`
+  explicit EnergyAuditOf(M const&& model) = delete;  ///< deleted: a temporary model would not outlive the audit
+  /// \param system of the full model, made with `Capabilities::energy`
   explicit EnergyAuditOf(System system) : system_(std::move(system)), backwards_(VecX::Zero(system_.velocities())) {}
 
-  /// Begins anew at x. \throws InvalidInput when x does not fit the model.
+  /// Starts again at x. \throws InvalidInput if x does not fit the model.
   void start(State const& x) {
     require_usable(system_, x);
     see(x);
@@ -59,12 +59,12 @@ class EnergyAuditOf {
     started_ = true;
   }
 
-  /// Adds the works since the last state; the first state begins the account. \throws InvalidInput for a state of
-  /// another model, or earlier than the last one.
+  /// Adds the work since the last state; the first state begins the audit. \throws InvalidInput for a state of another
+  /// model, or earlier than the last one.
   void record(State const& x) {
     if (!started_) return start(x);
     if (x.q.size() != system_.coordinates() || x.v.size() != system_.velocities() || x.lambda.size() != system_.rows())
-      require_fitting(system_, x);  // which words it
+      require_fitting(system_, x);  // throws with a message
     require_computable(system_, x);
     double const h = x.t - t_;
     if (!(h >= 0.0))
@@ -81,27 +81,27 @@ class EnergyAuditOf {
     turnover_ = std::max({turnover_, in, out, last_.kinetic});
   }
 
-  /// Since the start [J].
+  /// Work of drives since the start [J].
   double work_of_drives() const { return work_.drives; }
-  double work_of_loads() const { return work_.loads; }  ///< with that of forces without a potential
-  double work_of_gravity() const { return first_.gravity - last_.gravity; }  ///< what its potential lost
-  double kinetic() const { return last_.kinetic - first_.kinetic; }          ///< gained
-  double stored() const {                                                    ///< in bodies, compliant joints and forces
+  double work_of_loads() const { return work_.loads; }  ///< including forces without a potential [J]
+  double work_of_gravity() const { return first_.gravity - last_.gravity; }  ///< decrease of its potential [J]
+  double kinetic() const { return last_.kinetic - first_.kinetic; }          ///< increase since the start [J]
+  double stored() const {  ///< increase in bodies, compliant joints and forces [J]
     return (last_.strain - first_.strain) + (last_.joints - first_.joints) + (last_.forces - first_.forces);
   }
-  double dissipated() const { return work_.dissipated; }  ///< in dampers and contacts, positive when lost
+  double dissipated() const { return work_.dissipated; }  ///< in dampers and contacts, positive for losses [J]
 
-  /// What does not add up [J]: positive where the integrator loses energy.
+  /// Unaccounted energy [J]: positive if the integrator loses energy.
   double unaccounted() const {
     return work_of_drives() + work_of_loads() + work_of_gravity() - kinetic() - stored() - dissipated();
   }
-  /// |unaccounted| relative to the largest value so far of the work put in, of what it became, or of the kinetic
-  /// energy.
+  /// Unaccounted energy relative to the turnover: the largest value so far of the supplied work, of the converted
+  /// energy, or of the kinetic energy.
   double relative() const { return turnover_ > 0.0 ? std::abs(unaccounted()) / turnover_ : 0.0; }
 
-  /// In the last state.
+  /// Powers in the last state.
   Powers const& powers() const { return powers_; }
-  Energy const& energy() const { return last_; }  ///< [J]
+  Energy const& energy() const { return last_; }  ///< energies in the last state [J]
 
  private:
   void see(State const& x) {
@@ -114,14 +114,14 @@ class EnergyAuditOf {
   System system_;
   VecX backwards_;
   Energy first_, last_;
-  Powers powers_, work_;  // work_: their integrals [J]
+  Powers powers_, work_;  // work_: time integrals of powers [J]
   double t_ = 0.0, turnover_ = 0.0;
   bool started_ = false;
 };
 
-using EnergyAudit = EnergyAuditOf<>;  ///< where the energy of a run comes from and goes to
+using EnergyAudit = EnergyAuditOf<>;  ///< energy audit of a run
 
-/// The account in three lines [J].
+/// Writes the audit in three lines [J].
 template <class = void>
 std::ostream& operator<<(std::ostream& out, EnergyAudit const& a) {
   return out << sentence_of({"work of drives ", a.work_of_drives(), ", loads ", a.work_of_loads(), ", gravity ",

@@ -6,23 +6,24 @@
 
 namespace polybody {
 
-/// Something that happens when `value` passes through zero (in either direction). The step ends there. An even number
-/// of zeros within one step is found if the value turns round once, as at the top of a flight; a value that oscillates
-/// within a step needs a smaller step.
+/// Event of a run: `value` passes through zero, in either direction, and the step ends there. An even number of zeros
+/// within one step is found if the value has one extremum, such as the top of a flight. A value that oscillates within
+/// a step requires a smaller step.
 struct Event {
-  std::string name;                           ///< in reports
-  std::function<double(State const&)> value;  ///< whose sign changes at the event
-  bool terminal = false;                      ///< ends the run
-  double tolerance = 1e-10;                   ///< in time [s]
-  /// Changes coordinates and speeds at the event, for example by an impact. The run restarts there. The action must
-  /// keep the joints closed; speeds are projected onto them afterwards, over the masses. If the value turns back, the
-  /// next crossing from the same side is met, also within the next step. If the value moves on, the next crossing from
-  /// the other side is met. An event with an action that starts at zero is met at once unless its value grows.
+  std::string name;                           ///< name in reports
+  std::function<double(State const&)> value;  ///< event function, whose sign changes at the event
+  bool terminal = false;                      ///< true if the event ends the run
+  double tolerance = 1e-10;                   ///< tolerance of the time [s]
+  /// Changes coordinates and velocities at the event, for example by an impact. The run restarts there. The action must
+  /// satisfy the position constraints; velocities are projected onto the constraint equations afterwards, in the mass
+  /// norm. If the value reverses, the next crossing from the same side is detected, also within the next step. If the
+  /// value continues, the next crossing from the other side is detected. An event with an action and a value of zero at
+  /// the start occurs immediately unless its value increases.
   std::function<void(State&)> action = {};
   /// Impacts accumulate if they follow each other within `tolerance`: a ball with a restitution below one comes to
-  /// rest. Then the run throws InvalidInput. With `rests` the value is held at zero from there on: after each step,
-  /// coordinates and speeds are projected onto value = 0, over the masses, until a step ends on the side from which
-  /// the event came. Accelerations and multipliers do not include the force that holds the value.
+  /// rest. Without `rests`, the run then throws InvalidInput. With `rests`, the value is held at zero from there on:
+  /// after each step, coordinates and velocities are projected onto value = 0 in the mass norm, until a step ends on
+  /// the side from which the event came. Accelerations and multipliers do not include the force that holds the value.
   bool rests = false;
 };
 

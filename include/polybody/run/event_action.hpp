@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Actions of events, and values that are held at zero.
+/// Actions of events, and event values that are held at zero.
 
 #include <array>
 
@@ -9,7 +9,7 @@
 
 namespace polybody {
 
-/// Continues states of `system`, which must outlive the function, along their speeds and accelerations.
+/// Function that moves states of `system` along their velocities and accelerations. `system` must outlive the function.
 inline std::function<void(State&, double)> drift_of(System& system) {
   return [&system](State& x, double h) {
     VecX const turned = h * x.v + (0.5 * h * h) * x.a;
@@ -22,7 +22,7 @@ inline std::function<void(State&, double)> drift_of(System& system) {
 
 namespace detail {
 
-/// The largest |Φ| at x, and its equation.
+/// Largest |Φ| at x, and the index of its equation.
 template <class = void>
 std::pair<double, Index> opening(System& full, State const& x) {
   full.evaluate(x.q, x.v, x.t);
@@ -35,7 +35,7 @@ std::pair<double, Index> opening(System& full, State const& x) {
 }
 
 /// Checks the state `after` the action of an event. \throws InvalidInput if its sizes differ from `before`, if a number
-/// is not finite, or if a joint is open by more than `tolerance` and by more than twice its opening before.
+/// is not finite, or if a joint is violated by more than `tolerance` and by more than twice its violation before.
 template <class = void>
 [[gnu::cold]] void require_closed(System& full, Event const& event, State const& before, State const& after,
                                   double tolerance) {
@@ -56,9 +56,9 @@ template <class = void>
        " (`assembly_tolerance`). Change velocities only, or call assemble(model, x) in the action."});
 }
 
-/// Moves coordinates and speeds of x to where the event's value and its rate by the speeds are zero, by the smallest
-/// change in the norm of M that keeps the joints closed. \throws InvalidInput if the value does not depend on what can
-/// move.
+/// Changes coordinates and velocities of x so that the event value and its rate due to velocities are zero, by the
+/// smallest change in the norm of M that satisfies the constraint equations. \throws InvalidInput if the value does not
+/// depend on coordinates that can move.
 template <LinearSolver Solver>
 [[gnu::cold]] void hold(Event const& event, System& full, ForwardDynamics<Solver>& forward, State& x) {
   Index const n = full.velocities();
@@ -97,15 +97,16 @@ template <LinearSolver Solver>
 
 }  // namespace detail
 
-/// Holds the values of the events that rest at zero in x, a state of the `full` model. Then those that were met last
-/// change it, one after the other. \param tolerance by which an action may open a joint \throws InvalidInput for an
-/// action that leaves other sizes, numbers that are not finite or an open joint.
+/// Holds the values of resting events at zero in x, a state of the `full` model. Then the actions of the events that
+/// occurred last change x, one after the other. \param tolerance limit of the constraint violation after an action
+/// \throws InvalidInput for an action that changes sizes, or that leaves numbers that are not finite or violated
+/// joints.
 template <LinearSolver Solver = DefaultSolver>
 [[gnu::cold]] void act(EventDetector const& watch, std::vector<Event> const& events, State& x, System& full,
                        double tolerance) {
   if (watch.first_held() < events.size()) {
     ForwardDynamics<Solver> forward(full);
-    for (int sweep = 0; sweep < 3; ++sweep)  // events that rest at once push each other
+    for (int sweep = 0; sweep < 3; ++sweep)  // events that rest at the same time affect each other
       for (std::size_t i = 0; i < events.size(); ++i)
         if (watch.held(i)) detail::hold(events[i], full, forward, x);
   }
@@ -118,9 +119,9 @@ template <LinearSolver Solver = DefaultSolver>
   }
 }
 
-/// The stepped state after those of the `events` that were met last have changed the user's state x. \param systems the
-/// stepped one, and the whole one where that eliminates joints: then speeds are brought onto these before they are left
-/// out \param tolerance of constraint violations [m]
+/// Integrated state after the actions of the `events` that occurred last on the user's state x. \param systems
+/// integrated system, and the full system if joints are eliminated: then velocities are projected onto their equations
+/// before the elimination \param tolerance of constraint violations [m]
 template <LinearSolver Solver>
 [[gnu::cold]] State after_action(EventDetector const& watch, std::vector<Event> const& events, State x,
                                  std::array<System*, 2> systems, double tolerance) {

@@ -11,33 +11,33 @@
 
 namespace polybody {
 
-/// Stores the sign of each event's value, and finds the first event within a step. Steps are taken through a function,
-/// so that this is compiled once for all models.
+/// Stores the sign of each event value, and finds the first event within a step. Steps are taken through a function, so
+/// that this class is compiled once for all models.
 class EventDetector {
  public:
   using Step = EventStep::Again;  ///< takes a step
-  using Taken = EventStep;        ///< a step that a run has taken
+  using Taken = EventStep;        ///< step of a run
 
   EventDetector() = default;
-  /// Events with these signs, as `sides` returns them.
+  /// Detector with these signs, as `sides` returns them.
   explicit EventDetector(Sequence<int> const& sides) {
     for (int const side : sides) places_.push_back({.side = side});
     met_.assign(places_.size(), 0);
   }
-  /// The sign of each event's value: −1, 0 (not known) or 1. −2 and 2: the value is held at zero and was negative or
-  /// positive before.
+  /// Sign of each event value: −1, 0 (unknown) or 1. −2 and 2: the value is held at zero and was negative or positive
+  /// before.
   Sequence<int> sides() const {
     Sequence<int> all;
     for (EventPlace const& place : places_) all.push_back(place.side);
     return all;
   }
 
-  /// Stores the signs of the events' values at the start x of a run. \throws NonFiniteValue.
+  /// Stores the signs of the event values at the initial state x of a run. \throws NonFiniteValue.
   [[gnu::cold]] void start(std::vector<Event> const& events, State const& x, EventMotion const& motion);
 
-  /// Ends a step to x at the first event within it, by bisection on its length; the report names it. Returns whether
-  /// the run must restart at x: an event was met, or one is held at zero. If not, the last state that was shown is x.
-  /// \throws NonFiniteValue; InvalidInput for impacts that accumulate.
+  /// Ends a step to x at the first event within it, by bisection on its length, and adds the event to the report.
+  /// Returns true if the run must restart at x: an event occurred, or a value is held at zero. Otherwise the last full
+  /// state that was computed belongs to x. \throws NonFiniteValue; InvalidInput for impacts that accumulate.
   bool meet(std::vector<Event> const& events, Taken const& step, State& x, RunReport& report) {
     before_.places = places_;
     before_.events = report.events.size();
@@ -57,30 +57,29 @@ class EventDetector {
     report.stopped = before_.stopped;
   }
 
-  bool met(std::size_t i) const { return met_[i] == 1; }   ///< event i was met in the step that was looked at last
-  bool held(std::size_t i) const { return met_[i] == 2; }  ///< event i is to be held at zero at the end of that step
-  /// An event is held at zero from step to step.
+  bool met(std::size_t i) const { return met_[i] == 1; }   ///< event i occurred in the last examined step
+  bool held(std::size_t i) const { return met_[i] == 2; }  ///< event i must be held at zero at the end of that step
+  /// True if an event value is held at zero over several steps.
   bool rests() const {
     for (EventPlace const& place : places_)
       if (place.rests()) return true;
     return false;
   }
-  /// The number of an event that is held at zero, or the count of all events.
+  /// Index of the first event that is held at zero, or the number of events.
   std::size_t first_held() const {
     std::size_t i = 0;
     while (i < met_.size() && !held(i)) ++i;
     return i;
   }
-  /// One of the `events` that was met changes the state.
+  /// True if one of the `events` that occurred changes the state.
   bool acts(std::vector<Event> const& events) const {
     for (std::size_t i = 0; i < events.size(); ++i)
       if (held(i) || (met(i) && events[i].action)) return true;
     return false;
   }
-  /// Stores the signs of the events' values at x, after the actions of the events and a restart. \throws
-  /// NonFiniteValue.
+  /// Stores the signs of the event values at x, after the actions of the events and a restart. \throws NonFiniteValue.
   [[gnu::cold]] void settle(std::vector<Event> const& events, State const& x, EventMotion const& motion);
-  /// Forgets all but the sides, so that the run goes on as one that is resumed.
+  /// Discards all data except the signs, so that the run continues as a resumed run.
   [[gnu::cold]] void forget() {
     for (EventPlace& place : places_) place = {.side = place.side};
   }
@@ -94,7 +93,7 @@ class EventDetector {
 
   [[gnu::cold]] bool search(std::vector<Event> const& events, Taken const& step, State& x, RunReport& report);
 
-  /// Stores the values at the end of a step of h in which nothing was met.
+  /// Stores the values at the end of a step of length h without events.
   void go_on(double h) {
     met_.assign(places_.size(), 0);
     for (std::size_t i = 0; i < places_.size(); ++i) {
@@ -104,13 +103,13 @@ class EventDetector {
       place.stand(now_[i]);
     }
   }
-  /// Values of the events at x, of which the user's state is made once.
+  /// Evaluates the events at x; the full state is computed once.
   void look(std::vector<Event> const& events, State const& x, EventMotion const& motion) {
     now_.clear();
     State const& shown = motion.seen(x);
     for (Event const& event : events) now_.push_back(EventMotion::value(event, shown));
   }
-  Sequence<EventPlace> places_;  // at the end of the last step: each is met once, however a restart rounds
+  Sequence<EventPlace> places_;  // before a restart: its round-off must not cause a second event
   Before before_;
   Sequence<double> now_;
   Sequence<int> met_;  // 1: met, 2: held
@@ -127,7 +126,7 @@ inline void EventDetector::start(std::vector<Event> const& events, State const& 
     State y = x;
     motion.drift(y, 0.05 * motion.asked);
     double const moves = events[i].value(motion.seen(y)) - now_[i];
-    // at zero within rounding, and not on its way up: such a body rests on what the event stands for, or falls into it
+    // zero within round-off and not increasing: the body rests on the contact of the event, or moves into it
     if (now_[i] == 0.0 || (moves <= 0.0 && -now_[i] < -1e-6 * moves)) places_[i].side = 1;
   }
 }

@@ -7,14 +7,14 @@
 
 namespace polybody {
 
-/// The motion of a run near a state, for questions of its events.
+/// Motion of a run near a state, for the evaluation of events.
 struct EventMotion {
-  double asked;                                    ///< length of steps that the run is asked for [s]
-  std::function<State const&(State const&)> seen;  ///< makes the user's state of a stepped one
-  /// Moves a state along its speeds and accelerations by so many seconds, forwards or back, without a step.
+  double asked;                                    ///< requested length of steps [s]
+  std::function<State const&(State const&)> seen;  ///< returns the full state of an integrated state
+  /// Moves a state along its velocities and accelerations by a time [s], forwards or backwards, without a step.
   std::function<void(State&, double)> drift;
 
-  /// The event's value at a state of the user's. \throws NonFiniteValue.
+  /// Event value at a full state. \throws NonFiniteValue.
   static double value(Event const& event, State const& x) {
     double const y = event.value(x);
     if (!std::isfinite(y))
@@ -22,7 +22,7 @@ struct EventMotion {
                                                 "\" is not finite at t = ", ErrorTime{x.t}, " s."});
     return y;
   }
-  /// The rate of an event's value at x [1/s], by central differences over a tenth of a step of `asked`.
+  /// Rate of the event value at x [1/s], by central differences over a tenth of the requested step.
   [[gnu::cold]] double rate(Event const& event, State const& x) const {
     double const by = 0.05 * asked;
     State y = x;
@@ -32,7 +32,7 @@ struct EventMotion {
     drift(y, -by);
     return (later - event.value(seen(y))) / (2.0 * by);
   }
-  /// The event's value depends on accelerations or multipliers, whose rates are not known.
+  /// True if the event value depends on accelerations or multipliers, whose rates are unknown.
   [[gnu::cold]] static bool reads_forces(Event const& event, State const& shown) {
     State others = shown;
     others.a.array() = 1.5 * others.a.array() + 1.0;

@@ -8,32 +8,32 @@
 
 namespace polybody {
 
-/// One event of a run: the sign of its value, its values in the last steps, and its actions.
+/// State of one event of a run: sign of its value, values in the last steps, and actions.
 struct EventPlace {
-  static constexpr int repeats_allowed = 10;    ///< actions of one event, each within its tolerance of the last one
+  static constexpr int repeats_allowed = 10;  ///< actions of one event, each within its tolerance of the preceding one
   static constexpr int actions_allowed = 1000;  ///< actions of one event within the length of one step
   static constexpr double never = std::numeric_limits<double>::infinity();  ///< no time [s]
 
-  int side = 0;           ///< −1, 0 (not known) or 1; −2 and 2: held at zero, negative or positive before
-  bool known = false;     ///< `value` is that at the end of the last step
-  double value = 0.0;     ///< there, unit of the event
+  int side = 0;           ///< −1, 0 (unknown) or 1; −2 and 2: held at zero, negative or positive before
+  bool known = false;     ///< `value` is the value at the end of the last step
+  double value = 0.0;     ///< value at the end of the last step, unit of the event
   double rate = 0.0;      ///< mean over the last step [1/s]
-  double span = 0.0;      ///< length of that step; 0: none since the last start [s]
+  double span = 0.0;      ///< length of that step [s]; 0 after a start
   double acted = -never;  ///< time of the last action [s]
-  double since = -never;  ///< from when actions are counted [s]
-  int actions = 0;        ///< since then
-  int repeats = 0;        ///< actions, each within the tolerance of the last one
-  bool stays = false;     ///< the last action left the value without a rate
-  double scale = 0.0;     ///< size of the rate at the last meeting [1/s]
-  double off = 0.0;       ///< |value| there, unit of the event
+  double since = -never;  ///< start of the count of actions [s]
+  int actions = 0;        ///< number of actions in this count
+  int repeats = 0;        ///< consecutive actions, each within the tolerance of the preceding one
+  bool stays = false;     ///< the value has no rate after the last action
+  double scale = 0.0;     ///< size of the rate at the last event [1/s]
+  double off = 0.0;       ///< |value| at the last event, unit of the event
 
-  bool rests() const { return side == 2 || side == -2; }  ///< the value is held at zero
+  bool rests() const { return side == 2 || side == -2; }  ///< true if the value is held at zero
   /// Sign of the value `y`: −1, 0 or 1.
   static int sign(double y) { return (y > 0.0) - (y < 0.0); }
-  /// The value y has left the stored side. Without a known side there is no zero to find.
+  /// True if the value y has left the stored side. False for an unknown side.
   bool passed(double y) const { return side != 0 && sign(y) != (rests() ? side / 2 : side); }
-  /// The value may have been beyond zero within a step of h [s] to `now`, though it is not at the end: the parabola
-  /// through the last three values turns round within the step, at less than half of them.
+  /// True if the value may have been beyond zero within a step of h [s] to `now`, although it is not at the end: the
+  /// parabola through the last three values has its extremum within the step, at less than half of both end values.
   bool may_turn(double now, double h) const {
     if (side != 1 && side != -1) return false;
     if (!(span > 0.0)) return true;
@@ -47,8 +47,8 @@ struct EventPlace {
     known = true;
     side = sign(now);
   }
-  /// Counts an action at t [s] in a run with steps of `length` [s]. If actions accumulate, the value is held from now
-  /// on. \throws InvalidInput unless it may be.
+  /// Counts an action at t [s] in a run with steps of `length` [s]. If actions accumulate, the value is held at zero
+  /// from now on. \throws InvalidInput if actions accumulate and `rests` of the event is false.
   [[gnu::cold]] void count(Event const& event, double length, double t) {
     double const within = event.tolerance + 4.0 * std::numeric_limits<double>::epsilon() * std::abs(t);
     repeats = t - acted <= within ? repeats + 1 : 0;

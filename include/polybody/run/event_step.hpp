@@ -5,17 +5,18 @@
 
 namespace polybody {
 
-/// A step of a run, in which events are looked for.
+/// Step of a run, in which events are detected.
 struct EventStep {
-  /// Takes a step from a state, of at most so many seconds; the state moves along. Returns the length taken.
+  /// Function that takes a step of at most the given length [s] and updates the state. Returns the length of the step
+  /// [s].
   using Again = std::function<double(State&, double)>;
 
-  State const& before;        ///< where it began
+  State const& before;        ///< state at the start of the step
   double length;              ///< [s]
-  Again const& again;         ///< takes another one from a state
+  Again const& again;         ///< takes a step from a state
   EventMotion const& motion;  ///< of the run
 
-  /// The state h seconds after the beginning.
+  /// State h seconds after the start of the step.
   State after(double h) const {
     State x = before;
     while (x.t < before.t + h) {
@@ -24,9 +25,9 @@ struct EventStep {
     }
     return x;
   }
-  /// A length after which the event's value is beyond zero in a step to x, at whose ends it is on one `side`; 0 if
-  /// there is none. A cubic with the values and rates at the ends of an interval shows where the value turns round, up
-  /// to five times.
+  /// Length after which the event value is beyond zero within a step to x, although it is on the same `side` at both
+  /// ends; 0 if there is none. A cubic with the values and rates at the ends of an interval estimates the extremum of
+  /// the value, in at most five iterations.
   [[gnu::cold]] double turn(Event const& event, int side, State const& x) const {
     if (side != 1 && side != -1) return 0.0;
     auto const value = [&](State const& y) { return side * event.value(motion.seen(y)); };

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Consistent starts: assembly of positions, projection of velocities, accelerations and multipliers.
+/// Consistent initial conditions: assembly of positions, projection of velocities, accelerations and multipliers.
 
 #include <limits>
 
@@ -13,7 +13,7 @@
 namespace polybody {
 
 namespace detail {
-/// The row that is open most, by its place; 0 where there is none.
+/// Index of the equation with the largest violation; 0 if there is none.
 template <class = void>
 Index most_open(VecX const& phi) {
   Index worst = 0;
@@ -27,11 +27,11 @@ namespace detail {
 
 /// Violations of a state. In an assembly of bodies smaller than one metre, violations of lengths are divided by the
 /// largest extent of its bodies and joint markers along an axis of the world.
-template <class = void>  // compiled where it is used
+template <class = void>  // compiled only if used
 struct RelativeViolation {
   VecX absolute;  ///< Φ (rows) [m], [rad]
   VecX phi;       ///< Φ (rows), lengths over `extent`
-  VecX extent;    ///< (rows) [m]; 1 where a violation is not relative
+  VecX extent;    ///< (rows) [m]; 1 for a violation that is not relative
   Index worst;    ///< row with the largest |phi|; 0 if there is none
 
   /// `system` is evaluated at x.
@@ -81,7 +81,7 @@ struct RelativeViolation {
       if (block.row < 0 || block.source != ConstraintSource::joint) continue;
       Box const* const box = box_of(layout.joints[std::size_t(block.owner)]);
       if (!box) continue;
-      // left absolute: round-off, and violations that make up the extent themselves
+      // not relative: round-off, and violations that contribute to the extent themselves
       double const of_box = box->extent(), rounding = 16.0 * std::numeric_limits<double>::epsilon() * box->farthest();
       for (int i = 0; i < block.rows; ++i) {
         double const open = std::abs(absolute[block.row + i]);
@@ -102,7 +102,7 @@ struct RelativeViolation {
 
 }  // namespace detail
 
-/// \throws InconsistentInitialConditions naming the joint that is violated most, if by more than `tolerance` [m],
+/// \throws InconsistentInitialConditions naming the joint with the largest violation, if it exceeds `tolerance` [m],
 /// [rad]. Lengths in an assembly of bodies smaller than one metre are relative to its extent.
 template <class = void>
 [[gnu::cold]] void require_assembled(System& system, State const& x, double tolerance = 1e-8) {
@@ -121,8 +121,8 @@ template <class = void>
        " m. Place the bodies so that it closes, or call assemble(model, x)."});
 }
 
-/// \throws InconsistentInitialConditions naming joints that stay open because their rows repeat each other with other
-/// dimensions.
+/// \throws InconsistentInitialConditions naming joints that no configuration can satisfy, because their redundant
+/// equations contradict.
 template <class Solver>
 [[gnu::cold]] void require_closable(System& system, ForwardDynamics<Solver>& forward, State const& x) {
   if (!all_finite(x.q)) return;
@@ -132,11 +132,11 @@ template <class Solver>
   require_consistent_constraints(system, forward, phi, detail::ContradictionLimits{}.position, "positions");
 }
 
-/// Moves the coordinates by the smallest change in the norm of M until every joint closes (Gauss–Newton) to
-/// `tolerance`, and to 1e-9 of the extent of an assembly of bodies smaller than one metre, in at most `max_iterations`,
-/// then projects the speeds. \throws InconsistentInitialConditions naming the joint that cannot be closed, or the
-/// joints whose rows repeat each other but contradict; InvalidInput for a quaternion whose norm is not one; x is then
-/// untouched.
+/// Changes the coordinates by the smallest change in the norm of M until every joint is satisfied (Gauss–Newton) to
+/// `tolerance`, and to 1e-9 of the extent of an assembly of bodies smaller than one metre, in at most `max_iterations`.
+/// Then projects the velocities. \throws InconsistentInitialConditions naming the joint that cannot be satisfied, or
+/// the joints with redundant equations that contradict; InvalidInput for a quaternion whose norm is not one. x is then
+/// unchanged.
 template <LinearSolver Solver = DefaultSolver>
 void assemble(System& system, State& x, double tolerance = 1e-12, int max_iterations = 50) {
   require_positive(tolerance, "assemble: the tolerance");
@@ -164,7 +164,7 @@ void assemble(System& system, State& x, double tolerance = 1e-12, int max_iterat
   x = std::move(trial);
 }
 
-/// The same of a model, to `tolerance` in at most `max_iterations`.
+/// Assembles state x of a model to `tolerance` in at most `max_iterations`; see above.
 template <class M>
 void assemble(M const& model, State& x, double tolerance = 1e-12, int max_iterations = 50) {
   System system(model, with<Capabilities::motion>);

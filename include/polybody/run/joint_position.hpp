@@ -110,7 +110,7 @@ JointValue translation_of(System const& system, ElementHandle<J> const& joint) {
   return slide_of(system, i, axis_of_joint<J>(system.layout().joints[std::size_t(i)], JointMotion::Kind::slide));
 }
 
-/// System for a question about state x, evaluated there. \throws InvalidInput for a state of another model.
+/// System that is evaluated at state x. \throws InvalidInput for a state of another model.
 template <class = void>
 System evaluated(System system, State const& x) {
   require_usable(system, x);
@@ -178,10 +178,11 @@ double joint_translation_rate(M const& model, State const& x, ElementHandle<J> c
 ///   TurnCounter turns(model, crank);
 ///   for (State const& now : simulate(…)) angle = turns.record(now);
 /// The first state has the angle in (−π, π]. From state to state, θ₁ = θ₀ + Δ, where Δ agrees with the angles of the
-/// two states up to full turns and is nearest to ½ (θ̇₀ + θ̇₁)(t₁ − t₀). The count is right if this estimate has an error
-/// below half a turn. That is so for each step of a run, and between states of any distance if the rate is constant. A
-/// record does not allocate memory. The model must outlive the counter and must not change after its construction.
-template <class = void>  // compiled where it is used
+/// two states up to full turns and is nearest to ½ (θ̇₀ + θ̇₁)(t₁ − t₀). The count is correct if the error of this
+/// estimate is below half a turn. This condition is satisfied for each step of a run, and between any two states if the
+/// rate is constant. `record` does not allocate memory. The model must outlive the counter and must not change after
+/// its construction.
+template <class = void>  // compiled only if used
 class TurnCounterOf {
  public:
   /// Counter without states for a joint of `model`. \throws InvalidInput as `joint_angle`.
@@ -191,7 +192,7 @@ class TurnCounterOf {
   template <class M, class J>
     requires(!std::same_as<M, System>)
   TurnCounterOf(M const&& model, ElementHandle<J> const& joint) = delete;  ///< deleted: a temporary model
-  /// Counter for a joint of `system`, a system of the whole model.
+  /// Counter for a joint of `system`, a system of the full model.
   template <class J>
   TurnCounterOf(System system, ElementHandle<J> const& joint)
       : system_(std::move(system)), joint_(index_of_joint(system_.layout(), joint)) {

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Questions about a single body in a state: frames of its points, its coordinates and speeds.
+/// Evaluation of a single body in a state: frames of its points, coordinates and velocities.
 
 #include <cmath>
 #include <functional>
@@ -18,8 +18,8 @@ Frame<double> frame(BodyInState<B> const& body, typename B::Point const& point) 
 }
 namespace detail {
 /// \throws InvalidInput if a body rotates by a quaternion whose norm is not one within 0.01. Derivatives of a run
-/// evaluate functions of the user at states that leave the unit quaternions by less. \param name returns the name of
-/// the body
+/// evaluate functions of the user at states with smaller deviations from unit quaternions. \param name returns the name
+/// of the body
 template <class B, class Name>
 void require_unit_axes(B const& body, Frame<double> const& f, Name const& name) {
   double squared = 0.0;
@@ -49,10 +49,11 @@ Frame<double> frame(M const& model, State const&, Marker<Ground> const& marker) 
   return {.r = marker.point.origin, .A = marker.point.axes};
 }
 
-/// The frame of a material point as a question to any state, without the types of the body and its model.
+/// Function from a state to the frame of a material point, without the types of the body and its model.
 using FrameIn = std::function<Frame<double>(State const&)>;
 
-/// The question keeps the body, and serves the states of the model that made the handle. \param marker on that body
+/// Frame function of a material point. It stores the body and accepts states of the model that made the handle.
+/// \param marker on that body
 template <class B>
 FrameIn frame_in(BodyHandle<B> const& body, Marker<B> const& marker) {
   return [body, point = marker.point](State const& x) { return frame(body_in_state(body, x), point); };
@@ -64,12 +65,12 @@ Vec3 position(M const& model, State const& x, Marker<B> const& marker) {
   return frame(model, x, marker).r;
 }
 
-/// Coordinates of one body in state x, to be handed to the body's own questions (strains, centre line).
+/// Coordinates of one body in state x, for the body's member functions (strains, centre line).
 template <class M, class B>
 std::span<double const> coordinates_of(M const& model, State const& x, BodyHandle<B> const& handle) {
   return body_in_state(model, x, handle).q;
 }
-/// Speeds of one body in state x.
+/// Generalised velocities of one body in state x.
 template <class M, class B>
 std::span<double const> velocities_of(M const& model, State const& x, BodyHandle<B> const& handle) {
   return body_in_state(model, x, handle).v;

@@ -5,19 +5,19 @@
 
 namespace polybody {
 
-/// Multipliers of least norm among those with the same forces Gᵀλ, where rows repeat others. A row counts by the wrench
-/// it puts on its joint's second body:
-///   min Σ λᵢ² (|fᵢ|² + |mᵢ|²/ℓ²),   [fᵢ; mᵢ] the row of Gb,
-/// ℓ the root mean square distance of the joints' points from their mean (1 m where all coincide), so that the result
-/// does not depend on the units. Equally stiff joints would share the load in this way if a turn by one radian were as
-/// stiff as a displacement by ℓ. Rows that a body owns have the weight 1.
-template <class = void>  // compiled where it is used
+/// Multipliers of least norm among those with the same forces Gᵀλ, for redundant constraints. The weight of a row is
+/// the wrench of its unit multiplier on the joint's second body:
+///   min Σ λᵢ² (|fᵢ|² + |mᵢ|²/ℓ²),   [fᵢ; mᵢ] the row of Gb.
+/// ℓ is the root mean square distance of the joint points from their mean (1 m if all coincide), so that the result
+/// does not depend on the units. Equally stiff joints share the load in this way if a rotation by one radian is as
+/// stiff as a displacement by ℓ. Rows of a body's own equations have the weight 1.
+template <class = void>  // compiled only if used
 class MinimumNormOf {
  public:
-  /// Allocates all there is to be for this system.
+  /// Allocates the vectors for this system.
   explicit MinimumNormOf(System const& s) : relation_(s), weight_(VecX::Ones(s.rows())) {}
 
-  /// Replaces x.lambda; one factorisation, and a solution for each row that repeats others.
+  /// Replaces x.lambda. The cost is one factorisation, and one solution for each redundant row.
   template <class Solver>
   void apply(System& system, ForwardDynamics<Solver>& forward, State& x) {
     if (system.rows() == 0) return;
@@ -87,8 +87,8 @@ class MinimumNormOf {
 
 using MinimumNorm = MinimumNormOf<>;  ///< multipliers of least norm
 
-/// The multipliers of x with the same forces Gᵀλ and the least norm (`MinimumNorm`). \throws InvalidInput for a state
-/// of another model.
+/// Multipliers of x with the same forces Gᵀλ and the least norm (`MinimumNorm`). \throws InvalidInput for a state of
+/// another model.
 template <LinearSolver Solver = DefaultSolver>
 VecX minimum_norm_multipliers(System& system, State const& x) {
   require_fitting(system, x);
@@ -99,7 +99,7 @@ VecX minimum_norm_multipliers(System& system, State const& x) {
   MinimumNormOf<>(system).apply(system, forward, shared);
   return shared.lambda;
 }
-/// The same of a model.
+/// Minimum-norm multipliers of state x of a model.
 template <LinearSolver Solver = DefaultSolver, class M>
 VecX minimum_norm_multipliers(M const& model, State const& x) {
   System system(model, with<Capabilities::motion>);

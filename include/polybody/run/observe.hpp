@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Questions about the joints in a single state: gaps, reactions, violations.
+/// Evaluation of joints in a single state: constraint violations and reactions.
 
 #include <polybody/run/marker_frames.hpp>
 #include <polybody/run/problem_size.hpp>
@@ -12,8 +12,8 @@ namespace polybody {
 
 namespace detail {
 
-/// The rows of a joint, by its place in the layout.
-template <class = void>  // compiled where it is used
+/// Constraint equations of a joint with the index `joint` in the layout.
+template <class = void>  // compiled only if used
 ConstraintBlock<double> const& rows_of(System const& system, Index joint) {
   for (ConstraintBlock<double> const& block : system.data().rows)
     if (block.source != ConstraintSource::body && block.owner == joint) return block;
@@ -21,10 +21,10 @@ ConstraintBlock<double> const& rows_of(System const& system, Index joint) {
                                             "\" has no constraint equations."});
 }
 
-/// Gbᵀλ of linear rows as a wrench about the joint point: those of the position give the force, a gradient r_α with its
-/// λ_α the moment r_α × λ_α. (What stretches r_α is no wrench.) The ground takes what its body gives: r_α is the
-/// body's.
-template <class T>  // compiled where it is used
+/// Gbᵀλ of linear equations as a wrench about the joint point. Position equations give the force, and a gradient r_α
+/// with its λ_α gives the moment r_α × λ_α. (The part of λ_α that stretches r_α has no wrench.) If the second body is
+/// the ground, r_α is the gradient of the first body.
+template <class T>  // compiled only if used
 Vec<T, 6> linear_wrench(LinearConstraints const& rows, StateOf<T> const& x) {
   Vec<T, 6> w = Vec<T, 6>::Zero();
   Index const size = rows.positions;
@@ -43,14 +43,14 @@ Vec<T, 6> linear_wrench(LinearConstraints const& rows, StateOf<T> const& x) {
 
 }  // namespace detail
 
-/// Violation of a joint's rows; `system` must have been evaluated at the state. \throws InvalidInput for a handle of
-/// another model.
+/// Constraint violation of a joint; `system` must have been evaluated at the state. \throws InvalidInput for a handle
+/// of another model.
 template <class J>
   requires(!LinearPolicy<typename J::PolicyType>)
 Vec<double, J::rows> constraint_violation(System const& system, ElementHandle<J> const& joint) {
   return Vec<double, J::rows>(detail::rows_of(system, index_of_joint(system.layout(), joint)).g);
 }
-/// Violation of the equations of an `AncfLinear` joint, first those of the position, then those of gradients. Their
+/// Constraint violation of an `AncfLinear` joint: first the position equations, then the gradient equations. Their
 /// number depends on the bodies. \throws InvalidInput as above.
 template <class J>
   requires LinearPolicy<typename J::PolicyType>
@@ -58,7 +58,7 @@ VecX constraint_violation(System const& system, ElementHandle<J> const& joint) {
   ConstraintBlock<double> const& block = detail::rows_of(system, index_of_joint(system.layout(), joint));
   return Eigen::Map<VecX const>(block.g, block.rows);
 }
-/// Violation of a joint's rows in state x. \throws InvalidInput as above.
+/// Constraint violation of a joint in state x. \throws InvalidInput as above.
 template <class M, class J>
 auto constraint_violation(M const& model, State const& x, ElementHandle<J> const& joint) {
   System system(model, with<Capabilities::motion>);
@@ -70,10 +70,11 @@ auto constraint_violation(M const& model, State const& x, ElementHandle<J> const
 /// Axes for the components of a reaction.
 enum class ReactionAxes { world, joint };
 
-/// Force and moment that a joint exerts on its second body, about the joint point there:
-/// −Gbᵀλ [thesis Eq. 3.3 and the rule of equipollent forces]; "joint" are the axes of the second marker. `system` must
-/// have been evaluated at x. \param joint its place in the layout, as `index_of_joint` finds it
-template <class T>  // compiled where it is used
+/// Force and moment that a joint exerts on its second body, about the joint point there: −Gbᵀλ [thesis Eq. 3.3 and the
+/// rule of equipollent forces]. `ReactionAxes::joint` are the axes of the second marker. `system` must have been
+/// evaluated at x.
+/// \param joint index in the layout, from `index_of_joint`
+template <class T>  // compiled only if used
 Wrench<T> reaction_of(BasicSystem<T> const& system, StateOf<T> const& x, Index joint,
                       ReactionAxes axes = ReactionAxes::world) {
   JointLayout const& place = system.layout().joints[std::size_t(joint)];
@@ -91,13 +92,13 @@ Wrench<T> reaction_of(BasicSystem<T> const& system, StateOf<T> const& x, Index j
   }
   return wrench;
 }
-/// The same of the joint that a handle names. \throws InvalidInput for a handle of another model.
+/// Reaction of a joint, as `reaction_of`. \throws InvalidInput for a handle of another model.
 template <class J>
 Wrench<double> reaction(System const& system, State const& x, ElementHandle<J> const& joint,
                         ReactionAxes axes = ReactionAxes::world) {
   return reaction_of(system, x, index_of_joint(system.layout(), joint), axes);
 }
-/// The same in state x of a model. \throws InvalidInput as above.
+/// Reaction of a joint in state x of a model. \throws InvalidInput as above.
 template <class M, class J>
 Wrench<double> reaction(M const& model, State const& x, ElementHandle<J> const& joint,
                         ReactionAxes axes = ReactionAxes::world) {
@@ -107,7 +108,7 @@ Wrench<double> reaction(M const& model, State const& x, ElementHandle<J> const& 
   return reaction(system, x, joint, axes);
 }
 
-/// The largest force of any joint on its second body [N], whatever its policy; `system` must have been evaluated at x.
+/// Largest force of any joint on its second body [N], for all policies; `system` must have been evaluated at x.
 template <class = void>
 double peak_joint_force(System const& system, State const& x) {
   double peak = 0.0;
@@ -130,7 +131,7 @@ struct Violation {
   double acceleration = 0.0;  ///< [m/s²], [rad/s²]
 };
 
-/// The violation of state x; `system` is evaluated there.
+/// Largest constraint violations in state x; evaluates `system` there.
 template <class = void>
 Violation largest_violation(System& system, State const& x) {
   system.evaluate(x.q, x.v, x.t);
@@ -144,7 +145,7 @@ Violation largest_violation(System& system, State const& x) {
   second += of_accelerations;
   return {largest_size(phi), largest_size(rate), largest_size(second)};
 }
-/// \throws InvalidInput for a state of another model.
+/// Largest constraint violations in state x of a model. \throws InvalidInput for a state of another model.
 template <class M>
   requires(!std::same_as<M, System>)
 Violation largest_violation(M const& model, State const& x) {

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Rows of G whose dependence follows from few bodies: rows that alone reach the speeds of a body are independent, and
-/// rows between the same bodies repeat each other.
+/// Local tests of the rows of G. Rows are independent if they alone have entries in the velocities of a body and are
+/// independent there. Rows between the same bodies can depend on each other.
 
 #include <algorithm>
 
@@ -12,26 +12,26 @@
 
 namespace polybody::detail {
 
-/// An entry of G whose rows are scaled to the norm 1.
+/// Entry of G, whose rows are scaled to the norm 1.
 struct RowEntry {
   Index row, speed;
   double value;
 };
 
-/// A row that repeats others: Gᵀc = 0 for the scaled rows, with 1 at the row itself.
+/// Redundant row: Gᵀc = 0 for the scaled rows, with 1 at the row itself.
 struct RowRelation {
   Index row = -1;
   IndexMap<double> c = {};  ///< coefficients by rows
 };
 
-/// Finds rows that repeat earlier rows between the same bodies, by the method of Gram and Schmidt. The work is linear
-/// in the number of rows.
-template <class = void>  // compiled where it is used
+/// Finds rows that depend on earlier rows between the same bodies, by Gram–Schmidt orthogonalisation. The cost is
+/// linear in the number of rows.
+template <class = void>  // compiled only if used
 class RepeatedRows {
  public:
-  static constexpr std::size_t most = 12;  ///< independent rows of a group of bodies that others are compared with
+  static constexpr std::size_t most = 12;  ///< largest number of basis rows of a group of bodies
 
-  /// \param threshold distance of a row from the span of the earlier ones below which it repeats them
+  /// \param threshold a row is redundant if its distance from the span of the earlier ones is smaller
   RepeatedRows(Sequence<BodyLayout> const& bodies, Index rows, Sequence<RowEntry> const& entries, double threshold)
       : threshold_(threshold) {
     Index speeds = 0;
@@ -59,7 +59,7 @@ class RepeatedRows {
               [](RowRelation const& a, RowRelation const& b) { return a.row < b.row; });
   }
 
-  Sequence<RowRelation> const& relations() const { return relations_; }  ///< of the rows found, ascending
+  Sequence<RowRelation> const& relations() const { return relations_; }  ///< of the redundant rows, ascending
 
  private:
   struct Row {
@@ -67,7 +67,7 @@ class RepeatedRows {
     Sequence<Index> bodies = {};
     IndexMap<double> entries = {};
   };
-  /// q_k with row_k = Σ_j r_jk q_j.
+  /// Basis vector q_k with row_k = Σ_j r_jk q_j.
   struct Direction {
     Index row;
     IndexMap<double> q;
@@ -95,7 +95,7 @@ class RepeatedRows {
     next.q = std::move(q);
     basis_.push_back(std::move(next));
   }
-  /// c from R c = −r.
+  /// Computes c from R c = −r.
   void relate(Direction& repeated) {
     RowRelation out{repeated.row};
     out.c[repeated.row] = 1.0;
@@ -108,17 +108,17 @@ class RepeatedRows {
   }
 
   double threshold_;
-  Sequence<Direction> basis_;  // of the rows between the bodies at hand
+  Sequence<Direction> basis_;  // of the rows between the current bodies
   Sequence<RowRelation> relations_;
 };
 
-/// Removes, body by body, all rows that reach a body if they are independent in its speeds alone: Gᵀc = 0 then requires
-/// c = 0 there. A leaf of a tree is removed first, then the body before it. The rows of loops remain. The work is
-/// linear in the number of rows.
-template <class = void>  // compiled where it is used
+/// Removes, body by body, all rows with entries in the velocities of a body if they are independent there: Gᵀc = 0 then
+/// requires c = 0 for these rows. A leaf of a tree is removed first, then the body before it. The rows of loops remain.
+/// The cost is linear in the number of rows.
+template <class = void>  // compiled only if used
 class PrivateRows {
  public:
-  static constexpr std::size_t most = 12;      ///< rows of one body that are tried at once
+  static constexpr std::size_t most = 12;      ///< largest number of rows of one body that are tested
   static constexpr double independent = 0.01;  ///< least distance of a row from the span of those before it
 
   PrivateRows(Sequence<BodyLayout> const& bodies, Index rows, Sequence<RowEntry> const& entries)
@@ -129,7 +129,7 @@ class PrivateRows {
     for (std::size_t b = 0; b < bodies.size(); ++b)
       std::fill_n(body_of.begin() + bodies[b].v0, bodies[b].velocities, Index(b));
     for (RowEntry const& e : entries) {
-      if (e.speed >= velocities || body_of[std::size_t(e.speed)] < 0) continue;  // of no body
+      if (e.speed >= velocities || body_of[std::size_t(e.speed)] < 0) continue;  // belongs to no body
       of_row_[std::size_t(e.row)].push_back({body_of[std::size_t(e.speed)], e.speed, e.value});
       rows_of_[std::size_t(body_of[std::size_t(e.speed)])].push_back(e.row);
     }
@@ -145,7 +145,7 @@ class PrivateRows {
     }
   }
 
-  /// Whether a row is removed.
+  /// True if a row is removed.
   bool operator[](Index row) const { return gone_[std::size_t(row)] != 0; }
 
  private:
@@ -172,7 +172,7 @@ class PrivateRows {
       }
     }
   }
-  /// By the method of Gram and Schmidt, each projection twice.
+  /// Test by Gram–Schmidt orthogonalisation, each projection twice.
   bool are_independent(Index b, Sequence<Index> const& rows) const {
     BodyLayout const& body = bodies_[std::size_t(b)];
     Sequence<VecX> basis;
@@ -198,8 +198,8 @@ class PrivateRows {
   Sequence<char> gone_;
   Sequence<Sequence<Entry>> of_row_;
   Sequence<Sequence<Index>> rows_of_;  ///< by bodies, ascending
-  Sequence<std::size_t> count_;        ///< of those that are left
-  Sequence<Index> waiting_;            ///< bodies to try, some more than once
+  Sequence<std::size_t> count_;        ///< number of rows that remain
+  Sequence<Index> waiting_;            ///< bodies to test, some more than once
 };
 
 }  // namespace polybody::detail

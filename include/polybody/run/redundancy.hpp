@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// How many of a model's rows are independent: the rank of G by a sparse rank-revealing QR factorisation of Gᵀ.
+/// Number of independent constraint equations of a model: rank of G by a sparse rank-revealing QR factorisation of Gᵀ.
 
 #include <Eigen/SparseQR>
 #include <algorithm>
@@ -11,29 +11,30 @@
 
 namespace polybody {
 
-/// Rank and contradictions of a model's rows at a state.
+/// Rank and contradictions of a model's constraint equations at a state.
 struct Redundancy {
-  /// A joint and how many of its rows repeat those of others.
+  /// A joint and the number of its redundant equations.
   struct Share {
     std::string name;  ///< joint "a"
-    Index rows;        ///< of it that repeat others
+    Index rows;        ///< number of its redundant equations
   };
-  Index rows = 0;                ///< of G
-  Index rank = 0;                ///< of G
-  Index degrees_of_freedom = 0;  ///< speeds of bodies − rank, at this state
-  /// Joints with rows that repeat those of joints connected before them (or, in part, their own).
+  Index rows = 0;                ///< constraint equations
+  Index rank = 0;                ///< rank of G
+  Index degrees_of_freedom = 0;  ///< generalised velocities of bodies − rank, at this state
+  /// Joints with equations that are linear combinations of equations of joints connected before them (or, in part, of
+  /// their own).
   std::vector<Share> repeated = {};
-  /// Groups of joints (joint "a", joint "b", …) whose rows repeat each other but contradict: no small move closes them,
-  /// no speeds and no accelerations satisfy them.
-  std::vector<std::string> in_positions = {}, in_velocities = {}, in_accelerations = {};  ///< one text for each group
-  /// Whether no rows contradict each other.
+  /// Groups of joints (joint "a", joint "b", …) with redundant equations that contradict: no small displacement
+  /// satisfies them in positions, or no velocities or accelerations satisfy them.
+  std::vector<std::string> in_positions = {}, in_velocities = {}, in_accelerations = {};  ///< one text per group
+  /// True if no equations contradict each other.
   bool consistent() const { return in_positions.empty() && in_velocities.empty() && in_accelerations.empty(); }
 };
 
 namespace detail {
 
-/// Takes G out of the blocks of a tangent, transposed.
-template <class = void>  // compiled where it is used
+/// Extracts Gᵀ from the blocks of a tangent matrix.
+template <class = void>  // compiled only if used
 struct ConstraintSink {
   Index velocities;
   std::vector<Eigen::Triplet<double>>& entries;
@@ -45,23 +46,23 @@ struct ConstraintSink {
   }
 };
 
-/// Gᵀ P = Q [R₁, R₂; 0, 0], R₁ of the size of the rank: the last rows under P repeat the first, and Gᵀc = 0 for each
-/// column of c = P [−R₁⁻¹R₂; 1]. Speeds are scaled first and rows then, so that every row of G has the norm 1 whatever
-/// its units; a row repeats those before it when it stands off their span by less than `threshold`.
-template <class Ordering = Eigen::NaturalOrdering<int>>  // rows in the order of their joints: the later ones are named
+/// Gᵀ P = Q [R₁, R₂; 0, 0], R₁ of the size of the rank: the last rows under P depend on the first ones, and Gᵀc = 0 for
+/// each column of c = P [−R₁⁻¹R₂; 1]. Velocities are scaled first and rows then, so that every row of G has the norm 1
+/// in any units. A row is redundant if its distance from the span of the rows before it is less than `threshold`.
+template <class Ordering = Eigen::NaturalOrdering<int>>  // natural ordering: later joints are named
 class ConstraintFactor {
  public:
   static constexpr double threshold = 1e-6;
 
-  /// \param bodies whose rows are left out where they repeat earlier rows between the same bodies (`RepeatedRows`) or
-  /// are private (`PrivateRows`); empty to factorise all rows
+  /// \param bodies for which rows that depend on earlier rows between the same bodies (`RepeatedRows`) or that are
+  /// private (`PrivateRows`) are omitted; empty to factorise all rows
   ConstraintFactor(Index velocities, Index rows, std::vector<Eigen::Triplet<double>> const& entries,
                    Sequence<BodyLayout> const& bodies = {})
       : scale_(std::size_t(rows), 0.0) {
     Sequence<RowEntry> const all = scaled_entries(velocities, entries);
     Sequence<char> gone(std::size_t(rows), 0);
     if (!bodies.empty()) leave_out(bodies, all, gone);
-    Sequence<int> column, place(std::size_t(velocities), -1);  // of rows that stay, of speeds that these touch
+    Sequence<int> column, place(std::size_t(velocities), -1);  // column of each row, row of each velocity
     for (Index i = 0; i < rows; ++i) {
       column.push_back(gone[std::size_t(i)] ? -1 : int(stays_.size()));
       if (!gone[std::size_t(i)]) stays_.push_back(i);
@@ -84,12 +85,12 @@ class ConstraintFactor {
 
   Index rank() const { return Index(scale_.size()) - repeated(); }
   Index repeated() const { return Index(relations_.size()); }
-  Index factored() const { return Index(stays_.size()); }  ///< rows that are neither private nor repeated locally
-  /// The k-th row that repeats others, ascending.
+  Index factored() const { return Index(stays_.size()); }  ///< number of rows in the factorisation
+  /// The k-th redundant row, ascending.
   Index row(Index k) const { return relations_[std::size_t(k)].row; }
-  /// Its c in scaled rows, 1 at the row itself.
+  /// Null vector c of the k-th redundant row, for scaled rows; 1 at the row itself.
   IndexMap<double> const& scaled_relation(Index k) const { return relations_[std::size_t(k)].c; }
-  /// Its c.
+  /// Null vector c of the k-th redundant row.
   IndexMap<double> relation(Index k) const {
     IndexMap<double> c;
     for (auto const& [i, value] : scaled_relation(k)) c[i] = scale_[std::size_t(i)] * value;
@@ -99,7 +100,7 @@ class ConstraintFactor {
  private:
   using Qr = Eigen::SparseQR<Eigen::SparseMatrix<double>, Ordering>;
 
-  /// Entries of G with speeds and rows of size 1; sets `scale_`.
+  /// Entries of G with velocities and rows scaled to the norm 1; sets `scale_`.
   Sequence<RowEntry> scaled_entries(Index velocities, std::vector<Eigen::Triplet<double>> const& entries) {
     std::vector<double> of_speed(std::size_t(velocities), 0.0);
     for (auto const& e : entries)
@@ -122,7 +123,8 @@ class ConstraintFactor {
     PrivateRows<> const own(bodies, Index(gone.size()), left);
     for (Index i = 0; i < Index(gone.size()); ++i) gone[std::size_t(i)] |= char(own[i]);
   }
-  /// c = P [−R₁⁻¹R₂; 1] of the factor. Each solution visits the entries of c alone, the last one first.
+  /// Null vectors c = P [−R₁⁻¹R₂; 1] of the factor. Each solution processes only the nonzero entries of c, in
+  /// descending order.
   void find_relations() {
     auto const& r = qr_.matrixR();
     Sequence<double> x(std::size_t(rank_), 0.0);
@@ -160,21 +162,21 @@ class ConstraintFactor {
     std::sort(relations_.begin(), relations_.end(),
               [](RowRelation const& a, RowRelation const& b) { return a.row < b.row; });
   }
-  /// The row of G in column j of the factor.
+  /// Row of G in column j of the factor.
   Index original(Index j) const { return stays_[std::size_t(rank_ > 0 ? qr_.colsPermutation().indices()[j] : j)]; }
 
   std::vector<double> scale_;
-  Sequence<Index> stays_;  // rows that are factored, ascending
+  Sequence<Index> stays_;  // factorised rows, ascending
   Qr qr_;
-  Index rank_ = 0;  // of these
+  Index rank_ = 0;  // rank of the factorised rows
   Sequence<RowRelation> relations_;
 };
 
 }  // namespace detail
 
-/// Counts and names the rows of `model` that repeat others at x (its place, speeds and time), by a factorisation of
-/// its own. A run chooses the rows that it leaves out by the same rule (`leave_out_redundant`). A contradiction in
-/// positions is found to first order: call this function at the final state of `assemble`.
+/// Counts the redundant constraint equations of a model at x (coordinates, velocities and time) and names their joints,
+/// with a separate factorisation. A run chooses the equations that it drops by the same rule (`leave_out_redundant`). A
+/// contradiction in positions is found to first order: call this function at the final state of `assemble`.
 /// \throws InvalidInput for a state of another model.
 template <class = void>
 Redundancy redundancy(System& system, State const& x) {
@@ -223,7 +225,7 @@ Redundancy redundancy(System& system, State const& x) {
   return out;
 }
 
-/// The same of a model.
+/// Redundant constraint equations of a model at x; see above.
 template <class M>
 Redundancy redundancy(M const& model, State const& x) {
   System system(model, with<Capabilities::motion>);

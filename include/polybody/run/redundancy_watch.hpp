@@ -4,29 +4,30 @@
 
 namespace polybody {
 
-/// Follows a run: which redundant equations it leaves out.
+/// Choice of the redundant constraint equations that a run drops, updated from step to step.
 template <class = void>
 class RedundancyWatch {
  public:
-  /// A start at x, where `forward` has been factored.
+  /// Chooses redundant equations at a start x, at which `forward` has been factorised.
   template <class Solver>
   void start(System& system, ForwardDynamics<Solver>& forward, State const& x) {
     if (!forward.redundant_rows().empty() && !keeps_all_) leave_out_redundant(system, forward, x);
   }
-  /// After a step to x: replaces an invalid choice. Returns whether the choice has changed.
+  /// After a step to x: replaces an invalid choice. Returns true if the choice has changed.
   template <class Solver>
   bool changes(System& system, ForwardDynamics<Solver>& forward, State const& x) {
     return forward.leaves_out() && forward.is_doubtful() && leave_out_redundant(system, forward, x);
   }
-  /// The joints of the last start, `now`, into `names`, beside those of earlier choices.
+  /// Sets `names` to the redundant joints `now` of the last start. If `beside` is true, those of earlier choices
+  /// remain.
   static void name(std::vector<std::string> now, bool beside, std::vector<std::string>& names) {
     if (beside)
       for (std::string& earlier : names)
         if (std::find(now.begin(), now.end(), earlier) == now.end()) now.push_back(std::move(earlier));
     names = std::move(now);
   }
-  /// A step of a run, step() from x. \param before state before it, if equations are dropped  \param restart()
-  /// of the run
+  /// Step of a run from x by step(). \param before state before the step, if equations are dropped  \param restart() of
+  /// the run
   template <class Solver, class Step, class Restart>
   StepReport step(System& system, ForwardDynamics<Solver>& forward, State& x, State const& before, Step&& step,
                   Restart&& restart) {
@@ -35,7 +36,7 @@ class RedundancyWatch {
 
  private:
   /// A step with dropped equations. If the step fails, or violates a dropped equation (it was redundant only at a
-  /// singular position), the step is repeated with all equations, and later steps drop none.
+  /// singular configuration), the step is repeated with all equations, and later steps drop none.
   template <class Solver, class Step, class Restart>
   [[gnu::cold]] StepReport watched(System& system, ForwardDynamics<Solver>& forward, State& x, State const& before,
                                    Step& step, Restart& restart) {
@@ -60,7 +61,7 @@ class RedundancyWatch {
       throw;
     }
   }
-  /// Whether the violation of a dropped equation is much larger than the violation of all others.
+  /// True if the violation of a dropped equation is much larger than the violation of all others.
   static bool is_open(System& system, std::span<Index const> left_out, State const& x) {
     VecX phi = VecX::Zero(system.rows());
     system.evaluate(x.q, x.v, x.t);

@@ -1,20 +1,20 @@
 #pragma once
 /// \file
-/// Rows that repeat others and that a factorisation of [M, Gᵀ; G, 0] drops: their relations to other rows, and whether
-/// they contradict. This uses the factorisation of a run; run/redundancy.hpp makes one of its own.
+/// Redundant constraint equations that a factorisation of [M, Gᵀ; G, 0] drops: their null vectors, and checks for
+/// contradictions. This file uses the factorisation of a run; run/redundancy.hpp computes a separate one.
 
 #include <polybody/integrators/forward_dynamics.hpp>
 
 namespace polybody {
 namespace detail {
 
-/// The largest |c·b| over max |c| of rows with Gᵀc = 0 that counts as rounding, for b of a state's Φ, Φ̇ and γ.
+/// Largest |c·b| over max |c| with Gᵀc = 0 that counts as round-off, for b equal to Φ, Φ̇ or γ of a state.
 struct ContradictionLimits {
   double position = 1e-8;
-  double relative = 1e-6;  ///< for Φ̇ to 1 + max |v|, for γ to 1 + max |γ|
+  double relative = 1e-6;  ///< for Φ̇ relative to 1 + max |v|, for γ relative to 1 + max |γ|
 };
 
-/// Names of the joints that take part in c (rows), each once: joint "a", joint "b".
+/// Names of the joints with entries in c (rows), each once: joint "a", joint "b".
 template <class = void>
 std::string names_in(System const& system, VecX const& c) {
   std::string names, last;
@@ -29,17 +29,17 @@ std::string names_in(System const& system, VecX const& c) {
   return names;
 }
 
-/// The relation Gᵀc = 0 in which a dropped row stands to the others: with w = Gᵀe of that row, M a + Gᵀμ = w and G a =
-/// 0 have a = 0, and c = e − μ.
-template <class = void>  // compiled where it is used
+/// Null vector Gᵀc = 0 of a dropped row. With w = Gᵀe of that row, M a + Gᵀμ = w and G a = 0 have the solution a = 0,
+/// hence c = e − μ.
+template <class = void>  // compiled only if used
 struct ConstraintDependence {
-  VecX c;  ///< (rows), 1 in the row itself and 0 in all others that were dropped
+  VecX c;  ///< (rows), 1 at the row itself and 0 at all other dropped rows
 
   explicit ConstraintDependence(System const& s)
       : c(VecX::Zero(s.rows())), mu_(c), w_(VecX::Zero(s.velocities())), a_(w_) {}
 
-  /// For unknown i of `redundant_rows()` where `forward` was factored last. False where that row repeats the others
-  /// only nearly.
+  /// Computes c for unknown i of `redundant_rows()`, with the last factorisation of `forward`. Returns false if the row
+  /// is only nearly redundant.
   template <class Solver>
   [[gnu::cold]] bool find(System& system, ForwardDynamics<Solver>& forward, Index i) {
     if (i < system.velocities()) return false;
@@ -57,9 +57,10 @@ struct ConstraintDependence {
   VecX mu_, w_, a_;
 };
 
-/// b − G a by rows, for a motion a with G a = b in all rows that were not dropped: in a dropped row, c·b with its
-/// relation c. As max |c| ≥ 1, |c·b|/max |c| is at most as large. One solution thus compares all rows with a limit;
-/// only rows beyond the limit need their relations. `forward` is as factored last, at the place of `system`.
+/// Residual b − G a by rows, for a motion a with G a = b in all rows that were not dropped. In a dropped row with the
+/// null vector c, the residual is c·b. As max |c| ≥ 1, |c·b|/max |c| is not larger. One solution thus compares all rows
+/// with a limit; only rows beyond the limit require their null vectors. `forward` must be factorised last at the
+/// position of `system`.
 template <class Solver>
 [[gnu::cold]] VecX left_of(System& system, ForwardDynamics<Solver>& forward, VecX const& b) {
   VecX a = VecX::Zero(system.velocities()), left = VecX::Zero(system.rows());
@@ -69,14 +70,14 @@ template <class Solver>
   return left;
 }
 
-/// How rows that repeat others at (q, t) bend with the motion: c·γ(v) − c·γ(0), a quadratic form of v. Where it
-/// vanishes for all v with G v = 0, they repeat others everywhere; else only here, and the position is singular:
-/// motions branch there, and only speeds with c·γ(v) = c·γ(0) belong to one.
+/// Curvature of rows that are redundant at (q, t): c·γ(v) − c·γ(0), a quadratic form of v. If it vanishes for all v
+/// with G v = 0, the rows are redundant everywhere. Otherwise they are redundant only here, and the configuration is
+/// singular: motions branch there, and only velocities with c·γ(v) = c·γ(0) belong to a branch.
 template <class = void>
 struct ConstraintCurvature {
-  VecX w;  ///< (nv) speeds without order, with G w = 0
+  VecX w;  ///< (nv) pseudo-random velocities with G w = 0
 
-  /// With `forward` as factored last; `system` stands at (q, w, t) afterwards.
+  /// Uses the last factorisation of `forward`. Evaluates `system` at (q, 0, t).
   template <class Solver>
   ConstraintCurvature(System& system, ForwardDynamics<Solver>& forward, State const& x)
       : w(VecX::Zero(system.velocities())),
@@ -92,7 +93,7 @@ struct ConstraintCurvature {
     for (Index i = 0; i < w.size(); ++i) w[i] += moved_[i];
     bias(system, zero_, rest_);
   }
-  /// c·γ(w) − c·γ(0) by dropped rows, relative to the larger γ; `limit` of `is_singular` is the least that counts.
+  /// c·γ(w) − c·γ(0) for the dropped rows, relative to the larger γ; values up to `limit` count as zero.
   template <class Solver>
   VecX bent(System& system, ForwardDynamics<Solver>& forward) {
     bias(system, w, gamma_);
@@ -102,12 +103,12 @@ struct ConstraintCurvature {
     return left;
   }
   static constexpr double limit = 1e-6;  ///< of differences of c·γ, relative to max |c| max |γ|
-  /// Whether the row of c repeats others only here.
+  /// True if the row of c is redundant only in this configuration.
   bool is_singular(System& system, VecX const& c) {
     bias(system, w, gamma_);
     return differ(c, gamma_, rest_);
   }
-  /// Whether speeds v of a branch do not tell it from the others: as far as w goes, the form does not change beside v.
+  /// True if the velocities v of a branch do not determine it: the form is equal at v + s w and at v − s w.
   bool leaves_open(System& system, VecX const& c) {
     double const size = largest_size(x_.v);
     if (!(size > 0.0)) return true;
@@ -137,8 +138,8 @@ struct ConstraintCurvature {
 
 }  // namespace detail
 
-/// A sentence where x is a singular position, at which the motion can branch, and its speeds do not say which branch:
-/// at rest, or with speeds that branches share. Empty elsewhere. \param forward as factored at x
+/// Warning text if x is a singular configuration, at which the motion can branch, and its velocities do not determine
+/// the branch: at rest, or with velocities that branches share. Otherwise empty. \param forward factorised at x
 template <class Solver>
 [[gnu::cold]] std::string warn_of_ambiguous_branch(System& system, ForwardDynamics<Solver>& forward, State const& x) {
   if (system.rows() == 0) return "";
@@ -162,9 +163,9 @@ template <class Solver>
   return "";
 }
 
-/// Rows that repeat each other must ask for the same: c·b = 0 for every c with Gᵀc = 0, where b is Φ, Φ̇ or γ of
-/// `system` as evaluated and `forward` as factored. \param what those are called  \param limit of |c·b|/max |c|
-/// \throws InconsistentInitialConditions naming the joints that do not.
+/// Checks that redundant constraint equations agree: c·b = 0 for every c with Gᵀc = 0. b is Φ, Φ̇ or γ of the evaluated
+/// `system`, and `forward` must be factorised. \param what name of b in the message  \param limit of |c·b|/max |c|
+/// \throws InconsistentInitialConditions naming the joints that contradict.
 template <class Solver>
 [[gnu::cold]] void require_consistent_constraints(System& system, ForwardDynamics<Solver>& forward, VecX const& b,
                                                   double limit, std::string const& what) {
@@ -188,9 +189,9 @@ template <class Solver>
   }
 }
 
-/// Rows that a factorisation drops are closed by the others, whose speeds are projected, to `limit`; but not where they
-/// repeat them only nearly. \param rate Φ̇ at the projected speeds \throws InconsistentInitialConditions naming the
-/// joint that stays open.
+/// Checks that velocities projected onto the other rows satisfy the dropped rows to `limit`. Rows that are only nearly
+/// redundant can fail this check. \param rate Φ̇ at the projected velocities \throws InconsistentInitialConditions
+/// naming the violated joint.
 template <class Solver>
 [[gnu::cold]] void require_dropped_constraints_closed(System const& system, ForwardDynamics<Solver> const& forward,
                                                       VecX const& rate, double limit) {
@@ -205,8 +206,8 @@ template <class Solver>
            "it a compliant policy such as Penalty."});
 }
 
-/// The start of a run, its speeds projected: no contradiction in the speeds and accelerations that the rows ask for,
-/// and no row left open. \throws InconsistentInitialConditions.
+/// Checks the initial state of a run with projected velocities: redundant equations must agree in velocities and
+/// accelerations, and no dropped equation may be violated. \throws InconsistentInitialConditions.
 template <class Solver>
 [[gnu::cold]] void require_consistent_redundancy(System& system, ForwardDynamics<Solver>& forward, State const& x) {
   if (system.rows() == 0) return;

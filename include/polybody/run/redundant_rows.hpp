@@ -1,11 +1,11 @@
 #pragma once
 /// \file
-/// Choice of the redundant constraint equations that a run leaves out. The null space of Gᵀ decides: an equation may be
-/// dropped if its coefficient in a null vector is large enough relative to the other coefficients. With the
-/// coefficients of all other equations at most f times as large, the smallest singular value of the equations that stay
-/// is within a factor of about f of its largest possible value [Gu & Eisenstat 1996, SIAM J. Sci. Comput. 17(4),
-/// 848–869]. A factorisation that drops rows in a fixed order has no such bound: it divides by the coefficient of its
-/// last row, which may pass zero during a motion.
+/// Choice of the redundant constraint equations that a run drops. It follows from the null space of Gᵀ: an equation may
+/// be dropped if its coefficient in a null vector is large enough relative to the other coefficients. If the
+/// coefficients of all other equations are at most f times as large, the smallest singular value of the remaining
+/// equations is within a factor of about f of its largest possible value [Gu & Eisenstat 1996, SIAM J. Sci. Comput.
+/// 17(4), 848–869]. A factorisation that drops rows in a fixed order has no such bound: it divides by the coefficient
+/// of its last row, which may pass through zero during a motion.
 
 #include <polybody/math/index_map.hpp>
 #include <polybody/run/redundant_constraints.hpp>
@@ -16,13 +16,13 @@ namespace detail {
 /// Smallest coefficients of dropped equations in null vectors, relative to the largest coefficient.
 struct RedundantLimits {
   double chosen = 0.1;       ///< for a new choice
-  double kept = 1.0 / 30.0;  ///< for a choice that is kept
+  double kept = 1.0 / 30.0;  ///< for an existing choice
   double dependent = 1e-6;  ///< |Gᵀc| below which c is a null vector, for equations and velocities scaled to the size 1
 };
 
-/// For each null vector the last equation with a coefficient that is not small, so that joints connected later are
-/// named. \param c null vectors with scaled coefficients; afterwards each is 0 at the equations chosen for the other
-/// vectors
+/// Chooses for each null vector the last equation with a coefficient that is not small, so that joints connected later
+/// are named. \param c null vectors with scaled coefficients; afterwards each is 0 at the equations chosen for the
+/// other vectors
 /// \param preferred for each equation: chosen first if its coefficient is above the limit `kept`; or empty
 template <class = void>
 [[gnu::cold]] Sequence<Index> choose_redundant(Sequence<IndexMap<double>>& c, Sequence<char> const& preferred) {
@@ -66,10 +66,10 @@ template <class = void>
 }
 
 /// Sizes of velocities and constraint equations: velocities are scaled first and equations then, so that every row of G
-/// has the norm 1 whatever its units.
-template <class = void>  // compiled where it is used
+/// has the norm 1 in any units.
+template <class = void>  // compiled only if used
 struct RowSizes {
-  VecX of_speed, of_row;  ///< (nv), (rows); 1 where an equation or a velocity is alone
+  VecX of_speed, of_row;  ///< (nv), (rows); 1 for a velocity or an equation without entries
 
   explicit RowSizes(System& system) : of_speed(VecX::Zero(system.velocities())), of_row(VecX::Zero(system.rows())) {
     for (int pass = 0; pass < 2; ++pass) {
@@ -106,8 +106,8 @@ class NullVectors {
   NullVectors(System& system, ForwardDynamics<Solver>& forward, State const& x)
       : system_(system), forward_(forward), x_(x), sizes_(held()) {}
 
-  /// By the last factorisation of `forward`: scaled coefficients, 1 at a dropped equation and 0 at the other dropped
-  /// ones. False for solvers that find none.
+  /// Computes the null vectors from the last factorisation of `forward`: scaled coefficients, 1 at a dropped equation
+  /// and 0 at the other dropped ones. Returns false for solvers that find none.
   bool find() {
     Sequence<VecX> found;
     VecX n = VecX::Zero(system_.size());
@@ -120,7 +120,7 @@ class NullVectors {
     vectors = std::move(found);
     return true;
   }
-  /// Leaves those combinations of the vectors with Gᵀc = 0.
+  /// Reduces the vectors to combinations with Gᵀc = 0.
   void keep_dependent() {
     Sequence<VecX> left;
     for (VecX const& c : vectors) {
@@ -131,8 +131,9 @@ class NullVectors {
     }
     keep_null(left);
   }
-  /// Leaves those combinations that are null vectors beside this state as well: c·γ(v) does not depend on velocities v
-  /// that satisfy the constraints (`ConstraintCurvature`). The rank of G falls at a singular position by the others.
+  /// Reduces the vectors to combinations that are null vectors near this state also: c·γ(v) does not depend on
+  /// velocities v that satisfy the constraint equations (`ConstraintCurvature`). The other combinations reduce the rank
+  /// of G only at this singular configuration.
   void keep_permanent() {
     VecX const rest_v = VecX::Zero(system_.velocities());
     VecX rest = VecX::Zero(system_.rows()), gamma = rest, w = rest_v, moved = rest_v;
@@ -176,7 +177,7 @@ class NullVectors {
     system_.acceleration_bias(gamma);
     for (Index k = 0; k < gamma.size(); ++k) gamma[k] /= sizes_.of_row[k];
   }
-  /// Leaves the combinations of vectors for which the same combinations of `left` vanish, by Gram–Schmidt with
+  /// Reduces the vectors to combinations for which the same combinations of `left` vanish, by Gram–Schmidt with
   /// pivoting.
   void keep_null(Sequence<VecX>& left) {
     while (!vectors.empty()) {
@@ -209,7 +210,7 @@ class NullVectors {
   RowSizes<> sizes_;
 };
 
-/// Whether the present choice of `forward` remains valid: it contains all dropped equations, and all coefficients of
+/// True if the present choice of `forward` remains valid: it contains all dropped equations, and all coefficients of
 /// their null vectors are bounded.
 template <class Solver>
 bool choice_serves(ForwardDynamics<Solver> const& forward, Sequence<VecX> const& null_vectors) {
@@ -222,9 +223,9 @@ bool choice_serves(ForwardDynamics<Solver> const& forward, Sequence<VecX> const&
 }  // namespace detail
 
 /// Chooses the redundant constraint equations at x for `ForwardDynamics::mark_redundant`, or keeps a present choice
-/// that remains valid. Equations that are redundant only at x, a singular position, are not chosen. Returns whether the
-/// choice has changed. For models whose policies eliminate no bodies. \param lambda multipliers that an earlier choice
-/// left zero, which is made again; or null
+/// that remains valid. Equations that are redundant only at x, a singular configuration, are not chosen. Returns true
+/// if the choice has changed. Policies of the model must not eliminate bodies; otherwise nothing is chosen. \param
+/// lambda multipliers of an earlier choice, which is made again: they are zero at the equations of this choice; or null
 template <class Solver>
 [[gnu::cold]] bool leave_out_redundant(System& system, ForwardDynamics<Solver>& forward, State const& x,
                                        VecX const* lambda = nullptr) {
@@ -250,13 +251,13 @@ template <class Solver>
     forward.hold(system, x.q, x.v, x.t);
   };
   space.keep_dependent();
-  choose();  // a factorisation that has dropped too many rows for small pivots now finds the rank
+  choose();  // after a factorisation with too many dropped rows due to small pivots, this one has the correct rank
   if (!space.find()) return true;
   space.keep_dependent();
   space.keep_permanent();
   choose();
   auto const dropped = forward.redundant_rows();
-  for (Index const i : forward.left_out())  // some stay where they are eliminated with a singular body
+  for (Index const i : forward.left_out())  // some remain because they are eliminated with a singular body
     if (std::find(dropped.begin(), dropped.end(), i) == dropped.end()) {
       forward.mark_redundant({});
       break;

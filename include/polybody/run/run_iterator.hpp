@@ -5,25 +5,25 @@
 
 namespace polybody {
 
-/// Runs through the states of a simulation, one a step: `for (State const& now : simulate(…))`. \tparam Run a
-/// Simulation
+/// Iterator over the states of a simulation, one for each step: `for (State const& now : simulate(…))`.
+/// \tparam Run a Simulation
 template <class Run>
 class RunIterator {
  public:
-  /** The end. */ struct Sentinel {};
+  /** End of the range. */ struct Sentinel {};
   using value_type = State;                                 ///< for std::input_iterator
   using difference_type = std::ptrdiff_t;                   ///< for std::input_iterator
-  explicit RunIterator(Run* run) : run_(run) {}             ///< of this run
-  State const& operator*() const { return run_->state(); }  ///< as the last step left it
-  /** Takes a step, or ends where the run is done. */ RunIterator& operator++() {
+  explicit RunIterator(Run* run) : run_(run) {}             ///< iterator of this run
+  State const& operator*() const { return run_->state(); }  ///< state at the end of the last step
+  /** Takes a step, or ends if the run is done. */ RunIterator& operator++() {
     if (run_->done())
       finished_ = true;
     else
       run_->advance();
     return *this;
   }
-  void operator++(int) { ++*this; }                      ///< a step further
-  bool operator==(Sentinel) const { return finished_; }  ///< the run is done
+  void operator++(int) { ++*this; }                      ///< takes a step
+  bool operator==(Sentinel) const { return finished_; }  ///< true if the run is done
 
  private:
   Run* run_;

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What a run is asked for, and what it reports.
+/// Options and report of a run.
 
 #include <functional>
 #include <optional>
@@ -13,35 +13,36 @@
 
 namespace polybody {
 
-/// How far a run has come [s].
+/// Progress of a run.
 struct RunProgress {
   double start;     ///< [s]
   double end_time;  ///< [s]
   double now;       ///< [s]
-  bool done;        ///< at `end_time`, or stopped by an event
+  bool done;        ///< true at `end_time` or after a terminal event
 };
 
-/// What a run is asked for.
+/// Options of a run.
 struct RunOptions {
   Required<double> end_time;             ///< [s]
-  Required<double> step;                 ///< [s]; the first one for an integrator that controls its step
+  Required<double> step;                 ///< [s]; initial step for an integrator that controls its step
   std::optional<double> max_step = {};   ///< [s], for an integrator that controls its step
-  std::vector<double> breakpoints = {};  ///< times at which a step must end, beside those of the drives and loads [s]
-  std::vector<Event> events = {};        ///< looked for in each step
-  /// |Φ| of the start [m], [rad]. Lengths in an assembly of bodies smaller than one metre are relative to its extent.
+  std::vector<double> breakpoints = {};  ///< ends of steps [s], in addition to those of driving constraints and loads
+  std::vector<Event> events = {};        ///< detected in each step
+  /// Limit of |Φ| at the start [m], [rad]. Lengths in an assembly of bodies smaller than one metre are relative to its
+  /// extent.
   double assembly_tolerance = 1e-8;
-  /// Number of times that a step which fails with `NewtonConvergenceFailure` is halved, in [0, 30]; empty: 6 in
+  /// Largest number of halvings of a step that fails with `NewtonConvergenceFailure`, in [0, 30]; empty: 6 in
   /// `simulate`, and 0 in runs that are differentiated. The report counts halved steps. 0: such a step ends the run.
   std::optional<int> max_step_halvings = {};
-  bool minimum_norm = false;       ///< every state gets the multipliers of `MinimumNorm`; costs a factorisation each
-  PlausibilityLimits limits = {};  ///< of a step's end: constraint violation, and energy that no work explains
-  int threads = 1;  ///< that share the loops of an evaluation; for large models, results stay the same bits
-  std::function<void(RunProgress const&)> progress = {};  ///< told after each step; `progress_bar` of io makes one
+  bool minimum_norm = false;  ///< every state gets the multipliers of `MinimumNorm`, at the cost of one factorisation
+  PlausibilityLimits limits = {};  ///< limits at the end of a step: constraint violation, and unexplained energy
+  int threads = 1;  ///< number of threads in an evaluation, for large models; results are bitwise identical
+  std::function<void(RunProgress const&)> progress = {};  ///< called after each step; `progress_bar` of io makes one
 
   /// `max_step_halvings`, or its default.
   int allowed_halvings() const { return max_step_halvings.value_or(6); }
 
-  /// \throws InvalidInput for a run from `start` [s] that cannot be meant.
+  /// \throws InvalidInput for invalid options of a run from `start` [s].
   [[gnu::cold]] void check(double start) const {
     require_positive(step, "simulate: the step");
     if (max_step) require_positive(*max_step, "simulate: the largest step");
@@ -75,20 +76,20 @@ struct RunOptions {
   }
 };
 
-/// The cost of a run so far in numbers. Failed attempts count if a shorter step succeeds; a step that ends the run by
-/// an exception does not count.
+/// Cost of a run so far. Failed attempts count if a shorter step succeeds; a step that ends the run by an exception
+/// does not count.
 struct RunCounts {
-  long steps = 0;           ///< taken
+  long steps = 0;           ///< number of steps
   long iterations = 0;      ///< of Newton's method
   long factorisations = 0;  ///< of tangents and masses
   long evaluations = 0;     ///< of the forces
   long rejected = 0;        ///< trial steps, and steps that were halved
   long halved = 0;          ///< steps that failed and were repeated by halves
-  long over_budget = 0;     ///< steps that ended at Newton's budget
-  double left = 0.0;        ///< the largest correction that one of them ended with, relative to what is tolerated
-  StepReport last = {};     ///< the last step's
+  long over_budget = 0;     ///< steps that ended at the iteration budget of Newton's method
+  double left = 0.0;        ///< largest last correction of these steps, relative to the tolerance
+  StepReport last = {};     ///< report of the last step
 
-  /// Counts the cost of a step.
+  /// Adds the cost of a step.
   void add(StepReport const& step) {
     ++steps;
     iterations += step.iterations;
@@ -102,33 +103,34 @@ struct RunCounts {
   }
 };
 
-/// The cost of a run so far, and the events that it met.
+/// Cost of a run so far, and its events.
 struct RunReport : RunCounts {
-  /// An event that the run met, and when.
+  /// Event of a run and its time.
   struct EventRecord {
-    std::string name;  ///< the event's
+    std::string name;  ///< name of the event
     double time;       ///< [s]
   };
   Sequence<EventRecord> events = {};  ///< in the order of time
-  bool stopped = false;               ///< by an event before `end_time`
-  /// Joints with rows that repeat those of others at the last start: the motion is right, but how the reactions share
-  /// the load is not determined.
+  bool stopped = false;               ///< true if an event ended the run before `end_time`
+  /// Joints with redundant constraint equations at the last start. The motion is determined, but the distribution of
+  /// the load over the reactions is not.
   std::vector<std::string> redundant = {};
-  /// In sentences: of the start, a singular position in which its speeds do not tell a branch of the motion, and a step
-  /// beyond the limit of an explicit integrator; of a step, a singular position at which the speeds jumped to another
-  /// branch; of the end, energy that no work explains.
+  /// Warnings as text. At the start: a singular configuration whose velocities do not determine a branch of the motion,
+  /// and a step beyond the limit of an explicit integrator. In a step: a singular configuration at which the velocities
+  /// jumped to another branch, and axial forces near buckling that a beam neglects. At the end: energy that no work
+  /// explains.
   std::vector<std::string> warnings = {};
 
-  /// Adds a sentence, if it has words.
+  /// Adds a warning if its text is not empty.
   void add_warning(std::string sentence) {
     if (!sentence.empty()) warnings.push_back(std::move(sentence));
   }
-  /// A warning begins with these words.
+  /// True if a warning begins with these words.
   bool warns(char const* words) const {
     return std::any_of(warnings.begin(), warnings.end(), [&](std::string const& w) { return w.starts_with(words); });
   }
-  /// Sentences for the message of an exception that ends the run: number of halved steps, and the warnings. Empty if
-  /// there are none.
+  /// Text for the message of an exception that ends the run: number of halved steps, and the warnings. Empty if there
+  /// are none.
   [[gnu::cold]] std::string warned() const {
     std::string all;
     if (halved > 0) all = sentence_of({"Before, ", halved, halved == 1 ? " step was halved." : " steps were halved."});
@@ -136,12 +138,13 @@ struct RunReport : RunCounts {
       all += (all.empty() ? "Warning of the run: " : " Warning of the run: ") + warning;
     return all;
   }
-  /// Times of a run [s], and how many of its steps were halved.
+  /// Times of a run [s] and number of its halved steps.
   struct Course {
     double start, now;  ///< [s]
-    long halved;        ///< steps
+    long halved;        ///< number of halved steps
   };
-  /// Adds a warning where more than the share `limit` of the energy that moved has no explanation.
+  /// Adds a warning if the unexplained energy exceeds the fraction `limit` of the energy that moved, or if the steps do
+  /// not resolve the work of a force.
   [[gnu::cold]] void warn_of_energy(Unexplained const& found, double limit, Course const& run) {
     if (!found.known) return;
     if (found.worst > 0.4 * found.scale)

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A run that can be stored and resumed.
+/// Storage of a run from which it can be resumed.
 
 #include <polybody/math/checksum.hpp>
 #include <polybody/math/sequence.hpp>
@@ -10,18 +10,17 @@
 
 namespace polybody {
 
-/// What identifies the model of a snapshot: the numbers of its unknowns in a step, and the names of bodies, joints and
-/// forces in their order. Masses, lengths and loads are not compared.
+/// Identity of the model of a snapshot: numbers of its unknowns in a step, and names of bodies, joints and forces in
+/// order. Masses, lengths and loads are not compared.
 struct ModelIdentity {
   Index coordinates = 0, velocities = 0, rows = 0;  ///< of a step, after elimination
-  Index eliminated_equations =
-      0;                    ///< eliminated, of whose multipliers a step may keep estimates behind those of the rows
-  std::uint64_t names = 0;  ///< checksum
+  Index eliminated_equations = 0;                   ///< their multipliers may follow the others in a step, as estimates
+  std::uint64_t names = 0;                          ///< checksum of the names
 
-  bool operator==(ModelIdentity const&) const = default;  ///< whether counts and names are equal
+  bool operator==(ModelIdentity const&) const = default;  ///< true if counts and names are equal
 };
 
-/// \param stepped the system that a run steps: of the model, or of the unknowns that its policies leave
+/// Identity of a model. \param stepped integrated system: of the model or of its reduced coordinates
 template <class = void>
 ModelIdentity identity_of(System const& stepped) {
   std::string names;
@@ -34,15 +33,15 @@ ModelIdentity identity_of(System const& stepped) {
   return {stepped.coordinates(), stepped.velocities(), rows, multipliers_of(stepped) - rows, checksum(names)};
 }
 
-/// All that a run needs to go on, except its model, integrator and options, which must be the same.
+/// Data from which a run continues with the same model, integrator and options.
 struct RunSnapshot {
-  ModelIdentity model;     ///< whose run it is
-  std::string integrator;  ///< its name
-  State state;             ///< as it is stepped, with the integrator's memory: without what policies eliminate
-  double step = 0.0;       ///< the next one, of an integrator that controls its step [s]
-  StepRow row;             ///< of the last step
-  Sequence<int> sides;     ///< of zero on which the events stand
-  RunReport report;        ///< of the run so far
+  ModelIdentity model;     ///< identity of the model
+  std::string integrator;  ///< name of the integrator
+  State state;             ///< integrated state, reduced if policies eliminate unknowns, with its history
+  double step = 0.0;       ///< next step of an integrator that controls its step [s]
+  StepRow row;             ///< steps of equal length, up to the last step
+  Sequence<int> sides;     ///< signs of the event values, as from `EventDetector::sides`
+  RunReport report;        ///< report of the run so far
 
   /// \throws InvalidInput if a number of the state is NaN or infinite.
   template <class = void>
@@ -53,7 +52,7 @@ struct RunSnapshot {
     polybody::require_finite(state.lambda, "resume: the multipliers of the snapshot");
     polybody::require_finite(state.history, "resume: the integrator's memory in the snapshot");
   }
-  /// \throws InvalidInput unless model, integrator (`by` its name) and count of events are these.
+  /// \throws InvalidInput unless the snapshot has this model, integrator (`by` its name) and number of events.
   template <class = void>
   void require(ModelIdentity const& of, std::string const& by, std::size_t events) const {
     auto const counts = [](ModelIdentity const& m) {

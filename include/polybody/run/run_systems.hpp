@@ -5,10 +5,10 @@
 
 namespace polybody {
 
-/// What a run steps, and the whole mechanism where policies eliminate unknowns of it.
+/// Systems of a run: the integrated one, and the full one if policies eliminate unknowns.
 struct RunSystems {
-  std::unique_ptr<System> stepped;  ///< what is stepped; by address, as workspaces refer to it
-  std::unique_ptr<System> full;     ///< null where policies eliminate nothing
+  std::unique_ptr<System> stepped;  ///< integrated system; by address, since workspaces refer to it
+  std::unique_ptr<System> full;     ///< full system; null if policies eliminate nothing
 };
 
 }  // namespace polybody

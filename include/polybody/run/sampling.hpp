@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Which states of a run are looked at.
+/// Selection of states of a run.
 
 #include <cmath>
 
@@ -8,13 +8,14 @@
 
 namespace polybody {
 
-/// The first state on or after each multiple of an interval from the start on; every state where the interval is zero.
+/// Selects the first state at or after each multiple of an interval from the start on; every state if the interval is
+/// zero.
 class RunSampling {
  public:
   /// \param start [s] \param interval [s]
   RunSampling(double start, double interval) : start_(start), interval_(interval) {}
 
-  /// Whether the state at t [s] is one of them; asked of each state once, in their order.
+  /// True if the state at t [s] is selected. Call this function once for each state, in order.
   bool takes(double t) {
     double const past = t - start_ + 1e-9 * interval_;
     if (past < (passed_ + 1.0) * interval_) return false;
@@ -23,7 +24,7 @@ class RunSampling {
   }
 
  private:
-  double start_, interval_, passed_ = 0.0;  // multiples of the interval that are past
+  double start_, interval_, passed_ = 0.0;  // index of the last multiple of the interval that has passed
 };
 
 }  // namespace polybody

@@ -1,13 +1,13 @@
 #pragma once
 /// \file
-/// The door of a run: `simulate(model, state, integrator, options)`.
+/// Entry points of a run: `simulate(model, state, integrator, options)` and `resume`.
 
 #include <polybody/integrators/system_for.hpp>
 #include <polybody/run/simulation.hpp>
 
 namespace polybody {
 
-/// The systems of a run of `model` by integrator I. The model must outlive them.
+/// Systems of a run of `model` by integrator I. The model must outlive them.
 template <class I, class M>
 [[gnu::cold]] RunSystems run_systems(M const& model) {
   constexpr Capabilities warned = HasStabilityLimit<I> ? Capabilities::compliance : Capabilities::motion;
@@ -17,23 +17,23 @@ template <class I, class M>
     return {std::make_unique<System>(system_for<I, warned>(model)), nullptr};
 }
 
-/// The whole mechanism of `model`, for questions about its states. The model must outlive it.
+/// System of the full `model`, for evaluations of its states. The model must outlive it.
 template <class M>
 [[gnu::cold]] System observation_system(M const& model) {
   return System(model, with<Capabilities::motion>);
 }
 
-/// Runs `model` from x by `integrator`: a range of states. x is moved along and holds the last state afterwards.
-/// \throws InconsistentInitialConditions, InvalidInput at once; NewtonConvergenceFailure, NonFiniteValue, … from the
-/// step that fails.
+/// Simulates `model` from x by `integrator`: a range of states. The run updates x, which contains the last state
+/// afterwards. \throws InconsistentInitialConditions, InvalidInput immediately; NewtonConvergenceFailure,
+/// NonFiniteValue, … from the step that fails.
 template <LinearSolver Solver = DefaultSolver, class M, class I>
 Simulation<I, Solver> simulate(M const& model, State& x, I const& integrator, RunOptions options) {
   return Simulation<I, Solver>(run_systems<I>(model), x, integrator, std::move(options));
 }
 
-/// Takes a run up where its snapshot was made; x becomes its state. Model, integrator and options must be those of the
-/// run; a later `end_time` lets it go on for longer. \throws InvalidInput for a snapshot of another model, integrator
-/// or count of events.
+/// Continues a run from its snapshot; x becomes the state of the snapshot. Model, integrator and options must be those
+/// of the run; a later `end_time` extends the run. \throws InvalidInput for a snapshot of another model, integrator or
+/// number of events.
 template <LinearSolver Solver = DefaultSolver, class M, class I>
 Simulation<I, Solver> resume(M const& model, State& x, I const& integrator, RunOptions options,
                              RunSnapshot const& from) {

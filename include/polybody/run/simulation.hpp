@@ -1,7 +1,8 @@
 #pragma once
 /// \file
-/// A run: a range of states that ends steps at corners, events and stop conditions. What its functions do stands
-/// outside the class so that a program that links `polybody::compiled` does not compile it again.
+/// Simulation of a model: a range of states with steps that end at breakpoints, events and stop conditions. Member
+/// functions are defined outside the class, so that a program that links `polybody::compiled` does not compile them
+/// again.
 
 #include <polybody/math/sequence.hpp>
 #include <polybody/run/axial_force_monitor.hpp>
@@ -18,45 +19,45 @@
 
 namespace polybody {
 
-/// An input range of states: `for (State const& now : simulate(…))` yields the start and every step's end. The state
-/// given by the caller is moved along. begin() once.
+/// Input range of states: `for (State const& now : simulate(…))` gives the initial state and the state at the end of
+/// each step. The run updates the caller's state. Call begin() once.
 template <Integrator I, class Solver = DefaultSolver>
 class Simulation {
  public:
-  [[gnu::cold]] Simulation(RunSystems systems, State& x, I const& integrator, RunOptions options);  ///< by integrator
+  [[gnu::cold]] Simulation(RunSystems systems, State& x, I const& integrator, RunOptions options);  ///< new run
 
-  /// Goes on from a snapshot. \throws InvalidInput for one of another model, integrator or count of events.
+  /// Continues from a snapshot. \throws InvalidInput for a snapshot of another model, integrator or number of events.
   [[gnu::cold]] Simulation(RunSystems systems, State& x, I const& integrator, RunOptions options,
                            RunSnapshot const& from);
   ~Simulation();
   Simulation(Simulation const&) = delete;
   Simulation& operator=(Simulation const&) = delete;
 
-  /// What `resume` needs to go on from here. This run drops what else it keeps from step to step, such as
-  /// factorisations, so that it and a resumed run go on with the same bits; a run that is not interrupted has them when
-  /// it takes snapshots at the same times.
+  /// Returns the data for `resume` from the current state. This run discards its other data of earlier steps, such as
+  /// factorisations, so that it and a resumed run continue with bitwise identical results. The results of an
+  /// uninterrupted run are identical if it takes snapshots at the same times.
   [[gnu::cold]] RunSnapshot snapshot();
 
-  State const& state() const { return *x_; }            ///< as the last step left it
-  RunReport const& report() const& { return report_; }  ///< so far
+  State const& state() const { return *x_; }            ///< state at the end of the last step
+  RunReport const& report() const& { return report_; }  ///< report so far
   RunReport report() && { return std::move(report_); }  ///< the report so far, moved out
-  /// What is stepped: the model, or what its policies leave of it.
+  /// Integrated system: the model, or its reduced system.
   System& system() { return *system_; }
-  System& full() { return full_ ? *full_ : *system_; }                               ///< the whole mechanism
-  bool done() const { return report_.stopped || stepped().t >= options_.end_time; }  ///< the end, or a stop by an event
+  System& full() { return full_ ? *full_ : *system_; }                               ///< system of the full model
+  bool done() const { return report_.stopped || stepped().t >= options_.end_time; }  ///< true at the end of the run
 
-  /// Takes a step to the next grid point, or to a corner or event before it. When it throws, the state stays as it was.
-  /// \throws InvalidInput where the model has changed since the run was made.
+  /// Takes a step to the next grid point, or to an earlier breakpoint or event. If it throws, the state is unchanged.
+  /// \throws InvalidInput if the model has changed since the construction of the run.
   void advance() { advance(true); }
 
-  using Iterator = RunIterator<Simulation>;      ///< takes a step where it moves on
-  using Sentinel = typename Iterator::Sentinel;  ///< the end
-  Iterator begin() { return Iterator(this); }    ///< takes steps as it goes on
-  Sentinel end() const { return {}; }            ///< the end of the run
+  using Iterator = RunIterator<Simulation>;      ///< takes a step at each increment
+  using Sentinel = typename Iterator::Sentinel;  ///< end of the range
+  Iterator begin() { return Iterator(this); }    ///< iterator that takes steps
+  Sentinel end() const { return {}; }            ///< end of the range
 
-  /// To the end. Returns the report, as a copy of its own from a simulation that ends with the statement.
+  /// Runs to the end. Returns the report, by value if the simulation is a temporary.
   RunReport const& run() &;
-  RunReport run() && { return run(), std::move(report_); }  ///< to the end
+  RunReport run() && { return run(), std::move(report_); }  ///< runs to the end
 
  private:
   struct Prepared {};
@@ -77,66 +78,67 @@ class Simulation {
     keeps_ = eliminates() || system_->rows() > 0 || !options_.events.empty() || bool(options_.progress) ||
              options_.minimum_norm || axial_forces_.asks();
   }
-  /// A narrow state is stepped, of which `show` makes the user's; else that itself.
+  /// True if a reduced state is integrated, from which `show` computes the user's state.
   bool eliminates() const { return bool(full_); }
-  void advance(bool shown);  ///< shown: the user's state follows
+  void advance(bool shown);  ///< shown: updates the user's state
 
-  /// Replaces the workspace by one without data of earlier steps, ready for the next step. When that fails, all stays
-  /// as it was.
+  /// Replaces the workspace by one without data of earlier steps, ready for the next step. If this fails, nothing
+  /// changes.
   [[gnu::cold]] void renew() {
     auto fresh = method_.template workspace<Solver>(*system_);
-    State ready = stepped();  // whose memory `start` clears
+    State ready = stepped();  // `start` clears its history
     if (system_->rows() > 0) leave_out_redundant(*system_, fresh.forward, ready, &ready.lambda);
     method_.start(*system_, ready, done() ? h_ : plan_.next(ready.t, h_).h, fresh);
     fresh.forward.bounds = std::move(workspace_.forward.bounds);
     workspace_ = std::move(fresh);
   }
 
-  /// The limits of steps hold from this state on.
+  /// Applies the limits of steps from this state on.
   void bound() { workspace_.forward.bounds.begin(*system_, options_.limits, step_end()); }
   StepResult step_end() { return {stepped().q, stepped().v, stepped().lambda, stepped().t, h_}; }
-  /// Makes the balance of the energy up to here: before a restart or an action, and at the end.
-  /// \param halved steps that were halved, beside those in the report
+  /// Evaluates the energy balance up to here: before a restart or an action, and at the end.
+  /// \param halved number of halved steps that are not in the report yet
   [[gnu::cold]] void settle(int halved) {
     Unexplained const found = workspace_.forward.bounds.settle(*system_, step_end());
     if (done()) report_.warn_of_energy(found, options_.limits.warning, {start_, stepped().t, report_.halved + halved});
   }
   State& stepped() { return eliminates() ? reduced_ : *x_; }
   State const& stepped() const { return eliminates() ? reduced_ : *x_; }
-  /// Makes the user's state of the narrow one, in `seen_`. \throws NonFiniteValue if a force fails as reactions are
-  /// worked out. \param seen events have been shown this one
+  /// Computes the user's state from the reduced state, in `seen_`. \throws NonFiniteValue if a force is not finite in
+  /// the computation of reactions. \param seen true if the evaluation of events has computed it
   void make_shown(bool seen) {
     if (!seen) expand(*system_, reduced_, seen_, scratch_);
     require_finite_reactions(*system_, seen_);
   }
-  void show() {  // the user's state follows the narrow one
+  void show() {  // updates the user's state from the reduced state
     if (eliminates()) make_shown(false), *x_ = seen_;
   }
 
-  /// The narrow start, of speeds that keep to the joints, with the questions that only the whole model answers.
+  /// Reduced initial state: projects the velocities, and makes the checks that require the full model.
   [[gnu::cold]] void reduced_start();
-  /// Adds warnings to the report: of a start between branches, and where the step is too long for compliant joints.
+  /// Adds warnings to the report: of an initial state at a branching point, and of a step that is too long for
+  /// compliant joints.
   [[gnu::cold]] void warn(ForwardDynamics<Solver>& forward, State const& x) {
     report_.add_warning(warn_of_ambiguous_branch(full(), forward, x));
     if constexpr (HasStabilityLimit<I>) report_.add_warning(warn_of_step<I>(full(), forward, x, h_));
   }
 
-  /// One step of h. If it fails with `NewtonConvergenceFailure`, two steps of h/2 from a new start, and so on for the
-  /// halves; an integrator that controls its step takes only the first half. When it throws, the state is as it was.
+  /// One step of h. If it fails with `NewtonConvergenceFailure`, takes two steps of h/2 from a new start, and so on for
+  /// the halves; an integrator that controls its step takes only the first half. If it throws, the state is unchanged.
   StepReport step(double h, int max_step_halvings);
 
   double max_step() const { return options_.max_step.value_or(std::numeric_limits<double>::infinity()); }
-  double asked() const { return std::min<double>(options_.step, max_step()); }  // length of steps [s]
+  double asked() const { return std::min<double>(options_.step, max_step()); }  // requested length of steps [s]
 
-  /// Times at which the user, a drive or a load wants a step to end.
+  /// Breakpoints of the options, driving constraints and loads.
   Sequence<double> breakpoints() const {
     Sequence<double> all = system_->layout().breakpoints;
     all.append(options_.breakpoints.begin(), options_.breakpoints.end());
     return all;
   }
 
-  /// After a start, corner or event: speeds onto the rows, then consistent accelerations. The integrator may look
-  /// ahead as far as the next step goes, not across a corner.
+  /// After a start, breakpoint or event: projects the velocities onto the constraint equations, then computes
+  /// consistent accelerations. The integrator may look ahead to the end of the next step, but not across a breakpoint.
   [[gnu::cold]] void restart(bool first = false);
 
   void choose_step(StepReport const& r, bool shortened) {
@@ -151,7 +153,7 @@ class Simulation {
     };
     return {asked(), seen, drift_of(*system_)};
   }
-  /// Ends the step that was `taken` at the first event. Returns true if the run restarts there.
+  /// Ends the step of the length `taken` at the first event. Returns true if the run restarts there.
   bool meet_events(double taken) {
     undo_.events = true;
     EventDetector::Step const again = [this](State& x, double h) {
@@ -159,14 +161,14 @@ class Simulation {
     };
     return watch_.meet(options_.events, {before_, taken, again, motion()}, stepped(), report_);
   }
-  /// All that follows the end of a step, and may fail.
+  /// Operations after the end of a step that may fail: events and their actions, restarts, axial forces and progress.
   void follow(StepReport const& report, bool at_corner, bool remainder_step, bool shown);
   [[gnu::cold]] void undo();  // restores the run after a failure in `follow`
-  [[gnu::cold]] void tell_progress(StepReport const& report, bool shown);  // counts the step before
+  [[gnu::cold]] void tell_progress(StepReport const& report, bool shown);  // counts the step, then reports progress
 
-  std::unique_ptr<System> system_, full_;  // workspaces refer to it
+  std::unique_ptr<System> system_, full_;  // workspaces contain references to them
   State* x_;
-  State reduced_, seen_, before_;  // two of models with eliminating policies; of a step after which something may fail
+  State reduced_, seen_, before_;  // reduced and full state with eliminating policies; state before the step
   MethodOf<I> method_;
   RunOptions options_;
   decltype(std::declval<MethodOf<I> const&>().template workspace<Solver>(std::declval<System&>())) workspace_;
@@ -179,7 +181,7 @@ class Simulation {
   StepRow row_;
   EventDetector watch_;
   RedundancyWatch<> redundancy_;
-  bool keeps_ = false;      // every step keeps the state before it
+  bool keeps_ = false;      // every step stores its initial state
   double h_ = 0.0, start_;  // [s]
   RunReport report_;
 };
@@ -241,7 +243,7 @@ void Simulation<I, Solver>::advance(bool shown) {
   double const from = stepped().t, length = watch_.rests() ? std::min(h_, asked()) : h_;
   auto const [target, h, lands, jumps] = plan_.next(from, length);
   if (!(from + h > from) || !undo_.fits(stepped())) undo_.refuse_step(stepped(), options_.end_time, h);
-  bool const remainder_step = h < 0.01 * length;  // a tiny step, left over after a corner or an event
+  bool const remainder_step = h < 0.01 * length;  // a short step to the grid after a breakpoint or an event
   bool const keeps = keeps_ || lands || remainder_step;
   if (keeps) before_ = stepped();
   undo_.begin(row_, h_, plan_, report_);
@@ -317,13 +319,13 @@ void Simulation<I, Solver>::tell_progress(StepReport const& report, bool shown) 
 
 template <Integrator I, class Solver>
 RunReport const& Simulation<I, Solver>::run() & {
-  bool const asked = !eliminates() || axial_forces_.asks();  // else nobody looks before the end
+  bool const asked = !eliminates() || axial_forces_.asks();  // otherwise the user's state is updated at the end only
   try {
     while (!done()) advance(asked);
   } catch (...) {
     try {
       if (!asked) show();
-    } catch (...) {  // NOLINT(bugprone-empty-catch): what stopped the run is told
+    } catch (...) {  // NOLINT(bugprone-empty-catch): the first exception is thrown again
     }
     throw;
   }
@@ -373,7 +375,7 @@ StepReport Simulation<I, Solver>::step(double h, int max_step_halvings) {
 
 template <Integrator I, class Solver>
 void Simulation<I, Solver>::restart(bool first) {
-  State fresh = stepped();  // which stays as it is when the start fails
+  State fresh = stepped();  // the integrated state is unchanged if the start fails
   workspace_.forward.project_velocities(*system_, fresh.q, fresh.v, fresh.t);
   redundancy_.start(*system_, workspace_.forward, fresh);
   method_.start(*system_, fresh, done() ? h_ : plan_.next(fresh.t, h_).h, workspace_);

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Questions about points that slide along a body (bodies/shared/with_sliders.hpp).
+/// Evaluation of points that slide along a body (bodies/shared/with_sliders.hpp).
 
 #include <polybody/bodies/shared/with_sliders.hpp>
 #include <polybody/kinematics/marker.hpp>
@@ -9,7 +9,7 @@
 namespace polybody {
 
 namespace detail {
-/// The event that coordinate i reaches 0 or `length`; it stops the run.
+/// Event at which coordinate i reaches 0 or `length`; it ends the run.
 inline Event slider_end_event(std::string const& name, Slider slider, Index i, double length) {
   return {.name = sentence_of({"slider ", slider.index, " of \"", name, "\" reaches an end"}),
           .value = [i, length](State const& x) { return std::min(x.q[i], length - x.q[i]); },
@@ -17,14 +17,14 @@ inline Event slider_end_event(std::string const& name, Slider slider, Index i, d
 }
 }  // namespace detail
 
-/// Where a slider is along the axis of its body [m]. \throws InvalidInput for one that the body has not.
+/// Position of a slider along the axis of its body [m]. \throws InvalidInput for a slider that the body does not have.
 template <class M, class B>
 double slider_position(M const& model, State const& x, BodyHandle<WithSliders<B>> const& handle, Slider slider = {}) {
   auto const& e = model.entry(handle);
   return x.q[e.q0 + e.body.column_of(slider)];
 }
 
-/// The event that a slider reaches an end of its body; it stops the run. \throws InvalidInput as above.
+/// Event at which a slider reaches an end of its body; it ends the run. \throws InvalidInput as above.
 template <class M, class B>
 Event slider_end_event(M const& model, BodyHandle<WithSliders<B>> const& handle, Slider slider = {}) {
   auto const& e = model.entry(handle);

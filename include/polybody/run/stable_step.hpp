@@ -1,18 +1,18 @@
 #pragma once
 /// \file
-/// Whether the compliant joints of a model are too stiff for the step of an explicit integrator.
+/// Warning of compliant joints that are too stiff for the step of an explicit integrator.
 
 #include <polybody/integrators/integrator.hpp>
 
 namespace polybody {
 namespace detail {
 
-/// Motions of compliant joints alone: M a + Gᵀμ = w, G a = 0 under forces w = Σ gᵀ S g y, S = ck ∂λ/∂g + cd ∂λ/∂ġ at a
-/// state.
+/// Motions due to compliant joints alone: M a + Gᵀμ = w, G a = 0 under forces w = Σ gᵀ S g y, S = ck ∂λ/∂g + cd ∂λ/∂ġ
+/// at a state.
 template <class Solver>
 class CompliantMotion {
  public:
-  /// `forward` must be factored, and `system` evaluated, at that state.
+  /// `forward` must be factorised, and `system` evaluated, at that state.
   CompliantMotion(System& system, ForwardDynamics<Solver>& forward)
       : system_(system),
         forward_(forward),
@@ -24,11 +24,11 @@ class CompliantMotion {
   struct Found {
     double omega2 = 0.0;  ///< [1/s²] of k
     double rate = 0.0;    ///< [1/s] of c
-    std::string joint;    ///< that works most
+    std::string joint;    ///< joint with the largest part
   };
 
-  /// Power iteration for the largest yᵀ(ck k + cd c) y/yᵀM y: what it finds is a lower bound and grows from pass to
-  /// pass.
+  /// Power iteration for the largest yᵀ(ck k + cd c) y/yᵀM y. The result is a lower bound, which increases from
+  /// iteration to iteration.
   Found largest(double ck, double cd) {
     for (Index i = 0; i < w_.size(); ++i) w_[i] = std::fmod(0.6180339887498949 * double(i + 1), 1.0) - 0.5;
     Found found;
@@ -49,14 +49,14 @@ class CompliantMotion {
   }
 
  private:
-  /// Products of the joints' tangents with y; blocks come joint by joint.
+  /// Products of the joints' tangent blocks with y; blocks are added joint by joint.
   struct JointProducts {
     System const& system;
     VecX const& y;
     VecX& out;
     double sum = 0.0, largest = 0.0, part = 0.0;
-    std::size_t block = 0;  ///< the joint's, among the rows of the data
-    int left = 0;           ///< of its blocks
+    std::size_t block = 0;  ///< index of the joint's block among the rows of the data
+    int left = 0;           ///< number of its blocks that follow
     Index most = -1;
 
     void add(Index row, Index col, BlockView const& b) {
@@ -75,7 +75,7 @@ class CompliantMotion {
       }
       ++block;
     }
-    /// How many blocks the next compliant joint has.
+    /// Returns the number of blocks of the next compliant joint.
     int next_joint() {
       part = 0.0;
       for (;; ++block) {
@@ -88,7 +88,7 @@ class CompliantMotion {
       }
     }
   };
-  /// out = Σ gᵀ S g y. Returns yᵀ out; `most` becomes the joint with the largest part of it.
+  /// Computes out = Σ gᵀ S g y. Returns yᵀ out; `most` becomes the name of the joint with the largest part of it.
   double pull(double ck, double cd, VecX& out, std::string& most) {
     out.setZero();
     JointProducts products{system_, y_, out};
@@ -104,9 +104,9 @@ class CompliantMotion {
 
 }  // namespace detail
 
-/// A sentence that warns of a step h beyond the limit of integrator I for the stiffness and damping of the compliant
-/// joints at x, or nothing. ω² = k g M⁻¹ gᵀ and d = c g M⁻¹ gᵀ are Rayleigh quotients, thus lower bounds of what the
-/// model has: a step that is warned of is unstable; springs and elastic bodies may need a smaller one still.
+/// Warning text for a step h beyond the limit of integrator I for the stiffness and damping of the compliant joints at
+/// x; otherwise empty. ω² = k g M⁻¹ gᵀ and d = c g M⁻¹ gᵀ are Rayleigh quotients, thus lower bounds of the values of
+/// the model. A step with a warning is unstable; springs and elastic bodies may require a still smaller step.
 template <HasStabilityLimit I, class Solver>
 std::string warn_of_step(System& system, ForwardDynamics<Solver>& forward, State const& x, double h) {
   bool const compliant = std::any_of(system.data().rows.begin(), system.data().rows.end(),

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Whether a state is one of a model.
+/// Checks that a state belongs to a model.
 
 #include <polybody/system/state.hpp>
 #include <polybody/system/system.hpp>
@@ -8,7 +8,7 @@
 namespace polybody {
 
 namespace detail {
-/// \throws InvalidInput unless x has these sizes and finite coordinates and speeds.
+/// \throws InvalidInput unless x has these sizes and finite coordinates and velocities.
 template <class = void>
 void require_sizes(State const& x, Index coordinates, Index velocities, Index rows) {
   if (x.q.size() != coordinates || x.v.size() != velocities || x.a.size() != velocities || x.lambda.size() != rows)
@@ -18,13 +18,13 @@ void require_sizes(State const& x, Index coordinates, Index velocities, Index ro
 }
 }  // namespace detail
 
-/// \throws InvalidInput unless x is a state of this model, as it stands after its last body and joint, with finite
-/// coordinates and speeds.
+/// \throws InvalidInput unless x has the sizes of this model with all of its bodies and joints, and finite coordinates
+/// and velocities.
 template <class M>
 [[gnu::cold]] void require_fitting(M const& model, State const& x) {
   detail::require_sizes(x, model.coordinates(), model.velocities(), model.rows());
 }
-/// The same for a system.
+/// Checks the sizes of a full state of a system; see above.
 template <class = void>
 [[gnu::cold]] void require_fitting(System const& system, State const& x) {
   ModelLayout const& full = system.layout();
@@ -32,8 +32,8 @@ template <class = void>
   detail::require_sizes(x, full.coordinates, full.velocities, full.rows);
 }
 
-/// \throws InvalidInput naming a body whose coordinates are those of no place, as a quaternion whose norm is not one:
-/// ⊞ 0 would change them. \param x of the whole model
+/// \throws InvalidInput naming a body with invalid coordinates, such as a quaternion whose norm is not one: ⊞ 0 would
+/// change them. \param x of the full model
 template <class = void>
 [[gnu::cold]] void require_places(System const& system, State const& x) {
   VecX const none = VecX::Zero(x.v.size());
@@ -46,8 +46,8 @@ template <class = void>
                                               "reference_state(), and rotate a body by unit quaternions."});
 }
 
-/// \throws InvalidInput naming a body whose coordinates or speeds are so large that squares of them, and with them
-/// energies, are not finite. \param x of the whole model
+/// \throws InvalidInput naming a body with coordinates or velocities so large that their squares, and therefore
+/// energies, are not finite. \param x of the full model
 template <class = void>
 [[gnu::cold]] void require_computable(System const& system, State const& x) {
   ModelLayout const& full = system.layout();
@@ -69,8 +69,8 @@ inline void require_finite_reactions(System const& system, State const& x) {
          non_finite_suffix(x.lambda[i]), " at t = ", ErrorTime{x.t}, " s. Check the forces on its bodies."});
 }
 
-/// \throws InvalidInput unless something can be computed from x: as the three above, and for multipliers that are not
-/// finite. \param x of the whole model
+/// \throws InvalidInput unless x is valid for evaluations: as the three checks above, and for multipliers that are not
+/// finite. \param x of the full model
 template <class = void>
 void require_usable(System const& system, State const& x) {
   require_fitting(system, x);

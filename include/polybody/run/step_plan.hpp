@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Where steps end: on the grid, at corners of drives and loads, at the end of the run.
+/// Ends of steps: grid points, breakpoints of driving constraints and loads, and the end of the run.
 
 #include <algorithm>
 #include <cmath>
@@ -10,13 +10,14 @@
 
 namespace polybody {
 
-/// Steps of one length in a row: they end at t₀ + k h, so that rounding does not add up.
+/// Consecutive steps of equal length. They end at t₀ + k h, so that round-off does not accumulate.
 struct StepRow {
   double start = 0.0, length = 0.0;  ///< t₀ and h [s]
-  double count = 0.0;                ///< k, a count of the steps
+  double count = 0.0;                ///< k, number of steps
 
   double end() const { return start + count * length; }  ///< time at which the last step ended [s]
-  /// The end of a step from t that took `taken` seconds. One of another length, or from elsewhere, begins a row.
+  /// End of a step from t with the length `taken` [s]. A step of another length, or from another time, begins a new
+  /// row.
   double after(double t, double taken) {
     if (t != end() || taken != length) *this = {t, taken, 0.0};
     count += 1.0;
@@ -24,25 +25,25 @@ struct StepRow {
   }
 };
 
-/// The corners of a run and what is left of it.
+/// Breakpoints and end time of a run.
 class StepPlan {
  public:
-  /// The next step: where it may at most go, its length, whether it goes there, and whether a corner is there.
+  /// Next step of a run.
   struct Next {
-    double target, h;   ///< time at which it may at most end [s]; its length [s]
-    bool lands, jumps;  ///< it ends at `target`; a corner is there
+    double target, h;   ///< latest end of the step [s]; its length [s]
+    bool lands, jumps;  ///< the step ends at `target`; `target` is a breakpoint
   };
 
   StepPlan() = default;
-  /// A run from `start` to `end_time` with steps of about `step` [s]; corners outside of it are left out.
+  /// Run from `start` to `end_time` with steps of about `step` [s]; breakpoints outside of it are ignored.
   [[gnu::cold]] StepPlan(double start, double end_time, double step, Sequence<double> breakpoints)
       : until_(end_time), step_(step), breakpoints_(std::move(breakpoints)) {
     erase_if(breakpoints_, [&](double t) { return !(t > start) || !(t <= end_time); });
     sort_once(breakpoints_);
   }
 
-  /// Passes the corners up to t, and those that differ from it by rounding only (0.3 and 0.1 + 0.2 are one). Returns t,
-  /// or the time of the last corner passed or of the end where it is that within rounding.
+  /// Passes the breakpoints up to t, and those that differ from t by round-off only (0.3 and 0.1 + 0.2 are equal).
+  /// Returns t, or the time of the last passed breakpoint or of the end if it differs from t by round-off only.
   double pass(double t) {
     double const remainder_step = 1e-9 * step_ + rounding(t);
     while (next_ < breakpoints_.size() && breakpoints_[next_] <= t + remainder_step)
@@ -50,24 +51,24 @@ class StepPlan {
     return until_ - t <= remainder_step ? until_ : t;
   }
 
-  std::size_t passed() const { return next_; }          ///< how many corners were passed
-  void go_back(std::size_t passed) { next_ = passed; }  ///< to where that many corners were passed
+  std::size_t passed() const { return next_; }          ///< number of passed breakpoints
+  void go_back(std::size_t passed) { next_ = passed; }  ///< restores the number of passed breakpoints
 
-  /// The step from t that would best be h long.
+  /// Next step from t, if possible of length h.
   Next next(double t, double h) const {
     bool const corner = next_ < breakpoints_.size();
     double const target = corner ? breakpoints_[next_] : until_, left = target - t;
-    // A step may be 1 % longer than asked for, so that no tiny one is left: rows divided by its square would be
-    // rounding errors.
+    // A step may be 1 % longer than requested, so that no tiny step remains: in constraint equations divided by its
+    // square, round-off would dominate.
     bool const lands = 1.01 * h >= left;
     if (lands && corner) return {target, until_just_before(target, t), true, true};
-    // A last step that only rounding sets apart is as long as the others: a run that goes on later had it, too.
+    // A last step that differs from h by round-off only has the length h, as in a run with a later end.
     return {target, lands && std::abs(left - h) > rounding(t) ? left : h, lands, false};
   }
 
  private:
   static double rounding(double t) { return 4.0 * std::numeric_limits<double>::epsilon() * std::abs(t); }
-  /// The length of a step that ends just before a corner, where a law still has its old value.
+  /// Length of a step that ends just before a breakpoint, at which a time function still has its earlier value.
   static double until_just_before(double corner, double t) {
     double h = std::nextafter(corner, t) - t;
     while (t + h >= corner) h = std::nextafter(h, 0.0);

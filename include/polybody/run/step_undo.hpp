@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The parts of a run that a failed step restores.
+/// Data of a run that are restored after a failed step.
 
 #include <array>
 #include <optional>
@@ -13,15 +13,15 @@
 
 namespace polybody {
 
-/// The run before a step, beside its state and events. Every step stores numbers. Texts are stored just before they
-/// change.
+/// Data of a run before a step, in addition to its state and events. Every step stores the numbers; texts are stored
+/// just before they change.
 struct StepUndo {
-  bool events = false;  ///< events were looked for in this step
-  bool shown = false;   ///< `user` is of this step
-  State user;           ///< the user's state before it followed this step
+  bool events = false;  ///< events were evaluated in this step
+  bool shown = false;   ///< `user` belongs to this step
+  State user;           ///< user's state before its update in this step
 
-  void end(State const& x) { sizes_ = sizes_of(x); }                 ///< notes the state at the end of a step
-  bool fits(State const& x) const { return sizes_ == sizes_of(x); }  ///< x has the sizes of that state
+  void end(State const& x) { sizes_ = sizes_of(x); }  ///< stores the sizes of the state at the end of a step
+  bool fits(State const& x) const { return sizes_ == sizes_of(x); }  ///< true if x has these sizes
   /// \throws InvalidInput for a step of h [s] from x: the sizes of x were changed, the run has ended at `end_time` [s],
   /// or the clock does not resolve h.
   [[noreturn, gnu::cold]] void refuse_step(State const& x, double end_time, double h) const {
@@ -36,7 +36,7 @@ struct StepUndo {
     throw InvalidInput("run.clock", {"The clock does not resolve a step of ", ErrorValue{h}, " s at t = ",
                                      ErrorTime{x.t}, " s. Count the time of the run from a start near zero."});
   }
-  /// Notes the run before a step.
+  /// Stores the run before a step.
   void begin(StepRow const& row, double h, StepPlan const& plan, RunReport const& report) {
     row_ = row;
     h_ = h;
@@ -45,28 +45,28 @@ struct StepUndo {
     events = shown = counted_ = restarted_ = false;
     axial_.reset();
   }
-  /// Notes the user's state before it follows this step.
+  /// Stores the user's state before its update in this step.
   [[gnu::cold]] void keep_shown(State const& x) {
     user = x;
     shown = true;
   }
-  /// Notes the counts before this step is counted.
+  /// Stores the counts before this step is counted.
   [[gnu::cold]] void keep_counts(RunCounts const& counts) {
     counts_ = counts;
     counted_ = true;
   }
-  /// Notes the redundant joints before a restart.
+  /// Stores the redundant joints before a restart.
   [[gnu::cold]] void keep_redundant(RunReport const& report) {
     redundant_ = report.redundant;
     restarted_ = true;
   }
-  /// Notes the warnings before axial forces are looked at.
+  /// Stores the warnings before an evaluation of axial forces.
   [[gnu::cold]] void keep_axial(AxialForceMonitor const& axial, RunReport const& report) {
     if (axial_) return;
     said_.assign(report.warnings.begin(), report.warnings.begin() + std::ptrdiff_t(warnings_));
     axial_ = axial;
   }
-  /// Puts the run back as it was.
+  /// Restores the run.
   [[gnu::cold]] void put_back(StepRow& row, double& h, StepPlan& plan, RunReport& report, AxialForceMonitor& axial) {
     row = row_;
     h = h_;
@@ -87,7 +87,7 @@ struct StepUndo {
     return {x.q.size(), x.v.size(), x.a.size(), x.lambda.size(), x.history.size()};
   }
 
-  Sizes sizes_{};  // of q, v, a, λ and memory at the end of the last step
+  Sizes sizes_{};  // of q, v, a, λ and the integrator history at the end of the last step
   StepRow row_;
   double h_ = 0.0;
   std::size_t passed_ = 0, warnings_ = 0;

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// A model in words: what is in it, and what hangs on what.
+/// Model summary: text with the bodies, joints, loops and forces of a model.
 ///
-/// Not in polybody.hpp: programs that only compute need no words.
+/// Not in polybody.hpp, because programs that only compute do not need it.
 
 #include <polybody/run/problem_size.hpp>
 #include <polybody/system/make_operations.hpp>
@@ -11,7 +11,7 @@ namespace polybody {
 
 namespace detail {
 
-/// Bodies by places in the layout, −1 the ground.
+/// Tree of bodies, given by their indices in the layout; −1 is the ground.
 class JointGraph {
  public:
   template <class = void>
@@ -32,15 +32,15 @@ class JointGraph {
       }
   }
 
-  /// A body and the joint (−1: none) that carries it on another.
+  /// Body, the joint that carries it (−1: none), and the body `by` to which this joint connects it.
   struct Carried {
     Index body, joint, by;
-    int branch;  ///< how many bodies before it, outwards, carry several
+    int branch;  ///< number of branching bodies before it, from the ground outwards
   };
   Sequence<Carried> const& order() const { return order_; }
-  /// How many of them joints join to the ground, in steps or at once; the first of `order`.
+  /// Number of bodies with a path of joints to the ground; these are the first in `order`.
   std::size_t joined() const { return joined_; }
-  /// Joints that carry no body, as both ends are carried already.
+  /// Joints that close loops: both of their bodies are carried by other joints.
   Sequence<Index> closing() const {
     Sequence<char> carries(layout_.joints.size(), 0);
     for (Carried const& c : order_)
@@ -61,7 +61,7 @@ class JointGraph {
     found_[std::size_t(c.body)] = 1;
     order_.push_back(c);
   }
-  /// All that joints carry on body `from`, a branch after the other.
+  /// Adds all bodies with a path of joints to body `from`, branch by branch.
   void spread(Index from) {
     Sequence<Carried> waiting;
     auto const offer = [&](Index by, int branch) {
@@ -89,7 +89,7 @@ class JointGraph {
 
   ModelLayout const& layout_;
   Sequence<char> found_;
-  Sequence<Sequence<Index>> joints_of_;  ///< ascending, by place of the body plus one; the first are the ground's
+  Sequence<Sequence<Index>> joints_of_;  ///< ascending, by index of the body plus one; the ground is first
   Sequence<Carried> order_;
   std::size_t joined_ = 0;
 };
@@ -125,9 +125,9 @@ std::string force_in_words(ModelLayout const& layout, ForceLayout const& f) {
 
 }  // namespace detail
 
-/// What is in a model: counts; a line for each body from the ground outwards, with the joint that carries it, further
-/// in where a body carries several; the joints that close loops; bodies that no joint joins to the ground; the forces
-/// and what they act on. Ends with a line break.
+/// Model summary: counts; a line for each body from the ground outwards with the joint that carries it, indented at
+/// branches; joints that close loops; bodies without a path of joints to the ground; forces and the bodies on which
+/// they act. Ends with a line break.
 template <class = void>
 std::string summary(ModelLayout const& layout) {
   detail::JointGraph const graph(layout);
@@ -158,7 +158,7 @@ std::string summary(ModelLayout const& layout) {
   for (ForceLayout const& f : layout.forces) text += detail::force_in_words(layout, f) + "\n";
   return text;
 }
-/// The outline of a model in words: bodies, what they hang on, forces.
+/// Summary of a model: bodies, joints, loops and forces.
 template <class M>
 std::string summary(M const& model) {
   return summary(layout_of(model));

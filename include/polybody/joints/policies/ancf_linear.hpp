@@ -16,8 +16,7 @@ namespace polybody {
 ///   Weld:  r and all common gradients equal, up to their relation at the reference configuration.
 struct AncfLinear {
   static constexpr char const* name = "AncfLinear";
-  static constexpr bool adds_constraints = true;  ///< the joint has constraint equations; their multipliers are its
-                                                  ///< reactions
+  static constexpr bool adds_constraints = true;  ///< the multipliers are the reactions of the joint
   /// Constraint equations and dependent coordinates are eliminated together.
   static constexpr bool eliminates = true;
   static constexpr bool linear = true;

@@ -25,8 +25,7 @@ struct ArticulatedBody {};
 template <class Path>
 struct JointCoordinatesBy {
   static constexpr char const* name = "JointCoordinates";
-  static constexpr bool adds_constraints = true;  ///< the joint has constraint equations; their multipliers are its
-                                                  ///< reactions
+  static constexpr bool adds_constraints = true;  ///< the multipliers are the reactions of the joint
   static constexpr bool eliminates = true;        ///< joint coordinates replace the constraint equations
   using Solution = Path;                          ///< a type of namespace `joint_coordinates`: the solution method
 };
