@@ -186,10 +186,10 @@ TEST_F(Checkpoints, OfInconsistentContentAreRefused) {
                   }),
                   inconsistent + "it has 1 multipliers, but the model has 2."));
   EXPECT_TRUE(has(number(begin + 48, 300), inconsistent + "300 is out of the range of its entry."));  // a letter
-  EXPECT_TRUE(has(number(begin + 40, -1), "ends before its content does"));
-  EXPECT_TRUE(has(number(begin + 40, std::int64_t(1) << 60), "ends before its content does"));
+  EXPECT_TRUE(has(number(begin + 40, -1), "ends before the end of its content"));
+  EXPECT_TRUE(has(number(begin + 40, std::int64_t(1) << 60), "ends before the end of its content"));
   EXPECT_TRUE(has(told([](std::string& bad) { bad += "12345678"; }), inconsistent + "8 bytes follow its content."));
-  EXPECT_TRUE(has(told([](std::string& bad) { bad.resize(bad.size() - 8); }), "ends before its content does"));
+  EXPECT_TRUE(has(told([](std::string& bad) { bad.resize(bad.size() - 8); }), "ends before the end of its content"));
 }
 
 // Chains of four and of three links in the plane: 3 coordinates and 2 constraint equations each.

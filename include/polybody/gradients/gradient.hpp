@@ -129,7 +129,7 @@ class AdjointRun {
         throw InvalidInput(
             "gradient.breakpoint",
             {ErrorObject{"gradient"}, ": a drive or load has a breakpoint at t = ", ErrorTime{next.target},
-             " s, where the method restarts. Use smooth time functions, or end the run before."});
+             " s, and the method restarts there. Use smooth time functions, or end the run before."});
       Step step{next.h, next.h, 0.0};
       double const from = x.t;
       if constexpr (chooses) {

@@ -81,7 +81,7 @@ struct SnapshotReader {
     std::conditional_t<std::is_floating_point_v<T>, double, std::int64_t> wide;
     if (bytes.size() < sizeof wide)
       throw IoError("checkpoint.damaged",
-                    {"checkpoint \"", ErrorObject{name}, "\" ends before its content does. Write it again."});
+                    {"checkpoint \"", ErrorObject{name}, "\" ends before the end of its content. Write it again."});
     std::memcpy(&wide, bytes.data(), sizeof wide);
     bytes.remove_prefix(sizeof wide);
     x = static_cast<T>(wide);
@@ -101,7 +101,7 @@ struct SnapshotReader {
     (*this)(count);
     if (count > bytes.size() / sizeof(double))
       throw IoError("checkpoint.damaged",
-                    {"checkpoint \"", ErrorObject{name}, "\" ends before its content does. Write it again."});
+                    {"checkpoint \"", ErrorObject{name}, "\" ends before the end of its content. Write it again."});
     of.resize(static_cast<decltype(of.size())>(count));
   }
 };

@@ -25,9 +25,9 @@ struct FilmOptions {
   std::filesystem::path viewer;
   std::string title = "polybody";   ///< title of the page
   double frames_per_second = 30.0;  ///< frames per second of simulated time [1/s]
-  /// (3) direction from the scene to the camera, world axes. Empty: (−2, −3, 1.5), or z if all scenes are planar.
+  /// (3) direction from the scene to the camera in world axes (empty: (−2, −3, 1.5), or z if all scenes are planar).
   std::optional<Vec3> look_from = {};
-  std::optional<Vec3> up = {};  ///< (3) upward direction in the picture, world axes. Empty: z, or y if planar.
+  std::optional<Vec3> up = {};  ///< (3) upward direction in world axes (empty: z, or y if planar)
   std::string follow = {};      ///< name of the part that the camera follows; empty: none
   /// Grid normal to `up` below the scene, or normal to `look_from` behind it. Empty: below, or behind if planar.
   std::optional<FilmFloor> floor = {};

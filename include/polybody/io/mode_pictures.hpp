@@ -211,8 +211,8 @@ DrawResult write_modes(Visual& visual, State const& x, MatX const& shapes, std::
 /// Records one period of a mode (column `mode` of `shapes`) as frames of a film, with the period 2 s whatever its
 /// frequency:
 ///   record_mode(film.scene("mode 1"), visual, x, found.shape, 0);
-/// The displacements are those of `write_modes`, times sin(πt). \throws InvalidInput as `write_modes`, and for a column
-/// that does not exist.
+/// The displacements are those of `write_modes` with this `size`, times sin(πt). \throws InvalidInput as `write_modes`,
+/// and for a column that does not exist.
 template <class = void>
 void record_mode(FilmScene& scene, Visual& visual, State const& x, MatX const& shapes, Index mode, double size = 0.1) {
   detail::require_picture<>({.size = size});

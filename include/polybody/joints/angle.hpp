@@ -11,7 +11,7 @@
 
 namespace polybody::constraint_functions {
 
-/// Angle minus the nearest multiple of a full turn [rad].
+/// `angle` minus the nearest multiple of a full turn [rad].
 template <StateScalar T>
 T wrapped(T const& angle) {
   double const turn = 2.0 * std::numbers::pi;

@@ -84,7 +84,7 @@ struct Gear {
  private:
   /// Numbers of teeth without their common factor.
   struct Ratio {
-    double a, b;  ///< N_a/gcd and N_b/gcd
+    double a, b;  ///< ratios N_a/gcd and N_b/gcd
   };
   Ratio ratio() const {
     int const common = std::gcd(int(teeth_a), int(teeth_b));

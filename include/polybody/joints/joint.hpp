@@ -63,8 +63,10 @@ struct Joint {
   }
 };
 
+/// Type of `Joint{geometry}`.
 template <class G>
 Joint(G) -> Joint<G, Constraint>;
+/// Type of `Joint{geometry, policy}`.
 template <class G, class P>
 Joint(G, P) -> Joint<G, P>;
 

@@ -16,7 +16,7 @@ namespace polybody {
 /// load.
 class AxialForceMonitor {
  public:
-  static constexpr double worth_warning = 0.05;  ///< fraction of the buckling load
+  static constexpr double worth_warning = 0.05;  ///< fraction of the buckling load [1]
 
   /// Monitor for a run from `start` to `end_time` [s].
   AxialForceMonitor(System const& system, double start, double end_time)

@@ -121,7 +121,7 @@ struct RunReport : RunCounts {
   /// explains.
   std::vector<std::string> warnings = {};
 
-  /// Adds a warning if its text is not empty.
+  /// Adds the warning `sentence` if it is not empty.
   void add_warning(std::string sentence) {
     if (!sentence.empty()) warnings.push_back(std::move(sentence));
   }

@@ -24,7 +24,8 @@ namespace polybody {
 template <Integrator I, class Solver = DefaultSolver>
 class Simulation {
  public:
-  [[gnu::cold]] Simulation(RunSystems systems, State& x, I const& integrator, RunOptions options);  ///< new run
+  /// New run by `integrator`.
+  [[gnu::cold]] Simulation(RunSystems systems, State& x, I const& integrator, RunOptions options);
 
   /// Continues from a snapshot. \throws InvalidInput for a snapshot of another model, integrator or number of events.
   [[gnu::cold]] Simulation(RunSystems systems, State& x, I const& integrator, RunOptions options,

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Not part of polybody.hpp, because Eigen's sparse Cholesky increases the compile time of every translation unit.
+/// Not in polybody.hpp: Eigen's sparse Cholesky increases the compile time of every translation unit.
 
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCholesky>

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// KLU of SuiteSparse. Not part of polybody.hpp, because it needs klu.h and -lklu (Debian: libsuitesparse-dev).
+/// KLU of SuiteSparse. Not in polybody.hpp: it needs klu.h and -lklu (Debian: libsuitesparse-dev).
 
 #if __has_include(<klu.h>)
 #include <klu.h>

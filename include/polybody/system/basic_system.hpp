@@ -81,7 +81,7 @@ class BasicSystem {
     return coordinates_ ? coordinates_.reduced->nonholonomic_equations : layout_.nonholonomic_equations;
   }
 
-  /// Factor of gravity and loads; one except inside `equilibrium`.
+  /// Load factor of gravity and loads; one except inside `equilibrium`.
   double load_factor = 1.0;
 
   /// Sets the state: coordinates q (nq), velocities v (nv), time t [s]. Computes all markers and constraint functions.

@@ -66,7 +66,7 @@ struct BodyKernels {
 
   /// Appends counts, positions and names to `out`.
   [[gnu::cold]] static void describe(Pool const& pool, ModelLayout& out);
-  /// Allocates the workspace `kept` and assigns the columns and the Jacobian's storage of each marker.
+  /// Allocates the workspace `kept` and assigns the columns and the Jacobian's storage in `arena` of each marker.
   [[gnu::cold]] static void place_markers(Pool const& pool, Kept& kept, detail::MarkerArena& arena, Data<T>& data);
   static Index own_size(Pool const& pool);  ///< number of entries for Φ and G of the bodies' own equations
   /// Appends a constraint block for the own equations of each body, with Φ and G stored from `next` on. Returns the end

@@ -33,9 +33,8 @@ struct ReducedLayout {
   Sequence<Index> eliminated_equations = {};
   std::vector<std::string> redundant = {};  ///< joints with redundant linear constraint equations
 
-  /// Number of unknowns of the linear system, which may differ from that of a step, and of the velocities among them,
-  /// which are the first ones.
-  Index equations = 0, equation_velocities = 0;
+  Index equations = 0;            ///< number of unknowns of the linear system, which may differ from that of a step
+  Index equation_velocities = 0;  ///< number of velocities among them, which are the first ones
   /// Full unknown of each unknown of the linear system; empty if these are the unknowns of a step.
   Sequence<Index> full_unknown = {};
   bool solves_by_bodies = false;       ///< the articulated-body algorithm solves the linear system

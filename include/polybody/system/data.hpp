@@ -58,7 +58,7 @@ struct Data {
   Data(Data&&) = default;             ///< moves the arrays; pointers into them stay valid
   Data& operator=(Data&&) = default;  ///< moves the arrays; pointers into them stay valid
 
-  /// Number of the unknown λ_i, after all velocities.
+  /// Number of the unknown λ_i for `i`, after all velocities.
   Index unknown_of_row(Index i) const { return first_state + Index(states.size()) + i; }
   /// The evaluation omits this block: it belongs to a linear joint, and `linear_rows` is false.
   bool leaves_out(ConstraintBlock<T> const& block) const {

@@ -60,7 +60,7 @@ class Subassembly<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     for (Marker<A> const& m : many) pooled_many.push_back(pooled(m));
     return detail::add_group(parts_, forces_of<F>(), group, pooled_many, std::move(name));
   }
-  /// Adds a partner at marker `one` to a force group, like `Model::add_partner`.
+  /// Adds a partner with the law `law` at marker `one` to a force group, like `Model::add_partner`.
   template <OneOf<Fs...> F, class Law, class A>
     requires ForceGroup<F>
   void add_partner(ElementHandle<F> const& group, Law const& law, Marker<A> const& one, std::string name = "") {
