@@ -187,7 +187,7 @@ inline constexpr auto words_of<BarConstants> =
           "rotary_inertia_y|rotary inertia of the bar about y", "polar_inertia|polar inertia");
 template <>
 inline constexpr auto words_of<Placement> =
-    words("origin of the placement|plane z = 0", "placement's axes|plane z = 0");
+    words("placement's origin|origin of the placement|plane z = 0", "placement's axes|plane z = 0");
 template <>
 inline constexpr auto words_of<Damping> = words("axial damping", "shear damping", "bending damping");
 template <>

@@ -195,7 +195,8 @@ TEST(TimeLaws, RefuseNumbersThatCannotBeMeant) {
       has(refusal([&] { check_time_function(Ramp{.target = 1.0, .duration = 1.0, .start = nan}, "drive"); }), "start"));
   EXPECT_TRUE(
       has(refusal([&] { check_time_function(SpinUp{.speed = 1.0, .duration = nan}, "hub"); }), "hub: the duration"));
-  EXPECT_TRUE(has(refusal([] { check_time_function(Window{.from = 2.0, .to = 1.0}, "load"); }), "from = 2, to = 1"));
+  EXPECT_TRUE(
+      has(refusal([] { check_time_function(Window{.from = 2.0, .to = 1.0}, "load"); }), "from = 2 s, to = 1 s"));
   EXPECT_TRUE(has(refusal([&] { check_time_function(Window{.value = nan}, "load"); }), "finite value"));
   EXPECT_NO_THROW(check_time_function(Window{}, "load"));
   EXPECT_NO_THROW(check_time_function([](double t) { return Motion{t, 1.0, 0.0}; }, "a lambda is not asked"));

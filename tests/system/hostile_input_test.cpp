@@ -168,7 +168,7 @@ TEST(HostileInput, NumbersWhoseSquaresOverflowAreRefusedAtTheStart) {
     fast.x.v[0] = far.x.q[0] = size;
     RunOptions const options{.end_time = 0.1, .step = 0.01};
     EXPECT_TRUE(has(refusal([&] { simulate(fast.model, fast.x, GeneralisedAlpha{}, options); }),
-                    "A speed of body \"rod\" is " + number(size)));
+                    "A velocity of body \"rod\" is " + number(size)));
     EXPECT_TRUE(has(refusal([&] { simulate(far.model, far.x, GeneralisedAlpha{}, options); }),
                     "A coordinate of body \"rod\" is " + number(size)));
   }

@@ -63,10 +63,10 @@ TEST(Model, RefusesANameThatIsTaken) {
   EXPECT_TRUE(has(refusal([&] { model.add(bar(), "boom"); }), "Duplicate name of a body: \"boom\""));
   model.connect(Pin{}, ground, boom.at(Vec2(0, 0)), "boom");  // a joint may have the same name as a body
   Soft const soft{{}, Penalty{.stiffness = 1.0, .damping = 0.0}};
-  EXPECT_TRUE(has(refusal([&] { model.connect(soft, ground, boom.at(Vec2(0, 0)), "boom"); }), "a joint \"boom\""));
+  EXPECT_TRUE(has(refusal([&] { model.connect(soft, ground, boom.at(Vec2(0, 0)), "boom"); }), "of a joint: \"boom\""));
   model.apply(PointForce<>{.force = {1, 0, 0}}, boom.at(Vec2(0, 0)), "push");
   EXPECT_TRUE(has(refusal([&] { model.apply(PointMoment<>{.moment = {0, 0, 1}}, boom.at(Vec2(0, 0)), "push"); }),
-                  "a force \"push\""));
+                  "of a force: \"push\""));
   EXPECT_EQ(model.body_count(), 1);  // a refusal leaves the model unchanged
   EXPECT_EQ(model.markers(), 3);
   EXPECT_EQ(model.rows(), 2);
