@@ -127,7 +127,7 @@ def check_refusals(runs, root):
     _, told = refused("differs", 2, "the ranks have different studies", "--fail", "differs")
     refused("worker", 2, "rank 1: a worker's own error", "--fail", "worker", "--pause", "2")
     refused("first", 3, "rank 0: the first rank's own error", "--fail", "first", "--pause", "2")
-    folder, _ = refused("misuse", 2, "no column 'no such column'", "--fail", "misuse", "--pause", "2")
+    folder, _ = refused("misuse", 2, 'no column "no such column"', "--fail", "misuse", "--pause", "2")
     require(runs.run(folder, 2).returncode == 0, "after an error of the program the study does not go on")
     _, told = refused("folder", 2, "cannot be created", folder=Path("/proc/no such folder"))
     require("rank 0: " in told and "rank 1: " in told, f"not every rank is told: {told}")
