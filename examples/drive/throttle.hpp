@@ -1,5 +1,5 @@
 #pragma once
-// The speeds of the drives, as they are asked for while a run goes on.
+// Angular velocity of a drive with target values that are given during a run.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,8 +13,8 @@ namespace drive {
 
 using polybody::Motion;
 
-// An angular velocity that goes to what is asked for by cubics, speed and acceleration without jumps. All copies follow
-// the same orders; a new one is given between two steps and changes nothing before its time.
+// Angular velocity that approaches its target along cubic polynomials, continuous with its first derivative. All copies
+// share one target. `ask` sets it between two steps and changes no value before its time t.
 class Throttle {
  public:
   void ask(double t, double target) {
@@ -31,7 +31,7 @@ class Throttle {
 
  private:
   static constexpr double acceleration = 6.0;  // [rad/s²]
-  static constexpr double shortest = 0.25;     // that a change of speed takes [s]
+  static constexpr double shortest = 0.25;     // least duration of a change of speed [s]
 
   // From `start` on: s = s₀ (2x³ − 3x² + 1) + T r₀ (x³ − 2x² + x) + s₁ (3x² − 2x³), x = (t − start)/T.
   struct Piece {

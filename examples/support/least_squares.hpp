@@ -17,7 +17,7 @@ struct LeastSquares {
 };
 
 struct LeastSquaresFit {
-  Eigen::VectorXd at{};           // where the sum is least
+  Eigen::VectorXd at{};           // numbers x with the least sum of squares
   Eigen::VectorXd residuals{};    // there
   Eigen::MatrixXd derivatives{};  // there
   std::vector<double> sums{};     // ½ Σ r² of the start and after each iteration

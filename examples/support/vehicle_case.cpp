@@ -35,7 +35,7 @@ class Probe {
     return system_;
   }
 
-  std::string deepest;  // where the deepest contact of the run was
+  std::string deepest;  // link and contact partner of the deepest contact of the run
   double deepest_depth = 0.0, deepest_time = 0.0, torque = 0;
 
  private:

@@ -27,7 +27,7 @@ class DecoupledLinks {
     }
   }
 
-  // Puts the bar in the place of a link, and of what else there is to be seen of it.
+  // Replaces the shape of each link with recorded stresses by its bar with axial stress, and removes its guide horn.
   void dress(std::size_t frame, std::vector<VisualPart>& parts) const {
     std::erase_if(parts, [&](VisualPart const& part) { return is_horn(part.name); });
     for (VisualPart& part : parts) {

@@ -24,8 +24,8 @@ using Bar = planar::Rigid;
 template <class Policy>
 using Pin = Joint<planar::Revolute, Policy>;
 
-/// Loops one below the other, of bars of 1 m and 1 kg that hang straight. All loops rotate at `rate` [rad/s] like one
-/// rigid column. \tparam M model with bars and pins  \tparam Tree policy of the pins that close no loop
+/// Vertical column of square loops. Each bar has a length of 1 m and a mass of 1 kg. All loops rotate at `rate` [rad/s]
+/// like one rigid column. \tparam M model with bars and pins  \tparam Tree policy of the pins that close no loop
 template <class M, class Tree>
 struct Column {
   M model{Gravity{0, -9.81, 0}};

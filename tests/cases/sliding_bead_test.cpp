@@ -45,7 +45,7 @@ TEST(BeadOnAStraightLine, LeavesItsEnd) {
   run.run();
   ASSERT_TRUE(run.report().stopped);
   EXPECT_EQ(run.report().events.front().name, "slider 0 of \"line\" reaches an end");
-  held(bead("time at which a bead falls off its line [s]", "√(2 s/g)"), x.t, std::sqrt(2.0 * 1.9 / g), 1e-8);
+  held(bead("time at which a bead reaches the end of its line [s]", "√(2 s/g)"), x.t, std::sqrt(2.0 * 1.9 / g), 1e-8);
   EXPECT_NEAR(slider_position(rig.model, x, rig.line), 2.0, 1e-7);
   State y = rig.model.reference_state();
   EXPECT_TRUE(has(message_of<SliderOutOfRange>([&] {

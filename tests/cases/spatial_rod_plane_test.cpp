@@ -43,9 +43,9 @@ void is_planar(char const* case_id, BarConstants const& c, double length, double
   Rod<Interpolation> const rod(Lrvf<Interpolation>::from(bar, n), {.force = load, .axes = axes}, steps);
   Vec3 const tip = place.axes.transpose() * (rod.tip() - place.origin);
   std::string const rod_is = std::string("Lrvf, ") + (std::is_same_v<Interpolation, Direct> ? "direct" : "objective");
-  held_within(
-      {case_id, "tip of the rod that stands askew in space [m]", By::itself, "planar Lrvf", rod_is + ", 8 elements"},
-      (tip - Vec3(plane[0], plane[1], 0)).norm(), 1e-10 * length, {.scale = length});
+  held_within({case_id, "tip of a rod with an arbitrary orientation in space [m]", By::itself, "planar Lrvf",
+               rod_is + ", 8 elements"},
+              (tip - Vec3(plane[0], plane[1], 0)).norm(), 1e-10 * length, {.scale = length});
   Mat3 const section = place.axes.transpose() * frame(rod.model, rod.x, rod.end()).A;
   held_within({case_id, "turn of its tip's section", By::itself, "planar Lrvf", rod_is + ", 8 elements"},
               (section - exp_so3<double>(Vec3(0, 0, plane[2]))).norm(), 1e-10, {.scale = 1.0});

@@ -54,7 +54,7 @@ TEST(LinkGroundContact, StandsOnTheCornersThatAreLow) {
   auto const found = contact_points(flat, at({0, 0, low - 0.002}, {0, alpha, 0}), {});
   ASSERT_EQ(found.size(), 2u);
   for (auto const& p : found) {
-    held({"M113.md §5", "depth of a pad that stands on its front corners [m]", By::closed_form,
+    held({"M113.md §5", "penetration of a pad that touches the ground with its front corners [m]", By::closed_form,
           "h cos α + l sin α less height", "LinkGroundContact"},
          p.depth, 0.002, 1e-16);
     EXPECT_GT(p.place[0], 0.0);

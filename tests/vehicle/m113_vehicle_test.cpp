@@ -111,7 +111,7 @@ TEST(M113Vehicle, StandsOnItsWeightAfterSettling) {
       off_path = std::max(off_path, fault.off_path);
     }
   });
-  held({"M113 vehicle", "force of the ground on the vehicle that stands [N]", By::closed_form, "its weight",
+  held({"M113 vehicle", "force of the ground on the vehicle at rest [N]", By::closed_form, "its weight",
         "Rigid, Constraint"},
        up / samples, 9.81 * m113::wallin_2016.total(), 0.01 * 9.81 * m113::wallin_2016.total());
   // the largest load at rest is that of a wheel, 15.9 t/10 on two rims: 2 mm; the first dip has three times as much
