@@ -104,7 +104,7 @@ void measure(char const* name, B const& body) {
   int const repeats = elements < 16 ? 64 : 1;  // the clock is not that fine
   double const ns = fastest(elements * repeats, [&] {
     for (int i = 0; i < repeats; ++i)
-      for_each_unbalance<B, double>(body, {0, elements}, {span(at), span(v), span(a)}, force, use);
+      for_each_residual<B, double>(body, {0, elements}, {span(at), span(v), span(a)}, force, use);
   });
   double const tangent_ns = fastest(elements * repeats, [&] {
     for (int i = 0; i < repeats; ++i)
@@ -124,7 +124,7 @@ void measure(char const* name, B const& body) {
 void all_bodies(benchmark::State& state) {
   for (auto _ : state) {
     Index const n = 64;
-    std::printf("\nan element (Rigid, Ffr: the body), packs of %d where alike elements go in packs\n", pack_size);
+    std::printf("\nan element (Rigid, Ffr: the body), packs of %d where alike elements go in packs\n", simd_size);
     measure("Rigid<>", Rigid<>::from(bar()));
     measure("Rigid<EulerParameters>", Rigid<EulerParameters>::from(bar()));
     measure("AncfCable<>", AncfCable<>::from(bar(), n));

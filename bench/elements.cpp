@@ -66,7 +66,7 @@ void compare(char const* name, Damping const& damping = {}) {
     }
   });
   double const forces =
-      fastest([&] { for_each_unbalance<B, double>(s.body, {0, count}, {s.qs(), s.vs(), s.as()}, use); });
+      fastest([&] { for_each_residual<B, double>(s.body, {0, count}, {s.qs(), s.vs(), s.as()}, use); });
   double const tangent = fastest([&] {
     Mat<double, n, n> k, m;
     s.body.mass(0, s.qs(), m);
@@ -121,8 +121,8 @@ void packs(benchmark::State& state) {
   Swaying<B> const s;
   double sum = 0.0;
   for (auto _ : state)
-    for_each_unbalance<B, double>(s.body, {0, count}, {s.qs(), s.vs(), s.as()},
-                                  [&](Index, auto const& x) { sum += x[0]; });
+    for_each_residual<B, double>(s.body, {0, count}, {s.qs(), s.vs(), s.as()},
+                                 [&](Index, auto const& x) { sum += x[0]; });
   benchmark::DoNotOptimize(sum);
   state.SetItemsProcessed(state.iterations() * count);
 }
@@ -134,7 +134,7 @@ BENCHMARK(packs<planar::Lrvf>);
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   benchmark::RunSpecifiedBenchmarks();
-  std::printf("\nnanoseconds an element, packs of %d\n", pack_size);
+  std::printf("\nnanoseconds an element, packs of %d\n", simd_size);
   compare<Green>("planar AncfCable, Green strain");
   compare<Engineering>("planar AncfCable, engineering strain");
   compare<planar::Lrvf>("planar Lrvf (does not use packs)");

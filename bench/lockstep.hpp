@@ -50,7 +50,7 @@ inline void print(std::string const& what, std::vector<Counts> const& runs, doub
                  together = most_iterations * iteration + any_factorisation * factorisation;
     std::printf("| %s | %zu | %.2f, %.2f | %.2f, %.2f | %.2f | %.1f |\n", what.c_str(), lanes, mean_iterations / n,
                 mean_factorisations / n, most_iterations / n, any_factorisation / n, together / alone,
-                double(std::min<std::size_t>(lanes, polybody::pack_size)) * alone / together);
+                double(std::min<std::size_t>(lanes, polybody::simd_size)) * alone / together);
   }
 }
 
@@ -58,7 +58,7 @@ inline void print_head() {
   std::printf(
       "\n| variants that differ by | lanes | iterations, factorisations a step | in lockstep | work | gain at most, "
       "packs of %d |\n|---|---|---|---|---|---|\n",
-      polybody::pack_size);
+      polybody::simd_size);
 }
 
 }  // namespace lockstep

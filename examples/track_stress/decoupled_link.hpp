@@ -15,7 +15,7 @@ inline Structure structure_of_link(Options const& o) {
 }
 // A link of another height has another moment of inertia about its pins, by up to a sixth.
 inline StructureLoadOptions loads(Options const& o) {
-  return o.section == 1.0 ? StructureLoadOptions{} : StructureLoadOptions{.unbalance = 0.2};
+  return o.section == 1.0 ? StructureLoadOptions{} : StructureLoadOptions{.balance_tolerance = 0.2};
 }
 inline DecoupledStress quasi_static(Options const& o, BodyRecord const& record) {
   return DecoupledStress::quasi_static(structure_of_link(o), record, loads(o));

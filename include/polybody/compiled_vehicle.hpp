@@ -34,88 +34,82 @@ extern template void m113::TrackContacts<MarkerKind::axis, FlatGround>::check(st
 extern template void for_each_contact(System const&,
                                       ElementHandle<m113::TrackContacts<MarkerKind::axis, FlatGround>> const&,
                                       TouchingPointVisit const&);
-extern template void detail::add_opponent(detail::ModelParts&,
-                                          detail::ForceEntry<m113::TrackContacts<MarkerKind::axis, FlatGround>>&,
-                                          m113::LinkContacts<MarkerKind::axis>::OnRoller const&,
-                                          detail::PooledMarker<Rigid<>> const&, std::string);
-extern template void detail::add_opponent(detail::ModelParts&,
-                                          detail::ForceEntry<m113::TrackContacts<MarkerKind::axis, FlatGround>>&,
-                                          m113::LinkContacts<MarkerKind::axis>::OnRims const&,
-                                          detail::PooledMarker<Rigid<>> const&, std::string);
-extern template void detail::add_opponent(detail::ModelParts&,
-                                          detail::ForceEntry<m113::TrackContacts<MarkerKind::axis, FlatGround>>&,
-                                          m113::LinkContacts<MarkerKind::axis>::OnSprocket const&,
-                                          detail::PooledMarker<Rigid<>> const&, std::string);
-extern template void detail::add_opponent(detail::ModelParts&,
-                                          detail::ForceEntry<m113::TrackContacts<MarkerKind::axis, FlatGround>>&,
-                                          m113::LinkContacts<MarkerKind::axis>::OnGround<FlatGround> const&,
-                                          detail::PooledMarker<Ground> const&, std::string);
+extern template void detail::add_contact_partner(detail::ModelParts&,
+                                                 detail::ForceEntry<m113::TrackContacts<MarkerKind::axis, FlatGround>>&,
+                                                 m113::LinkContacts<MarkerKind::axis>::OnRoller const&,
+                                                 detail::PooledMarker<Rigid<>> const&, std::string);
+extern template void detail::add_contact_partner(detail::ModelParts&,
+                                                 detail::ForceEntry<m113::TrackContacts<MarkerKind::axis, FlatGround>>&,
+                                                 m113::LinkContacts<MarkerKind::axis>::OnRims const&,
+                                                 detail::PooledMarker<Rigid<>> const&, std::string);
+extern template void detail::add_contact_partner(detail::ModelParts&,
+                                                 detail::ForceEntry<m113::TrackContacts<MarkerKind::axis, FlatGround>>&,
+                                                 m113::LinkContacts<MarkerKind::axis>::OnSprocket const&,
+                                                 detail::PooledMarker<Rigid<>> const&, std::string);
+extern template void detail::add_contact_partner(detail::ModelParts&,
+                                                 detail::ForceEntry<m113::TrackContacts<MarkerKind::axis, FlatGround>>&,
+                                                 m113::LinkContacts<MarkerKind::axis>::OnGround<FlatGround> const&,
+                                                 detail::PooledMarker<Ground> const&, std::string);
 
 extern template struct ForceKernels<m113::TrackContacts<MarkerKind::axis, BumpCourse>, double>;
 extern template void m113::TrackContacts<MarkerKind::axis, BumpCourse>::check(std::string const&) const;
 extern template void for_each_contact(System const&,
                                       ElementHandle<m113::TrackContacts<MarkerKind::axis, BumpCourse>> const&,
                                       TouchingPointVisit const&);
-extern template void detail::add_opponent(detail::ModelParts&,
-                                          detail::ForceEntry<m113::TrackContacts<MarkerKind::axis, BumpCourse>>&,
-                                          m113::LinkContacts<MarkerKind::axis>::OnRoller const&,
-                                          detail::PooledMarker<Rigid<>> const&, std::string);
-extern template void detail::add_opponent(detail::ModelParts&,
-                                          detail::ForceEntry<m113::TrackContacts<MarkerKind::axis, BumpCourse>>&,
-                                          m113::LinkContacts<MarkerKind::axis>::OnRims const&,
-                                          detail::PooledMarker<Rigid<>> const&, std::string);
-extern template void detail::add_opponent(detail::ModelParts&,
-                                          detail::ForceEntry<m113::TrackContacts<MarkerKind::axis, BumpCourse>>&,
-                                          m113::LinkContacts<MarkerKind::axis>::OnSprocket const&,
-                                          detail::PooledMarker<Rigid<>> const&, std::string);
-extern template void detail::add_opponent(detail::ModelParts&,
-                                          detail::ForceEntry<m113::TrackContacts<MarkerKind::axis, BumpCourse>>&,
-                                          m113::LinkContacts<MarkerKind::axis>::OnGround<BumpCourse> const&,
-                                          detail::PooledMarker<Ground> const&, std::string);
+extern template void detail::add_contact_partner(detail::ModelParts&,
+                                                 detail::ForceEntry<m113::TrackContacts<MarkerKind::axis, BumpCourse>>&,
+                                                 m113::LinkContacts<MarkerKind::axis>::OnRoller const&,
+                                                 detail::PooledMarker<Rigid<>> const&, std::string);
+extern template void detail::add_contact_partner(detail::ModelParts&,
+                                                 detail::ForceEntry<m113::TrackContacts<MarkerKind::axis, BumpCourse>>&,
+                                                 m113::LinkContacts<MarkerKind::axis>::OnRims const&,
+                                                 detail::PooledMarker<Rigid<>> const&, std::string);
+extern template void detail::add_contact_partner(detail::ModelParts&,
+                                                 detail::ForceEntry<m113::TrackContacts<MarkerKind::axis, BumpCourse>>&,
+                                                 m113::LinkContacts<MarkerKind::axis>::OnSprocket const&,
+                                                 detail::PooledMarker<Rigid<>> const&, std::string);
+extern template void detail::add_contact_partner(detail::ModelParts&,
+                                                 detail::ForceEntry<m113::TrackContacts<MarkerKind::axis, BumpCourse>>&,
+                                                 m113::LinkContacts<MarkerKind::axis>::OnGround<BumpCourse> const&,
+                                                 detail::PooledMarker<Ground> const&, std::string);
 
 extern template struct ForceKernels<m113::TrackContacts<MarkerKind::frame, FlatGround>, double>;
 extern template void m113::TrackContacts<MarkerKind::frame, FlatGround>::check(std::string const&) const;
 extern template void for_each_contact(System const&,
                                       ElementHandle<m113::TrackContacts<MarkerKind::frame, FlatGround>> const&,
                                       TouchingPointVisit const&);
-extern template void detail::add_opponent(detail::ModelParts&,
-                                          detail::ForceEntry<m113::TrackContacts<MarkerKind::frame, FlatGround>>&,
-                                          m113::LinkContacts<MarkerKind::frame>::OnRoller const&,
-                                          detail::PooledMarker<Rigid<>> const&, std::string);
-extern template void detail::add_opponent(detail::ModelParts&,
-                                          detail::ForceEntry<m113::TrackContacts<MarkerKind::frame, FlatGround>>&,
-                                          m113::LinkContacts<MarkerKind::frame>::OnRims const&,
-                                          detail::PooledMarker<Rigid<>> const&, std::string);
-extern template void detail::add_opponent(detail::ModelParts&,
-                                          detail::ForceEntry<m113::TrackContacts<MarkerKind::frame, FlatGround>>&,
-                                          m113::LinkContacts<MarkerKind::frame>::OnSprocket const&,
-                                          detail::PooledMarker<Rigid<>> const&, std::string);
-extern template void detail::add_opponent(detail::ModelParts&,
-                                          detail::ForceEntry<m113::TrackContacts<MarkerKind::frame, FlatGround>>&,
-                                          m113::LinkContacts<MarkerKind::frame>::OnGround<FlatGround> const&,
-                                          detail::PooledMarker<Ground> const&, std::string);
+extern template void detail::add_contact_partner(
+    detail::ModelParts&, detail::ForceEntry<m113::TrackContacts<MarkerKind::frame, FlatGround>>&,
+    m113::LinkContacts<MarkerKind::frame>::OnRoller const&, detail::PooledMarker<Rigid<>> const&, std::string);
+extern template void detail::add_contact_partner(
+    detail::ModelParts&, detail::ForceEntry<m113::TrackContacts<MarkerKind::frame, FlatGround>>&,
+    m113::LinkContacts<MarkerKind::frame>::OnRims const&, detail::PooledMarker<Rigid<>> const&, std::string);
+extern template void detail::add_contact_partner(
+    detail::ModelParts&, detail::ForceEntry<m113::TrackContacts<MarkerKind::frame, FlatGround>>&,
+    m113::LinkContacts<MarkerKind::frame>::OnSprocket const&, detail::PooledMarker<Rigid<>> const&, std::string);
+extern template void detail::add_contact_partner(
+    detail::ModelParts&, detail::ForceEntry<m113::TrackContacts<MarkerKind::frame, FlatGround>>&,
+    m113::LinkContacts<MarkerKind::frame>::OnGround<FlatGround> const&, detail::PooledMarker<Ground> const&,
+    std::string);
 
 extern template struct ForceKernels<m113::TrackContacts<MarkerKind::frame, BumpCourse>, double>;
 extern template void m113::TrackContacts<MarkerKind::frame, BumpCourse>::check(std::string const&) const;
 extern template void for_each_contact(System const&,
                                       ElementHandle<m113::TrackContacts<MarkerKind::frame, BumpCourse>> const&,
                                       TouchingPointVisit const&);
-extern template void detail::add_opponent(detail::ModelParts&,
-                                          detail::ForceEntry<m113::TrackContacts<MarkerKind::frame, BumpCourse>>&,
-                                          m113::LinkContacts<MarkerKind::frame>::OnRoller const&,
-                                          detail::PooledMarker<Rigid<>> const&, std::string);
-extern template void detail::add_opponent(detail::ModelParts&,
-                                          detail::ForceEntry<m113::TrackContacts<MarkerKind::frame, BumpCourse>>&,
-                                          m113::LinkContacts<MarkerKind::frame>::OnRims const&,
-                                          detail::PooledMarker<Rigid<>> const&, std::string);
-extern template void detail::add_opponent(detail::ModelParts&,
-                                          detail::ForceEntry<m113::TrackContacts<MarkerKind::frame, BumpCourse>>&,
-                                          m113::LinkContacts<MarkerKind::frame>::OnSprocket const&,
-                                          detail::PooledMarker<Rigid<>> const&, std::string);
-extern template void detail::add_opponent(detail::ModelParts&,
-                                          detail::ForceEntry<m113::TrackContacts<MarkerKind::frame, BumpCourse>>&,
-                                          m113::LinkContacts<MarkerKind::frame>::OnGround<BumpCourse> const&,
-                                          detail::PooledMarker<Ground> const&, std::string);
+extern template void detail::add_contact_partner(
+    detail::ModelParts&, detail::ForceEntry<m113::TrackContacts<MarkerKind::frame, BumpCourse>>&,
+    m113::LinkContacts<MarkerKind::frame>::OnRoller const&, detail::PooledMarker<Rigid<>> const&, std::string);
+extern template void detail::add_contact_partner(
+    detail::ModelParts&, detail::ForceEntry<m113::TrackContacts<MarkerKind::frame, BumpCourse>>&,
+    m113::LinkContacts<MarkerKind::frame>::OnRims const&, detail::PooledMarker<Rigid<>> const&, std::string);
+extern template void detail::add_contact_partner(
+    detail::ModelParts&, detail::ForceEntry<m113::TrackContacts<MarkerKind::frame, BumpCourse>>&,
+    m113::LinkContacts<MarkerKind::frame>::OnSprocket const&, detail::PooledMarker<Rigid<>> const&, std::string);
+extern template void detail::add_contact_partner(
+    detail::ModelParts&, detail::ForceEntry<m113::TrackContacts<MarkerKind::frame, BumpCourse>>&,
+    m113::LinkContacts<MarkerKind::frame>::OnGround<BumpCourse> const&, detail::PooledMarker<Ground> const&,
+    std::string);
 
 extern template double m113::link_strain(BodyHandle<AncfBeam<>> const&, State const&);
 extern template double m113::link_bending(BodyHandle<AncfBeam<>> const&, State const&, Vec3 const&, double);

@@ -160,8 +160,8 @@ TEST(Compare, TellsRunsOfTheSameNameApart) {
   std::vector<ComparedRun> runs(2);
   runs[0].name = "ideal";
   runs[1].name = "ideal (2)";
-  EXPECT_EQ(detail::name_beside(runs, detail::name_of(Ideal{"ideal"})), "ideal (3)");
-  EXPECT_EQ(detail::name_beside(runs, detail::name_of(Ideal{})), "GeneralisedAlpha");
+  EXPECT_EQ(detail::unique_name(runs, detail::name_of(Ideal{"ideal"})), "ideal (3)");
+  EXPECT_EQ(detail::unique_name(runs, detail::name_of(Ideal{})), "GeneralisedAlpha");
 }
 
 TEST(Compare, RefusesOutputsThatCannotBePutSideBySide) {

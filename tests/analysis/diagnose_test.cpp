@@ -80,8 +80,9 @@ TEST(Check, SaysWhatItFinds) {
   EXPECT_EQ(c.stiffest, 0.0);
   std::string const text = said(c);
   for (char const* const line :
-       {"rows off by 0.25 (positions), 0 (speeds), most of joint \"pin\"\n", "4 rows of rank 3, 3 degrees of freedom\n",
-        "joint \"second\": 1 row repeats others\n", "not joined to the ground: stray\n"})
+       {"constraint violation 0.25 (positions), 0 (velocities), the largest in joint \"pin\"\n",
+        "4 constraint equations of rank 3, 3 degrees of freedom\n",
+        "joint \"second\": 1 redundant constraint equation\n", "not joined to the ground: stray\n"})
     EXPECT_NE(text.find(line), std::string::npos) << line << "in\n" << text;
   EXPECT_EQ(text.find("stiffest"), std::string::npos);
   EXPECT_NE(said(diagnose(Masses{}.model, Masses{}.x)).find("stiffest motion 3.46"), std::string::npos);

@@ -150,7 +150,7 @@ TEST(EventAction, MustLeaveFiniteNumbers) {
   bad.action = [](State& now) { now.v[1] = std::nan(""); };
   State const start = ball.x;
   auto run = simulate(ball.model, ball.x, GeneralisedAlpha{}, {.end_time = 1.0, .step = 1e-2, .events = {bad}});
-  EXPECT_TRUE(has(refusal([&] { run.run(); }), "The speeds after the event \"floor\" must be finite"));
+  EXPECT_TRUE(has(refusal([&] { run.run(); }), "The velocities after the event \"floor\" must be finite"));
   EXPECT_TRUE(all_finite(ball.x.v));  // state before the step
   EXPECT_GT(ball.x.q[1], 0.0);
 }

@@ -41,7 +41,7 @@ std::vector<Hostile> hostile_states(State const& sane) {
   all[1].x.q[2] = HUGE_VAL;
   all[1].named = "The coordinates of the state must be finite";
   all[2].x.v[4] = nan;
-  all[2].named = "The speeds of the state must be finite";
+  all[2].named = "The velocities of the state must be finite";
   all[3].x.q[0] = 1e200;
   all[3].named = "A coordinate of body \"bob\" is 1e+200";
   all[4].x.v[0] = -1e200;

@@ -108,7 +108,7 @@ TEST(RunSnapshot, NumbersThatAreNotFiniteAreRefused) {
   };
   double const nan = std::nan("");
   EXPECT_TRUE(has(said([&](State& x) { x.q[0] = nan; }), "resume: the coordinates of the snapshot"));
-  EXPECT_TRUE(has(said([&](State& x) { x.v[1] = nan; }), "resume: the speeds of the snapshot"));
+  EXPECT_TRUE(has(said([&](State& x) { x.v[1] = nan; }), "resume: the velocities of the snapshot"));
   EXPECT_TRUE(has(said([&](State& x) { x.a[2] = nan; }), "resume: the accelerations of the snapshot"));
   EXPECT_TRUE(has(said([&](State& x) { x.lambda[0] = nan; }), "resume: the multipliers of the snapshot"));
   EXPECT_TRUE(has(said([&](State& x) { x.history[0] = nan; }), "resume: the integrator's memory in the snapshot"));

@@ -27,12 +27,12 @@ TEST(Outline, TellsWhatHangsOnWhat) {
   model.apply(SpringDamper{.stiffness = 10.0, .free_length = 1.0}, lower.at(Vec3(0, 0, 0)), loose.at(Vec3(0, 0, 0)),
               "spring");
   EXPECT_EQ(summary(model),
-            "4 bodies (28 coordinates, 24 speeds), 4 joints (15 rows), 1 force; gravity (0, 0, -9.81) m/s²\n"
-            "    upper: 7 coordinates, by \"hip\" (5 rows) on the ground\n"
-            "      lower: 7 coordinates, by \"knee\" (5 rows) on upper\n"
+            "4 bodies (28 coordinates, 24 velocities), 4 joints (15 equations), 1 force; gravity (0, 0, -9.81) m/s²\n"
+            "    upper: 7 coordinates, by \"hip\" (5 equations) on the ground\n"
+            "      lower: 7 coordinates, by \"knee\" (5 equations) on upper\n"
             "      other: 7 coordinates, by \"mount\" (compliant) on upper\n"
             "  loose: 7 coordinates, not joined to the ground\n"
-            "closes a loop: \"foot\" (5 rows), the ground and lower\n"
+            "closes a loop: \"foot\" (5 equations), the ground and lower\n"
             "force \"spring\" on lower, loose\n");
 }
 
@@ -57,7 +57,7 @@ TEST(Outline, OfAChainGoesDownThePage) {
 TEST(Outline, OfAnEmptyModel) {
   Model<Bodies<Rigid<>>, Joints<Pin>> const model;
   EXPECT_EQ(summary(model),
-            "0 bodies (0 coordinates, 0 speeds), 0 joints (0 rows), 0 forces; gravity (0, 0, 0) m/s²\n");
+            "0 bodies (0 coordinates, 0 velocities), 0 joints (0 equations), 0 forces; gravity (0, 0, 0) m/s²\n");
 }
 
 }  // namespace outline_test

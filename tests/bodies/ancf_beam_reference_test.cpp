@@ -173,14 +173,14 @@ TYPED_TEST(AncfReference, BatchesEqualElementsOneByOne) {
     VecX const q = deformed(reference_of(body), 5), v = deformed(VecX::Zero(q.size()), 6),
                a = deformed(VecX::Zero(q.size()), 7);
     Index next = 0;
-    for_each_unbalance<TypeParam, double>(body, {0, n}, {as_span(q), as_span(v), as_span(a)},
-                                          [&](Index e, Vec<double, 24> const& x) {
-                                            ASSERT_EQ(e, next++);
-                                            Vec<double, 24> inertia, force;
-                                            body.template inertia<double>(e, as_span(q), as_span(a), inertia);
-                                            body.template force<double>(e, as_span(q), as_span(v), force);
-                                            EXPECT_LT((x - (inertia - force)).norm(), 1e-12 * force.norm());
-                                          });
+    for_each_residual<TypeParam, double>(body, {0, n}, {as_span(q), as_span(v), as_span(a)},
+                                         [&](Index e, Vec<double, 24> const& x) {
+                                           ASSERT_EQ(e, next++);
+                                           Vec<double, 24> inertia, force;
+                                           body.template inertia<double>(e, as_span(q), as_span(a), inertia);
+                                           body.template force<double>(e, as_span(q), as_span(v), force);
+                                           EXPECT_LT((x - (inertia - force)).norm(), 1e-12 * force.norm());
+                                         });
     EXPECT_EQ(next, n);
     for_each_element_tangent<TypeParam>(body, {0, n}, {as_span(q), as_span(v)}, {1.5, 0.1, 0.7},
                                         [&](Index e, auto const& k) {

@@ -52,14 +52,14 @@ TYPED_TEST(ElementBatches, EqualElementsOneByOne) {
   for (Index const elements : {1, 2, 3, 4, 5, 7, 8, 11}) {
     Swaying<TypeParam> const s(elements);
     Index next = 0;
-    for_each_unbalance<TypeParam, double>(s.body, {0, elements}, {s.qs(), s.vs(), s.as()},
-                                          [&](Index e, Vec<double, n> const& x) {
-                                            ASSERT_EQ(e, next++);
-                                            Vec<double, n> inertia, force;
-                                            s.body.template inertia<double>(e, s.qs(), s.as(), inertia);
-                                            s.body.template force<double>(e, s.qs(), s.vs(), force);
-                                            EXPECT_LT((x - (inertia - force)).norm(), 1e-13 * force.norm());
-                                          });
+    for_each_residual<TypeParam, double>(s.body, {0, elements}, {s.qs(), s.vs(), s.as()},
+                                         [&](Index e, Vec<double, n> const& x) {
+                                           ASSERT_EQ(e, next++);
+                                           Vec<double, n> inertia, force;
+                                           s.body.template inertia<double>(e, s.qs(), s.as(), inertia);
+                                           s.body.template force<double>(e, s.qs(), s.vs(), force);
+                                           EXPECT_LT((x - (inertia - force)).norm(), 1e-13 * force.norm());
+                                         });
     EXPECT_EQ(next, elements);
     next = 0;
     for_each_element_tangent<TypeParam>(s.body, {0, elements}, {s.qs(), s.vs()}, {1.5, 0.1, 0.7},
@@ -82,8 +82,8 @@ TYPED_TEST(ElementBatches, DoNotDependOnHowALoopIsCut) {
   Swaying<TypeParam> const s(elements);
   std::vector<Vec<double, n>> whole, parts;
   auto const run = [&](std::vector<Vec<double, n>>& out, Index begin, Index end) {
-    for_each_unbalance<TypeParam, double>(s.body, {begin, end}, {s.qs(), s.vs(), s.as()},
-                                          [&](Index, Vec<double, n> const& x) { out.push_back(x); });
+    for_each_residual<TypeParam, double>(s.body, {begin, end}, {s.qs(), s.vs(), s.as()},
+                                         [&](Index, Vec<double, n> const& x) { out.push_back(x); });
   };
   run(whole, 0, elements);
   for (Index const cut : {4, 8, 20}) {

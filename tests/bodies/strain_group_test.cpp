@@ -120,8 +120,8 @@ TYPED_TEST(StrainGroupLaws, PacksCalculateWithEachElement) {
   constexpr int n = TypeParam::n;
   Vec<SimdVector<>, n> x, xd, force = Vec<SimdVector<>, n>::Zero();
   Mat<SimdVector<>, n, n> tangent;
-  std::array<Vec<double, n>, pack_size> each, rate;
-  for (int l = 0; l < pack_size; ++l) {
+  std::array<Vec<double, n>, simd_size> each, rate;
+  for (int l = 0; l < simd_size; ++l) {
     each[std::size_t(l)] = this->coordinates();
     rate[std::size_t(l)] = this->template numbers<n>();
     for (int i = 0; i < n; ++i) {
@@ -131,7 +131,7 @@ TYPED_TEST(StrainGroupLaws, PacksCalculateWithEachElement) {
   }
   this->group.template add_force<SimdVector<>>(x, xd, force);
   tangent_of(std::tuple(this->group), x, xd, 0.7, 0.1, tangent);
-  for (int l = 0; l < pack_size; ++l) {
+  for (int l = 0; l < simd_size; ++l) {
     Vec<double, n> f = Vec<double, n>::Zero();
     Mat<double, n, n> k;
     this->group.template add_force<double>(each[std::size_t(l)], rate[std::size_t(l)], f);

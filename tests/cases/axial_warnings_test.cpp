@@ -95,7 +95,7 @@ TEST(AxialForces, ARunWarnsOfThem) {
   double const buckles = 0.25 * pi * pi * EI / (length * length);
   std::vector<std::string> const said = Pressed<Ffr>(unstiffened(column(), 4), 0.17 * buckles).warnings();
   ASSERT_EQ(said.size(), 1u);
-  EXPECT_NE(said[0].find("\"column\" are pressed at t = "), std::string::npos) << said[0];
+  EXPECT_NE(said[0].find("\"column\" are in compression at t = "), std::string::npos) << said[0];
   EXPECT_NE(said[0].find(" % of the load that buckles them"), std::string::npos) << said[0];
   EXPECT_NE(said[0].find(".stiffening = true"), std::string::npos) << said[0];
   EXPECT_TRUE(Pressed<Ffr>(unstiffened(column(), 4), 0.03 * buckles).warnings().empty());

@@ -139,8 +139,9 @@ TEST(SingularPosition, IsReportedWhereARunStartsInItWithoutABranch) {
   auto const expect = [](auto const& integrator) {
     std::vector<std::string> const rest = warnings_of_flat_start(integrator, 0.0, 0.0);
     ASSERT_FALSE(rest.empty());  // the change of branch, some steps later, is also reported
-    EXPECT_TRUE(has(rest[0], "The run starts in a singular position at t = 0 s: the rows of joint \""));
-    EXPECT_TRUE(has(rest[0], "Start beside this position, or with speeds of one branch"));
+    EXPECT_TRUE(
+        has(rest[0], "The run starts in a singular configuration at t = 0 s: the constraint equations of joint \""));
+    EXPECT_TRUE(has(rest[0], "Start near this configuration, or with velocities of one branch"));
     EXPECT_TRUE(warnings_of_flat_start(integrator, -4.0, 0.0).empty());
   };
   expect(Radau{});
@@ -202,7 +203,7 @@ TEST(SingularPosition, IsReportedWhereTheSpeedsJumpThere) {
   };
   std::vector<std::string> const flat = warnings(0.709), far = warnings(0.3);
   ASSERT_EQ(flat.size(), 1u);
-  EXPECT_TRUE(has(flat[0], "The joints' rows lose rank next to t = 0.709 s"));
+  EXPECT_TRUE(has(flat[0], "The constraint equations lose rank near t = 0.709 s"));
   EXPECT_TRUE(far.empty());
 }
 

@@ -295,9 +295,9 @@ TEST(ContactGroup, RefusesMarkersAndHandlesOfAnotherModel) {
   // a refused call has changed nothing
   EXPECT_EQ(a.model.entry(group).markers.size(), 1u);
   EXPECT_EQ(std::get<0>(a.model.force_pools()).size(), 1u);
-  int opponents = 0;
-  a.model.entry(group).force.for_each_opponent([&](auto const&) { ++opponents; });
-  EXPECT_EQ(opponents, 0);
+  int partners = 0;
+  a.model.entry(group).force.for_each_partner([&](auto const&) { ++partners; });
+  EXPECT_EQ(partners, 0);
 }
 
 TEST(ContactGroup, NamesItselfAndTheOpponentInMessages) {
@@ -309,8 +309,8 @@ TEST(ContactGroup, NamesItselfAndTheOpponentInMessages) {
   EXPECT_TRUE(has(refusal([&] { f.model.add_partner(group, bad, floor, "floor"); }),
                   "\"marbles\", \"floor\": the sphere's radius"));
   f.model.add_partner(group, on_plane, floor);
-  EXPECT_TRUE(has(refusal([&] { f.model.add_partner(group, bad, floor); }),
-                  "\"marbles\", \"opponent 2\": the sphere's radius"));
+  EXPECT_TRUE(
+      has(refusal([&] { f.model.add_partner(group, bad, floor); }), "\"marbles\", \"partner 2\": the sphere's radius"));
   // a group with its own contact partners also checks them
   Group full;
   full.add_partner(bad, 0, "floor");

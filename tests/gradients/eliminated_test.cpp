@@ -76,7 +76,7 @@ TEST(Eliminated, BodiesThatParametersTouchAreFoundAmongWhatIsLeft) {
     return refusal([&] { gradient(make, few, GeneralisedAlpha{}); });
   };
   EXPECT_TRUE(has(said({"first"}), "\"gravity [m/s²]\" changes the equations of body \"second\""));
-  EXPECT_TRUE(has(said({"third"}), "touches \"third\", but the model has no body, joint or force of that name"));
+  EXPECT_TRUE(has(said({"third"}), "affects \"third\", but the model has no body, joint or force of that name"));
 }
 
 TEST(Eliminated, EventsSeeAndChangeWholeStates) { expect_impact_of_cables(2e-3, GeneralisedAlpha{.rho_inf = 0.7}); }

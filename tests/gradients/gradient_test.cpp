@@ -188,7 +188,7 @@ TEST(GradientResult, DirectDifferentiationRefusesParametersThatTouchMoreThanThey
     parameters[j].affects = std::move(affects);
     return refusal([&] { sensitivities(chain_with_angle, parameters, GeneralisedAlpha{}); });
   };
-  EXPECT_TRUE(has(said(3, {"rod 7"}), "touches \"rod 7\", but the model has no body, joint or force of that name"));
+  EXPECT_TRUE(has(said(3, {"rod 7"}), "affects \"rod 7\", but the model has no body, joint or force of that name"));
   EXPECT_TRUE(has(said(3, {"pin 1"}), "\"length 1 [m]\" changes the equations of body \"rod 2\""));
   // no pin is strained at the start, so the dependence appears at the end only
   EXPECT_TRUE(has(said(5, {"rod 0"}), "\"stiffness 1 [N/m]\" changes the equations of body \"rod 1\""));
@@ -213,7 +213,7 @@ TEST(GradientResult, RefusesParametersThatTouchMoreThanTheySay) {
     parameters[3].affects = std::move(affects);  // the parameter is a length
     return refusal([&] { gradient(chain, parameters, GeneralisedAlpha{}); });
   };
-  EXPECT_TRUE(has(said({"rod 7"}), "touches \"rod 7\", but the model has no body, joint or force of that name"));
+  EXPECT_TRUE(has(said({"rod 7"}), "affects \"rod 7\", but the model has no body, joint or force of that name"));
   EXPECT_TRUE(has(said({"pin 1"}), "\"length 1 [m]\" changes the equations of body \"rod 2\""));
 }
 

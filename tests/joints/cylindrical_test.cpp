@@ -16,9 +16,10 @@ struct CylindricalCase {
   static constexpr int world_rows = 0;
   static Cylindrical geometry() { return {}; }
   static Mate mate(Numbers& number, double) {
-    Mate mate{
-        .d = Vec3(0, 0, number(2.0)), .R = exp_so3<double>(Vec3(0, 0, number(3.0))), .freedoms = MatX::Zero(6, 2)};
-    mate.freedoms(2, 0) = mate.freedoms(5, 1) = 1.0;
+    Mate mate{.d = Vec3(0, 0, number(2.0)),
+              .R = exp_so3<double>(Vec3(0, 0, number(3.0))),
+              .free_directions = MatX::Zero(6, 2)};
+    mate.free_directions(2, 0) = mate.free_directions(5, 1) = 1.0;
     return mate;
   }
 };

@@ -17,18 +17,18 @@ constexpr double length = 0.8;
 /// b is anywhere at a given distance from a, with any rotation. All motions except that along d are free.
 Mate at_distance(Numbers& number, double distance) {
   Vec3 const e = number.vec<3>().normalized(), f = e.unitOrthogonal();
-  Mate mate{.d = distance * e, .R = exp_so3<double>(number.vec<3>(3.0)), .freedoms = MatX::Zero(6, 5)};
-  mate.freedoms.topLeftCorner<3, 2>() << f, e.cross(f);
-  mate.freedoms.bottomRightCorner<3, 3>().setIdentity();
+  Mate mate{.d = distance * e, .R = exp_so3<double>(number.vec<3>(3.0)), .free_directions = MatX::Zero(6, 5)};
+  mate.free_directions.topLeftCorner<3, 2>() << f, e.cross(f);
+  mate.free_directions.bottomRightCorner<3, 3>().setIdentity();
   return mate;
 }
 Mate at_distance_in_plane(Numbers& number, double distance) {
   double const phi = number(3.0);
   Mate mate{.d = distance * Vec3(std::cos(phi), std::sin(phi), 0),
             .R = exp_so3<double>(Vec3(0, 0, number(3.0))),
-            .freedoms = MatX::Zero(6, 2)};
-  mate.freedoms.col(0).head<2>() << -std::sin(phi), std::cos(phi);
-  mate.freedoms(5, 1) = 1.0;
+            .free_directions = MatX::Zero(6, 2)};
+  mate.free_directions.col(0).head<2>() << -std::sin(phi), std::cos(phi);
+  mate.free_directions(5, 1) = 1.0;
   return mate;
 }
 

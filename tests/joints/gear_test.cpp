@@ -31,12 +31,12 @@ struct PlanarGearCase {
   static Mate mate(Numbers& number, double) {
     double const line = number(3.0), alpha = number(9.0);
     Wheels const w = wheels(line, line + alpha, line - alpha * N_a / N_b);
-    Mate mate{.d = w.a.A.transpose() * w.b.r, .R = w.a.A.transpose() * w.b.A, .freedoms = MatX::Zero(6, 2)};
+    Mate mate{.d = w.a.A.transpose() * w.b.r, .R = w.a.A.transpose() * w.b.A, .free_directions = MatX::Zero(6, 2)};
     // b moves away from a along d. It also moves on a circle about a at 1 rad/s and rotates by 1 + N_a/N_b, like a
     // planet of a fixed sun
-    mate.freedoms.col(0).head<3>() = mate.d;
-    mate.freedoms.col(1).head<3>() = Vec3::UnitZ().cross(mate.d);
-    mate.freedoms(5, 1) = 1.0 + double(N_a) / N_b;
+    mate.free_directions.col(0).head<3>() = mate.d;
+    mate.free_directions.col(1).head<3>() = Vec3::UnitZ().cross(mate.d);
+    mate.free_directions(5, 1) = 1.0 + double(N_a) / N_b;
     return mate;
   }
 };
@@ -48,10 +48,10 @@ struct GearCase {
   static Gear geometry() { return {.teeth_a = 3, .teeth_b = 2}; }
   static Mate mate(Numbers& number, double t) {
     Mate mate = PlanarGearCase<3, 2>::mate(number, t);
-    MatX const in_plane = mate.freedoms;
-    mate.freedoms = MatX::Zero(6, 5);
-    mate.freedoms.leftCols<2>() = in_plane;
-    for (Index j = 2; j < 5; ++j) mate.freedoms(j, j) = 1.0;
+    MatX const in_plane = mate.free_directions;
+    mate.free_directions = MatX::Zero(6, 5);
+    mate.free_directions.leftCols<2>() = in_plane;
+    for (Index j = 2; j < 5; ++j) mate.free_directions(j, j) = 1.0;
     return mate;
   }
 };

@@ -19,9 +19,9 @@ struct KnifeEdgeCase {
   static constexpr int world_rows = 0;
   static KnifeEdge geometry() { return {.across = Vec3::UnitY()}; }
   static Mate mate(Numbers& number, double) {
-    Mate mate{.d = number.vec<3>(2.0), .R = exp_so3<double>(number.vec<3>(3.0)), .freedoms = MatX::Zero(6, 5)};
-    mate.freedoms.topLeftCorner<3, 2>() = mate.R.leftCols<2>();
-    mate.freedoms.bottomRightCorner<3, 3>().setIdentity();
+    Mate mate{.d = number.vec<3>(2.0), .R = exp_so3<double>(number.vec<3>(3.0)), .free_directions = MatX::Zero(6, 5)};
+    mate.free_directions.topLeftCorner<3, 2>() = mate.R.leftCols<2>();
+    mate.free_directions.bottomRightCorner<3, 3>().setIdentity();
     return mate;
   }
 };

@@ -18,8 +18,8 @@ struct PlaneOnPlaneCase {
   static Mate mate(Numbers& number, double) {
     Mate mate{.d = Vec3(number(2.0), number(2.0), 0),
               .R = exp_so3<double>(Vec3(0, 0, number(3.0))),
-              .freedoms = MatX::Zero(6, 3)};
-    mate.freedoms(0, 0) = mate.freedoms(1, 1) = mate.freedoms(5, 2) = 1.0;
+              .free_directions = MatX::Zero(6, 3)};
+    mate.free_directions(0, 0) = mate.free_directions(1, 1) = mate.free_directions(5, 2) = 1.0;
     return mate;
   }
 };

@@ -16,9 +16,9 @@ namespace points_test {
 /// b at d, with any rotation; its point moves freely along the axes of `free`.
 Mate at(Numbers& number, Vec3 const& d, std::vector<Index> const& free) {
   Index const n = Index(free.size());
-  Mate mate{.d = d, .R = exp_so3<double>(number.vec<3>(3.0)), .freedoms = MatX::Zero(6, n + 3)};
-  for (Index j = 0; j < n; ++j) mate.freedoms(free[std::size_t(j)], j) = 1.0;
-  mate.freedoms.bottomRightCorner<3, 3>().setIdentity();
+  Mate mate{.d = d, .R = exp_so3<double>(number.vec<3>(3.0)), .free_directions = MatX::Zero(6, n + 3)};
+  for (Index j = 0; j < n; ++j) mate.free_directions(free[std::size_t(j)], j) = 1.0;
+  mate.free_directions.bottomRightCorner<3, 3>().setIdentity();
   return mate;
 }
 

@@ -13,7 +13,7 @@ namespace policy_laws_test {
 
 struct PenaltyCase {
   static constexpr int rows = 5;
-  static constexpr double gap = 1e-3;
+  static constexpr double violation = 1e-3;
   static Penalty policy() { return {.stiffness = 2000.0, .damping = 30.0}; }
 };
 struct PenaltyPerRowCase {

@@ -21,8 +21,8 @@ struct PlanarDriveCase {
   static Mate mate(Numbers& number, double t) {
     Mate mate{.d = Vec3(number(), number(), 0.0),
               .R = exp_so3<double>(Vec3(0, 0, drive.law(t).value)),
-              .freedoms = MatX::Zero(6, 2)};
-    mate.freedoms.topRows<2>().setIdentity();
+              .free_directions = MatX::Zero(6, 2)};
+    mate.free_directions.topRows<2>().setIdentity();
     return mate;
   }
 };
@@ -34,7 +34,7 @@ struct DriveCase {
   static Mate mate(Numbers& number, double t) {
     Mate mate = PlanarDriveCase::mate(number, t);
     mate.d = number.vec<3>();
-    mate.freedoms = Mat<double, 6, 5>::Identity();  // all motions except the rotation about the third axis
+    mate.free_directions = Mat<double, 6, 5>::Identity();  // all motions except the rotation about the third axis
     return mate;
   }
 };

@@ -22,8 +22,8 @@ struct OrientationCase {
   static constexpr int world_rows = 0;
   static ConstantOrientation geometry() { return {}; }
   static Mate mate(Numbers& number, double) {
-    Mate mate{.d = number.vec<3>(), .freedoms = MatX::Zero(6, 3)};
-    mate.freedoms.topRows<3>().setIdentity();
+    Mate mate{.d = number.vec<3>(), .free_directions = MatX::Zero(6, 3)};
+    mate.free_directions.topRows<3>().setIdentity();
     return mate;
   }
 };
@@ -35,8 +35,8 @@ struct ParallelAxesCase {
   static Mate mate(Numbers& number, double t) {
     Mate mate = OrientationCase::mate(number, t);
     mate.R = exp_so3<double>(Vec3(0, 0, number(3.0)));
-    mate.freedoms.conservativeResizeLike(MatX::Zero(6, 4));
-    mate.freedoms(5, 3) = 1.0;
+    mate.free_directions.conservativeResizeLike(MatX::Zero(6, 4));
+    mate.free_directions(5, 3) = 1.0;
     return mate;
   }
 };
@@ -49,8 +49,8 @@ struct PerpendicularAxesCase {
   static Mate mate(Numbers& number, double t) {
     Mate mate = OrientationCase::mate(number, t);
     mate.R = exp_so3<double>(Vec3(number(3.0), 0, 0)) * exp_so3<double>(Vec3(0, 0, number(3.0)));
-    mate.freedoms.conservativeResizeLike(MatX::Zero(6, 5));
-    mate.freedoms.bottomRightCorner<3, 2>() << Vec3::UnitX(), mate.R.col(2);
+    mate.free_directions.conservativeResizeLike(MatX::Zero(6, 5));
+    mate.free_directions.bottomRightCorner<3, 2>() << Vec3::UnitX(), mate.R.col(2);
     return mate;
   }
 };

@@ -15,8 +15,8 @@ namespace prismatic_test {
 // The sliding axis is the third axis in space, the first in the plane.
 template <int slide>
 Mate slid(Numbers& number) {
-  Mate mate{.d = Vec3::Unit(slide) * number(2.0), .freedoms = MatX::Zero(6, 1)};
-  mate.freedoms(slide, 0) = 1.0;
+  Mate mate{.d = Vec3::Unit(slide) * number(2.0), .free_directions = MatX::Zero(6, 1)};
+  mate.free_directions(slide, 0) = 1.0;
   return mate;
 }
 

@@ -25,10 +25,10 @@ struct PlanarRackCase {
   static Mate mate(Numbers& number, double) {
     double const angle = number(9.0);
     Frame<double> const b = pinion(radius * angle, number(), angle);
-    Mate mate{.d = b.r, .R = b.A, .freedoms = MatX::Zero(6, 2)};
-    mate.freedoms(0, 0) = radius;
-    mate.freedoms(5, 0) = 1.0;
-    mate.freedoms(1, 1) = 1.0;
+    Mate mate{.d = b.r, .R = b.A, .free_directions = MatX::Zero(6, 2)};
+    mate.free_directions(0, 0) = radius;
+    mate.free_directions(5, 0) = 1.0;
+    mate.free_directions(1, 1) = 1.0;
     return mate;
   }
 };
@@ -40,8 +40,8 @@ struct RackCase {
   static RackAndPinion geometry() { return {.radius = radius}; }
   static Mate mate(Numbers& number, double t) {
     Mate mate = PlanarRackCase::mate(number, t);
-    mate.freedoms.conservativeResizeLike(MatX::Zero(6, 5));
-    for (Index j = 2; j < 5; ++j) mate.freedoms(j, j) = 1.0;
+    mate.free_directions.conservativeResizeLike(MatX::Zero(6, 5));
+    for (Index j = 2; j < 5; ++j) mate.free_directions(j, j) = 1.0;
     return mate;
   }
 };

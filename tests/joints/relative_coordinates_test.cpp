@@ -26,7 +26,7 @@ struct RelativeCoordinatesCase {
   static constexpr bool planar = false;
   static constexpr int world_rows = 0;
   static RelativeCoordinates geometry() { return {.axis = {0.6, 0, -0.8}}; }
-  static Mate mate(Numbers&, double) { return {.freedoms = MatX::Zero(6, 0)}; }
+  static Mate mate(Numbers&, double) { return {.free_directions = MatX::Zero(6, 0)}; }
 };
 
 Frame<double> const a{.r = {0.2, -1, 3}, .A = exp_so3<double>(Vec3(0.3, 1, -2)), .v = {1, 2, 3}, .w = {-0.5, 0.7, 0.2}};

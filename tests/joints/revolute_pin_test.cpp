@@ -16,8 +16,8 @@ struct RevolutePinCase {
   static constexpr int world_rows = 0;
   static RevolutePin geometry() { return {.distance = 0.6}; }
   static Mate mate(Numbers& number, double) {
-    Mate mate{.d = Vec3(0, 0, 0.6), .R = exp_so3<double>(Vec3(0, 0, number(3.0))), .freedoms = MatX::Zero(6, 1)};
-    mate.freedoms(5, 0) = 1.0;
+    Mate mate{.d = Vec3(0, 0, 0.6), .R = exp_so3<double>(Vec3(0, 0, number(3.0))), .free_directions = MatX::Zero(6, 1)};
+    mate.free_directions(5, 0) = 1.0;
     return mate;
   }
 };

@@ -17,8 +17,8 @@ struct RevoluteCase {
   static constexpr int world_rows = 3;
   static Revolute geometry() { return {}; }
   static Mate mate(Numbers& number, double) {
-    Mate mate{.R = exp_so3<double>(Vec3(0, 0, number(3.0))), .freedoms = MatX::Zero(6, 1)};
-    mate.freedoms(5, 0) = 1.0;
+    Mate mate{.R = exp_so3<double>(Vec3(0, 0, number(3.0))), .free_directions = MatX::Zero(6, 1)};
+    mate.free_directions(5, 0) = 1.0;
     return mate;
   }
 };

@@ -24,13 +24,13 @@ struct RollingDiscCase {
   static RollingDisc geometry() { return leaning(); }
   static Mate mate(Numbers& number, double) {
     Vec3 const n(0, std::sin(1.2), std::cos(1.2)), along = n.unitOrthogonal(), other = n.cross(along);
-    Mate mate{.R = exp_so3<double>(number.vec<3>(3.0)), .freedoms = MatX::Zero(6, 3)};
+    Mate mate{.R = exp_so3<double>(number.vec<3>(3.0)), .free_directions = MatX::Zero(6, 3)};
     // the lowest point of the rim from the angle of the steepest direction: r = R (b₁ cos a + b₂ sin a)
     double const a = std::atan2(-n.dot(mate.R.col(1)), -n.dot(mate.R.col(0)));
     Vec3 const rho = radius * (mate.R.col(0) * std::cos(a) + mate.R.col(1) * std::sin(a));
     mate.d = -n * n.dot(rho) + along * number(2.0) + other * number(2.0);
-    mate.freedoms.topRows<3>() = skew<double>(rho);
-    mate.freedoms.bottomRows<3>().setIdentity();
+    mate.free_directions.topRows<3>() = skew<double>(rho);
+    mate.free_directions.bottomRows<3>().setIdentity();
     return mate;
   }
 };

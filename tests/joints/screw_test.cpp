@@ -24,9 +24,9 @@ struct ScrewCase {
   static Mate mate(Numbers& number, double) {
     double const angle = number(9.0);
     Frame<double> const b = nut(p * angle, angle);
-    Mate mate{.d = b.r, .R = b.A, .freedoms = MatX::Zero(6, 1)};
-    mate.freedoms(2, 0) = p;
-    mate.freedoms(5, 0) = 1.0;
+    Mate mate{.d = b.r, .R = b.A, .free_directions = MatX::Zero(6, 1)};
+    mate.free_directions(2, 0) = p;
+    mate.free_directions(5, 0) = 1.0;
     return mate;
   }
 };

@@ -14,8 +14,8 @@ struct SphericalCase {
   static constexpr int world_rows = 3;
   static Spherical geometry() { return {}; }
   static Mate mate(Numbers& number, double) {
-    Mate mate{.R = exp_so3<double>(number.vec<3>(3.0)), .freedoms = MatX::Zero(6, 3)};
-    mate.freedoms.bottomRows<3>().setIdentity();
+    Mate mate{.R = exp_so3<double>(number.vec<3>(3.0)), .free_directions = MatX::Zero(6, 3)};
+    mate.free_directions.bottomRows<3>().setIdentity();
     return mate;
   }
 };

@@ -18,8 +18,9 @@ struct UniversalCase {
   static Universal geometry() { return {}; }
   static Mate mate(Numbers& number, double) {
     double const phi = number(3.0), psi = number(3.0);
-    Mate mate{.R = exp_so3<double>(Vec3(phi, 0, 0)) * exp_so3<double>(Vec3(0, 0, psi)), .freedoms = MatX::Zero(6, 2)};
-    mate.freedoms.bottomRows<3>() << Vec3::UnitX(), mate.R.col(2);
+    Mate mate{.R = exp_so3<double>(Vec3(phi, 0, 0)) * exp_so3<double>(Vec3(0, 0, psi)),
+              .free_directions = MatX::Zero(6, 2)};
+    mate.free_directions.bottomRows<3>() << Vec3::UnitX(), mate.R.col(2);
     return mate;
   }
 };

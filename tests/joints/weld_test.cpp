@@ -14,7 +14,7 @@ struct WeldCase {
   static constexpr bool planar = false;
   static constexpr int world_rows = 3;
   static Weld geometry() { return {}; }
-  static Mate mate(Numbers&, double) { return {.freedoms = MatX::Zero(6, 0)}; }
+  static Mate mate(Numbers&, double) { return {.free_directions = MatX::Zero(6, 0)}; }
 };
 
 struct PlanarWeldCase {

@@ -75,9 +75,9 @@ TEST(SimdVector, GoesToMemoryAndBackAndIsTransposedWithOthers) {
 
 TEST(SimdVector, IsAScalarOfEigen) {
   Mat<SimdVector<>, 2, 2> m;
-  m << some<pack_size>(1.0), SimdVector<>(2.0), SimdVector<>(0.0), some<pack_size>(-1.0);
+  m << some<simd_size>(1.0), SimdVector<>(2.0), SimdVector<>(0.0), some<simd_size>(-1.0);
   Vec<SimdVector<>, 2> const x(SimdVector<>(1.0), SimdVector<>(3.0)), y = m * x;
-  for (int i = 0; i < pack_size; ++i) {
+  for (int i = 0; i < simd_size; ++i) {
     EXPECT_DOUBLE_EQ(y[0][i], 7.0 + 0.37 * i);
     EXPECT_DOUBLE_EQ(y[1][i], 3.0 * (-1.0 + 0.37 * i));
   }

@@ -7,7 +7,7 @@ namespace vectors_test {
 
 using namespace polybody;
 
-constexpr Index beyond_packs = 3 * pack_size + 2;
+constexpr Index beyond_packs = 3 * simd_size + 2;
 
 TEST(ForPacks, VisitsEachEntryOnce) {
   for (Index n = 0; n < beyond_packs; ++n) {

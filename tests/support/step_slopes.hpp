@@ -183,7 +183,7 @@ struct Steps {
 /// The state after a step of h from x, with its own factorisations.
 template <class S>
 State stepped(S& full, State x, double h) {
-  if constexpr (requires { full.work.kept_factor; }) full.work.kept_factor = {};
+  if constexpr (requires { full.work.reused_factorisation; }) full.work.reused_factorisation = {};
   EXPECT_EQ(full.method.step(full.system, x, h, full.work).taken, h);
   return x;
 }

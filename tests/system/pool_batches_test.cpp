@@ -40,30 +40,30 @@ detail::PoolBatches batches(std::vector<B> const& all) {
 TEST(PoolBatches, FillPacksFromBodiesThatAreAlike) {
   using B = AncfCable<>;
   std::vector<B> all;
-  for (int i = 0; i < 2 * pack_size + 1; ++i) all.push_back(B::from(bar(i), 1));
-  all.push_back(B::from(bar(-1), pack_size));
+  for (int i = 0; i < 2 * simd_size + 1; ++i) all.push_back(B::from(bar(i), 1));
+  all.push_back(B::from(bar(-1), simd_size));
   detail::PoolBatches const found = batches(all);
-  EXPECT_EQ(found.packs.size(), 2u);
+  EXPECT_EQ(found.filled.size(), 2u);
   ASSERT_EQ(found.singles.size(), 1u);
-  EXPECT_EQ(found.singles[0].entry, 2 * pack_size);
+  EXPECT_EQ(found.singles[0].entry, 2 * simd_size);
   ASSERT_EQ(found.bodies.size(), 1u);
-  EXPECT_EQ(found.bodies[0], 2 * pack_size + 1);
+  EXPECT_EQ(found.bodies[0], 2 * simd_size + 1);
 }
 
 // Elements with another material or another length are in another SIMD vector.
 TEST(PoolBatches, KeepBodiesApartThatDiffer) {
   using B = AncfCable<>;
   std::vector<B> all;
-  for (int i = 0; i < pack_size; ++i) all.push_back(B::from(bar(i, i % 2 == 0 ? 1e7 : 2e7), 1));
-  EXPECT_EQ(batches(all).packs.size(), 0u);
-  EXPECT_EQ(batches(all).singles.size(), std::size_t(pack_size));
+  for (int i = 0; i < simd_size; ++i) all.push_back(B::from(bar(i, i % 2 == 0 ? 1e7 : 2e7), 1));
+  EXPECT_EQ(batches(all).filled.size(), 0u);
+  EXPECT_EQ(batches(all).singles.size(), std::size_t(simd_size));
   std::vector<B> lengths;
-  for (int i = 0; i < pack_size; ++i) {
+  for (int i = 0; i < simd_size; ++i) {
     Bar one = bar(i);
     one.length = i % 2 == 0 ? 0.3 : 0.4;
     lengths.push_back(B::from(one, 1));
   }
-  EXPECT_EQ(batches(lengths).packs.size(), 0u);
+  EXPECT_EQ(batches(lengths).filled.size(), 0u);
 }
 
 /// q, v and v̇ that bend and rotate all bodies.

@@ -88,9 +88,9 @@ struct Helix {
   static HelicalGuide geometry() { return {.pitch = 1e-3 * mm, .wrong = wrong}; }
   static Mate mate(Numbers& number, double) {
     double const phi = number(3.0), pitch = 1e-3 * mm, c = radius * std::cos(phi), s = radius * std::sin(phi);
-    Mate mate{.d = {c, s, pitch * phi}, .R = exp_so3<double>(number.vec<3>(3.0)), .freedoms = MatX::Zero(6, 4)};
-    mate.freedoms.col(0) << -s, c, pitch, 0, 0, 0;
-    mate.freedoms.bottomRightCorner<3, 3>().setIdentity();
+    Mate mate{.d = {c, s, pitch * phi}, .R = exp_so3<double>(number.vec<3>(3.0)), .free_directions = MatX::Zero(6, 4)};
+    mate.free_directions.col(0) << -s, c, pitch, 0, 0, 0;
+    mate.free_directions.bottomRightCorner<3, 3>().setIdentity();
     return mate;
   }
 };
@@ -106,7 +106,7 @@ TEST(JointLaws, AcceptHelicesOfEveryPitch) {
 template <int mm>
 void expect_that_wrong_terms_are_found() {
   Names const maps = broken<JointLaws<Helix<mm, Wrong::map>>>();
-  EXPECT_EQ(std::ranges::count(maps, std::string("MapsAreTheDerivativeOfTheGap")), 1);
+  EXPECT_EQ(std::ranges::count(maps, std::string("MapsAreTheDerivativeOfTheFunction")), 1);
   EXPECT_EQ((broken<JointLaws<Helix<mm, Wrong::gamma>>>()), Names{"GammaIsTheSecondDerivativeWithoutAccelerations"});
   EXPECT_EQ((broken<JointLaws<Helix<mm, Wrong::gradient>>>()), Names{"WrenchGradientIsTheDerivativeOfTheWrenches"});
 }

@@ -60,9 +60,9 @@ struct Bead {
   static constexpr int world_rows = 0;
   static PointOnLine geometry() { return {.axis = Vec3::UnitZ()}; }
   static Mate mate(Numbers& number, double) {
-    Mate mate{.d = Vec3(0, 0, number()), .R = exp_so3<double>(number.vec<3>(3.0)), .freedoms = MatX::Zero(6, 4)};
-    mate.freedoms(2, 0) = 1.0;
-    mate.freedoms.bottomRightCorner<3, 3>().setIdentity();
+    Mate mate{.d = Vec3(0, 0, number()), .R = exp_so3<double>(number.vec<3>(3.0)), .free_directions = MatX::Zero(6, 4)};
+    mate.free_directions(2, 0) = 1.0;
+    mate.free_directions.bottomRightCorner<3, 3>().setIdentity();
     return mate;
   }
 };
@@ -78,7 +78,7 @@ struct BeadWithoutGamma : Bead {
 struct BeadThatSticks : Bead {
   static Mate mate(Numbers& number, double t) {
     Mate mate = Bead::mate(number, t);
-    mate.freedoms = mate.freedoms.rightCols<3>().eval();
+    mate.free_directions = mate.free_directions.rightCols<3>().eval();
     return mate;
   }
 };
@@ -86,7 +86,7 @@ struct BeadThatSticks : Bead {
 TEST(JointLaws, TellWhatIsWrong) {
   EXPECT_EQ(broken<JointLaws<Bead>>(), Names{});
   EXPECT_EQ(broken<JointLaws<BeadWithoutGamma>>(), Names{"GammaIsTheSecondDerivativeWithoutAccelerations"});
-  EXPECT_EQ(broken<JointLaws<BeadThatSticks>>(), Names{"RowsAndFreedomsMakeUpAllMotions"});
+  EXPECT_EQ(broken<JointLaws<BeadThatSticks>>(), Names{"EquationsAndFreeDirectionsSpanAllMotions"});
 }
 
 // --- policies and forces ------------------------------------------------------------------------------------------

@@ -49,7 +49,7 @@ std::string name_of(F const& formulation) {
 }
 /// Name `own`, made different from the names of `earlier` runs.
 template <class = void>
-std::string name_beside(std::vector<ComparedRun> const& earlier, std::string const& own) {
+std::string unique_name(std::vector<ComparedRun> const& earlier, std::string const& own) {
   std::string name = own;
   auto const taken = [&](ComparedRun const& run) { return run.name == name; };
   for (int i = 2; std::any_of(earlier.begin(), earlier.end(), taken); ++i) name = own + " (" + std::to_string(i) + ")";
@@ -120,14 +120,14 @@ void drop_incomplete_state(ComparedRun& run) {
 /// that fails ends the run, and `failure` contains its message. Only the steps are timed.
 template <class Run>
 void record_run(Run& run, CaseQuestions& questions, double sampling, ComparedRun& out) {
-  RunSampling asked(run.state().t, sampling);
+  RunSampling samples(run.state().t, sampling);
   try {
     questions.note(run.state(), out);
     while (!run.done()) {
       std::clock_t const begin = std::clock();
       run.advance();
       out.cpu += double(std::clock() - begin) / CLOCKS_PER_SEC;
-      if (asked.takes(run.state().t) || run.done()) questions.note(run.state(), out);
+      if (samples.takes(run.state().t) || run.done()) questions.note(run.state(), out);
     }
   } catch (Error const& failed) {
     out.failure = failed.what();
@@ -145,7 +145,7 @@ template <class F, class C>
 void add_run(C const& make_case, F const& formulation, Comparison& c) {
   auto scenario = make_case(formulation);
   ComparedRun out;
-  out.name = name_beside(c.runs, name_of(formulation));
+  out.name = unique_name(c.runs, name_of(formulation));
   out.problem_size = problem_size(scenario.model);
   for (auto const& o : scenario.outputs) out.output_names.push_back(o.name);
   check_outputs(out, c.runs);

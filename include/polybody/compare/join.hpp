@@ -13,7 +13,7 @@ Comparison join(std::vector<Comparison> const& parts) {
   Comparison all;
   for (Comparison const& part : parts)
     for (ComparedRun run : part.runs) {
-      run.name = detail::name_beside(all.runs, run.name);
+      run.name = detail::unique_name(all.runs, run.name);
       detail::check_outputs(run, all.runs);
       run.difference.clear();
       all.runs.push_back(std::move(run));

@@ -40,7 +40,7 @@ class ContactGroup {
   void set_many(Index count) { many_ = count; }
   Index many() const { return many_; }  ///< number of the many markers, the first ones of the group
   /// Number of partners.
-  Index opponents() const {
+  Index partners() const {
     return Index(std::apply([](auto const&... few) { return (few.size() + ... + std::size_t(0)); }, few_));
   }
 
@@ -54,16 +54,16 @@ class ContactGroup {
 
   void check(std::string const& name) const;
 
-  /// Calls f(opponent) for each `ContactPartner`, ordered by the type of its law, then by the order of addition.
+  /// Calls f(partner) for each `ContactPartner`, ordered by the type of its law, then by the order of addition.
   template <class F>
-  void for_each_opponent(F&& f) const {
+  void for_each_partner(F&& f) const {
     std::apply([&](auto const&... few) { (each_of(few, f), ...); }, few_);
   }
 
   /// Calls visit(i, marker, law) for each pair of one of the many markers, i, and a partner, at any distance.
   template <class Visit>
   void for_each_candidate(Visit&& visit) const {
-    for (Index i = 0; i < many_; ++i) for_each_opponent([&](auto const& few) { visit(i, few.marker, few.law); });
+    for (Index i = 0; i < many_; ++i) for_each_partner([&](auto const& few) { visit(i, few.marker, few.law); });
   }
   /// Calls visit(i, marker, law) for the pairs with `may_touch` true; frame(k) is the frame of marker k.
   template <class FrameOf, class Visit>
@@ -75,9 +75,9 @@ class ContactGroup {
   template <class FrameOf, class Visit>
   void for_each_pair(FrameOf&& frame, Visit&& visit, Index begin, Index end) const {
     if constexpr ((HasReach<Laws> && ...))
-      if (opponents() <= 64) return for_each_near_pair(frame, visit, begin, end);
+      if (partners() <= 64) return for_each_near_pair(frame, visit, begin, end);
     for (Index i = begin; i < end; ++i)
-      for_each_opponent([&](auto const& few) {
+      for_each_partner([&](auto const& few) {
         if (few.law.may_touch(frame(i), frame(few.marker))) visit(i, few.marker, few.law);
       });
   }
@@ -114,7 +114,7 @@ class ContactGroup {
     }
     row.near.fill(0);
     std::uint64_t bit = 1;
-    for_each_opponent([&](auto const& few) {
+    for_each_partner([&](auto const& few) {
       ContactReach const reach = few.law.reach(frame(few.marker));
       for (std::size_t k = 0; k < row.x.size(); ++k) row.near[k] |= reach.holds(row.x[k], row.y[k], row.z[k]) ? bit : 0;
       bit <<= 1;
@@ -143,7 +143,7 @@ class ContactGroup {
 template <ForceElement... Laws>
   requires((Laws::markers == 2) && ...)
 void ContactGroup<Laws...>::check(std::string const& name) const {
-  for_each_opponent([&](auto const& few) { few.law.check(name); });
+  for_each_partner([&](auto const& few) { few.law.check(name); });
 }
 
 }  // namespace polybody

@@ -22,15 +22,15 @@ struct ContactReach {
 
   /// Sphere of radius `radius` [m] about `origin`.
   static ContactReach sphere(Vec3 const& origin, double radius) {
-    return {.origin = origin, .squared = 1.0 - room, .limit = radius * radius};
+    return {.origin = origin, .squared = 1.0 - margin, .limit = radius * radius};
   }
   /// Infinite cylinder of radius `radius` [m] about the `axis` through `origin`.
   static ContactReach cylinder(Vec3 const& origin, Vec3 const& axis, double radius) {
-    return {.origin = origin, .axis = axis, .squared = 1.0 - room, .along_squared = -1.0, .limit = radius * radius};
+    return {.origin = origin, .axis = axis, .squared = 1.0 - margin, .along_squared = -1.0, .limit = radius * radius};
   }
   /// Half space below the height `height` [m] along `axis` from `origin`.
   static ContactReach half_space(Vec3 const& origin, Vec3 const& axis, double height) {
-    return {.origin = origin, .axis = axis, .squared = -room, .along = 1.0, .limit = height + room};
+    return {.origin = origin, .axis = axis, .squared = -margin, .along = 1.0, .limit = height + margin};
   }
 
   /// True if the contact may touch a marker at r (3) [m].
@@ -43,7 +43,7 @@ struct ContactReach {
   }
 
  private:
-  static constexpr double room = 1e-9;
+  static constexpr double margin = 1e-9;
 };
 
 /// Contact or contact geometry with a reach, as a function of the frame of its second marker. `may_touch` is false

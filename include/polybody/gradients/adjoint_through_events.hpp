@@ -35,7 +35,7 @@ class AdjointEventHandler {
                                     AlphaMethod const& method)
       : parameters_(parameters),
         full_(make(values_of(parameters)), method),
-        beside_(make, parameters, method, "gradient"),
+        perturbed_(make, parameters, method, "gradient"),
         run_(full_),
         adjoint_(full_.scenario.model, full_.system, method),
         objective_(full_.scenario.model) {
@@ -48,7 +48,7 @@ class AdjointEventHandler {
     require_assembled_start(full_);
     run_.take(out_.run);
     State const& first = run_.first();
-    beside_.require_touched(first);
+    perturbed_.require_named(first);
     begin(first);
     require_one_end();
     RunCostate bar(first);
@@ -60,7 +60,7 @@ class AdjointEventHandler {
     auto const start = [&](V& v, State& y, double h) { v.start_like(first, y, h); };
     for (std::size_t j = 0; j < parameters_.size(); ++j)
       out_.derivatives[Index(j)] +=
-          bar.dot(beside_.of_start(j, run_.next().h, length_slope(j, run_.next(), time_slope(j, first)), start));
+          bar.dot(perturbed_.of_start(j, run_.next().h, length_slope(j, run_.next(), time_slope(j, first)), start));
     warn_of_zeros(out_);
     return std::move(out_);
   }
@@ -69,14 +69,15 @@ class AdjointEventHandler {
   void begin(State const& first) {
     still_ = {zeros_like(first), 0.0, VecX::Zero(lengths_of(first).size())};
     for (std::size_t j = 0; j < parameters_.size(); ++j) {
-      step_slope_.push_back(beside_.of_number(j, [](V const& v) { return v.length(); }));
-      until_slope_.push_back(beside_.of_number(j, [](V const& v) { return double(v.scenario.options.end_time); }));
+      step_slope_.push_back(perturbed_.of_number(j, [](V const& v) { return v.length(); }));
+      end_time_slope_.push_back(
+          perturbed_.of_number(j, [](V const& v) { return double(v.scenario.options.end_time); }));
     }
   }
   /// Derivative by parameter j of the time of x, which is the time of a breakpoint or the start.
-  double time_slope(std::size_t j, State const& x) const { return beside_.times(j).slope(x.t); }
+  double time_slope(std::size_t j, State const& x) const { return perturbed_.times(j).slope(x.t); }
   double target_slope(std::size_t j, StepPlan::Next const& plan) const {
-    return plan.jumps ? beside_.times(j).slope(plan.target) : until_slope_[j];
+    return plan.jumps ? perturbed_.times(j).slope(plan.target) : end_time_slope_[j];
   }
   /// Derivative of the length of a planned step by parameter j. \param dt derivative of its start time
   double length_slope(std::size_t j, StepPlan::Next const& plan, double dt) const {
@@ -90,22 +91,22 @@ class AdjointEventHandler {
   /// Refuses a breakpoint at the end of the run if its time and the end time have different derivatives.
   void require_one_end() const {
     RecordedStep const& last = run_.steps().back();
-    if (!last.at_corner || last.end < full_.scenario.options.end_time) return;
+    if (!last.at_breakpoint || last.end < full_.scenario.options.end_time) return;
     for (std::size_t j = 0; j < parameters_.size(); ++j)
-      if (std::abs(target_slope(j, last.plan) - until_slope_[j]) * parameters_[j].size() > 1e-9 * run_.length())
-        refuse_corner_at_end(last.end, parameters_[j].name, "gradient");
+      if (std::abs(target_slope(j, last.plan) - end_time_slope_[j]) * parameters_[j].size() > 1e-9 * run_.length())
+        refuse_breakpoint_at_end(last.end, parameters_[j].name, "gradient");
   }
 
   /// Converts the adjoint variables after step k, and after the restart that may follow it, to those before it.
   void back(std::size_t k, State before, State const& after, RunCostate& bar) {
     RecordedStep const& s = run_.steps()[k];
-    bool const last = k + 1 == run_.steps().size(), from_corner = run_.begins_at_corner(k);
+    bool const last = k + 1 == run_.steps().size(), from_breakpoint = run_.begins_at_breakpoint(k);
     auto const end = [](S const& scenario) -> auto const& { return scenario.end; };
     auto const integrand = [](S const& scenario) -> auto const& { return scenario.integrand; };
     double const half = 0.5 * s.h;
     if (last) {
-      beside_.require_touched(after);
-      out_.value += add_term(end, after, {1.0, s.at_corner}, bar);
+      perturbed_.require_named(after);
+      out_.value += add_term(end, after, {1.0, s.at_breakpoint}, bar);
     }
     State parted;
     if (s.restarts) {
@@ -113,7 +114,7 @@ class AdjointEventHandler {
       pull_beginning(s, parted, after, bar);
     }
     State const& x = s.restarts ? parted : after;
-    if (s.restarts || last) out_.value += add_term(integrand, x, {half, s.at_corner}, bar);
+    if (s.restarts || last) out_.value += add_term(integrand, x, {half, s.at_breakpoint}, bar);
     double of_length = backward_step(k, before, x, bar, out_.derivatives);
     of_length += 0.5 * (rate_of_integral(before) + rate_of_integral(x));
     if (s.met.empty())
@@ -121,8 +122,8 @@ class AdjointEventHandler {
     else
       add_event(k, before, x, of_length, bar);
     double const joined = k > 0 && !run_.steps()[k - 1].restarts ? 0.5 * run_.steps()[k - 1].h : 0.0;
-    out_.value += add_term(integrand, before, {half + joined, from_corner}, bar);
-    if (from_corner) spread_time(before.t, bar);
+    out_.value += add_term(integrand, before, {half + joined, from_breakpoint}, bar);
+    if (from_breakpoint) spread_time(before.t, bar);
   }
   /// Adds ∂J/∂h of a step, `of_length`, to the derivatives by the parameters and by the start time of the step.
   void spread_length(StepPlan::Next const& plan, double of_length, RunCostate& bar) {
@@ -133,7 +134,7 @@ class AdjointEventHandler {
   /// Adds the effect of the time t of a breakpoint to the derivatives by the parameters.
   void spread_time(double t, RunCostate& bar) {
     for (std::size_t j = 0; j < parameters_.size(); ++j)
-      out_.derivatives[Index(j)] += bar.t * beside_.times(j).slope(t);
+      out_.derivatives[Index(j)] += bar.t * perturbed_.times(j).slope(t);
     bar.t = 0.0;
   }
 
@@ -141,7 +142,7 @@ class AdjointEventHandler {
   /// the parameters to `derivatives`. Returns the derivative by the length of the step.
   double backward_step(std::size_t k, State& before, State const& x, RunCostate& bar, VecX& derivatives) {
     RecordedStep const& s = run_.steps()[k];
-    V& spare = beside_.itself();
+    V& spare = perturbed_.itself();
     bool const corrects = spare.method.start_step(spare.system, before, s.h, spare.work);
     State corrected;
     if (corrects) {
@@ -153,26 +154,27 @@ class AdjointEventHandler {
         adjoint_.backward_step({corrects ? corrected : before, x, own_before, own_after, s.h}, bar.at, mu_);
     out_.left = std::max(out_.left, require_converged(left, x.t, "gradient"));
     double of_length = adjoint_.step_length_derivative();
-    beside_.begin_step();
+    perturbed_.begin_step();
     for (std::size_t j = 0; j < parameters_.size(); ++j) derivatives[Index(j)] -= of_equations(j, {x, s.h, 0.0, 0});
     bar.t -= of_equations(Variants::along_motion, {x, s.h, 1.0, 0});
     of_length += bar.t + bar.pull_push(before);
     StartCorrectionAdjoint<V> const sets_out(spare, before, s.h, corrects);
     bool const free = (s.plan.lands || !s.met.empty()) && sets_out.shifted() > 0.0;  // h depends on parameters
     if (!corrects && !free) return of_length;
-    bool const from_corner = run_.begins_at_corner(k);
+    bool const from_breakpoint = run_.begins_at_breakpoint(k);
     if (corrects) {
       VecX const v = bar.at.v, own = bar.at.own;
       for (std::size_t j = 0; j < parameters_.size(); ++j) {
-        State const change = beside_.of_map(j, before, still(from_corner ? time_slope(j, before) : 0.0), {s.h, 0.0},
-                                            [&](V& of, State& y, double length) { sets_out.add(of, y, length); });
+        State const change =
+            perturbed_.of_map(j, before, still(from_breakpoint ? time_slope(j, before) : 0.0), {s.h, 0.0},
+                              [&](V& of, State& y, double length) { sets_out.add(of, y, length); });
         derivatives[Index(j)] += v.dot(change.v) + own.dot(change.history.head(own.size()));
       }
     }
-    return of_length + sets_out.pull(bar, !from_corner);
+    return of_length + sets_out.pull(bar, !from_breakpoint);
   }
   double of_equations(std::size_t j, typename Variants::template PointInStep<State> const& at) {
-    beside_.of_equations(j, at, by_);
+    perturbed_.of_equations(j, at, by_);
     Index const nv = by_.balance.size();
     return mu_.head(nv).dot(by_.balance) + mu_.tail(by_.rows.size()).dot(by_.rows);
   }
@@ -184,9 +186,8 @@ class AdjointEventHandler {
     Event const& event = full_.scenario.options.events[i];
     RunCostate of(x);
     VecX derivatives = VecX::Zero(out_.derivatives.size());
-    objective_.add([&](M const&, State const& shown) { return event.value(shown); }, full_.scenario.model, x, 1.0,
-                   of.at);
-    auto const value = [i](V& v, State const& y) { return v.scenario.options.events[i].value(v.shown(y)); };
+    objective_.add([&](M const&, State const& full) { return event.value(full); }, full_.scenario.model, x, 1.0, of.at);
+    auto const value = [i](V& v, State const& y) { return v.scenario.options.events[i].value(v.full_state(y)); };
     add_derivatives_of_value(value, x, {1.0, false}, of, derivatives);
     double const rate = backward_step(k, before, x, of, derivatives);
     if (!(std::abs(rate) * s.far > 1e-6 * s.largest)) refuse_touch(event.name, x.t, "gradient");
@@ -201,9 +202,9 @@ class AdjointEventHandler {
     RunCostate const of = bar;
     bar = RunCostate(x);
     bar.t = of.t;
-    auto const begin = [&](V& v, State& y, double length) { RecordedRun<V>::begin_anew(s, v, after, y, length); };
+    auto const begin = [&](V& v, State& y, double length) { RecordedRun<V>::act_and_restart(s, v, after, y, length); };
     auto const result = [&](State& y, double length) {
-      begin(beside_.itself(), y, length);
+      begin(perturbed_.itself(), y, length);
       return of.dot(y, after);
     };
     auto const size = [](VecX const& part) { return part.size() > 0 ? part.template lpNorm<Eigen::Infinity>() : 0.0; };
@@ -219,17 +220,17 @@ class AdjointEventHandler {
       y.t += by;
       length += longer * by;
     };
-    if (!s.at_corner) bar.t += slope_along(x, h, 4e-3 * h, later, result);
+    if (!s.at_breakpoint) bar.t += slope_along(x, h, 4e-3 * h, later, result);
     for (std::size_t j = 0; j < parameters_.size(); ++j) {
-      double const dt = s.at_corner ? time_slope(j, x) : 0.0;
-      out_.derivatives[Index(j)] += of.dot(beside_.of_map(j, x, still(dt), {h, length_slope(j, s.next, dt)}, begin));
+      double const dt = s.at_breakpoint ? time_slope(j, x) : 0.0;
+      out_.derivatives[Index(j)] += of.dot(perturbed_.of_map(j, x, still(dt), {h, length_slope(j, s.next, dt)}, begin));
     }
     x.t = before_it;
   }
 
   struct Weight {
     double by;
-    bool at_corner;  // the time of the state is that of a breakpoint
+    bool at_breakpoint;  // the time of the state is that of a breakpoint
   };
   /// Adds a term of the objective function at x. Returns its part of J. \param pick selects the term of a scenario
   template <class Pick>
@@ -237,39 +238,41 @@ class AdjointEventHandler {
     if constexpr (std::same_as<std::remove_cvref_t<decltype(pick(full_.scenario))>, NoTerm>) {
       return 0.0;
     } else {
-      auto const value = [&](V& v, State const& y) { return term(pick(v.scenario), v.scenario.model, v.shown(y)); };
+      auto const value = [&](V& v, State const& y) {
+        return term(pick(v.scenario), v.scenario.model, v.full_state(y));
+      };
       objective_.add(pick(full_.scenario), full_.scenario.model, x, weight.by, bar.at);
       add_derivatives_of_value(value, x, weight, bar, out_.derivatives);
       return weight.by * value(full_, x);
     }
   }
   double rate_of_integral(State const& x) {
-    return term(full_.scenario.integrand, full_.scenario.model, full_.shown(x));
+    return term(full_.scenario.integrand, full_.scenario.model, full_.full_state(x));
   }
   /// Adds the derivatives of value(model, state) at x by the parameters and by the time.
   template <class F>
   void add_derivatives_of_value(F const& value, State const& x, Weight weight, RunCostate& bar, VecX& derivatives) {
     auto const values = [&](V& v, State const& y) { return VecX::Constant(1, value(v, y)).eval(); };
     double const h = run_.length();
-    beside_.show(x);
+    perturbed_.set_state(x);
     for (std::size_t j = 0; j < parameters_.size(); ++j) {
-      RunSensitivity const& tangent = still(weight.at_corner ? time_slope(j, x) : 0.0);
-      derivatives[Index(j)] += weight.by * beside_.of_values(j, x, tangent, h, values)[0];
+      RunSensitivity const& tangent = still(weight.at_breakpoint ? time_slope(j, x) : 0.0);
+      derivatives[Index(j)] += weight.by * perturbed_.of_values(j, x, tangent, h, values)[0];
     }
-    if (weight.at_corner) return;
+    if (weight.at_breakpoint) return;
     auto const later = [](State& y, double&, double by) { y.t += by; };
     bar.t += weight.by *
-             slope_along(x, h, 4e-3 * h, later, [&](State const& y, double) { return value(beside_.itself(), y); });
+             slope_along(x, h, 4e-3 * h, later, [&](State const& y, double) { return value(perturbed_.itself(), y); });
   }
 
   std::vector<Parameter> parameters_;
   V full_;
-  Variants beside_;
+  Variants perturbed_;
   RecordedRun<V> run_;
   AlphaStepAdjoint<> adjoint_;
   ObjectiveDerivatives<M> objective_;
   RunSensitivity still_;
-  std::vector<double> step_slope_, until_slope_;
+  std::vector<double> step_slope_, end_time_slope_;
   EquationDerivative by_;
   VecX mu_;
   GradientResult out_;

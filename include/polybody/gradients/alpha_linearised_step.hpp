@@ -28,7 +28,7 @@ class AlphaLinearisedStep {
   using Factors = typename StepFactorisations<Solver, Derivative::direct>::OfStep;  ///< of the tangent of a step
   /// Number of directions in one evaluation of the equations; each is a partial derivative of the dual numbers. With
   /// eight directions, the intermediate results between joints and bodies exceed the cache.
-  static constexpr int lanes = 4;
+  static constexpr int max_directions = 4;
 
   /// The model must outlive this object.
   template <class M>
@@ -67,13 +67,14 @@ class AlphaLinearisedStep {
     size_of_lambda_ = after.lambda.head(lambda_.size()).norm();
   }
 
-  /// Replaces the derivatives of the state before the step, along up to `lanes` directions, by those of the state after
-  /// it. A free lane can evaluate the probe of the error estimate. Returns an upper estimate of the next correction. It
-  /// is relative to the derivatives of a and λ, or to a and λ divided by the parameter's scale if these are larger.
+  /// Replaces the derivatives of the state before the step, along up to `max_directions` directions, by those of the
+  /// state after it. A free lane can evaluate the probe of the error estimate. Returns an upper estimate of the next
+  /// correction. It is relative to the derivatives of a and λ, or to a and λ divided by the parameter's scale if these
+  /// are larger.
   /// \throws SingularMatrix as `set`.
   double advance(StepEnds const& step, std::span<StepDirection const> directions) {
     std::size_t const n = directions.size();
-    bool const far = passes_ > 2, probes = n < std::size_t(lanes) && !probe_.known() && probe_.draw(y_[n]);
+    bool const far = passes_ > 2, probes = n < std::size_t(max_directions) && !probe_.known() && probe_.draw(y_[n]);
     for (std::size_t l = 0; l < n; ++l) guess(step, directions[l], far, y_[l]);
     find_end(step, directions);
     double left = std::numeric_limits<double>::infinity(), more = left;
@@ -95,7 +96,7 @@ class AlphaLinearisedStep {
   }
 
  private:
-  using D = Dual<lanes>;
+  using D = Dual<max_directions>;
   using Dots = VecXOf<D>;
   using Partials = typename D::Partials;
   static constexpr int most_passes = 30;
@@ -108,9 +109,9 @@ class AlphaLinearisedStep {
             {ApproximateFactors::turned, 2.5}};
   }
 
-  /// Vectors of all lanes, read one entry of each at a time. Lanes without a direction read the probe.
+  /// Vectors of all directions, read one entry of each at a time. A missing direction is replaced by the probe.
   struct Side {
-    std::array<double const*, std::size_t(lanes)> of;
+    std::array<double const*, std::size_t(max_directions)> of;
     Partials operator[](Index i) const {
       Partials out;
       for (std::size_t l = 0; l < of.size(); ++l) out[Index(l)] = of[l][i];
@@ -155,7 +156,7 @@ class AlphaLinearisedStep {
                own = side(n, [&](std::size_t l) -> VecX const& { return state(l).history; }),
                y = side(n, [&](std::size_t l) -> VecX const& { return y_[l]; });
     Partials dh;
-    for (std::size_t l = 0; l < std::size_t(lanes); ++l) dh[Index(l)] = along(directions, l).dh;
+    for (std::size_t l = 0; l < std::size_t(max_directions); ++l) dh[Index(l)] = along(directions, l).dh;
     for (Index i = 0; i < from_.size(); ++i) from_[i].d = q[i];
     for (Index i = 0; i < a_.size(); ++i) {
       Partials const v0 = v[i], a0 = own[i], a1 = y[i];
@@ -222,15 +223,15 @@ class AlphaLinearisedStep {
   }
   /// Computes −δ[M v̇ − f + Gᵀλ] and −δΦ/βh² (nonholonomic: −δΦ̇/γh) of each direction, with the effect of its parameter.
   void right_hand_sides(StepEnds const& step, std::span<StepDirection const> directions) {
-    double const of_position = -1.0 / (method_.beta * step.h * step.h), of_speed = -1.0 / (method_.gamma * step.h);
+    double const of_position = -1.0 / (method_.beta * step.h * step.h), of_velocity = -1.0 / (method_.gamma * step.h);
     Index const nv = r_.size();
-    std::size_t const with_probe = std::min(directions.size() + 1, std::size_t(lanes));
+    std::size_t const with_probe = std::min(directions.size() + 1, std::size_t(max_directions));
     for (std::size_t l = 0; l < with_probe; ++l) {
       EquationDerivative const& of = along(directions, l).by;
       for (Index i = 0; i < nv; ++i) rhs_[l][i] = -(r_[i].d[Index(l)] + of.balance[i]);
       for (Index i = 0; i < phi_.size(); ++i) rhs_[l][nv + i] = of_position * (phi_[i].d[Index(l)] + of.rows[i]);
       for (Index const i : dual_.nonholonomic_equations())
-        rhs_[l][nv + i] = of_speed * (rate_[i].d[Index(l)] + of.rows[i]);
+        rhs_[l][nv + i] = of_velocity * (rate_[i].d[Index(l)] + of.rows[i]);
     }
   }
   /// Applies the correction of y to the end of the step.
@@ -274,7 +275,7 @@ class AlphaLinearisedStep {
   int passes_ = 1;         // evaluations for the last directions
   double size_of_a_ = 0.0, size_of_lambda_ = 0.0;
   Dots from_, delta_, q_, v_, a_, lambda_, r_, phi_, rate_;
-  std::array<VecX, std::size_t(lanes)> y_, rhs_, correction_;  // y: changes of a₁ and λ₁, of each direction
+  std::array<VecX, std::size_t(max_directions)> y_, rhs_, correction_;  // y: changes of a₁ and λ₁, of each direction
   VecX guess_, multipliers_;
 };
 

@@ -21,11 +21,11 @@ class AlphaSensitivities {
   [[gnu::cold]] explicit AlphaSensitivities(V& full)
       : full_(&full), slope_(full.scenario.model, full.system, full.method) {}
 
-  /// Replaces the sensitivities of `lanes` by those at the end of a step. Returns an upper estimate of the next
+  /// Replaces the sensitivities of `columns` by those at the end of a step. Returns an upper estimate of the next
   /// relative correction.
-  double advance(SensitivityStep const& step, std::span<TangentColumn const> lanes, Variants& beside) {
+  double advance(SensitivityStep const& step, std::span<TangentColumn const> columns, Variants& perturbed) {
     auto const& [before, after, h, searched] = step;
-    V& spare = beside.itself();
+    V& spare = perturbed.itself();
     bool const corrects = spare.method.start_step(spare.system, before, h, spare.work);
     State corrected;
     if (corrects) {
@@ -34,38 +34,38 @@ class AlphaSensitivities {
     }
     own_before_ = spare.work.a0;
     own_after_ = after.history.head(after.v.size());
-    for (TangentColumn const& lane : lanes) start_step(before, h, lane, corrects, beside);
+    for (TangentColumn const& column : columns) start_step(before, h, column, corrects, perturbed);
     StepEnds const ends{corrects ? corrected : before, after, own_before_, own_after_, h};
     slope_.set(ends, searched ? nullptr : full_->factors(h));
-    beside.begin_step();
-    constexpr std::size_t most = std::size_t(AlphaLinearisedStep<>::lanes);
-    directions_.resize(std::min(lanes.size(), most));
+    perturbed.begin_step();
+    constexpr std::size_t most = std::size_t(AlphaLinearisedStep<>::max_directions);
+    directions_.resize(std::min(columns.size(), most));
     double left = 0.0;
-    for (std::size_t first = 0, count; first < lanes.size(); first += count) {
-      count = std::min(first == 0 ? most - 1 : most, lanes.size() - first);
+    for (std::size_t first = 0, count; first < columns.size(); first += count) {
+      count = std::min(first == 0 ? most - 1 : most, columns.size() - first);
       for (std::size_t l = 0; l < count; ++l) {
-        TangentColumn const& lane = lanes[first + l];
-        lane.tangent->dt += lane.dh;
-        beside.template of_equations<State>(lane.j, {after, h, lane.tangent->dt, 0}, directions_[l].by);
-        directions_[l].dx = &lane.tangent->dx;
-        directions_[l].dh = lane.dh;
+        TangentColumn const& column = columns[first + l];
+        column.tangent->dt += column.dh;
+        perturbed.template of_equations<State>(column.j, {after, h, column.tangent->dt, 0}, directions_[l].by);
+        directions_[l].dx = &column.tangent->dx;
+        directions_[l].dh = column.dh;
       }
       left = std::max(left, slope_.advance(ends, std::span(directions_).first(count)));
     }
-    for (TangentColumn const& lane : lanes) push_length(*lane.tangent, lane.dh);
+    for (TangentColumn const& column : columns) push_length(*column.tangent, column.dh);
     return left;
   }
 
  private:
   /// Adds the derivative of the correction of velocities and algorithmic accelerations at the start of a step from x.
-  static void start_step(State const& x, double h, TangentColumn const& lane, bool corrects, Variants& beside) {
-    RunSensitivity& tangent = *lane.tangent;
+  static void start_step(State const& x, double h, TangentColumn const& column, bool corrects, Variants& perturbed) {
+    RunSensitivity& tangent = *column.tangent;
     double const shifted = x.history[x.history.size() - 1];
-    if (!corrects && (shifted == 0.0 || lane.dh == tangent.lengths[StepHistory::lengths - 1])) return;
+    if (!corrects && (shifted == 0.0 || column.dh == tangent.lengths[StepHistory::lengths - 1])) return;
     Index const nv = x.v.size();
     std::optional<bool> const decided = V::decided(x, h, corrects);
-    State const change = beside.of_map(lane.j, x, tangent, {h, lane.dh},
-                                       [&](V& v, State& y, double length) { v.set_out_change(y, length, decided); });
+    State const change = perturbed.of_map(column.j, x, tangent, {h, column.dh},
+                                          [&](V& v, State& y, double length) { v.set_out_change(y, length, decided); });
     tangent.dx.v += change.v;
     tangent.dx.history.head(nv) += change.history.head(nv);
   }

@@ -61,9 +61,9 @@ CheckpointingReport reverse_steps(X const& first, std::size_t steps, std::size_t
   for (std::size_t end = steps; end > 0;) {
     report.snapshots = std::max(report.snapshots, count);
     Kept& last = kept[count - 1];
-    std::size_t const left = end - last.step, room = snapshots > count ? snapshots - count : 0;
-    if (left > 1 && room > 0) {
-      std::size_t const from = last.step, to = from + next_checkpoint(left, room + 1);
+    std::size_t const left = end - last.step, free_snapshots = snapshots > count ? snapshots - count : 0;
+    if (left > 1 && free_snapshots > 0) {
+      std::size_t const from = last.step, to = from + next_checkpoint(left, free_snapshots + 1);
       if (count == kept.size())
         kept.push_back({to, last.x});
       else

@@ -10,10 +10,10 @@
 #include <functional>
 #include <memory>
 
+#include <polybody/gradients/affected_equations.hpp>
 #include <polybody/gradients/perturbed_model.hpp>
 #include <polybody/gradients/requirements.hpp>
 #include <polybody/gradients/shared_equations.hpp>
-#include <polybody/gradients/touched_equations.hpp>
 
 namespace polybody::detail {
 
@@ -48,7 +48,7 @@ class EquationDerivatives {
     for (std::size_t j = 0; j < parameters.size(); ++j) {
       Place& place = places_[j];
       place.distance = parameters[j].distance();
-      place.equations = touched_equations(model.system, parameters[j]);
+      place.equations = affected_equations(model.system, parameters[j]);
       auto const is_free = [&](Group const& in) { return in.equations.are_free(place.equations); };
       place.group = std::size_t(std::find_if(groups_.begin(), groups_.end(), is_free) - groups_.begin());
       if (place.group == groups_.size()) groups_.emplace_back(std::size_t(size));
@@ -120,7 +120,7 @@ class EquationDerivatives {
   /// \throws InvalidInput if parameter j changes an equation of objects at x that it does not name, by more than
   /// round-off. \param other model with another value of parameter j
   template <class X>
-  void require_touched(std::size_t j, V& model, V& other, X const& x) const {
+  void require_named(std::size_t j, V& model, V& other, X const& x) const {
     Parameter const& p = parameters_[j];
     if (p.affects.empty()) return;
     double const force = force_at(model, x);
@@ -131,13 +131,14 @@ class EquationDerivatives {
                             : std::abs(there.rows[i - velocities] - here.rows[i - velocities]);
     };
     double most[2] = {1e-11 * force, 1e-13};  // limits for balance and rows: round-off, or a part of the named changes
-    std::vector<char> touched(std::size_t(model.system.size()), 0);
+    std::vector<char> affected(std::size_t(model.system.size()), 0);
     for (Index const i : places_[j].equations) {
-      touched[std::size_t(i)] = 1;
+      affected[std::size_t(i)] = 1;
       most[i < velocities ? 0 : 1] = std::max(most[i < velocities ? 0 : 1], 1e-7 * change(i));
     }
     for (Index i = 0; i < model.system.size(); ++i)
-      if (!touched[std::size_t(i)] && change(i) > most[i < velocities ? 0 : 1]) refuse_unnamed(model.system, p, i, x.t);
+      if (!affected[std::size_t(i)] && change(i) > most[i < velocities ? 0 : 1])
+        refuse_unnamed(model.system, p, i, x.t);
   }
 
  private:
@@ -218,12 +219,12 @@ class EquationDerivatives {
       difference.tail(of.rows.size()) += FourPoints::weights[k] * of.rows;
     }
   }
-  /// Perturbs each member of the group alone. \throws InvalidInput as `require_touched`.
+  /// Perturbs each member of the group alone. \throws InvalidInput as `require_named`.
   template <class X>
   [[gnu::cold]] void settle(Group& group, Set const& set, X const& x, Index velocities) {
     std::shared_ptr<V> const itself = models_(nobody, 0);
     for (std::size_t const j : group.members)
-      for (std::size_t k = 0; k < 2; ++k) require_touched(j, *itself, *models_(j, k), x);
+      for (std::size_t k = 0; k < 2; ++k) require_named(j, *itself, *models_(j, k), x);
     note_rounding(x);
     for (std::size_t i = 0; i < group.equations.size(); ++i) {
       ValuesAtPlaces const f = group.at_places(set, i);

@@ -30,13 +30,13 @@ class FullStates<M, T> {
   StateOf<T> const& operator()(StateOf<T> const& x) {
     stepped_ = x;
     stepped_.lambda.conservativeResize(system_.rows());
-    expand(system_, stepped_, shown_, scratch_);
-    return shown_;
+    expand(system_, stepped_, full_, scratch_);
+    return full_;
   }
 
  private:
   BasicSystem<T> system_;
-  StateOf<T> stepped_, shown_;
+  StateOf<T> stepped_, full_;
   VecXOf<T> scratch_;
 };
 

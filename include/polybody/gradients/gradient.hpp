@@ -40,18 +40,18 @@ concept ObjectiveFactory = requires(F const make, std::span<double const> p) {
 
 namespace detail {
 
-/// Forward run and backward sweep. \tparam Way backward sweep for the integrator's family
-template <class Make, class I, template <class, class> class Way>
+/// Forward run and backward sweep. \tparam Sweep backward sweep for the integrator's family
+template <class Make, class I, template <class, class> class Sweep>
 class AdjointRun {
   using S = std::remove_cvref_t<decltype(std::declval<Make const&>()(std::declval<std::span<double const>>()))>;
-  using W = Way<S, I>;
+  using W = Sweep<S, I>;
   using V = typename W::V;
   using M = typename V::Model;
   /// Scenario with one perturbed parameter, and its conversion to full states.
   struct ParameterDifferences {
     S scenario;
-    FullStates<M> shown;
-    explicit ParameterDifferences(S of) : scenario(std::move(of)), shown(scenario.model) {}
+    FullStates<M> full_state;
+    explicit ParameterDifferences(S of) : scenario(std::move(of)), full_state(scenario.model) {}
   };
 
  public:
@@ -59,7 +59,7 @@ class AdjointRun {
       : make_(make),
         parameters_(parameters),
         full_(make(values_of(parameters)), method),
-        way_(full_),
+        sweep_(full_),
         derivatives_(full_.scenario.model) {
     require_plain(full_.scenario.options, "gradient");
     require_still(full_.scenario.options);
@@ -73,7 +73,7 @@ class AdjointRun {
     require_assembled_start(full_);
     State x = full_.started(begin_plan(from));
     plan(x);
-    out_.value += weight(0) * term(full_.scenario.integrand, full_.scenario.model, full_.shown(x));
+    out_.value += weight(0) * term(full_.scenario.integrand, full_.scenario.model, full_.full_state(x));
     x = W::start_step(full_, std::move(x), steps_.front().h);
     EquationDerivatives<V> equations(make_, parameters_, full_);
     prepare(x, equations);
@@ -85,7 +85,7 @@ class AdjointRun {
         [&](std::size_t k, State const& before, State const& after) {
           if (!at_end) begin_at_end(after, bar);
           at_end = true;
-          double const left = way_.backward_step({before, after, steps_[k].taken}, bar, equations, out_.derivatives);
+          double const left = sweep_.backward_step({before, after, steps_[k].taken}, bar, equations, out_.derivatives);
           out_.left = std::max(out_.left, require_converged(left, after.t, "gradient"));
           if (k > 0) add_integrand(k, before, bar);
         });
@@ -163,19 +163,20 @@ class AdjointRun {
   }
 
   void begin_at_end(State const& last, Costate& bar) {
-    out_.value += term(full_.scenario.end, full_.scenario.model, full_.shown(last));
+    out_.value += term(full_.scenario.end, full_.scenario.model, full_.full_state(last));
     derivatives_.add(full_.scenario.end, full_.scenario.model, last, 1.0, bar);
-    add_to_derivatives([&](ParameterDifferences& b) { return term(b.scenario.end, b.scenario.model, b.shown(last)); });
+    add_to_derivatives(
+        [&](ParameterDifferences& b) { return term(b.scenario.end, b.scenario.model, b.full_state(last)); });
     add_integrand(steps_.size(), last, bar);
   }
   /// Adds the integrand at the state x, number k, and its derivatives.
   void add_integrand(std::size_t k, State const& x, Costate& bar) {
     if constexpr (std::same_as<decltype(full_.scenario.integrand), NoTerm>) return;
     double const w = weight(k);
-    out_.value += w * term(full_.scenario.integrand, full_.scenario.model, full_.shown(x));
+    out_.value += w * term(full_.scenario.integrand, full_.scenario.model, full_.full_state(x));
     derivatives_.add(full_.scenario.integrand, full_.scenario.model, x, w, bar);
     add_to_derivatives(
-        [&](ParameterDifferences& b) { return w * term(b.scenario.integrand, b.scenario.model, b.shown(x)); });
+        [&](ParameterDifferences& b) { return w * term(b.scenario.integrand, b.scenario.model, b.full_state(x)); });
   }
   /// Computes the derivatives of the initial state and stores the perturbed scenarios. \param x start of the first step
   void prepare(State const& x, EquationDerivatives<V> const& equations) {
@@ -189,17 +190,17 @@ class AdjointRun {
         values[j] += FourPoints::places[k] * p.distance();
         V v(make_(values), full_.method);
         require_alike(full_, v, p, "gradient");
-        if (k == 0) equations.require_touched(j, full_, v, x);
+        if (k == 0) equations.require_named(j, full_, v, x);
         double const by = FourPoints::weights[k] / p.distance();
         State y = v.started(h);
-        of_integrand += by * term(v.scenario.integrand, v.scenario.model, v.shown(y));
+        of_integrand += by * term(v.scenario.integrand, v.scenario.model, v.full_state(y));
         y = W::start_step(v, std::move(y), h);
         if (!W::begin_alike(x, y))
           throw InvalidInput("gradient.start_correction",
                              {ErrorObject{"gradient"}, ": the start correction changes with \"", p.name,
                               "\". Set start_correction to false."});
         add(dx, y, by);
-        beside_.push_back(std::make_unique<ParameterDifferences>(std::move(v.scenario)));
+        perturbed_.push_back(std::make_unique<ParameterDifferences>(std::move(v.scenario)));
       }
       out_.derivatives[Index(j)] += weight(0) * of_integrand;
       starts_.push_back(std::move(dx));
@@ -211,7 +212,7 @@ class AdjointRun {
     for (std::size_t j = 0; j < parameters_.size(); ++j) {
       double slope = 0.0;
       for (std::size_t k = 0; k < FourPoints::places.size(); ++k)
-        slope += FourPoints::weights[k] / parameters_[j].distance() * f(*beside_[4 * j + k]);
+        slope += FourPoints::weights[k] / parameters_[j].distance() * f(*perturbed_[4 * j + k]);
       out_.derivatives[Index(j)] += slope;
     }
   }
@@ -219,8 +220,8 @@ class AdjointRun {
   Make const& make_;
   std::vector<Parameter> parameters_;
   V full_;
-  W way_;
-  std::vector<std::unique_ptr<ParameterDifferences>> beside_;  // four for each parameter
+  W sweep_;
+  std::vector<std::unique_ptr<ParameterDifferences>> perturbed_;  // four for each parameter
   std::vector<State> starts_;  // derivatives of the start of the first step, by each parameter
   StepPlan plan_;
   double largest_ = 0.0;

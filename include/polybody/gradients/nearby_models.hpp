@@ -26,8 +26,8 @@ class NearbyModels {
       for (double const place : FourPoints::places) {
         std::vector<double> p = values_of(parameters);
         p[j] += place * parameters[j].distance();
-        beside_.push_back(std::make_shared<V>(make(p), method));
-        require_alike(itself_, *beside_.back(), parameters[j], who);
+        perturbed_.push_back(std::make_shared<V>(make(p), method));
+        require_alike(itself_, *perturbed_.back(), parameters[j], who);
       }
     find_times(who);
   }
@@ -35,9 +35,9 @@ class NearbyModels {
   V& itself() { return itself_; }                                  ///< model for the values of the parameters
   TimeMap const& times(std::size_t j) const { return times_[j]; }  ///< times of the runs with perturbed parameter j
   /// Model at difference point k of parameter j.
-  V& beside(std::size_t j, std::size_t k) { return *beside_[points * j + k]; }
+  V& perturbed(std::size_t j, std::size_t k) { return *perturbed_[points * j + k]; }
   /// Model at difference point k of parameter j, with shared ownership.
-  std::shared_ptr<V> shared(std::size_t j, std::size_t k) const { return beside_[points * j + k]; }
+  std::shared_ptr<V> shared(std::size_t j, std::size_t k) const { return perturbed_[points * j + k]; }
   Parameter const& parameter(std::size_t j) const { return parameters_[j]; }  ///< parameter number j
 
   /// Length of a step from the time `from` in the run with point k of parameter j [s]. Its end corresponds to t + h,
@@ -61,7 +61,7 @@ class NearbyModels {
       auto const add_time = [&](double t, auto const& of) {
         if (!std::isfinite(t)) return;
         TimeMap::Moving m{t, {}};
-        for (std::size_t k = 0; k < points; ++k) m.there[k] = of(*beside_[points * j + k]);
+        for (std::size_t k = 0; k < points; ++k) m.there[k] = of(*perturbed_[points * j + k]);
         times.push_back(m);
       };
       add_time(start, [](V const& v) { return v.scenario.start.t; });
@@ -72,7 +72,7 @@ class NearbyModels {
 
   std::vector<Parameter> parameters_;
   V itself_;
-  std::vector<std::shared_ptr<V>> beside_;  // four for each parameter
+  std::vector<std::shared_ptr<V>> perturbed_;  // four for each parameter
   std::vector<TimeMap> times_;
 };
 

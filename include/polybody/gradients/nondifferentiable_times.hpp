@@ -12,14 +12,14 @@ namespace polybody::detail {
 
 /// \throws InvalidInput always: an event coincides with a breakpoint or the end of the run at t [s].
 template <class = void>
-[[noreturn, gnu::cold]] void refuse_event_at_corner(double t, char const* who) {
+[[noreturn, gnu::cold]] void refuse_event_at_breakpoint(double t, char const* who) {
   throw InvalidInput("derivative.coincident_times",
                      {ErrorObject{who}, ": an event coincides with a breakpoint or with the end of the run at t = ",
                       ErrorTime{t}, " s, so that there is no derivative there. Move one of them by a step."});
 }
 /// \throws InvalidInput always: the run ends at t [s] at a breakpoint that moves with the parameter `name`.
 template <class = void>
-[[noreturn, gnu::cold]] void refuse_corner_at_end(double t, std::string const& name, char const* who) {
+[[noreturn, gnu::cold]] void refuse_breakpoint_at_end(double t, std::string const& name, char const* who) {
   throw InvalidInput(
       "derivative.coincident_times",
       {ErrorObject{who}, ": a breakpoint at the end of the run, t = ", ErrorTime{t}, " s, moves with \"", name,

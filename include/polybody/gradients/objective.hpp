@@ -102,25 +102,25 @@ void add_derivatives(F const& f, M const& model, State const& x, double weight, 
 template <class M>
 class ObjectiveDerivatives {
  public:
-  [[gnu::cold]] explicit ObjectiveDerivatives(M const& model) : shown_(model), recorded_(model) {}
+  [[gnu::cold]] explicit ObjectiveDerivatives(M const& model) : full_state_(model), recorded_(model) {}
 
   /// Adds `weight` times the derivatives of f(model, full state of x) by the numbers of x to `bar`.
   template <class F>
   void add(F const& f, M const& model, State const& x, double weight, Costate& bar) {
     if constexpr (std::same_as<F, NoTerm>) return;
     if constexpr (M::eliminates) {
-      State const& shown = shown_(x);
-      Costate of_shown(shown);
-      add_derivatives(f, model, shown, weight, recording_, of_shown);
-      pull(x, of_shown, bar);
+      State const& full = full_state_(x);
+      Costate of_full(full);
+      add_derivatives(f, model, full, weight, recording_, of_full);
+      pull(x, of_full, bar);
     } else {
       add_derivatives(f, model, x, weight, recording_, bar);
     }
   }
 
  private:
-  /// Adds the adjoint variables of the reduced state x to `bar`, computed from those of its full state, `of_shown`.
-  void pull(State const& x, Costate const& of_shown, Costate& bar) {
+  /// Adds the adjoint variables of the reduced state x to `bar`, computed from those of its full state, `of_full`.
+  void pull(State const& x, Costate const& of_full, Costate& bar) {
     Tape::On const on(recording_);
     StateOf<ReverseVar> from;
     from.t = x.t;
@@ -130,10 +130,10 @@ class ObjectiveDerivatives {
     set_variables(x.lambda, from.lambda);
     StateOf<ReverseVar> const& to = recorded_(from);
     recording_.clear_derivatives(recording_.size());
-    add_to_derivatives(recording_, to.q, of_shown.q);
-    add_to_derivatives(recording_, to.v, of_shown.v);
-    add_to_derivatives(recording_, to.a, of_shown.a);
-    add_to_derivatives(recording_, to.lambda, of_shown.lambda);
+    add_to_derivatives(recording_, to.q, of_full.q);
+    add_to_derivatives(recording_, to.v, of_full.v);
+    add_to_derivatives(recording_, to.a, of_full.a);
+    add_to_derivatives(recording_, to.lambda, of_full.lambda);
     recording_.sweep(recording_.size());
     add_derivatives_of(from.q, bar.q);
     add_derivatives_of(from.v, bar.v);
@@ -144,7 +144,7 @@ class ObjectiveDerivatives {
     for (Index i = 0; i < from.size(); ++i) to[i] += recording_.slope(from[i].number);
   }
 
-  FullStates<M> shown_;
+  FullStates<M> full_state_;
   FullStates<M, ReverseVar> recorded_;
   Tape recording_;
 };

@@ -20,7 +20,7 @@ struct PerturbedModel {
 
   S scenario;
   System system;
-  FullStates<Model> shown;
+  FullStates<Model> full_state;
   AlphaMethod method;
   AlphaMethod::Workspace<DefaultSolver> work;
   bool steps = false;  ///< a step was computed and the tangent analysed; most perturbed models never take a step
@@ -29,7 +29,7 @@ struct PerturbedModel {
   PerturbedModel(S made, AlphaMethod const& m)
       : scenario(std::move(made)),
         system(system_for<I>(scenario.model)),
-        shown(scenario.model),
+        full_state(scenario.model),
         method(m),
         work(system),
         at_place{VecX::Zero(system.velocities()), VecX::Zero(system.rows())} {}
@@ -83,15 +83,15 @@ struct PerturbedModel {
   StepReport step(State& x, double h) {
     if (!steps) method.analyse(system, work);
     steps = true;
-    work.kept_factor = {};
+    work.reused_factorisation = {};
     work.tangent.forget();
     work.solver().limit_reorderings(0);
     return method.step(system, x, h, work);
   }
-  VecX outputs(State const& x) { return values_of_outputs(scenario, shown(x)); }
+  VecX outputs(State const& x) { return values_of_outputs(scenario, full_state(x)); }
   /// Factorisation of the last step if it has the length h and is usable, else null.
   TangentSolver<StepSolver<DefaultSolver>>* factors(double h) {
-    return work.kept_factor.usable && work.h_factored == h ? &work.solver() : nullptr;
+    return work.reused_factorisation.usable && work.h_factored == h ? &work.solver() : nullptr;
   }
   /// r and Φ (nonholonomic: Φ̇) at x. The reference is valid until the next call.
   EquationDerivative const& equations(State const& x) { return equations(x, x.t); }

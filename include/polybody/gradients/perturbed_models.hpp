@@ -57,7 +57,7 @@ class PerturbedModels {
   double of_number(std::size_t j, F const& f) {
     double const here = f(n_.itself());
     double sum = 0.0;
-    for (std::size_t k = 0; k < points; ++k) sum += weight(j, k) * (f(n_.beside(j, k)) - here);
+    for (std::size_t k = 0; k < points; ++k) sum += weight(j, k) * (f(n_.perturbed(j, k)) - here);
     return sum;
   }
 
@@ -68,9 +68,9 @@ class PerturbedModels {
     State const x = n_.itself().first();
     State sum;
     for (std::size_t k = 0; k < points; ++k) {
-      State y = n_.beside(j, k).first();
+      State y = n_.perturbed(j, k).first();
       double const length = n_.length(j, k, x.t, h, y.t);
-      take(sum, f, {n_.beside(j, k), std::move(y), length}, weight(j, k));
+      take(sum, f, {n_.perturbed(j, k), std::move(y), length}, weight(j, k));
     }
     double const longer = dh - (n_.times(j).slope(x.t + h) - n_.times(j).slope(x.t));
     if (std::abs(longer) * size(j, h) <= negligible * h) return sum;
@@ -91,15 +91,15 @@ class PerturbedModels {
     State sum;
     if (j != along_motion)
       for (std::size_t k = 0; k < points; ++k) {
-        State y = detail::beside(x, with, FourPoints::places[k] * n_.parameter(j).distance());
+        State y = detail::displaced(x, with, FourPoints::places[k] * n_.parameter(j).distance());
         y.t = n_.times(j)(k, x.t);
         double const length = n_.length(j, k, x.t, h, y.t);
-        take(sum, f, {n_.beside(j, k), std::move(y), length}, weight(j, k));
+        take(sum, f, {n_.perturbed(j, k), std::move(y), length}, weight(j, k));
       }
     if (p.reach == 0.0) return sum;
     for (std::size_t k = 0; k < points; ++k) {
       double const e = FourPoints::places[k] * p.reach;
-      State y = detail::beside(x, p.along, e);
+      State y = detail::displaced(x, p.along, e);
       lengths_of(y) += e * tangent.lengths;
       y.t += e * p.dt;
       take(sum, f, {n_.itself(), std::move(y), h + e * p.dh}, FourPoints::weights[k] / p.reach);
@@ -108,7 +108,7 @@ class PerturbedModels {
   }
 
   /// Sets the state x for `of_values`.
-  void show(State const& x) { shown_ = x; }
+  void set_state(State const& x) { state_ = x; }
   /// Derivative of the numbers f(model, state) at x. \param h length of steps [s]
   template <class F>
   VecX of_values(std::size_t j, State const& x, RunSensitivity const& tangent, double h, F const& f) {
@@ -121,16 +121,16 @@ class PerturbedModels {
     };
     if (j != along_motion)
       for (std::size_t k = 0; k < points; ++k) {
-        add_motion(shown_, with, FourPoints::places[k] * n_.parameter(j).distance(), x);
-        shown_.t = n_.times(j)(k, x.t);
-        add_value(f(n_.beside(j, k), shown_), weight(j, k));
+        add_motion(state_, with, FourPoints::places[k] * n_.parameter(j).distance(), x);
+        state_.t = n_.times(j)(k, x.t);
+        add_value(f(n_.perturbed(j, k), state_), weight(j, k));
       }
     if (p.reach == 0.0) return sum;
     for (std::size_t k = 0; k < points; ++k) {
       double const e = FourPoints::places[k] * p.reach;
-      add_motion(shown_, p.along, e, x);
-      shown_.t = x.t + e * p.dt;
-      add_value(f(n_.itself(), shown_), FourPoints::weights[k] / p.reach);
+      add_motion(state_, p.along, e, x);
+      state_.t = x.t + e * p.dt;
+      add_value(f(n_.itself(), state_), FourPoints::weights[k] / p.reach);
     }
     return sum;
   }
@@ -160,7 +160,7 @@ class PerturbedModels {
       derivatives_->get(number_[j], x, number, sum);
     } else if (j != along_motion) {
       for (std::size_t k = 0; k < points; ++k)
-        add(sum, n_.beside(j, k).equations(x, n_.times(j)(k, x.t)), weight(j, k));
+        add(sum, n_.perturbed(j, k).equations(x, n_.times(j)(k, x.t)), weight(j, k));
       later -= n_.times(j).slope(x.t);
     }
     if (later == 0.0) return;
@@ -170,9 +170,9 @@ class PerturbedModels {
     add(sum, by_time, later);
   }
   /// \throws InvalidInput if a parameter changes an equation of objects at x that it does not name.
-  void require_touched(State const& x) {
+  void require_named(State const& x) {
     for (std::size_t i = 0; i < still_.size(); ++i)
-      derivatives_->require_touched(i, n_.itself(), n_.beside(still_[i], 0), x);
+      derivatives_->require_named(i, n_.itself(), n_.perturbed(still_[i], 0), x);
   }
 
  private:
@@ -187,7 +187,7 @@ class PerturbedModels {
     double dt, dh;      // of the part along the motion
     double reach;       // distance of the differences along the motion; 0 if the whole change is at fixed time
   };
-  struct Asked {
+  struct Evaluation {
     V& variant;
     State x;
     double h;
@@ -229,13 +229,13 @@ class PerturbedModels {
   EquationDerivative rate_of_equations(Place const& x, double h) {
     constexpr std::array<double, 5> weights{25.0 / 12.0, -4.0, 3.0, -4.0 / 3.0, 0.25};
     double const e = 0.02 * h;
-    EquationDerivative sum = no_slope();
+    EquationDerivative sum = zero_derivative();
     for (std::size_t i = 0; i < weights.size(); ++i)
       add(sum, n_.itself().equations(x, x.t - double(i) * e), weights[i] / e);
     return sum;
   }
 
-  EquationDerivative no_slope() {
+  EquationDerivative zero_derivative() {
     System const& s = n_.itself().system;
     return {VecX::Zero(s.velocities()), VecX::Zero(s.rows())};
   }
@@ -245,7 +245,7 @@ class PerturbedModels {
   }
   static void add(State& sum, State const& of, double by) { detail::add(sum, of, by); }
   template <class F>
-  static void take(State& sum, F const& f, Asked of, double by) {
+  static void take(State& sum, F const& f, Evaluation of, double by) {
     f(of.variant, of.x, of.h);
     if (sum.q.size() == 0) sum = zeros_like(of.x);
     add(sum, of.x, by);
@@ -255,7 +255,7 @@ class PerturbedModels {
   std::vector<std::size_t> number_, still_;  // index of each parameter in `still_`; parameters without moving times
   std::optional<EquationDerivatives<V>> derivatives_;  // by the parameters in `still_`
   std::vector<EquationDerivative> by_time_;            // ∂/∂t at each point of a step; scale 0 if unknown
-  State shown_;
+  State state_;
 };
 
 }  // namespace polybody::detail

@@ -19,7 +19,7 @@ struct PerturbedStageModel {
 
   S scenario;
   System system;
-  FullStates<Model> shown;
+  FullStates<Model> full_state;
   MethodOf<I> method;
   decltype(std::declval<MethodOf<I> const&>().template workspace<DefaultSolver>(std::declval<System&>())) work;
   PointEquations<> at_place;
@@ -27,7 +27,7 @@ struct PerturbedStageModel {
   PerturbedStageModel(S made, MethodOf<I> const& m)
       : scenario(std::move(made)),
         system(system_for<I, Capabilities::implicit_step>(scenario.model)),
-        shown(scenario.model),
+        full_state(scenario.model),
         method(m),
         work(method.template workspace<DefaultSolver>(system)) {}
 
@@ -35,7 +35,7 @@ struct PerturbedStageModel {
   double length() const { return length_of_steps(scenario.options); }
   /// Times of the breakpoints: first those of drives and loads, then those of the options [s].
   std::vector<double> breakpoints() const { return breakpoints_of(system, scenario.options); }
-  VecX outputs(State const& x) { return values_of_outputs(scenario, shown(x)); }
+  VecX outputs(State const& x) { return values_of_outputs(scenario, full_state(x)); }
   /// Left-hand sides of the equations at an evaluation point.
   EquationDerivative equations(EvaluationPoint<> const& x) {
     at_place.evaluate(system, x);
@@ -69,7 +69,7 @@ struct PerturbedStageModel {
   }
   /// Takes a step of at most h that depends on x alone: with its own factorisation.
   StepReport step(State& x, double h) {
-    if constexpr (requires { work.kept_factor; }) work.kept_factor = {};
+    if constexpr (requires { work.reused_factorisation; }) work.reused_factorisation = {};
     return method.step(system, x, h, work);
   }
 };

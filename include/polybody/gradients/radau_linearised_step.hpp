@@ -26,7 +26,7 @@ template <LinearSolver Solver = DefaultSolver>
 class RadauLinearisedStep {
  public:
   /// Number of directions in one pass through the equations: one for each derivative of a dual number.
-  static constexpr int lanes = SolvedPoints<Solver>::lanes;
+  static constexpr int max_directions = SolvedPoints<Solver>::max_directions;
 
   /// The model must outlive this object. \param system with `Capabilities::implicit_step`; \param method integrator of
   /// the steps
@@ -43,16 +43,16 @@ class RadauLinearisedStep {
   /// SingularMatrix in a singular configuration, NonFiniteValue.
   void set(StepTaken const& step) { stages_.find(step); }
 
-  /// Converts, in place, up to `lanes` derivatives of the state before the step to derivatives of the state after it.
-  /// Returns the largest relative change in the last corrections. The reference is the norm of the derivatives, or the
-  /// norm of v̇ or λ over the scale of the parameter if it is larger. \param slope derivative of the equations at each
-  /// evaluation point, for the parameter of a direction and the change of time along it; \param dh derivative of the
-  /// step length along each direction [s], or none if the length is constant
+  /// Converts, in place, up to `max_directions` derivatives of the state before the step to derivatives of the state
+  /// after it. Returns the largest relative change in the last corrections. The reference is the norm of the
+  /// derivatives, or the norm of v̇ or λ over the scale of the parameter if it is larger. \param slope derivative of the
+  /// equations at each evaluation point, for the parameter of a direction and the change of time along it; \param dh
+  /// derivative of the step length along each direction [s], or none if the length is constant
   template <EquationDerivativeFunction F>
   double advance(StepTaken const& step, std::span<State* const> directions, F&& slope,
                  std::span<double const> dh = {}) {
     begin(step, directions);
-    D const h = detail::lift<lanes>(step.h, dh);
+    D const h = detail::lift<max_directions>(step.h, dh);
     auto const by = derivatives_of_stages(directions.size(), slope);
     double left = std::numeric_limits<double>::infinity();
     for (int k = 0; k < most_corrections; ++k) {
@@ -79,7 +79,7 @@ class RadauLinearisedStep {
 
  private:
   using D = typename SolvedPoints<Solver>::D;
-  using StageDerivatives = std::array<std::array<EquationDerivative, 3>, std::size_t(lanes)>;
+  using StageDerivatives = std::array<std::array<EquationDerivative, 3>, std::size_t(max_directions)>;
   static constexpr int most_corrections = 60;
 
   /// Sets the start and the values of the stages. The derivatives of v̇ and λ at the start are the initial guess for
@@ -140,7 +140,7 @@ class RadauLinearisedStep {
   detail::RadauStageSolution<SolvedPoints<Solver>> stages_;
   PointEquations<D> dual_equations_;
   detail::RadauStages<D> duals_;
-  std::array<VecX, std::size_t(lanes)> along_;
+  std::array<VecX, std::size_t(max_directions)> along_;
   VecX correction_;
 };
 

@@ -31,12 +31,12 @@ class RadauStepAdjoint {
   RadauStepAdjoint(RadauStepAdjoint const&) = delete;  // its members refer to each other
 
   /// Converts, in place, the adjoint variables of the state after the step to adjoint variables of the state before it.
-  /// Calls `told(place, μ)` for each point where the step solves equations; −μ is the derivative of the objective
+  /// Calls `visit(place, μ)` for each point where the step solves equations; −μ is the derivative of the objective
   /// function with respect to these equations. Returns the relative size of the last correction of μ. \throws
   /// NewtonConvergenceFailure if its stages do not converge again, SingularMatrix in a singular configuration,
   /// NonFiniteValue.
   template <class F>
-  double backward_step(StepTaken const& step, Costate& x, F&& told) {
+  double backward_step(StepTaken const& step, Costate& x, F&& visit) {
     stages_.find(step);
     factor(step);
     Tape& recording = places_.recording();
@@ -47,7 +47,7 @@ class RadauStepAdjoint {
     detail::add_to_derivatives(recording, recorded_.at.v, x.v);
     detail::add_to_derivatives(recording, recorded_.next, x.a);
     detail::add_to_derivatives(recording, recorded_.lambda[2], x.lambda);
-    places_.sweep(told, stages_end);
+    places_.sweep(visit, stages_end);
     recording.sweep(stages_end, 1);
     take_stages(y_);
     detail::take_derivatives(recording, recorded_.q0, x.q);
@@ -66,7 +66,7 @@ class RadauStepAdjoint {
     Index const n = size();
     for (std::size_t i = 0; i < 3; ++i) {
       VecX const mu = mu_.segment(Index(i) * n, n);
-      told(stages_.stage_places()[i], mu);
+      visit(stages_.stage_places()[i], mu);
     }
     return left;
   }

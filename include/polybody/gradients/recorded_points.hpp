@@ -63,10 +63,10 @@ class RecordedPoints {
   }
 
   /// Sweeps backward to operation `begin`, which precedes the first point. The derivatives with respect to the results
-  /// of the step are the input. Calls `told(place, μ)` for each point, from the last one to the first; μ (nv + rows)
+  /// of the step are the input. Calls `visit(place, μ)` for each point, from the last one to the first; μ (nv + rows)
   /// has the order of the velocities, then of the constraint equations.
   template <class F>
-  void sweep(F&& told, std::size_t begin = 1) {
+  void sweep(F&& visit, std::size_t begin = 1) {
     std::size_t end = recording_.size();
     for (std::size_t k = passed_.size(); k-- > 0;) {
       Passed const& here = passed_[k];
@@ -79,7 +79,7 @@ class RecordedPoints {
       for (Index i = 0; i < nv; ++i) recording_.slope(here.balance[std::size_t(i)]) -= mu_[i];
       for (std::size_t i = 0; i < here.rows.size(); ++i) recording_.slope(here.rows[i]) -= mu_[nv + Index(i)];
       recording_.sweep(here.end, here.begin);
-      told(std::as_const(found.place), std::as_const(mu_));
+      visit(std::as_const(found.place), std::as_const(mu_));
       end = here.begin;
     }
     recording_.sweep(end, begin);

@@ -19,7 +19,7 @@ struct RecordedStep {
   double end = 0.0;                      ///< time after it [s]
   double far = 0.0, largest = 0.0;       ///< with events: length of the full step [s], largest |event value|
   std::vector<std::size_t> met, acting;  ///< indices of the events that end it, and of the events with an action
-  bool at_corner = false;                ///< it ends at a breakpoint
+  bool at_breakpoint = false;            ///< it ends at a breakpoint
   bool restarts = false;                 ///< the integrator starts again after it
   StepPlan::Next next;                   ///< plan of the next step, if the integrator starts again
 };
@@ -54,7 +54,7 @@ class RecordedRun {
   std::vector<RecordedStep> const& steps() const { return all_; }  ///< all steps
   double length() const { return h_; }                             ///< requested step length [s]
   /// True if step k begins at a breakpoint or at the start of the run.
-  bool begins_at_corner(std::size_t k) const { return k == 0 || all_[k - 1].at_corner; }
+  bool begins_at_breakpoint(std::size_t k) const { return k == 0 || all_[k - 1].at_breakpoint; }
 
   /// Repeats step k from x, with the event actions and the restart after it.
   StepReport take(std::size_t k, State& x) {
@@ -73,7 +73,7 @@ class RecordedRun {
   }
   /// Applies the event actions after a step, and the restart for a step of length h, to a state y of a perturbed model.
   /// The restart uses the start correction if the restarted state `fresh` of this run has it.
-  static void begin_anew(RecordedStep const& s, V& v, State const& fresh, State& y, double h) {
+  static void act_and_restart(RecordedStep const& s, V& v, State const& fresh, State& y, double h) {
     if (!s.acting.empty()) y = after(v, s.acting, y);
     v.start_like(fresh, y, h);
   }
@@ -90,7 +90,7 @@ class RecordedRun {
  private:
   RunOptions const& options() const { return full_->scenario.options; }
   EventMotion motion() {
-    return {h_, [this](State const& x) -> State const& { return full_->shown(x); }, drift_of(full_->system)};
+    return {h_, [this](State const& x) -> State const& { return full_->full_state(x); }, drift_of(full_->system)};
   }
 
   void step(State& x, RunReport& report) {
@@ -102,15 +102,16 @@ class RecordedRun {
     x.t = s.plan.lands ? s.plan.target : row_.after(before.t, s.h);
     bool const met = !options().events.empty() && meet(before, x, s, report);
     double const end = x.t;
-    if (met && s.plan.lands && end == s.plan.target) refuse_event_at_corner(end, "gradient");
-    s.at_corner = s.plan.jumps && end == s.plan.target;
-    if (s.at_corner) x.t = plan_.pass(end);
+    if (met && s.plan.lands && end == s.plan.target) refuse_event_at_breakpoint(end, "gradient");
+    s.at_breakpoint = s.plan.jumps && end == s.plan.target;
+    if (s.at_breakpoint) x.t = plan_.pass(end);
     s.end = x.t;
-    s.restarts = met || s.at_corner || s.plan.h < 0.01 * h_;
+    s.restarts = met || s.at_breakpoint || s.plan.h < 0.01 * h_;
     if (s.restarts) {
       bool const done = report.stopped || x.t >= options().end_time;
       s.next = done ? StepPlan::Next{x.t, h_, false, false} : plan_.next(x.t, h_);
-      if (!s.acting.empty()) (void)acted_state(*full_, watch_, State(full_->shown(x)));  // throws for an invalid action
+      if (!s.acting.empty())
+        (void)acted_state(*full_, watch_, State(full_->full_state(x)));  // throws for an invalid action
       restart(s, x);
       if (!s.acting.empty()) watch_.settle(options().events, x, motion());
     }
@@ -145,7 +146,8 @@ class RecordedRun {
                             "with a parameter."});
       s.met.push_back(i);
       if (event.action) s.acting.push_back(i);
-      s.largest = std::max(std::abs(event.value(full_->shown(before))), std::abs(event.value(full_->shown(far))));
+      s.largest =
+          std::max(std::abs(event.value(full_->full_state(before))), std::abs(event.value(full_->full_state(far))));
     }
     return true;
   }
@@ -155,7 +157,7 @@ class RecordedRun {
   }
   /// State of a perturbed model after the actions of some events.
   static State after(V& v, std::vector<std::size_t> const& acting, State const& x) {
-    State y = v.shown(x);
+    State y = v.full_state(x);
     for (std::size_t const i : acting) v.scenario.options.events[i].action(y);
     y.t = x.t;
     return stepped_state(v, std::move(y));

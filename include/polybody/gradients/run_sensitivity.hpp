@@ -33,13 +33,13 @@ void add(State& sum, State const& x, double by) {
   sum.lambda += by * x.lambda;
   sum.history += by * x.history;
 }
-/// shown = x + e dx, without the integrator history.
+/// moved = x + e dx, without the integrator history.
 template <class = void>
-void add_motion(State& shown, State const& dx, double e, State const& x) {
-  shown.q = x.q + e * dx.q;
-  shown.v = x.v + e * dx.v;
-  shown.a = x.a + e * dx.a;
-  shown.lambda = x.lambda + e * dx.lambda;
+void add_motion(State& moved, State const& dx, double e, State const& x) {
+  moved.q = x.q + e * dx.q;
+  moved.v = x.v + e * dx.v;
+  moved.a = x.a + e * dx.a;
+  moved.lambda = x.lambda + e * dx.lambda;
 }
 template <class = void>
 State zeros_like(State const& x) {
@@ -50,7 +50,7 @@ State zeros_like(State const& x) {
 
 /// x + e dx, with the step lengths in the history of x.
 template <class = void>
-State beside(State const& x, State const& dx, double e) {
+State displaced(State const& x, State const& dx, double e) {
   State out = x;
   add(out, dx, e);
   lengths_of(out) = lengths_of(x);

@@ -19,7 +19,7 @@ class RungeKuttaLinearisedStep {
 
  public:
   /// Number of directions in one pass through the equations.
-  static constexpr int lanes = SolvedPoints<Solver>::lanes;
+  static constexpr int max_directions = SolvedPoints<Solver>::max_directions;
 
   /// The model must outlive this object. \param method integrator of the steps
   template <class M>
@@ -39,10 +39,10 @@ class RungeKuttaLinearisedStep {
     });
   }
 
-  /// Converts, in place, up to `lanes` derivatives of the state before the step to derivatives of the state after it.
-  /// Returns zero, since there is no iterative correction. \param slope derivative of the equations at each evaluation
-  /// point, for the parameter of a direction and the change of time along it; \param dh derivative of the step length
-  /// along each direction [s], or none if the length is constant
+  /// Converts, in place, up to `max_directions` derivatives of the state before the step to derivatives of the state
+  /// after it. Returns zero, since there is no iterative correction. \param slope derivative of the equations at each
+  /// evaluation point, for the parameter of a direction and the change of time along it; \param dh derivative of the
+  /// step length along each direction [s], or none if the length is constant
   template <EquationDerivativeFunction F>
   double advance(StepTaken const& step, std::span<State* const> directions, F&& slope,
                  std::span<double const> dh = {}) {
@@ -51,10 +51,11 @@ class RungeKuttaLinearisedStep {
     detail::lift(x.v, directions, &State::v, duals_.v0);
     detail::lift(x.a, directions, &State::a, duals_.acceleration[0]);
     places_.again();
-    walk_(places_.template system<D>(), duals_, x.t, detail::lift<lanes>(step.h, dh), [&](EvaluationPoint<D>& at) {
-      places_.solve(at, directions.size(), slope);
-      return 0.0;
-    });
+    walk_(places_.template system<D>(), duals_, x.t, detail::lift<max_directions>(step.h, dh),
+          [&](EvaluationPoint<D>& at) {
+            places_.solve(at, directions.size(), slope);
+            return 0.0;
+          });
     detail::take_derivatives(duals_.at.q, directions, &State::q);
     detail::take_derivatives(duals_.at.v, directions, &State::v);
     detail::take_derivatives(duals_.at.a, directions, &State::a);

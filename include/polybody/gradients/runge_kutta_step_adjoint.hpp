@@ -23,11 +23,11 @@ class RungeKuttaStepAdjoint {
       : places_(model, system), walk_(method) {}
 
   /// Converts, in place, the adjoint variables of the state after the step to adjoint variables of the state before it.
-  /// Calls `told(place, μ)` for each point where the step solves equations; −μ is the derivative of the objective
+  /// Calls `visit(place, μ)` for each point where the step solves equations; −μ is the derivative of the objective
   /// function with respect to these equations. Returns zero, since there is no iterative correction. \throws
   /// SingularMatrix in a singular configuration, NonFiniteValue.
   template <class F>
-  double backward_step(StepTaken const& step, Costate& x, F&& told) {
+  double backward_step(StepTaken const& step, Costate& x, F&& visit) {
     State const& before = step.before;
     numbers_.q0 = before.q;
     numbers_.v0 = before.v;
@@ -52,7 +52,7 @@ class RungeKuttaStepAdjoint {
     detail::add_to_derivatives(recording, recorded_.at.v, x.v);
     detail::add_to_derivatives(recording, recorded_.at.a, x.a);
     detail::add_to_derivatives(recording, recorded_.at.lambda, x.lambda);
-    places_.sweep(told);
+    places_.sweep(visit);
     detail::take_derivatives(recording, recorded_.q0, x.q);
     detail::take_derivatives(recording, recorded_.v0, x.v);
     detail::take_derivatives(recording, recorded_.acceleration[0], x.a);

@@ -24,11 +24,11 @@ struct SensitivityResult {
 
 namespace detail {
 
-/// Adds a warning for each parameter without effect. \param touched by parameters: nonzero if it has an effect
+/// Adds a warning for each parameter without effect. \param affected by parameters: nonzero if it has an effect
 template <class = void>
-void warn_of_untouched(std::vector<Parameter> const& parameters, std::vector<char> const& touched, RunReport& run) {
+void warn_of_unused(std::vector<Parameter> const& parameters, std::vector<char> const& affected, RunReport& run) {
   for (std::size_t j = 0; j < parameters.size(); ++j)
-    if (!touched[j]) run.add_warning("Nothing in the run depends on the parameter \"" + parameters[j].name + "\".");
+    if (!affected[j]) run.add_warning("Nothing in the run depends on the parameter \"" + parameters[j].name + "\".");
 }
 
 }  // namespace detail

@@ -82,9 +82,9 @@ template <LinearSolver Solver = DefaultSolver>
 class SolvedPoints {
  public:
   /// Number of directions in one pass through the equations: one for each derivative of a dual number.
-  static constexpr int lanes = 4;
-  using D = Dual<lanes>;         ///< value with its derivatives
-  using Dots = VecXOf<Dual<4>>;  ///< vector of them
+  static constexpr int max_directions = 4;
+  using D = Dual<max_directions>;  ///< value with its derivatives
+  using Dots = VecXOf<Dual<4>>;    ///< vector of them
 
   /// The model must outlive this object.
   template <class M>

@@ -20,32 +20,32 @@ class StageSensitivities {
   /// \param full model of the run; must outlive this object
   [[gnu::cold]] explicit StageSensitivities(V& full) : derivatives_(full.scenario.model, full.system, full.method) {}
 
-  /// Converts, in place, the sensitivities in `lanes` before a step to sensitivities at its end. Returns the largest
+  /// Converts, in place, the sensitivities in `columns` before a step to sensitivities at its end. Returns the largest
   /// relative change in the last corrections.
-  double advance(SensitivityStep const& step, std::span<TangentColumn const> lanes, Variants& beside) {
+  double advance(SensitivityStep const& step, std::span<TangentColumn const> columns, Variants& perturbed) {
     StepTaken const taken{step.before, step.after, step.h};
     derivatives_.set(taken);
     double left = 0.0;
-    beside.begin_step();
-    for (std::size_t first = 0; first < lanes.size(); first += directions_.size()) {
-      std::size_t const count = std::min(std::size_t(Slopes::lanes), lanes.size() - first);
+    perturbed.begin_step();
+    for (std::size_t first = 0; first < columns.size(); first += directions_.size()) {
+      std::size_t const count = std::min(std::size_t(Slopes::max_directions), columns.size() - first);
       directions_.clear();
       dh_.clear();
-      for (TangentColumn const& lane : lanes.subspan(first, count)) {
-        directions_.push_back(&lane.tangent->dx);
-        dh_.push_back(lane.dh);
+      for (TangentColumn const& column : columns.subspan(first, count)) {
+        directions_.push_back(&column.tangent->dx);
+        dh_.push_back(column.dh);
       }
       std::size_t places = 0;
       auto const slope = [&](EvaluationPoint<> const& x, std::size_t l) -> EquationDerivative const& {
         if (l == 0) ++places;
-        TangentColumn const& lane = lanes[first + l];
-        double const dt = lane.tangent->dt + (x.t - step.before.t) / step.h * lane.dh;
-        beside.template of_equations<EvaluationPoint<>>(lane.j, {x, step.h, dt, places - 1}, by_);
+        TangentColumn const& column = columns[first + l];
+        double const dt = column.tangent->dt + (x.t - step.before.t) / step.h * column.dh;
+        perturbed.template of_equations<EvaluationPoint<>>(column.j, {x, step.h, dt, places - 1}, by_);
         return by_;
       };
       left = std::max(left, derivatives_.advance(taken, directions_, slope, dh_));
     }
-    for (TangentColumn const& lane : lanes) lane.tangent->dt += lane.dh;
+    for (TangentColumn const& column : columns) column.tangent->dt += column.dh;
     return left;
   }
 

@@ -35,13 +35,14 @@ class TimeMap {
     for (std::size_t i = 1; i < times_.size(); ++i)
       for (std::size_t k = 0; k < times_[i].there.size(); ++k) {
         Moving const &a = times_[i - 1], &b = times_[i];
-        double const gap = b.here - a.here, beside = b.there[k] - a.there[k];
-        if (gap <= remainder_step && std::abs(beside - gap) > 1e-9 * remainder_step + 1e-14 * std::abs(b.here))
+        double const interval = b.here - a.here, perturbed_interval = b.there[k] - a.there[k];
+        if (interval <= remainder_step &&
+            std::abs(perturbed_interval - interval) > 1e-9 * remainder_step + 1e-14 * std::abs(b.here))
           throw InvalidInput("derivative.coincident_times",
                              {ErrorObject{who}, ": two breakpoints, or a breakpoint and the start, coincide at t = ",
                               ErrorTime{b.here}, " s, but separate with \"", p.name,
                               "\", so that there is no derivative there. Move one of them by a step."});
-        if (gap > remainder_step && !(beside > 0.0))
+        if (interval > remainder_step && !(perturbed_interval > 0.0))
           throw InvalidInput(
               "derivative.coincident_times",
               {ErrorObject{who}, ": the breakpoints at t = ", ErrorTime{a.here}, " s and ", b.here,
@@ -61,8 +62,8 @@ class TimeMap {
     bool const first = after == times_.begin(), last = after == times_.end();
     Moving const &a = first ? *after : *std::prev(after), &b = last ? a : *after;
     if (!first && t == a.here) return a.there[k];
-    double const at_a = a.there[k] - a.here, at_b = b.there[k] - b.here, gap = b.here - a.here;
-    double there = t + at_a + (gap > 0.0 ? (at_b - at_a) * ((t - a.here) / gap) : 0.0);
+    double const at_a = a.there[k] - a.here, at_b = b.there[k] - b.here, interval = b.here - a.here;
+    double there = t + at_a + (interval > 0.0 ? (at_b - at_a) * ((t - a.here) / interval) : 0.0);
     if (!first) there = std::max(there, a.there[k]);
     if (!last) there = std::min(there, std::nextafter(b.there[k], -std::numeric_limits<double>::infinity()));
     return there;

@@ -205,7 +205,7 @@ struct AdamsBashforthMoulton {
       add(i, group.in_q, group.sum);
     }
     for (Index i = 0; i < bodies; ++i) {
-      auto& group = w.norm.of_speed(i);
+      auto& group = w.norm.of_velocity(i);
       add(nq + i, group.in_v, group.sum);
     }
     for (Index i = nq + bodies; i < n; ++i) {

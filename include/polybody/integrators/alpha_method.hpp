@@ -41,10 +41,10 @@ struct AlphaMethod {
   /// Memory of a step, allocated once.
   template <class Solver>
   struct Workspace : AlphaVectors {
-    StepTangent<StepSolver<Solver>> tangent;  ///< tangent of a step, with its solver
-    ForwardDynamics<Solver> forward;          ///< [M, Gᵀ; G, 0]: accelerations at the start, μ
-    ReusedFactorisation kept_factor;          ///< state of the reused factorisation of the tangent
-    double h_factored = 0.0;                  ///< step length of the last factorisation of the tangent [s]
+    StepTangent<StepSolver<Solver>> tangent;   ///< tangent of a step, with its solver
+    ForwardDynamics<Solver> forward;           ///< [M, Gᵀ; G, 0]: accelerations at the start, μ
+    ReusedFactorisation reused_factorisation;  ///< state of the reused factorisation of the tangent
+    double h_factored = 0.0;                   ///< step length of the last factorisation of the tangent [s]
 
     /// Allocates the vectors and `forward`; `analyse` allocates the tangent.
     explicit Workspace(System& s)
@@ -83,7 +83,7 @@ struct AlphaMethod {
     w.forward.accelerations(system, {x.q, x.v, x.t}, x.a, x.lambda);
     append_multipliers(system, x);
     StepHistory::reset(x);
-    w.kept_factor.usable = false;
+    w.reused_factorisation.usable = false;
     if (start_correction && corrected != false && corrected.value_or(jerk_at_start(system, x, h, w)))
       StepHistory(x).pretend(x, w.jerk, h);
   }
@@ -219,7 +219,7 @@ struct AlphaMethod {
       return all_finite(w.rhs) && w.solver().is_finite();
     }
     bool refactor() {
-      double const ahead = std::min(look_ahead * w.kept_factor.served, 4.0) * h;
+      double const ahead = std::min(look_ahead * w.reused_factorisation.served, 4.0) * h;
       if (ahead > 0.0) {
         for (Index i = 0; i < w.v.size(); ++i) w.ahead[i] = w.dq[i] + ahead * w.v[i];
         system.plus(x.q, w.ahead, w.q);
@@ -297,7 +297,7 @@ struct AlphaMethod {
     guess(x, h, careful, w);
     bool const both_multiplier_sets = stabilised && system.rows() > 0 && effort <= efforts(system);
     if (both_multiplier_sets) w.forward.hold(system, x.q, x.v, x.t);
-    if (w.h_factored == 0.0 || std::abs(h - w.h_factored) > 0.25 * w.h_factored) w.kept_factor.usable = false;
+    if (w.h_factored == 0.0 || std::abs(h - w.h_factored) > 0.25 * w.h_factored) w.reused_factorisation.usable = false;
 
     NewtonOptions options = newton;
     if (careful) {
@@ -317,12 +317,12 @@ struct AlphaMethod {
                             both_multiplier_sets,
                             both_multiplier_sets && careful,
                             effort != 1};
-    if (w.solver().carries_multipliers()) w.kept_factor.theta = std::max(w.kept_factor.theta, 0.3);
-    NewtonReport report = polybody::newton(problem, options, w.kept_factor);
+    if (w.solver().carries_multipliers()) w.reused_factorisation.theta = std::max(w.reused_factorisation.theta, 0.3);
+    NewtonReport report = polybody::newton(problem, options, w.reused_factorisation);
     if (report.result != NewtonResult::converged && report.result != NewtonResult::singular &&
         (effort < efforts(system) || (both_multiplier_sets && loses_rank(system, x, h, w)))) {
       w.tangent.include(system, w.lambda);
-      w.kept_factor.usable = false;
+      w.reused_factorisation.usable = false;
       return detail::retried(w.forward.failed, report, [&] { return advance(system, x, h, w, effort + 1); });
     }
     if (report.result != NewtonResult::converged && w.solver().carries_multipliers()) {  // rhs of the message
@@ -332,12 +332,12 @@ struct AlphaMethod {
     StepReport const step = detail::report_of(h, report);
     detail::count_if_failed(w.forward.failed, step, [&] {
       if (report.result != NewtonResult::converged)
-        detail::throw_stalled(name, system, x.t + h, report, {problem.bad, w.rhs, w.y});
+        detail::throw_convergence_failure(name, system, x.t + h, report, {problem.bad, w.rhs, w.y});
       // q follows the last correction of dq
       system.plus(x.q, w.dq, w.q);
       w.forward.require_end(system, {w.q, w.v, w.lambda, x.t + h, h});
     });
-    if (w.solver().lost_rank() || w.tangent.end_step()) w.kept_factor.usable = false;
+    if (w.solver().lost_rank() || w.tangent.end_step()) w.reused_factorisation.usable = false;
     if (w.forward.leaves_out() && w.solver().is_doubtful()) [[unlikely]]
       w.forward.note_doubt();
     history.push(x, h, w.a);

@@ -38,7 +38,7 @@ struct ConservingStep {
     TangentSolver<StepSolver<Solver>> solver;     ///< solver of the tangent of `secants`
     TangentSolver<StepSolver<UnsymmetricSolver<Solver>>> exact;  ///< analysed if required
     ForwardDynamics<Solver> forward;                             ///< [M, Gᵀ; G, 0]: accelerations at the start
-    ReusedFactorisation kept_factor;                             ///< state of the reused factorisation of the tangent
+    ReusedFactorisation reused_factorisation;                    ///< state of the reused factorisation of the tangent
     bool has_exact = false;                                      ///< `exact` is analysed
     double h_factored = 0.0;  ///< step length of the last factorisation of the tangent [s]
 
@@ -72,7 +72,7 @@ struct ConservingStep {
     w.secants.evaluate(system, {&x.q, &x.q, x.t, h, chi, &x.v, &x.a});
     w.solver.analyse(system, 1, [&](BlockSink& sink) { w.secants.tangent(system, scale(h), sink); });
     if (w.forward.leaves_out()) w.solver.mark_redundant(w.forward.left_out());
-    w.kept_factor.usable = false;
+    w.reused_factorisation.usable = false;
     (void)refactor(system, h, w);  // so that the elimination order does not change within the first step
   }
 
@@ -189,17 +189,17 @@ struct ConservingStep {
     } else {
       history.extrapolate(x, h, w.vd, w.lambda);
     }
-    if (std::abs(h - w.h_factored) > 0.25 * w.h_factored) w.kept_factor.usable = false;
+    if (std::abs(h - w.h_factored) > 0.25 * w.h_factored) w.reused_factorisation.usable = false;
     NewtonOptions options = newton;
     options.always_refactor = options.always_refactor || careful;
     if (careful) options.max_growths = 10;
     Problem<Solver> problem{*this, system, x, w, h, scale(h), system.velocities(), system.rows(), effort == 2};
-    NewtonReport report = polybody::newton(problem, options, w.kept_factor);
+    NewtonReport report = polybody::newton(problem, options, w.reused_factorisation);
     if (effort == 1 && system.rows() > 0 && report.result == NewtonResult::converged &&
         change(x, h, w.vd) > 0.01 * squares(x.v)) {
       w.other_vd.swap(w.vd);
       w.other_lambda.swap(w.lambda);
-      w.kept_factor.usable = false;
+      w.reused_factorisation.usable = false;
       return detail::retried(w.forward.failed, report, [&] { return advance(system, x, h, w, 2, true); });
     }
     if (has_other && takes_other(x, h, w, report.result != NewtonResult::converged)) {
@@ -207,19 +207,19 @@ struct ConservingStep {
       report.result = NewtonResult::converged;
     }
     if (report.result != NewtonResult::converged && effort < (system.rows() > 0 ? 2 : 1)) {
-      w.kept_factor.usable = false;
+      w.reused_factorisation.usable = false;
       return detail::retried(w.forward.failed, report, [&] { return advance(system, x, h, w, effort + 1); });
     }
     StepReport const step = detail::report_of(h, report);
     detail::count_if_failed(w.forward.failed, step, [&] {
       if (report.result != NewtonResult::converged)
-        detail::throw_stalled(name, system, x.t + h, report, {problem.bad, w.rhs, w.y});
+        detail::throw_convergence_failure(name, system, x.t + h, report, {problem.bad, w.rhs, w.y});
       problem.move();
       for (Index i = 0; i < w.v.size(); ++i) w.v[i] = x.v[i] + h * w.vd[i];
       system.push_forces();  // the discrete gradients do not evaluate them
       w.forward.require_end(system, {w.q, w.v, w.lambda, x.t + h, h});
     });
-    if (w.solver.lost_rank() || effort == 2) w.kept_factor.usable = false;
+    if (w.solver.lost_rank() || effort == 2) w.reused_factorisation.usable = false;
     history.push(x, h, w.vd);
     x.q.swap(w.q);
     x.v.swap(w.v);

@@ -23,7 +23,7 @@ class ConstraintDerivatives {
     if (in_tree_) {
       tree_.analyse(system, pattern.blocks);
       for (Index i = 0; i < system.rows(); ++i)
-        for (Index const j : tree_.speeds(i)) add_place({i, j, 1, 1});
+        for (Index const j : tree_.velocities(i)) add_place({i, j, 1, 1});
     } else {
       for (Block const& b : pattern.blocks)
         if (b.row >= velocities_ && b.col < velocities_) add_place({b.row - velocities_, b.col, b.rows, b.cols});
@@ -67,7 +67,7 @@ class ConstraintDerivatives {
     for (std::size_t k = 0; k < blocks_.size();) {
       auto const& [b, first] = blocks_[k];
       // the places of a row of the tree are contiguous
-      Index const count = in_tree_ ? Index(tree_.speeds(b.row).size()) : b.rows * b.cols;
+      Index const count = in_tree_ ? Index(tree_.velocities(b.row).size()) : b.rows * b.cols;
       sum_.resize(std::size_t(count));
       for (std::size_t i = 0; i < sum_.size(); ++i)
         sum_[i] = cv * by_v_[std::size_t(first) + i] + cq * by_q_[std::size_t(first) + i];
@@ -95,13 +95,13 @@ class ConstraintDerivatives {
   /// Assigns to each velocity the first colour that no other velocity of its constraint equations has.
   template <class = void>
   void give_colours(Index rows) {
-    Sequence<Sequence<Index>> speeds_of, rows_of;
-    speeds_of.resize(std::size_t(rows));
+    Sequence<Sequence<Index>> velocities_of, rows_of;
+    velocities_of.resize(std::size_t(rows));
     rows_of.resize(std::size_t(velocities_));
     for (Place const& p : blocks_)
       for (Index i = p.block.row; i < p.block.row + p.block.rows; ++i)
         for (Index j = p.block.col; j < p.block.col + p.block.cols; ++j) {
-          speeds_of[std::size_t(i)].push_back(j);
+          velocities_of[std::size_t(i)].push_back(j);
           rows_of[std::size_t(j)].push_back(i);
         }
     colour_.assign(std::size_t(velocities_), 0);
@@ -109,7 +109,7 @@ class ConstraintDerivatives {
     for (Index k = 0; k < velocities_; ++k) {
       Sequence<char> taken(std::size_t(colours_) + 1, 0);
       for (Index const i : rows_of[std::size_t(k)])
-        for (Index const j : speeds_of[std::size_t(i)])
+        for (Index const j : velocities_of[std::size_t(i)])
           if (j < k) taken[std::size_t(colour_[std::size_t(j)])] = 1;
       int colour = 0;
       while (taken[std::size_t(colour)]) ++colour;

@@ -274,7 +274,7 @@ std::vector<std::string> independent_velocities(System& system, State const& x,
     std::string const name = system.name_of(i);
     number = name == body ? number + 1 : 0;
     body = name;
-    if (!scratch.is_dependent(i)) names.push_back(name + ", speed " + std::to_string(number));
+    if (!scratch.is_dependent(i)) names.push_back(name + ", velocity " + std::to_string(number));
   }
   return names;
 }

@@ -59,7 +59,7 @@ class ErrorNorm {
     for (VecX const* const x : {&before.q, &q})
       for (std::size_t i = 0; i < of_q_.size(); ++i) raise(of_coordinate(Index(i)).largest_q, (*x)[Index(i)]);
     for (VecX const* const x : {&before.v, &v})
-      for (std::size_t i = 0; i < of_v_.size(); ++i) raise(of_speed(Index(i)).largest_v, (*x)[Index(i)]);
+      for (std::size_t i = 0; i < of_v_.size(); ++i) raise(of_velocity(Index(i)).largest_v, (*x)[Index(i)]);
     for (Group& g : groups_) {
       auto const [extent, speed] = extents_[g.assembly];
       bool const length = g.kind == UnknownKind::length, rotation = g.kind == UnknownKind::rotation;
@@ -90,7 +90,7 @@ class ErrorNorm {
     std::array<double, 4> sum{};              ///< mean squares of several errors
   };
   Group& of_coordinate(Index i) { return groups_[of_q_[std::size_t(i)]]; }  ///< group of coordinate i
-  Group& of_speed(Index i) { return groups_[of_v_[std::size_t(i)]]; }       ///< group of velocity i
+  Group& of_velocity(Index i) { return groups_[of_v_[std::size_t(i)]]; }    ///< group of velocity i
   /// Sets all sums to zero.
   void clear() {
     for (Group& g : groups_) g.sum.fill(0.0);

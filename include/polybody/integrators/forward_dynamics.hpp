@@ -329,13 +329,13 @@ class ForwardDynamics {
   /// of the full model then identify the reason.
   bool accelerations_of_tree(System& system, At<double> const& at, VecX& a) {
     Coordinates const& c = system.step_coordinates();
-    VecX const* unbalance = nullptr;
+    VecX const* residual = nullptr;
     if (!only_weight_) {
       system.evaluate(at.q, at.v, at.t);
-      unbalance = &polybody::unbalance(system);
+      residual = &residual_at_rest(system);
     }
     a.resize(system.velocities());
-    Index const bad = c.entries->accelerations(c.self.get(), at.q, at.v, system.load_factor, unbalance, a);
+    Index const bad = c.entries->accelerations(c.self.get(), at.q, at.v, system.load_factor, residual, a);
     return bad < 0 && first_not_finite(a) < 0;
   }
 

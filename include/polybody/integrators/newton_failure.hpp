@@ -49,8 +49,8 @@ template <class = void>
 /// and the body, joint or force element. If each equation has a pivot but the solution is not finite, it names the body
 /// with the non-finite motion. \throws SingularMatrix, NonFiniteValue, NewtonConvergenceFailure.
 template <class = void>
-[[noreturn, gnu::cold]] void throw_stalled(std::string const& integrator, System const& system, double t,
-                                           NewtonReport const& report, StepEquations const& last) {
+[[noreturn, gnu::cold]] void throw_convergence_failure(std::string const& integrator, System const& system, double t,
+                                                       NewtonReport const& report, StepEquations const& last) {
   auto const owner = [&](VecX const& x) {
     Index const i = first_not_finite(x);
     return system.name_of((i < 0 ? x.size() - 1 : i) % system.size());

@@ -50,7 +50,7 @@ class PartitionedConstraints {
     if (rank_ == none) return false;
     for (Column& c : state_)
       if (c == Column::used) c = Column::dependent;
-    double const enough = repeats * largest(0, columns_);
+    double const enough = redundant_below * largest(0, columns_);
     for (Index k = 0; k < rank_; ++k)
       if (!eliminate(k, Column::dependent, enough)) return false;
     if (largest(rank_, columns_) > enough) return false;  // redundant equations are now independent
@@ -64,7 +64,7 @@ class PartitionedConstraints {
   void choose() {
     ++choices;
     std::fill(state_.begin(), state_.end(), Column::independent);
-    double const enough = repeats * largest(0, columns_);
+    double const enough = redundant_below * largest(0, columns_);
     for (rank_ = 0; rank_ < rows_ && eliminate(rank_, Column::independent, enough);) ++rank_;
   }
 
@@ -78,7 +78,7 @@ class PartitionedConstraints {
   enum class Column : char { independent, dependent, used };  ///< used: dependent, and its pivot is found
   static constexpr Index none = -1;
   /// A pivot below this share of the largest entry belongs to a redundant equation.
-  static constexpr double repeats = 1e-9;
+  static constexpr double redundant_below = 1e-9;
 
   double& at(Index i, Index j) { return a_[std::size_t(i * width_ + j)]; }
 

@@ -50,7 +50,7 @@ struct Radau {
     ConstraintDerivatives slopes;               ///< ∂Φ̈/∂q and ∂Φ̈/∂v of the constraint equations
     ForwardDynamics<Solver> forward;            ///< [M, Gᵀ; G, 0]: accelerations at the start, projections
     Projection::Scratch projected;              ///< memory of `projection`: none
-    ReusedFactorisation kept_factor;            ///< state of the reused factorisation
+    ReusedFactorisation reused_factorisation;   ///< state of the reused factorisation
     bool has_by_stage = false;                  ///< `by_stage` is analysed
     double h_factored = 0.0;                    ///< step length of the last factorisation [s]; 0: none
     double unsettled = 0.0;                     ///< last change of the δ_i by their iteration, in the unit of δ
@@ -156,7 +156,7 @@ struct Radau {
     w.forward.accelerations(system, {x.q, x.v, x.t}, x.a, x.lambda);
     std::fill(w.slack.begin(), w.slack.end(), 0.0);
     if (!w.forward.redundant_rows().empty()) leave_redundant(system, x, h, w);
-    w.kept_factor.usable = false;
+    w.reused_factorisation.usable = false;
   }
 
   template <class Solver>
@@ -164,24 +164,24 @@ struct Radau {
     NewtonReport report;
     StepReport tried;
     double reach = h;  // length of the stages [s]
-    bool stage_beside = false;
+    bool stages_lose_rank = false;
     // repetitions: full Newton; then a matrix for each stage, with stages over h or 1.25 h, then over the other length
     for (int effort = 0, last = system.rows() > 0 ? 3 : 1;; ++effort) {
       bool const careful = effort > 0;
-      if (effort == 2) stage_beside = loses_rank(system, x, h, w);
-      if (effort >= 2) reach = (effort == 2) == stage_beside ? 1.25 * h : h;
+      if (effort == 2) stages_lose_rank = loses_rank(system, x, h, w);
+      if (effort >= 2) reach = (effort == 2) == stages_lose_rank ? 1.25 * h : h;
       predict(x, reach, w);
-      if (careful || std::abs(h - w.h_factored) > 0.25 * w.h_factored) w.kept_factor.usable = false;
+      if (careful || std::abs(h - w.h_factored) > 0.25 * w.h_factored) w.reused_factorisation.usable = false;
       NewtonOptions options = newton;
       options.always_refactor = options.always_refactor || careful;
       if (careful) options.max_growths = 8;
       Problem<Solver> problem{*this, system, x, w, reach, system.velocities(), system.rows(), effort >= 2};
-      report = polybody::newton(problem, options, w.kept_factor);
+      report = polybody::newton(problem, options, w.reused_factorisation);
       if (report.result == NewtonResult::converged) break;
       tried = detail::with_attempt(report, tried, 3);
       if (report.result == NewtonResult::not_finite || effort >= last)
         detail::count_if_failed(w.forward.failed, tried, [&] {
-          detail::throw_stalled(name, system, x.t + h, report, {problem.bad, w.rhs, w.y});
+          detail::throw_convergence_failure(name, system, x.t + h, report, {problem.bad, w.rhs, w.y});
         });
     }
     StepReport const step = detail::report_of(h, report, 3, tried);

@@ -74,9 +74,9 @@ class SparsePartitionOf {
 
  private:
   using Qr = Eigen::SparseQR<Matrix, Eigen::COLAMDOrdering<int>>;
-  /// Pivot thresholds relative to the largest entry: a column with a smaller pivot than `repeats` is dependent, and
-  /// `adds_enough` is the first threshold of the selection.
-  static constexpr T repeats = 1e-9, adds_enough = 0.1;
+  /// Pivot thresholds relative to the largest entry: a column with a smaller pivot than `redundant_below` is dependent,
+  /// and `adds_enough` is the first threshold of the selection.
+  static constexpr T redundant_below = 1e-9, adds_enough = 0.1;
   using Lu = Eigen::SparseLU<Matrix, Eigen::COLAMDOrdering<int>>;
 
   [[noreturn]] static void throw_lost() {
@@ -101,8 +101,8 @@ class SparsePartitionOf {
       return qr.rank();
     };
     if (rank_at(adds_enough) < std::min(g.rows(), g.cols())) {
-      Index const all = rank_at(repeats);
-      for (T threshold = adds_enough; rank_at(std::max(threshold, repeats)) < all;) threshold *= 0.1;
+      Index const all = rank_at(redundant_below);
+      for (T threshold = adds_enough; rank_at(std::max(threshold, redundant_below)) < all;) threshold *= 0.1;
     }
     Sequence<Index> out;
     for (Index k = 0; k < qr.rank(); ++k) out.push_back(qr.colsPermutation().indices()[k]);

@@ -23,7 +23,7 @@ class TreeRows {
   void analyse(System& system, Sequence<Block> const& equations) {
     coordinates_ = system.step_coordinates();
     ReducedLayout const& layout = *coordinates_.reduced;
-    held_ = coordinates_.entries->held(coordinates_.self.get());
+    frozen_ = coordinates_.entries->make_frozen_state(coordinates_.self.get());
     unit_.setZero(system.size());
     equation_.setZero(layout.equations);
     find_bodies(system);
@@ -31,18 +31,18 @@ class TreeRows {
     Sequence<Sequence<char>> const touched = bodies_of_rows(system, equations);
     Sequence<Sequence<char>> columns(rows_.size(), Sequence<char>(bodies_.size(), 0));
     VecX u = VecX::Zero(layout.velocities), full = VecX::Zero(system.layout().velocities);
-    coordinates_.entries->hold(coordinates_.self.get(), held_.get());
+    coordinates_.entries->freeze(coordinates_.self.get(), frozen_.get());
     for (Index j = 0; j < layout.velocities; ++j) {
       u[j] = unit_[j] = 1.0;
       coordinates_.entries->expand_rates(coordinates_.self.get(), u, false, full);
-      coordinates_.entries->to_equations(coordinates_.self.get(), held_.get(), unit_, equation_);
+      coordinates_.entries->to_equations(coordinates_.self.get(), frozen_.get(), unit_, equation_);
       u[j] = unit_[j] = 0.0;
       for (std::size_t i = 0; i < rows_.size(); ++i) {
         bool moves = false;
         for (std::size_t k = 0; k < bodies_.size() && !moves; ++k)
           moves = touched[i][k] && has_entry(full, system.layout().bodies[k].v0, system.layout().bodies[k].velocities);
         if (!moves) continue;
-        rows_[i].speeds.push_back(j);
+        rows_[i].velocities.push_back(j);
         for (std::size_t k = 0; k < bodies_.size(); ++k)
           columns[i][k] |= char(has_entry(equation_, bodies_[k].first, bodies_[k].count));
       }
@@ -53,18 +53,18 @@ class TreeRows {
   }
 
   /// Velocities of a time step that row i depends on, ascending.
-  Sequence<Index> const& speeds(Index i) const { return rows_[std::size_t(i)].speeds; }
+  Sequence<Index> const& velocities(Index i) const { return rows_[std::size_t(i)].velocities; }
 
   /// Stores the positions of the last evaluation of the system for `write`.
-  void hold() { coordinates_.entries->hold(coordinates_.self.get(), held_.get()); }
-  /// Adds row i with the entries `row` at `speeds(i)` to `sink`. The first equation and column of the sink are row0 and
-  /// col0.
+  void hold() { coordinates_.entries->freeze(coordinates_.self.get(), frozen_.get()); }
+  /// Adds row i with the entries `row` at `velocities(i)` to `sink`. The first equation and column of the sink are row0
+  /// and col0.
   template <class = void>  // compiled only if used
   void write(Index i, double const* row, Index row0, Index col0, BlockSink& sink) {
     Row const& r = rows_[std::size_t(i)];
-    for (std::size_t k = 0; k < r.speeds.size(); ++k) unit_[r.speeds[k]] = row[k];
-    coordinates_.entries->to_equations(coordinates_.self.get(), held_.get(), unit_, equation_);
-    for (Index const j : r.speeds) unit_[j] = 0.0;
+    for (std::size_t k = 0; k < r.velocities.size(); ++k) unit_[r.velocities[k]] = row[k];
+    coordinates_.entries->to_equations(coordinates_.self.get(), frozen_.get(), unit_, equation_);
+    for (Index const j : r.velocities) unit_[j] = 0.0;
     for (Part const& part : r.columns)
       sink.add(row0 + r.equation, col0 + part.first, BlockView(equation_.data() + part.first, 1, part.count, 1, 1));
   }
@@ -75,9 +75,9 @@ class TreeRows {
     Index first = 0, count = 0;
   };
   struct Row {
-    Index equation = 0;           ///< number among the equations
-    Sequence<Index> speeds = {};  ///< velocities of a time step, ascending
-    Sequence<Part> columns = {};  ///< columns of the bodies that f acts on
+    Index equation = 0;               ///< number among the equations
+    Sequence<Index> velocities = {};  ///< velocities of a time step, ascending
+    Sequence<Part> columns = {};      ///< columns of the bodies that f acts on
   };
 
   static bool has_entry(VecX const& x, Index first, Index count) {
@@ -115,7 +115,7 @@ class TreeRows {
   }
 
   Coordinates coordinates_;
-  FrozenState held_;
+  FrozenState frozen_;
   Sequence<Part> bodies_;
   Sequence<Row> rows_;
   VecX unit_, equation_;

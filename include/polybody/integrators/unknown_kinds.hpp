@@ -36,7 +36,7 @@ template <class = void>
   if (!body.units.of_coordinate) return;
   auto const unit = [&](Index i) { return std::string_view(body.units.of_coordinate(body.body, i)); };
   auto const turns = [&](Index j) {
-    return body.units.of_speed && std::string_view(body.units.of_speed(body.body, j)) == "rad/s";
+    return body.units.of_velocity && std::string_view(body.units.of_velocity(body.body, j)) == "rad/s";
   };
   Index const axes = body.planar ? 2 : 3;
   for (Index i = 0, j = 0; i < body.coordinates && j < velocities;) {

@@ -121,7 +121,7 @@ void require_consistent(RunSnapshot const& s, std::size_t left, std::string cons
   };
   require(s.state.q, s.model.coordinates, "coordinates");
   require(s.state.v, s.model.velocities, "velocities");
-  require(s.state.a, s.model.velocities, "rates of speeds");
+  require(s.state.a, s.model.velocities, "rates of velocities");
   bool const estimates = s.state.lambda.size() > s.model.rows;
   require(s.state.lambda, s.model.rows + (estimates ? s.model.eliminated_equations : 0), "multipliers");
 }
@@ -179,10 +179,10 @@ RunSnapshot read_checkpoint(std::filesystem::path const& file) {
                   {"checkpoint \"", ErrorObject{name}, "\" is of version ", ErrorValue{head.version},
                    ", but this program reads version ", ours.version, ". Read it with the program that wrote it."});
   std::uint64_t sum = 0;
-  std::size_t const beside = sizeof head + sizeof sum;
-  if (all.size() < beside || all.size() - beside != head.length)
+  std::size_t const overhead = sizeof head + sizeof sum;
+  if (all.size() < overhead || all.size() - overhead != head.length)
     throw IoError("checkpoint.damaged", {"checkpoint \"", ErrorObject{name}, "\" is cut off or has grown: it has ",
-                                         all.size(), " bytes instead of ", head.length + beside, "."});
+                                         all.size(), " bytes instead of ", head.length + overhead, "."});
   std::memcpy(&sum, all.data() + all.size() - sizeof sum, sizeof sum);
   std::string_view const summed = std::string_view(all).substr(0, all.size() - sizeof sum);
   if (checksum(summed) != sum)

@@ -143,7 +143,7 @@ std::vector<std::filesystem::path> write_figures(Comparison const& all, std::fil
                       folder / "outputs", draw, written);
   detail::draw_panels(detail::cost_figure(c), 1, folder / "cost", draw, written);
   detail::add_violations(c, "Violation of positions", "[m, rad, 1]", &Violation::position, violations);
-  detail::add_violations(c, "Violation of speeds", "[m/s, rad/s, 1/s]", &Violation::velocity, violations);
+  detail::add_violations(c, "Violation of velocities", "[m/s, rad/s, 1/s]", &Violation::velocity, violations);
   detail::add_violations(c, "Violation of accelerations", "[m/s², rad/s², 1/s²]", &Violation::acceleration, violations);
   detail::draw_panels(violations, 1, folder / "violations", draw, written);
   auto const force = [](Run run, std::size_t k) { return run.joint_forces[k]; };

@@ -121,7 +121,7 @@ class SceneContents {
 
   std::string arrows(FilmArrowSet const& a) {
     Quantised const q = quantised(a.vectors);
-    return named(a.label, a.unit) + ",\"shown\":" + (a.shown ? "true" : "false") +
+    return named(a.label, a.unit) + ",\"shown\":" + (a.visible ? "true" : "false") +
            ",\"counts\":" + arrays_.add(a.counts) + ",\"places\":" + arrays_.add(a.places) +
            ",\"vectors\":" + arrays_.add(q.integers) + ",\"step\":" + all_digits(q.step) + '}';
   }

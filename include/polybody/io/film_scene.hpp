@@ -66,7 +66,7 @@ struct FilmShape {
 
 struct FilmArrowSet {
   std::string label, unit;
-  bool shown = true;
+  bool visible = true;
   std::vector<std::uint32_t> counts = {};  ///< number of arrows in each frame
   std::vector<float> places = {}, vectors = {};
 };
@@ -105,16 +105,16 @@ class FilmScene {
     for (FilmScalar const& other : scalars_)
       if (other.label == scalar.label)
         throw InvalidInput("film.scene",
-                           {ErrorObject{told()}, "the name \"", scalar.label, "\" of colours occurs twice."});
+                           {ErrorObject{who()}, "the name \"", scalar.label, "\" of colours occurs twice."});
     scalars_.push_back(std::move(scalar));
   }
 
   /// Adds a set of arrows with this `label`. Their vectors have one `unit`, and one scale in the picture.
-  /// \param shown initial visibility in the viewer
+  /// \param visible initial visibility in the viewer
   /// \throws InvalidInput after the first frame.
-  FilmArrows arrows(std::string label, std::string unit, bool shown = true) {
+  FilmArrows arrows(std::string label, std::string unit, bool visible = true) {
     require_start(label);
-    arrows_.push_back({std::move(label), std::move(unit), shown});
+    arrows_.push_back({std::move(label), std::move(unit), visible});
     return {arrows_.size() - 1};
   }
 
@@ -126,12 +126,12 @@ class FilmScene {
   /// \throws NonFiniteValue for a time or part that is not finite.
   void record(double t, std::vector<VisualPart> const& parts) {
     if (!std::isfinite(t))
-      throw NonFiniteValue("film.not_finite", {ErrorObject{told()}, "the time of a frame is not finite."});
+      throw NonFiniteValue("film.not_finite", {ErrorObject{who()}, "the time of a frame is not finite."});
     if (!times_.empty() && !(t > times_.back()))
-      throw InvalidInput("film.time_order", {ErrorObject{told()}, "frames must rise in time, but t = ", ErrorTime{t},
+      throw InvalidInput("film.time_order", {ErrorObject{who()}, "frames must rise in time, but t = ", ErrorTime{t},
                                              " s follows ", times_.back(), " s."});
     if (parts.empty())
-      throw InvalidInput("film.scene", {ErrorObject{told()}, "there is nothing to draw. Attach shapes to the visual."});
+      throw InvalidInput("film.scene", {ErrorObject{who()}, "there is nothing to draw. Attach shapes to the visual."});
     check_parts(t, parts);
     if (times_.empty()) {
       for (VisualPart const& part : parts) add_part(part);
@@ -160,10 +160,10 @@ class FilmScene {
     if (set.place >= arrows_.size() || times_.empty())
       throw InvalidInput(
           "film.arrow",
-          {ErrorObject{told()}, "an arrow needs a set of arrows of this scene and a frame. Record a frame first."});
+          {ErrorObject{who()}, "an arrow needs a set of arrows of this scene and a frame. Record a frame first."});
     detail::FilmArrowSet& arrows = arrows_[set.place];
     if (!place.allFinite() || !vector.allFinite())
-      throw NonFiniteValue("film.not_finite", {ErrorObject{told()}, "an arrow of \"", arrows.label,
+      throw NonFiniteValue("film.not_finite", {ErrorObject{who()}, "an arrow of \"", arrows.label,
                                                "\" is not finite at t = ", ErrorTime{times_.back()}, " s."});
     ++arrows.counts.back();
     for (int i = 0; i < 3; ++i) arrows.places.push_back(float(place[i])), arrows.vectors.push_back(float(vector[i]));
@@ -174,13 +174,13 @@ class FilmScene {
   /// \throws InvalidInput unless the times of the history increase; NonFiniteValue.
   void plot(std::string const& label, std::string const& unit, double t, double value) {
     if (!std::isfinite(t) || !std::isfinite(value))
-      throw NonFiniteValue("film.not_finite", {ErrorObject{told()}, "a point of the history \"", label,
+      throw NonFiniteValue("film.not_finite", {ErrorObject{who()}, "a point of the history \"", label,
                                                "\" is not finite at t = ", ErrorTime{t}, " s."});
     auto found = std::find_if(histories_.begin(), histories_.end(), [&](auto const& h) { return h.label == label; });
     if (found == histories_.end()) found = histories_.insert(found, {label, unit});
     if (!found->times.empty() && !(t > found->times.back()))
       throw InvalidInput("film.time_order",
-                         {ErrorObject{told()}, "the history \"", label, "\" must rise in time, but t = ", ErrorTime{t},
+                         {ErrorObject{who()}, "the history \"", label, "\" must rise in time, but t = ", ErrorTime{t},
                           " s follows ", found->times.back(), " s."});
     found->times.push_back(t);
     found->values.push_back(float(value));
@@ -204,12 +204,12 @@ class FilmScene {
      ///@}
 
  private:
-  std::string told() const { return "Film, scene \"" + name_ + "\": "; }
+  std::string who() const { return "Film, scene \"" + name_ + "\": "; }
 
   void require_start(std::string const& what) const {
     if (!times_.empty())
       throw InvalidInput("film.late",
-                         {ErrorObject{told()}, "\"", what, "\" is named after the first frame. Name it before."});
+                         {ErrorObject{who()}, "\"", what, "\" is named after the first frame. Name it before."});
   }
 
   void check_parts(double t, std::vector<VisualPart> const& parts) const {
@@ -218,15 +218,15 @@ class FilmScene {
       VisualPart const& part = parts[i];
       for (Vec3 const& p : part.surface.points)
         if (!p.allFinite())
-          throw NonFiniteValue("film.not_finite", {ErrorObject{told()}, "a point of \"", part.name,
+          throw NonFiniteValue("film.not_finite", {ErrorObject{who()}, "a point of \"", part.name,
                                                    "\" is not finite at t = ", ErrorTime{t}, " s."});
       if (!part.place.allFinite() || !part.axes.allFinite())
-        throw NonFiniteValue("film.not_finite", {ErrorObject{told()}, "the frame of \"", part.name,
+        throw NonFiniteValue("film.not_finite", {ErrorObject{who()}, "the frame of \"", part.name,
                                                  "\" is not finite at t = ", ErrorTime{t}, " s."});
       same = times_.empty() || (part.name == parts_[i].name && part.surface.points.size() == parts_[i].points.size());
     }
     if (!same)
-      throw InvalidInput("film.parts", {ErrorObject{told()}, "the parts at t = ", ErrorTime{t},
+      throw InvalidInput("film.parts", {ErrorObject{who()}, "the parts at t = ", ErrorTime{t},
                                         " s differ from the parts of the first frame."});
   }
 
@@ -267,7 +267,7 @@ class FilmScene {
       bool const fits = values.empty() ? before == 0 : before == wanted && values.size() == out.points.size();
       if (!fits)
         throw InvalidInput("film.parts",
-                           {ErrorObject{told()}, "the number of colours \"", scalars_[s].label, "\" of \"", part.name,
+                           {ErrorObject{who()}, "the number of colours \"", scalars_[s].label, "\" of \"", part.name,
                             "\" differs from the number of its points at t = ", ErrorTime{t}, " s."});
       for (double const x : values) out.scalars[s].push_back(float(x));
     }

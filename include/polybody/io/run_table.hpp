@@ -85,9 +85,9 @@ Table tabulate(Run&& run, std::vector<TableColumn> const& columns, double sampli
   require_not_negative(sampling, "tabulate: the sampling of ", "the table");
   Table table{{"t [s]"}, {}};
   for (TableColumn const& c : columns) table.columns.push_back(c.name);
-  RunSampling asked(run.state().t, sampling);
+  RunSampling samples(run.state().t, sampling);
   for (State const& x : run) {
-    if (!asked.takes(x.t) && !table.rows.empty() && !run.done()) continue;
+    if (!samples.takes(x.t) && !table.rows.empty() && !run.done()) continue;
     auto& row = table.rows.emplace_back(1, x.t);
     for (TableColumn const& c : columns) {
       row.push_back(c.value(x));

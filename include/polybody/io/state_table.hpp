@@ -57,7 +57,7 @@ struct StateHeads {
     for (Index i = 0; i < b.coordinates; ++i) all[std::size_t(q + i)].unit = b.units.of_coordinate(b.body, i);
     for (Index i = 0; i < b.velocities; ++i)
       all[std::size_t(v + i)].unit =
-          b.units.of_speed ? b.units.of_speed(b.body, i) : std::string(b.units.of_coordinate(b.body, i)) + "/s";
+          b.units.of_velocity ? b.units.of_velocity(b.body, i) : std::string(b.units.of_coordinate(b.body, i)) + "/s";
   }
 };
 

@@ -48,7 +48,7 @@ class Visual {
   /// Geometry of a complete model, without shapes.
   template <class M>
   explicit Visual(M const& model)
-      : layout_(layout_of(model)), reference_(model.reference_state()), shown_(layout_.bodies.size()) {}
+      : layout_(layout_of(model)), reference_(model.reference_state()), has_shape_(layout_.bodies.size()) {}
   template <class M>
     requires(!std::same_as<M, Visual>)
   explicit Visual(M const&& model) = delete;  ///< deleted: a temporary model does not outlive the geometry
@@ -70,8 +70,8 @@ class Visual {
   template <class = void>
   std::vector<std::string> bodies_without_shape() const {
     std::vector<std::string> names;
-    for (std::size_t i = 0; i < shown_.size(); ++i)
-      if (!shown_[i]) names.push_back(layout_.bodies[i].name);
+    for (std::size_t i = 0; i < has_shape_.size(); ++i)
+      if (!has_shape_[i]) names.push_back(layout_.bodies[i].name);
     return names;
   }
 
@@ -94,12 +94,12 @@ class Visual {
   template <class = void>
   void show(Index body) {
     parts_.back().world = layout_.bodies[std::size_t(body)].planar ? World::plane : World::space;
-    shown_[std::size_t(body)] = true;
+    has_shape_[std::size_t(body)] = true;
   }
 
   ModelLayout layout_;
   State reference_;
-  std::vector<bool> shown_;  // for each body: it has a shape
+  std::vector<bool> has_shape_;  // for each body: it has a shape
   std::vector<VisualPart> parts_;
   std::vector<std::function<void(State const&, VisualPart&)>> moves_;
 };

@@ -24,13 +24,13 @@ ConstraintTerms<1, T> angle(ConstraintTerms<2, T> const& xy) {
   using std::atan2;
   T const x = xy.g[0], y = xy.g[1], n2 = x * x + y * y;
   T const p = x / n2, q = y / n2;
-  ConstraintTerms<1, T> gap;
-  gap.g[0] = atan2(y, x);
+  ConstraintTerms<1, T> terms;
+  terms.g[0] = atan2(y, x);
   for (int j = 0; j < 6; ++j) {
-    gap.Ga(0, j) = p * xy.Ga(1, j) - q * xy.Ga(0, j);
-    gap.Gb(0, j) = p * xy.Gb(1, j) - q * xy.Gb(0, j);
+    terms.Ga(0, j) = p * xy.Ga(1, j) - q * xy.Ga(0, j);
+    terms.Gb(0, j) = p * xy.Gb(1, j) - q * xy.Gb(0, j);
   }
-  return gap;
+  return terms;
 }
 
 /// γ of θ from γ of x and y: (x γ_y − y γ_x − 2 θ̇ (x ẋ + y ẏ))/n².
@@ -89,14 +89,14 @@ void turn_gradient(Frame<double> const& a, Frame<double> const& b, double lambda
 /// a₃, and p has the unit [m/rad]. The translation determines the number of full turns, g = −p wrap(θ − u·d/p), so that
 /// |g| ≤ π |p|.
 template <int m, StateScalar T>
-void slide_and_turn(Vec<T, 3> const& u, double p, Frame<T> const& a, Frame<T> const& b, ConstraintTerms<m, T>& gap,
+void slide_and_turn(Vec<T, 3> const& u, double p, Frame<T> const& a, Frame<T> const& b, ConstraintTerms<m, T>& terms,
                     int row) {
-  no_slide<m, T>(u, a, b, gap, row);
+  no_slide<m, T>(u, a, b, terms, row);
   ConstraintTerms<1, T> const turn = angle(turned(a, b));
-  gap.g[row] = -p * wrapped<T>(turn.g[0] - gap.g[row] / p);
+  terms.g[row] = -p * wrapped<T>(turn.g[0] - terms.g[row] / p);
   for (int j = 0; j < 6; ++j) {
-    gap.Ga(row, j) -= turn.Ga(0, j) * p;
-    gap.Gb(row, j) -= turn.Gb(0, j) * p;
+    terms.Ga(row, j) -= turn.Ga(0, j) * p;
+    terms.Gb(row, j) -= turn.Gb(0, j) * p;
   }
 }
 

@@ -17,9 +17,9 @@ struct ConstantOrientation {
 
   template <StateScalar T>
   ConstraintTerms<3, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
-    ConstraintTerms<3, T> gap;
-    polybody::constraint_functions::parallel(a, b, gap, 0);
-    return gap;
+    ConstraintTerms<3, T> terms;
+    polybody::constraint_functions::parallel(a, b, terms, 0);
+    return terms;
   }
   template <StateScalar T>
   Vec<T, 3> gamma(Frame<T> const& a, Frame<T> const& b, double) const {

@@ -14,23 +14,23 @@ namespace polybody::constraint_functions {
 
 /// Writes g = r_b − r_a into rows [row, row + 3).
 template <int m, StateScalar T>
-void coincident(Frame<T> const& a, Frame<T> const& b, ConstraintTerms<m, T>& gap, int row = 0) {
+void coincident(Frame<T> const& a, Frame<T> const& b, ConstraintTerms<m, T>& terms, int row = 0) {
   for (int i = 0; i < 3; ++i) {
-    gap.g[row + i] = b.r[i] - a.r[i];
-    gap.Ga(row + i, i) = T(-1.0);
-    gap.Gb(row + i, i) = T(1.0);
+    terms.g[row + i] = b.r[i] - a.r[i];
+    terms.Ga(row + i, i) = T(-1.0);
+    terms.Gb(row + i, i) = T(1.0);
   }
 }
 
 /// Writes g = u·w to `row`: ġ = (u × w)·(ω_a − ω_b).
 template <int m, StateScalar T>
-[[gnu::always_inline]] inline void perpendicular(Vec<T, 3> const& u, Vec<T, 3> const& w, ConstraintTerms<m, T>& gap,
+[[gnu::always_inline]] inline void perpendicular(Vec<T, 3> const& u, Vec<T, 3> const& w, ConstraintTerms<m, T>& terms,
                                                  int row) {
   Vec<T, 3> const c = cross(u, w);
-  gap.g[row] = dot(u, w);
+  terms.g[row] = dot(u, w);
   for (int i = 0; i < 3; ++i) {
-    gap.Ga(row, 3 + i) = c[i];
-    gap.Gb(row, 3 + i) = -c[i];
+    terms.Ga(row, 3 + i) = c[i];
+    terms.Gb(row, 3 + i) = -c[i];
   }
 }
 
@@ -43,13 +43,13 @@ inline T perpendicular_gamma(Vec<T, 3> const& u, Vec<T, 3> const& w, Frame<T> co
 
 /// Writes g = u·d to `row`: ġ = u·(v_b − v_a) + (u × d)·ω_a.
 template <int m, StateScalar T>
-void no_slide(Vec<T, 3> const& u, Frame<T> const& a, Frame<T> const& b, ConstraintTerms<m, T>& gap, int row) {
+void no_slide(Vec<T, 3> const& u, Frame<T> const& a, Frame<T> const& b, ConstraintTerms<m, T>& terms, int row) {
   Vec<T, 3> const d = difference(b.r, a.r), c = cross(u, d);
-  gap.g[row] = dot(u, d);
+  terms.g[row] = dot(u, d);
   for (int i = 0; i < 3; ++i) {
-    gap.Ga(row, i) = -u[i];
-    gap.Ga(row, 3 + i) = c[i];
-    gap.Gb(row, i) = u[i];
+    terms.Ga(row, i) = -u[i];
+    terms.Ga(row, 3 + i) = c[i];
+    terms.Gb(row, i) = u[i];
   }
 }
 
@@ -62,8 +62,8 @@ inline T no_slide_gamma(Vec<T, 3> const& u, Frame<T> const& a, Frame<T> const& b
 
 /// Writes a₁·b₂, a₂·b₃, a₃·b₁ to three rows from `row` on: the axes of b are parallel to the axes of a.
 template <int m, StateScalar T>
-void parallel(Frame<T> const& a, Frame<T> const& b, ConstraintTerms<m, T>& gap, int row) {
-  for (int i = 0; i < 3; ++i) perpendicular(axis_of(a, i), axis_of(b, (i + 1) % 3), gap, row + i);
+void parallel(Frame<T> const& a, Frame<T> const& b, ConstraintTerms<m, T>& terms, int row) {
+  for (int i = 0; i < 3; ++i) perpendicular(axis_of(a, i), axis_of(b, (i + 1) % 3), terms, row + i);
 }
 
 /// γ of `parallel`.
@@ -76,8 +76,8 @@ Vec<T, 3> parallel_gamma(Frame<T> const& a, Frame<T> const& b) {
 
 /// Writes a₁·b₃ and a₂·b₃ to two rows from `row` on: the third axes are parallel.
 template <int m, StateScalar T>
-void same_direction(Frame<T> const& a, Frame<T> const& b, ConstraintTerms<m, T>& gap, int row) {
-  for (int i = 0; i < 2; ++i) perpendicular(axis_of(a, i), axis_of(b, 2), gap, row + i);
+void same_direction(Frame<T> const& a, Frame<T> const& b, ConstraintTerms<m, T>& terms, int row) {
+  for (int i = 0; i < 2; ++i) perpendicular(axis_of(a, i), axis_of(b, 2), terms, row + i);
 }
 
 /// γ of `same_direction`.
@@ -89,8 +89,8 @@ Vec<T, 2> same_direction_gamma(Frame<T> const& a, Frame<T> const& b) {
 
 /// Writes a₁·d and a₂·d to two rows from `row` on: the point of b is on the third axis of a.
 template <int m, StateScalar T>
-void on_axis(Frame<T> const& a, Frame<T> const& b, ConstraintTerms<m, T>& gap, int row) {
-  for (int i = 0; i < 2; ++i) no_slide(axis_of(a, i), a, b, gap, row + i);
+void on_axis(Frame<T> const& a, Frame<T> const& b, ConstraintTerms<m, T>& terms, int row) {
+  for (int i = 0; i < 2; ++i) no_slide(axis_of(a, i), a, b, terms, row + i);
 }
 
 /// γ of `on_axis`.
@@ -102,15 +102,15 @@ Vec<T, 2> on_axis_gamma(Frame<T> const& a, Frame<T> const& b) {
 /// Writes g = |d| − length to `row`: ġ = e·(v_b − v_a), e = d/|d|. If the points coincide, e is the x axis, so that
 /// `assemble` can separate them.
 template <int m, StateScalar T>
-void distance(Frame<T> const& a, Frame<T> const& b, double length, ConstraintTerms<m, T>& gap, int row = 0) {
+void distance(Frame<T> const& a, Frame<T> const& b, double length, ConstraintTerms<m, T>& terms, int row = 0) {
   using std::sqrt;
   Vec<T, 3> const line = difference(b.r, a.r);
   T const d = sqrt(squared_norm(line));
-  gap.g[row] = d - length;
+  terms.g[row] = d - length;
   for (int i = 0; i < 3; ++i) {
     T const e = value_of(d) > 0.0 ? T(line[i] / d) : T(i == 0 ? 1.0 : 0.0);
-    gap.Ga(row, i) = -e;
-    gap.Gb(row, i) = e;
+    terms.Ga(row, i) = -e;
+    terms.Gb(row, i) = e;
   }
 }
 

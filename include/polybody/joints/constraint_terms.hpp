@@ -148,13 +148,13 @@ Mat<double, 12, 12> wrench_gradient_by_dual_numbers(G const& geometry, Frame<dou
     }
     return m;
   };
-  ConstraintTerms<G::rows, D> const gap = geometry.template constraint_function<D>(moved(a, 0), moved(b, 6), t);
+  ConstraintTerms<G::rows, D> const terms = geometry.template constraint_function<D>(moved(a, 0), moved(b, 6), t);
   auto k = detail::zeros<Mat<double, 12, 12>>();
   for (int r = 0; r < G::rows; ++r)
     for (int i = 0; i < 6; ++i)
       for (int j = 0; j < 12; ++j) {
-        k(i, j) += gap.Ga(r, i).d[j] * lambda[r];
-        k(i + 6, j) += gap.Gb(r, i).d[j] * lambda[r];
+        k(i, j) += terms.Ga(r, i).d[j] * lambda[r];
+        k(i + 6, j) += terms.Gb(r, i).d[j] * lambda[r];
       }
   return k;
 }

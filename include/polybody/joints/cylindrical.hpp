@@ -22,10 +22,10 @@ struct Cylindrical {
 
   template <StateScalar T>
   ConstraintTerms<4, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
-    ConstraintTerms<4, T> gap;
-    polybody::constraint_functions::on_axis(a, b, gap, 0);
-    polybody::constraint_functions::same_direction(a, b, gap, 2);
-    return gap;
+    ConstraintTerms<4, T> terms;
+    polybody::constraint_functions::on_axis(a, b, terms, 0);
+    polybody::constraint_functions::same_direction(a, b, terms, 2);
+    return terms;
   }
   template <StateScalar T>
   Vec<T, 4> gamma(Frame<T> const& a, Frame<T> const& b, double) const {

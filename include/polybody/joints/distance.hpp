@@ -25,9 +25,9 @@ struct Distance {
 
   template <StateScalar T>
   ConstraintTerms<1, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
-    ConstraintTerms<1, T> gap;
-    polybody::constraint_functions::distance(a, b, length, gap);
-    return gap;
+    ConstraintTerms<1, T> terms;
+    polybody::constraint_functions::distance(a, b, length, terms);
+    return terms;
   }
   template <StateScalar T>
   Vec<T, 1> gamma(Frame<T> const& a, Frame<T> const& b, double) const {

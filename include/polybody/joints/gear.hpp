@@ -54,15 +54,15 @@ struct Gear {
     Ratio const n = ratio();
     ConstraintTerms<1, T> const of_a = polybody::constraint_functions::angle(bearing(a, b)),
                                 of_b = polybody::constraint_functions::angle(bearing(b, a));
-    ConstraintTerms<1, T> gap;
+    ConstraintTerms<1, T> terms;
     T const turns = of_a.g[0] * n.a + of_b.g[0] * n.b;
-    gap.g[0] = polybody::constraint_functions::wrapped(turns - std::numbers::pi * n.b) /
-               n.b;  // the line from b to a has the opposite direction
+    terms.g[0] = polybody::constraint_functions::wrapped(turns - std::numbers::pi * n.b) /
+                 n.b;  // the line from b to a has the opposite direction
     for (int j = 0; j < 6; ++j) {
-      gap.Ga(0, j) = of_a.Ga(0, j) * (n.a / n.b) + of_b.Gb(0, j);
-      gap.Gb(0, j) = of_a.Gb(0, j) * (n.a / n.b) + of_b.Ga(0, j);
+      terms.Ga(0, j) = of_a.Ga(0, j) * (n.a / n.b) + of_b.Gb(0, j);
+      terms.Gb(0, j) = of_a.Gb(0, j) * (n.a / n.b) + of_b.Ga(0, j);
     }
-    return gap;
+    return terms;
   }
   template <StateScalar T>
   Vec<T, 1> gamma(Frame<T> const& a, Frame<T> const& b, double) const {

@@ -38,8 +38,8 @@ concept HolonomicOrConstrained = ConstrainingPolicy<P> || nonholonomic_equations
 /// needs no policy.
 template <class G, class P>
 struct Joint {
-  static_assert(JointGeometry<G> || detail::GeometryRefusal<G>::asked);
-  static_assert(Policy<P> || detail::PolicyRefusal<P>::asked);
+  static_assert(JointGeometry<G> || detail::GeometryRefusal<G>::checked);
+  static_assert(Policy<P> || detail::PolicyRefusal<P>::checked);
   using Geometry = G;    ///< motions that the joint prevents
   using PolicyType = P;  ///< enforcement of the constraint equations
   /// Constraint function of the policy: G, or `Measured<G>` of P.

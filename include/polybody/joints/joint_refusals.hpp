@@ -48,7 +48,7 @@ struct GeometryRefusal {
       "A joint geometry needs gamma<T>(a, b, t) const, which returns Vec<T, rows>: the terms of the second derivative "
       "of "
       "its constraint function without accelerations.");
-  static constexpr bool asked = true;
+  static constexpr bool checked = true;
 };
 
 /// Instantiated for a type that is not a `Policy`.
@@ -77,7 +77,7 @@ struct PolicyRefusal {
   static_assert(
       ConstrainingPolicy<P> || given != 7 || requires(P const p, std::string const what) { p.check(what); },
       "A compliant policy needs check(what) const, which throws InvalidInput for invalid parameters.");
-  static constexpr bool asked = true;
+  static constexpr bool checked = true;
 };
 
 }  // namespace polybody::detail

@@ -24,14 +24,14 @@ struct KnifeEdge {
 
   template <StateScalar T>
   ConstraintTerms<1, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
-    ConstraintTerms<1, T> gap;
+    ConstraintTerms<1, T> terms;
     Vec<T, 3> const n = axis_of(b, 2), d = b.r - a.r, c = n.cross(d);
     for (int i = 0; i < 3; ++i) {
-      gap.Ga(0, i) = -n[i];
-      gap.Ga(0, 3 + i) = c[i];
-      gap.Gb(0, i) = n[i];
+      terms.Ga(0, i) = -n[i];
+      terms.Ga(0, 3 + i) = c[i];
+      terms.Gb(0, i) = n[i];
     }
-    return gap;
+    return terms;
   }
   /// γ = (ω_b × b₃)·u − b₃·(ω_a × (ṙ_b − ṙ_a)).
   template <StateScalar T>

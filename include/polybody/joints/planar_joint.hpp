@@ -23,10 +23,10 @@ struct PlanarJoint {
 
   template <StateScalar T>
   ConstraintTerms<3, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
-    ConstraintTerms<3, T> gap;
-    polybody::constraint_functions::no_slide(axis_of(a, 2), a, b, gap, 0);
-    polybody::constraint_functions::same_direction(a, b, gap, 1);
-    return gap;
+    ConstraintTerms<3, T> terms;
+    polybody::constraint_functions::no_slide(axis_of(a, 2), a, b, terms, 0);
+    polybody::constraint_functions::same_direction(a, b, terms, 1);
+    return terms;
   }
   template <StateScalar T>
   Vec<T, 3> gamma(Frame<T> const& a, Frame<T> const& b, double) const {

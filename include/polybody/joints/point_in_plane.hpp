@@ -23,9 +23,9 @@ struct PointInPlane {
 
   template <StateScalar T>
   ConstraintTerms<1, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
-    ConstraintTerms<1, T> gap;
-    polybody::constraint_functions::no_slide(axis_of(a, 2), a, b, gap, 0);
-    return gap;
+    ConstraintTerms<1, T> terms;
+    polybody::constraint_functions::no_slide(axis_of(a, 2), a, b, terms, 0);
+    return terms;
   }
   template <StateScalar T>
   Vec<T, 1> gamma(Frame<T> const& a, Frame<T> const& b, double) const {

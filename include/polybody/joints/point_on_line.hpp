@@ -22,9 +22,9 @@ struct PointOnLine {
 
   template <StateScalar T>
   ConstraintTerms<2, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
-    ConstraintTerms<2, T> gap;
-    polybody::constraint_functions::on_axis(a, b, gap, 0);
-    return gap;
+    ConstraintTerms<2, T> terms;
+    polybody::constraint_functions::on_axis(a, b, terms, 0);
+    return terms;
   }
   template <StateScalar T>
   Vec<T, 2> gamma(Frame<T> const& a, Frame<T> const& b, double) const {

@@ -34,10 +34,10 @@ struct PrescribedAngle {
   template <StateScalar T>
   ConstraintTerms<1, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double t) const {
     Motion const psi = law(t);
-    ConstraintTerms<1, T> gap = polybody::constraint_functions::angle(polybody::constraint_functions::turned(a, b));
-    gap.g[0] = polybody::constraint_functions::wrapped(gap.g[0] - psi.value);
-    gap.rate[0] = T(-psi.rate);
-    return gap;
+    ConstraintTerms<1, T> terms = polybody::constraint_functions::angle(polybody::constraint_functions::turned(a, b));
+    terms.g[0] = polybody::constraint_functions::wrapped(terms.g[0] - psi.value);
+    terms.rate[0] = T(-psi.rate);
+    return terms;
   }
   template <StateScalar T>
   Vec<T, 1> gamma(Frame<T> const& a, Frame<T> const& b, double t) const {

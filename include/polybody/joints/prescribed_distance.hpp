@@ -26,10 +26,10 @@ struct PrescribedDistance {
   template <StateScalar T>
   ConstraintTerms<1, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double t) const {
     Motion const x = law(t);
-    ConstraintTerms<1, T> gap;
-    polybody::constraint_functions::distance(a, b, length + x.value, gap);
-    gap.rate[0] = T(-x.rate);
-    return gap;
+    ConstraintTerms<1, T> terms;
+    polybody::constraint_functions::distance(a, b, length + x.value, terms);
+    terms.rate[0] = T(-x.rate);
+    return terms;
   }
   template <StateScalar T>
   Vec<T, 1> gamma(Frame<T> const& a, Frame<T> const& b, double t) const {

@@ -29,11 +29,11 @@ struct PrescribedTranslation {
   template <StateScalar T>
   ConstraintTerms<1, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double t) const {
     Motion const s = law(t);
-    ConstraintTerms<1, T> gap;
-    polybody::constraint_functions::no_slide(axis_of(a, 2), a, b, gap, 0);
-    gap.g[0] -= s.value;
-    gap.rate[0] = T(-s.rate);
-    return gap;
+    ConstraintTerms<1, T> terms;
+    polybody::constraint_functions::no_slide(axis_of(a, 2), a, b, terms, 0);
+    terms.g[0] -= s.value;
+    terms.rate[0] = T(-s.rate);
+    return terms;
   }
   template <StateScalar T>
   Vec<T, 1> gamma(Frame<T> const& a, Frame<T> const& b, double t) const {

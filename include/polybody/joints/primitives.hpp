@@ -38,9 +38,9 @@ struct PerpendicularAxes {
 
   template <StateScalar T>
   ConstraintTerms<1, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
-    ConstraintTerms<1, T> gap;
-    polybody::constraint_functions::perpendicular(axis_of(a, 0), axis_of(b, 2), gap, 0);
-    return gap;
+    ConstraintTerms<1, T> terms;
+    polybody::constraint_functions::perpendicular(axis_of(a, 0), axis_of(b, 2), terms, 0);
+    return terms;
   }
   template <StateScalar T>
   Vec<T, 1> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
@@ -74,9 +74,9 @@ struct ParallelAxes {
 
   template <StateScalar T>
   ConstraintTerms<2, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
-    ConstraintTerms<2, T> gap;
-    polybody::constraint_functions::same_direction(a, b, gap, 0);
-    return gap;
+    ConstraintTerms<2, T> terms;
+    polybody::constraint_functions::same_direction(a, b, terms, 0);
+    return terms;
   }
   template <StateScalar T>
   Vec<T, 2> gamma(Frame<T> const& a, Frame<T> const& b, double) const {

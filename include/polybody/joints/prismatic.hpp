@@ -21,11 +21,11 @@ struct Prismatic {
 
   template <StateScalar T>
   ConstraintTerms<5, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
-    ConstraintTerms<5, T> gap;
-    polybody::constraint_functions::no_slide(axis_of(a, 0), a, b, gap, 0);
-    polybody::constraint_functions::no_slide(axis_of(a, 1), a, b, gap, 1);
-    polybody::constraint_functions::parallel(a, b, gap, 2);
-    return gap;
+    ConstraintTerms<5, T> terms;
+    polybody::constraint_functions::no_slide(axis_of(a, 0), a, b, terms, 0);
+    polybody::constraint_functions::no_slide(axis_of(a, 1), a, b, terms, 1);
+    polybody::constraint_functions::parallel(a, b, terms, 2);
+    return terms;
   }
   template <StateScalar T>
   Vec<T, 5> gamma(Frame<T> const& a, Frame<T> const& b, double) const {

@@ -34,9 +34,9 @@ struct RackAndPinion {
 
   template <StateScalar T>
   ConstraintTerms<1, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
-    ConstraintTerms<1, T> gap;
-    polybody::constraint_functions::slide_and_turn(axis_of(a, 0), radius, a, b, gap, 0);
-    return gap;
+    ConstraintTerms<1, T> terms;
+    polybody::constraint_functions::slide_and_turn(axis_of(a, 0), radius, a, b, terms, 0);
+    return terms;
   }
   template <StateScalar T>
   Vec<T, 1> gamma(Frame<T> const& a, Frame<T> const& b, double) const {

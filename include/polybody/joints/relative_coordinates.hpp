@@ -30,29 +30,29 @@ struct RelativeCoordinates {
 
   template <StateScalar T>
   ConstraintTerms<6, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
-    ConstraintTerms<6, T> gap;
-    slide(a, b, gap);
-    turn(a, b, gap);
-    return gap;
+    ConstraintTerms<6, T> terms;
+    slide(a, b, terms);
+    turn(a, b, terms);
+    return terms;
   }
 
   /// Writes the three translations.
   template <StateScalar T>
-  static void slide(Frame<T> const& a, Frame<T> const& b, ConstraintTerms<6, T>& gap) {
-    for (int i = 0; i < 3; ++i) polybody::constraint_functions::no_slide(axis_of(a, i), a, b, gap, i);
+  static void slide(Frame<T> const& a, Frame<T> const& b, ConstraintTerms<6, T>& terms) {
+    for (int i = 0; i < 3; ++i) polybody::constraint_functions::no_slide(axis_of(a, i), a, b, terms, i);
   }
   /// Writes the three rotations.
   template <StateScalar T>
-  static void turn(Frame<T> const& a, Frame<T> const& b, ConstraintTerms<6, T>& gap) {
+  static void turn(Frame<T> const& a, Frame<T> const& b, ConstraintTerms<6, T>& terms) {
     Turn<T> const x(a, b);
     Mat<T, 3, 3> const map = product<T>(x.map, transposed<T>(a.A));
-    gap.g[3] = x.s[0];
-    gap.g[4] = x.s[1];
-    gap.g[5] = x.psi;
+    terms.g[3] = x.s[0];
+    terms.g[4] = x.s[1];
+    terms.g[5] = x.psi;
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) {
-        gap.Ga(3 + i, 3 + j) = -map(i, j);
-        gap.Gb(3 + i, 3 + j) = map(i, j);
+        terms.Ga(3 + i, 3 + j) = -map(i, j);
+        terms.Gb(3 + i, 3 + j) = map(i, j);
       }
   }
 
@@ -165,15 +165,15 @@ struct ConstrainedCoordinates {
 
   template <StateScalar T>
   ConstraintTerms<6, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
-    ConstraintTerms<6, T> gap;
-    RelativeCoordinates::slide(a, b, gap);
-    if constexpr (!may_turn) RelativeCoordinates::turn(a, b, gap);
+    ConstraintTerms<6, T> terms;
+    RelativeCoordinates::slide(a, b, terms);
+    if constexpr (!may_turn) RelativeCoordinates::turn(a, b, terms);
     for (int i = 0; i < 6; ++i)
       if (G::free[std::size_t(i)]) {
-        gap.g[i] = T(0.0);
-        for (int j = 0; j < 6; ++j) gap.Ga(i, j) = gap.Gb(i, j) = T(0.0);
+        terms.g[i] = T(0.0);
+        for (int j = 0; j < 6; ++j) terms.Ga(i, j) = terms.Gb(i, j) = T(0.0);
       }
-    return gap;
+    return terms;
   }
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b, Vec6 lambda) const {
     for (int i = 0; i < 6; ++i)

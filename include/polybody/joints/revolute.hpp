@@ -25,11 +25,11 @@ struct Revolute {
 
   template <StateScalar T>
   ConstraintTerms<5, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
-    ConstraintTerms<5, T> gap;
-    polybody::constraint_functions::coincident(a, b, gap);
-    polybody::constraint_functions::perpendicular(axis_of(a, 0), axis_of(b, 2), gap, 3);
-    polybody::constraint_functions::perpendicular(axis_of(a, 1), axis_of(b, 2), gap, 4);
-    return gap;
+    ConstraintTerms<5, T> terms;
+    polybody::constraint_functions::coincident(a, b, terms);
+    polybody::constraint_functions::perpendicular(axis_of(a, 0), axis_of(b, 2), terms, 3);
+    polybody::constraint_functions::perpendicular(axis_of(a, 1), axis_of(b, 2), terms, 4);
+    return terms;
   }
   template <StateScalar T>
   Vec<T, 5> gamma(Frame<T> const& a, Frame<T> const& b, double) const {

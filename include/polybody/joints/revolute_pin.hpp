@@ -31,16 +31,16 @@ struct RevolutePin {
 
   template <StateScalar T>
   ConstraintTerms<5, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
-    ConstraintTerms<5, T> gap;
-    polybody::constraint_functions::same_direction(a, b, gap, 0);
-    polybody::constraint_functions::on_axis(a, b, gap, 2);
+    ConstraintTerms<5, T> terms;
+    polybody::constraint_functions::same_direction(a, b, terms, 0);
+    polybody::constraint_functions::on_axis(a, b, terms, 2);
     Vec<T, 3> const d = b.r - a.r;
-    gap.g[4] = d.dot(d) - double(distance) * distance;
+    terms.g[4] = d.dot(d) - double(distance) * distance;
     for (int i = 0; i < 3; ++i) {
-      gap.Ga(4, i) = d[i] * -2.0;
-      gap.Gb(4, i) = d[i] * 2.0;
+      terms.Ga(4, i) = d[i] * -2.0;
+      terms.Gb(4, i) = d[i] * 2.0;
     }
-    return gap;
+    return terms;
   }
   template <StateScalar T>
   Vec<T, 5> gamma(Frame<T> const& a, Frame<T> const& b, double) const {

@@ -42,19 +42,19 @@ struct RollingDisc {
   template <StateScalar T>
   ConstraintTerms<3, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
     Contact<T> const c(*this, a, b);
-    ConstraintTerms<3, T> gap;
-    gap.g[0] = c.n.dot(c.p);
+    ConstraintTerms<3, T> terms;
+    terms.g[0] = c.n.dot(c.p);
     for (int i = 0; i < 3; ++i) {
       Vec<T, 3> const direction = c.direction(i);
       Vec<T, 3> const about_a = direction.cross(c.p), about_b = c.rho.cross(direction);
       for (int j = 0; j < 3; ++j) {
-        gap.Ga(i, j) = -direction[j];
-        gap.Ga(i, 3 + j) = about_a[j];
-        gap.Gb(i, j) = direction[j];
-        gap.Gb(i, 3 + j) = about_b[j];
+        terms.Ga(i, j) = -direction[j];
+        terms.Ga(i, 3 + j) = about_a[j];
+        terms.Gb(i, j) = direction[j];
+        terms.Gb(i, 3 + j) = about_b[j];
       }
     }
-    return gap;
+    return terms;
   }
   /// For a direction s fixed in a: γ = (ω_a × s)·u + s·(ω_b × ρ̇ − ω_a × ṗ), ρ̇ = −R (ṁ − e (e·ṁ))/|m|, ṗ = ḋ + ρ̇.
   template <StateScalar T>

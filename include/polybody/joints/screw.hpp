@@ -31,11 +31,11 @@ struct Screw {
 
   template <StateScalar T>
   ConstraintTerms<5, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
-    ConstraintTerms<5, T> gap;
-    polybody::constraint_functions::on_axis(a, b, gap, 0);
-    polybody::constraint_functions::same_direction(a, b, gap, 2);
-    polybody::constraint_functions::slide_and_turn(axis_of(a, 2), pitch, a, b, gap, 4);
-    return gap;
+    ConstraintTerms<5, T> terms;
+    polybody::constraint_functions::on_axis(a, b, terms, 0);
+    polybody::constraint_functions::same_direction(a, b, terms, 2);
+    polybody::constraint_functions::slide_and_turn(axis_of(a, 2), pitch, a, b, terms, 4);
+    return terms;
   }
   template <StateScalar T>
   Vec<T, 5> gamma(Frame<T> const& a, Frame<T> const& b, double) const {

@@ -16,9 +16,9 @@ struct Spherical {
 
   template <StateScalar T>
   ConstraintTerms<3, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
-    ConstraintTerms<3, T> gap;
-    polybody::constraint_functions::coincident(a, b, gap);
-    return gap;
+    ConstraintTerms<3, T> terms;
+    polybody::constraint_functions::coincident(a, b, terms);
+    return terms;
   }
   template <StateScalar T>
   Vec<T, 3> gamma(Frame<T> const&, Frame<T> const&, double) const {

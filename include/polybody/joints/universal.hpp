@@ -30,10 +30,10 @@ struct Universal {
 
   template <StateScalar T>
   ConstraintTerms<4, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
-    ConstraintTerms<4, T> gap;
-    polybody::constraint_functions::coincident(a, b, gap);
-    polybody::constraint_functions::perpendicular(axis_of(a, 0), axis_of(b, 2), gap, 3);
-    return gap;
+    ConstraintTerms<4, T> terms;
+    polybody::constraint_functions::coincident(a, b, terms);
+    polybody::constraint_functions::perpendicular(axis_of(a, 0), axis_of(b, 2), terms, 3);
+    return terms;
   }
   template <StateScalar T>
   Vec<T, 4> gamma(Frame<T> const& a, Frame<T> const& b, double) const {

@@ -17,10 +17,10 @@ struct Weld {
 
   template <StateScalar T>
   ConstraintTerms<6, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
-    ConstraintTerms<6, T> gap;
-    polybody::constraint_functions::coincident(a, b, gap);
-    polybody::constraint_functions::parallel(a, b, gap, 3);
-    return gap;
+    ConstraintTerms<6, T> terms;
+    polybody::constraint_functions::coincident(a, b, terms);
+    polybody::constraint_functions::parallel(a, b, terms, 3);
+    return terms;
   }
   template <StateScalar T>
   Vec<T, 6> gamma(Frame<T> const& a, Frame<T> const& b, double) const {

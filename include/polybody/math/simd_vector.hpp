@@ -30,10 +30,10 @@ struct SimdLanes<4> {
 
 /// Number of doubles in a SIMD vector of the target machine, two or four. The compiler splits a vector that is wider
 /// than the registers of the machine into single entries.
-inline constexpr int pack_size = Eigen::internal::packet_traits<double>::size >= 4 ? 4 : 2;
+inline constexpr int simd_size = Eigen::internal::packet_traits<double>::size >= 4 ? 4 : 2;
 
 /// SIMD vector of `N` doubles. It has no `value_of`: a formula that branches on values does not compile for it.
-template <int N = pack_size>
+template <int N = simd_size>
 class SimdVector {
  public:
   static constexpr int size = N;                      ///< number of entries
@@ -43,7 +43,7 @@ class SimdVector {
 
   SimdVector() = default;  ///< `SimdVector<>()` is zero, `SimdVector<> x;` is not initialised, as for double
   /// N copies of the number `same`.
-  SimdVector(double same) : x_(same - Lanes{}) {}  // NOLINT(google-explicit-constructor): a constant is a pack
+  SimdVector(double same) : x_(same - Lanes{}) {}  // NOLINT(google-explicit-constructor): a constant is a SIMD vector
 
   double operator[](int i) const { return x_[i]; }  ///< entry i, 0 ≤ i < N
   void set(int i, double x) { x_[i] = x; }          ///< sets entry i to x
@@ -83,17 +83,17 @@ class SimdVector {
   /// Stores the N numbers contiguously, aligned or not, the first at `to`.
   void store(double* to) const { std::memcpy(to, &x_, sizeof(Lanes)); }
 
-  /// Transposes the N×N matrix with the SIMD vectors `packs` as its rows.
-  friend void transpose(std::array<SimdVector, std::size_t(N)>& packs) {
+  /// Transposes the N×N matrix with the SIMD vectors in `vectors` as its rows.
+  friend void transpose(std::array<SimdVector, std::size_t(N)>& vectors) {
     if constexpr (sizeof(Native) == sizeof(Lanes)) {
       Eigen::internal::PacketBlock<Native, N> block;
-      for (int i = 0; i < N; ++i) block.packet[i] = Native(packs[std::size_t(i)].x_);
+      for (int i = 0; i < N; ++i) block.packet[i] = Native(vectors[std::size_t(i)].x_);
       Eigen::internal::ptranspose(block);
-      for (int i = 0; i < N; ++i) packs[std::size_t(i)].x_ = Lanes(block.packet[i]);
+      for (int i = 0; i < N; ++i) vectors[std::size_t(i)].x_ = Lanes(block.packet[i]);
     } else {
       for (int i = 0; i < N; ++i)
         for (int j = 0; j < i; ++j) {
-          SimdVector &a = packs[std::size_t(i)], &b = packs[std::size_t(j)];
+          SimdVector &a = vectors[std::size_t(i)], &b = vectors[std::size_t(j)];
           double const kept = a[j];
           a.set(j, b[i]);
           b.set(i, kept);

@@ -98,7 +98,7 @@ inline void check_ramp(double target, double duration, double start, std::string
 /// At a breakpoint the value is that of the following piece.
 ///
 /// With a `rounding` w a parabola replaces each breakpoint, from w/2 before to w/2 after it: value = slope s²/(2w),
-/// s = t − corner + w/2. Only the acceleration is then discontinuous. After both parabolas, value and integral equal
+/// s = t − t₀ + w/2. Only the acceleration is then discontinuous. After both parabolas, value and integral equal
 /// those without rounding.
 struct Ramp {
   Required<double> target;    ///< [m] or [rad]
@@ -117,7 +117,7 @@ struct Ramp {
   Motion operator()(double t) const {
     if (t < start - 0.5 * rounding) return {};
     if (t >= start + duration + 0.5 * rounding) return {target, 0.0, 0.0};
-    Motion const begin = corner(t - start), end = corner(t - start - duration);
+    Motion const begin = rounded_kink(t - start), end = rounded_kink(t - start - duration);
     return {target * (begin.value - end.value) / duration, target * (begin.rate - end.rate) / duration,
             target * (begin.acceleration - end.acceleration) / duration};
   }
@@ -125,7 +125,7 @@ struct Ramp {
   double integral(double t) const {
     double const x = t - start, y = x - duration;
     if (y >= 0.5 * rounding) return target * 0.5 * (x + y);
-    return target * (corner_integral(x) - corner_integral(y)) / duration;
+    return target * (rounded_kink_integral(x) - rounded_kink_integral(y)) / duration;
   }
   /// Breakpoints [s]; none if they are rounded.
   std::vector<double> breakpoints() const {
@@ -135,14 +135,14 @@ struct Ramp {
 
  private:
   /// max(0, x) with the rounding.
-  Motion corner(double x) const {
+  Motion rounded_kink(double x) const {
     double const s = x + 0.5 * rounding;
     if (x >= 0.5 * rounding) return {x, 1.0, 0.0};
     if (s <= 0.0) return {};
     return {0.5 * s * s / rounding, s / rounding, 1.0 / rounding};
   }
-  /// Integral of `corner`: s³/(6w) within the rounding, then x²/2 + w²/24.
-  double corner_integral(double x) const {
+  /// Integral of `rounded_kink`: s³/(6w) within the rounding, then x²/2 + w²/24.
+  double rounded_kink_integral(double x) const {
     double const s = x + 0.5 * rounding;
     if (x >= 0.5 * rounding) return 0.5 * x * x + rounding * rounding / 24.0;
     return s <= 0.0 ? 0.0 : s * s * s / (6.0 * rounding);

@@ -11,9 +11,9 @@
 namespace polybody {
 
 /// Vector of three numbers in one SIMD register of four numbers, or in one of two numbers and a double, by
-/// `pack_size` of the machine. Each function is one expression. Products and sums are therefore contracted in the
+/// `simd_size` of the machine. Each function is one expression. Products and sums are therefore contracted in the
 /// same way as those of doubles.
-template <int lanes = pack_size>
+template <int lanes = simd_size>
 class Vec3Storage;
 
 /// Three numbers in a register of four, with an unused last entry.

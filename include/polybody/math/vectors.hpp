@@ -9,8 +9,8 @@
 
 namespace polybody {
 
-/// Position in vectors: `pack_size` entries from `first` on.
-struct PackIndex {
+/// Position in vectors: `simd_size` entries from `first` on.
+struct SimdIndex {
   Index first;  ///< index of the first of these entries
   SimdVector<> operator()(double const* x) const { return SimdVector<>::load(x + first); }       ///< loads them from x
   SimdVector<> operator()(VecX const& x) const { return SimdVector<>::load(x.data() + first); }  ///< loads them from x
@@ -32,24 +32,24 @@ struct EntryIndex {
 template <class F>
 [[gnu::always_inline]] inline void for_each_simd_block(Index n, F f) {
   Index i = 0;
-  for (; i + pack_size <= n; i += pack_size) f(PackIndex{i});
+  for (; i + simd_size <= n; i += simd_size) f(SimdIndex{i});
   for (; i < n; ++i) f(EntryIndex{i});
 }
 
 /// Sum over the entries of `for_each_simd_block`.
 class SimdSum {
  public:
-  void add(SimdVector<> const& x) { packs_ += x; }  ///< adds a SIMD vector; its entries are summed in `total`
+  void add(SimdVector<> const& x) { lanes_ += x; }  ///< adds a SIMD vector; its entries are summed in `total`
   void add(double x) { rest_ += x; }                ///< adds the number `x`
   /// Sum of all added numbers.
   double total() const {
     double sum = rest_;
-    for (int i = 0; i < pack_size; ++i) sum += packs_[i];
+    for (int i = 0; i < simd_size; ++i) sum += lanes_[i];
     return sum;
   }
 
  private:
-  SimdVector<> packs_ = SimdVector<>();
+  SimdVector<> lanes_ = SimdVector<>();
   double rest_ = 0.0;
 };
 

@@ -30,13 +30,13 @@ class AnyModel {
   /// Stores the model, with the evaluations of M and its steps by each of the integrators Is.
   template <class M, class... Is>
   AnyModel(std::shared_ptr<M const> model, SteppedBy<Is...>)
-      : reference_(model->reference_state()), system_(&questions<M>), census_(polybody::problem_size(*model)) {
+      : reference_(model->reference_state()), system_(&questions<M>), problem_size_(polybody::problem_size(*model)) {
     (runs_.push_back({&detail::integrator_tag<Is>, &systems<Is, M>}), ...);
     model_ = std::move(model);
   }
 
   State const& reference_state() const { return reference_; }  ///< the bodies as placed, at rest
-  ProblemSize const& counts() const { return census_; }        ///< counts at construction
+  ProblemSize const& counts() const { return problem_size_; }  ///< counts at construction
   /// System of the full model, with the evaluation of motion and energies.
   System system() const { return system_(model_.get()); }
 
@@ -67,7 +67,7 @@ class AnyModel {
   std::shared_ptr<void const> model_;
   State reference_;
   System (*system_)(void const*);
-  ProblemSize census_;
+  ProblemSize problem_size_;
   Sequence<Run> runs_ = {};
 };
 

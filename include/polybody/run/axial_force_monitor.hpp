@@ -56,10 +56,10 @@ class AxialForceMonitor {
       largest_ = std::abs(share);
       std::erase(warnings, said_);
       said_ = sentence_of(
-          {"The beams of \"", system.layout().bodies[i].name, "\" are ", (share < 0.0 ? "pressed" : "pulled"),
-           " at t = ", x.t, " s with ", 100.0 * largest_,
-           " % of the load that buckles them, which its deflection leaves out: it is off by about that part. Make "
-           "the body with .stiffening = true and .frame = FfrFrame::mean_axes, as `from` does."});
+          {"The beams of \"", system.layout().bodies[i].name, "\" are ",
+           (share < 0.0 ? "in compression" : "in tension"), " at t = ", x.t, " s with ", 100.0 * largest_,
+           " % of the load that buckles them. The deflection neglects this force, and its relative error is about "
+           "that large. Make the body with .stiffening = true and .frame = FfrFrame::mean_axes, as `from` does."});
       warnings.push_back(said_);
     }
   }

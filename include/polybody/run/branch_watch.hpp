@@ -38,13 +38,13 @@ class BranchWatch {
   template <class Solver>
   [[gnu::cold]] void ask(System& system, ForwardDynamics<Solver>& forward, State const& x,
                          std::vector<std::string>& warnings) {
-    char const* const what = "The joints' rows lose rank next to t = ";
+    char const* const what = "The constraint equations lose rank near t = ";
     for (std::string const& warning : warnings)
       if (warning.starts_with(what)) return;
     if (!forward.is_singular(system, {x.q, x.v, x.t}, usual_)) return;
     warnings.push_back(what + number(x.t) +
-                       " s, and the speeds jump in the step that ends there: at this singular position the motion can "
-                       "go over to another branch, and on which one it goes on is up to the step and the integrator. "
+                       " s, and the velocities jump in the step that ends there. At this singular configuration the "
+                       "motion can change to another branch, and the step and the integrator select the branch. "
                        "Compare the run with one of another step.");
   }
 

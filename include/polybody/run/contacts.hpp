@@ -43,7 +43,7 @@ void for_each_contact(System const& system, ElementHandle<F> const& group, Touch
     return system.data().markers[std::size_t(place.markers[std::size_t(k)])].frame;
   };
   for (Index body = 0; body < contact.many(); ++body)
-    contact.for_each_opponent([&](auto const& few) {
+    contact.for_each_partner([&](auto const& few) {
       if (few.law.may_touch(frame(body), frame(few.marker)))
         detail::visit_touching(few.law, {frame(body), frame(few.marker)}, body, few.name, visit);
     });

@@ -153,17 +153,20 @@ Diagnosis diagnose(M const& model, State const& x) {
 /// Writes a line for each finding.
 template <class = void>
 std::ostream& operator<<(std::ostream& out, Diagnosis const& c) {
-  out << sentence_of({"rows off by ", c.violation.position, " (positions), ", c.violation.velocity, " (speeds)",
-                      (c.violation.position > 0.0 ? ", most of " + c.largest_violated_joint : std::string()), "\n"});
-  out << sentence_of({c.redundancy.rows, " rows of rank ", c.redundancy.rank, ", ", c.redundancy.degrees_of_freedom,
+  out << sentence_of(
+      {"constraint violation ", c.violation.position, " (positions), ", c.violation.velocity, " (velocities)",
+       (c.violation.position > 0.0 ? ", the largest in " + c.largest_violated_joint : std::string()), "\n"});
+  out << sentence_of({c.redundancy.rows, " constraint equations of rank ", c.redundancy.rank, ", ",
+                      c.redundancy.degrees_of_freedom,
                       c.redundancy.degrees_of_freedom == 1 ? " degree of freedom\n" : " degrees of freedom\n"});
   for (Redundancy::Share const& share : c.redundancy.repeated)
-    out << share.name << ": " << detail::counted(share.rows, "row repeats others\n", "rows repeat others\n");
+    out << share.name << ": "
+        << detail::counted(share.rows, "redundant constraint equation\n", "redundant constraint equations\n");
   auto const contradict = [&](std::vector<std::string> const& groups, char const* in) {
     for (std::string const& group : groups) out << "contradict each other in " << in << ": " << group << '\n';
   };
   contradict(c.redundancy.in_positions, "positions");
-  contradict(c.redundancy.in_velocities, "speeds");
+  contradict(c.redundancy.in_velocities, "velocities");
   contradict(c.redundancy.in_accelerations, "accelerations");
   for (std::string const& body : c.unconnected_bodies) out << "not joined to the ground: " << body << '\n';
   if (!c.unsolved.empty()) out << c.unsolved << '\n';

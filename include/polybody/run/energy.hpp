@@ -49,7 +49,7 @@ Momentum momentum(System& system, State const& x) {
   VecX mv = VecX::Zero(system.velocities()), rigid = mv;
   system.evaluate(x.q, x.v, x.t);
   system.masses(detail::ProductSink{x.v, mv});
-  auto const velocities = require_entry(system.entries().first.rigid_velocities, "speeds of rigid motions");
+  auto const velocities = require_entry(system.entries().first.rigid_velocities, "velocities of rigid motions");
   Momentum p;
   for (int i = 0; i < 3; ++i) {
     velocities(system.entries().second, x.q, Vec3::Unit(i), Vec3::Zero(), rigid);
@@ -81,7 +81,7 @@ namespace detail {
 /// In the plane w_y is zero, and so is r_z.
 template <class = void>
 CentreOfMass centre_of_mass(System& system, State const& x, Index first, Index count) {
-  auto const velocities = require_entry(system.entries().first.rigid_velocities, "speeds of rigid motions");
+  auto const velocities = require_entry(system.entries().first.rigid_velocities, "velocities of rigid motions");
   system.evaluate(x.q, x.v, x.t);
   VecX mv = VecX::Zero(system.velocities()), rigid = mv, u = mv;
   auto const motion = [&](Vec3 const& v0, Vec3 const& omega) {

@@ -12,9 +12,9 @@ namespace polybody {
 /// Function that moves states of `system` along their velocities and accelerations. `system` must outlive the function.
 inline std::function<void(State&, double)> drift_of(System& system) {
   return [&system](State& x, double h) {
-    VecX const turned = h * x.v + (0.5 * h * h) * x.a;
+    VecX const increment = h * x.v + (0.5 * h * h) * x.a;
     VecX const q = x.q;
-    system.plus(q, turned, x.q);
+    system.plus(q, increment, x.q);
     x.v += h * x.a;
     x.t += h;
   };
@@ -45,7 +45,7 @@ template <class = void>
                        {"The action of the event \"", ErrorObject{event.name}, "\" at t = ", ErrorTime{before.t},
                         " s changes the sizes of the state. Change the entries of q and v only."});
   require_finite(after.q, "The coordinates after the event \"" + event.name + "\"");
-  require_finite(after.v, "The speeds after the event \"" + event.name + "\"");
+  require_finite(after.v, "The velocities after the event \"" + event.name + "\"");
   if (full.rows() == 0 || after.q == before.q) return;
   auto const [open, row] = opening(full, after);
   if (open <= tolerance || open <= 2.0 * opening(full, before).first) return;
@@ -65,16 +65,16 @@ template <LinearSolver Solver>
   VecX along = VecX::Zero(n), move = along, mu;
   for (int k = 0; k < 3; ++k) {
     State y = x;
-    VecX turned = VecX::Zero(n);
+    VecX increment = VecX::Zero(n);
     double const by = 1e-6;
     for (Index i = 0; i < n; ++i) {
-      turned[i] = by;
-      full.plus(x.q, turned, y.q);
+      increment[i] = by;
+      full.plus(x.q, increment, y.q);
       double const later = event.value(y);
-      turned[i] = -by;
-      full.plus(x.q, turned, y.q);
+      increment[i] = -by;
+      full.plus(x.q, increment, y.q);
       along[i] = (later - event.value(y)) / (2.0 * by);
-      turned[i] = 0.0;
+      increment[i] = 0.0;
     }
     forward.hold(full, x.q, x.v, x.t);
     forward.response(full, along, move, mu);
@@ -92,7 +92,7 @@ template <LinearSolver Solver>
     x = std::move(next);
   }
   require_finite(x.q, "The coordinates at rest in the event \"" + event.name + "\"");
-  require_finite(x.v, "The speeds at rest in the event \"" + event.name + "\"");
+  require_finite(x.v, "The velocities at rest in the event \"" + event.name + "\"");
 }
 
 }  // namespace detail

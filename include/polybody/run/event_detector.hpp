@@ -106,8 +106,8 @@ class EventDetector {
   /// Evaluates the events at x; the full state is computed once.
   void look(std::vector<Event> const& events, State const& x, EventMotion const& motion) {
     now_.clear();
-    State const& shown = motion.seen(x);
-    for (Event const& event : events) now_.push_back(EventMotion::value(event, shown));
+    State const& full = motion.seen(x);
+    for (Event const& event : events) now_.push_back(EventMotion::value(event, full));
   }
   Sequence<EventPlace> places_;  // before a restart: its round-off must not cause a second event
   Before before_;
@@ -124,7 +124,7 @@ inline void EventDetector::start(std::vector<Event> const& events, State const& 
     places_[i].stand(now_[i]);
     if (!events[i].action || now_[i] > 0.0) continue;
     State y = x;
-    motion.drift(y, 0.05 * motion.asked);
+    motion.drift(y, 0.05 * motion.requested_step);
     double const moves = events[i].value(motion.seen(y)) - now_[i];
     // zero within round-off and not increasing: the body rests on the contact of the event, or moves into it
     if (now_[i] == 0.0 || (moves <= 0.0 && -now_[i] < -1e-6 * moves)) places_[i].side = 1;
@@ -156,10 +156,10 @@ inline bool EventDetector::search(std::vector<Event> const& events, Taken const&
   }
   if (found) x = std::move(first);
   look(events, x, step.motion);
-  bool held_anew = false;
+  bool held_again = false;
   for (std::size_t i = 0; i < places_.size(); ++i)
-    held_anew = held_anew || (places_[i].rests() && places_[i].passed(now_[i]));
-  if (!found && !held_anew) {
+    held_again = held_again || (places_[i].rests() && places_[i].passed(now_[i]));
+  if (!found && !held_again) {
     go_on(step.length);
     return false;
   }
@@ -178,7 +178,7 @@ inline bool EventDetector::search(std::vector<Event> const& events, Taken const&
       place.scale = std::max(std::abs(step.motion.rate(events[i], x)),
                              place.known ? std::abs(ends[i] - place.value) / step.length : 0.0);
       place.off = std::abs(now_[i]);
-      if (!report.stopped) place.count(events[i], std::min(step.motion.asked, step.length), x.t);
+      if (!report.stopped) place.count(events[i], std::min(step.motion.requested_step, step.length), x.t);
     }
     if (place.rests()) met_[i] = 2;
     report.events.push_back({place.rests() ? events[i].name + " comes to rest" : events[i].name, x.t});

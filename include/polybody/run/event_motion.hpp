@@ -9,7 +9,7 @@ namespace polybody {
 
 /// Motion of a run near a state, for the evaluation of events.
 struct EventMotion {
-  double asked;                                    ///< requested length of steps [s]
+  double requested_step;                           ///< requested length of steps [s]
   std::function<State const&(State const&)> seen;  ///< returns the full state of an integrated state
   /// Moves a state along its velocities and accelerations by a time [s], forwards or backwards, without a step.
   std::function<void(State&, double)> drift;
@@ -24,7 +24,7 @@ struct EventMotion {
   }
   /// Rate of the event value at x [1/s], by central differences over a tenth of the requested step.
   [[gnu::cold]] double rate(Event const& event, State const& x) const {
-    double const by = 0.05 * asked;
+    double const by = 0.05 * requested_step;
     State y = x;
     drift(y, by);
     double const later = event.value(seen(y));
@@ -33,11 +33,11 @@ struct EventMotion {
     return (later - event.value(seen(y))) / (2.0 * by);
   }
   /// True if the event value depends on accelerations or multipliers, whose rates are unknown.
-  [[gnu::cold]] static bool reads_forces(Event const& event, State const& shown) {
-    State others = shown;
+  [[gnu::cold]] static bool reads_forces(Event const& event, State const& full) {
+    State others = full;
     others.a.array() = 1.5 * others.a.array() + 1.0;
     others.lambda.array() = 1.5 * others.lambda.array() + 1.0;
-    return event.value(others) != event.value(shown);
+    return event.value(others) != event.value(full);
   }
 };
 

@@ -14,7 +14,7 @@ namespace polybody::detail {
 
 /// Entry of G, whose rows are scaled to the norm 1.
 struct RowEntry {
-  Index row, speed;
+  Index row, velocity;
   double value;
 };
 
@@ -34,18 +34,18 @@ class RepeatedRows {
   /// \param threshold a row is redundant if its distance from the span of the earlier ones is smaller
   RepeatedRows(Sequence<BodyLayout> const& bodies, Index rows, Sequence<RowEntry> const& entries, double threshold)
       : threshold_(threshold) {
-    Index speeds = 0;
-    for (RowEntry const& e : entries) speeds = std::max(speeds, e.speed + 1);
-    Sequence<Index> body_of(std::size_t(speeds), -1);
+    Index velocities = 0;
+    for (RowEntry const& e : entries) velocities = std::max(velocities, e.velocity + 1);
+    Sequence<Index> body_of(std::size_t(velocities), -1);
     for (std::size_t b = 0; b < bodies.size(); ++b)
-      for (Index j = bodies[b].v0; j < std::min(speeds, bodies[b].v0 + bodies[b].velocities); ++j)
+      for (Index j = bodies[b].v0; j < std::min(velocities, bodies[b].v0 + bodies[b].velocities); ++j)
         body_of[std::size_t(j)] = Index(b);
     Sequence<Row> all;
     all.resize(std::size_t(rows));
     for (Index i = 0; i < rows; ++i) all[std::size_t(i)].row = i;
     for (RowEntry const& e : entries) {
-      all[std::size_t(e.row)].bodies.push_back(body_of[std::size_t(e.speed)]);
-      all[std::size_t(e.row)].entries[e.speed] += e.value;
+      all[std::size_t(e.row)].bodies.push_back(body_of[std::size_t(e.velocity)]);
+      all[std::size_t(e.row)].entries[e.velocity] += e.value;
     }
     for (Row& row : all) sort_once(row.bodies);
     std::stable_sort(all.begin(), all.end(), [](Row const& a, Row const& b) {
@@ -122,16 +122,16 @@ class PrivateRows {
   static constexpr double independent = 0.01;  ///< least distance of a row from the span of those before it
 
   PrivateRows(Sequence<BodyLayout> const& bodies, Index rows, Sequence<RowEntry> const& entries)
-      : bodies_(bodies), gone_(std::size_t(rows), 0), of_row_(std::size_t(rows)), rows_of_(bodies.size()) {
+      : bodies_(bodies), removed_(std::size_t(rows), 0), of_row_(std::size_t(rows)), rows_of_(bodies.size()) {
     Index velocities = 0;
     for (BodyLayout const& b : bodies) velocities = std::max(velocities, b.v0 + b.velocities);
     Sequence<Index> body_of(std::size_t(velocities), -1);
     for (std::size_t b = 0; b < bodies.size(); ++b)
       std::fill_n(body_of.begin() + bodies[b].v0, bodies[b].velocities, Index(b));
     for (RowEntry const& e : entries) {
-      if (e.speed >= velocities || body_of[std::size_t(e.speed)] < 0) continue;  // belongs to no body
-      of_row_[std::size_t(e.row)].push_back({body_of[std::size_t(e.speed)], e.speed, e.value});
-      rows_of_[std::size_t(body_of[std::size_t(e.speed)])].push_back(e.row);
+      if (e.velocity >= velocities || body_of[std::size_t(e.velocity)] < 0) continue;  // belongs to no body
+      of_row_[std::size_t(e.row)].push_back({body_of[std::size_t(e.velocity)], e.velocity, e.value});
+      rows_of_[std::size_t(body_of[std::size_t(e.velocity)])].push_back(e.row);
     }
     for (Sequence<Index>& of_body : rows_of_) {
       sort_once(of_body);
@@ -146,11 +146,11 @@ class PrivateRows {
   }
 
   /// True if a row is removed.
-  bool operator[](Index row) const { return gone_[std::size_t(row)] != 0; }
+  bool operator[](Index row) const { return removed_[std::size_t(row)] != 0; }
 
  private:
   struct Entry {
-    Index body, speed;
+    Index body, velocity;
     double value;
   };
 
@@ -159,10 +159,10 @@ class PrivateRows {
     if (count == 0 || count > most || Index(count) > bodies_[std::size_t(b)].velocities) return;
     Sequence<Index> rows;
     for (Index const r : rows_of_[std::size_t(b)])
-      if (!gone_[std::size_t(r)]) rows.push_back(r);
+      if (!removed_[std::size_t(r)]) rows.push_back(r);
     if (!are_independent(b, rows)) return;
     for (Index const r : rows) {
-      gone_[std::size_t(r)] = 1;
+      removed_[std::size_t(r)] = 1;
       Sequence<Index> reached;
       for (Entry const& e : of_row_[std::size_t(r)]) reached.push_back(e.body);
       sort_once(reached);
@@ -179,7 +179,7 @@ class PrivateRows {
     for (Index const r : rows) {
       VecX x = VecX::Zero(body.velocities);
       for (Entry const& e : of_row_[std::size_t(r)])
-        if (e.body == b) x[e.speed - body.v0] += e.value;
+        if (e.body == b) x[e.velocity - body.v0] += e.value;
       for (int round = 0; round < 2; ++round)
         for (VecX const& y : basis) {
           double along = 0.0;
@@ -195,7 +195,7 @@ class PrivateRows {
   }
 
   Sequence<BodyLayout> const& bodies_;
-  Sequence<char> gone_;
+  Sequence<char> removed_;
   Sequence<Sequence<Entry>> of_row_;
   Sequence<Sequence<Index>> rows_of_;  ///< by bodies, ascending
   Sequence<std::size_t> count_;        ///< number of rows that remain

@@ -60,21 +60,21 @@ class ConstraintFactor {
                    Sequence<BodyLayout> const& bodies = {})
       : scale_(std::size_t(rows), 0.0) {
     Sequence<RowEntry> const all = scaled_entries(velocities, entries);
-    Sequence<char> gone(std::size_t(rows), 0);
-    if (!bodies.empty()) leave_out(bodies, all, gone);
+    Sequence<char> removed(std::size_t(rows), 0);
+    if (!bodies.empty()) leave_out(bodies, all, removed);
     Sequence<int> column, place(std::size_t(velocities), -1);  // column of each row, row of each velocity
     for (Index i = 0; i < rows; ++i) {
-      column.push_back(gone[std::size_t(i)] ? -1 : int(stays_.size()));
-      if (!gone[std::size_t(i)]) stays_.push_back(i);
+      column.push_back(removed[std::size_t(i)] ? -1 : int(stays_.size()));
+      if (!removed[std::size_t(i)]) stays_.push_back(i);
     }
     for (RowEntry const& e : all)
-      if (!gone[std::size_t(e.row)]) place[std::size_t(e.speed)] = 0;
+      if (!removed[std::size_t(e.row)]) place[std::size_t(e.velocity)] = 0;
     Index touched = 0;
     for (int& p : place) p = p < 0 ? -1 : int(touched++);
     std::vector<Eigen::Triplet<double>> kept;
     for (RowEntry const& e : all)
-      if (!gone[std::size_t(e.row)])
-        kept.emplace_back(place[std::size_t(e.speed)], column[std::size_t(e.row)], e.value);
+      if (!removed[std::size_t(e.row)])
+        kept.emplace_back(place[std::size_t(e.velocity)], column[std::size_t(e.row)], e.value);
     Eigen::SparseMatrix<double> transposed(touched, Index(stays_.size()));
     transposed.setFromTriplets(kept.begin(), kept.end());
     qr_.setPivotThreshold(threshold);
@@ -102,10 +102,10 @@ class ConstraintFactor {
 
   /// Entries of G with velocities and rows scaled to the norm 1; sets `scale_`.
   Sequence<RowEntry> scaled_entries(Index velocities, std::vector<Eigen::Triplet<double>> const& entries) {
-    std::vector<double> of_speed(std::size_t(velocities), 0.0);
+    std::vector<double> of_velocity(std::size_t(velocities), 0.0);
     for (auto const& e : entries)
-      of_speed[std::size_t(e.row())] = std::hypot(of_speed[std::size_t(e.row())], e.value());
-    auto const scaled = [&](auto const& e) { return e.value() / of_speed[std::size_t(e.row())]; };
+      of_velocity[std::size_t(e.row())] = std::hypot(of_velocity[std::size_t(e.row())], e.value());
+    auto const scaled = [&](auto const& e) { return e.value() / of_velocity[std::size_t(e.row())]; };
     for (auto const& e : entries) scale_[std::size_t(e.col())] = std::hypot(scale_[std::size_t(e.col())], scaled(e));
     for (double& s : scale_) s = s > 0.0 ? 1.0 / s : 1.0;
     Sequence<RowEntry> all;
@@ -114,14 +114,14 @@ class ConstraintFactor {
     return all;
   }
   /// Marks the rows that need no factorisation.
-  void leave_out(Sequence<BodyLayout> const& bodies, Sequence<RowEntry> const& all, Sequence<char>& gone) {
-    relations_ = RepeatedRows<>(bodies, Index(gone.size()), all, threshold).relations();
-    for (RowRelation const& r : relations_) gone[std::size_t(r.row)] = 1;
+  void leave_out(Sequence<BodyLayout> const& bodies, Sequence<RowEntry> const& all, Sequence<char>& removed) {
+    relations_ = RepeatedRows<>(bodies, Index(removed.size()), all, threshold).relations();
+    for (RowRelation const& r : relations_) removed[std::size_t(r.row)] = 1;
     Sequence<RowEntry> left;
     for (RowEntry const& e : all)
-      if (!gone[std::size_t(e.row)]) left.push_back(e);
-    PrivateRows<> const own(bodies, Index(gone.size()), left);
-    for (Index i = 0; i < Index(gone.size()); ++i) gone[std::size_t(i)] |= char(own[i]);
+      if (!removed[std::size_t(e.row)]) left.push_back(e);
+    PrivateRows<> const own(bodies, Index(removed.size()), left);
+    for (Index i = 0; i < Index(removed.size()); ++i) removed[std::size_t(i)] |= char(own[i]);
   }
   /// Null vectors c = P [−R₁⁻¹R₂; 1] of the factor. Each solution processes only the nonzero entries of c, in
   /// descending order.

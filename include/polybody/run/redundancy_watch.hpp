@@ -18,10 +18,10 @@ class RedundancyWatch {
   bool changes(System& system, ForwardDynamics<Solver>& forward, State const& x) {
     return forward.leaves_out() && forward.is_doubtful() && leave_out_redundant(system, forward, x);
   }
-  /// Sets `names` to the redundant joints `now` of the last start. If `beside` is true, those of earlier choices
+  /// Sets `names` to the redundant joints `now` of the last start. If `keeps_earlier` is true, those of earlier choices
   /// remain.
-  static void name(std::vector<std::string> now, bool beside, std::vector<std::string>& names) {
-    if (beside)
+  static void name(std::vector<std::string> now, bool keeps_earlier, std::vector<std::string>& names) {
+    if (keeps_earlier)
       for (std::string& earlier : names)
         if (std::find(now.begin(), now.end(), earlier) == now.end()) now.push_back(std::move(earlier));
     names = std::move(now);

@@ -153,12 +153,11 @@ template <class Solver>
     if (!relation.find(system, forward, i) || !bending.is_singular(system, relation.c) ||
         !bending.leaves_open(system, relation.c))
       continue;
-    return sentence_of({"The run starts in a singular position at t = ", x.t, " s: the rows of ",
+    return sentence_of({"The run starts in a singular configuration at t = ", x.t, " s: the constraint equations of ",
                         detail::names_in(system, relation.c),
-                        " repeat each other there and nowhere beside it, so the motion can go on along several "
-                        "branches, and the speeds of the start belong to none of them alone. On which one it goes on "
-                        "is up to the step and the integrator. Start beside this position, or with speeds of one "
-                        "branch."});
+                        " are redundant there, but not nearby. The motion can continue on several branches, and the "
+                        "initial velocities do not select one; the step and the integrator select it. Start near this "
+                        "configuration, or with velocities of one branch."});
   }
   return "";
 }

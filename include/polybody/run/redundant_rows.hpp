@@ -69,13 +69,13 @@ template <class = void>
 /// has the norm 1 in any units.
 template <class = void>  // compiled only if used
 struct RowSizes {
-  VecX of_speed, of_row;  ///< (nv), (rows); 1 for a velocity or an equation without entries
+  VecX of_velocity, of_row;  ///< (nv), (rows); 1 for a velocity or an equation without entries
 
-  explicit RowSizes(System& system) : of_speed(VecX::Zero(system.velocities())), of_row(VecX::Zero(system.rows())) {
+  explicit RowSizes(System& system) : of_velocity(VecX::Zero(system.velocities())), of_row(VecX::Zero(system.rows())) {
     for (int pass = 0; pass < 2; ++pass) {
       Sink sink{system.velocities(), pass == 1, *this};
       system.masses(sink);
-      VecX& sizes = pass == 0 ? of_speed : of_row;
+      VecX& sizes = pass == 0 ? of_velocity : of_row;
       for (Index i = 0; i < sizes.size(); ++i) sizes[i] = sizes[i] > 0.0 ? std::sqrt(sizes[i]) : 1.0;
     }
   }
@@ -89,11 +89,11 @@ struct RowSizes {
       if (row >= velocities || col < velocities) return;
       for (Index j = 0; j < b.cols; ++j)
         for (Index i = 0; i < b.rows; ++i) {
-          double const by = sizes.of_speed[row + i], g = b(i, j);
+          double const by = sizes.of_velocity[row + i], g = b(i, j);
           if (rows)
             sizes.of_row[col - velocities + j] += g * g / (by * by);
           else
-            sizes.of_speed[row + i] += g * g;
+            sizes.of_velocity[row + i] += g * g;
         }
     }
   };
@@ -126,7 +126,7 @@ class NullVectors {
     for (VecX const& c : vectors) {
       VecX w = VecX::Zero(system_.velocities());
       system_.rows_transposed_times(unscaled(c), w);
-      for (Index i = 0; i < w.size(); ++i) w[i] /= sizes_.of_speed[i];
+      for (Index i = 0; i < w.size(); ++i) w[i] /= sizes_.of_velocity[i];
       left.push_back(std::move(w));
     }
     keep_null(left);

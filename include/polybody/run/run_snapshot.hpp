@@ -47,7 +47,7 @@ struct RunSnapshot {
   template <class = void>
   void require_finite_state() const {
     polybody::require_finite(state.q, "resume: the coordinates of the snapshot");
-    polybody::require_finite(state.v, "resume: the speeds of the snapshot");
+    polybody::require_finite(state.v, "resume: the velocities of the snapshot");
     polybody::require_finite(state.a, "resume: the accelerations of the snapshot");
     polybody::require_finite(state.lambda, "resume: the multipliers of the snapshot");
     polybody::require_finite(state.history, "resume: the integrator's memory in the snapshot");

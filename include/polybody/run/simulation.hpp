@@ -75,13 +75,13 @@ class Simulation {
         start_(start) {
     options_.check(start);
     if (options_.threads != 1) system_->use_threads(options_.threads);
-    h_ = asked();
+    h_ = requested_step();
     keeps_ = eliminates() || system_->rows() > 0 || !options_.events.empty() || bool(options_.progress) ||
              options_.minimum_norm || axial_forces_.asks();
   }
   /// True if a reduced state is integrated, from which `show` computes the user's state.
   bool eliminates() const { return bool(full_); }
-  void advance(bool shown);  ///< shown: updates the user's state
+  void advance(bool updates);  ///< updates: also the user's state
 
   /// Replaces the workspace by one without data of earlier steps, ready for the next step. If this fails, nothing
   /// changes.
@@ -107,12 +107,12 @@ class Simulation {
   State const& stepped() const { return eliminates() ? reduced_ : *x_; }
   /// Computes the user's state from the reduced state, in `seen_`. \throws NonFiniteValue if a force is not finite in
   /// the computation of reactions. \param seen true if the evaluation of events has computed it
-  void make_shown(bool seen) {
+  void make_full_state(bool seen) {
     if (!seen) expand(*system_, reduced_, seen_, scratch_);
     require_finite_reactions(*system_, seen_);
   }
   void show() {  // updates the user's state from the reduced state
-    if (eliminates()) make_shown(false), *x_ = seen_;
+    if (eliminates()) make_full_state(false), *x_ = seen_;
   }
 
   /// Reduced initial state: projects the velocities, and makes the checks that require the full model.
@@ -129,7 +129,7 @@ class Simulation {
   StepReport step(double h, int max_step_halvings);
 
   double max_step() const { return options_.max_step.value_or(std::numeric_limits<double>::infinity()); }
-  double asked() const { return std::min<double>(options_.step, max_step()); }  // requested length of steps [s]
+  double requested_step() const { return std::min<double>(options_.step, max_step()); }  // [s]
 
   /// Breakpoints of the options, driving constraints and loads.
   Sequence<double> breakpoints() const {
@@ -152,7 +152,7 @@ class Simulation {
       expand(*system_, x, seen_, scratch_);
       return seen_;
     };
-    return {asked(), seen, drift_of(*system_)};
+    return {requested_step(), seen, drift_of(*system_)};
   }
   /// Ends the step of the length `taken` at the first event. Returns true if the run restarts there.
   bool meet_events(double taken) {
@@ -163,9 +163,9 @@ class Simulation {
     return watch_.meet(options_.events, {before_, taken, again, motion()}, stepped(), report_);
   }
   /// Operations after the end of a step that may fail: events and their actions, restarts, axial forces and progress.
-  void follow(StepReport const& report, bool at_corner, bool remainder_step, bool shown);
+  void follow(StepReport const& report, bool at_breakpoint, bool remainder_step, bool updates);
   [[gnu::cold]] void undo();  // restores the run after a failure in `follow`
-  [[gnu::cold]] void tell_progress(StepReport const& report, bool shown);  // counts the step, then reports progress
+  [[gnu::cold]] void tell_progress(StepReport const& report, bool updates);  // counts the step, then reports progress
 
   std::unique_ptr<System> system_, full_;  // workspaces contain references to them
   State* x_;
@@ -239,9 +239,9 @@ RunSnapshot Simulation<I, Solver>::snapshot() {
 }
 
 template <Integrator I, class Solver>
-void Simulation<I, Solver>::advance(bool shown) {
+void Simulation<I, Solver>::advance(bool updates) {
   system_->layout().watch.require_unchanged();
-  double const from = stepped().t, length = watch_.rests() ? std::min(h_, asked()) : h_;
+  double const from = stepped().t, length = watch_.rests() ? std::min(h_, requested_step()) : h_;
   auto const [target, h, lands, jumps] = plan_.next(from, length);
   if (!(from + h > from) || !undo_.fits(stepped())) undo_.refuse_step(stepped(), options_.end_time, h);
   bool const remainder_step = h < 0.01 * length;  // a short step to the grid after a breakpoint or an event
@@ -257,7 +257,7 @@ void Simulation<I, Solver>::advance(bool shown) {
     bool const reached = lands && report.taken == h;
     stepped().t = reached ? target : row_.after(from, report.taken);
     choose_step(report, reached);
-    follow(report, jumps && reached, remainder_step, shown);
+    follow(report, jumps && reached, remainder_step, updates);
   } catch (Error& failure) {
     if (keeps) undo();
     if (std::string const warned = report_.warned(); !warned.empty()) failure.append(warned);
@@ -271,7 +271,7 @@ void Simulation<I, Solver>::advance(bool shown) {
 }
 
 template <Integrator I, class Solver>
-void Simulation<I, Solver>::follow(StepReport const& report, bool at_corner, bool remainder_step, bool shown) {
+void Simulation<I, Solver>::follow(StepReport const& report, bool at_breakpoint, bool remainder_step, bool updates) {
   double const end = stepped().t;
   if (system_->rows() > 0) branches_.look(*system_, workspace_.forward, report, before_.v, stepped(), report_.warnings);
   bool const met = !options_.events.empty() && meet_events(report.taken);
@@ -280,39 +280,40 @@ void Simulation<I, Solver>::follow(StepReport const& report, bool at_corner, boo
   if (acts)
     stepped() = after_action<Solver>(watch_, options_.events, motion().seen(stepped()), {system_.get(), full_.get()},
                                      options_.assembly_tolerance);
-  at_corner = at_corner && stepped().t == end;
-  if (at_corner) stepped().t = plan_.pass(stepped().t);
-  bool const anew = met || at_corner || remainder_step || redundancy_.changes(*system_, workspace_.forward, stepped());
-  if (!met && (done() || anew)) settle(report.halved);
-  if (anew) restart();
+  at_breakpoint = at_breakpoint && stepped().t == end;
+  if (at_breakpoint) stepped().t = plan_.pass(stepped().t);
+  bool const restarts =
+      met || at_breakpoint || remainder_step || redundancy_.changes(*system_, workspace_.forward, stepped());
+  if (!met && (done() || restarts)) settle(report.halved);
+  if (restarts) restart();
   if (acts) watch_.settle(options_.events, stepped(), motion());
   if (!eliminates() && options_.minimum_norm) norm_.apply(*system_, workspace_.forward, *x_);
-  if (shown) {
-    if (eliminates()) make_shown(!options_.events.empty() && !anew);
+  if (updates) {
+    if (eliminates()) make_full_state(!options_.events.empty() && !restarts);
     if (State const& x = eliminates() ? seen_ : *x_; axial_forces_.is_due(x.t, done())) {
       if (options_.progress) undo_.keep_axial(axial_forces_, report_);
       axial_forces_.look(full(), x, report_.warnings);
     }
   }
-  if (options_.progress) return tell_progress(report, shown);
+  if (options_.progress) return tell_progress(report, updates);
   report_.add(report);
-  if (shown && eliminates()) *x_ = seen_;
+  if (updates && eliminates()) *x_ = seen_;
 }
 
 template <Integrator I, class Solver>
 void Simulation<I, Solver>::undo() {
-  if (undo_.shown) *x_ = undo_.user;
+  if (undo_.has_user) *x_ = undo_.user;
   stepped() = before_;
   if (undo_.events) watch_.put_back(report_);
   undo_.put_back(row_, h_, plan_, report_, axial_forces_);
 }
 
 template <Integrator I, class Solver>
-void Simulation<I, Solver>::tell_progress(StepReport const& report, bool shown) {
+void Simulation<I, Solver>::tell_progress(StepReport const& report, bool updates) {
   undo_.keep_counts(report_);
   report_.add(report);
-  if (shown && eliminates()) {
-    undo_.keep_shown(*x_);
+  if (updates && eliminates()) {
+    undo_.keep_user(*x_);
     *x_ = seen_;
   }
   options_.progress({start_, options_.end_time, stepped().t, done()});
@@ -320,17 +321,17 @@ void Simulation<I, Solver>::tell_progress(StepReport const& report, bool shown) 
 
 template <Integrator I, class Solver>
 RunReport const& Simulation<I, Solver>::run() & {
-  bool const asked = !eliminates() || axial_forces_.asks();  // otherwise the user's state is updated at the end only
+  bool const updates = !eliminates() || axial_forces_.asks();  // otherwise the user's state is updated at the end
   try {
-    while (!done()) advance(asked);
+    while (!done()) advance(updates);
   } catch (...) {
     try {
-      if (!asked) show();
+      if (!updates) show();
     } catch (...) {  // NOLINT(bugprone-empty-catch): the first exception is thrown again
     }
     throw;
   }
-  if (!asked) show();
+  if (!updates) show();
   return report_;
 }
 

@@ -14,7 +14,7 @@ void require_sizes(State const& x, Index coordinates, Index velocities, Index ro
   if (x.q.size() != coordinates || x.v.size() != velocities || x.a.size() != velocities || x.lambda.size() != rows)
     refuse_unfitting_state();
   require_finite(x.q, "The coordinates of the state");
-  require_finite(x.v, "The speeds of the state");
+  require_finite(x.v, "The velocities of the state");
 }
 }  // namespace detail
 

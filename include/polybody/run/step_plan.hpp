@@ -37,7 +37,7 @@ class StepPlan {
   StepPlan() = default;
   /// Run from `start` to `end_time` with steps of about `step` [s]; breakpoints outside of it are ignored.
   [[gnu::cold]] StepPlan(double start, double end_time, double step, Sequence<double> breakpoints)
-      : until_(end_time), step_(step), breakpoints_(std::move(breakpoints)) {
+      : end_time_(end_time), step_(step), breakpoints_(std::move(breakpoints)) {
     erase_if(breakpoints_, [&](double t) { return !(t > start) || !(t <= end_time); });
     sort_once(breakpoints_);
   }
@@ -48,7 +48,7 @@ class StepPlan {
     double const remainder_step = 1e-9 * step_ + rounding(t);
     while (next_ < breakpoints_.size() && breakpoints_[next_] <= t + remainder_step)
       t = std::max(t, breakpoints_[next_++]);
-    return until_ - t <= remainder_step ? until_ : t;
+    return end_time_ - t <= remainder_step ? end_time_ : t;
   }
 
   std::size_t passed() const { return next_; }          ///< number of passed breakpoints
@@ -56,12 +56,12 @@ class StepPlan {
 
   /// Next step from t, if possible of length h.
   Next next(double t, double h) const {
-    bool const corner = next_ < breakpoints_.size();
-    double const target = corner ? breakpoints_[next_] : until_, left = target - t;
+    bool const breakpoint = next_ < breakpoints_.size();
+    double const target = breakpoint ? breakpoints_[next_] : end_time_, left = target - t;
     // A step may be 1 % longer than requested, so that no tiny step remains: in constraint equations divided by its
     // square, round-off would dominate.
     bool const lands = 1.01 * h >= left;
-    if (lands && corner) return {target, until_just_before(target, t), true, true};
+    if (lands && breakpoint) return {target, step_to_just_before(target, t), true, true};
     // A last step that differs from h by round-off only has the length h, as in a run with a later end.
     return {target, lands && std::abs(left - h) > rounding(t) ? left : h, lands, false};
   }
@@ -69,13 +69,13 @@ class StepPlan {
  private:
   static double rounding(double t) { return 4.0 * std::numeric_limits<double>::epsilon() * std::abs(t); }
   /// Length of a step that ends just before a breakpoint, at which a time function still has its earlier value.
-  static double until_just_before(double corner, double t) {
-    double h = std::nextafter(corner, t) - t;
-    while (t + h >= corner) h = std::nextafter(h, 0.0);
+  static double step_to_just_before(double breakpoint, double t) {
+    double h = std::nextafter(breakpoint, t) - t;
+    while (t + h >= breakpoint) h = std::nextafter(h, 0.0);
     return h;
   }
 
-  double until_ = 0.0, step_ = 0.0;
+  double end_time_ = 0.0, step_ = 0.0;
   Sequence<double> breakpoints_;
   std::size_t next_ = 0;
 };

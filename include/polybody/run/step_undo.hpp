@@ -16,9 +16,9 @@ namespace polybody {
 /// Data of a run before a step, in addition to its state and events. Every step stores the numbers; texts are stored
 /// just before they change.
 struct StepUndo {
-  bool events = false;  ///< events were evaluated in this step
-  bool shown = false;   ///< `user` belongs to this step
-  State user;           ///< user's state before its update in this step
+  bool events = false;    ///< events were evaluated in this step
+  bool has_user = false;  ///< `user` belongs to this step
+  State user;             ///< user's state before its update in this step
 
   void end(State const& x) { sizes_ = sizes_of(x); }  ///< stores the sizes of the state at the end of a step
   bool fits(State const& x) const { return sizes_ == sizes_of(x); }  ///< true if x has these sizes
@@ -29,7 +29,7 @@ struct StepUndo {
       throw InvalidInput(
           "state.size",
           {"The sizes of the state were changed since the last step, which ended at t = ", ErrorTime{x.t},
-           " s. Only the run may change the sizes; the `then` of an event may change entries of q and v."});
+           " s. Only the run may change the sizes; the `action` of an event may change entries of q and v."});
     if (!(x.t < end_time))
       throw InvalidInput("run.ended", {ErrorObject{"advance"}, ": the run has ended at t = ", ErrorTime{x.t},
                                        " s. Check done() before, or give a later `end_time`."});
@@ -42,13 +42,13 @@ struct StepUndo {
     h_ = h;
     passed_ = plan.passed();
     warnings_ = report.warnings.size();
-    events = shown = counted_ = restarted_ = false;
+    events = has_user = counted_ = restarted_ = false;
     axial_.reset();
   }
   /// Stores the user's state before its update in this step.
-  [[gnu::cold]] void keep_shown(State const& x) {
+  [[gnu::cold]] void keep_user(State const& x) {
     user = x;
-    shown = true;
+    has_user = true;
   }
   /// Stores the counts before this step is counted.
   [[gnu::cold]] void keep_counts(RunCounts const& counts) {

@@ -104,7 +104,8 @@ std::string counted(Index n, char const* one, char const* many) {
 }
 template <class = void>
 std::string joint_in_words(JointLayout const& j) {
-  return sentence_of({"\"", j.name, "\" (", (j.rows > 0 ? counted(j.rows, "row", "rows") : std::string("compliant")),
+  return sentence_of({"\"", j.name, "\" (",
+                      (j.rows > 0 ? counted(j.rows, "equation", "equations") : std::string("compliant")),
                       (j.eliminated ? ", eliminated)" : ")")});
 }
 template <class = void>
@@ -132,12 +133,13 @@ template <class = void>
 std::string summary(ModelLayout const& layout) {
   detail::JointGraph const graph(layout);
   auto const counted = [](Index n, char const* one, char const* many) { return detail::counted(n, one, many); };
-  std::string text = sentence_of(
-      {counted(Index(layout.bodies.size()), "body", "bodies"), " (",
-       counted(layout.coordinates, "coordinate", "coordinates"), ", ", counted(layout.velocities, "speed", "speeds"),
-       "), ", counted(Index(layout.joints.size()), "joint", "joints"), " (", counted(layout.rows, "row", "rows"), "), ",
-       counted(Index(layout.forces.size()), "force", "forces"), "; gravity (", layout.gravity[0], ", ",
-       layout.gravity[1], ", ", layout.gravity[2], ") m/s²\n"});
+  std::string text = sentence_of({counted(Index(layout.bodies.size()), "body", "bodies"), " (",
+                                  counted(layout.coordinates, "coordinate", "coordinates"), ", ",
+                                  counted(layout.velocities, "velocity", "velocities"), "), ",
+                                  counted(Index(layout.joints.size()), "joint", "joints"), " (",
+                                  counted(layout.rows, "equation", "equations"), "), ",
+                                  counted(Index(layout.forces.size()), "force", "forces"), "; gravity (",
+                                  layout.gravity[0], ", ", layout.gravity[1], ", ", layout.gravity[2], ") m/s²\n"});
   for (std::size_t k = 0; k < graph.order().size(); ++k) {
     auto const& c = graph.order()[k];
     BodyLayout const& b = layout.bodies[std::size_t(c.body)];

@@ -91,7 +91,7 @@ class ArticulatedBodySolverOf {
     if (misplaced_ >= 0)
       throw InvalidInput("solver.force_coupling", {"joint_coordinates::ArticulatedBody: a force couples body \"",
                                                    ErrorObject{reduction_->tree().bodies[std::size_t(misplaced_)].name},
-                                                   "\" with a body that is neither its ancestor nor its descendant in "
+                                                   "\" with a body that is neither its parent nor its child in "
                                                    "the tree. Use joint_coordinates::Augmented."});
     for (std::size_t i = nodes_.size(); i-- > 0;)
       if (Index const bad = eliminate(i); bad >= 0) return bad;

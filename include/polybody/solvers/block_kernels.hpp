@@ -14,7 +14,7 @@ namespace polybody::detail {
 using Index = Eigen::Index;
 
 /// SIMD vector length [doubles]. All rows of a block are padded with zeros to a multiple of it.
-constexpr int lane_size = pack_size;
+constexpr int lane_size = simd_size;
 using Lane [[gnu::vector_size(8 * lane_size), gnu::may_alias]] = double;
 static_assert(sizeof(Lane) == 8 * lane_size, "The block solvers need the vector extensions of g++ or clang++.");
 constexpr int padded(int n) { return (n + lane_size - 1) & ~(lane_size - 1); }

@@ -164,7 +164,7 @@ class BlockPattern {
   /// connection to the ground.
   [[gnu::cold]] void match() {
     Sequence<int> queue;
-    auto const hang = [&](Joint& j, std::size_t end, int parent) {
+    auto const attach = [&](Joint& j, std::size_t end, int parent) {
       auto const& [body, touched] = j.ends[end];
       Body& b = bodies_[std::size_t(body)];
       Segment& s = segments_[std::size_t(j.segment)];
@@ -176,7 +176,7 @@ class BlockPattern {
       queue.push_back(body);
     };
     for (Joint& j : joints_)
-      if (j.ends.size() == 1 && !is_own(j) && !bodies_[std::size_t(j.ends[0].first)].visited) hang(j, 0, -1);
+      if (j.ends.size() == 1 && !is_own(j) && !bodies_[std::size_t(j.ends[0].first)].visited) attach(j, 0, -1);
     std::size_t head = 0;
     auto const spread = [&] {
       for (; head < queue.size(); ++head) {
@@ -185,7 +185,7 @@ class BlockPattern {
           Joint& j = joints_[std::size_t(n)];
           if (j.used || j.ends.size() != 2) continue;
           std::size_t const other = j.ends[0].first == u ? 1 : 0;
-          if (!bodies_[std::size_t(j.ends[other].first)].visited) hang(j, other, u);
+          if (!bodies_[std::size_t(j.ends[other].first)].visited) attach(j, other, u);
         }
       }
     };

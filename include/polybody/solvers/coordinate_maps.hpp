@@ -104,7 +104,7 @@ class CoordinateMaps {
           std::size_t const i = std::size_t(reduction_.carried_by(block.row));
           ConstraintSide<T> const& end = reduction_.tree().bodies[i].backwards ? block.a : block.b;
           Vec<T, 3> const& at = data.markers[std::size_t(end.marker)].frame.r;
-          add_multipliers_that_hold(block.rows, end.map, state_.held[i], difference<T>(at, state_.frames[i].r),
+          add_multipliers_that_hold(block.rows, end.map, state_.residuals[i], difference<T>(at, state_.frames[i].r),
                                     lambda.data() + block.row);
         }
     }

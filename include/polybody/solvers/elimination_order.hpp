@@ -124,24 +124,24 @@ class EliminationOrder {
   /// Gives node n the next position. Its neighbours become neighbours of each other, and nodes that waited only for it
   /// become ready.
   [[gnu::cold]] void eliminate(int n) {
-    Candidate& gone = at(n);
-    gone.place = int(nodes.size());
-    for (int const k : gone.node.neighbours) {
+    Candidate& eliminated = at(n);
+    eliminated.place = int(nodes.size());
+    for (int const k : eliminated.node.neighbours) {
       Sequence<int>& of_k = at(k).node.neighbours;
       merged_.clear();
-      std::set_union(of_k.begin(), of_k.end(), gone.node.neighbours.begin(), gone.node.neighbours.end(),
+      std::set_union(of_k.begin(), of_k.end(), eliminated.node.neighbours.begin(), eliminated.node.neighbours.end(),
                      std::back_inserter(merged_));
       erase_if(merged_, [&](int m) { return m == k || m == n; });
       of_k.swap(merged_);
       measure(at(k));
       if (at(k).ready) offer(k);
     }
-    for (int const k : gone.releases)
+    for (int const k : eliminated.releases)
       if (--at(k).waits <= 0 && at(k).place < 0 && may_go(at(k))) offer(k);
-    if (!gone.late && --remaining_early_ == 0)
+    if (!eliminated.late && --remaining_early_ == 0)
       for (int k = 0; k < int(left_.size()); ++k)
         if (at(k).place < 0 && may_go(at(k))) offer(k);
-    nodes.push_back(std::move(gone.node));
+    nodes.push_back(std::move(eliminated.node));
   }
 
   Sequence<Candidate> left_;

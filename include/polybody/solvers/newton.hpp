@@ -74,24 +74,25 @@ struct CorrectionSize {
 
 namespace detail {
 
-/// Number of further iterations after a correction of `rated` times its tolerance, at the contraction rate `theta`.
-inline double iterations_to_come(double rated, double theta) {
+/// Number of further iterations after a correction of `relative_size` times its tolerance, at the contraction rate
+/// `theta`.
+inline double iterations_to_come(double relative_size, double theta) {
   if (!(theta < 1.0)) return std::numeric_limits<double>::infinity();
-  return std::max(0.0, std::log(rated * theta / (1.0 - theta)) / -std::log(theta));
+  return std::max(0.0, std::log(relative_size * theta / (1.0 - theta)) / -std::log(theta));
 }
 
 /// Contraction of the corrections of Newton's method, and the part of a correction that is applied.
 struct NewtonProgress {
   double before = 0.0, earlier = 0.0;  ///< norms of the last and of the last but one correction
   double largest = 0.0;                ///< largest norm of all corrections
-  double rated = 0.0;                  ///< ratio of the last correction to its tolerance
+  double relative_size = 0.0;          ///< ratio of the last correction to its tolerance
   double part = 1.0;
   int grown = 0;
 
   /// Computes the ratio θ of the next correction to the last one. Returns false if it grew and is above its tolerance.
   bool rate(CorrectionSize const& size, NewtonOptions const& options, double& theta) {
-    double const norm = size.norm, beside_tolerated = norm / size.tolerated;
-    theta = beside_tolerated / rated;
+    double const norm = size.norm, relative = norm / size.tolerated;
+    theta = relative / relative_size;
     if (options.always_refactor) {
       if (norm > (1.0 - 0.1 * part) * before)
         part = std::max(0.5 * part, 1.0 / 64.0);
@@ -99,20 +100,20 @@ struct NewtonProgress {
         part = std::min(1.0, 2.0 * part);
     }
     bool const grows = options.always_refactor ? earlier > 0.0 && norm >= earlier : theta >= 1.0;
-    return !(grows && beside_tolerated > 1.0);
+    return !(grows && relative > 1.0);
   }
   /// True if a new factorisation saves more iterations than it costs, over as many solves as the last one completed.
   /// \param theta contraction rate of the current factorisation
-  static bool renewal_pays(CorrectionSize const& size, NewtonOptions const& options, ReusedFactorisation const& kept,
+  static bool renewal_pays(CorrectionSize const& size, NewtonOptions const& options, ReusedFactorisation const& reused,
                            double theta) {
-    if (theta <= 1.5 * kept.fresh) return false;  // a new one is not better
+    if (theta <= 1.5 * reused.fresh) return false;  // a new one is not better
     double const by = size.norm / size.tolerated;
-    double const saved = iterations_to_come(by, theta) - iterations_to_come(by, kept.fresh);
-    return saved * std::max(kept.served, 1) > options.factorisation_cost;
+    double const saved = iterations_to_come(by, theta) - iterations_to_come(by, reused.fresh);
+    return saved * std::max(reused.served, 1) > options.factorisation_cost;
   }
 
   /// True if the corrections have stopped shrinking, so that they may consist of round-off.
-  bool stalls(CorrectionSize const& size, bool shrinks) const {
+  bool stagnates(CorrectionSize const& size, bool shrinks) const {
     bool const grew = size.norm >= before, twice = size.norm > 0.5 * before && before > 0.5 * earlier && earlier > 0.0;
     return !shrinks || ((grew || twice) && size.norm <= 1e4 * size.tolerated);
   }
@@ -122,15 +123,15 @@ struct NewtonProgress {
     earlier = before;
     before = size.norm;
     largest = std::max(largest, size.norm);
-    rated = size.norm / size.tolerated;
+    relative_size = size.norm / size.tolerated;
   }
   /// True if the applied correction is the last one. \param renewed true if the factorisation is of this iterate
   /// \param left part of the correction that determines the next one, from the fit by previous ones; a ratio
   bool ends(NewtonOptions const& options, bool renewed, double theta, double left = 1.0) const {
-    if (options.always_refactor || !options.predictive_stop) return rated <= 1.0;
+    if (options.always_refactor || !options.predictive_stop) return relative_size <= 1.0;
     double const contraction = std::min(theta, 0.99);
-    bool const small = rated <= 0.1;  // round-off does not contract
-    double const expected = contraction / (1.0 - contraction) * left * rated;
+    bool const small = relative_size <= 0.1;  // round-off does not contract
+    double const expected = contraction / (1.0 - contraction) * left * relative_size;
     return small || ((!renewed || grown == 0) && theta < 1.0 && expected <= 1.0);
   }
 };
@@ -140,8 +141,8 @@ template <class Problem>
 struct NewtonSolve {
   Problem& problem;
   NewtonOptions const& options;
-  ReusedFactorisation& kept;
-  bool begins_anew;  ///< the solve begins with a new factorisation
+  ReusedFactorisation& reused;
+  bool begins_fresh;  ///< the solve begins with a new factorisation
   NewtonReport report = {};
   NewtonProgress progress = {};
   bool fresh = false, renewed = false;  ///< the tangent was factorised at the last iterate; at this one
@@ -159,10 +160,10 @@ struct NewtonSolve {
   bool renew() {
     if (!problem.refactor()) return false;
     ++report.factorisations;
-    kept.served = 0;
-    kept.seen = 0.0;
+    reused.served = 0;
+    reused.seen = 0.0;
     follows = false;
-    return kept.usable = renewed = true;
+    return reused.usable = renewed = true;
   }
   /// Returns to the first iterate if corrections with the factorisation of an earlier solve were too large.
   bool restart() {
@@ -171,7 +172,7 @@ struct NewtonSolve {
       if (!restarted) return false;
       problem.restart();
       progress = {};
-      kept.usable = false;
+      reused.usable = false;
     }
     return restarted;
   }
@@ -194,42 +195,42 @@ struct NewtonSolve {
   /// ‖Δₖ‖/‖Δₖ₋₁‖ is not a contraction rate. Since one ratio may be small by chance, a rate θ is followed by a rate of
   /// at least θ^1.5. Returns the expected rate of the next, combined corrections.
   double rate_of_factorisation() {
-    double const ratio = kept.theta;
+    double const ratio = reused.theta;
     if constexpr (requires { problem.acceleration(); })
       if (follows) {
         if (problem.acceleration().combined()) fit_correction();
-        kept.theta = std::max(fit ? fit->contraction : ratio, kept.seen * std::sqrt(kept.seen));
+        reused.theta = std::max(fit ? fit->contraction : ratio, reused.seen * std::sqrt(reused.seen));
       }
-    kept.seen = kept.theta;
-    return std::min(ratio, kept.theta);
+    reused.seen = reused.theta;
+    return std::min(ratio, reused.theta);
   }
 
   /// Rates the correction. If the factorisation has to be renewed, it factorises and solves again. Returns false if the
   /// iteration diverges.
   bool rate(int k, CorrectionSize& size) {
-    double const rate_before = kept.theta;
-    bool shrinks = progress.rate(size, options, kept.theta);
+    double const rate_before = reused.theta;
+    bool shrinks = progress.rate(size, options, reused.theta);
     double const to_come = rate_of_factorisation();
-    report.theta = kept.theta;
-    if (fresh && !renewed) kept.fresh = std::clamp(std::sqrt(kept.fresh * kept.theta), 0.01, 0.5);
+    report.theta = reused.theta;
+    if (fresh && !renewed) reused.fresh = std::clamp(std::sqrt(reused.fresh * reused.theta), 0.01, 0.5);
     if constexpr (requires { problem.is_round_off(size.norm); })
-      if (size.norm > size.tolerated && progress.stalls(size, shrinks)) {
+      if (size.norm > size.tolerated && progress.stagnates(size, shrinks)) {
         rounding = problem.is_round_off(size.norm);
         if (rounding) {
-          kept.theta = rate_before;
-          kept.seen = 0.0;
+          reused.theta = rate_before;
+          reused.seen = 0.0;
           return true;
         }
         if (!problem.evaluate()) return false;  // `is_round_off` evaluates other iterates
       }
-    bool const asks = !renewed && (!shrinks || progress.renewal_pays(size, options, kept, to_come)) &&
+    bool const asks = !renewed && (!shrinks || progress.renewal_pays(size, options, reused, to_come)) &&
                       affords(options.factorisation_cost);
     if (k == 1 && !options.always_refactor)
-      kept.stale = begins_anew ? asks || kept.theta > 2.0 * kept.fresh : asks && !fresh && kept.theta > 0.5;
+      reused.stale = begins_fresh ? asks || reused.theta > 2.0 * reused.fresh : asks && !fresh && reused.theta > 0.5;
     if (asks && restart()) return true;
     if (asks) {
       if (!renew()) return false;
-      kept.theta = 1.0;  // the rate of the new one is unknown
+      reused.theta = 1.0;  // the rate of the new one is unknown
       size = CorrectionSize{problem.solve()};
       if (!is_finite(size)) return false;
       bool const first = report.factorisations == 1;  // not comparable with an earlier solve's factorisation
@@ -242,7 +243,7 @@ struct NewtonSolve {
   /// true if it is the last one.
   bool take(CorrectionSize const& size) {
     progress.take(size);
-    bool last = progress.ends(options, renewed, kept.theta);
+    bool last = progress.ends(options, renewed, reused.theta);
     if constexpr (requires { problem.acceleration(); }) {
       if ((last && !fit) || options.always_refactor || !options.predictive_stop) return last;
       fit_correction();
@@ -251,7 +252,7 @@ struct NewtonSolve {
       bool const measured = problem.acceleration().combined();  // else θ is a ratio, as after a change of contacts
       problem.acceleration().combine(problem.correction());
       double const left = !follows ? 1.0 : measured ? fit->left : std::sqrt(fit->left);
-      last = last || progress.ends(options, renewed, kept.theta, left);
+      last = last || progress.ends(options, renewed, reused.theta, left);
       follows = true;
     }
     return last;
@@ -260,18 +261,18 @@ struct NewtonSolve {
   /// Executes one iteration. Returns the result if the solve ends with it.
   std::optional<NewtonResult> iterate(int k) {
     if (!problem.evaluate()) {
-      kept.usable = kept.usable && k == 0;
+      reused.usable = reused.usable && k == 0;
       return k == 0 ? NewtonResult::not_finite : NewtonResult::diverged;
     }
     fresh = renewed;
     renewed = restarted = false;
     auto const fail = [&](NewtonResult result) {
-      kept.usable = false;
+      reused.usable = false;
       return result;
     };
-    if (!kept.usable || options.always_refactor) {
+    if (!reused.usable || options.always_refactor) {
       if (!renew()) return fail(k == 0 ? NewtonResult::singular : NewtonResult::diverged);
-      if (progress.before == 0.0) kept.theta = 1.0;
+      if (progress.before == 0.0) reused.theta = 1.0;
     }
     fit.reset();
     CorrectionSize size{problem.solve()};
@@ -292,7 +293,7 @@ struct NewtonSolve {
       if (affords(1.0) || !is_near(size.norm)) return {};
       report.left = size.norm / size.tolerated;
     }
-    ++kept.served;
+    ++reused.served;
     return NewtonResult::converged;
   }
 };
@@ -310,7 +311,7 @@ struct NewtonSolve {
 ///                             `solve` computes and `apply` adds
 ///   bool is_far_from_solution(double), void restart()  (optional) true if a correction of this norm is larger than the
 ///                             distance to the solution can be; returns to the first iterate
-/// `kept` describes the factorisation of earlier solves.
+/// `reused` describes the factorisation of earlier solves.
 ///
 /// Factorisation: it is renewed if corrections grow, or if this saves more iterations than it costs (`NewtonOptions`).
 /// The correction that causes the renewal is discarded; the new factorisation at the same iterate solves for the same
@@ -336,17 +337,17 @@ struct NewtonSolve {
 /// one if the problem has no `is_far_from_solution`. If it is not near, the solve continues beyond the budget, because
 /// iterates at impacts may be anywhere.
 template <class Problem>
-NewtonReport newton(Problem&& problem, NewtonOptions const& options, ReusedFactorisation& kept) {
-  detail::NewtonSolve<std::remove_reference_t<Problem>> solve{problem, options, kept, kept.stale};
-  if (kept.stale) kept.usable = false;
-  kept.theta = std::pow(std::max(kept.theta, 1e-4), 0.8);  // an old rate is less reliable after every solve
-  kept.fresh += 0.1 * (ReusedFactorisation{}.fresh - kept.fresh);
+NewtonReport newton(Problem&& problem, NewtonOptions const& options, ReusedFactorisation& reused) {
+  detail::NewtonSolve<std::remove_reference_t<Problem>> solve{problem, options, reused, reused.stale};
+  if (reused.stale) reused.usable = false;
+  reused.theta = std::pow(std::max(reused.theta, 1e-4), 0.8);  // an old rate is less reliable after every solve
+  reused.fresh += 0.1 * (ReusedFactorisation{}.fresh - reused.fresh);
   for (int k = 0; k < options.max_iterations; ++k)
     if (auto const result = solve.iterate(k)) {
       solve.report.result = *result;
       return solve.report;
     }
-  kept.usable = false;
+  reused.usable = false;
   solve.report.result = NewtonResult::diverged;
   return solve.report;
 }

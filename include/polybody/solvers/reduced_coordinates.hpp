@@ -61,8 +61,8 @@ class ReducedCoordinates : public CoordinateMaps<Solution> {
     out.coordinate_rates = &coordinate_rates;
     out.reduced = &reduced;
     out.write = &write;
-    out.held = &held;
-    out.hold = &hold;
+    out.make_frozen_state = &make_frozen_state;
+    out.freeze = &freeze;
     out.to_equations = &to_equations;
     out.from_equations = &from_equations;
     out.balance_to_equations = &balance_to_equations;
@@ -121,34 +121,34 @@ class ReducedCoordinates : public CoordinateMaps<Solution> {
   }
 
   /// State and factors of a factorisation.
-  struct Held {
+  struct Frozen {
     TreeState state;
     ArticulatedBodySolverOf<> solver;
     TreeTangentSolverOf<> tangent;
     bool of_balance = false;  ///< the last factorisation is that of `tangent`
   };
-  static FrozenState held(void* c) {
+  static FrozenState make_frozen_state(void* c) {
     if constexpr (solves_by_bodies) {
-      auto held = std::make_shared<Held>();
-      held->state = of(c).state_;
-      held->solver.attach(of(c).reduction_, held->state);
-      held->tangent = TreeTangentSolverOf<>(of(c).reduction_.tree().bodies);
-      return held;
+      auto frozen = std::make_shared<Frozen>();
+      frozen->state = of(c).state_;
+      frozen->solver.attach(of(c).reduction_, frozen->state);
+      frozen->tangent = TreeTangentSolverOf<>(of(c).reduction_.tree().bodies);
+      return frozen;
     }
     return std::make_shared<TreeState>(of(c).state_);
   }
-  static void hold(void* c, void* h) {
+  static void freeze(void* c, void* h) {
     if constexpr (solves_by_bodies)
-      static_cast<Held*>(h)->state = of(c).state_;
+      static_cast<Frozen*>(h)->state = of(c).state_;
     else if constexpr (!solves_as_it_is)
       *static_cast<TreeState*>(h) = of(c).state_;
   }
-  static Index accelerations(void* c, VecX const& q, VecX const& v, double load_factor, VecX const* unbalance,
+  static Index accelerations(void* c, VecX const& q, VecX const& v, double load_factor, VecX const* residual,
                              VecX& out) {
     if constexpr (solves_by_bodies) {
       Self& s = of(c);
-      Index const body = unbalance ? s.dynamics_.accelerations(q, v, *unbalance, out)
-                                   : s.dynamics_.accelerations_under_gravity(q, v, s.weight_ * load_factor, out);
+      Index const body = residual ? s.dynamics_.accelerations(q, v, *residual, out)
+                                  : s.dynamics_.accelerations_under_gravity(q, v, s.weight_ * load_factor, out);
       return body < 0 ? -1 : s.reduction_.tree().bodies[std::size_t(body)].vn;
     }
     return -1;
@@ -159,27 +159,27 @@ class ReducedCoordinates : public CoordinateMaps<Solution> {
   static Index factor_balance(void* c, void* h, StepPosition const& x, double load_factor,
                               TangentCoefficients const& k) {
     if constexpr (solves_by_bodies) {
-      Held& held = *static_cast<Held*>(h);
-      held.of_balance = true;
-      return held.tangent.factor(x.at, x.a, of(c).weight_ * load_factor, k);
+      Frozen& frozen = *static_cast<Frozen*>(h);
+      frozen.of_balance = true;
+      return frozen.tangent.factor(x.at, x.a, of(c).weight_ * load_factor, k);
     }
     return -1;
   }
   static Index factor(void*, void* h, BlockWriter const& write_full) {
     if constexpr (solves_by_bodies) {
-      Held& held = *static_cast<Held*>(h);
-      held.of_balance = false;
-      held.solver.begin();
-      BlockSink sink(held.solver);
+      Frozen& frozen = *static_cast<Frozen*>(h);
+      frozen.of_balance = false;
+      frozen.solver.begin();
+      BlockSink sink(frozen.solver);
       write_full(sink);
-      return held.solver.factor();
+      return frozen.solver.factor();
     }
     return -1;
   }
   static void solve(void* h, VecX const& rhs, VecX& x) {
     if constexpr (solves_by_bodies) {
-      Held& held = *static_cast<Held*>(h);
-      held.of_balance ? held.tangent.solve(rhs, x) : held.solver.solve(rhs, x);
+      Frozen& frozen = *static_cast<Frozen*>(h);
+      frozen.of_balance ? frozen.tangent.solve(rhs, x) : frozen.solver.solve(rhs, x);
     }
   }
 

@@ -29,7 +29,7 @@ class TangentSolver {
     coordinates_ = system.step_coordinates();
     size_ = system.size();
     equations_ = coordinates_ ? coordinates_.reduced->equations : size_;
-    if (coordinates_) held_ = coordinates_.entries->held(coordinates_.self.get());
+    if (coordinates_) frozen_ = coordinates_.entries->make_frozen_state(coordinates_.self.get());
     walks_ = false;
     keeps_multipliers_ = copies == 1 && multipliers_of(system) > system.rows();
     if (keeps_multipliers_) {
@@ -96,15 +96,15 @@ class TangentSolver {
   /// Factorises the tangent of the residual at x. Returns the same as `factor`.
   Index factor_tangent(System& system, StepPosition const& x, TangentCoefficients const& k, SecondOrder second) {
     if (walks_)
-      return coordinates_.entries->factor_balance(coordinates_.self.get(), held_.get(), x, system.load_factor, k);
+      return coordinates_.entries->factor_balance(coordinates_.self.get(), frozen_.get(), x, system.load_factor, k);
     return factor([&](BlockSink& sink) { system.tangent(k, second, x.lambda, sink); });
   }
 
   /// Writes and factorises the matrix in the state of the last evaluation of the system. Returns −1, or the equation
   /// without a pivot (`name_of_equation`).
   Index factor(BlockWriter const& write) {
-    if (coordinates_) coordinates_.entries->hold(coordinates_.self.get(), held_.get());
-    if (solves_by_bodies()) return coordinates_.entries->factor(coordinates_.self.get(), held_.get(), write);
+    if (coordinates_) coordinates_.entries->freeze(coordinates_.self.get(), frozen_.get());
+    if (solves_by_bodies()) return coordinates_.entries->factor(coordinates_.self.get(), frozen_.get(), write);
     Index const bad = write_and_factor(solver_, write);
     fewest_dropped_ = std::min(fewest_dropped_, dropped().size());
     return bad;
@@ -114,8 +114,8 @@ class TangentSolver {
   /// call all copies use those of the last evaluation before `factor`.
   [[gnu::cold]] void hold_copy(std::size_t k) {
     if (!coordinates_) return;
-    while (by_copy_.size() <= k) by_copy_.push_back(coordinates_.entries->held(coordinates_.self.get()));
-    coordinates_.entries->hold(coordinates_.self.get(), by_copy_[k].get());
+    while (by_copy_.size() <= k) by_copy_.push_back(coordinates_.entries->make_frozen_state(coordinates_.self.get()));
+    coordinates_.entries->freeze(coordinates_.self.get(), by_copy_[k].get());
   }
 
   /// Linear solver that `analyse` sets up.
@@ -160,17 +160,17 @@ class TangentSolver {
   /// Solution x for the right-hand side `rhs`, both in the unknowns of the time step.
   void solve(VecX const& rhs, VecX& x) {
     if (!coordinates_) return solver_.solve(rhs, x);
-    if (solves_by_bodies()) return coordinates_.entries->solve(held_.get(), rhs, x);
+    if (solves_by_bodies()) return coordinates_.entries->solve(frozen_.get(), rhs, x);
     Index const n = size_, m = equations_;
     for (Index k = 0; k < copies_; ++k) {
       std::copy_n(rhs.data() + k * n, n, part_.data());
-      coordinates_.entries->to_equations(coordinates_.self.get(), held_of(k), part_, equation_);
+      coordinates_.entries->to_equations(coordinates_.self.get(), frozen_of(k), part_, equation_);
       std::copy_n(equation_.data(), m, rhs_.data() + k * m);
     }
     solver_.solve(rhs_, x_);
     for (Index k = 0; k < copies_; ++k) {
       std::copy_n(x_.data() + k * m, m, equation_.data());
-      coordinates_.entries->from_equations(coordinates_.self.get(), held_of(k), equation_, solution_);
+      coordinates_.entries->from_equations(coordinates_.self.get(), frozen_of(k), equation_, solution_);
       std::copy_n(solution_.data(), n, x.data() + k * n);
     }
   }
@@ -185,14 +185,14 @@ class TangentSolver {
 
  private:
   /// State of the coordinates for copy k.
-  void* held_of(Index k) const {
-    return std::size_t(k) < by_copy_.size() ? by_copy_[std::size_t(k)].get() : held_.get();
+  void* frozen_of(Index k) const {
+    return std::size_t(k) < by_copy_.size() ? by_copy_[std::size_t(k)].get() : frozen_.get();
   }
   bool solves_by_bodies() const { return coordinates_ && coordinates_.reduced->solves_by_bodies; }
 
   Solver solver_;
   Coordinates coordinates_;
-  FrozenState held_;
+  FrozenState frozen_;
   Sequence<FrozenState> by_copy_;   // for copies with `hold_copy`
   bool keeps_multipliers_ = false;  // multiplier estimates of joints with joint coordinates are stored
   bool walks_ = false;              // residual and tangent by recursions over the tree

@@ -29,9 +29,9 @@ class TreeDynamicsOf {
     walk_.add_velocity_forces();
     return solve(gravity, out);
   }
-  /// As `accelerations_under_gravity`, for any forces: `unbalance` is M a − f of all bodies in full velocities at
+  /// As `accelerations_under_gravity`, for any forces: `residual` is M a − f of all bodies in full velocities at
   /// v̇ = 0, where f includes weight and gyroscopic moments.
-  Index accelerations(VecXOf<T> const& q, VecXOf<T> const& v, VecXOf<T> const& unbalance, VecXOf<T>& out) {
+  Index accelerations(VecXOf<T> const& q, VecXOf<T> const& v, VecXOf<T> const& residual, VecXOf<T>& out) {
     walk_.place(q, v);
     for (std::size_t i = 0; i < walk_.links.size(); ++i) {
       TreeLink const& link = walk_.links[i];
@@ -39,7 +39,7 @@ class TreeDynamicsOf {
       T arm[3], axes[9], w[6];
       detail::set_product(b.axes, link.centre, 1, arm);
       detail::set_product(b.axes, link.full_axes, 3, axes);
-      read_wrench(link, unbalance.data() + link.v0, axes, w);
+      read_wrench(link, residual.data() + link.v0, axes, w);
       walk_.add_centrifugal(b);
       for (int k = 0; k < 3; ++k) {
         b.p[k] += w[k];
@@ -55,7 +55,7 @@ class TreeDynamicsOf {
  private:
   using Walk = TreeRecursionOf<T>;
   using Body = typename Walk::Body;
-  using Freedom = typename Walk::Freedom;
+  using Direction = typename Walk::Direction;
   using Kind = typename Walk::Kind;
 
   static void read_wrench(TreeLink const& link, T const* r, T const* axes, T* w) {
@@ -70,7 +70,7 @@ class TreeDynamicsOf {
 
   Index solve(Vec3 const& gravity, VecXOf<T>& out);
   bool eliminate(Body& b, bool carried);
-  static void set_column(Freedom& f, detail::ArticulatedInertia<T> const& inertia);
+  static void set_column(Direction& f, detail::ArticulatedInertia<T> const& inertia);
   /// Replaces the weight by an acceleration of the ground.
   void let_ground_fall(Vec3 const& gravity) {
     for (int k = 0; k < 3; ++k) walk_.ground.x[k] = T(-gravity[k]);
@@ -80,7 +80,7 @@ class TreeDynamicsOf {
     for (int k = 0; k < 6; ++k) b.x[k] = p.x[k];
     detail::add_cross(p.x + 3, b.d, b.x);
   }
-  static void add_column(Freedom const& f, T const& u, T* x) {
+  static void add_column(Direction const& f, T const& u, T* x) {
     for (int j = f.kind == Kind::turn ? 3 : 0; j < (f.kind == Kind::slide ? 3 : 6); ++j) x[j] += f.s[j] * u;
   }
   static void add_back(Body const& b, Body& p) {
@@ -93,7 +93,7 @@ class TreeDynamicsOf {
 
 /// U = I S.
 template <StateScalar T>
-void TreeDynamicsOf<T>::set_column(Freedom& f, detail::ArticulatedInertia<T> const& inertia) {
+void TreeDynamicsOf<T>::set_column(Direction& f, detail::ArticulatedInertia<T> const& inertia) {
   for (T& x : f.u) x = T(0.0);
   if (f.kind != Kind::turn) inertia.add_by_acceleration(f.s, f.u);
   if (f.kind != Kind::slide) inertia.add_by_angular(f.s + 3, f.u);
@@ -104,7 +104,7 @@ template <StateScalar T>
 bool TreeDynamicsOf<T>::eliminate(Body& b, bool carried) {
   b.inertia.add_by_acceleration(b.c, b.p);
   b.inertia.add_by_angular(b.c + 3, b.p);
-  Freedom* const f = walk_.freedoms.data() + b.first;
+  Direction* const f = walk_.directions.data() + b.first;
   double full[6] = {};  // D of each degree of freedom with the others fixed
   if (b.count > 1)
     for (int k = 0; k < b.count; ++k) {
@@ -141,9 +141,9 @@ Index TreeDynamicsOf<T>::solve(Vec3 const& gravity, VecXOf<T>& out) {
     Body& b = walk_.bodies[i];
     carry(walk_.carrier(i), b);
     for (int k = 0; k < b.count; ++k) {
-      Freedom const& f = walk_.freedoms[b.first + std::size_t(k)];
+      Direction const& f = walk_.directions[b.first + std::size_t(k)];
       T const u = f.inverse * (f.w - detail::dot(f.u, b.x, 6));
-      out[f.speed] = u;
+      out[f.velocity] = u;
       add_column(f, u, b.x);
     }
     for (int k = 0; k < 6; ++k) b.x[k] += b.c[k];
@@ -161,8 +161,8 @@ void TreeDynamicsOf<T>::balance(VecXOf<T> const& q, VecXOf<T> const& v, VecXOf<T
     Body& b = walk_.bodies[i];
     carry(walk_.carrier(i), b);
     for (int k = 0; k < b.count; ++k) {
-      Freedom const& f = walk_.freedoms[b.first + std::size_t(k)];
-      add_column(f, a[f.speed], b.x);
+      Direction const& f = walk_.directions[b.first + std::size_t(k)];
+      add_column(f, a[f.velocity], b.x);
     }
     for (int k = 0; k < 6; ++k) b.x[k] += b.c[k];
     b.inertia.add_by_acceleration(b.x, b.p);
@@ -171,8 +171,8 @@ void TreeDynamicsOf<T>::balance(VecXOf<T> const& q, VecXOf<T> const& v, VecXOf<T
   for (std::size_t i = walk_.links.size(); i-- > 0;) {
     Body const& b = walk_.bodies[i];
     for (int k = 0; k < b.count; ++k) {
-      Freedom const& f = walk_.freedoms[b.first + std::size_t(k)];
-      out[f.speed] = Walk::along(f, b.p);
+      Direction const& f = walk_.directions[b.first + std::size_t(k)];
+      out[f.velocity] = Walk::along(f, b.p);
     }
     if (walk_.links[i].parent >= 0) add_back(b, walk_.carrier(i));
   }

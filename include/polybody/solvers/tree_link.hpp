@@ -14,7 +14,7 @@ struct TreeLink {
   RigidLayout layout;                ///< layout of the body's coordinates
   bool backwards;                    ///< frame b of the joint belongs to the parent
   bool turned;                       ///< the axes of the joint differ from those of the parent
-  int freedoms;                      ///< number of velocities of the joint, or of the body if it is a root
+  int degrees_of_freedom;            ///< number of velocities of the joint, or of the body if it is a root
   JointMotions motions;              ///< motions of the joint, from frame a to frame b
   double entry[9], arm[3];           ///< axes and origin of the joint's frame, in the axes of the parent's joint
   double mass, first[3], second[6];  ///< [kg], [kg m], [kg m²]; moments about the reference point
@@ -49,7 +49,7 @@ template <class T = double>  // a template, so that only its users compile it
     from.axes = M3(before.axes.transpose() * from.axes);
   }
   link.turned = !from.axes.isIdentity(0.0);
-  link.freedoms = link.motions.velocities();
+  link.degrees_of_freedom = link.motions.velocities();
   Vec3 const c = to.axes.transpose() * Vec3(-to.origin);
   M3 inertia = to.axes.transpose() * body.inertia;  // about the reference point
   inertia = M3(inertia * to.axes);

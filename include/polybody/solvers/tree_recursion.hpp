@@ -23,11 +23,11 @@ struct TreeRecursionOf {
     general
   };
   /// One degree of freedom: its column S of [v; ω]; and I S, D⁻¹ and a force, which belong to the calling algorithm.
-  struct Freedom {
+  struct Direction {
     T s[6], u[6], inverse, w;  ///< S, I S, D⁻¹, the force along S
     Kind kind;                 ///< its motion; the other entries of S are zero
     unsigned char together;    ///< 3 for the first degree of freedom of a ball joint and 0 for its others, else 1
-    Index speed;               ///< index in the reduced velocities
+    Index velocity;            ///< index in the reduced velocities
   };
   /// Joint axes of a body (3×3 by columns), d, ω, the acceleration c = [a; α] for u̇ = 0 and a parent without
   /// acceleration, and the force p and acceleration x, which belong to the calling algorithm.
@@ -38,10 +38,10 @@ struct TreeRecursionOf {
     int count;                                ///< number of its degrees of freedom
   };
 
-  Sequence<TreeLink> links;    ///< constants, one for each body
-  Sequence<Body> bodies;       ///< states of the bodies, parents before children
-  Sequence<Freedom> freedoms;  ///< degrees of freedom of all bodies, body by body
-  Body ground = {};            ///< at rest; carrier of the roots
+  Sequence<TreeLink> links;        ///< constants, one for each body
+  Sequence<Body> bodies;           ///< states of the bodies, parents before children
+  Sequence<Direction> directions;  ///< degrees of freedom of all bodies, body by body
+  Body ground = {};                ///< at rest; carrier of the roots
 
   TreeRecursionOf() = default;
   /// Computes the constants of the bodies and allocates all memory.
@@ -72,7 +72,7 @@ struct TreeRecursionOf {
     detail::add_cross(b.w, mc, rate);
     detail::add_cross(b.w, rate, b.p);
   }
-  /** Sᵀx, x (6). */ static T along(Freedom const& f, T const* x) {
+  /** Sᵀx, x (6). */ static T along(Direction const& f, T const* x) {
     switch (f.kind) {
       case Kind::turn:
         return detail::dot(f.s + 3, x + 3, 3);
@@ -88,8 +88,8 @@ struct TreeRecursionOf {
   void move(JointMotion const& m, double sign, T const* x, T const* u, Body& b);
   /// Moves the reference point by the vector `by`, which is fixed in the current frame of the joint.
   void go(T const* by, Body& b);
-  Freedom& add_freedom(Kind kind, Body& b) {
-    Freedom& f = freedoms[b.first + std::size_t(b.count++)];
+  Direction& add_direction(Kind kind, Body& b) {
+    Direction& f = directions[b.first + std::size_t(b.count++)];
     f.kind = kind;
     f.together = 1;
     for (T& x : f.s) x = T(0.0);
@@ -107,9 +107,9 @@ TreeRecursionOf<T>::TreeRecursionOf(Sequence<TreeBody> const& tree) : bodies(tre
     bool const has_parent = tree[i].parent >= 0;
     links.push_back(tree_link(tree[i], has_parent ? &tree[std::size_t(tree[i].parent)] : nullptr));
     bodies[i].first = count;
-    count += std::size_t(links.back().freedoms);
+    count += std::size_t(links.back().degrees_of_freedom);
   }
-  freedoms.resize(count);
+  directions.resize(count);
 }
 
 template <StateScalar T>
@@ -124,16 +124,17 @@ void TreeRecursionOf<T>::place(TreeLink const& link, Body const& parent, T const
   T arm[3];
   detail::set_product(parent.axes, link.arm, 1, arm);
   go(arm, b);
-  Index speed = link.vn;
+  Index velocity = link.vn;
   if (link.backwards) {
     q += link.motions.coordinates();
-    int k = link.freedoms;
+    int k = link.degrees_of_freedom;
     for (int i = link.motions.count; i-- > 0;) {
       JointMotion const& m = link.motions.list[std::size_t(i)];
       k -= m.velocities();
       int const before = b.count;
       move(m, -1.0, q -= m.coordinates(), u + k, b);
-      for (int j = before; j < b.count; ++j) freedoms[b.first + std::size_t(j)].speed = speed + k + (j - before);
+      for (int j = before; j < b.count; ++j)
+        directions[b.first + std::size_t(j)].velocity = velocity + k + (j - before);
     }
     return;
   }
@@ -142,7 +143,7 @@ void TreeRecursionOf<T>::place(TreeLink const& link, Body const& parent, T const
     q += m.coordinates();
     u += m.velocities();
   }
-  for (int j = 0; j < b.count; ++j) freedoms[b.first + std::size_t(j)].speed = speed + j;
+  for (int j = 0; j < b.count; ++j) directions[b.first + std::size_t(j)].velocity = velocity + j;
 }
 
 template <StateScalar T>
@@ -153,7 +154,7 @@ void TreeRecursionOf<T>::go(T const* by, Body& b) {
   detail::add_cross(b.c + 3, by, b.c);
   for (int i = 0; i < 3; ++i) b.d[i] += by[i];
   for (int j = 0; j < b.count; ++j) {
-    Freedom& f = freedoms[b.first + std::size_t(j)];
+    Direction& f = directions[b.first + std::size_t(j)];
     if (f.kind == Kind::slide) continue;
     detail::add_cross(f.s + 3, by, f.s);
     f.kind = Kind::general;
@@ -170,7 +171,7 @@ void TreeRecursionOf<T>::move(JointMotion const& m, double sign, T const* x, T c
     detail::set_product(before, sign > 0.0 ? turned.data() : back.data(), 3, b.axes);
     T const* const axes = sign > 0.0 ? b.axes : before;  // axes of frame b
     for (int k = 0; k < 3; ++k) {
-      Freedom& f = add_freedom(Kind::turn, b);
+      Direction& f = add_direction(Kind::turn, b);
       f.together = k == 0 ? 3 : 0;
       for (int i = 0; i < 3; ++i) {
         f.s[3 + i] = axes[3 * k + i] * sign;
@@ -191,14 +192,14 @@ void TreeRecursionOf<T>::move(JointMotion const& m, double sign, T const* x, T c
     go(by, b);
     for (int i = 0; i < 3; ++i) by[i] = n[i] * twice;
     detail::add_cross(b.w, by, b.c);
-    Freedom& f = add_freedom(slide ? Kind::slide : Kind::general, b);
+    Direction& f = add_direction(slide ? Kind::slide : Kind::general, b);
     for (int i = 0; i < 3; ++i) {
       f.s[i] = n[i] * part;
       if (!slide) f.s[3 + i] = n[i];
     }
     if (slide) return;
   } else {
-    Freedom& f = add_freedom(Kind::turn, b);
+    Direction& f = add_direction(Kind::turn, b);
     for (int i = 0; i < 3; ++i) f.s[3 + i] = n[i];
   }
   for (int i = 0; i < 3; ++i) by[i] = n[i] * u[0];

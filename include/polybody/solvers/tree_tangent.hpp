@@ -32,7 +32,7 @@ class TreeTangentSolverOf {
   TreeTangentSolverOf() = default;
   /// Allocates all memory.
   explicit TreeTangentSolverOf(Sequence<TreeBody> const& bodies)
-      : walk_(bodies), nodes_(bodies.size()), columns_(walk_.freedoms.size()) {}
+      : walk_(bodies), nodes_(bodies.size()), columns_(walk_.directions.size()) {}
 
   /// Factorises the tangent at (q, v, a). Returns −1, or the degree of freedom without a pivot.
   Index factor(At<T> const& at, VecXOf<T> const& a, Vec3 const& gravity, TangentCoefficients const& c);
@@ -41,7 +41,7 @@ class TreeTangentSolverOf {
 
  private:
   using Walk = TreeRecursionOf<T>;
-  using Freedom = typename Walk::Freedom;
+  using Direction = typename Walk::Direction;
   struct Column {
     T sv[6], sa[6], l[12], r[6], rate[6], inverse[3];  ///< s_v, s_a, Jᵀ[A B′], r, J u, row of D⁻¹
     T w;
@@ -60,7 +60,7 @@ class TreeTangentSolverOf {
   /// Row k of D⁻¹ w for one degree of freedom, or for those of a ball joint.
   T answer(std::size_t first, int k) const {
     T sum = T(0.0);
-    for (int j = 0; j < walk_.freedoms[first].together; ++j)
+    for (int j = 0; j < walk_.directions[first].together; ++j)
       sum += columns_[first + std::size_t(k)].inverse[j] * columns_[first + std::size_t(j)].w;
     return sum;
   }
@@ -84,8 +84,8 @@ Index TreeTangentSolverOf<T>::factor(At<T> const& at, VecXOf<T> const& a, Vec3 c
     Node& n = nodes_[i];
     auto const& body = walk_.bodies[i];
     for (std::size_t k = body.first + std::size_t(body.count); k-- > body.first;)
-      if (walk_.freedoms[k].together > 0 && !eliminate(k, walk_.links[i].backwards, c.stiffness, n))
-        return walk_.freedoms[k].speed;
+      if (walk_.directions[k].together > 0 && !eliminate(k, walk_.links[i].backwards, c.stiffness, n))
+        return walk_.directions[k].velocity;
     Index const parent = walk_.links[i].parent;
     if (parent < 0) continue;
     Node& p = nodes_[std::size_t(parent)];
@@ -105,14 +105,14 @@ void TreeTangentSolverOf<T>::move(std::size_t i, VecXOf<T> const& v, VecXOf<T> c
   detail::carry_motion(p.v, body.d, n.v);
   detail::carry_motion(p.a, body.d, n.a);
   std::size_t const end = body.first + std::size_t(body.count);
-  for (std::size_t first = body.first; first < end; first += walk_.freedoms[first].together) {
+  for (std::size_t first = body.first; first < end; first += walk_.directions[first].together) {
     Column& c = columns_[first];
     T rate[6] = {}, faster[6] = {};
-    for (std::size_t j = first; j < first + walk_.freedoms[first].together; ++j) {
-      Freedom const& f = walk_.freedoms[j];
+    for (std::size_t j = first; j < first + walk_.directions[first].together; ++j) {
+      Direction const& f = walk_.directions[j];
       for (int l = 0; l < 6; ++l) {
-        rate[l] += f.s[l] * v[f.speed];
-        faster[l] += f.s[l] * a[f.speed];
+        rate[l] += f.s[l] * v[f.velocity];
+        faster[l] += f.s[l] * a[f.velocity];
       }
     }
     for (int l = 0; l < 6; ++l) {
@@ -135,8 +135,8 @@ void TreeTangentSolverOf<T>::move_through(std::size_t first, bool before, Node& 
   }
   detail::add_motion_cross(n.v, c.rate, a);
   T const *const place_v = before ? v : n.v, *const place_a = before ? a : n.a, *const speed_v = before ? n.v : v;
-  for (std::size_t j = first; j < first + walk_.freedoms[first].together; ++j) {
-    T const* const s = walk_.freedoms[j].s;
+  for (std::size_t j = first; j < first + walk_.directions[first].together; ++j) {
+    T const* const s = walk_.directions[j].s;
     Column& to = columns_[j];
     T by_v[6] = {}, by_a[6] = {}, by_speed[6] = {};
     detail::add_motion_cross(place_v, s, by_v);
@@ -172,18 +172,18 @@ void TreeTangentSolverOf<T>::set_inertia(std::size_t i) {
 /// Eliminates one degree of freedom, or those of a ball joint, from A and B. Returns false if one has no pivot.
 template <class T>
 bool TreeTangentSolverOf<T>::eliminate(std::size_t first, bool before, double ck, Node& n) {
-  int const count = walk_.freedoms[first].together;
+  int const count = walk_.directions[first].together;
   n.pair.turn_back(columns_[first].rate);  // [A B′] from here on
   T d[9], size[3] = {};
   for (int j = 0; j < count; ++j) {
     Column& c = columns_[first + std::size_t(j)];
-    T const* const s = walk_.freedoms[first + std::size_t(j)].s;
+    T const* const s = walk_.directions[first + std::size_t(j)].s;
     T h[6], bent[6] = {};
     n.pair.multiply(c.sa, c.sv, h);
     detail::add_force_cross(s, n.force, bent);
     for (int l = 0; l < 6; ++l) c.r[l] = h[l] + ck * bent[l];
     for (int i = 0; i < count; ++i) {
-      T const* const row = walk_.freedoms[first + std::size_t(i)].s;
+      T const* const row = walk_.directions[first + std::size_t(i)].s;
       d[count * i + j] = detail::dot(row, before ? c.r : h, 6);
       for (int l = 0; l < 6; ++l) size[i] += std::abs(row[l] * h[l]);
     }
@@ -224,10 +224,10 @@ void TreeTangentSolverOf<T>::collect(VecXOf<T> const& given) {
     Node& n = nodes_[i];
     auto const& body = walk_.bodies[i];
     for (std::size_t first = body.first + std::size_t(body.count); first-- > body.first;) {
-      int const count = walk_.freedoms[first].together;
+      int const count = walk_.directions[first].together;
       for (int k = 0; k < count; ++k) {
-        Freedom const& f = walk_.freedoms[first + std::size_t(k)];
-        columns_[first + std::size_t(k)].w = given[f.speed] - Walk::along(f, n.c);
+        Direction const& f = walk_.directions[first + std::size_t(k)];
+        columns_[first + std::size_t(k)].w = given[f.velocity] - Walk::along(f, n.c);
       }
       for (int k = 0; k < count; ++k) {
         T const part = answer(first, k);
@@ -250,8 +250,8 @@ void TreeTangentSolverOf<T>::solve(VecXOf<T> const& given, VecXOf<T>& y) {
     detail::carry_motion(parent < 0 ? none : nodes_[std::size_t(parent)].v, body.d, n.v);
     detail::carry_motion(parent < 0 ? none : nodes_[std::size_t(parent)].a, body.d, n.a);
     std::size_t const end = body.first + std::size_t(body.count);
-    for (std::size_t first = body.first; first < end; first += walk_.freedoms[first].together) {
-      int const count = walk_.freedoms[first].together;
+    for (std::size_t first = body.first; first < end; first += walk_.directions[first].together) {
+      int const count = walk_.directions[first].together;
       for (int k = 0; k < count; ++k) {
         Column& c = columns_[first + std::size_t(k)];
         c.w -= detail::dot(c.l, n.a, 6) + detail::dot(c.l + 6, n.v, 6);
@@ -259,7 +259,7 @@ void TreeTangentSolverOf<T>::solve(VecXOf<T> const& given, VecXOf<T>& y) {
       for (int k = 0; k < count; ++k) {
         Column const& c = columns_[first + std::size_t(k)];
         T const part = answer(first, k);
-        y[walk_.freedoms[first + std::size_t(k)].speed] = part;
+        y[walk_.directions[first + std::size_t(k)].velocity] = part;
         for (int l = 0; l < 6; ++l) {
           n.v[l] += c.sv[l] * part;
           n.a[l] += c.sa[l] * part;

@@ -173,10 +173,10 @@ EquilibriumReport equilibrium(System& system, State& x, EquilibriumOptions const
   std::string const at = path.place();
   Index const bad = path.bad;
   if (result == NewtonResult::converged) {
-    bool const neutral = path.is_singular();
+    bool const has_free_motion = path.is_singular();
     path.report_springs(report);
     State const found = trial;
-    if (neutral && !detail::follow_least(path, start, options, report)) {
+    if (has_free_motion && !detail::follow_least(path, start, options, report)) {
       trial = found;
       report.free_motions.clear();
     }

@@ -222,8 +222,8 @@ struct EquilibriumPath {
 /// Newton's method at the present fraction of the path; adds its iterations to the report.
 template <class Solver>
 NewtonResult correct(EquilibriumPath<Solver>& path, EquilibriumOptions const& options, EquilibriumReport& report) {
-  ReusedFactorisation kept;
-  NewtonReport const n = newton(path, {.max_iterations = options.max_iterations, .always_refactor = true}, kept);
+  ReusedFactorisation reused;
+  NewtonReport const n = newton(path, {.max_iterations = options.max_iterations, .always_refactor = true}, reused);
   report.iterations += n.iterations;
   return n.result;
 }

@@ -15,7 +15,7 @@ struct RigidPart {
 /// orthogonalised one after the other.
 template <class = void>  // compiled where it is used
 RigidPart rigid_part(System const& system, BodyLayout const& body, VecX const& z) {
-  auto const entry = require_entry(system.entries().first.rigid_velocities, "speeds of rigid motions");
+  auto const entry = require_entry(system.entries().first.rigid_velocities, "velocities of rigid motions");
   VecX all = VecX::Zero(system.layout().velocities), rest(body.velocities);
   Sequence<VecX> columns;
   Sequence<Vec6> motions;

@@ -89,8 +89,8 @@ template <class Solver>
     double const next = std::min(1.0, share + part);
     path.advance(next);
     step.moved.setZero();
-    ReusedFactorisation kept;
-    NewtonReport const n = newton(step, few, kept);
+    ReusedFactorisation reused;
+    NewtonReport const n = newton(step, few, reused);
     report.iterations += n.iterations;
     if (n.result != NewtonResult::converged) {
       ++failures;

@@ -24,8 +24,8 @@ struct StructureLoadOptions {
   /// mass coincide, as for a body and a structure made from the same bar.
   std::optional<Placement> placement = {};
   double largest_gap = 0.0;  ///< largest interpolated interval between samples [s]; 0: 1.5 times the median interval
-  double unbalance = 1e-3;   ///< allowed sum of forces and of moments, relative to their size
-  double patch = 0.0;        ///< nodes within this distance of a load share it [m]; required if nodes have no rotations
+  double balance_tolerance = 1e-3;  ///< allowed sum of forces and of moments, relative to their size
+  double patch = 0.0;  ///< nodes within this distance of a load share it [m]; required if nodes have no rotations
   std::vector<LoadPatch> patches =
       {};  ///< patches of given nodes, for loads at their points, if nodes have no rotations
 };
@@ -62,7 +62,7 @@ class StructureLoads {
         name_(record.name),
         patch_of_(sentence_of({"Stress of \"", name_, "\", nodes within ", options.patch, " m of a load"})) {
     require_positive(s_.mass, who() + "the structure's mass");
-    require_positive(options.unbalance, who() + "the unbalance");
+    require_positive(options.balance_tolerance, who() + "the balance tolerance");
     require_not_negative(options.patch, who() + "the patch");
     require_no_gaps(record, options.largest_gap, who());
     Placement place{.origin = -s_.first / s_.mass};
@@ -81,7 +81,7 @@ class StructureLoads {
           take(load, at);
       }
     }
-    require_balance(options.unbalance);
+    require_balance(options.balance_tolerance);
   }
 
   std::string const& name() const { return name_; }                          ///< name of the body
@@ -227,11 +227,11 @@ class StructureLoads {
       }
     }
     if (worst > part * most)
-      throw InvalidInput(
-          "stress.unbalanced",
-          {ErrorObject{who()}, "the recorded loads do not balance the inertia of the structure: ", ErrorValue{worst},
-           " N of ", most, " N remain at t = ", ErrorTime{when},
-           " s. Give the structure the mass, inertia and placement of the recorded body, or raise `unbalance`."});
+      throw InvalidInput("stress.unbalanced",
+                         {ErrorObject{who()}, "the recorded loads do not balance the inertia of the structure: ",
+                          ErrorValue{worst}, " N of ", most, " N remain at t = ", ErrorTime{when},
+                          " s. Give the structure the mass, inertia and placement of the recorded body, or raise "
+                          "`balance_tolerance`."});
   }
 
   static constexpr double same_place = 1e-6;  ///< largest distance between a load and its patch [m]

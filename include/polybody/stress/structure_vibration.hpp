@@ -106,10 +106,10 @@ void require_fitting_shapes(Structure const& s, Vibration const& how, std::strin
   if (how.shapes.rows() != s.size())
     throw InvalidInput("ffr.shape_size", {ErrorObject{who}, "the shapes have ", ErrorValue{how.shapes.rows()},
                                           " rows, but the structure has ", s.size(), " nodal coordinates."});
-  std::vector<char> held(std::size_t(s.size()), 1);
-  for (Index const i : how.frame.free_coordinates(s)) held[std::size_t(i)] = 0;
+  std::vector<char> fixed(std::size_t(s.size()), 1);
+  for (Index const i : how.frame.free_coordinates(s)) fixed[std::size_t(i)] = 0;
   for (Index i = 0; i < s.size(); ++i)
-    if (held[std::size_t(i)] && !how.shapes.row(i).isZero(0.0))
+    if (fixed[std::size_t(i)] && !how.shapes.row(i).isZero(0.0))
       throw InvalidInput("stress.shapes", {ErrorObject{who}, "the shapes move node ", i / s.per_node,
                                            ", which the reference conditions fix. Give the conditions of the shapes."});
 }

@@ -61,9 +61,9 @@ void write_table(StudyResults const& found, std::filesystem::path const& file) {
   table.write(detail::table_text(found, false));
   table.close();
   if (std::ranges::none_of(found.outputs, [](StudyOutput const& o) { return o.measured; })) return;
-  std::filesystem::path beside = file;
-  beside.replace_filename(file.stem().string() + "_measured" + file.extension().string());
-  AtomicFile all(beside);
+  std::filesystem::path measured_file = file;
+  measured_file.replace_filename(file.stem().string() + "_measured" + file.extension().string());
+  AtomicFile all(measured_file);
   all.write(detail::table_text(found, true));
   all.close();
 }

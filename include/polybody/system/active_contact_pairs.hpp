@@ -13,9 +13,9 @@ class ActiveContactPairs {
  public:
   /// Pairs of one group. The pair of marker i of the many and partner j has the number i few + j.
   struct Group {
-    Index few = 0;           ///< number of partners; 0 if unknown: pairs then have no neighbours
-    Sequence<char> held;     ///< for each pair: it has blocks
-    Sequence<long> touched;  ///< for each pair: number of the last evaluation in which it touched
+    Index few = 0;              ///< number of partners; 0 if unknown: pairs then have no neighbours
+    Sequence<char> has_blocks;  ///< for each pair: it has blocks
+    Sequence<long> touched;     ///< for each pair: number of the last evaluation in which it touched
   };
 
   /// Starts an evaluation of the matrix.
@@ -31,32 +31,32 @@ class ActiveContactPairs {
   }
   /// Records the contact `touches` of pair k of a group. Returns true if the pair has blocks.
   bool note(Group& group, std::size_t k, bool touches) {
-    if (k == group.held.size()) {
-      group.held.push_back(0);
+    if (k == group.has_blocks.size()) {
+      group.has_blocks.push_back(0);
       group.touched.push_back(-kept);
     }
     if (touches) group.touched[k] = writing_;
-    if (touches && !group.held[k]) lacks_ = true;
-    return group.held[k];
+    if (touches && !group.has_blocks[k]) lacks_ = true;
+    return group.has_blocks[k];
   }
   /// In the last evaluation a pair without blocks touched.
   bool lacks() const { return lacks_; }
   /// Selects the pairs that touched recently and their neighbours. This changes the sparsity pattern of the matrix.
   void hold() {
     for (Group& g : groups_) {
-      std::fill(g.held.begin(), g.held.end(), char(0));
-      Index const pairs = Index(g.held.size());
+      std::fill(g.has_blocks.begin(), g.has_blocks.end(), char(0));
+      Index const pairs = Index(g.has_blocks.size());
       for (Index k = 0; k < pairs; ++k)
         if (writing_ - g.touched[std::size_t(k)] < kept)
-          for (Index i = -beside; i <= beside; ++i)
-            if (Index const other = k + i * g.few; other >= 0 && other < pairs) g.held[std::size_t(other)] = 1;
+          for (Index i = -neighbours; i <= neighbours; ++i)
+            if (Index const other = k + i * g.few; other >= 0 && other < pairs) g.has_blocks[std::size_t(other)] = 1;
     }
     lacks_ = false;
   }
 
  private:
-  static constexpr Index beside = 2;  // neighbouring markers on each side
-  static constexpr long kept = 50;    // evaluations for which a separated pair keeps its blocks: it may touch again
+  static constexpr Index neighbours = 2;  // neighbouring markers on each side
+  static constexpr long kept = 50;        // evaluations for which a separated pair keeps its blocks: it may touch again
 
   Sequence<Group> groups_;
   std::size_t next_ = 0;

@@ -151,7 +151,7 @@ class BasicSystem {
   std::string name_of(Index i) const;
 
   template <class U>
-  friend VecXOf<U> const& unbalance(BasicSystem<U>& system);
+  friend VecXOf<U> const& residual_at_rest(BasicSystem<U>& system);
   template <class U>
   friend VecXOf<U> const& residual_of_bodies(BasicSystem<U>& system, VecXOf<U> const& a, VecXOf<U> const& lambda);
 

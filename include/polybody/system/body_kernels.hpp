@@ -89,9 +89,9 @@ struct BodyKernels {
   static void add_forces(Pool const& pool, Kept& kept, detail::BodyResidual<T> const& u, Data<T>& data, Vector& r);
 
   /// `rate` = q˙ = d/dε (q ⊞ ε v) at ε = 0. It equals v if a body has as many coordinates as velocities. Otherwise dual
-  /// numbers in the workspace `room` (2 nq + nv) give it.
+  /// numbers in the `workspace` (2 nq + nv) give it.
   static ReducedPosition const* coordinate_rates(Pool const& pool, ReducedPosition const* places, VecX const& q,
-                                                 VecX const& v, VecXOf<Dual<1>>& room, VecX& rate);
+                                                 VecX const& v, VecXOf<Dual<1>>& workspace, VecX& rate);
   /// Velocities v of a rigid motion: v0 (3) at the world's origin [m/s] and `omega` (3) [rad/s], in world axes.
   static void rigid_velocities(Pool const& pool, VecX const& q, Vec3 const& v0, Vec3 const& omega, VecX& v);
   static void masses(Pool const& pool, Kept& kept, At<double> at, BlockSink& sink);  ///< M, element by element
@@ -341,14 +341,14 @@ void BodyKernels<B, T>::add_forces_of(Entry const& e, detail::ThreadScratch<B, T
     if (Index const elements = body.elements(); data.workers && elements >= 2 * data.least_elements) {
       T* const slots = data.element_forces.data();
       data.workers->over(elements, data.least_elements, [&](Index begin, Index end) {
-        for_each_unbalance<B, T>(body, {begin, end}, motion,
-                                 [&](Index i, Vec<T, n> const& x) { std::copy_n(x.data(), n, slots + n * i); });
+        for_each_residual<B, T>(body, {begin, end}, motion,
+                                [&](Index i, Vec<T, n> const& x) { std::copy_n(x.data(), n, slots + n * i); });
       });
       for (Index i = 0; i < elements; ++i) add_force(e, i, u, slots + n * i, scratch, r);
       return;
     }
-  for_each_unbalance<B, T>(body, {0, body.elements()}, motion, scratch,
-                           [&](Index i, auto const& x) { add_force(e, i, u, x.data(), scratch, r); });
+  for_each_residual<B, T>(body, {0, body.elements()}, motion, scratch,
+                          [&](Index i, auto const& x) { add_force(e, i, u, x.data(), scratch, r); });
 }
 
 template <class B, StateScalar T>
@@ -357,23 +357,24 @@ void BodyKernels<B, T>::add_forces(Pool const& pool, Kept& kept, detail::BodyRes
   // Bodies write to different entries of r, so threads can share the bodies, unless they already share elements.
   Workers* const workers = kept.divides ? nullptr : data.workers;
   if constexpr (in_batches) {
-    share(kept.batches.alone ? workers : nullptr, Index(kept.batches.packs.size()), data.least_packs,
+    share(kept.batches.alone ? workers : nullptr, Index(kept.batches.filled.size()), data.least_batches,
           [&](Index begin, Index end) {
-            std::array<Vec<double, n>, std::size_t(pack_size)> each;
+            std::array<Vec<double, n>, std::size_t(simd_size)> each;
             for (Index k = begin; k < end; ++k) {
-              auto const& pack = kept.batches.packs[std::size_t(k)];
-              ForceScratch<B, T> scratch(pool.entries[std::size_t(pack[0].entry)].body);
-              detail::unbalance_of_pack(pool.entries[std::size_t(pack[0].entry)].body,
-                                        detail::motion_of(pool, pack, u.at.q.data(), u.at.v.data(), u.a.data()), each);
-              for (std::size_t l = 0; l < pack.size(); ++l)
-                add_force(pool.entries[std::size_t(pack[l].entry)], pack[l].element, u, each[l].data(), scratch, r);
+              auto const& batch = kept.batches.filled[std::size_t(k)];
+              ForceScratch<B, T> scratch(pool.entries[std::size_t(batch[0].entry)].body);
+              detail::residuals_of_batch(pool.entries[std::size_t(batch[0].entry)].body,
+                                         detail::motion_of(pool, batch, u.at.q.data(), u.at.v.data(), u.a.data()),
+                                         each);
+              for (std::size_t l = 0; l < batch.size(); ++l)
+                add_force(pool.entries[std::size_t(batch[l].entry)], batch[l].element, u, each[l].data(), scratch, r);
             }
           });
     for (auto const& [entry, element] : kept.batches.singles) {
       Entry const& e = pool.entries[std::size_t(entry)];
       ForceScratch<B, T> scratch(e.body);
-      detail::unbalance_of_one<B, T>(e.body, element,
-                                     {coordinates(e, u.at.q), velocities(e, u.at.v), velocities(e, u.a)}, scratch);
+      detail::residual_of_one<B, T>(e.body, element,
+                                    {coordinates(e, u.at.q), velocities(e, u.at.v), velocities(e, u.a)}, scratch);
       add_force(e, element, u, scratch.x.data(), scratch, r);
     }
     for (Index const b : kept.batches.bodies)

@@ -9,10 +9,10 @@ namespace polybody {
 
 template <class B, StateScalar T>
 ReducedPosition const* BodyKernels<B, T>::coordinate_rates(Pool const& pool, ReducedPosition const* places,
-                                                           VecX const& q, VecX const& v, VecXOf<Dual<1>>& room,
+                                                           VecX const& q, VecX const& v, VecXOf<Dual<1>>& workspace,
                                                            VecX& rate) {
   using D = Dual<1>;
-  D* const delta = room.data() + q.size();
+  D* const delta = workspace.data() + q.size();
   D* const out = delta + v.size();
   return for_each_place(pool, places, [&](Entry const& e, ReducedPosition const& p) {
     Index const width = p.coordinates, k = p.velocities;
@@ -20,12 +20,12 @@ ReducedPosition const* BodyKernels<B, T>::coordinate_rates(Pool const& pool, Red
       for (Index i = 0; i < width; ++i) rate[p.q + i] = v[p.v + i];
       return;
     }
-    for (Index i = 0; i < width; ++i) room[p.q + i] = D(q[p.q + i]);
+    for (Index i = 0; i < width; ++i) workspace[p.q + i] = D(q[p.q + i]);
     for (Index i = 0; i < k; ++i) {
       delta[p.v + i] = D(0.0);
       delta[p.v + i].d[0] = v[p.v + i];
     }
-    e.body.template plus<D>(std::span<D const>(room.data() + p.q, std::size_t(width)),
+    e.body.template plus<D>(std::span<D const>(workspace.data() + p.q, std::size_t(width)),
                             std::span<D const>(delta + p.v, std::size_t(k)),
                             std::span<D>(out + p.q, std::size_t(width)));
     for (Index i = 0; i < width; ++i) rate[p.q + i] = out[p.q + i].d[0];
@@ -91,18 +91,18 @@ template <class B, StateScalar T>
 void BodyKernels<B, T>::tangents(Pool const& pool, Kept& kept, At<double> at, TangentCoefficients const& c,
                                  Data<double>& data, BlockSink& sink) {
   if constexpr (in_batches) {
-    std::array<Mat<double, n, n>, std::size_t(pack_size)> each;
-    for (auto const& pack : kept.batches.packs) {
-      std::size_t const first = std::size_t(pack[0].entry);
+    std::array<Mat<double, n, n>, std::size_t(simd_size)> each;
+    for (auto const& batch : kept.batches.filled) {
+      std::size_t const first = std::size_t(batch[0].entry);
       B const& body = pool.entries[first].body;
       Mat<double, n, n> m;
-      body.mass(pack[0].element, coordinates(pool.entries[first], at.q), m);
+      body.mass(batch[0].element, coordinates(pool.entries[first], at.q), m);
       for (Index i = 0; i < m.size(); ++i) m.data()[i] *= c.mass;
-      detail::tangent_of_pack(body, detail::motion_of(pool, pack, at.q.data(), at.v.data(), at.v.data()),
-                              {c.mass, c.damping, c.stiffness}, m, each);
-      for (std::size_t l = 0; l < pack.size(); ++l) {
-        Entry const& e = pool.entries[std::size_t(pack[l].entry)];
-        Index const column = e.v0 + e.body.first_column(pack[l].element);
+      detail::tangents_of_batch(body, detail::motion_of(pool, batch, at.q.data(), at.v.data(), at.v.data()),
+                                {c.mass, c.damping, c.stiffness}, m, each);
+      for (std::size_t l = 0; l < batch.size(); ++l) {
+        Entry const& e = pool.entries[std::size_t(batch[l].entry)];
+        Index const column = e.v0 + e.body.first_column(batch[l].element);
         sink.add(column, column, each[l]);
       }
     }

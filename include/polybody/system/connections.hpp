@@ -67,8 +67,8 @@ struct PooledMarker<Ground> {
 };
 
 /// Entry of a handle. \throws InvalidInput for a handle of another model or a default-constructed one.
-template <class Capabilities, class Handle>
-auto const& own_entry(Capabilities const& entries, Handle const& handle) {
+template <class Entries, class Handle>
+auto const& own_entry(Entries const& entries, Handle const& handle) {
   require_filled(handle.model);
   if (!holds(entries, handle.index, handle.model)) refuse_marker_of_another_model(handle.name);
   return entries[std::size_t(handle.index)];
@@ -235,10 +235,10 @@ ElementHandle<F> add_group(ModelParts& parts, Sequence<ForceEntry<F>>& pool, F c
 
 /// Adds a contact partner with its law to a force group. \throws InvalidInput naming the group.
 template <class F, class Law, class B>
-void add_opponent(ModelParts& parts, ForceEntry<F>& group, Law const& law, PooledMarker<B> const& one,
-                  std::string name) {
+void add_contact_partner(ModelParts& parts, ForceEntry<F>& group, Law const& law, PooledMarker<B> const& one,
+                         std::string name) {
   require_own(parts, one, group.name);
-  name = name_or_next(std::move(name), "opponent", group.markers.size() - std::size_t(group.force.many()));
+  name = name_or_next(std::move(name), "partner", group.markers.size() - std::size_t(group.force.many()));
   law.check(sentence_of({"\"", group.name, "\", \"", name, "\""}));
   require_observed(one.marker, needs_of_second<Law>(), group.name);
   parts.origin.change();

@@ -91,13 +91,13 @@ struct CoordinateOperations : CoordinateMapOperations<double> {
 
   /// Writes the full tangent of `write` into `sink`, in the unknowns of the linear system.
   void (*write)(void* c, BlockWriter const& write, BlockSink& sink) = nullptr;
-  /// Allocates storage for `hold`.
-  FrozenState (*held)(void* c) = nullptr;
-  void (*hold)(void* c, void* held) = nullptr;  ///< copies the state of the last `expand` to `held`
-  /// out = right-hand side of the linear system from that of a step, at the state `held`.
-  void (*to_equations)(void* c, void* held, VecX const& rhs, VecX& out) = nullptr;
-  /// out = unknowns of the step from a solution of the linear system, at the state `held`.
-  void (*from_equations)(void* c, void* held, VecX const& solution, VecX& out) = nullptr;
+  /// Allocates storage for `freeze`.
+  FrozenState (*make_frozen_state)(void* c) = nullptr;
+  void (*freeze)(void* c, void* frozen) = nullptr;  ///< copies the state of the last `expand` to `frozen`
+  /// out = right-hand side of the linear system from that of a step, at the state `frozen`.
+  void (*to_equations)(void* c, void* frozen, VecX const& rhs, VecX& out) = nullptr;
+  /// out = unknowns of the step from a solution of the linear system, at the state `frozen`.
+  void (*from_equations)(void* c, void* frozen, VecX const& solution, VecX& out) = nullptr;
   /// For `eliminated_equations`: writes −r of the full model to the right-hand side `out` of the linear system.
   void (*balance_to_equations)(void* c, VecX const& r, VecX& out) = nullptr;
   /// For `eliminated_equations`: writes the equations of a step to the right-hand side `out` of the linear system.
@@ -106,18 +106,18 @@ struct CoordinateOperations : CoordinateMapOperations<double> {
   /// last `expand`, followed by the multipliers of the eliminated equations.
   void (*correction_from_equations)(void* c, VecX const& solution, VecX& out) = nullptr;
   /// Articulated-body algorithm, without constraint equations: out = u̇ under gravity only, or for the residual
-  /// `unbalance` of the full model. Returns −1, or a velocity without inertia.
-  Index (*accelerations)(void* c, VecX const& q, VecX const& v, double load_factor, VecX const* unbalance,
+  /// `residual` of the full model. Returns −1, or a velocity without inertia.
+  Index (*accelerations)(void* c, VecX const& q, VecX const& v, double load_factor, VecX const* residual,
                          VecX& out) = nullptr;
   /// Articulated-body algorithm under gravity only: r = Tᵀ(M(T u̇ + b) − f) at the iterate x.
   void (*balance)(void* c, StepPosition const& x, double load_factor, VecX& r) = nullptr;
   /// Factorises the exact tangent of `balance` with the coefficients k. Returns −1, or the velocity without a pivot.
-  Index (*factor_balance)(void* c, void* held, StepPosition const& x, double load_factor,
+  Index (*factor_balance)(void* c, void* frozen, StepPosition const& x, double load_factor,
                           TangentCoefficients const& k) = nullptr;
   /// Articulated-body algorithm: factorises the full tangent of `write`. Returns −1, or the velocity without a pivot.
-  Index (*factor)(void* c, void* held, BlockWriter const& write) = nullptr;
+  Index (*factor)(void* c, void* frozen, BlockWriter const& write) = nullptr;
   /// Solves with the factors of the last `factor` or `factor_balance`, in the unknowns of a step.
-  void (*solve)(void* held, VecX const& rhs, VecX& x) = nullptr;
+  void (*solve)(void* frozen, VecX const& rhs, VecX& x) = nullptr;
 };
 
 /// Reduced coordinates of the scalar T; empty if no policy eliminates unknowns.

@@ -15,7 +15,7 @@ namespace polybody {
 /// Compiler settings that determine the memory layout of `Data`. They are part of its type, so that object files with
 /// different settings do not link.
 struct Build {
-  int pack = pack_size;                   ///< numbers in a SIMD vector
+  int simd = simd_size;                   ///< numbers in a SIMD vector
   int alignment = EIGEN_MAX_ALIGN_BYTES;  ///< of fixed-size matrices [bytes]
 };
 
@@ -47,7 +47,7 @@ struct Data {
   Sequence<Opposite> opposite;                 ///< one for each thread
   static constexpr Index least_elements = 32;  ///< least number of elements per thread
   static constexpr Index least_pairs = 32;     ///< least number of the many markers of a group per thread
-  static constexpr Index least_packs = 16;     ///< least number of SIMD vectors of elements per thread
+  static constexpr Index least_batches = 16;   ///< least number of SIMD vectors of elements per thread
   static constexpr Index least_markers = 128;  ///< least number of markers per thread
 
   std::shared_ptr<void> kept;  ///< arrays that depend on the types of bodies and joints: poses, constraint functions

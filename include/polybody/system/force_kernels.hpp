@@ -293,13 +293,13 @@ void ForceKernels<F, T>::coupled_tangent(Entry const& e, detail::GradientAt cons
   if constexpr (ForceGroup<F>) {
     detail::PairFrames<F, T> const frame(e, data);
     Index few = 0;
-    if constexpr (requires { e.force.opponents(); }) few = e.force.opponents();
-    ActiveContactPairs::Group* const held = x.c.pairs ? &x.c.pairs->group(few) : nullptr;
+    if constexpr (requires { e.force.partners(); }) few = e.force.partners();
+    ActiveContactPairs::Group* const active = x.c.pairs ? &x.c.pairs->group(few) : nullptr;
     std::size_t pair = 0;
     e.force.for_each_candidate([&](Index i, Index j, auto const& law) {
       bool touches = true;
       if constexpr (requires { law.may_touch(frame(i), frame(j)); }) touches = law.may_touch(frame(i), frame(j));
-      if (held && !x.c.pairs->note(*held, pair++, touches)) return;
+      if (active && !x.c.pairs->note(*active, pair++, touches)) return;
       std::array const at{e.markers[std::size_t(i)], e.markers[std::size_t(j)]};
       if (touches)
         detail::add_gradient(law, at, x, data, sink);

@@ -16,16 +16,16 @@ namespace polybody {
 
 /// Rate ġ = Ga Va + Gb Vb + Φ_t of a constraint function between two frames.
 template <int m, StateScalar T>
-Vec<T, m> gap_rate(ConstraintTerms<m, T> const& gap, Frame<T> const& a, Frame<T> const& b) {
+Vec<T, m> constraint_rate(ConstraintTerms<m, T> const& terms, Frame<T> const& a, Frame<T> const& b) {
   Vec<T, 6> const va = twist(a), vb = twist(b);
   Vec<T, m> rate;
   for (int i = 0; i < m; ++i) {
-    T by_a = gap.Ga(i, 0) * va[0], by_b = gap.Gb(i, 0) * vb[0];
+    T by_a = terms.Ga(i, 0) * va[0], by_b = terms.Gb(i, 0) * vb[0];
     for (int j = 1; j < 6; ++j) {
-      by_a += gap.Ga(i, j) * va[j];
-      by_b += gap.Gb(i, j) * vb[j];
+      by_a += terms.Ga(i, j) * va[j];
+      by_b += terms.Gb(i, j) * vb[j];
     }
-    rate[i] = by_a + by_b + gap.rate[i];
+    rate[i] = by_a + by_b + terms.rate[i];
   }
   return rate;
 }
@@ -35,7 +35,7 @@ namespace detail {
 /// Workspace for all joints of one type: constraint terms of each joint, and λ(g, ġ) of each compliant joint.
 template <class J, StateScalar T>
 struct JointData {
-  Sequence<ConstraintTerms<J::rows, T>> gaps;
+  Sequence<ConstraintTerms<J::rows, T>> terms;
   Sequence<Vec<T, J::rows>> answers;
 };
 
@@ -90,7 +90,7 @@ Vec<double, m> rest_without_potential(P const& policy, Vec<double, m> rest) {
 /// ∂ġ/∂(poses) (m×12) of ġ = G V at constant velocities of the bodies. Row i is Vᵀ ∂(Gᵀeᵢ)/∂(poses) +
 /// (G ∂V/∂(poses))ᵢ. A dependence of Φ_t on the poses is neglected.
 template <class G>
-Mat<double, G::rows, 12> rates_by_poses(G const& geometry, ConstraintTerms<G::rows, double> const& gap,
+Mat<double, G::rows, 12> rates_by_poses(G const& geometry, ConstraintTerms<G::rows, double> const& terms,
                                         std::array<MarkerKinematics<double> const*, 2> const& markers, double t) {
   constexpr int m = G::rows;
   Frame<double> const &a = markers[0]->frame, &b = markers[1]->frame;
@@ -103,24 +103,24 @@ Mat<double, G::rows, 12> rates_by_poses(G const& geometry, ConstraintTerms<G::ro
     for (int k = 0; k < 12; ++k)
       for (int j = 0; j < 12; ++j) rates(i, k) += twists[j / 6][j % 6] * h(j, k);
   }
-  add_rates_of_pose<m>(*markers[0], gap.Ga.data(), rates.data());
-  add_rates_of_pose<m>(*markers[1], gap.Gb.data(), rates.data() + 6 * m);
+  add_rates_of_pose<m>(*markers[0], terms.Ga.data(), rates.data());
+  add_rates_of_pose<m>(*markers[1], terms.Gb.data(), rates.data() + 6 * m);
   return rates;
 }
 /// s += ck Gᵀ ∂λ/∂ġ ∂ġ/∂(poses) of a compliant joint.
 template <class J>
-void add_rate_slopes(J const& joint, ConstraintTerms<J::rows, double> const& gap,
+void add_rate_slopes(J const& joint, ConstraintTerms<J::rows, double> const& terms,
                      std::array<MarkerKinematics<double> const*, 2> const& markers, StiffnessAt const& x,
                      Mat<double, 12, 12>& s) {
   constexpr int m = J::rows;
-  Mat<double, m, 12> const rates = rates_by_poses(joint.measure(), gap, markers, x.at.t);
-  Mat<double, m, m> const slope =
-      joint.policy.template slope<m>(0.0, x.c.stiffness, gap.g, gap_rate(gap, markers[0]->frame, markers[1]->frame));
+  Mat<double, m, 12> const rates = rates_by_poses(joint.measure(), terms, markers, x.at.t);
+  Mat<double, m, m> const slope = joint.policy.template slope<m>(
+      0.0, x.c.stiffness, terms.g, constraint_rate(terms, markers[0]->frame, markers[1]->frame));
   for (int k = 0; k < 12; ++k)
     for (int i = 0; i < m; ++i) {
       double answer = 0.0;
       for (int l = 0; l < m; ++l) answer += slope(i, l) * rates(l, k);
-      for (int j = 0; j < 12; ++j) s(j, k) += (j < 6 ? gap.Ga(i, j) : gap.Gb(i, j - 6)) * answer;
+      for (int j = 0; j < 12; ++j) s(j, k) += (j < 6 ? terms.Ga(i, j) : terms.Gb(i, j - 6)) * answer;
     }
 }
 /// Adds ck/cd ∂ġ/∂(poses) to G in the n nonholonomic equations, which are the last ones of the joint. \param row first
@@ -199,7 +199,7 @@ void JointKernels<J, T>::describe(Pool const& pool, Sequence<LinearConstraints> 
 
 template <class J, StateScalar T>
 void JointKernels<J, T>::place(Pool const& pool, Kept& kept, Index owner, Index first_linear, Data<T>& data) {
-  kept.gaps.resize(pool.size());
+  kept.terms.resize(pool.size());
   kept.answers.resize(pool.size());
   for (std::size_t i = 0; i < pool.size(); ++i, ++owner) {
     auto const& e = pool[i];
@@ -207,16 +207,16 @@ void JointKernels<J, T>::place(Pool const& pool, Kept& kept, Index owner, Index 
       data.rows[std::size_t(first_linear + e.linear)].owner = owner;
     } else {
       data.read[std::size_t(e.a)] = data.read[std::size_t(e.b)] = 1;
-      ConstraintTerms<J::rows, T>& gap = kept.gaps[i];
+      ConstraintTerms<J::rows, T>& terms = kept.terms[i];
       ConstraintBlock<T> block{.source = compliant ? ConstraintSource::compliant : ConstraintSource::joint,
                                .opposite = has_opposite_ends<typename J::Measured>(),
                                .row = e.row,
                                .rows = J::rows,
                                .owner = owner,
-                               .a = {e.a, 0, 6, gap.Ga.data()},
-                               .b = {e.b, 0, 6, gap.Gb.data()},
-                               .g = gap.g.data(),
-                               .rate = gap.rate.data()};
+                               .a = {e.a, 0, 6, terms.Ga.data()},
+                               .b = {e.b, 0, 6, terms.Gb.data()},
+                               .g = terms.g.data(),
+                               .rate = terms.rate.data()};
       if constexpr (compliant) block.answer = kept.answers[i].data();
       data.rows.push_back(block);
     }
@@ -232,10 +232,10 @@ void JointKernels<J, T>::measure(Pool const& pool, Kept& kept, double t, Data<T>
         Frame<T> const &a = data.markers[std::size_t(e.a)].frame, &b = data.markers[std::size_t(e.b)].frame;
         using G = ConstraintTerms<J::rows, T>;  // constructed in place, because assignment copies it
         static_assert(std::is_trivially_destructible_v<G>);
-        ::new (static_cast<void*>(&kept.gaps[i])) G(e.joint.measure().template constraint_function<T>(a, b, t));
+        ::new (static_cast<void*>(&kept.terms[i])) G(e.joint.measure().template constraint_function<T>(a, b, t));
         if constexpr (compliant)
           kept.answers[i] =
-              e.joint.policy.template multiplier<J::rows, T>(kept.gaps[i].g, gap_rate(kept.gaps[i], a, b));
+              e.joint.policy.template multiplier<J::rows, T>(kept.terms[i].g, constraint_rate(kept.terms[i], a, b));
       }
     });
 }
@@ -257,11 +257,11 @@ void JointKernels<J, T>::slopes(Pool const& pool, Kept const& kept, TangentCoeff
     for (std::size_t i = 0; i < pool.size(); ++i) {
       constexpr int m = J::rows;
       auto const& e = pool[i];
-      ConstraintTerms<m, double> const& gap = kept.gaps[i];
+      ConstraintTerms<m, double> const& terms = kept.terms[i];
       MarkerKinematics<double> const &a = data.markers[std::size_t(e.a)], &b = data.markers[std::size_t(e.b)];
       auto const slope =
-          e.joint.policy.template slope<m>(c.stiffness, c.damping, gap.g, gap_rate(gap, a.frame, b.frame));
-      double const* const maps[2] = {gap.Ga.data(), gap.Gb.data()};
+          e.joint.policy.template slope<m>(c.stiffness, c.damping, terms.g, constraint_rate(terms, a.frame, b.frame));
+      double const* const maps[2] = {terms.Ga.data(), terms.Gb.data()};
       if constexpr (requires { slope.toDenseMatrix(); })
         detail::add_pulled_slope<m, true>({&a, &b}, maps, slope.diagonal().data(), data.scratch, sink);
       else
@@ -276,7 +276,7 @@ void JointKernels<J, T>::stiffness(Pool const& pool, Kept const& kept, VecX cons
     for (std::size_t i = 0; i < pool.size(); ++i) {
       constexpr int m = J::rows;
       auto const& e = pool[i];
-      ConstraintTerms<m, double> const& gap = kept.gaps[i];
+      ConstraintTerms<m, double> const& terms = kept.terms[i];
       double const* const multipliers = compliant ? kept.answers[i].data() : lambda.data() + e.row;
       MarkerKinematics<double> const &a = data.markers[std::size_t(e.a)], &b = data.markers[std::size_t(e.b)];
       Vec<double, m> l;
@@ -286,13 +286,13 @@ void JointKernels<J, T>::stiffness(Pool const& pool, Kept const& kept, VecX cons
       if constexpr (constexpr int n = nonholonomic_equations<typename J::Geometry>(); compliant || n > 0)
         if (x.c.exact) {
           if constexpr (compliant)
-            detail::add_rate_slopes(e.joint, gap, {&a, &b}, x, s);
+            detail::add_rate_slopes(e.joint, terms, {&a, &b}, x, s);
           else if (x.c.damping != 0.0)
-            detail::add_velocity_rows<n>(detail::rates_by_poses(e.joint.measure(), gap, {&a, &b}, x.at.t), {&a, &b}, x,
-                                         data.unknown_of_row(e.row + m - n), data.scratch, sink);
+            detail::add_velocity_rows<n>(detail::rates_by_poses(e.joint.measure(), terms, {&a, &b}, x.at.t), {&a, &b},
+                                         x, data.unknown_of_row(e.row + m - n), data.scratch, sink);
         }
       std::array<Wrench<double>, 2> on_markers;
-      double const* const maps[2] = {gap.Ga.data(), gap.Gb.data()};
+      double const* const maps[2] = {terms.Ga.data(), terms.Gb.data()};
       for (std::size_t end = 0; end < 2; ++end) {
         double fm[6];
         detail::wrench_of<m>(maps[end], multipliers, fm);
@@ -311,7 +311,7 @@ double JointKernels<J, T>::energy(Pool const& pool, Kept const& kept) {
   double sum = 0.0;
   if constexpr (!linear && compliant)
     for (std::size_t i = 0; i < pool.size(); ++i)
-      sum += pool[i].joint.policy.template potential<J::rows>(kept.gaps[i].g);
+      sum += pool[i].joint.policy.template potential<J::rows>(kept.terms[i].g);
   return sum;
 }
 
@@ -322,21 +322,21 @@ void JointKernels<J, T>::add_powers(Pool const& pool, Kept const& kept, VecX con
     for (std::size_t i = 0; i < pool.size(); ++i) {
       constexpr int m = J::rows;
       auto const& e = pool[i];
-      ConstraintTerms<m, double> const& gap = kept.gaps[i];
+      ConstraintTerms<m, double> const& terms = kept.terms[i];
       Vec<double, m> const rate =
-          gap_rate(gap, data.markers[std::size_t(e.a)].frame, data.markers[std::size_t(e.b)].frame);
+          constraint_rate(terms, data.markers[std::size_t(e.a)].frame, data.markers[std::size_t(e.b)].frame);
       if constexpr (compliant) {
         Vec<double, m> const zero = Vec<double, m>::Zero();
-        Vec<double, m> const l = e.joint.policy.template multiplier<m, double>(gap.g, rate);
-        Vec<double, m> const rest = e.joint.policy.template multiplier<m, double>(gap.g, zero);
+        Vec<double, m> const l = e.joint.policy.template multiplier<m, double>(terms.g, rate);
+        Vec<double, m> const rest = e.joint.policy.template multiplier<m, double>(terms.g, zero);
         Vec<double, m> const lossless = detail::rest_without_potential(e.joint.policy, rest);
         for (int k = 0; k < m; ++k) {
-          p.drives += l[k] * gap.rate[k];
+          p.drives += l[k] * terms.rate[k];
           p.loads -= lossless[k] * rate[k];
           p.dissipated += (l[k] - rest[k]) * rate[k];
         }
       } else {
-        for (int k = 0; k < m; ++k) p.drives -= lambda[e.row + k] * (rate[k] - gap.rate[k]);
+        for (int k = 0; k < m; ++k) p.drives -= lambda[e.row + k] * (rate[k] - terms.rate[k]);
       }
     }
 }

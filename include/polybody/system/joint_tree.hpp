@@ -102,11 +102,11 @@ class JointTreeOf {
   /// out = Tᵀ r; r is full, out is reduced. Entries of roots and deformations are written to r only; the caller copies
   /// them. Generalised forces and wrenches transform like velocities and twists, because A is orthogonal.
   void reduce_forces(TreeState& s, VecX& r, VecX& out) const {
-    for (std::size_t i = 0; i < bodies.size(); ++i) s.held[i] = detail::twist_of<T>(bodies[i], s.frames[i], r);
+    for (std::size_t i = 0; i < bodies.size(); ++i) s.residuals[i] = detail::twist_of<T>(bodies[i], s.frames[i], r);
     for (std::size_t i = bodies.size(); i-- > 0;) {
       TreeBody const& body = bodies[i];
       TreeFrame const& f = s.frames[i];
-      Vec6 const& w = s.held[i];
+      Vec6 const& w = s.residuals[i];
       if (!body.carried()) {
         detail::put_twist<T>(body, f, w, r);
         continue;
@@ -115,14 +115,14 @@ class JointTreeOf {
       for_each_rate(body, [&](std::size_t column, Index rate) {
         r[rate] += detail::along_column<T>(s.columns[column].data(), w);
       });
-      if (body.parent >= 0) add_back<T>(w, f.arm, s.held[std::size_t(body.parent)]);
+      if (body.parent >= 0) add_back<T>(w, f.arm, s.residuals[std::size_t(body.parent)]);
     }
   }
 
   /// Computes a full r with Tᵀ r = `given` (reduced). Entries of roots and deformations must already be in r.
   void expand_forces(TreeState& s, VecX const& given, VecX& r) const {
     for (std::size_t i = 0; i < bodies.size(); ++i)
-      s.held[i] = bodies[i].carried() ? detail::zeros<Vec6>() : detail::twist_of<T>(bodies[i], s.frames[i], r);
+      s.residuals[i] = bodies[i].carried() ? detail::zeros<Vec6>() : detail::twist_of<T>(bodies[i], s.frames[i], r);
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       TreeBody const& body = bodies[i];
       if (!body.carried()) continue;
@@ -136,12 +136,12 @@ class JointTreeOf {
       for_each_rate(body, [&](std::size_t column, Index rate) {
         r[rate] -= detail::along_column<T>(s.columns[column].data(), w);
       });
-      for (int j = 0; j < 6; ++j) s.held[i][j] += w[j];
+      for (int j = 0; j < 6; ++j) s.residuals[i][j] += w[j];
       if (body.parent < 0) continue;
       add_back<T>(w, f.arm, carried);
-      for (int j = 0; j < 6; ++j) s.held[std::size_t(body.parent)][j] -= carried[j];
+      for (int j = 0; j < 6; ++j) s.residuals[std::size_t(body.parent)][j] -= carried[j];
     }
-    for (std::size_t i = 0; i < bodies.size(); ++i) detail::put_twist<T>(bodies[i], s.frames[i], s.held[i], r);
+    for (std::size_t i = 0; i < bodies.size(); ++i) detail::put_twist<T>(bodies[i], s.frames[i], s.residuals[i], r);
   }
 
   /// Frame of the body that carries this one, or of the ground.
@@ -153,7 +153,7 @@ class JointTreeOf {
     TreeState s;
     s.frames.resize(bodies.size());
     s.twists.resize(bodies.size());
-    s.held.resize(bodies.size());
+    s.residuals.resize(bodies.size());
     for (FloatingEnd const& end : ends) end.make_room(s.columns, s.q, s.v, s.jacobian);
     return s;
   }

@@ -28,19 +28,20 @@ struct BodyRefusal {
         { B::element_columns } -> std::convertible_to<int>;
         { B::point_columns } -> std::convertible_to<int>;
       },
-      "A body needs static constants: int element_columns and int point_columns, the speeds that an element and a "
+      "A body needs static constants: int element_columns and int point_columns, the velocities that an element and a "
       "marker touch.");
   static_assert(
       requires(B const b) {
         { b.coordinates() } -> std::convertible_to<Index>;
         { b.velocities() } -> std::convertible_to<Index>;
         { b.elements() } -> std::convertible_to<Index>;
-      }, "A body needs coordinates(), speeds() and elements() const: how many it has.");
+      }, "A body needs the numbers coordinates(), velocities() and elements() const.");
   static_assert(
       requires(B const b, Index e, typename B::Point p) {
         { b.first_column(e) } -> std::convertible_to<Index>;
         { b.first_column(p) } -> std::convertible_to<Index>;
-      }, "A body needs first_column(e) and first_column(p) const: the first speed that an element and a marker touch.");
+      },
+      "A body needs first_column(e) and first_column(p) const: the first velocity that an element and a marker touch.");
   static_assert(
       requires(B const b, Out out) { b.reference(out); },
       "A body needs reference(q) const, which writes its coordinates as placed.");
@@ -53,7 +54,7 @@ struct BodyRefusal {
       "both from AddingCoordinates.");
   static_assert(
       requires(B const b, In x, Out out, Vec3 u) { b.rigid_velocity(x, u, u, out); },
-      "A body needs rigid_velocity(q, v0, omega, v) const: its speeds in a rigid motion.");
+      "A body needs rigid_velocity(q, v0, omega, v) const: its velocities in a rigid motion.");
   static_assert(
       requires(B const b, Index e, In x, Mat<double, B::element_columns, B::element_columns>& m) { b.mass(e, x, m); },
       "A body needs mass(e, q, m) const: the mass matrix of an element.");
@@ -127,7 +128,7 @@ struct ListRefusal<Bodies<Bs...>> {
                 "declare the object by `auto`.");
   static_assert(Distinct<Bs...>,
                 "A body type occurs twice in a model's Bodies. List it once; it is used for any number of bodies.");
-  static constexpr bool asked = ((Body<Bs> || sizeof(BodyRefusal<Bs>) > 0) && ...);
+  static constexpr bool checked = ((Body<Bs> || sizeof(BodyRefusal<Bs>) > 0) && ...);
 };
 template <class... Js>
 struct ListRefusal<Joints<Js...>> {
@@ -136,7 +137,7 @@ struct ListRefusal<Joints<Js...>> {
                 "declare the object by `auto`.");
   static_assert(Distinct<Js...>,
                 "A joint type occurs twice in a model's Joints. List it once; it is used for any number of joints.");
-  static constexpr bool asked = true;
+  static constexpr bool checked = true;
 };
 template <class... Fs>
 struct ListRefusal<Forces<Fs...>> {
@@ -145,7 +146,7 @@ struct ListRefusal<Forces<Fs...>> {
                 "declare the object by `auto`.");
   static_assert(Distinct<Fs...>,
                 "A force type occurs twice in a model's Forces. List it once; it is used for any number of forces.");
-  static constexpr bool asked = ((AppliedForce<Fs> || sizeof(ForceRefusal<Fs>) > 0) && ...);
+  static constexpr bool checked = ((AppliedForce<Fs> || sizeof(ForceRefusal<Fs>) > 0) && ...);
 };
 
 }  // namespace polybody::detail

@@ -46,7 +46,7 @@ struct ModelLoops<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T> {
   }
   /// Constraint functions of all joints, forces of compliant joints, and constraint equations of bodies and linear
   /// joints.
-  static void measure_gaps(void const* m, At<T> at, Data<T>& data) {
+  static void evaluate_constraints(void const* m, At<T> at, Data<T>& data) {
     T* next = Typed::of(data).own_equations.data();
     ((next = BodyKernels<Bs, T>::measure_own_rows(bodies<Bs>(m), at, next)), ...);
     measure_linear_rows(model_of(m).linear_rows(), at.q, data, next);
@@ -110,8 +110,8 @@ struct ModelLoops<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T> {
     (BodyKernels<Bs, double>::load_stiffness(bodies<Bs>(m), of_bodies<Bs>(data), x, data, sink), ...);
   }
   static void coordinate_rates(void const* m, ReducedPosition const* places, VecX const& q, VecX const& v,
-                               VecXOf<Dual<1>>& room, VecX& rate) {
-    ((places = BodyKernels<Bs, double>::coordinate_rates(bodies<Bs>(m), places, q, v, room, rate)), ...);
+                               VecXOf<Dual<1>>& workspace, VecX& rate) {
+    ((places = BodyKernels<Bs, double>::coordinate_rates(bodies<Bs>(m), places, q, v, workspace, rate)), ...);
   }
   static void rigid_velocities(void const* m, VecX const& q, Vec3 const& v0, Vec3 const& omega, VecX& v) {
     (BodyKernels<Bs, double>::rigid_velocities(bodies<Bs>(m), q, v0, omega, v), ...);
@@ -145,7 +145,7 @@ struct OperationsOf<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T, wante
   /// Makes the table at compile time. Functions of groups that are not in `wanted` are null.
   static constexpr ModelOperations<T> make() {
     ModelOperations<T> out{.evaluate_marker = &Loops::evaluate_marker,
-                           .measure_gaps = &Loops::measure_gaps,
+                           .evaluate_constraints = &Loops::evaluate_constraints,
                            .measure_gamma = &Loops::measure_gamma,
                            .element_forces = &Loops::element_forces,
                            .push_forces = &Loops::push_forces,

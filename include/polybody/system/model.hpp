@@ -15,8 +15,8 @@ namespace polybody {
 /// Primary template for invalid lists of types: a static assertion gives the reason.
 template <class BodyList, class JointList, class ForceList = Forces<>>
 class Model {
-  static_assert(detail::ListRefusal<BodyList>::asked && detail::ListRefusal<JointList>::asked &&
-                detail::ListRefusal<ForceList>::asked);
+  static_assert(detail::ListRefusal<BodyList>::checked && detail::ListRefusal<JointList>::checked &&
+                detail::ListRefusal<ForceList>::checked);
 };
 
 /// Bodies, joints and forces of one mechanism: `Model<Bodies<…>, Joints<…>, Forces<…>> model{Gravity{0, 0, -9.81}};`.
@@ -109,7 +109,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     static_assert(Marker<A>::observes >= needs_of_second<Law>(),
                   "This force needs a marker with axes or a tangent, but this body provides less.");
     (void)entry(group);
-    detail::add_opponent(parts_, pool_of<F>()[std::size_t(group.index)], law, pooled(one), std::move(name));
+    detail::add_contact_partner(parts_, pool_of<F>()[std::size_t(group.index)], law, pooled(one), std::move(name));
   }
 
   /// Reference state: undeformed bodies as placed, at rest, t = 0, with the initial states of the forces.

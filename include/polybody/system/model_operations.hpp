@@ -111,7 +111,7 @@ struct ModelOperations {
   void (*evaluate_marker)(void const* m, At<T> at, Data<T>& data) = nullptr;
   /// Evaluates constraint functions and their rates for all joints and bodies, and the forces of compliant joints.
   /// Requires evaluated markers.
-  void (*measure_gaps)(void const* m, At<T> at, Data<T>& data) = nullptr;
+  void (*evaluate_constraints)(void const* m, At<T> at, Data<T>& data) = nullptr;
   /// Writes γ of all constraint equations to out, without the bias accelerations of the markers.
   void (*measure_gamma)(void const* m, At<T> at, Data<T> const& data, Vector& out) = nullptr;
   /// r += M a − f of all bodies, with gravity times `load_factor`.
@@ -148,9 +148,9 @@ struct ModelOperations {
   void (*load_stiffness)(void const* m, At<T> at, TangentCoefficients const& c, Data<T>& data,
                          BlockSink& sink) = nullptr;
 
-  /// Writes q̇ to `rate`. `room` (2 nq + nv) is workspace. The vectors are reduced ones if `places` is not null.
+  /// Writes q̇ to `rate`. `workspace` has 2 nq + nv entries. The vectors are reduced ones if `places` is not null.
   void (*coordinate_rates)(void const* m, ReducedPosition const* places, Vector const& q, Vector const& v,
-                           VecXOf<Dual<1>>& room, Vector& rate) = nullptr;
+                           VecXOf<Dual<1>>& workspace, Vector& rate) = nullptr;
 
   /// Energies of the evaluated state [J].
   Energy (*energy)(void const* m, At<T> at, Data<T> const& data) = nullptr;

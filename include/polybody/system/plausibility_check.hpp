@@ -105,9 +105,9 @@ class PlausibilityCheck {
 
  private:
   bool any_open() const {
-    for (Gaps const& gaps : gaps_)
-      for (int i = 0; i < gaps.rows; ++i)
-        if (std::abs(gaps.g[i]) > account_.open) return true;
+    for (Violations const& violations : violations_)
+      for (int i = 0; i < violations.rows; ++i)
+        if (std::abs(violations.g[i]) > account_.open) return true;
     return false;
   }
   template <class = void>
@@ -121,7 +121,7 @@ class PlausibilityCheck {
   void require_no_passage(System const& system, StepResult const& end);
 
   /// Constraint functions of a block, in the data of the system.
-  struct Gaps {
+  struct Violations {
     double const* g;
     int rows;
     Index first;
@@ -141,7 +141,7 @@ class PlausibilityCheck {
   }
 
   Account account_;
-  Sequence<Gaps> gaps_;
+  Sequence<Violations> violations_;
   Sequence<Passing> contacts_;  ///< contacts that a step may jump over
   WorkAccount work_, earlier_;  ///< account since the last start, and the one before it for a trial step that fails
   bool replaced_ = false;       ///< true if `begin` was called since the start of the trial step
@@ -169,14 +169,14 @@ void PlausibilityCheck::begin(System& system, PlausibilityLimits const& limits, 
   account_.fastest = squares(place.v);
   account_.judged = account_.energy < never ? 4.0 * account_.fastest : never;
   account_.scale = account_.moved = 0.0;
-  gaps_.clear();
+  violations_.clear();
   contacts_.clear();
   if (!replaced_) earlier_ = std::move(work_);
   replaced_ = true;
   work_ = {};
   for (std::size_t i = 0; i < data.rows.size(); ++i) {
     ConstraintBlock<double> const& block = data.rows[i];
-    if (block.row >= 0 && !data.leaves_out(block)) gaps_.push_back({block.g, block.rows, block.row});
+    if (block.row >= 0 && !data.leaves_out(block)) violations_.push_back({block.g, block.rows, block.row});
   }
   if (account_.energy < never) work_.begin(system, place);
   laws_.begin(layout, place.t, 1e-6 * place.h);
@@ -229,11 +229,11 @@ template <class>
 void PlausibilityCheck::refuse_open(System const& system, double t) const {
   Index row = 0;
   double largest = 0.0;
-  for (Gaps const& gaps : gaps_)
-    for (int i = 0; i < gaps.rows; ++i)
-      if (std::abs(gaps.g[i]) > largest) {
-        largest = std::abs(gaps.g[i]);
-        row = gaps.first + i;
+  for (Violations const& violations : violations_)
+    for (int i = 0; i < violations.rows; ++i)
+      if (std::abs(violations.g[i]) > largest) {
+        largest = std::abs(violations.g[i]);
+        row = violations.first + i;
       }
   throw Diverged("step.violation",
                  {"The step to t = ", ErrorTime{t}, " s leaves ",

@@ -19,7 +19,7 @@ struct PlacedElement {
 /// with the next bodies that have the same elements. Other bodies are evaluated separately.
 struct PoolBatches {
   Sequence<Index> bodies;  ///< bodies that are evaluated separately
-  Sequence<std::array<PlacedElement, std::size_t(pack_size)>> packs;
+  Sequence<std::array<PlacedElement, std::size_t(simd_size)>> filled;
   Sequence<PlacedElement> singles;  ///< elements that do not fill a SIMD vector
   bool alone = true;                ///< true if no body is in two SIMD vectors
 };
@@ -39,17 +39,17 @@ template <class B>
   Sequence<PlacedElement> alike;
   auto const close = [&] {
     std::size_t i = 0;
-    for (; i + std::size_t(pack_size) <= alike.size(); i += std::size_t(pack_size)) {
-      std::array<PlacedElement, std::size_t(pack_size)> pack;
-      std::copy_n(alike.begin() + i, pack_size, pack.begin());
-      out.packs.push_back(pack);
+    for (; i + std::size_t(simd_size) <= alike.size(); i += std::size_t(simd_size)) {
+      std::array<PlacedElement, std::size_t(simd_size)> batch;
+      std::copy_n(alike.begin() + i, simd_size, batch.begin());
+      out.filled.push_back(batch);
     }
     for (; i < alike.size(); ++i) out.singles.push_back(alike[i]);
     alike.clear();
   };
   for (std::size_t b = 0; b < pool.entries.size(); ++b) {
     B const& body = pool.entries[b].body;
-    if (!are_alike(body) || body.elements() >= pack_size) {
+    if (!are_alike(body) || body.elements() >= simd_size) {
       out.bodies.push_back(Index(b));
       continue;
     }
@@ -63,12 +63,12 @@ template <class B>
 
 /// Pointers to the first coordinate, velocity and acceleration of each element of a SIMD vector.
 template <class B>
-SimdMotion motion_of(BodyPool<B> const& pool, std::array<PlacedElement, std::size_t(pack_size)> const& pack,
+SimdMotion motion_of(BodyPool<B> const& pool, std::array<PlacedElement, std::size_t(simd_size)> const& batch,
                      double const* q, double const* v, double const* a) {
   SimdMotion motion;
-  for (std::size_t l = 0; l < pack.size(); ++l) {
-    auto const& e = pool.entries[std::size_t(pack[l].entry)];
-    Index const column = e.body.first_column(pack[l].element);
+  for (std::size_t l = 0; l < batch.size(); ++l) {
+    auto const& e = pool.entries[std::size_t(batch[l].entry)];
+    Index const column = e.body.first_column(batch[l].element);
     motion.q[l] = q + e.q0 + column;
     motion.v[l] = v + e.v0 + column;
     motion.a[l] = a + e.v0 + column;

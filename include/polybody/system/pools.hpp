@@ -102,8 +102,8 @@ using SolutionOf = typename SolutionAmong<Ps...>::Type;
 /// True if `entries` has a part with this index that was added to the model with the number `serial`. A copied model
 /// accepts the handles of parts that it has from its original. Neither accepts handles of parts added to the other
 /// later.
-template <class Capabilities>
-bool holds(Capabilities const& entries, Index index, std::uint64_t serial) {
+template <class Entries>
+bool holds(Entries const& entries, Index index, std::uint64_t serial) {
   return index >= 0 && std::size_t(index) < entries.size() && entries[std::size_t(index)].made_in == serial;
 }
 

@@ -106,11 +106,12 @@ struct ReducedBlocksOf {
   Sequence<std::list<typename UnknownMapOf<T>::Range>> ranges;  ///< previous ranges by their first full unknown
   Sequence<T> half, full;                                       ///< Pᵀ b; Pᵀ b P
 
-  /// Sets the first `size` entries of the workspace `room` to zero and returns them. The workspace grows if necessary.
-  static T* zeros(Sequence<T>& room, Index size) {
-    if (room.size() < std::size_t(size)) room.resize(std::size_t(size));
-    std::fill_n(room.begin(), size, 0.0);
-    return room.data();
+  /// Sets the first `size` entries of `workspace` to zero and returns them. The workspace grows if
+  /// necessary.
+  static T* zeros(Sequence<T>& workspace, Index size) {
+    if (workspace.size() < std::size_t(size)) workspace.resize(std::size_t(size));
+    std::fill_n(workspace.begin(), size, 0.0);
+    return workspace.data();
   }
 };
 

@@ -29,12 +29,12 @@ class ReductionOf {
     model.for_each_body(
         [&](auto const& e) { extents.push_back({e.q0, e.body.coordinates(), e.v0, e.body.velocities()}); });
     number_unknowns(extents, model.coordinates(), model.velocities(), model.states());
-    Sequence<bool> gone(std::size_t(model.rows()), false);
+    Sequence<bool> eliminated(std::size_t(model.rows()), false);
     model.for_each_joint([&](auto const& e) {
       using J = std::decay_t<decltype(e.joint)>;
-      if constexpr (EliminatingPolicy<typename J::PolicyType>) std::fill_n(gone.begin() + e.row, e.rows, true);
+      if constexpr (EliminatingPolicy<typename J::PolicyType>) std::fill_n(eliminated.begin() + e.row, e.rows, true);
     });
-    number_rows(gone, model.nonholonomic_equations());
+    number_rows(eliminated, model.nonholonomic_equations());
   }
 
   Index coordinates() const { return coordinates_; }                ///< number of reduced coordinates
@@ -47,9 +47,9 @@ class ReductionOf {
   /// Indices of the remaining constraint equations in the model.
   Sequence<Index> const& remaining_equations() const { return rows_; }
   /// Indices of the nonholonomic equations among the remaining ones.
-  Sequence<Index> const& nonholonomic_equations() const { return velocity_rows_; }
+  Sequence<Index> const& nonholonomic_equations() const { return nonholonomic_equations_; }
   /// Full velocity index of reduced velocity i. For a joint coordinate this is the first velocity of the carried body.
-  Index full_velocity(Index i) const { return full_speed_[std::size_t(i)]; }
+  Index full_velocity(Index i) const { return full_velocity_[std::size_t(i)]; }
   /// Index in the tree of the body that is carried by the joint whose first constraint equation is `row`.
   Index carried_by(Index row) const { return carried_by_[std::size_t(row)]; }
 
@@ -101,28 +101,30 @@ class ReductionOf {
   template <class M>
   void grow_tree(M const& model) {
     Sequence<TreeBody> bodies;
-    Sequence<BodyAttachment> hooks(std::size_t(model.markers()));
-    std::apply([&](auto const&... pool) { (hook(pool, bodies, hooks), ...); }, model.body_pools());
-    for (detail::GroundMarker const& g : model.ground_markers()) hooks[std::size_t(g.published)].frame = g.placement;
+    Sequence<BodyAttachment> attachments(std::size_t(model.markers()));
+    std::apply([&](auto const&... pool) { (add_attachments(pool, bodies, attachments), ...); }, model.body_pools());
+    for (detail::GroundMarker const& g : model.ground_markers())
+      attachments[std::size_t(g.published)].frame = g.placement;
     Sequence<Link> links;
     model.for_each_joint([&](auto const& e) {
       using J = std::decay_t<decltype(e.joint)>;
       if constexpr (JointCoordinatePolicy<typename J::PolicyType>) {
-        BodyAttachment const &a = hooks[std::size_t(e.a)], &b = hooks[std::size_t(e.b)];
+        BodyAttachment const &a = attachments[std::size_t(e.a)], &b = attachments[std::size_t(e.b)];
         bool const plane = bodies[std::size_t(a.body < 0 ? b.body : a.body)].layout == RigidLayout::plane;
         JointMotions const motions = motions_of(e.joint.geometry);
         links.push_back({e.name, e.row, a, b, plane ? in_plane(motions, a.frame.axes) : motions});
       }
     });
-    hang(bodies, links, model.reference_state().q,
-         std::is_same_v<typename M::Solution, joint_coordinates::ArticulatedBody>);
+    build_tree(bodies, links, model.reference_state().q,
+               std::is_same_v<typename M::Solution, joint_coordinates::ArticulatedBody>);
     carried_by_.assign(std::size_t(model.rows()), -1);
     for (std::size_t i = 0; i < tree_.bodies.size(); ++i)
       if (tree_.bodies[i].carried()) carried_by_[std::size_t(tree_.bodies[i].row)] = Index(i);
   }
 
   template <class B>
-  static void hook(detail::BodyPool<B> const& pool, Sequence<TreeBody>& bodies, Sequence<BodyAttachment>& hooks) {
+  static void add_attachments(detail::BodyPool<B> const& pool, Sequence<TreeBody>& bodies,
+                              Sequence<BodyAttachment>& attachments) {
     if constexpr (HasRigidLayout<B>) {
       Index const first = Index(bodies.size());
       for (auto const& e : pool.entries) {
@@ -131,7 +133,7 @@ class ReductionOf {
         read_masses(e.body, bodies.back());
       }
       for (auto const& m : pool.markers) {
-        BodyAttachment& h = hooks[std::size_t(m.published)];
+        BodyAttachment& h = attachments[std::size_t(m.published)];
         h.body = first + m.body;
         for (Index k = 0; k < m.point.u.size(); ++k) h.frame.origin[k] = m.point.u[k];
         h.frame.axes = m.axes;
@@ -142,7 +144,7 @@ class ReductionOf {
         bodies.push_back(
             {.name = e.name, .layout = B::frame_layout, .q0 = e.q0, .v0 = e.v0, .deformations = e.body.deformations()});
       for (auto const& m : pool.markers) {
-        BodyAttachment& h = hooks[std::size_t(m.published)];
+        BodyAttachment& h = attachments[std::size_t(m.published)];
         auto const& e = pool.entries[std::size_t(m.body)];
         h.body = first + m.body;
         h.frame.axes = m.axes;
@@ -158,9 +160,9 @@ class ReductionOf {
                                      std::span<T const>(v, std::size_t(body.velocities())), out);
   }
   /// Adds a floating end to the tree and returns its index; −1 for a frame on a rigid body or the ground.
-  Index add_end(BodyAttachment const& hook) {
-    if (!hook.end.evaluate_marker) return -1;
-    FloatingEndOf<T> end = hook.end;
+  Index add_end(BodyAttachment const& attachment) {
+    if (!attachment.end.evaluate_marker) return -1;
+    FloatingEndOf<T> end = attachment.end;
     end.first_column = tree_.ends.empty() ? 0 : tree_.ends.back().first_column + tree_.ends.back().deformations;
     tree_.ends.push_back(end);
     return Index(tree_.ends.size()) - 1;
@@ -186,7 +188,7 @@ class ReductionOf {
 
   /// Builds the tree breadth first, from the ground and then from one body of each remaining part. Every joint carries
   /// one body. If `all` is true, bodies without such a joint become roots.
-  void hang(Sequence<TreeBody> const& bodies, Sequence<Link> const& links, VecX const& reference, bool all);
+  void build_tree(Sequence<TreeBody> const& bodies, Sequence<Link> const& links, VecX const& reference, bool all);
 
   void number_unknowns(Sequence<Extent> const& extents, Index coordinates, Index velocities, Index states) {
     Sequence<bool> dependent_v(std::size_t(velocities), false), dependent_q(std::size_t(coordinates), false);
@@ -213,11 +215,11 @@ class ReductionOf {
         place.kind = ReducedPosition::Kind::carried;
         coordinates_ += body->motions.coordinates();
         velocities_ += body->motions.velocities();
-        full_speed_.resize(std::size_t(velocities_), x.v0);
+        full_velocity_.resize(std::size_t(velocities_), x.v0);
         for (Index k = body->deformations; k > 0; --k) {
           same_q_.emplace_back(coordinates_++, x.q0 + x.nq - k);
           same_v_.emplace_back(velocities_++, x.v0 + x.nv - k);
-          full_speed_.push_back(x.v0 + x.nv - k);
+          full_velocity_.push_back(x.v0 + x.nv - k);
         }
       } else {
         for (Index j = x.q0; j < x.q0 + x.nq; ++j)
@@ -228,7 +230,7 @@ class ReductionOf {
             continue;
           }
           same_v_.emplace_back(velocities_++, j);
-          full_speed_.push_back(j);
+          full_velocity_.push_back(j);
         }
       }
       place.coordinates = coordinates_ - place.q;
@@ -236,16 +238,16 @@ class ReductionOf {
     }
     for (Index j = velocities - states; j < velocities; ++j) {
       same_v_.emplace_back(velocities_++, j);
-      full_speed_.push_back(j);
+      full_velocity_.push_back(j);
     }
   }
 
-  /// \param gone true for each constraint equation that a policy eliminates
-  void number_rows(Sequence<bool> const& gone, Sequence<Index> const& of_velocity) {
-    for (Index i = 0; i < Index(gone.size()); ++i)
-      if (!gone[std::size_t(i)]) rows_.push_back(i);
+  /// \param eliminated true for each constraint equation that a policy eliminates
+  void number_rows(Sequence<bool> const& eliminated, Sequence<Index> const& of_velocity) {
+    for (Index i = 0; i < Index(eliminated.size()); ++i)
+      if (!eliminated[std::size_t(i)]) rows_.push_back(i);
     for (Index const i : of_velocity)
-      velocity_rows_.push_back(Index(std::lower_bound(rows_.begin(), rows_.end(), i) - rows_.begin()));
+      nonholonomic_equations_.push_back(Index(std::lower_bound(rows_.begin(), rows_.end(), i) - rows_.begin()));
   }
 
   LinearEliminationOf<T> linear_;
@@ -254,7 +256,7 @@ class ReductionOf {
   Index coordinates_ = 0, velocities_ = 0;
   Sequence<ReducedPosition> places_;
   Sequence<std::pair<Index, Index>> same_q_, same_v_;  // reduced index, full index
-  Sequence<Index> full_speed_, rows_, velocity_rows_, carried_by_;
+  Sequence<Index> full_velocity_, rows_, nonholonomic_equations_, carried_by_;
 };
 
 template <class T>
@@ -280,8 +282,8 @@ void ReductionOf<T>::require_tree(std::size_t bodies, Sequence<Link> const& link
 }
 
 template <class T>
-void ReductionOf<T>::hang(Sequence<TreeBody> const& bodies, Sequence<Link> const& links, VecX const& reference,
-                          bool all) {
+void ReductionOf<T>::build_tree(Sequence<TreeBody> const& bodies, Sequence<Link> const& links, VecX const& reference,
+                                bool all) {
   require_tree(bodies.size(), links);
   Sequence<Index> place(bodies.size(), -1);
   Sequence<bool> used(links.size(), false);

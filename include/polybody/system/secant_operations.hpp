@@ -15,7 +15,7 @@ namespace polybody::detail {
 
 /// Calls f(pool, entry) for each pool of a model and its entry of the parallel tuple `vectors`.
 template <class Pools, class Vectors, class F>
-void for_each_pool_beside(Pools const& pools, Vectors& vectors, F&& f) {
+void for_each_pool_with(Pools const& pools, Vectors& vectors, F&& f) {
   [&]<std::size_t... I>(std::index_sequence<I...>) {
     (f(std::get<I>(pools), std::get<I>(vectors)), ...);
   }(std::make_index_sequence<std::tuple_size_v<Pools>>{});
@@ -30,7 +30,7 @@ struct MarkerSecant {
 };
 
 template <int m>
-struct GapSecant {
+struct ConstraintSecant {
   Vec<double, m> from, to;
   double* rows_a = nullptr;  ///< Ḡ with respect to the columns of marker a, m×columns
   double* rows_b = nullptr;  ///< Ḡ with respect to the columns of marker b, m×columns
@@ -46,7 +46,7 @@ struct NearbySecants;
 template <class... Bs, class... Js>
 struct NearbySecants<std::tuple<BodyPool<Bs>...>, std::tuple<Sequence<JointEntry<Js>>...>> {
   using Scratch = std::tuple<SecantScratch<Bs>...>;
-  using Gaps = std::tuple<Sequence<GapSecant<Js::rows>>...>;
+  using Constraints = std::tuple<Sequence<ConstraintSecant<Js::rows>>...>;
 };
 
 /// Frame of a marker with its twelve numbers as variables `first`, `first` + 1, … of S, a `Secant`.
@@ -90,7 +90,7 @@ class TypedSecants {
 
   TypedSecants(M const& model, Data<double> const& data)
       : model_(model), markers_(std::size_t(model.markers())), middle_(VecX::Zero(model.coordinates())) {
-    Index marker_size = 0, gap_size = 0, widest = 1;
+    Index marker_size = 0, row_entries = 0, widest = 1;
     for (std::size_t i = 0; i < markers_.size(); ++i) {
       MarkerKinematics<double> const& p = data.markers[i];
       markers_[i].first = p.first;
@@ -110,22 +110,22 @@ class TypedSecants {
         m.from[j] = j < 3 ? g.placement.origin[Index(j)] : g.placement.axes(Index(j % 3), Index(j / 3 - 1));
       m.to = m.from;
     }
-    for_each_pool_beside(model.joint_pools(), gaps_, [&](auto const& pool, auto& gaps) {
-      gaps.resize(pool.size());
+    for_each_pool_with(model.joint_pools(), constraints_, [&](auto const& pool, auto& constraints) {
+      constraints.resize(pool.size());
       for (auto const& e : pool)
-        gap_size += std::decay_t<decltype(e.joint)>::rows * (marker(e.a).columns + marker(e.b).columns);
+        row_entries += std::decay_t<decltype(e.joint)>::rows * (marker(e.a).columns + marker(e.b).columns);
     });
-    rows_.resize(std::size_t(gap_size));
+    rows_.resize(std::size_t(row_entries));
     next = rows_.data();
-    for_each_pool_beside(model.joint_pools(), gaps_, [&](auto const& pool, auto& gaps) {
+    for_each_pool_with(model.joint_pools(), constraints_, [&](auto const& pool, auto& constraints) {
       for (std::size_t i = 0; i < pool.size(); ++i) {
         constexpr Index m = std::decay_t<decltype(pool[i].joint)>::rows;
-        gaps[i].rows_a = next;
-        gaps[i].rows_b = next + m * marker(pool[i].a).columns;
-        next = gaps[i].rows_b + m * marker(pool[i].b).columns;
+        constraints[i].rows_a = next;
+        constraints[i].rows_b = next + m * marker(pool[i].a).columns;
+        next = constraints[i].rows_b + m * marker(pool[i].b).columns;
       }
     });
-    for_each_pool_beside(model.body_pools(), bodies_, [](auto const& pool, auto& scratch) {
+    for_each_pool_with(model.body_pools(), bodies_, [](auto const& pool, auto& scratch) {
       using B = std::decay_t<decltype(pool.entries.front().body)>;
       Index size = 0;
       for (auto const& e : pool.entries) size = std::max(size, e.body.coordinates());
@@ -135,7 +135,7 @@ class TypedSecants {
     });
     scratch_.resize(std::size_t(widest * widest));
   }
-  TypedSecants(TypedSecants const&) = delete;  // markers and gaps point into the arenas
+  TypedSecants(TypedSecants const&) = delete;  // markers and constraints point into the arenas
   TypedSecants& operator=(TypedSecants const&) = delete;
 
   /// Sets the step, and evaluates markers and constraint functions. Constraint functions of time are evaluated at its
@@ -144,10 +144,10 @@ class TypedSecants {
     step_ = step;
     means_ = {1.0 / step.h, step.decay};
     for (Index i = 0; i < middle_.size(); ++i) middle_[i] = 0.5 * ((*step.q0)[i] + (*step.q1)[i]);
-    for_each_pool_beside(model_.body_pools(), bodies_,
-                         [&](auto const& pool, auto& scratch) { evaluate_marker(pool, scratch); });
-    for_each_pool_beside(model_.joint_pools(), gaps_, [&](auto const& pool, auto& gaps) {
-      for (std::size_t i = 0; i < pool.size(); ++i) measure_gaps(pool[i], step.t + step.h, gaps[i]);
+    for_each_pool_with(model_.body_pools(), bodies_,
+                       [&](auto const& pool, auto& scratch) { evaluate_marker(pool, scratch); });
+    for_each_pool_with(model_.joint_pools(), constraints_, [&](auto const& pool, auto& constraints) {
+      for (std::size_t i = 0; i < pool.size(); ++i) evaluate_constraints(pool[i], step.t + step.h, constraints[i]);
     });
   }
 
@@ -165,11 +165,11 @@ class TypedSecants {
         for (int k = 0; k < B::element_columns; ++k) rows[k] += inertia[k] - force[k] - weight[k];
       }
     });
-    for_each_joint([&](auto const& e, auto const& gap) {
+    for_each_joint([&](auto const& e, auto const& secant) {
       constexpr int m = std::decay_t<decltype(e.joint)>::rows;
-      Vec<double, m> const l = multiplier(e, gap, lambda);
-      add_rows<m>(marker(e.a), gap.rows_a, l, r);
-      add_rows<m>(marker(e.b), gap.rows_b, l, r);
+      Vec<double, m> const l = multiplier(e, secant, lambda);
+      add_rows<m>(marker(e.a), secant.rows_a, l, r);
+      add_rows<m>(marker(e.b), secant.rows_b, l, r);
     });
     model_.for_each_force([&](auto const& e) {
       add_force(data, e, r);
@@ -186,8 +186,8 @@ class TypedSecants {
 
   /// Φ(q₁).
   void violation(VecX& phi) const {
-    for_each_joint([&](auto const& e, auto const& gap) {
-      if (e.row >= 0) phi.segment(e.row, gap.to.size()) = gap.to;
+    for_each_joint([&](auto const& e, auto const& secant) {
+      if (e.row >= 0) phi.segment(e.row, secant.to.size()) = secant.to;
     });
   }
 
@@ -206,13 +206,13 @@ class TypedSecants {
         sink.add(e.v0 + e.body.first_column(i), e.v0 + e.body.first_column(i), k);
       }
     });
-    for_each_joint([&](auto const& e, auto const& gap) {
+    for_each_joint([&](auto const& e, auto const& secant) {
       using J = std::decay_t<decltype(e.joint)>;
       constexpr int m = J::rows;
       using Rows = Eigen::Map<Mat<double, m, Eigen::Dynamic> const>;
       MarkerSecant const& a = marker(e.a);
       MarkerSecant const& b = marker(e.b);
-      Rows const ga(gap.rows_a, m, a.columns), gb(gap.rows_b, m, b.columns);
+      Rows const ga(secant.rows_a, m, a.columns), gb(secant.rows_b, m, b.columns);
       if constexpr (ConstrainingPolicy<typename J::PolicyType>) {
         for (auto const& [p, g] : {std::pair<MarkerSecant const&, Rows const&>(a, ga), {b, gb}})
           if (p.columns > 0) {
@@ -220,7 +220,7 @@ class TypedSecants {
             sink.add(row0 + e.row, p.first, g);
           }
       } else {
-        Vec<double, m> const change = gap.to - gap.from, mean = 0.5 * (gap.from + gap.to);
+        Vec<double, m> const change = secant.to - secant.from, mean = 0.5 * (secant.from + secant.to);
         Mat<double, m, m> const slope = e.joint.policy.template slope<m>(s * (0.5 + means_.decay), s * means_.rate,
                                                                          mean, (change * means_.rate).eval());
         add_pair(a, ga, slope, a, ga, sink);
@@ -244,8 +244,8 @@ class TypedSecants {
   MarkerSecant const& marker(Index i) const { return markers_[std::size_t(i)]; }
   template <class F>
   void for_each_joint(F&& f) const {
-    for_each_pool_beside(model_.joint_pools(), gaps_, [&](auto const& pool, auto const& gaps) {
-      for (std::size_t i = 0; i < pool.size(); ++i) f(pool[i], gaps[i]);
+    for_each_pool_with(model_.joint_pools(), constraints_, [&](auto const& pool, auto const& constraints) {
+      for (std::size_t i = 0; i < pool.size(); ++i) f(pool[i], constraints[i]);
     });
   }
 
@@ -275,7 +275,7 @@ class TypedSecants {
   }
 
   template <class Entry, int m, class S = Secant<24>>  // compiled where it is used
-  void measure_gaps(Entry const& e, double t, GapSecant<m>& out) const {
+  void evaluate_constraints(Entry const& e, double t, ConstraintSecant<m>& out) const {
     MarkerSecant const& a = marker(e.a);
     MarkerSecant const& b = marker(e.b);
     Vec<S, m> const g = e.joint.measure().template constraint_function<S>(frame_of<S>(a, 0), frame_of<S>(b, 12), t).g;
@@ -288,13 +288,14 @@ class TypedSecants {
   }
 
   template <class Entry, int m>
-  Vec<double, m> multiplier(Entry const& e, GapSecant<m> const& gap, [[maybe_unused]] VecX const& lambda) const {
+  Vec<double, m> multiplier(Entry const& e, ConstraintSecant<m> const& secant,
+                            [[maybe_unused]] VecX const& lambda) const {
     if constexpr (ConstrainingPolicy<typename std::decay_t<decltype(e.joint)>::PolicyType>) {
       return lambda.template segment<m>(e.row);
     } else {
-      Vec<double, m> const change = gap.to - gap.from;
-      return e.joint.policy.template multiplier<m, double>((0.5 * (gap.from + gap.to) + means_.decay * change).eval(),
-                                                           (means_.rate * change).eval());
+      Vec<double, m> const change = secant.to - secant.from;
+      return e.joint.policy.template multiplier<m, double>(
+          (0.5 * (secant.from + secant.to) + means_.decay * change).eval(), (means_.rate * change).eval());
     }
   }
 
@@ -357,9 +358,9 @@ class TypedSecants {
   SecantStep step_;
   DiscreteDerivative means_;
   Sequence<MarkerSecant> markers_;
-  using Beside = NearbySecants<typename M::BodyPools, typename M::JointPools>;
-  typename Beside::Scratch bodies_;
-  typename Beside::Gaps gaps_;
+  using Workspaces = NearbySecants<typename M::BodyPools, typename M::JointPools>;
+  typename Workspaces::Scratch bodies_;
+  typename Workspaces::Constraints constraints_;
   Sequence<double> slopes_, rows_, scratch_;  ///< arenas of markers and constraint functions; workspace for one block
   VecX middle_;
 };

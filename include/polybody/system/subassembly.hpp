@@ -67,7 +67,7 @@ class Subassembly<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     static_assert(Marker<A>::observes >= needs_of_second<Law>(),
                   "This force needs a marker with axes or a tangent, but this body provides less.");
     (void)detail::own_entry(forces_of<F>(), group);
-    detail::add_opponent(parts_, forces_of<F>()[std::size_t(group.index)], law, pooled(one), std::move(name));
+    detail::add_contact_partner(parts_, forces_of<F>()[std::size_t(group.index)], law, pooled(one), std::move(name));
   }
 
  private:

@@ -70,14 +70,14 @@ template <class = void>
   stepped.lambda.swap(all);
 }
 
-/// Writes q̇ for the generalised velocities v to `rate`. `room` (2 nq + nv of the full model) is workspace.
+/// Writes q̇ for the generalised velocities v to `rate`. `workspace` has 2 nq + nv entries, of the full model.
 template <class = void>
-void coordinate_rates(System const& s, VecX const& q, VecX const& v, VecXOf<Dual<1>>& room, VecX& rate) {
+void coordinate_rates(System const& s, VecX const& q, VecX const& v, VecXOf<Dual<1>>& workspace, VecX& rate) {
   Coordinates const& c = s.step_coordinates();
   if (c) c.entries->coordinate_rates(c.self.get(), q, v, rate);
   auto const& [entries, model] = s.entries();
   require_entry(entries.coordinate_rates, "rates of coordinates")(model, c ? c.reduced->places.data() : nullptr, q, v,
-                                                                  room, rate);
+                                                                  workspace, rate);
 }
 
 /// Name of the body of coordinate i of the system's time steps.

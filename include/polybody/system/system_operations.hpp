@@ -45,7 +45,7 @@ void BasicSystem<T>::evaluate(Vector const& q, Vector const& v, double t) {
   }
   for (std::size_t i = 0; i < data_.states.size(); ++i) data_.states[i] = v_[data_.first_state + Index(i)];
   entries_.evaluate_marker(model_, at(), data_);
-  entries_.measure_gaps(model_, at(), data_);
+  entries_.evaluate_constraints(model_, at(), data_);
 }
 
 template <StateScalar T>
@@ -168,7 +168,7 @@ void BasicSystem<T>::write_tangent(TangentCoefficients c, SecondOrder second, Ve
 
 /// Residual M v̇ − f + Gᵀλ of the full model in the last evaluated state, at v̇ = 0 and λ = 0.
 template <class T>
-VecXOf<T> const& unbalance(BasicSystem<T>& s) {
+VecXOf<T> const& residual_at_rest(BasicSystem<T>& s) {
   s.full_a_.setConstant(s.layout_.velocities, T(0.0));
   s.full_lambda_.setConstant(s.layout_.rows, T(0.0));
   s.full_r_.resize(s.layout_.velocities);

@@ -66,7 +66,7 @@ template <class T>
 struct TreeStateOf {
   Sequence<TreeFrameOf<T>> frames;  ///< frame of each body
   Sequence<Vec<T, 6>> twists;       ///< workspace: a twist, wrench or rate of each body
-  Sequence<Vec<T, 6>> held;         ///< result of the last `reduce_forces`: residual [f; m] of each body and of all
+  Sequence<Vec<T, 6>> residuals;    ///< result of the last `reduce_forces`: residual [f; m] of each body and of all
                                     ///< bodies that it carries, about the origin of its frame; its joint transmits it
   Sequence<Vec<T, 6>> columns;      ///< for the floating ends: twist of the carried body per rate of each deformation
   Sequence<T> q, v, jacobian;       ///< workspace of the floating ends

@@ -88,7 +88,7 @@ struct UserOperations {
   }
   static UserOperations const& of(void const* self) { return *static_cast<UserOperations const*>(self); }
 
-  static void measure_gaps(void const* self, At<double> at, Data<double>&) {
+  static void evaluate_constraints(void const* self, At<double> at, Data<double>&) {
     if constexpr (HasConstraintEquations<E>) {
       of(self).mechanics.violation(at.q, at.t, of(self).phi);
       of(self).mechanics.jacobian(at.q, at.t, of(self).g);
@@ -177,7 +177,7 @@ struct UserOperations {
 
   static constexpr ModelOperations<double> entries() {
     return {.evaluate_marker = [](void const*, At<double>, Data<double>&) {},
-            .measure_gaps = &measure_gaps,
+            .evaluate_constraints = &evaluate_constraints,
             .measure_gamma = &measure_gamma,
             .element_forces = &element_forces,
             .push_forces = [](void const*, double, Data<double>&) {},

@@ -12,13 +12,13 @@ namespace polybody::laws {
 
 /// Laws of a joint geometry of any type. V = [ṙ; ω] are the twists of both frames, and G = [Ga Gb].
 struct JointLawsOf {
-  static constexpr double tolerance = 1e-12;               ///< largest relative error, except for differences
-  AnyGeometry const geometry;                              ///< geometry under test
-  bool const planar = geometry.planar;                     ///< true if all frames stay in the plane z = 0
-  Index const m = geometry.rows;                           ///< number of constraint equations
-  Index const held = m - geometry.nonholonomic_equations;  ///< number of holonomic ones
-  double const t = 1.3;                                    ///< time of the evaluation [s]
-  Numbers number;                                          ///< random numbers with a fixed seed
+  static constexpr double tolerance = 1e-12;                    ///< largest relative error, except for differences
+  AnyGeometry const geometry;                                   ///< geometry under test
+  bool const planar = geometry.planar;                          ///< true if all frames stay in the plane z = 0
+  Index const m = geometry.rows;                                ///< number of constraint equations
+  Index const holonomic = m - geometry.nonholonomic_equations;  ///< number of holonomic ones
+  double const t = 1.3;                                         ///< time of the evaluation [s]
+  Numbers number;                                               ///< random numbers with a fixed seed
 
   explicit JointLawsOf(AnyGeometry g) : geometry(std::move(g)) {}  ///< laws of the geometry g
 
@@ -41,11 +41,11 @@ struct JointLawsOf {
   }
 
   /// g = 0 for closed frames; g ≠ 0 after a motion of b.
-  void closed_frames_have_no_gap();
+  void closed_frames_satisfy_the_equations();
   /// G = ∂g/∂(motions of the frames). For nonholonomic constraints g = 0 everywhere.
-  void maps_are_the_derivative_of_the_gap();
+  void maps_are_the_derivative_of_the_function();
   /// `rate` = Φ_t = ∂g/∂t.
-  void rate_is_the_derivative_of_the_gap_by_time();
+  void rate_is_the_derivative_of_the_function_by_time();
   /// γ = d/dt (G V + Φ_t) at constant V: along the motion by dual numbers, in time by differences.
   void gamma_is_the_second_derivative_without_accelerations();
   /// Gaᵀλ·Va + Gbᵀλ·Vb = λ·(ġ − Φ_t), with ġ along the motion.
@@ -62,7 +62,7 @@ struct JointLawsOf {
   void wrench_gradient_is_the_derivative_of_the_wrenches();
   /// In closed frames G has full rank, and G T = 0 for the free directions T of the case. The numbers of constraint
   /// equations and of free directions add up to the number of motions of b.
-  void rows_and_freedoms_make_up_all_motions();
+  void equations_and_free_directions_span_all_motions();
 };
 
 /// Laws that every joint geometry satisfies. A case gives frames that satisfy the constraint equations:
@@ -84,16 +84,16 @@ struct JointLaws : JointLawsOf {
 
   static constexpr char const* suite = "JointLaws";
   static constexpr Law<JointLaws> laws[] = {
-      {"ClosedFramesHaveNoGap", &JointLaws::closed_frames_have_no_gap},
-      {"MapsAreTheDerivativeOfTheGap", &JointLaws::maps_are_the_derivative_of_the_gap},
-      {"RateIsTheDerivativeOfTheGapByTime", &JointLaws::rate_is_the_derivative_of_the_gap_by_time},
+      {"ClosedFramesSatisfyTheEquations", &JointLaws::closed_frames_satisfy_the_equations},
+      {"MapsAreTheDerivativeOfTheFunction", &JointLaws::maps_are_the_derivative_of_the_function},
+      {"RateIsTheDerivativeOfTheFunctionByTime", &JointLaws::rate_is_the_derivative_of_the_function_by_time},
       {"GammaIsTheSecondDerivativeWithoutAccelerations",
        &JointLaws::gamma_is_the_second_derivative_without_accelerations},
       {"WrenchesHaveThePowerOfTheMultipliers", &JointLaws::wrenches_have_the_power_of_the_multipliers},
       {"WrenchesAreEqualAndOpposite", &JointLaws::wrenches_are_equal_and_opposite},
       {"DoesNotSeeARigidMotionOfBothFrames", &JointLaws::does_not_see_a_rigid_motion_of_both_frames},
       {"WrenchGradientIsTheDerivativeOfTheWrenches", &JointLaws::wrench_gradient_is_the_derivative_of_the_wrenches},
-      {"RowsAndFreedomsMakeUpAllMotions", &JointLaws::rows_and_freedoms_make_up_all_motions}};
+      {"EquationsAndFreeDirectionsSpanAllMotions", &JointLaws::equations_and_free_directions_span_all_motions}};
 };
 
 inline std::vector<FramePair> JointLawsOf::closed() {
@@ -104,9 +104,9 @@ inline std::vector<FramePair> JointLawsOf::closed() {
     p.b = number.frame(planar);
     p.b.r = p.a.r + p.a.A * mate.d;
     p.b.A = p.a.A * mate.R;
-    p.freedoms.resize(6, mate.freedoms.cols());
-    if (mate.freedoms.cols() > 0)  // a weld has none, and an empty matrix has no data
-      p.freedoms << p.a.A * mate.freedoms.topRows<3>(), p.a.A * mate.freedoms.bottomRows<3>();
+    p.free_directions.resize(6, mate.free_directions.cols());
+    if (mate.free_directions.cols() > 0)  // a weld has none, and an empty matrix has no data
+      p.free_directions << p.a.A * mate.free_directions.topRows<3>(), p.a.A * mate.free_directions.bottomRows<3>();
   }
   return pairs;
 }
@@ -143,24 +143,24 @@ inline Vec3 moment_about(FramePair const& p, VecX const& w, Vec3 const& about) {
   return w.segment<3>(3) + (p.a.r - about).cross(fa) + w.segment<3>(9) + (p.b.r - about).cross(fb);
 }
 
-inline void JointLawsOf::closed_frames_have_no_gap() {
+inline void JointLawsOf::closed_frames_satisfy_the_equations() {
   auto const g = [&](FramePair const& p) { return geometry.constraint_function(p, t).g; };
   for (FramePair const& p : closed()) EXPECT_LT(g(p).norm(), allowed(p, g, 1e-14));
-  if (held == 0) return;
+  if (holonomic == 0) return;
   for (FramePair const& p : open()) EXPECT_GT(g(p).norm(), 1e-3);
 }
 
 // The constraint function of nonholonomic constraints is zero, without derivatives.
-inline void JointLawsOf::maps_are_the_derivative_of_the_gap() {
+inline void JointLawsOf::maps_are_the_derivative_of_the_function() {
   for (FramePair const& p : all()) {
-    SeenGap const seen = geometry.gap_with_slopes(p, t);
+    SeenTerms const seen = geometry.terms_by_duals(p, t);
     double const most = allowed(p, [&](FramePair const& at) { return jacobian(at); });
-    EXPECT_LT(((seen.G - seen.slope).topRows(held) * known()).norm(), most);
-    EXPECT_TRUE(seen.g.tail(m - held).isZero(0.0) && seen.slope.bottomRows(m - held).isZero(0.0));
+    EXPECT_LT(((seen.G - seen.slope).topRows(holonomic) * known()).norm(), most);
+    EXPECT_TRUE(seen.g.tail(m - holonomic).isZero(0.0) && seen.slope.bottomRows(m - holonomic).isZero(0.0));
   }
 }
 
-inline void JointLawsOf::rate_is_the_derivative_of_the_gap_by_time() {
+inline void JointLawsOf::rate_is_the_derivative_of_the_function_by_time() {
   for (FramePair const& p : all()) {
     VecX const slope = slope_at_zero([&](double h) { return geometry.constraint_function(p, t + h).g; });
     EXPECT_LT((geometry.constraint_function(p, t).rate - slope).norm(), tolerance * (1.0 + slope.norm()));
@@ -172,11 +172,11 @@ inline void JointLawsOf::gamma_is_the_second_derivative_without_accelerations() 
     VecX const v = p.twists();
     VecX const by_time = slope_at_zero(
         [&](double h) {
-          SeenGap const later = geometry.constraint_function(p, t + h);
+          SeenTerms const later = geometry.constraint_function(p, t + h);
           return VecX(later.G * v + later.rate);
         },
         1e-2);
-    VecX const expected = geometry.gap_with_slopes(p, t).G_rate * v + by_time;
+    VecX const expected = geometry.terms_by_duals(p, t).G_rate * v + by_time;
     double const most = allowed(p, [&](FramePair const& at) { return geometry.gamma(at, t); });
     EXPECT_LT((geometry.gamma(p, t) - expected).norm(), most);
   }
@@ -185,9 +185,9 @@ inline void JointLawsOf::gamma_is_the_second_derivative_without_accelerations() 
 inline void JointLawsOf::wrenches_have_the_power_of_the_multipliers() {
   for (FramePair const& p : all()) {
     VecX const lambda = multipliers(), v = p.twists();
-    SeenGap const seen = geometry.gap_with_slopes(p, t);
+    SeenTerms const seen = geometry.terms_by_duals(p, t);
     VecX rate = seen.slope * v;
-    rate.tail(m - held) = seen.G.bottomRows(m - held) * v;
+    rate.tail(m - holonomic) = seen.G.bottomRows(m - holonomic) * v;
     EXPECT_NEAR(wrenches(p, lambda).dot(v), lambda.dot(rate),
                 tolerance * (1.0 + lambda.norm() * seen.G.norm() * v.norm()));
   }
@@ -221,7 +221,7 @@ inline void JointLawsOf::does_not_see_a_rigid_motion_of_both_frames() {
     MatX rows = MatX::Identity(m, m), back = MatX::Zero(12, 12);
     rows.topLeftCorner(n, n) = turn.topLeftCorner(n, n);
     for (int i = 0; i < 12; i += 3) back.block<3, 3>(i, i) = turn.transpose();
-    SeenGap const before = geometry.constraint_function(p, t), after = geometry.constraint_function(q, t);
+    SeenTerms const before = geometry.constraint_function(p, t), after = geometry.constraint_function(q, t);
     auto const g = [&](FramePair const& at) { return geometry.constraint_function(at, t).g; };
     auto const rate = [&](FramePair const& at) { return geometry.constraint_function(at, t).rate; };
     auto const G = [&](FramePair const& at) { return jacobian(at); };
@@ -245,7 +245,7 @@ inline void JointLawsOf::wrench_gradient_is_the_derivative_of_the_wrenches() {
   }
 }
 
-inline void JointLawsOf::rows_and_freedoms_make_up_all_motions() {
+inline void JointLawsOf::equations_and_free_directions_span_all_motions() {
   MatX const k = known();
   auto const min_load_step = [](MatX a) {  // part of a row that is independent of the previous rows
     double smallest = a.row(0).norm();
@@ -257,11 +257,12 @@ inline void JointLawsOf::rows_and_freedoms_make_up_all_motions() {
     return smallest;
   };
   for (FramePair const& p : closed()) {
-    EXPECT_EQ(m + p.freedoms.cols(), k.cols() / 2);
+    EXPECT_EQ(m + p.free_directions.cols(), k.cols() / 2);
     MatX const g = jacobian(p);
     EXPECT_GT(min_load_step(g * k), 0.3);
     EXPECT_GT(min_load_step((g * k).rightCols(k.cols() / 2)), 0.3);
-    EXPECT_LT((g.rightCols<6>() * p.freedoms).norm(), allowed(p, [&](FramePair const& at) { return jacobian(at); }));
+    EXPECT_LT((g.rightCols<6>() * p.free_directions).norm(),
+              allowed(p, [&](FramePair const& at) { return jacobian(at); }));
   }
 }
 

@@ -17,20 +17,20 @@ namespace polybody::laws {
 struct Mate {
   Vec3 d = Vec3::Zero();      ///< (3) r_b − r_a in a's axes [m]
   Mat3 R = Mat3::Identity();  ///< (3×3) AaᵀAb, direction cosines
-  MatX freedoms;              ///< (6×dof) [velocity; angular velocity] of b in a's axes
+  MatX free_directions;       ///< (6×dof) [velocity; angular velocity] of b in a's axes
 };
 
 /// Two frames with their twists.
 struct FramePair {
-  Frame<double> a, b;                ///< frames of the joint's markers
-  MatX freedoms = MatX::Zero(6, 0);  ///< (6×dof) free directions of b, world axes
+  Frame<double> a, b;                       ///< frames of the joint's markers
+  MatX free_directions = MatX::Zero(6, 0);  ///< (6×dof) free directions of b, world axes
 
   VecX twists() const;                           ///< (12) [ṙ; ω] of a, then of b, world axes
   FramePair moved_by(VecX const& motion) const;  ///< after a motion (12): [δr; φ] of a, then of b, world axes
 };
 
 /// Constraint function g, its Jacobian G = [Ga Gb] and its derivatives.
-struct SeenGap {
+struct SeenTerms {
   VecX g, rate;  ///< (m)
   MatX G;        ///< (m×12)
   MatX slope;    ///< (m×12) ∂g/∂(motions), by dual numbers
@@ -44,8 +44,8 @@ struct AnyGeometry {
   bool planar = false;         ///< true if the frames stay in the plane z = 0
   bool opposite_ends = false;  ///< true if the geometry declares Gb = −Ga
   ///@{
-  /// Constraint function at a time [s]; `gap_with_slopes` also computes the derivatives.
-  std::function<SeenGap(FramePair const&, double)> constraint_function, gap_with_slopes;
+  /// Constraint function at a time [s]; `terms_by_duals` also computes the derivatives.
+  std::function<SeenTerms(FramePair const&, double)> constraint_function, terms_by_duals;
   ///@}
   std::function<VecX(FramePair const&, double)> gamma;                  ///< γ (m) at a time [s]
   std::function<MatX(FramePair const&, double, VecX const&)> gradient;  ///< (12×12) ∂(Gᵀλ)/∂(motions)
@@ -61,12 +61,12 @@ AnyGeometry any_geometry() {
   static auto const geometry = Case::geometry();
   auto const constraint_function = [](FramePair const& p, double t) {
     ConstraintTerms<m> const x = geometry.template constraint_function<double>(p.a, p.b, t);
-    SeenGap seen{x.g, x.rate, MatX(m, 12), {}, {}};
+    SeenTerms seen{x.g, x.rate, MatX(m, 12), {}, {}};
     seen.G << x.Ga, x.Gb;
     return seen;
   };
   auto const by_duals = [constraint_function](FramePair const& p, double t) {
-    SeenGap seen = constraint_function(p, t);
+    SeenTerms seen = constraint_function(p, t);
     seen.slope.resize(m, 12);
     seen.G_rate.resize(m, 12);
     auto const see = [&](Frame<D> const& a, Frame<D> const& b, auto&& keep) {
@@ -95,7 +95,7 @@ AnyGeometry any_geometry() {
           .planar = Case::planar,
           .opposite_ends = has_opposite_ends<G>(),
           .constraint_function = constraint_function,
-          .gap_with_slopes = by_duals,
+          .terms_by_duals = by_duals,
           .gamma = [](FramePair const& p, double t) { return VecX(geometry.template gamma<double>(p.a, p.b, t)); },
           .gradient = [](FramePair const& p, double t,
                          VecX const& lambda) { return MatX(wrench_gradient<G>(geometry, p.a, p.b, t, lambda)); },

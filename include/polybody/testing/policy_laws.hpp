@@ -17,7 +17,7 @@ namespace polybody::laws {
 ///     struct PenaltyCase {
 ///       static constexpr int rows = 3;      // number of constraint equations
 ///       static Penalty policy();
-///       static constexpr double gap = 0.1;  // size of g [m], [rad]; 1 if omitted
+///       static constexpr double violation = 0.1;  // size of g [m], [rad]; 1 if omitted
 ///     };
 ///     bool const penalty_obeys = obeys<PenaltyCase, PolicyLaws>("Penalty");
 template <class Case>
@@ -32,20 +32,20 @@ struct PolicyLaws {
 
   /// Size of the constraint violations [m], [rad]: value of the case, or 1.
   static double size() {
-    if constexpr (requires { Case::gap; })
-      return Case::gap;
+    if constexpr (requires { Case::violation; })
+      return Case::violation;
     else
       return 1.0;
   }
-  Row gap() { return number.template vec<m>(size()); }  ///< random violation g in [−size, size]
-  Row rate() { return number.template vec<m>(); }       ///< random rate ġ in [−1, 1]
+  Row violation() { return number.template vec<m>(size()); }  ///< random violation g in [−size, size]
+  Row rate() { return number.template vec<m>(); }             ///< random rate ġ in [−1, 1]
   Row multiplier(Row const& g, Row const& g_rate) const { return policy.template multiplier<m, double>(g, g_rate); }
 
   /// `slope`(ck, cd) = ck ∂λ/∂g + cd ∂λ/∂ġ, by dual numbers.
   void slope_is_the_derivative_of_the_multiplier() {
     using D = Dual<1>;
     for (auto const& [ck, cd] : {std::pair{1.0, 0.0}, {0.0, 1.0}, {0.7, 31.0}}) {
-      Row const g = gap(), g_rate = rate();
+      Row const g = violation(), g_rate = rate();
       Mat<double, m, m> const slope = policy.template slope<m>(ck, cd, g, g_rate);
       for (int j = 0; j < m; ++j) {
         Vec<D, m> of_g = g.template cast<D>(), of_rate = g_rate.template cast<D>();
@@ -59,7 +59,7 @@ struct PolicyLaws {
 
   /// λ(g, 0) = ∂U/∂g.
   void elastic_multiplier_is_the_slope_of_the_potential() {
-    Row const g = gap(), lambda = multiplier(g, Row::Zero());
+    Row const g = violation(), lambda = multiplier(g, Row::Zero());
     EXPECT_GT(lambda.norm(), 0.0);
     for (int i = 0; i < m; ++i) {
       double const slope = slope_at_zero(
@@ -77,7 +77,7 @@ struct PolicyLaws {
   /// (λ(g, ġ) − λ(g, 0))·ġ ≥ 0: the force of the rate dissipates energy.
   void damping_takes_power() {
     for (int k = 0; k < 10; ++k) {
-      Row const g = gap(), g_rate = rate();
+      Row const g = violation(), g_rate = rate();
       EXPECT_GE((multiplier(g, g_rate) - multiplier(g, Row::Zero())).dot(g_rate), 0.0);
     }
   }

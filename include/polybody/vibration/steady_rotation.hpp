@@ -71,8 +71,8 @@ class TurningFrame {
   /// Generalised velocities w(q) of the rotation.
   void velocities(VecX const& q, VecX& w) const {
     Vec3 const omega = share * rotation_.angular_velocity, origin = rotation_.point.cross(omega);
-    require_entry(system.entries().first.rigid_velocities, "speeds of rigid motions")(system.entries().second, q,
-                                                                                      origin, omega, w);
+    require_entry(system.entries().first.rigid_velocities, "velocities of rigid motions")(system.entries().second, q,
+                                                                                          origin, omega, w);
   }
   /// Residual R(q, w, Γw) with these multipliers. The state of the system becomes (q, w, t).
   void residual(VecX const& q, VecX const& lambda, double t, VecX& r) {
@@ -234,8 +234,8 @@ EquilibriumReport relative_equilibrium(System& system, State& x, SteadyRotation 
   for (LoadSteps steps(options); !steps.done();) {
     State const before = problem.trial;
     problem.frame.share = steps.next();
-    ReusedFactorisation kept;
-    NewtonReport const n = newton(problem, newton_options, kept);
+    ReusedFactorisation reused;
+    NewtonReport const n = newton(problem, newton_options, reused);
     report.iterations += n.iterations;
     if (n.result == NewtonResult::converged) {
       steps.reach_next();

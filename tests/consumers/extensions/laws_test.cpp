@@ -39,9 +39,10 @@ struct PointOnParabolaCase {
   static PointOnParabola geometry() { return {.focal_length = 0.6}; }
   static Mate mate(Numbers& number, double) {
     double const x = number();
-    Mate mate{.d = {x, 0.0, x * x / 2.4}, .R = exp_so3<double>(number.vec<3>(3.0)), .freedoms = MatX::Zero(6, 4)};
-    mate.freedoms.col(0) << 1.0, 0.0, x / 1.2, 0.0, 0.0, 0.0;  // along the wire
-    mate.freedoms.bottomRightCorner<3, 3>().setIdentity();     // rotations
+    Mate mate{
+        .d = {x, 0.0, x * x / 2.4}, .R = exp_so3<double>(number.vec<3>(3.0)), .free_directions = MatX::Zero(6, 4)};
+    mate.free_directions.col(0) << 1.0, 0.0, x / 1.2, 0.0, 0.0, 0.0;  // along the wire
+    mate.free_directions.bottomRightCorner<3, 3>().setIdentity();     // rotations
     return mate;
   }
 };
@@ -49,7 +50,7 @@ bool const point_on_parabola_obeys = obeys<PointOnParabolaCase, JointLaws>("Poin
 
 struct HardeningPenaltyCase {
   static constexpr int rows = 3;
-  static constexpr double gap = 0.1;
+  static constexpr double violation = 0.1;
   static HardeningPenalty policy() { return {.stiffness = 30.0, .hardening = 4e3, .damping = 2.0}; }
 };
 bool const hardening_penalty_obeys = obeys<HardeningPenaltyCase, PolicyLaws>("HardeningPenalty");

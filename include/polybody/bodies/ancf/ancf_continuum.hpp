@@ -215,10 +215,10 @@ struct Continuum {
       for (GaussPoint const& g : gauss<3>)
         section.for_each([&](double a, double b) {
           double const weight = 0.25 * g.weight * ref.l;
-          auto const at = ref.gradients(g.xi, a, b), beside = ref.gradients(g.xi, lever * a, lever * b);
+          auto const at = ref.gradients(g.xi, a, b), off_axis = ref.gradients(g.xi, lever * a, lever * b);
           along.set_point(k, weight * at.volume, ancf::AlongStrain::map(at.g, {0}),
                           Vec<typename Parts::Number, 1>(stretch));
-          shears.set_point(k++, weight * beside.volume, ancf::ShearStrains::map(beside.g, {0, 1, 2}));
+          shears.set_point(k++, weight * off_axis.volume, ancf::ShearStrains::map(off_axis.g, {0, 1, 2}));
         });
       return {along, shears, across};
     } else {

@@ -163,7 +163,7 @@ class AxialForceStiffness {
     Structure::Sparse k = s.stiffness;
     Index const first = 6 * node;
     k.prune([&](Index i, Index j, double) { return i / 6 != node && j / 6 != node; });
-    for (Index i = 0; i < 6; ++i) k.coeffRef(held_[i] = first + i, first + i) = 1.0;
+    for (Index i = 0; i < 6; ++i) k.coeffRef(fixed_[i] = first + i, first + i) = 1.0;
     solver_.compute(k);
     if (solver_.info() != Eigen::Success || solver_.vectorD().minCoeff() <= 0.0)
       throw InvalidInput(
@@ -177,7 +177,7 @@ class AxialForceStiffness {
   Structure::Sparse operator()(VecX const& load, Spread&& spread) const {
     Structure const& s = *structure_;
     VecX x = load;
-    for (Index const i : held_) x[i] = 0.0;
+    for (Index const i : fixed_) x[i] = 0.0;
     x = solver_.solve(x).eval();
     std::vector<Eigen::Triplet<double>> entries;
     for (Structure::Beam const& beam : s.beams) {
@@ -202,7 +202,7 @@ class AxialForceStiffness {
 
  private:
   Structure const* structure_;
-  Index held_[6];
+  Index fixed_[6];
   Eigen::SimplicialLDLT<Structure::Sparse> solver_;
 };
 

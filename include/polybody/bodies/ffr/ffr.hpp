@@ -192,13 +192,13 @@ class Ffr {
     products.at_velocities(v.data() + 6);
     FfrBalance<T>(integrals(), terms_, products, q).force(v, out);
   }
-  /// Number of workspace entries for `unbalance`.
-  Index room() const { return FfrProducts<double>::room(deformations()); }
-  /// Residual M a − force. Both terms share J, H and their derivatives. `room` has `room()` entries, and `forces` has
-  /// as many entries as there are generalised velocities.
+  /// Number of workspace entries for `residual`.
+  Index workspace_size() const { return FfrProducts<double>::workspace_size(deformations()); }
+  /// Residual M a − force. Both terms share J, H and their derivatives. `workspace` has `workspace_size()` entries, and
+  /// `forces` has as many entries as there are generalised velocities.
   template <StateScalar T>
-  void unbalance(BodyMotion<T> const& x, VecXOf<T>& room, VecXOf<T>& forces, VecXOf<T>& out) const {
-    FfrProducts<T> products(made_of_->integrals, made_of_->stack, room.data());
+  void residual(BodyMotion<T> const& x, VecXOf<T>& workspace, VecXOf<T>& forces, VecXOf<T>& out) const {
+    FfrProducts<T> products(made_of_->integrals, made_of_->stack, workspace.data());
     products.at(x.q.data() + 7);
     products.at_velocities(x.v.data() + 6);
     products.at_rates(x.a.data() + 6);
@@ -374,7 +374,7 @@ class Ffr {
   template <class T>
   FfrProducts<T> own_products() const {
     static thread_local VecXOf<T> numbers;
-    if (numbers.size() < room()) numbers.resize(room());
+    if (numbers.size() < workspace_size()) numbers.resize(workspace_size());
     return {made_of_->integrals, made_of_->stack, numbers.data()};
   }
   FfrPoints const& made() const {

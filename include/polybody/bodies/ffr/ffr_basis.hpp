@@ -194,12 +194,12 @@ MatX in_frame(Structure const& s, MatX shapes, FfrFrame frame) {
     throw InvalidInput(
         "ffr.frame", {ErrorObject{"Ffr"}, ": nodes without rotations do not fix the frame. Use FfrFrame::mean_axes."});
   Index const last = s.size() - 6;
-  std::array<Index, 6> held = {0, 1, 2, 3, 4, 5};
-  if (frame == FfrFrame::simply_supported) held = {0, 1, 2, 3, last + 1, last + 2};
+  std::array<Index, 6> fixed = {0, 1, 2, 3, 4, 5};
+  if (frame == FfrFrame::simply_supported) fixed = {0, 1, 2, 3, last + 1, last + 2};
   MatX of_frame(6, shapes.cols()), of_rigid(6, 6);
   for (Index i = 0; i < 6; ++i) {
-    of_frame.row(i) = shapes.row(held[std::size_t(i)]);
-    of_rigid.row(i) = rigid.row(held[std::size_t(i)]);
+    of_frame.row(i) = shapes.row(fixed[std::size_t(i)]);
+    of_rigid.row(i) = rigid.row(fixed[std::size_t(i)]);
   }
   Eigen::FullPivLU<MatX> const solver(of_rigid);
   if (!solver.isInvertible())
@@ -207,7 +207,7 @@ MatX in_frame(Structure const& s, MatX shapes, FfrFrame frame) {
         "ffr.frame",
         {ErrorObject{"Ffr"}, ": FfrFrame::simply_supported needs a last node at a distance along x from the first."});
   shapes -= rigid * solver.solve(of_frame);
-  for (Index const i : held) shapes.row(i).setZero();
+  for (Index const i : fixed) shapes.row(i).setZero();
   return shapes;
 }
 

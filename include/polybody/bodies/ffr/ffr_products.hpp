@@ -37,10 +37,15 @@ struct FfrStack {
 template <class T>
 class FfrProducts {
  public:
-  static Index room(Index n) { return 15 * n; }  ///< number of workspace entries for n coordinates
-  /// Products in the workspace `room` with room(n) entries. All three arguments must outlive this object.
-  FfrProducts(FfrIntegrals const& integrals, FfrStack const& stack, T* room)
-      : i_(integrals), stack_(stack), n_(integrals.size()), x_(room), xd_(room + 10 * n_), xdd_(room + 14 * n_) {}
+  static Index workspace_size(Index n) { return 15 * n; }  ///< number of workspace entries for n coordinates
+  /// Products in a `workspace` with workspace_size(n) entries. All three arguments must outlive this object.
+  FfrProducts(FfrIntegrals const& integrals, FfrStack const& stack, T* workspace)
+      : i_(integrals),
+        stack_(stack),
+        n_(integrals.size()),
+        x_(workspace),
+        xd_(workspace + 10 * n_),
+        xdd_(workspace + 14 * n_) {}
 
   void at(T const* coordinates) { detail::times(stack_.of_coordinates, coordinates, x_); }  ///< q = `coordinates` (n)
   void at_velocities(T const* velocities) {

@@ -152,12 +152,12 @@ concept HasBodyResidual =
 template <class B, class T>
 struct ForceScratch {
   Vec<T, B::element_columns> x, force, weight;  ///< of an element: M a − f, force and weight
-  VecXOf<T> room;                               ///< of a body that computes its residual at once
+  VecXOf<T> workspace;                          ///< of a body that computes its residual at once
   /// Sets the sizes that are known at run time only from `body`.
   explicit ForceScratch([[maybe_unused]] B const& body) {
     if constexpr (B::element_columns == Eigen::Dynamic)
       for (auto* const v : {&x, &force, &weight}) v->resize(body.velocities());
-    if constexpr (requires { body.room(); }) room.resize(body.room());
+    if constexpr (requires { body.workspace_size(); }) workspace.resize(body.workspace_size());
   }
 };
 /// Workspace for the tangent and the mass matrix of an element.

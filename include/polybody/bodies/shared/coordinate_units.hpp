@@ -21,7 +21,7 @@ struct CoordinateUnits {
   char const* (*of_coordinate)(void const* body, Index i) = nullptr;
   /// Unit of generalised velocity i, such as "rad/s"; empty if the generalised velocities are the rates of the
   /// coordinates.
-  char const* (*of_speed)(void const* body, Index i) = nullptr;
+  char const* (*of_velocity)(void const* body, Index i) = nullptr;
 };
 
 /// Units of a body of type B.
@@ -33,7 +33,7 @@ constexpr CoordinateUnits units_of() {
       return static_cast<B const*>(body)->coordinate_unit(i);
     };
   if constexpr (requires(B const b) { b.velocity_unit(Index()); })
-    units.of_speed = [](void const* body, Index i) -> char const* {
+    units.of_velocity = [](void const* body, Index i) -> char const* {
       return static_cast<B const*>(body)->velocity_unit(i);
     };
   return units;

@@ -32,7 +32,7 @@ concept ComparableElements = IdenticalElements<B> && requires(B const b) {
   { b.has_same_elements(b) } -> std::convertible_to<bool>;
 };
 
-/// Elements [begin, end) of a body. `begin` is a multiple of `pack_size`. `end` is a multiple of `pack_size` or the
+/// Elements [begin, end) of a body. `begin` is a multiple of `simd_size`. `end` is a multiple of `simd_size` or the
 /// number of elements.
 struct ElementRange {
   Index begin, end;  ///< the first element, and one past the last
@@ -44,43 +44,43 @@ struct ElementCoefficients {
 
 namespace detail {
 
-/// Addresses of the numbers of `pack_size` elements.
-using PackFrom = std::array<double const*, std::size_t(pack_size)>;
-/// Addresses of the numbers of `pack_size` neighbours, where `x` is the address for the first one.
+/// Addresses of the numbers of `simd_size` elements.
+using SimdPointers = std::array<double const*, std::size_t(simd_size)>;
+/// Addresses of the numbers of `simd_size` neighbours, where `x` is the address for the first one.
 template <int stride>
-PackFrom neighbours(double const* x) {
-  PackFrom from;
-  for (int l = 0; l < pack_size; ++l) from[std::size_t(l)] = x + l * stride;
+SimdPointers neighbours(double const* x) {
+  SimdPointers from;
+  for (int l = 0; l < simd_size; ++l) from[std::size_t(l)] = x + l * stride;
   return from;
 }
-/// Addresses of the motion of `pack_size` elements.
+/// Addresses of the motion of `simd_size` elements.
 struct SimdMotion {
-  PackFrom q, v, a;
+  SimdPointers q, v, a;
 };
 
-/// SIMD vectors of the coordinates of `pack_size` elements.
+/// SIMD vectors of the coordinates of `simd_size` elements.
 template <int n>
-Vec<SimdVector<>, n> side_by_side(PackFrom const& x) {
-  static_assert(n % pack_size == 0);
+Vec<SimdVector<>, n> side_by_side(SimdPointers const& x) {
+  static_assert(n % simd_size == 0);
   Vec<SimdVector<>, n> packed;
-  std::array<SimdVector<>, pack_size> part;
-  for (int k = 0; k < n; k += pack_size) {
-    for (int l = 0; l < pack_size; ++l) part[std::size_t(l)] = SimdVector<>::load(x[std::size_t(l)] + k);
+  std::array<SimdVector<>, simd_size> part;
+  for (int k = 0; k < n; k += simd_size) {
+    for (int l = 0; l < simd_size; ++l) part[std::size_t(l)] = SimdVector<>::load(x[std::size_t(l)] + k);
     transpose(part);
-    for (int l = 0; l < pack_size; ++l) packed[k + l] = part[std::size_t(l)];
+    for (int l = 0; l < simd_size; ++l) packed[k + l] = part[std::size_t(l)];
   }
   return packed;
 }
-/// Inverse of `side_by_side`: writes to each of `pack_size` vectors or matrices its numbers plus those of `same`.
+/// Inverse of `side_by_side`: writes to each of `simd_size` vectors or matrices its numbers plus those of `same`.
 template <class Packed, class Each>
-void take_apart(Packed const& packed, Each const& same, std::array<Each, pack_size>& each) {
-  static_assert(Packed::SizeAtCompileTime % pack_size == 0);
-  std::array<SimdVector<>, pack_size> part;
-  for (int k = 0; k < Packed::SizeAtCompileTime; k += pack_size) {
-    for (int l = 0; l < pack_size; ++l) part[std::size_t(l)] = packed.data()[k + l];
+void take_apart(Packed const& packed, Each const& same, std::array<Each, simd_size>& each) {
+  static_assert(Packed::SizeAtCompileTime % simd_size == 0);
+  std::array<SimdVector<>, simd_size> part;
+  for (int k = 0; k < Packed::SizeAtCompileTime; k += simd_size) {
+    for (int l = 0; l < simd_size; ++l) part[std::size_t(l)] = packed.data()[k + l];
     transpose(part);
     SimdVector<> const base = SimdVector<>::load(same.data() + k);
-    for (int l = 0; l < pack_size; ++l) (part[std::size_t(l)] + base).store(each[std::size_t(l)].data() + k);
+    for (int l = 0; l < simd_size; ++l) (part[std::size_t(l)] + base).store(each[std::size_t(l)].data() + k);
   }
 }
 
@@ -94,22 +94,22 @@ bool are_alike(B const& body) {
 }
 
 /// End of the elements of a range that are processed in SIMD vectors. Each SIMD vector begins at a multiple of
-/// `pack_size`, so that the kernel of an element does not depend on the subdivision of a loop.
+/// `simd_size`, so that the kernel of an element does not depend on the subdivision of a loop.
 template <class B>
-Index packed_until(B const& body, ElementRange range) {
+Index batches_end(B const& body, ElementRange range) {
   if constexpr (IdenticalElements<B>) {
     if (!are_alike(body)) return range.begin;
-    Index const whole = body.elements() / pack_size * pack_size;
+    Index const whole = body.elements() / simd_size * simd_size;
     return std::max(range.begin, std::min(range.end, whole));
   } else {
     return range.begin;
   }
 }
 
-/// Residuals M a − force of `pack_size` elements like those of `body`.
+/// Residuals M a − force of `simd_size` elements like those of `body`.
 template <class B>
-void unbalance_of_pack(B const& body, SimdMotion const& x,
-                       std::array<Vec<double, B::element_columns>, pack_size>& each) {
+void residuals_of_batch(B const& body, SimdMotion const& x,
+                        std::array<Vec<double, B::element_columns>, simd_size>& each) {
   constexpr int n = B::element_columns;
   Vec<SimdVector<>, n> inertia, elastic;
   body.template element_inertia<SimdVector<>>(side_by_side<n>(x.a), inertia);
@@ -121,62 +121,62 @@ void unbalance_of_pack(B const& body, SimdMotion const& x,
 
 /// Residual M a − force of one element, written to scratch.x.
 template <class B, StateScalar T>
-void unbalance_of_one(B const& body, Index e, BodyMotion<T> const& x, ForceScratch<B, T>& scratch) {
-  if constexpr (requires { body.template unbalance<T>(x, scratch.room, scratch.force, scratch.x); })
-    return body.template unbalance<T>(x, scratch.room, scratch.force, scratch.x);
+void residual_of_one(B const& body, Index e, BodyMotion<T> const& x, ForceScratch<B, T>& scratch) {
+  if constexpr (requires { body.template residual<T>(x, scratch.workspace, scratch.force, scratch.x); })
+    return body.template residual<T>(x, scratch.workspace, scratch.force, scratch.x);
   else
     body.template inertia<T>(e, x.q, x.a, scratch.x);
   body.template force<T>(e, x.q, x.v, scratch.force);
   for (int k = 0; k < int(scratch.x.size()); ++k) scratch.x[k] -= scratch.force[k];
 }
 
-/// Tangents `inertia` + cd D + ck K of `pack_size` elements like those of `body`.
+/// Tangents `inertia` + cd D + ck K of `simd_size` elements like those of `body`.
 template <class B>
-void tangent_of_pack(B const& body, SimdMotion const& x, ElementCoefficients c,
-                     Mat<double, B::element_columns, B::element_columns> const& inertia,
-                     std::array<Mat<double, B::element_columns, B::element_columns>, pack_size>& each) {
+void tangents_of_batch(B const& body, SimdMotion const& x, ElementCoefficients c,
+                       Mat<double, B::element_columns, B::element_columns> const& inertia,
+                       std::array<Mat<double, B::element_columns, B::element_columns>, simd_size>& each) {
   constexpr int n = B::element_columns;
-  Mat<SimdVector<>, n, n> packs;
+  Mat<SimdVector<>, n, n> filled;
   body.template element_tangent<SimdVector<>>(side_by_side<n>(x.q), side_by_side<n>(x.v), c.stiffness, c.damping,
-                                              packs);
-  take_apart(packs, inertia, each);
+                                              filled);
+  take_apart(filled, inertia, each);
 }
 
-/// Addresses of the motion of `pack_size` neighbours in a body, from element `first` on.
+/// Addresses of the motion of `simd_size` neighbours in a body, from element `first` on.
 template <class B>
 SimdMotion motion_of_neighbours(B const& body, Index first, BodyMotion<> const& x) {
   constexpr int stride = B::element_stride;
   Index const column = body.first_column(first);
   double const* const a = x.a.empty() ? nullptr : x.a.data() + column;
   return {neighbours<stride>(x.q.data() + column), neighbours<stride>(x.v.data() + column),
-          a ? neighbours<stride>(a) : PackFrom{}};
+          a ? neighbours<stride>(a) : SimdPointers{}};
 }
 
 }  // namespace detail
 
 /// Calls f(e, M a − force) for the elements of a range.
 template <Body B, StateScalar T, class F>
-void for_each_unbalance(B const& body, ElementRange range, BodyMotion<T> const& x, ForceScratch<B, T>& scratch, F&& f) {
+void for_each_residual(B const& body, ElementRange range, BodyMotion<T> const& x, ForceScratch<B, T>& scratch, F&& f) {
   auto [e, end] = range;
   if constexpr (IdenticalElements<B> && std::same_as<T, double>) {
-    Index const packed = detail::packed_until(body, range);
-    std::array<Vec<double, B::element_columns>, pack_size> each;
-    for (; e < packed; e += pack_size) {
-      detail::unbalance_of_pack(body, detail::motion_of_neighbours(body, e, x), each);
-      for (int l = 0; l < pack_size; ++l) f(e + l, each[std::size_t(l)]);
+    Index const packed = detail::batches_end(body, range);
+    std::array<Vec<double, B::element_columns>, simd_size> each;
+    for (; e < packed; e += simd_size) {
+      detail::residuals_of_batch(body, detail::motion_of_neighbours(body, e, x), each);
+      for (int l = 0; l < simd_size; ++l) f(e + l, each[std::size_t(l)]);
     }
   }
   for (; e < end; ++e) {
-    detail::unbalance_of_one<B, T>(body, e, x, scratch);
+    detail::residual_of_one<B, T>(body, e, x, scratch);
     f(e, scratch.x);
   }
 }
 
 /// Calls f(e, M a − force) for the elements of a range, with a workspace of its own.
 template <Body B, StateScalar T, class F>
-void for_each_unbalance(B const& body, ElementRange range, BodyMotion<T> const& x, F&& f) {
+void for_each_residual(B const& body, ElementRange range, BodyMotion<T> const& x, F&& f) {
   ForceScratch<B, T> scratch(body);
-  for_each_unbalance<B, T>(body, range, x, scratch, f);
+  for_each_residual<B, T>(body, range, x, scratch, f);
 }
 
 /// Calls f(e, cm M + cd D + ck K) for the elements of a range.
@@ -196,12 +196,12 @@ void for_each_element_tangent(B const& body, ElementRange range, BodyMotion<> co
   };
   auto [e, end] = range;
   if constexpr (IdenticalElements<B>) {
-    Index const packed = detail::packed_until(body, range);
-    std::array<Mat<double, n, n>, pack_size> each;
+    Index const packed = detail::batches_end(body, range);
+    std::array<Mat<double, n, n>, simd_size> each;
     if (e < packed) inertia(e);
-    for (; e < packed; e += pack_size) {
-      detail::tangent_of_pack(body, detail::motion_of_neighbours(body, e, x), c, m, each);
-      for (int l = 0; l < pack_size; ++l) f(e + l, each[std::size_t(l)]);
+    for (; e < packed; e += simd_size) {
+      detail::tangents_of_batch(body, detail::motion_of_neighbours(body, e, x), c, m, each);
+      for (int l = 0; l < simd_size; ++l) f(e + l, each[std::size_t(l)]);
     }
   }
   for (; e < end; ++e) {

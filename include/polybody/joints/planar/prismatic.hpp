@@ -26,10 +26,10 @@ struct Prismatic {
 
   template <StateScalar T>
   ConstraintTerms<2, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
-    ConstraintTerms<2, T> gap;
-    polybody::constraint_functions::no_slide(axis_of(a, 1), a, b, gap, 0);
-    polybody::constraint_functions::perpendicular(axis_of(a, 1), axis_of(b, 0), gap, 1);
-    return gap;
+    ConstraintTerms<2, T> terms;
+    polybody::constraint_functions::no_slide(axis_of(a, 1), a, b, terms, 0);
+    polybody::constraint_functions::perpendicular(axis_of(a, 1), axis_of(b, 0), terms, 1);
+    return terms;
   }
   template <StateScalar T>
   Vec<T, 2> gamma(Frame<T> const& a, Frame<T> const& b, double) const {

@@ -16,13 +16,13 @@ struct Revolute {
 
   template <StateScalar T>
   ConstraintTerms<2, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
-    ConstraintTerms<2, T> gap;
+    ConstraintTerms<2, T> terms;
     for (int i = 0; i < 2; ++i) {
-      gap.g[i] = b.r[i] - a.r[i];
-      gap.Ga(i, i) = T(-1.0);
-      gap.Gb(i, i) = T(1.0);
+      terms.g[i] = b.r[i] - a.r[i];
+      terms.Ga(i, i) = T(-1.0);
+      terms.Gb(i, i) = T(1.0);
     }
-    return gap;
+    return terms;
   }
   template <StateScalar T>
   Vec<T, 2> gamma(Frame<T> const&, Frame<T> const&, double) const {

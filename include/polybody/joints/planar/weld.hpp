@@ -17,14 +17,14 @@ struct Weld {
 
   template <StateScalar T>
   ConstraintTerms<3, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
-    ConstraintTerms<3, T> gap;
+    ConstraintTerms<3, T> terms;
     for (int i = 0; i < 2; ++i) {
-      gap.g[i] = b.r[i] - a.r[i];
-      gap.Ga(i, i) = T(-1.0);
-      gap.Gb(i, i) = T(1.0);
+      terms.g[i] = b.r[i] - a.r[i];
+      terms.Ga(i, i) = T(-1.0);
+      terms.Gb(i, i) = T(1.0);
     }
-    polybody::constraint_functions::perpendicular(axis_of(a, 1), axis_of(b, 0), gap, 2);
-    return gap;
+    polybody::constraint_functions::perpendicular(axis_of(a, 1), axis_of(b, 0), terms, 2);
+    return terms;
   }
   template <StateScalar T>
   Vec<T, 3> gamma(Frame<T> const& a, Frame<T> const& b, double) const {

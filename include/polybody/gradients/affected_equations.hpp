@@ -16,79 +16,79 @@ namespace polybody::detail {
 /// Marks the equations of the full model that depend on a parameter: balance equations by velocities, then constraint
 /// equations. \throws InvalidInput for a name that the model does not have.
 template <class = void>
-std::vector<char> touched_in_full(ModelLayout const& layout, Parameter const& p) {
-  std::vector<char> touched(std::size_t(layout.velocities + layout.rows), p.affects.empty());
-  auto const touch = [&](Index first, Index count) {
-    for (Index i = first; i < first + count; ++i) touched[std::size_t(i)] = 1;
+std::vector<char> affected_in_full(ModelLayout const& layout, Parameter const& p) {
+  std::vector<char> affected(std::size_t(layout.velocities + layout.rows), p.affects.empty());
+  auto const mark = [&](Index first, Index count) {
+    for (Index i = first; i < first + count; ++i) affected[std::size_t(i)] = 1;
   };
-  auto const touch_owner = [&](Index marker) {
+  auto const mark_owner = [&](Index marker) {
     if (Index const body = marker < 0 ? -1 : layout.owners[std::size_t(marker)]; body >= 0)
-      touch(layout.bodies[std::size_t(body)].v0, layout.bodies[std::size_t(body)].velocities);
+      mark(layout.bodies[std::size_t(body)].v0, layout.bodies[std::size_t(body)].velocities);
   };
   for (std::string const& name : p.affects) {
     bool found = false;
     for (BodyLayout const& b : layout.bodies)
       if (b.name == name) {
-        touch(b.v0, b.velocities);
-        if (b.rows > 0) touch(layout.velocities + b.row, b.rows);
+        mark(b.v0, b.velocities);
+        if (b.rows > 0) mark(layout.velocities + b.row, b.rows);
         found = true;
       }
     for (JointLayout const& j : layout.joints)
       if (j.name == name) {
-        if (j.rows > 0) touch(layout.velocities + j.row, j.rows);
-        touch_owner(j.a);
-        touch_owner(j.b);
+        if (j.rows > 0) mark(layout.velocities + j.row, j.rows);
+        mark_owner(j.a);
+        mark_owner(j.b);
         found = true;
       }
     for (ForceLayout const& f : layout.forces)
       if (f.name == name) {
-        if (f.states > 0) touch(f.v0, f.states);
-        for (Index const marker : f.markers) touch_owner(marker);
+        if (f.states > 0) mark(f.v0, f.states);
+        for (Index const marker : f.markers) mark_owner(marker);
         found = true;
       }
     if (!found)
-      throw InvalidInput("parameter.affects", {"Parameter \"", ErrorObject{p.name}, "\" touches \"", name,
+      throw InvalidInput("parameter.affects", {"Parameter \"", ErrorObject{p.name}, "\" affects \"", name,
                                                "\", but the model has no body, joint or force of that name."});
   }
-  return touched;
+  return affected;
 }
 /// Marks the equations of a time step, from the marked equations of the full model. Forces on eliminated coordinates
 /// act on the independent coordinates. If an eliminated joint depends on the parameter, its elimination may change, and
 /// all equations are marked. In joint coordinates the assignment depends on the configuration, and all equations are
 /// marked.
 template <class = void>
-std::vector<char> touched_in_step(System const& system, std::vector<char> const& full) {
+std::vector<char> affected_in_step(System const& system, std::vector<char> const& full) {
   Coordinates const& c = system.step_coordinates();
   if (!c) return full;
   if (!c.reduced->keeps_mass_constant) return std::vector<char>(std::size_t(system.size()), 1);
   Index const velocities = system.layout().velocities;
-  std::vector<char> touched(std::size_t(system.size()), 0), stays(full.size(), 0);
+  std::vector<char> affected(std::size_t(system.size()), 0), stays(full.size(), 0);
   for (std::size_t i = 0; i < c.reduced->remaining_equations.size(); ++i) {
     std::size_t const row = std::size_t(velocities + c.reduced->remaining_equations[i]);
     stays[row] = 1;
-    touched[std::size_t(system.velocities()) + i] = full[row];
+    affected[std::size_t(system.velocities()) + i] = full[row];
   }
   VecX force(velocities), reduced(system.velocities());
   for (Index i = 0; i < Index(full.size()); ++i) {
     if (!full[std::size_t(i)]) continue;
-    if (i >= velocities && !stays[std::size_t(i)]) return std::vector<char>(touched.size(), 1);
+    if (i >= velocities && !stays[std::size_t(i)]) return std::vector<char>(affected.size(), 1);
     if (i >= velocities) continue;
     force.setZero();
     force[i] = 1.0;
     c.entries->reduce(c.self.get(), force, reduced);
     for (Index k = 0; k < reduced.size(); ++k)
-      if (reduced[k] != 0.0) touched[std::size_t(k)] = 1;
+      if (reduced[k] != 0.0) affected[std::size_t(k)] = 1;
   }
-  return touched;
+  return affected;
 }
 /// Numbers of the equations of a step that depend on a parameter, ascending: balance equations by velocities, then
 /// constraint equations. \throws InvalidInput for a name that the model does not have.
 template <class = void>
-std::vector<Index> touched_equations(System const& system, Parameter const& p) {
-  std::vector<char> const touched = touched_in_step(system, touched_in_full(system.layout(), p));
+std::vector<Index> affected_equations(System const& system, Parameter const& p) {
+  std::vector<char> const affected = affected_in_step(system, affected_in_full(system.layout(), p));
   std::vector<Index> equations;
-  for (std::size_t i = 0; i < touched.size(); ++i)
-    if (touched[i]) equations.push_back(Index(i));
+  for (std::size_t i = 0; i < affected.size(); ++i)
+    if (affected[i]) equations.push_back(Index(i));
   return equations;
 }
 
@@ -100,7 +100,7 @@ template <class = void>
   std::size_t count = 0;
   auto const look = [&](char const* kind, std::string const& name) {
     if (std::find(p.affects.begin(), p.affects.end(), name) != p.affects.end()) return;
-    std::vector<Index> const of = touched_equations(system, {.name = p.name, .affects = {name}});
+    std::vector<Index> const of = affected_equations(system, {.name = p.name, .affects = {name}});
     if (!std::binary_search(of.begin(), of.end(), i) || ++count > 5) return;
     list += sentence_of({list.empty() ? "" : ", ", kind, " \"", name, "\""});
   };
