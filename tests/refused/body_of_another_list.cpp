@@ -1,4 +1,4 @@
-// refused: add
+// refused: The type of this body is not in the model's list. Add it to Model
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/system/model.hpp>

@@ -6,6 +6,13 @@
 file(STRINGS ${SOURCE} first_line LIMIT_COUNT 1)
 if(first_line MATCHES "^// refused: (.+)$")
   set(expected "${CMAKE_MATCH_1}")
+  # A single word could be the compiler's own. Required<...> is the exception: no compiler prints a sentence for a member
+  # without an initialiser, and the name of the type is the reason.
+  string(REGEX MATCHALL "[A-Za-z<>]+" words "${expected}")
+  list(LENGTH words count)
+  if(count LESS 4 AND NOT expected STREQUAL "Required")
+    message(FATAL_ERROR "${SOURCE}: '${expected}' is no sentence; write at least four words of it")
+  endif()
 elseif(NOT first_line STREQUAL "// accepted")
   message(FATAL_ERROR "${SOURCE}: the first line must be '// refused: <regex>' or '// accepted'")
 endif()

@@ -1,4 +1,4 @@
-// refused: has no stabilisation
+// refused: This explicit integrator has no stabilisation
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/planar/revolute.hpp>

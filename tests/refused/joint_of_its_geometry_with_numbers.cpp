@@ -1,4 +1,4 @@
-// refused: Required
+// refused: The parameters of this policy have no default values. Give them after the geometry
 // The geometry alone makes no joint if the policy has numbers.
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/revolute.hpp>

@@ -1,4 +1,4 @@
-// refused: Required
+// refused: The parameters of this policy have no default values. Give them after the geometry
 // Physical parameters have no default.
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/spherical.hpp>

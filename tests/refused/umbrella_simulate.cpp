@@ -1,4 +1,4 @@
-// refused: has no stabilisation
+// refused: This explicit integrator has no stabilisation
 #include <polybody/polybody.hpp>
 
 using namespace polybody;

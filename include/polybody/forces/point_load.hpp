@@ -27,8 +27,11 @@ Vec<T, 3> load_in_world(Vec3 const& load, double scale, LoadAxes axes, Frame<T> 
 }  // namespace detail
 
 /// Force on a marker, `force` times a function of time.
-template <TimeFunction Law = Constant>
+template <class Law = Constant>
 struct PointForce {
+  static_assert(TimeFunction<Law>,
+                "The law must be a function of time that returns a Motion. Write a lambda as "
+                "[](double t) -> Motion { return {value, rate, acceleration}; }.");
   static constexpr int markers = 1;
   static constexpr bool is_load = true;
   static constexpr MarkerKind needs = MarkerKind::point;
@@ -52,8 +55,11 @@ struct PointForce {
 
 /// Moment on a marker, `moment` times a function of time. In space a dead moment is not conservative. If a marker
 /// provides only its tangent, only the part of the moment orthogonal to the tangent acts.
-template <TimeFunction Law = Constant>
+template <class Law = Constant>
 struct PointMoment {
+  static_assert(TimeFunction<Law>,
+                "The law must be a function of time that returns a Motion. Write a lambda as "
+                "[](double t) -> Motion { return {value, rate, acceleration}; }.");
   static constexpr int markers = 1;
   static constexpr bool is_load = true;
   static constexpr MarkerKind needs = MarkerKind::axis;

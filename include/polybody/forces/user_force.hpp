@@ -23,9 +23,23 @@ struct UserForce {
   }
 };
 
+/// Lambda of N frames and time that returns N wrenches, for frames and wrenches of the scalar T.
+template <class Law, int N, class T>
+concept WrenchLaw = requires(Law const law, std::array<Frame<T>, N> const frames, double t) {
+  { law(frames, t) } -> std::convertible_to<std::array<Wrench<T>, N>>;
+};
+
 /// Creates a force on N markers from a lambda `law`: law(frames, t) returns their wrenches.
 template <int N, class Law>
 UserForce<N, Law> user_force(Law law) {
+  static_assert(
+      WrenchLaw<Law, N, double>,
+      "The lambda of user_force<N> must accept (frames, t) and return std::array<Wrench<T>, N>, one wrench for "
+      "each of the N markers.");
+  static_assert(!WrenchLaw<Law, N, double> || WrenchLaw<Law, N, Dual<6 * N>>,
+                "The lambda of user_force must return wrenches of the scalar T of its frames, because dual numbers "
+                "provide the tangent. Replace Wrench<double> by Wrench<T>, T = "
+                "std::decay_t<decltype(frames[0].r[0])>.");
   return {std::move(law)};
 }
 

@@ -16,6 +16,15 @@ constexpr auto measured_by() {
   else
     return std::type_identity<G>{};
 }
+
+/// Policy of a joint that is made from its geometry alone. The deduced type makes the refusal the first error.
+template <class P>
+constexpr auto default_policy() {
+  static_assert(std::is_default_constructible_v<P>,
+                "The parameters of this policy have no default values. Give them after the geometry: "
+                "Joint<Revolute, Penalty>{Revolute{}, {.stiffness = 1e8, .damping = 1e4}}.");
+  if constexpr (std::is_default_constructible_v<P>) return P{};
+}
 }  // namespace detail
 
 /// G declares its free directions if P needs them: a bushing acts on all other directions.
@@ -33,11 +42,12 @@ template <class P, class G>
 concept HolonomicOrConstrained = ConstrainingPolicy<P> || nonholonomic_equations<G>() == 0;
 
 /// A joint consists of a geometry (the motions that it prevents) and a policy (the enforcement of its constraint
-/// equations). `Joint{Revolute{.axis = axis}}` has the policy `Constraint`, and `Joint{Revolute{.axis = axis},
-/// Penalty{.stiffness = k, .damping = c}}` has another policy. If a policy has no parameters, `Joint<G, P>{geometry}`
-/// needs no policy.
-template <class G, class P>
+/// equations). `Joint{Revolute{.axis = axis}}` and the type `Joint<Revolute>` have the policy `Constraint`, and
+/// `Joint{Revolute{.axis = axis}, Penalty{.stiffness = k, .damping = c}}` has another policy. If a policy has no
+/// parameters, `Joint<G, P>{geometry}` needs no policy.
+template <class G, class P = Constraint>
 struct Joint {
+  static_assert(sizeof(G) > 0);  // the first use of G, so that its own refusals have a short context
   static_assert(JointGeometry<G> || detail::GeometryRefusal<G>::checked);
   static_assert(Policy<P> || detail::PolicyRefusal<P>::checked);
   using Geometry = G;    ///< motions that the joint prevents
@@ -51,8 +61,8 @@ struct Joint {
   static_assert(!Policy<P> || HolonomicOrConstrained<P, G>,
                 "This geometry is nonholonomic (it constrains velocities), so that a compliant policy has no violation "
                 "to act on. Use Constraint.");
-  G geometry = {};  ///< motions that the joint prevents
-  P policy = {};    ///< enforcement of the constraint equations
+  G geometry = {};                         ///< motions that the joint prevents
+  P policy = detail::default_policy<P>();  ///< enforcement of the constraint equations
 
   /// Constraint function of the policy: the geometry itself for most policies.
   decltype(auto) measure() const {

@@ -13,8 +13,11 @@ namespace polybody {
 ///   g = θ − ψ, θ = atan2(a₂·b₁, a₁·b₁)      [Haug 1989, §3.5]
 /// wrapped to [−π, π], so that full turns need no count. If b₁ is in the plane of a₁, a₂ (as with the Revolute), ġ =
 /// a₃·(ω_b − ω_a) − ψ̇ exactly.
-template <TimeFunction Law>
+template <class Law>
 struct PrescribedAngle {
+  static_assert(TimeFunction<Law>,
+                "The law must be a function of time that returns a Motion. Write a lambda as "
+                "[](double t) -> Motion { return {value, rate, acceleration}; }.");
   static constexpr char const* name = "PrescribedAngle";
   static constexpr int rows = 1;
   static constexpr MarkerKind needs = MarkerKind::frame;

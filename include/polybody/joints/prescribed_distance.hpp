@@ -6,8 +6,11 @@ namespace polybody {
 
 /// Linear actuator between two points, in the plane and in space. 1 constraint equation
 ///   g = |r_b − r_a| − L − x(t)      [Haug 1989, §3.5, there squared].
-template <TimeFunction Law>
+template <class Law>
 struct PrescribedDistance {
+  static_assert(TimeFunction<Law>,
+                "The law must be a function of time that returns a Motion. Write a lambda as "
+                "[](double t) -> Motion { return {value, rate, acceleration}; }.");
   static constexpr char const* name = "PrescribedDistance";
   static constexpr int rows = 1;
   static constexpr MarkerKind needs = MarkerKind::point;

@@ -8,8 +8,11 @@ namespace polybody {
 /// it together with a joint that permits this translation. 1 constraint equation
 ///   g = a₃·(r_b − r_a) − s      [Haug 1989, §3.5].
 /// World::both: in the plane, the axis is a vector in the plane.
-template <TimeFunction Law>
+template <class Law>
 struct PrescribedTranslation {
+  static_assert(TimeFunction<Law>,
+                "The law must be a function of time that returns a Motion. Write a lambda as "
+                "[](double t) -> Motion { return {value, rate, acceleration}; }.");
   static constexpr char const* name = "PrescribedTranslation";
   static constexpr int rows = 1;
   static constexpr MarkerKind needs = MarkerKind::frame;

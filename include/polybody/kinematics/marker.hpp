@@ -3,6 +3,7 @@
 /// Markers, material points of a body in a model, and handles of bodies.
 
 #include <cstdint>
+#include <initializer_list>
 #include <string>
 
 #include <polybody/kinematics/body_table.hpp>
@@ -12,6 +13,13 @@
 namespace polybody {
 
 namespace detail {
+/// Refuses a point in braces.
+template <class B>
+constexpr void refuse_point() {
+  static_assert(std::is_void_v<B>,
+                "This body has no such point. A bar has at(s), the distance along its axis [m]; a rigid body has "
+                "at({x, y, z}) [m], a planar one at({x, y}). The members `at` of the body list all forms.");
+}
 /// \throws InvalidInput for the serial number 0, which belongs to no model.
 inline void require_filled(std::uint64_t model) {
   if (model == 0)
@@ -99,6 +107,15 @@ struct BodyHandle {
     requires requires(B const b) { b.centre(); }
   {
     return named([](B const& on) { return on.centre(); });
+  }
+  /// Refuses numbers in braces for a body whose function `at` accepts no such point. `requires { handle.at(x); }` stays
+  /// false for an invalid x without braces.
+  template <class Body = B>
+    requires(
+        !requires(B const b, Vec3 p) { b.at(p); } && !requires(B const b, Vec2 p) { b.at(p); })
+  auto at(std::initializer_list<double>) const {
+    detail::refuse_point<Body>();
+    return Marker<B>{};
   }
 
  private:

@@ -38,10 +38,10 @@ template <int n>
 constexpr std::array<double, n> legendre_roots() {
   std::array<double, n> roots{};
   if constexpr (n > 1) {
-    constexpr std::array<double, n - 1> fence = legendre_roots<n - 1>();
-    for (int i = 0; i < n; ++i) {
+    constexpr auto fence = legendre_roots<n - 1>();
+    for (std::size_t i = 0; i < roots.size(); ++i) {
       double lo = i == 0 ? -1.0 + 1e-12 : fence[i - 1];
-      double hi = i == n - 1 ? 1.0 - 1e-12 : fence[i];
+      double hi = i + 1 == roots.size() ? 1.0 - 1e-12 : fence[i];
       bool const rising = legendre(n, hi).p > 0.0;
       for (int k = 0; k < 8; ++k) {
         double const mid = 0.5 * (lo + hi);
@@ -64,8 +64,8 @@ constexpr std::array<double, n> legendre_roots() {
 template <int n>
 constexpr std::array<GaussPoint, n> gauss_rule() {
   std::array<GaussPoint, n> rule{};
-  std::array<double, n> const roots = legendre_roots<n>();
-  for (int i = 0; i < n; ++i) {
+  auto const roots = legendre_roots<n>();
+  for (std::size_t i = 0; i < rule.size(); ++i) {
     double const dp = n == 1 ? 1.0 : legendre(n, roots[i]).dp;
     rule[i] = {0.5 * (1.0 + roots[i]), 1.0 / ((1.0 - roots[i] * roots[i]) * dp * dp)};
   }

@@ -49,6 +49,43 @@ constexpr void refuse_temporary() {
 }
 }  // namespace detail
 
+/// Refuses a temporary or constant state. The deduced type makes the refusal the first error.
+template <LinearSolver Solver = DefaultSolver, class M, Integrator I>
+auto simulate(M const& model, State const&, I const& integrator, RunOptions options) {
+  static_assert(std::is_void_v<M>,
+                "A run changes its state, so that a temporary or constant state is refused. Put the state into a "
+                "variable: State x = model.reference_state(); simulate(model, x, integrator, options).");
+  State* const none = nullptr;
+  return simulate<Solver>(model, *none, integrator, std::move(options));
+}
+/// Refuses a state in place of the model.
+template <class M, class I>
+auto simulate(State const&, M const&, I const&, RunOptions) {
+  static_assert(std::is_void_v<M>,
+                "The model must be the first argument: simulate(model, state, integrator, options).");
+}
+/// Refuses a run without an integrator.
+template <class M>
+auto simulate(M const&, State&, RunOptions) {
+  static_assert(std::is_void_v<M>,
+                "A run needs an integrator before its options: simulate(model, state, GeneralisedAlpha{}, options).");
+}
+/// Refuses a run without options.
+template <class M, class I>
+  requires(!std::is_same_v<I, RunOptions>)
+auto simulate(M const&, State&, I const&) {
+  static_assert(std::is_void_v<M>,
+                "A run needs options: simulate(model, state, integrator, {.end_time = 1.0, .step = 1e-3}), both in s.");
+}
+/// Refuses what is no integrator.
+template <LinearSolver Solver = DefaultSolver, class M, class I>
+  requires(!Integrator<I>)
+auto simulate(M const&, State&, I const&, RunOptions) {
+  static_assert(std::is_void_v<M>,
+                "The third argument of simulate must be an integrator, such as GeneralisedAlpha{}. A user-defined type "
+                "needs the members of the concept Integrator, see docs/extending.md.");
+}
+
 /// Refuses a temporary model, to which the run would keep a reference.
 template <LinearSolver Solver = DefaultSolver, class M, class I>
 void simulate(M const&&, State&, I const&, RunOptions) {

@@ -2,9 +2,27 @@
 /// \file
 /// Compile-time messages for lists of types that cannot form a model. Each message names the missing member.
 
+#include <tuple>
+
 #include <polybody/bodies/shared/body.hpp>
+#include <polybody/joints/joint.hpp>
 #include <polybody/math/type_list.hpp>
 #include <polybody/system/pools.hpp>
+
+namespace polybody {
+
+namespace detail {
+template <class J>
+inline constexpr bool is_joint_type = requires { typename J::PolicyType; };
+template <class G, class P>
+inline constexpr bool is_joint_type<Joint<G, P>> = true;  // without an instantiation, whose refusals come later
+}  // namespace detail
+
+/// Type of a joint: a `Joint`, or a type with its members.
+template <class J>
+concept JointType = detail::is_joint_type<J>;
+
+}  // namespace polybody
 
 namespace polybody::detail {
 
@@ -117,6 +135,16 @@ struct ForceRefusal {
 template <class... Ts>
 inline constexpr bool no_const = (!std::is_const_v<Ts> && ...);
 
+/// Position of a list among the arguments of `Model`; zero for other types.
+template <class List>
+inline constexpr int position_of_list = 0;
+template <class... Bs>
+inline constexpr int position_of_list<Bodies<Bs...>> = 1;
+template <class... Js>
+inline constexpr int position_of_list<Joints<Js...>> = 2;
+template <class... Fs>
+inline constexpr int position_of_list<Forces<Fs...>> = 3;
+
 template <class List>
 struct ListRefusal {
   static_assert(sizeof(List) == 0, "A model needs lists of types: Model<Bodies<...>, Joints<...>, Forces<...>>.");
@@ -137,6 +165,8 @@ struct ListRefusal<Joints<Js...>> {
                 "declare the object by `auto`.");
   static_assert(Distinct<Js...>,
                 "A joint type occurs twice in a model's Joints. List it once; it is used for any number of joints.");
+  static_assert((JointType<Js> && ...),
+                "Joints<...> must list joints. Joint<Revolute> makes a joint from the geometry Revolute.");
   static constexpr bool checked = true;
 };
 template <class... Fs>
@@ -148,5 +178,66 @@ struct ListRefusal<Forces<Fs...>> {
                 "A force type occurs twice in a model's Forces. List it once; it is used for any number of forces.");
   static constexpr bool checked = ((AppliedForce<Fs> || sizeof(ForceRefusal<Fs>) > 0) && ...);
 };
+
+/// Refuses a body whose type is not in the model's list.
+template <class B>
+constexpr void refuse_body() {
+  static_assert(Body<B> || JointType<B> || AppliedForce<B>,
+                "The argument of add must be a body. Make a body from a bar, for example Rigid<>::from(bar).");
+  static_assert(!JointType<B>, "The argument of add is a joint. Use model.connect(joint, a, b).");
+  static_assert(!AppliedForce<B>, "The argument of add is a force. Use model.apply(force, a, b).");
+  static_assert(!Body<B>, "The type of this body is not in the model's list. Add it to Model<Bodies<...>, ...>.");
+}
+/// Refuses a joint whose type is not in the model's list.
+template <class J>
+constexpr void refuse_joint() {
+  static_assert(JointType<J> || Body<J> || AppliedForce<J>,
+                "The first argument of connect must be a joint. Joint{Revolute{.axis = axis}} makes a joint from a "
+                "geometry.");
+  static_assert(!JointType<J>,
+                "The type of this joint is not in the model's list. Add Joint<Geometry, Policy>, with this geometry "
+                "and this policy, to Model<Bodies<...>, Joints<...>>.");
+  static_assert(!Body<J>, "The first argument of connect is a body. Use model.add(body).");
+  static_assert(!AppliedForce<J>, "The first argument of connect is a force. Use model.apply(force, a, b).");
+}
+/// Refuses a force whose type is not in the model's list.
+template <class F>
+constexpr void refuse_force() {
+  static_assert(
+      AppliedForce<F> || JointType<F>,
+      "The first argument of apply must be a force element. user_force<markers>(lambda) makes a force element "
+      "from a lambda.");
+  static_assert(!AppliedForce<F>,
+                "The type of this force is not in the model's list. Add it to Model<Bodies<...>, Joints<...>, "
+                "Forces<...>>.");
+  static_assert(!JointType<F>, "The first argument of apply is a joint. Use model.connect(joint, a, b).");
+}
+
+template <class T>
+inline constexpr bool is_marker = false;
+template <class B>
+inline constexpr bool is_marker<Marker<B>> = true;
+template <class T>
+inline constexpr bool is_marker_tuple = false;
+template <class... Ms>
+inline constexpr bool is_marker_tuple<std::tuple<Ms...>> = true;
+/// Number of markers among the arguments Ts.
+template <class... Ts>
+inline constexpr int marker_count = (int(is_marker<Ts>) + ... + 0);
+
+/// Refuses a joint whose arguments are not two markers.
+template <class J>
+constexpr void refuse_joint_ends() {
+  static_assert(std::is_void_v<J>,
+                "A joint connects two markers. A handle of a body makes a marker: model.connect(joint, a.at(point), "
+                "b.at(point)).");
+}
+/// Refuses a force whose arguments are not its markers.
+template <class F>
+constexpr void refuse_force_ends() {
+  static_assert(std::is_void_v<F>,
+                "A force element needs as many markers as its constant `markers`. A handle of a body makes a marker: "
+                "model.apply(force, a.at(point), b.at(point)). Put more than two markers into a std::tuple.");
+}
 
 }  // namespace polybody::detail

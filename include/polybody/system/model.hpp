@@ -15,6 +15,9 @@ namespace polybody {
 /// Primary template for invalid lists of types: a static assertion gives the reason.
 template <class BodyList, class JointList, class ForceList = Forces<>>
 class Model {
+  static_assert(detail::position_of_list<BodyList> == 1 && detail::position_of_list<JointList> == 2 &&
+                    detail::position_of_list<ForceList> == 3,
+                "The lists of a model must have this order: Model<Bodies<...>, Joints<...>, Forces<...>>.");
   static_assert(detail::ListRefusal<BodyList>::checked && detail::ListRefusal<JointList>::checked &&
                 detail::ListRefusal<ForceList>::checked);
 };
@@ -22,7 +25,8 @@ class Model {
 /// Bodies, joints and forces of one mechanism: `Model<Bodies<…>, Joints<…>, Forces<…>> model{Gravity{0, 0, -9.81}};`.
 /// `add`, `connect` and `apply` add the parts.
 template <Body... Bs, class... Js, AppliedForce... Fs>
-  requires Distinct<Bs...> && Distinct<Js...> && Distinct<Fs...> && detail::no_const<Bs..., Js..., Fs...>
+  requires Distinct<Bs...> && Distinct<Js...> && Distinct<Fs...> && detail::no_const<Bs..., Js..., Fs...> &&
+           (JointType<Js> && ...)
 class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
  public:
   using BodyPools = std::tuple<detail::BodyPool<Bs>...>;               ///< one pool for each type of body
@@ -50,6 +54,13 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   BodyHandle<B> add(B const& body, std::string name = "") {
     return detail::add_body(parts_, std::get<detail::BodyPool<B>>(bodies_), body, std::move(name));
   }
+  /// Refuses a body whose type is not in the model's list. The deduced type makes the refusal the first error.
+  template <class B>
+    requires(!OneOf<B, Bs...>)
+  auto add(B const&, std::string const& = "") {
+    detail::refuse_body<B>();
+    return BodyHandle<B>{};
+  }
 
   /// Handle of the ground. `model.ground().at(r)` is a marker at r in world axes [m].
   BodyHandle<Ground> ground() const { return {parts_.serial(), 0, "ground"}; }
@@ -62,6 +73,20 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     detail::require_pairing<J, A, B>();
     return detail::add_joint(parts_, std::get<Sequence<detail::JointEntry<J>>>(joints_), joint, pooled(a), pooled(b),
                              std::move(name));
+  }
+  /// Refuses a joint whose type is not in the model's list.
+  template <class J, class... Rest>
+    requires(!OneOf<J, Js...>)
+  auto connect(J const&, Rest const&...) {
+    detail::refuse_joint<J>();
+    return ElementHandle<J>{};
+  }
+  /// Refuses a joint that is not between two markers.
+  template <OneOf<Js...> J, class... Rest>
+    requires(detail::marker_count<Rest...> != 2)
+  auto connect(J const&, Rest const&...) {
+    detail::refuse_joint_ends<J>();
+    return ElementHandle<J>{};
   }
 
   /// Applies a force element to one marker. \throws InvalidInput for a marker of another model or invalid parameters.
@@ -100,6 +125,21 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     Sequence<detail::PooledMarker<A>> pooled_many;
     for (Marker<A> const& m : many) pooled_many.push_back(pooled(m));
     return detail::add_group(parts_, pool_of<F>(), group, pooled_many, std::move(name));
+  }
+  /// Refuses a force whose type is not in the model's list.
+  template <class F, class... Rest>
+    requires(!OneOf<F, Fs...>)
+  auto apply(F const&, Rest const&...) {
+    detail::refuse_force<F>();
+    return ElementHandle<F>{};
+  }
+  /// Refuses a force element that is not applied to its markers.
+  template <OneOf<Fs...> F, class First, class... Rest>
+    requires(!ForceGroup<F> && !detail::is_marker_tuple<First> &&
+             (F::markers > 2 || F::markers != detail::marker_count<First, Rest...>))
+  auto apply(F const&, First const&, Rest const&...) {
+    detail::refuse_force_ends<F>();
+    return ElementHandle<F>{};
   }
   /// Adds a partner at marker `one`, which acts on all of the group's many markers by `law`. The type of `law` is one
   /// of the group's. \throws InvalidInput for a handle or marker of another model or invalid parameters.

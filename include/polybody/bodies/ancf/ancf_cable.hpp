@@ -188,7 +188,8 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
     }
     for (int i = 0; i < 4; ++i) {  // columns of a node: s e_k above r′ × e_k s′/n²
       T *const x = out.jacobian + 18 * i, *const y = x + 6, *const z = y + 6;
-      T const none(0.0), here(s.s[i]), a = along[0] * s.ds[i], b = along[1] * s.ds[i], c = along[2] * s.ds[i];
+      double const ds = s.ds[std::size_t(i)];
+      T const none(0.0), here(s.s[std::size_t(i)]), a = along[0] * ds, b = along[1] * ds, c = along[2] * ds;
       x[0] = y[1] = z[2] = here;
       x[1] = x[2] = x[3] = y[0] = y[2] = y[4] = z[0] = z[1] = z[5] = none;
       x[4] = c;
@@ -230,7 +231,7 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
   static Vec3 slope_of(ShapeValues<4> const& s, Element<double> const& x) {
     Vec3 slope(0.0, 0.0, 0.0);
     for (int i = 0; i < 4; ++i)
-      for (int k = 0; k < 3; ++k) slope[k] += s.ds[i] * x[3 * i + k];
+      for (int k = 0; k < 3; ++k) slope[k] += s.ds[std::size_t(i)] * x[3 * i + k];
     return slope;
   }
   template <class T>

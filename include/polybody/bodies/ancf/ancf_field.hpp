@@ -25,10 +25,11 @@ Mat<double, vectors, 4> shape(double xi, double y, double z, double l) {
   for (int node = 0; node < 2; ++node) {
     double const s = node == 0 ? 1.0 - xi : xi, ds = (node == 0 ? -1.0 : 1.0) / l;
     int const v = 4 * node;
-    n(v, 0) = h.s[2 * node];
-    n(v, 1) = h.ds[2 * node];
-    n(v + 1, 0) = h.s[2 * node + 1];
-    n(v + 1, 1) = h.ds[2 * node + 1];
+    std::size_t const first = std::size_t(2 * node);
+    n(v, 0) = h.s[first];
+    n(v, 1) = h.ds[first];
+    n(v + 1, 0) = h.s[first + 1];
+    n(v + 1, 1) = h.ds[first + 1];
     n(v + 2, 0) = y * s;
     n(v + 2, 1) = y * ds;
     n(v + 2, 2) = s;

@@ -169,7 +169,7 @@ class SectionFrame : public SectionAxes<T> {
         T sum = c[i] * g[j];
 #pragma GCC unroll 6
         for (int k = 0; k < 6; ++k)
-          if (of_second[k][i]) sum += mixed(k, i) * l(k, j);
+          if (of_second[std::size_t(k)][std::size_t(i)]) sum += mixed(k, i) * l(k, j);
         twice(i, j) += sum;
       }
   }

@@ -332,7 +332,7 @@ Lrvf<Interpolation, Quadrature>::Lrvf(Bar const& bar, BarConstants const& c, Ind
     Placement const section = curve(double(i) * l_);
     section.check("Lrvf: the reference curve");
     Vec<double, 3> const along = product(axes, section.origin);
-    for (int k = 0; k < 3; ++k) q[7 * i + k] = bar.placement.origin[k] + along[k];
+    for (int k = 0; k < 3; ++k) q[std::size_t(7 * i + k)] = bar.placement.origin[k] + along[k];
     set_entries<4>(q, 7 * i + 3, quaternion_of(product(axes, section.axes)));
   }
   if constexpr (PathDependentInterpolation<Interpolation>)

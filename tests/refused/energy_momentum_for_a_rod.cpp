@@ -1,0 +1,8 @@
+// refused: EnergyMomentum needs bodies with a constant mass matrix
+#include <polybody/polybody.hpp>
+
+using namespace polybody;
+
+void run(Model<Bodies<Rigid<>>, Joints<>> const& model, State& x) {
+  simulate(model, x, EnergyMomentum{}, {.end_time = 1.0, .step = 1e-3}).run();
+}

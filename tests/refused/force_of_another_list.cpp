@@ -1,0 +1,9 @@
+// refused: The type of this force is not in the model's list. Add it to Model
+#include <polybody/polybody.hpp>
+
+using namespace polybody;
+using Pin = Joint<Revolute, Constraint>;
+
+void pull(Model<Bodies<Rigid<>>, Joints<Pin>>& model, BodyHandle<Rigid<>> const& rod) {
+  model.apply(SpringDamper{.stiffness = 1.0, .damping = 0.1, .length = 1.0}, model.ground().at({0, 0, 0}), rod.at(0.0));
+}
