@@ -8,7 +8,8 @@
 #include <polybody/gradients/gradient.hpp>
 #include <polybody/gradients/sensitivities.hpp>
 #include <polybody/polybody.hpp>
-#include <polybody/vehicle/m113_vehicle.hpp>
+
+#include "m113/vehicle.hpp"
 
 namespace {
 

@@ -24,12 +24,11 @@ file(WRITE ${PROJECT_BINARY_DIR}/polybodyConfigVersion.cmake
 configure_file(cmake/polybodyPrecompile.cmake polybodyPrecompile.cmake COPYONLY)
 configure_file(cmake/polybodyCompiler.cmake polybodyCompiler.cmake COPYONLY)
 configure_file(cmake/polybodyCompiled.cmake polybodyCompiled.cmake COPYONLY)
-file(GLOB compiled_sources RELATIVE ${PROJECT_SOURCE_DIR}/cmake CONFIGURE_DEPENDS cmake/compiled/*.cpp
-     cmake/compiled_vehicle/*.cpp)
+file(GLOB compiled_sources RELATIVE ${PROJECT_SOURCE_DIR}/cmake CONFIGURE_DEPENDS cmake/compiled/*.cpp)
 foreach(source IN LISTS compiled_sources)
   configure_file(cmake/${source} ${source} COPYONLY)
 endforeach()
-install(DIRECTORY cmake/compiled cmake/compiled_vehicle DESTINATION ${package_dir} COMPONENT compiled)
+install(DIRECTORY cmake/compiled DESTINATION ${package_dir} COMPONENT compiled)
 install(FILES cmake/polybodyCompiled.cmake DESTINATION ${package_dir} COMPONENT compiled)
 install(FILES ${PROJECT_BINARY_DIR}/polybodyConfig.cmake ${PROJECT_BINARY_DIR}/polybodyConfigVersion.cmake
               cmake/polybodyCompiler.cmake cmake/polybodyPrecompile.cmake DESTINATION ${package_dir} COMPONENT headers)

@@ -1,6 +1,6 @@
 # polybody_precompile(<target>...)
 # Gives each target a precompiled <polybody/polybody.hpp>; if it links polybody::compiled, it and that library get a
-# precompiled <polybody/compiled.hpp>, or <polybody/compiled_vehicle.hpp> with polybody::compiled_vehicle. Targets that are compiled alike share one, built in this build tree by the object
+# precompiled <polybody/compiled.hpp>. Targets that are compiled alike share one, built in this build tree by the object
 # library polybody_pch (the header of an imported target cannot be shared, hence the function); each further set of compile
 # settings makes one more, polybody_pch_<hash>.
 #
@@ -93,13 +93,7 @@ function(_polybody_precompile target)
   endif()
 
   set(header <polybody/polybody.hpp>)
-  if(polybody_compiled_vehicle IN_LIST libraries)
-    set(header <polybody/compiled_vehicle.hpp>)
-    _polybody_precompile(polybody_compiled_vehicle)
-  elseif("${target}" STREQUAL "polybody_compiled_vehicle")
-    set(header <polybody/compiled_vehicle.hpp>)
-    _polybody_precompile(polybody_compiled)
-  elseif(polybody_compiled IN_LIST libraries)
+  if(polybody_compiled IN_LIST libraries)
     set(header <polybody/compiled.hpp>)
     _polybody_precompile(polybody_compiled)
   elseif("${target}" STREQUAL "polybody_compiled")

@@ -1,8 +1,7 @@
 #pragma once
 // Vehicles of any formulation, to be driven by the case of tracked_vehicle.hpp.
-#include <polybody/vehicle/m113_vehicle.hpp>
-#include <polybody/vehicle/vehicle_visual.hpp>
-
+#include "m113/vehicle.hpp"
+#include "m113/visual.hpp"
 #include "tracked_vehicle.hpp"
 
 namespace chapter3 {

@@ -8,11 +8,11 @@
 
 #include <polybody/io/csv.hpp>
 #include <polybody/polybody.hpp>
-#include <polybody/vehicle/settled_track.hpp>
 
 #include "drive/clock.hpp"
 #include "drive/keyboard.hpp"
 #include "drive/vehicles.hpp"
+#include "m113/settled_track.hpp"
 #include "support/command_line.hpp"
 #include "support/lines.hpp"
 

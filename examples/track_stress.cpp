@@ -8,11 +8,10 @@
 //   track_stress --figure 4.8
 //   track_stress --compare pair --viewer build/release/polybody_viewer.html
 
-#include <polybody/vehicle/link_strain.hpp>
-
 #include <cctype>
 #include <map>
 
+#include "m113/link_strain.hpp"
 #include "support/command_line.hpp"
 #include "support/vehicle_film.hpp"
 #include "track_stress/ensemble.hpp"

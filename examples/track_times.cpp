@@ -8,9 +8,9 @@
 #include <ctime>
 #include <iostream>
 #include <polybody/polybody.hpp>
-#include <polybody/vehicle/m113_vehicle.hpp>
-#include <polybody/vehicle/settled_track.hpp>
 
+#include "m113/settled_track.hpp"
+#include "m113/vehicle.hpp"
 #include "support/command_line.hpp"
 #include "support/lines.hpp"
 

@@ -7,13 +7,14 @@
 #include <polybody/polybody.hpp>
 #include <polybody/run/any_model.hpp>
 #include <polybody/vehicle/terrain.hpp>
-#include <polybody/vehicle/tracked_vehicle.hpp>
-#include <polybody/vehicle/vehicle_options.hpp>
 
 #include <filesystem>
 #include <iostream>
 #include <limits>
 #include <memory>
+
+#include "m113/options.hpp"
+#include "m113/track_frames.hpp"
 
 namespace polybody {
 class Film;

@@ -7,10 +7,10 @@
 #include <polybody/study/report.hpp>
 #include <polybody/study/sampling.hpp>
 #include <polybody/study/statistics.hpp>
-#include <polybody/vehicle/m113_vehicle.hpp>
-#include <polybody/vehicle/settled_track.hpp>
-#include <polybody/vehicle/track_checks.hpp>
 
+#include "m113/settled_track.hpp"
+#include "m113/track_checks.hpp"
+#include "m113/vehicle.hpp"
 #include "support/command_line.hpp"
 #include "support/ranks.hpp"
 

@@ -1,6 +1,6 @@
 #include <polybody/polybody.hpp>
-#include <polybody/vehicle/modal_links.hpp>
 
+#include "m113/modal_links.hpp"
 #include "vehicles.hpp"
 
 drive::DrivenVehicle drive::modal_links(Throttles const& throttles, m113::VehicleOptions const& options,

@@ -1,10 +1,10 @@
 #pragma once
 // The vehicle under throttles, by the formulation of its links. Each is compiled in a file of its own.
 #include <polybody/run/any_model.hpp>
-#include <polybody/vehicle/m113_vehicle.hpp>
 #include <polybody/vehicle/terrain.hpp>
-#include <polybody/vehicle/tracked_vehicle.hpp>
 
+#include "m113/track_frames.hpp"
+#include "m113/vehicle.hpp"
 #include "throttle.hpp"
 
 namespace drive {

@@ -2,9 +2,9 @@
 #include "../tracked_vehicle.hpp"
 
 #include <polybody/io/vtk.hpp>
-#include <polybody/vehicle/settled_track.hpp>
-#include <polybody/vehicle/track_checks.hpp>
 
+#include "m113/settled_track.hpp"
+#include "m113/track_checks.hpp"
 #include "vehicle_film.hpp"
 
 namespace chapter3 {

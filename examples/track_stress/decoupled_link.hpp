@@ -1,7 +1,6 @@
 #pragma once
 // A recorded rigid link as a structure.
-#include <polybody/vehicle/decoupled_link_strain.hpp>
-
+#include "m113/decoupled_link_strain.hpp"
 #include "stress_runs.hpp"
 
 namespace chapter4 {

@@ -1,8 +1,7 @@
 #pragma once
 // Links of one body formulation on the pins of each policy: what a file of links compiles.
-#include <polybody/vehicle/link_strain.hpp>
-
 #include "../any_vehicle.hpp"
+#include "m113/link_strain.hpp"
 #include "stress_runs.hpp"
 #include "surface.hpp"
 

@@ -1,5 +1,4 @@
-#include <polybody/vehicle/modal_links.hpp>
-
+#include "m113/modal_links.hpp"
 #include "links_of.hpp"
 
 std::vector<chapter4::Combination> chapter4::modal_links() {

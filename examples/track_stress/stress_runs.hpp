@@ -6,9 +6,9 @@
 
 #include <polybody/bodies/ffr/ffr_options.hpp>
 #include <polybody/run/body_record.hpp>
-#include <polybody/vehicle/track_links.hpp>
 
 #include "../tracked_vehicle.hpp"
+#include "m113/links.hpp"
 
 namespace chapter4 {
 

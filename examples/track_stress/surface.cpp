@@ -3,7 +3,8 @@
 #include <polybody/bodies/ffr/matrix_structure.hpp>
 #include <polybody/stress/decoupled_stress.hpp>
 #include <polybody/stress/nodal_stress.hpp>
-#include <polybody/vehicle/modal_links.hpp>
+
+#include "m113/modal_links.hpp"
 
 namespace chapter4 {
 

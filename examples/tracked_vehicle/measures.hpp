@@ -1,7 +1,7 @@
 #pragma once
 // Numbers of the vehicle's runs, in lines.
 #include <polybody/signals/rms_difference.hpp>
-#include <polybody/vehicle/distance_to_path.hpp>
+#include <polybody/vehicle/track_checks.hpp>
 
 #include "../support/lines.hpp"
 #include "../tracked_vehicle.hpp"

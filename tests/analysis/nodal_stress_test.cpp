@@ -12,8 +12,8 @@
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/run/simulate.hpp>
 #include <polybody/stress/decoupled_stress.hpp>
-#include <polybody/vehicle/track_links.hpp>
 
+#include "m113/links.hpp"
 #include "support/held.hpp"
 #include "support/number_rows.hpp"
 #include "support/refusal.hpp"

@@ -82,9 +82,10 @@ class Migrate(unittest.TestCase):
             self.assertEqual(both, set(), kind)
 
     def test_new_headers_and_names_exist(self):
-        headers = {p.relative_to(ROOT / "include").as_posix() for p in (ROOT / "include").rglob("*.hpp")}
+        files = [(folder, p) for folder in ("include", "examples") for p in (ROOT / folder).rglob("*.hpp")]
+        headers = {p.relative_to(ROOT / folder).as_posix() for folder, p in files}
         self.assertEqual({new for _, new, kind in TABLE if kind == "header"} - headers, set())
-        text = "\n".join(p.read_text(encoding="utf-8") for p in (ROOT / "include").rglob("*.hpp"))
+        text = "\n".join(p.read_text(encoding="utf-8") for _, p in files)
         words = set(re.findall(r"\w+", text))
         missing = {new for _, new, kind in TABLE if kind != "header" and not set(re.findall(r"\w+", new)) <= words}
         self.assertEqual(missing, set())

@@ -10,8 +10,9 @@
 #include <iostream>
 
 #include <polybody/polybody.hpp>
-#include <polybody/vehicle/settled_track.hpp>
-#include <polybody/vehicle/track_checks.hpp>
+
+#include "m113/settled_track.hpp"
+#include "m113/track_checks.hpp"
 
 using namespace polybody;
 

@@ -7,7 +7,8 @@
 #include <polybody/bodies/ancf/cholesky_coordinates.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/run/simulate.hpp>
-#include <polybody/vehicle/m113_vehicle.hpp>
+
+#include "m113/vehicle.hpp"
 
 namespace polybody::cholesky_tracks {
 

@@ -1,8 +1,9 @@
 #pragma once
-// The vehicle of m113_vehicle.hpp in motion.
+// The vehicle of m113/vehicle.hpp in motion.
 #include <polybody/polybody.hpp>
-#include <polybody/vehicle/settled_track.hpp>
-#include <polybody/vehicle/track_checks.hpp>
+
+#include "m113/settled_track.hpp"
+#include "m113/track_checks.hpp"
 
 namespace polybody {
 

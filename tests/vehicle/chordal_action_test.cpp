@@ -28,9 +28,9 @@
 #include <polybody/joints/revolute.hpp>
 #include <polybody/run/observe.hpp>
 #include <polybody/run/simulate.hpp>
-#include <polybody/vehicle/m113.hpp>
 #include <polybody/vehicle/pin_sprocket_contact.hpp>
 
+#include "m113/data.hpp"
 #include "support/held.hpp"
 
 namespace polybody {

@@ -1,11 +1,11 @@
 // Points of action of contacts on a link: all in its middle, or at the contact points. Also links of a finite element
 // model.
 #include <polybody/bodies/ffr/matrix_structure.hpp>
-#include <polybody/vehicle/m113_vehicle.hpp>
-#include <polybody/vehicle/modal_links.hpp>
 
 #include <gtest/gtest.h>
 
+#include "m113/modal_links.hpp"
+#include "m113/vehicle.hpp"
 #include "support/held.hpp"
 
 namespace polybody {

@@ -1,5 +1,5 @@
 // Distances to a path of straight lines, by geometry.
-#include <polybody/vehicle/distance_to_path.hpp>
+#include <polybody/vehicle/track_checks.hpp>
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,8 @@
 
 #include <Eigen/Eigenvalues>
 #include <polybody/bodies/ffr/beam_structure.hpp>
-#include <polybody/vehicle/track_links.hpp>
 
+#include "m113/links.hpp"
 #include "support/held.hpp"
 
 namespace polybody {

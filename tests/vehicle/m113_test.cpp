@@ -1,4 +1,4 @@
-// The data of vehicle/m113.hpp against an independent data sheet of the vehicle of Wallin 2016. The bodies and joints
+// The data of m113/data.hpp against an independent data sheet of the vehicle of Wallin 2016. The bodies and joints
 // in tests/vehicle/data are those of this data sheet without the links (positions to nine digits). Totals and
 // conventions are its own as well.
 
@@ -11,12 +11,12 @@
 
 #include <polybody/math/quaternion.hpp>
 #include <polybody/run/energy.hpp>
-#include <polybody/vehicle/decoupled_link_strain.hpp>
-#include <polybody/vehicle/m113.hpp>
-#include <polybody/vehicle/modal_links.hpp>
-#include <polybody/vehicle/track_contacts.hpp>
-#include <polybody/vehicle/vehicle_visual.hpp>
 
+#include "m113/data.hpp"
+#include "m113/decoupled_link_strain.hpp"
+#include "m113/modal_links.hpp"
+#include "m113/tracks.hpp"
+#include "m113/visual.hpp"
 #include "support/held.hpp"
 
 namespace polybody {
@@ -46,7 +46,7 @@ void expect_body(std::vector<double> const& row, m113::Solid const& body, Vec3 c
   ASSERT_EQ(row.size(), 11u);
   EXPECT_DOUBLE_EQ(row[0], body.mass);
   EXPECT_EQ(Vec3(row[1], row[2], row[3]), Vec3(body.inertia));
-  held_within({"M113 data", "places of the bodies [m]", By::independent, "bodies.csv", "vehicle/m113.hpp"},
+  held_within({"M113 data", "places of the bodies [m]", By::independent, "bodies.csv", "m113/data.hpp"},
               (Vec3(row[4], row[5], row[6]) - place).norm(), 1e-8, {.scale = 1.0});
   EXPECT_LT(
       (Vec4(row[7], row[8], row[9], row[10]) - Vec4(std::cos(0.5 * angle), 0.0, std::sin(0.5 * angle), 0.0)).norm(),
@@ -55,7 +55,7 @@ void expect_body(std::vector<double> const& row, m113::Solid const& body, Vec3 c
 
 void expect_point(std::vector<double> const& row, Vec3 const& place, Vec3 const& axis) {
   ASSERT_EQ(row.size(), 6u);
-  held_within({"M113 data", "places of the joints [m]", By::independent, "joints.csv", "vehicle/m113.hpp"},
+  held_within({"M113 data", "places of the joints [m]", By::independent, "joints.csv", "m113/data.hpp"},
               (Vec3(row[0], row[1], row[2]) - place).norm(), 1e-8, {.scale = 1.0});
   EXPECT_EQ(Vec3(row[3], row[4], row[5]), axis);
 }
@@ -124,9 +124,9 @@ TEST(M113, JointsAndSpringsAreWhereTheReferenceHasThem) {
 // t.
 TEST(M113, WeighsWhatTheReferenceSays) {
   held({"M113 data", "mass of the vehicle of the thesis [kg]", By::independent, "M113.md §3, added up by hand",
-        "vehicle/m113.hpp"},
+        "m113/data.hpp"},
        m113::wallin_2016.total(), 15912.1, 0.05);
-  held({"M113 data", "mass of the real vehicle [kg]", By::published, "11.36 t, M113.md §10.1", "vehicle/m113.hpp"},
+  held({"M113 data", "mass of the real vehicle [kg]", By::published, "11.36 t, M113.md §10.1", "m113/data.hpp"},
        m113::production_vehicle.total(), 11.36e3, 5.0);
 }
 
@@ -165,7 +165,7 @@ TEST(M113, InertiasAreThoseOfSolidsOfItsDimensions) {
 TEST(M113, FollowsFromPitchAndTeeth) {
   TrackLayout const track = m113::track();
   auto const derived = [](char const* what, double value, double reference, double tolerance, char const* at = "") {
-    held({"M113 data", what, By::independent, "M113.md §2, §6, §8, worked out by hand", "vehicle/m113.hpp"}, value,
+    held({"M113 data", what, By::independent, "M113.md §2, §6, §8, worked out by hand", "m113/data.hpp"}, value,
          reference, tolerance, {at});
   };
   derived("pitch radius of the sprocket [m]", track.pitch_radius(), 0.246588, 5e-7);

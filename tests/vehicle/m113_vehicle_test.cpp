@@ -1,7 +1,6 @@
-#include <polybody/vehicle/m113_vehicle.hpp>
-
 #include <gtest/gtest.h>
 
+#include "m113/vehicle.hpp"
 #include "support/held.hpp"
 #include "support/refusal.hpp"
 #include "support/vehicle_runs.hpp"

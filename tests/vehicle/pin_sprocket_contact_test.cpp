@@ -7,8 +7,8 @@
 
 #include <polybody/testing/differences.hpp>
 #include <polybody/testing/frames.hpp>
-#include <polybody/vehicle/m113.hpp>
 
+#include "m113/data.hpp"
 #include "support/contact_points.hpp"
 #include "support/held.hpp"
 #include "support/refusal.hpp"

@@ -3,8 +3,8 @@
 #include <unistd.h>
 
 #include <polybody/io/vtk.hpp>
-#include <polybody/vehicle/vehicle_visual.hpp>
 
+#include "m113/visual.hpp"
 #include "support/held.hpp"
 #include "support/vehicle_runs.hpp"
 #include "support/vtk_reader.hpp"

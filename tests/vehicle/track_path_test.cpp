@@ -7,9 +7,9 @@
 
 #include <polybody/io/table.hpp>
 #include <polybody/math/quaternion.hpp>
-#include <polybody/vehicle/m113.hpp>
 #include <polybody/vehicle/track_path.hpp>
 
+#include "m113/data.hpp"
 #include "support/held.hpp"
 #include "support/refusal.hpp"
 

@@ -7,8 +7,8 @@
 #include <map>
 
 #include <polybody/io/table.hpp>
-#include <polybody/vehicle/settled_track.hpp>
 
+#include "m113/settled_track.hpp"
 #include "support/held.hpp"
 #include "support/refusal.hpp"
 

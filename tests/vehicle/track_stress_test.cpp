@@ -7,9 +7,9 @@
 #include <polybody/run/energy_audit.hpp>
 #include <polybody/signals/filter.hpp>
 #include <polybody/signals/rms_difference.hpp>
-#include <polybody/vehicle/decoupled_link_strain.hpp>
-#include <polybody/vehicle/modal_links.hpp>
 
+#include "m113/decoupled_link_strain.hpp"
+#include "m113/modal_links.hpp"
 #include "support/held.hpp"
 #include "support/refusal.hpp"
 #include "support/resumed_run.hpp"

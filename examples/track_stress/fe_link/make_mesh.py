@@ -1,7 +1,7 @@
 """Writes link.inp, the mesh of the M113's steel link for CalculiX: 6 x 6 x 1 hexahedra of 20 nodes (C3D20), SI units.
 
-The link is the block of link_bar in include/polybody/vehicle/track_links.hpp about the origin: x from the rear pin to the
-front pin, y along the pins, z to the wheels. The numbers are those of include/polybody/vehicle/m113.hpp.
+The link is the block of link_bar in examples/m113/links.hpp about the origin: x from the rear pin to the
+front pin, y along the pins, z to the wheels. The numbers are those of examples/m113/data.hpp.
 """
 
 from hexahedra import Mesh, middles_of

@@ -1,5 +1,5 @@
-// A part of polybody::compiled_vehicle: contacts of links that publish a frame (see polybody/compiled_vehicle.hpp).
-#include <polybody/compiled_vehicle.hpp>
+// A part of the library m113_compiled: contacts of links that publish a frame (see m113/compiled.hpp).
+#include "../compiled.hpp"
 
 namespace polybody {
 

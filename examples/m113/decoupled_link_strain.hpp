@@ -1,11 +1,11 @@
 #pragma once
 /// \file
-/// Axial strain and bending strain of a rigid track link, computed after a run from its record. For vehicles; not
-/// included by polybody.hpp.
-/// See link_strain.hpp for flexible links.
+/// Axial strain and bending strain of a rigid track link, computed after a run from its record. See link_strain.hpp
+/// for flexible links.
 
 #include <polybody/stress/decoupled_stress.hpp>
-#include <polybody/vehicle/link_strain.hpp>
+
+#include "link_strain.hpp"
 
 namespace polybody::m113 {
 

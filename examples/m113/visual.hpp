@@ -1,9 +1,10 @@
 #pragma once
 /// \file
-/// Visual shapes of the vehicle of m113_vehicle.hpp. For vehicles; not included by polybody.hpp.
+/// Visual shapes of the vehicle of vehicle.hpp.
 
 #include <polybody/io/visual.hpp>
-#include <polybody/vehicle/m113_vehicle.hpp>
+
+#include "vehicle.hpp"
 
 namespace polybody::m113 {
 

@@ -1,8 +1,7 @@
 #pragma once
 /// \file
-/// Track links in a floating frame with modes, from beam elements or from a finite element model.
-///
-/// For vehicles; not included by polybody.hpp. Requires Eigen's sparse module.
+/// Track links in a floating frame with modes, from beam elements or from a finite element model. Requires Eigen's
+/// sparse module.
 
 #include <map>
 
@@ -10,7 +9,8 @@
 #include <polybody/bodies/ffr/beam_structure.hpp>
 #include <polybody/bodies/ffr/ffr.hpp>
 #include <polybody/stress/structure_loads.hpp>
-#include <polybody/vehicle/track_links.hpp>
+
+#include "links.hpp"
 
 namespace polybody::m113 {
 

@@ -1,7 +1,6 @@
 #pragma once
 /// \file
-/// Frames and contacts of a vehicle's tracks in a state, for any formulation of links and pins. For vehicles; not
-/// included by polybody.hpp.
+/// Frames and contacts of a vehicle's tracks in a state, for any formulation of links and pins.
 
 #include <array>
 #include <functional>
@@ -9,7 +8,8 @@
 
 #include <polybody/run/contacts.hpp>
 #include <polybody/run/marker_frames.hpp>
-#include <polybody/vehicle/m113.hpp>
+
+#include "data.hpp"
 
 namespace polybody::m113 {
 

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Links of a track in each body formulation. For vehicles; not included by polybody.hpp.
+/// Links of a track in each body formulation.
 
 #include <algorithm>
 
@@ -10,7 +10,8 @@
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/bodies/rigid/rigid_euler_parameters.hpp>
 #include <polybody/kinematics/marker.hpp>
-#include <polybody/vehicle/m113.hpp>
+
+#include "data.hpp"
 
 namespace polybody::m113 {
 
@@ -50,7 +51,7 @@ inline Solids with_steel_links(Solids masses = wallin_2016, double h = cable_hei
 /// the mass follows from the section, whose height can differ from the height of a link.
 template <Body B>
 struct LinkOf {
-  static_assert(!requires { B::frame_layout; }, "Links with a floating frame are in vehicle/modal_links.hpp.");
+  static_assert(!requires { B::frame_layout; }, "Links with a floating frame are in m113/modal_links.hpp.");
 
   double height = cable_height;  ///< height of the section [m]
 

@@ -1,5 +1,5 @@
-// A part of polybody::compiled_vehicle: the hull and tracks of rigid links (see polybody/compiled_vehicle.hpp).
-#include <polybody/compiled_vehicle.hpp>
+// A part of the library m113_compiled: the hull and tracks of rigid links (see m113/compiled.hpp).
+#include "../compiled.hpp"
 
 namespace polybody {
 

@@ -1,5 +1,5 @@
-// A part of polybody::compiled_vehicle: links with a floating frame (see polybody/compiled_vehicle.hpp).
-#include <polybody/compiled_vehicle.hpp>
+// A part of the library m113_compiled: links with a floating frame (see m113/compiled.hpp).
+#include "../compiled.hpp"
 
 namespace polybody {
 

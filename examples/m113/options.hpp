@@ -1,14 +1,14 @@
 #pragma once
 /// \file
-/// Options of the vehicle of m113_vehicle.hpp besides the formulation of its tracks, and pins with a given stiffness.
-/// For vehicles; not included by polybody.hpp.
+/// Options of the vehicle of vehicle.hpp besides the formulation of its tracks, and pins with a given stiffness.
 
 #include <vector>
 
 #include <polybody/joints/policies/bushing.hpp>
 #include <polybody/joints/policies/penalty.hpp>
-#include <polybody/vehicle/m113.hpp>
 #include <polybody/vehicle/track_path.hpp>
+
+#include "data.hpp"
 
 namespace polybody::m113 {
 
@@ -47,7 +47,7 @@ enum class ContactsAct {
                    ///< of corners of the pad, rims at the middle
 };
 
-/// Options of the vehicle besides the formulation of its tracks. The defaults are the values of m113.hpp.
+/// Options of the vehicle besides the formulation of its tracks. The defaults are the values of data.hpp.
 struct VehicleOptions {
   Solids masses = wallin_2016;     ///< masses and inertias of all bodies
   bool suspension = true;          ///< false: the arms are welded to the chassis, without springs
@@ -57,7 +57,7 @@ struct VehicleOptions {
   TrackStart start = {};                    ///< initial positions of links and idlers
   int link_elements = 0;         ///< elements of each flexible link; 0: one element, or two in a floating frame
   bool friction = true;          ///< friction in all contacts
-  double friction_factor = 1.0;  ///< factor of all friction coefficients of m113.hpp [1]
+  double friction_factor = 1.0;  ///< factor of all friction coefficients of data.hpp [1]
   ContactsAct contacts = ContactsAct::in_the_middle;  ///< points of action on a link
   bool held = false;         ///< true: the chassis is welded to the ground, and the arms to the chassis
   bool ground_body = false;  ///< true: the ground is a body too, welded to the world [Wallin 2016, Table 3.4]

@@ -1,12 +1,13 @@
 #pragma once
 /// \file
-/// Tracks at rest on a vehicle that does not yet load them. For vehicles; not included by polybody.hpp.
+/// Tracks at rest on a vehicle that does not yet load them.
 
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/run/energy.hpp>
 #include <polybody/run/observe.hpp>
 #include <polybody/run/simulate.hpp>
-#include <polybody/vehicle/m113_vehicle.hpp>
+
+#include "vehicle.hpp"
 
 namespace polybody::m113 {
 

@@ -1,15 +1,15 @@
 #pragma once
 /// \file
-/// Axial strain and bending strain of a flexible track link in a coupled run. For vehicles; not included by
-/// polybody.hpp.
-/// See decoupled_link_strain.hpp for rigid links.
+/// Axial strain and bending strain of a flexible track link in a coupled run. See decoupled_link_strain.hpp for rigid
+/// links.
 
 #include <array>
 
 #include <polybody/run/marker_frames.hpp>
 #include <polybody/stress/section.hpp>
 #include <polybody/vehicle/link_axes.hpp>
-#include <polybody/vehicle/track_links.hpp>
+
+#include "links.hpp"
 
 namespace polybody::m113 {
 

@@ -1,14 +1,14 @@
 #pragma once
 /// \file
-/// compiled.hpp with the vehicle of m113_vehicle.hpp, for programs that link `polybody::compiled_vehicle`. The target
-/// contains its hull and contacts on a FlatGround or a BumpCourse, compiled once for all formulations of the tracks.
-/// Not in polybody.hpp: it is for programs that link `polybody::compiled_vehicle`.
+/// polybody/compiled.hpp with the vehicle of vehicle.hpp, for programs that link `m113_compiled`. This library contains
+/// its hull and contacts on a FlatGround or a BumpCourse, compiled once for all formulations of the tracks.
 
 #include <polybody/compiled.hpp>
-#include <polybody/vehicle/link_strain.hpp>
-#include <polybody/vehicle/modal_links.hpp>
-#include <polybody/vehicle/settled_track.hpp>
-#include <polybody/vehicle/vehicle_visual.hpp>
+
+#include "link_strain.hpp"
+#include "modal_links.hpp"
+#include "settled_track.hpp"
+#include "visual.hpp"
 
 namespace polybody {
 

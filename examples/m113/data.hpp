@@ -1,7 +1,7 @@
 #pragma once
 /// \file
 /// Data of an armoured personnel carrier like the M113 with 64 links per track: the vehicle of Wallin 2016, chapters 3
-/// and 4, in SI units. For vehicles; not included by polybody.hpp.
+/// and 4, in SI units.
 ///
 /// The comment of each number gives its source:
 ///   [T…]  M. Wallin, PhD thesis, University of Illinois at Chicago 2016, with the table (T3.1), section or figure

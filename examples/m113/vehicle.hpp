@@ -1,13 +1,13 @@
 #pragma once
 /// \file
-/// Model of the vehicle of m113.hpp with a selectable formulation of its tracks. For vehicles; not included by
-/// polybody.hpp.
+/// Model of the vehicle of data.hpp with a selectable formulation of its tracks.
 
 #include <polybody/joints/point_on_line.hpp>
 #include <polybody/joints/spherical.hpp>
 #include <polybody/system/model.hpp>
-#include <polybody/vehicle/track_contacts_adder.hpp>
-#include <polybody/vehicle/vehicle_hull.hpp>
+
+#include "hull.hpp"
+#include "tracks.hpp"
 
 namespace polybody::m113 {
 
