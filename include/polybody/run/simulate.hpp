@@ -77,7 +77,7 @@ auto simulate(M const&, State&, I const&) {
   static_assert(std::is_void_v<M>,
                 "A run needs options: simulate(model, state, integrator, {.end_time = 1.0, .step = 1e-3}), both in s.");
 }
-/// Refuses what is no integrator.
+/// Refuses an object that is not an integrator.
 template <LinearSolver Solver = DefaultSolver, class M, class I>
   requires(!Integrator<I>)
 auto simulate(M const&, State&, I const&, RunOptions) {

@@ -77,14 +77,14 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   /// Refuses a joint whose type is not in the model's list.
   template <class J, class... Rest>
     requires(!OneOf<J, Js...>)
-  auto connect(J const&, Rest const&...) {
+  auto connect(J const&, [[maybe_unused]] Rest const&... rest) {
     detail::refuse_joint<J>();
     return ElementHandle<J>{};
   }
   /// Refuses a joint that is not between two markers.
   template <OneOf<Js...> J, class... Rest>
     requires(detail::marker_count<Rest...> != 2)
-  auto connect(J const&, Rest const&...) {
+  auto connect(J const&, [[maybe_unused]] Rest const&... rest) {
     detail::refuse_joint_ends<J>();
     return ElementHandle<J>{};
   }
@@ -129,7 +129,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   /// Refuses a force whose type is not in the model's list.
   template <class F, class... Rest>
     requires(!OneOf<F, Fs...>)
-  auto apply(F const&, Rest const&...) {
+  auto apply(F const&, [[maybe_unused]] Rest const&... rest) {
     detail::refuse_force<F>();
     return ElementHandle<F>{};
   }
@@ -137,7 +137,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   template <OneOf<Fs...> F, class First, class... Rest>
     requires(!ForceGroup<F> && !detail::is_marker_tuple<First> &&
              (F::markers > 2 || F::markers != detail::marker_count<First, Rest...>))
-  auto apply(F const&, First const&, Rest const&...) {
+  auto apply(F const&, First const&, [[maybe_unused]] Rest const&... rest) {
     detail::refuse_force_ends<F>();
     return ElementHandle<F>{};
   }
