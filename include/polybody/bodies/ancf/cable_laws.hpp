@@ -17,8 +17,8 @@ Mat<T, 2, 3> cable_curvature_map(double xi, double l) {
   ShapeValues<4> const s = hermite_shape(xi, l);
   Mat<T, 2, 3> n;
   for (int j = 0; j < 3; ++j) {
-    n(0, j) = s.ds[j + 1];
-    n(1, j) = s.dds[j + 1];
+    n(0, j) = s.ds[std::size_t(j + 1)];
+    n(1, j) = s.dds[std::size_t(j + 1)];
   }
   return n;
 }

@@ -36,7 +36,7 @@ struct HermiteCable {
   template <class T = double>  // compiled only if used
   static Mat<T, 2, 8> spread(std::array<double, 4> const& s) {
     Mat<T, 2, 8> n = Mat<T, 2, 8>::Zero();
-    for (int i = 0; i < 4; ++i) n(0, 2 * i) = n(1, 2 * i + 1) = T(s[i]);
+    for (int i = 0; i < 4; ++i) n(0, 2 * i) = n(1, 2 * i + 1) = T(s[std::size_t(i)]);
     return n;
   }
   /// Matrix S (2×8) of r = S e at ξ of an element of length l [m].

@@ -83,8 +83,8 @@ struct SimoVuQuoc {
       ShapeValues<2> const n = linear_shape(xi, l);
       Mat<T, 4, 2> p;
       for (int j = 0; j < 2; ++j) {
-        p(0, j) = p(1, j) = p(3, j) = n.ds[j];
-        p(2, j) = n.s[j];
+        p(0, j) = p(1, j) = p(3, j) = n.ds[std::size_t(j)];
+        p(2, j) = n.s[std::size_t(j)];
       }
       return p;
     }

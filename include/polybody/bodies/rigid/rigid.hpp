@@ -326,8 +326,8 @@ class Rigid<UnitQuaternion> : public RigidShape {
   void pose(std::span<T const> q, std::span<T const> v, Pose<T>& out) const {
     set_rotation<T>({q[3], q[4], q[5], q[6]}, out.A);
     for (int i = 0; i < 3; ++i) {
-      out.r[i] = q[i];
-      out.v[i] = v[i];
+      out.r[i] = q[std::size_t(i)];
+      out.v[i] = v[std::size_t(i)];
       out.w[i] = out.A(i, 0) * v[3] + out.A(i, 1) * v[4] + out.A(i, 2) * v[5];
     }
   }

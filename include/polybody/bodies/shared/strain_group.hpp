@@ -38,13 +38,14 @@ class StrainGroup : public StrainPoints<Law> {
     Vec<T, P::d> step;
     for (int i = 0; i < P::d; ++i) step[i] = T(0.0);
     for (int g = 0; g < Law::points; ++g) {
-      Vec<T, np> const p = P::parameters(maps_[g], e);
+      Vec<T, np> const p = P::parameters(maps_[std::size_t(g)], e);
       Vec<T, m> stress;
       Mat<T, m, np> b;
       Law::template evaluate<T>(p, stress, b);
-      if (damped_) add_damping(rates(b, P::parameters(maps_[g], ed)), stress);
+      if (damped_) add_damping(rates(b, P::parameters(maps_[std::size_t(g)], ed)), stress);
 #pragma GCC unroll 8
-      for (int i = 0; i < m; ++i) stress[i] = ((stress[i] - free_[g][i]) * stiffness_[i] + initial_[i]) * weights_[g];
+      for (int i = 0; i < m; ++i)
+        stress[i] = ((stress[i] - free_[std::size_t(g)][i]) * stiffness_[i] + initial_[i]) * weights_[std::size_t(g)];
       Vec<T, np> pull;  // w Bᵀ n
 #pragma GCC unroll 16
       for (int k = 0; k < np; ++k) {
@@ -53,7 +54,7 @@ class StrainGroup : public StrainPoints<Law> {
         for (int i = 1; i < m; ++i) sum += b(i, k) * stress[i];
         pull[k] = sum;
       }
-      P::subtract_pulled(maps_[g], pull, f, step);
+      P::subtract_pulled(maps_[std::size_t(g)], pull, f, step);
     }
     P::spread(step, f);
   }
@@ -145,15 +146,15 @@ class StrainGroup : public StrainPoints<Law> {
   {
     Coordinates<T, n> const e(x), ed(xd);
     for (int g = 0; g < Law::points; ++g) {
-      Mat<T, np, np>& h = hs.h[g];
+      Mat<T, np, np>& h = hs.h[std::size_t(g)];
       Moving<T> at;
-      at.p = P::parameters(maps_[g], e);
+      at.p = P::parameters(maps_[std::size_t(g)], e);
       Law::template evaluate<T>(at.p, at.strain, at.b);
 #pragma GCC unroll 8
       for (int r = 0; r < np; ++r) {
         Vec<T, m> scaled;
 #pragma GCC unroll 8
-        for (int i = 0; i < m; ++i) scaled[i] = at.b(i, r) * (weights_[g] * stiffness_[i] * ck);
+        for (int i = 0; i < m; ++i) scaled[i] = at.b(i, r) * (weights_[std::size_t(g)] * stiffness_[i] * ck);
 #pragma GCC unroll 8
         for (int c = 0; c <= r; ++c) {
           T sum = scaled[0] * at.b(0, c);
@@ -165,14 +166,15 @@ class StrainGroup : public StrainPoints<Law> {
       }
       Vec<T, m> stress = at.strain;
       if (damped_) {
-        at.pd = P::parameters(maps_[g], ed);
+        at.pd = P::parameters(maps_[std::size_t(g)], ed);
         at.rate = rates(at.b, at.pd);
-        add_damping_gradient(weights_[g], ck, cd, at, h);
+        add_damping_gradient(weights_[std::size_t(g)], ck, cd, at, h);
         add_damping(at.rate, stress);
       }
 #pragma GCC unroll 8
       for (int i = 0; i < m; ++i)
-        stress[i] = ((stress[i] - free_[g][i]) * stiffness_[i] + initial_[i]) * (ck * weights_[g]);
+        stress[i] =
+            ((stress[i] - free_[std::size_t(g)][i]) * stiffness_[i] + initial_[i]) * (ck * weights_[std::size_t(g)]);
       Law::template add_hessian<T>(at.p, stress, h);
     }
   }
@@ -182,12 +184,13 @@ class StrainGroup : public StrainPoints<Law> {
     requires(!quadratic)
   {
     if (v >= P::vectors || w >= P::vectors) return;
-    for (int pair = P::table.first[v][w]; pair < P::table.last[v][w]; ++pair) {
-      int const from = P::d * (P::table.pairs[pair].s + np * P::table.pairs[pair].t);
+    for (int pair = P::table.first[std::size_t(v)][std::size_t(w)];
+         pair < P::table.last[std::size_t(v)][std::size_t(w)]; ++pair) {
+      int const from = P::d * (P::table.pairs[std::size_t(pair)].s + np * P::table.pairs[std::size_t(pair)].t);
 #pragma GCC unroll 16
       for (int g = 0; g < Law::points; ++g) {
-        T const product(products_[pair][g]);
-        T const* const h = hs.h[g].data() + from;
+        T const product(products_[std::size_t(pair)][std::size_t(g)]);
+        T const* const h = hs.h[std::size_t(g)].data() + from;
         P::for_each_entry([&](int i, int j) { block(i, j) += product * h[np * j + i]; });
       }
     }

@@ -158,18 +158,20 @@ class StrainMap {
     int next = 0;
     for (int v = 0; v < vectors; ++v)
       for (int w = 0; w < vectors; ++w) {
-        out.first[v][w] = next;
+        out.first[std::size_t(v)][std::size_t(w)] = next;
         for (int s = 0; s < shapes; ++s)
           for (int j = 0; j < reach; ++j)
             for (int t = 0; t < shapes; ++t)
               for (int l = 0; l < reach; ++l)
-                if (Law::vector(s, j) == v && Law::vector(t, l) == w) out.pairs[next++] = {s, j, t, l};
-        out.last[v][w] = next;
+                if (Law::vector(s, j) == v && Law::vector(t, l) == w) out.pairs[std::size_t(next++)] = {s, j, t, l};
+        out.last[std::size_t(v)][std::size_t(w)] = next;
       }
     return out;
   }();
   /// Returns true if a shape reads nodal vector v.
-  static constexpr bool reads(int v) { return v < vectors && table.first[v][v] < table.last[v][v]; }
+  static constexpr bool reads(int v) {
+    return v < vectors && table.first[std::size_t(v)][std::size_t(v)] < table.last[std::size_t(v)][std::size_t(v)];
+  }
 };
 
 }  // namespace polybody

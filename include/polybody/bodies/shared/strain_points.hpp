@@ -41,12 +41,12 @@ class StrainPoints {
   }
   /// Sets the `weight` [m], the factors `map` of P, and the stress-free strains `free` of point g.
   void set_point(int g, double weight, Map const& map, Strains const& free = Strains::Zero()) {
-    weights_[g] = weight;
-    maps_[g] = map;
-    free_[g] = free;
+    weights_[std::size_t(g)] = weight;
+    maps_[std::size_t(g)] = map;
+    free_[std::size_t(g)] = free;
     for (std::size_t k = 0; k < products_.size(); ++k) {
       auto const [s, j, t, l] = P::table.pairs[k];
-      products_[k][g] = map(s, j) * map(t, l);
+      products_[k][std::size_t(g)] = map(s, j) * map(t, l);
     }
   }
 
@@ -84,11 +84,11 @@ class StrainPoints {
     for (int g = 0; g < Law::points; ++g) {
       Vec<double, m> strain;
       Mat<double, m, np> b;
-      Law::template evaluate<double>(P::parameters(maps_[g], e), strain, b);
+      Law::template evaluate<double>(P::parameters(maps_[std::size_t(g)], e), strain, b);
 #pragma GCC unroll 8
       for (int i = 0; i < m; ++i) {
-        double const stretch = strain[i] - free_[g][i];
-        u += weights_[g] * (0.5 * stiffness_[i] * stretch + initial_[i]) * stretch;
+        double const stretch = strain[i] - free_[std::size_t(g)][i];
+        u += weights_[std::size_t(g)] * (0.5 * stiffness_[i] * stretch + initial_[i]) * stretch;
       }
     }
     return u;
@@ -106,7 +106,8 @@ class StrainPoints {
     Coordinates<double, n> const e0(x0), e1(x1);
     Vec<double, P::d> step = Vec<double, P::d>::Zero();
     for (int g = 0; g < Law::points; ++g) {
-      Vec<double, np> const p0 = P::parameters(maps_[g], e0), p1 = P::parameters(maps_[g], e1);
+      Vec<double, np> const p0 = P::parameters(maps_[std::size_t(g)], e0),
+                            p1 = P::parameters(maps_[std::size_t(g)], e1);
       Vec<S, np> p;
       for (int k = 0; k < np; ++k) p[k] = S::variable(p0[k], p1[k], k);
       typename S::Slope sum = S::Slope::Zero();
@@ -122,13 +123,13 @@ class StrainPoints {
         for (int i = 0; i < m; ++i) {
           double stretch = means.decay * strain[i].change();
           if constexpr (!HasSquare<Law>)
-            stretch += strain[i].mean() - free_[g][i] + time_[i] * means.rate * strain[i].change();
+            stretch += strain[i].mean() - free_[std::size_t(g)][i] + time_[i] * means.rate * strain[i].change();
           sum += strain[i].d * (stiffness_[i] * stretch + (HasSquare<Law> ? 0.0 : initial_[i]));
         }
       }
       Vec<double, np> pull;
-      for (int k = 0; k < np; ++k) pull[k] = weights_[g] * sum[k];
-      P::subtract_pulled(maps_[g], pull, f, step);
+      for (int k = 0; k < np; ++k) pull[k] = weights_[std::size_t(g)] * sum[k];
+      P::subtract_pulled(maps_[std::size_t(g)], pull, f, step);
     }
     P::spread(step, f);
   }
@@ -141,7 +142,8 @@ class StrainPoints {
                         Mat<double, n, n>& k) const {
     Coordinates<double, n> const e0(x0), e1(x1);
     for (int g = 0; g < Law::points; ++g) {
-      Vec<double, np> const p0 = P::parameters(maps_[g], e0), p1 = P::parameters(maps_[g], e1);
+      Vec<double, np> const p0 = P::parameters(maps_[std::size_t(g)], e0),
+                            p1 = P::parameters(maps_[std::size_t(g)], e1);
       Vec<double, np> const middle = 0.5 * (p0 + p1);
       Strains from, to, stress;
       Mat<double, m, np> b, end;
@@ -150,9 +152,10 @@ class StrainPoints {
       Law::template evaluate<double>(middle, stress, b);
       Mat<double, np, np> h = Mat<double, np, np>::Zero();
       for (int i = 0; i < m; ++i) {
-        double const w = ck * weights_[g], share = means.decay + time_[i] * means.rate;
+        double const w = ck * weights_[std::size_t(g)], share = means.decay + time_[i] * means.rate;
         stress[i] = 0.5 * w *
-                    (stiffness_[i] * (0.5 * (from[i] + to[i]) - free_[g][i] + share * (to[i] - from[i])) + initial_[i]);
+                    (stiffness_[i] * (0.5 * (from[i] + to[i]) - free_[std::size_t(g)][i] + share * (to[i] - from[i])) +
+                     initial_[i]);
         for (int c = 0; c < np; ++c)
           for (int r = 0; r < np; ++r) h(r, c) += w * stiffness_[i] * (0.5 + share) * b(i, r) * end(i, c);
       }
@@ -164,7 +167,7 @@ class StrainPoints {
       } else {
         Law::template add_hessian<double>(middle, stress, h);
       }
-      P::add_mapped(maps_[g], h, k);
+      P::add_mapped(maps_[std::size_t(g)], h, k);
     }
   }
 
@@ -173,7 +176,7 @@ class StrainPoints {
     if constexpr (requires { Law::rule; })
       return Law::rule[std::size_t(g)];
     else
-      return gauss<Law::points>[g];
+      return gauss<Law::points>[std::size_t(g)];
   }
 
  protected:
