@@ -2,7 +2,7 @@
 /// \file
 /// Linear vibration problem M q̈ + D(t) q̇ + K(t) q = f(t) as a system for every integrator of the library.
 ///
-/// Not in polybody.hpp: few programs need it.
+/// polybody.hpp does not include this header, because few programs need it.
 
 #include <polybody/system/user_system.hpp>
 
@@ -20,7 +20,7 @@ template <LoadHistory Load>
 struct LinearVibration {
   MatX mass_matrix, damping, stiffness;  ///< (n×n) M, constant parts of D and K
   Load load;                             ///< f(t)
-  mutable MatX d = {}, k = {};           ///< workspace: D(t) and K(t) at one time
+  mutable MatX d = {}, k = {};           ///< workspace: D(t) and K(t) of the last evaluation
 
   /// Number n of coordinates.
   Index velocities() const { return mass_matrix.rows(); }

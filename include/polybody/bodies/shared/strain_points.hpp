@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Quadrature points of a group of strains (see strain_group.hpp): energy, and the mean force over a step, whose work
-/// equals the change of the energy.
+/// Quadrature points of a group of strains (see strain_group.hpp): strain energy, and the discrete-gradient force,
+/// whose work over a step equals the change of the energy.
 
 #include <array>
 
@@ -12,8 +12,8 @@
 
 namespace polybody {
 
-/// Weights, maps and stress-free strains of the quadrature points of a group, and C, τ and n⁰, which are equal at all
-/// points.
+/// Quadrature points of a group of strains: weight, map P and stress-free strains of each point. The stiffness C, the
+/// damping time τ and the initial stress n⁰ are equal at all points.
 template <StrainFunctions Law>
 class StrainPoints {
  public:
@@ -26,15 +26,15 @@ class StrainPoints {
   using Strains = Vec<double, m>;                              ///< one number for each strain
 
   StrainPoints() = default;
-  /// Quadrature points of elements of length l [m]: Gauss points, unless the law has a `rule`. `initial` is the stress
-  /// in the reference configuration.
+  /// Quadrature points of elements of length l [m]: those of `Law::rule` if it exists, otherwise Gauss points.
+  /// `initial` is the stress in the reference configuration.
   StrainPoints(BarConstants const& c, Damping const& d, double l, Strains const& initial = Strains::Zero())
     requires StrainLaw<Law>
       : StrainPoints(Law::stiffness(c), Law::damping(d)) {
     initial_ = initial;
     for (int g = 0; g < Law::points; ++g) set_point(g, point(g).weight * l, Law::map(point(g).xi, l));
   }
-  /// Points with the given C and τ [s]; `set_point` defines each of them.
+  /// Quadrature points with the stiffness C and the damping time τ [s]; `set_point` defines each of them.
   StrainPoints(Strains const& stiffness, Strains const& time) : stiffness_(stiffness), time_(time) {
     damped_ = !time_.isZero(0.0);
     free_.fill(Strains::Zero());
@@ -50,7 +50,7 @@ class StrainPoints {
     }
   }
 
-  /// Makes the coordinates x free of strain, ε⁰ = ε(x) at each point.
+  /// Sets the stress-free strains to those of the coordinates x, ε⁰ = ε(x) at each point.
   template <int n>
   void set_free(Vec<double, n> const& x) {
     Mat<double, m, np> b;
@@ -59,7 +59,7 @@ class StrainPoints {
   }
 
   Strains const& stiffness() const { return stiffness_; }  ///< C of each strain [N] or [N m²]
-  /// Stress of the given strains without damping.
+  /// Stress for the strains `strain`, without damping.
   Strains stress(Strains const& strain) const { return stiffness_.cwiseProduct(strain) + initial_; }
 
   /// Strains ε at ξ of an element of length l with coordinates x.
@@ -73,10 +73,10 @@ class StrainPoints {
     return strain;
   }
 
-  bool damped() const { return damped_; }                ///< true if a τ is not zero
+  bool damped() const { return damped_; }                ///< true if any τ is not zero
   bool operator==(StrainPoints const&) const = default;  ///< compares all numbers
 
-  /// Energy stored at the coordinates x of the element [J].
+  /// Strain energy of an element with the coordinates x [J].
   template <int n>
   double energy(Vec<double, n> const& x) const {
     double u = 0.0;
@@ -94,11 +94,12 @@ class StrainPoints {
     return u;
   }
 
-  /// Adds the force of the group over a step from x0 to x1, by secants S of the strains [Gonzalez 1996]:
+  /// Adds the discrete-gradient force of the group over a step from x0 to x1, with secants S of the strains [Gonzalez
+  /// 1996]:
   ///   f += −∫ Pᵀ Sᵀ n dx,  n_i = C_i (ε̄_i − ε⁰_i + (decay + τ_i/h) Δε_i) + n⁰_i,  S P Δx = Δε,
   /// so that f·Δx = −ΔU − Σ ∫ C_i (decay + τ_i/h) Δε_i² dx. The force has no moment if strains are scalar products.
   /// Strains that are components of a rotating vector enter by their square z: n_z = ½ C (1 + τ Δz/(2h(z̄ + κ₀²))),
-  /// with κ₀ = 1e-3 1/m, which agrees with the damping of `objective_rate`. The part of `decay` then has a moment.
+  /// with κ₀ = 1e-3 1/m, which agrees with the damping of `objective_rate`. The term of `decay` then exerts a moment.
   template <int n>
   void add_mean_force(Vec<double, n> const& x0, Vec<double, n> const& x1, DiscreteDerivative const& means,
                       Vec<double, n>& f) const {
@@ -134,8 +135,8 @@ class StrainPoints {
     P::spread(step, f);
   }
 
-  /// Adds the tangent k += ck (−∂f/∂x1) of `add_mean_force` from x0 to x1, which is not symmetric. The gradients B̄ and
-  /// H̄ of the strains in the middle of the step replace the secants:
+  /// Adds the tangent k += ck (−∂f/∂x1) of `add_mean_force` from x0 to x1, which is not symmetric. The derivatives B̄
+  /// and H̄ of the strains at the middle of the step replace the secants:
   ///   Pᵀ [B̄ᵀ C (½ + decay + τ/h) B(x1) + ½ Σ n_i H̄_i] P.
   template <int n>
   void add_mean_tangent(Vec<double, n> const& x0, Vec<double, n> const& x1, DiscreteDerivative const& means, double ck,
@@ -180,16 +181,16 @@ class StrainPoints {
   }
 
  protected:
-  static constexpr bool quadratic = QuadraticStrains<Law>;  ///< tangents use `QuadraticStrains`
+  static constexpr bool quadratic = QuadraticStrains<Law>;  ///< true if the strains are quadratic in the parameters
 
   Strains stiffness_ = Strains::Zero();             ///< C
   Strains time_ = Strains::Zero();                  ///< τ [s]
   Strains initial_ = Strains::Zero();               ///< n⁰
-  bool damped_ = false;                             ///< true if a τ is not zero
+  bool damped_ = false;                             ///< true if any τ is not zero
   std::array<Map, std::size_t(Law::points)> maps_;  ///< N
-  /// Products of two factors, for each pair.
+  /// Product of the two factors of each pair (`StrainMap::Pair`), at each point.
   std::array<std::array<double, std::size_t(Law::points)>, quadratic ? 0 : P::table.pairs.size()> products_;
-  std::array<double, Law::points> weights_;  ///< [m]
+  std::array<double, Law::points> weights_;  ///< weight of each point [m]
   std::array<Strains, Law::points> free_;    ///< ε⁰
 };
 
