@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Linear solver with Eigen's sparse LDLᵀ factorisation. polybody.hpp does not include this header, because it would
+/// Linear solver with Eigen's sparse LDLᵀ factorisation. Not in polybody.hpp: it would
 /// increase the compile time of every translation unit.
 
 #include <Eigen/IterativeLinearSolvers>

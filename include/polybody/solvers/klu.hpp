@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Linear solver with KLU of SuiteSparse. polybody.hpp does not include this header, because it needs klu.h and -lklu
+/// Linear solver with KLU of SuiteSparse. Not in polybody.hpp: it needs klu.h and -lklu
 /// (Debian: libsuitesparse-dev).
 
 #if __has_include(<klu.h>)

@@ -2,7 +2,7 @@
 /// \file
 /// Linear vibration problem M q̈ + D(t) q̇ + K(t) q = f(t) as a system for every integrator of the library.
 ///
-/// polybody.hpp does not include this header, because few programs need it.
+/// Not in polybody.hpp: few programs need it.
 
 #include <polybody/system/user_system.hpp>
 

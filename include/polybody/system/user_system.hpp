@@ -13,7 +13,7 @@
 ///     void rates(VecX const& z, double t, VecX& h) const { h << z[1], (1.0 - z[0] * z[0]) * z[1] - z[0]; }
 ///   };
 ///
-/// polybody.hpp does not include this header, because few programs need it.
+/// Not in polybody.hpp: few programs need it.
 
 #include <polybody/system/system.hpp>
 
