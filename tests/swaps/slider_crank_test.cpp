@@ -18,7 +18,7 @@ using SliderCrank = Model<std::conditional_t<std::same_as<B, planar::Rigid>, Bod
 /// Runs three steps. The weight moves the parts by at most g t².
 template <class B, class P, class I>
 void run(B const& coupler, P const& policy, I const& integrator) {
-  SCOPED_TRACE(std::string(B::name) + ", " + P::name + ", " + I::name);
+  SCOPED_TRACE(std::string(typeid(B).name()) + ", " + P::name + ", " + I::name);
   SliderCrank<B, P> model{Gravity{0, -9.81, 0}};
   auto const crank = model.add(planar::Rigid(0.2, 1e-3, Placement::planar(0.05, 0, 0)), "crank");
   auto const rod = model.add(coupler, "rod");
@@ -57,7 +57,7 @@ template <class B>
 Count each_policy() {
   Count count;
   auto const with = [&]<class P>(P const& policy) {
-    if constexpr (swaps::Connectable<B, Joint<planar::Revolute, P>>) {
+    if constexpr (swaps::Connectable<B, Joint<planar::Revolute, P>> && EliminableBody<P, planar::Rigid>) {
       if constexpr (CompatibleIntegrator<GeneralisedAlpha, SliderCrank<B, P>>) {
         run(B::from(bar), policy, GeneralisedAlpha{});
         ++count.run;
@@ -71,8 +71,8 @@ Count each_policy() {
 }
 
 TEST(SwapsOfTheSliderCrank, EachPolicy) {
-  EXPECT_EQ(each_policy<planar::Rigid>(), (Count{}));
-  EXPECT_EQ(each_policy<planar::AncfCable<>>(), (Count{}));
+  EXPECT_EQ(each_policy<planar::Rigid>(), (Count{8, 1}));
+  EXPECT_EQ(each_policy<planar::AncfCable<>>(), (Count{5, 4}));
 }
 
 TEST(SwapsOfTheSliderCrank, EachIntegrator) {
@@ -86,7 +86,7 @@ TEST(SwapsOfTheSliderCrank, EachIntegrator) {
     }
   };
   std::apply([&](auto const&... integrator) { (by(integrator), ...); }, swaps::integrators());
-  EXPECT_EQ(count, (Count{}));
+  EXPECT_EQ(count, (Count{15, 5}));
 }
 
 }  // namespace polybody::slider_crank_test
