@@ -173,7 +173,7 @@ TEST_F(FilmFiles, PlayInABrowser) {
   auto const quoted = [&](char const* name) { return " '" + (folder / name).string() + "'"; };
   char const* const pictures = std::getenv("POLYBODY_PICTURES");  // a folder for the pictures
   int const code = run_node("film_browser.mjs" + (pictures ? " --pictures '" + std::string(pictures) + "'" : "") +
-                                quoted("film.html") + " --damage --rate 10 --places" + quoted("one.pvd") + " --places" +
+                                quoted("film.html") + " --damage --rate 2 --places" + quoted("one.pvd") + " --places" +
                                 quoted("two.pvd"),
                             folder / "told.txt");
   if (code == 77) GTEST_SKIP() << "node or chromium is missing (Debian: nodejs chromium)";
