@@ -55,8 +55,8 @@ auto simulate(M const& model, State const&, I const& integrator, RunOptions opti
   static_assert(std::is_void_v<M>,
                 "A run changes its state, so that a temporary or constant state is refused. Put the state into a "
                 "variable: State x = model.reference_state(); simulate(model, x, integrator, options).");
-  State* const none = nullptr;
-  return simulate<Solver>(model, *none, integrator, std::move(options));
+  State none;
+  return simulate<Solver>(model, none, integrator, std::move(options));
 }
 /// Refuses a state in place of the model.
 template <class M, class I>
