@@ -13,13 +13,6 @@
 namespace polybody {
 
 namespace detail {
-/// Reports at compile time that a body has no point with coordinates in braces.
-template <class B>
-constexpr void refuse_point() {
-  static_assert(std::is_void_v<B>,
-                "This body has no such point. A bar has at(s), the distance along its axis [m]; a rigid body has "
-                "at({x, y, z}) [m], a planar one at({x, y}). The members `at` of the body list all forms.");
-}
 /// \throws InvalidInput if the serial number `model` is 0, which belongs to no model.
 inline void require_filled(std::uint64_t model) {
   if (model == 0)
@@ -114,7 +107,9 @@ struct BodyHandle {
     requires(
         !requires(B const b, Vec3 p) { b.at(p); } && !requires(B const b, Vec2 p) { b.at(p); })
   auto at(std::initializer_list<double>) const {
-    detail::refuse_point<Body>();
+    static_assert(std::is_void_v<Body>,
+                  "This body has no such point. A bar has at(s), the distance along its axis [m]; a rigid body has "
+                  "at({x, y, z}) [m], a planar one at({x, y}). The members `at` of the body list all forms.");
     return Marker<B>{};
   }
 
