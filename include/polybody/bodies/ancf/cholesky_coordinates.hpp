@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include <polybody/bodies/shared/bar.hpp>
 #include <polybody/bodies/shared/node_chain.hpp>
 
 namespace polybody {
