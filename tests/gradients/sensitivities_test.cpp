@@ -156,7 +156,7 @@ TEST(SensitivityResult, RefuseWhatTheyDoNotDifferentiate) {
     scenario.options.minimum_norm = true;
     return scenario;
   };
-  EXPECT_TRUE(has(said(least, of_pendulum), "multipliers of least norm"));
+  EXPECT_TRUE(has(said(least, of_pendulum), "minimum-norm multipliers"));
   auto const grows = [](P p) {
     using M = Model<Bodies<planar::AncfCable<>>, Joints<>>;
     M model{Gravity{0, -9.81, 0}};

@@ -301,8 +301,7 @@ TEST_F(FilmFiles, RefuseWhatCannotBeShown) {
   EXPECT_TRUE(has(refusal([&] { scene.colour({"one too few", "-", {}}); }), "already has a colour scalar"));
   EXPECT_TRUE(has(refusal([&] { scene.arrow({0}, Vec3::Zero(), Vec3::Zero()); }), "Record a frame first"));
   EXPECT_TRUE(has(refusal([&] { scene.record(0.0, {}); }), "there is nothing to draw"));
-  EXPECT_TRUE(
-      has(refusal([&] { scene.record(0.0, visual.at(x)); }), "of \"cable\" differs from the number of its points"));
+  EXPECT_TRUE(has(refusal([&] { scene.record(0.0, visual.at(x)); }), "on \"cable\" differs from the number of points"));
   FilmScene& two = film.scene("two");
   FilmArrows const forces = two.arrows("force", "N");
   two.record(0.5, visual.at(x));

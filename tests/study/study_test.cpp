@@ -204,7 +204,7 @@ TEST_F(StudyFiles, AChangedByteIsRefusedWithItsLine) {
   std::string cut = record;  // a missing line in the middle
   std::size_t const from = cut.find("\n3: ") + 1;
   put(file, cut.erase(from, cut.find('\n', from) + 1 - from));
-  EXPECT_TRUE(has(message_of<IoError>([&] { study.recorded(); }), "a line before it is missing"));
+  EXPECT_TRUE(has(message_of<IoError>([&] { study.recorded(); }), "a previous line is missing"));
   put(file, record.substr(0, record.size() - 1) + "x");  // the end of the last line is damaged: an incomplete line
   EXPECT_EQ(study.recorded().finished(), 11u);
 }
@@ -234,7 +234,7 @@ TEST_F(StudyFiles, TheRecordOfAnotherStudyIsRefused) {
   std::string const record = text_of(file);
   EXPECT_TRUE(has(message(make(points, "another sum")),
                   "line 2: the record belongs to another study: it has \"about: a sum of "
-                  "functions\", this study \"about: another sum\""));
+                  "functions\", but this study has \"about: another sum\""));
   Points const other_unit = grid(axis("stiffness", "kN/m", {1e6, 1e8, 2.5e9}),
                                  formulations("integrator", {"Radau", "a, b"}), axis("step", "s", {1e-2, 1e-3}));
   EXPECT_TRUE(has(message(make(other_unit)), "line 3: the record belongs to another study"));

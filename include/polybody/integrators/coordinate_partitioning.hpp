@@ -216,7 +216,7 @@ struct CoordinatePartitioning {
     System& system;
     Scratch& s;
     double limit;                                             ///< largest permitted |R| [1]
-    double before = std::numeric_limits<double>::infinity();  ///< violation before the last correction
+    double before = std::numeric_limits<double>::infinity();  ///< violation before the last correction, in its unit
     int renewals = 0;
 
     template <class = void>

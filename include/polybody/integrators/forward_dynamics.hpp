@@ -22,7 +22,7 @@ struct ConstraintFeedback {
 
 /// Measure of the distance from a singular configuration.
 struct ConstraintGain {
-  double moved = 0.0;       ///< largest change of a velocity that corrects violations of ±1
+  double moved = 0.0;       ///< largest change of a velocity that corrects violations of ±1 [1]
   std::size_t dropped = 0;  ///< number of redundant constraint equations
   /// True if the configuration is singular compared with a `usual` one: it has more redundant equations, or changes are
   /// ten times as large.

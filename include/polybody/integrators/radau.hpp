@@ -53,7 +53,7 @@ struct Radau {
     ReusedFactorisation reused_factorisation;   ///< state of the reused factorisation
     bool has_by_stage = false;                  ///< true if `by_stage` is analysed
     double h_factored = 0.0;                    ///< step length of the last factorisation [s]; 0 if none
-    double unsettled = 0.0;                     ///< largest norm of the last correction of a δ_i
+    double unsettled = 0.0;                     ///< largest norm of the last correction of a δ_i, in its unit
     Sequence<double> slack;  ///< by stages and constraint equations: −1 on the diagonal of a redundant equation keeps
                              ///< its multiplier unchanged
 

@@ -12,10 +12,12 @@ namespace polybody {
 /// Position of `simd_size` successive entries in a vector.
 struct SimdIndex {
   Index first;  ///< index of the first entry
-  SimdVector<> operator()(double const* x) const { return SimdVector<>::load(x + first); }       ///< loads the entries
-  SimdVector<> operator()(VecX const& x) const { return SimdVector<>::load(x.data() + first); }  ///< loads the entries
-  void set(double* x, SimdVector<> const& value) const { value.store(x + first); }               ///< stores the entries
-  void set(VecX& x, SimdVector<> const& value) const { value.store(x.data() + first); }          ///< stores the entries
+  SimdVector<> operator()(double const* x) const { return SimdVector<>::load(x + first); }  ///< loads entries of `x`
+  SimdVector<> operator()(VecX const& x) const {
+    return SimdVector<>::load(x.data() + first);
+  }                                                                                      ///< loads entries of `x`
+  void set(double* x, SimdVector<> const& value) const { value.store(x + first); }       ///< stores entries of `x`
+  void set(VecX& x, SimdVector<> const& value) const { value.store(x.data() + first); }  ///< stores entries of `x`
 };
 /// Position of one entry in a vector.
 struct EntryIndex {

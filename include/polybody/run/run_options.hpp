@@ -88,7 +88,7 @@ struct RunCounts {
   long rejected = 0;        ///< rejected trial steps, and steps that were halved
   long halved = 0;          ///< steps that failed and were repeated by halves
   long over_budget = 0;     ///< steps that ended at the iteration budget of Newton's method
-  double left = 0.0;        ///< largest final correction of `over_budget` steps, over the tolerance
+  double left = 0.0;        ///< largest final correction of `over_budget` steps, relative to the tolerance
   StepReport last = {};     ///< report of the last step
 
   /// Adds the cost of a step.

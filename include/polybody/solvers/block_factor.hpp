@@ -113,8 +113,8 @@ class BlockFactor {
   void limit_reorderings(std::size_t count) noexcept { kept_ = std::min(count, kept_); }
   /// Unknowns of redundant constraint equations; these multipliers are zero.
   std::span<Index const> dropped() const { return {dropped_.data(), dropped_count_}; }
-  /// Makes every later factorisation drop these multipliers and their equations, whatever the pivots, until the next
-  /// `analyse`. Equations that share a node with a singular body are not dropped.
+  /// Makes every later factorisation drop the multipliers `unknowns` and their equations, whatever the pivots, until
+  /// the next `analyse`. Equations that share a node with a singular body are not dropped.
   [[gnu::cold]] void mark_redundant(std::span<Index const> unknowns) {
     left_out_ = Sequence<Index>(unknowns.begin(), unknowns.end());
     place_left_out();

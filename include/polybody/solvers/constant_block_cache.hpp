@@ -111,12 +111,13 @@ class ConstantBlockCache {
       rest_.mark_redundant(std::span<Index const>(rows.data(), rows.size()));
     }
   }
-  /// True if a redundancy decision of the last factorisation is doubtful: see `BlockFactor::is_doubtful`.
+  /// True if a redundancy decision of the last factorisation is doubtful for `share`: see `BlockFactor::is_doubtful`.
   [[gnu::cold]] bool is_doubtful(double share) const {
     if constexpr (requires { rest_.is_doubtful(share); }) return rest_.is_doubtful(share);
     return false;
   }
-  /// Computes `BlockFactor::null_vector`. Returns false if `Solver` does not provide null vectors.
+  /// Computes the null vector `n` of equation `dropped`: `BlockFactor::null_vector`. Returns false if `Solver` does not
+  /// provide null vectors.
   [[gnu::cold]] bool null_vector(Index dropped, VecX& n) {
     if constexpr (requires { rest_.null_vector(dropped, n); }) {
       if (kept_size_ == 0) return rest_.null_vector(dropped, n), true;

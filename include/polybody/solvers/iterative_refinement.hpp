@@ -72,13 +72,13 @@ class IterativeRefinement {
   {
     solver_.mark_redundant(unknowns);
   }
-  /// True if a redundancy decision of the last factorisation is doubtful: see `BlockFactor::is_doubtful`.
+  /// True if a redundancy decision of the last factorisation is doubtful for `share`: see `BlockFactor::is_doubtful`.
   bool is_doubtful(double share) const
     requires requires(Solver const s) { s.is_doubtful(share); }
   {
     return solver_.is_doubtful(share);
   }
-  /// Computes `BlockFactor::null_vector`.
+  /// Computes the null vector `n` of equation `dropped`: `BlockFactor::null_vector`.
   void null_vector(Index dropped, VecX& n) const
     requires requires(Solver const s) { s.null_vector(dropped, n); }
   {

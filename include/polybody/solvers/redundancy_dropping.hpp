@@ -80,9 +80,9 @@ class RedundancyDropping {
     if (judges_) judge_.mark_redundant(unknowns);
     drop(unknowns);
   }
-  /// True if equations are dropped and this decision is doubtful: see `BlockFactor::is_doubtful`.
+  /// True if equations are dropped and this decision is doubtful for `share`: see `BlockFactor::is_doubtful`.
   bool is_doubtful(double share) const { return !dropped_.empty() && judge_.is_doubtful(share); }
-  /// Computes `BlockFactor::null_vector`.
+  /// Computes the null vector `n` of equation `dropped`: `BlockFactor::null_vector`.
   void null_vector(Index dropped, VecX& n) const { judge_.null_vector(dropped, n); }
 
  private:

@@ -156,8 +156,8 @@ class TangentSolver {
     if constexpr (requires { solver_.is_doubtful(1e-3); }) return !solves_by_bodies() && solver_.is_doubtful(1e-3);
     return false;
   }
-  /// Computes `BlockFactor::null_vector` in the unknowns of the linear equations. Returns false if `Solver` does not
-  /// provide null vectors.
+  /// Computes the null vector `n` of equation `dropped` (`BlockFactor::null_vector`) in the unknowns of the linear
+  /// equations. Returns false if `Solver` does not provide null vectors.
   [[gnu::cold]] bool null_vector(Index dropped, VecX& n) {
     if constexpr (requires { bool(solver_.null_vector(dropped, n)); }) return solver_.null_vector(dropped, n);
     return false;

@@ -16,8 +16,8 @@ namespace polybody {
 /// Options of `equilibrium_path`: step lengths, number of points and Newton iteration.
 struct ArcLengthOptions {
   double step = 0.05;       ///< first step, an arc length; the load factor increases by step/√2 at first
-  double max_step = 0.05;   ///< largest step, an arc length
-  double min_step = 1e-6;   ///< smallest step, an arc length
+  double max_step = 0.05;   ///< largest step, an arc length [1]
+  double min_step = 1e-6;   ///< smallest step, an arc length [1]
   int points = 200;         ///< largest number of points
   double tolerance = 1e-9;  ///< largest correction at convergence, relative to 1 + max |q|
   int max_iterations = 12;  ///< largest number of iterations in a step

@@ -76,17 +76,17 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     return detail::add_joint(parts_, std::get<Sequence<detail::JointEntry<J>>>(joints_), joint, pooled(a), pooled(b),
                              std::move(name));
   }
-  /// Refuses a joint whose type is not in the model's list.
+  /// Refuses a joint whose type is not in the model's list, with any `others`.
   template <class J, class... Rest>
     requires(!OneOf<J, Js...>)
-  auto connect(J const&, [[maybe_unused]] Rest const&... rest) {
+  auto connect(J const&, [[maybe_unused]] Rest const&... others) {
     detail::refuse_joint<J>();
     return ElementHandle<J>{};
   }
-  /// Refuses a joint that is not between two markers.
+  /// Refuses a joint if two of the `others` are not markers.
   template <OneOf<Js...> J, class... Rest>
     requires(detail::marker_count<Rest...> != 2)
-  auto connect(J const&, [[maybe_unused]] Rest const&... rest) {
+  auto connect(J const&, [[maybe_unused]] Rest const&... others) {
     detail::refuse_joint_ends<J>();
     return ElementHandle<J>{};
   }
@@ -128,18 +128,18 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     for (Marker<A> const& m : many) pooled_many.push_back(pooled(m));
     return detail::add_group(parts_, pool_of<F>(), group, pooled_many, std::move(name));
   }
-  /// Refuses a force whose type is not in the model's list.
+  /// Refuses a force whose type is not in the model's list, with any `others`.
   template <class F, class... Rest>
     requires(!OneOf<F, Fs...>)
-  auto apply(F const&, [[maybe_unused]] Rest const&... rest) {
+  auto apply(F const&, [[maybe_unused]] Rest const&... others) {
     detail::refuse_force<F>();
     return ElementHandle<F>{};
   }
-  /// Refuses a force element that is not applied to its markers.
+  /// Refuses a force element if it is not applied to its markers, the second argument and the `others`.
   template <OneOf<Fs...> F, class First, class... Rest>
     requires(!ForceGroup<F> && !detail::is_marker_tuple<First> &&
              (F::markers > 2 || F::markers != detail::marker_count<First, Rest...>))
-  auto apply(F const&, First const&, [[maybe_unused]] Rest const&... rest) {
+  auto apply(F const&, First const&, [[maybe_unused]] Rest const&... others) {
     detail::refuse_force_ends<F>();
     return ElementHandle<F>{};
   }

@@ -40,7 +40,7 @@ struct TrackSprocket {
 /// Tensioner of the track: a circle with an adjustable position.
 struct TrackTensioner {
   std::string circle;      ///< name of the circle that moves
-  Vec2 direction;          ///< (2) direction of motion, a vector of any positive length
+  Vec2 direction;          ///< (2) direction of motion, a vector of any positive length [1]
   Required<double> least;  ///< lower limit of the travel from the listed position [m]
   Required<double> most;   ///< upper limit of the travel from the listed position [m]
 };

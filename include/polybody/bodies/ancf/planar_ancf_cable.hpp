@@ -32,7 +32,7 @@ struct HermiteCable {
   static Vec4 rigid_velocity(Vec4 const& node, Vec2 const& v0, double omega) {
     return {v0[0] - omega * node[1], v0[1] + omega * node[0], -omega * node[3], omega * node[2]};
   }
-  /// Matrix (2×8) of Σ s_i e_i with the factors s_i of the four nodal vectors e_i.
+  /// Matrix (2×8) of Σ s_i e_i with the factors `s` of the four nodal vectors e_i.
   template <class T = double>  // compiled only if used
   static Mat<T, 2, 8> spread(std::array<double, 4> const& s) {
     Mat<T, 2, 8> n = Mat<T, 2, 8>::Zero();

@@ -47,11 +47,13 @@ class FfrProducts {
         xd_(workspace + 10 * n_),
         xdd_(workspace + 14 * n_) {}
 
-  void at(T const* coordinates) { detail::times(stack_.of_coordinates, coordinates, x_); }  ///< products with q (n)
+  void at(T const* coordinates) {
+    detail::times(stack_.of_coordinates, coordinates, x_);
+  }  ///< products with the `coordinates` q (n)
   void at_velocities(T const* velocities) {
     detail::times(stack_.of_velocities, velocities, xd_);
-  }  ///< products with q̇ (n)
-  void at_rates(T const* rates) { detail::times(stack_.of_rates, rates, xdd_); }  ///< products with q̈ (n)
+  }  ///< products with the `velocities` q̇ (n)
+  void at_rates(T const* rates) { detail::times(stack_.of_rates, rates, xdd_); }  ///< products with the `rates` q̈ (n)
 
   /// Derivative ∂J_p/∂q_k, for entry p of J in the order of `symmetric_row` and coordinate k.
   T inertia_slope(std::size_t p, Index k) const { return x_[Index(p) * n_ + k] + i_.inertia_by[p][k]; }
