@@ -12,10 +12,9 @@ namespace polybody {
 /// Position of `simd_size` successive entries in a vector.
 struct SimdIndex {
   Index first;  ///< index of the first entry
-  SimdVector<> operator()(double const* x) const { return SimdVector<>::load(x + first); }  ///< loads entries of `x`
-  SimdVector<> operator()(VecX const& x) const {
-    return SimdVector<>::load(x.data() + first);
-  }                                                                                      ///< loads entries of `x`
+  /// Loads entries of `x`.
+  SimdVector<> operator()(double const* x) const { return SimdVector<>::load(x + first); }
+  SimdVector<> operator()(VecX const& x) const { return (*this)(x.data()); }             ///< loads entries of `x`
   void set(double* x, SimdVector<> const& value) const { value.store(x + first); }       ///< stores entries of `x`
   void set(VecX& x, SimdVector<> const& value) const { value.store(x.data() + first); }  ///< stores entries of `x`
 };
