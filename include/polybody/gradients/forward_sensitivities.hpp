@@ -187,7 +187,7 @@ class ForwardSensitivities {
   /// of its target, `next`. At an event, this length is constant, and `step_length_derivative` receives the derivative
   /// with respect to it.
   void differentiate(StepPlan::Next const& next, bool met, RunSensitivity& step_length_derivative) {
-    for (std::size_t i = 0; i + 1 < lengths_.size(); ++i) {  // if the error estimate divides the step to the event
+    for (std::size_t i = 0; i + 1 < lengths_.size(); ++i) {  // parts before the last, if error control divided the step
       State part = before_;
       (void)full_.step(part, lengths_[i]);
       set_columns([](std::size_t) { return 0.0; });

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Conversion between the reduced states of a run, in which policies eliminate unknowns, and full states, in doubles
-/// and in tape variables.
+/// Conversion of the reduced states of a run to full states and back. Reduced states lack the unknowns that joint
+/// policies eliminate. The scalars are doubles or tape variables.
 ///
 /// Not in polybody.hpp: few programs need derivatives of whole runs.
 

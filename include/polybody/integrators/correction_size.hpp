@@ -11,8 +11,8 @@
 namespace polybody::detail {
 
 /// Mean round-off of the coordinates: ε times the root mean square of q, plus ε for directions and moment arms.
-/// Corrections are measured by the same mean, so that one angle of many revolutions increases a correction and its
-/// round-off alike.
+/// The size of a correction is the same root mean square. A single large coordinate, for example an angle after many
+/// revolutions, therefore enlarges both sizes.
 inline double rounding_of(VecX const& q) {
   return std::numeric_limits<double>::epsilon() * (1.0 + std::sqrt(squares(q) / double(std::max<Index>(q.size(), 1))));
 }

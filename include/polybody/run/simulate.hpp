@@ -91,7 +91,7 @@ template <LinearSolver Solver = DefaultSolver, class M, class I>
 void simulate(M const&&, State&, I const&, RunOptions) {
   detail::refuse_temporary<M>();
 }
-/// Refuses a temporary model, as `simulate`.
+/// Refuses a temporary model, like `simulate`.
 template <LinearSolver Solver = DefaultSolver, class M, class I>
 void resume(M const&&, State&, I const&, RunOptions, RunSnapshot const&) {
   detail::refuse_temporary<M>();

@@ -116,8 +116,8 @@ class MinimumNormStep {
     }
   }
 
-  /// Computes `excited_`. The force of a spring counts if it exceeds the round-off of f, ε |K| (1 + |q|) for each
-  /// entry, and the round-off of loads that cancel.
+  /// Computes `excited_`: the spring whose force exceeds its limit by the largest factor. The limit is the sum of two
+  /// round-offs: of f, ε |K| (1 + |q|) for each entry, and of loads that cancel.
   void find_excited(VecX const& y, double load) {
     double const reach = 1.0 + largest_size(system_->at().q), unit = tangent_->unit();
     double worst = 1.0;

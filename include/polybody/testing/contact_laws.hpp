@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Law tests of contact geometries.
+/// Tests of properties that every contact geometry has: `ContactLaws`.
 ///
 /// Requires GoogleTest; not included by polybody.hpp.
 

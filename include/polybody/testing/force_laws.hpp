@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Law tests of force elements.
+/// Tests of properties that every force element has, such as derivatives, balance and energy: `ForceLaws`.
 ///
 /// Requires GoogleTest; not included by polybody.hpp.
 

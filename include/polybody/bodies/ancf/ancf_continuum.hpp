@@ -119,14 +119,14 @@ struct ContinuumGroups;
 /// All strains at the points of the volume.
 template <>
 struct ContinuumGroups<Locking::present> {
-  using Number = double;                         ///< scalar of stiffness and of damping times
+  using Number = double;                         ///< scalar type of the stiffness and the damping times
   using Volume = StrainGroup<GreenStrains<12>>;  ///< all strains at 12 points
   using type = std::tuple<Volume>;               ///< the groups of an element
 };
 /// Axial strain along the axis, mean shear strains, and strains within a section.
 template <>
 struct ContinuumGroups<Locking::cured> {
-  using Number = double;                          ///< scalar of stiffness and of damping times
+  using Number = double;                          ///< scalar type of the stiffness and the damping times
   using Along = StrainGroup<AlongStrain>;         ///< E₁₁ at 12 points
   using Shear = StrainGroup<ShearStrains>;        ///< 2E₁₂, 2E₁₃ at 12 points, distances scaled by `lever`
   using Across = StrainGroup<GreenStrains<2>>;    ///< the other terms of Hooke's law, on the axis at both nodes

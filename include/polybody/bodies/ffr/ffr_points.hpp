@@ -12,8 +12,8 @@
 
 namespace polybody {
 
-/// Material point: position u₀ in the frame [m], displacement S q and small rotation R q (3×n). A point of a beam also
-/// has the strains and the stiffness of its section.
+/// Material point: position u₀ in the frame [m], displacement S q and small rotation R q, with S and R (3×n). A
+/// point of a beam also has the strains and the stiffness of its section.
 struct FfrPoint {
   Vec3 u = Vec3::Zero();                ///< u₀ (3), in the axes of the frame [m]
   Mat<double, 3, Eigen::Dynamic> S, R;  ///< displacement [m] and small rotation [rad] for unit q
