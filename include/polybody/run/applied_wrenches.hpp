@@ -19,15 +19,6 @@ void for_each_action_of(System const& system, Index force, Visit&& visit) {
     if (action.source == force) visit(k++, action);
 }
 
-/// Evaluated system with the wrenches of its force elements. \throws InvalidInput for a state of another model.
-template <class = void>
-System with_forces(System system, State const& x) {
-  require_usable(system, x);
-  system.evaluate(x.q, x.v, x.t);
-  system.push_forces();
-  return system;
-}
-
 template <class = void>
 double power_of_force(System const& system, Index force) {
   double sum = 0.0;
@@ -69,12 +60,6 @@ auto applied_wrenches(System const& system, ElementHandle<F> const& force) {
     return out;
   }
 }
-/// Wrenches of a force element in state x of a model, with its first-order states; see above.
-/// \throws InvalidInput for a handle or a state of another model.
-template <class M, class F>
-auto applied_wrenches(M const& model, State const& x, ElementHandle<F> const& force) {
-  return applied_wrenches(detail::with_forces(System(model, with<Capabilities::motion>), x), force);
-}
 
 /// Power of a force element on the bodies [W], Σ f·v + m·ω over its markers: positive if it adds energy to them.
 /// `system` must have been evaluated at x, with `System::push_forces` afterwards. \throws InvalidInput for a handle of
@@ -93,13 +78,6 @@ template <class J>
   requires requires { typename J::Geometry; }
 double power(System const& system, State const& x, ElementHandle<J> const& joint) {
   return detail::power_of_joint(system, x, index_of_joint(system.layout(), joint));
-}
-/// Power of a force element or of a drive in state x of a model [W]; see above.
-/// \throws InvalidInput for a handle or a state of another model.
-template <class M, class E>
-  requires(!std::same_as<M, System>)
-double power(M const& model, State const& x, ElementHandle<E> const& element) {
-  return power(detail::with_forces(System(model, with<Capabilities::motion>), x), x, element);
 }
 
 }  // namespace polybody
