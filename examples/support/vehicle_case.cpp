@@ -30,7 +30,10 @@ class Numbers {
          off_plane = 0;
 
   // State x with the evaluation of its outputs.
-  ObservedState at(State const& x) { return probe_.at(x); }
+  ObservedState at(State const& x) {
+    if (x.t != t_) look(x);
+    return probe_.at(x);
+  }
 
   std::string deepest;  // link and contact partner of the deepest contact of the run
   double deepest_depth = 0.0, deepest_time = 0.0, torque = 0;
