@@ -1,6 +1,6 @@
-// Cost of questions about the states of a run: a chain of 64 rigid links, a step of 1 ms, then the energy, the violation
-// of a joint and its reaction. They are asked of the run, of the same state again, and by functions of model and state.
-// Target: the questions of the run cost at most a tenth of the step.
+// Cost of questions about the states of a run: a chain of 64 rigid links, a step of 1 ms, then the energy, the
+// violation of a joint and its reaction. It times them for the run, for the same state again, and as functions of model
+// and state. Target: the questions of the run cost at most a tenth of the step.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -54,8 +54,9 @@ int main() {
   }
   benchmark::DoNotOptimize(sum);
   double const of_step = median(step), asked = median(first);
-  std::printf("step %.1f us; energy, violation and reaction: of the run %.2f us (%.3f of the step), again %.2f us, "
-              "by functions of model and state %.1f us\n",
-              of_step, asked, asked / of_step, median(again), median(functions));
+  std::printf(
+      "step %.1f us; energy, violation and reaction: of the run %.2f us (%.3f of the step), again %.2f us, "
+      "by functions of model and state %.1f us\n",
+      of_step, asked, asked / of_step, median(again), median(functions));
   return 0;
 }
