@@ -3,6 +3,7 @@
 /// Energies, momenta and centres of mass in an evaluated system.
 
 #include <polybody/system/lookup.hpp>
+#include <polybody/system/make_operations.hpp>
 #include <polybody/system/system.hpp>
 
 namespace polybody {

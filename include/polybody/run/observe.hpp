@@ -3,6 +3,7 @@
 /// Evaluation of joints in a single state: constraint violations and reactions.
 
 #include <polybody/system/lookup.hpp>
+#include <polybody/system/make_operations.hpp>
 #include <polybody/system/system.hpp>
 
 namespace polybody {
