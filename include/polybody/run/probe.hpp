@@ -3,7 +3,7 @@
 /// Questions about states: `Probe`, a state with its evaluation, and a function of model and state for each question.
 
 #include <cstring>
-#include <memory>
+#include <optional>
 
 #include <polybody/run/accelerations.hpp>
 #include <polybody/run/applied_wrenches.hpp>
@@ -49,8 +49,7 @@ class Probe {
   /// Probe for states of `model`.
   template <class M>
     requires(!std::same_as<M, System> && !std::same_as<M, Probe>)
-  explicit Probe(M const& model)
-      : source_(system_source(model)), system_(std::make_unique<System>(source_.make(source_.model))) {}
+  explicit Probe(M const& model) : source_(system_source(model)), system_(source_.make(source_.model)) {}
   template <class M>
     requires(!std::same_as<M, System> && !std::same_as<M, Probe>)
   explicit Probe(M const&& model) = delete;  ///< deleted: a temporary model would not outlive the probe
@@ -74,7 +73,7 @@ class Probe {
   /// Full system of the model, not evaluated at a particular state.
   template <class = void>
   System& system() {
-    if (!system_) system_ = std::make_unique<System>(separate_system());
+    if (!system_) system_.emplace(separate_system());
     system_->layout().watch.require_unchanged();
     return *system_;
   }
@@ -118,7 +117,7 @@ class Probe {
 
   SystemSource source_;
   ModelWatch watch_;
-  std::unique_ptr<System> system_;
+  std::optional<System> system_;
   bool current_ = false, has_forces_ = false;  // of the state in the system
   long evaluations_ = 0;
 };
