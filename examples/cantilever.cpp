@@ -94,10 +94,10 @@ void tip_moment(Options const& o) {
   std::size_t next = 0;
   std::vector<std::vector<double>> columns(5);
   Progress progress(0.0, o.end_time, "tip moment");
-  for (State const& now :
+  for (auto const& now :
        simulate(beam.model, x, GeneralisedAlpha{.rho_inf = 0.8}, {.end_time = o.end_time, .step = o.step})) {
-    Vec3 const tip = position(beam.model, now, beam.beam.at(length));
-    Energy const e = energy(beam.model, now);
+    Vec3 const tip = now.position(beam.beam.at(length));
+    Energy const e = now.energy();
     std::vector<double> const row{now.t, tip[0], tip[1], e.kinetic, e.strain};
     for (std::size_t i = 0; i < row.size(); ++i) columns[i].push_back(row[i]);
     if (next < wanted.size() && now.t >= wanted[next] - 1e-9) {

@@ -28,9 +28,9 @@ EnergyDrift energy_drift(DriftRun const& run, Index elements, I const& integrato
   RobotArm<B> arm(bar(run.stiffness, run.density), elements, run.ramp);
   State x = arm.model.reference_state();
   EnergyDrift out;
-  for (State const& now : simulate(arm.model, x, integrator, {.end_time = run.ramp + run.window, .step = run.step})) {
+  for (auto const& now : simulate(arm.model, x, integrator, {.end_time = run.ramp + run.window, .step = run.step})) {
     if (now.t < run.ramp + 0.5 * run.step) continue;
-    double const total = energy(arm.model, now).total();
+    double const total = now.energy().total();
     if (out.t.empty()) out.start = total;
     out.end = total / out.start - 1.0;
     out.largest = std::max(out.largest, std::abs(out.end));

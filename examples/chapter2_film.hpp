@@ -40,9 +40,8 @@ class BarFilm {
     Visual visual(model);
     visual.sweep(body_, bar_, 40);
     scene_->record(visual, x);
-    System system(model, with<Capabilities::motion>);
-    system.evaluate(x.q, x.v, x.t);
-    add_reactions(*scene_, reactions_, system, x, 1e3);
+    Probe probe(model);
+    add_reactions(*scene_, reactions_, probe.at(x), 1e3);
   }
 
  private:

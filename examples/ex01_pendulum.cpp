@@ -13,10 +13,9 @@ int main() {
   auto const rod = model.add(Rod::from(bar), "rod");
   auto const pin = model.connect(hinge, model.ground().at({0, 0, 0}), rod.at(0.0), "pin");
   State x = model.reference_state();
-  for (State const& now : simulate(model, x, stepper, {.end_time = 2.0, .step = 1e-3}))
+  for (auto const& now : simulate(model, x, stepper, {.end_time = 2.0, .step = 1e-3}))
     if (now.t >= 2.0)
-      std::cout << now.t << ' ' << energy(model, now).total() << ' ' << constraint_violation(model, now, pin).norm()
-                << '\n';
+      std::cout << now.t << ' ' << now.energy().total() << ' ' << now.constraint_violation(pin).norm() << '\n';
   bool const good = std::abs(energy(model, x).total()) < 1e-3 && constraint_violation(model, x, pin).norm() < 1e-9;
   return good ? 0 : 1;
 }

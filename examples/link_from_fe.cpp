@@ -74,10 +74,8 @@ std::vector<Vec3> swing(B const& body, Point const& pin, Point const& end, Vec3 
   model.connect(Hinge{Revolute{.axis = {0, 0, 1}}, Constraint{}}, model.ground().at(at), link.at(pin), "pin");
   State x = model.reference_state();
   std::vector<Vec3> path;
-  for (State const& now :
-       simulate(model, x, GeneralisedAlpha{.rho_inf = 0.8}, {.end_time = o.end_time, .step = o.step}))
-    if (now.t >= 0.1 * o.end_time * (double(path.size()) + 1.0) - 1e-9)
-      path.push_back(position(model, now, link.at(end)));
+  for (auto const& now : simulate(model, x, GeneralisedAlpha{.rho_inf = 0.8}, {.end_time = o.end_time, .step = o.step}))
+    if (now.t >= 0.1 * o.end_time * (double(path.size()) + 1.0) - 1e-9) path.push_back(now.position(link.at(end)));
   return path;
 }
 

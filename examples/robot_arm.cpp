@@ -114,10 +114,10 @@ void run_case(Options const& o, Case const& c) {
   double next_checkpoint = 0.0;
   if (two_meshes) meshes_head();
   Progress progress(0.0, end_time, c.name);
-  for (State const& now :
+  for (auto const& now :
        simulate(arm.model, x, GeneralisedAlpha{.rho_inf = 0.8}, {.end_time = end_time, .step = o.step})) {
-    Vec3 const tip = position(arm.model, now, arm.arm.at(length));
-    Energy const e = energy(arm.model, now);
+    Vec3 const tip = now.position(arm.arm.at(length));
+    Energy const e = now.energy();
     std::vector<double> row{now.t, tip[0], tip[1], e.kinetic, e.strain};
     if constexpr (two_meshes) watch.see(arm, now, row);
     for (std::size_t i = 0; i < row.size(); ++i) columns[i].push_back(row[i]);

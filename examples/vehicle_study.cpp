@@ -38,9 +38,9 @@ std::array<double, 3> drive(Options const& o, Point const& p) {
   double const begin = vehicle.hull(x).r.x();
   double most = 0.0, sum = 0.0;
   long steps = 0;
-  for (State const& now : simulate(vehicle.model, x, GeneralisedAlpha{.rho_inf = 0.0},
-                                   {.end_time = o.end_time, .step = o.step, .max_step_halvings = 8})) {
-    double const force = 1e-3 * reaction(vehicle.model, now, vehicle.side(m113::Side::left).pins[watched_pin]).f.norm();
+  for (auto const& now : simulate(vehicle.model, x, GeneralisedAlpha{.rho_inf = 0.0},
+                                  {.end_time = o.end_time, .step = o.step, .max_step_halvings = 8})) {
+    double const force = 1e-3 * now.reaction(vehicle.side(m113::Side::left).pins[watched_pin]).f.norm();
     most = std::max(most, force);
     sum += force;
     ++steps;

@@ -3,8 +3,6 @@
 /// Computation of tracks at rest on a fixed vehicle that does not load them.
 
 #include <polybody/integrators/generalised_alpha.hpp>
-#include <polybody/run/energy.hpp>
-#include <polybody/run/observe.hpp>
 #include <polybody/run/simulate.hpp>
 
 #include "vehicle.hpp"
@@ -33,16 +31,13 @@ TrackStart settled_track(VehicleOptions options = {}, Ground const& ground = {})
     x.t = 0.0;
     auto run = simulate(bench.model, x, GeneralisedAlpha{.rho_inf = 0.0, .tolerance = 1e-6},
                         {.end_time = 1.0, .step = 2e-3, .max_step_halvings = 8});
-    System asked(bench.model, with<Capabilities::motion>);
     double energy = 0.0, before = 0.0;
     fastest = 0.0;
     do {
       run.advance();
       before = energy;
-      asked.evaluate(x.q, x.v, x.t);
-      energy = polybody::energy(asked, x).kinetic;
-      for (auto const& link : side.links)
-        fastest = std::max(fastest, frame(bench.model, x, link.at(Vec3(0, 0, 0))).v.norm());
+      energy = run.now().energy().kinetic;
+      for (auto const& link : side.links) fastest = std::max(fastest, run.now().frame(link.at(Vec3(0, 0, 0))).v.norm());
     } while (!run.done() && energy > before);
   }
   if (fastest > 1e-3)

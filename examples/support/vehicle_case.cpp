@@ -12,15 +12,15 @@ namespace chapter3 {
 namespace {
 
 // Results of one state, computed once for all outputs.
-class Probe {
+class Numbers {
  public:
-  explicit Probe(Built const& built)
-      : vehicle_(built.vehicle.tracks), start_(built.start), system_(built.vehicle.model.system()) {
+  explicit Numbers(Built const& built)
+      : vehicle_(built.vehicle.tracks), start_(built.start), probe_(built.vehicle.model) {
     pin_ = joint_named(built.vehicle.pin);
     drive_ = joint_named(built.vehicle.drive);
   }
 
-  double operator()(State const& x, double Probe::* number) {
+  double operator()(State const& x, double Numbers::* number) {
     if (x.t != t_) look(x);
     return this->*number;
   }
@@ -29,10 +29,10 @@ class Probe {
   double link_x = 0, link_z = 0, force_x = 0, force_z = 0, force = 0, gap = 0, largest_gap = 0, depth = 0, off_path = 0,
          off_plane = 0;
 
-  // The system, evaluated at the state of the last output.
-  System const& system_at(State const& x) {
+  // State x with the evaluation of its outputs.
+  ObservedState at(State const& x) {
     if (x.t != t_) look(x);
-    return system_;
+    return probe_.at(x);
   }
 
   std::string deepest;  // link and contact partner of the deepest contact of the run
@@ -41,7 +41,7 @@ class Probe {
  private:
   void look(State const& x) {
     t_ = x.t;
-    system_.evaluate(x.q, x.v, x.t);
+    auto const now = probe_.at(x);
     Frame<double> const hull = vehicle_->hull(x);
     m113::Track const& track = vehicle_->track(m113::Side::left);
     forward = hull.r.x() - m113::chassis.x;
@@ -56,11 +56,11 @@ class Probe {
     Vec3 const link = hull.A.transpose() * (track.middle[watched_pin](x).r - hull.r);
     link_x = link.x();
     link_z = link.z();
-    Wrench<double> const r = reaction_of(system_, x, pin_);
+    Wrench<double> const r = reaction_of(now.evaluated(), x, pin_);
     force_x = r.f.x();
     force_z = r.f.z();
     force = r.f.norm();
-    torque = reaction_of(system_, x, drive_).m.dot(hull.A.col(1));
+    torque = reaction_of(now.evaluated(), x, drive_).m.dot(hull.A.col(1));
     largest_gap = 0.0;
     for (int i = 0; i < m113::links; ++i) {
       double const open =
@@ -70,7 +70,7 @@ class Probe {
     }
     depth = off_path = off_plane = 0.0;
     for (m113::Side const s : {m113::Side::left, m113::Side::right}) {
-      m113::TrackDerailment const fault = m113::track_derailment(*vehicle_, system_, x, s, start_);
+      m113::TrackDerailment const fault = m113::track_derailment(*vehicle_, now.evaluated(), x, s, start_);
       if (fault.depth > deepest_depth) {
         deepest_depth = fault.depth;
         deepest_time = x.t;
@@ -83,49 +83,49 @@ class Probe {
     }
   }
 
-  Index joint_named(std::string const& name) const {
-    auto const& joints = system_.layout().joints;
+  Index joint_named(std::string const& name) {
+    auto const& joints = probe_.system().layout().joints;
     return std::find_if(joints.begin(), joints.end(), [&](JointLayout const& j) { return j.name == name; }) -
            joints.begin();
   }
 
   std::shared_ptr<m113::TrackedVehicle const> vehicle_;
   m113::TrackStart start_;
-  System system_;
+  Probe probe_;
   Index pin_ = 0, drive_ = 0;  // places of the joints in the layout
   double t_ = -1.0;
 };
 
 // The outputs of every run.
-inline constexpr std::pair<char const*, double Probe::*> asked[] = {
-    {"forward position [m]", &Probe::forward},
-    {"sideways position [m]", &Probe::sideways},
-    {"vertical displacement [m]", &Probe::height},
-    {"pitch [rad]", &Probe::pitch},
-    {"yaw [rad]", &Probe::yaw},
-    {"forward velocity [m/s]", &Probe::speed},
-    {"sprocket speed [rad/s]", &Probe::sprocket},
-    {"sprocket torque [N m]", &Probe::torque},
-    {"idler travel [m]", &Probe::idler},
-    {"link x in chassis [m]", &Probe::link_x},
-    {"link z in chassis [m]", &Probe::link_z},
-    {"joint force x [N]", &Probe::force_x},
-    {"joint force z [N]", &Probe::force_z},
-    {"joint force [N]", &Probe::force},
-    {"joint gap [m]", &Probe::gap},
-    {"largest joint gap [m]", &Probe::largest_gap},
-    {"deepest contact [m]", &Probe::depth},
-    {"off the path [m]", &Probe::off_path},
-    {"off the middle plane [m]", &Probe::off_plane},
+inline constexpr std::pair<char const*, double Numbers::*> asked[] = {
+    {"forward position [m]", &Numbers::forward},
+    {"sideways position [m]", &Numbers::sideways},
+    {"vertical displacement [m]", &Numbers::height},
+    {"pitch [rad]", &Numbers::pitch},
+    {"yaw [rad]", &Numbers::yaw},
+    {"forward velocity [m/s]", &Numbers::speed},
+    {"sprocket speed [rad/s]", &Numbers::sprocket},
+    {"sprocket torque [N m]", &Numbers::torque},
+    {"idler travel [m]", &Numbers::idler},
+    {"link x in chassis [m]", &Numbers::link_x},
+    {"link z in chassis [m]", &Numbers::link_z},
+    {"joint force x [N]", &Numbers::force_x},
+    {"joint force z [N]", &Numbers::force_z},
+    {"joint force [N]", &Numbers::force},
+    {"joint gap [m]", &Numbers::gap},
+    {"largest joint gap [m]", &Numbers::largest_gap},
+    {"deepest contact [m]", &Numbers::depth},
+    {"off the path [m]", &Numbers::off_path},
+    {"off the middle plane [m]", &Numbers::off_plane},
 };
 
 // Observers of every state of a run, in addition to the outputs.
 class Watch {
  public:
   Watch(Settings const& s, std::string const& name, std::shared_ptr<m113::TrackedVehicle const> vehicle,
-        std::shared_ptr<Probe> probe)
+        std::shared_ptr<Numbers> numbers)
       : vehicle_(std::move(vehicle)),
-        probe_(std::move(probe)),
+        numbers_(std::move(numbers)),
         progress_(0.0, s.end_time, name),
         until_(s.end_time),
         every_(s.animate) {}
@@ -139,9 +139,9 @@ class Watch {
   void film(std::shared_ptr<VehicleScene> scene) { scene_ = std::move(scene); }
 
   void see(State const& x, Outcome& o) {
-    o.deepest = probe_->deepest;
-    o.depth = probe_->deepest_depth;
-    o.deepest_time = probe_->deepest_time;
+    o.deepest = numbers_->deepest;
+    o.depth = numbers_->deepest_depth;
+    o.deepest_time = numbers_->deepest_time;
     if (o.trouble.empty()) o.trouble = m113::track_warning(*vehicle_, x);
     if (audit_) {
       audit_->record(x);
@@ -158,11 +158,10 @@ class Watch {
       next_picture_ += every_;
     }
     if (scene_) {
-      System const& system = probe_->system_at(x);
-      scene_->see(x, system);
-      scene_->plot(x.t, {{"forward velocity [m/s]", probe_->speed},
-                         {"vertical displacement [m]", probe_->height},
-                         {"force of a pin [kN]", 1e-3 * probe_->force}});
+      scene_->see(numbers_->at(x));
+      scene_->plot(x.t, {{"forward velocity [m/s]", numbers_->speed},
+                         {"vertical displacement [m]", numbers_->height},
+                         {"force of a pin [kN]", 1e-3 * numbers_->force}});
     }
     progress_.update(x.t);
     if (x.t >= until_) progress_.finish();
@@ -170,7 +169,7 @@ class Watch {
 
  private:
   std::shared_ptr<m113::TrackedVehicle const> vehicle_;
-  std::shared_ptr<Probe> probe_;
+  std::shared_ptr<Numbers> numbers_;
   Progress progress_;
   double until_, every_, next_picture_ = 0.0;
   std::unique_ptr<EnergyAudit> audit_;
@@ -218,14 +217,14 @@ Built build(Settings const& s, MakeVehicle const& make) {
 Scenario<AnyModel> TrackCase::scenario(std::string const& name, Built const& built) const {
   Settings const& s = settings;
   AnyVehicle const& vehicle = built.vehicle;
-  auto const probe = std::make_shared<Probe>(built);
+  auto const numbers = std::make_shared<Numbers>(built);
   std::vector<Output<AnyModel>> outputs;
   for (auto const& [output, number] : asked)
     outputs.push_back(
-        {output, [probe, number = number](AnyModel const&, State const& x) { return (*probe)(x, number); }});
+        {output, [numbers, number = number](AnyModel const&, State const& x) { return (*numbers)(x, number); }});
 
   outcomes->push_back({.name = name});
-  auto const watch = std::make_shared<Watch>(s, name, vehicle.tracks, probe);
+  auto const watch = std::make_shared<Watch>(s, name, vehicle.tracks, numbers);
   if (s.audit) watch->audit(EnergyAudit(vehicle.model.system()));
   if (s.animate > 0.0) watch->animate(vehicle.visual(), s.out / (name + ".pvd"));
   if (scene)

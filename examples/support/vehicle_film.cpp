@@ -47,33 +47,31 @@ bool VehicleScene::plotted(double t, double& next) const {
   return true;
 }
 
-void VehicleScene::see(State const& x, System const& system) {
-  if (x.t > until_ + same_time) return;
+void VehicleScene::see(ObservedState const& now) {
+  if (now.t > until_ + same_time) return;
   if (!also_) {
-    if (scene_.due(x.t)) frame(x, system, visual_.at(x));
-  } else if (x.t >= next_kept_ - same_time) {
+    if (scene_.due(now.t)) frame(now, visual_.at(now));
+  } else if (now.t >= next_kept_ - same_time) {
     double const interval = 1.0 / frames_per_second;
-    next_kept_ = next_kept_ + interval > x.t ? next_kept_ + interval : x.t + interval;
-    kept_.push_back(x);
-    also_(x);
+    next_kept_ = next_kept_ + interval > now.t ? next_kept_ + interval : now.t + interval;
+    kept_.push_back(now);
+    also_(now);
   }
 }
 
-void VehicleScene::show_kept(System system, std::function<void(std::size_t k, std::vector<VisualPart>&)> const& dress) {
+void VehicleScene::show_kept(Probe& probe, std::function<void(std::size_t k, std::vector<VisualPart>&)> const& dress) {
   for (std::size_t k = 0; k < kept_.size(); ++k) {
-    State const& x = kept_[k];
-    system.evaluate(x.q, x.v, x.t);
-    std::vector<VisualPart> parts = visual_.at(x);
+    std::vector<VisualPart> parts = visual_.at(kept_[k]);
     dress(k, parts);
-    frame(x, system, parts);
+    frame(probe.at(kept_[k]), parts);
   }
 }
 
-void VehicleScene::frame(State const& x, System const& system, std::vector<VisualPart> const& parts) {
-  scene_.record(x.t, parts);
+void VehicleScene::frame(ObservedState const& now, std::vector<VisualPart> const& parts) {
+  scene_.record(now.t, parts);
   for (m113::Side const side : {m113::Side::left, m113::Side::right})
-    tracks_->track(side).contacts(system, add_contacts(scene_, contacts_, 1e3));
-  if (joints_) add_reactions(scene_, *joints_, system, x, 1e3);
+    tracks_->track(side).contacts(now.evaluated(), add_contacts(scene_, contacts_, 1e3));
+  if (joints_) add_reactions(scene_, *joints_, now, 1e3);
 }
 
 }  // namespace chapter3

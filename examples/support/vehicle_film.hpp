@@ -21,16 +21,16 @@ class VehicleScene {
   void plot(double t, std::vector<std::pair<char const*, double>> const& numbers);
   // Adds a complete history with the label "label [unit]".
   void plot(std::string const& output, std::vector<double> const& times, std::vector<double> const& values);
-  // Records a frame if one is due. `system` must be evaluated at x.
-  void see(State const& x, System const& system);
+  // Records a frame if one is due.
+  void see(ObservedState const& now);
 
   // Postpones the frames to `show_kept` after the run: due states are stored and passed to `also`.
   void keep(std::function<void(State const&)> also) { also_ = std::move(also); }
   // Frame k of the states that were kept, once `dress` has changed what there is to be seen in it.
-  void show_kept(System system, std::function<void(std::size_t k, std::vector<VisualPart>&)> const& dress);
+  void show_kept(Probe& probe, std::function<void(std::size_t k, std::vector<VisualPart>&)> const& dress);
 
  private:
-  void frame(State const& x, System const& system, std::vector<VisualPart> const& parts);
+  void frame(ObservedState const& now, std::vector<VisualPart> const& parts);
   // True if a history with its next point at `next` has a point at t; advances `next` in this case.
   bool plotted(double t, double& next) const;
 

@@ -81,7 +81,8 @@ void StressScene::finish(Options const& o, std::vector<double> const& times, Lin
 void StressScene::show_decoupled(Options const& o) {
   DecoupledLinks shown(o);
   for (auto const& link : links_) shown.add(link.name, quasi_static(o, loads_->of(link)));
-  scene_->show_kept(model_.system(), [&](std::size_t k, std::vector<VisualPart>& parts) { shown.dress(k, parts); });
+  Probe probe(model_);
+  scene_->show_kept(probe, [&](std::size_t k, std::vector<VisualPart>& parts) { shown.dress(k, parts); });
 }
 
 std::string links_in_words(std::string const& links) {

@@ -97,6 +97,7 @@
 #include <polybody/run/marker_frames.hpp>
 #include <polybody/run/minimum_norm.hpp>
 #include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/run/problem_size.hpp>
 #include <polybody/run/redundancy.hpp>
 #include <polybody/run/simulate.hpp>

@@ -1,5 +1,5 @@
 // Wrenches of force elements, and powers of force elements and drives.
-#include <polybody/run/applied_wrenches.hpp>
+#include <polybody/run/probe.hpp>
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,6 @@
 #include <polybody/joints/prescribed_angle.hpp>
 #include <polybody/joints/prescribed_translation.hpp>
 #include <polybody/run/accelerations.hpp>
-#include <polybody/run/energy.hpp>
 #include <polybody/run/simulate.hpp>
 
 #include "support/refusal.hpp"

@@ -13,7 +13,7 @@
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/planar/weld.hpp>
 #include <polybody/joints/policies/constraint.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 
 #include "support/held.hpp"
 #include "support/refusal.hpp"

@@ -16,7 +16,7 @@
 #include <polybody/joints/prescribed_angle.hpp>
 #include <polybody/joints/revolute.hpp>
 #include <polybody/joints/weld.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 #include <polybody/stress/section.hpp>
 #include <polybody/vibration/steady_rotation.hpp>

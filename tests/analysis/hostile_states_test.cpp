@@ -6,7 +6,7 @@
 #include <polybody/joints/spherical.hpp>
 #include <polybody/run/energy_audit.hpp>
 #include <polybody/run/initial_conditions.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/statics/arc_length.hpp>
 #include <polybody/statics/equilibrium.hpp>
 #include <polybody/vibration/steady_rotation.hpp>

@@ -5,7 +5,7 @@
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/run/initial_conditions.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/solvers/block_lu.hpp>
 #include <polybody/system/model.hpp>
 

@@ -1,5 +1,5 @@
 // Angles and translations of joints in a state, their rates, and full turns over a run.
-#include <polybody/run/joint_position.hpp>
+#include <polybody/run/probe.hpp>
 
 #include <gtest/gtest.h>
 

@@ -12,7 +12,7 @@
 #include <polybody/joints/revolute.hpp>
 #include <polybody/joints/screw.hpp>
 #include <polybody/joints/weld.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 
 #include "support/held.hpp"

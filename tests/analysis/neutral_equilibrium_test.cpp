@@ -8,7 +8,7 @@
 #include <polybody/joints/distance.hpp>
 #include <polybody/joints/planar/weld.hpp>
 #include <polybody/run/minimum_norm.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/statics/arc_length.hpp>
 #include <polybody/statics/equilibrium.hpp>
 

@@ -1,12 +1,12 @@
 // Energies, momenta and other observations of a single state.
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/ancf/ancf_cable.hpp>
 #include <polybody/bodies/lrvf/lrvf.hpp>
 #include <polybody/bodies/rigid/rigid_euler_parameters.hpp>
-#include <polybody/run/energy.hpp>
+#include <polybody/run/problem_size.hpp>
 
 #include "support/mixed_models.hpp"
 #include "support/refusal.hpp"

@@ -10,9 +10,9 @@
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/revolute.hpp>
 #include <polybody/run/diagnose.hpp>
-#include <polybody/run/energy.hpp>
 #include <polybody/run/initial_conditions.hpp>
 #include <polybody/run/marker_frames.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/run/redundancy.hpp>
 #include <polybody/run/simulate.hpp>
 

@@ -4,7 +4,7 @@
 
 #include <polybody/bodies/ancf/planar_ancf_cable.hpp>
 #include <polybody/bodies/lrvf/planar_lrvf.hpp>
-#include <polybody/run/energy.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/stress/section.hpp>
 
 #include "support/cantilever.hpp"

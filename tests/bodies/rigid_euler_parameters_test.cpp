@@ -7,8 +7,8 @@
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/revolute.hpp>
 #include <polybody/joints/spherical.hpp>
-#include <polybody/run/energy.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
+#include <polybody/run/problem_size.hpp>
 #include <polybody/run/simulate.hpp>
 #include <polybody/testing/body_laws.hpp>
 

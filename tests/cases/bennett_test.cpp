@@ -10,8 +10,8 @@
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/revolute.hpp>
-#include <polybody/run/energy.hpp>
 #include <polybody/run/initial_conditions.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/run/redundancy.hpp>
 #include <polybody/run/simulate.hpp>
 

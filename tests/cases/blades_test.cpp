@@ -5,7 +5,7 @@
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/joints/knife_edge.hpp>
 #include <polybody/joints/policies/constraint.hpp>
-#include <polybody/run/energy.hpp>
+#include <polybody/run/probe.hpp>
 
 #include "support/held.hpp"
 #include "support/velocity_row_runs.hpp"

@@ -7,8 +7,8 @@
 #include <polybody/joints/policies/bushing.hpp>
 #include <polybody/joints/policies/nonlinear_bushing.hpp>
 #include <polybody/joints/weld.hpp>
-#include <polybody/run/energy.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
+#include <polybody/run/problem_size.hpp>
 #include <polybody/solvers/dense_lu.hpp>
 #include <polybody/statics/equilibrium.hpp>
 #include <polybody/statics/preloads.hpp>

@@ -8,8 +8,7 @@
 #include <polybody/integrators/radau.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/spherical.hpp>
-#include <polybody/run/energy.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 #include <polybody/run/sliders.hpp>
 

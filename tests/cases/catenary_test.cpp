@@ -9,7 +9,7 @@
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/policies/bushing.hpp>
 #include <polybody/joints/policies/joint_coordinates.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/statics/equilibrium.hpp>
 
 #include "support/held.hpp"

@@ -10,8 +10,7 @@
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/point_on_line.hpp>
 #include <polybody/joints/revolute.hpp>
-#include <polybody/run/energy.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/run/redundancy.hpp>
 #include <polybody/run/simulate.hpp>
 

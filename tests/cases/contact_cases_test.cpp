@@ -19,8 +19,7 @@
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/policies/bushing.hpp>
 #include <polybody/joints/prescribed_distance.hpp>
-#include <polybody/run/energy.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 
 #include "support/held.hpp"

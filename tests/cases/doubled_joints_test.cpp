@@ -15,7 +15,7 @@
 #include <polybody/joints/prescribed_angle.hpp>
 #include <polybody/joints/prismatic.hpp>
 #include <polybody/joints/universal.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/run/redundancy.hpp>
 #include <polybody/run/simulate.hpp>
 

@@ -11,7 +11,7 @@
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/policies/joint_coordinates.hpp>
 #include <polybody/joints/prescribed_angle.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 
 #include "support/held.hpp"

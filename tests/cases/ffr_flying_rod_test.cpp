@@ -8,8 +8,7 @@
 
 #include <polybody/forces/point_load.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
-#include <polybody/run/energy.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 
 #include "support/held.hpp"

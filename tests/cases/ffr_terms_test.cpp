@@ -8,8 +8,7 @@
 #include <polybody/bodies/ffr/planar_ffr.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
-#include <polybody/run/energy.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 #include <polybody/solvers/block_lu.hpp>
 

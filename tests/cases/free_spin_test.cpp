@@ -12,8 +12,8 @@
 #include <polybody/integrators/symplectic.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/spherical.hpp>
-#include <polybody/run/energy.hpp>
 #include <polybody/run/marker_frames.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 
 #include "support/refusal.hpp"

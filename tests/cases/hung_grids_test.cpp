@@ -12,7 +12,7 @@
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/policies/ancf_linear.hpp>
 #include <polybody/joints/policies/joint_coordinates.hpp>
-#include <polybody/run/energy.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 
 #include "support/linkages.hpp"

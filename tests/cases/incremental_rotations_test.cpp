@@ -9,8 +9,7 @@
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/weld.hpp>
-#include <polybody/run/energy.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 #include <polybody/statics/equilibrium.hpp>
 

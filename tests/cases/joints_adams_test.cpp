@@ -10,7 +10,7 @@
 #include <polybody/joints/revolute.hpp>
 #include <polybody/joints/revolute_pin.hpp>
 #include <polybody/joints/universal.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 
 #include "support/held.hpp"

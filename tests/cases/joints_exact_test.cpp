@@ -14,7 +14,7 @@
 #include <polybody/joints/screw.hpp>
 #include <polybody/joints/spherical.hpp>
 #include <polybody/math/smooth_table.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 
 #include "support/held.hpp"

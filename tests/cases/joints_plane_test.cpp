@@ -12,7 +12,7 @@
 #include <polybody/joints/prescribed_distance.hpp>
 #include <polybody/joints/prescribed_rate.hpp>
 #include <polybody/joints/prescribed_translation.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 
 #include "support/held.hpp"

@@ -11,7 +11,7 @@
 #include <polybody/joints/planar/prismatic.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/planar/weld.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/statics/equilibrium.hpp>
 
 #include "support/held.hpp"

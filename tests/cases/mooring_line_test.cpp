@@ -6,7 +6,7 @@
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/spherical.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/statics/equilibrium.hpp>
 
 #include <gtest/gtest.h>

@@ -5,7 +5,7 @@
 
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/joints/policies/bushing.hpp>
-#include <polybody/run/energy.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 
 #include "support/held.hpp"

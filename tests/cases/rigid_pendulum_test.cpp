@@ -5,7 +5,7 @@
 
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
-#include <polybody/run/energy.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 
 #include "support/chain.hpp"

@@ -4,7 +4,8 @@
 
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/policies/joint_coordinates.hpp>
-#include <polybody/run/energy.hpp>
+#include <polybody/run/probe.hpp>
+#include <polybody/run/problem_size.hpp>
 #include <polybody/run/simulate.hpp>
 
 #include "support/held.hpp"

@@ -5,7 +5,7 @@
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/rolling_disc.hpp>
-#include <polybody/run/energy.hpp>
+#include <polybody/run/probe.hpp>
 
 #include "support/held.hpp"
 #include "support/velocity_row_runs.hpp"

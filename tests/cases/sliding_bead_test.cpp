@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <polybody/integrators/generalised_alpha.hpp>
-#include <polybody/run/energy.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 
 #include "support/bead_on_a_line.hpp"

@@ -13,7 +13,7 @@
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/revolute.hpp>
 #include <polybody/joints/spherical.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 #include <polybody/statics/equilibrium.hpp>
 

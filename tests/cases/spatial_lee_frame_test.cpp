@@ -11,7 +11,7 @@
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/revolute.hpp>
 #include <polybody/joints/weld.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/statics/arc_length.hpp>
 #include <polybody/statics/equilibrium.hpp>
 

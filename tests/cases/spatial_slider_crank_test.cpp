@@ -14,8 +14,7 @@
 #include <polybody/joints/revolute.hpp>
 #include <polybody/joints/spherical.hpp>
 #include <polybody/joints/universal.hpp>
-#include <polybody/run/energy.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 
 #include "support/held.hpp"

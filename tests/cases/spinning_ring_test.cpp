@@ -4,7 +4,7 @@
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/policies/bushing.hpp>
 #include <polybody/joints/revolute.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 
 #include <gtest/gtest.h>

@@ -7,7 +7,7 @@
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/joints/planar/weld.hpp>
 #include <polybody/joints/policies/constraint.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/statics/equilibrium.hpp>
 
 #include "support/refusal.hpp"

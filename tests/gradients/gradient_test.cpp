@@ -12,7 +12,7 @@
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/policies/penalty.hpp>
 #include <polybody/joints/rolling_disc.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 
 #include "support/differences_of_runs.hpp"
 #include "support/refusal.hpp"

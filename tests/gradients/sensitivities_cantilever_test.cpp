@@ -8,7 +8,7 @@
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/joints/planar/weld.hpp>
 #include <polybody/joints/policies/constraint.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 
 using namespace polybody;
 

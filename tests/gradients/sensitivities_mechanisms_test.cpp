@@ -18,7 +18,7 @@
 #include <polybody/joints/prescribed_angle.hpp>
 #include <polybody/joints/prismatic.hpp>
 #include <polybody/joints/revolute.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 
 using namespace polybody;
 

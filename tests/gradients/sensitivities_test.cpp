@@ -8,7 +8,7 @@
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/policies/constraint.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 
 #include "support/differences_of_runs.hpp"
 #include "support/refusal.hpp"

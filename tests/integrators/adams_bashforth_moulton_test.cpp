@@ -5,7 +5,7 @@
 #include <polybody/forces/user_force.hpp>
 #include <polybody/integrators/coordinate_partitioning.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 
 #include "support/held.hpp"

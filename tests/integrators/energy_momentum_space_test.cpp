@@ -7,7 +7,7 @@
 #include <polybody/bodies/ancf/ancf_cable.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/integrators/radau.hpp>
-#include <polybody/run/energy.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 
 #include "support/energy_drift.hpp"

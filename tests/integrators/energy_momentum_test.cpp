@@ -7,7 +7,7 @@
 #include <polybody/bodies/ancf/planar_ancf_cable.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/integrators/newmark.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 
 #include "support/energy_drift.hpp"

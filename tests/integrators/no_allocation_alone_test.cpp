@@ -24,7 +24,7 @@
 #include <polybody/joints/policies/joint_coordinates.hpp>
 #include <polybody/joints/policies/nonlinear_bushing.hpp>
 #include <polybody/joints/prescribed_angle.hpp>
-#include <polybody/run/energy.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 #include <polybody/solvers/dense_lu.hpp>
 

@@ -4,7 +4,7 @@
 #include <polybody/integrators/coordinate_partitioning.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/planar/revolute.hpp>
-#include <polybody/run/energy.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 
 #include "support/held.hpp"

@@ -19,8 +19,7 @@
 #include <polybody/joints/prescribed_angle.hpp>
 #include <polybody/joints/revolute.hpp>
 #include <polybody/joints/weld.hpp>
-#include <polybody/run/energy.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 #include <polybody/system/model.hpp>
 

@@ -9,7 +9,7 @@
 #include <polybody/integrators/symplectic.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/prescribed_translation.hpp>
-#include <polybody/run/energy.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 
 namespace times_of_step_test {

@@ -9,7 +9,7 @@
 #include <polybody/io/progress.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/policies/constraint.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 
 #include "support/refusal.hpp"
@@ -39,7 +39,7 @@ struct RunTable : testing::Test {
 
   auto run(RunOptions options) { return simulate(model, x, GeneralisedAlpha{}, std::move(options)); }
   std::vector<TableColumn> columns() {
-    return {{"tip x [m]", [&](State const& now) { return position(model, now, rod.at(1.0))[0]; }},
+    return {{"tip x [m]", [&](auto const& now) { return now.position(rod.at(1.0))[0]; }},
             {"speed [m/s]", [&](State const& now) { return frame(model, now, rod.at(1.0)).v.norm(); }},
             {"tip y [m]", [&](State const& now) { return position(model, now, rod.at(1.0))[1]; }}};
   }

@@ -7,7 +7,7 @@
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/prescribed_rate.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/run/sliders.hpp>
 
 #include "support/solver_instances.hpp"

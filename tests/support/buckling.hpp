@@ -9,7 +9,7 @@
 #include <polybody/forces/point_load.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/weld.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/statics/equilibrium.hpp>
 #include <polybody/vibration/modes.hpp>
 

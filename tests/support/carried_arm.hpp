@@ -12,7 +12,7 @@
 #include <polybody/joints/prismatic.hpp>
 #include <polybody/joints/revolute.hpp>
 #include <polybody/joints/spherical.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 
 namespace polybody {
 

@@ -7,7 +7,7 @@
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/revolute.hpp>
 #include <polybody/joints/spherical.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 
 namespace polybody {
 

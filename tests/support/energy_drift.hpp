@@ -2,7 +2,7 @@
 /// \file Invariants of a run without loads: the largest deviations of energy and momenta during the run.
 
 #include <polybody/integrators/integrator.hpp>
-#include <polybody/run/energy.hpp>
+#include <polybody/run/probe.hpp>
 
 #include "held.hpp"
 

@@ -7,7 +7,7 @@
 #include <polybody/joints/policies/ancf_linear.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/spherical.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 
 namespace polybody {
 

@@ -14,7 +14,7 @@
 #include <polybody/joints/policies/penalty.hpp>
 #include <polybody/joints/prescribed_angle.hpp>
 #include <polybody/math/time_functions.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 
 #include "support/differences_of_runs.hpp"
 #include "support/refusal.hpp"

@@ -5,7 +5,7 @@
 #include <polybody/forces/point_load.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/weld.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/statics/equilibrium.hpp>
 
 namespace polybody {

@@ -7,7 +7,7 @@
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/prescribed_angle.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 
 #include "held.hpp"

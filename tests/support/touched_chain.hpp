@@ -9,7 +9,7 @@
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/policies/penalty.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 
 namespace polybody::touched_chain {
 

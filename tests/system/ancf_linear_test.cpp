@@ -13,7 +13,8 @@
 #include <polybody/joints/revolute.hpp>
 #include <polybody/joints/spherical.hpp>
 #include <polybody/joints/weld.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
+#include <polybody/run/problem_size.hpp>
 #include <polybody/run/simulate.hpp>
 #include <polybody/statics/equilibrium.hpp>
 

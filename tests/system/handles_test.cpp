@@ -5,7 +5,7 @@
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/forces/spring_damper.hpp>
 #include <polybody/joints/spherical.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/system/model.hpp>
 
 #include "support/refusal.hpp"

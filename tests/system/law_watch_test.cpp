@@ -12,7 +12,7 @@
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/prescribed_angle.hpp>
 #include <polybody/joints/prescribed_distance.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 #include <polybody/system/model.hpp>
 

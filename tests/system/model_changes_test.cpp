@@ -11,7 +11,7 @@
 #include <polybody/run/any_model.hpp>
 #include <polybody/run/body_record.hpp>
 #include <polybody/run/energy_audit.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 
 #include "support/refusal.hpp"

@@ -9,7 +9,8 @@
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/policies/penalty.hpp>
 #include <polybody/joints/prescribed_angle.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
+#include <polybody/run/problem_size.hpp>
 #include <polybody/run/simulate.hpp>
 
 #include "support/refusal.hpp"

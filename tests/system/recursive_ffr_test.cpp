@@ -10,8 +10,7 @@
 #include <polybody/joints/planar/prismatic.hpp>
 #include <polybody/joints/planar/revolute.hpp>
 #include <polybody/joints/planar/weld.hpp>
-#include <polybody/run/energy.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 
 #include "support/held.hpp"
 #include "support/refusal.hpp"

@@ -12,7 +12,8 @@
 #include <polybody/joints/planar/weld.hpp>
 #include <polybody/joints/point_in_plane.hpp>
 #include <polybody/joints/policies/joint_coordinates.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
+#include <polybody/run/problem_size.hpp>
 #include <polybody/run/simulate.hpp>
 
 #include "support/chain.hpp"

@@ -16,8 +16,8 @@
 #include <polybody/joints/spherical.hpp>
 #include <polybody/joints/universal.hpp>
 #include <polybody/joints/weld.hpp>
-#include <polybody/run/energy.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
+#include <polybody/run/problem_size.hpp>
 #include <polybody/run/simulate.hpp>
 
 #include "support/held.hpp"

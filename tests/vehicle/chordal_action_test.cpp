@@ -26,7 +26,7 @@
 #include <polybody/joints/prescribed_angle.hpp>
 #include <polybody/joints/prescribed_rate.hpp>
 #include <polybody/joints/revolute.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 #include <polybody/vehicle/pin_sprocket_contact.hpp>
 

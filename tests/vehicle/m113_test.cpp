@@ -10,7 +10,7 @@
 #include <sstream>
 
 #include <polybody/math/quaternion.hpp>
-#include <polybody/run/energy.hpp>
+#include <polybody/run/probe.hpp>
 
 #include "m113/data.hpp"
 #include "m113/decoupled_link_strain.hpp"

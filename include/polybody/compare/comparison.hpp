@@ -11,6 +11,7 @@
 
 #include <polybody/run/energy.hpp>
 #include <polybody/run/observe.hpp>
+#include <polybody/run/problem_size.hpp>
 #include <polybody/run/run_options.hpp>
 
 namespace polybody {

@@ -3,21 +3,21 @@
 /// Forces of joints and contacts as arrows of a film. Not in polybody.hpp: it belongs to io/film.hpp.
 
 #include <polybody/io/film_scene.hpp>
-#include <polybody/run/contacts.hpp>
-#include <polybody/run/observe.hpp>
+#include <polybody/run/probe.hpp>
 
 namespace polybody {
 
 /// Adds an arrow for each joint to the last frame of a scene: the force on the joint's second body, at the second
-/// marker. `system` must have been evaluated in state x.
+/// marker.
 /// \param unit force that the unit of the arrows stands for [N], 1000 for kN
 /// \throws InvalidInput, NonFiniteValue as `FilmScene::arrow`.
 template <class = void>
-void add_reactions(FilmScene& scene, FilmArrows arrows, System const& system, State const& x, double unit = 1.0) {
+void add_reactions(FilmScene& scene, FilmArrows arrows, ObservedState const& now, double unit = 1.0) {
+  System const& system = now.evaluated();
   for (ConstraintBlock<double> const& block : system.data().rows) {
     if (block.source == ConstraintSource::body) continue;
     Index const marker = system.layout().joints[std::size_t(block.owner)].b;
-    Vec3 const force = reaction_of(system, x, block.owner).f;
+    Vec3 const force = reaction_of<double>(system, now, block.owner).f;
     scene.arrow(arrows, system.data().markers[std::size_t(marker)].frame.r, force / unit);
   }
 }

@@ -3,22 +3,22 @@
 /// Outputs of a run as a table, a file and a figure:
 ///
 ///     Table const table = tabulate(simulate(model, x, integrator, {.end_time = 2.0, .step = 1e-3}),
-///                                  {{"tip height [m]", [&](State const& now) { return tip(now).z(); }}});
+///                                  {{"energy [J]", [](auto const& now) { return now.energy().total(); }}});
 ///     plot(table, "out/pendulum");   // out/pendulum.csv, .dat, .gp, .png
 
 #include <functional>
 
 #include <polybody/io/csv.hpp>
 #include <polybody/io/plot.hpp>
+#include <polybody/run/probe.hpp>
 #include <polybody/run/sampling.hpp>
-#include <polybody/system/state.hpp>
 
 namespace polybody {
 
 /// Output of a run: a number that is a function of the state.
 struct TableColumn {
-  std::string name;                           ///< name with unit: "tip height [m]"
-  std::function<double(State const&)> value;  ///< value, in the unit of `name`
+  std::string name;                                   ///< name with unit: "tip height [m]"
+  std::function<double(ObservedState const&)> value;  ///< value, in the unit of `name`
 };
 
 namespace detail {
@@ -86,7 +86,7 @@ Table tabulate(Run&& run, std::vector<TableColumn> const& columns, double sampli
   Table table{{"t [s]"}, {}};
   for (TableColumn const& c : columns) table.columns.push_back(c.name);
   RunSampling samples(run.state().t, sampling);
-  for (State const& x : run) {
+  for (ObservedState const& x : run) {
     if (!samples.takes(x.t) && !table.rows.empty() && !run.done()) continue;
     auto& row = table.rows.emplace_back(1, x.t);
     for (TableColumn const& c : columns) {

@@ -40,6 +40,7 @@ class AnyModel {
   ProblemSize const& counts() const { return problem_size_; }  ///< problem size at construction
   /// System of the full model, with the evaluation of motion and energies.
   System system() const { return system_(model_.get()); }
+  SystemSource source() const { return {system_, model_.get()}; }  ///< makes such systems
 
   /// Systems of a run by integrator I. \throws InvalidInput if the constructor was called without integrator I.
   template <class I>
@@ -58,7 +59,7 @@ class AnyModel {
   };
   template <class M>
   [[gnu::cold]] static System questions(void const* model) {
-    return System(*static_cast<M const*>(model), with<Capabilities::energy>);
+    return System(*static_cast<M const*>(model), with < Capabilities::energy | Capabilities::rigid_velocities >);
   }
   template <class I, class M>
   [[gnu::cold]] static RunSystems systems(void const* model) {
@@ -80,6 +81,8 @@ RunSystems run_systems(AnyModel const& model) {
 }
 /// System of the full model, for evaluations of its states.
 inline System observation_system(AnyModel const& model) { return model.system(); }
+/// Source of systems of the model in `model`.
+inline SystemSource system_source(AnyModel const& model) { return model.source(); }
 /// Coordinates, constraint equations and degrees of freedom of the model when the `AnyModel` was constructed.
 inline ProblemSize problem_size(AnyModel const& model) { return model.counts(); }
 

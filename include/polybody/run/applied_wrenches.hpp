@@ -19,16 +19,6 @@ void for_each_action_of(System const& system, Index force, Visit&& visit) {
     if (action.source == force) visit(k++, action);
 }
 
-/// Returns `system` after an evaluation at x that includes the wrenches of its force elements. \throws InvalidInput for
-/// a state of another model.
-template <class = void>
-System with_forces(System system, State const& x) {
-  require_usable(system, x);
-  system.evaluate(x.q, x.v, x.t);
-  system.push_forces();
-  return system;
-}
-
 template <class = void>
 double power_of_force(System const& system, Index force) {
   double sum = 0.0;
@@ -70,13 +60,6 @@ auto applied_wrenches(System const& system, ElementHandle<F> const& force) {
     return out;
   }
 }
-/// Forces [N] and moments [N m] of a force element on its markers in state x of a model, each about its marker in world
-/// axes. First-order states of the element are taken from x.
-/// \throws InvalidInput for a handle or a state of another model.
-template <class M, class F>
-auto applied_wrenches(M const& model, State const& x, ElementHandle<F> const& force) {
-  return applied_wrenches(detail::with_forces(System(model, with<Capabilities::motion>), x), force);
-}
 
 /// Power of a force element on the bodies [W], Σ (f·v + m·ω) over its markers: positive if the element adds energy to
 /// the bodies. `system` must have been evaluated at x, and `System::push_forces` called afterwards. \throws
@@ -95,14 +78,6 @@ template <class J>
   requires requires { typename J::Geometry; }
 double power(System const& system, State const& x, ElementHandle<J> const& joint) {
   return detail::power_of_joint(system, x, index_of_joint(system.layout(), joint));
-}
-/// Power of a force element or a driving constraint on the bodies in state x of a model [W], positive if the element
-/// adds energy.
-/// \throws InvalidInput for a handle or a state of another model.
-template <class M, class E>
-  requires(!std::same_as<M, System>)
-double power(M const& model, State const& x, ElementHandle<E> const& element) {
-  return power(detail::with_forces(System(model, with<Capabilities::motion>), x), x, element);
 }
 
 }  // namespace polybody

@@ -1,8 +1,7 @@
 #pragma once
 /// \file
-/// Energies, momentum and centre of mass of a model in a state.
+/// Energies, momenta and centres of mass in an evaluated system.
 
-#include <polybody/run/state_checks.hpp>
 #include <polybody/system/lookup.hpp>
 #include <polybody/system/make_operations.hpp>
 #include <polybody/system/system.hpp>
@@ -15,15 +14,6 @@ template <class = void>
 Energy energy(System const& system, State const& x) {
   return require_entry(system.entries().first.energy, "energies")(system.entries().second, {x.q, x.v, x.t},
                                                                   system.data());
-}
-
-/// Energies in state x of a model. \throws InvalidInput for a state of another model.
-template <class M>
-Energy energy(M const& model, State const& x) {
-  System system(model, with<Capabilities::motion>);
-  require_usable(system, x);
-  system.evaluate(x.q, x.v, x.t);
-  return energy(system, x);
 }
 
 /// Linear momentum [kg m/s] and angular momentum about the world's origin [kg m²/s], world axes:
@@ -46,11 +36,10 @@ struct ProductSink {
 };
 }  // namespace detail
 
-/// Momentum in state x of a system with `Capabilities::rigid_velocities`.
+/// Momentum in state x; `system` must have been made with `Capabilities::rigid_velocities` and evaluated at x.
 template <class = void>
 Momentum momentum(System& system, State const& x) {
   VecX mv = VecX::Zero(system.velocities()), rigid = mv;
-  system.evaluate(x.q, x.v, x.t);
   system.masses(detail::ProductSink{x.v, mv});
   auto const velocities = require_entry(system.entries().first.rigid_velocities, "velocities of rigid motions");
   Momentum p;
@@ -61,13 +50,6 @@ Momentum momentum(System& system, State const& x) {
     p.angular[i] = mv.dot(rigid);
   }
   return p;
-}
-/// Momentum in state x of a model. \throws InvalidInput for a state of another model.
-template <class M>
-Momentum momentum(M const& model, State const& x) {
-  System system(model, with<Capabilities::rigid_velocities>);
-  require_usable(system, x);
-  return momentum(system, x);
 }
 
 /// Mass and centre of mass of a body or of a model in one state.
@@ -85,7 +67,6 @@ namespace detail {
 template <class = void>
 CentreOfMass centre_of_mass(System& system, State const& x, Index first, Index count) {
   auto const velocities = require_entry(system.entries().first.rigid_velocities, "velocities of rigid motions");
-  system.evaluate(x.q, x.v, x.t);
   VecX mv = VecX::Zero(system.velocities()), rigid = mv, u = mv;
   auto const motion = [&](Vec3 const& v0, Vec3 const& omega) {
     velocities(system.entries().second, x.q, v0, omega, rigid);
@@ -115,7 +96,7 @@ CentreOfMass centre_of_mass(System& system, State const& x, Index first, Index c
 }  // namespace detail
 
 /// Mass and centre of mass of all bodies in state x, rigid and flexible. `system` must have been made with
-/// `Capabilities::rigid_velocities`. The result is zero for a model without bodies.
+/// `Capabilities::rigid_velocities` and must have been evaluated at x. The result is zero for a model without bodies.
 template <class = void>
 CentreOfMass centre_of_mass(System& system, State const& x) {
   return detail::centre_of_mass(system, x, 0, system.layout().body_velocities());
@@ -126,14 +107,4 @@ CentreOfMass centre_of_mass(System& system, State const& x, BodyHandle<B> const&
   BodyLayout const& place = system.layout().bodies[std::size_t(index_of(system.layout(), body))];
   return detail::centre_of_mass(system, x, place.v0, place.velocities);
 }
-/// Mass and centre of mass of all bodies of a model in state x, or of the body `body` only.
-/// \throws InvalidInput for a state or a handle of another model.
-template <class M, class... B>
-  requires(!std::same_as<M, System> && sizeof...(B) <= 1)
-CentreOfMass centre_of_mass(M const& model, State const& x, BodyHandle<B> const&... body) {
-  System system(model, with<Capabilities::rigid_velocities>);
-  require_usable(system, x);
-  return centre_of_mass(system, x, body...);
-}
-
 }  // namespace polybody

@@ -173,4 +173,30 @@ void assemble(M const& model, State& x, double tolerance = 1e-12, int max_iterat
   assemble(system, x, tolerance, max_iterations);
 }
 
+/// Makes state x consistent at its time, as the start of a run does: projects the velocities onto the constraint
+/// equations, then computes the accelerations and multipliers. The coordinates do not change, and the multipliers of
+/// redundant constraints are zero.
+/// \throws InconsistentInitialConditions naming a joint whose violation exceeds `tolerance` [m], [rad] (`assemble`
+/// closes it), or the joints with redundant equations that contradict; InvalidInput, SingularMatrix, NonFiniteValue. x
+/// is then unchanged.
+template <LinearSolver Solver = DefaultSolver>
+void make_consistent(System& system, State& x, double tolerance = 1e-8) {
+  require_positive(tolerance, "make_consistent: the tolerance");
+  require_usable(system, x);
+  require_assembled(system, x, tolerance);
+  ForwardDynamics<Solver> forward(system);
+  State fresh = x;
+  forward.project_velocities(system, fresh.q, fresh.v, fresh.t);
+  require_consistent_redundancy(system, forward, fresh);
+  forward.accelerations(system, {fresh.q, fresh.v, fresh.t}, fresh.a, fresh.lambda);
+  x = std::move(fresh);
+}
+/// Makes state x of a model consistent; see above.
+template <class M>
+  requires(!std::same_as<M, System>)
+void make_consistent(M const& model, State& x, double tolerance = 1e-8) {
+  System system(model, with<Capabilities::motion>);
+  make_consistent(system, x, tolerance);
+}
+
 }  // namespace polybody

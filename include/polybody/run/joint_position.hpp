@@ -112,14 +112,6 @@ JointValue translation_of(System const& system, ElementHandle<J> const& joint) {
   return slide_of(system, i, axis_of_joint<J>(system.layout().joints[std::size_t(i)], JointMotion::Kind::slide));
 }
 
-/// Returns `system` after an evaluation at state x. \throws InvalidInput for a state of another model.
-template <class = void>
-System evaluated(System system, State const& x) {
-  require_usable(system, x);
-  system.evaluate(x.q, x.v, x.t);
-  return system;
-}
-
 }  // namespace detail
 
 /// Angle of a joint in (−π, π] [rad]: rotation of the second marker relative to the first about the axis of the joint,
@@ -132,23 +124,12 @@ template <class J>
 double joint_angle(System const& system, ElementHandle<J> const& joint) {
   return detail::angle_of(system, joint).value;
 }
-/// Angle of a joint in state x of a model, in (−π, π] [rad]: rotation of the second marker relative to the first about
-/// the axis of the joint, zero in the reference configuration.
-template <class M, class J>
-double joint_angle(M const& model, State const& x, ElementHandle<J> const& joint) {
-  return joint_angle(detail::evaluated(System(model, with<Capabilities::motion>), x), joint);
-}
 
 /// Rate of a joint angle [rad/s]: a₃·(ω_b − ω_a), with the axis a₃ of the joint in the first marker. `system` must have
 /// been evaluated at the state. \throws InvalidInput as `joint_angle`.
 template <class J>
 double joint_angle_rate(System const& system, ElementHandle<J> const& joint) {
   return detail::angle_of(system, joint).rate;
-}
-/// Rate of a joint angle in state x of a model [rad/s].
-template <class M, class J>
-double joint_angle_rate(M const& model, State const& x, ElementHandle<J> const& joint) {
-  return joint_angle_rate(detail::evaluated(System(model, with<Capabilities::motion>), x), joint);
 }
 
 /// Translation in a joint [m]: position of the second marker relative to the first along the axis of the joint, which
@@ -160,22 +141,12 @@ template <class J>
 double joint_translation(System const& system, ElementHandle<J> const& joint) {
   return detail::translation_of(system, joint).value;
 }
-/// Translation in a joint in state x of a model [m].
-template <class M, class J>
-double joint_translation(M const& model, State const& x, ElementHandle<J> const& joint) {
-  return joint_translation(detail::evaluated(System(model, with<Capabilities::motion>), x), joint);
-}
 
 /// Rate of a joint translation [m/s], relative to the axis in the first marker. `system` must have been evaluated at
 /// the state. \throws InvalidInput as `joint_translation`.
 template <class J>
 double joint_translation_rate(System const& system, ElementHandle<J> const& joint) {
   return detail::translation_of(system, joint).rate;
-}
-/// Rate of a joint translation in state x of a model [m/s].
-template <class M, class J>
-double joint_translation_rate(M const& model, State const& x, ElementHandle<J> const& joint) {
-  return joint_translation_rate(detail::evaluated(System(model, with<Capabilities::motion>), x), joint);
 }
 
 /// Angle of a joint with its full turns, over the states of a run:

@@ -1,10 +1,12 @@
 #pragma once
 /// \file
-/// Evaluation of a single body in a state: frames of its points, coordinates and velocities.
+/// Evaluation of a single body in a state: frames of its points, coordinates, velocities and sections of beams. The
+/// first argument of the functions is the model, or its `ModelLayout`.
 
 #include <cmath>
 #include <functional>
 
+#include <polybody/bodies/shared/sections.hpp>
 #include <polybody/math/sequence.hpp>
 #include <polybody/system/lookup.hpp>
 
@@ -45,7 +47,7 @@ Frame<double> frame(M const& model, State const& x, Marker<B> const& marker) {
 /// Frame of a marker on the ground.
 template <class M>
 Frame<double> frame(M const& model, State const&, Marker<Ground> const& marker) {
-  model.require_own(marker, "frame");
+  require_own(model, marker, "frame");
   return {.r = marker.point.origin, .A = marker.point.axes};
 }
 
@@ -64,6 +66,30 @@ FrameIn frame_in(BodyHandle<B> const& body, Marker<B> const& marker) {
 template <class M, class B>
 Vec3 position(M const& model, State const& x, Marker<B> const& marker) {
   return frame(model, x, marker).r;
+}
+
+namespace detail {
+/// Calls question(body, point, q) for the section at a marker.
+template <class M, class B, class F>
+auto ask_section(M const& model, State const& x, Marker<B> const& marker, F&& question) {
+  static_assert(HasSections<B>,
+                "This function needs the marker of a flexible beam; a rigid body and the ground do not deform.");
+  BodyInState<B> const b = body_in_state(model, x, marker, "section");
+  return question(b.body, marker.point, b.q);
+}
+}  // namespace detail
+
+/// Strains (ε, γ_y, γ_z, κ_x, κ_y, κ_z) of the marker's section. \throws InvalidInput for a marker of another model.
+template <class M, class B>
+Vec6 section_strains(M const& model, State const& x, Marker<B> const& marker) {
+  return detail::ask_section(model, x, marker,
+                             [](B const& b, auto const& p, auto q) { return b.section_strains(p, q); });
+}
+/// Section forces (N, Q_y, Q_z, M_x, M_y, M_z) of the marker's section [N], [N m].
+template <class M, class B>
+Vec6 section_forces(M const& model, State const& x, Marker<B> const& marker) {
+  return detail::ask_section(model, x, marker,
+                             [](B const& b, auto const& p, auto q) { return b.section_forces(p, q); });
 }
 
 /// Coordinates of one body in state x, for the body's member functions (strains, centre line).

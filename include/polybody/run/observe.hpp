@@ -2,9 +2,7 @@
 /// \file
 /// Evaluation of joints in a single state: constraint violations and reactions.
 
-#include <polybody/run/marker_frames.hpp>
-#include <polybody/run/problem_size.hpp>
-#include <polybody/run/state_checks.hpp>
+#include <polybody/system/lookup.hpp>
 #include <polybody/system/make_operations.hpp>
 #include <polybody/system/system.hpp>
 
@@ -58,15 +56,6 @@ VecX constraint_violation(System const& system, ElementHandle<J> const& joint) {
   ConstraintBlock<double> const& block = detail::rows_of(system, index_of_joint(system.layout(), joint));
   return Eigen::Map<VecX const>(block.g, block.rows);
 }
-/// Constraint violation of a joint in state x of a model. \throws InvalidInput for a handle or a state of another
-/// model.
-template <class M, class J>
-auto constraint_violation(M const& model, State const& x, ElementHandle<J> const& joint) {
-  System system(model, with<Capabilities::motion>);
-  require_usable(system, x);
-  system.evaluate(x.q, x.v, x.t);
-  return constraint_violation(system, joint);
-}
 
 /// Axes for the components of a reaction.
 enum class ReactionAxes { world, joint };
@@ -101,16 +90,6 @@ Wrench<double> reaction(System const& system, State const& x, ElementHandle<J> c
                         ReactionAxes axes = ReactionAxes::world) {
   return reaction_of(system, x, index_of_joint(system.layout(), joint), axes);
 }
-/// Force and moment that a joint exerts on its second body in state x of a model, about the joint point on this body.
-/// \throws InvalidInput for a state or handle of another model or a joint without constraint equations.
-template <class M, class J>
-Wrench<double> reaction(M const& model, State const& x, ElementHandle<J> const& joint,
-                        ReactionAxes axes = ReactionAxes::world) {
-  System system(model, with<Capabilities::motion>);
-  require_usable(system, x);
-  system.evaluate(x.q, x.v, x.t);
-  return reaction(system, x, joint, axes);
-}
 
 /// Largest force of any joint on its second body [N], for all policies; `system` must have been evaluated at x.
 template <class = void>
@@ -135,10 +114,10 @@ struct Violation {
   double acceleration = 0.0;  ///< largest |Φ̈| [m/s²], [rad/s²]
 };
 
-/// Largest constraint violations in state x. Evaluates `system` at x.
+namespace detail {
+/// Largest constraint violations in state x. `system` must have been evaluated at x.
 template <class = void>
-Violation largest_violation(System& system, State const& x) {
-  system.evaluate(x.q, x.v, x.t);
+Violation violation_of(System& system, State const& x) {
   if (system.rows() == 0) return {};
   VecX phi = VecX::Zero(system.rows()), rate = phi, second = phi;
   system.violation(phi);
@@ -149,13 +128,13 @@ Violation largest_violation(System& system, State const& x) {
   second += of_accelerations;
   return {largest_size(phi), largest_size(rate), largest_size(second)};
 }
-/// Largest constraint violations in state x of a model. \throws InvalidInput for a state of another model.
-template <class M>
-  requires(!std::same_as<M, System>)
-Violation largest_violation(M const& model, State const& x) {
-  System system(model, with<Capabilities::motion>);
-  require_usable(system, x);
-  return largest_violation(system, x);
+}  // namespace detail
+
+/// Largest constraint violations in state x; evaluates `system` there.
+template <class = void>
+Violation largest_violation(System& system, State const& x) {
+  system.evaluate(x.q, x.v, x.t);
+  return detail::violation_of(system, x);
 }
 
 }  // namespace polybody

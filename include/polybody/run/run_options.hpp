@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <optional>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -161,5 +162,31 @@ struct RunReport : RunCounts {
                        run.halved, " steps were halved. Repeat the run with half the step and compare."}));
   }
 };
+
+/// Writes the report as one paragraph: cost, events, redundant joints and warnings.
+template <class = void>
+std::ostream& operator<<(std::ostream& out, RunReport const& r) {
+  auto const counted = [](long n, char const* one, char const* many) {
+    return std::to_string(n) + ' ' + (n == 1 ? one : many);
+  };
+  std::string text = sentence_of({counted(r.steps, "step", "steps"), " with ",
+                                  counted(r.iterations, "Newton iteration", "Newton iterations"), ", ",
+                                  counted(r.factorisations, "factorisation", "factorisations"), " and ",
+                                  counted(r.evaluations, "evaluation", "evaluations"), " of the forces."});
+  if (r.rejected > 0)
+    text += sentence_of({" ", counted(r.rejected, "trial step was", "trial steps were"), " rejected, ",
+                         std::to_string(r.halved), " of them halved."});
+  if (r.over_budget > 0)
+    text += sentence_of({" ", counted(r.over_budget, "step", "steps"),
+                         " ended at the budget of Newton's method; the largest last correction is ", r.left,
+                         " of its tolerance."});
+  for (RunReport::EventRecord const& event : r.events)
+    text += sentence_of({" Event \"", event.name, "\" at t = ", event.time, " s."});
+  if (r.stopped) text += " The last event ended the run.";
+  for (std::string const& joint : r.redundant)
+    text += sentence_of({" Joint \"", joint, "\" has redundant constraint equations."});
+  for (std::string const& warning : r.warnings) text += " Warning: " + warning;
+  return out << text;
+}
 
 }  // namespace polybody

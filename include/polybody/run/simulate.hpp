@@ -7,20 +7,20 @@
 
 namespace polybody {
 
+namespace detail {
+/// Capabilities that the warnings of a run by integrator I require.
+template <class I>
+inline constexpr Capabilities warned = HasStabilityLimit<I> ? Capabilities::compliance : Capabilities::motion;
+}  // namespace detail
+
 /// Systems of a run of `model` by integrator I. The model must outlive the systems.
 template <class I, class M>
 [[gnu::cold]] RunSystems run_systems(M const& model) {
-  constexpr Capabilities warned = HasStabilityLimit<I> ? Capabilities::compliance : Capabilities::motion;
   if constexpr (M::eliminates)
-    return {std::make_unique<System>(system_for<I>(model)), std::make_unique<System>(model, with<warned>)};
+    return {std::make_unique<System>(system_for<I>(model)), std::make_unique<System>(model, with<detail::warned<I>>),
+            system_source(model)};
   else
-    return {std::make_unique<System>(system_for<I, warned>(model)), nullptr};
-}
-
-/// System of the full `model`, for evaluations of its states. The model must outlive the system.
-template <class M>
-[[gnu::cold]] System observation_system(M const& model) {
-  return System(model, with<Capabilities::motion>);
+    return {std::make_unique<System>(system_for<I, detail::warned<I>>(model)), nullptr, system_source(model)};
 }
 
 /// Returns a run of `model` from x by `integrator`, as a range of states. The run updates x to the state at the end of
@@ -99,8 +99,5 @@ void resume(M const&&, State&, I const&, RunOptions, RunSnapshot const&) {
 /// Refuses a temporary model, to which the systems would keep a reference.
 template <class I, class M>
 RunSystems run_systems(M const&& model) = delete;
-/// Refuses a temporary model, to which the system would keep a reference.
-template <class M>
-System observation_system(M const&& model) = delete;
 
 }  // namespace polybody

@@ -12,15 +12,14 @@
 #include <polybody/run/redundancy_watch.hpp>
 #include <polybody/run/run_iterator.hpp>
 #include <polybody/run/run_snapshot.hpp>
-#include <polybody/run/run_systems.hpp>
 #include <polybody/run/stable_step.hpp>
 #include <polybody/run/step_plan.hpp>
 #include <polybody/run/step_undo.hpp>
 
 namespace polybody {
 
-/// Input range of states: `for (State const& now : simulate(…))` gives the initial state and the state at the end of
-/// each step. The run updates the caller's state. Call begin() once.
+/// Input range of states: `for (auto const& now : simulate(…))` gives the initial state and the state at the end of
+/// each step, with answers to questions. The run updates the caller's state. Call begin() once.
 template <Integrator I, class Solver = DefaultSolver>
 class Simulation {
  public:
@@ -40,11 +39,11 @@ class Simulation {
   [[gnu::cold]] RunSnapshot snapshot();
 
   State const& state() const { return *x_; }            ///< state at the end of the last step
+  ObservedState const& now() const { return now_; }     ///< this state with answers to questions
   RunReport const& report() const& { return report_; }  ///< report so far
   RunReport report() && { return std::move(report_); }  ///< the report so far, moved out
-  /// Integrated system: the model, or its reduced system.
-  System& system() { return *system_; }
-  System& full() { return full_ ? *full_ : *system_; }                               ///< system of the full model
+  System& system() { return *system_; }                 ///< integrated system: the model, or its reduced system
+  System& full() { return full_ ? *full_ : *system_; }  ///< system of the full model
   bool done() const { return report_.stopped || stepped().t >= options_.end_time; }  ///< true at the end of the run
 
   /// Takes a step to the next grid point, or to an earlier breakpoint or event. After an exception the state is
@@ -67,6 +66,8 @@ class Simulation {
       : system_(std::move(systems.stepped)),
         full_(std::move(systems.full)),
         x_(&x),
+        probe_(systems.questions, full()),
+        now_(x, probe_),
         method_(method_of(integrator)),
         options_(std::move(options)),
         workspace_(method_.template workspace<Solver>(*system_)),
@@ -170,6 +171,8 @@ class Simulation {
 
   std::unique_ptr<System> system_, full_;  // workspaces contain references to them
   State* x_;
+  Probe probe_;  // a separate system, so that questions do not change the run
+  ObservedState now_;
   State reduced_, seen_, before_;  // reduced and full state with eliminating policies; state before the step
   MethodOf<I> method_;
   RunOptions options_;

@@ -17,6 +17,12 @@ void require_own(ModelLayout const& layout, Marker<Ground> const& marker, std::s
   if (!detail::accepts(layout.serial, layout.ancestors, marker.model)) detail::refuse_marker_of_another_model(what);
 }
 
+/// Requires a ground marker of `model`; see above.
+template <class M>
+void require_own(M const& model, Marker<Ground> const& marker, std::string const& what) {
+  model.require_own(marker, what);
+}
+
 namespace detail {
 /// Position in `places` of the body, joint or force of type T that has the index `index` within its type. \throws
 /// InvalidInput naming `what` if it was not added to the model with the serial number `serial`.
@@ -98,6 +104,23 @@ BodyInState<B> body_in_state(M const& model, State const& x, Marker<B> const& ma
                                    x);
 }
 
+/// Body of a handle with its part of the state x, by the layout of its model. \throws InvalidInput as above.
+template <class B>
+BodyInState<B> body_in_state(ModelLayout const& layout, State const& x, BodyHandle<B> const& handle) {
+  return body_in_state<B>(layout.bodies[std::size_t(index_of(layout, handle))], x);
+}
+/// Body of a marker with its part of the state x, by the layout of its model. \throws InvalidInput as above.
+template <class B>
+BodyInState<B> body_in_state(ModelLayout const& layout, State const& x, Marker<B> const& marker,
+                             std::string const& question) {
+  return body_in_state<B>(layout.bodies[std::size_t(index_of(layout, marker, question))], x);
+}
+
+/// Name of the body of a marker, by the layout of its model.
+template <class B>
+std::string body_name(ModelLayout const& layout, Marker<B> const& marker) {
+  return layout.bodies[std::size_t(index_of(layout, marker, "name"))].name;
+}
 /// Name of the body of a marker of this model.
 template <class M, class B>
 std::string body_name(M const& model, Marker<B> const& marker) {
