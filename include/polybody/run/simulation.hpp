@@ -1,8 +1,7 @@
 #pragma once
 /// \file
 /// Simulation of a model: a range of states with steps that end at breakpoints, events and stop conditions. Member
-/// functions are defined outside the class, so that a program that links `polybody::compiled` does not compile them
-/// again.
+/// functions are defined outside the class: a program that links `polybody::compiled` does not compile them again.
 
 #include <polybody/math/sequence.hpp>
 #include <polybody/run/axial_force_monitor.hpp>
