@@ -19,7 +19,7 @@
 #include <numbers>
 
 #include <polybody/math/time_functions.hpp>
-#include <polybody/vehicle/track_layout.hpp>
+#include <polybody/vehicle/track_trace.hpp>
 
 namespace polybody::m113 {
 

@@ -1,6 +1,6 @@
 // Stress in a section: its resultants are the section forces, the surface is free of traction, and the largest values
 // are those of textbooks.
-#include <polybody/stress/section_stress.hpp>
+#include <polybody/stress/decoupled_stress.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // Records of studies. An accepted record has the study's own outputs or an error message at each of its points. It is
 // written line by line and read again with the same result. A torn line can occur only at the end. The input is read
 // unchanged, as lines after the head, and as texts of lines with correct checksums.
-#include <polybody/study/record_content.hpp>
+#include <polybody/study/queue.hpp>
 
 #include "fuzz/target.hpp"
 

@@ -1,4 +1,4 @@
-#include <polybody/gradients/checkpointing.hpp>
+#include <polybody/gradients/gradient_result.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Estimates of the remaining error of a correction by a random probe, against the exact error.
-#include <polybody/gradients/correction_error_estimate.hpp>
+#include <polybody/gradients/alpha_linearised_step.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // GMRES on systems with known solutions, and its number of matrix products.
-#include <polybody/gradients/gmres.hpp>
+#include <polybody/gradients/adjoint_kernels.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Choice between kinds of approximate factors, for given numbers of refinement passes.
-#include <polybody/gradients/preconditioner_choice.hpp>
+#include <polybody/gradients/step_factorisations.hpp>
 
 #include <gtest/gtest.h>
 

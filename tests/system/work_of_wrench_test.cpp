@@ -1,7 +1,7 @@
 // Work of a force and a moment over a step: rotations of any size, springs of any stiffness.
 #include <gtest/gtest.h>
 
-#include <polybody/system/work_of_wrench.hpp>
+#include <polybody/system/work_account.hpp>
 
 namespace polybody {
 namespace work_of_wrench_test {

@@ -1,4 +1,4 @@
-// The data of a film (include/polybody/io/film_encoding.hpp), read and checked. What is wrong with them is said in a
+// The data of a film (include/polybody/io/film.hpp), read and checked. What is wrong with them is said in a
 // sentence by a FilmError; nothing that passes can lead outside an array.
 
 export class FilmError extends Error {}

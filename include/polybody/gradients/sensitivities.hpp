@@ -15,9 +15,144 @@
 ///
 /// Not in polybody.hpp: few programs need derivatives of whole runs.
 
-#include <polybody/gradients/alpha_sensitivities.hpp>
 #include <polybody/gradients/forward_sensitivities.hpp>
-#include <polybody/gradients/stage_sensitivities.hpp>
+#include <polybody/gradients/perturbed_model.hpp>
+#include <polybody/gradients/perturbed_models.hpp>
+#include <polybody/gradients/perturbed_stage_model.hpp>
+#include <polybody/gradients/sensitivity_step.hpp>
+
+namespace polybody::detail {
+
+// Propagation of forward sensitivities over the steps of integrators of the generalised-α family.
+//
+// Not in polybody.hpp: few programs need derivatives of whole runs.
+
+/// Propagates the forward sensitivities of a run over its steps.
+template <class S, class I>
+class AlphaSensitivities {
+ public:
+  using V = PerturbedModel<S, I>;
+  using Variants = PerturbedModels<V>;
+
+  /// \param full model of the run; must outlive this object
+  [[gnu::cold]] explicit AlphaSensitivities(V& full)
+      : full_(&full), slope_(full.scenario.model, full.system, full.method) {}
+
+  /// Replaces the sensitivities in `columns` before a step by sensitivities at its end. Returns an upper estimate of
+  /// the next relative correction.
+  double advance(SensitivityStep const& step, std::span<TangentColumn const> columns, Variants& perturbed) {
+    auto const& [before, after, h, searched] = step;
+    V& spare = perturbed.itself();
+    bool const corrects = spare.method.start_step(spare.system, before, h, spare.work);
+    State corrected;
+    if (corrects) {
+      corrected = before;
+      corrected.v = spare.work.v0;
+    }
+    own_before_ = spare.work.a0;
+    own_after_ = after.history.head(after.v.size());
+    for (TangentColumn const& column : columns) start_step(before, h, column, corrects, perturbed);
+    StepEnds const ends{corrects ? corrected : before, after, own_before_, own_after_, h};
+    slope_.set(ends, searched ? nullptr : full_->factors(h));
+    perturbed.begin_step();
+    constexpr std::size_t most = std::size_t(AlphaLinearisedStep<>::max_directions);
+    directions_.resize(std::min(columns.size(), most));
+    double left = 0.0;
+    for (std::size_t first = 0, count; first < columns.size(); first += count) {
+      count = std::min(first == 0 ? most - 1 : most, columns.size() - first);
+      for (std::size_t l = 0; l < count; ++l) {
+        TangentColumn const& column = columns[first + l];
+        column.tangent->dt += column.dh;
+        perturbed.template of_equations<State>(column.j, {after, h, column.tangent->dt, 0}, directions_[l].by);
+        directions_[l].dx = &column.tangent->dx;
+        directions_[l].dh = column.dh;
+      }
+      left = std::max(left, slope_.advance(ends, std::span(directions_).first(count)));
+    }
+    for (TangentColumn const& column : columns) push_length(*column.tangent, column.dh);
+    return left;
+  }
+
+ private:
+  /// Adds the derivative of the start correction, which changes velocities and algorithmic accelerations before a step
+  /// from x.
+  static void start_step(State const& x, double h, TangentColumn const& column, bool corrects, Variants& perturbed) {
+    RunSensitivity& tangent = *column.tangent;
+    double const shifted = x.history[x.history.size() - 1];
+    if (!corrects && (shifted == 0.0 || column.dh == tangent.lengths[StepHistory::lengths - 1])) return;
+    Index const nv = x.v.size();
+    std::optional<bool> const decided = V::decided(x, h, corrects);
+    State const change = perturbed.of_map(column.j, x, tangent, {h, column.dh},
+                                          [&](V& v, State& y, double length) { v.set_out_change(y, length, decided); });
+    tangent.dx.v += change.v;
+    tangent.dx.history.head(nv) += change.history.head(nv);
+  }
+  /// Appends the derivative of a step length, as `StepHistory::push` appends the length.
+  static void push_length(RunSensitivity& tangent, double dh) {
+    constexpr Index last = StepHistory::lengths - 1;
+    for (Index i = 0; i + 1 < last; ++i) tangent.lengths[i] = tangent.lengths[i + 1];
+    tangent.lengths[last - 1] = tangent.lengths[last] = dh;
+  }
+
+  V* full_;
+  AlphaLinearisedStep<> slope_;
+  VecX own_before_, own_after_;  // algorithmic accelerations before and after the step
+  std::vector<StepDirection> directions_;
+};
+
+// Propagation of forward sensitivities over the steps of Runge–Kutta methods.
+//
+// Not in polybody.hpp: few programs need derivatives of whole runs.
+
+/// Propagates forward sensitivities over a step.
+template <class S, class I>
+class StageSensitivities {
+ public:
+  using V = PerturbedStageModel<S, I>;
+  using Variants = PerturbedModels<V>;
+
+  /// \param full model of the run; must outlive this object
+  [[gnu::cold]] explicit StageSensitivities(V& full) : derivatives_(full.scenario.model, full.system, full.method) {}
+
+  /// Converts, in place, the sensitivities in `columns` before a step to sensitivities at its end. Returns the largest
+  /// relative change in the last corrections.
+  double advance(SensitivityStep const& step, std::span<TangentColumn const> columns, Variants& perturbed) {
+    StepTaken const taken{step.before, step.after, step.h};
+    derivatives_.set(taken);
+    double left = 0.0;
+    perturbed.begin_step();
+    for (std::size_t first = 0; first < columns.size(); first += directions_.size()) {
+      std::size_t const count = std::min(std::size_t(Slopes::max_directions), columns.size() - first);
+      directions_.clear();
+      dh_.clear();
+      for (TangentColumn const& column : columns.subspan(first, count)) {
+        directions_.push_back(&column.tangent->dx);
+        dh_.push_back(column.dh);
+      }
+      std::size_t places = 0;
+      auto const slope = [&](EvaluationPoint<> const& x, std::size_t l) -> EquationDerivative const& {
+        if (l == 0) ++places;
+        TangentColumn const& column = columns[first + l];
+        double const dt = column.tangent->dt + (x.t - step.before.t) / step.h * column.dh;
+        perturbed.template of_equations<EvaluationPoint<>>(column.j, {x, step.h, dt, places - 1}, by_);
+        return by_;
+      };
+      left = std::max(left, derivatives_.advance(taken, directions_, slope, dh_));
+    }
+    for (TangentColumn const& column : columns) column.tangent->dt += column.dh;
+    return left;
+  }
+
+ private:
+  using Slopes = typename StageDerivatives<I>::Type;
+
+  Slopes derivatives_;
+  std::vector<State*> directions_;
+  std::vector<double> dh_;
+  EquationDerivative by_;
+};
+
+}  // namespace polybody::detail
 
 namespace polybody {
 

@@ -4,15 +4,137 @@
 ///
 /// Not in polybody.hpp: few programs need derivatives of whole runs.
 
+#include <algorithm>
 #include <array>
+#include <limits>
 #include <optional>
+#include <vector>
 
 #include <polybody/gradients/increment_tangent.hpp>
-#include <polybody/gradients/preconditioner_choice.hpp>
-#include <polybody/gradients/step_ends.hpp>
+#include <polybody/integrators/alpha_method.hpp>
+#include <polybody/math/compiler.hpp>
+#include <polybody/solvers/reduced_coordinates.hpp>
 #include <polybody/system/active_contact_pairs.hpp>
 
 namespace polybody {
+
+// Choice of the approximate factorisation for the derivatives of steps, by its measured cost.
+//
+// Not in polybody.hpp: few programs need derivatives of whole runs.
+
+/// Approximate factorisations of the matrix of a linearised step.
+enum class ApproximateFactors {
+  of_step,  ///< factorisation from the solution of the step itself, without further cost
+  of_end,   ///< factorisation of the tangent at the end of the step
+  exact,    ///< factorisation of this tangent with the terms that Newton's method omits, such as second-order terms
+  turned,   ///< as `exact`, with the derivative of ⊞ in addition (gradients/increment_tangent.hpp)
+};
+
+/// Chooses the kind of factorisation with the lowest cost. The cost is the number of passes through the equations, plus
+/// the cost of the factorisation. The candidates are tried one after another until one pass per group of directions is
+/// sufficient. The trial is repeated every hundred steps.
+class PreconditionerChoice {
+ public:
+  /// Candidate for the choice.
+  struct Candidate {
+    ApproximateFactors factors;  ///< kind of factorisation
+    double cost;                 ///< cost of the factorisation [passes with their solutions]
+  };
+
+  /// \param candidates at least one, the cheapest first
+  [[gnu::cold]] explicit PreconditionerChoice(std::vector<Candidate> candidates)
+      : candidates_(std::move(candidates)), taken_(candidates_.size(), never) {}
+
+  /// Begins another step. Returns its kind of factorisation.
+  ApproximateFactors next() {
+    if (step_ > 0) taken_[now_] = passes_ + candidates_[now_].cost + also_;
+    bool const least = passes_ == directions_;  // one pass for each group
+    if (step_ == 0 || step_ == period) {
+      now_ = 0;
+      step_ = 0;
+      taken_.assign(candidates_.size(), never);
+    } else if (tries_) {
+      tries_ = !least && now_ + 1 < candidates_.size();
+      now_ = tries_ ? now_ + 1 : std::size_t(std::min_element(taken_.begin(), taken_.end()) - taken_.begin());
+    }
+    if (step_++ == 0) tries_ = true;
+    passes_ = directions_ = 0;
+    also_ = 0.0;
+    return now();
+  }
+  /// Kind of factorisation of the current step.
+  ApproximateFactors now() const { return candidates_[now_].factors; }
+  /// Adds the cost of another kind, which is factorised in the same step because the chosen kind is not sufficient.
+  void make(ApproximateFactors others) {
+    for (Candidate const& c : candidates_)
+      if (c.factors == others) also_ += c.cost;
+  }
+  /// Adds the passes through the equations of one group of directions of the step.
+  void add(int passes) {
+    passes_ += passes;
+    ++directions_;
+  }
+
+ private:
+  static constexpr int period = 100;  // steps
+  static constexpr double never = std::numeric_limits<double>::infinity();
+
+  std::vector<Candidate> candidates_;
+  std::vector<double> taken_;  // by candidates: cost of a step [passes]
+  std::size_t now_ = 0;
+  double also_ = 0.0;  // cost of other factorisations in the step [passes]
+  bool tries_ = true;
+  int step_ = 0, passes_ = 0, directions_ = 0;
+};
+
+// Ends of a step of the generalised-α family, and the derivatives of the equations of the step with respect to a
+// parameter.
+//
+// Not in polybody.hpp: few programs need derivatives of whole runs.
+
+/// Derivatives of the equations at the end of a step with respect to a parameter, at constant unknowns. For
+/// nonholonomic constraints Φ̇ replaces Φ.
+struct EquationDerivative {
+  VecX balance;        ///< (nv) ∂r/∂p
+  VecX rows;           ///< (rows) ∂Φ/∂p
+  double scale = 1.0;  ///< change of the parameter that may change a and λ by their own size, in its unit
+};
+
+/// Ends of a step of length h: states before and after the step, and the algorithmic accelerations there.
+struct StepEnds {
+  State const& before;     ///< state at the start of the step, with corrected velocities
+  State const& after;      ///< state at the end of the step
+  VecX const& own_before;  ///< (nv) algorithmic accelerations a₀ at the start
+  VecX const& own_after;   ///< (nv) algorithmic accelerations a₁ at the end
+  double h;                ///< length of the step [s]
+
+  /// Increment δ (nv) of the step with `method`: q₁ = q₀ ⊞ δ.
+  VecX increment(AlphaMethod const& method) const {
+    return h * before.v + h * h * ((0.5 - method.beta) * own_before + method.beta * own_after);
+  }
+  /// Coordinates, velocities, time, accelerations and multipliers at the end of the step.
+  StepPosition end() const { return {{after.q, after.v, after.t}, after.a, after.lambda}; }
+};
+
+/// Direction of differentiation of a step.
+struct StepDirection {
+  EquationDerivative by;  ///< derivatives of the equations at the end of the step
+  State* dx = nullptr;    ///< derivative of the state before the step, converted in place to the state after it
+  double dh = 0.0;        ///< derivative of the step length [s]; `by` includes the change of the end time
+};
+
+namespace detail {
+/// Evaluates the system for its tangent matrix with second-order terms. If joints are eliminated, the residual is also
+/// evaluated, because the matrix depends on the reactions of these joints in the last reduced residual. \param r (nv)
+/// workspace
+template <class = void>
+void evaluate_for_tangent(System& system, StepPosition const& x, VecX& r) {
+  system.evaluate(x.at.q, x.at.v, x.at.t);
+  if (!system.step_coordinates()) return;
+  r.resize(system.velocities());
+  system.residual(x.a, x.lambda, r);
+}
+}  // namespace detail
 
 /// Receiver that passes blocks on with rows and columns exchanged.
 template <BlockReceiver S>

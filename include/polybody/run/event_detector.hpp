@@ -4,12 +4,164 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
 
-#include <polybody/run/event_place.hpp>
-#include <polybody/run/event_step.hpp>
+#include <polybody/math/errors.hpp>
+#include <polybody/run/event.hpp>
 #include <polybody/run/run_options.hpp>
 
 namespace polybody {
+
+/// Motion of a run near a state, for the evaluation of events.
+struct EventMotion {
+  double requested_step;                           ///< requested length of steps [s]
+  std::function<State const&(State const&)> seen;  ///< returns the full state of an integrated state
+  /// Moves a state along its velocities and accelerations by a time [s], forwards or backwards, without a step.
+  std::function<void(State&, double)> drift;
+
+  /// Event value at a full state. \throws NonFiniteValue.
+  static double value(Event const& event, State const& x) {
+    double const y = event.value(x);
+    if (!std::isfinite(y))
+      throw NonFiniteValue("event.not_finite", {"The event \"", ErrorObject{event.name},
+                                                "\" is not finite at t = ", ErrorTime{x.t}, " s."});
+    return y;
+  }
+  /// Rate of the event value at x [1/s], by central differences over a tenth of the requested step.
+  [[gnu::cold]] double rate(Event const& event, State const& x) const {
+    double const by = 0.05 * requested_step;
+    State y = x;
+    drift(y, by);
+    double const later = event.value(seen(y));
+    y = x;
+    drift(y, -by);
+    return (later - event.value(seen(y))) / (2.0 * by);
+  }
+  /// True if the event value depends on accelerations or multipliers, whose rates are unknown.
+  [[gnu::cold]] static bool reads_forces(Event const& event, State const& full) {
+    State others = full;
+    others.a.array() = 1.5 * others.a.array() + 1.0;
+    others.lambda.array() = 1.5 * others.lambda.array() + 1.0;
+    return event.value(others) != event.value(full);
+  }
+};
+
+/// Step of a run, in which events are detected.
+struct EventStep {
+  /// Function that takes a step of at most the given length [s] and updates the state. Returns the length of the step
+  /// [s].
+  using Again = std::function<double(State&, double)>;
+
+  State const& before;        ///< state at the start of the step
+  double length;              ///< length of the step [s]
+  Again const& again;         ///< takes a step from a state
+  EventMotion const& motion;  ///< motion of the run near its states
+
+  /// State h seconds after the start of the step.
+  State after(double h) const {
+    State x = before;
+    while (x.t < before.t + h) {
+      double const left = before.t + h - x.t;
+      if (again(x, left) == left) break;
+    }
+    return x;
+  }
+  /// Length [s] within the step after which the event value has the opposite sign, although it has the sign `side` at
+  /// both ends of the step; 0 if none is found. x is the state at the end of the step. The extremum of the value is
+  /// estimated from its values and rates at the ends of an interval by a cubic, in at most five iterations.
+  [[gnu::cold]] double turn(Event const& event, int side, State const& x) const {
+    if (side != 1 && side != -1) return 0.0;
+    auto const value = [&](State const& y) { return side * event.value(motion.seen(y)); };
+    auto const rate_of = [&](State const& y) { return side * motion.rate(event, y); };
+    double lo = 0.0, hi = length;
+    double r0 = rate_of(before), r1 = r0 < 0.0 ? rate_of(x) : 0.0;
+    if (!(r0 < 0.0 && r1 > 0.0)) return 0.0;
+    double w0 = value(before), w1 = value(x);
+    for (int k = 0; k < 5; ++k) {
+      // w(s h) = w0 + b s + c s² + d s³
+      double const h = hi - lo, b = r0 * h, c = 3.0 * (w1 - w0) - h * (2.0 * r0 + r1),
+                   d = 2.0 * (w0 - w1) + h * (r0 + r1);
+      double const s = -b / (c + std::sqrt(std::max(0.0, c * c - 3.0 * b * d)));
+      if (!(s > 0.0 && s < 1.0)) return 0.0;
+      if (w0 + s * (b + s * (c + s * d)) > 0.1 * std::min(w0, w1)) return 0.0;
+      double const at = lo + s * h;
+      if (!(at > lo && at < hi)) return 0.0;
+      State const trial = after(at);
+      double const w = value(trial);
+      if (!(w > 0.0)) return at;
+      double const r = rate_of(trial);
+      (r < 0.0 ? lo : hi) = at;
+      (r < 0.0 ? w0 : w1) = w;
+      (r < 0.0 ? r0 : r1) = r;
+    }
+    return 0.0;
+  }
+};
+
+/// State of one event of a run: sign of its value, values in the last steps, and actions.
+struct EventPlace {
+  static constexpr int repeats_allowed = 10;    ///< limit of consecutive actions, each within `tolerance` of the last
+  static constexpr int actions_allowed = 1000;  ///< limit of actions of one event within one step length
+  static constexpr double never = std::numeric_limits<double>::infinity();  ///< initial time of actions [s]
+
+  int side = 0;           ///< sign of the value: −1, 0 (unknown), 1; −2 or 2 if held at zero after this sign
+  bool known = false;     ///< true if `value` is set
+  double value = 0.0;     ///< value at the end of the last step, unit of the event
+  double rate = 0.0;      ///< mean rate of the value over the last step [1/s]
+  double span = 0.0;      ///< length of that step [s]; 0 after a start
+  double acted = -never;  ///< time of the last action [s]
+  double since = -never;  ///< time from which `actions` are counted [s]
+  int actions = 0;        ///< number of actions from `since` on
+  int repeats = 0;        ///< consecutive actions, each within the tolerance of the preceding one
+  bool stays = false;     ///< true if the rate of the value is zero after the last action
+  double scale = 0.0;     ///< |rate| of the value at the last event [1/s]
+  double off = 0.0;       ///< |value| at the last event, unit of the event
+
+  bool rests() const { return side == 2 || side == -2; }  ///< true if the value is held at zero
+  /// Sign of the value `y`: −1, 0 or 1.
+  static int sign(double y) { return (y > 0.0) - (y < 0.0); }
+  /// True if the value y has left the stored side. False for an unknown side.
+  bool passed(double y) const { return side != 0 && sign(y) != (rests() ? side / 2 : side); }
+  /// True if the value may have crossed zero twice within a step of length h [s] that ends with the value `now`. The
+  /// parabola through the last three values then has its extremum within the step, at less than half of both end
+  /// values.
+  bool may_turn(double now, double h) const {
+    if (side != 1 && side != -1) return false;
+    if (!(span > 0.0)) return true;
+    double const w0 = side * value, w1 = side * now, mean = (w1 - w0) / h, bend = (mean - side * rate) / (h + span);
+    double const r0 = mean - bend * h, r1 = mean + bend * h;
+    return r0 < 0.0 && r1 > 0.0 && w0 - 0.25 * r0 * r0 / bend < 0.5 * std::min(w0, w1);
+  }
+  /// Stores the value `now` at the end of a step.
+  void stand(double now) {
+    value = now;
+    known = true;
+    side = sign(now);
+  }
+  /// Counts an action at t [s] in a run with steps of `length` [s]. If actions accumulate, the value is held at zero
+  /// from now on. \throws InvalidInput if actions accumulate and `rests` of the event is false.
+  [[gnu::cold]] void count(Event const& event, double length, double t) {
+    double const within = event.tolerance + 4.0 * std::numeric_limits<double>::epsilon() * std::abs(t);
+    repeats = t - acted <= within ? repeats + 1 : 0;
+    acted = t;
+    if (t - since > length) {
+      since = t;
+      actions = 0;
+    }
+    ++actions;
+    bool const repeated = repeats >= repeats_allowed || (repeats > 0 && stays);
+    if (!repeated && actions < actions_allowed) return;
+    side = side > 0 ? 2 : -2;
+    if (event.rests) return;
+    std::string const why = repeated ? sentence_of({"within its tolerance of ", event.tolerance, " s after its action"})
+                                     : sentence_of({actions, " times within the length of one step"});
+    throw InvalidInput("event.accumulates",
+                       {"The event \"", ErrorObject{event.name}, "\" occurs again ", why, " at t = ", ErrorTime{t},
+                        " s: the impacts accumulate, and the body comes to rest. Set `rests` of the event to hold its "
+                        "value at zero from there on, or end the run before."});
+  }
+};
 
 /// Stores the sign of each event value, and finds the first event within a step. Steps are taken through a function, so
 /// that this class is compiled once for all models.

@@ -4,8 +4,94 @@
 ///
 /// Not in polybody.hpp: only studies need it.
 
+#include <charconv>
+#include <cmath>
+#include <numbers>
+
+#include <polybody/math/compiler.hpp>
 #include <polybody/study/points.hpp>
-#include <polybody/study/portable.hpp>
+
+namespace polybody::detail {
+
+// Elementary functions with bitwise identical results on every machine, for the points of studies. The functions of
+// C libraries differ in the last bit. In contrast, +, −, ×, ÷, √ and fma are rounded identically everywhere (IEEE
+// 754; not under -ffast-math). The source writes each sum with a product as an fma, so the result does not depend on
+// the compiler.
+//
+// Not in polybody.hpp: it belongs to study/grid.hpp.
+
+/// Logarithm ln x of a positive x, by m·2ᵏ with √½ ≤ m < √2 and ln m = 2 artanh((m − 1)/(m + 1)).
+template <class = void>  // compiled where it is used
+double portable_log(double x) {
+  int k = 0;
+  double m = std::frexp(x, &k);
+  if (m < 0.5 * std::numbers::sqrt2) m *= 2.0, --k;
+  double const s = (m - 1.0) / (m + 1.0), square = s * s;  // s² < 0.0295
+  double sum = 1.0 / 23.0;
+  for (int n = 21; n > 0; n -= 2) sum = std::fma(sum, square, 1.0 / n);
+  return std::fma(double(k), std::numbers::ln2, 2.0 * s * sum);
+}
+
+/// Exponential eˣ, by 2ᵏ eʳ with |r| ≤ ½ ln 2 and the series of eʳ.
+template <class = void>
+double portable_exp(double x) {
+  double const k = std::nearbyint(x / std::numbers::ln2);
+  if (k > 1100.0) return HUGE_VAL;
+  if (k < -1100.0) return 0.0;
+  constexpr double rest_of_ln2 = 2.3190468138462996e-17;  // ln 2 − std::numbers::ln2
+  double const r = std::fma(-k, rest_of_ln2, std::fma(-k, std::numbers::ln2, x));
+  double sum = 1.0;
+  for (int n = 16; n > 0; --n) sum = std::fma(sum, r / n, 1.0);
+  return std::ldexp(sum, static_cast<int>(k));
+}
+
+/// Distribution function Φ(x) of a standard normal variable for x ≤ 0: ½ + φ Σ x²ᵏ⁺¹/(1·3·…·(2k+1)), or φ/(|x| + 1/(|x|
+/// + 2/(|x| + …))) in the tail [Abramowitz & Stegun 1964, 26.2.11, 26.2.14]. φ is the `density` at x.
+template <class = void>
+double normal_share(double x, double density) {
+  if (x > -3.0) {
+    double const square = x * x;
+    double term = x, sum = x;
+    for (int n = 3; n < 99; n += 2) {
+      sum = std::fma(term, square / n, sum);
+      term *= square / n;
+    }
+    return std::fma(density, sum, 0.5);
+  }
+  double fraction = -x;
+  for (int n = 150; n > 0; --n) fraction = n / fraction - x;
+  return density / fraction;
+}
+
+/// Quantile of the standard normal distribution: x with Φ(x) = u, 0 < u < 1. Newton's method is applied to ln Φ. This
+/// function is concave, so iterates that start left of the root remain left of the root. The initial value is left of
+/// the root because Φ(−t) ≤ ½ exp(−t²/2).
+template <class = void>
+double normal_quantile(double u) {
+  if (u > 0.5) return -normal_quantile(1.0 - u);
+  if (u == 0.5) return 0.0;
+  double const log_u = portable_log(u);
+  double x = -std::sqrt(-2.0 * portable_log(2.0 * u));
+  for (int i = 0; i < 60; ++i) {
+    double const density = portable_exp(-0.5 * x * x) / std::sqrt(2.0 * std::numbers::pi);
+    double const share = normal_share(x, density);
+    double const next = std::fma(log_u - portable_log(share), share / density, x);
+    if (!(next > x)) break;
+    x = next;
+  }
+  return x;
+}
+
+/// Number with twelve digits closest to x: 10⁷ and 0.3 instead of 9999999.999999998 and 0.30000000000000004.
+template <class = void>
+double of_twelve_digits(double x) {
+  char digits[40];
+  char const* const end = std::to_chars(digits, digits + sizeof digits, x, std::chars_format::scientific, 11).ptr;
+  std::from_chars(digits, end, x);
+  return x;
+}
+
+}  // namespace polybody::detail
 
 namespace polybody {
 

@@ -10,12 +10,182 @@
 /// vectors contain all bodies; reduced vectors contain the joint coordinates and deformations. Each function is one
 /// loop from the roots to the tips or back.
 
+#include <utility>
+
+#include <polybody/math/quaternion.hpp>
 #include <polybody/system/floating_end.hpp>
-#include <polybody/system/joint_jacobian.hpp>
+#include <polybody/system/tree_body.hpp>
 #include <polybody/system/tree_velocities.hpp>
-#include <polybody/system/turning_joint.hpp>
+
+namespace polybody::detail {
+
+// Jacobian S of a joint: motion of the carried body due to each velocity of the joint.
+
+/// Moves `run` by one joint motion and appends its columns to f.s. The columns refer to the world's origin until
+/// `finish_columns`, because the position of the body is not yet known.
+/// \param sign 1 from frame a to frame b; −1 from b to a \param x, u coordinates and velocities of the motion
+template <class T>
+void move(JointMotion const& m, double sign, T const* x, T const* u, RunnerOf<T>& run, TreeFrameOf<T>& f) {
+  Vec<T, 3> const none(0, 0, 0), n(sign * run.A(0, m.axis), sign * run.A(1, m.axis), sign * run.A(2, m.axis));
+  auto const column = [&](Vec<T, 3> const& slide, Vec<T, 3> const& turn) {
+    Vec<T, 3> const carried = cross<T>(run.r, turn);  // velocity at the world's origin
+    for (int i = 0; i < 3; ++i) {
+      f.s(i, f.velocities) = slide[i] + carried[i];
+      f.s(3 + i, f.velocities) = turn[i];
+    }
+    ++f.velocities;
+  };
+  switch (m.kind) {
+    case JointMotion::Kind::slide:
+      column(n, none);
+      run.slide(n, x[0], u[0]);
+      break;
+    case JointMotion::Kind::turn:
+    case JointMotion::Kind::screw:
+      column(scaled<T>(n, m.pitch), n);
+      if (m.kind == JointMotion::Kind::screw) run.slide(n, m.pitch * x[0], m.pitch * u[0]);
+      run.turn(times<T>(n, u[0]));
+      turn_columns<T>(m.axis, sign * x[0], run.A);
+      f.angle += n[2] * x[0];  // in the plane n[2] is 1 or −1
+      break;
+    case JointMotion::Kind::ball: {
+      Mat<T, 3, 3> const turned = rotation_matrix<T>(Quaternion<T>(x[0], x[1], x[2], x[3]));
+      Mat<T, 3, 3> const b = sign > 0.0 ? product<T>(run.A, turned) : run.A;  // axes of frame b
+      for (int k = 0; k < 3; ++k) column(none, {sign * b(0, k), sign * b(1, k), sign * b(2, k)});
+      run.turn(scaled<T>(product<T, 1>(b, Vec<T, 3>(u[0], u[1], u[2])), sign));
+      run.A = sign > 0.0 ? b : product<T>(run.A, transposed<T>(turned));
+    }
+  }
+}
+/// Sorts columns that were computed from the last motion to the first into the order of the coordinates.
+template <class T>
+void reverse_columns(TreeBody const& body, TreeFrameOf<T>& f) {
+  Mat<T, 6, 6> const back = f.s;
+  int to = 0, end = f.velocities;
+  for (JointMotion const& m : body.motions) {
+    end -= m.velocities();
+    for (int k = 0; k < m.velocities(); ++k, ++to)
+      for (int i = 0; i < 6; ++i) f.s(i, to) = back(i, end + k);
+  }
+}
+/// Moves `run` by all motions of a joint, from frame a to frame b or back. \param x, u coordinates and velocities of
+/// the joint
+template <class T>
+void move_by_joint(TreeBody const& body, T const* x, T const* u, RunnerOf<T>& run, TreeFrameOf<T>& f) {
+  f.velocities = 0;
+  if (!body.backwards) {
+    for (JointMotion const& m : body.motions) {
+      move<T>(m, 1.0, x, u, run, f);
+      x += m.coordinates();
+      u += m.velocities();
+    }
+    return;
+  }
+  x += body.motions.coordinates();
+  u += body.motions.velocities();
+  for (int k = body.motions.count; k-- > 0;) {
+    JointMotion const& m = body.motions.list[std::size_t(k)];
+    move<T>(m, -1.0, x -= m.coordinates(), u -= m.velocities(), run, f);
+  }
+  reverse_columns<T>(body, f);
+}
+/// Changes the reference point of a column from the world's origin to r.
+template <class T>
+void move_column(Vec<T, 3> const& r, T* column) {
+  Vec<T, 3> const carried = cross<T>({column[3], column[4], column[5]}, r);
+  for (int i = 0; i < 3; ++i) column[i] += carried[i];
+}
+/// Changes the reference point of all columns to the origin of the body, and computes (SᵀS)⁻¹.
+template <class T>
+void finish_columns(TreeFrameOf<T>& f) {
+  for (int k = 0; k < f.velocities; ++k) move_column<T>(f.r, f.column(k));
+  for (int i = 0; i < f.velocities; ++i)
+    for (int j = 0; j < f.velocities; ++j) {
+      T sum = 0.0;
+      for (int k = 0; k < 6; ++k) sum += f.s(k, i) * f.s(k, j);
+      f.inverse(i, j) = sum;
+    }
+  invert_leading(f.inverse, f.velocities);
+}
+
+}  // namespace polybody::detail
 
 namespace polybody {
+
+// Rigid body on a revolute joint: the most frequent case of `JointTree`, without a loop over the motions of a joint.
+
+/// Fills in `body.turn` if the joint permits a single rotation only. The signs of the quaternions of body and parent
+/// remain those of `reference`, the full coordinates of the reference state. \param parent index of the first
+/// coordinate of the parent; −1: the ground
+template <class = void>
+[[gnu::cold]] void prepare_turn(TreeBody& body, double const* reference, Index parent) {
+  if (body.motions.count != 1 || body.motions.list[0].kind != JointMotion::Kind::turn) return;
+  int const k = body.motions.list[0].axis;
+  double const sign = body.backwards ? -1.0 : 1.0;
+  JointTurn& turn = body.turn;
+  turn.only = true;
+  for (int i = 0; i < 3; ++i) turn.axis[i] = sign * body.from.axes(i, k);
+  if (body.layout == RigidLayout::plane) return;
+  Quaternion<double> const from = quaternion_of(body.from.axes), back = conjugate(quaternion_of(body.to.axes));
+  Quaternion<double> half(0.0, 0.0, 0.0, 0.0);
+  half[1 + k] = sign;
+  turn.still = quaternion_product(from, back);
+  turn.turning = quaternion_product(quaternion_product(from, half), back);
+  auto const at = [&](Index q) {
+    return Quaternion<double>(reference[q], reference[q + 1], reference[q + 2], reference[q + 3]);
+  };
+  Quaternion<double> const stands = at(body.q0 + 3),
+                           led = quaternion_product(parent < 0 ? Quaternion<double>(1, 0, 0, 0) : at(parent + 3),
+                                                    turn.still);
+  double along = 0.0;
+  for (int i = 0; i < 4; ++i) along += stands[i] * led[i];
+  for (int i = 0; i < 4 && along < 0.0; ++i) {
+    turn.still[i] = -turn.still[i];
+    turn.turning[i] = -turn.turning[i];
+  }
+}
+
+namespace detail {
+
+/// Computes the frame f of a body on a joint with a single rotation from the frame p of the parent. \param x, u angle
+/// [rad] and its rate [rad/s]
+template <class T>
+void carry_by_turn(TreeBody const& body, TreeFrameOf<T> const& p, T const& x, T const& u, TreeFrameOf<T>& f) {
+  using std::cos, std::sin;
+  RunnerOf<T> run{p.r, p.v, {0, 0, 0}, {}, p.w, {0, 0, 0}};
+  run.go(product<T, 1>(p.A, in_scalar<T>(body.from.origin)));
+  Vec<T, 3> const n = product<T, 1>(p.A, in_scalar<T>(body.turn.axis));
+  run.turn(times<T>(n, u));
+  if (body.layout == RigidLayout::plane) {
+    f.angle = p.angle + body.angle + n[2] * x;
+    f.A = turn_about<T>(2, f.angle);
+  } else {
+    T const c = cos(0.5 * x), s = sin(0.5 * x);
+    Quaternion<T> by;
+    for (int i = 0; i < 4; ++i) by[i] = body.turn.still[i] * c + body.turn.turning[i] * s;
+    f.rotation = quaternion_product<T>(p.rotation, by);
+    set_rotation<T>(f.rotation, f.A);
+  }
+  Vec<T, 3> const to_centre = scaled<T>(product<T, 1>(f.A, in_scalar<T>(body.to.origin)), -1.0);
+  run.go(to_centre);
+  f.r = run.r;
+  f.v = run.v;
+  f.w = run.w;
+  Vec<T, 3> const slide = cross<T>(n, to_centre);
+  T size = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    f.arm[i] = f.r[i] - p.r[i];
+    f.bias[i] = run.a[i];
+    f.bias[3 + i] = run.alpha[i];
+    f.s(i, 0) = slide[i];
+    f.s(3 + i, 0) = n[i];
+    size += slide[i] * slide[i] + n[i] * n[i];
+  }
+  f.velocities = 1;
+  f.inverse(0, 0) = 1.0 / size;
+}
+
+}  // namespace detail
 
 /// Tree of bodies with joint coordinates. A joint carries each body except the roots. \tparam T scalar of the vectors
 template <class T = double>

@@ -328,7 +328,7 @@ class Ffr {
     for (std::size_t i = 0; i < 3 && p.drawn[0].size() > 0; ++i) k.bottomRightCorner(n, n) -= f[Index(i)] * p.drawn[i];
   }
 
-  /// Ratio of the axial forces to the buckling forces of the beams (axial_share.hpp). The axial forces are due to
+  /// Ratio of the axial forces to the buckling forces of the beams (ffr_points.hpp). The axial forces are due to
   /// `loads` (world axes), gravity and the motion of the frame. The ratio is zero for a body with geometric stiffening
   /// or without beams.
   /// \param a v̇ of the body

@@ -349,7 +349,7 @@ class Ffr : public AddingCoordinates {
       k.bottomRightCorner(n, n) -= (i == 0 ? fx : fy) * p.drawn[i];
   }
 
-  /// Ratio of the axial forces to the buckling forces of the beams (axial_share.hpp).
+  /// Ratio of the axial forces to the buckling forces of the beams (ffr_points.hpp).
   /// \param gravity (3), whose z component is ignored
   template <class = void>
   double axial_share(std::span<double const> q, std::span<double const> v, std::span<double const> a,
