@@ -2,8 +2,7 @@
 /// \file
 /// polybody.hpp for programs that link the library target `polybody::compiled`. This library contains compiled code
 /// that does not depend on the user's model: `System`, runs with the library's integrators and the default solver,
-/// joint coordinates, and the tangents of the common flexible bodies. Not in polybody.hpp: it is for programs that link
-/// `polybody::compiled`.
+/// joint coordinates, and the tangents of the common flexible bodies.
 
 #include <polybody/polybody.hpp>
 

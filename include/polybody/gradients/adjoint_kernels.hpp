@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Common parts of the adjoints of time steps: vectors of tape variables, and the solution of the transposed equations.
-///
-/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <cmath>
 #include <limits>
@@ -19,8 +17,6 @@ namespace polybody::detail {
 // After n products, x is the combination of b, B b, … Bⁿ⁻¹ b with the least residual. If M = A, one product is enough.
 // If M lacks a few blocks of A, a few more products than missing blocks are enough, even if iterative refinement with
 // M diverges.
-//
-// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 /// Iterative solution of one system of linear equations. The memory of the vectors is reused in the next solution.
 class Gmres {

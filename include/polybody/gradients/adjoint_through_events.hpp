@@ -13,8 +13,6 @@
 /// adds −(∂J/∂h)/ġ times the adjoint variables and the parameter derivatives of g to those of J. This is the transposed
 /// saltation relation of the discrete run. The adjoint of a restart is computed by differences of the map from the
 /// state before the restart to the state after it.
-///
-/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/gradients/gradient_result.hpp>
 #include <polybody/gradients/objective.hpp>
@@ -26,8 +24,6 @@ namespace polybody::detail {
 
 // Adjoint of the start correction of a step of the generalised-α family (`AlphaMethod::start_step`). The correction
 // changes velocities and algorithmic accelerations. Its derivatives are computed by differences.
-//
-// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 /// Start correction of velocities and algorithmic accelerations for a step of length h from x, with its adjoint.
 /// \tparam V a PerturbedModel

@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Equations of a time step that depend on a parameter, found from the names of objects in `Parameter::affects`.
-///
-/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <algorithm>
 #include <string>

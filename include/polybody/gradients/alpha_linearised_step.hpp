@@ -10,8 +10,6 @@
 /// the derivative of ⊞ and ∂(Gᵀλ)/∂q. The equations are solved by iterative refinement with an approximate
 /// factorisation (`StepFactorisations`). The iteration ends if the last correction, or an estimate of the next one
 /// (`CorrectionErrorEstimate`), is at the level of round-off.
-///
-/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <array>
 #include <cmath>
@@ -31,8 +29,6 @@ namespace polybody {
 // Commun. Statist. Simul. 18, 1989]. If |c_j| ≤ κ w_j for all n unknowns, Cauchy's inequality gives |E c| ≤ κ √(3 n
 // mean |E z|²). The value of one probe replaces the mean. The weights are recent sizes of the unknowns, so that a
 // probe hardly changes unknowns that the directions do not change: a planar motion remains planar.
-//
-// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 /// Error estimate of corrections to the changes of a₁ (nv) and λ₁ (rows). Directions are scaled to the size of their
 /// parameters.

@@ -11,8 +11,6 @@
 /// Products with transposed derivatives are computed from one tape of the residual, so that they contain all terms. The
 /// equations for μ are solved with a factorisation of the transposed tangent at the end of the step and corrected down
 /// to round-off.
-///
-/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/gradients/adjoint_kernels.hpp>
 #include <polybody/gradients/step_factorisations.hpp>

@@ -3,8 +3,6 @@
 /// Derivatives of the equations of motion r and the constraint equations Φ of a step with respect to parameters, at
 /// fixed unknowns, by differences of perturbed models. Parameters that affect no common equation are perturbed in the
 /// same models, as columns of a sparse Jacobian are in one difference [Curtis, Powell & Reid 1974].
-///
-/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <algorithm>
 #include <array>
@@ -22,8 +20,6 @@
 namespace polybody::detail {
 
 // Check that each equation depends only on the parameter that names it, if parameters are perturbed together.
-//
-// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 /// Difference points (`FourPoints`) of the four models of a group, for one member.
 using MemberOrder = std::array<std::uint8_t, 4>;

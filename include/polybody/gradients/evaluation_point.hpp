@@ -5,8 +5,6 @@
 /// Accelerations have force = bias = 1 and rate = position = 0. A projection has force = bias = 0. With
 /// position = 1/h², it changes the coordinates by δ = h² a; with rate = 1/h, it changes the velocities by h a. The
 /// unknowns a of a projection thus have the size of accelerations and do not lose digits when f is subtracted.
-///
-/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/gradients/alpha_linearised_step.hpp>
 

@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Run with forward sensitivities, integrated step by step.
-///
-/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/gradients/nondifferentiable_times.hpp>
 #include <polybody/gradients/parameter.hpp>
@@ -13,8 +11,6 @@
 namespace polybody {
 
 // Result of `sensitivities`: outputs of a run and their derivatives.
-//
-// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 /// Outputs of a run and their derivatives.
 struct SensitivityResult {

@@ -2,8 +2,6 @@
 /// \file
 /// Conversion of the reduced states of a run to full states and back. Reduced states lack the unknowns that joint
 /// policies eliminate. The scalars are doubles or tape variables.
-///
-/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/integrators/forward_dynamics.hpp>
 #include <polybody/run/event_action.hpp>

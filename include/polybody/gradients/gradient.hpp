@@ -15,8 +15,6 @@
 /// `sensitivities`. Parameters that affect no common equation share these differences (`Parameter::affects`). All other
 /// costs of a step are independent of the number of parameters. Each step begins with a new factorisation, so that
 /// repeated steps are bitwise identical.
-///
-/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <memory>
 #include <span>
@@ -33,8 +31,6 @@
 namespace polybody::detail {
 
 // Backward sweeps over the steps of a run, one class for each family of integrators.
-//
-// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 /// Backward sweep for the generalised-α family.
 template <class S, class I>

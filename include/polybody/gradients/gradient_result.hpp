@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Options and result of `gradient`.
-///
-/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <algorithm>
 #include <cstddef>
@@ -19,8 +17,6 @@ namespace polybody {
 // Backward sweep over the steps of a run with few snapshots of its states. The binomial schedule repeats the fewest
 // steps [Griewank & Walther 2000, Algorithm 799]. With s snapshots, one of them at the start, and at most r
 // computations of each step, a sweep over C(s + r, s) steps is possible.
-//
-// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 /// Cost of the backward sweep over a run.
 struct CheckpointingReport {

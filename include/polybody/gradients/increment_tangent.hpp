@@ -9,8 +9,6 @@
 /// for nonholonomic constraints with G + G W instead of G. The size of W is hω/2, with the step h and the angular
 /// velocity ω. Newton's method omits W. A correction of derivatives with the factorisation of Newton's method therefore
 /// has a relative error of this size.
-///
-/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <algorithm>
 #include <vector>

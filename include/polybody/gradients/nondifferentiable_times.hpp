@@ -2,8 +2,6 @@
 /// \file
 /// Exceptions for times at which a run is not differentiable. Messages begin with `who`, the name of the calling
 /// function.
-///
-/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <string>
 

@@ -6,8 +6,6 @@
 ///
 /// A function of a state of any scalar type (`auto const& x`) is differentiated with a tape. A function of a
 /// `State const&` is differentiated by differences, with four evaluations for each number of the state.
-///
-/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/compare/compare.hpp>
 #include <polybody/gradients/alpha_step_adjoint.hpp>
@@ -19,8 +17,6 @@ namespace polybody {
 
 // Frames and positions of points of bodies in states of any scalar type, for objective functions that are
 // differentiated with a tape. The calls are the same as for a State (run/marker_frames.hpp).
-//
-// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 /// Frame of a material point in state x. \throws InvalidInput for a marker of another model.
 template <class M, class T, class B>

@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Parameters of a model with respect to which a run is differentiated, and difference formulas for them.
-///
-/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <array>
 #include <cmath>

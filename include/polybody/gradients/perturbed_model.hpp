@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Model for given values of the parameters, with the data for its steps and evaluations.
-///
-/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/compare/compare.hpp>
 #include <polybody/gradients/alpha_linearised_step.hpp>

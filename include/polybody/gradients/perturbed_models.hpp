@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Derivatives by differences of models with respect to parameters, and along the motion if times depend on parameters.
-///
-/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <memory>
 #include <optional>
@@ -15,8 +13,6 @@
 namespace polybody::detail {
 
 // Model of a run, and four perturbed models for each parameter.
-//
-// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 /// Model for the values of the parameters, and models at the four difference points of each parameter. \tparam V
 /// PerturbedModel or PerturbedStageModel

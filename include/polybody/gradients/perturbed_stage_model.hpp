@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Model for given values of the parameters, with the data for Runge–Kutta methods.
-///
-/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/compare/compare.hpp>
 #include <polybody/gradients/evaluation_point.hpp>

@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Projection at the end of a step (integrators/stabilisation.hpp) in any scalar type, for the derivatives of the step.
-///
-/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/gradients/evaluation_point.hpp>
 #include <polybody/integrators/stabilisation.hpp>

@@ -10,8 +10,6 @@
 /// own tangent matrix with second-order terms, and the derivatives of its constraint equations. The projection at the
 /// end of the step and the subsequent change of v̇ are solutions of linear equations; gradients/solved_points.hpp
 /// differentiates them.
-///
-/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/gradients/radau_stage_solution.hpp>
 #include <polybody/gradients/solved_points.hpp>

@@ -2,8 +2,6 @@
 /// \file
 /// Solution of the stages of a Radau step with the matrix of all stages. The derivatives of the step require the
 /// stages, which no state contains.
-///
-/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/gradients/evaluation_point.hpp>
 #include <polybody/gradients/projection_derivative.hpp>
@@ -12,8 +10,6 @@
 namespace polybody::detail {
 
 // Stages of a Radau step (integrators/radau.hpp) in any scalar type, for the derivatives of the step.
-//
-// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 /// Largest absolute value of the entries of a vector and, for dual numbers, of each of their derivatives.
 template <StateScalar T>

@@ -5,8 +5,6 @@
 /// the operations after them once. The backward sweep over the projection and the last change of v̇ solves linear
 /// equations point by point (gradients/recorded_points.hpp). A factorisation of the transposed matrix of all stages
 /// approximates μ. Products from sweeps over the tape of the stages correct μ until the corrections are at round-off.
-///
-/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/gradients/alpha_step_adjoint.hpp>
 #include <polybody/gradients/radau_stage_solution.hpp>

@@ -6,8 +6,6 @@
 /// computes the step with both scalar types. With doubles it solves the equations and factorises K at each point. With
 /// tape variables it passes through the same points in the same order. The backward sweep computes the multipliers μ of
 /// each point.
-///
-/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/gradients/adjoint_kernels.hpp>
 #include <polybody/gradients/solved_points.hpp>

@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Record of a run with breakpoints and events, from which each step can be repeated with bitwise identical results.
-///
-/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/gradients/full_states.hpp>
 #include <polybody/gradients/nondifferentiable_times.hpp>

@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Requirements of runs with derivatives, and the exceptions if they are not satisfied.
-///
-/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <array>
 #include <string>

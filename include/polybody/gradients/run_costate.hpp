@@ -2,8 +2,6 @@
 /// \file
 /// Adjoint variables of a run: derivatives of the objective function with respect to the state, the integrator history
 /// and the time.
-///
-/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/gradients/alpha_step_adjoint.hpp>
 #include <polybody/gradients/parameter.hpp>

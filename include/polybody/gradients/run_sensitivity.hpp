@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Derivatives of the state of a run, and sums of states.
-///
-/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/integrators/step_history.hpp>
 

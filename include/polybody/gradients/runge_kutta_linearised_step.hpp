@@ -3,8 +3,6 @@
 /// Linearised step of an explicit Runge–Kutta method. It is exact and needs no iteration. Dual numbers pass through the
 /// step (gradients/runge_kutta_stages.hpp). Its accelerations and projections are solutions of linear equations;
 /// gradients/solved_points.hpp differentiates them.
-///
-/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/gradients/runge_kutta_stages.hpp>
 #include <polybody/gradients/solved_points.hpp>

@@ -5,8 +5,6 @@
 ///   δ_i = h Σ a_ij δ˙_j,  v_i = v₀ + h Σ a_ij v̇_j,  q_i = q₀ ⊞ δ_i.
 /// Each v̇_i, each Gauss–Newton iteration of a projection and its correction of the velocities is a solution of linear
 /// equations.
-///
-/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/gradients/projection_derivative.hpp>
 #include <polybody/integrators/runge_kutta.hpp>

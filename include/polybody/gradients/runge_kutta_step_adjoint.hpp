@@ -3,8 +3,6 @@
 /// Adjoint of a step of an explicit Runge–Kutta method. It is exact and needs no iteration. A tape records the step
 /// (gradients/runge_kutta_stages.hpp), and the backward sweep solves linear equations point by point
 /// (gradients/recorded_points.hpp).
-///
-/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/gradients/alpha_step_adjoint.hpp>
 #include <polybody/gradients/recorded_points.hpp>

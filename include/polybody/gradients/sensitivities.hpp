@@ -12,8 +12,6 @@
 /// with respect to their lengths, since breakpoints and events end steps at times that depend on the parameters. Three
 /// maps from state to state are differenced: a start, an event action, and the start correction after a change of the
 /// step length.
-///
-/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/gradients/forward_sensitivities.hpp>
 #include <polybody/gradients/perturbed_model.hpp>
@@ -24,8 +22,6 @@
 namespace polybody::detail {
 
 // Propagation of forward sensitivities over the steps of integrators of the generalised-α family.
-//
-// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 /// Propagates the forward sensitivities of a run over its steps.
 template <class S, class I>
@@ -101,8 +97,6 @@ class AlphaSensitivities {
 };
 
 // Propagation of forward sensitivities over the steps of Runge–Kutta methods.
-//
-// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 /// Propagates forward sensitivities over a step.
 template <class S, class I>

@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Inputs for propagating forward sensitivities over one time step.
-///
-/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/gradients/run_sensitivity.hpp>
 

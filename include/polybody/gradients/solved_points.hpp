@@ -6,8 +6,6 @@
 /// One pass of dual numbers through the equations at constant x evaluates the right-hand side. One function template
 /// computes the step in both scalar types. With doubles it solves the equations and factorises K at each point. With
 /// dual numbers it passes through the same points in the same order.
-///
-/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <memory>
 #include <span>

@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Approximate factorisations of the matrix of a linearised step, or of its transpose.
-///
-/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <algorithm>
 #include <array>
@@ -19,8 +17,6 @@
 namespace polybody {
 
 // Choice of the approximate factorisation for the derivatives of steps, by its measured cost.
-//
-// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 /// Approximate factorisations of the matrix of a linearised step.
 enum class ApproximateFactors {
@@ -89,8 +85,6 @@ class PreconditionerChoice {
 
 // Ends of a step of the generalised-α family, and the derivatives of the equations of the step with respect to a
 // parameter.
-//
-// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 /// Derivatives of the equations at the end of a step with respect to a parameter, at constant unknowns. For
 /// nonholonomic constraints Φ̇ replaces Φ.

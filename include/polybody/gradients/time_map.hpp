@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Map between the times of runs with breakpoints that depend on a parameter.
-///
-/// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,6 @@
 #pragma once
 /// \file
-/// Film of a run as one HTML file that plays in any browser, without a network. Not in polybody.hpp: few programs
-/// need it.
+/// Film of a run as one HTML file that plays in any browser, without a network.
 
 #include <algorithm>
 #include <array>
@@ -17,8 +16,7 @@
 
 namespace polybody::detail {
 
-// Binary data of a film: a head, a table of contents as JSON, and arrays of numbers. Not in polybody.hpp: it belongs
-// to io/film.hpp.
+// Binary data of a film: a head, a table of contents as JSON, and arrays of numbers.
 //
 // All numbers are little-endian. The head is
 //   8 bytes   "pbfilm01"; the last two digits are the version

@@ -1,7 +1,6 @@
 #pragma once
 /// \file
-/// Encoding of the data of a film: numbers as bytes, bytes as base 64, texts as JSON strings. Not in polybody.hpp: it
-/// belongs to io/film.hpp.
+/// Encoding of the data of a film: numbers as bytes, bytes as base 64, texts as JSON strings.
 
 #include <algorithm>
 #include <bit>

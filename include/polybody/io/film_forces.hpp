@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Forces of joints and contacts as arrows of a film. Not in polybody.hpp: it belongs to io/film.hpp.
+/// Forces of joints and contacts as arrows of a film.
 
 #include <polybody/io/film_scene.hpp>
 #include <polybody/run/probe.hpp>

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Scene of a film: the frames of a run, with arrows and histories. Not in polybody.hpp: it belongs to io/film.hpp.
+/// Scene of a film: the frames of a run, with arrows and histories.
 
 #include <algorithm>
 #include <array>

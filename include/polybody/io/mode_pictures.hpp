@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Pictures and films of vibration and buckling modes.
-///
-/// Not in polybody.hpp: few programs need it.
 
 #include <numbers>
 

@@ -2,8 +2,6 @@
 /// \file
 /// Tables of states with named columns, for exchange with other programs. Checkpoints (io/checkpoint.hpp) also store
 /// the integrator's history, so a resumed run is bitwise identical.
-///
-/// Not in polybody.hpp: few programs exchange states with others.
 
 #include <optional>
 #include <unordered_map>

@@ -2,8 +2,6 @@
 /// \file
 /// Temporary file of an AtomicFile, and its POSIX calls. On systems without POSIX the file has a name from the
 /// beginning, and the system decides when its bytes are written to the disk.
-///
-/// Not in polybody.hpp: it belongs to io/atomic_file.hpp.
 
 #if __has_include(<unistd.h>)
 #include <fcntl.h>

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
 /// Animations of a model for ParaView, as VTK's XML files: a collection (.pvd) and an unstructured grid (.vtu) for
-/// each state. Not in polybody.hpp: few programs need it.
+/// each state.
 
 #include <bit>
 #include <cerrno>
@@ -19,7 +19,7 @@
 
 namespace polybody {
 
-// File that is written under its own name from the beginning. Not in polybody.hpp: it belongs to io/vtk.hpp.
+// File that is written under its own name from the beginning.
 
 /// Output file that has its final name from the beginning. Suitable if an incomplete file is useful, or if another file
 /// refers to it only after its completion. A killed program leaves no temporary file. AtomicFile, in contrast, appears

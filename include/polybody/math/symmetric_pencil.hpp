@@ -14,8 +14,6 @@
 ///
 /// The round-off of L adds errors of ε K_ii to the stiffness xᵀKx of every eigenvector x. Rayleigh quotients of the
 /// eigenvectors, summed in long double, remove these errors to second order.
-///
-/// Not included in polybody.hpp: Eigen's eigenvalue solvers would add seconds to the compile time of every program.
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Tape and scalar type for reverse differentiation.
-///
-/// Not included in polybody.hpp: only the gradients of whole runs use it (gradients/gradient.hpp).
 
 #include <Eigen/Core>
 #include <cmath>

@@ -2,8 +2,6 @@
 /// \file
 /// Records of selected rigid bodies in a run: their motion, and each wrench on them with its point of action. The
 /// records are the input of a stress analysis after the run (decoupled_stress.hpp).
-///
-/// Not in polybody.hpp, because few programs need it.
 
 #include <algorithm>
 #include <optional>

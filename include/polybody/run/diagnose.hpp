@@ -2,8 +2,6 @@
 /// \file
 /// Diagnosis of a model at a state, before a run: constraint violations, redundant constraint equations, unconnected
 /// bodies, and stable steps of explicit integrators.
-///
-/// Not in polybody.hpp, because it includes Eigen's sparse module.
 
 #include <ostream>
 

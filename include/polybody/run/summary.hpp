@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Model summary: text with the bodies, joints, loops and forces of a model.
-///
-/// Not in polybody.hpp, because programs that only compute do not need it.
 
 #include <polybody/run/problem_size.hpp>
 #include <polybody/system/make_operations.hpp>

@@ -2,8 +2,6 @@
 /// \file
 /// Low-pass filter without phase shift and amplitude spectra of equally spaced samples, by their Fourier sums;
 /// resampling at equal steps.
-///
-/// Not included in polybody.hpp: Eigen's FFT is one of its unsupported modules, and few programs need it.
 
 #include <algorithm>
 #include <complex>

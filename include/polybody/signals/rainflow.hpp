@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Fatigue damage of a stress history: cycles by rainflow counting [ASTM E1049-85, §5.4.4] and their damage.
-///
-/// Not included in polybody.hpp: few programs need it.
 
 #include <cmath>
 #include <cstddef>

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Relative root mean square difference of two histories. Not included in polybody.hpp: few programs need it.
+/// Relative root mean square difference of two histories.
 
 #include <algorithm>
 

@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Samples of one quantity at increasing times, the input of filters and comparisons of runs.
-///
-/// Not included in polybody.hpp: few programs need it.
 
 #include <cmath>
 #include <span>

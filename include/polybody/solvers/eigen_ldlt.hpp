@@ -1,7 +1,6 @@
 #pragma once
 /// \file
-/// Linear solver with Eigen's sparse LDLᵀ factorisation. Not in polybody.hpp: it would
-/// increase the compile time of every translation unit.
+/// Linear solver with Eigen's sparse LDLᵀ factorisation.
 
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCholesky>

@@ -1,7 +1,6 @@
 #pragma once
 /// \file
-/// Linear solver with KLU of SuiteSparse. Not in polybody.hpp: it needs klu.h and -lklu
-/// (Debian: libsuitesparse-dev).
+/// Linear solver with KLU of SuiteSparse. Requires klu.h and -lklu (Debian: libsuitesparse-dev).
 
 #if __has_include(<klu.h>)
 #include <klu.h>

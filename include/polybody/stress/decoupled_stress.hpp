@@ -1,9 +1,6 @@
 #pragma once
 /// \file
 /// "Decoupled" stress: stress of a recorded rigid body, computed after the run [Wallin 2016, §4.3.5].
-///
-/// Not included in polybody.hpp: Eigen's sparse module and factorisations would add seconds to the compile time of
-/// every program.
 
 #include <polybody/bodies/ffr/static_supports.hpp>
 #include <polybody/bodies/shared/sections.hpp>
@@ -14,8 +11,6 @@ namespace polybody {
 // Stress at a point of a bar's section from the section forces (N, Q_y, Q_z, M_x, M_y, M_z) of
 // bodies/shared/sections.hpp; principal stresses and von Mises stress. Saint-Venant's theory is used, which is valid
 // away from the ends and from point loads.
-//
-// Not included in polybody.hpp: few programs need it.
 
 /// Stress at a point of the cross section of a bar.
 struct SectionStress {

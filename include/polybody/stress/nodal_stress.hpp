@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Stress at named nodes of a solid structure, from its nodal displacements.
-///
-/// Not included in polybody.hpp: few programs need it.
 
 #include <cmath>
 #include <limits>
@@ -13,7 +11,7 @@
 
 namespace polybody {
 
-// Von Mises stress of a three-dimensional stress state. Not included in polybody.hpp: few programs need it.
+// Von Mises stress of a three-dimensional stress state.
 
 /// Von Mises stress √(½ ((σ_xx − σ_yy)² + (σ_yy − σ_zz)² + (σ_zz − σ_xx)²) + 3 (τ_xy² + τ_yz² + τ_zx²)) [Pa] of a
 /// stress s with the components xx, yy, zz, xy, yz, zx [von Mises 1913].

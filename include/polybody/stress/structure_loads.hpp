@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Loads of a recorded rigid motion on a structure.
-///
-/// Not included in polybody.hpp: Eigen's sparse module would add seconds to the compile time of every program.
 
 #include <algorithm>
 

@@ -1,9 +1,6 @@
 #pragma once
 /// \file
 /// Vibration of a structure under the loads of a recorded rigid motion.
-///
-/// Not included in polybody.hpp: Eigen's sparse module and factorisations would add seconds to the compile time of
-/// every program.
 
 #include <polybody/bodies/ffr/ffr_basis.hpp>
 #include <polybody/integrators/integrator.hpp>

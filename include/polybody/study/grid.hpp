@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Points of a study on grids and from lists.
-///
-/// Not in polybody.hpp: only studies need it.
 
 #include <charconv>
 #include <cmath>
@@ -17,8 +15,6 @@ namespace polybody::detail {
 // C libraries differ in the last bit. In contrast, +, −, ×, ÷, √ and fma are rounded identically everywhere (IEEE
 // 754; not under -ffast-math). The source writes each sum with a product as an fma, so the result does not depend on
 // the compiler.
-//
-// Not in polybody.hpp: it belongs to study/grid.hpp.
 
 /// Logarithm ln x of a positive x, by m·2ᵏ with √½ ≤ m < √2 and ln m = 2 artanh((m − 1)/(m + 1)).
 template <class = void>  // compiled where it is used

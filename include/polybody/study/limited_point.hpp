@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Computation of a study's point in a separate process with a time limit. Needs POSIX.
-///
-/// Not in polybody.hpp: it belongs to study/study.hpp.
 
 #include <fcntl.h>
 #include <poll.h>

@@ -5,7 +5,7 @@
 /// as with threads, so either kind of run continues the record of the other. If a rank dies, mpirun ends all ranks, and
 /// the next run continues the record.
 ///
-/// Not in polybody.hpp: it needs MPI (study/mpi_ranks.hpp explains the linking).
+/// Requires MPI (study/mpi_ranks.hpp explains the linking).
 
 #include <polybody/study/mpi_ranks.hpp>
 #include <polybody/study/study.hpp>

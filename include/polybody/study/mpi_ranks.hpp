@@ -3,7 +3,7 @@
 /// Ranks of a program under MPI. Needs mpi.h and a library: in CMake, `find_package(MPI REQUIRED COMPONENTS CXX)` and
 /// `target_link_libraries(program PRIVATE MPI::MPI_CXX)`.
 ///
-/// Not in polybody.hpp: it needs MPI.
+/// Requires MPI.
 
 #include <mpi.h>
 

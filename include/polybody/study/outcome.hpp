@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Results of a study at its points.
-///
-/// Not in polybody.hpp: only studies need it.
 
 #include <optional>
 

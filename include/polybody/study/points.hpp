@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Points of a study: a table of parameters with names and units, one row for each point.
-///
-/// Not in polybody.hpp: only studies need it.
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Queue of the unfinished points of a study, shared by all threads.
-///
-/// Not in polybody.hpp: it belongs to study/study.hpp.
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -21,13 +19,9 @@
 namespace polybody::detail {
 
 // File to which a study appends each finished point. Needs POSIX.
-//
-// Not in polybody.hpp: it belongs to study/study.hpp.
 
 // Reader of a study's record, which distinguishes complete lines, the incomplete line of a killed run, and invalid
 // content.
-//
-// Not in polybody.hpp: it belongs to study/study.hpp.
 
 /// Identity of the study to which a record must belong.
 struct RecordKind {

@@ -6,8 +6,6 @@
 ///     description, columns, points and outputs of the study	#…
 ///     17: 0.00125 3.5	#…                                   point 17 and its outputs, in digits that read back exactly
 ///     18 failed: Newton's method …	#…
-///
-/// Not in polybody.hpp: it belongs to study/study.hpp.
 
 #include <charconv>
 

@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Tables, curves and statistics of the results of a study.
-///
-/// Not in polybody.hpp: only studies need it.
 
 #include <map>
 

@@ -3,8 +3,6 @@
 /// Points by Monte Carlo and Latin hypercube sampling. Points of the same seed are bitwise identical on every machine.
 /// The generator is std::mt19937_64, whose numbers are fixed by the standard. No distribution of the standard library
 /// is used.
-///
-/// Not in polybody.hpp: only studies need it.
 
 #include <cstdint>
 #include <functional>

@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Statistics of an output over the points of a sampled study.
-///
-/// Not in polybody.hpp: only studies need it.
 
 #include <numeric>
 

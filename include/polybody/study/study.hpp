@@ -3,7 +3,7 @@
 /// Studies: evaluation of one function at many points, distributed over the threads of a machine. Each finished point
 /// is recorded at once, so the next run continues a killed study. For the ranks of MPI see study/mpi.hpp.
 ///
-/// Not in polybody.hpp: only studies need it. Needs POSIX.
+/// Needs POSIX.
 
 #include <thread>
 

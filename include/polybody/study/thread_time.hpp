@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Processor time of one thread, for the cost of a point while other points run at the same time. Needs POSIX.
-///
-/// Not in polybody.hpp: only studies need it.
 
 #include <ctime>
 

@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Linear vibration problem M q̈ + D(t) q̇ + K(t) q = f(t) as a system for every integrator of the library.
-///
-/// Not in polybody.hpp: few programs need it.
 
 #include <polybody/system/user_system.hpp>
 

@@ -12,8 +12,6 @@
 ///     Index states() const { return 2; }
 ///     void rates(VecX const& z, double t, VecX& h) const { h << z[1], (1.0 - z[0] * z[0]) * z[1] - z[0]; }
 ///   };
-///
-/// Not in polybody.hpp: few programs need it.
 
 #include <polybody/system/system.hpp>
 

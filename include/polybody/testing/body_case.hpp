@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Body and reference values of a case for the law tests of bodies, and matrix functions that these tests use.
-///
-/// For tests; not included by polybody.hpp.
 
 #include <algorithm>
 #include <limits>

@@ -2,7 +2,7 @@
 /// \file
 /// Definitions of the member functions of `BodyLaws` that test the laws.
 ///
-/// Requires GoogleTest; not included by polybody.hpp.
+/// Requires GoogleTest.
 
 #include <polybody/testing/body_laws.hpp>
 

@@ -2,7 +2,7 @@
 /// \file
 /// Law tests of bodies.
 ///
-/// Requires GoogleTest; not included by polybody.hpp.
+/// Requires GoogleTest.
 
 #include <gtest/gtest.h>
 

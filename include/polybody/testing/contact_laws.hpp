@@ -2,7 +2,7 @@
 /// \file
 /// Tests of properties that every contact geometry has: `ContactLaws`.
 ///
-/// Requires GoogleTest; not included by polybody.hpp.
+/// Requires GoogleTest.
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 /// \file
 /// Contact points of two frames in a contact geometry.
 ///
-/// Requires GoogleTest; not included by polybody.hpp.
+/// Requires GoogleTest.
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Derivatives by central differences, extrapolated to a step of zero.
-///
-/// For tests; not included by polybody.hpp.
 
 #include <algorithm>
 #include <cmath>

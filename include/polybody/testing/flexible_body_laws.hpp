@@ -2,7 +2,7 @@
 /// \file
 /// Law tests of flexible bodies.
 ///
-/// Requires GoogleTest; not included by polybody.hpp.
+/// Requires GoogleTest.
 
 #include <polybody/testing/body_laws.hpp>
 

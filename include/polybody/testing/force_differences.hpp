@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Wrenches of a force element as one vector, and their derivatives by differences.
-///
-/// For tests; not included by polybody.hpp.
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,7 @@
 /// \file
 /// Tests of properties that every force element has, such as derivatives, balance and energy: `ForceLaws`.
 ///
-/// Requires GoogleTest; not included by polybody.hpp.
+/// Requires GoogleTest.
 
 #include <polybody/testing/force_differences.hpp>
 #include <polybody/testing/laws.hpp>

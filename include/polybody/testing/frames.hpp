@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Random frames with a fixed seed, and motions of frames.
-///
-/// For tests; not included by polybody.hpp.
 
 #include <random>
 

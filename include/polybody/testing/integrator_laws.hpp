@@ -2,7 +2,7 @@
 /// \file
 /// Law tests of integrators with a fixed step.
 ///
-/// Requires GoogleTest; not included by polybody.hpp.
+/// Requires GoogleTest.
 
 #include <polybody/run/energy.hpp>
 #include <polybody/run/observe.hpp>

@@ -2,7 +2,7 @@
 /// \file
 /// Law tests of joint geometries.
 ///
-/// Requires GoogleTest; not included by polybody.hpp.
+/// Requires GoogleTest.
 
 #include <functional>
 #include <vector>
@@ -15,8 +15,6 @@
 namespace polybody::laws {
 
 // Constraint function of a joint geometry of any type between two frames, and the derivatives that the laws compare.
-//
-// For tests; not included by polybody.hpp.
 
 /// Pose of frame b relative to frame a that satisfies the constraint equations, and the free directions of b in this
 /// pose.

@@ -22,7 +22,7 @@
 ///
 /// Typed tests of GoogleTest require a class for each law and type, which takes longer to compile.
 ///
-/// Requires GoogleTest; not included by polybody.hpp.
+/// Requires GoogleTest.
 
 #include <gtest/gtest.h>
 

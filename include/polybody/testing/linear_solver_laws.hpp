@@ -2,7 +2,7 @@
 /// \file
 /// Law tests of linear solvers.
 ///
-/// Requires GoogleTest; not included by polybody.hpp.
+/// Requires GoogleTest.
 
 #include <cstdlib>
 

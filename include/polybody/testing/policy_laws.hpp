@@ -2,7 +2,7 @@
 /// \file
 /// Law tests of policies.
 ///
-/// Requires GoogleTest; not included by polybody.hpp.
+/// Requires GoogleTest.
 
 #include <polybody/joints/policies/policy.hpp>
 #include <polybody/testing/differences.hpp>

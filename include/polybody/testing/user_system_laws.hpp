@@ -2,7 +2,7 @@
 /// \file
 /// Law tests of user-defined equations of motion, from which `system_of` makes a system.
 ///
-/// Requires GoogleTest; not included by polybody.hpp.
+/// Requires GoogleTest.
 
 #include <polybody/system/user_system.hpp>
 #include <polybody/testing/differences.hpp>

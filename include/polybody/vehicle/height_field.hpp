@@ -1,7 +1,6 @@
 #pragma once
 /// \file
-/// Ground given by heights on a grid, for example from a survey or a generated road. For vehicles; not included by
-/// polybody.hpp.
+/// Ground given by heights on a grid, for example from a survey or a generated road.
 
 #include <polybody/math/shape_functions.hpp>
 #include <polybody/vehicle/terrain.hpp>

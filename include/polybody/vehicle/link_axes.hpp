@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Axes of a track link for the evaluation of contacts. For vehicles; not included by polybody.hpp.
+/// Axes of a track link for the evaluation of contacts.
 
 #include <polybody/kinematics/frame.hpp>
 

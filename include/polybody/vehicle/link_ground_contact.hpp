@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Contact of a track link with the ground. For vehicles; not included by polybody.hpp.
+/// Contact of a track link with the ground.
 
 #include <vector>
 

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Contact of a track link with a road wheel, idler or roller. For vehicles; not included by polybody.hpp.
+/// Contact of a track link with a road wheel, idler or roller.
 
 #include <vector>
 

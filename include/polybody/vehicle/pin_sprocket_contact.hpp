@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Contact of a track's pins with the teeth of its sprocket. For vehicles; not included by polybody.hpp.
+/// Contact of a track's pins with the teeth of its sprocket.
 
 #include <numbers>
 #include <optional>

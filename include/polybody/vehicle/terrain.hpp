@@ -1,7 +1,6 @@
 #pragma once
 /// \file
-/// Terrains under vehicles: heights z = h(x, y) above the plane z = 0 of the world, with z up, and their slopes. For
-/// vehicles; not included by polybody.hpp.
+/// Terrains under vehicles: heights z = h(x, y) above the plane z = 0 of the world, with z up, and their slopes.
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
 /// Checks of a track during a run: engagement of the pins with their sprocket, time step for the teeth, and distance of
-/// a point from a path. For vehicles; not included by polybody.hpp.
+/// a point from a path.
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,6 @@
 #pragma once
 /// \file
-/// Initial positions of the links of a track: a closed and taut chain that penetrates no wheel. For vehicles; not
-/// included by polybody.hpp.
+/// Initial positions of the links of a track: a closed and taut chain that penetrates no wheel.
 ///
 /// The length of the chain of track_trace.hpp depends on the position of the tensioner's circle. The root of
 ///   track_length(layout, travel) = links

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Taut chain of rigid links, laid once around the circles of a track. For vehicles; not included by polybody.hpp.
+/// Taut chain of rigid links, laid once around the circles of a track.
 ///
 /// A link is the straight chord of length p between two pins. Its faces are at the distance h on either side. Pins
 /// seated on the sprocket are corners of its pitch polygon, of radius p / (2 sin(π/N)). Away from the sprocket each
@@ -19,8 +19,7 @@
 
 namespace polybody {
 
-// Layout of a track: its links, the circles that it goes around, and the tensioner. For vehicles; not included by
-// polybody.hpp.
+// Layout of a track: its links, the circles that it goes around, and the tensioner.
 //
 // The layout lies in a plane with x to the right (forward) and z up. The y axis points to the left of the vehicle,
 // away from the viewer. The track moves in the direction of a positive rotation about y: forward on top, rearward

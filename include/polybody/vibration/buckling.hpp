@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Buckling loads as eigenvalues of the linearised stiffness.
-///
-/// Not included in polybody.hpp: Eigen's eigenvalue solvers would add seconds to the compile time of every program.
 
 #include <polybody/vibration/modes.hpp>
 

@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Small vibrations about an equilibrium.
-///
-/// Not included in polybody.hpp: Eigen's eigenvalue solvers would add seconds to the compile time of every program.
 
 #include <algorithm>
 #include <complex>

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Lowest modes of large structures by the Lanczos iteration of Spectra. Not included in polybody.hpp: it requires
-/// the headers of Spectra (Debian: libspectra-dev).
+/// Lowest modes of large structures by the Lanczos iteration of Spectra. Requires the headers of Spectra (Debian:
+/// libspectra-dev).
 
 #include <Spectra/MatOp/SparseSymMatProd.h>
 #include <Spectra/SymGEigsShiftSolver.h>

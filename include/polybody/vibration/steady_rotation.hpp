@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Small vibrations about a steady rotation.
-///
-/// Not included in polybody.hpp: it requires vibration/modes.hpp.
 
 #include <polybody/solvers/newton.hpp>
 #include <polybody/statics/load_steps.hpp>

@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// ANCF Cholesky coordinates [Yakoub & Shabana 1999; thesis §4.4].
-///
-/// Not in polybody.hpp: few programs need it.
 
 #include <vector>
 

@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Attachment modes and free modes of a structure in mean axes.
-///
-/// Not in polybody.hpp: Eigen's sparse module and factorisations take seconds to compile.
 
 #include <polybody/bodies/ffr/static_supports.hpp>
 

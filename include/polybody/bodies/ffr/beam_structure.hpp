@@ -3,8 +3,6 @@
 /// Structures made of bars: space beam element of thesis App. A [Przemieniecki 1968, §5.6, §11.4]. The code corrects
 /// errata of Eq. A.1: rows 11 and 12 contain −2ξ + 3ξ² and 2ξ − 3ξ². The intermediate element frames of Eqs. A.2–A.3
 /// permit any direction of an element.
-///
-/// Not in polybody.hpp: Eigen's sparse module and factorisations take seconds to compile.
 
 #include <polybody/bodies/ffr/structure.hpp>
 #include <polybody/math/quadrature.hpp>
@@ -13,8 +11,6 @@ namespace polybody {
 
 // Space beam element of thesis App. A [Przemieniecki 1968, §5.6, §11.4]: shape functions, stiffness and mass points,
 // in the axes of the body.
-//
-// Not in polybody.hpp: Eigen's sparse module takes seconds to compile.
 
 /// Shape functions of Eq. A.1 in the axes of the element, with nodal coordinates (u, v, w, θx, θy, θz) at both ends.
 /// The displacement at (ξ l, y, z) is (axis + y · by_y + z · by_z) e, and the rotation of the section is `rotation` e.

@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Floating frame of reference in space [Shabana 2013, ch. 5–6; thesis §4.3 and App. A].
-///
-/// Not in polybody.hpp: Eigen's sparse module and factorisations take seconds to compile.
 
 #include <memory>
 

@@ -2,8 +2,6 @@
 /// \file
 /// Inertia force M a and applied force of the body of a floating frame (equations in ffr.hpp). Both use the products in
 /// ffr_balance.hpp.
-///
-/// Not in polybody.hpp: bodies/ffr/ffr.hpp includes it.
 
 #include <span>
 
@@ -15,8 +13,6 @@ namespace polybody {
 
 // Matrix products of the equations of a floating frame with coordinates, velocities and accelerations. The matrices
 // are stacked, so that each vector is read once.
-//
-// Not in polybody.hpp: bodies/ffr/ffr.hpp includes it.
 
 /// Transposed matrices of `FfrIntegrals`, stacked one below the other, for n deformation coordinates.
 struct FfrStack {

@@ -3,8 +3,6 @@
 /// Deformation coordinates q of a floating frame: reference conditions that tie the frame to the structure, and bases Φ
 /// (N×n) of the nodal coordinates, e = Φ q. A basis consists of all free nodal coordinates, of vibration modes, or of
 /// the modes of Craig & Bampton [1968].
-///
-/// Not in polybody.hpp: Eigen's sparse module and factorisations take seconds to compile.
 
 #include <algorithm>
 #include <set>
@@ -19,8 +17,6 @@
 namespace polybody {
 
 // Submatrices of the matrices of a structure, and their factorisation.
-//
-// Not in polybody.hpp: Eigen's sparse module and factorisations take seconds to compile.
 
 /// Submatrix of the given rows and columns of a sparse matrix.
 template <class = void>  // compiled only if used

@@ -2,8 +2,6 @@
 /// \file
 /// Inertia and stiffness of the body of a floating frame as functions of its n deformation coordinates q. They follow
 /// from the inertia shape integrals of a structure, projected onto a basis e = Φ q, or are given by the user.
-///
-/// Not in polybody.hpp: Eigen's sparse module and factorisations take seconds to compile.
 
 #include <polybody/bodies/ffr/beam_structure.hpp>
 

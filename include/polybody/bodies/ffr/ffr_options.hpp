@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Options of the body of a floating frame, in space and in the plane.
-///
-/// Not in polybody.hpp: bodies/ffr/ffr.hpp includes it.
 
 #include <optional>
 

@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Material points of the body of a floating frame, with the matrices of their displacement, small rotation and strain.
-///
-/// Not in polybody.hpp: Eigen's sparse module and factorisations take seconds to compile.
 
 #include <algorithm>
 #include <optional>
@@ -18,8 +16,6 @@ namespace polybody {
 
 // Ratio of the axial forces in a structure of beams to its buckling forces. It estimates the error of a floating frame
 // without geometric stiffening.
-//
-// Not in polybody.hpp: bodies/ffr/ffr.hpp includes it.
 
 /// Loads on a structure at one time, in the axes of the structure, and the inertia and weight of a rigid motion. In
 /// this motion the acceleration of the point u₀ minus gravity is b + B u₀.

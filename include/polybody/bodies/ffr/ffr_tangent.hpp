@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Tangent of the body of a floating frame in space.
-///
-/// Not in polybody.hpp: bodies/ffr/ffr.hpp includes it.
 
 #include <span>
 

@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Sparse matrices of a finite element program in the coordinate format of Matrix Market.
-///
-/// Not in polybody.hpp: few programs need it.
 
 #include <unordered_set>
 #include <vector>

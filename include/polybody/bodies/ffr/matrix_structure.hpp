@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Structure from the matrices of a finite element program: solid elements with three displacements per node.
-///
-/// Not in polybody.hpp: few programs need it.
 
 #include <limits>
 

@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Distributing coupling of several nodes of a structure, such as the seat of a pin or the area under a wheel.
-///
-/// Not in polybody.hpp: bodies/ffr/ffr.hpp includes it.
 
 #include <polybody/bodies/ffr/structure.hpp>
 

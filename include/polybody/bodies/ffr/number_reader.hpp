@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Lines of numbers in a text file of a finite element program. An error names the file and the line.
-///
-/// Not in polybody.hpp: few programs need it.
 
 #include <algorithm>
 #include <cctype>

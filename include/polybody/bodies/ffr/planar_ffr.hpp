@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Floating frame of reference in the plane [Shabana 2013, ch. 5].
-///
-/// Not in polybody.hpp: Eigen's sparse module and factorisations take seconds to compile.
 
 #include <memory>
 

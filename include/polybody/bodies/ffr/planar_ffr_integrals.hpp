@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Inertia and stiffness of the body of a planar floating frame as functions of its deformation coordinates.
-///
-/// Not in polybody.hpp: Eigen's sparse module and factorisations take seconds to compile.
 
 #include <polybody/bodies/ffr/ffr_integrals.hpp>
 

@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Reference conditions that hold a structure without straining it.
-///
-/// Not in polybody.hpp: Eigen's sparse module and factorisations take seconds to compile.
 
 #include <polybody/bodies/ffr/ffr_basis.hpp>
 

@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Linear finite element model of one body in its own axes, for a floating frame of reference (ffr.hpp).
-///
-/// Not in polybody.hpp: Eigen's sparse module and factorisations take seconds to compile.
 
 #include <array>
 #include <vector>

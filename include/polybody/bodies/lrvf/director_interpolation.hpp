@@ -2,8 +2,6 @@
 /// \file
 /// Linear interpolation of directors, a policy of `Lrvf` for comparison [Romero & Armero 2002; Betsch & Steinmann
 /// 2002].
-///
-/// Not in polybody.hpp: `RelativeRotation` is the recommended policy.
 
 #include <polybody/bodies/lrvf/elastic_elements.hpp>
 #include <polybody/bodies/lrvf/polar_interpolation.hpp>

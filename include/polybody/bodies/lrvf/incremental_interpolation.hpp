@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Interpolation of the increments of the nodal rotations, a policy of `Lrvf` for comparison.
-///
-/// Not in polybody.hpp: `RelativeRotation` is the recommended policy.
 
 #include <polybody/bodies/lrvf/rotation_interpolation.hpp>
 

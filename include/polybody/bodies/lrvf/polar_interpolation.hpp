@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Interpolated directors that are made orthonormal, a policy of `Lrvf` for comparison [Romero 2004, §4].
-///
-/// Not in polybody.hpp: `RelativeRotation` is the recommended policy.
 
 #include <polybody/bodies/lrvf/strain_gradient.hpp>
 

@@ -1,8 +1,6 @@
 #pragma once
 /// \file
 /// Rigid bodies whose mass changes with time, such as tanks that empty, rockets, and belts that are loaded.
-///
-/// Not in polybody.hpp: few bodies gain or lose mass.
 
 #include <array>
 #include <functional>
