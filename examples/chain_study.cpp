@@ -4,8 +4,7 @@
 // out/chain_study mpirun -np 2 chain_study --out out/chain_study
 #include <iostream>
 #include <polybody/polybody.hpp>
-#include <polybody/study/report.hpp>
-#include <polybody/study/thread_time.hpp>
+#include <polybody/study.hpp>
 
 #include "support/command_line.hpp"
 #include "support/ranks.hpp"

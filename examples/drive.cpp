@@ -6,7 +6,6 @@
 #include <iostream>
 #include <numeric>
 
-#include <polybody/io/csv.hpp>
 #include <polybody/polybody.hpp>
 
 #include "drive/clock.hpp"

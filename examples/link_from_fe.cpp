@@ -13,8 +13,7 @@
 #include <numbers>
 #include <sstream>
 
-#include <polybody/bodies/ffr/ffr.hpp>
-#include <polybody/bodies/ffr/matrix_structure.hpp>
+#include <polybody/ffr.hpp>
 #include <polybody/polybody.hpp>
 
 #include "support/command_line.hpp"

@@ -8,7 +8,7 @@
 #include <map>
 #include <tuple>
 
-#include <polybody/compare/join.hpp>
+#include <polybody/polybody.hpp>
 
 #include "support/command_line.hpp"
 #include "support/vehicle_film.hpp"

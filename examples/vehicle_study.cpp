@@ -4,9 +4,7 @@
 // mpirun -np 2 vehicle_study --out out/vehicle_study
 #include <iostream>
 #include <polybody/polybody.hpp>
-#include <polybody/study/report.hpp>
-#include <polybody/study/sampling.hpp>
-#include <polybody/study/statistics.hpp>
+#include <polybody/study.hpp>
 
 #include "m113/settled_track.hpp"
 #include "m113/track_checks.hpp"

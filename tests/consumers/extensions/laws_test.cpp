@@ -1,11 +1,6 @@
 // User-defined types under the law suites of polybody::testing: a case constructs the type, one line tests
 // it.
-#include <polybody/testing/flexible_body_laws.hpp>
-#include <polybody/testing/force_laws.hpp>
-#include <polybody/testing/integrator_laws.hpp>
-#include <polybody/testing/joint_laws.hpp>
-#include <polybody/testing/policy_laws.hpp>
-#include <polybody/testing/user_system_laws.hpp>
+#include <polybody/testing.hpp>
 
 #include "bathe.hpp"
 #include "double_pendulum.hpp"

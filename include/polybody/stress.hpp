@@ -1,0 +1,11 @@
+#pragma once
+/// \file
+/// Stresses of flexible bodies during a run, load histories, and their evaluation: filters, rainflow counts and damage.
+
+#include <polybody/run/body_record.hpp>
+#include <polybody/signals/filter.hpp>
+#include <polybody/signals/rainflow.hpp>
+#include <polybody/signals/rms_difference.hpp>
+#include <polybody/stress/decoupled_stress.hpp>
+#include <polybody/stress/nodal_stress.hpp>
+#include <polybody/stress/section.hpp>

@@ -1,0 +1,13 @@
+#pragma once
+/// \file
+/// Parameter studies on several threads or processes, with records that survive an interruption, and checkpoints of
+/// runs. Requires POSIX.
+
+#include <polybody/io/checkpoint.hpp>
+#include <polybody/io/state_table.hpp>
+#include <polybody/study/grid.hpp>
+#include <polybody/study/report.hpp>
+#include <polybody/study/sampling.hpp>
+#include <polybody/study/statistics.hpp>
+#include <polybody/study/study.hpp>
+#include <polybody/study/thread_time.hpp>
