@@ -10,6 +10,7 @@ waist      integrators, solvers, analyses and io use the mechanics through its i
            `detail::` of another folder, and no model as template parameter. Exceptions are entry points: functions of at
            most five lines, and records without functions
 comments   no line of a comment begins with "Of" or "…"
+repeats    no 12 successive lines of code occur twice (without comments, blank lines and includes)
 system     BasicSystem has at most 25 public member functions, its constructors not counted
 
 functions, waist and comments have a list of allowed violations, <rule>_allowed.txt in this folder: a `key` or `key count`
@@ -52,6 +53,7 @@ OPTIONAL_PACKAGES = {  # KLU, Spectra, MPI
 }
 MAX_LINES = 400  # of a header
 MAX_FUNCTION_LINES = 60
+REPEATED_LINES = 12
 MAX_PARAMETERS = 6
 MAX_SYSTEM_FUNCTIONS = 25
 MAX_DOOR_LINES = 5
@@ -144,6 +146,21 @@ def umbrella(texts):
     for name in texts:
         if name not in reached:
             yield f"{name} is reached from no header polybody/<subject>.hpp"
+
+
+def repeats(texts):
+    """Overlapping repeated runs give one sentence."""
+    places, reported = {}, None
+    for name, text in texts.items():
+        lines = [(i, re.sub(r"//.*", "", line).strip()) for i, line in enumerate(text.split("\n"), 1)]
+        lines = [(i, line) for i, line in lines if line and not line.startswith("#include")]
+        for k in range(len(lines) - REPEATED_LINES + 1):
+            run = tuple(line for _, line in lines[k : k + REPEATED_LINES])
+            first = places.setdefault(run, (name, lines[k][0]))
+            if first != (name, lines[k][0]) and reported != (name, k - 1):
+                yield f"{name}:{lines[k][0]} repeats {REPEATED_LINES} lines of {first[0]}:{first[1]}"
+            if first != (name, lines[k][0]):
+                reported = (name, k)
 
 
 def declarations(name, text):
@@ -299,7 +316,10 @@ def system(texts):
         yield f"{name}: BasicSystem has {count} public member functions, more than {MAX_SYSTEM_FUNCTIONS}"
 
 
-RULES = {f.__name__: f for f in (floors, compiler, words, length, umbrella, functions, waist, comments, system)}
+RULES = {
+    f.__name__: f
+    for f in (floors, compiler, words, length, umbrella, functions, waist, comments, repeats, system)
+}
 
 
 def main(rule, root, shrinks=False):

@@ -62,6 +62,11 @@ class Check(unittest.TestCase):
         self.assertEqual(len(self.found("umbrella", math__lonely="")), 1)
         self.assertEqual(self.found("umbrella", math__lonely="", stress="#include <polybody/math/lonely.hpp>\n"), [])
 
+    def test_repeats(self):
+        lines = lambda n: "".join(f"f({i});  // {i}\n" for i in range(n))
+        self.assertEqual(self.found("repeats", math__so3=lines(11), math__a=lines(11)), [])
+        self.assertEqual(len(self.found("repeats", math__so3=lines(14), math__a=lines(14).replace("//", "\n//"))), 1)
+
     def test_functions(self):
         long = lambda n: "int f() {\n" + "  ++a;\n" * n + "}\n"
         self.assertEqual(self.found("functions", math__so3=long(58)), [])
