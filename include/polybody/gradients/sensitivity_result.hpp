@@ -29,7 +29,9 @@ namespace detail {
 template <class = void>
 void warn_of_unused(std::vector<Parameter> const& parameters, std::vector<char> const& affected, RunReport& run) {
   for (std::size_t j = 0; j < parameters.size(); ++j)
-    if (!affected[j]) run.add_warning("Nothing in the run depends on the parameter \"" + parameters[j].name + "\".");
+    if (!affected[j])
+      run.add_warning("Nothing in the run depends on the parameter \"" + parameters[j].name +
+                      "\". Remove it, or use it in the model.");
 }
 
 }  // namespace detail

@@ -62,7 +62,7 @@ struct Joint {
       !Policy<P> || !MeasurableGeometry<P, G> || EnforceableGeometry<P, G>,
       "The number of parameters of this policy must equal the number of constraint equations of the joint's geometry.");
   static_assert(!Policy<P> || HolonomicOrConstrained<P, G>,
-                "This geometry is nonholonomic (it constrains velocities), so that a compliant policy has no violation "
+                "This geometry is nonholonomic (it constrains velocities), so a compliant policy has no violation "
                 "to act on. Use Constraint.");
   G geometry = {};                         ///< motions that the joint prevents
   P policy = detail::default_policy<P>();  ///< enforcement of the constraint equations

@@ -7,7 +7,7 @@
 
 namespace polybody {
 
-/// Motion of a run near a state, for the evaluation of events.
+/// Extrapolation of a state by its velocities and accelerations, without a step, for the detection of events.
 struct EventMotion {
   double requested_step;                           ///< requested length of steps [s]
   std::function<State const&(State const&)> seen;  ///< returns the full state of an integrated state

@@ -8,7 +8,7 @@
 
 namespace polybody {
 
-/// State of one event of a run: sign of its value, values in the last steps, and actions.
+/// Record of one event during a run: sign of its value, values in the last steps, and actions.
 struct EventPlace {
   static constexpr int repeats_allowed = 10;    ///< limit of consecutive actions, each within `tolerance` of the last
   static constexpr int actions_allowed = 1000;  ///< limit of actions of one event within one step length
@@ -68,7 +68,7 @@ struct EventPlace {
     throw InvalidInput("event.accumulates",
                        {"The event \"", ErrorObject{event.name}, "\" occurs again ", why, " at t = ", ErrorTime{t},
                         " s: the impacts accumulate, and the body comes to rest. Set `rests` of the event to hold its "
-                        "value at zero from there on, or end the run before."});
+                        "value at zero from there on, or end the run before this time."});
   }
 };
 

@@ -17,7 +17,7 @@ struct BeamShapes {
   Mat<double, 3, 12> by_y = Mat<double, 3, 12>::Zero(), by_z = Mat<double, 3, 12>::Zero();  ///< derivatives by y and z
   Mat<double, 3, 12> rotation = Mat<double, 3, 12>::Zero();                                 ///< (θx, −w′, v′)
   Mat<double, 4, 12> strain =
-      Mat<double, 4, 12>::Zero();  ///< rows: axial strain, torsion, curvature about y, about z [1/m]
+      Mat<double, 4, 12>::Zero();  ///< rows: axial strain [1], torsion, curvatures about y and z [1/m]
 
   /// Shape functions at ξ of an element of length l [m].
   template <class = void>  // compiled only if used

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Submatrices of the matrices of a structure, and their factorisation.
+/// Extraction and factorisation of submatrices of a structure: `submatrix`, `factor_positive`.
 ///
 /// Not in polybody.hpp: Eigen's sparse module and factorisations take seconds to compile.
 
