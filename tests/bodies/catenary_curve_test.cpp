@@ -44,7 +44,7 @@ TEST(Catenary, EndsAtTheEndWithASlopeThatGrowsWithTheArcLength) {
 TEST(Catenary, RefusesWhatHangsInNoCatenary) {
   Vec3 const down(0, -1, 0);
   EXPECT_TRUE(has(refusal([&] { catenary({3, 4, 0}, 5.0, down); }), "the length of 5 m must exceed"));
-  EXPECT_TRUE(has(refusal([&] { catenary({0, 4, 0}, 5.0, down); }), "one end is above the other"));
+  EXPECT_TRUE(has(refusal([&] { catenary({0, 4, 0}, 5.0, down); }), "the horizontal distance of the ends is 0 m"));
   EXPECT_TRUE(has(refusal([&] { catenary({3, 4, 0}, 6.0, Vec3::Zero()); }), "direction of the weight is zero"));
 }
 

@@ -197,7 +197,7 @@ TEST(SpatialLrvf, RefusesWhatItCannotMean) {
   EXPECT_TRUE(has(refusal([&] { (void)Lrvf<Direct>::from(bar, 3); }), "Lrvf: the stiffness GJ of the bar"));
   bar = spatial_lrvf_bar();
   EXPECT_TRUE(has(refusal([&] { (void)Lrvf<>::from(bar, 0); }), "at least one element"));
-  EXPECT_TRUE(has(refusal([&] { (void)Lrvf<>::from(bar, 3, ReferenceCurve{}); }), "curve is empty"));
+  EXPECT_TRUE(has(refusal([&] { (void)Lrvf<>::from(bar, 3, ReferenceCurve{}); }), "curve is an empty function"));
   auto const fast = [](double s) { return Placement{.origin = Vec3(2 * s, 0, 0)}; };
   auto const still = [](double) { return Placement{}; };
   EXPECT_TRUE(has(refusal([&] { (void)Lrvf<>::from(bar, 3, fast); }), "must be its arc length"));

@@ -110,7 +110,7 @@ TEST(VariableMass, APendulumSwingsAsOneWhoseMassStays) {
 }
 
 TEST(VariableMass, RefusesALawThatMovesTheBodyOrLosesItsMass) {
-  EXPECT_TRUE(has(refusal([] { Plane(Plane::Law{}); }), "a function is needed"));
+  EXPECT_TRUE(has(refusal([] { Plane(Plane::Law{}); }), "the function of time is empty"));
   EXPECT_TRUE(has(refusal([] { Plane([](double) { return planar::Rigid(0.0, 0.0); }); }), "mass"));
   Plane const moves([](double t) { return planar::Rigid(1.0, 1.0, Placement::at({t, 0, 0})); });
   EXPECT_TRUE(has(refusal([&] { (void)moves.at_time(0.5); }), "at t = 0.5 s the function places the body elsewhere"));

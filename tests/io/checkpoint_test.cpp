@@ -113,7 +113,7 @@ TEST_F(Checkpoints, EveryDamageIsNoticed) {
     return told(bad);
   };
   EXPECT_TRUE(has(told("t,x\n0,1\n"), "is not a checkpoint of polybody"));
-  EXPECT_TRUE(has(told(good.substr(0, 20)), "truncated within its head"));
+  EXPECT_TRUE(has(told(good.substr(0, 20)), "truncated within its first"));
   std::string const size = std::to_string(good.size()), longer = std::to_string(good.size() + 1);
   EXPECT_TRUE(has(told(good + "x"), "has " + longer + " bytes instead of " + size));
   std::string other = good;

@@ -93,8 +93,8 @@ TEST(SmoothTable, RefusesPointsThatMakeNoTable) {
   EXPECT_TRUE(has(said({{0.0, 0.0}, {-1.0, 0.0}}), "the times must increase, but point 2 at t = -1 s"));
   EXPECT_TRUE(has(said({{0.0, 0.0}, {1.0, NAN}}), "point 2 must be finite"));
   EXPECT_TRUE(has(said({{-HUGE_VAL, 0.0}, {1.0, 0.0}}), "point 1 must be finite"));
-  EXPECT_TRUE(
-      has(refusal([] { SmoothTable({{0.0, 0.0}, {1.0, 0.0}}, {.last_rate = NAN}); }), "the rates at the ends must be"));
+  EXPECT_TRUE(has(refusal([] { SmoothTable({{0.0, 0.0}, {1.0, 0.0}}, {.last_rate = NAN}); }),
+                  "the rate at the last point must be"));
   EXPECT_TRUE(has(refusal([] { SmoothTable({{1.0, 0.0}, {0.5, 0.0}}, {}, "\"drive\""); }),
                   "\"drive\": the times must increase"));
 }

@@ -1,4 +1,4 @@
-// refused: declare the object with `auto`
+// refused: Use `auto` for this object
 #include <polybody/joints/revolute.hpp>
 #include <polybody/system/model.hpp>
 

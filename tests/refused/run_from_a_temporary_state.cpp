@@ -1,4 +1,4 @@
-// refused: A run changes its state, so that a temporary or constant state is refused
+// refused: A run changes its state, so a temporary or constant state is refused
 #include <polybody/polybody.hpp>
 
 using namespace polybody;

@@ -28,9 +28,9 @@ template <class Policy>
 using Bars = Model<Bodies<planar::Rigid>, Joints<Pin<Policy>>>;
 
 RunOptions const options{.end_time = 0.1, .step = 0.01};
-char const* const grown = "was added to the model while a run, system or recorder refers to it";
-char const* const moved = "The model was moved to another object while a run, system or recorder refers to it";
-char const* const ended = "The model was destroyed or assigned to while a run, system or recorder refers to it";
+char const* const grown = "was added to the model while a run, system or recorder referred to it";
+char const* const moved = "The model was moved to another object while a run, system or recorder referred to it";
+char const* const ended = "The model was destroyed or assigned to while a run, system or recorder still referred to it";
 
 template <class Policy = Constraint>
 Bars<Policy> bar() {

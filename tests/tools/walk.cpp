@@ -1,11 +1,11 @@
-// Program of tests/tools/walk: one step, one connection, the start of a run and a gradient, with a record of all functions
-// that are entered. Compiled with -finstrument-functions.
+// Program of tests/tools/walk: one step, one connection, the start of a run and a gradient, with a record of all
+// functions that are entered. Compiled with -finstrument-functions.
 #include <cstdio>
 #include <cstdlib>
-#include <span>
-#include <vector>
 #include <polybody/gradients.hpp>
 #include <polybody/polybody.hpp>
+#include <span>
+#include <vector>
 
 namespace {
 
@@ -40,7 +40,8 @@ int main() {
     using Pin = Joint<Revolute, Constraint>;
     using Ground = Contact<SphereOnPlane>;
     Model<Bodies<Link>, Joints<Pin>, Forces<Ground>> model{Gravity{0, 0, -9.81}};
-    Bar const bar{.length = 0.5, .section = Circle{.radius = 0.02}, .material = Material{.density = 7800, .young = 2e11}};
+    Bar const bar{
+        .length = 0.5, .section = Circle{.radius = 0.02}, .material = Material{.density = 7800, .young = 2e11}};
     std::vector<BodyHandle<Link>> links;
     for (int i = 0; i < 4; ++i) {
       Bar at = bar;

@@ -390,7 +390,7 @@ TEST(PinSprocketContact, RefusesNumbersThatCannotBeMeantByName) {
   EXPECT_TRUE(has(told([](auto& g) { g.profile.flank = 0.5 * pi; }), "between 0 and pi/2 rad"));
   EXPECT_TRUE(has(told([](auto& g) { g.profile.tip_radius = 0.2459; }),
                   "0.24596"));  // f of the independent computation: |(0.244088, 0.030311)| = 0.24596
-  EXPECT_TRUE(has(told([](auto& g) { g.profile.tip_radius = 0.5; }), "no teeth remain"));
+  EXPECT_TRUE(has(told([](auto& g) { g.profile.tip_radius = 0.5; }), "leave no teeth"));
   EXPECT_TRUE(has(told([](auto& g) { g.valley = nan; }), "\"sprocket\": the angle of a valley"));
   EXPECT_TRUE(has(told([](auto& g) { g.rings.clear(); }), "\"sprocket\": a sprocket needs at least one ring"));
   EXPECT_TRUE(has(told([](auto& g) { g.rings[0] = infinity; }), "\"sprocket\": the position of a ring"));

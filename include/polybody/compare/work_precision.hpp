@@ -112,8 +112,9 @@ WorkCurve work_precision(C const& make_case, F const& formulation, std::vector<d
   auto scenario = make_case(formulation);
   auto const& y = detail::output_of(scenario, output, "work_precision");
   if (settings.empty())
-    throw InvalidInput("work_precision.settings",
-                       {ErrorObject{"work_precision"}, ": at least one step or tolerance is needed."});
+    throw InvalidInput(
+        "work_precision.settings",
+        {ErrorObject{"work_precision"}, ": at least one step or tolerance is needed, but the list is empty."});
   WorkCurve curve{detail::name_of(formulation), y.name};
   for (double const setting : settings) {
     auto integrator = formulation.integrator;

@@ -21,9 +21,7 @@ struct AxialSpring {
   void check(std::string const& name) const {
     require_not_negative(stiffness, name, ": the spring stiffness");
     require_not_negative(damping, name, ": the damping");
-    if (!std::isfinite(preload))
-      throw InvalidInput("value.not_finite",
-                         {ErrorObject{name}, ": the preload must be finite, but is ", ErrorValue{preload}, "."});
+    require_finite(preload, name, ": the preload");
     require_unit(axis, name, ": the axis");
   }
 

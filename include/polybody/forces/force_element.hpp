@@ -62,6 +62,17 @@ constexpr bool tell_enough() {
   return ((Ms::observes >= (k++ == 1 ? needs_of_second<F>() : F::needs)) && ...);
 }
 
+namespace detail {
+/// Refuses at compile time a force whose markers do not provide the required kinematics. \tparam enough true if every
+/// marker provides them
+template <bool enough>
+constexpr void require_kinematics() {
+  static_assert(enough,
+                "This force needs a marker with a tangent or axes. A moment needs at least a tangent; a plane or an "
+                "axial spring needs axes. Use a marker of another body type.");
+}
+}  // namespace detail
+
 /// True if the matrix of a time step contains blocks that couple the bodies of a force element's markers. With the
 /// member `static constexpr bool couples_bodies = false`, the matrix contains only the stiffness of each body. Contacts
 /// with many candidates have this member: the sparsity pattern and the elimination order

@@ -52,9 +52,10 @@ concept PartitionedForceGroup = ForceGroup<F> && requires(F const group) {
 template <class F>
 concept AppliedForce = ForceElement<F> || ForceGroup<F>;
 
-/// Force element of two markers that approximates its stiffness −(ck ∂w/∂pose + cd ∂w/∂twist) at each marker. The
-/// approximations are symmetric, positive semidefinite 6×6 matrices, added to `of_a` and `of_b`. They are cheaper
-/// than the exact tangent by dual numbers and sufficient for Newton's method.
+/// Force element of two markers that approximates its tangent −(ck ∂w/∂pose + cd ∂w/∂twist) at each marker, with the
+/// coefficients ck of the stiffness and cd of the damping. The approximations are symmetric, positive semidefinite 6×6
+/// matrices, added to `of_a` and `of_b`. They are cheaper than the exact tangent by dual numbers and sufficient for
+/// Newton's method.
 template <class F>
 concept HasOwnStiffness = ForceElement<F> && F::markers == 2 &&
                           requires(F const force, std::array<Frame<double>, 2> const frames, Mat<double, 6, 6> of_a,

@@ -8,9 +8,8 @@
 
 namespace polybody {
 
-/// Normal force law: force N(d, ḋ) [N], derivative ck ∂N/∂d + cd ∂N/∂ḋ, which is never negative, and potential ∫ N(d,
-/// 0) dd
-/// [J].
+/// Normal force law: force N(d, ḋ) [N], derivative and potential ∫ N(d, 0) dd [J]. The derivative ck ∂N/∂d + cd ∂N/∂ḋ
+/// is never negative; ck and cd are given coefficients.
 template <class N>
 concept NormalForce = requires(N const law, double d, double rate, std::string const name) {
   { law.template force<double>(d, rate) } -> std::convertible_to<double>;
@@ -81,8 +80,8 @@ struct SpringDamperContact {
     T const n = d * stiffness.value + c * rate;
     return value_of(n) > 0.0 ? n : T(0.0);
   }
-  /// Derivative ck ∂N/∂d + cd ∂N/∂rate. Within the onset, the damping force of a departing body decreases with d. The
-  /// derivative neglects this term.
+  /// Derivative ck ∂N/∂d + cd ∂N/∂rate with given ck, cd. Within the onset, the damping force of a departing body
+  /// decreases with d. The derivative neglects this term.
   double slope(double d, double rate, double ck, double cd) const {
     bool const begins = d < onset;
     double const c = begins ? damping * d / onset : damping;
@@ -114,7 +113,7 @@ struct HertzContact {
     using std::sqrt;
     return d * sqrt(d) * stiffness();
   }
-  /// Derivative ck ∂N/∂d at penetration d [m].
+  /// Derivative ck ∂N/∂d at penetration d [m] with a given ck.
   double slope(double d, double, double ck, double) const { return ck * 1.5 * stiffness() * std::sqrt(d); }
   /// Stored energy at penetration d [m] [J].
   template <StateScalar T>
@@ -160,7 +159,7 @@ struct HuntCrossleyContact {
     T const factor = rate * damping.value + 1.0;
     return value_of(factor) > 0.0 ? T(pow(d, exponent) * factor * stiffness.value) : T(0.0);
   }
-  /// Derivative ck ∂N/∂d + cd ∂N/∂rate.
+  /// Derivative ck ∂N/∂d + cd ∂N/∂rate with given ck, cd.
   double slope(double d, double rate, double ck, double cd) const {
     double const factor = 1.0 + damping * rate, power = stiffness * std::pow(d, exponent - 1.0);
     return factor > 0.0 ? power * (ck * exponent * factor + cd * damping * d) : 0.0;

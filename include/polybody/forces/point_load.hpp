@@ -29,9 +29,7 @@ Vec<T, 3> load_in_world(Vec3 const& load, double scale, LoadAxes axes, Frame<T> 
 /// Force on a marker, `force` times a function of time.
 template <class Law = Constant>
 struct PointForce {
-  static_assert(TimeFunction<Law>,
-                "The law must be a function of time that returns a Motion. Write a lambda as "
-                "[](double t) -> Motion { return {value, rate, acceleration}; }.");
+  static_assert(detail::require_time_function<Law>());
   static constexpr int markers = 1;
   static constexpr bool is_load = true;
   static constexpr MarkerKind needs = MarkerKind::point;
@@ -57,9 +55,7 @@ struct PointForce {
 /// provides only its tangent, only the part of the moment orthogonal to the tangent acts.
 template <class Law = Constant>
 struct PointMoment {
-  static_assert(TimeFunction<Law>,
-                "The law must be a function of time that returns a Motion. Write a lambda as "
-                "[](double t) -> Motion { return {value, rate, acceleration}; }.");
+  static_assert(detail::require_time_function<Law>());
   static constexpr int markers = 1;
   static constexpr bool is_load = true;
   static constexpr MarkerKind needs = MarkerKind::axis;

@@ -32,7 +32,9 @@ namespace detail {
 template <class = void>
 void warn_of_unused(std::vector<Parameter> const& parameters, std::vector<char> const& affected, RunReport& run) {
   for (std::size_t j = 0; j < parameters.size(); ++j)
-    if (!affected[j]) run.add_warning("Nothing in the run depends on the parameter \"" + parameters[j].name + "\".");
+    if (!affected[j])
+      run.add_warning("Nothing in the run depends on the parameter \"" + parameters[j].name +
+                      "\". Remove it, or use it in the model.");
 }
 
 /// Run with forward sensitivities; the steps are those of `Simulation`. A step length that the method chooses from its

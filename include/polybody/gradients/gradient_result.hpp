@@ -133,7 +133,8 @@ template <class = void>
 void warn_of_zeros(GradientResult& g) {
   for (std::size_t j = 0; j < g.parameters.size(); ++j)
     if (g.derivatives[Index(j)] == 0.0)
-      g.run.add_warning("The objective does not depend on the parameter \"" + g.parameters[j] + "\".");
+      g.run.add_warning("The objective does not depend on the parameter \"" + g.parameters[j] +
+                        "\". Remove it, or use it in the model.");
 }
 
 }  // namespace detail

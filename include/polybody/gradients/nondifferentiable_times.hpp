@@ -31,7 +31,7 @@ template <class = void>
 [[noreturn, gnu::cold]] void refuse_touch(std::string const& name, double t, char const* who) {
   throw InvalidInput("derivative.event",
                      {ErrorObject{who}, ": the event \"", name, "\" only touches zero at t = ", ErrorTime{t},
-                      " s, so that its time has no derivative. Use an event value that passes through zero with a "
+                      " s, so its time has no derivative. Use an event value that passes through zero with a "
                       "nonzero rate."});
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Derivatives of the state of a run, and sums of states.
+/// Derivative of the state of a run, and linear combinations of such derivatives.
 
 #include <polybody/integrators/step_history.hpp>
 

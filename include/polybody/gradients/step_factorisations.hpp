@@ -23,7 +23,7 @@ enum class ApproximateFactors {
   of_step,  ///< factorisation from the solution of the step itself, without further cost
   of_end,   ///< factorisation of the tangent at the end of the step
   exact,    ///< factorisation of this tangent with the terms that Newton's method omits, such as second-order terms
-  turned,   ///< as `exact`, with the derivative of ⊞ in addition (gradients/increment_tangent.hpp)
+  turned,   ///< like `exact`, with the derivative of ⊞ in addition (gradients/increment_tangent.hpp)
 };
 
 /// Chooses the kind of factorisation with the lowest cost. The cost is the number of passes through the equations, plus

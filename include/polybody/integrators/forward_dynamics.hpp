@@ -59,10 +59,10 @@ void require_finite_force(System const& s, VecX const& x) {
 template <class = void>
 void require_finite_rows(System const& s, VecX const& x) {
   if (Index const i = first_not_finite(x); i >= 0)
-    throw NonFiniteValue(
-        "motion.not_finite",
-        {"The motion at ", ErrorObject{s.name_of(s.velocities() + i)}, non_finite_suffix(x[i]),
-         " at t = ", ErrorTime{s.at().t}, " s. Check the state before, or take a smaller step.", and_whose_force(s)});
+    throw NonFiniteValue("motion.not_finite",
+                         {"The motion at ", ErrorObject{s.name_of(s.velocities() + i)}, non_finite_suffix(x[i]),
+                          " at t = ", ErrorTime{s.at().t},
+                          " s. Check the state before this time, or take a smaller step.", and_whose_force(s)});
 }
 /// Checks the end of a step. \throws NonFiniteValue naming body and time if a coordinate or velocity is NaN, infinite
 /// or too large.
@@ -73,7 +73,7 @@ void require_finite_end(System const& s, VecX const& q, VecX const& v, double t)
   throw NonFiniteValue("motion.not_finite",
                        {"The motion of ", ErrorObject{in_v < 0 ? name_of_coordinate(s, in_q) : s.name_of(in_v)},
                         non_finite_suffix(in_v < 0 ? q[in_q] : v[in_v]), " at t = ", ErrorTime{t},
-                        " s. Check its velocity and the forces on it before.", and_whose_force(s)});
+                        " s. Check its velocity and the forces on it before this time.", and_whose_force(s)});
 }
 /// Checks the state of the last evaluation, before the matrix at this state is reported as singular. \throws
 /// NonFiniteValue if a coordinate or velocity is NaN, infinite or too large.

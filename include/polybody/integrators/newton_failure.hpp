@@ -69,7 +69,8 @@ template <class = void>
     throw NonFiniteValue(
         "motion.not_finite",
         {integrator, ": the motion of ", ErrorObject{owner(last.solution)}, " is not finite", " at t = ", ErrorTime{t},
-         " s. Check its velocity and the forces on it before, or take a smaller step.", and_whose_force(system)});
+         " s. Check its velocity and the forces on it before this time, or take a smaller step.",
+         and_whose_force(system)});
   if (report.result == NewtonResult::not_finite)
     throw NonFiniteValue("force.not_finite", {integrator, ": a force on ", ErrorObject{owner(last.rhs)},
                                               " is not finite", " at t = ", ErrorTime{t}, " s", whose_force(system),

@@ -3,7 +3,7 @@
 
 namespace polybody {
 
-/// Tangent of an implicit step and its solver, with or without the second-order terms ck ∂(Gᵀλ)/∂q, ∂(Jᵀw)/∂q. These
+/// Tangent of an implicit step and its solver, with or without the second-order terms ∂(Gᵀλ)/∂q, ∂(Jᵀw)/∂q. These
 /// terms cost as much as all other terms and seldom save an iteration. A step that does not converge activates them for
 /// eight steps. If another step does not converge within the same number of steps after the end of this period, the
 /// next period is twice as long. This occurs near singular configurations.

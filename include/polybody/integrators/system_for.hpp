@@ -65,7 +65,7 @@ System system_for(M const& model) {
     static_assert(CompatibilityReport::elements, "EnergyMomentum does not support force groups. Use GeneralisedAlpha.");
     static_assert(CompatibilityReport::potentials,
                   "EnergyMomentum needs the potential of a force for general scalars: declare potential(frames, t) as "
-                  "a template on the scalar of the frames.");
+                  "a template on the scalar type of the frames.");
   }
   if constexpr (CompatibleIntegrator<I, M>) return stepped_system(model, with < entries_of<I>() | more >);
 }

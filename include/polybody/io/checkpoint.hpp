@@ -163,18 +163,22 @@ template <class = void>
 RunSnapshot read_checkpoint(std::filesystem::path const& file) {
   std::string const name = file.string();
   std::optional<std::string> const content_of_file = detail::content_of(file);
-  if (!content_of_file) throw IoError("file.open", {"checkpoint \"", ErrorObject{name}, "\" cannot be read."});
+  if (!content_of_file)
+    throw IoError("file.open",
+                  {"checkpoint \"", ErrorObject{name}, "\" cannot be read. Check its path and permissions."});
   std::string const& all = *content_of_file;
   detail::CheckpointHead const ours = detail::checkpoint_head;
   detail::CheckpointHead head = {};
   std::memcpy(&head, all.data(), std::min(all.size(), sizeof head));
   if (std::memcmp(head.kind, ours.kind, sizeof head.kind) != 0)
-    throw IoError("checkpoint.format", {"file \"", ErrorObject{name}, "\" is not a checkpoint of polybody."});
+    throw IoError("checkpoint.format", {"file \"", ErrorObject{name},
+                                        "\" is not a checkpoint of polybody. Use a file that write_checkpoint wrote."});
   if (all.size() < sizeof head)
-    throw IoError("checkpoint.damaged", {"checkpoint \"", ErrorObject{name}, "\" is truncated within its head."});
+    throw IoError("checkpoint.damaged", {"checkpoint \"", ErrorObject{name}, "\" is truncated within its first ",
+                                         sizeof head, " bytes. Write it again."});
   if (head.order == 0x04030201u)
-    throw IoError("checkpoint.format",
-                  {"checkpoint \"", ErrorObject{name}, "\" was written by a machine of another byte order."});
+    throw IoError("checkpoint.format", {"checkpoint \"", ErrorObject{name},
+                                        "\" was written on a machine with another byte order. Read it there."});
   if (head.version != ours.version)
     throw IoError("checkpoint.format",
                   {"checkpoint \"", ErrorObject{name}, "\" is of version ", ErrorValue{head.version},
@@ -182,13 +186,15 @@ RunSnapshot read_checkpoint(std::filesystem::path const& file) {
   std::uint64_t sum = 0;
   std::size_t const overhead = sizeof head + sizeof sum;
   if (all.size() < overhead || all.size() - overhead != head.length)
-    throw IoError("checkpoint.damaged", {"checkpoint \"", ErrorObject{name}, "\" is truncated or too long: it has ",
-                                         all.size(), " bytes instead of ", head.length + overhead, "."});
+    throw IoError("checkpoint.damaged",
+                  {"checkpoint \"", ErrorObject{name}, "\" is truncated or too long: it has ", all.size(),
+                   " bytes instead of ", head.length + overhead, ". Write it again."});
   std::memcpy(&sum, all.data() + all.size() - sizeof sum, sizeof sum);
   std::string_view const summed = std::string_view(all).substr(0, all.size() - sizeof sum);
   if (checksum(summed) != sum)
     throw IoError("checkpoint.damaged", {"checkpoint \"", ErrorObject{name},
-                                         "\" is damaged: its checksum differs from the checksum of its content."});
+                                         "\" is damaged: its checksum differs from the checksum of its content. "
+                                         "Write it again."});
   RunSnapshot snapshot;
   detail::SnapshotVisitor<detail::SnapshotReader> content{{summed.substr(sizeof head), name}};
   content.walk(snapshot);

@@ -78,7 +78,8 @@ class Csv {
     std::set<std::string_view> seen;
     for (auto const& head : columns) {
       if (head.empty())
-        throw InvalidInput("table.columns", {"file \"", ErrorObject{file.string()}, "\": a column head is empty"});
+        throw InvalidInput("table.columns", {"file \"", ErrorObject{file.string()}, "\": the head of column ",
+                                             std::size_t(&head - columns.data()) + 1, " is empty"});
       if (!seen.insert(head).second)
         throw InvalidInput("table.columns",
                            {"file \"", ErrorObject{file.string()}, "\": duplicate column \"", head, "\""});

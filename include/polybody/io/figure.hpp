@@ -51,12 +51,14 @@ void check(Figure const& figure) {
   auto const is_finite = [](double value) { return std::isfinite(value); };
   need(!figure.curves.empty(), "a figure needs at least one curve");
   need(in(figure.width_px, 50, 16000) && in(figure.height_px, 50, 16000),
-       "width and height must be 50 to 16000 pixels");
+       sentence_of(
+           {"width and height must be 50 to 16000 pixels, but are ", figure.width_px, " and ", figure.height_px}));
   need(!figure.equal_axes || !(figure.log_x || figure.log_y), "equal axes cannot be logarithmic");
   auto const check_range = [&](auto const& range, bool log, std::string const& axis) {
     if (!range) return;
     auto const [from, to] = *range;
-    need(is_finite(from) && is_finite(to) && from != to, axis + " must be two different finite numbers");
+    need(is_finite(from) && is_finite(to) && from != to,
+         axis + " must be two different finite numbers, but is " + number(from) + " to " + number(to));
     need(!log || (from > 0 && to > 0), axis + " must be positive on a logarithmic axis");
   };
   check_range(figure.x_range, figure.log_x, "x_range");
@@ -72,8 +74,8 @@ void check(Figure const& figure) {
     need(std::ranges::all_of(y, is_finite), "a number in y is not finite");
     need(std::ranges::count(curve_styles, style) == 1,
          "style \"" + style + "\" is none of lines, points, linespoints, dashed, steps, filled");
-    need(colour >= -1, "colour must be 0, 1, 2 ... or -1 for the index of the curve");
-    need(is_finite(width) && width > 0, "width must be positive");
+    need(colour >= -1, sentence_of({"colour must be 0, 1, 2 ... or -1 for the index of the curve, but is ", colour}));
+    need(is_finite(width) && width > 0, "width must be positive and finite, but is " + number(width));
     for (std::size_t i = 0; i < x.size() && !visible; ++i)
       visible = (!figure.log_x || x[i] > 0) && (!figure.log_y || y[i] > 0);
   }

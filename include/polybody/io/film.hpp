@@ -256,7 +256,9 @@ class Film {
   /// `follow`.
   /// \throws IoError if the file cannot be written.
   std::size_t write(std::filesystem::path const& file) const {
-    if (scenes_.empty()) throw InvalidInput("film.scene", {"Film \"", ErrorObject{options_.title}, "\" has no scene."});
+    if (scenes_.empty())
+      throw InvalidInput("film.scene",
+                         {"Film \"", ErrorObject{options_.title}, "\" has no scene. Call scene(name) first."});
     for (FilmScene const& scene : scenes_) require_complete(scene);
     require_view(view(planar()));
     std::size_t const slot = page_.find(detail::film_slot);
@@ -276,7 +278,8 @@ class Film {
  private:
   void require_complete(FilmScene const& scene) const {
     if (scene.times().empty())
-      throw InvalidInput("film.scene", {"Film: the scene \"", ErrorObject{scene.name()}, "\" has no frame."});
+      throw InvalidInput("film.scene",
+                         {"Film: the scene \"", ErrorObject{scene.name()}, "\" has no frame. Record at least one."});
     bool found = options_.follow.empty();
     for (detail::FilmPart const& part : scene.parts()) found = found || part.name == options_.follow;
     if (!found)

@@ -10,7 +10,7 @@ namespace polybody {
 /// Adds an arrow for each joint to the last frame of a scene: the force on the joint's second body, at the second
 /// marker.
 /// \param unit force that the unit of the arrows stands for [N], 1000 for kN
-/// \throws InvalidInput, NonFiniteValue as `FilmScene::arrow`.
+/// \throws InvalidInput, NonFiniteValue like `FilmScene::arrow`.
 template <class = void>
 void add_reactions(FilmScene& scene, FilmArrows arrows, ObservedState const& now, double unit = 1.0) {
   System const& system = now.evaluated();

@@ -127,7 +127,8 @@ class FilmScene {
   /// \throws NonFiniteValue for a time or part that is not finite.
   void record(double t, std::vector<VisualPart> const& parts) {
     if (!std::isfinite(t))
-      throw NonFiniteValue("film.not_finite", {ErrorObject{who()}, "the time of a frame is not finite."});
+      throw NonFiniteValue("film.not_finite",
+                           {ErrorObject{who()}, "the time of a frame must be finite, but is ", ErrorTime{t}, " s."});
     if (!times_.empty() && !(t > times_.back()))
       throw InvalidInput("film.time_order", {ErrorObject{who()}, "the times of the frames must increase, but t = ",
                                              ErrorTime{t}, " s follows ", times_.back(), " s."});

@@ -200,7 +200,8 @@ DrawResult write_modes(Visual& visual, State const& x, MatX const& shapes, std::
                        ModePictureOptions const& options = {}) {
   detail::require_picture<>(options);
   if (shapes.cols() == 0)
-    throw InvalidInput("mode.number", {ErrorObject{"mode pictures"}, ": the shapes have no mode."});
+    throw InvalidInput("mode.number",
+                       {ErrorObject{"mode pictures"}, ": the shapes have no mode: their matrix has no column."});
   std::vector<Figure> panels;
   for (Index k = 0; k < shapes.cols(); ++k)
     panels.push_back(detail::mode_figure<>(detail::ModeShape(visual, x, shapes.col(k), options.size), options,
@@ -210,14 +211,14 @@ DrawResult write_modes(Visual& visual, State const& x, MatX const& shapes, std::
 
 /// Records one period of a mode (column `mode` of `shapes`) as frames of a film. The period is 2 s for every frequency:
 ///   record_mode(film.scene("mode 1"), visual, x, found.shape, 0);
-/// The displacements are those of `write_modes` with this `size`, times sin(πt). \throws InvalidInput as `write_modes`,
-/// and for a column that does not exist.
+/// The displacements are those of `write_modes` with this `size`, times sin(πt). \throws InvalidInput like
+/// `write_modes`, and for a column that does not exist.
 template <class = void>
 void record_mode(FilmScene& scene, Visual& visual, State const& x, MatX const& shapes, Index mode, double size = 0.1) {
   detail::require_picture<>({.size = size});
   if (mode < 0 || mode >= shapes.cols())
     throw InvalidInput("mode.number", {ErrorObject{"record_mode"}, ": mode ", ErrorValue{mode},
-                                       " does not exist; the shapes have ", shapes.cols(), " modes."});
+                                       " does not exist; the shapes have ", shapes.cols(), " modes, counted from 0."});
   detail::ModeShape const displaced(visual, x, shapes.col(mode), size);
   for (int k = 0; k <= 60; ++k)
     if (double const t = k / 30.0; scene.due(t)) scene.record(t, displaced.displaced(std::sin(std::numbers::pi * t)));

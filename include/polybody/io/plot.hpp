@@ -206,7 +206,8 @@ DrawResult write_panels(std::vector<Figure> const& figures, int columns, std::fi
                                      "\": the name is empty or has a control character"});
   if (figures.empty() || columns < 1)
     throw InvalidInput("figure.content", {"figure file \"", ErrorObject{stem.string()},
-                                          "\": at least one figure and one column are needed"});
+                                          "\": at least one figure and one column are needed, but there are ",
+                                          figures.size(), " figures and ", columns, " columns"});
   int width = 0, height = 0;
   for (auto const& figure : figures) {
     detail::check(figure);

@@ -57,7 +57,8 @@ class Progress {
         terminal_(terminal),
         clock_(std::move(clock)) {
     if (!std::isfinite(start) || !std::isfinite(end))
-      throw InvalidInput("value.not_finite", {"progress \"", ErrorObject{label_}, "\": start and end must be finite"});
+      throw InvalidInput("value.not_finite", {"progress \"", ErrorObject{label_},
+                                              "\": start and end must be finite, but are ", start, " and ", end});
     if (terminal_) began_ = clock_();
   }
 

@@ -125,7 +125,8 @@ void Visual::sweep(BodyHandle<B> const& body, Bar const& bar, int pieces, int si
   Index const number = index_of(layout_, body);
   BodyLayout const place = layout_.bodies[std::size_t(number)];
   if (pieces < 1)
-    throw InvalidInput("visual.pieces", {"\"", ErrorObject{body.name}, "\": a sweep needs at least one piece."});
+    throw InvalidInput("visual.pieces", {"\"", ErrorObject{body.name}, "\": a sweep needs at least one piece, but has ",
+                                         ErrorValue{pieces}, "."});
   std::vector<Vec2> const ring = outline(bar, sides);
   int const n = int(ring.size());
   bool const stressed = HasSections<B> && bar.material;

@@ -33,10 +33,9 @@ struct Gear {
   }
   void check(std::string const& what) const {
     if (teeth_a == 0 || teeth_b == 0 || (teeth_a < 0 && teeth_b < 0))
-      throw InvalidInput(
-          "gear.teeth",
-          {ErrorObject{what},
-           ": both wheels need a number of teeth, and at most one of them can be a ring gear (a negative number)."});
+      throw InvalidInput("gear.teeth",
+                         {ErrorObject{what}, ": the numbers of teeth are ", int(teeth_a), " and ", int(teeth_b),
+                          ", but none may be zero, and at most one may be negative (a ring gear)."});
     for (int const teeth : {int(teeth_a), int(teeth_b)})
       if (teeth < -most_teeth || teeth > most_teeth)
         throw InvalidInput("gear.teeth", {ErrorObject{what}, ": a wheel has at most ", most_teeth,

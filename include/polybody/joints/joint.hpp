@@ -41,7 +41,9 @@ struct GeometryRefusal {
   static_assert(
       requires(G const g) {
         { g.triad() } -> std::convertible_to<Mat3>;
-      }, "A joint geometry needs triad() const: the joint's axes, world axes at the reference configuration.");
+      },
+      "A joint geometry needs triad() const, which returns a Mat3: the joint's axes at the reference configuration, in "
+      "world axes.");
   static_assert(
       requires(G const g, Frame<double> const a, double t) {
         { g.template constraint_function<double>(a, a, t) } -> std::same_as<ConstraintTerms<G::rows, double>>;
@@ -51,8 +53,7 @@ struct GeometryRefusal {
         { g.template gamma<double>(a, a, t) } -> std::same_as<Vec<double, G::rows>>;
       },
       "A joint geometry needs gamma<T>(a, b, t) const, which returns Vec<T, rows>: the terms of the second derivative "
-      "of "
-      "its constraint function without accelerations.");
+      "of its constraint function without accelerations.");
   static constexpr bool checked = true;
 };
 
@@ -141,7 +142,7 @@ struct Joint {
       !Policy<P> || !MeasurableGeometry<P, G> || EnforceableGeometry<P, G>,
       "The number of parameters of this policy must equal the number of constraint equations of the joint's geometry.");
   static_assert(!Policy<P> || HolonomicOrConstrained<P, G>,
-                "This geometry is nonholonomic (it constrains velocities), so that a compliant policy has no violation "
+                "This geometry is nonholonomic (it constrains velocities), so a compliant policy has no violation "
                 "to act on. Use Constraint.");
   G geometry = {};                         ///< motions that the joint prevents
   P policy = detail::default_policy<P>();  ///< enforcement of the constraint equations

@@ -15,9 +15,7 @@ namespace polybody {
 /// a₃·(ω_b − ω_a) − ψ̇ exactly.
 template <class Law>
 struct PrescribedAngle {
-  static_assert(TimeFunction<Law>,
-                "The law must be a function of time that returns a Motion. Write a lambda as "
-                "[](double t) -> Motion { return {value, rate, acceleration}; }.");
+  static_assert(detail::require_time_function<Law>());
   static constexpr char const* name = "PrescribedAngle";
   static constexpr int rows = 1;
   static constexpr MarkerKind needs = MarkerKind::frame;

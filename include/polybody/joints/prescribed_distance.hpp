@@ -8,9 +8,7 @@ namespace polybody {
 ///   g = |r_b − r_a| − L − x(t)      [Haug 1989, §3.5, there squared].
 template <class Law>
 struct PrescribedDistance {
-  static_assert(TimeFunction<Law>,
-                "The law must be a function of time that returns a Motion. Write a lambda as "
-                "[](double t) -> Motion { return {value, rate, acceleration}; }.");
+  static_assert(detail::require_time_function<Law>());
   static constexpr char const* name = "PrescribedDistance";
   static constexpr int rows = 1;
   static constexpr MarkerKind needs = MarkerKind::point;

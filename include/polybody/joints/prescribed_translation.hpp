@@ -10,9 +10,7 @@ namespace polybody {
 /// World::both: in the plane, the axis is a vector in the plane.
 template <class Law>
 struct PrescribedTranslation {
-  static_assert(TimeFunction<Law>,
-                "The law must be a function of time that returns a Motion. Write a lambda as "
-                "[](double t) -> Motion { return {value, rate, acceleration}; }.");
+  static_assert(detail::require_time_function<Law>());
   static constexpr char const* name = "PrescribedTranslation";
   static constexpr int rows = 1;
   static constexpr MarkerKind needs = MarkerKind::frame;

@@ -32,9 +32,11 @@ struct RollingDisc {
     require_unit(up, "RollingDisc: the normal");
     Vec3 const first = up.cross(own);
     if (first.norm() < 1e-6)
-      throw InvalidInput(
-          "rolling_disc.flat",
-          {ErrorObject{"RollingDisc"}, ": the disc must not lie flat on the plane at the reference configuration."});
+      throw InvalidInput("rolling_disc.flat",
+                         {ErrorObject{"RollingDisc"},
+                          ": the disc must not lie flat on the plane at the reference configuration, but "
+                          "the sine of the angle between its axis and the normal is ",
+                          ErrorValue{first.norm()}, ". It must be at least 1e-06."});
     return polybody::constraint_functions::triad_of(first.normalized(), own, "RollingDisc");
   }
   void check(std::string const& what) const { require_positive(radius, what, ": the radius"); }

@@ -79,8 +79,10 @@ struct Placement {
       }
     }
     if (std::sqrt(off) > 1e-9 || determinant < 0.0)
-      throw InvalidInput("placement.axes",
-                         {ErrorObject{what}, ": the placement's axes must be orthonormal and right-handed."});
+      throw InvalidInput(
+          "placement.axes",
+          {ErrorObject{what}, ": the placement's axes must be orthonormal and right-handed, but |A'A - 1| is ",
+           ErrorValue{std::sqrt(off)}, " and the determinant ", determinant, "."});
   }
 
   /// Angle about world z of a planar placement [rad].
@@ -89,9 +91,11 @@ struct Placement {
   double planar_angle(std::string const& what) const {
     check(what);
     if (std::abs(origin.z()) > 1e-12 || std::abs(axes(2, 2) - 1.0) > 1e-12)
-      throw InvalidInput(
-          "placement.out_of_plane",
-          {ErrorObject{what}, ": a planar body must lie in the plane z = 0 and may rotate about z only."});
+      throw InvalidInput("placement.out_of_plane",
+                         {ErrorObject{what},
+                          ": a planar body must lie in the plane z = 0 and may rotate about z only, but its origin "
+                          "has z = ",
+                          ErrorValue{origin.z()}, " m, and its third axis has z = ", axes(2, 2), "."});
     return std::atan2(axes(1, 0), axes(0, 0));
   }
 };

@@ -77,14 +77,15 @@ class SmoothTable {
                                                   ErrorValue{points.size()}, "."});
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (!std::isfinite(points[i].time) || !std::isfinite(points[i].value))
-        throw InvalidInput("value.not_finite", {ErrorObject{what}, ": point ", i + 1, " must be finite."});
+        throw InvalidInput("value.not_finite", {ErrorObject{what}, ": point ", i + 1, " must be finite, but has t = ",
+                                                points[i].time, " s and the value ", points[i].value, "."});
       if (i > 0 && !(points[i].time > points[i - 1].time))
         throw InvalidInput("table.not_increasing", {ErrorObject{what}, ": the times must increase, but point ", i + 1,
                                                     " at t = ", ErrorValue{points[i].time}, " s follows a point at ",
                                                     points[i - 1].time, " s."});
     }
-    if (!std::isfinite(ends.first_rate.value_or(0.0)) || !std::isfinite(ends.last_rate.value_or(0.0)))
-      throw InvalidInput("value.not_finite", {ErrorObject{what}, ": the rates at the ends must be finite."});
+    require_finite(ends.first_rate.value_or(0.0), what, ": the rate at the first point");
+    require_finite(ends.last_rate.value_or(0.0), what, ": the rate at the last point");
   }
 
   /// Checks that no value, derivative or integral exceeds `largest_number`. Rates are large if neighbouring times

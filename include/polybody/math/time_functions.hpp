@@ -26,6 +26,17 @@ concept TimeFunction = requires(L const law, double t) {
   { law(t) } -> std::convertible_to<Motion>;
 };
 
+namespace detail {
+/// Refuses at compile time a `Law` that does not satisfy `TimeFunction`. Returns true.
+template <class Law>
+constexpr bool require_time_function() {
+  static_assert(TimeFunction<Law>,
+                "The law must be a function of time that returns a Motion. Write a lambda as "
+                "[](double t) -> Motion { return {value, rate, acceleration}; }.");
+  return true;
+}
+}  // namespace detail
+
 /// Function of time with known breakpoints of its rate [s]; `simulate` ends a step at each of them.
 template <class L>
 concept HasBreakpoints = requires(L const law) {
@@ -87,9 +98,8 @@ namespace detail {
 
 inline void check_ramp(double target, double duration, double start, std::string const& what) {
   require_positive(duration, what, ": the duration");
-  if (!std::isfinite(target) || !std::isfinite(start))
-    throw InvalidInput("value.not_finite",
-                       {ErrorObject{what}, ": target and start must be finite, but are ", target, " and ", start, "."});
+  require_finite(target, what, ": the target");
+  require_finite(start, what, ": the start");
 }
 
 }  // namespace detail
@@ -194,11 +204,7 @@ struct SpinUp {
 struct Constant {
   double value = 1.0;  ///< value at all times; a factor if it scales a load
 
-  void check(std::string const& what) const {
-    if (!std::isfinite(value))
-      throw InvalidInput("value.not_finite",
-                         {ErrorObject{what}, ": the value must be finite, but is ", ErrorValue{value}, "."});
-  }
+  void check(std::string const& what) const { require_finite(value, what, ": the value"); }
   Motion operator()(double) const { return {value, 0.0, 0.0}; }  ///< rate and acceleration are zero
   double integral(double t) const { return value * t; }          ///< integral from zero to t
 };

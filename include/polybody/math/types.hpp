@@ -87,7 +87,7 @@ inline void require_positive(double x, std::string_view what, std::string_view p
 inline void require_not_negative(double x, std::string_view what, std::string_view part = {}) {
   if (!(x >= 0.0) || !std::isfinite(x))
     throw InvalidInput("value.negative",
-                       {ErrorObject{what}, part, " must be zero or positive and finite, but is ", ErrorValue{x}, "."});
+                       {ErrorObject{what}, part, " must be zero or positive, and finite, but is ", ErrorValue{x}, "."});
 }
 
 /// \throws InvalidInput unless 1 ≤ n ≤ 10⁶, the allowed range of counts.
@@ -108,6 +108,12 @@ void require_finite(Eigen::MatrixBase<Derived> const& x, std::string_view what, 
                            {ErrorObject{what}, part, " must be finite, but has an entry ", ErrorValue{m(i, j)}, "."});
 }
 
+/// \throws InvalidInput unless `x` is finite.
+inline void require_finite(double x, std::string_view what, std::string_view part = {}) {
+  if (!std::isfinite(x))
+    throw InvalidInput("value.not_finite", {ErrorObject{what}, part, " must be finite, but is ", ErrorValue{x}, "."});
+}
+
 /// Largest allowed magnitude of a number. Its square is finite, with a margin for energies and norms.
 inline constexpr double largest_number = 1e150;
 
@@ -122,9 +128,8 @@ inline Index first_not_finite(VecX const& x) {
 inline void require_size(double x, std::string_view what, std::string_view part = {}) {
   if (x != 0.0 && !(std::abs(x) >= 1.0 / largest_number && std::abs(x) <= largest_number))
     throw InvalidInput("value.magnitude",
-                       {ErrorObject{what}, part,
-                        " must be zero or have a magnitude in [1e-150, 1e+150], so that its square is finite, but is ",
-                        ErrorValue{x}, "."});
+                       {ErrorObject{what}, part, " must be zero or have a magnitude in [1e-150, 1e+150], but is ",
+                        ErrorValue{x}, ". The square of other numbers overflows or underflows."});
 }
 /// Text for messages: " is not finite", or a finite x with the limit `largest_number` that it exceeds.
 template <class = void>  // compiled where it is used

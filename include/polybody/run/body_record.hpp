@@ -41,7 +41,8 @@ struct BodyRecord {
 template <class = void>  // compiled only if used
 void require_no_gaps(BodyRecord const& record, double largest, std::string const& who) {
   if (record.samples.size() < 2)
-    throw InvalidInput("record.samples", {ErrorObject{who}, "the record has fewer than two samples."});
+    throw InvalidInput("record.samples", {ErrorObject{who}, "the record needs at least two samples, but has ",
+                                          ErrorValue{record.samples.size()}, "."});
   require_not_negative(largest, who, "the largest gap");
   auto const between = [&](std::size_t k) {
     return sentence_of({record.samples[k].t, " s and ", record.samples[k + 1].t, " s"});

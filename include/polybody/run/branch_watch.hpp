@@ -46,7 +46,7 @@ class BranchWatch {
     warnings.push_back(what + number(x.t) +
                        " s, and the velocities jump in the step that ends there. At this singular configuration the "
                        "motion can change to another branch, and the step and the integrator select the branch. "
-                       "Compare the run with one of another step.");
+                       "Compare the run with a run of another step length.");
   }
 
   ConstraintGain usual_;

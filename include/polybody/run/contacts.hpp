@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Contact points and contact forces of a contact group.
+/// Query of a contact group in a state: contact points and contact forces.
 
 #include <functional>
 

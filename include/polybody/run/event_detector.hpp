@@ -13,7 +13,7 @@
 
 namespace polybody {
 
-/// Motion of a run near a state, for the evaluation of events.
+/// Extrapolation of a state by its velocities and accelerations, without a step, for the detection of events.
 struct EventMotion {
   double requested_step;                           ///< requested length of steps [s]
   std::function<State const&(State const&)> seen;  ///< returns the full state of an integrated state
@@ -99,7 +99,7 @@ struct EventStep {
   }
 };
 
-/// State of one event of a run: sign of its value, values in the last steps, and actions.
+/// Record of one event during a run: sign of its value, values in the last steps, and actions.
 struct EventPlace {
   static constexpr int repeats_allowed = 10;    ///< limit of consecutive actions, each within `tolerance` of the last
   static constexpr int actions_allowed = 1000;  ///< limit of actions of one event within one step length
@@ -159,7 +159,7 @@ struct EventPlace {
     throw InvalidInput("event.accumulates",
                        {"The event \"", ErrorObject{event.name}, "\" occurs again ", why, " at t = ", ErrorTime{t},
                         " s: the impacts accumulate, and the body comes to rest. Set `rests` of the event to hold its "
-                        "value at zero from there on, or end the run before."});
+                        "value at zero from there on, or end the run before this time."});
   }
 };
 

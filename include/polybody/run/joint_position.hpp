@@ -126,7 +126,7 @@ double joint_angle(System const& system, ElementHandle<J> const& joint) {
 }
 
 /// Rate of a joint angle [rad/s]: a₃·(ω_b − ω_a), with the axis a₃ of the joint in the first marker. `system` must have
-/// been evaluated at the state. \throws InvalidInput as `joint_angle`.
+/// been evaluated at the state. \throws InvalidInput like `joint_angle`.
 template <class J>
 double joint_angle_rate(System const& system, ElementHandle<J> const& joint) {
   return detail::angle_of(system, joint).rate;
@@ -143,7 +143,7 @@ double joint_translation(System const& system, ElementHandle<J> const& joint) {
 }
 
 /// Rate of a joint translation [m/s], relative to the axis in the first marker. `system` must have been evaluated at
-/// the state. \throws InvalidInput as `joint_translation`.
+/// the state. \throws InvalidInput like `joint_translation`.
 template <class J>
 double joint_translation_rate(System const& system, ElementHandle<J> const& joint) {
   return detail::translation_of(system, joint).rate;
@@ -160,7 +160,7 @@ double joint_translation_rate(System const& system, ElementHandle<J> const& join
 template <class = void>  // compiled only if used
 class TurnCounterOf {
  public:
-  /// Counter without states for a joint of `model`. \throws InvalidInput as `joint_angle`.
+  /// Counter without states for a joint of `model`. \throws InvalidInput like `joint_angle`.
   template <class M, class J>
   TurnCounterOf(M const& model, ElementHandle<J> const& joint)
       : TurnCounterOf(System(model, with<Capabilities::motion>), joint) {}

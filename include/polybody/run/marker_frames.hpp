@@ -29,7 +29,7 @@ void require_unit_axes(B const& body, Frame<double> const& f, Name const& name) 
   if (std::abs(squared - 1.0) <= 0.04 || body.coordinates() == body.velocities()) return;
   throw InvalidInput("state.quaternion",
                      {"frame: the quaternion of body \"", ErrorObject{name()}, "\" has the norm ",
-                      ErrorValue{std::pow(squared, 0.25)}, ", so that its axes have the length ", std::sqrt(squared),
+                      ErrorValue{std::pow(squared, 0.25)}, ", so its axes have the length ", std::sqrt(squared),
                       ". The norm must be one within 0.01. Normalise the quaternion in the state."});
 }
 }  // namespace detail

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Number of independent constraint equations of a model: rank of G by a sparse rank-revealing QR factorisation of Gᵀ.
+/// Search for redundant and contradictory constraint equations of a model: `redundancy`. The rank of G follows from a
+/// sparse rank-revealing QR factorisation of Gᵀ.
 
 #include <Eigen/SparseQR>
 #include <algorithm>

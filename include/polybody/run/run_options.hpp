@@ -69,7 +69,7 @@ struct RunOptions {
     require_positive(limits.warning, "simulate: limits.warning");
     for (double const t : breakpoints)
       if (std::isnan(t))
-        throw InvalidInput("run.option", {ErrorObject{"simulate"}, ": a breakpoint must be a time [s], but is nan."});
+        throw InvalidInput("run.option", {ErrorObject{"simulate"}, ": a breakpoint must be a time in s, but is nan."});
     for (Event const& event : events) {
       if (!event.value)
         throw InvalidInput("event.no_value", {"simulate: the event \"", ErrorObject{event.name},
@@ -79,8 +79,8 @@ struct RunOptions {
   }
 };
 
-/// Cost of a run so far. Failed attempts count if a shorter step succeeds; a step that ends the run by an exception
-/// does not count.
+/// Cost of a run so far. Failed attempts are included if a shorter step succeeds. A step that ends the run by an
+/// exception is not included.
 struct RunCounts {
   long steps = 0;           ///< number of steps
   long iterations = 0;      ///< iterations of Newton's method
@@ -136,7 +136,7 @@ struct RunReport : RunCounts {
   /// are none.
   [[gnu::cold]] std::string warned() const {
     std::string all;
-    if (halved > 0) all = sentence_of({"Before, ", halved, halved == 1 ? " step was halved." : " steps were halved."});
+    if (halved > 0) all = sentence_of({halved, halved == 1 ? " step" : " steps", " of the run had to be halved."});
     for (std::string const& warning : warnings)
       all += (all.empty() ? "Warning of the run: " : " Warning of the run: ") + warning;
     return all;

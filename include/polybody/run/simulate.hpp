@@ -44,7 +44,7 @@ namespace detail {
 template <class M>
 constexpr void refuse_temporary() {
   static_assert(std::is_void_v<M>,
-                "A run keeps a reference to its model, so that a temporary model is refused. Put the model into a "
+                "A run keeps a reference to its model, so a temporary model is refused. Put the model into a "
                 "variable that outlives the run.");
 }
 }  // namespace detail
@@ -53,7 +53,7 @@ constexpr void refuse_temporary() {
 template <LinearSolver Solver = DefaultSolver, class M, Integrator I>
 auto simulate(M const& model, State const&, I const& integrator, RunOptions options) {
   static_assert(std::is_void_v<M>,
-                "A run changes its state, so that a temporary or constant state is refused. Put the state into a "
+                "A run changes its state, so a temporary or constant state is refused. Put the state into a "
                 "variable: State x = model.reference_state(); simulate(model, x, integrator, options).");
   State none;
   return simulate<Solver>(model, none, integrator, std::move(options));

@@ -8,7 +8,7 @@ namespace polybody {
 namespace detail {
 
 /// Accelerations a due to compliant joints alone in a state: M a + Gᵀμ = w, G a = 0. The forces w = Σ Jᵀ S J y belong
-/// to a motion y, with the Jacobian J of each joint and S = ck ∂λ/∂g + cd ∂λ/∂ġ.
+/// to a motion y, with the Jacobian J of each joint and its derivative S = ck ∂λ/∂g + cd ∂λ/∂ġ for given ck, cd.
 template <class Solver>
 class CompliantMotion {
  public:

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Data of a run that are restored after a failed step.
+/// Copies of the data of a run that a failed step must restore.
 
 #include <array>
 #include <optional>

@@ -109,7 +109,7 @@ struct Basquin {
 };
 
 /// Cumulative damage D = Σ n_i/N_i of a history. The detail endures 1/D such histories [Palmgren 1924; Miner 1945].
-/// Mean stresses of cycles are neglected. \throws InvalidInput as `Basquin::check`.
+/// Mean stresses of cycles are neglected. \throws InvalidInput like `Basquin::check`.
 template <class = void>
 double damage(std::span<StressCycle const> cycles, Basquin const& curve) {
   curve.check();

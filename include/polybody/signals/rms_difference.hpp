@@ -47,8 +47,8 @@ class RmsDifference {
           "samples.too_few",
           {ErrorObject{"RmsDifference"}, ": there is no sample of both histories from ", from_, " s to ", to_, " s."});
     if (all_ == 0.0)
-      throw InvalidInput("samples.zero", {ErrorObject{"RmsDifference"},
-                                          ": the reference history is zero, so that there is no relative difference."});
+      throw InvalidInput("samples.zero", {ErrorObject{"RmsDifference"}, ": the reference history is zero at all ",
+                                          samples_, " samples, so a relative difference does not exist."});
     return std::sqrt(off_ / all_);
   }
 

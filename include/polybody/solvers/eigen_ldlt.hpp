@@ -72,7 +72,7 @@ class EigenLdlt {
   }
 
   /// Least ratio of the pivot of a row without a diagonal block to g²/a, where g and a are the largest entries of G and
-  /// A. It is at least `shift`, which is the ratio of a redundant row.
+  /// A. A redundant row has the ratio `shift`, the least possible one.
   double least_pivot() const {
     VecX const& d = ldlt_->pivots();
     double least = epsilon_ / shift;

@@ -97,15 +97,16 @@ class TangentSolver {
   void return_to(At<double> const& at) {
     coordinates_.entries->expand(coordinates_.self.get(), at.q, at.v, full_q_, full_v_);
   }
-  /// Factorises the tangent of the residual at x. Returns −1, or the equation without a pivot (`name_of_equation`).
+  /// Factorises the tangent of the residual at x. Returns −1, or the index of an equation without a pivot
+  /// (`name_of_equation`).
   Index factor_tangent(System& system, StepPosition const& x, TangentCoefficients const& k, SecondOrder second) {
     if (walks_)
       return coordinates_.entries->factor_balance(coordinates_.self.get(), frozen_.get(), x, system.load_factor, k);
     return factor([&](BlockSink& sink) { system.tangent(k, second, x.lambda, sink); });
   }
 
-  /// Writes and factorises the matrix in the state of the last evaluation of the system. Returns −1, or the equation
-  /// without a pivot (`name_of_equation`).
+  /// Writes and factorises the matrix in the state of the last evaluation of the system. Returns −1, or the index
+  /// of an equation without a pivot (`name_of_equation`).
   Index factor(BlockWriter const& write) {
     if (coordinates_) coordinates_.entries->freeze(coordinates_.self.get(), frozen_.get());
     if (solves_by_bodies()) return coordinates_.entries->factor(coordinates_.self.get(), frozen_.get(), write);

@@ -15,7 +15,7 @@
 
 namespace polybody {
 
-/// Forward dynamics of a tree of rigid bodies. T is the scalar of the state; dual numbers give derivatives of the
+/// Forward dynamics of a tree of rigid bodies. T is the scalar type of the state; dual numbers give derivatives of the
 /// accelerations.
 template <StateScalar T = double>
 class TreeDynamicsOf {

@@ -79,7 +79,7 @@ template <class T = double>  // a template, to be compiled only if it is used
   return link;
 }
 
-/// Kinematics of a tree of rigid bodies. T is the scalar of the state; dual numbers give derivatives.
+/// Kinematics of a tree of rigid bodies. T is the scalar type of the state; dual numbers give derivatives.
 template <StateScalar T = double>
 struct TreeRecursionOf {
   /** Motion of a degree of freedom: rotation, translation, or both. */ enum class Kind : unsigned char {

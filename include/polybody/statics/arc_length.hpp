@@ -110,9 +110,10 @@ class PathEquations {
     }
     system_.violation(phi_);
     if (!r_.allFinite() || !phi_.allFinite())
-      throw NonFiniteValue("equilibrium.not_finite",
-                           {ErrorObject{"equilibrium_path"}, ": a force is not finite at load factor ",
-                            ErrorValue{at.load_factor}, "."});
+      throw NonFiniteValue(
+          "equilibrium.not_finite",
+          {ErrorObject{"equilibrium_path"}, ": a force or constraint function is not finite at load factor ",
+           ErrorValue{at.load_factor}, ". Check the forces and the time functions."});
     if ((takes_least_ ? least_.factor(at.x.lambda) : stiffness_.factor(at.x.lambda)) >= 0) return false;
     return solve_for(-r_, -phi_, at, a_) && solve_for(r0_ - r1_, VecX::Zero(rows_), at, b_);
   }

@@ -309,7 +309,8 @@ struct EquilibriumPath {
                                                     ErrorObject{system.name_of(std::max<Index>(first_bad, 0))},
                                                     ". Fix every body, or pass a limit point with equilibrium_path."});
     if (result == NewtonResult::not_finite)
-      throw NonFiniteValue("equilibrium.not_finite", {ErrorObject{"equilibrium"}, ": a force is not finite", at, "."});
+      throw NonFiniteValue("equilibrium.not_finite", {ErrorObject{"equilibrium"}, ": a force is not finite", at,
+                                                      ". Check the forces and the start."});
     throw NewtonConvergenceFailure(
         "equilibrium.not_converged",
         {ErrorObject{"equilibrium"}, ": Newton's method did not converge", at,

@@ -278,8 +278,8 @@ class DependentCoordinates {
 /// constraint equations permit, G Z = 0. Z is computed by elimination. Each constraint equation expresses one
 /// coordinate by others,
 ///   G_d x_d + G_f x_f = 0,  Z = [−G_d⁻¹ G_f; 1].
-/// K is symmetrised. A negative pivot counts only if its motion x has a negative xᵀK x. This sum is computed in long
-/// double and must be negative beyond the round-off of its terms.
+/// K is symmetrised. A negative pivot is counted only if its motion x has a negative xᵀK x. The sum xᵀK x is computed
+/// in long double and must be negative beyond the round-off of its terms.
 struct Stability {
   Index negative = -1;  ///< number of negative eigenvalues; −1: the matrix is too large
   VecX motion = {};     ///< (nv) motion with negative xᵀK x; empty if there is none

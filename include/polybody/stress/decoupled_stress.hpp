@@ -127,14 +127,14 @@ class DecoupledStress {
   /// Quasi-static stress from K e = Q at each sample. It is valid if the loads change slowly compared with the
   /// structure's vibrations. The stress is independent of `frame`, because recorded loads are balanced. The
   /// displacements are relative to `frame`.
-  /// \throws InvalidInput as `StructureLoads`, and for a frame that restrains some, but not all rigid motions.
+  /// \throws InvalidInput like `StructureLoads`, and for a frame that restrains some, but not all rigid motions.
   template <class = void>
   static DecoupledStress quasi_static(Structure structure, BodyRecord const& record,
                                       StructureLoadOptions const& options = {},
                                       ReferenceConditions const& frame = ReferenceConditions::none());
-  /// Stress with vibrations, computed with the options `how`. \throws InvalidInput as `StructureLoads`, for shapes that
-  /// do not fit the structure or move a coordinate that the frame fixes, and for fewer substeps than one. Exceptions of
-  /// the integrator are passed on.
+  /// Stress with vibrations, computed with the options `how`. \throws InvalidInput like `StructureLoads`, for shapes
+  /// that do not fit the structure or move a coordinate that the frame fixes, and for fewer substeps than one.
+  /// Exceptions of the integrator are passed on.
   template <LinearSolver Solver = DenseLu, class I>
   static DecoupledStress vibrating(Structure structure, BodyRecord const& record, I const& integrator,
                                    Vibration const& how, StructureLoadOptions const& options = {});
@@ -187,7 +187,7 @@ class DecoupledStress {
   }
 
   /// Axial strain of the fibre (y, z) [m] at arc length s [m] of bar number `bar`, N/EA − y M_z/EI + z M_y/EI_y. With
-  /// damping this is the static strain under `section_forces`. \throws InvalidInput as `section_forces`.
+  /// damping this is the static strain under `section_forces`. \throws InvalidInput like `section_forces`.
   template <class = void>
   std::vector<double> axial_strain(double s, double y = 0.0, double z = 0.0, Index bar = 0) const {
     BarConstants const& c = loads_.structure().beams[std::size_t(locate(s, bar).first)].constants;
@@ -197,7 +197,7 @@ class DecoupledStress {
     return out;
   }
   /// Axial stress [N/m²] of the fibre (y, z) [m] at arc length s [m] of bar number `bar`, with the section and material
-  /// of `of`. \throws InvalidInput as `section_forces`, and for a bar given by constants.
+  /// of `of`. \throws InvalidInput like `section_forces`, and for a bar given by constants.
   template <class = void>
   std::vector<double> axial_stress(Bar const& of, double s, double y = 0.0, double z = 0.0, Index bar = 0) const {
     std::vector<double> out;
@@ -206,7 +206,7 @@ class DecoupledStress {
   }
   /// Axial and shear stress at the point (y, z) [m] of the section at arc length s [m] of bar number `bar`, with the
   /// section and material of `of`. The result yields the principal stresses and the von Mises stress. \throws
-  /// InvalidInput as `section_stress`.
+  /// InvalidInput like `section_stress`.
   template <class = void>
   std::vector<SectionStress> stress(Bar const& of, double s, double y, double z, Index bar = 0) const {
     std::vector<SectionStress> out;
@@ -245,7 +245,7 @@ class DecoupledStress {
         !(factor.vectorD().minCoeff() > 1e-13 * factor.vectorD().maxCoeff())) {
       free = statically_determinate(s, frame).free_coordinates(s);
       factor_positive(factor, submatrix(s.stiffness, free, free),
-                      "the structure moves without deformation, though it is held.");
+                      "parts of the held structure move without strain. Connect them.");
     }
     MatX rhs(Index(free.size()), loads.cols());
     for (std::size_t i = 0; i < free.size(); ++i) rhs.row(Index(i)) = loads.row(free[i]);

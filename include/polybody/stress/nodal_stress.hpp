@@ -48,7 +48,8 @@ class NodalStress {
   NodalStress(Matrix const& matrix, std::vector<Spot> spots) : matrix_(matrix), spots_(std::move(spots)) {
     Index const k = Index(spots_.size());
     if (k == 0)
-      throw InvalidInput("nodal_stress.nodes", {ErrorObject{"NodalStress"}, ": at least one node is needed."});
+      throw InvalidInput("nodal_stress.nodes",
+                         {ErrorObject{"NodalStress"}, ": at least one node is needed, but the list is empty."});
     if (matrix_.rows() != 6 * k)
       throw InvalidInput("nodal_stress.size",
                          {ErrorObject{"NodalStress"}, ": its matrix has ", ErrorValue{matrix_.rows()}, " rows, but ", k,

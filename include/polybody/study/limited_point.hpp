@@ -90,7 +90,7 @@ class PointProcess {
 
  private:
   [[noreturn, gnu::cold]] static void fail(char const* what, int why = errno) {
-    throw Error("study.process", {"study: the system has no more ", ErrorObject{what},
+    throw Error("study.process", {"study: the operating system has no more ", ErrorObject{what},
                                   " for a point with a time limit: ", std::strerror(why), "."});
   }
   /// Sends the answer and ends the process of the point, without the exit handlers of the program.

@@ -43,7 +43,8 @@ class Points {
   /// that are not finite or outside of the choices.
   Points(std::vector<Column> columns, std::vector<double> values, std::string origin)
       : columns_(std::move(columns)), values_(std::move(values)), origin_(std::move(origin)) {
-    if (columns_.empty()) throw InvalidInput("points.columns", {"study: the points need at least one column."});
+    if (columns_.empty())
+      throw InvalidInput("points.columns", {"study: the points need at least one column, but the list is empty."});
     for (std::size_t j = 0; j < columns_.size(); ++j) require_good(j);
     if (values_.empty() || values_.size() % columns_.size() != 0)
       throw InvalidInput("points.size",

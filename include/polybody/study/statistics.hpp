@@ -64,12 +64,13 @@ std::vector<double> ranks_of(std::vector<double> const& x) {
 
 /// Spearman's rank correlation of the columns `one` and `other`, in [−1, 1]. The result measures the monotonic
 /// dependence of the two columns, independent of the form of the curve. It is 0 if a column is constant.
-/// \throws InvalidInput as `statistics`.
+/// \throws InvalidInput like `statistics`.
 template <class = void>
 double rank_correlation(StudyResults const& found, std::string_view one, std::string_view other) {
   std::vector<double> const a = detail::ranks_of(found.column(one)), b = detail::ranks_of(found.column(other));
   if (a.size() < 2)
-    throw InvalidInput("statistics.too_few", {"study: a correlation needs at least two finished points."});
+    throw InvalidInput("statistics.too_few", {"study: a correlation needs at least two finished points, but has ",
+                                              ErrorValue{a.size()}, "."});
   double const mean = 0.5 * double(a.size() + 1);
   double ab = 0.0, aa = 0.0, bb = 0.0;
   for (std::size_t k = 0; k < a.size(); ++k) {

@@ -92,13 +92,14 @@ class Study {
     for (Column const& column : points_.columns()) heads.push_back({column.head()});
     for (StudyOutput const& output : outputs_) heads.push_back({output.head});
     if (outputs_.empty())
-      throw InvalidInput("study.outputs",
-                         {"study \"", ErrorObject{file_.file.string()}, "\": at least one output is needed."});
+      throw InvalidInput("study.outputs", {"study \"", ErrorObject{file_.file.string()},
+                                           "\": at least one output is needed, but the list is empty."});
     std::vector<double> const one_row(heads.size());
     Points(std::move(heads), one_row, "");  // checks the names
     if (std::ranges::any_of(file_.about, [](unsigned char c) { return c < ' ' || c == 127; }))
       throw InvalidInput("study.about", {"study \"", ErrorObject{file_.file.string()},
-                                         "\": its description must be printable text without line breaks."});
+                                         "\": its description must be printable text without line breaks. Change "
+                                         "`about`."});
   }
 
   /// Calls f(point) for each unfinished point, from several threads at once: f must not change shared data. The results
@@ -132,11 +133,13 @@ class Study {
   }
 
   /// Returns the results recorded so far, also while another process runs the study. The record is not changed.
-  /// \throws IoError as `run`.
+  /// \throws IoError like `run`.
   template <class = void>  // compiled where it is used
   StudyResults recorded() const {
     auto const bytes = detail::content_of(file_.file);
-    if (!bytes) throw IoError("file.open", {"file \"", ErrorObject{file_.file.string()}, "\" cannot be read"});
+    if (!bytes)
+      throw IoError("file.open",
+                    {"file \"", ErrorObject{file_.file.string()}, "\" cannot be read; run the study first"});
     detail::RecordContent content = detail::record_content(kind(), *bytes);
     StudyResults so_far = results(std::move(content.outcomes), 0, content.torn);
     so_far.resumed = so_far.finished();

@@ -99,9 +99,10 @@ struct BodyKernels {
   static void masses(Pool const& pool, Kept& kept, At<double> at, BlockSink& sink);  ///< M, element by element
   static void tangents(Pool const& pool, Kept& kept, At<double> at, TangentCoefficients const& c, Data<double>& data,
                        BlockSink& sink);  ///< cm M + cd D + ck K
-  /// ck ∂(Gᵀλ)/∂q of the bodies' own equations at the state and coefficients x.
+  /// Writes ck ∂(Gᵀλ)/∂q of the bodies' own equations, with the state and the stiffness coefficient ck of x.
   static void own_stiffness(Pool const& pool, VecX const& lambda, detail::StiffnessAt const& x, BlockSink& sink);
-  /// ck ∂(Jᵀw)/∂q of each marker for its wrench w in data.loads, at the state and coefficients x.
+  /// Writes ck ∂(Jᵀw)/∂q of each marker for its wrench w in data.loads, with the state and the stiffness coefficient
+  /// ck of x.
   static void load_stiffness(Pool const& pool, Kept& kept, detail::StiffnessAt const& x, Data<double>& data,
                              BlockSink& sink);
   static void add_energy(Pool const& pool, At<double> at, Vec3 const& g, Energy& sum);  ///< [J]

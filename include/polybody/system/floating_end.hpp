@@ -11,7 +11,7 @@
 
 namespace polybody {
 
-/// Marker of a body with a floating frame, with erased body type. \tparam T scalar of the body's coordinates
+/// Marker of a body with a floating frame, with erased body type. \tparam T scalar type of the body's coordinates
 template <class T = double>
 struct FloatingEndOf {
   /// Function that evaluates the marker of `end`. q and v are the coordinates and velocities of its body only.

@@ -28,9 +28,9 @@ struct GradientAt {
   TangentCoefficients const& c;
 };
 
-/// Adds −scale · (ck ∂w/∂pose + cd ∂w/∂twist) of the wrenches w of a law to `sink`. Blocks that couple the bodies are
-/// omitted if the law permits this and neither `c.full` nor `c.exact` is true. With `c.full` the wrenches are also
-/// added to data.loads.
+/// Adds −scale · (ck ∂w/∂pose + cd ∂w/∂twist) of the wrenches w of a law to `sink`, with ck, cd from x.c. Blocks that
+/// couple the bodies are omitted if the law permits this and neither `c.full` nor `c.exact` is true. With `c.full` the
+/// wrenches are also added to data.loads.
 template <class L>
 void add_gradient(L const& law, std::array<Index, L::markers> const& at, GradientAt const& x, Data<double>& data,
                   BlockSink& sink) {

@@ -162,10 +162,10 @@ struct JointKernels {
   /// Writes γ without the bias accelerations of the markers to `out` (rows).
   static void gamma(Pool const& pool, double t, Data<T> const& data, VecXOf<T>& out);
 
-  /// Writes ck K + cd D of compliant joints, from the derivatives of λ(g, ġ).
+  /// Writes the tangent ck K + cd D of compliant joints, from the derivatives of λ(g, ġ) and the coefficients c.
   static void slopes(Pool const& pool, Kept const& kept, TangentCoefficients const& c, Data<double>& data,
                      BlockSink& sink);
-  /// Writes ck ∂(Gᵀλ)/∂q at the state and coefficients x, and adds Gᵀλ to data.loads.
+  /// Writes ck ∂(Gᵀλ)/∂q at the state of x, with the stiffness coefficient ck of x, and adds Gᵀλ to data.loads.
   static void stiffness(Pool const& pool, Kept const& kept, VecX const& lambda, detail::StiffnessAt const& x,
                         Data<double>& data, BlockSink& sink);
   /// Energy stored in compliant joints [J].

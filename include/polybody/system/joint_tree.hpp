@@ -187,7 +187,8 @@ void carry_by_turn(TreeBody const& body, TreeFrameOf<T> const& p, T const& x, T 
 
 }  // namespace detail
 
-/// Tree of bodies with joint coordinates. A joint carries each body except the roots. \tparam T scalar of the vectors
+/// Tree of bodies with joint coordinates. A joint carries each body except the roots. \tparam T scalar type of the
+/// vectors
 template <class T = double>
 class JointTreeOf {
   using Vec3 = Vec<T, 3>;

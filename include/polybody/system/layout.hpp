@@ -59,13 +59,13 @@ class ModelWatch {
   [[noreturn, gnu::cold]] void refuse() const {
     if (history_->moved > changes_)
       throw InvalidInput("model.moved",
-                         {"The model was moved to another object while a run, system or recorder refers to it. "
+                         {"The model was moved to another object while a run, system or recorder referred to it. "
                           "Construct these after the last move, or hold the model in a std::unique_ptr."});
     if (history_->ended)
       throw InvalidInput("model.destroyed", {"The model was destroyed or assigned to while a run, system or recorder "
-                                             "refers to it. Keep the model in a variable that outlives them."});
+                                             "still referred to it. Keep the model in a variable that outlives them."});
     throw InvalidInput("model.changed",
-                       {"A body, joint or force was added to the model while a run, system or recorder refers to it. "
+                       {"A body, joint or force was added to the model while a run, system or recorder referred to it. "
                         "Construct these after the last addition, or from a copy of the model."});
   }
 

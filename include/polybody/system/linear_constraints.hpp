@@ -144,8 +144,11 @@ void fill_linear_rows(LinearPointOf<T> const& a, LinearPointOf<T> const& b, std:
     } else {
       V const t_a = a.complete() ? b.J.col(0) : a.J.col(0), t_b = b.complete() ? a.J.col(0) : b.J.col(0);
       if (std::abs(n.dot(t_a)) > 1e-9 || std::abs(n.dot(t_b)) > 1e-9)
-        throw InvalidInput("ancf_linear.pin_axis", {"\"", ErrorObject{rows.name},
-                                                    "\": the pin of a cable must be perpendicular to the cable."});
+        throw InvalidInput("ancf_linear.pin_axis",
+                           {"\"", ErrorObject{rows.name},
+                            "\": the pin of a cable must be perpendicular to the cable, but the cosine of the "
+                            "angle between them is ",
+                            ErrorValue{std::max(std::abs(n.dot(t_a)), std::abs(n.dot(t_b)))}, "."});
       share(t_a, t_b, true);
     }
   } else if (a.complete() && b.complete()) {

@@ -14,7 +14,7 @@
 namespace polybody {
 
 /// Dependent coordinates as linear functions of independent coordinates, q_d = c + Σ f q_i, from the equations of
-/// linear joints. \tparam T scalar of the vectors; factors are doubles
+/// linear joints. \tparam T scalar type of the vectors; factors are doubles
 template <class T = double>
 class LinearEliminationOf {
  public:

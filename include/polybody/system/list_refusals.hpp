@@ -61,8 +61,8 @@ struct BodyRefusal {
         { b.first_column(e) } -> std::convertible_to<Index>;
         { b.first_column(p) } -> std::convertible_to<Index>;
       },
-      "A body needs first_column(e) and first_column(p) const: the index of the first velocity on which an element and "
-      "a marker depend.");
+      "A body needs first_column(e) and first_column(p) const, which return the index of the first velocity on which "
+      "an element and a marker depend.");
   static_assert(
       requires(B const b, Out out) { b.reference(out); },
       "A body needs reference(q) const, which writes its coordinates in the reference configuration.");
@@ -75,25 +75,26 @@ struct BodyRefusal {
       "inherit both from AddingCoordinates.");
   static_assert(
       requires(B const b, In x, Out out, Vec3 u) { b.rigid_velocity(x, u, u, out); },
-      "A body needs rigid_velocity(q, v0, omega, v) const: its velocities in a rigid motion.");
+      "A body needs rigid_velocity(q, v0, omega, v) const, which writes its velocities v in a rigid motion.");
   static_assert(
       requires(B const b, Index e, In x, Mat<double, B::element_columns, B::element_columns>& m) { b.mass(e, x, m); },
-      "A body needs mass(e, q, m) const: the mass matrix of an element.");
+      "A body needs mass(e, q, m) const, which writes the mass matrix m of an element.");
   static_assert(
       requires(B const b, Index e, In x, Vec<double, B::element_columns>& f) {
         b.template inertia<double>(e, x, x, f);
-      }, "A body needs inertia<T>(e, q, a, out) const: M a of an element.");
+      }, "A body needs inertia<T>(e, q, a, out) const, which writes M a of an element.");
   static_assert(
       requires(B const b, Index e, In x, Vec<double, B::element_columns>& f) { b.template force<double>(e, x, x, f); },
-      "A body needs force<T>(e, q, v, out) const: elastic, damping and quadratic-velocity force of an element.");
+      "A body needs force<T>(e, q, v, out) const, which writes the elastic, damping and quadratic-velocity force "
+      "of an element.");
   static_assert(
       requires(B const b, Index e, In x, Mat<double, B::element_columns, B::element_columns>& k) {
         b.tangent(e, x, x, 1.0, 1.0, k);
-      }, "A body needs tangent(e, q, v, ck, cd, k) const: -(ck df/dq + cd df/dv) of an element.");
+      }, "A body needs tangent(e, q, v, ck, cd, k) const, which writes k = -(ck df/dq + cd df/dv) of an element.");
   static_assert(
       requires(B const b, Index e, In x, Vec3 g, Vec<double, B::element_columns>& f) {
         b.template gravity<double>(e, x, g, f);
-      }, "A body needs gravity<T>(e, q, g, out) const: the force of a uniform field on an element.");
+      }, "A body needs gravity<T>(e, q, g, out) const, which writes the force of the uniform field g on an element.");
   static_assert(
       requires(B const b, Index e, In x, Vec3 g) {
         { b.kinetic_energy(e, x, x) } -> std::convertible_to<double>;
@@ -103,11 +104,14 @@ struct BodyRefusal {
   static_assert(
       requires(B const b, typename B::Point p, Mat3 const& axes, In x, MarkerKinematics<double>& out) {
         b.template evaluate_marker<double>(p, axes, x, x, out);
-      }, "A body needs evaluate_marker<T>(p, axes, q, v, published) const: frame, Jacobian and bias of a marker.");
+      },
+      "A body needs evaluate_marker<T>(p, axes, q, v, published) const, which writes the frame, Jacobian and bias "
+      "of a marker.");
   static_assert(
       requires(B const b, typename B::Point p, In x, Wrench<double> w,
                Mat<double, B::point_columns, B::point_columns>& k) { b.load_stiffness(p, x, w, k); },
-      "A body needs load_stiffness(p, q, w, k) const: d(J'w)/dq of a marker, such as load_stiffness_by_dual_numbers.");
+      "A body needs load_stiffness(p, q, w, k) const, which writes k = d(J'w)/dq of a marker. "
+      "load_stiffness_by_dual_numbers computes it.");
 };
 
 /// Separate checks of the members that the concept `ForceElement` requires.
@@ -155,8 +159,8 @@ struct ListRefusal {
 template <class... Bs>
 struct ListRefusal<Bodies<Bs...>> {
   static_assert(no_const<Bs...>,
-                "A type in a model's Bodies is const. decltype of an object that is declared `auto const` is const; "
-                "declare the object with `auto`.");
+                "A type in a model's Bodies is const. It is probably the decltype of an `auto const` object. Use "
+                "`auto` for this object.");
   static_assert(Distinct<Bs...>,
                 "A body type occurs twice in a model's Bodies. List it once; it is used for any number of bodies.");
   static constexpr bool checked = ((Body<Bs> || sizeof(BodyRefusal<Bs>) > 0) && ...);
@@ -164,8 +168,8 @@ struct ListRefusal<Bodies<Bs...>> {
 template <class... Js>
 struct ListRefusal<Joints<Js...>> {
   static_assert(no_const<Js...>,
-                "A type in a model's Joints is const. decltype of an object that is declared `auto const` is const; "
-                "declare the object with `auto`.");
+                "A type in a model's Joints is const. It is probably the decltype of an `auto const` object. Use "
+                "`auto` for this object.");
   static_assert(Distinct<Js...>,
                 "A joint type occurs twice in a model's Joints. List it once; it is used for any number of joints.");
   static_assert((JointType<Js> && ...),
@@ -175,8 +179,8 @@ struct ListRefusal<Joints<Js...>> {
 template <class... Fs>
 struct ListRefusal<Forces<Fs...>> {
   static_assert(no_const<Fs...>,
-                "A type in a model's Forces is const. decltype of an object that is declared `auto const` is const; "
-                "declare the object with `auto`.");
+                "A type in a model's Forces is const. It is probably the decltype of an `auto const` object. Use "
+                "`auto` for this object.");
   static_assert(Distinct<Fs...>,
                 "A force type occurs twice in a model's Forces. List it once; it is used for any number of forces.");
   static constexpr bool checked = ((AppliedForce<Fs> || sizeof(ForceRefusal<Fs>) > 0) && ...);

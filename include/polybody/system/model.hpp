@@ -109,9 +109,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   template <OneOf<Fs...> F, class... Ms>
     requires(F::markers == sizeof...(Ms))
   ElementHandle<F> apply(F const& force, std::tuple<Ms...> const& markers, std::string name = "") {
-    static_assert(tell_enough<F, Ms...>(),
-                  "This force needs a marker with a tangent or axes. A moment needs at least a tangent, and a plane "
-                  "needs axes. Use another marker.");
+    detail::require_kinematics<tell_enough<F, Ms...>()>();
     return std::apply(
         [&](auto const&... m) { return detail::add_force(parts_, pool_of<F>(), force, std::move(name), pooled(m)...); },
         markers);
@@ -122,8 +120,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   template <OneOf<Fs...> F, class A>
     requires ForceGroup<F>
   ElementHandle<F> apply(F const& group, std::vector<Marker<A>> const& many, std::string name = "") {
-    static_assert(Marker<A>::observes >= F::needs,
-                  "This force needs a marker with axes or a tangent, but this body provides less.");
+    detail::require_kinematics<(Marker<A>::observes >= F::needs)>();
     Sequence<detail::PooledMarker<A>> pooled_many;
     for (Marker<A> const& m : many) pooled_many.push_back(pooled(m));
     return detail::add_group(parts_, pool_of<F>(), group, pooled_many, std::move(name));
@@ -148,8 +145,7 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   template <OneOf<Fs...> F, class Law, class A>
     requires ForceGroup<F>
   void add_partner(ElementHandle<F> const& group, Law const& law, Marker<A> const& one, std::string name = "") {
-    static_assert(Marker<A>::observes >= needs_of_second<Law>(),
-                  "This force needs a marker with axes or a tangent, but this body provides less.");
+    detail::require_kinematics<(Marker<A>::observes >= needs_of_second<Law>())>();
     (void)entry(group);
     detail::add_contact_partner(parts_, pool_of<F>()[std::size_t(group.index)], law, pooled(one), std::move(name));
   }

@@ -135,18 +135,18 @@ struct ModelOperations {
   /// Adds the tangent of the bodies' elements to the sink.
   void (*element_tangents)(void const* m, At<T> at, TangentCoefficients const& c, Data<T>& data,
                            BlockSink& sink) = nullptr;
-  /// Adds the tangent of compliant joints, Gᵀ(ck ∂λ/∂g + cd ∂λ/∂ġ)G, to the sink.
+  /// Adds the tangent of compliant joints, Gᵀ(ck ∂λ/∂g + cd ∂λ/∂ġ)G, to the sink, with ck, cd from c.
   void (*compliant_tangents)(void const* m, TangentCoefficients const& c, Data<T>& data, BlockSink& sink) = nullptr;
   /// Adds the tangent of force elements at t [s] to the sink, with loads times `load_factor`. If c.full is true, it
   /// also adds their wrenches to data.loads.
   void (*force_tangents)(void const* m, double t, double load_factor, TangentCoefficients const& c, Data<T>& data,
                          BlockSink& sink) = nullptr;
 
-  /// Adds ck ∂(Gᵀλ)/∂q of all joints, including compliant joints, and of the bodies' constraint equations to the sink.
-  /// It also adds the wrenches of joints to data.loads.
+  /// Adds ck ∂(Gᵀλ)/∂q of all joints, including compliant joints, and of the bodies' constraint equations to the sink,
+  /// with ck = c.stiffness. It also adds the wrenches of joints to data.loads.
   void (*joint_stiffness)(void const* m, At<T> at, Vector const& lambda, TangentCoefficients const& c, Data<T>& data,
                           BlockSink& sink) = nullptr;
-  /// Adds ck ∂(Jᵀw)/∂q for the wrenches in data.loads to the sink.
+  /// Adds ck ∂(Jᵀw)/∂q for the wrenches w in data.loads to the sink, with ck = c.stiffness.
   void (*load_stiffness)(void const* m, At<T> at, TangentCoefficients const& c, Data<T>& data,
                          BlockSink& sink) = nullptr;
 

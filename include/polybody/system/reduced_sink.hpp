@@ -89,7 +89,7 @@ class ReducedSlotsOf {
  private:
   struct Block {
     std::size_t first, end, target;  ///< range of pieces, and index of the first target
-    bool scatters;                   ///< true if the targets are used, not the pieces
+    bool scatters;                   ///< true if entries are added one by one, through the targets
   };
   BlockSlots slots_;
   std::uint64_t layout_ = 0;

@@ -16,7 +16,7 @@
 namespace polybody {
 
 /// Elimination of coordinates from a time step: by joints with joint coordinates, which form a tree, and by linear
-/// joints. \tparam T scalar of the vectors
+/// joints. \tparam T scalar type of the vectors
 template <class T = double>
 class ReductionOf {
  public:

@@ -46,16 +46,14 @@ class Subassembly<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   template <OneOf<Fs...> F, class A, class B>
     requires(F::markers == 2)
   ElementHandle<F> apply(F const& force, Marker<A> const& a, Marker<B> const& b, std::string name = "") {
-    static_assert(tell_enough<F, Marker<A>, Marker<B>>(),
-                  "This force needs a marker with axes or a tangent, but this body provides less.");
+    detail::require_kinematics<tell_enough<F, Marker<A>, Marker<B>>()>();
     return detail::add_force(parts_, forces_of<F>(), force, std::move(name), pooled(a), pooled(b));
   }
   /// Applies a force group to its many markers, like `Model::apply`.
   template <OneOf<Fs...> F, class A>
     requires ForceGroup<F>
   ElementHandle<F> apply(F const& group, std::vector<Marker<A>> const& many, std::string name = "") {
-    static_assert(Marker<A>::observes >= F::needs,
-                  "This force needs a marker with axes or a tangent, but this body provides less.");
+    detail::require_kinematics<(Marker<A>::observes >= F::needs)>();
     Sequence<detail::PooledMarker<A>> pooled_many;
     for (Marker<A> const& m : many) pooled_many.push_back(pooled(m));
     return detail::add_group(parts_, forces_of<F>(), group, pooled_many, std::move(name));
@@ -64,8 +62,7 @@ class Subassembly<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   template <OneOf<Fs...> F, class Law, class A>
     requires ForceGroup<F>
   void add_partner(ElementHandle<F> const& group, Law const& law, Marker<A> const& one, std::string name = "") {
-    static_assert(Marker<A>::observes >= needs_of_second<Law>(),
-                  "This force needs a marker with axes or a tangent, but this body provides less.");
+    detail::require_kinematics<(Marker<A>::observes >= needs_of_second<Law>())>();
     (void)detail::own_entry(forces_of<F>(), group);
     detail::add_contact_partner(parts_, forces_of<F>()[std::size_t(group.index)], law, pooled(one), std::move(name));
   }

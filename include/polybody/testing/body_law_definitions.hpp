@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Definitions of the member functions of `BodyLaws` that test the laws.
+/// Definitions of the test functions of `BodyLaws`, which body_laws.hpp declares.
 ///
 /// Requires GoogleTest.
 

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Law tests of bodies.
+/// Tests of properties that every body has, such as derivatives, inertia and energy: `BodyLaws`.
 ///
 /// Requires GoogleTest.
 
@@ -47,8 +47,8 @@ struct BodyLaws {
   static constexpr bool planar = B::world == World::plane;  ///< true if the body moves in a plane
   static constexpr bool rolls = B::observes == MarkerKind::frame;     ///< true if markers have three axes
   static constexpr bool directed = B::observes != MarkerKind::point;  ///< true if markers have an axis
-  /// True if a rigid motion of all coordinates is a rigid motion of the whole body. A body without this member is
-  /// objective.
+  /// True if the coordinates can move every point of the body in the same rigid motion, without strain. A body without
+  /// the member `objective` is taken as objective.
   static constexpr bool objective = [] {
     if constexpr (requires { B::objective; })
       return B::objective;

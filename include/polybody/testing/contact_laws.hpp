@@ -265,7 +265,7 @@ struct ContactLaws {
         EXPECT_LT(gradient_mismatch(law, f, 0.0, 0.7, 31.0), 1e-8);
       }
     });
-  }  ///< `wrench_gradient` = ck ∂w/∂pose + cd ∂w/∂twist, by differences
+  }  ///< `wrench_gradient` equals ck ∂w/∂pose + cd ∂w/∂twist, computed by differences
 
   void does_nothing_apart() {
     with_each_contact([&](auto const& contact) {

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Law tests of flexible bodies.
+/// Tests of properties that every flexible body has: `FlexibleBodyLaws`.
 ///
 /// Requires GoogleTest.
 

@@ -64,7 +64,7 @@ struct ForceLaws {
   /// Required kinematics of marker number `marker`.
   static MarkerKind needs(int marker) { return marker == 1 ? needs_of_second<F>() : F::needs; }
 
-  /// `wrench_gradient` = ck ∂w/∂pose + cd ∂w/∂twist of the wrenches w, compared with differences. For elements with
+  /// `wrench_gradient` equals ck ∂w/∂pose + cd ∂w/∂twist of the wrenches w, computed by differences. For elements with
   /// states, `gradient_with_states` is compared. The law detects derivatives that are lost by a branch or a conversion
   /// in a template for any scalar type.
   void gradient_is_the_derivative_of_the_wrenches() {

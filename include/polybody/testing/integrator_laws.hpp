@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Law tests of integrators with a fixed step.
+/// Tests of properties that every integrator with a fixed step has: `IntegratorLaws`.
 ///
 /// Requires GoogleTest.
 

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Law tests of joint geometries.
+/// Tests of properties that every joint geometry has: `JointLaws`.
 ///
 /// Requires GoogleTest.
 
@@ -215,7 +215,7 @@ inline std::vector<FramePair> JointLawsOf::closed() {
     p.b.r = p.a.r + p.a.A * mate.d;
     p.b.A = p.a.A * mate.R;
     p.free_directions.resize(6, mate.free_directions.cols());
-    if (mate.free_directions.cols() > 0)  // a weld has none, and an empty matrix has no data
+    if (mate.free_directions.cols() > 0)  // a weld has no free directions; an empty matrix has no blocks
       p.free_directions << p.a.A * mate.free_directions.topRows<3>(), p.a.A * mate.free_directions.bottomRows<3>();
   }
   return pairs;

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Law tests: properties of many types, each of them a test of GoogleTest. The suites in this folder test the types of
-/// the library: `BodyLaws`, `FlexibleBodyLaws`, `JointLaws`, `PolicyLaws`, `ForceLaws`, `ContactLaws`,
+/// Law tests: a law is a property of many types, and each law is a test of GoogleTest. The suites in this folder test
+/// the types of the library: `BodyLaws`, `FlexibleBodyLaws`, `JointLaws`, `PolicyLaws`, `ForceLaws`, `ContactLaws`,
 /// `IntegratorLaws`, `LinearSolvers`, `UserSystemLaws`. A case that creates an object of another type, and one line,
 /// add the tests of this type:
 ///

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Law tests of linear solvers.
+/// Tests of properties that every linear solver has: `LinearSolvers`.
 ///
 /// Requires GoogleTest.
 

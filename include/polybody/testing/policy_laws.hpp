@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Law tests of policies.
+/// Tests of properties that every compliant joint policy has: `PolicyLaws`.
 ///
 /// Requires GoogleTest.
 
@@ -41,7 +41,7 @@ struct PolicyLaws {
   Row rate() { return number.template vec<m>(); }             ///< random rate ġ in [−1, 1]
   Row multiplier(Row const& g, Row const& g_rate) const { return policy.template multiplier<m, double>(g, g_rate); }
 
-  /// `slope`(ck, cd) = ck ∂λ/∂g + cd ∂λ/∂ġ, by dual numbers.
+  /// `slope`(ck, cd) equals ck ∂λ/∂g + cd ∂λ/∂ġ, computed with dual numbers, for given ck, cd.
   void slope_is_the_derivative_of_the_multiplier() {
     using D = Dual<1>;
     for (auto const& [ck, cd] : {std::pair{1.0, 0.0}, {0.0, 1.0}, {0.7, 31.0}}) {

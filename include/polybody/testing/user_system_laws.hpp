@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Law tests of user-defined equations of motion, from which `system_of` makes a system.
+/// Tests of properties that all user-defined equations of motion have: `UserSystemLaws`. `system_of` makes a system
+/// from such equations.
 ///
 /// Requires GoogleTest.
 
@@ -87,7 +88,7 @@ struct UserSystemLaws {
     }
   }
 
-  /// `tangent` = −(ck ∂f/∂q + cd ∂f/∂v), if the equations provide a tangent.
+  /// `tangent` equals −(ck ∂f/∂q + cd ∂f/∂v) for given ck, cd, if the equations provide a tangent.
   void tangent_is_the_derivative_of_the_force() {
     if constexpr (!HasForceTangent<E>) {
       GTEST_SKIP() << "the tangent is computed by differences";

@@ -26,7 +26,8 @@ struct LinkGroundContact {
   void check(std::string const& name) const {
     terrain.check(name);
     if (pad.empty())
-      throw InvalidInput("track_contact.points", {ErrorObject{name}, ": the pad of a link needs at least one point."});
+      throw InvalidInput("track_contact.points",
+                         {ErrorObject{name}, ": the pad of a link needs at least one point. Set `pad`."});
     for (Vec3 const& p : pad) require_finite(p, name, ": a point of the pad");
   }
   bool may_touch(Frame<double> const& link, Frame<double> const& ground) const {

@@ -47,10 +47,8 @@ struct LinkRollerContact {
           {ErrorObject{name}, ": the handover distance must be positive and below half the pitch, but is ",
            ErrorValue{handover}, " m."});
     if (rims.empty())
-      throw InvalidInput("track_contact.rims", {ErrorObject{name}, ": a roller needs at least one rim."});
-    for (double const y : rims)
-      if (!std::isfinite(y))
-        throw InvalidInput("value.not_finite", {ErrorObject{name}, ": the position of a rim must be finite."});
+      throw InvalidInput("track_contact.rims", {ErrorObject{name}, ": a roller needs at least one rim. Set `rims`."});
+    for (double const y : rims) require_finite(y, name, ": the position of a rim");
   }
   bool may_touch(Frame<double> const& link, Frame<double> const& roller) const {
     double const far = farthest_rim(), within = farthest(far);

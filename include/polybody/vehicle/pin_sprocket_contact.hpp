@@ -62,7 +62,7 @@ struct SprocketProfile {
       throw InvalidInput(
           "sprocket.valley",
           {ErrorObject{name},
-           ": the valleys overlap, so that no teeth remain. Use a smaller valley, a lower tip or fewer teeth."});
+           ": the valleys overlap and leave no teeth. Use a smaller valley, a lower tip or fewer teeth."});
   }
 
   /// Penetration and unit normal of a pin on the profile. Both are continuous functions of the pin's position.
@@ -110,16 +110,12 @@ struct PinSprocketContact {
   double to_pin() const { return ahead ? *ahead : 0.5 * profile.pitch; }
   void check(std::string const& name) const {
     profile.check(name);
-    if (!std::isfinite(valley))
-      throw InvalidInput("value.not_finite", {ErrorObject{name}, ": the angle of a valley must be finite."});
-    if (!std::isfinite(to_pin()))
-      throw InvalidInput("value.not_finite",
-                         {ErrorObject{name}, ": the position of the pin relative to its marker must be finite."});
+    require_finite(valley, name, ": the angle of a valley");
+    require_finite(to_pin(), name, ": the position of the pin relative to its marker");
     if (rings.empty())
-      throw InvalidInput("sprocket.rings", {ErrorObject{name}, ": a sprocket needs at least one ring of teeth."});
-    for (double const y : rings)
-      if (!std::isfinite(y))
-        throw InvalidInput("value.not_finite", {ErrorObject{name}, ": the position of a ring must be finite."});
+      throw InvalidInput("sprocket.rings",
+                         {ErrorObject{name}, ": a sprocket needs at least one ring of teeth. Set `rings`."});
+    for (double const y : rings) require_finite(y, name, ": the position of a ring");
   }
   bool may_touch(Frame<double> const& link, Frame<double> const& sprocket) const {
     Vec3 const x = detail::column<double>(link.A, 0), axle = detail::column<double>(sprocket.A, 1);

@@ -53,11 +53,7 @@ Height<T> follow(Relief const& h, T const& x, T const& y) {
 struct FlatGround {
   double z = 0.0;  ///< height of the plane [m]
 
-  void check(std::string const& name) const {
-    if (!std::isfinite(z))
-      throw InvalidInput("value.not_finite",
-                         {ErrorObject{name}, ": the height of the ground must be finite, but is ", ErrorValue{z}, "."});
-  }
+  void check(std::string const& name) const { require_finite(z, name, ": the height of the ground"); }
   double highest() const { return z; }  ///< height of the plane [m]
   /// Height h = z with zero slopes.
   template <StateScalar T>

@@ -96,7 +96,7 @@ struct TrackPath {
 };
 
 /// Frames of the links of a closed chain with the given `pins` (x, z) [m]; pin i is in front of link i. A face touches
-/// a rim if their distance is less than 1e-6 p.
+/// a rim if their distance is less than 1e-6 times the pitch.
 inline std::vector<TrackLink> track_links(TrackLayout const& layout, std::span<Vec2 const> pins) {
   std::vector<TrackLink> links;
   for (std::size_t i = 0; i < pins.size(); ++i) {

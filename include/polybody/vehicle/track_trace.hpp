@@ -120,7 +120,8 @@ inline void check_track(TrackLayout const& layout) {
   require_finite(s.centre, "Track: the centre of \"" + s.name + "\"");
   if (s.teeth < 4 || !std::isfinite(s.valley))
     throw InvalidInput("sprocket.teeth", {"Track: \"", ErrorObject{s.name},
-                                          "\" needs at least four teeth and a finite angle of a valley."});
+                                          "\" needs at least four teeth and a finite angle of a valley, but has ",
+                                          s.teeth, " teeth and the angle ", s.valley, " rad."});
   bool found = false;
   for (TrackCircle const& c : layout.circles) {
     require_positive(c.radius, "Track: the radius of " + track_name(c));
@@ -129,8 +130,8 @@ inline void check_track(TrackLayout const& layout) {
   }
   TrackTensioner const& t = layout.tensioner;
   if (!found)
-    throw InvalidInput("track.tensioner",
-                       {"Track: the tensioner's circle \"", ErrorObject{t.circle}, "\" is not a circle of the track."});
+    throw InvalidInput("track.tensioner", {"Track: the tensioner's circle \"", ErrorObject{t.circle},
+                                           "\" is not a circle of the track. Use the name of one of its circles."});
   if (!(t.direction.norm() > 0.0) || !t.direction.allFinite() || !(t.least <= t.most) ||
       !std::isfinite(t.most - t.least))
     throw InvalidInput("track.tensioner", {"Track: the tensioner's circle \"", ErrorObject{t.circle},

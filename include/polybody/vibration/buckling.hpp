@@ -148,12 +148,15 @@ BucklingModes buckling_modes(System& system, State const& x, BucklingOptions con
                        {ErrorObject{"buckling_modes"}, ": the number of modes must be at least 1, but is ",
                         ErrorValue{options.count}, "."});
   if (!std::isfinite(options.load_factor))
-    throw InvalidInput("buckling.option", {ErrorObject{"buckling_modes"}, ": the load factor must be finite."});
+    throw InvalidInput("buckling.option", {ErrorObject{"buckling_modes"}, ": the load factor must be finite, but is ",
+                                           ErrorValue{options.load_factor}, "."});
   require_usable(system, x);
   if (largest_size(x.v) > 1e-9 || system.layout().states > 0)
-    throw InvalidInput("buckling.state",
-                       {ErrorObject{"buckling_modes"},
-                        ": the state must be at rest, and the model must not have first-order states."});
+    throw InvalidInput("buckling.state", {ErrorObject{"buckling_modes"},
+                                          ": the state must be at rest, and the model must not have first-order "
+                                          "states, but the largest velocity is ",
+                                          ErrorValue{largest_size(x.v)}, ", and there are ", system.layout().states,
+                                          " first-order states."});
   detail::PrebucklingPath const path(system, x, options.load_factor);
   MatX const& a = path.stiffness();
   Eigen::GeneralizedSelfAdjointEigenSolver<MatX> solver;

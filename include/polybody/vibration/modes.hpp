@@ -159,7 +159,7 @@ Modes modes(Linearisation const& l, Index count = 10) {
   if (l.states > 0)
     throw InvalidInput("modes.first_order_states",
                        {ErrorObject{"modes"},
-                        ": the model has first-order states, so that undamped modes do not exist. Use damped_modes."});
+                        ": the model has first-order states, so undamped modes do not exist. Use damped_modes."});
   MatX const full = detail::of_free_motions(l.N, l.K), k = 0.5 * (full + full.transpose()),
              m = detail::of_free_motions(l.N, l.M);
   if (m.rows() == 0) return {};

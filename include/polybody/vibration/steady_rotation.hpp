@@ -47,8 +47,10 @@ class TurningFrame {
     require_finite(rotation.angular_velocity, "SteadyRotation: the angular velocity");
     require_finite(rotation.point, "SteadyRotation: the point of the axis");
     if (system.layout().states > 0)
-      throw InvalidInput("steady_rotation.first_order_states",
-                         {ErrorObject{"SteadyRotation"}, ": models with first-order states are not supported."});
+      throw InvalidInput(
+          "steady_rotation.first_order_states",
+          {ErrorObject{"SteadyRotation"}, ": models with first-order states are not supported, but there are ",
+           ErrorValue{system.layout().states}, "."});
     for (BodyLayout const& body : system.layout().bodies)
       if (body.planar && !rotation.angular_velocity.head<2>().isZero(0.0))
         throw InvalidInput("steady_rotation.axis", {"SteadyRotation: body \"", ErrorObject{body.name},
@@ -193,8 +195,8 @@ struct TurningEquilibrium {
   [[noreturn, gnu::cold]] void refuse(NewtonResult result) const {
     std::string const at = sentence_of({" at ", frame.share, " of the angular velocity"});
     if (result != NewtonResult::diverged)
-      throw NonFiniteValue("equilibrium.not_finite",
-                           {ErrorObject{"relative_equilibrium"}, ": a force is not finite", at, "."});
+      throw NonFiniteValue("equilibrium.not_finite", {ErrorObject{"relative_equilibrium"}, ": a force is not finite",
+                                                      at, ". Check the forces and the start."});
     throw NewtonConvergenceFailure(
         "equilibrium.not_converged",
         {ErrorObject{"relative_equilibrium"}, ": Newton's method did not converge", at,

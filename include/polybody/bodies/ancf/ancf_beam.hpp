@@ -66,8 +66,8 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
   /// \throws InvalidInput for s outside the bar.
   Point at(double s, double y = 0.0, double z = 0.0) const {
     double const x = require_inside(s, bar_.length, Elastic::name) / l_;
-    if (!std::isfinite(y) || !std::isfinite(z))
-      throw InvalidInput("value.not_finite", {ErrorObject{Elastic::name}, ": y and z of a point must be finite."});
+    require_finite(y, Elastic::name, ": y of a point");
+    require_finite(z, Elastic::name, ": z of a point");
     Index const e = std::min(Index(x), elements() - 1);
     return {e, x - double(e), y, z};
   }

@@ -178,9 +178,9 @@ struct Continuum {
                                             ": the continuum needs the bar's section and material. Give them, or use "
                                             "AncfBeam<ElasticLine>, which accepts constants."});
     if (!(bar.material->poisson < 0.5))
-      throw InvalidInput(
-          "bar.poisson_ratio",
-          {ErrorObject{name}, ": Poisson's ratio must be below 0.5, because the bulk modulus is infinite there."});
+      throw InvalidInput("bar.poisson_ratio",
+                         {ErrorObject{name}, ": Poisson's ratio must be below 0.5, but is ",
+                          ErrorValue{bar.material->poisson}, ". At 0.5 the bulk modulus is infinite."});
     if (!cured && bar.shear_factor)
       throw InvalidInput("bar.shear_factor", {ErrorObject{name},
                                               ": Locking::present uses Hooke's law for shear, without a shear factor. "

@@ -19,7 +19,7 @@ namespace polybody {
 ///
 /// L is banded like M, so that a force costs a few additional operations per coordinate. L⁻¹ is full; therefore the
 /// tangent and the marker Jacobians are full. The class is meant for explicit integrators without constraints, and for
-/// comparison.
+/// comparisons with the coordinates e.
 ///
 /// A program that calls `CholeskyCoordinates<AncfCable<>>::from(bar, n)` instead of `AncfCable<>::from(bar, n)` needs
 /// no other change.
@@ -57,8 +57,10 @@ class CholeskyCoordinates : public AddingCoordinates {
   explicit CholeskyCoordinates(B body) : body_(std::move(body)), n_(body_.velocities()) {
     if (body_.coordinates() != n_)
       throw InvalidInput("cholesky.quaternions",
-                         {ErrorObject{"CholeskyCoordinates"},
-                          ": the body has quaternions, but its coordinates must be a vector space."});
+                         {ErrorObject{"CholeskyCoordinates"}, ": the body has ", ErrorValue{body_.coordinates()},
+                          " coordinates, but ", n_,
+                          " velocities, so it has rotation coordinates. Use a body of nodal positions, such as "
+                          "AncfCable."});
     factor();
   }
 
@@ -217,7 +219,8 @@ class CholeskyCoordinates : public AddingCoordinates {
         for (Index k = std::max<Index>(0, i - band_); k < j; ++k) sum -= at(i, k) * at(j, k);
         if (j == i && !(sum > 0.0))
           throw InvalidInput("body.mass_matrix", {ErrorObject{"CholeskyCoordinates"},
-                                                  ": the body's mass matrix is not positive definite."});
+                                                  ": the body's mass matrix is not positive definite at coordinate ", j,
+                                                  ", counted from 0: the pivot is ", ErrorValue{sum}, "."});
         at(i, j) = j < i ? sum / at(j, j) : std::sqrt(sum);
       }
   }

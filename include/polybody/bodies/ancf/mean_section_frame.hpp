@@ -14,7 +14,8 @@ namespace polybody {
 /// A change d = (δb, δc) has the components w = (X, Y), X = Rᵀδb, Y = Rᵀδc. It rotates the frame by φ = S w in the axes
 /// of the frame. The variation of the three conditions gives
 ///   (p b₂ + (1 − p) c₃) φ₁ = p X₃ − (1 − p) Y₂,  b₂ φ₃ − b₃ φ₂ = −X₁,  c₂ φ₃ − c₃ φ₂ = −Y₁.
-/// While the frame moves by ŵ, the components of a constant d change by X × φ̂, Y × φ̂, and those of b, c by
+/// A second change of b and c, with the components ŵ = (X̂, Ŷ), rotates the frame by φ̂ = S ŵ. The components of a
+/// constant d then change by X × φ̂, Y × φ̂, and those of b, c by
 ///   b̂ = X̂ + b × φ̂,  ĉ = Ŷ + c × φ̂.
 /// The second variation of the same three equations gives δ̂φ = S h with
 ///   h = (X × φ̂ − φ × b̂, Y × φ̂ − φ × ĉ).

@@ -174,8 +174,8 @@ class SectionFrame : public SectionAxes<T> {
       }
   }
 
-  /// Writes the covector s of (X, Y) to row `row` of `out`, as a covector of (δb, δc). Its columns begin at `first` and
-  /// at `first + 3`.
+  /// Writes the covector s of (X, Y) to row `row` of `out`, as a covector of (δb, δc). The three columns for δb begin
+  /// at `first`, those for δc at `first + 3`.
   template <int rows, int columns>
   void to_vectors(V6 const& s, int row, int first, Mat<T, rows, columns>& out) const {
     for (int i = 0; i < 3; ++i) {

@@ -42,17 +42,20 @@ MatX orthogonal_basis(Structure const& s, MatX shapes) {
 /// modes, and for a structure that can move without strain in other ways than a rigid body.
 template <class Eigensolver = DenseModes>
 MatX attachment_modes(Structure const& s, MatX const& loads, Index count, Eigensolver const& solve = {}) {
-  if (loads.rows() != s.size() || !loads.allFinite())
-    throw InvalidInput("ffr.modes",
-                       {ErrorObject{"Ffr"}, ": the nodal loads of attachment modes must be finite and have ", s.size(),
-                        " rows; they have ", ErrorValue{loads.rows()}, " rows."});
+  require_finite(loads, "Ffr: the nodal loads of attachment modes");
+  if (loads.rows() != s.size())
+    throw InvalidInput("ffr.modes", {ErrorObject{"Ffr"}, ": the nodal loads of attachment modes must have ", s.size(),
+                                     " rows, but have ", ErrorValue{loads.rows()}, "."});
   if (count < 0 || loads.cols() + count == 0)
-    throw InvalidInput("ffr.modes", {ErrorObject{"Ffr"}, ": attachment modes need at least one load or one mode."});
+    throw InvalidInput("ffr.modes",
+                       {ErrorObject{"Ffr"}, ": attachment modes need at least one load or one mode, but there are ",
+                        loads.cols(), " loads and ", ErrorValue{count}, " modes."});
   MatX const rigid = rigid_motions(s), heavy = s.mass_matrix() * rigid;
   Eigen::LDLT<MatX> const mass(rigid.transpose() * heavy);
   std::vector<Index> const free = statically_determinate(s).free_coordinates(s);
   SparseFactor factor;
-  factor_positive(factor, submatrix(s.stiffness, free, free), "parts of the supported structure move without strain.");
+  factor_positive(factor, submatrix(s.stiffness, free, free),
+                  "parts of the supported structure move without strain. Connect them.");
   MatX shapes(s.size(), loads.cols() + count);
   if (loads.cols() > 0) {
     MatX const balanced = loads - heavy * mass.solve(rigid.transpose() * loads);

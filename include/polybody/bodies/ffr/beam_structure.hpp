@@ -19,7 +19,7 @@ struct BeamShapes {
   Mat<double, 3, 12> by_y = Mat<double, 3, 12>::Zero(), by_z = Mat<double, 3, 12>::Zero();  ///< derivatives by y and z
   Mat<double, 3, 12> rotation = Mat<double, 3, 12>::Zero();                                 ///< (θx, −w′, v′)
   Mat<double, 4, 12> strain =
-      Mat<double, 4, 12>::Zero();  ///< rows: axial strain, torsion, curvature about y, about z [1/m]
+      Mat<double, 4, 12>::Zero();  ///< rows: axial strain [1], torsion, curvatures about y and z [1/m]
 
   /// Shape functions at ξ of an element of length l [m].
   template <class = void>  // compiled only if used
@@ -163,7 +163,9 @@ template <class = void>  // compiled only if used
 Mat3 intermediate_axes(Vec3 const& direction) {
   double const length = direction.norm();
   if (!(length > 0.0))
-    throw InvalidInput("structure.beam", {ErrorObject{"Structure"}, ": a beam needs two different nodes."});
+    throw InvalidInput("structure.beam",
+                       {ErrorObject{"Structure"}, ": a beam needs two different nodes, but its length is ",
+                        ErrorValue{length}, " m."});
   Vec3 const c = direction / length;
   double const level = std::hypot(c[0], c[2]);
   Mat3 axes;
@@ -230,7 +232,9 @@ template <class = void>
 Structure structure_of(std::vector<Bar> const& bars, std::vector<Index> const& elements) {
   if (bars.empty() || bars.size() != elements.size())
     throw InvalidInput("structure.beam", {ErrorObject{"Structure"},
-                                          ": at least one bar is needed, and a number of elements for each bar."});
+                                          ": at least one bar and one number of elements per bar are needed, but there "
+                                          "are ",
+                                          bars.size(), " bars and ", elements.size(), " numbers."});
   Structure s;
   double longest = 0.0;
   for (Bar const& bar : bars) longest = std::max(longest, double(bar.length));
@@ -304,7 +308,8 @@ class AxialForceStiffness {
       throw InvalidInput(
           "structure.no_beams",
           {ErrorObject{"Structure"},
-           ": geometric stiffening needs beams, because the axial forces of a structure from matrices are unknown."});
+           ": geometric stiffening needs beams, because the axial forces of a structure from matrices are unknown. "
+           "Make the structure from bars, or switch geometric stiffening off."});
     s.require_node(node, "Structure: the held node");
     Structure::Sparse k = s.stiffness;
     Index const first = 6 * node;
@@ -312,9 +317,9 @@ class AxialForceStiffness {
     for (Index i = 0; i < 6; ++i) k.coeffRef(fixed_[i] = first + i, first + i) = 1.0;
     solver_.compute(k);
     if (solver_.info() != Eigen::Success || solver_.vectorD().minCoeff() <= 0.0)
-      throw InvalidInput(
-          "structure.not_joined",
-          {ErrorObject{"Structure"}, ": not all beams are connected, or their stiffness is not positive."});
+      throw InvalidInput("structure.not_joined",
+                         {ErrorObject{"Structure"}, ": the stiffness is not positive definite although node ", node,
+                          " is held. Connect all bars at common ends, and give each bar positive stiffnesses."});
   }
 
   /// Geometric stiffness due to one load: `load` (N) at the nodes, and `spread(beam)`, the nodal forces (12, body axes)

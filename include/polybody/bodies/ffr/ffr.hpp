@@ -115,9 +115,9 @@ class Ffr {
   /// \throws InvalidInput for matrices that are not 3×n.
   Point at(Point const& p) const {
     if (p.S.cols() != deformations() || p.R.cols() != deformations())
-      throw InvalidInput(
-          "ffr.point_size",
-          {ErrorObject{"Ffr"}, ": S and R of a point must be 3×n, with n the number of deformation coordinates."});
+      throw InvalidInput("ffr.point_size",
+                         {ErrorObject{"Ffr"}, ": S and R of a point must be 3×", deformations(), ", but are 3×",
+                          p.S.cols(), " and 3×", p.R.cols(), ". Their columns are the deformation coordinates."});
     return p;
   }
 

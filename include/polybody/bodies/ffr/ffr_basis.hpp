@@ -16,7 +16,7 @@
 
 namespace polybody {
 
-// Submatrices of the matrices of a structure, and their factorisation.
+// Extraction and factorisation of submatrices of a structure.
 
 /// Submatrix of the given rows and columns of a sparse matrix.
 template <class = void>  // compiled only if used
@@ -160,7 +160,7 @@ void require_count(Index count, Index most) {
 template <class = void>
 void require_mass(Structure::Sparse const& m) {
   SparseFactor factor;
-  factor_positive(factor, m, "the structure's mass matrix is not positive definite.");
+  factor_positive(factor, m, "the structure's mass matrix is not positive definite. Every node needs mass.");
 }
 
 }  // namespace detail
@@ -251,9 +251,10 @@ MatX in_frame(Structure const& s, MatX shapes, FfrFrame frame) {
   }
   Eigen::FullPivLU<MatX> const solver(of_rigid);
   if (!solver.isInvertible())
-    throw InvalidInput(
-        "ffr.frame",
-        {ErrorObject{"Ffr"}, ": FfrFrame::simply_supported needs a last node at a distance along x from the first."});
+    throw InvalidInput("ffr.frame",
+                       {ErrorObject{"Ffr"},
+                        ": FfrFrame::simply_supported needs a last node at a distance along x from the first, "
+                        "but these nodes do not hold the structure. Use another FfrFrame."});
   shapes -= rigid * solver.solve(of_frame);
   for (Index const i : fixed) shapes.row(i).setZero();
   return shapes;
@@ -279,8 +280,11 @@ MatX in_frame(Structure const& s, MatX shapes, FfrOptions const& options) {
 template <class Eigensolver = DenseModes>
 MatX craig_bampton(Structure const& s, std::vector<Index> const& boundary, Index count, bool mean_axes = false,
                    bool in_plane = false, Eigensolver const& solve = {}) {
-  if (boundary.empty() || std::set<Index>(boundary.begin(), boundary.end()).size() != boundary.size())
-    throw InvalidInput("ffr.boundary", {ErrorObject{"Ffr"}, ": Craig-Bampton needs boundary nodes, each listed once."});
+  std::size_t const different = std::set<Index>(boundary.begin(), boundary.end()).size();
+  if (boundary.empty() || different != boundary.size())
+    throw InvalidInput("ffr.boundary", {ErrorObject{"Ffr"},
+                                        ": Craig-Bampton needs at least one boundary node and each node once, but has ",
+                                        boundary.size(), " boundary nodes, of which ", different, " are different."});
   if (!mean_axes && s.per_node != 6)
     throw InvalidInput("ffr.boundary",
                        {ErrorObject{"Ffr"},
@@ -303,7 +307,8 @@ MatX craig_bampton(Structure const& s, std::vector<Index> const& boundary, Index
   for (std::size_t j = 0; j < outer.size(); ++j) shapes(outer[j], Index(j)) = 1.0;
   if (!inner.empty()) {
     SparseFactor factor;
-    factor_positive(factor, kii, "the stiffness between the boundary nodes is not positive definite.");
+    factor_positive(factor, kii,
+                    "the stiffness with fixed boundary nodes is not positive definite. Connect all nodes to them.");
     MatX const follow = -factor.solve(MatX(submatrix(s.stiffness, inner, outer)));
     shapes.leftCols(Index(outer.size())) += scatter_rows(follow, inner, s.size());
     if (count > 0) {

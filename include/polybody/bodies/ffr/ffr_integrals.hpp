@@ -82,32 +82,47 @@ struct FfrIntegrals {
   /// not symmetric and positive definite.
   template <class = void>
   void check(std::string const& what) const {
-    Index const n = size();
-    auto const square = [&](MatX const& m) { return m.rows() == n && m.cols() == n; };
-    bool fits = first_by.cols() == n && coupling.cols() == n && square(stiffness) && square(damping) &&
-                square(mass_matrix) && initial_force.size() == n;
-    for (auto const& x : inertia_by) fits = fits && x.size() == n;
-    for (auto const& x : inertia_second) fits = fits && square(x);
-    for (auto const& x : coupling_by) fits = fits && square(x);
-    for (auto const& x : first_second) fits = fits && (x.size() == 0 || square(x));
-    if (!fits)
-      throw InvalidInput("ffr.integral_size",
-                         {ErrorObject{what}, ": the integrals must all have the size of the mass matrix."});
+    require_sizes(what);
     require_positive(mass, what, ": the mass");
     require_finite(mass_matrix, what, ": the mass matrix");
     require_finite(stiffness, what, ": the stiffness matrix");
     require_entries(what);
     MatX l = mass_matrix;  // L D Lᵀ; all entries of D must be positive
-    bool positive = (l - l.transpose()).norm() <= 1e-9 * l.norm();
-    for (Index k = 0; k < n; ++k) {
-      positive = positive && l(k, k) > 1e-13 * mass_matrix(k, k);
-      for (Index j = k + 1; j < n; ++j)
-        for (Index i = k + 1; i < n; ++i) l(i, j) -= l(i, k) * l(k, j) / l(k, k);
+    if (double const odd = (l - l.transpose()).norm(); !(odd <= 1e-9 * l.norm()))
+      throw InvalidInput("body.mass_matrix",
+                         {ErrorObject{what}, ": the mass matrix of the deformation is not symmetric: |M - M'| is ",
+                          ErrorValue{odd}, ", and |M| is ", l.norm(), "."});
+    for (Index k = 0; k < size(); ++k) {
+      if (!(l(k, k) > 1e-13 * mass_matrix(k, k)))
+        throw InvalidInput("body.mass_matrix",
+                           {ErrorObject{what}, ": the mass matrix of the deformation is not positive definite: pivot ",
+                            k, ", counted from 0, is ", ErrorValue{l(k, k)}, "."});
+      for (Index j = k + 1; j < size(); ++j)
+        for (Index i = k + 1; i < size(); ++i) l(i, j) -= l(i, k) * l(k, j) / l(k, k);
     }
-    if (!positive)
-      throw InvalidInput(
-          "body.mass_matrix",
-          {ErrorObject{what}, ": the mass matrix of the deformation is not symmetric and positive definite."});
+  }
+  /// Checks the sizes of all integrals.
+  /// \throws InvalidInput naming `what` and the integral whose size does not fit the n rows of the mass matrix.
+  template <class = void>
+  void require_sizes(std::string const& what) const {
+    Index const n = size();
+    auto const require = [&](auto const& x, Index rows, Index columns, char const* name) {
+      if (x.rows() != rows || x.cols() != columns)
+        throw InvalidInput("ffr.integral_size",
+                           {ErrorObject{what}, ": the integral \"", name, "\" is ", x.rows(), "×", x.cols(),
+                            ", but must be ", rows, "×", columns, ": the mass matrix has ", n, " rows."});
+    };
+    require(mass_matrix, n, n, "mass_matrix");
+    require(stiffness, n, n, "stiffness");
+    require(damping, n, n, "damping");
+    require(first_by, 3, n, "first_by");
+    require(coupling, 3, n, "coupling");
+    require(initial_force, n, 1, "initial_force");
+    for (VecX const& x : inertia_by) require(x, n, 1, "inertia_by");
+    for (MatX const& x : inertia_second) require(x, n, n, "inertia_second");
+    for (MatX const& x : coupling_by) require(x, n, n, "coupling_by");
+    for (MatX const& x : first_second)
+      if (x.size() > 0) require(x, n, n, "first_second");
   }
   /// Checks the entries of all integrals.
   /// \throws InvalidInput naming `what` and the integral with an entry that is NaN or exceeds `largest_number`.

@@ -100,7 +100,7 @@ struct FfrPoint {
   Mat<double, 3, Eigen::Dynamic> S, R;  ///< displacement [m] and small rotation [rad] for unit q
   std::array<MatX, 3> drawn;  ///< with geometric stiffening: the displacement is S q − ½ [qᵀ drawn_k q]_k (n×n)
   Mat<double, 4, Eigen::Dynamic>
-      strain;                     ///< (4×n) of the axis: axial strain, torsion, curvature about y, z [1/m]; or empty
+      strain;                     ///< (4×n) axial strain [1], torsion, curvatures about y, z [1/m] for unit q; or empty
   Vec4 stiffness = Vec4::Zero();  ///< (EA, GJ, EI_y, EI) of the section
   double y = 0.0, z = 0.0;        ///< distances from the axis of the beam [m]
 
@@ -124,7 +124,8 @@ struct FfrPoint {
   template <class = void>  // compiled only if used
   Vec6 section_strains(double const* q) const {
     if (strain.cols() != S.cols())
-      throw InvalidInput("ffr.no_strain", {ErrorObject{"Ffr"}, ": strains are available only at points of beams."});
+      throw InvalidInput("ffr.no_strain",
+                         {ErrorObject{"Ffr"}, ": strains are available only at points of beams. Use at(s)."});
     Vec6 sum = Vec6::Zero();
     for (Index k = 0; k < strain.cols(); ++k)
       for (int i = 0; i < 4; ++i) sum[i == 0 ? 0 : i + 2] += strain(i, k) * q[k];
@@ -170,7 +171,8 @@ class FfrPoints {
   /// \throws InvalidInput for a structure without bars.
   double length() const {
     if (s_.beams.empty())
-      throw InvalidInput("ffr.no_bar", {ErrorObject{"Ffr"}, ": only a body made of bars has a length."});
+      throw InvalidInput("ffr.no_bar",
+                         {ErrorObject{"Ffr"}, ": only a body made of bars has a length. Use node(i) for a point."});
     return s_.bar_lengths.front();
   }
   /// Point at the distance s along bar number `bar` from its first end, at (y, z) from the axis of the bar [m].
@@ -183,8 +185,8 @@ class FfrPoints {
       throw InvalidInput("ffr.no_bar", {ErrorObject{"Ffr"}, ": bar ", ErrorValue{bar}, " does not exist; the body has ",
                                         s_.bar_lengths.size(), " bars, counted from 0."});
     double const inside = require_inside(s, s_.bar_lengths[std::size_t(bar)], "Ffr");
-    if (!std::isfinite(y) || !std::isfinite(z))
-      throw InvalidInput("value.not_finite", {ErrorObject{"Ffr"}, ": y and z of a point must be finite."});
+    require_finite(y, "Ffr: y of a point");
+    require_finite(z, "Ffr: z of a point");
     Structure::Beam const* beam = nullptr;
     for (Structure::Beam const& b : s_.beams)
       if (b.bar == bar && (!beam || b.start <= inside)) beam = &b;
@@ -236,7 +238,7 @@ class FfrPoints {
     if (axial_)
       throw InvalidInput("ffr.patch",
                          {ErrorObject{"Ffr"},
-                          ": with geometric stiffening a point must be a section or a node, not a patch of nodes."});
+                          ": with geometric stiffening a point cannot be a patch of nodes. Use at(s) or node(i)."});
     NodePatch::Motion const motion = nodes.motion(at, shapes_);
     FfrPoint p;
     p.u = at;

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Sparse matrices of a finite element program in the coordinate format of Matrix Market.
+/// Reader for sparse matrices of a finite element program in the coordinate format of Matrix Market.
 
 #include <unordered_set>
 #include <vector>

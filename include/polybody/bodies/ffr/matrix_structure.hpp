@@ -190,7 +190,8 @@ template <class = void>
 Structure structure_of(Structure::Sparse const& mass, Structure::Sparse const& stiffness,
                        std::vector<Vec3> const& nodes, double fastest_wave = 1e5) {
   if (nodes.empty())
-    throw InvalidInput("structure.no_nodes", {ErrorObject{"Structure"}, ": the structure has no nodes."});
+    throw InvalidInput("structure.no_nodes",
+                       {ErrorObject{"Structure"}, ": the structure has no nodes. Give at least one position."});
   for (std::size_t i = 0; i < nodes.size(); ++i)
     for (double const x : nodes[i])
       if (!(std::abs(x) <= largest_number))

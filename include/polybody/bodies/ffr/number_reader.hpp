@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Lines of numbers in a text file of a finite element program. An error names the file and the line.
+/// Reader for lines of numbers in a text file of a finite element program. An error names the file and the line.
 
 #include <algorithm>
 #include <cctype>

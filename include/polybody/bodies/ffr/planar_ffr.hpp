@@ -102,8 +102,8 @@ class Ffr : public AddingCoordinates {
   Point at(Point const& p) const {
     if (p.S.cols() != deformations() || p.R.cols() != deformations())
       throw InvalidInput("ffr.point_size",
-                         {ErrorObject{"planar::Ffr"},
-                          ": S and R of a point must be 3×n, with n the number of deformation coordinates."});
+                         {ErrorObject{"planar::Ffr"}, ": S and R of a point must be 3×", deformations(), ", but are 3×",
+                          p.S.cols(), " and 3×", p.R.cols(), ". Their columns are the deformation coordinates."});
     return p;
   }
 

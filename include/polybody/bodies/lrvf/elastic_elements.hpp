@@ -291,7 +291,7 @@ class ElasticElements {
   }();
   static constexpr int stored = middle == count ? count + 1 : count;
   static_assert(!PathDependentInterpolation<Interpolation> || (count == 1 && middle == 0),
-                "This interpolation stores one section per element, in its middle, so that strains exist there only. "
+                "This interpolation stores one section per element, in its middle, so strains exist there only. "
                 "Use ReducedQuadrature.");
   /// Reference configuration of an element.
   struct Free {

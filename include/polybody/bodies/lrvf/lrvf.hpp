@@ -68,7 +68,9 @@ class Lrvf {
   /// are farther apart than the arc between them.
   static Lrvf from(Bar const& bar, Index n, ReferenceCurve const& curve) {
     require_elements(n, "Lrvf");
-    if (!curve) throw InvalidInput("reference_curve.missing", {ErrorObject{"Lrvf"}, ": the reference curve is empty."});
+    if (!curve)
+      throw InvalidInput("reference_curve.missing",
+                         {ErrorObject{"Lrvf"}, ": the reference curve is an empty function."});
     return Lrvf(bar, polybody::constants(bar), n, curve);
   }
 
@@ -80,8 +82,8 @@ class Lrvf {
   /// \throws InvalidInput for s outside the bar.
   Point at(double s, double y = 0.0, double z = 0.0) const {
     double const x = require_inside(s, length_, "Lrvf") / l_;
-    if (!std::isfinite(y) || !std::isfinite(z))
-      throw InvalidInput("value.not_finite", {ErrorObject{"Lrvf"}, ": y and z of a point must be finite."});
+    require_finite(y, "Lrvf: y of a point");
+    require_finite(z, "Lrvf: z of a point");
     Index const e = std::min(Index(x + 1e-12), elements() - 1);
     double const xi = x - double(e);
     Point const p{e, xi < 1e-12 ? 0.0 : xi > 1.0 - 1e-12 ? 1.0 : xi, y, z};  // exact position of a node

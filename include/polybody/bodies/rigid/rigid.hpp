@@ -56,7 +56,9 @@ template <class = void>  // compiled only if used
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < i; ++j)
       if (std::abs(inertia(i, j) - inertia(j, i)) > 1e-9 * size)
-        throw InvalidInput("rigid.inertia", {ErrorObject{what}, ": the inertia tensor must be symmetric."});
+        throw InvalidInput("rigid.inertia", {ErrorObject{what}, ": the inertia tensor must be symmetric, but entries (",
+                                             j, ", ", i, ") and (", i, ", ", j, "), counted from 0, differ by ",
+                                             ErrorValue{std::abs(inertia(i, j) - inertia(j, i))}, " kg m²."});
   if (!detail::is_definite(inertia, 1e-9 * size))
     throw InvalidInput("rigid.inertia", {ErrorObject{what}, ": a principal moment of inertia is negative (",
                                          ErrorValue{detail::principal_values(inertia)[2]}, " kg m²)."});
@@ -68,7 +70,7 @@ template <class = void>  // compiled only if used
     std::array<double, 3> const i = detail::principal_values(inertia);
     throw InvalidInput("rigid.inertia",
                        {ErrorObject{what}, ": the principal moments of inertia ", i[0], ", ", i[1], ", ", i[2],
-                        " kg m² violate the triangle inequality, so that no body has them."});
+                        " kg m² violate the triangle inequality: the largest exceeds the sum of the others."});
   }
 }
 

@@ -47,8 +47,9 @@ class VariableMass : public B {
  private:
   static B at_start(Law const& law) {
     if (!law)
-      throw InvalidInput("variable_mass.no_function",
-                         {ErrorObject{"VariableMass"}, ": a function is needed that returns the body at every time."});
+      throw InvalidInput(
+          "variable_mass.no_function",
+          {ErrorObject{"VariableMass"}, ": the function of time is empty. It must return the body at every time."});
     return law(0.0);
   }
   void require_same_place(B const& now, double t) const {

@@ -198,9 +198,7 @@ template <class = void>  // compiled only if used
   detail::require_damping_time(bar.damping.axial, "Bar: the axial damping time");
   detail::require_damping_time(bar.damping.shear, "Bar: the shear damping time");
   detail::require_damping_time(bar.damping.bending, "Bar: the bending damping time");
-  if (!std::isfinite(bar.pretension))
-    throw InvalidInput("value.not_finite", {ErrorObject{"Bar"}, ": the pretension must be finite, but is ",
-                                            ErrorValue{bar.pretension}, " N."});
+  require_finite(bar.pretension, "Bar: the pretension");
   if (std::abs(bar.pretension) > largest_number)
     throw InvalidInput("value.magnitude", {ErrorObject{"Bar"}, ": the pretension is ", ErrorValue{bar.pretension},
                                            " N, beyond ", largest_number, " N, the largest allowed magnitude."});

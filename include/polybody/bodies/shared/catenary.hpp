@@ -25,7 +25,8 @@ ReferenceCurve catenary(Vec3 const& end, double length, Vec3 const& down) {
   require_positive(length, "catenary: the length");
   double const size = down.norm();
   if (!(size > 0.0))
-    throw InvalidInput("catenary.weight", {ErrorObject{"catenary"}, ": the direction of the weight is zero."});
+    throw InvalidInput("catenary.weight",
+                       {ErrorObject{"catenary"}, ": the direction of the weight is zero. Give a nonzero vector."});
   Vec3 const up = -down / size;
   double const h = up.dot(end);
   Vec3 along = end - h * up;
@@ -36,8 +37,8 @@ ReferenceCurve catenary(Vec3 const& end, double length, Vec3 const& down) {
                                            " m. Use a straight line for a taut cable."});
   if (!(d > 1e-6 * length))
     throw InvalidInput("catenary.vertical",
-                       {ErrorObject{"catenary"}, ": one end is above the other, ", ErrorValue{d},
-                        " m apart horizontally. Increase the horizontal distance to at least ", 1e-6 * length, " m."});
+                       {ErrorObject{"catenary"}, ": the horizontal distance of the ends is ", ErrorValue{d},
+                        " m, but must be at least ", 1e-6 * length, " m, 1e-06 of the length. Move one end sideways."});
   along /= d;
   // Newton's method for sinh x = r x. It starts above the root, where sinh x − r x is convex. Upper bounds of the root
   // follow from x² < 6 (r − 1) and x = ln 2r + ln x + …

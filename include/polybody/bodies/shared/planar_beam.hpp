@@ -129,8 +129,7 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
   /// \throws InvalidInput for s outside the bar.
   Point at(double s, double y = 0.0) const {
     double const x = require_inside(s, length_, Theory::name) / l_;
-    if (!std::isfinite(y))
-      throw InvalidInput("value.not_finite", {ErrorObject{Theory::name}, ": y of a point must be finite."});
+    require_finite(y, Theory::name, ": y of a point");
     Index const e = std::min(Index(x), elements() - 1);
     return {e, x - double(e), y};
   }
@@ -189,9 +188,11 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
   /// \throws InvalidInput for a point off the axis, whose position depends on the angle of the section.
   PointMap position_map(Point const& p) const {
     if (p.y != 0.0)
-      throw InvalidInput(
-          "body.point_off_axis",
-          {ErrorObject{Theory::name}, ": the position of a point off the axis is not linear in the coordinates."});
+      throw InvalidInput("body.point_off_axis",
+                         {ErrorObject{Theory::name},
+                          ": the position of a point off the axis is not linear in the coordinates. Use y = 0 "
+                          "instead of y = ",
+                          ErrorValue{p.y}, " m."});
     return Theory::position(p.xi, l_);
   }
   /// Matrix S′ of r′ = S′ e at `p`, 2×n and constant.
@@ -313,7 +314,8 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
   /// Coordinates of nodes that are placed on a curve at equal arc lengths.
   std::vector<double> nodes_on(Placement const& place, ReferenceCurve const& curve) const {
     if (!curve)
-      throw InvalidInput("reference_curve.missing", {ErrorObject{Theory::name}, ": the reference curve is empty."});
+      throw InvalidInput("reference_curve.missing",
+                         {ErrorObject{Theory::name}, ": the reference curve is an empty function."});
     std::vector<double> nodes(std::size_t(this->coordinates()));
     double angle = angle_;  // includes full revolutions
     for (Index i = 0; i <= elements(); ++i) {

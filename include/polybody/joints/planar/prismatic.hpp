@@ -20,7 +20,8 @@ struct Prismatic {
     require_unit(axis, "planar::Prismatic: the axis");
     if (std::abs(axis.z()) > 1e-12)
       throw InvalidInput("joint.axis_out_of_plane",
-                         {ErrorObject{"planar::Prismatic"}, ": the axis must lie in the plane, z = 0."});
+                         {ErrorObject{"planar::Prismatic"},
+                          ": the axis must lie in the plane, z = 0, but has z = ", ErrorValue{axis.z()}, "."});
     return polybody::constraint_functions::columns(axis, {-axis[1], axis[0], 0.0}, {0.0, 0.0, 1.0});
   }
 

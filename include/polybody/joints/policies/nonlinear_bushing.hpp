@@ -88,7 +88,7 @@ struct NonlinearBushing {
     for_each([&](int i, auto const& law) { lambda[i] = law(x[i], rate[i]); });
     return lambda;
   }
-  /// ck ∂f/∂x + cd ∂f/∂ẋ (6×6), ẋ being `rate`: the derivative along (ck, cd).
+  /// Derivative ck ∂f/∂x + cd ∂f/∂ẋ (6×6) with given ck, cd, where ẋ is `rate`.
   template <int m, class D = Dual<1>>
     requires(m == 6)
   Eigen::DiagonalMatrix<double, m> slope(double ck, double cd, Vec<double, m> const& x,

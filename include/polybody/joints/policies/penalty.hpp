@@ -25,7 +25,7 @@ struct Penalty {
     for (int i = 0; i < m; ++i) lambda[i] = g[i] * stiffness.value + g_rate[i] * damping.value;
     return lambda;
   }
-  /// ck ∂λ/∂g + cd ∂λ/∂ġ (m×m).
+  /// Derivative ck ∂λ/∂g + cd ∂λ/∂ġ (m×m) with given ck, cd.
   template <int m>
   Eigen::DiagonalMatrix<double, m> slope(double ck, double cd, Vec<double, m> const&, Vec<double, m> const&) const {
     Eigen::DiagonalMatrix<double, m> slope;
@@ -68,7 +68,7 @@ struct PenaltyPerEquation {
     for (int i = 0; i < m; ++i) lambda[i] = g[i] * stiffness.value[i] + g_rate[i] * damping.value[i];
     return lambda;
   }
-  /// ck ∂λ/∂g + cd ∂λ/∂ġ (m×m).
+  /// Derivative ck ∂λ/∂g + cd ∂λ/∂ġ (m×m) with given ck, cd.
   template <int m>
     requires(m == n)
   Eigen::DiagonalMatrix<double, m> slope(double ck, double cd, Vec<double, m> const&, Vec<double, m> const&) const {
