@@ -31,19 +31,20 @@ FLOORS = {
     "forces": 3,
     "system": 4,
     "solvers": 5,
-    "integrators": 6,
-    "signals": 7,
-    "run": 7,
-    "statics": 8,
-    "vibration": 8,
-    "stress": 9,
-    "compare": 9,
-    "io": 10,
-    "gradients": 10,
-    "vehicle": 11,
-    "study": 11,
-    "testing": 12,
-    "": 13,  # polybody.hpp itself
+    "elimination": 6,
+    "integrators": 7,
+    "signals": 8,
+    "run": 8,
+    "statics": 9,
+    "vibration": 9,
+    "stress": 10,
+    "compare": 10,
+    "io": 11,
+    "gradients": 11,
+    "vehicle": 12,
+    "study": 12,
+    "testing": 13,
+    "": 14,  # polybody.hpp itself
 }
 MAX_LINES = 400  # of a header
 MAX_FUNCTION_LINES = 60

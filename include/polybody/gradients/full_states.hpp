@@ -5,10 +5,10 @@
 ///
 /// Not in polybody.hpp: few programs need derivatives of whole runs.
 
+#include <polybody/elimination/reduced_coordinates.hpp>
 #include <polybody/integrators/forward_dynamics.hpp>
 #include <polybody/run/event_action.hpp>
 #include <polybody/run/initial_conditions.hpp>
-#include <polybody/solvers/reduced_coordinates.hpp>
 
 namespace polybody::detail {
 
