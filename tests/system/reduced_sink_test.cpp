@@ -1,10 +1,10 @@
 // Blocks of a full tangent that are added to a reduced system: PᵀBP, for any action of P on the unknowns of a block.
 #include <gtest/gtest.h>
 
+#include <polybody/elimination/reduced_sink.hpp>
 #include <polybody/solvers/block_ldlt.hpp>
 #include <polybody/solvers/block_lu.hpp>
 #include <polybody/solvers/linear_solver.hpp>
-#include <polybody/system/reduced_sink.hpp>
 
 #include <random>
 

@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/rigid/planar_rigid.hpp>
+#include <polybody/elimination/tree_tangent.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/joints/planar/prismatic.hpp>
 #include <polybody/joints/planar/revolute.hpp>
-#include <polybody/solvers/tree_tangent.hpp>
 
 #include "support/held.hpp"
 #include "system/random_tree.hpp"

@@ -3,10 +3,10 @@
 /// Conversion of the reduced states of a run to full states and back. Reduced states lack the unknowns that joint
 /// policies eliminate. The scalars are doubles or tape variables.
 
+#include <polybody/elimination/reduced_coordinates.hpp>
 #include <polybody/integrators/forward_dynamics.hpp>
 #include <polybody/run/event_action.hpp>
 #include <polybody/run/initial_conditions.hpp>
-#include <polybody/solvers/reduced_coordinates.hpp>
 
 namespace polybody::detail {
 

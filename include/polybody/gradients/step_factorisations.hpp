@@ -8,10 +8,10 @@
 #include <optional>
 #include <vector>
 
+#include <polybody/elimination/reduced_coordinates.hpp>
 #include <polybody/gradients/increment_tangent.hpp>
 #include <polybody/integrators/alpha_method.hpp>
 #include <polybody/math/compiler.hpp>
-#include <polybody/solvers/reduced_coordinates.hpp>
 #include <polybody/system/active_contact_pairs.hpp>
 
 namespace polybody {

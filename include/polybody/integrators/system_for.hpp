@@ -2,8 +2,8 @@
 /// \file
 /// Interface between models and integrators: compatible pairs, and the system of a model for an integrator.
 
+#include <polybody/elimination/reduced_coordinates.hpp>
 #include <polybody/integrators/integrator.hpp>
-#include <polybody/solvers/reduced_coordinates.hpp>
 
 namespace polybody {
 

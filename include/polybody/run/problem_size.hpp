@@ -1,5 +1,5 @@
 #pragma once
-#include <polybody/solvers/reduced_coordinates.hpp>
+#include <polybody/elimination/reduced_coordinates.hpp>
 
 namespace polybody {
 

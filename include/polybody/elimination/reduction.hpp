@@ -7,9 +7,9 @@
 
 #include <algorithm>
 
+#include <polybody/elimination/joint_tree.hpp>
+#include <polybody/elimination/linear_elimination.hpp>
 #include <polybody/math/sequence.hpp>
-#include <polybody/system/joint_tree.hpp>
-#include <polybody/system/linear_elimination.hpp>
 #include <polybody/system/model.hpp>
 #include <polybody/system/model_operations.hpp>
 

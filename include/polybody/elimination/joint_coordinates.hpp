@@ -3,7 +3,7 @@
 /// Joint coordinates of a `JointTree`: computation from full coordinates, increments (⊞) and rates. A carried body has
 /// the coordinates of its joint's motions, followed by those of its deformation.
 
-#include <polybody/system/joint_tree.hpp>
+#include <polybody/elimination/joint_tree.hpp>
 
 namespace polybody {
 namespace detail {

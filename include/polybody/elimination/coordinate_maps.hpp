@@ -4,10 +4,10 @@
 /// is the matrix of joint trees (`JointTree`) and of linear joints (`LinearElimination`). Steps use doubles;
 /// derivatives of steps use the same maps with dual numbers or with a tape.
 
+#include <polybody/elimination/joint_coordinates.hpp>
+#include <polybody/elimination/reduction.hpp>
+#include <polybody/elimination/tree_body.hpp>
 #include <polybody/system/coordinates.hpp>
-#include <polybody/system/joint_coordinates.hpp>
-#include <polybody/system/reduction.hpp>
-#include <polybody/system/tree_body.hpp>
 
 namespace polybody::detail {
 

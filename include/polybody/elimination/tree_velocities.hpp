@@ -2,8 +2,8 @@
 /// \file
 /// Conversion between the full vectors of a model and the poses and twists of a tree's bodies.
 
+#include <polybody/elimination/tree_body.hpp>
 #include <polybody/math/quaternion.hpp>
-#include <polybody/system/tree_body.hpp>
 
 namespace polybody {
 namespace detail {

@@ -4,13 +4,13 @@
 /// u, with the matrix T of joint trees (`JointTree`) and of linear joints (`LinearElimination`). Bodies, joints and
 /// forces do not depend on the elimination.
 
+#include <polybody/elimination/articulated_body.hpp>
+#include <polybody/elimination/body_equations.hpp>
+#include <polybody/elimination/coordinate_maps.hpp>
+#include <polybody/elimination/dense_reduction.hpp>
+#include <polybody/elimination/tree_dynamics.hpp>
+#include <polybody/elimination/tree_tangent.hpp>
 #include <polybody/math/sequence.hpp>
-#include <polybody/solvers/articulated_body.hpp>
-#include <polybody/solvers/body_equations.hpp>
-#include <polybody/solvers/coordinate_maps.hpp>
-#include <polybody/solvers/tree_dynamics.hpp>
-#include <polybody/solvers/tree_tangent.hpp>
-#include <polybody/system/dense_reduction.hpp>
 #include <polybody/system/make_operations.hpp>
 #include <polybody/system/system.hpp>
 

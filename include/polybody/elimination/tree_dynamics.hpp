@@ -11,7 +11,7 @@
 /// then for the parent I_p += XᵀI X, p_p += Xᵀp. The last recursion computes u̇ = D⁻¹ (w − (I S)ᵀ x). In world axes the
 /// articulated inertias need no rotation from body to body.
 
-#include <polybody/solvers/tree_recursion.hpp>
+#include <polybody/elimination/tree_recursion.hpp>
 
 namespace polybody {
 

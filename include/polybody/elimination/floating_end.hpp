@@ -5,9 +5,9 @@
 
 #include <numbers>
 
+#include <polybody/elimination/tree_body.hpp>
 #include <polybody/kinematics/marker_kinematics.hpp>
 #include <polybody/math/sequence.hpp>
-#include <polybody/system/tree_body.hpp>
 
 namespace polybody {
 

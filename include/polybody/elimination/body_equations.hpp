@@ -6,9 +6,9 @@
 
 #include <array>
 
+#include <polybody/elimination/reduced_sink.hpp>
+#include <polybody/elimination/reduction.hpp>
 #include <polybody/math/sequence.hpp>
-#include <polybody/system/reduced_sink.hpp>
-#include <polybody/system/reduction.hpp>
 
 namespace polybody::detail {
 

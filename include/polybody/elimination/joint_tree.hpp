@@ -12,10 +12,10 @@
 
 #include <utility>
 
+#include <polybody/elimination/floating_end.hpp>
+#include <polybody/elimination/tree_body.hpp>
+#include <polybody/elimination/tree_velocities.hpp>
 #include <polybody/math/quaternion.hpp>
-#include <polybody/system/floating_end.hpp>
-#include <polybody/system/tree_body.hpp>
-#include <polybody/system/tree_velocities.hpp>
 
 namespace polybody::detail {
 

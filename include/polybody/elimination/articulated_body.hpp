@@ -10,9 +10,9 @@
 /// A root has no parent, and u are its own generalised velocities. The remaining constraint equations, with Jacobian G,
 /// are solved with their Schur complement G T (TᵀKT)⁻¹ (G T)ᵀ.
 
+#include <polybody/elimination/reduction.hpp>
 #include <polybody/math/sequence.hpp>
 #include <polybody/solvers/dense_lu.hpp>
-#include <polybody/system/reduction.hpp>
 
 namespace polybody {
 

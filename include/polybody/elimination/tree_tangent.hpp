@@ -20,8 +20,8 @@
 /// The three columns of a ball joint are eliminated together. If the columns are fixed on the carrier, v and a replace
 /// v₀ and a₀, v₀ replaces v, s_a has the additional term (J u) ×ₘ s_v, and D = Jᵀ r.
 
-#include <polybody/solvers/articulated_inertia.hpp>
-#include <polybody/solvers/tree_recursion.hpp>
+#include <polybody/elimination/articulated_inertia.hpp>
+#include <polybody/elimination/tree_recursion.hpp>
 #include <polybody/system/model_operations.hpp>
 
 namespace polybody::detail {

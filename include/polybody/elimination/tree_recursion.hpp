@@ -8,10 +8,10 @@
 
 #include <cmath>
 
+#include <polybody/elimination/articulated_inertia.hpp>
+#include <polybody/elimination/tree_body.hpp>
 #include <polybody/math/quaternion.hpp>
-#include <polybody/solvers/articulated_inertia.hpp>
 #include <polybody/system/state.hpp>
-#include <polybody/system/tree_body.hpp>
 
 namespace polybody {
 
