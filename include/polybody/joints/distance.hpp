@@ -9,11 +9,10 @@ namespace polybody {
 /// elongation. The direction of the rod is undefined if the points coincide.
 struct Distance {
   static constexpr char const* name = "Distance";
-  static constexpr int rows = 1;
-  static constexpr MarkerKind needs = MarkerKind::point;
   static constexpr World world = World::both;
 
   Required<double> length;  ///< L [m]
+  using Equations = EquationList<FixedDistance<&Distance::length>>;
 
   Mat3 triad() const { return identity(); }
   void check(std::string const& what) const {
@@ -21,24 +20,6 @@ struct Distance {
       throw InvalidInput("distance.length",
                          {ErrorObject{what}, ": the length must be positive and finite, but is ", ErrorValue{length},
                           " m. For coincident points use Spherical or, in the plane, planar::Revolute."});
-  }
-
-  template <StateScalar T>
-  ConstraintTerms<1, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
-    ConstraintTerms<1, T> terms;
-    polybody::constraint_functions::distance(a, b, length, terms);
-    return terms;
-  }
-  template <StateScalar T>
-  Vec<T, 1> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
-    return Vec<T, 1>(polybody::constraint_functions::distance_gamma(a, b));
-  }
-  template <class = void>  // compiled only if used
-  Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
-                                      Vec<double, 1> const& lambda) const {
-    auto k = detail::zeros<Mat<double, 12, 12>>();
-    polybody::constraint_functions::distance_gradient(a, b, lambda[0], k);
-    return k;
   }
 };
 

@@ -81,6 +81,7 @@ struct Gear {
   }
 
  private:
+  using Bearing = EquationList<NoTranslation<0>, NoTranslation<1>>;
   /// Numbers of teeth without their common factor.
   struct Ratio {
     double a, b;  ///< ratios N_a/gcd and N_b/gcd
@@ -92,21 +93,20 @@ struct Gear {
 
   /// Components of the vector from the centre of `one` to the centre of `other` in the first two axes of `one`.
   template <StateScalar T>
-  static ConstraintTerms<2, T> bearing(Frame<T> const& one, Frame<T> const& other) {
-    ConstraintTerms<2, T> xy;
-    polybody::constraint_functions::on_axis(one, other, xy, 0);
-    return xy;
+  ConstraintTerms<2, T> bearing(Frame<T> const& one, Frame<T> const& other) const {
+    return Bearing::constraint_function<T>(*this, one, other);
   }
   template <StateScalar T>
-  static T bearing_gamma(Frame<T> const& one, Frame<T> const& other) {
-    return polybody::constraint_functions::angle_gamma(
-        bearing(one, other), polybody::constraint_functions::on_axis_gamma(one, other), one, other);
+  T bearing_gamma(Frame<T> const& one, Frame<T> const& other) const {
+    return polybody::constraint_functions::angle_gamma(bearing(one, other), Bearing::gamma<T>(*this, one, other), one,
+                                                       other);
   }
   template <class = void>  // compiled only if used
-  static void bearing_gradient(Frame<double> const& one, Frame<double> const& other, double lambda,
-                               Mat<double, 12, 12>& k) {
+  void bearing_gradient(Frame<double> const& one, Frame<double> const& other, double lambda,
+                        Mat<double, 12, 12>& k) const {
     Vec2 const each = polybody::constraint_functions::angle_gradient(bearing(one, other), lambda, k);
-    polybody::constraint_functions::on_axis_gradient(one, other, each, k);
+    for (int i = 0; i < 2; ++i)
+      polybody::constraint_functions::no_slide_gradient(axis_of(one, i), one, other, each[i], k);
   }
 };
 

@@ -41,9 +41,7 @@ struct PrescribedDistance {
   template <class = void>  // compiled only if used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 1> const& lambda) const {
-    auto k = detail::zeros<Mat<double, 12, 12>>();
-    polybody::constraint_functions::distance_gradient(a, b, lambda[0], k);
-    return k;
+    return EquationList<FixedDistance<&PrescribedDistance::length>>::wrench_gradient(*this, a, b, lambda);
   }
 };
 

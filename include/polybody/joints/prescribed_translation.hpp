@@ -45,9 +45,7 @@ struct PrescribedTranslation {
   template <class = void>  // compiled only if used
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
                                       Vec<double, 1> const& lambda) const {
-    auto k = detail::zeros<Mat<double, 12, 12>>();
-    polybody::constraint_functions::no_slide_gradient(axis_of(a, 2), a, b, lambda[0], k);
-    return k;
+    return EquationList<NoTranslation<2>>::wrench_gradient(*this, a, b, lambda);
   }
 };
 

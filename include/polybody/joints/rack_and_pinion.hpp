@@ -11,13 +11,12 @@ namespace polybody {
 /// rack on the ground, the pinion is a wheel that rolls.
 struct RackAndPinion {
   static constexpr char const* name = "RackAndPinion";
-  static constexpr int rows = 1;
-  static constexpr MarkerKind needs = MarkerKind::frame;
   static constexpr World world = World::both;
 
   Required<double> radius;   ///< pitch radius R [m]; for R > 0 the rack is on the side of axis × direction
   TurnAxis axis = {};        ///< (3) unit vector of the pinion's axis, world axes at the reference configuration
   JointAxis direction = {};  ///< (3) unit vector along the rack, perpendicular to `axis`
+  using Equations = EquationList<TranslationPerRotation<0, &RackAndPinion::radius>>;
 
   template <class = void>  // compiled only if used
   Mat3 triad() const {
@@ -30,24 +29,6 @@ struct RackAndPinion {
       throw InvalidInput(
           "rack_and_pinion.radius",
           {ErrorObject{what}, ": the radius must be finite and not zero, but is ", ErrorValue{radius}, " m."});
-  }
-
-  template <StateScalar T>
-  ConstraintTerms<1, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
-    ConstraintTerms<1, T> terms;
-    polybody::constraint_functions::slide_and_turn(axis_of(a, 0), radius, a, b, terms, 0);
-    return terms;
-  }
-  template <StateScalar T>
-  Vec<T, 1> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
-    return Vec<T, 1>(polybody::constraint_functions::slide_and_turn_gamma(axis_of(a, 0), radius, a, b));
-  }
-  template <class = void>  // compiled only if used
-  Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
-                                      Vec<double, 1> const& lambda) const {
-    auto k = detail::zeros<Mat<double, 12, 12>>();
-    polybody::constraint_functions::slide_and_turn_gradient(axis_of(a, 0), radius, a, b, lambda[0], k);
-    return k;
   }
 };
 

@@ -11,12 +11,12 @@ namespace polybody {
 /// not limited.
 struct Screw {
   static constexpr char const* name = "Screw";
-  static constexpr int rows = 5;
-  static constexpr MarkerKind needs = MarkerKind::frame;
   static constexpr World world = World::space;
 
   Required<double> pitch;  ///< p, translation per radian [m/rad]: the lead over 2π; negative for a left-handed thread
   JointAxis axis = {};     ///< (3) unit vector, world axes at the reference configuration
+  using Equations = EquationList<NoTranslation<0>, NoTranslation<1>, Perpendicular<0, 2>, Perpendicular<1, 2>,
+                                 TranslationPerRotation<2, &Screw::pitch>>;
 
   template <class = void>  // compiled only if used
   Mat3 triad() const {
@@ -27,31 +27,6 @@ struct Screw {
     if (!std::isfinite(pitch) || pitch == 0.0)
       throw InvalidInput("screw.pitch", {ErrorObject{what}, ": the pitch must be finite and not zero, but is ",
                                          ErrorValue{pitch}, " m. A screw without pitch is a Revolute."});
-  }
-
-  template <StateScalar T>
-  ConstraintTerms<5, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
-    ConstraintTerms<5, T> terms;
-    polybody::constraint_functions::on_axis(a, b, terms, 0);
-    polybody::constraint_functions::same_direction(a, b, terms, 2);
-    polybody::constraint_functions::slide_and_turn(axis_of(a, 2), pitch, a, b, terms, 4);
-    return terms;
-  }
-  template <StateScalar T>
-  Vec<T, 5> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
-    Vec<T, 2> const on_axis = polybody::constraint_functions::on_axis_gamma(a, b),
-                    parallel = polybody::constraint_functions::same_direction_gamma(a, b);
-    return {on_axis[0], on_axis[1], parallel[0], parallel[1],
-            polybody::constraint_functions::slide_and_turn_gamma<T>(axis_of(a, 2), pitch, a, b)};
-  }
-  template <class = void>  // compiled only if used
-  Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
-                                      Vec<double, 5> const& lambda) const {
-    auto k = detail::zeros<Mat<double, 12, 12>>();
-    polybody::constraint_functions::on_axis_gradient(a, b, {lambda[0], lambda[1]}, k);
-    polybody::constraint_functions::same_direction_gradient(a, b, {lambda[2], lambda[3]}, k);
-    polybody::constraint_functions::slide_and_turn_gradient(axis_of(a, 2), pitch, a, b, lambda[4], k);
-    return k;
   }
 };
 
