@@ -1,12 +1,8 @@
 #include <polybody/joints/angle.hpp>
 #include <polybody/joints/constraint_functions.hpp>
-#include <polybody/joints/planar/prismatic.hpp>
-#include <polybody/joints/planar/revolute.hpp>
-#include <polybody/joints/point_in_plane.hpp>
-#include <polybody/joints/point_on_line.hpp>
-#include <polybody/joints/revolute.hpp>
-#include <polybody/joints/spherical.hpp>
-#include <polybody/joints/universal.hpp>
+#include <polybody/joints/planar/joints.hpp>
+#include <polybody/joints/primitives.hpp>
+#include <polybody/joints/standard_joints.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-#include <polybody/joints/distance.hpp>
-#include <polybody/joints/prescribed_distance.hpp>
+#include <polybody/joints/driving_constraints.hpp>
+#include <polybody/joints/primitives.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include <polybody/joints/gear.hpp>
+#include <polybody/joints/gears.hpp>
 
 #include <gtest/gtest.h>
 

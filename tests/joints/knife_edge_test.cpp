@@ -1,4 +1,4 @@
-#include <polybody/joints/knife_edge.hpp>
+#include <polybody/joints/nonholonomic.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,5 @@
-#include <polybody/joints/point_in_plane.hpp>
-#include <polybody/joints/point_on_line.hpp>
-#include <polybody/joints/prescribed_translation.hpp>
+#include <polybody/joints/driving_constraints.hpp>
+#include <polybody/joints/primitives.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/policies/penalty.hpp>
-#include <polybody/joints/revolute.hpp>
+#include <polybody/joints/standard_joints.hpp>
 
 #include <gtest/gtest.h>
 

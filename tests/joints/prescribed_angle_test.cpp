@@ -1,4 +1,4 @@
-#include <polybody/joints/prescribed_angle.hpp>
+#include <polybody/joints/driving_constraints.hpp>
 
 #include <gtest/gtest.h>
 

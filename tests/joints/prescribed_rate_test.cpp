@@ -1,4 +1,4 @@
-#include <polybody/joints/prescribed_rate.hpp>
+#include <polybody/joints/driving_constraints.hpp>
 #include <polybody/math/smooth_table.hpp>
 
 #include <gtest/gtest.h>

@@ -1,10 +1,5 @@
-#include <polybody/joints/cylindrical.hpp>
-#include <polybody/joints/planar_joint.hpp>
 #include <polybody/joints/primitives.hpp>
-#include <polybody/joints/prismatic.hpp>
-#include <polybody/joints/revolute.hpp>
-#include <polybody/joints/universal.hpp>
-#include <polybody/joints/weld.hpp>
+#include <polybody/joints/standard_joints.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include <polybody/joints/rack_and_pinion.hpp>
+#include <polybody/joints/gears.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,15 +1,7 @@
-#include <polybody/joints/constant_orientation.hpp>
-#include <polybody/joints/cylindrical.hpp>
-#include <polybody/joints/planar/revolute.hpp>
-#include <polybody/joints/planar_joint.hpp>
-#include <polybody/joints/point_in_plane.hpp>
-#include <polybody/joints/point_on_line.hpp>
+#include <polybody/joints/planar/joints.hpp>
 #include <polybody/joints/primitives.hpp>
-#include <polybody/joints/prismatic.hpp>
 #include <polybody/joints/relative_coordinates.hpp>
-#include <polybody/joints/revolute.hpp>
-#include <polybody/joints/spherical.hpp>
-#include <polybody/joints/weld.hpp>
+#include <polybody/joints/standard_joints.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include <polybody/joints/revolute_pin.hpp>
+#include <polybody/joints/standard_joints.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include <polybody/joints/rolling_disc.hpp>
+#include <polybody/joints/nonholonomic.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include <polybody/joints/universal.hpp>
+#include <polybody/joints/standard_joints.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-#include <polybody/joints/planar/weld.hpp>
-#include <polybody/joints/weld.hpp>
+#include <polybody/joints/planar/joints.hpp>
+#include <polybody/joints/standard_joints.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // refused: declare the object with `auto`
-#include <polybody/joints/revolute.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/system/model.hpp>
 
 using namespace polybody;

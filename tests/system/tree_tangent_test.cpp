@@ -5,8 +5,7 @@
 
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
-#include <polybody/joints/planar/prismatic.hpp>
-#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/planar/joints.hpp>
 #include <polybody/solvers/tree_tangent.hpp>
 
 #include "support/held.hpp"

@@ -1,4 +1,7 @@
 #pragma once
+/// \file
+/// Geometries that couple two motions: gears, rack and pinion.
+
 #include <numeric>
 
 #include <polybody/joints/angle.hpp>
@@ -107,6 +110,34 @@ struct Gear {
     Vec2 const each = polybody::constraint_functions::angle_gradient(bearing(one, other), lambda, k);
     for (int i = 0; i < 2; ++i)
       polybody::constraint_functions::no_slide_gradient(axis_of(one, i), one, other, each[i], k);
+  }
+};
+
+/// Pinion b on the rack a, in the plane and in space: a coupled translation and rotation. 1 constraint equation
+///   g = a₁·d − R θ,  d = r_b − r_a      [Haug 1989, §3.4].
+/// θ is the rotation of b about a₃; it is zero at the reference configuration if a₁·d is zero. The translation
+/// determines the number of full turns. Other joints constrain the pinion's height over the rack and its axis. With a
+/// rack on the ground, the pinion is a wheel that rolls.
+struct RackAndPinion {
+  static constexpr char const* name = "RackAndPinion";
+  static constexpr World world = World::both;
+
+  Required<double> radius;   ///< pitch radius R [m]; for R > 0 the rack is on the side of axis × direction
+  TurnAxis axis = {};        ///< (3) unit vector of the pinion's axis, world axes at the reference configuration
+  JointAxis direction = {};  ///< (3) unit vector along the rack, perpendicular to `axis`
+  using Equations = EquationList<TranslationPerRotation<0, &RackAndPinion::radius>>;
+
+  template <class = void>  // compiled only if used
+  Mat3 triad() const {
+    require_unit(axis.required("RackAndPinion: the axis"), "RackAndPinion: the axis");
+    require_unit(direction.required("RackAndPinion: the direction"), "RackAndPinion: the direction");
+    return polybody::constraint_functions::triad_of(direction, axis, "RackAndPinion");
+  }
+  void check(std::string const& what) const {
+    if (!std::isfinite(radius) || radius == 0.0)
+      throw InvalidInput(
+          "rack_and_pinion.radius",
+          {ErrorObject{what}, ": the radius must be finite and not zero, but is ", ErrorValue{radius}, " m."});
   }
 };
 
