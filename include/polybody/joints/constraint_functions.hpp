@@ -184,13 +184,7 @@ namespace polybody {
 
 using constraint_functions::WrenchGradient;
 
-/// Constraint equation for an `EquationList`. Its static members are
-///   rows, opposite_ends, needs, needs_of_second   as those of a geometry
-///   write(geometry, a, b, terms, row)             g, Ga and Gb, written to rows [row, row + rows) of `terms`
-///   gamma(geometry, a, b, out)                    γ, written to `out` (rows)
-///   add_gradient(geometry, a, b, lambda, k)       wrench gradient for multipliers lambda (rows), added to k
-/// and optionally `prevented`, if it prevents motions along and about axes of the joint, as `FreeDirections`.
-/// `geometry` has the parameters of the equation, such as a length.
+/// Constraint equation for an `EquationList`. `docs/extending.md` lists its members.
 template <class E>
 concept ConstraintEquation = requires {
   { E::rows } -> std::convertible_to<int>;
@@ -287,8 +281,11 @@ struct FixedDistance {
 ///   using Equations = EquationList<Coincident, Perpendicular<0, 2>, Perpendicular<1, 2>>;
 /// Its constraint function with Jacobians, γ, the wrench gradient, the requirements on its markers and its free
 /// directions follow from the list.
-template <ConstraintEquation... Es>
+template <class... Es>
 struct EquationList {
+  static_assert((ConstraintEquation<Es> && ...),
+                "An EquationList contains constraint equations, such as Coincident or Perpendicular<0, 2>. "
+                "docs/extending.md lists their members.");
   static constexpr int rows = (Es::rows + ...);
   static constexpr bool opposite_ends = (Es::opposite_ends && ...);
   static constexpr MarkerKind needs = std::max({Es::needs...}), needs_of_second = std::max({Es::needs_of_second...});
