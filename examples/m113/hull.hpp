@@ -8,11 +8,9 @@
 
 #include <polybody/forces/axial_spring.hpp>
 #include <polybody/forces/spring_damper.hpp>
+#include <polybody/joints/driving_constraints.hpp>
 #include <polybody/joints/policies/constraint.hpp>
-#include <polybody/joints/prescribed_rate.hpp>
-#include <polybody/joints/prismatic.hpp>
-#include <polybody/joints/revolute.hpp>
-#include <polybody/joints/weld.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/math/so3.hpp>
 #include <polybody/run/marker_frames.hpp>
 #include <polybody/system/subassembly.hpp>

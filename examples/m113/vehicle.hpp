@@ -2,8 +2,8 @@
 /// \file
 /// Model of the vehicle of data.hpp with a selectable formulation of its tracks.
 
-#include <polybody/joints/point_on_line.hpp>
-#include <polybody/joints/spherical.hpp>
+#include <polybody/joints/primitives.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/system/model.hpp>
 
 #include "hull.hpp"

@@ -12,10 +12,9 @@
 #include <polybody/integrators/radau.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/integrators/symplectic.hpp>
-#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/planar/joints.hpp>
 #include <polybody/joints/policies/joint_coordinates.hpp>
-#include <polybody/joints/revolute.hpp>
-#include <polybody/joints/weld.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/simulate.hpp>
 #include <polybody/statics/equilibrium.hpp>
 

@@ -11,9 +11,8 @@
 #include <polybody/forces/point_load.hpp>
 #include <polybody/forces/spring_damper.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
-#include <polybody/joints/planar/revolute.hpp>
-#include <polybody/joints/prescribed_angle.hpp>
-#include <polybody/joints/prescribed_translation.hpp>
+#include <polybody/joints/driving_constraints.hpp>
+#include <polybody/joints/planar/joints.hpp>
 #include <polybody/run/accelerations.hpp>
 #include <polybody/run/simulate.hpp>
 

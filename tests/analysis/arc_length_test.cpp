@@ -9,9 +9,7 @@
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/forces/spring_damper.hpp>
-#include <polybody/joints/planar/prismatic.hpp>
-#include <polybody/joints/planar/revolute.hpp>
-#include <polybody/joints/planar/weld.hpp>
+#include <polybody/joints/planar/joints.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/run/probe.hpp>
 

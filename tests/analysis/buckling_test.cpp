@@ -10,10 +10,8 @@
 #include <polybody/bodies/lrvf/planar_lrvf.hpp>
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/forces/spring_damper.hpp>
-#include <polybody/joints/planar/prismatic.hpp>
-#include <polybody/joints/planar/revolute.hpp>
-#include <polybody/joints/planar/weld.hpp>
-#include <polybody/joints/prescribed_translation.hpp>
+#include <polybody/joints/driving_constraints.hpp>
+#include <polybody/joints/planar/joints.hpp>
 
 #include "support/columns.hpp"
 #include "support/refusal.hpp"

@@ -9,7 +9,7 @@
 #include <polybody/compare/work_precision.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
-#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/planar/joints.hpp>
 
 #include "support/exact_pendulum.hpp"
 #include "support/refusal.hpp"

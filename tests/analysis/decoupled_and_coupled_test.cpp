@@ -12,10 +12,9 @@
 #include <polybody/forces/point_load.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/newmark.hpp>
+#include <polybody/joints/driving_constraints.hpp>
 #include <polybody/joints/joint.hpp>
-#include <polybody/joints/prescribed_angle.hpp>
-#include <polybody/joints/revolute.hpp>
-#include <polybody/joints/weld.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 #include <polybody/stress/section.hpp>

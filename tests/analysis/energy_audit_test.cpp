@@ -15,7 +15,7 @@
 #include <polybody/forces/user_force.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
-#include <polybody/joints/planar/prismatic.hpp>
+#include <polybody/joints/planar/joints.hpp>
 #include <polybody/joints/policies/ancf_linear.hpp>
 #include <polybody/joints/policies/joint_coordinates.hpp>
 #include <polybody/run/simulate.hpp>

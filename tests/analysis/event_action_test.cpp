@@ -4,7 +4,7 @@
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
-#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/planar/joints.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/policies/joint_coordinates.hpp>
 #include <polybody/run/simulate.hpp>

@@ -2,7 +2,7 @@
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/compare/compare.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
-#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/planar/joints.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/policies/penalty.hpp>
 #include <polybody/run/marker_frames.hpp>

@@ -3,7 +3,7 @@
 
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/joints/joint.hpp>
-#include <polybody/joints/spherical.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/energy_audit.hpp>
 #include <polybody/run/initial_conditions.hpp>
 #include <polybody/run/probe.hpp>

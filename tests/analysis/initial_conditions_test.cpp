@@ -1,8 +1,8 @@
 // Consistent initial conditions of a rod on a pin and of a four-bar of uniform rods (crank 1, coupler 2, rocker 1.5,
 // base 2).
 #include <polybody/bodies/rigid/planar_rigid.hpp>
-#include <polybody/joints/knife_edge.hpp>
-#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/nonholonomic.hpp>
+#include <polybody/joints/planar/joints.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/run/initial_conditions.hpp>
 #include <polybody/run/probe.hpp>

@@ -8,14 +8,9 @@
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
-#include <polybody/joints/cylindrical.hpp>
-#include <polybody/joints/planar/prismatic.hpp>
-#include <polybody/joints/planar/revolute.hpp>
-#include <polybody/joints/prescribed_angle.hpp>
-#include <polybody/joints/prescribed_translation.hpp>
-#include <polybody/joints/revolute.hpp>
-#include <polybody/joints/screw.hpp>
-#include <polybody/joints/universal.hpp>
+#include <polybody/joints/driving_constraints.hpp>
+#include <polybody/joints/planar/joints.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/initial_conditions.hpp>
 #include <polybody/run/marker_frames.hpp>
 #include <polybody/run/simulate.hpp>

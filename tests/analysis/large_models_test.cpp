@@ -6,8 +6,8 @@
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/bodies/rigid/rigid_euler_parameters.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
-#include <polybody/joints/planar/revolute.hpp>
-#include <polybody/joints/revolute.hpp>
+#include <polybody/joints/planar/joints.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/redundancy.hpp>
 #include <polybody/run/simulate.hpp>
 

@@ -7,11 +7,9 @@
 #include <polybody/forces/point_load.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
-#include <polybody/joints/planar/revolute.hpp>
-#include <polybody/joints/point_in_plane.hpp>
-#include <polybody/joints/revolute.hpp>
-#include <polybody/joints/screw.hpp>
-#include <polybody/joints/weld.hpp>
+#include <polybody/joints/planar/joints.hpp>
+#include <polybody/joints/primitives.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 

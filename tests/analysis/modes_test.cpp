@@ -9,11 +9,9 @@
 #include <polybody/forces/point_load.hpp>
 #include <polybody/forces/spring_damper.hpp>
 #include <polybody/joints/joint.hpp>
-#include <polybody/joints/planar/prismatic.hpp>
-#include <polybody/joints/planar/weld.hpp>
-#include <polybody/joints/point_in_plane.hpp>
-#include <polybody/joints/revolute.hpp>
-#include <polybody/joints/spherical.hpp>
+#include <polybody/joints/planar/joints.hpp>
+#include <polybody/joints/primitives.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/statics/equilibrium.hpp>
 
 #include "support/chain.hpp"

@@ -5,8 +5,8 @@
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/forces/point_load.hpp>
-#include <polybody/joints/distance.hpp>
-#include <polybody/joints/planar/weld.hpp>
+#include <polybody/joints/planar/joints.hpp>
+#include <polybody/joints/primitives.hpp>
 #include <polybody/run/minimum_norm.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/statics/arc_length.hpp>

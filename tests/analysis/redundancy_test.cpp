@@ -8,10 +8,10 @@
 #include <polybody/bodies/rigid/rigid_euler_parameters.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
-#include <polybody/joints/distance.hpp>
-#include <polybody/joints/planar/revolute.hpp>
-#include <polybody/joints/prescribed_angle.hpp>
-#include <polybody/joints/revolute.hpp>
+#include <polybody/joints/driving_constraints.hpp>
+#include <polybody/joints/planar/joints.hpp>
+#include <polybody/joints/primitives.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/redundancy.hpp>
 #include <polybody/run/simulate.hpp>
 

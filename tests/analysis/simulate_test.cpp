@@ -5,7 +5,7 @@
 #include <polybody/forces/user_force.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
-#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/planar/joints.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>

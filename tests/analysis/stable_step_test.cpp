@@ -10,10 +10,9 @@
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/integrators/symplectic.hpp>
 #include <polybody/joints/joint.hpp>
-#include <polybody/joints/planar/prismatic.hpp>
-#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/planar/joints.hpp>
 #include <polybody/joints/policies/bushing.hpp>
-#include <polybody/joints/weld.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/simulate.hpp>
 
 #include "support/held.hpp"

@@ -7,8 +7,8 @@
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/joint.hpp>
-#include <polybody/joints/planar/revolute.hpp>
-#include <polybody/joints/revolute.hpp>
+#include <polybody/joints/planar/joints.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/diagnose.hpp>
 #include <polybody/run/initial_conditions.hpp>
 #include <polybody/run/marker_frames.hpp>

@@ -7,10 +7,9 @@
 #include <polybody/bodies/rigid/rigid_euler_parameters.hpp>
 #include <polybody/forces/spring_damper.hpp>
 #include <polybody/forces/user_force.hpp>
+#include <polybody/joints/driving_constraints.hpp>
 #include <polybody/joints/joint.hpp>
-#include <polybody/joints/prescribed_angle.hpp>
-#include <polybody/joints/revolute.hpp>
-#include <polybody/joints/spherical.hpp>
+#include <polybody/joints/standard_joints.hpp>
 
 #include "support/refusal.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/forces/spring_damper.hpp>
-#include <polybody/joints/revolute.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/summary.hpp>
 
 namespace polybody {

@@ -12,7 +12,7 @@
 #include <polybody/forces/point_load.hpp>
 #include <polybody/io/visual.hpp>
 #include <polybody/joints/policies/constraint.hpp>
-#include <polybody/joints/weld.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/statics/equilibrium.hpp>
 
 #include "support/refusal.hpp"

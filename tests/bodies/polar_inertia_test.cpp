@@ -6,7 +6,7 @@
 #include <polybody/bodies/lrvf/lrvf.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/joints/joint.hpp>
-#include <polybody/joints/weld.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/vibration/modes.hpp>
 
 #include "support/refusal.hpp"

@@ -7,8 +7,7 @@
 #include <polybody/bodies/ancf/planar_ancf_cable.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/policies/constraint.hpp>
-#include <polybody/joints/revolute.hpp>
-#include <polybody/joints/spherical.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/system/system.hpp>
 #include <polybody/testing/frames.hpp>
 

@@ -6,7 +6,7 @@
 
 #include <polybody/bodies/ancf/ancf_beam.hpp>
 
-#include <polybody/joints/revolute.hpp>
+#include <polybody/joints/standard_joints.hpp>
 
 #include "support/right_angle_cantilever.hpp"
 #include "support/solver_instances.hpp"

@@ -9,7 +9,7 @@
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/joints/joint.hpp>
-#include <polybody/joints/revolute.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/initial_conditions.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/redundancy.hpp>

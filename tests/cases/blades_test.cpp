@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/rigid/planar_rigid.hpp>
-#include <polybody/joints/knife_edge.hpp>
+#include <polybody/joints/nonholonomic.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/run/probe.hpp>
 

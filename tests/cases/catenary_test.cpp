@@ -6,7 +6,7 @@
 #include <polybody/bodies/ancf/planar_ancf_cable.hpp>
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/joints/joint.hpp>
-#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/planar/joints.hpp>
 #include <polybody/joints/policies/bushing.hpp>
 #include <polybody/joints/policies/joint_coordinates.hpp>
 #include <polybody/run/probe.hpp>

@@ -7,9 +7,9 @@
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/joint.hpp>
-#include <polybody/joints/planar/revolute.hpp>
-#include <polybody/joints/point_on_line.hpp>
-#include <polybody/joints/revolute.hpp>
+#include <polybody/joints/planar/joints.hpp>
+#include <polybody/joints/primitives.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/redundancy.hpp>
 #include <polybody/run/simulate.hpp>

@@ -14,11 +14,11 @@
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/newmark.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
-#include <polybody/joints/distance.hpp>
+#include <polybody/joints/driving_constraints.hpp>
 #include <polybody/joints/joint.hpp>
-#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/planar/joints.hpp>
 #include <polybody/joints/policies/bushing.hpp>
-#include <polybody/joints/prescribed_distance.hpp>
+#include <polybody/joints/primitives.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 

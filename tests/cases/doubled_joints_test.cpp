@@ -12,9 +12,8 @@
 #include <polybody/integrators/newmark.hpp>
 #include <polybody/integrators/radau.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
-#include <polybody/joints/prescribed_angle.hpp>
-#include <polybody/joints/prismatic.hpp>
-#include <polybody/joints/universal.hpp>
+#include <polybody/joints/driving_constraints.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/redundancy.hpp>
 #include <polybody/run/simulate.hpp>

@@ -10,7 +10,7 @@
 #include <polybody/joints/policies/ancf_linear.hpp>
 #include <polybody/joints/policies/bushing.hpp>
 #include <polybody/joints/policies/joint_coordinates.hpp>
-#include <polybody/joints/revolute.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/problem_size.hpp>
 #include <polybody/run/simulate.hpp>

@@ -6,7 +6,7 @@
 #include <polybody/bodies/ffr/ffr.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/joints/policies/constraint.hpp>
-#include <polybody/joints/weld.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/marker_frames.hpp>
 #include <polybody/statics/equilibrium.hpp>
 #include <polybody/stress/section.hpp>

@@ -9,12 +9,9 @@
 #include <polybody/bodies/lrvf/lrvf.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
-#include <polybody/joints/planar/revolute.hpp>
-#include <polybody/joints/planar/weld.hpp>
+#include <polybody/joints/planar/joints.hpp>
 #include <polybody/joints/policies/constraint.hpp>
-#include <polybody/joints/revolute.hpp>
-#include <polybody/joints/spherical.hpp>
-#include <polybody/joints/weld.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 #include <polybody/statics/equilibrium.hpp>

@@ -11,7 +11,7 @@
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/integrators/symplectic.hpp>
 #include <polybody/joints/joint.hpp>
-#include <polybody/joints/spherical.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/marker_frames.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>

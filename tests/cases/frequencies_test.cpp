@@ -10,9 +10,8 @@
 #include <polybody/bodies/lrvf/planar_lrvf.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/joints/joint.hpp>
-#include <polybody/joints/planar/revolute.hpp>
-#include <polybody/joints/planar/weld.hpp>
-#include <polybody/joints/revolute.hpp>
+#include <polybody/joints/planar/joints.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/statics/equilibrium.hpp>
 
 #include "support/held.hpp"

@@ -9,8 +9,7 @@
 #include <polybody/forces/point_load.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/policies/joint_coordinates.hpp>
-#include <polybody/joints/spherical.hpp>
-#include <polybody/joints/universal.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/problem_size.hpp>
 #include <polybody/run/simulate.hpp>

@@ -9,8 +9,7 @@
 #include <polybody/integrators/radau.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/policies/joint_coordinates.hpp>
-#include <polybody/joints/prismatic.hpp>
-#include <polybody/joints/revolute.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 

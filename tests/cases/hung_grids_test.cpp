@@ -9,7 +9,7 @@
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/integrators/radau.hpp>
 #include <polybody/joints/joint.hpp>
-#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/planar/joints.hpp>
 #include <polybody/joints/policies/ancf_linear.hpp>
 #include <polybody/joints/policies/joint_coordinates.hpp>
 #include <polybody/run/probe.hpp>

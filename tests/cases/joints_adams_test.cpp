@@ -5,11 +5,9 @@
 
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
-#include <polybody/joints/prescribed_rate.hpp>
+#include <polybody/joints/driving_constraints.hpp>
 #include <polybody/joints/primitives.hpp>
-#include <polybody/joints/revolute.hpp>
-#include <polybody/joints/revolute_pin.hpp>
-#include <polybody/joints/universal.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 

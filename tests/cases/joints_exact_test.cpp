@@ -6,13 +6,9 @@
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
-#include <polybody/joints/cylindrical.hpp>
-#include <polybody/joints/distance.hpp>
-#include <polybody/joints/planar_joint.hpp>
-#include <polybody/joints/prescribed_translation.hpp>
-#include <polybody/joints/prismatic.hpp>
-#include <polybody/joints/screw.hpp>
-#include <polybody/joints/spherical.hpp>
+#include <polybody/joints/driving_constraints.hpp>
+#include <polybody/joints/primitives.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/math/smooth_table.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>

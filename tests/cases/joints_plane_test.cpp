@@ -5,13 +5,10 @@
 
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
-#include <polybody/joints/distance.hpp>
-#include <polybody/joints/gear.hpp>
-#include <polybody/joints/planar/revolute.hpp>
-#include <polybody/joints/point_in_plane.hpp>
-#include <polybody/joints/prescribed_distance.hpp>
-#include <polybody/joints/prescribed_rate.hpp>
-#include <polybody/joints/prescribed_translation.hpp>
+#include <polybody/joints/driving_constraints.hpp>
+#include <polybody/joints/gears.hpp>
+#include <polybody/joints/planar/joints.hpp>
+#include <polybody/joints/primitives.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 

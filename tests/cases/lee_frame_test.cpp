@@ -8,9 +8,7 @@
 
 #include <polybody/forces/point_load.hpp>
 #include <polybody/joints/joint.hpp>
-#include <polybody/joints/planar/prismatic.hpp>
-#include <polybody/joints/planar/revolute.hpp>
-#include <polybody/joints/planar/weld.hpp>
+#include <polybody/joints/planar/joints.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/statics/equilibrium.hpp>
 

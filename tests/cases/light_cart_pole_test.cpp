@@ -6,8 +6,7 @@
 #include <polybody/integrators/adams_bashforth_moulton.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/joint.hpp>
-#include <polybody/joints/planar/prismatic.hpp>
-#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/planar/joints.hpp>
 #include <polybody/joints/policies/joint_coordinates.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>

@@ -5,7 +5,7 @@
 #include <polybody/forces/contact.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/policies/constraint.hpp>
-#include <polybody/joints/spherical.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/statics/equilibrium.hpp>
 

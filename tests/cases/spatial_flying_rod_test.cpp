@@ -10,7 +10,7 @@
 #include <polybody/forces/point_load.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/joints/joint.hpp>
-#include <polybody/joints/revolute.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 

@@ -9,8 +9,7 @@
 
 #include <polybody/forces/point_load.hpp>
 #include <polybody/joints/joint.hpp>
-#include <polybody/joints/revolute.hpp>
-#include <polybody/joints/weld.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/statics/arc_length.hpp>
 #include <polybody/statics/equilibrium.hpp>

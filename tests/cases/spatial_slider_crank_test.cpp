@@ -10,10 +10,7 @@
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/policies/joint_coordinates.hpp>
-#include <polybody/joints/prismatic.hpp>
-#include <polybody/joints/revolute.hpp>
-#include <polybody/joints/spherical.hpp>
-#include <polybody/joints/universal.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 

@@ -11,8 +11,7 @@
 #include <polybody/bodies/ancf/ancf_beam.hpp>
 #include <polybody/bodies/lrvf/lrvf.hpp>
 #include <polybody/joints/joint.hpp>
-#include <polybody/joints/spherical.hpp>
-#include <polybody/joints/weld.hpp>
+#include <polybody/joints/standard_joints.hpp>
 
 #include "support/held.hpp"
 

@@ -8,10 +8,10 @@
 #include <polybody/forces/spring_damper.hpp>
 #include <polybody/gradients/sensitivities.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
-#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/nonholonomic.hpp>
+#include <polybody/joints/planar/joints.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/policies/penalty.hpp>
-#include <polybody/joints/rolling_disc.hpp>
 #include <polybody/run/probe.hpp>
 
 #include "support/differences_of_runs.hpp"

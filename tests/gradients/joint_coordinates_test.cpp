@@ -8,8 +8,7 @@
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/gradients/sensitivities.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
-#include <polybody/joints/planar/prismatic.hpp>
-#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/planar/joints.hpp>
 
 #include "support/carried_arm.hpp"
 #include "support/impacts_of_whole_states.hpp"

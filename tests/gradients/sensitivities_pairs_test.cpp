@@ -14,8 +14,7 @@
 #include <polybody/joints/policies/bushing.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/policies/penalty.hpp>
-#include <polybody/joints/revolute.hpp>
-#include <polybody/joints/spherical.hpp>
+#include <polybody/joints/standard_joints.hpp>
 
 #include "support/differences_of_runs.hpp"
 #include "support/two_links.hpp"

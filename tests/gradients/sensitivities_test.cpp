@@ -6,7 +6,7 @@
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/forces/spring_damper.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
-#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/planar/joints.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/run/probe.hpp>
 

@@ -23,7 +23,7 @@ using Laws = NonlinearBushing<LinearLaw, LinearLaw, LinearLaw, LinearLaw, Linear
 /// Placeholder for `PenaltyPerEquation`, whose number of parameters is the number of equations of the geometry.
 struct PerRow {};
 template <class P, class G>
-using PolicyFor = std::conditional_t<std::is_same_v<P, PerRow>, PenaltyPerEquation<G::rows>, P>;
+using PolicyFor = std::conditional_t<std::is_same_v<P, PerRow>, PenaltyPerEquation<constraint_equations<G>()>, P>;
 
 auto const geometries = std::tuple(
     Type<Spherical>{"Spherical"}, Type<Revolute>{"Revolute"}, Type<RevolutePin>{"RevolutePin"},

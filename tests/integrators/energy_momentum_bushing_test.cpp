@@ -6,7 +6,7 @@
 
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/joints/joint.hpp>
-#include <polybody/joints/planar/weld.hpp>
+#include <polybody/joints/planar/joints.hpp>
 #include <polybody/joints/policies/bushing.hpp>
 
 #include "support/energy_drift.hpp"

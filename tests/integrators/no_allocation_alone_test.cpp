@@ -20,10 +20,10 @@
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/integrators/symplectic.hpp>
+#include <polybody/joints/driving_constraints.hpp>
 #include <polybody/joints/policies/bushing.hpp>
 #include <polybody/joints/policies/joint_coordinates.hpp>
 #include <polybody/joints/policies/nonlinear_bushing.hpp>
-#include <polybody/joints/prescribed_angle.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 #include <polybody/solvers/dense_lu.hpp>

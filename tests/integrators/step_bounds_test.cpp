@@ -12,13 +12,12 @@
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/integrators/symplectic.hpp>
+#include <polybody/joints/driving_constraints.hpp>
 #include <polybody/joints/joint.hpp>
-#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/planar/joints.hpp>
 #include <polybody/joints/policies/joint_coordinates.hpp>
 #include <polybody/joints/policies/penalty.hpp>
-#include <polybody/joints/prescribed_angle.hpp>
-#include <polybody/joints/revolute.hpp>
-#include <polybody/joints/weld.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 #include <polybody/system/model.hpp>

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/rigid/rigid.hpp>
-#include <polybody/joints/revolute.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/solvers/default_solver.hpp>
 #include <polybody/system/make_operations.hpp>
 #include <polybody/system/model.hpp>

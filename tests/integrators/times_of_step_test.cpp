@@ -7,8 +7,8 @@
 #include <polybody/forces/point_load.hpp>
 #include <polybody/integrators/energy_momentum.hpp>
 #include <polybody/integrators/symplectic.hpp>
+#include <polybody/joints/driving_constraints.hpp>
 #include <polybody/joints/joint.hpp>
-#include <polybody/joints/prescribed_translation.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 

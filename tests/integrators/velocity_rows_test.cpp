@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/rigid/rigid.hpp>
+#include <polybody/joints/nonholonomic.hpp>
 #include <polybody/joints/policies/constraint.hpp>
-#include <polybody/joints/rolling_disc.hpp>
 #include <polybody/testing/integrator_laws.hpp>
 
 #include "support/solver_instances.hpp"

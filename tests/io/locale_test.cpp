@@ -10,7 +10,7 @@
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/io/progress.hpp>
 #include <polybody/io/run_table.hpp>
-#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/planar/joints.hpp>
 #include <polybody/run/diagnose.hpp>
 #include <polybody/run/simulate.hpp>
 #include <polybody/run/summary.hpp>

@@ -21,7 +21,7 @@
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/io/run_table.hpp>
 #include <polybody/joints/policies/constraint.hpp>
-#include <polybody/joints/revolute.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/simulate.hpp>
 
 #include "support/refusal.hpp"

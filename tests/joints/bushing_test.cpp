@@ -1,8 +1,7 @@
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/policies/bushing.hpp>
 #include <polybody/joints/policies/nonlinear_bushing.hpp>
-#include <polybody/joints/revolute.hpp>
-#include <polybody/joints/weld.hpp>
+#include <polybody/joints/standard_joints.hpp>
 
 #include <gtest/gtest.h>
 

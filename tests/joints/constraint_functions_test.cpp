@@ -1,5 +1,8 @@
 #include <polybody/joints/angle.hpp>
 #include <polybody/joints/constraint_functions.hpp>
+#include <polybody/joints/planar/joints.hpp>
+#include <polybody/joints/primitives.hpp>
+#include <polybody/joints/standard_joints.hpp>
 
 #include <gtest/gtest.h>
 
@@ -35,15 +38,15 @@ void expect_only(ConstraintTerms<6> const& gap, int first, int n) {
 TEST(Rows, EachIsWrittenWhereItIsAskedFor) {
   Numbers number;
   Frame<double> const a = number.frame(), b = number.frame();
-  ConstraintTerms<6> together = full(), square = full(), slide = full(), parallel = full();
+  ConstraintTerms<6> together = full(), in_plane = full(), square = full(), slide = full();
   constraint_functions::coincident(a, b, together, 2);
+  constraint_functions::coincident<2>(a, b, in_plane, 1);
   constraint_functions::perpendicular<6, double>(a.A.col(0), b.A.col(1), square, 4);
   constraint_functions::no_slide<6, double>(a.A.col(2), a, b, slide, 5);
-  constraint_functions::parallel(a, b, parallel, 1);
   expect_only(together, 2, 3);
+  expect_only(in_plane, 1, 2);
   expect_only(square, 4, 1);
   expect_only(slide, 5, 1);
-  expect_only(parallel, 1, 3);
 }
 
 TEST(Rows, GapsAreTheirFormulas) {
@@ -52,8 +55,8 @@ TEST(Rows, GapsAreTheirFormulas) {
   ConstraintTerms<6> gap;
   constraint_functions::coincident(a, b, gap);
   EXPECT_EQ(gap.g.head<3>(), b.r - a.r);
-  constraint_functions::parallel(a, b, gap, 3);
-  for (int i = 0; i < 3; ++i) EXPECT_NEAR(gap.g[3 + i], a.A.col(i).dot(b.A.col((i + 1) % 3)), 1e-15);
+  constraint_functions::perpendicular<6, double>(a.A.col(0), b.A.col(1), gap, 3);
+  EXPECT_NEAR(gap.g[3], a.A.col(0).dot(b.A.col(1)), 1e-15);
   constraint_functions::no_slide<6, double>(a.A.col(2), a, b, gap, 0);
   EXPECT_NEAR(gap.g[0], a.A.col(2).dot(b.r - a.r), 1e-15);
 }
@@ -76,21 +79,77 @@ TEST(Rows, NoSlideGammaOfARadialMotion) {
   EXPECT_NEAR((constraint_functions::no_slide_gamma<double>(Vec3(1, 0, 0), a, b)), -omega * omega * x, 1e-15);
 }
 
-TEST(Rows, PairsAreThoseOfTheirFormulas) {
+TEST(Rows, DistanceIsItsFormula) {
   Numbers number;
   Frame<double> const a = number.frame(), b = number.frame();
-  ConstraintTerms<6> direction = full(), line = full(), rod = full();
-  constraint_functions::same_direction(a, b, direction, 1);
-  constraint_functions::on_axis(a, b, line, 3);
+  ConstraintTerms<6> rod = full();
   constraint_functions::distance(a, b, 0.5, rod, 4);
-  expect_only(direction, 1, 2);
-  expect_only(line, 3, 2);
   expect_only(rod, 4, 1);
-  for (int i = 0; i < 2; ++i) {
-    EXPECT_NEAR(direction.g[1 + i], a.A.col(i).dot(b.A.col(2)), 1e-15);
-    EXPECT_NEAR(line.g[3 + i], a.A.col(i).dot(b.r - a.r), 1e-15);
-  }
   EXPECT_NEAR(rod.g[4], (b.r - a.r).norm() - 0.5, 1e-15);
+}
+
+// --- lists of constraint equations ----------------------------------------------------------------------------------
+
+/// All kinds of equations, two of them in another order than in the joints of the library.
+struct Rod {
+  static constexpr char const* name = "Rod";
+  static constexpr World world = World::space;
+  Required<double> length;
+  using Equations =
+      EquationList<NoTranslation<2>, FixedDistance<&Rod::length>, planar::Coincident, Perpendicular<1, 0>>;
+  Mat3 triad() const { return Mat3::Identity(); }
+};
+static_assert(JointGeometry<Rod> && constraint_equations<Rod>() == 5);
+static_assert(!has_opposite_ends<Rod>() && has_opposite_ends<Universal>());
+static_assert(needs_of_first<Rod>() == MarkerKind::frame && needs_of_second<Rod>() == MarkerKind::frame);
+static_assert(needs_of_first<Universal>() == MarkerKind::frame && needs_of_second<Universal>() == MarkerKind::axis);
+static_assert(needs_of_first<Spherical>() == MarkerKind::point && needs_of_second<PointOnLine>() == MarkerKind::point);
+
+TEST(EquationList, WritesItsEquationsInTheirOrder) {
+  Numbers number;
+  Frame<double> const a = number.frame(), b = number.frame();
+  ConstraintTerms<5> const gap = constraint_function(Rod{.length = 0.5}, a, b, 0.0);
+  Vec3 const d = b.r - a.r;
+  EXPECT_NEAR(gap.g[0], a.A.col(2).dot(d), 1e-15);
+  EXPECT_NEAR(gap.g[1], d.norm() - 0.5, 1e-15);
+  EXPECT_EQ((gap.g.segment<2>(2)), d.head<2>());
+  EXPECT_NEAR(gap.g[4], a.A.col(1).dot(b.A.col(0)), 1e-15);
+}
+
+// The sums of the equations' terms and the dual numbers of the constraint function agree.
+TEST(EquationList, GradientIsThatOfTheDualNumbers) {
+  Numbers number;
+  Frame<double> const a = number.frame(), b = number.frame();
+  Vec<double, 5> const lambda = number.vec<5>();
+  Mat<double, 12, 12> const k = wrench_gradient_by_dual_numbers(Rod{.length = 0.5}, a, b, 0.0, lambda);
+  EXPECT_LT((wrench_gradient(Rod{.length = 0.5}, a, b, 0.0, lambda) - k).norm(), 1e-13 * k.norm());
+}
+
+// Two free rotations have moving axes, and a distance prevents no motion along an axis: no free directions.
+TEST(EquationList, FreeDirectionsAreTheMotionsThatNoEquationPrevents) {
+  EXPECT_EQ(free_directions<Revolute>(), (FreeDirections{false, false, false, false, false, true}));
+  EXPECT_EQ(free_directions<PointInPlane>(), (FreeDirections{true, true, false, true, true, true}));
+  EXPECT_EQ(free_directions<planar::Prismatic>(), (FreeDirections{true}));
+  EXPECT_EQ(free_directions<planar::Revolute>(), (FreeDirections{false, false, false, false, false, true}));
+  static_assert(!HasFreeDirections<Universal> && !HasFreeDirections<Rod> && HasMotions<Universal>);
+}
+
+/// Own function beside a list: it precedes the functions of the list.
+struct Lifted : Spherical {
+  template <StateScalar T>
+  ConstraintTerms<3, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double t) const {
+    ConstraintTerms<3, T> terms = Equations::constraint_function<T>(*this, a, b);
+    terms.g[2] -= t;
+    terms.rate[2] = T(-1.0);
+    return terms;
+  }
+};
+TEST(EquationList, OwnFunctionsPrecedeIt) {
+  static_assert(JointGeometry<Lifted> && !HasFreeDirections<Lifted>);
+  ConstraintTerms<3> const gap = constraint_function<double>(Lifted{}, {}, {}, 0.25);
+  EXPECT_EQ(gap.g, Vec3(0, 0, -0.25));
+  EXPECT_EQ(gap.rate, Vec3(0, 0, -1));
+  EXPECT_EQ((constraint_gamma<double>(Lifted{}, {}, {}, 0.25)), Vec3(0, 0, 0));
 }
 
 TEST(Wrapped, LeavesLessThanHalfATurn) {
@@ -116,9 +175,8 @@ TEST(Turn, GrowsEvenlyAboutAFixedAxis) {
 TEST(Turn, GammaOfThePassingPoint) {
   double const x = 2.0, v = 3.0;
   Frame<double> const a, b{.r = {x, x, 0}, .v = {0, v, 0}};
-  ConstraintTerms<2> xy;
-  constraint_functions::on_axis(a, b, xy, 0);
-  EXPECT_NEAR(constraint_functions::angle_gamma(xy, constraint_functions::on_axis_gamma(a, b), a, b),
+  ConstraintTerms<2> const xy = constraint_function(PointOnLine{}, a, b, 0.0);
+  EXPECT_NEAR(constraint_functions::angle_gamma(xy, constraint_gamma(PointOnLine{}, a, b, 0.0), a, b),
               -v * v / (2.0 * x * x), 1e-14);
 }
 

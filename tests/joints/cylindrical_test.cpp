@@ -1,4 +1,4 @@
-#include <polybody/joints/cylindrical.hpp>
+#include <polybody/joints/standard_joints.hpp>
 
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ struct CylindricalCase {
 TEST(Cylindrical, RowsAreTheOffsetAndTheTilt) {
   Frame<double> const b{.r = {0.3, -0.4, 7.0}, .A = exp_so3<double>(Vec3(0.2, 0, 0))};
   Vec4 const expected(0.3, -0.4, 0.0, -std::sin(0.2));
-  EXPECT_LT((Cylindrical{}.constraint_function<double>({}, b, 0.0).g - expected).norm(), 1e-15);
+  EXPECT_LT((constraint_function<double>(Cylindrical{}, {}, b, 0.0).g - expected).norm(), 1e-15);
 }
 
 TEST(Cylindrical, RefusesAnAxisThatIsNotAUnitVector) {

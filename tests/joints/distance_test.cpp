@@ -1,5 +1,5 @@
-#include <polybody/joints/distance.hpp>
-#include <polybody/joints/prescribed_distance.hpp>
+#include <polybody/joints/driving_constraints.hpp>
+#include <polybody/joints/primitives.hpp>
 
 #include <gtest/gtest.h>
 
@@ -60,7 +60,7 @@ struct PlanarActuatorCase : ActuatorCase {
 // The multiplier is a force: it pulls separated points together, along d = (3, 4, 0)/5.
 TEST(Distance, GapIsALengthAndItsMultiplierATension) {
   Frame<double> const a{.r = {1, 1, 1}}, b{.r = {4, 5, 1}};
-  ConstraintTerms<1> const gap = Distance{.length = 2.0}.constraint_function<double>(a, b, 0.0);
+  ConstraintTerms<1> const gap = constraint_function<double>(Distance{.length = 2.0}, a, b, 0.0);
   EXPECT_DOUBLE_EQ(gap.g[0], 3.0);
   EXPECT_LT((gap.Gb.head<3>() - Vec3(0.6, 0.8, 0).transpose()).norm(), 1e-15);
   EXPECT_EQ(gap.Gb.tail<3>().norm() + gap.Ga.tail<3>().norm(), 0.0);
@@ -69,11 +69,11 @@ TEST(Distance, GapIsALengthAndItsMultiplierATension) {
 // b moves around a at ω: the points keep their distance, and g̈ without accelerations is ω² L.
 TEST(Distance, GammaIsTheCentripetalAcceleration) {
   Frame<double> const b{.r = {2, 0, 0}, .v = {5, 3, 0}};
-  EXPECT_DOUBLE_EQ((Distance{.length = 2.0}.gamma<double>({}, b, 0.0)[0]), 9.0 / 2.0);
+  EXPECT_DOUBLE_EQ((constraint_gamma<double>(Distance{.length = 2.0}, {}, b, 0.0)[0]), 9.0 / 2.0);
 }
 
 TEST(Distance, OfPointsThatCoincideIsFinite) {
-  ConstraintTerms<1> const gap = Distance{.length = 2.0}.constraint_function<double>({}, {}, 0.0);
+  ConstraintTerms<1> const gap = constraint_function<double>(Distance{.length = 2.0}, {}, {}, 0.0);
   EXPECT_EQ(gap.g[0], -2.0);
   EXPECT_EQ(Vec3(gap.Gb.head<3>()), Vec3(1, 0, 0));
 }

@@ -1,4 +1,4 @@
-#include <polybody/joints/gear.hpp>
+#include <polybody/joints/gears.hpp>
 
 #include <gtest/gtest.h>
 
@@ -56,7 +56,7 @@ struct GearCase {
   }
 };
 
-double gap_of(Gear const& gear, Wheels const& w) { return gear.constraint_function<double>(w.a, w.b, 0.0).g[0]; }
+double gap_of(Gear const& gear, Wheels const& w) { return constraint_function<double>(gear, w.a, w.b, 0.0).g[0]; }
 
 TEST(Gear, IsClosedAfterAnyNumberOfTurns) {
   Gear const gear{.teeth_a = 20, .teeth_b = 50}, ring{.teeth_a = 20, .teeth_b = -50};
@@ -78,7 +78,7 @@ TEST(Gear, RollsAPlanetAboutItsSun) {
 // magnitude. With the distance d of the centres r_b = d N_b/(N_a + N_b), so f = 1/r_b for the moment 1.
 TEST(Gear, PushesTheTeethWhereThePitchCirclesTouch) {
   Wheels const w = wheels(0.0, 0.0, 0.0, 2.0);
-  ConstraintTerms<1> const gap = Gear{.teeth_a = 30, .teeth_b = 10}.constraint_function<double>(w.a, w.b, 0.0);
+  ConstraintTerms<1> const gap = constraint_function<double>(Gear{.teeth_a = 30, .teeth_b = 10}, w.a, w.b, 0.0);
   double const r_b = 2.0 * 10 / 40, r_a = 2.0 * 30 / 40;
   Vec6 of_a, of_b;
   of_b << 0, 1 / r_b, 0, 0, 0, -1;

@@ -1,7 +1,6 @@
 #include <polybody/joints/joint.hpp>
-#include <polybody/joints/planar/revolute.hpp>
-#include <polybody/joints/revolute.hpp>
-#include <polybody/joints/weld.hpp>
+#include <polybody/joints/planar/joints.hpp>
+#include <polybody/joints/standard_joints.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include <polybody/joints/knife_edge.hpp>
+#include <polybody/joints/nonholonomic.hpp>
 
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ TEST(KnifeEdge, RowIsTheVelocityAcrossSeenFromTheOtherBody) {
   Frame<double> blade{.r = {3, 0, 0}};
   KnifeEdge const edge{.across = Vec3::UnitY()};
   blade.A = edge.triad();
-  auto const gap = edge.constraint_function<double>(table, blade, 0.0);
+  auto const gap = constraint_function<double>(edge, table, blade, 0.0);
   EXPECT_NEAR((gap.Ga * twist(table) + gap.Gb * twist(blade))[0], -6.0, 1e-14);
   blade.v = {7, 6, 1};  // moved along with the table, and gliding
   EXPECT_NEAR((gap.Ga * twist(table) + gap.Gb * twist(blade))[0], 0.0, 1e-14);

@@ -1,4 +1,4 @@
-#include <polybody/joints/planar_joint.hpp>
+#include <polybody/joints/standard_joints.hpp>
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ struct PlaneOnPlaneCase {
 // b is 0.3 above the plane, tilted about a₂ by φ: b₃ = (sin φ, 0, cos φ).
 TEST(PlanarJoint, RowsAreTheHeightAndTheTilt) {
   Frame<double> const b{.r = {5, -7, 0.3}, .A = exp_so3<double>(Vec3(0, 0.2, 0))};
-  EXPECT_LT((PlanarJoint{}.constraint_function<double>({}, b, 0.0).g - Vec3(0.3, std::sin(0.2), 0)).norm(), 1e-15);
+  EXPECT_LT((constraint_function<double>(PlanarJoint{}, {}, b, 0.0).g - Vec3(0.3, std::sin(0.2), 0)).norm(), 1e-15);
 }
 
 TEST(PlanarJoint, RefusesANormalThatIsNotAUnitVector) {

@@ -1,6 +1,5 @@
-#include <polybody/joints/point_in_plane.hpp>
-#include <polybody/joints/point_on_line.hpp>
-#include <polybody/joints/prescribed_translation.hpp>
+#include <polybody/joints/driving_constraints.hpp>
+#include <polybody/joints/primitives.hpp>
 
 #include <gtest/gtest.h>
 
@@ -51,16 +50,16 @@ struct SlideCase {
 Frame<double> const b{.r = {0.1, 0.2, 0.3}};
 
 TEST(PointOnLine, RowsAreTheOffsetFromTheLine) {
-  EXPECT_EQ((PointOnLine{}.constraint_function<double>({}, b, 0.0).g), Vec2(0.1, 0.2));
+  EXPECT_EQ((constraint_function<double>(PointOnLine{}, {}, b, 0.0).g), Vec2(0.1, 0.2));
 }
 
 TEST(PointInPlane, RowIsTheHeightOverThePlane) {
-  EXPECT_EQ((PointInPlane{}.constraint_function<double>({}, b, 0.0).g[0]), 0.3);
+  EXPECT_EQ((constraint_function<double>(PointInPlane{}, {}, b, 0.0).g[0]), 0.3);
 }
 
 TEST(PrescribedTranslation, RowIsWhatTheSlideLacks) {
   PrescribedTranslation<Constant> const still{.law = {.value = 0.25}};
-  EXPECT_DOUBLE_EQ((still.constraint_function<double>({}, b, 0.0).g[0]), 0.05);
+  EXPECT_DOUBLE_EQ((constraint_function<double>(still, {}, b, 0.0).g[0]), 0.05);
 }
 
 TEST(PrescribedTranslation, TellsTheCornersOfItsLawAndRefusesAJump) {

@@ -1,6 +1,6 @@
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/policies/penalty.hpp>
-#include <polybody/joints/revolute.hpp>
+#include <polybody/joints/standard_joints.hpp>
 
 #include <gtest/gtest.h>
 
@@ -58,7 +58,7 @@ TEST(Penalty, ElasticForcesOfAnOpenPinBalanceInMoment) {
   Numbers number;
   for (int k = 0; k < 3; ++k) {
     Frame<double> const a = number.frame(), b = number.frame();
-    ConstraintTerms<5> const gap = Revolute{}.constraint_function<double>(a, b, 0.0);
+    ConstraintTerms<5> const gap = constraint_function<double>(Revolute{}, a, b, 0.0);
     auto const lambda = penalty.multiplier<5, double>(gap.g, Vec<double, 5>::Zero());
     Vec6 const wa = gap.Ga.transpose() * lambda, wb = gap.Gb.transpose() * lambda;
     Vec3 const moment = wa.tail<3>() + a.r.cross(wa.head<3>()) + wb.tail<3>() + b.r.cross(wb.head<3>());

@@ -1,4 +1,4 @@
-#include <polybody/joints/prescribed_angle.hpp>
+#include <polybody/joints/driving_constraints.hpp>
 
 #include <gtest/gtest.h>
 
@@ -51,15 +51,15 @@ struct Steady {
 TEST(PrescribedAngle, HoldsBeyondManyTurns) {
   PrescribedAngle<Steady> const steady{};
   for (double const t : {0.5, 3.1, 3.2, 40.0, -17.0, 1000.0}) {
-    EXPECT_NEAR(steady.constraint_function<double>(turned(0.3), turned(0.3 + t), t).g[0], 0.0, 1e-12) << t;
-    EXPECT_NEAR(steady.constraint_function<double>(turned(0.3), turned(0.5 + t), t).g[0], 0.2, 1e-12) << t;
+    EXPECT_NEAR(constraint_function<double>(steady, turned(0.3), turned(0.3 + t), t).g[0], 0.0, 1e-12) << t;
+    EXPECT_NEAR(constraint_function<double>(steady, turned(0.3), turned(0.5 + t), t).g[0], 0.2, 1e-12) << t;
   }
 }
 
 TEST(PrescribedAngle, MeasuresTheTurnAboutTheThirdAxis) {
   for (double const angle : {-3.0, -1e-8, 1e-4, 1.0, 3.0})
-    EXPECT_NEAR(PrescribedAngle<Constant>{.law = {.value = 0.0}}
-                    .constraint_function<double>(turned(1.0), turned(1.0 + angle), 0.0)
+    EXPECT_NEAR(constraint_function<double>(PrescribedAngle<Constant>{.law = {.value = 0.0}}, turned(1.0),
+                                            turned(1.0 + angle), 0.0)
                     .g[0],
                 angle, 1e-15);
 }
@@ -67,7 +67,7 @@ TEST(PrescribedAngle, MeasuresTheTurnAboutTheThirdAxis) {
 // ġ = a₃ · (ω_b − ω_a) − ψ̇ if b₁ is in the plane of a₁, a₂.
 TEST(PrescribedAngle, RateIsTheRelativeAngularVelocityLessTheDrives) {
   PrescribedAngle<Steady> const steady{.law = {.speed = 2.0}};
-  ConstraintTerms<1> const gap = steady.constraint_function<double>(turned(0.4), turned(1.7), 0.3);
+  ConstraintTerms<1> const gap = constraint_function<double>(steady, turned(0.4), turned(1.7), 0.3);
   EXPECT_LT((gap.Gb.tail<3>() - Vec3(0, 0, 1).transpose()).norm(), 1e-15);
   EXPECT_LT((gap.Ga.tail<3>() + Vec3(0, 0, 1).transpose()).norm(), 1e-15);
   EXPECT_EQ(gap.rate[0], -2.0);

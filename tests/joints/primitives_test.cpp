@@ -1,10 +1,5 @@
-#include <polybody/joints/cylindrical.hpp>
-#include <polybody/joints/planar_joint.hpp>
 #include <polybody/joints/primitives.hpp>
-#include <polybody/joints/prismatic.hpp>
-#include <polybody/joints/revolute.hpp>
-#include <polybody/joints/universal.hpp>
-#include <polybody/joints/weld.hpp>
+#include <polybody/joints/standard_joints.hpp>
 
 #include <gtest/gtest.h>
 
@@ -62,9 +57,9 @@ MatX maps(G const& geometry, Mat3 const& from, Frame<double> a, Frame<double> b)
   Mat3 const turn = from.transpose() * geometry.triad();
   a.A *= turn;
   b.A *= turn;
-  ConstraintTerms<G::rows> const gap = geometry.template constraint_function<double>(a, b, 0.0);
+  ConstraintTerms<constraint_equations<G>()> const gap = constraint_function<double>(geometry, a, b, 0.0);
   EXPECT_LT(gap.g.norm(), 1e-14) << G::name;
-  MatX g(G::rows, 12);
+  MatX g(constraint_equations<G>(), 12);
   g << gap.Ga, gap.Gb;
   return g;
 }
@@ -91,13 +86,13 @@ struct Pose {
 /// of wrenches: the projectors Bᵀ B are equal.
 template <JointGeometry G, JointGeometry... Primitives>
 void expect_equal(G const& joint, Pose (*pose)(Numbers&), Primitives const&... primitives) {
-  static_assert((Primitives::rows + ...) == G::rows);
+  static_assert((constraint_equations<Primitives>() + ...) == constraint_equations<G>());
   Numbers number;
   for (int k = 0; k < 5; ++k) {
     Pose const at = pose(number);
     Frame<double> const a = number.frame();
     Frame<double> const b{.r = a.r + a.A * at.d, .A = a.A * at.R};
-    MatX stacked(G::rows, 12);
+    MatX stacked(constraint_equations<G>(), 12);
     Index row = 0;
     auto const stack = [&](MatX const& g) {
       stacked.middleRows(row, g.rows()) = g;

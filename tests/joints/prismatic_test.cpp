@@ -1,5 +1,5 @@
-#include <polybody/joints/planar/prismatic.hpp>
-#include <polybody/joints/prismatic.hpp>
+#include <polybody/joints/planar/joints.hpp>
+#include <polybody/joints/standard_joints.hpp>
 
 #include <gtest/gtest.h>
 

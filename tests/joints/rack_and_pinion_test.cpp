@@ -1,4 +1,4 @@
-#include <polybody/joints/rack_and_pinion.hpp>
+#include <polybody/joints/gears.hpp>
 
 #include <gtest/gtest.h>
 
@@ -50,8 +50,8 @@ struct RackCase {
 TEST(RackAndPinion, RollsOnAFloorByANegativeRadius) {
   RackAndPinion const floor{.radius = -0.5};
   for (double const s : {0.0, 1.0, -40.0, 500.0}) {
-    EXPECT_NEAR(floor.constraint_function<double>({}, pinion(s, 0.5, -s / 0.5), 0.0).g[0], 0.0, 1e-12) << s;
-    EXPECT_NEAR(floor.constraint_function<double>({}, pinion(s + 0.01, 0.5, -s / 0.5), 0.0).g[0], 0.01, 1e-12) << s;
+    EXPECT_NEAR(constraint_function<double>(floor, {}, pinion(s, 0.5, -s / 0.5), 0.0).g[0], 0.0, 1e-12) << s;
+    EXPECT_NEAR(constraint_function<double>(floor, {}, pinion(s + 0.01, 0.5, -s / 0.5), 0.0).g[0], 0.01, 1e-12) << s;
   }
 }
 

@@ -1,15 +1,7 @@
-#include <polybody/joints/constant_orientation.hpp>
-#include <polybody/joints/cylindrical.hpp>
-#include <polybody/joints/planar/revolute.hpp>
-#include <polybody/joints/planar_joint.hpp>
-#include <polybody/joints/point_in_plane.hpp>
-#include <polybody/joints/point_on_line.hpp>
+#include <polybody/joints/planar/joints.hpp>
 #include <polybody/joints/primitives.hpp>
-#include <polybody/joints/prismatic.hpp>
 #include <polybody/joints/relative_coordinates.hpp>
-#include <polybody/joints/revolute.hpp>
-#include <polybody/joints/spherical.hpp>
-#include <polybody/joints/weld.hpp>
+#include <polybody/joints/standard_joints.hpp>
 
 #include <gtest/gtest.h>
 
@@ -33,7 +25,7 @@ Frame<double> const a{.r = {0.2, -1, 3}, .A = exp_so3<double>(Vec3(0.3, 1, -2)),
 
 Frame<double> beside(Vec3 const& d, Mat3 const& turn) { return {.r = a.r + a.A * d, .A = a.A * turn}; }
 Vec6 coordinates(Mat3 const& turn) {
-  return RelativeCoordinates{}.constraint_function<double>(a, beside({0, 0, 0}, turn), 0.0).g;
+  return constraint_function<double>(RelativeCoordinates{}, a, beside({0, 0, 0}, turn), 0.0).g;
 }
 
 // The pose consists of d, then a rotation of b by ψ about a₃ and a swing by the vector (s₁, s₂, 0).
@@ -44,7 +36,7 @@ TEST(RelativeCoordinates, AreTheSlideTheSwingAndTheTwist) {
       Mat3 const turn = exp_so3<double>(s) * exp_so3<double>(Vec3(0, 0, psi));
       Vec6 x;
       x << d, s[0], s[1], psi;
-      EXPECT_LT((RelativeCoordinates{}.constraint_function<double>(a, beside(d, turn), 0.0).g - x).norm(),
+      EXPECT_LT((constraint_function<double>(RelativeCoordinates{}, a, beside(d, turn), 0.0).g - x).norm(),
                 1e-14 * (3.0 + 20.0 / (3.2 - size)));
     }
 }
@@ -76,7 +68,7 @@ TEST(RelativeCoordinates, RateOfTheTwistAloneIsTheSpinAboutTheAxis) {
   Frame<double> b = beside({0, 0, 0}, exp_so3<double>(Vec3(0, 0, 2.0)));
   b.v = a.v;
   b.w = a.w + 3.0 * a.A.col(2);
-  ConstraintTerms<6> const gap = RelativeCoordinates{}.constraint_function<double>(a, b, 0.0);
+  ConstraintTerms<6> const gap = constraint_function<double>(RelativeCoordinates{}, a, b, 0.0);
   Vec6 rate = gap.Ga * twist(a) + gap.Gb * twist(b);
   rate[5] -= 3.0;
   EXPECT_LT(rate.norm(), 1e-14);
@@ -86,7 +78,7 @@ TEST(RelativeCoordinates, RateOfTheTwistAloneIsTheSpinAboutTheAxis) {
 template <class G>
 Vec6 felt() {
   ConstraintTerms<6> const gap =
-      ConstrainedCoordinates<G>{}.template constraint_function<double>(a, beside({0, 0, 0}, Mat3::Identity()), 0.0);
+      constraint_function<double>(ConstrainedCoordinates<G>{}, a, beside({0, 0, 0}, Mat3::Identity()), 0.0);
   Vec6 out;
   for (int i = 0; i < 3; ++i) {
     Vec6 along = Vec6::Zero(), about = Vec6::Zero();
@@ -115,13 +107,13 @@ TEST(ConstrainedCoordinates, LeaveFreeWhatTheGeometryLeavesFree) {
 // changes no constraint function, and each constrained motion changes one.
 template <class G>
 void expect_freedoms_of_the_rows() {
-  ConstraintTerms<G::rows> const gap =
-      G{}.template constraint_function<double>(a, beside({0, 0, 0}, Mat3::Identity()), 0.0);
+  ConstraintTerms<constraint_equations<G>()> const gap =
+      constraint_function<double>(G{}, a, beside({0, 0, 0}, Mat3::Identity()), 0.0);
   for (int i = 0; i < 6; ++i) {
     Vec6 motion = Vec6::Zero();
     motion.segment<3>(i < 3 ? 0 : 3) = a.A.col(i % 3);
     double const moved = (gap.Gb * motion).norm();
-    if (G::free[std::size_t(i)]) {
+    if (free_directions<G>()[std::size_t(i)]) {
       EXPECT_LT(moved, 1e-14) << G::name << i;
     } else {
       EXPECT_GT(moved, 0.9) << G::name << i;
@@ -153,7 +145,7 @@ void expect_gradient_of_the_others() {
   Vec6 lambda = number.vec<6>(2.0);
   Mat<double, 12, 12> const found = wrench_gradient(ConstrainedCoordinates<G>{}, a, b, 0.0, lambda);
   for (int i = 0; i < 6; ++i)
-    if (G::free[std::size_t(i)]) lambda[i] = 0.0;
+    if (free_directions<G>()[std::size_t(i)]) lambda[i] = 0.0;
   Mat<double, 12, 12> const expected = RelativeCoordinates{}.wrench_gradient(a, b, lambda);
   EXPECT_GT(expected.norm(), 1.0);
   EXPECT_LT((found - expected).norm(), 1e-13 * expected.norm()) << G::name;
@@ -168,7 +160,7 @@ TEST(ConstrainedCoordinates, WrenchGradientLeavesTheFreedomsFree) {
 // A ball joint may rotate until its axis is opposite to its initial direction. There swing and twist are undefined.
 TEST(ConstrainedCoordinates, OfABallJointHoldAtEveryTurn) {
   Frame<double> const b = beside({0.1, 0, 0}, Vec3(1, -1, -1).asDiagonal().toDenseMatrix());
-  ConstraintTerms<6> const gap = ConstrainedCoordinates<Spherical>{}.constraint_function<double>(a, b, 0.0);
+  ConstraintTerms<6> const gap = constraint_function<double>(ConstrainedCoordinates<Spherical>{}, a, b, 0.0);
   EXPECT_TRUE(gap.Ga.allFinite() && gap.Gb.allFinite());
   EXPECT_NEAR(gap.g.norm(), 0.1, 1e-15);
 }

@@ -1,4 +1,4 @@
-#include <polybody/joints/revolute_pin.hpp>
+#include <polybody/joints/standard_joints.hpp>
 
 #include <gtest/gtest.h>
 
@@ -28,12 +28,12 @@ TEST(RevolutePin, RowsAreThoseOfTheThesis) {
   Frame<double> const b{.r = {0.1, 0.2, 0.3}, .A = exp_so3<double>(Vec3(0.25, 0, 0))};
   Vec<double, 5> expected;
   expected << 0, -std::sin(0.25), 0.1, 0.2, 0.14 - 0.25;
-  EXPECT_LT((RevolutePin{.distance = 0.5}.constraint_function<double>({}, b, 0.0).g - expected).norm(), 1e-15);
+  EXPECT_LT((constraint_function<double>(RevolutePin{.distance = 0.5}, {}, b, 0.0).g - expected).norm(), 1e-15);
 }
 
 // The requirement L > 0: at coincident points the fifth row of the Jacobian is zero.
 TEST(RevolutePin, WouldHaveRankFourAtOnePoint) {
-  EXPECT_EQ((RevolutePin{.distance = 0.0}.constraint_function<double>({}, {}, 0.0).Gb.row(4).norm()), 0.0);
+  EXPECT_EQ((constraint_function<double>(RevolutePin{.distance = 0.0}, {}, {}, 0.0).Gb.row(4).norm()), 0.0);
   for (double const l : {0.0, -0.1, double(NAN)})
     EXPECT_TRUE(has(refusal([&] { RevolutePin{.distance = l}.check("\"pin\""); }),
                     "\"pin\": the distance of its points along the axis must be positive"));

@@ -1,5 +1,5 @@
-#include <polybody/joints/planar/revolute.hpp>
-#include <polybody/joints/revolute.hpp>
+#include <polybody/joints/planar/joints.hpp>
+#include <polybody/joints/standard_joints.hpp>
 
 #include <gtest/gtest.h>
 
@@ -48,7 +48,7 @@ TEST(Revolute, RefusesAnAxisThatIsNotAUnitVector) {
 TEST(Revolute, TakesNoAccountOfWhichWayTheAxisPoints) {
   Frame<double> const a;
   Frame<double> const b{.A = exp_so3<double>(Vec3(std::numbers::pi, 0, 0))};
-  EXPECT_LT(Revolute{}.constraint_function<double>(a, b, 0.0).g.norm(), 1e-15);
+  EXPECT_LT(constraint_function<double>(Revolute{}, a, b, 0.0).g.norm(), 1e-15);
 }
 
 }  // namespace revolute_test

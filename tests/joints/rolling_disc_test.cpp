@@ -1,4 +1,4 @@
-#include <polybody/joints/rolling_disc.hpp>
+#include <polybody/joints/nonholonomic.hpp>
 
 #include <gtest/gtest.h>
 
@@ -42,7 +42,7 @@ TEST(RollingDisc, RowsAreTheHeightOfTheRimAndTheVelocityOfTheContactPoint) {
   Mat3 const axes = disc.triad();
   for (double const omega : {0.0, 6.0, 9.0}) {
     Frame<double> const floor{.A = axes}, b{.r = {4, 5, 0.6}, .A = axes, .v = {3, 0, -1}, .w = {0, omega, 0}};
-    auto const gap = disc.constraint_function<double>(floor, b, 0.0);
+    auto const gap = constraint_function<double>(disc, floor, b, 0.0);
     Vec3 const rate = gap.Gb * twist(b);
     EXPECT_NEAR(gap.g[0], 0.1, 1e-14);
     EXPECT_NEAR(rate[0], -1.0, 1e-14);

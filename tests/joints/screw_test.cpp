@@ -1,4 +1,4 @@
-#include <polybody/joints/screw.hpp>
+#include <polybody/joints/standard_joints.hpp>
 
 #include <gtest/gtest.h>
 
@@ -35,16 +35,16 @@ TEST(Screw, CountsItsTurnsByTheSlide) {
   for (double const pitch : {0.7, -0.02})
     for (double const angle : {0.0, 1.0, 3.1, 3.2, -40.0, 1000.0}) {
       Screw const screw{.pitch = pitch};
-      EXPECT_NEAR(screw.constraint_function<double>({}, nut(pitch * angle, angle), 0.0).g[4], 0.0, 1e-12) << angle;
-      EXPECT_NEAR(screw.constraint_function<double>({}, nut(pitch * angle + 0.01, angle), 0.0).g[4], 0.01, 1e-12)
+      EXPECT_NEAR(constraint_function<double>(screw, {}, nut(pitch * angle, angle), 0.0).g[4], 0.0, 1e-12) << angle;
+      EXPECT_NEAR(constraint_function<double>(screw, {}, nut(pitch * angle + 0.01, angle), 0.0).g[4], 0.01, 1e-12)
           << angle;
     }
 }
 
 // A translation by one lead 2π p without rotation leads to the next thread.
 TEST(Screw, IsClosedOnEveryThread) {
-  EXPECT_NEAR((Screw{.pitch = p}.constraint_function<double>({}, nut(2.0 * pi * p, 0.0), 0.0).g[4]), 0.0, 1e-14);
-  EXPECT_NEAR((Screw{.pitch = p}.constraint_function<double>({}, nut(0.9 * pi * p, 0.0), 0.0).g[4]), 0.9 * pi * p,
+  EXPECT_NEAR((constraint_function<double>(Screw{.pitch = p}, {}, nut(2.0 * pi * p, 0.0), 0.0).g[4]), 0.0, 1e-14);
+  EXPECT_NEAR((constraint_function<double>(Screw{.pitch = p}, {}, nut(0.9 * pi * p, 0.0), 0.0).g[4]), 0.9 * pi * p,
               1e-14);
 }
 

@@ -1,4 +1,4 @@
-#include <polybody/joints/spherical.hpp>
+#include <polybody/joints/standard_joints.hpp>
 
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ TEST(Spherical, GapLeadsFromTheFirstPointToTheSecond) {
   Frame<double> a, b;
   a.r = {1, 2, 3};
   b.r = {1.5, 1, 3};
-  EXPECT_EQ(Spherical{}.constraint_function<double>(a, b, 0.0).g, Vec3(0.5, -1, 0));
+  EXPECT_EQ(constraint_function<double>(Spherical{}, a, b, 0.0).g, Vec3(0.5, -1, 0));
 }
 
 }  // namespace spherical_test

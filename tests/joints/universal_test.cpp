@@ -1,4 +1,4 @@
-#include <polybody/joints/universal.hpp>
+#include <polybody/joints/standard_joints.hpp>
 
 #include <gtest/gtest.h>
 
@@ -38,7 +38,7 @@ TEST(Universal, TakesBothArmsOfTheCross) {
 // φ, 0, cos φ).
 TEST(Universal, FourthRowIsTheCosineBetweenTheArms) {
   Frame<double> const b{.A = exp_so3<double>(Vec3(0, 0.3, 0))};
-  EXPECT_NEAR((Universal{}.constraint_function<double>({}, b, 0.0).g[3]), std::sin(0.3), 1e-15);
+  EXPECT_NEAR((constraint_function<double>(Universal{}, {}, b, 0.0).g[3]), std::sin(0.3), 1e-15);
 }
 
 TEST(Universal, RefusesArmsThatMakeNoCross) {

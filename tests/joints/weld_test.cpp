@@ -1,5 +1,5 @@
-#include <polybody/joints/planar/weld.hpp>
-#include <polybody/joints/weld.hpp>
+#include <polybody/joints/planar/joints.hpp>
+#include <polybody/joints/standard_joints.hpp>
 
 #include <gtest/gtest.h>
 
@@ -29,10 +29,10 @@ TEST(Weld, RotationalRowsMeasureTheTurn) {
   Vec3 const phi = Vec3(1, -2, 3) * 1e-7;
   Frame<double> const a{.A = exp_so3<double>(Vec3(0.3, 1, -2))};
   Frame<double> const b{.A = a.A * exp_so3<double>(phi)};
-  EXPECT_LT((Weld{}.constraint_function<double>(a, b, 0.0).g.tail<3>() + Vec3(phi[2], phi[0], phi[1])).norm(), 1e-12);
+  EXPECT_LT((constraint_function<double>(Weld{}, a, b, 0.0).g.tail<3>() + Vec3(phi[2], phi[0], phi[1])).norm(), 1e-12);
   Frame<double> const c{.A = exp_so3<double>(Vec3(0, 0, 0.7))};
   Frame<double> const d{.A = exp_so3<double>(Vec3(0, 0, 0.7 + 1e-7))};
-  EXPECT_NEAR((planar::Weld{}.constraint_function<double>(c, d, 0.0).g[2]), 1e-7, 1e-15);
+  EXPECT_NEAR((constraint_function<double>(planar::Weld{}, c, d, 0.0).g[2]), 1e-7, 1e-15);
 }
 
 }  // namespace weld_test

@@ -53,7 +53,7 @@ constexpr char const* policy_name() {
 /// Placeholder for `PenaltyPerEquation` with as many numbers as the geometry has constraint equations.
 struct PerRow {};
 template <class P, class G>
-using PolicyFor = std::conditional_t<std::is_same_v<P, PerRow>, PenaltyPerEquation<G::rows>, P>;
+using PolicyFor = std::conditional_t<std::is_same_v<P, PerRow>, PenaltyPerEquation<constraint_equations<G>()>, P>;
 
 /// Joints of one policy.
 template <class P, class... Gs>

@@ -119,7 +119,8 @@ JointKind joint_kind(char const* geometry, char const* policy) {
       requires(G g) { g.length; } || requires(G g) { g.centres; } || requires(G g) { g.normal, g.radius; })
     offset = Offset::across;
   constexpr bool asks_axis = !LinearPolicy<P> && needs_of_second<typename J::Measured>() == MarkerKind::axis;
-  return {geometry,       policy, ConstrainingPolicy<P> ? G::rows : 0, offset, asks_axis, EliminatingPolicy<P>,
+  return {geometry,       policy,    ConstrainingPolicy<P> ? constraint_equations<G>() : 0,
+          offset,         asks_axis, EliminatingPolicy<P>,
           LinearPolicy<P>};
 }
 
@@ -357,7 +358,7 @@ struct Realiser<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>> {
       for_each(List<Js...>{}, 0, [&]<class J>(int i) {
         if (i != j.kind) return;
         J const joint{detail::geometry_of<typename J::Geometry>(j, plan.planar),
-                      detail::policy_of<typename J::PolicyType, J::Geometry::rows>(j)};
+                      detail::policy_of<typename J::PolicyType, constraint_equations<typename J::Geometry>()>(j)};
         with_ends<Joined, J>(j.a, j.b, [&]<class A, class B>() {
           model.connect(joint, marker<A>(j.a), marker<B>(j.b), "joint " + std::to_string(n));
         });

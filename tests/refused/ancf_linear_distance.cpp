@@ -1,8 +1,8 @@
 // refused: AncfLinear supports Spherical, Revolute and Weld
 // Distance does not name its free directions.
 #include <polybody/bodies/ancf/ancf_beam.hpp>
-#include <polybody/joints/distance.hpp>
 #include <polybody/joints/policies/ancf_linear.hpp>
+#include <polybody/joints/primitives.hpp>
 #include <polybody/system/model.hpp>
 
 using namespace polybody;

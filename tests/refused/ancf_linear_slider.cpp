@@ -1,7 +1,7 @@
 // refused: AncfLinear supports Spherical, Revolute and Weld
 #include <polybody/bodies/ancf/ancf_beam.hpp>
 #include <polybody/joints/policies/ancf_linear.hpp>
-#include <polybody/joints/prismatic.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/system/model.hpp>
 
 using namespace polybody;

@@ -1,5 +1,5 @@
 // refused: Use `auto` for this object
-#include <polybody/joints/revolute.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/system/model.hpp>
 
 using namespace polybody;

@@ -1,7 +1,7 @@
 // refused: supports the policies Constraint, Penalty and Bushing
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/integrators/energy_momentum.hpp>
-#include <polybody/joints/planar/weld.hpp>
+#include <polybody/joints/planar/joints.hpp>
 #include <polybody/joints/policies/nonlinear_bushing.hpp>
 #include <polybody/run/simulate.hpp>
 

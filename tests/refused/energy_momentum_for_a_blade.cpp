@@ -2,7 +2,7 @@
 // A blade constrains a velocity: there is no constraint function whose change over a step could be computed.
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/integrators/energy_momentum.hpp>
-#include <polybody/joints/knife_edge.hpp>
+#include <polybody/joints/nonholonomic.hpp>
 #include <polybody/run/simulate.hpp>
 
 using namespace polybody;

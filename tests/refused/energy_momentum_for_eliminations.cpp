@@ -1,7 +1,7 @@
 // refused: does not support policies that eliminate coordinates
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/integrators/energy_momentum.hpp>
-#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/planar/joints.hpp>
 #include <polybody/run/simulate.hpp>
 
 using namespace polybody;

@@ -1,7 +1,7 @@
 // refused: This explicit integrator has no stabilisation
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
-#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/planar/joints.hpp>
 #include <polybody/run/simulate.hpp>
 
 using namespace polybody;

@@ -1,7 +1,7 @@
 // accepted
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/policies/joint_coordinates.hpp>
-#include <polybody/joints/revolute.hpp>
+#include <polybody/joints/standard_joints.hpp>
 
 using namespace polybody;
 using Hinge = Joint<Revolute, JointCoordinates>;

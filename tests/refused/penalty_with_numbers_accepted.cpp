@@ -1,5 +1,5 @@
 // accepted
 #include <polybody/joints/joint.hpp>
-#include <polybody/joints/spherical.hpp>
+#include <polybody/joints/standard_joints.hpp>
 
 polybody::Joint<polybody::Spherical, polybody::Penalty> joint{{}, {.stiffness = 1e7, .damping = 1e3}};

@@ -1,6 +1,6 @@
 // refused: A planar joint connects planar bodies
 #include <polybody/bodies/rigid/planar_rigid.hpp>
-#include <polybody/joints/screw.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/system/model.hpp>
 
 using namespace polybody;

@@ -1,6 +1,6 @@
 // accepted
 #include <polybody/bodies/rigid/planar_rigid.hpp>
-#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/planar/joints.hpp>
 #include <polybody/system/model.hpp>
 
 using namespace polybody;

@@ -1,6 +1,6 @@
 // refused: A compliant policy needs potential
 #include <polybody/joints/joint.hpp>
-#include <polybody/joints/spherical.hpp>
+#include <polybody/joints/standard_joints.hpp>
 
 using namespace polybody;
 

@@ -1,7 +1,7 @@
 // refused: not for all stages of a step together
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/integrators/radau.hpp>
-#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/planar/joints.hpp>
 #include <polybody/run/simulate.hpp>
 
 using namespace polybody;

@@ -1,7 +1,7 @@
 // refused: JointCoordinates supports joints between the ground, rigid bodies and floating frames
 #include <polybody/bodies/ancf/ancf_beam.hpp>
 #include <polybody/joints/policies/joint_coordinates.hpp>
-#include <polybody/joints/revolute.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/system/model.hpp>
 
 using namespace polybody;

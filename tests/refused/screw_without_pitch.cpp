@@ -1,4 +1,4 @@
 // refused: Required
-#include <polybody/joints/screw.hpp>
+#include <polybody/joints/standard_joints.hpp>
 
 polybody::Screw screw{};

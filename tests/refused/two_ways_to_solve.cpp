@@ -1,7 +1,6 @@
 // refused: must use the same JointCoordinatesBy
 #include <polybody/bodies/rigid/planar_rigid.hpp>
-#include <polybody/joints/planar/prismatic.hpp>
-#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/planar/joints.hpp>
 #include <polybody/system/model.hpp>
 
 using namespace polybody;

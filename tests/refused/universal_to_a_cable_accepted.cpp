@@ -1,6 +1,6 @@
 // accepted
 #include <polybody/bodies/ancf/ancf_cable.hpp>
-#include <polybody/joints/universal.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/system/model.hpp>
 
 using namespace polybody;

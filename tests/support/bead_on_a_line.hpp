@@ -4,9 +4,9 @@
 
 #include <polybody/bodies/ancf/planar_ancf_cable.hpp>
 #include <polybody/bodies/rigid/planar_rigid.hpp>
-#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/driving_constraints.hpp>
+#include <polybody/joints/planar/joints.hpp>
 #include <polybody/joints/policies/constraint.hpp>
-#include <polybody/joints/prescribed_rate.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/sliders.hpp>
 

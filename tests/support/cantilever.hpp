@@ -3,7 +3,7 @@
 /// the model of the static reference cases.
 
 #include <polybody/forces/point_load.hpp>
-#include <polybody/joints/planar/weld.hpp>
+#include <polybody/joints/planar/joints.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/statics/equilibrium.hpp>

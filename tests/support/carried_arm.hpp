@@ -5,13 +5,10 @@
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/forces/spring_damper.hpp>
 #include <polybody/gradients/objective.hpp>
-#include <polybody/joints/cylindrical.hpp>
-#include <polybody/joints/distance.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/policies/joint_coordinates.hpp>
-#include <polybody/joints/prismatic.hpp>
-#include <polybody/joints/revolute.hpp>
-#include <polybody/joints/spherical.hpp>
+#include <polybody/joints/primitives.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/probe.hpp>
 
 namespace polybody {

@@ -2,9 +2,8 @@
 /// \file Euler's columns (S9e) and a strip under a force in its stiff plane (S9d): buckling loads of rods, and the
 /// bent equilibrium after buckling.
 
-#include <polybody/joints/point_on_line.hpp>
-#include <polybody/joints/prismatic.hpp>
-#include <polybody/joints/revolute.hpp>
+#include <polybody/joints/primitives.hpp>
+#include <polybody/joints/standard_joints.hpp>
 
 #include "support/buckling.hpp"
 #include "support/held.hpp"

@@ -3,10 +3,10 @@
 
 #include <polybody/bodies/ancf/ancf_cable.hpp>
 #include <polybody/gradients/objective.hpp>
-#include <polybody/joints/distance.hpp>
 #include <polybody/joints/policies/ancf_linear.hpp>
 #include <polybody/joints/policies/constraint.hpp>
-#include <polybody/joints/spherical.hpp>
+#include <polybody/joints/primitives.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/probe.hpp>
 
 namespace polybody {

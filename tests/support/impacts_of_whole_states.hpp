@@ -7,7 +7,7 @@
 
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/joints/policies/joint_coordinates.hpp>
-#include <polybody/joints/screw.hpp>
+#include <polybody/joints/standard_joints.hpp>
 
 #include "support/differences_of_runs.hpp"
 #include "support/hung_cables.hpp"

@@ -9,14 +9,11 @@
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/forces/spring_damper.hpp>
-#include <polybody/joints/planar/revolute.hpp>
-#include <polybody/joints/planar/weld.hpp>
+#include <polybody/joints/driving_constraints.hpp>
+#include <polybody/joints/planar/joints.hpp>
 #include <polybody/joints/policies/bushing.hpp>
 #include <polybody/joints/policies/nonlinear_bushing.hpp>
-#include <polybody/joints/prescribed_angle.hpp>
-#include <polybody/joints/prismatic.hpp>
-#include <polybody/joints/revolute.hpp>
-#include <polybody/joints/spherical.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/system/system.hpp>
 #include <polybody/testing/frames.hpp>
 

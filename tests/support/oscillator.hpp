@@ -1,7 +1,7 @@
 #pragma once
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/forces/spring_damper.hpp>
-#include <polybody/joints/planar/prismatic.hpp>
+#include <polybody/joints/planar/joints.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/run/simulate.hpp>
 #include <polybody/solvers/dense_lu.hpp>

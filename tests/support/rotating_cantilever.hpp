@@ -4,10 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/rigid/rigid.hpp>
+#include <polybody/joints/driving_constraints.hpp>
 #include <polybody/joints/joint.hpp>
-#include <polybody/joints/prescribed_angle.hpp>
-#include <polybody/joints/revolute.hpp>
-#include <polybody/joints/weld.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/vibration/steady_rotation.hpp>
 
 #include "held.hpp"

@@ -4,7 +4,7 @@
 
 #include <polybody/forces/point_load.hpp>
 #include <polybody/joints/policies/constraint.hpp>
-#include <polybody/joints/weld.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/statics/equilibrium.hpp>
 

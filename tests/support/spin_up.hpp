@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <polybody/integrators/generalised_alpha.hpp>
+#include <polybody/joints/driving_constraints.hpp>
 #include <polybody/joints/joint.hpp>
-#include <polybody/joints/prescribed_angle.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 

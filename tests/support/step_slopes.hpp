@@ -9,12 +9,11 @@
 #include <polybody/gradients/parameter.hpp>
 #include <polybody/gradients/solved_points.hpp>
 #include <polybody/integrators/system_for.hpp>
+#include <polybody/joints/driving_constraints.hpp>
 #include <polybody/joints/policies/bushing.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/policies/penalty.hpp>
-#include <polybody/joints/prescribed_angle.hpp>
-#include <polybody/joints/revolute.hpp>
-#include <polybody/joints/spherical.hpp>
+#include <polybody/joints/standard_joints.hpp>
 
 #include <gtest/gtest.h>
 

@@ -103,7 +103,7 @@ Count run_all(G const& pin = G{.axis = {0, 1, 0}}) {
         },
         integrators());
   };
-  std::apply([&](auto const&... policy) { (with(policy), ...); }, policies<G::rows>());
+  std::apply([&](auto const&... policy) { (with(policy), ...); }, policies<constraint_equations<G>()>());
   return count;
 }
 

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/rigid/planar_rigid.hpp>
-#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/planar/joints.hpp>
 #include <polybody/joints/policies/penalty.hpp>
 #include <polybody/run/probe.hpp>
 

@@ -7,8 +7,7 @@
 #include <polybody/gradients/parameter.hpp>
 #include <polybody/joints/policies/bushing.hpp>
 #include <polybody/joints/policies/penalty.hpp>
-#include <polybody/joints/revolute.hpp>
-#include <polybody/joints/spherical.hpp>
+#include <polybody/joints/standard_joints.hpp>
 
 namespace polybody {
 

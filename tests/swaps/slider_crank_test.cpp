@@ -66,7 +66,8 @@ Count each_policy() {
     }
     ++count.refused;
   };
-  std::apply([&](auto const&... policy) { (with(policy), ...); }, swaps::policies<planar::Revolute::rows>());
+  std::apply([&](auto const&... policy) { (with(policy), ...); },
+             swaps::policies<constraint_equations<planar::Revolute>()>());
   return count;
 }
 

@@ -4,7 +4,7 @@
 #include <polybody/bodies/ffr/ffr.hpp>
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/forces/spring_damper.hpp>
-#include <polybody/joints/spherical.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/system/model.hpp>
 

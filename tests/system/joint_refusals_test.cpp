@@ -3,14 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <polybody/bodies/rigid/rigid.hpp>
+#include <polybody/joints/driving_constraints.hpp>
 #include <polybody/joints/policies/bushing.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/policies/nonlinear_bushing.hpp>
 #include <polybody/joints/policies/penalty.hpp>
-#include <polybody/joints/prescribed_angle.hpp>
-#include <polybody/joints/prescribed_distance.hpp>
-#include <polybody/joints/prescribed_translation.hpp>
-#include <polybody/joints/revolute.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/math/smooth_table.hpp>
 #include <polybody/system/model.hpp>
 

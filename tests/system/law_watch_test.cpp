@@ -8,10 +8,9 @@
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/radau.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
+#include <polybody/joints/driving_constraints.hpp>
 #include <polybody/joints/joint.hpp>
-#include <polybody/joints/planar/revolute.hpp>
-#include <polybody/joints/prescribed_angle.hpp>
-#include <polybody/joints/prescribed_distance.hpp>
+#include <polybody/joints/planar/joints.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 #include <polybody/system/model.hpp>

@@ -7,7 +7,7 @@
 #include <polybody/integrators/runge_kutta.hpp>
 #include <polybody/io/surface.hpp>
 #include <polybody/io/visual.hpp>
-#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/planar/joints.hpp>
 #include <polybody/run/any_model.hpp>
 #include <polybody/run/body_record.hpp>
 #include <polybody/run/energy_audit.hpp>

@@ -6,9 +6,9 @@
 #include <polybody/forces/point_load.hpp>
 #include <polybody/forces/spring_damper.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
-#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/driving_constraints.hpp>
+#include <polybody/joints/planar/joints.hpp>
 #include <polybody/joints/policies/penalty.hpp>
-#include <polybody/joints/prescribed_angle.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/problem_size.hpp>
 #include <polybody/run/simulate.hpp>

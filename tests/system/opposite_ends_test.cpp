@@ -4,10 +4,7 @@
 #include <polybody/joints/policies/bushing.hpp>
 #include <polybody/joints/policies/constraint.hpp>
 #include <polybody/joints/primitives.hpp>
-#include <polybody/joints/revolute.hpp>
-#include <polybody/joints/revolute_pin.hpp>
-#include <polybody/joints/universal.hpp>
-#include <polybody/joints/weld.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/system/make_operations.hpp>
 #include <polybody/system/model.hpp>
 #include <polybody/system/system.hpp>

@@ -4,18 +4,9 @@
 
 #include <polybody/bodies/rigid/rigid.hpp>
 #include <polybody/forces/spring_damper.hpp>
-#include <polybody/joints/constant_orientation.hpp>
-#include <polybody/joints/cylindrical.hpp>
-#include <polybody/joints/planar_joint.hpp>
-#include <polybody/joints/point_in_plane.hpp>
-#include <polybody/joints/point_on_line.hpp>
 #include <polybody/joints/policies/joint_coordinates.hpp>
-#include <polybody/joints/prismatic.hpp>
-#include <polybody/joints/revolute.hpp>
-#include <polybody/joints/screw.hpp>
-#include <polybody/joints/spherical.hpp>
-#include <polybody/joints/universal.hpp>
-#include <polybody/joints/weld.hpp>
+#include <polybody/joints/primitives.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/simulate.hpp>
 
 namespace random_tree {

@@ -7,9 +7,7 @@
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
-#include <polybody/joints/planar/prismatic.hpp>
-#include <polybody/joints/planar/revolute.hpp>
-#include <polybody/joints/planar/weld.hpp>
+#include <polybody/joints/planar/joints.hpp>
 #include <polybody/run/probe.hpp>
 
 #include "support/held.hpp"

@@ -7,11 +7,9 @@
 #include <polybody/forces/spring_damper.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
-#include <polybody/joints/planar/prismatic.hpp>
-#include <polybody/joints/planar/revolute.hpp>
-#include <polybody/joints/planar/weld.hpp>
-#include <polybody/joints/point_in_plane.hpp>
+#include <polybody/joints/planar/joints.hpp>
 #include <polybody/joints/policies/joint_coordinates.hpp>
+#include <polybody/joints/primitives.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/problem_size.hpp>
 #include <polybody/run/simulate.hpp>

@@ -5,8 +5,7 @@
 
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/integrators/runge_kutta.hpp>
-#include <polybody/joints/planar/prismatic.hpp>
-#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/planar/joints.hpp>
 
 #include "support/held.hpp"
 #include "system/random_tree.hpp"

@@ -6,8 +6,7 @@
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/elimination/tree_tangent.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
-#include <polybody/joints/planar/prismatic.hpp>
-#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/planar/joints.hpp>
 
 #include "support/held.hpp"
 #include "system/random_tree.hpp"

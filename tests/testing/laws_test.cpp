@@ -2,8 +2,8 @@
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/forces/spring_damper.hpp>
 #include <polybody/integrators/symplectic.hpp>
-#include <polybody/joints/point_on_line.hpp>
 #include <polybody/joints/policies/penalty.hpp>
+#include <polybody/joints/primitives.hpp>
 
 #include <gtest/gtest.h>
 

@@ -22,10 +22,8 @@
 #include <polybody/forces/point_load.hpp>
 #include <polybody/forces/spring_damper.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
-#include <polybody/joints/planar_joint.hpp>
-#include <polybody/joints/prescribed_angle.hpp>
-#include <polybody/joints/prescribed_rate.hpp>
-#include <polybody/joints/revolute.hpp>
+#include <polybody/joints/driving_constraints.hpp>
+#include <polybody/joints/standard_joints.hpp>
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 #include <polybody/vehicle/pin_sprocket_contact.hpp>

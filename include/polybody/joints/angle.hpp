@@ -115,3 +115,26 @@ void slide_and_turn_gradient(Vec3 const& u, double p, Frame<double> const& a, Fr
 }
 
 }  // namespace polybody::constraint_functions
+
+namespace polybody {
+
+/// b translates along axis i of a, counted from 0, by p times its rotation θ about a₃: for i = 2, a₃·(r_b − r_a) − p θ
+/// = 0. The member `ratio` of the geometry contains p [m/rad].
+template <int i, auto ratio>
+struct TranslationPerRotation {
+  static constexpr int rows = 1;
+  static constexpr bool opposite_ends = false;
+  static constexpr MarkerKind needs = MarkerKind::frame, needs_of_second = MarkerKind::frame;
+  [[gnu::always_inline]] static void write(auto const& geometry, auto const& a, auto const& b, auto& terms, int row) {
+    constraint_functions::slide_and_turn(axis_of(a, i), geometry.*ratio, a, b, terms, row);
+  }
+  static void gamma(auto const& geometry, auto const& a, auto const& b, auto* out) {
+    *out = constraint_functions::slide_and_turn_gamma(axis_of(a, i), geometry.*ratio, a, b);
+  }
+  static void add_gradient(auto const& geometry, Frame<double> const& a, Frame<double> const& b, double const* lambda,
+                           WrenchGradient& out) {
+    constraint_functions::slide_and_turn_gradient(axis_of(a, i), geometry.*ratio, a, b, *lambda, out);
+  }
+};
+
+}  // namespace polybody

@@ -7,15 +7,18 @@
 ///   distance            g = |d| − L
 /// γ is the part of g̈ that does not depend on the accelerations of the frames. [Haug 1989, §2.4 and §9.4; thesis Eq.
 /// 3.8–3.10 and §3.5.1]
+/// A joint geometry is an `EquationList` of these equations.
+
+#include <algorithm>
 
 #include <polybody/joints/constraint_terms.hpp>
 
 namespace polybody::constraint_functions {
 
-/// Writes g = r_b − r_a into rows [row, row + 3).
-template <int m, StateScalar T>
+/// Writes the first n entries of g = r_b − r_a into rows [row, row + n): n = 3 in space, 2 in the plane.
+template <int n = 3, int m, StateScalar T>
 void coincident(Frame<T> const& a, Frame<T> const& b, ConstraintTerms<m, T>& terms, int row = 0) {
-  for (int i = 0; i < 3; ++i) {
+  for (int i = 0; i < n; ++i) {
     terms.g[row + i] = b.r[i] - a.r[i];
     terms.Ga(row + i, i) = T(-1.0);
     terms.Gb(row + i, i) = T(1.0);
@@ -58,45 +61,6 @@ template <StateScalar T>
 inline T no_slide_gamma(Vec<T, 3> const& u, Frame<T> const& a, Frame<T> const& b) {
   Vec<T, 3> const ud = cross(a.w, u), udd = cross(a.w, ud), d = difference(b.r, a.r), rate = difference(b.v, a.v);
   return 2.0 * dot(ud, rate) + dot(udd, d);
-}
-
-/// Writes a₁·b₂, a₂·b₃, a₃·b₁ to three rows from `row` on: the axes of b are parallel to the axes of a.
-template <int m, StateScalar T>
-void parallel(Frame<T> const& a, Frame<T> const& b, ConstraintTerms<m, T>& terms, int row) {
-  for (int i = 0; i < 3; ++i) perpendicular(axis_of(a, i), axis_of(b, (i + 1) % 3), terms, row + i);
-}
-
-/// γ of `parallel`.
-template <StateScalar T>
-Vec<T, 3> parallel_gamma(Frame<T> const& a, Frame<T> const& b) {
-  Vec<T, 3> gamma;
-  for (int i = 0; i < 3; ++i) gamma[i] = perpendicular_gamma(axis_of(a, i), axis_of(b, (i + 1) % 3), a, b);
-  return gamma;
-}
-
-/// Writes a₁·b₃ and a₂·b₃ to two rows from `row` on: the third axes are parallel.
-template <int m, StateScalar T>
-void same_direction(Frame<T> const& a, Frame<T> const& b, ConstraintTerms<m, T>& terms, int row) {
-  for (int i = 0; i < 2; ++i) perpendicular(axis_of(a, i), axis_of(b, 2), terms, row + i);
-}
-
-/// γ of `same_direction`.
-template <StateScalar T>
-Vec<T, 2> same_direction_gamma(Frame<T> const& a, Frame<T> const& b) {
-  Vec<T, 3> const axis = axis_of(b, 2);
-  return {perpendicular_gamma(axis_of(a, 0), axis, a, b), perpendicular_gamma(axis_of(a, 1), axis, a, b)};
-}
-
-/// Writes a₁·d and a₂·d to two rows from `row` on: the point of b is on the third axis of a.
-template <int m, StateScalar T>
-void on_axis(Frame<T> const& a, Frame<T> const& b, ConstraintTerms<m, T>& terms, int row) {
-  for (int i = 0; i < 2; ++i) no_slide(axis_of(a, i), a, b, terms, row + i);
-}
-
-/// γ of `on_axis`.
-template <StateScalar T>
-Vec<T, 2> on_axis_gamma(Frame<T> const& a, Frame<T> const& b) {
-  return {no_slide_gamma(axis_of(a, 0), a, b), no_slide_gamma(axis_of(a, 1), a, b)};
 }
 
 /// Writes g = |d| − length to `row`: ġ = e·(v_b − v_a), e = d/|d|. If the points coincide, e is the x axis, so that
@@ -158,24 +122,6 @@ void no_slide_gradient(Vec3 const& u, Frame<double> const& a, Frame<double> cons
     }
 }
 
-/// Adds the gradient of `parallel` for three multipliers.
-template <class = void>  // compiled only if used
-void parallel_gradient(Frame<double> const& a, Frame<double> const& b, Vec3 const& lambda, WrenchGradient& k) {
-  for (int i = 0; i < 3; ++i) perpendicular_gradient(axis_of(a, i), axis_of(b, (i + 1) % 3), lambda[i], k);
-}
-
-/// Adds the gradient of `same_direction` for two multipliers.
-template <class = void>  // compiled only if used
-void same_direction_gradient(Frame<double> const& a, Frame<double> const& b, Vec2 const& lambda, WrenchGradient& k) {
-  for (int i = 0; i < 2; ++i) perpendicular_gradient(axis_of(a, i), axis_of(b, 2), lambda[i], k);
-}
-
-/// Adds the gradient of `on_axis` for two multipliers.
-template <class = void>  // compiled only if used
-void on_axis_gradient(Frame<double> const& a, Frame<double> const& b, Vec2 const& lambda, WrenchGradient& k) {
-  for (int i = 0; i < 2; ++i) no_slide_gradient(axis_of(a, i), a, b, lambda[i], k);
-}
-
 /// Adds λ times the gradient of `distance`: δe = (1 − e eᵀ)(δr_b − δr_a)/|d|.
 template <class = void>  // compiled only if used
 void distance_gradient(Frame<double> const& a, Frame<double> const& b, double lambda, WrenchGradient& k) {
@@ -233,3 +179,156 @@ Mat3 triad_about(Vec3 const& axis, std::string const& what) {
 }
 
 }  // namespace polybody::constraint_functions
+
+namespace polybody {
+
+using constraint_functions::WrenchGradient;
+
+/// Constraint equation for an `EquationList`. `docs/extending.md` lists its members.
+template <class E>
+concept ConstraintEquation = requires {
+  { E::rows } -> std::convertible_to<int>;
+  { E::opposite_ends } -> std::convertible_to<bool>;
+  { E::needs } -> std::convertible_to<MarkerKind>;
+  { E::needs_of_second } -> std::convertible_to<MarkerKind>;
+};
+
+/// Two points coincide: the first n entries of r_b − r_a are zero.
+template <int n>
+struct CoincidentIn {
+  static constexpr int rows = n;
+  static constexpr bool opposite_ends = true;
+  static constexpr MarkerKind needs = MarkerKind::point, needs_of_second = MarkerKind::point;
+  static constexpr FreeDirections prevented = {true, true, n == 3};
+  [[gnu::always_inline]] static void write(auto const&, auto const& a, auto const& b, auto& terms, int row) {
+    constraint_functions::coincident<n>(a, b, terms, row);
+  }
+  static void gamma(auto const&, auto const&, auto const&, auto* out) {
+    for (int i = 0; i < n; ++i) out[i] = 0.0;
+  }
+  static void add_gradient(auto const&, Frame<double> const&, Frame<double> const&, double const*, WrenchGradient&) {}
+};
+
+/// Two points coincide in space: r_b − r_a = 0.
+using Coincident = CoincidentIn<3>;
+namespace planar {
+/// Two points coincide in the plane.
+using Coincident = CoincidentIn<2>;
+}  // namespace planar
+
+/// Axis i of a is perpendicular to axis k of b, axes counted from 0: `Perpendicular<0, 2>` is a₁·b₃ = 0.
+template <int i, int k>
+struct Perpendicular {
+  static_assert(0 <= i && i < 3 && 0 <= k && k < 3 && i != k,
+                "Perpendicular needs two different axes from 0 to 2, since the axes of both markers coincide at the "
+                "reference configuration.");
+  static constexpr int rows = 1;
+  static constexpr bool opposite_ends = true;
+  static constexpr MarkerKind needs = MarkerKind::frame,
+                              needs_of_second = k == 2 ? MarkerKind::axis : MarkerKind::frame;
+  static constexpr FreeDirections prevented = {false, false, false, i + k == 3, i + k == 2, i + k == 1};
+  [[gnu::always_inline]] static void write(auto const&, auto const& a, auto const& b, auto& terms, int row) {
+    constraint_functions::perpendicular(axis_of(a, i), axis_of(b, k), terms, row);
+  }
+  static void gamma(auto const&, auto const& a, auto const& b, auto* out) {
+    *out = constraint_functions::perpendicular_gamma(axis_of(a, i), axis_of(b, k), a, b);
+  }
+  static void add_gradient(auto const&, Frame<double> const& a, Frame<double> const& b, double const* lambda,
+                           WrenchGradient& out) {
+    constraint_functions::perpendicular_gradient(axis_of(a, i), axis_of(b, k), *lambda, out);
+  }
+};
+
+/// The point of b does not translate along axis i of a, counted from 0: `NoTranslation<0>` is a₁·(r_b − r_a) = 0.
+template <int i>
+struct NoTranslation {
+  static_assert(0 <= i && i < 3, "NoTranslation needs an axis from 0 to 2.");
+  static constexpr int rows = 1;
+  static constexpr bool opposite_ends = false;
+  static constexpr MarkerKind needs = MarkerKind::frame, needs_of_second = MarkerKind::point;
+  static constexpr FreeDirections prevented = {i == 0, i == 1, i == 2};
+  [[gnu::always_inline]] static void write(auto const&, auto const& a, auto const& b, auto& terms, int row) {
+    constraint_functions::no_slide(axis_of(a, i), a, b, terms, row);
+  }
+  static void gamma(auto const&, auto const& a, auto const& b, auto* out) {
+    *out = constraint_functions::no_slide_gamma(axis_of(a, i), a, b);
+  }
+  static void add_gradient(auto const&, Frame<double> const& a, Frame<double> const& b, double const* lambda,
+                           WrenchGradient& out) {
+    constraint_functions::no_slide_gradient(axis_of(a, i), a, b, *lambda, out);
+  }
+};
+
+/// Two points have the distance that the member `length` of the geometry contains [m]: |r_b − r_a| − L = 0.
+template <auto length>
+struct FixedDistance {
+  static constexpr int rows = 1;
+  static constexpr bool opposite_ends = false;
+  static constexpr MarkerKind needs = MarkerKind::point, needs_of_second = MarkerKind::point;
+  [[gnu::always_inline]] static void write(auto const& geometry, auto const& a, auto const& b, auto& terms, int row) {
+    constraint_functions::distance(a, b, geometry.*length, terms, row);
+  }
+  static void gamma(auto const&, auto const& a, auto const& b, auto* out) {
+    *out = constraint_functions::distance_gamma(a, b);
+  }
+  static void add_gradient(auto const&, Frame<double> const& a, Frame<double> const& b, double const* lambda,
+                           WrenchGradient& out) {
+    constraint_functions::distance_gradient(a, b, *lambda, out);
+  }
+};
+
+/// Constraint equations of a joint geometry, in this order. A geometry names its list,
+///   using Equations = EquationList<Coincident, Perpendicular<0, 2>, Perpendicular<1, 2>>;
+/// Its constraint function with Jacobians, γ, the wrench gradient, the requirements on its markers and its free
+/// directions follow from the list.
+template <class... Es>
+struct EquationList {
+  static_assert((ConstraintEquation<Es> && ...),
+                "An EquationList contains constraint equations, such as Coincident or Perpendicular<0, 2>. "
+                "docs/extending.md lists their members.");
+  static constexpr int rows = (Es::rows + ...);
+  static constexpr bool opposite_ends = (Es::opposite_ends && ...);
+  static constexpr MarkerKind needs = std::max({Es::needs...}), needs_of_second = std::max({Es::needs_of_second...});
+  /// Motions that no equation prevents: translations along the axes of the joint, then rotations about them.
+  static constexpr FreeDirections free = [] {
+    FreeDirections out = {true, true, true, true, true, true};
+    auto const remove = [&]<class E>(E const*) {
+      if constexpr (requires { E::prevented; })
+        for (std::size_t i = 0; i < 6; ++i) out[i] = out[i] && !E::prevented[i];
+    };
+    (remove(static_cast<Es const*>(nullptr)), ...);
+    return out;
+  }();
+  /// True if the free motions are those of `free` at every displacement. The axes of two rotations move relative to
+  /// each other, so that zero, one or three rotations must be free.
+  static constexpr bool has_free_directions = (requires { Es::prevented; } && ...) && detail::free_turns(free) != 2;
+
+  /// Constraint terms at two frames.
+  template <StateScalar T, class G>
+  [[gnu::always_inline]] static ConstraintTerms<rows, T> constraint_function(G const& geometry, Frame<T> const& a,
+                                                                             Frame<T> const& b) {
+    ConstraintTerms<rows, T> terms;
+    int row = 0;
+    ((Es::write(geometry, a, b, terms, row), row += Es::rows), ...);
+    return terms;
+  }
+  /// γ (rows) at two frames.
+  template <StateScalar T, class G>
+  static Vec<T, rows> gamma(G const& geometry, Frame<T> const& a, Frame<T> const& b) {
+    Vec<T, rows> gamma;
+    T* out = gamma.data();
+    ((Es::gamma(geometry, a, b, out), out += Es::rows), ...);
+    return gamma;
+  }
+  /// Wrench gradient at two frames for multipliers lambda (rows).
+  template <class G>
+  static WrenchGradient wrench_gradient(G const& geometry, Frame<double> const& a, Frame<double> const& b,
+                                        Vec<double, rows> const& lambda) {
+    auto k = detail::zeros<WrenchGradient>();
+    double const* l = lambda.data();
+    ((Es::add_gradient(geometry, a, b, l, k), l += Es::rows), ...);
+    return k;
+  }
+};
+
+}  // namespace polybody

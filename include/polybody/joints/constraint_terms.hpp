@@ -69,12 +69,62 @@ RelativeMotion<T> relative(Frame<T> const& a, Frame<T> const& b) {
           a.A.transpose() * (b.w - a.w)};
 }
 
+/// Geometry with a list of its constraint equations (`EquationList`, constraint_functions.hpp).
+template <class G>
+concept HasEquationList = requires { G::Equations::rows; };
+
+/// Number of constraint equations of a geometry: its member `rows`, or that of its list.
+template <class G>
+constexpr int constraint_equations() {
+  if constexpr (requires { G::rows; })
+    return G::rows;
+  else if constexpr (HasEquationList<G>)
+    return G::Equations::rows;
+  else
+    return 0;
+}
+
+/// Geometry with its own function `constraint_function`, which precedes that of a list.
+template <class G>
+concept HasOwnConstraintFunction = requires(G const g, Frame<double> const a, double t) {
+  { g.template constraint_function<double>(a, a, t) } -> std::same_as<ConstraintTerms<constraint_equations<G>()>>;
+};
+
+/// Geometry with its own function `gamma`, which precedes that of a list.
+template <class G>
+concept HasOwnGamma = requires(G const g, Frame<double> const a, double t) {
+  { g.template gamma<double>(a, a, t) } -> std::same_as<Vec<double, constraint_equations<G>()>>;
+};
+
+/// Constraint terms of a geometry at two frames and a time t [s], from its own function or its list.
+template <StateScalar T, class G>
+[[gnu::always_inline]] inline ConstraintTerms<constraint_equations<G>(), T> constraint_function(G const& geometry,
+                                                                                                Frame<T> const& a,
+                                                                                                Frame<T> const& b,
+                                                                                                double t) {
+  if constexpr (HasOwnConstraintFunction<G>)
+    return geometry.template constraint_function<T>(a, b, t);
+  else
+    return G::Equations::template constraint_function<T>(geometry, a, b);
+}
+
+/// γ (rows) of a geometry at two frames and a time t [s], from its own function or its list.
+template <StateScalar T, class G>
+Vec<T, constraint_equations<G>()> constraint_gamma(G const& geometry, Frame<T> const& a, Frame<T> const& b, double t) {
+  if constexpr (HasOwnGamma<G>)
+    return geometry.template gamma<T>(a, b, t);
+  else
+    return G::Equations::template gamma<T>(geometry, a, b);
+}
+
 /// Constraint function of two frames, on which a joint policy acts.
 template <class G>
-concept ConstraintFunction = requires(G const g, Frame<double> const a, Frame<double> const b, double t) {
-  requires 1 <= G::rows&& G::rows <= 6;
-  { G::needs } -> std::convertible_to<MarkerKind>;
-  { g.template constraint_function<double>(a, b, t) } -> std::same_as<ConstraintTerms<G::rows, double>>;
+concept ConstraintFunction = requires {
+  requires 1 <= constraint_equations<G>() && constraint_equations<G>() <= 6;
+  requires HasEquationList<G> || requires {
+    { G::needs } -> std::convertible_to<MarkerKind>;
+  };
+  requires HasEquationList<G> || HasOwnConstraintFunction<G>;
 };
 
 /// Geometry of a joint: its constraint function measures the motions that the joint prevents. Its markers get axes that
@@ -82,13 +132,12 @@ concept ConstraintFunction = requires(G const g, Frame<double> const a, Frame<do
 /// are `check(name)`, which `connect` calls with the joint's name, and `breakpoints()`, times at which steps end.
 /// `docs/extending.md` lists all members.
 template <class G>
-concept JointGeometry =
-    ConstraintFunction<G> && requires(G const g, Frame<double> const a, Frame<double> const b, double t) {
-      { G::name } -> std::convertible_to<char const*>;
-      { G::world } -> std::convertible_to<World>;
-      { g.triad() } -> std::convertible_to<Mat3>;
-      { g.template gamma<double>(a, b, t) } -> std::same_as<Vec<double, G::rows>>;
-    };
+concept JointGeometry = ConstraintFunction<G> && requires(G const g) {
+  { G::name } -> std::convertible_to<char const*>;
+  { G::world } -> std::convertible_to<World>;
+  { g.triad() } -> std::convertible_to<Mat3>;
+  requires HasEquationList<G> || HasOwnGamma<G>;
+};
 
 /// Number of nonholonomic equations of a geometry, which constrain velocities only (rolling, a blade). These are the
 /// last equations of the geometry. Zero for most geometries.
@@ -100,42 +149,71 @@ constexpr int nonholonomic_equations() {
     return 0;
 }
 
-/// True if the geometry declares Gb = −Ga in all rows (member `opposite_ends`; default false). The wrench of such
-/// equations is computed once for both ends.
+/// True if Gb = −Ga in all rows (member `opposite_ends` of the geometry, or of its list; default false). The wrench of
+/// such equations is computed once for both ends.
 template <class G>
 constexpr bool has_opposite_ends() {
   if constexpr (requires { G::opposite_ends; })
     return G::opposite_ends;
+  else if constexpr (HasEquationList<G> && !HasOwnConstraintFunction<G>)
+    return G::Equations::opposite_ends;
   else
     return false;
 }
 
-/// Motions of b relative to a that a geometry leaves free (its member `free`): translations along the joint's axes,
-/// then rotations about them.
+/// Motions of b relative to a that a geometry leaves free: translations along the joint's axes, then rotations about
+/// them.
 using FreeDirections = std::array<bool, 6>;
+
+/// Geometry with free directions: its member `free`, or those of its list.
 template <class G>
 concept HasFreeDirections = requires {
   { G::free } -> std::convertible_to<FreeDirections>;
-};
+} || (requires { requires G::Equations::has_free_directions; } && !HasOwnConstraintFunction<G>);
+
+/// Free directions of a geometry. In the plane, only translations in the plane and the rotation about its normal are
+/// free.
+template <HasFreeDirections G>
+constexpr FreeDirections free_directions() {
+  if constexpr (requires { G::free; }) {
+    return G::free;
+  } else {
+    FreeDirections free = G::Equations::free;
+    if (G::world == World::plane) free[2] = free[3] = free[4] = false;
+    return free;
+  }
+}
 
 namespace detail {
 constexpr int free_slides(FreeDirections const& free) { return int(free[0]) + int(free[1]) + int(free[2]); }
 constexpr int free_turns(FreeDirections const& free) { return int(free[3]) + int(free[4]) + int(free[5]); }
 }  // namespace detail
 
-/// Marker kind that a geometry requires of its second marker: `needs_of_second`, or by default `needs`.
+/// Marker kind that a geometry requires of its first marker: its member `needs`, or that of its list.
+template <ConstraintFunction G>
+constexpr MarkerKind needs_of_first() {
+  if constexpr (requires { G::needs; })
+    return G::needs;
+  else
+    return G::Equations::needs;
+}
+
+/// Marker kind that a geometry requires of its second marker: `needs_of_second`, by default `needs`, or that of its
+/// list.
 template <ConstraintFunction G>
 constexpr MarkerKind needs_of_second() {
   if constexpr (requires { G::needs_of_second; })
     return G::needs_of_second;
-  else
+  else if constexpr (requires { G::needs; })
     return G::needs;
+  else
+    return G::Equations::needs_of_second;
 }
 
 /// ∂[Gaᵀλ; Gbᵀλ]/∂(δr_a, δφ_a, δr_b, δφ_b), 12×12, rotations δφ in world axes, by dual numbers: δA = δφ × A.
 template <ConstraintFunction G, class D = Dual<12>>
 Mat<double, 12, 12> wrench_gradient_by_dual_numbers(G const& geometry, Frame<double> const& a, Frame<double> const& b,
-                                                    double t, Vec<double, G::rows> const& lambda) {
+                                                    double t, Vec<double, constraint_equations<G>()> const& lambda) {
   auto const moved = [](Frame<double> const& f, int first) {
     Frame<D> m;
     for (int i = 0; i < 3; ++i) {
@@ -148,9 +226,10 @@ Mat<double, 12, 12> wrench_gradient_by_dual_numbers(G const& geometry, Frame<dou
     }
     return m;
   };
-  ConstraintTerms<G::rows, D> const terms = geometry.template constraint_function<D>(moved(a, 0), moved(b, 6), t);
+  ConstraintTerms<constraint_equations<G>(), D> const terms =
+      constraint_function<D>(geometry, moved(a, 0), moved(b, 6), t);
   auto k = detail::zeros<Mat<double, 12, 12>>();
-  for (int r = 0; r < G::rows; ++r)
+  for (int r = 0; r < constraint_equations<G>(); ++r)
     for (int i = 0; i < 6; ++i)
       for (int j = 0; j < 12; ++j) {
         k(i, j) += terms.Ga(r, i).d[j] * lambda[r];
@@ -161,16 +240,18 @@ Mat<double, 12, 12> wrench_gradient_by_dual_numbers(G const& geometry, Frame<dou
 
 /// Geometry with a wrench gradient in closed form.
 template <class G>
-concept HasWrenchGradient = requires(G const g, Frame<double> const f, Vec<double, G::rows> const l) {
+concept HasWrenchGradient = requires(G const g, Frame<double> const f, Vec<double, constraint_equations<G>()> const l) {
   { g.wrench_gradient(f, f, l) } -> std::convertible_to<Mat<double, 12, 12>>;
 };
 
-/// Wrench gradient: the closed form of the geometry if it has one, otherwise by dual numbers.
+/// Wrench gradient: the closed form of the geometry or of its list, otherwise by dual numbers.
 template <ConstraintFunction G>
 Mat<double, 12, 12> wrench_gradient(G const& geometry, Frame<double> const& a, Frame<double> const& b, double t,
-                                    Vec<double, G::rows> const& lambda) {
+                                    Vec<double, constraint_equations<G>()> const& lambda) {
   if constexpr (HasWrenchGradient<G>)
     return geometry.wrench_gradient(a, b, lambda);
+  else if constexpr (HasEquationList<G> && !HasOwnConstraintFunction<G>)
+    return G::Equations::wrench_gradient(geometry, a, b, lambda);
   else
     return wrench_gradient_by_dual_numbers(geometry, a, b, t, lambda);
 }

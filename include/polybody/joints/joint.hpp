@@ -32,28 +32,27 @@ struct GeometryRefusal {
   static_assert(
       requires {
         { G::name } -> std::convertible_to<char const*>;
-        { G::needs } -> std::convertible_to<MarkerKind>;
         { G::world } -> std::convertible_to<World>;
-      }, "A joint geometry needs static constants: char const* name, MarkerKind needs and World world.");
-  static_assert(
-      requires { requires 1 <= G::rows&& G::rows <= 6; },
-      "A joint geometry needs a static constant: int rows, from 1 to 6.");
+      }, "A joint geometry needs static constants: char const* name and World world.");
   static_assert(
       requires(G const g) {
         { g.triad() } -> std::convertible_to<Mat3>;
       },
       "A joint geometry needs triad() const, which returns a Mat3: the joint's axes at the reference configuration, in "
       "world axes.");
+  static_assert(constraint_equations<G>() >= 1 && constraint_equations<G>() <= 6,
+                "A joint geometry needs a list of 1 to 6 constraint equations, such as using Equations = "
+                "EquationList<Coincident>; or a static constant int rows, from 1 to 6, with its own functions.");
   static_assert(
-      requires(G const g, Frame<double> const a, double t) {
-        { g.template constraint_function<double>(a, a, t) } -> std::same_as<ConstraintTerms<G::rows, double>>;
-      }, "A joint geometry needs constraint_function<T>(a, b, t) const, which returns ConstraintTerms<rows, T>.");
-  static_assert(
-      requires(G const g, Frame<double> const a, double t) {
-        { g.template gamma<double>(a, a, t) } -> std::same_as<Vec<double, G::rows>>;
-      },
-      "A joint geometry needs gamma<T>(a, b, t) const, which returns Vec<T, rows>: the terms of the second derivative "
-      "of its constraint function without accelerations.");
+      HasEquationList<G> || requires {
+        { G::needs } -> std::convertible_to<MarkerKind>;
+      }, "A joint geometry without a list of constraint equations needs a static constant: MarkerKind needs.");
+  static_assert(HasEquationList<G> || HasOwnConstraintFunction<G>,
+                "A joint geometry needs constraint_function<T>(a, b, t) const, which returns ConstraintTerms<rows, T>, "
+                "or a list of constraint equations.");
+  static_assert(HasEquationList<G> || HasOwnGamma<G>,
+                "A joint geometry needs gamma<T>(a, b, t) const, which returns Vec<T, rows>: the terms of the second "
+                "derivative of its constraint function without accelerations; or a list of constraint equations.");
   static constexpr bool checked = true;
 };
 
@@ -118,7 +117,8 @@ concept MeasurableGeometry = HasFreeDirections<G> || !requires { typename P::tem
 template <class P, class G>
 concept EnforceableGeometry =
     ConstrainingPolicy<P> ||
-    (MeasurableGeometry<P, G> && CompliantLaw<P, decltype(detail::measured_by<G, P>())::type::rows>);
+    (MeasurableGeometry<P, G> &&
+     CompliantLaw<P, constraint_equations<typename decltype(detail::measured_by<G, P>())::type>()>);
 
 /// P adds constraint equations, or all equations of G are holonomic, so that a force can act on their violation.
 template <class P, class G>
@@ -137,7 +137,7 @@ struct Joint {
   using PolicyType = P;  ///< enforcement of the constraint equations
   /// Constraint function of the policy: G, or `Measured<G>` of P.
   using Measured = typename decltype(detail::measured_by<G, P>())::type;
-  static constexpr int rows = Measured::rows;
+  static constexpr int rows = constraint_equations<Measured>();
   static_assert(
       !Policy<P> || !MeasurableGeometry<P, G> || EnforceableGeometry<P, G>,
       "The number of parameters of this policy must equal the number of constraint equations of the joint's geometry.");

@@ -7,12 +7,72 @@
 ///   PointOnLine = two of PointInPlane                     ConstantOrientation = ParallelAxes + PerpendicularAxes
 /// The named joint has the same motion and evaluates its frames only once.      [Haug 1989, §9.4]
 
-#include <polybody/joints/constant_orientation.hpp>
-#include <polybody/joints/point_in_plane.hpp>
-#include <polybody/joints/point_on_line.hpp>
-#include <polybody/joints/spherical.hpp>
+#include <polybody/joints/constraint_functions.hpp>
+#include <polybody/joints/joint_axis.hpp>
+#include <polybody/joints/standard_joints.hpp>
 
 namespace polybody {
+
+/// The point of b stays in the plane through the point of a whose normal is fixed in a. 1 constraint equation
+///   g = a₃·d,  d = r_b − r_a      [Haug 1989, §9.4].
+/// World::both: in the plane, the normal is a vector in the plane, and the point stays on the line perpendicular to it.
+struct PointInPlane {
+  static constexpr char const* name = "PointInPlane";
+  static constexpr World world = World::both;
+  using Equations = EquationList<NoTranslation<2>>;
+
+  JointAxis normal = {};  ///< (3) unit vector, world axes at the reference configuration
+
+  template <class = void>  // compiled only if used
+  Mat3 triad() const {
+    return polybody::constraint_functions::triad_about(normal, "PointInPlane: the normal");
+  }
+};
+
+/// The point of b stays on the line through the point of a along the axis fixed in a. 2 constraint equations
+///   g = [a₁·d; a₂·d],  d = r_b − r_a      [Haug 1989, §9.4].
+struct PointOnLine {
+  static constexpr char const* name = "PointOnLine";
+  static constexpr World world = World::space;
+  using Equations = EquationList<NoTranslation<0>, NoTranslation<1>>;
+
+  JointAxis axis = {};  ///< (3) unit vector of the line, world axes at the reference configuration
+
+  template <class = void>  // compiled only if used
+  Mat3 triad() const {
+    return polybody::constraint_functions::triad_about(axis, "PointOnLine: the axis");
+  }
+};
+
+/// The axes of b stay parallel to the axes of a; translations are free. 3 constraint equations g = [a₁·b₂; a₂·b₃;
+/// a₃·b₁].
+struct ConstantOrientation {
+  static constexpr char const* name = "ConstantOrientation";
+  static constexpr World world = World::space;
+  using Equations = EquationList<Perpendicular<0, 1>, Perpendicular<1, 2>, Perpendicular<2, 0>>;
+
+  Mat3 triad() const { return identity(); }
+};
+
+/// Massless rod with a spherical joint at each end, in the plane and in space. 1 constraint equation
+///   g = |r_b − r_a| − L      [Haug 1989, §9.4, there squared].
+/// Without the square, g is a length, λ is the tension of the rod [N], and a Penalty is a linear spring for any
+/// elongation. The direction of the rod is undefined if the points coincide.
+struct Distance {
+  static constexpr char const* name = "Distance";
+  static constexpr World world = World::both;
+
+  Required<double> length;  ///< L [m]
+  using Equations = EquationList<FixedDistance<&Distance::length>>;
+
+  Mat3 triad() const { return identity(); }
+  void check(std::string const& what) const {
+    if (!(length > 0.0) || !std::isfinite(length))
+      throw InvalidInput("distance.length",
+                         {ErrorObject{what}, ": the length must be positive and finite, but is ", ErrorValue{length},
+                          " m. For coincident points use Spherical or, in the plane, planar::Revolute."});
+  }
+};
 
 /// Two points coincide. Alias of the spherical joint as a primitive.
 using CoincidentPoints = Spherical;
@@ -20,11 +80,8 @@ using CoincidentPoints = Spherical;
 /// The first axis, fixed in a, stays perpendicular to the second axis, fixed in b. 1 constraint equation g = a₁·b₃.
 struct PerpendicularAxes {
   static constexpr char const* name = "PerpendicularAxes";
-  static constexpr int rows = 1;
-  static constexpr MarkerKind needs = MarkerKind::frame;
-  static constexpr MarkerKind needs_of_second = MarkerKind::axis;
   static constexpr World world = World::space;
-  static constexpr bool opposite_ends = true;
+  using Equations = EquationList<Perpendicular<0, 2>>;
 
   JointAxis first = {};   ///< (3) unit vector a₁, world axes at the reference configuration
   JointAxis second = {};  ///< (3) unit vector b₃, perpendicular to `first`
@@ -35,59 +92,19 @@ struct PerpendicularAxes {
                                                     second.required("PerpendicularAxes: the second axis"),
                                                     "PerpendicularAxes");
   }
-
-  template <StateScalar T>
-  ConstraintTerms<1, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
-    ConstraintTerms<1, T> terms;
-    polybody::constraint_functions::perpendicular(axis_of(a, 0), axis_of(b, 2), terms, 0);
-    return terms;
-  }
-  template <StateScalar T>
-  Vec<T, 1> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
-    return Vec<T, 1>(polybody::constraint_functions::perpendicular_gamma(axis_of(a, 0), axis_of(b, 2), a, b));
-  }
-  template <class = void>  // compiled only if used
-  Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
-                                      Vec<double, 1> const& lambda) const {
-    auto k = detail::zeros<Mat<double, 12, 12>>();
-    polybody::constraint_functions::perpendicular_gradient(axis_of(a, 0), axis_of(b, 2), lambda[0], k);
-    return k;
-  }
 };
 
 /// An axis of b stays parallel to an axis of a. 2 constraint equations g = [a₁·b₃; a₂·b₃].
 struct ParallelAxes {
   static constexpr char const* name = "ParallelAxes";
-  static constexpr int rows = 2;
-  static constexpr MarkerKind needs = MarkerKind::frame;
-  static constexpr MarkerKind needs_of_second = MarkerKind::axis;
   static constexpr World world = World::space;
-  static constexpr bool opposite_ends = true;
-  static constexpr FreeDirections free = {true, true, true, false, false, true};
+  using Equations = EquationList<Perpendicular<0, 2>, Perpendicular<1, 2>>;
 
   JointAxis axis = {};  ///< (3) unit vector, world axes at the reference configuration
 
   template <class = void>  // compiled only if used
   Mat3 triad() const {
     return polybody::constraint_functions::triad_about(axis, "ParallelAxes: the axis");
-  }
-
-  template <StateScalar T>
-  ConstraintTerms<2, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
-    ConstraintTerms<2, T> terms;
-    polybody::constraint_functions::same_direction(a, b, terms, 0);
-    return terms;
-  }
-  template <StateScalar T>
-  Vec<T, 2> gamma(Frame<T> const& a, Frame<T> const& b, double) const {
-    return polybody::constraint_functions::same_direction_gamma(a, b);
-  }
-  template <class = void>  // compiled only if used
-  Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b,
-                                      Vec<double, 2> const& lambda) const {
-    auto k = detail::zeros<Mat<double, 12, 12>>();
-    polybody::constraint_functions::same_direction_gradient(a, b, lambda, k);
-    return k;
   }
 };
 

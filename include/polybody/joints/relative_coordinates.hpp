@@ -161,8 +161,9 @@ struct ConstrainedCoordinates {
   static constexpr int rows = 6;
   static constexpr MarkerKind needs = MarkerKind::frame;
   static constexpr MarkerKind needs_of_second = polybody::needs_of_second<G>();
+  static constexpr FreeDirections free = free_directions<G>();
   /// True if G leaves all three rotations free: then no rotation is evaluated.
-  static constexpr bool may_turn = G::free[3] && G::free[4] && G::free[5];
+  static constexpr bool may_turn = detail::free_turns(free) == 3;
 
   template <StateScalar T>
   ConstraintTerms<6, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {
@@ -170,7 +171,7 @@ struct ConstrainedCoordinates {
     RelativeCoordinates::slide(a, b, terms);
     if constexpr (!may_turn) RelativeCoordinates::turn(a, b, terms);
     for (int i = 0; i < 6; ++i)
-      if (G::free[std::size_t(i)]) {
+      if (free[std::size_t(i)]) {
         terms.g[i] = T(0.0);
         for (int j = 0; j < 6; ++j) terms.Ga(i, j) = terms.Gb(i, j) = T(0.0);
       }
@@ -178,7 +179,7 @@ struct ConstrainedCoordinates {
   }
   Mat<double, 12, 12> wrench_gradient(Frame<double> const& a, Frame<double> const& b, Vec6 lambda) const {
     for (int i = 0; i < 6; ++i)
-      if (G::free[std::size_t(i)]) lambda[i] = 0.0;
+      if (free[std::size_t(i)]) lambda[i] = 0.0;
     if constexpr (!may_turn) return RelativeCoordinates{}.wrench_gradient(a, b, lambda);
     auto k = detail::zeros<Mat<double, 12, 12>>();
     Vec3 const force = RelativeCoordinates::times<double>(a.A, {lambda[0], lambda[1], lambda[2]});

@@ -16,12 +16,12 @@ namespace polybody {
 
 /// Geometry with a joint angle: it permits one rotation about an axis of the joint, or prescribes one.
 template <class G>
-concept HasJointAngle = (HasFreeDirections<G> && int(G::free[3]) + int(G::free[4]) + int(G::free[5]) == 1) ||
-                        HasRotationAxis<G> || (!HasFreeDirections<G> && requires(G const g) { g.motions(); });
+concept HasJointAngle = (HasFreeDirections<G> && detail::free_turns(free_directions<G>()) == 1) || HasRotationAxis<G> ||
+                        (!HasFreeDirections<G> && requires(G const g) { g.motions(); });
 
 /// Geometry with a joint translation: it permits one translation along an axis of the joint, or prescribes one.
 template <class G>
-concept HasJointTranslation = (HasFreeDirections<G> && int(G::free[0]) + int(G::free[1]) + int(G::free[2]) == 1) ||
+concept HasJointTranslation = (HasFreeDirections<G> && detail::free_slides(free_directions<G>()) == 1) ||
                               (!HasFreeDirections<G> && requires(G const g) { g.motions(); }) || requires(G g) {
                                 { g.axis } -> std::same_as<JointAxis&>;
                                 g.law;
@@ -42,7 +42,7 @@ int axis_of_motion(G const& geometry, JointMotion::Kind kind) {
   if constexpr (HasFreeDirections<G>) {
     int const first = turns ? 3 : 0;
     for (int i = 0; i < 3; ++i)
-      if (G::free[std::size_t(first + i)]) return i;
+      if (free_directions<G>()[std::size_t(first + i)]) return i;
   } else if constexpr (requires { geometry.motions(); }) {
     int axis = -1, count = 0;
     for (JointMotion const& m : geometry.motions())

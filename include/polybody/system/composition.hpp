@@ -44,7 +44,8 @@ concept EliminableBody = std::is_same_v<B, Ground> || (CarriableBody<P, B> && (!
 /// A marker of body B provides the kinematics that joint J requires of its first marker. Linear constraint equations
 /// use the body itself instead.
 template <class J, class B>
-concept SufficientFirstMarker = LinearPolicy<typename J::PolicyType> || B::observes >= J::Measured::needs;
+concept SufficientFirstMarker =
+    LinearPolicy<typename J::PolicyType> || B::observes >= needs_of_first<typename J::Measured>();
 
 /// A marker of body B provides the kinematics that joint J requires of its second marker.
 template <class J, class B>

@@ -24,7 +24,7 @@ namespace polybody::detail {
 
 /// Geometry whose only free rotation is about its own axis.
 template <class G>
-concept OneRotationFree = HasFreeDirections<G> && !G::free[3] && !G::free[4] && G::free[5];
+concept OneRotationFree = HasFreeDirections<G> && free_turns(free_directions<G>()) == 1 && free_directions<G>()[5];
 /// Geometry that prescribes a rotation.
 template <class G>
 concept RotationDrive = HasRotationAxis<G> && requires(G g) { g.law; };
@@ -221,7 +221,7 @@ template <class J, class A, class B>
   if constexpr (!LinearPolicy<P> && B::observes == MarkerKind::axis &&
                 needs_of_second<Requirement>() == MarkerKind::axis)
     require_along_tangent(axes_b, triad, name);
-  require_observed(a.marker, Requirement::needs, name);
+  require_observed(a.marker, needs_of_first<Requirement>(), name);
   require_observed(b.marker, needs_of_second<Requirement>(), name);
   parts.joint_names.require_free(name, "joint");
   parts.origin.change();

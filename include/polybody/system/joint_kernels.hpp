@@ -91,9 +91,11 @@ Vec<double, m> rest_without_potential(P const& policy, Vec<double, m> rest) {
 /// ∂ġ/∂(poses) (m×12) of ġ = G V at constant velocities of the bodies. Row i is Vᵀ ∂(Gᵀeᵢ)/∂(poses) +
 /// (G ∂V/∂(poses))ᵢ. A dependence of Φ_t on the poses is neglected.
 template <class G>
-Mat<double, G::rows, 12> rates_by_poses(G const& geometry, ConstraintTerms<G::rows, double> const& terms,
-                                        std::array<MarkerKinematics<double> const*, 2> const& markers, double t) {
-  constexpr int m = G::rows;
+Mat<double, constraint_equations<G>(), 12> rates_by_poses(G const& geometry,
+                                                          ConstraintTerms<constraint_equations<G>()> const& terms,
+                                                          std::array<MarkerKinematics<double> const*, 2> const& markers,
+                                                          double t) {
+  constexpr int m = constraint_equations<G>();
   Frame<double> const &a = markers[0]->frame, &b = markers[1]->frame;
   Vec<double, 6> const twists[2] = {twist(a), twist(b)};
   auto rates = zeros<Mat<double, m, 12>>();
@@ -233,7 +235,7 @@ void JointKernels<J, T>::measure(Pool const& pool, Kept& kept, double t, Data<T>
         Frame<T> const &a = data.markers[std::size_t(e.a)].frame, &b = data.markers[std::size_t(e.b)].frame;
         using G = ConstraintTerms<J::rows, T>;  // constructed in place, because assignment copies it
         static_assert(std::is_trivially_destructible_v<G>);
-        ::new (static_cast<void*>(&kept.terms[i])) G(e.joint.measure().template constraint_function<T>(a, b, t));
+        ::new (static_cast<void*>(&kept.terms[i])) G(constraint_function<T>(e.joint.measure(), a, b, t));
         if constexpr (compliant)
           kept.answers[i] =
               e.joint.policy.template multiplier<J::rows, T>(kept.terms[i].g, constraint_rate(kept.terms[i], a, b));
@@ -245,8 +247,8 @@ template <class J, StateScalar T>
 void JointKernels<J, T>::gamma(Pool const& pool, double t, Data<T> const& data, VecXOf<T>& out) {
   if constexpr (!linear && !compliant)
     for (auto const& e : pool) {
-      Vec<T, J::rows> const gamma = e.joint.geometry.template gamma<T>(data.markers[std::size_t(e.a)].frame,
-                                                                       data.markers[std::size_t(e.b)].frame, t);
+      Vec<T, J::rows> const gamma = constraint_gamma<T>(e.joint.geometry, data.markers[std::size_t(e.a)].frame,
+                                                        data.markers[std::size_t(e.b)].frame, t);
       for (int i = 0; i < J::rows; ++i) out[e.row + i] = gamma[i];
     }
 }

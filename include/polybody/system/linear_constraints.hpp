@@ -117,7 +117,7 @@ void fill_linear_rows(LinearPointOf<T> const& a, LinearPointOf<T> const& b, std:
   using V = Vec<T, 3>;
   using Vx = VecXOf<T>;
   using Mx = MatXOf<T>;
-  constexpr int turns = free_turns(G::free);
+  constexpr int turns = free_turns(free_directions<G>());
   int const size = b.size;
   rows.a.map.resize(0, a.columns);
   rows.b.map.resize(0, b.columns);

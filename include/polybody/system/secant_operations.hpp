@@ -278,7 +278,7 @@ class TypedSecants {
   void evaluate_constraints(Entry const& e, double t, ConstraintSecant<m>& out) const {
     MarkerSecant const& a = marker(e.a);
     MarkerSecant const& b = marker(e.b);
-    Vec<S, m> const g = e.joint.measure().template constraint_function<S>(frame_of<S>(a, 0), frame_of<S>(b, 12), t).g;
+    Vec<S, m> const g = constraint_function<S>(e.joint.measure(), frame_of<S>(a, 0), frame_of<S>(b, 12), t).g;
     for (int i = 0; i < m; ++i) {
       out.from[i] = g[i].a;
       out.to[i] = g[i].b;

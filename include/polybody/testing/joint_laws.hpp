@@ -61,10 +61,10 @@ template <class Case>
 AnyGeometry any_geometry() {
   using G = decltype(Case::geometry());
   using D = Dual<12>;
-  static constexpr int m = G::rows;
+  static constexpr int m = constraint_equations<G>();
   static auto const geometry = Case::geometry();
   auto const constraint_function = [](FramePair const& p, double t) {
-    ConstraintTerms<m> const x = geometry.template constraint_function<double>(p.a, p.b, t);
+    ConstraintTerms<m> const x = polybody::constraint_function<double>(geometry, p.a, p.b, t);
     SeenTerms seen{x.g, x.rate, MatX(m, 12), {}, {}};
     seen.G << x.Ga, x.Gb;
     return seen;
@@ -74,7 +74,7 @@ AnyGeometry any_geometry() {
     seen.slope.resize(m, 12);
     seen.G_rate.resize(m, 12);
     auto const see = [&](Frame<D> const& a, Frame<D> const& b, auto&& keep) {
-      ConstraintTerms<m, D> const x = geometry.template constraint_function<D>(a, b, t);
+      ConstraintTerms<m, D> const x = polybody::constraint_function<D>(geometry, a, b, t);
       for (Index i = 0; i < m; ++i) keep(i, x);
     };
     Vec<D, 6> of_a, of_b;
@@ -100,7 +100,7 @@ AnyGeometry any_geometry() {
           .opposite_ends = has_opposite_ends<G>(),
           .constraint_function = constraint_function,
           .terms_by_duals = by_duals,
-          .gamma = [](FramePair const& p, double t) { return VecX(geometry.template gamma<double>(p.a, p.b, t)); },
+          .gamma = [](FramePair const& p, double t) { return VecX(constraint_gamma<double>(geometry, p.a, p.b, t)); },
           .gradient = [](FramePair const& p, double t,
                          VecX const& lambda) { return MatX(wrench_gradient<G>(geometry, p.a, p.b, t, lambda)); },
           .mate = &Case::mate};

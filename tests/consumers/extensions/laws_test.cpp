@@ -3,6 +3,7 @@
 #include <polybody/testing.hpp>
 
 #include "bathe.hpp"
+#include "bolt_in_slot.hpp"
 #include "double_pendulum.hpp"
 #include "dumbbell.hpp"
 #include "hardening_penalty.hpp"
@@ -27,6 +28,20 @@ struct DumbbellCase {
   static constexpr double stiffness = 40.0;
 };
 bool const dumbbell_obeys = obeys<DumbbellCase, BodyLaws, FlexibleBodyLaws>("Dumbbell");
+
+struct BoltInSlotCase {
+  static constexpr bool planar = false;
+  static constexpr int world_rows = 0;
+  static BoltInSlot geometry() { return {.slot = Vec3(1, 0, 0), .axis = Vec3(0, 0, 1)}; }
+  static Mate mate(Numbers& number, double) {
+    Mate mate{
+        .d = {number(), 0, 0}, .R = exp_so3<double>(Vec3(0, 0, number(3.0))), .free_directions = MatX::Zero(6, 2)};
+    mate.free_directions(0, 0) = 1.0;  // along the slot
+    mate.free_directions(5, 1) = 1.0;  // about the bolt
+    return mate;
+  }
+};
+bool const bolt_obeys = obeys<BoltInSlotCase, JointLaws>("BoltInSlot");
 
 struct PointOnParabolaCase {
   static constexpr bool planar = false;

@@ -1,4 +1,7 @@
 #pragma once
+/// \file
+/// Geometries that couple two motions: gears, rack and pinion.
+
 #include <numeric>
 
 #include <polybody/joints/angle.hpp>
@@ -80,6 +83,7 @@ struct Gear {
   }
 
  private:
+  using Bearing = EquationList<NoTranslation<0>, NoTranslation<1>>;
   /// Numbers of teeth without their common factor.
   struct Ratio {
     double a, b;  ///< ratios N_a/gcd and N_b/gcd
@@ -91,21 +95,48 @@ struct Gear {
 
   /// Components of the vector from the centre of `one` to the centre of `other` in the first two axes of `one`.
   template <StateScalar T>
-  static ConstraintTerms<2, T> bearing(Frame<T> const& one, Frame<T> const& other) {
-    ConstraintTerms<2, T> xy;
-    polybody::constraint_functions::on_axis(one, other, xy, 0);
-    return xy;
+  ConstraintTerms<2, T> bearing(Frame<T> const& one, Frame<T> const& other) const {
+    return Bearing::constraint_function<T>(*this, one, other);
   }
   template <StateScalar T>
-  static T bearing_gamma(Frame<T> const& one, Frame<T> const& other) {
-    return polybody::constraint_functions::angle_gamma(
-        bearing(one, other), polybody::constraint_functions::on_axis_gamma(one, other), one, other);
+  T bearing_gamma(Frame<T> const& one, Frame<T> const& other) const {
+    return polybody::constraint_functions::angle_gamma(bearing(one, other), Bearing::gamma<T>(*this, one, other), one,
+                                                       other);
   }
   template <class = void>  // compiled only if used
-  static void bearing_gradient(Frame<double> const& one, Frame<double> const& other, double lambda,
-                               Mat<double, 12, 12>& k) {
+  void bearing_gradient(Frame<double> const& one, Frame<double> const& other, double lambda,
+                        Mat<double, 12, 12>& k) const {
     Vec2 const each = polybody::constraint_functions::angle_gradient(bearing(one, other), lambda, k);
-    polybody::constraint_functions::on_axis_gradient(one, other, each, k);
+    for (int i = 0; i < 2; ++i)
+      polybody::constraint_functions::no_slide_gradient(axis_of(one, i), one, other, each[i], k);
+  }
+};
+
+/// Pinion b on the rack a, in the plane and in space: a coupled translation and rotation. 1 constraint equation
+///   g = a₁·d − R θ,  d = r_b − r_a      [Haug 1989, §3.4].
+/// θ is the rotation of b about a₃; it is zero at the reference configuration if a₁·d is zero. The translation
+/// determines the number of full turns. Other joints constrain the pinion's height over the rack and its axis. With a
+/// rack on the ground, the pinion is a wheel that rolls.
+struct RackAndPinion {
+  static constexpr char const* name = "RackAndPinion";
+  static constexpr World world = World::both;
+
+  Required<double> radius;   ///< pitch radius R [m]; for R > 0 the rack is on the side of axis × direction
+  TurnAxis axis = {};        ///< (3) unit vector of the pinion's axis, world axes at the reference configuration
+  JointAxis direction = {};  ///< (3) unit vector along the rack, perpendicular to `axis`
+  using Equations = EquationList<TranslationPerRotation<0, &RackAndPinion::radius>>;
+
+  template <class = void>  // compiled only if used
+  Mat3 triad() const {
+    require_unit(axis.required("RackAndPinion: the axis"), "RackAndPinion: the axis");
+    require_unit(direction.required("RackAndPinion: the direction"), "RackAndPinion: the direction");
+    return polybody::constraint_functions::triad_of(direction, axis, "RackAndPinion");
+  }
+  void check(std::string const& what) const {
+    if (!std::isfinite(radius) || radius == 0.0)
+      throw InvalidInput(
+          "rack_and_pinion.radius",
+          {ErrorObject{what}, ": the radius must be finite and not zero, but is ", ErrorValue{radius}, " m."});
   }
 };
 
