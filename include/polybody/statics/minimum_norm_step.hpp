@@ -42,8 +42,8 @@ class MinimumNormStep {
   MinimumNormStep(System& system, StaticTangent<Solver>& tangent)
       : system_(&system), tangent_(&tangent), nv_(system.velocities()), b_(VecX::Zero(system.size())) {}
 
-  /// Computes the springs that the matrix requires in the state last evaluated, and Z. Returns −1, or an unknown
-  /// without a pivot if springs do not make the matrix regular.
+  /// Computes the springs that the matrix requires in the state last evaluated, and Z. Returns −1, or the index of an
+  /// unknown without a pivot if springs do not make the matrix regular.
   Index factor(VecX const& lambda) {
     excited_ = -1;
     set_springs(lambda);

@@ -31,8 +31,8 @@ class NullSpace {
   NullSpace(System& system, StaticTangent<Solver>& tangent)
       : tangent_(tangent), nv_(system.velocities()), scale_(VecX::Zero(system.size())), y_(scale_), one_(1) {}
 
-  /// Computes `pins`, the unknowns that need a spring to remove the null space. Returns −1, or the unknown without a
-  /// pivot if the factorisation fails.
+  /// Computes `pins`, the unknowns that need a spring to remove the null space. Returns −1, or the index of the unknown
+  /// without a pivot if the factorisation fails.
   Index find(VecX const& lambda, Sequence<Index>& pins) {
     RowSizeSink sizes{scale_};
     tangent_.write_scaled(lambda, sizes);
