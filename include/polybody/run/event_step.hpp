@@ -14,7 +14,7 @@ struct EventStep {
   State const& before;        ///< state at the start of the step
   double length;              ///< length of the step [s]
   Again const& again;         ///< takes a step from a state
-  EventMotion const& motion;  ///< motion of the run near its states
+  EventMotion const& motion;  ///< extrapolation of states near the step
 
   /// State h seconds after the start of the step.
   State after(double h) const {
