@@ -18,7 +18,7 @@ struct EventMotion {
   static double value(Event const& event, State const& x) {
     double const y = event.value(x);
     if (!std::isfinite(y))
-      throw NonFiniteValue("event.not_finite", {"The event \"", ErrorObject{event.name},
+      throw NonFiniteValue("event.not_finite", {"The value of the event \"", ErrorObject{event.name},
                                                 "\" is not finite at t = ", ErrorTime{x.t}, " s."});
     return y;
   }
