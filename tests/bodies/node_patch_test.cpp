@@ -85,9 +85,9 @@ TEST(NodePatch, SharesByWeights) {  // also the resultant and the virtual work
 TEST(NodePatch, RefusesNodesThatTakeNoMoment) {
   Structure s = cloud(3);
   s.nodes[2] = 0.5 * (s.nodes[0] + s.nodes[1]);
-  EXPECT_TRUE(
-      has(refusal([&] { NodePatch(s, {0, 1, 2}, "Link"); }),
-          "Link: a patch needs at least three nodes that are not in line, but this patch has 3. Enlarge the patch."));
+  EXPECT_TRUE(has(refusal([&] { NodePatch(s, {0, 1, 2}, "Link"); }),
+                  "Link: a patch needs at least three nodes that are not in line, but this patch has 3 in line. "
+                  "Enlarge the patch."));
   EXPECT_TRUE(has(refusal([&] { NodePatch(s, {}, "Link"); }), "but this patch has 0."));
   EXPECT_TRUE(has(refusal([&] { NodePatch(s, {0, 1, 7}, "Link"); }), "Link: node 7 does not exist"));
   EXPECT_TRUE(has(refusal([&] { NodePatch(s, {0, 1, 3}, "Link", {1.0, 1.0}); }), "of 3 nodes has 2 weights."));

@@ -89,8 +89,8 @@ void invert_leading(Mat<T, 6, 6>& a, int n) {
   }
 }
 
-/// Inverts the leading n×n block of any matrix `a` in place, with pivoting. Returns −1, or the first column without a
-/// pivot above 1e-14 `size`; in this case `a` is not the inverse. \param size magnitude of the entries
+/// Inverts the leading n×n block of any matrix `a` in place, with pivoting. Returns −1, or the index of the first
+/// column without a pivot above 1e-14 `size`; in this case `a` is not the inverse. \param size magnitude of the entries
 template <class T>
 int invert_with_pivots(Mat<T, 6, 6>& a, int n, double size) {
   auto out = detail::zeros<Mat<T, 6, 6>>();

@@ -55,7 +55,7 @@ constexpr MarkerKind needs_of_second() {
     return F::needs;
 }
 
-/// The markers Ms of a force element F, in their order, provide the kinematics that it requires.
+/// True if the markers Ms, in their order, provide the kinematics that the force element F requires.
 template <class F, class... Ms>
 constexpr bool tell_enough() {
   int k = 0;

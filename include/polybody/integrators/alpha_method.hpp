@@ -204,7 +204,7 @@ struct AlphaMethod {
     System& system;
     State& x;
     Workspace<Solver>& w;
-    double h, look_ahead;  ///< step [s]; point in the expected use of a factorisation for its tangent, as a fraction
+    double h, look_ahead;  ///< step [s]; fraction of a factorisation's expected use at which its tangent is evaluated
     bool both_multiplier_sets, recomputes_held, surrogate_friction;
     Index bad = -1;
 

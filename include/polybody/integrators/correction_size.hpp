@@ -56,7 +56,7 @@ struct StatesInStep {
   double s;  ///< change of the states per correction of their rates [s]
 
   /// Combines corrections y of the rates with those of the accelerations. The tolerance of each state is `tolerance`
-  /// times (1 + |z| + |ż|), plus the round-off of z.
+  /// times (1 + |z| + |ż|), plus the round-off of z over s.
   CorrectionSize join(CorrectionSize size, double tolerance, double const* y) const {
     double worst = 0.0;
     for (Index i = v.size() - count; i < v.size(); ++i) {

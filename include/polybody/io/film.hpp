@@ -296,7 +296,11 @@ class Film {
   }
   static void require_view(std::array<Vec3, 2> const& view) {
     if (!(view[0].cross(view[1]).norm() > 1e-6 * view[0].norm() * view[1].norm()))
-      throw InvalidInput("film.camera", {ErrorObject{"Film"}, ": look_from and up must be finite and not parallel."});
+      throw InvalidInput("film.camera",
+                         {ErrorObject{"Film"},
+                          ": look_from and up must be finite and not parallel, but the sine of the angle "
+                          "between them is ",
+                          view[0].normalized().cross(view[1].normalized()).norm(), "."});
   }
 
   /// JSON members of the film's table of contents, without the scenes.

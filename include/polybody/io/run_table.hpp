@@ -110,7 +110,7 @@ void write_csv(Table const& table, std::filesystem::path const& file) {
 
 /// Writes `stem`.csv, and figures of all columns over the first one to `stem`.dat, .gp and, if `draw` is true and
 /// gnuplot is on PATH, .png. Columns with the same unit ("… [m]") share a panel. Throws InvalidInput for a table
-/// without rows or with less than two columns, and as `write_csv` and `write_panels`.
+/// without rows or with less than two columns, and like `write_csv` and `write_panels`.
 template <class = void>
 DrawResult plot(Table const& table, std::filesystem::path const& stem, bool draw = true) {
   if (table.rows.empty() || table.columns.size() < 2)

@@ -24,7 +24,7 @@ struct VisualPart {
   Vec3 place = Vec3::Zero();          ///< (3) origin of the frame, world axes [m]
   Mat3 axes = Mat3::Identity();       ///< (3×3) rotation from axes of the frame to world axes
   std::vector<Vec3> carried = {};     ///< points of a fixed shape in axes of the frame [m]; empty for a bar
-  std::optional<World> world = {};    ///< plane or space, as the body; empty for a part of the ground
+  std::optional<World> world = {};    ///< plane or space, that of the body; empty for a part of the ground
 };
 
 namespace detail {

@@ -74,11 +74,11 @@ struct PolicyRefusal {
                 "a force, check, multiplier, slope and potential.");
   static_assert(ConstrainingPolicy<P> || given == 0 || (given & 1) != 0,
                 "A compliant policy needs multiplier<m, T>(g, rate) const, which returns lambda as Vec<T, m>.");
-  static_assert(
-      ConstrainingPolicy<P> || given == 0 || (given & 2) != 0,
-      "A compliant policy needs slope<m>(ck, cd, g, rate) const: ck d(lambda)/dg + cd d(lambda)/d(rate), m x m.");
+  static_assert(ConstrainingPolicy<P> || given == 0 || (given & 2) != 0,
+                "A compliant policy needs slope<m>(ck, cd, g, rate) const, which returns ck d(lambda)/dg + cd "
+                "d(lambda)/d(rate) (m x m).");
   static_assert(ConstrainingPolicy<P> || given == 0 || (given & 4) != 0,
-                "A compliant policy needs potential<m>(g) const: the energy that it stores.");
+                "A compliant policy needs potential<m>(g) const, which returns the energy that it stores.");
   static_assert(
       ConstrainingPolicy<P> || given != 7 || requires(P const p, std::string const what) { p.check(what); },
       "A compliant policy needs check(what) const, which throws InvalidInput for invalid parameters.");

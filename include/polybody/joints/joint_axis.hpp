@@ -41,7 +41,7 @@ class JointAxis {
 /// Rotation axis of a geometry for space and for the plane. In the plane the axis is the normal and may be omitted.
 class TurnAxis : public JointAxis {
  public:
-  using JointAxis::JointAxis;  ///< from a vector v, or from x, y, z, as `JointAxis`
+  using JointAxis::JointAxis;  ///< from a vector v, or from x, y, z, like `JointAxis`
 };
 
 /// Geometry with a rotation about a `TurnAxis`.

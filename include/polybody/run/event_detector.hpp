@@ -24,7 +24,7 @@ struct EventMotion {
   static double value(Event const& event, State const& x) {
     double const y = event.value(x);
     if (!std::isfinite(y))
-      throw NonFiniteValue("event.not_finite", {"The event \"", ErrorObject{event.name},
+      throw NonFiniteValue("event.not_finite", {"The value of the event \"", ErrorObject{event.name},
                                                 "\" is not finite at t = ", ErrorTime{x.t}, " s."});
     return y;
   }
@@ -56,7 +56,7 @@ struct EventStep {
   State const& before;        ///< state at the start of the step
   double length;              ///< length of the step [s]
   Again const& again;         ///< takes a step from a state
-  EventMotion const& motion;  ///< motion of the run near its states
+  EventMotion const& motion;  ///< extrapolation of states near the step
 
   /// State h seconds after the start of the step.
   State after(double h) const {

@@ -16,7 +16,7 @@ ConstraintBlock<double> const& rows_of(System const& system, Index joint) {
   for (ConstraintBlock<double> const& block : system.data().rows)
     if (block.source != ConstraintSource::body && block.owner == joint) return block;
   throw InvalidInput("joint.no_equations", {"\"", ErrorObject{system.layout().joints[std::size_t(joint)].name},
-                                            "\" has no constraint equations. Use a joint with the policy Constraint."});
+                                            "\" has no constraint equations."});
 }
 
 /// Gbᵀλ of linear equations as a wrench about the joint point. Position equations give the force, and a gradient r_α

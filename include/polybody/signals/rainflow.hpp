@@ -21,7 +21,8 @@ std::vector<double> turning_points(std::span<double const> history) {
   for (std::size_t i = 0; i < history.size(); ++i) {
     double const x = history[i];
     if (!std::isfinite(x))
-      throw InvalidInput("samples.not_finite", {ErrorObject{"turning_points"}, ": sample ", i, " is not finite."});
+      throw InvalidInput("samples.not_finite", {ErrorObject{"turning_points"}, ": sample ", i,
+                                                " is not finite; samples are counted from 0."});
     if (!points.empty() && x == points.back()) continue;
     std::size_t const n = points.size();
     bool const goes_on = n > 1 && (x > points[n - 1]) == (points[n - 1] > points[n - 2]);

@@ -30,8 +30,8 @@ void require_history(std::span<double const> times, std::span<double const> valu
                                            " samples are needed, but there are ", ErrorValue{values.size()}, "."});
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!std::isfinite(values[i]) || !std::isfinite(times[i]))
-      throw InvalidInput("samples.not_finite",
-                         {ErrorObject{who}, ": sample ", i, " at t = ", ErrorTime{times[i]}, " s is not finite."});
+      throw InvalidInput("samples.not_finite", {ErrorObject{who}, ": sample ", i, " at t = ", ErrorTime{times[i]},
+                                                " s is not finite; samples are counted from 0."});
     if (i > 0 && !(times[i] > times[i - 1]))
       throw InvalidInput("samples.not_increasing", {ErrorObject{who}, ": the times must increase, but t = ",
                                                     ErrorTime{times[i]}, " s follows ", times[i - 1], " s."});

@@ -80,8 +80,9 @@ class BlockFactor {
   /// order (`reordered`).
   BlockSlots slots() const { return {slots_.data(), layout_.first_piece.data(), number_}; }
 
-  /// Returns −1, or the unknown without a usable pivot. Redundant constraint equations of a loop are dropped: see
-  /// `dropped`. If `reordered` is true after a failure, the same matrix can be written and factorised again.
+  /// Returns −1, or the index of the unknown without a usable pivot. Redundant constraint equations of a loop are
+  /// dropped: see `dropped`. If `reordered` is true after a failure, the same matrix can be written and factorised
+  /// again.
   Index factor() {
     reordered_ = false;
     dropped_count_ = 0;

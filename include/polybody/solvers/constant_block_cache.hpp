@@ -76,7 +76,7 @@ class ConstantBlockCache {
     }
   }
 
-  /// Returns −1, or the unknown without a usable pivot.
+  /// Returns −1, or the index of the unknown without a usable pivot.
   Index factor() {
     if (kept_size_ > 0 && !kept_factored_) {
       if (Index const bad = kept_solver_.factor(); bad >= 0) return unknown(bad, true);

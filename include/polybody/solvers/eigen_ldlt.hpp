@@ -47,7 +47,7 @@ class EigenLdlt {
   void begin() { sink_.begin(); }
   void add(Index row, Index col, BlockView const& b) { sink_.add(row, col, b); }
 
-  /// Returns −1, or an unknown without a usable pivot. \throws InvalidInput if the asymmetry is above
+  /// Returns −1, or the index of an unknown without a usable pivot. \throws InvalidInput if the asymmetry is above
   /// `largest_asymmetry`.
   Index factor() {
     Matrix const& a = sink_.matrix();

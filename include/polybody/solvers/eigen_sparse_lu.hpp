@@ -21,7 +21,8 @@ class EigenSparseLuBy {
   }
   void begin() { sink_.begin(); }
   void add(Index row, Index col, BlockView const& b) { sink_.add(row, col, b); }
-  /// Returns −1, or the first column in elimination order with a pivot of at most 1e-14 times its largest entry.
+  /// Returns −1, or the index of the first column in elimination order with a pivot of at most 1e-14 times its largest
+  /// entry.
   Index factor() {
     Matrix const& a = sink_.matrix();
     if (a.cols() == 0) return -1;

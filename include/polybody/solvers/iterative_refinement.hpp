@@ -30,7 +30,7 @@ class IterativeRefinement {
       for (Index i = 0; i < b.rows; ++i) *value++ = b(i, j);
     solver_.add(row, col, b);
   }
-  /// Returns −1, or the column without a usable pivot.
+  /// Returns −1, or the index of the column without a usable pivot.
   Index factor() { return solver_.factor(); }
 
   /// x = A⁻¹ b; b and x may be the same vector.

@@ -46,7 +46,7 @@ class Klu {
   void begin() { sink_.begin(); }
   void add(Index row, Index col, BlockView const& b) { sink_.add(row, col, b); }
 
-  /// Returns −1, or a column without a usable pivot.
+  /// Returns −1, or the index of a column without a usable pivot.
   Index factor() {
     if (sink_.matrix().cols() == 0) return -1;
     if (klu_->symbolic == nullptr) return empty_column();

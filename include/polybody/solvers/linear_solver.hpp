@@ -36,7 +36,7 @@ template <LinearSolver S>
 using UnsymmetricSolver = typename detail::ReadsBothHalves<S>::type;
 
 /// Writes the matrix into the solver and factorises it; writes and factorises it again if the solver changes its
-/// elimination order. Returns −1, or the column without a usable pivot.
+/// elimination order. Returns −1, or the index of the column without a usable pivot.
 template <LinearSolver S>
 Index write_and_factor(S& solver, BlockWriter const& write) {
   for (;;) {

@@ -50,7 +50,7 @@ class RedundancyDropping {
       for (Index i = 0; i < b.rows; ++i) *value++ = b(i, j);
   }
 
-  /// Returns −1, or the column without a usable pivot.
+  /// Returns −1, or the index of the column without a usable pivot.
   Index factor() {
     by_judge_ = false;
     bool judged = !dropped_.empty() && check_step();

@@ -91,8 +91,8 @@ class NullSpace {
   NullSpace(System& system, StaticTangent<Solver>& tangent)
       : tangent_(tangent), nv_(system.velocities()), scale_(VecX::Zero(system.size())), y_(scale_), one_(1) {}
 
-  /// Computes `pins`, the unknowns that need a spring to remove the null space. Returns −1, or the unknown without a
-  /// pivot if the factorisation fails.
+  /// Computes `pins`, the unknowns that need a spring to remove the null space. Returns −1, or the index of the unknown
+  /// without a pivot if the factorisation fails.
   Index find(VecX const& lambda, Sequence<Index>& pins) {
     RowSizeSink sizes{scale_};
     tangent_.write_scaled(lambda, sizes);
@@ -194,8 +194,8 @@ class MinimumNormStep {
   MinimumNormStep(System& system, StaticTangent<Solver>& tangent)
       : system_(&system), tangent_(&tangent), nv_(system.velocities()), b_(VecX::Zero(system.size())) {}
 
-  /// Computes the springs that the matrix requires in the state last evaluated, and Z. Returns −1, or an unknown
-  /// without a pivot if springs do not make the matrix regular.
+  /// Computes the springs that the matrix requires in the state last evaluated, and Z. Returns −1, or the index of an
+  /// unknown without a pivot if springs do not make the matrix regular.
   Index factor(VecX const& lambda) {
     excited_ = -1;
     set_springs(lambda);

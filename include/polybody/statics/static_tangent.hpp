@@ -46,7 +46,7 @@ class StaticTangent {
     analyse(lambda);
   }
 
-  /// Factorises the matrix. Returns −1, or the unknown without a usable pivot.
+  /// Factorises the matrix. Returns −1, or the index of the unknown without a usable pivot.
   Index factor(VecX const& lambda) {
     double largest = 0.0;
     Index const bad = write_and_factor(solver_, [&](BlockSink& solver) {

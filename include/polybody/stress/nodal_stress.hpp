@@ -108,7 +108,7 @@ class NodalStress {
     for (std::size_t i = 0; i < out.size(); ++i) out[i] = history.col(Index(i));
     return out;
   }
-  /// History of the von Mises stress [Pa] of the node `name` under these `displacements`. \throws InvalidInput as
+  /// History of the von Mises stress [Pa] of the node `name` under these `displacements`. \throws InvalidInput like
   /// `of`.
   template <class = void>
   std::vector<double> von_mises(std::string_view name, MatX const& displacements) const {

@@ -104,7 +104,7 @@ void require_same_study(Study const& study) {
 
 }  // namespace detail
 
-/// Runs a study as `study.run(f, options)`, over all ranks; all ranks must call it. All ranks get the results, or an
+/// Runs a study like `study.run(f, options)`, over all ranks; all ranks must call it. All ranks get the results, or an
 /// exception. Rank 0, and a rank on which f threw, get the original exception. The other ranks get an IoError with its
 /// message. A single rank uses threads.
 template <class F>

@@ -76,8 +76,9 @@ struct RankMessage {
 template <class = void>  // compiled where it is used
 void send(int to, RankTag tag, std::string const& text) {
   if (text.size() > std::size_t(std::numeric_limits<int>::max()))
-    throw InvalidInput("study.message_size",
-                       {"study: ", ErrorValue{text.size()}, " bytes are too many for one message to another rank."});
+    throw InvalidInput("study.message_size", {"study: ", ErrorValue{text.size()},
+                                              " bytes are too many for one message to another rank; the limit is ",
+                                              std::numeric_limits<int>::max(), " bytes."});
   MPI_Send(text.data(), static_cast<int>(text.size()), MPI_CHAR, to, static_cast<int>(tag), MPI_COMM_WORLD);
 }
 

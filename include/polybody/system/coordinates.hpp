@@ -109,15 +109,17 @@ struct CoordinateOperations : CoordinateMapOperations<double> {
   /// of the last `expand`. The multipliers of the eliminated equations follow them in `out`.
   void (*correction_from_equations)(void* c, VecX const& solution, VecX& out) = nullptr;
   /// Articulated-body algorithm, without constraint equations: out = u̇ under gravity only, or for the residual
-  /// `residual` of the full model. Returns −1, or a velocity without inertia.
+  /// `residual` of the full model. Returns −1, or the index of a velocity without inertia.
   Index (*accelerations)(void* c, VecX const& q, VecX const& v, double load_factor, VecX const* residual,
                          VecX& out) = nullptr;
   /// Articulated-body algorithm under gravity only: r = Tᵀ(M(T u̇ + b) − f) at the iterate x.
   void (*balance)(void* c, StepPosition const& x, double load_factor, VecX& r) = nullptr;
-  /// Factorises the exact tangent of `balance` with the coefficients k. Returns −1, or the velocity without a pivot.
+  /// Factorises the exact tangent of `balance` with the coefficients k. Returns −1, or the index of the velocity
+  /// without a pivot.
   Index (*factor_balance)(void* c, void* frozen, StepPosition const& x, double load_factor,
                           TangentCoefficients const& k) = nullptr;
-  /// Articulated-body algorithm: factorises the full tangent of `write`. Returns −1, or the velocity without a pivot.
+  /// Articulated-body algorithm: factorises the full tangent of `write`. Returns −1, or the index of the velocity
+  /// without a pivot.
   Index (*factor)(void* c, void* frozen, BlockWriter const& write) = nullptr;
   /// Solves with the factors of the last `factor` or `factor_balance`, in the unknowns of a step.
   void (*solve)(void* frozen, VecX const& rhs, VecX& x) = nullptr;

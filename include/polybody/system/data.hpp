@@ -146,7 +146,7 @@ struct Data {
   Index first_state = 0;                  ///< index of the first state z among the velocities
 
   Sequence<Wrench<double>> loads;             ///< wrench of each marker in r, for the second-order terms of the tangent
-  Sequence<Mat<double, 6, 6>> own_stiffness;  ///< for each marker of the largest force group
+  Sequence<Mat<double, 6, 6>> own_stiffness;  ///< stiffness of each marker of the largest force group
   Sequence<double> scratch;                   ///< for projected blocks, n×18 and n×n; n: columns of the widest marker
 
   bool linear_rows = true;  ///< if false, linear joints and markers of linear joints only are omitted

@@ -23,7 +23,7 @@ struct PlausibilityLimits {
       0.05;  ///< unexplained energy that causes a warning at the end of a run, relative to `Unexplained::scale` [1]
 };
 
-/// Change of energy in a run that exceeds the work.
+/// Energy change of a run that its work does not explain.
 struct Unexplained {
   double energy = 0.0;  ///< gained energy, negative for a loss [J]
   double doubt = 0.0;   ///< estimated error of the work, large if a force jumps [J]

@@ -45,8 +45,8 @@ struct SprocketProfile {
     require_positive(pin_radius, name, ": the pins' radius");
     if (!(valley_radius > pin_radius) || !std::isfinite(valley_radius))
       throw InvalidInput("sprocket.valley",
-                         {ErrorObject{name}, ": the radius of the valleys must exceed the radius of the pins, but is ",
-                          ErrorValue{valley_radius}, " m."});
+                         {ErrorObject{name}, ": the radius of the valleys must exceed the radius of the pins, ",
+                          pin_radius, " m, but is ", ErrorValue{valley_radius}, " m."});
     if (!(flank > 0.0 && flank < 0.5 * std::numbers::pi))
       throw InvalidInput(
           "sprocket.valley",

@@ -134,8 +134,10 @@ inline void check_track(TrackLayout const& layout) {
                                            "\" is not a circle of the track. Use the name of one of its circles."});
   if (!(t.direction.norm() > 0.0) || !t.direction.allFinite() || !(t.least <= t.most) ||
       !std::isfinite(t.most - t.least))
-    throw InvalidInput("track.tensioner", {"Track: the tensioner's circle \"", ErrorObject{t.circle},
-                                           "\" needs a direction and a finite range of travel, least ≤ most."});
+    throw InvalidInput("track.tensioner",
+                       {"Track: the tensioner's circle \"", ErrorObject{t.circle},
+                        "\" needs a direction and a finite range of travel, least ≤ most, but has the range ", t.least,
+                        " m to ", t.most, " m and a direction of length ", t.direction.norm(), "."});
   check_track_overlaps(layout, false);
 }
 

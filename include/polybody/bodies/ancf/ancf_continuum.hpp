@@ -12,7 +12,8 @@ namespace polybody {
 
 namespace ancf {
 
-/// Base class of strains that depend on columns f of the deformation gradient F. Their shapes read all nodal vectors.
+/// Base class of strains that depend on columns f of the deformation gradient F. The shape functions use all nodal
+/// vectors.
 template <int used>
 struct OfGradient {
   static constexpr int components = 3;
@@ -155,7 +156,7 @@ struct Stress {
 /// `Locking::cured` splits D = D⁰ + Dᵛ [Gerstmayr, Matikainen & Mikkola 2008]:
 ///   E E₁₁² over the volume, as in a bar under uniaxial stress;
 ///   the other terms of Hooke's law for normal strains, and E₂₃, on the axis only, at the nodes (trapezoidal rule):
-///   between the nodes of a bent element |r_y| < 1 is an interpolation error of the chord and would add stiffness;
+///   between the nodes of a bent element, interpolation along the chord gives |r_y| < 1, which would add stiffness;
 ///   the shears 2E₁₂, 2E₁₃ with the corrected shear stiffnesses GA, GA_z of the bar, at four points whose distance
 ///   from the axis is scaled until the torsional stiffness equals GJ of the bar. The quadrature keeps three points
 ///   along x: with two, a mode has no energy; three do not lock (see `ElasticLine`).

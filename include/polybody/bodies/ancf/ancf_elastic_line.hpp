@@ -15,11 +15,10 @@ namespace polybody {
 ///   ½ (r_y·r_y − 1), ½ (r_z·r_z − 1), r_y·r_z: the strains of the section, with stiffness EA, EA, GA.
 /// Γ and K are taken relative to their values in the reference. R, Γ and K do not depend on the strains of the section.
 /// On fine meshes the sections therefore keep their shape, and the element converges to the exact rod. Quadrature:
-///     Γ at three Gauss points, exact for linear theory, where r₀′ is quadratic. With two points, a motion with r = 0
-///     and
-///     equal r_x across the axis at all nodes would have no energy: its r₀′ is the Legendre polynomial P₂, zero at
-///     both.
-///     The element does not lock: the quadratic r₀′ can follow any piecewise linear r_y, r_z with Γ = 0.
+///   Γ at three Gauss points, exact for linear theory, where r₀′ is quadratic. With two points, a motion with r = 0 and
+///   equal r_x across the axis at all nodes would have no energy: its r₀′ is the Legendre polynomial P₂, which is zero
+///   at two Gauss points. The element does not lock: the quadratic r₀′ can follow any piecewise linear r_y, r_z with
+///   Γ = 0.
 ///   K at two points: for sections that rotate by θ per element, the result is θ/l with an error of order θ⁴.
 ///   The strains of the section only at the nodes: between them |r_y| decreases to cos(θ/2) by the interpolation along
 ///     the chord, which is not a strain.

@@ -84,8 +84,8 @@ class MeanSectionFrame : public SectionAxes<T> {
     return h;
   }
 
-  /// Writes the covector s of (X, Y) to row `row` of `out`, as a covector of (δb, δc). Its columns begin at `first` and
-  /// at `first + 3`.
+  /// Writes the covector s of (X, Y) to row `row` of `out`, as a covector of (δb, δc). The three columns for δb begin
+  /// at `first`, those for δc at `first + 3`.
   template <int rows, int columns>
   void to_vectors(V6 const& s, int row, int first, Mat<T, rows, columns>& out) const {
     V3 const x = world(head(s)), y = world(tail(s));

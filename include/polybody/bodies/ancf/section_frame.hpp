@@ -47,8 +47,8 @@ struct SectionAxes {
 ///   w = (X, Y),  X = Rᵀδb/β,  Y = Rᵀδc/c₃.
 /// The change rotates the frame by φ = S w in the axes of the frame, δR = R φ̃:
 ///   φ = (X₃, Y₁ − σ X₁, −X₁).
-/// This equation follows from δt₂ = (1 − t₂t₂ᵀ) δb/β and from the condition t₁·c = 0. While the frame moves by ŵ, the
-/// components of a constant d change:
+/// This equation follows from δt₂ = (1 − t₂t₂ᵀ) δb/β and from the condition t₁·c = 0. A second change with
+/// the components ŵ = (X̂, Ŷ) rotates the frame by φ̂ = S ŵ. The components of a constant d then change by
 ///   δ̂X = X × φ̂ − X X̂₂,  δ̂Y = Y × φ̂ − Y (Ŷ₃ − σ X̂₃),  δ̂σ = g·ŵ = Ŷ₂ + (1 + σ²) X̂₃ − σ Ŷ₃.
 /// All other derivatives follow by the chain rule. Vectors of six are ordered (X, Y). The code uses plain loops for
 /// doubles, dual numbers and SIMD vectors.
@@ -234,8 +234,8 @@ class SectionFrame : public SectionAxes<T> {
                                         {true, false, false, false, false, false},
                                         {true, false, false, true, false, false}}};
 
-  /// Calls add(i, j, x) for the entries x of block (a, b) of the form h in world axes: R h_ab Rᵀ divided by two of the
-  /// lengths β, c₃.
+  /// Calls add(i, j, x) for the entries x of block (a, b) of the form h in world axes: R h_ab Rᵀ, divided by the
+  /// lengths of the vectors of a and b, β or c₃.
   template <Places places, class F>
   void add_world(M6 const& h, int a, int b, F&& add) const {
     T const scale = (a == 0 ? ib_ : ic_) * (b == 0 ? ib_ : ic_);

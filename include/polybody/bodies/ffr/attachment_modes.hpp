@@ -8,8 +8,8 @@ namespace polybody {
 
 namespace detail {
 
-/// Shapes with unit modal mass that span the columns of `shapes`, by ascending frequency. Linearly dependent columns
-/// are omitted.
+/// Shapes with unit modal mass, by ascending frequency, whose span is that of the columns of `shapes`. Linearly
+/// dependent columns are omitted.
 template <class = void>
 MatX orthogonal_basis(Structure const& s, MatX shapes) {
   MatX k = shapes.transpose() * (s.stiffness * shapes);

@@ -231,10 +231,10 @@ inline constexpr double same_node = 1e-9;
 template <class = void>
 Structure structure_of(std::vector<Bar> const& bars, std::vector<Index> const& elements) {
   if (bars.empty() || bars.size() != elements.size())
-    throw InvalidInput("structure.beam", {ErrorObject{"Structure"},
-                                          ": at least one bar and one number of elements per bar are needed, but there "
-                                          "are ",
-                                          bars.size(), " bars and ", elements.size(), " numbers."});
+    throw InvalidInput(
+        "structure.beam",
+        {ErrorObject{"Structure"}, ": at least one bar and one number of elements per bar are needed, but there are ",
+         bars.size(), " bars and ", elements.size(), " numbers."});
   Structure s;
   double longest = 0.0;
   for (Bar const& bar : bars) longest = std::max(longest, double(bar.length));
@@ -322,8 +322,8 @@ class AxialForceStiffness {
                           " is held. Connect all bars at common ends, and give each bar positive stiffnesses."});
   }
 
-  /// Geometric stiffness due to one load: `load` (N) at the nodes, and `spread(beam)`, the nodal forces (12, body axes)
-  /// equivalent to the load within the beam.
+  /// Geometric stiffness due to one load. \param load (N) nodal forces [N], [N m] \param spread spread(beam) returns
+  /// the nodal forces (12, body axes) that are equivalent to the load within the beam
   template <class Spread>
   Structure::Sparse operator()(VecX const& load, Spread&& spread) const {
     Structure const& s = *structure_;

@@ -40,8 +40,8 @@ class Ffr {
   using Options = FfrOptions;  ///< placement, terms of the inertia, stiffening and damping
 
   /// Body of the bar in n elements, in mean axes, with geometric stiffening. The 6 n coordinates q are the
-  /// displacements and rotations of the nodes relative to the first end; the option `modes` reduces their number. They
-  /// are suitable for all joints, because the frame needs no condition at a joint. The placement is that of the bar.
+  /// displacements and rotations of the nodes relative to the first end; the option `modes` reduces their number.
+  /// They are suitable for all joints: the frame needs no condition at a joint. The placement is that of the bar.
   /// \throws InvalidInput for n < 1, and for a bar with invalid data or without torsional stiffness GJ.
   template <class = void>  // compiled only if used
   static Ffr from(Bar const& bar, Index n, Options options = {}) {

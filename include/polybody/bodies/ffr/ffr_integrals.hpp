@@ -13,7 +13,7 @@ namespace detail {
 template <class T>
 T column_times(MatX const& m, Index k, T const* x) {
   if constexpr (std::is_same_v<T, double>) {
-    return m.col(k).dot(Eigen::Map<VecX const>(x, m.rows()));  // Eigen reorders this sum; the compiler must not
+    return m.col(k).dot(Eigen::Map<VecX const>(x, m.rows()));  // Eigen may reorder this sum, the compiler may not
   } else {
     T sum(0.0);
     for (Index j = 0; j < m.rows(); ++j) sum += x[j] * m(j, k);

@@ -48,7 +48,7 @@ class NodePatch {
       throw InvalidInput(
           "structure.patch",
           {ErrorObject{who}, ": a patch needs at least three nodes that are not in line, but this patch has ",
-           ErrorValue{nodes_.size()}, ". Enlarge the patch."});
+           ErrorValue{nodes_.size()}, nodes_.size() < 3 ? "" : " in line", ". Enlarge the patch."});
     by_moment_ = spread.inverse();
   }
 
@@ -92,8 +92,9 @@ class NodePatch {
   void normalise(std::string const& who) {
     if (weights_.empty()) weights_.assign(nodes_.size(), 1.0);
     if (weights_.size() != nodes_.size())
-      throw InvalidInput("structure.patch", {ErrorObject{who}, ": a patch of ", nodes_.size(), " nodes has ",
-                                             ErrorValue{weights_.size()}, " weights."});
+      throw InvalidInput("structure.patch",
+                         {ErrorObject{who}, ": a patch of ", nodes_.size(), " nodes has ", ErrorValue{weights_.size()},
+                          " weights. Give one weight for each node, or none."});
     double sum = 0.0;
     for (double const w : weights_) {
       require_positive(w, who, ": the weight of a node");

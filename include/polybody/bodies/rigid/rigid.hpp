@@ -188,7 +188,7 @@ class Rigid;
 
 /// Rigid body with a unit quaternion: six generalised velocities and no constraint equation of its own [Shabana 2020,
 /// §3.5; Brüls, Cardona & Arnold 2012]. The coordinates are (r, q), with the centre of mass r in world axes [m] and the
-/// unit quaternion q. The generalised velocities are (ṙ, Ω), with the angular velocity Ω in body axes [rad/s]. The
+/// unit quaternion q. The generalised velocities are (ṙ, Ω), with the angular velocity Ω in body axes [rad/s].
 /// The equations of Newton and Euler, with the force f and the moment m_c about the centre of mass in world axes, are
 ///   m r̈ = f,  J Ω˙ + Ω × J Ω = Aᵀ m_c.
 template <>

@@ -18,7 +18,7 @@ template <class B>
 concept IdenticalElements =
     requires(B const b, Vec<SimdVector<>, B::element_columns> x, Vec<SimdVector<>, B::element_columns>& out,
              Mat<SimdVector<>, B::element_columns, B::element_columns>& k) {
-      requires B::vectorised_kernels;                     // by measurement: true for arithmetic, not for sines
+      requires B::vectorised_kernels;                     // true for arithmetic, false for sines (measured)
       { B::element_stride } -> std::convertible_to<int>;  // from the first column of an element to that of the next
       b.template element_inertia<SimdVector<>>(x, out);
       b.template element_force<SimdVector<>>(x, x, out);
