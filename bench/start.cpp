@@ -1,6 +1,7 @@
 // Times of what comes before the first step of large models: adding the parts, `simulate` (assembly check, order of
-// elimination, first accelerations), `outline` and `check`; chains of planar bodies on pins, and many pins at one
-// point. The number in brackets is the exponent of growth between two rows: 1 is linear. Processor time of one run.
+// elimination, first accelerations), `outline` and `check`; chains of planar bodies on pins, chains with every pin
+// doubled, and many pins at one point. The number in brackets is the exponent of growth between two rows: 1 is linear.
+// Processor time of one run.
 #include <benchmark/benchmark.h>
 #include <malloc.h>
 
@@ -29,17 +30,18 @@ double seconds(std::function<void()> const& act) {
   return processor_time() - start;
 }
 
-/// Bars of 1 m and 1 kg in a row, each pinned to the one before.
+/// Bars of 1 m and 1 kg in a row, each pinned to the one before by `copies` equal pins.
 template <class Policy>
-Chain<Policy> chain(int bodies) {
+Chain<Policy> chain(int bodies, int copies = 1) {
   Chain<Policy> model{Gravity{0, -9.81, 0}};
   BodyHandle<planar::Rigid> before;
   for (int i = 0; i < bodies; ++i) {
     auto const bar = model.add(planar::Rigid(1.0, 1.0 / 12.0, Placement::planar(0.5 + i, 0.0)));
-    if (i == 0)
-      model.connect(Pin<Policy>{}, model.ground().at({0, 0, 0}), bar.at(Vec2(-0.5, 0)));
-    else
-      model.connect(Pin<Policy>{}, before.at(Vec2(0.5, 0)), bar.at(Vec2(-0.5, 0)));
+    for (int copy = 0; copy < copies; ++copy)
+      if (i == 0)
+        model.connect(Pin<Policy>{}, model.ground().at({0, 0, 0}), bar.at(Vec2(-0.5, 0)));
+      else
+        model.connect(Pin<Policy>{}, before.at(Vec2(0.5, 0)), bar.at(Vec2(-0.5, 0)));
     before = bar;
   }
   return model;
@@ -100,11 +102,13 @@ void chains(char const* title) {
   }
 }
 
-void pins() {
-  std::printf("\npins at one point [s] (exponent)\n    pins  simulate          redundancy\n");
+/// Times of models with redundant equations; model_of(n) returns the model of size n.
+template <class ModelOf>
+void redundant(char const* title, std::initializer_list<int> sizes, ModelOf model_of) {
+  std::printf("\n%s [s] (exponent)\n    size  simulate          redundancy\n", title);
   Table table;
-  for (int const n : {100, 200, 400, 800, 1600}) {
-    Chain<Constraint> const model = pinned(n);
+  for (int const n : sizes) {
+    Chain<Constraint> const model = model_of(n);
     State x = model.reference_state();
     double const start = seconds([&] { simulate(model, x, GeneralisedAlpha{}, {.end_time = 1.0, .step = 1e-3}); });
     double const rank = seconds([&] { benchmark::DoNotOptimize(redundancy(model, x)); });
@@ -116,7 +120,9 @@ void start(benchmark::State& state) {
   for (auto _ : state) {
     chains<Constraint>("chain, Constraint");
     chains<JointCoordinates>("chain, JointCoordinates");
-    pins();
+    redundant("chain, every pin doubled", {100, 200, 400, 800, 1600, 10000},
+              [](int n) { return chain<Constraint>(n, 2); });
+    redundant("pins at one point", {100, 200, 400, 800, 1600}, pinned);
   }
 }
 BENCHMARK(start)->Iterations(1)->Unit(benchmark::kSecond);

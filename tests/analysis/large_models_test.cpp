@@ -17,17 +17,53 @@ namespace large_models_test {
 using Pin = Joint<planar::Revolute, Constraint>;
 using Chain = Model<Bodies<planar::Rigid>, Joints<Pin>>;
 
-Chain chain(int bodies) {
+/// \param copies number of equal pins at each joint
+Chain chain(int bodies, int copies = 1) {
   Chain model{Gravity{0, -9.81, 0}};
   BodyHandle<planar::Rigid> before;
   for (int i = 0; i < bodies; ++i) {
     auto const bar = model.add(planar::Rigid(1.0, 1.0 / 12.0, Placement::planar(0.5 + i, 0.0)));
-    if (i == 0)
-      model.connect(Pin{}, model.ground().at({0, 0, 0}), bar.at(Vec2(-0.5, 0)));
-    else
-      model.connect(Pin{}, before.at(Vec2(0.5, 0)), bar.at(Vec2(-0.5, 0)));
+    for (int copy = 0; copy < copies; ++copy)
+      if (i == 0)
+        model.connect(Pin{}, model.ground().at({0, 0, 0}), bar.at(Vec2(-0.5, 0)));
+      else
+        model.connect(Pin{}, before.at(Vec2(0.5, 0)), bar.at(Vec2(-0.5, 0)));
     before = bar;
   }
+  return model;
+}
+/// Square grid of bars with irregular nodes, hung from its upper line of nodes, with every pin doubled. Bars and loops
+/// are counted by m².
+Chain doubled_grid(int m) {
+  Chain model{Gravity{0, -9.81, 0}};
+  struct End {
+    BodyHandle<planar::Rigid> bar;
+    double along;
+  };
+  std::vector<std::vector<End>> ends(std::size_t((m + 1) * (m + 1)));
+  auto const node = [&](int i, int j) {
+    return Vec2(i + 0.2 * std::sin(1.0 + 3.7 * i + 1.3 * j), -j + 0.2 * std::cos(2.1 * i * j + 0.7 * j + i));
+  };
+  auto const bar = [&](int i, int j, int k, int l) {
+    Vec2 const a = node(i, j), b = node(k, l), along = b - a, middle = 0.5 * (a + b);
+    auto const added = model.add(
+        planar::Rigid(1.0, 1.0 / 12.0, Placement::planar(middle[0], middle[1], std::atan2(along[1], along[0]))));
+    ends[std::size_t(i * (m + 1) + j)].push_back({added, -0.5 * along.norm()});
+    ends[std::size_t(k * (m + 1) + l)].push_back({added, 0.5 * along.norm()});
+  };
+  for (int i = 0; i <= m; ++i)
+    for (int j = 0; j <= m; ++j) {
+      if (i < m && j > 0) bar(i, j, i + 1, j);
+      if (j < m) bar(i, j, i, j + 1);
+    }
+  for (int i = 0; i <= m; ++i)
+    for (int j = 0; j <= m; ++j)
+      for (int copy = 0; copy < 2; ++copy) {
+        auto const& at = ends[std::size_t(i * (m + 1) + j)];
+        auto const end = [&](std::size_t k) { return at[k].bar.at(Vec2(at[k].along, 0)); };
+        if (j == 0) model.connect(Pin{}, model.ground().at(Vec3(node(i, 0)[0], node(i, 0)[1], 0)), end(0));
+        for (std::size_t k = 1; k < at.size(); ++k) model.connect(Pin{}, end(k - 1), end(k));
+      }
   return model;
 }
 /// One body on `pins` pins at one point.
@@ -121,13 +157,20 @@ TEST(LargeModels, FactorNoRowsOfTreesInSpace) {
   expect_alike(model, model.rows());
 }
 
-/// Counts the solutions.
+/// Counts the solutions, and the entries of null vectors.
 struct Counting : DefaultSolver {
+  Sequence<IndexMap<double>> null_vectors(VecX const& sizes) const {
+    auto found = DefaultSolver::null_vectors(sizes);
+    for (auto const& n : found) entries += n.size();
+    vectors += found.size();
+    return found;
+  }
   void solve(VecX const& b, VecX& x) {
     ++solutions;
     DefaultSolver::solve(b, x);
   }
   inline static int solutions = 0;
+  inline static std::size_t vectors = 0, entries = 0;
 };
 static_assert(LinearSolver<Counting>);
 
@@ -148,6 +191,36 @@ int solutions_of_start(int pins) {
 TEST(LargeModels, AreAskedForContradictionsByFewSolutions) {
   EXPECT_EQ(solutions_of_start(5), 4);
   EXPECT_EQ(solutions_of_start(60), 4);
+}
+
+/// Solutions, null vectors and their entries in the choice of the equations that a run drops, for a model with every
+/// pin doubled.
+struct ChoiceCost {
+  int solutions;
+  std::size_t vectors, entries;
+  explicit ChoiceCost(Chain const& model) {
+    System system(model, with<Capabilities::motion>);
+    State x = model.reference_state();
+    ForwardDynamics<Counting> forward(system);
+    forward.accelerations(system, {x.q, x.v, x.t}, x.a, x.lambda);
+    Counting::solutions = 0;
+    Counting::vectors = Counting::entries = 0;
+    EXPECT_TRUE(leave_out_redundant(system, forward, x));
+    EXPECT_EQ(Index(forward.left_out().size()), system.rows() / 2);
+    solutions = Counting::solutions;
+    vectors = Counting::vectors;
+    entries = Counting::entries;
+  }
+};
+// The choice needs one solution for each test of null vectors, and two entries of each null vector. The entries of
+// complete vectors grow as the square of the model.
+TEST(LargeModels, ChooseDroppedEquationsByFewEntries) {
+  for (Chain const& model : {chain(20, 2), chain(300, 2), doubled_grid(3), doubled_grid(8)}) {
+    ChoiceCost const cost(model);
+    EXPECT_EQ(cost.solutions, 1);
+    EXPECT_EQ(Index(cost.vectors), model.rows());  // twice for each dropped equation
+    EXPECT_EQ(cost.entries, 2 * cost.vectors);
+  }
 }
 
 // All pins after the first one are one node of the factorisation. Separate nodes have n³/6 updates.

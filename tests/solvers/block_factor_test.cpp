@@ -233,6 +233,75 @@ TYPED_TEST(BlockSolvers, DropRowsThatRepeatOthers) {
   }
 }
 
+// Square roots of the diagonal of the masses, and of G D⁻¹ Gᵀ with this diagonal D.
+VecX sizes_of(Blocks const& blocks, Index velocities) {
+  MatX const a = blocks.dense();
+  VecX sizes = a.diagonal();
+  for (Index i = velocities; i < a.rows(); ++i)
+    for (Index j = 0; j < velocities; ++j) sizes[i] += a(i, j) * a(i, j) / a(j, j);
+  return sizes.cwiseSqrt();
+}
+/// Largest error of the null vectors of the dropped equations, relative to 1: A n = 0 in all other rows, n = 1 at its
+/// own equation and 0 at the other dropped ones. Sets `entries` to the number of all entries.
+template <class Solver>
+double error_of_null_vectors(Blocks const& blocks, Solver const& solver, Index velocities, std::size_t& entries) {
+  auto const vectors = solver.null_vectors(sizes_of(blocks, velocities));
+  EXPECT_EQ(vectors.size(), solver.dropped().size());
+  MatX const a = blocks.dense();
+  double worst = 0.0;
+  entries = 0;
+  for (std::size_t k = 0; k < vectors.size(); ++k) {
+    VecX n = VecX::Zero(blocks.size);
+    for (auto const& [i, value] : vectors[k]) n[i] = value;
+    entries += vectors[k].size();
+    VecX left = a * n;
+    for (Index const i : solver.dropped()) {
+      worst = std::max(worst, std::abs(n[i] - (i == solver.dropped()[k] ? 1.0 : 0.0)));
+      left[i] = 0.0;
+    }
+    worst = std::max(worst, largest_size(left));
+  }
+  return worst;
+}
+// Each joint of a chain is doubled. A null vector of a repeated equation has two entries in a chain of any length.
+TYPED_TEST(BlockSolvers, FindTheNullVectorsOfADoubledChainByTwoEntries) {
+  Draw& draw = this->draw;
+  for (Index const bodies : {2, 9, 24}) {
+    Blocks b;
+    for (Index i = 0; i < bodies; ++i) b.add(6 * i, 6 * i, draw.definite(6));
+    for (Index i = 0; i < bodies; ++i) {
+      MatX const own = draw.matrix(3, 6), other = draw.matrix(3, 6);
+      for (Index copy = 0; copy < 2; ++copy) {
+        b.join(6 * bodies + 3 * (2 * i + copy), 6 * i, own);
+        if (i > 0) b.join(6 * bodies + 3 * (2 * i + copy), 6 * (i - 1), other);
+      }
+    }
+    TypeParam solver = b.analysed<TypeParam>();
+    ASSERT_EQ(write_and_factor(solver, [&](BlockSink& s) { b.write(s); }), -1);
+    ASSERT_EQ(solver.dropped().size(), std::size_t(3 * bodies));
+    std::size_t entries = 0;
+    EXPECT_LT(error_of_null_vectors(b, solver, 6 * bodies, entries), 1e-9);
+    EXPECT_EQ(entries, 2 * solver.dropped().size());
+  }
+}
+// A loop of random joints, closed by combinations of the equations of one of them: null vectors with several entries.
+// Two bodies are so heavy that entries without their scale would be lost.
+TYPED_TEST(BlockSolvers, FindTheNullVectorsOfCombinedRows) {
+  Draw& draw = this->draw;
+  Blocks b = chain(12, 6, 5, draw);
+  MatX const dense = b.dense(), mix = draw.matrix(5, 5);
+  Index const row = b.size, joint = 6 * 12 + 5 * 7;
+  b.join(row, 6 * 7, mix * dense.block(joint, 6 * 7, 5, 6));
+  b.join(row, 6 * 6, mix * dense.block(joint, 6 * 6, 5, 6));
+  for (Index const heavy : {2, 7}) b.add(6 * heavy, 6 * heavy, 1e6 * MatX::Identity(6, 6));
+  TypeParam solver = b.analysed<TypeParam>();
+  ASSERT_EQ(write_and_factor(solver, [&](BlockSink& s) { b.write(s); }), -1);
+  ASSERT_EQ(solver.dropped().size(), 5u);
+  std::size_t entries = 0;
+  EXPECT_LT(error_of_null_vectors(b, solver, 72, entries), 1e-8);
+  EXPECT_EQ(entries, 5u * 6u);
+}
+
 TYPED_TEST(BlockSolvers, SolveSeveralSidesAtOnce) {
   Blocks const b = chain(7, 6, 5, this->draw);
   TypeParam const solver = this->solved(b);

@@ -47,11 +47,9 @@ class Behind final : public SolverInTests {
     if constexpr (requires { solver_.is_doubtful(share); }) return solver_.is_doubtful(share);
     return false;
   }
-  void null_vector(Index dropped, VecX& n) const override {
-    if constexpr (requires { solver_.null_vector(dropped, n); })
-      solver_.null_vector(dropped, n);
-    else
-      n.setZero();
+  Sequence<IndexMap<double>> null_vectors(VecX const& sizes) const override {
+    if constexpr (requires { solver_.null_vectors(sizes); }) return solver_.null_vectors(sizes);
+    return {};
   }
   double sign_of_determinant() const override {
     if constexpr (requires { solver_.sign_of_determinant(); }) return solver_.sign_of_determinant();

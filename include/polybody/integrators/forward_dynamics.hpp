@@ -312,14 +312,18 @@ class ForwardDynamics {
   bool is_doubtful() const { return doubtful_ || solver_.is_doubtful(); }
   void note_doubt() { doubtful_ = true; }    ///< sets `is_doubtful` until `clear_doubt`
   void clear_doubt() { doubtful_ = false; }  ///< resets `is_doubtful`, after a new selection
-  /// Computes the null vector `n` of the equation `dropped` in the last factorisation; entries are numbered as
-  /// equations. See `BlockFactor::null_vector`.
-  bool null_vector(Index dropped, VecX& n) { return solver_.null_vector(dropped, n); }
+  /// Computes the null vectors of `redundant_rows` in the last factorisation; entries are numbered as equations. Empty
+  /// for solvers that compute no null vectors. See `BlockFactor::null_vectors`.
+  Sequence<IndexMap<double>> null_vectors(VecX const& sizes) { return solver_.null_vectors(sizes); }
   /// Names of the joints and bodies with redundant equations.
   std::vector<std::string> redundant(System const& system) const {
     std::vector<std::string> names;
+    ModelLayout const& layout = system.layout();
+    Sequence<Index> const joint_of = system.step_coordinates() ? Sequence<Index>() : layout.joint_of_rows();
     for (Index const i : solver_.dropped()) {
-      std::string name = name_of_equation(system, i);
+      Index const row = i - system.velocities();
+      Index const joint = row >= 0 && std::size_t(row) < joint_of.size() ? joint_of[std::size_t(row)] : -1;
+      std::string name = joint >= 0 ? layout.joints[std::size_t(joint)].title() : name_of_equation(system, i);
       if (names.empty() || names.back() != name) names.push_back(std::move(name));
     }
     return names;

@@ -2,6 +2,8 @@
 /// \file
 /// Sorted map from indices to a few values, with short compile times.
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <polybody/math/sequence.hpp>
@@ -40,6 +42,25 @@ class IndexMap {
     for (std::size_t i = k; i + 1 < entries_.size(); ++i) std::swap(entries_[i], entries_[i + 1]);
     entries_.pop_back();
   }
+  /// Adds `factor` times the values of `other`. The cost is linear in the number of entries of both maps.
+  void add(V const& factor, IndexMap const& other) {
+    Sequence<Entry> sum;
+    sum.reserve(entries_.size() + other.entries_.size());
+    Entry const* mine = begin();
+    for (Entry const& e : other) {
+      while (mine != end() && mine->index < e.index) sum.push_back(*mine++);
+      sum.push_back({e.index, mine != end() && mine->index == e.index ? mine++->value : V()});
+      sum.back().value += factor * e.value;
+    }
+    sum.append(mine, end());
+    entries_.swap(sum);
+  }
+  /// Multiplies all values by `factor`.
+  void multiply(V const& factor) {
+    for (Entry& e : entries_) e.value *= factor;
+  }
+  bool empty() const { return entries_.empty(); }       ///< true if there are no entries
+  std::size_t size() const { return entries_.size(); }  ///< number of entries
   /// First entry. The entries are sorted by ascending index.
   Entry const* begin() const { return entries_.begin(); }
   Entry const* end() const { return entries_.end(); }  ///< end of the entries
@@ -60,5 +81,12 @@ class IndexMap {
 
   Sequence<Entry> entries_;
 };
+
+/// Largest magnitude of the values.
+inline double largest_size(IndexMap<double> const& c) {
+  double largest = 0.0;
+  for (auto const& [i, value] : c) largest = std::max(largest, std::abs(value));
+  return largest;
+}
 
 }  // namespace polybody

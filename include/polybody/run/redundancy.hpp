@@ -205,8 +205,7 @@ Redundancy redundancy(System& system, State const& x) {
   for (Index k = 0; k < factor.repeated(); ++k) {
     IndexMap<double> const c = factor.relation(k);
     null_vectors.push_back(factor.scaled_relation(k));
-    double largest = 0.0;
-    for (auto const& [i, value] : c) largest = std::max(largest, std::abs(value));
+    double const largest = largest_size(c);
     auto const compare = [&](VecX const& b, double limit, std::vector<std::string>& found) {
       double sum = 0.0;
       for (auto const& [i, value] : c) sum += value * b[i];
@@ -219,8 +218,12 @@ Redundancy redundancy(System& system, State const& x) {
     compare(rate, in_velocities, out.in_velocities);
     compare(gamma, in_accelerations, out.in_accelerations);
   }
+  ModelLayout const& layout = system.layout();
+  Sequence<Index> const joint_of = system.step_coordinates() ? Sequence<Index>() : layout.joint_of_rows();
   for (Index const row : detail::choose_redundant(null_vectors, {})) {
-    std::string const name = system.name_of(system.velocities() + row);
+    Index const joint = std::size_t(row) < joint_of.size() ? joint_of[std::size_t(row)] : -1;
+    std::string const name =
+        joint >= 0 ? layout.joints[std::size_t(joint)].title() : system.name_of(system.velocities() + row);
     if (out.repeated.empty() || out.repeated.back().name != name) out.repeated.push_back({name, 0});
     ++out.repeated.back().rows;
   }

@@ -7,6 +7,9 @@
 /// 17(4), 848–869]. A factorisation that drops rows in a fixed order has no such bound: it divides by the coefficient
 /// of its last row, which may pass through zero during a motion.
 
+#include <algorithm>
+#include <limits>
+
 #include <polybody/math/index_map.hpp>
 #include <polybody/run/redundant_constraints.hpp>
 
@@ -37,8 +40,7 @@ template <class = void>
     for (auto const& [i, value] : c[k]) enter(i, k);
   Sequence<Index> chosen;
   for (std::size_t k = 0; k < c.size(); ++k) {
-    double largest = 0.0;
-    for (auto const& [i, value] : c[k]) largest = std::max(largest, std::abs(value));
+    double const largest = largest_size(c[k]);
     Index last = -1, last_preferred = -1;
     for (auto const& [i, value] : c[k]) {
       if (std::abs(value) >= limits.chosen * largest) last = i;
@@ -55,49 +57,98 @@ template <class = void>
       std::size_t const j = std::size_t(other);
       double const* const part = c[j].find(best);
       if (j == k || !part || *part == 0.0) continue;
-      double const of = *part;
-      for (auto const& [i, value] : c[k]) {
-        if (!c[j].find(i)) enter(i, j);
-        c[j][i] -= of * value;
-      }
+      for (auto const& entry : c[k])
+        if (!c[j].find(entry.index)) enter(entry.index, j);
+      c[j].add(-*part, c[k]);
     }
   }
   sort_once(chosen);
   return chosen;
 }
 
-/// Scales of velocities and constraint equations. Velocities are scaled first, then equations, so that every row of G
-/// has the norm 1 in any units.
+/// Entries of the constraint Jacobian G, and scales of velocities and equations. Velocities are scaled first, then
+/// equations, so that every row of G has the norm 1 in any units.
 template <class = void>  // compiled only if used
-struct RowSizes {
+struct ScaledRows {
   VecX of_velocity, of_row;  ///< (nv), (rows); 1 for a velocity or an equation without entries
+  /// Sizes of all equations for `BlockFactor::null_vectors`: the square roots of the diagonal of M, and of G D⁻¹ Gᵀ
+  /// with this diagonal D.
+  VecX of_equation;
 
-  explicit RowSizes(System& system) : of_velocity(VecX::Zero(system.velocities())), of_row(VecX::Zero(system.rows())) {
-    for (int pass = 0; pass < 2; ++pass) {
-      Sink sink{system.velocities(), pass == 1, *this};
-      system.masses(sink);
-      VecX& sizes = pass == 0 ? of_velocity : of_row;
-      for (Index i = 0; i < sizes.size(); ++i) sizes[i] = sizes[i] > 0.0 ? std::sqrt(sizes[i]) : 1.0;
+  explicit ScaledRows(System& system)
+      : of_velocity(VecX::Zero(system.velocities())),
+        of_row(VecX::Zero(system.rows())),
+        of_equation(VecX::Zero(system.size())) {
+    Index const velocities = system.velocities();
+    Sink sink{velocities, *this};
+    system.masses(sink);
+    for (Entry const& e : emitted_) of_velocity[e.velocity] += e.value * e.value;
+    take_roots(of_velocity);
+    for (Entry const& e : emitted_) {
+      double const by = of_velocity[e.velocity];
+      of_row[e.row] += e.value * e.value / (by * by);
+      of_equation[velocities + e.row] += e.value * e.value / of_equation[e.velocity];
     }
+    take_roots(of_row);
+    for (Index i = 0; i < velocities; ++i)
+      if (!(of_equation[i] > 0.0)) of_equation[i] = std::numeric_limits<double>::infinity();
+    for (Index i = 0; i < of_equation.size(); ++i) of_equation[i] = std::sqrt(of_equation[i]);
+    sort_by_row();
+  }
+
+  /// Gᵀc of coefficients c of scaled rows, by velocity; the entries have the units of scaled velocities.
+  IndexMap<double> transposed_times(IndexMap<double> const& c) {
+    Sequence<Index> touched;
+    for (auto const& [row, value] : c) {
+      double const of = value / of_row[row];
+      for (std::size_t k = first_[std::size_t(row)]; k < first_[std::size_t(row) + 1]; ++k) {
+        sum_[by_row_[k].velocity] += by_row_[k].value * of;
+        touched.push_back(by_row_[k].velocity);
+      }
+    }
+    sort_once(touched);
+    IndexMap<double> out;
+    for (Index const i : touched) {
+      out[i] = sum_[i] / of_velocity[i];
+      sum_[i] = 0.0;
+    }
+    return out;
   }
 
  private:
+  struct Entry {
+    Index row, velocity;
+    double value;
+  };
   struct Sink {
     Index velocities;
-    bool rows;
-    RowSizes& sizes;
+    ScaledRows& rows;
     void add(Index row, Index col, BlockView const& b) {
-      if (row >= velocities || col < velocities) return;
+      if (row >= velocities) return;
       for (Index j = 0; j < b.cols; ++j)
         for (Index i = 0; i < b.rows; ++i) {
-          double const by = sizes.of_velocity[row + i], g = b(i, j);
-          if (rows)
-            sizes.of_row[col - velocities + j] += g * g / (by * by);
-          else
-            sizes.of_velocity[row + i] += g * g;
+          if (col < velocities && row + i == col + j) rows.of_equation[row + i] += b(i, j);
+          if (col >= velocities && b(i, j) != 0.0) rows.emitted_.push_back({col - velocities + j, row + i, b(i, j)});
         }
     }
   };
+  static void take_roots(VecX& sizes) {
+    for (Index i = 0; i < sizes.size(); ++i) sizes[i] = sizes[i] > 0.0 ? std::sqrt(sizes[i]) : 1.0;
+  }
+  void sort_by_row() {
+    first_.assign(std::size_t(of_row.size()) + 1, 0);
+    for (Entry const& e : emitted_) ++first_[std::size_t(e.row) + 1];
+    for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
+    by_row_ = emitted_;
+    Sequence<std::size_t> next = first_;
+    for (Entry const& e : emitted_) by_row_[next[std::size_t(e.row)]++] = e;
+    emitted_.clear();
+    sum_ = VecX::Zero(of_velocity.size());
+  }
+
+  Sequence<Entry> emitted_, by_row_;  // in the order of the blocks, and by rows
+  Sequence<std::size_t> first_;       // first entry of each row in by_row_, and the number of all entries
+  VecX sum_;                          // zero between two products
 };
 
 /// Null vectors of Gᵀ at a state, from a factorisation that drops the redundant equations.
@@ -105,31 +156,30 @@ template <class Solver>
 class NullVectors {
  public:
   NullVectors(System& system, ForwardDynamics<Solver>& forward, State const& x)
-      : system_(system), forward_(forward), x_(x), sizes_(held()) {}
+      : system_(system), forward_(forward), x_(x), rows_(held()) {}
 
   /// Computes the null vectors from the last factorisation of `forward`: each has scaled coefficients, 1 at its dropped
   /// equation and 0 at the other dropped equations. Returns false for solvers that compute no null vectors.
   bool find() {
-    Sequence<VecX> found;
-    VecX n = VecX::Zero(system_.size());
-    for (Index const i : forward_.redundant_rows()) {
-      if (i < system_.velocities() || !forward_.null_vector(i, n)) return false;
-      VecX c = n.tail(system_.rows());
-      for (Index k = 0; k < c.size(); ++k) c[k] *= sizes_.of_row[k] / sizes_.of_row[i - system_.velocities()];
-      found.push_back(std::move(c));
+    Index const velocities = system_.velocities();
+    auto const dropped = forward_.redundant_rows();
+    Sequence<IndexMap<double>> const all = forward_.null_vectors(rows_.of_equation);
+    if (all.size() != dropped.size()) return false;
+    Sequence<IndexMap<double>> found;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      Index const own = dropped[k] - velocities;
+      if (own < 0) return false;
+      found.emplace_back();
+      for (auto const& [i, value] : all[k])
+        if (i >= velocities) found.back()[i - velocities] = value * (rows_.of_row[i - velocities] / rows_.of_row[own]);
     }
     vectors = std::move(found);
     return true;
   }
   /// Replaces the vectors by those of their linear combinations that satisfy Gᵀc = 0.
   void keep_dependent() {
-    Sequence<VecX> left;
-    for (VecX const& c : vectors) {
-      VecX w = VecX::Zero(system_.velocities());
-      system_.rows_transposed_times(unscaled(c), w);
-      for (Index i = 0; i < w.size(); ++i) w[i] /= sizes_.of_velocity[i];
-      left.push_back(std::move(w));
-    }
+    Sequence<IndexMap<double>> left;
+    for (IndexMap<double> const& c : vectors) left.push_back(rows_.transposed_times(c));
     keep_null(left);
   }
   /// Replaces the vectors by those of their linear combinations that remain null vectors near this state: c·γ(v) is the
@@ -150,11 +200,12 @@ class NullVectors {
       bias(rest_v, rest);
       bias(w, gamma);
       double const scale = std::max({largest_size(gamma), largest_size(rest), rounding, 1e-300});
-      Sequence<VecX> left;
-      for (VecX const& c : vectors) {
-        VecX bent = VecX::Zero(1);
-        for (Index k = 0; k < c.size(); ++k) bent[0] += c[k] * (gamma[k] - rest[k]) / scale;
-        left.push_back(std::move(bent));
+      Sequence<IndexMap<double>> left;
+      for (IndexMap<double> const& c : vectors) {
+        double bent = 0.0;
+        for (auto const& [k, value] : c) bent += value * (gamma[k] - rest[k]) / scale;
+        left.emplace_back();
+        left.back()[0] = bent;
       }
       std::size_t const before = vectors.size();
       keep_null(left);
@@ -162,61 +213,68 @@ class NullVectors {
     }
   }
 
-  Sequence<VecX> vectors;  ///< null vectors c, each coefficient times the size of its equation
+  Sequence<IndexMap<double>> vectors;  ///< null vectors c, each coefficient times the size of its equation
 
  private:
-  RowSizes<> held() {
+  ScaledRows<> held() {
     forward_.hold(system_, x_.q, x_.v, x_.t);
-    return RowSizes<>(system_);
-  }
-  VecX unscaled(VecX c) const {
-    for (Index k = 0; k < c.size(); ++k) c[k] /= sizes_.of_row[k];
-    return c;
+    return ScaledRows<>(system_);
   }
   void bias(VecX const& v, VecX& gamma) {
     system_.evaluate(x_.q, v, x_.t);
     system_.acceleration_bias(gamma);
-    for (Index k = 0; k < gamma.size(); ++k) gamma[k] /= sizes_.of_row[k];
+    for (Index k = 0; k < gamma.size(); ++k) gamma[k] /= rows_.of_row[k];
   }
   /// Replaces the vectors by those of their linear combinations whose coefficients make the same combination of `left`
   /// vanish. Uses Gram–Schmidt orthogonalisation with pivoting.
-  void keep_null(Sequence<VecX>& left) {
+  void keep_null(Sequence<IndexMap<double>>& left) {
+    Sequence<double> sizes(vectors.size(), 0.0);
+    auto const scale = [&](std::size_t k) {
+      double const by = 1.0 / largest_size(vectors[k]);
+      vectors[k].multiply(by);
+      left[k].multiply(by);
+      sizes[k] = largest_size(left[k]);
+    };
+    for (std::size_t k = 0; k < vectors.size(); ++k) scale(k);
     while (!vectors.empty()) {
-      std::size_t worst = 0;
-      double most = -1.0;
+      std::size_t const worst = std::size_t(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
+      if (!(sizes[worst] > RedundantLimits{}.dependent)) return;
+      IndexMap<double> const by = take_out(vectors, worst), of = take_out(left, worst);
+      take_out(sizes, worst);
+      double squared = 0.0;
+      for (auto const& [i, value] : of) squared += value * value;
       for (std::size_t k = 0; k < vectors.size(); ++k) {
-        double const size = 1.0 / largest_size(vectors[k]);
-        vectors[k] *= size;
-        left[k] *= size;
-        if (double const of = largest_size(left[k]); of > most) most = of, worst = k;
-      }
-      if (!(most > RedundantLimits{}.dependent)) return;
-      std::swap(vectors[worst], vectors.back());
-      std::swap(left[worst], left.back());
-      VecX const by = vectors.back(), of = left.back();
-      vectors.pop_back();
-      left.pop_back();
-      double const squared = squares(of);
-      for (std::size_t k = 0; k < vectors.size(); ++k) {
-        double const part = left[k].dot(of) / squared;
-        vectors[k] -= part * by;
-        left[k] -= part * of;
+        double part = 0.0;
+        for (auto const& [i, value] : of)
+          if (double const* const other = left[k].find(i)) part += *other * value;
+        if (part == 0.0) continue;
+        vectors[k].add(-part / squared, by);
+        left[k].add(-part / squared, of);
+        scale(k);
       }
     }
+  }
+  /// Removes value k, which the last one replaces.
+  template <class T>
+  static T take_out(Sequence<T>& values, std::size_t k) {
+    std::swap(values[k], values.back());
+    T taken = std::move(values.back());
+    values.pop_back();
+    return taken;
   }
 
   System& system_;
   ForwardDynamics<Solver>& forward_;
   State const& x_;
-  RowSizes<> sizes_;
+  ScaledRows<> rows_;
 };
 
 /// True if the present choice of `forward` remains valid: the choice contains all dropped equations, and all
 /// coefficients of their null vectors are bounded.
 template <class Solver>
-bool choice_serves(ForwardDynamics<Solver> const& forward, Sequence<VecX> const& null_vectors) {
+bool choice_serves(ForwardDynamics<Solver> const& forward, Sequence<IndexMap<double>> const& null_vectors) {
   if (forward.redundant_rows().size() != forward.left_out().size()) return false;
-  for (VecX const& c : null_vectors)
+  for (IndexMap<double> const& c : null_vectors)
     if (largest_size(c) * RedundantLimits{}.kept > 1.0) return false;
   return true;
 }
@@ -240,12 +298,7 @@ template <class Solver>
   if (lambda && lambda->size() == system.rows())
     for (Index i = 0; i < lambda->size(); ++i) preferred.push_back((*lambda)[i] == 0.0);
   auto const choose = [&] {
-    Sequence<IndexMap<double>> vectors;
-    for (VecX const& c : space.vectors) {
-      vectors.emplace_back();
-      for (Index i = 0; i < c.size(); ++i)
-        if (c[i] != 0.0) vectors.back()[i] = c[i];
-    }
+    Sequence<IndexMap<double>> vectors = space.vectors;
     Sequence<Index> rows = detail::choose_redundant(vectors, preferred);
     for (Index& i : rows) i += system.velocities();
     forward.mark_redundant(rows);
@@ -257,12 +310,11 @@ template <class Solver>
   space.keep_dependent();
   space.keep_permanent();
   choose();
-  auto const dropped = forward.redundant_rows();
-  for (Index const i : forward.left_out())  // not dropped if eliminated with a singular body
-    if (std::find(dropped.begin(), dropped.end(), i) == dropped.end()) {
-      forward.mark_redundant({});
-      break;
-    }
+  Sequence<Index> dropped(forward.redundant_rows().begin(), forward.redundant_rows().end());
+  sort_once(dropped);
+  auto const left_out = forward.left_out();
+  if (!std::includes(dropped.begin(), dropped.end(), left_out.begin(), left_out.end()))
+    forward.mark_redundant({});  // a singular body was eliminated together with an equation, which was not dropped
   return !std::equal(before.begin(), before.end(), forward.left_out().begin(), forward.left_out().end());
 }
 

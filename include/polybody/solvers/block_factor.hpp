@@ -17,6 +17,7 @@
 #include <limits>
 #include <span>
 
+#include <polybody/math/index_map.hpp>
 #include <polybody/math/sequence.hpp>
 #include <polybody/solvers/block_layout.hpp>
 #include <polybody/solvers/block_node.hpp>
@@ -123,9 +124,12 @@ class BlockFactor {
   /// True if the last factorisation dropped more equations than `mark_redundant` lists, or if a pivot of a closing
   /// joint is at most `share` times the sum of the magnitudes of its terms.
   [[gnu::cold]] bool is_doubtful(double share) const;
-  /// Computes the vector n with 1 at the unknown `dropped`, 0 at all other dropped unknowns, and A n = 0 in all other
-  /// rows. A is the last factorised matrix. If the equation of `dropped` is redundant, n is a null vector of A.
-  [[gnu::cold]] void null_vector(Index dropped, VecX& n) const;
+  /// Computes for each unknown d of `dropped` the vector n with 1 at d, 0 at all other dropped unknowns, and A n = 0 in
+  /// all other rows. A is the last factorised matrix. If the equation of d is redundant, n is a null vector of A. The
+  /// cost of a vector is proportional to the size of the nodes with entries.
+  /// \param sizes sizes of the equations, so that A_ij is of the order of sizes_i sizes_j or less. n_i counts as zero
+  /// if |n_i| sizes_i ≤ 1e-12 sizes_d, and an entry r_i of A n if |r_i| ≤ 1e-12 sizes_i sizes_d
+  [[gnu::cold]] Sequence<IndexMap<double>> null_vectors(VecX const& sizes) const;
   /// True if the last factorisation used symmetry, with half the work.
   bool was_symmetric() const { return symmetric_; }
 
@@ -177,17 +181,17 @@ class BlockFactor {
     place_left_out();
   }
   Node const& node_at(int place) const {
-    Node const* n = layout_.nodes.begin();
-    while (std::size_t(place) >= n->x + std::size_t(n->pad)) ++n;
-    return *n;
+    return *std::partition_point(layout_.nodes.begin(), layout_.nodes.end(),
+                                 [&](Node const& n) { return n.x + std::size_t(n.pad) <= std::size_t(place); });
   }
   [[gnu::cold]] void place_left_out() {
     left_out_places_.clear();
     for (Index const i : left_out_)
       if (int const p = layout_.place[std::size_t(i)]; !node_at(p).pivoted) left_out_places_.push_back(p);
+    sort_once(left_out_places_);
   }
   [[gnu::cold]] bool is_left_out(int place) const {
-    return std::find(left_out_places_.begin(), left_out_places_.end(), place) != left_out_places_.end();
+    return std::binary_search(left_out_places_.begin(), left_out_places_.end(), place);
   }
   bool is_symmetric() const;
 
@@ -298,6 +302,7 @@ class BlockFactor {
   }
 
   Index failed(Node const& n, int r);
+  class NullSpace;
   [[gnu::cold]] void go_back() {
     hints_ = earlier_[kept_];
     earlier_.resize(kept_);
@@ -321,7 +326,7 @@ class BlockFactor {
   Sequence<int> swaps_;
   mutable Sequence<char> direct_;  // size of each node, or 0 if it stores no elimination multipliers
   Sequence<Index> dropped_, left_out_;
-  Sequence<int> left_out_places_;  // places of left_out_ in nodes without pivoting
+  Sequence<int> left_out_places_;  // places of left_out_ in nodes without pivoting, ascending
   std::size_t dropped_count_ = 0;
   mutable detail::AlignedDoubles u_, l_, f_, inverse_, scaled_, work_;  // `solve` changes only scaled_ and work_
   detail::AlignedDoubles scales_;

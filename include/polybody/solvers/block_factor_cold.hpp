@@ -58,27 +58,123 @@ bool BlockFactor<symmetry>::is_doubtful(double share) const {
   return false;
 }
 
+/// Null vectors by substitutions that visit only nodes with nonzero entries. Entries of the order of the round-off
+/// count as zero; otherwise they would spread over the whole model.
 template <Symmetry symmetry>
-void BlockFactor<symmetry>::null_vector(Index dropped, VecX& x) const {
-  double* const w = work_.data();
-  std::fill_n(w, layout_.unknown.size(), 0.0);
-  int const place = layout_.place[std::size_t(dropped)];
-  Node const& own = node_at(place);
-  Solution const solution = this->solution(w);
-  detail::NodeStorage const s = storage(own);
-  int const row = place - int(own.x), stride = s.stride();
-  double* const y = w + own.x;
-  Sequence<double> part(std::size_t(s.size), 0.0);
-  for (int p = row + 1; p < s.size; ++p) y[p] = -s.u[row * stride + p];
-  for (auto const& k : solution.later(own))
-    for (int i = 0; i < k.size; ++i) solution.later(own).of(k)[i] = -s.u[row * stride + s.pad + k.column + i];
-  for (Node const* n = &own; n != layout_.nodes.end(); ++n)
-    with_constant(direct_[number(*n)], [&](auto size) { solution.template descend<size>(*n); });
-  for (Node const* n = layout_.nodes.end(); n != layout_.nodes.begin();) {
-    --n;
-    with_constant(direct_[number(*n)], [&](auto size) { solution.template ascend<size>(*n); });
-    if (n != &own) continue;
-    y[row] = 1.0;  // `ascend` leaves y[row] zero; y[row] changes the earlier rows of the node
+class BlockFactor<symmetry>::NullSpace {
+ public:
+  NullSpace(BlockFactor const& of, VecX const& sizes)
+      : of_(of),
+        nodes_(of.layout_.nodes),
+        w_(of.work_.data()),
+        solution_(of.solution(w_)),
+        size_(of.layout_.unknown.size(), 0.0),
+        waits_(nodes_.size(), char(0)),
+        first_earlier_(nodes_.size() + 1, 0) {
+    std::fill_n(w_, size_.size(), 0.0);
+    for (Index i = 0; i < sizes.size(); ++i)
+      size_[std::size_t(of.layout_.place[std::size_t(i)])] =
+          sizes[i] > 0.0 && std::isfinite(sizes[i]) ? sizes[i] : -1.0;
+    for (Neighbour const& k : of.layout_.neighbours) ++first_earlier_[std::size_t(k.node) + 1];
+    for (std::size_t k = 0; k < nodes_.size(); ++k) first_earlier_[k + 1] += first_earlier_[k];
+    earlier_.resize(of.layout_.neighbours.size());
+    Sequence<int> next = first_earlier_;
+    for (Node const& n : nodes_)
+      for (Neighbour const& k : solution_.later(n)) earlier_[std::size_t(next[std::size_t(k.node)]++)] = number(n);
+  }
+
+  /// Null vector of one dropped unknown.
+  IndexMap<double> vector_of(Index dropped) {
+    int const place = of_.layout_.place[std::size_t(dropped)];
+    Node const& own = of_.node_at(place);
+    limit_ = 1e-12 * std::max(0.0, size_[std::size_t(place)]);
+    visited_.clear();
+    descend_from(own, place - int(own.x));
+    for (int const n : visited_) enter(n);
+    Sequence<Index> found;
+    while (!front_.empty()) {
+      Node const& n = nodes_[std::size_t(leave())];
+      ascend(n);
+      if (&n == &own) finish(own, place - int(own.x));
+      if (!any_left([&](std::size_t p) { return std::abs(w_[p]) * size_[p] <= limit_; }, n)) continue;
+      for (std::size_t p = n.x; p < n.x + std::size_t(n.size); ++p)
+        if (w_[p] != 0.0) found.push_back(of_.layout_.unknown[p]);
+      int const k = number(n);
+      for (int e = first_earlier_[std::size_t(k)]; e < first_earlier_[std::size_t(k) + 1]; ++e)
+        enter(earlier_[std::size_t(e)]);
+    }
+    sort_once(found);
+    IndexMap<double> out;
+    for (Index const i : found) {
+      double& entry = w_[of_.layout_.place[std::size_t(i)]];
+      out[i] = entry;
+      entry = 0.0;
+    }
+    return out;
+  }
+
+ private:
+  int number(Node const& n) const { return int(of_.number(n)); }
+  /// Nodes that wait to be visited, the largest key first.
+  void enter(int key) {
+    char& waits = waits_[std::size_t(std::abs(key))];
+    if (waits) return;
+    waits = 1;
+    front_.push_back(key);
+    std::push_heap(front_.begin(), front_.end());
+  }
+  int leave() {
+    std::pop_heap(front_.begin(), front_.end());
+    int const key = front_.back();
+    front_.pop_back();
+    waits_[std::size_t(std::abs(key))] = 0;
+    return key;
+  }
+  /// Sets the `small` entries of a node to zero, except those of equations with unknown sizes. Returns true if a
+  /// nonzero entry remains.
+  template <class Small>
+  bool any_left(Small const& small, Node const& n) {
+    for (std::size_t p = n.x; p < n.x + std::size_t(n.size); ++p)
+      if (size_[p] >= 0.0 && small(p)) w_[p] = 0.0;
+    return !is_zero(n);
+  }
+  bool is_zero(Node const& n) const {
+    double const* const y = w_ + n.x;
+    return std::all_of(y, y + n.size, [](double entry) { return entry == 0.0; });
+  }
+
+  /// Forward substitution of the column of a dropped unknown, from its node `own` on. Lists the visited nodes.
+  void descend_from(Node const& own, int row) {
+    detail::NodeStorage const s = of_.storage(own);
+    double const* const u = s.u + row * s.stride();
+    for (int p = row + 1; p < s.size; ++p) w_[own.x + std::size_t(p)] = -u[p];
+    for (auto const& k : solution_.later(own)) {
+      for (int i = 0; i < k.size; ++i) solution_.later(own).of(k)[i] = -u[s.pad + k.column + i];
+      enter(-k.node);
+    }
+    enter(-number(own));
+    while (!front_.empty()) {
+      Node const& n = nodes_[std::size_t(-leave())];
+      visited_.push_back(number(n));
+      if (!any_left([&](std::size_t p) { return std::abs(w_[p]) <= limit_ * size_[p]; }, n)) continue;
+      with_constant(of_.direct_[of_.number(n)], [&](auto size) { solution_.template descend<size>(n); });
+      for (auto const& k : solution_.later(n)) enter(-k.node);
+    }
+  }
+  void ascend(Node const& n) {
+    auto const later = solution_.later(n);
+    if (is_zero(n) &&
+        std::all_of(later.begin(), later.end(), [&](auto const& k) { return is_zero(nodes_[std::size_t(k.node)]); }))
+      return;
+    with_constant(of_.direct_[of_.number(n)], [&](auto size) { solution_.template ascend<size>(n); });
+  }
+  /// Sets the dropped unknown to 1 and changes the earlier rows of its node accordingly.
+  void finish(Node const& own, int row) {
+    detail::NodeStorage const s = of_.storage(own);
+    int const stride = s.stride();
+    double* const y = w_ + own.x;
+    y[row] = 1.0;  // `ascend` leaves y[row] zero
+    Sequence<double> part(std::size_t(row), 0.0);
     for (int r = row - 1; r >= 0; --r) {
       if (s.inverse[r] == 0.0) continue;  // dropped
       double sum = s.u[r * stride + row];
@@ -87,7 +183,25 @@ void BlockFactor<symmetry>::null_vector(Index dropped, VecX& x) const {
       y[r] += part[std::size_t(r)];
     }
   }
-  for (Index i = 0; i < size_; ++i) x[i] = w[layout_.place[std::size_t(i)]];
+
+  BlockFactor const& of_;
+  Sequence<Node> const& nodes_;
+  double* w_;
+  Solution solution_;
+  Sequence<double> size_;  // size of the equation at each place, negative if unknown
+  double limit_ = 0.0;     // size of the dropped unknown times the limit of entries
+  Sequence<char> waits_;
+  Sequence<int> front_, visited_;
+  Sequence<int> first_earlier_, earlier_;  // nodes with a block in the rows of each node
+};
+
+template <Symmetry symmetry>
+Sequence<IndexMap<double>> BlockFactor<symmetry>::null_vectors(VecX const& sizes) const {
+  Sequence<IndexMap<double>> found;
+  if (dropped_count_ == 0) return found;
+  NullSpace space(*this, sizes);
+  for (Index const i : dropped()) found.push_back(space.vector_of(i));
+  return found;
 }
 
 template <Symmetry symmetry>

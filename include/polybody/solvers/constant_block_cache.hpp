@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <span>
 
+#include <polybody/math/index_map.hpp>
 #include <polybody/math/sequence.hpp>
 #include <polybody/solvers/linear_solver.hpp>
 
@@ -116,16 +117,21 @@ class ConstantBlockCache {
     if constexpr (requires { rest_.is_doubtful(share); }) return rest_.is_doubtful(share);
     return false;
   }
-  /// Computes the null vector `n` of equation `dropped`: `BlockFactor::null_vector`. Returns false if `Solver` does not
+  /// Computes the null vectors of the dropped equations: `BlockFactor::null_vectors`. Empty if `Solver` does not
   /// provide null vectors.
-  [[gnu::cold]] bool null_vector(Index dropped, VecX& n) {
-    if constexpr (requires { rest_.null_vector(dropped, n); }) {
-      if (kept_size_ == 0) return rest_.null_vector(dropped, n), true;
-      rest_.null_vector(place_[std::size_t(dropped)], rest_x_);
-      for (std::size_t i = 0; i < place_.size(); ++i) n[Index(i)] = kept_[i] ? 0.0 : rest_x_[place_[i]];
-      return true;
+  [[gnu::cold]] Sequence<IndexMap<double>> null_vectors(VecX const& sizes) {
+    if constexpr (requires { rest_.null_vectors(sizes); }) {
+      if (kept_size_ == 0) return rest_.null_vectors(sizes);
+      for (std::size_t i = 0; i < place_.size(); ++i)
+        if (!kept_[i]) rest_x_[place_[i]] = sizes[Index(i)];
+      Sequence<IndexMap<double>> found;
+      for (IndexMap<double> const& n : rest_.null_vectors(rest_x_)) {
+        found.emplace_back();
+        for (auto const& [i, value] : n) found.back()[unknown(i, false)] = value;
+      }
+      return found;
     }
-    return false;
+    return {};
   }
   bool reordered() const {
     if constexpr (requires { rest_.reordered(); }) return rest_.reordered() || kept_solver_.reordered();
@@ -160,18 +166,23 @@ class ConstantBlockCache {
     for (Index i = 0; i < size; ++i) kept_[std::size_t(i)] = kept_[std::size_t(root(i))];
     kept_size_ = 0;
     place_.clear();
-    for (Index i = 0; i < size; ++i) place_.push_back(kept_[std::size_t(i)] ? kept_size_++ : i - kept_size_);
+    of_kept_.clear();
+    of_rest_.clear();
+    for (Index i = 0; i < size; ++i) {
+      place_.push_back(kept_[std::size_t(i)] ? kept_size_++ : i - kept_size_);
+      (kept_[std::size_t(i)] ? of_kept_ : of_rest_).push_back(i);
+    }
     if (kept_size_ == size) kept_size_ = 0;  // every part is constant: one solver factorises the matrix
   }
   Index unknown(Index place, bool kept) const {
-    for (std::size_t i = 0; i < place_.size(); ++i)
-      if (kept_[i] == kept && place_[i] == place) return Index(i);
-    return place;
+    if (kept_size_ == 0) return place;
+    return (kept ? of_kept_ : of_rest_)[std::size_t(place)];
   }
 
   Solver rest_, kept_solver_;
   Sequence<bool> constant_, kept_, in_kept_;  // constant_, kept_: for each unknown; in_kept_: for each block
   Sequence<Index> root_, place_, dropped_;    // root_, place_: for each unknown; place_: index in its solver
+  Sequence<Index> of_kept_, of_rest_;         // unknown at each index of both solvers
   Index kept_size_ = 0;
   bool kept_factored_ = false;
   std::size_t next_ = 0;

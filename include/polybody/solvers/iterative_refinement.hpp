@@ -78,11 +78,11 @@ class IterativeRefinement {
   {
     return solver_.is_doubtful(share);
   }
-  /// Computes the null vector `n` of equation `dropped`: `BlockFactor::null_vector`.
-  void null_vector(Index dropped, VecX& n) const
-    requires requires(Solver const s) { s.null_vector(dropped, n); }
+  /// Computes the null vectors of the dropped equations: `BlockFactor::null_vectors`.
+  auto null_vectors(VecX const& sizes) const
+    requires requires(Solver const s) { s.null_vectors(sizes); }
   {
-    solver_.null_vector(dropped, n);
+    return solver_.null_vectors(sizes);
   }
   std::span<Index const> dropped() const
     requires requires(Solver const s) { s.dropped(); }

@@ -82,8 +82,8 @@ class RedundancyDropping {
   }
   /// True if equations are dropped and this decision is doubtful for `share`: see `BlockFactor::is_doubtful`.
   bool is_doubtful(double share) const { return !dropped_.empty() && judge_.is_doubtful(share); }
-  /// Computes the null vector `n` of equation `dropped`: `BlockFactor::null_vector`.
-  void null_vector(Index dropped, VecX& n) const { judge_.null_vector(dropped, n); }
+  /// Computes the null vectors of the dropped equations: `BlockFactor::null_vectors`.
+  Sequence<IndexMap<double>> null_vectors(VecX const& sizes) const { return judge_.null_vectors(sizes); }
 
  private:
   bool is_weak() const {

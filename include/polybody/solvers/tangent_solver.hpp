@@ -157,11 +157,11 @@ class TangentSolver {
     if constexpr (requires { solver_.is_doubtful(1e-3); }) return !solves_by_bodies() && solver_.is_doubtful(1e-3);
     return false;
   }
-  /// Computes the null vector `n` of equation `dropped` (`BlockFactor::null_vector`) in the unknowns of the linear
-  /// equations. Returns false if `Solver` does not provide null vectors.
-  [[gnu::cold]] bool null_vector(Index dropped, VecX& n) {
-    if constexpr (requires { bool(solver_.null_vector(dropped, n)); }) return solver_.null_vector(dropped, n);
-    return false;
+  /// Computes the null vectors of the dropped equations (`BlockFactor::null_vectors`) in the unknowns of the linear
+  /// equations. Empty if `Solver` does not provide null vectors.
+  [[gnu::cold]] Sequence<IndexMap<double>> null_vectors(VecX const& sizes) {
+    if constexpr (requires { solver_.null_vectors(sizes); }) return solver_.null_vectors(sizes);
+    return {};
   }
 
   /// Solution x for the right-hand side `rhs`, both in the unknowns of the time step.

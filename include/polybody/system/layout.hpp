@@ -161,6 +161,8 @@ struct JointLayout {
   void const* joint = nullptr;           ///< the joint in the model
   Motion (*law)(void const* joint, double t) = nullptr;  ///< prescribed motion at t [s]; null if there is none
   double period = 0.0;  ///< period of the prescribed value [rad], by which it may jump; 0: no jump allowed
+
+  std::string title() const { return sentence_of({"joint \"", name, "\""}); }  ///< joint "name"
 };
 
 /// Markers of a force element, position of its first-order states, and its properties.
@@ -216,10 +218,19 @@ struct ModelLayout {
       if (row < 0 ? i >= b.v0 && i < b.v0 + b.velocities : row >= b.row && row < b.row + b.rows)
         return sentence_of({"body \"", b.name, "\""});
     for (JointLayout const& j : joints)
-      if (row >= 0 && row >= j.row && row < j.row + j.rows) return sentence_of({"joint \"", j.name, "\""});
+      if (row >= 0 && row >= j.row && row < j.row + j.rows) return j.title();
     for (ForceLayout const& f : forces)
       if (row < 0 && i >= f.v0 && i < f.v0 + f.states) return sentence_of({"force \"", f.name, "\""});
     return "unknown";
+  }
+  /// Index in `joints` of the joint of each constraint equation; −1 for an equation of a body. For many names, since
+  /// the cost of `name_of` grows with the number of parts.
+  [[gnu::cold]] Sequence<Index> joint_of_rows() const {
+    Sequence<Index> of(std::size_t(rows), -1);
+    for (std::size_t k = 0; k < joints.size(); ++k)
+      for (Index i = std::max<Index>(joints[k].row, 0); i < std::min(joints[k].row + joints[k].rows, rows); ++i)
+        of[std::size_t(i)] = Index(k);
+    return of;
   }
 };
 

@@ -26,7 +26,7 @@ struct SolverInTests {
   virtual std::span<Index const> dropped() const = 0;
   virtual void mark_redundant(std::span<Index const> unknowns) = 0;
   virtual bool is_doubtful(double share) const = 0;
-  virtual void null_vector(Index dropped, VecX& n) const = 0;
+  virtual Sequence<IndexMap<double>> null_vectors(VecX const& sizes) const = 0;
   virtual double sign_of_determinant() const = 0;
   virtual void solve(VecX const& b, VecX& x) const = 0;
 };
@@ -82,10 +82,10 @@ class NamedSolver {
   {
     return other_ ? other_->is_doubtful(share) : default_.is_doubtful(share);
   }
-  void null_vector(Index dropped, VecX& n) const
-    requires requires(Default const s) { s.null_vector(dropped, n); }
+  Sequence<IndexMap<double>> null_vectors(VecX const& sizes) const
+    requires requires(Default const s) { s.null_vectors(sizes); }
   {
-    other_ ? other_->null_vector(dropped, n) : default_.null_vector(dropped, n);
+    return other_ ? other_->null_vectors(sizes) : default_.null_vectors(sizes);
   }
   double sign_of_determinant() const
     requires requires(Default const s) { s.sign_of_determinant(); }
