@@ -31,8 +31,9 @@ struct RunOptions {
   /// Limit of |Φ| at the start [m], [rad]. Lengths in an assembly of bodies smaller than one metre are relative to its
   /// extent.
   double assembly_tolerance = 1e-8;
-  /// Largest number of halvings of a step that fails with `NewtonConvergenceFailure`, in [0, 30]; empty: 6 in
-  /// `simulate`, and 0 in runs that are differentiated. The report counts halved steps. 0: such a step ends the run.
+  /// Largest number of halvings of a step that fails with `NewtonConvergenceFailure`, or of an implicit step with an
+  /// unexplained energy gain, in [0, 30]; empty: 6 in `simulate`, and 0 in runs that are differentiated. The report
+  /// counts halved steps. 0: a failed step ends the run.
   std::optional<int> max_step_halvings = {};
   bool minimum_norm = false;  ///< every state gets the multipliers of `MinimumNorm`, at the cost of one factorisation
   PlausibilityLimits limits = {};  ///< limits at the end of a step: constraint violation, and unexplained energy
@@ -143,8 +144,8 @@ struct RunReport : RunCounts {
     double start, now;  ///< [s]
     long halved;        ///< number of halved steps
   };
-  /// Adds a warning if the unexplained energy exceeds the fraction `limit` of the energy that moved, or if the steps do
-  /// not resolve the work of a force.
+  /// Adds a warning if the unexplained energy exceeds the fraction `limit` of the energy that moved, if the steps do
+  /// not resolve the work of a force, or if steps were halved for their energy gain.
   [[gnu::cold]] void warn_of_energy(Unexplained const& found, double limit, Course const& run) {
     if (!found.known) return;
     if (found.worst > 0.4 * found.scale)
@@ -157,6 +158,10 @@ struct RunReport : RunCounts {
                        found.energy > 0.0 ? "gains " : "loses ", std::abs(found.energy), " J that no work explains, ",
                        std::abs(found.energy) / found.scale, " of the energy that moved (", found.scale, " J); ",
                        run.halved, " steps were halved. Compare the run with one of half the step."}));
+    else if (found.halved > 0)
+      add_warning(sentence_of({"From t = ", run.start, " s to ", run.now, " s ", found.halved,
+                               " steps gained energy that no work explains; ", run.halved,
+                               " steps were halved. Compare the run with one of half the step."}));
   }
 };
 

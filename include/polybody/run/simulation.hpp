@@ -352,7 +352,10 @@ void Simulation<I, Solver>::reduced_start() {
 template <Integrator I, class Solver>
 StepReport Simulation<I, Solver>::step(double h, int max_step_halvings) {
   try {
-    return method_.step(*system_, stepped(), h, workspace_);
+    workspace_.forward.bounds.halvings = HasStabilityLimit<I> ? -1 : max_step_halvings;
+    StepReport const report = method_.step(*system_, stepped(), h, workspace_);
+    workspace_.forward.bounds.halvings = -1;  // steps to an event are not halved
+    return report;
   } catch (NewtonConvergenceFailure& failure) {
     if (max_step_halvings == 0) {
       if (int const times = options_.allowed_halvings(); times > 0)
