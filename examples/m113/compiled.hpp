@@ -1,7 +1,7 @@
 #pragma once
 /// \file
 /// polybody/compiled.hpp with the vehicle of vehicle.hpp, for programs that link `m113_compiled`. This library contains
-/// its hull and contacts on a FlatGround or a BumpCourse, compiled once for all formulations of the tracks.
+/// the vehicle's hull and contacts on a FlatGround or a BumpCourse, compiled once for all formulations of the tracks.
 
 #include <polybody/compiled.hpp>
 

@@ -23,7 +23,7 @@
 
 namespace polybody::m113 {
 
-/// Three numbers along x, y, z as compile-time constants; vectors of Eigen are not.
+/// Three numbers along x, y, z that can be compile-time constants, in contrast to vectors of Eigen.
 struct Vec3Storage {
   double x, y, z;  ///< components, in the unit of the quantity
   /// The components as a column (3).
@@ -56,8 +56,8 @@ struct Solids {
 
 /// Masses of Wallin 2016. T3.1 gives the running gear in axes with x lateral and y longitudinal, so its (Ixx, Iyy, Izz)
 /// are (Iyy, Ixx, Izz) here. The greatest moment of inertia of a wheel is about its axle. The least moment of an arm is
-/// about its own length, and the least moment of a link about its width. The row of the chassis has x longitudinal: its
-/// least moment is the roll inertia. A wheel of 561 kg is a solid drum as wide as the track.
+/// about its own length, and the least moment of a link about its width. In the row of the chassis, x is longitudinal:
+/// the least moment is the roll inertia. A wheel of 561 kg is a solid drum as wide as the track.
 inline constexpr Solids wallin_2016{
     .chassis = {5489.2, {1786.9, 10450.0, 10721.0}},  // T3.1
     .sprocket = {436.67, {12.216, 13.868, 12.216}},   // T3.1
@@ -68,7 +68,7 @@ inline constexpr Solids wallin_2016{
     .tensioner = {10.0, {0.04, 0.04, 0.04}},          // A, equal to the value of C; T has none
 };
 
-/// Masses of a real vehicle, 11.36 t in total. Springs that are tuned for the masses of `thesis` do not suit these.
+/// Masses of a real vehicle, 11.36 t in total. The springs are tuned for `wallin_2016` and do not suit these masses.
 inline constexpr Solids production_vehicle{
     .chassis = {7819.24, {13983.08, 27287.61, 28805.57}},  // C
     .sprocket = {27.68, {0.646, 0.883, 0.646}},            // C
@@ -83,31 +83,31 @@ inline constexpr Solids production_vehicle{
 // geometry
 
 inline constexpr int links = 64;                   ///< links per track  [T §3.6]
-inline constexpr double pitch = 0.1524;            ///< distance between two pins: 6 in  [P]
-inline constexpr double half_thickness = 0.03315;  ///< half of the height of a link, the height of the box in T3.1  [D]
-/// Half width of a link, a wheel and a sprocket: the full width is 15 in  [P, and D from T3.1]
+inline constexpr double pitch = 0.1524;            ///< distance between two pins [m]: 6 in  [P]
+inline constexpr double half_thickness = 0.03315;  ///< half of the height of a link [m]; height of the box of T3.1  [D]
+/// Half width of a link, a wheel and a sprocket [m]: the full width is 15 in  [P, and D from T3.1]
 inline constexpr double half_width = 0.1905;
-inline constexpr double track_y = 1.0795;  ///< y of a track's middle plane, for a tread of 85 in  [C, P]
+inline constexpr double track_y = 1.0795;  ///< y of a track's middle plane [m], for a tread of 85 in  [C, P]
 
 inline constexpr int teeth = 10;  ///< number of teeth of a sprocket  [C, P]
 /// Angle of the valley of pin 0, from z towards x [rad]  [A]
 inline constexpr double first_valley = -3.0 * std::numbers::pi / 180.0;
 
 inline constexpr int wheels = 5;  ///< road wheels per side  [T §3.6]
-/// Radius of a wheel, 12 in: m R²/2 is the moment of inertia about the axle in T3.1  [D, P]
+/// Radius R of a wheel [m], 12 in: m R²/2 is the moment of inertia about the axle in T3.1  [D, P]
 inline constexpr double wheel_radius = 0.3048;
-inline constexpr double idler_radius = 0.2616;  ///< radius, derived from T3.1 in the same way  [D]
-/// Distance of the middle planes of the two rims from the centre of a wheel or idler  [C]
+inline constexpr double idler_radius = 0.2616;  ///< radius of the idler [m], derived from T3.1 like wheel_radius  [D]
+/// Distance of the middle planes of the two rims from the centre of a wheel or idler [m]  [C]
 inline constexpr double rim_y = 0.058;
 inline constexpr double rim_width = 0.065;  ///< width of a rim [m]  [C]
 
 inline constexpr Vec3Storage chassis{-2.006, 0.0, 0.9921};  ///< centre of mass of the chassis [m]  [C]
-/// Height of the wheels' centres on links that lie on the ground  [D]
+/// Height of the wheels' centres on links that lie on the ground [m]  [D]
 inline constexpr double wheel_z = 2.0 * half_thickness + wheel_radius;
 inline constexpr double sprocket_z = wheel_z + 0.215;  ///< height of the sprockets' centres [m]  [C]
 inline constexpr double idler_z = sprocket_z - 0.12;   ///< height of the idlers' centres [m]  [C]
-inline constexpr double first_wheel_x = -0.700;        ///< mean of the left and the right side of C  [C]
-inline constexpr double wheel_spacing = 0.66675;       ///< 105 in / 4  [P]
+inline constexpr double first_wheel_x = -0.700;        ///< x of the first wheels [m], mean of both sides  [C]
+inline constexpr double wheel_spacing = 0.66675;       ///< distance between two wheels [m]: 105 in / 4  [P]
 
 /// Position along x of the idler for a closed and taut track of straight runs [m]. The tensioner's spring is then
 /// undeformed.  [D: wrap_track(track())]
@@ -115,16 +115,16 @@ inline constexpr double idler_reference_x = -3.963784320626;
 /// Position along x of the idler in static equilibrium of the track with the preload of 20 kN [m].  [D]
 inline constexpr double idler_start_x = -3.972315301771;
 
-inline constexpr double arm_length = 0.3048;  ///< 12 in, length of the cylinder in T3.1  [D]
+inline constexpr double arm_length = 0.3048;  ///< length of an arm [m], 12 in, length of the cylinder of T3.1  [D]
 /// Rotation of the arms about y [rad]: the pivot is in front of the wheel and above it  [C]
 inline constexpr double arm_angle = -25.0 * std::numbers::pi / 180.0;
-/// Vertical distance from wheel to pivot: sin 25°.
+/// Vertical distance from wheel to pivot: arm_length · sin 25° [m].
 inline constexpr double arm_rise = arm_length * 0.42261826174069944;
-/// Horizontal distance from wheel to pivot: cos 25°.
+/// Horizontal distance from wheel to pivot: arm_length · cos 25° [m].
 inline constexpr double arm_reach = arm_length * 0.90630778703664996;
-inline constexpr double arm_inboard = 0.12;  ///< distance of the arm from the track's middle plane  [C]
+inline constexpr double arm_inboard = 0.12;  ///< distance of the arm from the track's middle plane [m]  [C]
 
-/// Distance of the shock absorber from the pivot  [A, such that the first dip is 7 cm]
+/// Distance of the shock absorber from the pivot of the arm [m]  [A, such that the first dip is 7 cm]
 inline constexpr double shock_on_arm = 0.147;
 
 /// The sprocket's centre [m].
@@ -135,8 +135,8 @@ constexpr Vec3Storage idler(Side side, double x = idler_start_x) { return {x, si
 constexpr Vec3Storage wheel(int i, Side side) {
   return {first_wheel_x - i * wheel_spacing, sign(side) * track_y, wheel_z};
 }
-/// Point on the arm of wheel i, at the distance `from_pivot` [m] from its pivot on the chassis; the wheel is at
-/// arm_length.
+/// Point on the arm of wheel i [m], at the distance `from_pivot` [m] from the arm's pivot on the chassis. The wheel's
+/// centre is at the distance arm_length.
 constexpr Vec3Storage arm_point(int i, Side side, double from_pivot) {
   double const share = 1.0 - from_pivot / arm_length;
   return {wheel(i, side).x + share * arm_reach, sign(side) * (track_y - arm_inboard), wheel_z + share * arm_rise};
@@ -146,8 +146,8 @@ constexpr Vec3Storage arm_pivot(int i, Side side) { return arm_point(i, side, 0.
 /// Middle of the arm of wheel i, which is its centre of mass [m].
 constexpr Vec3Storage arm(int i, Side side) { return arm_point(i, side, 0.5 * arm_length); }
 
-/// Layout of the track of either side in its plane, for `wrap_track`. The idler is at −3.95 m [C] and may move 0.1 m to
-/// the rear. Wheels are listed for the ground and for the upper run, which has no rollers [P].
+/// Layout of the track of either side in its plane, for `wrap_track`. The idler is at x = −3.95 m [C] and may move 0.02
+/// m forward and 0.1 m to the rear. Wheels are listed for the ground and for the upper run, which has no rollers [P].
 inline TrackLayout track() {
   TrackLayout t{.links = links,
                 .pitch = pitch,
@@ -169,20 +169,21 @@ inline TrackLayout track() {
 // arm–wheel and tensioner–idler at the centre of the wheel and idler, link i−1–link i at pin i. Prismatic joint along
 // x: chassis–tensioner.
 
-/// Spring and damper; the force of the spring is zero at its `length`.
+/// Spring and damper. The force of the spring is zero at the `length`.
 struct Spring {
   double stiffness;  ///< [N/m]
   double damping;    ///< [N s/m]
   double length;     ///< undeformed length [m]
 };
-/// Shock absorber between arm_point(shock_on_arm) and the point of the chassis this length above it; its force is zero
-/// at the start.
+/// Shock absorber between arm_point(shock_on_arm) and the point of the chassis at the distance `length` above. The
+/// force is zero at the start.
 inline constexpr Spring shock{1.0e6, 1.5e4, 0.508};  ///< [T3.3]
 /// Spring on the tensioner along x. Its force is −stiffness s − preload − damping ṡ with s = x − idler_reference_x.
 inline constexpr Spring tensioner{1.0e6, 1.4e4, 0.0};  ///< [T3.3]
-inline constexpr double preload = 20.0e3;  ///< [N], range 0 … 60e3; without preload the track comes off at 80 rad/s [C]
+inline constexpr double preload = 20.0e3;  ///< tensioner's preload [N], 0 … 60e3; at 0 tracks come off at 80 rad/s [C]
 
-/// Pins as penalties and bushings. The rotational stiffness about x and z is the translational one times `arm`².
+/// Stiffness of a pin as a penalty or a bushing. The rotational stiffness about x and z is the translational stiffness
+/// times `pin_arm`².
 inline constexpr double pin_stiffness = 1.0e9;       ///< [N/m]  [T §3.6]
 inline constexpr double soft_pin_stiffness = 1.0e7;  ///< [N/m]  [T §3.6]
 inline constexpr double pin_damping = 1.0e5;         ///< [N s/m]  [T §3.6]
@@ -217,26 +218,26 @@ inline constexpr double pin_radius = 0.020;                       ///< radius of
 inline constexpr double valley_radius = 0.035;                    ///< radius of the arc [m]  [D]
 inline constexpr double flank = 60.0 * std::numbers::pi / 180.0;  ///< half angle of the arc [rad]  [D]
 inline constexpr double tip_radius = 0.262;                       ///< outer radius of the teeth [m]  [D]
-/// Distance of the planes of the two rings of teeth from the middle  [C]
+/// Distance of the planes of the two rings of teeth from the middle of the sprocket [m]  [C]
 inline constexpr double tooth_y = 0.1125;
 
 /// Horn that guides a link between the rims: a box in a link's axes  [C].
 inline constexpr Vec3Storage horn{0.045, 0.0, 0.0375};          ///< centre of the horn [m]
-inline constexpr Vec3Storage horn_size{0.0284, 0.0114, 0.075};  ///< half lengths of its edges [m]
-/// Free lateral distance on either side between horn and rim: 0.051/2 − 0.0114/2  [C, D]
+inline constexpr Vec3Storage horn_size{0.0284, 0.0114, 0.075};  ///< lengths of its edges [m]
+/// Free lateral distance on either side between horn and rim [m]: 0.051/2 − 0.0114/2  [C, D]
 inline constexpr double horn_play = 0.0198;
 
 // -----------------------------------------------------------------------------------------------------------------
 // drive
 
-/// Function of time of the sprocket's speed relative to the chassis [rad/s]. It is zero for 1 s, then a ramp to
-/// `speed` at t = 8 s, then constant [T, Figures 3.6, 4.3; linear ramp: A]. A `rounding` of 0.1 s makes the angular
-/// acceleration continuous.
+/// Angular velocity of the sprocket relative to the chassis as a function of time [rad/s]. It is zero for 1 s, then a
+/// ramp to `speed` at t = 8 s, then constant [T, Figures 3.6, 4.3; linear ramp: A]. A `rounding` of 0.1 s makes the
+/// angular acceleration continuous.
 inline Ramp drive(double speed, double rounding = 0.0) {
   return {.target = speed, .duration = 7.0, .start = 1.0, .rounding = rounding};
 }
-inline constexpr double moderate_sprocket_speed = 25.0;                       ///< [rad/s]  [T Fig. 3.6]
-inline constexpr std::array<double, 2> fast_sprocket_velocities{30.0, 80.0};  ///< [rad/s]  [T Fig. 4.3]
+inline constexpr double moderate_sprocket_speed = 25.0;                       ///< angular speed [rad/s]  [T Fig. 3.6]
+inline constexpr std::array<double, 2> fast_sprocket_velocities{30.0, 80.0};  ///< angular speeds [rad/s]  [T Fig. 4.3]
 /// Forward velocity divided by the sprocket's angular velocity: N p/2π [m].
 inline constexpr double rolling_radius = teeth * pitch / (2.0 * std::numbers::pi);
 
@@ -246,8 +247,8 @@ inline constexpr double rolling_radius = teeth * pitch / (2.0 * std::numbers::pi
 inline constexpr double youngs_modulus = 200.0e9;        ///< [Pa]  [T §3.6]
 inline constexpr double shear_modulus = 76.9e9;          ///< [Pa]  [T §3.6]
 inline constexpr double density = 7800.0;                ///< [kg/m³]  [T §3.6]
-inline constexpr double cable_width = 2.0 * half_width;  ///< equal to the width of a link  [A]
-/// Height of the cable's section, such that the cable has the mass of a link  [D].
+inline constexpr double cable_width = 2.0 * half_width;  ///< width of the section [m], equal to that of a link  [A]
+/// Height of the cable's section [m], such that the cable has the mass of a link  [D].
 inline constexpr double cable_height = wallin_2016.link.mass / (density * pitch * cable_width);
 
 }  // namespace polybody::m113

@@ -27,7 +27,7 @@ namespace polybody::m113 {
 struct HullBody {
   std::string name;            ///< unique in the vehicle, such as "left wheel 1"
   Solid solid;                 ///< mass and moments of inertia
-  Vec3 centre = Vec3::Zero();  ///< (3) world axes [m]
+  Vec3 centre = Vec3::Zero();  ///< (3) centre of mass, world axes [m]
   double about_y = 0.0;        ///< rotation about y [rad]
 };
 
@@ -38,24 +38,24 @@ struct HullJoint {
   enum class Kind { axle, mount, guide, drive, tensioner, shock };
   Kind kind;                                      ///< kind of joint or spring
   std::size_t a, b;                               ///< numbers of the two bodies, from 1; 0 is the chassis
-  Vec3 at_a = Vec3::Zero(), at_b = Vec3::Zero();  ///< (3) in the axes of the body, from its centre [m]
+  Vec3 at_a = Vec3::Zero(), at_b = Vec3::Zero();  ///< (3) points, each in the axes and from the centre of its body [m]
   std::string name;                               ///< unique in the vehicle, such as "left drive"
 };
 
 /// One side of the vehicle. Its bodies are sprocket, tensioner and idler, then a wheel and its arm for each road wheel.
 struct HullSide {
-  static constexpr std::size_t sprocket = 1, tensioner = 2, idler = 3;  ///< numbers of bodies of a side, from 1
+  static constexpr std::size_t sprocket = 1, tensioner = 2, idler = 3;  ///< numbers of these bodies
   /// Number of road wheel i; i = 0 is in front, i = 4 at the rear.
   static constexpr std::size_t wheel(int i) { return 4 + 2 * std::size_t(i); }
   static constexpr std::size_t arm(int i) { return wheel(i) + 1; }  ///< number of the arm that carries wheel i
 
   std::string name;               ///< prefix of all names of this side
-  std::vector<HullBody> bodies;   ///< bodies[k − 1] has the number k
+  std::vector<HullBody> bodies;   ///< bodies of this side; bodies[k − 1] has the number k
   std::vector<HullJoint> joints;  ///< joints and springs of this side
 };
 
 namespace detail {
-/// Point given in world axes, as a vector from the centre of one of the bodies, in the body's axes.
+/// Vector from the centre of body number `body` to the point `place` (world axes), in the axes of the body.
 template <class = void>  // compiled only if it is used
 Vec3 in_axes(std::vector<HullBody> const& bodies, std::size_t body, Vec3 const& place) {
   if (body == 0) return place - Vec3(chassis);
@@ -66,6 +66,7 @@ Vec3 in_axes(std::vector<HullBody> const& bodies, std::size_t body, Vec3 const& 
 }
 }  // namespace detail
 
+/// Bodies, joints and springs of one side of the vehicle.
 /// \param idler_x initial position of the idler along x [m]
 /// \param sprung true: shock absorbers support the arms; false: the arms are welded to the chassis
 template <class = void>  // compiled only if it is used
@@ -106,7 +107,8 @@ struct Carriers {
   /// Five road wheels and five arms, from the front; one sprocket, one idler and one tensioner.
   std::vector<BodyHandle<Base>> wheels = {}, arms = {}, sprocket = {}, idler = {}, tensioner = {};
 
-  /// Stores the bodies of one side, and their frames in `track`. \param bodies the chassis and the bodies of `hull`
+  /// Stores the bodies of one side. Stores the frames of sprocket and tensioner in `track`. \param bodies the chassis
+  /// and the bodies of `hull`
   void set(HullSide const& hull, std::vector<BodyHandle<Base>> const& bodies, Track& track) {
     sprocket = {bodies[hull.sprocket]};
     tensioner = {bodies[hull.tensioner]};
@@ -152,7 +154,7 @@ template <class Base, class Drive>
   return chassis;
 }
 
-/// Adds one joint or spring of the hull. Returns the handle of a drive; for other kinds, a handle of no model.
+/// Adds one joint or spring of the hull. Returns the handle of a drive; for other kinds, an empty handle.
 template <class Base, class Drive>
 [[gnu::cold]] ElementHandle<typename HullTypes<Base, Drive>::Driven> add_hull_joint(
     typename HullTypes<Base, Drive>::Part& part, HullJoint const& j, std::vector<BodyHandle<Base>> const& bodies,

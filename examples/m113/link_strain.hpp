@@ -34,16 +34,17 @@ double link_strain(BodyHandle<B> const& link, State const& x) {
 }
 
 /// Axial strain in the fibre towards the wheels due to a unit moment M_y about the direction of the pins [1/(N m)].
-/// `height` is the height of the section, here and below [m].
+/// `height` is the height of the section [m].
 template <class = void>  // compiled only if it is used
 double bending_by_moment(double height = cable_height) {
   return 0.5 * height / *constants(link_bar({}, height)).EI_y;
 }
 
 /// Axial strain due to bending in the fibre towards the wheels. The section has this `height` [m] and lies just in
-/// front of the middle, on which contact forces act. One cubic element resolves half of the effect of a force in the
-/// middle, and one linear element does not resolve it. Two elements have a node in the middle and resolve it fully.
-/// For a cable, `lateral` (the vehicle's y axis) is required to determine the side of the wheels (link_axes.hpp).
+/// front of the link's middle, at which contact forces act. One cubic element resolves half of the effect of a force at
+/// the middle; one linear element does not resolve this effect. Two elements have a node at the middle and resolve the
+/// effect fully. For a cable, `lateral` (the vehicle's y axis) is required to determine the side of the wheels
+/// (link_axes.hpp).
 template <class B>
 double link_bending(BodyHandle<B> const& link, State const& x, Vec3 const& lateral, double height = cable_height) {
   BodyInState<B> const b = body_in_state(link, x);

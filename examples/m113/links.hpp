@@ -23,8 +23,8 @@ inline Mat3 principal(Vec3Storage const& moments) { return Vec3(moments).asDiago
 }  // namespace detail
 
 /// Steel link with the section of [Wallin 2016, §3.6], cable_width × cable_height, with x from the rear pin to the
-/// front pin. `placement` is the placement of its centre. Wallin 2016 does not give the height of the section. With the
-/// default `height` [m] the link has the mass of a rigid link.
+/// front pin. `placement` is the placement of the link's centre. Wallin 2016 does not give the height of the section.
+/// With the default `height` [m] the link has the mass of a rigid link.
 inline Bar link_bar(Placement placement = {}, double height = cable_height) {
   placement.origin -= placement.axes.col(0) * (0.5 * pitch);
   return {
@@ -35,17 +35,17 @@ inline Bar link_bar(Placement placement = {}, double height = cable_height) {
       .placement = placement};
 }
 
-/// Copies `masses` with the mass and inertia of links replaced by those of `link_bar`, of height h [m], as for flexible
-/// links. The inertia in T3.1 is the inertia of a box 1.7 times as high.
+/// Copy of `masses` in which a link has the mass and inertia of `link_bar` with the height h [m], like flexible links.
+/// The inertia in Table 3.1 of Wallin 2016 is the inertia of a box 1.7 times as high.
 inline Solids with_steel_links(Solids masses = wallin_2016, double h = cable_height) {
   double const w = cable_width, m = density * w * h * pitch, twelfth = m / 12.0;
   masses.link = {m, {twelfth * (w * w + h * h), twelfth * (pitch * pitch + h * h), twelfth * (pitch * pitch + w * w)}};
   return masses;
 }
 
-/// Creation of a link as a body of type B, and its markers: pins, middle, and points of action of contact forces on
-/// the middle line. `at` is the placement of the link's centre, with x to the front pin and z to the wheels.
-/// `elements` is the number of elements of a flexible link; 0 selects the least number of its formulation.
+/// Creates links as bodies of type B, and their markers: pins, middle, and points of action of contact forces on the
+/// middle line. `at` is the placement of the link's centre, with x to the front pin and z to the wheels. `elements` is
+/// the number of elements of a flexible link; 0 selects the smallest number that the formulation permits.
 ///
 /// Beams extend from the rear pin to the front pin, by default with one element. The mass of a `Solid` has no effect:
 /// the mass follows from the section, whose height can differ from the height of a link.
@@ -55,7 +55,7 @@ struct LinkOf {
 
   double height = cable_height;  ///< height of the section [m]
 
-  /// Link of `elements` elements with its centre at `at`. Its mass follows from section and density, not from the
+  /// Link of `elements` elements with its centre at `at`. The mass follows from section and density, not from the
   /// `Solid`.
   B make(Solid const&, Placement const& at, int elements) const {
     return B::from(link_bar(at, height), std::max(elements, 1));

@@ -20,12 +20,12 @@ struct FiniteElementLink {
   Structure structure;  ///< nodes and elements, in axes of the link from its centre
   MatX shapes;          ///< (N×n) shapes of the deformation
 
-  /// End face at the front pin (sign 1) or at the rear pin (−1).
+  /// Nodes of the end face at the front pin (sign 1) or at the rear pin (−1).
   template <class = void>  // compiled only if it is used
   NodePatch pin(double sign) const {
     return patch([&](Vec3 const& r) { return sign * r.x() > 0.5 * pitch - same_place; });
   }
-  /// Part of a side within a sixth of the pitch of x.
+  /// Nodes of a face within a sixth of the pitch from x.
   template <class = void>
   NodePatch part(double x, Face face) const {
     double const side = face == Face::wheels ? 1.0 : -1.0;
@@ -33,7 +33,7 @@ struct FiniteElementLink {
       return side * r.z() > 0.5 * cable_height - same_place && std::abs(r.x() - x) < pitch / 6.0 + same_place;
     });
   }
-  /// Nodes at x.
+  /// Nodes of the cross section at x.
   template <class = void>
   NodePatch section(double x) const {
     return patch([&](Vec3 const& r) { return std::abs(r.x() - x) < same_place; });
@@ -51,8 +51,8 @@ struct FiniteElementLink {
  private:
   static constexpr double same_place = 1e-6;  ///< tolerance of positions [m]
 
-  /// Nodes with weights that distribute a load as a line load along the pins. Nodes at one y carry the part of the line
-  /// that is nearest to them.
+  /// Nodes with weights that distribute a load as a line load along the pins. Nodes at the same y carry the part of the
+  /// line that is nearest to this y.
   template <class Chosen>
   NodePatch patch(Chosen const& chosen) const {
     std::vector<Index> nodes;
@@ -74,10 +74,10 @@ struct FiniteElementLink {
   }
 };
 
-/// Basis of static shapes under the loads of pins, wheels and ground, and of the three lowest free modes. The loads
-/// at either pin are all forces, and the moments about x and z. The other loads are forces along z on each third of
-/// the inner face and at both ends of the pad. \throws InvalidInput if the nodes leave a face without a patch, and as
-/// `attachment_modes`.
+/// Finite element link with static shapes under the loads of pins, wheels and ground, and with the three lowest free
+/// modes. The loads at either pin are all forces, and the moments about x and z. The other loads are forces along z on
+/// each third of the inner face and at both ends of the pad. \throws InvalidInput if a face has no nodes for its patch,
+/// and as `attachment_modes`.
 template <class = void>
 std::shared_ptr<FiniteElementLink const> finite_element_link(Structure structure) {
   FiniteElementLink link{std::move(structure), {}};
@@ -93,11 +93,11 @@ std::shared_ptr<FiniteElementLink const> finite_element_link(Structure structure
   return std::make_shared<FiniteElementLink const>(std::move(link));
 }
 
-/// Links in a floating frame with modes. Without a finite element model, a link has two beam elements (or a larger
-/// given number) and a boundary frame at each pin. The floating frame is attached to the rear one [Craig & Bampton
-/// 1968]. The shapes are the six static shapes of the front pin's motion, and the three lowest modes with fixed pins.
-/// These are torsion, vertical bending and axial stretch. With a finite element model, the pins move with the end
-/// faces, and contact forces act on parts of the inner and outer faces.
+/// Links in a floating frame with modes. Without a finite element model, a link has at least two beam elements and a
+/// boundary frame at each pin. The floating frame is attached to the rear boundary frame [Craig & Bampton 1968]. The
+/// shapes are the six static shapes of the front pin's motion, and the three lowest modes with fixed pins. These are
+/// torsion, vertical bending and axial stretch. With a finite element model, the pins move with the end faces, and
+/// contact forces act on parts of the inner and outer faces.
 template <>
 struct LinkOf<Ffr> {
   static constexpr Index modes_between = 3;  ///< number of fixed-interface modes, those of the lowest frequencies
@@ -120,7 +120,7 @@ struct LinkOf<Ffr> {
   Marker<Ffr> rear(BodyHandle<Ffr> const& link) const {
     return pin(link, -1.0);
   }
-  /// Middle of the inner face; for a link of beam elements, middle of its line.
+  /// Middle of the inner face; for a link of beam elements, midpoint of the beam axis.
   template <class = void>
   Marker<Ffr> middle(BodyHandle<Ffr> const& link) const {
     return under(link, 0.0, Face::wheels);
@@ -132,13 +132,13 @@ struct LinkOf<Ffr> {
   template <class = void>
   Marker<Ffr> pin(BodyHandle<Ffr> const& link, double sign) const;
 
-  /// Constants of the link that was made last. Links with the same data share them, because their shapes require the
-  /// solution of an eigenvalue problem.
+  /// Constants of the link that was made last. Links with the same data share these constants, because the shapes
+  /// require the solution of an eigenvalue problem.
   struct Made {
-    std::shared_ptr<FiniteElementLink const> model;  ///< its finite element model, or null
+    std::shared_ptr<FiniteElementLink const> model;  ///< finite element model of the link, or null
     FfrTerms terms;                                  ///< terms of the equations that are included
-    double height;                                   ///< height of its section [m]
-    int elements;                                    ///< number of elements of the request
+    double height;                                   ///< height of the section [m]
+    int elements;                                    ///< number of elements passed to `make`
     Ffr link;                                        ///< the link, at any placement
   };
   mutable std::shared_ptr<Made const> made = {};  ///< null until a link is made

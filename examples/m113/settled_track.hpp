@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Tracks at rest on a vehicle that does not yet load them.
+/// Computation of tracks at rest on a fixed vehicle that does not load them.
 
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/run/energy.hpp>
@@ -14,8 +14,8 @@ namespace polybody::m113 {
 /// Computes the position at rest of tracks of rigid links on a fixed vehicle whose wheels just touch the ground.
 /// `wrap_track` computes straight runs and ignores the ground; a long run sags. The position at rest is found by
 /// dynamic relaxation with kinetic damping, without friction [Day 1965; Barnes 1999]. The track is released, and its
-/// velocities are set to zero at each maximum of its kinetic energy, until it rests.
-/// \param ground terrain under the vehicle. If a program drives on the same type of ground, only one vehicle type is
+/// velocities are set to zero at each maximum of the kinetic energy, until the track rests.
+/// \param ground terrain under the vehicle. If the program also drives on this type of ground, only one vehicle type is
 /// compiled.
 /// \throws InvalidInput, NewtonConvergenceFailure; Error if the track does not come to rest.
 template <Terrain Ground = FlatGround>

@@ -25,7 +25,7 @@ struct TrackDerailment {
   double off_path = 0.0;  ///< greatest distance of a pin from the initial chain, in the chassis' axes [m]
 };
 
-/// Seating of the pins of one side (`sprocket_engagement`). Pin i is the front pin of link i.
+/// Engagement of the pins of one side with their sprocket (`sprocket_engagement`). Pin i is the front pin of link i.
 template <class = void>  // compiled only if it is used
 SprocketEngagement teeth_engaged(TrackedVehicle const& vehicle, State const& x, Side side) {
   Track const& track = vehicle.track(side);
@@ -35,8 +35,8 @@ SprocketEngagement teeth_engaged(TrackedVehicle const& vehicle, State const& x, 
   });
 }
 
-/// Event for `RunOptions::events`: zero if a track jumps a tooth or leaves its sprocket. The vehicle must outlive the
-/// run.
+/// Terminal event for `RunOptions::events`: the track of one side jumps a tooth or leaves its sprocket. The vehicle
+/// must outlive the run.
 template <class = void>
 Event derailed(TrackedVehicle const& vehicle, Side side) {
   return {.name = std::string(side == Side::left ? "the left" : "the right") + " track leaves its sprocket",

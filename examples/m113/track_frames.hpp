@@ -15,7 +15,7 @@ namespace polybody::m113 {
 
 /// Frames and contacts of one track.
 struct Track {
-  FrameIn sprocket, tensioner;                              ///< frames of their centres
+  FrameIn sprocket, tensioner;                              ///< frames of the centres
   std::vector<FrameIn> front = {}, middle = {}, rear = {};  ///< frames of each link: front pin, middle, rear pin
   /// Calls a visitor for each contact of the links (`for_each_contact`).
   std::function<void(System const&, TouchingPointVisit const&)> contacts = {};

@@ -27,7 +27,7 @@ struct LinkParts {
   std::vector<BodyHandle<Link>> links = {};  ///< links in the order of the track; pin i is in front of link i
   std::vector<Marker<Link>> front = {}, middle = {}, rear = {};  ///< markers of each link: front pin, middle, rear pin
 
-  /// Appends `link` with its pins and its middle, and the frames of these points to `track`.
+  /// Appends `link` and its markers at the pins and the middle. Appends the frames of these markers to `track`.
   void add(LinkOf<Link> const& of, BodyHandle<Link> const& link, Track& track) {
     links.push_back(link);
     front.push_back(of.front(link));
@@ -65,8 +65,8 @@ inline SprocketProfile sprocket_profile() {
           .tip_radius = tip_radius};
 }
 
-/// Contacts of links whose middle marker has the quantities `observed`. Contacts of cables lie in the middle plane of
-/// the track: one contact represents the two contacts of a rigid link.
+/// Contacts of links whose markers are of the kind `observed`. Contacts of cables lie in the middle plane of the track:
+/// one contact of a cable represents two contacts of a rigid link.
 template <MarkerKind observed>
 struct LinkContacts {
   using OnRoller = Contact<LinkRollerContact<observed>>;     ///< inner face on the rims of a wheel
@@ -128,7 +128,7 @@ struct LinkContacts {
   }
 };
 
-/// Group of all contacts of links with the quantities `observed`, on one type of ground.
+/// Contact group for links with markers of the kind `observed`, on one type of ground.
 template <MarkerKind observed, Terrain Ground>
 using TrackContacts = ContactGroup<typename LinkContacts<observed>::OnRoller, typename LinkContacts<observed>::OnRims,
                                    typename LinkContacts<observed>::OnSprocket,
@@ -147,7 +147,7 @@ class TrackContactsAdder {
   TrackContactsAdder(Part part, LinkOf<Link> const& of_links, VehicleOptions const& options)
       : part_(part), of_links_(of_links), options_(options) {}
 
-  /// Adds the contacts of one track. \param name prefix of all names \returns the contact groups: one; four if contacts
+  /// Adds the contacts of one track. \param name prefix of all names \returns one contact group, or four if contacts
   /// act at their own points
   [[gnu::cold]] std::vector<ElementHandle<Contacts>> add(std::string const& name, Carriers<Base> const& carriers,
                                                          LinkParts<Link> const& of_side, Ground const& ground,
@@ -176,7 +176,7 @@ class TrackContactsAdder {
   }
 
  private:
-  /// Adds a contact group of `markers`; each link has the same number of them.
+  /// Adds a contact group of `markers`; each link has the same number of markers.
   [[gnu::cold]] ElementHandle<Contacts> add_group(std::vector<Marker<Link>> const& markers, std::string const& name,
                                                   Track& track) {
     auto const group = part_.apply(Contacts{}, markers, name);

@@ -13,14 +13,14 @@ namespace polybody::m113 {
 
 /// Vehicle of a chassis and two sides; each side has a sprocket, an idler, a tensioner, five wheels on arms and 64
 /// links. `Link` is the body of a link; `PinPolicy` is the policy of the pins between links. If pins are constraints or
-/// joint coordinates, 63 pins of a track have this policy, and the last pin is chosen by `Closure`. If pins are forces
-/// or linear constraint equations, all 64 pins are alike.
+/// joint coordinates, 63 pins of a track have this policy, and `Closure` selects the last pin. If pins are forces or
+/// linear constraint equations, all 64 pins have this policy.
 template <class Link = Rigid<>, Policy PinPolicy = Constraint, Terrain Ground = FlatGround, TimeFunction Drive = Ramp>
 class Vehicle : public TrackedVehicle {
  public:
-  using LinkType = Link;                                  ///< the body of a link
-  static constexpr MarkerKind observed = Link::observes;  ///< observed quantities of markers on a link
-  /// True if all 64 pins of a track are alike.
+  using LinkType = Link;                                  ///< type of the body of a link
+  static constexpr MarkerKind observed = Link::observes;  ///< kind of the markers on a link
+  /// True if all 64 pins of a track have the policy `PinPolicy`.
   static constexpr bool closes_alike = CompliantPolicy<PinPolicy> || LinearPolicy<PinPolicy>;
   /// Body of all parts except links.
   using Base = std::conditional_t<std::is_same_v<Link, Rigid<EulerParameters>>, Link, Rigid<>>;
@@ -39,21 +39,22 @@ class Vehicle : public TrackedVehicle {
                           Forces<SpringDamper, AxialSpring, Contacts>>;
   using Handle = BodyHandle<Base>;  ///< handle of a body that is not a link
 
-  /// Parts of one side. Pin i is in front of link i. `pins[i]` is the handle of pin i, except for the pin that closes
-  /// the loop.
+  /// Parts of one side. Pin i is in front of link i. `pins[i]` is the handle of pin i, or an empty handle if another
+  /// joint closes the loop there.
   struct SideParts : Carriers<Base>, LinkParts<Link> {
     std::vector<ElementHandle<Pin>> pins = {};           ///< (64) handles of the pins
-    std::vector<ElementHandle<Driven>> drive = {};       ///< one handle
-    std::vector<ElementHandle<Contacts>> contacts = {};  ///< one handle; four if contacts act at their own points
+    std::vector<ElementHandle<Driven>> drive = {};       ///< one handle, of the driving constraint
+    std::vector<ElementHandle<Contacts>> contacts = {};  ///< one group; four if contacts act at their own points
   };
 
   ModelType model{Gravity{0, 0, -9.81}};  ///< all parts of the vehicle; gravity is 9.81 m/s² along −z
-  std::vector<Handle> chassis;            ///< one handle
+  std::vector<Handle> chassis;            ///< one handle, of the chassis
   std::array<SideParts, 2> sides;         ///< left, right
 
   SideParts const& side(Side s) const { return sides[s == Side::left ? 0 : 1]; }  ///< parts of the side s
 
-  /// Creates the vehicle with the policy `pin` for its pins. \param drives drives of the left and the right sprocket
+  /// Creates the vehicle with the policy `pin` for its pins. \param drives functions of time of the left and the right
+  /// sprocket's speed
   /// \throws InvalidInput.
   [[gnu::cold]] Vehicle(PinPolicy const& pin, std::array<Drive, 2> const& drives, VehicleOptions const& options = {},
                         Ground const& ground = {}, LinkOf<Link> const& of_links = {}) {

@@ -44,7 +44,7 @@ void attach_hull(Visual& visual, BodyHandle<Base> const& chassis) {
   visual.attach(chassis.at(Vec3(0.1, 0, 0.545)), box({4.6, 2.54, 0.49}), "sponsons");  // not coplanar with the hull
 }
 
-/// Shape of a wheel or of the idler.
+/// Attaches the shape of a wheel or of the idler.
 template <class Base>
 void attach_drum(Visual& visual, BodyHandle<Base> const& body, double radius) {
   Vec3 const y = Vec3::UnitY();
@@ -62,7 +62,7 @@ void attach_sprocket(Visual& visual, BodyHandle<Base> const& sprocket) {
   visual.attach(sprocket.at(Vec3(0, 0, 0)), cylinder(0.12, 2.0 * tooth_y, Vec3::UnitY()), sprocket.name + " hub");
 }
 
-/// Shapes of the bodies that carry one track.
+/// Attaches the shapes of the bodies that carry one track.
 template <class Base>
 void attach_carriers(Visual& visual, Carriers<Base> const& side) {
   for (auto const& wheel : side.wheels) attach_drum(visual, wheel, wheel_radius);

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// polybody.hpp for programs that link the library target `polybody::compiled`. The target contains the code that
-/// does not depend on the user's model: `System`, runs with the library's integrators and the default solver, joint
-/// coordinates, and the tangents of the common flexible bodies. Not in polybody.hpp: it is for programs that link
+/// polybody.hpp for programs that link the library target `polybody::compiled`. This library contains compiled code
+/// that does not depend on the user's model: `System`, runs with the library's integrators and the default solver,
+/// joint coordinates, and the tangents of the common flexible bodies. Not in polybody.hpp: it is for programs that link
 /// `polybody::compiled`.
 
 #include <polybody/polybody.hpp>

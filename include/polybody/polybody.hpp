@@ -1,10 +1,12 @@
 #pragma once
 /// \file
-/// All headers of polybody: one model, every formulation.
+/// Headers that most programs need: models, bodies in all formulations, joints, forces, integrators, runs, statics,
+/// tables and figures. Headers that this file does not include give the reason.
 
-#include <polybody/math/compiler.hpp>  // first: a compiler that does not fit gets one sentence
+#include <polybody/math/compiler.hpp>  // first: an unsuitable compiler gives a single error message
 
-// The headers that reject invalid combinations come first: a compiler's message begins with the chain of includes.
+// Headers that reject invalid combinations come first: the compiler's message begins with the chain of includes, which
+// is then short.
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/relative_coordinates.hpp>
 #include <polybody/system/model.hpp>

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Parts of any tracked vehicle: path of a track, contacts of its links, terrain, checks of a run. Not in polybody.hpp:
-/// few programs need them.
+/// Headers for tracked vehicles: path of a track, contacts of its links, terrains, and checks of a track during a run.
+/// Not in polybody.hpp: few programs need them.
 
 #include <polybody/vehicle/height_field.hpp>
 #include <polybody/vehicle/link_ground_contact.hpp>

@@ -2,8 +2,8 @@
 
 namespace polybody {
 
-/// Version of these headers, which CMake, pkg-config and packages read from here. In 0.x a minor version may change
-/// the interface; CHANGELOG.md lists such changes.
+/// Version of polybody. CMake, pkg-config and the packages read it from this file. A minor version 0.x may change the
+/// interface; CHANGELOG.md lists such changes.
 inline constexpr char const* library_version = "0.2.0";
 
 }  // namespace polybody

@@ -126,7 +126,7 @@ TEST(EquilibriumPath, RefusesAModelWithoutLoads) {
   auto const b = model.add(planar::Rigid(1.0, 1.0), "block");
   model.connect(Joint<planar::Weld, Constraint>{}, model.ground().at({0, 0, 0}), b.at(Vec2(0, 0)), "weld");
   EXPECT_TRUE(
-      has(message_of<SingularMatrix>([&] { equilibrium_path(model, model.reference_state()); }), "nothing is loaded"));
+      has(message_of<SingularMatrix>([&] { equilibrium_path(model, model.reference_state()); }), "no load acts"));
 }
 
 }  // namespace arc_length_test

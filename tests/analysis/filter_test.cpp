@@ -147,10 +147,10 @@ TEST(Filters, RefuseWhatTheyCannotUse) {
   LowPass const f{.cut_off = 5.0};
   auto const with_a_gap = [](Record& r) { r.times.erase(r.times.begin() + 40), r.values.pop_back(); };
   EXPECT_TRUE(has(refused(f, with_a_gap), "2.39 s and 2.41 s are 0.02 s apart"));
-  EXPECT_TRUE(has(refused(f, [](Record& r) { r.times[9] += 1e-4; }), "others 0.01 s"));
-  EXPECT_TRUE(has(refused(f, [](Record& r) { r.times[9] = r.times[8]; }), "times must rise"));
+  EXPECT_TRUE(has(refused(f, [](Record& r) { r.times[9] += 1e-4; }), "the median interval is 0.01 s"));
+  EXPECT_TRUE(has(refused(f, [](Record& r) { r.times[9] = r.times[8]; }), "times must increase"));
   EXPECT_TRUE(has(refused(f, [](Record& r) { r.values[9] = std::nan(""); }), "sample 9 at t = 2.09 s is not finite"));
-  EXPECT_TRUE(has(refused(f, [](Record& r) { r.values.pop_back(); }), "100 times for 99 values"));
+  EXPECT_TRUE(has(refused(f, [](Record& r) { r.values.pop_back(); }), "100 times, but 99 values"));
   EXPECT_TRUE(
       has(refused(f, [](Record& r) { r.times.resize(3), r.values.resize(3); }), "samples are needed, but there are 3"));
   std::vector<double> const times{0.0, 0.1, 0.4}, values{0.0, 0.0, 0.0};

@@ -197,7 +197,7 @@ TEST(InitialConditions, AStateThatIsNotFiniteIsRefused) {
   for (bool const speed : {false, true}) {
     Pendulum p;
     (speed ? p.x.v : p.x.q)[1] = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_TRUE(has(refusal([&] { assemble(p.model, p.x); }), speed ? "speeds" : "coordinates"));
+    EXPECT_TRUE(has(refusal([&] { assemble(p.model, p.x); }), speed ? "velocities" : "coordinates"));
   }
 }
 

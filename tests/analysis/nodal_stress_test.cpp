@@ -301,14 +301,14 @@ TEST_F(NodalStressFiles, ThatAreBrokenAreNamedByFileAndLine) {
   EXPECT_TRUE(has(told(names, "0\n"), in_names + "1: \"0\" is not the number of a node and its name"));
   EXPECT_TRUE(has(told(names, "end\n"), in_names + "1: \"end\" is not the number"));
   EXPECT_TRUE(has(told(names, "# none\n"), in_names + "2: the file names no nodes"));
-  EXPECT_TRUE(has(told(names, "0 near\n"),
-                  in_matrix + "2: the matrix is 12×6, but the 1 nodes of " + names + " need 6×6, six stresses each"));
+  EXPECT_TRUE(has(told(names, "0 near\n"), in_matrix + "2: the matrix is 12×6, but the 1 nodes of " + names +
+                                               " need 6×6, six stresses per node"));
   put(names, "1 far\n0 near\n");
   std::string const banner = "%%MatrixMarket matrix coordinate real general\n";
   EXPECT_TRUE(has(told(matrix, banner + "12 6 1\n13 1 5.0\n"),
                   in_matrix + "3: entry (13, 1) is outside the matrix, whose rows are 1 to 12 and columns 1 to 6"));
   EXPECT_TRUE(has(told(matrix, banner + "12 6 1\n12 7 5.0\n"), in_matrix + "3: entry (12, 7) is outside"));
-  EXPECT_TRUE(has(told(matrix, banner + "12 6 2\n7 1 5.0\n7 1 5.0\n"), in_matrix + "4: entry (7, 1) stands here"));
+  EXPECT_TRUE(has(told(matrix, banner + "12 6 2\n7 1 5.0\n7 1 5.0\n"), in_matrix + "4: entry (7, 1) occurs a second"));
   EXPECT_TRUE(has(told(matrix, banner + "12 6 2\n7 1 5.0\n"), in_matrix + "4: the file ends after 1 of 2 entries"));
   EXPECT_TRUE(has(told(matrix, "%%MatrixMarket matrix coordinate real symmetric\n12 6 1\n1 1 5.0\n"),
                   in_matrix + "2: a symmetric matrix has as many rows as columns"));
@@ -328,7 +328,7 @@ TEST_F(NodalStressFiles, ThatDoNotFitTheQuestionAreRefused) {
   EXPECT_TRUE(has(refusal([&] { s.of("near", VecX::Zero(7)); }), "the displacements have 7 rows"));
   for (Index const n : {0, 7, -3})
     EXPECT_TRUE(has(refusal([&] { NodalStress::read(matrix, names, n); }),
-                    std::to_string(n) + " coordinates are not three displacements of each node"));
+                    std::to_string(n) + " coordinates are not three displacements per node"));
   NodalStress::Matrix m(6, 3);
   EXPECT_TRUE(has(refusal([&] { NodalStress(m, {}); }), "at least one node is needed"));
   EXPECT_TRUE(has(refusal([&] { NodalStress(m, {{0, "a"}, {1, "b"}}); }), "has 6 rows, but 2 nodes need 12"));

@@ -83,8 +83,8 @@ TEST(RmsDifference, RefusesWhatCannotBeCompared) {
   back.t[3] = back.t[2];
   wild.y[4] = std::numeric_limits<double>::quiet_NaN();
   RmsDifference d(2.0, 3.0), zero(0.0, 1.0);
-  EXPECT_TRUE(has(refusal([&] { d.add(shorter, b); }), "10 times for 11 values"));
-  EXPECT_TRUE(has(refusal([&] { d.add(b, back); }), "times must rise, but t = 0.2 s follows 0.2 s"));
+  EXPECT_TRUE(has(refusal([&] { d.add(shorter, b); }), "10 times, but 11 values"));
+  EXPECT_TRUE(has(refusal([&] { d.add(b, back); }), "times must increase, but t = 0.2 s follows 0.2 s"));
   EXPECT_TRUE(has(refusal([&] { d.add(wild, b); }), "sample 4 at t = 0.4 s is not finite"));
   d.add(b, b);
   EXPECT_TRUE(has(refusal([&] { (void)d.value(); }), "no sample of both histories from 2 s to 3 s"));

@@ -63,9 +63,10 @@ TEST(RunClock, StepsBelowItsResolutionAreRefused) {
     simulate(p.model, p.x, GeneralisedAlpha{}, {.end_time = start + length, .step = step}).run();
     return p.x;
   };
-  EXPECT_TRUE(has(refusal([&] { run_at(1e15, 0.01, 1.0); }), "simulate: the clock resolves 0.125 s at t = 1e+15 s"));
+  EXPECT_TRUE(
+      has(refusal([&] { run_at(1e15, 0.01, 1.0); }), "simulate: double precision resolves 0.125 s at t = 1e+15 s"));
   EXPECT_TRUE(has(refusal([&] { run_at(1e10, 1e-8, 1e-5); }), "too coarse for steps of 1e-08 s"));
-  EXPECT_TRUE(has(refusal([&] { run_at(-1e10, 1e-8, 1e-5); }), "simulate: the clock resolves"));
+  EXPECT_TRUE(has(refusal([&] { run_at(-1e10, 1e-8, 1e-5); }), "simulate: double precision resolves"));
   State const late = run_at(1e6, 1e-3, 0.1);
   EXPECT_NEAR(late.t, 1e6 + 0.1, 1e-9);
 }

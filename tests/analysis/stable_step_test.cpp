@@ -89,7 +89,7 @@ void expect_limit(I const& integrator, double damping, double limit) {
              limit, 1e-3, equals("ζ", damping));
   auto const warned = warnings(integrator, p.model, p.x, 1.02 * limit);
   ASSERT_EQ(warned.size(), 1u) << I::name << damping;
-  for (char const* part : {"\"pin\"", I::name, "k h²", "steps of at most"}) EXPECT_TRUE(has(warned[0], part));
+  for (char const* part : {"\"pin\"", I::name, "k h²/m", "steps of at most"}) EXPECT_TRUE(has(warned[0], part));
   EXPECT_FALSE(stays(integrator, p.model, p.x, 1.02 * limit)) << I::name << damping;
 }
 

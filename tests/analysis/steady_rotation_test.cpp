@@ -241,7 +241,7 @@ TEST(SteadyRotation, FindsNothingBeyondTheCriticalSpeed) {
   model.apply(SpringDamper{.stiffness = 50.0, .free_length = 1.0}, model.ground().at({0, 0, 0}), mass.at(Vec2(0, 0)));
   State x = model.reference_state();
   EXPECT_TRUE(has(message_of<NewtonConvergenceFailure>([&] { relative_equilibrium(model, x, about_z(5.1)); }),
-                  "there may be none"));
+                  "there may be no solution"));
 }
 
 }  // namespace steady_rotation_test

@@ -59,7 +59,7 @@ TEST(AttachmentModes, LeaveOutWhatRepeats) {  // two equal loads; forces at both
 
 TEST(AttachmentModes, RefuseWhatDoesNotFit) {
   Structure const s = bar();
-  EXPECT_TRUE(has(refusal([&] { attachment_modes(s, MatX::Zero(5, 1), 1); }), "finite nodal loads of 42 rows"));
+  EXPECT_TRUE(has(refusal([&] { attachment_modes(s, MatX::Zero(5, 1), 1); }), "must be finite and have 42 rows"));
   EXPECT_TRUE(has(refusal([&] { attachment_modes(s, MatX(s.size(), 0), 0); }), "at least one load or one mode"));
   EXPECT_TRUE(has(refusal([&] { attachment_modes(s, MatX(s.size(), 0), 37); }), "37 modes are requested"));
 }

@@ -147,8 +147,8 @@ TYPED_TEST(SlidingLaws, StandingStillIsAMaterialPoint) {
 
 TEST(WithSliders, RefusesPlacesAndSlidersThatItHasNot) {
   auto const line = AncfCable<>::from(bar(false), 3);
-  EXPECT_TRUE(
-      has(refusal([&] { WithSliders(line, {0.1, 1.6}); }), "WithSliders: the place: s = 1.6 m lies outside the body"));
+  EXPECT_TRUE(has(refusal([&] { WithSliders(line, {0.1, 1.6}); }),
+                  "WithSliders: the position: s = 1.6 m lies outside the body"));
   WithSliders const body(line, {0.1});
   EXPECT_TRUE(has(refusal([&] { (void)body.at(Slider{1}); }), "slider 1 does not exist; the body has 1"));
 }
@@ -161,7 +161,7 @@ TEST(WithSliders, SaysThatAPointHasGoneOffTheEnd) {
   EXPECT_NO_THROW(bent.at(bent.q, jacobian));
   bent.q[bent.n - 1] = 1.5 + 0.51;
   EXPECT_TRUE(has(message_of<SliderOutOfRange>([&] { bent.at(bent.q, jacobian); }),
-                  "a point has passed the end of its body: s = 2.01"));
+                  "a slider is beyond the end of the body: s = 2.01"));
   bent.q[bent.n - 1] = -0.51;
   EXPECT_THROW(bent.at(bent.q, jacobian), SliderOutOfRange);
 }

@@ -221,7 +221,7 @@ TEST(GradientResult, SaysWhatNothingDependsOn) {
   auto const make = [](P p) { return oscillator(0.1, 1e-2)(std::array{p[0], 3.0}); };
   GradientResult const g = gradient(make, {{"k [N/m]", 50.0}, {"colour [1]", 3.0}}, GeneralisedAlpha{});
   ASSERT_EQ(g.run.warnings.size(), 1u);
-  EXPECT_EQ(g.run.warnings[0], "Nothing of the objective depends on the parameter \"colour [1]\".");
+  EXPECT_EQ(g.run.warnings[0], "The objective does not depend on the parameter \"colour [1]\".");
   EXPECT_EQ(g.derivatives[1], 0.0);
 }
 

@@ -156,7 +156,7 @@ TEST(SensitivityResult, RefuseWhatTheyDoNotDifferentiate) {
     scenario.options.minimum_norm = true;
     return scenario;
   };
-  EXPECT_TRUE(has(said(least, of_pendulum), "multipliers of least norm"));
+  EXPECT_TRUE(has(said(least, of_pendulum), "minimum-norm multipliers"));
   auto const grows = [](P p) {
     using M = Model<Bodies<planar::AncfCable<>>, Joints<>>;
     M model{Gravity{0, -9.81, 0}};
@@ -167,8 +167,8 @@ TEST(SensitivityResult, RefuseWhatTheyDoNotDifferentiate) {
     State const start = model.reference_state();
     return Scenario<M>{std::move(model), start, {.end_time = 0.1, .step = 1e-2}};
   };
-  EXPECT_TRUE(
-      has(said(grows, {{"elements [1]", 3.0}}), "another \"elements [1]\" the factory makes a model of other sizes"));
+  EXPECT_TRUE(has(said(grows, {{"elements [1]", 3.0}}),
+                  "another value of \"elements [1]\" the factory makes a model of a different size"));
 }
 
 }  // namespace sensitivities_test

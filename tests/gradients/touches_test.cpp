@@ -65,7 +65,8 @@ void expect_refusals(I const& by, auto const& differentiate) {
   // the push names the ball; the stiffness shares its perturbed models
   std::string const of_k = said({"other"}, {"push"}, {});
   EXPECT_TRUE(has(of_k, "Parameter \"k [N/m]\" changes the equations of body \"ball\" at t = 0.06"));
-  EXPECT_TRUE(has(of_k, "Add the object that depends on it (body \"ball\", force \"floor\", force \"push\")"));
+  EXPECT_TRUE(
+      has(of_k, "Add the object that depends on the parameter (body \"ball\", force \"floor\", force \"push\")"));
   EXPECT_TRUE(has(said({"floor"}, {"other"}, {}), "\"push [N]\" changes the equations of body \"ball\" at t = 0.1"));
   EXPECT_TRUE(has(said({"floor"}, {"push"}, {"other"}), "\"radius [m]\" changes the equations of body \"ball\""));
   // no parameter names the ball

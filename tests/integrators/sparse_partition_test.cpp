@@ -162,7 +162,7 @@ TEST(SparsePartitioning, NamesTheIndependentSpeedsAndCountsChoices) {
   for (int const dense_up_to : {0, 1000}) {
     std::vector<std::string> const names = independent_velocities(system, bars.x, {.dense_up_to = dense_up_to});
     ASSERT_EQ(names.size(), 1u);
-    EXPECT_NE(names.front().find(", speed "), std::string::npos) << names.front();
+    EXPECT_NE(names.front().find(", velocity "), std::string::npos) << names.front();
   }
   State x = bars.x;
   auto run = simulate(bars.model, x, RungeKutta4<CoordinatePartitioning>{.stabilisation = sparse},

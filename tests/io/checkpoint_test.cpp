@@ -113,7 +113,7 @@ TEST_F(Checkpoints, EveryDamageIsNoticed) {
     return told(bad);
   };
   EXPECT_TRUE(has(told("t,x\n0,1\n"), "is not a checkpoint of polybody"));
-  EXPECT_TRUE(has(told(good.substr(0, 20)), "cut off within its head"));
+  EXPECT_TRUE(has(told(good.substr(0, 20)), "truncated within its head"));
   std::string const size = std::to_string(good.size()), longer = std::to_string(good.size() + 1);
   EXPECT_TRUE(has(told(good + "x"), "has " + longer + " bytes instead of " + size));
   std::string other = good;
@@ -185,11 +185,11 @@ TEST_F(Checkpoints, OfInconsistentContentAreRefused) {
                     std::memcpy(bad.data() + begin + 16, rows, sizeof rows);
                   }),
                   inconsistent + "it has 1 multipliers, but the model has 2."));
-  EXPECT_TRUE(has(number(begin + 48, 300), inconsistent + "300 is out of the range of its entry."));  // a letter
-  EXPECT_TRUE(has(number(begin + 40, -1), "ends before the end of its content"));
-  EXPECT_TRUE(has(number(begin + 40, std::int64_t(1) << 60), "ends before the end of its content"));
+  EXPECT_TRUE(has(number(begin + 48, 300), inconsistent + "300 exceeds the range of its number type."));  // a letter
+  EXPECT_TRUE(has(number(begin + 40, -1), "truncated within its content"));
+  EXPECT_TRUE(has(number(begin + 40, std::int64_t(1) << 60), "truncated within its content"));
   EXPECT_TRUE(has(told([](std::string& bad) { bad += "12345678"; }), inconsistent + "8 bytes follow its content."));
-  EXPECT_TRUE(has(told([](std::string& bad) { bad.resize(bad.size() - 8); }), "ends before the end of its content"));
+  EXPECT_TRUE(has(told([](std::string& bad) { bad.resize(bad.size() - 8); }), "truncated within its content"));
 }
 
 // Chains of four and of three links in the plane: 3 coordinates and 2 constraint equations each.

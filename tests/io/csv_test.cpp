@@ -248,12 +248,12 @@ TEST_F(CsvFiles, SystemRefusalsNameTheFileAndTheReason) {
   fs::create_directories(folder / "taken");
   EXPECT_TRUE(has(message_of<IoError>([&] { Csv(folder / "taken", {"x"}); }), "not a regular file"));
   EXPECT_TRUE(has(message_of<IoError>([&] { Csv("/dev/null", {"x"}); }), "not a regular file"));
-  EXPECT_TRUE(has(message_of<IoError>([&] { Csv("", {"x"}); }), "name of a file is missing"));
-  EXPECT_TRUE(has(message_of<IoError>([&] { Csv(folder / "", {"x"}); }), "name of a file is missing"));
+  EXPECT_TRUE(has(message_of<IoError>([&] { Csv("", {"x"}); }), "the path has no file name"));
+  EXPECT_TRUE(has(message_of<IoError>([&] { Csv(folder / "", {"x"}); }), "the path has no file name"));
   {
     Csv csv(file, {"x"});
     fs::create_directories(file / "in the way");
-    EXPECT_TRUE(has(message_of<IoError>([&] { csv.close(); }), "cannot be put in place: "));
+    EXPECT_TRUE(has(message_of<IoError>([&] { csv.close(); }), "cannot be renamed to its final name: "));
   }
   EXPECT_EQ(files(), 3u);  // plain, taken, run.csv/: no temporary file
 }

@@ -128,7 +128,7 @@ TEST_F(VtkFiles, AStateThatCannotBeWrittenLeavesTheOthers) {
   fs::path const file = folder / "run.pvd";
   VtkWriter writer(file, visual);
   writer.write(x);
-  EXPECT_TRUE(has(refusal([&] { writer.write(x); }), "must rise in time, but t = 0 s follows 0 s"));
+  EXPECT_TRUE(has(refusal([&] { writer.write(x); }), "must increase, but t = 0 s follows 0 s"));
   x.t = 1.0;
   x.q[0] = std::nan("");
   EXPECT_TRUE(has(message_of<NonFiniteValue>([&] { writer.write(x); }), "\"box\" is not finite at t = 1 s"));

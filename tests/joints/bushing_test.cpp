@@ -142,7 +142,7 @@ TEST(Bushing, RefusesCouplingThatMakesTheStiffnessNegative) {
   Matrix k = Bushing::diagonal({1, 1, 1}, {0, 0, 0});
   EXPECT_NO_THROW((Bushing{.stiffness = k, .damping = k}.check("mount")));
   k(0, 5) = k(5, 0) = 1e-3;
-  EXPECT_TRUE(has(said(k), "its entry (1, 6) is 0.001 beside a zero on the diagonal"));
+  EXPECT_TRUE(has(said(k), "its entry (1, 6) is 0.001 although a diagonal entry of its row or column is zero"));
 }
 
 // K − s v vᵀ is definite if s vᵀK⁻¹v < 1: its determinant is that of K times 1 − s vᵀK⁻¹v.

@@ -79,7 +79,7 @@ TEST(ReverseVar, OfOneRecordingInAnotherGoBackToTheFirst) {
 }
 
 TEST(ReverseVar, WithoutARecordingAreRefused) {
-  EXPECT_TRUE(has(refusal([] { (void)ReverseVar::variable(1.0); }), "no recording was active"));
+  EXPECT_TRUE(has(refusal([] { (void)ReverseVar::variable(1.0); }), "no tape was active"));
 }
 
 }  // namespace recorded_test

@@ -1,4 +1,4 @@
-// refused: declare the object by `auto`
+// refused: declare the object with `auto`
 #include <polybody/joints/revolute.hpp>
 #include <polybody/system/model.hpp>
 

@@ -4,6 +4,6 @@
 using namespace polybody;
 using Pin = Joint<Revolute, Constraint>;
 
-void pull(Model<Bodies<Rigid<>>, Joints<Pin>>& model, BodyHandle<Rigid<>> const& rod) {
-  model.apply(SpringDamper{.stiffness = 1.0, .damping = 0.1, .length = 1.0}, model.ground().at({0, 0, 0}), rod.at(0.0));
+void pull(Model<Bodies<Rigid<>>, Joints<Pin>>& model, SpringDamper const& spring, BodyHandle<Rigid<>> const& rod) {
+  model.apply(spring, model.ground().at({0, 0, 0}), rod.at(0.0));
 }

@@ -204,7 +204,7 @@ TEST_F(StudyFiles, AChangedByteIsRefusedWithItsLine) {
   std::string cut = record;  // a missing line in the middle
   std::size_t const from = cut.find("\n3: ") + 1;
   put(file, cut.erase(from, cut.find('\n', from) + 1 - from));
-  EXPECT_TRUE(has(message_of<IoError>([&] { study.recorded(); }), "a line before it is missing"));
+  EXPECT_TRUE(has(message_of<IoError>([&] { study.recorded(); }), "a previous line is missing"));
   put(file, record.substr(0, record.size() - 1) + "x");  // the end of the last line is damaged: an incomplete line
   EXPECT_EQ(study.recorded().finished(), 11u);
 }
@@ -222,8 +222,8 @@ TEST_F(StudyFiles, LinesThatNoStudyWritesAreRefused) {
   for (char const* line : {"12: 1 2", "3: 1", "3: 1 2 3", "3: 1 nan", "3: 1 inf", "3: 1 2x", "3:1 2",
                            "3 failed: ", "3 failed", "-3: 1 2", "x", "", "3: 1e999 2", "3: 1  2", "3"})
     EXPECT_TRUE(has(refused({"1: 1 2", line}), "line " + std::to_string(kind.head.size() + 2) + ": \"" + line)) << line;
-  EXPECT_TRUE(has(refused({"1: 1 2", "1: 1 2"}), "point 1 is there twice"));
-  EXPECT_TRUE(has(refused({"1: 1 2", "1 failed: x"}), "point 1 is there twice"));
+  EXPECT_TRUE(has(refused({"1: 1 2", "1: 1 2"}), "point 1 occurs twice"));
+  EXPECT_TRUE(has(refused({"1: 1 2", "1 failed: x"}), "point 1 occurs twice"));
 }
 
 TEST_F(StudyFiles, TheRecordOfAnotherStudyIsRefused) {
@@ -233,11 +233,11 @@ TEST_F(StudyFiles, TheRecordOfAnotherStudyIsRefused) {
   };
   std::string const record = text_of(file);
   EXPECT_TRUE(has(message(make(points, "another sum")),
-                  "line 2: the record is of another study: it has \"about: a sum of "
-                  "functions\", this study \"about: another sum\""));
+                  "line 2: the record belongs to another study: it has \"about: a sum of "
+                  "functions\", but this study has \"about: another sum\""));
   Points const other_unit = grid(axis("stiffness", "kN/m", {1e6, 1e8, 2.5e9}),
                                  formulations("integrator", {"Radau", "a, b"}), axis("step", "s", {1e-2, 1e-3}));
-  EXPECT_TRUE(has(message(make(other_unit)), "line 3: the record is of another study"));
+  EXPECT_TRUE(has(message(make(other_unit)), "line 3: the record belongs to another study"));
   Points const other_choice = grid(axis("stiffness", "N/m", {1e6, 1e8, 2.5e9}),
                                    formulations("integrator", {"Radau", "HHT"}), axis("step", "s", {1e-2, 1e-3}));
   EXPECT_TRUE(has(message(make(other_choice)), "line 4: "));
@@ -264,7 +264,7 @@ TEST_F(StudyFiles, AFileThatIsNoRecordIsLeftAsItIs) {
   }
   detail::RecordChain chain;
   put(file, chain.line("polybody study 2"));
-  EXPECT_TRUE(has(message_of<IoError>([&] { study.recorded(); }), "line 1: it is \"polybody study 2\""));
+  EXPECT_TRUE(has(message_of<IoError>([&] { study.recorded(); }), "line 1: the line is \"polybody study 2\""));
 }
 
 TEST_F(StudyFiles, WhatCannotBeWrittenIsRefusedAndLeavesNothing) {
@@ -277,7 +277,7 @@ TEST_F(StudyFiles, WhatCannotBeWrittenIsRefusedAndLeavesNothing) {
   EXPECT_TRUE(has(message("/proc/a.study"), "cannot be opened for writing: "));
   EXPECT_TRUE(has(message("/dev/full"), "not a regular file"));
   EXPECT_TRUE(has(message(folder), "not a regular file"));
-  EXPECT_TRUE(has(message(folder / ""), "the name of a file is missing"));
+  EXPECT_TRUE(has(message(folder / ""), "the path has no file name"));
   EXPECT_TRUE(has(message_of<IoError>([&] { study.recorded(); }), "cannot be read"));
   EXPECT_EQ(files(), 1u);
 }
@@ -325,7 +325,7 @@ TEST_F(StudyFiles, StudiesThatCannotBeMeantAreRefused) {
   EXPECT_TRUE(has(refusal([&] { Study({file}, points, outputs("y", "y")); }), "duplicate column \"y\""));
   EXPECT_TRUE(has(refusal([&] { Study({file}, points, outputs("step [s]")); }), "duplicate column \"step [s]\""));
   EXPECT_TRUE(has(refusal([&] { Study({file}, points, outputs("")); }), "not printable"));
-  EXPECT_TRUE(has(refusal([&] { make(points, "two\nlines"); }), "words on one line"));
+  EXPECT_TRUE(has(refusal([&] { make(points, "two\nlines"); }), "without line breaks"));
   EXPECT_TRUE(has(refusal([&] { study.run(values_at, with_threads(0)); }), "at least one thread"));
   EXPECT_EQ(files(), 0u);
 }
@@ -380,14 +380,15 @@ TEST_F(StudyFiles, APointThatHangsFailsAfterItsTimeLimitAndTheOthersGoOn) {
     EXPECT_EQ(found.failed(), 4u);
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (i == 3 || i == 7) {
-        EXPECT_EQ(found.outcomes[i]->failure, "It has not ended within the time limit of 0.2 s.");
+        EXPECT_EQ(found.outcomes[i]->failure, "The computation has not ended within the time limit of 0.2 s.");
       } else {
         EXPECT_EQ(found.outcomes[i]->failure, plain.outcomes[i]->failure);
         if (!found.outcomes[i]->failed())
           EXPECT_EQ(found.outcomes[i]->values[0], plain.outcomes[i]->values[0]);  // bits
       }
     }
-    EXPECT_TRUE(has(table_of(found), "\n3,1e+06,\"a, b\",0.001,,It has not ended within the time limit of 0.2 s.\n"));
+    EXPECT_TRUE(has(table_of(found),
+                    "\n3,1e+06,\"a, b\",0.001,,The computation has not ended within the time limit of 0.2 s.\n"));
     StudyResults const again = study.run(values_at, {.threads = threads, .retry_failed = true, .progress = false});
     EXPECT_EQ(again.failed(), 2u);
     EXPECT_EQ(again.resumed, 8u);
@@ -404,8 +405,8 @@ TEST_F(StudyFiles, UnderATimeLimitACrashIsAFailureOfItsPoint) {
       },
       with_limit(2, 60.0));
   EXPECT_TRUE(found.complete());
-  EXPECT_EQ(found.outcomes[0]->failure, "Its process ended without a result, by signal 9.");
-  EXPECT_EQ(found.outcomes[5]->failure, "Its process ended without a result.");
+  EXPECT_EQ(found.outcomes[0]->failure, "The process of the point ended without a result, by signal 9.");
+  EXPECT_EQ(found.outcomes[5]->failure, "The process of the point ended without a result.");
   EXPECT_EQ(found.failed(), 4u);
 }
 
@@ -423,7 +424,7 @@ TEST_F(StudyFiles, UnderATimeLimitErrorsOfTheProgramEndTheStudy) {
   EXPECT_TRUE(has(message_of<Error>([&] { (void)study.run(own, with_limit(2, 60.0)); }), "an error of its own"));
   auto const number = ends([](Point const&) { throw 3; });
   EXPECT_TRUE(
-      has(message_of<Error>([&] { (void)study.run(number, with_limit(1, 60.0)); }), "not of the standard library"));
+      has(message_of<Error>([&] { (void)study.run(number, with_limit(1, 60.0)); }), "not derived from std::exception"));
   StudyResults const found = study.run(values_at, with_limit(1, 60.0));
   EXPECT_GE(found.resumed, 2u);
   EXPECT_TRUE(found.complete());

@@ -332,7 +332,7 @@ void expect_refusals(I const& integrator) {
     return refusal([&] { sensitivities(make, {{"p [s]", 0.5}}, integrator); });
   };
   EXPECT_TRUE(has(refused(scenario_with([](RunOptions& o, double p) { o.breakpoints = {p, 0.5}; })),
-                  "separate with \"p [s]\""));
+                  "a change of \"p [s]\" separates them"));
   EXPECT_TRUE(has(refused(scenario_with([](RunOptions& o, double p) { o.breakpoints = {p, 0.5003}; })),
                   "change their order within the difference step of \"p [s]\""));
   EXPECT_TRUE(has(refused(scenario_with([](RunOptions& o, double p) {

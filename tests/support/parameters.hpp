@@ -196,7 +196,7 @@ int try_hostile(T sane, std::string const& type, Run const& run, Share share = {
     try {
       run(std::as_const(sane));
     } catch (InvalidInput const& error) {  // a motion that such a number makes jump, and the clock of a run, are named
-      EXPECT_TRUE(names_one_of(error.what(), words + "|coordinate of body|the prescribed |the clock resolves"))
+      EXPECT_TRUE(names_one_of(error.what(), words + "|coordinate of body|the prescribed |double precision resolves"))
           << where << ": " << error.what();
     } catch (Error const& error) {
       EXPECT_TRUE(names_one_of(error.what(), words + "| t = | load factor |violates") &&

@@ -234,9 +234,9 @@ DerivedSteps derive_steps(Make const& make, std::vector<Parameter> const& parame
     EXPECT_TRUE(full.step(h));
     StepTaken const step{before, full.x, h};
     slope.set(step);
-    for (std::size_t first = 0; first < parameters.size(); first += Slope::lanes) {
+    for (std::size_t first = 0; first < parameters.size(); first += Slope::max_directions) {
       std::vector<State*> directions;
-      for (std::size_t j = first; j < std::min(first + Slope::lanes, parameters.size()); ++j)
+      for (std::size_t j = first; j < std::min(first + Slope::max_directions, parameters.size()); ++j)
         directions.push_back(&out.derivatives[j]);
       out.left = std::max(out.left, slope.advance(step, directions, [&](EvaluationPoint<> const& x, std::size_t l) {
         std::size_t const j = first + l;

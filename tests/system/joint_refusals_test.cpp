@@ -145,9 +145,7 @@ TEST(RefusedJoint, DrivesATurnThatItsPinDoesNotLeave) {
   using Space = Joined<Rigid<>, Revolute, Spherical, Motor>;
   std::string const why =
       "\"drive\" drives a rotation about (0, 0, 1), but \"pin\" allows only a rotation about (0, 1, 0) between these "
-      "bodies (world "
-      "axes "
-      "at the reference configuration). Give the drive the axis of the pin.";
+      "bodies (world axes in the reference configuration). Use the same axis for both.";
   Revolute const pin{.axis = {0, 1, 0}};
   Motor const across{.law = ramp, .axis = {0, 0, 1}}, along{.law = ramp, .axis = {0, -1, 0}};
   Space pin_first(Rigid<>(1.0, Mat3::Identity())), drive_first = pin_first, ball = pin_first;

@@ -267,7 +267,7 @@ TEST(LinkGroundContact, RefusesNumbersThatCannotBeMeantByName) {
   bad.terrain.z = nan;
   EXPECT_TRUE(has(refusal([&] { bad.check("\"ground\""); }), "\"ground\": the height of the ground"));
   EXPECT_TRUE(has(refusal([&] { LinkGroundContact<>{}.check("\"ground\""); }),
-                  "\"ground\": a link needs points that touch the ground"));
+                  "\"ground\": the pad of a link needs at least one point"));
   bad = flat;
   bad.pad[2][1] = nan;
   EXPECT_TRUE(has(refusal([&] { bad.check("\"ground\""); }), "\"ground\": a point of the pad"));

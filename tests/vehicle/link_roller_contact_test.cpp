@@ -356,7 +356,7 @@ TEST(LinkRollerContact, RefusesNumbersThatCannotBeMeantByName) {
     EXPECT_TRUE(has(told([&](auto& g) { g.pitch = x; }), "\"wheel 1\": the pitch of the link"));
     EXPECT_TRUE(has(told([&](auto& g) { g.half_width = x; }), "\"wheel 1\": the link's half width"));
     EXPECT_TRUE(has(told([&](auto& g) { g.radius = x; }), "\"wheel 1\": the radius of the roller"));
-    EXPECT_TRUE(has(told([&](auto& g) { g.handover = x; }), "\"wheel 1\": the zone of the handover"));
+    EXPECT_TRUE(has(told([&](auto& g) { g.handover = x; }), "\"wheel 1\": the handover distance"));
   }
   EXPECT_TRUE(has(told([&](auto& g) { g.handover = 0.5 * pitch; }), "below half the pitch"));
   EXPECT_TRUE(has(told([&](auto& g) { g.half_thickness = -1.0; }), "\"wheel 1\": the link's half thickness"));

@@ -379,17 +379,18 @@ TEST(PinSprocketContact, RefusesNumbersThatCannotBeMeantByName) {
     EXPECT_TRUE(has(told([&](auto& g) { g.profile.pitch = x; }), "\"sprocket\": the pitch of the track"));
     EXPECT_TRUE(has(told([&](auto& g) { g.profile.pin_radius = x; }), "\"sprocket\": the pins' radius"));
     EXPECT_TRUE(has(told([&](auto& g) { g.profile.valley_radius = x; }), "\"sprocket\": the radius of the valleys"));
-    EXPECT_TRUE(has(told([&](auto& g) { g.profile.flank = x; }), "\"sprocket\": the arc of a valley must end"));
+    EXPECT_TRUE(
+        has(told([&](auto& g) { g.profile.flank = x; }), "\"sprocket\": the half angle of a valley's arc must lie"));
     EXPECT_TRUE(has(told([&](auto& g) { g.profile.tip_radius = x; }), "\"sprocket\": the tips must lie outside"));
   }
   EXPECT_TRUE(
       has(told([](auto& g) { g.profile.teeth = 3; }), "\"sprocket\": a sprocket needs at least four teeth, but has 3"));
   EXPECT_TRUE(
       has(told([](auto& g) { g.profile.valley_radius = m113::pin_radius; }), "must exceed the radius of the pins"));
-  EXPECT_TRUE(has(told([](auto& g) { g.profile.flank = 0.5 * pi; }), "a right angle"));
+  EXPECT_TRUE(has(told([](auto& g) { g.profile.flank = 0.5 * pi; }), "between 0 and pi/2 rad"));
   EXPECT_TRUE(has(told([](auto& g) { g.profile.tip_radius = 0.2459; }),
                   "0.24596"));  // f of the independent computation: |(0.244088, 0.030311)| = 0.24596
-  EXPECT_TRUE(has(told([](auto& g) { g.profile.tip_radius = 0.5; }), "leave nothing of the teeth"));
+  EXPECT_TRUE(has(told([](auto& g) { g.profile.tip_radius = 0.5; }), "no teeth remain"));
   EXPECT_TRUE(has(told([](auto& g) { g.valley = nan; }), "\"sprocket\": the angle of a valley"));
   EXPECT_TRUE(has(told([](auto& g) { g.rings.clear(); }), "\"sprocket\": a sprocket needs at least one ring"));
   EXPECT_TRUE(has(told([](auto& g) { g.rings[0] = infinity; }), "\"sprocket\": the position of a ring"));

@@ -474,7 +474,8 @@ TEST(HeightField, RefusesWhatIsNoGrid) {
   EXPECT_TRUE(has(said([](Grid& g) { g.dx = 0.0; }), "\"hill\": the spacing dx must be positive and finite, but is 0"));
   EXPECT_TRUE(
       has(said([](Grid& g) { g.dy = -1.0; }), "\"hill\": the spacing dy must be positive and finite, but is -1"));
-  EXPECT_TRUE(has(said([](Grid& g) { g.y0 = nan; }), "\"hill\": the place x0, y0 of the first point must be finite"));
+  EXPECT_TRUE(
+      has(said([](Grid& g) { g.y0 = nan; }), "\"hill\": the position x0, y0 of the first point must be finite"));
   EXPECT_TRUE(has(said([](Grid& g) { g.heights(2, 3) = nan; }),
                   "\"hill\": heights(2, 3) must be finite, but is nan. Fill gaps"));
   EXPECT_TRUE(has(said([](Grid& g) { g.heights = MatX::Zero(1, 5); }),

@@ -1,4 +1,4 @@
-// A part of the library m113_compiled: contacts of links that publish an axis (see m113/compiled.hpp).
+// A part of the library m113_compiled: contacts of links whose markers have an axis (see m113/compiled.hpp).
 #include "../compiled.hpp"
 
 namespace polybody {

@@ -11,7 +11,7 @@
 
 namespace polybody {
 
-/// Output of a case: a number that every formulation of the case provides.
+/// Output of a case: a scalar function of the state that every formulation of the case provides.
 template <class M>
 struct Output {
   std::string name;                                     ///< name with unit
@@ -25,14 +25,13 @@ struct Scenario {
   State start;                                                ///< initial state of the run
   RunOptions options;                                         ///< options of the run
   std::vector<Output<M>> outputs = {};                        ///< outputs to compare
-  std::function<void(M const&, State const&)> observer = {};  ///< called in every sampled state, not timed
-  /// Sampling interval [s]: the first state on or after each multiple of it from the start is sampled; 0: every state.
-  /// Useful for integrators with steps much shorter than the time scale of the outputs.
+  std::function<void(M const&, State const&)> observer = {};  ///< called at every sample; not part of the CPU time
+  /// Sampling interval T [s]: the first state at or after each time `start.t` + k T is sampled. If zero, every state is
+  /// sampled. Set the interval if steps are much shorter than the time scale of the outputs.
   double sampling = 0.0;
 };
 
-/// Case that can be called with a formulation and returns a Scenario. The type of the model may depend on the
-/// formulation.
+/// Function object that returns the Scenario of a formulation. The type of the model may depend on the formulation.
 template <class C, class F>
 concept ComparisonCase = requires(C const c, F const f) {
   { c(f).model };
@@ -42,12 +41,12 @@ concept ComparisonCase = requires(C const c, F const f) {
 
 namespace detail {
 
-/// Name of a formulation, or of its integrator if it has none.
+/// Name of a formulation, or the name of its integrator if the formulation has no name.
 template <class F>
 std::string name_of(F const& formulation) {
   return formulation.name.empty() ? decltype(formulation.integrator)::name : formulation.name;
 }
-/// Name `own`, made different from the names of `earlier` runs.
+/// Name `own`, with a number appended if an `earlier` run has the same name.
 template <class = void>
 std::string unique_name(std::vector<ComparedRun> const& earlier, std::string const& own) {
   std::string name = own;
@@ -56,7 +55,7 @@ std::string unique_name(std::vector<ComparedRun> const& earlier, std::string con
   return name;
 }
 
-/// Checks that the outputs of a run have different names, and that they are the outputs of the `earlier` runs.
+/// Checks that the outputs of a run have distinct, nonempty names, and that these are the names of the `earlier` runs.
 /// \throws InvalidInput otherwise.
 template <class = void>
 void check_outputs(ComparedRun const& run, std::vector<ComparedRun> const& earlier) {
@@ -73,7 +72,7 @@ void check_outputs(ComparedRun const& run, std::vector<ComparedRun> const& earli
          "\". The case must return the same outputs in the same order for every formulation."});
 }
 
-/// Evaluations in each sampled state of a run, independent of the type of the case's model.
+/// Evaluations at each sampled state of a run, independent of the type of the case's model.
 struct CaseQuestions {
   System system;
   std::vector<std::function<double(State const&)>> outputs = {};
@@ -94,7 +93,7 @@ struct CaseQuestions {
   }
 };
 
-/// Evaluations of a scenario, which must outlive them.
+/// Creates the evaluations of a scenario. The scenario must outlive the result.
 template <class S>
 CaseQuestions questions_of(S& scenario) {
   auto const& model = scenario.model;
@@ -104,7 +103,7 @@ CaseQuestions questions_of(S& scenario) {
   return questions;
 }
 
-/// Removes the last recorded state if an evaluation in it failed.
+/// Removes the values of the last recorded state if one of its evaluations failed.
 template <class = void>
 void drop_incomplete_state(ComparedRun& run) {
   std::size_t n = std::min({run.times.size(), run.violations.size(), run.energies.size(), run.joint_forces.size()});
@@ -116,8 +115,8 @@ void drop_incomplete_state(ComparedRun& run) {
   for (auto& history : run.outputs) history.resize(n);
 }
 
-/// Completes a run and records its first and last state, and the states between them that `sampling` selects. A step
-/// that fails ends the run, and `failure` contains its message. Only the steps are timed.
+/// Completes a run and records its first and last state, and the states between them that `sampling` selects. An
+/// exception ends the run; its message is stored in `failure`. The CPU time contains the steps only.
 template <class Run>
 void record_run(Run& run, CaseQuestions& questions, double sampling, ComparedRun& out) {
   RunSampling samples(run.state().t, sampling);
@@ -140,7 +139,7 @@ void record_run(Run& run, CaseQuestions& questions, double sampling, ComparedRun
   out.run = run.report();
 }
 
-/// Adds the run of a formulation to c.
+/// Runs the case of a formulation and adds the result to c.
 template <class F, class C>
 void add_run(C const& make_case, F const& formulation, Comparison& c) {
   auto scenario = make_case(formulation);
@@ -183,11 +182,11 @@ void compare_with_first(Comparison& c) {
 
 }  // namespace detail
 
-/// Runs the case that `make_case(formulation)` returns for each of the `formulations`. They are passed as values,
-/// because some policies have parameters without defaults.
-/// If `simulate` or an output throws an `Error`, the run contains its message in `failure` and the results up to it,
-/// and the other runs go on. `require_complete(compare(…))` throws if a run failed.
-/// \throws InvalidInput for outputs that are not the same for all formulations, and exceptions of the case.
+/// Runs the case that `make_case(formulation)` returns for each of the `formulations`. Formulations are passed as
+/// objects, because some policies have parameters without defaults. If `simulate` or an output throws an `Error`, the
+/// run stores the message in `failure` and keeps its results so far; the other runs continue.
+/// `require_complete(compare(…))` throws if a run failed.
+/// \throws InvalidInput if the names of the outputs differ between formulations; exceptions of `make_case`.
 template <class C, class... Fs>
   requires(ComparisonCase<C, Fs> && ...)
 Comparison compare(C const& make_case, Fs const&... formulations) {

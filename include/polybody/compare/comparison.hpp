@@ -32,8 +32,8 @@ struct ComparedRun {
   std::vector<double> joint_forces;          ///< (n) largest force of all joints at each time [N]
   std::vector<std::string> output_names;     ///< names in the order of `outputs`
   std::vector<std::vector<double>> outputs;  ///< one history (n) for each output
-  /// (outputs) Largest difference from the first complete run [unit of the output]; NaN without such a run, and for a
-  /// run that failed before its first state.
+  /// (outputs) Largest difference of each output from the first complete run [unit of the output]. NaN if no run is
+  /// complete, or if this run failed before its first state.
   std::vector<double> difference;
 };
 
@@ -41,7 +41,8 @@ struct ComparedRun {
 struct Comparison {
   std::vector<ComparedRun> runs;  ///< runs in the order of the formulations
 
-  /// The first complete run, with which the others are compared; if all failed, the first run. There must be a run.
+  /// First complete run, with which the other runs are compared. If all runs failed, the first run. Requires at least
+  /// one run.
   ComparedRun const& reference() const {
     auto const complete = [](ComparedRun const& run) { return run.failure.empty(); };
     auto const found = std::find_if(runs.begin(), runs.end(), complete);
@@ -80,10 +81,10 @@ struct Quantity {
 /// History of a quantity at the times of a run.
 struct History {
   std::string name;            ///< name with unit
-  std::vector<double> values;  ///< values in that unit, one for each time
+  std::vector<double> values;  ///< values in that unit, one for each time of the run
 };
 
-/// Column of the report for one run. Differences are relative to the `first` run. Values that a failed run has not
+/// Column of the report for one run. The CPU ratio is relative to the `first` run. Outputs that a failed run has not
 /// computed are NaN.
 template <class = void>  // compiled where it is used
 std::vector<Quantity> quantities(ComparedRun const& run, ComparedRun const& first) {
@@ -135,9 +136,10 @@ std::vector<History> histories(ComparedRun const& run) {
 
 namespace detail {
 
-/// Interpolates y(t) in a history with increasing times, by the cubic through two times before t and two after it.
-/// Near an end the cubic passes through the four times there. Beyond an end the result is the value at the end. Times
-/// that are much closer together than the two around t are omitted, because their differences are round-off.
+/// Interpolates y(t) in a history with increasing times, by the cubic through two times before t and two after it. Near
+/// an end of the history, the cubic passes through its first or last four points. Beyond an end, the result is the
+/// value at this end. Points closer to their neighbour than a tenth of the interval around t are omitted, because their
+/// differences are mainly round-off.
 template <class = void>
 double interpolate(std::vector<double> const& times, std::vector<double> const& y, double t) {
   auto const after = std::lower_bound(times.begin(), times.end(), t);

@@ -1,4 +1,7 @@
 #pragma once
+/// \file
+/// Formulation of a mechanism as one type: body formulation with its mesh, constraint policy and integrator.
+
 #include <string>
 #include <utility>
 
@@ -7,8 +10,8 @@
 
 namespace polybody {
 
-/// Body formulation with its mesh, for use as the body of a `Formulation`. The `count` is the number of elements of a
-/// cable, or of modes of a floating frame.
+/// Body formulation with its mesh, for use as the body of a `Formulation`. `count` is the number of elements of a
+/// cable, or the number of modes of a floating frame.
 template <Body B, int count>
   requires(count > 0)
 struct Meshed {

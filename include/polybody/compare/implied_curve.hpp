@@ -26,7 +26,8 @@ struct AngleAlong {
   double value = 0.0, slope = 0.0, second = 0.0;  ///< [rad], [rad/m], [rad/m²]
 };
 
-/// Rotation field of Eq. 2.1 at one section: rotations ψ about Z, then θ about −Y, then φ about −X:
+/// Rotation R and curvature K of a section that is rotated by ψ about Z, then θ about −Y, then φ about −X [thesis Eq.
+/// 2.1]:
 ///   R = exp(ψ e₃) exp(−θ e₂) exp(−φ e₁),  K = −φ′ e₁ + exp(φ e₁) (−θ′ e₂ + exp(θ e₂) ψ′ e₃).
 template <class T = double>  // compiled where it is used
 SectionTurn section_turn(AngleAlong const& psi, AngleAlong const& theta, AngleAlong const& phi) {
@@ -44,9 +45,10 @@ SectionTurn section_turn(AngleAlong const& psi, AngleAlong const& theta, AngleAl
   return s;
 }
 
-/// Points of the implied curve of a field `rotation`, s ↦ R(s), from `start` [m], at s = 0, length/pieces, .... Each
-/// piece is integrated with five Gauss points. The derivative of the field may jump between pieces.
-/// \throws InvalidInput for a length that is not positive, or pieces < 1.
+/// Points r(s) = start + ∫ R e₁ ds of the curve that the field `rotation`, s ↦ R(s), implies, at s = 0, length/pieces,
+/// 2 length/pieces, … [m]. Each piece is integrated with five Gauss points. The derivative of the field may jump
+/// between pieces.
+/// \throws InvalidInput if the length is not positive, or if pieces < 1.
 template <class Field>
   requires std::is_invocable_r_v<Mat3, Field&, double>
 std::vector<Vec3> implied_curve(Field&& rotation, double length, Index pieces, Vec3 const& start = Vec3::Zero()) {
@@ -68,7 +70,7 @@ std::vector<Vec3> implied_curve(Field&& rotation, double length, Index pieces, V
   return curve;
 }
 
-/// Points of the implied curve for the rotation field of a beam at the coordinates q, from its first node: `samples`
+/// Points of the curve that the rotation field of a beam implies at the coordinates q: the first node and `samples`
 /// points in each element.
 template <NodalInterpolation Interpolation, StrainQuadrature Quadrature>
 std::vector<Vec3> implied_curve(Lrvf<Interpolation, Quadrature> const& beam, std::span<double const> q,

@@ -6,8 +6,9 @@
 
 namespace polybody {
 
-/// Joins the runs of all `parts` in their order, and compares each with the first run. Equal names get a number.
-/// \throws InvalidInput for outputs that are not the same for all runs.
+/// Joins the runs of all `parts` in their order, and compares each with the first complete run. A number is appended to
+/// repeated names.
+/// \throws InvalidInput if the names of the outputs differ between runs.
 template <class = void>  // compiled where it is used
 Comparison join(std::vector<Comparison> const& parts) {
   Comparison all;

@@ -12,19 +12,20 @@
 namespace polybody {
 
 /// Position mesh and implied curve of an LRVF beam in the plane (dim = 2) or in space (dim = 3), in world axes. The
-/// position field of the beam gives the position mesh. Its rotation field implies another curve,
+/// position field of the beam gives the position mesh. The rotation field of the beam, with the tangent t₁, implies
+/// another curve,
 ///   r(s) = r(0) + ∫ t₁ ds [thesis Eq. 2.2, 2.17].
 template <int dim>
 struct TwoMeshes {
   using Point = Mat<double, dim, 1>;  ///< point in world axes [m]
   std::vector<Point> position_nodes;  ///< nodes of the position mesh [m]
   std::vector<Point> rotation_nodes;  ///< the same material points on the implied curve [m]
-  double largest_gap = 0.0;           ///< largest distance between the two, over all nodes [m]
+  double largest_gap = 0.0;           ///< largest distance between a position node and its rotation node [m]
   double position_length = 0.0;       ///< arc length of the position mesh [m]
   double rotation_length = 0.0;       ///< arc length of the implied curve [m]: the length of the bar, since |t₁| = 1
-  std::vector<double> position_curvature;  ///< |r′ × r″|/|r′|³ in the middle of each element [1/m], Eq. 2.16
-  /// Curvature of the implied curve in the middle of each element [1/m]: θ′ with its sign in the plane, Eq. 2.15; |t₁′|
-  /// in space, Eq. 2.4.
+  std::vector<double> position_curvature;  ///< |r′ × r″|/|r′|³ at the middle of each element [1/m], thesis Eq. 2.16
+  /// Curvature of the implied curve at the middle of each element [1/m]: θ′ with its sign in the plane, |t₁′| in space
+  /// [thesis Eq. 2.15, 2.4].
   std::vector<double> rotation_curvature;
 };
 using MeshDiagnostics = TwoMeshes<2>;         ///< diagnostics of planar beams
@@ -32,8 +33,8 @@ using SpatialMeshDiagnostics = TwoMeshes<3>;  ///< diagnostics of spatial beams
 
 namespace detail {
 
-/// Adds the nodes of the next material point to d, with distance, length and curvature of the preceding element of
-/// length l.
+/// Adds the position node and the rotation node of the next material point to d. Updates the largest distance, and adds
+/// the arc length and the curvature of the element of length l before this point.
 template <int dim>
 void add_nodes(TwoMeshes<dim>& d, double l, typename TwoMeshes<dim>::Point const& position,
                typename TwoMeshes<dim>::Point const& rotation) {
@@ -96,7 +97,7 @@ MeshDiagnostics mesh_diagnostics(planar::Beam<Theory> const& beam, std::span<dou
 }
 
 /// Position mesh and implied curve of a spatial beam at the coordinates q. The rotation field is that of the beam's
-/// interpolation. On a curved reference the position mesh is the polygon through the nodes. The implied curve
+/// interpolation. If the reference is curved, the position mesh is the polygon through the nodes, and the implied curve
 /// includes the curvature of the reference.
 template <NodalInterpolation Interpolation, StrainQuadrature Quadrature>
 SpatialMeshDiagnostics mesh_diagnostics(Lrvf<Interpolation, Quadrature> const& beam, std::span<double const> q) {

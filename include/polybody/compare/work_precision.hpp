@@ -1,24 +1,24 @@
 #pragma once
 /// \file
-/// Work-precision studies: error over CPU time of one case at several steps or tolerances.
+/// Work-precision studies: error versus CPU time of one case at several steps or tolerances.
 
 #include <polybody/compare/compare.hpp>
 
 namespace polybody {
 
-/// Run of a work-precision curve.
+/// Point of a work-precision curve: result of one run.
 struct WorkPoint {
   double setting = 0.0;      ///< step [s], or relative tolerance of an integrator with step size control
   long steps = 0;            ///< number of steps of the run
   double cpu = 0.0;          ///< CPU time of the steps [s]
   double error = 0.0;        ///< error in the unit of the output, see `work_precision`
-  std::string failure = {};  ///< reason of a failure; then only the setting is valid
+  std::string failure = {};  ///< message of a failed run, in which only the setting is valid; otherwise empty
 };
 
 /// Work-precision curve: all runs of one formulation.
 struct WorkCurve {
   std::string name;                    ///< name of the formulation
-  std::string output;                  ///< name of the output with the error
+  std::string output;                  ///< name of the output whose error is given
   std::vector<WorkPoint> points = {};  ///< one point for each setting
 };
 
@@ -27,7 +27,7 @@ struct WorkPrecision {
   std::vector<WorkCurve> curves;  ///< one curve for each formulation
 };
 
-/// Output of a recorded run, y(t), interpolated by cubics between its times.
+/// Output y(t) of a recorded run, interpolated by cubics between the recorded times.
 struct OutputHistory {
   std::vector<double> times, values;  ///< (n) t [s] and y [unit of the output]
   /// Interpolates y at time t [s].
@@ -37,7 +37,7 @@ struct OutputHistory {
 /// Reference for an output: a function of time, a `reference_run`, or a number for the end of the run.
 struct OutputReference {
   std::function<double(double)> at;  ///< y_ref(t), t in [s]
-  bool only_at_end = false;          ///< compares at the end of the run only
+  bool only_at_end = false;          ///< true if outputs are compared at the end of the run only
 
   /// Reference value at the `end` of the run.
   OutputReference(double end) : at([end](double) { return end; }), only_at_end(true) {}
@@ -60,8 +60,8 @@ auto const& output_of(S const& scenario, std::size_t output, std::string const& 
   return scenario.outputs[output];
 }
 
-/// Sets the step, or the relative tolerance, to `setting`. The absolute tolerance changes in proportion. Steps of a
-/// given length are not halved, unless the options say so.
+/// Sets the step, or the relative tolerance, to `setting`. The absolute tolerance changes in proportion. A fixed step
+/// is not halved if it fails, unless `max_step_halvings` is set.
 template <class I>
 void set_accuracy(I& integrator, RunOptions& options, double setting) {
   require_positive(setting, "work_precision: a step or tolerance");
@@ -76,8 +76,8 @@ void set_accuracy(I& integrator, RunOptions& options, double setting) {
 
 }  // namespace detail
 
-/// Runs the case that `make_case(formulation)` returns and records its output number `output`, as a reference for
-/// other integrators. The `setting` is a step [s] or a tolerance. The interpolation error between the times is about
+/// Runs the case that `make_case(formulation)` returns and records its output number `output`, as a reference for other
+/// integrators. The `setting` is a step h [s] or a tolerance. The interpolation error between recorded times is about
 /// h⁴ d⁴y/dt⁴/43, so the step must be short. An integrator with step size control uses at least 4000 steps.
 template <class C, class F>
   requires ComparisonCase<C, F>
@@ -100,11 +100,11 @@ OutputHistory reference_run(C const& make_case, F const& formulation, double set
 }
 
 /// Work-precision curve of the case that `make_case(formulation)` returns, with one run for each of the `settings`. A
-/// setting is the step [s], or the relative tolerance of an integrator with step size control. The error of output y
-/// follows from the states of the run at t_k and its end T:
+/// setting is the step [s], or the relative tolerance of an integrator with step size control. The error of the output
+/// y is computed at the times t_k of the states, or at the end time T:
 ///   max_k |y(t_k) − y_ref(t_k)|  for a function of time or a `reference_run`,   |y(T) − y_ref|  for a number.
-/// A step that fails, for example because it is too long, ends only its run; `failure` contains the message.
-/// \throws InvalidInput for settings that are not positive, no settings, and an output that does not exist.
+/// A failed step, for example one that is too long, ends its run but not the others; `failure` contains the message.
+/// \throws InvalidInput if there are no settings, if a setting is not positive, or if the output does not exist.
 template <class C, class F>
   requires ComparisonCase<C, F>
 WorkCurve work_precision(C const& make_case, F const& formulation, std::vector<double> const& settings,
@@ -134,7 +134,7 @@ WorkCurve work_precision(C const& make_case, F const& formulation, std::vector<d
       point.cpu = double(std::clock() - begin) / CLOCKS_PER_SEC;
       if (reference.only_at_end)
         compare_at(x);
-      else  // a second run: the timed run contains only steps
+      else  // errors are computed in a second run, so that the timed run contains only steps
         for (State const& now : simulate(scenario.model, again, integrator, scenario.options)) compare_at(now);
     } catch (Error const& failed) {
       point.failure = failed.what();

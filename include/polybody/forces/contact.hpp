@@ -8,14 +8,14 @@
 
 namespace polybody {
 
-/// Share of one face in a contact, near the boundary between two faces of a body. Each face contributes its share of
-/// the force and of the potential. A share that varies with the position adds the force −(∫N dd) ∂share/∂place on a
-/// and the opposite force on b.
+/// Weight of one face in a contact, near the boundary between two faces of a body. The force and the potential of a
+/// face are multiplied by its weight `share`. A weight that varies with the position adds the force −(∫N dd)
+/// ∂share/∂place on a and the opposite force on b.
 template <StateScalar T>
 struct ContactBlend {
-  T share = T(1.0);                            ///< part of the force and of the potential of this face, in [0, 1]
-  Vec<T, 3> slope = {T(0.0), T(0.0), T(0.0)};  ///< (3) ∂share/∂place [1/m]; the position moves with a
-  Vec<T, 3> place = {T(0.0), T(0.0), T(0.0)};  ///< (3) position [m]
+  T share = T(1.0);                            ///< weight of this face, in [0, 1]
+  Vec<T, 3> slope = {T(0.0), T(0.0), T(0.0)};  ///< (3) ∂share/∂place [1/m]; `place` moves with a
+  Vec<T, 3> place = {T(0.0), T(0.0), T(0.0)};  ///< (3) point of action of the added force [m]
 };
 
 /// Contact point: point in the overlap of body a and body b.
@@ -24,7 +24,7 @@ struct ContactPoint {
   Vec<T, 3> place;                ///< (3) point of action of the force, world axes [m]
   Vec<T, 3> normal;               ///< (3) unit vector from b to a
   T depth;                        ///< penetration d > 0 [m]
-  ContactBlend<T> handover = {};  ///< share of the face in the force; 1 if no other face is near
+  ContactBlend<T> handover = {};  ///< weight of the face; 1 if no other face is near
 };
 
 namespace detail {
@@ -67,7 +67,7 @@ concept ContactGeometry =
 /// than v_s.
 struct Friction {
   double coefficient = 0.0;  ///< coefficient of friction μ [1]
-  double slip_speed = 0.0;   ///< v_s [m/s], positive if μ is
+  double slip_speed = 0.0;   ///< v_s [m/s]; must be positive if μ is positive
 
   void check(std::string const& name) const {
     require_not_negative(coefficient, name, ": the coefficient of friction");
@@ -76,7 +76,7 @@ struct Friction {
 };
 
 /// Contact force between two markers: N n + F_t on a at each contact point, with the friction F_t, and the opposite
-/// force on b. The velocity of either body is evaluated at the contact point as a material point.
+/// force on b. The velocity of either body is that of its material point at the contact point.
 template <ContactGeometry G, NormalForce N = SpringDamperContact>
 struct Contact {
   using Geometry = G;  ///< type of the geometry
@@ -171,8 +171,8 @@ struct Contact {
   /// Adds the approximate stiffness Jᵀ(N′ n nᵀ + F′ (1 − n nᵀ))J of each contact point to `of_a` and `of_b`.
   /// J = [1, −ρ×] with the vector ρ from the marker to the point, and N′ is the derivative of the normal force.
   /// F′ = μ N/√(v² + v_s²) is the secant of the friction, which is never less than its derivative. Newton's method
-  /// therefore approaches v = 0 from one side and does not overshoot. The rotation of n, the change of F_t with N,
-  /// and the shares of faces are neglected.
+  /// therefore approaches v = 0 from one side and does not overshoot. The rotation of n, the change of F_t with N, and
+  /// changes of the weights of faces are neglected.
   void own_stiffness(std::array<Frame<double>, 2> const& f, double ck, double cd, Mat<double, 6, 6>& of_a,
                      Mat<double, 6, 6>& of_b) const {
     for_each_point<double>(f, [&](ContactPoint<double> const& p, Vec3 const& v, double n) {
@@ -222,8 +222,8 @@ struct Contact {
 };
 
 namespace detail {
-/// True if x and y lie outside a sphere of radius `reach` [m] about zero, and the line between them enters it by more
-/// than a twentieth of the radius.
+/// True if x and y lie outside a sphere of radius `reach` [m] about zero, and the line between them enters the sphere
+/// by more than a twentieth of the radius.
 inline bool passes_through(Vec3 const& x, Vec3 const& y, double reach) {
   Vec3 const way = y - x;
   double const length2 = way.dot(way), outside = reach * reach;
@@ -237,7 +237,7 @@ inline bool passes_through(Vec3 const& x, Vec3 const& y, double reach) {
 struct SphereOnPlane {
   static constexpr MarkerKind needs = MarkerKind::point;
   static constexpr MarkerKind needs_of_second = MarkerKind::frame;
-  Required<double> radius;  ///< [m]
+  Required<double> radius;  ///< radius of the sphere [m]
 
   void check(std::string const& name) const { require_not_negative(radius, name, ": the sphere's radius"); }
   template <class = void>  // compiled where it is used
@@ -260,8 +260,8 @@ struct SphereOnPlane {
 /// Spheres about both markers. Concentric spheres have no normal.
 struct SphereOnSphere {
   static constexpr MarkerKind needs = MarkerKind::point;
-  Required<double> radius_a;  ///< [m]
-  Required<double> radius_b;  ///< [m]
+  Required<double> radius_a;  ///< radius of the sphere about marker a [m]
+  Required<double> radius_b;  ///< radius of the sphere about marker b [m]
 
   void check(std::string const& name) const {
     require_not_negative(radius_a, name, ": the radius of the first sphere");
@@ -293,12 +293,12 @@ struct SphereOnSphere {
   }
 };
 
-/// Sphere of radius `radius` about marker a on the outside of a cylinder about the z axis of marker b. Points of a
-/// belt have the radius zero.
+/// Sphere of radius `radius` about marker a on the outside of a cylinder about the z axis of marker b. Use the radius
+/// zero for points of a belt.
 struct SphereOnCylinder {
   static constexpr MarkerKind needs = MarkerKind::point;
   static constexpr MarkerKind needs_of_second = MarkerKind::frame;
-  Required<double> radius;    ///< of the sphere [m]
+  Required<double> radius;    ///< radius of the sphere [m]
   Required<double> cylinder;  ///< radius of the cylinder [m]
 
   void check(std::string const& name) const {

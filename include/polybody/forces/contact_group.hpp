@@ -15,8 +15,8 @@ namespace polybody {
 /// and walls.
 ///   auto const track = model.apply(ContactGroup<OnRoller, OnGround>{}, links, "left track");   many markers
 ///   model.add_partner(track, on_roller, wheel.at({0, 0, 0}), "wheel 1");                            one at a time
-/// A law is a force element of two markers: the first is one of the many, the second is a partner. It is evaluated
-/// only if its `may_touch(first, second)` is true. The cost of this test should be little more than that of a
+/// A law is a force element of two markers: the first is one of the many, the second is a partner. A law is evaluated
+/// only if its `may_touch(first, second)` is true. This test should cost little more than the computation of a
 /// distance. If all laws have `reach(second)` (`HasReach`), several markers are tested at once with SIMD
 /// operations.
 template <ForceElement... Laws>
@@ -32,20 +32,20 @@ class ContactGroup {
   template <class Law>
   struct ContactPartner {
     Law law;           ///< contact law
-    Index marker;      ///< number of its marker in the group
+    Index marker;      ///< index of the partner's marker in the group
     std::string name;  ///< name of the partner in messages and results
   };
 
-  /// Sets the number `count` of the many markers, the first ones of the group; called by the model.
+  /// Sets the number `count` of the many markers, which are the first markers of the group. Called by the model.
   void set_many(Index count) { many_ = count; }
-  Index many() const { return many_; }  ///< number of the many markers, the first ones of the group
+  Index many() const { return many_; }  ///< number of the many markers
   /// Number of partners.
   Index partners() const {
     return Index(std::apply([](auto const&... few) { return (few.size() + ... + std::size_t(0)); }, few_));
   }
 
-  /// Adds a partner with the group's marker number `marker`: each of the many markers may touch it under `law`.
-  /// Messages use `name`.
+  /// Adds a partner whose marker has the index `marker` in the group. Each of the many markers can touch the partner
+  /// under `law`. Messages use `name`.
   template <class Law>
     requires(std::is_same_v<Law, Laws> || ...)
   void add_partner(Law const& law, Index marker, std::string name) {
@@ -84,8 +84,8 @@ class ContactGroup {
 
  private:
   static constexpr Index side_by_side = 32;
-  /// Positions of some of the many markers, with one bit per partner, set if the marker is within its reach. The bits
-  /// have the order of all partners.
+  /// Positions of some of the many markers, with one bit per partner for each marker. A bit is set if the marker is
+  /// within the partner's reach. The bits have the order of `for_each_partner`.
   struct Row {
     std::array<double, side_by_side> x, y, z;
     std::array<std::uint64_t, side_by_side> near;
@@ -120,7 +120,7 @@ class ContactGroup {
       bit <<= 1;
     });
   }
-  /// Visits the partners under one law that may touch marker i, and removes their bits.
+  /// Visits the partners under one law that may touch marker i, and removes the bits of these partners.
   template <class Few, class FrameOf, class Visit>
   static void visit_near(Few const& few, FrameOf& frame, Visit& visit, Index i, std::uint64_t& bits) {
     std::size_t const n = few.size();

@@ -9,7 +9,7 @@
 
 namespace polybody {
 
-/// Quadratic region of possible contact. A contact does not touch a marker at d from `origin` if
+/// Quadratic region of possible contact. A contact does not touch a marker at the vector d from `origin` if
 ///   squared |d|² + along_squared (d·axis)² + along d·axis ≥ limit.
 /// All limits include a margin for round-off.
 struct ContactReach {

@@ -12,7 +12,7 @@ namespace polybody {
 
 /// Range of a bar, measured from its first end and divided into equal pieces.
 struct BarRange {
-  Required<double> from, to;  ///< [m]
+  Required<double> from, to;  ///< start and end of the range [m]
   Required<Index> pieces;     ///< number of equal pieces, at least 1, with two point forces each
 };
 
@@ -20,7 +20,7 @@ struct BarRange {
 /// forces on each piece. The result is exact for shapes up to third order if each element has its own piece. The
 /// forces are named "`name`, point 1" and so on, or by the next unused names. The force types of the model must
 /// include `PointForce<Law>`. Returns the handles of the forces.
-/// \throws InvalidInput for a range that is empty or outside the bar, or fewer pieces than one.
+/// \throws InvalidInput for a range that is empty or outside the bar, or for less than one piece.
 template <class M, class B, TimeFunction Law = Constant>
 auto apply_distributed(M& model, BodyHandle<B> const& bar, PointForce<Law> const& per_length, BarRange const& range,
                        std::string const& name = "") {

@@ -62,9 +62,9 @@ constexpr bool tell_enough() {
   return ((Ms::observes >= (k++ == 1 ? needs_of_second<F>() : F::needs)) && ...);
 }
 
-/// Choice of the blocks that couple the bodies of a force element's markers.
-/// `static constexpr bool couples_bodies = false` omits them from the matrix of a time step, which then contains only
-/// the stiffness of each body. Contacts with many candidates use it: the sparsity pattern and the elimination order
+/// True if the matrix of a time step contains blocks that couple the bodies of a force element's markers. With the
+/// member `static constexpr bool couples_bodies = false`, the matrix contains only the stiffness of each body. Contacts
+/// with many candidates have this member: the sparsity pattern and the elimination order
 /// are then independent of the touching candidates.
 template <class F>
 constexpr bool couples_bodies() {
@@ -89,8 +89,9 @@ Dual<n> seeded(double value, int i, double slope) {
   x.d[i] = slope;
   return x;
 }
-/// Frame as a function of its pose (δr, δφ in world axes) and twist, in six directions from `first` on. The factor of
-/// the pose is ck, that of the twist cd. \param moved the frame with derivatives; zero on entry
+/// Computes the frame f with its derivatives with respect to pose (δr, δφ in world axes) and twist, in six directions
+/// from `first` on. Derivatives with respect to the pose are multiplied by ck, those with respect to the twist by cd.
+/// \param moved frame with derivatives; must be zero on entry
 template <int n>
 void seed_frame(Frame<double> const& f, int first, double ck, double cd, Frame<Dual<n>>& moved) {
   for (int i = 0; i < 3; ++i) {

@@ -28,7 +28,7 @@ struct AnyVisit {
 /// `for_each_candidate(visit)` calls visit(i, j, law) for all pairs that can ever interact.
 ///
 /// The matrix of a time step contains the blocks of each body of a pair, but not the blocks that couple the two
-/// bodies. The interacting pairs therefore change from step to step without a change of the sparsity pattern or the
+/// bodies. The interacting pairs can therefore change from step to step without a change of the sparsity pattern or the
 /// elimination order.
 template <class F>
 concept ForceGroup = requires(F const group, std::string const name) {
@@ -40,8 +40,8 @@ concept ForceGroup = requires(F const group, std::string const name) {
   group.check(name);
 };
 
-/// Group whose pairs can be visited in parts, which threads share: i is one of its first `many()` markers, j another
-/// marker.
+/// Force group whose pairs (i, j) can be visited in parts, by several threads: i is one of the first `many()` markers
+/// of the group, and j is another marker.
 template <class F>
 concept PartitionedForceGroup = ForceGroup<F> && requires(F const group) {
   { group.many() } -> std::convertible_to<Index>;

@@ -6,7 +6,7 @@
 
 namespace polybody {
 
-/// Force element at constant states z. It has no states and provides the wrenches only.
+/// Adapter of a force element with states: an element without states, which provides the wrenches at constant z.
 template <HasStates F, StateScalar T>
 struct AtStates {
   static constexpr int markers = F::markers;
@@ -25,7 +25,7 @@ struct AtStates {
 
 /// Factors of the derivatives with respect to poses, twists and states.
 struct TangentFactors {
-  double pose, twist, states;  ///< factor of each derivative; the derivative is omitted if it is zero
+  double pose, twist, states;  ///< factor of each derivative; zero omits the derivative
 };
 
 /// Tangent of wrenches and rates, in this order, with respect to the frames and the states, (6N + S)×(6N + S).

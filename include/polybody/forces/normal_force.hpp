@@ -8,7 +8,8 @@
 
 namespace polybody {
 
-/// Normal force law: force N(d, ḋ) [N], derivative ck ∂N/∂d + cd ∂N/∂ḋ, never negative, and potential ∫ N(d, 0) dd
+/// Normal force law: force N(d, ḋ) [N], derivative ck ∂N/∂d + cd ∂N/∂ḋ, which is never negative, and potential ∫ N(d,
+/// 0) dd
 /// [J].
 template <class N>
 concept NormalForce = requires(N const law, double d, double rate, std::string const name) {
@@ -38,18 +39,18 @@ double falling_root(F const& f, double from, double to) {
 }  // namespace detail
 
 /// Spring and damper, N = max(0, k d + c ḋ) [thesis §3.6]. The coefficient of restitution is independent of the
-/// impact velocity. A body with the impact velocity v meets the force c v at once. With an `onset` the damping
-/// increases over this penetration, c min(1, d/onset), and the force is continuous. Steps that are long compared with
-/// an impact require a continuous force.
+/// impact velocity. At the first contact of a body with the velocity v, the force jumps to c v. With an `onset`, the
+/// damping coefficient increases with the penetration, c min(1, d/onset), and the force is continuous. Steps that are
+/// long compared with an impact require a continuous force.
 struct SpringDamperContact {
   Required<double> stiffness;  ///< k [N/m]
   double damping = 0.0;        ///< c [N s/m]
-  double onset = 0.0;          ///< penetration of full damping [m]; 0: at once
+  double onset = 0.0;          ///< penetration from which the damping is full [m]; 0 for full damping at first contact
 
   /// Damper with a given coefficient of restitution e: a body of `mass` [kg] on a spring of `stiffness` [N/m] arrives
-  /// with the velocity v and departs with e v. With ζ = c/(2√(km)) = cos θ it departs when N = 0, after 2θ of its
-  /// damped oscillation, so that e = exp(−2θ cot θ). For ζ = cosh η > 1, e = exp(−2η coth η). [derived; Schwager &
-  /// Pöschel 2007 have the same in other words]
+  /// with the velocity v and departs with e v. With ζ = c/(2√(km)) = cos θ, the body departs when N = 0, after the
+  /// phase 2θ of its damped oscillation, so that e = exp(−2θ cot θ). For ζ = cosh η > 1, e = exp(−2η coth η). [derived;
+  /// Schwager & Pöschel 2007 give equivalent formulas]
   static SpringDamperContact with_restitution(double stiffness, double mass, double e) {
     require_positive(stiffness, "SpringDamperContact: the stiffness");
     require_positive(mass, "SpringDamperContact: the mass");
@@ -100,7 +101,7 @@ struct HertzContact {
   Required<double> modulus;  ///< E*, 1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂ [Pa]
   Required<double> radius;   ///< R, 1/R = 1/R₁ + 1/R₂ [m]
 
-  double stiffness() const { return 4.0 / 3.0 * modulus * std::sqrt(radius.value); }  ///< [N/m^(3/2)]
+  double stiffness() const { return 4.0 / 3.0 * modulus * std::sqrt(radius.value); }  ///< (4/3) E* √R [N/m^(3/2)]
 
   void check(std::string const& name) const {
     require_positive(modulus, name, ": the contact modulus");
@@ -127,10 +128,10 @@ struct HertzContact {
 /// the restitution decreases with the impact velocity.
 struct HuntCrossleyContact {
   Required<double> stiffness;  ///< K [N/mⁿ]
-  double exponent = 1.5;       ///< n, a ratio
+  double exponent = 1.5;       ///< exponent n [1]
   Required<double> damping;    ///< D [s/m]
 
-  /// Damping with a given coefficient of restitution e at the impact velocity `speed` v [m/s]: the body departs with
+  /// Contact law with the coefficient of restitution e at the impact velocity `speed` v [m/s]: the body departs with
   /// e v. The `stiffness` K [N/mⁿ] and the `exponent` n are given. The equation m v dv/dd = −K dⁿ(1 + D v) yields for
   /// any m, K and n
   ///   D v − ln(1 + D v) = −e D v − ln(1 − e D v).

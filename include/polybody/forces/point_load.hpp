@@ -36,7 +36,7 @@ struct PointForce {
   static constexpr bool is_load = true;
   static constexpr MarkerKind needs = MarkerKind::point;
 
-  Vec3 force = Vec3::Zero();        ///< (3) [N]
+  Vec3 force = Vec3::Zero();        ///< (3) force [N]
   LoadAxes axes = LoadAxes::world;  ///< axes of the components
   Law law = {};                     ///< factor as a function of time
 
@@ -64,7 +64,7 @@ struct PointMoment {
   static constexpr bool is_load = true;
   static constexpr MarkerKind needs = MarkerKind::axis;
 
-  Vec3 moment = Vec3::Zero();       ///< (3) [N m]
+  Vec3 moment = Vec3::Zero();       ///< (3) moment [N m]
   LoadAxes axes = LoadAxes::world;  ///< axes of the components
   Law law = {};                     ///< factor as a function of time
 

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Common parts of the adjoints of steps: vectors of recorded numbers, and the solution of the transposed equations.
+/// Common parts of the adjoints of time steps: vectors of tape variables, and the solution of the transposed equations.
 ///
 /// Not in polybody.hpp: few programs need derivatives of whole runs.
 
@@ -12,30 +12,31 @@
 
 namespace polybody::detail {
 
-/// Records an independent variable in `to` for each value of `from`.
+/// Sets `to` to new independent variables of the tape with the values of `from`.
 template <class = void>
 void set_variables(VecX const& from, VecXOf<ReverseVar>& to) {
   to.resize(from.size());
   for (Index i = 0; i < from.size(); ++i) to[i] = ReverseVar::variable(from[i]);
 }
-/// Before a sweep: adds the derivatives of a result by `numbers` to the tape.
+/// Adds the `derivatives` of a result with respect to `numbers` to the tape. Called before a sweep.
 template <class = void>
 void add_to_derivatives(Tape& recording, VecXOf<ReverseVar> const& numbers, VecX const& derivatives) {
   for (Index i = 0; i < derivatives.size(); ++i) recording.slope(numbers[i].number) += derivatives[i];
 }
-/// After a sweep: stores the derivatives of a result by `numbers` in `derivatives`.
+/// Copies the derivatives of a result with respect to `numbers` from the tape to `derivatives`. Called after a sweep.
 template <class = void>
 void take_derivatives(Tape& recording, VecXOf<ReverseVar> const& numbers, VecX& derivatives) {
   for (Index i = 0; i < numbers.size(); ++i) derivatives[i] = recording.slope(numbers[i].number);
 }
 
-/// Solution of Aᵀ μ = y with the factorisation of a matrix close to Aᵀ. The iteration starts from zero, since any other
-/// start costs one more product. If the first correction exceeds round-off, GMRES continues. The last computed product
-/// is Aᵀ μ of the final μ.
+/// Solution of Aᵀ μ = y with the factorisation of a matrix close to Aᵀ. The iteration starts from μ = 0, because
+/// another initial value would require one more product with Aᵀ. If the first correction exceeds round-off, GMRES
+/// continues the iteration. The last computed product is Aᵀ μ of the final μ.
 class TransposedSolution {
  public:
-  /// Returns the norm of the last computed correction relative to μ. \param product product(x) returns Aᵀ x; \param
-  /// solve solve(rhs, x) solves with the factorisation; \param most largest number of products between two corrections
+  /// Computes μ. Returns the norm of the last computed correction, relative to the norm of μ. \param product product(x)
+  /// returns Aᵀ x; \param solve solve(rhs, x) solves with the factorisation; \param most largest number of products in
+  /// one GMRES cycle
   template <class Product, class Solve>
   double solve(VecX const& y, VecX& mu, Product&& product, Solve&& solve, Index most) {
     mu.resize(y.size());
@@ -60,7 +61,7 @@ class TransposedSolution {
     }
   }
 
-  /// Number of products of the last solution.
+  /// Number of products with Aᵀ in the last solution.
   int products() const { return products_; }
 
  private:

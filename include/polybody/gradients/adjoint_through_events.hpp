@@ -1,17 +1,18 @@
 #pragma once
 /// \file
-/// Discrete adjoint of a run with breakpoints and events under the generalised-α family. The times of breakpoints and
-/// events may depend on the parameters.
+/// Discrete adjoint of a run with breakpoints and events, for integrators of the generalised-α family. The times of
+/// breakpoints and events may depend on the parameters.
 ///
-/// A step of length h starts at the time t₀. The derivatives of a result J by the state x and the time at its end are x̄
-/// and t̄, and
+/// A step has the length h and the start time t₀. With the derivatives x̄ and t̄ of a result J with respect to the
+/// state x and the time at its end,
 ///   ∂J/∂h = x̄ᵀ ∂x/∂h + t̄.
-/// If the step ends at a breakpoint or at the end of the run, at time T, then dh = dT − dt₀. If it ends at an event
-/// g = 0, then
+/// If the step ends at a breakpoint or at the end of the run, at time T, then dh = dT − dt₀. If the step ends at an
+/// event g = 0, then
 ///   dh = −(∂g/∂p dp + ∂g/∂x dx)/ġ, with the derivatives of g at fixed h.
-/// The backward sweep over such a step therefore also computes the adjoint variables of g, with ∂g/∂h = ġ. It adds
-/// −(∂J/∂h)/ġ times the adjoint variables and parameter derivatives of g to those of J: the transposed saltation
-/// relation of the discrete run. A restart is a map from the state before it; its adjoint is computed by differences.
+/// The backward sweep over such a step therefore also computes the adjoint variables of g, with ∂g/∂h = ġ. The sweep
+/// adds −(∂J/∂h)/ġ times the adjoint variables and the parameter derivatives of g to those of J. This is the transposed
+/// saltation relation of the discrete run. The adjoint of a restart is computed by differences of the map from the
+/// state before the restart to the state after it.
 ///
 /// Not in polybody.hpp: few programs need derivatives of whole runs.
 
@@ -74,16 +75,16 @@ class AdjointEventHandler {
           perturbed_.of_number(j, [](V const& v) { return double(v.scenario.options.end_time); }));
     }
   }
-  /// Derivative by parameter j of the time of x, which is the time of a breakpoint or the start.
+  /// Derivative of the time of x with respect to parameter j. This time is that of a breakpoint or of the start.
   double time_slope(std::size_t j, State const& x) const { return perturbed_.times(j).slope(x.t); }
   double target_slope(std::size_t j, StepPlan::Next const& plan) const {
     return plan.jumps ? perturbed_.times(j).slope(plan.target) : end_time_slope_[j];
   }
-  /// Derivative of the length of a planned step by parameter j. \param dt derivative of its start time
+  /// Derivative of the length of a planned step with respect to parameter j. \param dt derivative of the start time
   double length_slope(std::size_t j, StepPlan::Next const& plan, double dt) const {
     return plan.lands ? target_slope(j, plan) - dt : step_slope_[j];
   }
-  /// Derivative of a run in which only the time changes, by dt.
+  /// Sensitivity of a run in which only the time changes, with the derivative dt.
   RunSensitivity const& still(double dt) {
     still_.dt = dt;
     return still_;
@@ -97,7 +98,7 @@ class AdjointEventHandler {
         refuse_breakpoint_at_end(last.end, parameters_[j].name, "gradient");
   }
 
-  /// Converts the adjoint variables after step k, and after the restart that may follow it, to those before it.
+  /// Converts the adjoint variables after step k, and after a restart at its end, to adjoint variables before step k.
   void back(std::size_t k, State before, State const& after, RunCostate& bar) {
     RecordedStep const& s = run_.steps()[k];
     bool const last = k + 1 == run_.steps().size(), from_breakpoint = run_.begins_at_breakpoint(k);
@@ -125,21 +126,22 @@ class AdjointEventHandler {
     out_.value += add_term(integrand, before, {half + joined, from_breakpoint}, bar);
     if (from_breakpoint) spread_time(before.t, bar);
   }
-  /// Adds ∂J/∂h of a step, `of_length`, to the derivatives by the parameters and by the start time of the step.
+  /// Adds the effect of ∂J/∂h of a step, `of_length`, to the derivatives with respect to the parameters and to the
+  /// start time of the step.
   void spread_length(StepPlan::Next const& plan, double of_length, RunCostate& bar) {
     for (std::size_t j = 0; j < parameters_.size(); ++j)
       out_.derivatives[Index(j)] += of_length * length_slope(j, plan, 0.0);
     if (plan.lands) bar.t -= of_length;
   }
-  /// Adds the effect of the time t of a breakpoint to the derivatives by the parameters.
+  /// Adds the effect of the time t of a breakpoint to the derivatives with respect to the parameters.
   void spread_time(double t, RunCostate& bar) {
     for (std::size_t j = 0; j < parameters_.size(); ++j)
       out_.derivatives[Index(j)] += bar.t * perturbed_.times(j).slope(t);
     bar.t = 0.0;
   }
 
-  /// Converts the adjoint variables at the end x of step k to those before it, at fixed length, and adds the effect of
-  /// the parameters to `derivatives`. Returns the derivative by the length of the step.
+  /// Converts the adjoint variables at the end x of step k to adjoint variables before the step, at fixed step length.
+  /// Adds the effect of the parameters to `derivatives`. Returns the derivative of J with respect to the step length.
   double backward_step(std::size_t k, State& before, State const& x, RunCostate& bar, VecX& derivatives) {
     RecordedStep const& s = run_.steps()[k];
     V& spare = perturbed_.itself();
@@ -195,7 +197,8 @@ class AdjointEventHandler {
     out_.derivatives -= of_length / rate * derivatives;
   }
 
-  /// Converts the adjoint variables `bar` of the state `after` a restart to those of the state x before it.
+  /// Converts the adjoint variables `bar` of the state `after` a restart to adjoint variables of the state x before the
+  /// restart.
   void pull_beginning(RecordedStep const& s, State& x, State const& after, RunCostate& bar) {
     double const before_it = x.t, h = s.next.h;
     x.t = s.end;  // at a breakpoint: the time after it
@@ -232,7 +235,8 @@ class AdjointEventHandler {
     double by;
     bool at_breakpoint;  // the time of the state is that of a breakpoint
   };
-  /// Adds a term of the objective function at x. Returns its part of J. \param pick selects the term of a scenario
+  /// Adds the derivatives of one term of the objective function at x. Returns the contribution of this term to J.
+  /// \param pick returns the term of a scenario
   template <class Pick>
   double add_term(Pick const& pick, State const& x, Weight weight, RunCostate& bar) {
     if constexpr (std::same_as<std::remove_cvref_t<decltype(pick(full_.scenario))>, NoTerm>) {
@@ -249,7 +253,7 @@ class AdjointEventHandler {
   double rate_of_integral(State const& x) {
     return term(full_.scenario.integrand, full_.scenario.model, full_.full_state(x));
   }
-  /// Adds the derivatives of value(model, state) at x by the parameters and by the time.
+  /// Adds the derivatives of value(model, state) at x with respect to the parameters and to the time.
   template <class F>
   void add_derivatives_of_value(F const& value, State const& x, Weight weight, RunCostate& bar, VecX& derivatives) {
     auto const values = [&](V& v, State const& y) { return VecX::Constant(1, value(v, y)).eval(); };
@@ -278,8 +282,8 @@ class AdjointEventHandler {
   GradientResult out_;
 };
 
-/// Returns true if the start time, the end time or the step length of a run depends on a parameter. \param chooses the
-/// method chooses the step length itself
+/// Returns true if the start time, the end time or the step length of a run depends on a parameter. \param chooses true
+/// if the integrator chooses the step length
 template <class Make, class S>
 bool has_moving_times(Make const& make, std::vector<Parameter> const& parameters, S const& scenario,
                       bool chooses = false) {
@@ -293,7 +297,8 @@ bool has_moving_times(Make const& make, std::vector<Parameter> const& parameters
   }
   return false;
 }
-/// Returns true if events or breakpoints may end steps of a run. \param breakpoints their times, unordered [s]
+/// Returns true if events or breakpoints may end steps of a run. \param breakpoints times of the breakpoints, unordered
+/// [s]
 template <class S>
 bool is_interrupted(S const& scenario, std::vector<double> const& breakpoints) {
   RunOptions const& o = scenario.options;

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Equations of a step that depend on a parameter, by names of bodies, joints and forces.
+/// Equations of a time step that depend on a parameter, found from the names of objects in `Parameter::affects`.
 ///
 /// Not in polybody.hpp: few programs need derivatives of whole runs.
 
@@ -13,8 +13,9 @@
 
 namespace polybody::detail {
 
-/// Marks the equations of the full model that depend on a parameter: balance equations by velocities, then constraint
-/// equations. \throws InvalidInput for a name that the model does not have.
+/// Flags of the equations of the full model: nonzero if an equation depends on the parameter. Equations of motion, in
+/// the order of the velocities, precede constraint equations. \throws InvalidInput if the model does not have an object
+/// in `affects`.
 template <class = void>
 std::vector<char> affected_in_full(ModelLayout const& layout, Parameter const& p) {
   std::vector<char> affected(std::size_t(layout.velocities + layout.rows), p.affects.empty());
@@ -52,10 +53,10 @@ std::vector<char> affected_in_full(ModelLayout const& layout, Parameter const& p
   }
   return affected;
 }
-/// Marks the equations of a time step, from the marked equations of the full model. Forces on eliminated coordinates
-/// act on the independent coordinates. If an eliminated joint depends on the parameter, its elimination may change, and
-/// all equations are marked. In joint coordinates the assignment depends on the configuration, and all equations are
-/// marked.
+/// Flags of the equations of a time step, from the flags `full` of the full model. Forces on eliminated coordinates act
+/// on the independent coordinates. If an eliminated joint depends on the parameter, all equations are flagged, because
+/// the elimination may change. With joint coordinates all equations are flagged, because the assignment of full to
+/// reduced equations depends on the configuration.
 template <class = void>
 std::vector<char> affected_in_step(System const& system, std::vector<char> const& full) {
   Coordinates const& c = system.step_coordinates();
@@ -81,8 +82,8 @@ std::vector<char> affected_in_step(System const& system, std::vector<char> const
   }
   return affected;
 }
-/// Numbers of the equations of a step that depend on a parameter, ascending: balance equations by velocities, then
-/// constraint equations. \throws InvalidInput for a name that the model does not have.
+/// Indices of the equations of a step that depend on a parameter, ascending. Equations of motion, in the order of the
+/// velocities, precede constraint equations. \throws InvalidInput if the model does not have an object in `affects`.
 template <class = void>
 std::vector<Index> affected_equations(System const& system, Parameter const& p) {
   std::vector<char> const affected = affected_in_step(system, affected_in_full(system.layout(), p));
@@ -92,8 +93,8 @@ std::vector<Index> affected_equations(System const& system, Parameter const& p) 
   return equations;
 }
 
-/// Objects that act on equation i of a step and that the parameter does not name, for a message: `body "rod", force
-/// "spring"`, five at most.
+/// List for a message: at most five objects that act on equation i of a step and that `affects` does not contain, for
+/// example `body "rod", force "spring"`.
 template <class = void>
 [[gnu::cold]] std::string unnamed_at(System const& system, Parameter const& p, Index i) {
   std::string list;
@@ -110,13 +111,14 @@ template <class = void>
   return count > 5 ? sentence_of({list, " and ", count - 5, " more"}) : list;
 }
 
-/// \throws InvalidInput: parameter p changes equation i at time t [s], but names no object that acts there.
+/// \throws InvalidInput always: parameter p changes equation i at time t [s], but its `affects` contains no object that
+/// acts on this equation.
 template <class = void>
 [[noreturn, gnu::cold]] void refuse_unnamed(System const& system, Parameter const& p, Index i, double t) {
   throw InvalidInput(
       "parameter.affects",
       {"Parameter \"", ErrorObject{p.name}, "\" changes the equations of ", system.name_of(i), " at t = ", ErrorTime{t},
-       " s, but its `affects` contains no object that acts there. Add the object that depends on it (",
+       " s, but its `affects` contains no object that acts there. Add the object that depends on the parameter (",
        unnamed_at(system, p, i), "), or leave `affects` empty."});
 }
 

@@ -3,12 +3,12 @@
 /// Exact tangent-linear form of a converged step of the generalised-α family (integrators/alpha_method.hpp), with all
 /// terms that the matrix of Newton's method omits.
 ///
-/// The changes of q₀, v₀, v̇₀, a₀ and of the equations by a parameter are given. With y = (δa₁, δλ₁), the changes of
-/// q₁, v₁, v̇₁ follow from the formulas of the step, and the equations
+/// Inputs are the changes of q₀, v₀, v̇₀ and the algorithmic accelerations a₀, and the change of the equations with a
+/// parameter. With y = (δa₁, δλ₁), the changes of q₁, v₁, v̇₁ follow from the formulas of the step, and the equations
 ///   δ[M v̇₁ − f₁ + G₁ᵀλ₁] = 0,  δΦ(q₁)/βh² = 0  (nonholonomic: δΦ̇/γh = 0)
-/// are linear in y. Their left-hand sides are evaluated with dual numbers, so that they contain all terms, among them
-/// the derivative of ⊞ and ∂(Gᵀλ)/∂q. They are solved by iterative refinement with an approximate factorisation
-/// (`StepFactorisations`). The iteration ends if the last correction, or an estimate of the next one
+/// are linear in y. Their left-hand sides are evaluated with dual numbers and therefore contain all terms, among them
+/// the derivative of ⊞ and ∂(Gᵀλ)/∂q. The equations are solved by iterative refinement with an approximate
+/// factorisation (`StepFactorisations`). The iteration ends if the last correction, or an estimate of the next one
 /// (`CorrectionErrorEstimate`), is at the level of round-off.
 ///
 /// Not in polybody.hpp: few programs need derivatives of whole runs.
@@ -21,13 +21,14 @@
 
 namespace polybody {
 
-/// Derivatives of converged steps of a method, one step after the other.
+/// Derivatives of successive, converged steps of a method of the generalised-α family.
 template <LinearSolver Solver = DefaultSolver>
 class AlphaLinearisedStep {
  public:
-  using Factors = typename StepFactorisations<Solver, Derivative::direct>::OfStep;  ///< of the tangent of a step
-  /// Number of directions in one evaluation of the equations; each is a partial derivative of the dual numbers. With
-  /// eight directions, the intermediate results between joints and bodies exceed the cache.
+  /// Factorisation of the tangent of a step.
+  using Factors = typename StepFactorisations<Solver, Derivative::direct>::OfStep;
+  /// Largest number of directions in one evaluation of the equations, equal to the number of partial derivatives in a
+  /// dual number. With eight directions, the intermediate results between joints and bodies would exceed the cache.
   static constexpr int max_directions = 4;
 
   /// The model must outlive this object.
@@ -48,9 +49,9 @@ class AlphaLinearisedStep {
     probe_ = CorrectionErrorEstimate(nv, rows);
   }
 
-  /// Sets the step to be differentiated. \param near approximate factorisation of its tangent, such as that of the step
-  /// itself, or none. It or a factorisation at the end of the step is used, according to the measured costs. \throws
-  /// SingularMatrix in a singular configuration.
+  /// Sets the step to be differentiated. \param near approximate factorisation of its tangent, for example from the
+  /// solution of the step; may be null. Either `near` or a factorisation at the end of the step is used, according to
+  /// the measured costs. \throws SingularMatrix in a singular configuration.
   void set(StepEnds const& step, Factors* near = nullptr) {
     probe_.fade();
     factors_.set(step, near);
@@ -67,11 +68,11 @@ class AlphaLinearisedStep {
     size_of_lambda_ = after.lambda.head(lambda_.size()).norm();
   }
 
-  /// Replaces the derivatives of the state before the step, along up to `max_directions` directions, by those of the
-  /// state after it. A free lane can evaluate the probe of the error estimate. Returns an upper estimate of the next
-  /// correction. It is relative to the derivatives of a and λ, or to a and λ divided by the parameter's scale if these
-  /// are larger.
-  /// \throws SingularMatrix as `set`.
+  /// Replaces derivatives of the state before the step, along up to `max_directions` directions, by derivatives of the
+  /// state after the step. An unused lane of the dual numbers may evaluate the probe of the error estimate. Returns an
+  /// upper estimate of the next correction. The estimate is relative to the derivatives of a and λ, or to a and λ
+  /// divided by the parameter's scale if these are larger.
+  /// \throws SingularMatrix in a singular configuration.
   double advance(StepEnds const& step, std::span<StepDirection const> directions) {
     std::size_t const n = directions.size();
     bool const far = passes_ > 2, probes = n < std::size_t(max_directions) && !probe_.known() && probe_.draw(y_[n]);
@@ -100,7 +101,7 @@ class AlphaLinearisedStep {
   using Dots = VecXOf<D>;
   using Partials = typename D::Partials;
   static constexpr int most_passes = 30;
-  static constexpr double slow = 0.1;  // contraction rate above which the closest factorisation is used
+  static constexpr double slow = 0.1;  // contraction rate above which the most accurate factorisation is used
 
   static std::vector<PreconditionerChoice::Candidate> candidates() {
     return {{ApproximateFactors::of_step, 0.0},
@@ -109,7 +110,8 @@ class AlphaLinearisedStep {
             {ApproximateFactors::turned, 2.5}};
   }
 
-  /// Vectors of all directions, read one entry of each at a time. A missing direction is replaced by the probe.
+  /// Vectors of all directions; operator[](i) returns entry i of each. The vector of the probe replaces missing
+  /// directions.
   struct Side {
     std::array<double const*, std::size_t(max_directions)> of;
     Partials operator[](Index i) const {
@@ -125,12 +127,13 @@ class AlphaLinearisedStep {
     return out;
   }
 
-  /// Direction of lane l. A lane without one has a direction in which only y changes, for the probe.
+  /// Direction of lane l of the dual numbers. In a lane without a direction only y changes, for the probe.
   StepDirection const& along(std::span<StepDirection const> directions, std::size_t l) const {
     return l < directions.size() ? directions[l] : at_rest_;
   }
 
-  /// Initial values for the changes of a₁ and λ₁: those of the step before, or if `far` their extrapolation.
+  /// Sets y to initial values of the changes of a₁ and λ₁: the changes in the previous step, or if `far` their
+  /// extrapolation.
   void guess(StepEnds const& step, StepDirection const& along, bool far, VecX& y) {
     AlphaMethod const& m = method_;
     State& dx = *along.dx;
@@ -144,7 +147,7 @@ class AlphaLinearisedStep {
     y.tail(rows) = multipliers_.head(rows);
   }
 
-  /// Computes the changes of δ, v₁, v̇₁ and λ₁ from the y of each direction.
+  /// Computes the changes of δ, v₁, v̇₁ and λ₁ from the unknowns y of each direction.
   void find_end(StepEnds const& step, std::span<StepDirection const> directions) {
     AlphaMethod const& m = method_;
     std::size_t const n = directions.size();
@@ -221,7 +224,8 @@ class AlphaLinearisedStep {
     if (phi_.size() > 0) dual_.violation(phi_);
     if (!dual_.nonholonomic_equations().empty()) dual_.violation_rate(rate_);
   }
-  /// Computes −δ[M v̇ − f + Gᵀλ] and −δΦ/βh² (nonholonomic: −δΦ̇/γh) of each direction, with the effect of its parameter.
+  /// Computes −δ[M v̇ − f + Gᵀλ] and −δΦ/βh² (nonholonomic: −δΦ̇/γh) of each direction, including the effect of its
+  /// parameter.
   void right_hand_sides(StepEnds const& step, std::span<StepDirection const> directions) {
     double const of_position = -1.0 / (method_.beta * step.h * step.h), of_velocity = -1.0 / (method_.gamma * step.h);
     Index const nv = r_.size();
@@ -234,7 +238,7 @@ class AlphaLinearisedStep {
         rhs_[l][nv + i] = of_velocity * (rate_[i].d[Index(l)] + of.rows[i]);
     }
   }
-  /// Applies the correction of y to the end of the step.
+  /// Adds the effect of the correction of y to the derivatives at the end of the step.
   void apply(double h, std::size_t count) {
     double const of_a = method_.mass(), of_v = method_.gamma * h, of_delta = method_.beta * h * h;
     Side const by = side(count, [&](std::size_t l) -> VecX const& { return correction_[l]; });
@@ -247,7 +251,7 @@ class AlphaLinearisedStep {
     for (Index i = 0; i < lambda_.size(); ++i) lambda_[i].d += by[a_.size() + i];
   }
 
-  /// Replaces the derivatives of the state before the step by those of the state after it.
+  /// Replaces the derivatives of the state before the step by derivatives of the state after the step.
   void take_end(StepEnds const& step, std::span<StepDirection const> directions) {
     Index const nv = a_.size();
     for (std::size_t l = 0; l < directions.size(); ++l) {
@@ -272,7 +276,7 @@ class AlphaLinearisedStep {
   CorrectionErrorEstimate probe_;
   State still_;            // zero change of the state before a step
   StepDirection at_rest_;  // direction in which only y changes
-  int passes_ = 1;         // evaluations for the last directions
+  int passes_ = 1;         // number of evaluations for the last group of directions
   double size_of_a_ = 0.0, size_of_lambda_ = 0.0;
   Dots from_, delta_, q_, v_, a_, lambda_, r_, phi_, rate_;
   std::array<VecX, std::size_t(max_directions)> y_, rhs_, correction_;  // y: changes of a₁ and λ₁, of each direction

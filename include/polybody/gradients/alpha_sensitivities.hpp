@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Propagation of forward sensitivities over the steps of the generalised-α family.
+/// Propagation of forward sensitivities over the steps of integrators of the generalised-α family.
 ///
 /// Not in polybody.hpp: few programs need derivatives of whole runs.
 
@@ -17,12 +17,12 @@ class AlphaSensitivities {
   using V = PerturbedModel<S, I>;
   using Variants = PerturbedModels<V>;
 
-  /// For the steps of `full`, which must outlive this object.
+  /// \param full model of the run; must outlive this object
   [[gnu::cold]] explicit AlphaSensitivities(V& full)
       : full_(&full), slope_(full.scenario.model, full.system, full.method) {}
 
-  /// Replaces the sensitivities of `columns` by those at the end of a step. Returns an upper estimate of the next
-  /// relative correction.
+  /// Replaces the sensitivities in `columns` before a step by sensitivities at its end. Returns an upper estimate of
+  /// the next relative correction.
   double advance(SensitivityStep const& step, std::span<TangentColumn const> columns, Variants& perturbed) {
     auto const& [before, after, h, searched] = step;
     V& spare = perturbed.itself();
@@ -57,7 +57,8 @@ class AlphaSensitivities {
   }
 
  private:
-  /// Adds the derivative of the correction of velocities and algorithmic accelerations at the start of a step from x.
+  /// Adds the derivative of the start correction, which changes velocities and algorithmic accelerations before a step
+  /// from x.
   static void start_step(State const& x, double h, TangentColumn const& column, bool corrects, Variants& perturbed) {
     RunSensitivity& tangent = *column.tangent;
     double const shifted = x.history[x.history.size() - 1];

@@ -1,11 +1,12 @@
 #pragma once
 /// \file
-/// Adjoint of a converged step of the generalised-α family: converts the derivatives of a result J of a run by the
-/// state after a step to those by the state before it. The tangent-linear form is in
-/// gradients/alpha_linearised_step.hpp.
+/// Adjoint of a converged step of the generalised-α family: converts derivatives of a result J of a run with respect to
+/// the state after a step to derivatives with respect to the state before it. gradients/alpha_linearised_step.hpp
+/// contains the tangent-linear form.
 ///
-/// With y = (a₁, λ₁), q₁ = q₀ ⊞ δ(y), v₁(y), v̇₁(y) by the formulas of the step, and its equations R(y; x₀, p) = 0,
-///   ȳ = ∂J/∂y by x̄₁ and these formulas,   (∂R/∂y)ᵀ μ = ȳ,
+/// With the algorithmic accelerations a and y = (a₁, λ₁), the formulas of the step give q₁ = q₀ ⊞ δ(y), v₁(y) and
+/// v̇₁(y). With the equations R(y; x₀, p) = 0 of the step,
+///   ȳ = ∂J/∂y from x̄₁ and these formulas,   (∂R/∂y)ᵀ μ = ȳ,
 ///   x̄₀ = (∂x₁/∂x₀)ᵀ x̄₁ − (∂R/∂x₀)ᵀ μ,   dJ/dp −= μᵀ ∂R/∂p  [Cao, Li, Petzold & Serban 2003, discrete].
 /// Products with transposed derivatives are computed from one tape of the residual, so that they contain all terms. The
 /// equations for μ are solved with a factorisation of the transposed tangent at the end of the step and corrected down
@@ -18,7 +19,8 @@
 
 namespace polybody {
 
-/// Adjoint variables: derivatives of a result J of a run by the stored numbers of a state, not by increments.
+/// Adjoint variables: derivatives of a result J of a run with respect to the stored numbers of a state, not to
+/// increments.
 struct Costate {
   VecX q;       ///< (nq) ∂J/∂q
   VecX v;       ///< (nv) ∂J/∂v
@@ -26,7 +28,8 @@ struct Costate {
   VecX lambda;  ///< (rows) ∂J/∂λ
   VecX own;     ///< (nv) ∂J/∂a, with the algorithmic accelerations a
 
-  /// Zeros: the result does not depend on the state. \param x state with the same sizes
+  /// Sets all adjoint variables to zero, for a result that does not depend on the state. \param x state with the same
+  /// sizes
   [[gnu::cold]] explicit Costate(State const& x)
       : q(VecX::Zero(x.q.size())), v(VecX::Zero(x.v.size())), a(v), lambda(VecX::Zero(x.lambda.size())), own(v) {}
 
@@ -37,7 +40,7 @@ struct Costate {
   }
 };
 
-/// Adjoints of converged steps of a method, from the last step to the first.
+/// Adjoints of converged steps of a method of the generalised-α family, from the last step to the first.
 template <LinearSolver Solver = DefaultSolver>
 class AlphaStepAdjoint {
  public:
@@ -57,9 +60,10 @@ class AlphaStepAdjoint {
     of_lambda_ = VecX::Zero(rows);
   }
 
-  /// Converts the adjoint variables of the state after the step to those of the state before it. Returns the last
-  /// correction of μ, relative to μ. \param mu (nv + rows) derivatives of J, with opposite sign, by additions to
-  /// M v̇ − f + Gᵀλ and to Φ (nonholonomic: Φ̇). \throws SingularMatrix in a singular configuration.
+  /// Converts, in place, the adjoint variables of the state after the step to adjoint variables of the state before it.
+  /// Returns the norm of the last correction of μ, relative to μ. \param mu (nv + rows) negative derivatives of J with
+  /// respect to terms added to M v̇ − f + Gᵀλ and to Φ (nonholonomic: Φ̇). \throws SingularMatrix in a singular
+  /// configuration.
   double backward_step(StepEnds const& step, Costate& x, VecX& mu) {
     record(step);
     factors_.set(step);
@@ -95,7 +99,8 @@ class AlphaStepAdjoint {
     return left;
   }
 
-  /// ∂J/∂h with the length h of the step in the last `backward_step`, at fixed times in the equations [J's unit/s].
+  /// Derivative of J with respect to the length of the step in the last `backward_step`, at fixed times in the
+  /// equations [J's unit/s].
   double step_length_derivative() const { return by_length_; }
 
  private:

@@ -32,8 +32,8 @@ class AlphaBackwardSweep {
   static bool asks_for_equal_steps(V const& v) { return v.method.start_correction; }
   static StepReport step(V& v, State& x, double h) { return v.step(x, h); }
 
-  /// Converts the adjoint variables after a step to those before it, and adds the effect of the parameters to
-  /// `derivatives`. Returns the last relative correction.
+  /// Converts the adjoint variables after a step to adjoint variables before the step, and adds the effect of the
+  /// parameters to `derivatives`. Returns the relative size of the last correction.
   double backward_step(StepTaken const& step, Costate& bar, EquationDerivatives<V>& equations, VecX& derivatives) {
     Index const nv = step.before.v.size();
     VecX const own_before = step.before.history.head(nv), own_after = step.after.history.head(nv);

@@ -18,12 +18,13 @@ namespace polybody {
 
 /// Cost of the backward sweep over a run.
 struct CheckpointingReport {
-  std::size_t steps = 0;      ///< steps of the run in the backward sweep
-  std::size_t taken = 0;      ///< computed steps; each step is computed at least once
+  std::size_t steps = 0;      ///< number of steps of the run
+  std::size_t taken = 0;      ///< number of computed steps, including repetitions; at least `steps`
   std::size_t snapshots = 0;  ///< largest number of states stored at the same time
 };
 
-/// C(s + r, s) with s = `snapshots` and r = `times`; from 1e15 on the largest number of the type.
+/// Largest number of steps C(s + r, s) in a backward sweep with s = `snapshots` and at most r = `times` computations of
+/// each step. From 1e15 on, the largest `std::size_t` is returned.
 inline std::size_t binomial_steps(std::size_t snapshots, std::size_t times) {
   double count = 1.0;
   for (std::size_t k = 1; k <= std::min(snapshots, times); ++k) count *= double(snapshots + times - k + 1) / double(k);
@@ -31,7 +32,7 @@ inline std::size_t binomial_steps(std::size_t snapshots, std::size_t times) {
 }
 
 /// Optimal number of steps from one snapshot to the next. \param steps number of steps after the snapshot; \param
-/// snapshots number of snapshots for these steps, the first one included: at least two
+/// snapshots number of snapshots for these steps, including the first one; at least two
 inline std::size_t next_checkpoint(std::size_t steps, std::size_t snapshots) {
   std::size_t times = 1;
   while (binomial_steps(snapshots, times) < steps) ++times;
@@ -57,7 +58,7 @@ CheckpointingReport reverse_steps(X const& first, std::size_t steps, std::size_t
     for (std::size_t k = from; k < to; ++k, ++report.taken) take(k, x);
   };
   bool at_end = false;
-  X before = first, after = first;  // of the last step that remains
+  X before = first, after = first;  // states of the last remaining step
   for (std::size_t end = steps; end > 0;) {
     report.snapshots = std::max(report.snapshots, count);
     Kept& last = kept[count - 1];

@@ -1,13 +1,13 @@
 #pragma once
 /// \file
-/// Error estimate of a correction by an approximate factorisation, without another evaluation of the equations.
+/// Error estimate of a correction with an approximate factorisation, without another evaluation of the equations.
 ///
 /// With a factorisation F of a matrix close to the derivative K of a step, the error after a correction c is E c, with
-/// E = 1 − F⁻¹K. A probe z = w ∘ ξ has weights w and independent ξ of variance 1/3. It is evaluated together with the
-/// directions, and F⁻¹K z gives E z. The mean of |E z|² is Σ E_ij² w_j²/3 [Hutchinson, Commun. Statist. Simul. 18,
-/// 1989]. If |c_j| ≤ κ w_j for all n unknowns, Cauchy's inequality gives |E c| ≤ κ √(3 n mean |E z|²). One probe
-/// replaces the mean. The weights are recent sizes of the unknowns, so that a probe hardly changes unknowns that the
-/// directions do not change: a planar motion remains planar.
+/// E = 1 − F⁻¹K. A probe z = w ∘ ξ has weights w and independent ξ of variance 1/3. The probe is evaluated together
+/// with the directions of differentiation, and E z = z − F⁻¹K z. The mean of |E z|² is Σ E_ij² w_j²/3 [Hutchinson,
+/// Commun. Statist. Simul. 18, 1989]. If |c_j| ≤ κ w_j for all n unknowns, Cauchy's inequality gives |E c| ≤ κ √(3 n
+/// mean |E z|²). The value of one probe replaces the mean. The weights are recent sizes of the unknowns, so that a
+/// probe hardly changes unknowns that the directions do not change: a planar motion remains planar.
 ///
 /// Not in polybody.hpp: few programs need derivatives of whole runs.
 
@@ -22,10 +22,10 @@ namespace polybody {
 /// parameters.
 class CorrectionErrorEstimate {
  public:
-  /// Norms of the two parts of a change.
+  /// Norms of the two parts of a change of the unknowns.
   struct Parts {
-    double a = 0.0;       ///< of accelerations [m/s²], [rad/s²]
-    double lambda = 0.0;  ///< of multipliers [N], [N m]
+    double a = 0.0;       ///< norm of the change of accelerations [m/s²], [rad/s²]
+    double lambda = 0.0;  ///< norm of the change of multipliers [N], [N m]
   };
 
   /// \param nv number of generalised velocities; \param rows number of constraint equations with multipliers
@@ -41,9 +41,10 @@ class CorrectionErrorEstimate {
   void forget() { known_ = false; }
   /// Returns true if an estimate exists.
   bool known() const { return known_; }
-  /// Increases the weights to the changes y (nv + rows) of a direction; `scale` is the size of its parameter.
+  /// Increases the weights to at least `scale` |y|, with the changes y (nv + rows) in a direction and the size `scale`
+  /// of its parameter.
   void add(VecX const& y, double scale) { weights_ = weights_.cwiseMax(scale * y.cwiseAbs()); }
-  /// Draws a probe z (nv + rows). Returns false if there are no weights yet.
+  /// Draws a random probe z (nv + rows). Returns false if all weights are zero.
   bool draw(VecX& z) {
     double const least = 1e-14 * weights_.maxCoeff();
     if (!(least > 0.0)) return false;
@@ -54,7 +55,7 @@ class CorrectionErrorEstimate {
     }
     return true;
   }
-  /// Computes the estimate from a probe. \param left (nv + rows) E z
+  /// Computes the estimate from a probe z. \param left (nv + rows) error E z
   void measure(VecX const& left) {
     double const by = std::sqrt(3.0 * double(left.size()));
     leaves_ = {by * left.head(nv_).norm(), by * left.tail(left.size() - nv_).norm()};

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// Derivatives of the equations of a step by parameters at fixed unknowns, ∂r/∂p and ∂Φ/∂p, by differences of perturbed
-/// models. Parameters that affect no common equation share these models, as columns of a sparse Jacobian share one
-/// difference [Curtis, Powell & Reid 1974].
+/// Derivatives of the equations of motion r and the constraint equations Φ of a step with respect to parameters, at
+/// fixed unknowns, by differences of perturbed models. Parameters that affect no common equation are perturbed in the
+/// same models, as columns of a sparse Jacobian are in one difference [Curtis, Powell & Reid 1974].
 ///
 /// Not in polybody.hpp: few programs need derivatives of whole runs.
 
@@ -17,13 +17,13 @@
 
 namespace polybody::detail {
 
-/// Differences of the equations by all parameters. The differences also reveal equations that a parameter changes
-/// although `Parameter::affects` does not name their objects (gradients/shared_equations.hpp). \tparam V PerturbedModel
-/// or PerturbedStageModel
+/// Derivatives ∂r/∂p and ∂Φ/∂p of the equations of a step with respect to all parameters, by differences. The
+/// differences also reveal equations that a parameter changes although `Parameter::affects` does not name their objects
+/// (gradients/shared_equations.hpp). \tparam V PerturbedModel or PerturbedStageModel
 template <class V>
 class EquationDerivatives {
  public:
-  /// In place of the number of a parameter: no parameter is perturbed.
+  /// Value of a parameter number that means: no parameter is perturbed.
   static constexpr std::size_t nobody = std::size_t(-1);
   /// Returns the model at difference point k of parameter j, or with j = `nobody` the unperturbed model.
   using Models = std::function<std::shared_ptr<V>(std::size_t j, std::size_t k)>;
@@ -39,7 +39,7 @@ class EquationDerivatives {
       return std::make_shared<V>(make(p), method);
     };
   }
-  /// Forms the same groups with existing models. \param alone returns the models in which one parameter is perturbed
+  /// Overload with existing models. \param alone returns the models in which one parameter is perturbed
   template <class Make>
   [[gnu::cold]] EquationDerivatives(Make const& make, std::vector<Parameter> const& parameters, V const& model,
                                     Models alone)
@@ -79,20 +79,21 @@ class EquationDerivatives {
   /// Number of groups; each group needs four evaluations of the equations.
   std::size_t groups() const { return groups_.size(); }
 
-  /// Discards the stored differences. Call it before another step.
+  /// Discards the stored differences. Call this function before another step.
   void forget() {
     for (Group& group : groups_) group.known = 0;
   }
-  /// Computes the differences at x, a state or an evaluation point, for `dot` and `take_from`. \throws InvalidInput as
-  /// `get`.
+  /// Computes the differences at x, a state or an evaluation point, for `dot` and `take_from`. \throws InvalidInput if
+  /// a parameter changes an equation of objects outside its `affects`.
   template <class Place>
   void evaluate(Place const& x) {
     forget();
     for (Group& group : groups_) evaluate(group, x, 0);
   }
-  /// Stores ∂r/∂p and ∂Φ/∂p of parameter j at x in `out`, which has their sizes. x is evaluation point `number` of a
-  /// step. The first call for a group evaluates its differences, in the order of the points. \throws InvalidInput if a
-  /// parameter of the group changes an equation of objects that it does not name.
+  /// Stores ∂r/∂p and ∂Φ/∂p of parameter j at x in `out`; its vectors must have the sizes (nv) and (rows). x is
+  /// evaluation point `number` of a step; points are visited in ascending order. The first call at a point evaluates
+  /// the differences of all parameters of a group. \throws InvalidInput if a parameter of the group changes an equation
+  /// of objects outside its `affects`.
   template <class X>
   void get(std::size_t j, X const& x, std::size_t number, EquationDerivative& out) {
     Place const& place = places_[j];
@@ -105,20 +106,20 @@ class EquationDerivatives {
     for (Index const i : place.equations)
       (i < velocities ? out.balance[i] : out.rows[i - velocities]) = difference[i] / place.distance;
   }
-  /// μᵀ ∂r/∂p of parameter j. \param mu (nv + rows) for the equations of motion, then for the constraints
+  /// Product μᵀ ∂(r, Φ)/∂p for parameter j. \param mu (nv + rows) μ of the equations of motion, then of the constraints
   double dot(std::size_t j, VecX const& mu) const {
     double sum = 0.0;
     VecX const& difference = groups_[places_[j].group].differences.front();
     for (Index const i : places_[j].equations) sum += mu[i] * difference[i];
     return sum / places_[j].distance;
   }
-  /// Subtracts μᵀ ∂r/∂p of each parameter from its derivative.
+  /// Subtracts μᵀ ∂(r, Φ)/∂p of each parameter from its entry of `derivatives`.
   void take_from(VecX& derivatives, VecX const& mu) const {
     for (std::size_t j = 0; j < places_.size(); ++j) derivatives[Index(j)] -= dot(j, mu);
   }
 
-  /// \throws InvalidInput if parameter j changes an equation of objects at x that it does not name, by more than
-  /// round-off. \param other model with another value of parameter j
+  /// Checks that parameter j changes, at x, only equations of objects in its `affects`, apart from round-off.
+  /// \param other model with another value of parameter j. \throws InvalidInput otherwise.
   template <class X>
   void require_named(std::size_t j, V& model, V& other, X const& x) const {
     Parameter const& p = parameters_[j];
@@ -130,7 +131,7 @@ class EquationDerivatives {
       return i < velocities ? std::abs(there.balance[i] - here.balance[i])
                             : std::abs(there.rows[i - velocities] - here.rows[i - velocities]);
     };
-    double most[2] = {1e-11 * force, 1e-13};  // limits for balance and rows: round-off, or a part of the named changes
+    double most[2] = {1e-11 * force, 1e-13};  // limits for balance and rows: round-off, or 1e-7 of expected changes
     std::vector<char> affected(std::size_t(model.system.size()), 0);
     for (Index const i : places_[j].equations) {
       affected[std::size_t(i)] = 1;
@@ -147,7 +148,7 @@ class EquationDerivatives {
   struct Place {
     std::size_t group = 0;
     double distance = 1.0;
-    std::vector<Index> equations;  // equations of motion, then constraint equations
+    std::vector<Index> equations;  // indices: equations of motion, then constraint equations
   };
   struct Set {
     std::array<std::shared_ptr<V>, 4> models;
@@ -155,9 +156,9 @@ class EquationDerivatives {
   };
   struct Group {
     SharedEquations equations;
-    std::vector<std::size_t> members;  // parameters
-    std::vector<Set> sets;             // used in turn by the evaluations
-    std::array<VecX, 4> values;        // of the equations, one vector for each model
+    std::vector<std::size_t> members;  // parameters of the group
+    std::vector<Set> sets;             // sets of models; successive evaluations alternate between them
+    std::array<VecX, 4> values;        // values of the equations, one vector for each model
     std::vector<VecX> differences;     // at each point, weighted sum of the values: derivative times distance
     std::size_t known = 0;             // number of differences that belong to this step
 
@@ -219,7 +220,8 @@ class EquationDerivatives {
       difference.tail(of.rows.size()) += FourPoints::weights[k] * of.rows;
     }
   }
-  /// Perturbs each member of the group alone. \throws InvalidInput as `require_named`.
+  /// Checks each member of the group with models in which only this member is perturbed. \throws InvalidInput if a
+  /// member changes equations of objects outside its `affects`.
   template <class X>
   [[gnu::cold]] void settle(Group& group, Set const& set, X const& x, Index velocities) {
     std::shared_ptr<V> const itself = models_(nobody, 0);

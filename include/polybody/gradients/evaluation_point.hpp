@@ -20,7 +20,7 @@ struct EquationTerms {
   double position = 0.0;  ///< factor of Φ [1/s²]
 };
 
-/// Evaluation point of the equations, with their solution.
+/// Point at which a Runge–Kutta step solves its linear equations, with the solution.
 template <StateScalar T = double>
 struct EvaluationPoint {
   VecXOf<T> q;          ///< (nq) coordinates
@@ -32,14 +32,14 @@ struct EvaluationPoint {
   VecXOf<T> lambda;     ///< (rows) multipliers: the solution
 };
 
-/// Left-hand sides of the equations at an evaluation point.
+/// Residuals of the linear equations of motion and of the constraint equations at an evaluation point.
 template <StateScalar T = double>
 class PointEquations {
  public:
   VecXOf<T> balance;  ///< (nv) M a + Gᵀλ − force f
   VecXOf<T> rows;     ///< (rows) G (a + also) + bias γ + rate Φ̇ + position Φ
 
-  /// Evaluates the left-hand sides with a and λ of the point x.
+  /// Evaluates the residuals with a and λ of the point x.
   void evaluate(BasicSystem<T>& system, EvaluationPoint<T> const& x) {
     resize(system);
     system.evaluate(x.q, x.v, x.t);
@@ -80,7 +80,7 @@ class PointEquations {
   VecXOf<T> none_, no_rows_, part_, of_rows_;
 };
 
-/// Function f(x, l): derivative of the equations at a fixed point x by the parameter of direction number l.
+/// Function f(x, l): derivative of the equations at a fixed point x with respect to the parameter of direction l.
 template <class F>
 concept EquationDerivativeFunction = requires(F f, EvaluationPoint<> const& x, std::size_t l) {
   { f(x, l) } -> std::convertible_to<EquationDerivative>;
@@ -95,10 +95,10 @@ template <class I>
 struct StageAdjoints;
 
 namespace detail {
-/// The header with the adjoint of a step of integrator I is included.
+/// True if the header with the adjoint of a step of integrator I is included.
 template <class I>
 concept HasStageAdjoints = requires { typename StageAdjoints<I>::Type; };
-/// The header with the linearised step of integrator I is included.
+/// True if the header with the linearised step of integrator I is included.
 template <class I>
 concept HasStageDerivatives = requires { typename StageDerivatives<I>::Type; };
 }  // namespace detail

@@ -102,7 +102,7 @@ class ForwardSensitivities {
     y.t = x.t;
     return stepped_state(v, std::move(y));
   }
-  /// Derivative of the length of the next step by parameter j.
+  /// Derivative of the length of the next step with respect to parameter j.
   double length_slope(std::size_t j, StepPlan::Next const& next, RunSensitivity const& from) const {
     if (!next.lands) return step_slope_[j];
     return (next.jumps ? perturbed_.times(j).slope(next.target) : end_time_slope_[j]) - from.dt;
@@ -184,9 +184,10 @@ class ForwardSensitivities {
   }
 
   /// Propagates the sensitivities over the steps of `lengths_` to x_. The length of the last step varies with the time
-  /// of its target, `next`. At an event, it is fixed, and `step_length_derivative` receives the derivative by it.
+  /// of its target, `next`. At an event, this length is constant, and `step_length_derivative` receives the derivative
+  /// with respect to it.
   void differentiate(StepPlan::Next const& next, bool met, RunSensitivity& step_length_derivative) {
-    for (std::size_t i = 0; i + 1 < lengths_.size(); ++i) {  // if the error estimate divides the step to the event
+    for (std::size_t i = 0; i + 1 < lengths_.size(); ++i) {  // parts before the last, if error control divided the step
       State part = before_;
       (void)full_.step(part, lengths_[i]);
       set_columns([](std::size_t) { return 0.0; });
@@ -232,8 +233,8 @@ class ForwardSensitivities {
         if (first && std::abs(own - dh[j]) > 1e-6 * (std::abs(own) + h_ / parameters_[j].size()))
           throw InvalidInput("derivative.coincident_times",
                              {"sensitivities: events \"", ErrorObject{*first}, "\" and \"", event.name,
-                              "\" coincide at t = ", ErrorTime{x_.t}, " s, but separate with \"", parameters_[j].name,
-                              "\", so that there is no derivative there. Remove one of the events."});
+                              "\" coincide at t = ", ErrorTime{x_.t}, " s, but a change of \"", parameters_[j].name,
+                              "\" separates them; the run is not differentiable there. Remove one of the events."});
         if (!first) dh[j] = own;
       }
       first = &event.name;
@@ -270,9 +271,9 @@ class ForwardSensitivities {
   Propagator<S, I> propagator_;
   Variants perturbed_;
   State x_, before_;             // present state, and state before the step
-  std::vector<double> lengths_;  // of the steps between them
+  std::vector<double> lengths_;  // lengths of the steps between these states
   std::vector<TangentColumn> columns_;
-  std::vector<RunSensitivity> tangents_;  // of each parameter
+  std::vector<RunSensitivity> tangents_;  // one for each parameter
   std::vector<double> step_slope_, end_time_slope_;
   StepPlan plan_;
   StepRow row_;

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Conversion between the reduced states of a run, in which policies eliminate unknowns, and full states, for doubles
-/// and recorded numbers.
+/// Conversion of the reduced states of a run to full states and back. Reduced states lack the unknowns that joint
+/// policies eliminate. The scalars are doubles or tape variables.
 ///
 /// Not in polybody.hpp: few programs need derivatives of whole runs.
 
@@ -12,7 +12,7 @@
 
 namespace polybody::detail {
 
-/// Full states of the reduced states of a run, with the multipliers of eliminated joints. \tparam M model; if its
+/// Converts reduced states of a run to full states with the multipliers of eliminated joints. \tparam M model; if its
 /// joints eliminate no unknowns, both states are the same
 template <class M, StateScalar T = double>
 class FullStates {
@@ -25,8 +25,8 @@ template <class M, StateScalar T>
 class FullStates<M, T> {
  public:
   [[gnu::cold]] explicit FullStates(M const& model) : system_(stepped_system<T>(model, with<Capabilities::motion>)) {}
-  /// Returns the full state of x, which is valid until the next call. Multipliers of joints in joint coordinates are
-  /// evaluated from the equations, because their estimates in x have no derivatives.
+  /// Returns the full state of x; the reference is valid until the next call. Multipliers of joints in joint
+  /// coordinates are evaluated from the equations, because their estimates in x have no derivatives.
   StateOf<T> const& operator()(StateOf<T> const& x) {
     stepped_ = x;
     stepped_.lambda.conservativeResize(system_.rows());
@@ -54,8 +54,8 @@ template <class V>
   }
 }
 
-/// Reduced state of the model v after the actions of the events that were met last in the full state x. \throws
-/// InvalidInput as `act`.
+/// Applies the actions of the events that were met last to the full state x. Returns the reduced state of the model v.
+/// \throws InvalidInput if the state after an action is invalid (see `act`).
 template <class V>
 [[gnu::cold]] State acted_state(V& v, EventDetector const& watch, State x) {
   RunOptions const& o = v.scenario.options;
@@ -68,7 +68,8 @@ template <class V>
   return stepped_state(v, std::move(x));
 }
 
-/// \throws InconsistentInitialConditions if the initial state of a scenario violates a joint, eliminated or not.
+/// \throws InconsistentInitialConditions if the initial state of a scenario violates a joint, including eliminated
+/// joints.
 template <class V>
 [[gnu::cold]] void require_assembled_start(V& v) {
   State const& x = v.scenario.start;

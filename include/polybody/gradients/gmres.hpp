@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// GMRES [Saad & Schultz 1986], one product at a time, so that several systems can share the evaluations of their
-/// products. It solves
+/// GMRES [Saad & Schultz 1986] with one matrix-vector product per call, so that products of several systems can be
+/// evaluated together. It solves
 ///   B x = b, with B = M⁻¹ A and b = M⁻¹ r, where M is a factorised matrix close to A.
 /// After n products, x is the combination of b, B b, … Bⁿ⁻¹ b with the least residual. If M = A, one product is enough.
 /// If M lacks a few blocks of A, a few more products than missing blocks are enough, even if iterative refinement with
@@ -16,10 +16,11 @@
 
 namespace polybody::detail {
 
-/// Iterative solution of one system of equations. Its vectors keep their memory for the next solution.
+/// Iterative solution of one system of linear equations. The memory of the vectors is reused in the next solution.
 class Gmres {
  public:
-  /// Begins the solution of B x = b. \param tolerated permitted norm of the residual; \param most limit of products
+  /// Begins the solution of B x = b. \param tolerated permitted norm of the residual; \param most largest number of
+  /// products
   void begin(VecX const& b, double tolerated, Index most) {
     tolerated_ = tolerated;
     most_ = most;
@@ -36,7 +37,7 @@ class Gmres {
   bool is_done() const { return left_ <= tolerated_ || count_ == most_; }
   /// Vector to be multiplied by B next.
   VecX const& next() const { return basis_[std::size_t(count_)]; }
-  /// Processes this product. \param product (n) B times `next()`; it is overwritten
+  /// Processes a product. \param product (n) B times `next()`; it is overwritten
   void take(VecX& product) {
     double const before = product.norm();
     Vec<double, Eigen::Dynamic> column = VecX::Zero(count_ + 2);

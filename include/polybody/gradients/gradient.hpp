@@ -11,10 +11,10 @@
 ///
 /// A forward run is followed by a backward sweep from its end (`AlphaStepAdjoint`), also over breakpoints and events
 /// (`AdjointEventHandler`). The states of the run are stored in snapshots or computed again (`reverse_steps`).
-/// A factory makes models from parameters. Their equations at given unknowns are differenced, as in `sensitivities`.
-/// Parameters that affect no common equation share these differences (`Parameter::affects`). All other costs of a step
-/// are independent of the number of parameters. Each step begins with its own factorisation, so that repeated steps are
-/// bitwise identical.
+/// A factory makes models from parameters. The equations of these models are differenced at fixed unknowns, as in
+/// `sensitivities`. Parameters that affect no common equation share these differences (`Parameter::affects`). All other
+/// costs of a step are independent of the number of parameters. Each step begins with a new factorisation, so that
+/// repeated steps are bitwise identical.
 ///
 /// Not in polybody.hpp: few programs need derivatives of whole runs.
 
@@ -29,7 +29,7 @@
 
 namespace polybody {
 
-/// Factory of the user: makes a scenario with an objective from the values of the parameters, in their order.
+/// User function that makes a scenario with an objective function from the values of the parameters, in their order.
 template <class F>
 concept ObjectiveFactory = requires(F const make, std::span<double const> p) {
   { make(p).model };
@@ -40,14 +40,15 @@ concept ObjectiveFactory = requires(F const make, std::span<double const> p) {
 
 namespace detail {
 
-/// Forward run and backward sweep. \tparam Sweep backward sweep for the integrator's family
+/// Forward run and backward sweep of a run without events and breakpoints. \tparam Sweep backward sweep for the
+/// integrator's family
 template <class Make, class I, template <class, class> class Sweep>
 class AdjointRun {
   using S = std::remove_cvref_t<decltype(std::declval<Make const&>()(std::declval<std::span<double const>>()))>;
   using W = Sweep<S, I>;
   using V = typename W::V;
   using M = typename V::Model;
-  /// Scenario with one perturbed parameter, and its conversion to full states.
+  /// Scenario with one perturbed parameter, and the conversion of its states to full states.
   struct ParameterDifferences {
     S scenario;
     FullStates<M> full_state;
@@ -129,7 +130,8 @@ class AdjointRun {
         throw InvalidInput(
             "gradient.breakpoint",
             {ErrorObject{"gradient"}, ": a drive or load has a breakpoint at t = ", ErrorTime{next.target},
-             " s, and the method restarts there. Use smooth time functions, or end the run before."});
+             " s, which only methods of the generalised-α family support. Use smooth functions of time, end the run "
+             "before the breakpoint, or use `sensitivities`."});
       Step step{next.h, next.h, 0.0};
       double const from = x.t;
       if constexpr (chooses) {
@@ -142,7 +144,7 @@ class AdjointRun {
       if (W::asks_for_equal_steps(full_) && !steps_.empty() && std::abs(step.h - steps_.back().h) > 1e-9 * step.h)
         throw InvalidInput("gradient.step_length",
                            {ErrorObject{"gradient"}, ": the length of the step to t = ", ErrorTime{step.end},
-                            " s differs from the other steps. Give a step that divides the time of the run, or set "
+                            " s differs from the other steps. Set a step that divides the duration of the run, or set "
                             "start_correction to false."});
       steps_.push_back(step);
     }
@@ -169,7 +171,7 @@ class AdjointRun {
         [&](ParameterDifferences& b) { return term(b.scenario.end, b.scenario.model, b.full_state(last)); });
     add_integrand(steps_.size(), last, bar);
   }
-  /// Adds the integrand at the state x, number k, and its derivatives.
+  /// Adds the weighted integrand at state number k, x, to J, and its derivatives to `bar` and dJ/dp.
   void add_integrand(std::size_t k, State const& x, Costate& bar) {
     if constexpr (std::same_as<decltype(full_.scenario.integrand), NoTerm>) return;
     double const w = weight(k);
@@ -197,7 +199,7 @@ class AdjointRun {
         y = W::start_step(v, std::move(y), h);
         if (!W::begin_alike(x, y))
           throw InvalidInput("gradient.start_correction",
-                             {ErrorObject{"gradient"}, ": the start correction changes with \"", p.name,
+                             {ErrorObject{"gradient"}, ": the start correction depends on \"", p.name,
                               "\". Set start_correction to false."});
         add(dx, y, by);
         perturbed_.push_back(std::make_unique<ParameterDifferences>(std::move(v.scenario)));
@@ -206,7 +208,7 @@ class AdjointRun {
       starts_.push_back(std::move(dx));
     }
   }
-  /// Adds the derivative of f(perturbed scenario) by each parameter to dJ/dp.
+  /// Adds the derivative of f(perturbed scenario) with respect to each parameter to dJ/dp.
   template <class F>
   void add_to_derivatives(F&& f) {
     for (std::size_t j = 0; j < parameters_.size(); ++j) {
@@ -222,7 +224,7 @@ class AdjointRun {
   V full_;
   W sweep_;
   std::vector<std::unique_ptr<ParameterDifferences>> perturbed_;  // four for each parameter
-  std::vector<State> starts_;  // derivatives of the start of the first step, by each parameter
+  std::vector<State> starts_;  // derivatives of the state before the first step, one for each parameter
   StepPlan plan_;
   double largest_ = 0.0;
   std::vector<Step> steps_;
@@ -233,14 +235,15 @@ class AdjointRun {
 
 }  // namespace detail
 
-/// Runs the scenario that `make` returns for the values of the parameters, and differentiates its objective with
-/// respect to each. Newton's method iterates down to corrections of 1e-12 or round-off. \param integrator integrator of
-/// the generalised-α family, without `stabilised`; with runge_kutta_step_adjoint.hpp RungeKutta4, or DormandPrince with
-/// its step lengths as constants; with radau_step_adjoint.hpp Radau. \throws InvalidInput for invalid parameters or
-/// options; for a factory with models of different sizes; for times without a derivative, as `sensitivities`; for two
-/// coincident events; for a start correction and steps of different lengths in a run without events, breakpoints and
-/// moving times; for events, breakpoints or moving times under Runge–Kutta methods. \throws SingularMatrix in a
-/// singular configuration. \throws NonFiniteValue; and as `simulate`.
+/// Runs the scenario that `make` returns for the values of the parameters, and differentiates its objective function
+/// with respect to each parameter. Newton's method iterates until corrections are below 1e-12 or at round-off. \param
+/// integrator integrator of the generalised-α family, without `stabilised`; with runge_kutta_step_adjoint.hpp also
+/// RungeKutta4 and DormandPrince, whose step lengths are constants; with radau_step_adjoint.hpp also Radau. \throws
+/// InvalidInput for invalid parameters or options; if the factory makes models of different sizes; if an event only
+/// touches zero; if two events coincide, or other times coincide so that the run is not differentiable; if the steps of
+/// a run with start correction, but without events, breakpoints and moving times, differ in length; for events,
+/// breakpoints or moving times with a Runge–Kutta method. \throws SingularMatrix in a singular configuration;
+/// NonFiniteValue; and the exceptions of `simulate`.
 template <ObjectiveFactory Make, class I>
 GradientResult gradient(Make const& make, std::vector<Parameter> const& parameters, I const& integrator,
                         GradientOptions const& options = {}) {

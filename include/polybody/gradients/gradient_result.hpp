@@ -31,14 +31,15 @@ struct GradientResult {
 
 namespace detail {
 
-/// Number of stored states. \param size size of one state [bytes]. \throws InvalidInput if none fits into the memory.
+/// Largest number of stored states. \param size size of one state [bytes]. \throws InvalidInput if not even one state
+/// fits into the memory.
 template <class = void>
 std::size_t snapshots_of(GradientOptions const& options, double size) {
   if (options.snapshots > 0) return options.snapshots;
   if (!(options.memory >= size))
-    throw InvalidInput("gradient.memory",
-                       {ErrorObject{"gradient"}, ": a snapshot of a state takes ", size,
-                        " bytes, but the allowed memory is ", ErrorValue{options.memory}, " bytes. Increase it."});
+    throw InvalidInput("gradient.memory", {ErrorObject{"gradient"}, ": a snapshot of a state takes ", size,
+                                           " bytes, but the allowed memory is ", ErrorValue{options.memory},
+                                           " bytes. Increase `memory`."});
   return std::size_t(std::min(options.memory / size, 1e15));
 }
 /// Memory of a snapshot of x [bytes].
@@ -51,7 +52,7 @@ template <class = void>
 void warn_of_zeros(GradientResult& g) {
   for (std::size_t j = 0; j < g.parameters.size(); ++j)
     if (g.derivatives[Index(j)] == 0.0)
-      g.run.add_warning("Nothing of the objective depends on the parameter \"" + g.parameters[j] + "\".");
+      g.run.add_warning("The objective does not depend on the parameter \"" + g.parameters[j] + "\".");
 }
 
 }  // namespace detail

@@ -2,12 +2,13 @@
 /// \file
 /// Effect of ⊞ on the derivative of a step's equations.
 ///
-/// A step ends at q₁ = q₀ ⊞ δ. For rotational coordinates, a change dδ changes q₁ by u = T dδ, an increment at q₁, and
+/// A step ends at q₁ = q₀ ⊞ δ. For rotational coordinates, a change dδ changes q₁ by the increment u = T dδ at q₁, and
 /// `local_rate`(δ, u) = T⁻¹ u [Arnold, Brüls & Cardona 2015]. The tangent C = cm M + cd D + ck K of a system contains K
 /// with respect to increments at q₁. With y = (δa₁, δλ₁), the derivative of a step is therefore
 ///   [cm M + cd D + ck K T, Gᵀ; G T, 0] = [C + (cm M + cd D) W, Gᵀ; G, 0] diag(T, 1),  W = T⁻¹ − 1,
-/// for nonholonomic constraints with G + G W in place of G. Newton's method omits W, which has the size hω/2. A
-/// correction of derivatives with the factorisation of Newton's method has a relative error of the same size.
+/// for nonholonomic constraints with G + G W instead of G. The size of W is hω/2, with the step h and the angular
+/// velocity ω. Newton's method omits W. A correction of derivatives with the factorisation of Newton's method therefore
+/// has a relative error of this size.
 ///
 /// Not in polybody.hpp: few programs need derivatives of whole runs.
 
@@ -18,7 +19,8 @@
 
 namespace polybody {
 
-/// Matrix W of a step, stored by columns: a 3 × 3 block for each rotation of a body or node.
+/// Matrix W = T⁻¹ − 1 of a step q₁ = q₀ ⊞ δ, where T dδ is the increment of q₁ due to dδ. It is stored by columns: a 3
+/// × 3 block for each rotation of a body or node.
 class IncrementTangent {
  public:
   /// Finds the rotational unknowns. W is omitted if the system eliminates unknowns. \param system system of the step

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Scenario of a run, and perturbed scenarios, four for each parameter.
+/// Model of a run, and four perturbed models for each parameter.
 ///
 /// Not in polybody.hpp: few programs need derivatives of whole runs.
 

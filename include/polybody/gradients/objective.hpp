@@ -36,7 +36,7 @@ ScenarioWithObjective<M, End, Integrand> with_objective(Scenario<M> scenario, En
 
 namespace detail {
 
-/// Value of f in the state x; zero for NoTerm. \throws NonFiniteValue.
+/// Value of f in the state x; zero for NoTerm. \throws NonFiniteValue if the value is not finite.
 template <class F, class M>
 double term(F const& f, M const& model, State const& x) {
   if constexpr (std::same_as<F, NoTerm>) {
@@ -50,7 +50,7 @@ double term(F const& f, M const& model, State const& x) {
   }
 }
 
-/// Adds `weight` times the derivatives of f by the numbers of x to the adjoint variables `bar`.
+/// Adds `weight` times the derivatives of f with respect to the numbers of x to the adjoint variables `bar`.
 template <class F, class M>
 void add_derivatives(F const& f, M const& model, State const& x, double weight, Tape& recording, Costate& bar) {
   if constexpr (std::same_as<F, NoTerm>) {
@@ -98,13 +98,13 @@ void add_derivatives(F const& f, M const& model, State const& x, double weight, 
   }
 }
 
-/// Derivatives of objective functions by the numbers of the reduced states of a run. \tparam M model
+/// Derivatives of objective functions with respect to the numbers of the reduced states of a run. \tparam M model
 template <class M>
 class ObjectiveDerivatives {
  public:
   [[gnu::cold]] explicit ObjectiveDerivatives(M const& model) : full_state_(model), recorded_(model) {}
 
-  /// Adds `weight` times the derivatives of f(model, full state of x) by the numbers of x to `bar`.
+  /// Adds `weight` times the derivatives of f(model, full state of x) with respect to the numbers of x to `bar`.
   template <class F>
   void add(F const& f, M const& model, State const& x, double weight, Costate& bar) {
     if constexpr (std::same_as<F, NoTerm>) return;
@@ -119,7 +119,8 @@ class ObjectiveDerivatives {
   }
 
  private:
-  /// Adds the adjoint variables of the reduced state x to `bar`, computed from those of its full state, `of_full`.
+  /// Computes the adjoint variables of the reduced state x from the adjoint variables `of_full` of its full state, and
+  /// adds them to `bar`.
   void pull(State const& x, Costate const& of_full, Costate& bar) {
     Tape::On const on(recording_);
     StateOf<ReverseVar> from;

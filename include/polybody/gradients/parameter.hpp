@@ -16,9 +16,9 @@ namespace polybody {
 
 /// Number from which the factory of the user makes a model: a length, a stiffness, a mass, an initial velocity.
 struct Parameter {
-  std::string name;    ///< with its unit
+  std::string name;    ///< name with unit
   double value = 0.0;  ///< value at which derivatives are computed, in the unit given in `name`
-  double scale = 0.0;  ///< size of a change that alters the model as a whole, in that unit; zero: |value|
+  double scale = 0.0;  ///< change that alters results by about their own size, in that unit; if zero, |value|
   /// Names of the bodies, joints and forces with equations that depend on the parameter; if empty, all equations may
   /// depend on it. A length affects its body and the joints at its end. Parameters that affect no common equation are
   /// differenced together, with four evaluations of the equations for all of them.
@@ -26,7 +26,8 @@ struct Parameter {
 
   /// The scale, or |value| if the scale is zero.
   double size() const { return scale > 0.0 ? scale : std::abs(value); }
-  /// Distance of the differences of the equations. The run itself is not differenced.
+  /// Distance e between the points of the differences of the equations (`FourPoints`). The run itself is not
+  /// differenced.
   double distance() const { return 4e-4 * size(); }
 };
 
@@ -47,12 +48,14 @@ void check(std::vector<Parameter> const& parameters) {
     if (!(p.distance() > 0.0))
       throw InvalidInput("parameter.scale",
                          {"Parameter \"", ErrorObject{p.name},
-                          "\" is zero and has no scale. Give the size over which the model changes with it."});
+                          "\" is zero and has no scale. Set `scale` to a change that alters results by about their "
+                          "own size."});
   }
 }
 
-/// f′(0) = [8 (f(e) − f(−e)) − (f(2e) − f(−2e))]/12e, of vectors, error e⁴ f⁽⁵⁾/30 [Abramowitz & Stegun 1964,
-/// 25.3.21]: Σ weights f(places e)/e. In this order, the sum for a constant f is exactly zero.
+/// Difference formula f′(0) = [8 (f(e) − f(−e)) − (f(2e) − f(−2e))]/12e with the error e⁴ f⁽⁵⁾/30 [Abramowitz & Stegun
+/// 1964, 25.3.21], for numbers and vectors f, as the sum Σ weights f(places e)/e. In this order of the points, the sum
+/// for a constant f is exactly zero.
 struct FourPoints {
   /// Positions of the points, in multiples of e.
   static constexpr std::array<double, 4> places{-1.0, 1.0, -2.0, 2.0};

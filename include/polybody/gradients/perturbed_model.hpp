@@ -23,7 +23,8 @@ struct PerturbedModel {
   FullStates<Model> full_state;
   AlphaMethod method;
   AlphaMethod::Workspace<DefaultSolver> work;
-  bool steps = false;  ///< a step was computed and the tangent analysed; most perturbed models never take a step
+  /// True after the first step, which analyses the tangent. Most perturbed models compute no step.
+  bool steps = false;
   EquationDerivative at_place;
 
   PerturbedModel(S made, AlphaMethod const& m)
@@ -40,7 +41,7 @@ struct PerturbedModel {
     work.forward.project_velocities(system, x.q, x.v, x.t);
     method.begin(system, x, h, work, corrected);
   }
-  /// Starts y as x was started: with or without the start correction.
+  /// Starts y with the start correction if x was started with it, otherwise without.
   void start_like(State const& x, State& y, double h) { start(y, h, x.history[x.history.size() - 2] > 0.0); }
   /// Times of the breakpoints, unordered: first those of drives and loads, then those of the options [s].
   std::vector<double> breakpoints() const { return breakpoints_of(system, scenario.options); }
@@ -48,13 +49,13 @@ struct PerturbedModel {
   double length() const { return length_of_steps(scenario.options); }
   /// Initial state of the run, reduced, before `start`.
   State first() const { return stepped_state(*this, scenario.start); }
-  /// Initial state of the run after `start`, for steps of h.
+  /// Initial state of the run after `start`, for steps of length h.
   State started(double h) {
     State x = first();
     start(x, h);
     return x;
   }
-  /// Applies the correction at the start of a step of h to the velocities and algorithmic accelerations of x. The step
+  /// Applies the start correction of a step of length h to the velocities and algorithmic accelerations of x. The step
   /// itself then needs no correction. Returns true if there is a correction.
   bool start_step(State& x, double h) {
     bool const corrected = method.start_step(system, x, h, work);
@@ -65,21 +66,23 @@ struct PerturbedModel {
     }
     return corrected;
   }
-  /// Replaces velocities and algorithmic accelerations of y by their correction at the start of a step of h. \param
-  /// corrected as in `AlphaMethod::begin`
+  /// Replaces velocities and algorithmic accelerations of y by their changes due to the start correction of a step of
+  /// length h. \param corrected as in `AlphaMethod::begin`
   void set_out_change(State& y, double h, std::optional<bool> corrected) {
     (void)method.start_step(system, y, h, work, corrected);
     y.v = work.v0 - y.v;
     auto own = y.history.head(y.v.size());
     own = work.a0 - own;
   }
-  /// Decision for perturbed models near x: correction at the start of the step if the run itself `corrects`. Returns no
-  /// decision if a correction depends on the length of the step.
+  /// Decision about the start correction in perturbed models near x: the same as in the run itself, `corrects`. Returns
+  /// no decision if x already includes the correction for the step length h, because the decision then depends on the
+  /// perturbed length.
   static std::optional<bool> decided(State const& x, double h, bool corrects) {
     double const shifted = x.history[x.history.size() - 1];
     return std::abs(h - shifted) > 1e-9 * h ? std::optional<bool>(corrects) : std::nullopt;
   }
-  /// Takes a step of h that depends on x alone: with its own factorisation, in the first elimination order.
+  /// Computes a step of length h whose result depends on x only: with a new factorisation, in the initial elimination
+  /// order.
   StepReport step(State& x, double h) {
     if (!steps) method.analyse(system, work);
     steps = true;
@@ -89,11 +92,12 @@ struct PerturbedModel {
     return method.step(system, x, h, work);
   }
   VecX outputs(State const& x) { return values_of_outputs(scenario, full_state(x)); }
-  /// Factorisation of the last step if it has the length h and is usable, else null.
+  /// Factorisation of the last step if it has the length h and is usable, otherwise null.
   TangentSolver<StepSolver<DefaultSolver>>* factors(double h) {
     return work.reused_factorisation.usable && work.h_factored == h ? &work.solver() : nullptr;
   }
-  /// r and Φ (nonholonomic: Φ̇) at x. The reference is valid until the next call.
+  /// Residual r of the equations of motion and constraint violation Φ (nonholonomic: Φ̇) at x. The reference is valid
+  /// until the next call.
   EquationDerivative const& equations(State const& x) { return equations(x, x.t); }
   /// r and Φ (nonholonomic: Φ̇) for the state x at another time t [s].
   EquationDerivative const& equations(State const& x, double t) {

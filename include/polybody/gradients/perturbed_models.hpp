@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Differences of models along parameters, and along the motion if times depend on parameters.
+/// Derivatives by differences of models with respect to parameters, and along the motion if times depend on parameters.
 ///
 /// Not in polybody.hpp: few programs need derivatives of whole runs.
 
@@ -12,14 +12,14 @@
 namespace polybody::detail {
 
 /// Derivatives of functions of scenarios by differences. If the time of a state depends on parameter j, the change of
-/// the state with j has two parts. The first part is at fixed time. The perturbed models are evaluated in states with
-/// this change, so that their stiff elements remain at rest. The second part follows the motion. It can be
-/// longer than a step, so it is differenced over a small part of a step, in the unperturbed scenario. \tparam V
-/// PerturbedModel or PerturbedStageModel
+/// the state with j has two parts. The first part is the change at fixed time. The perturbed models are evaluated in
+/// states with this change, so that stiff elements are not excited. The second part is the change along the motion
+/// during the change of time. This time can exceed a step, so the second part is differenced over a small fraction of a
+/// step, with the unperturbed model. \tparam V PerturbedModel or PerturbedStageModel
 template <class V>
 class PerturbedModels {
  public:
-  static constexpr std::size_t along_motion = std::size_t(-1);  ///< in place of a parameter number: along the motion
+  static constexpr std::size_t along_motion = std::size_t(-1);  ///< parameter number for changes along the motion
 
   /// \param who name of the calling function in messages
   template <class Make, class Method>
@@ -52,7 +52,7 @@ class PerturbedModels {
   /// Size of parameter j, or the step length h for `along_motion`.
   double size(std::size_t j, double h) const { return j == along_motion ? h : n_.parameter(j).size(); }
 
-  /// Derivative of a number f(model) by parameter j. It is exactly zero if the number does not change.
+  /// Derivative of a number f(model) with respect to parameter j; exactly zero if the number does not change.
   template <class F>
   double of_number(std::size_t j, F const& f) {
     double const here = f(n_.itself());
@@ -61,8 +61,8 @@ class PerturbedModels {
     return sum;
   }
 
-  /// Derivative of the state that f(model, state, length) makes of the initial state of each model. The next step has
-  /// the length h with the derivative dh.
+  /// Derivative, with respect to parameter j, of the state that f(model, state, length) makes from the initial state of
+  /// a model. The length of the next step is h, with the derivative dh.
   template <class F>
   State of_start(std::size_t j, double h, double dh, F const& f) {
     State const x = n_.itself().first();
@@ -80,8 +80,8 @@ class PerturbedModels {
     return sum;
   }
 
-  /// Derivative of the state that f(model, state, length) makes of x and a length h. Their derivatives are `tangent`
-  /// and dh.
+  /// Derivative, with respect to parameter j, of the state that f(model, state, length) makes from x and the step
+  /// length h. The derivative of x is `tangent`, and that of h is dh.
   template <class F>
   State of_map(std::size_t j, State const& x, RunSensitivity const& tangent, std::array<double, 2> h_and_dh,
                F const& f) {
@@ -107,9 +107,10 @@ class PerturbedModels {
     return sum;
   }
 
-  /// Sets the state x for `of_values`.
+  /// Sets the state x for the following calls of `of_values`.
   void set_state(State const& x) { state_ = x; }
-  /// Derivative of the numbers f(model, state) at x. \param h length of steps [s]
+  /// Derivative of the vector f(model, state) at x with respect to parameter j. \param tangent derivative of x; \param
+  /// h length of steps [s]
   template <class F>
   VecX of_values(std::size_t j, State const& x, RunSensitivity const& tangent, double h, F const& f) {
     Parts const p = parts(j, x, tangent, h, 0.0);
@@ -145,10 +146,11 @@ class PerturbedModels {
   struct PointInStep {
     X const& x;
     double h;            ///< length of the step [s]
-    double dt;           ///< derivative of its time [s]
+    double dt;           ///< derivative of the time of x [s]
     std::size_t number;  ///< number of the point in the step, in ascending order
   };
-  /// Stores the derivatives of r and Φ at a point by parameter j, at fixed unknowns and with its moving time, in `sum`.
+  /// Stores the derivatives of the equations r and Φ at a point with respect to parameter j in `sum`. The unknowns are
+  /// fixed; the time of the point changes with the parameter.
   template <class X>
   void of_equations(std::size_t j, PointInStep<X> const& at, EquationDerivative& sum) {
     auto const& [x, h, dt, number] = at;
@@ -169,7 +171,7 @@ class PerturbedModels {
     if (by_time.scale == 0.0) by_time = rate_of_equations(x, h);
     add(sum, by_time, later);
   }
-  /// \throws InvalidInput if a parameter changes an equation of objects at x that it does not name.
+  /// \throws InvalidInput if a parameter changes, at x, an equation of objects outside its `affects`.
   void require_named(State const& x) {
     for (std::size_t i = 0; i < still_.size(); ++i)
       derivatives_->require_named(i, n_.itself(), n_.perturbed(still_[i], 0), x);
@@ -178,13 +180,14 @@ class PerturbedModels {
  private:
   static constexpr std::size_t points = FourPoints::places.size();
   static constexpr std::size_t moving = std::size_t(-1);
-  static constexpr double negligible = 1e-13;  // relative to a step
-  // relative to a step: a step that does not end at a breakpoint ends at least 1 % of a step before it
+  static constexpr double negligible = 1e-13;  // neglected change of a time, relative to a step
+  // Largest distance of differences along the motion, relative to a step. The outer points, at twice this distance,
+  // remain before the next breakpoint: a step that does not end there ends at least 1 % of a step before it.
   static constexpr double largest_part = 4e-3;
 
   struct Parts {
-    State with, along;  // at fixed time; along the motion, empty if `reach` is 0
-    double dt, dh;      // of the part along the motion
+    State with, along;  // change at fixed time; change along the motion, empty if `reach` is 0
+    double dt, dh;      // changes of time and step length along the motion
     double reach;       // distance of the differences along the motion; 0 if the whole change is at fixed time
   };
   struct Evaluation {
@@ -213,7 +216,7 @@ class PerturbedModels {
     out.reach = reach_of(j, h, longest);
     return out;
   }
-  /// Change of coordinates and velocities along the motion in the time dt. \param e distance of the differences [s]
+  /// Change of coordinates and velocities along the motion during the time dt. \param e distance of the differences [s]
   State motion(State const& x, double dt, double e) {
     State out = zeros_like(x);
     VecX ahead = x.q, back = x.q;
@@ -253,8 +256,8 @@ class PerturbedModels {
 
   NearbyModels<V> n_;
   std::vector<std::size_t> number_, still_;  // index of each parameter in `still_`; parameters without moving times
-  std::optional<EquationDerivatives<V>> derivatives_;  // by the parameters in `still_`
-  std::vector<EquationDerivative> by_time_;            // ∂/∂t at each point of a step; scale 0 if unknown
+  std::optional<EquationDerivatives<V>> derivatives_;  // with respect to the parameters in `still_`
+  std::vector<EquationDerivative> by_time_;  // time derivatives at each point of a step; scale 0: not yet computed
   State state_;
 };
 

@@ -31,23 +31,23 @@ struct PerturbedStageModel {
         method(m),
         work(method.template workspace<DefaultSolver>(system)) {}
 
-  /// Requested step length, or length of the first step [s].
+  /// Requested step length, or length of the first step if the integrator chooses the lengths [s].
   double length() const { return length_of_steps(scenario.options); }
   /// Times of the breakpoints: first those of drives and loads, then those of the options [s].
   std::vector<double> breakpoints() const { return breakpoints_of(system, scenario.options); }
   VecX outputs(State const& x) { return values_of_outputs(scenario, full_state(x)); }
-  /// Left-hand sides of the equations at an evaluation point.
+  /// Residuals of the equations at an evaluation point.
   EquationDerivative equations(EvaluationPoint<> const& x) {
     at_place.evaluate(system, x);
     return {at_place.balance, at_place.rows};
   }
-  /// Left-hand sides of the equations at the point x, at another time t [s].
+  /// Residuals of the equations at the point x with the time t [s] instead of its own.
   EquationDerivative equations(EvaluationPoint<> const& x, double t) {
     EvaluationPoint<> y = x;
     y.t = t;
     return equations(y);
   }
-  /// Left-hand sides of the equations for the accelerations in a state.
+  /// Residuals of the equations of motion and of the second derivative of the constraint equations, in a state.
   EquationDerivative equations(State const& x) {
     return equations(
         EvaluationPoint<>{.q = x.q, .v = x.v, .t = x.t, .terms = {}, .also = {}, .a = x.a, .lambda = x.lambda});
@@ -61,13 +61,13 @@ struct PerturbedStageModel {
   void start_like(State const&, State& y, double h) { start(y, h); }
   /// Initial state of the run, reduced, before `start`.
   State first() const { return stepped_state(*this, scenario.start); }
-  /// Initial state of the run after `start`, for steps of h.
+  /// Initial state of the run after `start`, for steps of length h.
   State started(double h) {
     State x = first();
     start(x, h);
     return x;
   }
-  /// Takes a step of at most h that depends on x alone: with its own factorisation.
+  /// Computes a step of length h or less whose result depends on x only: with a new factorisation.
   StepReport step(State& x, double h) {
     if constexpr (requires { work.reused_factorisation; }) work.reused_factorisation = {};
     return method.step(system, x, h, work);

@@ -15,14 +15,14 @@ namespace polybody {
 /// Approximate factorisations of the matrix of a linearised step.
 enum class ApproximateFactors {
   of_step,  ///< factorisation from the solution of the step itself, without further cost
-  of_end,   ///< of the tangent matrix at the end of the step
-  exact,    ///< of the tangent matrix with all terms that steps omit, such as second-order terms
-  turned,   ///< of the same matrix with the derivative of ⊞ (gradients/increment_tangent.hpp)
+  of_end,   ///< factorisation of the tangent at the end of the step
+  exact,    ///< factorisation of this tangent with the terms that Newton's method omits, such as second-order terms
+  turned,   ///< as `exact`, with the derivative of ⊞ in addition (gradients/increment_tangent.hpp)
 };
 
 /// Chooses the kind of factorisation with the lowest cost. The cost is the number of passes through the equations, plus
-/// the cost of the factorisation. The candidates are tried in turn until one pass per group of directions is
-/// sufficient, and again every hundred steps.
+/// the cost of the factorisation. The candidates are tried one after another until one pass per group of directions is
+/// sufficient. The trial is repeated every hundred steps.
 class PreconditionerChoice {
  public:
   /// Candidate for the choice.
@@ -54,7 +54,7 @@ class PreconditionerChoice {
   }
   /// Kind of factorisation of the current step.
   ApproximateFactors now() const { return candidates_[now_].factors; }
-  /// Adds the cost of another kind, factorised within the step if the chosen one is not sufficient.
+  /// Adds the cost of another kind, which is factorised in the same step because the chosen kind is not sufficient.
   void make(ApproximateFactors others) {
     for (Candidate const& c : candidates_)
       if (c.factors == others) also_ += c.cost;

@@ -15,9 +15,9 @@ class ProjectionDerivative {
   /// \param options options of the projection in the step itself
   explicit ProjectionDerivative(Projection const& options) : options_(options) {}
 
-  /// Projects q and v of x onto the constraint equations. Doubles determine the number of Gauss–Newton iterations; the
-  /// other scalar types repeat this number. \param solve solves the equations at x; for doubles it returns the largest
-  /// constraint residual
+  /// Projects q and v of x onto the constraint equations. The call with doubles determines the number of Gauss–Newton
+  /// iterations; calls with other scalar types repeat this number. \param solve solves the equations at x; for doubles
+  /// it returns the largest constraint residual
   template <StateScalar T, class Solve>
   void apply(BasicSystem<T> const& system, EvaluationPoint<T>& x, double h, Solve&& solve) {
     if (system.rows() == 0) return;

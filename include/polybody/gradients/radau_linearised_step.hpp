@@ -6,9 +6,9 @@
 /// With y = (δv̇_i, δλ_i) of the three stages, the formulas of the method give the changes of q_i and v_i, and
 ///   δ[M v̇_i − f_i + G_iᵀλ_i] = 0,  δ[G_i v̇_i + γ_i] = 0
 /// is linear in y. One pass of dual numbers through each stage evaluates the left-hand side. Iterative refinement with
-/// a factorised matrix of all stages solves for y, until the corrections are round-off. Each stage contributes its own
-/// tangent matrix with second-order terms, and the derivatives of its constraint equations. The projection at the end
-/// of the step and the subsequent change of v̇ are solutions of linear equations; gradients/solved_points.hpp
+/// a factorised matrix of all stages solves for y, until the corrections are at round-off. Each stage contributes its
+/// own tangent matrix with second-order terms, and the derivatives of its constraint equations. The projection at the
+/// end of the step and the subsequent change of v̇ are solutions of linear equations; gradients/solved_points.hpp
 /// differentiates them.
 ///
 /// Not in polybody.hpp: few programs need derivatives of whole runs.
@@ -39,15 +39,16 @@ class RadauLinearisedStep {
   }
   RadauLinearisedStep(RadauLinearisedStep const&) = delete;  // its members refer to each other
 
-  /// Prepares the derivatives of this step. \throws NewtonConvergenceFailure if its stages do not converge again,
-  /// SingularMatrix in a singular configuration, NonFiniteValue.
+  /// Prepares the derivatives of a step by computing its stages again. \throws NewtonConvergenceFailure if the stages
+  /// do not converge, SingularMatrix in a singular configuration, NonFiniteValue.
   void set(StepTaken const& step) { stages_.find(step); }
 
   /// Converts, in place, up to `max_directions` derivatives of the state before the step to derivatives of the state
-  /// after it. Returns the largest relative change in the last corrections. The reference is the norm of the
-  /// derivatives, or the norm of v̇ or λ over the scale of the parameter if it is larger. \param slope derivative of the
-  /// equations at each evaluation point, for the parameter of a direction and the change of time along it; \param dh
-  /// derivative of the step length along each direction [s], or none if the length is constant
+  /// after it. Returns the largest relative change in the last corrections. The change is relative to the norm of the
+  /// derivatives, or to the norm of v̇ or λ divided by the scale of the parameter if this quotient is larger. \param
+  /// slope slope(x, l) returns the derivative of the equations at the point x along direction l, due to its parameter
+  /// and its change of time; \param dh derivative of the step length along each direction [s], or none if the length is
+  /// constant
   template <EquationDerivativeFunction F>
   double advance(StepTaken const& step, std::span<State* const> directions, F&& slope,
                  std::span<double const> dh = {}) {
@@ -101,7 +102,8 @@ class RadauLinearisedStep {
     return out;
   }
 
-  /// Stores −δ of the equations of a stage in `along_`, including the derivatives with respect to the parameters.
+  /// Stores the negative changes of the equations of a stage in `along_`, including the derivatives with respect to the
+  /// parameters. \param first index of the first unknown of the stage
   void keep_derivatives(Index first, std::size_t directions, StageDerivatives const& by) {
     VecXOf<D> const &balance = dual_equations_.balance, &rows = dual_equations_.rows;
     std::size_t const stage = std::size_t(first / places_.template system<double>().size());

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Solution of the stages of a Radau step, with the matrix of all stages. The derivatives of the step require it, since
-/// no state contains the stages.
+/// Solution of the stages of a Radau step with the matrix of all stages. The derivatives of the step require the
+/// stages, which no state contains.
 ///
 /// Not in polybody.hpp: few programs need derivatives of whole runs.
 
@@ -29,8 +29,9 @@ class RadauStageSolution {
     solver_.analyse(system, 3, [&](BlockSink& sink) { write(0.0, 1.0, sink); });
   }
 
-  /// Computes the stages of a step and solves the equations at the points after them. \throws NewtonConvergenceFailure
-  /// if the stages do not converge again, SingularMatrix in a singular configuration, NonFiniteValue.
+  /// Computes the stages of a step again and solves the equations at the points after the stages. \throws
+  /// NewtonConvergenceFailure if the stages do not converge, SingularMatrix in a singular configuration,
+  /// NonFiniteValue.
   void find(StepTaken const& step) {
     predict(step);
     solve_stages(step);
@@ -44,7 +45,7 @@ class RadauStageSolution {
   RadauStages<double> const& numbers() const { return numbers_; }                         ///< values of the stages
   std::array<EvaluationPoint<>, 3> const& stage_places() const { return stage_places_; }  ///< points of the stages
   /// Diagonal entry of the matrix for a constraint equation of a stage: −1 if the equation is redundant, so that its
-  /// multiplier does not change; else zero.
+  /// multiplier does not change; otherwise zero.
   double slack(Index stage, Index row) const {
     return slack_[std::size_t(stage * Index(row_of_.size()) + equation_of_[std::size_t(row)])];
   }
@@ -132,8 +133,8 @@ class RadauStageSolution {
       }
     }
   }
-  /// Maps the constraint equations of the linear system to the constraint equations of the step, −1 for joints in joint
-  /// coordinates, and vice versa.
+  /// Finds the constraint equation of the step that belongs to each constraint equation of the linear system (−1 for
+  /// joints in joint coordinates), and vice versa.
   [[gnu::cold]] void find_rows(System const& s) {
     Index const velocities = equation_velocities_of(s);
     row_of_.assign(std::size_t(equations_of(s) - velocities), -1);
@@ -154,9 +155,9 @@ class RadauStageSolution {
     }
   }
 
-  /// Newton's method until the corrections are round-off. A factorisation is reused while each correction is at most a
-  /// tenth of the last one. The final factorisation also solves for the derivatives; it belongs to stages within a
-  /// relative distance of 10⁻⁸ from the solution.
+  /// Iterates Newton's method until the corrections are at round-off. A factorisation is reused while each correction
+  /// is at most a tenth of the last one. The final factorisation also solves for the derivatives. Its matrix is
+  /// evaluated at stages with a relative distance of at most 10⁻⁸ from the solution.
   void solve_stages(StepTaken const& step) {
     double left = std::numeric_limits<double>::infinity(), moved = left;  // moved: change since the factorisation
     for (int k = 0;; ++k) {
@@ -174,7 +175,8 @@ class RadauStageSolution {
       if (!std::isfinite(change) || k == most_corrections)
         throw NewtonConvergenceFailure("derivative.not_converged",
                                        {"The stages of the step to t = ", ErrorTime{step.before.t + step.h},
-                                        " s do not converge again for its derivative. Take a smaller step."});
+                                        " s do not converge as they are computed again for the derivatives. Take a "
+                                        "smaller step."});
       if (change > 0.1 * left) moved = std::numeric_limits<double>::infinity();
       left = change;
     }
@@ -199,8 +201,9 @@ class RadauStageSolution {
     Index const bad = solver_.factor([&](BlockSink& sink) { write(step.before.t, step.h, sink); });
     if (bad >= 0)
       throw SingularMatrix("derivative.singular",
-                           {"The derivative of the step to t = ", ErrorTime{step.before.t + step.h},
-                            " s has no pivot at ", ErrorObject{name_of_equation(s, bad % equations_of(s))}, "."});
+                           {"The equations of the linearised step to t = ", ErrorTime{step.before.t + step.h},
+                            " s are singular at ", ErrorObject{name_of_equation(s, bad % equations_of(s))},
+                            ". Avoid the singular configuration, or take a smaller step."});
   }
   /// Corrects the stages. Returns the norm of the largest change of v̇ of a stage, and the largest norm of v̇ [m/s²],
   /// [rad/s²].
@@ -226,7 +229,7 @@ class RadauStageSolution {
   PointEquations<double> equations_;
   RadauStages<double> numbers_;
   std::array<EvaluationPoint<>, 3> stage_places_;
-  Sequence<Index> row_of_, equation_of_;  // equation of the step for each of the linear system, and vice versa
+  Sequence<Index> row_of_, equation_of_;  // equation of the step for each equation of the linear system; vice versa
   Sequence<double> slack_;                // by stages and constraint equations of the linear system
   VecX rhs_, correction_, balance_;
 };

@@ -9,7 +9,7 @@
 
 namespace polybody::detail {
 
-/// Largest absolute values of the entries of a vector: of the values and of each derivative.
+/// Largest absolute value of the entries of a vector and, for dual numbers, of each of their derivatives.
 template <StateScalar T>
 struct LargestParts {
   double value = 0.0;
@@ -29,10 +29,10 @@ struct LargestParts<Dual<N>> {
 /// Unknowns v̇_i and λ_i of the three stages, and the quantities that depend on them.
 template <StateScalar T>
 struct RadauStages {
-  VecXOf<T> q0, v0;  // at the start
-  VecXOf<T> next;    // a sum; finally v̇ at the end
-  std::array<VecXOf<T>, 3> v, vd, lambda, delta, rate;
-  EvaluationPoint<T> at;  // a stage; finally the end
+  VecXOf<T> q0, v0;                                     // at the start of the step
+  VecXOf<T> next;                                       // workspace; finally v̇ at the end of the step
+  std::array<VecXOf<T>, 3> v, vd, lambda, delta, rate;  // v_i, v̇_i, λ_i, δ_i and δ˙_i of the stages
+  EvaluationPoint<T> at;                                // a stage; finally the end of the step
 
   void resize(BasicSystem<T> const& s) {
     q0 = at.q = VecXOf<T>::Constant(s.coordinates(), T(0.0));
@@ -41,8 +41,8 @@ struct RadauStages {
     lambda.fill(VecXOf<T>::Constant(s.rows(), T(0.0)));
   }
 
-  /// Computes v_i = v₀ + h Σ a_ij v̇_j and δ_i = h Σ a_ij δ˙(δ_j, v_j). Passes over δ_i end when the changes are
-  /// round-off. \param h step length, of type T if it varies [s]
+  /// Computes v_i = v₀ + h Σ a_ij v̇_j and δ_i = h Σ a_ij δ˙(δ_j, v_j). The fixed-point iteration for δ_i ends when the
+  /// changes are at round-off. \param h step length, of type T if it varies [s]
   template <class H>
   void find(BasicSystem<T> const& s, H const& h) {
     for (std::size_t i = 0; i < 3; ++i) {

@@ -1,10 +1,10 @@
 #pragma once
 /// \file
-/// Adjoint of a step of Radau; gradients/radau_linearised_step.hpp has the linearised step. With y = (v̇_i, λ_i) of the
-/// three stages and R(y; x₀) their equations, μ is the solution of (∂R/∂y)ᵀ μ = ȳ. A tape records the stages and the
-/// operations after them once. The backward sweep over the projection and the last change of v̇ solves linear equations
-/// point by point (gradients/recorded_points.hpp). A factorisation of the transposed matrix of all stages approximates
-/// μ. Products from sweeps over the tape of the stages correct μ until the corrections are round-off.
+/// Adjoint of a step of Radau; gradients/radau_linearised_step.hpp contains the linearised step. With y = (v̇_i, λ_i)
+/// of the three stages and R(y; x₀) their equations, μ is the solution of (∂R/∂y)ᵀ μ = ȳ. A tape records the stages and
+/// the operations after them once. The backward sweep over the projection and the last change of v̇ solves linear
+/// equations point by point (gradients/recorded_points.hpp). A factorisation of the transposed matrix of all stages
+/// approximates μ. Products from sweeps over the tape of the stages correct μ until the corrections are at round-off.
 ///
 /// Not in polybody.hpp: few programs need derivatives of whole runs.
 
@@ -33,8 +33,8 @@ class RadauStepAdjoint {
   /// Converts, in place, the adjoint variables of the state after the step to adjoint variables of the state before it.
   /// Calls `visit(place, μ)` for each point where the step solves equations; −μ is the derivative of the objective
   /// function with respect to these equations. Returns the relative size of the last correction of μ. \throws
-  /// NewtonConvergenceFailure if its stages do not converge again, SingularMatrix in a singular configuration,
-  /// NonFiniteValue.
+  /// NewtonConvergenceFailure if the stages do not converge as they are computed again, SingularMatrix in a singular
+  /// configuration, NonFiniteValue.
   template <class F>
   double backward_step(StepTaken const& step, Costate& x, F&& visit) {
     stages_.find(step);
@@ -85,11 +85,12 @@ class RadauStepAdjoint {
   void factor(StepTaken const& step) {
     Index const bad = solver_.factor([&](BlockSink& sink) { write_transposed(sink, step.before.t, step.h); });
     if (bad >= 0)
-      throw SingularMatrix("derivative.singular",
-                           {"The adjoint of the step to t = ", ErrorTime{step.before.t + step.h}, " s has no pivot at ",
-                            ErrorObject{name_of_equation(places_.template system<double>(),
-                                                         bad % equations_of(places_.template system<double>()))},
-                            "."});
+      throw SingularMatrix(
+          "derivative.singular",
+          {"The equations of the adjoint of the step to t = ", ErrorTime{step.before.t + step.h}, " s are singular at ",
+           ErrorObject{name_of_equation(places_.template system<double>(),
+                                        bad % equations_of(places_.template system<double>()))},
+           ". Avoid the singular configuration, or take a smaller step."});
   }
 
   /// Records the start and the stages as variables, their equations, and then the points after them. Returns the number
@@ -101,7 +102,7 @@ class RadauStepAdjoint {
     for (std::size_t i = 0; i < 3; ++i) {
       detail::set_variables(found.vd[i], recorded_.vd[i]);
       detail::set_variables(found.lambda[i], recorded_.lambda[i]);
-      recorded_.delta[i].setConstant(ReverseVar(0.0));  // zero: derivatives need all passes over it
+      recorded_.delta[i].setConstant(ReverseVar(0.0));  // zero: the tape must contain the whole iteration for δ
     }
     numbers_.clear();
     stages_.evaluate(recorded_, equations_, step, step.h, [&](Index) {
@@ -140,7 +141,7 @@ class RadauStepAdjoint {
   PointEquations<ReverseVar> equations_;
   detail::RadauStages<ReverseVar> recorded_;
   TangentSolver<AutoLu> solver_;       // of the transposed matrix
-  std::vector<Tape::Number> numbers_;  // of the equations of all stages
+  std::vector<Tape::Number> numbers_;  // tape numbers of the equations of all stages
   detail::TransposedSolution solution_;
   VecX mu_, y_, product_;
 };

@@ -1,10 +1,11 @@
 #pragma once
 /// \file
-/// Points of a recorded step where it solves linear equations K x = b, K = [M, Gᵀ; G, 0]. From
+/// Points of a recorded time step at which it solves linear equations K x = b with K = [M, Gᵀ; G, 0]. From
 ///   K δx = δb − δK x  follows  b̄ = μ = K⁻ᵀ x̄ = K⁻¹ x̄,
-/// where x̄ and b̄ are the derivatives of the objective function with respect to x and b. The step is one function
-/// template. Doubles solve the equations and factorise K at each point. Tape variables pass through the same points in
-/// the same order. The backward sweep computes the multipliers μ of each point.
+/// where x̄ and b̄ are the derivatives of the objective function with respect to x and b. One function template
+/// computes the step with both scalar types. With doubles it solves the equations and factorises K at each point. With
+/// tape variables it passes through the same points in the same order. The backward sweep computes the multipliers μ of
+/// each point.
 ///
 /// Not in polybody.hpp: few programs need derivatives of whole runs.
 
@@ -24,7 +25,7 @@ class RecordedPoints {
     rhs_ = mu_ = VecX::Zero(system.size());
   }
 
-  /// The system in the scalar T.
+  /// System with the scalar type T.
   template <StateScalar T>
   BasicSystem<T>& system() {
     if constexpr (std::same_as<T, double>)
@@ -42,9 +43,9 @@ class RecordedPoints {
 
   /// Adds x as another point, and stores the solution in its a and λ. \throws SingularMatrix, NonFiniteValue.
   void solve(EvaluationPoint<>& x) { found_.solve(x); }
-  /// Largest |constraint equation| for a = 0 at the last point.
+  /// Largest absolute residual of the constraint equations for a = 0 at the last point.
   double largest_row() const { return found_.largest_row(); }
-  /// Redundant equations at the last point.
+  /// Indices of the redundant constraint equations at the last point.
   std::span<Index const> dropped() const { return found_.dropped(); }
 
   /// Records the next point: sets a and λ of x to its solution, as variables, and evaluates the equations.
@@ -62,9 +63,9 @@ class RecordedPoints {
     passed_.push_back(std::move(here));
   }
 
-  /// Sweeps backward to operation `begin`, which precedes the first point. The derivatives with respect to the results
-  /// of the step are the input. Calls `visit(place, μ)` for each point, from the last one to the first; μ (nv + rows)
-  /// has the order of the velocities, then of the constraint equations.
+  /// Sweeps backward to operation `begin`, which precedes the first point. Before the call, the tape must contain the
+  /// derivatives with respect to the results of the step. Calls `visit(place, μ)` for each point, from the last one to
+  /// the first; μ (nv + rows) has the order of the velocities, then of the constraint equations.
   template <class F>
   void sweep(F&& visit, std::size_t begin = 1) {
     std::size_t end = recording_.size();

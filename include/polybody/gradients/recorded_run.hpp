@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Record of a run with breakpoints and events. Each step can be repeated from it with bitwise identical results.
+/// Record of a run with breakpoints and events, from which each step can be repeated with bitwise identical results.
 ///
 /// Not in polybody.hpp: few programs need derivatives of whole runs.
 
@@ -14,13 +14,13 @@ namespace polybody::detail {
 
 /// Step of a run, with the events and the breakpoint that end it.
 struct RecordedStep {
-  StepPlan::Next plan;                   ///< planned end
-  double h = 0.0;                        ///< length [s]
-  double end = 0.0;                      ///< time after it [s]
+  StepPlan::Next plan;                   ///< planned end of the step
+  double h = 0.0;                        ///< length of the step [s]
+  double end = 0.0;                      ///< time after the step [s]
   double far = 0.0, largest = 0.0;       ///< with events: length of the full step [s], largest |event value|
-  std::vector<std::size_t> met, acting;  ///< indices of the events that end it, and of the events with an action
-  bool at_breakpoint = false;            ///< it ends at a breakpoint
-  bool restarts = false;                 ///< the integrator starts again after it
+  std::vector<std::size_t> met, acting;  ///< indices of the events that end the step, and of those with an action
+  bool at_breakpoint = false;            ///< true if the step ends at a breakpoint
+  bool restarts = false;                 ///< true if the integrator starts again after the step
   StepPlan::Next next;                   ///< plan of the next step, if the integrator starts again
 };
 
@@ -31,8 +31,8 @@ class RecordedRun {
   /// \param full model of the run; must outlive this object
   explicit RecordedRun(V& full) : full_(&full) {}
 
-  /// Computes and records the run. \throws InvalidInput if it has no step, or if an event coincides with a breakpoint
-  /// or another event; as `simulate`.
+  /// Computes and records the run. \throws InvalidInput if the run has no step, or if an event coincides with a
+  /// breakpoint or another event; and the exceptions of `simulate`.
   void take(RunReport& report) {
     h_ = full_->length();
     std::vector<double> const breakpoints = full_->breakpoints();
@@ -64,7 +64,7 @@ class RecordedRun {
     if (s.restarts) restart(s, x);
     return report;
   }
-  /// End of step k from x, before event actions and a restart.
+  /// State at the end of step k from x, before event actions and a restart.
   State end(std::size_t k, State x) {
     double const end = x.t + all_[k].h;
     (void)full_->step(x, all_[k].h);
@@ -142,8 +142,8 @@ class RecordedRun {
         throw InvalidInput("derivative.coincident_times",
                            {"gradient: events \"", ErrorObject{options().events[s.met.front()].name}, "\" and \"",
                             event.name, "\" coincide at t = ", ErrorTime{x.t},
-                            " s. Remove one of the events, or use `sensitivities`, which finds out if they separate "
-                            "with a parameter."});
+                            " s. Remove one of the events, or use `sensitivities`, which checks if a parameter "
+                            "separates them."});
       s.met.push_back(i);
       if (event.action) s.acting.push_back(i);
       s.largest =

@@ -28,7 +28,8 @@ void require_plain(RunOptions const& o, char const* who) {
     throw InvalidInput(
         "derivative.options",
         {ErrorObject{who},
-         ": a run with halved steps or with multipliers of least norm has no derivative. Remove these options."});
+         ": a run with halved steps or minimum-norm multipliers is not differentiable. Remove max_step_halvings and "
+         "minimum_norm from the options."});
 }
 
 /// \throws InvalidInput if the model for another value of p has a different number of unknowns, outputs, events or
@@ -44,19 +45,20 @@ void require_alike(V const& model, V const& other, Parameter const& p, char cons
                       Index(v.breakpoints().size())};
   };
   if (sizes(other) != sizes(model))
-    throw InvalidInput("derivative.sizes", {ErrorObject{who}, ": with another \"", p.name,
-                                            "\" the factory makes a model of other sizes. Parameters may change "
-                                            "numbers, but not the bodies, joints and forces."});
+    throw InvalidInput("derivative.sizes", {ErrorObject{who}, ": for another value of \"", p.name,
+                                            "\" the factory makes a model of a different size. Parameters may change "
+                                            "values, but not the numbers of bodies, joints, forces, outputs, events "
+                                            "and breakpoints."});
   Coordinates const &here = model.system.step_coordinates(), &there = other.system.step_coordinates();
   if (here && there.reduced->full_velocity != here.reduced->full_velocity)
     throw InvalidInput("derivative.elimination",
                        {ErrorObject{who}, ": changing \"", p.name,
                         "\" changes which coordinates AncfLinear eliminates (a marker crosses the middle between two "
-                        "nodes). Move the marker, or give these joints Constraint."});
+                        "nodes). Move the marker, or use Constraint for these joints."});
 }
 
 /// Returns `left`, the relative change of the derivatives in the last correction of the step to t [s]. \throws
-/// NewtonConvergenceFailure if it is above 10⁻⁶. The message begins with `who`.
+/// NewtonConvergenceFailure if `left` is above 10⁻⁶. The message begins with `who`.
 template <class = void>
 double require_converged(double left, double t, char const* who) {
   if (left <= 1e-6) return left;
@@ -66,7 +68,7 @@ double require_converged(double left, double t, char const* who) {
                                   ErrorValue{left}, ". Take a smaller step there, or softer contacts."});
 }
 
-/// Breakpoints of a run [s], not sorted: first of driving constraints and loads, then of the options.
+/// Breakpoints of a run [s], not sorted: first those of driving constraints and loads, then those of the options.
 template <class = void>
 std::vector<double> breakpoints_of(System const& system, RunOptions const& options) {
   Sequence<double> const& own = system.layout().breakpoints;
@@ -81,7 +83,7 @@ double length_of_steps(RunOptions const& o) {
   return o.max_step ? std::min<double>(o.step, *o.max_step) : double(o.step);
 }
 
-/// Values of the outputs of a scenario at x. \throws NonFiniteValue.
+/// Values of the outputs of a scenario at x. \throws NonFiniteValue if a value is not finite.
 template <class S>
 VecX values_of_outputs(S const& scenario, State const& x) {
   VecX out(Index(scenario.outputs.size()));
@@ -101,9 +103,8 @@ concept AlphaFamilyIntegrator = requires(I const integrator) {
   { integrator.method() } -> std::convertible_to<AlphaMethod>;
 };
 
-/// Method for a run with derivatives: its tolerance is at most 10⁻¹², without a budget of iterations. \throws
-/// InvalidInput as `check` of the parameters and the integrator, and for a stabilised integrator; the message then
-/// begins with `who`.
+/// Method for a run with derivatives, with a tolerance of at most 10⁻¹² and no budget of iterations. \throws
+/// InvalidInput for invalid parameters or options of the integrator, and for a stabilised integrator.
 template <AlphaFamilyIntegrator I>
 AlphaMethod method_of_derivatives(std::vector<Parameter> const& parameters, I const& integrator, char const* who) {
   integrator.check();
@@ -117,7 +118,7 @@ AlphaMethod method_of_derivatives(std::vector<Parameter> const& parameters, I co
   return method;
 }
 
-/// Overload for methods with several stages. \throws InvalidInput as `check` of the parameters and the integrator.
+/// Overload for Runge–Kutta methods. \throws InvalidInput for invalid parameters or options of the integrator.
 template <class I>
 MethodOf<I> method_of_stages(std::vector<Parameter> const& parameters, I const& integrator) {
   check(parameters);

@@ -13,15 +13,15 @@ namespace polybody::detail {
 
 /// Adjoint variables of a run with the generalised-α family.
 struct RunCostate {
-  Costate at;      ///< of the state and the method's own accelerations
-  VecX history;    ///< (history) of the other entries of the history: earlier points, step lengths
-  double t = 0.0;  ///< of the time [J's unit/s]
+  Costate at;      ///< derivatives with respect to the state and the algorithmic accelerations
+  VecX history;    ///< (history) derivatives with respect to the rest of the history: earlier points, step lengths
+  double t = 0.0;  ///< derivative with respect to the time [J's unit/s]
 
   explicit RunCostate(State const& x) : at(x), history(VecX::Zero(x.history.size())) {}
 
   /// Change of J due to a change dx of the state.
   double dot(State const& dx) const { return at.dot(dx) + history.dot(dx.history); }
-  /// Change of J from the state x to y, without round-off from their common part.
+  /// Change of J from the state x to the state y, without round-off from their common part.
   double dot(State const& y, State const& x) const {
     Index const nv = at.own.size();
     return at.q.dot(y.q - x.q) + at.v.dot(y.v - x.v) + at.a.dot(y.a - x.a) + at.lambda.dot(y.lambda - x.lambda) +
@@ -57,8 +57,8 @@ struct RunCostate {
 };
 
 /// Derivative of a result of a state x and a length h along a direction, by differences. `move` adds e times the
-/// direction to both. \param f f(y, length): the result; it may change the copy y of the state; \param e distance of
-/// the differences
+/// direction to the state and to the length. \param f f(y, length): the result; it may change the copy y of the state;
+/// \param e distance of the differences
 template <class Move, class F>
 double slope_along(State const& x, double h, double e, Move const& move, F const& f) {
   double sum = 0.0;

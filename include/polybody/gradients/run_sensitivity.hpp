@@ -10,9 +10,9 @@ namespace polybody::detail {
 
 /// Derivative of the current state of a run with respect to a parameter or to the length of a step.
 struct RunSensitivity {
-  State dx;         ///< of the state; its history contains the step lengths of the run itself
-  double dt = 0.0;  ///< of the time [s]
-  VecX lengths;     ///< of these step lengths [s]
+  State dx;         ///< derivative of the state; the history of `dx` contains the step lengths of the run itself
+  double dt = 0.0;  ///< derivative of the time [s]
+  VecX lengths;     ///< derivatives of these step lengths [s]
 };
 
 /// Step lengths in the integrator history of a state or its derivative [s]; empty without a history.

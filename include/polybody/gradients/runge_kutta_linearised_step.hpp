@@ -11,8 +11,8 @@
 
 namespace polybody {
 
-/// Derivatives of successive steps of RungeKutta4 or DormandPrince, also with respect to the step lengths. The choice
-/// of the step lengths by the error is not differentiated.
+/// Derivatives of successive steps of RungeKutta4 or DormandPrince, also with respect to the step lengths. The
+/// dependence of step lengths on the error estimate is not differentiated.
 template <class Method, LinearSolver Solver = DefaultSolver>
 class RungeKuttaLinearisedStep {
   using D = typename SolvedPoints<Solver>::D;
@@ -26,7 +26,8 @@ class RungeKuttaLinearisedStep {
   [[gnu::cold]] RungeKuttaLinearisedStep(M const& model, System& system, Method const& method)
       : places_(model, system), walk_(method) {}
 
-  /// Prepares the derivatives of this step. \throws SingularMatrix in a singular configuration, NonFiniteValue.
+  /// Prepares the derivatives of a step by computing its stages again. \throws SingularMatrix in a singular
+  /// configuration, NonFiniteValue.
   void set(StepTaken const& step) {
     State const& x = step.before;
     numbers_.q0 = x.q;
@@ -40,9 +41,9 @@ class RungeKuttaLinearisedStep {
   }
 
   /// Converts, in place, up to `max_directions` derivatives of the state before the step to derivatives of the state
-  /// after it. Returns zero, since there is no iterative correction. \param slope derivative of the equations at each
-  /// evaluation point, for the parameter of a direction and the change of time along it; \param dh derivative of the
-  /// step length along each direction [s], or none if the length is constant
+  /// after it. Returns zero, since there is no iterative correction. \param slope slope(x, l) returns the derivative of
+  /// the equations at the point x along direction l, due to its parameter and its change of time; \param dh derivative
+  /// of the step length along each direction [s], or none if the length is constant
   template <EquationDerivativeFunction F>
   double advance(StepTaken const& step, std::span<State* const> directions, F&& slope,
                  std::span<double const> dh = {}) {

@@ -21,7 +21,7 @@ struct RungeKuttaNumbers {
   VecXOf<T> delta;                                              ///< (nv) increment δ of a stage
   std::array<VecXOf<T>, Method::Tableau::stages> rate;          ///< (nv) δ˙ of the stages
   std::array<VecXOf<T>, Method::Tableau::stages> acceleration;  ///< (nv) v̇ of the stages
-  EvaluationPoint<T> at;                                        ///< a stage; finally the end of the step
+  EvaluationPoint<T> at;                                        ///< point of a stage; finally the end of the step
 };
 
 /// Computes steps of a Runge–Kutta method in any scalar type.

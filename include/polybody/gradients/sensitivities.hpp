@@ -4,7 +4,7 @@
 ///
 ///     auto const make = [](std::span<double const> p) { … return Scenario<M>{model, start, options, outputs}; };
 ///     SensitivityResult const s = sensitivities(make, {{"length [m]", 1.0}}, GeneralisedAlpha{});
-///     s.derivatives.back()(0, 0);   // of the first output with respect to the first parameter at the end of the run
+///     s.derivatives.back()(0, 0);   // derivative of output 0 with respect to parameter 0 at the end of the run
 ///
 /// The results are derivatives of the discrete run, that is of its computed values, not of the exact motion. The
 /// factory makes models for nearby parameter values. Only their equations at given unknowns are differenced
@@ -33,10 +33,10 @@ concept ScenarioFactory = requires(F const make, std::span<double const> p) {
 /// to each parameter. Newton's method converges to 1e-12 or to round-off. \param integrator of the generalised-α
 /// family, without `stabilised`; with runge_kutta_linearised_step.hpp also RungeKutta4 and DormandPrince; with
 /// radau_linearised_step.hpp also Radau. Step lengths of DormandPrince are constants, unless an event, a breakpoint or
-/// the end of the run ends the step. \throws InvalidInput as `check` of the parameters; for a factory whose models
-/// differ in size; for an event that only touches zero; for events or breakpoints that coincide and separate with a
-/// parameter; for a parameter that changes equations of an object outside its `affects`. \throws SingularMatrix in a
-/// singular configuration; and as `simulate`.
+/// the end of the run ends the step. \throws InvalidInput for invalid parameters; if models of the factory differ in
+/// size; if an event only touches zero; if events or breakpoints coincide and a parameter separates them; if a
+/// parameter changes equations of an object outside its `affects`. \throws SingularMatrix in a singular configuration;
+/// and the exceptions of `simulate`.
 template <ScenarioFactory Make, class I>
 SensitivityResult sensitivities(Make const& make, std::vector<Parameter> const& parameters, I const& integrator) {
   if constexpr (detail::AlphaFamilyIntegrator<I>) {

@@ -14,17 +14,18 @@ struct SensitivityResult {
   std::vector<std::string> parameters, outputs;  ///< names, with units
   std::vector<double> times;                     ///< (n) start, and end of every step [s]
   std::vector<VecX> values;                      ///< (n) outputs
-  std::vector<MatX> derivatives;                 ///< (n) outputs × parameters, of `values` at the moving times
-  std::vector<VecX>
-      time_derivatives;  ///< (n) of `times` with respect to the parameters, in their units; nonzero after an
-                         ///< event and at a moving breakpoint; the last one belongs to a terminal event
-  double left = 0.0;     ///< largest relative change in the last correction of a step
-  RunReport run;         ///< report of the run itself
+  /// (n) Derivatives (outputs × parameters) of `values` at `times`, which may change with the parameters.
+  std::vector<MatX> derivatives;
+  /// (n) Derivatives (parameters) of `times` [s / unit of the parameter]: nonzero after an event, and at a breakpoint
+  /// that depends on a parameter. If a terminal event ends the run, the last one is that of the event.
+  std::vector<VecX> time_derivatives;
+  double left = 0.0;  ///< largest relative change in the last correction of a step
+  RunReport run;      ///< report of the run itself
 };
 
 namespace detail {
 
-/// Adds a warning for each parameter without effect. \param affected by parameters: nonzero if it has an effect
+/// Adds a warning for each parameter without effect. \param affected for each parameter: nonzero if it has an effect
 template <class = void>
 void warn_of_unused(std::vector<Parameter> const& parameters, std::vector<char> const& affected, RunReport& run) {
   for (std::size_t j = 0; j < parameters.size(); ++j)

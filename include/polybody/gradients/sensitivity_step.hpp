@@ -8,8 +8,8 @@
 
 namespace polybody::detail {
 
-/// Direction of differentiation of a step: number j of the parameter, derivative of the run, derivative of the step
-/// length.
+/// Direction of differentiation of a step: number j of the parameter, derivative `tangent` of the run, derivative dh of
+/// the step length.
 struct TangentColumn {
   std::size_t j;
   RunSensitivity* tangent;
@@ -18,10 +18,10 @@ struct TangentColumn {
 
 /// Completed step of a run.
 struct SensitivityStep {
-  State& before;       ///< state at its start
-  State const& after;  ///< state at its end
-  double h;            ///< its length [s]
-  bool searched;       ///< an event search computed other steps after it
+  State& before;       ///< state at the start of the step
+  State const& after;  ///< state at the end of the step
+  double h;            ///< length of the step [s]
+  bool searched;       ///< true if an event search computed other steps after this one
 };
 
 }  // namespace polybody::detail

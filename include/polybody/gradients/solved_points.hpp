@@ -1,11 +1,11 @@
 #pragma once
 /// \file
-/// Points of a step where it solves linear equations (gradients/evaluation_point.hpp), and the derivatives of the
-/// solutions. From K x = b, K = [M, Gᵀ; G, 0],
+/// Points of a time step at which it solves linear equations (gradients/evaluation_point.hpp), and the derivatives of
+/// the solutions. From K x = b with K = [M, Gᵀ; G, 0],
 ///   K δx = δb − δK x.
-/// One pass of dual numbers through the equations at constant x evaluates the right-hand side. The step is one function
-/// template. Doubles solve the equations and factorise K at each point. Dual numbers pass through the same points in
-/// the same order.
+/// One pass of dual numbers through the equations at constant x evaluates the right-hand side. One function template
+/// computes the step in both scalar types. With doubles it solves the equations and factorises K at each point. With
+/// dual numbers it passes through the same points in the same order.
 ///
 /// Not in polybody.hpp: few programs need derivatives of whole runs.
 
@@ -25,7 +25,7 @@ class SolutionPoints {
   /// Point with its solution and the factors of K there.
   struct Found {
     EvaluationPoint<> place;                    ///< point with its solution
-    TangentSolver<StepSolver<Solver>> factors;  ///< of K, which is symmetric
+    TangentSolver<StepSolver<Solver>> factors;  ///< factors of the symmetric matrix K
   };
 
   /// \param system must outlive this object
@@ -84,7 +84,7 @@ class SolvedPoints {
   /// Number of directions in one pass through the equations: one for each derivative of a dual number.
   static constexpr int max_directions = 4;
   using D = Dual<max_directions>;  ///< value with its derivatives
-  using Dots = VecXOf<Dual<4>>;    ///< vector of them
+  using Dots = VecXOf<Dual<4>>;    ///< vector of dual numbers
 
   /// The model must outlive this object.
   template <class M>
@@ -93,7 +93,7 @@ class SolvedPoints {
     rhs_ = solution_ = VecX::Zero(system.size());
   }
 
-  /// The system in the scalar T.
+  /// System with the scalar type T.
   template <StateScalar T>
   BasicSystem<T>& system() {
     if constexpr (std::same_as<T, double>)
@@ -147,7 +147,7 @@ class SolvedPoints {
 
 namespace detail {
 
-/// Sets `to` to one vector of a state, with its derivatives along all directions.
+/// Sets `to` to one vector of a state, `part`, with its derivatives along all directions.
 template <int N>
 void lift(VecX const& part, std::span<State* const> dx, VecX State::* of, VecXOf<Dual<N>>& to) {
   to.resize(part.size());

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Forward sensitivities along the steps of methods with several stages.
+/// Propagation of forward sensitivities over the steps of Runge–Kutta methods.
 ///
 /// Not in polybody.hpp: few programs need derivatives of whole runs.
 

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
 /// Adjoint of the start correction of a step of the generalised-α family (`AlphaMethod::start_step`). The correction
-/// changes velocities and the method's own accelerations. Differences approximate its derivatives.
+/// changes velocities and algorithmic accelerations. Its derivatives are computed by differences.
 ///
 /// Not in polybody.hpp: few programs need derivatives of whole runs.
 
@@ -10,23 +10,26 @@
 
 namespace polybody::detail {
 
-/// Start correction of velocities and own accelerations for a step of length h from x. \tparam V a PerturbedModel
+/// Start correction of velocities and algorithmic accelerations for a step of length h from x, with its adjoint.
+/// \tparam V a PerturbedModel
 template <class V>
 class StartCorrectionAdjoint {
  public:
-  /// \param spare model of the run itself; must outlive this object; \param corrects the step has a correction
+  /// \param spare model of the run itself; must outlive this object; \param corrects true if the step has a start
+  /// correction
   StartCorrectionAdjoint(V& spare, State const& x, double h, bool corrects)
       : spare_(&spare), x_(&x), h_(h), corrects_(corrects), decided_(V::decided(x, h, corrects)) {}
 
-  /// Step length for which the own accelerations of x are shifted [s]; zero after a start.
+  /// Step length whose start correction is included in x [s]; zero after a start.
   double shifted() const { return (*x_).history[(*x_).history.size() - 1]; }
 
-  /// Replaces velocities and own accelerations of a state y of model v by their correction.
+  /// Replaces velocities and algorithmic accelerations of a state y of model v by their changes due to the start
+  /// correction.
   void add(V& v, State& y, double length) const { v.set_out_change(y, length, decided_); }
 
-  /// Converts, in place, the adjoint variables `bar` of the corrected velocities and own accelerations to adjoint
-  /// variables of x. Returns the derivative of J with respect to the step length. \param by_time include the time of x;
-  /// false if it is a breakpoint
+  /// Converts, in place, the adjoint variables `bar` of the corrected velocities and algorithmic accelerations to
+  /// adjoint variables of x. Returns the derivative of J with respect to the step length. \param by_time true to
+  /// include the time of x; false at a breakpoint
   double pull(RunCostate& bar, bool by_time) const {
     VecX const v = bar.at.v, own = bar.at.own;
     auto const result = [&](State& y, double length) {

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Ends of a step of the generalised-α family, and the derivatives of its equations with respect to a parameter.
+/// Ends of a step of the generalised-α family, and the derivatives of the equations of the step with respect to a
+/// parameter.
 ///
 /// Not in polybody.hpp: few programs need derivatives of whole runs.
 
@@ -14,22 +15,22 @@ namespace polybody {
 struct EquationDerivative {
   VecX balance;        ///< (nv) ∂r/∂p
   VecX rows;           ///< (rows) ∂Φ/∂p
-  double scale = 1.0;  ///< change of the parameter over which a and λ may change by their own size, in its unit
+  double scale = 1.0;  ///< change of the parameter that may change a and λ by their own size, in its unit
 };
 
-/// Ends of a step of length h: states before and after it, and the method's own accelerations there.
+/// Ends of a step of length h: states before and after the step, and the algorithmic accelerations there.
 struct StepEnds {
-  State const& before;     ///< state at its start, with corrected velocities
-  State const& after;      ///< state at its end
-  VecX const& own_before;  ///< (nv) a₀
-  VecX const& own_after;   ///< (nv) a₁
-  double h;                ///< [s]
+  State const& before;     ///< state at the start of the step, with corrected velocities
+  State const& after;      ///< state at the end of the step
+  VecX const& own_before;  ///< (nv) algorithmic accelerations a₀ at the start
+  VecX const& own_after;   ///< (nv) algorithmic accelerations a₁ at the end
+  double h;                ///< length of the step [s]
 
   /// Increment δ (nv) of the step with `method`: q₁ = q₀ ⊞ δ.
   VecX increment(AlphaMethod const& method) const {
     return h * before.v + h * h * ((0.5 - method.beta) * own_before + method.beta * own_after);
   }
-  /// Position at the end of the step.
+  /// Coordinates, velocities, time, accelerations and multipliers at the end of the step.
   StepPosition end() const { return {{after.q, after.v, after.t}, after.a, after.lambda}; }
 };
 
@@ -41,8 +42,9 @@ struct StepDirection {
 };
 
 namespace detail {
-/// Evaluates the system for its tangent matrix with second-order terms. This matrix depends on the reactions of
-/// eliminated joints in the last reduced residual, so the residual is evaluated too. \param r (nv) workspace
+/// Evaluates the system for its tangent matrix with second-order terms. If joints are eliminated, the residual is also
+/// evaluated, because the matrix depends on the reactions of these joints in the last reduced residual. \param r (nv)
+/// workspace
 template <class = void>
 void evaluate_for_tangent(System& system, StepPosition const& x, VecX& r) {
   system.evaluate(x.at.q, x.at.v, x.at.t);

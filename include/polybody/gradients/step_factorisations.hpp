@@ -49,20 +49,20 @@ class StepFactorisations {
       : system_(&system), method_(method), turned_(system), choice_(of_use(std::move(candidates))) {}
 
   /// Chooses and computes the factorisation of this step. \param near factorisation from the solution of the step
-  /// itself, or none. \throws SingularMatrix in a singular configuration.
+  /// itself; may be null. \throws SingularMatrix in a singular configuration.
   void set(StepEnds const& step, OfStep* near = nullptr) {
     kind_ = choice_.next();
     near_ = near;
     if (kind_ != ApproximateFactors::of_step || !near) factor(step, std::max(kind_, ApproximateFactors::of_end));
   }
-  /// Computes the most accurate factorisation. \throws SingularMatrix as `set`.
+  /// Computes the most accurate factorisation. \throws SingularMatrix in a singular configuration.
   void set_nearest(StepEnds const& step) {
     choice_.make(nearest());
     factor(step, nearest());
   }
-  /// The factorisation is the most accurate kind.
+  /// True if the factorisation is of the most accurate kind.
   bool are_nearest() const { return kind_ == nearest(); }
-  /// The factorised matrix contains all terms that steps omit.
+  /// True if the factorised matrix contains the terms that Newton's method omits.
   bool are_exact() const { return kind_ >= ApproximateFactors::exact; }
   /// Solves for x with the right-hand side `rhs`; both have the order of the unknowns of the step.
   void solve(VecX const& rhs, VecX& x) {
@@ -93,7 +93,7 @@ class StepFactorisations {
     return kind == ApproximateFactors::of_end ? SecondOrder::omitted : SecondOrder::included;
   }
 
-  /// Tangent coefficients of a kind, with the active pairs of its force groups.
+  /// Tangent coefficients for a kind of factorisation, with the active contact pairs of this kind.
   TangentCoefficients coefficients(ApproximateFactors kind, double mass, double damping, double stiffness) {
     return {.mass = mass,
             .damping = damping,
@@ -101,7 +101,7 @@ class StepFactorisations {
             .exact = kind >= ApproximateFactors::exact,
             .pairs = &own_[std::size_t(kind)].pairs};
   }
-  /// Writes the tangent matrix of a kind for the last evaluation of the system.
+  /// Writes the matrix for a kind of factorisation, for the last evaluation of the system.
   void write(ApproximateFactors kind, TangentCoefficients const& k, VecX const& lambda, BlockSink& sink) {
     auto const write_into = [&](auto& receiver) {
       k.pairs->begin();
@@ -117,7 +117,7 @@ class StepFactorisations {
       write_into(sink);
     }
   }
-  /// Analyses the structure of the matrix of a kind, with its stored contact pairs.
+  /// Analyses the structure of the matrix for a kind of factorisation, with its stored contact pairs.
   [[gnu::cold]] void lay_out(ApproximateFactors kind, VecX const& lambda) {
     TangentCoefficients const k = coefficients(kind, 1.0, 1.0, 1.0);
     own_[std::size_t(kind)].factors.emplace().analyse(*system_, 1,
@@ -136,8 +136,9 @@ class StepFactorisations {
       again = lacks || (bad >= 0 && own.factors->reorderings() != reordered);
       if (bad >= 0 && !again)
         throw SingularMatrix("derivative.singular",
-                             {"The derivative of the step to t = ", ErrorTime{end.at.t}, " s has no pivot at ",
-                              ErrorObject{name_of_equation(*system_, bad)}, "."});
+                             {"The equations of the linearised step to t = ", ErrorTime{end.at.t},
+                              " s are singular at ", ErrorObject{name_of_equation(*system_, bad)},
+                              ". Avoid the singular configuration, or take a smaller step."});
       if (!lacks) continue;
       own.pairs.hold();
       lay_out(kind, end.lambda);
@@ -155,7 +156,7 @@ class StepFactorisations {
     return factors.factor([&](BlockSink& sink) { write(kind, k, end.lambda, sink); });
   }
 
-  /// Factorisation of a kind, with the contact pairs that have blocks in it.
+  /// Factorisation of one kind, with the contact pairs that have blocks in its matrix.
   struct Own {
     std::optional<Factors> factors;
     ActiveContactPairs pairs;
@@ -167,7 +168,7 @@ class StepFactorisations {
   PreconditionerChoice choice_;
   ApproximateFactors kind_ = ApproximateFactors::of_step;
   std::array<Own, 4> own_;      // by kind
-  Factors* factors_ = nullptr;  // current one
+  Factors* factors_ = nullptr;  // current factorisation
   OfStep* near_ = nullptr;
   VecX balance_, turned_rhs_;
 };

@@ -28,7 +28,7 @@ class TimeMap {
 
   TimeMap() = default;
   /// \param remainder_step smallest distance of distinct times [s]; \param who beginning of messages. \throws
-  /// InvalidInput if times change their order, or if coincident times separate.
+  /// InvalidInput if perturbed times have another order, or if coincident times differ in a perturbed run.
   [[gnu::cold]] TimeMap(std::vector<Moving> times, Parameter const& p, double remainder_step, char const* who)
       : times_(std::move(times)), distance_(p.distance()) {
     std::sort(times_.begin(), times_.end(), [](Moving const& a, Moving const& b) { return a.here < b.here; });
@@ -40,19 +40,20 @@ class TimeMap {
             std::abs(perturbed_interval - interval) > 1e-9 * remainder_step + 1e-14 * std::abs(b.here))
           throw InvalidInput("derivative.coincident_times",
                              {ErrorObject{who}, ": two breakpoints, or a breakpoint and the start, coincide at t = ",
-                              ErrorTime{b.here}, " s, but separate with \"", p.name,
-                              "\", so that there is no derivative there. Move one of them by a step."});
+                              ErrorTime{b.here}, " s, but a change of \"", p.name,
+                              "\" separates them; the run is not differentiable there. Move one of the two times by at "
+                              "least one step."});
         if (interval > remainder_step && !(perturbed_interval > 0.0))
-          throw InvalidInput(
-              "derivative.coincident_times",
-              {ErrorObject{who}, ": the breakpoints at t = ", ErrorTime{a.here}, " s and ", b.here,
-               " s change their order within the difference step of \"", p.name, "\". Give it a smaller scale."});
+          throw InvalidInput("derivative.coincident_times",
+                             {ErrorObject{who}, ": the breakpoints at t = ", ErrorTime{a.here}, " s and ", b.here,
+                              " s change their order within the difference step of \"", p.name,
+                              "\". Set a smaller `scale` of this parameter."});
       }
     for (Moving const& m : times_)
       for (double const t : m.there) moves_ = moves_ || t != m.here;
   }
 
-  bool moves() const { return moves_; }  ///< a time depends on the parameter
+  bool moves() const { return moves_; }  ///< true if a time depends on the parameter
 
   /// Time of run k that corresponds to t.
   double operator()(std::size_t k, double t) const {

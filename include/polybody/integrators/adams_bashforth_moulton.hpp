@@ -7,8 +7,8 @@
 namespace polybody {
 
 /// Adams predictor–corrector method with variable order k = 1 … 12 and variable step, in PECE mode [Shampine & Gordon
-/// 1975; Hairer, Nørsett & Wanner 1993, §III.5]. With y = (q, v), the divided differences D_j of past values of y˙
-/// (`AdamsHistory`) and T_j = h + t₀ − t₋ⱼ, a step computes
+/// 1975; Hairer, Nørsett & Wanner 1993, §III.5]. With y = (q, v), the divided differences D_j of past values of y˙ and
+/// weights c_j (both in `AdamsHistory`), and T_j = h + t₀ − t₋ⱼ, a step computes
 ///   p = y₀ + Σ_{j<k} c_j D_j,   D*₀ = y˙(p),  D*ⱼ₊₁ = (D*ⱼ − D_j)/T_j,   y₁ = p + c_k D*_k.
 /// The error estimate of order j is |c_j − c_{j−1} T_{j−1}| ‖D*_j‖. The result y₁ has order k + 1. A step needs two
 /// evaluations, and one more for each rejected trial. Coordinates on a manifold are integrated component by component,
@@ -22,7 +22,7 @@ struct AdamsBashforthMoulton {
   static constexpr Capabilities capabilities = Capabilities::coordinate_rates;
 
   double relative_tolerance = 1e-8;   ///< relative to the scale of each kind of unknown, as in `DormandPrince`
-  double absolute_tolerance = 1e-10;  ///< absolute part, in the units of coordinates and velocities [m], [rad]
+  double absolute_tolerance = 1e-10;  ///< added to the relative part, in the unit of the unknown
   double min_step = 1e-12;            ///< smallest permitted step [s]
   int max_order = order;              ///< highest permitted order, in [1, 12]
   Stabilisation stabilisation = {};   ///< constraint stabilisation
@@ -41,11 +41,11 @@ struct AdamsBashforthMoulton {
   /// Memory of a step, allocated once.
   template <class Solver>
   struct Workspace {
-    VecX y, f, correction;                    ///< by (q, v)
+    VecX y, f, correction;                    ///< y = (q, v), y˙ and the correction c_k D*_k
     VecX raw, q, v, a, lambda, zero;          ///< in order: q of y before ⊞ 0; q, v, v̇, λ of the step; zeros (nv)
     VecXOf<Dual<1>> dual;                     ///< workspace of `coordinate_rates`
     VecX q_rate;                              ///< q˙ (nq)
-    ForwardDynamics<Solver> forward;          ///< accelerations, by the mass matrix
+    ForwardDynamics<Solver> forward;          ///< solver for the accelerations
     detail::ErrorNorm norm;                   ///< norm of the error
     typename Stabilisation::Scratch scratch;  ///< memory of the stabilisation
 
@@ -157,7 +157,7 @@ struct AdamsBashforthMoulton {
  private:
   /// Error estimates of orders k − 2, k − 1, k and k + 1; infinite if too few past points are known.
   struct Errors {
-    double two_below = 0.0, below = 0.0, here = 0.0, above = 0.0;  ///< relative to the tolerance
+    double two_below = 0.0, below = 0.0, here = 0.0, above = 0.0;  ///< errors relative to the tolerance
     /// True if the estimates favour order k − 1 over order k [Shampine & Gordon 1975].
     bool prefer_lower(int k) const {
       return k > 2 ? std::max(two_below, below) <= here : k == 2 && below <= 0.5 * here;
@@ -168,7 +168,7 @@ struct AdamsBashforthMoulton {
   /// point.
   struct Trial {
     std::array<double, order + 2> const &c, &age;
-    double h;  ///< [s]
+    double h;  ///< length of the step [s]
     int k, known;
   };
 

@@ -13,15 +13,15 @@ class AdamsHistory {
  public:
   static constexpr int highest = 12;  ///< highest order
 
-  /// Sets `memory` to a single point, the present one with the value f, and to order 1.
+  /// Resets `memory` to order 1 and a single point, the present one, with y˙ = f.
   static void reset(VecX& memory, VecX const& f) {
     memory.setZero((highest + 1) * f.size() + highest + 3);
     memory.head(f.size()) = f;
     memory.tail<3>().setOnes();
   }
 
-  /// Access to the history of n numbers in the `memory` of a state after `reset`. \throws InvalidInput if `memory` has
-  /// another size.
+  /// Access to the history in the `memory` of a state for y of n entries. `reset` must have been called for `memory`.
+  /// \throws InvalidInput if `memory` has another size.
   AdamsHistory(VecX& memory, Index n) : memory_(memory), n_(n) {
     if (memory.size() != (highest + 1) * n + highest + 3)
       throw InvalidInput("state.no_history",
@@ -62,8 +62,8 @@ class AdamsHistory {
     known() = std::min(points, highest) + 1;
   }
 
-  /// Weights c_j = ∫₀ʰ Π_{i<j} (τ + t₀ − t₋ᵢ) dτ for j ≤ 13, with t₀ − t₋ᵢ from `age` [s]. The Gauss rule is exact for
-  /// degree 13, and all its terms are positive.
+  /// Weights c_j = ∫₀ʰ Π_{i<j} (τ + t₀ − t₋ᵢ) dτ for j ≤ 13, with t₀ − t₋ᵢ from `age` [s]. The seven-point Gauss rule
+  /// is exact for degree 13, and all its terms are positive.
   static std::array<double, highest + 2> weights(double h, std::array<double, highest + 2> const& age) {
     std::array<double, highest + 2> c{};
     for (GaussPoint const& p : gauss<7>) {

@@ -1,13 +1,13 @@
 #pragma once
 /// \file
-/// Family of generalised-α methods on Lie groups for index-3 equations [Arnold & Brüls 2007; Brüls, Cardona & Arnold
-/// 2012]:
+/// Family of generalised-α methods with algorithmic accelerations a, on Lie groups, for index-3 equations [Arnold &
+/// Brüls 2007; Brüls, Cardona & Arnold 2012]:
 ///   M v̇₁ = f₁ − Gᵀλ₁,  Φ(q₁) = 0,
 ///   (1 − α_m) a₁ + α_m a₀ = (1 − α_f) v̇₁ + α_f v̇₀,
 ///   v₁ = v₀ + h((1 − γ) a₀ + γ a₁),   q₁ = q₀ ⊞ (h v₀ + h²((½ − β) a₀ + β a₁)).
 /// The Newton unknown is y = Δa₁, with Δq = βh² y, Δv = γh y and Δv̇ = (1 − α_m)/(1 − α_f) y. The constraint equations
 /// are divided by βh², so that the entries of the tangent have the magnitude of M and G for any h. Nonholonomic
-/// equations, G v + Φ_t = 0 at the end of the step, are divided by γh; their part of the tangent is the same.
+/// equations, G v + Φ_t = 0 at the end of the step, are divided by γh; their rows of the tangent are the same.
 /// First-order states use the formulas of a and v, which are the formulas of the family for ż = h(z, t) [Jansen,
 /// Whiting & Hulbert 2000]. Generalised-α, HHT-α, Newmark's method and the trapezoidal rule differ only in the four
 /// coefficients.
@@ -28,15 +28,15 @@
 
 namespace polybody {
 
-/// Member of the family: coefficients and options of Newton's method.
+/// Member of the generalised-α family: coefficients and options of Newton's method.
 struct AlphaMethod {
   char const* name;                      ///< name of the integrator in messages
-  double alpha_m, alpha_f, gamma, beta;  ///< the four coefficients, shares of a step
+  double alpha_m, alpha_f, gamma, beta;  ///< coefficients α_m, α_f, γ and β [1]
   double tolerance;                      ///< tolerance of Newton's corrections, relative to the accelerations
   NewtonOptions newton;                  ///< options of Newton's method
-  bool start_correction;    ///< multipliers have second order from the first step on, and across changes of h
-  bool second_order_terms;  ///< the tangent includes ∂(Gᵀλ)/∂q from the start
-  bool stabilised;          ///< μ enforces Φ = 0, and λ enforces Φ̇ = 0
+  bool start_correction;    ///< true: multipliers have second order from the first step on, and across changes of h
+  bool second_order_terms;  ///< true: the tangent includes ∂(Gᵀλ)/∂q from the start
+  bool stabilised;          ///< true: μ enforces Φ = 0, and λ enforces Φ̇ = 0
 
   /// Memory of a step, allocated once.
   template <class Solver>
@@ -94,17 +94,18 @@ struct AlphaMethod {
     return advance(system, x, h, w);
   }
 
-  /// Stores v₀ and a₀ of a step of h [s] from x in w. If the history is shifted for another step length, v₀ and a₀ are
-  /// corrected. Returns true if they are corrected. \param corrected as in `begin`
+  /// Stores v₀ and a₀ of a step of h [s] from x in w. If v and a of the history include the start correction of another
+  /// step length, corrects v₀ and a₀ and returns true. \param corrected applies or omits this correction; if empty, it
+  /// is applied if h resolves the motion
   template <class Solver>
   bool start_step(System& system, State& x, double h, Workspace<Solver>& w, std::optional<bool> corrected = {}) const {
     StepHistory const history(x);
     w.v0 = x.v;
     history.own(w.a0);
-    double const shifted = history.shifted();  // step length of the shift of v and a; 0 after a start
+    double const shifted = history.shifted();  // step length for which v and a are shifted; 0 after a start
     bool const corrects =
         start_correction && std::abs(h - shifted) > 1e-9 * h && history.jerk(x, w.jerk) &&
-        corrected.value_or(shifted == 0.0 || w.of_each_part([&](Index first, Index end) {  // else not resolved by h
+        corrected.value_or(shifted == 0.0 || w.of_each_part([&](Index first, Index end) {  // else unresolved
           return h * w.norm(w.jerk, first, end) <= 0.5 * w.norm(x.a, first, end);
         }));
     if (corrects) correct(system, x, shifted, h, w);
@@ -141,7 +142,8 @@ struct AlphaMethod {
       at.set(dq, h * v0 + h * h * ((0.5 - m.beta) * a0 + m.beta * now));
     });
   }
-  /// Adds `part` of the correction y: its first entries to a, and the others to λ. v̇, v and Δq change accordingly.
+  /// Adds the fraction `part` of the correction y: the first entries of y to a, and the others to λ. v̇, v and Δq
+  /// change accordingly.
   void apply(double part, double h, bool both_multiplier_sets, AlphaVectors& w) const {
     if (part != 1.0) {
       w.y *= part;
@@ -185,8 +187,8 @@ struct AlphaMethod {
       for (Index const i : nonholonomic_equations) of_rows[i] = w.rate[i] / -(h * gamma);
   }
 
-  /// Evaluates and factorises the tangent for steps of h at x, where `system` was evaluated last. Returns the unknown
-  /// without a pivot, or −1.
+  /// Evaluates and factorises the tangent for steps of h at x, where `system` was evaluated last. Returns the index of
+  /// the unknown without a pivot, or −1.
   template <class Solver>
   Index refactor(System& system, double h, StepPosition const& x, Workspace<Solver>& w,
                  bool surrogate_friction = true) const {
@@ -195,14 +197,14 @@ struct AlphaMethod {
     return w.solver().factor_tangent(system, x, c, w.tangent.terms());
   }
 
-  /// Problem of Newton's method in one step.
+  /// Equations of one step, as a problem of Newton's method.
   template <class Solver>
   struct Problem {
     AlphaMethod const& method;
     System& system;
     State& x;
     Workspace<Solver>& w;
-    double h, look_ahead;  ///< h [s]; share of the expected use of a factorisation at which its tangent is evaluated
+    double h, look_ahead;  ///< step [s]; point in the expected use of a factorisation for its tangent, as a fraction
     bool both_multiplier_sets, recomputes_held, surrogate_friction;
     Index bad = -1;
 
@@ -250,8 +252,8 @@ struct AlphaMethod {
     AndersonAcceleration& acceleration() { return w.acceleration; }
     VecX& correction() { return w.y; }
     void apply(double part) { method.apply(part, h, both_multiplier_sets, w); }
-    /// True if a correction of this `norm` (root mean square of accelerations) moves the bodies further than their
-    /// velocities do within the step.
+    /// True if a correction of this `norm` (root mean square of accelerations) moves the bodies further within the step
+    /// than their velocities move them.
     bool is_far_from_solution(double norm) const {
       Index const bodies = x.v.size() - w.states;
       return method.beta * h * norm * std::sqrt(double(bodies)) > std::sqrt(squares(x.v.data(), bodies));
@@ -285,9 +287,9 @@ struct AlphaMethod {
     return w.forward.loses_rank(system, {x.q, x.v, x.t}, {w.q, x.v, x.t + h});
   }
 
-  /// Performs one step from x, which changes only if Newton's method converges. A step that does not converge is
-  /// repeated without extrapolation, by the full Newton method with all terms of the tangent. μ then acts along Gᵀ of
-  /// the iterate, because near singular positions G rotates far within a step. The second repetition uses the
+  /// Performs one step from x. x changes only if Newton's method converges. A step that does not converge is repeated
+  /// without extrapolation, by the full Newton method with all terms of the tangent. μ then acts along Gᵀ of the
+  /// iterate, because G rotates far within a step near singular configurations. The second repetition uses the
   /// approximate stiffness of force groups, because friction jumps. If the rank of G decreases within the step, the
   /// last repetition omits μ.
   template <class Solver>
@@ -371,9 +373,9 @@ struct AlphaMethod {
   }
 
   /// Computes q⃛ at x by one-sided differences of the accelerations along the motion, at two distances. Returns false if
-  /// the two results disagree, or if a motion with constant q⃛ changes the acceleration after h by more than ½ h ‖q⃛‖ (ωh
-  /// above 1.7 in an oscillator: after an impulse, stiff components dominate q⃛). Steps of h then do not resolve the
-  /// motion, and a correction would add noise.
+  /// the two results disagree, or if a motion with constant q⃛ instead of zero changes the acceleration after h by more
+  /// than ½ h ‖q⃛‖. In an oscillator this occurs for ωh above 1.7; after an impulse, stiff components dominate q⃛.
+  /// Steps of h then do not resolve the motion, and a correction would add noise.
   template <class Solver>
   bool jerk_at_start(System& system, State const& x, double h, Workspace<Solver>& w) const {
     w.jerk.setZero();

@@ -9,7 +9,7 @@ struct AlphaVectors {
   VecX v0, a0;  ///< generalised velocities and algorithmic accelerations at the start of the step
   VecX q, v, vd, a, dq, r, phi, jerk, ahead;  ///< in order: q, v, v̇, a, Δq, r, Φ, q⃛, a second Δq
   VecX lambda, rhs, y;                ///< in order: λ, right-hand side, correction; λ may have more entries than Φ
-  VecX back, rate, open;              ///< of a stabilised step: change of Δq by μ, Φ̇, Φ before the correction by μ
+  VecX back, rate, open;              ///< in a stabilised step: change of Δq by μ, Φ̇, Φ before the correction by μ
   VecX kept, kept_back;               ///< copies of y and `back` during the test for round-off
   AndersonAcceleration acceleration;  ///< acceleration of y, in the norm of the accelerations of bodies
   Index states;                       ///< number of first-order states, the last entries of v
@@ -39,7 +39,7 @@ struct AlphaVectors {
         acceleration(rhs.size(), velocities - first_order),
         states(first_order) {}
 
-  /// ‖a‖ of the entries [i, end).
+  /// Euclidean norm of the entries [i, end) of a.
   static double norm(VecX const& a, Index i, Index end) { return std::sqrt(squares(a.data() + i, end - i)); }
   /// Computes Δq and v after e seconds [s] from x with constant `jerk`.
   void follow(State const& x, double e) {
@@ -48,8 +48,8 @@ struct AlphaVectors {
       v[i] = x.v[i] + e * x.a[i] + 0.5 * e * e * jerk[i];
     }
   }
-  /// Computes `jerk` by one-sided differences of accelerations: `now`, after a `quarter` and a `half` of h [s], and
-  /// after the `full` h. Returns true if the results of both distances agree.
+  /// Computes `jerk` by one-sided differences of the accelerations `now`, and of those after h/4, h/2 and h [s]
+  /// (`quarter`, `half`, `full`). Returns true if the differences over h/2 and over h agree.
   bool find_jerk(VecX const& now, VecX const& quarter, VecX const& half, VecX const& full, double h) {
     VecX mismatch(now.size());
     for (Index i = 0; i < now.size(); ++i) {

@@ -18,12 +18,12 @@ class AssemblyExtents {
  public:
   /// Largest extents along the world axes.
   struct Extent {
-    double length = 0.0;  ///< [m]
-    double speed = 0.0;   ///< [m/s]
+    double length = 0.0;  ///< extent of the positions [m]
+    double speed = 0.0;   ///< extent of the velocities [m/s]
   };
 
   AssemblyExtents() = default;
-  /// \param full, stepped unknowns of the model and of a time step \param assembly number of the assembly of each body
+  /// \param full, stepped unknowns of the model and of a time step \param assembly index of the assembly of each body
   template <class = void>
   [[gnu::cold]] AssemblyExtents(System const& system, UnknownPlaces const& full, UnknownPlaces const& stepped,
                                 Sequence<Index> const& assembly);
@@ -64,7 +64,7 @@ class AssemblyExtents {
     Bounds bounds;        ///< workspace
     Extent extent;
   };
-  /// Entry of a position or velocity.
+  /// Component of a position or velocity: its index in q or v, its assembly and its world axis.
   struct Point {
     Index entry;
     std::uint32_t assembly;

@@ -7,13 +7,13 @@ namespace polybody {
 /// Explicit central differences in their one-step form,
 ///   v½ = v₀ + ½h v̇₀,  q₁ = q₀ ⊞ h v½,  v̇₁ = accelerations(q₁, v½ + ½h v̇₀),  v₁ = v½ + ½h v̇₁,
 /// of order two, stable for h < 2/ω_max [Hughes 2000, §9.1]. Rigid bodies rotate by `FreeRotations` between the half
-/// steps of v, so a free rotation conserves its energy.
+/// steps of v, so the energy of a freely rotating body is conserved.
 template <class Stabilisation = UnconstrainedOnly>
 struct CentralDifference {
   static constexpr char const* name = "CentralDifference";
   static constexpr int order = 2;
   static constexpr bool accepts_constraints = Stabilisation::accepts_constraints;
-  static constexpr double stability_limit = 2.0;  ///< ωh, a ratio
+  static constexpr double stability_limit = 2.0;  ///< largest stable ωh [1]
   static double stable_step(double omega, double rate) { return verlet_stability_limit(omega, rate); }
 
   Stabilisation stabilisation = {};  ///< constraint stabilisation

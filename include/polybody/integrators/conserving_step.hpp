@@ -1,19 +1,19 @@
 #pragma once
 /// \file
-/// Steps that conserve energy and momenta, and steps that dissipate energy, for coordinates that form a vector space
-/// and constant M:
+/// Steps that conserve energy and momenta, and steps that dissipate energy, for a constant mass matrix M and
+/// coordinates that form a vector space:
 ///   M Δv = h (f̄ − Ḡᵀλ),   Δq = h (v̄ + χ Δv),   Φ(q₁) = 0,   v̄ = ½ (v₀ + v₁).
-/// f̄ and Ḡ are discrete gradients [Gonzalez 1996, 1999], computed by secants (math/secant.hpp) of strains, constraint
-/// functions and potentials:
+/// f̄ and Ḡ are discrete gradients [Gonzalez 1996, 1999], computed by secants (math/secant.hpp) of strains ε,
+/// constraint functions Φ and potentials. With the stored energy V and the elastic stiffness C,
 ///   f̄·Δq = −ΔV − χ ΔεᵀCΔε − (damping),   Ḡ Δq = ΔΦ = 0.
 /// Hence, for the kinetic energy T, ΔT = v̄ᵀMΔv = (Δq/h − χ Δv)ᵀMΔv and
 ///   ΔT + ΔV = −χ (ΔvᵀMΔv + ΔεᵀCΔε) − (damping) + (work of the loads).
 /// With χ = 0, energy is conserved. The linear momentum changes by the impulse of the loads for every χ. The angular
-/// momentum changes by their impulse if χ = 0 and f̄ and Ḡ have no moment of their own. This condition holds for
-/// functions of scalar products of coordinates: ANCF cables and the ANCF beam of `Continuum`, springs, and joints
-/// between points on their axes. With angles as coordinates, section frames (`ElasticLine`) and joints of axes, energy
-/// is also conserved, but angular momentum only to the order of the method. First-order states use the midpoint rule,
-/// Δz = h · h(q̄, v̄, z̄, t̄).
+/// momentum changes by the angular impulse of the loads if χ = 0 and if f̄ and Ḡ exert no net moment. This condition
+/// holds for functions of scalar products of coordinates: ANCF cables and the ANCF beam of `Continuum`, springs, and
+/// joints between points on their axes. With angles as coordinates, section frames (`ElasticLine`) and joints of axes,
+/// energy is also conserved, but angular momentum only to the order of the method. First-order states use the midpoint
+/// rule, Δz = h · h(q̄, v̄, z̄, t̄).
 
 #include <polybody/integrators/newton_failure.hpp>
 #include <polybody/integrators/step_history.hpp>
@@ -21,11 +21,12 @@
 
 namespace polybody {
 
-/// Member of the family. `State::a` and `State::lambda` after a step are values at its middle. With χ = 0, λ alternates
-/// by O(h) about the reaction, and the mean over two steps has an error of O(h²).
+/// Step with the parameter χ, which conserves or dissipates energy. `State::a` and `State::lambda` after a step are
+/// values at the middle of the step. With χ = 0, λ alternates by O(h) about the reaction, and the mean over two steps
+/// has an error of O(h²).
 struct ConservingStep {
   char const* name;      ///< name of the integrator in messages
-  double chi;            ///< χ, a share of the step: 0 conserves energy, ½ dissipates most
+  double chi;            ///< χ [1]: 0 conserves energy, ½ dissipates most
   double tolerance;      ///< tolerance of Newton's corrections, relative to the accelerations
   NewtonOptions newton;  ///< options of Newton's method
 
@@ -36,10 +37,10 @@ struct ConservingStep {
     VecX other_vd, other_lambda;                  ///< result of the second attempt, during the third
     StepSecants secants;                          ///< mean forces and constraint Jacobian of the step
     TangentSolver<StepSolver<Solver>> solver;     ///< solver of the tangent of `secants`
-    TangentSolver<StepSolver<UnsymmetricSolver<Solver>>> exact;  ///< analysed if required
+    TangentSolver<StepSolver<UnsymmetricSolver<Solver>>> exact;  ///< solver of the exact tangent
     ForwardDynamics<Solver> forward;                             ///< [M, Gᵀ; G, 0]: accelerations at the start
     ReusedFactorisation reused_factorisation;                    ///< state of the reused factorisation of the tangent
-    bool has_exact = false;                                      ///< `exact` is analysed
+    bool has_exact = false;                                      ///< true if `exact` is analysed
     double h_factored = 0.0;  ///< step length of the last factorisation of the tangent [s]
 
     /// Allocates all members except `exact`.
@@ -92,7 +93,7 @@ struct ConservingStep {
     return w.solver.factor([&](BlockSink& sink) { w.secants.tangent(system, scale(h), sink); });
   }
 
-  /// Problem of Newton's method in one step.
+  /// Equations of one step, as a problem of Newton's method.
   template <class Solver>
   struct Problem {
     ConservingStep const& method;
@@ -164,7 +165,7 @@ struct ConservingStep {
     return h * h * sum;
   }
   /// Restores the result of the second attempt, and returns true, if the third attempt `failed` or changes the
-  /// velocities by more.
+  /// velocities by more than the second.
   template <class Solver>
   static bool takes_other(State const& x, double h, Workspace<Solver>& w, bool failed) {
     if (!failed && change(x, h, w.vd) <= change(x, h, w.other_vd)) return false;
@@ -175,8 +176,9 @@ struct ConservingStep {
 
   /// Performs one step from x. If Newton's method does not converge, the second attempt uses full Newton from zero
   /// accelerations. The third attempt starts from the last accelerations and uses the exact tangent, as required near a
-  /// singular position. There a step has one solution on each branch. If the second attempt changes the direction of
-  /// the velocities, the third also runs, and the solution with the smaller change of the velocities is accepted.
+  /// singular configuration. A step near a singular configuration has one solution on each branch. If the second
+  /// attempt changes the direction of the velocities, the third also runs, and the solution with the smaller change of
+  /// the velocities is accepted.
   template <class Solver>
   StepReport advance(System& system, State& x, double h, Workspace<Solver>& w, int effort = 0,
                      bool has_other = false) const {
@@ -216,7 +218,7 @@ struct ConservingStep {
         detail::throw_convergence_failure(name, system, x.t + h, report, {problem.bad, w.rhs, w.y});
       problem.move();
       for (Index i = 0; i < w.v.size(); ++i) w.v[i] = x.v[i] + h * w.vd[i];
-      system.push_forces();  // the discrete gradients do not evaluate them
+      system.push_forces();  // not evaluated by the discrete gradients
       w.forward.require_end(system, {w.q, w.v, w.lambda, x.t + h, h});
     });
     if (w.solver.lost_rank() || effort == 2) w.reused_factorisation.usable = false;

@@ -7,8 +7,8 @@ namespace polybody {
 
 /// Derivatives ∂Φ̈/∂q and ∂Φ̈/∂v of Φ̈ = G v̇ + γ with respect to the unknowns of a time step, by finite differences. They
 /// have the block pattern of G. Velocities without a common constraint equation are perturbed together [Curtis, Powell
-/// & Reid 1974], so the cost does not grow with the number of joints. With joint coordinates it grows with the number
-/// of joints between the root and the bodies of a constraint equation.
+/// & Reid 1974], so the cost does not grow with the number of joints. With joint coordinates, the cost grows with the
+/// number of joints between the root and the bodies of a constraint equation.
 class ConstraintDerivatives {
  public:
   /// Reads the block pattern of G. The system must have been evaluated before.
@@ -58,15 +58,15 @@ class ConstraintDerivatives {
     }
   }
 
-  /// Adds cv ∂Φ̈/∂v + cq ∂Φ̈/∂q of the last `measure` to `sink`, at the state of the last evaluation of the system. The
-  /// first constraint equation and the first column are `row0` and `col0`. If the equations include the bodies of a
-  /// tree, row0 is the first equation of all.
+  /// Adds cv ∂Φ̈/∂v + cq ∂Φ̈/∂q of the last `measure` to `sink`, at the state of the last evaluation of the system.
+  /// `row0` is the row of the first constraint equation in `sink`, and `col0` is the column of the first velocity. If
+  /// the equations include the bodies of a tree, `row0` is the row of the first equation instead.
   template <class = void>  // compiled only if used
   void write(double cv, double cq, Index row0, Index col0, BlockSink& sink) {
     if (in_tree_) tree_.hold();
     for (std::size_t k = 0; k < blocks_.size();) {
       auto const& [b, first] = blocks_[k];
-      // the places of a row of the tree are contiguous
+      // the entries of one row of the tree are contiguous
       Index const count = in_tree_ ? Index(tree_.velocities(b.row).size()) : b.rows * b.cols;
       sum_.resize(std::size_t(count));
       for (std::size_t i = 0; i < sum_.size(); ++i)
@@ -134,7 +134,7 @@ class ConstraintDerivatives {
 
   Index velocities_ = 0, entries_ = 0;
   int colours_ = 0;
-  bool in_tree_ = false;  ///< the equations include all bodies of a tree
+  bool in_tree_ = false;  ///< true if the equations include all bodies of a tree
   detail::TreeRows tree_;
   Sequence<Place> blocks_;
   Sequence<int> colour_;  ///< colour of each velocity

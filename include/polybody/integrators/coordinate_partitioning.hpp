@@ -11,14 +11,14 @@ namespace polybody {
 /// Generalised coordinate partitioning: a step integrates the independent velocities and coordinates, and the dependent
 /// ones follow from the constraint equations,
 ///   G_d Δq_d = −Φ  (Newton),   G_d v_d = −G_i v_i − Φ_t      [Wehage & Haug 1982; thesis §3.3.1].
-/// Full pivoting selects the dependent columns of G; the remaining columns are independent. They are selected again if
-/// the rank of G changes, or if a dependent coordinate would move more than `largest_ratio` times as fast as an
-/// independent one. G_d⁻¹ G_i, and with it the condition number of G_d, is then too large. Nonholonomic equations make
-/// velocities dependent, but not coordinates; velocities then have a partition of their own. Ratios compare metres with
-/// radians.
-/// Up to `dense_up_to` velocities, each evaluation eliminates G. In larger systems, the factorisation of a sparse G_d
-/// is reused, and both equations are solved by corrections. If a correction leaves more than a quarter of the
-/// violation, G_d is factorised again and the partition is checked.
+/// Full pivoting selects the dependent columns of G; the remaining columns are independent. The columns are selected
+/// again if the rank of G changes, or if a dependent coordinate would move more than `largest_ratio` times as fast as
+/// an independent one. G_d⁻¹ G_i, and with it the condition number of G_d, is then too large. Nonholonomic equations
+/// make velocities dependent, but not coordinates; velocities then have a partition of their own. Ratios compare metres
+/// with radians.
+/// With at most `dense_up_to` velocities, each evaluation eliminates a dense G. In larger systems, the factorisation of
+/// a sparse G_d is reused, and the equations of positions and velocities are solved by corrections. If a correction
+/// leaves more than a quarter of the violation, G_d is factorised again and the partition is checked.
 struct CoordinatePartitioning {
   static constexpr bool accepts_constraints = true;
   double tolerance = 1e-12;     ///< tolerance of Φ, in addition to the round-off of q
@@ -32,7 +32,7 @@ struct CoordinatePartitioning {
     PartitionedConstraints all_rows{0, 0};             ///< partition of velocities, if there are nonholonomic equations
     SparsePartitionOf<> sparse_rows, sparse_all_rows;  ///< partitions for sparse G
     VecX phi, rate, column, delta, next;               ///< in order: Φ, Φ̇, a column of G, Δq or Δv, q ⊞ Δq
-    bool sparse = false, prepared = false;             ///< G is sparse; the choice between dense and sparse is made
+    bool sparse = false, prepared = false;             ///< true if G is sparse; true if `prepare` was called
     /// Allocates the common memory of dense and sparse partitions.
     explicit Scratch(System const& s)
         : sparse_rows(s.rows(), s.velocities()),
@@ -58,7 +58,8 @@ struct CoordinatePartitioning {
     PartitionedConstraints& of_velocities() { return splits_velocities_ ? all_rows : rows; }
     /// Sparse partition of the velocities.
     SparsePartitionOf<>& sparse_of_velocities() { return splits_velocities_ ? sparse_all_rows : sparse_rows; }
-    /// True if the velocity number `speed` is dependent under all constraint equations, including nonholonomic ones.
+    /// True if the velocity with the index `speed` is dependent under all constraint equations, including nonholonomic
+    /// ones.
     bool is_dependent(Index speed) const {
       if (sparse) return (splits_velocities_ ? sparse_all_rows : sparse_rows).is_dependent(speed);
       return (splits_velocities_ ? all_rows : rows).is_dependent(speed);
@@ -208,14 +209,14 @@ struct CoordinatePartitioning {
       system.evaluate(q, v, t);
     }
   }
-  /// Solves with a reused factorisation. It is renewed if a correction leaves more than a quarter of the violation:
-  /// first with the present partition, then with a new one.
+  /// Solves with a reused factorisation. The factorisation is renewed if a correction leaves more than a quarter of the
+  /// violation: first with the present partition, then with a new one.
   struct Corrections {
     SparsePartitionOf<>& partition;
     System& system;
     Scratch& s;
-    double limit;                                             ///< limit of |R|, a ratio
-    double before = std::numeric_limits<double>::infinity();  ///< last violation, in its unit
+    double limit;                                             ///< largest permitted |R| [1]
+    double before = std::numeric_limits<double>::infinity();  ///< violation before the last correction, in its unit
     int renewals = 0;
 
     template <class = void>
@@ -238,7 +239,7 @@ struct CoordinatePartitioning {
     rows.begin();
     if (!system.step_coordinates()) {
       system.masses(rows);
-    } else {  // the matrix has other unknowns
+    } else {  // the mass matrix has other unknowns than v
       s.delta.setZero();
       for (Index j = 0; j < system.velocities(); ++j) {
         s.delta[j] = 1.0;
@@ -260,7 +261,8 @@ struct CoordinatePartitioning {
   }
 };
 
-/// Names of the first independent velocities of a run from x: body and number within the body.
+/// Names of the independent velocities that are selected first in a run from x: body, and index of the velocity in the
+/// body.
 template <class = void>
 std::vector<std::string> independent_velocities(System& system, State const& x,
                                                 CoordinatePartitioning const& policy = {}) {

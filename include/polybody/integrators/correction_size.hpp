@@ -1,7 +1,6 @@
 #pragma once
 /// \file
-/// Size of a correction of Newton's method relative to its tolerance, if some unknowns have other units than
-/// accelerations.
+/// Size of Newton corrections relative to their tolerance: tests for round-off, and first-order states with own units.
 
 #include <algorithm>
 #include <limits>
@@ -12,12 +11,12 @@
 namespace polybody::detail {
 
 /// Mean round-off of the coordinates: ε times the root mean square of q, plus ε for directions and moment arms.
-/// Corrections are measured by a mean as well. Therefore a single angle of many revolutions does not determine the
-/// result.
+/// The size of a correction is the same root mean square. A single large coordinate, for example an angle after many
+/// revolutions, therefore enlarges both sizes.
 inline double rounding_of(VecX const& q) {
   return std::numeric_limits<double>::epsilon() * (1.0 + std::sqrt(squares(q) / double(std::max<Index>(q.size(), 1))));
 }
-/// Round-off of a correction that changes q by s times its own size.
+/// Round-off of a correction y that changes q by s y.
 inline double rounding_of(VecX const& q, double s) { return rounding_of(q) / s; }
 
 /// Sets out to x, perturbed by a few units of the round-off of `q`. The signs are irregular, so that they match no
@@ -26,9 +25,9 @@ inline void perturb(VecX const& x, VecX const& q, VecX& out) {
   double const size = 4.0 * rounding_of(q);
   for (Index i = 0; i < x.size(); ++i) out[i] = x[i] + scattered_sign(i) * size;
 }
-/// True if a correction that changes the coordinates by `moved` in the mean may be round-off. Near a singular position,
-/// the inverse of the constraint Jacobian amplifies the round-off ε to √ε times some powers of ten. A diverged iterate
-/// changes by metres, and its tolerance is correspondingly large.
+/// True if a correction may be round-off. Near a singular configuration, the inverse of the constraint Jacobian
+/// amplifies the round-off ε to √ε times some powers of ten. A diverged iterate has a large tolerance, but changes the
+/// coordinates by metres, and is thus excluded. \param moved root mean square change of the coordinates
 inline bool may_be_rounding(double moved, VecX const& q) { return moved <= 1e10 * rounding_of(q); }
 /// Overload for a step from q: the violation phi of the position constraints must also be within round-off.
 inline bool may_be_rounding(VecX const& phi, double moved, VecX const& q) {
@@ -36,10 +35,10 @@ inline bool may_be_rounding(VecX const& phi, double moved, VecX const& q) {
 }
 
 /// True if the correction y with the norm `norm` consists of round-off: it changes if coordinates and constraint
-/// functions change by a few units of round-off. Near a singular position, the inverse of the constraint Jacobian
+/// functions change by a few units of round-off. Near a singular configuration, the inverse of the constraint Jacobian
 /// amplifies round-off many times. Light nodes amplify the round-off of strains in the same way. \param moved computes
-/// the perturbed correction in y and returns true if it is finite \param measure returns the norm of y \param kept
-/// workspace for y, which is the same afterwards
+/// the perturbed correction in y and returns true if this correction is finite \param measure returns the norm of y
+/// \param kept workspace; y is unchanged afterwards
 template <class Moved, class Measure>
 bool is_round_off(VecX& y, double norm, VecX& kept, Moved&& moved, Measure&& measure) {
   kept = y;

@@ -3,9 +3,9 @@
 
 namespace polybody {
 
-/// Energy–momentum method, χ = 0, of order two [Simo & Tarnow 1992; Gonzalez 1996]. It conserves energy, and is
-/// therefore stable, for every h at which Newton's method converges. High modes are not damped. The tolerance of
-/// Newton's method determines the errors of energy and momenta.
+/// Energy–momentum method of order two [Simo & Tarnow 1992; Gonzalez 1996], `ConservingStep` with χ = 0. It conserves
+/// energy, and is therefore stable, for every h at which Newton's method converges. High modes are not damped. The
+/// tolerance of Newton's method determines the errors of energy and momenta.
 struct EnergyMomentum {
   static constexpr char const* name = "EnergyMomentum";
   static constexpr int order = 2;
@@ -24,11 +24,11 @@ struct EnergyMomentum {
   ConservingStep method() const { return {name, 0.0, tolerance, newton}; }
 };
 
-/// Energy-decaying method, χ = ½ (1 − ρ∞)/(1 + ρ∞): energy decreases in every step, in a linear mode by the factor ρ∞²
-/// as ωh → ∞. It has order one for ρ∞ < 1. The dissipation by strains is that of the energy-dissipative
-/// momentum-conserving method EDMC-1 [Armero & Romero 2001]. The dissipation by velocities uses the norm of M, so that
-/// it damps every mode; the angular momentum is then of first order only. Force elements with their own potential do
-/// not dissipate energy: their motion is damped by the velocities.
+/// Energy-decaying method, `ConservingStep` with χ = ½ (1 − ρ∞)/(1 + ρ∞): energy decreases in every step, in a linear
+/// mode by the factor ρ∞² as ωh → ∞. The method has order one for ρ∞ < 1. The dissipation by strains is that of the
+/// energy-dissipative momentum-conserving method EDMC-1 [Armero & Romero 2001]. The dissipation by velocities uses the
+/// norm of M, so that every mode is damped; the angular momentum is then accurate to first order only. Force elements
+/// with a potential do not dissipate energy themselves: the dissipation by velocities damps their motion.
 struct EnergyDecaying {
   static constexpr char const* name = "EnergyDecaying";
   static constexpr int order = 1;

@@ -8,19 +8,20 @@
 
 namespace polybody::detail {
 
+/// Absolute and relative tolerance of the errors of a step.
 struct ErrorTolerance {
   double absolute, relative;
 
-  /// Tolerated error of unknowns of this `scale`. \param largest magnitude of their largest entry, whose round-off is
-  /// added
+  /// Tolerated error of a group of unknowns with this `scale`. \param largest largest magnitude in the group, whose
+  /// round-off is added
   double of(double scale, double largest) const {
     return absolute + relative * scale + 4.0 * std::numeric_limits<double>::epsilon() * largest;
   }
-  /// Tolerated error of one entry, relative to its own size: for first-order states, which have different units.
+  /// Tolerated error of one first-order state, relative to its own magnitude: such states have different units.
   double of_one(double before, double after) const {
     return absolute + relative * std::max(std::abs(before), std::abs(after));
   }
-  /// Mean square of the errors from `first` on, each relative to its own tolerance.
+  /// Mean square of the entries of `error` from index `first` on, each divided by its tolerance `of_one`.
   double mean_square_each(VecX const& error, VecX const& before, VecX const& after, Index first) const {
     double sum = 0.0;
     for (Index i = first; i < error.size(); ++i) {
@@ -35,18 +36,19 @@ struct ErrorTolerance {
 ///   ‖e‖² = max_g ½ (mean over q in g of (e_q / tol(s_q))² + mean over v in g of (e_v / tol(s_v))²),
 ///   tol(s) = Atol + Rtol s + 4ε max_g |x|.
 /// A group g contains the unknowns of one kind of one body. The scales are the maxima before and after the step of
-///   lengths:    s_q the extent of the positions of the assembly, s_v that of their velocities, or the change of a
+///   lengths:    s_q the extent of the positions of the assembly, s_v the extent of its velocities, or the change of a
 ///               velocity over the step;
 ///   rotations:  s_q = 1 (a quaternion, or one radian), s_v the largest rate of the group, or the extent of the
 ///               velocities of the assembly over its extent;
 ///   others:     the largest entries of the group: gradients, deformations, slides, coordinates of unknown unit.
-/// An assembly consists of bodies that joints and forces connect; markers on the ground are its points, at rest. Bodies
-/// without mutual forces therefore do not affect each other's scales. A common velocity, a common translation and full
-/// revolutions do not change the scales. If an assembly has a single point, the world's origin is its second point.
+/// An assembly consists of bodies that joints and forces connect; markers on the ground are points of the assembly, at
+/// rest. Bodies without mutual forces therefore do not affect each other's scales. A common velocity, a common
+/// translation and full revolutions do not change the scales. If an assembly has a single point, the world's origin is
+/// its second point.
 class ErrorNorm {
  public:
-  /// Groups the unknowns of a time step. \param by_velocities errors of coordinates are numbered as velocities (δ of q
-  /// ⊞ δ)
+  /// Groups the unknowns of a time step. \param by_velocities true if errors of coordinates are increments δ of q ⊞ δ,
+  /// which are numbered like velocities
   template <class = void>
   [[gnu::cold]] ErrorNorm(System const& system, bool by_velocities);
 
@@ -80,14 +82,14 @@ class ErrorNorm {
     return 0.5 * largest_sums()[0];
   }
 
-  /// Group of unknowns.
+  /// Unknowns of one kind of one body.
   struct Group {
     UnknownKind kind = UnknownKind::other;
     std::uint32_t assembly = 0;
     Index errors = 0, velocities = 0;         ///< numbers of coordinates and of velocities
-    double largest_q = 0.0, largest_v = 0.0;  ///< largest magnitudes before and after the step
+    double largest_q = 0.0, largest_v = 0.0;  ///< largest |q| and |v| before and after the step
     double in_q = 0.0, in_v = 0.0;            ///< factors of squared entries in the mean square
-    std::array<double, 4> sum{};              ///< mean squares of several errors
+    std::array<double, 4> sum{};              ///< weighted sums of squares of up to four errors
   };
   Group& of_coordinate(Index i) { return groups_[of_q_[std::size_t(i)]]; }  ///< group of coordinate i
   Group& of_velocity(Index i) { return groups_[of_v_[std::size_t(i)]]; }    ///< group of velocity i

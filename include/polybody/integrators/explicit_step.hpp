@@ -17,8 +17,8 @@ struct ExplicitStep {
         lambda(VecX::Zero(s.rows())),
         forward(s) {}
 
-  /// Stores it in x as the state at t + h. \param cost cost of the step, counted if it fails \throws NonFiniteValue,
-  /// Diverged.
+  /// Stores the next state in x, as the state at x.t + h. \param cost cost of the step, added to `forward.failed` if
+  /// the check of the state fails \throws NonFiniteValue, Diverged.
   void accept(System& system, State& x, double h, StepReport const& cost = {}) {
     count_if_failed(forward.failed, cost, [&] { forward.require_end(system, {q, v, lambda, x.t + h, h}); });
     x.q.swap(q);

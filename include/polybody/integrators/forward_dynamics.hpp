@@ -16,13 +16,13 @@ namespace polybody {
 
 /// Feedback of a constraint violation in the accelerations: Φ̈ + rate Φ̇ + position Φ = 0.
 struct ConstraintFeedback {
-  double rate = 0.0;      ///< [1/s]
-  double position = 0.0;  ///< [1/s²]
+  double rate = 0.0;      ///< factor of Φ̇ [1/s]
+  double position = 0.0;  ///< factor of Φ [1/s²]
 };
 
 /// Measure of the distance from a singular configuration.
 struct ConstraintGain {
-  double moved = 0.0;       ///< largest change of a velocity due to violations of ±1, relative to 1
+  double moved = 0.0;       ///< largest change of a velocity that corrects violations of ±1 [1]
   std::size_t dropped = 0;  ///< number of redundant constraint equations
   /// True if the configuration is singular compared with a `usual` one: it has more redundant equations, or changes are
   /// ten times as large.
@@ -39,24 +39,23 @@ std::string whose_force(System const& s) {
         return sentence_of({", that of \"", s.layout().forces[std::size_t(action.source)].name, "\""});
   return "";
 }
-/// Sentence that names such a force element as a possible cause of a motion; empty if there is none.
+/// Sentence of a message that names a force element with a NaN, infinite or too large force as a possible cause; empty
+/// if there is none.
 template <class = void>
 std::string and_whose_force(System const& s) {
   std::string const whose = whose_force(s);
   return whose.empty() ? "" : " A force is not finite or too large" + whose + '.';
 }
-/// \throws NonFiniteValue naming body, force element and time if an entry of x (by velocities) is NaN, infinite or too
-/// large.
+/// \throws NonFiniteValue naming body, force element and time if an entry of x (nv) is NaN, infinite or too large.
 template <class = void>
 void require_finite_force(System const& s, VecX const& x) {
   if (Index const i = first_not_finite(x); i >= 0)
     throw NonFiniteValue(
         "force.not_finite",
         {"A force on ", ErrorObject{s.name_of(i)}, non_finite_suffix(x[i]), " at t = ", ErrorTime{s.at().t}, " s",
-         whose_force(s), ". Check the forces applied to it, whose markers may coincide, and the state before."});
+         whose_force(s), ". Check the forces applied to it (their markers may coincide) and the preceding state."});
 }
-/// \throws NonFiniteValue naming joint and time if an entry of x (by constraint equations) is NaN, infinite or too
-/// large.
+/// \throws NonFiniteValue naming joint and time if an entry of x (rows) is NaN, infinite or too large.
 template <class = void>
 void require_finite_rows(System const& s, VecX const& x) {
   if (Index const i = first_not_finite(x); i >= 0)
@@ -76,8 +75,8 @@ void require_finite_end(System const& s, VecX const& q, VecX const& v, double t)
                         non_finite_suffix(in_v < 0 ? q[in_q] : v[in_v]), " at t = ", ErrorTime{t},
                         " s. Check its velocity and the forces on it before.", and_whose_force(s)});
 }
-/// Checks the state of the last evaluation, before its matrix is reported as singular. \throws NonFiniteValue if a
-/// coordinate or velocity is NaN, infinite or too large.
+/// Checks the state of the last evaluation, before the matrix at this state is reported as singular. \throws
+/// NonFiniteValue if a coordinate or velocity is NaN, infinite or too large.
 template <class = void>
 void require_finite_place(System const& s) {
   auto const& [q, v, t] = s.at();
@@ -89,9 +88,9 @@ void require_finite_place(System const& s) {
        non_finite_suffix(in_v < 0 ? q[in_q] : v[in_v]), " at t = ", ErrorTime{t},
        " s. Check the forces on it, or take a smaller step.", and_whose_force(s)});
 }
-/// Reports that the equations at the last evaluation, with right-hand side `rhs`, have no finite solution. The reason
-/// is an entry that is NaN, infinite or too large; otherwise the matrix is singular, with the first missing pivot at
-/// `who`.
+/// Reports that the equations at the last evaluation, with right-hand side `rhs`, have no finite solution. The message
+/// names an entry of the state or of `rhs` that is NaN, infinite or too large. Otherwise the matrix is singular, and
+/// the message names `who`, the owner of the first missing pivot.
 template <class = void>
 [[noreturn, gnu::cold]] void throw_unsolvable(System const& s, VecX const& rhs, std::string const& who) {
   double const t = s.at().t;
@@ -101,7 +100,7 @@ template <class = void>
                                               non_finite_suffix(rhs[i]), " at t = ", ErrorTime{t},
                                               " s. Check the forces on it and its velocity.", and_whose_force(s)});
   throw SingularMatrix("motion.singular", {"The equations of motion have no unique acceleration at t = ", ErrorTime{t},
-                                           " s; the pivot is lost at ", ErrorObject{who},
+                                           " s: their matrix is singular at ", ErrorObject{who},
                                            ". Check for a redundant joint, or for a free body without inertia."});
 }
 
@@ -149,14 +148,14 @@ class ForwardDynamics {
     solver_.analyse(system, 1, [&](BlockSink& sink) { system.masses(sink); });
   }
 
-  PlausibilityCheck bounds;  ///< limits of the run; inactive until the run begins
-  AttemptCost failed;        ///< sum over failed attempts since the run reset it
+  PlausibilityCheck bounds;  ///< plausibility limits of the run; inactive until the run begins
+  AttemptCost failed;        ///< cost of failed attempts since the run reset this sum
 
-  /// Trial of a step. Without `keep`, its destructor restores the account of the bounds and the elimination order of
-  /// the solver, so that a repeated step is bitwise identical.
+  /// Trial of a step. Without `keep`, its destructor restores the account of `bounds` and the elimination order of the
+  /// solver, so that a repeated step is bitwise identical.
   class Trial {
    public:
-    /// Stores the account and the elimination order.
+    /// Stores the account of `bounds` and the elimination order.
     explicit Trial(ForwardDynamics& of) : of_(of), bounds_(of.bounds), reorderings_(of.solver_.reorderings()) {}
     Trial(Trial const&) = delete;
     ~Trial() {
@@ -250,8 +249,8 @@ class ForwardDynamics {
     take(0, system.velocities(), out);
   }
 
-  /// Change of the velocities due to constraint violations of ±1 at (q, v, t). Near a singular position it grows as
-  /// 1/σ, with the least singular value σ of the constraint Jacobian.
+  /// Change of the velocities due to constraint violations of ±1 at (q, v, t). Near a singular configuration the change
+  /// grows as 1/σ, with the least singular value σ of the constraint Jacobian.
   ConstraintGain constraint_gain(System& system, VecX const& q, VecX const& v, double t) {
     hold(system, q, v, t);
     for (Index i = 0; i < open_.size(); ++i) open_[i] = scattered_sign(i);
@@ -259,7 +258,8 @@ class ForwardDynamics {
     return {largest_size(delta_), redundant_rows().size()};
   }
 
-  /// True if the constraint Jacobian is much closer to a loss of rank at `there` than at a place with the gain `usual`.
+  /// True if the constraint Jacobian is much closer to a loss of rank at `there` than at a configuration with the gain
+  /// `usual`.
   bool is_singular(System& system, At<double> const& there, ConstraintGain const& usual) {
     try {
       return constraint_gain(system, there.q, there.v, there.t).far_above(usual);
@@ -297,8 +297,8 @@ class ForwardDynamics {
     take(system.velocities(), system.rows(), mu);
   }
 
-  /// Redundant equations of the last factorisation (see `name_of_equation`). Their multipliers are not unique and are
-  /// set to zero. Empty for solvers that do not report them.
+  /// Indices of the redundant equations of the last factorisation (see `name_of_equation`). Their multipliers are not
+  /// unique and are set to zero. Empty for solvers that do not report redundant equations.
   std::span<Index const> redundant_rows() const { return solver_.dropped(); }
   /// Every later factorisation drops these redundant `equations` (`leave_out_redundant` selects them).
   [[gnu::cold]] void mark_redundant(Sequence<Index> equations) {
@@ -306,13 +306,14 @@ class ForwardDynamics {
     solver_.mark_redundant(left_out());
   }
   bool leaves_out() const { return !left_out_.empty(); }  ///< true if equations are marked as redundant
-  std::span<Index const> left_out() const { return {left_out_.data(), left_out_.size()}; }  ///< these equations
+  std::span<Index const> left_out() const { return {left_out_.data(), left_out_.size()}; }  ///< marked equations
   /// True if the selection of `mark_redundant` must be checked: the last factorisation dropped other equations or found
   /// a small pivot, or `note_doubt` was called.
   bool is_doubtful() const { return doubtful_ || solver_.is_doubtful(); }
   void note_doubt() { doubtful_ = true; }    ///< sets `is_doubtful` until `clear_doubt`
-  void clear_doubt() { doubtful_ = false; }  ///< resets it after a new selection
-  /// Null vector `n` of the `dropped` equation of the last factorisation, by equations. See `BlockFactor::null_vector`.
+  void clear_doubt() { doubtful_ = false; }  ///< resets `is_doubtful`, after a new selection
+  /// Computes the null vector `n` of the equation `dropped` in the last factorisation; entries are numbered as
+  /// equations. See `BlockFactor::null_vector`.
   bool null_vector(Index dropped, VecX& n) { return solver_.null_vector(dropped, n); }
   /// Names of the joints and bodies with redundant equations.
   std::vector<std::string> redundant(System const& system) const {
@@ -346,7 +347,7 @@ class ForwardDynamics {
     factored_ = true;
   }
 
-  /// [M, Gᵀ; G, 0] x = [r_scale r; phi_scale φ].
+  /// Solves [M, Gᵀ; G, 0] x = [r_scale r; phi_scale φ] for x.
   void solve(System& system, double r_scale, double phi_scale) {
     Index const n = system.velocities();
     for (Index i = 0; i < n; ++i) rhs_[i] = r_scale == 0.0 ? 0.0 : r_scale * r_[i];

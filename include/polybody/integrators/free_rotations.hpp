@@ -1,8 +1,8 @@
 #pragma once
 /// \file
 /// Free rotations of rigid bodies in explicit steps. Half steps of Ω by v̇ do not conserve the energy of a rotation: Ω˙
-/// contains the product J⁻¹(Ω × J Ω). These methods integrate this product separately. Forces change Ω by h J⁻¹ m.
-/// Between these changes a body rotates freely,
+/// contains the product J⁻¹(Ω × J Ω), with the inertia tensor J. The methods of this file integrate this product
+/// separately. Forces change Ω by h J⁻¹ m. Between these changes a body rotates freely,
 ///   q₁ = q₀ ⊞ θ,   Π₁ = exp(−θ̃) Π₀,   θ = ½h J⁻¹(Π₀ + Π₁),   Π = J Ω in body axes [Simo & Wong 1991].
 /// |Π|, the momentum in world axes and the energy ½ ΩᵀJΩ are conserved, because (Π₁ − Π₀)·θ = 0. A rotation about a
 /// principal axis is exact. The step is of order two and reversible in time.
@@ -17,8 +17,8 @@
 
 namespace polybody::detail {
 
-/// Rigid bodies with the generalised velocities (ṙ, Ω), and their J. The functions change the entries of Ω only.
-/// Without such bodies they change nothing.
+/// Rigid bodies with the generalised velocities (ṙ, Ω), and their inertia tensors J. The functions change only the
+/// entries of Ω of these bodies.
 class FreeRotations {
  public:
   /// Reads J from the mass matrix. Bodies with a singular J are omitted. If the steps of the system have other
@@ -49,16 +49,16 @@ class FreeRotations {
 
   bool empty() const { return bodies_.empty(); }  ///< true if no body of the model rotates by this method
 
-  /// a += J⁻¹(Ω × J Ω): J⁻¹ m from Ω˙.
+  /// Adds J⁻¹(Ω × J Ω) to Ω˙ in a. The result is J⁻¹ m, with the moment m of the forces.
   void add_gyroscopic(VecX const& v, VecX& a) const {
     for (Body const& b : bodies_) put(b, at(b, a) + gyroscopic(b, at(b, v)), a);
   }
-  /// a −= J⁻¹(Ω × J Ω): Ω˙ from J⁻¹ m.
+  /// Subtracts J⁻¹(Ω × J Ω) from J⁻¹ m in a, with the moment m of the forces. The result is Ω˙.
   void subtract_gyroscopic(VecX const& v, VecX& a) const {
     for (Body const& b : bodies_) put(b, at(b, a) - gyroscopic(b, at(b, v)), a);
   }
-  /// Computes θ from h Ω in `moved`, velocities times h. \throws NewtonConvergenceFailure for a body that rotates too
-  /// far in the step to t [s].
+  /// Replaces h Ω in `moved` (velocities times h) by the rotation vectors θ. \throws NewtonConvergenceFailure for a
+  /// body that rotates too far in the step to t [s].
   void find_rotations(System const& system, double t, VecX& moved) const {
     for (Body const& b : bodies_) {
       Vec3 const turn = at(b, moved);
@@ -67,7 +67,7 @@ class FreeRotations {
       put(b, theta, moved);
     }
   }
-  /// Computes Ω in `v` after the rotation by θ in `moved`, from Ω before it.
+  /// Replaces Ω in `v` by its value after the rotation by θ, which `moved` contains.
   void carry(VecX const& moved, VecX& v) const {
     for (Body const& b : bodies_)
       put(b, product<double, 1>(b.inverse, carried(at(b, moved), product<double, 1>(b.inertia, at(b, v)))), v);
@@ -76,10 +76,10 @@ class FreeRotations {
  private:
   static constexpr double farthest = 3.0;  ///< largest rotation in a step [rad]; from π on θ is not unique
   struct Body {
-    Index v = 0;  ///< first entry of Ω
+    Index v = 0;  ///< index of the first entry of Ω in v
     Mat3 inertia = Mat3::Zero(), inverse = Mat3::Zero();
   };
-  /// Collects J from M.
+  /// Collects the inertia tensors J from the mass matrix M.
   struct Sink {
     Sequence<Body>& bodies;
     Sequence<Index> body_of;  ///< body of each velocity; −1 for none
@@ -106,7 +106,7 @@ class FreeRotations {
   static Vec3 carried(Vec3 const& theta, Vec3 const& momentum) {
     return product<double, 1>(exp_so3<double>(Vec3(-theta)), momentum);
   }
-  /// θ − ½ J⁻¹(Π + exp(−θ̃) Π) = 0 with Π = J `turn`, by Newton's method:
+  /// Solves θ − ½ J⁻¹(Π + exp(−θ̃) Π) = 0 with Π = J `turn` for θ by Newton's method, with
   ///   d(exp(−θ̃) Π) = (exp(−θ̃) Π) × Jr(θ) dθ.
   static bool solve(Body const& b, Vec3 const& turn, Vec3& theta) {
     Vec3 const before = product<double, 1>(b.inertia, turn);
@@ -142,7 +142,7 @@ class FreeRotations {
 template <class Solver>
 struct RotatingStep : ExplicitStep<Solver> {
   FreeRotations rotations;
-  VecX applied;  ///< v̇ at the start of a step, with J⁻¹ m for Ω˙
+  VecX applied;  ///< v̇ at the start of a step, with J⁻¹ m in place of Ω˙
 
   explicit RotatingStep(System& s) : ExplicitStep<Solver>(s), rotations(s), applied(this->v) {}
 
@@ -152,7 +152,7 @@ struct RotatingStep : ExplicitStep<Solver> {
     rotations.add_gyroscopic(x.v, applied);
   }
   /// Computes q = q₀ ⊞ dq in the step to t [s]. On entry, v contains the velocities before the free rotations, and dq
-  /// is h v. On return, v contains the velocities after them, and dq contains their θ.
+  /// is h v. On return, v contains the velocities after the free rotations, and dq contains the rotation vectors θ.
   void move(System& system, State const& x, double t) {
     rotations.find_rotations(system, t, this->dq);
     system.plus(x.q, this->dq, this->q);

@@ -3,7 +3,8 @@
 
 namespace polybody {
 
-/// Generalised-α method [Chung & Hulbert 1993]: for a given ρ∞ it has the least dissipation of low frequencies.
+/// Generalised-α method [Chung & Hulbert 1993]: for a given spectral radius ρ∞ at infinity, it has the least
+/// dissipation of low frequencies.
 /// Its parameters are
 ///   α_m = (2ρ∞ − 1)/(ρ∞ + 1),  α_f = ρ∞/(ρ∞ + 1),  γ = ½ − α_m + α_f,  β = ¼(γ + ½)².
 struct GeneralisedAlpha {
@@ -21,9 +22,9 @@ struct GeneralisedAlpha {
   /// which amplify this error, use 1e-8.
   double tolerance = 1e-8;
   NewtonOptions newton = {};        ///< options of Newton's method
-  bool start_correction = true;     ///< multipliers of second order from the first step and across changes of h
-  bool second_order_terms = false;  ///< include ∂(Gᵀλ)/∂q in the tangent from the start
-  /// Also satisfy Φ̇ = 0, at the cost of one factorisation of [M, Gᵀ; G, 0] per step.
+  bool start_correction = true;     ///< true: multipliers of second order from the first step, and across changes of h
+  bool second_order_terms = false;  ///< true: the tangent includes ∂(Gᵀλ)/∂q from the start
+  /// True to satisfy also Φ̇ = 0, at the cost of one factorisation of [M, Gᵀ; G, 0] per step.
   bool stabilised = false;
 
   /// \throws InvalidInput unless 0 ≤ ρ∞ ≤ 1 and the tolerance is positive.

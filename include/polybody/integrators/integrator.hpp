@@ -15,10 +15,10 @@ struct StepReport {
   int evaluations = 0;       ///< evaluations of the forces
   int rejected = 0;          ///< trial steps that the step control rejected, and halved steps
   int halved = 0;            ///< failed steps that were repeated as two halves (`RunOptions::max_step_halvings`)
-  int order = 0;             ///< order of the step, of a method with variable order; else 0
-  double contraction = 0.0;  ///< last contraction rate of Newton's method, a ratio
+  int order = 0;             ///< order of the step, if the method has variable order; otherwise 0
+  double contraction = 0.0;  ///< last contraction rate of Newton's method [1]
   long choices = 0;          ///< selections of independent coordinates since the start, by coordinate partitioning
-  double left = 0.0;         ///< last correction relative to its tolerance, if Newton's budget ended the step; else 0
+  double left = 0.0;         ///< last correction over its tolerance, if the iteration budget ended the step; or 0
 
   /// Adds the cost `of` failed attempts.
   void add(AttemptCost const& of) {
@@ -39,8 +39,8 @@ struct StepReport {
 };
 
 namespace detail {
-/// Calls `rest`, the remaining part of an attempt at a step. If it throws, `failed` counts the cost of the attempt so
-/// far.
+/// Calls `rest`, the remaining part of an attempt at a step. If `rest` throws, the cost of the attempt so far is added
+/// to `failed`.
 template <class Rest>
 auto count_if_failed(AttemptCost& failed, StepReport const& cost, Rest&& rest) {
   try {
@@ -72,7 +72,7 @@ concept HasStabilityLimit = requires(double omega, double rate) {
 /// Method that performs steps of any `System`. Its workspace is allocated once:
 ///   auto w = method.template workspace<Solver>(system);
 ///   method.start(system, x, h, w);      after a start, a jump or an event
-///   method.step(system, x, h, w);       advances by at most h; x is unchanged if it throws
+///   method.step(system, x, h, w);       advances by at most h; x is unchanged after an exception
 /// The workspace has a member `forward`, a `ForwardDynamics<Solver>`.
 template <class Method, class Solver = DefaultSolver>
 concept StepMethod = requires(Method const m, System& system, State& x, double h,
@@ -100,8 +100,8 @@ using MethodOf = decltype(method_of(std::declval<I const&>()));
 /// the method. Its static members are
 ///   name, order, accepts_constraints
 ///   capabilities          groups of evaluations that a step calls (default: `Capabilities::motion`)
-///   adaptive_step         it selects the length of its steps             } true, or absent
-///   needs_constant_mass   it requires bodies with a constant mass matrix }
+///   adaptive_step         selects the length of its steps                } true, or absent
+///   needs_constant_mass   requires bodies with a constant mass matrix    }
 ///   coupled_stages        one linear system contains the model several times }
 template <class I, class Solver = DefaultSolver>
 concept Integrator = requires(I const i) {

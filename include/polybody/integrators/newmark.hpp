@@ -12,12 +12,12 @@ struct Newmark {
   static constexpr bool accepts_constraints = true;
   static constexpr Capabilities capabilities = Capabilities::implicit_step;
 
-  double gamma = 0.5;               ///< γ, a share
-  double beta = 0.25;               ///< β, a share
+  double gamma = 0.5;               ///< coefficient γ [1]
+  double beta = 0.25;               ///< coefficient β [1]
   double tolerance = 1e-8;          ///< tolerance of Newton's corrections, relative to the accelerations
   NewtonOptions newton = {};        ///< options of Newton's method
-  bool second_order_terms = false;  ///< include ∂(Gᵀλ)/∂q in the tangent from the start
-  bool stabilised = false;          ///< also satisfy Φ̇ = 0
+  bool second_order_terms = false;  ///< true: the tangent includes ∂(Gᵀλ)/∂q from the start
+  bool stabilised = false;          ///< true: a step also satisfies Φ̇ = 0
 
   /// \throws InvalidInput unless γ ≥ ½, β > 0 and the tolerance is positive.
   void check() const {
@@ -45,9 +45,9 @@ struct Trapezoidal {
 
   double tolerance = 1e-8;          ///< tolerance of Newton's corrections, relative to the accelerations
   NewtonOptions newton = {};        ///< options of Newton's method
-  bool start_correction = true;     ///< multipliers of second order from the first step and across changes of h
-  bool second_order_terms = false;  ///< include ∂(Gᵀλ)/∂q in the tangent from the start
-  bool stabilised = false;          ///< also satisfy Φ̇ = 0
+  bool start_correction = true;     ///< true: multipliers of second order from the first step, and across changes of h
+  bool second_order_terms = false;  ///< true: the tangent includes ∂(Gᵀλ)/∂q from the start
+  bool stabilised = false;          ///< true: a step also satisfies Φ̇ = 0
 
   /// \throws InvalidInput unless the tolerance is positive.
   void check() const {

@@ -1,16 +1,19 @@
 #pragma once
+/// \file
+/// Reports and errors of steps in which Newton's method failed.
+
 #include <polybody/integrators/correction_size.hpp>
 #include <polybody/integrators/integrator.hpp>
 
 namespace polybody::detail {
 
-/// Last linear equations of Newton's method, with the stages one after another.
+/// Last linear equations of Newton's method in a step; the equations of several stages follow each other.
 struct StepEquations {
   Index bad;  ///< equation without a pivot; −1 if unknown
   VecX const &rhs, &solution;
 };
 
-/// Report `step` with the cost of an `attempt` added. \param each evaluations per iteration
+/// Returns the report `step` with the cost of an `attempt` added. \param each number of force evaluations per iteration
 template <class = void>
 StepReport with_attempt(NewtonReport const& attempt, StepReport step, int each = 1) {
   step.iterations += attempt.iterations;
@@ -18,8 +21,8 @@ StepReport with_attempt(NewtonReport const& attempt, StepReport step, int each =
   step.evaluations += each * attempt.iterations;
   return step;
 }
-/// Report of a step of h, from the `last` attempt. \param each evaluations per iteration \param before cost of earlier
-/// attempts
+/// Report of a step of length h [s], from the `last` attempt. \param each number of force evaluations per iteration
+/// \param before cost of earlier attempts
 template <class = void>
 StepReport report_of(double h, NewtonReport const& last, int each = 1, StepReport const& before = {}) {
   StepReport step = with_attempt(last, before, each);
@@ -29,14 +32,14 @@ StepReport report_of(double h, NewtonReport const& last, int each = 1, StepRepor
   return step;
 }
 
-/// Result of the step `again()`, with the cost of the failed `attempt` before it. If `again` throws, `failed` counts
-/// the attempt.
+/// Repeats a step by `again()`. Returns the report of `again` with the cost of the failed `attempt` before. If `again`
+/// throws, this cost is added to `failed`.
 template <class Again>
 StepReport retried(AttemptCost& failed, NewtonReport const& attempt, Again&& again) {
   return count_if_failed(failed, with_attempt(attempt, {}), [&] { return with_attempt(attempt, again()); });
 }
 
-/// Remedy for friction, if the model has a force that dissipates energy.
+/// Part of a message with a remedy for friction; empty if no force element of the model dissipates energy.
 template <class = void>
 [[gnu::cold]] std::string remedy_of_friction(System const& system) {
   for (ForceLayout const& force : system.layout().forces)
@@ -46,8 +49,8 @@ template <class = void>
 }
 
 /// Throws the error of a step of `integrator` to time t in which Newton's method failed. The message names the reason
-/// and the body, joint or force element. If each equation has a pivot but the solution is not finite, it names the body
-/// with the non-finite motion. \throws SingularMatrix, NonFiniteValue, NewtonConvergenceFailure.
+/// and the body, joint or force element. If each equation has a pivot but the solution is not finite, the message names
+/// the body with the non-finite motion. \throws SingularMatrix, NonFiniteValue, NewtonConvergenceFailure.
 template <class = void>
 [[noreturn, gnu::cold]] void throw_convergence_failure(std::string const& integrator, System const& system, double t,
                                                        NewtonReport const& report, StepEquations const& last) {

@@ -8,8 +8,8 @@ namespace polybody {
 ///   b_d = G_d⁻¹ r − R b_i,   R = G_d⁻¹ G_i,
 /// by Gauss–Jordan elimination. Full pivoting selects the partition; redundant equations remain to the end and are
 /// ignored [Wehage & Haug 1982; Shabana 2020]. A partition is kept while no entry of R exceeds a limit: |R_di| is the
-/// factor by which |det G_d| would grow if columns i and d were exchanged. Dense, m² n operations. The class is also
-/// the block sink of the constraint equations of a tangent [M, Gᵀ; G, 0].
+/// factor by which |det G_d| would grow if columns i and d were exchanged. G is dense; an elimination costs m² n
+/// operations. The class is also the block sink that collects G from a tangent [M, Gᵀ; G, 0].
 class PartitionedConstraints {
  public:
   static constexpr int sides = 2;  ///< number of right-hand sides
@@ -43,9 +43,9 @@ class PartitionedConstraints {
   /// Entry `row` of right-hand side number `side`.
   double& right(int side, Index row) { return at(row, columns_ + side); }
 
-  /// Solves for b_d with b_i = 0 in the present partition. Returns false if the partition does not fit or none is
-  /// selected. The entries are then overwritten, and must be added again for `choose`. \param limit largest permitted
-  /// |R|
+  /// Solves for b_d with b_i = 0 in the present partition. Returns false if no partition is selected, or if the rank or
+  /// an entry of R does not permit the present one. All entries must then be added again before `choose`. \param limit
+  /// largest permitted |R|
   bool reduce(double limit) {
     if (rank_ == none) return false;
     for (Column& c : state_)
@@ -77,12 +77,12 @@ class PartitionedConstraints {
  private:
   enum class Column : char { independent, dependent, used };  ///< used: dependent, and its pivot is found
   static constexpr Index none = -1;
-  /// A pivot below this share of the largest entry belongs to a redundant equation.
+  /// A pivot below this fraction of the largest entry belongs to a redundant equation.
   static constexpr double redundant_below = 1e-9;
 
   double& at(Index i, Index j) { return a_[std::size_t(i * width_ + j)]; }
 
-  /// Largest entry of the rows from `first` on.
+  /// Largest magnitude in the first `columns` columns of the rows from `first` on.
   double largest(Index first, Index columns) {
     double most = 0.0;
     for (Index i = first; i < rows_; ++i)

@@ -3,10 +3,10 @@
 /// Radau IIA method with three stages on the manifold: order five, L-stable, stiffly accurate [Hairer & Wanner 1996,
 /// §IV.5, §IV.8]:
 ///   M(q_i) v̇_i = f(q_i, v_i, t_i) − Gᵀλ_i,   G v̇_i = −γ(q_i, v_i, t_i),   t_i = t₀ + c_i h,
-///   v_i = v₀ + h Σ a_ij v̇_j,   q_i = q₀ ⊞ δ_i,   δ_i = h Σ a_ij δ˙(δ_j, v_j),   and the third stage is the end.
-/// The constraint equations are satisfied as accelerations, so that multipliers have the order of the velocities;
-/// `Projection` removes the drift. The Newton unknowns are v̇_i and λ_i of all stages together; δ_i follow from them.
-/// First-order states are part of v_i.
+///   v_i = v₀ + h Σ a_ij v̇_j,   q_i = q₀ ⊞ δ_i,   δ_i = h Σ a_ij δ˙(δ_j, v_j).
+/// The third stage is the end of the step. The constraint equations are satisfied as accelerations, so that multipliers
+/// have the order of the velocities; `Projection` removes the drift. The Newton unknowns are v̇_i and λ_i of all stages
+/// together; δ_i follow from them. First-order states are part of v_i.
 
 #include <array>
 #include <utility>
@@ -21,8 +21,8 @@
 namespace polybody {
 
 /// Reference integrator for few, accurate steps, also of stiff models. The matrix of a step has three times the
-/// unknowns of the model and is factorised by `AutoLu`, for any solver of the run. Above 64 unknowns, `AutoLu`
-/// allocates memory in a step.
+/// unknowns of the model. It is factorised by `AutoLu`, independent of the solver of the run. Above 64 unknowns,
+/// `AutoLu` allocates memory in a step.
 struct Radau {
   static constexpr char const* name = "Radau";
   static constexpr int order = 5;
@@ -44,16 +44,16 @@ struct Radau {
   /// Memory of a step, allocated once.
   template <class Solver>
   struct Workspace {
-    std::array<VecX, 3> v, vd, lambda, delta, rate;  ///< of the stages
+    std::array<VecX, 3> v, vd, lambda, delta, rate;  ///< v, v̇, λ, δ and δ˙ of each stage
     VecX q, r, phi, gamma, next, rhs, y, kept;  ///< in order: q, r, G v̇, γ, δ, −(r, Φ̈) of all stages, two corrections
     TangentSolver<AutoLu> solver, by_stage;     ///< `by_stage` is analysed by the first step that requires it
     ConstraintDerivatives slopes;               ///< ∂Φ̈/∂q and ∂Φ̈/∂v of the constraint equations
     ForwardDynamics<Solver> forward;            ///< [M, Gᵀ; G, 0]: accelerations at the start, projections
     Projection::Scratch projected;              ///< memory of `projection`: none
     ReusedFactorisation reused_factorisation;   ///< state of the reused factorisation
-    bool has_by_stage = false;                  ///< `by_stage` is analysed
-    double h_factored = 0.0;                    ///< step length of the last factorisation [s]; 0: none
-    double unsettled = 0.0;                     ///< last change of the δ_i by their iteration, in the unit of δ
+    bool has_by_stage = false;                  ///< true if `by_stage` is analysed
+    double h_factored = 0.0;                    ///< step length of the last factorisation [s]; 0 if none
+    double unsettled = 0.0;                     ///< largest norm of the last correction of a δ_i, in its unit
     Sequence<double> slack;  ///< by stages and constraint equations: −1 on the diagonal of a redundant equation keeps
                              ///< its multiplier unchanged
 
@@ -78,12 +78,13 @@ struct Radau {
       solver.analyse(s, 3, [&](BlockSink& pattern) { write(s, 1.0, pattern); });
     }
 
-    /// Writes the matrix of Newton's method at the last evaluation of `s`: block (i, j) is
+    /// Writes the matrix of Newton's method at the last evaluation of `s`. With the Kronecker symbol δ_ij and the
+    /// damping and stiffness matrices D and K, block (i, j) is
     ///   δ_ij [M, Gᵀ; G, slack] + h a_ij D + h² (A²)_ij K.
     void write(System& s, double h, BlockSink& sink) {
       for (int i = 0; i < 3; ++i) write_stage(s, h, i, sink);
     }
-    /// Writes the block row i of this matrix.
+    /// Writes block row i of the matrix of Newton's method (`write`).
     void write_stage(System& s, double h, int i, BlockSink& sink) {
       Index const n = equations_of(s), velocities = equation_velocities_of(s);
       using T = detail::RadauTableau;
@@ -108,15 +109,15 @@ struct Radau {
       for (Index const k : redundant)
         for (Index i = 0; i < 3; ++i) slack[std::size_t(i * rows + k - velocities)] = -1.0;
     }
-    /// v_i = v₀ + h Σ a_ij v̇_j.
+    /// Computes v_i = v₀ + h Σ a_ij v̇_j.
     void set_velocities(VecX const& v0, double h) {
       for (std::size_t i = 0; i < 3; ++i) {
         v[i] = v0;
         for (std::size_t j = 0; j < 3; ++j) v[i] += h * detail::RadauTableau::a[i][j] * vd[j];
       }
     }
-    /// δ_i = h Σ a_ij δ˙(δ_j, v_j), by two fixed-point iterations from the last δ. The rate depends little on δ, and
-    /// without rotations not at all.
+    /// Computes δ_i = h Σ a_ij δ˙(δ_j, v_j) by two fixed-point iterations from the last δ. The rate δ˙ depends little
+    /// on δ, and not at all without rotations.
     void set_positions(System& s, double h) {
       for (int pass = 0; pass < 2; ++pass) {
         unsettled = 0.0;
@@ -130,7 +131,8 @@ struct Radau {
         }
       }
     }
-    /// Replaces the third stage by the values of the stage polynomials, from v0 on, at the share s of h.
+    /// Replaces the third stage by the values of the stage polynomials, for the initial velocities v0, at the time s h
+    /// after the start of the step.
     void end_at(VecX const& v0, double s, double h) {
       v[2] = v0;
       delta[2].setZero();
@@ -190,8 +192,8 @@ struct Radau {
   }
 
  private:
-  /// Evaluates the polynomials of stages of length `reach` at x.t + h, and projects this end onto the constraint
-  /// equations.
+  /// Evaluates the polynomials of stages over the length `reach` [s] at x.t + h, and projects the result onto the
+  /// constraint equations.
   template <class Solver>
   void finish(System& system, State& x, double h, double reach, Workspace<Solver>& w) const {
     w.set_positions(system, reach);
@@ -238,8 +240,8 @@ struct Radau {
   }
 
   /// Keeps the multipliers of equations that are redundant at the start unchanged. If fewer equations are redundant at
-  /// the second stage of the first step, the start is a singular position, and the equations of the second stage are
-  /// used.
+  /// the second stage of the first step, the start is a singular configuration, and the redundant equations of the
+  /// second stage are used instead.
   template <class Solver>
   static void leave_redundant(System& system, State const& x, double h, Workspace<Solver>& w) {
     auto const at_start = w.forward.redundant_rows();
@@ -252,14 +254,14 @@ struct Radau {
     w.leave(system, rows);
   }
 
-  /// Problem of Newton's method in one step.
+  /// Equations of one step, as a problem of Newton's method.
   template <class Solver>
   struct Problem {
     Radau const& method;
     System& system;
     State const& x;
     Workspace<Solver>& w;
-    double h;  ///< [s]
+    double h;  ///< length of the stages [s]
     Index nv, rows;
     bool by_stage;
     Index bad = -1;
@@ -284,8 +286,8 @@ struct Radau {
       }
       return all_finite(w.rhs);
     }
-    /// Writes the matrix with each block row at its own stage. Near a singular position, G differs as much between two
-    /// stages as from a matrix of lower rank.
+    /// Writes the matrix with each block row evaluated at its own stage. Near a singular configuration, G differs as
+    /// much between two stages as from a matrix of lower rank.
     void write_by_stage(BlockSink& sink) {
       for (int i = 0; i < 3; ++i) {
         auto const k = std::size_t(i);

@@ -3,7 +3,7 @@
 
 namespace polybody::detail {
 
-/// Coefficients a_ij and c_i [Hairer & Wanner 1996, Table IV.5.6].
+/// Coefficients a_ij and c_i of the Radau IIA method with three stages [Hairer & Wanner 1996, Table IV.5.6].
 struct RadauTableau {
   static constexpr double r6 = 2.449489742783178;
   static constexpr double c[3] = {(4.0 - r6) / 10.0, (4.0 + r6) / 10.0, 1.0};

@@ -21,7 +21,7 @@ struct RungeKuttaWorkspace : ExplicitStep<Solver> {
   using Next::dq, Next::q, Next::v, Next::a, Next::lambda, Next::forward;
   std::array<VecX, stages> position_rate, acceleration;
   typename Stabilisation::Scratch scratch;
-  ConstraintFeedback feedback;  ///< feedback of the run
+  ConstraintFeedback feedback;  ///< feedback of constraint violations
 
   explicit RungeKuttaWorkspace(System& s) : Next(s), scratch(s) {
     position_rate.fill(v);
@@ -40,7 +40,7 @@ struct RungeKuttaWorkspace : ExplicitStep<Solver> {
     system.local_rate(dq, x.v, position_rate[0]);
     acceleration[0] = x.a;
   }
-  /// Computes the rates at x + h Σ row[j] k_j as stage i.
+  /// Computes the rates k_i = (δ˙, v̇) of stage i at x + h Σ row[j] k_j.
   template <std::size_t n>
   void stage(System& system, State const& x, double h, double c, std::array<double, n> const& row, int i) {
     combine(x, h, row, i);
@@ -49,7 +49,7 @@ struct RungeKuttaWorkspace : ExplicitStep<Solver> {
     forward.accelerations(system, {q, v, x.t + c * h}, acceleration[std::size_t(i)], lambda, feedback);
   }
 
-  /// dq, v = h Σ_{j<count} weights[j] k_j (plus v₀).
+  /// Computes dq = h Σ_{j<count} weights[j] δ˙_j and v = v₀ + h Σ_{j<count} weights[j] v̇_j.
   template <std::size_t n>
   void combine(State const& x, double h, std::array<double, n> const& weights, int count) {
     dq.setZero();
@@ -62,7 +62,7 @@ struct RungeKuttaWorkspace : ExplicitStep<Solver> {
   }
 
   /// Projects the combined result and stores it in x as the state at t + h. Returns the number of evaluations. \param
-  /// evaluated true if the last stage is at the combined result
+  /// evaluated true if the last stage was evaluated at the combined result
   int accept(System& system, State& x, double h, Stabilisation const& stabilisation, bool evaluated) {
     bool const again = !evaluated || system.rows() > 0;  // a projection changes the state
     system.plus(x.q, dq, q);
@@ -85,7 +85,7 @@ struct RungeKutta4 {
   static constexpr char const* name = "RungeKutta4";
   static constexpr int order = 4;
   static constexpr bool accepts_constraints = Stabilisation::accepts_constraints;
-  static constexpr double stability_limit = 2.8284271247461901;  ///< ωh, a ratio
+  static constexpr double stability_limit = 2.8284271247461901;  ///< largest stable ωh [1]
   using Tableau = detail::ClassicalTableau;                      ///< coefficients of the method
   /// Largest h with |1 + z + z²/2 + z³/6 + z⁴/24| ≤ 1 for z = hs. The number s is the faster of the roots −d/2 ± √(d²/4
   /// − ω²), with d = `rate` [1/s] and ω = `omega` [rad/s] [Hairer & Wanner 1996, §IV.2].
@@ -138,7 +138,7 @@ struct DormandPrince {
   /// of the positions and velocities of an assembly, one radian, and the angular velocity of the body
   /// (`detail::ErrorNorm`).
   double relative_tolerance = 1e-8;
-  double absolute_tolerance = 1e-10;  ///< absolute part, in the units of coordinates and velocities [m], [rad]
+  double absolute_tolerance = 1e-10;  ///< added to the relative part, in the unit of the unknown
   double min_step = 1e-12;            ///< smallest permitted step [s]
   Stabilisation stabilisation = {};   ///< constraint stabilisation
 

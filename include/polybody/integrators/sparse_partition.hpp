@@ -14,8 +14,8 @@ namespace polybody {
 /// columns, and of G_dᵀ for the independent equations. Each renewal computes R = G_d⁻¹ G_i. If an entry exceeds the
 /// limit, its column i and the dependent column of its row are exchanged, which multiplies |det G_d| by that entry.
 /// Exchanges continue until no entry exceeds the limit [Wehage & Haug 1982; the exchanges as in Knuth 1985]. The
-/// factorisation of G_d is reused between renewals. The class is also the block sink of the constraint equations of a
-/// tangent [M, Gᵀ; G, 0]. T is `double`; a program that does not use this template does not compile it.
+/// factorisation of G_d is reused between renewals. The class is also the block sink that collects G from a tangent [M,
+/// Gᵀ; G, 0]. T is `double`; a program that does not use this template does not compile it.
 template <class T = double>
 class SparsePartitionOf {
  public:
@@ -63,7 +63,7 @@ class SparsePartitionOf {
     }
   }
 
-  /// Solves G_d b_d = `given` in the independent equations: b = [b_d, 0].
+  /// Solves the independent equations of G_d b_d = `given`, and sets the other entries of b to zero.
   void solve(VecXOf<T> const& given, VecXOf<T>& b) {
     b.setZero();
     if (rank() == 0) return;
@@ -83,10 +83,10 @@ class SparsePartitionOf {
     throw SingularMatrix("partition.singular",
                          {ErrorObject{"CoordinatePartitioning"},
                           ": no set of dependent velocities solves the constraint equations, because the configuration "
-                          "is close to a singular configuration. Start elsewhere, or use an implicit integrator."});
+                          "is nearly singular. Start from another configuration, or use an implicit integrator."});
   }
 
-  /// Numbers of linearly independent columns of g. A factorisation selects each column whose pivot exceeds a threshold,
+  /// Indices of linearly independent columns of g. A factorisation selects each column whose pivot exceeds a threshold,
   /// in an order that keeps the factors sparse. The highest threshold with the full number of columns is used, to avoid
   /// nearly dependent columns.
   static Sequence<Index> independent_columns(Matrix g) {
@@ -134,7 +134,7 @@ class SparsePartitionOf {
     chosen_ = true;
     analysed_ = false;
   }
-  /// Assembles G_d, and stores the places of its columns.
+  /// Assembles G_d, and stores the position of each dependent column in G_d.
   void take_columns() {
     some_.clear();
     for (std::size_t k = 0; k < dependents_.size(); ++k) {
@@ -185,7 +185,8 @@ class SparsePartitionOf {
     }
     return changed;
   }
-  /// Updates R after the exchange of the dependent column of `row` with the independent column of `col`.
+  /// Updates R after the exchange of the dependent column for row `row` of R with the independent column for column
+  /// `col`.
   void pivot(Index row, Index col) {
     T const inverse = 1.0 / r_(row, col);
     r_.row(row) *= inverse;
@@ -203,7 +204,7 @@ class SparsePartitionOf {
   std::vector<Eigen::Triplet<T>> entries_, some_;
   Matrix g_, gd_;
   std::unique_ptr<Lu> lu_ = std::make_unique<Lu>();                    // cannot be moved
-  Sequence<Index> dependents_, free_, kept_rows_, place_, row_place_;  ///< places: in dependents_, in kept_rows_
+  Sequence<Index> dependents_, free_, kept_rows_, place_, row_place_;  ///< place: index in dependents_ or kept_rows_
   T largest_entry_ = 0.0;
   MatXOf<T> r_;
   VecXOf<T> right_, solution_;

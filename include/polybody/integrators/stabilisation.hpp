@@ -50,12 +50,12 @@ struct NoStabilisation : NoCorrection {
 };
 
 /// Baumgarte stabilisation: the accelerations satisfy Φ̈ + 2α Φ̇ + β² Φ = 0. With α = β, a violation decays as e^{−αt}
-/// [Baumgarte 1972]. It is damped but not removed, and the step must resolve 1/α.
+/// [Baumgarte 1972]. The violation is damped but not removed, and the step must resolve 1/α.
 struct Baumgarte {
   static constexpr bool accepts_constraints = true;
   using Scratch = NoCorrection::Scratch;  ///< empty
-  Required<double> alpha;                 ///< [1/s]
-  Required<double> beta;                  ///< [1/s]
+  Required<double> alpha;                 ///< coefficient α [1/s]
+  Required<double> beta;                  ///< coefficient β [1/s]
 
   void check() const {
     require_positive(alpha, "Baumgarte: alpha");

@@ -8,13 +8,13 @@
 namespace polybody {
 
 /// Last points of a run, for extrapolation and for differences in time. For v̇ and λ at the ends t₋₁ > t₋₂ > … of
-/// earlier steps, it stores scaled divided differences
-///   Dⱼ = f[t₋₁, …, t₋₁₋ⱼ] Πᵢ (t₋₁ − t₋ᵢ), i = 2 … j + 1:
-/// the error of a prediction of f(t₋₁) from the j points before t₋₁. At a further point t₀ they are [Krogh 1974;
-/// Hairer, Nørsett & Wanner 1993, §III.5]
+/// earlier steps, the class stores scaled divided differences
+///   Dⱼ = f[t₋₁, …, t₋₁₋ⱼ] Πᵢ (t₋₁ − t₋ᵢ), i = 2 … j + 1.
+/// Dⱼ is the error of a prediction of f(t₋₁) from the j points before t₋₁. At a further point t₀ the differences are
+/// [Krogh 1974; Hairer, Nørsett & Wanner 1993, §III.5]
 ///   D′₀ = f(t₀),  D′ⱼ₊₁ = D′ⱼ − βⱼ Dⱼ,  β₀ = 1,  βⱼ₊₁ = βⱼ (t₀ − t₋ⱼ₋₁)/(t₋₁ − t₋ⱼ₋₂).
-/// They are stored in the history of a state, so a copy of the state includes them:
-///   [nv entries of the method | D₀ … D₄ of v̇ | D₀ … D₄ of λ | h₋₅ … h₋₁ | step length of the shift of the state].
+/// The differences are stored in the history of a state, so a copy of the state includes them:
+///   [a of the method (nv) | D₀ … D₄ of v̇ | D₀ … D₄ of λ | h₋₅ … h₋₁ | step length `shifted`].
 class StepHistory {
   static constexpr int kept = 5;
   static Index size(Index nv, Index rows) { return (kept + 1) * nv + kept * rows + kept + 1; }
@@ -36,26 +36,27 @@ class StepHistory {
                          {"The state has no integrator history. Call method.start(system, x, h, w) before step()."});
   }
 
-  /// Starts a history without points before x. The entries of the method are v̇.
+  /// Starts a history without points before x. The accelerations a of the method are set to v̇.
   static void reset(State& x) {
     Index const nv = x.a.size();
     x.history.setZero(size(nv, x.lambda.size()));
     copy(x.a.data(), nv, x.history.data());
   }
 
-  /// Copies the entries of the method to `out` (nv).
+  /// Copies the accelerations a of the method to `out` (nv).
   void own(VecX& out) const { copy(memory_.data(), nv_, out.data()); }
-  /// Step length [s] for which the entries of the method are shifted relative to the solution; 0 after a start.
+  /// Step length [s] on which the difference between the method's a and the accelerations of the solution depends; 0
+  /// after a start.
   double shifted() const { return memory_[memory_.size() - 1]; }
 
-  /// Adds a point before x, as if a step h had ended at x and v̇ had changed at the rate `jerk` in it.
+  /// Adds a point before x, as if a step h had ended at x and v̇ had changed at the rate `jerk` during this step.
   void pretend(State const& x, VecX const& jerk, double h) {
     for (Index i = 0; i < nv_; ++i) a()[i] = x.a[i] - h * jerk[i];
     copy(x.lambda.data(), rows_, lambda());
     length(1) = h;
   }
 
-  /// Adds x, the start of a step h, as the last point. `own` contains the entries of the method after the step.
+  /// Adds x, the start of a step h, as the last point. `own` contains the accelerations a of the method after the step.
   void push(State const& x, double h, VecX const& own) {
     copy(own.data(), nv_, memory_.data());
     Past const past(*this);
@@ -66,8 +67,8 @@ class StepHistory {
     memory_[memory_.size() - 1] = h;
   }
 
-  /// Extrapolates v̇ and λ to x.t + h, into `vd` and `l`. Each polynomial uses as many of the last points as would have
-  /// given the best prediction of its present value: many in smooth motions, few if extrapolation would amplify the
+  /// Extrapolates v̇ and λ to x.t + h, into `vd` and `l`. Each polynomial uses the number of points that would have
+  /// given the best prediction of the present value: many in smooth motions, few if extrapolation would amplify the
   /// remaining errors of Newton's method.
   void extrapolate(State const& x, double h, VecX& vd, VecX& l) const {
     Past past(*this);
@@ -89,7 +90,7 @@ class StepHistory {
   }
 
  private:
-  /// Points up to x, as factors of the formulas.
+  /// Factors of the formulas for the points up to x.
   struct Past {
     int known = 1;                       ///< number of points, including x
     std::array<double, kept + 1> age{};  ///< t₀ − t₋ⱼ
@@ -116,7 +117,8 @@ class StepHistory {
       });
     }
 
-    /// Number of points, with the differences d (n each), that would have given the best prediction of `now` (n).
+    /// Returns the number of points that would have given the best prediction of `now` (n) with the differences d (n
+    /// each).
     int best_order(double const* now, double const* d, Index n) const {
       std::array<SimdSum, kept> errors;
       for_each_simd_block(n, [&](auto at) {

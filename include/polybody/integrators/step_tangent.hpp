@@ -5,12 +5,12 @@ namespace polybody {
 
 /// Tangent of an implicit step and its solver, with or without the second-order terms ck ∂(Gᵀλ)/∂q, ∂(Jᵀw)/∂q. These
 /// terms cost as much as all other terms and seldom save an iteration. A step that does not converge activates them for
-/// eight steps. If they are activated again within as many steps as their last period had, the period doubles, as
-/// happens near singular positions.
+/// eight steps. If another step does not converge within the same number of steps after the end of this period, the
+/// next period is twice as long. This occurs near singular configurations.
 template <LinearSolver Solver>
 class StepTangent {
  public:
-  /// Allocates all memory for steps with or without second-order `terms`. \param lambda of any values
+  /// Allocates all memory for steps with or without second-order `terms`. \param lambda multipliers of any values
   [[gnu::cold]] void analyse(System& system, SecondOrder terms, VecX const& lambda) {
     begins_with_ = terms == SecondOrder::included;
     has_second_ = false;
@@ -18,7 +18,7 @@ class StepTangent {
     left_out_.clear();
     forget();
   }
-  /// Start of a run: deactivates the activated terms and resets their period.
+  /// Deactivates the activated terms and resets their period, at the start of a run.
   void forget() {
     included_ = went_ = false;
     left_ = since_ = 0;
@@ -38,7 +38,7 @@ class StepTangent {
   /// Second-order terms of the present tangent: included or omitted.
   SecondOrder terms() const { return included_ || begins_with_ ? SecondOrder::included : SecondOrder::omitted; }
 
-  /// Activates second-order terms. \param lambda of any values
+  /// Activates second-order terms. \param lambda multipliers of any values
   [[gnu::cold]] void include(System& system, VecX const& lambda) {
     if (begins_with_ || included_) return;
     if (!has_second_) {
@@ -50,7 +50,7 @@ class StepTangent {
     stay_ = went_ && since_ <= stay_ ? std::min(2 * stay_, longest_stay) : shortest_stay;
     left_ = stay_;
   }
-  /// Counts a step. Returns true if second-order terms end, and with them the factorisation.
+  /// Counts a step. Returns true if the period of second-order terms ends, which invalidates the factorisation.
   bool end_step() {
     ++since_;
     if (!included_ || --left_ > 0) return false;
@@ -66,7 +66,7 @@ class StepTangent {
   TangentSolver<Solver> first_, second_;
   Sequence<Index> left_out_;
   bool begins_with_ = false, has_second_ = false, included_ = false, went_ = false;
-  long stay_ = shortest_stay;  ///< length of their period, in steps
+  long stay_ = shortest_stay;  ///< length of a period with second-order terms, in steps
   long left_ = 0;              ///< remaining steps of the period
   long since_ = 0;             ///< steps since the end of the last period
 };

@@ -3,7 +3,7 @@
 /// Explicit methods with bounded energy error. They are symplectic if coordinates form a vector space, the mass is
 /// constant and forces depend on positions only (planar rigid bodies, cables, springs). Rigid bodies in space rotate by
 /// `FreeRotations`: reversible in time, with the energy of a free rotation conserved. Other bodies that rotate in
-/// space, and damped forces, are integrated at the same order, but without a bound of the energy error.
+/// space, and damped forces, are integrated with the same order, but without a bound of the energy error.
 
 #include <polybody/integrators/free_rotations.hpp>
 
@@ -17,7 +17,7 @@ struct SymplecticEuler {
   static constexpr int order = 1;
   static constexpr bool accepts_constraints = false;
   static constexpr bool needs_constant_mass = true;
-  static constexpr double stability_limit = 2.0;  ///< ωh, a ratio
+  static constexpr double stability_limit = 2.0;  ///< largest stable ωh [1]
   /// Largest stable step: beyond ω²h² + 2dh = 4, with d = `rate` [1/s] and ω = `omega` [rad/s], an amplification factor
   /// lies below −1.
   static double stable_step(double omega, double rate) {
@@ -56,11 +56,11 @@ struct Rattle {
   static constexpr int order = 2;
   static constexpr bool accepts_constraints = true;
   static constexpr bool needs_constant_mass = true;
-  static constexpr double stability_limit = 2.0;  ///< ωh, a ratio
+  static constexpr double stability_limit = 2.0;  ///< largest stable ωh [1]
   static double stable_step(double omega, double rate) { return verlet_stability_limit(omega, rate); }
 
   double tolerance = 1e-12;  ///< tolerance of Φ, relative to 1 + max |q|
-  int max_iterations = 50;   ///< limit of iterations; each reduces Φ by a factor of about 1/(hω)
+  int max_iterations = 50;   ///< limit of iterations; each multiplies Φ by about hω
 
   /// Memory of a step, allocated once.
   template <class Solver>
@@ -85,7 +85,7 @@ struct Rattle {
     w.forward.accelerations(system, {x.q, x.v, x.t}, x.a, x.lambda);
   }
 
-  /// \throws NewtonConvergenceFailure if the positions do not converge to the constraint equations.
+  /// Performs one step of h [s]. \throws NewtonConvergenceFailure if the positions do not converge to Φ = 0.
   template <class W>
   StepReport step(System& system, State& x, double h, W& w) const {
     w.find_applied(x);

@@ -33,7 +33,8 @@ concept CompatibleIntegrator = ConstraintCompatible<I, M> && ConstantMassCompati
 /// Refuses a temporary model, because the system refers to the model.
 template <class I, Capabilities more = Capabilities::motion, class M>
 System system_for(M const&& model) = delete;
-/// System of `model` for integrator I, with the capabilities that I requires and `more`. The model must outlive it.
+/// System of `model` for integrator I, with the capabilities that I requires and those of `more`. The model must
+/// outlive the system.
 template <class I, Capabilities more = Capabilities::motion, class M>
 System system_for(M const& model) {
   static_assert(ConstraintCompatible<I, M>,

@@ -9,8 +9,9 @@
 
 namespace polybody::detail {
 
-/// Rows A u̇ in joint coordinates, with v̇ = T u̇, as rows f v̇ of all bodies, with fT = A. The equations of all bodies
-/// include the constraint equations of the tree. Therefore f v̇ = A u̇ for every solution.
+/// Expresses rows A u̇ in joint velocities u as rows f v̇ in the velocities v of all bodies, with v̇ = T u̇ and f T =
+/// A. The equations of all bodies include the constraint equations of the tree. Therefore f v̇ = A u̇ for every
+/// solution.
 class TreeRows {
  public:
   /// True if the equations of the system contain the velocities of all bodies of a tree.
@@ -18,7 +19,7 @@ class TreeRows {
     return system.step_coordinates() && !system.step_coordinates().reduced->eliminated_equations.empty();
   }
 
-  /// Finds the velocities of a time step that each row depends on: they move a body of the row.
+  /// Finds the velocities of a time step that each row depends on: those that move a body of the row.
   template <class = void>  // compiled only if used
   void analyse(System& system, Sequence<Block> const& equations) {
     coordinates_ = system.step_coordinates();
@@ -57,8 +58,8 @@ class TreeRows {
 
   /// Stores the positions of the last evaluation of the system for `write`.
   void hold() { coordinates_.entries->freeze(coordinates_.self.get(), frozen_.get()); }
-  /// Adds row i with the entries `row` at `velocities(i)` to `sink`. The first equation and column of the sink are row0
-  /// and col0.
+  /// Adds row i with the entries `row` at `velocities(i)` to `sink`. `row0` and `col0` are the row and column of the
+  /// first equation and of the first unknown in the sink.
   template <class = void>  // compiled only if used
   void write(Index i, double const* row, Index row0, Index col0, BlockSink& sink) {
     Row const& r = rows_[std::size_t(i)];
@@ -70,14 +71,14 @@ class TreeRows {
   }
 
  private:
-  /// Range of unknowns of the equations.
+  /// Contiguous range of unknowns of the equations.
   struct Part {
     Index first = 0, count = 0;
   };
   struct Row {
-    Index equation = 0;               ///< number among the equations
+    Index equation = 0;               ///< index of the equation
     Sequence<Index> velocities = {};  ///< velocities of a time step, ascending
-    Sequence<Part> columns = {};      ///< columns of the bodies that f acts on
+    Sequence<Part> columns = {};      ///< columns of the bodies with entries in f
   };
 
   static bool has_entry(VecX const& x, Index first, Index count) {

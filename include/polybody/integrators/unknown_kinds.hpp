@@ -15,14 +15,14 @@ enum class UnknownKind : unsigned char {
   other      ///< any other: gradients, deformations, slides, coordinates of unknown unit
 };
 
-/// Unknown: its body, its kind, and the world axis of a position component, else −1.
+/// Description of an unknown: its body, its kind, and the world axis of a position component; −1 for other kinds.
 struct UnknownPlace {
   Index body = 0;
   UnknownKind kind = UnknownKind::other;
   signed char axis = -1;
 };
 
-/// Places of the coordinates and velocities of bodies, without first-order states.
+/// Descriptions of the coordinates and velocities of bodies, without first-order states.
 struct UnknownPlaces {
   Sequence<UnknownPlace> of_q, of_v;
 };
@@ -56,7 +56,7 @@ template <class = void>
   }
 }
 
-/// Places of the unknowns of the full model.
+/// Descriptions of the unknowns of the full model.
 template <class = void>
 [[gnu::cold]] UnknownPlaces full_places(ModelLayout const& layout) {
   UnknownPlaces out{Sequence<UnknownPlace>(std::size_t(layout.coordinates)),
@@ -71,7 +71,7 @@ template <class = void>
   return out;
 }
 
-/// Places of the unknowns of a time step, from those of the full model.
+/// Descriptions of the unknowns of a time step, from those of the full model.
 template <class = void>
 [[gnu::cold]] UnknownPlaces stepped_places(System const& system, UnknownPlaces const& full) {
   ReducedLayout const& n = *system.step_coordinates().reduced;
@@ -101,7 +101,7 @@ template <class = void>
   return out;
 }
 
-/// Number of the assembly of each body. Joints and forces connect the bodies of an assembly.
+/// Index of the assembly of each body. Joints and forces connect the bodies of an assembly.
 template <class = void>
 [[gnu::cold]] Sequence<Index> assemblies_of(ModelLayout const& layout) {
   Sequence<Index> root(layout.bodies.size());

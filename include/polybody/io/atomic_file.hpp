@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// File that appears under its own name only when it is complete.
+/// Output file that appears under its name only when it is complete.
 
 #include <cerrno>
 #include <cstdio>
@@ -16,21 +16,22 @@
 
 namespace polybody {
 
-/// Output file that is written to a temporary file in the same folder and renamed on `close()`. A reader finds the
-/// old file or the complete new file, also after a loss of power (fsync). The new file gets the permissions of the
-/// file that it replaces. On Linux a killed program leaves no file. If the file system has no unnamed files
+/// Output file that is written to a temporary file in the same folder and renamed on `close()`. A reader finds the old
+/// file or the complete new file, also after a loss of power (fsync). The new file gets the permissions of the file
+/// that it replaces. On Linux a killed program leaves no temporary file. If the file system has no unnamed files
 /// (O_TMPFILE), a killed program leaves ".polybody-<16 hex digits>.tmp", which may be removed. The destructor closes
-/// an open file and renames it. It removes the temporary file instead if a write has failed, or if an exception is in
-/// flight and `keep_on_exception()` was not called. An existing file then remains unchanged. Move-only.
+/// and renames an open file. If a write has failed, or if an exception is in flight and `keep_on_exception()` was not
+/// called, the destructor removes the temporary file instead. An existing file then remains unchanged. Move-only.
 class AtomicFile {
  public:
-  /// Creates the parent folders of `file` and opens the temporary file. A symbolic link is followed, also if its
-  /// target does not exist yet. Throws IoError with the file name and the system's reason if this fails. Reasons
-  /// include a name that is too long, links that form a loop, and a `file` that exists and is not a regular file.
+  /// Creates the parent folders of `file` and opens the temporary file. A symbolic link is followed, also if its target
+  /// does not exist yet. Throws IoError with the file name and the system's reason if the file cannot be created.
+  /// Reasons include a name that is too long, links that form a loop, and a `file` that exists and is not a regular
+  /// file.
   explicit AtomicFile(std::filesystem::path const& file) : name_(file.string()) {
     namespace fs = std::filesystem;
     if (!file.has_filename())
-      throw IoError("file.name", {"file \"", ErrorObject{name_}, "\": the name of a file is missing"});
+      throw IoError("file.name", {"file \"", ErrorObject{name_}, "\": the path has no file name"});
     std::error_code reason;
     fs::path const full = fs::absolute(file, reason);
     if (reason) fail("its folder cannot be found", reason);
@@ -49,10 +50,10 @@ class AtomicFile {
     if (exists) file_.set_permissions(status.permissions());
   }
 
-  AtomicFile(AtomicFile&&) noexcept = default;  ///< The source is then closed.
+  AtomicFile(AtomicFile&&) noexcept = default;  ///< The moved-from file is closed.
 
-  /// Closes or discards the present file by the rule of the destructor, then moves `other` here. The source is then
-  /// closed.
+  /// Moves `other` to this object, which then closes or discards its previous file by the rule of the destructor.
+  /// `other` is closed.
   AtomicFile& operator=(AtomicFile&& other) noexcept {
     AtomicFile taken(std::move(other));
     std::swap(name_, taken.name_);
@@ -63,8 +64,8 @@ class AtomicFile {
     return *this;
   }
 
-  /// Closes or discards the file (see the class). A destructor cannot throw: it prints a failure of the last close to
-  /// stderr.
+  /// Closes or discards the file by the rule in the comment of the class. A failure of `close` is printed to stderr,
+  /// because a destructor cannot throw.
   ~AtomicFile() {
     if (!is_open()) return;
     try {
@@ -85,7 +86,7 @@ class AtomicFile {
     fail("cannot be written", {errno, std::generic_category()});
   }
 
-  /// Keeps an incomplete file: after an exception the bytes written so far appear under the final name.
+  /// Keeps an incomplete file after an exception: the bytes written so far then appear under the final name.
   void keep_on_exception() noexcept { kept_ = true; }
 
   /// Flushes the file and renames it to its final name. A second call has no effect. Throws IoError with the file
@@ -98,7 +99,7 @@ class AtomicFile {
     if (written) reason = file_.put_in_place();
     if (written && !reason) return;
     file_.discard();
-    fail(written ? "cannot be put in place" : "could not be written completely", reason);
+    fail(written ? "cannot be renamed to its final name" : "could not be written completely", reason);
   }
 
   /// Removes the temporary file. No file appears under the final name.

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// Checkpoints: snapshots of runs in files. The format is "polybody", 0x01020304, version, length of the content,
-/// content, and the `checksum` of all preceding bytes. Numbers have the machine's representation, integers as int64.
-/// Not in polybody.hpp: few programs need it.
+/// Writer and reader of checkpoints, which are snapshots of runs in files. A file consists of "polybody", 0x01020304
+/// (byte order), version, length of the content, content, and the `checksum` of all preceding bytes. Numbers have the
+/// representation of the machine; integers are int64. Not in polybody.hpp: few programs need it.
 
 #include <cstring>
 
@@ -14,7 +14,8 @@ namespace polybody {
 
 namespace detail {
 
-/// Visitor of all numbers of a snapshot, in the same order for writing and reading: `archive(x)` writes or reads one.
+/// Visitor of all numbers of a snapshot, in the same order for writing and reading: `archive(x)` writes or reads the
+/// number x.
 template <class Archive>
 class SnapshotVisitor {
  public:
@@ -65,7 +66,7 @@ struct SnapshotWriter {
     std::conditional_t<std::is_floating_point_v<T>, double, std::int64_t> const wide(static_cast<decltype(wide)>(x));
     bytes.append(reinterpret_cast<char const*>(&wide), sizeof wide);
   }
-  void operator()(char c) { (*this)(static_cast<unsigned char>(c)); }  // char is signed on some machines only
+  void operator()(char c) { (*this)(static_cast<unsigned char>(c)); }  // the signedness of char depends on the machine
   template <class List>
   void resize(List const& of) {
     (*this)(of.size());
@@ -81,14 +82,14 @@ struct SnapshotReader {
     std::conditional_t<std::is_floating_point_v<T>, double, std::int64_t> wide;
     if (bytes.size() < sizeof wide)
       throw IoError("checkpoint.damaged",
-                    {"checkpoint \"", ErrorObject{name}, "\" ends before the end of its content. Write it again."});
+                    {"checkpoint \"", ErrorObject{name}, "\" is truncated within its content. Write it again."});
     std::memcpy(&wide, bytes.data(), sizeof wide);
     bytes.remove_prefix(sizeof wide);
     x = static_cast<T>(wide);
     if constexpr (!std::is_floating_point_v<T>)
       if (static_cast<std::int64_t>(x) != wide)
         throw IoError("checkpoint.damaged", {"checkpoint \"", ErrorObject{name}, "\" is inconsistent: ", wide,
-                                             " is out of the range of its entry. Write it again."});
+                                             " exceeds the range of its number type. Write it again."});
   }
   void operator()(char& c) {
     unsigned char byte = 0;
@@ -101,13 +102,13 @@ struct SnapshotReader {
     (*this)(count);
     if (count > bytes.size() / sizeof(double))
       throw IoError("checkpoint.damaged",
-                    {"checkpoint \"", ErrorObject{name}, "\" ends before the end of its content. Write it again."});
+                    {"checkpoint \"", ErrorObject{name}, "\" is truncated within its content. Write it again."});
     of.resize(static_cast<decltype(of.size())>(count));
   }
 };
 
-/// Checks that the sizes in a snapshot agree with its model. The checksum cannot detect different sizes in the
-/// content of another program.
+/// Checks that the sizes in a snapshot agree with its model. A checksum does not detect inconsistent sizes that another
+/// program has written.
 /// \throws IoError otherwise.
 template <class = void>
 void require_consistent(RunSnapshot const& s, std::size_t left, std::string const& name) {
@@ -135,11 +136,11 @@ inline constexpr CheckpointHead checkpoint_head{{'p', 'o', 'l', 'y', 'b', 'o', '
 
 }  // namespace detail
 
-/// Writes a checkpoint to the file `name`, which replaces an older one when it is complete:
+/// Writes a checkpoint to the file `name`. When complete, the new file replaces an existing file with this name:
 ///   if (run.report().steps % 1000 == 0) write_checkpoint("out/run.checkpoint", run.snapshot());
 /// Another process continues the run with bitwise identical results:
 ///   auto run = resume(model, x, GeneralisedAlpha{}, options, read_checkpoint("out/run.checkpoint"));
-/// \throws IoError.
+/// \throws IoError if the file cannot be written.
 template <class = void>
 void write_checkpoint(std::filesystem::path const& name, RunSnapshot const& snapshot) {
   detail::SnapshotVisitor<detail::SnapshotWriter> content;
@@ -170,7 +171,7 @@ RunSnapshot read_checkpoint(std::filesystem::path const& file) {
   if (std::memcmp(head.kind, ours.kind, sizeof head.kind) != 0)
     throw IoError("checkpoint.format", {"file \"", ErrorObject{name}, "\" is not a checkpoint of polybody."});
   if (all.size() < sizeof head)
-    throw IoError("checkpoint.damaged", {"checkpoint \"", ErrorObject{name}, "\" is cut off within its head."});
+    throw IoError("checkpoint.damaged", {"checkpoint \"", ErrorObject{name}, "\" is truncated within its head."});
   if (head.order == 0x04030201u)
     throw IoError("checkpoint.format",
                   {"checkpoint \"", ErrorObject{name}, "\" was written by a machine of another byte order."});
@@ -181,7 +182,7 @@ RunSnapshot read_checkpoint(std::filesystem::path const& file) {
   std::uint64_t sum = 0;
   std::size_t const overhead = sizeof head + sizeof sum;
   if (all.size() < overhead || all.size() - overhead != head.length)
-    throw IoError("checkpoint.damaged", {"checkpoint \"", ErrorObject{name}, "\" is cut off or has grown: it has ",
+    throw IoError("checkpoint.damaged", {"checkpoint \"", ErrorObject{name}, "\" is truncated or too long: it has ",
                                          all.size(), " bytes instead of ", head.length + overhead, "."});
   std::memcpy(&sum, all.data() + all.size() - sizeof sum, sizeof sum);
   std::string_view const summed = std::string_view(all).substr(0, all.size() - sizeof sum);

@@ -11,7 +11,8 @@
 
 namespace polybody::detail {
 
-/// Figure with one curve for each run over its times. The first curve is thick, the others are dashed lines over it.
+/// Figure of `value(run, k)`, k = 0, 1, …, over `run.times`, with one curve per run. The curve of the first run is
+/// thick; the others are dashed lines over this curve.
 template <class = void>
 Figure over_time(Comparison const& c, std::string const& title, std::string const& y_label,
                  std::function<double(ComparedRun const&, std::size_t)> const& value) {
@@ -27,9 +28,9 @@ Figure over_time(Comparison const& c, std::string const& title, std::string cons
   return figure;
 }
 
-/// Adds a figure of the constraint violations over time, on a logarithmic axis, for the runs that have any. Adds no
-/// figure if no run has any. Values below 1e-16, or below a millionth of the largest if that is less, are drawn at
-/// this limit. Zeros are omitted.
+/// Adds a figure of the constraint violations over time, on a logarithmic axis, for the runs with a positive violation.
+/// Adds no figure if there is no such run. Violations below the limit min(1e-16, 1e-6 of the largest violation) are
+/// drawn at the limit. Zeros are omitted.
 template <class = void>
 void add_violations(Comparison const& c, std::string const& title, std::string const& units, double Violation::* level,
                     std::vector<Figure>& figures) {
@@ -53,23 +54,22 @@ double first_output(Comparison const& c, std::size_t i, double t) {
   return interpolate(c.runs.front().times, c.runs.front().outputs[i], t);
 }
 
-/// Unit in a name, "[m]" of "tip x [m]"; empty if the name has no unit.
+/// Unit with brackets at the end of an output's name, "[m]" for "tip x [m]"; empty if the name has no unit.
 template <class = void>
 std::string_view unit_in(std::string_view name) {
   std::size_t const unit = name.rfind(" [");
   return unit == name.npos || !name.ends_with(']') ? std::string_view() : name.substr(unit + 1);
 }
 
-/// Span of output i in the first run, or its magnitude if it is constant.
+/// Largest minus smallest value of output i in the first run. If the output is constant, its magnitude.
 template <class = void>
 double own_span(Comparison const& c, std::size_t i) {
   auto const [low, high] = std::ranges::minmax(c.runs.front().outputs[i]);
   return high > low ? high - low : std::abs(high);
 }
 
-/// Reference span for differences of output i: its own span, and at least 1 % of the largest span of outputs with
-/// the same unit. An output that consists of round-off in the first run is thus compared with the size of the other
-/// outputs.
+/// Reference span for differences of output i: the greater of its `own_span` and 1 % of the largest `own_span` of
+/// outputs with the same unit. The lower bound is used if output i is only round-off in the first run.
 template <class = void>
 double measure_of(Comparison const& c, std::size_t i) {
   std::vector<std::string> const& names = c.runs.front().output_names;
@@ -80,8 +80,8 @@ double measure_of(Comparison const& c, std::size_t i) {
   return span;
 }
 
-/// Largest difference of output i between a run and the first run, relative to `measure_of`. It is infinite if
-/// `measure_of` is zero.
+/// Largest difference of output i between a run and the first run, relative to `measure_of`. Infinite if `measure_of`
+/// is zero and the difference is not.
 template <class = void>
 double relative_difference(Comparison const& c, ComparedRun const& run, std::size_t i) {
   double const most = run.difference[i], span = measure_of(c, i);
@@ -117,8 +117,8 @@ double mean_square(Curve const& curve) {
   return sum / double(curve.y.size());
 }
 
-/// Converts the curves of a figure to magnitudes on a logarithmic axis, and removes curves that are zero. `least` is
-/// the largest magnitude of the smallest curve. Values below a thousandth of it are drawn at this limit.
+/// Converts the curves of a figure to magnitudes on a logarithmic axis, and removes curves whose values are all zero.
+/// `least` is the largest magnitude of the smallest curve. Magnitudes below 1e-3 `least` are drawn at this limit.
 template <class = void>
 void show_amounts(Figure& figure, double least) {
   figure.log_y = true;
@@ -128,9 +128,9 @@ void show_amounts(Figure& figure, double least) {
     for (double& y : curve.y) y = std::max(std::abs(y), 1e-3 * least);
 }
 
-/// Figure of the differences of output i from the first run. Curves with large differences (in the mean square) are
-/// drawn first, because they would hide the small ones. The figure shows magnitudes on a logarithmic axis if the
-/// largest difference of one run exceeds that of another run a hundredfold.
+/// Figure of the differences of output i from the first run. Curves are drawn in descending order of their mean square,
+/// so that large differences do not hide small ones. The figure shows magnitudes on a logarithmic axis if the largest
+/// difference of one run is more than 100 times that of another run.
 template <class = void>
 Figure difference_figure(Comparison const& c, std::size_t i) {
   std::string const &name = c.runs.front().output_names[i], unit(unit_in(name));
@@ -184,8 +184,8 @@ void add_first_cost(ComparedRun const& first, Figure& figure) {
                                                  .colour = 0});
 }
 
-/// Figure of the largest difference of each run from the first, over its computing time. No figure is returned if no
-/// run differs.
+/// Figure of the largest difference of each run from the first run, over the computing time of the run. The list is
+/// empty if no run differs.
 template <class = void>
 std::vector<Figure> cost_figure(Comparison const& c) {
   ComparedRun const& first = c.runs.front();

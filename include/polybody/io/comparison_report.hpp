@@ -1,7 +1,7 @@
 #pragma once
 /// \file
 /// Tables, histories and figures of comparisons and work-precision studies, written to files. Failed runs of a
-/// comparison are left out.
+/// comparison are omitted.
 
 #include <polybody/compare/work_precision.hpp>
 #include <polybody/io/comparison_figures.hpp>
@@ -12,14 +12,15 @@ namespace polybody {
 
 namespace detail {
 
-/// The comparison without its failed runs.
+/// Returns the comparison c without its failed runs.
 template <class = void>
 Comparison complete_runs(Comparison c) {
   std::erase_if(c.runs, [](ComparedRun const& run) { return !run.failure.empty(); });
   return c;
 }
 
-/// Checks that a comparison has runs, complete histories, and in each run the outputs of the first.
+/// Checks that a comparison has runs, that their histories are complete, and that each run has the outputs of the first
+/// run.
 /// \throws InvalidInput otherwise.
 template <class = void>  // compiled where it is used
 void check(Comparison const& c, std::string const& what) {
@@ -36,12 +37,12 @@ void check(Comparison const& c, std::string const& what) {
     if (!full)
       throw InvalidInput("comparison.runs", {ErrorObject{what}, ": the run \"", run.name,
                                              "\" lacks times, or the sizes of its histories and outputs differ from "
-                                             "its times and from the first run's outputs. Take it from `compare`."});
+                                             "its times and from the first run's outputs. Use the runs of `compare`."});
   }
 }
 
-/// `name` as part of a file name: letters, digits and non-ASCII characters remain. Each group of other characters
-/// becomes one '_'.
+/// Converts `name` to a part of a file name: letters, digits and non-ASCII characters remain. Each group of other
+/// characters becomes one '_', or is removed at the beginning and end.
 template <class = void>
 std::string word_for_file(std::string const& name) {
   std::string word;
@@ -56,7 +57,8 @@ std::string word_for_file(std::string const& name) {
   return word;
 }
 
-/// Draws panels in so many columns, six on a page (stem, stem_2, …), and adds the names of the files to `written`.
+/// Draws each figure as a panel, in `columns` columns and with six panels per picture (`stem`, `stem`_2, …). Adds the
+/// names of the files to `written`.
 template <class = void>
 void draw_panels(std::vector<Figure> const& figures, int columns, std::filesystem::path const& stem, bool draw,
                  std::vector<std::filesystem::path>& written) {
@@ -75,8 +77,9 @@ void draw_panels(std::vector<Figure> const& figures, int columns, std::filesyste
 
 }  // namespace detail
 
-/// Writes to `file` the table that `<<` prints, in full precision: one row per quantity, one column per run. Throws
-/// InvalidInput for a comparison without runs and for numbers that are not finite, IoError as `Csv`.
+/// Writes the table that operator<< prints for a comparison, in full precision, with one row per quantity and one
+/// column per run. Throws InvalidInput for a comparison without runs and for numbers that are not finite; IoError if
+/// the file cannot be written.
 template <class = void>
 void write_csv(Comparison const& all, std::filesystem::path const& file) {
   Comparison const c = detail::complete_runs(all);
@@ -97,7 +100,8 @@ void write_csv(Comparison const& all, std::filesystem::path const& file) {
 }
 
 /// Writes the histories of each run to a separate file in `folder`, history_<number>_<name>.csv. The columns are "t
-/// [s]" and the histories of `histories`. Returns the files in the order of the runs. Throws as `write_csv`.
+/// [s]" and the result of `histories(run)`. Returns the files in the order of the runs. Throws InvalidInput for a
+/// comparison without runs and for numbers that are not finite; IoError if a file cannot be written.
 template <class = void>
 std::vector<std::filesystem::path> write_histories(Comparison const& all, std::filesystem::path const& folder) {
   Comparison const c = detail::complete_runs(all);
@@ -129,8 +133,8 @@ std::vector<std::filesystem::path> write_histories(Comparison const& all, std::f
 ///   `cost`         difference of each run from the first, over its computing time
 ///
 /// A page has six panels; further pages are `outputs_2`, …. Each figure consists of .dat and .gp, and of .png if
-/// gnuplot is found and `draw` is set. A figure without data is not written. Returns the files. Throws as `write_csv`,
-/// and IoError if gnuplot fails.
+/// gnuplot is found and `draw` is true. A figure without data is not written. Returns the files. Throws InvalidInput
+/// for a comparison without runs; IoError if a file cannot be written or gnuplot fails.
 template <class = void>
 std::vector<std::filesystem::path> write_figures(Comparison const& all, std::filesystem::path const& folder,
                                                  bool draw = true) {
@@ -161,7 +165,8 @@ std::vector<std::filesystem::path> write_figures(Comparison const& all, std::fil
   return written;
 }
 
-/// Writes table.csv, histories and figures to `folder`, figures also as .png if `draw`. Returns the files.
+/// Writes table.csv, `write_histories` and `write_figures` of a comparison to `folder`; gnuplot draws the figures if
+/// `draw` is true. Returns the files.
 template <class = void>
 std::vector<std::filesystem::path> write_report(Comparison const& all, std::filesystem::path const& folder,
                                                 bool draw = true) {
@@ -174,7 +179,7 @@ std::vector<std::filesystem::path> write_report(Comparison const& all, std::file
   return written;
 }
 
-/// Writes the points of all completed runs to `file`, one row each. Throws IoError as `Csv`.
+/// Writes the points of all completed runs to `file`, one row per point. Throws IoError if the file cannot be written.
 template <class = void>
 void write_csv(WorkPrecision const& w, std::filesystem::path const& file) {
   Csv csv(file, {"formulation", "step [s] or tolerance", "steps", "CPU time [s]", "error"}, Csv::Keeps::full_table);
@@ -184,7 +189,8 @@ void write_csv(WorkPrecision const& w, std::filesystem::path const& file) {
   csv.close();
 }
 
-/// Figure of the error over CPU time for the completed runs, with logarithmic axes.
+/// Figure of the error over CPU time for the completed runs, with logarithmic axes. Throws InvalidInput if there are no
+/// curves, or if they are for different outputs.
 template <class = void>
 Figure work_precision_figure(WorkPrecision const& w) {
   if (w.curves.empty())
@@ -212,8 +218,8 @@ Figure work_precision_figure(WorkPrecision const& w) {
 }
 
 /// Writes the points and their figure to `folder`: work_precision.csv, .dat and .gp, and .png if gnuplot is found and
-/// `draw` is set. Returns the files. Throws InvalidInput if no run is complete, IoError as `Csv` and if gnuplot
-/// fails.
+/// `draw` is set. Returns the files. Throws InvalidInput if no run is complete; IoError if a file cannot be written or
+/// gnuplot fails.
 template <class = void>
 std::vector<std::filesystem::path> write_report(WorkPrecision const& w, std::filesystem::path const& folder,
                                                 bool draw = true) {

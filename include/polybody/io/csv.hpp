@@ -23,15 +23,15 @@ namespace polybody {
 
 /// Writer of a table: a head line, then rows of numbers in the shortest form that reads back to the same double. A
 /// single quote precedes a text that begins with =, +, - or @, so that a spreadsheet does not evaluate it. The file
-/// appears under its name on `close()` (see AtomicFile). If an exception ends the loop that writes it, the file
-/// appears with the rows written so far, if there are any. Move-only.
+/// appears under its name on `close()` (see AtomicFile). If an exception interrupts the writing, the file appears with
+/// the rows written so far, if there are any (see `Keeps`). Move-only.
 class Csv {
  public:
-  /// Content of the file after an exception: the rows written so far, or no file if only a whole table is useful.
+  /// Result of an exception during the writing. `rows`: a file with the rows written so far. `full_table`: no file.
   enum class Keeps { rows, full_table };
 
   /// Creates `file` with its parent folders and writes the heads `columns`, with their units ("t [s]").
-  /// \throws InvalidInput unless the heads are not empty and all different
+  /// \throws InvalidInput if there is no head, or a head is empty or occurs twice
   /// \throws IoError if the file cannot be created.
   Csv(std::filesystem::path const& file, std::vector<std::string> columns, Keeps keeps = Keeps::rows)
       : columns_(std::move(columns)), file_((check_heads(file, columns_), file)), keeps_(keeps) {
@@ -40,8 +40,9 @@ class Csv {
     file_.write(line_);
   }
 
-  /// Adds one row of `values`, a number for each column. Throws InvalidInput, and writes nothing, if the count
-  /// differs or a number is not finite. Throws IoError if the system refuses the bytes.
+  /// Adds one row of `values`, a number for each column. Throws InvalidInput, and writes nothing, if the number of
+  /// values differs from the number of columns or a value is not finite. Throws IoError if the system refuses the
+  /// bytes.
   void row(std::span<double const> values) {
     line_.clear();
     write_row(values, 0);
@@ -63,7 +64,8 @@ class Csv {
     row({static_cast<double>(values)...});
   }
 
-  /// Completes the file and renames it to its final name. A second call has no effect. Throws IoError.
+  /// Completes the file and renames it to its final name. A second call has no effect. Throws IoError if the file
+  /// cannot be written.
   void close() { file_.close(); }
 
   std::size_t rows() const noexcept { return rows_; }  ///< Number of rows written, without the head.

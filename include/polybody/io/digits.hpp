@@ -1,4 +1,7 @@
 #pragma once
+/// \file
+/// Shortest decimal text of a double that reads back to the same double.
+
 #include <charconv>
 #include <string>
 
@@ -6,11 +9,12 @@
 
 namespace polybody::detail {
 
-/// Appends x to a text, in the shortest form that reads back to the same double.
+/// Appends the number x to `text`, in the shortest form that reads back to the same double.
 inline void append_digits(std::string& text, double x) {
   char digits[32];
   text.append(digits, std::to_chars(digits, digits + sizeof digits, x).ptr);
 }
+/// Number x as text, in the shortest form that reads back to the same double.
 inline std::string all_digits(double x) {
   std::string text;
   append_digits(text, x);

@@ -17,21 +17,21 @@ namespace polybody {
 
 /// Curve of a figure.
 struct Curve {
-  std::vector<double> x{}, y{};  ///< (n) points, n >= 1 [units of the axes]
+  std::vector<double> x{}, y{};  ///< (n) coordinates of the points, n >= 1 [units of the axes]
   std::string label{};           ///< text in the legend; empty: no entry
-  std::string style = "lines";   ///< lines, points, linespoints, dashed, steps, or filled: the translucent area inside
-  int colour = -1;               ///< index of one of 8 colours, cyclic; -1: index of the curve
+  std::string style = "lines";   ///< lines, points, linespoints, dashed, steps, or filled (translucent area inside)
+  int colour = -1;               ///< index into 8 colours, modulo 8; -1: index of the curve
   double width = 1.5;            ///< line width [pt]
 };
 
 /// Figure with one pair of axes. All text is printed literally (UTF-8; '\n' begins a new line).
 struct Figure {
-  std::string title{}, x_label{}, y_label{};  ///< above, below and left of the axes; empty: none
+  std::string title{}, x_label{}, y_label{};  ///< text above, below and left of the axes; empty: none
   std::vector<Curve> curves{};                ///< drawn in this order
   bool equal_axes = false;                    ///< one unit of x is as long as one unit of y
   bool log_x = false, log_y = false;          ///< logarithmic axes; they omit points that are not positive
   bool legend = true;                         ///< draws a list of the curves' labels
-  std::optional<std::array<double, 2>> x_range{}, y_range{};  ///< limits; empty: all points
+  std::optional<std::array<double, 2>> x_range{}, y_range{};  ///< limits of the axes; empty: fit all points
   int width_px = 1000, height_px = 700;                       ///< size of the picture [pixels]
 };
 
@@ -66,13 +66,13 @@ void check(Figure const& figure) {
   for (auto const& [x, y, label, style, colour, width] : figure.curves) {
     (where = title).append(", curve \"").append(label).append("\"");
     need(x.size() == y.size(), "x has " + std::to_string(x.size()) + " numbers and y has " + std::to_string(y.size()) +
-                                   "; they must be as many");
+                                   "; the numbers must be equal");
     need(!x.empty(), "a curve needs at least one point");
     need(std::ranges::all_of(x, is_finite), "a number in x is not finite");
     need(std::ranges::all_of(y, is_finite), "a number in y is not finite");
     need(std::ranges::count(curve_styles, style) == 1,
          "style \"" + style + "\" is none of lines, points, linespoints, dashed, steps, filled");
-    need(colour >= -1, "colour must be 0, 1, 2 ... or -1 for one by its place");
+    need(colour >= -1, "colour must be 0, 1, 2 ... or -1 for the index of the curve");
     need(is_finite(width) && width > 0, "width must be positive");
     for (std::size_t i = 0; i < x.size() && !visible; ++i)
       visible = (!figure.log_x || x[i] > 0) && (!figure.log_y || y[i] > 0);

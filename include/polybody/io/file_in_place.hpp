@@ -16,12 +16,13 @@
 
 namespace polybody {
 
-/// Output file for content that is useful while it grows, or that is not read until another file refers to it. A
-/// killed program leaves no temporary file. Compare AtomicFile. Move-only.
+/// Output file that has its final name from the beginning. Suitable if an incomplete file is useful, or if another file
+/// refers to it only after its completion. A killed program leaves no temporary file. AtomicFile, in contrast, appears
+/// only when complete. Move-only.
 class FileInPlace {
  public:
-  /// Creates the parent folders of `file` and an empty file.
-  /// \throws IoError.
+  /// Creates `file`, which is empty, and its parent folders.
+  /// \throws IoError if the system refuses.
   explicit FileInPlace(std::filesystem::path const& file) : name_(file.string()) {
     std::error_code reason;
     std::filesystem::create_directories(file.parent_path(), reason);
@@ -30,18 +31,19 @@ class FileInPlace {
     if (!file_) fail("cannot be created", {errno, std::generic_category()});
   }
 
-  /// Writes `bytes`.
-  /// \throws IoError, as the other functions.
+  /// Writes `bytes` at the current position.
+  /// \throws IoError if the system refuses.
   void write(std::string_view bytes) {
     errno = 0;
     require(std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) == bytes.size());
   }
-  /// Passes buffered bytes to the system, up to 4096 bytes in one call.
+  /// Writes the buffered bytes to the system; up to 4096 bytes are one system call. \throws IoError if the system
+  /// refuses.
   void flush() {
     errno = 0;
     require(std::fflush(file_.get()) == 0);
   }
-  /// Sets the position of the next write to `place` [bytes].
+  /// Sets the position of the next write to `place` [bytes from the beginning]. \throws IoError if the system refuses.
   void go_to(std::size_t place) {
     errno = 0;
     require(std::fseek(file_.get(), long(place), SEEK_SET) == 0);

@@ -15,7 +15,7 @@
 
 namespace polybody {
 
-/// Position of the grid of a scene: below it, behind it, or no grid.
+/// Position of the grid of a scene: below the scene, behind the scene, or no grid.
 enum class FilmFloor { ground, behind, none };
 
 /// Options of a film: title, viewer, frame rate and camera.
@@ -29,13 +29,14 @@ struct FilmOptions {
   std::optional<Vec3> look_from = {};
   std::optional<Vec3> up = {};  ///< (3) upward direction in world axes (empty: z, or y if planar)
   std::string follow = {};      ///< name of the part that the camera follows; empty: none
-  /// Grid normal to `up` below the scene, or normal to `look_from` behind it. Empty: below, or behind if planar.
+  /// Position of the grid: below the scene and normal to `up`, or behind the scene and normal to `look_from`. Empty:
+  /// below, or behind if all scenes are planar.
   std::optional<FilmFloor> floor = {};
 };
 
 namespace detail {
 
-/// Placeholder for the film in the viewer's file, which contains it once.
+/// Placeholder for the film in the viewer's file. The file contains the placeholder once.
 inline constexpr std::string_view film_slot = "<!--polybody-film-->";
 
 /// Returns the text of the viewer's page.
@@ -43,9 +44,8 @@ inline constexpr std::string_view film_slot = "<!--polybody-film-->";
 template <class = void>
 std::string viewer_page(std::filesystem::path const& file) {
   char const* const remedy =
-      " Build polybody's CMake target 'viewer', which needs npm, and name polybody_viewer.html of the build folder, or "
-      "of "
-      "share/polybody/viewer where polybody is installed, in FilmOptions::viewer.";
+      " Build polybody's CMake target 'viewer', which needs npm, and set FilmOptions::viewer to polybody_viewer.html "
+      "in the build folder, or in share/polybody/viewer of an installation.";
   if (file.empty()) throw IoError("film.viewer", {ErrorObject{"Film"}, ": the viewer is missing.", remedy});
   std::optional<std::string> page = content_of(file);
   if (!page)
@@ -73,8 +73,8 @@ std::string html_text(std::string const& text) {
 ///   for (State const& now : simulate(…))
 ///     if (scene.due(now.t)) scene.record(visual, now);
 ///   film.write("out/arm.html");
-/// A part with constant shape needs 20 bytes a frame. A deformable part needs 3 or 6 more bytes for each point, and 2
-/// for each colour.
+/// A part with constant shape needs 20 bytes a frame. A deformable part needs 3 or 6 more bytes for each point. A
+/// colour scalar needs 2 bytes for each point.
 class Film {
  public:
   /// Empty film. Checks the options and reads the viewer.
@@ -87,7 +87,7 @@ class Film {
     page_ = detail::viewer_page(options_.viewer);
   }
 
-  /// Adds a scene with this `name`. The reference remains valid.
+  /// Adds a scene with this `name`. The reference remains valid as long as the film exists.
   /// \throws InvalidInput if another scene has the same name.
   FilmScene& scene(std::string name) {
     for (FilmScene const& other : scenes_)
@@ -144,7 +144,7 @@ class Film {
       throw InvalidInput("film.camera", {ErrorObject{"Film"}, ": look_from and up must be finite and not parallel."});
   }
 
-  /// Members of the table of contents except the scenes.
+  /// JSON members of the film's table of contents, without the scenes.
   std::string contents() const {
     auto const vector = [](Vec3 const& v) {
       return '[' + detail::all_digits(v[0]) + ',' + detail::all_digits(v[1]) + ',' + detail::all_digits(v[2]) + ']';

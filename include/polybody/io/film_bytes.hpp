@@ -38,8 +38,8 @@ constexpr char const* type_letters() {
                                            : "u4";
 }
 
-/// Consecutive arrays, each aligned to eight bytes. Arrays with equal bytes are stored once: the parts of one body
-/// have the same rotations.
+/// Consecutive arrays, each aligned to eight bytes. Arrays with equal bytes are stored once, for example the equal
+/// rotations of the parts of one body.
 class FilmArrays {
  public:
   /// Appends an array unless an equal one exists.
@@ -94,7 +94,7 @@ std::string json_text(std::string_view text) {
   return out + '"';
 }
 
-/// Numbers quantised to integers of magnitude up to `most`, 127 or 32767: value ≈ integer·step, |error| ≤ step/2.
+/// Numbers quantised to integers of a magnitude up to 127 or 32767: number ≈ integer·step, |error| ≤ step/2.
 struct Quantised {
   std::vector<std::int16_t> integers = {};
   double step = 0.0;
@@ -118,7 +118,7 @@ std::array<std::int16_t, 4> quantised_rotation(Mat3 const& axes) {
   return {integer(q.w()), integer(q.x()), integer(q.y()), integer(q.z())};
 }
 
-/// Rotation that the viewer computes from these integers.
+/// Rotation matrix that the viewer computes from a quantised quaternion (w, x, y, z).
 template <class = void>
 Mat3 rotation_of(std::array<std::int16_t, 4> const& q) {
   return Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();

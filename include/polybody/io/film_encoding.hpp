@@ -13,10 +13,11 @@
 /// numbers]. Types are `f4` and `f8` (IEEE floats of 4 and 8 bytes), `i1` and `i2` (signed integers), `u2` and `u4`
 /// (unsigned integers).
 ///
-/// The position of a point of a part is place + A (point + step·deviation). Places and rotations (quaternions,
-/// normalised) are stored for each frame, deviations only for deformable parts. Deviations are stored in one byte if
-/// their error is at most 1e-4 of the part's size, else in two. A scalar is low + (high − low)·u/65534; u = 65535
-/// means no value.
+/// A point of a part has the position r + A (p + step·d), in world axes. The origins r ("places") and the rotations A
+/// ("turns", quaternions to be normalised) are stored for each frame. The points p are stored once. The deviations d
+/// are stored for each frame of a deformable part. They are one-byte integers if the error is at most 1e-4 of the
+/// part's size, otherwise two-byte integers. A scalar has the value low + (high − low)·u/65534 with a stored integer u;
+/// u = 65535 means no value.
 
 #include <deque>
 
@@ -53,7 +54,7 @@ struct ScalarRange {
   }
 };
 
-/// Table of contents of one scene. Its numbers are appended to the arrays.
+/// Table of contents of one scene. The numbers of the scene are appended to `arrays`.
 class SceneContents {
  public:
   SceneContents(FilmScene const& scene, FilmArrays& arrays) : scene_(scene), arrays_(arrays) {

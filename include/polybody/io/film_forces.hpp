@@ -8,9 +8,9 @@
 
 namespace polybody {
 
-/// Adds to the last frame of a scene the force of each joint on its second body, as an arrow at the second marker.
-/// `system` must have been evaluated in state x.
-/// \param unit of the arrows [N], 1000 for kN
+/// Adds an arrow for each joint to the last frame of a scene: the force on the joint's second body, at the second
+/// marker. `system` must have been evaluated in state x.
+/// \param unit force that the unit of the arrows stands for [N], 1000 for kN
 /// \throws InvalidInput, NonFiniteValue as `FilmScene::arrow`.
 template <class = void>
 void add_reactions(FilmScene& scene, FilmArrows arrows, System const& system, State const& x, double unit = 1.0) {
@@ -22,9 +22,9 @@ void add_reactions(FilmScene& scene, FilmArrows arrows, System const& system, St
   }
 }
 
-/// Visitor for `for_each_contact` that adds the force of each contact point, on the body of the contact group's many
-/// markers, as an arrow.
-/// \param unit of the arrows [N], 1000 for kN
+/// Returns a visitor for `for_each_contact` that adds an arrow for each contact point: the force on the body of the
+/// contact group, not on its partner.
+/// \param unit force that the unit of the arrows stands for [N], 1000 for kN
 template <class = void>
 TouchingPointVisit add_contacts(FilmScene& scene, FilmArrows arrows, double unit = 1.0) {
   return [&scene, arrows, unit](TouchingPoint const& p) { scene.arrow(arrows, p.place, p.force / unit); };

@@ -17,12 +17,12 @@ namespace polybody {
 struct FilmScalar {
   std::string label;  ///< text at the colour bar
   std::string unit;   ///< unit of the values
-  /// Returns one value for each point of the part, in the unit. A value may be NaN. The list is empty if the part has
-  /// no values.
+  /// Returns one value in `unit` for each point of a part, or an empty list for a part without values. A value may be
+  /// NaN.
   std::function<std::vector<double>(VisualPart const&)> values;
 };
 
-/// Axial stress of bodies that provide it [MPa].
+/// Colour scalar: axial stress of bodies that provide stresses [MPa].
 template <class = void>
 FilmScalar axial_stress_colours() {
   return {"axial stress", "MPa", [](VisualPart const& part) {
@@ -32,7 +32,7 @@ FilmScalar axial_stress_colours() {
           }};
 }
 
-/// Magnitude of the velocity of the points [m/s].
+/// Colour scalar: magnitude of the velocity of each point [m/s].
 template <class = void>
 FilmScalar speed_colours() {
   return {"speed", "m/s", [](VisualPart const& part) {
@@ -45,7 +45,7 @@ FilmScalar speed_colours() {
 namespace detail {
 
 /// Motion of a part: origins and rotations of its frame, and deviations of its points. A deviation is relative to the
-/// position in the first frame of the film, in axes of the part's frame.
+/// point's position in the first frame of the film, in axes of the part's frame.
 struct FilmPart {
   std::string name;
   std::size_t shape = 0;  ///< index of the shape in the scene
@@ -79,7 +79,7 @@ struct FilmHistory {
 
 }  // namespace detail
 
-/// Handle of a set of arrows in a scene.
+/// Handle of a set of arrows, returned by `FilmScene::arrows`.
 struct FilmArrows {
   std::size_t place;  ///< index of the set in the scene
 };
@@ -95,21 +95,22 @@ struct FilmArrows {
 ///   }
 class FilmScene {
  public:
-  /// Scene without frames, with so many `frames_per_second` [1/s]; see `Film::scene`.
+  /// Scene without frames, with this number of `frames_per_second` [1/s]. Programs call `Film::scene` instead.
   FilmScene(std::string name, double frames_per_second) : name_(std::move(name)), interval_(1.0 / frames_per_second) {}
 
   /// Adds a scalar that colours the parts.
-  /// \throws InvalidInput after the first frame, or if the scene already has the scalar.
+  /// \throws InvalidInput after the first frame, or if the scene already has a scalar with this label.
   void colour(FilmScalar scalar) {
     require_start(scalar.label);
     for (FilmScalar const& other : scalars_)
       if (other.label == scalar.label)
         throw InvalidInput("film.scene",
-                           {ErrorObject{who()}, "the name \"", scalar.label, "\" of colours occurs twice."});
+                           {ErrorObject{who()}, "the scene already has a colour scalar \"", scalar.label, "\"."});
     scalars_.push_back(std::move(scalar));
   }
 
-  /// Adds a set of arrows with this `label`. Their vectors have one `unit`, and one scale in the picture.
+  /// Adds a set of arrows with this `label`. All vectors of the set have this `unit`, and the same scale in the
+  /// picture.
   /// \param visible initial visibility in the viewer
   /// \throws InvalidInput after the first frame.
   FilmArrows arrows(std::string label, std::string unit, bool visible = true) {
@@ -128,8 +129,8 @@ class FilmScene {
     if (!std::isfinite(t))
       throw NonFiniteValue("film.not_finite", {ErrorObject{who()}, "the time of a frame is not finite."});
     if (!times_.empty() && !(t > times_.back()))
-      throw InvalidInput("film.time_order", {ErrorObject{who()}, "frames must rise in time, but t = ", ErrorTime{t},
-                                             " s follows ", times_.back(), " s."});
+      throw InvalidInput("film.time_order", {ErrorObject{who()}, "the times of the frames must increase, but t = ",
+                                             ErrorTime{t}, " s follows ", times_.back(), " s."});
     if (parts.empty())
       throw InvalidInput("film.scene", {ErrorObject{who()}, "there is nothing to draw. Attach shapes to the visual."});
     check_parts(t, parts);
@@ -154,13 +155,13 @@ class FilmScene {
 
   /// Adds an arrow to the last frame.
   /// \param place start of the arrow, world axes [m]
-  /// \param vector in the unit of the set
+  /// \param vector the arrow, world axes [unit of the set]
   /// \throws InvalidInput if there is no frame yet, or for arrows of another scene; NonFiniteValue.
   void arrow(FilmArrows set, Vec3 const& place, Vec3 const& vector) {
     if (set.place >= arrows_.size() || times_.empty())
-      throw InvalidInput(
-          "film.arrow",
-          {ErrorObject{who()}, "an arrow needs a set of arrows of this scene and a frame. Record a frame first."});
+      throw InvalidInput("film.arrow",
+                         {ErrorObject{who()},
+                          "an arrow needs a recorded frame, and a set of arrows of this scene. Record a frame first."});
     detail::FilmArrowSet& arrows = arrows_[set.place];
     if (!place.allFinite() || !vector.allFinite())
       throw NonFiniteValue("film.not_finite", {ErrorObject{who()}, "an arrow of \"", arrows.label,
@@ -169,8 +170,8 @@ class FilmScene {
     for (int i = 0; i < 3; ++i) arrows.places.push_back(float(place[i])), arrows.vectors.push_back(float(vector[i]));
   }
 
-  /// Adds a point to the history `label`: a `value` in `unit` at any time t [s]. Histories of several scenes with the
-  /// same label share a plot.
+  /// Adds a point to the history `label`: a `value` in `unit` at time t [s]. Histories of several scenes with the same
+  /// label share a plot.
   /// \throws InvalidInput unless the times of the history increase; NonFiniteValue.
   void plot(std::string const& label, std::string const& unit, double t, double value) {
     if (!std::isfinite(t) || !std::isfinite(value))
@@ -180,8 +181,8 @@ class FilmScene {
     if (found == histories_.end()) found = histories_.insert(found, {label, unit});
     if (!found->times.empty() && !(t > found->times.back()))
       throw InvalidInput("film.time_order",
-                         {ErrorObject{who()}, "the history \"", label, "\" must rise in time, but t = ", ErrorTime{t},
-                          " s follows ", found->times.back(), " s."});
+                         {ErrorObject{who()}, "the times of the history \"", label,
+                          "\" must increase, but t = ", ErrorTime{t}, " s follows ", found->times.back(), " s."});
     found->times.push_back(t);
     found->values.push_back(float(value));
   }
@@ -196,8 +197,8 @@ class FilmScene {
   ///@{
   std::vector<FilmScalar> const& scalars() const { return scalars_; }              ///< scalars that colour the parts
   std::vector<detail::FilmShape> const& shapes() const { return shapes_; }         ///< different shapes of the parts
-  std::vector<detail::FilmPart> const& parts() const { return parts_; }            ///< parts of the first frame
-  std::vector<detail::FilmArrowSet> const& arrow_sets() const { return arrows_; }  ///< in the order of definition
+  std::vector<detail::FilmPart> const& parts() const { return parts_; }            ///< parts with all their frames
+  std::vector<detail::FilmArrowSet> const& arrow_sets() const { return arrows_; }  ///< sets of arrows
   std::vector<detail::FilmHistory> const& histories() const {
     return histories_;
   }  ///< histories in the order of their first points
@@ -208,8 +209,7 @@ class FilmScene {
 
   void require_start(std::string const& what) const {
     if (!times_.empty())
-      throw InvalidInput("film.late",
-                         {ErrorObject{who()}, "\"", what, "\" is named after the first frame. Name it before."});
+      throw InvalidInput("film.late", {ErrorObject{who()}, "\"", what, "\" must be defined before the first frame."});
   }
 
   void check_parts(double t, std::vector<VisualPart> const& parts) const {
@@ -267,8 +267,8 @@ class FilmScene {
       bool const fits = values.empty() ? before == 0 : before == wanted && values.size() == out.points.size();
       if (!fits)
         throw InvalidInput("film.parts",
-                           {ErrorObject{who()}, "the number of colours \"", scalars_[s].label, "\" of \"", part.name,
-                            "\" differs from the number of its points at t = ", ErrorTime{t}, " s."});
+                           {ErrorObject{who()}, "the number of values of \"", scalars_[s].label, "\" on \"", part.name,
+                            "\" differs from the number of points at t = ", ErrorTime{t}, " s."});
       for (double const x : values) out.scalars[s].push_back(float(x));
     }
   }

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Search and call of the program gnuplot, and quotation of text for it.
+/// Functions that find and run the program gnuplot, and quote text for its scripts.
 
 #include <cstdlib>
 #include <filesystem>
@@ -16,7 +16,7 @@
 
 namespace polybody {
 
-/// First executable `gnuplot` in the folders of the environment variable PATH, if any.
+/// First executable `gnuplot` in the folders of the environment variable PATH; empty if there is none.
 template <class = void>  // compiled where it is used
 std::optional<std::filesystem::path> find_gnuplot() {
   namespace fs = std::filesystem;
@@ -50,7 +50,8 @@ std::string shell_word(std::string_view text) {
   return single_quoted(text, R"('\'')");
 }
 
-/// Gnuplot string expression for a text, without special characters (gnuplot runs `...` in double quotes).
+/// Gnuplot string expression for a text. The text is in single quotes, because gnuplot executes `...` in double quotes
+/// as a command.
 template <class = void>
 std::string gnuplot_text(std::string_view text) {
   std::string expression = single_quoted(text, "''");
@@ -59,8 +60,9 @@ std::string gnuplot_text(std::string_view text) {
   return expression;
 }
 
-/// Runs `program` in the folder of `script`. The gnuplot variable png is the name of a temporary file, which then
-/// replaces `png`. Throws IoError with the script's name and gnuplot's message.
+/// Runs gnuplot, the file `program`, on `script` in the folder of the script. The gnuplot variable png contains the
+/// name of a temporary file, to which the script draws. This file then replaces the file `png`. Throws IoError with the
+/// script's name and gnuplot's message.
 template <class = void>
 void run_gnuplot(std::filesystem::path const& program, std::filesystem::path const& script,
                  std::filesystem::path const& png) {
@@ -88,7 +90,7 @@ void run_gnuplot(std::filesystem::path const& program, std::filesystem::path con
   fs::rename(drawing.file, png, reason);
   if (reason)
     throw IoError("file.write",
-                  {"file \"", ErrorObject{png.string()}, "\" cannot be moved to its place: ", reason.message()});
+                  {"file \"", ErrorObject{png.string()}, "\" cannot be renamed to its final name: ", reason.message()});
 }
 
 }  // namespace detail

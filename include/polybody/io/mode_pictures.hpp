@@ -18,7 +18,7 @@ struct ModePictureOptions {
   Vec3 look_from = Vec3(-2, -3, 1.5);    ///< (3) direction from the model to the camera, world axes
   Vec3 up = Vec3::UnitZ();               ///< (3) upward direction in the picture, world axes
   int columns = 2;                       ///< number of panels in a row
-  bool draw = true;                      ///< draws the PNG by gnuplot; otherwise only data and script are written
+  bool draw = true;                      ///< true: draws the PNG with gnuplot; false: writes only data and script
   std::vector<std::string> titles = {};  ///< title of each mode; empty: "mode 1", "mode 2" …
 };
 
@@ -37,13 +37,12 @@ void require_picture(ModePictureOptions const& options) {
 /// Parts of a model in state x and their displacements in one mode.
 class ModeShape {
  public:
-  /// Displacements by `shape` (nv), scaled so that the largest one is `size` times the diagonal of the model. The
-  /// velocities of the points at v = shape are the linear displacements.
+  /// Scales the mode `shape` (nv) such that its largest displacement is `size` times the diagonal of the model. The
+  /// displacements, linear in the mode, are the velocities of the points at v = `shape`.
   ModeShape(Visual& visual, State const& x, MatX::ConstColXpr const& shape, double size) {
     if (shape.size() != x.v.size())
-      throw InvalidInput("mode.size",
-                         {ErrorObject{"mode pictures"}, ": a mode has ", ErrorValue{shape.size()},
-                          " velocities, but the state has ", x.v.size(), ". Give the state of the modes."});
+      throw InvalidInput("mode.size", {ErrorObject{"mode pictures"}, ": a mode has ", ErrorValue{shape.size()},
+                                       " velocities, but the state has ", x.v.size(), ". Give the state of `modes`."});
     State y = x;
     y.v = shape;
     parts_ = visual.at(y);
@@ -82,8 +81,9 @@ class ModeShape {
   double scale_ = 0.0;
 };
 
-/// Walk along all edges of a surface without a jump, for each connected part: depth-first, back along each edge.
-/// \return for each connected part the indices of the points in the order of the walk
+/// Walks along all edges of a surface, one walk without jumps for each connected part. A walk is a depth-first search
+/// that returns along each edge.
+/// \return for each walk, the indices of its points in their order
 template <class = void>
 std::vector<std::vector<int>> edge_walks(Surface const& surface) {
   std::vector<std::vector<int>> next(surface.points.size()), walks;
@@ -96,7 +96,7 @@ std::vector<std::vector<int>> edge_walks(Surface const& surface) {
     }
     begin = end;
   }
-  for (auto& list : next) {  // each edge once, at both of its ends
+  for (auto& list : next) {  // each edge is stored once at each of its two ends
     std::sort(list.begin(), list.end());
     list.erase(std::unique(list.begin(), list.end()), list.end());
   }
@@ -135,7 +135,8 @@ inline std::string mode_title(ModePictureOptions const& options, std::size_t k) 
   return k < options.titles.size() ? options.titles[k] : "mode " + std::to_string(k + 1);
 }
 
-/// Sets the ranges of a figure with equal axes to the shape of its panel, so that the labels of the axes have room.
+/// Sets the axis ranges of a figure with equal axes to the aspect ratio of its panel, so that the axis labels have
+/// space.
 template <class = void>
 void fill_panel(Figure& figure) {
   Vec2 low = Vec2::Constant(std::numeric_limits<double>::infinity()), high = -low;
@@ -151,7 +152,7 @@ void fill_panel(Figure& figure) {
   figure.y_range = {middle[1] - 0.5 * height, middle[1] + 0.5 * height};
 }
 
-/// Panel of one mode: edges of the undeformed model, thin, and of the mode.
+/// Panel of one mode: edges of the undeformed model in thin lines, and edges of the model displaced by the mode.
 template <class = void>
 Figure mode_figure(ModeShape const& mode, ModePictureOptions const& options, std::string title) {
   Vec3 const back = options.look_from.normalized(), right = options.up.cross(back).normalized(), up = back.cross(right);
@@ -173,8 +174,8 @@ Figure mode_figure(ModeShape const& mode, ModePictureOptions const& options, std
 
 }  // namespace detail
 
-/// Titles "mode 1, 5.37 Hz" for frequencies ω [rad/s], as of `Modes::frequency`; a negative frequency, of an unstable
-/// motion, is named.
+/// Titles such as "mode 1, 5.37 Hz" for the angular frequencies ω [rad/s] of `Modes::frequency`. The title for a
+/// negative ω, which means an unstable motion, is "mode 1, unstable".
 template <class = void>
 std::vector<std::string> mode_titles(VecX const& frequency) {
   std::vector<std::string> titles;
@@ -187,14 +188,15 @@ std::vector<std::string> mode_titles(VecX const& frequency) {
   return titles;
 }
 
-/// Draws modes in one picture, one panel for each column of `shapes`: the edges of the model in state x, thin, and
-/// displaced by the mode:
+/// Draws modes in one picture, with one panel for each column of `shapes`. A panel shows the edges of the model in
+/// state x in thin lines, and the edges displaced by the mode:
 ///   Modes const found = modes(model, x, 4);
 ///   write_modes(visual, x, found.shape, "out/modes", {.titles = mode_titles(found.frequency)});
 /// Displacements are linear, so large rotations look stretched. Writes `stem`.dat, .gp and, if gnuplot is on PATH, .png
-/// (see `write_panels`). The shapes are those of `modes`, of `buckling_modes`, or the real part of damped ones (nv×k).
+/// (see `write_panels`). `shapes` (nv×k) are the shapes of `modes` or `buckling_modes`, or the real parts of damped
+/// modes.
 /// \throws InvalidInput for shapes of another model, for a size that is not positive, for parallel view directions, and
-/// without anything to be seen; IoError if a file cannot be written.
+/// for a visual without shapes; IoError if a file cannot be written.
 template <class = void>
 DrawResult write_modes(Visual& visual, State const& x, MatX const& shapes, std::filesystem::path const& stem,
                        ModePictureOptions const& options = {}) {
@@ -208,8 +210,7 @@ DrawResult write_modes(Visual& visual, State const& x, MatX const& shapes, std::
   return write_panels(panels, options.columns, stem, options.draw);
 }
 
-/// Records one period of a mode (column `mode` of `shapes`) as frames of a film, with the period 2 s whatever its
-/// frequency:
+/// Records one period of a mode (column `mode` of `shapes`) as frames of a film. The period is 2 s for every frequency:
 ///   record_mode(film.scene("mode 1"), visual, x, found.shape, 0);
 /// The displacements are those of `write_modes` with this `size`, times sin(πt). \throws InvalidInput as `write_modes`,
 /// and for a column that does not exist.

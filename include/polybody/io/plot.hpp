@@ -20,19 +20,19 @@
 
 namespace polybody {
 
-/// Result of `write_figure`. It is script_only if gnuplot is not on PATH or `draw` is false; a PNG of an earlier run
-/// is then not changed.
+/// Result of `write_figure`. It is script_only if gnuplot is not on PATH or `draw` is false; an existing PNG then
+/// remains unchanged.
 enum class DrawResult { png, script_only };
 
 namespace detail {
 
-/// Gnuplot's names of the `curve_styles`.
+/// Gnuplot's names of the styles in `curve_styles`, in the same order.
 inline constexpr std::array<std::string_view, 6> gnuplot_styles{
     "lines",       "points",
     "linespoints", "lines dashtype (12,6)",
     "steps",       "filledcurves closed fillstyle transparent solid 0.3"};
 
-/// Colours that colour-blind readers can distinguish [Okabe & Ito 2008], strongest first.
+/// Colours that colour-blind readers can distinguish [Okabe & Ito 2008], the most visible first.
 inline constexpr std::array<std::string_view, 8> palette{"#0072B2", "#D55E00", "#009E73", "#E69F00",
                                                          "#CC79A7", "#56B4E9", "#000000", "#F0E442"};
 
@@ -63,7 +63,7 @@ std::string tick_digits(double low, double high) {
   return std::to_string(static_cast<int>(std::clamp(digits, 6.0, 17.0)));
 }
 
-/// Gnuplot commands for one figure, whose first curve is data block `block` of the file `data`.
+/// Gnuplot commands for one figure. The first curve is data block number `block` of the file `data`.
 template <class = void>
 std::string script_text(Figure const& figure, std::string const& data, std::size_t block) {
   auto const range = [](auto const& r) {
@@ -110,9 +110,9 @@ std::filesystem::path with_ending(std::filesystem::path stem, char const* ending
 }  // namespace detail
 
 /// Draws several figures in one PNG, row by row in `columns` columns. Each panel has the size of the largest figure.
-/// Writes `stem`.dat, .gp (a script that runs in its own folder) and, if `draw` and gnuplot is on PATH, .png. Each
-/// file appears when it is complete. Throws InvalidInput with the figure and the curve before anything is written,
-/// IoError if writing or gnuplot fails.
+/// Writes `stem`.dat, .gp (a script that runs in its own folder) and, if `draw` and gnuplot is on PATH, .png. Each file
+/// appears when it is complete. Throws InvalidInput naming the figure and the curve, before a file is written; IoError
+/// if writing or gnuplot fails.
 template <class = void>
 DrawResult write_panels(std::vector<Figure> const& figures, int columns, std::filesystem::path const& stem,
                         bool draw = true) {

@@ -37,18 +37,18 @@ inline bool stderr_is_terminal() {
 ///
 ///     pendulum  42% [==============>                   ]  0:00:21  ETA 0:00:29
 ///
-/// Nothing is drawn if stderr is not a terminal. Not for use from several threads at once.
+/// Nothing is drawn if stderr is not a terminal. Not thread-safe.
 class Progress {
  public:
   using Clock = std::function<double()>;  ///< Time [s] from any origin; it never decreases.
 
-  /// Progress bar with this `label` from `start` to `end`, in the unit of `update`, such as the simulated time.
-  /// Either end may be the greater. Throws InvalidInput if either is not finite.
+  /// Progress bar with this `label` from `start` to `end`, in the unit of the argument of `update`, such as simulated
+  /// time [s]. `start` may be greater than `end`. Throws InvalidInput if `start` or `end` is not finite.
   Progress(double start, double end, std::string label = "")
       : Progress(start, end, std::move(label), std::cerr, stderr_is_terminal(), steady_seconds) {}
 
-  /// Progress bar from `start` to `end` with this `label`, on the stream `out`, with any `clock`. It is drawn only if
-  /// `terminal`.
+  /// Progress bar with this `label` from `start` to `end`, on a stream `out` and by a `clock`. The bar is drawn only if
+  /// `terminal` is true.
   Progress(double start, double end, std::string label, std::ostream& out, bool terminal, Clock clock = steady_seconds)
       : start_(start),
         end_(end),
@@ -64,7 +64,7 @@ class Progress {
   Progress(Progress const&) = delete;
   Progress& operator=(Progress const&) = delete;
 
-  /// Ends the line with the last progress drawn. The next output begins on a new line.
+  /// Draws the last progress and ends the line, so that the next output begins on a new line.
   ~Progress() {
     try {
       end_line();
@@ -152,9 +152,9 @@ class Progress {
 /// Callback for `RunOptions::progress` that draws a progress bar over the simulated time of a run. The bar begins
 /// with the first step and is complete when the run ends:
 ///
-///     simulate(model, x, integrator, {.until = 10.0, .step = 1e-3, .progress = progress_bar("pendulum")}).run();
+///     simulate(model, x, integrator, {.end_time = 10.0, .step = 1e-3, .progress = progress_bar("pendulum")}).run();
 ///
-/// `make` creates the bar. The callback belongs to one run.
+/// `make(run)` creates the bar at the first step. Each run needs a separate callback.
 template <class Make>
   requires std::is_invocable_r_v<std::unique_ptr<Progress>, Make const&, RunProgress const&>
 std::function<void(RunProgress const&)> progress_bar(Make make) {

@@ -2,7 +2,7 @@
 /// \file
 /// Outputs of a run as a table, a file and a figure:
 ///
-///     Table const table = tabulate(simulate(model, x, integrator, {.until = 2.0, .step = 1e-3}),
+///     Table const table = tabulate(simulate(model, x, integrator, {.end_time = 2.0, .step = 1e-3}),
 ///                                  {{"tip height [m]", [&](State const& now) { return tip(now).z(); }}});
 ///     plot(table, "out/pendulum");   // out/pendulum.csv, .dat, .gp, .png
 
@@ -18,7 +18,7 @@ namespace polybody {
 /// Output of a run: a number that is a function of the state.
 struct TableColumn {
   std::string name;                           ///< name with unit: "tip height [m]"
-  std::function<double(State const&)> value;  ///< value in that unit
+  std::function<double(State const&)> value;  ///< value, in the unit of `name`
 };
 
 namespace detail {
@@ -48,8 +48,8 @@ std::string unit_of(std::string const& head) {
   return has_unit ? head.substr(begin + 1, head.size() - begin - 2) : "";
 }
 
-/// Figures over the first column, one for each unit, in the order of the columns. A column without a unit has a
-/// separate figure.
+/// Figures of the columns over the first column, with one figure for each unit, in the order of the columns. A column
+/// without a unit has a separate figure.
 template <class = void>
 std::vector<Figure> figures_of(Table const& table) {
   std::vector<Figure> figures;
@@ -74,10 +74,10 @@ std::vector<Figure> figures_of(Table const& table) {
 
 }  // namespace detail
 
-/// Completes a run and returns a table of `columns`. Its rows are the first state, the first state on or after each
+/// Completes a run and returns a table of `columns`. The rows are the first state, the first state at or after each
 /// multiple of `sampling` [s] from the start, and the last state. If `sampling` is zero, every state is a row. The
 /// first column is "t [s]".
-/// \throws InvalidInput for columns without a name or value or with equal names, and a negative sampling.
+/// \throws InvalidInput for columns without a name or a value, for equal names, and for a negative sampling.
 /// \throws NonFiniteValue for a value that is not finite, and the exceptions of the run.
 template <class Run>
 Table tabulate(Run&& run, std::vector<TableColumn> const& columns, double sampling = 0.0) {
@@ -99,7 +99,8 @@ Table tabulate(Run&& run, std::vector<TableColumn> const& columns, double sampli
   return table;
 }
 
-/// Writes a table to `file`. `read_csv` returns the same doubles. Throws InvalidInput and IoError as `Csv`.
+/// Writes a table to `file`. `read_csv` returns the same doubles. Throws InvalidInput for empty or equal heads and for
+/// numbers that are not finite; IoError if the file cannot be written.
 template <class = void>
 void write_csv(Table const& table, std::filesystem::path const& file) {
   Csv csv(file, table.columns, Csv::Keeps::full_table);
@@ -107,9 +108,9 @@ void write_csv(Table const& table, std::filesystem::path const& file) {
   csv.close();
 }
 
-/// Writes `stem`.csv and draws all columns over the first one as .dat, .gp and, if `draw` and gnuplot is on PATH,
-/// .png. Columns with the same unit ("… [m]") share a panel. Throws InvalidInput for a table without rows or with
-/// less than two columns, and as `write_csv` and `write_panels`.
+/// Writes `stem`.csv, and figures of all columns over the first one to `stem`.dat, .gp and, if `draw` is true and
+/// gnuplot is on PATH, .png. Columns with the same unit ("… [m]") share a panel. Throws InvalidInput for a table
+/// without rows or with less than two columns, and as `write_csv` and `write_panels`.
 template <class = void>
 DrawResult plot(Table const& table, std::filesystem::path const& stem, bool draw = true) {
   if (table.rows.empty() || table.columns.size() < 2)

@@ -16,19 +16,19 @@ namespace polybody {
 
 namespace detail {
 
-/// Name and unit of a number of a state, in a table.
+/// Name and unit of a column in a table of states.
 struct StateColumnHead {
   std::string name = "t [s]";
-  std::string unit = {};  ///< empty if unknown
+  std::string unit = {};  ///< unit of the numbers; empty if unknown
 
   /// Head of the column: name and unit.
   std::string text() const { return unit.empty() ? name : name + " [" + unit + ']'; }
 };
 
-/// Heads of a state's columns, in the order t, q, v, λ.
+/// Heads of the columns of a table of states, in the order t, q, v, λ.
 struct StateHeads {
   std::vector<StateColumnHead> all;
-  std::size_t required;  ///< number of heads that a state requires; missing multipliers are zero
+  std::size_t required;  ///< number of columns that a table must have; missing multipliers are zero
 
   template <class = void>  // compiled where it is used
   explicit StateHeads(ModelLayout const& layout)
@@ -46,12 +46,12 @@ struct StateHeads {
   }
 
  private:
-  /// Names `count` numbers of one owner "rod q[0]", "rod q[1]", ….
+  /// Names `count` columns of one `owner` "rod q[0]", "rod q[1]", ….
   void name(std::string const& owner, char const* what, Index first, Index count) {
     for (Index i = 0; i < count; ++i)
       all[std::size_t(first + i)].name = owner + ' ' + what + '[' + std::to_string(i) + ']';
   }
-  /// Sets the units of a body's coordinates, from index q, and of its velocities, from index v.
+  /// Sets the units of the columns of a body: coordinates from column q on, velocities from column v on.
   template <class = void>
   void name_units(BodyLayout const& b, Index q, Index v) {
     for (Index i = 0; i < b.coordinates; ++i) all[std::size_t(q + i)].unit = b.units.of_coordinate(b.body, i);
@@ -61,7 +61,7 @@ struct StateHeads {
   }
 };
 
-/// Index of the columns of a table by their heads.
+/// Map from the head of each column of a table to the index of the column.
 class StateColumns {
  public:
   template <class = void>
@@ -72,7 +72,7 @@ class StateColumns {
                            {ErrorObject{"state_from"}, ": duplicate column \"", table.columns[j], "\"."});
   }
 
-  /// Index of the column of a number, with or without unit in its head; none if there is no such column.
+  /// Index of the column with the name of `head`, with or without the unit; empty if there is no such column.
   /// \throws InvalidInput if columns with and without unit exist, or if the unit differs.
   template <class = void>
   std::optional<std::size_t> find(StateColumnHead const& head) const {
@@ -169,9 +169,9 @@ Table state_table(M const& model, std::vector<State> const& states) {
   return detail::state_table(layout_of(model), states);
 }
 
-/// Returns the state in a `row` of a table. The columns of `state_columns` may have any order, may lack units, and
-/// may be among other columns. Columns of multipliers are optional; missing multipliers are zero. Accelerations are
-/// zero. `simulate` computes multipliers and accelerations.
+/// Returns the state in a `row` of a table. The table contains the columns of `state_columns` in any order, with or
+/// without units, and possibly other columns. Columns of multipliers are optional; missing multipliers are zero.
+/// Accelerations are zero. `simulate` computes multipliers and accelerations.
 /// \throws InvalidInput with the name of a column that is missing, duplicate or in another unit, and for a row that
 /// does not exist.
 template <class M>

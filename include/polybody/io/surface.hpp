@@ -10,21 +10,21 @@
 
 namespace polybody {
 
-/// Surface of polygons. The corners of polygon i are the entries [ends[i − 1], ends[i]) of `corners`, which are
-/// indices of `points`. They are listed counter-clockwise as seen from outside.
+/// Surface of polygons. The corners of polygon i are the entries [ends[i − 1], ends[i]) of `corners`, which are indices
+/// of `points`. The corners of a polygon are listed counter-clockwise as seen from outside.
 struct Surface {
-  std::vector<Vec3> points;  ///< positions [m]
+  std::vector<Vec3> points;  ///< positions of the points [m]
   std::vector<int> corners;  ///< indices of `points`
   std::vector<int> ends;     ///< for each polygon, the index after its last corner
 
-  /// Adds a polygon with the points `of_points`, indices of `points`.
+  /// Adds a polygon; `of_points` are the indices of its corners in `points`.
   void add_polygon(std::vector<int> const& of_points) {
     corners.insert(corners.end(), of_points.begin(), of_points.end());
     ends.push_back(int(corners.size()));
   }
 };
 
-/// Volume inside a closed surface [m³]: Σ p₀·(p_i × p_{i+1})/6 over the triangles of its polygons.
+/// Volume inside a closed surface [m³]: Σ p₀·(p_i × p_{i+1})/6 over the triangles (p₀, p_i, p_{i+1}) of the polygons.
 template <class = void>
 double volume(Surface const& surface) {
   double six = 0.0;
@@ -39,8 +39,8 @@ double volume(Surface const& surface) {
   return six / 6.0;
 }
 
-/// Outline of a bar's section as a polygon (y, z) [m], counter-clockwise as seen from +x. A circle becomes a polygon
-/// with so many `sides` and the same area.
+/// Outline of a bar's section as a polygon (y, z) [m], counter-clockwise as seen from +x. A circle becomes a polygon of
+/// the same area with this number of `sides`.
 /// \throws InvalidInput for a bar without a section, or fewer than three sides.
 template <class = void>
 std::vector<Vec2> outline(Bar const& bar, int sides = 24) {
@@ -53,17 +53,17 @@ std::vector<Vec2> outline(Bar const& bar, int sides = 24) {
                                          ErrorValue{sides}, "."});
   auto const* c = std::get_if<Circle>(&bar.section);
   if (!c)
-    throw InvalidInput("bar.no_section",
-                       {ErrorObject{"outline"}, ": the bar has constants, but no section. Give the outline itself."});
+    throw InvalidInput("bar.no_section", {ErrorObject{"outline"},
+                                          ": the bar has constants, but no section. Give it a Rectangle or a Circle."});
   double const step = 2.0 * std::numbers::pi / sides, radius = c->radius * std::sqrt(step / std::sin(step));
   std::vector<Vec2> points;
   for (int i = 0; i < sides; ++i) points.emplace_back(radius * std::cos(i * step), radius * std::sin(i * step));
   return points;
 }
 
-/// Topology of the surface through `rings` of points, closed by the first and the last ring. Each ring has
+/// Polygons of a surface through `rings` rings of points; the first and the last ring are its end faces. Each ring has
 /// `points_of_ring` points, counter-clockwise about the direction of the sweep. Point i of ring k has the index i +
-/// k·`points_of_ring`.
+/// k·`points_of_ring`. All points are at the origin; the caller moves them.
 template <class = void>
 Surface swept(int rings, int points_of_ring) {
   Surface s;
@@ -96,8 +96,8 @@ Surface box(Vec3 const& size) {
   return s;
 }
 
-/// Prism with so many `sides` that approximates a cylinder of `radius` and `length` [m] along `axis`. It has the
-/// volume of the cylinder, and its centre is at the origin.
+/// Cylinder of `radius` and `length` [m] along `axis`, with its centre at the origin, approximated by a prism of the
+/// same volume with this number of `sides`.
 /// \throws InvalidInput unless the sizes are positive, `axis` is a unit vector and there are at least three sides.
 template <class T = double>  // compiled where it is used
 Surface cylinder(double radius, double length, Vec3 const& axis = Vec3::UnitX(), int sides = 24) {

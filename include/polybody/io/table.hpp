@@ -42,8 +42,8 @@ struct Table {
 
 namespace detail {
 
-/// Index of the character, after any single quotes, by which a spreadsheet recognises a formula; npos for another
-/// text.
+/// Index of the first character after leading single quotes, if a spreadsheet recognises a formula by it (=, +, -, @);
+/// otherwise npos.
 inline std::size_t formula_in(std::string_view text) {
   std::size_t const first = text.find_first_not_of('\'');
   bool const is_formula = first != text.npos && std::string_view("=+-@").find(text[first]) != std::string_view::npos;
@@ -60,7 +60,7 @@ inline std::string csv_text(std::string const& text) {
   for (char const c : full) quoted.append(c == '"' ? 2u : 1u, c);
   return quoted + '"';
 }
-/// Text of a field written by `csv_text`.
+/// Text from which `csv_text` has made the `field`.
 inline std::string text_of_csv(std::string const& field) {
   std::size_t const place = formula_in(field);
   return place == 0 || place == field.npos ? field : field.substr(1);
@@ -132,10 +132,10 @@ struct CsvReader {
 
 }  // namespace detail
 
-/// Reads a table from `file`, written by `Csv` or another program. Accepts lines that end with LF, CR LF or CR,
-/// quoted fields, a byte-order mark, a leading '+' and blank lines. Removes the single quote of a head that begins
-/// with one before =, +, - or @. Throws IoError with the file and, if possible, the line. The reasons are a file that
-/// cannot be read or is empty, rows of different lengths, and fields that are not finite numbers.
+/// Reads a table from `file`, written by `Csv` or another program. Accepts lines that end with LF, CR LF or CR, quoted
+/// fields, a byte-order mark, a leading '+' and blank lines. Removes a single quote before =, +, - or @ at the
+/// beginning of a head. Throws IoError with the file and, if possible, the line. The reasons are a file that cannot be
+/// read or is empty, rows of different lengths, and fields that are not finite numbers.
 inline Table read_csv(std::filesystem::path const& file) {
   std::string const name = file.string();
   errno = 0;
@@ -162,7 +162,7 @@ inline Table read_csv(std::filesystem::path const& file) {
       auto const [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
       if (error != std::errc{} || end != digits.data() + digits.size() || !std::isfinite(value))
         reader.fail(line, "column \"" + table.columns[j] + "\": \"" + fields[j] +
-                              "\" is not a finite number a double can hold");
+                              "\" is not a finite number in the range of a double");
       row.push_back(value);
     }
   }

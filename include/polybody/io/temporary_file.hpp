@@ -22,7 +22,7 @@
 
 namespace polybody::detail {
 
-/// Unused hidden name in the folder of `file`: ".polybody-<16 hex digits>.tmp".
+/// Random hidden name in the folder of `file`: ".polybody-<16 hex digits>.tmp".
 inline std::filesystem::path temporary_next_to(std::filesystem::path const& file) {
   std::random_device random;
   std::string name = ".polybody-";
@@ -60,7 +60,7 @@ class TemporaryFile {
   bool is_open() const noexcept { return file_ != nullptr; }
   /// Stream for writing.
   std::FILE* stream() const noexcept { return file_; }
-  /// Sets the `permissions` of the file, those of the file that it replaces.
+  /// Sets the permissions of the file to `permissions`, those of the replaced file.
   void set_permissions(std::filesystem::perms permissions) const {
 #if __has_include(<unistd.h>)
     (void)::fchmod(::fileno(file_), static_cast<mode_t>(permissions & std::filesystem::perms::mask));
@@ -79,8 +79,8 @@ class TemporaryFile {
 #endif
     return true;
   }
-  /// Closes the file and renames it to its target. If the system refuses, it removes the file and returns the
-  /// system's reason.
+  /// Closes the file and renames it to its target. If the system refuses, removes the file and returns the system's
+  /// reason.
   std::error_code put_in_place() {
     if (!is_named_ && !give_name()) {
       std::error_code const reason(errno, std::generic_category());
@@ -142,8 +142,8 @@ class TemporaryFile {
   bool is_named_ = false;
 };
 
-/// Target of a chain of symbolic links from `file`; it need not exist. `reason` becomes an error if the links form a
-/// loop.
+/// Target of the chain of symbolic links that begins at `file`. The target need not exist. `reason` becomes an error if
+/// the links form a loop.
 inline std::filesystem::path end_of_links(std::filesystem::path file, std::error_code& reason) {
   namespace fs = std::filesystem;
   for (int links = 0; fs::is_symlink(fs::symlink_status(file, reason)); ++links) {

@@ -13,22 +13,22 @@
 
 namespace polybody {
 
-/// Visible part of a model: its surface, point velocities [m/s] and axial stresses [N/m²] in one state, and a frame.
-/// The stresses are empty if the body does not provide them. The frame is the marker's frame of a fixed shape, or the
-/// frame at the middle of a bar.
+/// Visible part of a model in one state: surface, velocities and axial stresses of the points, and a frame. The frame
+/// of a shape fixed to a marker is the frame of the marker. The frame of a swept bar is the frame at the middle of the
+/// bar.
 struct VisualPart {
   std::string name;                   ///< name of the part
   Surface surface;                    ///< surface in the state, world axes
-  std::vector<double> axial_stress;   ///< axial stress of each point [N/m²]; empty if unknown
+  std::vector<double> axial_stress;   ///< axial stress of each point [N/m²]; empty if the body has none
   std::vector<Vec3> velocities = {};  ///< velocity of each point, world axes [m/s]
   Vec3 place = Vec3::Zero();          ///< (3) origin of the frame, world axes [m]
   Mat3 axes = Mat3::Identity();       ///< (3×3) rotation from axes of the frame to world axes
-  std::vector<Vec3> carried = {};     ///< points of a fixed shape in axes of its frame [m]; else empty
-  std::optional<World> world = {};    ///< world of its body; empty for a part of the ground
+  std::vector<Vec3> carried = {};     ///< points of a fixed shape in axes of the frame [m]; empty for a bar
+  std::optional<World> world = {};    ///< plane or space, as the body; empty for a part of the ground
 };
 
 namespace detail {
-/// Sets position and velocity of point i of a part that is fixed to frame f at `point`, in axes of the frame.
+/// Sets position and velocity of point i of a part. The point is fixed in frame f at `point`, in axes of f.
 template <class = void>
 void place_point(Frame<double> const& f, Vec3 const& point, VisualPart& part, std::size_t i) {
   Vec3 const arm = f.A * point;
@@ -42,7 +42,7 @@ void place_point(Frame<double> const& f, Vec3 const& point, VisualPart& part, st
 ///   visual.attach(chassis.at({0, 0, 0}), box({4, 2, 1}));   fixed to the marker's frame
 ///   visual.sweep(beam, bar, 20);                            the bar's section along the deformed body
 ///   for (VisualPart const& part : visual.at(x)) ...
-/// The model must outlive this object and must not change after its construction.
+/// The model must outlive this object and must not change during its life.
 class Visual {
  public:
   /// Geometry of a complete model, without shapes.
@@ -59,14 +59,14 @@ class Visual {
   void attach(Marker<B> const& marker, Surface const& shape, std::string name = "shape");
 
   /// Adds the surface of the bar from which the body was made, divided into `pieces` along its length. Round sections
-  /// become polygons with so many `sides`. If the body provides points outside of its axis, the points of a section
-  /// follow its displacement field. Otherwise, as for cables and planar bodies, the section is rigid and fixed to the
-  /// frame on the axis.
+  /// become polygons with this number of `sides`. If the body provides points outside of its axis, the points of a
+  /// section follow the displacement field of the body. Otherwise, as for cables and planar bodies, the section is
+  /// rigid and fixed to the frame on the axis.
   /// \throws InvalidInput for fewer than one piece, a handle of another model or a bar without a section.
   template <class B>
   void sweep(BodyHandle<B> const& body, Bar const& bar, int pieces, int sides = 24);
 
-  /// Names of the bodies without a shape, in the order of the model's types. They are invisible.
+  /// Names of the invisible bodies, which have no shape, in the order of the model's types.
   template <class = void>
   std::vector<std::string> bodies_without_shape() const {
     std::vector<std::string> names;
@@ -99,7 +99,7 @@ class Visual {
 
   ModelLayout layout_;
   State reference_;
-  std::vector<bool> has_shape_;  // for each body: it has a shape
+  std::vector<bool> has_shape_;  // for each body: true if it has a shape
   std::vector<VisualPart> parts_;
   std::vector<std::function<void(State const&, VisualPart&)>> moves_;
 };

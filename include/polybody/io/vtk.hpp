@@ -123,13 +123,13 @@ class VtkWriterOf {
   }
 
   /// Writes the grid of state x and adds it to the collection.
-  /// \throws InvalidInput unless times increase
+  /// \throws InvalidInput unless the time of x is later than the previous time
   /// \throws NonFiniteValue for coordinates that are not finite, IoError.
   void write(State const& x) {
     if (!(x.t > last_))
       throw InvalidInput("film.time_order",
-                         {"VtkWriter: the states of \"", ErrorObject{file_.string()},
-                          "\" must rise in time, but t = ", ErrorTime{x.t}, " s follows ", last_, " s."});
+                         {"VtkWriter: the times of the states in \"", ErrorObject{file_.string()},
+                          "\" must increase, but t = ", ErrorTime{x.t}, " s follows ", last_, " s."});
     std::vector<VisualPart> const& parts = visual_->at(x);
     for (VisualPart const& part : parts)
       for (Vec3 const& p : part.surface.points)
@@ -154,7 +154,7 @@ class VtkWriterOf {
       throw InvalidInput("file.name", {"VtkWriter: the name of a collection must end in .pvd, but is \"",
                                        ErrorObject{file.string()}, "\"."});
   }
-  /// Overwrites the end of the collection by an entry and a new end, in one system call.
+  /// Replaces the closing tags of the collection by an entry and the closing tags, in one system call.
   void add(std::string const& entry) {
     collection_.go_to(end_);
     collection_.write(entry + "</Collection>\n</VTKFile>\n");
@@ -165,7 +165,7 @@ class VtkWriterOf {
   Visual* visual_;
   std::filesystem::path file_;
   FileInPlace collection_;
-  std::size_t end_ = 0;  ///< end of the entries in the collection [bytes]
+  std::size_t end_ = 0;  ///< size of the collection without its closing tags [bytes]
   std::vector<Vec3> rest_;
   std::size_t count_ = 0;
   double last_ = -std::numeric_limits<double>::infinity();

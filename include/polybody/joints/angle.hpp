@@ -45,8 +45,8 @@ T angle_gamma(ConstraintTerms<2, T> const& xy, Vec<T, 2> const& gamma, Frame<T> 
   return (x * gamma[1] - y * gamma[0] - 2.0 * turning * (x * rate[0] + y * rate[1])) / n2;
 }
 
-/// Adds −λ (G_θᵀ G_r + G_rᵀ G_θ), G_r = (x G_x + y G_y)/n²: the change of the wrench of θ due to changes of x and y.
-/// Changes of G_x and G_y add their wrench gradients with the multipliers λ (−y, x)/n², which are returned.
+/// Adds −λ (G_θᵀ G_r + G_rᵀ G_θ), G_r = (x G_x + y G_y)/n², to k: the change of the wrench of θ due to changes of x and
+/// y. Returns the multipliers λ (−y, x)/n²; the caller adds the wrench gradients of x and y with these multipliers.
 template <class = void>  // compiled only if used
 Vec2 angle_gradient(ConstraintTerms<2> const& xy, double lambda, WrenchGradient& k) {
   double const x = xy.g[0], y = xy.g[1], n2 = x * x + y * y;

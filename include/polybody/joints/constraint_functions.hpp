@@ -204,7 +204,7 @@ Mat3 columns(Vec3 const& x, Vec3 const& y, Vec3 const& z) {
 }
 
 /// Right-handed triad with \p first as its first and \p third as its third axis; `what` names the joint.
-/// \throws InvalidInput unless they are unit vectors at right angles (to 1e-9).
+/// \throws InvalidInput unless both are unit vectors at right angles (to 1e-9).
 template <class = void>  // compiled only if used
 Mat3 triad_of(Vec3 const& first, Vec3 const& third, std::string const& what) {
   require_unit(first, what, ": the first axis");
@@ -218,7 +218,7 @@ Mat3 triad_of(Vec3 const& first, Vec3 const& third, std::string const& what) {
   return columns(first, cross(third, first), third);
 }
 
-/// Right-handed triad with the third axis `axis`. \throws InvalidInput unless it is a unit vector.
+/// Right-handed triad with the third axis `axis`. \throws InvalidInput unless `axis` is a unit vector.
 template <class = void>  // compiled only if used
 Mat3 triad_about(Vec3 const& axis, std::string const& what) {
   require_unit(axis, what);

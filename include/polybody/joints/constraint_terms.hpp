@@ -69,7 +69,7 @@ RelativeMotion<T> relative(Frame<T> const& a, Frame<T> const& b) {
           a.A.transpose() * (b.w - a.w)};
 }
 
-/// Function from two frames to constraint terms, on which a policy acts.
+/// Constraint function of two frames, on which a joint policy acts.
 template <class G>
 concept ConstraintFunction = requires(G const g, Frame<double> const a, Frame<double> const b, double t) {
   requires 1 <= G::rows&& G::rows <= 6;
@@ -77,7 +77,7 @@ concept ConstraintFunction = requires(G const g, Frame<double> const a, Frame<do
   { g.template constraint_function<double>(a, b, t) } -> std::same_as<ConstraintTerms<G::rows, double>>;
 };
 
-/// Geometry of a joint: its constraint function contains the motions that the joint prevents. Its markers get axes that
+/// Geometry of a joint: its constraint function measures the motions that the joint prevents. Its markers get axes that
 /// coincide at the reference configuration: `triad()` in world axes, with the joint axis as the third. Optional members
 /// are `check(name)`, which `connect` calls with the joint's name, and `breakpoints()`, times at which steps end.
 /// `docs/extending.md` lists all members.
@@ -90,8 +90,8 @@ concept JointGeometry =
       { g.template gamma<double>(a, b, t) } -> std::same_as<Vec<double, G::rows>>;
     };
 
-/// Number of nonholonomic equations of a geometry, which constrain velocities only (rolling, a blade). They are its
-/// last equations. Zero for most geometries.
+/// Number of nonholonomic equations of a geometry, which constrain velocities only (rolling, a blade). These are the
+/// last equations of the geometry. Zero for most geometries.
 template <class G>
 constexpr int nonholonomic_equations() {
   if constexpr (requires { G::nonholonomic_equations; })
@@ -100,8 +100,8 @@ constexpr int nonholonomic_equations() {
     return 0;
 }
 
-/// True if the geometry declares Gb = −Ga in all rows (member `opposite_ends`; default false). Forces of such equations
-/// compute one wrench for both ends.
+/// True if the geometry declares Gb = −Ga in all rows (member `opposite_ends`; default false). The wrench of such
+/// equations is computed once for both ends.
 template <class G>
 constexpr bool has_opposite_ends() {
   if constexpr (requires { G::opposite_ends; })

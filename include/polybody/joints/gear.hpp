@@ -10,21 +10,20 @@ namespace polybody {
 ///   g = (N_a ψ_a + N_b ψ_b)/N_b.
 /// ψ_a and ψ_b are the angles of the line of centres d = r_b − r_a in the axes of a and of b [Haug 1989, §3.4]. The
 /// line of centres rotates with the carrier of the wheels, so that the same equation applies to wheels on the ground
-/// and to planet wheels. Numbers of teeth are integers: the teeth determine the number of full turns, and g is wrapped
-/// to half of the least common step, π/n_b, n_b = N_b/gcd. Other joints keep the axes parallel and the distance of the
-/// centres constant.
+/// and to planet wheels. Numbers of teeth are integers, so that full turns need no count: g is wrapped to [−π/n_b,
+/// π/n_b] with n_b = N_b/gcd(N_a, N_b). Other joints keep the axes parallel and the distance of the centres constant.
 struct Gear {
   static constexpr char const* name = "Gear";
   static constexpr int rows = 1;
   static constexpr MarkerKind needs = MarkerKind::frame;
   static constexpr World world = World::both;
 
-  static constexpr int most_teeth = 1'000'000;  ///< largest number of teeth, without its sign
+  static constexpr int most_teeth = 1'000'000;  ///< largest magnitude of a number of teeth
 
-  Required<int> teeth_a;   ///< N_a
-  Required<int> teeth_b;   ///< N_b; negative for an internal (ring) gear
+  Required<int> teeth_a;   ///< number of teeth N_a
+  Required<int> teeth_b;   ///< number of teeth N_b; negative for an internal (ring) gear
   TurnAxis axis = {};      ///< (3) unit vector of the axes of both wheels, world axes at the reference configuration
-  JointAxis centres = {};  ///< (3) unit vector from the centre of a to the centre of b there, perpendicular to `axis`
+  JointAxis centres = {};  ///< (3) unit vector from centre a to centre b, perpendicular to `axis`; axes as for `axis`
 
   template <class = void>  // compiled only if used
   Mat3 triad() const {

@@ -1,4 +1,7 @@
 #pragma once
+/// \file
+/// Joint: a geometry and a policy, with compile-time checks that they fit each other.
+
 #include <type_traits>
 
 #include <polybody/joints/joint_refusals.hpp>
@@ -17,7 +20,7 @@ constexpr auto measured_by() {
     return std::type_identity<G>{};
 }
 
-/// Policy of a joint that is made from its geometry alone. The deduced type makes the refusal the first error.
+/// Policy of a joint that is constructed from a geometry alone. The deduced type makes the refusal the first error.
 template <class P>
 constexpr auto default_policy() {
   static_assert(std::is_default_constructible_v<P>,
@@ -44,7 +47,7 @@ concept HolonomicOrConstrained = ConstrainingPolicy<P> || nonholonomic_equations
 /// A joint consists of a geometry (the motions that it prevents) and a policy (the enforcement of its constraint
 /// equations). `Joint{Revolute{.axis = axis}}` and the type `Joint<Revolute>` have the policy `Constraint`, and
 /// `Joint{Revolute{.axis = axis}, Penalty{.stiffness = k, .damping = c}}` has another policy. If a policy has no
-/// parameters, `Joint<G, P>{geometry}` needs no policy.
+/// parameters, `Joint<G, P>{geometry}` needs no second argument.
 template <class G, class P = Constraint>
 struct Joint {
   static_assert(sizeof(G) > 0);  // the first use of G, so that its own refusals have a short context

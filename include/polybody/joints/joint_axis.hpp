@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Direction of a joint. It has no default: `connect` refuses a joint without direction.
+/// Direction of a joint. There is no default direction: `connect` refuses a joint without one.
 
 #include <polybody/joints/constraint_functions.hpp>
 
@@ -38,7 +38,7 @@ class JointAxis {
   bool given_ = false;
 };
 
-/// Rotation axis of a geometry for space and for the plane. In the plane it is the normal and may be omitted.
+/// Rotation axis of a geometry for space and for the plane. In the plane the axis is the normal and may be omitted.
 class TurnAxis : public JointAxis {
  public:
   using JointAxis::JointAxis;  ///< from a vector v, or from x, y, z, as `JointAxis`

@@ -20,7 +20,7 @@ struct JointMotion {
   };
   Kind kind = Kind::slide;  ///< type of motion
   int axis = 2;             ///< 0, 1 or 2
-  double pitch = 0.0;       ///< of a screw: translation per radian [m/rad]
+  double pitch = 0.0;       ///< pitch of a screw: translation per radian [m/rad]
 
   int coordinates() const { return kind == Kind::ball ? 4 : 1; }
   int velocities() const { return kind == Kind::ball ? 3 : 1; }
@@ -35,7 +35,7 @@ struct JointMotions {
   /// Appends a motion; four at most.
   constexpr void add(JointMotion const& m) { list[std::size_t(count++)] = m; }
   auto begin() const { return list.begin(); }        ///< first motion
-  auto end() const { return list.begin() + count; }  ///< behind the last one
+  auto end() const { return list.begin() + count; }  ///< end of the motions
   int coordinates() const {
     int n = 0;
     for (JointMotion const& m : *this) n += m.coordinates();
@@ -74,8 +74,8 @@ JointMotions motions_of(G const& geometry) {
   }
 }
 
-/// Motions of a joint for space and plane that stay in the plane: translations perpendicular to the normal, and the
-/// rotation about it. The normal is one of the joint's axes. \param axes (3×3) of the joint
+/// Selects the `motions` of a joint that stay in the plane: translations perpendicular to the normal, and the rotation
+/// about the normal. The normal is one of the joint's axes. \param axes (3×3) axes of the joint, as columns
 template <class = void>  // compiled only if used
 JointMotions in_plane(JointMotions const& motions, Mat3 const& axes) {
   auto const is_normal = [&](int axis) { return std::abs(axes(2, axis)) > 0.5; };

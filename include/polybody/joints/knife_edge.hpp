@@ -6,8 +6,8 @@ namespace polybody {
 /// Blade or skate on b that glides on a without motion across the blade, in the plane and in space. 1 nonholonomic
 /// equation
 ///   ġ = b₃·u,  u = ṙ_b − ṙ_a − ω_a × d,  d = r_b − r_a      [Neimark & Fufaev 1972, ch. I].
-/// u is the velocity of the point of b relative to a. The blade can reach every position and direction, so that there
-/// is no g.
+/// u is the velocity of the point of b relative to a. The blade can reach every position and direction, so that no
+/// equation between coordinates exists.
 struct KnifeEdge {
   static constexpr char const* name = "KnifeEdge";
   static constexpr int rows = 1;

@@ -17,7 +17,7 @@ struct PrescribedDistance {
   static constexpr World world = World::both;
 
   Law law;                  ///< stroke x [m], rate and acceleration as functions of time [s]
-  Required<double> length;  ///< L, the distance at x = 0 [m]; L + x stays positive
+  Required<double> length;  ///< L, the distance at x = 0 [m]; L + x must stay positive
 
   Mat3 triad() const { return identity(); }
   void check(std::string const& what) const {

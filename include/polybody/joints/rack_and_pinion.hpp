@@ -15,7 +15,7 @@ struct RackAndPinion {
   static constexpr MarkerKind needs = MarkerKind::frame;
   static constexpr World world = World::both;
 
-  Required<double> radius;   ///< R of the pitch circle [m]; the rack is on the side of axis × direction for R > 0
+  Required<double> radius;   ///< pitch radius R [m]; for R > 0 the rack is on the side of axis × direction
   TurnAxis axis = {};        ///< (3) unit vector of the pinion's axis, world axes at the reference configuration
   JointAxis direction = {};  ///< (3) unit vector along the rack, perpendicular to `axis`
 

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Six coordinates of one frame relative to another, for any translation and rotation. A bushing acts on them.
+/// Six coordinates of one frame relative to another, for any translation and rotation. A bushing acts on these
+/// coordinates.
 
 #include <polybody/joints/joint_axis.hpp>
 
@@ -12,8 +13,8 @@ namespace polybody {
 /// rotation about one of the three axes, the coordinate is the angle itself. With w = Aaᵀ(ω_b − ω_a), n = AaᵀAb e₃ and
 /// y = (e₃ + n)/(1 + n₃),
 ///   w = Jl(s) ṡ + ψ̇ n,  y·n = 1,  y·Jl(s) ṡ = 0,  hence  ψ̇ = y·w,  ṡ = Jl⁻¹(w − ψ̇ n)   [Jl: math/so3.hpp].
-/// As a joint geometry it leaves no motion free: a weld with axes. \throws InvalidInput unless the axis is a unit
-/// vector.
+/// As a joint geometry, `RelativeCoordinates` leaves no motion free: a weld with axes. \throws InvalidInput unless the
+/// axis is a unit vector.
 struct RelativeCoordinates {
   static constexpr char const* name = "RelativeCoordinates";
   static constexpr int rows = 6;

@@ -7,11 +7,11 @@ namespace polybody {
 ///   g₁ = n·d − R √(1 − (n·b₃)²),  ġ = [n, t₁, t₂]ᵀ u,  u = ṙ_b + ω_b × ρ − ṙ_a − ω_a × p  [Neimark & Fufaev 1972].
 /// d = r_b − r_a; n is the plane's normal, t₁ and t₂ are two directions in the plane, all fixed in a; b₃ is the disc's
 /// axis. The contact point is the point of the rim nearest to the plane. Its vector from the disc's centre is ρ = −R e,
-/// e = m/|m| with m = n − (n·b₃) b₃, and its vector from the point of a is p = d + ρ. u is the velocity relative to a
-/// of the disc's material point there; since n·ρ is minimal at ρ, n·u equals ġ₁. λ are the forces along n, t₁, t₂; the
-/// first is negative if the plane pushes. A disc that lies flat has no contact point, and steps near this configuration
-/// fail with values that are not finite. Lift-off and slip are not modelled: the joint also pulls, and transmits any
-/// tangential force.
+/// e = m/|m| with m = n − (n·b₃) b₃, and its vector from the point of a is p = d + ρ. u is the velocity of the disc's
+/// material point at the contact point, relative to a. Since n·ρ is minimal at ρ, n·u equals ġ₁. λ are the forces along
+/// n, t₁, t₂; the first is negative if the plane pushes. A disc that lies flat has no contact point, and steps near
+/// this configuration fail with values that are not finite. Lift-off and slip are not modelled: the joint also pulls,
+/// and transmits any tangential force.
 struct RollingDisc {
   static constexpr char const* name = "RollingDisc";
   static constexpr int rows = 3;
@@ -19,12 +19,12 @@ struct RollingDisc {
   static constexpr MarkerKind needs = MarkerKind::frame;
   static constexpr World world = World::space;
 
-  Required<double> radius;  ///< R [m]
+  Required<double> radius;  ///< radius R [m]
   JointAxis axis = {};      ///< (3) unit vector of the disc's axis, world axes at the reference configuration
   JointAxis normal = {};    ///< (3) unit vector from the plane towards the disc; the point of a is in the plane
 
-  /// First axis n × axis: n = a₂ |n × axis| + a₃ n·axis. \throws InvalidInput unless both are unit vectors and not
-  /// parallel.
+  /// Triad with the first axis n × axis and the third axis `axis`, so that n = a₂ |n × axis| + a₃ n·axis. \throws
+  /// InvalidInput unless both are unit vectors and not parallel.
   template <class = void>  // compiled only if used
   Mat3 triad() const {
     Vec3 const &own = axis.required("RollingDisc: the axis"), &up = normal.required("RollingDisc: the normal");

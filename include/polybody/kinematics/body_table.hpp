@@ -17,14 +17,14 @@ template <class B>
 struct BodyTableEntry {
   B body;
   std::string name;
-  Index q0;                   ///< first coordinate
-  Index v0;                   ///< first generalised velocity
-  Index row = -1;             ///< first of its own constraint equations; −1 for a body without
+  Index q0;                   ///< index of its first coordinate in the model
+  Index v0;                   ///< index of its first generalised velocity in the model
+  Index row = -1;             ///< index of the first constraint equation of the body itself; −1 if it has none
   std::uint64_t made_in = 0;  ///< serial number of the model to which it was added
 };
 
 /// Array of the bodies of one type, stored by value, so that loops read them without indirection. Handles share the
-/// array. It exists as long as the model or one of the handles. A copy of a model has a separate array.
+/// array, which exists as long as the model or one of the handles. A copy of a model has a separate array.
 template <class B>
 class BodyTable {
  public:
@@ -59,7 +59,7 @@ class BodyTable {
   Entry const* begin() const { return first_; }
   Entry const* end() const { return first_ + size_; }
 
-  /// Array for a handle; it grows with the model.
+  /// Array that handles share with the model. It also contains bodies that are added later.
   std::shared_ptr<Sequence<Entry> const> shared() const { return array_; }
 
  private:

@@ -31,7 +31,7 @@ struct Wrench {
 /// Wrench with its point of action.
 struct PlacedWrench {
   Vec3 at = Vec3::Zero();  ///< (3) point of action [m]
-  Wrench<double> w;        ///< moment about this point
+  Wrench<double> w;        ///< force, and moment about `at`
 };
 
 /// Kinematics that a marker provides: a point, a point and its first axis, or a full frame.
@@ -40,15 +40,15 @@ enum class MarkerKind { point, axis, frame };
 /// Dimension of a body: plane or space. A joint connects bodies of one dimension; the ground belongs to both.
 enum class World { plane, space, both };
 
-/// True if parts of a and b can be connected: plane with plane, space with space, both with either.
+/// True if bodies of the dimensions a and b can be connected: both plane, both space, or one of them the ground.
 constexpr bool same_world(World a, World b) { return a == b || a == World::both || b == World::both; }
 
-/// Initial position and orientation of a body: placement of its axes in the world.
+/// Initial position and orientation of a body in the world.
 struct Placement {
-  Vec3 origin = Vec3::Zero();  ///< (3) [m]
+  Vec3 origin = Vec3::Zero();  ///< (3) position of the origin [m]
   Mat3 axes = identity();      ///< (3×3) columns are the body's axes in world axes
 
-  /// Placement in the plane: origin (x, y) and `angle` from world x to body x [rad].
+  /// Placement in the plane: origin (x, y) [m] and `angle` from world x to body x [rad].
   template <class = void>  // compiled where it is used
   static Placement planar(double x, double y, double angle = 0.0) {
     return {Vec3(x, y, 0.0), exp_so3<double>(Vec3(0.0, 0.0, angle))};
@@ -65,8 +65,9 @@ struct Placement {
     require_finite(origin, what, ": the placement's origin");
     for (int i = 0; i < 3; ++i)
       if (std::abs(origin[i]) > largest_number)
-        throw InvalidInput("value.magnitude", {ErrorObject{what}, ": the origin of the placement has a coordinate of ",
-                                               ErrorValue{origin[i]}, " m, but its square must be finite."});
+        throw InvalidInput("value.magnitude",
+                           {ErrorObject{what}, ": the placement's origin has a coordinate of ", ErrorValue{origin[i]},
+                            " m, beyond ", largest_number, " m, the largest allowed magnitude."});
     require_finite(axes, what, ": the placement's axes");
     double off = 0.0, determinant = 0.0;  // off: |AᵀA − 1|²
     for (int i = 0; i < 3; ++i) {

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Marker kinematics with erased body type: arrays for joints, forces and solvers.
+/// Kinematics of a marker as arrays, independent of the body's type, for joints, forces and solvers.
 
 #include <algorithm>
 #include <cassert>
@@ -21,18 +21,18 @@ template <StateScalar T = double>
 struct MarkerKinematics {
   Frame<T> frame;                          ///< position, axes and velocities
   Vec<T, 6> bias = Vec<T, 6>::Zero();      ///< twist˙ for v̇ = 0, world axes [m/s²], [rad/s²]
-  Mat<T, 3, 3> body_axes = identity<T>();  ///< rigid only: A of the body
-  Vec<T, 3> arm = Vec<T, 3>::Zero();       ///< rigid only: ρ = A u, world axes [m]
-  T* jacobian = nullptr;                   ///< dense only: 6×columns, column-major, in memory of the evaluated data
-  Index first = 0;                         ///< first velocity with a nonzero column
-  Index columns = 0;                       ///< number of columns
+  Mat<T, 3, 3> body_axes = identity<T>();  ///< rigid format only: rotation matrix A of the body
+  Vec<T, 3> arm = Vec<T, 3>::Zero();       ///< rigid format only: moment arm ρ = A u, world axes [m]
+  T* jacobian = nullptr;                   ///< dense only: J, 6×columns, column-major; memory of the evaluated data
+  Index first = 0;                         ///< index of the first generalised velocity in J
+  Index columns = 0;                       ///< number of columns of J
   JacobianShape shape = JacobianShape::ground;  ///< storage format of J
 
   using DenseMap = Eigen::Map<Mat<T, 6, Eigen::Dynamic> const>;      ///< 6×columns
   DenseMap dense() const { return DenseMap(jacobian, 6, columns); }  ///< J of the dense format
 
-  /// Generalised forces of k wrenches: out (columns×k) = Jᵀ `wrenches`, with `wrenches` (6×k) as columns [force;
-  /// moment].
+  /// Computes the generalised forces of k wrenches, out (columns×k) = Jᵀ `wrenches`. Each column of `wrenches` (6×k) is
+  /// [force; moment].
   template <class In, class Out>
   void pull(In const& wrenches, Out&& out) const {
     switch (shape) {
@@ -52,8 +52,8 @@ struct MarkerKinematics {
     }
   }
 
-  /// `pull` for the rigid format, w (6×k) to out (6×k): [f; Aᵀ(m + ρ × f)]. The loops over all wrenches are
-  /// innermost, so that they vectorise.
+  /// `pull` for the rigid format: columns [f; m] of w (6×k) yield columns [f; Aᵀ(m + ρ × f)] of out (6×k). The loops
+  /// over the wrenches are innermost, so that they vectorise.
   template <class In, class Out>
   void multiply_transposed_rigid(In const& w, Out& out) const {
     constexpr int fixed = In::ColsAtCompileTime;
@@ -76,7 +76,7 @@ struct MarkerKinematics {
     }
   }
 
-  /// Twist J b (6) of generalised velocities b, one per column of J.
+  /// Twist J b (6) for the generalised velocities b, one for each column of J.
   Vec<T, 6> push(T const* b) const {
     Vec<T, 6> t;
     for (int i = 0; i < 6; ++i) t[i] = T(0.0);

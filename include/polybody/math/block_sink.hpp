@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Receivers of the blocks of a sparse matrix. `BlockSink` erases the type of the receiver, so that code that writes
-/// a matrix is compiled once.
+/// Receivers of matrix blocks, which store or add the blocks of a sparse matrix. `BlockSink` erases the type of the
+/// receiver. Code that writes a matrix is therefore compiled only once.
 
 #include <atomic>
 #include <concepts>
@@ -15,18 +15,18 @@ namespace polybody {
 
 /// Position and size of a block in the matrix.
 struct Block {
-  Index row, col, rows, cols;  ///< first row and column of the block in the matrix, and its size
+  Index row, col, rows, cols;  ///< first row, first column, number of rows and number of columns
 };
 
-/// Part of a block and its position in a solver's storage. Entry (i, j) is added to to[i stride + j]; if
-/// `transposed`, to to[j stride + i].
+/// Part of a block and its position in a solver's storage. Entry (i, j) of the part is added to `to[i * stride + j]`,
+/// or to `to[j * stride + i]` if `transposed`.
 struct BlockPiece {
   double* to;                ///< entry of the storage that receives the first entry of the part
   int row, col, rows, cols;  ///< position and size of the part within the block
-  /// Number of entries of the storage from one row of the part to the next; from one column to the next if
+  /// Distance between successive rows of the part in the storage, in doubles. Distance between successive columns if
   /// `transposed`.
   int stride;
-  bool transposed;  ///< the storage has the part's columns as rows
+  bool transposed;  ///< true if the rows of the storage hold the columns of the part
 
   /// Adds the values of this part of block b to the storage.
   void add(BlockView const& b) const {
@@ -50,10 +50,12 @@ struct BlockPiece {
   }
 };
 
-/// Parts of all blocks in the order of the blocks. The parts of block k are [first[k], first[k + 1]).
+/// Positions of the parts of all blocks in a solver's storage. Block k has the parts [first[k], first[k + 1]) of
+/// `pieces`.
 struct BlockSlots {
   BlockPiece const* pieces = nullptr;  ///< parts of all blocks, in the order of the blocks
-  /// (blocks + 1) number of the first part of each block; null if the receiver is called for each block.
+  /// (number of blocks + 1) index in `pieces` of the first part of each block. Null if the receiver is called for each
+  /// block.
   int const* first = nullptr;
   std::uint64_t layout = 0;  ///< identifier of the storage layout, different for each layout
 
@@ -68,28 +70,29 @@ struct BlockSlots {
 template <class S>
 concept BlockReceiver = requires(S target, BlockView const& b) { target.add(Index(0), Index(0), b); };
 
-/// Receiver that accepts a block of zeros without its values.
+/// Receiver with a function `skip(row, col, rows, cols)`, which replaces `add` for a block of zeros.
 template <class S>
 concept ZeroSkippingReceiver = requires(S target) { target.skip(Index(0), Index(0), Index(0), Index(0)); };
 
-/// Receiver that already contains the values of some diagonal blocks. If `wants` is false for the unknowns of a
-/// diagonal block, a call of `skip` is sufficient.
+/// Receiver that already contains the values of some diagonal blocks. `wants(first, size)` returns false for the
+/// unknowns of such a block. The writer may then call `skip` instead of `add`.
 template <class S>
 concept SelectiveReceiver = requires(S target) {
   { target.wants(Index(0), Index(0)) } -> std::convertible_to<bool>;
 };
 
-/// Receiver with a fixed storage layout. Block k is added directly to its parts in the storage.
+/// Receiver with a fixed storage layout, `slots()`. Block k is added directly to its positions in the storage.
 template <class S>
 concept SlottedReceiver = requires(S const target) {
   { target.slots() } -> std::convertible_to<BlockSlots>;
 };
 
-/// Passes blocks to a receiver: directly into its storage, or by one call per block. The receiver must outlive the
-/// sink.
+/// Adapter that adds blocks to the storage of a receiver, or calls the receiver for each block. The receiver must
+/// outlive the sink.
 class BlockSink {
  public:
-  /// Passes blocks to `target`: into its `slots()` if it has them, otherwise by a call of its `add` for each block.
+  /// Sink for `target`. Blocks are added to the positions `target.slots()` if this function exists, otherwise by
+  /// `target.add`.
   template <BlockReceiver S>
     requires(!std::same_as<std::remove_cvref_t<S>, BlockSink>)
   explicit BlockSink(S& target) : target_(&target) {
@@ -113,11 +116,11 @@ class BlockSink {
     int const end = *++slots_.first;
     for (int k = slots_.first[-1]; k < end; ++k) slots_.pieces[k].add(b);
   }
-  /// Storage of the next blocks; empty if the receiver is called for each block.
+  /// Positions of the blocks that are not yet added; empty if the receiver is called for each block.
   BlockSlots const& slots() const { return slots_; }
-  /// Checks that the receiver needs the values of the diagonal block of the unknowns [first, first + size).
+  /// Returns true if the receiver needs the values of the diagonal block of the unknowns [first, first + size).
   bool wants(Index first, Index size) const { return !wants_ || wants_(target_, first, size); }
-  /// Adds a block of rows × cols zeros at (row, col): it is part of the pattern, but its values are not used.
+  /// Adds a block of rows × cols zeros at (row, col). The block belongs to the sparsity pattern.
   void skip(Index row, Index col, Index rows, Index cols) {
     if (slots_.first)
       ++slots_.first;

@@ -3,14 +3,14 @@
 
 namespace polybody {
 
-/// View of a dense block in memory with arbitrary strides, also transposed. The type is not an Eigen expression. A
-/// sink is therefore compiled once and not for each shape of block.
+/// View of a dense matrix block in memory, with arbitrary strides. The type does not depend on the size of the block. A
+/// sink is therefore compiled once and not for each size.
 struct BlockView {
   double const* data;                    ///< first entry of the block
-  Index rows, cols, row_step, col_step;  ///< size, and distances between rows and between columns in doubles
+  Index rows, cols, row_step, col_step;  ///< size; distances in memory between successive rows and columns, in doubles
 
-  /// View of the matrix `m`, or of a part or map of a matrix, with direct access to its memory; `m` must outlive the
-  /// view.
+  /// View of `m`: a matrix, a block of a matrix, or a map. The entries of `m` must be in memory, and `m` must outlive
+  /// the view.
   template <class D>
     requires(bool(D::Flags& Eigen::DirectAccessBit))
   BlockView(Eigen::MatrixBase<D> const& m)  // NOLINT(google-explicit-constructor): a view of a matrix
@@ -20,8 +20,8 @@ struct BlockView {
         row_step(D::IsRowMajor ? m.derived().outerStride() : m.derived().innerStride()),
         col_step(D::IsRowMajor ? m.derived().innerStride() : m.derived().outerStride()) {}
 
-  /// View of `height` rows and `width` columns with the first entry at `first`. Rows are `down` doubles apart,
-  /// columns `right` doubles.
+  /// View of `height` rows and `width` columns with the first entry at `first`. Successive rows are `down` doubles
+  /// apart, successive columns `right` doubles.
   BlockView(double const* first, Index height, Index width, Index down, Index right)
       : data(first), rows(height), cols(width), row_step(down), col_step(right) {}
 

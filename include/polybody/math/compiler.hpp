@@ -1,9 +1,10 @@
 #pragma once
 /// \file
-/// Requirements on the compiler and its options. Every header of the library includes this file, directly or by other
-/// headers, before its first declaration.
+/// Requirements on the compiler and its options. Every header of the library includes this file, directly or through
+/// other headers, before its first declaration.
 
-// The include of a missing file is a fatal error. It ends the compilation directly after the sentence.
+// After each #error, a missing file is included. This fatal error ends the compilation, so that no other messages
+// follow.
 #if (defined(_MSVC_LANG) ? _MSVC_LANG : __cplusplus) < 202002L
 #error polybody needs C++20: add -std=c++20 (g++ 12 or newer, clang 16 or newer), or link polybody::polybody in CMake.
 #include <the compilation ends here, see the error above>

@@ -104,7 +104,7 @@ struct Dual {
   friend bool isfinite(Dual const& a) { return std::isfinite(a.v) && a.d.allFinite(); }
 };
 
-/// Value of the scalar `x` without derivatives. Formulas use it to choose between branches.
+/// Value of the scalar `x` without derivatives. Formulas choose between branches by this value.
 inline double value_of(double x) { return x; }
 /// Value of the dual number `x` without derivatives.
 template <int N>

@@ -19,7 +19,7 @@ namespace detail {
 struct Message;
 }  // namespace detail
 
-/// Text of `x` in messages: up to `digits` digits, with a decimal point in every locale.
+/// Text of the number `x` for messages, with up to `digits` significant digits and a decimal point in every locale.
 inline std::string number(double x, int digits = 9) {
   char text[32];
   return {text, std::to_chars(text, text + sizeof text, x, std::chars_format::general, digits).ptr};
@@ -50,9 +50,9 @@ class MessagePart {
  protected:
   /// Role of the part in the data of an error.
   enum class Role : unsigned char { text, object, value, time, cause };
-  /// The `part` in the given `role`.
+  /// Copy of `part` with the role `role`.
   MessagePart(MessagePart const& part, Role role) : MessagePart(part) { role_ = role; }
-  /// The message of an error, in the role of the cause. The error must outlive the part.
+  /// Part with the message of the error `cause`, which must outlive the part.
   explicit MessagePart(Error const& cause) : kind_(Kind::error), role_(Role::cause), cause_(&cause) {}
 
  private:
@@ -68,10 +68,10 @@ class MessagePart {
   };
 };
 
-/// Part of a message that names the object of the error: a body, joint, force, file, type or option. If the text
-/// contains a name in double quotes, the name is the object; otherwise a colon ends the object.
+/// Part of a message that names the object of the error: a body, joint, force, file, type or option. A name in double
+/// quotes is the object. Without quotes, the object is the text before the first single colon.
 struct ErrorObject : MessagePart {
-  /// Object that the text `part` names.
+  /// Part with the text `part`, which names the object.
   explicit ErrorObject(MessagePart const& part) : MessagePart(part, Role::object) {}
 };
 
@@ -87,20 +87,20 @@ struct ErrorTime : MessagePart {
   explicit ErrorTime(MessagePart const& part) : MessagePart(part, Role::time) {}
 };
 
-/// Part of a message that is the message of another error. The data of that error are used as far as no earlier part
-/// gives them.
+/// Part of a message that contains the message of another error. Data of that error are used if no earlier part sets
+/// them.
 struct ErrorCause : MessagePart {
   /// Message and data of `cause`, which must outlive the part.
   explicit ErrorCause(Error const& cause) : MessagePart(cause) {}
 };
 
 namespace detail {
-/// Text of an error, and its data. The object is a piece of the text.
+/// Text and data of an error. The object is a part of the text.
 struct Message {
   std::string text;             ///< joined parts
-  char const* code = "";        ///< identifier, empty if none is given
-  std::size_t object_begin{};   ///< first letter of the object in `text`
-  std::size_t object_size{};    ///< letters of the object, zero if none is given
+  char const* code = "";        ///< identifier of the error, or an empty string
+  std::size_t object_begin{};   ///< position of the first letter of the object in `text`
+  std::size_t object_size{};    ///< number of letters of the object, or zero
   std::optional<double> time;   ///< time [s]
   std::optional<double> value;  ///< refused number
 
@@ -129,7 +129,7 @@ struct Message {
     if (part.role_ == Role::value && !value) value = x;
     if (part.role_ == Role::time && !time) time = x;
   }
-  /// Sets the object to the name in the text from `begin` on, if there is none yet.
+  /// Finds the object in the text after position `begin`, if no object is set yet.
   [[gnu::cold]] void find_object(std::size_t begin) {
     if (object_size > 0) return;
     std::string_view name = std::string_view(text).substr(begin);
@@ -161,22 +161,23 @@ class Error : public std::runtime_error {
  public:
   /// Constructs the exception from its `text`, without data.
   explicit Error(std::string const& text) : Error(detail::Message("", {text})) {}
-  /// Constructs the exception from the parts of its text. An `ErrorCause` among them gives the code.
+  /// Constructs the exception from the parts of its text. An `ErrorCause` among the parts provides the code.
   Error(std::initializer_list<MessagePart> parts) : Error(detail::Message("", parts)) {}
   /// Constructs the exception from its `code`, a string literal, and the parts of its text.
   Error(char const* code, std::initializer_list<MessagePart> parts) : Error(detail::Message(code, parts)) {}
 
-  /// Stable identifier `<area>.<fault>`; the guide lists all of them. Empty if the error was made from a text alone.
+  /// Stable identifier `<area>.<fault>`, listed in the guide. Empty if the error was constructed without a code.
   std::string_view code() const noexcept { return code_; }
-  /// Name of the body, joint, force, file, type or option; empty if there is none. It is a piece of `what()`.
+  /// Name of the body, joint, force, file, type or option in the message, as a view into `what()`. Empty if there is
+  /// none.
   std::string_view object() const noexcept { return {what() + object_begin_, object_size_}; }
   /// Time of the error in the run [s], if the error has one.
   std::optional<double> time() const noexcept { return time_; }
   /// Refused number, in the unit that the message names, if the error has one.
   std::optional<double> value() const noexcept { return value_; }
 
-  /// Appends `sentences` to the message, for code that catches the exception by reference and rethrows it. The data
-  /// remain.
+  /// Appends `sentences` to the message and keeps the data. Code can catch an exception by reference, append to its
+  /// message and rethrow it.
   [[gnu::cold]] void append(std::string const& sentences) {
     std::runtime_error::operator=(std::runtime_error(what() + (' ' + sentences)));
   }
@@ -209,59 +210,59 @@ inline void detail::Message::add(Error const& cause) {
   if (!value) value = cause.value();
 }
 
-/// Invalid number, name or combination: negative mass, zero axis, s outside the body.
+/// Invalid argument, such as a negative mass, a zero axis or a point outside the body.
 class InvalidInput : public Error {
  public:
-  using Error::Error;  ///< constructors from a text or its parts, as `Error`
+  using Error::Error;  ///< same constructors as `Error`
 };
 
 /// Initial state that violates a constraint equation; `assemble` corrects it.
 class InconsistentInitialConditions : public Error {
  public:
-  using Error::Error;  ///< constructors from a text or its parts, as `Error`
+  using Error::Error;  ///< same constructors as `Error`
 };
 
-/// Newton's method did not converge; the state is the one at the start of the step.
+/// Newton's method did not converge. The state is that at the start of the step.
 class NewtonConvergenceFailure : public Error {
  public:
-  using Error::Error;  ///< constructors from a text or its parts, as `Error`
+  using Error::Error;  ///< same constructors as `Error`
 };
 
-/// The step converged, but constraint equations are violated or the energy changed without work. The state is the one
-/// at the start of the step.
+/// The step converged, but constraint equations are violated or the energy changed without work. The state is that at
+/// the start of the step.
 class Diverged : public Error {
  public:
-  using Error::Error;  ///< constructors from a text or its parts, as `Error`
+  using Error::Error;  ///< same constructors as `Error`
 };
 
 /// A point that slides along a body has passed the end of the body.
 class SliderOutOfRange : public Error {
  public:
-  using Error::Error;  ///< constructors from a text or its parts, as `Error`
+  using Error::Error;  ///< same constructors as `Error`
 };
 
 /// The step control requires a step below the smallest allowed step.
 class MinimumStepReached : public Error {
  public:
-  using Error::Error;  ///< constructors from a text or its parts, as `Error`
+  using Error::Error;  ///< same constructors as `Error`
 };
 
 /// A force, mass or coordinate is NaN or infinite.
 class NonFiniteValue : public Error {
  public:
-  using Error::Error;  ///< constructors from a text or its parts, as `Error`
+  using Error::Error;  ///< same constructors as `Error`
 };
 
 /// The matrix of a linear system is singular.
 class SingularMatrix : public Error {
  public:
-  using Error::Error;  ///< constructors from a text or its parts, as `Error`
+  using Error::Error;  ///< same constructors as `Error`
 };
 
 /// A file could not be read or written.
 class IoError : public Error {
  public:
-  using Error::Error;  ///< constructors from a text or its parts, as `Error`
+  using Error::Error;  ///< same constructors as `Error`
 };
 
 }  // namespace polybody

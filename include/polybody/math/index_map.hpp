@@ -19,7 +19,7 @@ class IndexMap {
     V value;      ///< value of the entry
   };
 
-  /// Value of `index`. A new entry is V().
+  /// Value of `index`. Adds the entry with the value V() if it does not exist.
   V& operator[](Index index) {
     std::size_t const k = place(index);
     if (k == entries_.size() || entries_[k].index != index) {
@@ -28,7 +28,7 @@ class IndexMap {
     }
     return entries_[k].value;
   }
-  /// Value of `index`; null if there is no entry.
+  /// Pointer to the value of `index`; null if there is no entry.
   V const* find(Index index) const {
     std::size_t const k = place(index);
     return k < entries_.size() && entries_[k].index == index ? &entries_[k].value : nullptr;
@@ -45,7 +45,7 @@ class IndexMap {
   Entry const* end() const { return entries_.end(); }  ///< end of the entries
 
  private:
-  /// Number of the first entry with an index not less than `index`.
+  /// Position of the first entry with an index not less than `index`.
   std::size_t place(Index index) const {
     std::size_t from = 0, to = entries_.size();
     while (from < to) {

@@ -11,16 +11,16 @@
 namespace polybody {
 
 /// Piecewise cubic Hermite polynomial through given points, monotone wherever the points are monotone [Fritsch &
-/// Carlson 1980]. It is linear beyond the first and the last point. Points on a line yield this line.
+/// Carlson 1980]. It is linear beyond the first and the last point. For points on a straight line, it is this line.
 class MonotoneTable {
  public:
   /// Point of the table.
   struct Point {
-    double x, y;  ///< abscissa [x] and ordinate [y], in units of the caller's choice
+    double x, y;  ///< abscissa and ordinate, in any units [x] and [y]
   };
 
-  /// \throws InvalidInput naming `what` unless there are at least two points, all finite, with x strictly increasing,
-  /// and the derivatives and areas between them are finite.
+  /// Table through `points`: at least two, finite, with strictly increasing x.
+  /// \throws InvalidInput otherwise, or if a derivative or an area exceeds `largest_number`; `what` begins the message.
   explicit MonotoneTable(std::vector<Point> const& points, std::string const& what = "MonotoneTable") {
     if (points.size() < 2)
       throw InvalidInput("table.too_few_points", {ErrorObject{what}, ": a table needs at least two points, but has ",
@@ -63,15 +63,15 @@ class MonotoneTable {
 
  private:
   struct Knot {
-    double x, y, slope, area;  ///< a point in units [x], [y], derivative at it [y/x], and the area from 0 to x [x y]
+    double x, y, slope, area;  ///< point [x], [y]; derivative dy/dx [y/x]; area ∫ y dx from 0 to x [x y]
   };
   struct Local {
     double value, slope;  ///< [y] and [y/x]
   };
 
-  /// Computes the derivatives at the points. At an inner point it is the weighted harmonic mean of the secants δ on
-  /// both sides, or zero if they differ in sign [Fritsch & Butland 1984]. At an end it is the derivative of the
-  /// parabola through three points, limited to the range from zero to 3δ.
+  /// Computes the derivatives at the points. At an inner point the derivative is the weighted harmonic mean of the
+  /// secant slopes δ on both sides, or zero if they differ in sign [Fritsch & Butland 1984]. At the first and the last
+  /// point it is the derivative of the parabola through three points, limited to the range from zero to 3δ.
   void set_derivatives() {
     std::size_t const n = knots_.size();
     auto const width = [&](std::size_t i) { return knots_[i + 1].x - knots_[i].x; };
@@ -93,9 +93,9 @@ class MonotoneTable {
     knots_[n - 1].slope = end(width(n - 2), width(n - 3), secant(n - 2), secant(n - 3));
   }
 
-  /// Checks that all values, derivatives and areas are finite. The derivatives grow as y/x, and neighbouring
-  /// abscissae may differ in the last digit of a double only. The bound of |y| in a piece is |y| + h (|m| + h (|a| +
-  /// h |b|)).
+  /// Checks that no value, derivative or area exceeds `largest_number`. Derivatives are large if neighbouring abscissae
+  /// differ only in the last digit of a double. The bound of |y| in a piece of length h is |y| + h (|m| + h (|a| + h
+  /// |b|)).
   void check_pieces(std::string const& what) const {
     for (std::size_t i = 1; i < knots_.size(); ++i) {
       Knot const &k = knots_[i - 1], &next = knots_[i];
@@ -111,13 +111,13 @@ class MonotoneTable {
     }
   }
 
-  /// Number of the first knot beyond x, which must lie between two knots.
+  /// Index of the first knot beyond x. x must lie between the first and the last knot.
   std::size_t after(double x) const {
     auto const before = [](double v, Knot const& k) { return v < k.x; };
     return std::size_t(std::upper_bound(knots_.begin(), knots_.end(), x, before) - knots_.begin());
   }
-  /// Cubic y + m u + a u² + b u³ between knots i − 1 and i, u = x − x_{i−1}: a = (3δ − 2m − m₁)/h,
-  /// b = (m + m₁ − 2δ)/h².
+  /// Cubic y + m u + a u² + b u³ between knots i − 1 and i, u = x − x_{i−1}, with the slopes m, m₁ at the knots, the
+  /// secant slope δ and the distance h: a = (3δ − 2m − m₁)/h, b = (m + m₁ − 2δ)/h².
   struct Cubic {
     double a, b;  ///< [y/x²] and [y/x³]
   };

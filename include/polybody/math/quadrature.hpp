@@ -11,7 +11,7 @@ namespace polybody {
 
 /// Integration point ξ ∈ [0, 1] and its weight. The weights of a rule have the sum one.
 struct GaussPoint {
-  double xi;      ///< ξ in (−1, 1) or (0, 1)
+  double xi;      ///< position ξ in [0, 1]
   double weight;  ///< weight of the point
 };
 
@@ -22,7 +22,7 @@ struct LegendreValue {
   double dp;  ///< P_n′(x)
 };
 
-/// Recursion (k+1) P_{k+1} = (2k+1) x P_k − k P_{k−1} and derivative (1 − x²) P_n′ = n (P_{n−1} − x P_n).
+/// Legendre polynomial P_n by (k+1) P_{k+1} = (2k+1) x P_k − k P_{k−1}; derivative (1 − x²) P_n′ = n (P_{n−1} − x P_n).
 constexpr LegendreValue legendre(int n, double x) {
   double before = 1.0, now = x;
   for (int k = 1; k < n; ++k) {
@@ -33,7 +33,8 @@ constexpr LegendreValue legendre(int n, double x) {
   return {now, n * (before - x * now) / (1.0 - x * x)};
 }
 
-/// Roots of P_n. The roots of P_{n−1} separate them. Bisection between these roots is followed by Newton's method.
+/// Roots of the Legendre polynomial P_n. The roots of P_{n−1} separate the roots of P_n. Bisection between them is
+/// followed by Newton's method.
 template <int n>
 constexpr std::array<double, n> legendre_roots() {
   std::array<double, n> roots{};
@@ -51,7 +52,7 @@ constexpr std::array<double, n> legendre_roots() {
           lo = mid;
       }
       double x = 0.5 * (lo + hi);
-      for (int k = 0; k < 5; ++k) {  // starts within 1/256 of the interval: converges quadratically at once
+      for (int k = 0; k < 5; ++k) {  // starts within 1/256 of the interval: quadratic convergence
         LegendreValue const f = legendre(n, x);
         x -= f.p / f.dp;
       }

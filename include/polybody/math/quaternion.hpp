@@ -67,7 +67,7 @@ Vec<T, 3> quaternion_log(Quaternion<T> const& q) {
   Vec<T, 3> const v(q[1] * sign, q[2] * sign, q[3] * sign);
   T const w = q[0] * sign;
   T const x = squared_norm(v);
-  if (value_of(x) < 1e-8) {  // atan(n)/n with n² = x/w²; the next term is 2e-17
+  if (value_of(x) < 1e-8) {  // series of atan(n)/n, n² = x/w²; the first neglected term is 2e-17
     T const factor = 2.0 / w * (1.0 - x / (3.0 * w * w));
     return {v[0] * factor, v[1] * factor, v[2] * factor};
   }
@@ -76,9 +76,8 @@ Vec<T, 3> quaternion_log(Quaternion<T> const& q) {
   return {v[0] * factor, v[1] * factor, v[2] * factor};
 }
 
-/// Computes `out` (4) = q ⊞ δ = q exp(δ), normalised, from q (4) and `delta` (3), δ in body axes [rad]. Each number
-/// is read directly from memory. If single numbers were stored in vectors and the vectors read whole, each read
-/// would wait for the writes.
+/// Computes `out` (4) = q ⊞ δ = q exp(δ), normalised, from q (4) and `delta` (3), δ in body axes [rad]. Each number is
+/// read separately from memory. Loading several numbers at once would wait for the separate stores that wrote them.
 template <class T>
 void set_quaternion_plus(T const* q, T const* delta, T* out) {
   using std::sqrt;
@@ -103,13 +102,13 @@ Vec<T, 3> quaternion_minus(Quaternion<T> const& q, Quaternion<T> const& p) {
   return quaternion_log<T>(quaternion_product<T>(conjugate<T>(p), q));
 }
 
-/// Unit quaternion of the rotation matrix `a` (w ≥ 0) of scalars T.
+/// Unit quaternion (w ≥ 0) of the rotation matrix `a` (3×3).
 template <class T>
 Quaternion<T> quaternion_from(Mat<T, 3, 3> const& a) {
   using std::sqrt;
-  // starts with the largest of 4w², 4x², 4y², 4z²; its square root is accurate [Shepperd 1978]
+  // starts with the largest of 4w², 4x², 4y², 4z², whose square root is accurate [Shepperd 1978]
   T const trace = a(0, 0) + a(1, 1) + a(2, 2);
-  int largest = -1;  // axis of the largest diagonal entry; −1: w
+  int largest = -1;  // axis of the largest diagonal entry; −1 if the trace is larger
   T most = trace;
   for (int i = 0; i < 3; ++i)
     if (a(i, i) > most) {

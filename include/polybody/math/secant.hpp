@@ -10,9 +10,9 @@ namespace polybody {
 /// variables, f₁ − f₀ = s·(x₁ − x₀). Formulas propagate slopes as dual numbers propagate derivatives [slopes:
 /// Krawczyk & Neumaier 1985; Rump 1996]. The rules are symmetric in the two ends:
 ///   s(f g) = f̄ s(g) + ḡ s(f),   s(f/g) = (ḡ s(f) − f̄ s(g))/(g₀ g₁),   f̄ = ½ (f₀ + f₁).
-/// Therefore s is a discrete gradient [Gonzalez 1996]: exact over the step, and equal to the gradient at the midpoint
-/// up to O(|x₁ − x₀|²). For a quadratic form, s is the gradient at the midpoint. For a function of quadratic forms
-/// that is invariant under a rotation, s is orthogonal to the rotations of the midpoint.
+/// Therefore s is a discrete gradient [Gonzalez 1996]: f₁ − f₀ = s·(x₁ − x₀) holds exactly, and s is the gradient at
+/// the midpoint up to O(|x₁ − x₀|²). For a quadratic form, s is the gradient at the midpoint. For a function of
+/// quadratic forms that is invariant under a rotation, s is orthogonal to the rotations of the midpoint.
 template <int N>
 struct Secant {
   static_assert(N > 0, "A secant needs at least one variable.");
@@ -82,7 +82,7 @@ struct Secant {
       return {from, to, (x.d == 0.0).select(0.0, x.d / 0.0)};  // the slope of a constant zero is zero
     return {from, to, x.d / (from + to)};
   }
-  /// sin b − sin a = 2 cos ½(a + b) sin ½(b − a); cos correspondingly.
+  /// Slopes by sin b − sin a = 2 cos ½(a + b) sin ½(b − a) and cos b − cos a = −2 sin ½(a + b) sin ½(b − a).
   friend Secant sin(Secant const& x) { return {std::sin(x.a), std::sin(x.b), x.d * (std::cos(x.mean()) * chord(x))}; }
   friend Secant cos(Secant const& x) { return {std::cos(x.a), std::cos(x.b), x.d * (-std::sin(x.mean()) * chord(x))}; }
   /// The angle changes by φ = atan2(X, D), X = x₀ y₁ − y₀ x₁ = x̄ Δy − ȳ Δx, D = x₀ x₁ + y₀ y₁, |φ| < π.
@@ -98,7 +98,7 @@ struct Secant {
   friend bool isfinite(Secant const& x) { return std::isfinite(x.a) && std::isfinite(x.b) && x.d.allFinite(); }
 
  private:
-  /// sin(h)/h of half the change, h = (b − a)/2.
+  /// sin(h)/h for half of the change, h = (b − a)/2.
   static double chord(Secant const& x) {
     double const half = 0.5 * x.change();
     return std::abs(half) < 1e-4 ? 1.0 - half * half / 6.0 : std::sin(half) / half;

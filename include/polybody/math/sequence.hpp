@@ -31,9 +31,9 @@ inline void give_memory(void* memory, std::size_t alignment) noexcept {
 
 }  // namespace detail
 
-/// Contiguous array of values with the usual members of std::vector and their meaning. The compile time of a value
-/// type is one third of the time with std::vector (`bench/compile --containers`). The library stores its own arrays
-/// as Sequences; users pass a std::vector or a span.
+/// Contiguous array of values. It has the usual members of std::vector, with the same meaning, and compiles in one
+/// third of the time (`bench/compile --containers`). The library stores its own arrays as Sequences; users pass a
+/// std::vector or a span.
 template <class T>
 class Sequence {
  public:
@@ -109,7 +109,7 @@ class Sequence {
     data_ = fresh;
     capacity_ = capacity;
   }
-  /// Appends `value`. If the memory is full, all values move to a larger one.
+  /// Appends `value`. If the memory is full, all values move to larger memory.
   void push_back(T value) {
     if (size_ == capacity_) reserve(2 * size_ + 1);
     new (data_ + size_) T(std::move(value));
@@ -156,7 +156,7 @@ class Sequence {
 
  private:
   std::size_t within(std::size_t i) const {
-    if (i >= size_) throw std::out_of_range("a Sequence has no value at the place that is asked for");
+    if (i >= size_) throw std::out_of_range("Sequence::at: the index is not below the number of values");
     return i;
   }
   void copy(T const* from, std::size_t size) {

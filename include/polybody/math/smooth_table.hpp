@@ -16,20 +16,21 @@ class SmoothTable {
  public:
   /// Point of the table.
   struct Point {
-    double time;   ///< [s]
-    double value;  ///< [m] or [rad]
+    double time;   ///< time [s]
+    double value;  ///< value [m] or [rad]
   };
   /// Prescribed rates at the ends of the table.
   struct Ends {
-    std::optional<double> first_rate = {};  ///< [value/s]
-    std::optional<double> last_rate = {};   ///< [value/s]
+    std::optional<double> first_rate = {};  ///< rate at the first point [m/s] or [rad/s]
+    std::optional<double> last_rate = {};   ///< rate at the last point [m/s] or [rad/s]
   };
 
-  /// \throws InvalidInput naming `what` for fewer than two points, times that do not increase, and points or
-  /// coefficients of the spline that are not finite.
+  /// Natural spline through `points`.
+  /// \throws InvalidInput for fewer than two points, for times that do not increase, and for points or coefficients of
+  /// the spline that are not finite.
   explicit SmoothTable(std::vector<Point> const& points) : SmoothTable(points, Ends{}) {}
-  /// Spline with prescribed rates at the ends. \throws InvalidInput as the other constructor, and for rates that are
-  /// not finite.
+  /// Spline with prescribed rates at the ends. \throws InvalidInput if the points, the rates or the coefficients are
+  /// not valid; `what` begins the message.
   SmoothTable(std::vector<Point> const& points, Ends const& ends, std::string const& what = "SmoothTable")
       : knots_(points.size()) {
     check_points(points, ends, what);
@@ -63,10 +64,11 @@ class SmoothTable {
   std::vector<double> breakpoints() const { return breakpoints_; }
 
  private:
-  /// Point with the derivatives of the piece that begins at it: [m], [m/s], [m/s²], [m/s³], or [rad] for [m].
+  /// Point with value and derivatives of the spline piece that begins there: [m], [m/s], [m/s²], [m/s³], or [rad] for
+  /// [m].
   struct Knot {
     double time = 0.0, value = 0.0, rate = 0.0, second = 0.0, third = 0.0;
-    double integral = 0.0;  ///< from the first point to this one
+    double integral = 0.0;  ///< ∫ value dt from the first point to this one
   };
 
   static void check_points(std::vector<Point> const& points, Ends const& ends, std::string const& what) {
@@ -85,8 +87,9 @@ class SmoothTable {
       throw InvalidInput("value.not_finite", {ErrorObject{what}, ": the rates at the ends must be finite."});
   }
 
-  /// Checks that all coefficients are finite. The rates grow as value/time, and neighbouring times may differ in the
-  /// last digit of a double only. The bound of the value in a piece is |v| + h (|v′| + h (|v″| + h |v‴|)).
+  /// Checks that no value, derivative or integral exceeds `largest_number`. Rates are large if neighbouring times
+  /// differ only in the last digit of a double. The bound of the value in a piece of length h is |v| + h (|v′| + h
+  /// (|v″| + h |v‴|)).
   void check_knots(std::string const& what) const {
     for (std::size_t i = 0; i < knots_.size(); ++i) {
       Knot const& k = knots_[i];
@@ -103,9 +106,10 @@ class SmoothTable {
     }
   }
 
-  /// Computes the second derivatives mᵢ for which the rates are continuous, with the slopes s of the chords:
+  /// Computes the second derivatives mᵢ for which the rates are continuous. Piece i has the length hᵢ; its chord has
+  /// the slope sᵢ:
   ///   hᵢ₋₁ mᵢ₋₁ + 2 (hᵢ₋₁ + hᵢ) mᵢ + hᵢ mᵢ₊₁ = 6 (sᵢ − sᵢ₋₁).
-  /// At an end, s is the prescribed rate and h is zero.
+  /// At an end, the prescribed rate replaces the missing slope s, and the missing h is zero.
   void solve(Ends const& ends) {
     std::size_t const n = knots_.size();
     std::vector<double> upper(n, 0.0);
@@ -127,7 +131,7 @@ class SmoothTable {
     for (std::size_t i = n - 1; i-- > 0;) knots_[i].second -= upper[i] * knots_[i + 1].second;
   }
 
-  /// Piece at t; a straight line outside the table.
+  /// Spline piece that contains t; a straight line outside the table.
   Knot piece(double t) const {
     auto const after =
         std::upper_bound(knots_.begin(), knots_.end(), t, [](double x, Knot const& k) { return x < k.time; });

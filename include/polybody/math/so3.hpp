@@ -12,7 +12,7 @@
 
 namespace polybody {
 
-/// Matrix 1 + b ã + c ã² of a (3). Explicit entries compile faster than matrix products of Eigen.
+/// Matrix 1 + b ã + c ã² for the vector a. Explicit entries compile faster than matrix products of Eigen.
 template <class T>
 Mat<T, 3, 3> one_and_skew(Vec<T, 3> const& a, T const& b, T const& c) {
   Mat<T, 3, 3> m;
@@ -35,8 +35,8 @@ inline constexpr auto inverse_factorials = [] {
 }();
 }  // namespace detail
 
-/// Coefficients of the exponential map as functions of x = |φ|²: a = sin θ/θ, b = (1 − cos θ)/θ², θ = √x, by series
-/// near zero.
+/// Coefficients of the exponential map as functions of x = |φ|²: a = sin θ/θ, b = (1 − cos θ)/θ², θ = √x. Near zero
+/// they are evaluated by series.
 template <class T>
 struct ExpSeries {
   T a, b;  ///< coefficients a and b, without unit; φ in [rad]
@@ -54,8 +54,8 @@ struct ExpSeries {
     }
   }
 
-  /// Σ (−x)ᵏ/(n + 2k)!, by Horner's rule. Five terms are sufficient for the rotation in one step, eight up to x =
-  /// 1/4. The next term is below 1e-19.
+  /// Sum Σ (−x)ᵏ/(n + 2k)! by Horner's rule. Five terms are sufficient for x < 1e-3 (the rotation in one step), eight
+  /// for x < 1/4. The first neglected term is below 1e-19.
   static T series(T const& x, int n) { return value_of(x) < 1e-3 ? series_of<5>(x, n) : series_of<8>(x, n); }
 
  private:
@@ -67,7 +67,7 @@ struct ExpSeries {
   }
 };
 
-/// Coefficients of the exponential map and of its Jacobian, c = (θ − sin θ)/θ³.
+/// Coefficients a and b of the exponential map, and the coefficient c = (θ − sin θ)/θ³ of its Jacobian, θ = |φ|.
 template <class T>
 struct RotationSeries : ExpSeries<T> {
   T c;  ///< coefficient c, without unit
@@ -76,8 +76,8 @@ struct RotationSeries : ExpSeries<T> {
       : ExpSeries<T>(x), c(value_of(x) < 0.25 ? this->series(x, 3) : T((1.0 - this->a) / x)) {}
 };
 
-/// Derivatives of b and c with respect to x: db/dx = d − c/2 and dc/dx = (3e − d)/2 with d = (½ − b)/x,
-/// e = (1/6 − c)/x.
+/// Derivatives of the coefficients b and c of `RotationSeries` with respect to x = |φ|²: db/dx = d − c/2 and dc/dx =
+/// (3e − d)/2 with d = (½ − b)/x, e = (1/6 − c)/x.
 template <class T>
 struct RotationDerivatives {
   T b, c;  ///< db/dx and dc/dx [1/rad²]
@@ -92,8 +92,8 @@ struct RotationDerivatives {
   }
 };
 
-/// Functions a = atan t/t and m = (1 − a)/t² of z = t² with their derivatives da/dz, dm/dz, by series near zero. They
-/// convert c = t n, t = tan(θ/4), of a rotation by θ about n into the rotation vector 4 a c.
+/// Functions a = atan t/t and m = (1 − a)/t² of z = t² with their derivatives da/dz, dm/dz. Near zero they are
+/// evaluated by series. A rotation by θ about n with c = t n, t = tan(θ/4), has the rotation vector 4 a c.
 template <class T>
 struct ArctanSeries {
   T a, m, da, dm;  ///< functions and derivatives with respect to z, without unit
@@ -158,7 +158,8 @@ Mat<T, 3, 3> right_jacobian_inverse(Vec<T, 3> const& phi) {
 }
 
 /// Derivative ∂(Jr(φ) x)/∂φ at constant x, 3×3:
-///   2 (c′ φ × (φ × x) − b′ φ × x) φᵀ + b x̃ − c ((φ × x)~ + φ̃ x̃),  b′, c′ the derivatives of b, c.
+///   2 (c′ φ × (φ × x) − b′ φ × x) φᵀ + b x̃ − c ((φ × x)~ + φ̃ x̃), with the derivatives b′, c′ of b, c
+///   (`RotationDerivatives`).
 template <class T>
 Mat<T, 3, 3> right_jacobian_derivative(Vec<T, 3> const& phi, Vec<T, 3> const& x) {
   T const angle2 = squared_norm(phi), along_x = dot(phi, x);

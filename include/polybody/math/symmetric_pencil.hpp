@@ -1,18 +1,19 @@
 #pragma once
 /// \file
-/// Lowest solutions of K x = λ M x with symmetric K and M, by a shift.
+/// Lowest eigenvalues and eigenvectors of K x = λ M x with symmetric K and M, computed with a shift.
 ///
 /// Solvers that form M^-½ K M^-½ have errors of ε λₙ in every λ, with the round-off unit ε and the largest eigenvalue
-/// λₙ. In a thin rod λₙ belongs to shear waves of single elements and exceeds the lowest λ by more than 1/ε.
+/// λₙ. In a thin rod λₙ belongs to shear waves of single elements. It exceeds the lowest λ by a factor of more than
+/// 1/ε.
 ///
 /// With a shift τ and K + τM = L Lᵀ the eigenvalues
 ///   μ = 1/(λ + τ)  of  L⁻¹ M L⁻ᵀ
 /// have errors of ε μ₁. The error of λ is therefore ε (λ + τ)²/(λ₁ + τ) [Parlett 1998, §15.3; Ericsson & Ruhe 1980].
-/// Motions without inertia have μ = 0. The errors of both solvers are equal at λ + τ = √(λₙ (λ₁ + τ)). The shifted
-/// solver computes the eigenvalues below this limit, the other solver those above it.
+/// Motions without inertia have μ = 0. The errors of the shifted and the unshifted solver are equal at λ + τ = √(λₙ (λ₁
+/// + τ)). The shifted solver computes the eigenvalues below this limit, the unshifted solver those above.
 ///
-/// The factor L adds errors of ε K_ii to the stiffness of every motion. Rayleigh quotients of the vectors, summed in
-/// long double, remove these errors to second order.
+/// The round-off of L adds errors of ε K_ii to the stiffness xᵀKx of every eigenvector x. Rayleigh quotients of the
+/// eigenvectors, summed in long double, remove these errors to second order.
 ///
 /// Not included in polybody.hpp: Eigen's eigenvalue solvers would add seconds to the compile time of every program.
 
@@ -30,7 +31,7 @@
 
 namespace polybody {
 
-/// Solutions of K x = λ M x by a shift.
+/// Eigenvalues and eigenvectors of K x = λ M x, computed with a shift τ.
 struct ShiftedPencil {
   bool found = false;  ///< true if a shift was found
   double shift = 0.0;  ///< τ, unit of λ
@@ -38,9 +39,9 @@ struct ShiftedPencil {
   MatX vectors = {};   ///< (n×n) eigenvectors with xᵀMx = 1
 };
 
-/// Solves K x = λ M x with K + τM = L Lᵀ. The pivots are at least 1e-8 of the diagonal. The errors of L then remain
-/// below the errors of the entries of K. The shift is the first value of 0, t, 64 t, 64² t … that yields such pivots;
-/// t is 1e-12 of the smallest |K_ii|/M_ii.
+/// Solves K x = λ M x with K + τM = L Lᵀ. The pivots of L are at least 1e-8 of the diagonal, so that the errors of L
+/// remain below those of the entries of K. The shift τ is the first of 0, t, 64 t, 64² t … that yields such pivots; t
+/// is 1e-12 of the smallest |K_ii|/M_ii.
 /// \param k K (n×n) symmetric \param m M (n×n) symmetric, positive semidefinite
 template <class = void>  // compiled where it is used
 ShiftedPencil by_shift(MatX const& k, MatX const& m) {
@@ -90,8 +91,8 @@ double rayleigh_quotient(MatX const& k, MatX const& m, MatX::ConstColXpr const& 
   return double(stiffness / mass);
 }
 
-/// Replaces the lowest eigenvalues of a solution of K x = λ M x by another solver with errors of ε λₙ. The solution
-/// does not change if these errors are below 1e-9 of each of the `count` lowest λ.
+/// Replaces the lowest eigenvalues and eigenvectors, if they come from a solver with errors of ε λₙ, by those of a
+/// shifted solver. Nothing changes if these errors are below 1e-9 of each of the `count` lowest λ.
 /// \param k K (n×n) symmetric \param m M (n×n) symmetric, positive semidefinite \param count number of required
 /// eigenvalues
 /// \param values (r) all λ, ascending \param vectors X (n×r), XᵀMX = 1
@@ -107,7 +108,7 @@ bool renew_low_end(MatX const& k, MatX const& m, Index count, VecX& values, MatX
   Index renewed = 1;
   while (renewed < n && low.values[renewed] + low.shift <= border) ++renewed;
   if (renewed < std::min(count, n)) {
-    // other eigenvalues: problem in the complement of the replaced vectors; with x = X w the old matrix is diag(λ)
+    // other eigenvalues: problem in the complement of the replaced vectors; K is diag(λ) in the coordinates w, x = X w
     MatX const mx = m * vectors, w = mx.transpose() * low.vectors.leftCols(renewed);
     Eigen::HouseholderQR<MatX> const qr(w);
     MatX const q = qr.householderQ(), rest = q.rightCols(n - renewed);

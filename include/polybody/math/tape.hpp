@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Numbers for reverse differentiation.
+/// Tape and scalar type for reverse differentiation.
 ///
 /// Not included in polybody.hpp: only the gradients of whole runs use it (gradients/gradient.hpp).
 
@@ -34,7 +34,7 @@ class Tape {
 
   /// Records an independent variable.
   Number variable() { return record(0, 0.0, 0, 0.0); }
-  /// Records a result of the numbers `a` and `b`; `by_a` and `by_b` are its partial derivatives.
+  /// Records an operation with the arguments `a` and `b`. `by_a` and `by_b` are the partial derivatives of its result.
   Number record(Number a, double by_a, Number b, double by_b) {
     if (size_ >= operations_.size()) [[unlikely]]
       grow();
@@ -47,8 +47,8 @@ class Tape {
     if (derivatives_.size() < count) derivatives_.resize(operations_.size());
     std::fill(derivatives_.begin(), derivatives_.begin() + std::ptrdiff_t(count), 0.0);
   }
-  /// Derivative ∂J/∂x with respect to the operation x. Add the seed to it before a sweep, and read it after the
-  /// sweep.
+  /// Derivative ∂J/∂x of a result J with respect to operation x. Before a sweep, add the seed (1 if x is J); after the
+  /// sweep, read the derivative.
   double& slope(Number x) { return derivatives_[std::size_t(x)]; }
   /// Backward sweep over the first `count` operations.
   void sweep(std::size_t count) { sweep(count, 1); }
@@ -64,9 +64,10 @@ class Tape {
     }
   }
 
-  /// Tape of this thread.
+  /// Current tape of the calling thread.
   static Tape& current() { return *current_; }
-  /// Makes a tape the current one of its thread during its lifetime. The constructor clears the tape.
+  /// Guard that makes a tape current in the calling thread during the lifetime of the guard. The constructor clears the
+  /// tape.
   class On {
    public:
     explicit On(Tape& recording) : before_(current_) {  ///< uses the tape `recording`
@@ -88,8 +89,8 @@ class Tape {
   };
   [[gnu::cold]] void grow() {
     if (this == &none_)
-      throw InvalidInput("tape.not_recording", {"A recorded number was made while no recording was active. Keep a "
-                                                "Recording::On alive during the calculation."});
+      throw InvalidInput("tape.not_recording", {"A ReverseVar was calculated while no tape was active. Keep a "
+                                                "Tape::On alive during the calculation."});
     operations_.resize(std::max<std::size_t>(2 * operations_.size(), 4096));
   }
 
@@ -103,10 +104,10 @@ class Tape {
 inline Tape Tape::none_;
 inline thread_local constinit Tape* Tape::current_ = &Tape::none_;
 
-/// Value with its number on the tape of its thread.
+/// Value, and number of the operation on the current tape that computed it.
 struct ReverseVar {
   double v = 0.0;           ///< value, in the unit of the quantity
-  Tape::Number number = 0;  ///< zero for a constant
+  Tape::Number number = 0;  ///< number of the operation that computed the value; zero for a constant
 
   ReverseVar() = default;
   /// The constant `value`.

@@ -15,9 +15,9 @@ namespace polybody {
 
 /// Prescribed value with its first and second derivative with respect to time.
 struct Motion {
-  double value = 0.0;         ///< [m] or [rad]
-  double rate = 0.0;          ///< [m/s] or [rad/s]
-  double acceleration = 0.0;  ///< [m/s²] or [rad/s²]
+  double value = 0.0;         ///< prescribed value [m] or [rad]
+  double rate = 0.0;          ///< first derivative [m/s] or [rad/s]
+  double acceleration = 0.0;  ///< second derivative [m/s²] or [rad/s²]
 };
 
 /// Function of time t [s] that returns a Motion, for example a lambda.
@@ -38,7 +38,7 @@ void check_time_function(Law const& law, std::string const& what) {
   if constexpr (requires { law.check(what); }) law.check(what);
 }
 
-/// Breakpoints of a law [s]; none if it has no member `breakpoints()`.
+/// Breakpoints of the function of time `law` [s]; none if it has no member `breakpoints()`.
 template <TimeFunction Law>
 std::vector<double> breakpoints_of(Law const& law) {
   if constexpr (HasBreakpoints<Law>)
@@ -47,7 +47,7 @@ std::vector<double> breakpoints_of(Law const& law) {
     return {};
 }
 
-/// Checks a law that prescribes a motion. \throws InvalidInput as `check_time_function`, and if its value is
+/// Checks a function of time that prescribes a motion. \throws InvalidInput for invalid values, and if the value is
 /// discontinuous.
 template <TimeFunction Law>
 void check_driving_function(Law const& law, std::string const& what) {
@@ -69,18 +69,18 @@ concept HasIntegral = TimeFunction<L> && requires(L const law, double t) {
   { law.integral(t) } -> std::convertible_to<double>;
 };
 
-/// Integral ∫ value dt from t = 0: a displacement if the law is a velocity, an angle if it is an angular velocity.
+/// Integral ∫ value dt from t = 0: a displacement if `law` is a velocity, an angle if `law` is an angular velocity.
 template <HasIntegral Law>
 struct IntegralOf {
   Law law;  ///< integrand
 
   void check(std::string const& what) const { check_time_function(law, what); }
-  /// Integral as value; value and rate of the law as rate and acceleration.
+  /// Returns the integral as value, and the value and the rate of `law` as rate and acceleration.
   Motion operator()(double t) const {
     Motion const speed = law(t);
     return {law.integral(t) - law.integral(0.0), speed.value, speed.rate};
   }
-  std::vector<double> breakpoints() const { return breakpoints_of(law); }  ///< breakpoints of the law [s]
+  std::vector<double> breakpoints() const { return breakpoints_of(law); }  ///< breakpoints of `law` [s]
 };
 
 namespace detail {
@@ -97,14 +97,14 @@ inline void check_ramp(double target, double duration, double start, std::string
 /// Ramp from 0 at `start` to `target` within `duration`, constant afterwards. The rate is discontinuous at both ends.
 /// At a breakpoint the value is that of the following piece.
 ///
-/// With a `rounding` w a parabola replaces each breakpoint, from w/2 before to w/2 after it: value = slope s²/(2w),
-/// s = t − t₀ + w/2. Only the acceleration is then discontinuous. After both parabolas, value and integral equal
-/// those without rounding.
+/// With `rounding` w, a parabola replaces the ramp from w/2 before to w/2 after each breakpoint t₀. At the first one,
+/// value = slope s²/(2w), s = t − t₀ + w/2. Only the acceleration is then discontinuous. After both parabolas, value
+/// and integral equal those without rounding.
 struct Ramp {
-  Required<double> target;    ///< [m] or [rad]
-  Required<double> duration;  ///< [s]
-  double start = 0.0;         ///< [s]
-  double rounding = 0.0;      ///< w [s], at most `duration`
+  Required<double> target;    ///< final value [m] or [rad]
+  Required<double> duration;  ///< duration of the ramp [s]
+  double start = 0.0;         ///< time at which the ramp begins [s]
+  double rounding = 0.0;      ///< duration w of each parabola [s], at most `duration`
 
   void check(std::string const& what) const {
     detail::check_ramp(target, duration, start, what);
@@ -127,21 +127,21 @@ struct Ramp {
     if (y >= 0.5 * rounding) return target * 0.5 * (x + y);
     return target * (rounded_kink_integral(x) - rounded_kink_integral(y)) / duration;
   }
-  /// Breakpoints [s]; none if they are rounded.
+  /// Breakpoints [s]; none if `rounding` is positive.
   std::vector<double> breakpoints() const {
     if (rounding > 0.0) return {};
     return {start, start + duration};
   }
 
  private:
-  /// max(0, x) with the rounding.
+  /// max(0, x), with a parabola within w/2 of x = 0.
   Motion rounded_kink(double x) const {
     double const s = x + 0.5 * rounding;
     if (x >= 0.5 * rounding) return {x, 1.0, 0.0};
     if (s <= 0.0) return {};
     return {0.5 * s * s / rounding, s / rounding, 1.0 / rounding};
   }
-  /// Integral of `rounded_kink`: s³/(6w) within the rounding, then x²/2 + w²/24.
+  /// Integral of `rounded_kink`: s³/(6w) within the rounding, s = x + w/2; x²/2 + w²/24 above it.
   double rounded_kink_integral(double x) const {
     double const s = x + 0.5 * rounding;
     if (x >= 0.5 * rounding) return 0.5 * x * x + rounding * rounding / 24.0;
@@ -152,9 +152,9 @@ struct Ramp {
 /// Smooth ramp from 0 to `target` within `duration`, with continuous rate and acceleration:
 /// value = target (10 x³ − 15 x⁴ + 6 x⁵), x = (t − start)/duration.
 struct SmoothRamp {
-  Required<double> target;    ///< [m] or [rad]
-  Required<double> duration;  ///< [s]
-  double start = 0.0;         ///< [s]
+  Required<double> target;    ///< final value [m] or [rad]
+  Required<double> duration;  ///< duration of the ramp [s]
+  double start = 0.0;         ///< time at which the ramp begins [s]
 
   void check(std::string const& what) const { detail::check_ramp(target, duration, start, what); }
   /// Value, rate and acceleration at t [s].
@@ -172,11 +172,11 @@ struct SmoothRamp {
   }
 };
 
-/// Spin-up of Kane, Ryan & Banerjee 1987 from rest to the rate `speed` within `duration`:
-/// ψ = (speed/T)[t²/2 + (T/2π)²(cos(2πt/T) − 1)], then ψ = speed (t − T/2).
+/// Spin-up of Kane, Ryan & Banerjee 1987 from rest to the rate `speed` within `duration` T: ψ = (speed/T)[t²/2 +
+/// (T/2π)²(cos(2πt/T) − 1)] for t ≤ T, and ψ = speed (t − T/2) afterwards.
 struct SpinUp {
-  Required<double> speed;     ///< [rad/s]
-  Required<double> duration;  ///< T [s]
+  Required<double> speed;     ///< final rate [rad/s]
+  Required<double> duration;  ///< duration T of the spin-up [s]
 
   void check(std::string const& what) const { detail::check_ramp(speed, duration, 0.0, what); }
   /// Angle ψ [rad], its rate and its acceleration at t [s].
@@ -203,10 +203,10 @@ struct Constant {
   double integral(double t) const { return value * t; }          ///< integral from zero to t
 };
 
-/// Load that is switched on and off: `value` for from ≤ t < to, else 0.
+/// Function of time of a load that is switched on and off: `value` for from ≤ t < to, otherwise zero.
 struct Window {
-  double from = 0.0;                                    ///< [s]
-  double to = std::numeric_limits<double>::infinity();  ///< [s]
+  double from = 0.0;                                    ///< time of switching on [s]
+  double to = std::numeric_limits<double>::infinity();  ///< time of switching off [s]
   double value = 1.0;                                   ///< value between `from` and `to`; a factor if it scales a load
 
   void check(std::string const& what) const {
@@ -215,7 +215,7 @@ struct Window {
                          {ErrorObject{what}, ": a window needs from < to and a finite value, but has from = ", from,
                           " s, to = ", to, " s, value = ", value, "."});
   }
-  /// `value` within the interval, else zero; the rate is zero.
+  /// Returns `value` within the interval, otherwise zero. The rate is zero.
   Motion operator()(double t) const { return {t >= from && t < to ? value : 0.0, 0.0, 0.0}; }
   std::vector<double> breakpoints() const { return {from, to}; }  ///< both ends [s]
 };

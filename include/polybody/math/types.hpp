@@ -14,7 +14,7 @@
 
 namespace polybody {
 
-using Index = Eigen::Index;  ///< numbers of items and positions
+using Index = Eigen::Index;  ///< type of counts and indices
 
 /// Column of n scalars.
 template <class T, int n>
@@ -38,8 +38,8 @@ using VecXOf = Eigen::Matrix<T, Eigen::Dynamic, 1>;
 template <class T>
 using MatXOf = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
 
-/// The type double, dependent on T. An expression with it is compiled where the template is instantiated, not where
-/// it is defined.
+/// The type double, written as a type that depends on T. An expression of this type is compiled where the template is
+/// instantiated, not where it is defined.
 template <class T>
 using RealFor = std::conditional_t<true, double, T>;
 
@@ -53,7 +53,7 @@ M zeros() {
 }
 }  // namespace detail
 
-/// Identity matrix, 3×3, without an expression type.
+/// Identity matrix, 3×3, as a matrix and not as an expression of Eigen.
 template <class T = double>
 Mat<T, 3, 3> identity() {
   auto m = detail::zeros<Mat<T, 3, 3>>();
@@ -75,8 +75,8 @@ struct Required {
   constexpr operator T() const { return value; }  // NOLINT(google-explicit-constructor)
 };
 
-/// \throws InvalidInput unless `x` is finite and positive. The message begins with `what`, the object and the
-/// quantity, followed by `part`.
+/// \throws InvalidInput unless `x` is finite and positive. The message begins with `what`, which names the object and
+/// the quantity, and with `part`.
 inline void require_positive(double x, std::string_view what, std::string_view part = {}) {
   if (!(x > 0.0) || !std::isfinite(x))
     throw InvalidInput("value.not_positive",
@@ -90,7 +90,7 @@ inline void require_not_negative(double x, std::string_view what, std::string_vi
                        {ErrorObject{what}, part, " must be zero or positive and finite, but is ", ErrorValue{x}, "."});
 }
 
-/// \throws InvalidInput unless 1 ≤ n ≤ 10⁶, the allowed range of a number of repetitions.
+/// \throws InvalidInput unless 1 ≤ n ≤ 10⁶, the allowed range of counts.
 inline void require_count(int n, std::string_view what, std::string_view part = {}) {
   if (n < 1 || n > 1'000'000)
     throw InvalidInput("value.count",
@@ -108,7 +108,7 @@ void require_finite(Eigen::MatrixBase<Derived> const& x, std::string_view what, 
                            {ErrorObject{what}, part, " must be finite, but has an entry ", ErrorValue{m(i, j)}, "."});
 }
 
-/// Largest allowed number. Squares of larger numbers, and with them energies and norms, are not finite.
+/// Largest allowed magnitude of a number. Its square is finite, with a margin for energies and norms.
 inline constexpr double largest_number = 1e150;
 
 /// Index of the first entry of `x` that is NaN, infinite or beyond `largest_number`; −1 if there is none.
@@ -117,7 +117,8 @@ inline Index first_not_finite(VecX const& x) {
     if (!(std::abs(x[i]) <= largest_number)) return i;
   return -1;
 }
-/// \throws InvalidInput if `x` is not zero and its square overflows or underflows.
+/// \throws InvalidInput unless `x` is zero or |x| lies in [1e-150, 1e150]. The square of `x` then neither overflows nor
+/// underflows.
 inline void require_size(double x, std::string_view what, std::string_view part = {}) {
   if (x != 0.0 && !(std::abs(x) >= 1.0 / largest_number && std::abs(x) <= largest_number))
     throw InvalidInput("value.magnitude",
@@ -125,11 +126,12 @@ inline void require_size(double x, std::string_view what, std::string_view part 
                         " must be zero or have a magnitude in [1e-150, 1e+150], so that its square is finite, but is ",
                         ErrorValue{x}, "."});
 }
-/// Text " is not finite" for messages, or the excess of x over `largest_number`.
+/// Text for messages: " is not finite", or a finite x with the limit `largest_number` that it exceeds.
 template <class = void>  // compiled where it is used
 std::string non_finite_suffix(double x) {
-  return std::isfinite(x) ? " is " + number(x) + ", beyond " + number(largest_number) + " whose square is not finite,"
-                          : " is not finite";
+  return std::isfinite(x)
+             ? " is " + number(x) + ", beyond " + number(largest_number) + ", the largest allowed magnitude,"
+             : " is not finite";
 }
 
 /// Maximum norm max |xᵢ|: zero for an empty vector, NaN if an entry is NaN.

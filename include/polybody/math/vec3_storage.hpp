@@ -10,9 +10,8 @@
 
 namespace polybody {
 
-/// Vector of three numbers in one SIMD register of four numbers, or in one of two numbers and a double, by
-/// `simd_size` of the machine. Each function is one expression. Products and sums are therefore contracted in the
-/// same way as those of doubles.
+/// Vector of three numbers. With `simd_size` 4 it occupies one SIMD register; with 2, one register and a double. Each
+/// function is one expression. The compiler therefore contracts products and sums in the same way as those of doubles.
 template <int lanes = simd_size>
 class Vec3Storage;
 
@@ -66,7 +65,7 @@ class Vec3Storage<4> {
   Lanes x_;
 };
 
-/// Three numbers in a register of two and a double.
+/// Three numbers in a register of two and a separate double.
 template <>
 class Vec3Storage<2> {
  public:

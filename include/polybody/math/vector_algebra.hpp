@@ -74,7 +74,7 @@ Mat<T, 3, 3> skew(Vec<T, 3> const& a) {
   return s;
 }
 
-/// Product ã b: a (3) × each column of b (3×n).
+/// Product ã b (3×n): vector product of `a` with each column of `b`.
 template <class T, int n>
 Mat<T, 3, n> skew_product(Vec<T, 3> const& a, Mat<T, 3, n> const& b) {
   Mat<T, 3, n> m;

@@ -9,15 +9,16 @@
 
 namespace polybody {
 
-/// Position in vectors: `simd_size` entries from `first` on.
+/// Position of `simd_size` successive entries in a vector.
 struct SimdIndex {
-  Index first;  ///< index of the first of these entries
-  SimdVector<> operator()(double const* x) const { return SimdVector<>::load(x + first); }       ///< loads them from x
-  SimdVector<> operator()(VecX const& x) const { return SimdVector<>::load(x.data() + first); }  ///< loads them from x
-  void set(double* x, SimdVector<> const& value) const { value.store(x + first); }               ///< stores them in x
-  void set(VecX& x, SimdVector<> const& value) const { value.store(x.data() + first); }          ///< stores them in x
+  Index first;  ///< index of the first entry
+  /// Loads entries of `x`.
+  SimdVector<> operator()(double const* x) const { return SimdVector<>::load(x + first); }
+  SimdVector<> operator()(VecX const& x) const { return (*this)(x.data()); }             ///< loads entries of `x`
+  void set(double* x, SimdVector<> const& value) const { value.store(x + first); }       ///< stores entries of `x`
+  void set(VecX& x, SimdVector<> const& value) const { value.store(x.data() + first); }  ///< stores entries of `x`
 };
-/// Position of one entry in vectors.
+/// Position of one entry in a vector.
 struct EntryIndex {
   Index first;                                                        ///< index of the entry
   double operator()(double const* x) const { return x[first]; }       ///< entry of x
@@ -26,8 +27,8 @@ struct EntryIndex {
   void set(VecX& x, double value) const { x.data()[first] = value; }  ///< stores `value` in x
 };
 
-/// Calls f(at) for n entries: first for SIMD vectors, then for the remaining single entries. `at(x)` reads the
-/// entries of x at this position, `at.set(x, value)` writes them. Variables that f captures by value remain in
+/// Calls f(at) for n entries: first for SIMD vectors, then for the remaining single entries. `at(x)` reads the entries
+/// of x at the position `at`, and `at.set(x, value)` writes them. Variables that f captures by value remain in
 /// registers.
 template <class F>
 [[gnu::always_inline]] inline void for_each_simd_block(Index n, F f) {
@@ -36,7 +37,7 @@ template <class F>
   for (; i < n; ++i) f(EntryIndex{i});
 }
 
-/// Sum over the entries of `for_each_simd_block`.
+/// Sum of the numbers that a loop of `for_each_simd_block` visits.
 class SimdSum {
  public:
   void add(SimdVector<> const& x) { lanes_ += x; }  ///< adds a SIMD vector; its entries are summed in `total`

@@ -8,7 +8,7 @@
 
 namespace polybody {
 
-/// Calls f with the compile-time constant N = n for n = 1 … 6, and with 0 for other numbers.
+/// Calls f with the compile-time constant n for 1 ≤ n ≤ 6, and with the constant 0 for any other n.
 template <class F>
 auto with_constant(int n, F&& f) {
   switch (n) {

@@ -39,8 +39,8 @@ class Workers {
  public:
   static constexpr int most = 4096;  ///< largest number of threads
 
-  /// Starts `threads` − 1 threads; the calling thread is the first one. \throws InvalidInput for less than one, and
-  /// for more threads than the system starts.
+  /// Starts `threads` − 1 threads; the calling thread is the first one. \throws InvalidInput for `threads` < 1 or >
+  /// `most`, and if the system cannot start all threads.
   [[gnu::cold]] explicit Workers(int threads) : thrown_(std::size_t(std::clamp(threads, 0, most))) {
     if (threads < 1)
       throw InvalidInput("workers.count", {ErrorObject{"Workers"}, ": at least one thread is needed, but ",
@@ -65,9 +65,9 @@ class Workers {
 
   int size() const { return int(thrown_.size()); }  ///< number of threads that share a loop, including the calling one
 
-  /// Calls f(begin, end) for parts of [0, n) and returns when all parts are complete. Parts begin at multiples of
-  /// four and have at least `least` entries. The calling thread executes a short loop alone. If parts throw, the
-  /// exception of the first of these parts is thrown again.
+  /// Calls f(begin, end) for parts of [0, n) and returns when all parts are complete. Parts begin at multiples of four
+  /// and have at least `least` indices. The calling thread executes a loop of one part alone. If several parts throw,
+  /// the exception of the first of them is thrown again.
   void over(Index n, Index least, ParallelBody const& f) {
     Index const parts = std::clamp<Index>(n / std::max<Index>(least, 1), 1, size());
     if (parts == 1) {
@@ -91,7 +91,7 @@ class Workers {
         std::rethrow_exception(first);
       }
   }
-  /// Overload for any f that is callable as f(begin, end): parts of [0, n) with at least `least` entries per thread.
+  /// Overload for any f that is callable as f(begin, end), with at least `least` indices of [0, n) per thread.
   template <class F>
   void over(Index n, Index least, F const& f) {
     over(n, least, ParallelBody(f));
@@ -123,8 +123,8 @@ class Workers {
       if (running_.fetch_sub(1) == 1) running_.notify_one();
     }
   }
-  /// Polls for 0.1 ms before it sleeps. The loops of a step follow each other within this time, and waking a thread
-  /// takes half of it.
+  /// Waits until x differs from `old`: polls for 0.1 ms, then sleeps. The loops of a step follow each other within 0.1
+  /// ms, and waking a thread takes half of this time.
   static void wait_for_change(std::atomic<unsigned> const& x, unsigned old) {
     auto const end = std::chrono::steady_clock::now() + std::chrono::microseconds(100);
     do
@@ -141,7 +141,8 @@ class Workers {
   Sequence<std::thread> others_;                 // last member: the threads use the others
 };
 
-/// Calls f over parts of [0, n) with at least `least` entries per thread, by `workers`, or serially if it is null.
+/// Calls f(begin, end) for parts of [0, n), on the threads of `workers`, with at least `least` indices per thread.
+/// Calls f(0, n) if `workers` is null.
 template <class F>
 void share(Workers* workers, Index n, Index least, F const& f) {
   ParallelBody const body(f);

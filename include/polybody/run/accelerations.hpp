@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Accelerations of points in a state, and the accelerations of a state by forward dynamics.
+/// Accelerations of points, and computation of a state's accelerations by forward dynamics.
 
 #include <polybody/integrators/forward_dynamics.hpp>
 #include <polybody/run/marker_frames.hpp>
@@ -11,9 +11,10 @@ namespace polybody {
 
 /// Sets the accelerations and multipliers of x by forward dynamics,
 ///   M v̇ + Gᵀλ = f,  G v̇ = −γ   [Haug 1989, §11.2],
-/// from its coordinates, velocities and time. The velocities should satisfy the constraint equations (`assemble`). The
-/// multipliers of redundant constraints are zero. Coordinates, velocities and first-order states do not change.
-/// \throws InvalidInput for a state that does not fit, SingularMatrix, NonFiniteValue. x is then unchanged.
+/// from the coordinates, velocities and time of x. The velocities should satisfy the constraint equations (`assemble`).
+/// The multipliers of redundant constraints are zero. Coordinates, velocities and first-order states do not change.
+/// \throws InvalidInput for a state of another model; SingularMatrix; NonFiniteValue. After an exception x is
+/// unchanged.
 template <LinearSolver Solver = DefaultSolver>
 void compute_accelerations(System& system, State& x) {
   require_usable(system, x);
@@ -23,7 +24,8 @@ void compute_accelerations(System& system, State& x) {
   x.a.swap(a);
   x.lambda.swap(lambda);
 }
-/// Sets the accelerations and multipliers of a state of a model; see above.
+/// Sets the accelerations and multipliers of state x of `model` by forward dynamics, with the conditions and exceptions
+/// of the overload for `System`.
 template <class M>
   requires(!std::same_as<M, System>)
 void compute_accelerations(M const& model, State& x) {
@@ -33,8 +35,9 @@ void compute_accelerations(M const& model, State& x) {
 
 namespace detail {
 
-/// \throws InvalidInput if all accelerations of x are zero although the forces are not in equilibrium: a state from
-/// `reference_state` or `assemble`. The unbalanced force is compared with loads, weight, force elements and reactions.
+/// Requires equilibrium of the forces in a state x whose accelerations are all zero, such as one from `reference_state`
+/// or `assemble`. The limit of the unbalanced force is 1e-6 times the largest load, weight, applied force or reaction.
+/// \throws InvalidInput otherwise.
 template <class = void>
 [[gnu::cold]] void require_accelerations(System system, State const& x) {
   require_usable(system, x);
@@ -53,7 +56,7 @@ template <class = void>
   throw InvalidInput("state.accelerations",
                      {"The state at t = ", ErrorTime{x.t},
                       " s has no accelerations: all are zero, but its forces are not in equilibrium. Call "
-                      "compute_accelerations(model, x), or take a state of simulate."});
+                      "compute_accelerations(model, x), or use a state from simulate."});
 }
 
 /// Twist rate J v̇ + bias of a point (6), world axes.
@@ -73,11 +76,11 @@ inline bool lacks_accelerations(State const& x) { return largest_size(x.a) == 0.
 
 /// Rate of the twist of a material point: acceleration [m/s²] and angular acceleration [rad/s²] (6), world axes,
 ///   J v̇ + bias, with v̇ = x.a.
-/// x.a contains the accelerations of the state after `compute_accelerations`, after `equilibrium`, and in the states of
-/// `simulate` with all integrators except `EnergyMomentum` and `EnergyDecaying`, whose accelerations are the mean of
-/// the last step. Call `compute_accelerations` for those, and for `reference_state()`, `assemble` and states that were
-/// changed by hand. Implicit integrators and `Rattle` satisfy G v̇ = −γ to the order of the step only, and forward
-/// dynamics exactly.
+/// x.a contains the accelerations of the state after `compute_accelerations` and `equilibrium`, and in the states of
+/// `simulate`. The integrators `EnergyMomentum` and `EnergyDecaying` are an exception: they store the mean
+/// accelerations of the last step. Call `compute_accelerations` for their states, for those of `reference_state()` and
+/// `assemble`, and for states that were changed by hand. Accelerations of implicit integrators and of `Rattle` satisfy
+/// G v̇ = −γ only up to the error of the method, those of forward dynamics exactly.
 /// \throws InvalidInput for a marker or state of another model, and for a state without accelerations: all are zero,
 /// but the forces are not in equilibrium.
 template <class M, class B>
@@ -93,8 +96,8 @@ Vec6 twist_rate(M const& model, State const&, Marker<Ground> const& marker) {
   return Vec6::Zero();
 }
 
-/// Acceleration of a material point (3), world axes [m/s²]; see `twist_rate`. An accelerometer at the point measures it
-/// less the gravity vector, in the axes of the marker.
+/// Acceleration of a material point (3), world axes [m/s²]; see `twist_rate`. An accelerometer at the point measures
+/// this acceleration minus the gravity vector, in the axes of the marker.
 template <class M, class B>
 Vec3 acceleration(M const& model, State const& x, Marker<B> const& marker) {
   return twist_rate(model, x, marker).template head<3>();
@@ -105,7 +108,8 @@ Vec3 angular_acceleration(M const& model, State const& x, Marker<B> const& marke
   return twist_rate(model, x, marker).template tail<3>();
 }
 
-/// Accelerations of one body in state x, the rates of `velocities_of`. \throws InvalidInput as `twist_rate`.
+/// Generalised accelerations of one body in state x: time derivatives of `velocities_of`. \throws InvalidInput under
+/// the conditions of `twist_rate`.
 template <class M, class B>
 std::span<double const> accelerations_of(M const& model, State const& x, BodyHandle<B> const& handle) {
   std::span<double const> const v = body_in_state(model, x, handle).v;

@@ -7,10 +7,10 @@
 
 namespace polybody {
 
-/// Names integrators in a constructor: `AnyModel(model, stepped_by<GeneralisedAlpha>)`.
+/// List of integrator types for the constructor of `AnyModel`: `AnyModel(model, stepped_by<GeneralisedAlpha>)`.
 template <class... Is>
 struct SteppedBy {};
-/// The integrators Is, as an argument.
+/// Constructor argument of `AnyModel` that lists the integrators Is.
 template <class... Is>
 inline constexpr SteppedBy<Is...> stepped_by{};
 
@@ -19,15 +19,16 @@ template <class I>
 inline constexpr char integrator_tag = 0;
 }  // namespace detail
 
-/// Type-erased model for runs, comparisons and records. Programs with many formulations compile these functions once:
+/// Type-erased model for runs, comparisons and records. Functions that take an `AnyModel` are compiled once for all
+/// formulations:
 ///   AnyModel const model(std::make_shared<MyModel const>(my_model), stepped_by<GeneralisedAlpha, Radau>);
 ///   State x = model.reference_state();
 ///   simulate(model, x, Radau{}, {.end_time = 1.0, .step = 1e-3}).run();
-/// It shares ownership of the model. `observation_system(model).layout()` gives the indices of the model's bodies and
-/// joints for their handles.
+/// `AnyModel` shares ownership of the model. `observation_system(model).layout()` gives the indices of the model's
+/// bodies and joints for their handles.
 class AnyModel {
  public:
-  /// Stores the model, with the evaluations of M and its steps by each of the integrators Is.
+  /// Stores the model, and functions that evaluate M and step it with each of the integrators Is.
   template <class M, class... Is>
   AnyModel(std::shared_ptr<M const> model, SteppedBy<Is...>)
       : reference_(model->reference_state()), system_(&questions<M>), problem_size_(polybody::problem_size(*model)) {
@@ -35,8 +36,8 @@ class AnyModel {
     model_ = std::move(model);
   }
 
-  State const& reference_state() const { return reference_; }  ///< the bodies as placed, at rest
-  ProblemSize const& counts() const { return problem_size_; }  ///< counts at construction
+  State const& reference_state() const { return reference_; }  ///< state with the bodies as built, at rest
+  ProblemSize const& counts() const { return problem_size_; }  ///< problem size at construction
   /// System of the full model, with the evaluation of motion and energies.
   System system() const { return system_(model_.get()); }
 
@@ -77,9 +78,9 @@ template <class I>
 RunSystems run_systems(AnyModel const& model) {
   return model.systems_of<I>();
 }
-/// System for evaluations of a state.
+/// System of the full model, for evaluations of its states.
 inline System observation_system(AnyModel const& model) { return model.system(); }
-/// Coordinates, constraint equations and degrees of freedom at the construction of the model.
+/// Coordinates, constraint equations and degrees of freedom of the model when the `AnyModel` was constructed.
 inline ProblemSize problem_size(AnyModel const& model) { return model.counts(); }
 
 }  // namespace polybody

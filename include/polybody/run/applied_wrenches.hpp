@@ -19,7 +19,8 @@ void for_each_action_of(System const& system, Index force, Visit&& visit) {
     if (action.source == force) visit(k++, action);
 }
 
-/// Evaluated system with the wrenches of its force elements. \throws InvalidInput for a state of another model.
+/// Returns `system` after an evaluation at x that includes the wrenches of its force elements. \throws InvalidInput for
+/// a state of another model.
 template <class = void>
 System with_forces(System system, State const& x) {
   require_usable(system, x);
@@ -50,8 +51,8 @@ double power_of_joint(System const& system, State const& x, Index joint) {
 }  // namespace detail
 
 /// Forces [N] and moments [N m] of a force element on its markers, in the order of the markers: each about the origin
-/// of its marker, world axes. A group of forces returns a vector with the sum of its pairs for each marker. `system`
-/// must have been evaluated at the state, with `System::push_forces` afterwards.
+/// of its marker, world axes. For a group of forces, the result is a vector with the sum over the pairs of each marker.
+/// `system` must have been evaluated at the state, and `System::push_forces` called afterwards.
 /// \throws InvalidInput for a handle of another model.
 template <class F>
 auto applied_wrenches(System const& system, ElementHandle<F> const& force) {
@@ -69,32 +70,34 @@ auto applied_wrenches(System const& system, ElementHandle<F> const& force) {
     return out;
   }
 }
-/// Wrenches of a force element in state x of a model, with its first-order states; see above.
+/// Forces [N] and moments [N m] of a force element on its markers in state x of a model, each about its marker in world
+/// axes. First-order states of the element are taken from x.
 /// \throws InvalidInput for a handle or a state of another model.
 template <class M, class F>
 auto applied_wrenches(M const& model, State const& x, ElementHandle<F> const& force) {
   return applied_wrenches(detail::with_forces(System(model, with<Capabilities::motion>), x), force);
 }
 
-/// Power of a force element on the bodies [W], Σ f·v + m·ω over its markers: positive if it adds energy to them.
-/// `system` must have been evaluated at x, with `System::push_forces` afterwards. \throws InvalidInput for a handle of
-/// another model.
+/// Power of a force element on the bodies [W], Σ (f·v + m·ω) over its markers: positive if the element adds energy to
+/// the bodies. `system` must have been evaluated at x, and `System::push_forces` called afterwards. \throws
+/// InvalidInput for a handle of another model.
 template <class F>
   requires(!requires { typename F::Geometry; })
 double power(System const& system, State const&, ElementHandle<F> const& force) {
   return detail::power_of_force(system, index_of_force(system.layout(), force));
 }
 /// Power of a driving constraint on the bodies [W], λᵀΦ_t: the multipliers times the prescribed rates, positive if the
-/// drive adds energy. For ġ = θ̇ − ψ̇(t) it is the driving moment −λ times ψ̇. It is zero for joints without a function
-/// of time. In a compliant joint, λ(g, ġ) replaces the multipliers. `system` must have been evaluated at x. The
-/// multipliers of x must belong to its own time (see `EnergyAudit`). \throws InvalidInput for a handle of another
+/// drive adds energy. For ġ = θ̇ − ψ̇(t) it is the driving moment −λ times ψ̇. The power is zero for joints without a
+/// function of time. In a compliant joint, λ(g, ġ) replaces the multipliers. `system` must have been evaluated at x.
+/// The multipliers of x must belong to the time x.t (see `EnergyAudit`). \throws InvalidInput for a handle of another
 /// model.
 template <class J>
   requires requires { typename J::Geometry; }
 double power(System const& system, State const& x, ElementHandle<J> const& joint) {
   return detail::power_of_joint(system, x, index_of_joint(system.layout(), joint));
 }
-/// Power of a force element or of a drive in state x of a model [W]; see above.
+/// Power of a force element or a driving constraint on the bodies in state x of a model [W], positive if the element
+/// adds energy.
 /// \throws InvalidInput for a handle or a state of another model.
 template <class M, class E>
   requires(!std::same_as<M, System>)

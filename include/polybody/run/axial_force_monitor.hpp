@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Warns of beams with axial forces near buckling that their deflection neglects: those of `Ffr` without geometric
-/// stiffening.
+/// Warnings of large axial forces in beams of `Ffr` without geometric stiffening, whose deflection neglects these
+/// forces.
 
 #include <string>
 #include <vector>
@@ -12,11 +12,11 @@
 
 namespace polybody {
 
-/// Evaluates axial forces fifty times in a run, and keeps one warning: that of the largest fraction of the buckling
-/// load.
+/// Evaluates axial forces fifty times in a run. Keeps only the warning of the largest axial force relative to the
+/// buckling load.
 class AxialForceMonitor {
  public:
-  static constexpr double worth_warning = 0.05;  ///< fraction of the buckling load [1]
+  static constexpr double worth_warning = 0.05;  ///< smallest reported fraction of the buckling load [1]
 
   /// Monitor for a run from `start` to `end_time` [s].
   AxialForceMonitor(System const& system, double start, double end_time)
@@ -30,8 +30,8 @@ class AxialForceMonitor {
   /// True if the state at the end of a step at t [s] must be evaluated. \param last true for the last step of the run
   bool is_due(double t, bool last) const { return asks_ && (last || t >= next_); }
 
-  /// Adds a finding in x to `warnings`; x must have accelerations and multipliers. If an evaluation throws, nothing
-  /// changes.
+  /// Evaluates the axial forces in x, which must have accelerations and multipliers, and updates the warning in
+  /// `warnings`. If an evaluation throws, no warning changes.
   template <class = void>  // compiled only if used
   [[gnu::cold]] void look(System& system, State const& x, std::vector<std::string>& warnings) {
     collect(system, x);
@@ -58,8 +58,9 @@ class AxialForceMonitor {
       said_ = sentence_of(
           {"The beams of \"", system.layout().bodies[i].name, "\" are ",
            (share < 0.0 ? "in compression" : "in tension"), " at t = ", x.t, " s with ", 100.0 * largest_,
-           " % of the load that buckles them. The deflection neglects this force, and its relative error is about "
-           "that large. Make the body with .stiffening = true and .frame = FfrFrame::mean_axes, as `from` does."});
+           " % of the load that buckles them. The deflection neglects this force; the relative error of the deflection "
+           "is about the same percentage. Make the body with .stiffening = true and .frame = FfrFrame::mean_axes, as "
+           "`from` does."});
       warnings.push_back(said_);
     }
   }
@@ -81,7 +82,7 @@ class AxialForceMonitor {
     system.push_forces();
     for (AppliedWrench<double> const& action : system.data().actions) add(system, action.marker, action.w, 1.0);
   }
-  /// Adds sign · w = [f; m] about the marker, world axes.
+  /// Adds sign · w to the loads of the marker's body; w = [f; m] about the marker, in world axes.
   [[gnu::cold]] void add(System const& system, Index marker, double const* w, double sign) {
     Index const body = system.layout().owners[std::size_t(marker)];
     if (body < 0) return;

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Records of selected rigid bodies in a run: their motion, and every wrench on them with its material point. They are
-/// the input of a stress analysis after the run (decoupled_stress.hpp).
+/// Records of selected rigid bodies in a run: their motion, and each wrench on them with its point of action. The
+/// records are the input of a stress analysis after the run (decoupled_stress.hpp).
 ///
 /// Not in polybody.hpp, because few programs need it.
 
@@ -15,31 +15,31 @@
 
 namespace polybody {
 
-/// Wrench on a body, in the body's axes; the moment is about the point itself.
+/// Wrench on a body, in the body's axes; the moment is about the point `at`.
 struct LoadSample {
-  Vec3 at = Vec3::Zero();  ///< (3) material point, from the body's origin [m]
-  Vec3 f = Vec3::Zero();   ///< (3) [N]
-  Vec3 m = Vec3::Zero();   ///< (3) [N m]
+  Vec3 at = Vec3::Zero();  ///< (3) point of action, relative to the body's origin [m]
+  Vec3 f = Vec3::Zero();   ///< (3) force [N]
+  Vec3 m = Vec3::Zero();   ///< (3) moment about `at` [N m]
 };
 
 /// Motion and loads of a body at one time. The loads do not include gravity.
 struct BodySample {
-  double t = 0.0;                            ///< [s]
-  Frame<double> frame;                       ///< of its origin (the centre of mass) and axes, world axes
-  Vec3 acceleration = Vec3::Zero();          ///< (3) of the origin, world axes [m/s²]
+  double t = 0.0;                            ///< time [s]
+  Frame<double> frame;                       ///< frame of the body at its origin, the centre of mass
+  Vec3 acceleration = Vec3::Zero();          ///< (3) acceleration of the origin, world axes [m/s²]
   Vec3 angular_acceleration = Vec3::Zero();  ///< (3) world axes [rad/s²]
   std::vector<LoadSample> loads;             ///< nonzero loads
 };
 
-/// Samples of one body, in order.
+/// Recorded samples of one body.
 struct BodyRecord {
   std::string name;                 ///< name of the body
   Vec3 gravity = Vec3::Zero();      ///< (3) gravity on the body, world axes [m/s²]
-  std::vector<BodySample> samples;  ///< in the order of time
+  std::vector<BodySample> samples;  ///< samples in the order of time
 };
 
-/// \throws InvalidInput, which begins with `who`, for fewer than two samples, for samples that do not increase in time,
-/// and for intervals longer than `largest` [s], or than 1.5 times the median if `largest` is 0.
+/// Requires at least two samples at increasing times. No interval may exceed `largest` [s], or 1.5 times the median
+/// interval if `largest` is 0. \throws InvalidInput otherwise, with a message that begins with `who`.
 template <class = void>  // compiled only if used
 void require_no_gaps(BodyRecord const& record, double largest, std::string const& who) {
   if (record.samples.size() < 2)
@@ -52,8 +52,8 @@ void require_no_gaps(BodyRecord const& record, double largest, std::string const
   for (std::size_t k = 0; k + 1 < record.samples.size(); ++k) {
     intervals.push_back(record.samples[k + 1].t - record.samples[k].t);
     if (!(intervals[k] > 0.0))
-      throw InvalidInput("record.time_order",
-                         {ErrorObject{who}, "the samples at ", between(k), " do not follow each other in time."});
+      throw InvalidInput("record.time_order", {ErrorObject{who}, "the times of the samples must increase, but ",
+                                               record.samples[k + 1].t, " s follows ", record.samples[k].t, " s."});
   }
   std::vector<double> sorted = intervals;
   auto const middle = sorted.begin() + std::ptrdiff_t(sorted.size() / 2);
@@ -67,12 +67,13 @@ void require_no_gaps(BodyRecord const& record, double largest, std::string const
            " s. Record every step, or give a largest_gap up to which samples are interpolated."});
 }
 
-/// Rigid body, in the plane or in space: its points are `at(u)`, u from its centre of mass in its axes.
+/// Rigid body in the plane or in space. `at(u)` is the point at the vector u from the centre of mass, in the body's
+/// axes.
 template <class B>
 concept HasRigidPoints = Body<B> && (requires(B const b) { b.at(Vec3()); } || requires(B const b) { b.at(Vec2()); });
 
 namespace detail {
-/// Motion of the centre of mass, twist˙ = J v̇ + bias.
+/// Motion of a body's centre of mass in x; its accelerations are the twist rate J v̇ + bias.
 template <HasRigidPoints B>
 BodySample motion_of_centre(BodyLayout const& place, State const& x) {
   using U = std::conditional_t<B::world == World::plane, Vec2, Vec3>;
@@ -173,7 +174,7 @@ class LoadRecorderOf {
     return body < 0 ? -1 : recorded_[std::size_t(body)];
   }
 
-  /// Adds sign · w = [f; m] about the marker, world axes.
+  /// Adds sign · w to the last sample of the marker's body; w = [f; m] about the marker, in world axes.
   void add_load(Index marker, double const* w, double sign) {
     Index const slot = record_of(marker);
     if (slot < 0 || std::all_of(w, w + 6, [](double e) { return e == 0.0; })) return;

@@ -10,18 +10,19 @@
 
 namespace polybody {
 
-/// Compares the constraint equations at the ends of steps with those at the start of the run.
+/// Compares a measure of near redundancy at the ends of steps with its value at the start of the run.
 class BranchWatch {
  public:
-  /// Stores a measure of near redundancy of the constraint equations at x, as the reference of a regular configuration.
+  /// Stores a measure of near redundancy of the constraint equations at x, which is taken as a regular configuration.
   template <class Solver>
   [[gnu::cold]] void begin(System& system, ForwardDynamics<Solver>& forward, State const& x) {
     if (system.rows() > 0) usual_ = forward.constraint_gain(system, x.q, x.v, x.t);
   }
 
-  /// Adds a warning for the first step that ends at x near a singular configuration. It examines only steps in which
-  /// the velocities v changed by more than a tenth and a matrix was factorised. \param v velocities before the step
-  /// \param warnings of the run
+  /// Adds a warning if the step ends at a state x near a singular configuration; only the first such step of a run is
+  /// reported. Steps are examined only if they changed the velocities by more than a tenth and factorised a matrix.
+  /// \param v velocities before the step
+  /// \param warnings warnings of the run
   template <class Solver>
   void look(System& system, ForwardDynamics<Solver>& forward, StepReport const& taken, VecX const& v, State const& x,
             std::vector<std::string>& warnings) {

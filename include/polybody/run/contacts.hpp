@@ -11,18 +11,18 @@ namespace polybody {
 
 /// Contact point in a state.
 struct TouchingPoint {
-  Index body;                  ///< index among the many markers of the group, from 0
-  std::string const* against;  ///< name of the partner, one of the few
+  Index body;                  ///< index of the body's marker among the many of the group, from 0
+  std::string const* against;  ///< name of the partner in the contact
   Vec3 place;                  ///< (3) position, world axes [m]
   Vec3 normal;                 ///< (3) unit vector towards the body
   double depth;                ///< penetration [m]
-  Vec3 force;                  ///< (3) on the body [N]
+  Vec3 force;                  ///< (3) contact force on the body [N]
 };
 
 using TouchingPointVisit = std::function<void(TouchingPoint const&)>;  ///< called for each contact point
 
 namespace detail {
-/// Calls `visit` for the contact points of one pair with a positive normal force.
+/// Calls `visit` for each contact point of one pair whose normal force is positive.
 template <class Law>
 void visit_touching(Law const& law, std::array<Frame<double>, 2> const& frames, Index body, std::string const& against,
                     TouchingPointVisit const& visit) {
@@ -32,7 +32,7 @@ void visit_touching(Law const& law, std::array<Frame<double>, 2> const& frames, 
 }
 }  // namespace detail
 
-/// Calls visit(TouchingPoint) for every contact point of a contact group with a positive normal force; `system` must
+/// Calls visit(TouchingPoint) for each contact point of a contact group whose normal force is positive. `system` must
 /// have been evaluated at the state.
 /// \throws InvalidInput for a handle of another model.
 template <class F>

@@ -25,25 +25,27 @@ struct Diagnosis {
   std::vector<std::string> unconnected_bodies = {};  ///< bodies without a path of joints to the ground
   double stiffest = 0.0;         ///< largest angular frequency of undamped small motions [rad/s]; 0 without elasticity
   std::string stiffest_at = {};  ///< body with the largest kinetic energy in this motion
-  std::string unsolved = {};     ///< reason if the forces determine no accelerations; otherwise empty
+  std::string unsolved = {};     ///< error message if accelerations cannot be computed; otherwise empty
 
   /// An explicit integrator and its largest stable step.
   struct StableStep {
     std::string integrator;  ///< name of the integrator
     double step;             ///< largest stable step without damping [s]
   };
-  std::vector<StableStep> stable_steps = {};  ///< of explicit integrators; empty without elasticity
+  std::vector<StableStep> stable_steps = {};  ///< for each explicit integrator; empty without elasticity
 };
 
 namespace detail {
 
-/// Small motions under the stiffness K = −∂f/∂q alone: M a + Gᵀμ = K y, G a = 0.
+/// Undamped small motion with the largest frequency, under the stiffness K = −∂f/∂q alone. The power iteration solves M
+/// aₖ₊₁ + Gᵀμ = K aₖ, G aₖ₊₁ = 0.
 class StiffestMotion {
  public:
   using Matrix = Eigen::SparseMatrix<double>;
 
-  /// Power iteration for the largest aᵀK a/aᵀM a. It converges from below, to a relative error of 1e-3 unless the next
-  /// eigenvalue is nearer. `forward` must be factorised at the state at which `system` was evaluated.
+  /// Power iteration for the largest aᵀK a/aᵀM a. The estimate converges from below, with a relative error of at most
+  /// 1e-3 if the second eigenvalue is not closer to the first than that. `forward` must be factorised at the state at
+  /// which `system` was evaluated.
   template <class = void>
   StiffestMotion(System& system, ForwardDynamics<DefaultSolver>& forward) {
     Matrix const elastic = matrix_of(system, [&](auto& sink) {
@@ -68,7 +70,7 @@ class StiffestMotion {
     }
   }
   double frequency() const { return std::sqrt(squared_); }
-  /// Body with the largest kinetic energy.
+  /// Name of the body with the largest kinetic energy in this motion.
   template <class = void>
   std::string body(System& system) const {
     Matrix const mass = matrix_of(system, [&](auto& sink) { system.masses(sink); });
@@ -113,8 +115,8 @@ void name_stable_steps(double omega, std::vector<Diagnosis::StableStep>& out) {
 
 }  // namespace detail
 
-/// Diagnosis of a model at x (coordinates, velocities and time), which does not change. \throws InvalidInput for a
-/// state of another model.
+/// Diagnosis of a model at the coordinates, velocities and time of x. \throws InvalidInput for a state of another
+/// model.
 template <class = void>
 Diagnosis diagnose(System& system, State const& x) {
   require_fitting(system, x);
@@ -143,14 +145,15 @@ Diagnosis diagnose(System& system, State const& x) {
   }
   return out;
 }
-/// Diagnosis of a model at x; see above.
+/// Diagnosis of a model at the coordinates, velocities and time of x. \throws InvalidInput for a state of another
+/// model.
 template <class M>
 Diagnosis diagnose(M const& model, State const& x) {
   System system(model);
   return diagnose(system, x);
 }
 
-/// Writes a line for each finding.
+/// Writes the diagnosis as text, with one line for each finding.
 template <class = void>
 std::ostream& operator<<(std::ostream& out, Diagnosis const& c) {
   out << sentence_of(

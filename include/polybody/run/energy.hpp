@@ -1,4 +1,7 @@
 #pragma once
+/// \file
+/// Energies, momentum and centre of mass of a model in a state.
+
 #include <polybody/run/state_checks.hpp>
 #include <polybody/system/lookup.hpp>
 #include <polybody/system/make_operations.hpp>
@@ -6,7 +9,7 @@
 
 namespace polybody {
 
-/// Energies of state x; `system` must have been evaluated there. Dead loads have no potential, and their work is not
+/// Energies in state x; `system` must have been evaluated at x. Dead loads have no potential, and their work is not
 /// counted. This function does not allocate memory.
 template <class = void>
 Energy energy(System const& system, State const& x) {
@@ -14,7 +17,7 @@ Energy energy(System const& system, State const& x) {
                                                                   system.data());
 }
 
-/// Energies of state x of a model. \throws InvalidInput for a state of another model.
+/// Energies in state x of a model. \throws InvalidInput for a state of another model.
 template <class M>
 Energy energy(M const& model, State const& x) {
   System system(model, with<Capabilities::motion>);
@@ -24,14 +27,14 @@ Energy energy(M const& model, State const& x) {
 }
 
 /// Linear momentum [kg m/s] and angular momentum about the world's origin [kg m²/s], world axes:
-/// the generalised momentum M v paired with the rigid motions.
+/// products of the generalised momentum M v with the generalised velocities of unit rigid motions.
 struct Momentum {
-  Vec3 linear = Vec3::Zero();   ///< (3) [kg m/s]
-  Vec3 angular = Vec3::Zero();  ///< (3) about the world's origin [kg m²/s]
+  Vec3 linear = Vec3::Zero();   ///< (3) linear momentum [kg m/s]
+  Vec3 angular = Vec3::Zero();  ///< (3) angular momentum about the world's origin [kg m²/s]
 };
 
 namespace detail {
-/// out += A x for the blocks of A in the velocities.
+/// Adds A x to `out`, with the blocks of A whose rows and columns are generalised velocities.
 struct ProductSink {
   VecX const& x;
   VecX& out;
@@ -69,14 +72,14 @@ Momentum momentum(M const& model, State const& x) {
 
 /// Mass and centre of mass of a body or of a model in one state.
 struct CentreOfMass {
-  double mass = 0.0;             ///< [kg]
-  Vec3 position = Vec3::Zero();  ///< (3) world axes [m]
-  Vec3 velocity = Vec3::Zero();  ///< (3) world axes [m/s]
+  double mass = 0.0;             ///< mass [kg]
+  Vec3 position = Vec3::Zero();  ///< (3) position of the centre of mass, world axes [m]
+  Vec3 velocity = Vec3::Zero();  ///< (3) velocity of the centre of mass, world axes [m/s]
 };
 
 namespace detail {
-/// Centre of mass of the bodies with the generalised velocities [first, first + count). With the velocities u_i of a
-/// unit translation along axis i and w_i of a unit rotation about it, through the origin of the world,
+/// Centre of mass of the bodies with the generalised velocities [first, first + count). With the generalised velocities
+/// u_i of a unit translation along world axis i, and w_i of a unit rotation about this axis through the world's origin,
 ///   m = u_xᵀ M u_x,  m r = (w_zᵀ M u_y, −w_zᵀ M u_x, w_yᵀ M u_x),  m ṙ_i = u_iᵀ M v.
 /// In the plane w_y is zero, and so is r_z.
 template <class = void>
@@ -112,7 +115,7 @@ CentreOfMass centre_of_mass(System& system, State const& x, Index first, Index c
 }  // namespace detail
 
 /// Mass and centre of mass of all bodies in state x, rigid and flexible. `system` must have been made with
-/// `Capabilities::rigid_velocities`. All zero for a model without bodies.
+/// `Capabilities::rigid_velocities`. The result is zero for a model without bodies.
 template <class = void>
 CentreOfMass centre_of_mass(System& system, State const& x) {
   return detail::centre_of_mass(system, x, 0, system.layout().body_velocities());

@@ -2,7 +2,7 @@
 /// \file
 /// Energy audit of a run:
 ///   work of the drives + of the loads + of gravity = Δ kinetic + Δ stored + dissipated + unaccounted.
-/// The unaccounted energy of exact motions is zero.
+/// The unaccounted energy of an exact motion is zero.
 
 #include <ostream>
 
@@ -20,7 +20,7 @@ Powers powers(System const& system, State const& x, VecX& backwards) {
   return require_entry(system.entries().first.powers, "energies")(system.entries().second, {x.q, x.v, x.t}, backwards,
                                                                   x.lambda, system.load_factor, system.data());
 }
-/// Powers in state x, without workspace from the caller.
+/// Powers in state x; this overload allocates its workspace.
 template <class = void>
 Powers powers(System const& system, State const& x) {
   VecX backwards;
@@ -31,16 +31,17 @@ Powers powers(System const& system, State const& x) {
 ///   EnergyAudit audit(model);
 ///   for (State const& now : simulate(model, x, integrator, options)) audit.record(now);
 /// The unaccounted energy is numerical: gains or losses of the integrator, and the error of the trapezoidal rule. The
-/// error of the rule is h²/12 times the increase of the slopes of the powers [Euler and Maclaurin], and about ½ h times
-/// each jump (loads at breakpoints, contacts with dampers at touch). States must have the multipliers of their own
-/// time. The states of `simulate` have them, also for joints with eliminated equations (JointCoordinates, AncfLinear).
-/// States that are constructed by hand do not have them. The multipliers of `EnergyMomentum` and `EnergyDecaying`
-/// belong to the middle of the step, so that the work of drives has an error of O(h). `record` does not allocate
-/// memory. The model must outlive the audit and must not change after its construction.
+/// error of the rule is h²/12 times the increase of the time derivatives of the powers [Euler–Maclaurin formula]. Each
+/// jump of a power adds an error of about ½ h times the jump (loads at breakpoints, closing contacts with dampers). The
+/// multipliers of a state must belong to its time. This holds for the states of `simulate`, also with eliminated
+/// equations (JointCoordinates, AncfLinear), but not for states that are constructed by hand. The multipliers of
+/// `EnergyMomentum` and `EnergyDecaying` belong to the middle of the step, so that the work of drives has an error of
+/// O(h). `record` does not allocate memory. The model must outlive the audit and must not change after its
+/// construction.
 template <class = void>  // compiled only if used
 class EnergyAuditOf {
  public:
-  /// Audit for runs of this model, which begins with the first state.
+  /// Audit of runs of this model. The first recorded state begins the audit.
   template <class M>
   explicit EnergyAuditOf(M const& model) : EnergyAuditOf(System(model, with<Capabilities::energy>)) {}
   template <class M>
@@ -49,7 +50,7 @@ class EnergyAuditOf {
   /// \param system of the full model, made with `Capabilities::energy`
   explicit EnergyAuditOf(System system) : system_(std::move(system)), backwards_(VecX::Zero(system_.velocities())) {}
 
-  /// Starts again at x. \throws InvalidInput if x does not fit the model.
+  /// Restarts the audit at x. \throws InvalidInput if x does not fit the model.
   void start(State const& x) {
     require_usable(system_, x);
     see(x);
@@ -60,7 +61,7 @@ class EnergyAuditOf {
   }
 
   /// Adds the work since the last state; the first state begins the audit. \throws InvalidInput for a state of another
-  /// model, or earlier than the last one.
+  /// model, and for a state earlier than the last one.
   void record(State const& x) {
     if (!started_) return start(x);
     if (x.q.size() != system_.coordinates() || x.v.size() != system_.velocities() || x.lambda.size() != system_.rows())
@@ -83,13 +84,13 @@ class EnergyAuditOf {
 
   /// Work of drives since the start [J].
   double work_of_drives() const { return work_.drives; }
-  double work_of_loads() const { return work_.loads; }  ///< including forces without a potential [J]
-  double work_of_gravity() const { return first_.gravity - last_.gravity; }  ///< decrease of its potential [J]
-  double kinetic() const { return last_.kinetic - first_.kinetic; }          ///< increase since the start [J]
-  double stored() const {  ///< increase in bodies, compliant joints and forces [J]
+  double work_of_loads() const { return work_.loads; }  ///< work of loads and of forces without a potential [J]
+  double work_of_gravity() const { return first_.gravity - last_.gravity; }  ///< decrease of gravity's potential [J]
+  double kinetic() const { return last_.kinetic - first_.kinetic; }          ///< increase of kinetic energy [J]
+  double stored() const {  ///< increase of the energy stored in bodies, compliant joints and forces [J]
     return (last_.strain - first_.strain) + (last_.joints - first_.joints) + (last_.forces - first_.forces);
   }
-  double dissipated() const { return work_.dissipated; }  ///< in dampers and contacts, positive for losses [J]
+  double dissipated() const { return work_.dissipated; }  ///< energy lost in dampers and contacts [J]
 
   /// Unaccounted energy [J]: positive if the integrator loses energy.
   double unaccounted() const {
@@ -121,7 +122,7 @@ class EnergyAuditOf {
 
 using EnergyAudit = EnergyAuditOf<>;  ///< energy audit of a run
 
-/// Writes the audit in three lines [J].
+/// Writes the audit as three lines of text; energies in joules.
 template <class = void>
 std::ostream& operator<<(std::ostream& out, EnergyAudit const& a) {
   return out << sentence_of({"work of drives ", a.work_of_drives(), ", loads ", a.work_of_loads(), ", gravity ",

@@ -9,7 +9,8 @@
 
 namespace polybody {
 
-/// Function that moves states of `system` along their velocities and accelerations. `system` must outlive the function.
+/// Returns a function that moves a state of `system` by a time h [s] along its velocities and accelerations. `system`
+/// must outlive the function.
 inline std::function<void(State&, double)> drift_of(System& system) {
   return [&system](State& x, double h) {
     VecX const increment = h * x.v + (0.5 * h * h) * x.a;
@@ -34,8 +35,9 @@ std::pair<double, Index> opening(System& full, State const& x) {
   return {phi.size() == 0 ? 0.0 : std::abs(phi[worst]), worst};
 }
 
-/// Checks the state `after` the action of an event. \throws InvalidInput if its sizes differ from `before`, if a number
-/// is not finite, or if a joint is violated by more than `tolerance` and by more than twice its violation before.
+/// Checks the state `after` the action of an event. \throws InvalidInput if the sizes of `after` differ from those of
+/// `before`, if a value is not finite, or if the largest constraint violation exceeds `tolerance` and twice the largest
+/// violation in `before`.
 template <class = void>
 [[gnu::cold]] void require_closed(System& full, Event const& event, State const& before, State const& after,
                                   double tolerance) {
@@ -56,8 +58,8 @@ template <class = void>
        " (`assembly_tolerance`). Change velocities only, or call assemble(model, x) in the action."});
 }
 
-/// Changes coordinates and velocities of x so that the event value and its rate due to velocities are zero, by the
-/// smallest change in the norm of M that satisfies the constraint equations. \throws InvalidInput if the value does not
+/// Changes coordinates and velocities of x so that the event value and its rate due to velocities are zero. The change
+/// is minimal in the mass norm and satisfies the constraint equations. \throws InvalidInput if the value does not
 /// depend on coordinates that can move.
 template <LinearSolver Solver>
 [[gnu::cold]] void hold(Event const& event, System& full, ForwardDynamics<Solver>& forward, State& x) {
@@ -97,10 +99,10 @@ template <LinearSolver Solver>
 
 }  // namespace detail
 
-/// Holds the values of resting events at zero in x, a state of the `full` model. Then the actions of the events that
-/// occurred last change x, one after the other. \param tolerance limit of the constraint violation after an action
-/// \throws InvalidInput for an action that changes sizes, or that leaves numbers that are not finite or violated
-/// joints.
+/// Holds the values of resting events at zero in a state x of the `full` model. Then applies the actions of the events
+/// that occurred in the last step, one after the other. \param tolerance limit of the constraint violation after an
+/// action
+/// \throws InvalidInput if an action changes the sizes of x, or leaves values that are not finite or a violated joint.
 template <LinearSolver Solver = DefaultSolver>
 [[gnu::cold]] void act(EventDetector const& watch, std::vector<Event> const& events, State& x, System& full,
                        double tolerance) {
@@ -119,9 +121,10 @@ template <LinearSolver Solver = DefaultSolver>
   }
 }
 
-/// Integrated state after the actions of the `events` that occurred last on the user's state x. \param systems
-/// integrated system, and the full system if joints are eliminated: then velocities are projected onto their equations
-/// before the elimination \param tolerance of constraint violations [m]
+/// Applies the actions of the `events` that occurred last to the user's state x, and returns the integrated state.
+/// \param systems integrated system, and the full system if joints are eliminated, otherwise null. With a full system,
+/// velocities are projected onto its constraint equations before the elimination. \param tolerance limit of the
+/// constraint violation after an action [m], [rad]
 template <LinearSolver Solver>
 [[gnu::cold]] State after_action(EventDetector const& watch, std::vector<Event> const& events, State x,
                                  std::array<System*, 2> systems, double tolerance) {

@@ -15,7 +15,7 @@ namespace polybody {
 /// that this class is compiled once for all models.
 class EventDetector {
  public:
-  using Step = EventStep::Again;  ///< takes a step
+  using Step = EventStep::Again;  ///< function that takes a step
   using Taken = EventStep;        ///< step of a run
 
   EventDetector() = default;
@@ -24,8 +24,8 @@ class EventDetector {
     for (int const side : sides) places_.push_back({.side = side});
     met_.assign(places_.size(), 0);
   }
-  /// Sign of each event value: −1, 0 (unknown) or 1. −2 and 2: the value is held at zero and was negative or positive
-  /// before.
+  /// Sign of each event value: −1, 0 (unknown) or 1; −2 or 2 if the value is held at zero after a negative or positive
+  /// value.
   Sequence<int> sides() const {
     Sequence<int> all;
     for (EventPlace const& place : places_) all.push_back(place.side);
@@ -35,9 +35,10 @@ class EventDetector {
   /// Stores the signs of the event values at the initial state x of a run. \throws NonFiniteValue.
   [[gnu::cold]] void start(std::vector<Event> const& events, State const& x, EventMotion const& motion);
 
-  /// Ends a step to x at the first event within it, by bisection on its length, and adds the event to the report.
-  /// Returns true if the run must restart at x: an event occurred, or a value is held at zero. Otherwise the last full
-  /// state that was computed belongs to x. \throws NonFiniteValue; InvalidInput for impacts that accumulate.
+  /// Searches a step that ends at x for its first event, by bisection on the step length. Sets x to the state at this
+  /// event, and adds the event to the report. Returns true if the run must restart at x: an event occurred, or a value
+  /// is held at zero. Otherwise the full state that was computed last is that of x. \throws NonFiniteValue;
+  /// InvalidInput for impacts that accumulate.
   bool meet(std::vector<Event> const& events, Taken const& step, State& x, RunReport& report) {
     before_.places = places_;
     before_.events = report.events.size();
@@ -50,7 +51,7 @@ class EventDetector {
     go_on(step.length);
     return false;
   }
-  /// Restores signs and report from before the last `meet`.
+  /// Restores the signs and the report that the last `meet` found.
   [[gnu::cold]] void put_back(RunReport& report) {
     places_ = before_.places;
     report.events.truncate(before_.events);
@@ -79,7 +80,7 @@ class EventDetector {
   }
   /// Stores the signs of the event values at x, after the actions of the events and a restart. \throws NonFiniteValue.
   [[gnu::cold]] void settle(std::vector<Event> const& events, State const& x, EventMotion const& motion);
-  /// Discards all data except the signs, so that the run continues as a resumed run.
+  /// Discards all data except the signs, so that the run continues as if it were resumed from a snapshot.
   [[gnu::cold]] void forget() {
     for (EventPlace& place : places_) place = {.side = place.side};
   }
@@ -109,10 +110,10 @@ class EventDetector {
     State const& full = motion.seen(x);
     for (Event const& event : events) now_.push_back(EventMotion::value(event, full));
   }
-  Sequence<EventPlace> places_;  // before a restart: its round-off must not cause a second event
+  Sequence<EventPlace> places_;  // data from before a restart, whose round-off must not cause a second event
   Before before_;
   Sequence<double> now_;
-  Sequence<int> met_;  // 1: met, 2: held
+  Sequence<int> met_;  // 1: event occurred, 2: value is held at zero
 };
 
 inline void EventDetector::start(std::vector<Event> const& events, State const& x, EventMotion const& motion) {

@@ -10,21 +10,21 @@ namespace polybody {
 
 /// State of one event of a run: sign of its value, values in the last steps, and actions.
 struct EventPlace {
-  static constexpr int repeats_allowed = 10;  ///< actions of one event, each within its tolerance of the preceding one
-  static constexpr int actions_allowed = 1000;  ///< actions of one event within the length of one step
-  static constexpr double never = std::numeric_limits<double>::infinity();  ///< no time [s]
+  static constexpr int repeats_allowed = 10;    ///< limit of consecutive actions, each within `tolerance` of the last
+  static constexpr int actions_allowed = 1000;  ///< limit of actions of one event within one step length
+  static constexpr double never = std::numeric_limits<double>::infinity();  ///< initial time of actions [s]
 
-  int side = 0;           ///< −1, 0 (unknown) or 1; −2 and 2: held at zero, negative or positive before
-  bool known = false;     ///< `value` is the value at the end of the last step
+  int side = 0;           ///< sign of the value: −1, 0 (unknown), 1; −2 or 2 if held at zero after this sign
+  bool known = false;     ///< true if `value` is set
   double value = 0.0;     ///< value at the end of the last step, unit of the event
-  double rate = 0.0;      ///< mean over the last step [1/s]
+  double rate = 0.0;      ///< mean rate of the value over the last step [1/s]
   double span = 0.0;      ///< length of that step [s]; 0 after a start
   double acted = -never;  ///< time of the last action [s]
-  double since = -never;  ///< start of the count of actions [s]
-  int actions = 0;        ///< number of actions in this count
+  double since = -never;  ///< time from which `actions` are counted [s]
+  int actions = 0;        ///< number of actions from `since` on
   int repeats = 0;        ///< consecutive actions, each within the tolerance of the preceding one
-  bool stays = false;     ///< the value has no rate after the last action
-  double scale = 0.0;     ///< size of the rate at the last event [1/s]
+  bool stays = false;     ///< true if the rate of the value is zero after the last action
+  double scale = 0.0;     ///< |rate| of the value at the last event [1/s]
   double off = 0.0;       ///< |value| at the last event, unit of the event
 
   bool rests() const { return side == 2 || side == -2; }  ///< true if the value is held at zero
@@ -32,8 +32,9 @@ struct EventPlace {
   static int sign(double y) { return (y > 0.0) - (y < 0.0); }
   /// True if the value y has left the stored side. False for an unknown side.
   bool passed(double y) const { return side != 0 && sign(y) != (rests() ? side / 2 : side); }
-  /// True if the value may have been beyond zero within a step of h [s] to `now`, although it is not at the end: the
-  /// parabola through the last three values has its extremum within the step, at less than half of both end values.
+  /// True if the value may have crossed zero twice within a step of length h [s] that ends with the value `now`. The
+  /// parabola through the last three values then has its extremum within the step, at less than half of both end
+  /// values.
   bool may_turn(double now, double h) const {
     if (side != 1 && side != -1) return false;
     if (!(span > 0.0)) return true;

@@ -12,9 +12,9 @@ struct EventStep {
   using Again = std::function<double(State&, double)>;
 
   State const& before;        ///< state at the start of the step
-  double length;              ///< [s]
+  double length;              ///< length of the step [s]
   Again const& again;         ///< takes a step from a state
-  EventMotion const& motion;  ///< of the run
+  EventMotion const& motion;  ///< motion of the run near its states
 
   /// State h seconds after the start of the step.
   State after(double h) const {
@@ -25,9 +25,9 @@ struct EventStep {
     }
     return x;
   }
-  /// Length after which the event value is beyond zero within a step to x, although it is on the same `side` at both
-  /// ends; 0 if there is none. A cubic with the values and rates at the ends of an interval estimates the extremum of
-  /// the value, in at most five iterations.
+  /// Length [s] within the step after which the event value has the opposite sign, although it has the sign `side` at
+  /// both ends of the step; 0 if none is found. x is the state at the end of the step. The extremum of the value is
+  /// estimated from its values and rates at the ends of an interval by a cubic, in at most five iterations.
   [[gnu::cold]] double turn(Event const& event, int side, State const& x) const {
     if (side != 1 && side != -1) return 0.0;
     auto const value = [&](State const& y) { return side * event.value(motion.seen(y)); };

@@ -25,16 +25,16 @@ Index most_open(VecX const& phi) {
 
 namespace detail {
 
-/// Violations of a state. In an assembly of bodies smaller than one metre, violations of lengths are divided by the
-/// largest extent of its bodies and joint markers along an axis of the world.
+/// Constraint violations in a state. In an assembly of bodies smaller than one metre, violations of lengths are divided
+/// by the extent of the assembly: the largest distance of its bodies and joint markers along a world axis.
 template <class = void>  // compiled only if used
 struct RelativeViolation {
   VecX absolute;  ///< Φ (rows) [m], [rad]
-  VecX phi;       ///< Φ (rows), lengths over `extent`
-  VecX extent;    ///< (rows) [m]; 1 for a violation that is not relative
+  VecX phi;       ///< Φ (rows), each divided by its `extent`
+  VecX extent;    ///< (rows) extent of the assembly [m]; 1 for an absolute violation
   Index worst;    ///< row with the largest |phi|; 0 if there is none
 
-  /// `system` is evaluated at x.
+  /// Evaluates `system` at x.
   RelativeViolation(System& system, State const& x)
       : absolute(VecX::Zero(system.rows())), phi(absolute), extent(VecX::Constant(system.rows(), 1.0)), worst(0) {
     system.evaluate(x.q, x.v, x.t);
@@ -81,7 +81,7 @@ struct RelativeViolation {
       if (block.row < 0 || block.source != ConstraintSource::joint) continue;
       Box const* const box = box_of(layout.joints[std::size_t(block.owner)]);
       if (!box) continue;
-      // not relative: round-off, and violations that contribute to the extent themselves
+      // absolute violations: those within round-off, and those that are large enough to affect the extent
       double const of_box = box->extent(), rounding = 16.0 * std::numeric_limits<double>::epsilon() * box->farthest();
       for (int i = 0; i < block.rows; ++i) {
         double const open = std::abs(absolute[block.row + i]);
@@ -102,8 +102,9 @@ struct RelativeViolation {
 
 }  // namespace detail
 
-/// \throws InconsistentInitialConditions naming the joint with the largest violation, if it exceeds `tolerance` [m],
-/// [rad]. Lengths in an assembly of bodies smaller than one metre are relative to its extent.
+/// Requires constraint violations of at most `tolerance` [m], [rad]. In an assembly of bodies smaller than one metre,
+/// the limit of lengths is `tolerance` times the extent of the assembly. \throws InconsistentInitialConditions naming
+/// the joint with the largest violation.
 template <class = void>
 [[gnu::cold]] void require_assembled(System& system, State const& x, double tolerance = 1e-8) {
   detail::RelativeViolation<> const open(system, x);
@@ -117,12 +118,12 @@ template <class = void>
   throw InconsistentInitialConditions(
       "initial_state.violation",
       {"The initial state violates ", ErrorObject{name}, " by ", ErrorValue{by}, " m, but the limit is ",
-       tolerance * extent, " m, the tolerance ", tolerance, " times the extent of its bodies of ", extent,
-       " m. Place the bodies so that it closes, or call assemble(model, x)."});
+       tolerance * extent, " m: the tolerance ", tolerance, " times the extent ", extent,
+       " m of its assembly. Place the bodies so that it closes, or call assemble(model, x)."});
 }
 
-/// \throws InconsistentInitialConditions naming joints that no configuration can satisfy, because their redundant
-/// equations contradict.
+/// \throws InconsistentInitialConditions if redundant equations contradict each other, so that no configuration
+/// satisfies them; the message names their joints.
 template <class Solver>
 [[gnu::cold]] void require_closable(System& system, ForwardDynamics<Solver>& forward, State const& x) {
   if (!all_finite(x.q)) return;
@@ -132,11 +133,11 @@ template <class Solver>
   require_consistent_constraints(system, forward, phi, detail::ContradictionLimits{}.position, "positions");
 }
 
-/// Changes the coordinates by the smallest change in the norm of M until every joint is satisfied (Gauss–Newton) to
-/// `tolerance`, and to 1e-9 of the extent of an assembly of bodies smaller than one metre, in at most `max_iterations`.
-/// Then projects the velocities. \throws InconsistentInitialConditions naming the joint that cannot be satisfied, or
-/// the joints with redundant equations that contradict; InvalidInput for a quaternion whose norm is not one. x is then
-/// unchanged.
+/// Corrects the coordinates until every joint is satisfied to `tolerance`, in at most `max_iterations` Gauss–Newton
+/// iterations with minimal changes in the mass norm. In an assembly of bodies smaller than one metre, lengths are also
+/// satisfied to 1e-9 of its extent. Then projects the velocities. \throws InconsistentInitialConditions naming the
+/// joint that cannot be satisfied, or the joints whose redundant equations contradict each other; InvalidInput for a
+/// quaternion whose norm is not one. After an exception x is unchanged.
 template <LinearSolver Solver = DefaultSolver>
 void assemble(System& system, State& x, double tolerance = 1e-12, int max_iterations = 50) {
   require_positive(tolerance, "assemble: the tolerance");
@@ -155,8 +156,8 @@ void assemble(System& system, State& x, double tolerance = 1e-12, int max_iterat
       require_assembled(system, trial, tolerance);
       throw InconsistentInitialConditions("assemble.not_converged",
                                           {ErrorObject{"assemble"},
-                                           ": no closed configuration was found from this start. Place the bodies "
-                                           "closer to one, or check the lengths."});
+                                           ": no configuration that satisfies all joints was found from this state. "
+                                           "Place the bodies closer to such a configuration, or check the lengths."});
     }
   }
   forward.project_velocities(system, trial.q, trial.v, trial.t);
@@ -164,7 +165,8 @@ void assemble(System& system, State& x, double tolerance = 1e-12, int max_iterat
   x = std::move(trial);
 }
 
-/// Assembles state x of a model to `tolerance` in at most `max_iterations`; see above.
+/// Corrects the coordinates of x until every joint of `model` is satisfied to `tolerance`, in at most `max_iterations`;
+/// then projects the velocities. Exceptions as for the overload for `System`.
 template <class M>
 void assemble(M const& model, State& x, double tolerance = 1e-12, int max_iterations = 50) {
   System system(model, with<Capabilities::motion>);

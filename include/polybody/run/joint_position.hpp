@@ -34,8 +34,8 @@ struct JointValue {
   double value = 0.0, rate = 0.0;
 };
 
-/// Index of the axis of the one rotation or translation that a geometry permits or prescribes; −1: it has none or
-/// several.
+/// Index of the axis of the one rotation or translation that a geometry permits or prescribes; −1 if there is none or
+/// more than one.
 template <class G>
 int axis_of_motion(G const& geometry, JointMotion::Kind kind) {
   bool const turns = kind == JointMotion::Kind::turn;
@@ -54,7 +54,8 @@ int axis_of_motion(G const& geometry, JointMotion::Kind kind) {
   return -1;
 }
 
-/// Axis of the motion of a joint of type J in a system. \throws InvalidInput if it has none or several.
+/// Index of the axis along or about which a joint of type J moves. \throws InvalidInput if the joint has no such axis,
+/// or several.
 template <class J>
 [[gnu::cold]] int axis_of_joint(JointLayout const& place, JointMotion::Kind kind) {
   int const axis = axis_of_motion(static_cast<J const*>(place.joint)->geometry, kind);
@@ -65,8 +66,8 @@ template <class J>
                                             : "translation. Read the points by position(model, x, marker)."});
 }
 
-/// Relative angle about axis k of marker a: θ = atan2(a_{k+2}·b_{k+1}, a_{k+1}·b_{k+1}) in (−π, π], θ̇ = a_k·(ω_b −
-/// ω_a).
+/// Angle of marker b relative to marker a about axis k of a: θ = atan2(a_{k+2}·b_{k+1}, a_{k+1}·b_{k+1}) in (−π, π], θ̇
+/// = a_k·(ω_b − ω_a).
 /// \throws InvalidInput for a marker without axes.
 template <class = void>
 JointValue turn_of(System const& system, Index joint, int k) {
@@ -75,8 +76,9 @@ JointValue turn_of(System const& system, Index joint, int k) {
     if (system.layout().observes[std::size_t(marker)] != MarkerKind::frame)
       throw InvalidInput("joint.no_angle",
                          {"\"", ErrorObject{place.name},
-                          "\" has no angle: one of its markers provides no axes across the joint's axis (a cable, or a "
-                          "point that slides along a body). Read a direction by frame(model, x, marker)."});
+                          "\" has no angle: one of its markers provides no axes perpendicular to the joint's axis (a "
+                          "cable, or a point that slides along a body). Read a direction from frame(model, x, "
+                          "marker)."});
   Frame<double> const &a = system.data().markers[std::size_t(place.a)].frame,
                       &b = system.data().markers[std::size_t(place.b)].frame;
   Vec3 const first = b.A.col((k + 1) % 3);
@@ -110,7 +112,7 @@ JointValue translation_of(System const& system, ElementHandle<J> const& joint) {
   return slide_of(system, i, axis_of_joint<J>(system.layout().joints[std::size_t(i)], JointMotion::Kind::slide));
 }
 
-/// System that is evaluated at state x. \throws InvalidInput for a state of another model.
+/// Returns `system` after an evaluation at state x. \throws InvalidInput for a state of another model.
 template <class = void>
 System evaluated(System system, State const& x) {
   require_usable(system, x);
@@ -130,7 +132,8 @@ template <class J>
 double joint_angle(System const& system, ElementHandle<J> const& joint) {
   return detail::angle_of(system, joint).value;
 }
-/// Angle of a joint in state x of a model, in (−π, π] [rad]; see above.
+/// Angle of a joint in state x of a model, in (−π, π] [rad]: rotation of the second marker relative to the first about
+/// the axis of the joint, zero in the reference configuration.
 template <class M, class J>
 double joint_angle(M const& model, State const& x, ElementHandle<J> const& joint) {
   return joint_angle(detail::evaluated(System(model, with<Capabilities::motion>), x), joint);
@@ -149,9 +152,10 @@ double joint_angle_rate(M const& model, State const& x, ElementHandle<J> const& 
 }
 
 /// Translation in a joint [m]: position of the second marker relative to the first along the axis of the joint, which
-/// is fixed in the first. It is zero if the markers coincide. The joint permits one translation (`Prismatic`,
-/// `Cylindrical`, `Screw`, `PointOnLine`, `planar::Prismatic` …) or prescribes one (`PrescribedTranslation`). `system`
-/// must have been evaluated at the state. \throws InvalidInput for a handle of another model.
+/// is fixed in the first marker. The translation is zero if the markers coincide. The joint permits one translation
+/// (`Prismatic`, `Cylindrical`, `Screw`, `PointOnLine`, `planar::Prismatic` …) or prescribes one
+/// (`PrescribedTranslation`). `system` must have been evaluated at the state. \throws InvalidInput for a handle of
+/// another model.
 template <class J>
 double joint_translation(System const& system, ElementHandle<J> const& joint) {
   return detail::translation_of(system, joint).value;
@@ -177,11 +181,11 @@ double joint_translation_rate(M const& model, State const& x, ElementHandle<J> c
 /// Angle of a joint with its full turns, over the states of a run:
 ///   TurnCounter turns(model, crank);
 ///   for (State const& now : simulate(…)) angle = turns.record(now);
-/// The first state has the angle in (−π, π]. From state to state, θ₁ = θ₀ + Δ, where Δ agrees with the angles of the
-/// two states up to full turns and is nearest to ½ (θ̇₀ + θ̇₁)(t₁ − t₀). The count is correct if the error of this
-/// estimate is below half a turn. This condition is satisfied for each step of a run, and between any two states if the
-/// rate is constant. `record` does not allocate memory. The model must outlive the counter and must not change after
-/// its construction.
+/// The first state has the angle in (−π, π]. From state to state, θ₁ = θ₀ + Δ. Of all increments Δ that agree with the
+/// angles of the two states up to full turns, the one nearest to ½ (θ̇₀ + θ̇₁)(t₁ − t₀) is taken. The count is correct
+/// if the error of this estimate is below half a turn. This condition is satisfied for each step of a run, and between
+/// any two states if the rate is constant. `record` does not allocate memory. The model must outlive the counter and
+/// must not change after its construction.
 template <class = void>  // compiled only if used
 class TurnCounterOf {
  public:
@@ -191,7 +195,7 @@ class TurnCounterOf {
       : TurnCounterOf(System(model, with<Capabilities::motion>), joint) {}
   template <class M, class J>
     requires(!std::same_as<M, System>)
-  TurnCounterOf(M const&& model, ElementHandle<J> const& joint) = delete;  ///< deleted: a temporary model
+  TurnCounterOf(M const&& model, ElementHandle<J> const& joint) = delete;  ///< deleted: refuses temporaries
   /// Counter for a joint of `system`, a system of the full model.
   template <class J>
   TurnCounterOf(System system, ElementHandle<J> const& joint)
@@ -201,7 +205,8 @@ class TurnCounterOf {
     axis_ = detail::axis_of_joint<J>(system_.layout().joints[std::size_t(joint_)], JointMotion::Kind::turn);
   }
 
-  /// Starts again at state x. Returns the angle in (−π, π] [rad]. \throws InvalidInput for a state of another model.
+  /// Restarts the count at state x. Returns the angle in (−π, π] [rad]. \throws InvalidInput for a state of another
+  /// model.
   double start(State const& x) {
     started_ = false;
     return record(x);

@@ -17,9 +17,9 @@ Frame<double> frame(BodyInState<B> const& body, typename B::Point const& point) 
   return evaluate_marker(body, point, jacobian).frame;
 }
 namespace detail {
-/// \throws InvalidInput if a body rotates by a quaternion whose norm is not one within 0.01. Derivatives of a run
-/// evaluate functions of the user at states with smaller deviations from unit quaternions. \param name returns the name
-/// of the body
+/// Requires that the quaternion of a body has the norm one within 0.01. Smaller deviations occur in differentiated
+/// runs, which evaluate functions of the user at such states. \throws InvalidInput otherwise. \param name returns the
+/// name of the body
 template <class B, class Name>
 void require_unit_axes(B const& body, Frame<double> const& f, Name const& name) {
   double squared = 0.0;
@@ -49,11 +49,12 @@ Frame<double> frame(M const& model, State const&, Marker<Ground> const& marker) 
   return {.r = marker.point.origin, .A = marker.point.axes};
 }
 
-/// Function from a state to the frame of a material point, without the types of the body and its model.
+/// Function that returns the frame of a material point in a state. The types of body and model are erased.
 using FrameIn = std::function<Frame<double>(State const&)>;
 
-/// Frame function of a material point. It stores the body and accepts states of the model that made the handle.
-/// \param marker on that body
+/// Returns a function for the frame of a material point. The function stores the body, and accepts states of the model
+/// that made the handle.
+/// \param marker marker on this body
 template <class B>
 FrameIn frame_in(BodyHandle<B> const& body, Marker<B> const& marker) {
   return [body, point = marker.point](State const& x) { return frame(body_in_state(body, x), point); };

@@ -5,19 +5,21 @@
 
 namespace polybody {
 
-/// Multipliers of least norm among those with the same forces Gᵀλ, for redundant constraints. The weight of a row is
-/// the wrench of its unit multiplier on the joint's second body:
-///   min Σ λᵢ² (|fᵢ|² + |mᵢ|²/ℓ²),   [fᵢ; mᵢ] the row of Gb.
+/// Computes minimum-norm multipliers of redundant constraints: of all multipliers with the same forces Gᵀλ, those of
+/// least norm. Multiplier i is weighted by the wrench [fᵢ; mᵢ] that a unit multiplier exerts on the joint's second
+/// body:
+///   min Σ λᵢ² (|fᵢ|² + |mᵢ|²/ℓ²),   [fᵢ; mᵢ] = row i of Gb.
 /// ℓ is the root mean square distance of the joint points from their mean (1 m if all coincide), so that the result
-/// does not depend on the units. Equally stiff joints share the load in this way if a rotation by one radian is as
-/// stiff as a displacement by ℓ. Rows of a body's own equations have the weight 1.
+/// does not depend on the units. Compliant joints of equal stiffness k would share the load in this way if their
+/// rotational stiffness were k ℓ². Multipliers of a body's own equations have the weight 1.
 template <class = void>  // compiled only if used
 class MinimumNormOf {
  public:
   /// Allocates the vectors for this system.
   explicit MinimumNormOf(System const& s) : relation_(s), weight_(VecX::Ones(s.rows())) {}
 
-  /// Replaces x.lambda. The cost is one factorisation, and one solution for each redundant row.
+  /// Replaces x.lambda by the minimum-norm multipliers. The cost is one factorisation, and one solution for each
+  /// redundant row.
   template <class Solver>
   void apply(System& system, ForwardDynamics<Solver>& forward, State& x) {
     if (system.rows() == 0) return;
@@ -85,10 +87,10 @@ class MinimumNormOf {
   Sequence<VecX> basis_;
 };
 
-using MinimumNorm = MinimumNormOf<>;  ///< multipliers of least norm
+using MinimumNorm = MinimumNormOf<>;  ///< computes minimum-norm multipliers
 
-/// Multipliers of x with the same forces Gᵀλ and the least norm (`MinimumNorm`). \throws InvalidInput for a state of
-/// another model.
+/// Multipliers of least norm with the same forces Gᵀλ as those of x (`MinimumNorm`). \throws InvalidInput for a state
+/// of another model.
 template <LinearSolver Solver = DefaultSolver>
 VecX minimum_norm_multipliers(System& system, State const& x) {
   require_fitting(system, x);

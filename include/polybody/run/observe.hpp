@@ -22,8 +22,8 @@ ConstraintBlock<double> const& rows_of(System const& system, Index joint) {
 }
 
 /// Gbᵀλ of linear equations as a wrench about the joint point. Position equations give the force, and a gradient r_α
-/// with its λ_α gives the moment r_α × λ_α. (The part of λ_α that stretches r_α has no wrench.) If the second body is
-/// the ground, r_α is the gradient of the first body.
+/// with its λ_α gives the moment r_α × λ_α. (The component of λ_α along r_α stretches the gradient and exerts no
+/// wrench.) If the second body is the ground, r_α is the gradient of the first body.
 template <class T>  // compiled only if used
 Vec<T, 6> linear_wrench(LinearConstraints const& rows, StateOf<T> const& x) {
   Vec<T, 6> w = Vec<T, 6>::Zero();
@@ -50,15 +50,16 @@ template <class J>
 Vec<double, J::rows> constraint_violation(System const& system, ElementHandle<J> const& joint) {
   return Vec<double, J::rows>(detail::rows_of(system, index_of_joint(system.layout(), joint)).g);
 }
-/// Constraint violation of an `AncfLinear` joint: first the position equations, then the gradient equations. Their
-/// number depends on the bodies. \throws InvalidInput as above.
+/// Constraint violation of an `AncfLinear` joint: first the position equations, then the gradient equations. The number
+/// of equations depends on the bodies. \throws InvalidInput for a handle of another model.
 template <class J>
   requires LinearPolicy<typename J::PolicyType>
 VecX constraint_violation(System const& system, ElementHandle<J> const& joint) {
   ConstraintBlock<double> const& block = detail::rows_of(system, index_of_joint(system.layout(), joint));
   return Eigen::Map<VecX const>(block.g, block.rows);
 }
-/// Constraint violation of a joint in state x. \throws InvalidInput as above.
+/// Constraint violation of a joint in state x of a model. \throws InvalidInput for a handle or a state of another
+/// model.
 template <class M, class J>
 auto constraint_violation(M const& model, State const& x, ElementHandle<J> const& joint) {
   System system(model, with<Capabilities::motion>);
@@ -70,9 +71,9 @@ auto constraint_violation(M const& model, State const& x, ElementHandle<J> const
 /// Axes for the components of a reaction.
 enum class ReactionAxes { world, joint };
 
-/// Force and moment that a joint exerts on its second body, about the joint point there: −Gbᵀλ [thesis Eq. 3.3 and the
-/// rule of equipollent forces]. `ReactionAxes::joint` are the axes of the second marker. `system` must have been
-/// evaluated at x.
+/// Force and moment that a joint exerts on its second body, about the joint point on this body: −Gbᵀλ [thesis Eq. 3.3
+/// and the rule of equipollent forces]. `ReactionAxes::joint` are the axes of the second marker. `system` must have
+/// been evaluated at x.
 /// \param joint index in the layout, from `index_of_joint`
 template <class T>  // compiled only if used
 Wrench<T> reaction_of(BasicSystem<T> const& system, StateOf<T> const& x, Index joint,
@@ -92,13 +93,16 @@ Wrench<T> reaction_of(BasicSystem<T> const& system, StateOf<T> const& x, Index j
   }
   return wrench;
 }
-/// Reaction of a joint, as `reaction_of`. \throws InvalidInput for a handle of another model.
+/// Force and moment that a joint exerts on its second body, about the joint point on this body (`reaction_of`).
+/// `system` must have been evaluated at x. \throws InvalidInput for a handle of another model or a joint without
+/// constraint equations.
 template <class J>
 Wrench<double> reaction(System const& system, State const& x, ElementHandle<J> const& joint,
                         ReactionAxes axes = ReactionAxes::world) {
   return reaction_of(system, x, index_of_joint(system.layout(), joint), axes);
 }
-/// Reaction of a joint in state x of a model. \throws InvalidInput as above.
+/// Force and moment that a joint exerts on its second body in state x of a model, about the joint point on this body.
+/// \throws InvalidInput for a state or handle of another model or a joint without constraint equations.
 template <class M, class J>
 Wrench<double> reaction(M const& model, State const& x, ElementHandle<J> const& joint,
                         ReactionAxes axes = ReactionAxes::world) {
@@ -126,12 +130,12 @@ double peak_joint_force(System const& system, State const& x) {
 
 /// Largest |Φ|, |Φ̇| and |Φ̈| of a state.
 struct Violation {
-  double position = 0.0;      ///< [m], [rad]
-  double velocity = 0.0;      ///< [m/s], [rad/s]
-  double acceleration = 0.0;  ///< [m/s²], [rad/s²]
+  double position = 0.0;      ///< largest |Φ| [m], [rad]
+  double velocity = 0.0;      ///< largest |Φ̇| [m/s], [rad/s]
+  double acceleration = 0.0;  ///< largest |Φ̈| [m/s²], [rad/s²]
 };
 
-/// Largest constraint violations in state x; evaluates `system` there.
+/// Largest constraint violations in state x. Evaluates `system` at x.
 template <class = void>
 Violation largest_violation(System& system, State const& x) {
   system.evaluate(x.q, x.v, x.t);

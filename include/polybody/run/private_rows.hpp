@@ -1,7 +1,8 @@
 #pragma once
 /// \file
-/// Local tests of the rows of G. Rows are independent if they alone have entries in the velocities of a body and are
-/// independent there. Rows between the same bodies can depend on each other.
+/// Local tests for redundant rows of the constraint Jacobian G. Rows are independent of all others if only they have
+/// entries in the velocities of some body, and if these entries are linearly independent. Rows between the same bodies
+/// can depend on each other.
 
 #include <algorithm>
 
@@ -18,10 +19,10 @@ struct RowEntry {
   double value;
 };
 
-/// Redundant row: Gᵀc = 0 for the scaled rows, with 1 at the row itself.
+/// Redundant row and its null vector: Gᵀc = 0 for the scaled rows, with c = 1 at the redundant row.
 struct RowRelation {
   Index row = -1;
-  IndexMap<double> c = {};  ///< coefficients by rows
+  IndexMap<double> c = {};  ///< nonzero coefficients by index of the row
 };
 
 /// Finds rows that depend on earlier rows between the same bodies, by Gram–Schmidt orthogonalisation. The cost is
@@ -31,7 +32,7 @@ class RepeatedRows {
  public:
   static constexpr std::size_t most = 12;  ///< largest number of basis rows of a group of bodies
 
-  /// \param threshold a row is redundant if its distance from the span of the earlier ones is smaller
+  /// \param threshold a row is redundant if its distance from the span of the earlier rows is smaller
   RepeatedRows(Sequence<BodyLayout> const& bodies, Index rows, Sequence<RowEntry> const& entries, double threshold)
       : threshold_(threshold) {
     Index velocities = 0;
@@ -59,7 +60,7 @@ class RepeatedRows {
               [](RowRelation const& a, RowRelation const& b) { return a.row < b.row; });
   }
 
-  Sequence<RowRelation> const& relations() const { return relations_; }  ///< of the redundant rows, ascending
+  Sequence<RowRelation> const& relations() const { return relations_; }  ///< one for each redundant row, ascending
 
  private:
   struct Row {
@@ -67,7 +68,7 @@ class RepeatedRows {
     Sequence<Index> bodies = {};
     IndexMap<double> entries = {};
   };
-  /// Basis vector q_k with row_k = Σ_j r_jk q_j.
+  /// Orthonormal basis vector q_k, with row_k = Σ_j r_jk q_j.
   struct Direction {
     Index row;
     IndexMap<double> q;
@@ -95,7 +96,7 @@ class RepeatedRows {
     next.q = std::move(q);
     basis_.push_back(std::move(next));
   }
-  /// Computes c from R c = −r.
+  /// Computes the null vector c of a redundant row from R c = −r, with the coefficients r of the row in the basis.
   void relate(Direction& repeated) {
     RowRelation out{repeated.row};
     out.c[repeated.row] = 1.0;
@@ -113,13 +114,13 @@ class RepeatedRows {
 };
 
 /// Removes, body by body, all rows with entries in the velocities of a body if they are independent there: Gᵀc = 0 then
-/// requires c = 0 for these rows. A leaf of a tree is removed first, then the body before it. The rows of loops remain.
-/// The cost is linear in the number of rows.
+/// requires c = 0 for these rows. The rows of a leaf of a tree are removed first, then those of the next body towards
+/// the root. The rows of loops remain. The cost is linear in the number of rows.
 template <class = void>  // compiled only if used
 class PrivateRows {
  public:
   static constexpr std::size_t most = 12;      ///< largest number of rows of one body that are tested
-  static constexpr double independent = 0.01;  ///< least distance of a row from the span of those before it
+  static constexpr double independent = 0.01;  ///< least distance of a row from the span of the rows before it
 
   PrivateRows(Sequence<BodyLayout> const& bodies, Index rows, Sequence<RowEntry> const& entries)
       : bodies_(bodies), removed_(std::size_t(rows), 0), of_row_(std::size_t(rows)), rows_of_(bodies.size()) {
@@ -172,7 +173,7 @@ class PrivateRows {
       }
     }
   }
-  /// Test by Gram–Schmidt orthogonalisation, each projection twice.
+  /// Tests `rows` of body b by Gram–Schmidt orthogonalisation; each projection is done twice.
   bool are_independent(Index b, Sequence<Index> const& rows) const {
     BodyLayout const& body = bodies_[std::size_t(b)];
     Sequence<VecX> basis;
@@ -197,8 +198,8 @@ class PrivateRows {
   Sequence<BodyLayout> const& bodies_;
   Sequence<char> removed_;
   Sequence<Sequence<Entry>> of_row_;
-  Sequence<Sequence<Index>> rows_of_;  ///< by bodies, ascending
-  Sequence<std::size_t> count_;        ///< number of rows that remain
+  Sequence<Sequence<Index>> rows_of_;  ///< rows of each body, ascending
+  Sequence<std::size_t> count_;        ///< number of remaining rows of each body
   Sequence<Index> waiting_;            ///< bodies to test, some more than once
 };
 

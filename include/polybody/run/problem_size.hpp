@@ -6,7 +6,7 @@ namespace polybody {
 /// Counts of a model as in thesis Table 3.4: a unit quaternion counts as four coordinates and one constraint equation.
 /// Eliminated unknowns are not counted.
 struct ProblemSize {
-  Index coordinates = 0;         ///< of bodies and the ground
+  Index coordinates = 0;         ///< coordinates of bodies
   Index constraints = 0;         ///< constraint equations of joints and of bodies
   Index velocities = 0;          ///< unknown velocities of the integrator
   Index rows = 0;                ///< multipliers of the integrator

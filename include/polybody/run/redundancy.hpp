@@ -21,11 +21,11 @@ struct Redundancy {
   Index rows = 0;                ///< constraint equations
   Index rank = 0;                ///< rank of G
   Index degrees_of_freedom = 0;  ///< generalised velocities of bodies − rank, at this state
-  /// Joints with equations that are linear combinations of equations of joints connected before them (or, in part, of
-  /// their own).
+  /// Joints with equations that are linear combinations of equations of joints connected earlier, or of other equations
+  /// of the same joint.
   std::vector<Share> repeated = {};
-  /// Groups of joints (joint "a", joint "b", …) with redundant equations that contradict: no small displacement
-  /// satisfies them in positions, or no velocities or accelerations satisfy them.
+  /// Groups of joints (joint "a", joint "b", …) whose redundant equations contradict each other: no small displacement
+  /// satisfies them, or no velocities, or no accelerations.
   std::vector<std::string> in_positions = {}, in_velocities = {}, in_accelerations = {};  ///< one text per group
   /// True if no equations contradict each other.
   bool consistent() const { return in_positions.empty() && in_velocities.empty() && in_accelerations.empty(); }
@@ -46,16 +46,17 @@ struct ConstraintSink {
   }
 };
 
-/// Gᵀ P = Q [R₁, R₂; 0, 0], R₁ of the size of the rank: the last rows under P depend on the first ones, and Gᵀc = 0 for
-/// each column of c = P [−R₁⁻¹R₂; 1]. Velocities are scaled first and rows then, so that every row of G has the norm 1
-/// in any units. A row is redundant if its distance from the span of the rows before it is less than `threshold`.
-template <class Ordering = Eigen::NaturalOrdering<int>>  // natural ordering: later joints are named
+/// Rank-revealing factorisation Gᵀ P = Q [R₁, R₂; 0, 0] with a permutation P. The size of R₁ is the rank. The last rows
+/// of PᵀG depend on the first ones: Gᵀc = 0 for each column c of P [−R₁⁻¹R₂; 1]. Velocities are scaled first, then
+/// rows, so that every row of G has the norm 1 in any units. A row is redundant if its distance from the span of the
+/// rows before it is less than `threshold`.
+template <class Ordering = Eigen::NaturalOrdering<int>>  // natural ordering: the later of two dependent joints is named
 class ConstraintFactor {
  public:
   static constexpr double threshold = 1e-6;
 
-  /// \param bodies for which rows that depend on earlier rows between the same bodies (`RepeatedRows`) or that are
-  /// private (`PrivateRows`) are omitted; empty to factorise all rows
+  /// \param bodies bodies of the model; rows that `RepeatedRows` finds redundant or `PrivateRows` finds independent are
+  /// then not factorised. Empty to factorise all rows
   ConstraintFactor(Index velocities, Index rows, std::vector<Eigen::Triplet<double>> const& entries,
                    Sequence<BodyLayout> const& bodies = {})
       : scale_(std::size_t(rows), 0.0) {
@@ -86,9 +87,9 @@ class ConstraintFactor {
   Index rank() const { return Index(scale_.size()) - repeated(); }
   Index repeated() const { return Index(relations_.size()); }
   Index factored() const { return Index(stays_.size()); }  ///< number of rows in the factorisation
-  /// The k-th redundant row, ascending.
+  /// Index of the k-th redundant row, in ascending order.
   Index row(Index k) const { return relations_[std::size_t(k)].row; }
-  /// Null vector c of the k-th redundant row, for scaled rows; 1 at the row itself.
+  /// Null vector c of the k-th redundant row, for scaled rows; c = 1 at this row.
   IndexMap<double> const& scaled_relation(Index k) const { return relations_[std::size_t(k)].c; }
   /// Null vector c of the k-th redundant row.
   IndexMap<double> relation(Index k) const {
@@ -123,7 +124,7 @@ class ConstraintFactor {
     PrivateRows<> const own(bodies, Index(removed.size()), left);
     for (Index i = 0; i < Index(removed.size()); ++i) removed[std::size_t(i)] |= char(own[i]);
   }
-  /// Null vectors c = P [−R₁⁻¹R₂; 1] of the factor. Each solution processes only the nonzero entries of c, in
+  /// Computes the null vectors c = P [−R₁⁻¹R₂; 1]. Each back substitution visits only the nonzero entries of c, in
   /// descending order.
   void find_relations() {
     auto const& r = qr_.matrixR();
@@ -175,7 +176,7 @@ class ConstraintFactor {
 }  // namespace detail
 
 /// Counts the redundant constraint equations of a model at x (coordinates, velocities and time) and names their joints,
-/// with a separate factorisation. A run chooses the equations that it drops by the same rule (`leave_out_redundant`). A
+/// with a separate factorisation. A run selects the equations to drop by the same rule (`leave_out_redundant`). A
 /// contradiction in positions is found to first order: call this function at the final state of `assemble`.
 /// \throws InvalidInput for a state of another model.
 template <class = void>
@@ -225,7 +226,8 @@ Redundancy redundancy(System& system, State const& x) {
   return out;
 }
 
-/// Redundant constraint equations of a model at x; see above.
+/// Counts the redundant constraint equations of a model at x and names their joints. \throws InvalidInput for a state
+/// of another model.
 template <class M>
 Redundancy redundancy(M const& model, State const& x) {
   System system(model, with<Capabilities::motion>);

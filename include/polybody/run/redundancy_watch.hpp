@@ -8,26 +8,27 @@ namespace polybody {
 template <class = void>
 class RedundancyWatch {
  public:
-  /// Chooses redundant equations at a start x, at which `forward` has been factorised.
+  /// Chooses the redundant equations to drop at a start x, at which `forward` has been factorised.
   template <class Solver>
   void start(System& system, ForwardDynamics<Solver>& forward, State const& x) {
     if (!forward.redundant_rows().empty() && !keeps_all_) leave_out_redundant(system, forward, x);
   }
-  /// After a step to x: replaces an invalid choice. Returns true if the choice has changed.
+  /// Replaces the choice after a step to x if the choice is invalid at x. Returns true if the choice has changed.
   template <class Solver>
   bool changes(System& system, ForwardDynamics<Solver>& forward, State const& x) {
     return forward.leaves_out() && forward.is_doubtful() && leave_out_redundant(system, forward, x);
   }
-  /// Sets `names` to the redundant joints `now` of the last start. If `keeps_earlier` is true, those of earlier choices
-  /// remain.
+  /// Sets `names` to the redundant joints `now` of the last start. If `keeps_earlier` is true, the joints of earlier
+  /// choices remain.
   static void name(std::vector<std::string> now, bool keeps_earlier, std::vector<std::string>& names) {
     if (keeps_earlier)
       for (std::string& earlier : names)
         if (std::find(now.begin(), now.end(), earlier) == now.end()) now.push_back(std::move(earlier));
     names = std::move(now);
   }
-  /// Step of a run from x by step(). \param before state before the step, if equations are dropped  \param restart() of
-  /// the run
+  /// Takes a step of a run from x by step(). If the step fails or violates dropped equations, repeats the step with all
+  /// equations.
+  /// \param before state before the step; used only if equations are dropped \param restart restarts the run
   template <class Solver, class Step, class Restart>
   StepReport step(System& system, ForwardDynamics<Solver>& forward, State& x, State const& before, Step&& step,
                   Restart&& restart) {

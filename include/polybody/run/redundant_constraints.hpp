@@ -8,9 +8,10 @@
 namespace polybody {
 namespace detail {
 
-/// Largest |c·b| over max |c| with Gᵀc = 0 that counts as round-off, for b equal to Φ, Φ̇ or γ of a state.
+/// Limits of |c·b|/max |c| with Gᵀc = 0. Below these limits, redundant equations agree within round-off; b is Φ, Φ̇ or
+/// γ of a state.
 struct ContradictionLimits {
-  double position = 1e-8;
+  double position = 1e-8;  ///< for Φ [m], [rad]
   double relative = 1e-6;  ///< for Φ̇ relative to 1 + max |v|, for γ relative to 1 + max |γ|
 };
 
@@ -29,8 +30,8 @@ std::string names_in(System const& system, VecX const& c) {
   return names;
 }
 
-/// Null vector Gᵀc = 0 of a dropped row. With w = Gᵀe of that row, M a + Gᵀμ = w and G a = 0 have the solution a = 0,
-/// hence c = e − μ.
+/// Null vector c of a dropped row: Gᵀc = 0. Let e be the unit vector of this row. M a + Gᵀμ = Gᵀe and G a = 0 then have
+/// the solution a = 0, hence c = e − μ.
 template <class = void>  // compiled only if used
 struct ConstraintDependence {
   VecX c;  ///< (rows), 1 at the row itself and 0 at all other dropped rows
@@ -57,10 +58,10 @@ struct ConstraintDependence {
   VecX mu_, w_, a_;
 };
 
-/// Residual b − G a by rows, for a motion a with G a = b in all rows that were not dropped. In a dropped row with the
-/// null vector c, the residual is c·b. As max |c| ≥ 1, |c·b|/max |c| is not larger. One solution thus compares all rows
-/// with a limit; only rows beyond the limit require their null vectors. `forward` must be factorised last at the
-/// position of `system`.
+/// Residual b − G a (rows) of a motion a that satisfies G a = b in all rows that were not dropped. In a dropped row
+/// with the null vector c, the residual is c·b. Its size is an upper bound of |c·b|/max |c|, since max |c| ≥ 1. One
+/// solution thus compares all rows with a limit; only rows beyond the limit require their null vectors. The last
+/// factorisation of `forward` must belong to the position of `system`.
 template <class Solver>
 [[gnu::cold]] VecX left_of(System& system, ForwardDynamics<Solver>& forward, VecX const& b) {
   VecX a = VecX::Zero(system.velocities()), left = VecX::Zero(system.rows());
@@ -70,9 +71,10 @@ template <class Solver>
   return left;
 }
 
-/// Curvature of rows that are redundant at (q, t): c·γ(v) − c·γ(0), a quadratic form of v. If it vanishes for all v
-/// with G v = 0, the rows are redundant everywhere. Otherwise they are redundant only here, and the configuration is
-/// singular: motions branch there, and only velocities with c·γ(v) = c·γ(0) belong to a branch.
+/// Curvature of rows that are redundant at (q, t), with the null vector c: c·γ(v) − c·γ(0), a quadratic form of v. If
+/// it vanishes for all v with G v = 0, the rows are redundant everywhere. Otherwise they are redundant only at this
+/// configuration, which is singular. Motions branch at a singular configuration, and only velocities with c·γ(v) =
+/// c·γ(0) belong to a branch.
 template <class = void>
 struct ConstraintCurvature {
   VecX w;  ///< (nv) pseudo-random velocities with G w = 0
@@ -102,13 +104,14 @@ struct ConstraintCurvature {
     if (scale > 0.0) left /= scale;
     return left;
   }
-  static constexpr double limit = 1e-6;  ///< of differences of c·γ, relative to max |c| max |γ|
-  /// True if the row of c is redundant only in this configuration.
+  static constexpr double limit = 1e-6;  ///< limit of differences of c·γ, relative to max |c| max |γ|
+  /// True if the dropped row with the null vector c is redundant only in this configuration.
   bool is_singular(System& system, VecX const& c) {
     bias(system, w, gamma_);
     return differ(c, gamma_, rest_);
   }
-  /// True if the velocities v of a branch do not determine it: the form is equal at v + s w and at v − s w.
+  /// True if the velocities v of the state do not determine a branch: the quadratic form is equal at v + s w and v − s
+  /// w.
   bool leaves_open(System& system, VecX const& c) {
     double const size = largest_size(x_.v);
     if (!(size > 0.0)) return true;
@@ -138,8 +141,8 @@ struct ConstraintCurvature {
 
 }  // namespace detail
 
-/// Warning text if x is a singular configuration, at which the motion can branch, and its velocities do not determine
-/// the branch: at rest, or with velocities that branches share. Otherwise empty. \param forward factorised at x
+/// Warning text if x is a singular configuration, at which the motion can branch, and the velocities of x do not
+/// determine the branch: they are zero, or belong to several branches. Otherwise empty. Factorises `forward` at x.
 template <class Solver>
 [[gnu::cold]] std::string warn_of_ambiguous_branch(System& system, ForwardDynamics<Solver>& forward, State const& x) {
   if (system.rows() == 0) return "";
@@ -163,8 +166,9 @@ template <class Solver>
 }
 
 /// Checks that redundant constraint equations agree: c·b = 0 for every c with Gᵀc = 0. b is Φ, Φ̇ or γ of the evaluated
-/// `system`, and `forward` must be factorised. \param what name of b in the message  \param limit of |c·b|/max |c|
-/// \throws InconsistentInitialConditions naming the joints that contradict.
+/// `system`, and `forward` must be factorised. \param what name of b in the message \param limit largest permitted
+/// |c·b|/max |c|
+/// \throws InconsistentInitialConditions naming the joints whose equations contradict each other.
 template <class Solver>
 [[gnu::cold]] void require_consistent_constraints(System& system, ForwardDynamics<Solver>& forward, VecX const& b,
                                                   double limit, std::string const& what) {
@@ -188,9 +192,9 @@ template <class Solver>
   }
 }
 
-/// Checks that velocities projected onto the other rows satisfy the dropped rows to `limit`. Rows that are only nearly
-/// redundant can fail this check. \param rate Φ̇ at the projected velocities \throws InconsistentInitialConditions
-/// naming the violated joint.
+/// Checks that velocities that were projected onto the other rows also satisfy the dropped rows, to `limit`. Rows that
+/// are only nearly redundant can fail this check. \param rate Φ̇ at the projected velocities \throws
+/// InconsistentInitialConditions naming the violated joint.
 template <class Solver>
 [[gnu::cold]] void require_dropped_constraints_closed(System const& system, ForwardDynamics<Solver> const& forward,
                                                       VecX const& rate, double limit) {

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// Choice of the redundant constraint equations that a run drops. It follows from the null space of Gᵀ: an equation may
-/// be dropped if its coefficient in a null vector is large enough relative to the other coefficients. If the
-/// coefficients of all other equations are at most f times as large, the smallest singular value of the remaining
+/// Choice of the redundant constraint equations that a run drops. The choice follows from the null space of Gᵀ: an
+/// equation may be dropped if its coefficient in a null vector is large enough relative to the other coefficients. If
+/// the coefficients of all other equations are at most f times as large, the smallest singular value of the remaining
 /// equations is within a factor of about f of its largest possible value [Gu & Eisenstat 1996, SIAM J. Sci. Comput.
 /// 17(4), 848–869]. A factorisation that drops rows in a fixed order has no such bound: it divides by the coefficient
 /// of its last row, which may pass through zero during a motion.
@@ -13,21 +13,22 @@
 namespace polybody {
 namespace detail {
 
-/// Smallest coefficients of dropped equations in null vectors, relative to the largest coefficient.
+/// Limits for the coefficient of a dropped equation in its null vector, relative to the vector's largest coefficient.
 struct RedundantLimits {
-  double chosen = 0.1;       ///< for a new choice
-  double kept = 1.0 / 30.0;  ///< for an existing choice
+  double chosen = 0.1;       ///< least relative coefficient in a new choice
+  double kept = 1.0 / 30.0;  ///< least relative coefficient in an existing choice
   double dependent = 1e-6;  ///< |Gᵀc| below which c is a null vector, for equations and velocities scaled to the size 1
 };
 
-/// Chooses for each null vector the last equation with a coefficient that is not small, so that joints connected later
-/// are named. \param c null vectors with scaled coefficients; afterwards each is 0 at the equations chosen for the
-/// other vectors
-/// \param preferred for each equation: chosen first if its coefficient is above the limit `kept`; or empty
+/// Chooses for each null vector the last equation whose coefficient exceeds the limit `chosen`, so that joints
+/// connected later are named. \param c null vectors with scaled coefficients; afterwards each is 0 at the equations
+/// chosen for the other vectors
+/// \param preferred for each equation, true if it is chosen before others when its coefficient exceeds the limit
+/// `kept`; may be empty
 template <class = void>
 [[gnu::cold]] Sequence<Index> choose_redundant(Sequence<IndexMap<double>>& c, Sequence<char> const& preferred) {
   RedundantLimits const limits;
-  Sequence<Sequence<Index>> with_entry;  // vectors by equations, some more than once
+  Sequence<Sequence<Index>> with_entry;  // vectors with a coefficient of each equation, some repeated
   auto const enter = [&](Index i, std::size_t k) {
     while (with_entry.size() <= std::size_t(i)) with_entry.emplace_back();
     with_entry[std::size_t(i)].push_back(Index(k));
@@ -65,7 +66,7 @@ template <class = void>
   return chosen;
 }
 
-/// Sizes of velocities and constraint equations: velocities are scaled first and equations then, so that every row of G
+/// Scales of velocities and constraint equations. Velocities are scaled first, then equations, so that every row of G
 /// has the norm 1 in any units.
 template <class = void>  // compiled only if used
 struct RowSizes {
@@ -106,8 +107,8 @@ class NullVectors {
   NullVectors(System& system, ForwardDynamics<Solver>& forward, State const& x)
       : system_(system), forward_(forward), x_(x), sizes_(held()) {}
 
-  /// Computes the null vectors from the last factorisation of `forward`: scaled coefficients, 1 at a dropped equation
-  /// and 0 at the other dropped ones. Returns false for solvers that find none.
+  /// Computes the null vectors from the last factorisation of `forward`: each has scaled coefficients, 1 at its dropped
+  /// equation and 0 at the other dropped equations. Returns false for solvers that compute no null vectors.
   bool find() {
     Sequence<VecX> found;
     VecX n = VecX::Zero(system_.size());
@@ -120,7 +121,7 @@ class NullVectors {
     vectors = std::move(found);
     return true;
   }
-  /// Reduces the vectors to combinations with Gᵀc = 0.
+  /// Replaces the vectors by those of their linear combinations that satisfy Gᵀc = 0.
   void keep_dependent() {
     Sequence<VecX> left;
     for (VecX const& c : vectors) {
@@ -131,9 +132,9 @@ class NullVectors {
     }
     keep_null(left);
   }
-  /// Reduces the vectors to combinations that are null vectors near this state also: c·γ(v) does not depend on
-  /// velocities v that satisfy the constraint equations (`ConstraintCurvature`). The other combinations reduce the rank
-  /// of G only at this singular configuration.
+  /// Replaces the vectors by those of their linear combinations that remain null vectors near this state: c·γ(v) is the
+  /// same for all velocities v that satisfy the constraint equations (`ConstraintCurvature`). The other combinations
+  /// reduce the rank of G only at this singular configuration.
   void keep_permanent() {
     VecX const rest_v = VecX::Zero(system_.velocities());
     VecX rest = VecX::Zero(system_.rows()), gamma = rest, w = rest_v, moved = rest_v;
@@ -161,7 +162,7 @@ class NullVectors {
     }
   }
 
-  Sequence<VecX> vectors;  ///< c, times the sizes of the equations
+  Sequence<VecX> vectors;  ///< null vectors c, each coefficient times the size of its equation
 
  private:
   RowSizes<> held() {
@@ -177,8 +178,8 @@ class NullVectors {
     system_.acceleration_bias(gamma);
     for (Index k = 0; k < gamma.size(); ++k) gamma[k] /= sizes_.of_row[k];
   }
-  /// Reduces the vectors to combinations for which the same combinations of `left` vanish, by Gram–Schmidt with
-  /// pivoting.
+  /// Replaces the vectors by those of their linear combinations whose coefficients make the same combination of `left`
+  /// vanish. Uses Gram–Schmidt orthogonalisation with pivoting.
   void keep_null(Sequence<VecX>& left) {
     while (!vectors.empty()) {
       std::size_t worst = 0;
@@ -210,8 +211,8 @@ class NullVectors {
   RowSizes<> sizes_;
 };
 
-/// True if the present choice of `forward` remains valid: it contains all dropped equations, and all coefficients of
-/// their null vectors are bounded.
+/// True if the present choice of `forward` remains valid: the choice contains all dropped equations, and all
+/// coefficients of their null vectors are bounded.
 template <class Solver>
 bool choice_serves(ForwardDynamics<Solver> const& forward, Sequence<VecX> const& null_vectors) {
   if (forward.redundant_rows().size() != forward.left_out().size()) return false;
@@ -222,10 +223,10 @@ bool choice_serves(ForwardDynamics<Solver> const& forward, Sequence<VecX> const&
 
 }  // namespace detail
 
-/// Chooses the redundant constraint equations at x for `ForwardDynamics::mark_redundant`, or keeps a present choice
+/// Chooses the redundant constraint equations at x for `ForwardDynamics::mark_redundant`, or keeps a previous choice
 /// that remains valid. Equations that are redundant only at x, a singular configuration, are not chosen. Returns true
-/// if the choice has changed. Policies of the model must not eliminate bodies; otherwise nothing is chosen. \param
-/// lambda multipliers of an earlier choice, which is made again: they are zero at the equations of this choice; or null
+/// if the choice has changed. If policies of the model eliminate bodies, nothing is chosen. \param lambda multipliers
+/// of an earlier state, or null: equations whose multiplier is zero were chosen in that state and are preferred
 template <class Solver>
 [[gnu::cold]] bool leave_out_redundant(System& system, ForwardDynamics<Solver>& forward, State const& x,
                                        VecX const* lambda = nullptr) {
@@ -257,7 +258,7 @@ template <class Solver>
   space.keep_permanent();
   choose();
   auto const dropped = forward.redundant_rows();
-  for (Index const i : forward.left_out())  // some remain because they are eliminated with a singular body
+  for (Index const i : forward.left_out())  // not dropped if eliminated with a singular body
     if (std::find(dropped.begin(), dropped.end(), i) == dropped.end()) {
       forward.mark_redundant({});
       break;

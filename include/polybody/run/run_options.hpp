@@ -15,32 +15,32 @@ namespace polybody {
 
 /// Progress of a run.
 struct RunProgress {
-  double start;     ///< [s]
-  double end_time;  ///< [s]
-  double now;       ///< [s]
+  double start;     ///< initial time [s]
+  double end_time;  ///< end time [s]
+  double now;       ///< present time [s]
   bool done;        ///< true at `end_time` or after a terminal event
 };
 
 /// Options of a run.
 struct RunOptions {
-  Required<double> end_time;             ///< [s]
-  Required<double> step;                 ///< [s]; initial step for an integrator that controls its step
-  std::optional<double> max_step = {};   ///< [s], for an integrator that controls its step
-  std::vector<double> breakpoints = {};  ///< ends of steps [s], in addition to those of driving constraints and loads
-  std::vector<Event> events = {};        ///< detected in each step
-  /// Limit of |Φ| at the start [m], [rad]. Lengths in an assembly of bodies smaller than one metre are relative to its
-  /// extent.
+  Required<double> end_time;             ///< end time [s]
+  Required<double> step;                 ///< step [s]; initial step for an integrator that controls its step
+  std::optional<double> max_step = {};   ///< largest step [s], for an integrator that controls its step
+  std::vector<double> breakpoints = {};  ///< breakpoints [s], besides those of driving constraints and loads
+  std::vector<Event> events = {};        ///< events that are detected in each step
+  /// Limit of |Φ| at the start [m], [rad]. In an assembly of bodies smaller than one metre, the limit of lengths is
+  /// this value times the extent of the assembly in metres.
   double assembly_tolerance = 1e-8;
   /// Largest number of halvings of a step that fails with `NewtonConvergenceFailure`, or of an implicit step with an
-  /// unexplained energy gain, in [0, 30]; empty: 6 in `simulate`, and 0 in runs that are differentiated. The report
-  /// counts halved steps. 0: a failed step ends the run.
+  /// unexplained energy gain, in [0, 30]. If empty, it is 6 in `simulate`, and 0 in differentiated runs. If 0, a failed
+  /// step ends the run. The report counts halved steps.
   std::optional<int> max_step_halvings = {};
-  bool minimum_norm = false;  ///< every state gets the multipliers of `MinimumNorm`, at the cost of one factorisation
+  bool minimum_norm = false;       ///< true: minimum-norm multipliers in every state, for one factorisation per step
   PlausibilityLimits limits = {};  ///< limits at the end of a step: constraint violation, and unexplained energy
   int threads = 1;  ///< number of threads in an evaluation, for large models; results are bitwise identical
-  std::function<void(RunProgress const&)> progress = {};  ///< called after each step; `progress_bar` of io makes one
+  std::function<void(RunProgress const&)> progress = {};  ///< called after each step, such as `progress_bar`
 
-  /// `max_step_halvings`, or its default.
+  /// `max_step_halvings`, or 6 if it is empty.
   int allowed_halvings() const { return max_step_halvings.value_or(6); }
 
   /// \throws InvalidInput for invalid options of a run from `start` [s].
@@ -49,14 +49,15 @@ struct RunOptions {
     if (max_step) require_positive(*max_step, "simulate: the largest step");
     require_positive(assembly_tolerance, "simulate: assembly_tolerance");
     if (!(end_time >= start) || !std::isfinite(end_time))
-      throw InvalidInput("run.end_time", {ErrorObject{"simulate"}, ": the end time ", ErrorValue{end_time},
-                                          " s lies before the start ", start, " s."});
+      throw InvalidInput("run.end_time",
+                         {ErrorObject{"simulate"}, ": the end time must be finite and not before the start ", start,
+                          " s, but is ", ErrorValue{end_time}, " s."});
     double const latest = std::max(std::abs(start), std::abs(end_time)),
                  resolved = std::nextafter(latest, std::numeric_limits<double>::infinity()) - latest;
     if (step < 32.0 * resolved)
-      throw InvalidInput("run.clock", {ErrorObject{"simulate"}, ": the clock resolves ", resolved,
+      throw InvalidInput("run.clock", {ErrorObject{"simulate"}, ": double precision resolves ", resolved,
                                        " s at t = ", ErrorTime{end_time}, " s, which is too coarse for steps of ",
-                                       ErrorValue{step}, " s. Count the time of the run from a start near zero."});
+                                       ErrorValue{step}, " s. Start the run at a time near zero."});
     if (allowed_halvings() < 0 || allowed_halvings() > 30)
       throw InvalidInput("run.option", {ErrorObject{"simulate"}, ": max_step_halvings must lie in [0, 30], but is ",
                                         ErrorValue{allowed_halvings()}, "."});
@@ -71,7 +72,8 @@ struct RunOptions {
         throw InvalidInput("run.option", {ErrorObject{"simulate"}, ": a breakpoint must be a time [s], but is nan."});
     for (Event const& event : events) {
       if (!event.value)
-        throw InvalidInput("event.no_value", {"simulate: the event \"", ErrorObject{event.name}, "\" has no value."});
+        throw InvalidInput("event.no_value", {"simulate: the event \"", ErrorObject{event.name},
+                                              "\" has no value function. Set `value`."});
       require_positive(event.tolerance, "simulate: the tolerance of the event \"" + event.name + "\"");
     }
   }
@@ -81,13 +83,13 @@ struct RunOptions {
 /// does not count.
 struct RunCounts {
   long steps = 0;           ///< number of steps
-  long iterations = 0;      ///< of Newton's method
-  long factorisations = 0;  ///< of tangents and masses
-  long evaluations = 0;     ///< of the forces
-  long rejected = 0;        ///< trial steps, and steps that were halved
+  long iterations = 0;      ///< iterations of Newton's method
+  long factorisations = 0;  ///< factorisations of tangents and mass matrices
+  long evaluations = 0;     ///< evaluations of the forces
+  long rejected = 0;        ///< rejected trial steps, and steps that were halved
   long halved = 0;          ///< steps that failed and were repeated by halves
   long over_budget = 0;     ///< steps that ended at the iteration budget of Newton's method
-  double left = 0.0;        ///< largest last correction of these steps, relative to the tolerance
+  double left = 0.0;        ///< largest final correction of `over_budget` steps, relative to the tolerance
   StepReport last = {};     ///< report of the last step
 
   /// Adds the cost of a step.
@@ -104,14 +106,14 @@ struct RunCounts {
   }
 };
 
-/// Cost of a run so far, and its events.
+/// Cost, events and warnings of a run so far.
 struct RunReport : RunCounts {
   /// Event of a run and its time.
   struct EventRecord {
     std::string name;  ///< name of the event
-    double time;       ///< [s]
+    double time;       ///< time of the event [s]
   };
-  Sequence<EventRecord> events = {};  ///< in the order of time
+  Sequence<EventRecord> events = {};  ///< events in the order of time
   bool stopped = false;               ///< true if an event ended the run before `end_time`
   /// Joints with redundant constraint equations at the last start. The motion is determined, but the distribution of
   /// the load over the reactions is not.
@@ -141,27 +143,27 @@ struct RunReport : RunCounts {
   }
   /// Times of a run [s] and number of its halved steps.
   struct Course {
-    double start, now;  ///< [s]
+    double start, now;  ///< initial and present time [s]
     long halved;        ///< number of halved steps
   };
-  /// Adds a warning if the unexplained energy exceeds the fraction `limit` of the energy that moved, if the steps do
-  /// not resolve the work of a force, or if steps were halved for their energy gain.
+  /// Adds a warning if the unexplained energy exceeds the fraction `limit` of the exchanged energy, if the steps do not
+  /// resolve the work of a force, or if steps were halved for their energy gain.
   [[gnu::cold]] void warn_of_energy(Unexplained const& found, double limit, Course const& run) {
     if (!found.known) return;
     if (found.worst > 0.4 * found.scale)
       add_warning(
-          sentence_of({"The work of a force over one step is uncertain by ", found.worst, " J, of ", found.scale,
-                       " J that moved: the steps do not resolve it. Compare the run with one of half the step."}));
+          sentence_of({"The work of a force over one step is uncertain by ", found.worst, " J, while ", found.scale,
+                       " J were exchanged: the steps do not resolve this force. Repeat the run with half the step."}));
     else if (std::abs(found.energy) > limit * found.scale + found.doubt)
       add_warning(
           sentence_of({"From t = ", run.start, " s to ", run.now, " s the motion ",
                        found.energy > 0.0 ? "gains " : "loses ", std::abs(found.energy), " J that no work explains, ",
-                       std::abs(found.energy) / found.scale, " of the energy that moved (", found.scale, " J); ",
-                       run.halved, " steps were halved. Compare the run with one of half the step."}));
+                       std::abs(found.energy) / found.scale, " of the exchanged energy (", found.scale, " J); ",
+                       run.halved, " steps were halved. Repeat the run with half the step and compare."}));
     else if (found.halved > 0)
       add_warning(sentence_of({"From t = ", run.start, " s to ", run.now, " s ", found.halved,
                                " steps gained energy that no work explains; ", run.halved,
-                               " steps were halved. Compare the run with one of half the step."}));
+                               " steps were halved. Repeat the run with half the step and compare."}));
   }
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Storage of a run from which it can be resumed.
+/// Snapshot of a run in memory, from which the run can be resumed.
 
 #include <polybody/math/checksum.hpp>
 #include <polybody/math/sequence.hpp>
@@ -13,8 +13,8 @@ namespace polybody {
 /// Identity of the model of a snapshot: numbers of its unknowns in a step, and names of bodies, joints and forces in
 /// order. Masses, lengths and loads are not compared.
 struct ModelIdentity {
-  Index coordinates = 0, velocities = 0, rows = 0;  ///< of a step, after elimination
-  Index eliminated_equations = 0;                   ///< their multipliers may follow the others in a step, as estimates
+  Index coordinates = 0, velocities = 0, rows = 0;  ///< sizes of a step, after elimination
+  Index eliminated_equations = 0;                   ///< number; a step may append estimates of their multipliers
   std::uint64_t names = 0;                          ///< checksum of the names
 
   bool operator==(ModelIdentity const&) const = default;  ///< true if counts and names are equal
@@ -52,7 +52,7 @@ struct RunSnapshot {
     polybody::require_finite(state.lambda, "resume: the multipliers of the snapshot");
     polybody::require_finite(state.history, "resume: the integrator's memory in the snapshot");
   }
-  /// \throws InvalidInput unless the snapshot has this model, integrator (`by` its name) and number of events.
+  /// \throws InvalidInput unless the snapshot has this model, integrator (with the name `by`) and number of events.
   template <class = void>
   void require(ModelIdentity const& of, std::string const& by, std::size_t events) const {
     auto const counts = [](ModelIdentity const& m) {

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Selection of states of a run.
+/// Selection of the states of a run at a fixed interval of time.
 
 #include <cmath>
 
@@ -8,11 +8,11 @@
 
 namespace polybody {
 
-/// Selects the first state at or after each multiple of an interval from the start on; every state if the interval is
-/// zero.
+/// Selects the first state at or after each multiple of an interval, counted from the start; selects every state if the
+/// interval is zero.
 class RunSampling {
  public:
-  /// \param start [s] \param interval [s]
+  /// \param start initial time [s] \param interval sampling interval [s]
   RunSampling(double start, double interval) : start_(start), interval_(interval) {}
 
   /// True if the state at t [s] is selected. Call this function once for each state, in order.

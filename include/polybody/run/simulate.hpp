@@ -7,7 +7,7 @@
 
 namespace polybody {
 
-/// Systems of a run of `model` by integrator I. The model must outlive them.
+/// Systems of a run of `model` by integrator I. The model must outlive the systems.
 template <class I, class M>
 [[gnu::cold]] RunSystems run_systems(M const& model) {
   constexpr Capabilities warned = HasStabilityLimit<I> ? Capabilities::compliance : Capabilities::motion;
@@ -17,14 +17,14 @@ template <class I, class M>
     return {std::make_unique<System>(system_for<I, warned>(model)), nullptr};
 }
 
-/// System of the full `model`, for evaluations of its states. The model must outlive it.
+/// System of the full `model`, for evaluations of its states. The model must outlive the system.
 template <class M>
 [[gnu::cold]] System observation_system(M const& model) {
   return System(model, with<Capabilities::motion>);
 }
 
-/// Simulates `model` from x by `integrator`: a range of states. The run updates x, which contains the last state
-/// afterwards. \throws InconsistentInitialConditions, InvalidInput immediately; NewtonConvergenceFailure,
+/// Returns a run of `model` from x by `integrator`, as a range of states. The run updates x to the state at the end of
+/// each step. \throws InconsistentInitialConditions, InvalidInput immediately; NewtonConvergenceFailure,
 /// NonFiniteValue, … from the step that fails.
 template <LinearSolver Solver = DefaultSolver, class M, class I>
 Simulation<I, Solver> simulate(M const& model, State& x, I const& integrator, RunOptions options) {
@@ -55,8 +55,8 @@ auto simulate(M const& model, State const&, I const& integrator, RunOptions opti
   static_assert(std::is_void_v<M>,
                 "A run changes its state, so that a temporary or constant state is refused. Put the state into a "
                 "variable: State x = model.reference_state(); simulate(model, x, integrator, options).");
-  State* const none = nullptr;
-  return simulate<Solver>(model, *none, integrator, std::move(options));
+  State none;
+  return simulate<Solver>(model, none, integrator, std::move(options));
 }
 /// Refuses a state in place of the model.
 template <class M, class I>
@@ -77,7 +77,7 @@ auto simulate(M const&, State&, I const&) {
   static_assert(std::is_void_v<M>,
                 "A run needs options: simulate(model, state, integrator, {.end_time = 1.0, .step = 1e-3}), both in s.");
 }
-/// Refuses what is no integrator.
+/// Refuses a type that is not an integrator.
 template <LinearSolver Solver = DefaultSolver, class M, class I>
   requires(!Integrator<I>)
 auto simulate(M const&, State&, I const&, RunOptions) {
@@ -91,7 +91,7 @@ template <LinearSolver Solver = DefaultSolver, class M, class I>
 void simulate(M const&&, State&, I const&, RunOptions) {
   detail::refuse_temporary<M>();
 }
-/// Refuses a temporary model, as `simulate`.
+/// Refuses a temporary model, like `simulate`.
 template <LinearSolver Solver = DefaultSolver, class M, class I>
 void resume(M const&&, State&, I const&, RunOptions, RunSnapshot const&) {
   detail::refuse_temporary<M>();

@@ -47,8 +47,8 @@ class Simulation {
   System& full() { return full_ ? *full_ : *system_; }                               ///< system of the full model
   bool done() const { return report_.stopped || stepped().t >= options_.end_time; }  ///< true at the end of the run
 
-  /// Takes a step to the next grid point, or to an earlier breakpoint or event. If it throws, the state is unchanged.
-  /// \throws InvalidInput if the model has changed since the construction of the run.
+  /// Takes a step to the next grid point, or to an earlier breakpoint or event. After an exception the state is
+  /// unchanged. \throws InvalidInput if the model has changed since the construction of the run.
   void advance() { advance(true); }
 
   using Iterator = RunIterator<Simulation>;      ///< takes a step at each increment
@@ -81,7 +81,7 @@ class Simulation {
   }
   /// True if a reduced state is integrated, from which `show` computes the user's state.
   bool eliminates() const { return bool(full_); }
-  void advance(bool updates);  ///< updates: also the user's state
+  void advance(bool updates);  ///< `updates`: true to update the user's state too
 
   /// Replaces the workspace by one without data of earlier steps, ready for the next step. If this fails, nothing
   /// changes.
@@ -94,10 +94,10 @@ class Simulation {
     workspace_ = std::move(fresh);
   }
 
-  /// Applies the limits of steps from this state on.
+  /// Applies `RunOptions::limits` to the steps from this state on.
   void bound() { workspace_.forward.bounds.begin(*system_, options_.limits, step_end()); }
   StepResult step_end() { return {stepped().q, stepped().v, stepped().lambda, stepped().t, h_}; }
-  /// Evaluates the energy balance up to here: before a restart or an action, and at the end.
+  /// Evaluates the energy balance up to the present state, before a restart or an action and at the end of the run.
   /// \param halved number of halved steps that are not in the report yet
   [[gnu::cold]] void settle(int halved) {
     Unexplained const found = workspace_.forward.bounds.settle(*system_, step_end());
@@ -106,7 +106,7 @@ class Simulation {
   State& stepped() { return eliminates() ? reduced_ : *x_; }
   State const& stepped() const { return eliminates() ? reduced_ : *x_; }
   /// Computes the user's state from the reduced state, in `seen_`. \throws NonFiniteValue if a force is not finite in
-  /// the computation of reactions. \param seen true if the evaluation of events has computed it
+  /// the computation of reactions. \param seen true if the evaluation of events has already computed `seen_`
   void make_full_state(bool seen) {
     if (!seen) expand(*system_, reduced_, seen_, scratch_);
     require_finite_reactions(*system_, seen_);
@@ -124,8 +124,9 @@ class Simulation {
     if constexpr (HasStabilityLimit<I>) report_.add_warning(warn_of_step<I>(full(), forward, x, h_));
   }
 
-  /// One step of h. If it fails with `NewtonConvergenceFailure`, takes two steps of h/2 from a new start, and so on for
-  /// the halves; an integrator that controls its step takes only the first half. If it throws, the state is unchanged.
+  /// Takes a step of length h. If the step fails with `NewtonConvergenceFailure`, takes two steps of h/2 from a new
+  /// start, each of which can be halved again. An integrator that controls its step takes only the first half. After an
+  /// exception the state is unchanged.
   StepReport step(double h, int max_step_halvings);
 
   double max_step() const { return options_.max_step.value_or(std::numeric_limits<double>::infinity()); }
@@ -183,7 +184,7 @@ class Simulation {
   EventDetector watch_;
   RedundancyWatch<> redundancy_;
   bool keeps_ = false;      // every step stores its initial state
-  double h_ = 0.0, start_;  // [s]
+  double h_ = 0.0, start_;  // step length and initial time [s]
   RunReport report_;
 };
 

@@ -9,7 +9,7 @@
 namespace polybody {
 
 namespace detail {
-/// Event at which coordinate i reaches 0 or `length`; it ends the run.
+/// Terminal event at which coordinate i reaches 0 or `length` [m].
 inline Event slider_end_event(std::string const& name, Slider slider, Index i, double length) {
   return {.name = sentence_of({"slider ", slider.index, " of \"", name, "\" reaches an end"}),
           .value = [i, length](State const& x) { return std::min(x.q[i], length - x.q[i]); },
@@ -24,7 +24,8 @@ double slider_position(M const& model, State const& x, BodyHandle<WithSliders<B>
   return x.q[e.q0 + e.body.column_of(slider)];
 }
 
-/// Event at which a slider reaches an end of its body; it ends the run. \throws InvalidInput as above.
+/// Terminal event at which a slider reaches an end of its body. \throws InvalidInput for a slider that the body does
+/// not have.
 template <class M, class B>
 Event slider_end_event(M const& model, BodyHandle<WithSliders<B>> const& handle, Slider slider = {}) {
   auto const& e = model.entry(handle);

@@ -7,12 +7,12 @@
 namespace polybody {
 namespace detail {
 
-/// Motions due to compliant joints alone: M a + Gᵀμ = w, G a = 0 under forces w = Σ gᵀ S g y, S = ck ∂λ/∂g + cd ∂λ/∂ġ
-/// at a state.
+/// Accelerations a due to compliant joints alone in a state: M a + Gᵀμ = w, G a = 0. The forces w = Σ Jᵀ S J y belong
+/// to a motion y, with the Jacobian J of each joint and S = ck ∂λ/∂g + cd ∂λ/∂ġ.
 template <class Solver>
 class CompliantMotion {
  public:
-  /// `forward` must be factorised, and `system` evaluated, at that state.
+  /// `forward` must be factorised, and `system` evaluated, at the same state.
   CompliantMotion(System& system, ForwardDynamics<Solver>& forward)
       : system_(system),
         forward_(forward),
@@ -22,9 +22,9 @@ class CompliantMotion {
         mu_(VecX::Zero(system.rows())) {}
 
   struct Found {
-    double omega2 = 0.0;  ///< [1/s²] of k
-    double rate = 0.0;    ///< [1/s] of c
-    std::string joint;    ///< joint with the largest part
+    double omega2 = 0.0;  ///< ω² due to the stiffness k [1/s²]
+    double rate = 0.0;    ///< decay rate due to the damping c [1/s]
+    std::string joint;    ///< joint with the largest contribution
   };
 
   /// Power iteration for the largest yᵀ(ck k + cd c) y/yᵀM y. The result is a lower bound, which increases from
@@ -56,7 +56,7 @@ class CompliantMotion {
     VecX& out;
     double sum = 0.0, largest = 0.0, part = 0.0;
     std::size_t block = 0;  ///< index of the joint's block among the rows of the data
-    int left = 0;           ///< number of its blocks that follow
+    int left = 0;           ///< number of tangent blocks of this joint that are still to be added
     Index most = -1;
 
     void add(Index row, Index col, BlockView const& b) {
@@ -88,7 +88,8 @@ class CompliantMotion {
       }
     }
   };
-  /// Computes out = Σ gᵀ S g y. Returns yᵀ out; `most` becomes the name of the joint with the largest part of it.
+  /// Computes out = Σ Jᵀ S J y. Returns yᵀ out; `most` becomes the name of the joint with the largest contribution to
+  /// yᵀ out.
   double pull(double ck, double cd, VecX& out, std::string& most) {
     out.setZero();
     JointProducts products{system_, y_, out};
@@ -104,9 +105,10 @@ class CompliantMotion {
 
 }  // namespace detail
 
-/// Warning text for a step h beyond the limit of integrator I for the stiffness and damping of the compliant joints at
-/// x; otherwise empty. ω² = k g M⁻¹ gᵀ and d = c g M⁻¹ gᵀ are Rayleigh quotients, thus lower bounds of the values of
-/// the model. A step with a warning is unstable; springs and elastic bodies may require a still smaller step.
+/// Warning text if a step h exceeds the stability limit of integrator I for the compliant joints at x; otherwise empty.
+/// ω² = k J M⁻¹ Jᵀ and d = c J M⁻¹ Jᵀ are Rayleigh quotients of a joint with the Jacobian J, thus lower bounds of the
+/// model's largest values. A step with a warning is unstable; springs and elastic bodies may require a still smaller
+/// step.
 template <HasStabilityLimit I, class Solver>
 std::string warn_of_step(System& system, ForwardDynamics<Solver>& forward, State const& x, double h) {
   bool const compliant = std::any_of(system.data().rows.begin(), system.data().rows.end(),
@@ -123,11 +125,11 @@ std::string warn_of_step(System& system, ForwardDynamics<Solver>& forward, State
     double const limit = I::stable_step(omega, rate);
     if (!(limit < least)) continue;
     least = limit;
-    warning =
-        sentence_of({"The joint \"", found.joint, "\" is too ", (by_damping ? "strongly damped" : "stiff"), " for ",
-                     I::name, ": over the mass that it moves, k h² is ", found.omega2 * h * h, " and c h is ", rate * h,
-                     "; stable are ", found.omega2 * limit * limit, " and ", rate * limit, ". Take steps of at most ",
-                     limit, " s, a softer joint, or an implicit integrator."});
+    warning = sentence_of({"The joint \"", found.joint, "\" is too ", (by_damping ? "strongly damped" : "stiff"),
+                           " for ", I::name, ": k h²/m is ", found.omega2 * h * h, " and c h/m is ", rate * h,
+                           " for the mass m that it moves, but the limits are ", found.omega2 * limit * limit, " and ",
+                           rate * limit, ". Take steps of at most ", limit,
+                           " s, a softer joint, or an implicit integrator."});
   }
   return warning;
 }

@@ -18,13 +18,14 @@ void require_sizes(State const& x, Index coordinates, Index velocities, Index ro
 }
 }  // namespace detail
 
-/// \throws InvalidInput unless x has the sizes of this model with all of its bodies and joints, and finite coordinates
-/// and velocities.
+/// Requires a state of the full model. \throws InvalidInput unless x has the sizes of this model with all of its bodies
+/// and joints, and finite coordinates and velocities.
 template <class M>
 [[gnu::cold]] void require_fitting(M const& model, State const& x) {
   detail::require_sizes(x, model.coordinates(), model.velocities(), model.rows());
 }
-/// Checks the sizes of a full state of a system; see above.
+/// Requires a state of the full model of `system`. \throws InvalidInput unless x has the sizes of this model, and
+/// finite coordinates and velocities.
 template <class = void>
 [[gnu::cold]] void require_fitting(System const& system, State const& x) {
   ModelLayout const& full = system.layout();
@@ -32,8 +33,8 @@ template <class = void>
   detail::require_sizes(x, full.coordinates, full.velocities, full.rows);
 }
 
-/// \throws InvalidInput naming a body with invalid coordinates, such as a quaternion whose norm is not one: ⊞ 0 would
-/// change them. \param x of the full model
+/// Requires coordinates that an increment of zero (⊞ 0) does not change. A quaternion whose norm is not one would
+/// change. \throws InvalidInput naming the body. \param x state of the full model
 template <class = void>
 [[gnu::cold]] void require_places(System const& system, State const& x) {
   VecX const none = VecX::Zero(x.v.size());
@@ -47,7 +48,7 @@ template <class = void>
 }
 
 /// \throws InvalidInput naming a body with coordinates or velocities so large that their squares, and therefore
-/// energies, are not finite. \param x of the full model
+/// energies, are not finite. \param x state of the full model
 template <class = void>
 [[gnu::cold]] void require_computable(System const& system, State const& x) {
   ModelLayout const& full = system.layout();
@@ -57,7 +58,7 @@ template <class = void>
       "state.not_finite",
       {"A ",
        ErrorObject{in_v < 0 ? "coordinate of " + full.name_of_coordinate(in_q) : "velocity of " + full.name_of(in_v)},
-       non_finite_suffix(in_v < 0 ? x.q[in_q] : x.v[in_v]), " in the state. Give a smaller number."});
+       non_finite_suffix(in_v < 0 ? x.q[in_q] : x.v[in_v]), " in the state. Correct this value."});
 }
 
 /// \throws NonFiniteValue naming a joint of `system` whose reaction in x is not finite.
@@ -69,8 +70,8 @@ inline void require_finite_reactions(System const& system, State const& x) {
          non_finite_suffix(x.lambda[i]), " at t = ", ErrorTime{x.t}, " s. Check the forces on its bodies."});
 }
 
-/// \throws InvalidInput unless x is valid for evaluations: as the three checks above, and for multipliers that are not
-/// finite. \param x of the full model
+/// Requires a state at which the model can be evaluated: `require_fitting`, `require_places`, `require_computable` and
+/// finite multipliers. \throws InvalidInput otherwise. \param x state of the full model
 template <class = void>
 void require_usable(System const& system, State const& x) {
   require_fitting(system, x);

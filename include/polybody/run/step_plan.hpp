@@ -30,12 +30,12 @@ class StepPlan {
  public:
   /// Next step of a run.
   struct Next {
-    double target, h;   ///< latest end of the step [s]; its length [s]
-    bool lands, jumps;  ///< the step ends at `target`; `target` is a breakpoint
+    double target, h;   ///< latest end of the step [s]; length of the step [s]
+    bool lands, jumps;  ///< in order: true if the step ends at `target`; true if `target` is a breakpoint
   };
 
   StepPlan() = default;
-  /// Run from `start` to `end_time` with steps of about `step` [s]; breakpoints outside of it are ignored.
+  /// Run from `start` to `end_time` with steps of about `step` [s]; breakpoints outside this interval are ignored.
   [[gnu::cold]] StepPlan(double start, double end_time, double step, Sequence<double> breakpoints)
       : end_time_(end_time), step_(step), breakpoints_(std::move(breakpoints)) {
     erase_if(breakpoints_, [&](double t) { return !(t > start) || !(t <= end_time); });
@@ -43,7 +43,8 @@ class StepPlan {
   }
 
   /// Passes the breakpoints up to t, and those that differ from t by round-off only (0.3 and 0.1 + 0.2 are equal).
-  /// Returns t, or the time of the last passed breakpoint or of the end if it differs from t by round-off only.
+  /// Returns t. If the last passed breakpoint or the end time differs from t by round-off only, returns that time
+  /// instead.
   double pass(double t) {
     double const remainder_step = 1e-9 * step_ + rounding(t);
     while (next_ < breakpoints_.size() && breakpoints_[next_] <= t + remainder_step)
@@ -58,8 +59,8 @@ class StepPlan {
   Next next(double t, double h) const {
     bool const breakpoint = next_ < breakpoints_.size();
     double const target = breakpoint ? breakpoints_[next_] : end_time_, left = target - t;
-    // A step may be 1 % longer than requested, so that no tiny step remains: in constraint equations divided by its
-    // square, round-off would dominate.
+    // A step may be 1 % longer than requested, so that no tiny step remains. Round-off would dominate in constraint
+    // equations that are divided by the square of a tiny step.
     bool const lands = 1.01 * h >= left;
     if (lands && breakpoint) return {target, step_to_just_before(target, t), true, true};
     // A last step that differs from h by round-off only has the length h, as in a run with a later end.

@@ -16,14 +16,14 @@ namespace polybody {
 /// Data of a run before a step, in addition to its state and events. Every step stores the numbers; texts are stored
 /// just before they change.
 struct StepUndo {
-  bool events = false;    ///< events were evaluated in this step
-  bool has_user = false;  ///< `user` belongs to this step
+  bool events = false;    ///< true if events were evaluated in this step
+  bool has_user = false;  ///< true if `user` belongs to this step
   State user;             ///< user's state before its update in this step
 
   void end(State const& x) { sizes_ = sizes_of(x); }  ///< stores the sizes of the state at the end of a step
-  bool fits(State const& x) const { return sizes_ == sizes_of(x); }  ///< true if x has these sizes
+  bool fits(State const& x) const { return sizes_ == sizes_of(x); }  ///< true if x has the stored sizes
   /// \throws InvalidInput for a step of h [s] from x: the sizes of x were changed, the run has ended at `end_time` [s],
-  /// or the clock does not resolve h.
+  /// or h is below the resolution of floating-point numbers at x.t.
   [[noreturn, gnu::cold]] void refuse_step(State const& x, double end_time, double h) const {
     if (!fits(x))
       throw InvalidInput(
@@ -33,8 +33,8 @@ struct StepUndo {
     if (!(x.t < end_time))
       throw InvalidInput("run.ended", {ErrorObject{"advance"}, ": the run has ended at t = ", ErrorTime{x.t},
                                        " s. Check done() before, or give a later `end_time`."});
-    throw InvalidInput("run.clock", {"The clock does not resolve a step of ", ErrorValue{h}, " s at t = ",
-                                     ErrorTime{x.t}, " s. Count the time of the run from a start near zero."});
+    throw InvalidInput("run.clock", {"Double precision does not resolve a step of ", ErrorValue{h},
+                                     " s at t = ", ErrorTime{x.t}, " s. Start the run at a time near zero."});
   }
   /// Stores the run before a step.
   void begin(StepRow const& row, double h, StepPlan const& plan, RunReport const& report) {
@@ -66,7 +66,7 @@ struct StepUndo {
     said_.assign(report.warnings.begin(), report.warnings.begin() + std::ptrdiff_t(warnings_));
     axial_ = axial;
   }
-  /// Restores the run.
+  /// Restores the run as it was before the step.
   [[gnu::cold]] void put_back(StepRow& row, double& h, StepPlan& plan, RunReport& report, AxialForceMonitor& axial) {
     row = row_;
     h = h_;

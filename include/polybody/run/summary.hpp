@@ -11,7 +11,8 @@ namespace polybody {
 
 namespace detail {
 
-/// Tree of bodies, given by their indices in the layout; −1 is the ground.
+/// Tree of the bodies of a model along joints, from the ground outwards. Bodies are indices in the layout; −1 is the
+/// ground.
 class JointGraph {
  public:
   template <class = void>
@@ -32,10 +33,10 @@ class JointGraph {
       }
   }
 
-  /// Body, the joint that carries it (−1: none), and the body `by` to which this joint connects it.
+  /// Body, the joint that carries this body (−1 if none), and the body `by` at the other end of this joint.
   struct Carried {
     Index body, joint, by;
-    int branch;  ///< number of branching bodies before it, from the ground outwards
+    int branch;  ///< number of branching bodies between the ground and this body
   };
   Sequence<Carried> const& order() const { return order_; }
   /// Number of bodies with a path of joints to the ground; these are the first in `order`.
@@ -89,7 +90,7 @@ class JointGraph {
 
   ModelLayout const& layout_;
   Sequence<char> found_;
-  Sequence<Sequence<Index>> joints_of_;  ///< ascending, by index of the body plus one; the ground is first
+  Sequence<Sequence<Index>> joints_of_;  ///< joints of each body, by index of the body plus one; the ground is first
   Sequence<Carried> order_;
   std::size_t joined_ = 0;
 };

@@ -21,8 +21,8 @@ namespace polybody {
 
 namespace detail {
 
-/// Time step of equally spaced samples [s]. The intervals may differ by a factor of 1e-3. \throws InvalidInput for
-/// other times.
+/// Time step of equally spaced samples [s]. The intervals may differ from their median by 0.1 %. \throws InvalidInput
+/// for larger differences.
 template <class = void>
 double equal_step(std::span<double const> times, std::string const& who) {
   std::vector<double> intervals;
@@ -32,9 +32,10 @@ double equal_step(std::span<double const> times, std::string const& who) {
   std::nth_element(sorted.begin(), middle, sorted.end());
   for (std::size_t i = 0; i < intervals.size(); ++i)
     if (std::abs(intervals[i] - *middle) > 1e-3 * *middle)
-      throw InvalidInput("samples.spacing", {ErrorObject{who}, ": the samples at ", times[i], " s and ", times[i + 1],
-                                             " s are ", ErrorValue{intervals[i]}, " s apart, but others ", *middle,
-                                             " s. Make them equally spaced with resampled, or close the gap."});
+      throw InvalidInput("samples.spacing",
+                         {ErrorObject{who}, ": the samples at ", times[i], " s and ", times[i + 1], " s are ",
+                          ErrorValue{intervals[i]}, " s apart, but the median interval is ", *middle,
+                          " s. Make the samples equally spaced by resampled, or close the gap."});
   return (times.back() - times.front()) / double(intervals.size());
 }
 
@@ -53,9 +54,10 @@ HalfSpectrum fourier_terms(std::vector<double> const& values) {
 }  // namespace detail
 
 /// Resamples `values` at t₀, t₀ + step, … by linear interpolation. Frequencies above half of the new sampling rate
-/// alias. Such histories require a smaller step.
-/// \param step [s] \param largest_gap largest interval between given samples that is interpolated [s]; 0: 1.5 steps
-/// \throws InvalidInput for fewer than two samples, NaNs, times that do not increase, a larger gap.
+/// alias; histories with such frequencies require a smaller step.
+/// \param step time step of the result [s] \param largest_gap largest interval between given samples that is
+/// interpolated [s]; 0: 1.5 steps
+/// \throws InvalidInput for fewer than two samples, for NaNs, for times that do not increase, and for larger gaps.
 template <class = void>
 std::vector<double> resampled(std::span<double const> times, std::span<double const> values, double step,
                               double largest_gap = 0.0) {
@@ -80,19 +82,19 @@ std::vector<double> resampled(std::span<double const> times, std::span<double co
   return out;
 }
 
-/// Low-pass filter that preserves frequencies up to the cut-off f_c in amplitude and phase and removes those above.
-/// It multiplies the Fourier sum of the whole record by the transfer function H,
+/// Low-pass filter that preserves frequencies up to the cut-off f_c in amplitude and phase, and removes higher
+/// frequencies. The filter multiplies the Fourier sum of the whole record by the transfer function H,
 ///   y(t) = Σ_k H(f_k) c_k e^{2πi f_k t},   f_k = k/T.
 /// H is 1 up to the cut-off and 0 above it. With a roll-off w, H decreases from f_c to f_c + w as
 /// ½(1 + cos π(f − f_c)/w).
 ///
 /// The Fourier sum is periodic with the record as period. If the ends of the record differ, a sharp cut-off causes
-/// ringing there. With `mirrored`, the period is the record with its mirror image, which is continuous but has a kink
-/// at the ends. A roll-off makes ringing decay sooner.
+/// ringing at the ends. With `mirrored`, the period is the record with its mirror image, which is continuous but has a
+/// kink at the ends. A roll-off makes ringing decay sooner.
 struct LowPass {
-  Required<double> cut_off;  ///< f_c [Hz]
-  double roll_off = 0.0;     ///< w [Hz]
-  bool mirrored = false;     ///< period of the record with its mirror image
+  Required<double> cut_off;  ///< cut-off f_c [Hz]
+  double roll_off = 0.0;     ///< roll-off w [Hz]
+  bool mirrored = false;     ///< true: the period is the record with its mirror image
 
   /// Transfer function H at f [Hz].
   double share(double f) const {
@@ -104,8 +106,8 @@ struct LowPass {
 /// Returns the history `values` without frequencies above the cut-off. The computing time increases with the largest
 /// prime factor of the number of samples. Long records should have a number of samples with small factors.
 /// \param times equally spaced [s]
-/// \throws InvalidInput for samples that are too few, not finite or not equally spaced, for a cut-off above Nyquist's
-/// frequency and for one whose period is longer than the record.
+/// \throws InvalidInput for samples that are too few, not finite or not equally spaced, for a cut-off above the Nyquist
+/// frequency, and for a cut-off whose period is longer than the record.
 template <class = void>
 std::vector<double> low_pass(std::span<double const> times, std::span<double const> values, LowPass const& filter) {
   detail::require_history(times, values, 4, "low_pass");
@@ -137,12 +139,12 @@ std::vector<double> low_pass(std::span<double const> times, std::span<double con
   return period;
 }
 
-/// Window function: weights of the samples of a record at the relative position x ∈ [0, 1) for the spectrum.
+/// Window function of a spectrum: weight of a sample at the relative position x ∈ [0, 1) in the record.
 template <class W>
 concept SpectralWindow = requires(double x) {
   { W::weight(x) } -> std::convertible_to<double>;
 };
-/// Rectangular window with weight one, exact for periods of the record.
+/// Rectangular window with weight one, exact if the record contains whole periods.
 struct EqualWeights {
   static double weight(double) { return 1.0; }  ///< one at all positions
 };
@@ -155,13 +157,13 @@ struct HannWindow {
 
 /// Amplitude spectrum: x(t) = Σ_k a_k cos(2π f_k t + φ_k), a₀ = |mean|.
 struct Spectrum {
-  std::vector<double> frequencies;  ///< [Hz]
-  std::vector<double> amplitudes;   ///< (n) [unit of the samples]
+  std::vector<double> frequencies;  ///< frequencies f_k [Hz]
+  std::vector<double> amplitudes;   ///< amplitudes a_k, one per frequency [unit of the samples]
 };
 
-/// Amplitude spectrum of equally spaced samples, `values` at `times` [s], without their mean, with a window: a_k =
-/// 2|Σ_i w_i x_i e^{−2πi k i/n}|/Σ_i w_i (without the factor 2 at the Nyquist frequency). \throws InvalidInput as
-/// `low_pass`.
+/// Amplitude spectrum of equally spaced samples `values` at `times` [s]. The mean is a₀; the other amplitudes are
+/// computed without it, with a window: a_k = 2|Σ_i w_i x_i e^{−2πi k i/n}|/Σ_i w_i (without the factor 2 at the Nyquist
+/// frequency). \throws InvalidInput for samples that are too few, not finite or not equally spaced.
 template <SpectralWindow W = HannWindow>
 Spectrum amplitude_spectrum(std::span<double const> times, std::span<double const> values, W const& = {}) {
   detail::require_history(times, values, 4, "amplitude_spectrum");

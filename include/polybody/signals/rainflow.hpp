@@ -38,14 +38,14 @@ std::vector<double> turning_points(std::span<double const> history) {
 /// Closed stress cycle, or half of a cycle.
 struct StressCycle {
   double range;  ///< range from valley to peak, twice the amplitude [N/m²]
-  double mean;   ///< [N/m²]
+  double mean;   ///< mean stress [N/m²]
   double count;  ///< number of cycles: 1 or ½ [1]
 };
 
 /// Rainflow counting: cycles of a history, in the order in which they close. X is the last range and Y the one before
 /// it. As soon as X ≥ Y,
 ///
-/// - Y counts as a cycle, and its two points are removed from the history;
+/// - Y counts as a cycle, and its two points are removed from the history, unless Y begins the history;
 /// - if Y begins the history, Y counts as half a cycle, and its first point is removed from the history.
 ///
 /// Every range that remains at the end counts as half a cycle [ASTM E1049-85, §5.4.4].
@@ -89,8 +89,8 @@ std::vector<double> binned(std::span<StressCycle const> cycles, double width) {
   return counts;
 }
 
-/// S–N curve: number N of cycles of a range S until failure of a structural detail, N = N₀ (S₀/S)^m, a line in double
-/// logarithms [Basquin 1910]. For welded details, S₀ is usually given at N₀ = 2e6, with m = 3.
+/// S–N curve: number N of cycles of a range S until failure of a structural detail, N = N₀ (S₀/S)^m, a straight line on
+/// logarithmic axes [Basquin 1910]. For welded details, S₀ is usually given at N₀ = 2e6, with m = 3.
 struct Basquin {
   Required<double> range;     ///< S₀, from valley to peak [N/m²]
   Required<double> cycles;    ///< N₀ [1]

@@ -14,7 +14,7 @@ namespace polybody {
 ///   d.add({ta, ax}, {tb, bx});
 ///   d.add({ta, ay}, {tb, by});
 ///   d.value()
-/// The history a is interpolated linearly. Its times may differ from those of b, as in a run with half the step.
+/// The history a is interpolated linearly. The times of a may differ from those of b, as in a run with half the step.
 class RmsDifference {
  public:
   /// Difference over the samples from `from` to `to` [s].

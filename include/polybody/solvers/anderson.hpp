@@ -14,29 +14,29 @@ namespace polybody {
 
 /// Result of the least-squares fit of a correction f.
 struct AndersonFit {
-  double contraction;  ///< ‖u₁‖/‖s₋₁‖, contraction rate of the iteration without acceleration, a ratio
-  double left;         ///< ‖f − γ₁ d₁ − γ₂ d₂‖/‖f‖, a ratio; at least 0.1, because maps are not exactly linear
+  double contraction;  ///< ‖u₁‖/‖s₋₁‖, contraction rate of the iteration without acceleration [1]
+  double left;         ///< relative residual ‖f − γ₁ d₁ − γ₂ d₂‖/‖f‖ [1]; at least 0.1, as maps are not exactly linear
 };
 
-/// Stores the previous corrections of an iteration and combines the next one with them.
+/// Stores the previous corrections of an iteration, and combines the next correction with them.
 class AndersonAcceleration {
  public:
-  /// Allocates all memory. \param n number of entries of a correction  \param measured number of leading entries of
-  /// which the norm is minimised
+  /// Allocates all memory. \param n number of entries of a correction \param measured number of leading entries in the
+  /// minimised norm
   AndersonAcceleration(Index n, Index measured)
       : measured_(measured), last_(VecX::Zero(n)), c_(last_), d_(last_), u_(last_) {}
 
   /// Discards the stored corrections: the next correction is the first one of a new map.
   void forget() { known_ = 0; }
-  /// True if the last step is a combination. The ratio of the next correction to the last one is then not a contraction
-  /// rate.
+  /// True if the last step combines several corrections. The ratio of the next correction to the last one is then not a
+  /// contraction rate.
   bool combined() const { return known_ > 1; }
 
-  /// Fits the correction `f` by the stored ones, of which there must be at least one.
+  /// Fits the correction `f` by the stored corrections. At least one must be stored.
   AndersonFit fit(VecX const& f) { return known_ > 1 ? fit_by_two(f) : fit_by_one(f); }
 
-  /// Replaces f by the step of the last `fit`, and stores f for the next fit. The first correction of a map is
-  /// unchanged.
+  /// Replaces f by the step with the coefficients of the last `fit`, and stores the original f for the next fit. The
+  /// first correction of a map is unchanged.
   void combine(VecX& f) {
     if (known_ == 0)
       last_ = f;
@@ -48,7 +48,7 @@ class AndersonAcceleration {
  private:
   static double share(double fitted, double ff) { return std::sqrt(std::max(0.01, 1.0 - fitted / ff)); }
 
-  /// The last step is the last correction, without combination: u₁ = f.
+  /// Fit with one stored correction. The last step s₋₁ is that correction, so that c₋₁ = 0 and u₁ = f.
   AndersonFit fit_by_one(VecX const& f) {
     SimdSum ff, fd, dd, ss;
     for_each_simd_block(measured_, [&, now = f.data(), last = last_.data()](auto at) {
@@ -69,7 +69,7 @@ class AndersonAcceleration {
         });
     double const fd = sum_fd.total(), dd = sum_dd.total(), fe = sum_fe.total(), de = sum_de.total(),
                  ee = sum_ee.total(), det = dd * ee - de * de;
-    bool const apart = det > 0.01 * dd * ee;  // else d₁ and d₂ are nearly parallel
+    bool const apart = det > 0.01 * dd * ee;  // false if d₁ and d₂ are nearly parallel
     gamma_ = apart ? (fd * ee - fe * de) / det : dd > 0.0 ? fd / dd : 0.0;
     gamma_before_ = apart ? (fe * dd - fd * de) / det : 0.0;
     return {std::sqrt(sum_uu.total() / sum_ss.total()), share(gamma_ * fd + gamma_before_ * fe, sum_ff.total())};
@@ -91,7 +91,7 @@ class AndersonAcceleration {
   }
 
   Index measured_;
-  int known_ = 0;  // stored corrections of the map, at most two; all except the first have d and u
+  int known_ = 0;  // number of stored corrections, at most two; the first one has no d₁ and u₁
   double gamma_ = 0.0, gamma_before_ = 0.0;
   VecX last_, c_, d_, u_;
 };

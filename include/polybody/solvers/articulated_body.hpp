@@ -1,13 +1,14 @@
 #pragma once
 /// \file
 /// Articulated-body algorithm: eliminates TᵀKT body by body from the tips of a tree to its roots [Featherstone 1983;
-/// 2008, §7]. K has blocks of single bodies and blocks between a body and its parent. The twist x = [v; ω] of a body
-/// about its centre of mass is x = X x_p + S u. After the elimination of its descendants, the equation of a body is
-/// K̂ x + C x_p = f, where B and C are the blocks (parent, body) and (body, parent):
+/// 2008, §7]. T maps the joint velocities u to the velocities of all bodies. K couples a body only with itself and its
+/// parent. The twist of a body at its centre of mass is x = [v; ω] = X x_p + S u, where x_p is the twist of its parent.
+/// After the elimination of its descendants, a body has the equation K̂ x + C x_p = f. With the blocks B = K(parent,
+/// body) and C = K(body, parent):
 ///   D u = r + Sᵀf − L x_p,    D = SᵀK̂ S,  L = Sᵀ(K̂ X + C),  R = (XᵀK̂ + B) S,
 ///   K̂_p += Xᵀ(K̂ X + C) + B X − R D⁻¹ L,    f_p += Xᵀf − R D⁻¹(r + Sᵀf).
-/// A root has no parent, and S = 1. The remaining constraint equations are solved by their Schur complement
-/// G T (TᵀKT)⁻¹ (G T)ᵀ.
+/// A root has no parent, and u are its own generalised velocities. The remaining constraint equations, with Jacobian G,
+/// are solved with their Schur complement G T (TᵀKT)⁻¹ (G T)ᵀ.
 
 #include <polybody/math/sequence.hpp>
 #include <polybody/solvers/dense_lu.hpp>
@@ -15,7 +16,8 @@
 
 namespace polybody {
 
-/// T is always `double`. The class is a template so that programs without joint coordinates do not compile it.
+/// Solver of the policy `joint_coordinates::ArticulatedBody`. The scalar type T is always `double`. As a template, the
+/// class is compiled only in programs with joint coordinates.
 template <class T = double>
 class ArticulatedBodySolverOf {
   using Vec3 = Vec<T, 3>;
@@ -27,8 +29,8 @@ class ArticulatedBodySolverOf {
   using TreeState = TreeStateOf<T>;
 
  public:
-  /// Sets the reduction with its tree and the state of the bodies. Both must outlive the use of the solver. Allocates
-  /// all memory.
+  /// Sets the reduction, which contains the tree, and the state of the bodies. Reduction and state must outlive the
+  /// solver. Allocates all memory.
   void attach(ReductionOf<> const& reduction, TreeState const& state) {
     reduction_ = &reduction;
     state_ = &state;
@@ -85,8 +87,8 @@ class ArticulatedBodySolverOf {
     }
   }
 
-  /// Returns −1, or the unknown (of a time step) without a pivot. \throws InvalidInput for a nonzero block between two
-  /// bodies if neither is the parent of the other.
+  /// Returns −1, or the index of the reduced unknown without a usable pivot. \throws InvalidInput for a nonzero block
+  /// between two bodies if neither is the parent of the other.
   Index factor() {
     if (misplaced_ >= 0)
       throw InvalidInput("solver.force_coupling", {"joint_coordinates::ArticulatedBody: a force couples body \"",
@@ -124,7 +126,7 @@ class ArticulatedBodySolverOf {
   struct Node {
     Mat6 k = Mat6::Zero(), b = k, c = k;           ///< K̂, B, C
     Mat6 s = k, inverse = k, left = k, right = k;  ///< S, D⁻¹, L by rows, R by columns
-    Vec6 f = Vec6::Zero(), x = f, u = f;  ///< force on the body; [v; ω] and u: velocities, in the unit of the solution
+    Vec6 f = Vec6::Zero(), x = f, u = f;  ///< force on the body; solution x = [v; ω] of the body and u of its joint
     int velocities = 0;
 
     /// u += part · D⁻¹ given.
@@ -179,7 +181,8 @@ class ArticulatedBodySolverOf {
     return -1;
   }
 
-  /// Computes u of all joints and x of all nodes for generalised forces r and the f of the nodes; overwrites these f.
+  /// Computes the joint velocities u and the twists x of all nodes for the generalised forces r and the node forces f.
+  /// Overwrites f.
   template <class Out>
   void run(VecX const& r, Out&& u) {
     Sequence<TreeBody> const& bodies = reduction_->tree().bodies;
@@ -210,7 +213,7 @@ class ArticulatedBodySolverOf {
       }
     }
   }
-  /// Row j of G x for the x of the nodes.
+  /// Row j of G x, with the twists x of the nodes.
   double row_times(Index j) const {
     double sum = 0.0;
     for (std::size_t i = 0; i < nodes_.size(); ++i) sum += rows_[std::size_t(j)][i].dot(nodes_[i].x);
@@ -220,8 +223,8 @@ class ArticulatedBodySolverOf {
   ReductionOf<> const* reduction_ = nullptr;
   TreeState const* state_ = nullptr;
   Sequence<Node> nodes_;
-  Sequence<Index> owner_, row_of_;  // body of each full velocity; reduced row of each full row
-  Sequence<Sequence<Vec6>> rows_;   // G, by rows and bodies
+  Sequence<Index> owner_, row_of_;  // body of each full velocity; remaining equation of each full one
+  Sequence<Sequence<Vec6>> rows_;   // G: a row per remaining equation and body
   MatX answers_, schur_;
   VecX open_, lambda_, none_;
   DenseLu loops_;

@@ -31,12 +31,12 @@ void set_product(T const* a, B const* b, int columns, T* out) {
 /// Index of entry (i, j) of a symmetric 3×3 matrix among its six stored entries.
 inline constexpr int symmetric_place[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
 
-/// Inertia I in [f; m] = I [a; α] = [M a + Hᵀα; H a + Θα], where M and Θ are symmetric.
+/// Inertia I between acceleration and wrench, [f; m] = I [a; α] = [M a + Hᵀα; H a + Θα]. M and Θ are symmetric.
 template <class T>
 struct ArticulatedInertia {
-  T mass[6], first[9], second[6];  ///< H by columns
+  T mass[6], first[9], second[6];  ///< M, H (by columns) and Θ
 
-  /// Sets M and H for a body with mass `m` and first moment `mc`. The caller sets the second moments.
+  /// Sets M and H for a body with mass `m` and first moment `mc`. The caller sets Θ.
   void set(double m, T const* mc) {
     for (int i = 0; i < 6; ++i) mass[i] = T(0.0);
     mass[0] = mass[3] = mass[5] = T(m);
@@ -48,16 +48,17 @@ struct ArticulatedInertia {
     first[1] = mc[2];
     first[3] = -mc[2];
   }
-  /// out += [M a; H a]; `add_by_angular`: out += [Hᵀα; Θα].
+  /// out += [M a; H a].
   void add_by_acceleration(T const* a, T* out) const {
     add_symmetric(mass, a, out);
     for (int i = 0; i < 3; ++i) out[3 + i] += first[i] * a[0] + first[3 + i] * a[1] + first[6 + i] * a[2];
   }
+  /// out += [Hᵀα; Θα].
   void add_by_angular(T const* alpha, T* out) const {
     for (int i = 0; i < 3; ++i) out[i] += dot(first + 3 * i, alpha, 3);
     add_symmetric(second, alpha, out + 3);
   }
-  /// I −= u uᵀ/D.
+  /// I −= u uᵀ/D; `inverse` is 1/D.
   void remove(T const* u, T const& inverse) {
     for (int i = 0; i < 3; ++i) {
       T const f = u[i] * inverse, m = u[3 + i] * inverse;
@@ -68,8 +69,8 @@ struct ArticulatedInertia {
       for (int j = 0; j < 3; ++j) first[3 * i + j] -= f * u[3 + j];
     }
   }
-  /// Adds XᵀI X of an inertia I with its reference point at the distance `d`. With H' = H + d̃ M of I, it adds M, H' and
-  /// Θ − H'd̃ + d̃ Hᵀ.
+  /// Adds XᵀI X for the inertia I = `from`, whose reference point lies at `d` from that of this inertia. The blocks of
+  /// XᵀI X are M, H' = H + d̃ M and Θ − H'd̃ + d̃ Hᵀ.
   void add_carried(ArticulatedInertia const& from, T const* d) {
     T moved[9];
     for (int j = 0; j < 3; ++j) {

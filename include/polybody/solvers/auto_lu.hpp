@@ -7,7 +7,7 @@
 
 namespace polybody {
 
-/// Uses the solver `Small` up to `limit` unknowns, and the solver `Large` above.
+/// Linear solver that uses `Small` up to `limit` unknowns, and `Large` for larger systems.
 template <class Small, class Large>
 class SolverBySize {
  public:
@@ -34,7 +34,8 @@ class SolverBySize {
   Large many_;
 };
 
-/// LU factorisation with pivoting over the whole matrix, for statics: single blocks may be without a pivot there.
+/// LU factorisation with pivoting over the whole matrix. Statics needs it because single diagonal blocks may be
+/// singular.
 using AutoLu = SolverBySize<DenseLu, EigenSparseLu>;
 
 }  // namespace polybody

@@ -4,12 +4,13 @@
 /// are computed once. Each factorisation runs through a flat list of block operations without search, allocation or
 /// pivoting between blocks.
 ///
-/// The rows of a node are stored as U = [D | W], where D is its diagonal block and W its blocks with later nodes. Its
-/// blocks below D are stored transposed, as Lt. With D = L Δ R (pivots Δ, unit triangular L and R), elimination
-/// computes W ← L⁻¹ W, Lt ← Δ⁻¹ R⁻ᵀ Lt, and C_kl −= Lt_kᵀ W_l for all later k, l. In a symmetric matrix Lt = Δ⁻¹ W, and
-/// only blocks with l ≥ k are computed. Small nodes then store the elimination multipliers D⁻¹ W and D⁻ᵀ Lt of the
-/// original blocks, so that in a solution no node waits for the triangular solve of another one. If D is nearly
-/// singular, sums of such products would cancel, and the node stores the W and Lt of its elimination.
+/// A node is a set of unknowns that are eliminated together. Its rows are stored as U = [D | W], where D is its
+/// diagonal block and W its blocks with later nodes. Its blocks below D are stored transposed, as Lt. D is factorised
+/// as L Δ R, with pivots Δ and unit triangular L and R. Elimination computes W ← L⁻¹ W, Lt ← Δ⁻¹ R⁻ᵀ Lt, and C_kl −=
+/// Lt_kᵀ W_l for the blocks C of all later nodes k, l. In a symmetric matrix Lt = Δ⁻¹ W, and only blocks with l ≥ k are
+/// computed. Afterwards small nodes store the elimination multipliers D⁻¹ W and D⁻ᵀ Lt of the original blocks. In a
+/// solution no node then waits for the triangular solve of another one. If D is nearly singular, sums of products with
+/// these multipliers would cancel, and the node stores L⁻¹ W and Δ⁻¹ R⁻ᵀ Lt.
 
 #include <algorithm>
 #include <cmath>
@@ -26,25 +27,26 @@ namespace polybody {
 enum class Symmetry {
   assumed,   ///< only the upper half is read
   none,      ///< both halves are read
-  measured,  ///< both halves are read; half the work if they agree
+  measured,  ///< both halves are read; if they agree, only the upper half is computed
 };
 
-/// The block solver; `BlockLdlt`, `BlockLu` and `BlockSolver` are its three variants.
+/// Block factorisation of a saddle-point matrix; `BlockLdlt`, `BlockLu` and `BlockSolver` are its three variants.
 template <Symmetry symmetry>
 class BlockFactor {
  public:
-  /// A pivot of a body, or of the rows of a joint, counts as zero below this part of the sum of its terms' magnitudes.
-  static constexpr double body_threshold = 1e-13, row_threshold = 1e-9;  ///< ratios, pivot to sum of its terms
-  /// Systems with up to this many unknowns fall back on one dense block with pivoting.
+  /// Least ratio of a pivot of a body, or of a joint, to the sum of the magnitudes of its terms. Smaller pivots count
+  /// as zero.
+  static constexpr double body_threshold = 1e-13, row_threshold = 1e-9;  ///< ratios, pivot to sum of terms
+  /// Up to this number of unknowns, one dense block with pivoting is used if changes of the elimination order fail.
   static constexpr Index dense_limit = 64;
-  /// The block solver that reads both halves.
+  /// Block solver that reads both halves of the matrix.
   using Unsymmetric = BlockFactor<symmetry == Symmetry::assumed ? Symmetry::none : symmetry>;
 
   BlockFactor() = default;
-  BlockFactor(BlockFactor const&) = delete;  // the slots point into the storage
+  BlockFactor(BlockFactor const&) = delete;  // slots_ points into u_ and l_
   BlockFactor& operator=(BlockFactor const&) = delete;
-  BlockFactor(BlockFactor&&) = default;             ///< the slots remain valid
-  BlockFactor& operator=(BlockFactor&&) = default;  ///< the slots remain valid
+  BlockFactor(BlockFactor&&) = default;             ///< `slots()` remain valid
+  BlockFactor& operator=(BlockFactor&&) = default;  ///< `slots()` remain valid
 
   [[gnu::cold]] void analyse(Index size, std::span<Block const> blocks) {
     size_ = size;
@@ -74,11 +76,12 @@ class BlockFactor {
   }
   /// Skips the next block in the analysed order; its entries are zero.
   void skip(Index, Index, Index, Index) { ++next_; }
-  /// Destinations of the blocks. They are valid until the next `analyse` or change of the order (`reordered`).
+  /// Addresses to which the blocks are added. They are valid until the next `analyse` or change of the elimination
+  /// order (`reordered`).
   BlockSlots slots() const { return {slots_.data(), layout_.first_piece.data(), number_}; }
 
-  /// Returns −1, or the unknown without a usable pivot. Redundant rows of a loop are dropped: see `dropped`.
-  /// If `reordered` is true after a failure, the same matrix can be written and factorised again.
+  /// Returns −1, or the unknown without a usable pivot. Redundant constraint equations of a loop are dropped: see
+  /// `dropped`. If `reordered` is true after a failure, the same matrix can be written and factorised again.
   Index factor() {
     reordered_ = false;
     dropped_count_ = 0;
@@ -105,21 +108,22 @@ class BlockFactor {
   bool reordered() const { return reordered_; }
   /// Number of changes of the elimination order.
   std::size_t reorderings() const { return std::min(kept_, earlier_.size()); }
-  /// Reverts all changes of the order except the first `count`. The factor remains valid until the next `begin`.
+  /// Reverts all changes of the elimination order except the first `count`. The factor remains valid until the next
+  /// `begin`.
   void limit_reorderings(std::size_t count) noexcept { kept_ = std::min(count, kept_); }
-  /// Redundant unknowns (rows of joints); their multipliers are zero.
+  /// Unknowns of redundant constraint equations; these multipliers are zero.
   std::span<Index const> dropped() const { return {dropped_.data(), dropped_count_}; }
-  /// Every later factorisation drops these unknowns (rows of joints), whatever their pivots, until the next `analyse`.
-  /// Rows in one node with a singular body are not dropped.
+  /// Makes every later factorisation drop the multipliers `unknowns` and their equations, whatever the pivots, until
+  /// the next `analyse`. Equations that share a node with a singular body are not dropped.
   [[gnu::cold]] void mark_redundant(std::span<Index const> unknowns) {
     left_out_ = Sequence<Index>(unknowns.begin(), unknowns.end());
     place_left_out();
   }
-  /// True if the last factorisation dropped more rows than `mark_redundant` lists, or if a row that closes a loop has a
-  /// pivot below `share` of the sum of its terms.
+  /// True if the last factorisation dropped more equations than `mark_redundant` lists, or if a pivot of a closing
+  /// joint is at most `share` times the sum of the magnitudes of its terms.
   [[gnu::cold]] bool is_doubtful(double share) const;
-  /// Vector n with n = 1 at the unknown `dropped`, 0 at all other dropped unknowns, and A n = 0 in all other rows,
-  /// where A is the last factorised matrix. If the row of that unknown is redundant, n is a null vector of A.
+  /// Computes the vector n with 1 at the unknown `dropped`, 0 at all other dropped unknowns, and A n = 0 in all other
+  /// rows. A is the last factorised matrix. If the equation of `dropped` is redundant, n is a null vector of A.
   [[gnu::cold]] void null_vector(Index dropped, VecX& n) const;
   /// True if the last factorisation used symmetry, with half the work.
   bool was_symmetric() const { return symmetric_; }
@@ -186,7 +190,7 @@ class BlockFactor {
   }
   bool is_symmetric() const;
 
-  /// A symmetric node needs Lt = Δ⁻¹ W only during its elimination.
+  /// True if Lt is stored. A symmetric node needs Lt = Δ⁻¹ W only during its elimination.
   bool keeps_columns(Node const& n) const { return n.pivoted || !symmetric_; }
   detail::NodeStorage storage(Node const& n) const {
     double* const l = keeps_columns(n) ? l_.data() + n.l : scaled_.data();
@@ -256,7 +260,7 @@ class BlockFactor {
 
   template <int N>
   int eliminate(Node const& n, bool symmetric) {
-    double* const scale = scales_.data() + n.x;  // magnitudes that eliminations added to the diagonal
+    double* const scale = scales_.data() + n.x;  // sums of the magnitudes that eliminations added to the diagonal
     if (n.pivoted) return detail::eliminate_pivoted(storage(n), symmetric, body_threshold, scale, swaps_.data() + n.x);
     return detail::eliminate_node<N>(storage(n), symmetric, n.joint ? row_threshold : body_threshold, scale,
                                      [&](int r, double pivot) {
@@ -307,8 +311,8 @@ class BlockFactor {
   detail::BlockPattern pattern_;
   detail::BlockLayout layout_;
   detail::BlockLayout::NodeHints hints_;
-  Sequence<detail::BlockLayout::NodeHints> earlier_;  // before each change of the order
-  std::size_t kept_ = no_limit;                       // changes that the next factorisation keeps
+  Sequence<detail::BlockLayout::NodeHints> earlier_;  // hints before each change of the order
+  std::size_t kept_ = no_limit;                       // number of changes that the next factorisation keeps
   bool reordered_ = false, symmetric_ = false;
   std::size_t next_ = 0;        // next block to be added
   std::uint64_t number_ = 0;    // number of the layout
@@ -316,9 +320,9 @@ class BlockFactor {
   Sequence<int> swaps_;
   mutable Sequence<char> direct_;  // size of each node, or 0 if it stores no elimination multipliers
   Sequence<Index> dropped_, left_out_;
-  Sequence<int> left_out_places_;  // places of those in nodes without pivoting
+  Sequence<int> left_out_places_;  // places of left_out_ in nodes without pivoting
   std::size_t dropped_count_ = 0;
-  mutable detail::AlignedDoubles u_, l_, f_, inverse_, scaled_, work_;  // a solve changes only the last two
+  mutable detail::AlignedDoubles u_, l_, f_, inverse_, scaled_, work_;  // `solve` changes only scaled_ and work_
   detail::AlignedDoubles scales_;
 };
 

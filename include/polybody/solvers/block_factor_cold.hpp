@@ -1,7 +1,7 @@
 #pragma once
 /// \file
 /// Functions of the block factorisation that are not called in a usual step: changes of the elimination order, null
-/// vectors of redundant rows, counts.
+/// vectors of redundant constraints, counts of operations and entries.
 
 #include <polybody/solvers/block_factor.hpp>
 
@@ -16,7 +16,7 @@ template <Symmetry symmetry>
   auto const& segments = pattern_.segments();
   auto const& segment = segments[std::size_t(pattern_.of(unknown))];
   bool changed = false;
-  if (!n.pivoted && n.joint) {  // its neighbours alone give no pivot: eliminate it last
+  if (!n.pivoted && n.joint) {  // a joint without a pivot: eliminate it last
     for (std::size_t s = 0; s < segments.size(); ++s)
       if (segments[s].first == segment.first && !hints_.late[s]) {
         hints_.late[s] = 1;
@@ -78,7 +78,7 @@ void BlockFactor<symmetry>::null_vector(Index dropped, VecX& x) const {
     --n;
     with_constant(direct_[number(*n)], [&](auto size) { solution.template ascend<size>(*n); });
     if (n != &own) continue;
-    y[row] = 1.0;  // `ascend` leaves it zero; it changes the earlier rows of the node
+    y[row] = 1.0;  // `ascend` leaves y[row] zero; y[row] changes the earlier rows of the node
     for (int r = row - 1; r >= 0; --r) {
       if (s.inverse[r] == 0.0) continue;  // dropped
       double sum = s.u[r * stride + row];

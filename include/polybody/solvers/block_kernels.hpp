@@ -39,7 +39,7 @@ class AlignedDoubles {
   Sequence<Four> quads_;
 };
 
-/// Rows of a block: address of the first row, and distance between rows.
+/// Rows of a block: address of the first row, and distance between rows [doubles].
 template <class T>
 struct RowsOf {
   T* first;

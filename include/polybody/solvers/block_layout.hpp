@@ -1,7 +1,8 @@
 #pragma once
 /// \file
-/// Symbolic phase of a block factorisation. It computes once the nodes in elimination order, the position of each block
-/// of the matrix and of the fill, and the blocks that each elimination changes. The numeric phase uses only flat lists.
+/// Symbolic phase of a block factorisation. It computes the nodes in elimination order, the position of each block of
+/// the matrix and of the fill, and the blocks that each elimination changes. The numeric phase uses only these flat
+/// lists.
 
 #include <algorithm>
 #include <span>
@@ -14,30 +15,30 @@ namespace polybody::detail {
 
 class BlockLayout {
  public:
-  /// A later node that shares a block with an earlier one.
+  /// Later node that shares a block with a given earlier node.
   struct Neighbour {
-    int node, column, size;  ///< position in the order, first column within W, number of unknowns
+    int node, column, size;  ///< position in the order, first column in W of the earlier node, number of unknowns
   };
-  /// A node of the elimination. Its rows are stored as [D | W], where D is its diagonal block and W its blocks with
-  /// later nodes; its blocks below D are stored transposed, as Lt.
+  /// Node of the elimination: a set of unknowns that are eliminated together. Its rows are stored as [D | W], where D
+  /// is its diagonal block and W its blocks with later nodes. Its blocks below D are stored transposed, as Lt.
   struct Node {
-    int size, pad, width;    ///< unknowns, unknowns with padding, columns of W
-    std::size_t u, l, f, x;  ///< offsets of its rows [D | W], of Lt if present, of its factor L, of its vectors
+    int size, pad, width;    ///< numbers of unknowns, of unknowns with padding, and of columns of W
+    std::size_t u, l, f, x;  ///< offsets of [D | W], of Lt if present, of the factor L, and in padded vectors
     int first_neighbour, neighbours;
-    int first_target;  ///< first index in `targets`; per pair of neighbours k before l: the column of l in W of k
+    int first_target;  ///< first index in `targets`: for each pair of neighbours k before l, the column of l in W of k
     bool pivoted, joint, droppable;
     int stride() const { return pad + width; }
   };
   /// Part of an added block between two segments, with its destination.
   struct Piece {
     std::size_t to;
-    int row, col, rows, cols;  ///< within the added block
-    int stride;                ///< of the destination
-    bool lower;                ///< the destination is Lt; the part is transposed
+    int row, col, rows, cols;  ///< first row and column, and size, within the added block
+    int stride;                ///< distance between rows of the destination
+    bool lower;                ///< true if the destination is Lt, which stores the part transposed
   };
-  /// Changes of the elimination order after missing pivots: bodies in one node with their joint (`merged`), joints that
-  /// are eliminated last (`late`), further joints of such a body in separate nodes because they may be redundant
-  /// (`apart`), all unknowns in one node (`dense`).
+  /// Changes of the elimination order after missing pivots. `merged`: bodies in one node with their joint. `late`:
+  /// joints that are eliminated last. `apart`: further joints of merged bodies in separate nodes, because they may be
+  /// redundant. `dense`: all unknowns in one node.
   struct NodeHints {
     Sequence<char> merged, late;
     bool apart = false;
@@ -49,12 +50,12 @@ class BlockLayout {
   Sequence<int> targets;
   Sequence<Piece> pieces;
   Sequence<int> first_piece;  ///< first piece of each added block, and one past the last piece
-  Sequence<Index> unknown;    ///< unknown at each place of padded vectors; −1 for padding
-  Sequence<int> place;        ///< place of each unknown in padded vectors
+  Sequence<Index> unknown;    ///< unknown at each position of a padded vector; −1 for padding
+  Sequence<int> place;        ///< position of each unknown in a padded vector
   std::size_t size_u = 0, size_l = 0, size_f = 0;
-  int largest_w = 0;  ///< entries of the largest W, or unknowns of the largest node
+  int largest_w = 0;  ///< number of entries of the largest W, or of unknowns of the largest node
 
-  /// Without `both_halves` only nodes with pivoting have an Lt.
+  /// Computes the layout. Without `both_halves`, only nodes with pivoting have an Lt.
   [[gnu::cold]] void compile(BlockPattern const& pattern, std::span<Block const> blocks, NodeHints const& hints,
                              bool both_halves) {
     EliminationOrder order;
@@ -94,8 +95,8 @@ class BlockLayout {
     return node_of;
   }
 
-  /// Merges segments of a body with the same neighbours into one node, up to the largest size of kernels with constant
-  /// size. Separate nodes would have the same fill, and each would pass over the same neighbours.
+  /// Merges the segments of a body into one node if they have the same neighbours, up to `largest_segment` unknowns.
+  /// Separate nodes would have the same fill, and each would repeat the loop over these neighbours.
   [[gnu::cold]] static void join_alike(BlockPattern const& pattern, std::span<Block const> blocks,
                                        Sequence<int>& node_of, int& count) {
     auto const& segments = pattern.segments();
@@ -123,8 +124,9 @@ class BlockLayout {
     }
   }
 
-  /// Merges many joints that close loops between the same bodies into one node: most of their rows are redundant. As
-  /// separate nodes each would have an update for every pair of later ones.
+  /// Merges the closing joints between the same bodies into one node if there are more than `fewest_alike`; most of
+  /// their equations are redundant. In separate nodes, each joint would update the blocks of every pair of later
+  /// joints.
   [[gnu::cold]] static void join_alike_joints(BlockPattern const& pattern, Sequence<Sequence<int>> const& touched,
                                               Sequence<int>& node_of, int& count) {
     auto const& segments = pattern.segments();
@@ -246,7 +248,7 @@ class BlockLayout {
     }
   }
 
-  Sequence<int> local_, place_;  // for each segment: first place within its node, and its node
+  Sequence<int> local_, place_;  // for each segment: position of its first unknown in its node, and the node
 };
 
 }  // namespace polybody::detail

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Operations of a block factorisation at one node. The number N of unknowns is a constant for small nodes; N = 0 if it
-/// is known only at run time. The rows of the node are U = [D | W], its columns Lt; see `BlockFactor`.
+/// Operations of a block factorisation at one node. The number N of unknowns is a constant for small nodes; N = 0 if
+/// the number is known only at run time. The rows of the node are U = [D | W], its columns Lt; see `BlockFactor`.
 
 #include <algorithm>
 
@@ -15,16 +15,16 @@ struct NodeStorage {
   double *u, *l;         ///< rows [D | W] (size × stride); Lt (size × width), or memory for Δ⁻¹ W
   double* f;             ///< factors of L, by rows (size × size)
   double* inverse;       ///< inverses of the pivots (size)
-  char* direct;  ///< size, or 0 without elimination multipliers: if the node is large, pivoted or nearly singular
+  char* direct;          ///< size, or 0 if no multipliers are stored: the node is large, pivoted or nearly singular
   int stride() const { return pad + width; }
 };
 
-/// A node is nearly singular if a pivot is below this part of the sum of its terms' magnitudes: D⁻¹ is then large
-/// compared with the solutions.
+/// Ratio of a pivot to the sum of the magnitudes of its terms. If the ratio is smaller, the node is nearly singular,
+/// and D⁻¹ is large compared with the solutions.
 inline constexpr double weak_threshold = 1e-5;
 
-/// Factorises D = L Δ R in registers and returns −1 on success. It calls `reject(r, pivot)` for a pivot not above
-/// threshold · (scale[r] + |D_rr|): true ends the factorisation, which returns r; false drops the row.
+/// Factorises D = L Δ R in registers and returns −1 on success. Calls `reject(r, pivot)` for a pivot of at most
+/// threshold · (scale[r] + |D_rr|). If `reject` returns true, the function returns r; otherwise row r is dropped.
 template <int N, class Reject>
 int factor_block(NodeStorage const& n, double threshold, double const* scale, Reject&& reject) {
   constexpr int count = padded(N) / lane_size;
@@ -272,8 +272,8 @@ struct LaterNodes {
   double* of(Neighbour const& k) const { return w + nodes[k.node].x; }
 };
 
-/// x −= Cᵀ y for the x of all later nodes, where `c` are the elimination multipliers C with `size` rows. Two sums per
-/// entry shorten the chain of dependent additions.
+/// x −= Cᵀ y for the vectors x of all later nodes. `c` stores the elimination multipliers C, with `size` rows. Two sums
+/// per entry shorten the chain of dependent additions.
 template <int N, class Later>
 inline void pass_down(double const* c, int stride, int size, double const* y, Later later) {
   constexpr int at_once = N > 0 ? N : 4;
@@ -299,7 +299,7 @@ inline void pass_down(double const* c, int stride, int size, double const* y, La
   }
 }
 
-/// Adds W x over all later nodes to `sums`, for `rows` rows from `first` on (N rows if N > 0).
+/// Adds the sum of W x over all later nodes to `sums`, for `rows` rows from row `first` on (N rows if N > 0).
 template <int N, class Later>
 inline void pull_up(NodeStorage const& n, int first, int rows, Later later, Lane* sums) {
   for (auto const& k : later) {
@@ -312,8 +312,8 @@ inline void pull_up(NodeStorage const& n, int first, int rows, Later later, Lane
   }
 }
 
-/// y ← R⁻¹ Δ⁻¹ y − W x, where W are the elimination multipliers. It assembles y in registers: a SIMD load soon after
-/// stores of single numbers to the same memory would wait for all of these stores.
+/// y ← R⁻¹ Δ⁻¹ y − W x, where W are the elimination multipliers. Assembles y in registers, because a SIMD load soon
+/// after scalar stores to the same memory would wait for all of these stores.
 template <int N, class Later>
 inline void pass_up(NodeStorage const& n, Later later, double* y) {
   constexpr int count = padded(N) / lane_size;

@@ -22,8 +22,8 @@ class BlockPattern {
     Index first = 0;
     int size = 0;
     bool joint = true;
-    int body = -1;             ///< number of its body; −1 for joints
-    Sequence<int> child;       ///< for a joint: segments of the child body that it touches
+    int body = -1;             ///< index of its body; −1 for joints
+    Sequence<int> child;       ///< for a joint: segments of the child body in its equations
     Sequence<int> after;       ///< for a joint: segments that are eliminated before it
     bool closes_loop = false;  ///< the joint is eliminated after its whole loop and may be redundant
   };
@@ -41,12 +41,13 @@ class BlockPattern {
   struct Range {
     int begin, end;
   };
-  /// Segments of the `count` rows or columns of a block that begin at the unknown `first`.
+  /// Segments of the `count` unknowns from `first` on, which are the rows or columns of a block.
   Range covered(Index first, Index count) const {
     return count > 0 ? Range{of(first), of(first + count - 1) + 1} : Range{0, 0};
   }
-  /// Joint between a body and its parent (−1 for a free body), and further joints of this body alone (`secondary`).
+  /// Joint between a body and its parent; −1 for a free body.
   int primary(int body) const { return bodies_[std::size_t(body)].primary; }
+  /// Other joints that constrain only this body, or this body and its parent.
   Sequence<int> const& secondary(int body) const { return bodies_[std::size_t(body)].secondary; }
   Sequence<int> const& segments_of(int body) const { return bodies_[std::size_t(body)].segments; }
 
@@ -58,9 +59,9 @@ class BlockPattern {
   };
   struct Joint {
     int segment;
-    Sequence<std::pair<int, Sequence<int>>> ends;  // body, and its segments that the joint touches
+    Sequence<std::pair<int, Sequence<int>>> ends;  // body, and its segments in the equations of the joint
     bool used = false;
-    bool meets_rows = false;  ///< a block couples it with the rows of a joint
+    bool meets_rows = false;  ///< true if a block couples it with a constraint equation
   };
 
   [[gnu::cold]] void cut(Index size, std::span<Block const> blocks) {
@@ -100,7 +101,7 @@ class BlockPattern {
     }
   }
 
-  /// Collects bodies and joints. Segments under the same square diagonal block belong to one body.
+  /// Collects bodies and joints. Segments within the same square diagonal block belong to one body.
   [[gnu::cold]] void link(std::span<Block const> blocks) {
     Sequence<int> root(segments_.size());
     std::iota(root.begin(), root.end(), 0);
@@ -140,7 +141,8 @@ class BlockPattern {
       for (auto const& end : joints_[j].ends) bodies_[std::size_t(end.first)].joints.push_back(int(j));
   }
 
-  /// Adds the columns of a block in the rows of a joint to the ends of the joint. All of them belong to one marker.
+  /// Adds the segments `columns` of a block in the equations of a joint to the bodies of the joint. All columns of a
+  /// block belong to one marker.
   [[gnu::cold]] void touch(Joint& joint, Range columns) {
     for (int s = columns.begin; s < columns.end; ++s) {
       int const body = segments_[std::size_t(s)].body;
@@ -156,11 +158,11 @@ class BlockPattern {
     }
   }
 
-  /// True for a joint with one body and one row: a norm constraint, or a driving constraint against the ground. It is
-  /// not part of the tree.
+  /// True for a joint with one body and one equation: a norm constraint, or a driving constraint against the ground.
+  /// Such a joint is not part of the tree.
   bool is_own(Joint const& j) const { return j.ends.size() == 1 && segments_[std::size_t(j.segment)].size == 1; }
 
-  /// Assigns each body its parent and joint, breadth first from the ground, then from one body of each part without
+  /// Assigns each body its parent and joint, breadth first from the ground, then from one body of each group without
   /// connection to the ground.
   [[gnu::cold]] void match() {
     Sequence<int> queue;
@@ -190,7 +192,7 @@ class BlockPattern {
       }
     };
     spread();
-    Sequence<std::pair<long, int>> left;  // −number of joints, body: most joints first
+    Sequence<std::pair<long, int>> left;  // (−number of joints, body), sorted: most joints first
     for (std::size_t b = 0; b < bodies_.size(); ++b)
       if (!bodies_[b].visited) left.push_back({-long(bodies_[b].joints.size()), int(b)});
     sort_once(left);
@@ -207,14 +209,15 @@ class BlockPattern {
   /// Closing joint: it is eliminated after all bodies and joints of its loop.
   [[gnu::cold]] void close(Joint& j) {
     Segment& s = segments_[std::size_t(j.segment)];
-    if (j.ends.empty() && j.meets_rows) {  // an unknown in constraints only, such as a slider's, is eliminated last
+    // An unknown that occurs only in constraint equations, such as the coordinate of a slider, is eliminated last.
+    if (j.ends.empty() && j.meets_rows) {
       for (Joint const& other : joints_)
         if (!other.ends.empty()) s.after.push_back(other.segment);
       for (Body const& body : bodies_) s.after.append(body.segments.begin(), body.segments.end());
       return;
     }
     Sequence<int> loop;
-    int carrier = -1;  // body that carries the loop; the joint does not wait for it
+    int carrier = -1;  // body at which both branches of the loop begin; it may be eliminated after the joint
     if (j.ends.size() == 2) {
       int a = j.ends[0].first, b = j.ends[1].first;
       while (a != b) {
@@ -223,7 +226,7 @@ class BlockPattern {
         deeper = bodies_[std::size_t(deeper)].parent;
       }
       carrier = a;
-    } else {  // against the ground, or between more than two bodies: all bodies on the paths to the ground
+    } else {  // joint to the ground, or between more than two bodies: all bodies on the paths to the ground
       for (auto const& end : j.ends) {
         if (is_own(j)) loop.push_back(end.first), carrier = bodies_[std::size_t(end.first)].parent;
         for (int u = end.first; u >= 0 && !is_own(j); u = bodies_[std::size_t(u)].parent) loop.push_back(u);
@@ -231,7 +234,7 @@ class BlockPattern {
     }
     sort_once(loop);
     for (auto const& [body, touched] : j.ends) {
-      if (loop.size() == 1 && body != loop[0]) continue;  // parallel to the tree joint: a drive, a norm constraint
+      if (loop.size() == 1 && body != loop[0]) continue;  // driving or norm constraint parallel to the tree joint
       s.after.append(touched.begin(), touched.end());
       if (loop.size() == 1) s.child = touched;
     }

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
 /// Sparse equations that replace the dense equations in joint coordinates. Their unknowns are the velocities of all
-/// bodies and the multipliers of the joints with joint coordinates. Entries of dependent coordinates of linear joints
-/// are distributed among the independent ones; the rows of linear joints are omitted.
+/// bodies and the multipliers of all joints except linear joints. Matrix entries of dependent coordinates of linear
+/// joints are distributed among the independent coordinates. The constraint equations of linear joints are omitted.
 
 #include <array>
 
@@ -45,9 +45,9 @@ class BodyEquationsOf {
 
   Index size() const { return velocities_ + rows_; }
   Index velocities() const { return velocities_; }
-  /// Rows of the joints with joint coordinates, by their number in the model.
+  /// Indices, in the model, of the constraint equations of joints with joint coordinates.
   Sequence<Index> const& eliminated_equations() const { return carrying_rows_; }
-  /// Full unknown of each equation.
+  /// Index of the full unknown of each equation.
   Sequence<Index> full_unknowns() const {
     Sequence<Index> out(std::size_t(size()), -1);
     for (Index i = Index(of_.size()); i-- > 0;)
@@ -73,17 +73,19 @@ class BodyEquationsOf {
     next_slots_ = (next_slots_ + 1) % slots_.size();
   }
 
-  /// Sets the velocities of `out` to factor · `full`, a vector of full velocities; the other entries are unchanged.
+  /// Sets the entries of `out` for velocities to factor · `full`, where `full` has all velocities. Other entries are
+  /// unchanged.
   void from_velocities(VecX const& full, double factor, VecX& out) const {
     for (Index i = 0; i < full.size(); ++i)
       if (Index const to = of_[std::size_t(i)]; to >= 0) out[to] = factor * full[i];
   }
-  /// Sets the rows of `out`: the remaining rows from `rows`, and zero for joints with joint coordinates.
+  /// Sets the entries of `out` for constraint equations: `rows` for the remaining equations, zero for joints with joint
+  /// coordinates.
   void from_rows(double const* rows, VecX& out) const {
     for (Index i = velocities_; i < out.size(); ++i) out[i] = 0.0;
     for (std::size_t i = 0; i < rows_that_stay_.size(); ++i) out[of_row(rows_that_stay_[i])] = rows[i];
   }
-  /// Full velocities of a `solution`; zero for dependent velocities.
+  /// Computes the full velocities of a `solution`. Dependent velocities are set to zero.
   void to_velocities(VecX const& solution, VecX& full) const {
     for (Index i = 0; i < full.size(); ++i) {
       Index const from = of_[std::size_t(i)];
@@ -102,9 +104,9 @@ class BodyEquationsOf {
   Index full_velocities_ = 0, velocities_ = 0, rows_ = 0;
   UnknownMap map_;
   Sequence<Index> of_, rows_that_stay_,
-      carrying_rows_;  // of_: place of each full unknown; −1 if it is distributed or omitted
+      carrying_rows_;  // of_: equation of each full unknown; −1 if it is distributed or omitted
   MappedBlocks mapped_;
-  std::array<ReducedSlotsOf<>, 4> slots_;  // of the last solvers that received the matrix
+  std::array<ReducedSlotsOf<>, 4> slots_;  // slots of the last four solvers that received the matrix
   std::size_t next_slots_ = 0;
 };
 

@@ -1,9 +1,10 @@
 #pragma once
 /// \file
-/// Constant parts of a matrix are factorised once. Example: in a vehicle with tracks of ANCF links and a hull with
-/// rotating joints, the mass matrix TᵀMT of a track is constant if linear joints eliminate the dependent coordinates
-/// [thesis §3.5.4, §4.4]. With TᵀMT = L Lᵀ, the mass matrix of a whole track with its joints is the identity in the
-/// coordinates p = Lᵀ e. Since L is constant, an explicit step in p is equal to a step in e.
+/// Linear solver that factorises constant parts of a matrix only once. Example: in a vehicle with tracks of ANCF links
+/// and a hull with rotating joints, the mass matrix TᵀMT of a track is constant if linear joints eliminate the
+/// dependent coordinates [thesis §3.5.4, §4.4]. With TᵀMT = L Lᵀ, the mass matrix of a whole track with its joints is
+/// the identity in the coordinates p = Lᵀ e of the independent coordinates e. Since L is constant, an explicit step in
+/// p is equal to a step in e.
 
 #include <algorithm>
 #include <span>
@@ -13,13 +14,15 @@
 
 namespace polybody {
 
-/// Solver of a matrix with parts that no block connects. The first factorisation factorises the constant parts, with a
-/// separate `Solver`; later ones reuse the factors. A part is constant if all of its unknowns are declared constant.
-/// Another `Solver` factorises the rest, or the whole matrix if there are no constant parts.
+/// Linear solver of a matrix that consists of parts without a block between them. The first factorisation factorises
+/// the constant parts, with a separate `Solver`; later factorisations reuse these factors. A part is constant if all of
+/// its unknowns are declared constant. Another `Solver` factorises the other parts, or the whole matrix if no part or
+/// every part is constant.
 template <LinearSolver Solver>
 class ConstantBlockCache {
  public:
-  /// Call it before `analyse`. \param constant for each unknown: true if the blocks in its row and column are constant
+  /// Declares unknowns constant. Call it before `analyse`. \param constant for each unknown: true if the blocks in its
+  /// row and column are constant
   void keep(Sequence<bool> constant) { constant_ = std::move(constant); }
 
   void analyse(Index size, std::span<Block const> blocks) {
@@ -95,10 +98,11 @@ class ConstantBlockCache {
     for (std::size_t i = 0; i < place_.size(); ++i) x[Index(i)] = (kept_[i] ? kept_x_ : rest_x_)[place_[i]];
   }
 
-  /// Number of unknowns in constant parts.
+  /// Number of unknowns in parts that are factorised once.
   Index kept() const { return kept_size_; }
   std::span<Index const> dropped() const { return {dropped_.data(), dropped_.size()}; }
-  /// Drops these `unknowns` in every later factorisation, as in `BlockFactor`, except rows of constant parts.
+  /// Drops these `unknowns`, except those of constant parts, in every later factorisation
+  /// (`BlockFactor::mark_redundant`).
   [[gnu::cold]] void mark_redundant(std::span<Index const> unknowns) {
     if constexpr (requires { rest_.mark_redundant(unknowns); }) {
       Sequence<Index> rows;
@@ -107,12 +111,13 @@ class ConstantBlockCache {
       rest_.mark_redundant(std::span<Index const>(rows.data(), rows.size()));
     }
   }
-  /// True if a pivot is below `share`, as in `BlockFactor`.
+  /// True if a redundancy decision of the last factorisation is doubtful for `share`: see `BlockFactor::is_doubtful`.
   [[gnu::cold]] bool is_doubtful(double share) const {
     if constexpr (requires { rest_.is_doubtful(share); }) return rest_.is_doubtful(share);
     return false;
   }
-  /// Null vector `n` of the `dropped` equation, as in `BlockFactor`. Returns false if the solver finds none.
+  /// Computes the null vector `n` of equation `dropped`: `BlockFactor::null_vector`. Returns false if `Solver` does not
+  /// provide null vectors.
   [[gnu::cold]] bool null_vector(Index dropped, VecX& n) {
     if constexpr (requires { rest_.null_vector(dropped, n); }) {
       if (kept_size_ == 0) return rest_.null_vector(dropped, n), true;
@@ -135,7 +140,7 @@ class ConstantBlockCache {
   }
 
  private:
-  /// Root of an unknown; all unknowns of a part have the same root.
+  /// Unknown that represents the part of unknown i; all unknowns of a part have the same root.
   Index root(Index i) {
     while (root_[std::size_t(i)] != i) i = root_[std::size_t(i)] = root_[std::size_t(root_[std::size_t(i)])];
     return i;
@@ -156,7 +161,7 @@ class ConstantBlockCache {
     kept_size_ = 0;
     place_.clear();
     for (Index i = 0; i < size; ++i) place_.push_back(kept_[std::size_t(i)] ? kept_size_++ : i - kept_size_);
-    if (kept_size_ == size) kept_size_ = 0;  // no rest: one solver factorises the whole matrix
+    if (kept_size_ == size) kept_size_ = 0;  // every part is constant: one solver factorises the matrix
   }
   Index unknown(Index place, bool kept) const {
     for (std::size_t i = 0; i < place_.size(); ++i)
@@ -165,7 +170,7 @@ class ConstantBlockCache {
   }
 
   Solver rest_, kept_solver_;
-  Sequence<bool> constant_, kept_, in_kept_;  // for each unknown; in_kept_: for each block
+  Sequence<bool> constant_, kept_, in_kept_;  // constant_, kept_: for each unknown; in_kept_: for each block
   Sequence<Index> root_, place_, dropped_;    // root_, place_: for each unknown; place_: index in its solver
   Index kept_size_ = 0;
   bool kept_factored_ = false;

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// Maps between reduced and full vectors for models with policies that eliminate unknowns: T of joint trees
-/// (`JointTree`) and of linear joints (`LinearElimination`). Steps use doubles; derivatives of steps use the same maps
-/// with dual or recorded numbers.
+/// Maps between reduced velocities u and full velocities v = T u, for models with policies that eliminate unknowns. T
+/// is the matrix of joint trees (`JointTree`) and of linear joints (`LinearElimination`). Steps use doubles;
+/// derivatives of steps use the same maps with dual numbers or with a tape.
 
 #include <polybody/solvers/recovered_multipliers.hpp>
 #include <polybody/system/coordinates.hpp>
@@ -11,14 +11,15 @@
 
 namespace polybody::detail {
 
-/// v = T u, v̇ = T u̇ + b and Tᵀ in the state of the last `expand`. \tparam Solution solution method of the equations of
-/// joint coordinates, void if there are only linear joints; \tparam T scalar
+/// Maps v = T u, v̇ = T u̇ + b and multiplication by Tᵀ, in the state of the last `expand`. \tparam Solution solution
+/// method of the equations of joint coordinates; void if there are only linear joints \tparam T scalar
 template <class Solution, StateScalar T = double>
 class CoordinateMaps {
   using Vector = VecXOf<T>;
 
  public:
-  /// \throws InvalidInput, InconsistentInitialConditions as `Reduction`.
+  /// \throws InvalidInput if joints with joint coordinates close a loop. \throws InconsistentInitialConditions if
+  /// linear joints contradict each other.
   template <class M>
   explicit CoordinateMaps(M const& model)
       : reduction_(model),
@@ -117,7 +118,7 @@ class CoordinateMaps {
   Vector reduced_;
 };
 
-/// Functions of maps that are used without linear equations.
+/// Table of the functions of `Maps`, for use without linear equations.
 template <class Maps, StateScalar T>
 inline constexpr CoordinateMapOperations<T> map_entries = [] {
   CoordinateMapOperations<T> out;

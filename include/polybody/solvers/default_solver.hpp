@@ -7,9 +7,9 @@
 
 namespace polybody {
 
-/// Solver of time steps.
+/// Linear solver of time steps.
 using DefaultSolver = BlockSolver;
-/// Solver of statics. It also solves matrices with blocks that have no pivot of their own.
+/// Linear solver of statics. It also solves matrices with singular diagonal blocks.
 using DefaultStaticSolver = AutoLu;
 
 }  // namespace polybody

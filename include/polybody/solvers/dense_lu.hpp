@@ -25,7 +25,7 @@ class DenseLu {
       for (Index i = 0; i < b.rows; ++i) a_(row + i, col + j) += b(i, j);
   }
 
-  /// Returns −1, or the first column with a pivot below 1e-14 of its largest entry.
+  /// Returns −1, or the first column with a pivot of at most 1e-14 times its largest entry.
   Index factor() {
     Index const n = a_.cols();
     double* const lu = lu_.data();  // by rows

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Not in polybody.hpp: Eigen's sparse Cholesky increases the compile time of every translation unit.
+/// Linear solver with Eigen's sparse LDLᵀ factorisation. Not in polybody.hpp: it would
+/// increase the compile time of every translation unit.
 
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCholesky>
@@ -17,10 +18,10 @@
 namespace polybody {
 
 /// Eigen's sparse LDLᵀ factorisation (AMD order) for symmetric tangents [A, Gᵀ; G, 0] with A ≻ 0. Rows without a
-/// diagonal block get −ε: the matrix is then quasi-definite and has a factorisation in any order [Vanderbei 1995].
-/// Iterative refinement with the matrix itself removes the error due to ε and to slight asymmetry (gyroscopic terms,
-/// damping of rotating bodies). If refinement does not contract, BiCGSTAB solves the equations with the factors as
-/// preconditioner [van der Vorst 1992].
+/// diagonal block get the diagonal entry −ε. The matrix is then quasi-definite and has a factorisation in any order
+/// [Vanderbei 1995]. Iterative refinement with the matrix itself removes the error due to ε and to slight asymmetry
+/// (gyroscopic terms, damping of rotating bodies). If refinement does not contract, BiCGSTAB solves the equations with
+/// the factors as preconditioner [van der Vorst 1992].
 class EigenLdlt {
  public:
   static constexpr double shift = 1e-9;  ///< ratio of ε to g²/a, where g and a are the largest entries of G and A
@@ -98,7 +99,7 @@ class EigenLdlt {
  private:
   using Matrix = SparseSink::Matrix;
 
-  /// Adds corrections dx_ for the residual r_ of x, as long as each halves its norm. Returns the norm of the residual.
+  /// Adds corrections dx_ for the residual r_ of x, as long as each correction halves ‖r_‖. Returns ‖r_‖.
   template <class Correct>
   double refine(VecX const& rhs, VecX& x, Correct&& correct) const {
     double left = leave(rhs, x);
@@ -114,7 +115,7 @@ class EigenLdlt {
     }
     return left;
   }
-  /// Computes r_ = rhs − A x with the matrix without ε. Returns its norm.
+  /// Computes r_ = rhs − A x, where A does not contain ε. Returns ‖r_‖.
   double leave(VecX const& rhs, VecX const& x) const {
     r_ = rhs - sink_.matrix() * x;
     for (Index const i : rows_) r_[i] -= epsilon_ * x[i];
@@ -145,9 +146,9 @@ class EigenLdlt {
   double epsilon_ = 0.0;
   mutable VecX r_, dx_;
   struct Ldlt : Eigen::SimplicialLDLT<Matrix, Eigen::Lower> {
-    VecX const& pivots() const { return this->m_diag; }  // also after a failed factorisation
+    VecX const& pivots() const { return this->m_diag; }  // valid after a failed factorisation
   };
-  /// Adapter from the factors to the preconditioners of Eigen's iterative solvers.
+  /// Adapter that makes the factors a preconditioner of Eigen's iterative solvers.
   struct Factors {
     Ldlt const* ldlt = nullptr;
 

@@ -21,14 +21,14 @@ class EigenSparseLuBy {
   }
   void begin() { sink_.begin(); }
   void add(Index row, Index col, BlockView const& b) { sink_.add(row, col, b); }
-  /// Returns −1, or the first column in elimination order with a pivot below 1e-14 of its largest entry.
+  /// Returns −1, or the first column in elimination order with a pivot of at most 1e-14 times its largest entry.
   Index factor() {
     Matrix const& a = sink_.matrix();
     if (a.cols() == 0) return -1;
     lu_->factorize(a);
-    auto const& place = lu_->colsPermutation().indices();  // of each column in the elimination order
+    auto const& place = lu_->colsPermutation().indices();  // position of each column in the elimination order
     if (lu_->info() != Eigen::Success) {
-      // For a pivot that is exactly zero, Eigen's message ends with its place, counted from one.
+      // For a pivot that is exactly zero, Eigen's message ends with the position of the pivot, counted from one.
       std::string const message = lu_->lastErrorMessage();
       std::size_t const first = message.find_last_not_of("0123456789") + 1;
       if (first == message.size()) return 0;
@@ -36,7 +36,7 @@ class EigenSparseLuBy {
         if (place[i] + 1 == std::stol(message.substr(first))) return i;
       return 0;
     }
-    auto const upper = lu_->matrixU();  // its diagonal is stored in the supernodes of L
+    auto const upper = lu_->matrixU();  // the diagonal of U is stored in the supernodes of L
     Index lost = -1;
     least_pivot_ = 1.0;
     for (Index i = 0; i < a.cols(); ++i) {

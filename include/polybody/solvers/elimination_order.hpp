@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// Elimination order of a block factorisation of [A, Gᵀ; G, 0]. Bodies are eliminated by minimum degree, the rows of a
-/// joint after its child body [Baraff 1996], and the rows of a closing joint after all bodies and joints of its loop.
-/// If A ≻ 0, every pivot is then definite, and no pivoting between blocks is needed.
+/// Elimination order of a block factorisation of [A, Gᵀ; G, 0]. Bodies are eliminated by minimum degree, and the
+/// equations of a joint after its child body [Baraff 1996]. The equations of a closing joint follow after all bodies
+/// and joints of its loop. If A ≻ 0, every pivot is then definite, and no pivoting between blocks is needed.
 
 #include <iterator>
 #include <span>
@@ -22,8 +22,8 @@ class EliminationOrder {
   };
   Sequence<Node> nodes;  ///< in elimination order
 
-  /// `node_of` gives the node of each segment, numbered from zero without gaps. Joints marked in `late` are eliminated
-  /// after all other nodes.
+  /// Computes `nodes`. `node_of` is the number of the node of each segment, counted from zero without gaps. Joints
+  /// marked in `late` are eliminated after all other nodes.
   [[gnu::cold]] void compute(BlockPattern const& pattern, std::span<Block const> blocks, Sequence<int> const& node_of,
                              Sequence<char> const& late) {
     std::size_t const count = node_of.empty() ? 0 : std::size_t(*std::max_element(node_of.begin(), node_of.end())) + 1;
@@ -48,10 +48,10 @@ class EliminationOrder {
 
  private:
   struct Candidate {
-    Node node;                  ///< its neighbours are node numbers here
+    Node node;                  ///< `neighbours` are node numbers here
     Sequence<int> releases;     ///< nodes that wait for this one
-    long size = 0, degree = 0;  ///< unknowns of the node, and of its neighbours
-    int waits = 0;              ///< number of nodes that must be eliminated before it
+    long size = 0, degree = 0;  ///< numbers of unknowns of the node, and of its neighbours
+    int waits = 0;              ///< number of nodes that must be eliminated before this one
     int place = -1;             ///< position in the order, once eliminated
     bool late = false;
     bool ready = false;  ///< waits for no node and is not eliminated
@@ -103,8 +103,8 @@ class EliminationOrder {
   }
   bool may_go(Candidate const& n) const { return n.waits <= 0 && (!n.late || remaining_early_ == 0); }
 
-  /// Ready node of least degree. Joints of different loops may wait for each other; if no node is ready, the first node
-  /// that waits for the fewest others.
+  /// Returns the ready node of least degree. If no node is ready, because joints of different loops wait for each
+  /// other, returns the first of the nodes that wait for the fewest others.
   int next() {
     while (!ready_.empty()) {
       std::pop_heap(ready_.begin(), ready_.end());
@@ -121,8 +121,8 @@ class EliminationOrder {
     return best;
   }
 
-  /// Gives node n the next position. Its neighbours become neighbours of each other, and nodes that waited only for it
-  /// become ready.
+  /// Assigns node n the next position. The neighbours of n become neighbours of each other, and nodes that waited only
+  /// for n become ready.
   [[gnu::cold]] void eliminate(int n) {
     Candidate& eliminated = at(n);
     eliminated.place = int(nodes.size());
@@ -145,7 +145,7 @@ class EliminationOrder {
   }
 
   Sequence<Candidate> left_;
-  std::size_t remaining_early_ = 0;       ///< nodes that are not late
+  std::size_t remaining_early_ = 0;       ///< number of remaining nodes that are not late
   Sequence<std::pair<long, int>> ready_;  ///< heap of (−degree, −node); degrees may be outdated
   Sequence<int> merged_;
 };

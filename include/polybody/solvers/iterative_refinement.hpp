@@ -6,9 +6,9 @@
 
 namespace polybody {
 
-/// Any solver, with one step of iterative refinement after each solution: x += A⁻¹(b − A x) [Higham 2002, §12.1]. It
-/// stores the blocks, and a solution costs about twice as much. Use it if masses or stiffnesses differ by ten orders of
-/// magnitude or more.
+/// Linear solver that refines each solution of `Solver` by one iteration x += A⁻¹(b − A x) [Higham 2002, §12.1]. It
+/// stores the blocks of A, and a solution costs about twice as much as with `Solver`. Use it if masses or stiffnesses
+/// differ by ten orders of magnitude or more.
 template <LinearSolver Solver>
 class IterativeRefinement {
  public:
@@ -66,19 +66,19 @@ class IterativeRefinement {
   {
     solver_.limit_reorderings(count);
   }
-  /// Drops these `unknowns` in every later factorisation.
+  /// Drops these `unknowns` in every later factorisation (`BlockFactor::mark_redundant`).
   void mark_redundant(std::span<Index const> unknowns)
     requires requires(Solver s) { s.mark_redundant(unknowns); }
   {
     solver_.mark_redundant(unknowns);
   }
-  /// True if a pivot is below `share`, as in `BlockFactor`.
+  /// True if a redundancy decision of the last factorisation is doubtful for `share`: see `BlockFactor::is_doubtful`.
   bool is_doubtful(double share) const
     requires requires(Solver const s) { s.is_doubtful(share); }
   {
     return solver_.is_doubtful(share);
   }
-  /// Null vector `n` of the `dropped` equation, as in `BlockFactor`.
+  /// Computes the null vector `n` of equation `dropped`: `BlockFactor::null_vector`.
   void null_vector(Index dropped, VecX& n) const
     requires requires(Solver const s) { s.null_vector(dropped, n); }
   {

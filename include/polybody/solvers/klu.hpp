@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// KLU of SuiteSparse. Not in polybody.hpp: it needs klu.h and -lklu (Debian: libsuitesparse-dev).
+/// Linear solver with KLU of SuiteSparse. Not in polybody.hpp: it needs klu.h and -lklu
+/// (Debian: libsuitesparse-dev).
 
 #if __has_include(<klu.h>)
 #include <klu.h>
@@ -19,18 +20,18 @@
 namespace polybody {
 
 /// Sparse LU factorisation by KLU [Davis & Palamadai Natarajan 2010]. The first factorisation chooses the pivots. Later
-/// ones reuse pivots and memory until the pivot growth or the condition number requires new pivots. `solve` does not
-/// allocate memory.
+/// factorisations reuse pivots and memory until the pivot growth or the condition number requires new pivots. `solve`
+/// does not allocate memory.
 class Klu {
  public:
-  /// New pivots are chosen if KLU's reciprocal pivot growth falls to this part of its value at the choice of the
-  /// pivots: reused pivots then lose two digits more than new ones.
+  /// Least ratio of KLU's reciprocal pivot growth to its value when the pivots were chosen. At a smaller ratio new
+  /// pivots are chosen, because reused pivots would lose two digits more.
   static constexpr double least_growth = 1e-2;
-  /// Pivots are rejected if KLU's estimate of the reciprocal condition number is not above this.
+  /// Pivots are rejected if KLU's estimate of the reciprocal condition number is at most this value.
   static constexpr double least_condition = 1e-16;
 
   Klu() = default;
-  /// Uses this elimination order (each unknown once) instead of KLU's own (block triangular form, AMD).
+  /// Uses the elimination order `order` (each unknown once) instead of the order of KLU (block triangular form, AMD).
   explicit Klu(std::span<int const> order) : order_(order.begin(), order.end()) {}
 
   /// \throws InvalidInput if a given order does not contain each of the `size` unknowns once.
@@ -83,7 +84,7 @@ class Klu {
     klu_common common;
     klu_symbolic* symbolic = nullptr;
     klu_numeric* numeric = nullptr;
-    double growth = 0.0;  ///< reciprocal pivot growth at the choice of the pivots, a ratio
+    double growth = 0.0;  ///< reciprocal pivot growth when the pivots were chosen [1]
 
     Handle() { klu_defaults(&common); }
     Handle(Handle const&) = delete;

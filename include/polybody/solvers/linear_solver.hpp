@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Interface of linear solvers. A solver receives the blocks of the matrix by `add` or through its slots.
+/// Interface of linear solvers. A solver receives the blocks of the matrix by calls of `add`, or they are written to
+/// the addresses that `slots` returns.
 
 #include <algorithm>
 #include <span>
@@ -11,7 +12,8 @@
 
 namespace polybody {
 
-/// Order of calls: analyse (once, allocates) → begin → add… → factor → solve…. Blocks are added in the analysed order.
+/// Linear solver. Order of calls: analyse (once, allocates) → begin → add… → factor → solve…. Blocks are added in the
+/// analysed order.
 template <class S>
 concept LinearSolver = requires(S s, std::span<Block const> blocks, Mat3 const block, VecX const b, VecX x) {
   s.analyse(Index(1), blocks);
@@ -29,12 +31,12 @@ template <class S>
 struct ReadsBothHalves<S> : std::type_identity<typename S::Unsymmetric> {};
 }  // namespace detail
 
-/// Solver for unsymmetric matrices: `S::Unsymmetric` if S reads only one half of the matrix, else S.
+/// Solver for unsymmetric matrices: `S::Unsymmetric` if S reads only one half of the matrix; otherwise S.
 template <LinearSolver S>
 using UnsymmetricSolver = typename detail::ReadsBothHalves<S>::type;
 
-/// Writes the matrix into the solver and factorises it, and repeats both if the solver changes its elimination order.
-/// Returns −1, or the column without a usable pivot.
+/// Writes the matrix into the solver and factorises it; writes and factorises it again if the solver changes its
+/// elimination order. Returns −1, or the column without a usable pivot.
 template <LinearSolver S>
 Index write_and_factor(S& solver, BlockWriter const& write) {
   for (;;) {

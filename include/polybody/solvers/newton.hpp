@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Modified Newton method: it reuses a factorisation as long as the iteration contracts [Hairer & Wanner 1996, §IV.8].
+/// Modified Newton method, which reuses a factorisation as long as the iteration contracts [Hairer & Wanner 1996,
+/// §IV.8].
 
 #include <algorithm>
 #include <cmath>
@@ -15,19 +16,19 @@ namespace polybody {
 /// Conditions to stop, to factorise again and to fail.
 struct NewtonOptions {
   int max_iterations = 20;  ///< number of iterations at which a solve fails, in [1, 10⁶]
-  /// Cost of a factorisation, in iterations. It is renewed if this saves more iterations, over as many solves as the
-  /// last factorisation completed.
+  /// Cost of a factorisation, in iterations. The tangent is factorised again if this saves more iterations than it
+  /// costs, over as many solves as the last factorisation completed.
   double factorisation_cost = 3.0;
-  bool always_refactor = false;  ///< full Newton
+  bool always_refactor = false;  ///< full Newton method: factorise in every iteration
   int max_growths = 2;           ///< number of growing corrections at which a solve fails
   /// Budget of a solve for real-time loops, in iterations; a factorisation counts as `factorisation_cost` iterations.
-  /// At the budget the solve ends with the first iterate near the solution and reports its last correction. 0: no
-  /// budget.
+  /// When the budget is spent, the solve ends at the first iterate near the solution and reports the last correction.
+  /// 0: no budget.
   double budget = 0.0;
-  bool predictive_stop = true;  ///< stop by the next correction as predicted from θ, not by the last correction itself
+  bool predictive_stop = true;  ///< stop criterion: the next correction, predicted from θ, or else the last correction
 
-  /// \throws InvalidInput naming `who` if a count is outside [1, 10⁶], if the cost is negative or NaN, or if the budget
-  /// is below the cost of a factorisation and an iteration.
+  /// \throws InvalidInput if a count is outside [1, 10⁶], if the cost is negative or NaN, or if the budget is below the
+  /// cost of a factorisation and an iteration. The message begins with `who`.
   [[gnu::cold]] void check(std::string const& who) const {
     require_count(max_iterations, who, ": newton.max_iterations");
     require_count(max_growths, who, ": newton.max_growths");
@@ -48,22 +49,22 @@ struct NewtonOptions {
 /// `diverged`.
 enum class NewtonResult { converged, diverged, singular, not_finite };
 
-/// Cost and contraction of a solve.
+/// Result, cost and contraction of a solve.
 struct NewtonReport {
   NewtonResult result = NewtonResult::converged;  ///< result of the solve
-  int iterations = 0;                             ///< number of right-hand sides that were evaluated and solved for
+  int iterations = 0;                             ///< number of evaluated right-hand sides, each with a solution
   int factorisations = 0;                         ///< number of factorised tangents
-  double theta = 0.0;                             ///< last contraction rate ‖Δₖ‖/‖Δₖ₋₁‖, a ratio
-  double left = 0.0;  ///< if the budget ended the solve: last correction relative to its tolerance, a ratio; else 0
+  double theta = 0.0;                             ///< last contraction rate ‖Δₖ‖/‖Δₖ₋₁‖ [1]
+  double left = 0.0;  ///< ratio of the last correction to its tolerance if the budget ended the solve; otherwise 0
 };
 
 /// Data that Newton's method passes from one solve to the next in a sequence of similar problems.
 struct ReusedFactorisation {
   bool usable = false;  ///< a factorisation is available
-  double theta = 1.0;   ///< its contraction rate, a ratio
-  double fresh = 0.05;  ///< expected contraction rate of a new factorisation, a ratio, from previous ones
-  int served = 0;       ///< number of solves that it completed
-  double seen = 0.0;    ///< last contraction rate of its corrections, a ratio; 0: none
+  double theta = 1.0;   ///< contraction rate of the factorisation [1]
+  double fresh = 0.05;  ///< expected contraction rate of a new factorisation [1], from previous factorisations
+  int served = 0;       ///< number of solves that the factorisation completed
+  double seen = 0.0;    ///< last contraction rate measured with the factorisation [1]; 0: none
   bool stale = false;   ///< the next solve begins with a new factorisation, as for contacts that change every step
 };
 
@@ -89,7 +90,8 @@ struct NewtonProgress {
   double part = 1.0;
   int grown = 0;
 
-  /// Computes the ratio θ of the next correction to the last one. Returns false if it grew and is above its tolerance.
+  /// Computes the ratio θ of the correction `size` to the last one. Returns false if the correction grew and is above
+  /// its tolerance.
   bool rate(CorrectionSize const& size, NewtonOptions const& options, double& theta) {
     double const norm = size.norm, relative = norm / size.tolerated;
     theta = relative / relative_size;
@@ -102,11 +104,11 @@ struct NewtonProgress {
     bool const grows = options.always_refactor ? earlier > 0.0 && norm >= earlier : theta >= 1.0;
     return !(grows && relative > 1.0);
   }
-  /// True if a new factorisation saves more iterations than it costs, over as many solves as the last one completed.
-  /// \param theta contraction rate of the current factorisation
+  /// True if a new factorisation saves more iterations than it costs, over as many solves as the last factorisation
+  /// completed. \param theta contraction rate of the current factorisation
   static bool renewal_pays(CorrectionSize const& size, NewtonOptions const& options, ReusedFactorisation const& reused,
                            double theta) {
-    if (theta <= 1.5 * reused.fresh) return false;  // a new one is not better
+    if (theta <= 1.5 * reused.fresh) return false;  // a new factorisation is not better
     double const by = size.norm / size.tolerated;
     double const saved = iterations_to_come(by, theta) - iterations_to_come(by, reused.fresh);
     return saved * std::max(reused.served, 1) > options.factorisation_cost;
@@ -125,8 +127,9 @@ struct NewtonProgress {
     largest = std::max(largest, size.norm);
     relative_size = size.norm / size.tolerated;
   }
-  /// True if the applied correction is the last one. \param renewed true if the factorisation is of this iterate
-  /// \param left part of the correction that determines the next one, from the fit by previous ones; a ratio
+  /// True if the solve ends after the applied correction. \param renewed true if the tangent was factorised at this
+  /// iterate \param left relative residual of the fit of the correction by previous ones [1]; the next correction is
+  /// proportional to it
   bool ends(NewtonOptions const& options, bool renewed, double theta, double left = 1.0) const {
     if (options.always_refactor || !options.predictive_stop) return relative_size <= 1.0;
     double const contraction = std::min(theta, 0.99);
@@ -136,7 +139,7 @@ struct NewtonProgress {
   }
 };
 
-/// Inputs and state of one solve.
+/// Inputs and state of one solve by Newton's method.
 template <class Problem>
 struct NewtonSolve {
   Problem& problem;
@@ -145,11 +148,11 @@ struct NewtonSolve {
   bool begins_fresh;  ///< the solve begins with a new factorisation
   NewtonReport report = {};
   NewtonProgress progress = {};
-  bool fresh = false, renewed = false;  ///< the tangent was factorised at the last iterate; at this one
+  bool fresh = false, renewed = false;  ///< the tangent was factorised at the last iterate, at this iterate
   bool rounding = false;                ///< the correction consists of round-off
-  bool restarted = false;               ///< the iterate is the first one again
+  bool restarted = false;               ///< the solve has returned to its first iterate
   bool follows = false;                 ///< the last correction used the current factorisation
-  std::optional<AndersonFit> fit = {};  ///< fit of this correction by the previous ones
+  std::optional<AndersonFit> fit = {};  ///< fit of this correction by previous corrections
 
   /// True if the cost of the solve plus `more` iterations is within the budget.
   bool affords(double more) const {
@@ -186,14 +189,14 @@ struct NewtonSolve {
   }
   static bool is_finite(CorrectionSize const& size) { return std::isfinite(size.norm / size.tolerated); }
 
-  /// Fits the correction by previous ones of the same factorisation.
+  /// Fits the correction by previous corrections of the same factorisation.
   void fit_correction() {
     if constexpr (requires { problem.acceleration(); })
       if (follows && !fit) fit = problem.acceleration().fit(problem.correction());
   }
-  /// Updates the contraction rate of the factorisation. After a combined step the fit gives this rate, because
-  /// ‖Δₖ‖/‖Δₖ₋₁‖ is not a contraction rate. Since one ratio may be small by chance, a rate θ is followed by a rate of
-  /// at least θ^1.5. Returns the expected rate of the next, combined corrections.
+  /// Updates the contraction rate of the factorisation. After a combined step ‖Δₖ‖/‖Δₖ₋₁‖ is not a contraction rate,
+  /// and the rate of the fit is used. Since one ratio may be small by chance, a rate θ is followed by a rate of at
+  /// least θ^1.5. Returns the expected ratio of the next, combined correction to this correction.
   double rate_of_factorisation() {
     double const ratio = reused.theta;
     if constexpr (requires { problem.acceleration(); })
@@ -205,8 +208,8 @@ struct NewtonSolve {
     return std::min(ratio, reused.theta);
   }
 
-  /// Rates the correction. If the factorisation has to be renewed, it factorises and solves again. Returns false if the
-  /// iteration diverges.
+  /// Computes the contraction rate. If the factorisation has to be renewed, factorises the tangent and computes the
+  /// correction again. Returns false if the iteration diverges.
   bool rate(int k, CorrectionSize& size) {
     double const rate_before = reused.theta;
     bool shrinks = progress.rate(size, options, reused.theta);
@@ -230,7 +233,7 @@ struct NewtonSolve {
     if (asks && restart()) return true;
     if (asks) {
       if (!renew()) return false;
-      reused.theta = 1.0;  // the rate of the new one is unknown
+      reused.theta = 1.0;  // the rate of the new factorisation is unknown
       size = CorrectionSize{problem.solve()};
       if (!is_finite(size)) return false;
       bool const first = report.factorisations == 1;  // not comparable with an earlier solve's factorisation
@@ -239,8 +242,8 @@ struct NewtonSolve {
     return shrinks || ++progress.grown < options.max_growths;
   }
 
-  /// Takes the correction and combines it with previous ones, unless it is the last one without combination. Returns
-  /// true if it is the last one.
+  /// Records the correction and combines it with previous corrections, unless the solve already ends without a
+  /// combination. Returns true if the solve ends with this correction.
   bool take(CorrectionSize const& size) {
     progress.take(size);
     bool last = progress.ends(options, renewed, reused.theta);
@@ -249,7 +252,7 @@ struct NewtonSolve {
       fit_correction();
       if (fit && fit->contraction > 0.8) follows = false;  // a combination would be large
       if (!follows) problem.acceleration().forget();
-      bool const measured = problem.acceleration().combined();  // else θ is a ratio, as after a change of contacts
+      bool const measured = problem.acceleration().combined();  // if false, θ is only a ratio, as after new contacts
       problem.acceleration().combine(problem.correction());
       double const left = !follows ? 1.0 : measured ? fit->left : std::sqrt(fit->left);
       last = last || progress.ends(options, renewed, reused.theta, left);
@@ -303,8 +306,8 @@ struct NewtonSolve {
 /// Solves a nonlinear problem by corrections Δ. The problem provides
 ///   bool evaluate()           evaluates the right-hand side at the iterate; false if it is not finite
 ///   bool refactor()           factorises the tangent at the iterate; false if it is singular
-///   CorrectionSize solve()    computes the next correction; or double: its norm, with the tolerance 1. A second call
-///                             for one right-hand side follows a new factorisation
+///   CorrectionSize solve()    computes the next correction and returns its size; or double: its norm for tolerance 1.
+///                             A second call for one right-hand side follows a new factorisation
 ///   void apply()              adds the correction; or void apply(double part), for damping in full Newton
 ///   bool is_round_off(double)  (optional) true if a correction of this norm consists of round-off of the iterate
 ///   AndersonAcceleration& acceleration(), VecX& correction()  (optional) the acceleration, and the correction that
@@ -313,34 +316,37 @@ struct NewtonSolve {
 ///                             distance to the solution can be; returns to the first iterate
 /// `reused` describes the factorisation of earlier solves.
 ///
-/// Factorisation: it is renewed if corrections grow, or if this saves more iterations than it costs (`NewtonOptions`).
-/// The correction that causes the renewal is discarded; the new factorisation at the same iterate solves for the same
-/// right-hand side. If corrections with the factorisation of an earlier solve are too large, the solve restarts at its
-/// first iterate with a new one. From the distant iterate it may converge to another solution, as with rods that turn
-/// over. If the second correction of a solve requires a renewal, the next solves begin with a new factorisation, until
-/// their second corrections are small again.
+/// Factorisation: the tangent is factorised again if corrections grow, or if this saves more iterations than it costs
+/// (`NewtonOptions`). The correction that causes the new factorisation is discarded. A correction with the new
+/// factorisation, for the same iterate and right-hand side, replaces it. If corrections with the factorisation of an
+/// earlier solve are too large, the solve restarts at its first iterate with a new factorisation. From a distant
+/// iterate the solve may converge to another solution, in which for example a rod has turned over. If the second
+/// correction of a solve requires a new factorisation, the next solves begin with one, until their second corrections
+/// are small again.
 ///
 /// Stop: with ‖Δ‖ relative to its tolerance, the solve stops if θ/(1 − θ) ‖Δ‖ ≤ 1 or ‖Δ‖ ≤ 0.1. With a new
-/// factorisation the first condition requires that no correction of the solve grew: θ after a large correction is small
-/// for any iterate and does not prove convergence. Corrections of one factorisation are combined, except in full Newton
-/// and without `predictive_stop`. θ is then the contraction rate of the factorisation alone. ‖Δ‖ is replaced by the
-/// residual of the fit, or after the first two corrections by the geometric mean of both. The solve fails after
-/// `max_growths` growing corrections of new factorisations.
+/// factorisation the first condition also requires that no correction of the solve grew. After a large correction θ is
+/// small for any iterate and does not prove convergence. Corrections of one factorisation are combined
+/// (`AndersonAcceleration`), except in full Newton and without `predictive_stop`. θ is then the contraction rate of the
+/// factorisation alone. In the first condition, ‖Δ‖ is then replaced by the residual of the fit. After the first two
+/// corrections it is replaced by the geometric mean of ‖Δ‖ and this residual. The solve fails after `max_growths`
+/// growing corrections of new factorisations.
 ///
-/// Full Newton: in stiff directions its rate alternates (θ = 0.01, 0.8, 1e-4, …: bending, then the stretch due to it),
-/// so that one rate does not predict the next correction. It stops if ‖Δ‖ ≤ 1. A correction grows if ‖Δₖ‖ ≥ ‖Δₖ₋₂‖,
-/// without tolerances, because the tolerance shrinks with the accelerations of an iterate far from the solution. A part
-/// of each correction is applied, to prevent cycles, as between a contact and none. The part is halved, down to 1/64,
-/// if ‖Δ‖ shrinks by less than a tenth of the part, and doubled if ‖Δ‖ shrinks in proportion to the part.
+/// Full Newton: in stiff directions the rate θ alternates (0.01, 0.8, 1e-4, …: bending, then the stretch due to
+/// bending), so that one rate does not predict the next correction. Full Newton stops if ‖Δ‖ ≤ 1. A correction grows if
+/// ‖Δₖ‖ ≥ ‖Δₖ₋₂‖, without tolerances, because the tolerance shrinks with the accelerations of an iterate far from the
+/// solution. Only a part of each correction may be applied, to prevent cycles, for example between a closed and an open
+/// contact. The part is halved, down to 1/64, if ‖Δ‖ shrinks by less than a tenth of the part. It is doubled if ‖Δ‖
+/// shrinks in proportion to the part.
 ///
-/// Budget: an iterate is near the solution if its last correction is below a hundredth of a far one, or of the largest
-/// one if the problem has no `is_far_from_solution`. If it is not near, the solve continues beyond the budget, because
-/// iterates at impacts may be anywhere.
+/// Budget: an iterate is near the solution if `is_far_from_solution` is false for 100 times its last correction.
+/// Without this function, the last correction must be at most a hundredth of the largest one. If the iterate is not
+/// near, the solve continues beyond the budget, because an iterate at an impact may be far from the solution.
 template <class Problem>
 NewtonReport newton(Problem&& problem, NewtonOptions const& options, ReusedFactorisation& reused) {
   detail::NewtonSolve<std::remove_reference_t<Problem>> solve{problem, options, reused, reused.stale};
   if (reused.stale) reused.usable = false;
-  reused.theta = std::pow(std::max(reused.theta, 1e-4), 0.8);  // an old rate is less reliable after every solve
+  reused.theta = std::pow(std::max(reused.theta, 1e-4), 0.8);  // an old rate becomes less reliable with every solve
   reused.fresh += 0.1 * (ReusedFactorisation{}.fresh - reused.fresh);
   for (int k = 0; k < options.max_iterations; ++k)
     if (auto const result = solve.iterate(k)) {

@@ -6,9 +6,9 @@
 
 namespace polybody::detail {
 
-/// Adds to λ (m) the correction δ that minimises ‖Gᵀδ + `residual`‖. \param map G of the carried body, m×6 by columns,
-/// about the marker \param residual residual wrench [f; m] of the body about its centre of mass \param arm vector from
-/// the centre of mass to the marker
+/// Adds to λ (m entries) the correction δ that minimises ‖Gᵀδ + `residual`‖. \param map G of the carried body, m×6 by
+/// columns, about the marker \param residual residual wrench [f; m] of the body about its centre of mass \param arm
+/// vector from the centre of mass to the marker
 template <class T>
 void add_multipliers_that_hold(int m, T const* map, Vec<T, 6> residual, Vec<T, 3> const& arm, T* lambda) {
   for (int k = 0; k < 3; ++k)

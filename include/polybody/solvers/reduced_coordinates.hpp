@@ -1,7 +1,8 @@
 #pragma once
 /// \file
-/// Coordinates of a time step for models with policies that eliminate unknowns: T of joint trees (`JointTree`) and of
-/// linear joints (`LinearElimination`). Bodies, joints and forces do not depend on the elimination.
+/// Reduced coordinates of a time step, for models with policies that eliminate unknowns. The full velocities are v = T
+/// u, with the matrix T of joint trees (`JointTree`) and of linear joints (`LinearElimination`). Bodies, joints and
+/// forces do not depend on the elimination.
 
 #include <polybody/math/sequence.hpp>
 #include <polybody/solvers/articulated_body.hpp>
@@ -16,7 +17,8 @@
 namespace polybody {
 namespace detail {
 
-/// \tparam Solution solution method of the equations of joint coordinates; void if there are only linear joints
+/// Coordinate maps with the linear equations of a time step. \tparam Solution solution method of the equations of joint
+/// coordinates; void if there are only linear joints
 template <class Solution>
 class ReducedCoordinates : public CoordinateMaps<Solution> {
   using Maps = CoordinateMaps<Solution>;
@@ -26,11 +28,12 @@ class ReducedCoordinates : public CoordinateMaps<Solution> {
   static constexpr bool solves_densely = std::is_same_v<Solution, joint_coordinates::DenseMatrix>;
   /// True if the articulated-body algorithm solves the equations; it receives the tangent of the full model.
   static constexpr bool solves_by_bodies = std::is_same_v<Solution, joint_coordinates::ArticulatedBody>;
-  /// True if the linear equations have the unknowns of a time step. If false, the sparse system of all bodies with the
-  /// rows of the tree is solved.
+  /// True if the unknowns of the linear equations are those of a time step. Otherwise the sparse equations of all
+  /// bodies (`BodyEquationsOf`) are solved.
   static constexpr bool solves_as_it_is = solves_densely || solves_by_bodies || std::is_void_v<Solution>;
 
-  /// \throws InvalidInput, InconsistentInitialConditions as `Reduction`.
+  /// \throws InvalidInput if joints with joint coordinates close a loop. \throws InconsistentInitialConditions if
+  /// linear joints contradict each other.
   template <class M>
   explicit ReducedCoordinates(M const& model)
       : Maps(model),
@@ -120,12 +123,12 @@ class ReducedCoordinates : public CoordinateMaps<Solution> {
     }
   }
 
-  /// State and factors of a factorisation.
+  /// Factors of a tangent, and the state in which it was evaluated.
   struct Frozen {
     TreeState state;
     ArticulatedBodySolverOf<> solver;
     TreeTangentSolverOf<> tangent;
-    bool of_balance = false;  ///< the last factorisation is that of `tangent`
+    bool of_balance = false;  ///< true if the last factorisation is that of `tangent`
   };
   static FrozenState make_frozen_state(void* c) {
     if constexpr (solves_by_bodies) {
@@ -272,7 +275,8 @@ constinit CoordinateOperations const ReducedCoordinates<Solution>::table = Reduc
 
 }  // namespace detail
 
-/// A model with `joint_coordinates::ArticulatedBody` has only rigid bodies and no first-order states.
+/// Model that can be solved with its `Solution`. `joint_coordinates::ArticulatedBody` requires that all bodies are
+/// rigid and no force has first-order states.
 template <class M>
 concept ArticulatedBodySolvable =
     !std::is_same_v<typename M::Solution, joint_coordinates::ArticulatedBody> || (M::all_rigid && !M::has_states);

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Wrapper that drops redundant rows for solvers that do not drop them.
+/// Wrapper of linear solvers that drops redundant constraint equations.
 
 #include <algorithm>
 #include <span>
@@ -11,22 +11,24 @@
 
 namespace polybody {
 
-/// Solver that drops redundant rows and lists them.
+/// Linear solver that drops redundant constraint equations and lists them.
 template <class S>
 concept RedundancyAwareSolver = LinearSolver<S> && requires(S const s) {
   { s.dropped() } -> std::convertible_to<std::span<Index const>>;
 };
 
-/// Any solver of [A, Gᵀ; G, 0], with redundant rows dropped: their multipliers are zero. The block solver determines
-/// the redundant rows. It factorises the matrix if `Solver` finds no pivot or a weak one (`least_pivot`, if `Solver`
-/// has it), and in every later factorisation as long as rows are dropped. `Solver` then factorises the matrix with
-/// these rows and their columns replaced by ones on the diagonal. If this fails (`EigenLdlt` for thin rods, whose M is
-/// singular), the block solver solves the equations. The wrapper stores a copy of the blocks.
+/// Extends `Solver` for [A, Gᵀ; G, 0] with redundant constraint equations, which are dropped: their multipliers are
+/// zero. `BlockSolver` determines the redundant equations. It factorises the matrix if `Solver` finds no pivot or a
+/// weak pivot (`least_pivot`, if `Solver` provides it), and in every later factorisation as long as equations are
+/// dropped. `Solver` then factorises the matrix, in which a one on the diagonal replaces the row and the column of each
+/// dropped equation. If this fails (`EigenLdlt` for thin rods, whose M is singular), `BlockSolver` solves the
+/// equations. The wrapper stores a copy of the blocks.
 template <LinearSolver Solver>
 class RedundancyDropping {
  public:
-  /// A pivot below this part of the largest entry of its column is weak. A row at the distance σ from the span of other
-  /// rows has one pivot of σ² or two of σ, depending on the elimination order. The block solver drops it if σ² ≤ 1e-9.
+  /// A pivot is weak if its ratio to the largest entry of its column is smaller. A row of G at the distance σ from the
+  /// span of other rows has one pivot of σ² or two pivots of σ, depending on the elimination order. `BlockSolver` drops
+  /// the row if σ² ≤ 1e-9.
   static constexpr double weak = 1e-3;
 
   void analyse(Index size, std::span<Block const> blocks) {
@@ -72,15 +74,15 @@ class RedundancyDropping {
   }
   std::span<Index const> dropped() const { return {dropped_.data(), dropped_.size()}; }
 
-  /// Drops these `unknowns` in every later factorisation, as in `BlockFactor`.
+  /// Drops these `unknowns` in every later factorisation (`BlockFactor::mark_redundant`).
   [[gnu::cold]] void mark_redundant(std::span<Index const> unknowns) {
     left_out_ = Sequence<Index>(unknowns.begin(), unknowns.end());
     if (judges_) judge_.mark_redundant(unknowns);
     drop(unknowns);
   }
-  /// True if equations are dropped and a pivot is below `share`, as in `BlockFactor`.
+  /// True if equations are dropped and this decision is doubtful for `share`: see `BlockFactor::is_doubtful`.
   bool is_doubtful(double share) const { return !dropped_.empty() && judge_.is_doubtful(share); }
-  /// Null vector `n` of the `dropped` equation, as in `BlockFactor`.
+  /// Computes the null vector `n` of equation `dropped`: `BlockFactor::null_vector`.
   void null_vector(Index dropped, VecX& n) const { judge_.null_vector(dropped, n); }
 
  private:
@@ -107,7 +109,7 @@ class RedundancyDropping {
     if (bad < 0) drop(judge_.dropped());
     return bad < 0;
   }
-  /// Drops these rows and no others.
+  /// Replaces the list of dropped equations by `rows`.
   void drop(std::span<Index const> rows) {
     if (std::equal(rows.begin(), rows.end(), dropped_.begin(), dropped_.end())) return;
     dropped_ = Sequence<Index>(rows.begin(), rows.end());
@@ -149,8 +151,8 @@ class RedundancyDropping {
 
   Solver solver_;
   BlockSolver judge_;
-  bool judges_ = false;    // the block solver is analysed
-  bool by_judge_ = false;  // the last factorisation is of the block solver
+  bool judges_ = false;    // judge_ is analysed
+  bool by_judge_ = false;  // `solve` uses judge_
   Sequence<Block> blocks_;
   Sequence<std::size_t> first_;  // index of each block's first value, and one past the last value
   Sequence<double> values_, part_;
@@ -160,7 +162,7 @@ class RedundancyDropping {
   mutable VecX rhs_;
 };
 
-/// Solver of time steps: `Solver` itself if it drops redundant rows, else its wrapper.
+/// Linear solver of time steps: `Solver` if it drops redundant equations; otherwise `RedundancyDropping<Solver>`.
 template <LinearSolver Solver>
 using StepSolver = std::conditional_t<RedundancyAwareSolver<Solver>, std::type_identity<Solver>,
                                       std::type_identity<RedundancyDropping<Solver>>>::type;

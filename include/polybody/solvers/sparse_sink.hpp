@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Assembly of the tangent as a sparse matrix by columns, for the solvers that need one.
+/// Assembly of the tangent as a sparse matrix, stored by columns, for solvers that require a sparse matrix.
 
 #include <Eigen/SparseCore>
 #include <cstdint>
@@ -12,7 +12,7 @@
 namespace polybody {
 
 /// Sink that adds blocks to a sparse matrix.
-template <class T = double>  // a template, so that only its users compile it
+template <class T = double>  // a template, to be compiled only if it is used
 class SparseSinkOf {
  public:
   using Matrix = Eigen::SparseMatrix<T, Eigen::ColMajor, int>;  ///< sparse matrix, stored by columns

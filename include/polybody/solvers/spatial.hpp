@@ -1,7 +1,7 @@
 #pragma once
 /// \file
 /// Spatial algebra [Featherstone 2008, §2] of motions [v; ω] and forces [f; m] about one point, in world axes, on plain
-/// arrays of six numbers; and of pairs [A B] of matrices from motions to forces, 6×12 by rows, in loops of twelve.
+/// arrays of six numbers. Operations on pairs [A B] of matrices that map motions to forces, stored 6×12 by rows.
 
 #include <polybody/solvers/articulated_inertia.hpp>
 
@@ -66,7 +66,7 @@ struct MatrixPair {
     for (int i = 0; i < 6; ++i)
       for (int j = 0; j < 12; ++j) m[12 * i + j] -= r[i] * l[j];
   }
-  /// to += Xᵀ [A B] X; it overwrites this pair.
+  /// to += Xᵀ [A B] X. Overwrites this pair.
   void add_carried(T const* d, MatrixPair& to) {
     for (int i = 0; i < 6; ++i) {
       T* const a = row(i);

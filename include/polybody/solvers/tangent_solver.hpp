@@ -1,4 +1,7 @@
 #pragma once
+/// \file
+/// Linear equations of an integrator (`TangentSolver`), with their size and the names of their unknowns.
+
 #include <algorithm>
 #include <limits>
 #include <span>
@@ -18,12 +21,12 @@ template <class = void>
   return true;
 }
 
-/// Linear equations of an integrator. The system chooses their unknowns and writes them; a linear solver factorises and
-/// solves them. Trees with the articulated-body algorithm use this algorithm for any choice of the linear solver.
+/// Linear equations of an integrator. The system defines the unknowns and writes the matrix; `Solver` factorises and
+/// solves. Models with `joint_coordinates::ArticulatedBody` use the articulated-body algorithm instead of `Solver`.
 template <LinearSolver Solver>
 class TangentSolver {
  public:
-  /// Allocates all memory. \param copies number of copies of the unknowns, as for the stages of a method
+  /// Allocates all memory. \param copies number of copies of the unknowns, for example one for each stage of a method
   [[gnu::cold]] void analyse(System& system, Index copies, BlockWriter const& write) {
     copies_ = copies;
     coordinates_ = system.step_coordinates();
@@ -41,8 +44,8 @@ class TangentSolver {
       walks_ = system.rows() == 0 && under_gravity_only(system);
       if (copies > 1)
         throw InvalidInput("solver.stages", {ErrorObject{"joint_coordinates::ArticulatedBody"},
-                                             ": it solves for one set of accelerations at a time, not for all stages "
-                                             "of a method together. Use joint_coordinates::Augmented."});
+                                             " cannot solve for all stages of a method together. Use "
+                                             "joint_coordinates::Augmented."});
     } else {
       PatternSink pattern;
       BlockSink sink(pattern);
@@ -62,8 +65,9 @@ class TangentSolver {
   void evaluate(System& system, At<double> const& at) const {
     if (!walks_) system.evaluate(at.q, at.v, at.t);
   }
-  /// r = M a − f + Gᵀλ at x, the state of the last evaluation. If multiplier estimates are stored, it stores the
-  /// residual of the full model instead and sets r to zero; `System::residual` computes r then.
+  /// r = M a − f + Gᵀλ at x, the state of the last evaluation. If multiplier estimates are stored
+  /// (`carries_multipliers`), the solver stores the residual of the full model and sets r to zero; r is then available
+  /// from `System::residual`.
   void balance(System& system, StepPosition const& x, VecX& r) {
     if (walks_) return coordinates_.entries->balance(coordinates_.self.get(), x, system.load_factor, r);
     if (!keeps_multipliers_) return system.residual(x.a, x.lambda, r);
@@ -73,11 +77,11 @@ class TangentSolver {
   }
   /// False if the residual that the last `balance` stored is not finite.
   bool is_finite() const { return !keeps_multipliers_ || all_finite(balance_); }
-  /// Correction y of a step for the residual of the last `balance`: (−r, rows) = `rhs` → (accelerations, multipliers),
-  /// with all multipliers of the system. For joint coordinates it solves the equations of all bodies for the residual
-  /// of the full model, and projects the solution on the joints of the current iterate. With −Tᵀr as right-hand side, a
-  /// reused factorisation would transfer forces from body to body with outdated moment arms, and this error grows from
-  /// joint to joint.
+  /// Computes the correction y of a step: accelerations and all multipliers of the system. `rhs` contains −r of the
+  /// last `balance` and the right-hand sides of the constraint equations. If multiplier estimates are stored, the
+  /// equations of all bodies are solved for the residual of the full model, and the solution is projected on the joints
+  /// of the current iterate. With −Tᵀr as right-hand side, a reused factorisation would transfer forces from body to
+  /// body with outdated moment arms, and this error would grow from joint to joint.
   void correct(VecX const& rhs, VecX& y) {
     if (!keeps_multipliers_) return solve(rhs, y);
     coordinates_.entries->rows_to_equations(coordinates_.self.get(), rhs.data() + coordinates_.reduced->velocities,
@@ -86,14 +90,14 @@ class TangentSolver {
     coordinates_.entries->correction_from_equations(coordinates_.self.get(), x_, y);
   }
   /// True if multiplier estimates of eliminated joints are stored. A correction then also reduces the error of the
-  /// estimates, which its size does not include: the contraction rate of another step does not predict the next
-  /// correction.
+  /// estimates. The size of the correction does not include this error, so that the contraction rate of another step
+  /// does not predict the next correction.
   bool carries_multipliers() const { return keeps_multipliers_; }
-  /// Returns the tree to the state `at` after a factorisation in another state; only if `carries_multipliers()`.
+  /// Returns the tree to the state `at` after a factorisation in another state. Requires `carries_multipliers()`.
   void return_to(At<double> const& at) {
     coordinates_.entries->expand(coordinates_.self.get(), at.q, at.v, full_q_, full_v_);
   }
-  /// Factorises the tangent of the residual at x. Returns the same as `factor`.
+  /// Factorises the tangent of the residual at x. Returns −1, or the equation without a pivot (`name_of_equation`).
   Index factor_tangent(System& system, StepPosition const& x, TangentCoefficients const& k, SecondOrder second) {
     if (walks_)
       return coordinates_.entries->factor_balance(coordinates_.self.get(), frozen_.get(), x, system.load_factor, k);
@@ -110,8 +114,8 @@ class TangentSolver {
     return bad;
   }
 
-  /// Call it while a matrix is written: copy k uses the coordinates of the last evaluation of the system. Without this
-  /// call all copies use those of the last evaluation before `factor`.
+  /// Assigns the coordinates of the last evaluation of the system to copy k. Call it while the matrix is written.
+  /// Without this call, all copies use the coordinates of the last evaluation before `factor`.
   [[gnu::cold]] void hold_copy(std::size_t k) {
     if (!coordinates_) return;
     while (by_copy_.size() <= k) by_copy_.push_back(coordinates_.entries->make_frozen_state(coordinates_.self.get()));
@@ -128,16 +132,17 @@ class TangentSolver {
     else
       return 0;
   }
-  /// Later factorisations use the elimination order after the first `count` changes.
+  /// Reverts all changes of the elimination order except the first `count`, for later factorisations.
   void limit_reorderings(std::size_t count) noexcept {
     if constexpr (requires { solver_.limit_reorderings(count); }) solver_.limit_reorderings(count);
   }
 
-  /// True if the last factorisation dropped rows that an earlier one did not drop. It belongs to a singular
-  /// configuration; at other states these rows are independent, and the factorisation would not enforce them.
+  /// True if the last factorisation dropped more equations than an earlier one. Its state is then a singular
+  /// configuration. In other states these equations are independent, and the factorisation would not enforce them.
   bool lost_rank() const { return dropped().size() > fewest_dropped_; }
 
-  /// Every later factorisation drops these equations (rows of joints). Solvers without `mark_redundant` ignore it.
+  /// Makes every later factorisation drop these constraint equations. No effect for several copies, for the
+  /// articulated-body algorithm, and for solvers without `mark_redundant`.
   [[gnu::cold]] void mark_redundant(std::span<Index const> equations) {
     if constexpr (requires { solver_.mark_redundant(equations); }) {
       if (solves_by_bodies() || copies_ != 1) return;
@@ -145,13 +150,14 @@ class TangentSolver {
       fewest_dropped_ = std::numeric_limits<std::size_t>::max();
     }
   }
-  /// True if the last factorisation dropped more rows than `mark_redundant` lists, or has small pivots (`BlockFactor`).
+  /// True if the last factorisation dropped more equations than `mark_redundant` lists, or has small pivots of closing
+  /// joints: see `BlockFactor::is_doubtful`.
   [[gnu::cold]] bool is_doubtful() const {
     if constexpr (requires { solver_.is_doubtful(1e-3); }) return !solves_by_bodies() && solver_.is_doubtful(1e-3);
     return false;
   }
-  /// Null vector `n` of the `dropped` equation, as in `BlockFactor`, in the unknowns of the equations. Returns false if
-  /// there is none.
+  /// Computes the null vector `n` of equation `dropped` (`BlockFactor::null_vector`) in the unknowns of the linear
+  /// equations. Returns false if `Solver` does not provide null vectors.
   [[gnu::cold]] bool null_vector(Index dropped, VecX& n) {
     if constexpr (requires { bool(solver_.null_vector(dropped, n)); }) return solver_.null_vector(dropped, n);
     return false;
@@ -193,9 +199,9 @@ class TangentSolver {
   Solver solver_;
   Coordinates coordinates_;
   FrozenState frozen_;
-  Sequence<FrozenState> by_copy_;   // for copies with `hold_copy`
+  Sequence<FrozenState> by_copy_;   // states of the copies, if set by `hold_copy`
   bool keeps_multipliers_ = false;  // multiplier estimates of joints with joint coordinates are stored
-  bool walks_ = false;              // residual and tangent by recursions over the tree
+  bool walks_ = false;              // recursions over the tree compute residual and tangent
   std::size_t fewest_dropped_ = std::numeric_limits<std::size_t>::max();
   Index copies_ = 1, size_ = 0, equations_ = 0;
   VecX rhs_, x_, part_, solution_, equation_, balance_, full_q_, full_v_;
@@ -209,7 +215,7 @@ inline Index equations_of(System const& s) {
 inline Index equation_velocities_of(System const& s) {
   return s.step_coordinates() ? s.step_coordinates().reduced->equation_velocities : s.velocities();
 }
-/// Name of the body or joint of unknown i of the equations.
+/// Name of the body or joint to which unknown i of the linear equations belongs.
 template <class = void>
 std::string name_of_equation(System const& s, Index i) {
   if (!s.step_coordinates() || s.step_coordinates().reduced->full_unknown.empty()) return s.name_of(i);

@@ -1,20 +1,22 @@
 #pragma once
 /// \file
-/// Accelerations of a tree of rigid bodies by three recursions [Featherstone 1983; 2008, §7.3]: positions, angular
-/// velocities and biases from the roots to the tips, articulated inertias back to the roots, accelerations to the tips.
-/// A joint is a sequence of single degrees of freedom with columns S, so that only scalars are inverted. With
-/// x = [a; α] of the reference point of a body (tree_recursion.hpp), all in world axes,
+/// Accelerations of a tree of rigid bodies by three recursions [Featherstone 1983; 2008, §7.3]. The first computes
+/// positions, angular velocities and biases from the roots to the tips. The second computes articulated inertias back
+/// to the roots, the third accelerations to the tips. A joint is a sequence of single degrees of freedom with columns
+/// S, so that only scalars are inverted. With the acceleration x = [a; α] of a body at its reference point
+/// (tree_recursion.hpp), in world axes,
 ///   x = X x_p + Σ S u̇ + c,   X x = [a + α × d; α],   [f; m] = I x + p,   p ← p + I c.
 /// Each degree of freedom, from the last to the first, gives
 ///   D = Sᵀ I S,  w = −Sᵀ p,   I ← I − (I S) D⁻¹ (I S)ᵀ,  p ← p + (I S) D⁻¹ w,
-/// then the parent I_p += XᵀI X, p_p += Xᵀp. The last recursion computes u̇ = D⁻¹ (w − (I S)ᵀ x).
-/// In world axes the articulated inertias need no rotation from body to body.
+/// then for the parent I_p += XᵀI X, p_p += Xᵀp. The last recursion computes u̇ = D⁻¹ (w − (I S)ᵀ x). In world axes the
+/// articulated inertias need no rotation from body to body.
 
 #include <polybody/solvers/tree_recursion.hpp>
 
 namespace polybody {
 
-/// T is the scalar of the state; dual numbers give derivatives of the accelerations.
+/// Forward dynamics of a tree of rigid bodies. T is the scalar of the state; dual numbers give derivatives of the
+/// accelerations.
 template <StateScalar T = double>
 class TreeDynamicsOf {
  public:
@@ -29,8 +31,9 @@ class TreeDynamicsOf {
     walk_.add_velocity_forces();
     return solve(gravity, out);
   }
-  /// As `accelerations_under_gravity`, for any forces: `residual` is M a − f of all bodies in full velocities at
-  /// v̇ = 0, where f includes weight and gyroscopic moments.
+  /// Computes u̇ of all degrees of freedom at (q, v) for any forces. `residual` is M a − f of all bodies in full
+  /// velocities at v̇ = 0, where f includes weight and gyroscopic moments. Returns −1, or the body with a degree of
+  /// freedom without inertia.
   Index accelerations(VecXOf<T> const& q, VecXOf<T> const& v, VecXOf<T> const& residual, VecXOf<T>& out) {
     walk_.place(q, v);
     for (std::size_t i = 0; i < walk_.links.size(); ++i) {
@@ -75,7 +78,7 @@ class TreeDynamicsOf {
   void let_ground_fall(Vec3 const& gravity) {
     for (int k = 0; k < 3; ++k) walk_.ground.x[k] = T(-gravity[k]);
   }
-  /// x = X x_p for the carrier p.
+  /// x = X x_p for the carrier p of body b.
   static void carry(Body const& p, Body& b) {
     for (int k = 0; k < 6; ++k) b.x[k] = p.x[k];
     detail::add_cross(p.x + 3, b.d, b.x);
@@ -91,7 +94,7 @@ class TreeDynamicsOf {
   Walk walk_;
 };
 
-/// U = I S.
+/// Computes the product I S of a degree of freedom.
 template <StateScalar T>
 void TreeDynamicsOf<T>::set_column(Direction& f, detail::ArticulatedInertia<T> const& inertia) {
   for (T& x : f.u) x = T(0.0);
@@ -99,7 +102,8 @@ void TreeDynamicsOf<T>::set_column(Direction& f, detail::ArticulatedInertia<T> c
   if (f.kind != Kind::slide) inertia.add_by_angular(f.s + 3, f.u);
 }
 
-/// Eliminates the degrees of freedom of a body from its inertia and force. Returns false if one has no inertia.
+/// Eliminates the degrees of freedom of a body from its inertia and force. Returns false if a degree of freedom has no
+/// inertia.
 template <StateScalar T>
 bool TreeDynamicsOf<T>::eliminate(Body& b, bool carried) {
   b.inertia.add_by_acceleration(b.c, b.p);

@@ -10,20 +10,20 @@ namespace polybody {
 /// Constants of a body. A root has six degrees of freedom relative to the ground, or three in the plane; its reference
 /// point is its centre of mass.
 struct TreeLink {
-  Index parent, qn, vn, v0;          ///< as in TreeBody
+  Index parent, qn, vn, v0;          ///< see `TreeBody`
   RigidLayout layout;                ///< layout of the body's coordinates
-  bool backwards;                    ///< frame b of the joint belongs to the parent
-  bool turned;                       ///< the axes of the joint differ from those of the parent
+  bool backwards;                    ///< true if frame b of the joint belongs to the parent
+  bool turned;                       ///< true if the axes of this joint and of the parent's joint differ
   int degrees_of_freedom;            ///< number of velocities of the joint, or of the body if it is a root
   JointMotions motions;              ///< motions of the joint, from frame a to frame b
-  double entry[9], arm[3];           ///< axes and origin of the joint's frame, in the axes of the parent's joint
+  double entry[9], arm[3];           ///< axes and origin [m] of the joint's frame, in the axes of the parent's joint
   double mass, first[3], second[6];  ///< [kg], [kg m], [kg m²]; moments about the reference point
   double centre[3];                  ///< centre of mass, from the reference point [m]
   double full_axes[9];               ///< axes of the body's velocities (3×3 by columns)
 };
 
 /// Computes the constants of `body`. \param parent null for the ground
-template <class T = double>  // a template, so that only its users compile it
+template <class T = double>  // a template, to be compiled only if it is used
 [[gnu::cold]] TreeLink tree_link(TreeBody const& body, TreeBody const* parent) {
   using M3 = Mat<T, 3, 3>;
   TreeLink link;

@@ -2,8 +2,9 @@
 /// \file
 /// Recursion over a tree of rigid bodies from the roots to the tips. It computes positions, angular velocities, and the
 /// motion of each body due to the degrees of freedom of its joint. The reference point of a body is the point of the
-/// joint that carries it; d is the vector to it from the parent's reference point. All vectors are in world axes. With
-/// reference points at the joints, the distance of the bodies from the world's origin does not affect round-off.
+/// joint that carries it; d is the vector from the parent's reference point to that of the body. All vectors are in
+/// world axes. With reference points at the joints, the distance of the bodies from the world's origin does not affect
+/// round-off.
 
 #include <cmath>
 
@@ -14,7 +15,7 @@
 
 namespace polybody {
 
-/// T is the scalar of the state; dual numbers give derivatives.
+/// Kinematics of a tree of rigid bodies. T is the scalar of the state; dual numbers give derivatives.
 template <StateScalar T = double>
 struct TreeRecursionOf {
   /** Motion of a degree of freedom: rotation, translation, or both. */ enum class Kind : unsigned char {
@@ -22,19 +23,21 @@ struct TreeRecursionOf {
     slide,
     general
   };
-  /// One degree of freedom: its column S of [v; ω]; and I S, D⁻¹ and a force, which belong to the calling algorithm.
+  /// One degree of freedom: its column S of [v; ω]; and I S, D⁻¹ and a force, which the calling algorithm computes.
   struct Direction {
     T s[6], u[6], inverse, w;  ///< S, I S, D⁻¹, the force along S
-    Kind kind;                 ///< its motion; the other entries of S are zero
-    unsigned char together;    ///< 3 for the first degree of freedom of a ball joint and 0 for its others, else 1
-    Index velocity;            ///< index in the reduced velocities
+    Kind kind;                 ///< kind of motion; for `turn` and `slide`, one half of S is zero
+    /// Number of degrees of freedom that are eliminated together, counted at the first of them: 3 at the first of a
+    /// ball joint, 0 at its other two, 1 at all other joints.
+    unsigned char together;
+    Index velocity;  ///< index in the reduced velocities
   };
-  /// Joint axes of a body (3×3 by columns), d, ω, the acceleration c = [a; α] for u̇ = 0 and a parent without
-  /// acceleration, and the force p and acceleration x, which belong to the calling algorithm.
+  /// State of a body: joint axes (3×3 by columns), d, ω, and the acceleration c = [a; α] for u̇ = 0 and a parent
+  /// without acceleration. The force p and the acceleration x are computed by the calling algorithm.
   struct Body {
-    T axes[9], d[3], w[3], c[6], p[6], x[6];  ///< named above, in world axes
+    T axes[9], d[3], w[3], c[6], p[6], x[6];  ///< joint axes, d, ω, c, p, x, in world axes
     detail::ArticulatedInertia<T> inertia;    ///< articulated, about the reference point
-    std::size_t first;                        ///< its first degree of freedom
+    std::size_t first;                        ///< index of its first degree of freedom in `directions`
     int count;                                ///< number of its degrees of freedom
   };
 

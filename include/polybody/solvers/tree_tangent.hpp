@@ -1,19 +1,20 @@
 #pragma once
 /// \file
 /// Tangent of an implicit step of a tree of rigid bodies under weight, eliminated one degree of freedom after the other
-/// from the tips to the roots. It is the derivative of Tᵀ(M(T u̇ + b) − f) if a change y of the degrees of freedom
-/// changes coordinates by ck y, velocities by cd y and accelerations by cm y. It is exact: it contains inertia,
-/// Coriolis and centrifugal terms, and the geometric stiffness of rotating joints under tension [derived; derivatives
-/// of inverse dynamics as in Carpentier & Mansard 2018].
+/// from the tips to the roots. The tangent is the derivative of Tᵀ(M(T u̇ + b) − f) if a change y of the degrees of
+/// freedom changes coordinates by ck y, velocities by cd y and accelerations by cm y. The tangent is exact: it contains
+/// inertia, Coriolis and centrifugal terms, and the geometric stiffness of rotating joints under tension. It is derived
+/// here like the derivatives of inverse dynamics in [Carpentier & Mansard 2018].
 ///
 /// Let δv and δa be the changes of [v; ω] and of its rate in the axes of a body, in which positions do not change. Let
-/// v₀ and a₀ be the motion and the acceleration of its carrier; weight is an acceleration of the ground. A degree of
-/// freedom with columns J and velocity u gives
+/// v₀ and a₀ be the motion and the acceleration of the carrier of the body; an acceleration of the ground represents
+/// weight. A degree of freedom with columns J and velocity u gives
 ///   δv = δv₀ + s_v y,                      s_v = cd J + ck v₀ ×ₘ J,
 ///   δa = δa₀ − (J u) ×ₘ δv + s_a y,        s_a = cm J + cd v ×ₘ J + ck a₀ ×ₘ J.
 /// The force F that a body with its descendants requires changes by δF = A δa + B δv. A body alone has
 ///   A = I,   B = (·) ×* I v + v ×* I.
-/// The equation of the degree of freedom is Jᵀ δF = given. Its carrier gets δF + ck y J ×* F. With B′ = B − A (J u) ×ₘ
+/// The equation of the degree of freedom is Jᵀ δF = given. The carrier must support δF + ck y J ×* F. The elimination
+/// of y uses B′ = B − A (J u) ×ₘ and
 ///   D = Jᵀ h,   h = A s_a + B′ s_v,   r = h + ck J ×* F,
 ///   A₀ = A − r D⁻¹ JᵀA,   B₀ = B′ − r D⁻¹ JᵀB′.
 /// The three columns of a ball joint are eliminated together. If the columns are fixed on the carrier, v and a replace
@@ -25,7 +26,8 @@
 
 namespace polybody {
 
-/// T is always `double`. The class is a template so that programs without joint coordinates do not compile it.
+/// Factorisation and solution of the tangent of a tree of rigid bodies. The scalar type T is always `double`. As a
+/// template, the class is compiled only in programs with joint coordinates.
 template <class T = double>
 class TreeTangentSolverOf {
  public:
@@ -57,7 +59,7 @@ class TreeTangentSolverOf {
   bool eliminate(std::size_t first, bool before, double ck, Node& n);
   bool invert(std::size_t first, int count, T const* d, T const* size);
   void collect(VecXOf<T> const& given);
-  /// Row k of D⁻¹ w for one degree of freedom, or for those of a ball joint.
+  /// Entry k of D⁻¹ w, for one degree of freedom or for the three of a ball joint.
   T answer(std::size_t first, int k) const {
     T sum = T(0.0);
     for (int j = 0; j < walk_.directions[first].together; ++j)
@@ -123,8 +125,8 @@ void TreeTangentSolverOf<T>::move(std::size_t i, VecXOf<T> const& v, VecXOf<T> c
   }
 }
 
-/// Adds one degree of freedom, or those of a ball joint, to v and a. \param before true if the columns are fixed on the
-/// carrier
+/// Adds the motion of one degree of freedom, or of the three of a ball joint, to v and a. \param before true if the
+/// columns are fixed on the carrier
 template <class T>
 void TreeTangentSolverOf<T>::move_through(std::size_t first, bool before, Node& n, TangentCoefficients const& k) {
   Column const& c = columns_[first];
@@ -154,7 +156,7 @@ void TreeTangentSolverOf<T>::move_through(std::size_t first, bool before, Node& 
   }
 }
 
-/// Sets A, B and F of the body alone.
+/// Sets A, B and F of the body without its descendants.
 template <class T>
 void TreeTangentSolverOf<T>::set_inertia(std::size_t i) {
   Node& n = nodes_[i];
@@ -169,7 +171,8 @@ void TreeTangentSolverOf<T>::set_inertia(std::size_t i) {
   n.pair.set_rigid(inertia, n.v, momentum);
 }
 
-/// Eliminates one degree of freedom, or those of a ball joint, from A and B. Returns false if one has no pivot.
+/// Eliminates one degree of freedom, or the three of a ball joint, from A and B. Returns false if a degree of freedom
+/// has no pivot.
 template <class T>
 bool TreeTangentSolverOf<T>::eliminate(std::size_t first, bool before, double ck, Node& n) {
   int const count = walk_.directions[first].together;

@@ -15,11 +15,11 @@ namespace polybody {
 
 /// Options of `equilibrium_path`: step lengths, number of points and Newton iteration.
 struct ArcLengthOptions {
-  double step = 0.05;       ///< first step: load factor that it covers at the start
-  double max_step = 0.05;   ///< largest step: a load factor
-  double min_step = 1e-6;   ///< smallest step: a load factor
+  double step = 0.05;       ///< first step, an arc length; the load factor increases by step/√2 at first
+  double max_step = 0.05;   ///< largest step, an arc length [1]
+  double min_step = 1e-6;   ///< smallest step, an arc length [1]
   int points = 200;         ///< largest number of points
-  double tolerance = 1e-9;  ///< of a correction, relative to 1 + max |q|
+  double tolerance = 1e-9;  ///< largest correction at convergence, relative to 1 + max |q|
   int max_iterations = 12;  ///< largest number of iterations in a step
 
   /// \throws InvalidInput unless the counts are in [1, 10⁶] and the other numbers are positive and finite.
@@ -57,16 +57,16 @@ class PathEquations {
       if (!takes_least_) stiffness_.remove_springs(start.x.lambda);
     }
     if (!solve(start) || !(b_.head(nv_).norm() > 0.0))
-      throw SingularMatrix(
-          "path.no_direction",
-          {ErrorObject{"equilibrium_path"},
-           ": the path has no direction, because the stiffness is singular at the start, or nothing is loaded."});
+      throw SingularMatrix("path.no_direction", {ErrorObject{"equilibrium_path"},
+                                                 ": the path has no direction at the start: the stiffness is singular, "
+                                                 "or no load acts. Fix every body, and apply a load."});
     c2_ = b_.head(nv_).squaredNorm();
     t_ = b_;
     turn();
   }
 
-  /// Computes the tangent of unit length from the last solution, in the direction of the previous tangent.
+  /// Computes the unit tangent from the last solution. The sign is chosen such that the scalar product with the
+  /// previous tangent is positive.
   void turn() {
     double tp = 1.0 / std::sqrt(1.0 + b_.head(nv_).squaredNorm() / c2_);
     next_ = b_ * tp;
@@ -79,8 +79,8 @@ class PathEquations {
   }
   /// Moves a point along the tangent.
   void predict(PathPoint& point, double length) { move(point, VecX(length * t_), length * tp_); }
-  /// Corrects a point by Newton's method in the plane orthogonal to the tangent. Returns the number of iterations; −1
-  /// if they do not converge, or if K is singular.
+  /// Corrects a point by Newton's method in the plane orthogonal to the tangent. Returns the number of iterations, or
+  /// −1 if the iterations do not converge or K is singular.
   int correct(PathPoint& trial, ArcLengthOptions const& options) {
     double before = std::numeric_limits<double>::infinity();
     for (int k = 0; k < options.max_iterations; ++k) {
@@ -101,7 +101,7 @@ class PathEquations {
     system_.evaluate(at.x.q, at.x.v, at.x.t);
     return system_;
   }
-  /// Computes a = −K⁻¹ r and b = −K⁻¹ r_p at a point; false if K is singular. \throws NonFiniteValue.
+  /// Computes a = −K⁻¹ r and b = −K⁻¹ r_p at a point. Returns false if K is singular. \throws NonFiniteValue.
   bool solve(PathPoint const& at) {
     evaluated(at);
     for (auto const& [factor, out] : {std::pair{0.0, &r0_}, std::pair{1.0, &r1_}, std::pair{at.load_factor, &r_}}) {
@@ -116,7 +116,7 @@ class PathEquations {
     if ((takes_least_ ? least_.factor(at.x.lambda) : stiffness_.factor(at.x.lambda)) >= 0) return false;
     return solve_for(-r_, -phi_, at, a_) && solve_for(r0_ - r1_, VecX::Zero(rows_), at, b_);
   }
-  /// Solves the linear equations; false if a force excites a motion without stiffness.
+  /// Solves the linear equations. Returns false if a force excites a motion without stiffness.
   bool solve_for(VecX const& f, VecX const& phi, PathPoint const& at, VecX& out) {
     if (takes_least_)
       least_.solve(f, phi, at.x.lambda, out);
@@ -149,8 +149,9 @@ class PathEquations {
 }  // namespace detail
 
 /// Follows a path of static equilibria past limit points by the arc-length method [Riks 1979; Crisfield 1991, §9.3].
-/// The path starts at x, in equilibrium without loads, and ends if `done(point)` is true or `options.points` are
-/// computed. The length is the square root of |dq|²/c² + dp², c = |dq/dp| at the start.
+/// The path begins at `start`, which is in equilibrium without loads. It ends if `done(point)` is true or
+/// `options.points` points are computed. The arc length ds is defined by ds² = |dq|²/c² + dp² with c = |dq/dp| at the
+/// start of the path.
 ///
 /// The load factor p is an unknown, and the residual r(q, λ, p) is affine in it. Corrections (Δ, Δp) are in the plane
 /// orthogonal to the tangent (t, t_p) at the start of the step:
@@ -181,7 +182,7 @@ std::vector<PathPoint> equilibrium_path(System& system, State const& start, ArcL
             "equilibrium.not_converged",
             {ErrorObject{"equilibrium_path"}, ": Newton's method did not converge beyond load factor ",
              ErrorValue{now.load_factor},
-             ". A bifurcation may be near: give the structure an imperfection, or end the path before."});
+             ". A bifurcation may be near: give the structure an imperfection, or end the path earlier."});
       continue;
     }
     equations.turn();

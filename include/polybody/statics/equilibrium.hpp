@@ -14,8 +14,8 @@
 namespace polybody {
 
 namespace detail {
-/// Computes initial multipliers that balance the loads at the first instant. The stiffness of a pendulum, for
-/// example, consists of terms with multipliers. False if the accelerations of the state are not unique.
+/// Computes initial multipliers by forward dynamics in state x. A pendulum, for example, has no stiffness without
+/// multipliers. Returns false if the accelerations are not unique.
 template <class = void>
 bool multipliers_at_rest(System& system, State& x) {
   VecX a = x.a;
@@ -62,8 +62,8 @@ NewtonResult follow(EquilibriumPath<Solver>& path, EquilibriumOptions const& opt
   return NewtonResult::converged;
 }
 
-/// Follows the path again from `start`, by minimum-norm corrections. True if it ends in equilibrium. The last
-/// corrections use a tangent at the end itself, and the report contains its springs.
+/// Follows the path again from `start`, by minimum-norm corrections. Returns true if the path ends in equilibrium. The
+/// last corrections use the tangent at the end of the path; the report names the motions and constraints with springs.
 template <class Solver>
 bool follow_least(EquilibriumPath<Solver>& path, State const& start, EquilibriumOptions const& options,
                   EquilibriumReport& report) {
@@ -78,8 +78,8 @@ bool follow_least(EquilibriumPath<Solver>& path, State const& start, Equilibrium
   return true;
 }
 
-/// Treats an unstable state that was reached by step halving only: the damped motion from `start` replaces it if its
-/// end is stable.
+/// Treats an unstable state that was reached only by step halving. The end of the damped motion from `start` replaces
+/// this state if it is stable.
 template <class Solver>
 [[gnu::cold]] void relax_unstable(EquilibriumPath<Solver>& path, State const& start, EquilibriumOptions const& options,
                                   EquilibriumReport& report) {
@@ -97,19 +97,19 @@ template <class Solver>
   path.system.evaluate(found.q, found.v, found.t);
 }
 
-/// Adds a limit point at the load factor `factor` to the report, with a warning; nothing if `factor` is 0.
+/// Adds a limit point at the load factor `factor` to the report, with a warning. Does nothing if `factor` is 0.
 template <class = void>
 [[gnu::cold]] void report_limit_point(double factor, EquilibriumReport& report) {
   if (factor == 0.0) return;
   report.limit_point = factor;
   report.warnings.push_back(sentence_of(
       {"The path of equilibria from the start has a limit point near load factor ", factor,
-       ". The equilibrium found beyond it is not its continuation. Follow the path by equilibrium_path(model, x)."}));
+       ". The equilibrium that was found is not on this path. Follow the path with equilibrium_path(model, x)."}));
 }
 
-/// Follows the path a second time from `start`. Load steps in which the determinant of the tangent changes its sign
-/// are halved. If this path ends in another stable state, that state is the equilibrium. If it ends early at a limit
-/// point, the first result remains and the report contains the load factor.
+/// Follows the path a second time from `start`. Load steps in which the determinant of the tangent changes its sign are
+/// halved. If this path ends in another stable state, that state becomes the result. If it ends early at a limit point,
+/// the first result remains, and the report contains the load factor of the limit point.
 template <class Solver>
 [[gnu::cold]] void follow_without_crossing(EquilibriumPath<Solver>& path, State const& start,
                                            EquilibriumOptions const& options, EquilibriumReport& report) {
@@ -125,7 +125,8 @@ template <class Solver>
     report_limit_point<>(path.limit_point(), report);
   } else if (largest_size(path.trial.q - found.q) > 1e-6 * (1.0 + largest_size(found.q)) && !path.is_singular()) {
     path.advance(1.0);
-    // Next to a stiffness of the size of the round-off of loads Newton's method may stop at the start.
+    // If the stiffness is as small as the round-off of the loads, Newton's method may converge without leaving the
+    // start.
     bool const balanced = path.evaluate() && largest_size(path.r) <= 1e-6 * loads;
     report_stability(path, again);
     if (again.negative_pivots == 0 && balanced) {
@@ -140,19 +141,19 @@ template <class Solver>
 
 }  // namespace detail
 
-/// Moves x into static equilibrium at time x.t from its present configuration: f(q, z) − Gᵀλ = 0, Φ(q) = 0 and
-/// h(q, z) = 0 at v = 0. Coordinates, first-order states and multipliers of x change; its velocities become zero. The
-/// tangent contains every term.
+/// Moves x into static equilibrium at time x.t from its present configuration: f(q, z) − Gᵀλ = 0, Φ(q) = 0 and h(q, z)
+/// = 0 at v = 0. Coordinates, first-order states and multipliers of x change; its velocities become zero. The tangent
+/// stiffness contains every term, also those with multipliers.
 ///
-/// If Newton's method does not converge at once, it follows the path s = 0 … 1 of
+/// If Newton's method does not converge at once, it is applied along the path s = 0 … 1 of
 ///   r(q, λ, p) = (1 − s) r₀,  Φ(q) = (1 − s) Φ₀,  p = p₀ + s (1 − p₀),
 /// with the factor p of loads and gravity. p₀ ∈ [0, 1] minimises the residual at x; r₀ and Φ₀ are the remaining
 /// residuals. From a reference state the loads increase from zero; from an equilibrium under smaller loads they
-/// increase from those.
+/// increase from these smaller loads.
 ///
 /// If the tangent is singular, the path is followed again by minimum-norm corrections (`MinimumNormStep`). Redundant
-/// constraints are omitted, and their multipliers are zero. Free motions that no load excites are as small as
-/// possible. The report names both.
+/// constraints are omitted, and their multipliers are zero. Free motions that no load excites are as small as possible.
+/// The report names these constraints and motions.
 ///
 /// \throws NewtonConvergenceFailure; SingularMatrix, naming the motion if a load excites a motion without stiffness;
 /// InconsistentInitialConditions for redundant constraints that contradict others; NonFiniteValue. x is then unchanged.
@@ -201,7 +202,7 @@ EquilibriumReport equilibrium(System& system, State& x, EquilibriumOptions const
   return report;
 }
 
-/// Overload for a model. Joints of policies that eliminate unknowns are constraint equations here.
+/// Overload for a model. Joints whose policies eliminate unknowns are treated as constraint equations here.
 template <LinearSolver Solver = DefaultStaticSolver, class M>
 EquilibriumReport equilibrium(M const& model, State& x, EquilibriumOptions const& options = {}) {
   System system(model, with < Capabilities::implicit_step | Capabilities::rigid_velocities >);

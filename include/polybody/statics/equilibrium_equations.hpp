@@ -1,4 +1,7 @@
 #pragma once
+/// \file
+/// Equations of `equilibrium` for Newton's method along the load path (`EquilibriumPath`).
+
 #include <polybody/integrators/unknown_kinds.hpp>
 #include <polybody/solvers/newton.hpp>
 #include <polybody/statics/equilibrium_options.hpp>
@@ -8,8 +11,8 @@
 
 namespace polybody::detail {
 
-/// Remedy for a body whose neighbouring nodes differ by a rotation above 2.5 rad: the interpolation between two nodes
-/// is unique only below half a turn.
+/// Text with a remedy if neighbouring nodes of a body differ by a rotation above 2.5 rad; empty if there is no such
+/// body. The interpolation between two nodes is unique only below half a turn.
 template <class = void>
 [[gnu::cold]] std::string remedy_of_elements(ModelLayout const& layout, VecX const& q) {
   UnknownPlaces const places = full_places(layout);
@@ -32,7 +35,8 @@ template <class = void>
   return "";
 }
 
-/// Equations of `equilibrium` for Newton's method, at the fraction s of the path.
+/// Equations of `equilibrium` for Newton's method, at the fraction s of the path from the initial state to the
+/// equilibrium.
 template <class Solver>
 struct EquilibriumPath {
   System& system;
@@ -40,16 +44,16 @@ struct EquilibriumPath {
   MinimumNormStep<Solver>& least;
   State& trial;
   double tolerance;
-  bool takes_least = false;  ///< minimum-norm corrections by `least`
+  bool takes_least = false;  ///< true: corrections are minimum-norm solutions by `least`
   /// A load step fails if the determinant of the tangent changes its sign between iterates. Beyond a limit point
   /// Newton's method may otherwise converge to another branch.
   bool refuses_crossing = false;
-  bool crosses = false;  ///< the determinant has changed its sign in this load step
+  bool crosses = false;  ///< true: the determinant has changed its sign in this load step
   double sign = 0.0;     ///< sign of the determinant at the start of this load step; 0: not computed
   double least_rate = std::numeric_limits<double>::infinity();  ///< smallest max |Δq|/Δs of the load steps
   double far = 1e6 * (1.0 + trial.q.cwiseAbs().maxCoeff());     ///< largest allowed coordinate and correction
   Index nv = system.velocities(), rows = system.rows(), states = system.layout().states, bad = -1;
-  double first = 0.0, share = 0.0;  ///< p₀, s
+  double first = 0.0, share = 0.0;  ///< p₀, load factor at s = 0; s, fraction of the path
   VecX r0 = VecX::Zero(nv), phi0 = VecX::Zero(rows), r = r0, phi = phi0, y = VecX::Zero(nv + rows), dq = r, q = trial.q;
   VecX moved = r;  ///< sum of the corrections of this load step
 
@@ -74,7 +78,7 @@ struct EquilibriumPath {
     system.load_factor = first + s * (1.0 - first);
   }
 
-  /// Records max |Δq|/Δs of a converged load step Δs from `before`.
+  /// Updates `least_rate` with max |Δq|/Δs of a converged load step of length Δs = `part` that began at `before`.
   void measure_rate(State const& before, double part) {
     least_rate = std::min(least_rate, largest_size(trial.q - before.q) / part);
   }
@@ -92,7 +96,7 @@ struct EquilibriumPath {
     tangent.sign_here(trial.lambda);
   }
   /// Returns the present load factor near a limit point, otherwise 0. Near a limit point the motion per load, K⁻¹
-  /// ∂f/∂s, is many times the smallest one of all load steps so far.
+  /// ∂f/∂s, is more than 8 times the smallest max |Δq|/Δs of the load steps so far.
   [[gnu::cold]] double limit_point() {
     if (takes_least) return 0.0;
     double const factor = system.load_factor;
@@ -154,7 +158,8 @@ struct EquilibriumPath {
     trial.lambda += y.tail(rows);
   }
 
-  /// True if the tangent is singular at the present state; `least` then contains its springs.
+  /// Returns true if the tangent is singular at the present state; `least` then contains the springs that make it
+  /// regular.
   bool is_singular() {
     if (!(tangent.growth() > MinimumNormStep<Solver>::suspicious)) return false;
     return finds_springs();
@@ -172,7 +177,7 @@ struct EquilibriumPath {
         "equilibrium.singular",
         {"equilibrium: the stiffness is singular", place(), ", first at ", ErrorObject{system.name_of(i)},
          ": nothing resists that ", name_of_motion(system, least.motion(k), i),
-         ", and the loads excite this motion. Fix every body, or pass a limit point by equilibrium_path."});
+         ", and the loads excite this motion. Fix every body, or pass a limit point with equilibrium_path."});
   }
   /// \throws InconsistentInitialConditions naming a joint with redundant constraints that are violated.
   void require_closed() const {
@@ -193,7 +198,7 @@ struct EquilibriumPath {
     if (result == NewtonResult::singular)
       throw SingularMatrix("equilibrium.singular", {"equilibrium: the stiffness is singular", at, ", first at ",
                                                     ErrorObject{system.name_of(std::max<Index>(first_bad, 0))},
-                                                    ". Fix every body, or pass a limit point by equilibrium_path."});
+                                                    ". Fix every body, or pass a limit point with equilibrium_path."});
     if (result == NewtonResult::not_finite)
       throw NonFiniteValue("equilibrium.not_finite", {ErrorObject{"equilibrium"}, ": a force is not finite", at, "."});
     throw NewtonConvergenceFailure(
@@ -201,7 +206,7 @@ struct EquilibriumPath {
         {ErrorObject{"equilibrium"}, ": Newton's method did not converge", at,
          remedy_of_elements(system.layout(), trial.q), ". Use more load steps, or start closer to the solution."});
   }
-  /// Adds the names of the motions and constraints with springs in `least` to the report.
+  /// Adds the motions and constraints to which `least` has added springs to the report, by their names.
   void report_springs(EquilibriumReport& report) const {
     report.free_motions.clear();
     report.redundant.clear();

@@ -13,8 +13,8 @@ namespace polybody {
 struct EquilibriumOptions {
   int load_steps = 1;  ///< number of equal load steps for loads and gravity
   double min_load_step =
-      1e-4;  ///< smallest load step [1]; a failed step is halved, and the step after it is doubled again
-  double tolerance = 1e-11;  ///< of a correction, relative to 1 + max |q|
+      1e-4;  ///< smallest load step [1]; failed steps are halved, converged steps doubled up to 1/load_steps
+  double tolerance = 1e-11;  ///< largest correction at convergence, relative to 1 + max |q|
   int max_iterations = 50;   ///< largest number of iterations in a load step
 
   /// \throws InvalidInput unless the counts are in [1, 10⁶] and the other numbers are positive and finite.
@@ -28,20 +28,20 @@ struct EquilibriumOptions {
 
 /// Report of `equilibrium`: cost, free motions, redundant constraints and stability.
 struct EquilibriumReport {
-  int load_steps = 0;  ///< number of load steps
+  int load_steps = 0;  ///< number of load steps that converged
   int iterations = 0;  ///< number of Newton iterations
-  /// Free motions about the equilibrium, without stiffness and not excited by a load: body "payload" turns about (0,
-  /// 0, 1) through (0, 0, -2). The displacement along them has minimum norm.
+  /// Free motions about the equilibrium, which have no stiffness and are not excited by a load, such as: body "payload"
+  /// turns about (0, 0, 1) through (0, 0, -2). The displacement along free motions has minimum norm.
   std::vector<std::string> free_motions = {};
   /// Names of joints and bodies with redundant constraints, one entry per name. The multipliers of these constraints
   /// are zero.
   std::vector<std::string> redundant = {};
-  /// Number of negative eigenvalues of the tangent stiffness, symmetrised, on the motions that the constraint
-  /// equations permit. It is 0 in a stable state. A state with a positive number is unstable. −1: not counted, in
-  /// models with first-order states, about a steady rotation, or beyond some 10⁵ coordinates of one long mechanism.
+  /// Number of negative eigenvalues of the tangent stiffness, symmetrised, on the motions that the constraint equations
+  /// permit. It is 0 in a stable state. A state with a positive number is unstable. −1 means not computed: the model
+  /// has first-order states, the state is a steady rotation, or one long mechanism has more than some 10⁵ coordinates.
   int negative_pivots = 0;
   double limit_point = 0.0;  ///< load factor of a limit point or branch point on the path from the start; 0: none found
-  bool relaxed = false;      ///< Newton's method did not converge; the state comes from a damped motion
+  bool relaxed = false;      ///< true: Newton's method did not converge; a damped motion found the state
   /// Warnings about an unstable state, and about an equilibrium that is not on the path from the start.
   std::vector<std::string> warnings = {};
 };

@@ -1,18 +1,21 @@
 #pragma once
+/// \file
+/// Rigid motions of the bodies in a null vector of the stiffness, and their description in messages.
+
 #include <polybody/math/sequence.hpp>
 #include <polybody/system/system.hpp>
 
 namespace polybody::detail {
 
-/// Rigid part of a body's motion for generalised velocities z of a model.
+/// Rigid part of the motion of one body under generalised velocities z of a model.
 struct RigidPart {
-  Vec3 velocity = Vec3::Zero();  ///< (3) velocity of its point at the world's origin, world axes
+  Vec3 velocity = Vec3::Zero();  ///< (3) velocity of the body-fixed point at the world's origin
   Vec3 turn = Vec3::Zero();      ///< (3) angular velocity, world axes
   double left = 0.0;             ///< |velocities that no rigid motion explains| / |velocities of the body|
 };
 
-/// Computes the rigid part by least squares: the velocities of the six rigid motions (three in the plane) are
-/// orthogonalised one after the other.
+/// Computes the rigid part of the motion of `body` by least squares. The generalised velocities of its six rigid
+/// motions (three in the plane) are orthogonalised one after the other.
 template <class = void>  // compiled where it is used
 RigidPart rigid_part(System const& system, BodyLayout const& body, VecX const& z) {
   auto const entry = require_entry(system.entries().first.rigid_velocities, "velocities of rigid motions");
@@ -63,7 +66,8 @@ std::string in_brackets(Vec3 const& x) {
   return text + ')';
 }
 
-/// Text of a rigid motion: a translation along a direction, a rotation about an axis through a point, or both.
+/// Text of a rigid motion: a translation along a direction, a rotation about an axis through a point, or both. `reach`,
+/// 1 + max |q|, is the size of the model.
 template <class = void>
 std::string text_of(RigidPart const& part, double reach) {
   double const v = std::sqrt(squared_norm(part.velocity)), w = std::sqrt(squared_norm(part.turn));
@@ -87,8 +91,8 @@ std::string text_of(RigidPart const& part, double reach) {
   return text;
 }
 
-/// Text of the motion z of a model, with the name of the body of unknown i: body "payload" turns about (0, 0, 1)
-/// through (0, 0, -2).
+/// Text of the motion z of a model, with the name of the body of unknown i. Example: body "payload" turns about (0, 0,
+/// 1) through (0, 0, -2).
 template <class = void>
 std::string name_of_motion(System const& system, VecX const& z, Index i) {
   std::string text = system.name_of(i);

@@ -5,8 +5,8 @@
 
 namespace polybody {
 
-/// Load steps of the path s = 0 … 1, equal in length. A failed step is halved, and the step after it is doubled
-/// again.
+/// Load steps s = 0 … 1 of `equilibrium`, initially of equal length. A failed step is halved. A converged step doubles
+/// the next one, up to the initial length.
 class LoadSteps {
  public:
   /// Starts at s = 0, with the number of steps and the smallest step of the options.
@@ -14,20 +14,20 @@ class LoadSteps {
       : full_(1.0 / std::max(options.load_steps, 1)), smallest_(options.min_load_step), part_(full_) {}
 
   bool done() const { return done_ >= 1.0; }  ///< true if s = 1
-  double reached() const { return done_; }    ///< s
-  /// End of the next load step.
+  double reached() const { return done_; }    ///< s at the end of the last converged step
+  /// s at the end of the next load step.
   double next() const { return done_ + part_ > 1.0 - 1e-12 ? 1.0 : done_ + part_; }
   /// Moves to `next()`, after a load step that converged.
   void reach_next() {
     done_ = next();
     part_ = std::min(2.0 * part_, full_);
   }
-  /// Halves the load step; false if it becomes smaller than the smallest one.
+  /// Halves the load step. Returns false if the result is shorter than `min_load_step` of the options.
   bool halve() {
     part_ *= 0.5;
     return part_ >= smallest_;
   }
-  /// Returns to s = 0 and keeps the present load step.
+  /// Returns to s = 0 and keeps the present length of the load step.
   void restart() { done_ = 0.0; }
 
  private:

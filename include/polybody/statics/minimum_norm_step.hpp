@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Singular equations of statics.
+/// Minimum-norm solution of singular equations of statics.
 
 #include <polybody/math/sequence.hpp>
 #include <polybody/statics/null_space.hpp>
@@ -8,8 +8,8 @@
 namespace polybody {
 
 namespace detail {
-/// Size of the terms that cancel in an equilibrium: the largest of the multipliers, the forces of compliant joints
-/// and the wrenches of force elements.
+/// Largest magnitude of the terms that cancel in an equilibrium: multipliers, forces of compliant joints and wrenches
+/// of force elements.
 template <class = void>
 double largest_load(System const& system, VecX const& lambda) {
   double largest = largest_size(lambda);
@@ -22,29 +22,28 @@ double largest_load(System const& system, VecX const& lambda) {
 }
 }  // namespace detail
 
-/// Minimum-norm solution of singular equations of statics A y = b. The cause is redundant constraints or free
-/// motions, which have no stiffness. As many unknowns p as the rank deficiency of A are held by a unit spring each
-/// [Farhat & Géradin 1998]:
+/// Minimum-norm solution of singular equations of statics A y = b. A is singular because of redundant constraints, or
+/// of free motions, which have no stiffness. A unit spring is added to as many unknowns as the rank deficiency of A
+/// [Farhat & Géradin 1998]. The columns of P are the unit vectors of these unknowns:
 ///   A′ = A + P Pᵀ,  Z = A′⁻¹ P,  y′ = A′⁻¹ b.
 /// Then A Z = 0 and PᵀZ = 1, because every W with WᵀA = 0 has WᵀP = WᵀA′Z = WᵀP PᵀZ. Z therefore spans the null space
-/// of A, motions and multipliers. The force in the springs is Pᵀy′ = (WᵀP)⁻¹Wᵀb. It is zero if A y = b has a
-/// solution, and then y′ − Z c is a solution for every c. The multipliers of constraint equations with a spring are
-/// made zero, as in a time step with redundant constraints. The solution has the least |x| is
-/// computed.
+/// of A, motions and multipliers. The force in the springs is Pᵀy′ = (WᵀP)⁻¹Wᵀb. It is zero if A y = b has a solution,
+/// and then y′ − Z c is a solution for every c. The multipliers of constraint equations with a spring are made zero, as
+/// in a time step with redundant constraints. Of all solutions, the one with the least |x| is computed.
 template <LinearSolver Solver>
 class MinimumNormStep {
  public:
-  /// Growth factor of a solution above which the matrix may be singular.
+  /// Value of `StaticTangent::growth` above which the matrix may be singular.
   static constexpr double suspicious = 1e8;
   /// Largest force on a spring under balanced loads, relative to the largest load.
   static constexpr double balanced = 1e-9;
 
-  /// Constructor; `system` and `tangent` must outlive this object.
+  /// `system` and `tangent` must outlive this object.
   MinimumNormStep(System& system, StaticTangent<Solver>& tangent)
       : system_(&system), tangent_(&tangent), nv_(system.velocities()), b_(VecX::Zero(system.size())) {}
 
-  /// Computes the springs that the matrix requires at the state last evaluated, and Z. Returns −1, or an unknown
-  /// without a pivot if springs are not sufficient.
+  /// Computes the springs that the matrix requires in the state last evaluated, and Z. Returns −1, or an unknown
+  /// without a pivot if springs do not make the matrix regular.
   Index factor(VecX const& lambda) {
     excited_ = -1;
     set_springs(lambda);
@@ -61,8 +60,8 @@ class MinimumNormStep {
     return -1;
   }
 
-  /// Solves for `out` (size) = (x, μ) with forces f (velocities) and violations φ (constraint equations). If the
-  /// loads excite a free motion, `excited` returns it.
+  /// Solves for `out` (size) = (x, μ) with forces f (velocities) and violations φ (constraint equations). If the loads
+  /// excite a free motion, `excited` returns its spring.
   void solve(VecX const& f, VecX const& phi, VecX const& lambda, VecX& out) {
     double const unit = tangent_->unit();
     for (Index i = 0; i < nv_; ++i) b_[i] = f[i] / unit;
@@ -76,10 +75,11 @@ class MinimumNormStep {
 
   /// Unknowns with a spring.
   Sequence<Index> const& pins() const { return pins_; }
-  VecX const& motion(std::size_t k) const { return columns_[k].z; }  ///< Z of spring k (size)
+  VecX const& motion(std::size_t k) const { return columns_[k].z; }  ///< column k of Z, for spring k (size)
   /// Number of the spring whose free motion the loads excite most, beyond round-off; −1 if the loads are balanced.
   Index excited() const { return excited_; }
-  /// Replaces λ by multipliers with the same forces that are zero for constraint equations with a spring.
+  /// Replaces λ by multipliers with the same constraint forces. The new multipliers are zero for constraint equations
+  /// with a spring.
   void drop_multipliers(VecX& lambda) {
     for (Index i = 0; i < b_.size(); ++i) b_[i] = i < nv_ ? 0.0 : lambda[i - nv_];
     take_rows_off(b_);
@@ -93,7 +93,7 @@ class MinimumNormStep {
     tangent_->set_springs(b_, lambda);
   }
 
-  /// Computes Z of the last factorisation; true if A Z = 0.
+  /// Computes Z with the last factorisation. Returns true if A Z = 0 up to round-off.
   bool columns_are_null(VecX const& lambda) {
     columns_.resize(pins_.size());
     for (std::size_t k = 0; k < columns_.size(); ++k) {
@@ -116,8 +116,8 @@ class MinimumNormStep {
     }
   }
 
-  /// Computes `excited_`. Tolerances are the round-off of f, ε |K| (1 + |q|) at each entry, and the remainder of
-  /// loads that cancel.
+  /// Computes `excited_`: the spring whose force exceeds its limit by the largest factor. The limit is the sum of two
+  /// round-offs: of f, ε |K| (1 + |q|) for each entry, and of loads that cancel.
   void find_excited(VecX const& y, double load) {
     double const reach = 1.0 + largest_size(system_->at().q), unit = tangent_->unit();
     double worst = 1.0;

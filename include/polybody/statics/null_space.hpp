@@ -1,13 +1,13 @@
 #pragma once
 /// \file
-/// Null space of a matrix of statics.
+/// Null space of the matrix of the equations of statics, by inverse iteration.
 
 #include <polybody/math/sequence.hpp>
 #include <polybody/statics/null_vector.hpp>
 
 namespace polybody::detail {
 
-/// Largest absolute entry of each row.
+/// Receiver of matrix blocks that computes the largest absolute entry of each row.
 struct RowSizeSink {
   VecX& largest;
 
@@ -17,11 +17,11 @@ struct RowSizeSink {
   }
 };
 
-/// Null space of a matrix A of statics, by inverse iteration with a small shift:
+/// Null space of the matrix A of the equations of statics (StaticTangent), by inverse iteration with a small shift:
 ///   y ← (A + σ D)⁻¹ D y,  σ = 1e-12,  D = diag(largest entry of the row; negative for constraint equations).
-/// Vectors of the null space grow by 1/σ in each pass, any other vector by 1/(σ + its eigenvalue relative to D)
-/// [Golub & Van Loan 2013, §8.2]. If K is positive semidefinite, the shifted matrix is quasi-definite, and its pivots
-/// are far above round-off. A vector is accepted if A z is round-off compared with |A| |z|.
+/// Each pass multiplies a vector of the null space by 1/σ, and an eigenvector with the eigenvalue μ relative to D by
+/// 1/(σ + μ) [Golub & Van Loan 2013, §8.2]. If K is positive semidefinite, the shifted matrix is quasi-definite, and
+/// its pivots are far above round-off. A vector is accepted if A z is round-off compared with |A| |z|.
 template <LinearSolver Solver>
 class NullSpace {
  public:
@@ -31,8 +31,8 @@ class NullSpace {
   NullSpace(System& system, StaticTangent<Solver>& tangent)
       : tangent_(tangent), nv_(system.velocities()), scale_(VecX::Zero(system.size())), y_(scale_), one_(1) {}
 
-  /// Computes `pins`, the unknowns that must be held to remove the null space. Returns −1, or an unknown without a
-  /// pivot.
+  /// Computes `pins`, the unknowns that need a spring to remove the null space. Returns −1, or the unknown without a
+  /// pivot if the factorisation fails.
   Index find(VecX const& lambda, Sequence<Index>& pins) {
     RowSizeSink sizes{scale_};
     tangent_.write_scaled(lambda, sizes);
@@ -48,7 +48,7 @@ class NullSpace {
   }
 
  private:
-  /// Adds a vector to `vectors_`; false if there is no further one.
+  /// Adds a further vector of the null space to `vectors_`. Returns false if there is none.
   bool finds_one(VecX const& lambda) {
     Index const n = scale_.size();
     vectors_.emplace_back(n);
@@ -65,8 +65,8 @@ class NullSpace {
     return false;
   }
 
-  /// Selects the unknowns by elimination with complete pivoting. Of equal entries the last one is selected, so that
-  /// the joint connected last is redundant.
+  /// Selects one unknown for each vector by elimination with complete pivoting. Of equal entries the last one is
+  /// selected, so that the joint connected last is redundant.
   void choose(Sequence<Index>& pins) {
     pins.clear();
     for (std::size_t k = 0; k < vectors_.size(); ++k) {

@@ -1,18 +1,22 @@
 #pragma once
+/// \file
+/// Test for null vectors of the matrix of the equations of statics, and orthogonalisation of vectors.
+
 #include <polybody/math/sequence.hpp>
 #include <polybody/statics/static_tangent.hpp>
 
 namespace polybody::detail {
 
-/// Candidate z for a null vector, with A z and |A| |z|.
+/// Candidate z for a null vector of A, with A z (`product`) and |A| |z| (`size`).
 struct NullColumn {
   VecX z, product, size;
 
-  /// True if A z is round-off: of its terms, or of the entries of z times entries of A, which are at most near one.
+  /// Returns true if A z is round-off, at most 1e-13 max |A| |z| + 1e-15 max |z|. The entries of the scaled A are not
+  /// much greater than one.
   bool is_null() const { return largest_size(product) <= 1e-13 * largest_size(size) + 1e-15 * largest_size(z); }
 };
 
-/// Computes the sums A z and |A| |z| of all columns.
+/// Receiver of matrix blocks that computes A z and |A| |z| of all columns.
 struct NullColumnSink {
   Sequence<NullColumn>& columns;
 

@@ -7,7 +7,7 @@ namespace polybody {
 /// Wrench in a compliant joint in the initial state.
 struct Preload {
   std::string joint;      ///< name of the joint in the model
-  Wrench<double> wrench;  ///< on the second body about the joint point there, world axes
+  Wrench<double> wrench;  ///< on the second body about its joint point, world axes [N], [N m]
 };
 
 /// Wrenches of all compliant joints (penalties, bushings) in the state last evaluated by `system`, in the order of

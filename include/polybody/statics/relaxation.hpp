@@ -1,13 +1,13 @@
 #pragma once
 /// \file
-/// Damped motion into equilibrium.
+/// Damped motion into equilibrium, for `equilibrium` if Newton's method does not converge.
 
 #include <polybody/statics/equilibrium_equations.hpp>
 #include <polybody/statics/stability.hpp>
 
 namespace polybody::detail {
 
-/// Diagonal of a matrix, summed over its blocks.
+/// Receiver of matrix blocks that adds up the diagonal of the matrix.
 struct DiagonalSink {
   VecX& sum;
 
@@ -17,7 +17,8 @@ struct DiagonalSink {
   }
 };
 
-/// One step of the damped motion for Newton's method: K + μ W instead of K, μ = 1/τ.
+/// Equations of one step τ of the damped motion `relax`, for Newton's method. The tangent is K + μ W instead of K, with
+/// μ = 1/τ and the weights W.
 template <class Solver>
 struct DampedStep {
   EquilibriumPath<Solver>& path;
@@ -46,8 +47,8 @@ struct DampedStep {
   }
 };
 
-/// Moves an unstable equilibrium by 1e-3 of its size along a motion of negative stiffness. False for a stable
-/// equilibrium.
+/// Displaces an unstable equilibrium by 1e-3 (1 + max |q|) along a motion of negative stiffness. Returns false for a
+/// stable equilibrium.
 template <class Solver>
 [[gnu::cold]] bool leaves_saddle(EquilibriumPath<Solver>& path) {
   path.system.evaluate(path.trial.q, path.trial.v, path.trial.t);
@@ -63,8 +64,8 @@ template <class Solver>
 /// slack cables. It follows the gradient flow
 ///   W q̇ = f − Gᵀλ,  Φ(q) = (1 − s) Φ₀,  W the diagonal of the mass matrix,
 /// by the implicit Euler method. The load increases to the full load. The steps τ grow as long as they converge
-/// (pseudo-transient continuation [Kelley & Keyes 1998]). The motion ends in a stable equilibrium; unstable ones
-/// repel it. True if it ends in equilibrium.
+/// (pseudo-transient continuation [Kelley & Keyes 1998]). The motion ends in a stable equilibrium, because unstable
+/// equilibria repel it. Returns true if the motion ends in equilibrium.
 template <class Solver>
 [[gnu::cold]] bool relax(EquilibriumPath<Solver>& path, State const& start, EquilibriumOptions const& options,
                          EquilibriumReport& report) {
@@ -131,12 +132,12 @@ template <class Solver>
   if (found.negative <= 0) return;
   Index largest = 0;
   found.motion.cwiseAbs().maxCoeff(&largest);
-  report.warnings.push_back(sentence_of({"The equilibrium is unstable: the stiffness has ", found.negative,
-                                         found.negative == 1 ? " negative pivot" : " negative pivots",
-                                         " on the motions that the joints allow, one of them in a motion in which ",
-                                         name_of_motion(path.system, found.motion, largest),
-                                         ". A small disturbance leads away from it. Start nearer to a stable state, or "
-                                         "apply the loads in smaller steps."}));
+  report.warnings.push_back(sentence_of(
+      {"The equilibrium is unstable: the stiffness has ", found.negative,
+       found.negative == 1 ? " negative pivot" : " negative pivots",
+       " on the motions that the joints allow. In such a motion, ", name_of_motion(path.system, found.motion, largest),
+       ". A small disturbance leads away from this state. Start nearer to a stable state, or "
+       "apply the loads in smaller steps."}));
 }
 
 }  // namespace polybody::detail

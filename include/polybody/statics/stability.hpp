@@ -11,7 +11,7 @@
 
 namespace polybody::detail {
 
-/// Entries of a matrix of statics, K and G separately.
+/// Nonzero entries of the matrix of the equations of statics, in separate lists for K and G.
 struct StaticEntries {
   struct Entry {
     int row, col;
@@ -21,7 +21,7 @@ struct StaticEntries {
   Sequence<Entry> stiffness = {}, rows = {};
 
   void add(Index row, Index col, BlockView const& b) {
-    if (col >= velocities) return;  // Gᵀ
+    if (col >= velocities) return;  // block of Gᵀ
     for (Index j = 0; j < b.cols; ++j)
       for (Index i = 0; i < b.rows; ++i)
         if (double const value = b(i, j); value != 0.0) {
@@ -47,7 +47,7 @@ class DependentCoordinates {
       1e-10;  ///< largest remainder of a redundant constraint equation, relative to its largest entry
   static constexpr std::size_t most_terms = 20000000;
 
-  /// Computes the linear combinations; false if they have more than `most_terms`.
+  /// Computes the linear combinations of free coordinates. Returns false if they have more than `most_terms` terms.
   template <class = void>  // compiled where it is used
   bool find(StaticEntries const& entries, Index rows) {
     std::size_t const n = std::size_t(entries.velocities);
@@ -66,7 +66,7 @@ class DependentCoordinates {
       give(redundant * largest);
     }
     std::size_t terms = 0;
-    for (std::size_t k = sums_.size(); k-- > 0;) {  // last to first, in terms of free coordinates
+    for (std::size_t k = sums_.size(); k-- > 0;) {  // from last to first, expressed by free coordinates
       for (std::size_t i = 0; i < sums_[k].columns.size(); ++i) add(sums_[k].columns[i], sums_[k].factors[i]);
       reduce();
       sums_[k] = take();
@@ -146,14 +146,14 @@ class DependentCoordinates {
 /// constraint equations permit, G Z = 0. Z is computed by elimination. Each constraint equation expresses one
 /// coordinate by others,
 ///   G_d x_d + G_f x_f = 0,  Z = [−G_d⁻¹ G_f; 1].
-/// K is symmetrised. Each negative pivot has a motion x. A sum of xᵀK x in long double confirms it: the sum must be
-/// negative beyond the round-off of its terms.
+/// K is symmetrised. A negative pivot counts only if its motion x has a negative xᵀK x. This sum is computed in long
+/// double and must be negative beyond the round-off of its terms.
 struct Stability {
   Index negative = -1;  ///< number of negative eigenvalues; −1: the matrix is too large
   VecX motion = {};     ///< (nv) motion with negative xᵀK x; empty if there is none
 };
 
-/// True if xᵀK x is negative beyond round-off.
+/// Returns true if xᵀK x is negative beyond round-off.
 template <class = void>  // compiled where it is used
 bool is_negative(StaticEntries const& entries, VecX const& x) {
   long double sum = 0.0L, terms = 0.0L;

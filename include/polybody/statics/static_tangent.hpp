@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Matrix of the equations of statics.
+/// Matrix of the equations of statics: scaling, assembly, factorisation and solution.
 
 #include <cmath>
 #include <cstdint>
@@ -13,15 +13,17 @@ namespace polybody {
 
 /// Matrix of the equations of statics in a state: scaling, assembly, factorisation and solution.
 ///
-/// Linear equations of statics, [K, Gᵀ; G, 0] (x, μ) = (f, φ). K = −∂f/∂q contains every term. x and f contain the
-/// first-order states and their rates after coordinates and forces. The equations are scaled to A y = b,
+/// The linear equations of statics are [K, Gᵀ; G, 0] (x, μ) = (f, φ). K = −∂f/∂q contains every term. After the
+/// coordinates x contains the first-order states, and after the forces f contains the rates of these states. The
+/// equations are scaled to A y = b,
 ///   A = [K/u, Gᵀ; G, 0],  y = (x, μ/u),  b = (f/u, φ),
-/// with u a power of two of the size of K. Without the scaling, the entries of G, which are near one, would be
-/// lost in the round-off of pivots next to stiffnesses of 1e14 N/m.
+/// with u a power of two of the size of K. Without the scaling, the entries of G, which are near one, would be lost in
+/// the round-off of pivots of 1e14 N/m.
 template <LinearSolver Solver>
 class StaticTangent {
  public:
-  /// Constructor. `system` must outlive this object. All functions use its state last given to `System::evaluate`.
+  /// Analyses the sparsity pattern and computes the scale u. `system` must outlive this object. All functions use the
+  /// state of the last call of `System::evaluate`.
   StaticTangent(System& system, VecX const& lambda)
       : system_(&system), nv_(system.velocities()), rhs_(VecX::Zero(system.size())) {
     analyse(lambda);
@@ -72,7 +74,7 @@ class StaticTangent {
     write(lambda, factored_, sink);
   }
   double unit() const { return factored_; }   ///< u of the last factorisation
-  double next_unit() const { return unit_; }  ///< u of the next one
+  double next_unit() const { return unit_; }  ///< u of the next factorisation
 
   /// Sign of the determinant in the last factorisation, ±1; 0 for solvers that do not provide it.
   double sign_of_determinant() const {
@@ -118,7 +120,7 @@ class StaticTangent {
   }
 
  private:
-  /// Passes blocks to a solver and records the largest entry of K.
+  /// Receiver that adds matrix blocks to a solver and records the largest entry of K.
   struct MotionAccumulator {
     BlockSink& solver;
     Index velocities;

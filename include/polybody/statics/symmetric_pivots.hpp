@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Inertia of a sparse symmetric matrix.
+/// Numbers of negative and zero eigenvalues of a sparse symmetric matrix (inertia, by Sylvester's law).
 
 #include <cmath>
 
@@ -12,13 +12,13 @@
 
 namespace polybody::detail {
 
-/// Inertia of a sparse symmetric matrix R: the pivots of P R Pᵀ = L D Lᵀ have the signs of its eigenvalues
-/// (Sylvester's law). P is the approximate minimum degree order. L is computed row by row along the elimination tree
-/// [Davis 2006, §4.7]. A pivot below 1e-13 of the size of its terms is zero up to round-off and is replaced by this
-/// size. Both triangles of R must be given.
+/// Signs of the eigenvalues of a sparse symmetric matrix R: the pivots D of P R Pᵀ = L D Lᵀ have these signs
+/// (Sylvester's law of inertia). P is the permutation to an approximate minimum degree order. L is computed row by row
+/// along the elimination tree [Davis 2006, §4.7]. A pivot below 1e-13 of the sum of its terms' magnitudes counts as
+/// zero and is replaced by this sum. Both triangles of R must be stored.
 class SymmetricPivots {
  public:
-  static constexpr double rounding = 1e-13;        ///< of a pivot relative to its terms
+  static constexpr double rounding = 1e-13;        ///< largest pivot that counts as zero, relative to its terms
   static constexpr Index most_entries = 40000000;  ///< largest number of entries of L
 
   using Matrix = Eigen::SparseMatrix<double>;
@@ -28,7 +28,7 @@ class SymmetricPivots {
   bool factor(Matrix const& r) {
     size_ = r.cols();
     Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
-    Eigen::AMDOrdering<int>()(r, order);  // unknown order[k] of R is the k-th one
+    Eigen::AMDOrdering<int>()(r, order);  // unknown order[k] of R becomes number k
     place_.assign(std::size_t(size_), 0);
     order_.assign(std::size_t(size_), 0);
     for (Index k = 0; k < size_; ++k) {
@@ -42,7 +42,7 @@ class SymmetricPivots {
   /// Positions of the pivots that are negative beyond round-off.
   Sequence<Index> const& negative() const { return negative_; }
   Index zero() const { return zero_; }  ///< number of pivots that are zero up to round-off
-  /// Vector x with xᵀR x = pivot at position k: L ᵀP x = e_k.
+  /// Vector x with xᵀR x = pivot at position k: Lᵀ P x = e_k.
   template <class = void>
   VecX direction(Index k) const {
     VecX y = VecX::Zero(size_), x(size_);
@@ -55,8 +55,8 @@ class SymmetricPivots {
   }
 
  private:
-  /// Calls `visit(i)` for the entries i of row k of L. They follow from the entries of column k of P R Pᵀ above the
-  /// diagonal along the elimination tree.
+  /// Calls `visit(i, value)` for the entries i < k of column k of P R Pᵀ. From these, the entries of row k of L are
+  /// found along the elimination tree.
   template <class Visit>
   void reach(Matrix const& r, int k, Visit&& visit) {
     mark_[std::size_t(k)] = k;

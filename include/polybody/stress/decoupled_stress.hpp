@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// "Decoupled" stress: stress of a recorded rigid body, computed after the run [thesis §4.3.5].
+/// "Decoupled" stress: stress of a recorded rigid body, computed after the run [Wallin 2016, §4.3.5].
 ///
 /// Not included in polybody.hpp: Eigen's sparse module and factorisations would add seconds to the compile time of
 /// every program.
@@ -13,7 +13,7 @@ namespace polybody {
 
 namespace detail {
 
-/// Mass points (`mass_points`) of the part of a beam up to ξ.
+/// Mass points (see `mass_points`) of the part of a beam from its start to ξ.
 template <class = void>  // compiled where it is used
 std::array<MassPoint, 4> mass_points_before(Structure const& s, Structure::Beam const& beam, double xi) {
   std::array<MassPoint, 4> points = mass_points(s, beam);
@@ -33,43 +33,45 @@ std::array<MassPoint, 4> mass_points_before(Structure const& s, Structure::Beam 
 }  // namespace detail
 
 /// Histories of section forces, strains and stresses of a recorded rigid body (body_record.hpp), at the times of the
-/// record. The deformation solves the linear problem [thesis §4.3.5]
+/// record. The deformation solves the linear problem [Wallin 2016, §4.3.5]
 ///   M q̈ + D q̇ + K q = Q_f − m_fr q̈_r − C_qfᵀ λ
-/// with the right-hand side of structure_loads.hpp, by any integrator, in nodal or modal coordinates e = Φ q. It has
-/// no effect on the recorded motion.
+/// with the right-hand side of structure_loads.hpp, by any integrator, in nodal or modal coordinates e = Φ q. The
+/// deformation has no effect on the recorded motion.
 ///
-/// Only the accelerations q̈ of the solution are used. K e = Q − M Φ q̈ yields all nodal displacements. The forces in
-/// a beam follow from the forces at its ends and the loads along it by equilibrium. The stress of static loads is
-/// then exact in every section, for any number of elements and modes ("mode acceleration" [Williams 1945]).
+/// Only the accelerations q̈ of the solution are used. K e = Q − M Φ q̈, with the nodal loads Q, yields all nodal
+/// displacements e. The forces in a beam follow from the forces at its ends and the loads along it by equilibrium. The
+/// stress of static loads is then exact in every section, for any number of elements and modes ("mode acceleration"
+/// [Williams 1945]).
 ///
 /// Example of a filtered history (signals/filter.hpp):
 ///   low_pass(stress.times(), stress.axial_strain(0.1), {.cut_off = 15.0})
 class DecoupledStress {
  public:
-  /// Quasi-static stress: K e = Q of each sample, valid if the loads change slowly compared with the structure's
-  /// vibrations. Recorded loads are balanced. Their stress is independent of `frame`; the displacements are relative
-  /// to it.
+  /// Quasi-static stress from K e = Q at each sample. It is valid if the loads change slowly compared with the
+  /// structure's vibrations. The stress is independent of `frame`, because recorded loads are balanced. The
+  /// displacements are relative to `frame`.
   /// \throws InvalidInput as `StructureLoads`, and for a frame that restrains some, but not all rigid motions.
   template <class = void>
   static DecoupledStress quasi_static(Structure structure, BodyRecord const& record,
                                       StructureLoadOptions const& options = {},
                                       ReferenceConditions const& frame = ReferenceConditions::none());
-  /// Stress with vibrations. \throws InvalidInput as `StructureLoads`, for shapes that do not fit the structure or
-  /// move a coordinate that the frame fixes, and for fewer substeps than one. Exceptions of the integrator are passed
-  /// on.
+  /// Stress with vibrations, computed with the options `how`. \throws InvalidInput as `StructureLoads`, for shapes that
+  /// do not fit the structure or move a coordinate that the frame fixes, and for fewer substeps than one. Exceptions of
+  /// the integrator are passed on.
   template <LinearSolver Solver = DenseLu, class I>
   static DecoupledStress vibrating(Structure structure, BodyRecord const& record, I const& integrator,
                                    Vibration const& how, StructureLoadOptions const& options = {});
 
   std::vector<double> const& times() const { return loads_.times(); }  ///< times of the samples [s]
   StructureLoads const& loads() const { return loads_; }               ///< loads on the structure
-  /// Nodal displacements (N×samples) in the structure's axes [m], [rad]. With damping they are the static
+  /// Nodal displacements (N×samples) in the structure's axes [m], [rad]. With damping these are the static
   /// displacements under the elastic and damping forces.
   MatX const& displacements() const { return e_; }
 
-  /// Section forces (N, Q_y, Q_z, M_x, M_y, M_z) at s of a bar (see sections.hpp), damping included [N], [N m]. If a
-  /// load acts at this section, the values just beyond it are returned; at the last end of the bar, the values just
-  /// before it. \throws InvalidInput outside the bar, and for a structure without bars.
+  /// Section forces (N, Q_y, Q_z, M_x, M_y, M_z) [N], [N m] at arc length s [m] of bar number `bar` (see sections.hpp),
+  /// with damping forces. If a load acts at this section, the values just beyond the load are returned. At the end of
+  /// the bar, the values just before the load are returned. \throws InvalidInput outside the bar, and for a structure
+  /// without bars.
   template <class = void>
   std::vector<Vec6> section_forces(double s, Index bar = 0) const {
     auto const [index, xi] = locate(s, bar);
@@ -108,7 +110,7 @@ class DecoupledStress {
   }
 
   /// Axial strain of the fibre (y, z) [m] at arc length s [m] of bar number `bar`, N/EA − y M_z/EI + z M_y/EI_y. With
-  /// damping it is the static strain under these section forces. \throws InvalidInput as `section_forces`.
+  /// damping this is the static strain under `section_forces`. \throws InvalidInput as `section_forces`.
   template <class = void>
   std::vector<double> axial_strain(double s, double y = 0.0, double z = 0.0, Index bar = 0) const {
     BarConstants const& c = loads_.structure().beams[std::size_t(locate(s, bar).first)].constants;
@@ -117,16 +119,17 @@ class DecoupledStress {
       out.push_back(n[0] / c.EA - y * n[5] / c.EI + z * n[4] / c.EI_y.value_or(c.EI));
     return out;
   }
-  /// Axial stress [N/m²] of the fibre (y, z) [m] at arc length s [m] of the bar `of`. \throws InvalidInput as
-  /// `section_forces`, and for a bar given by constants.
+  /// Axial stress [N/m²] of the fibre (y, z) [m] at arc length s [m] of bar number `bar`, with the section and material
+  /// of `of`. \throws InvalidInput as `section_forces`, and for a bar given by constants.
   template <class = void>
   std::vector<double> axial_stress(Bar const& of, double s, double y = 0.0, double z = 0.0, Index bar = 0) const {
     std::vector<double> out;
     for (Vec6 const& n : section_forces(s, bar)) out.push_back(fibre_stress(of, n, y, z));
     return out;
   }
-  /// Axial and shear stress at the point (y, z) [m] of the section at s [m] of bar number `bar`; they yield the
-  /// principal stresses and the von Mises stress. \throws InvalidInput as `section_stress`.
+  /// Axial and shear stress at the point (y, z) [m] of the section at arc length s [m] of bar number `bar`, with the
+  /// section and material of `of`. The result yields the principal stresses and the von Mises stress. \throws
+  /// InvalidInput as `section_stress`.
   template <class = void>
   std::vector<SectionStress> stress(Bar const& of, double s, double y, double z, Index bar = 0) const {
     std::vector<SectionStress> out;
@@ -137,7 +140,7 @@ class DecoupledStress {
  private:
   static constexpr double same = 1e-9;  ///< largest difference of ξ between a load and a section at the same position
 
-  /// State of one beam at one sample: nodal displacements of its ends and their rates (12).
+  /// State of one beam at one sample: nodal displacements of its ends and their time derivatives (12).
   struct Local {
     StructureLoads::Motion const& motion;
     Vec<double, 12> e, deformed, rate, acceleration;
@@ -146,18 +149,19 @@ class DecoupledStress {
   template <class = void>
   explicit DecoupledStress(StructureLoads loads) : loads_(std::move(loads)) {
     if (!loads_.structure().initial_force.isZero(0.0))
-      throw InvalidInput("stress.pretension", {"Stress of \"", ErrorObject{loads_.name()},
-                                               "\": the stress of a pretension is not recovered. Make the structure "
-                                               "without it, and add its stress afterwards."});
+      throw InvalidInput("stress.pretension",
+                         {"Stress of \"", ErrorObject{loads_.name()},
+                          "\": the stress of a pretension is not computed. Define the structure "
+                          "without the pretension, and add the stress of the pretension to the result."});
   }
 
-  /// Solves K e = loads with the restraints of `frame`. If they permit a rigid motion, the restraints of
+  /// Solves K e = loads with the restraints of `frame`. If these permit a rigid motion, the restraints of
   /// `statically_determinate` are used.
   template <class = void>
   void settle(ReferenceConditions const& frame, MatX const& loads) {
     Structure const& s = loads_.structure();
     std::vector<Index> free = frame.free_coordinates(s);
-    bool const loose = Index(free.size()) == s.size();  // pivots that should be zero are round-off of either sign
+    bool const loose = Index(free.size()) == s.size();  // without restraints, zero pivots are round-off of either sign
     SparseFactor factor;
     if (!loose) factor.compute(submatrix(s.stiffness, free, free));
     if (loose || factor.info() != Eigen::Success ||

@@ -15,9 +15,9 @@ namespace polybody {
 
 /// Stress at named nodes of a solid structure (bodies/ffr/matrix_structure.hpp), linear in its nodal displacements u:
 ///   σ = D B(ξ_node) u,   xx, yy, zz, xy, yz, zx in the structure's axes [Pa],
-/// averaged over the elements that share the node. The finite element program or a script writes the matrix, for
-/// example `examples/track_stress/fe_link/stress_operator.py`. A small rigid motion causes no stress. The result is
-/// therefore independent of the frame of the displacements.
+/// averaged over the elements that share the node, with the elasticity matrix D and the strain matrix B. The finite
+/// element program or a script writes the matrix, for example `examples/track_stress/fe_link/stress_operator.py`. A
+/// small rigid motion causes no stress. The result is therefore independent of the frame of the displacements.
 ///
 ///     auto const stress = NodalStress::read("link.stress.mtx", "link.stress_nodes.txt", structure.size());
 ///     stress.von_mises("middle, wheel side", decoupled.displacements());  // stress/decoupled_stress.hpp
@@ -45,7 +45,7 @@ class NodalStress {
     if (matrix_.rows() != 6 * k)
       throw InvalidInput("nodal_stress.size",
                          {ErrorObject{"NodalStress"}, ": its matrix has ", ErrorValue{matrix_.rows()}, " rows, but ", k,
-                          " nodes need ", 6 * k, ", six stresses each."});
+                          " nodes need ", 6 * k, ", six stresses per node."});
     for (Index row = 0; row < matrix_.rows(); ++row)
       for (Matrix::InnerIterator it(matrix_, row); it; ++it)
         if (!std::isfinite(it.value()))
@@ -61,19 +61,19 @@ class NodalStress {
   /// Reads `matrix_file` in the Matrix Market format (6k×`coordinates`) and `names_file`, a text with a line
   /// `node name` for each of the k nodes. Nodes are counted from 0; # begins a comment. A structure has three
   /// coordinates per node: `Structure::size()`.
-  /// \throws IoError naming file and line if a file cannot be read, is truncated or does not fit; InvalidInput if
-  /// `coordinates` is not three per node.
+  /// \throws IoError naming file and line if a file cannot be read, is truncated or has the wrong size; InvalidInput if
+  /// `coordinates` is not a positive multiple of three.
   template <class = void>
   static NodalStress read(std::string const& matrix_file, std::string const& names_file, Index coordinates) {
     if (coordinates < 3 || coordinates % 3 != 0 || coordinates > std::numeric_limits<int>::max())
       throw InvalidInput("nodal_stress.size", {ErrorObject{"NodalStress"}, ": ", ErrorValue{coordinates},
-                                               " coordinates are not three displacements of each node. Give "
+                                               " coordinates are not three displacements per node. Give "
                                                "Structure::size() of a structure from matrices."});
     std::vector<Spot> spots = read_spots(names_file, coordinates / 3);
     Index const rows = 6 * Index(spots.size());
     return {read_matrix(matrix_file, rows, coordinates,
                         sentence_of({spots.size(), " nodes of ", names_file, " need ", rows, "×", coordinates,
-                                     ", six stresses each of all displacements"})),
+                                     ", six stresses per node as functions of all displacements"})),
             std::move(spots)};
   }
 
@@ -82,15 +82,15 @@ class NodalStress {
   Matrix const& matrix() const { return matrix_; }
   Index coordinates() const { return matrix_.cols(); }  ///< number of coordinates of the structure
 
-  /// Stress of every node (6k×samples) [Pa] under these displacements (N×samples) [m]. \throws InvalidInput for
-  /// another number of rows.
+  /// Stress of every named node (6k×samples) [Pa] under `displacements` (N×samples) [m]. \throws InvalidInput unless
+  /// there are N rows.
   template <class = void>
   MatX of(MatX const& displacements) const {
     require_rows(displacements, "displacements");
     return matrix_ * displacements;
   }
   /// Stress history of the node `name` under these `displacements` (N×samples) [m].
-  /// \throws InvalidInput for another number of rows, and for a name that does not exist.
+  /// \throws InvalidInput unless there are N rows, and for a name that does not exist.
   template <class = void>
   std::vector<Vec6> of(std::string_view name, MatX const& displacements) const {
     Index const first = row_of(name);
@@ -109,9 +109,9 @@ class NodalStress {
     return out;
   }
 
-  /// Stress at the same nodes from modal coordinates q (n×samples), for displacements of `shapes` (N×n) times q. Its
-  /// matrix is (6k×n), and a stress consists of six scalar products of length n. \throws InvalidInput for shapes with
-  /// another number of rows.
+  /// Stress at the same nodes as a function of modal coordinates q (n×samples). The displacements are `shapes` (N×n)
+  /// times q. The new matrix is (6k×n), so a stress needs only six scalar products of length n. \throws InvalidInput
+  /// unless the shapes have N rows.
   template <class = void>
   NodalStress modal(MatX const& shapes) const {
     require_rows(shapes, "shapes");
@@ -134,7 +134,7 @@ class NodalStress {
           lines.fail("duplicate node name \"" + name.text + "\"; give each node another name");
       spots.push_back({node, name.text});
     }
-    if (spots.empty()) lines.fail("the file names no nodes; give the number of one and its name in each line");
+    if (spots.empty()) lines.fail("the file names no nodes; write the number and the name of one node in each line");
     return spots;
   }
 

@@ -31,7 +31,7 @@ Vec6 section_forces(M const& model, State const& x, Marker<B> const& marker) {
                              [](B const& b, auto const& p, auto q) { return b.section_forces(p, q); });
 }
 
-/// Curvature of the axis less that of the reference state, √(κ_y² + κ_z²) [1/m].
+/// Curvature of the axis relative to the reference state, √(κ_y² + κ_z²) [1/m].
 template <class M, class B>
 double curvature(M const& model, State const& x, Marker<B> const& marker) {
   Vec6 const e = section_strains(model, x, marker);

@@ -10,7 +10,7 @@
 
 namespace polybody {
 
-/// Stress on the cross section of a bar.
+/// Stress at a point of the cross section of a bar.
 struct SectionStress {
   double axial = 0.0;         ///< σ_x [N/m²]
   Vec2 shear = Vec2::Zero();  ///< (τ_xy, τ_xz) [N/m²]
@@ -26,8 +26,8 @@ struct SectionStress {
 
 namespace detail {
 
-/// Shear stress of a circle of radius r. Torque: τ = M_x (−z, y)/I_p. Force P along x of section axes x, y
-/// [Timoshenko & Goodier 1970, §121]:
+/// Shear stress in a circular section of radius r, with Poisson's ratio ν, I = π r⁴/4 and I_p = 2 I. Torque: τ = M_x
+/// (−z, y)/I_p. Force P along x of section axes x, y [Timoshenko & Goodier 1970, §121]:
 ///   τ_x = (3+2ν)/(8(1+ν)) P/I (r² − x² − (1−2ν)/(3+2ν) y²),   τ_y = −(1+2ν)/(4(1+ν)) P/I x y.
 inline Vec2 shear_of(Circle const& c, double nu, Vec6 const& n, double y, double z) {
   double const r2 = c.radius * c.radius, i = 0.25 * std::numbers::pi * r2 * r2;
@@ -37,8 +37,8 @@ inline Vec2 shear_of(Circle const& c, double nu, Vec6 const& n, double y, double
                                                n[2] * k * (r2 - z * z - ratio * y * y) + n[1] * across);
 }
 
-/// Shear stress of a rectangle of height h and width w. Force along y: 3/2 Q/A (1 − (2y/h)²), exact for ν = 0.
-/// Torque: τ = (φ_z, −φ_y),
+/// Shear stress in a rectangular section of height h, width w and area A. Force Q along y: 3/2 Q/A (1 − (2y/h)²), exact
+/// for Poisson's ratio ν = 0. Torque: τ = (φ_z, −φ_y),
 ///   φ = Gϑ [h²/4 − y² − (8h²/π³) Σ_odd (−1)^((k−1)/2)/k³ · cosh(kπz/h)/cosh(kπw/2h) · cos(kπy/h)],   Gϑ = M_x/J
 /// [Timoshenko & Goodier 1970, §109]. The axis y is parallel to the shorter side, so that the series converges fast.
 inline Vec2 shear_of(Rectangle const& s, double torsion, Vec6 const& n, double y, double z) {
@@ -63,8 +63,8 @@ inline Vec2 shear_of(Rectangle const& s, double torsion, Vec6 const& n, double y
 
 }  // namespace detail
 
-/// Stress at (y, z) [m] under `forces` (N, M) [N], [N m]. \throws InvalidInput for a bar without section and
-/// material, and for a point outside the section.
+/// Stress at the point (y, z) [m] of the section under section `forces` (N, Q_y, Q_z, M_x, M_y, M_z) [N], [N m].
+/// \throws InvalidInput for a bar without section and material, and for a point outside the section.
 template <class = void>
 SectionStress section_stress(Bar const& bar, Vec6 const& forces, double y, double z) {
   SectionStress out;

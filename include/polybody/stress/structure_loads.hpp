@@ -20,31 +20,32 @@ struct LoadPatch {
 
 /// Options for the loads of a recorded motion on a structure.
 struct StructureLoadOptions {
-  /// Placement of the structure's axes relative to the body's axes. None: the axes are parallel and the centres of
+  /// Placement of the structure's axes relative to the body's axes. Empty: the axes are parallel and the centres of
   /// mass coincide, as for a body and a structure made from the same bar.
   std::optional<Placement> placement = {};
   double largest_gap = 0.0;  ///< largest interpolated interval between samples [s]; 0: 1.5 times the median interval
-  double balance_tolerance = 1e-3;  ///< allowed sum of forces and of moments, relative to their size
+  double balance_tolerance = 1e-3;  ///< allowed sum of forces and of moments, relative to the sum of their magnitudes
   double patch = 0.0;  ///< nodes within this distance of a load share it [m]; required if nodes have no rotations
   std::vector<LoadPatch> patches =
-      {};  ///< patches of given nodes, for loads at their points, if nodes have no rotations
+      {};  ///< patches with given nodes, for loads at the points `at`, if nodes have no rotations
 };
 
 /// Loads of a recorded motion on a structure: nodal forces of joints, contacts, gravity and of the inertia of the
-/// body's rigid motion [thesis §4.3.2–4.3.5]. In the structure's axes a point u₀ of the body has the acceleration
+/// body's rigid motion [Wallin 2016, §4.3.2–4.3.5]. In the structure's axes a point u₀ of the body has the acceleration
 /// less gravity
 ///   a(u₀) = b + B u₀,   b = Aᵀ(r̈ − g),   B = Ω˙~ + Ω~ Ω~.
-/// The linear structural problem has the right-hand side
+/// A is the rotation matrix, r̈ the acceleration of the structure's origin, g gravity, and Ω the angular velocity. The
+/// linear structural problem has the right-hand side
 ///   Q_f − m_fr q̈_r − C_qfᵀ λ = −∫ρ Sᵀ a + Σ (Sᵀ f + S_rᵀ m),   ∫ρ Sᵀ a = Σ_l b_l ∫ρ S_lᵀ + Σ_kl B_lk ∫ρ u₀ₖ S_lᵀ.
-/// In B, the term Ω~ Ω~ is the reduced (Q_v)_f = Ĩ₀ω of Eq. 4.2 and A.4c, and Ω˙~ is the rotational part of m_fr; S
-/// and S_r are the matrices of Eq. 4.5.
+/// In B, the term Ω~ Ω~ is the reduced (Q_v)_f = Ĩ₀ω of Eq. 4.2 and A.4c, and Ω˙~ is the rotational part of m_fr. S and
+/// S_r are the matrices of Eq. 4.5.
 class StructureLoads {
  public:
-  /// Motion of the structure's origin, in the structure's axes.
+  /// Motion of the structure at one sample, in the structure's axes.
   struct Motion {
-    Vec3 b = Vec3::Zero();      ///< acceleration less gravity [m/s²]
-    Vec3 omega = Vec3::Zero();  ///< Ω [rad/s]
-    Mat3 B = Mat3::Zero();      ///< Ω˙~ + Ω~ Ω~ [1/s²]
+    Vec3 b = Vec3::Zero();      ///< acceleration of the origin less gravity [m/s²]
+    Vec3 omega = Vec3::Zero();  ///< Ω, angular velocity [rad/s]
+    Mat3 B = Mat3::Zero();      ///< Ω˙~ + Ω~ Ω~, gradient of the acceleration [1/s²]
     double size = 0.0;          ///< |r̈| + |g|, the size of the terms in b [m/s²]
   };
   /// Wrench in the structure's axes about its point of action, on a beam or a node.
@@ -54,8 +55,8 @@ class StructureLoads {
     Vec3 f = Vec3::Zero(), m = Vec3::Zero();  ///< (3) force [N] and moment [N m]
   };
 
-  /// Computes the loads. \throws InvalidInput for fewer than two samples, gaps, loads that do not balance the
-  /// structure's inertia, and patches of nodes that cannot carry their load.
+  /// Computes the loads of a `record` on a `structure`. \throws InvalidInput for fewer than two samples, gaps in the
+  /// record, loads that do not balance the structure's inertia, and patches of nodes that cannot carry their load.
   template <class = void>  // compiled where it is used
   StructureLoads(Structure structure, BodyRecord const& record, StructureLoadOptions const& options)
       : s_(std::move(structure)),
@@ -147,7 +148,8 @@ class StructureLoads {
     return x;
   }
 
-  /// Applies a load to the nearest section of a beam, which is rigid, or to the nearest node.
+  /// Applies a load to the nearest section of a beam, or to the nearest node if there are no beams. The section is
+  /// rigid.
   template <class = void>
   void take(Load load, Vec3 const& at) {
     Vec3 held = Vec3::Zero();

@@ -15,20 +15,20 @@ namespace polybody {
 
 /// Options for the vibration of a structure under the loads of a recorded rigid motion (structure_loads.hpp), in
 /// nodal or modal coordinates e = Φ q relative to the body's frame:
-///   M q̈ + D q̇ + K q = Φᵀ(Q_f − m_fr q̈_r − C_qfᵀ λ)   [thesis §4.3.5].
-/// Any integrator for a `System` solves it.
+///   M q̈ + D q̇ + K q = Φᵀ(Q_f − m_fr q̈_r − C_qfᵀ λ)   [Wallin 2016, §4.3.5].
+/// Any integrator for a `System` solves this equation.
 ///
-/// The frame moves with the rigid body, so that the result depends on its attachment. If joints guide the body, the
-/// frame should be attached at these joints. For a free body it should follow the mean motion
+/// The frame moves with the rigid body, so the result depends on the points of attachment (`frame`). If joints guide
+/// the body, the frame should be attached at these joints. For a free body the frame should follow the mean motion
 /// (`free_interface_modes`, with `ReferenceConditions::none()`).
 struct Vibration {
   ReferenceConditions frame = ReferenceConditions::clamped();  ///< attachment of the frame
   MatX shapes = {};  ///< Φ (N×n), computed with `frame`; empty: all nodal coordinates
-  /// Includes the terms linear in the deformation: 2 S̃₁ q̇ (Coriolis), S̃₂ q (centrifugal) of A.4, and m_fr(q) of
-  /// Ω˙. The thesis neglects them. Geometric stiffening by axial forces is neglected in both cases.
+  /// Includes the terms linear in the deformation: 2 S̃₁ q̇ (Coriolis), S̃₂ q (centrifugal), and m_fr(q) of Ω˙ [Wallin
+  /// 2016, A.4]. Wallin 2016 neglects these terms. Geometric stiffening by axial forces is neglected in both cases.
   bool follows_deformation = false;
-  double stiffness_damping = 0.0;  ///< time [s] that multiplies K; added to the structure's damping
-  bool settled = true;  ///< starts at rest in the static deformation of the first loads; otherwise undeformed
+  double stiffness_damping = 0.0;  ///< τ [s]; a damping matrix τ K is added to that of the structure
+  bool settled = true;  ///< true: starts at rest in the static deformation of the first loads; false: undeformed
   int substeps = 1;     ///< steps of the integrator per sample; loads are interpolated linearly
 };
 
@@ -48,7 +48,7 @@ Matrix weighted(Mat3 const& x, std::array<Matrix, 6> const& inertia) {
   return sum;
 }
 
-/// Loads on q, linear between the samples. With `products` it also contains the terms that depend on the deformation.
+/// Loads on q, interpolated linearly between the samples. `products` adds the terms that depend on the deformation.
 struct LoadLines {
   StructureLoads const* of;
   MatX loads;                    ///< (n×samples)
@@ -79,9 +79,10 @@ struct LoadLines {
 
 }  // namespace detail
 
-/// Histories of the nodal coordinates (N×samples); empty if they do not enter the inertia forces.
+/// Histories of nodal displacements, velocities and accelerations (N×samples). Displacements and velocities are empty
+/// if the inertia forces do not depend on the deformation.
 struct VibrationHistory {
-  MatX deformed, rate;  ///< Φ q, Φ q̇: of a vibration with `follows_deformation`
+  MatX deformed, rate;  ///< Φ q and Φ q̇; empty without `follows_deformation`
   MatX acceleration;    ///< Φ q̈
 
   /// Inertia forces M Φ q̈ + 2 S̃₁ Φ q̇ + … (N×samples); K e equals the loads minus these forces.
@@ -111,13 +112,15 @@ void require_fitting_shapes(Structure const& s, Vibration const& how, std::strin
   for (Index i = 0; i < s.size(); ++i)
     if (fixed[std::size_t(i)] && !how.shapes.row(i).isZero(0.0))
       throw InvalidInput("stress.shapes", {ErrorObject{who}, "the shapes move node ", i / s.per_node,
-                                           ", which the reference conditions fix. Give the conditions of the shapes."});
+                                           ", which the reference conditions fix. Set `Vibration::frame` to the "
+                                           "conditions for which the shapes were computed."});
 }
 
 }  // namespace detail
 
-/// Computes the vibration. \throws InvalidInput for shapes that do not fit the structure, move a coordinate that the
-/// frame fixes or have no stiffness, and for fewer substeps than one. Exceptions of the integrator are passed on.
+/// Computes the vibration of a structure under `loads`, with the options `how`. \throws InvalidInput for shapes that do
+/// not fit the structure, move a coordinate that the frame fixes or have no stiffness, and for fewer substeps than one.
+/// Exceptions of the integrator are passed on.
 template <LinearSolver Solver = DenseLu, class I>
 VibrationHistory vibration_of(StructureLoads const& loads, I const& integrator, Vibration how) {
   Structure const& s = loads.structure();
@@ -147,7 +150,7 @@ VibrationHistory vibration_of(StructureLoads const& loads, I const& integrator, 
     throw InvalidInput(
         "stress.shapes",
         {ErrorObject{who},
-         "nothing resists some of the shapes. Omit rigid motions of the structure, and linearly dependent shapes."});
+         "some of the shapes have no stiffness. Omit rigid motions of the structure, and linearly dependent shapes."});
 
   System system = system_of(problem, loads.name(), true);
   State x{VecX::Zero(n), VecX::Zero(n), VecX::Zero(n), VecX::Zero(0), loads.times().front(), {}};

@@ -9,8 +9,7 @@
 
 namespace polybody {
 
-/// Values with equal distances: `count` values from `first` to `last`. The intermediate values are rounded to twelve
-/// digits.
+/// Equidistant values: `count` values from `first` to `last`. The intermediate values are rounded to twelve digits.
 /// \throws InvalidInput for less than two values, and ends that are not finite.
 template <class = void>  // compiled where it is used
 std::vector<double> linear(double first, double last, std::size_t count) {
@@ -24,14 +23,14 @@ std::vector<double> linear(double first, double last, std::size_t count) {
   return values;
 }
 
-/// Values with equal ratios: `count` values from `first` to `last`.
+/// Values with equal ratios (a geometric sequence): `count` values from `first` to `last`.
 /// \throws InvalidInput for ends that are not positive.
 template <class = void>
 std::vector<double> logarithmic(double first, double last, std::size_t count) {
   if (!(first > 0.0 && last > 0.0))
     throw InvalidInput("points.range",
                        {"study: logarithmic(", ErrorValue{first}, ", ", last, ", ", count, ") needs positive ends."});
-  std::vector<double> values = linear(first, last, count);  // checks the arguments; the ends remain
+  std::vector<double> values = linear(first, last, count);  // checks the arguments; first and last value are kept
   double const from = detail::portable_log(first), to = detail::portable_log(last);
   for (std::size_t k = 1; k + 1 < count; ++k)
     values[k] =
@@ -53,7 +52,7 @@ Points formulations(std::string name, std::vector<std::string> choices) {
   return {{{.name = std::move(name), .choices = std::move(choices)}}, std::move(values), "grid"};
 }
 
-/// Points from a list of `rows`, each with a value for each column.
+/// Points from a list of `rows`; each row has a value for each column.
 template <class = void>
 Points list(std::vector<Column> columns, std::vector<std::vector<double>> const& rows) {
   std::vector<double> values;
@@ -66,7 +65,7 @@ Points list(std::vector<Column> columns, std::vector<std::vector<double>> const&
   return {std::move(columns), std::move(values), "list"};
 }
 
-/// Returns a set of points itself: the grid of one axis.
+/// Grid of a single set of points: returns this set.
 template <class = void>
 Points grid(Points const& points) {
   return points;

@@ -23,14 +23,14 @@
 
 namespace polybody::detail {
 
-/// Process of one point, with a pipe for its answer. The destructor ends the process.
+/// Child process that computes one point, with a pipe for its answer. The destructor kills the process.
 class PointProcess {
  public:
-  /// Starts the process; `answer` returns the text that it sends.
+  /// Starts the process. The process sends the text that `answer` returns.
   /// \throws Error if the system has no more processes.
   template <class F>
   explicit PointProcess(F const& answer) {
-    static std::mutex one_at_a_time;  // else a process started by another thread inherits this pipe
+    static std::mutex one_at_a_time;  // otherwise a process that another thread starts inherits the pipe
     std::unique_lock lock(one_at_a_time);
     int ends[2];
     if (::pipe(ends) != 0) fail("pipes");
@@ -58,7 +58,7 @@ class PointProcess {
     if (pipe_ >= 0) ::close(pipe_);
   }
 
-  /// Returns the answer of the process, or nothing if it is not complete within `limit` [s].
+  /// Returns the answer of the process, or nothing if the answer is not complete within `limit` [s].
   std::optional<std::string> answer(double limit) {
     using Clock = std::chrono::steady_clock;
     auto const began = Clock::now();
@@ -75,12 +75,13 @@ class PointProcess {
       text.append(block, std::size_t(got));
     }
   }
-  /// Kills the process. Returns the number of the signal that ended it, or zero if it ended by itself.
+  /// Kills the process. Returns the number of the signal that ended the process, or zero if the process ended by
+  /// itself.
   int end() {
     (void)::kill(process_, SIGKILL);
     return wait();
   }
-  /// Waits until the process ends. Returns the number of the signal that ended it, or zero.
+  /// Waits until the process ends. Returns the number of the signal that ended the process, or zero.
   int wait() {
     int status = 0;
     while (::waitpid(process_, &status, 0) < 0 && errno == EINTR) {
@@ -111,8 +112,8 @@ class PointProcess {
 
 /// Outcome of `found()`, computed in a separate process. The outcome is a failure if the process crashes, or does not
 /// end within `limit` [s].
-/// \throws Error with the message of an exception that is not of the library; StudyUsageError; Error if the system has
-/// no more processes.
+/// \throws StudyUsageError if `found` throws it; Error with the message of another exception of `found`, or if the
+/// system has no more processes.
 template <class F>
 Outcome outcome_within(double limit, std::size_t outputs, F const& found) {
   pid_t const parent = ::getpid();
@@ -128,18 +129,18 @@ Outcome outcome_within(double limit, std::size_t outputs, F const& found) {
     } catch (std::exception const& error) {
       return std::string("e") + error.what() + '\n';
     } catch (...) {
-      return "ean exception that is not of the standard library\n";
+      return "ean exception that is not derived from std::exception\n";
     }
   });
   std::optional<std::string> text = process.answer(limit);
   if (!text) {
     (void)process.end();
-    return {{}, sentence_of({"It has not ended within the time limit of ", limit, " s."})};
+    return {{}, sentence_of({"The computation has not ended within the time limit of ", limit, " s."})};
   }
   int const signal = process.wait();
   if (!text->ends_with('\n'))
     return {{},
-            sentence_of({"Its process ended without a result", signal != 0 ? ", by signal " : "",
+            sentence_of({"The process of the point ended without a result", signal != 0 ? ", by signal " : "",
                          signal != 0 ? std::to_string(signal) : "", "."})};
   text->pop_back();
   std::string const rest = text->substr(1);

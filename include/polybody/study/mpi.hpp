@@ -1,9 +1,9 @@
 #pragma once
 /// \file
-/// Studies over the ranks of MPI: the same program as with threads, started by `mpirun -np 4 program`. Rank 0
-/// distributes the points to free ranks, computes points itself, and writes the record. The record has the same
-/// format as with threads, so either kind of run continues the record of the other. If a rank dies, mpirun ends all
-/// ranks, and the next run continues the record.
+/// Studies over the ranks of MPI: the same program as with threads is started by `mpirun -np 4 program`. Rank 0
+/// distributes the points to free ranks, computes points itself, and writes the record. The record has the same format
+/// as with threads, so either kind of run continues the record of the other. If a rank dies, mpirun ends all ranks, and
+/// the next run continues the record.
 ///
 /// Not in polybody.hpp: it needs MPI (study/mpi_ranks.hpp explains the linking).
 
@@ -14,7 +14,7 @@ namespace polybody {
 
 namespace detail {
 
-/// Message to all ranks at the end: counts, and a line for each finished point.
+/// Text of the results, which rank 0 sends to all ranks at the end: counts, and a line for each finished point.
 template <class = void>  // compiled where it is used
 std::string text_of(StudyResults const& results) {
   std::string text = std::to_string(results.resumed) + (results.torn ? " 1\n" : " 0\n");
@@ -49,7 +49,7 @@ void give_points(MpiRanks const& ranks, Study const& study, StudyQueue& queue) {
   }
 }
 
-/// Computation of points on the other ranks. An exception of f that is not an error of the library ends the study.
+/// Computes points on a rank other than 0. An exception of f that is not an error of the library ends the study.
 template <class F>
 StudyResults work_for_first(Study const& study, F const& f, StudyOptions const& options) {
   std::exception_ptr own;
@@ -65,7 +65,7 @@ StudyResults work_for_first(Study const& study, F const& f, StudyOptions const& 
       send(0, RankTag::stops, error.what());
     } catch (...) {
       own = std::current_exception();
-      send(0, RankTag::stops, "an exception that is not of the standard library");
+      send(0, RankTag::stops, "an exception that is not derived from std::exception");
     }
   }
   if (own) std::rethrow_exception(own);
@@ -73,7 +73,7 @@ StudyResults work_for_first(Study const& study, F const& f, StudyOptions const& 
   return results_in(message.text, study);
 }
 
-/// Run on rank 0: writes the record, distributes points, and computes points in a second thread. Only the
+/// Part of a run on rank 0: writes the record, distributes points, and computes points in a second thread. Only the
 /// first thread calls MPI.
 template <class F>
 StudyResults run_first(MpiRanks const& ranks, Study const& study, F const& f, StudyOptions const& options) {
@@ -99,13 +99,13 @@ void require_same_study(Study const& study) {
   if (least != most)
     throw InvalidInput("study.ranks_differ",
                        {"study \"", ErrorObject{study.kind().file},
-                        "\": the ranks have different studies. Give all the same program and options."});
+                        "\": the ranks have different studies. Start all ranks with the same program and options."});
 }
 
 }  // namespace detail
 
 /// Runs a study as `study.run(f, options)`, over all ranks; all ranks must call it. All ranks get the results, or an
-/// exception. Rank 0 and a rank whose f threw get the original exception, the other ranks an IoError with its
+/// exception. Rank 0, and a rank on which f threw, get the original exception. The other ranks get an IoError with its
 /// message. A single rank uses threads.
 template <class F>
 StudyResults run_over_ranks(MpiRanks const& ranks, Study const& study, F const& f, StudyOptions const& options = {}) {
@@ -124,7 +124,7 @@ StudyResults run_over_ranks(MpiRanks const& ranks, Study const& study, F const& 
     tell(detail::RankTag::refused, error.what());
     throw;
   } catch (...) {
-    tell(detail::RankTag::refused, "an exception that is not of the standard library");
+    tell(detail::RankTag::refused, "an exception that is not derived from std::exception");
     throw;
   }
 }

@@ -18,8 +18,8 @@
 
 namespace polybody {
 
-/// Initialisation of MPI; the destructor finalises it. A program has one object, at the beginning of main and outside
-/// of its `try`. A program that is started without mpirun has one rank.
+/// Initialises MPI; the destructor finalises MPI. A program creates one object of this type, at the beginning of main
+/// and outside of a `try` block. A program that is started without mpirun has one rank.
 class MpiRanks {
  public:
   /// Starts MPI with the arguments argc and argv of `main`.
@@ -45,8 +45,8 @@ class MpiRanks {
   int size() const { return size_; }         ///< number of ranks
   bool first() const { return rank_ == 0; }  ///< true for rank 0, which records and writes the results
 
-  /// Ends all ranks with exit `code`. For an error outside of `run_over_ranks` on one rank only, because the other
-  /// ranks wait for it.
+  /// Ends all ranks with exit `code`. Needed after an error that occurs outside of `run_over_ranks` on one rank only,
+  /// because the other ranks wait for this rank.
   [[noreturn]] void abort(int code = 1) const {
     MPI_Abort(MPI_COMM_WORLD, code);
     std::abort();
@@ -59,9 +59,9 @@ class MpiRanks {
 
 namespace detail {
 
-/// Type of a message. A worker requests a point and sends the outcome of its last one, or stops the study with an
-/// error. Rank 0 answers with a point, or that no points are left. At the end rank 0 sends the results to all ranks,
-/// or the reason of a failure.
+/// Type of a message. A rank other than 0 requests a point and sends the outcome of its previous point (`asks`), or
+/// stops the study because of an error (`stops`). Rank 0 answers with a point, or with `no_more`. At the end rank 0
+/// sends the results to all ranks (`found`), or the reason of a failure (`refused`).
 enum class RankTag : int { asks = 1, stops, point, no_more, found, refused };
 
 /// Text from another rank.

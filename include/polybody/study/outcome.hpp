@@ -13,7 +13,7 @@ namespace polybody {
 /// Output of a study: a number computed at each point.
 struct StudyOutput {
   std::string head;       ///< name with unit: "error [m]"
-  bool measured = false;  ///< the number, such as a time, differs between runs
+  bool measured = false;  ///< true: the number differs between runs, such as a time
 
   /// Conversion of a head to an output.
   StudyOutput(char const* name) : head(name) {}  // NOLINT(google-explicit-constructor)
@@ -23,11 +23,11 @@ struct StudyOutput {
   StudyOutput(std::string name, bool is_measured) : head(std::move(name)), measured(is_measured) {}
 };
 
-/// Output with this `head` whose number differs between runs, such as a time. Records and figures include it. The
-/// table that is bitwise identical for each run omits it.
+/// Output with this `head` whose number differs between runs, such as a time. Records and figures include this output.
+/// `write_table` omits it, so that the table is bitwise identical for each run.
 inline StudyOutput measured(std::string head) { return {std::move(head), true}; }
 
-/// List of outputs with these `heads`: outputs("error [m]", measured("cpu [s]"))
+/// List of outputs with these `heads`, as in `outputs("error [m]", measured("cpu [s]"))`.
 template <class... Heads>
 std::vector<StudyOutput> outputs(Heads&&... heads) {
   return {StudyOutput(std::forward<Heads>(heads))...};
@@ -38,15 +38,15 @@ struct Outcome {
   std::vector<double> values{};  ///< values of the outputs, each in the unit of its head; empty after a failure
   std::string failure{};         ///< reason of a failure, one line; empty: no failure
 
-  bool failed() const { return !failure.empty(); }  ///< true if there are no values
+  bool failed() const { return !failure.empty(); }  ///< true if the point failed
 };
 
-/// Results of a study so far.
+/// Results of a study; complete, or partial if points are unfinished.
 struct StudyResults {
   Points points;                                   ///< points of the study
   std::vector<StudyOutput> outputs;                ///< outputs of the study
-  std::vector<std::optional<Outcome>> outcomes{};  ///< in the order of the points; none for an unfinished point
-  std::size_t resumed = 0;                         ///< number of points that an earlier run has finished
+  std::vector<std::optional<Outcome>> outcomes{};  ///< outcomes in the order of the points; empty if unfinished
+  std::size_t resumed = 0;                         ///< number of points that earlier runs have finished
   bool torn = false;                               ///< true if an earlier run was killed while it wrote a line
 
   /// Number of points that have an outcome, including failures.
@@ -60,8 +60,8 @@ struct StudyResults {
   /// Returns true if every point has an outcome.
   bool complete() const { return finished() == points.size(); }
 
-  /// Values of a parameter or an output, called `name`, at the points that have outputs, in the order of the points.
-  /// A parameter is given by its name or its head.
+  /// Values of the parameter or output `name` at the points that have outputs, in the order of the points. `name` is
+  /// the name or the head of a parameter, or the head of an output.
   /// \throws InvalidInput if there is no such column.
   std::vector<double> column(std::string_view name) const {
     std::vector<double> values;

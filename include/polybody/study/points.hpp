@@ -16,8 +16,8 @@
 
 namespace polybody {
 
-/// Error of a program that uses a study wrongly: its function reads a column that does not exist, or returns the
-/// wrong number of outputs. It ends the study and is not recorded as a failure of the point.
+/// Error of a program that uses a study wrongly: the function of a point reads a column that does not exist, or returns
+/// the wrong number of outputs. The error ends the study and is not recorded as a failure of the point.
 class StudyUsageError : public InvalidInput {
  public:
   using InvalidInput::InvalidInput;
@@ -38,7 +38,7 @@ class Point;
 /// table of results has the same order of points.
 class Points {
  public:
-  /// Table with given columns and values.
+  /// Table with these `columns` and `values`.
   /// \param values (points × columns), row by row
   /// \param origin description of the rule that generated the points
   /// \throws InvalidInput for no point or no column, for names that are empty, equal or not printable, and for values
@@ -59,7 +59,7 @@ class Points {
   std::vector<double> const& values() const { return values_; }          ///< (points × columns) values, row by row
   std::string const& origin() const { return origin_; }  ///< description of the rule that generated the points
   /// Value of a `point` in a `column`, in the unit of the column.
-  /// \throws std::out_of_range.
+  /// \throws std::out_of_range if there is no such point or column.
   double at(std::size_t point, std::size_t column) const { return values_.at(point * columns_.size() + column); }
   /// Row number `point`, from 0. This table must outlive the returned Point.
   Point operator[](std::size_t point) const;
@@ -73,9 +73,10 @@ class Points {
     bool good = printable(column.name) && (column.unit.empty() || printable(column.unit));
     for (std::string const& choice : column.choices) good = good && printable(choice);
     if (!good)
-      throw InvalidInput("points.columns",
-                         {"study: column \"", ErrorObject{column.name},
-                          "\" has a name, unit or choice that is empty or not printable. Give it words on one line."});
+      throw InvalidInput(
+          "points.columns",
+          {"study: column \"", ErrorObject{column.name},
+           "\" has a name, unit or choice that is empty or not printable. Use text without line breaks."});
     for (std::size_t k = 0; k < j; ++k)
       if (columns_[k].name == column.name)
         throw InvalidInput("points.columns", {"study: duplicate column \"", ErrorObject{column.name},
@@ -97,7 +98,7 @@ class Points {
   std::string origin_;
 };
 
-/// Point of a study: a row of the table, read by the names of its columns. The table must outlive it.
+/// Point of a study: a row of the table, read by the names of the columns. The table must outlive the point.
 class Point {
  public:
   /// Row `index` of `points`, from 0.
@@ -118,20 +119,20 @@ class Point {
                                                   "\" contains numbers, not choices. Use point[\"", column, "\"]."});
     return static_cast<std::size_t>(points_->at(index_, j));
   }
-  /// Name of the point's choice in a `column`, as given to `formulations`.
+  /// Name of the point's choice in a `column`, as passed to `formulations`.
   std::string const& chosen(std::string_view column) const {
     return points_->columns()[place(column)].choices[choice(column)];
   }
 
-  /// Calls f with the one of the arguments `first`, `others` that the point's choice in `column` selects, as in
-  /// `point.with("integrator", run, GeneralisedAlpha{}, Radau{})`.
+  /// Calls f with one of the arguments `first`, `others`, selected by the index of the point's choice in `column`.
+  /// Example: `point.with("integrator", run, GeneralisedAlpha{}, Radau{})`.
   /// \throws StudyUsageError unless there is one argument for each choice.
   template <class F, class First, class... Others>
   auto with(std::string_view column, F const& f, First const& first, Others const&... others) const {
     std::size_t const k = choice(column), count = points_->columns()[place(column)].choices.size();
     if (count != 1 + sizeof...(others))
       throw StudyUsageError("study.choices", {"study: column \"", ErrorObject{column}, "\" has ", ErrorValue{count},
-                                              " choices, but the point's function has ", 1 + sizeof...(others), "."});
+                                              " choices, but Point::with is called for ", 1 + sizeof...(others), "."});
     return call_nth(k, f, first, others...);
   }
 

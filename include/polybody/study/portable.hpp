@@ -40,8 +40,8 @@ double portable_exp(double x) {
   return std::ldexp(sum, static_cast<int>(k));
 }
 
-/// Distribution function Φ(x) of a standard normal variable for x ≤ 0: ½ + φ Σ x²ᵏ⁺¹/(1·3·…·(2k+1)), or φ/(|x| +
-/// 1/(|x| + 2/(|x| + …))) in the tail.  [Abramowitz & Stegun 1964, 26.2.11, 26.2.14]
+/// Distribution function Φ(x) of a standard normal variable for x ≤ 0: ½ + φ Σ x²ᵏ⁺¹/(1·3·…·(2k+1)), or φ/(|x| + 1/(|x|
+/// + 2/(|x| + …))) in the tail [Abramowitz & Stegun 1964, 26.2.11, 26.2.14]. φ is the `density` at x.
 template <class = void>
 double normal_share(double x, double density) {
   if (x > -3.0) {
@@ -58,8 +58,8 @@ double normal_share(double x, double density) {
   return density / fraction;
 }
 
-/// Quantile of the standard normal distribution: x with Φ(x) = u, 0 < u < 1. The method is Newton's, applied to ln Φ.
-/// This function is concave, so iterates that start left of the root remain left of it. The initial value is left of
+/// Quantile of the standard normal distribution: x with Φ(x) = u, 0 < u < 1. Newton's method is applied to ln Φ. This
+/// function is concave, so iterates that start left of the root remain left of the root. The initial value is left of
 /// the root because Φ(−t) ≤ ½ exp(−t²/2).
 template <class = void>
 double normal_quantile(double u) {

@@ -12,20 +12,20 @@
 
 namespace polybody {
 
-/// Options of a run of a study.
+/// Options for running a study.
 struct StudyOptions {
   int threads = 1;            ///< number of threads; with several ranks each rank computes one point at a time
   bool retry_failed = false;  ///< computes points again that failed in an earlier run
   bool progress = true;       ///< shows a bar with the remaining time if stderr is a terminal
-  /// Wall-clock time limit of a point [s]; zero: no limit. A point that exceeds it is recorded as failed, and the
-  /// study continues. With a limit, each point is computed in a separate process. Changes of variables by the
-  /// function are then lost, and a crash is a failure of its point only.
+  /// Wall-clock time limit of a point [s]; zero: no limit. A point that exceeds it is recorded as failed, and the study
+  /// continues. With a limit, each point is computed in a separate process. Changes that the function makes to
+  /// variables are then lost, and a crash is a failure of one point only.
   double time_limit = 0.0;
 };
 
 namespace detail {
 
-/// Thread-safe queue that distributes points in the order of the table. It records outcomes in the order in which the
+/// Thread-safe queue that distributes points in the order of the table. Outcomes are recorded in the order in which the
 /// points finish.
 class StudyQueue {
  public:
@@ -45,7 +45,7 @@ class StudyQueue {
     return left_[given_++];
   }
 
-  /// Records the outcome of a point. The study stops if this fails.
+  /// Records the outcome of a point. The study stops if the record cannot be written.
   void finish(std::size_t point, Outcome outcome) {
     std::lock_guard const lock(mutex_);
     try {
@@ -57,7 +57,7 @@ class StudyQueue {
     }
   }
 
-  /// Stops the distribution of points. `rethrow` throws the first reason.
+  /// Stops the distribution of points. `rethrow` throws `why` of the first stop.
   void stop(std::exception_ptr why) {
     std::lock_guard const lock(mutex_);
     if (!error_) error_ = std::move(why);

@@ -26,13 +26,14 @@ class StudyRecord {
  public:
   /// Opens or creates the record, and removes the incomplete line of a killed run.
   /// \throws IoError with the file and, if possible, the line. The error occurs if the folder or the file cannot be
-  /// created, another process has locked the file, or `record_content` refuses it. An existing file then remains
-  /// unchanged.
+  /// created, another process has locked the file, or `record_content` refuses the content. An existing file then
+  /// remains unchanged.
   explicit StudyRecord(RecordKind kind) : kind_(std::move(kind)) {
     open();
     try {
       content_ = record_content(kind_, bytes());
-      if (content_.torn && ::ftruncate(file_, off_t(content_.whole)) != 0) fail("cannot be cut after its last line");
+      if (content_.torn && ::ftruncate(file_, off_t(content_.whole)) != 0)
+        fail("cannot be truncated after its last complete line");
       if (content_.whole == 0) write(head_text(kind_, content_.chain));
     } catch (...) {
       close();
@@ -43,7 +44,7 @@ class StudyRecord {
   StudyRecord& operator=(StudyRecord const&) = delete;
   ~StudyRecord() { close(); }
 
-  std::vector<std::optional<Outcome>> const& found() const { return content_.outcomes; }  ///< at the time of opening
+  std::vector<std::optional<Outcome>> const& found() const { return content_.outcomes; }  ///< outcomes when opened
   bool torn() const { return content_.torn; }
 
   /// Appends the outcome of a point.
@@ -58,7 +59,7 @@ class StudyRecord {
       throw;
     }
     if (Clock::now() - synced_ < std::chrono::milliseconds(100)) return;
-    if (::fsync(file_) != 0 && errno != EINVAL) fail("is written, but the disk did not take it");
+    if (::fsync(file_) != 0 && errno != EINVAL) fail("is written, but not synchronised to the disk");
     unsynced_ = false;
     synced_ = Clock::now();
   }
@@ -75,7 +76,7 @@ class StudyRecord {
     namespace fs = std::filesystem;
     fs::path const path = kind_.file;
     if (!path.has_filename())
-      throw IoError("file.name", {"file \"", ErrorObject{kind_.file}, "\": the name of a file is missing"});
+      throw IoError("file.name", {"file \"", ErrorObject{kind_.file}, "\": the path has no file name"});
     std::error_code reason;
     if (path.has_parent_path()) fs::create_directories(path.parent_path(), reason);
     if (reason) fail("has a folder that cannot be created", reason.value());
@@ -99,8 +100,8 @@ class StudyRecord {
                    "\" is written by another run of the study. Wait until that ends, or choose another file"});
   }
 
-  /// Returns true if the open file still has its name. A run that has written no line removes the file that it
-  /// created.
+  /// Returns true if the open file still has its name. Another run removes the file that it created if it has written
+  /// no line.
   bool is_in_place() const {
     struct stat here = {}, named = {};
     return ::fstat(file_, &here) == 0 && ::stat(kind_.file.c_str(), &named) == 0 && here.st_ino == named.st_ino &&

@@ -19,8 +19,8 @@ struct RecordKind {
 /// Content of a record.
 struct RecordContent {
   std::vector<std::optional<Outcome>> outcomes{};  ///< outcomes of all points
-  std::size_t whole = 0;                           ///< bytes up to the end of the last complete line; 0: no head yet
-  bool torn = false;                               ///< an incomplete line follows
+  std::size_t whole = 0;                           ///< size up to the end of the last complete line [bytes]; 0: no head
+  bool torn = false;                               ///< true: an incomplete line follows
   RecordChain chain{};                             ///< state of the chain after the last complete line
 };
 
@@ -28,7 +28,7 @@ struct RecordContent {
   throw IoError("file.content", {"file \"", ErrorObject{kind.file}, "\", line ", line, ": ", why});
 }
 
-/// Text of the head in the file.
+/// Text of the head of a record, with checksums.
 template <class = void>
 std::string head_text(RecordKind const& kind, RecordChain& chain) {
   std::string text;
@@ -40,10 +40,10 @@ template <class = void>
 void require_head_line(RecordKind const& kind, std::size_t line, std::string const& text) {
   std::string const& ours = kind.head[line - 1];
   if (text == ours) return;
-  if (line == 1) refuse_record(kind, line, "it is \"" + text + "\", but this program reads \"" + ours + "\"");
+  if (line == 1) refuse_record(kind, line, "the line is \"" + text + "\", but this program expects \"" + ours + "\"");
   refuse_record(kind, line,
-                "the record is of another study: it has \"" + text + "\", this study \"" + ours +
-                    "\". Give this study another file, or remove the old one");
+                "the record belongs to another study: it has \"" + text + "\", but this study has \"" + ours +
+                    "\". Use another file for this study, or remove the old file");
 }
 
 /// Stores the outcome of a line. A failed point may occur again if a later run has computed it again.
@@ -52,7 +52,7 @@ void take_outcome(RecordKind const& kind, std::size_t line, std::string const& t
   auto found = outcome_in(text, kind.points, kind.outputs);
   if (!found) refuse_record(kind, line, "\"" + text + "\" is not an outcome of this study");
   std::optional<Outcome>& place = content.outcomes[found->first];
-  if (place && !place->failed()) refuse_record(kind, line, "point " + std::to_string(found->first) + " is there twice");
+  if (place && !place->failed()) refuse_record(kind, line, "point " + std::to_string(found->first) + " occurs twice");
   place = std::move(found->second);
 }
 
@@ -71,17 +71,20 @@ RecordContent record_content(RecordKind const& kind, std::string_view bytes) {
   for (std::size_t end; (end = bytes.find('\n', content.whole)) != bytes.npos; content.whole = end + 1) {
     ++line;
     auto const text = content.chain.text(bytes.substr(content.whole, end - content.whole));
-    if (!text && line == 1) refuse_record(kind, line, "this is no record of a study, or its first line is damaged");
+    if (!text && line == 1)
+      refuse_record(kind, line, "the file is not a record of a study, or its first line is damaged");
     if (!text)
-      refuse_record(kind, line,
-                    "the line is damaged, or a line before it is missing: its checksum is not the one that it should "
-                    "have. Remove the file to begin anew, or put back a copy that is whole");
+      refuse_record(
+          kind, line,
+          "the line is damaged, or a previous line is missing: the checksum is wrong. Remove the file to start "
+          "the study again, or restore an undamaged copy");
     if (line <= kind.head.size())
       require_head_line(kind, line, *text);
     else
       take_outcome(kind, line, *text, content);
   }
-  if (line < kind.head.size()) refuse_record(kind, line + 1, "this is no record of this study: its head ends here");
+  if (line < kind.head.size())
+    refuse_record(kind, line + 1, "the file is not a record of this study: its head is incomplete");
   content.torn = content.whole < bytes.size();
   return content;
 }

@@ -32,7 +32,7 @@ struct RecordChain {
     link = sixteen_digits(checksum(link + text));
     return text + "\t#" + link + '\n';
   }
-  /// Returns the text of a line without its checksum, or nothing if it is not the next line.
+  /// Returns the text of a line without its checksum, or nothing if the checksum does not continue the chain.
   std::optional<std::string> text(std::string_view line) {
     std::size_t const tail = 2 + 16;
     if (line.size() < tail) return std::nullopt;

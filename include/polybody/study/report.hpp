@@ -51,10 +51,10 @@ std::string table_text(StudyResults const& found, bool with_measured) {
 }  // namespace detail
 
 /// Writes the finished points of the results `found` to `file`, in the order of the points, with units in the heads.
-/// Numbers read back to the same double. A failed point has no numbers, and its message in the column "failure".
-/// Measured outputs are omitted, so the same study gives the same bytes. If there are measured outputs,
+/// Numbers read back to the same double. The row of a failed point has no outputs; the column "failure" contains the
+/// message. Measured outputs are omitted, so the same study gives the same bytes. If there are measured outputs,
 /// NAME_measured.csv contains all outputs.
-/// \throws IoError, as AtomicFile.
+/// \throws IoError if a file cannot be written.
 template <class = void>
 void write_table(StudyResults const& found, std::filesystem::path const& file) {
   AtomicFile table(file);
@@ -69,7 +69,7 @@ void write_table(StudyResults const& found, std::filesystem::path const& file) {
 }
 
 /// Results `found`, restricted to the points for which `keeps(point)` is true. The other points count as unfinished.
-/// Useful for one panel of a figure.
+/// Example of use: one panel of a figure.
 template <class Keeps>
 StudyResults where(StudyResults found, Keeps const& keeps) {
   for (std::size_t i = 0; i < found.outcomes.size(); ++i)

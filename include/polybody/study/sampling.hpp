@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// Points by Monte Carlo and Latin hypercube sampling. A seed gives bitwise identical points on every machine. The
-/// generator is std::mt19937_64, whose numbers are fixed by the standard. No distribution of the standard library is
-/// used.
+/// Points by Monte Carlo and Latin hypercube sampling. Points of the same seed are bitwise identical on every machine.
+/// The generator is std::mt19937_64, whose numbers are fixed by the standard. No distribution of the standard library
+/// is used.
 ///
 /// Not in polybody.hpp: only studies need it.
 
@@ -74,7 +74,7 @@ std::size_t sample_below(std::mt19937_64& generator, std::uint64_t n) {
   return static_cast<std::size_t>(draw % n);
 }
 
-/// Points from samples u (points × axes).
+/// Points from the quantiles of samples u (points × axes).
 template <class = void>
 Points sampled(std::vector<double> u, std::vector<RandomAxis> const& axes, std::string origin) {
   std::vector<Column> columns;
@@ -97,7 +97,7 @@ Points monte_carlo(std::size_t count, std::uint64_t seed, std::vector<RandomAxis
 }
 
 /// Latin hypercube sample of `count` points, with the random numbers of `seed`. Each axis has `count` strata of equal
-/// probability, with one point at a random place in each stratum. Strata of different axes are paired at random.
+/// probability, with one point at a random position in each stratum. Strata of different axes are paired at random.
 /// [McKay, Beckman & Conover 1979]
 /// \throws InvalidInput for no point, no axis, and more than 2²⁰ points.
 template <class = void>

@@ -14,14 +14,14 @@ namespace polybody {
 struct Statistics {
   std::size_t count = 0;         ///< number n of points
   double mean = 0.0;             ///< mean, in the unit of the output
-  double deviation = 0.0;        ///< standard deviation √(Σ(x − mean)²/(n − 1)), in that unit
-  std::vector<double> sorted{};  ///< (n) values in ascending order, in that unit
+  double deviation = 0.0;        ///< standard deviation √(Σ(x − mean)²/(n − 1)), in the same unit
+  std::vector<double> sorted{};  ///< (n) values in ascending order, in the same unit
 
-  /// Quantile at a share p in [0, 1], interpolated linearly: 0 is the minimum, 0.5 the median.
+  /// Quantile for the probability p in [0, 1], interpolated linearly: p = 0 gives the minimum, p = 0.5 the median.
   double quantile(double p) const {
     if (!(p >= 0.0 && p <= 1.0))
       throw InvalidInput("statistics.quantile",
-                         {"study: the share of a quantile must lie in [0, 1], but is ", ErrorValue{p}, "."});
+                         {"study: the probability of a quantile must lie in [0, 1], but is ", ErrorValue{p}, "."});
     double const place = p * double(count - 1);
     std::size_t const k = std::min(std::size_t(place), count - 1), next = std::min(k + 1, count - 1);
     return sorted[k] + (place - double(k)) * (sorted[next] - sorted[k]);
@@ -64,8 +64,8 @@ std::vector<double> ranks_of(std::vector<double> const& x) {
 
 }  // namespace detail
 
-/// Spearman's rank correlation of the columns `one` and `other`, in [−1, 1]. It measures the monotonic dependence of
-/// two columns, independent of the form of the curve. It is 0 if one of them is constant.
+/// Spearman's rank correlation of the columns `one` and `other`, in [−1, 1]. The result measures the monotonic
+/// dependence of the two columns, independent of the form of the curve. It is 0 if a column is constant.
 /// \throws InvalidInput as `statistics`.
 template <class = void>
 double rank_correlation(StudyResults const& found, std::string_view one, std::string_view other) {

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Studies: one function at many points, distributed over the threads of a machine. Each finished point is recorded
-/// at once, so the next run continues a killed study. For the ranks of MPI see study/mpi.hpp.
+/// Studies: evaluation of one function at many points, distributed over the threads of a machine. Each finished point
+/// is recorded at once, so the next run continues a killed study. For the ranks of MPI see study/mpi.hpp.
 ///
 /// Not in polybody.hpp: only studies need it. Needs POSIX.
 
@@ -16,16 +16,16 @@ namespace polybody {
 
 /// Record file and description of a study.
 struct StudyFile {
-  std::filesystem::path file;  ///< record; created with its folder, or continued
-  /// Description of everything that affects the outputs and is not a column: "chain of 8 links, 0.5 s". A record with
-  /// another description belongs to another study.
+  std::filesystem::path file;  ///< file of the record; created with its folder if it does not exist
+  /// Description of everything that affects the outputs and is not a column: "chain of 8 links, 0.5 s". A record with a
+  /// different description belongs to another study.
   std::string about = "";
 };
 
 namespace detail {
 
-/// Outcome of f at a point: a number, or a range of numbers, for the outputs. Errors of the library are failures of
-/// the point; other exceptions are passed on.
+/// Outcome of f at a point. f returns the outputs as a number or a range of numbers. Errors of the library are failures
+/// of the point; other exceptions are passed on.
 template <class F>
 Outcome outcome_of(F const& f, Point const& point, std::vector<StudyOutput> const& outputs) {
   try {
@@ -48,11 +48,11 @@ Outcome outcome_of(F const& f, Point const& point, std::vector<StudyOutput> cons
   } catch (Error const& error) {
     std::string why = error.what();
     std::ranges::replace_if(why, [](unsigned char c) { return c < ' ' || c == 127; }, ' ');
-    return {{}, why.empty() ? "without a word" : why};
+    return {{}, why.empty() ? "an error without a message" : why};
   }
 }
 
-/// Outcome of f at a point within the time limit of the options, if there is one.
+/// Outcome of f at a point. If the options have a time limit, f runs in a separate process.
 template <class F>
 Outcome outcome_of(F const& f, Point const& point, std::vector<StudyOutput> const& outputs,
                    StudyOptions const& options) {
@@ -98,17 +98,17 @@ class Study {
     Points(std::move(heads), one_row, "");  // checks the names
     if (std::ranges::any_of(file_.about, [](unsigned char c) { return c < ' ' || c == 127; }))
       throw InvalidInput("study.about", {"study \"", ErrorObject{file_.file.string()},
-                                         "\": its description must be words on one line."});
+                                         "\": its description must be printable text without line breaks."});
   }
 
-  /// Calls f(point) for each unfinished point, from several threads at once: f must not change shared data. The
-  /// results of f, a number or a range of numbers, are the outputs. The point is recorded as failed if f throws an
-  /// Error, an output is not finite, or the time limit of the options is exceeded. The record then contains the
-  /// message. After an exception the points finished until then are recorded.
+  /// Calls f(point) for each unfinished point, from several threads at once: f must not change shared data. The results
+  /// of f, a number or a range of numbers, are the outputs. The point is recorded as failed if f throws an Error, an
+  /// output is not finite, or the time limit of the options is exceeded. The record then contains the message. After an
+  /// exception the points that were finished before remain recorded.
   /// \throws IoError for a file that cannot be created or written, is open in another run, is damaged, or belongs to
   /// another study.
   /// \throws InvalidInput for less than one thread and a negative time limit.
-  /// \throws Error with the message of another exception of f under a time limit; else the exception itself.
+  /// \throws any other exception of f; with a time limit, an Error with the message of that exception.
   template <class F>
     requires std::is_invocable_v<F const&, Point const&>
   StudyResults run(F const& f, StudyOptions const& options = {}) const {
@@ -146,7 +146,7 @@ class Study {
   Points const& points() const { return points_; }                      ///< points of the study
   std::vector<StudyOutput> const& outputs() const { return outputs_; }  ///< outputs at each point
 
-  /// \name Access for other ways to run a study (study/mpi.hpp)
+  /// \name Access for other runners of a study (study/mpi.hpp)
   ///@{
   /// Identity of the study that the record must have.
   detail::RecordKind kind() const {
@@ -154,7 +154,7 @@ class Study {
   }
   /// Label of the progress bar.
   std::string label() const { return file_.file.stem().string(); }
-  /// Results from outcomes, with the study to which they belong; `resumed`, `torn` as in StudyResults.
+  /// Results of this study from `outcomes`; `resumed` and `torn` as in StudyResults.
   StudyResults results(std::vector<std::optional<Outcome>> outcomes, std::size_t resumed, bool torn) const {
     return {points_, outputs_, std::move(outcomes), resumed, torn};
   }

@@ -6,16 +6,16 @@
 
 namespace polybody {
 
-/// Selection of the pairs of a model's force groups that have blocks in a matrix with many evaluations. A pair is
-/// selected if it touched in a recent evaluation, or if such a pair has the same contact partner and a neighbouring
-/// marker. Neighbours are included because, for example, links of a track touch one after another.
+/// Selection of the contact pairs of force groups that have blocks in a repeatedly evaluated matrix. A pair is selected
+/// if it was in contact in a recent evaluation, or if a pair with a neighbouring marker and the same contact partner
+/// was. Neighbours are included because, for example, links of a track come into contact one after another.
 class ActiveContactPairs {
  public:
-  /// Pairs of one group. The pair of marker i of the many and partner j has the number i few + j.
+  /// Pairs of one force group. Marker i of the many and contact partner j form the pair with the index i · few + j.
   struct Group {
-    Index few = 0;              ///< number of partners; 0 if unknown: pairs then have no neighbours
-    Sequence<char> has_blocks;  ///< for each pair: it has blocks
-    Sequence<long> touched;     ///< for each pair: number of the last evaluation in which it touched
+    Index few = 0;              ///< number of contact partners; 0 if it is unknown, and pairs have no neighbours
+    Sequence<char> has_blocks;  ///< for each pair: nonzero if the pair has blocks in the matrix
+    Sequence<long> touched;     ///< for each pair: number of the last evaluation with contact
   };
 
   /// Starts an evaluation of the matrix.
@@ -24,12 +24,13 @@ class ActiveContactPairs {
     lacks_ = false;
     ++writing_;
   }
-  /// Returns the next group of the model. \param few number of its partners, 0 if unknown
+  /// Returns the next group of the model. \param few number of its contact partners; 0 if it is unknown
   Group& group(Index few) {
     if (next_ == groups_.size()) groups_.push_back({few, {}, {}});
     return groups_[next_++];
   }
-  /// Records the contact `touches` of pair k of a group. Returns true if the pair has blocks.
+  /// Records in this evaluation that pair k of a group is in contact if `touches` is true. Returns true if the pair has
+  /// blocks.
   bool note(Group& group, std::size_t k, bool touches) {
     if (k == group.has_blocks.size()) {
       group.has_blocks.push_back(0);
@@ -39,9 +40,9 @@ class ActiveContactPairs {
     if (touches && !group.has_blocks[k]) lacks_ = true;
     return group.has_blocks[k];
   }
-  /// In the last evaluation a pair without blocks touched.
+  /// True if a pair without blocks was in contact in the last evaluation.
   bool lacks() const { return lacks_; }
-  /// Selects the pairs that touched recently and their neighbours. This changes the sparsity pattern of the matrix.
+  /// Selects the pairs with recent contact, and their neighbours. This changes the sparsity pattern of the matrix.
   void hold() {
     for (Group& g : groups_) {
       std::fill(g.has_blocks.begin(), g.has_blocks.end(), char(0));
@@ -56,7 +57,7 @@ class ActiveContactPairs {
 
  private:
   static constexpr Index neighbours = 2;  // neighbouring markers on each side
-  static constexpr long kept = 50;        // evaluations for which a separated pair keeps its blocks: it may touch again
+  static constexpr long kept = 50;        // number of evaluations without contact after which a pair loses its blocks
 
   Sequence<Group> groups_;
   std::size_t next_ = 0;

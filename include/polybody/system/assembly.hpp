@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Assembly of all operations with G, Φ and λ and of the right-hand sides, as loops over constraint blocks and applied
-/// wrenches. The loops do not depend on the type of the model.
+/// Assembly of right-hand sides, and products with the constraint Jacobian G, as loops over constraint blocks and
+/// applied wrenches. The loops do not depend on the type of the model.
 
 #include <polybody/system/layout.hpp>
 #include <polybody/system/projected_stiffness.hpp>
@@ -10,7 +10,7 @@ namespace polybody {
 
 namespace detail {
 
-/// Calls f(block) for all blocks with constraint equations of the model, except those that the evaluation omits.
+/// Calls f(block) for all blocks with constraint equations of the model, except blocks that the evaluation omits.
 template <StateScalar T, class F>
 void for_each_row_block(Data<T> const& data, F&& f) {
   for (ConstraintBlock<T> const& block : data.rows)
@@ -47,8 +47,8 @@ void add_ends(ConstraintBlock<T> const& block, T const* lambda, Data<T> const& d
   with_constant(block.rows, [&](auto m) { add_ends<m>(block, lambda, data, r); });
 }
 
-/// out (rows) += map · x of an end; x is the twist of its marker in the evaluated state. Without a marker, x are
-/// the velocities of the end in v.
+/// out (rows) += map · x for one end of a block. x is the twist of its marker in the evaluated state. For an end
+/// without a marker, x are the velocities of the end in v.
 template <StateScalar T>
 void add_rate(ConstraintSide<T> const& end, int rows, Data<T> const& data, VecXOf<T> const& v, T* out) {
   T twist[6];
@@ -59,8 +59,8 @@ void add_rate(ConstraintSide<T> const& end, int rows, Data<T> const& data, VecXO
   }
   add_mapped<0>(end.map, end.columns, x, rows, out);
 }
-/// out (rows) += map · x of an end; x is the twist J b of its marker for any vector b (nv). Without a marker, x
-/// are the entries of the end in b.
+/// out (rows) += map · x for one end of a block. x is the twist J b of its marker for any vector b (nv). For an end
+/// without a marker, x are the entries of the end in b.
 template <StateScalar T>
 void add_product(ConstraintSide<T> const& end, int rows, Data<T> const& data, VecXOf<T> const& b, T* out) {
   Vec<T, 6> twist;
@@ -95,7 +95,7 @@ void add_actions(Data<T> const& data, ModelLayout const& layout, double load_fac
   }
 }
 
-/// Φ (rows); zero for nonholonomic equations.
+/// `phi` = Φ (rows), the constraint violation; zero for nonholonomic equations.
 template <StateScalar T>
 void violation(Data<T> const& data, VecXOf<T>& phi) {
   detail::for_each_row_block(data, [&](ConstraintBlock<T> const& block) {
@@ -114,7 +114,8 @@ void violation_rate(Data<T> const& data, VecXOf<T> const& v, VecXOf<T>& rate) {
   });
 }
 
-/// gamma (rows) += Ga · bias + Gb · bias, the contribution of the bias accelerations of the markers.
+/// gamma (rows) += map · bias of both ends of each block: the contribution of the bias accelerations of the markers to
+/// γ.
 template <StateScalar T>
 void add_biases(Data<T> const& data, VecXOf<T>& gamma) {
   detail::for_each_row_block(data, [&](ConstraintBlock<T> const& block) {

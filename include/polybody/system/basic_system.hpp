@@ -1,11 +1,11 @@
 #pragma once
 /// \file
 /// Equations of motion as integrators and solvers evaluate them,
-///   M(q) v̇ = f(q, v, t) − Gᵀλ,   Φ(q, t) = 0,   q moves by ⊞.
+///   M(q) v̇ = f(q, v, t) − Gᵀλ,   Φ(q, t) = 0,   increments q ⊞ δ.
 /// First-order states, ż = h(q, v, z, t), are the last entries of v. They are velocities with unit mass that move no
 /// coordinate, and every integrator of v also integrates them.
-/// The type of the model is erased here: one table of functions fills arrays, from which the equations are assembled.
-/// If policies eliminate unknowns, the equations contain only the remaining ones,
+/// The type of the model is erased here: a table of functions fills arrays, from which the equations are assembled. If
+/// policies eliminate unknowns, the equations contain only the remaining unknowns u,
 ///   Tᵀ(M(T u̇ + b) − f) + (G T)ᵀλ = 0,   v = T u,  v̇ = T u̇ + b.
 
 #include <cmath>
@@ -16,21 +16,21 @@
 
 namespace polybody {
 
-/// Groups of evaluations as a constructor argument: `System(model, with<Capabilities::tangent>)`.
+/// Capabilities as a constructor argument: `System(model, with<Capabilities::tangent>)`.
 template <Capabilities groups>
 struct With {};
-/// Value of `With` for these groups.
+/// Value of `With` for these capabilities.
 template <Capabilities groups>
 inline constexpr With<groups> with{};
 
-/// Returns `entry`. \param group name of its group in the message
-/// \throws InvalidInput for a null entry: the system was constructed without its group.
+/// Returns the function `entry`. \param group name of its capability in the message \throws InvalidInput if `entry` is
+/// null: the system was constructed without this capability.
 template <class F>
 F require_entry(F entry, char const* group) {
   if (!entry)
     throw InvalidInput("system.missing_capability",
-                       {"This system was made without ", ErrorObject{group},
-                        ". Give them to its constructor: System(model, with<Capabilities::...>)."});
+                       {"This system was constructed without ", ErrorObject{group},
+                        ". Name the capability in the constructor: System(model, with<Capabilities::...>)."});
   return entry;
 }
 
@@ -43,7 +43,7 @@ class BasicSystem {
  public:
   using Vector = VecXOf<T>;  ///< coordinates, velocities or constraint equations, of the scalar T
 
-  /// Equations of the model. The model must outlive the system. If it changes afterwards, evaluations throw.
+  /// Equations of the model. The model must outlive the system. If the model changes afterwards, evaluations throw.
   template <class M, Capabilities wanted = Capabilities::questions>
     requires requires { sizeof(OperationsOf<M, T, wanted>); }
   explicit BasicSystem(M const& model, With<wanted> = {}, CoordinatesOf<T> coordinates = {})
@@ -58,9 +58,10 @@ class BasicSystem {
   BasicSystem(BasicSystem&&) noexcept;  ///< invalidates references to the moved system, such as those of a workspace
   ~BasicSystem();
 
-  /// Positions and names of the parts of the model.
+  /// Names of bodies, joints and forces, and their positions in vectors.
   ModelLayout const& layout() const { return layout_; }
-  /// Maps between the unknowns of a time step and those of the model. They convert to false if nothing is eliminated.
+  /// Maps between the unknowns of a time step and those of the model. They convert to false if no unknowns are
+  /// eliminated.
   CoordinatesOf<T> const& step_coordinates() const { return coordinates_; }
   /// Arrays of the last evaluation: markers, constraint blocks, wrenches of force elements.
   Data<T> const& data() const { return data_; }
@@ -71,17 +72,17 @@ class BasicSystem {
 
   /// Number nq of coordinates of a time step.
   Index coordinates() const { return coordinates_ ? coordinates_.reduced->coordinates : layout_.coordinates; }
-  /// Number nv of velocities of a time step; the last ones are the first-order states.
+  /// Number nv of velocities of a time step, including first-order states, which come last.
   Index velocities() const { return coordinates_ ? coordinates_.reduced->velocities : layout_.velocities; }
   /// Number of constraint equations Φ of a time step.
   Index rows() const { return coordinates_ ? coordinates_.reduced->rows : layout_.rows; }
   Index size() const { return velocities() + rows(); }  ///< number of unknowns of a time step, nv + rows
-  /// Numbers of the nonholonomic equations. Their Φ is zero, but not their Φ̇ and γ.
+  /// Indices of the nonholonomic equations. Their Φ is zero by definition; their Φ̇ and γ are computed.
   Sequence<Index> const& nonholonomic_equations() const {
     return coordinates_ ? coordinates_.reduced->nonholonomic_equations : layout_.nonholonomic_equations;
   }
 
-  /// Load factor of gravity and loads; one except inside `equilibrium`.
+  /// Load factor of gravity and loads; it is 1 except inside `equilibrium`.
   double load_factor = 1.0;
 
   /// Sets the state: coordinates q (nq), velocities v (nv), time t [s]. Computes all markers and constraint functions.
@@ -89,18 +90,18 @@ class BasicSystem {
   void evaluate(Vector const& q, Vector const& v, double t);
 
   /// Sets the number of threads that share the loops over elements, markers and joints, including the calling thread.
-  /// Results are bitwise identical for any number. \throws InvalidInput for fewer than one.
+  /// Results are bitwise identical for any number. \throws InvalidInput for fewer than one thread.
   void use_threads(int threads);
 
   /// r = M a − f + Gᵀλ (nv).
   void residual(Vector const& a, Vector const& lambda, Vector& r);
-  /// Writes the wrenches and state rates of the force elements to `data()`; `residual` includes this.
+  /// Writes the wrenches and state rates of the force elements to `data()`. `residual` also updates them.
   void push_forces() { entries_.push_forces(model_, t_, data_); }
-  /// Φ (rows); zero for nonholonomic equations.
+  /// `phi` = Φ (rows), the constraint violation; zero for nonholonomic equations.
   void violation(Vector& phi);
   /// `rate` = Φ̇ = G v + Φ_t (rows).
   void violation_rate(Vector& rate);
-  /// γ (rows): Φ̈ = G v̇ + γ.
+  /// `gamma` = γ (rows), the acceleration bias in Φ̈ = G v̇ + γ.
   void acceleration_bias(Vector& gamma);
   /// out = G b (rows) for b (nv).
   void rows_times(Vector const& b, Vector& out);
@@ -127,8 +128,9 @@ class BasicSystem {
           sink);
     });
   }
-  /// Writes the blocks of cd D + ck K of one part into `receiver`: of each compliant joint, or of all force elements
-  /// with second-order terms. For force elements, multipliers `lambda` add the second-order terms of the constraints.
+  /// Writes the blocks of cd D + ck K into `receiver` for one part of the tangent: each compliant joint, or all force
+  /// elements with second-order terms. For force elements, the second-order terms of constraints with multipliers
+  /// `lambda` are added if `lambda` is not null.
   template <BlockReceiver S>
   void tangent_of(TangentPart part, TangentCoefficients c, S&& receiver, Vector const* lambda = nullptr) {
     with_sink(receiver, [&](BlockSink& sink) {
@@ -144,7 +146,7 @@ class BasicSystem {
 
   /// out = q ⊞ delta.
   void plus(Vector const& q, Vector const& delta, Vector& out) const;
-  /// out = rate of delta in q ⊞ delta, while the model moves with velocities v.
+  /// out = rate of delta, if the configuration q ⊞ delta moves with the velocities v and q is constant.
   void local_rate(Vector const& delta, Vector const& v, Vector& out) const;
 
   /// Name of the body or force element with velocity i, or of the body or joint with constraint equation i − nv.
@@ -200,7 +202,7 @@ class BasicSystem {
   CoordinatesOf<T> coordinates_;
   std::unique_ptr<Workers> workers_;
   Data<T> data_;
-  Vector q_, v_;  // full
+  Vector q_, v_;  // full vectors
   double t_ = 0.0;
   Vector full_a_, full_r_, full_rows_, full_lambda_, still_;  // workspace of a system with reduced coordinates
 };

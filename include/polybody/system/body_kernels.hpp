@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// Loops over all bodies of one type in a model. They depend on the type of the body, but not on that of the model. A
-/// program therefore compiles them once for all models. With `extern template struct BodyKernels<MyBody, double>;`
-/// another object file contains them (see polybody/compiled.hpp).
+/// Loops over all bodies of one type in a model. The loops depend on the type of the body, but not on the type of the
+/// model. A program therefore compiles them once for all models. With `extern template struct BodyKernels<MyBody,
+/// double>;` another object file must contain them (see polybody/compiled.hpp).
 
 #include <polybody/bodies/shared/element_batches.hpp>
 #include <polybody/math/sequence.hpp>
@@ -14,16 +14,16 @@ namespace polybody {
 
 namespace detail {
 
-/// Workspace for all bodies of one type: arrays for each body, and its pose if its points share one.
+/// Workspace for all bodies of one type: arrays for each body, and the pose of each body whose points share a pose.
 template <class B, StateScalar T>
 struct BodyData {
   Sequence<typename PoseOf<B, T>::Type> poses;
   Sequence<ThreadScratch<B, T>> scratch;
   PoolBatches batches;   ///< elements in SIMD vectors; for doubles and comparable elements only
-  bool divides = false;  ///< threads share the elements of at least one body
+  bool divides = false;  ///< true if threads share the elements of at least one body
 };
 
-/// Number of used entries of the array of Jacobians, and number of columns of the widest marker, at least 12.
+/// Number of used entries of the array of Jacobians, and number of columns of the widest marker Jacobian (at least 12).
 struct MarkerArena {
   Index taken = 0, widest = 12;
 };
@@ -64,9 +64,10 @@ struct BodyKernels {
   /// marker in the model
   static Index add_marker(Pool& pool, Marker<B> const& marker, Mat3 const& axes, Index published);
 
-  /// Appends counts, positions and names to `out`.
+  /// Appends the sizes, positions and names of the bodies to `out`.
   [[gnu::cold]] static void describe(Pool const& pool, ModelLayout& out);
-  /// Allocates the workspace `kept` and assigns the columns and the Jacobian's storage in `arena` of each marker.
+  /// Allocates the workspace `kept`, and assigns columns and storage for the Jacobian to each marker. `arena` is
+  /// updated.
   [[gnu::cold]] static void place_markers(Pool const& pool, Kept& kept, detail::MarkerArena& arena, Data<T>& data);
   static Index own_size(Pool const& pool);  ///< number of entries for Φ and G of the bodies' own equations
   /// Appends a constraint block for the own equations of each body, with Φ and G stored from `next` on. Returns the end
@@ -80,7 +81,8 @@ struct BodyKernels {
   /// Evaluates Φ and G of the bodies' own equations and stores them from `next` on. Returns the end of this storage.
   static T* measure_own_rows(Pool const& pool, At<T> at, T* next);
   static void own_gamma(Pool const& pool, At<T> at, Vector& out);  ///< writes γ of own equation i to `out[i]`
-  /// out = q ⊞ δ. With `places`, vectors are reduced. Returns the position after the last body.
+  /// out = q ⊞ δ. If `places` is not null, the vectors are reduced, and `places` points to the position of the first
+  /// body. Returns `places` past the last body.
   static ReducedPosition const* plus(Pool const& pool, ReducedPosition const* places, Vector const& q,
                                      Vector const& delta, Vector& out);
   static ReducedPosition const* local_rate(Pool const& pool, ReducedPosition const* places, Vector const& delta,
@@ -88,8 +90,8 @@ struct BodyKernels {
   /// r += M a − f for the arguments u.
   static void add_forces(Pool const& pool, Kept& kept, detail::BodyResidual<T> const& u, Data<T>& data, Vector& r);
 
-  /// `rate` = q˙ = d/dε (q ⊞ ε v) at ε = 0. It equals v if a body has as many coordinates as velocities. Otherwise dual
-  /// numbers in the `workspace` (2 nq + nv) give it.
+  /// `rate` = q˙ = d/dε (q ⊞ ε v) at ε = 0. For a body with as many coordinates as velocities, q˙ = v. For other bodies
+  /// q˙ is computed with dual numbers in `workspace` (2 nq + nv).
   static ReducedPosition const* coordinate_rates(Pool const& pool, ReducedPosition const* places, VecX const& q,
                                                  VecX const& v, VecXOf<Dual<1>>& workspace, VecX& rate);
   /// Velocities v of a rigid motion: v0 (3) at the world's origin [m/s] and `omega` (3) [rad/s], in world axes.
@@ -103,15 +105,15 @@ struct BodyKernels {
   static void load_stiffness(Pool const& pool, Kept& kept, detail::StiffnessAt const& x, Data<double>& data,
                              BlockSink& sink);
   static void add_energy(Pool const& pool, At<double> at, Vec3 const& g, Energy& sum);  ///< [J]
-  /// Power that damping dissipates in the bodies [W], −½ v·(f(q, v) − f(q, −v)). Of the forces f(q, v), elastic ones do
-  /// not depend on v, inertial ones are even in v, and only damping is odd. \param backwards −v
+  /// Power that damping dissipates in the bodies [W], −½ v·(f(q, v) − f(q, −v)). In f(q, v), elastic forces do not
+  /// depend on v and inertial forces are even in v; only damping forces are odd. \param backwards −v
   static double dissipated(Pool const& pool, Kept& kept, At<double> at, VecX const& backwards);
 
  private:
   static constexpr int n = B::element_columns;
   /// Least number of bodies per thread.
   static constexpr Index least_bodies = n == Eigen::Dynamic ? 8 : HasRigidLayout<B> ? 1024 : 32;
-  /// Threads share the bodies of the pool, which have one element each.
+  /// True if threads share the bodies of the pool, which then have one element each.
   static bool shares_bodies(Pool const& pool) { return detail::has_single_elements(pool, 2 * least_bodies); }
   static constexpr bool in_batches = ComparableElements<B> && !TimeVaryingBody<B> && std::same_as<T, double>;
   /// r += M a − f of the elements of one body.
@@ -129,8 +131,8 @@ struct BodyKernels {
   static std::span<T const> velocities(Entry const& e, Vector const& v) {
     return {v.data() + e.v0, std::size_t(e.body.velocities())};
   }
-  /// Calls f(entry, place) for each body with entries of its own in the vectors, which are reduced if `places` is not
-  /// null. Returns the position after the last body.
+  /// Calls f(entry, position) for each body, except bodies that joint coordinates carry in reduced vectors. Vectors are
+  /// reduced if `places` is not null. Returns `places` past the last body.
   template <class F>
   static ReducedPosition const* for_each_place(Pool const& pool, ReducedPosition const* places, F&& f) {
     for (Entry const& e : pool.entries) {

@@ -15,7 +15,7 @@ namespace polybody {
 template <class G, class A, class B>
 concept SameWorld = same_world(A::world, G::world) && same_world(B::world, G::world) && same_world(A::world, B::world);
 
-/// If policy P uses joint coordinates, the free motion of geometry G has such coordinates.
+/// If policy P uses joint coordinates, geometry G provides coordinates of its free motion.
 template <class P, class G>
 concept JointCoordinatesIfRequired = !JointCoordinatePolicy<P> || HasMotions<G>;
 
@@ -28,16 +28,16 @@ template <class P, class G>
 concept EnforceablePair = MeasurableGeometry<P, G> && EnforceableGeometry<P, G> && HolonomicOrConstrained<P, G> &&
                           JointCoordinatesIfRequired<P, G> && LinearIfRequired<P, G>;
 
-/// If policy P uses joint coordinates, they can determine the position of body B: a rigid body or a floating frame.
+/// If policy P uses joint coordinates, body B is a rigid body or a floating frame, whose position they can determine.
 /// `joint_coordinates::ArticulatedBody` supports rigid bodies only.
 template <class P, class B>
 concept CarriableBody =
     !JointCoordinatePolicy<P> || HasRigidLayout<B> ||
     (FloatingFrameBody<B> && !std::is_same_v<P, JointCoordinatesBy<joint_coordinates::ArticulatedBody>>);
 
-/// If policy P eliminates coordinates, it supports those of body B. `JointCoordinates` requires a body with a frame,
-/// and `AncfLinear` requires points that are linear in the coordinates. The ground is always supported, because it has
-/// no coordinates.
+/// If policy P eliminates coordinates, it can eliminate those of body B. `JointCoordinates` requires a body with a
+/// frame, and `AncfLinear` requires points that are linear in the coordinates. The ground is always supported, because
+/// it has no coordinates.
 template <class P, class B>
 concept EliminableBody = std::is_same_v<B, Ground> || (CarriableBody<P, B> && (!LinearPolicy<P> || HasLinearPoints<B>));
 

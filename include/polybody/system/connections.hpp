@@ -1,7 +1,7 @@
 #pragma once
 /// \file
 /// Addition of bodies, joints and forces to a model. These functions depend on the types of a joint or force and of its
-/// bodies, but not on that of the model. A program therefore compiles them once for all models.
+/// bodies, but not on the type of the model. A program therefore compiles them once for all models.
 
 #include <polybody/forces/gravity.hpp>
 #include <polybody/joints/joint.hpp>
@@ -15,7 +15,8 @@
 
 namespace polybody::detail {
 
-/// Counts of a model. A moved-from model has zeros, because its pools are empty.
+/// Numbers of coordinates, equations, markers and bodies of a model. They are zero in a moved-from model, whose pools
+/// are empty.
 struct ModelCounts {
   Index coordinates = 0, velocities = 0, states = 0, rows = 0, markers = 0, jacobian_size = 0, bodies = 0;
 
@@ -55,7 +56,7 @@ struct ModelParts : ModelCounts {
   }
 };
 
-/// Marker with the pool of its body; without a pool for the ground.
+/// Marker with the pool of its body. A marker of the ground has no pool.
 template <class B>
 struct PooledMarker {
   Marker<B> const& marker;
@@ -66,7 +67,8 @@ struct PooledMarker<Ground> {
   Marker<Ground> const& marker;
 };
 
-/// Entry of a handle. \throws InvalidInput for a handle of another model or a default-constructed one.
+/// Returns the entry of the model to which `handle` refers. \throws InvalidInput for a handle of another model or a
+/// default-constructed handle.
 template <class Entries, class Handle>
 auto const& own_entry(Entries const& entries, Handle const& handle) {
   require_filled(handle.model);
@@ -92,7 +94,7 @@ Mat3 reference_axes(PooledMarker<B> const& m) {
     return BodyKernels<B, double>::reference_axes(m.pool, m.marker);
 }
 
-/// First velocity of the marker's body; −1 for the ground.
+/// Index of the first velocity of the marker's body; −1 for the ground.
 template <class B>
 Index first_speed(PooledMarker<B> const& m) {
   if constexpr (std::is_same_v<B, Ground>)
@@ -101,7 +103,7 @@ Index first_speed(PooledMarker<B> const& m) {
     return m.pool.entries[std::size_t(m.marker.body)].v0;
 }
 
-/// Adds a marker at m with the given axes relative to those of m. Returns its number.
+/// Adds a marker at the point of m, with `axes` relative to the axes of m. Returns the number of the new marker.
 template <class B>
 Index publish_at(ModelParts& parts, PooledMarker<B> const& m, Mat3 const& axes) {
   if constexpr (std::is_same_v<B, Ground>)
@@ -111,9 +113,9 @@ Index publish_at(ModelParts& parts, PooledMarker<B> const& m, Mat3 const& axes) 
   return parts.markers++;
 }
 
-/// Linear point of a marker. Writes the indices of the point's first coordinate and velocity to `side`. The ground has
-/// as many dimensions as `other`, the world of the other body.
-/// \throws InvalidInput naming the joint `what` for a point that is not linear in the coordinates.
+/// Returns the linear point of a marker, and writes the indices of its first coordinate and velocity to `side`. A
+/// ground point has two or three dimensions like `other`, the world of the other body. \throws InvalidInput naming the
+/// joint `what` for a point that is not linear in the coordinates.
 template <class B>
 LinearPoint linear_side(PooledMarker<B> const& m, World other, LinearSide& side, std::string const& what) {
   if constexpr (std::is_same_v<B, Ground>) {
@@ -145,7 +147,8 @@ BodyHandle<B> add_body(ModelParts& parts, BodyPool<B>& pool, B const& body, std:
   return {parts.serial(), Index(pool.entries.size()) - 1, std::move(name), pool.entries.shared()};
 }
 
-/// Adds a joint between two markers. \throws InvalidInput naming the joint.
+/// Adds a joint between two markers. \throws InvalidInput if the joint cannot connect these markers; the message names
+/// the joint.
 template <class J, class A, class B>
 [[gnu::cold]] ElementHandle<J> add_joint(ModelParts& parts, Sequence<JointEntry<J>>& pool, J const& joint,
                                          PooledMarker<A> const& a, PooledMarker<B> const& b, std::string name) {
@@ -165,7 +168,7 @@ template <class J, class A, class B>
   require_observed(b.marker, needs_of_second<Requirement>(), name);
   parts.joint_names.require_free(name, "joint");
   parts.origin.change();
-  if constexpr (LinearPolicy<P>) {  // before markers are added, because it may throw
+  if constexpr (LinearPolicy<P>) {  // before markers are added, because this may throw
     LinearConstraints rows{.name = name, .row = parts.rows};
     fill_linear_rows<G>(linear_side(a, B::world, rows.a, name), linear_side(b, A::world, rows.b, name), triad.col(2),
                         rows);
@@ -197,7 +200,8 @@ template <class J, class A, class B>
   return {parts.serial(), Index(pool.size()) - 1, std::move(name)};
 }
 
-/// Adds a force element on the markers. \throws InvalidInput naming it.
+/// Adds a force element on the markers. \throws InvalidInput for invalid parameters or markers; the message names the
+/// force.
 template <class F, class... Bs>
 ElementHandle<F> add_force(ModelParts& parts, Sequence<ForceEntry<F>>& pool, F const& force, std::string name,
                            PooledMarker<Bs> const&... markers) {
@@ -213,7 +217,8 @@ ElementHandle<F> add_force(ModelParts& parts, Sequence<ForceEntry<F>>& pool, F c
   return {parts.serial(), Index(pool.size()) - 1, std::move(name)};
 }
 
-/// Adds a force group with its many markers. \throws InvalidInput naming it.
+/// Adds a force group with its many markers. \throws InvalidInput for invalid parameters or markers; the message names
+/// the group.
 template <class F, class B>
 ElementHandle<F> add_group(ModelParts& parts, Sequence<ForceEntry<F>>& pool, F const& group,
                            Sequence<PooledMarker<B>> const& many, std::string name) {
@@ -233,7 +238,8 @@ ElementHandle<F> add_group(ModelParts& parts, Sequence<ForceEntry<F>>& pool, F c
   return {parts.serial(), Index(pool.size()) - 1, std::move(name)};
 }
 
-/// Adds a contact partner with its law to a force group. \throws InvalidInput naming the group.
+/// Adds a contact partner with its contact law to a force group. \throws InvalidInput for invalid parameters or
+/// markers; the message names the group.
 template <class F, class Law, class B>
 void add_contact_partner(ModelParts& parts, ForceEntry<F>& group, Law const& law, PooledMarker<B> const& one,
                          std::string name) {
@@ -257,20 +263,21 @@ constexpr void require_pairing() {
   static_assert(
       JointCoordinatesIfRequired<P, G>,
       "JointCoordinates needs a joint whose motion has coordinates, such as Revolute, Prismatic, Spherical or "
-      "Universal; a Distance or a Gear has none. Use Constraint for it.");
+      "Universal. A Distance or a Gear has no such coordinates: use Constraint.");
   static_assert(!JointCoordinatePolicy<P> || (EliminableBody<P, A> && EliminableBody<P, B>),
                 "JointCoordinates supports joints between the ground, rigid bodies and floating frames: Rigid<>, Ffr, "
                 "planar::Rigid, planar::Ffr; JointCoordinatesBy<ArticulatedBody> supports rigid bodies only. Use "
                 "another policy for other bodies.");
   static_assert(!LinearPolicy<P> || (EliminableBody<P, A> && EliminableBody<P, B>),
                 "AncfLinear needs markers that are linear in the coordinates, such as those of ANCF bodies and the "
-                "ground; Rigid, Ffr and spatial Lrvf are not. Use Constraint there.");
+                "ground. Markers of Rigid, Ffr and spatial Lrvf are not linear: use Constraint for them.");
   static_assert(LinearIfRequired<P, G>,
                 "AncfLinear supports Spherical, Revolute and Weld; other joints are not linear in the coordinates.");
   static_assert(
       SufficientFirstMarker<J, A> && SufficientSecondMarker<J, B>,
       "This joint needs a marker with axes, but this body provides only a point or a tangent. Use a joint that needs "
-      "less, such as Spherical. A cable is clamped by a Revolute about its tangent, with the cable's marker second.");
+      "only points, such as Spherical. To clamp a cable, use a Revolute about its tangent, with the cable's marker "
+      "second.");
 }
 
 }  // namespace polybody::detail

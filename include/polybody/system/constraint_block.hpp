@@ -12,9 +12,9 @@ namespace polybody {
 template <StateScalar T = double>
 struct ConstraintSide {
   Index marker = -1;       ///< number of the marker; −1 if the map multiplies velocities
-  Index first = 0;         ///< first of these velocities
+  Index first = 0;         ///< index of the first of these velocities
   Index columns = 0;       ///< columns of the map: six for a marker, zero for an end that is fixed to the ground
-  T const* map = nullptr;  ///< (rows × columns) derivative of ġ by the twist or velocities, column-major
+  T const* map = nullptr;  ///< (rows × columns) derivative of ġ with respect to twist or velocities, column-major
 };
 
 /// Source of constraint equations.
@@ -26,14 +26,14 @@ enum class ConstraintSource : unsigned char {
 };
 
 /// Constraint equations of one source, ġ = a.map · (twist or velocities of a) + b.map · (…) + rate. A linear joint may
-/// have more than six equations, other sources have up to six.
+/// have more than six equations; other sources have up to six equations.
 template <StateScalar T = double>
 struct ConstraintBlock {
   ConstraintSource source = ConstraintSource::joint;  ///< type of the source
-  bool opposite = false;                              ///< both ends are markers, and the map of b is that of a times −1
+  bool opposite = false;                              ///< true if both ends are markers, and b.map = −a.map
   Index row = -1;                                     ///< first equation in the model; −1 for a compliant joint
   int rows = 0;                                       ///< number m of equations
-  int positions = 0;                 ///< for a linear joint: number of position equations, which are the first ones
+  int positions = 0;                 ///< for a linear joint: number of position equations, which come first
   Index owner = 0;                   ///< position of the body or joint in the model's layout
   ConstraintSide<T> a = {}, b = {};  ///< its two ends
   T const* g = nullptr;              ///< (m) constraint violation
@@ -44,7 +44,7 @@ struct ConstraintBlock {
   T const* multiplier(VecXOf<T> const& lambda) const { return row >= 0 ? lambda.data() + row : answer; }
 };
 
-/// Wrench of a force element on a marker, about its origin, in world axes.
+/// Wrench of a force element on a marker, about the marker's origin, in world axes.
 template <StateScalar T = double>
 struct AppliedWrench {
   Index source = 0;  ///< position of the force element in the model's layout

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
 /// Maps between the unknowns of a time step (reduced vectors) and those of the model (full vectors) if policies
-/// eliminate unknowns: v = T u, v̇ = T u̇ + b. The maps are a table of functions, so that programs without such
-/// policies do not compile them.
+/// eliminate unknowns: v = T u, v̇ = T u̇ + b. The maps are a table of functions; programs without these policies do
+/// not compile them.
 
 #include <polybody/math/block_sink.hpp>
 #include <polybody/math/sequence.hpp>
@@ -15,33 +15,34 @@ namespace polybody {
 struct ReducedLayout {
   /// Sizes of reduced vectors; velocities include first-order states.
   Index coordinates = 0, velocities = 0, rows = 0;
-  Sequence<Index> nonholonomic_equations = {};  ///< numbers among the reduced equations
+  Sequence<Index> nonholonomic_equations = {};  ///< indices among the reduced constraint equations
   Sequence<ReducedPosition> places = {};        ///< positions of the bodies, in the order of the model's layout
-  /// Full velocity of each reduced one. For a joint coordinate it is the first velocity of the body that the joint
-  /// moves.
+  /// Index of the full velocity for each reduced velocity. For a joint coordinate, this is the first velocity of the
+  /// body that the joint moves.
   Sequence<Index> full_velocity = {};
-  Sequence<Index> remaining_equations = {};  ///< numbers in the model of the equations of a step
+  Sequence<Index> remaining_equations = {};  ///< indices, in the model, of the constraint equations of a step
   /// Position of a rotation of a joint in reduced vectors.
   struct Turn {
-    Index q, v;                     ///< its first coordinate and velocity
-    Index coordinates, velocities;  ///< its numbers of coordinates and velocities
+    Index q, v;                     ///< indices of its first coordinate and velocity
+    Index coordinates, velocities;  ///< numbers of its coordinates and velocities
   };
   Sequence<Turn> turns = {};  ///< all motions of joints except translations
-  /// Numbers in the model of the equations of joints with joint coordinates that the linear system still contains. A
-  /// step may store estimates of their multipliers after the multipliers of its own equations. The estimates do not
-  /// affect the motion; they make the residual of the full model almost zero.
+  /// Indices, in the model, of constraint equations that joint coordinates eliminate but the linear system contains. A
+  /// step may store estimates of their multipliers after the multipliers of the remaining equations. The estimates do
+  /// not affect the motion; they make the residual of the full model almost zero.
   Sequence<Index> eliminated_equations = {};
-  std::vector<std::string> redundant = {};  ///< joints with redundant linear constraint equations
+  std::vector<std::string> redundant = {};  ///< names of joints with redundant linear constraint equations
 
-  Index equations = 0;            ///< number of unknowns of the linear system, which may differ from that of a step
-  Index equation_velocities = 0;  ///< number of velocities among them, which are the first ones
-  /// Full unknown of each unknown of the linear system; empty if these are the unknowns of a step.
+  Index equations = 0;            ///< number of unknowns of the linear system; may exceed that of a step
+  Index equation_velocities = 0;  ///< number of velocities among these unknowns; velocities come first
+  /// Index of the full unknown for each unknown of the linear system; empty if the system has the unknowns of a step.
   Sequence<Index> full_unknown = {};
-  bool solves_by_bodies = false;       ///< the articulated-body algorithm solves the linear system
-  bool moves_by_newton_euler = false;  ///< bodies of the tree have no elastic or other own forces
-  bool keeps_mass_constant = false;    ///< T is constant
+  bool solves_by_bodies = false;       ///< true if the articulated-body algorithm solves the linear system
+  bool moves_by_newton_euler = false;  ///< true if bodies of the tree have no elastic or other own forces
+  bool keeps_mass_constant = false;    ///< true if T is constant
 
-  /// Computes the `full` multipliers from those `of_step`. Eliminated equations without an estimate get zero.
+  /// Computes the `full` multipliers from the multipliers `of_step`. Multipliers of eliminated equations without an
+  /// estimate are set to zero.
   template <StateScalar T>
   void expand_rows(VecXOf<T> const& of_step, VecXOf<T>& full) const {
     for (Index i = 0; i < full.size(); ++i) full[i] = T(0.0);
@@ -62,19 +63,19 @@ struct StepPosition {
   VecX const &a, &lambda;  ///< v̇ (nv) and λ (rows), reduced
 };
 
-/// Maps between reduced and full vectors of the scalar T. `c` is the elimination that provides them.
+/// Maps between reduced and full vectors of the scalar T. The argument `c` is the object that eliminates unknowns.
 template <StateScalar T>
 struct CoordinateMapOperations {
   using Vector = VecXOf<T>;  ///< coordinates, velocities or constraint equations
 
-  /// Full q, v from reduced ones. The other functions use the positions of this call.
+  /// Computes full q and v from reduced q and v. The other functions refer to this state.
   void (*expand)(void* c, Vector const& q, Vector const& v, Vector& full_q, Vector& full_v) = nullptr;
-  /// out = T u, with `bias` T u + b.
+  /// out = T u, or T u + b if `bias` is true.
   void (*expand_rates)(void* c, Vector const& u, bool bias, Vector& out) = nullptr;
   /// out = Tᵀ r. Stores a copy of r for `recover_multipliers`, then overwrites r.
   void (*reduce)(void* c, Vector& r, Vector& out) = nullptr;
-  /// Corrects the estimates `lambda` of the multipliers of eliminated joints, so that they balance the r of the last
-  /// `reduce`. That r = M a − f + Gᵀλ contains the same estimates.
+  /// Corrects the estimates `lambda` of the multipliers of eliminated joints, so that they balance the residual r of
+  /// the last `reduce`. This residual r = M a − f + Gᵀλ must contain the same estimates.
   void (*recover_multipliers)(void* c, Data<T> const& data, Vector& lambda) = nullptr;
   /// out = q ⊞ δ for joint coordinates only.
   void (*plus)(void* c, Vector const& q, Vector const& delta, Vector& out) = nullptr;
@@ -84,7 +85,7 @@ struct CoordinateMapOperations {
 
 /// Additional functions for reduced coordinates in doubles.
 struct CoordinateOperations : CoordinateMapOperations<double> {
-  /// `rate` = q˙ of joint coordinates.
+  /// `rate` = q˙, for joint coordinates only.
   void (*coordinate_rates)(void* c, VecX const& q, VecX const& v, VecX& rate) = nullptr;
   /// out = reduced state nearest to the full state x; exact if x satisfies the equations of the eliminated joints.
   void (*reduced)(void* c, State const& x, State& out) = nullptr;
@@ -94,16 +95,18 @@ struct CoordinateOperations : CoordinateMapOperations<double> {
   /// Allocates storage for `freeze`.
   FrozenState (*make_frozen_state)(void* c) = nullptr;
   void (*freeze)(void* c, void* frozen) = nullptr;  ///< copies the state of the last `expand` to `frozen`
-  /// out = right-hand side of the linear system from that of a step, at the state `frozen`.
+  /// Computes the right-hand side `out` of the linear system from the right-hand side `rhs` of a step, at the state
+  /// `frozen`.
   void (*to_equations)(void* c, void* frozen, VecX const& rhs, VecX& out) = nullptr;
   /// out = unknowns of the step from a solution of the linear system, at the state `frozen`.
   void (*from_equations)(void* c, void* frozen, VecX const& solution, VecX& out) = nullptr;
   /// For `eliminated_equations`: writes −r of the full model to the right-hand side `out` of the linear system.
   void (*balance_to_equations)(void* c, VecX const& r, VecX& out) = nullptr;
-  /// For `eliminated_equations`: writes the equations of a step to the right-hand side `out` of the linear system.
+  /// For `eliminated_equations`: copies the right-hand sides `rows` of the constraint equations of a step to `out`, the
+  /// right-hand side of the linear system.
   void (*rows_to_equations)(void* c, double const* rows, VecX& out) = nullptr;
-  /// For `eliminated_equations`: out = unknowns of the step from a solution of the linear system, at the state of the
-  /// last `expand`, followed by the multipliers of the eliminated equations.
+  /// For `eliminated_equations`: computes the unknowns of the step from a solution of the linear system, at the state
+  /// of the last `expand`. The multipliers of the eliminated equations follow them in `out`.
   void (*correction_from_equations)(void* c, VecX const& solution, VecX& out) = nullptr;
   /// Articulated-body algorithm, without constraint equations: out = u̇ under gravity only, or for the residual
   /// `residual` of the full model. Returns −1, or a velocity without inertia.
@@ -127,11 +130,11 @@ struct CoordinatesOf {
   using Table = std::conditional_t<std::same_as<T, double>, CoordinateOperations, CoordinateMapOperations<T>>;
 
   std::shared_ptr<void> self;                                    ///< elimination, the argument `c` of the functions
-  Table const* entries = nullptr;                                ///< functions; null if nothing is eliminated
+  Table const* entries = nullptr;                                ///< functions; null if no unknowns are eliminated
   std::shared_ptr<ReducedLayout const> reduced;                  ///< sizes and positions in reduced vectors
   explicit operator bool() const { return entries != nullptr; }  ///< true if a policy eliminates unknowns
 };
 
-using Coordinates = CoordinatesOf<double>;  ///< for doubles
+using Coordinates = CoordinatesOf<double>;  ///< reduced coordinates in doubles
 
 }  // namespace polybody

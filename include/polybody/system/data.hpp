@@ -16,7 +16,7 @@ namespace polybody {
 /// different settings do not link.
 struct Build {
   int simd = simd_size;                   ///< numbers in a SIMD vector
-  int alignment = EIGEN_MAX_ALIGN_BYTES;  ///< of fixed-size matrices [bytes]
+  int alignment = EIGEN_MAX_ALIGN_BYTES;  ///< alignment of fixed-size matrices [bytes]
 };
 
 /// Arrays of an evaluation: markers, Jacobians, constraint blocks, applied wrenches. They are allocated once for a
@@ -25,26 +25,26 @@ template <StateScalar T = double, Build build = Build{}>
 struct Data {
   Sequence<MarkerKinematics<T>> markers;  ///< kinematics of each marker
   Sequence<T> jacobians;                  ///< storage of the dense Jacobians
-  Sequence<ConstraintBlock<T>> rows;      ///< one for each joint and each body with own constraint equations
-  Sequence<AppliedWrench<T>> actions;     ///< one for each marker of each force element
+  Sequence<ConstraintBlock<T>> rows;      ///< constraint blocks of all joints, and of bodies with own equations
+  Sequence<AppliedWrench<T>> actions;     ///< wrenches: one for each marker of each force element
   Sequence<T> states, rates;              ///< first-order states z of force elements, and ż
-  Index first_state = 0;                  ///< index of the first one among the velocities
+  Index first_state = 0;                  ///< index of the first state z among the velocities
 
   Sequence<Wrench<double>> loads;             ///< wrench of each marker in r, for the second-order terms of the tangent
   Sequence<Mat<double, 6, 6>> own_stiffness;  ///< for each marker of the largest force group
-  Sequence<double> scratch;                   ///< for projected blocks: n×18 and n×n of the widest marker
+  Sequence<double> scratch;                   ///< for projected blocks, n×18 and n×n; n: columns of the widest marker
 
   bool linear_rows = true;  ///< if false, linear joints and markers of linear joints only are omitted
-  Sequence<char> read;      ///< for each marker: it belongs to a force element or a joint that is not linear
+  Sequence<char> read;      ///< for each marker: nonzero if it belongs to a force element or a nonlinear joint
 
   Workers* workers = nullptr;         ///< threads that share the loops; null for one thread
   Sequence<T> element_forces;         ///< with workers: forces of all elements of a body, added later in fixed order
   Sequence<double> element_tangents;  ///< with workers: tangents of the elements, added later in fixed order
-  /// With workers: wrenches of a part of a force group on its contact partners, added later in fixed order.
+  /// With workers: wrenches on contact partners from one part of a force group. They are added later in fixed order.
   struct alignas(64) Opposite {
     Sequence<AppliedWrench<T>> actions;  ///< wrenches of one part
   };
-  Sequence<Opposite> opposite;                 ///< one for each thread
+  Sequence<Opposite> opposite;                 ///< arrays of wrenches, one for each thread
   static constexpr Index least_elements = 32;  ///< least number of elements per thread
   static constexpr Index least_pairs = 32;     ///< least number of the many markers of a group per thread
   static constexpr Index least_batches = 16;   ///< least number of SIMD vectors of elements per thread
@@ -58,9 +58,9 @@ struct Data {
   Data(Data&&) = default;             ///< moves the arrays; pointers into them stay valid
   Data& operator=(Data&&) = default;  ///< moves the arrays; pointers into them stay valid
 
-  /// Number of the unknown λ_i for `i`, after all velocities.
+  /// Index of the multiplier λ_i, `i`, among the unknowns, which begin with all velocities.
   Index unknown_of_row(Index i) const { return first_state + Index(states.size()) + i; }
-  /// The evaluation omits this block: it belongs to a linear joint, and `linear_rows` is false.
+  /// True if the evaluation omits this block: it belongs to a linear joint, and `linear_rows` is false.
   bool leaves_out(ConstraintBlock<T> const& block) const {
     return block.source == ConstraintSource::linear && !linear_rows;
   }

@@ -5,15 +5,15 @@
 
 namespace polybody {
 
-/// Dense matrix [TᵀKT, (G T)ᵀ; G T, 0] with the remaining constraint equations. It receives the blocks of
-/// [K, Gᵀ; G, 0]. A template, so that it is compiled only if used.
+/// Dense matrix [TᵀKT, (G T)ᵀ; G T, 0] for the reduced velocities u (v = T u) and the remaining constraint equations.
+/// It is assembled from the blocks of [K, Gᵀ; G, 0]. As a template, the class is compiled only if it is used.
 template <class T = double>
 class DenseReductionOf {
  public:
   DenseReductionOf() = default;
   /// \param full_velocities number of velocities of the model \param velocities number of velocities of a step
-  /// \param rows number of constraint equations of a step \param row_of number of each equation of the model among
-  /// these; −1 if it is eliminated
+  /// \param rows number of constraint equations of a step \param row_of index of each equation of the model among the
+  /// equations of a step; −1 if it is eliminated
   DenseReductionOf(Index full_velocities, Index velocities, Index rows, Sequence<Index> row_of)
       : row_of_(std::move(row_of)),
         velocities_(full_velocities),
@@ -31,7 +31,8 @@ class DenseReductionOf {
     k_.setZero();
     g_.setZero();
   }
-  /// Adds block b of the full matrix with its first entry at (row, col). Blocks of Gᵀ are ignored; G gives them.
+  /// Adds block b of the full matrix with its first entry at (row, col). Blocks of Gᵀ are ignored, because blocks of G
+  /// have the same entries.
   void add(Index row, Index col, BlockView const& b) {
     if (col >= velocities_) return;  // block of Gᵀ
     for (Index i = 0; i < b.rows; ++i) {
@@ -64,6 +65,6 @@ class DenseReductionOf {
   VecXOf<T> half_;
 };
 
-using DenseReduction = DenseReductionOf<>;  ///< for doubles
+using DenseReduction = DenseReductionOf<>;  ///< dense reduction of doubles
 
 }  // namespace polybody

@@ -19,14 +19,15 @@ concept OneRotationFree = HasFreeDirections<G> && !G::free[3] && !G::free[4] && 
 template <class G>
 concept RotationDrive = HasRotationAxis<G> && requires(G g) { g.law; };
 
-/// Pins (joints with one free rotation) and driving constraints between rigid bodies. A drive about an axis that
-/// differs from that of a pin contradicts the pin.
+/// Pins (joints with one free rotation) and driving constraints between rigid bodies. A driving constraint and a pin
+/// with different axes contradict each other.
 class DriveAxes {
  public:
-  /// Adds a drive if `drives`, otherwise a pin. \param bodies first velocities of both bodies, −1 for the ground
-  /// \param axis (3) unit vector in world axes of the reference state \param name name of the joint
-  /// \throws InvalidInput naming both joints if a drive and a pin between the same bodies have different axes.
-  template <class = void>  // compiled only if used
+  /// Adds a driving constraint if `drives` is true, otherwise a pin. \param bodies indices of the first velocities of
+  /// both bodies; −1 for the ground \param axis (3) unit vector in world axes of the reference state \param name name
+  /// of the joint \throws InvalidInput if a driving constraint and a pin between the same bodies have different axes;
+  /// the message names both joints.
+  template <class = void>  // a template, to be compiled only if it is used
   [[gnu::cold]] void add(bool drives, std::pair<Index, Index> bodies, Vec3 const& axis, std::string const& name) {
     if (bodies.first > bodies.second) std::swap(bodies.first, bodies.second);
     for (Turn const& other : turns_[drives ? 0 : 1]) {
@@ -37,14 +38,14 @@ class DriveAxes {
           "drive.axis",
           {"\"", ErrorObject{drive.name}, "\" drives a rotation about ", text(drive.axis), ", but \"", pin.name,
            "\" allows only a rotation about ", text(pin.axis),
-           " between these bodies (world axes at the reference configuration). Give the drive the axis of the pin."});
+           " between these bodies (world axes in the reference configuration). Use the same axis for both."});
     }
     turns_[drives ? 1 : 0].push_back({bodies, axis, name});
   }
 
  private:
   struct Turn {
-    std::pair<Index, Index> bodies;  ///< first velocities of the bodies; −1 for the ground
+    std::pair<Index, Index> bodies;  ///< indices of the bodies' first velocities; −1 for the ground
     Vec3 axis;
     std::string name;
   };

@@ -14,7 +14,7 @@ namespace polybody {
 /// Marker of a body with a floating frame, with erased body type. \tparam T scalar of the body's coordinates
 template <class T = double>
 struct FloatingEndOf {
-  /// Evaluates the marker of `end` for a body with coordinates q and velocities v, both of the body alone.
+  /// Function that evaluates the marker of `end`. q and v are the coordinates and velocities of its body only.
   using Publish = void (*)(FloatingEndOf const& end, T const* q, T const* v, MarkerKinematics<T>& out);
 
   Publish evaluate_marker = nullptr;             ///< function for the types of `body` and `point`
@@ -23,13 +23,13 @@ struct FloatingEndOf {
   RigidLayout layout = RigidLayout::quaternion;  ///< coordinates of the floating frame
   Index q0 = 0, v0 = 0;                          ///< first coordinate and velocity of the body in full vectors
   Index deformations = 0;                        ///< number of deformation coordinates, after those of the frame
-  Index first_column = 0;                        ///< its first column in `TreeStateOf::columns`
+  Index first_column = 0;                        ///< index of its first deformation column in `TreeStateOf::columns`
 
   /// Number of coordinates of the floating frame: (x, y, angle), or position and quaternion.
   Index frame_coordinates() const { return layout == RigidLayout::plane ? 3 : 7; }
-  /// Number of velocities of the floating frame, which are the first ones of the body.
+  /// Number of velocities of the floating frame. They precede the deformation rates of the body.
   Index frame_velocities() const { return layout == RigidLayout::plane ? 3 : 6; }
-  /// Enlarges the arrays of a tree's state for its ends: `columns`, q and v of a body, `jacobian`.
+  /// Enlarges the arrays of a tree's state as this end requires: `columns`, q and v of a body, `jacobian`.
   template <class Columns, class Numbers>
   void make_room(Columns& columns, Numbers& q, Numbers& v, Numbers& jacobian) const {
     std::size_t const velocities = std::size_t(frame_velocities() + deformations);
@@ -41,7 +41,7 @@ struct FloatingEndOf {
   /// Index of the first deformation rate in full velocities.
   Index first_rate() const { return v0 + frame_velocities(); }
 };
-using FloatingEnd = FloatingEndOf<>;  ///< for doubles
+using FloatingEnd = FloatingEndOf<>;  ///< end with coordinates in doubles
 
 namespace detail {
 
@@ -59,16 +59,16 @@ template <class T>
 T within_a_turn(T const& x) {
   return x + (within_a_turn(value_of(x)) - value_of(x));
 }
-/// Rotation of a marker's section relative to the floating frame at `angle` [rad], in the plane. It is small, because
-/// it is due to deformation. \param a (3×3) axes of the marker
+/// Rotation [rad] of a marker's section relative to a planar floating frame that is rotated by `angle` [rad]. It is
+/// between −π and π, because deformations are small. \param a (3×3) axes of the marker
 template <class T>
 T bent_by(FloatingEndOf<T> const& end, Mat<T, 3, 3> const& a, T angle) {
   using std::atan2;
   Mat<T, 3, 3> const section = product<T, 3>(a, in_scalar<T>(transposed<double>(end.axes)));
   return within_a_turn(atan2(section(1, 0), section(0, 0)) - angle);
 }
-/// Column of a motion with the translation `slide` at r and the rotation `turn`, about the world's origin.
-/// `finish_columns` moves it to the body's origin.
+/// Jacobian column of a motion with the translation `slide` at r and the rotation `turn`, referred to the world's
+/// origin. `finish_columns` refers it to the body's origin.
 template <class T>
 Vec<T, 6> column_from(Vec<T, 3> const& r, Vec<T, 3> const& slide, Vec<T, 3> const& turn) {
   Vec<T, 3> const carried = cross<T>(r, turn);

@@ -7,7 +7,7 @@
 
 namespace polybody::detail {
 
-/// Frames of the markers with the numbers `at`.
+/// Frames of the markers with the indices `at`.
 template <std::size_t n, StateScalar T>
 std::array<Frame<T>, n> frames_at(std::array<Index, n> const& at, Data<T> const& data) {
   std::array<Frame<T>, n> frames;
@@ -28,8 +28,9 @@ struct GradientAt {
   TangentCoefficients const& c;
 };
 
-/// Adds −scale · (ck ∂w/∂pose + cd ∂w/∂twist) to `sink`. Blocks that couple the bodies are omitted if the law permits
-/// it, except with `c.full` or `c.exact`. With `c.full` the wrenches are also added to data.loads.
+/// Adds −scale · (ck ∂w/∂pose + cd ∂w/∂twist) of the wrenches w of a law to `sink`. Blocks that couple the bodies are
+/// omitted if the law permits this and neither `c.full` nor `c.exact` is true. With `c.full` the wrenches are also
+/// added to data.loads.
 template <class L>
 void add_gradient(L const& law, std::array<Index, L::markers> const& at, GradientAt const& x, Data<double>& data,
                   BlockSink& sink) {
@@ -48,8 +49,8 @@ void add_gradient(L const& law, std::array<Index, L::markers> const& at, Gradien
   if (x.c.full) add_loads(law.template wrenches<double>(frames, x.t), at, x.scale, data);
 }
 
-/// Overload for a force element with first-order states z, wrenches w, rates h and frames x: blocks −Jᵀ ∂w/∂x J,
-/// −Jᵀ ∂w/∂z, −∂h/∂x J and cm − ∂h/∂z, each with its coefficient.
+/// Overload for a force element with first-order states z, wrenches w, rates h and frames x. It adds the blocks −Jᵀ
+/// ∂w/∂x J, −Jᵀ ∂w/∂z, −∂h/∂x J and cm − ∂h/∂z, each with its coefficient.
 template <HasStates F>
 void add_gradient(ForceEntry<F> const& e, GradientAt const& x, Data<double>& data, BlockSink& sink) {
   constexpr int n = F::markers, m = F::states, first = 6 * n, size = first + m;
@@ -84,8 +85,9 @@ void add_gradient(ForceEntry<F> const& e, GradientAt const& x, Data<double>& dat
     add_loads(AtStates<F, double>{e.force, z}.template wrenches<double>(frames, x.t), e.markers, x.scale, data);
 }
 
-/// Adds the stiffness of each marker of a pair with respect to its own motion to `to`. If permitted, the law's
-/// approximate `own_stiffness` replaces the exact one. With `c.full` the wrenches are also added to data.loads.
+/// Adds to `to`, for each marker of a pair, the stiffness with respect to its own motion. If `c.surrogate_friction` is
+/// true, the law's approximate `own_stiffness` replaces the exact stiffness. With `c.full` the wrenches are also added
+/// to data.loads.
 template <class L>
 void add_own_stiffness(L const& law, std::array<Index, 2> const& at, GradientAt const& x, Data<double>& data,
                        std::array<Mat<double, 6, 6>*, 2> const& to) {

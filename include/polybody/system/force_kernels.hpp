@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Loops over all force elements of one type in a model. They depend on the type of the force, but not on that of the
-/// model (compare body_kernels.hpp).
+/// Loops over all force elements of one type in a model. The loops depend on the type of the force, but not on the type
+/// of the model (compare body_kernels.hpp).
 
 #include <concepts>
 
@@ -15,7 +15,8 @@ namespace polybody {
 namespace detail {
 
 /// Calls visit(force, markers, at) for an entry's force element at its present states, or for each pair of a group that
-/// may interact in the present positions. `markers` are numbers within the entry, `at` numbers in the model.
+/// may interact in the present positions. `markers` are marker indices within the entry, `at` marker indices in the
+/// model.
 template <class F, StateScalar T, class Visit>
 void for_each_action(ForceEntry<F> const& e, Data<T> const& data, Visit&& visit) {
   if constexpr (ForceGroup<F>) {
@@ -43,10 +44,10 @@ double power_of(std::array<Wrench<double>, n> const& w, std::array<Frame<double>
   return sum;
 }
 
-// The following functions evaluate one force element, or one pair of a group under its law. They do not depend on the
-// group, so groups with the same law share them.
+// The following functions evaluate one force element, or one pair of a group under its law. These functions do not
+// depend on the group, so groups with the same law share them.
 
-/// Adds the wrenches to those in `to`.
+/// Evaluates the wrenches and adds them to `to`.
 template <class L, StateScalar T>
 void add_wrenches(L const& law, std::array<Index, L::markers> const& at, double t, Data<T> const& data,
                   std::array<AppliedWrench<T>*, L::markers> const& to) {
@@ -58,7 +59,7 @@ void add_wrenches(L const& law, std::array<Index, L::markers> const& at, double 
     }
 }
 
-/// True if all wrenches of F have a potential; for a group, if all its laws have one.
+/// True if all wrenches of F have a potential. For a group, true if all its laws have a potential.
 template <class F>
 constexpr bool stores() {
   if constexpr (HasStates<F>)
@@ -76,9 +77,9 @@ double potential_of(L const& law, std::array<Index, L::markers> const& at, doubl
     return 0.0;
 }
 
-/// Adds the power of the wrenches to p. With a potential, the wrenches at zero velocity change the stored energy, and
-/// the remaining part dissipates energy. The potential is assumed to depend on the frames only. Without a potential,
-/// the power is counted as that of loads.
+/// Adds the power of the wrenches to p. If the law has a potential, the wrenches at zero velocity change the stored
+/// energy, and the remaining part of the wrenches dissipates energy. The potential is assumed to depend on the frames
+/// only. If the law has no potential, its power is counted as power of loads.
 template <class L>
 void add_power(L const& law, std::array<Index, L::markers> const& at, double t, double scale, Data<double> const& data,
                Powers& p) {
@@ -101,16 +102,17 @@ struct ForceKernels {
   using Entry = detail::ForceEntry<F>;  ///< a force element with its markers
   using Pool = Sequence<Entry>;         ///< force elements of this type in a model
 
-  /// Appends positions and names to `out`.
+  /// Appends positions and names of the force elements to `out`.
   [[gnu::cold]] static void describe(Pool const& pool, ModelLayout& out);
-  /// Appends an applied wrench for each marker and enlarges the workspace. \param owner position of the first force
+  /// Appends an applied wrench for each marker and enlarges the workspace. \param owner position of the first force in
+  /// the layout
   [[gnu::cold]] static void place(Pool const& pool, Index owner, Data<T>& data);
   /// Writes all wrenches from `next` on, and the rates of the states. Returns the end of the wrenches.
   static AppliedWrench<T>* push(Pool const& pool, double t, Data<T>& data, AppliedWrench<T>* next);
 
   /// Writes the unit mass of each first-order state. \param first index of the first state of the model
   static void masses(Pool const& pool, Index first, BlockSink& sink);
-  /// ck K + cd D at t [s], with blocks between all velocities of an element's markers. Loads are multiplied by
+  /// Writes ck K + cd D at t [s], with blocks between all velocities of an element's markers. Loads are multiplied by
   /// `load_factor`.
   static void tangents(Pool const& pool, double t, double load_factor, TangentCoefficients const& c, Data<double>& data,
                        BlockSink& sink);
@@ -120,14 +122,15 @@ struct ForceKernels {
   static void add_powers(Pool const& pool, double t, double load_factor, Data<double> const& data, Powers& p);
 
  private:
-  /// Wrenches of a group, divided among threads by its many markers. Wrenches on contact partners are stored for each
-  /// part and then added in the order of a single thread, so that the sums are bitwise identical.
+  /// Evaluates the wrenches of a group in several threads, each of them for a part of the many markers. Wrenches on
+  /// contact partners are stored for each part and then added in the order of a single thread, so that the sums are
+  /// bitwise identical.
   static void add_forces_in_parts(Entry const& e, double t, Data<T>& data, AppliedWrench<T>* actions);
-  /// Writes the stiffness of each marker of a group with respect to its own motion; zero without interaction. A law's
-  /// approximate `own_stiffness` replaces the exact one if permitted.
+  /// Writes the stiffness of each marker of a group with respect to its own motion; zero without interaction. If
+  /// `surrogate_friction` is true, a law's approximate `own_stiffness` replaces the exact stiffness.
   static void group_tangent(Entry const& e, detail::GradientAt const& x, Data<double>& data, BlockSink& sink);
   /// Writes the exact tangent of a group, with blocks for all pairs that can ever interact, or for the selected
-  /// `TangentCoefficients::pairs`. Blocks are zero without interaction.
+  /// `TangentCoefficients::pairs`. Blocks of pairs without interaction are zero.
   static void coupled_tangent(Entry const& e, detail::GradientAt const& x, Data<double>& data, BlockSink& sink);
 };
 

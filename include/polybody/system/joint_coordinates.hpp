@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Joint coordinates of a `JointTree`: computation from full coordinates, retraction and rates. A carried body has the
-/// coordinates of its joint's motions, followed by those of its deformation.
+/// Joint coordinates of a `JointTree`: computation from full coordinates, increments (⊞) and rates. A carried body has
+/// the coordinates of its joint's motions, followed by those of its deformation.
 
 #include <polybody/system/joint_tree.hpp>
 
@@ -90,7 +90,7 @@ void read_coordinates(JointTreeOf<T> const& tree, VecXOf<T> const& q, VecXOf<T> 
                    : detail::first_turn<T>(m.axis, turned, k + 1 < body.motions.count, body.motions, k);
           turned = product<T>(detail::turn_about<T>(m.axis, -*x), turned);
           break;
-        case JointMotion::Kind::screw: {  // the translation gives the number of full turns
+        case JointMotion::Kind::screw: {  // the translation determines the number of full turns
           double const rest = detail::first_turn<T>(m.axis, turned, false, body.motions, k),
                        full = 2.0 * std::numbers::pi;
           *x = rest + full * std::round((d[m.axis] / m.pitch - rest) / full);

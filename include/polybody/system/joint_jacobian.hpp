@@ -11,7 +11,7 @@ namespace polybody::detail {
 
 /// Moves `run` by one joint motion and appends its columns to f.s. The columns refer to the world's origin until
 /// `finish_columns`, because the position of the body is not yet known.
-/// \param sign −1 from frame b to frame a \param x, u coordinates and velocities of the motion
+/// \param sign 1 from frame a to frame b; −1 from b to a \param x, u coordinates and velocities of the motion
 template <class T>
 void move(JointMotion const& m, double sign, T const* x, T const* u, RunnerOf<T>& run, TreeFrameOf<T>& f) {
   Vec<T, 3> const none(0, 0, 0), n(sign * run.A(0, m.axis), sign * run.A(1, m.axis), sign * run.A(2, m.axis));

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Loops over all joints of one type in a model. They depend on the type of the joint, but not on that of the model
-/// (compare body_kernels.hpp).
+/// Loops over all joints of one type in a model. The loops depend on the type of the joint, but not on the type of the
+/// model (compare body_kernels.hpp).
 
 #include <new>
 
@@ -14,7 +14,7 @@
 
 namespace polybody {
 
-/// Rate ġ = Ga Va + Gb Vb + Φ_t of a constraint function between two frames.
+/// Rate ġ = Ga Va + Gb Vb + Φ_t of a constraint function between two frames a and b with the twists Va and Vb.
 template <int m, StateScalar T>
 Vec<T, m> constraint_rate(ConstraintTerms<m, T> const& terms, Frame<T> const& a, Frame<T> const& b) {
   Vec<T, 6> const va = twist(a), vb = twist(b);
@@ -61,7 +61,7 @@ void add_loads(std::array<Wrench<double>, n> const& w, std::array<Index, n> cons
 
 template <class L>
 inline constexpr bool law_has_potential = requires(L const& law) { law.potential(0.0); };
-/// True if every law of a bushing has a potential. Other policies have one by their concept.
+/// True if every law of a bushing has a potential. Other policies always have a potential.
 template <class P>
 constexpr bool has_potential() {
   if constexpr (requires(P const& p) { std::get<0>(p.laws); })
@@ -72,7 +72,8 @@ constexpr bool has_potential() {
     return true;
 }
 
-/// λ(g, 0) of the laws of a bushing without a potential; zero for all others.
+/// λ(g, 0) of those laws of a bushing that have no potential; zero for other laws and policies. \param rest λ(g, 0) of
+/// all
 template <class P, int m>
 Vec<double, m> rest_without_potential(P const& policy, Vec<double, m> rest) {
   if constexpr (requires { std::get<0>(policy.laws); })
@@ -123,8 +124,8 @@ void add_rate_slopes(J const& joint, ConstraintTerms<J::rows, double> const& ter
       for (int j = 0; j < 12; ++j) s(j, k) += (j < 6 ? terms.Ga(i, j) : terms.Gb(i, j - 6)) * answer;
     }
 }
-/// Adds ck/cd ∂ġ/∂(poses) to G in the n nonholonomic equations, which are the last ones of the joint. \param row first
-/// of them in the matrix
+/// Adds ck/cd ∂ġ/∂(poses) to G in the n nonholonomic equations, which are the last equations of the joint. \param row
+/// index of the first of these equations in the matrix
 template <int n, int m>
 void add_velocity_rows(Mat<double, m, 12> const& rates, std::array<MarkerKinematics<double> const*, 2> const& markers,
                        StiffnessAt const& x, Index row, Sequence<double>& scratch, BlockSink& sink) {
@@ -149,11 +150,11 @@ struct JointKernels {
   static constexpr bool linear = LinearPolicy<P>;            ///< true if the equations are linear in q
   static constexpr bool compliant = !ConstrainingPolicy<P>;  ///< true if forces enforce the equations
 
-  /// Appends counts, positions and names to `out`.
+  /// Appends sizes, positions and names of the joints to `out`.
   [[gnu::cold]] static void describe(Pool const& pool, Sequence<LinearConstraints> const& linear_rows,
                                      ModelLayout& out);
   /// Allocates constraint terms and appends a constraint block for each joint. For linear joints, whose blocks already
-  /// exist from `first_linear` on, it sets the owner. \param owner position of the first joint in the layout
+  /// exist from `first_linear` on, only the owner is set. \param owner position of the first joint in the layout
   [[gnu::cold]] static void place(Pool const& pool, Kept& kept, Index owner, Index first_linear, Data<T>& data);
 
   /// Evaluates the constraint terms of every joint, and λ(g, ġ) of compliant joints.
@@ -161,10 +162,10 @@ struct JointKernels {
   /// Writes γ without the bias accelerations of the markers to `out` (rows).
   static void gamma(Pool const& pool, double t, Data<T> const& data, VecXOf<T>& out);
 
-  /// ck K + cd D of compliant joints, from the derivatives of λ(g, ġ).
+  /// Writes ck K + cd D of compliant joints, from the derivatives of λ(g, ġ).
   static void slopes(Pool const& pool, Kept const& kept, TangentCoefficients const& c, Data<double>& data,
                      BlockSink& sink);
-  /// ck ∂(Gᵀλ)/∂q at the state and coefficients x. It also adds Gᵀλ to data.loads.
+  /// Writes ck ∂(Gᵀλ)/∂q at the state and coefficients x, and adds Gᵀλ to data.loads.
   static void stiffness(Pool const& pool, Kept const& kept, VecX const& lambda, detail::StiffnessAt const& x,
                         Data<double>& data, BlockSink& sink);
   /// Energy stored in compliant joints [J].

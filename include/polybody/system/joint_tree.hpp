@@ -7,8 +7,8 @@
 /// all in world axes; b is the acceleration for u̇ = 0 and a parent without acceleration. The origin of a rigid body is
 /// its centre of mass. For a body with a floating frame, the joint carries the frame, and the deformation coordinates q
 /// remain unknowns. An end of a joint on such a body moves with q, which adds S_D q̇ to S u (`FloatingEnd`). Full
-/// vectors contain all bodies, reduced ones the joint coordinates and deformations. Each function is one loop from the
-/// roots to the tips or back.
+/// vectors contain all bodies; reduced vectors contain the joint coordinates and deformations. Each function is one
+/// loop from the roots to the tips or back.
 
 #include <polybody/system/floating_end.hpp>
 #include <polybody/system/joint_jacobian.hpp>
@@ -75,8 +75,8 @@ class JointTreeOf {
     }
   }
 
-  /// Computes u (reduced) with T u nearest to x (full), or to x − b with `bias`. It is exact if x satisfies the joints.
-  /// Entries of roots and deformations are not written.
+  /// Computes the reduced u for which T u is nearest to the full x, or to x − b with `bias`. The distance is zero if x
+  /// satisfies the equations of the joints. Entries of roots and deformations are not written.
   void reduce_rates(TreeState& s, VecX const& x, bool bias, VecX& u) const {
     for (std::size_t i = 0; i < bodies.size(); ++i) s.twists[i] = detail::twist_of<T>(bodies[i], s.frames[i], x);
     for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -144,7 +144,7 @@ class JointTreeOf {
     for (std::size_t i = 0; i < bodies.size(); ++i) detail::put_twist<T>(bodies[i], s.frames[i], s.residuals[i], r);
   }
 
-  /// Frame of the body that carries this one, or of the ground.
+  /// Frame of the body that carries `body`, or of the ground.
   TreeFrame const& parent_of(TreeBody const& body, TreeState const& s) const {
     return body.parent < 0 ? ground_ : s.frames[std::size_t(body.parent)];
   }
@@ -205,6 +205,6 @@ class JointTreeOf {
   TreeFrame ground_ = {};
 };
 
-using JointTree = JointTreeOf<>;  ///< for doubles
+using JointTree = JointTreeOf<>;  ///< tree with vectors of doubles
 
 }  // namespace polybody

@@ -14,16 +14,16 @@ namespace polybody {
 /// the rate with the accelerations:
 ///   |Δψ − ½h (ψ̇₀ + ψ̇₁)| ≤ ½h |ψ̇₁ − ψ̇₀| + h² â + 10⁻³ h r̂,   |Δψ̇ − ½h (ψ̈₀ + ψ̈₁)| ≤ h â,
 /// where â and r̂ are the largest |ψ̈| and |ψ̇| so far. A smooth function of time satisfies these bounds over a step that
-/// resolves it. If a step violates them, they are checked for parts of the step, down to h/1024. A function with a jump
-/// or with wrong derivatives violates them at every length.
+/// resolves it. If a step violates the bounds, they are checked for parts of the step, down to h/1024. A function with
+/// a jump or with wrong derivatives violates the bounds for parts of any length.
 class LawWatch {
  public:
-  /// Restarts the check at time t [s]. Times that differ by at most `remainder_step` [s] are one breakpoint. \throws
-  /// InvalidInput if a prescribed value jumps at t.
+  /// Restarts the check at time t [s]. Times that differ by at most `remainder_step` [s] count as the same breakpoint.
+  /// \throws InvalidInput if a prescribed value jumps at t.
   template <class = void>
   [[gnu::cold]] void begin(ModelLayout const& layout, double t, double remainder_step);
-  /// Compares the two ends of the step of length h [s] that ends at t [s]. \throws InvalidInput naming the joint if the
-  /// bounds are violated.
+  /// Compares the two ends of the step of length h [s] that ends at t [s]. \throws InvalidInput if the bounds are
+  /// violated; the message names the joint.
   template <class = void>
   void require(ModelLayout const& layout, double t, double h);
 
@@ -42,10 +42,10 @@ class LawWatch {
   struct Watched {
     std::size_t joint;
     Motion last, marked;
-    double rate = 0.0, acceleration = 0.0;  ///< largest absolute values so far [unit of the value per s and per s²]
+    double rate = 0.0, acceleration = 0.0;  ///< r̂, â: largest |ψ̇| and |ψ̈| so far [unit of ψ per s and per s²]
   };
   static Motion at(JointLayout const& joint, double t) { return joint.law(joint.joint, t); }
-  /// Difference x of two values without whole periods.
+  /// Difference x of two prescribed values, reduced by whole periods.
   static double change(JointLayout const& joint, double x) {
     return joint.period > 0.0 ? std::remainder(x, joint.period) : x;
   }
@@ -76,7 +76,7 @@ class LawWatch {
                                            double h);
 
   Sequence<Watched> laws_;
-  double last_ = 0.0, marked_ = 0.0;  // times of the motions [s]
+  double last_ = 0.0, marked_ = 0.0;  // times of `last` and `marked` [s]
 };
 
 template <class>
@@ -98,7 +98,7 @@ void LawWatch::begin(ModelLayout const& layout, double t, double remainder_step)
       throw InvalidInput("time_function.jump",
                          {"joint \"", ErrorObject{joint.name}, "\": the prescribed value jumps by ", ErrorValue{jump},
                           " at the breakpoint t = ", ErrorTime{t},
-                          " s, but a body cannot jump. Reach the value by a Ramp or SmoothRamp."});
+                          " s. A prescribed value must be continuous. Use a Ramp or SmoothRamp."});
   }
   last_ = marked_ = t;
   for (Watched& law : laws_) law.marked = law.last;
@@ -141,9 +141,9 @@ void LawWatch::require_smooth(JointLayout const& joint, Watched& law, Motion fro
       "time_function.derivatives",
       {"joint \"", ErrorObject{joint.name}, "\": in the step of ", h, " s to t = ", ErrorTime{t}, " s the prescribed ",
        of_value ? "value" : "rate", " changes by ", ErrorValue{expected + (of_value ? full.value : full.rate)},
-       ", but the ", of_value ? "rate" : "acceleration", " of the time function gives ", expected,
-       ". Correct the derivatives of the time function, and declare a breakpoint where its rate jumps, by "
-       "breakpoints() of the function or in the options of the run. The value itself must not jump."});
+       ", but the ", of_value ? "rate" : "acceleration", " of the time function predicts ", expected,
+       ". Correct the derivatives of the time function. If its rate jumps, declare a breakpoint at this time, in "
+       "breakpoints() of the function or in the options of the run. The value must not jump."});
 }
 
 }  // namespace polybody

@@ -21,38 +21,38 @@ struct PlacedWrench;
 /// Position of a body among all coordinates, generalised velocities and constraint equations, and its properties.
 struct BodyLayout {
   std::string name = {};          ///< name in messages
-  Index q0 = 0, coordinates = 0;  ///< first generalised coordinate, and number of coordinates
-  Index v0 = 0, velocities = 0;   ///< first generalised velocity, and number of velocities
-  Index row = -1, rows = 0;       ///< first constraint equation of the body itself, and number of equations
+  Index q0 = 0, coordinates = 0;  ///< index of the first generalised coordinate, and number of coordinates
+  Index v0 = 0, velocities = 0;   ///< index of the first generalised velocity, and number of velocities
+  Index row = -1, rows = 0;       ///< index of the first constraint equation of the body itself, and number of these
   bool planar = false;            ///< true if the body moves in the plane
   bool constant_mass = false;     ///< true if M does not depend on q
   void const* type = nullptr;     ///< address that identifies the type of the body
   Index index = 0;                ///< index among the bodies of its type
   void const* body = nullptr;     ///< the body in the model
-  /// Share of the axial force for the body's q, v, v̇ under gravity and loads in world axes. Null for bodies that do
-  /// not satisfy `WithoutGeometricStiffening`.
+  /// Returns the ratio of axial forces to buckling loads for the body's q, v, v̇ under gravity and loads in world axes.
+  /// Null for bodies that do not satisfy `WithoutGeometricStiffening`.
   double (*axial_share)(void const* body, std::span<double const> q, std::span<double const> v,
                         std::span<double const> a, Vec3 const& gravity, std::span<PlacedWrench const> loads) = nullptr;
   CoordinateUnits units = {};  ///< units of coordinates and velocities
   std::uint64_t made_in = 0;   ///< serial number of the model to which the body was added
-  bool lossless = false;       ///< true if the body does not dissipate energy, as it is rigid
+  bool lossless = false;       ///< true if the body does not dissipate energy, because it is rigid
   bool changes = false;        ///< true if the mass depends on time
 };
 
-/// Markers of a joint, position of its constraint equations among all, and its properties.
+/// Markers of a joint, position of its constraint equations among those of the model, and its properties.
 struct JointLayout {
   std::string name = {};                 ///< name in messages
   Index a = -1, b = -1;                  ///< marker indices
-  Index row = -1, rows = 0;              ///< first constraint equation and their number; −1, 0 for a compliant joint
+  Index row = -1, rows = 0;              ///< first constraint equation, number of equations; −1, 0: compliant joint
   bool eliminated = false;               ///< true if a time step eliminates the equations
   void const* type = nullptr;            ///< address that identifies the type of the joint
   Index index = 0;                       ///< index among the joints of its type
-  LinearConstraints const* linear = {};  ///< equations that are linear in coordinates, stored in the model; or null
+  LinearConstraints const* linear = {};  ///< equations that are linear in coordinates; null for other joints
   bool stores = true;                    ///< for a compliant joint: true if all its forces have a potential
   std::uint64_t made_in = 0;             ///< serial number of the model to which the joint was added
   bool lossless = true;                  ///< for a compliant joint: true if it has no damping
   void const* joint = nullptr;           ///< the joint in the model
-  Motion (*law)(void const* joint, double t) = nullptr;  ///< prescribed motion at t [s]; null without one
+  Motion (*law)(void const* joint, double t) = nullptr;  ///< prescribed motion at t [s]; null if there is none
   double period = 0.0;  ///< period of the prescribed value [rad], by which it may jump; 0: no jump allowed
 };
 
@@ -69,12 +69,12 @@ struct ForceLayout {
   std::uint64_t made_in = 0;     ///< serial number of the model to which the force was added
   bool stores_in_part = false;   ///< true for a group in which not all laws have a potential
   bool lossless = false;         ///< true if its potential stores all work that is done on the element
-  /// For a contact of two markers a and b: true if they pass through the contact between the frames `from` [a, b] and
-  /// `to` [a, b], but do not touch at either end of the step. Null for other forces.
+  /// For a contact of two markers a and b: true if they are in contact between the frames `from` [a, b] and `to` [a,
+  /// b], but not at either end of the step. Null for other forces.
   bool (*passes)(void const* force, Frame<double> const (&from)[2], Frame<double> const (&to)[2]) = nullptr;
 };
 
-/// Counts, positions and names of the parts of a model. Bodies, joints and forces are listed by type.
+/// Sizes of a model, and positions and names of its bodies, joints and forces.
 struct ModelLayout {
   std::uint64_t serial = 0;                         ///< serial number of the model, which its handles contain
   Sequence<std::uint64_t> ancestors = {};           ///< serial numbers of the models from which it was copied
@@ -82,12 +82,12 @@ struct ModelLayout {
   Index coordinates = 0, velocities = 0, rows = 0;  ///< nq; nv, first-order states included; constraint equations
   Index states = 0;                                 ///< number of first-order states, the last of the velocities
   Sequence<Index> nonholonomic_equations = {};      ///< indices of the nonholonomic equations, ascending
-  Sequence<BodyLayout> bodies = {};                 ///< by type, in the order of addition
-  Sequence<JointLayout> joints = {};                ///< by type, in the order of addition
-  Sequence<ForceLayout> forces = {};                ///< by type, in the order of addition
+  Sequence<BodyLayout> bodies = {};                 ///< bodies by type, in the order of addition
+  Sequence<JointLayout> joints = {};                ///< joints by type, in the order of addition
+  Sequence<ForceLayout> forces = {};                ///< forces by type, in the order of addition
   Sequence<Index> owners = {};                      ///< body of each marker; −1 for the ground
   Sequence<MarkerKind> observes = {};               ///< kinematics that each marker provides
-  Vec3 gravity = Vec3::Zero();                      ///< (3) world axes [m/s²]
+  Vec3 gravity = Vec3::Zero();                      ///< (3) gravity in world axes [m/s²]
   Sequence<double> breakpoints = {};                ///< breakpoints of drives and loads, at which a step ends [s]
   bool constant_mass = false;                       ///< true if M of no body depends on q
   bool has_groups = false;                          ///< true if the model can have force groups
@@ -101,8 +101,8 @@ struct ModelLayout {
       if (i >= b.q0 && i < b.q0 + b.coordinates) return sentence_of({"body \"", b.name, "\""});
     return "unknown";
   }
-  /// Name of the owner of unknown i. For i < `velocities` this is the body of generalised velocity i or the force of
-  /// that first-order state, otherwise the joint or body of constraint equation i − `velocities`.
+  /// Name of the owner of unknown i. For i < `velocities`, the owner is the body of generalised velocity i or the force
+  /// of that first-order state. Otherwise it is the joint or body of constraint equation i − `velocities`.
   [[gnu::cold]] std::string name_of(Index i) const {
     Index const row = i - velocities;
     for (BodyLayout const& b : bodies)

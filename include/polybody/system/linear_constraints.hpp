@@ -10,26 +10,26 @@
 
 namespace polybody {
 
-/// Part of one body in linear constraint equations.
+/// Terms of one body in linear constraint equations.
 struct LinearSide {
-  Index q0 = 0, v0 = 0;  ///< first coordinate and first generalised velocity of the columns
+  Index q0 = 0, v0 = 0;  ///< indices of the first coordinate and generalised velocity of the columns
   MatX map;              ///< (rows × columns) C; no columns for the ground
 };
 
-/// Linear constraint equations of one joint: first those of the position, then those of gradients.
+/// Linear constraint equations of one joint: first the position equations, then the gradient equations.
 struct LinearConstraints {
   std::string name;           ///< name of the joint in messages
-  Index row = 0;              ///< first of its equations in the model
+  Index row = 0;              ///< index of its first equation in the model
   LinearSide a = {}, b = {};  ///< bodies of the two markers
   VecX constant = {};         ///< (rows) c
   Index positions = 0;        ///< number of position equations
-  /// Position gradient that a and b have in common, or its component along an axis.
+  /// Equations for equal position gradients of a and b, or for equal components of them along an axis.
   struct Gradient {
     Index rows;  ///< number of its equations
     MatX map;    ///< map of the gradient of b, or of a if b is the ground
     Vec3 axis;   ///< (3) unit vector in world axes, used for a single equation
   };
-  Sequence<Gradient> gradients = {};  ///< in the order of their equations
+  Sequence<Gradient> gradients = {};  ///< gradients in the order of their equations
   /// Number of equations of the joint.
   Index rows() const { return constant.size(); }
 };
@@ -53,7 +53,7 @@ struct LinearPointOf {
 
   bool complete() const { return gradient_count == 3; }
   /// Map of J J₀⁻¹ w, the current direction of the material line that has direction w in the reference configuration.
-  /// For a body with incomplete gradients it is the map of r′ for every w.
+  /// For a body with incomplete gradients, returns the map of r′ for every w.
   MatX carried(Vec3 const& w) const {
     if (columns == 0) return MatX(size, 0);
     if (!complete()) return gradients[0];
@@ -109,8 +109,8 @@ void append_rows(LinearConstraints& rows, MatXOf<T> const& a, MatXOf<T> const& b
   append(rows.constant, 1.0, c);
 }
 
-/// Fills in the constraint equations of geometry G, with its third axis along n, between two linear points. \throws
-/// InvalidInput naming the joint if the equations are not linear.
+/// Appends to `rows` the constraint equations of geometry G, with its third axis along n, between two linear points.
+/// \throws InvalidInput if the equations are not linear; the message names the joint.
 template <LinearGeometry G, class T>
 void fill_linear_rows(LinearPointOf<T> const& a, LinearPointOf<T> const& b, std::type_identity_t<Vec<T, 3>> const& n,
                       LinearConstraints& rows) {
@@ -121,7 +121,7 @@ void fill_linear_rows(LinearPointOf<T> const& a, LinearPointOf<T> const& b, std:
   int const size = b.size;
   rows.a.map.resize(0, a.columns);
   rows.b.map.resize(0, b.columns);
-  // The constants contain the part of the ground: r_a − r_b of the points without columns.
+  // The constants contain the terms of the ground: r_a − r_b of points without columns.
   V const still = (a.columns == 0 ? a.at : V(V::Zero())) - (b.columns == 0 ? b.at : V(V::Zero()));
   append_rows<T>(rows, a.position, b.position, still.head(size));
   rows.positions = size;

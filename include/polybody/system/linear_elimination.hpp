@@ -1,9 +1,9 @@
 #pragma once
 /// \file
-/// Elimination of dependent coordinates, e_d = Σ f_k e_k + c_d, by linear constraint equations C e = c, once before a
-/// run [thesis §3.5.4]. The dependent coordinates of earlier rows are eliminated from row k, row'_k = row_k − Σ_j m_kj
-/// row'_j. The coordinate of its largest entry p_k becomes the next dependent one. The multipliers follow from the
-/// balance Cᵀλ = −r of the dependent coordinates with the same factors:
+/// Elimination of dependent coordinates, e_d = Σ f_k e_k + c_d, with linear constraint equations C e = c, once before a
+/// run [thesis §3.5.4]. The dependent coordinates of earlier rows are eliminated from row k of C: row'_k = row_k − Σ_j
+/// m_kj row'_j. The coordinate of the largest entry p_k of row'_k becomes the next dependent coordinate. The
+/// multipliers follow from the balance Cᵀλ = −r of the dependent coordinates with the same factors m_kj:
 ///   p_k λ'_k = −r_dk − Σ_{j<k} row'_j,dk λ'_j,   λ_j = λ'_j − Σ_{k>j} m_kj λ_k.
 
 #include <polybody/math/errors.hpp>
@@ -13,15 +13,15 @@
 
 namespace polybody {
 
-/// Dependent coordinates as linear functions of independent ones, q_d = c + Σ f q_i, from the equations of linear
-/// joints. \tparam T scalar of the vectors; factors are doubles
+/// Dependent coordinates as linear functions of independent coordinates, q_d = c + Σ f q_i, from the equations of
+/// linear joints. \tparam T scalar of the vectors; factors are doubles
 template <class T = double>
 class LinearEliminationOf {
  public:
-  /// Independent coordinate and its factor.
+  /// Independent coordinate and its factor f.
   struct Term {
     Index q, v;     ///< indices among coordinates and generalised velocities
-    double factor;  ///< f [unit of the dependent coordinate per unit of the independent one]
+    double factor;  ///< f [unit of dependent coordinate per unit of independent coordinate]
   };
   /// Dependent coordinate with its constant and its terms.
   struct Dependent {
@@ -31,7 +31,7 @@ class LinearEliminationOf {
   };
 
   LinearEliminationOf() = default;
-  /// Eliminates coordinates by the equations of `joints`. Redundant equations are omitted. \throws
+  /// Eliminates coordinates with the equations of `joints`. Redundant equations are omitted. \throws
   /// InconsistentInitialConditions if equations contradict each other.
   explicit LinearEliminationOf(Sequence<LinearConstraints> const& joints) {
     for (LinearConstraints const& rows : joints)
@@ -46,7 +46,7 @@ class LinearEliminationOf {
   /// Indices of redundant equations.
   Sequence<Index> const& redundant() const { return redundant_; }
 
-  /// Computes the dependent coordinates from the independent ones: q_d = c + Σ f q_i.
+  /// Computes the dependent coordinates from the independent coordinates: q_d = c + Σ f q_i.
   void expand_coordinates(VecXOf<T>& q) const {
     for (Dependent const& d : dependents_) {
       T sum(d.constant);
@@ -54,7 +54,8 @@ class LinearEliminationOf {
       q[d.q] = sum;
     }
   }
-  /// Computes the dependent velocities or accelerations from the independent ones: v_d = Σ f v_i.
+  /// Computes the dependent velocities or accelerations, v_d = Σ f v_i, from the independent velocities or
+  /// accelerations.
   void expand_rates(VecXOf<T>& v) const {
     for (Dependent const& d : dependents_) {
       T sum(0.0);
@@ -62,13 +63,14 @@ class LinearEliminationOf {
       v[d.v] = sum;
     }
   }
-  /// Adds the generalised forces of dependent coordinates, in r (nv), to those of the independent ones: r_i += f r_d.
+  /// Adds the generalised forces of dependent coordinates, in r (nv), to those of independent coordinates: r_i += f
+  /// r_d.
   void reduce_forces(VecXOf<T>& r) const {
     for (Dependent const& d : dependents_)
       for (Term const& t : d.terms) r[t.v] += t.factor * r[d.v];
   }
-  /// Computes the multipliers λ (rows) of the linear equations. r (nv) is the residual M a − f + … without their
-  /// forces. Redundant equations get zero.
+  /// Computes the multipliers λ (rows) of the linear equations. r (nv) is the residual without the forces of these
+  /// equations. Multipliers of redundant equations are zero.
   void multipliers(VecXOf<T> const& r, VecXOf<T>& lambda) const {
     for (Index const i : redundant_) lambda[i] = T(0.0);
     for (std::size_t k = 0; k < pivots_.size(); ++k) {
@@ -124,8 +126,8 @@ class LinearEliminationOf {
     pivots_.push_back(std::move(p));
   }
 
-  /// Eliminates all previous dependent coordinates from a row, the earliest first. A row' can introduce later ones
-  /// only.
+  /// Eliminates all previous dependent coordinates from a row, the earliest first. Each elimination can introduce only
+  /// later dependent coordinates.
   void eliminate(Pivot& p) const {
     for (;;) {
       std::size_t first = pivots_.size();
@@ -144,7 +146,7 @@ class LinearEliminationOf {
     }
   }
 
-  /// Expresses e_d of pivot k by independent coordinates. The later pivots are solved already.
+  /// Expresses e_d of pivot k by independent coordinates. All later pivots must already be solved.
   void solve_for(std::size_t k) {
     Pivot const& p = pivots_[k];
     double const pivot = *p.entries.find(p.v);
@@ -171,10 +173,10 @@ class LinearEliminationOf {
   Sequence<Pivot> pivots_;
   Sequence<Dependent> dependents_;
   Sequence<Index> redundant_;
-  IndexMap<Index> coordinate_;  // coordinate of a velocity index
+  IndexMap<Index> coordinate_;  // coordinate index for each velocity index
   IndexMap<std::size_t> pivot_of_, solved_;
 };
 
-using LinearElimination = LinearEliminationOf<>;  ///< with scalar double
+using LinearElimination = LinearEliminationOf<>;  ///< elimination with vectors of doubles
 
 }  // namespace polybody

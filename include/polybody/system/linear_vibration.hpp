@@ -20,7 +20,7 @@ template <LoadHistory Load>
 struct LinearVibration {
   MatX mass_matrix, damping, stiffness;  ///< (n×n) M, constant parts of D and K
   Load load;                             ///< f(t)
-  mutable MatX d = {}, k = {};           ///< workspace: D(t) and K(t) at one time
+  mutable MatX d = {}, k = {};           ///< workspace: D(t) and K(t) of the last evaluation
 
   /// Number n of coordinates.
   Index velocities() const { return mass_matrix.rows(); }

@@ -15,7 +15,7 @@ namespace detail {
 template <class J>
 inline constexpr bool is_joint_type = requires { typename J::PolicyType; };
 template <class G, class P>
-inline constexpr bool is_joint_type<Joint<G, P>> = true;  // without an instantiation, whose refusals come later
+inline constexpr bool is_joint_type<Joint<G, P>> = true;  // not instantiated here: its own messages come later
 }  // namespace detail
 
 /// Type of a joint: a `Joint`, or a type with its members.
@@ -46,30 +46,33 @@ struct BodyRefusal {
         { B::element_columns } -> std::convertible_to<int>;
         { B::point_columns } -> std::convertible_to<int>;
       },
-      "A body needs static constants: int element_columns and int point_columns, the velocities that an element and a "
-      "marker touch.");
+      "A body needs static constants: int element_columns and int point_columns, the numbers of velocities on "
+      "which an element and a marker depend.");
   static_assert(
       requires(B const b) {
         { b.coordinates() } -> std::convertible_to<Index>;
         { b.velocities() } -> std::convertible_to<Index>;
         { b.elements() } -> std::convertible_to<Index>;
-      }, "A body needs the numbers coordinates(), velocities() and elements() const.");
+      },
+      "A body needs coordinates(), velocities() and elements() const, which return the numbers of its coordinates, "
+      "velocities and elements.");
   static_assert(
       requires(B const b, Index e, typename B::Point p) {
         { b.first_column(e) } -> std::convertible_to<Index>;
         { b.first_column(p) } -> std::convertible_to<Index>;
       },
-      "A body needs first_column(e) and first_column(p) const: the first velocity that an element and a marker touch.");
+      "A body needs first_column(e) and first_column(p) const: the index of the first velocity on which an element and "
+      "a marker depend.");
   static_assert(
       requires(B const b, Out out) { b.reference(out); },
-      "A body needs reference(q) const, which writes its coordinates as placed.");
+      "A body needs reference(q) const, which writes its coordinates in the reference configuration.");
   static_assert(
       requires(B const b, In x, Out out) {
         b.template plus<double>(x, x, out);
         b.template local_rate<double>(x, x, out);
       },
-      "A body needs plus<T>(q, delta, out) and local_rate<T>(delta, v, out) const; one whose coordinates add inherits "
-      "both from AddingCoordinates.");
+      "A body needs plus<T>(q, delta, out) and local_rate<T>(delta, v, out) const. If the increment is q + delta, "
+      "inherit both from AddingCoordinates.");
   static_assert(
       requires(B const b, In x, Out out, Vec3 u) { b.rigid_velocity(x, u, u, out); },
       "A body needs rigid_velocity(q, v0, omega, v) const: its velocities in a rigid motion.");
@@ -125,7 +128,7 @@ struct ForceRefusal {
       "std::array<Wrench<T>, markers>.");
   static_assert(HasStates<F> || states_of<F>() == 0,
                 "A force element with states needs wrenches<T>(std::array<Frame<T>, markers> frames, std::array<T, "
-                "states> z, double t) const and rates<T> of the same arguments, which returns std::array<T, states>.");
+                "states> z, double t) const and rates<T> with equal arguments, which returns std::array<T, states>.");
   static_assert(
       requires(F const f, std::string name) { f.check(name); },
       "A force element needs check(name) const, which throws InvalidInput for invalid parameters.");
@@ -153,7 +156,7 @@ template <class... Bs>
 struct ListRefusal<Bodies<Bs...>> {
   static_assert(no_const<Bs...>,
                 "A type in a model's Bodies is const. decltype of an object that is declared `auto const` is const; "
-                "declare the object by `auto`.");
+                "declare the object with `auto`.");
   static_assert(Distinct<Bs...>,
                 "A body type occurs twice in a model's Bodies. List it once; it is used for any number of bodies.");
   static constexpr bool checked = ((Body<Bs> || sizeof(BodyRefusal<Bs>) > 0) && ...);
@@ -162,7 +165,7 @@ template <class... Js>
 struct ListRefusal<Joints<Js...>> {
   static_assert(no_const<Js...>,
                 "A type in a model's Joints is const. decltype of an object that is declared `auto const` is const; "
-                "declare the object by `auto`.");
+                "declare the object with `auto`.");
   static_assert(Distinct<Js...>,
                 "A joint type occurs twice in a model's Joints. List it once; it is used for any number of joints.");
   static_assert((JointType<Js> && ...),
@@ -173,7 +176,7 @@ template <class... Fs>
 struct ListRefusal<Forces<Fs...>> {
   static_assert(no_const<Fs...>,
                 "A type in a model's Forces is const. decltype of an object that is declared `auto const` is const; "
-                "declare the object by `auto`.");
+                "declare the object with `auto`.");
   static_assert(Distinct<Fs...>,
                 "A force type occurs twice in a model's Forces. List it once; it is used for any number of forces.");
   static constexpr bool checked = ((AppliedForce<Fs> || sizeof(ForceRefusal<Fs>) > 0) && ...);

@@ -18,8 +18,8 @@ void require_own(ModelLayout const& layout, Marker<Ground> const& marker, std::s
 }
 
 namespace detail {
-/// Position in `places` of the part of type T with this index among the parts of its type. \throws InvalidInput naming
-/// `what` if no such part was added to the model with the number `serial`.
+/// Position in `places` of the body, joint or force of type T that has the index `index` within its type. \throws
+/// InvalidInput naming `what` if it was not added to the model with the serial number `serial`.
 template <class T, class Place>
 Index index_of(Sequence<Place> const& places, std::uint64_t serial, Index index, std::string const& what) {
   for (std::size_t i = std::size_t(std::max<Index>(index, 0)); i < places.size(); ++i)  // index ≤ i for every part
@@ -28,7 +28,8 @@ Index index_of(Sequence<Place> const& places, std::uint64_t serial, Index index,
 }
 }  // namespace detail
 
-/// Index of a body in `layout.bodies`. \throws InvalidInput for a default-constructed handle or one of another model.
+/// Index of a body in `layout.bodies`. \throws InvalidInput for a default-constructed handle or a handle of another
+/// model.
 template <class B>
 Index index_of(ModelLayout const& layout, BodyHandle<B> const& handle) {
   detail::require_filled(handle.model);
@@ -40,14 +41,14 @@ Index index_of(ModelLayout const& layout, Marker<B> const& marker, std::string c
   return detail::index_of<B>(layout.bodies, marker.model, marker.body, what);
 }
 /// Index of a joint in `layout.joints`, equal to `ConstraintBlock::owner` of its equations. \throws InvalidInput for a
-/// default-constructed handle or one of another model.
+/// default-constructed handle or a handle of another model.
 template <class J>
 Index index_of_joint(ModelLayout const& layout, ElementHandle<J> const& handle) {
   detail::require_filled(handle.model);
   return detail::index_of<J>(layout.joints, handle.model, handle.index, handle.name);
 }
 /// Index of a force element in `layout.forces`, equal to `AppliedWrench::source` of its wrenches. \throws InvalidInput
-/// for a default-constructed handle or one of another model.
+/// for a default-constructed handle or a handle of another model.
 template <class F>
 Index index_of_force(ModelLayout const& layout, ElementHandle<F> const& handle) {
   detail::require_filled(handle.model);

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Function table and layout of a model: the only place with type erasure of a model. Each function runs the loops of
+/// Function table and layout of a model. Only this header erases the type of a model. Each function runs the loops of
 /// the model's types (body_kernels.hpp, joint_kernels.hpp, force_kernels.hpp) one after another.
 
 #include <polybody/math/sequence.hpp>
@@ -11,7 +11,7 @@ namespace polybody {
 
 namespace detail {
 
-/// Functions of a model's table for scalar T. Arguments can be unused, as a list of joints or forces may be empty.
+/// Functions of a model's table for scalar T. Arguments can be unused, because a list of joints or forces may be empty.
 template <class M, StateScalar T>
 struct ModelLoops;
 template <class... Bs, class... Js, class... Fs, StateScalar T>
@@ -44,8 +44,8 @@ struct ModelLoops<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T> {
   static void evaluate_marker(void const* m, At<T> at, Data<T>& data) {
     (BodyKernels<Bs, T>::evaluate_marker(bodies<Bs>(m), of_bodies<Bs>(data), at, data), ...);
   }
-  /// Constraint functions of all joints, forces of compliant joints, and constraint equations of bodies and linear
-  /// joints.
+  /// Evaluates constraint functions of all joints, forces of compliant joints, and constraint equations of bodies and
+  /// linear joints.
   static void evaluate_constraints(void const* m, At<T> at, Data<T>& data) {
     T* next = Typed::of(data).own_equations.data();
     ((next = BodyKernels<Bs, T>::measure_own_rows(bodies<Bs>(m), at, next)), ...);
@@ -123,7 +123,8 @@ struct ModelLoops<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T> {
     ((sum.forces += ForceKernels<Fs, double>::energy(forces<Fs>(m), at.t, data)), ...);
     return sum;
   }
-  /// Powers without the constraint equations of bodies (Euler parameters) and linear joints, which do no work.
+  /// Powers in a state. Constraint equations of bodies (Euler parameters) and of linear joints do no work and are
+  /// omitted.
   static Powers powers(void const* m, At<double> at, VecX const& backwards, VecX const& lambda,
                        [[maybe_unused]] double load_factor, Data<double> const& data) {
     Powers p;
@@ -136,13 +137,13 @@ struct ModelLoops<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T> {
 
 }  // namespace detail
 
-/// Function table of a model type with the groups `wanted`.
+/// Function table of a model type with the capabilities `wanted`.
 template <class... Bs, class... Js, class... Fs, StateScalar T, Capabilities wanted>
 struct OperationsOf<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T, wanted> {
   using M = Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>;  ///< type of the model
   using Loops = detail::ModelLoops<M, T>;                        ///< functions of the table
 
-  /// Makes the table at compile time. Functions of groups that are not in `wanted` are null.
+  /// Makes the table at compile time. Functions of capabilities that are not in `wanted` are null.
   static constexpr ModelOperations<T> make() {
     ModelOperations<T> out{.evaluate_marker = &Loops::evaluate_marker,
                            .evaluate_constraints = &Loops::evaluate_constraints,
@@ -180,7 +181,7 @@ struct OperationsOf<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T, wante
   }
 };
 
-/// Layout of `model`: counts, positions and names. It refers to `model`, which must outlive it.
+/// Layout of `model`: sizes, positions and names. It contains pointers into `model`, which must outlive the layout.
 template <class... Bs, class... Js, class... Fs>
 ModelLayout layout_of(Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> const& model) {
   ModelLayout out = detail::counts_of(model);

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Checks of markers and joints during their addition to a model. They do not depend on the model's type.
+/// Checks of markers and joints that are added to a model. The checks do not depend on the model's type.
 
 #include <utility>
 
@@ -14,9 +14,8 @@ inline std::string name_or_next(std::string name, char const* kind, std::size_t 
   return name.empty() ? kind + (" " + std::to_string(before + 1)) : std::move(name);
 }
 
-/// Joint axes (3×3) from the parameters of the joint, which are checked first. If a planar joint has a rotation axis
-/// that is not given, the axis is the normal of the plane. \throws InvalidInput naming the joint for invalid
-/// parameters.
+/// Joint axes (3×3) from the parameters of the joint, which are checked first. If the rotation axis of a planar joint
+/// is not given, it is the normal of the plane. \throws InvalidInput naming the joint for invalid parameters.
 template <bool in_plane, class J>
 Mat3 checked_triad(J const& joint, std::string const& name) {
   std::string const quoted = sentence_of({"\"", name, "\""});
@@ -35,7 +34,7 @@ Mat3 checked_triad(J const& joint, std::string const& name) {
   }
 }
 
-/// Requires a point of the body that provides the kinematics `needs`. \throws InvalidInput for a point without axes.
+/// Requires that the marker's point provides the kinematics `needs`. \throws InvalidInput for a point without axes.
 template <class B>
 void require_observed(Marker<B> const& m, MarkerKind needs, std::string const& what) {
   if constexpr (requires { B::observes_at(m.point); })
@@ -66,7 +65,7 @@ inline void require_along_tangent(Mat3 const& axes, Mat3 const& triad, std::stri
     throw InvalidInput("joint.axis_not_tangent",
                        {"\"", ErrorObject{name},
                         "\": the second marker has a tangent but no axes, so the joint's axis must be parallel to the "
-                        "tangent at the reference configuration."});
+                        "tangent in the reference configuration."});
 }
 
 /// Refuses a marker or handle of another model. \throws InvalidInput naming `what`.

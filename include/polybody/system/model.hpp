@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Model: typed pools of bodies, joints and forces. The user adds the parts; the library only reads them.
+/// Model: typed pools of bodies, joints and forces. The user adds bodies, joints and forces; the library only reads
+/// them.
 
 #include <tuple>
 
@@ -48,13 +49,14 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   /// Constructs a model without parts. Gravity is in world axes [m/s²] and zero by default.
   explicit Model(Gravity const& gravity = {}) : parts_(gravity) {}
 
-  /// Adds a body. Messages contain its name, which must be unique among the bodies; an empty name is replaced by a
-  /// generated one. \throws InvalidInput for a duplicate name.
+  /// Adds a body. Messages contain its name, which must be unique among the bodies. If the name is empty, a name is
+  /// generated. \throws InvalidInput for a duplicate name.
   template <OneOf<Bs...> B>
   BodyHandle<B> add(B const& body, std::string name = "") {
     return detail::add_body(parts_, std::get<detail::BodyPool<B>>(bodies_), body, std::move(name));
   }
-  /// Refuses a body whose type is not in the model's list. The deduced type makes the refusal the first error.
+  /// Refuses a body whose type is not in the model's list. Because of the deduced return type, this message is the
+  /// first compiler error.
   template <class B>
     requires(!OneOf<B, Bs...>)
   auto add(B const&, std::string const& = "") {
@@ -65,26 +67,26 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   /// Handle of the ground. `model.ground().at(r)` is a marker at r in world axes [m].
   BodyHandle<Ground> ground() const { return {parts_.serial(), 0, "ground"}; }
 
-  /// Joins marker a to marker b. The joint's axes are those of its geometry, in world axes at the reference
-  /// configuration. \throws InvalidInput naming the joint for a marker of another model, for two markers on one rigid
-  /// body or on the ground, and for invalid parameters.
+  /// Joins marker a to marker b. The axes in the joint's geometry refer to world axes in the reference configuration.
+  /// \throws InvalidInput naming the joint for a marker of another model, for two markers on one rigid body or on the
+  /// ground, and for invalid parameters.
   template <OneOf<Js...> J, class A, class B>
   ElementHandle<J> connect(J const& joint, Marker<A> const& a, Marker<B> const& b, std::string name = "") {
     detail::require_pairing<J, A, B>();
     return detail::add_joint(parts_, std::get<Sequence<detail::JointEntry<J>>>(joints_), joint, pooled(a), pooled(b),
                              std::move(name));
   }
-  /// Refuses a joint whose type is not in the model's list.
+  /// Refuses a joint whose type is not in the model's list, with any `others`.
   template <class J, class... Rest>
     requires(!OneOf<J, Js...>)
-  auto connect(J const&, Rest const&...) {
+  auto connect(J const&, [[maybe_unused]] Rest const&... others) {
     detail::refuse_joint<J>();
     return ElementHandle<J>{};
   }
-  /// Refuses a joint that is not between two markers.
+  /// Refuses a joint if two of the `others` are not markers.
   template <OneOf<Js...> J, class... Rest>
     requires(detail::marker_count<Rest...> != 2)
-  auto connect(J const&, Rest const&...) {
+  auto connect(J const&, [[maybe_unused]] Rest const&... others) {
     detail::refuse_joint_ends<J>();
     return ElementHandle<J>{};
   }
@@ -108,15 +110,15 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     requires(F::markers == sizeof...(Ms))
   ElementHandle<F> apply(F const& force, std::tuple<Ms...> const& markers, std::string name = "") {
     static_assert(tell_enough<F, Ms...>(),
-                  "This force needs a marker with more than a point; a moment needs a marker with axes or a tangent, a "
-                  "plane needs a marker with axes.");
+                  "This force needs a marker with a tangent or axes. A moment needs at least a tangent, and a plane "
+                  "needs axes. Use another marker.");
     return std::apply(
         [&](auto const&... m) { return detail::add_force(parts_, pool_of<F>(), force, std::move(name), pooled(m)...); },
         markers);
   }
 
-  /// Applies a force group to its many markers. `add_partner` adds the partners. \throws InvalidInput for a marker of
-  /// another model or invalid parameters.
+  /// Applies a force group to its many markers. `add_partner` adds contact partners. \throws InvalidInput for a marker
+  /// of another model or invalid parameters.
   template <OneOf<Fs...> F, class A>
     requires ForceGroup<F>
   ElementHandle<F> apply(F const& group, std::vector<Marker<A>> const& many, std::string name = "") {
@@ -126,23 +128,23 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     for (Marker<A> const& m : many) pooled_many.push_back(pooled(m));
     return detail::add_group(parts_, pool_of<F>(), group, pooled_many, std::move(name));
   }
-  /// Refuses a force whose type is not in the model's list.
+  /// Refuses a force whose type is not in the model's list, with any `others`.
   template <class F, class... Rest>
     requires(!OneOf<F, Fs...>)
-  auto apply(F const&, Rest const&...) {
+  auto apply(F const&, [[maybe_unused]] Rest const&... others) {
     detail::refuse_force<F>();
     return ElementHandle<F>{};
   }
-  /// Refuses a force element that is not applied to its markers.
+  /// Refuses a force element if it is not applied to its markers, the second argument and the `others`.
   template <OneOf<Fs...> F, class First, class... Rest>
     requires(!ForceGroup<F> && !detail::is_marker_tuple<First> &&
              (F::markers > 2 || F::markers != detail::marker_count<First, Rest...>))
-  auto apply(F const&, First const&, Rest const&...) {
+  auto apply(F const&, First const&, [[maybe_unused]] Rest const&... others) {
     detail::refuse_force_ends<F>();
     return ElementHandle<F>{};
   }
-  /// Adds a partner at marker `one`, which acts on all of the group's many markers by `law`. The type of `law` is one
-  /// of the group's. \throws InvalidInput for a handle or marker of another model or invalid parameters.
+  /// Adds a contact partner at marker `one`, which interacts with all of the group's many markers by `law`. The group
+  /// must list the type of `law`. \throws InvalidInput for a handle or marker of another model or invalid parameters.
   template <OneOf<Fs...> F, class Law, class A>
     requires ForceGroup<F>
   void add_partner(ElementHandle<F> const& group, Law const& law, Marker<A> const& one, std::string name = "") {
@@ -179,12 +181,13 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   std::span<double const, F::states> states(State const& x, ElementHandle<F> const& force) const {
     return states_in<F>(x.v, entry(force));
   }
+  /// Refuses a temporary state.
   template <OneOf<Fs...> F>
-  std::span<double const, F::states> states(State&& x, ElementHandle<F> const& force) const = delete;  ///< no temporary
+  std::span<double const, F::states> states(State&& x, ElementHandle<F> const& force) const = delete;
 
-  /// Sets the generalised velocities of a body to a rigid motion. `v0` is the velocity of the body-fixed point at the
-  /// world's origin [m/s], `omega` the angular velocity [rad/s], both in world axes. \throws InvalidInput for a handle
-  /// or state of another model.
+  /// Sets the generalised velocities of a body to those of a rigid motion. `v0` is the velocity of the body-fixed point
+  /// at the world's origin [m/s], `omega` the angular velocity [rad/s], both in world axes. \throws InvalidInput for a
+  /// handle or state of another model.
   template <OneOf<Bs...> B>
   void set_velocity(State& x, BodyHandle<B> const& handle, Vec3 const& v0, Vec3 const& omega) const {
     auto const& e = entry(handle);
@@ -201,10 +204,10 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   /// Indices of the nonholonomic constraint equations, ascending.
   Sequence<Index> const& nonholonomic_equations() const { return parts_.nonholonomic_equations; }
   Index markers() const { return parts_.markers; }              ///< number of markers
-  Index jacobian_size() const { return parts_.jacobian_size; }  ///< size of their dense Jacobians, in numbers
+  Index jacobian_size() const { return parts_.jacobian_size; }  ///< number of entries of all dense marker Jacobians
   Index body_count() const { return parts_.bodies; }            ///< number of bodies without the ground
   std::uint64_t serial() const { return parts_.serial(); }      ///< serial number, which the model's handles contain
-  /// Serial numbers of the models from which this one was copied.
+  /// Serial numbers of the models from which this model was copied.
   Sequence<std::uint64_t> const& ancestors() const { return parts_.origin.ancestors(); }
   ModelWatch watch() const { return parts_.origin.watch(); }  ///< detects later changes of the model
 
@@ -215,17 +218,18 @@ class Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
   /// Constraint equations of joints that are linear in coordinates.
   Sequence<LinearConstraints> const& linear_rows() const { return parts_.linear_rows; }
 
-  /// Stored entry of a body. \throws InvalidInput for a default-constructed handle or one of another model.
+  /// Stored entry of a body. \throws InvalidInput for a default-constructed handle or a handle of another model.
   template <OneOf<Bs...> B>
   auto const& entry(BodyHandle<B> const& handle) const {
     return detail::own_entry(std::get<detail::BodyPool<B>>(bodies_).entries, handle);
   }
-  /// Stored entry of a joint. \throws InvalidInput for a default-constructed handle or one of another model.
+  /// Stored entry of a joint. \throws InvalidInput for a default-constructed handle or a handle of another model.
   template <OneOf<Js...> J>
   auto const& entry(ElementHandle<J> const& handle) const {
     return detail::own_entry(std::get<Sequence<detail::JointEntry<J>>>(joints_), handle);
   }
-  /// Stored entry of a force element. \throws InvalidInput for a default-constructed handle or one of another model.
+  /// Stored entry of a force element. \throws InvalidInput for a default-constructed handle or a handle of another
+  /// model.
   template <OneOf<Fs...> F>
   auto const& entry(ElementHandle<F> const& handle) const {
     return detail::own_entry(std::get<Sequence<detail::ForceEntry<F>>>(forces_), handle);

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Interface between a model and the layers above: a table of plain functions, made where the model's type is known.
-/// Each function loops over the model's pools and stores its results in `Data` or in its output arguments.
+/// Interface between a model and the layers above: a table of plain functions. It is made where the model's type is
+/// known. Each function loops over the model's pools and stores its results in `Data` or in its output arguments.
 
 #include <polybody/math/block_sink.hpp>
 #include <polybody/math/dual.hpp>
@@ -18,12 +18,12 @@ struct TangentCoefficients {
   double damping = 0.0;            ///< factor of −∂f/∂v
   double stiffness = 0.0;          ///< factor of −∂f/∂q
   bool surrogate_friction = true;  ///< true if force groups may approximate a derivative by `own_stiffness` of a law
-  bool full = false;               ///< true with second-order terms; set by a system
-  /// True with the terms that time steps omit: blocks between the two markers of each pair of a force group, and
-  /// derivatives of rates with respect to positions.
+  bool full = false;               ///< true if second-order terms are included; set by a system
+  /// True if the tangent includes the terms that time steps omit: blocks between the two markers of each pair of a
+  /// force group, and derivatives of rates with respect to positions.
   bool exact = false;
-  ActiveContactPairs* pairs =
-      nullptr;              ///< pairs of groups with such blocks; null: all pairs (system/active_contact_pairs.hpp)
+  /// Pairs of force groups with such blocks (system/active_contact_pairs.hpp); null: all pairs.
+  ActiveContactPairs* pairs = nullptr;
   double states = damping;  ///< factor of −∂f/∂z and −∂h/∂z, with the first-order states z
 };
 
@@ -31,7 +31,8 @@ struct TangentCoefficients {
 /// Newton's method contracts; statics requires them.
 enum class SecondOrder { omitted, included };
 
-/// Groups of functions in a table. An algorithm names the groups that it requires; other groups are not compiled.
+/// Groups of functions in the function table of a model. An algorithm names the groups of functions that it requires;
+/// other groups are not compiled.
 enum class Capabilities : unsigned {
   motion = 0,             ///< markers, constraint functions, forces, M, ⊞, energies: always included
   tangent = 1,            ///< cm M + cd D + ck K
@@ -64,7 +65,7 @@ struct Energy {
   double total() const { return kinetic + potential(); }
 };
 
-/// Powers in a state [W], without gravity and elements that store energy: `Energy` contains these.
+/// Powers in a state [W]. Powers that change a stored energy or the energy of gravity are not included; see `Energy`.
 struct Powers {
   double drives = 0.0;      ///< power of prescribed motions in joints, on bodies and compliant joints [W]
   double loads = 0.0;       ///< power of loads, and of forces without a potential [W]
@@ -80,7 +81,7 @@ struct ReducedPosition {
     carried    ///< coordinates of the joint that carries it
   };
   Kind kind = Kind::as_it_is;                           ///< kind of its coordinates
-  Index q = 0, v = 0, coordinates = 0, velocities = 0;  ///< first coordinate and velocity; number of both
+  Index q = 0, v = 0, coordinates = 0, velocities = 0;  ///< first coordinate and velocity, numbers of them
 };
 
 /// State as the table's functions receive it: q (nq), v (nv), t.
@@ -92,7 +93,7 @@ struct At {
 };
 
 namespace detail {
-/// State and factors for the evaluation of second-order terms.
+/// State and tangent coefficients for the evaluation of second-order terms.
 struct StiffnessAt {
   At<double> at;
   TangentCoefficients const& c;
@@ -119,10 +120,11 @@ struct ModelOperations {
                          Vector& r) = nullptr;
   /// Writes the wrenches of all force elements to data.actions.
   void (*push_forces)(void const* m, double t, Data<T>& data) = nullptr;
-  /// Writes q ⊞ δ to out. The vectors are reduced ones if `places` is not null.
+  /// Writes q ⊞ δ to out. The vectors are reduced vectors if `places` is not null.
   void (*plus)(void const* m, ReducedPosition const* places, Vector const& q, Vector const& delta,
                Vector& out) = nullptr;
-  /// Writes δ̇ to out, at which q ⊞ δ moves with the velocities v. The vectors are reduced ones if `places` is not null.
+  /// Writes the rate δ̇ to out, for which q ⊞ δ moves with the velocities v. The vectors are reduced vectors if
+  /// `places` is not null.
   void (*local_rate)(void const* m, ReducedPosition const* places, Vector const& delta, Vector const& v,
                      Vector& out) = nullptr;
   /// Distributes the loops over threads from now on. The results are bitwise identical.
@@ -140,15 +142,15 @@ struct ModelOperations {
   void (*force_tangents)(void const* m, double t, double load_factor, TangentCoefficients const& c, Data<T>& data,
                          BlockSink& sink) = nullptr;
 
-  /// Adds ck ∂(Gᵀλ)/∂q of joints, compliant ones included, and of the bodies' constraint equations to the sink. It also
-  /// adds the wrenches of joints to data.loads.
+  /// Adds ck ∂(Gᵀλ)/∂q of all joints, including compliant joints, and of the bodies' constraint equations to the sink.
+  /// It also adds the wrenches of joints to data.loads.
   void (*joint_stiffness)(void const* m, At<T> at, Vector const& lambda, TangentCoefficients const& c, Data<T>& data,
                           BlockSink& sink) = nullptr;
   /// Adds ck ∂(Jᵀw)/∂q for the wrenches in data.loads to the sink.
   void (*load_stiffness)(void const* m, At<T> at, TangentCoefficients const& c, Data<T>& data,
                          BlockSink& sink) = nullptr;
 
-  /// Writes q̇ to `rate`. `workspace` has 2 nq + nv entries. The vectors are reduced ones if `places` is not null.
+  /// Writes q̇ to `rate`. `workspace` has 2 nq + nv entries. The vectors are reduced vectors if `places` is not null.
   void (*coordinate_rates)(void const* m, ReducedPosition const* places, Vector const& q, Vector const& v,
                            VecXOf<Dual<1>>& workspace, Vector& rate) = nullptr;
 

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Identity of a model. Serial numbers distinguish its handles from those of other models. A count of its changes
-/// reveals changes to objects that keep a reference to the model.
+/// Identity of a model. Serial numbers distinguish the handles of a model from those of other models. Objects that keep
+/// a reference to a model detect its changes from a count.
 
 #include <atomic>
 #include <cstdint>
@@ -24,14 +24,14 @@ inline std::uint64_t next_serial() noexcept {
 /// Count of the changes of a model. It outlives the model as long as a watch refers to it.
 struct ModelHistory {
   std::uint64_t changes = 1;  ///< number of additions, moves and destructions, plus one
-  std::uint64_t moved = 0;    ///< value of `changes` at the last move to another object; 0: none
+  std::uint64_t moved = 0;    ///< value of `changes` at the last move to another object; 0: no move
   bool ended = false;         ///< true after the model is destroyed or another one is assigned to it
 };
 
 }  // namespace detail
 
 /// Detector of changes of a model to which a run, system or recorder keeps a reference. A default-constructed watch
-/// detects none.
+/// detects no changes.
 class ModelWatch {
  public:
   ModelWatch() = default;
@@ -51,14 +51,14 @@ class ModelWatch {
   [[noreturn, gnu::cold]] void refuse() const {
     if (history_->moved > changes_)
       throw InvalidInput("model.moved",
-                         {"The model was moved to another object while a run, system or recorder refers to it. Make "
-                          "these after the last move, or hold the model by a std::unique_ptr."});
+                         {"The model was moved to another object while a run, system or recorder refers to it. "
+                          "Construct these after the last move, or hold the model in a std::unique_ptr."});
     if (history_->ended)
       throw InvalidInput("model.destroyed", {"The model was destroyed or assigned to while a run, system or recorder "
                                              "refers to it. Keep the model in a variable that outlives them."});
     throw InvalidInput("model.changed",
                        {"A body, joint or force was added to the model while a run, system or recorder refers to it. "
-                        "Make these after the last addition, or give them a copy of the model."});
+                        "Construct these after the last addition, or from a copy of the model."});
   }
 
   std::shared_ptr<detail::ModelHistory const> history_;
@@ -67,8 +67,8 @@ class ModelWatch {
 
 namespace detail {
 
-/// Identity of one model. A copy gets a new serial number and keeps those of its ancestors. A move transfers the
-/// identity and gives the source that of a new, empty model.
+/// Identity of one model. A copy gets a new serial number and keeps the serial numbers of its ancestors. A move
+/// transfers the identity; the source gets the identity of a new, empty model.
 class ModelOrigin {
  public:
   ModelOrigin() = default;
@@ -93,7 +93,7 @@ class ModelOrigin {
 
   std::uint64_t serial() const { return serial_; }
   Sequence<std::uint64_t> const& ancestors() const { return ancestors_; }
-  /// Counts a change, before the addition of a part.
+  /// Counts a change. Call it before a part is added.
   void change() {
     if (!history_) history_ = std::make_shared<ModelHistory>();
     ++history_->changes;
@@ -103,7 +103,7 @@ class ModelOrigin {
  private:
   std::uint64_t serial_ = next_serial();
   Sequence<std::uint64_t> ancestors_;
-  std::shared_ptr<ModelHistory> history_;  ///< none before the first part
+  std::shared_ptr<ModelHistory> history_;  ///< null before the first part is added
 };
 
 /// True if a model accepts ground markers of the model with serial number `given`. `serial` and `ancestors` are its own

@@ -13,9 +13,9 @@ namespace polybody::detail {
 /// Names in the order of their addition, with a hash table of open addressing for a search in constant time.
 class Names {
  public:
-  /// Returns a given name unchanged, and "kind n" for an empty one. n is the first number above `before` that gives a
-  /// free name.
-  template <class = void>  // compiled where it is used
+  /// Returns a nonempty name unchanged, and "kind n" for an empty name. n is the first number above `before` for which
+  /// the name is free.
+  template <class = void>  // a template, to be compiled only if it is used
   [[gnu::cold]] std::string given_or_next(std::string name, char const* kind, std::size_t before) {
     if (!name.empty()) return name;
     Run& taken = run_of(kind);
@@ -63,7 +63,7 @@ class Names {
   bool has(std::string const& name) const { return !slots_.empty() && slots_[slot_of(name)] != 0; }
 
   Sequence<std::string> names_;
-  Sequence<std::size_t> slots_;  ///< indices into `names_` plus one; zero: free slot
+  Sequence<std::size_t> slots_;  ///< for each slot: index into `names_` plus one; zero for a free slot
   Sequence<Run> runs_;           ///< used numbers of each kind
 };
 

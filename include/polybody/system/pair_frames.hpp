@@ -7,8 +7,8 @@
 
 namespace polybody::detail {
 
-/// Values of the frames of a force group's markers, by which the group selects its active pairs. frame(k) is the frame
-/// of marker k.
+/// Frames of a force group's markers in doubles, from which the group selects its active pairs. operator()(k) returns
+/// the frame of marker k of the group.
 template <class F, StateScalar T>
 class PairFrames {
  public:

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
 /// Checks of every step of a run: constraint violations, unexplained energy, prescribed values that agree with their
-/// rates, and contacts that a step jumps over. Newton's method stops relative to the size of the accelerations, so the
-/// steps of a diverging motion also converge.
+/// rates, and contacts that a step jumps over. Newton's method stops relative to the size of the accelerations. It
+/// therefore also converges in the steps of a diverging motion.
 
 #include <cmath>
 #include <limits>
@@ -24,28 +24,25 @@ struct PlausibilityLimits {
       0.05;  ///< unexplained energy that causes a warning at the end of a run, relative to `Unexplained::scale` [1]
 };
 
-/// Energy of a run that no work explains.
+/// Change of energy in a run that exceeds the work.
 struct Unexplained {
   double energy = 0.0;  ///< gained energy, negative for a loss [J]
-  double doubt = 0.0;   ///< estimated error of the works, large if a force jumps [J]
+  double doubt = 0.0;   ///< estimated error of the work, large if a force jumps [J]
   double worst = 0.0;   ///< largest such error of one step [J]
   double scale = 0.0;   ///< largest T₀ + max(0, V₀ − V) + 2 W + 10⁻³ V₀⁺ so far (`PlausibilityCheck`) [J]
-  bool known = false;   ///< true if the model has such a balance
+  bool known = false;   ///< true if an energy balance was evaluated
   long halved = 0;      ///< number of steps that were halved for their energy gain
 };
 
 /// Check of the limits of a run, with a balance of the energy E = T + V since the last start. A step is refused if
 ///   E − E₀ − W > limit · S,   S = T₀ + max(V₀⁺, V₀ − V) + 2 W.
 /// V₀⁺ is the energy stored at the start, without gravity. W is the work input of forces without a potential, of drives
-/// and of compliant joints without a potential (`WorkAccount`). S contains 2 W because the quadratures find half of the
-/// work of a force that is switched on within a step. The balance is evaluated each time the velocities have doubled.
-/// A run that halves steps also evaluates it if Σ v² differs by 1 % from its linear extrapolation. Other steps evaluate
-/// only a sum of squares and the powers of these elements. Only a gain is refused, so dissipation
-/// is not counted. At the end of a run and before each restart, `settle` evaluates the balance with the signs of all
-/// works. It counts losses if no part of the model dissipates. Models with a potential that depends on time have no
-/// such balance and are not checked. A run halves a step that gains more than ½ limit · S, and a step that gains more
-/// than a tenth of this and ends with E − E₀ − W above it. Smaller gains are often part of a reversible oscillation,
-/// whose energy the new start of a halved step would remove.
+/// and of compliant joints without a potential (`WorkAccount`). S contains 2 W because the quadratures find only half
+/// of the work of a force that is switched on within a step. The balance is evaluated each time the velocities have
+/// doubled. Other steps evaluate only a sum of squares and the powers in W. Only a gain is refused, so dissipation is
+/// not counted. At the end of a run and before each restart, `settle` evaluates the balance with signed work. It counts
+/// losses if no part of the model dissipates energy. Models with a potential that depends on time have no energy
+/// balance, and their energy is not checked.
 class PlausibilityCheck {
  private:
   static constexpr double never = std::numeric_limits<double>::infinity();
@@ -59,21 +56,21 @@ class PlausibilityCheck {
     double last = 0.0;      ///< Σ v² at the end of the last step, mixed units
     double older = 0.0;     ///< Σ v² at the end of the step before it, mixed units
     double gained = 0.0;    ///< unexplained energy at the last balance [J]
-    double doubt = 0.0;     ///< estimated error of the works at the last balance [J]
+    double doubt = 0.0;     ///< estimated error of the work at the last balance [J]
     Energy start;           ///< E₀
     double began = 0.0;     ///< time of the start [s]
     Unexplained settled;    ///< sum of the earlier balances of the run
   };
 
  public:
-  /// Resets the limits and the balance at `place`; `place.h` is the length of the next step. Nothing is checked before
-  /// the first call.
-  template <class = void>  // compiled where it is used
+  /// Sets the limits and restarts the balance at `place`; `place.h` is the length of the next step. Nothing is checked
+  /// before the first call.
+  template <class = void>  // a template, to be compiled only if it is used
   [[gnu::cold]] void begin(System& system, PlausibilityLimits const& limits, StepResult const& place);
 
-  /// Checks a step. `system` may be evaluated near the end of the step; it is evaluated at the end before a refusal.
-  /// \param squares Σ v², mixed units \throws Diverged if the end violates a limit, InvalidInput if a prescribed value
-  /// disagrees with its rate, NewtonConvergenceFailure if the step jumps over a contact.
+  /// Checks a step. `system` may be evaluated near the end of the step; it is evaluated at the end before a limit is
+  /// reported. \param squares Σ v², mixed units \throws Diverged if the end violates a limit, InvalidInput if a
+  /// prescribed value disagrees with its rate, NewtonConvergenceFailure if the step jumps over a contact.
   template <class = void>
   void require(System& system, StepResult const& end, double squares) {
     if (work_.counts()) work_.add(system, end);
@@ -156,7 +153,7 @@ class PlausibilityCheck {
   Balance balance(System& system) const;
   /// Limit of the unexplained energy gain since a start [J].
   double energy_limit(StepResult const& end) const {
-    // The error estimate of the works compares steps, so it is not reliable in the first steps after a start.
+    // The error estimate of the work compares steps, so it is not reliable in the first steps after a start.
     double const few = end.t - account_.began < 4.5 * end.h ? 10.0 : 1.0;
     return few * account_.energy * account_.scale;
   }
@@ -169,13 +166,13 @@ class PlausibilityCheck {
   void check_step(System& system, StepResult const& end, double squares);
   template <class = void>
   [[noreturn, gnu::cold]] void refuse_open(System const& system, double t) const;
-  /// Balance at the end of a step, at which `system` must be evaluated. \throws Diverged if it violates the limit.
+  /// Balance at the end of a step, at which `system` must be evaluated. \throws Diverged if the gain exceeds the limit.
   template <class = void>
   Unexplained check_energy(System& system, StepResult const& end);
   template <class = void>
   void require_no_passage(System const& system, StepResult const& end);
 
-  /// Constraint functions of a block, in the data of the system.
+  /// Constraint violations of a block, in the data of the system.
   struct Violations {
     double const* g;
     int rows;
@@ -198,7 +195,7 @@ class PlausibilityCheck {
   Account account_;
   Sequence<Violations> violations_;
   Sequence<Passing> contacts_;  ///< contacts that a step may jump over
-  WorkAccount work_, earlier_;  ///< account since the last start, and the one before it for a trial step that fails
+  WorkAccount work_, earlier_;  ///< account since the last start; previous account, restored if a trial step fails
   bool replaced_ = false;       ///< true if `begin` was called since the start of the trial step
   LawWatch laws_;
   bool lossless_ = false;  ///< true if no part of the model dissipates
@@ -239,7 +236,7 @@ void PlausibilityCheck::begin(System& system, PlausibilityLimits const& limits, 
   lossless_ = work_.complete();
   for (BodyLayout const& body : layout.bodies) {
     lossless_ = lossless_ && body.lossless;
-    if (body.changes) account_.energy *= 100.0;  // its energy changes without work
+    if (body.changes) account_.energy *= 100.0;  // the body's energy changes without work
   }
   for (JointLayout const& joint : layout.joints) lossless_ = lossless_ && (!joint.stores || joint.lossless);
   for (std::size_t i = 0; i < layout.forces.size(); ++i) {
@@ -264,7 +261,7 @@ void PlausibilityCheck::require_no_passage(System const& system, StepResult cons
         "step.missed_contact",
         {"The step of ", end.h, " s to t = ", ErrorTime{end.t}, " s jumps over the contact \"", ErrorObject{force.name},
          "\": the bodies touch during the step, but not at its ends. Take a smaller step, or "
-         "max_step_halvings in the options of the run."});
+         "set max_step_halvings in the options of the run."});
   }
   for (Passing& contact : contacts_) {
     std::copy_n(contact.now, 2, contact.last);
@@ -293,9 +290,9 @@ void PlausibilityCheck::refuse_open(System const& system, double t) const {
         row = violations.first + i;
       }
   throw Diverged("step.violation",
-                 {"The step to t = ", ErrorTime{t}, " s leaves ",
-                  ErrorObject{system.layout().name_of(system.layout().velocities + row)}, " violated by ",
-                  ErrorValue{largest}, ", but the limit is ", account_.open,
+                 {"The step to t = ", ErrorTime{t}, " s violates the constraint equations of ",
+                  ErrorObject{system.layout().name_of(system.layout().velocities + row)}, " by ", ErrorValue{largest},
+                  ", but the limit is ", account_.open,
                   ". The integration diverges. Take a smaller step, or raise limits.violation of the run."});
 }
 
@@ -349,8 +346,9 @@ Unexplained PlausibilityCheck::check_energy(System& system, StepResult const& en
   if (unexplained > energy_limit(end) && moves(end))
     throw Diverged(
         "step.energy_gain",
-        {"The step to t = ", ErrorTime{end.t}, " s ends with an energy gain of ", ErrorValue{unexplained},
-         " J since the last start that no work explains; gravity, loads, drives and the energy of the start give ",
+        {"The step to t = ", ErrorTime{end.t}, " s ends with ", ErrorValue{unexplained},
+         " J more energy than the work since the last start explains; gravity, loads, drives and the energy at the "
+         "last start supply at most ",
          account_.scale, " J; ", ErrorObject{system.name_of(fastest_of(end.v))},
          " moves fastest. The integration diverges. Take a smaller step or softer joints, or raise limits.energy of "
          "the run."});

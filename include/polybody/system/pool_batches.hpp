@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Batches of elements of several bodies. A track of many links with one element each then fills SIMD vectors like one
-/// long body.
+/// Grouping of elements of several bodies into SIMD vectors. A track of many links with one element each then fills
+/// SIMD vectors like one long body.
 
 #include <polybody/bodies/shared/element_batches.hpp>
 #include <polybody/bodies/shared/time_varying.hpp>
@@ -15,8 +15,8 @@ struct PlacedElement {
   Index entry, element;
 };
 
-/// Distribution of the elements of a pool over the kernels. Bodies with fewer elements than a SIMD vector share one
-/// with the next bodies that have the same elements. Other bodies are evaluated separately.
+/// Distribution of the elements of a pool over the kernels. Bodies with fewer elements than a SIMD vector has lanes
+/// share SIMD vectors with the next bodies of equal elements. Other bodies are evaluated separately.
 struct PoolBatches {
   Sequence<Index> bodies;  ///< bodies that are evaluated separately
   Sequence<std::array<PlacedElement, std::size_t(simd_size)>> filled;
@@ -24,7 +24,7 @@ struct PoolBatches {
   bool alone = true;                ///< true if no body is in two SIMD vectors
 };
 
-/// At least so many bodies, of one element each.
+/// True if the pool has at least `least` bodies and each of them has one element.
 template <class B>
 bool has_single_elements(BodyPool<B> const& pool, Index least) {
   if (Index(pool.entries.size()) < least) return false;

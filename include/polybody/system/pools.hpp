@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Typed pools of the bodies, markers, joints and forces of a model, one per type.
+/// Pools in which a model stores its bodies, markers, joints and forces: one pool for each type.
 
 #include <array>
 #include <cstdint>
@@ -99,9 +99,9 @@ struct SolutionAmong<P, Ps...> {
 template <class... Ps>
 using SolutionOf = typename SolutionAmong<Ps...>::Type;
 
-/// True if `entries` has a part with this index that was added to the model with the number `serial`. A copied model
-/// accepts the handles of parts that it has from its original. Neither accepts handles of parts added to the other
-/// later.
+/// True if `entries` has an entry with this index that was added to the model with the serial number `serial`. A copied
+/// model accepts handles of entries that it copied from its original. Neither of the two accepts handles of entries
+/// that were added to the other one later.
 template <class Entries>
 bool holds(Entries const& entries, Index index, std::uint64_t serial) {
   return index >= 0 && std::size_t(index) < entries.size() && entries[std::size_t(index)].made_in == serial;

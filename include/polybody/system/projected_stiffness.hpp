@@ -109,7 +109,8 @@ void add_pulled_pairs(std::array<MarkerKinematics<double> const*, std::size_t(n)
                         sink);
 }
 
-/// Skips the blocks of all pairs of n markers in a sink, in the order of `add_pulled_pairs`, if no force acts.
+/// Skips the blocks of all pairs of n markers in a sink, in the order of `add_pulled_pairs`. Used if no force acts
+/// between the markers.
 template <int n>
 void skip_pulled_pairs(std::array<MarkerKinematics<double> const*, std::size_t(n)> const& markers, BlockSink& sink) {
   for (MarkerKinematics<double> const* a : markers)
@@ -159,8 +160,8 @@ void pull_rows(MarkerKinematics<double> const& p, double const* map, double* out
 }
 
 /// sink += (Gi Ji)ᵀ k (Gj Jj) for a compliant joint with m constraint functions between two markers. Its tangent k is
-/// m×m by columns, or its diagonal. The rows are projected before the multiplication by k. This requires m wrenches for
-/// each marker instead of six for each pair.
+/// m×m by columns, or its diagonal. The rows Gi are projected before the multiplication by k. Thus m wrenches per
+/// marker are projected, instead of six per pair.
 template <int m, bool diagonal>
 void add_pulled_slope(std::array<MarkerKinematics<double> const*, 2> const& markers, double const* const (&maps)[2],
                       double const* slope, Sequence<double>& scratch, BlockSink& sink) {

@@ -13,7 +13,7 @@
 namespace polybody {
 
 /// Map from the unknowns of the full system to those of the reduced system.
-template <class T = double>  // compiled where it is used
+template <class T = double>  // a template, to be compiled only if it is used
 class UnknownMapOf {
  public:
   /// Unknown and its factor.
@@ -23,7 +23,7 @@ class UnknownMapOf {
   };
 
   /// `targets[i]` are the reduced unknowns of full unknown i. Most unknowns have one target with factor one. Dependent
-  /// unknowns have several targets, omitted ones none.
+  /// unknowns have several targets, and omitted unknowns have none.
   explicit UnknownMapOf(Sequence<Sequence<Target>> targets = {})
       : targets_(std::move(targets)), run_end_(targets_.size()) {
     for (std::size_t i = targets_.size(); i-- > 0;) {
@@ -33,7 +33,8 @@ class UnknownMapOf {
     }
   }
 
-  /// Target of full unknown `first` if `size` unknowns from it on have consecutive targets with factor one; else −1.
+  /// Target of full unknown `first` if the `size` unknowns from `first` on have consecutive targets with factor one;
+  /// otherwise −1.
   Index run(Index first, Index size) const {
     return run_end_[std::size_t(first)] >= first + size ? targets_[std::size_t(first)][0].unknown : -1;
   }
@@ -100,7 +101,7 @@ class UnknownMapOf {
   Sequence<Index> run_end_;  // end of the run that contains unknown i; i itself if it is not plain
 };
 
-/// Cache of a reduced sink between passes: ranges of unknowns, and workspace for blocks, by rows.
+/// Cache that reduced sinks reuse in every assembly: ranges of unknowns, and workspace for blocks, by rows.
 template <class T = double>
 struct ReducedBlocksOf {
   Sequence<std::list<typename UnknownMapOf<T>::Range>> ranges;  ///< previous ranges by their first full unknown
@@ -124,7 +125,7 @@ class ReducedSinkOf {
   using Target = typename Map::Target;
 
  public:
-  /// \param slots record the destinations of all blocks; null for a sink without slots
+  /// \param slots recorder of the destinations of all blocks; null if they are not recorded
   ReducedSinkOf(Map const& map, Kept& kept, BlockSink& sink, ReducedSlotsOf<T>* slots = nullptr)
       : map_(map), kept_(kept), sink_(sink), slots_(slots) {
     kept_.ranges.resize(std::size_t(map.size()));
@@ -206,7 +207,7 @@ class ReducedSinkOf {
         for (Index i = 0; i < rows.size; ++i) full[i * cols.size + t.unknown] += t.factor * half[i * b.cols + j];
   }
 
-  /// Range of unknowns, computed in the first pass and cached for later ones.
+  /// Range of unknowns, computed in the first assembly and cached for later ones.
   Range const& range(Index first, Index size) {
     auto& known = kept_.ranges[std::size_t(first)];
     for (Range const& r : known)
@@ -221,8 +222,8 @@ class ReducedSinkOf {
   bool copies_ = true;
 };
 
-using UnknownMap = UnknownMapOf<>;       ///< with scalar double
-using MappedBlocks = ReducedBlocksOf<>;  ///< with scalar double
-using MappedSink = ReducedSinkOf<>;      ///< with scalar double
+using UnknownMap = UnknownMapOf<>;       ///< map with factors in doubles
+using MappedBlocks = ReducedBlocksOf<>;  ///< cache with blocks of doubles
+using MappedSink = ReducedSinkOf<>;      ///< sink with blocks of doubles
 
 }  // namespace polybody

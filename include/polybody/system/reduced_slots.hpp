@@ -1,16 +1,16 @@
 #pragma once
 /// \file
-/// Destinations of full blocks in the storage of a solver, recorded once. `MappedSink` looks up each block and divides
-/// it by runs of reduced unknowns; the solver divides it by its nodes. A block of a cable element becomes about sixty
-/// pieces of one to nine entries.
+/// Destinations of full blocks in the storage of a solver, recorded once. Without them, `MappedSink` looks up each
+/// block and divides it into runs of reduced unknowns, and the solver divides it among its nodes. A block of a cable
+/// element becomes about sixty pieces of one to nine entries.
 
 #include <polybody/math/block_sink.hpp>
 #include <polybody/math/sequence.hpp>
 
 namespace polybody {
 
-/// Receiver of full blocks in the order of their recording.
-template <class T = double>  // compiled where it is used
+/// Receiver that adds full blocks to recorded destinations, in the order of recording.
+template <class T = double>  // a template, to be compiled only if it is used
 class ReducedSlotsOf {
  public:
   ReducedSlotsOf() = default;
@@ -19,10 +19,10 @@ class ReducedSlotsOf {
   ReducedSlotsOf(ReducedSlotsOf&&) = default;             ///< pointers to targets remain valid
   ReducedSlotsOf& operator=(ReducedSlotsOf&&) = default;  ///< pointers to targets remain valid
 
-  /// True if all blocks of this storage layout are recorded.
+  /// True if the destinations of all blocks in the storage layout `layout` are recorded.
   bool leads_to(std::uint64_t layout) const { return complete_ && layout_ == layout; }
 
-  /// Begins the recording in the first pass. \param slots slots of the receiver before the first block
+  /// Begins the recording, in the first assembly. \param slots slots of the receiver before the first block
   void record(BlockSlots const& slots) {
     slots_ = slots;
     layout_ = slots.layout;
@@ -63,7 +63,7 @@ class ReducedSlotsOf {
   /// Ends the recording.
   void complete() { complete_ = true; }
 
-  /// Begins a later pass with the first block.
+  /// Begins a later assembly with the first block.
   void begin() { next_ = 0; }
   /// Adds the next block to the receiver's storage, at the recorded destinations.
   void add(Index, Index, BlockView const& b) {
@@ -95,6 +95,6 @@ class ReducedSlotsOf {
   std::size_t first_ = 0, next_ = 0;
 };
 
-using MappedSlots = ReducedSlotsOf<>;  ///< with scalar double
+using MappedSlots = ReducedSlotsOf<>;  ///< receiver of blocks of doubles
 
 }  // namespace polybody

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
 /// Reduction of a model's unknowns to those of a time step. Reduced vectors contain the unknowns that no policy
-/// eliminates, full vectors contain all unknowns. Reduced vectors q and v consist of the independent coordinates of
-/// bodies without a carrying joint, of the joint coordinates and deformations of carried bodies, and in v of
+/// eliminates, full vectors contain all unknowns. Reduced q and v contain the independent coordinates of bodies without
+/// a carrying joint, and the joint coordinates and deformations of carried bodies. Reduced v also contains the
 /// first-order states. The reduced multipliers are those of the remaining constraint equations of joints and bodies.
 
 #include <algorithm>
@@ -20,8 +20,8 @@ namespace polybody {
 template <class T = double>
 class ReductionOf {
  public:
-  /// \throws InvalidInput if joints with joint coordinates close a loop, InconsistentInitialConditions if linear joints
-  /// contradict each other.
+  /// \throws InvalidInput if joints with joint coordinates close a loop. \throws InconsistentInitialConditions if
+  /// linear joints contradict each other.
   template <class M>
   explicit ReductionOf(M const& model) : linear_(model.linear_rows()) {
     if constexpr (!std::is_void_v<typename M::Solution>) grow_tree(model);
@@ -46,35 +46,35 @@ class ReductionOf {
   Sequence<ReducedPosition> const& places() const { return places_; }
   /// Indices of the remaining constraint equations in the model.
   Sequence<Index> const& remaining_equations() const { return rows_; }
-  /// Indices of the nonholonomic equations among the remaining ones.
+  /// Indices of the nonholonomic equations among the remaining equations.
   Sequence<Index> const& nonholonomic_equations() const { return nonholonomic_equations_; }
   /// Full velocity index of reduced velocity i. For a joint coordinate this is the first velocity of the carried body.
   Index full_velocity(Index i) const { return full_velocity_[std::size_t(i)]; }
   /// Index in the tree of the body that is carried by the joint whose first constraint equation is `row`.
   Index carried_by(Index row) const { return carried_by_[std::size_t(row)]; }
 
-  /// Copies the coordinates that both states have from the `reduced` to the `full` ones.
+  /// Copies the coordinates that both vectors contain from `reduced` to `full`.
   void expand_coordinates(VecXOf<T> const& reduced, VecXOf<T>& full) const {
     for (auto const& [n, w] : same_q_) full[w] = reduced[n];
   }
-  /// Copies the coordinates that both states have from the `full` to the `reduced` ones.
+  /// Copies the coordinates that both vectors contain from `full` to `reduced`.
   void reduce_coordinates(VecX const& full, VecX& reduced) const {
     for (auto const& [n, w] : same_q_) reduced[n] = full[w];
   }
-  /// Copies the generalised velocities that both states have from the `reduced` to the `full` ones.
+  /// Copies the generalised velocities that both vectors contain from `reduced` to `full`.
   void expand_velocities(VecXOf<T> const& reduced, VecXOf<T>& full) const {
     for (auto const& [n, w] : same_v_) full[w] = reduced[n];
   }
-  /// Copies the generalised velocities that both states have from the `full` to the `reduced` ones.
+  /// Copies the generalised velocities that both vectors contain from `full` to `reduced`.
   void reduce_velocities(VecXOf<T> const& full, VecXOf<T>& reduced) const {
     for (auto const& [n, w] : same_v_) reduced[n] = full[w];
   }
-  /// Copies the `reduced` multipliers to the `full` ones. Multipliers of eliminated equations are set to zero.
+  /// Copies the multipliers of the remaining equations from `reduced` to `full`. Other multipliers are set to zero.
   void expand_rows(VecX const& reduced, VecX& full) const {
     full.setZero();
     for (std::size_t i = 0; i < rows_.size(); ++i) full[rows_[i]] = reduced[Index(i)];
   }
-  /// Copies the `full` multipliers of the remaining equations to the `reduced` ones.
+  /// Copies the multipliers of the remaining equations from `full` to `reduced`.
   void reduce_rows(VecX const& full, VecX& reduced) const {
     for (std::size_t i = 0; i < rows_.size(); ++i) reduced[Index(i)] = full[rows_[i]];
   }
@@ -93,7 +93,7 @@ class ReductionOf {
     JointMotions motions;
   };
 
-  /// First coordinate and velocity of a body in the model, and their numbers.
+  /// First coordinate and velocity of a body in the model, and numbers of coordinates and velocities.
   struct Extent {
     Index q0, nq, v0, nv;
   };
@@ -182,18 +182,18 @@ class ReductionOf {
       for (int j = 0; j < turns; ++j) out.inertia(3 - turns + i, 3 - turns + j) = m(n - turns + i, n - turns + j);
   }
 
-  /// Requires links without loops. \throws InvalidInput naming the first joint, in the order of connection, that closes
-  /// a loop.
+  /// Requires links without loops. \throws InvalidInput if a joint closes a loop; the message names the first such
+  /// joint in the order of connection.
   static void require_tree(std::size_t bodies, Sequence<Link> const& links);
 
-  /// Builds the tree breadth first, from the ground and then from one body of each remaining part. Every joint carries
-  /// one body. If `all` is true, bodies without such a joint become roots.
+  /// Builds the tree breadth first from the ground, then from one body of each group without connection to the ground.
+  /// Every joint with joint coordinates carries one body. If `all` is true, bodies without such joints become roots.
   void build_tree(Sequence<TreeBody> const& bodies, Sequence<Link> const& links, VecX const& reference, bool all);
 
   void number_unknowns(Sequence<Extent> const& extents, Index coordinates, Index velocities, Index states) {
     Sequence<bool> dependent_v(std::size_t(velocities), false), dependent_q(std::size_t(coordinates), false);
     for (auto const& d : linear_.dependents()) dependent_v[std::size_t(d.v)] = dependent_q[std::size_t(d.q)] = true;
-    Sequence<Index> in_tree(std::size_t(velocities) + 1, -1);  // by first velocity
+    Sequence<Index> in_tree(std::size_t(velocities) + 1, -1);  // index in the tree, by first velocity
     for (std::size_t i = 0; i < tree_.bodies.size(); ++i) in_tree[std::size_t(tree_.bodies[i].v0)] = Index(i);
     places_.resize(extents.size());
     Sequence<std::size_t> order(extents.size());
@@ -339,6 +339,6 @@ void ReductionOf<T>::build_tree(Sequence<TreeBody> const& bodies, Sequence<Link>
     if (place[i] < 0) tree_.bodies.push_back(bodies[i]);
 }
 
-using Reduction = ReductionOf<>;  ///< with scalar double
+using Reduction = ReductionOf<>;  ///< reduction of vectors of doubles
 
 }  // namespace polybody

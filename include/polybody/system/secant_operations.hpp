@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Evaluation of a model over a step from q₀ to q₁: forces, constraint functions and markers by secants. The changes of
-/// every potential and constraint function are then exact to round-off [Gonzalez 1996, 1999]:
+/// Evaluation of a model over an energy-conserving step from q₀ to q₁, with secant slopes instead of derivatives. The
+/// changes of every potential and constraint function are then exact to round-off [Gonzalez 1996, 1999]:
 ///   f·Δq = −ΔV minus the dissipated energy,   Ḡ Δq = ΔΦ.
 
 #include <polybody/math/secant.hpp>
@@ -13,7 +13,7 @@
 
 namespace polybody::detail {
 
-/// Calls f(pool, entry) for each pool of a model and its entry of the parallel tuple `vectors`.
+/// Calls f(pool, vector) for each pool of a model and the corresponding element of the tuple `vectors`.
 template <class Pools, class Vectors, class F>
 void for_each_pool_with(Pools const& pools, Vectors& vectors, F&& f) {
   [&]<std::size_t... I>(std::index_sequence<I...>) {
@@ -22,7 +22,7 @@ void for_each_pool_with(Pools const& pools, Vectors& vectors, F&& f) {
 }
 
 /// Position and axes of a marker (r, then A column by column) at both ends of a step, and their secant slopes with
-/// respect to its columns.
+/// respect to the coordinates of the marker's columns.
 struct MarkerSecant {
   std::array<double, 12> from = {}, to = {};
   double* slopes = nullptr;  ///< 12×columns
@@ -63,7 +63,7 @@ Frame<S> frame_of(MarkerSecant const& m, int first) {
   return f;
 }
 
-/// Slope with respect to a column of a marker, from the slopes `by_frame` (12) with respect to its twelve numbers.
+/// Slope with respect to a column of a marker, from the slopes `by_frame` (12) with respect to position and axes.
 inline double pulled(MarkerSecant const& m, double const* by_frame, Index column) {
   double sum = 0.0;
   for (int j = 0; j < 12; ++j) sum += by_frame[j] * m.slopes[12 * column + j];
@@ -138,8 +138,8 @@ class TypedSecants {
   TypedSecants(TypedSecants const&) = delete;  // markers and constraints point into the arenas
   TypedSecants& operator=(TypedSecants const&) = delete;
 
-  /// Sets the step, and evaluates markers and constraint functions. Constraint functions of time are evaluated at its
-  /// end. Loads are evaluated at its midpoint, like the data of the system.
+  /// Sets the step, and evaluates markers and constraint functions. Constraint functions of time are evaluated at the
+  /// end of the step. Loads are evaluated at the midpoint of the step, like the data of the system.
   void evaluate(SecantStep const& step) {
     step_ = step;
     means_ = {1.0 / step.h, step.decay};
@@ -274,7 +274,7 @@ class TypedSecants {
     }
   }
 
-  template <class Entry, int m, class S = Secant<24>>  // compiled where it is used
+  template <class Entry, int m, class S = Secant<24>>  // a template, to be compiled only if it is used
   void evaluate_constraints(Entry const& e, double t, ConstraintSecant<m>& out) const {
     MarkerSecant const& a = marker(e.a);
     MarkerSecant const& b = marker(e.b);
@@ -318,8 +318,9 @@ class TypedSecants {
     sink.add(a.first, b.first, k);
   }
 
-  /// Subtracts the generalised forces of force element e from r. With a potential they are its negative discrete
-  /// gradient plus the velocity-dependent forces at the midpoint of the step, otherwise all forces at the midpoint.
+  /// Subtracts the generalised forces of force element e from r. For an element with a potential, these are the
+  /// negative discrete gradient of the potential plus the velocity-dependent forces at the midpoint of the step. For
+  /// other elements, these are all forces at the midpoint.
   template <class Entry>
   void add_force(Data<double> const& data, Entry const& e, VecX& r) const {
     using F = std::decay_t<decltype(e.force)>;

@@ -23,8 +23,8 @@ concept HasSecantPotential =
 
 namespace detail {
 
-/// True if a force element has no potential, or one that can be evaluated with secants. `SecantSupportOf::elements`
-/// excludes force groups.
+/// True if a force element has no potential, or a potential that can be evaluated with secants.
+/// `SecantSupportOf::elements` excludes force groups.
 template <class F>
 constexpr bool gives_secants() {
   if constexpr (ForceGroup<F>)

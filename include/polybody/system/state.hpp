@@ -17,13 +17,13 @@ struct StateOf {
   VecXOf<T> history;  ///< integrator history: further numbers that the integrator needs in the next step
 };
 
-using State = StateOf<double>;  ///< with scalar double
+using State = StateOf<double>;  ///< state of doubles
 
 namespace detail {
 [[noreturn, gnu::cold]] inline void refuse_unfitting_state() {
   throw InvalidInput(
       "state.size",
-      {"The state does not fit the model. Take it from reference_state() after the last body and joint were added."});
+      {"The state does not fit the model. Use model.reference_state() after the last body and joint are added."});
 }
 }  // namespace detail
 

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Evaluation of a system over a step from q₀ to q₁: forces, constraint functions and markers by secants. The changes
-/// of every potential and constraint function are then exact to round-off [Gonzalez 1996, 1999]:
+/// Evaluation of a system over an energy-conserving step from q₀ to q₁, with secant slopes instead of derivatives. The
+/// changes of every potential and constraint function are then exact to round-off [Gonzalez 1996, 1999]:
 ///   f·Δq = −ΔV minus the dissipated energy,   Ḡ Δq = ΔΦ.
 
 #include <polybody/system/system.hpp>
@@ -10,36 +10,36 @@ namespace polybody {
 
 /// Step of length h from q0 at time t to q1.
 struct SecantStep {
-  VecX const* q0 = nullptr;              ///< (nq) coordinates at its beginning
-  VecX const* q1 = nullptr;              ///< (nq) coordinates at its end
+  VecX const* q0 = nullptr;              ///< (nq) coordinates at the beginning of the step
+  VecX const* q1 = nullptr;              ///< (nq) coordinates at the end of the step
   double t = 0.0, h = 0.0, decay = 0.0;  ///< t [s], h [s], factor of dissipated strain energy (`DiscreteDerivative`)
   VecX const* v0 = nullptr;              ///< (nv) velocities at t; only the first-order states are read
   VecX const* a = nullptr;               ///< (nv) rates over the step; only those of first-order states are read
 };
 
-/// Functions of a model for such steps. `self` is the result of `make`.
+/// Table of a model's functions for a `SecantStep`. The argument `self` is the result of `make`.
 struct SecantOperations {
   /// Allocates the workspace for the secants of a model.
   std::shared_ptr<void> (*make)(void const* m, Data<double> const& data);
   void (*evaluate)(void* self, SecantStep const& step);  ///< sets the step for the other functions
   /// r = M a − f + Ḡᵀλ over the step.
   void (*residual)(void* self, Data<double> const& data, VecX const& a, VecX const& lambda, VecX& r);
-  void (*violation)(void* self, VecX& phi);                    ///< Φ(q₁)
-  void (*tangent)(void* self, double scale, BlockSink& sink);  ///< [M + scale K̄, Ḡᵀ; Ḡ, 0]
+  void (*violation)(void* self, VecX& phi);                    ///< writes Φ(q₁) to phi
+  void (*tangent)(void* self, double scale, BlockSink& sink);  ///< adds [M + scale K̄, Ḡᵀ; Ḡ, 0]
 };
 
 /// Mean forces, constraint Jacobians and tangents over a step, for energy-conserving integration.
 class StepSecants {
  public:
-  /// Allocates the workspace. \throws InvalidInput for a system that was made without `Capabilities::secants`.
+  /// Allocates the workspace. \throws InvalidInput for a system without `Capabilities::secants`.
   explicit StepSecants(System const& system)
       : entries_(require_entry(system.entries().first.secants, "secants")),
         self_(entries_->make(system.entries().second, system.data())),
         middle_(VecX::Zero(system.coordinates())),
         speed_(VecX::Zero(system.velocities())) {}
 
-  /// Sets the step. Constraint functions of time are evaluated at its end, loads and first-order states at its
-  /// midpoint. Afterwards `system` is evaluated at the midpoint.
+  /// Sets the step. Constraint functions of time are evaluated at the end of the step, loads and first-order states at
+  /// the midpoint. Afterwards `system` is evaluated at the midpoint.
   void evaluate(System& system, SecantStep const& step) {
     h_ = step.h;
     Index const bodies = system.layout().body_velocities();
@@ -53,7 +53,7 @@ class StepSecants {
   void residual(System const& system, VecX const& a, VecX const& lambda, VecX& r) const {
     entries_->residual(self_.get(), system.data(), a, lambda, r);
   }
-  /// Φ(q₁).
+  /// `phi` = Φ(q₁).
   void violation(VecX& phi) const { entries_->violation(self_.get(), phi); }
   /// Adds [M + s K̄, Ḡᵀ; Ḡ, 0] to `sink`. K̄ is a symmetric approximation of −∂f/∂q₁ without the change of Ḡ, and Ḡ
   /// approximates ∂Φ/∂q₁. Their relative errors are about the fraction of a revolution that a body makes in the step.
@@ -63,9 +63,9 @@ class StepSecants {
     system.tangent_of(TangentPart::force_elements, {.damping = s / h_, .stiffness = 0.5 * s, .states = 0.5 * h_}, sink);
   }
 
-  /// Adds [M + s K̄, Ḡᵀ; G(q₁), 0] of `step` to `sink`. K̄ includes ½ ∂(Gᵀλ)/∂q at the midpoint, since Ḡ equals G there
-  /// for constraint functions that are quadratic in q. If G loses rank within the step, Ḡ does not approximate G(q₁):
-  /// even their directions of rotation can differ.
+  /// Adds [M + s K̄, Ḡᵀ; G(q₁), 0] of `step` to `sink`. K̄ includes ½ ∂(Gᵀλ)/∂q at the midpoint, because for constraint
+  /// functions that are quadratic in q, Ḡ equals G at the midpoint. If G loses rank within the step, Ḡ does not
+  /// approximate G(q₁). Even the directions of rotation that Ḡ and G(q₁) permit can differ.
   void exact_tangent(System& system, SecantStep const& step, double s, VecX const& lambda, BlockSink& sink) {
     evaluate(system, step);
     Half forces{sink, system.velocities(), true}, rows{sink, system.velocities(), false};
@@ -80,7 +80,7 @@ class StepSecants {
   }
 
  private:
-  /// Sink that passes on the rows of the equations of motion, or those of G.
+  /// Sink that forwards only the rows of the equations of motion, or only the rows of G.
   struct Half {
     BlockSink& sink;
     Index velocities;

@@ -1,13 +1,13 @@
 #pragma once
 /// \file
-/// Access to a model by some of its types.
+/// `Subassembly`: access to a model for code that uses only some of the model's types.
 
 #include <polybody/system/model.hpp>
 
 namespace polybody {
 
-/// Part of a model that uses some of its types only. A function that builds a hull or a suspension is then compiled
-/// once for all models with these types:
+/// Reference to a model that depends on some of the model's types only. A function that builds a hull or a suspension
+/// is then compiled once for all models with these types:
 ///   Subassembly<Bodies<Rigid<>>, Joints<Joint<Revolute, Constraint>>, Forces<SpringDamper>> hull(model);
 ///   auto const wheel = hull.add(body, "wheel");
 ///   hull.connect(Joint{Revolute{.axis = axis}}, arm.at({0, 0, 0}), wheel.at({0, 0, 0}), "axle");
@@ -60,7 +60,7 @@ class Subassembly<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>> {
     for (Marker<A> const& m : many) pooled_many.push_back(pooled(m));
     return detail::add_group(parts_, forces_of<F>(), group, pooled_many, std::move(name));
   }
-  /// Adds a partner with the law `law` at marker `one` to a force group, like `Model::add_partner`.
+  /// Adds a contact partner with the contact law `law` at marker `one` to a force group, like `Model::add_partner`.
   template <OneOf<Fs...> F, class Law, class A>
     requires ForceGroup<F>
   void add_partner(ElementHandle<F> const& group, Law const& law, Marker<A> const& one, std::string name = "") {

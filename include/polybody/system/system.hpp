@@ -11,21 +11,21 @@ namespace polybody {
 /// Equations of a model or of a user for integrators, solvers and analyses: `BasicSystem` with scalar double.
 using System = BasicSystem<double>;
 
-/// Reduced state of a time step for the full state x. It is exact if x satisfies the constraint equations of the
-/// eliminated joints. If policies eliminate unknowns, the result has no integrator history.
+/// Computes the reduced state of a time step from the full state x. The result is exact if x satisfies the constraint
+/// equations of the eliminated joints. If policies eliminate unknowns, the result has no integrator history.
 template <class = void>
 State reduce(System const& s, State const& x) {
   State out = x;
   if (Coordinates const& c = s.step_coordinates()) c.entries->reduced(c.self.get(), x, out);
   return out;
 }
-/// Number of multipliers that a step can keep: those of its constraint equations, and estimates for the joints that
-/// carry bodies (`ReducedLayout`).
+/// Number of multipliers that a step can store: those of its constraint equations, and estimates for eliminated joints
+/// (`ReducedLayout::eliminated_equations`).
 inline Index multipliers_of(System const& s) {
   return s.rows() + (s.step_coordinates() ? Index(s.step_coordinates().reduced->eliminated_equations.size()) : 0);
 }
-/// Writes the full state of the reduced state `stepped` to x, with the multipliers of eliminated joints. These are
-/// copied if the step keeps all multipliers, otherwise computed. `r` is workspace.
+/// Converts the reduced state `stepped` to the full state x. Multipliers of eliminated joints are copied if `stepped`
+/// contains them, and otherwise computed. `r` is workspace.
 template <StateScalar T>
 void expand(BasicSystem<T>& s, StateOf<T> const& stepped, StateOf<T>& x, VecXOf<T>& r) {
   CoordinatesOf<T> const& c = s.step_coordinates();
@@ -54,7 +54,8 @@ void expand(BasicSystem<T>& s, StateOf<T> const& stepped, StateOf<T>& x, VecXOf<
   x.history = stepped.history;
 }
 
-/// Appends estimates for the joints that carry bodies to the multipliers of a reduced state with known accelerations.
+/// Appends estimates of the multipliers of eliminated joints to the multipliers of a reduced state. Its accelerations
+/// must be known.
 template <class = void>
 [[gnu::cold]] void append_multipliers(System& s, State& stepped) {
   if (multipliers_of(s) == s.rows()) return;
@@ -70,7 +71,8 @@ template <class = void>
   stepped.lambda.swap(all);
 }
 
-/// Writes q̇ for the generalised velocities v to `rate`. `workspace` has 2 nq + nv entries, of the full model.
+/// Writes q̇ for the generalised velocities v to `rate`. `workspace` has 2 nq + nv entries, with nq and nv of the full
+/// model.
 template <class = void>
 void coordinate_rates(System const& s, VecX const& q, VecX const& v, VecXOf<Dual<1>>& workspace, VecX& rate) {
   Coordinates const& c = s.step_coordinates();
@@ -80,7 +82,7 @@ void coordinate_rates(System const& s, VecX const& q, VecX const& v, VecXOf<Dual
                                                                   workspace, rate);
 }
 
-/// Name of the body of coordinate i of the system's time steps.
+/// Name of the body to which coordinate i of a time step belongs.
 template <class = void>
 std::string name_of_coordinate(System const& s, Index i) {
   Coordinates const& c = s.step_coordinates();

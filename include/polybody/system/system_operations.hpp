@@ -16,7 +16,7 @@ BasicSystem<T>::BasicSystem(void const* model, ModelOperations<T> const& entries
       coordinates_(std::move(coordinates)),
       data_(std::move(data)) {
   if (layout_.velocities == 0)
-    throw InvalidInput("model.no_body", {"The model has no moving body. Add a body by model.add(body) first."});
+    throw InvalidInput("model.no_body", {"The model has no moving body. Add a body with model.add(body) first."});
   q_.setConstant(layout_.coordinates, T(0.0));
   v_.setConstant(layout_.velocities, T(0.0));
   if (coordinates_) {

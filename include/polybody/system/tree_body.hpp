@@ -12,7 +12,7 @@
 namespace polybody {
 
 /// Constants of a joint with a single rotation by x. Its axis is n in the parent's axes. In space, the quaternion from
-/// the parent's axes to those of the body is still cos(x/2) + turning sin(x/2).
+/// the parent's axes to those of the body is `still` cos(x/2) + `turning` sin(x/2).
 struct JointTurn {
   bool only = false;                                      ///< true if the joint is of this kind
   Vec<double, 3> axis{0, 0, 0};                           ///< n, unit vector in the parent's axes
@@ -28,16 +28,16 @@ struct TreeBody {
   Index parent = -1;                             ///< index in the tree; −1: the ground
   Placement from = {};                           ///< frame of the joint in the axes of the parent
   Placement to = {};                             ///< frame of the joint in the axes of the body
-  bool from_turned = true, to_turned = true;     ///< true if the frame is rotated relative to these axes
+  bool from_turned = true, to_turned = true;     ///< true if frame `from` or `to` is rotated relative to its body
   JointMotions motions = {};                     ///< motions from frame a to frame b
   Index from_end = -1, to_end = -1;              ///< indices of floating ends, for frames on flexible bodies; −1: none
   Index deformations = 0;                        ///< number of deformation coordinates, which follow those of the frame
   JointTurn turn = {};                           ///< constants of a single rotation between rigid bodies
   bool backwards = false;                        ///< true if frame b is on the parent
   double angle = 0.0;            ///< in the plane: rotation relative to the parent in the reference state [rad]
-  bool by_newton_euler = false;  ///< true if only weight and inertia act on it without joints and force elements
-  double mass = 0.0;             ///< [kg]
-  Mat3 inertia = Mat3::Zero();   ///< about the centre of mass, in the axes of the body [kg m²]
+  bool by_newton_euler = false;  ///< true if the body has no own forces except weight and inertia
+  double mass = 0.0;             ///< mass [kg]
+  Mat3 inertia = Mat3::Zero();   ///< inertia about the centre of mass, in the axes of the body [kg m²]
   Index qn = 0, vn = 0;          ///< first coordinate and velocity in reduced vectors
 
   /// True if a joint carries the body; otherwise it is a root.
@@ -59,19 +59,19 @@ struct TreeFrameOf {
   T* column(int k) { return s.data() + 6 * k; }              ///< column k of S
   T const* column(int k) const { return s.data() + 6 * k; }  ///< column k of S
 };
-using TreeFrame = TreeFrameOf<double>;  ///< with scalar double
+using TreeFrame = TreeFrameOf<double>;  ///< frame in doubles
 
 /// Workspace of a tree.
 template <class T>
 struct TreeStateOf {
   Sequence<TreeFrameOf<T>> frames;  ///< frame of each body
   Sequence<Vec<T, 6>> twists;       ///< workspace: a twist, wrench or rate of each body
-  Sequence<Vec<T, 6>> residuals;    ///< result of the last `reduce_forces`: residual [f; m] of each body and of all
-                                    ///< bodies that it carries, about the origin of its frame; its joint transmits it
+  Sequence<Vec<T, 6>> residuals;    ///< result of the last `reduce_forces`: sum of [f; m] of each body and of all
+                                    ///< bodies that it carries, about its origin; the joint transmits this sum
   Sequence<Vec<T, 6>> columns;      ///< for the floating ends: twist of the carried body per rate of each deformation
   Sequence<T> q, v, jacobian;       ///< workspace of the floating ends
 };
-using TreeState = TreeStateOf<double>;  ///< with scalar double
+using TreeState = TreeStateOf<double>;  ///< workspace in doubles
 
 /// Inverts the leading n×n block of a positive definite matrix `a` in place, by Gauss–Jordan elimination.
 template <class T>
@@ -117,7 +117,7 @@ int invert_with_pivots(Mat<T, 6, 6>& a, int n, double size) {
 
 namespace detail {
 
-/// Matrix m of doubles, converted to scalar T. If T is double, it is m.
+/// Matrix m of doubles, converted to scalar T. If T is double, returns m itself.
 template <class T, class M>
 decltype(auto) in_scalar(M const& m) {
   if constexpr (std::same_as<T, double>)
@@ -151,8 +151,7 @@ Mat<T, 3, 3> turn_about(int k, T angle) {
   return m;
 }
 
-/// Angle [rad] of the first of one or two rotations with product R: R = turn(axis), or turn(axis) turn(other) if
-/// `followed` is true.
+/// Angle [rad] of the rotation turn(axis) in R = turn(axis), or in R = turn(axis) turn(other) if `followed` is true.
 template <class T>
 double first_turn(int axis, Mat<T, 3, 3> const& r, bool followed, JointMotions const& motions, int k) {
   int const i = (axis + 1) % 3, j = (axis + 2) % 3;
@@ -161,7 +160,8 @@ double first_turn(int axis, Mat<T, 3, 3> const& r, bool followed, JointMotions c
   return motions.list[std::size_t(k + 1)].axis == i ? std::atan2(r(j, i), r(i, i)) : std::atan2(-r(i, j), r(j, j));
 }
 
-/// Frame that is moved along the motions of a joint in sequence, with the terms of its acceleration without u̇.
+/// Frame that is moved along the motions of a joint in sequence, with its velocity, and its acceleration without the
+/// terms in u̇.
 template <class T>
 struct RunnerOf {
   using Vec3 = Vec<T, 3>;
@@ -171,7 +171,7 @@ struct RunnerOf {
   Mat3 A;
   Vec3 w, alpha;
 
-  /// Moves to the point of the same rigid part at the distance vector `along`.
+  /// Moves the origin by the vector `along` to another point of the same rigid body.
   [[gnu::always_inline]] void go(Vec3 const& along) {
     Vec3 const rate = cross<T>(w, along), sideways = cross<T>(alpha, along), inwards = cross<T>(w, rate);
     for (int i = 0; i < 3; ++i) {

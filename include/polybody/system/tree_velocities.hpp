@@ -8,7 +8,7 @@
 namespace polybody {
 namespace detail {
 
-/// Three entries of a full vector.
+/// Three entries of a full vector, from index `first` on.
 template <class T>
 Vec<T, 3> triple(VecXOf<T> const& x, Index first) {
   return {x[first], x[first + 1], x[first + 2]};
@@ -48,7 +48,7 @@ template <class T>
 
 }  // namespace detail
 
-/// t += rigid motion of the parent, with twist `parent` (6), at a body at `arm` (3) from it.
+/// t += twist due to the rigid motion of the parent, with twist `parent` (6), at a body at `arm` (3) from the parent.
 template <class T>
 void add_carried(Vec<T, 6> const& parent, Vec<T, 3> const& arm, Vec<T, 6>& t) {
   Vec<T, 3> const rate = cross<T>({parent[3], parent[4], parent[5]}, arm);
@@ -65,11 +65,12 @@ void add_back(Vec<T, 6> const& w, Vec<T, 3> const& arm, Vec<T, 6>& parent) {
 
 namespace detail {
 
-/// t += column · factor. `column` points to the first of six entries. `along_column` is the dot product column · t.
+/// t += column · factor. `column` points to the first of six entries.
 template <class T>
 void add_column(T const* column, T factor, Vec<T, 6>& t) {
   for (int i = 0; i < 6; ++i) t[i] += column[i] * factor;
 }
+/// Dot product column · t. `column` points to the first of six entries.
 template <class T>
 T along_column(T const* column, Vec<T, 6> const& t) {
   T sum = 0.0;

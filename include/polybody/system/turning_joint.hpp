@@ -8,8 +8,8 @@
 namespace polybody {
 
 /// Fills in `body.turn` if the joint permits a single rotation only. The signs of the quaternions of body and parent
-/// remain those of `reference`, the full coordinates of the reference state. \param parent first coordinate of the
-/// parent; −1: the ground
+/// remain those of `reference`, the full coordinates of the reference state. \param parent index of the first
+/// coordinate of the parent; −1: the ground
 template <class = void>
 [[gnu::cold]] void prepare_turn(TreeBody& body, double const* reference, Index parent) {
   if (body.motions.count != 1 || body.motions.list[0].kind != JointMotion::Kind::turn) return;

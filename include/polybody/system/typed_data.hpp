@@ -22,7 +22,7 @@ Sequence<ForceEntry<F>> const& forces_of(M const& model) {
   return std::get<Sequence<ForceEntry<F>>>(model.force_pools());
 }
 
-/// Data of a model for its types of bodies and joints.
+/// Workspace that depends on the types of a model's bodies and joints.
 template <class M, StateScalar T>
 struct TypedData;
 template <class... Bs, class... Js, class... Fs, StateScalar T>
@@ -34,7 +34,7 @@ struct TypedData<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T> {
   static TypedData& of(Data<T> const& data) { return *static_cast<TypedData*>(data.kept.get()); }
 };
 
-/// Allocates memory for `markers` markers and sets the frames of those on the ground.
+/// Allocates memory for `markers` markers and sets the frames of ground markers.
 template <StateScalar T>
 void place_ground(Sequence<GroundMarker> const& ground, Index markers, Index jacobian_size, Data<T>& data) {
   data.markers.resize(std::size_t(markers));
@@ -50,7 +50,7 @@ void place_ground(Sequence<GroundMarker> const& ground, Index markers, Index jac
   }
 }
 
-/// Count of numbers in the constraint functions and maps of all linear joints.
+/// Number of entries in the constraint functions and maps of all linear joints.
 template <class = void>
 Index size_of(Sequence<LinearConstraints> const& all) {
   Index size = 0;
@@ -58,8 +58,8 @@ Index size_of(Sequence<LinearConstraints> const& all) {
   return size;
 }
 
-/// Appends the constraint blocks of all linear joints, with their numbers from `next` on. The loops over the joints set
-/// the owners later.
+/// Appends the constraint blocks of all linear joints, with constraint functions and maps stored from `next` on. The
+/// loops over the joints set the owners later.
 template <StateScalar T>
 void place_linear_rows(Sequence<LinearConstraints> const& all, T* next, Data<T>& data) {
   for (LinearConstraints const& rows : all) {
@@ -78,7 +78,7 @@ void place_linear_rows(Sequence<LinearConstraints> const& all, T* next, Data<T>&
   }
 }
 
-/// Evaluates g = C_a e_a + C_b e_b − c of all linear joints, with their numbers from `next` on.
+/// Evaluates g = C_a e_a + C_b e_b − c of all linear joints, with constraint functions and maps stored from `next` on.
 template <StateScalar T>
 void measure_linear_rows(Sequence<LinearConstraints> const& all, VecXOf<T> const& q, Data<T> const& data, T* next) {
   if (!data.linear_rows) return;
@@ -141,7 +141,7 @@ struct DataMaker<Model<Bodies<Bs...>, Joints<Js...>, Forces<Fs...>>, T> {
   }
 };
 
-/// Layout of a model with its counts and properties, without its parts.
+/// Layout of a model with sizes and properties, but without its bodies, joints and forces.
 template <class M>
 ModelLayout counts_of(M const& model) {
   return {.serial = model.serial(),

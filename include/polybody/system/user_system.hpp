@@ -45,7 +45,8 @@ concept UserMechanics = requires(E const e, VecX const& x, double t, MatX& m, Ve
 /// Equations that `system_of` accepts.
 template <class E>
 concept UserEquations = UserMechanics<E> || UserMechanicsWithStates<E> || UserFirstOrderEquations<E>;
-/// Equations with the tangent −(ck ∂f/∂q + cd ∂f/∂v) (n×n) for implicit steps. The alternative is central differences.
+/// Equations with the tangent −(ck ∂f/∂q + cd ∂f/∂v) (n×n) for implicit steps. Without this tangent, central
+/// differences are used.
 template <class E>
 concept HasForceTangent = requires(E const e, VecX const& x, double t, MatX& k) { e.tangent(x, x, t, 1.0, 1.0, k); };
 /// Equations with constraint equations Φ(q, t) = 0, with G = ∂Φ/∂q, Φ_t, and γ in Φ̈ = G v̇ + γ.
@@ -101,7 +102,7 @@ struct UserOperations {
       of(self).mechanics.gamma(at.q, of(self).v_n, at.t, out);
     }
   }
-  /// Evaluates M. Its diagonal has ones for the first-order states.
+  /// Evaluates M. The diagonal entries of first-order states are one.
   void find_mass(VecX const& q) const {
     if constexpr (!UserFirstOrderEquations<E>) {
       mechanics.mass(q, m_n);
@@ -197,9 +198,9 @@ struct UserOperations {
 
 }  // namespace detail
 
-/// Makes a system of equations, which it stores. The second-order terms of its constraint equations are omitted. Some
-/// implicit steps use such terms if they do not converge. \param name name in messages \param constant_mass true if M
-/// does not depend on q
+/// Makes a system from the equations `mechanics`, which it stores. The second-order terms ∂(Gᵀλ)/∂q of constraint
+/// equations are omitted. Implicit steps of other systems may use these terms if they do not converge otherwise. \param
+/// name name in messages \param constant_mass true if M does not depend on q
 template <UserEquations E>
 System system_of(E mechanics, std::string name = "system", bool constant_mass = false) {
   auto self = std::make_shared<detail::UserOperations<E>>(std::move(mechanics));

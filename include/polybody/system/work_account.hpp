@@ -11,7 +11,7 @@
 
 namespace polybody {
 
-/// End of a step of length h before its acceptance.
+/// End of a step of length h that is not yet accepted.
 struct StepResult {
   VecX const &q, &v, &lambda;  ///< q (nq), v (nv), λ (rows) at the end
   double t, h;                 ///< time of the end [s], length of the step [s]
@@ -20,17 +20,17 @@ struct StepResult {
 /// Signed work [J] of each element since the start of an account, by two quadratures over each step:
 ///   along the path, ½ (f₀ + f₁)·Δr: exact for a force that is linear in the position, at any step length;
 ///   over time, ½ h (P₀ + P₁): never positive for a damper, at any step length.
-/// If the step does not resolve a spring or a damper, one of the two finds no work input. An energy gain due to such an
-/// element therefore remains unexplained. Both quadratures have an error of O(h²). The error of the first is estimated
-/// by comparison of two steps with one of twice the length [Richardson 1911]. The estimate is zero for a force that is
-/// linear in the position, and large for a force that jumps. Elements with a potential are not counted. `add` does not
-/// allocate memory.
+/// If the step does not resolve a spring or a damper, one of the two quadratures finds no work input. An energy gain
+/// due to such an element therefore remains unexplained. Both quadratures have an error of O(h²). The error of the
+/// quadrature along the path is estimated by comparison of two steps with one step of twice the length [Richardson
+/// 1911]. The estimate is zero for a force that is linear in the position, and large for a force that jumps. Elements
+/// with a potential are not counted. `add` does not allocate memory.
 class WorkAccount {
  public:
-  /// Resets the account at `place`, the last evaluated state of `system`. `place.h` is not read.
+  /// Restarts the account at `place`, the last evaluated state of `system`. `place.h` is not read.
   template <class = void>
   [[gnu::cold]] void begin(System const& system, StepResult const& place);
-  /// Adds the work over a step. `system` must be evaluated at its end.
+  /// Adds the work over a step. `system` must be evaluated at the end of the step.
   template <class = void>
   void add(System const& system, StepResult const& end);
 
@@ -51,7 +51,7 @@ class WorkAccount {
     for (std::size_t i = 0; i < 2 * sums_; i += 2) sum += std::max(0.0, std::min(work[i], work[i + 1]));
     return sum;
   }
-  /// Sum of the signed works along the path [J].
+  /// Sum of the signed work of all elements along the path [J].
   double net() const {
     double sum = 0.0;
     for (std::size_t i = 0; i < 2 * sums_; i += 2) sum += samples_[last_].work[i];
@@ -70,12 +70,12 @@ class WorkAccount {
   struct Element {
     Kind kind;
     Index index, row;     ///< index of the wrench or the block; index of its λ, −1 for a compliant joint
-    std::size_t at, sum;  ///< index of its first number in a sample; index of its works
+    std::size_t at, sum;  ///< index of its first number in a sample; index of its work
   };
-  /// Wrenches, motions and powers of the elements at an instant, and their works up to it.
+  /// Wrenches, motions and powers of the elements at an instant, and their work up to this instant.
   struct Sample {
     double t = 0.0, doubt = 0.0, worst = 0.0;  ///< [s], [J], [J]
-    std::size_t before = 0;  ///< index of the sample at the beginning of the step; its own index if that is unknown
+    std::size_t before = 0;  ///< index of the sample at the beginning of the step, or of this sample if there is none
     Sequence<double> numbers, work;
   };
   static constexpr std::size_t numbers_of_force = 23;  ///< r, A, [f; m], ω, work of the last step, power
@@ -85,7 +85,7 @@ class WorkAccount {
     elements_.push_back({kind, index, row, size_, sum});
     size_ += numbers;
   }
-  /// Sample at time t, the beginning of a step of length h, or null.
+  /// Sample at time t, the beginning of a step of length h; null if there is none.
   Sample const* start_of(double t, double h) const {
     for (std::size_t const k : {last_, marked_})
       if (std::abs(samples_[k].t - t) <= 1e-3 * h) return &samples_[k];

@@ -28,8 +28,8 @@ inline Vec3 turn_between(double const* a0, double const* a1, Vec3 const& mean) {
   return s * ((angle + (std::isfinite(turns) ? turns : 0.0) * turn) / sine);
 }
 
-/// ½ (f₀ + f₁)·Δr + ½ (m₀ + m₁)·Δφ [J] of an applied wrench over a step of length h [s]. x and y are its numbers at the
-/// beginning and the end of the step: r, A, [f; m], ω.
+/// ½ (f₀ + f₁)·Δr + ½ (m₀ + m₁)·Δφ [J] of an applied wrench over a step of length h [s]. x and y contain r, A, [f; m]
+/// and ω of its marker at the beginning and the end of the step.
 inline double work_along_path(double const* x, double const* y, double h) {
   double work = 0.0;
   bool turns = false;

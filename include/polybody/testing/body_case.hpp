@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Data of a case for the law tests of bodies, and functions for their evaluation.
+/// Body and reference values of a case for the law tests of bodies, and matrix functions that these tests use.
 ///
 /// For tests; not included by polybody.hpp.
 
@@ -33,7 +33,7 @@ inline MatX epsilon_of(MatXOf<Dual<1>> const& m) {
 /// Relative difference |a − b| / max(1, |b|).
 inline double mismatch(MatX const& a, MatX const& b) { return (a - b).norm() / std::max(1.0, b.norm()); }
 
-/// Smallest pivot of L D Lᵀ = m without exchanges; it is positive if and only if m is positive definite.
+/// Smallest entry of D in L D Lᵀ = m, without pivoting. It is positive if and only if m is positive definite.
 inline double smallest_pivot(MatX m) {
   double smallest = std::numeric_limits<double>::infinity();
   for (Index k = 0; k < m.rows(); ++k) {
@@ -44,15 +44,15 @@ inline double smallest_pivot(MatX m) {
   return smallest;
 }
 
-/// Concept of a case whose body is made from a Bar.
+/// Case whose body is made from a Bar.
 template <class Case>
 concept MadeFromBar = requires { Case::body(Case::bar()); };
 
-/// Body of a case and its reference values. Specialised for cases with a Bar.
+/// Body of a case and its reference values. A specialisation derives them from the Bar of a case.
 template <class Case>
 struct BodyOf {
   static auto body() { return Case::body(); }  ///< body of the case, with damping
-  /// Body without damping: `Case::undamped` if the case has it, otherwise the same body.
+  /// Body without damping: `Case::undamped()` if it exists, otherwise the body of the case.
   static auto undamped() {
     if constexpr (requires { Case::undamped(); })
       return Case::undamped();
@@ -62,7 +62,7 @@ struct BodyOf {
   static double mass() { return Case::mass(); }  ///< mass given by the case [kg]
   /// (3) Centre of mass in the reference configuration, world axes [m].
   static Vec3 centre() { return Case::centre(); }
-  /// Largest elastic constant, as the unit of errors of forces; 1 if the case does not give it.
+  /// Largest elastic constant, as the unit of force errors. It is 1 if the case does not define `stiffness`.
   static double stiffness() {
     if constexpr (requires { Case::stiffness; })
       return Case::stiffness;
@@ -70,7 +70,7 @@ struct BodyOf {
       return 1.0;
   }
 };
-/// Body that is made from a Bar, and its reference values from the Bar.
+/// Body of a case with a Bar, and reference values computed from the Bar.
 template <MadeFromBar Case>
 struct BodyOf<Case> {
   static auto body() { return Case::body(Case::bar()); }  ///< body made from the case's bar, with damping
@@ -87,7 +87,7 @@ struct BodyOf<Case> {
     Bar const bar = Case::bar();
     return bar.placement.origin + bar.placement.axes.col(0) * (0.5 * bar.length);
   }
-  /// EA + EI of the bar, as the unit of errors of forces.
+  /// EA + EI of the bar, as the unit of force errors.
   static double stiffness() {
     BarConstants const c = constants(Case::bar());
     return c.EA + c.EI;

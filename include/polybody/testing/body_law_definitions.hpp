@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Definitions of the laws of `BodyLaws`; body_laws.hpp states them.
+/// Definitions of the member functions of `BodyLaws` that test the laws.
 ///
 /// Requires GoogleTest; not included by polybody.hpp.
 
@@ -40,7 +40,7 @@ void BodyLaws<Case>::inertia_is_mass_times_acceleration() {
 
 template <class Case>
 void BodyLaws<Case>::constant_mass_does_not_depend_on_the_configuration() {
-  if (!body.constant_mass) GTEST_SKIP() << "its mass is not constant";
+  if (!body.constant_mass) GTEST_SKIP() << "the mass matrix of the body is not constant";
   EXPECT_LT(mismatch(mass(configuration()), mass(configuration())), 1e-14);
 }
 
@@ -123,7 +123,7 @@ void BodyLaws<Case>::undamped_force_gives_back_the_strain_energy() {
   VecX const q = configuration(), v = velocities();
   double const power = force_of<double>(elastic, q, v).dot(v);
   double const rate = slope_at_zero([&](double h) { return strain_energy(moved<double>(q, v * h)); }, 3e-4);
-  double by_mass = 0.0;  // zero with own constraints: ⊞ keeps them, these v do not; v · Q_v of Euler parameters is zero
+  double by_mass = 0.0;  // not computed with own constraints: ⊞ satisfies them, but v does not; there v · Q_v is zero
   if constexpr (!HasOwnEquations<B>)
     by_mass = slope_at_zero([&](double h) { return kinetic_energy(moved<double>(q, v * h), v); }, 3e-4);
   EXPECT_NEAR(power, -rate - by_mass, 1e-8 * (1.0 + std::abs(rate) + std::abs(by_mass)));
@@ -155,7 +155,7 @@ void BodyLaws<Case>::local_rate_moves_the_body_with_its_velocities() {
 
 template <class Case>
 void BodyLaws<Case>::rigid_velocity_is_the_field_of_a_rigid_motion() {
-  if (!objective) GTEST_SKIP() << "it says that it is not objective";
+  if (!objective) GTEST_SKIP() << "the body is declared as not objective";
   VecX const q = configuration();
   Vec3 const v0 = velocity(), omega = spin();
   VecX const v = rigid_velocity(q, v0, omega);
@@ -246,7 +246,7 @@ void BodyLaws<Case>::load_stiffness_is_the_derivative_of_the_pulled_wrench() {
 template <class Case>
 void BodyLaws<Case>::own_rows_hold_at_the_reference_and_their_maps_are_derivatives() {
   if constexpr (!HasOwnEquations<B>) {
-    GTEST_SKIP() << "it owns no rows";
+    GTEST_SKIP() << "the body has no constraint equations of its own";
   } else {
     constexpr int m = B::own_equations;
     auto const gap = [&]<class T>(VecXOf<T> const& q) {

@@ -37,7 +37,8 @@ namespace polybody::laws {
 ///       static constexpr double stiffness = 900.0;  // largest elastic constant; 1 if omitted
 ///     };
 ///
-/// Derivatives are computed with dual numbers along one direction d at a time, q ⊞ ε d.
+/// Derivatives of forces and frames are computed with dual numbers, q ⊞ ε d along one direction d at a time.
+/// Derivatives of energies are computed by differences.
 template <class Case>
 struct BodyLaws {
   using Made = BodyOf<Case>;                                ///< creation of the body by the case
@@ -46,15 +47,15 @@ struct BodyLaws {
   static constexpr bool planar = B::world == World::plane;  ///< true if the body moves in a plane
   static constexpr bool rolls = B::observes == MarkerKind::frame;     ///< true if markers have three axes
   static constexpr bool directed = B::observes != MarkerKind::point;  ///< true if markers have an axis
-  /// True if a rigid motion of all coordinates is a rigid motion of the whole body; the default for a body without this
-  /// member.
+  /// True if a rigid motion of all coordinates is a rigid motion of the whole body. A body without this member is
+  /// objective.
   static constexpr bool objective = [] {
     if constexpr (requires { B::objective; })
       return B::objective;
     else
       return true;
   }();
-  /// Generalised velocities of an element; `Eigen::Dynamic` for one element of run-time size.
+  /// Number of generalised velocities of an element; `Eigen::Dynamic` if it is set at run time.
   static constexpr int n = B::element_columns;
 
   B const body = Made::body();                                  ///< body under test, with its damping
@@ -74,8 +75,9 @@ struct BodyLaws {
   Vec3 velocity() { return planar ? Vec3(number(1), number(1), 0.0) : vector3(); }
   /// Random angular velocity (3), about z for a planar body [rad/s].
   Vec3 spin() { return planar ? Vec3(0.0, 0.0, number(1)) : vector3(); }
-  /// Configuration far from the undeformed one; a body in space also rotates by about one radian. A case may give
-  /// `deformation`, a factor of the deformation for a formulation that is limited to small deformations.
+  /// Configuration far from the undeformed one; a body in space also rotates by about one radian. For a formulation
+  /// that is limited to small deformations, a case may define the factor `deformation`, by which the deformation is
+  /// multiplied.
   VecX configuration() {
     VecX delta = vector(nv, planar ? 0.3 : 1.0);
     if constexpr (requires { Case::deformation; }) delta.tail(nv - (planar ? 3 : 6)) *= Case::deformation;
@@ -101,10 +103,10 @@ struct BodyLaws {
       return Case::points();
     }
   }
-  /// Columns of `axes` that a marker has.
+  /// Columns of `axes` that a marker of this body provides: three, one or none.
   static MatX known(Mat3 const& axes) { return axes.leftCols(rolls ? 3 : directed ? 1 : 0); }
-  /// Component of an angular velocity w (3), or of its error, that a marker has. A marker with one axis has no
-  /// component along this axis.
+  /// Component of an angular velocity w (3), or of its error, that a marker of this body provides. A marker with one
+  /// axis does not provide the component along this axis.
   static Vec3 known_turn(Vec3 const& w, Mat3 const& axes) {
     if (!directed) return Vec3::Zero();
     Vec3 const along = axes.col(0);
@@ -152,7 +154,7 @@ struct BodyLaws {
     return moved<D>(q, along(VecX::Zero(nv), direction));
   }
 
-  /// Sum over the elements (nv); element(e, x) writes the column of element e to x.
+  /// Sum (nv) of element vectors; `element(e, x)` writes the vector of element e to x.
   template <class T, class Element>
   VecXOf<T> assembled(Element&& element) const {
     VecXOf<T> sum = VecXOf<T>::Zero(nv);
@@ -163,7 +165,7 @@ struct BodyLaws {
     }
     return sum;
   }
-  /// Sum over the elements (nv×nv); element(e, m) writes the matrix of element e to m.
+  /// Sum (nv×nv) of element matrices; `element(e, m)` writes the matrix of element e to m.
   template <class Element>
   MatX assembled_matrix(Element&& element) const {
     MatX sum = MatX::Zero(nv, nv);
@@ -175,7 +177,7 @@ struct BodyLaws {
     }
     return sum;
   }
-  /// Sum of the numbers element(e) over the elements.
+  /// Sum of the numbers `element(e)` over all elements e.
   template <class Element>
   double summed(Element&& element) const {
     double sum = 0.0;
@@ -232,7 +234,7 @@ struct BodyLaws {
     return summed([&](Index e) { return body.gravity_energy(e, view(q), g); });
   }
 
-  /// Derivative ∂f/∂δ at δ = 0 of a scalar function f of q ⊞ δ, by differences.
+  /// Derivative ∂f/∂δ (nv) at δ = 0 of a scalar function f(q ⊞ δ), by differences.
   template <class F>
   VecX gradient(F&& f, VecX const& q) const {
     VecX out(nv);
@@ -246,7 +248,7 @@ struct BodyLaws {
   /// Marker kinematics, with the Jacobian over all columns of the body.
   template <class T>
   struct Seen {
-    Sequence<T> memory;                  ///< memory of the Jacobian; its address is constant under moves
+    Sequence<T> memory;                  ///< memory of `marker.jacobian`; its address is constant under moves
     MarkerKinematics<T> marker;          ///< result of `evaluate_marker`
     Mat<T, 6, Eigen::Dynamic> jacobian;  ///< Jacobian over all columns of the body
     /// Twist of the marker [ṙ; ω] in world axes [m/s], [rad/s].
@@ -256,8 +258,8 @@ struct BodyLaws {
       return t;
     }
   };
-  /// Kinematics of the marker at point p in the state q, v. The marker has the axes `axes` in the body if its markers
-  /// have three axes.
+  /// Kinematics of a marker at point p for the coordinates q and the velocities v. If markers of the body have three
+  /// axes, this marker has the axes `axes`.
   template <class T>
   Seen<T> see(typename B::Point const& p, Mat3 const& axes, VecXOf<T> const& q, VecXOf<T> const& v) const {
     Seen<T> s;
@@ -296,11 +298,11 @@ struct BodyLaws {
   void tangent_is_the_derivative_of_the_force_by_speed();
   /// `tangent`(ck, cd) = ck `tangent`(1, 0) + cd `tangent`(0, 1).
   void tangent_mixes_its_two_parts_linearly();
-  /// f·v = −U˙ − ½ vᵀM˙v without damping: elastic and quadratic-velocity forces conserve the energy.
+  /// f·v = −U˙ − ½ vᵀM˙v for the body without damping: elastic and quadratic-velocity forces conserve the energy.
   void undamped_force_gives_back_the_strain_energy();
   /// q ⊞ 0 = q, and δ˙ = v at δ = 0.
   void plus_of_nothing_changes_nothing();
-  /// If q ⊞ δ(t) moves with δ˙ = `local_rate`(δ, v), the velocity of each point is that of v.
+  /// If q ⊞ δ(t) moves with δ˙ = `local_rate`(δ, v), each point has the velocity that belongs to v.
   void local_rate_moves_the_body_with_its_velocities();
   /// For v = `rigid_velocity`(q, v₀, ω) every point has ṙ = v₀ + ω × r and the angular velocity ω.
   void rigid_velocity_is_the_field_of_a_rigid_motion();
@@ -310,14 +312,14 @@ struct BodyLaws {
   void twist_is_jacobian_times_velocities();
   /// δr = J_r δ and δA = (J_ω δ)~ A under q ⊞ δ.
   void jacobian_is_the_derivative_of_the_frame();
-  /// bias = d/dt (J v) at v˙ = 0, computed from the Jacobian and from the frame's twist.
+  /// The marker's `bias` is d/dt (J v) at v˙ = 0, computed from the Jacobian and from the frame's twist.
   void bias_is_the_acceleration_at_constant_velocities();
   /// `load_stiffness` = ∂(Jᵀw)/∂q for a constant wrench w.
   void load_stiffness_is_the_derivative_of_the_pulled_wrench();
   /// Φ(q₀) = 0, G = ∂Φ/∂q, γ = d/dt (G v) at v˙ = 0 and `own_stiffness` = ∂(Gᵀλ)/∂q for a body with own constraint
   /// equations.
   void own_rows_hold_at_the_reference_and_their_maps_are_derivatives();
-  /// at(s, y) of the undeformed body is the bar's material point, and its axes are the bar's axes.
+  /// The point at(s, y) of the undeformed body is the same material point of the bar, and has the axes of the bar.
   void reference_stands_where_the_bar_is_placed();
   /// at(s) throws for s outside of [0, L], with a tolerance for round-off.
   void points_outside_the_bar_are_refused();
@@ -351,7 +353,7 @@ struct BodyLaws {
        &BodyLaws::own_rows_hold_at_the_reference_and_their_maps_are_derivatives},
       {"ReferenceStandsWhereTheBarIsPlaced", &BodyLaws::reference_stands_where_the_bar_is_placed},
       {"PointsOutsideTheBarAreRefused", &BodyLaws::points_outside_the_bar_are_refused}};
-  /// Laws of the case; without the last two if the body is not made from a bar.
+  /// Laws of the case: all, or all except the last two if the body is not made from a bar.
   static constexpr std::span<Law<BodyLaws> const> laws{all, std::size(all) - (MadeFromBar<Case> ? 0 : 2)};
 };
 

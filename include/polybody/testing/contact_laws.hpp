@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Law tests of contact geometries.
+/// Tests of properties that every contact geometry has: `ContactLaws`.
 ///
 /// Requires GoogleTest; not included by polybody.hpp.
 
@@ -14,8 +14,8 @@
 
 namespace polybody::laws {
 
-/// Laws that every contact geometry satisfies, alone and in a contact with normal force and friction. Example of a
-/// case:
+/// Laws of contact geometries, alone and in a `Contact` with normal force and friction. Symbols: penetration d, normal
+/// n, normal force N, force f and moment m on bodies a and b. Example of a case:
 ///
 ///     struct SphereOnPlaneCase {
 ///       static SphereOnPlane geometry();
@@ -32,7 +32,7 @@ struct ContactLaws {
   G const geometry = Case::geometry();       ///< geometry under test
   Numbers number;                            ///< random numbers with a fixed seed
 
-  /// Bodies with penetration `depth`, at random orientations, with velocities of about 1 m/s.
+  /// Frames of two bodies with penetration `depth`, random orientations and velocities of about 1 m/s.
   Touching overlapping(double depth) {
     Touching f{number.frame(), number.frame()};
     f[0].r = Case::centre(number, f[1], depth);
@@ -42,8 +42,8 @@ struct ContactLaws {
     Touching f = overlapping(depth);
     for (Frame<double>& x : f) x.v = x.w = Vec3::Zero();
     return f;
-  }  ///< bodies at rest with penetration `depth`
-  /// Velocity of a relative to b at the contact point.
+  }  ///< frames of two bodies at rest with penetration `depth`
+  /// Velocity of body a relative to body b at the contact point p.
   static Vec3 relative(ContactPoint<double> const& p, Touching const& f) {
     return f[0].v + f[0].w.cross(p.place - f[0].r) - f[1].v - f[1].w.cross(p.place - f[1].r);
   }
@@ -51,11 +51,11 @@ struct ContactLaws {
   static Law with(Law law, double coefficient = 0.4) {
     law.friction = {.coefficient = coefficient, .slip_speed = 0.3};
     return law;
-  }  ///< `law` with this friction coefficient, v_s = 0.3 m/s
-  /// Contact with an elastic normal force.
+  }  ///< `law` with the friction coefficient `coefficient` and the slip velocity v_s = 0.3 m/s
+  /// Contact with an elastic normal force and without damping.
   Elastic elastic() const { return {.geometry = geometry, .normal = {.modulus = 3e3, .radius = 0.04}}; }
-  /// Calls visit(contact) for each normal force, without friction. The separation speeds of these bodies are too low
-  /// for a zero force.
+  /// Calls `visit(contact)` for a contact with each type of normal force, without friction. The bodies of the tests
+  /// separate so slowly that the normal force is not zero.
   template <class Visit>
   void with_each_contact(Visit&& visit) const {
     visit(Contact<G>{.geometry = geometry, .normal = {.stiffness = 900.0, .damping = 7.0}});
@@ -67,8 +67,8 @@ struct ContactLaws {
     std::array<Mat<double, 6, 6>, 2> k{Mat<double, 6, 6>::Zero(), Mat<double, 6, 6>::Zero()};
     law.own_stiffness(f, ck, cd, k[0], k[1]);
     return k;
-  }  ///< (6×6) `own_stiffness` of `law`, of body a and of body b
-  /// Exact matrices that `own_stiffness` of `law` approximates, for bodies a and b.
+  }  ///< matrices `own_stiffness` (6×6) of `law` for body a and for body b
+  /// Exact matrices (6×6) for bodies a and b, which `own_stiffness` of `law` approximates.
   template <class Law>
   static std::array<Mat<double, 6, 6>, 2> exact(Law const& law, Touching const& f, double ck, double cd) {
     Mat<double, 12, 12> const k = -wrench_gradient(law, f, 0.0, ck, cd);
@@ -104,7 +104,7 @@ struct ContactLaws {
         apart.r += delta * p.normal;
         EXPECT_NEAR(point_of(geometry, apart, f[1]).depth, p.depth - delta, 1e-14);
       }
-      // all motions of a and b, by dual numbers: −n times the displacement of a relative to b at the contact point
+      // change of d for all motions of a and b, by dual numbers: −n · displacement of a relative to b at the contact
       using D = Dual<12>;
       Vec<D, 6> of_a, of_b;
       for (int i = 0; i < 6; ++i) {
@@ -120,7 +120,7 @@ struct ContactLaws {
           slope_at_zero([&](double t) { return point_of(geometry, later(f[0], t), later(f[1], t)).depth; }, 1e-4);
       EXPECT_NEAR(rate, -p.normal.dot(relative(p, f)), 1e-9);
     }
-  }  ///< ∂d/∂r_a = −n, and all other derivatives of d follow from n
+  }  ///< ∂d/∂r_a = −n; the other derivatives of d follow from n and the contact point
 
   void normal_turns_as_the_shapes_are_curved() {
     for (int k = 0; k < 4; ++k) {
@@ -133,7 +133,7 @@ struct ContactLaws {
       for (int i = 0; i < 3; ++i) turning.row(i) = p.normal[i].d.matrix().transpose();
       EXPECT_LT((turning - Case::turning(f[0], f[1])).norm(), 1e-13);
     }
-  }  ///< ∂n/∂r_a is the matrix of the case
+  }  ///< ∂n/∂r_a is the matrix `Case::turning`
 
   void may_touch_is_false_only_where_nothing_touches() {
     int touching = 0, apart = 0;
@@ -154,7 +154,7 @@ struct ContactLaws {
       EXPECT_TRUE(geometry.may_touch(near[0], near[1]));
       EXPECT_FALSE(geometry.may_touch(far[0], far[1]));  // otherwise the test would be useless
     }
-  }  ///< `may_touch` and the reach include all contacts, and they exclude most other positions
+  }  ///< `may_touch` and `reach` include all contacts, and exclude shapes that are clearly apart
 
   // --- contact ------------------------------------------------------------------------------------------------
 
@@ -180,7 +180,7 @@ struct ContactLaws {
       EXPECT_LT((w[0].m - (p.place - f[0].r).cross(w[0].f)).norm(), 1e-13 * n);
       EXPECT_EQ(contact.potential(f, 0.0), contact.normal.potential(p.depth));
     });
-  }  ///< f_a = N(d, ḋ) n at the contact point, and U is the potential of the normal force at d
+  }  ///< f_a = N(d, ḋ) n acts at the contact point, and the potential U is that of the normal force at d
 
   void rigid_motion_of_both_turns_the_wrench() {
     with_each_contact([&](auto const& contact) {
@@ -201,7 +201,7 @@ struct ContactLaws {
         EXPECT_LT((after[k].m - turn * before[k].m).norm(), 1e-12 * size);
       }
     });
-  }  ///< rotation and displacement of all frames and twists rotates the wrenches
+  }  ///< a rotation and displacement of all frames and twists rotates the wrenches
 
   void friction_opposes_sliding_and_takes_power() {
     for (double const mu : {0.1, 0.4, 1.3}) {
@@ -224,7 +224,7 @@ struct ContactLaws {
       EXPECT_LT(taken, 0.0);
       EXPECT_NEAR(taken, tangential.dot(slip), 1e-9 * std::abs(power));
     }
-  }  ///< F_t = −μ N v/√(v² + v_s²), with v normal to n; all of its power is dissipated
+  }  ///< friction force F_t = −μ N v/√(v² + v_s²), with the slip velocity v; all of its power is dissipated
 
   void damping_takes_power() {
     Contact<G> const damped{.geometry = geometry, .normal = {.stiffness = 900.0, .damping = 7.0}};
@@ -237,7 +237,7 @@ struct ContactLaws {
       for (std::size_t i = 0; i < 2; ++i) power += w[i].f.dot(f[i].v) + w[i].m.dot(f[i].w);
       EXPECT_NEAR(power, -7.0 * rate * rate, 1e-11);
     }
-  }  ///< the damper dissipates c ḋ²
+  }  ///< the damper dissipates the power c ḋ²
 
   void force_is_the_slope_of_the_potential() {
     Touching const f = overlapping(0.1);
@@ -254,7 +254,7 @@ struct ContactLaws {
           1e-3);
       EXPECT_NEAR(w[j], -slope, 1e-7 * w.norm());  // error (h/d)⁴/30 = 3e-10 of a force proportional to d^(3/2)
     }
-  }  ///< w = −∂U/∂pose without friction and damping
+  }  ///< the wrenches are −∂U/∂pose without friction and damping
 
   void gradient_is_the_derivative_of_the_wrenches() {
     with_each_contact([&](auto const& contact) {
@@ -301,10 +301,10 @@ struct ContactLaws {
         EXPECT_GT(k.norm(), 1.0);
       }
     });
-  }  ///< k = kᵀ, and no eigenvalue is negative
+  }  ///< `own_stiffness` is symmetric, and no eigenvalue is negative
 
-  /// The approximation omits one term of the derivative of the force on a by its displacement: N ∂n/∂r, which reduces
-  /// the stiffness of curved shapes.
+  /// In the derivative of the force on a with respect to its displacement, `own_stiffness` omits one term, N ∂n/∂r.
+  /// This term reduces the stiffness of curved shapes.
   void own_stiffness_leaves_out_only_how_the_normal_turns() {
     with_each_contact([&](auto const& contact) {
       Touching const f = at_rest(0.1);
@@ -315,8 +315,8 @@ struct ContactLaws {
     });
   }
 
-  /// Without friction, for moving bodies: the approximation is exact in the twists and along the normal. A
-  /// displacement of a along the normal does not change its direction.
+  /// For moving bodies without friction, `own_stiffness` is exact for changes of the twists and for displacements along
+  /// the normal n. A displacement of a along n does not change the direction of n.
   void own_stiffness_has_the_slopes_of_the_normal_force() {
     with_each_contact([&](auto const& contact) {
       Touching const f = overlapping(0.1);
@@ -331,8 +331,8 @@ struct ContactLaws {
     });
   }
 
-  /// At rest the approximation is exact in the twists, with and without friction: at v = 0 the secant of the friction
-  /// force equals its derivative.
+  /// At rest `own_stiffness` is exact for changes of the twists, with and without friction. At slip velocity zero, the
+  /// secant of the friction force equals its derivative.
   void own_stiffness_is_exact_in_the_twists_of_bodies_at_rest() {
     with_each_contact([&](auto const& contact) {
       for (auto const& law : {contact, with(contact)}) {
@@ -343,8 +343,9 @@ struct ContactLaws {
     });
   }
 
-  /// During sliding the secant exceeds the derivative along the slip u, and equals it across the slip. The difference
-  /// own − exact is Jᵀ (μN/s)(u uᵀ/s²) J with s² = u² + v_s².
+  /// `own_stiffness` contains the secant of the friction force. During sliding the secant exceeds the derivative along
+  /// the slip velocity u, and equals the derivative across u. The difference from the exact matrix is Jᵀ (μN/s)(u
+  /// uᵀ/s²) J with s² = u² + v_s².
   void own_stiffness_of_friction_is_an_upper_bound() {
     for (double const mu : {0.1, 0.4, 1.3}) {
       Touching const f = overlapping(0.1);

@@ -12,7 +12,7 @@ namespace polybody::laws {
 
 using Touching = std::array<Frame<double>, 2>;  ///< frames of two shapes that overlap
 
-/// The contact point of `geometry`; a test failure if there is none or more than one.
+/// Returns the contact point of `geometry`. The test fails unless there is exactly one.
 template <StateScalar T, class G>
 ContactPoint<T> point_of(G const& geometry, Frame<T> const& a, Frame<T> const& b) {
   ContactPoint<T> found;
@@ -24,7 +24,7 @@ ContactPoint<T> point_of(G const& geometry, Frame<T> const& a, Frame<T> const& b
   EXPECT_EQ(count, 1);
   return found;
 }
-/// True if the shapes of `geometry` overlap.
+/// True if the shapes of `geometry` overlap for the frames f.
 template <class G>
 bool touch(G const& geometry, Touching const& f) {
   int count = 0;

@@ -12,10 +12,9 @@
 
 namespace polybody::laws {
 
-/// Derivative f′(0) of a function of one number, with values in double or in Eigen vectors. Central differences of the
-/// steps h, h/2 … h/16 are extrapolated to zero, and the value with the least estimated error is returned
-/// [Ridders 1982]. `h` is the largest step. The smallest step, h/16, must be small against the length over which f
-/// changes.
+/// Derivative f′(0) of a function of one number; f returns a double or an Eigen vector. Central differences with the
+/// steps h, h/2, …, h/16 are extrapolated to zero, and the value with the least estimated error is returned [Ridders
+/// 1982]. The smallest step h/16 must be small compared with the length over which f changes.
 template <class F>
 auto slope_at_zero(F&& f, double h = 1e-3) {
   using Value = decltype(f(h));
@@ -26,7 +25,7 @@ auto slope_at_zero(F&& f, double h = 1e-3) {
       return std::abs(double(x));
   };
   constexpr int steps = 5;
-  Value row[steps], last[steps];  // extrapolations that end at the present step and at the one before, by their order
+  Value row[steps], last[steps];  // extrapolations that end at the present and at the previous step, by their order
   Value best = Value((f(h) - f(-h)) / (2.0 * h));
   double least = std::numeric_limits<double>::infinity();
   last[0] = best;

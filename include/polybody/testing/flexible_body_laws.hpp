@@ -8,7 +8,8 @@
 
 namespace polybody::laws {
 
-/// Laws that every flexible body satisfies in addition to BodyLaws, for the same case; its body has damping:
+/// Laws that every flexible body satisfies in addition to `BodyLaws`. Both suites use the same case, whose body has
+/// damping:
 ///
 ///     bool const lrvf_obeys = obeys<LrvfCase, BodyLaws, FlexibleBodyLaws>("Lrvf");
 ///
@@ -20,15 +21,16 @@ struct FlexibleBodyLaws : BodyLaws<Case> {
   typename BodyLaws<Case>::B const undamped = BodyOf<Case>::undamped();  ///< same body without damping
   VecX damping_force(VecX const& q, VecX const& v) {
     return this->template force<double>(q, v) - this->template force_of<double>(undamped, q, v);
-  }  ///< (nv) part of f due to damping
+  }  ///< (nv) damping force: difference of f with and without damping
   /// (nv) Elastic force and damping force, without the velocity terms of inertia.
   VecX internal_force(VecX const& q, VecX const& v) { return this->force_at_rest(q) + damping_force(q, v); }
 
-  /// The case's configuration has U > 0, f ≠ 0 and a damping force, so that the other laws do not compare zeros.
+  /// The configuration of the case has a strain energy U > 0, a force f ≠ 0 and a damping force. Otherwise the other
+  /// laws would compare zeros.
   void deformation_is_resisted_and_damped();
   /// f = 0 and U = 0 in the reference configuration of the same body at another placement.
   void rigid_motion_strains_nothing();
-  /// f·v = 0 for v of a rigid motion, superposed on any state, with damping.
+  /// f·w = 0 for the velocities w of a rigid motion and the internal force f(q, v) in any state, including damping.
   void internal_forces_are_in_equilibrium();
   /// f(q, v) = f(q, 0) for v of a rigid motion.
   void rigid_velocity_is_not_damped();

@@ -22,7 +22,7 @@ VecX stacked_wrenches(F const& force, std::array<Frame<double>, F::markers> cons
   return all;
 }
 
-/// Wrenches of a force element at its states z, followed by the rates of the states.
+/// Wrenches of a force element at its first-order states z, followed by the rates of these states.
 template <HasStates F>
 VecX stacked_answer(F const& force, std::array<Frame<double>, F::markers> const& frames,
                     std::array<double, F::states> const& z, double t) {
@@ -33,7 +33,8 @@ VecX stacked_answer(F const& force, std::array<Frame<double>, F::markers> const&
   return all;
 }
 
-/// Frames after a displacement in direction j of a pose, by ck h, and a change of the twist in this direction, by cd h.
+/// Frames after a displacement by ck h in direction j of the stacked poses (6 per frame), and after a change of the
+/// twist by cd h in the same direction.
 template <std::size_t markers>
 std::array<Frame<double>, markers> shifted(std::array<Frame<double>, markers> frames, Index j, double ck, double cd,
                                            double h) {
@@ -45,7 +46,7 @@ std::array<Frame<double>, markers> shifted(std::array<Frame<double>, markers> fr
   return frames;
 }
 
-/// Derivative ck ∂w/∂pose + cd ∂w/∂twist by differences, the reference for `wrench_gradient`.
+/// Derivative ck ∂w/∂pose + cd ∂w/∂twist of the wrenches w by differences: reference for `wrench_gradient`.
 template <ForceElement F>
 MatX gradient_by_differences(F const& force, std::array<Frame<double>, F::markers> const& frames, double t, double ck,
                              double cd) {
@@ -56,7 +57,8 @@ MatX gradient_by_differences(F const& force, std::array<Frame<double>, F::marker
         slope_at_zero([&](double h) { return stacked_wrenches(force, shifted(frames, j, ck, cd, h), t); }, step);
   return gradient;
 }
-/// Derivative of wrenches and rates by differences, the reference for `gradient_with_states`.
+/// Derivative of the wrenches and state rates by differences, with the factors `by`: reference for
+/// `gradient_with_states`.
 template <HasStates F>
 MatX gradient_by_differences(F const& force, std::array<Frame<double>, F::markers> const& frames,
                              std::array<double, F::states> const& z, double t, TangentFactors const& by) {
@@ -77,7 +79,7 @@ MatX gradient_by_differences(F const& force, std::array<Frame<double>, F::marker
   return gradient;
 }
 
-/// Largest error of `wrench_gradient` relative to the differences, divided by 1 + the largest entry.
+/// Largest difference between `wrench_gradient` and `gradient_by_differences`, divided by 1 + the largest entry.
 template <ForceElement F>
 double gradient_mismatch(F const& force, std::array<Frame<double>, F::markers> const& frames, double t, double ck,
                          double cd) {

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Law tests of force elements.
+/// Tests of properties that every force element has, such as derivatives, balance and energy: `ForceLaws`.
 ///
 /// Requires GoogleTest; not included by polybody.hpp.
 
@@ -26,9 +26,9 @@ struct ForceLaws {
   F const force = Case::force();                                            ///< element under test
   double const t = 1.3;                                                     ///< time of the evaluation [s]
   Numbers number;                                                           ///< random numbers with a fixed seed
-  std::array<double, std::size_t(states_of<F>())> const z = some_states();  ///< states of the element, if it has any
+  std::array<double, std::size_t(states_of<F>())> const z = some_states();  ///< first-order states of the element
 
-  /// Frames of the markers: frames of the case if it gives them, otherwise random frames.
+  /// Frames of the markers from the case, or random frames if the case has no function `frames`.
   Frames frames() {
     if constexpr (requires { Case::frames(number); }) {
       return Case::frames(number);
@@ -44,14 +44,14 @@ struct ForceLaws {
     for (double& x : some) x = number();
     return some;
   }
-  /// The element, at its states if it has any.
+  /// The element; an element with first-order states is bound to the states z.
   auto law() const {
     if constexpr (HasStates<F>)
       return AtStates<F, double>{force, z};
     else
       return force;
   }
-  /// Column of [f; m] of each marker, followed by the rates of the states.
+  /// Column of the wrenches [f; m] on all markers, followed by the rates of the states.
   VecX stacked(Frames const& f) const {
     if constexpr (HasStates<F>)
       return stacked_answer(force, f, z, t);
@@ -64,9 +64,9 @@ struct ForceLaws {
   /// Required kinematics of marker number `marker`.
   static MarkerKind needs(int marker) { return marker == 1 ? needs_of_second<F>() : F::needs; }
 
-  /// `wrench_gradient` = ck ∂w/∂pose + cd ∂w/∂twist, and for elements with states `gradient_with_states`, compared with
-  /// differences. A branch or a conversion in a template for any scalar type could lose a derivative; this law finds
-  /// it.
+  /// `wrench_gradient` = ck ∂w/∂pose + cd ∂w/∂twist of the wrenches w, compared with differences. For elements with
+  /// states, `gradient_with_states` is compared. The law detects derivatives that are lost by a branch or a conversion
+  /// in a template for any scalar type.
   void gradient_is_the_derivative_of_the_wrenches() {
     for (auto const& [ck, cd] : {std::pair{1.0, 0.0}, {0.0, 1.0}, {0.7, 31.0}})
       if constexpr (HasStates<F>) {
@@ -80,8 +80,8 @@ struct ForceLaws {
       }
   }
 
-  /// Wrenches and rates do not depend on the axes and the angular velocity of a marker that the element uses as a point
-  /// only. The moment on such a marker is zero.
+  /// If the element requires only the point of a marker, wrenches and rates do not depend on the axes and the angular
+  /// velocity of this marker, and the moment on it is zero.
   void asks_no_more_than_it_says() {
     Frames const given = frames();
     Frames turned = given;
@@ -99,7 +99,7 @@ struct ForceLaws {
 
   /// Σ f = 0 and Σ (m + r × f) = 0 for an element between two or more markers that is not a load.
   void action_is_reaction() {
-    if (!internal) GTEST_SKIP() << "it acts from outside";
+    if (!internal) GTEST_SKIP() << "the force element does not act between its markers only";
     Frames const f = frames();
     auto const w = wrenches(f);
     Vec3 force_sum = Vec3::Zero(), moment = Vec3::Zero();
@@ -114,10 +114,10 @@ struct ForceLaws {
     EXPECT_LT(moment.norm(), 1e-12 * size);
   }
 
-  /// For an element between its markers, a rotation and displacement of all frames and twists rotates the wrenches and
-  /// does not change the rates.
+  /// If an element acts between its markers only, a rotation and displacement of all frames and twists rotates the
+  /// wrenches and does not change the rates of the states.
   void rigid_motion_turns_the_wrenches() {
-    if (!internal) GTEST_SKIP() << "it acts from outside";
+    if (!internal) GTEST_SKIP() << "the force element does not act between its markers only";
     Frames const f = frames();
     Mat3 const turn = exp_so3<double>(number.template vec<3>(2.0));
     Vec3 const shift = number.template vec<3>(4.0);
@@ -136,7 +136,7 @@ struct ForceLaws {
   /// w = −∂U/∂pose at rest, for an element with a potential.
   void wrenches_at_rest_are_the_slope_of_the_potential() {
     if constexpr (!HasPotential<F>) {
-      GTEST_SKIP() << "it has no potential";
+      GTEST_SKIP() << "the force element has no potential";
     } else {
       Frames f = frames();
       for (Frame<double>& x : f) x.v = x.w = Vec3::Zero();
@@ -154,10 +154,11 @@ struct ForceLaws {
     }
   }
 
-  /// Σ w·V ≤ −U˙ for an element with a potential: its power does not exceed the release of stored energy.
+  /// Σ w·V ≤ −U˙ for an element with a potential U, with wrenches w and twists V: its power does not exceed the release
+  /// of stored energy.
   void gives_back_no_more_than_its_potential() {
     if constexpr (!HasPotential<F>) {
-      GTEST_SKIP() << "it has no potential";
+      GTEST_SKIP() << "the force element has no potential";
     } else {
       for (int i = 0; i < 10; ++i) {
         Frames const f = frames();

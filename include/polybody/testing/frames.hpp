@@ -13,7 +13,8 @@ namespace polybody::laws {
 /// Random numbers in [−size, size] with a fixed seed.
 class Numbers {
  public:
-  explicit Numbers(unsigned seed = 20240607) : generator_(seed) {}  ///< the same numbers for the same `seed`
+  explicit Numbers(unsigned seed = 20240607)
+      : generator_(seed) {}  ///< a generator; an equal `seed` generates equal numbers
 
   /// Next number in [−size, size].
   double operator()(double size = 1.0) { return size * (double(generator_()) / 2147483648.0 - 1.0); }
@@ -26,14 +27,14 @@ class Numbers {
   VecX vector(Index n, double size = 1.0) {
     return VecX::NullaryExpr(n, [&](Index) { return (*this)(size); });
   }
-  /// Random motion [δr; δφ] or twist [ṙ; ω] in [−size, size]; if `planar`, with components along x and y and about z
-  /// only.
+  /// Random motion [δr; δφ] or twist [ṙ; ω] in [−size, size]. If `planar`, only the components along x and y and about
+  /// z are nonzero.
   Vec6 motion(bool planar, double size = 1.0) {
     Vec6 x = vec<6>(size);
     if (planar) x[2] = x[3] = x[4] = 0.0;
     return x;
   }
-  /// Random position, orientation and twist; if `planar`, in the plane.
+  /// Frame with random position, orientation and twist. If `planar`, it remains in the plane z = 0.
   Frame<double> frame(bool planar = false) {
     Vec6 const place = motion(planar, 2.0), twist = motion(planar);
     return {.r = place.head<3>(), .A = exp_so3<double>(place.tail<3>()), .v = twist.head<3>(), .w = twist.tail<3>()};
@@ -43,7 +44,8 @@ class Numbers {
   std::mt19937 generator_;
 };
 
-/// Frame r + δr, exp(φ̃) A after a motion [δr; φ] in world axes, with the same twist.
+/// Frame with the position r + δr and the axes exp(φ̃) A, after a motion [δr; φ] in world axes. The twist is not
+/// changed.
 template <StateScalar T>
 Frame<T> moved(Frame<double> const& f, Vec<T, 6> const& motion) {
   Vec<T, 3> const phi = motion.template tail<3>();
@@ -53,7 +55,7 @@ Frame<T> moved(Frame<double> const& f, Vec<T, 6> const& motion) {
           .w = f.w.cast<T>()};
 }
 
-/// Frame after a motion with its constant twist for a given time.
+/// Frame after a motion with constant twist for `time` [s].
 template <StateScalar T>
 Frame<T> later(Frame<double> const& f, T const& time) {
   Vec6 twist;

@@ -12,7 +12,7 @@
 
 namespace polybody::laws {
 
-/// Base-2 logarithms of the ratios of consecutive errors at h, h/2, h/4, …: the measured orders.
+/// Measured orders: base-2 logarithms of the ratios of consecutive errors at the steps h, h/2, h/4, …
 inline std::vector<double> slopes(std::vector<double> const& errors) {
   std::vector<double> slope;
   for (std::size_t i = 1; i < errors.size(); ++i) slope.push_back(std::log2(errors[i - 1] / errors[i]));
@@ -24,18 +24,18 @@ inline std::vector<double> slopes(std::vector<double> const& errors) {
 ///     struct Rk4OnTheTop {
 ///       using Model = TopModel;                // .model, and .start of type State
 ///       static std::vector<RungeKutta4<Projection>> integrators();  // with different options
-///       static constexpr double until = 0.5;   // end time [s]
-///       static constexpr int steps = 32;       // steps of the coarsest run
+///       static constexpr double end_time = 0.5;  // end time [s]
+///       static constexpr int steps = 32;         // number of steps of the coarsest run
 ///     };
 ///     bool const rk4_obeys = obeys<Rk4OnTheTop, IntegratorLaws>("Rk4OnTheTop");
 ///
-/// If an integrator has a member `stabilised`, the constraint equations of velocities hold only if it is true;
-/// otherwise they hold always. If the accelerations at the end of a step belong to predicted velocities, the case
-/// declares `static constexpr bool keeps_accelerations = false`.
+/// If an integrator has a member `stabilised`, Φ̇ = 0 is tested only if this member is true, and Φ̈ = 0 is not tested.
+/// A case declares `static constexpr bool keeps_accelerations = false` if the accelerations at the end of a step belong
+/// to predicted velocities; Φ̈ = 0 is then not tested.
 template <class Case>
 struct IntegratorLaws {
   using Integrator = typename decltype(Case::integrators())::value_type;  ///< type of the case's integrators
-  static constexpr double slack = 0.1;  ///< allowed deficit of a measured order, in parts of one order [1]
+  static constexpr double slack = 0.1;  ///< largest allowed excess of the declared order over the measured order [1]
 
   typename Case::Model setup;  ///< model and initial state of the case
 
@@ -55,7 +55,7 @@ struct IntegratorLaws {
     EXPECT_EQ(simulation.report().steps, steps);
     return out;
   }
-  /// Runs with steps, 2 steps, 4 steps and 8 steps.
+  /// Runs with n, 2n, 4n and 8n steps, n = `Case::steps`.
   std::vector<Outcome> refined(Integrator const& integrator) const {
     std::vector<Outcome> runs;
     for (int k = 1; k <= 8; k *= 2) runs.push_back(run(integrator, Case::steps * k));
@@ -66,13 +66,14 @@ struct IntegratorLaws {
   void state_converges_at_the_declared_order();
   /// max |E(t) − E(0)| decreases by the factor 2^order if h is halved.
   void energy_error_falls_at_the_declared_order();
-  /// |Φ| < 1e-10, |Φ̇| < 1e-10 and |Φ̈| < 1e-8 at the end of a run.
+  /// |Φ| < 1e-10, |Φ̇| < 1e-10 and |Φ̈| < 1e-8 at the end of a run, with the exceptions of the class comment.
   void rows_hold_at_the_end();
   /// `start` does not change q and v. A step advances t by h, reports h, and suggests h for the next step.
   void step_reports_what_it_took();
   /// Two runs are bitwise identical.
   void runs_repeat_to_the_last_bit();
-  /// A step from velocities whose squares overflow throws and does not change the state. The workspace remains usable.
+  /// If the squares of the initial velocities overflow, a step throws and does not change the state. The workspace
+  /// remains usable.
   void failed_step_leaves_the_state_as_it_was();
 
   static constexpr char const* suite = "IntegratorLaws";
@@ -96,7 +97,7 @@ void IntegratorLaws<Case>::state_converges_at_the_declared_order() {
       std::vector<double> differences;
       for (std::size_t i = 1; i < runs.size(); ++i)
         differences.push_back((runs[i].x.*part - runs[i - 1].x.*part).norm());
-      EXPECT_GT(differences.back(), 1e-12) << name << ": too small to tell";
+      EXPECT_GT(differences.back(), 1e-12) << name << ": differences are too small to measure an order";
       double const order = slopes(differences).back();
       EXPECT_GT(order, integrator.order - slack) << name << ' ' << ::testing::PrintToString(differences);
     }
@@ -108,7 +109,7 @@ void IntegratorLaws<Case>::energy_error_falls_at_the_declared_order() {
   for (auto const& integrator : Case::integrators()) {
     std::vector<double> errors;
     for (auto const& outcome : refined(integrator)) errors.push_back(outcome.energy_error);
-    EXPECT_GT(errors.back(), 1e-13) << "too small to tell";
+    EXPECT_GT(errors.back(), 1e-13) << "energy errors are too small to measure an order";
     EXPECT_GT(slopes(errors).back(), integrator.order - slack) << ::testing::PrintToString(errors);
   }
 }
@@ -120,7 +121,8 @@ void IntegratorLaws<Case>::rows_hold_at_the_end() {
     System system(setup.model);
     Violation const open = largest_violation(system, outcome.x);
     EXPECT_LT(open.position, 1e-10);
-    // Without stabilisation, a step of a generalised-α method satisfies the constraint equations of positions only.
+    // Without stabilisation, a step of a generalised-α method satisfies the constraint equations of positions only:
+    // velocities are not tested.
     if constexpr (requires { integrator.stabilised; }) {
       EXPECT_TRUE(open.velocity < 1e-10 || !integrator.stabilised) << open.velocity;
     } else {

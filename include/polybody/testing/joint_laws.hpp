@@ -10,13 +10,14 @@
 
 namespace polybody::laws {
 
-/// Laws of a joint geometry of any type. V = [ṙ; ω] are the twists of both frames, and G = [Ga Gb].
+/// Laws of a joint geometry of any type between frames a and b, with the twists V = [ṙ; ω] of both frames, the
+/// constraint function g, its Jacobian G = [Ga Gb] and the multipliers λ.
 struct JointLawsOf {
   static constexpr double tolerance = 1e-12;                    ///< largest relative error, except for differences
   AnyGeometry const geometry;                                   ///< geometry under test
   bool const planar = geometry.planar;                          ///< true if all frames stay in the plane z = 0
   Index const m = geometry.rows;                                ///< number of constraint equations
-  Index const holonomic = m - geometry.nonholonomic_equations;  ///< number of holonomic ones
+  Index const holonomic = m - geometry.nonholonomic_equations;  ///< number of holonomic constraint equations
   double const t = 1.3;                                         ///< time of the evaluation [s]
   Numbers number;                                               ///< random numbers with a fixed seed
 
@@ -24,44 +25,47 @@ struct JointLawsOf {
 
   /// Pairs of frames that satisfy the constraint equations.
   std::vector<FramePair> closed();
-  std::vector<FramePair> open();  ///< closed frames after a random motion of b
-  std::vector<FramePair> all();   ///< closed and open frames
-  /// Basis of the possible motions of two frames in their world, as a 0/1 matrix (12×n).
+  std::vector<FramePair> open();  ///< pairs of `closed()` after a random motion of b
+  std::vector<FramePair> all();   ///< pairs of `closed()` and of `open()`
+  /// Basis (12×n) of the possible motions of two frames in space or in the plane, with entries 0 and 1.
   MatX known() const;
   VecX multipliers();                                           ///< random λ (m) in [−3, 3]
   VecX wrenches(FramePair const& p, VecX const& lambda) const;  ///< Gᵀλ (12): [f; m] on a, then on b
   MatX jacobian(FramePair const& p) const { return geometry.constraint_function(p, t).G; }  ///< G (m×12) at time t
 
-  /// Allowed error of a quantity of two frames, `quantity(p)`: `relative` (1 + its norm), and its change in a motion of
-  /// 10⁻¹⁴. Positions are rounded, so a constraint function with the gradient G has the error |G| ε |r|.
+  /// Allowed error of `quantity(p)`, a quantity of two frames: `relative` (1 + its norm), plus its change due to a
+  /// motion of 10⁻¹⁴. Positions r are rounded with the relative error ε, so a function with the gradient G has the
+  /// error |G| ε |r|.
   template <class Quantity>
   double allowed(FramePair const& p, Quantity&& quantity, double relative = tolerance) const {
     auto const here = quantity(p), near = quantity(p.moved_by(known() * VecX::LinSpaced(known().cols(), -1e-7, 1e-7)));
     return relative * (1.0 + here.norm()) + 1e-14 * (near - here).norm() / 1e-7;
   }
 
-  /// g = 0 for closed frames; g ≠ 0 after a motion of b.
+  /// g = 0 for frames of `closed()`. g ≠ 0 after a motion of b, if there are holonomic constraints.
   void closed_frames_satisfy_the_equations();
   /// G = ∂g/∂(motions of the frames). For nonholonomic constraints g = 0 everywhere.
   void maps_are_the_derivative_of_the_function();
   /// `rate` = Φ_t = ∂g/∂t.
   void rate_is_the_derivative_of_the_function_by_time();
-  /// γ = d/dt (G V + Φ_t) at constant V: along the motion by dual numbers, in time by differences.
+  /// γ = d/dt (G V + Φ_t) at constant V. The derivative along the motion is computed by dual numbers, the partial
+  /// derivative with respect to time by differences.
   void gamma_is_the_second_derivative_without_accelerations();
   /// Gaᵀλ·Va + Gbᵀλ·Vb = λ·(ġ − Φ_t), with ġ along the motion.
   void wrenches_have_the_power_of_the_multipliers();
-  /// f_a + f_b = 0 in all frames. In closed frames the moments about every point are balanced. In open frames,
-  /// constraint equations in world axes have the moment d × f, with the force f of these equations. It is zero for a
-  /// force along d, for example of a spring. If a geometry declares opposite ends, Gb = −Ga is bitwise exact.
+  /// f_a + f_b = 0 for all frames. If the constraint equations are satisfied, the moments about every point are
+  /// balanced. Otherwise the constraint equations in world axes, with the force f, have the moment d × f, d = r_b −
+  /// r_a. This moment is zero for a force along d, such as that of a spring. If a geometry declares opposite ends, Gb =
+  /// −Ga is bitwise exact.
   void wrenches_are_equal_and_opposite();
-  /// Invariance under a rotation and displacement of both frames and their twists. Constraint equations in world axes
-  /// rotate with the frames; the others do not change.
+  /// A rotation and displacement of both frames and their twists rotates the constraint equations in world axes and
+  /// does not change the other equations.
   void does_not_see_a_rigid_motion_of_both_frames();
-  /// `wrench_gradient` = ∂(Gᵀλ)/∂(motions of the frames), in closed form or by dual numbers, compared with
-  /// extrapolated differences: the derivative by each motion has an error below 10⁻⁹ (1 + its norm).
+  /// `wrench_gradient`, in closed form or by dual numbers, is ∂(Gᵀλ)/∂(motions of the frames). It is compared with
+  /// extrapolated differences: the derivative with respect to each motion has an error below 10⁻⁹ (1 + its norm).
   void wrench_gradient_is_the_derivative_of_the_wrenches();
-  /// In closed frames G has full rank, and G T = 0 for the free directions T of the case. The numbers of constraint
-  /// equations and of free directions add up to the number of motions of b.
+  /// If the constraint equations are satisfied, G has full rank, and Gb T = 0 for the free directions T of the case.
+  /// The numbers of constraint equations and of free directions add up to the number of motions of b.
   void equations_and_free_directions_span_all_motions();
 };
 
@@ -71,13 +75,13 @@ struct JointLawsOf {
 ///       static constexpr bool planar = false;  // true: frames in the plane z = 0
 ///       static constexpr int world_rows = 3;   // number of leading constraint equations in world axes
 ///       static Revolute geometry();
-///       static Mate mate(Numbers&, double t);  // position of b relative to a at time t
+///       static Mate mate(Numbers&, double t);  // pose of b relative to a at time t
 ///     };
 ///     bool const revolute_obeys = obeys<RevoluteCase, JointLaws>("Revolute");
 ///
 /// Derivatives are computed with dual numbers along motions of the frames, [δr; φ] in world axes. Tolerances are
 /// relative and include the rounding of positions, so a geometry may have lengths from 1 mm to 10 m. The laws access
-/// the geometry through a few functions, so that a file compiles them once for all of its geometries.
+/// the geometry through `AnyGeometry`, so that a source file compiles them once for all of its geometries.
 template <class Case>
 struct JointLaws : JointLawsOf {
   JointLaws() : JointLawsOf(any_geometry<Case>()) {}
@@ -137,7 +141,7 @@ inline VecX JointLawsOf::wrenches(FramePair const& p, VecX const& lambda) const 
   return geometry.constraint_function(p, t).G.transpose() * lambda;
 }
 
-/// Moment of both wrenches, w (12), about a point.
+/// Moment (3) about the point `about` of the wrenches w (12) on both frames.
 inline Vec3 moment_about(FramePair const& p, VecX const& w, Vec3 const& about) {
   Vec3 const fa = w.segment<3>(0), fb = w.segment<3>(6);
   return w.segment<3>(3) + (p.a.r - about).cross(fa) + w.segment<3>(9) + (p.b.r - about).cross(fb);
@@ -247,7 +251,7 @@ inline void JointLawsOf::wrench_gradient_is_the_derivative_of_the_wrenches() {
 
 inline void JointLawsOf::equations_and_free_directions_span_all_motions() {
   MatX const k = known();
-  auto const min_load_step = [](MatX a) {  // part of a row that is independent of the previous rows
+  auto const min_load_step = [](MatX a) {  // smallest norm of a row of a after orthogonalisation to the previous rows
     double smallest = a.row(0).norm();
     for (Index i = 1; i < a.rows(); ++i) {
       a.row(i - 1).normalize();

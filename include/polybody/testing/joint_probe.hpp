@@ -12,12 +12,12 @@
 
 namespace polybody::laws {
 
-/// Position of b relative to a that satisfies the constraint equations, and the motions of b relative to a that the
-/// joint permits.
+/// Pose of frame b relative to frame a that satisfies the constraint equations, and the free directions of b in this
+/// pose.
 struct Mate {
   Vec3 d = Vec3::Zero();      ///< (3) r_b − r_a in a's axes [m]
   Mat3 R = Mat3::Identity();  ///< (3×3) AaᵀAb, direction cosines
-  MatX free_directions;       ///< (6×dof) [velocity; angular velocity] of b in a's axes
+  MatX free_directions;       ///< (6×dof) columns [velocity; angular velocity] of b relative to a, in a's axes
 };
 
 /// Two frames with their twists.
@@ -26,12 +26,12 @@ struct FramePair {
   MatX free_directions = MatX::Zero(6, 0);  ///< (6×dof) free directions of b, world axes
 
   VecX twists() const;                           ///< (12) [ṙ; ω] of a, then of b, world axes
-  FramePair moved_by(VecX const& motion) const;  ///< after a motion (12): [δr; φ] of a, then of b, world axes
+  FramePair moved_by(VecX const& motion) const;  ///< frames after a motion (12): [δr; φ] of a, then of b, world axes
 };
 
-/// Constraint function g, its Jacobian G = [Ga Gb] and its derivatives.
+/// Constraint function g of m equations, its Jacobian G = [Ga Gb] and its derivatives.
 struct SeenTerms {
-  VecX g, rate;  ///< (m)
+  VecX g, rate;  ///< (m) g and Φ_t = ∂g/∂t
   MatX G;        ///< (m×12)
   MatX slope;    ///< (m×12) ∂g/∂(motions), by dual numbers
   MatX G_rate;   ///< (m×12) Ġ at constant twists and constant time, by dual numbers
@@ -39,20 +39,20 @@ struct SeenTerms {
 
 /// Joint geometry with its type erased.
 struct AnyGeometry {
-  /// Numbers of constraint equations: in total, in world axes (the first ones), of velocities (the last ones).
+  /// Numbers of constraint equations: all, the leading ones in world axes, and the nonholonomic ones at the end.
   Index rows = 0, world_rows = 0, nonholonomic_equations = 0;
   bool planar = false;         ///< true if the frames stay in the plane z = 0
   bool opposite_ends = false;  ///< true if the geometry declares Gb = −Ga
   ///@{
-  /// Constraint function at a time [s]; `terms_by_duals` also computes the derivatives.
+  /// Constraint function at a time [s]. `terms_by_duals` also computes `slope` and `G_rate`.
   std::function<SeenTerms(FramePair const&, double)> constraint_function, terms_by_duals;
   ///@}
   std::function<VecX(FramePair const&, double)> gamma;                  ///< γ (m) at a time [s]
   std::function<MatX(FramePair const&, double, VecX const&)> gradient;  ///< (12×12) ∂(Gᵀλ)/∂(motions)
-  std::function<Mate(Numbers&, double)> mate;                           ///< position of b relative to a at a time [s]
+  std::function<Mate(Numbers&, double)> mate;                           ///< pose of b relative to a at a time [s]
 };
 
-/// Creates the functions of the geometry of a case.
+/// Erases the type of a case's joint geometry.
 template <class Case>
 AnyGeometry any_geometry() {
   using G = decltype(Case::geometry());

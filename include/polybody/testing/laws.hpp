@@ -2,15 +2,15 @@
 /// \file
 /// Law tests: properties of many types, each of them a test of GoogleTest. The suites in this folder test the types of
 /// the library: `BodyLaws`, `FlexibleBodyLaws`, `JointLaws`, `PolicyLaws`, `ForceLaws`, `ContactLaws`,
-/// `IntegratorLaws`, `LinearSolvers`, `UserSystemLaws`. One line and a case that creates the object add tests of
-/// another type:
+/// `IntegratorLaws`, `LinearSolvers`, `UserSystemLaws`. A case that creates an object of another type, and one line,
+/// add the tests of this type:
 ///
 ///     bool const bead_obeys = polybody::laws::obeys<BeadCase, polybody::laws::JointLaws>("Bead");
 ///
 /// The program links `polybody::testing`, which includes GoogleTest and its main function. The namespace is not
 /// `testing`, because `using namespace polybody` would then hide the namespace of GoogleTest.
 ///
-/// A suite is a template with its laws as members and a list of the laws:
+/// A suite is a class template with member functions that test its laws, and with a list of these laws:
 ///
 ///     template <class Case>
 ///     struct SpringLaws {
@@ -51,15 +51,15 @@ class LawTest : public ::testing::Test {
   std::function<void()> law_;
 };
 
-/// Registers one law of `suite` as a test of GoogleTest. holds() tests the law; `file` and `line` are the source
-/// location of the request.
+/// Registers one law of `suite` as a test of GoogleTest. `holds()` tests the law. `file` and `line` are the source
+/// location that GoogleTest reports.
 inline void register_law(std::string const& suite, char const* law, char const* file, int line,
                          std::function<void()> holds) {
   ::testing::RegisterTest(suite.c_str(), law, nullptr, nullptr, file, line,
                           [holds = std::move(holds)]() -> LawTest* { return new LawTest(holds); });
 }
 
-/// Registers every law of a suite; `file` and `line` are the source location of the request.
+/// Registers every law of a suite. `file` and `line` are the source location that GoogleTest reports.
 template <class Laws>
 void register_laws(std::string const& suite, char const* file, int line) {
   for (Law<Laws> const& law : Laws::laws)
@@ -69,8 +69,9 @@ void register_laws(std::string const& suite, char const* file, int line) {
     });
 }
 
-/// Registers the laws of each suite for a case, as tests named `name/Suite.Law`; `file` and `line` are the source
-/// location of the request. The call initialises a variable, so that it runs before `main`.
+/// Registers the laws of each suite for a case, as tests named `name/Suite.Law`. `file` and `line` are the source
+/// location that GoogleTest reports. Initialise a global variable with the result, so that the registration runs before
+/// `main`.
 template <class Case, template <class> class... Suites>
 bool obeys(std::string const& name, char const* file = __builtin_FILE(), int line = __builtin_LINE()) {
   (register_laws<Suites<Case>>(name + "/" + Suites<Case>::suite, file, line), ...);

@@ -14,12 +14,12 @@
 namespace polybody::laws {
 
 /// Saddle-point matrix [M, Gᵀ; G, 0] of a chain of bodies with six columns each, and joints of five constraint
-/// equations between neighbours. Some blocks overlap (a second spring on body 0). The order of the blocks is fixed.
+/// equations between neighbours. One block overlaps another (a spring on body 0). The order of the blocks is fixed.
 struct Blocks {
   Index bodies;                               ///< number of bodies, and of joints
   Index size() const { return 11 * bodies; }  ///< rows of the matrix: 6 per body, 5 per joint
 
-  /// Adds all blocks to `sink`. `seed` determines their numbers, not their positions.
+  /// Adds all blocks to `sink`. The `seed` determines the values of the blocks, but not their positions.
   template <class Sink>
   void write(Sink& sink, unsigned seed) const {
     std::srand(seed);
@@ -53,14 +53,15 @@ struct Plain {
   }
 };
 
-/// Dense matrix (n×n) of the blocks, with the numbers of `seed`.
+/// Dense matrix (n×n) of the blocks, with the values that belong to `seed`.
 inline MatX plain(Blocks const& blocks, unsigned seed) {
   Plain sink{MatX::Zero(blocks.size(), blocks.size())};
   blocks.write(sink, seed);
   return sink.a;
 }
 
-/// Laws that every linear solver satisfies, on the same matrices. The solver itself is the case:
+/// Laws that every linear solver satisfies. All solvers are tested with the same matrices. The solver itself is the
+/// case:
 ///
 ///     bool const dense_lu_obeys = obeys<DenseLu, LinearSolvers>("DenseLu");
 template <class Solver>
@@ -76,10 +77,10 @@ struct LinearSolvers {
 
   /// |x − A⁻¹b| < 1e-10 |A⁻¹b| for several matrices of one pattern, and for several b with one factorisation.
   void solve_what_full_pivoting_solves();
-  /// For the zero matrix `factor` returns a column. It then factorises a regular matrix successfully.
+  /// For the zero matrix `factor` returns the index of a column. Afterwards `factor` succeeds for a regular matrix.
   void name_a_column_of_a_singular_matrix();
-  /// If two joints have the same constraint equations, `factor` returns a column of one of them. A solver may instead
-  /// drop these constraint equations and list them.
+  /// If two joints have the same constraint equations, `factor` returns the index of a column of one of these joints. A
+  /// solver may instead drop the redundant constraint equations and list them in `dropped()`.
   void name_one_of_two_equal_joints();
   /// A system without unknowns is factorised and solved.
   void nothing_is_solved_at_once();
@@ -129,7 +130,7 @@ void LinearSolvers<Solver>::name_a_column_of_a_singular_matrix() {
   }
 }
 
-// Two joints with the same constraint equations: the matrix is singular up to round-off, and one of the two is
+// Two joints with the same constraint equations: the matrix is singular up to round-off, and a column of one joint is
 // returned.
 template <class Solver>
 void LinearSolvers<Solver>::name_one_of_two_equal_joints() {

@@ -11,8 +11,8 @@
 
 namespace polybody::laws {
 
-/// Laws that every policy satisfies that replaces constraint equations by a force −Gᵀλ(g, ġ). A case gives the policy
-/// and the size of constraint violations:
+/// Laws of all policies that replace constraint equations by a force −Gᵀλ(g, ġ), with the violation g. A case gives the
+/// policy and the size of constraint violations:
 ///
 ///     struct PenaltyCase {
 ///       static constexpr int rows = 3;      // number of constraint equations
@@ -74,7 +74,7 @@ struct PolicyLaws {
     EXPECT_EQ(policy.template potential<m>(Row::Zero()), 0.0);
   }
 
-  /// (λ(g, ġ) − λ(g, 0))·ġ ≥ 0: the force of the rate dissipates energy.
+  /// (λ(g, ġ) − λ(g, 0))·ġ ≥ 0: the force that depends on ġ dissipates energy.
   void damping_takes_power() {
     for (int k = 0; k < 10; ++k) {
       Row const g = violation(), g_rate = rate();

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Law tests of equations for `system_of`.
+/// Law tests of user-defined equations of motion, from which `system_of` makes a system.
 ///
 /// Requires GoogleTest; not included by polybody.hpp.
 
@@ -11,8 +11,8 @@
 
 namespace polybody::laws {
 
-/// Laws of a user's equations, from which `system_of` makes a system. A case gives the equations and coordinates at
-/// which the laws are tested:
+/// Laws of user-defined equations of motion, from which `system_of` makes a system. A case gives the equations, and the
+/// coordinates at which the laws are tested:
 ///
 ///     struct DoublePendulumCase {
 ///       static DoublePendulum equations();
@@ -23,14 +23,14 @@ template <class Case>
 struct UserSystemLaws {
   using E = decltype(Case::equations());  ///< type of the equations
   static_assert(UserMechanics<E>);
-  static constexpr double wild = 1e9;  ///< initial value of all results, in any unit
+  static constexpr double wild = 1e9;  ///< initial value of result arrays; every entry must be overwritten
 
   E const equations = Case::equations();   ///< equations under test
   Index const n = equations.velocities();  ///< number of generalised velocities
   double const t = 1.3;                    ///< time of the evaluation [s]
   Numbers number;                          ///< random numbers with a fixed seed
 
-  /// Coordinates q (n): coordinates of the case if it gives them, otherwise random numbers in [−1, 1].
+  /// Coordinates q (n) of the case, or random numbers in [−1, 1] if the case has no function `coordinates`.
   VecX coordinates() {
     if constexpr (requires { Case::coordinates(number); })
       return Case::coordinates(number);
@@ -75,7 +75,7 @@ struct UserSystemLaws {
     return phi_t;
   }
 
-  /// M = Mᵀ independent of the initial values of the result, and vᵀM v > 0.
+  /// M = Mᵀ and vᵀM v > 0, and M does not depend on the initial values of the result array.
   void mass_is_symmetric_and_positive() {
     VecX const q = coordinates();
     MatX const m = mass(q);
@@ -87,10 +87,10 @@ struct UserSystemLaws {
     }
   }
 
-  /// `tangent` = −(ck ∂f/∂q + cd ∂f/∂v), if the equations have a tangent.
+  /// `tangent` = −(ck ∂f/∂q + cd ∂f/∂v), if the equations provide a tangent.
   void tangent_is_the_derivative_of_the_force() {
     if constexpr (!HasForceTangent<E>) {
-      GTEST_SKIP() << "its tangent comes from differences";
+      GTEST_SKIP() << "the tangent is computed by differences";
     } else {
       VecX const q = coordinates(), v = number.vector(n);
       for (auto const& [ck, cd] : {std::pair{1.0, 0.0}, {0.0, 1.0}, {0.7, 31.0}}) {
@@ -109,7 +109,7 @@ struct UserSystemLaws {
 
   /// G = ∂Φ/∂q and Φ_t = ∂Φ/∂t, for equations with constraint equations.
   void jacobian_and_rate_are_the_derivatives_of_the_violation() {
-    if (rows() == 0) GTEST_SKIP() << "it has no rows";
+    if (rows() == 0) GTEST_SKIP() << "the system has no constraint equations";
     VecX const q = coordinates();
     MatX const g = jacobian(q, t);
     for (Index j = 0; j < n; ++j) {
@@ -123,7 +123,7 @@ struct UserSystemLaws {
   /// γ = d/dt (G v + Φ_t) along q + v t at constant v, so that Φ̈ = G v̇ + γ.
   void gamma_is_the_second_derivative_without_accelerations() {
     if constexpr (!HasConstraintEquations<E>) {
-      GTEST_SKIP() << "it has no rows";
+      GTEST_SKIP() << "the system has no constraint equations";
     } else {
       VecX const q = coordinates(), v = number.vector(n);
       VecX gamma = VecX::Constant(rows(), wild);

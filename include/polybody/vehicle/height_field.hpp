@@ -9,10 +9,10 @@
 namespace polybody {
 
 /// Ground through heights on a grid: bicubic in each cell, with continuous slopes [Catmull & Rom 1974, along x and
-/// along y]. The slope at a grid point equals the slope of the chord between its two neighbours. At the border it
-/// equals the slope of the chord to its only neighbour. So planes and x·y are reproduced exactly, and parabolas are
-/// reproduced away from the border. Beyond the border, the slope normal to the border decreases to zero linearly over
-/// one spacing and is zero farther out. Four numbers are stored for each height; copies share them.
+/// along y]. The slope at a grid point equals the slope of the chord between its two neighbours. At a border point it
+/// equals the slope of the chord to the only neighbour. So the heights z = a + bx + cy + dxy are reproduced exactly,
+/// and parabolas are reproduced away from the border. Beyond the border, the slope normal to the border decreases to
+/// zero linearly over one spacing and is zero farther out. Four numbers are stored for each height; copies share them.
 class HeightField {
  public:
   /// Heights at the corners of equal rectangles.
@@ -22,17 +22,17 @@ class HeightField {
     MatX heights;             ///< (nx × ny) heights(i, j) at (x0 + i dx, y0 + j dy) [m]
   };
 
-  /// \throws InvalidInput naming `what` if there are fewer than two points along x or y. Spacings must be positive;
-  /// heights, slopes and curvatures must be finite.
+  /// \throws InvalidInput naming `what` if there are fewer than two points along x or y, if a spacing is not positive,
+  /// or if a height, slope or curvature is not finite.
   explicit HeightField(Grid const& grid, std::string const& what = "HeightField") {
     MatX const& z = grid.heights;
-    require_finite(Vec2(grid.x0, grid.y0), what, ": the place x0, y0 of the first point");
+    require_finite(Vec2(grid.x0, grid.y0), what, ": the position x0, y0 of the first point");
     require_positive(grid.dx, what, ": the spacing dx");
     require_positive(grid.dy, what, ": the spacing dy");
     if (z.rows() < 2 || z.cols() < 2)
       throw InvalidInput("terrain.grid",
                          {ErrorObject{what}, ": a grid needs at least two points along x and along y, but has ",
-                          z.rows(), " by ", z.cols(), ". For a ground that does not change across use RoadProfile."});
+                          z.rows(), " by ", z.cols(), ". For a ground that does not change along y use RoadProfile."});
     for (Index j = 0; j < z.cols(); ++j)
       for (Index i = 0; i < z.rows(); ++i)
         if (!std::isfinite(z(i, j)))
@@ -84,7 +84,7 @@ class HeightField {
       Index const cell = std::min(Index(at), cells - 1);
       ShapeValues<4> const h = hermite_shape(at - double(cell), spacing);
       Piece p{cell, Mat<double, 4, 3>::Zero()};
-      // Outside the slope and its derivative are zero.
+      // Outside of the cells the slope and its derivative are zero.
       for (int i = 0; i < 4; ++i) p.shape.row(i) << h.s[i], h.ds[i], inside ? h.dds[i] : 0.0;
       return p;
     }
@@ -97,8 +97,8 @@ class HeightField {
     }
   };
 
-  /// Values and slopes in alternate rows, of the n rows of z at a distance h and of one added row on either side. In
-  /// the added rows the slope is zero and the values are z − hz′/2 and z + hz′/2.
+  /// Matrix with values and slopes in alternate rows, for the n rows of z with spacing h and one added row on either
+  /// side. In the added rows the slope is zero and the values are z − hz′/2 and z + hz′/2.
   static MatX with_slopes(MatX const& z, double h) {
     Index const n = z.rows();
     MatX all = MatX::Zero(2 * n + 4, z.cols());
@@ -112,7 +112,7 @@ class HeightField {
   }
 
   Axis x_, y_;
-  /// (2nx + 4 × 2ny + 4) rows alternate between h and ∂h/∂x, columns between h and ∂h/∂y.
+  /// (2nx + 4 × 2ny + 4) values and slopes: rows alternate between h and ∂h/∂x, columns between h and ∂h/∂y.
   std::shared_ptr<MatX const> nodes_;
   double highest_ = 0.0;
 };

@@ -7,7 +7,8 @@
 namespace polybody {
 
 namespace detail {
-/// Column j of A, a + b and a x, entry by entry. Expressions of Eigen would be compiled again for dual numbers.
+/// Column j of A. The column is copied entry by entry, because expressions of Eigen would be compiled again for dual
+/// numbers.
 template <StateScalar T>
 Vec<T, 3> column(Mat<T, 3, 3> const& A, int j) {
   return {A(0, j), A(1, j), A(2, j)};
@@ -26,7 +27,7 @@ Vec<T, 3> point_in(Vec<T, 3> const& r, Mat<T, 3, 3> const& A, Vec<T, 3> const& p
   Vec<T, 3> const arm = A * p;
   return sum<T>(r, arm);
 }
-/// Component of a perpendicular to the unit vector n.
+/// Component of the vector a that is perpendicular to the unit vector n.
 template <StateScalar T>
 Vec<T, 3> across(Vec<T, 3> const& a, Vec<T, 3> const& n) {
   T const along = n.dot(a);
@@ -34,9 +35,9 @@ Vec<T, 3> across(Vec<T, 3> const& a, Vec<T, 3> const& n) {
 }
 }  // namespace detail
 
-/// Axes of a link (3×3): x from its rear pin to its front pin, y along its pins, z towards the wheels. The axes of a
-/// marker with a full frame are these axes. A cable has a tangent only. Its y is perpendicular to the tangent and as
-/// close as possible to `lateral`, the axle of the touching body.
+/// Axes of a link (3×3): x from its rear pin to its front pin, y along its pins, z towards the wheels. If the marker
+/// has a full frame, these are the axes of the frame. A cable has only a tangent, x. In this case y is perpendicular to
+/// the tangent and as close as possible to `lateral`, the axle of the touching body.
 template <MarkerKind observed, StateScalar T>
 Mat<T, 3, 3> link_axes(Frame<T> const& link, Vec<T, 3> const& lateral) {
   if constexpr (observed == MarkerKind::frame) {

@@ -11,8 +11,8 @@
 namespace polybody {
 
 /// Contact of points of a link's pad with a terrain. Marker a is the link's centre. Marker b is the ground; the
-/// terrain's height is a function of its x and y. The normal is n = (−h_x, −h_y, 1)/√(1 + h_x² + h_y²). A point P at
-/// the depth e = h(x, y) − z below the ground has the penetration d = e n_z.
+/// terrain's height h is a function of x and y in the axes of marker b. The normal is n = (−h_x, −h_y, 1)/√(1 + h_x² +
+/// h_y²). A point (x, y, z) at the depth e = h(x, y) − z below the ground has the penetration d = e n_z.
 template <Terrain G = FlatGround, MarkerKind observed = MarkerKind::frame>
 struct LinkGroundContact {
   static constexpr MarkerKind needs = observed;
@@ -26,7 +26,7 @@ struct LinkGroundContact {
   void check(std::string const& name) const {
     terrain.check(name);
     if (pad.empty())
-      throw InvalidInput("track_contact.points", {ErrorObject{name}, ": a link needs points that touch the ground."});
+      throw InvalidInput("track_contact.points", {ErrorObject{name}, ": the pad of a link needs at least one point."});
     for (Vec3 const& p : pad) require_finite(p, name, ": a point of the pad");
   }
   bool may_touch(Frame<double> const& link, Frame<double> const& ground) const {

@@ -13,15 +13,15 @@ namespace polybody {
 /// with one or both rims]. Marker a is the link's centre, with x to the front pin and z to the roller. Marker b is the
 /// roller's centre, with its axle along y. A rim is a circle of radius R in its middle plane.
 ///
-/// The lowest point of a rim touches the face z = h if it lies above the link, |s| ≤ p/2. The penetration is d = R −
-/// (height of the axle above the face). Each face ends at the start of the next face. Within the distance ε =
-/// `handover` of this edge, each of the two links carries the share x² (3 − 2x) of the force, with x = (p/2 + ε −
-/// |s|)/2ε. So the force is continuous if a wheel passes from one link to the next. If the track bends towards the
-/// wheel, the strips above the faces overlap.
+/// The lowest point of a rim, with the coordinate s along x, touches the face z = h if it lies above the link, |s| ≤
+/// p/2. The penetration is d = R − (height of the axle above the face). The face of one link ends where the next face
+/// begins. Within the distance ε = `handover` of this edge, each of the two links carries the fraction x² (3 − 2x) of
+/// the force, with x = (p/2 + ε − |s|)/2ε. So the force is continuous if a wheel passes from one link to the next. If
+/// the track bends towards the wheel, the regions above neighbouring faces overlap.
 ///
-/// Beyond a face its edge may touch the rim, for example on a bump. The penetration of the edge is d = R − c − (its
-/// distance from the axle), with the chamfer c of the edge along the radius. It is at most the distance of the rim
-/// beyond the face, so that the force begins at zero.
+/// A rim beyond the face may touch the edge of the face, for example on a bump. The penetration of the edge is d = R −
+/// c − (distance of the edge from the axle), with the chamfer c of the edge along the radius. This penetration is
+/// limited to the distance of the rim beyond the face, so that the force begins at zero.
 template <MarkerKind observed = MarkerKind::frame>
 struct LinkRollerContact {
   static constexpr MarkerKind needs = observed;
@@ -33,7 +33,7 @@ struct LinkRollerContact {
   Required<double> radius;           ///< R, radius of the rims [m]
   double handover = 0.03;            ///< ε, half length of the transition between two links [m]
   double chamfer = 0.005;            ///< c, chamfer of the edges [m]
-  std::vector<double> rims = {0.0};  ///< positions of their middle planes along the axle [m]
+  std::vector<double> rims = {0.0};  ///< positions of the rims' middle planes along the axle [m]
 
   void check(std::string const& name) const {
     require_positive(pitch, name, ": the pitch of the link");
@@ -44,7 +44,7 @@ struct LinkRollerContact {
     if (!(handover > 0.0 && handover < 0.5 * pitch))
       throw InvalidInput(
           "track_contact.handover",
-          {ErrorObject{name}, ": the zone of the handover must be positive and below half the pitch, but is ",
+          {ErrorObject{name}, ": the handover distance must be positive and below half the pitch, but is ",
            ErrorValue{handover}, " m."});
     if (rims.empty())
       throw InvalidInput("track_contact.rims", {ErrorObject{name}, ": a roller needs at least one rim."});
@@ -135,8 +135,8 @@ struct LinkRollerContact {
 
 /// Lateral guide of a track. A horn on the inner face of a link runs between the rims of a wheel and touches their
 /// inner faces. The markers are those of `LinkRollerContact`. The force is parallel to the axle. The penetration is the
-/// distance of the horn beyond the play, and at most the distance of the tip within the rims. So the force also grows
-/// from zero if a horn comes down on a rim. This represents edges with a chamfer of 45°.
+/// distance of the horn beyond the play. It is limited to the distance of the tip within the rims. So the force also
+/// grows from zero if a horn comes down on a rim. This limit represents edges with a chamfer of 45°.
 template <MarkerKind observed = MarkerKind::frame>
 struct GuideHornContact {
   static constexpr MarkerKind needs = observed;

@@ -24,7 +24,8 @@ struct SprocketProfile {
 
   /// R_p, radius of the pitch circle [m].
   double pitch_radius() const { return 0.5 * pitch / std::sin(std::numbers::pi / teeth); }
-  double arc_centre() const { return pitch_radius() + valley_radius - pin_radius; }  ///< r_c, from the axle [m]
+  /// r_c, distance of the arc's centre from the axle [m].
+  double arc_centre() const { return pitch_radius() + valley_radius - pin_radius; }
   /// Distance from the axle at which a pin just touches a tip; there is no contact at a greater distance [m].
   double outer_radius() const { return tip_radius + pin_radius; }
   /// (2) Intersection of flank and tip circle, radial and tangential, relative to the middle of the valley [m].
@@ -47,9 +48,10 @@ struct SprocketProfile {
                          {ErrorObject{name}, ": the radius of the valleys must exceed the radius of the pins, but is ",
                           ErrorValue{valley_radius}, " m."});
     if (!(flank > 0.0 && flank < 0.5 * std::numbers::pi))
-      throw InvalidInput("sprocket.valley",
-                         {ErrorObject{name}, ": the arc of a valley must end between 0 and a right angle, but ends at ",
-                          ErrorValue{flank}, " rad."});
+      throw InvalidInput(
+          "sprocket.valley",
+          {ErrorObject{name}, ": the half angle of a valley's arc must lie between 0 and pi/2 rad, but is ",
+           ErrorValue{flank}, " rad."});
     double const foot = std::hypot(arc_centre() - valley_radius * std::cos(flank), valley_radius * std::sin(flank));
     if (!(tip_radius > foot) || !std::isfinite(tip_radius))
       throw InvalidInput("sprocket.valley",
@@ -60,23 +62,23 @@ struct SprocketProfile {
       throw InvalidInput(
           "sprocket.valley",
           {ErrorObject{name},
-           ": the valleys leave nothing of the teeth. Use a smaller valley, a lower tip or fewer teeth."});
+           ": the valleys overlap, so that no teeth remain. Use a smaller valley, a lower tip or fewer teeth."});
   }
 
-  /// Penetration d and normal (radial, tangential) of a pin at X along the middle of a valley and Y ≥ 0 across it. d
-  /// and n are continuous.
+  /// Penetration and unit normal of a pin on the profile. Both are continuous functions of the pin's position.
   template <StateScalar T>
   struct Overlap {
-    T depth, radial, tangential;  ///< d [m]; unit vector along the middle of the valley and across it
+    T depth, radial, tangential;  ///< penetration [m]; normal along the middle of the valley and across it
   };
-  /// Penetration of a pin at X = x and Y = y [m]; it is negative if pin and tooth are separated.
+  /// Penetration and normal of a pin at x along the middle of a valley and y ≥ 0 across the valley, from the axle [m].
+  /// The penetration is negative if pin and tooth are separated.
   template <StateScalar T>
   Overlap<T> overlap(T const& x, T const& y) const {
     using std::sqrt;
     double const rc = arc_centre(), room = valley_radius - pin_radius, c = std::cos(flank), s = std::sin(flank);
     T const u = rc - x;  // towards the bottom
     Vec2 const k = corner();
-    // Position along the flank, beyond its end.
+    // Distance along the flank beyond its outer end.
     double const along = (value_of(x) - k[0]) * s + (value_of(y) - k[1]) * c;
     if (value_of(y) * c <= value_of(u) * s && value_of(u) > 0.0) {  // contact with the arc
       T const r = sqrt(u * u + y * y);

@@ -25,8 +25,9 @@ struct Height {
   T slope_y;  ///< ∂h/∂y
 };
 
-/// Concept of a terrain: a height with continuous slopes, and an upper bound of the height. The bound is infinite if
-/// none is known. A point above the bound has no contact. For dual numbers the slopes also contain their derivatives.
+/// Concept of a terrain: a height with continuous slopes, and an upper bound of the height. The bound is infinite if no
+/// upper bound is known. A point above the bound has no contact. For dual numbers the slopes also contain their
+/// derivatives.
 template <class G>
 concept Terrain = requires(G const terrain, double x, Dual<2> d, std::string const name) {
   { terrain.template height<double>(x, x) } -> std::same_as<Height<double>>;
@@ -40,8 +41,8 @@ namespace detail {
 struct Relief {
   double z = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;
 };
-/// Height of dual coordinates by the chain rule, dh = h,x dx + h,y dy, and slopes in the same way. The result is NaN if
-/// x or y is NaN.
+/// Height and slopes at dual coordinates by the chain rule, dh = ∂h/∂x dx + ∂h/∂y dy. The result is NaN if x or y is
+/// NaN.
 template <StateScalar T>
 Height<T> follow(Relief const& h, T const& x, T const& y) {
   T const dx = x - value_of(x), dy = y - value_of(y);
@@ -89,10 +90,10 @@ struct Washboard {
 /// Bump H c((x − x₀)/L) c((y − y₀)/W) with c(s) = ½ (1 + cos 2πs) for |s| < ½, else zero. It is a hole if H is
 /// negative.
 struct Bump {
-  Required<double> x;                                      ///< x₀ of its middle [m]
+  Required<double> x;                                      ///< x₀, position of the middle along x [m]
   Required<double> length;                                 ///< L, length along x from foot to foot [m]
-  Required<double> height;                                 ///< H, height of its middle [m]
-  double y = 0.0;                                          ///< y₀ of its middle [m]
+  Required<double> height;                                 ///< H, height of the middle [m]
+  double y = 0.0;                                          ///< y₀, position of the middle along y [m]
   double width = std::numeric_limits<double>::infinity();  ///< W, width along y from foot to foot [m]; infinite: c = 1
 };
 
@@ -150,9 +151,9 @@ class BumpCourse {
   double highest_ = 0.0;
 };
 
-/// Road through points (x, z), the same for every y. Between two points its height is monotone, so it has no hump
-/// besides the given points [Fritsch & Carlson 1980; slopes of MonotoneTable]. Both ends are level, and the height is
-/// constant beyond them. Copies share the points.
+/// Road through points (x, z), the same for every y. Between two points the height is monotone, so the road has no
+/// extrema except at the points [Fritsch & Carlson 1980; slopes of MonotoneTable]. Both ends are level, and the height
+/// is constant beyond them. Copies share the points.
 class RoadProfile {
  public:
   /// Point of the profile.

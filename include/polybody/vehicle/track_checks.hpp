@@ -17,19 +17,19 @@ namespace polybody {
 
 /// Pins of a track on their sprocket.
 struct SprocketEngagement {
-  int seated = 0;  ///< number of pins between the teeth
+  int seated = 0;  ///< number of pins within the tip radius
   /// First pin that is not in the valley next to the previous pin's valley; −1 if there is none.
   int lost_at = -1;
   /// True if two or more pins are between the teeth and no pin has jumped.
   bool holds() const { return seated >= 2 && lost_at < 0; }
 };
 
-/// Engagement of the `pins` pins of a closed track with a sprocket. A pin counts if its distance from the axle is less
-/// than the radius of the tips of the teeth. Each such pin is assigned to a valley, and consecutive pins must be in
+/// Engagement of the `pins` pins of a closed track with a sprocket. A pin counts as seated if its distance from the
+/// axle is less than the tip radius of the teeth. Each seated pin is assigned to a valley; consecutive pins must be in
 /// consecutive valleys.
 /// \param valley angle of any one valley in the sprocket's axes, from z towards x [rad]
-/// \param position function of the number of a pin, 0 … pins − 1 in the track's direction: its position in the
-/// sprocket's axes, from the sprocket's centre [m]
+/// \param position returns the position of pin k [m], in the sprocket's axes from the sprocket's centre. Pins are
+/// numbered 0 … pins − 1 in the track's direction.
 template <std::invocable<int> F>
 SprocketEngagement sprocket_engagement(SprocketProfile const& profile, double valley, int pins, F const& position) {
   auto const within = [&](Vec3 const& p) { return std::hypot(p.x(), p.z()) < profile.tip_radius; };
@@ -66,8 +66,8 @@ inline std::string tooth_step_warning(int teeth, double speed, double step) {
                       " ms do not resolve. Take steps of ", 1e3 * passing / 6.0, " ms or less."});
 }
 
-/// Distance from p to the nearest point of the straight lines between consecutive corners [m]. Corners may coincide.
-/// The first corner of a closed path is repeated at its end.
+/// Distance from p to the nearest point of the straight lines between consecutive corners [m]. Corners may coincide. A
+/// closed path must repeat its first corner at the end.
 /// \throws InvalidInput for a path without corners
 template <class = void>  // compiled only if it is used
 double distance_to_path(Vec2 const& p, std::span<Vec2 const> corners) {

@@ -17,16 +17,16 @@
 
 namespace polybody {
 
-/// Side of the track on which a circle lies: inside, in contact with its inner faces, or outside, in contact with its
-/// outer faces.
+/// Side of the track on which a circle lies: inside (touches the links' inner faces) or outside (touches the links'
+/// outer faces).
 enum class TrackSide { inside, outside };
 
 /// Wheel, idler or roller: a circle in the plane of the track.
 struct TrackCircle {
-  std::string name;                    ///< name, used by the tensioner and in messages
+  std::string name;                    ///< name, for reference by the tensioner and in messages
   Vec2 centre;                         ///< (2) position [m]
   Required<double> radius;             ///< R, radius of the rim [m]
-  TrackSide side = TrackSide::inside;  ///< selects the faces of the track that touch it
+  TrackSide side = TrackSide::inside;  ///< selects the faces of the track that touch the circle
 };
 
 /// Driven wheel of the track. A pin is seated in each valley that the track covers.
@@ -40,9 +40,9 @@ struct TrackSprocket {
 /// Tensioner of the track: a circle with an adjustable position.
 struct TrackTensioner {
   std::string circle;      ///< name of the circle that moves
-  Vec2 direction;          ///< (2) direction of motion, a vector of length one or more [1]
+  Vec2 direction;          ///< (2) direction of motion, a vector of any positive length [1]
   Required<double> least;  ///< lower limit of the travel from the listed position [m]
-  Required<double> most;   ///< upper limit of the travel [m]
+  Required<double> most;   ///< upper limit of the travel from the listed position [m]
 };
 
 /// Data that determine the path of a track.
@@ -57,9 +57,10 @@ struct TrackLayout {
   std::vector<TrackCircle> circles = {};
   TrackTensioner tensioner;  ///< circle that moves, and limits of its travel
 
-  /// Radius of the corners of the pitch polygon [m].
+  /// Radius of the sprocket's pitch circle, which contains the corners of the pitch polygon [m].
   double pitch_radius() const { return 0.5 * pitch / std::sin(std::numbers::pi / sprocket.teeth); }
-  /// Position of valley k, counted in the track's direction from the given valley.
+  /// Position of a pin seated in valley k [m]. Valleys are counted in the track's direction from the valley at the
+  /// angle `valley`.
   Vec2 seat(int k) const {
     double const a = sprocket.valley + 2.0 * std::numbers::pi * k / sprocket.teeth;
     return sprocket.centre + pitch_radius() * Vec2(std::sin(a), std::cos(a));
@@ -78,8 +79,8 @@ namespace detail {
 inline std::string track_name(TrackCircle const& c) { return sentence_of({"\"", c.name, "\""}); }
 
 /// Checks a layout for overlapping circles and repeated names. \throws InvalidInput if two circles overlap, or if two
-/// wheels have one name. The sprocket has the radius of its pitch circle; the tensioner's circle is checked only if
-/// `placed` is true.
+/// wheels have one name. The sprocket is represented by its pitch circle. Overlaps of the tensioner's circle are
+/// checked only if `placed` is true.
 inline void check_track_overlaps(TrackLayout const& layout, bool placed) {
   std::vector<TrackCircle> all = layout.circles;
   all.push_back({layout.sprocket.name, layout.sprocket.centre, layout.pitch_radius()});

@@ -77,9 +77,9 @@ struct TrackLink {
 /// track's direction from the first pin that is seated on the sprocket.
 struct TrackPath {
   TrackLayout layout;                 ///< layout with the tensioner's circle at the position that closes the loop
-  double travel;                      ///< travel of this circle from the given position [m]
-  std::vector<Vec2> pins = {};        ///< links × (2) positions [m]
-  std::vector<TrackLink> links = {};  ///< one for each pin
+  double travel;                      ///< travel of the tensioner's circle from the listed position [m]
+  std::vector<Vec2> pins = {};        ///< links × (2) positions of the pins [m]
+  std::vector<TrackLink> links = {};  ///< frames of the links
   int seated = 0;                     ///< pins 0 … seated − 1 are seated on the sprocket
   int first_valley = 0;               ///< number of the valley (see `TrackLayout::seat`) of pin 0
   /// (2) Force on the tensioner's circle due to a unit tension of the track. If the tensioner's force along its
@@ -118,8 +118,8 @@ inline TrackClearances clearances(TrackPath const& path, double ground = -std::n
 
 namespace detail {
 
-/// Checks that `place` is inside the polygon of the pins. In this case, a ray from it along x crosses the chain an
-/// odd number of times.
+/// Checks that the point `place` is inside the polygon of the pins. In this case, a ray from the point along x crosses
+/// the chain an odd number of times.
 inline bool track_encloses(std::vector<Vec2> const& pins, Vec2 const& place) {
   bool within = false;
   for (std::size_t i = 0; i < pins.size(); ++i) {
@@ -129,7 +129,7 @@ inline bool track_encloses(std::vector<Vec2> const& pins, Vec2 const& place) {
   return within;
 }
 
-/// Checks a closed chain. \throws InvalidInput if the chain leaves a circle on its wrong side or cannot be built.
+/// Checks a closed chain. \throws InvalidInput if the chain passes a circle on the wrong side or cannot be built.
 inline void check_wrapped(TrackPath const& path) {
   TrackLayout const& layout = path.layout;
   std::size_t const n = path.pins.size();
@@ -162,8 +162,8 @@ inline void check_wrapped(TrackPath const& path) {
                                          "for the links between it and its neighbours."});
 }
 
-/// Travel at which `links` links close the loop, by a scan in steps of p/16 and bisection. If there are several
-/// solutions, the solution nearest to zero is returned.
+/// Travel of the tensioner at which the links of the layout close the loop, by a scan in steps of p/16 and bisection.
+/// If there are several solutions, the solution nearest to zero is returned.
 inline double track_travel(TrackLayout const& layout) {
   TrackTensioner const& tensioner = layout.tensioner;
   double const range = tensioner.most - tensioner.least;
@@ -186,10 +186,11 @@ inline double track_travel(TrackLayout const& layout) {
   if (!std::isfinite(best)) {
     std::string const name = sentence_of({"\"", tensioner.circle, "\""});
     if (range > 0.0 && longest - shortest < 1e-9)
-      throw InvalidInput("track.tensioner",
-                         {"Track: it does not touch ", ErrorObject{name},
-                          ", which therefore cannot tighten it. List the circles in the order in which the track meets "
-                          "them; list a wheel twice if the track meets it above and below."});
+      throw InvalidInput(
+          "track.tensioner",
+          {"Track: the track does not touch ", ErrorObject{name},
+           ", which therefore cannot tighten the track. List the circles in the order in which the track meets "
+           "them; list a wheel twice if the track meets it above and below."});
     bool const few = layout.links <= shortest;
     throw InvalidInput("track.links",
                        {ErrorObject{"Track"}, ": ", ErrorValue{layout.links}, " links are too ", (few ? "few" : "many"),
@@ -203,8 +204,8 @@ inline double track_travel(TrackLayout const& layout) {
   return above;
 }
 
-/// Force of a unit tension on the tensioner's circle. The straight runs pull at the two ends of the contact with the
-/// circle.
+/// Force on the tensioner's circle due to a unit tension of the track. The straight runs pull at the two ends of the
+/// contact with the circle.
 inline Vec2 track_pull(TrackPath const& path) {
   std::size_t const n = path.links.size();
   auto const tightened = [&](std::size_t i) {
@@ -223,8 +224,8 @@ inline Vec2 track_pull(TrackPath const& path) {
 }  // namespace detail
 
 /// Computes the path of a track around its circles. \throws InvalidInput, naming the circle, if circles overlap, if
-/// their order is impossible for a track, or if the pitch is too long for a wheel. It is also thrown if there are too
-/// few or too many links for the tensioner's travel.
+/// their order is impossible for a track, if the pitch is too long for a wheel, or if the tensioner's travel is too
+/// small for the number of links.
 inline TrackPath wrap_track(TrackLayout const& layout) {
   detail::check_track(layout);
   double const travel = detail::track_travel(layout);

@@ -18,7 +18,7 @@ namespace detail {
 
 inline double track_cross(Vec2 const& a, Vec2 const& b) { return a[0] * b[1] - a[1] * b[0]; }
 
-/// Possible direction of a link, and its left turn relative to the previous link.
+/// Possible direction of a link, and the left turn from the previous link to this direction.
 struct TrackSight {
   Vec2 direction = Vec2::Zero();  ///< (2) unit vector
   double turn;                    ///< turn to the left [rad], −3π/2 < turn ≤ π/2
@@ -29,8 +29,9 @@ inline TrackSight track_sight(Vec2 const& heading, Vec2 const& direction) {
   return {direction, turn > 0.5 * std::numbers::pi ? turn - 2.0 * std::numbers::pi : turn};
 }
 
-/// Tangent from `pin` to the circle of radius r = R + h. The tangent that has the circle on its right is (t c + r
-/// c⊥)/c² with t² = c² − r². c is the vector to the centre; c⊥ is c turned left by 90°.
+/// Tangent from `pin` to the circle of radius r = R + h (negative for a circle outside of the track). The tangent that
+/// has the circle on its right is (t c + r c⊥)/c² with t² = c² − r². c is the vector to the centre; c⊥ is c turned left
+/// by 90°.
 inline TrackSight track_tangent(TrackLayout const& layout, TrackCircle const& circle, Vec2 const& pin,
                                 Vec2 const& heading) {
   Vec2 const c = circle.centre - pin;
@@ -39,16 +40,17 @@ inline TrackSight track_tangent(TrackLayout const& layout, TrackCircle const& ci
   return track_sight(heading, Vec2(t * c[0] - r * c[1], t * c[1] + r * c[0]).normalized());
 }
 
-/// Chain once around: from a seat that the track surely covers, over the circles, back to the first seat that it meets.
+/// Chain of one revolution: from a seat that the track certainly covers, over the circles, back to the first seat that
+/// the track meets.
 struct TrackTrace {
   int start;               ///< seat at which the chain begins
-  int last;                ///< last seat covered, ≥ start
-  int first = 0;           ///< first seat covered, ≤ start
+  int last;                ///< last seat covered by the track, ≥ start
+  int first = 0;           ///< first seat covered by the track, ≤ start
   std::vector<Vec2> pins;  ///< pins from seat `start` to the pin from which a straight run leads to seat `first`
   double length = 0.0;     ///< length of the whole loop in links; a whole number only if the loop closes
 };
 
-/// Seat that points away from the circles.
+/// Number of the seat that points from the sprocket's centre away from the mean centre of the circles.
 inline int track_start(TrackLayout const& layout) {
   Vec2 away = layout.sprocket.centre;
   for (TrackCircle const& c : layout.circles) away -= c.centre / double(layout.circles.size());
@@ -125,7 +127,7 @@ inline TrackTrace track_walk(TrackLayout const& layout) {
     walk.pins.push_back(at < 0 ? layout.seat(walk.last) : Vec2(walk.pins.back() + layout.pitch * heading));
     if (walk.pins.size() > 100000)
       throw InvalidInput("track.sprocket",
-                         {"Track: it does not return to \"", ErrorObject{layout.sprocket.name},
+                         {"Track: the track does not return to \"", ErrorObject{layout.sprocket.name},
                           "\". List the circles in the order in which the track meets them, each with its side."});
   }
   double const run = (layout.seat(walk.first) - walk.pins.back()).norm() / layout.pitch;

@@ -11,21 +11,22 @@ namespace polybody {
 /// Options of `buckling_modes`.
 struct BucklingOptions {
   Index count = 1;  ///< number of modes
-  /// Load factor for which the given state is an equilibrium: 0 for a state without loads, such as `reference_state()`,
-  /// or 1 for a state of `equilibrium`.
+  /// Load factor at which the given state is in equilibrium: 0 for a state without loads, such as `reference_state()`,
+  /// or 1 for a result of `equilibrium`.
   double load_factor = 0.0;
 };
 
 /// Buckling modes in the order of their load factors.
 struct BucklingModes {
-  VecX load_factor;  ///< (k) factors of all loads and of gravity at which the structure buckles, ascending
+  VecX load_factor;  ///< (k) common factors of all loads and gravity at which the structure buckles, ascending
   MatX shape;        ///< (nv×k) shapes δ, one entry per generalised velocity, largest entry 1
 };
 
 namespace detail {
 
-/// Stiffness and constraint Jacobian on the path of equilibria, linearised about a state at the load factor p₀:
-///   δ(p) = (p − p₀) u,  λ(p) = λ₀ + (p − p₀) μ,  [K, Gᵀ; G, 0] (u, μ) = (f′, 0),  f′ = ∂f/∂p.
+/// Stiffness K and constraint Jacobian G along the path of equilibria, linearised about a state at the load factor p₀.
+/// The displacement δ and the multipliers λ on this path are
+///   δ(p) = (p − p₀) u,  λ(p) = λ₀ + (p − p₀) μ,  [K, Gᵀ; G, 0] (u, μ) = (f′, 0),  with f′ = ∂f/∂p of the loads f.
 class PrebucklingPath {
  public:
   /// \throws InvalidInput unless x is a stable equilibrium at the load factor p₀.
@@ -48,12 +49,12 @@ class PrebucklingPath {
     mu_ = system.rows() == 0 ? VecX() : VecX(smallest_solution(g_.transpose(), loads_ - k_ * u_, 1e-10));
   }
 
-  MatX const& basis() const { return n_; }         ///< N (nv×free), the motions that the constraint equations permit
+  MatX const& basis() const { return n_; }         ///< basis N (nv×free) of the null space of G
   MatX const& stiffness() const { return a_; }     ///< Nᵀ K N (free×free)
   VecX const& displacement() const { return u_; }  ///< u = δ′ (nv)
 
-  /// Rate of Nᵀ K N along the path (free×free), by central differences of step h in the load factor, extrapolated from
-  /// h and h/2. The basis follows the constraint equations, N′ = −G⁺ G′ N.
+  /// Derivative of Nᵀ K N (free×free) with respect to the load factor, extrapolated from central differences with the
+  /// steps h and h/2. The basis N remains in the null space of G: N′ = −G⁺ G′ N.
   MatX rate(double h) const { return (4.0 * difference(0.5 * h) - difference(h)) / 3.0; }
 
  private:
@@ -96,7 +97,7 @@ class PrebucklingPath {
          ": a motion has no stiffness or a negative one. Fix free motions by joints or springs, or "
          "start from a smaller load factor."});
   }
-  /// (B(h) − B(−h))/2h, B = Nᵀ K N with N = N₀ + p N′.
+  /// Central difference (B(h) − B(−h))/2h of B = Nᵀ K N at the load factors p₀ ± h.
   MatX difference(double h) const {
     Index const nv = system_.velocities(), rows = system_.rows();
     VecX q = x_.q;
@@ -131,18 +132,17 @@ class PrebucklingPath {
 ///   (K + (p − p₀) K_g) z = 0,   K_g = dK/dp along the tangent of the path of equilibria at x.
 /// K_g is computed by central differences of the tangent in a step of 1 % of the first buckling load. It contains the
 /// stress and the displacement before buckling to first order. All loads and gravity have the same factor, so no load
-/// can remain constant. Only factors p > p₀ are computed; for a reversed load reverse the forces. The result is empty
-/// if the structure does not buckle.
+/// can remain constant. Only factors p > p₀ are computed. For loads in the opposite direction, reverse the forces of
+/// the model. The result is empty if the structure does not buckle.
 ///
 /// Limits: The result is exact if displacements before buckling are small and stiffness is linear in the load, as in
 /// columns and frames with axial forces. Shallow arches have a limit point; there the first eigenvalue is an estimate,
-/// usually too large. An equilibrium near the critical load as x, with load_factor = 1, gives a closer estimate, and
-/// `equilibrium_path` follows the path itself. Follower loads and dead moments in space are refused, because their
-/// stiffness is not symmetric and flutter may come first. Dense matrices limit models to some hundred generalised
+/// usually too large. The estimate is closer if x is an equilibrium near the critical load and load_factor is 1.
+/// `equilibrium_path` computes the path itself. Follower loads and dead moments in space are refused: their stiffness
+/// is not symmetric, and flutter may occur at a smaller load. Dense matrices limit models to some hundred generalised
 /// velocities. First-order states are refused.
-/// \throws InvalidInput for a state that moves, that is not in equilibrium at the given load factor or not stable
-/// there, for a model without loads, and for a stiffness that is not symmetric. The load factor of the system is 1
-/// afterwards.
+/// \throws InvalidInput if x moves or is not a stable equilibrium at `options.load_factor`, if the model has no loads,
+/// or if its stiffness is not symmetric. Afterwards the load factor of the system is 1.
 template <class = void>  // compiled where it is used
 BucklingModes buckling_modes(System& system, State const& x, BucklingOptions const& options = {}) {
   if (options.count < 1)
@@ -153,8 +153,9 @@ BucklingModes buckling_modes(System& system, State const& x, BucklingOptions con
     throw InvalidInput("buckling.option", {ErrorObject{"buckling_modes"}, ": the load factor must be finite."});
   require_usable(system, x);
   if (largest_size(x.v) > 1e-9 || system.layout().states > 0)
-    throw InvalidInput("buckling.state", {ErrorObject{"buckling_modes"},
-                                          ": the state must be at rest, in a model without first-order states."});
+    throw InvalidInput("buckling.state",
+                       {ErrorObject{"buckling_modes"},
+                        ": the state must be at rest, and the model must not have first-order states."});
   detail::PrebucklingPath const path(system, x, options.load_factor);
   MatX const& a = path.stiffness();
   Eigen::GeneralizedSelfAdjointEigenSolver<MatX> solver;
@@ -164,8 +165,8 @@ BucklingModes buckling_modes(System& system, State const& x, BucklingOptions con
     if (pass > 0 && (b - b.transpose()).norm() > 1e-4 * b.norm())
       throw InvalidInput("buckling.not_symmetric",
                          {ErrorObject{"buckling_modes"},
-                          ": the stiffness of the loads is not symmetric, as for follower forces and for moments in "
-                          "space. Follow the path by equilibrium, and compute damped_modes at each load."});
+                          ": the stiffness of the loads is not symmetric, for example because of follower forces or "
+                          "moments in space. Compute equilibrium() and damped_modes() for increasing loads instead."});
     solver.compute(-0.5 * (b + b.transpose()), a,  // −K_g z = θ K z, p − p₀ = 1/θ
                    (pass == 0 ? Eigen::EigenvaluesOnly : Eigen::ComputeEigenvectors) | Eigen::Ax_lBx);
     double const largest = solver.eigenvalues().cwiseAbs().maxCoeff(), next = 0.01 / largest;
@@ -190,7 +191,7 @@ BucklingModes buckling_modes(System& system, State const& x, BucklingOptions con
   }
   return out;
 }
-/// Buckling loads and modes of a model in the state x; see above. \throws InvalidInput as above.
+/// Overload for a model. \throws InvalidInput under the conditions of the overload for a System.
 template <class M>
   requires(!std::same_as<M, System>)
 BucklingModes buckling_modes(M const& model, State const& x, BucklingOptions const& options = {}) {

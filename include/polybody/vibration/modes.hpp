@@ -22,12 +22,13 @@ namespace polybody {
 
 /// Linearised equations of motion about an equilibrium q₀, with q = q₀ ⊞ δ, as dense matrices [Géradin & Rixen 2015]:
 ///   M δ̈ + D δ̇ + K δ + Gᵀ μ = 0,  G δ = 0.
-/// The stiffness K = −∂f/∂q + ∂(Gᵀλ)/∂q contains all second-order terms, and D = −∂f/∂v. A basis N of the null space
-/// of G, δ = N z, eliminates the constraint equations. Redundant constraints are therefore allowed.
+/// With the generalised forces f, D = −∂f/∂v. The stiffness K = −∂f/∂q + ∂(Gᵀλ)/∂q contains all second-order terms. A
+/// basis N of the null space of G, δ = N z, eliminates the constraint equations. Redundant constraints are therefore
+/// allowed.
 ///
-/// First-order states are the rates of coordinates that no other quantity depends on: M is one there, K has a zero
-/// column, and the last columns of N are theirs. Vibrations about a steady rotation are in
-/// vibration/steady_rotation.hpp.
+/// A first-order state is represented as the rate of an additional coordinate on which no other quantity depends. Its
+/// diagonal entry of M is one, and its column of K is zero. The last columns of N are unit vectors of these
+/// coordinates. vibration/steady_rotation.hpp linearises about a steady rotation.
 struct Linearisation {
   MatX M, D, K;      ///< mass, damping and stiffness (nv×nv)
   MatX G;            ///< constraint Jacobian (rows×nv)
@@ -36,7 +37,7 @@ struct Linearisation {
 };
 
 namespace detail {
-/// Dense matrix, summed over its blocks.
+/// Sink that adds blocks to a dense matrix.
 struct DenseSink {
   MatX& sum;
   void add(Index row, Index col, BlockView const& b) {
@@ -53,8 +54,8 @@ MatX dense_tangent(System& system, TangentCoefficients const& c, VecX const& lam
   return sum;
 }
 
-/// Orthonormal basis N of the null space of G, G N = 0. The last `states` columns are those of the first-order
-/// states, which have no constraint equations.
+/// Orthonormal basis N of the null space of G, G N = 0. The last `states` columns are unit vectors of the first-order
+/// states, which occur in no constraint equation.
 template <class = void>  // compiled where it is used
 MatX free_motions(MatX const& g, Index states = 0) {
   if (g.rows() == 0) return MatX::Identity(g.cols(), g.cols());
@@ -78,16 +79,15 @@ MatX smallest_solution(MatX const& a, MatX const& b, double threshold) {
   return solver.solve(b);
 }
 
-/// \throws InvalidInput unless `count` is at least 1; `who` names the function.
+/// Checks that `count` is at least 1. \throws InvalidInput otherwise, with a message that begins with `who`.
 inline void require_modes(Index count, std::string const& who) {
   if (count < 1)
     throw InvalidInput("modes.count",
                        {ErrorObject{who}, ": the count of modes must be at least 1, but is ", ErrorValue{count}, "."});
 }
 
-/// Stiffness K with a spring on each motion without inertia and without stiffness. The columns of v are the motions
-/// without inertia. Such a motion y has K y = 0 and M y = 0. The spring therefore preserves all other solutions of
-/// K x = λ M x, with yᵀx = 0.
+/// Stiffness K plus a spring on each motion y that has neither inertia nor stiffness: M y = 0 and K y = 0. The columns
+/// of v are all motions without inertia. The springs do not change the solutions of K x = λ M x with yᵀx = 0.
 template <class = void>
 MatX with_springs_at_rest(MatX const& k, MatX const& v) {
   MatX out = k;
@@ -103,7 +103,7 @@ MatX with_springs_at_rest(MatX const& k, MatX const& v) {
   return out;
 }
 
-/// Projection Nᵀ A N.
+/// Projection Nᵀ A N of a matrix A onto the basis N.
 template <class = void>
 MatX of_free_motions(MatX const& n, MatX const& a) {
   MatX const an = a * n;
@@ -111,8 +111,9 @@ MatX of_free_motions(MatX const& n, MatX const& a) {
 }
 }  // namespace detail
 
-/// Linearisation about a state x at rest. The multipliers of x enter the stiffness, as in a hanging pendulum. A model
-/// in steady rotation is linearised with its `SteadyRotation`. In other motions the matrices would depend on time.
+/// Linearisation about a state x at rest. The multipliers of x contribute to the stiffness, for example in a hanging
+/// pendulum. A model in steady rotation is linearised with its `SteadyRotation`. Other motions are refused, because
+/// their matrices depend on time.
 /// \throws InvalidInput if x moves.
 template <class = void>
 Linearisation linearise(System& system, State const& x) {
@@ -122,7 +123,7 @@ Linearisation linearise(System& system, State const& x) {
   if (velocities.size() && velocities.cwiseAbs().maxCoeff() > 1e-9)
     throw InvalidInput("modes.not_at_rest",
                        {ErrorObject{"modes"},
-                        ": the state must be at rest. Use a state from equilibrium(model, x). About a steady rotation "
+                        ": the state must be at rest. Use a state from equilibrium(model, x). For a steady rotation "
                         "use linearise(model, x, SteadyRotation{...}) of vibration/steady_rotation.hpp."});
   system.evaluate(x.q, x.v, x.t);
   Index const nv = system.velocities(), rows = system.rows();
@@ -146,15 +147,14 @@ Linearisation linearise(M const& model, State const& x) {
 
 /// Undamped modes in the order of frequency.
 struct Modes {
-  VecX frequency;  ///< (k) ω [rad/s], ascending; −√(−ω²) in an unstable state
+  VecX frequency;  ///< (k) ω [rad/s], ascending; −√(−ω²) if ω² < 0, in an unstable state
   MatX shape;      ///< (nv×k) shapes δ, one entry per generalised velocity, shapeᵀ M shape = 1
 };
 
 /// Computes the `count` lowest modes of M δ̈ + K δ + Gᵀμ = 0 by a dense solver, for models of up to some hundred
 /// generalised velocities. Motions without inertia have no frequency and are omitted. K is symmetrised and D is
-/// neglected. `damped_modes` computes modes with follower loads, whose K is not symmetric, and modes of rotating
-/// models, whose D is gyroscopic. Frequencies far below the highest frequency are computed accurately
-/// (math/symmetric_pencil.hpp).
+/// neglected. Use `damped_modes` for follower loads, whose K is not symmetric, and for rotating models, whose D is
+/// gyroscopic. Frequencies far below the highest frequency are computed accurately (math/symmetric_pencil.hpp).
 template <class = void>  // compiled where it is used
 Modes modes(Linearisation const& l, Index count = 10) {
   detail::require_modes(count, "modes");
@@ -165,7 +165,7 @@ Modes modes(Linearisation const& l, Index count = 10) {
   MatX const full = detail::of_free_motions(l.N, l.K), k = 0.5 * (full + full.transpose()),
              m = detail::of_free_motions(l.N, l.M);
   if (m.rows() == 0) return {};
-  // motions with inertia first: m = V diag(d) Vᵀ; those without follow statically, K₂₂ z₂ = −K₂₁ z₁
+  // m = V diag(d) Vᵀ. Motions without inertia (2) follow those with inertia (1) statically: K₂₂ z₂ = −K₂₁ z₁
   Eigen::SelfAdjointEigenSolver<MatX> const inertia(m);
   VecX const& d = inertia.eigenvalues();
   Index const n = d.size();
@@ -202,23 +202,24 @@ Modes modes(S const& model, State const& x, Index count = 10) {
 /// Damped modes δ = Re(shape e^{s t}).
 struct DampedModes {
   Eigen::VectorXcd eigenvalue;  ///< (k) s [1/s], ordered by |s|; one per conjugate pair, Im s ≥ 0
-  Eigen::MatrixXcd shape;       ///< (nv×k); for first-order states their value, not their integral
+  Eigen::MatrixXcd shape;       ///< (nv×k) shapes; the entry of a first-order state is its value, not its integral
   /// Frequency |s| [rad/s] of mode i.
   double frequency(Index i) const { return std::abs(eigenvalue[i]); }
-  double damping_ratio(Index i) const { return -eigenvalue[i].real() / std::abs(eigenvalue[i]); }  ///< −Re s/|s| of i
+  /// Damping ratio −Re s/|s| of mode i.
+  double damping_ratio(Index i) const { return -eigenvalue[i].real() / std::abs(eigenvalue[i]); }
 };
 
 /// Computes the `count` slowest modes of M δ̈ + D δ̇ + K δ + Gᵀμ = 0 by a dense solver. With δ = N z, the unit of
 /// time 1/τ and y = (z, ż/τ) the state matrix is A = [0, 1; −M̂⁻¹K, −M̂⁻¹D̂], M̂ = τ² M, D̂ = τ D. The eigenvalues of
 /// the shifted inverse about s = τ are computed, which does not require M⁻¹:
 ///   (A − 1)⁻¹ = [−Y, −Z; 1 − Y, −Z],  Y = Q⁻¹ (M̂ + D̂),  Z = Q⁻¹ M̂,  Q = M̂ + D̂ + K,  s = τ (1 + 1/μ).
-/// Slow motions have the largest eigenvalues μ of this matrix and are therefore accurate in spite of stiff ones. τ is
-/// slightly below the lowest frequency of M z̈ + K z = 0 without its free motions. Free motions of the model come
-/// first, with an |s| of the order of the square root of the round-off.
+/// Slow motions have the largest |μ| and are therefore accurate even if the model also has fast motions. τ is at most
+/// 0.7 times the lowest nonzero frequency of M z̈ + K z = 0. Free motions of the model come first, with an |s| of the
+/// order of the square root of the round-off.
 ///
-/// Each first-order state adds one mode. The coordinates with these states as rates occur in no equation and are
-/// removed from the matrix.
-/// \throws InvalidInput if a free motion has no inertia.
+/// Each first-order state adds one mode. The additional coordinates with these states as rates occur in no equation and
+/// are removed from the matrix.
+/// \throws InvalidInput if a motion that the constraint equations permit has no inertia.
 template <class = void>  // compiled where it is used
 DampedModes damped_modes(Linearisation const& l, Index count = 10) {
   detail::require_modes(count, "damped_modes");
@@ -232,10 +233,10 @@ DampedModes damped_modes(Linearisation const& l, Index count = 10) {
     Eigen::LLT<MatX> const inertia(m_bodies);
     VecX const pivots = inertia.matrixLLT().diagonal();
     if (inertia.info() != Eigen::Success || pivots.minCoeff() <= 1e-7 * pivots.maxCoeff())
-      throw InvalidInput(
-          "modes.no_inertia",
-          {ErrorObject{"damped_modes"}, ": a free motion of the model has no inertia. Fix it or give it inertia."});
-    slowest = detail::smallest_solution(k_bodies, m_bodies, 1e-9).norm();  // at least 1/ω²
+      throw InvalidInput("modes.no_inertia",
+                         {ErrorObject{"damped_modes"},
+                          ": a motion that the joints permit has no inertia. Constrain it or give it inertia."});
+    slowest = detail::smallest_solution(k_bodies, m_bodies, 1e-9).norm();  // at least 1/ω² of the lowest ω
   }
   double const tau = slowest > 0.0 ? 0.7 / std::sqrt(slowest) : 1.0;
   m *= tau * tau;
@@ -270,7 +271,8 @@ DampedModes damped_modes(Linearisation const& l, Index count = 10) {
   }
   return out;
 }
-/// Computes the `count` slowest modes about x. \throws InvalidInput also if x moves.
+/// Computes the `count` slowest modes about x, a state at rest. \throws InvalidInput if x moves, or if a motion that
+/// the constraint equations permit has no inertia.
 template <class S>
 DampedModes damped_modes(S const& model, State const& x, Index count = 10) {
   return damped_modes(linearise(model, x), count);

@@ -10,17 +10,17 @@
 
 namespace polybody {
 
-/// Replacement of DenseModes in fixed_interface_modes, free_interface_modes and craig_bampton: implicitly restarted
-/// Lanczos iteration on K⁻¹M, in the inner product of M [Ericsson & Ruhe 1980; Sorensen 1992]. The iteration may miss
-/// modes of a repeated frequency. The number of modes below the last one is therefore compared with the negative pivots
-/// of K − σM (Sylvester). If modes are missing, the iteration is repeated with twice the number of vectors, up to six
-/// times.
+/// Eigenvalue solver that can replace DenseModes in fixed_interface_modes, free_interface_modes and craig_bampton. It
+/// uses the implicitly restarted Lanczos iteration on K⁻¹M, in the inner product of M [Ericsson & Ruhe 1980; Sorensen
+/// 1992]. The iteration may miss modes of a repeated frequency. The computed modes below the last one are therefore
+/// counted and compared with the number of negative pivots of K − σM (Sylvester's law), σ just below the last ω². If
+/// modes are missing, the iteration is repeated with twice as many vectors, in at most six attempts.
 struct SpectraModes {
-  Index restarts = 1000;     ///< largest number of restarts, for each number of vectors
+  Index restarts = 1000;     ///< largest number of restarts in one attempt
   double tolerance = 1e-12;  ///< relative error of ω²
 
-  /// Computes the `count` lowest modes of K and M (n×n) symmetric, K positive definite. The results are equal in
-  /// every run. If `count` is at least half of all modes, DenseModes computes them.
+  /// Computes the `count` lowest modes of the symmetric matrices K and M (n×n); K must be positive definite. The
+  /// results are bitwise identical in every run. If `count` is at least half of all modes, DenseModes computes them.
   /// \throws InvalidInput if K is not positive definite; Error if the iteration does not converge.
   template <class = void>  // compiled where it is used
   LowestModes operator()(Structure::Sparse const& k, Structure::Sparse const& m, Index count) const {
@@ -58,7 +58,7 @@ struct SpectraModes {
     explicit Inverse(Structure::Sparse const& k) : size(k.rows()) {
       factor_positive(
           factor, k,
-          "SpectraModes needs a positive definite stiffness; hold the structure, or use free_interface_modes.");
+          "SpectraModes needs a positive definite stiffness; fix the structure, or use free_interface_modes.");
     }
     Index rows() const { return size; }
     Index cols() const { return size; }

@@ -10,32 +10,33 @@
 
 namespace polybody {
 
-/// Steady rotation of a whole model with the angular velocity Ω about an axis fixed in the world. With its rotation
-/// g(t), small vibrations ε about it are q(t) = g(t)·(q₀ ⊞ ε(t)). The rotation at q has the generalised velocities
-/// w(q). g acts on the velocities of a body by a linear map that does not depend on q, with the generator
+/// Steady rotation of a whole model with the angular velocity Ω about an axis fixed in the world. With small vibrations
+/// ε superposed on the rotation g(t), the coordinates are q(t) = g(t)·(q₀ ⊞ ε(t)). The rotation at q has the
+/// generalised velocities w(q). The rotation g transforms the velocities of a body by a linear map that does not depend
+/// on q and has the generator
 ///   Γξ = Dw ξ − c(w, ξ),   c(δ, v) = d/ds (local_rate(s δ, v) − local_rate(−s δ, v)) at s = 0,
-/// and the commutator c of the local coordinates. (Positions and gradients: Γ = Dw = Ω×, c = 0. Angular velocities in
+/// with the commutator c of the local coordinates. (Positions and gradients: Γ = Dw = Ω×, c = 0. Angular velocities in
 /// body axes: Γ = 0, Dw ξ = w × ξ = c.) At t = 0, to first order in ε,
 ///   v = w(q₀ ⊞ ε) + ε˙,   v˙ = Γ w(q₀ ⊞ ε) + (Γ + Dw) ε˙ + ε¨.
-/// R = M v˙ − f + Gᵀλ then yields equations with constant coefficients [Simo, Lewis & Marsden 1991]:
+/// The linearised residual R = M v˙ − f + Gᵀλ then has constant coefficients [Simo, Lewis & Marsden 1991]:
 ///   M ε¨ + (D + M (Γ + Dw)) ε˙ + K ε + Gᵀμ = 0,  G ε = 0,
 ///   D = −∂f/∂v,   K = ∂/∂ε R(q₀ ⊞ ε, w(q₀ ⊞ ε), Γ w(q₀ ⊞ ε)).
 /// The term M (Γ + Dw) contains Coriolis and gyroscopic forces. K contains the centrifugal forces and the geometric
 /// stiffness of the stress that they cause.
 struct SteadyRotation {
   Vec3 angular_velocity = Vec3::Zero();  ///< (3) Ω, world axes [rad/s]
-  Vec3 point = Vec3::Zero();             ///< (3) point of the axis, world axes [m]
+  Vec3 point = Vec3::Zero();             ///< (3) point on the axis, world axes [m]
 };
 
 namespace detail {
 
-/// Model in a frame that rotates with it. Static terms are exact. The smooth terms of the rotation are differentiated
-/// by finite differences of fourth order, with steps of 1e-3 [m], [rad].
+/// Residual and stiffness of a model in a frame that rotates with the model. The derivatives of static terms are exact.
+/// Terms due to the rotation are differentiated by finite differences of fourth order, with steps of 1e-3 [m], [rad].
 template <class = void>  // compiled where it is used
 class TurningFrame {
  public:
   System& system;
-  double share = 1.0;  ///< fraction of the angular velocity
+  double share = 1.0;  ///< applied fraction of the angular velocity
 
   TurningFrame(System& of, VecX const& q, SteadyRotation const& rotation)
       : system(of),
@@ -74,7 +75,7 @@ class TurningFrame {
     require_entry(system.entries().first.rigid_velocities, "velocities of rigid motions")(system.entries().second, q,
                                                                                           origin, omega, w);
   }
-  /// Residual R(q, w, Γw) with these multipliers. The state of the system becomes (q, w, t).
+  /// Computes the residual R(q, w, Γw) with the multipliers `lambda`. Afterwards the system is evaluated at (q, w, t).
   void residual(VecX const& q, VecX const& lambda, double t, VecX& r) {
     velocities(q, w_);
     a_.noalias() = share * generator_ * w_;
@@ -98,7 +99,7 @@ class TurningFrame {
   MatX rate_matrix() const { return gradient_ + generator_; }
   MatX const& generator() const { return generator_; }
 
-  /// \throws InvalidInput for constraint equations that do not rotate with the model: Φ˙ = G w + Φ_t must vanish.
+  /// Checks that the constraint equations rotate with the model: Φ˙ = G w + Φ_t = 0. \throws InvalidInput otherwise.
   void require_turning_rows(State const& x) {
     VecX rate(no_row_);
     velocities(x.q, w_);
@@ -106,14 +107,15 @@ class TurningFrame {
     system.violation_rate(rate);
     Index i = 0;
     if (rate.size() && !(rate.cwiseAbs().maxCoeff(&i) <= 1e-8 * w_.cwiseAbs().maxCoeff()))
-      throw InvalidInput("steady_rotation.joint",
-                         {"SteadyRotation: ", ErrorObject{system.name_of(system.velocities() + i)},
-                          " does not rotate with the model (its constraint violation grows at a rate of ",
-                          ErrorValue{rate[i]}, "). Give the joint the axis of the rotation, and a drive its rate."});
+      throw InvalidInput(
+          "steady_rotation.joint",
+          {"SteadyRotation: ", ErrorObject{system.name_of(system.velocities() + i)},
+           " does not rotate with the model (its constraint violation grows at a rate of ", ErrorValue{rate[i]},
+           "). Align the joint with the axis of rotation; set a drive to the rate of the rotation."});
   }
 
  private:
-  /// Finite difference ∂f/∂ε (nv×nv) at q ⊞ ε: (8 (f(h) − f(−h)) − (f(2h) − f(−2h)))/12h.
+  /// Derivative ∂f/∂ε (nv×nv) of f(q ⊞ ε) at ε = 0, by finite differences: (8 (f(h) − f(−h)) − (f(2h) − f(−2h)))/12h.
   template <class F>
   MatX by_velocities(VecX const& q, F&& f) {
     double const h = 1e-3;
@@ -142,7 +144,7 @@ template <class = void>  // compiled where it is used
 struct TurningEquilibrium {
   TurningFrame<> frame;
   State trial;
-  double tolerance, unit = 1.0;  ///< unit: factor of the constraint equations, of the size of the stiffness
+  double tolerance, unit = 1.0;  ///< unit: factor of the constraint equations, equal to the largest entry of K
   Index nv = trial.v.size(), rows = trial.lambda.size();
   MatX k = {};
   VecX r = VecX::Zero(nv), phi = VecX::Zero(rows), rhs = VecX::Zero(nv + rows), y = rhs, q = trial.q;
@@ -174,21 +176,22 @@ struct TurningEquilibrium {
     trial.lambda += y.tail(rows);
   }
 
-  /// \throws SingularMatrix if a force acts along a motion without stiffness, which minimum-norm corrections
-  /// omit.
+  /// Checks that no force acts along a motion without stiffness: minimum-norm corrections cannot remove such a force.
+  /// \throws SingularMatrix otherwise.
   void require_balance() {
     evaluate();
     double const load = rows ? (k.topRightCorner(nv, rows) * (trial.lambda / unit)).cwiseAbs().maxCoeff() : 0.0;
     double const small = 1e-6 * load + (tolerance + 1e-12) * unit * (1.0 + trial.q.cwiseAbs().maxCoeff());
     Index i = 0;
     if (!(r.cwiseAbs().maxCoeff(&i) <= small))
-      throw SingularMatrix(
-          "equilibrium.singular",
-          {"relative_equilibrium: nothing resists a motion of ", ErrorObject{frame.system.name_of(i)},
-           " that forces excite as the model rotates (remaining force ", ErrorValue{r[i]}, "). Fix every body."});
+      throw SingularMatrix("equilibrium.singular",
+                           {"relative_equilibrium: nothing resists a motion of ", ErrorObject{frame.system.name_of(i)},
+                            " that forces excite as the model rotates (remaining force ", ErrorValue{r[i]},
+                            "). Constrain this motion or add stiffness."});
   }
 
-  /// \throws NonFiniteValue, NewtonConvergenceFailure according to `result`.
+  /// Throws the error of a failed iteration. \throws NewtonConvergenceFailure if `result` is `diverged`, otherwise
+  /// NonFiniteValue.
   [[noreturn, gnu::cold]] void refuse(NewtonResult result) const {
     std::string const at = sentence_of({" at ", frame.share, " of the angular velocity"});
     if (result != NewtonResult::diverged)
@@ -197,7 +200,7 @@ struct TurningEquilibrium {
     throw NewtonConvergenceFailure(
         "equilibrium.not_converged",
         {ErrorObject{"relative_equilibrium"}, ": Newton's method did not converge", at,
-         ". Use more load steps or start closer to the solution; beyond a critical speed there may be none."});
+         ". Use more load steps or start closer to the solution; beyond a critical speed there may be no solution."});
   }
 };
 
@@ -217,11 +220,11 @@ State rotating_state(System& system, State const& x, SteadyRotation const& rotat
 
 /// Moves x (coordinates, multipliers) into relative equilibrium, in which elastic, centrifugal and all other forces
 /// balance during steady rotation. The velocities and accelerations of x become those of the rotation. Constraint
-/// equations that depend on time are evaluated at x.t. `load_steps` and `min_load_step` apply to Ω. Corrections have
-/// minimum norm if constraints are redundant or a motion has no stiffness. The solver is dense, for models of up to
-/// some hundred generalised velocities.
-/// \throws InvalidInput for constraint equations that do not rotate with the model; SingularMatrix naming a
-/// body with a force along a motion without stiffness; NewtonConvergenceFailure, NonFiniteValue. x is then unchanged.
+/// equations that depend on time are evaluated at x.t. The options `load_steps` and `min_load_step` apply to Ω instead
+/// of the loads. Corrections have minimum norm if constraints are redundant or a motion has no stiffness. The solver is
+/// dense, for models of up to some hundred generalised velocities.
+/// \throws InvalidInput if constraint equations do not rotate with the model; SingularMatrix if a force on a body acts
+/// along a motion without stiffness; NewtonConvergenceFailure; NonFiniteValue. After an exception x is unchanged.
 template <class = void>
 EquilibriumReport relative_equilibrium(System& system, State& x, SteadyRotation const& rotation,
                                        EquilibriumOptions const& options = {}) {
@@ -253,8 +256,8 @@ EquilibriumReport relative_equilibrium(System& system, State& x, SteadyRotation 
 
 /// Linearisation about x in steady rotation; coordinates, multipliers and time of x are used. `damped_modes` of the
 /// result computes the motions ε = Re(shape e^{st}) relative to the rotating model. \throws InvalidInput if forces do
-/// not balance in x, or if forces or constraint equations do not rotate with the model, such as gravity across the
-/// axis.
+/// not balance at x, or if forces or constraint equations do not rotate with the model. Gravity perpendicular to the
+/// axis is such a force.
 template <class = void>
 Linearisation linearise(System& system, State const& x, SteadyRotation const& rotation) {
   require_usable(system, x);
@@ -272,7 +275,7 @@ Linearisation linearise(System& system, State const& x, SteadyRotation const& ro
   l.M = detail::dense_tangent(system, {.mass = 1.0}, x.lambda).topLeftCorner(nv, nv);
   l.D = detail::dense_tangent(system, {.damping = 1.0}, x.lambda).topLeftCorner(nv, nv) + l.M * frame.rate_matrix();
 
-  // compared with the forces of the rotation and of the constraints, and the round-off of the stiffness
+  // the tolerance is relative to the inertia and constraint forces, plus the round-off of the stiffness
   double const omega = rotation.angular_velocity.norm();
   double const pull = rows ? (l.G.transpose() * x.lambda).cwiseAbs().maxCoeff() : 0.0;
   double const small = 1e-6 * (omega * (l.M * w).cwiseAbs().maxCoeff() + pull) +
@@ -283,13 +286,14 @@ Linearisation linearise(System& system, State const& x, SteadyRotation const& ro
                        {"linearise: forces on ", ErrorObject{system.name_of(i)},
                         " do not balance as the model rotates (remaining force ", ErrorValue{r[i]},
                         "). Take the state from relative_equilibrium(model, x, rotation)."});
-  // K w is the rate of R during the rotation; only constraint forces may change
+  // K w is the rate of R during the rotation; its component along permitted motions must be zero
   VecX const turned = l.N * (l.N.transpose() * (l.K * w));
   if (!(turned.cwiseAbs().maxCoeff(&i) <= small * omega))
     throw InvalidInput(
         "steady_rotation.force",
         {"linearise: forces on ", ErrorObject{system.name_of(i)},
-         " do not rotate with the model, such as gravity or a load across the axis, so that no state is steady."});
+         " do not rotate with the model, for example gravity perpendicular to the axis. A steady rotation does not "
+         "exist."});
   return l;
 }
 

@@ -147,7 +147,7 @@ def check_limits(runs, root, one):
         lines = runs.table(folder, ranks, "--limit", "1", "--fail", "hangs", *options).splitlines()
         for i, (line, plain) in enumerate(zip(lines, one.splitlines(), strict=True)):
             if i - 1 in (5, 40):
-                require(b"It has not ended within the time limit of 1 s." in line, f"point {i - 1} under {ranks} ranks: {line}")
+                require(b"The computation has not ended within the time limit of 1 s." in line, f"point {i - 1} under {ranks} ranks: {line}")
             else:
                 require(line == plain, f"under a time limit and {ranks} ranks: {line} for {plain}")
 

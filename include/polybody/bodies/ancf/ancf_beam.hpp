@@ -31,19 +31,19 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
   using Element = Vec<T, element_columns>;
   using ElementMatrix = typename Chain::ElementMatrix;
   using PointMap = Mat<double, 3, element_columns>;  ///< S of r = S e, 3×24
-  static constexpr Index default_elements = 16;      ///< of `from(bar)`, see `BarMesh`
+  static constexpr Index default_elements = 16;      ///< number of elements of `from(bar)` (`BarMesh`)
   static constexpr int gradients = 3;  ///< number of position gradients that are linear in the coordinates
 
-  /// Material point: element, position ξ ∈ [0, 1] along it, and distances y, z from the axis in the reference [m].
+  /// Material point: element, position ξ ∈ [0, 1] along the element, reference distances y, z from the axis [m].
   struct Point {
-    Index element = 0;        ///< counted from 0, from the bar's first end
-    double xi = 0.0;          ///< ξ ∈ [0, 1], from its first node to its second
-    double y = 0.0, z = 0.0;  ///< in the axes of the reference section [m]
+    Index element = 0;        ///< index of the element, counted from the first end of the bar
+    double xi = 0.0;          ///< position ξ ∈ [0, 1] from the first node of the element to the second
+    double y = 0.0, z = 0.0;  ///< distances from the axis, in the axes of the reference section [m]
   };
 
   /// Beam from the straight bar, with n elements of equal length. The rotary inertia of the bar must be positive about
   /// both axes, because otherwise r_y or r_z has no mass.
-  /// \throws InvalidInput for n < 1 or a constant that the bar does not give.
+  /// \throws InvalidInput for n < 1, or a bar without a constant that `Elastic` needs.
   static AncfBeam from(Bar const& bar, Index n) {
     return AncfBeam(bar, n, [](double s) { return Placement{Vec3(s, 0, 0)}; }, true);
   }
@@ -51,10 +51,10 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
   static AncfBeam from(Bar const& bar, BarMesh const& mesh = {}) {
     return from(bar, mesh.elements.value_or(default_elements));
   }
-  /// Beam from the bar with a curved or twisted reference, n elements, free of stress except for the pretension. The
-  /// nodes have the positions and axes of `curve`. Between them the field of the element interpolates the reference.
-  /// \throws InvalidInput also if the determinant of the reference gradients is not positive, or if `curve` is not
-  /// parameterised by its arc length.
+  /// Beam of n elements with a curved or twisted reference, free of stress except for the pretension. The nodes have
+  /// the positions and axes of `curve`; the element field interpolates between them.
+  /// \throws InvalidInput for n < 1, a missing constant, a reference gradient without a positive determinant, or a
+  /// `curve` that is not parameterised by arc length.
   static AncfBeam from(Bar const& bar, Index n, ReferenceCurve const& curve) { return AncfBeam(bar, n, curve, false); }
 
   char const* coordinate_unit(Index i) const { return i % node_columns < 3 ? "m" : "1"; }
@@ -62,8 +62,8 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
   double element_length() const { return l_; }
   BarConstants const& constants() const { return constants_; }
 
-  /// Point at distance s from the first end of the bar [m], at (y, z) from the axis [m].
-  /// \throws InvalidInput outside the bar.
+  /// Point at the distance s along the axis from the first end, and (y, z) from the axis [m].
+  /// \throws InvalidInput for s outside the bar.
   Point at(double s, double y = 0.0, double z = 0.0) const {
     double const x = require_inside(s, bar_.length, Elastic::name) / l_;
     if (!std::isfinite(y) || !std::isfinite(z))
@@ -189,8 +189,8 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
     out.columns = element_columns;
   }
 
-  /// Geometric stiffness of the wrench `w`. The force has none, because S is constant. For the moment, δ̂(m·ω) = m·(φ̂
-  /// × φ) + m·δ̂φ in the axes of the section.
+  /// Load stiffness ∂(Jᵀw)/∂e of the wrench `w`. The force contributes nothing, because S is constant. For the moment,
+  /// δ̂(m·ω) = m·(φ̂ × φ) + m·δ̂φ in the axes of the section.
   template <class T>  // compiled only if used
   void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, Mat<T, 24, 24>& k) const {
     PointMap const by = map_of(p, 2), bz = map_of(p, 3);
@@ -210,8 +210,8 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
         k.template block<6, 6>(12 * a + 6, 12 * b + 6) = s[std::size_t(a)] * s[std::size_t(b)] * by_vectors;
   }
 
-  /// Strains Γ = Rᵀ r_x and K = axial(Rᵀ R_x) relative to the reference, with the axes R of the markers (see
-  /// sections.hpp).
+  /// Strains Γ = Rᵀ r_x and K = axial(Rᵀ R_x) relative to the reference, with the axes R of the markers, as a vector of
+  /// six (`HasSections`).
   Vec6 section_strains(Point const& p, std::span<double const> q) const {
     if constexpr (std::same_as<Elastic, ElasticLine>) {
       Vec3 const stretch = strains<std::tuple_element_t<0, ElasticLine::Groups>>(p, q),
@@ -233,7 +233,7 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
     else
       return Elastic::section_forces(bar_, constants_, deformation(p, q), p.xi);
   }
-  /// Strains of the section for `ElasticLine`: (r_y² − 1, r_z² − 1)/2 and r_y·r_z at `p`, relative to the reference.
+  /// Section deformation of `ElasticLine`: (r_y² − 1, r_z² − 1)/2 and r_y·r_z at `p`, relative to the reference.
   Vec3 section_deformation(Point const& p, std::span<double const> q) const
     requires std::same_as<Elastic, ElasticLine>
   {
@@ -246,8 +246,8 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
   }
   /// Green–Lagrange strain E at `p`, in the axes of the reference section.
   Mat3 strain(Point const& p, std::span<double const> q) const { return deformation(p, q).strain(p.xi, p.y, p.z); }
-  /// Stress at `p` without damping, for `Continuum`. With `Locking::cured` the Poisson terms are those on the axis. The
-  /// shear stresses then are the corrected ones, which are means over the section.
+  /// Stress at `p` without damping, for `Continuum`. With `Locking::cured` the Poisson terms are those on the axis, and
+  /// the shear stresses are the corrected ones, which are means over the section.
   Stress stress(Point const& p, std::span<double const> q) const
     requires(!std::same_as<Elastic, ElasticLine>)
   {
@@ -347,7 +347,7 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
       for (int i = 0; i < 3; ++i) map(i, 3 * a + i) = n(a, derivative);
     return map;
   }
-  /// Matrix of ω in world axes from the rates of (r_y, r_z), 3×6.
+  /// Matrix (3×6) that maps the rates of (r_y, r_z) to ω in world axes.
   template <class T, class SectionOf>
   static Mat<T, 3, 6> turning(SectionOf const& f) {
     Mat<T, 3, 6> local, turn;
@@ -362,7 +362,7 @@ class AncfBeam : public ElasticChain<12, typename Elastic::Groups> {
   BarConstants constants_;
   double l_ = 0.0;
   std::vector<Placement> nodes_;             ///< in the bar's axes
-  std::vector<ancf::Reference> references_;  ///< one for all alike elements, else one each; `inertia_` as well
+  std::vector<ancf::Reference> references_;  ///< one if all elements are alike, otherwise one per element
   std::vector<Inertia> inertia_;
 };
 

@@ -12,17 +12,18 @@ template <class Strain, int axial_points, int bending_points>
 using CableGroups =
     std::tuple<StrainGroup<CableAxial<Strain, axial_points>>, StrainGroup<CableBending<Strain, bending_points>>>;
 
-/// Gradient-deficient ANCF cable in space: cubic Hermite position field, node coordinates (r, r′), 12 an element,
-/// constant mass matrix, without torsion and without a deformable section [thesis Eq. 3.16–3.20, 4.8; Gerstmayr &
-/// Shabana 2006]. With s_i of `hermite_shape`,
+/// Gradient-deficient ANCF cable in space: cubic Hermite position field, node coordinates (r, r′), 12 coordinates per
+/// element, constant mass matrix, without torsion and without a deformable section [thesis Eq. 3.16–3.20, 4.8;
+/// Gerstmayr & Shabana 2006]. With s_i of `hermite_shape`,
 ///   r(ξ) = Σ s_i e_i,   M = Aρ ∫ s_i s_j dx ⊗ 1,   U = ½ ∫ (EA ε² + EI κ·κ) dx.
 /// `AncfCable<>::from(bar, n)` has Green strain, `AncfCable<EngineeringStrain>` has engineering strain. The numbers of
-/// Gauss points for the axial and the bending part can be set; 5 and 3 suit the field [Gerstmayr & Irschik 2008].
+/// Gauss points for axial strain and bending are template parameters; 5 and 3 are suitable for the cubic field
+/// [Gerstmayr & Irschik 2008].
 ///
 /// A marker has a position and a tangent. The rotation of the section about the tangent is undetermined: ω = r′ ×
 /// ṙ′/|r′|² has no component along r′, and a moment along r′ has no effect. The other two axes of the marker follow
-/// from the reference axes by the smallest rotation. A clamp is `Revolute` about the tangent, with the marker of the
-/// cable second.
+/// from the reference axes by the smallest rotation. Use `Revolute` about the tangent as a clamp, with the marker of
+/// the cable as the second marker.
 template <class Strain = GreenStrain, int axial_points = 5, int bending_points = 3>
 class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bending_points>> {
   using Groups = CableGroups<Strain, axial_points, bending_points>;
@@ -36,18 +37,18 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
   static constexpr MarkerKind observes = MarkerKind::axis;
   static constexpr bool constant_mass = true;
   static constexpr bool vectorised_kernels = true;
-  static constexpr char const* name = "AncfCable";  ///< prefix of its error messages
+  static constexpr char const* name = "AncfCable";  ///< name of the body type in messages
   template <class T>
   using Element = Vec<T, 12>;
   using ElementMatrix = typename Chain::ElementMatrix;
   using PointMap = Mat<RealFor<Strain>, 3, 12>;  ///< S of r = S e, 3×12
-  static constexpr Index default_elements = 8;   ///< of `from(bar)`, see `BarMesh`
+  static constexpr Index default_elements = 8;   ///< number of elements of `from(bar)` (`BarMesh`)
   static constexpr int gradients = 1;            ///< number of position gradients that are linear in the coordinates
 
-  /// Material point of the axis: element, and position ξ ∈ [0, 1] along it.
+  /// Material point of the axis: element, and position ξ ∈ [0, 1] along the element.
   struct Point {
-    Index element = 0;  ///< counted from 0, from the bar's first end
-    double xi = 0.0;    ///< ξ ∈ [0, 1], from its first node to its second
+    Index element = 0;  ///< index of the element, counted from the first end of the bar
+    double xi = 0.0;    ///< position ξ ∈ [0, 1] from the first node of the element to the second
   };
 
   /// Cable from the straight bar, with n elements of equal length.
@@ -61,8 +62,8 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
   }
   /// Cable of n elements along `curve`, with nodes at equal arc lengths. The undeformed shape remains straight, so the
   /// initial configuration is bent.
-  /// \throws InvalidInput also if the curve is not parameterised by its arc length: |r′| of the cubic through the nodes
-  /// differs from 1 by more than 0.1.
+  /// \throws InvalidInput for n < 1, and for a curve that is not parameterised by its arc length: |r′| of the cubic
+  /// through the nodes differs from 1 by more than 0.1.
   static AncfCable from(Bar const& bar, Index n, ReferenceCurve const& curve) {
     require_elements(n, "AncfCable");
     return AncfCable(bar, polybody::constants(bar), n, curve);
@@ -73,16 +74,16 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
   double element_length() const { return l_; }
   BarConstants const& constants() const { return constants_; }
 
-  /// Point at distance s from the first end [m].
-  /// \throws InvalidInput outside the bar.
+  /// Point at the distance s along the axis from the first end [m].
+  /// \throws InvalidInput for s outside the bar.
   Point at(double s) const {
     double const x = require_inside(s, length_, name) / l_;
     Index const e = std::min(Index(x), elements() - 1);
     return {e, x - double(e)};
   }
 
-  /// Shape functions s_i of r = Σ s_i e_i, where e_i has the entries 3i … 3i + 2 of an element, and their derivatives
-  /// with respect to arc length.
+  /// Shape functions s_i of r = Σ s_i e_i, and their derivatives with respect to arc length. e_i are the entries 3i to
+  /// 3i + 2 of the coordinates of an element.
   ShapeValues<4> axis_shape(double xi) const { return hermite_shape(xi, l_); }
 
   void reference(std::span<double> q) const { std::copy(reference_.begin(), reference_.end(), q.begin()); }
@@ -140,11 +141,11 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
 
   /// Matrix S of r = S e at `p`, 3×12 and constant. The coordinates e begin at `first_column(p)`.
   PointMap position_map(Point const& p) const { return map_of(hermite_shape(p.xi, l_).s); }
-  /// Matrix S′ of r′ = S′ e at `p`, 3×12 and constant. It is the only gradient of a cable, α = 0.
+  /// Matrix S′ of r′ = S′ e at `p`, 3×12 and constant. r′ is the only gradient of a cable.
   PointMap gradient_map(Point const& p, int) const { return map_of(hermite_shape(p.xi, l_).ds); }
 
-  /// Section strains at `p`, in the axes of a marker there (see sections.hpp). A cable has axial strain and curvature,
-  /// and neither shear nor torsion.
+  /// Section strains at `p`, in the axes of a marker there (`HasSections`). A cable has axial strain and curvature, and
+  /// neither shear nor torsion.
   Vec6 section_strains(Point const& p, std::span<double const> q) const {
     Element<double> const x = element_of(p, q);
     return in_section_axes(p, x, axial().strains(p.xi, l_, x)[0], bending().strains(p.xi, l_, x));
@@ -203,8 +204,8 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
     out.columns = 12;
   }
 
-  /// Geometric stiffness of the wrench `w`. The part s_i′ (m × r′)/n² of Jᵀw depends on q: ∂/∂r′ = m̃/n² − 2 (m × r′)
-  /// r′ᵀ/n⁴.
+  /// Load stiffness ∂(Jᵀw)/∂e of the wrench `w`. Only the term s_i′ (m × r′)/n² of Jᵀw, n = |r′|, depends on the
+  /// coordinates: ∂/∂r′ = m̃/n² − 2 (m × r′) r′ᵀ/n⁴.
   template <class T>  // compiled only if used
   void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, Mat<T, 12, 12>& k) const {
     ShapeValues<4> const s = hermite_shape(p.xi, l_);
@@ -264,7 +265,7 @@ class AncfCable : public ElasticChain<6, CableGroups<Strain, axial_points, bendi
   double length_;
   double l_;
   Mat<RealFor<Strain>, 4, 4> mass_ = detail::zeros<decltype(mass_)>();  ///< mass matrix of each component
-  Vec4 weight_ = detail::zeros<Vec4>();  ///< mass vector of each component in a uniform field
+  Vec4 weight_ = detail::zeros<Vec4>();  ///< generalised weight per unit of gravity, for each component
   std::vector<double> reference_;
   std::vector<Mat3> axes_;  ///< axes of the reference at the middle of each element
 };

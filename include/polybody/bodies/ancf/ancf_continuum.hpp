@@ -12,7 +12,7 @@ namespace polybody {
 
 namespace ancf {
 
-/// Strains that depend on columns of F. Their shapes read all nodal vectors.
+/// Base class of strains that depend on columns f of the deformation gradient F. Their shapes read all nodal vectors.
 template <int used>
 struct OfGradient {
   static constexpr int components = 3;
@@ -20,7 +20,7 @@ struct OfGradient {
   static constexpr int reach = vectors - 1;
   static constexpr int difference = vectors / 2;
   static constexpr int vector(int, int j) { return j + 1; }
-  /// Matrix P of the columns `which` of F, from the gradients `g` of the shapes.
+  /// Matrix P of the columns `which` of F, from the gradients `g` of the shape functions.
   static Mat<double, used, vectors - 1> map(Mat<double, vectors, 3> const& g, std::array<int, used> const& which) {
     Mat<double, used, vectors - 1> n;
     for (int v = 1; v < vectors; ++v)
@@ -119,16 +119,16 @@ struct ContinuumGroups;
 /// All strains at the points of the volume.
 template <>
 struct ContinuumGroups<Locking::present> {
-  using Number = double;                         ///< scalar of stiffness and of damping times
-  using Volume = StrainGroup<GreenStrains<12>>;  ///< all strains in 12 points
+  using Number = double;                         ///< scalar type of the stiffness and the damping times
+  using Volume = StrainGroup<GreenStrains<12>>;  ///< all strains at 12 points
   using type = std::tuple<Volume>;               ///< the groups of an element
 };
 /// Axial strain along the axis, mean shear strains, and strains within a section.
 template <>
 struct ContinuumGroups<Locking::cured> {
-  using Number = double;                          ///< scalar of stiffness and of damping times
-  using Along = StrainGroup<AlongStrain>;         ///< E₁₁ in 12 points
-  using Shear = StrainGroup<ShearStrains>;        ///< 2E₁₂, 2E₁₃ in 12 points whose distance from the axis is scaled
+  using Number = double;                          ///< scalar type of the stiffness and the damping times
+  using Along = StrainGroup<AlongStrain>;         ///< E₁₁ at 12 points
+  using Shear = StrainGroup<ShearStrains>;        ///< 2E₁₂, 2E₁₃ at 12 points, distances scaled by `lever`
   using Across = StrainGroup<GreenStrains<2>>;    ///< the other terms of Hooke's law, on the axis at both nodes
   using type = std::tuple<Along, Shear, Across>;  ///< the groups of an element
 };
@@ -157,14 +157,14 @@ struct Stress {
 ///   the other terms of Hooke's law for normal strains, and E₂₃, on the axis only, at the nodes (trapezoidal rule):
 ///   between the nodes of a bent element |r_y| < 1 is an interpolation error of the chord and would add stiffness;
 ///   the shears 2E₁₂, 2E₁₃ with the corrected shear stiffnesses GA, GA_z of the bar, at four points whose distance
-///   from the axis is scaled until the torsional stiffness equals GJ of the bar. Three points along x remain: two leave
-///   a mode without energy, and three do not lock (see `ElasticLine`).
+///   from the axis is scaled until the torsional stiffness equals GJ of the bar. The quadrature keeps three points
+///   along x: with two, a mode has no energy; three do not lock (see `ElasticLine`).
 ///
 /// Kelvin–Voigt times: axial for normal strains and therefore also for bending; shear for shears. Ė is objective.
 /// `Damping::bending` is not used by this policy.
 template <Locking locking = Locking::cured>
 struct Continuum {
-  static constexpr char const* name = "AncfBeam<Continuum>";  ///< prefix of its error messages
+  static constexpr char const* name = "AncfBeam<Continuum>";  ///< name of the body type in messages
   static constexpr bool cured = locking == Locking::cured;    ///< true if D is split so that bending does not lock
 
   using Parts = ancf::ContinuumGroups<locking>;  ///< the strain groups by name
@@ -234,7 +234,8 @@ struct Continuum {
     }
   }
 
-  /// Ratio of the distance of the shear points from the axis to the distance of the points of the section.
+  /// Factor on the distance from the axis that converts section points (`SectionPoints`) to the points of the shear
+  /// strains.
   static double lever(BarConstants const& c) {
     if constexpr (cured)
       return std::sqrt(c.GJ * c.EA / (c.GA * c.EI_y.value() + c.GA_z.value() * c.EI));
@@ -260,11 +261,11 @@ struct Continuum {
     return s;
   }
 
-  /// Share p of the torque that r_y carries. If r_y rotates by α and r_z by β, then 2E₁₂ = −z β′, 2E₁₃ = y α′ and
+  /// Fraction p of the torque that r_y carries. If r_y rotates by α and r_z by β, then 2E₁₂ = −z β′, 2E₁₃ = y α′ and
   /// 2E₂₃ = α − β. The torsional stiffnesses are D_y = GA_z y² for α and D_z = GA z² for β, coupled by GA. Under a
   /// torque both rotations are equal in the bar, and r_y carries p = D_y/(D_y + D_z). A joint or a moment at an end may
-  /// apply another share p̂. The difference decays by 2E₂₃ over the length ℓ with ℓ² = D_y D_z/((D_y + D_z) GA). The
-  /// marker there rotates by an additional angle (p̂ − p)² ℓ/(p (1 − p)) T/GJ.
+  /// apply another fraction p̂. The shear 2E₂₃ reduces the difference over the length ℓ with ℓ² = D_y D_z/((D_y + D_z)
+  /// GA). The marker at this end rotates by an additional angle (p̂ − p)² ℓ/(p (1 − p)) T/GJ.
   static double share(BarConstants const& c) {
     double const y = c.EI * (cured ? c.GA_z.value() : 1.0), z = c.EI_y.value() * (cured ? c.GA : 1.0);
     return y / (y + z);
@@ -275,7 +276,7 @@ struct Continuum {
     return {b, c, share(bar)};
   }
 
-  /// Strains Γ = Rᵀ r_x and K = axial(Rᵀ R_x) relative to the reference, with the frame R of markers.
+  /// Strains Γ = Rᵀ r_x and K = axial(Rᵀ R_x) relative to the reference, with the frame R of the markers.
   template <class T = double>  // compiled only if used
   static Vec6 section_strains(BarConstants const& c, ancf::Deformation const& field, double xi) {
     Vec6 const now = stretch_and_bend<T>(c, field.e, field.reference.l, xi),

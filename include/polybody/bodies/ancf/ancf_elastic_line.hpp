@@ -15,8 +15,10 @@ namespace polybody {
 ///   ½ (r_y·r_y − 1), ½ (r_z·r_z − 1), r_y·r_z: the strains of the section, with stiffness EA, EA, GA.
 /// Γ and K are taken relative to their values in the reference. R, Γ and K do not depend on the strains of the section.
 /// On fine meshes the sections therefore keep their shape, and the element converges to the exact rod. Quadrature:
-///   Γ at three Gauss points, exact for linear theory, where r₀′ is quadratic. With two points, r = 0 and equal r_x
-///     across the axis at all nodes would have no energy: r₀′ is the Legendre polynomial P₂, which is zero at both.
+///     Γ at three Gauss points, exact for linear theory, where r₀′ is quadratic. With two points, a motion with r = 0
+///     and
+///     equal r_x across the axis at all nodes would have no energy: its r₀′ is the Legendre polynomial P₂, zero at
+///     both.
 ///     The element does not lock: the quadratic r₀′ can follow any piecewise linear r_y, r_z with Γ = 0.
 ///   K at two points: for sections that rotate by θ per element, the result is θ/l with an error of order θ⁴.
 ///   The strains of the section only at the nodes: between them |r_y| decreases to cos(θ/2) by the interpolation along
@@ -24,7 +26,7 @@ namespace polybody {
 /// Kelvin–Voigt times: axial for Γ₁ and the stretches of the section; shear for Γ₂, Γ₃, twist and the shear of the
 /// section; bending for the curvatures.
 struct ElasticLine {
-  static constexpr char const* name = "AncfBeam<ElasticLine>";  ///< prefix of its error messages
+  static constexpr char const* name = "AncfBeam<ElasticLine>";  ///< name of the body type in messages
 
   /// Strains Γ, with p = (r₀′, r_y, r_z).
   struct Stretch {
@@ -197,14 +199,14 @@ struct ElasticLine {
             on_axis<typename Line::Section>(nodes, bar, c, ref, none)};
   }
 
-  /// Frame of a section with r_y = b, r_z = c for markers. It equals the frame of Γ and K, so a joint or a moment does
-  /// work only on these strains and the section keeps its shape.
+  /// Frame of a section with r_y = b, r_z = c for markers. This frame equals the frame of Γ and K. A joint or a moment
+  /// therefore does work only on these strains, and the section keeps its shape.
   template <KernelScalar T>
   static SectionFrame<T> frame(Vec<T, 3> const& b, Vec<T, 3> const& c, BarConstants const&) {
     return {b, c};
   }
 
-  /// Section forces: stiffness from `groups` times the `strains` (Γ, K) of the section, plus the pretension.
+  /// Section forces: the stiffness of `groups` times the `strains` (Γ, K) of the section, plus the pretension.
   template <class Made>  // compiled only if used
   static Vec6 section_forces(Bar const& bar, Made const& groups, Vec6 const& strains) {
     Vec6 n = strains;

@@ -4,8 +4,8 @@
 /// In an element of length l, r₀(x) is cubic, and r_y and r_z are linear in x:
 ///   r(x, y, z) = r₀ + y r_y + z r_z = Σ N_v(x, y, z) e_v,
 ///   e = (r, r_x, r_y, r_z) of the first node, then of the second.
-/// The reference is a field of the same kind. Strains are relative to it, in the axes of its sections (`SectionFrame`
-/// of r_y, r_z).
+/// The reference is a field of the same kind. Strains are relative to the reference, in the axes of its sections
+/// (`SectionFrame` of r_y, r_z).
 
 #include <polybody/bodies/ancf/section_frame.hpp>
 #include <polybody/bodies/shared/bar.hpp>
@@ -45,20 +45,21 @@ class Reference {
  public:
   double l = 0.0;                       ///< length of the axis [m]
   Coordinates x = Coordinates::Zero();  ///< nodal coordinates e
-  bool straight = true;                 ///< true if neither bent nor twisted
+  bool straight = true;                 ///< true if the reference is neither bent nor twisted
 
-  /// Determinant det [r_x r_y r_z], linear in y and z. It is negative if the section is turned inside out.
+  /// Determinant det [r_x r_y r_z] of the reference, linear in y and z. It is negative if the section is turned inside
+  /// out.
   template <class T = double>  // compiled only if used
   double determinant(double xi, double y, double z) const {
     return straight ? 1.0 : jacobian<T>(xi, y, z).determinant();
   }
 
   /// Gradients ∂N/∂X with respect to the position X in the axes of the section, so that F = Σ e_v (∂N_v/∂X)ᵀ is the
-  /// identity in the reference. They include the reference volume dV/(dx dy dz) relative to the volume on the axis.
-  /// Between the nodes of a curved element the interpolated section is smaller than the section of the bar.
+  /// identity in the reference. Also the reference volume dV/(dx dy dz) relative to the volume on the axis. Between the
+  /// nodes of a curved element the interpolated section is smaller than the section of the bar.
   struct Gradients {
     Mat<double, vectors, 3> g;  ///< 8×3, a row for each nodal vector
-    double volume;              ///< relative to the volume on the axis
+    double volume;              ///< volume relative to the volume on the axis
   };
   /// Gradients ∂N/∂X = [N_x N_y N_z] J₀⁻¹ at (ξ, y, z) [m], with J₀ = Rᵀ [r_x r_y r_z] of the reference and R its
   /// section frame.
@@ -101,8 +102,8 @@ struct Deformation {
   }
 };
 
-/// Four points of a section, each with a quarter of its area, that give the area and both second moments of area: y =
-/// ±√(I_z/A), z = ±√(I_y/A). For a rectangle they are the Gauss points (2 × 2).
+/// Four points of a section, each with a quarter of its area: y = ±√(I_z/A), z = ±√(I_y/A). They reproduce the area and
+/// both second moments of area. For a rectangle they are the Gauss points (2 × 2).
 struct SectionPoints {
   double y, z;  ///< √(I_z/A) and √(I_y/A) [m]
   /// Calls f(y, z) at each of the four points [m].

@@ -11,14 +11,14 @@ namespace polybody {
 
 namespace detail {
 
-/// Rows of p = (r′, r″) for the coordinates after the first nodal vector, in an element of length l.
+/// Factors of the nodal vectors in p = (r′, r″) for an element of length l, without those of the first nodal vector.
 template <class T>
 Mat<T, 2, 3> cable_curvature_map(double xi, double l) {
   ShapeValues<4> const s = hermite_shape(xi, l);
   Mat<T, 2, 3> n;
   for (int j = 0; j < 3; ++j) {
-    n(0, j) = s.ds[j + 1];
-    n(1, j) = s.dds[j + 1];
+    n(0, j) = s.ds[std::size_t(j + 1)];
+    n(1, j) = s.dds[std::size_t(j + 1)];
   }
   return n;
 }
@@ -68,8 +68,8 @@ struct CableAxial {
   }
 };
 
-/// Bending in space as the vector κ = s × u/|s|ᵏ, with s = r′, u = r″ and p = (s, u). Unlike its length, the vector is
-/// smooth at κ = 0.
+/// Bending in space as the vector κ = s × u/|s|ᵏ, with s = r′, u = r″ and p = (s, u). The vector κ is smooth at κ = 0,
+/// its length is not.
 template <class Strain, int bending_points>
 struct CableBending {
   static constexpr int points = bending_points;
@@ -146,8 +146,8 @@ struct CableBending {
   /// Objective part p of the rate κ̇. The rate is the sum of a rotation of κ and a change of its length. The rotation
   /// of a cable about its own axis is undetermined, so that only the change of length is damped:
   ///   p = w κ̇ + G κ (κ·κ̇),  w = (1 + x)⁻⁴,  G = (1 − w)/κ²,  x = κ²/κ₀².
-  /// Below κ₀ = 1e-3 1/m the direction of κ is not significant, and all of κ̇ is damped. G is a polynomial over (1 +
-  /// x)⁴.
+  /// Below κ₀ = 1e-3 1/m the direction of κ is not significant, and all of κ̇ is damped. G is a polynomial in x divided
+  /// by (1 + x)⁴.
   template <KernelScalar T>
   static void objective_rate(Vec<T, 3> const& strain, Vec<T, 3>& rate) {
     Blend<T> const f(strain);
@@ -172,7 +172,7 @@ struct CableBending {
   }
 
  private:
-  /// Weights w and G, and the factors of κ in their gradients.
+  /// Weights w and G; dw κ and dg κ are their gradients with respect to κ.
   template <class T>
   struct Blend {
     T w, g, dw, dg;

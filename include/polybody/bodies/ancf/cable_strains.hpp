@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Axial strain measures of cables as functions of p = r′ in the plane (d = 2) or in space (d = 3). Each has the power
-/// k of |r′| in the corresponding bending measure |r′ × r″|/|r′|ᵏ.
+/// Axial strain measures of cables as functions of p = r′ in the plane (d = 2) or in space (d = 3). Each measure also
+/// defines the power k of |r′| in the corresponding bending measure |r′ × r″|/|r′|ᵏ.
 
 #include <polybody/math/simd_vector.hpp>
 #include <polybody/math/types.hpp>
@@ -34,8 +34,8 @@ struct GreenStrain {
   }
 };
 
-/// Engineering strain ε = |r′| − 1 and material bending measure κ = |r′ × r″|/|r′|². Both are linear in the resultants
-/// of the exact rod [Gerstmayr & Irschik 2008].
+/// Engineering strain ε = |r′| − 1 and material bending measure κ = |r′ × r″|/|r′|². Both are linear in the stress
+/// resultants of the exact rod [Gerstmayr & Irschik 2008].
 struct EngineeringStrain {
   static constexpr int curvature_power = 2;  ///< power k of |r′| in the bending measure
 

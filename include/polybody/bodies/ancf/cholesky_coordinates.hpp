@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include <polybody/bodies/shared/bar.hpp>
 #include <polybody/bodies/shared/node_chain.hpp>
 
 namespace polybody {
@@ -14,12 +15,12 @@ namespace polybody {
 /// Shabana 1999; thesis §4.4]. The mass matrix becomes the identity, T = ½ ṗᵀ ṗ, and the forces are Q_p = L⁻¹ Q_e. The
 /// motion does not change. B can be any body with additive coordinates.
 ///
-/// Points that are linear in e are linear in p, so that `AncfLinear` can join such bodies. The elimination couples the
-/// bodies, and the mass matrix of the mechanism becomes TᵀT. Explicit steps factorise it once
+/// Points that are linear in e are linear in p, so that `AncfLinear` can join such bodies. With its elimination matrix
+/// T, the mass matrix of the mechanism becomes TᵀT, which couples the bodies. Explicit steps factorise TᵀT once
 /// (solvers/constant_block_cache.hpp).
 ///
-/// L is banded like M, so a force costs a few additional operations per coordinate. L⁻¹ is full, therefore the tangent
-/// and the marker Jacobians are full. The class is meant for explicit integrators without constraints, and for
+/// L is banded like M, so that a force costs a few additional operations per coordinate. L⁻¹ is full; therefore the
+/// tangent and the marker Jacobians are full. The class is meant for explicit integrators without constraints, and for
 /// comparison.
 ///
 /// A program that calls `CholeskyCoordinates<AncfCable<>>::from(bar, n)` instead of `AncfCable<>::from(bar, n)` needs
@@ -43,13 +44,13 @@ class CholeskyCoordinates : public AddingCoordinates {
   }();
 
   /// Creates the body from the arguments `args` of `B::from`.
-  /// \throws InvalidInput as the constructor.
+  /// \throws InvalidInput for a body with quaternions, or with a mass matrix that is not positive definite.
   template <class... Args>
   static CholeskyCoordinates from(Args const&... args) {
     return CholeskyCoordinates(B::from(args...));
   }
   /// Creates the body from a bar with the number of elements of `mesh`.
-  /// \throws InvalidInput as the constructor.
+  /// \throws InvalidInput for a body with quaternions, or with a mass matrix that is not positive definite.
   static CholeskyCoordinates from(Bar const& bar, BarMesh const& mesh) {
     return CholeskyCoordinates(B::from(bar, mesh));
   }
@@ -57,8 +58,9 @@ class CholeskyCoordinates : public AddingCoordinates {
   /// \throws InvalidInput for a body whose coordinates do not add, or whose mass matrix is not positive definite.
   explicit CholeskyCoordinates(B body) : body_(std::move(body)), n_(body_.velocities()) {
     if (body_.coordinates() != n_)
-      throw InvalidInput("cholesky.quaternions", {ErrorObject{"CholeskyCoordinates"},
-                                                  ": the body's coordinates must add, without quaternions."});
+      throw InvalidInput("cholesky.quaternions",
+                         {ErrorObject{"CholeskyCoordinates"},
+                          ": the body has quaternions, but its coordinates must be a vector space."});
     factor();
   }
 
@@ -76,21 +78,21 @@ class CholeskyCoordinates : public AddingCoordinates {
     return e;
   }
 
-  /// Matrix of r = S L⁻ᵀ p at `p`, over all columns.
+  /// Matrix S L⁻ᵀ of r = S e at the point `p`, over all columns of the body.
   MatX position_map(Point const& p) const
     requires HasLinearPoints<B>
   {
     return by_own(body_.position_map(p), p);
   }
-  /// Matrix of gradient `alpha` at point `p`, over all columns; `alpha` = 0, 1, 2 for x, y, z, if the body has this
-  /// gradient.
+  /// Matrix of the gradient `alpha` at the point `p`, over all columns of the body; `alpha` = 0, 1, 2 for x, y, z, if
+  /// the body has this gradient.
   MatX gradient_map(Point const& p, int alpha) const
     requires HasLinearPoints<B>
   {
     return by_own(body_.gradient_map(p, alpha), p);
   }
 
-  /// Section strains of the underlying body (see sections.hpp).
+  /// Section strains of the underlying body, as a vector of six (`HasSections`).
   Vec6 section_strains(Point const& p, std::span<double const> q) const {
     return body_.section_strains(p, span(base_coordinates(q)));
   }
@@ -229,7 +231,7 @@ class CholeskyCoordinates : public AddingCoordinates {
       x[std::size_t(j)] = sum;
     }
   }
-  /// Solutions x = L⁻¹ x and x = L⁻ᵀ x.
+  /// Replaces x by L⁻¹ x (`forth`) or by L⁻ᵀ x (`back`).
   template <class T, class V>
   void forth(V&& x) const {
     for (Index i = 0; i < n_; ++i) {
@@ -246,7 +248,7 @@ class CholeskyCoordinates : public AddingCoordinates {
       x[j] = sum * (1.0 / l(j, j));
     }
   }
-  /// Product m L⁻ᵀ of a matrix m with the columns of `p`.
+  /// Product m L⁻ᵀ of a matrix m whose columns are those of the point `p`.
   MatX by_own(auto const& m, Point const& p) const {
     MatX out = MatX::Zero(m.rows(), n_);
     out.middleCols(body_.first_column(p), m.cols()) = m;
@@ -284,7 +286,7 @@ class CholeskyCoordinates : public AddingCoordinates {
 
   B body_;
   Index n_, band_ = 0;
-  std::vector<double> factor_;  ///< L, row by row, `band_` entries before each diagonal one
+  std::vector<double> factor_;  ///< L by rows: `band_` entries, then the diagonal entry
 };
 
 }  // namespace polybody

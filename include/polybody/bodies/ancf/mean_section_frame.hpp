@@ -11,8 +11,8 @@ namespace polybody {
 ///   p |b − t₂|² + (1 − p) |c − t₃|²,  hence  t₂ = m/|m|,  m = p b + (1 − p) c × t₁.
 /// R is the identity if b = e₂ and c = e₃. The conditions for R are
 ///   b·t₁ = c·t₁ = 0,  p b·t₃ = (1 − p) c·t₂.
-/// A change (δb, δc) has the components w = (X, Y), X = Rᵀδb, Y = Rᵀδc. It rotates the frame by φ = S w in its own
-/// axes. The variation of the three conditions gives
+/// A change d = (δb, δc) has the components w = (X, Y), X = Rᵀδb, Y = Rᵀδc. It rotates the frame by φ = S w in the axes
+/// of the frame. The variation of the three conditions gives
 ///   (p b₂ + (1 − p) c₃) φ₁ = p X₃ − (1 − p) Y₂,  b₂ φ₃ − b₃ φ₂ = −X₁,  c₂ φ₃ − c₃ φ₂ = −Y₁.
 /// While the frame moves by ŵ, the components of a constant d change by X × φ̂, Y × φ̂, and those of b, c by
 ///   b̂ = X̂ + b × φ̂,  ĉ = Ŷ + c × φ̂.
@@ -62,12 +62,12 @@ class MeanSectionFrame : public SectionAxes<T> {
     return {(w[2] * p_ - w[4] * (1.0 - p_)) * im_, (b_[1] * w[3] - c_[1] * w[0]) * in_,
             (b_[2] * w[3] - c_[2] * w[0]) * in_};
   }
-  /// Product Sᵀm, with m (3) in the axes of the section.
+  /// Product Sᵀm, with m (3) in the axes of the frame.
   V6 pull(V3 const& m) const {
     return {-(c_[1] * m[1] + c_[2] * m[2]) * in_, T(0.0), m[0] * p_ * im_, (b_[1] * m[1] + b_[2] * m[2]) * in_,
             -(m[0] * (1.0 - p_)) * im_,           T(0.0)};
   }
-  /// Change δ̂φ of φ for a constant d with components w, while the frame moves `by` ŵ.
+  /// Change δ̂φ of φ for a constant d with components w, while the frame moves by a change with components ŵ = `by`.
   V3 change(V6 const& w, V6 const& by) const {
     V3 const phi = spin(w), turn = spin(by), x = cross(head(w), turn), y = cross(tail(w), turn),
              b = cross(b_, turn) + head(by), c = cross(c_, turn) + tail(by), bx = cross(phi, b), cy = cross(phi, c);

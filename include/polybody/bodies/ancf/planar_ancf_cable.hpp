@@ -15,7 +15,7 @@ using polybody::EngineeringStrain, polybody::GreenStrain;
 /// Eq. 3.16–3.20]. The template arguments set the numbers of Gauss points for axial strain and bending.
 template <class Strain, int axial_points = 5, int bending_points = 3>
 struct HermiteCable {
-  static constexpr char const* name = "planar::AncfCable";  ///< prefix of its error messages
+  static constexpr char const* name = "planar::AncfCable";  ///< name of the body type in messages
   static constexpr int node_columns = 4;                    ///< (x, y, x′, y′)
   static constexpr bool vectorised_kernels = true;
   static constexpr std::array<int, 2> section_rows = {0, 5};  ///< rows of axial strain and curvature
@@ -27,16 +27,16 @@ struct HermiteCable {
     double const c = std::cos(angle), d = std::sin(angle);
     return {origin[0] + s * c, origin[1] + s * d, c, d};
   }
-  /// Generalised velocities of the node in a rigid motion: v0 of the body-fixed point at the origin of the world [m/s],
-  /// omega [rad/s].
+  /// Generalised velocities of the node in a rigid motion: velocity v0 of the body-fixed point at the origin of the
+  /// world [m/s], angular velocity omega [rad/s].
   static Vec4 rigid_velocity(Vec4 const& node, Vec2 const& v0, double omega) {
     return {v0[0] - omega * node[1], v0[1] + omega * node[0], -omega * node[3], omega * node[2]};
   }
-  /// Matrix (2×8) with one factor of s for each nodal vector.
+  /// Matrix (2×8) of Σ s_i e_i with the factors `s` of the four nodal vectors e_i.
   template <class T = double>  // compiled only if used
   static Mat<T, 2, 8> spread(std::array<double, 4> const& s) {
     Mat<T, 2, 8> n = Mat<T, 2, 8>::Zero();
-    for (int i = 0; i < 4; ++i) n(0, 2 * i) = n(1, 2 * i + 1) = T(s[i]);
+    for (int i = 0; i < 4; ++i) n(0, 2 * i) = n(1, 2 * i + 1) = T(s[std::size_t(i)]);
     return n;
   }
   /// Matrix S (2×8) of r = S e at ξ of an element of length l [m].
@@ -44,21 +44,21 @@ struct HermiteCable {
   static Mat<T, 2, 8> position(double xi, double l) {
     return spread<T>(hermite_shape(xi, l).s);
   }
-  /// Matrix S′ (2×8) of r′ = S′ e.
+  /// Matrix S′ (2×8) of r′ = S′ e at ξ of an element of length l [m].
   template <class T = double>
   static Mat<T, 2, 8> gradient(double xi, double l) {
     return spread<T>(hermite_shape(xi, l).ds);
   }
   /// Shape functions of r at ξ, and their derivatives with respect to arc length.
   static ShapeValues<4> axis_shape(double xi, double l) { return hermite_shape(xi, l); }
-  /// Rotary inertia; a cable has none.
+  /// Row of θ̇ in the rotary inertia; zero, because a cable has none.
   template <class T = double>
   static Vec<T, 8> rotary(double, double) {
     return Vec<T, 8>::Zero();
   }
 
-  /// Angle θ of r′ at the coordinates e (8) with rates `ed`, and θ̇ = r′ × ṙ′/|r′|². The derivative of θ̇ without r̈′
-  /// is −2 (r′·ṙ′) θ̇/|r′|².
+  /// Angle θ of r′ for the coordinates e (8) and their rates `ed`, and θ̇ = r′ × ṙ′/|r′|². Without r̈′, θ̈ is −2
+  /// (r′·ṙ′) θ̇/|r′|².
   template <StateScalar T>
   static SectionAngle<T, 8> rotation(double xi, double l, Vec<T, 8> const& e, Vec<T, 8> const& ed) {
     using std::atan2;
@@ -85,8 +85,8 @@ struct HermiteCable {
 
   using Axial = CableAxial<Strain, axial_points, 2>;  ///< the law of axial strain
 
-  /// Bending with p = (r′, r″) and κ = c/nᵏ, where c = r′ × r″ and n = |r′|. Three points suit the field [Gerstmayr &
-  /// Irschik 2008].
+  /// Bending with p = (r′, r″) and κ = c/nᵏ, where c = r′ × r″ and n = |r′|. Three Gauss points are suitable for the
+  /// cubic field [Gerstmayr & Irschik 2008].
   struct Bending {
     static constexpr int points = bending_points;
     static constexpr int components = 2;

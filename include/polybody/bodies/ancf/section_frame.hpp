@@ -10,7 +10,7 @@
 
 namespace polybody {
 
-/// Axes of a section, and products with them.
+/// Axes of a section, with products of vectors and the rotation matrix R.
 template <KernelScalar T>
 struct SectionAxes {
   using V3 = Vec<T, 3>;  ///< three components
@@ -45,10 +45,10 @@ struct SectionAxes {
 /// The axis t₁ is normal to the section, and R = [t₁ t₂ t₃] is the identity if b = e₂ and c = e₃. With β = |b|, c₃ =
 /// c·t₃, σ = c·t₂/c₃, a change d = (δb, δc) has the components
 ///   w = (X, Y),  X = Rᵀδb/β,  Y = Rᵀδc/c₃.
-/// It rotates the frame by φ = S w in its own axes, δR = R φ̃:
+/// The change rotates the frame by φ = S w in the axes of the frame, δR = R φ̃:
 ///   φ = (X₃, Y₁ − σ X₁, −X₁).
-/// This follows from δt₂ = (1 − t₂t₂ᵀ) δb/β and from the condition t₁·c = 0. While the frame moves by ŵ, the components
-/// of a constant d change:
+/// This equation follows from δt₂ = (1 − t₂t₂ᵀ) δb/β and from the condition t₁·c = 0. While the frame moves by ŵ, the
+/// components of a constant d change:
 ///   δ̂X = X × φ̂ − X X̂₂,  δ̂Y = Y × φ̂ − Y (Ŷ₃ − σ X̂₃),  δ̂σ = g·ŵ = Ŷ₂ + (1 + σ²) X̂₃ − σ Ŷ₃.
 /// All other derivatives follow by the chain rule. Vectors of six are ordered (X, Y). The code uses plain loops for
 /// doubles, dual numbers and SIMD vectors.
@@ -92,7 +92,7 @@ class SectionFrame : public SectionAxes<T> {
   /// Rotation φ = S w in the axes of the frame. For rates it is the angular velocity, for derivatives along the axis
   /// twist and curvatures.
   V3 spin(V6 const& w) const { return V3(w[2], w[3] - sigma_ * w[0], -w[0]); }
-  /// Product Sᵀ m, with m (3) in the axes of the section.
+  /// Product Sᵀ m, with m (3) in the axes of the frame.
   V6 pull(V3 const& m) const {
     V6 s;
     for (int i = 0; i < 6; ++i) s[i] = T(0.0);
@@ -234,8 +234,8 @@ class SectionFrame : public SectionAxes<T> {
                                         {true, false, false, false, false, false},
                                         {true, false, false, true, false, false}}};
 
-  /// Calls add(i, j, x) for the entries x of block (a, b) of the form h in world axes, R h_ab Rᵀ divided by the
-  /// lengths.
+  /// Calls add(i, j, x) for the entries x of block (a, b) of the form h in world axes: R h_ab Rᵀ divided by two of the
+  /// lengths β, c₃.
   template <Places places, class F>
   void add_world(M6 const& h, int a, int b, F&& add) const {
     T const scale = (a == 0 ? ib_ : ic_) * (b == 0 ? ib_ : ic_);
@@ -268,7 +268,7 @@ class SectionFrame : public SectionAxes<T> {
     return g;
   }
   /// Matrix A with s·δ̂w = wᵀ A ŵ for `sign` = 1; matrix L with δ̂w = L ŵ for w = s and `sign` = −1. Both are ∓ s̃ S
-  /// minus s times the change of length.
+  /// minus s times the relative change of the lengths β and c₃.
   M6 pairing(V6 const& s, double sign) const {
     M6 m;
     for (int part = 0; part < 2; ++part) {

@@ -33,27 +33,28 @@ MatX orthogonal_basis(Structure const& s, MatX shapes) {
 
 /// Basis of static shapes for given loads and of free modes, in mean axes [MacNeal 1971; Rubin 1975; Craig & Kurdila
 /// 2006, §17.3]. The inertia of the resulting rigid acceleration balances a load f on the free structure:
-///   f_b = f − M R (RᵀM R)⁻¹ Rᵀ f,   K x = f_b,   Rᵀ M x = 0,   R the rigid motions.
+///   f_b = f − M R (RᵀM R)⁻¹ Rᵀ f,  K x = f_b,  Rᵀ M x = 0,  with the rigid motions R.
 /// Stress and stiffness under such loads therefore equal those of the full model for any number of modes. The basis is
 /// suitable for nodes without rotations, which cannot hold the frame in `craig_bampton`, and for loads on patches of
 /// nodes.
 ///
 /// The result contains the static shapes of the nodal loads `loads` (N×m) and the `count` lowest modes, computed by
 /// `solve`. The shapes are orthogonal with unit modal mass. Linearly dependent shapes are omitted.
-/// \throws InvalidInput for loads that do not fit the structure or are not finite, and for a count above the number
-/// of modes. A structure with motions without strain other than the rigid ones is also refused.
+/// \throws InvalidInput for loads that do not fit the structure or are not finite, for a count above the number of
+/// modes, and for a structure that can move without strain in other ways than a rigid body.
 template <class Eigensolver = DenseModes>
 MatX attachment_modes(Structure const& s, MatX const& loads, Index count, Eigensolver const& solve = {}) {
   if (loads.rows() != s.size() || !loads.allFinite())
-    throw InvalidInput("ffr.modes", {ErrorObject{"Ffr"}, ": attachment modes need finite nodal loads of ", s.size(),
-                                     " rows, but the loads have ", ErrorValue{loads.rows()}, " rows."});
+    throw InvalidInput("ffr.modes",
+                       {ErrorObject{"Ffr"}, ": the nodal loads of attachment modes must be finite and have ", s.size(),
+                        " rows; they have ", ErrorValue{loads.rows()}, " rows."});
   if (count < 0 || loads.cols() + count == 0)
     throw InvalidInput("ffr.modes", {ErrorObject{"Ffr"}, ": attachment modes need at least one load or one mode."});
   MatX const rigid = rigid_motions(s), heavy = s.mass_matrix() * rigid;
   Eigen::LDLT<MatX> const mass(rigid.transpose() * heavy);
   std::vector<Index> const free = statically_determinate(s).free_coordinates(s);
   SparseFactor factor;
-  factor_positive(factor, submatrix(s.stiffness, free, free), "the structure moves without deformation, though held.");
+  factor_positive(factor, submatrix(s.stiffness, free, free), "parts of the supported structure move without strain.");
   MatX shapes(s.size(), loads.cols() + count);
   if (loads.cols() > 0) {
     MatX const balanced = loads - heavy * mass.solve(rigid.transpose() * loads);

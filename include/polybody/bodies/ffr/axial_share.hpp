@@ -13,15 +13,16 @@
 
 namespace polybody {
 
-/// Loads on a structure at one time, in its axes, together with the inertia and the weight of a rigid motion. In this
-/// motion the acceleration of the point u₀ minus gravity is b + B u₀.
+/// Loads on a structure at one time, in the axes of the structure, and the inertia and weight of a rigid motion. In
+/// this motion the acceleration of the point u₀ minus gravity is b + B u₀.
 struct StructureAction {
   Vec3 b = Vec3::Zero();                 ///< (3) Aᵀ(r̈ − g) [m/s²]
   Mat3 B = Mat3::Zero();                 ///< (3×3) Ω˙~ + Ω~ Ω~ [1/s²]
   std::vector<PlacedWrench> loads = {};  ///< wrenches about points of the structure
 
-  /// Actions in the axes of a frame that rotates with Ω and Ω˙ = `alpha` (in its own axes). The acceleration minus
-  /// gravity, r̈ − g = `acceleration` [m/s²], and `loads` are in world axes.
+  /// Loads, inertia and weight in the axes of the moving frame `frame`. The angular acceleration Ω˙ = `alpha` is in the
+  /// axes of the frame. The acceleration of its origin minus gravity, r̈ − g = `acceleration` [m/s²], and `loads` are
+  /// in world axes.
   template <class = void>  // compiled only if used
   static StructureAction in_frame(Frame<double> const& frame, Vec3 const& acceleration, Vec3 const& alpha,
                                   std::span<PlacedWrench const> loads) {
@@ -79,7 +80,7 @@ double axial_share(Structure const& s, MatX const& shapes, Eigen::LLT<MatX> cons
   for (int i = 0; i < 40; ++i) {
     VecX const deformed = shapes * x, pull = by_axial * deformed, y = shapes.transpose() * pull;
     VecX const z = stiffness.solve(y);
-    double const size = std::sqrt(std::max(z.dot(y), 0.0)), before = share;  // size of K⁻¹ K_G x by K, for x of size 1
+    double const size = std::sqrt(std::max(z.dot(y), 0.0)), before = share;  // K-norm of K⁻¹ K_G x for x of K-norm one
     if (!(size > 0.0)) return 0.0;
     share = std::copysign(size, x.dot(y));
     x = z / size;

@@ -125,8 +125,8 @@ void add_product(double w, A const& a, int row_a, B const& b, int row_b, BeamMat
 }
 }  // namespace detail
 
-/// Stiffness ∫ Bᵀ diag(c) B of a beam. Two Gauss points give the closed form of Eq. A.5 [Przemieniecki 1968, Eq. 5.116
-/// without shear].
+/// Stiffness ∫ Bᵀ diag(c) B of a beam with the section stiffness c. Two Gauss points give the closed form of Eq. A.5
+/// [Przemieniecki 1968, Eq. 5.116 without shear].
 template <class = void>
 BeamMatrix beam_stiffness(Structure::Beam const& beam, Vec4 const& c) {
   BeamMatrix k = BeamMatrix::Zero();

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
 /// Structures made of bars: space beam element of thesis App. A [Przemieniecki 1968, §5.6, §11.4]. The code corrects
-/// the errata of its Eq. A.1 (−2ξ + 3ξ², 2ξ − 3ξ² in rows 11 and 12). The intermediate element frames A.2–A.3 permit
-/// any direction of an element.
+/// errata of Eq. A.1: rows 11 and 12 contain −2ξ + 3ξ² and 2ξ − 3ξ². The intermediate element frames of Eqs. A.2–A.3
+/// permit any direction of an element.
 ///
 /// Not in polybody.hpp: Eigen's sparse module and factorisations take seconds to compile.
 
@@ -11,7 +11,7 @@
 namespace polybody {
 
 /// Axes of the intermediate element frame of a beam along `direction`, by Eq. A.2, which keeps z normal to the y axis
-/// of the body. If the beam is parallel to that axis, Eq. A.3 applies.
+/// of the body. If the beam is parallel to the y axis of the body, Eq. A.3 applies.
 /// \throws InvalidInput for a zero direction.
 template <class = void>  // compiled only if used
 Mat3 intermediate_axes(Vec3 const& direction) {
@@ -30,7 +30,7 @@ Mat3 intermediate_axes(Vec3 const& direction) {
 
 namespace detail {
 
-/// Contribution of one beam to ∫ρ u₀ₖ S_l (for k = −1 to ∫ρ S_l).
+/// Integral ∫ρ u₀ₖ S_l over one beam (12); ∫ρ S_l for k = −1.
 template <class = void>
 Vec<double, 12> spread_moment(Structure const& s, Structure::Beam const& beam, int k, int l) {
   Vec<double, 12> sum = Vec<double, 12>::Zero();
@@ -42,7 +42,7 @@ Vec<double, 12> spread_moment(Structure const& s, Structure::Beam const& beam, i
   return sum;
 }
 
-/// Adds the inertia of a beam to the integrals of structure.hpp.
+/// Adds the inertia of a beam to the integrals of `Structure`.
 template <class = void>
 void add_inertia(Structure& s, Structure::Beam const& beam,
                  std::array<std::vector<Eigen::Triplet<double>>, 6>& entries) {
@@ -73,7 +73,7 @@ void add_inertia(Structure& s, Structure::Beam const& beam,
 
 }  // namespace detail
 
-/// Ends of bars are one node if their distance is smaller than this fraction of the longest bar.
+/// Ends of bars are one node if their distance is smaller than this fraction of the length of the longest bar.
 inline constexpr double same_node = 1e-9;
 
 /// Structure of `bars`, each divided into the number of elements given by `elements`, welded at common ends. The
@@ -137,17 +137,17 @@ Structure structure_of(std::vector<Bar> const& bars, std::vector<Index> const& e
   return s;
 }
 
-/// Structure of one bar in n equal elements, in its own axes, with nodes 0 … n. The placement of the bar becomes that
-/// of the body.
+/// Structure of one bar in n equal elements, in the axes of the bar, with nodes 0 … n. The placement of the bar is
+/// omitted; use it as the placement of the body.
 template <class = void>
 Structure structure_of(Bar bar, Index n) {
   bar.placement = {};
   return structure_of(std::vector{bar}, {n});
 }
 
-/// Geometric stiffness ∫ N (v′ᵀv′ + w′ᵀw′) dx over all beams, with the axial forces N due to a load on the structure
-/// held at one node [Wallrapp & Schwertassek 1991]. It gives twice the second-order work of the load: eᵀ K_G e = 2 Σ
-/// load · (displacement by axial foreshortening).
+/// Geometric stiffness K_G = ∫ N (v′ᵀv′ + w′ᵀw′) dx over all beams. The axial forces N are due to a load on the
+/// structure, held at one node [Wallrapp & Schwertassek 1991]. eᵀ K_G e is twice the second-order work of the load: eᵀ
+/// K_G e = 2 Σ load · (displacement by axial foreshortening).
 class AxialForceStiffness {
  public:
   /// Holds all six coordinates of `node`.
@@ -168,7 +168,7 @@ class AxialForceStiffness {
     if (solver_.info() != Eigen::Success || solver_.vectorD().minCoeff() <= 0.0)
       throw InvalidInput(
           "structure.not_joined",
-          {ErrorObject{"Structure"}, ": its beams are not all joined, or their stiffness is not positive."});
+          {ErrorObject{"Structure"}, ": not all beams are connected, or their stiffness is not positive."});
   }
 
   /// Geometric stiffness due to one load: `load` (N) at the nodes, and `spread(beam)`, the nodal forces (12, body axes)
@@ -183,7 +183,7 @@ class AxialForceStiffness {
     for (Structure::Beam const& beam : s.beams) {
       BeamMatrix const stiff = beam_stiffness(beam, section_stiffness(beam.constants));
       Vec<double, 12> const load_within = spread(beam);
-      double n0 = 0.0, at_a = 0.0, at_b = 0.0;  // −(K e − f) along the beam at a; f at a and b
+      double n0 = 0.0, at_a = 0.0, at_b = 0.0;  // n0: −(K e − f) along the beam at a; at_a, at_b: f at a and b
       for (int i = 0; i < 3; ++i) {
         double end = -load_within[i];
         for (int j = 0; j < 12; ++j) end += stiff(i, j) * x[6 * (j < 6 ? beam.a : beam.b) + j % 6];

@@ -33,31 +33,31 @@ class Ffr {
   static constexpr World world = World::space;
   static constexpr MarkerKind observes = MarkerKind::frame;
   static constexpr bool constant_mass = false;
-  static constexpr RigidLayout frame_layout = RigidLayout::quaternion;  ///< `JointCoordinates` joints move the frame
+  static constexpr RigidLayout frame_layout = RigidLayout::quaternion;  ///< joints with `JointCoordinates` move it
   static constexpr int element_columns = Eigen::Dynamic;                ///< one element: the whole body
   static constexpr int point_columns = Eigen::Dynamic;
-  static constexpr Index default_elements = 8;  ///< of `from(bar)`, see `BarMesh`
+  static constexpr Index default_elements = 8;  ///< number of elements of `from(bar)`
 
   using Point = FfrPoint;      ///< material point in the axes of the frame
   using Options = FfrOptions;  ///< placement, terms of the inertia, stiffening and damping
 
   /// Body of the bar in n elements, in mean axes, with geometric stiffening. The 6 n coordinates q are the
-  /// displacements and rotations of the nodes relative to the first end, or less with the option `modes`. They are
-  /// valid for any joints, because the frame needs no condition at a joint. The placement is that of the bar.
-  /// \throws InvalidInput as `structure_of`.
+  /// displacements and rotations of the nodes relative to the first end; the option `modes` reduces their number. They
+  /// are suitable for all joints, because the frame needs no condition at a joint. The placement is that of the bar.
+  /// \throws InvalidInput for n < 1, and for a bar with invalid data or without torsional stiffness GJ.
   template <class = void>  // compiled only if used
   static Ffr from(Bar const& bar, Index n, Options options = {}) {
     options.complete_for(bar.placement);
     Structure const s = structure_of(bar, n);
     return Ffr(s, bar_shapes(s, n, options, false), options);
   }
-  /// Body of the bar with the number of elements of `mesh`, otherwise as above.
+  /// Body of the bar with the number of elements of `mesh`, in mean axes, with geometric stiffening.
   template <class = void>  // compiled only if used
   static Ffr from(Bar const& bar, BarMesh const& mesh = {}, Options options = {}) {
     return from(bar, mesh.elements.value_or(default_elements), options);
   }
-  /// Body of a structure with the basis `shapes` of ffr_basis.hpp (N×n), in the frame of the options if they have one.
-  /// \throws InvalidInput for a basis that does not fit or is linearly dependent.
+  /// Body of a structure with the basis `shapes` (N×n, ffr_basis.hpp), in the frame `options.frame` if it is set.
+  /// \throws InvalidInput for a basis that does not fit the structure or is linearly dependent.
   template <class = void>
   Ffr(Structure structure, MatX shapes, Options const& options = {})
       : Ffr(integrals_of(structure, shapes = in_frame(structure, std::move(shapes), options),
@@ -65,7 +65,7 @@ class Ffr {
             options) {
     points_ = std::make_shared<FfrPoints const>(std::move(structure), std::move(shapes), stiffens());
   }
-  /// Body from the user's own integrals.
+  /// Body from integrals that the user computes.
   /// \throws InvalidInput for integrals of different sizes.
   template <class = void>
   Ffr(FfrIntegrals integrals, Options const& options) : placement_(options.placement), terms_(options.terms) {
@@ -76,7 +76,7 @@ class Ffr {
     FfrStack stack = FfrStack::of(integrals);
     made_of_ = std::make_shared<Constants const>(std::move(integrals), std::move(stack));
   }
-  /// Copy of the body at another placement; both share their constants.
+  /// Copy of the body at another placement. Both bodies share their constants.
   /// \throws InvalidInput for axes that are not a rotation matrix.
   Ffr placed(Placement const& placement) const {
     placement.check("Ffr");
@@ -85,15 +85,15 @@ class Ffr {
     return other;
   }
 
-  FfrIntegrals const& integrals() const { return made_of_->integrals; }  ///< inertia and stiffness by the deformation
+  FfrIntegrals const& integrals() const { return made_of_->integrals; }  ///< inertia and stiffness as functions of q
   bool stiffens() const { return integrals().stiffens(); }               ///< true with geometric stiffening
   Index deformations() const { return integrals().size(); }              ///< number n of coordinates of the deformation
   /// Length of the first bar [m].
   /// \throws InvalidInput for a body that is not made of bars.
   double length() const { return made().length(); }
 
-  /// Section at distance s from the first end of bar `bar`, at (y, z) from its axis [m].
-  /// \throws InvalidInput outside the bar, and for a body that is not made of bars.
+  /// Section at the distance s along bar number `bar` from its first end, at (y, z) from the axis of the bar [m].
+  /// \throws InvalidInput for s outside the bar, and for a body that is not made of bars.
   template <class = void>
   Point at(double s, double y = 0.0, double z = 0.0, Index bar = 0) const {
     return made().at(s, y, z, bar);
@@ -113,13 +113,13 @@ class Ffr {
   /// Structure from which the body is made.
   /// \throws InvalidInput for a body made of the user's own integrals.
   Structure const& structure() const { return made().structure(); }
-  /// Point with the user's own matrices.
+  /// Point with matrices S and R that the user computes.
   /// \throws InvalidInput for matrices that are not 3×n.
   Point at(Point const& p) const {
     if (p.S.cols() != deformations() || p.R.cols() != deformations())
       throw InvalidInput(
           "ffr.point_size",
-          {ErrorObject{"Ffr"}, ": S and R of a point must be 3×n, n the number of deformation coordinates."});
+          {ErrorObject{"Ffr"}, ": S and R of a point must be 3×n, with n the number of deformation coordinates."});
     return p;
   }
 
@@ -328,8 +328,9 @@ class Ffr {
     for (std::size_t i = 0; i < 3 && p.drawn[0].size() > 0; ++i) k.bottomRightCorner(n, n) -= f[Index(i)] * p.drawn[i];
   }
 
-  /// Ratio of the axial forces due to `loads` (world axes) and to the motion of the frame to the buckling forces of the
-  /// beams (axial_share.hpp). It is zero for a body with geometric stiffening, and for one without beams.
+  /// Ratio of the axial forces to the buckling forces of the beams (axial_share.hpp). The axial forces are due to
+  /// `loads` (world axes), gravity and the motion of the frame. The ratio is zero for a body with geometric stiffening
+  /// or without beams.
   /// \param a v̇ of the body
   template <class = void>
   double axial_share(std::span<double const> q, std::span<double const> v, std::span<double const> a,
@@ -342,8 +343,8 @@ class Ffr {
     return points_->axial_share(StructureAction::in_frame(frame, part<3>(a, 0) - gravity, part<3>(a, 3), loads));
   }
 
-  /// Axial strain, torsion and curvatures of the beam at point p (see sections.hpp). The shear strains are zero. q are
-  /// all coordinates of the body.
+  /// Axial strain, torsion and curvatures of the beam at point p, as a vector of six (`HasSections`). The shear strains
+  /// are zero. q are all coordinates of the body.
   /// \throws InvalidInput for a point that is not on a beam.
   template <class = void>
   Vec6 section_strains(Point const& p, std::span<double const> q) const {
@@ -358,7 +359,7 @@ class Ffr {
   template <class T>
   using Moments = FfrIntegrals::Moments<T>;
 
-  /// First moment c as selected by the terms.
+  /// First moment c, of the deformed or the undeformed body as `terms_` selects.
   template <class T>
   Vec<T, 3> first_moment(T const* x) const {
     return terms_.first_moment<T>(integrals(), x);
@@ -370,7 +371,7 @@ class Ffr {
     out.J = integrals().inertia.template cast<T>();
   }
 
-  /// Products in a workspace of this thread.
+  /// Products in a workspace of the calling thread.
   template <class T>
   FfrProducts<T> own_products() const {
     static thread_local VecXOf<T> numbers;
@@ -379,9 +380,9 @@ class Ffr {
   }
   FfrPoints const& made() const {
     if (!points_)
-      throw InvalidInput(
-          "ffr.integrals_only",
-          {ErrorObject{"Ffr"}, ": this body consists of integrals only. Describe the point by a Point."});
+      throw InvalidInput("ffr.integrals_only",
+                         {ErrorObject{"Ffr"},
+                          ": this body consists of integrals only. Give the point as a Point with its matrices S, R."});
     return *points_;
   }
 

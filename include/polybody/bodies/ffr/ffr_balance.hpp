@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Inertia M a and force of the body of a floating frame (equations in ffr.hpp), from products that both share.
+/// Inertia force M a and applied force of the body of a floating frame (equations in ffr.hpp). Both use the products in
+/// ffr_products.hpp.
 ///
 /// Not in polybody.hpp: bodies/ffr/ffr.hpp includes it.
 
@@ -97,7 +98,7 @@ class FfrBalance {
   FfrProducts<T> const& products_;
   T const* x_;  // coordinates of the deformation
   Mat<T, 3, 3> A_;
-  Vec<T, 3> c_;  // first moment; c and J as selected by the terms
+  Vec<T, 3> c_;  // first moment; `terms_` selects c and J of the deformed or the undeformed body
   Mat<T, 3, 3> J_;
 };
 

@@ -1,7 +1,8 @@
 #pragma once
 /// \file
-/// Deformation coordinates of a floating frame: reference conditions that tie the frame to the structure, and bases Φ
-/// (N×n), e = Φ q. The bases are all free nodal coordinates, vibration modes, or those of Craig & Bampton [1968].
+/// Deformation coordinates q of a floating frame: reference conditions that tie the frame to the structure, and bases Φ
+/// (N×n) of the nodal coordinates, e = Φ q. A basis consists of all free nodal coordinates, of vibration modes, or of
+/// the modes of Craig & Bampton [1968].
 ///
 /// Not in polybody.hpp: Eigen's sparse module and factorisations take seconds to compile.
 
@@ -18,10 +19,10 @@
 namespace polybody {
 
 /// Reference conditions: nodal coordinates that remain zero in the floating frame. In space at least six are required,
-/// and they must prevent rigid motions of the structure. For modes of the free structure (mean axes) there are none.
+/// and they must prevent rigid motions of the structure. Modes of the free structure (mean axes) need no conditions.
 class ReferenceConditions {
  public:
-  /// Conditions on all coordinates of one node, which tie the frame to it.
+  /// Conditions on all coordinates of one node, which tie the frame to this node.
   static ReferenceConditions clamped(Index node = 0) {
     ReferenceConditions r;
     r.nodes_.push_back(node);
@@ -48,7 +49,7 @@ class ReferenceConditions {
     return *this;
   }
 
-  /// Remaining nodal coordinates, in ascending order.
+  /// Indices of the nodal coordinates without a condition, in ascending order.
   /// \throws InvalidInput for a node or component that does not exist.
   template <class = void>
   std::vector<Index> free_coordinates(Structure const& s) const {
@@ -56,8 +57,9 @@ class ReferenceConditions {
     auto const mark = [&](Index node, int component) {
       s.require_node(node, "Ffr: a reference condition");
       if (component < 0 || component >= s.per_node)
-        throw InvalidInput("ffr.component", {ErrorObject{"Ffr"}, ": a reference condition names component ",
-                                             ErrorValue{component}, ", but nodes have ", s.per_node, " (from 0)."});
+        throw InvalidInput("ffr.component",
+                           {ErrorObject{"Ffr"}, ": a reference condition is on component ", ErrorValue{component},
+                            ", but nodes have ", s.per_node, " components, counted from 0."});
       fixed[std::size_t(s.per_node * node + component)] = 1;
     };
     for (Index const node : nodes_)
@@ -71,7 +73,7 @@ class ReferenceConditions {
       if (!fixed[std::size_t(i)]) free.push_back(i);
     return free;
   }
-  /// Number of rigid motions of the free structure: 3 if restrict_to_plane, otherwise 6.
+  /// Number of rigid motions of the free structure: 3 after `restrict_to_plane`, otherwise 6.
   int rigid_motions() const { return in_plane_ ? 3 : 6; }
 
  private:
@@ -80,16 +82,16 @@ class ReferenceConditions {
   bool in_plane_ = false;
 };
 
-/// Lowest solutions of K x = ω² M x: ω² ascending, x as columns with xᵀMx = 1.
+/// Lowest solutions of K x = ω² M x, with ω² in ascending order and xᵀMx = 1.
 struct LowestModes {
-  VecX squared_frequencies;  ///< [rad²/s²]
-  MatX shapes;               ///< (N×count)
+  VecX squared_frequencies;  ///< ω² [rad²/s²]
+  MatX shapes;               ///< (N×count) shapes x as columns
 };
 
 /// Eigenvalue solver that computes all modes with Eigen's dense solver and returns the lowest ones, for up to about a
 /// thousand coordinates. vibration/spectra_modes.hpp has a solver for larger structures.
 struct DenseModes {
-  /// Lowest `count` solutions.
+  /// Lowest `count` solutions of K x = ω² M x.
   template <class = void>  // compiled only if used
   LowestModes operator()(Structure::Sparse const& k, Structure::Sparse const& m, Index count) const {
     MatX const dense_k(k), dense_m(m);
@@ -141,10 +143,11 @@ MatX fixed_interface_modes(Structure const& s, Index count,
   return scatter_rows(solve(k, m, count).shapes, free, s.size());
 }
 
-/// Lowest `count` modes of the free structure with deformation, computed by `solve`. The frame follows the mean motion:
-/// momentum and angular momentum of the deformation relative to it vanish to first order (mean axes of Tisserand or
+/// Lowest `count` deformation modes of the free structure, computed by `solve`. The frame follows the mean motion:
+/// relative to it, momentum and angular momentum of the deformation vanish to first order (mean axes of Tisserand or
 /// Buckens).
-/// \throws InvalidInput as above.
+/// \throws InvalidInput for a count above the number of these modes, and for a mass matrix that is not positive
+/// definite.
 template <class Eigensolver = DenseModes>
 MatX free_interface_modes(Structure const& s, Index count,
                           ReferenceConditions const& frame = ReferenceConditions::none(),
@@ -154,7 +157,7 @@ MatX free_interface_modes(Structure const& s, Index count,
   detail::require_count(count, Index(free.size()) - rigid);
   Structure::Sparse const k = submatrix(s.stiffness, free, free), m = submatrix(s.mass_matrix(), free, free);
   detail::require_mass(m);
-  // K is singular. A shift of the size of a low squared frequency makes it regular and does not change the modes.
+  // K is singular. A shift of the size of a low squared frequency makes K regular and does not change the modes.
   double const shift = 1e-3 * k.diagonal().sum() / m.diagonal().sum();
   LowestModes const modes = solve(Structure::Sparse(k + shift * m), m, count + rigid);
   return scatter_rows(modes.shapes.rightCols(count), free, s.size());
@@ -174,11 +177,11 @@ MatX rigid_motions(Structure const& s) {
   return out;
 }
 
-/// Basis of the same deformations in another frame: `shapes` (N×n) minus the rigid motion R x that the frame has. With
-/// the conditions W e = 0 of the frame, x = (W R)⁻¹ W e. In mean axes W = Rᵀ M. By R K = 0 the stiffness ΦᵀKΦ is the
-/// same in all frames [Agrawal & Shabana 1986; Schwertassek, Wallrapp & Shabana 1999].
-/// \throws InvalidInput for shapes of another size, and for a frame that nodes without rotations or the last node do
-/// not hold.
+/// Basis of the same deformations in another frame: `shapes` (N×n) minus the rigid motion R x of the new frame. With
+/// the conditions W e = 0 of the frame, x = (W R)⁻¹ W e. In mean axes W = Rᵀ M. Since K R = 0, the stiffness ΦᵀKΦ is
+/// the same in all frames [Agrawal & Shabana 1986; Schwertassek, Wallrapp & Shabana 1999].
+/// \throws InvalidInput for shapes of another size. Frames other than mean axes require nodes with rotations, and
+/// `simply_supported` also a last node away from the first along x.
 template <class = void>
 MatX in_frame(Structure const& s, MatX shapes, FfrFrame frame) {
   if (shapes.rows() != s.size())
@@ -211,8 +214,8 @@ MatX in_frame(Structure const& s, MatX shapes, FfrFrame frame) {
   return shapes;
 }
 
-/// Basis of a body from a structure: `shapes` in the frame of the options, or unchanged if they have none.
-/// \throws InvalidInput for options with a number of modes.
+/// Basis of a body from a structure: `shapes` in the frame `options.frame`, or unchanged if it has no value.
+/// \throws InvalidInput if `options.modes` has a value.
 template <class = void>
 MatX in_frame(Structure const& s, MatX shapes, FfrOptions const& options) {
   if (options.modes)
@@ -223,9 +226,9 @@ MatX in_frame(Structure const& s, MatX shapes, FfrOptions const& options) {
 }
 
 /// Basis of Craig & Bampton [1968]: constraint modes of the boundary nodes, and the `count` lowest fixed-interface
-/// modes, computed by `solve`. All coordinates are used, or the ones of the plane of x and y if `in_plane`. The frame
-/// is tied to the first boundary node, whose constraint modes are omitted. With `mean_axes` it follows the mean motion
-/// instead: the basis then is transformed to the free modes of the reduced model, without the rigid ones.
+/// modes, computed by `solve`. The shapes use all coordinates, or those of the plane of x and y if `in_plane`. The
+/// frame is tied to the first boundary node, whose constraint modes are omitted. With `mean_axes` the frame follows the
+/// mean motion instead; the basis then consists of the free modes of the reduced model, without its rigid modes.
 /// \throws InvalidInput for boundary nodes that do not exist or are repeated, a count above the number of modes, or a
 /// frame tied to a node without rotations.
 template <class Eigensolver = DenseModes>
@@ -236,7 +239,7 @@ MatX craig_bampton(Structure const& s, std::vector<Index> const& boundary, Index
   if (!mean_axes && s.per_node != 6)
     throw InvalidInput("ffr.boundary",
                        {ErrorObject{"Ffr"},
-                        ": boundary nodes without rotations do not fix the frame. Give mean_axes to craig_bampton."});
+                        ": boundary nodes without rotations do not fix the frame. Set mean_axes of craig_bampton."});
   ReferenceConditions everywhere = ReferenceConditions::none();
   if (in_plane) everywhere.restrict_to_plane();
   std::vector<Index> const all = everywhere.free_coordinates(s);
@@ -269,8 +272,8 @@ MatX craig_bampton(Structure const& s, std::vector<Index> const& boundary, Index
   return shapes * reduced.eigenvectors().rightCols(shapes.cols() - everywhere.rigid_motions());
 }
 
-/// Basis of a body from one bar of n elements, the structure `s`: nodal coordinates, or the modes of the options, which
-/// it removes. \param in_plane for displacements along x and y and rotations about z only
+/// Basis of a body from one bar of n elements with the structure `s`: nodal coordinates, or modes if `options.modes`
+/// has a value, which is then removed. \param in_plane true for displacements along x and y and rotations about z only
 template <class = void>
 MatX bar_shapes(Structure const& s, Index n, FfrOptions& options, bool in_plane) {
   std::optional<Index> const modes = std::exchange(options.modes, {});

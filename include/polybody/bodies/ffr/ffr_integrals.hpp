@@ -15,7 +15,7 @@ namespace detail {
 template <class T>
 T column_times(MatX const& m, Index k, T const* x) {
   if constexpr (std::is_same_v<T, double>) {
-    return m.col(k).dot(Eigen::Map<VecX const>(x, m.rows()));  // Eigen reorders the sum, a compiler must not
+    return m.col(k).dot(Eigen::Map<VecX const>(x, m.rows()));  // Eigen reorders this sum; the compiler must not
   } else {
     T sum(0.0);
     for (Index j = 0; j < m.rows(); ++j) sum += x[j] * m(j, k);
@@ -52,16 +52,16 @@ void times(MatX const& m, T const* x, T* out) {
 ///   U = ½ qᵀ stiffness q + initial_force · q.
 struct FfrIntegrals {
   double mass = 0.0;                        ///< [kg]
-  Vec3 first = Vec3::Zero();                ///< [kg m]
+  Vec3 first = Vec3::Zero();                ///< ∫ρ u₀ [kg m]
   Mat<double, 3, Eigen::Dynamic> first_by;  ///< (3×n) ∫ρ S
   std::array<MatX, 3> first_second;         ///< (n×n) symmetric; empty without geometric stiffening
-  Mat3 inertia = Mat3::Zero();              ///< [kg m²]
-  std::array<VecX, 6> inertia_by;           ///< (n) entries xx, yy, zz, xy, xz, yz
-  std::array<MatX, 6> inertia_second;       ///< (n×n) symmetric
-  Mat<double, 3, Eigen::Dynamic> coupling;  ///< (3×n)
-  std::array<MatX, 3> coupling_by;          ///< (n×n)
+  Mat3 inertia = Mat3::Zero();              ///< inertia tensor at q = 0 [kg m²]
+  std::array<VecX, 6> inertia_by;           ///< (n) part of J linear in q: entries xx, yy, zz, xy, xz, yz
+  std::array<MatX, 6> inertia_second;       ///< (n×n) symmetric; part of J quadratic in q
+  Mat<double, 3, Eigen::Dynamic> coupling;  ///< (3×n) H at q = 0
+  std::array<MatX, 3> coupling_by;          ///< (n×n) part of H linear in q
   MatX mass_matrix, stiffness, damping;     ///< (n×n)
-  VecX initial_force;                       ///< (n)
+  VecX initial_force;                       ///< (n) ∂U/∂q at q = 0
 
   Index size() const { return mass_matrix.rows(); }  ///< number n of coordinates of the deformation
 
@@ -79,7 +79,7 @@ struct FfrIntegrals {
     return x;
   }
 
-  /// Checks sizes and mass.
+  /// Checks the sizes, the mass and the entries.
   /// \throws InvalidInput naming `what` for sizes that differ, a mass that is not positive, or a mass matrix that is
   /// not symmetric and positive definite.
   template <class = void>
@@ -112,14 +112,14 @@ struct FfrIntegrals {
           {ErrorObject{what}, ": the mass matrix of the deformation is not symmetric and positive definite."});
   }
   /// Checks the entries of all integrals.
-  /// \throws InvalidInput naming `what` and the integral that has a NaN, or an entry whose square is not finite.
+  /// \throws InvalidInput naming `what` and the integral with an entry that is NaN or exceeds `largest_number`.
   template <class = void>
   void require_entries(std::string const& what) const {
     auto const require = [&](double const* x, Index count, char const* name) {
       for (Index i = 0; i < count; ++i)
         if (!(std::abs(x[i]) <= largest_number))
           throw InvalidInput("value.magnitude", {ErrorObject{what}, ": the integral \"", name, "\" has an entry of ",
-                                                 ErrorValue{x[i]}, ", but its square must be finite."});
+                                                 ErrorValue{x[i]}, ", but the limit is ", largest_number, "."});
     };
     require(first.data(), 3, "first");
     require(first_by.data(), first_by.size(), "first_by");
@@ -145,7 +145,7 @@ struct FfrIntegrals {
     Mat<T, 3, 3> J;  ///< inertia tensor
   };
 
-  /// Moments c(q) and J(q); here and below x is q (n).
+  /// Moments c(q) and J(q) at q = x (n).
   template <class T>
   void moments(T const* x, Moments<T>& out) const {
     Vec<T, 6> j;
@@ -193,8 +193,8 @@ struct FfrIntegrals {
   }
 };
 
-/// Integrals of `s` with e = `shapes` q (N×n). `stiffening` adds axial foreshortening to second order in q, on which
-/// centrifugal and other axial forces do work.
+/// Integrals of the structure `s` for e = Φ q with Φ = `shapes` (N×n). `stiffening` adds axial foreshortening to second
+/// order in q, on which centrifugal and other axial forces do work.
 /// \throws InvalidInput for shapes of another size; with stiffening, for a structure without beams.
 template <class = void>
 FfrIntegrals integrals_of(Structure const& s, MatX const& shapes, bool stiffening = false) {

@@ -17,7 +17,7 @@ namespace polybody {
 struct FfrTerms {
   bool coupling = true;  ///< m_rf: C, H in both rows of the mass matrix; and ċ, Ċ q̇, H q̇, H˙ q̇ in the rows of the frame
   bool onto_frame =
-      true;  ///< the same terms in the rows of the frame only: if false, the deformation does not act on the frame
+      true;  ///< the terms of `coupling` in the rows of the frame; if false, the deformation does not act on the frame
   bool deformed_inertia = true;  ///< c and J, J˙ of the deformed body instead of those at q = 0, in inertia and weight
   bool frame_velocities = true;  ///< quadratic-velocity forces 2 Ω × ċ, Ċ q̇, J˙ Ω, Ω × H q̇, H˙ q̇ on the frame; the
                                  ///< other ones are those of a rigid body
@@ -27,7 +27,7 @@ struct FfrTerms {
   bool spin = true;              ///< Ĩ_o ω̄: centrifugal forces on the undeformed body
 
   bool operator==(FfrTerms const&) const = default;  ///< compares all switches
-  /// First moment c of the body deformed by x, or at q = 0, from the integrals `of` the body.
+  /// First moment c of the body with the integrals `of`: at q = x if `deformed_inertia`, otherwise at q = 0.
   template <class T, class Integrals>
   Vec<T, 3> first_moment(Integrals const& of, T const* x) const {
     return deformed_inertia ? of.template first_moment<T>(x) : Vec<T, 3>(of.first.template cast<T>());
@@ -37,8 +37,8 @@ struct FfrTerms {
   bool couples_to_frame() const { return coupling && onto_frame; }
   /// Returns true if velocities of the deformation act on the frame.
   bool couples_frame_velocity() const { return couples_to_frame() && frame_velocities; }
-  bool changes_inertia() const { return deformed_inertia && frame_velocities; }  ///< the mass depends on q
-  /// Selected part of ½ (J_p)_q, from its full value `slope` and its value `by` at q = 0.
+  bool changes_inertia() const { return deformed_inertia && frame_velocities; }  ///< true if J˙ acts on the frame
+  /// Selected part of ½ (J_p)_q, from the full derivative `slope` and its value `by` at q = 0.
   template <class T>
   T centrifugal_slope(T const& slope, double by) const {
     return (centrifugal ? slope - by : T(0.0)) + (spin ? by : 0.0);
@@ -58,18 +58,18 @@ enum class FfrFrame {
 struct FfrOptions {
   Placement placement = {};  ///< initial placement of the frame
   FfrTerms terms = {};       ///< selected terms of the inertia
-  /// Frame of the deformation. Without a value it is `mean_axes` for a body from a bar, and the frame of the shapes for
-  /// a body from a structure.
+  /// Frame of the deformation. Default: `mean_axes` for a body from a bar, and the frame of the shapes for a body from
+  /// a structure.
   std::optional<FfrFrame> frame = {};
-  /// Geometric stiffening, for beams only. Without a value it is on for a body from a bar, and off for a body from a
-  /// structure.
+  /// Geometric stiffening, for beams only. Default: on for a body from a bar, off for a body from a structure.
   std::optional<bool> stiffening = {};
-  /// Number of modes of a bar between its held ends, for a body from a bar only. Together with the static shapes of
-  /// both ends they replace the nodal coordinates [Craig & Bampton 1968]. They are valid for joints at the ends.
+  /// Number of modes of a bar with fixed ends, for a body from a bar only. These modes and the static shapes of both
+  /// ends replace the nodal coordinates [Craig & Bampton 1968]. The resulting basis is suitable for joints at the ends.
   std::optional<Index> modes = {};
-  double stiffness_damping = 0.0;  ///< adds this time [s] × K to the damping
+  double stiffness_damping = 0.0;  ///< time [s]; the damping increases by this time × K
 
-  /// Sets the placement of a bar, and the frame and stiffening of a body from a bar where they have no value.
+  /// Completes the options of a body from a bar: sets the placement, and the frame and the stiffening if they have no
+  /// value.
   void complete_for(Placement const& bar) {
     placement = bar;
     if (!frame) frame = FfrFrame::mean_axes;

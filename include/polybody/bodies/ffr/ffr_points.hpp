@@ -12,18 +12,18 @@
 
 namespace polybody {
 
-/// Material point: position u₀ in the frame [m], displacement S q and small rotation R q (3×n). A point of a beam also
-/// has the strains and the stiffness of its section.
+/// Material point: position u₀ in the frame [m], displacement S q and small rotation R q, with S and R (3×n). A
+/// point of a beam also has the strains and the stiffness of its section.
 struct FfrPoint {
   Vec3 u = Vec3::Zero();                ///< u₀ (3), in the axes of the frame [m]
   Mat<double, 3, Eigen::Dynamic> S, R;  ///< displacement [m] and small rotation [rad] for unit q
   std::array<MatX, 3> drawn;  ///< with geometric stiffening: the displacement is S q − ½ [qᵀ drawn_k q]_k (n×n)
   Mat<double, 4, Eigen::Dynamic>
       strain;                     ///< (4×n) of the axis: axial strain, torsion, curvature about y, z [1/m]; or empty
-  Vec4 stiffness = Vec4::Zero();  ///< (EA, GJ, EI_y, EI)
-  double y = 0.0, z = 0.0;        ///< distances from the axis of its beam [m]
+  Vec4 stiffness = Vec4::Zero();  ///< (EA, GJ, EI_y, EI) of the section
+  double y = 0.0, z = 0.0;        ///< distances from the axis of the beam [m]
 
-  /// Entry (i, k) of S − qᵀ drawn.
+  /// Entry (i, k) of S − qᵀ drawn, the derivative of the displacement with respect to q.
   template <class T>
   T slope(T const* q, int i, Index k) const {
     T s(S(i, k));
@@ -31,19 +31,19 @@ struct FfrPoint {
     for (Index j = 0; j < m.rows(); ++j) s -= q[j] * m(j, k);
     return s;
   }
-  /// Column k of S − qᵀ drawn, written to `out` (3).
+  /// Column k of S − qᵀ drawn, the derivative of the displacement with respect to q; written to `out` (3).
   template <class T>
   void slopes(T const* q, Index k, T* out) const {
     for (int i = 0; i < 3; ++i) out[i] = T(S(i, k));
     if (drawn[0].size() == 0) return;
     for (int i = 0; i < 3; ++i) out[i] = slope(q, i, k);
   }
-  /// Strains of the section of the beam for the deformation q (see sections.hpp).
+  /// Strains of the section of the beam for the deformation q, as a vector of six (`HasSections`).
   /// \throws InvalidInput for a point that is not on a beam.
   template <class = void>  // compiled only if used
   Vec6 section_strains(double const* q) const {
     if (strain.cols() != S.cols())
-      throw InvalidInput("ffr.no_strain", {ErrorObject{"Ffr"}, ": strains are available in points of beams only."});
+      throw InvalidInput("ffr.no_strain", {ErrorObject{"Ffr"}, ": strains are available only at points of beams."});
     Vec6 sum = Vec6::Zero();
     for (Index k = 0; k < strain.cols(); ++k)
       for (int i = 0; i < 4; ++i) sum[i == 0 ? 0 : i + 2] += strain(i, k) * q[k];
@@ -58,7 +58,7 @@ struct FfrPoint {
   }
 };
 
-/// Factory for the points of a structure with e = Φ q.
+/// Factory for the material points of a structure with the basis Φ, e = Φ q.
 class FfrPoints {
  public:
   /// Points for the basis Φ = `shapes` (N×n). With `stiffening`, beams have axial foreshortening.
@@ -77,8 +77,8 @@ class FfrPoints {
   FfrPoints& operator=(FfrPoints const&) = delete;
 
   Structure const& structure() const { return s_; }  ///< finite element model
-  /// Ratio of axial forces to buckling forces, as the free function computes it. It is zero with stiffening, because
-  /// then no effect is omitted, and for a structure that is not made of beams.
+  /// Ratio of axial forces to buckling forces (`polybody::axial_share`). It is zero with stiffening, which includes the
+  /// effect of axial forces, and for a structure that is not made of beams.
   template <class = void>
   double axial_share(StructureAction const& action) const {
     return unstiffened_ ? polybody::axial_share(s_, shapes_, *unstiffened_, action) : 0.0;
@@ -86,14 +86,14 @@ class FfrPoints {
   MatX const& shapes() const { return shapes_; }  ///< Φ (N×n)
 
   /// Length of the first bar [m].
-  /// \throws InvalidInput without bars.
+  /// \throws InvalidInput for a structure without bars.
   double length() const {
     if (s_.beams.empty())
       throw InvalidInput("ffr.no_bar", {ErrorObject{"Ffr"}, ": only a body made of bars has a length."});
     return s_.bar_lengths.front();
   }
-  /// Point at distance s from the first end of bar `bar`, at (y, z) from its axis [m].
-  /// \throws InvalidInput outside the bar.
+  /// Point at the distance s along bar number `bar` from its first end, at (y, z) from the axis of the bar [m].
+  /// \throws InvalidInput for s outside the bar, and for a bar that does not exist.
   template <class = void>
   FfrPoint at(double s, double y, double z, Index bar) const {
     if (s_.beams.empty())
@@ -165,7 +165,7 @@ class FfrPoints {
   }
 
  private:
-  /// Matrix m (rows × 12) of the nodal coordinates of a beam, projected onto q.
+  /// Matrix with respect to q, from the matrix m (rows × 12) with respect to the nodal coordinates of a beam.
   template <int rows>
   Mat<double, rows, Eigen::Dynamic> of_nodes(Structure::Beam const& beam, Mat<double, rows, 12> const& m) const {
     Mat<double, rows, Eigen::Dynamic> out(rows, shapes_.cols());
@@ -177,9 +177,9 @@ class FfrPoints {
       }
     return out;
   }
-  /// Matrices drawn_k, with −½ qᵀ drawn_k q the second-order work of a unit force along k at the point. A force at a
-  /// node gives a constant axial force along each beam, and a held node gives none. A force `within` a beam is treated
-  /// as distributed over it.
+  /// Matrices drawn_k: −½ qᵀ drawn_k q is the second-order work of a unit force along k at the point. A force at a node
+  /// gives a constant axial force along each beam, and a force at the held node gives none. If `within`, the force acts
+  /// between the nodes of a beam and is treated as distributed over this beam.
   template <class Load>
   void draw(FfrPoint& p, bool within, Load&& load) const {
     for (int k = 0; k < 3; ++k) {

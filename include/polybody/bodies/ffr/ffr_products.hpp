@@ -12,7 +12,7 @@ namespace polybody {
 /// Transposed matrices of `FfrIntegrals`, stacked one below the other, for n deformation coordinates.
 struct FfrStack {
   MatX of_coordinates;  ///< (10n×n) 2 inertia_second_p, coupling_by_i, stiffness
-  MatX of_velocities;   ///< (4n×n) W_i, damping
+  MatX of_velocities;   ///< (4n×n) W_i (equations in ffr.hpp), damping
   MatX of_rates;        ///< (n×n) mass matrix
 
   /// Stacks the matrices of a body.
@@ -33,7 +33,7 @@ struct FfrStack {
   }
 };
 
-/// Products in one state, in a workspace of 15 n numbers.
+/// Products of the matrices in one state, stored in a workspace of 15 n numbers.
 template <class T>
 class FfrProducts {
  public:
@@ -47,18 +47,20 @@ class FfrProducts {
         xd_(workspace + 10 * n_),
         xdd_(workspace + 14 * n_) {}
 
-  void at(T const* coordinates) { detail::times(stack_.of_coordinates, coordinates, x_); }  ///< q = `coordinates` (n)
+  void at(T const* coordinates) {
+    detail::times(stack_.of_coordinates, coordinates, x_);
+  }  ///< products with the `coordinates` q (n)
   void at_velocities(T const* velocities) {
     detail::times(stack_.of_velocities, velocities, xd_);
-  }  ///< q̇ = `velocities` (n)
-  void at_rates(T const* rates) { detail::times(stack_.of_rates, rates, xdd_); }  ///< q̈ = `rates` (n)
+  }  ///< products with the `velocities` q̇ (n)
+  void at_rates(T const* rates) { detail::times(stack_.of_rates, rates, xdd_); }  ///< products with the `rates` q̈ (n)
 
-  /// Derivative ∂J_p/∂q_k, for entry p in the order of `symmetric_row`; here and below k is a coordinate.
+  /// Derivative ∂J_p/∂q_k, for entry p of J in the order of `symmetric_row` and coordinate k.
   T inertia_slope(std::size_t p, Index k) const { return x_[Index(p) * n_ + k] + i_.inertia_by[p][k]; }
   /// Entry k of H_i for axis i.
   T coupling(Index i, Index k) const { return x_[(6 + i) * n_ + k] + i_.coupling(i, k); }
   T stiffness(Index k) const { return x_[9 * n_ + k]; }  ///< entry k of K q
-  /// Entry k of W_i q̇ for axis i, with the sign of the force.
+  /// Entry k of W_i q̇ for axis i.
   T gyroscopic(Index i, Index k) const { return xd_[i * n_ + k]; }
   T damping(Index k) const { return xd_[3 * n_ + k]; }  ///< entry k of D q̇
   T mass(Index k) const { return xdd_[k]; }             ///< entry k of M q̈

@@ -12,8 +12,8 @@
 
 namespace polybody {
 
-/// Tangent ck (−∂f/∂δ) + cd (−∂f/∂v) of `Ffr::force` f, term by term. With w = Ω × (Ω × c) + 2 Ω × ċ + Ċ q̇ and
-/// explicit derivatives of J and H with respect to q, the derivatives of the rows of r are
+/// Tangent ck (−∂f/∂δ) + cd (−∂f/∂v) of `Ffr::force` f, term by term. J and H are differentiated explicitly with
+/// respect to q. With w = Ω × (Ω × c) + 2 Ω × ċ + Ċ q̇, the derivatives in the rows of r are
 ///   with respect to the rotation of the frame −A w̃,
 ///   with respect to Ω  A ((−Ω × c)~ − Ω̃ c̃ − 2 ċ~),
 ///   with respect to q  A (Ω̃² C + 2 Ω̃ ċ_q).
@@ -35,7 +35,7 @@ class FfrTangent {
     at_.J = i_.inertia;
   }
 
-  /// Writes the tangent to k, which becomes (6 + n)×(6 + n). It may be called only once, because the object accumulates
+  /// Writes the tangent to k, which becomes (6 + n)×(6 + n). Call this function only once: the object accumulates
   /// sums.
   template <class = void>
   void write(double ck, double cd, MatX& k) {
@@ -54,7 +54,7 @@ class FfrTangent {
   }
 
  private:
-  /// Adds the terms of C and H without their derivatives.
+  /// Adds the terms with C and H, without the derivatives of C and H.
   template <class = void>
   void add_columns(double ck, double cd, MatX& k) {
     for (Index i = 0; i < i_.size(); ++i) {
@@ -68,7 +68,7 @@ class FfrTangent {
       k.block<3, 1>(3, 6 + i) += cd * spin_ * h;
     }
   }
-  /// Adds the terms of J, entry p by entry: slope (n) = ∂J_p/∂q, bent (n) = ∂(J˙_p)/∂q.
+  /// Adds the terms with J, for each entry p of J: slope (n) = ∂J_p/∂q, bent (n) = ∂(J˙_p)/∂q.
   template <class = void>
   void add_inertia(double ck, double cd, MatX& k) {
     for (std::size_t p = 0; p < 6; ++p) {
@@ -81,7 +81,7 @@ class FfrTangent {
         double const moving = terms_.changes_inertia() ? 1.0 : 0.0;
         j_rate_(a, b) += moving * slope * xd_[i];
         if (off) j_rate_(b, a) += moving * slope * xd_[i];
-        Vec3 by = Vec3::Zero();  // ∂(J Ω)/∂q_i of this entry, relative to slope
+        Vec3 by = Vec3::Zero();  // ∂(J Ω)/∂q_i due to entry p, divided by slope
         by[a] += omega_[b];
         if (off) by[b] += omega_[a];
         k.block<3, 1>(3, 6 + i) += moving * (ck * bent + cd * slope) * by;

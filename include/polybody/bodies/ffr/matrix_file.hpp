@@ -15,9 +15,9 @@ namespace polybody {
 
 /// Sparse matrix of size m×n from a Matrix Market file [Boisvert, Pozo & Remington 1996]: coordinate, real or integer,
 /// general or symmetric (its lower triangle). Eigen's unsupported loader returns half of a symmetric matrix and does
-/// not check indices, so this function does not use it. `need` explains the required size in a message: "the matrix is
-/// 2×2, but the …".
-/// \throws IoError for any other content, with the line.
+/// not check indices, so this function does not use it. `need` is the end of the message "the matrix is 2×2, but the …"
+/// and explains the required size.
+/// \throws IoError, with the line, for any other content.
 template <class = void>  // compiled only if used
 Eigen::SparseMatrix<double> read_matrix(std::string const& file, Index m, Index n, std::string const& need) {
   NumberReader lines(file, '%');
@@ -30,8 +30,8 @@ Eigen::SparseMatrix<double> read_matrix(std::string const& file, Index m, Index 
   if (mark != "%%matrixmarket" || object != "matrix" || format != "coordinate" ||
       (field != "real" && field != "integer") || (kind != "general" && kind != "symmetric"))
     lines.fail(
-        "this is not '%%MatrixMarket matrix coordinate real general' or '… symmetric'; write the matrix as one of "
-        "them");
+        "this is not '%%MatrixMarket matrix coordinate real general' or '… symmetric'; write the matrix in one "
+        "of these formats");
   Index rows = 0, columns = 0, count = 0;
   std::string const sizes = "the number of rows, of columns and of entries";
   if (!lines.next(sizes, rows, columns, count)) lines.fail("the file ends before " + sizes);
@@ -54,7 +54,7 @@ Eigen::SparseMatrix<double> read_matrix(std::string const& file, Index m, Index 
     if (kind == "symmetric" && i < j)
       lines.fail("a symmetric matrix is written by its lower triangle, but this entry is above the diagonal");
     if (!seen.insert(n * i + j).second)
-      lines.fail("entry (" + std::to_string(i) + ", " + std::to_string(j) + ") stands here a second time");
+      lines.fail("entry (" + std::to_string(i) + ", " + std::to_string(j) + ") occurs a second time");
     entries.emplace_back(int(i - 1), int(j - 1), value);
     if (kind == "symmetric" && i != j) entries.emplace_back(int(j - 1), int(i - 1), value);
   }

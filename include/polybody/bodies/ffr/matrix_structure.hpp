@@ -16,7 +16,7 @@ namespace polybody {
 
 namespace detail {
 
-/// Name of row or column i of a matrix with x, y, z of every node.
+/// Name, for messages, of row or column i of a matrix with x, y, z of every node.
 template <class = void>  // compiled only if used
 std::string coordinate_name(Index i) {
   return sentence_of({i, " (", "xyz"[i % 3], " of node ", i / 3, ")"});
@@ -35,7 +35,8 @@ double largest_entry(Structure::Sparse const& m) {
 }
 
 /// Checks the matrix m; `name` begins the message.
-/// \throws InvalidInput unless m is n×n, finite (with its norm) and symmetric to 1e-9 of its largest entry.
+/// \throws InvalidInput unless m is n×n, has entries up to `largest_number`, and is symmetric to 1e-9 of its largest
+/// entry.
 template <class = void>
 void require_symmetric(Structure::Sparse const& m, Index n, std::string const& name) {
   if (m.rows() != n || m.cols() != n)
@@ -61,12 +62,12 @@ void require_symmetric(Structure::Sparse const& m, Index n, std::string const& n
   }
 }
 
-/// Matrix m (n×n) of M = m ⊗ 1₃.
+/// Matrix m (n×n) of the mass matrix M = m ⊗ 1₃.
 /// \throws InvalidInput if M does not have this form to 1e-9 of its largest entry, or if m is not positive definite.
 template <class = void>
 Structure::Sparse scalar_mass(Structure::Sparse const& mass) {
   std::string const remedy =
-      ". Only solid elements with a consistent mass matrix of three displacements per node have one; order "
+      ". Use solid elements with a consistent mass matrix and three displacements per node, and order "
       "the displacements x, y, z of node 0, x, y, z of node 1, and so on.";
   double const largest = largest_entry(mass), least = 1e-9 * largest;
   Index const n = mass.rows() / 3;
@@ -103,8 +104,8 @@ Structure::Sparse scalar_mass(Structure::Sparse const& mass) {
   return m;
 }
 
-/// Checks the stiffness for rigid motions φ.
-/// \throws InvalidInput if a rigid motion strains the structure: ‖K φ‖ > 1e-6 ‖K‖ ‖φ‖.
+/// Checks that rigid motions φ do not strain the structure.
+/// \throws InvalidInput if ‖K φ‖ > 1e-6 ‖K‖ ‖φ‖ for a rigid motion φ.
 template <class = void>
 void require_free_of_rigid_work(Structure::Sparse const& stiffness, std::vector<Vec3> const& nodes) {
   Vec3 middle = Vec3::Zero();
@@ -148,8 +149,8 @@ double wave_speed(Structure::Sparse const& m, Structure::Sparse const& stiffness
 }
 
 /// Checks the wave speed of a structure.
-/// \throws InvalidInput for a wave speed above `fastest` [m/s], for example with nodes in millimetres. The rigid
-/// motions do not depend on the unit of length, but the wave speed is proportional to it.
+/// \throws InvalidInput for a wave speed above `fastest` [m/s], for example with nodes in millimetres. Rigid motions do
+/// not reveal a wrong unit of length, but the wave speed is proportional to it.
 template <class = void>
 void require_units_of_solids(double speed, double fastest) {
   if (!(speed > fastest) || !std::isfinite(speed)) return;
@@ -158,7 +159,7 @@ void require_units_of_solids(double speed, double fastest) {
       {ErrorObject{"Structure"}, ": nodes, masses and stiffness have different units: waves would travel at ",
        ErrorValue{speed}, " m/s, above ", fastest,
        " m/s; diamond has 1.8e4. Give nodes in metres, masses in kilograms and the stiffness in N/m (nodes in "
-       "millimetres make waves 1000 times as fast), or a larger fastest_wave for a material of your own."});
+       "millimetres make waves 1000 times as fast), or a larger fastest_wave for a material with faster waves."});
 }
 
 /// Checks that the moments of mass are finite.
@@ -171,7 +172,7 @@ void require_finite_moments(Structure const& s) {
   if (!finite)
     throw InvalidInput("value.not_finite",
                        {ErrorObject{"Structure"},
-                        ": the moments of its mass are not finite. Give nodes in metres and masses in kilograms."});
+                        ": the moments of mass are not finite. Give nodes in metres and masses in kilograms."});
 }
 
 }  // namespace detail
@@ -190,7 +191,8 @@ void require_finite_moments(Structure const& s) {
 template <class = void>
 Structure structure_of(Structure::Sparse const& mass, Structure::Sparse const& stiffness,
                        std::vector<Vec3> const& nodes, double fastest_wave = 1e5) {
-  if (nodes.empty()) throw InvalidInput("structure.no_nodes", {ErrorObject{"Structure"}, ": it has no nodes."});
+  if (nodes.empty())
+    throw InvalidInput("structure.no_nodes", {ErrorObject{"Structure"}, ": the structure has no nodes."});
   for (std::size_t i = 0; i < nodes.size(); ++i)
     for (double const x : nodes[i])
       if (!(std::abs(x) <= largest_number))
@@ -230,16 +232,16 @@ Structure structure_of(Structure::Sparse const& mass, Structure::Sparse const& s
 namespace detail {
 
 /// Nodes from a file with one `x y z` [m] on each line.
-/// \throws IoError for other lines, or none.
+/// \throws IoError for a line of another form, and for a file without nodes.
 template <class = void>
 std::vector<Vec3> read_nodes(std::string const& file) {
   NumberReader lines(file, '#');
   std::vector<Vec3> nodes;
   Vec3 r;
   while (lines.next("x y z of a node", r[0], r[1], r[2])) nodes.push_back(r);
-  if (nodes.empty()) lines.fail("the file has no nodes; give x y z of one in each line");
+  if (nodes.empty()) lines.fail("the file has no nodes; write x y z of one node on each line");
   if (nodes.size() > std::size_t(std::numeric_limits<int>::max() / 3))
-    lines.fail("these are more nodes than a sparse matrix can number");
+    lines.fail("the file has more nodes than a sparse matrix can index");
   return nodes;
 }
 
@@ -247,8 +249,9 @@ std::vector<Vec3> read_nodes(std::string const& file) {
 
 /// Structure from files. `mass_file` and `stiffness_file` are in the coordinate format of Matrix Market. `nodes_file`
 /// has a line `x y z` [m] for each node, in which # begins a comment.
-/// \throws IoError naming file and line for a file that cannot be read, is truncated or does not fit the nodes;
-/// InvalidInput naming the files as `structure_of`, also for waves faster than `fastest_wave` [m/s].
+/// \throws IoError naming file and line for a file that cannot be read, is truncated or does not fit the nodes.
+/// \throws InvalidInput naming the files for the reasons given at `structure_of`, also for waves faster than
+/// `fastest_wave` [m/s].
 template <class = void>
 Structure read_structure(std::string const& mass_file, std::string const& stiffness_file, std::string const& nodes_file,
                          double fastest_wave = 1e5) {

@@ -20,8 +20,8 @@ std::vector<Index> nodes_within(Structure const& s, Vec3 const& at, double dista
 /// Distributing coupling: a point that follows the mean motion of several nodes. With weights w_i, Σ w_i = 1, a wrench
 /// (f, m) about the centre of the nodes c = Σ w_i r_i is distributed as
 ///   f_i = w_i (f + θ × d_i),   θ = (Σ w (d² 1 − d dᵀ))⁻¹ m,   d_i = r_i − c.
-/// These nodal forces have the least Σ f_i²/w_i of all forces with this resultant. The motion of the patch is conjugate
-/// to them:
+/// These nodal forces have the least Σ f_i²/w_i of all forces with this resultant. The motion (u, ϑ) of the patch is
+/// work-conjugate to (f, m):
 ///   u = Σ w_i u_i,   ϑ = (Σ w (d² 1 − d dᵀ))⁻¹ Σ w_i d_i × u_i.
 class NodePatch {
  public:
@@ -31,9 +31,9 @@ class NodePatch {
   };
 
   /// Patch of `nodes`.
-  /// \param weights of the nodes, such as the area of each; equal if empty.
-  /// \throws InvalidInput, which begins with `who`, for nodes that do not exist, and for fewer than three nodes or
-  /// nodes on one line. The weights must be positive, one for each node.
+  /// \param weights of the nodes, such as the area of each node; empty for equal weights.
+  /// \throws InvalidInput, with a message that begins with `who`, for nodes that do not exist, and for fewer than three
+  /// nodes or nodes on one line. The weights must be positive, one for each node.
   template <class = void>
   NodePatch(Structure const& s, std::vector<Index> nodes, std::string const& who, std::vector<double> weights = {})
       : per_node_(s.per_node), nodes_(std::move(nodes)), weights_(std::move(weights)) {

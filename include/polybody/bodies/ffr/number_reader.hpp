@@ -34,7 +34,7 @@ class NumberReader {
                     {ErrorObject{file}, ": the file cannot be opened. Check the path and the permission to read it."});
     in_.clear();
   }
-  /// Reads the next line without changes, up to LF, CR LF or CR; returns false at the end.
+  /// Reads the next line without changes, up to LF, CR LF or CR; returns false at the end of the file.
   bool raw(std::string& line) {
     ++line_;
     line.clear();
@@ -47,9 +47,9 @@ class NumberReader {
     }
     return !line.empty();
   }
-  /// Reads the next line with numbers into `values`, which must be the whole line; `expected` describes it in the
-  /// message. Returns false at the end of the file.
-  /// \throws IoError for another line.
+  /// Reads the numbers of the next line that has any into `values`. The line must contain nothing else; `expected`
+  /// describes its content in the message. Returns false at the end of the file.
+  /// \throws IoError for a line with other content.
   template <class... T>
   bool next(std::string const& expected, T&... values) {
     std::string line;

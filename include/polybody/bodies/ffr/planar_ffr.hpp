@@ -16,7 +16,7 @@ namespace polybody::planar {
 /// angle θ. With c, J, H of planar_ffr_integrals.hpp, C = c_q, and e× a rotation by a right angle, all in the axes of
 /// the frame,
 ///   m r̈ + A (θ̈ e × c + C q̈)          = −A (−θ̇² c + 2 θ̇ e × ċ + Ċ q̇),
-///   (e × c) · Aᵀr̈ + J θ̈ + H q̈        = −J˙ θ̇,        as H˙ q̇ = q̇ᵀ coupling_by q̇ = 0,
+///   (e × c) · Aᵀr̈ + J θ̈ + H q̈        = −J˙ θ̇,        because H˙ q̇ = q̇ᵀ coupling_by q̇ = 0,
 ///   Cᵀ Aᵀr̈ + Hᵀ θ̈ + M q̈ + D q̇ + K q = ½ θ̇² J_q − θ̇ W q̇,   W = ∂Hᵀ/∂q − ∂H/∂q.
 /// The coordinates are x, y of the origin of the frame, its angle θ, and q (n). The generalised velocities are their
 /// rates. A marker rotates with its section.
@@ -25,29 +25,29 @@ class Ffr : public AddingCoordinates {
   static constexpr World world = World::plane;
   static constexpr MarkerKind observes = MarkerKind::frame;
   static constexpr bool constant_mass = false;
-  static constexpr RigidLayout frame_layout = RigidLayout::plane;  ///< `JointCoordinates` joints move the frame
+  static constexpr RigidLayout frame_layout = RigidLayout::plane;  ///< joints with `JointCoordinates` move it
   static constexpr int element_columns = Eigen::Dynamic;
   static constexpr int point_columns = Eigen::Dynamic;
-  static constexpr Index default_elements = 8;  ///< of `from(bar)`, see `BarMesh`
+  static constexpr Index default_elements = 8;  ///< number of elements of `from(bar)`
 
   using Point = FfrPoint;      ///< material point in the axes of the frame
   using Options = FfrOptions;  ///< placement, terms of the inertia, stiffening and damping
 
-  /// Body of the bar in n elements, in mean axes, with geometric stiffening, as in space. It has 3 n coordinates q. The
-  /// bar needs no GJ.
+  /// Body of the bar in n elements, in mean axes, with geometric stiffening. It has 3 n coordinates q, like
+  /// `polybody::Ffr` without the motions out of the plane. The bar needs no GJ.
   template <class = void>  // compiled only if used
   static Ffr from(Bar const& bar, Index n, Options options = {}) {
     options.complete_for(bar.placement);
     Structure const s = structure_in_plane(bar, n);
     return Ffr(s, bar_shapes(s, n, options, true), options);
   }
-  /// Body of the bar with the number of elements of `mesh`, otherwise as above.
+  /// Body of the bar with the number of elements of `mesh`, in mean axes, with geometric stiffening.
   template <class = void>  // compiled only if used
   static Ffr from(Bar const& bar, BarMesh const& mesh = {}, Options options = {}) {
     return from(bar, mesh.elements.value_or(default_elements), options);
   }
   /// Structure of a bar with n elements, for use in the plane only.
-  /// \throws InvalidInput as `structure_of`.
+  /// \throws InvalidInput for n < 1, and for a bar with invalid data.
   template <class = void>
   static Structure structure_in_plane(Bar bar, Index n) {
     BarConstants c = constants(bar);
@@ -58,7 +58,7 @@ class Ffr : public AddingCoordinates {
     bar.constants = c;
     return structure_of(bar, n);
   }
-  /// Body of a structure in the plane of x and y with a basis `shapes` made restrict_to_plane.
+  /// Body of a structure in the plane of x and y. Build the basis `shapes` with `restrict_to_plane` or `in_plane`.
   /// \throws InvalidInput for a basis that leaves the plane.
   template <class = void>
   Ffr(Structure structure, MatX shapes, Options const& options = {})
@@ -68,10 +68,10 @@ class Ffr : public AddingCoordinates {
     for (Index i = 0; i < shapes.rows(); ++i)
       if (int const c = int(i) % structure.per_node; c >= 2 && c < 5 && !shapes.row(i).isZero(0.0))
         throw InvalidInput("ffr.out_of_plane", {ErrorObject{"planar::Ffr"},
-                                                ": the shapes of the basis leave the plane. Make the basis in_plane."});
+                                                ": the shapes of the basis leave the plane. Build it with in_plane."});
     points_ = std::make_shared<FfrPoints const>(std::move(structure), std::move(shapes), i_.stiffens());
   }
-  /// Body from the user's own integrals.
+  /// Body from integrals that the user computes.
   /// \throws InvalidInput for integrals of different sizes.
   template <class = void>
   Ffr(FfrIntegrals integrals, Options const& options) : i_(std::move(integrals)), terms_(options.terms) {
@@ -88,7 +88,7 @@ class Ffr : public AddingCoordinates {
   /// \throws InvalidInput for a body that is not made of bars.
   double length() const { return made().length(); }
 
-  /// Point at arc length s of bar number `bar`, at y from its axis [m].
+  /// Point at the distance s along bar number `bar` from its first end, and y from the axis of the bar [m].
   template <class = void>
   Point at(double s, double y = 0.0, Index bar = 0) const {
     return made().at(s, y, 0.0, bar);
@@ -99,13 +99,13 @@ class Ffr : public AddingCoordinates {
   Point node(Index i) const {
     return made().node(i);
   }
-  /// Point with the user's own matrices.
+  /// Point with matrices S and R that the user computes.
   /// \throws InvalidInput for matrices that are not 3×n.
   Point at(Point const& p) const {
     if (p.S.cols() != deformations() || p.R.cols() != deformations())
-      throw InvalidInput(
-          "ffr.point_size",
-          {ErrorObject{"planar::Ffr"}, ": S and R of a point must be 3×n, n the number of deformation coordinates."});
+      throw InvalidInput("ffr.point_size",
+                         {ErrorObject{"planar::Ffr"},
+                          ": S and R of a point must be 3×n, with n the number of deformation coordinates."});
     return p;
   }
 
@@ -349,7 +349,7 @@ class Ffr : public AddingCoordinates {
       k.bottomRightCorner(n, n) -= (i == 0 ? fx : fy) * p.drawn[i];
   }
 
-  /// Ratio of axial forces to buckling forces, as in space.
+  /// Ratio of the axial forces to the buckling forces of the beams (axial_share.hpp).
   /// \param gravity (3), whose z component is ignored
   template <class = void>
   double axial_share(std::span<double const> q, std::span<double const> v, std::span<double const> a,
@@ -363,7 +363,7 @@ class Ffr : public AddingCoordinates {
     return points_->axial_share(StructureAction::in_frame(frame, acceleration, Vec3(0.0, 0.0, a[2]), loads));
   }
 
-  /// Section strains, as in space.
+  /// Axial strain and curvature of the beam at point p, as a vector of six (`HasSections`).
   template <class = void>
   Vec6 section_strains(Point const& p, std::span<double const> q) const {
     return p.section_strains(q.data() + 3);
@@ -374,7 +374,7 @@ class Ffr : public AddingCoordinates {
   }
 
  private:
-  /// Moments c and J as selected by the terms.
+  /// Moments c and J, of the deformed or the undeformed body as `terms_` selects.
   template <class T>
   void moments(T const* x, FfrIntegrals::Moments<T>& out) const {
     if (terms_.deformed_inertia) return i_.template moments<T>(x, out);
@@ -384,9 +384,9 @@ class Ffr : public AddingCoordinates {
 
   FfrPoints const& made() const {
     if (!points_)
-      throw InvalidInput(
-          "ffr.integrals_only",
-          {ErrorObject{"planar::Ffr"}, ": this body consists of integrals only. Describe the point by a Point."});
+      throw InvalidInput("ffr.integrals_only",
+                         {ErrorObject{"planar::Ffr"},
+                          ": this body consists of integrals only. Give the point as a Point with its matrices S, R."});
     return *points_;
   }
 

@@ -15,16 +15,16 @@ namespace polybody::planar {
 ///   T = ½ m ṙ² + ṙᵀA (θ̇ e × c + C q̇) + ½ J θ̇² + θ̇ H q̇ + ½ q̇ᵀ mass_matrix q̇.
 struct FfrIntegrals {
   double mass = 0.0;                        ///< [kg]
-  Vec2 first = Vec2::Zero();                ///< [kg m]
+  Vec2 first = Vec2::Zero();                ///< ∫ρ u₀ [kg m]
   Mat<double, 2, Eigen::Dynamic> first_by;  ///< (2×n) ∫ρ S
   std::array<MatX, 2> first_second;         ///< (n×n) symmetric; empty without geometric stiffening
-  double inertia = 0.0;                     ///< about the origin of the frame [kg m²]
+  double inertia = 0.0;                     ///< about the origin of the frame, at q = 0 [kg m²]
   VecX inertia_by;                          ///< (n) 2 ∫ρ u₀ · S
   MatX inertia_second;                      ///< (n×n) symmetric; ∫ρ SᵀS without stiffening
   VecX coupling;                            ///< (n) ∫ρ u₀ × S
   MatX coupling_by;                         ///< (n×n) ∫ρ (S_xᵀ S_y − S_yᵀ S_x)
   MatX mass_matrix, stiffness, damping;     ///< (n×n)
-  VecX initial_force;                       ///< (n)
+  VecX initial_force;                       ///< (n) ∂U/∂q at q = 0
 
   Index size() const { return mass_matrix.rows(); }             ///< number n of coordinates of the deformation
   bool stiffens() const { return first_second[0].size() > 0; }  ///< true with geometric stiffening
@@ -53,8 +53,9 @@ struct FfrIntegrals {
     if (s.stiffens()) x.first_second = {s.first_second[0], s.first_second[1]};
     return x;
   }
-  /// Checks the integrals by their spatial form.
-  /// \throws InvalidInput naming `what`, as `polybody::FfrIntegrals::check`.
+  /// Checks the integrals with `polybody::FfrIntegrals::check`, which tests sizes, mass and mass matrix.
+  /// \throws InvalidInput naming `what`; also for a `coupling_by` that is not skew-symmetric, and for a moment of
+  /// inertia that is not positive.
   template <class = void>
   void check(std::string const& what) const {
     polybody::FfrIntegrals x = polybody::FfrIntegrals::zero(size());
@@ -80,7 +81,7 @@ struct FfrIntegrals {
     if (odd > 1e-9 * largest)
       throw InvalidInput("ffr.not_skew", {ErrorObject{what},
                                           ": coupling_by, ∫ρ (S_xᵀ S_y − S_yᵀ S_x), must be skew-symmetric, but the "
-                                          "sum of it and its transpose has an entry of ",
+                                          "sum with its transpose has an entry of ",
                                           ErrorValue{odd}, "."});
     require_positive(inertia, what, ": the inertia about the frame's origin");
   }
@@ -90,7 +91,7 @@ struct FfrIntegrals {
   struct Moments {
     T c[2], J;  ///< c (2) and J
   };
-  /// Moments c(q) and J(q); here and below x is q (n).
+  /// Moments c(q) and J(q) at q = x (n).
   template <class T>
   void moments(T const* x, Moments<T>& out) const {
     out.J = T(inertia);

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Linear finite element model of one body in its own axes, the basis of a floating frame of reference (ffr.hpp).
+/// Linear finite element model of one body in its own axes, for a floating frame of reference (ffr.hpp).
 ///
 /// Not in polybody.hpp: Eigen's sparse module and factorisations take seconds to compile.
 
@@ -13,11 +13,11 @@
 
 namespace polybody {
 
-/// Row components (0, 1, 2 for x, y, z) of the six different entries of a symmetric 3×3 matrix, in the storage order of
-/// this library.
+/// Row indices (0, 1, 2 for x, y, z) of the six different entries of a symmetric 3×3 matrix, in the order in which this
+/// library stores them.
 inline constexpr int symmetric_row[6] = {0, 1, 2, 0, 0, 1};
-inline constexpr int symmetric_column[6] = {0, 1, 2, 1, 2, 2};  ///< second component of each entry
-/// Index of entry (k, l) in that order.
+inline constexpr int symmetric_column[6] = {0, 1, 2, 1, 2, 2};  ///< column index of each entry
+/// Position of entry (k, l) in the order of `symmetric_row` and `symmetric_column`.
 inline constexpr int symmetric_place[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
 
 /// Linear finite element model of one body in its own axes. Each node has displacements (3), or displacements and small
@@ -29,27 +29,27 @@ inline constexpr int symmetric_place[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
 struct Structure {
   using Sparse = Eigen::SparseMatrix<double>;  ///< matrix of nodal coordinates
 
-  /// Straight Euler–Bernoulli beam between two nodes. It is stored for strains and stresses, for material points
+  /// Straight Euler–Bernoulli beam between two nodes. Beams are stored for strains and stresses, for material points
   /// between nodes, and for the geometric stiffness of an axial force.
   struct Beam {
     Index a = 0, b = 0;      ///< nodes
     Mat3 axes;               ///< (3×3) columns: unit vectors along the beam, and along y, z of the section
-    double length = 0.0;     ///< [m]
+    double length = 0.0;     ///< length of the beam [m]
     BarConstants constants;  ///< constants of the section
-    Index bar = 0;           ///< index of its bar
+    Index bar = 0;           ///< index of the bar that contains the beam
     double start = 0.0;      ///< distance of node a from the first end of that bar [m]
   };
 
-  int per_node = 6;                 ///< coordinates of a node: 3 or 6
-  std::vector<Vec3> nodes;          ///< [m]
-  Sparse stiffness;                 ///< K (N×N)
-  Sparse damping;                   ///< (N×N)
-  VecX initial_force;               ///< (N) ∂U/∂e in the undeformed body, due to a pretension
-  std::array<Sparse, 6> inertia;    ///< ∫ρ S_kᵀ S_l (N×N), in the order of `symmetric_row`; (l, k) is transposed
-  double mass = 0.0;                ///< ∫ρ [kg]
-  Vec3 first = Vec3::Zero();        ///< ∫ρ u₀ [kg m]
-  Mat3 second = Mat3::Zero();       ///< ∫ρ u₀ u₀ᵀ [kg m²]
-  std::array<VecX, 3> translation;  ///< ∫ρ S_k (N)
+  int per_node = 6;                           ///< coordinates of a node: 3 or 6
+  std::vector<Vec3> nodes;                    ///< positions of the nodes [m]
+  Sparse stiffness;                           ///< K (N×N)
+  Sparse damping;                             ///< D (N×N)
+  VecX initial_force;                         ///< (N) ∂U/∂e in the undeformed body, due to a pretension
+  std::array<Sparse, 6> inertia;              ///< ∫ρ S_kᵀ S_l (N×N) for (k, l) in the order of `symmetric_row`
+  double mass = 0.0;                          ///< ∫ρ [kg]
+  Vec3 first = Vec3::Zero();                  ///< ∫ρ u₀ [kg m]
+  Mat3 second = Mat3::Zero();                 ///< ∫ρ u₀ u₀ᵀ [kg m²]
+  std::array<VecX, 3> translation;            ///< ∫ρ S_k (N)
   std::array<std::array<VecX, 3>, 3> moment;  ///< ∫ρ u₀ₖ S_l (N)
   std::vector<Beam> beams;                    ///< empty for a structure from matrices
   std::vector<double> bar_lengths;            ///< length of each bar [m]

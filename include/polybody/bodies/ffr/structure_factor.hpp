@@ -23,7 +23,7 @@ Structure::Sparse submatrix(Structure::Sparse const& m, std::vector<Index> const
   return out;
 }
 
-/// Matrix with `size` rows that has the rows of `shapes` at `free`, and zeros elsewhere.
+/// Matrix with `size` rows: the rows of `shapes` at the indices `free`, and zeros elsewhere.
 template <class = void>
 MatX scatter_rows(MatX const& shapes, std::vector<Index> const& free, Index size) {
   MatX out = MatX::Zero(size, shapes.cols());
@@ -42,8 +42,8 @@ void factor_positive(SparseFactor& factor, Structure::Sparse const& m, std::stri
   if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 1e-13 * factor.vectorD().maxCoeff()))
     throw InvalidInput("structure.not_positive_definite", {ErrorObject{"Ffr"}, ": ", what});
 }
-/// Checks the stiffness under reference conditions.
-/// \throws InvalidInput unless it is positive definite.
+/// Checks the stiffness that remains under reference conditions.
+/// \throws InvalidInput unless this stiffness is positive definite.
 template <class = void>
 void require_held(Structure::Sparse const& k) {
   SparseFactor factor;

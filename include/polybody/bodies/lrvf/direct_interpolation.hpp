@@ -10,17 +10,18 @@
 namespace polybody {
 
 /// Linear interpolation of the rotation vectors Ψ of the nodes relative to the placement R₀ of the bar: R(ξ) = R₀
-/// exp(Ψ(ξ)), K = Jr(Ψ) Ψ′  [thesis §2.3–2.5]. It is meant for comparison; `RelativeRotation` is recommended. The tests
-/// measure two faults:
-/// - It is not objective. The curvature and the energy of an element that bends by φ about one axis change if the
-///   element rotates rigidly about another axis. The change is of order φ² (energy: 1 % of φ² after 2 rad).
-/// - Ψ₁ is the vector with |Ψ₁| ≤ π. Ψ₂ is either Ψ or its complement Ψ (1 − 2π/|Ψ|), the one nearer to Ψ₁. If node 1
-///   passes |Ψ₁| = π, both vectors change to their complements. The curvature then jumps by terms of order φ³/l, unless
-///   the element rotates about Ψ itself.
+/// exp(Ψ(ξ)), K = Jr(Ψ) Ψ′ [thesis §2.3–2.5]. This policy is meant for comparison; `RelativeRotation` is recommended.
+/// The tests measure two faults:
+/// - The policy is not objective. The curvature and the energy of an element that bends by φ about one axis change if
+///   the element rotates rigidly about another axis. The relative changes are of order φ² (energy: 0.01 φ² after 2
+///   rad).
+/// - The rotation vector Ψ₁ of node 1 has |Ψ₁| ≤ π. Ψ₂ is the rotation vector Ψ of node 2 or its complement
+///   Ψ (1 − 2π/|Ψ|), the one nearer to Ψ₁. If node 1 passes |Ψ₁| = π, both vectors change to their complements. The
+///   curvature then jumps by terms of order φ³/l, unless the element rotates about Ψ itself.
 class Direct {
  public:
   static constexpr bool objective = false;
-  /// Interpolation with Ψ relative to the axes of `placement`.
+  /// Interpolation of rotation vectors relative to the axes of `placement`.
   template <class = void>  // compiled only if used
   explicit Direct(Placement const& placement) : from_(quaternion_of(placement.axes)), axes_(placement.axes) {}
 
@@ -49,7 +50,8 @@ class Direct {
     set_halves<T>(product(bend1, inverse1), product(bend2, inverse2), {1.0, 1.0}, out.bend);
   }
 
-  /// Derivatives of the maps of the middle section by dual numbers, for t = l N × Γ, m = M (3) and w = (Ω₁, Ω₂).
+  /// Derivatives of Pᵀt + Qᵀm, P w and Q w (`StrainSection`) at ξ = ½ with respect to the rotations of the nodes, by
+  /// dual numbers. t = l N × Γ, m = M (3), w = (Ω₁, Ω₂).
   template <class T>  // compiled only if used
   void gradient(Quaternion<T> const& a, Quaternion<T> const& b, Vec<T, 3> const& t, Vec<T, 3> const& m,
                 Vec<T, 6> const& w, StrainGradient& out) const {
@@ -59,11 +61,11 @@ class Direct {
   /// Section in a state, with intermediate results for its derivatives.
   template <StateScalar T>
   struct Section : SectionMotion<T> {
-    double share[2];                    ///< 1 − ξ, ξ
+    double share[2];                    ///< weights 1 − ξ, ξ of the nodes
     Vec<T, 3> psi, node[2];             ///< Ψ, Ψ₁ and Ψ₂
     Mat<T, 3, 3> jacobian, inverse[2];  ///< Jr(Ψ), Jr⁻¹(Ψ₁) and Jr⁻¹(Ψ₂)
   };
-  /// Section at ξ with its angular velocity Ω = Jr(Ψ) Ψ˙,  Jr(Ψᵢ) Ψᵢ˙ = Ωᵢ.
+  /// Section at ξ with its angular velocity Ω = Jr(Ψ) Ψ˙, where Jr(Ψᵢ) Ψᵢ˙ = Ωᵢ.
   template <StateScalar T>
   void section(double xi, Quaternion<T> const& a, Quaternion<T> const& b, Section<T>& out) const {
     out.share[0] = 1.0 - xi;
@@ -77,7 +79,7 @@ class Direct {
     set_halves<T>(product(out.jacobian, out.inverse[0]), product(out.jacobian, out.inverse[1]), {1.0 - xi, xi},
                   out.spin);
   }
-  /// Time derivative of Ω for constant w = (Ω₁, Ω₂), from the time derivatives of both equations.
+  /// Time derivative of Ω for constant w = (Ω₁, Ω₂), from the time derivatives of Ω = Jr(Ψ) Ψ˙ and Jr(Ψᵢ) Ψᵢ˙ = Ωᵢ.
   template <StateScalar T>
   Vec<T, 3> bias(Section<T> const& s, Vec<T, 6> const& w) const {
     Vec<T, 3> rate = detail::zeros<Vec<T, 3>>(), second = rate;
@@ -114,7 +116,7 @@ class Direct {
     }
   }
 
-  /// Rotation R with K and K′ at ξ of an element of length l [m].
+  /// Rotation R with the curvature K and its derivative K′ at ξ of an element of length l [m].
   template <class T>  // compiled only if used
   SectionTurn turn(double xi, double l, Quaternion<T> const& a, Quaternion<T> const& b) const {
     Vec<T, 3> const first = vector<T>(a), second = vector<T>(b, first), psi = between<T>(first, second, xi);
@@ -148,7 +150,7 @@ class Direct {
     for (int i = 0; i < 3; ++i) psi[i] = first[i] * (1.0 - xi) + second[i] * xi;
     return psi;
   }
-  /// Sets the matrix [s₁ A₁, s₂ A₂].
+  /// Sets `map` to [s₁ A₁, s₂ A₂], with the weights s = `share` and the matrices A₁ = `first`, A₂ = `second`.
   template <class T>
   static void set_halves(Mat<T, 3, 3> const& first, Mat<T, 3, 3> const& second, std::array<double, 2> share,
                          Mat<T, 3, 6>& map) {

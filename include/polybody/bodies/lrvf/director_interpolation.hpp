@@ -14,11 +14,11 @@ namespace polybody {
 /// The directors are the columns of Λ = (1 − ξ) R₁ + ξ R₂. Between the nodes Λ is not a rotation matrix. The strains
 /// follow from the directors:
 ///   Γᵢ = dᵢ·r′ − Γ₀,  Kᵢ = ½ εᵢⱼₖ dₖ·dⱼ′ − K₀;  here K = sin φ/l n in every section,
-///   n the axis of the relative rotation of the nodes.
+///   with the axis n of the relative rotation of the nodes.
 /// The policy is objective, and its strains do not depend on the path. In an element that bends by φ, the directors
-/// normal to n are shorter, in the middle by cos(φ/2), and Γ is reduced accordingly. The bending energy ½ EI sin²φ/l is
-/// largest at φ = π/2: an element with a larger angle is driven to φ = π, at which its energy is zero. Markers have the
-/// nearest rotation, as in `Polar`.
+/// normal to n are shorter than one: in the middle their length is cos(φ/2). Γ is reduced accordingly. The bending
+/// energy ½ EI sin²φ/l is largest at φ = π/2: an element with a larger angle is driven to φ = π, at which its energy is
+/// zero. The axes of markers are the rotation nearest to Λ, as in `Polar`.
 class Directors : public Polar {
  public:
   using Polar::Polar;
@@ -54,7 +54,7 @@ class ElasticElements<Directors, Quadrature> {
     for (int i = 0; i <= count; ++i) free.at[i] = measured(i, e, q, chord);
   }
 
-  /// Force f of element e, with moment(i) on node i.
+  /// Writes the elastic and damping force of element e to `out`, plus the moment `moment(i)` on each node i.
   template <StateScalar T, std::invocable<int> Moment>
   void force(Index e, std::span<T const> q, std::span<T const> v, Moment const& moment, Vec<T, 12>& out) const {
     out = detail::zeros<Vec<T, 12>>();
@@ -95,12 +95,12 @@ class ElasticElements<Directors, Quadrature> {
     for (int i = 0; i < count; ++i) sum += sections_[std::size_t(i)].energy(strains(i, e, q));
     return l_ * sum;
   }
-  /// Strains (Γ, K) in the middle of element e [1], [1/m].
+  /// Strains (Γ, K) in the middle of element e, in its axes [1], [1/m].
   Vec6 strains(Index e, std::span<double const> q) const { return strains(count, e, q); }
 
  private:
   static constexpr int count = int(Quadrature::points.size());
-  /// Position of point i; the middle follows after the points of the quadrature.
+  /// Position ξ of point i. The last point, after those of the quadrature, is the middle.
   static constexpr double place(int i) { return i == count ? 0.5 : Quadrature::points[std::size_t(i)].xi; }
   struct Free {
     double chord = 1.0;  ///< c₀ [m]
@@ -119,7 +119,7 @@ class ElasticElements<Directors, Quadrature> {
         for (int j = 0; j < 3; ++j) out.slide(i, 3 * node + j) = x(i, j) * share[node];
     }
   }
-  /// Adds the force of one element; q and v belong to the element only.
+  /// Adds the force of one element; q and v contain only this element.
   template <StateScalar T>
   void add_force(Free const& free, std::span<T const> q, std::span<T const> v, Vec<T, 12>& out) const {
     Quaternion<T> const a = detail::turned<T>(q, 0), b = detail::turned<T>(q, 1);
@@ -151,7 +151,7 @@ class ElasticElements<Directors, Quadrature> {
         }
     }
   }
-  /// Strains Γ and l K at point i, including those of the reference.
+  /// Strains Γ and l K at point i, including their values in the reference configuration.
   static detail::FreeStrain measured(int i, Index e, std::span<double const> q, double chord) {
     Quaternion<double> const a = detail::turned<double>(q, e), b = detail::turned<double>(q, e + 1);
     Vec<double, 3> const slope = detail::slope<double>(q, 7 * e, 7, chord);

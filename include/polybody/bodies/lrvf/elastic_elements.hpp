@@ -18,7 +18,7 @@ namespace polybody {
 
 namespace detail {
 
-/// Rotation of a node.
+/// Unit quaternion of node number `node`.
 template <StateScalar T>
 Quaternion<T> turned(std::span<T const> q, Index node) {
   return entries<4>(q, 7 * node + 3);
@@ -36,7 +36,7 @@ void set_carried_section(std::span<T> q, Index elements, Index e, CarriedSection
   set_entries<4>(q, first, section.axes);
   set_entries<3>(q, first + 4, section.turn);
 }
-/// Column of component i of (Ω₁, Ω₂) of an element in (ṙ₁, Ω₁, ṙ₂, Ω₂).
+/// Index of component i of (Ω₁, Ω₂) in the velocities (ṙ₁, Ω₁, ṙ₂, Ω₂) of an element.
 constexpr int turn_column(int i) { return i < 3 ? 3 + i : 6 + i; }
 /// Writes (Ω₁, Ω₂) of an element directly to w. A copy would wait for preceding writes to memory.
 template <StateScalar T>
@@ -56,8 +56,8 @@ struct FreeStrain {
 
 }  // namespace detail
 
-/// Elastic elements whose sections remain rotations between the nodes. For a quadrature with one point, all code is
-/// specialised for the middle.
+/// Elastic elements in which the axes of every section, also between the nodes, are a rotation matrix. If the
+/// quadrature has one point, all code is specialised for the middle.
 template <RotationInterpolation Interpolation, StrainQuadrature Quadrature>
 class ElasticElements {
  public:
@@ -84,7 +84,7 @@ class ElasticElements {
   /// Force of element e from l Σ w (N·δΓ + M·δK), with δΓ = Rᵀ (δr₂ − δr₁)/c₀ + Γ × δθ, δθ = P δθ₁₂, δK = Q δθ₁₂/l (Γ
   /// including Γ₀):
   /// f_r = ± l/c₀ R N,  f_θ = −(Pᵀ t + Qᵀ M) with t = l N × Γ, summed over the points.
-  /// The function also adds moment(i), the moment of inertia forces on node i, to the first term of the sum.
+  /// The function also adds moment(i), the moment of the inertia forces on node i.
   template <StateScalar T, std::invocable<int> Moment>
   void force(Index e, std::span<T const> q, std::span<T const> v, Moment const& moment, Vec<T, 12>& out) const {
     point_force<0, T>(e, q, v, moment, out);
@@ -95,7 +95,8 @@ class ElasticElements {
     });
   }
 
-  /// Tangent ck (−∂f/∂δ) + cd (−∂f/∂v), with δ of q ⊞ δ. It is not symmetric in general, because δθ does not commute.
+  /// Tangent ck (−∂f/∂δ) + cd (−∂f/∂v), with δ of q ⊞ δ. The tangent is not symmetric in general, because rotations do
+  /// not commute.
   template <class T>  // compiled only if used
   void tangent(Index e, std::span<double const> q, std::span<double const> v, double ck, double cd,
                Mat<T, 12, 12>& k) const {
@@ -114,13 +115,13 @@ class ElasticElements {
     for_points<1, count>([&]<int i>() { sum += sections_[i].energy(strains_in<i>(e, q)); });
     return l_ * sum;
   }
-  /// Strains (Γ, K) in the middle, in the axes of the section there [1], [1/m]. There the shear strain is free of the
-  /// error due to bending.
+  /// Strains (Γ, K) in the middle of element e, in the axes of the middle section [1], [1/m]. At this section the shear
+  /// strain is free of the error due to bending.
   Vec6 strains(Index e, std::span<double const> q) const { return strains_in<middle>(e, q); }
 
  private:
   static constexpr int count = int(Quadrature::points.size());
-  /// Index of the point in the middle, or of an additional point after the others if the quadrature has none.
+  /// Index of the point in the middle; if the quadrature has none, this is an additional point after the others.
   static constexpr int middle = [] {
     for (int i = 0; i < count; ++i)
       if (Quadrature::points[i].xi == 0.5) return i;
@@ -130,7 +131,7 @@ class ElasticElements {
   static_assert(!PathDependentInterpolation<Interpolation> || (count == 1 && middle == 0),
                 "This interpolation stores one section per element, in its middle, so that strains exist there only. "
                 "Use ReducedQuadrature.");
-  /// Element in the reference configuration.
+  /// Reference configuration of an element.
   struct Free {
     double chord = 1.0;  ///< c₀ [m]
     std::array<detail::FreeStrain, stored> at;

@@ -8,25 +8,25 @@
 
 namespace polybody {
 
-/// Linear interpolation of the increments δ₁ and δ₂ of q ⊞ δ in a step [Simo & Vu-Quoc 1986b; Cardona & Géradin 1988;
-/// Jelenić & Crisfield 1999]. The increment rotates each section from its previous orientation:
+/// Linear interpolation of the increments δ₁ and δ₂ of the nodes in a step q ⊞ δ [Simo & Vu-Quoc 1986b; Cardona &
+/// Géradin 1988; Jelenić & Crisfield 1999]. The increment rotates each section from its previous orientation:
 ///   R⁺(ξ) = R(ξ) exp(δ(ξ)),  δ(ξ) = (1 − ξ) δ₁ + ξ δ₂,
 ///   K⁺ = axial(R⁺ᵀ R⁺′) = exp(−δ) K + Jr(δ) δ′.
-/// The rotation R and the vector l K of the middle are coordinates of the element. There δ = ½ (δ₁ + δ₂) and
+/// The rotation R and the vector l K of the middle are coordinates of the element. In the middle δ = ½ (δ₁ + δ₂) and
 ///   R⁺ = R exp(δ),  l K⁺ = exp(−δ) l K + Jr(δ) (δ₂ − δ₁).
 /// The derivatives at δ = 0 are
 ///   δθ = ½ (δθ₁ + δθ₂),  δ(l K) = δθ₂ − δθ₁ + l K × δθ.
-/// In the reference both are those of `RelativeRotation`. Forces are the gradient of the energy with respect to the
-/// rotations of the nodes: for every path, their work equals the loss of energy. The energy is not a function of the
-/// nodal coordinates. The tests measure three faults:
-/// - The strains depend on the path, and shorter steps do not remove this. After a closed path of the nodes the element
-///   is bent, and its stress-free shape differs from the reference by terms of order l².
-/// - The strains depend on the steps: an integrator interpolates the increment of a whole step, `equilibrium` that of
-///   each Newton correction. While q ⊞ δ(t) moves with the angular velocities of the nodes, the middle rotates with
-///   ½ (Ω₁ + Ω₂) at δ = 0 only. The leading error is ⅛ (δ₂ − δ₁) × (Ω₂ − Ω₁). The energy error is at best of second
-///   order in the step, for every integrator.
-/// - It is not objective. If an element bent by φ about n rotates rigidly with ω ⊥ n, its middle rotates with
-///   cos(φ/2) ω, and l K changes by (φ cos(φ/2) − 2 sin(φ/2)) n × ω ≈ −φ³/12 n × ω.
+/// In the reference configuration R and l K are those of `RelativeRotation`. Forces are the gradient of the energy with
+/// respect to the rotations of the nodes: for every path, their work equals the loss of energy. The energy is not a
+/// function of the nodal coordinates. The tests measure three faults:
+/// - The strains depend on the path, and shorter steps do not remove this dependence. After a closed path of the nodes
+///   the element is bent, and its stress-free shape differs from the reference by terms of order l².
+/// - The strains depend on the steps: an integrator interpolates the increment of a whole step, `equilibrium` the
+///   increment of each Newton correction. While q ⊞ δ(t) moves with the angular velocities of the nodes, the middle
+///   rotates with ½ (Ω₁ + Ω₂) only at δ = 0. The leading error is ⅛ (δ₂ − δ₁) × (Ω₂ − Ω₁). The energy error is at best
+///   of second order in the step, for every integrator.
+/// - The policy is not objective. If an element bent by φ about n rotates rigidly with ω ⊥ n, its middle rotates with
+///   cos(φ/2) ω. The rate of l K is then (φ cos(φ/2) − 2 sin(φ/2)) n × ω ≈ −φ³/12 n × ω.
 /// User-defined coordinates must include the section in the middle; q ⊞ δ computes it.
 class Incremental {
  public:
@@ -36,13 +36,14 @@ class Incremental {
   template <StateScalar T>
   struct Section : SectionMotion<T> {};
 
-  /// Section in the middle in the reference, on the shortest path from node to node: l K = log(R₁ᵀR₂).
+  /// Section in the middle in the reference configuration, on the shortest rotation from node to node: l K =
+  /// log(R₁ᵀR₂).
   template <class T>  // compiled only if used
   static CarriedSectionState<T> between(Quaternion<T> const& a, Quaternion<T> const& b) {
     Vec<T, 3> const phi = quaternion_minus<T>(b, a);
     return {quaternion_plus<T>(a, scaled<T>(phi, 0.5)), phi};
   }
-  /// Section after increments of its nodes, `first` and `second` (3), in their axes [rad].
+  /// Section after the increments `first` and `second` (3) of the nodes, each in the axes of its node [rad].
   template <StateScalar T>
   static CarriedSectionState<T> plus(CarriedSectionState<T> const& s, Vec<T, 3> const& first, Vec<T, 3> const& second) {
     Vec<T, 3> const mean(0.5 * (first[0] + second[0]), 0.5 * (first[1] + second[1]), 0.5 * (first[2] + second[2]));
@@ -51,7 +52,7 @@ class Incremental {
     return {quaternion_plus<T>(s.axes, mean), {carried[0] + bent[0], carried[1] + bent[1], carried[2] + bent[2]}};
   }
 
-  /// Section in the middle, with P = ½ [1, 1],  Q = [½ (l K)~ − 1, ½ (l K)~ + 1].
+  /// Section in the middle, with P = ½ [1, 1] and Q = [½ (l K)~ − 1, ½ (l K)~ + 1] (`StrainSection`).
   template <StateScalar T>
   static void middle(CarriedSectionState<T> const& s, StrainSection<T>& out) {
     out.R = rotation_matrix<T>(s.axes);

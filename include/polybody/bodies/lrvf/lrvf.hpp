@@ -13,20 +13,20 @@ namespace polybody {
 
 /// Geometrically exact beam, a chain of equal two-node elements [Reissner 1981; Simo & Vu-Quoc 1986b; thesis §2.3–2.5].
 /// Positions are interpolated linearly, and rotations by the policy `Interpolation` (rotation_interpolation.hpp). The
-/// policy `Quadrature` (strain_quadrature.hpp) gives the points at which strains are evaluated. The default is one
-/// point in the middle of the element, R = R_m, without shear locking:
+/// policy `Quadrature` (strain_quadrature.hpp) defines the points at which strains are evaluated. The default is one
+/// point in the middle of the element, which avoids shear locking. With the rotation R of this section,
 ///   Γ = Rᵀ r′ − Γ₀,  K = axial(Rᵀ R′) − K₀,  N = diag(EA, GA, GA_z) Γ,  M = diag(GJ, EI_y, EI) K,
 /// in the axes of the section, with x along the beam; Γ₀, K₀ are the strains of the reference configuration.
 ///
-/// The coordinates of a node are its position r (3) in world axes and a unit quaternion (4) of the section. Its
-/// generalised velocities are ṙ (3) and Ω (3), the angular velocity in the axes of the section. q ⊞ δ acts on each node
-/// as in `Rigid`, without a singular angle. After the nodes follow the sections that a policy stores
-/// (`PathDependentInterpolation`), one for each element.
+/// The coordinates of a node are its position r (3) in world axes and a unit quaternion (4) of the section. The
+/// generalised velocities of a node are ṙ (3) and Ω (3), the angular velocity in the axes of the section. q ⊞ δ acts on
+/// each node as in `Rigid`, without a singular angle. With a `PathDependentInterpolation`, the coordinates of the
+/// stored sections, one for each element, follow after those of the nodes.
 ///
 /// The mass of the translation is consistent with the linear shapes, Aρ l/6 [2 1; 1 2]. The rotary inertia is lumped at
 /// the nodes, J = ½ l diag(Iρ_y + Iρ_z, Iρ_y, Iρ_z), so that M is constant. Without any rotary inertia M is singular,
-/// and the rotations follow the positions without delay. Implicit methods and statics accept this, explicit methods do
-/// not.
+/// and the rotations follow the positions without delay. Implicit methods and statics permit a singular M, explicit
+/// methods do not.
 ///
 /// A curved reference is divided into n elements of arc length l whose nodes lie on the curve. With the chord c₀ of an
 /// element in the reference, r′ = (r₂ − r₁)/c₀, and K = axial(Rᵀ R′) with respect to l. Uniform stretch and uniform
@@ -42,20 +42,20 @@ class Lrvf {
   static constexpr int point_columns = 12;
   static constexpr int element_stride = 6;
   static constexpr bool vectorised_kernels = false;
-  static constexpr Index default_elements = 32;  ///< of `from(bar)`, see `BarMesh`
+  static constexpr Index default_elements = 32;  ///< number of elements of `from(bar)` (`BarMesh`)
   template <class T>
   using Element = Vec<T, 12>;
   using ElementMatrix = Mat<double, 12, 12>;
 
-  /// Material point: element, position ξ ∈ [0, 1] along it, and distances (y, z) from the axis [m].
+  /// Material point: element, position ξ ∈ [0, 1] along the element, and distances (y, z) from the axis [m].
   struct Point {
-    Index element = 0;        ///< counted from 0, from the bar's first end
-    double xi = 0.0;          ///< ξ ∈ [0, 1], from its first node to its second
-    double y = 0.0, z = 0.0;  ///< in the axes of the section [m]
+    Index element = 0;        ///< index of the element, counted from the first end of the bar
+    double xi = 0.0;          ///< position ξ ∈ [0, 1] from the first node of the element to the second
+    double y = 0.0, z = 0.0;  ///< distances from the axis, in the axes of the section [m]
   };
 
   /// Beam from the straight bar, with n elements of equal length.
-  /// \throws InvalidInput for n < 1 or a missing stiffness (GA, GJ, ...).
+  /// \throws InvalidInput for n < 1, and for a bar without a shear or torsional stiffness (GA, GJ, ...).
   static Lrvf from(Bar const& bar, Index n) {
     return from(bar, n, [](double s) { return Placement{.origin = Vec3(s, 0, 0)}; });
   }
@@ -64,8 +64,8 @@ class Lrvf {
     return from(bar, mesh.elements.value_or(default_elements));
   }
   /// Beam of n elements with the stress-free shape `curve`, bent and twisted, whose parameter is its arc length.
-  /// \throws InvalidInput as above, and for a curve on which nodes coincide or are farther apart than the arc between
-  /// them.
+  /// \throws InvalidInput for n < 1, for a missing stiffness (GA, GJ, ...), and for a curve on which nodes coincide or
+  /// are farther apart than the arc between them.
   static Lrvf from(Bar const& bar, Index n, ReferenceCurve const& curve) {
     require_elements(n, "Lrvf");
     if (!curve) throw InvalidInput("reference_curve.missing", {ErrorObject{"Lrvf"}, ": the reference curve is empty."});
@@ -76,8 +76,8 @@ class Lrvf {
   double element_length() const { return l_; }
   BarConstants const& constants() const { return constants_; }
 
-  /// Section at arc length s of the reference [m], at (y, z) from its axis [m].
-  /// \throws InvalidInput outside the bar.
+  /// Section at arc length s of the reference [m], at (y, z) from the axis of the section [m].
+  /// \throws InvalidInput for s outside the bar.
   Point at(double s, double y = 0.0, double z = 0.0) const {
     double const x = require_inside(s, length_, "Lrvf") / l_;
     if (!std::isfinite(y) || !std::isfinite(z))
@@ -116,7 +116,7 @@ class Lrvf {
             interpolation_.template plus<T>(detail::carried_section<T>(q, elements(), e), entries<3>(delta, 6 * e + 3),
                                             entries<3>(delta, 6 * e + 9)));
   }
-  /// Rate δ˙ if q ⊞ δ(t) moves with v: Ω = Jr(δ) δ˙ at each node.
+  /// Rate δ˙ for which q ⊞ δ(t) moves with the generalised velocities v: Ω = Jr(δ) δ˙ at each node.
   template <StateScalar T>
   void local_rate(std::span<T const> delta, std::span<T const> v, std::span<T> out) const {
     for (Index i = 0; i < velocities(); i += 6) {
@@ -162,7 +162,8 @@ class Lrvf {
     elastic_.template force<T>(e, q, v, gyro, out);
   }
 
-  /// Tangent ck (−∂f/∂δ) + cd (−∂f/∂v), with δ of q ⊞ δ. It is not symmetric in general, because δθ does not commute.
+  /// Tangent ck (−∂f/∂δ) + cd (−∂f/∂v), with δ of q ⊞ δ. The tangent is not symmetric in general, because rotations do
+  /// not commute.
   template <class T>  // compiled only if used
   void tangent(Index e, std::span<double const> q, std::span<double const> v, double ck, double cd,
                Mat<T, 12, 12>& k) const {
@@ -195,7 +196,7 @@ class Lrvf {
     return -3.0 * sixth_ * (dot<T>(g, r1) + dot<T>(g, r2));
   }
 
-  /// Strains (Γ, K) in the middle of the element of `p`, in the axes of that section [1], [1/m] (see sections.hpp).
+  /// Strains (Γ, K) in the middle of the element of `p`, in the axes of the middle section [1], [1/m] (`HasSections`).
   Vec6 section_strains(Point const& p, std::span<double const> q) const { return elastic_.strains(p.element, q); }
   /// Section forces (N, M) of the element of `p`, without damping [N], [N m].
   Vec6 section_forces(Point const& p, std::span<double const> q) const {
@@ -289,7 +290,7 @@ class Lrvf {
   Vec<T, 3> spun(Vec<T, 3> const& omega) const {
     return {omega[0] * rotary_[0], omega[1] * rotary_[1], omega[2] * rotary_[2]};
   }
-  /// Section at p: at a node exactly the section of the node, elsewhere that of the policy.
+  /// Section at p: at a node exactly the section of the node, elsewhere the section of the interpolation.
   template <StateScalar T>
   void section(Point const& p, std::span<T const> q, Section<T>& out) const {
     Quaternion<T> const a = turned<T>(q, p.element), b = turned<T>(q, p.element + 1);

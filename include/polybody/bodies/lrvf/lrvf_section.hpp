@@ -14,8 +14,8 @@ template <StateScalar T>
 struct SectionStrains {
   StrainSection<T> at;  ///< section, with its derivatives with respect to the nodes
   double chord = 1.0;   ///< c₀, distance of the nodes in the reference [m]
-  Vec<T, 3> gamma;      ///< R_mᵀ r′
-  Vec<T, 3> rate;       ///< R_mᵀ ṙ′, for damping
+  Vec<T, 3> gamma;      ///< Γ + Γ₀ = Rᵀ r′, with the axes R of the section
+  Vec<T, 3> rate;       ///< Rᵀ ṙ′, for damping
   Vec<T, 6> turning;    ///< (Ω₁, Ω₂), for damping
   Vec<T, 3> n, m;       ///< Γ and l K relative to the reference; after `stress` the section forces N, M
 };
@@ -39,7 +39,7 @@ class LrvfSection {
     }
   }
 
-  /// Section with the weight of each strain at the point p of a quadrature.
+  /// Copy of the section for the quadrature point p: each stiffness is multiplied by the weight of its strain.
   LrvfSection weighted(StrainPoint const& p) const {
     LrvfSection out = *this;
     for (int i = 0; i < 6; ++i) out.stiffness_[i] *= i == 0 ? p.axial : i < 3 ? p.shear : p.curvature;
@@ -49,7 +49,7 @@ class LrvfSection {
 
   bool damped() const { return damped_; }  ///< true if a damping time is not zero
 
-  /// Stress = C (strain + τ strain˙). It replaces the strains in s.n and s.m.
+  /// Stress C (strain + τ strain˙) plus the pretension. The stress replaces the strains in s.n and s.m.
   template <StateScalar T>
   void stress(SectionStrains<T>& s) const {
     if (damped_) {
@@ -73,7 +73,7 @@ class LrvfSection {
     n[0] += pretension_;
     return n;
   }
-  /// Energy for the strains (Γ, K) [J/m].
+  /// Strain energy per length for the strains (Γ, K) [J/m].
   template <class T = double>  // compiled only if used
   double energy(Vec6 const& strains) const {
     T sum = 0.0;
@@ -81,10 +81,10 @@ class LrvfSection {
     return 0.5 * sum + pretension_ * strains[0];
   }
 
-  /// Tangent of the elastic and damping force of an element. With x = R_mᵀ (δr₂ − δr₁)/c₀ and θ = δθ₁₂, all in the axes
-  /// of the section:
+  /// Tangent of the elastic and damping force of an element. With x = Rᵀ (δr₂ − δr₁)/c₀ and θ = (δθ₁, δθ₂), in the axes
+  /// R of the section:
   ///   δΓ = x + Γ̃ P θ,  δN = C (ck + cd τ) δΓ + ck C τ δΓ˙,  δt = l (N × δΓ − Γ × δN),
-  ///   −δf_r = ∓ l/c₀ R_m (δN + ck Pθ × N),  −δf_θ = Pᵀ δt + Qᵀ δM + ck ∂(Pᵀt + Qᵀ M) θ.
+  ///   −δf_r = ∓ l/c₀ R (δN + ck Pθ × N), −δf_θ = Pᵀ δt + Qᵀ δM + ck ∂(Pᵀt + Qᵀ M) θ.
   template <class T>  // compiled only if used
   void tangent(SectionStrains<T> const& s, StrainGradient const& by, double ck, double cd, Mat<T, 12, 12>& k) const {
     Slopes<T> const by_state = slopes(s, by, ck, cd);
@@ -95,7 +95,7 @@ class LrvfSection {
     Mat<T, 3, 6> const n_spin = skew_product(n, s.at.spin), n_slide = skew_product(n, skew_product(s.gamma, s.at.spin)),
                        by_theta = skew_product(s.gamma, nt);
     Mat<T, 3, 3> through;       // ∂t/∂x, with t = l N × Γ for a fixed Γ
-    Mat<T, 3, 6> shift, moved;  // ∂(R_m N)/∂θ in the axes of the section, ∂t/∂θ
+    Mat<T, 3, 6> shift, moved;  // ∂(R N)/∂θ in the axes of the section, ∂t/∂θ
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) through(i, j) = l_ * (of_n(i, j) - by_x(i, j));
       for (int j = 0; j < 6; ++j) {
@@ -122,14 +122,14 @@ class LrvfSection {
   }
 
  private:
-  /// Derivatives of the section forces with respect to x and to θ = δθ₁₂.
+  /// Derivatives of the section forces with respect to x and to θ = (δθ₁, δθ₂) (see `tangent`).
   template <class T>
   struct Slopes {
     Mat<T, 3, 3> nx;      ///< ∂N/∂x
     Mat<T, 3, 6> nt, mt;  ///< ∂N/∂θ, ∂M/∂θ
   };
   /// Derivatives δN = C (ck + cd τ) (x + Γ̃ P θ) + ck C τ δΓ˙ and, in the same form, δM of Q θ. With Γ˙ = u + Γ × Ω and
-  /// u = R_mᵀ (ṙ₂ − ṙ₁)/c₀:
+  /// u = Rᵀ (ṙ₂ − ṙ₁)/c₀:
   ///   δΓ˙ = u × Pθ + δΓ × Ω + Γ × δΩ.
   template <class T>
   Slopes<T> slopes(SectionStrains<T> const& s, StrainGradient const& by, double ck, double cd) const {

@@ -13,7 +13,7 @@ namespace polybody::planar {
 /// (strain_quadrature.hpp has other quadratures):
 ///   ε = t₁ᵀ r′ − 1,  γ = t₂ᵀ r′,  κ = θ′,  t₁ = (cos θ, sin θ), t₂ = (−sin θ, cos θ).
 struct SimoVuQuoc {
-  static constexpr char const* name = "planar::Lrvf";            ///< prefix of its error messages
+  static constexpr char const* name = "planar::Lrvf";            ///< name of the body type in messages
   static constexpr int node_columns = 3;                         ///< (x, y, θ)
   static constexpr bool vectorised_kernels = false;              ///< one sine and one cosine take most of the time
   static constexpr std::array<int, 3> section_rows = {0, 1, 5};  ///< rows of ε, γ and κ
@@ -28,8 +28,8 @@ struct SimoVuQuoc {
   static Vec3 reference_node(Vec2 const& origin, double angle, double s) {
     return {origin[0] + s * std::cos(angle), origin[1] + s * std::sin(angle), angle};
   }
-  /// Generalised velocities of the node in a rigid motion: v0 of the body-fixed point at the origin of the world [m/s],
-  /// omega [rad/s].
+  /// Generalised velocities of the node in a rigid motion: velocity v0 of the body-fixed point at the origin of the
+  /// world [m/s], angular velocity omega [rad/s].
   static Vec3 rigid_velocity(Vec3 const& node, Vec2 const& v0, double omega) {
     return {v0[0] - omega * node[1], v0[1] + omega * node[0], omega};
   }
@@ -43,7 +43,7 @@ struct SimoVuQuoc {
     }
     return n;
   }
-  /// Row of θ in the kinetic energy ½ ∫ Iρ θ̇² dx.
+  /// Row of θ̇ = row · ė in the kinetic energy ½ ∫ Iρ θ̇² dx.
   template <class T = double>  // compiled only if used
   static Vec<T, 6> rotary(double xi, double) {
     Vec<T, 6> row = Vec<T, 6>::Zero();
@@ -76,15 +76,15 @@ struct SimoVuQuoc {
     static Vec3 damping(Damping const& d) { return {d.axial, d.shear, d.bending}; }
 
     static constexpr int reach = 2;
-    /// Index of the nodal vector (one coordinate) that shape k reads as its j-th.
+    /// Index of the coordinate of node j that shape k reads.
     static constexpr int vector(int k, int j) { return 3 * j + (k < 2 ? k : 2); }
     template <class T = double>  // compiled only if used
     static Mat<T, 4, 2> map(double xi, double l) {
       ShapeValues<2> const n = linear_shape(xi, l);
       Mat<T, 4, 2> p;
       for (int j = 0; j < 2; ++j) {
-        p(0, j) = p(1, j) = p(3, j) = n.ds[j];
-        p(2, j) = n.s[j];
+        p(0, j) = p(1, j) = p(3, j) = n.ds[std::size_t(j)];
+        p(2, j) = n.s[std::size_t(j)];
       }
       return p;
     }
@@ -102,7 +102,7 @@ struct SimoVuQuoc {
     static void add_hessian(Vec<T, 4> const& p, Vec<T, 3> const& n, Mat<T, 4, 4>& h) {
       using std::cos, std::sin;
       T const c = cos(p[2]), s = sin(p[2]);
-      T const x = -(s * n[0]) - c * n[1], y = c * n[0] - s * n[1];  // together with θ
+      T const x = -(s * n[0]) - c * n[1], y = c * n[0] - s * n[1];  // ∂²/∂x′∂θ and ∂²/∂y′∂θ
       h(0, 2) += x;
       h(2, 0) += x;
       h(1, 2) += y;
@@ -113,16 +113,17 @@ struct SimoVuQuoc {
   using Groups = std::tuple<Section>;  ///< strain laws of the beam
 };
 
-/// Strains of a section: `count` of (ε, γ, κ), beginning at `first`, at the points of Q with nonzero weight.
+/// Law for some of the strains (ε, γ, κ) of a section: `count` of them, beginning at `first`. The points are those of Q
+/// at which the weight of the strains is not zero.
 template <StrainQuadrature Q, int first, int count>
 struct SectionIn {
   using All = SimoVuQuoc::Section;  ///< law of the three strains
-  static constexpr int components = All::components, parameters = All::parameters, reach = All::reach;  ///< of All
+  static constexpr int components = All::components, parameters = All::parameters, reach = All::reach;  ///< as in All
   static constexpr int strains = count;
   static constexpr auto rule = detail::rule_of<Q, detail::strain_weights[std::size_t(first)]>();
   static constexpr int points = int(rule.size());
 
-  /// Index of the nodal vector (one coordinate) that shape k reads as its j-th.
+  /// Index of the coordinate of node j that shape k reads.
   static constexpr int vector(int k, int j) { return All::vector(k, j); }
   template <class T = double>  // compiled only if used
   static Mat<T, 4, 2> map(double xi, double l) {
@@ -149,7 +150,7 @@ struct SectionIn {
   }
 };
 
-/// Theory of `LrvfBy`. Strains with the same points are in one group.
+/// Theory of `LrvfBy`. Strains with the same points belong to one strain law.
 template <StrainQuadrature Q>
 struct SimoVuQuocBy : SimoVuQuoc {
   static constexpr bool together =
@@ -171,13 +172,13 @@ using LrvfBy = Beam<SimoVuQuocBy<Q>>;
 /// Planar beam with all strains evaluated in the middle, which does not lock.
 using Lrvf = LrvfBy<ReducedQuadrature>;
 
-/// Planar beam with all strains evaluated at both Gauss points, for comparison. It locks: its bending stiffness is too
-/// large by the factor 1 + GA l²/(12 EI) [Hughes, Taylor & Kanoknukulchai 1977].
+/// Planar beam with all strains evaluated at both Gauss points, for comparison. This beam locks: its bending stiffness
+/// is too large by the factor 1 + GA l²/(12 EI) [Hughes, Taylor & Kanoknukulchai 1977].
 using FullLrvf = LrvfBy<FullQuadrature>;
 
 /// Planar beam with ε and γ evaluated in the middle, κ at both Gauss points. θ is linear and κ is constant in an
-/// element, so this equals `Lrvf` to round-off, at a higher cost. Selective and reduced quadrature of the literature
-/// coincide for this beam.
+/// element. The results therefore equal those of `Lrvf` to round-off, at a higher cost. Selective and reduced
+/// quadrature of the literature coincide for this beam.
 using SelectiveLrvf = LrvfBy<SelectiveQuadrature>;
 
 }  // namespace polybody::planar

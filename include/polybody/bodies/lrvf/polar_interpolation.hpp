@@ -10,8 +10,8 @@ namespace polybody {
 
 namespace detail {
 
-/// Relative rotation of node 2 to node 1, by φ about n: u = sin φ n and s = sin²(φ/2), with their derivatives with
-/// respect to the nodes.
+/// Relative rotation of node 2 with respect to node 1, by φ about n: u = sin φ n and s = sin²(φ/2), with their
+/// derivatives with respect to the rotations of the nodes.
 template <StateScalar T>
 struct RelativeTurn {
   Quaternion<T> p;  ///< (p₀, p_v), the relative quaternion: u = 2 p₀ p_v, s = p_v·p_v
@@ -42,9 +42,9 @@ struct RelativeTurn {
 
 }  // namespace detail
 
-/// Interpolation with R(ξ) the rotation nearest to (1 − ξ) R₁ + ξ R₂ (polar decomposition) [Romero 2004, §4]. The axis
-/// n of the relative rotation is that of `RelativeRotation`, and the angle differs. In the plane normal to n, the mean
-/// of 1 and e^{iφ} is 1 − ξ + ξ e^{iφ} = ρ e^{iα}, hence
+/// Interpolation in which R(ξ) is the rotation nearest to (1 − ξ) R₁ + ξ R₂ (polar decomposition) [Romero 2004, §4].
+/// The axis n of the relative rotation is that of `RelativeRotation`; the angle differs. In the plane normal to n, the
+/// mean of 1 and e^{iφ} is 1 − ξ + ξ e^{iφ} = ρ e^{iα}, hence
 ///   R = R₁ exp(α n),  ρ² = 1 − 4 ξ (1 − ξ) s,  g = tan(α/2) n = ξ u/D,  D = ρ + 1 − 2 ξ s,  l K = α′ n = u/ρ²,
 /// with u = sin φ n, s = sin²(φ/2). The policy is objective, and its strains do not depend on the path. The difference
 /// of the angles is α − ξφ = −ξ (1 − ξ) (1 − 2ξ) φ³/6 + O(φ⁵). In the middle R is that of `RelativeRotation`, and l K =
@@ -69,7 +69,8 @@ class Polar {
   void middle(Quaternion<T> const& a, Quaternion<T> const& b, StrainSection<T>& out) const {
     at<T>(0.5, a, b, out);
   }
-  /// Derivatives of the maps of the middle section by dual numbers, for t = l N × Γ, m = M (3) and w = (Ω₁, Ω₂).
+  /// Derivatives of Pᵀt + Qᵀm, P w and Q w (`StrainSection`) at ξ = ½ with respect to the rotations of the nodes, by
+  /// dual numbers. t = l N × Γ, m = M (3), w = (Ω₁, Ω₂).
   template <class T>  // compiled only if used
   void gradient(Quaternion<T> const& a, Quaternion<T> const& b, Vec<T, 3> const& t, Vec<T, 3> const& m,
                 Vec<T, 6> const& w, StrainGradient& out) const {
@@ -90,7 +91,7 @@ class Polar {
     }
   }
 
-  /// Section at ξ with R(ξ) and its P, between nodes with the rotations a and b.
+  /// Section at ξ with R(ξ) and its map P, between nodes with the rotations a and b.
   template <StateScalar T>
   void section(double xi, Quaternion<T> const& a, Quaternion<T> const& b, Section<T>& out) const {
     place<T>(xi, a, detail::RelativeTurn<T>(a, b), out);
@@ -131,7 +132,8 @@ class Polar {
       for (int j = 0; j < 6; ++j)
         for (int k = 0; k < 6; ++k) out(j, k) += x[i] * moved.spin(i, j).d[k];
   }
-  /// Rotation with curvature, with K′ = −u (ρ²)′/(ρ⁴ l²),  (ρ²)′ = −4 (1 − 2ξ) s.
+  /// Rotation R with the curvature K and K′ = −u (ρ²)′/(ρ⁴ l²), (ρ²)′ = −4 (1 − 2ξ) s, at ξ of an element of length l
+  /// [m].
   template <class T>  // compiled only if used
   SectionTurn turn(double xi, double l, Quaternion<T> const& a, Quaternion<T> const& b) const {
     detail::RelativeTurn<T> const turn(a, b);

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
 /// Rotation interpolation between the nodes of a beam element: the concepts of a policy of `Lrvf`, and the default
-/// policy. direct_interpolation.hpp has another one. Rotations of the nodes are unit quaternions. δθ₁, δθ₂ and all
-/// angular velocities are in the axes of the rotating section.
+/// policy. Rotations of the nodes are unit quaternions. δθ₁, δθ₂ and all angular velocities are in the axes of the
+/// rotating section.
 
 #include <polybody/kinematics/frame.hpp>
 
@@ -17,15 +17,15 @@ struct StrainSection {
   Mat<T, 3, 6> bend;  ///< Q: δ(l K) = Q (δθ₁, δθ₂)
 };
 
-/// Derivatives of the maps of a `StrainSection` with respect to (δθ₁, δθ₂), for fixed t, m, w.
+/// Derivatives of products with the maps P and Q of a `StrainSection` with respect to (δθ₁, δθ₂), for fixed t, m, w.
 struct StrainGradient {
   Mat<double, 6, 6> pulled;  ///< of Pᵀ t + Qᵀ m
   Mat<double, 3, 6> spin;    ///< of P w
   Mat<double, 3, 6> bend;    ///< of Q w
 };
 
-/// Any section of an element, with the map of its angular velocity. The class `Section` of a policy adds common
-/// intermediate results.
+/// Any section of an element, with the map of its angular velocity. The class `Section` of a policy adds intermediate
+/// results that several functions of the policy use.
 template <StateScalar T>
 struct SectionMotion {
   Mat<T, 3, 3> R;     ///< axes of the section in world axes
@@ -41,7 +41,7 @@ struct SectionTurn {
 
 namespace detail {
 
-/// Product P x with a map P of both nodes.
+/// Product P x of a map P of both nodes (3×6) and a vector x (6).
 template <class T>
 Vec<T, 3> of_nodes(Mat<T, 3, 6> const& map, Vec<T, 6> const& x) {
   Vec<T, 3> out;
@@ -51,7 +51,7 @@ Vec<T, 3> of_nodes(Mat<T, 3, 6> const& map, Vec<T, 6> const& x) {
   }
   return out;
 }
-/// Sets the matrix [A; B].
+/// Sets `out` to the matrix [A; B].
 template <class T>
 void set_rows(Mat<T, 3, 6> const& a, Mat<T, 3, 6> const& b, Mat<T, 6, 6>& out) {
   for (int i = 0; i < 3; ++i)
@@ -68,10 +68,10 @@ Vec<T, 3> of_node(int node, Vec<T, 6> const& x) {
 
 }  // namespace detail
 
-/// Section in the middle of an element that stores it, because it does not follow from the nodes.
+/// Section in the middle of an element. It is stored, because the nodes do not determine it.
 template <StateScalar T>
 struct CarriedSectionState {
-  Quaternion<T> axes;  ///< axes in world axes
+  Quaternion<T> axes;  ///< rotation from the axes of the section to world axes
   Vec<T, 3> turn;      ///< l K [rad]
 };
 
@@ -81,19 +81,19 @@ concept NodalInterpolation =
     requires(I const i, Quaternion<double> const a, Vec6 const w, Vec3 const x, StrainSection<double> strained,
              StrainGradient gradient, typename I::template Section<double> section) {
       i.template middle<double>(a, a, strained);   // ξ = ½
-      i.gradient(a, a, x, x, w, gradient);         // derivatives of the maps of the middle section
+      i.gradient(a, a, x, x, w, gradient);         // derivatives (`StrainGradient`) for the middle section
       i.template at<double>(0.2, a, a, strained);  // at any ξ: for quadratures with more points
       i.template section<double>(0.5, a, a, section);
       { i.turn(0.5, 1.0, a, a) } -> std::same_as<SectionTurn>;
     };
 
-/// Policy for which the section in the middle depends on the path of the nodes. It is part of the coordinates of each
-/// element, and no other section is available.
+/// Policy for which the section in the middle depends on the path of the nodes. This section is part of the coordinates
+/// of each element, and no other section is available.
 template <class I>
 concept PathDependentInterpolation =
     requires(I const i, CarriedSectionState<double> const s, Quaternion<double> const a, Vec6 const w, Vec3 const x,
              StrainSection<double> strained, StrainGradient gradient, typename I::template Section<double> section) {
-      { i.between(a, a) } -> std::same_as<CarriedSectionState<double>>;  // in the reference
+      { i.between(a, a) } -> std::same_as<CarriedSectionState<double>>;  // in the reference configuration
       {
         i.template plus<double>(s, x, x)
       } -> std::same_as<CarriedSectionState<double>>;  // increment by δ₁, δ₂ of q ⊞ δ
@@ -159,7 +159,8 @@ class RelativeRotation {
     }
   }
 
-  /// Derivatives of P and Q of the middle section for t = l N × Γ, m = M (3) and w = (Ω₁, Ω₂), in closed form.
+  /// Derivatives of Pᵀt + Qᵀm, P w and Q w (`StrainSection`) at ξ = ½ with respect to the rotations of the nodes, in
+  /// closed form. t = l N × Γ, m = M (3), w = (Ω₁, Ω₂).
   template <class T>  // compiled only if used
   void gradient(Quaternion<T> const& a, Quaternion<T> const& b, Vec<T, 3> const& t, Vec<T, 3> const& m,
                 Vec<T, 6> const& w, StrainGradient& out) const {
@@ -189,7 +190,7 @@ class RelativeRotation {
     detail::set_rows(first, second, out.pulled);
   }
 
-  /// Section at ξ with R = R₁ exp(ξφ) and Ω = exp(−ξφ) Ω₁ + ξ Jr(ξφ) φ˙,  Jr(φ) φ˙ = Ω₂ − exp(−φ) Ω₁.
+  /// Section at ξ with R = R₁ exp(ξφ) and Ω = exp(−ξφ) Ω₁ + ξ Jr(ξφ) φ˙, where Jr(φ) φ˙ = Ω₂ − exp(−φ) Ω₁.
   template <StateScalar T>
   void section(double xi, Quaternion<T> const& a, Quaternion<T> const& b, Section<T>& out) const {
     out.xi = xi;
@@ -207,7 +208,8 @@ class RelativeRotation {
         out.spin(i, 3 + j) = second(i, j) * xi;
       }
   }
-  /// Time derivative of Ω for constant w = (Ω₁, Ω₂), from the time derivatives of both equations.
+  /// Time derivative of Ω for constant w = (Ω₁, Ω₂), from the time derivatives of the equations for Ω and φ˙
+  /// (`section`).
   template <StateScalar T>
   Vec<T, 3> bias(Section<T> const& s, Vec<T, 6> const& w) const {
     Vec<T, 3> const w1 = detail::of_node(0, w), w2 = detail::of_node(1, w);
@@ -280,7 +282,7 @@ class RelativeRotation {
     T const way = value_of(p[0]) < 0.0 ? T(p[0] - 1.0) : T(p[0] + 1.0);
     return {p[1] / way, p[2] / way, p[3] / way};
   }
-  /// Derivatives with respect to c: of 2a c × y, and of h c × (c × y).
+  /// Derivative with respect to c of 2a c × y (`odd_slope`), and of h c × (c × y) (`even_slope`).
   template <class T>
   static Mat<T, 3, 3> odd_slope(ArctanSeries<T> const& s, Vec<T, 3> const& c, Vec<T, 3> const& y) {
     Vec<T, 3> const once = cross(c, y);

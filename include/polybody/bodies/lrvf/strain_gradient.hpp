@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Derivatives of the maps of a section by dual numbers, for rotation interpolations without closed forms.
+/// Derivatives of the maps P and Q of a section by dual numbers, for rotation interpolations without closed forms.
 
 #include <array>
 
@@ -8,8 +8,8 @@
 
 namespace polybody::detail {
 
-/// Quaternion q ⊞ δ for a small δ, whose three components are the dual variables with numbers from `first` on,
-/// multiplied by `size`.
+/// Quaternion q ⊞ δ with its derivatives at δ = 0. The components of δ are `size` times the three dual variables from
+/// number `first` on.
 template <int n>
 Quaternion<Dual<n>> turning_quaternion(Quaternion<double> const& q, int first, double size = 1.0) {
   Quaternion<Dual<n>> out(q[0], q[1], q[2], q[3]);
@@ -22,7 +22,7 @@ Quaternion<Dual<n>> turning_quaternion(Quaternion<double> const& q, int first, d
   return out;
 }
 
-/// Vectors that are constant in a derivative of the maps.
+/// Vectors that are constant in a derivative of the maps P and Q.
 struct FixedRotation {
   Vec<double, 3> t, m;
   Vec<double, 6> w;

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Quadrature of the strains of `Lrvf` and `planar::Lrvf` along an element, a policy. With linear shapes the choice
-/// determines if a slender element bends or locks [Hughes, Taylor & Kanoknukulchai 1977; Simo & Vu-Quoc 1986].
+/// Policies for the quadrature of the strains of `Lrvf` and `planar::Lrvf` along an element. With linear shapes the
+/// quadrature determines whether a slender element locks [Hughes, Taylor & Kanoknukulchai 1977; Simo & Vu-Quoc 1986].
 
 #include <array>
 #include <cstddef>
@@ -12,7 +12,7 @@ namespace polybody {
 
 /// Section at which strains are evaluated, with its weights in the energies of the strains.
 struct StrainPoint {
-  double xi;         ///< ∈ (0, 1)
+  double xi;         ///< position ξ ∈ (0, 1)
   double axial;      ///< weight of Γ₁
   double shear;      ///< weight of Γ₂, Γ₃
   double curvature;  ///< weight of K
@@ -34,11 +34,11 @@ constexpr bool is_rule(std::array<StrainPoint, n> const& points) {
   return one(axial) && one(shear) && one(curvature);
 }
 
-/// Weights of a section in the energy of ε or Γ₁, of γ or Γ₂, Γ₃, and of κ or K.
+/// Weights of a section in the energy of the strains: of ε or Γ₁; of γ or Γ₂, Γ₃; of κ or K.
 inline constexpr std::array<double StrainPoint::*, 3> strain_weights = {&StrainPoint::axial, &StrainPoint::shear,
                                                                         &StrainPoint::curvature};
 
-/// Points with a nonzero weight of one kind of strain.
+/// Quadrature rule for one kind of strain: the points at which its weight is not zero.
 template <class Q, double StrainPoint::* weight>
 constexpr auto rule_of() {
   constexpr auto counts = [] {
@@ -68,30 +68,30 @@ concept StrainQuadrature = requires { requires detail::is_rule(Q::points); };
 
 /// All strains evaluated in the middle; the element does not lock.
 struct ReducedQuadrature {
-  /// Position ξ, and the weights of Γ₁, of Γ₂ and Γ₃, of K.
+  /// Position ξ, and the weights of Γ₁, of Γ₂ and Γ₃, and of K.
   static constexpr std::array<StrainPoint, 1> points = {{{0.5, 1.0, 1.0, 1.0}}};
 };
 
-/// All strains evaluated at both Gauss points, for comparison. The element locks. If the sections of its nodes differ
-/// by the angle φ, those of the Gauss points are inclined by ±φ/√12 to the straight chord. This angle acts as a shear
-/// strain. The bending stiffness is then too large by the factor 1 + GA l²/(12 EI).
+/// All strains evaluated at both Gauss points, for comparison. The element locks. If the sections of the two nodes
+/// differ by the angle φ, those of the Gauss points are inclined by ±φ/√12 to the straight chord. This angle acts as a
+/// shear strain. The bending stiffness is then too large by the factor 1 + GA l²/(12 EI).
 struct FullQuadrature {
-  /// Position ξ, and the weights of Γ₁, of Γ₂ and Γ₃, of K.
+  /// Position ξ, and the weights of Γ₁, of Γ₂ and Γ₃, and of K.
   static constexpr std::array<StrainPoint, 2> points = {
       {{gauss<2>[0].xi, 0.5, 0.5, 0.5}, {gauss<2>[1].xi, 0.5, 0.5, 0.5}}};
 };
 
-/// Γ evaluated in the middle, K at both Gauss points. In the linear theory of a straight bar only the shear requires
-/// the middle, because Γ₁ = u′ is constant. Otherwise Γ₁ must also be evaluated there: at points inclined by ψ ± φ/√12
-/// to the chord, Γ₁ = |r′| cos(ψ ± φ/√12) − 1.
+/// Γ evaluated in the middle, K at both Gauss points. In the linear theory of a straight bar only the shear must be
+/// evaluated in the middle, because Γ₁ = u′ is constant. In general Γ₁ must be evaluated there as well: at points
+/// inclined by ψ ± φ/√12 to the chord, Γ₁ = |r′| cos(ψ ± φ/√12) − 1.
 /// - The mean over both points decreases by φ²/24 under pure bending. The chord becomes longer by the same fraction,
 ///   whereas the chord of an arc becomes shorter.
 /// - The difference of both points, 2 sin ψ sin(φ/√12), depends on the shear ψ: it adds EA φ²/12 to GA. On a curved
-///   reference this also occurs in linear theory, with its angle φ₀ per element.
-/// `RelativeRotation` has a constant K in the element, and the planar beam a constant κ. This quadrature then equals
-/// `Reduced`; in space its cost is five to ten times higher.
+///   reference this also occurs in linear theory, with the angle φ₀ of the reference per element.
+/// `RelativeRotation` has a constant K in the element, and the planar beam a constant κ. This quadrature is then equal
+/// to `ReducedQuadrature`; in space its cost is five to ten times higher.
 struct SelectiveQuadrature {
-  /// Position ξ, and the weights of Γ₁, of Γ₂ and Γ₃, of K.
+  /// Position ξ, and the weights of Γ₁, of Γ₂ and Γ₃, and of K.
   static constexpr std::array<StrainPoint, 3> points = {
       {{gauss<2>[0].xi, 0.0, 0.0, 0.5}, {0.5, 1.0, 1.0, 0.0}, {gauss<2>[1].xi, 0.0, 0.0, 0.5}}};
 };

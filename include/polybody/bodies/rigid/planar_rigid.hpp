@@ -8,8 +8,8 @@
 
 namespace polybody::planar {
 
-/// Rigid body in the plane: x, y of the centre of mass and the angle θ, three coordinates and generalised velocities
-/// [m], [rad].
+/// Rigid body in the plane. The coordinates are x, y of the centre of mass [m] and the angle θ [rad]; the generalised
+/// velocities are their rates.
 class Rigid : public AddingCoordinates {
  public:
   static constexpr World world = World::plane;
@@ -17,18 +17,17 @@ class Rigid : public AddingCoordinates {
   static constexpr bool constant_mass = true;
   static constexpr int element_columns = 3;
   static constexpr int point_columns = 3;
-  static constexpr RigidLayout layout =
-      RigidLayout::plane;  ///< (x, y, θ), which `JointCoordinates` joints may prescribe
+  static constexpr RigidLayout layout = RigidLayout::plane;  ///< (x, y, θ); suitable for joints with `JointCoordinates`
 
   /// Material point, in body axes from the centre of mass [m].
   struct Point {
-    Vec2 u = Vec2::Zero();  ///< (2) [m]
+    Vec2 u = Vec2::Zero();  ///< (2) position from the centre of mass, body axes [m]
   };
 
   /// Mass, inertia and placement.
   struct Parameters {
     Required<double> mass;     ///< [kg]
-    Required<double> inertia;  ///< about the centre of mass, axis z [kg m²]; zero for a point mass
+    Required<double> inertia;  ///< about the axis z through the centre of mass [kg m²]; zero for a point mass
     Placement placement = {};  ///< placement of the centre of mass
   };
 
@@ -44,7 +43,7 @@ class Rigid : public AddingCoordinates {
     require_not_negative(inertia_, "planar::Rigid: the inertia");
   }
   /// Body with `mass` [kg] and `inertia` about the centre of mass [kg m²].
-  /// \throws InvalidInput as the constructor from parameters.
+  /// \throws InvalidInput for mass ≤ 0, inertia < 0 or a placement that leaves the plane.
   template <class = void>  // compiled only if used
   Rigid(double mass, double inertia, Placement const& placement = {})
       : Rigid(Parameters{.mass = mass, .inertia = inertia, .placement = placement}) {}
@@ -63,8 +62,8 @@ class Rigid : public AddingCoordinates {
     return body;
   }
 
-  /// Point at distance s from the first end of the bar [m], at y from its axis [m].
-  /// \throws InvalidInput outside the bar.
+  /// Point at the distance s along the bar from its first end, and y from the axis of the bar [m].
+  /// \throws InvalidInput for s outside the bar, and for a body that is not made from a bar.
   template <class = void>  // compiled only if used
   Point at(double s, double y = 0.0) const {
     if (length_ == 0.0)
@@ -168,7 +167,7 @@ class Rigid : public AddingCoordinates {
     out.columns = 3;
   }
 
-  /// Load stiffness. Only the third row of Jᵀw depends on q: ∂(ρ × f)/∂θ = −ρ · f.
+  /// Load stiffness ∂(Jᵀw)/∂q. Only the third row of Jᵀw depends on q: ∂(ρ × f)/∂θ = −ρ · f.
   template <class = void>  // compiled only if used
   void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, Mat3& k) const {
     double const c = std::cos(q[2]), s = std::sin(q[2]);

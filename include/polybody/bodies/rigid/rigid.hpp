@@ -39,9 +39,9 @@ std::array<double, 3> principal_values(Mat3 const& a) {
 
 }  // namespace detail
 
-/// Checks that `inertia` is possible for a mass distribution; `what` begins the message.
-/// \throws InvalidInput unless `inertia` is symmetric, no principal moment is negative, and none exceeds the sum of the
-/// others; that is, ½ tr(J) 1 − J ⪰ 0.
+/// Requires an inertia tensor that a distribution of mass can have.
+/// \throws InvalidInput, with a message that begins with `what`, unless `inertia` is symmetric, no principal moment is
+/// negative, and none exceeds the sum of the other two: ½ tr(J) 1 − J ⪰ 0.
 template <class = void>  // compiled only if used
 [[gnu::cold]] void require_inertia(Mat3 const& inertia, std::string const& what) {
   require_finite(inertia, what, ": the inertia");
@@ -50,8 +50,9 @@ template <class = void>  // compiled only if used
                                 std::abs(inertia(0, 1)), std::abs(inertia(0, 2)), std::abs(inertia(1, 2))});
   if (size == 0.0) return;
   if (size > largest_number)
-    throw InvalidInput("value.magnitude", {ErrorObject{what}, ": the inertia has an entry of ", ErrorValue{size},
-                                           " kg m², but its square must be finite."});
+    throw InvalidInput("value.magnitude",
+                       {ErrorObject{what}, ": the inertia tensor has an entry of ", ErrorValue{size}, " kg m², beyond ",
+                        largest_number, " kg m², the largest allowed magnitude."});
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < i; ++j)
       if (std::abs(inertia(i, j) - inertia(j, i)) > 1e-9 * size)
@@ -79,10 +80,10 @@ class RigidShape {
 
   /// Material point, in body axes from the centre of mass [m].
   struct Point {
-    Vec3 u = Vec3::Zero();  ///< (3) [m]
+    Vec3 u = Vec3::Zero();  ///< (3) position from the centre of mass, body axes [m]
   };
 
-  /// Mass properties without a bar.
+  /// Mass properties and placement of a body that is not made from a bar.
   struct Parameters {
     Required<double> mass;        ///< [kg]
     Mat3 inertia = Mat3::Zero();  ///< (3×3) about the centre of mass, body axes [kg m²]
@@ -90,7 +91,7 @@ class RigidShape {
   };
 
   /// Body with the given parameters. Moments of inertia may be zero.
-  /// \throws InvalidInput for mass ≤ 0 or an inertia that no body has.
+  /// \throws InvalidInput for mass ≤ 0, an inertia tensor that no distribution of mass has, or an invalid placement.
   template <class = void>  // compiled only if used
   RigidShape(Parameters const& p) : mass_(p.mass), inertia_(p.inertia), placement_(p.placement) {  // NOLINT
     require_positive(mass_, "Rigid: the mass");
@@ -105,8 +106,8 @@ class RigidShape {
   double mass() const { return mass_; }             ///< [kg]
   Mat3 const& inertia() const { return inertia_; }  ///< J (3×3) about the centre of mass, body axes [kg m²]
 
-  /// Point at distance s from the first end of the bar [m], at (y, z) from its axis [m].
-  /// \throws InvalidInput outside the bar.
+  /// Point at the distance s along the bar from its first end, and (y, z) from the axis of the bar [m].
+  /// \throws InvalidInput for s outside the bar, and for a body that is not made from a bar.
   template <class = void>  // compiled only if used
   Point at(double s, double y = 0.0, double z = 0.0) const {
     if (length_ == 0.0)
@@ -156,12 +157,13 @@ class RigidShape {
     for (int i = 0; i < 3; ++i) y[i] = x[0] * inertia_(i, 0) + x[1] * inertia_(i, 1) + x[2] * inertia_(i, 2);
     return y;
   }
-  /// Column j of J.
+  /// Column j of the inertia tensor J.
   template <class T>
   Vec<T, 3> axis_of_inertia(int j) const {
     return {inertia_(0, j), inertia_(1, j), inertia_(2, j)};
   }
-  /// Writes a × b to three entries of `out` from `first` on. Eigen's cross product writes to memory and waits for it.
+  /// Writes a × b to three entries of `out`, beginning at `first`. Eigen's cross product stores its result in memory
+  /// and then waits for this store.
   template <class A, class B, class Out>
   static void set_cross(A const& a, B const& b, Out& out, int first) {
     out[first] = a[1] * b[2] - a[2] * b[1];
@@ -178,15 +180,15 @@ class RigidShape {
 /// Rotation of `Rigid` as a unit quaternion, with the angular velocity in body axes as generalised velocities.
 struct UnitQuaternion {};
 
-/// Rigid body: `Rigid<>`, or `Rigid<EulerParameters>` of bodies/rigid/rigid_euler_parameters.hpp.
+/// Rigid body: `Rigid<>` with a unit quaternion, or `Rigid<EulerParameters>` (bodies/rigid/rigid_euler_parameters.hpp).
 template <class Rotation = UnitQuaternion>
 class Rigid;
 
 /// Rigid body with a unit quaternion: six generalised velocities and no constraint equation of its own [Shabana 2020,
 /// §3.5; Brüls, Cardona & Arnold 2012]. The coordinates are (r, q), with the centre of mass r in world axes [m] and the
 /// unit quaternion q. The generalised velocities are (ṙ, Ω), with the angular velocity Ω in body axes [rad/s]. The
-/// equations of Newton and Euler are
-///   m r̈ = f,   J Ω˙ + Ω × J Ω = Aᵀ m_c.
+/// The equations of Newton and Euler, with the force f and the moment m_c about the centre of mass in world axes, are
+///   m r̈ = f,  J Ω˙ + Ω × J Ω = Aᵀ m_c.
 template <>
 class Rigid<UnitQuaternion> : public RigidShape {
  public:
@@ -194,7 +196,7 @@ class Rigid<UnitQuaternion> : public RigidShape {
   static constexpr int element_columns = 6;
   static constexpr int point_columns = 6;
   static constexpr RigidLayout layout =
-      RigidLayout::quaternion;  ///< (r, quaternion), which `JointCoordinates` joints may prescribe
+      RigidLayout::quaternion;  ///< (r, quaternion); suitable for joints with `JointCoordinates`
 
   using RigidShape::inertia, RigidShape::mass, RigidShape::RigidShape;
 
@@ -225,7 +227,7 @@ class Rigid<UnitQuaternion> : public RigidShape {
     set_quaternion_plus<T>(q.data() + 3, delta.data() + 3, out.data() + 3);
   }
 
-  /// Rate δ˙ if q ⊞ δ(t) moves with v: Ω = Jr(δ) δ˙.
+  /// Rate δ˙ for which q ⊞ δ(t) moves with the generalised velocities v. For the rotation, Ω = Jr(δ) δ˙.
   template <StateScalar T>
   void local_rate(std::span<T const> delta, std::span<T const> v, std::span<T> out) const {
     Mat<T, 3, 3> const jacobian = right_jacobian_inverse<T>({delta[3], delta[4], delta[5]});
@@ -318,16 +320,16 @@ class Rigid<UnitQuaternion> : public RigidShape {
   /// Kinematics that all points of the body share.
   template <StateScalar T>
   struct Pose {
-    Vec<T, 3> r, v, w;  ///< of the centre of mass, world axes
-    Mat<T, 3, 3> A;     ///< from body to world axes
+    Vec<T, 3> r, v, w;  ///< position, velocity and angular velocity of the body, at the centre of mass, in world axes
+    Mat<T, 3, 3> A;     ///< rotation matrix from body to world axes
   };
 
   template <StateScalar T>
   void pose(std::span<T const> q, std::span<T const> v, Pose<T>& out) const {
     set_rotation<T>({q[3], q[4], q[5], q[6]}, out.A);
     for (int i = 0; i < 3; ++i) {
-      out.r[i] = q[i];
-      out.v[i] = v[i];
+      out.r[i] = q[std::size_t(i)];
+      out.v[i] = v[std::size_t(i)];
       out.w[i] = out.A(i, 0) * v[3] + out.A(i, 1) * v[4] + out.A(i, 2) * v[5];
     }
   }
@@ -363,7 +365,8 @@ class Rigid<UnitQuaternion> : public RigidShape {
     evaluate_marker(p, axes, at, out);
   }
 
-  /// Load stiffness of Jᵀw = [f; Aᵀm + u × Aᵀf]. Under A ⊞ δ, δ(Aᵀm) = (Aᵀm)~ δ, hence (Aᵀm)~ + ũ (Aᵀf)~.
+  /// Load stiffness, the derivative of Jᵀw = [f; Aᵀm + u × Aᵀf]. For A ⊞ δ, δ(Aᵀm) = (Aᵀm)~ δ. The block of the
+  /// rotation is therefore (Aᵀm)~ + ũ (Aᵀf)~.
   template <class T>  // compiled only if used
   void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, Mat<T, 6, 6>& k) const {
     Mat<T, 3, 3> const a = rotation_matrix<T>({q[3], q[4], q[5], q[6]});

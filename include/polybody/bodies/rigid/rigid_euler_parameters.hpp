@@ -16,15 +16,15 @@ struct EulerParameters {};
 ///   Ḡ = (2/|θ|²) [−θ₁ θ₀ θ₃ −θ₂; −θ₂ −θ₃ θ₀ θ₁; −θ₃ θ₂ −θ₁ θ₀]   (3×4),   Ω = Ḡ θ̇,   G_w = A Ḡ, ω = G_w θ̇,
 /// the moment m_c (body axes) and the generalised moment are related by m_θ = Ḡᵀ m_c; hence
 ///   M = diag(m 1, Ḡᵀ J Ḡ),   f_θ = −Ḡᵀ (Ω × J Ω).
-/// M is singular along θ, and the constraint equation removes this singularity. Division by |θ|² makes A a rotation
-/// matrix and Ḡ θ̇ its angular velocity if the constraint equation is not exactly satisfied.
+/// M is singular along θ, and the constraint equation removes this singularity. Due to the division by |θ|², A is a
+/// rotation matrix and Ḡ θ̇ its angular velocity even if the constraint equation is not exactly satisfied.
 template <>
 class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
  public:
   static constexpr bool constant_mass = false;
   static constexpr int element_columns = 7;
   static constexpr int point_columns = 7;
-  static constexpr int own_equations = 1;  ///< norm, |θ| = 1
+  static constexpr int own_equations = 1;  ///< number of constraint equations of the body: |θ| = 1
 
   using RigidShape::inertia, RigidShape::mass, RigidShape::RigidShape;
 
@@ -37,7 +37,7 @@ class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
     return Rigid(bar);
   }
 
-  Point const& local(Point const& p) const { return p; }  ///< p itself: every point depends on all columns
+  Point const& local(Point const& p) const { return p; }  ///< returns p; every point depends on all columns
   Index coordinates() const { return 7; }
   Index velocities() const { return 7; }
   char const* coordinate_unit(Index i) const { return i < 3 ? "m" : "1"; }
@@ -64,7 +64,7 @@ class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
     g << -b, a, d, -c, -c, -d, a, b, -d, c, -b, a;
     return g * scale;
   }
-  /// Rotation matrix A (3×3) at q, of θ/|θ|.
+  /// Rotation matrix A (3×3) at q, computed from θ/|θ|.
   template <StateScalar T>
   static Mat<T, 3, 3> axes(std::span<T const> q) {
     Mat<T, 3, 3> a;
@@ -95,7 +95,7 @@ class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
     out.template head<3>().setZero();
     out.template tail<4>() = g.transpose() * moment;
   }
-  /// Tangent by dual numbers along ck δθ and cd δθ̇.
+  /// Tangent ck (−∂f/∂θ) + cd (−∂f/∂θ̇) by dual numbers.
   template <class T, StateScalar D = Dual<4>>  // compiled only if used
   void tangent(Index e, std::span<double const> q, std::span<double const> v, double ck, double cd,
                Mat<T, 7, 7>& k) const {
@@ -132,7 +132,7 @@ class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
     return -mass_ * g.dot(r);
   }
 
-  /// Constraint function Φ = ½ (θᵀθ − 1), with G = [0, θᵀ], γ = θ̇ᵀθ̇, and ∂(Gᵀλ)/∂q = λ for θ.
+  /// Constraint function Φ = ½ (θᵀθ − 1), with G = [0, θᵀ] and γ = θ̇ᵀθ̇. The block of θ in ∂(Gᵀλ)/∂q is λ 1.
   template <StateScalar T>
   void own_constraint(std::span<T const> q, Vec<T, 1>& phi) const {
     phi[0] = (q[3] * q[3] + q[4] * q[4] + q[5] * q[5] + q[6] * q[6]) * 0.5 - 0.5;
@@ -154,7 +154,7 @@ class Rigid<EulerParameters> : public RigidShape, public AddingCoordinates {
     for (int i = 3; i < 7; ++i) k(i, i) = lambda[0];
   }
 
-  /// Marker kinematics as in `Rigid<>`, where `marker` are the axes of the marker in body axes. With Ω = Ḡ θ̇,
+  /// Marker kinematics as in `Rigid<>`. `marker` are the axes of the marker in body axes. Since Ω = Ḡ θ̇,
   ///   Ω̇ = Ḡ θ̈ + Ḡ˙ θ̇,  Ḡ˙ θ̇ = −2 (θ·θ̇)/|θ|² Ω.
   template <StateScalar T>
   void evaluate_marker(Point const& p, Mat3 const& marker, std::span<T const> q, std::span<T const> v,

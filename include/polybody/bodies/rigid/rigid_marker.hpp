@@ -1,14 +1,15 @@
 #pragma once
 /// \file
-/// Marker of a rigid body in doubles. Markers are numerous and are written at every evaluation.
+/// Kinematics of a marker on a rigid body, computed in SIMD registers. Every evaluation computes all markers of a
+/// model.
 
 #include <polybody/kinematics/marker_kinematics.hpp>
 #include <polybody/math/vec3_storage.hpp>
 
 namespace polybody::detail {
 
-/// Writes the marker kinematics of `Rigid::evaluate_marker` to `out`, bitwise identical, for the point u with the axes
-/// `axes`, both in body axes, of a body with the pose `at`.
+/// Writes the marker kinematics of the point u with the axes `axes`, both in body axes, to `out`; `at` is the pose of
+/// the body. The result is bitwise identical to the formulas of `Rigid::evaluate_marker`.
 template <class Pose, class V = Vec3Storage<>>  // compiled only if used
 void write_rigid_marker(Vec3 const& u, Mat3 const& axes, Pose const& at, MarkerKinematics<double>& out) {
   V const x = V::column(at.A, 0), y = V::column(at.A, 1), z = V::column(at.A, 2), w = V::load(at.w.data());

@@ -15,12 +15,12 @@ namespace polybody {
 
 /// Rigid body B with mass and inertia as functions of time. The centre of mass is fixed in the body:
 ///
-///     Changing<Rigid<>> const stage([](double t) { return Rigid<>(mass(t), inertia(t)); });
+///     VariableMass<Rigid<>> const stage([](double t) { return Rigid<>(mass(t), inertia(t)); });
 ///
-/// The equation M(t) v̇ = f is valid if the mass that leaves or arrives has the velocity of the body at its point, so
-/// that it keeps its own momentum. Mass that leaves with another velocity exerts a force on the body: −ṁ u for a stream
-/// of ṁ [kg/s] at u [m/s] relative to the body. It is applied like any other force
-/// [Meshchersky 1897; Goldstein, Poole & Safko 2002, ch. 1]. Energies are those of the present mass.
+/// The equation M(t) v̇ = f is valid if mass leaves or arrives with the velocity of the body at that point. Mass that
+/// leaves with another velocity exerts a force on the body: −ṁ u for a stream of ṁ [kg/s] at u [m/s] relative to the
+/// body. Apply this force by a force element [Meshchersky 1897; Goldstein, Poole & Safko 2002, ch. 1]. Energies are
+/// computed with the mass at the time of the state.
 template <Body B>
 class VariableMass : public B {
   static_assert(HasRigidLayout<B>,
@@ -30,11 +30,11 @@ class VariableMass : public B {
  public:
   static constexpr bool constant_mass = false;
 
-  /// Body at time t [s]. Every evaluation calls the function, from several threads if there are any.
+  /// Function that returns the body at time t [s]. Every evaluation calls the function, possibly from several threads.
   using Law = std::function<B(double t)>;
 
   /// Body with the function of time `law`.
-  /// \throws InvalidInput without a function, and any exception of the function for t = 0.
+  /// \throws InvalidInput if `law` is empty, and any exception that `law` throws for t = 0.
   explicit VariableMass(Law law) : B(at_start(law)), law_(std::make_shared<Law const>(std::move(law))) {}
 
   /// Body at time t [s].
@@ -63,8 +63,8 @@ class VariableMass : public B {
   [[noreturn, gnu::cold]] static void refuse_place(double t) {
     throw InvalidInput("variable_mass.moved",
                        {ErrorObject{"VariableMass"}, ": at t = ", ErrorTime{t},
-                        " s the function places the body elsewhere than at t = 0. The coordinates are those of the "
-                        "centre of mass: do not change the placement, and give mass and inertia about it."});
+                        " s the function places the body elsewhere than at t = 0. Return the same placement at all "
+                        "times, and the inertia about the centre of mass."});
   }
 
   std::shared_ptr<Law const> law_;

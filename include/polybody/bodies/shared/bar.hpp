@@ -29,8 +29,8 @@ struct Material {
   double poisson = 0.3;      ///< ν, in (−1, 0.5]
 };
 
-/// Stiffness and inertia of a section, in the form of most published cases. The axes y and z are those of the section;
-/// a planar bar bends about z.
+/// Stiffness and inertia of a section. Most published examples give these constants. The axes y and z are those of the
+/// section; a planar bar bends about z.
 struct BarConstants {
   Required<double> EA;                          ///< axial stiffness [N]
   Required<double> EI;                          ///< bending stiffness about z [N m²]
@@ -38,9 +38,9 @@ struct BarConstants {
   double GA = 0.0;                              ///< shear stiffness k G A along y [N]; 0 if not given
   double GJ = 0.0;                              ///< torsional stiffness [N m²]; 0 if not given
   double rotary_inertia = 0.0;                  ///< Iρ about z, per length [kg m]
-  std::optional<double> EI_y = {};              ///< bending stiffness about y [N m²]; as EI if not given
-  std::optional<double> GA_z = {};              ///< shear stiffness along z [N]; as GA if not given
-  std::optional<double> rotary_inertia_y = {};  ///< about y, per length [kg m]; as about z if not given
+  std::optional<double> EI_y = {};              ///< bending stiffness about y [N m²]; EI if not given
+  std::optional<double> GA_z = {};              ///< shear stiffness along z [N]; GA if not given
+  std::optional<double> rotary_inertia_y = {};  ///< about y, per length [kg m]; `rotary_inertia` if not given
   std::optional<double> polar_inertia = {};     ///< about the axis, per length [kg m]; Iρ_y + Iρ_z if not given
 };
 
@@ -51,17 +51,17 @@ Vec3 rotary_inertias(BarConstants const& c) {
   return Vec3(c.polar_inertia.value_or(y + z), y, z);
 }
 
-/// Kelvin–Voigt damping: stress = stiffness · (strain + time · strain rate). It is objective by construction.
+/// Kelvin–Voigt damping: stress = stiffness · (strain + time · strain rate). Rigid motions of the bar cause no damping.
 struct Damping {
-  double axial = 0.0;    ///< [s]
-  double shear = 0.0;    ///< shear and torsion [s]
-  double bending = 0.0;  ///< [s]
+  double axial = 0.0;    ///< time of the axial strain [s]
+  double shear = 0.0;    ///< time of shear and torsion [s]
+  double bending = 0.0;  ///< time of the curvatures [s]
 };
 
 /// Straight bar with its first end at the origin of the placement and its axis along the x axis of the placement. Its
 /// data are either `section` and `material`, or `constants`.
 struct Bar {
-  Required<double> length;  ///< [m], from 1e-100 to 1e100, because its cube must be finite and nonzero
+  Required<double> length;  ///< [m], from 1e-100 to 1e100, so that its cube is finite and not zero
   std::variant<std::monostate, Circle, Rectangle> section = {};  ///< empty if the bar is given by `constants`
   std::optional<Material> material = {};                         ///< material of the section
   std::optional<BarConstants> constants = {};                    ///< instead of section and material
@@ -71,18 +71,18 @@ struct Bar {
   std::optional<double> shear_factor = {};  ///< factor k of the shear stiffness k G A; by Cowper's formula if not given
 };
 
-/// Mesh of a body that is made from a bar: `B::from(bar, {.elements = 8})`. Every body accepts it. A rigid body has no
-/// elements, so the number has no effect on it.
+/// Mesh of a body that is made from a bar: `B::from(bar, {.elements = 8})`. Every body type accepts a mesh. The number
+/// of elements has no effect on a rigid body.
 ///
-/// Without a number, `B::from(bar)` uses `B::default_elements`: 8 elements if the axis is cubic without shear (ANCF
-/// cables, floating frames), 16 if it is cubic with shear (`AncfBeam`), 32 if it is linear (`Lrvf`). The lowest bending
-/// frequency of a pinned bar is then within 0.2 % of its exact value, and the second one within 0.7 %.
+/// Without a number of elements, `B::from(bar)` uses `B::default_elements`: 8 if the axis is cubic without shear (ANCF
+/// cables, floating frames), 16 if the axis is cubic with shear (`AncfBeam`), 32 if it is linear (`Lrvf`). The lowest
+/// bending frequency of a pinned bar is then within 0.2 % of its exact value, and the second one within 0.7 %.
 struct BarMesh {
   std::optional<Index> elements = {};  ///< number of elements of equal length, at least 1
 };
 
-/// Curved reference: the placement of the section at arc length s ∈ [0, length], in the axes of the bar (x along the
-/// tangent). At s = 0 it usually is `Placement{}`.
+/// Curved reference: function that returns the placement of the section at arc length s ∈ [0, length], in the axes of
+/// the bar (x along the tangent). The placement at s = 0 usually is `Placement{}`.
 using ReferenceCurve = std::function<Placement(double)>;
 
 namespace detail {
@@ -114,7 +114,7 @@ template <class = void>  // compiled only if used
     iy = h * w * w * w / 12.0;
     shear = 10.0 * (1.0 + nu) / (12.0 + 11.0 * nu);  // Cowper 1966
     // Torsion constant of Saint-Venant, J = a b³ (1/3 − (64/π⁵)(b/a) Σ tanh((2k+1)πa/2b)/(2k+1)⁵) with sides a ≥ b
-    // [Timoshenko & Goodier 1970, §109, there with half the sides]
+    // [Timoshenko & Goodier 1970, §109, with half sides a and b]
     double const a = std::max(h, w), b = std::min(h, w);
     double sum = 0.0;
     for (int k = 1; k < 40; k += 2) sum += std::tanh(k * std::numbers::pi * a / (2.0 * b)) / std::pow(k, 5);
@@ -139,8 +139,8 @@ template <class = void>  // compiled only if used
           .rotary_inertia_y = rho * iy};
 }
 
-/// Checks the constants of a bar.
-/// \throws InvalidInput for stiffness and inertia that prevent a calculation; `of` begins the sentence.
+/// Checks the magnitudes of the constants of a bar.
+/// \throws InvalidInput for a constant that is neither zero nor in [1e-150, 1e150]; `of` begins the message.
 template <class = void>  // compiled only if used
 [[gnu::cold]] void require_sizes(BarConstants const& c, std::string const& of) {
   struct {
@@ -158,8 +158,8 @@ template <class = void>  // compiled only if used
                    {c.polar_inertia.value_or(0.0), "polar_inertia"}};
   for (auto const& [x, what] : all) require_size(x, of + what);
 }
-/// Checks the section and the material of a bar.
-/// \throws InvalidInput if products of their numbers overflow or vanish.
+/// Checks the constants of a bar that follow from its section and material.
+/// \throws InvalidInput if EA, EI or the mass per length is not positive, or if a constant is too large or too small.
 template <class = void>  // compiled only if used
 [[gnu::cold]] void require_section_sizes(Bar const& bar, BarConstants const& c) {
   std::string of = "Bar: with a section of ";
@@ -175,7 +175,7 @@ template <class = void>  // compiled only if used
 }
 
 /// Checks a damping time [s].
-/// \throws InvalidInput naming `what` unless the time is zero or positive, and its products with stiffness are finite.
+/// \throws InvalidInput naming `what` unless 0 ≤ `time` ≤ `largest_number`.
 template <class = void>  // compiled only if used
 void require_damping_time(double time, std::string const& what) {
   require_not_negative(time, what);
@@ -203,7 +203,7 @@ template <class = void>  // compiled only if used
                                             ErrorValue{bar.pretension}, " N."});
   if (std::abs(bar.pretension) > largest_number)
     throw InvalidInput("value.magnitude", {ErrorObject{"Bar"}, ": the pretension is ", ErrorValue{bar.pretension},
-                                           " N, but its square must be finite."});
+                                           " N, beyond ", largest_number, " N, the largest allowed magnitude."});
   bool const by_section = !std::holds_alternative<std::monostate>(bar.section);
   if (by_section != bar.material.has_value() || by_section == bar.constants.has_value())
     throw InvalidInput(
@@ -213,7 +213,7 @@ template <class = void>  // compiled only if used
   if (bar.shear_factor && !by_section)
     throw InvalidInput("bar.shear_factor",
                        {ErrorObject{"Bar"},
-                        ": the shear factor belongs to a section. Constants contain the shear stiffness GA itself."});
+                        ": a shear factor needs a section. The constants already contain the shear stiffness GA."});
   if (by_section) {
     BarConstants const c = detail::constants_of_section(bar);
     detail::require_section_sizes(bar, c);
@@ -234,9 +234,8 @@ template <class = void>  // compiled only if used
   return c;
 }
 
-/// Checks the polar inertia of a body whose mass is distributed over material points: it must be ∫ρ(y² + z²) about the
-/// axis.
-/// \throws InvalidInput naming `what` for another polar inertia.
+/// Checks the polar inertia of a body whose mass is distributed over material points.
+/// \throws InvalidInput naming `what` unless the polar inertia is that of the points, ∫ρ(y² + z²) over the section.
 template <class = void>  // compiled only if used
 void require_polar_inertia_of_points(BarConstants const& c, std::string const& what) {
   Vec3 const i = rotary_inertias(c);

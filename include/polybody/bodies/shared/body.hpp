@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Body concept: members that a formulation must have, and the geometric stiffness of a marker by dual numbers.
+/// Concepts of bodies: the members that a formulation must have. Also the load stiffness of a marker by dual numbers.
 
 #include <span>
 
@@ -8,7 +8,7 @@
 
 namespace polybody {
 
-/// Expression for `n` entries of the coordinates or generalised velocities `x` of a body, beginning at `first`.
+/// Map of `n` successive entries of x, the coordinates or generalised velocities of a body, beginning at `first`.
 template <int n, class T>
 auto part(std::span<T> x, Index first) {
   using Scalar = std::remove_const_t<T>;
@@ -16,8 +16,7 @@ auto part(std::span<T> x, Index first) {
   return Map(x.data() + first);
 }
 
-/// Copy of `n` entries of `x` beginning at `first`, as a vector. It avoids Eigen's expressions, which take longer to
-/// compile.
+/// Copy of `n` entries of `x` beginning at `first`, as a vector. The copy compiles faster than Eigen's expressions.
 template <int n, class T>
 Vec<std::remove_const_t<T>, n> entries(std::span<T> x, Index first) {
   Vec<std::remove_const_t<T>, n> out;
@@ -30,7 +29,7 @@ void set_entries(std::span<T> x, Index first, Vec<T, n> const& value) {
   for (int i = 0; i < n; ++i) x[std::size_t(first + i)] = value[i];
 }
 
-/// Coordinates and generalised velocities of a rigid body whose pose a joint may prescribe.
+/// Order of the coordinates and generalised velocities of a rigid body that joints with `JointCoordinates` can move.
 enum class RigidLayout : unsigned char {
   quaternion,  ///< (r, unit quaternion) and (ṙ, Ω in body axes)
   plane        ///< (x, y, θ) and their rates
@@ -42,9 +41,9 @@ concept HasRigidLayout = requires {
   { B::layout } -> std::convertible_to<RigidLayout>;
 };
 
-/// Body that deforms in a frame whose pose a joint may prescribe. The coordinates and generalised velocities of the
-/// frame come first, in the layout `frame_layout`. The coordinates of the deformation follow, and they add. The sizes
-/// of all its markers are known at run time only.
+/// Body that deforms relative to a frame which joints with `JointCoordinates` can move. The coordinates and generalised
+/// velocities of the frame come first, in the order `frame_layout`. The coordinates of the deformation follow and form
+/// a vector space. The sizes of all markers are known only at run time.
 template <class B>
 concept FloatingFrameBody = requires(B const b) {
   { B::frame_layout } -> std::convertible_to<RigidLayout>;
@@ -56,19 +55,19 @@ concept FloatingFrameBody = requires(B const b) {
 template <class B>
 inline constexpr bool moves_by_newton_euler = false;
 
-/// Body whose points are linear in its coordinates, r = S e with constant S. The number `gradients` counts the
-/// gradients r_α that are also linear.
+/// Body whose points are linear in its coordinates, r = S e with constant S. `gradients` is the number of position
+/// gradients r_α that are linear in e as well.
 template <class B>
 concept HasLinearPoints = requires(B const b, typename B::Point p) {
   { B::gradients } -> std::convertible_to<int>;
   b.position_map(p);
 };
 
-/// Body of elements of fixed size that compute inertia, force and tangent. Spans cover the whole body. Element e uses
-/// the columns [first_column(e), first_column(e) + element_columns). A body whose size is known at run time only has
-/// `element_columns = Eigen::Dynamic`: it has one element with all its columns. Coordinates may be on a manifold, q ⊞ δ
-/// (`plus`); δ has as many entries as there are generalised velocities. A `Point` can be copied and has a default;
-/// `at(…)` makes one. `docs/extending.md` describes each member, and the optional members.
+/// Body whose elements compute inertia, force and tangent. The spans contain the coordinates or velocities of the whole
+/// body. Element e uses the columns [first_column(e), first_column(e) + element_columns). A body whose size is known
+/// only at run time has `element_columns = Eigen::Dynamic` and a single element with all columns. Coordinates may be on
+/// a manifold, q ⊞ δ (`plus`); δ has as many entries as there are generalised velocities. A `Point` can be copied and
+/// default-constructed; `at(…)` creates a point. `docs/extending.md` describes each member, and the optional members.
 template <class B>
 concept Body = requires(B const b, Index e, std::span<double const> x, std::span<double> out, typename B::Point p,
                         MarkerKinematics<double>& published, Vec<double, B::element_columns>& vector,
@@ -100,8 +99,8 @@ concept Body = requires(B const b, Index e, std::span<double const> x, std::span
 
 /// Body with its own constraint equations between its coordinates, such as the norm of Euler parameters:
 ///   Φ(q) = 0,  G = ∂Φ/∂q,  Φ̈ = G v̇ + γ.
-/// G is own_equations × all generalised velocities of the body, whose number is fixed. The equations are counted and
-/// solved like those of a joint.
+/// G has `own_equations` rows and one column for each generalised velocity of the body, whose number is fixed. The
+/// equations are counted and solved like those of a joint.
 template <class B>
 concept HasOwnEquations = requires(B const b, std::span<double const> x, Vec<double, B::own_equations>& rows,
                                    Mat<double, B::own_equations, B::element_columns>& map,
@@ -112,21 +111,22 @@ concept HasOwnEquations = requires(B const b, std::span<double const> x, Vec<dou
   b.own_stiffness(x, Vec<double, B::own_equations>(), stiffness);  // ∂(Gᵀλ)/∂q
 };
 
-/// Body that computes the ratio of the axial forces in its beams to their buckling forces, with a sign: at −1 the beams
-/// buckle. The deflection of such a body does not include the effect of these forces. A run warns of it.
+/// Body whose deflection does not include the effect of axial forces (geometric stiffening). `axial_share` returns the
+/// ratio of the axial forces in its beams to their buckling forces, negative in compression; at −1 the beams buckle. A
+/// run warns if the ratio is large.
 template <class B>
 concept WithoutGeometricStiffening =
     requires(B const b, std::span<double const> x, Vec3 g, std::span<PlacedWrench const> loads) {
       { b.axial_share(x, x, x, g, loads) } -> std::convertible_to<double>;  // at q, v, v̇
     };
 
-/// Number of columns of an element of `body`, or of a marker on it. A body with markers of different sizes has
-/// `columns_of(point)`.
+/// Number of columns of an element of `body`.
 template <class B>
 Index element_columns(B const& body) {
   return B::element_columns == Eigen::Dynamic ? body.velocities() : Index(B::element_columns);
 }
-/// Number of columns of a marker at p of `body`.
+/// Number of columns of a marker at p on `body`: `columns_of(p)` if the body defines this function, because its markers
+/// differ in size.
 template <class B>
 Index point_columns(B const& body, [[maybe_unused]] typename B::Point const& p) {
   if constexpr (requires { body.columns_of(p); })
@@ -141,19 +141,19 @@ struct BodyMotion {
   std::span<T const> q, v, a = {};  ///< q, v and v̇ of the whole body
 };
 
-/// Body of one element that adds M v̇ − f, minus its weight under g, to its `velocities` rows. For a small body this is
-/// faster than to store the terms and read them again.
+/// Body of one element that adds its residual, M v̇ − f minus the weight under g, to the rows of its generalised
+/// velocities. For a small body this is faster than storing the terms and reading them again.
 template <class B, class T>
 concept HasBodyResidual =
     requires(B const b, BodyMotion<T> const& x, Vec3 const& g, T* rows) { b.add_residual(x, g, rows); };
 
-/// Workspace of the loops over the elements of a body. It is on the stack if the sizes are known at compile time.
-/// Otherwise it is stored with the data of the body, so that no step allocates memory.
+/// Workspace of the loops over the elements of a body. The workspace is on the stack if the sizes are known at compile
+/// time. Otherwise it is stored with the data of the body, so that no step allocates memory.
 template <class B, class T>
 struct ForceScratch {
-  Vec<T, B::element_columns> x, force, weight;  ///< of an element: M a − f, force and weight
-  VecXOf<T> workspace;                          ///< of a body that computes its residual at once
-  /// Sets the sizes that are known at run time only from `body`.
+  Vec<T, B::element_columns> x, force, weight;  ///< of an element: residual M a − f, force f and weight
+  VecXOf<T> workspace;                          ///< for a body with a function `residual`
+  /// Sets the sizes that are known only at run time.
   explicit ForceScratch([[maybe_unused]] B const& body) {
     if constexpr (B::element_columns == Eigen::Dynamic)
       for (auto* const v : {&x, &force, &weight}) v->resize(body.velocities());
@@ -163,8 +163,8 @@ struct ForceScratch {
 /// Workspace for the tangent and the mass matrix of an element.
 template <class B>
 struct TangentScratch {
-  Mat<double, B::element_columns, B::element_columns> k, m;  ///< tangent and mass
-  /// Sets the sizes that are known at run time only from `body`.
+  Mat<double, B::element_columns, B::element_columns> k, m;  ///< tangent and mass matrix
+  /// Sets the sizes that are known only at run time.
   explicit TangentScratch([[maybe_unused]] B const& body) {
     if constexpr (B::element_columns == Eigen::Dynamic)
       for (auto* const matrix : {&k, &m}) matrix->resize(body.velocities(), body.velocities());
@@ -172,10 +172,11 @@ struct TangentScratch {
 };
 
 namespace detail {
-/// Workspace stored for each body of run-time size; without element data for the other bodies.
+/// Workspace stored for each body. It contains the workspace of an element if the size of the body is known only at run
+/// time.
 template <class B, class T>
 struct ThreadScratch {
-  MatX of_point;  ///< for the load stiffness of a marker whose size is known at run time only
+  MatX of_point;  ///< load stiffness of a marker whose size is known only at run time
   explicit ThreadScratch([[maybe_unused]] B const& body) {
     if constexpr (B::point_columns == Eigen::Dynamic) of_point.resize(body.velocities(), body.velocities());
   }
@@ -217,9 +218,9 @@ struct PoseOf<B, T> {
 };
 }  // namespace detail
 
-/// Load stiffness ∂(Jᵀw)/∂q, columns × columns, of a marker with J of fixed width, by dual numbers. It is the default
-/// for a body without a closed form whose coordinates add, q ⊞ δ = q + δ. `body.local(p)` is p in a body that consists
-/// of the columns of the marker only.
+/// Load stiffness ∂(Jᵀw)/∂q (columns × columns) of a marker whose J has a fixed number of columns, by dual numbers. For
+/// bodies without a closed form, whose coordinates add: q ⊞ δ = q + δ. `body.local(p)` is the same point of a body that
+/// consists only of the columns of the marker.
 template <class B>
 void load_stiffness_by_dual_numbers(B const& body, typename B::Point const& p, std::span<double const> q,
                                     Wrench<double> const& w, Mat<double, B::point_columns, B::point_columns>& out) {

@@ -11,7 +11,7 @@ namespace polybody {
 /// Catenary of a cable between the origin and `end`, as a function of its arc length s, for `from(bar, n, catenary(…))`
 /// or as an undeformed shape [Irvine 1981, ch. 1]. With sinh u = sinh u₀ + s/a,
 ///   x = a (u − u₀) along the horizontal,  z = a (cosh u − cosh u₀) upwards,
-///   a the ratio of the horizontal force to the weight per length:
+///   with the ratio a of the horizontal force to the weight per length:
 ///   2a sinh(d/2a) = √(L² − h²) for a span d and a rise h of the end.
 /// The y axis of the section lies in the plane of the curve.
 /// \param end (3) position of the second end, in the axes of the bar [m] \param length L [m], greater than |end|
@@ -35,12 +35,12 @@ ReferenceCurve catenary(Vec3 const& end, double length, Vec3 const& down) {
                                            " m must exceed the distance of the ends, ", end.norm(),
                                            " m. Use a straight line for a taut cable."});
   if (!(d > 1e-6 * length))
-    throw InvalidInput(
-        "catenary.vertical",
-        {ErrorObject{"catenary"}, ": one end is above the other, ", ErrorValue{d},
-         " m apart along the horizontal. Give them a horizontal distance of at least ", 1e-6 * length, " m."});
+    throw InvalidInput("catenary.vertical",
+                       {ErrorObject{"catenary"}, ": one end is above the other, ", ErrorValue{d},
+                        " m apart horizontally. Increase the horizontal distance to at least ", 1e-6 * length, " m."});
   along /= d;
-  // Newton's method for sinh x = r x from above, where sinh x − r x is convex: x² < 6 (r − 1), x = ln 2r + ln x + …
+  // Newton's method for sinh x = r x. It starts above the root, where sinh x − r x is convex. Upper bounds of the root
+  // follow from x² < 6 (r − 1) and x = ln 2r + ln x + …
   double const r = std::sqrt((length - h) * (length + h)) / d;
   double x = std::min(std::sqrt(6.0 * (r - 1.0)), std::log(2.0 * r) + std::log1p(std::log(2.0 * r)) + 1.0);
   for (int k = 0; k < 100; ++k) {

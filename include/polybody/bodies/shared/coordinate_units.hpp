@@ -8,23 +8,23 @@
 
 namespace polybody {
 
-/// Body that declares the units of its coordinates, and those of its generalised velocities if they are not the rates
-/// of the coordinates. Tables of states show them in their heads (io/state_table.hpp).
+/// Body that declares the units of its coordinates. It also declares those of its generalised velocities if these are
+/// not the rates of the coordinates. Tables of states have the units in their headings (io/state_table.hpp).
 template <class B>
 concept HasCoordinateUnits = requires(B const b, Index i) {
   { b.coordinate_unit(i) } -> std::convertible_to<char const*>;
 };
 
-/// Units of the coordinates of a type-erased body.
+/// Functions that return the units of the coordinates of a body with erased type.
 struct CoordinateUnits {
-  /// Unit of coordinate i, such as "m"; empty for a body that does not declare it.
+  /// Unit of coordinate i, such as "m"; null if the body declares no units.
   char const* (*of_coordinate)(void const* body, Index i) = nullptr;
-  /// Unit of generalised velocity i, such as "rad/s"; empty if the generalised velocities are the rates of the
+  /// Unit of generalised velocity i, such as "rad/s"; null if the generalised velocities are the rates of the
   /// coordinates.
   char const* (*of_velocity)(void const* body, Index i) = nullptr;
 };
 
-/// Units of a body of type B.
+/// Unit functions for a body of type B.
 template <class B>
 constexpr CoordinateUnits units_of() {
   CoordinateUnits units;

@@ -1,17 +1,19 @@
 #pragma once
+/// \file
+/// Concept of bodies with a discrete-gradient force for energy-conserving steps.
 #include <polybody/bodies/shared/node_chain.hpp>
 
 namespace polybody {
 
-/// Coefficients of the strains over a step that conserves energy: mean strain ε̄ + decay Δε, and strain rate ε̇ = rate
-/// Δε.
+/// Coefficients of the stress in a discrete-gradient step. With the mean ε̄ and the change Δε of a strain over the
+/// step, the stress is computed from the strain ε̄ + decay Δε and the strain rate ε̇ = rate Δε.
 struct DiscreteDerivative {
   double rate = 0.0;   ///< 1/h [1/s]
-  double decay = 0.0;  ///< factor of C Δε·Δε, the energy that is dissipated; 0 conserves energy
+  double decay = 0.0;  ///< factor of C Δε·Δε in the dissipated energy [1]; 0 conserves energy
 };
 
-/// Body of constant mass whose coordinates form a vector space, with its elastic and damping force over a step from q₀
-/// to q₁: f·Δq = −ΔU minus the dissipated energy.
+/// Body of constant mass whose coordinates form a vector space. It computes a discrete-gradient force f over a step
+/// from q₀ to q₁: f·Δq is −ΔU minus the dissipated energy.
 template <class B>
 concept HasDiscreteForce =
     std::is_base_of_v<AddingCoordinates, B> && B::constant_mass &&

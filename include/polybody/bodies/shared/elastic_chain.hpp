@@ -21,9 +21,9 @@ class ElasticChain : public NodeChain<columns> {
   using Element = Vec<T, element_columns>;
   using ElementMatrix = Mat<double, element_columns, element_columns>;
 
-  /// Returns true if all elements have the same reference.
+  /// Returns true if all elements have the same reference configuration.
   bool alike() const { return groups_.size() == 1; }
-  /// Returns true if the elements have the same strain groups as those of `other`.
+  /// Returns true if all elements of both chains have the same strain groups.
   bool same_strains(ElasticChain const& other) const { return alike() && groups_ == other.groups_; }
 
   /// Elastic and damping force of one element from its coordinates `x` and velocities `xd`, if all elements are alike.
@@ -47,7 +47,8 @@ class ElasticChain : public NodeChain<columns> {
     tangent_of<double, element_columns>(groups_of(e), of_element(e, q), of_element(e, v), ck, cd, k);
   }
 
-  /// Force over a step from q0 to q1 with the means `DiscreteDerivative`: f·Δq = −ΔU minus the dissipated energy.
+  /// Discrete-gradient force over a step from q0 to q1 with the coefficients `means`: f·Δq = −ΔU minus the dissipated
+  /// energy.
   void discrete_force(Index e, std::span<double const> q0, std::span<double const> q1, DiscreteDerivative const& means,
                       Element<double>& out) const {
     Element<double> const x0 = of_element(e, q0), x1 = of_element(e, q1);
@@ -62,7 +63,8 @@ class ElasticChain : public NodeChain<columns> {
     for_each_group(e, [&](auto const& group) { group.add_mean_tangent(x0, x1, means, ck, k); });
   }
 
-  /// Strain energy of element e [J]. In a bar with pretension it is not zero in the reference.
+  /// Strain energy of element e [J]. With a pretension, its value in the reference configuration depends on the type of
+  /// beam: zero, or the energy of the prestress.
   double strain_energy(Index e, std::span<double const> q) const {
     Element<double> const x = of_element(e, q);
     double u = 0.0;
@@ -71,10 +73,10 @@ class ElasticChain : public NodeChain<columns> {
   }
 
  protected:
-  /// Chain of n elements; the groups can be added later.
+  /// Chain of n elements; the strain groups can be added later.
   explicit ElasticChain(Index n, std::vector<Groups> groups = {}) : Chain(n), groups_(std::move(groups)) {}
-  void add_groups(Groups const& groups) { groups_.push_back(groups); }          ///< groups of one more element
-  void set_groups(std::vector<Groups> groups) { groups_ = std::move(groups); }  ///< one entry, or one for each element
+  void add_groups(Groups const& groups) { groups_.push_back(groups); }          ///< adds the groups of one more element
+  void set_groups(std::vector<Groups> groups) { groups_ = std::move(groups); }  ///< one tuple, or one for each element
 
   Groups const& groups_of(Index e) const { return groups_[alike() ? 0 : std::size_t(e)]; }  ///< groups of element e
   /// Entries of x (coordinates or generalised velocities) that belong to element e.

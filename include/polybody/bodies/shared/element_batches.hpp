@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// Loops over the elements of a body. If all elements are alike, the kernel processes several neighbours at once in
-/// SIMD vectors (structure of arrays). The remaining elements, and the elements of other bodies, are processed one by
-/// one.
+/// Loops over the elements of a body. If all elements are alike, the kernel processes several neighbouring elements at
+/// once in SIMD vectors (structure of arrays). The remaining elements, and the elements of other bodies, are processed
+/// one by one.
 
 #include <array>
 
@@ -12,13 +12,13 @@
 namespace polybody {
 
 /// Body whose elements differ only in their coordinates. Each element reads q and v at its own columns. The kernels
-/// take the coordinates of one element and can run on SIMD vectors. If the property depends on the data of the body,
-/// `alike()` returns it.
+/// take the coordinates of one element and can run on SIMD vectors. If only some bodies of the type have this property,
+/// `alike()` returns true for them.
 template <class B>
 concept IdenticalElements =
     requires(B const b, Vec<SimdVector<>, B::element_columns> x, Vec<SimdVector<>, B::element_columns>& out,
              Mat<SimdVector<>, B::element_columns, B::element_columns>& k) {
-      requires B::vectorised_kernels;                     // by measurement: the kernel is arithmetic, not sines
+      requires B::vectorised_kernels;                     // by measurement: true for arithmetic, not for sines
       { B::element_stride } -> std::convertible_to<int>;  // from the first column of an element to that of the next
       b.template element_inertia<SimdVector<>>(x, out);
       b.template element_force<SimdVector<>>(x, x, out);
@@ -44,21 +44,22 @@ struct ElementCoefficients {
 
 namespace detail {
 
-/// Addresses of the numbers of `simd_size` elements.
+/// Addresses of the coordinates or velocities of `simd_size` elements.
 using SimdPointers = std::array<double const*, std::size_t(simd_size)>;
-/// Addresses of the numbers of `simd_size` neighbours, where `x` is the address for the first one.
+/// Addresses of the data of `simd_size` neighbouring elements, `stride` doubles apart; `x` is the address for the first
+/// one.
 template <int stride>
 SimdPointers neighbours(double const* x) {
   SimdPointers from;
   for (int l = 0; l < simd_size; ++l) from[std::size_t(l)] = x + l * stride;
   return from;
 }
-/// Addresses of the motion of `simd_size` elements.
+/// Addresses of the coordinates, velocities and accelerations of `simd_size` elements.
 struct SimdMotion {
   SimdPointers q, v, a;
 };
 
-/// SIMD vectors of the coordinates of `simd_size` elements.
+/// Combines n numbers of each of `simd_size` elements into n SIMD vectors.
 template <int n>
 Vec<SimdVector<>, n> side_by_side(SimdPointers const& x) {
   static_assert(n % simd_size == 0);
@@ -71,7 +72,8 @@ Vec<SimdVector<>, n> side_by_side(SimdPointers const& x) {
   }
   return packed;
 }
-/// Inverse of `side_by_side`: writes to each of `simd_size` vectors or matrices its numbers plus those of `same`.
+/// Inverse of `side_by_side`: writes the numbers of each element plus the entries of `same` to its vector or matrix in
+/// `each`.
 template <class Packed, class Each>
 void take_apart(Packed const& packed, Each const& same, std::array<Each, simd_size>& each) {
   static_assert(Packed::SizeAtCompileTime % simd_size == 0);
@@ -93,7 +95,7 @@ bool are_alike(B const& body) {
     return IdenticalElements<B>;
 }
 
-/// End of the elements of a range that are processed in SIMD vectors. Each SIMD vector begins at a multiple of
+/// Index after the last element of a range that is processed in SIMD vectors. Each SIMD vector begins at a multiple of
 /// `simd_size`, so that the kernel of an element does not depend on the subdivision of a loop.
 template <class B>
 Index batches_end(B const& body, ElementRange range) {
@@ -106,7 +108,7 @@ Index batches_end(B const& body, ElementRange range) {
   }
 }
 
-/// Residuals M a − force of `simd_size` elements like those of `body`.
+/// Residuals M a − force of `simd_size` elements that are equal to those of `body`.
 template <class B>
 void residuals_of_batch(B const& body, SimdMotion const& x,
                         std::array<Vec<double, B::element_columns>, simd_size>& each) {
@@ -130,7 +132,7 @@ void residual_of_one(B const& body, Index e, BodyMotion<T> const& x, ForceScratc
   for (int k = 0; k < int(scratch.x.size()); ++k) scratch.x[k] -= scratch.force[k];
 }
 
-/// Tangents `inertia` + cd D + ck K of `simd_size` elements like those of `body`.
+/// Tangents `inertia` + cd D + ck K of `simd_size` elements that are equal to those of `body`.
 template <class B>
 void tangents_of_batch(B const& body, SimdMotion const& x, ElementCoefficients c,
                        Mat<double, B::element_columns, B::element_columns> const& inertia,
@@ -142,7 +144,7 @@ void tangents_of_batch(B const& body, SimdMotion const& x, ElementCoefficients c
   take_apart(filled, inertia, each);
 }
 
-/// Addresses of the motion of `simd_size` neighbours in a body, from element `first` on.
+/// Addresses of the motion of `simd_size` neighbouring elements of a body, from element `first` on.
 template <class B>
 SimdMotion motion_of_neighbours(B const& body, Index first, BodyMotion<> const& x) {
   constexpr int stride = B::element_stride;
@@ -172,7 +174,7 @@ void for_each_residual(B const& body, ElementRange range, BodyMotion<T> const& x
   }
 }
 
-/// Calls f(e, M a − force) for the elements of a range, with a workspace of its own.
+/// Overload that creates the workspace: calls f(e, M a − force) for the elements of a range.
 template <Body B, StateScalar T, class F>
 void for_each_residual(B const& body, ElementRange range, BodyMotion<T> const& x, F&& f) {
   ForceScratch<B, T> scratch(body);
@@ -214,7 +216,7 @@ void for_each_element_tangent(B const& body, ElementRange range, BodyMotion<> co
   }
 }
 
-/// Calls f(e, cm M + cd D + ck K) for the elements of a range, with a workspace of its own.
+/// Overload that creates the workspace: calls f(e, cm M + cd D + ck K) for the elements of a range.
 template <Body B, class F>
 void for_each_element_tangent(B const& body, ElementRange range, BodyMotion<> const& x, ElementCoefficients c, F&& f) {
   TangentScratch<B> scratch(body);

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Bodies whose coordinates form a vector space, and chains of nodes among them.
+/// Base classes of bodies whose coordinates form a vector space: `AddingCoordinates`, and `NodeChain` for chains of
+/// nodes.
 
 #include <polybody/bodies/shared/body.hpp>
 
@@ -22,7 +23,7 @@ struct AddingCoordinates {
 template <int columns>
 class NodeChain : public AddingCoordinates {
  public:
-  static constexpr int node_columns = columns;  ///< coordinates of a node
+  static constexpr int node_columns = columns;  ///< number of coordinates of a node
   static constexpr int element_columns = 2 * columns;
   static constexpr int point_columns = element_columns;
   static constexpr int element_stride = columns;
@@ -31,13 +32,13 @@ class NodeChain : public AddingCoordinates {
   Index velocities() const { return coordinates(); }
   Index elements() const { return n_; }
   Index first_column(Index e) const { return e * columns; }
-  /// First column of the element of the point p.
+  /// First column of the element that contains the point p.
   template <class P>
     requires requires(P p) { p.element; }
   Index first_column(P const& p) const {
     return first_column(p.element);
   }
-  /// Point p in a chain that consists of its element only.
+  /// Copy of the point p for a chain that consists only of the element of p.
   template <class P>
     requires requires(P p) { p.element; }
   P local(P p) const {

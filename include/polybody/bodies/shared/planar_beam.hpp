@@ -11,13 +11,14 @@
 
 namespace polybody::detail {
 
-/// Strain groups of the laws of a theory.
+/// Tuple of the strain groups for the strain laws of a beam theory.
 template <class Laws>
 struct GroupsOf;
 template <class... Laws>
 struct GroupsOf<std::tuple<Laws...>> {
   using type = std::tuple<StrainGroup<Laws>...>;
-  /// Creates the groups of an element of length l. A pretension is the first stress of the first group, along the axis.
+  /// Creates the groups of an element of length l. A pretension is the initial value of the first stress, the axial
+  /// force.
   static type make(BarConstants const& c, Bar const& bar, double l) {
     type groups(StrainGroup<Laws>(c, bar.damping, l)...);
     using First = std::tuple_element_t<0, type>;
@@ -32,14 +33,14 @@ struct GroupsOf<std::tuple<Laws...>> {
 
 namespace polybody::planar {
 
-/// Position and motion of the centre line at one point of an element; all are linear in e except the angle.
+/// Position, velocity and angle of the centre line at one point of an element with the coordinates e.
 template <StateScalar T>
 struct CentreLine {
   Vec<T, 2> r;  ///< position [m]
   Vec<T, 2> v;  ///< velocity [m/s]
-  T angle;      ///< of the normal of the section from world x [rad]
-  T rate;       ///< its rate [rad/s]
-  T rate_bias;  ///< its second derivative for ë = 0 [rad/s²]
+  T angle;      ///< from world x to the normal of the section [rad]
+  T rate;       ///< rate of the angle [rad/s]
+  T rate_bias;  ///< second derivative of the angle for ë = 0 [rad/s²]
 };
 
 /// Angle of a section as a function of the coordinates e of its element.
@@ -50,8 +51,8 @@ struct SectionAngle {
   T bias;         ///< θ̈ for ë = 0 [rad/s²]
 };
 
-/// Flexible bar in the plane as a chain of equal two-node elements. The policy `Theory` gives the interpolation and the
-/// strains (`Theory::Groups`). This class computes mass, gravity and markers; `ElasticChain` computes the elastic
+/// Flexible bar in the plane as a chain of equal two-node elements. The policy `Theory` defines the interpolation and
+/// the strains (`Theory::Groups`). This class computes mass, gravity and markers; `ElasticChain` computes the elastic
 /// forces.
 template <class Theory>
 class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf<typename Theory::Groups>::type> {
@@ -68,20 +69,21 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
   using Element = Vec<T, element_columns>;
   using ElementMatrix = Mat<double, element_columns, element_columns>;
   using PointMap = Mat<double, 2, element_columns>;    ///< S of r = S e, 2×n
-  static constexpr int gradients = Theory::gradients;  ///< number of gradients linear in the coordinates
-  /// Number of elements of `from(bar)`, see `BarMesh`: gradients as coordinates go with cubic displacements.
+  static constexpr int gradients = Theory::gradients;  ///< number of gradients that are linear in the coordinates
+  /// Number of elements of `from(bar)` (`BarMesh`). Displacements are cubic if gradients are coordinates, and linear
+  /// otherwise.
   static constexpr Index default_elements = gradients > 0 ? 8 : 32;
 
-  /// Material point: element, position ξ ∈ [0, 1] along it, and distance y from the axis [m].
+  /// Material point: element, position ξ ∈ [0, 1] along the element, and distance y from the axis [m].
   struct Point {
-    Index element = 0;  ///< counted from 0, from the bar's first end
-    double xi = 0.0;    ///< ξ ∈ [0, 1], from its first node to its second
-    double y = 0.0;     ///< along the normal of the section [m]
+    Index element = 0;  ///< index of the element, counted from the first end of the bar
+    double xi = 0.0;    ///< position ξ ∈ [0, 1] from the first node of the element to the second
+    double y = 0.0;     ///< distance from the axis within the section, positive to the left of the axis [m]
   };
 
   /// Beam from the straight bar, with n elements of equal length.
-  /// \throws InvalidInput for n < 1, a placement that leaves the plane, or a stiffness that the theory needs and the
-  /// bar does not give.
+  /// \throws InvalidInput for n < 1, a placement that leaves the plane, or a bar without a stiffness that the theory
+  /// needs.
   static Beam from(Bar const& bar, Index n) {
     require_elements(n, Theory::name);
     BarConstants const c = polybody::constants(bar);
@@ -96,7 +98,8 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
 
   /// Beam of n elements along `curve`, with nodes at equal arc lengths. The undeformed shape remains straight, so that
   /// the beam is bent in the reference state.
-  /// \throws InvalidInput also as `naturally_curved`.
+  /// \throws InvalidInput for n < 1, a bar without a stiffness that the theory needs, and a curve that leaves the plane
+  /// or is not parameterised by its arc length.
   static Beam from(Bar const& bar, Index n, ReferenceCurve const& curve) {
     Beam beam = from(bar, n);
     beam.laid_ = beam.nodes_on(bar.placement, curve);
@@ -104,10 +107,11 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
   }
 
   /// Beam of n elements with the undeformed shape `curve`, free of stress except for the pretension:
-  ///   U = ½ ∫ Σ C_i (ε_i − ε⁰_i)² dx,  ε⁰ the strains of the elements with the nodes on the curve.
+  ///   U = ½ ∫ Σ C_i (ε_i − ε⁰_i)² dx, with the strains ε⁰ of the elements whose nodes are on the curve.
   /// A circular arc of radius R is therefore straight under the moment EI/R.
-  /// \throws InvalidInput as `from`, and for a curve that leaves the plane or is not parameterised by its arc length.
-  /// The length of the axis of an element may differ from the arc length by a tenth.
+  /// \throws InvalidInput for n < 1, a bar without a stiffness that the theory needs, and a curve that leaves the plane
+  /// or is not parameterised by its arc length. The length of the axis of an element may differ from the arc length by
+  /// 10 %.
   static Beam naturally_curved(Bar const& bar, Index n, ReferenceCurve const& curve) {
     Beam beam = from(bar, n);
     beam.bend_to(bar.placement, curve);
@@ -121,8 +125,8 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
   double element_length() const { return l_; }
   BarConstants const& constants() const { return constants_; }
 
-  /// Point at distance s from the first end [m], at y from the axis [m].
-  /// \throws InvalidInput outside the bar.
+  /// Point at the distance s along the axis from the first end, and y from the axis [m].
+  /// \throws InvalidInput for s outside the bar.
   Point at(double s, double y = 0.0) const {
     double const x = require_inside(s, length_, Theory::name) / l_;
     if (!std::isfinite(y))
@@ -131,8 +135,8 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
     return {e, x - double(e), y};
   }
 
-  /// Shape functions s_i of r = Σ s_i e_i, where e_i has the entries 2i and 2i + 1 of an element, and their derivatives
-  /// with respect to arc length. Only for theories with a smooth axis.
+  /// Shape functions s_i of r = Σ s_i e_i, and their derivatives with respect to arc length. e_i are the entries 2i and
+  /// 2i + 1 of the coordinates of an element. Only for theories with a smooth axis.
   auto axis_shape(double xi) const
     requires requires { Theory::axis_shape(xi, 1.0); }
   {
@@ -182,7 +186,7 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
   }
 
   /// Matrix S of r = S e at `p`, 2×n and constant. The coordinates e begin at `first_column(p)`.
-  /// \throws InvalidInput for a point off the axis, because it rotates with the section.
+  /// \throws InvalidInput for a point off the axis, whose position depends on the angle of the section.
   PointMap position_map(Point const& p) const {
     if (p.y != 0.0)
       throw InvalidInput(
@@ -240,8 +244,8 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
     out.columns = element_columns;
   }
 
-  /// Geometric stiffness of the wrench `w`: Jᵀw = Nᵀf + h c with the row h of θ̇ and c = m − y t·f, hence ∂/∂e = c
-  /// ∂h/∂e − y (n·f) h hᵀ.
+  /// Load stiffness ∂(Jᵀw)/∂e of the wrench `w`. Jᵀw = Nᵀf + h c with the row h of θ̇ = h·ė and c = m − y t·f; the
+  /// derivative is therefore c ∂h/∂e − y (n·f) h hᵀ.
   void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, ElementMatrix& k) const {
     Element<double> const x = this->of_element(p.element, q), rest = Element<double>::Zero();
     SectionAngle<double, element_columns> const turned = Theory::template rotation<double>(p.xi, l_, x, rest);
@@ -251,19 +255,19 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
     k -= (p.y * (c * w.f[1] - s * w.f[0])) * turned.row * turned.row.transpose();
   }
 
-  /// Section strains in the axes of space (see sections.hpp). Components that the theory does not have are zero.
+  /// Section strains as a vector of six (`HasSections`). Components that the theory does not have are zero.
   Vec6 section_strains(Point const& p, std::span<double const> q) const {
     return in_space(p.element, [&](auto const& group) { return strains_of(group, p, q); });
   }
   Vec6 section_forces(Point const& p, std::span<double const> q) const {
     return in_space(p.element, [&](auto const& group) { return group.stress(strains_of(group, p, q)); });
   }
-  /// Strains of group G (in the order of the theory) at `p` relative to the undeformed shape.
+  /// Strains of the group with number G in the theory, at `p`, relative to the undeformed shape.
   template <int G>
   auto strains(Point const& p, std::span<double const> q) const {
     return strains_of(std::get<G>(this->groups_of(p.element)), p, q);
   }
-  /// Stress resultants of group G without damping [N], [N m].
+  /// Stress resultants of the group with number G in the theory, without damping [N], [N m].
   template <int G>
   auto resultants(Point const& p, std::span<double const> q) const {
     return std::get<G>(this->groups_of(p.element)).stress(strains<G>(p, q));
@@ -287,7 +291,7 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
     }
   }
 
-  /// Entries of the groups one after another, at the rows that the theory gives.
+  /// Vector of six with the entries of all groups, at the rows `Theory::section_rows`.
   template <class F>
   Vec6 in_space(Index element, F&& of_group) const {
     Vec6 out = Vec6::Zero();
@@ -306,7 +310,7 @@ class Beam : public ElasticChain<Theory::node_columns, typename detail::GroupsOf
     return strain;
   }
 
-  /// Coordinates of the nodes on a curve.
+  /// Coordinates of nodes that are placed on a curve at equal arc lengths.
   std::vector<double> nodes_on(Placement const& place, ReferenceCurve const& curve) const {
     if (!curve)
       throw InvalidInput("reference_curve.missing", {ErrorObject{Theory::name}, ": the reference curve is empty."});

@@ -13,7 +13,7 @@ namespace polybody {
 ///   section_strains  (ε, γ_y, γ_z, κ_x, κ_y, κ_z): stretch, shears, twist and curvatures [1], [1/m], relative to the
 ///                    reference;
 ///   section_forces   (N, Q_y, Q_z, M_x, M_y, M_z): axial and shear forces [N], torque and bending moments [N m],
-///                    without damping, of the part beyond the section on the part before it.
+///                    without damping, which the part beyond the section exerts on the part before the section.
 /// Components that a formulation does not have are zero: a cable has no shear and no torsion. The shear force of a
 /// cable or of a floating frame follows from the derivative of the moment.
 template <class B>
@@ -22,7 +22,7 @@ concept HasSections = requires(B const b, typename B::Point p, std::span<double 
   { b.section_forces(p, q) } -> std::convertible_to<Vec6>;
 };
 
-/// Distances (y, z) of the point p from the axis [m]; zero if its type has none.
+/// Distances (y, z) of the point p from the axis [m]; zero if points of its type have no such distance.
 template <class P>
 Vec2 off_axis(P const& p) {
   Vec2 x = Vec2::Zero();
@@ -36,7 +36,7 @@ inline double fibre_strain(Vec6 const& strains, double y, double z) {
   return strains[0] - y * strains[5] + z * strains[4];
 }
 
-/// Axial stress N/A − y M_z/I_z + z M_y/I_y of the fibre (y, z) [m] under `forces` (N, M) [N/m²].
+/// Axial stress N/A − y M_z/I_z + z M_y/I_y [N/m²] of the fibre (y, z) [m] under the section forces `forces` (N, M).
 /// \throws InvalidInput for a bar without section and material.
 template <class = void>
 double fibre_stress(Bar const& bar, Vec6 const& forces, double y, double z) {

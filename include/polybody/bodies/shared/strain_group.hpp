@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Elastic energy of an element by a group of strains at its quadrature points.
+/// Elastic force and tangent of an element from a group of strains at its quadrature points.
 
 #include <numeric>
 
@@ -11,14 +11,14 @@ namespace polybody {
 /// Force and tangent of an element from the strains of a law. The energy is
 ///   U = ½ ∫ Σ_i C_i (ε_i(p) − ε⁰_i)² dx,  with the parameters p = P(x) e of the group.
 /// The parameters are linear in the coordinates e of the element. ε⁰ are the strains in the stress-free state (zero
-/// unless given). With Kelvin–Voigt damping and initial stress, n_i = C_i (ε_i − ε⁰_i + τ_i ε̇_i) + n⁰_i. With B =
-/// ∂ε/∂p and H_i = ∂²ε_i/∂p²,
+/// unless given). With the damping times τ_i (Kelvin–Voigt) and the initial stress n⁰, the stress is n_i = C_i (ε_i −
+/// ε⁰_i + τ_i ε̇_i) + n⁰_i. With B = ∂ε/∂p and H_i = ∂²ε_i/∂p²,
 ///   f = −∫ Pᵀ Bᵀ n dx,
 ///   −∂f/∂e = ∫ Pᵀ [Bᵀ C B + Σ n_i H_i + Σ C_i τ_i B_iᵀ (H_i ṗ)ᵀ] P dx,
 ///   −∂f/∂ė = ∫ Pᵀ Bᵀ C τ B P dx.
-/// If strains are components of a vector that rotates with the body, a law defines the part of ε̇ that is deformation:
-/// ε̇ is then replaced by P_ε ε̇ (`objective_rate`). P is sparse (`StrainMap`). The code uses plain loops, which work
-/// for doubles, dual numbers and SIMD vectors of elements, and compile fast.
+/// If strains are components of a vector that rotates with the body, only a part of ε̇ is deformation. The law then
+/// defines this part, P_ε ε̇ (`objective_rate`), which replaces ε̇. P is sparse (`StrainMap`). The code uses plain
+/// loops, which work for doubles, dual numbers and SIMD vectors of elements, and compile fast.
 template <StrainFunctions Law>
 class StrainGroup : public StrainPoints<Law> {
   using Points = StrainPoints<Law>;
@@ -38,13 +38,14 @@ class StrainGroup : public StrainPoints<Law> {
     Vec<T, P::d> step;
     for (int i = 0; i < P::d; ++i) step[i] = T(0.0);
     for (int g = 0; g < Law::points; ++g) {
-      Vec<T, np> const p = P::parameters(maps_[g], e);
+      Vec<T, np> const p = P::parameters(maps_[std::size_t(g)], e);
       Vec<T, m> stress;
       Mat<T, m, np> b;
       Law::template evaluate<T>(p, stress, b);
-      if (damped_) add_damping(rates(b, P::parameters(maps_[g], ed)), stress);
+      if (damped_) add_damping(rates(b, P::parameters(maps_[std::size_t(g)], ed)), stress);
 #pragma GCC unroll 8
-      for (int i = 0; i < m; ++i) stress[i] = ((stress[i] - free_[g][i]) * stiffness_[i] + initial_[i]) * weights_[g];
+      for (int i = 0; i < m; ++i)
+        stress[i] = ((stress[i] - free_[std::size_t(g)][i]) * stiffness_[i] + initial_[i]) * weights_[std::size_t(g)];
       Vec<T, np> pull;  // w Bᵀ n
 #pragma GCC unroll 16
       for (int k = 0; k < np; ++k) {
@@ -53,27 +54,27 @@ class StrainGroup : public StrainPoints<Law> {
         for (int i = 1; i < m; ++i) sum += b(i, k) * stress[i];
         pull[k] = sum;
       }
-      P::subtract_pulled(maps_[g], pull, f, step);
+      P::subtract_pulled(maps_[std::size_t(g)], pull, f, step);
     }
     P::spread(step, f);
   }
 
   // `tangent_of` assembles the tangent from all groups of an element: it calls `prepare` once, then `add_block` for
   // each block.
-  /// Data for the blocks of the tangent: the matrix h of each point with respect to p. For quadratic strains, K̂ itself
-  /// with respect to the nodal vectors that are read.
+  /// Data for the blocks of the tangent: the stiffness h of each point with respect to p. For quadratic strains, the
+  /// tangent K̂ with respect to the nodal vectors that the strains read.
   template <KernelScalar T>
   struct Prepared {
     using Each = std::array<Mat<T, np, np>, std::size_t(Law::points)>;                ///< h of each point
-    std::conditional_t<quadratic, Mat<T, P::d * P::reach, P::d * P::reach>, Each> h;  ///< h, or K̂
-    Prepared() {}  // NOLINT(modernize-use-equals-default): a tuple of defaulted ones would fill them with zeros
+    std::conditional_t<quadratic, Mat<T, P::d * P::reach, P::d * P::reach>, Each> h;  ///< h of each point, or K̂
+    Prepared() {}  // NOLINT(modernize-use-equals-default): a defaulted constructor would fill the matrices with zeros
   };
 
   /// Prepares the blocks of the tangent of quadratic strains,
   ///   K̂_vw = Σ_points Σ_i β_iv γ_iwᵀ + 1 Σ_st N_sv N_tw σ_st,
   ///   β = B P,  γ = w C [ck B + τ (ck Ḃ + cd B)] P,  Ḃ_i = H_i ṗ,  σ = ck w Σ n_i S_i.
-  /// For few strains that read many vectors this is less work than Pᵀ h P. The loop processes a few points at a time,
-  /// which fit into the first-level cache. The blocks above the diagonal are omitted if `symmetric`.
+  /// If few strains read many vectors, this is less work than Pᵀ h P. The loop processes a few points at a time, so
+  /// that their data fit into the first-level cache. The blocks above the diagonal are omitted if `symmetric`.
   template <KernelScalar T, int n>
   void prepare(Vec<T, n> const& x, Vec<T, n> const& xd, double ck, double cd, bool symmetric, Prepared<T>& k) const
     requires quadratic
@@ -127,7 +128,7 @@ class StrainGroup : public StrainPoints<Law> {
         }
     }
   }
-  /// Adds the contribution of the group to K̂_vw to `block`, for nodal vectors v and w.
+  /// Adds the block K̂_vw of this group to `block`, for the nodal vectors v and w.
   template <KernelScalar T>
   void add_block(int v, int w, Prepared<T> const& k, typename P::template Block<T>& block) const
     requires quadratic
@@ -138,22 +139,22 @@ class StrainGroup : public StrainPoints<Law> {
     P::for_each_entry([&](int i, int j) { block(i, j) += from[P::d * P::reach * j + i]; });
   }
 
-  /// Prepares h = w [ck (BᵀCB + Σ n_i H_i) + the part of damping] of each point.
+  /// Computes the stiffness h = w [ck (BᵀCB + Σ n_i H_i) + damping terms] of each point (`add_damping_gradient`).
   template <KernelScalar T, int n>
   void prepare(Vec<T, n> const& x, Vec<T, n> const& xd, double ck, double cd, bool, Prepared<T>& hs) const
     requires(!quadratic)
   {
     Coordinates<T, n> const e(x), ed(xd);
     for (int g = 0; g < Law::points; ++g) {
-      Mat<T, np, np>& h = hs.h[g];
+      Mat<T, np, np>& h = hs.h[std::size_t(g)];
       Moving<T> at;
-      at.p = P::parameters(maps_[g], e);
+      at.p = P::parameters(maps_[std::size_t(g)], e);
       Law::template evaluate<T>(at.p, at.strain, at.b);
 #pragma GCC unroll 8
       for (int r = 0; r < np; ++r) {
         Vec<T, m> scaled;
 #pragma GCC unroll 8
-        for (int i = 0; i < m; ++i) scaled[i] = at.b(i, r) * (weights_[g] * stiffness_[i] * ck);
+        for (int i = 0; i < m; ++i) scaled[i] = at.b(i, r) * (weights_[std::size_t(g)] * stiffness_[i] * ck);
 #pragma GCC unroll 8
         for (int c = 0; c <= r; ++c) {
           T sum = scaled[0] * at.b(0, c);
@@ -165,29 +166,31 @@ class StrainGroup : public StrainPoints<Law> {
       }
       Vec<T, m> stress = at.strain;
       if (damped_) {
-        at.pd = P::parameters(maps_[g], ed);
+        at.pd = P::parameters(maps_[std::size_t(g)], ed);
         at.rate = rates(at.b, at.pd);
-        add_damping_gradient(weights_[g], ck, cd, at, h);
+        add_damping_gradient(weights_[std::size_t(g)], ck, cd, at, h);
         add_damping(at.rate, stress);
       }
 #pragma GCC unroll 8
       for (int i = 0; i < m; ++i)
-        stress[i] = ((stress[i] - free_[g][i]) * stiffness_[i] + initial_[i]) * (ck * weights_[g]);
+        stress[i] =
+            ((stress[i] - free_[std::size_t(g)][i]) * stiffness_[i] + initial_[i]) * (ck * weights_[std::size_t(g)]);
       Law::template add_hessian<T>(at.p, stress, h);
     }
   }
-  /// Adds the contribution of the group to K̂_vw to `block`, for nodal vectors v and w.
+  /// Adds the block K̂_vw of this group to `block`, for the nodal vectors v and w.
   template <KernelScalar T>
   void add_block(int v, int w, Prepared<T> const& hs, typename P::template Block<T>& block) const
     requires(!quadratic)
   {
     if (v >= P::vectors || w >= P::vectors) return;
-    for (int pair = P::table.first[v][w]; pair < P::table.last[v][w]; ++pair) {
-      int const from = P::d * (P::table.pairs[pair].s + np * P::table.pairs[pair].t);
+    for (int pair = P::table.first[std::size_t(v)][std::size_t(w)];
+         pair < P::table.last[std::size_t(v)][std::size_t(w)]; ++pair) {
+      int const from = P::d * (P::table.pairs[std::size_t(pair)].s + np * P::table.pairs[std::size_t(pair)].t);
 #pragma GCC unroll 16
       for (int g = 0; g < Law::points; ++g) {
-        T const product(products_[pair][g]);
-        T const* const h = hs.h[g].data() + from;
+        T const product(products_[std::size_t(pair)][std::size_t(g)]);
+        T const* const h = hs.h[std::size_t(g)].data() + from;
         P::for_each_entry([&](int i, int j) { block(i, j) += product * h[np * j + i]; });
       }
     }
@@ -224,8 +227,8 @@ class StrainGroup : public StrainPoints<Law> {
     for (int i = 0; i < m; ++i) strain[i] += rate[i] * time_[i];
   }
 
-  /// Adds the derivative of the damping, h += Σ_i w C_i τ_i B_iᵀ [Σ_j P_ij (ck (H_j ṗ)ᵀ + cd B_j) + ck Q_ij B_j]. Most
-  /// laws have P_ε = 1 and Q = 0.
+  /// Adds the derivative of the damping, h += Σ_i w C_i τ_i B_iᵀ [Σ_j P_ij (ck (H_j ṗ)ᵀ + cd B_j) + ck Q_ij B_j], with
+  /// P and Q of `HasObjectiveRate`. Most laws have P = 1 and Q = 0.
   template <class T>
   void add_damping_gradient(double w, double ck, double cd, Moving<T> const& at, Mat<T, np, np>& h) const {
     Mat<T, m, np> change;  // rows ck H_j ṗ + cd B_j

@@ -1,14 +1,14 @@
 #pragma once
 /// \file
-/// Concepts of the strain laws for `StrainGroup`.
+/// Concepts of strain laws: the strains of a `StrainGroup`, with their derivatives.
 
 #include <polybody/bodies/shared/bar.hpp>
 #include <polybody/bodies/shared/strain_map.hpp>
 
 namespace polybody {
 
-/// Strains that are quadratic in the parameters, ε_i = ½ Σ_st S_i,st p_s·p_t + const., for shapes s and t that all read
-/// the same nodal vectors. Then H_i = S_i ⊗ 1, and B is linear in p, so that H_i ṗ = B_i(ṗ).
+/// Strains that are quadratic in the parameters, ε_i = ½ Σ_st S_i,st p_s·p_t + const., for shapes s and t that read the
+/// same nodal vectors. Then H_i = S_i ⊗ 1, and B is linear in p, so that H_i ṗ = B_i(ṗ).
 template <class L>
 concept QuadraticStrains = requires(Vec<double, L::strains> const n,
                                     Mat<double, L::parameters / L::components, L::parameters / L::components> s) {
@@ -35,15 +35,16 @@ concept StrainLaw = StrainFunctions<L> && requires(BarConstants const c, Damping
   { L::damping(d) } -> std::convertible_to<Vec<double, L::strains>>;            // τ [s]
 };
 
-/// Law with the objective rate p_ε = P_ε(ε) ε̇ and its derivatives P_ε with respect to ε̇ and Q with respect to ε.
+/// Law with the objective rate P_ε ε̇ of its strains and two derivatives of this rate: P_ε with respect to ε̇, Q with
+/// respect to ε.
 template <class L>
 concept HasObjectiveRate = requires(Vec<double, L::strains>& e, Mat<double, L::strains, L::strains>& m) {
   L::template objective_rate<double>(e, e);
   L::template objective_rate_gradients<double>(e, e, m, m);
 };
 
-/// Law of a strain vector that rotates with the body, with equal stiffness for all components. It gives the square of
-/// the vector from scalar products of its parameters.
+/// Law of a strain vector that rotates with the body, with equal stiffness for all components. `square` returns the
+/// square of the vector, computed from scalar products of the parameters.
 template <class L>
 concept HasSquare = requires(Vec<double, L::parameters> const p) {
   { L::template square<double>(p) } -> std::convertible_to<double>;

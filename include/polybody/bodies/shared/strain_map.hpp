@@ -12,20 +12,20 @@ namespace polybody {
 
 /// Constant linear map p = P e from the coordinates of an element to the parameters of its strains at a point, and
 /// products with it. The parameters of a law are vectors of d = `components` entries, the shapes; np is the number of
-/// all entries. Shape s reads at most `reach` nodal vectors. Its j-th one is e_v with v = `vector(s, j)`, multiplied by
-/// one factor for all components:
+/// all entries. Shape s reads at most `reach` nodal vectors. Vector number j of shape s is e_v with v = `vector(s, j)`.
+/// One factor N_sj multiplies all its components:
 ///   p_s = Σ_j N_sj ê_v,  P = N ⊗ 1.
 /// ê_v = e_v, except for the vector `difference` of a law: ê_v = e_v − e_0. Strains do not depend on the position of an
-/// element, so that the factors of its two ends are opposite, and the difference replaces both. K̂ = PᵀhP then has the
-/// blocks
+/// element. The factors of the positions of its two ends are therefore opposite, and the difference replaces both
+/// positions. K̂ = PᵀhP then has the blocks
 ///   K̂_vw = Σ_(s,j) Σ_(t,l) N_sj N_tl h_st,  v = vector(s, j), w = vector(t, l),
 /// with one product for each pair of factors. The tangent K with respect to e has K_0w = −K_vw for the difference v.
 template <class Law>
 class StrainMap {
  public:
-  static constexpr int d = Law::components, np = Law::parameters, shapes = np / d, reach = Law::reach;  ///< see above
+  static constexpr int d = Law::components, np = Law::parameters, shapes = np / d, reach = Law::reach;  ///< sizes
 
-  using Factors = Mat<double, shapes, reach>;  ///< N
+  using Factors = Mat<double, shapes, reach>;  ///< matrix of the factors N
   template <class T>
   using Block = Mat<T, d, d>;  ///< block for two nodal vectors
 
@@ -61,7 +61,7 @@ class StrainMap {
     T const& operator()(int v, int i) const { return is_difference(v) ? step[i] : e[d * v + i]; }
   };
 
-  /// Parameters p.
+  /// Parameters p = P e for the coordinates x of an element.
   template <class T, int n>
   static Vec<T, np> parameters(Factors const& factors, Coordinates<T, n> const& x) {
     Vec<T, np> p;
@@ -75,7 +75,7 @@ class StrainMap {
     }
     return p;
   }
-  /// Subtracts the force f −= Pᵀ s. The contribution to the difference is added to `step`.
+  /// Subtracts Pᵀ s from the force f. The part that belongs to the difference is subtracted from `step`; see `spread`.
   template <class T, int n>
   static void subtract_pulled(Factors const& factors, Vec<T, np> const& s, Vec<T, n>& f, Vec<T, d>& step) {
 #pragma GCC unroll 8
@@ -86,7 +86,8 @@ class StrainMap {
         if (v >= 0) (is_difference(v) ? step[k % d] : f[d * v + k % d]) -= s[k] * factors(k / d, j);
       }
   }
-  /// Adds the contribution `step` of the difference to both of its vectors in f.
+  /// Adds the force `step` on the difference e_v − e_0 to f: to the force on e_v, and with the opposite sign to that on
+  /// e_0.
   template <class T, int n>
   static void spread(Vec<T, d> const& step, Vec<T, n>& f) {
     if constexpr (difference > 0)
@@ -116,7 +117,7 @@ class StrainMap {
       }
   }
 
-  /// Row `row` of B P, where B is `b`, with respect to the nodal vectors that all shapes read.
+  /// Computes row `row` of B P, where B is `b`, with respect to the nodal vectors that all shapes read.
   template <class T, int m>
   static void pull_row(Factors const& factors, Mat<T, m, np> const& b, int row, Vec<T, d * reach>& out) {
     for (int j = 0; j < reach; ++j)
@@ -143,14 +144,14 @@ class StrainMap {
       for (int j = 0; j < reach; ++j) sum += Law::vector(s, j) >= 0;
     return sum;
   }();
-  /// Pair of factors. The pairs of block (v, w) are `first[v][w]` to `last[v][w]`.
+  /// Pair of factors N_sj N_tl. Block (v, w) has the pairs [first[v][w], last[v][w]).
   struct Pair {
     int s, j, t, l;  ///< indices of N_sj N_tl
   };
   /// All pairs of factors in the order of the blocks.
   struct Pairs {
     std::array<Pair, std::size_t(count* count)> pairs{};                                      ///< all pairs
-    std::array<std::array<int, std::size_t(vectors)>, std::size_t(vectors)> first{}, last{};  ///< of a block in `pairs`
+    std::array<std::array<int, std::size_t(vectors)>, std::size_t(vectors)> first{}, last{};  ///< range of a block
   };
   /// Table of the pairs, computed at compile time.
   static constexpr Pairs table = [] {
@@ -158,18 +159,20 @@ class StrainMap {
     int next = 0;
     for (int v = 0; v < vectors; ++v)
       for (int w = 0; w < vectors; ++w) {
-        out.first[v][w] = next;
+        out.first[std::size_t(v)][std::size_t(w)] = next;
         for (int s = 0; s < shapes; ++s)
           for (int j = 0; j < reach; ++j)
             for (int t = 0; t < shapes; ++t)
               for (int l = 0; l < reach; ++l)
-                if (Law::vector(s, j) == v && Law::vector(t, l) == w) out.pairs[next++] = {s, j, t, l};
-        out.last[v][w] = next;
+                if (Law::vector(s, j) == v && Law::vector(t, l) == w) out.pairs[std::size_t(next++)] = {s, j, t, l};
+        out.last[std::size_t(v)][std::size_t(w)] = next;
       }
     return out;
   }();
   /// Returns true if a shape reads nodal vector v.
-  static constexpr bool reads(int v) { return v < vectors && table.first[v][v] < table.last[v][v]; }
+  static constexpr bool reads(int v) {
+    return v < vectors && table.first[std::size_t(v)][std::size_t(v)] < table.last[std::size_t(v)][std::size_t(v)];
+  }
 };
 
 }  // namespace polybody

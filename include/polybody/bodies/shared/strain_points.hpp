@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Quadrature points of a group of strains (see strain_group.hpp): energy, and the mean force over a step, whose work
-/// equals the change of the energy.
+/// Quadrature points of a group of strains (see strain_group.hpp): strain energy, and the discrete-gradient force,
+/// whose work over a step equals the change of the energy.
 
 #include <array>
 
@@ -12,8 +12,8 @@
 
 namespace polybody {
 
-/// Weights, maps and stress-free strains of the quadrature points of a group, and C, τ and n⁰, which are equal at all
-/// points.
+/// Quadrature points of a group of strains: weight, map P and stress-free strains of each point. The stiffness C, the
+/// damping time τ and the initial stress n⁰ are equal at all points.
 template <StrainFunctions Law>
 class StrainPoints {
  public:
@@ -26,31 +26,31 @@ class StrainPoints {
   using Strains = Vec<double, m>;                              ///< one number for each strain
 
   StrainPoints() = default;
-  /// Quadrature points of elements of length l [m]: Gauss points, unless the law has a `rule`. `initial` is the stress
-  /// in the reference configuration.
+  /// Quadrature points of elements of length l [m]: those of `Law::rule` if it exists, otherwise Gauss points.
+  /// `initial` is the stress in the reference configuration.
   StrainPoints(BarConstants const& c, Damping const& d, double l, Strains const& initial = Strains::Zero())
     requires StrainLaw<Law>
       : StrainPoints(Law::stiffness(c), Law::damping(d)) {
     initial_ = initial;
     for (int g = 0; g < Law::points; ++g) set_point(g, point(g).weight * l, Law::map(point(g).xi, l));
   }
-  /// Points with the given C and τ [s]; `set_point` defines each of them.
+  /// Quadrature points with the stiffness C and the damping time τ [s]; `set_point` defines each of them.
   StrainPoints(Strains const& stiffness, Strains const& time) : stiffness_(stiffness), time_(time) {
     damped_ = !time_.isZero(0.0);
     free_.fill(Strains::Zero());
   }
   /// Sets the `weight` [m], the factors `map` of P, and the stress-free strains `free` of point g.
   void set_point(int g, double weight, Map const& map, Strains const& free = Strains::Zero()) {
-    weights_[g] = weight;
-    maps_[g] = map;
-    free_[g] = free;
+    weights_[std::size_t(g)] = weight;
+    maps_[std::size_t(g)] = map;
+    free_[std::size_t(g)] = free;
     for (std::size_t k = 0; k < products_.size(); ++k) {
       auto const [s, j, t, l] = P::table.pairs[k];
-      products_[k][g] = map(s, j) * map(t, l);
+      products_[k][std::size_t(g)] = map(s, j) * map(t, l);
     }
   }
 
-  /// Makes the coordinates x free of strain, ε⁰ = ε(x) at each point.
+  /// Sets the stress-free strains to those of the coordinates x, ε⁰ = ε(x) at each point.
   template <int n>
   void set_free(Vec<double, n> const& x) {
     Mat<double, m, np> b;
@@ -59,7 +59,7 @@ class StrainPoints {
   }
 
   Strains const& stiffness() const { return stiffness_; }  ///< C of each strain [N] or [N m²]
-  /// Stress of the given strains without damping.
+  /// Stress for the strains `strain`, without damping.
   Strains stress(Strains const& strain) const { return stiffness_.cwiseProduct(strain) + initial_; }
 
   /// Strains ε at ξ of an element of length l with coordinates x.
@@ -73,10 +73,10 @@ class StrainPoints {
     return strain;
   }
 
-  bool damped() const { return damped_; }                ///< true if a τ is not zero
+  bool damped() const { return damped_; }                ///< true if any τ is not zero
   bool operator==(StrainPoints const&) const = default;  ///< compares all numbers
 
-  /// Energy stored at the coordinates x of the element [J].
+  /// Strain energy of an element with the coordinates x [J].
   template <int n>
   double energy(Vec<double, n> const& x) const {
     double u = 0.0;
@@ -84,21 +84,22 @@ class StrainPoints {
     for (int g = 0; g < Law::points; ++g) {
       Vec<double, m> strain;
       Mat<double, m, np> b;
-      Law::template evaluate<double>(P::parameters(maps_[g], e), strain, b);
+      Law::template evaluate<double>(P::parameters(maps_[std::size_t(g)], e), strain, b);
 #pragma GCC unroll 8
       for (int i = 0; i < m; ++i) {
-        double const stretch = strain[i] - free_[g][i];
-        u += weights_[g] * (0.5 * stiffness_[i] * stretch + initial_[i]) * stretch;
+        double const stretch = strain[i] - free_[std::size_t(g)][i];
+        u += weights_[std::size_t(g)] * (0.5 * stiffness_[i] * stretch + initial_[i]) * stretch;
       }
     }
     return u;
   }
 
-  /// Adds the force of the group over a step from x0 to x1, by secants S of the strains [Gonzalez 1996]:
+  /// Adds the discrete-gradient force of the group over a step from x0 to x1, with secants S of the strains [Gonzalez
+  /// 1996]:
   ///   f += −∫ Pᵀ Sᵀ n dx,  n_i = C_i (ε̄_i − ε⁰_i + (decay + τ_i/h) Δε_i) + n⁰_i,  S P Δx = Δε,
   /// so that f·Δx = −ΔU − Σ ∫ C_i (decay + τ_i/h) Δε_i² dx. The force has no moment if strains are scalar products.
   /// Strains that are components of a rotating vector enter by their square z: n_z = ½ C (1 + τ Δz/(2h(z̄ + κ₀²))),
-  /// with κ₀ = 1e-3 1/m, which agrees with the damping of `objective_rate`. The part of `decay` then has a moment.
+  /// with κ₀ = 1e-3 1/m, which agrees with the damping of `objective_rate`. The term of `decay` then exerts a moment.
   template <int n>
   void add_mean_force(Vec<double, n> const& x0, Vec<double, n> const& x1, DiscreteDerivative const& means,
                       Vec<double, n>& f) const {
@@ -106,7 +107,8 @@ class StrainPoints {
     Coordinates<double, n> const e0(x0), e1(x1);
     Vec<double, P::d> step = Vec<double, P::d>::Zero();
     for (int g = 0; g < Law::points; ++g) {
-      Vec<double, np> const p0 = P::parameters(maps_[g], e0), p1 = P::parameters(maps_[g], e1);
+      Vec<double, np> const p0 = P::parameters(maps_[std::size_t(g)], e0),
+                            p1 = P::parameters(maps_[std::size_t(g)], e1);
       Vec<S, np> p;
       for (int k = 0; k < np; ++k) p[k] = S::variable(p0[k], p1[k], k);
       typename S::Slope sum = S::Slope::Zero();
@@ -122,26 +124,27 @@ class StrainPoints {
         for (int i = 0; i < m; ++i) {
           double stretch = means.decay * strain[i].change();
           if constexpr (!HasSquare<Law>)
-            stretch += strain[i].mean() - free_[g][i] + time_[i] * means.rate * strain[i].change();
+            stretch += strain[i].mean() - free_[std::size_t(g)][i] + time_[i] * means.rate * strain[i].change();
           sum += strain[i].d * (stiffness_[i] * stretch + (HasSquare<Law> ? 0.0 : initial_[i]));
         }
       }
       Vec<double, np> pull;
-      for (int k = 0; k < np; ++k) pull[k] = weights_[g] * sum[k];
-      P::subtract_pulled(maps_[g], pull, f, step);
+      for (int k = 0; k < np; ++k) pull[k] = weights_[std::size_t(g)] * sum[k];
+      P::subtract_pulled(maps_[std::size_t(g)], pull, f, step);
     }
     P::spread(step, f);
   }
 
-  /// Adds the tangent k += ck (−∂f/∂x1) of `add_mean_force` from x0 to x1, which is not symmetric. The gradients B̄ and
-  /// H̄ of the strains in the middle of the step replace the secants:
+  /// Adds the tangent k += ck (−∂f/∂x1) of `add_mean_force` from x0 to x1, which is not symmetric. The derivatives B̄
+  /// and H̄ of the strains at the middle of the step replace the secants:
   ///   Pᵀ [B̄ᵀ C (½ + decay + τ/h) B(x1) + ½ Σ n_i H̄_i] P.
   template <int n>
   void add_mean_tangent(Vec<double, n> const& x0, Vec<double, n> const& x1, DiscreteDerivative const& means, double ck,
                         Mat<double, n, n>& k) const {
     Coordinates<double, n> const e0(x0), e1(x1);
     for (int g = 0; g < Law::points; ++g) {
-      Vec<double, np> const p0 = P::parameters(maps_[g], e0), p1 = P::parameters(maps_[g], e1);
+      Vec<double, np> const p0 = P::parameters(maps_[std::size_t(g)], e0),
+                            p1 = P::parameters(maps_[std::size_t(g)], e1);
       Vec<double, np> const middle = 0.5 * (p0 + p1);
       Strains from, to, stress;
       Mat<double, m, np> b, end;
@@ -150,9 +153,10 @@ class StrainPoints {
       Law::template evaluate<double>(middle, stress, b);
       Mat<double, np, np> h = Mat<double, np, np>::Zero();
       for (int i = 0; i < m; ++i) {
-        double const w = ck * weights_[g], share = means.decay + time_[i] * means.rate;
+        double const w = ck * weights_[std::size_t(g)], share = means.decay + time_[i] * means.rate;
         stress[i] = 0.5 * w *
-                    (stiffness_[i] * (0.5 * (from[i] + to[i]) - free_[g][i] + share * (to[i] - from[i])) + initial_[i]);
+                    (stiffness_[i] * (0.5 * (from[i] + to[i]) - free_[std::size_t(g)][i] + share * (to[i] - from[i])) +
+                     initial_[i]);
         for (int c = 0; c < np; ++c)
           for (int r = 0; r < np; ++r) h(r, c) += w * stiffness_[i] * (0.5 + share) * b(i, r) * end(i, c);
       }
@@ -164,7 +168,7 @@ class StrainPoints {
       } else {
         Law::template add_hessian<double>(middle, stress, h);
       }
-      P::add_mapped(maps_[g], h, k);
+      P::add_mapped(maps_[std::size_t(g)], h, k);
     }
   }
 
@@ -173,20 +177,20 @@ class StrainPoints {
     if constexpr (requires { Law::rule; })
       return Law::rule[std::size_t(g)];
     else
-      return gauss<Law::points>[g];
+      return gauss<Law::points>[std::size_t(g)];
   }
 
  protected:
-  static constexpr bool quadratic = QuadraticStrains<Law>;  ///< tangents use `QuadraticStrains`
+  static constexpr bool quadratic = QuadraticStrains<Law>;  ///< true if the strains are quadratic in the parameters
 
   Strains stiffness_ = Strains::Zero();             ///< C
   Strains time_ = Strains::Zero();                  ///< τ [s]
   Strains initial_ = Strains::Zero();               ///< n⁰
-  bool damped_ = false;                             ///< true if a τ is not zero
+  bool damped_ = false;                             ///< true if any τ is not zero
   std::array<Map, std::size_t(Law::points)> maps_;  ///< N
-  /// Products of two factors, for each pair.
+  /// Product of the two factors of each pair (`StrainMap::Pair`), at each point.
   std::array<std::array<double, std::size_t(Law::points)>, quadratic ? 0 : P::table.pairs.size()> products_;
-  std::array<double, Law::points> weights_;  ///< [m]
+  std::array<double, Law::points> weights_;  ///< weight of each point [m]
   std::array<Strains, Law::points> free_;    ///< ε⁰
 };
 

@@ -28,9 +28,9 @@ void set_block(int v, int w, Mat<T, d, d> const& block, bool mirror, Mat<T, n, n
 }
 }  // namespace detail
 
-/// Tangent k = ck (−∂f/∂x) + cd (−∂f/∂xd) of the groups of an element. Without damping it is symmetric, and only the
-/// blocks on and below the diagonal are computed. The blocks of the first vector are the negative blocks of the vector
-/// that is read relative to it (`StrainMap`).
+/// Tangent k = ck (−∂f/∂x) + cd (−∂f/∂xd) of the groups of an element. Without damping the tangent is symmetric, and
+/// only the blocks on and below the diagonal are computed. The blocks of the first vector are the negative blocks of
+/// the vector that is read relative to it (`StrainMap`).
 template <KernelScalar T, int n, class... Groups>
 void tangent_of(std::tuple<Groups...> const& groups, Vec<T, n> const& x, Vec<T, n> const& xd, double ck, double cd,
                 Mat<T, n, n>& k) {
@@ -58,7 +58,7 @@ void tangent_of(std::tuple<Groups...> const& groups, Vec<T, n> const& x, Vec<T, 
       if (v == difference && w == difference) detail::set_block<false, T, d, n>(0, 0, block, false, k);
     }
   };
-  if constexpr (d == 1) {  // few entries, most of one product: unrolled loops let the compiler select them
+  if constexpr (d == 1) {  // few entries, most of a single product: the compiler finds them if the loops are unrolled
 #pragma GCC unroll 8
     for (int v = first; v < n; ++v)
 #pragma GCC unroll 8

@@ -15,7 +15,7 @@ concept TimeVaryingBody = requires(B const b, double t) {
   { b.at_time(t) } -> std::same_as<B>;
 };
 
-/// Returns the body at time t [s]; a body that does not change with time is returned itself.
+/// Returns the body at time t [s]: `body.at_time(t)`, or `body` itself if it does not change with time.
 template <class B>
 decltype(auto) at_time(B const& body, [[maybe_unused]] double t) {
   if constexpr (TimeVaryingBody<B>)

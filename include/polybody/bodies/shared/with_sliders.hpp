@@ -22,7 +22,7 @@ concept SmoothAxis = std::derived_from<B, AddingCoordinates> && requires(B const
   b.axis_shape(0.5);
 };
 
-/// Number of a slider of a body.
+/// Index of a slider on its body.
 struct Slider {
   Index index = 0;  ///< counted from 0
 };
@@ -38,8 +38,8 @@ struct Slider {
 ///
 /// A slider depends on all columns of the body, because its element changes with s. Its Jacobian rows are therefore as
 /// long as the body, and its load stiffness is dense. At a node r″ jumps, and with it the accelerations. Beyond an end
-/// the cubic of the last element is extended by the length of an element, so that a step can end there; run/sliders.hpp
-/// has the event.
+/// of the body, the cubic of the last element continues for one element length, so that a step can end there.
+/// run/sliders.hpp has an event for the end.
 template <Body B>
 class WithSliders : public B {
   static_assert(SmoothAxis<B>,
@@ -59,7 +59,7 @@ class WithSliders : public B {
   /// Adds sliders at the positions `places` [m] to the body `line`.
   /// \throws InvalidInput for positions outside the body.
   WithSliders(B line, std::vector<double> places) : B(std::move(line)), places_(std::move(places)) {
-    for (double& s : places_) s = require_inside(s, B::length(), "WithSliders: the place");
+    for (double& s : places_) s = require_inside(s, B::length(), "WithSliders: the position");
   }
 
   Index sliders() const { return Index(places_.size()); }  ///< number of sliders
@@ -80,7 +80,7 @@ class WithSliders : public B {
   /// Marker on `slider`, a point without axes.
   /// \throws InvalidInput for a slider that the body does not have.
   Point at(Slider slider) const { return {{}, column_of(slider)}; }
-  /// Kinematics that a marker at p has: those of the points of the body, except that a slider has no axes.
+  /// Kinematics that a marker at p has: `observes` for a material point, a point without axes for a slider.
   static MarkerKind observes_at(Point const& p) { return p.slider < 0 ? observes : MarkerKind::point; }
 
   Index coordinates() const { return B::coordinates() + sliders(); }
@@ -104,7 +104,7 @@ class WithSliders : public B {
   }
 
   /// Marker kinematics of a material point or a slider.
-  /// \throws SliderOutOfRange for a slider more than an element beyond an end.
+  /// \throws SliderOutOfRange for a slider more than one element length beyond an end.
   template <StateScalar T>
   void evaluate_marker(Point const& p, Mat3 const& axes, std::span<T const> q, std::span<T const> v,
                        MarkerKinematics<T>& out) const {
@@ -115,9 +115,9 @@ class WithSliders : public B {
     out.columns = velocities();
   }
 
-  /// Load stiffness in the first rows and columns of k. For a slider Jᵀw = [s_i f; r′·f]. The derivative of the first
-  /// part with respect to s is s_i′ f, the transpose of the derivative of the second part with respect to e_i. The last
-  /// entry is ∂(r′·f)/∂s = r″·f.
+  /// Load stiffness in the first rows and columns of k. For a slider Jᵀw = [s_i f; r′·f]. The derivative of s_i f with
+  /// respect to s is s_i′ f, the transpose of the derivative of r′·f with respect to e_i. The last entry is ∂(r′·f)/∂s
+  /// = r″·f.
   void load_stiffness(Point const& p, std::span<double const> q, Wrench<double> const& w, MatX& k) const {
     if (p.slider < 0) {
       Mat<double, B::point_columns, B::point_columns> each;
@@ -138,22 +138,22 @@ class WithSliders : public B {
  private:
   static constexpr int dimension = B::world == World::plane ? 2 : 3;
   struct Place {
-    Index first;  ///< column of the element
+    Index first;  ///< first column of the element
     decltype(std::declval<B const&>().axis_shape(0.0)) shape;
   };
   Place place(double s) const {
     double const l = B::element_length();
     if (!(s >= -l && s <= B::length() + l) && std::isfinite(s))
-      throw SliderOutOfRange("slider.out_of_range",
-                             {ErrorObject{"WithSliders"},
-                              ": a point has passed the end of its body: s = ", ErrorValue{s}, " m, but the length is ",
-                              B::length(), " m. End the run there by the event slider_end_event, or fix the point."});
+      throw SliderOutOfRange(
+          "slider.out_of_range",
+          {ErrorObject{"WithSliders"}, ": a slider is beyond the end of the body: s = ", ErrorValue{s},
+           " m, but the length is ", B::length(), " m. End the run there with slider_end_event, or fix the slider."});
     Index const last = B::elements() - 1, e = std::isfinite(s) ? std::clamp(Index(s / l), Index(0), last) : 0;
     return {B::first_column(e), B::axis_shape(s / l - double(e))};
   }
 
-  /// Marker kinematics of a slider. The shape functions are evaluated at the value of s; the dual part of s enters by
-  /// their derivatives.
+  /// Marker kinematics of a slider. The shape functions are evaluated at the value of s. If s is a dual number, its
+  /// derivatives enter through the derivatives of the shape functions.
   template <StateScalar T>
   void slide(Index column, std::span<T const> q, std::span<T const> v, MarkerKinematics<T>& out) const {
     std::fill_n(out.jacobian, 6 * velocities(), T(0.0));

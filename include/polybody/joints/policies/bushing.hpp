@@ -1,13 +1,16 @@
 #pragma once
+/// \file
+/// Linear bushing: policy that replaces a joint by a spring and damper with 6×6 matrices.
+
 #include <polybody/joints/policies/policy.hpp>
 #include <polybody/joints/relative_coordinates.hpp>
 
 namespace polybody {
 
 namespace detail {
-/// \throws InvalidInput, with the name `what`, unless k (6×6) is finite, symmetric and positive semidefinite. Symmetric
-/// elimination of k, with its diagonal scaled to one, must have no negative pivot, and a zero pivot requires a zero
-/// column [Higham 2002, §10.3].
+/// Requires a matrix k (6×6) that is finite, symmetric and positive semidefinite. \throws InvalidInput with the name
+/// `what` otherwise. Symmetric elimination of k, with its diagonal scaled to one, must have no negative pivot, and a
+/// zero pivot requires a zero column [Higham 2002, §10.3].
 template <class = void>  // compiled only if used
 void require_semidefinite(Mat<double, 6, 6> const& k, std::string const& what) {
   double l[6][6];
@@ -22,7 +25,7 @@ void require_semidefinite(Mat<double, 6, 6> const& k, std::string const& what) {
       double const scale = std::sqrt(k(i, i) * k(j, j));
       if (!std::isfinite(k(i, j)) || (i == j && k(i, j) < 0.0)) refuse(entry());
       if (std::abs(k(i, j) - k(j, i)) > 1e-9 * scale) refuse(entry() + " and its mirror is " + number(k(j, i)));
-      if (scale == 0.0 && k(i, j) != 0.0) refuse(entry() + " beside a zero on the diagonal");
+      if (scale == 0.0 && k(i, j) != 0.0) refuse(entry() + " although a diagonal entry of its row or column is zero");
       l[i][j] = scale > 0.0 ? k(i, j) / scale : 0.0;
     }
   for (int i = 0; i < 6; ++i) {
@@ -80,7 +83,7 @@ struct Bushing {
       for (int i = 0; i < m; ++i) lambda[i] += x[j] * stiffness.value(i, j) + rate[j] * damping.value(i, j);
     return lambda;
   }
-  /// ck K + cd C (6×6).
+  /// Tangent ck K + cd C (6×6).
   template <int m>
     requires(m == 6)
   Matrix slope(double ck, double cd, Vec<double, m> const&, Vec<double, m> const&) const {

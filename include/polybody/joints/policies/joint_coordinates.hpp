@@ -18,10 +18,10 @@ struct ArticulatedBody {};
 }  // namespace joint_coordinates
 
 /// Joint coordinates: the pose of body b is the pose of body a followed by the relative motion of the joint. The
-/// unknowns of a time step are the coordinates of this motion alone. They satisfy the joint's constraint equations
-/// exactly; multipliers and reactions are computed afterwards, as for `Constraint`. Joints form trees from the ground,
-/// or from a free body; a joint that closes a loop needs another policy. For rigid bodies [Shabana 2020, §3; thesis
-/// §3.3.2].
+/// unknowns of a time step are the coordinates of this motion alone. These coordinates satisfy the joint's constraint
+/// equations exactly; multipliers and reactions are computed afterwards, as for `Constraint`. Joints form trees from
+/// the ground, or from a free body; a joint that closes a loop needs another policy. The bodies must be rigid [Shabana
+/// 2020, §3; thesis §3.3.2].
 template <class Path>
 struct JointCoordinatesBy {
   static constexpr char const* name = "JointCoordinates";

@@ -1,4 +1,7 @@
 #pragma once
+/// \file
+/// Nonlinear bushing: joint policy with a force law for each component of the relative motion, and common force laws.
+
 #include <tuple>
 
 #include <polybody/joints/policies/policy.hpp>

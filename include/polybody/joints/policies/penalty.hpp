@@ -49,8 +49,8 @@ struct PenaltyPerEquation {
   static constexpr char const* name = "PenaltyPerEquation";
   static constexpr bool linear = true;  ///< linear in g and ġ
 
-  Required<Vec<double, n>> stiffness;  ///< (n) k
-  Required<Vec<double, n>> damping;    ///< (n) c
+  Required<Vec<double, n>> stiffness;  ///< (n) k, units as for `Penalty`
+  Required<Vec<double, n>> damping;    ///< (n) c, units as for `Penalty`
 
   /// \throws InvalidInput unless k > 0 and c ≥ 0 for every equation; `what` is the joint's name.
   void check(std::string const& what) const {

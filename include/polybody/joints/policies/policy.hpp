@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Kinds of joint policies. The assembly has one path for each kind, for any number of policies.
+/// Kinds of joint policies. The assembly treats all policies of one kind by the same code.
 
 #include <polybody/joints/constraint_terms.hpp>
 
@@ -11,7 +11,7 @@ template <class P>
 concept ConstrainingPolicy = requires { requires P::adds_constraints; };
 
 /// Policy whose constraint equations are eliminated from a time step together with the coordinates that they determine.
-/// All other evaluations of a model treat them as constraint equations with multipliers.
+/// All other evaluations of a model treat these equations as constraint equations with multipliers.
 template <class P>
 concept EliminatingPolicy = ConstrainingPolicy<P> && requires { requires P::eliminates; };
 
