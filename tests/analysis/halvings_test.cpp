@@ -187,18 +187,35 @@ TEST(Halvings, AnImpactThatAStepJumpsOverIsFound) {
   }
 }
 
-// Steps of 0.6 periods would end with an energy of 283 J, compared with a scale of 4.9 J.
-TEST(Halvings, APendulumAtAStepOfASecondIsRefusedWithoutHalves) {
+/// Rod of 1 m and 1 kg on a pin, released from the horizontal. It exchanges 4.905 J with gravity in 1.6 s.
+struct Pendulum {
   using Pin = Joint<Revolute, Constraint>;
   Model<Bodies<Rigid<>>, Joints<Pin>> model{Gravity{0, 0, -9.81}};
-  Mat3 const inertia = Vec3(0.01, 0.083, 0.083).asDiagonal().toDenseMatrix();
-  auto const rod = model.add(Rigid<>(1.0, inertia, Placement::at({0.5, 0, 0})), "rod");
-  model.connect(Pin{Revolute{.axis = Vec3(0, 1, 0)}, {}}, model.ground().at({0, 0, 0}), rod.at(Vec3(-0.5, 0, 0)));
-  State x = model.reference_state();
-  EXPECT_NE(failure_of([&] {
-              simulate(model, x, GeneralisedAlpha{}, {.end_time = 10.0, .step = 1.0, .max_step_halvings = 0}).run();
-            }),
-            "");
+  State x;
+
+  Pendulum() {
+    Mat3 const inertia = Vec3(0.01, 0.083, 0.083).asDiagonal().toDenseMatrix();
+    auto const rod = model.add(Rigid<>(1.0, inertia, Placement::at({0.5, 0, 0})), "rod");
+    model.connect(Pin{Revolute{.axis = Vec3(0, 1, 0)}, {}}, model.ground().at({0, 0, 0}), rod.at(Vec3(-0.5, 0, 0)));
+    x = model.reference_state();
+  }
+};
+
+// Steps of 0.6 periods would end with an energy of 283 J. Halves of 1/64 s resolve the motion.
+TEST(Halvings, APendulumAtAStepOfASecondIsHalvedOrRefused) {
+  Pendulum strict, halved;
+  EXPECT_FALSE(message_of<Error>([&] {
+                 simulate(strict.model, strict.x, GeneralisedAlpha{},
+                          {.end_time = 10.0, .step = 1.0, .max_step_halvings = 0})
+                     .run();
+               }).empty());
+  auto run = simulate(halved.model, halved.x, GeneralisedAlpha{}, {.end_time = 10.0, .step = 1.0});
+  double const start = energy(halved.model, halved.x).total();
+  for (State const& now : run) EXPECT_LT(energy(halved.model, now).total() - start, 0.5 * 4.905) << now.t;
+  EXPECT_EQ(halved.x.t, 10.0);
+  EXPECT_EQ(run.report().steps, 10);
+  EXPECT_GE(run.report().halved, 10);
+  EXPECT_FALSE(run.report().warnings.empty());
 }
 
 // The attempts that fail at the landing are part of the costs of the step. Their number is that of the message of a run
@@ -281,7 +298,7 @@ TEST(Halvings, RepeatStepsThatGainEnergy) {
                              {.end_time = 1.0, .step = 4e-3, .max_step_halvings = 0})
                         .run();
                   }),
-                  "energy gain"));
+                  "J more energy than the work"));
   double const start = energy(links.model, links.x).total();
   auto run = simulate(links.model, links.x, GeneralisedAlpha{}, {.end_time = 10.0, .step = 4e-3});
   double released = 0.0, most = -1e9;
@@ -318,11 +335,27 @@ TEST(Halvings, OfTheDefaultLeaveTheBitsOfARunWithoutFailures) {
   EXPECT_EQ(report.halved, 0);
 }
 
+// A snapshot restarts the energy balance in both runs, so that they halve the same steps.
+TEST(Halvings, OfAResumedRunAreThoseOfTheRunItself) {
+  Links whole(16), parted(16);
+  RunOptions const options{.end_time = 3.0, .step = 4e-3};
+  auto run = simulate(whole.model, whole.x, GeneralisedAlpha{}, options);
+  while (whole.x.t < 1.2) run.advance();
+  RunSnapshot const snapshot = run.snapshot();
+  long const before = run.report().halved;
+  run.run();
+  EXPECT_GT(run.report().halved, before);
+  RunReport const report = resume(parted.model, parted.x, GeneralisedAlpha{}, options, snapshot).run();
+  EXPECT_EQ(parted.x.q, whole.x.q);
+  EXPECT_EQ(parted.x.v, whole.x.v);
+  EXPECT_EQ(report.halved, run.report().halved);
+}
+
 // 10 s of chains, or a refusal with a type. POLYBODY_HOSTILE=all: all lengths and steps.
 TEST(Halvings, ChainsUnderDefaultOptionsPassOrEndInARefusal) {
   char const* const asked = std::getenv("POLYBODY_HOSTILE");
   bool const all = asked && std::string(asked) == "all";
-  for (int const n : all ? std::vector{4, 8, 16, 32, 64, 128, 256} : std::vector{4, 16, 32})
+  for (int const n : all ? std::vector{4, 8, 16, 32, 64, 128, 256} : std::vector{4, 16, 64})
     for (double const h : all ? std::vector{5e-4, 1e-3, 2e-3, 4e-3, 1e-2} : std::vector{2e-3, 1e-2}) {
       SCOPED_TRACE(std::to_string(n) + " links, step " + number(h));
       Links links(n);
@@ -336,8 +369,7 @@ TEST(Halvings, ChainsUnderDefaultOptionsPassOrEndInARefusal) {
         EXPECT_TRUE(has(refused.what(), "was halved 6 times")) << refused.what();
       }
       EXPECT_TRUE(links.x.q.allFinite());
-      bool const passes = n <= 64 || h <= 1e-3;
-      EXPECT_TRUE(!passes || links.x.t == 10.0) << links.x.t;
+      EXPECT_TRUE((n > 64 && h > 1e-3) || links.x.t == 10.0) << links.x.t;
     }
 }
 

@@ -6,7 +6,6 @@
 
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include <polybody/math/sequence.hpp>
 #include <polybody/math/vectors.hpp>
@@ -43,9 +42,34 @@ struct Unexplained {
 /// not counted. At the end of a run and before each restart, `settle` evaluates the balance with signed work. It counts
 /// losses if no part of the model dissipates energy. Models with a potential that depends on time have no energy
 /// balance, and their energy is not checked.
+///
+/// A run that can halve steps also evaluates the balance if Σ v² differs from its extrapolation by 2 % of its largest
+/// value. It halves a step that gains more than ½ limit · S, and a step that gains more than a tenth of this and ends
+/// with E − E₀ − W above it. Smaller gains are often part of a reversible oscillation, and the new start of a halved
+/// step would remove their energy. With limit = 1 the tenth is 0.05 S. Such a gain of T is a jump by 3 % of the largest
+/// T or more, because T ≤ 1.5 S if no step was to be halved. Σ v² has mixed units, so it can miss a jump of slow, heavy
+/// bodies beside fast ones. Such a gain remains for the balances at doubled velocities and at the end of the run.
 class PlausibilityCheck {
  private:
   static constexpr double never = std::numeric_limits<double>::infinity();
+  /// Quadratic course of Σ v² through the ends of the last three steps, by Newton's divided differences.
+  struct Trend {
+    double last = 0.0, slope = 0.0, bend = 0.0;  ///< Σ v² at the last end, its divided differences; mixed units
+    double h = 0.0;                              ///< length of the last step [s]
+    double peak = 0.0;                           ///< largest Σ v² since the start, mixed units
+    /// True if Σ v² after a step of length `next` differs from its extrapolation by 2 % of its largest value.
+    bool breaks(double squares, double next) const {
+      return std::abs(squares - last - next * (slope + (next + h) * bend)) > 0.02 * std::max(squares, peak);
+    }
+    void add(double squares, double next) {
+      double const change = (squares - last) / next;
+      bend = (change - slope) / (next + h);
+      slope = change;
+      last = squares;
+      h = next;
+      peak = std::max(peak, squares);
+    }
+  };
   struct Account {
     double open = never;    ///< limit of |Φ| in the unit of the constraint equation: [m], or a cosine
     double energy = never;  ///< limit of the unexplained energy relative to S [1]
@@ -53,8 +77,7 @@ class PlausibilityCheck {
     double fastest = 0.0;   ///< Σ v² at the last balance, mixed units
     double scale = 0.0;     ///< largest S since the start [J]
     double moved = 0.0;     ///< largest T₀ + max(0, V₀ − V) + 2 W since the start [J]
-    double last = 0.0;      ///< Σ v² at the end of the last step, mixed units
-    double older = 0.0;     ///< Σ v² at the end of the step before it, mixed units
+    Trend trend;            ///< course of Σ v²
     double gained = 0.0;    ///< unexplained energy at the last balance [J]
     double doubt = 0.0;     ///< estimated error of the work at the last balance [J]
     Energy start;           ///< E₀
@@ -75,10 +98,11 @@ class PlausibilityCheck {
   void require(System& system, StepResult const& end, double squares) {
     if (work_.counts()) work_.add(system, end);
     double gained = account_.gained, doubt = account_.doubt;
-    if (halvings >= 0 && account_.energy < never && bends(squares)) require_small_gain(system, end, gained, doubt);
+    if (halvings >= 0 && account_.energy < never && account_.trend.breaks(squares, end.h))
+      require_small_gain(system, end, gained, doubt);
     if (laws_.watches()) laws_.require(system.layout(), end.t, end.h);
     if (!contacts_.empty()) require_no_passage(system, end);
-    account_.older = std::exchange(account_.last, squares);
+    account_.trend.add(squares, end.h);
     account_.gained = gained;
     account_.doubt = doubt;
     if (squares > account_.judged || any_open()) check_step(system, end, squares);
@@ -122,11 +146,6 @@ class PlausibilityCheck {
       for (int i = 0; i < violations.rows; ++i)
         if (std::abs(violations.g[i]) > account_.open) return true;
     return false;
-  }
-  /// True if Σ v² differs from its linear extrapolation by 1 %: only such steps may gain much energy.
-  bool bends(double squares) const {
-    double const linear = 2.0 * account_.last - account_.older;
-    return std::abs(squares - linear) > 0.01 * std::max(squares, account_.last);
   }
   /// Index of the largest velocity.
   static Index fastest_of(VecX const& v) {
@@ -221,7 +240,7 @@ void PlausibilityCheck::begin(System& system, PlausibilityLimits const& limits, 
   account_.fastest = squares(place.v);
   account_.judged = account_.energy < never ? 4.0 * account_.fastest : never;
   account_.scale = account_.moved = account_.gained = account_.doubt = 0.0;
-  account_.last = account_.older = account_.fastest;
+  account_.trend = {.last = account_.fastest, .peak = account_.fastest};
   violations_.clear();
   contacts_.clear();
   if (!replaced_) earlier_ = std::move(work_);
@@ -302,7 +321,8 @@ PlausibilityCheck::Balance PlausibilityCheck::balance(System& system) const {
   Energy const now = entries.energy(model, system.at(), system.data()), &start = account_.start;
   At<double> const& at = system.at();
   if (work_.misses_drives(system.data())) return {};
-  if (entries.energy(model, {at.q, at.v, account_.began}, system.data()).forces != now.forces) return {};
+  bool const forced = !system.layout().forces.empty();
+  if (forced && entries.energy(model, {at.q, at.v, account_.began}, system.data()).forces != now.forces) return {};
   Balance b{.gained = now.total() - start.total(), .kinetic = start.kinetic, .known = true};
   b.held = std::max(0.0, start.strain) + std::max(0.0, start.joints) + std::max(0.0, start.forces);
   b.released = std::max(0.0, start.potential() - now.potential());
@@ -328,12 +348,15 @@ void PlausibilityCheck::require_small_gain(System& system, StepResult const& end
   if (!gains() || halvings == 0) return;
   system.evaluate(end.q, end.v, end.t);
   if (!gains() || !moves(end)) return;
+  double const limit = 0.5 * energy_limit(end);
   account_.scale = scale_before;
   ++account_.settled.halved;
   if (work_.counts()) work_.drop_last();
-  throw NewtonConvergenceFailure("step.energy_jump",
-                                 {"The step of ", end.h, " s to t = ", ErrorTime{end.t}, " s gains ",
-                                  ErrorValue{gained - before}, " J that no work explains. Take a smaller step."});
+  throw NewtonConvergenceFailure(
+      "step.energy_jump",
+      {"The step of ", end.h, " s to t = ", ErrorTime{end.t}, " s gains ", ErrorValue{gained - before},
+       " J that no work explains, but the limit is ", limit, " J; ", ErrorObject{system.name_of(fastest_of(end.v))},
+       " moves fastest. Take a smaller step, or a smaller rho_inf."});
 }
 
 template <class>
