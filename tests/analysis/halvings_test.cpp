@@ -187,17 +187,35 @@ TEST(Halvings, AnImpactThatAStepJumpsOverIsFound) {
   }
 }
 
-// Steps of 0.6 periods would end with an energy of 283 J, compared with a scale of 4.9 J.
-TEST(Halvings, APendulumAtAStepOfASecondIsRefused) {
+/// Rod of 1 m and 1 kg on a pin, released from the horizontal. It exchanges 4.905 J with gravity in 1.6 s.
+struct Pendulum {
   using Pin = Joint<Revolute, Constraint>;
   Model<Bodies<Rigid<>>, Joints<Pin>> model{Gravity{0, 0, -9.81}};
-  Mat3 const inertia = Vec3(0.01, 0.083, 0.083).asDiagonal().toDenseMatrix();
-  auto const rod = model.add(Rigid<>(1.0, inertia, Placement::at({0.5, 0, 0})), "rod");
-  model.connect(Pin{Revolute{.axis = Vec3(0, 1, 0)}, {}}, model.ground().at({0, 0, 0}), rod.at(Vec3(-0.5, 0, 0)));
-  State x = model.reference_state();
-  EXPECT_FALSE(message_of<Diverged>([&] {
-                 simulate(model, x, GeneralisedAlpha{}, {.end_time = 10.0, .step = 1.0}).run();
+  State x;
+
+  Pendulum() {
+    Mat3 const inertia = Vec3(0.01, 0.083, 0.083).asDiagonal().toDenseMatrix();
+    auto const rod = model.add(Rigid<>(1.0, inertia, Placement::at({0.5, 0, 0})), "rod");
+    model.connect(Pin{Revolute{.axis = Vec3(0, 1, 0)}, {}}, model.ground().at({0, 0, 0}), rod.at(Vec3(-0.5, 0, 0)));
+    x = model.reference_state();
+  }
+};
+
+// Steps of 0.6 periods would end with an energy of 283 J. Halves of 1/64 s resolve the motion.
+TEST(Halvings, APendulumAtAStepOfASecondIsHalvedOrRefused) {
+  Pendulum strict, halved;
+  EXPECT_FALSE(message_of<Error>([&] {
+                 simulate(strict.model, strict.x, GeneralisedAlpha{},
+                          {.end_time = 10.0, .step = 1.0, .max_step_halvings = 0})
+                     .run();
                }).empty());
+  auto run = simulate(halved.model, halved.x, GeneralisedAlpha{}, {.end_time = 10.0, .step = 1.0});
+  double const start = energy(halved.model, halved.x).total();
+  for (State const& now : run) EXPECT_LT(energy(halved.model, now).total() - start, 0.5 * 4.905) << now.t;
+  EXPECT_EQ(halved.x.t, 10.0);
+  EXPECT_EQ(run.report().steps, 10);
+  EXPECT_GE(run.report().halved, 10);
+  EXPECT_FALSE(run.report().warnings.empty());
 }
 
 // The attempts that fail at the landing are part of the costs of the step. Their number is that of the message of a run
@@ -258,18 +276,54 @@ struct Links {
   }
 };
 
-TEST(Halvings, OfTheDefaultLetAChainOf64LinksFallFor5Seconds) {
+TEST(Halvings, OfTheDefaultLetAChainOf64LinksFallFor10Seconds) {
   Links strict(64), links(64);
   EXPECT_FALSE(message_of<NewtonConvergenceFailure>([&] {
                  simulate(strict.model, strict.x, GeneralisedAlpha{},
                           {.end_time = 5.0, .step = 1e-3, .max_step_halvings = 0})
                      .run();
                }).empty());
-  RunReport const report = simulate(links.model, links.x, GeneralisedAlpha{}, {.end_time = 5.0, .step = 1e-3}).run();
-  EXPECT_EQ(links.x.t, 5.0);
-  EXPECT_EQ(report.steps, 5000);
+  RunReport const report = simulate(links.model, links.x, GeneralisedAlpha{}, {.end_time = 10.0, .step = 1e-3}).run();
+  EXPECT_EQ(links.x.t, 10.0);
+  EXPECT_EQ(report.steps, 10000);
   EXPECT_GT(report.halved, 0);
-  EXPECT_LT(report.halved, 50);
+  EXPECT_LT(report.halved, 100);
+}
+
+// 16 links whip at 0.79 s. Steps of 4 ms then gain more energy than the whole fall releases.
+TEST(Halvings, RepeatStepsThatGainEnergy) {
+  Links strict(16), links(16);
+  EXPECT_TRUE(has(message_of<Diverged>([&] {
+                    simulate(strict.model, strict.x, GeneralisedAlpha{},
+                             {.end_time = 1.0, .step = 4e-3, .max_step_halvings = 0})
+                        .run();
+                  }),
+                  "J more energy than the work"));
+  double const start = energy(links.model, links.x).total();
+  auto run = simulate(links.model, links.x, GeneralisedAlpha{}, {.end_time = 10.0, .step = 4e-3});
+  double released = 0.0, most = -1e9;
+  for (State const& now : run) {
+    Energy const e = energy(links.model, now);
+    released = std::max(released, -e.gravity);
+    most = std::max(most, e.total() - start);
+  }
+  EXPECT_EQ(links.x.t, 10.0);
+  EXPECT_LT(most, 0.75 * released);
+  RunReport const& report = run.report();
+  EXPECT_GT(report.halved, 0);
+  EXPECT_EQ(report.rejected, report.halved);
+  ASSERT_FALSE(report.warnings.empty());
+  EXPECT_TRUE(has(report.warnings.back(), std::to_string(report.halved) + " steps were halved")) << report.warnings[0];
+}
+
+// The energy of 4 links at 4 ms oscillates by a third of the energy that moves, and returns.
+TEST(Halvings, LeaveTheBitsOfAReversibleOscillation) {
+  Links strict(4), links(4);
+  simulate(strict.model, strict.x, GeneralisedAlpha{}, {.end_time = 10.0, .step = 4e-3, .max_step_halvings = 0}).run();
+  RunReport const report = simulate(links.model, links.x, GeneralisedAlpha{}, {.end_time = 10.0, .step = 4e-3}).run();
+  EXPECT_EQ(report.halved, 0);
+  EXPECT_EQ(links.x.q, strict.x.q);
+  EXPECT_EQ(links.x.v, strict.x.v);
 }
 
 TEST(Halvings, OfTheDefaultLeaveTheBitsOfARunWithoutFailures) {
@@ -281,12 +335,28 @@ TEST(Halvings, OfTheDefaultLeaveTheBitsOfARunWithoutFailures) {
   EXPECT_EQ(report.halved, 0);
 }
 
+// A snapshot restarts the energy balance in both runs, so that they halve the same steps.
+TEST(Halvings, OfAResumedRunAreThoseOfTheRunItself) {
+  Links whole(16), parted(16);
+  RunOptions const options{.end_time = 3.0, .step = 4e-3};
+  auto run = simulate(whole.model, whole.x, GeneralisedAlpha{}, options);
+  while (whole.x.t < 1.2) run.advance();
+  RunSnapshot const snapshot = run.snapshot();
+  long const before = run.report().halved;
+  run.run();
+  EXPECT_GT(run.report().halved, before);
+  RunReport const report = resume(parted.model, parted.x, GeneralisedAlpha{}, options, snapshot).run();
+  EXPECT_EQ(parted.x.q, whole.x.q);
+  EXPECT_EQ(parted.x.v, whole.x.v);
+  EXPECT_EQ(report.halved, run.report().halved);
+}
+
 // 10 s of chains, or a refusal with a type. POLYBODY_HOSTILE=all: all lengths and steps.
 TEST(Halvings, ChainsUnderDefaultOptionsPassOrEndInARefusal) {
   char const* const asked = std::getenv("POLYBODY_HOSTILE");
   bool const all = asked && std::string(asked) == "all";
-  for (int const n : all ? std::vector{4, 8, 16, 32, 64, 128, 256} : std::vector{4, 16, 32})
-    for (double const h : all ? std::vector{5e-4, 1e-3, 2e-3, 4e-3, 1e-2} : std::vector{1e-3}) {
+  for (int const n : all ? std::vector{4, 8, 16, 32, 64, 128, 256} : std::vector{4, 16, 64})
+    for (double const h : all ? std::vector{5e-4, 1e-3, 2e-3, 4e-3, 1e-2} : std::vector{2e-3, 1e-2}) {
       SCOPED_TRACE(std::to_string(n) + " links, step " + number(h));
       Links links(n);
       auto run = simulate(links.model, links.x, GeneralisedAlpha{}, {.end_time = 10.0, .step = h});
@@ -299,18 +369,21 @@ TEST(Halvings, ChainsUnderDefaultOptionsPassOrEndInARefusal) {
         EXPECT_TRUE(has(refused.what(), "was halved 6 times")) << refused.what();
       }
       EXPECT_TRUE(links.x.q.allFinite());
-      bool const passes = h <= (n <= 32 ? 1e-3 : 5e-4);
-      EXPECT_TRUE(!passes || links.x.t == 10.0) << links.x.t;
+      EXPECT_TRUE((n > 64 && h > 1e-3) || links.x.t == 10.0) << links.x.t;
     }
 }
 
 // The halved steps, and a warning of the start.
 TEST(Halvings, AndWarningsAreInTheMessageOfTheExceptionThatEndsTheRun) {
-  Links links(64);
-  auto run = simulate(links.model, links.x, GeneralisedAlpha{}, {.end_time = 10.0, .step = 2e-3});
-  std::string const message = message_of<Diverged>([&] { run.run(); });
+  Links links(16);
+  Event const failing{.name = "failing", .value = [](State const& now) {
+                        if (now.t > 1.0) throw InvalidInput("no value");
+                        return 1.0;
+                      }};
+  auto run = simulate(links.model, links.x, GeneralisedAlpha{}, {.end_time = 2.0, .step = 4e-3, .events = {failing}});
+  std::string const message = message_of<InvalidInput>([&] { run.run(); });
   EXPECT_GT(run.report().halved, 0);
-  EXPECT_TRUE(has(message, "The integration diverges")) << message;
+  EXPECT_TRUE(has(message, "no value")) << message;
   EXPECT_TRUE(has(message, std::to_string(run.report().halved) + " step")) << message;
 
   using Soft = Joint<planar::Revolute, Penalty>;

@@ -32,8 +32,9 @@ struct RunOptions {
   /// Limit of |Φ| at the start [m], [rad]. In an assembly of bodies smaller than one metre, the limit of lengths is
   /// this value times the extent of the assembly in metres.
   double assembly_tolerance = 1e-8;
-  /// Largest number of halvings of a step that fails with `NewtonConvergenceFailure`, in [0, 30]. If empty, it is 6 in
-  /// `simulate`, and 0 in differentiated runs. If 0, a failed step ends the run. The report counts halved steps.
+  /// Largest number of halvings of a step that fails with `NewtonConvergenceFailure`, or of an implicit step with an
+  /// unexplained energy gain, in [0, 30]. If empty, it is 6 in `simulate`, and 0 in differentiated runs. If 0, a failed
+  /// step ends the run. The report counts halved steps.
   std::optional<int> max_step_halvings = {};
   bool minimum_norm = false;       ///< true: minimum-norm multipliers in every state, for one factorisation per step
   PlausibilityLimits limits = {};  ///< limits at the end of a step: constraint violation, and unexplained energy
@@ -146,8 +147,8 @@ struct RunReport : RunCounts {
     double start, now;  ///< initial and present time [s]
     long halved;        ///< number of halved steps
   };
-  /// Adds a warning if the unexplained energy exceeds the fraction `limit` of the exchanged energy, or if the steps do
-  /// not resolve the work of a force.
+  /// Adds a warning if the unexplained energy exceeds the fraction `limit` of the exchanged energy, if the steps do not
+  /// resolve the work of a force, or if steps were halved for their energy gain.
   [[gnu::cold]] void warn_of_energy(Unexplained const& found, double limit, Course const& run) {
     if (!found.known) return;
     if (found.worst > 0.4 * found.scale)
@@ -160,6 +161,10 @@ struct RunReport : RunCounts {
                        found.energy > 0.0 ? "gains " : "loses ", std::abs(found.energy), " J that no work explains, ",
                        std::abs(found.energy) / found.scale, " of the exchanged energy (", found.scale, " J); ",
                        run.halved, " steps were halved. Repeat the run with half the step and compare."}));
+    else if (found.halved > 0)
+      add_warning(sentence_of({"From t = ", run.start, " s to ", run.now, " s ", found.halved,
+                               " steps gained energy that no work explains; ", run.halved,
+                               " steps were halved. Repeat the run with half the step and compare."}));
   }
 };
 

@@ -32,9 +32,8 @@ class Simulation {
   Simulation(Simulation const&) = delete;
   Simulation& operator=(Simulation const&) = delete;
 
-  /// Returns the data for `resume` from the current state. This run discards its other data of earlier steps, such as
-  /// factorisations, so that it and a resumed run continue with bitwise identical results. The results of an
-  /// uninterrupted run are identical if it takes snapshots at the same times.
+  /// Returns the data for `resume`, and discards other data of earlier steps, such as factorisations. This run and a
+  /// resumed run then continue with bitwise identical results, as does a run with snapshots at the same times.
   [[gnu::cold]] RunSnapshot snapshot();
 
   State const& state() const { return *x_; }            ///< state at the end of the last step
@@ -83,15 +82,17 @@ class Simulation {
   bool eliminates() const { return bool(full_); }
   void advance(bool updates);  ///< `updates`: true to update the user's state too
 
-  /// Replaces the workspace by one without data of earlier steps, ready for the next step. If this fails, nothing
-  /// changes.
+  /// Replaces the workspace by one without data of earlier steps, ready for the next step, and restarts the energy
+  /// balance. If this fails, nothing changes.
   [[gnu::cold]] void renew() {
     auto fresh = method_.template workspace<Solver>(*system_);
     State ready = stepped();  // `start` clears its history
     if (system_->rows() > 0) leave_out_redundant(*system_, fresh.forward, ready, &ready.lambda);
     method_.start(*system_, ready, done() ? h_ : plan_.next(ready.t, h_).h, fresh);
+    (void)workspace_.forward.bounds.settle(*system_, step_end());
     fresh.forward.bounds = std::move(workspace_.forward.bounds);
     workspace_ = std::move(fresh);
+    bound();
   }
 
   /// Applies `RunOptions::limits` to the steps from this state on.
@@ -158,6 +159,7 @@ class Simulation {
   /// Ends the step of the length `taken` at the first event. Returns true if the run restarts there.
   bool meet_events(double taken) {
     undo_.events = true;
+    workspace_.forward.bounds.halvings = -1;  // steps to an event are not halved
     EventDetector::Step const again = [this](State& x, double h) {
       return method_.step(*system_, x, h, workspace_).taken;
     };
@@ -226,7 +228,6 @@ Simulation<I, Solver>::Simulation(RunSystems systems, State& x, I const& integra
   report_ = from.report;
   branches_.begin(*system_, workspace_.forward, stepped());
   renew();
-  bound();
   undo_.end(stepped());
 }
 
@@ -355,6 +356,7 @@ void Simulation<I, Solver>::reduced_start() {
 template <Integrator I, class Solver>
 StepReport Simulation<I, Solver>::step(double h, int max_step_halvings) {
   try {
+    workspace_.forward.bounds.halvings = HasStabilityLimit<I> || !options_.allowed_halvings() ? -1 : max_step_halvings;
     return method_.step(*system_, stepped(), h, workspace_);
   } catch (NewtonConvergenceFailure& failure) {
     if (max_step_halvings == 0) {

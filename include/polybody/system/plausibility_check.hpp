@@ -32,6 +32,7 @@ struct Unexplained {
   /// round-off. `PlausibilityCheck` defines the symbols.
   double scale = 0.0;
   bool known = false;  ///< true if an energy balance was evaluated
+  long halved = 0;     ///< number of steps that were halved for their energy gain
 };
 
 /// Check of the limits of a run, with a balance of the energy E = T + V since the last start. A step is refused if
@@ -43,9 +44,34 @@ struct Unexplained {
 /// not counted. At the end of a run and before each restart, `settle` evaluates the balance with signed work. It counts
 /// losses if no part of the model dissipates energy. Models with a potential that depends on time have no energy
 /// balance, and their energy is not checked.
+///
+/// A run that can halve steps also evaluates the balance if Σ v² differs from its extrapolation by 2 % of its largest
+/// value. It halves a step that gains more than ½ limit · S, and a step that gains more than a tenth of this and ends
+/// with E − E₀ − W above it. Smaller gains are often part of a reversible oscillation, and the new start of a halved
+/// step would remove their energy. With limit = 1 the tenth is 0.05 S. Such a gain of T is a jump by 3 % of the largest
+/// T or more, because T ≤ 1.5 S if no step was to be halved. Σ v² has mixed units, so it can miss a jump of slow, heavy
+/// bodies beside fast ones. Such a gain remains for the balances at doubled velocities and at the end of the run.
 class PlausibilityCheck {
  private:
   static constexpr double never = std::numeric_limits<double>::infinity();
+  /// Quadratic course of Σ v² through the ends of the last three steps, by Newton's divided differences.
+  struct Trend {
+    double last = 0.0, slope = 0.0, bend = 0.0;  ///< Σ v² at the last end, its divided differences; mixed units
+    double h = 0.0;                              ///< length of the last step [s]
+    double peak = 0.0;                           ///< largest Σ v² since the start, mixed units
+    /// True if Σ v² after a step of length `next` differs from its extrapolation by 2 % of its largest value.
+    bool breaks(double squares, double next) const {
+      return std::abs(squares - last - next * (slope + (next + h) * bend)) > 0.02 * std::max(squares, peak);
+    }
+    void add(double squares, double next) {
+      double const change = (squares - last) / next;
+      bend = (change - slope) / (next + h);
+      slope = change;
+      last = squares;
+      h = next;
+      peak = std::max(peak, squares);
+    }
+  };
   struct Account {
     double open = never;    ///< limit of |Φ| in the unit of the constraint equation: [m], or a cosine
     double energy = never;  ///< limit of the unexplained energy relative to S [1]
@@ -53,6 +79,9 @@ class PlausibilityCheck {
     double fastest = 0.0;   ///< Σ v² at the last balance, mixed units
     double scale = 0.0;     ///< largest S since the start [J]
     double moved = 0.0;     ///< largest T₀ + max(0, V₀ − V) + 2 W since the start [J]
+    Trend trend;            ///< course of Σ v²
+    double gained = 0.0;    ///< unexplained energy at the last balance [J]
+    double doubt = 0.0;     ///< estimated error of the work at the last balance [J]
     Energy start;           ///< E₀
     double began = 0.0;     ///< time of the start [s]
     Unexplained settled;    ///< sum of the earlier balances of the run
@@ -69,9 +98,15 @@ class PlausibilityCheck {
   /// prescribed value disagrees with its rate, NewtonConvergenceFailure if the step jumps over a contact.
   template <class = void>
   void require(System& system, StepResult const& end, double squares) {
+    if (work_.counts()) work_.add(system, end);
+    double gained = account_.gained, doubt = account_.doubt;
+    if (halvings >= 0 && account_.energy < never && account_.trend.breaks(squares, end.h))
+      require_small_gain(system, end, gained, doubt);
     if (laws_.watches()) laws_.require(system.layout(), end.t, end.h);
     if (!contacts_.empty()) require_no_passage(system, end);
-    if (work_.counts()) work_.add(system, end);
+    account_.trend.add(squares, end.h);
+    account_.gained = gained;
+    account_.doubt = doubt;
     if (squares > account_.judged || any_open()) check_step(system, end, squares);
   }
 
@@ -79,6 +114,8 @@ class PlausibilityCheck {
   /// \throws Diverged if the end violates the energy limit.
   template <class = void>
   [[gnu::cold]] Unexplained settle(System& system, StepResult const& end);
+
+  int halvings = -1;  ///< number of times that the run may halve this step for its energy gain; −1: no such check
 
   /// Scope of a trial step. Its destructor restores the check to its previous state unless `keep` was called.
   class Trial {
@@ -112,6 +149,40 @@ class PlausibilityCheck {
         if (std::abs(violations.g[i]) > account_.open) return true;
     return false;
   }
+  /// Index of the largest velocity.
+  static Index fastest_of(VecX const& v) {
+    Index fastest = 0;
+    for (Index i = 1; i < v.size(); ++i)
+      if (std::abs(v[i]) > std::abs(v[fastest])) fastest = i;
+    return fastest;
+  }
+  /// False for a motion that is slow relative to its coordinates: its energy is round-off and not an instability.
+  static bool moves(StepResult const& end) {
+    return std::abs(end.v[fastest_of(end.v)]) * end.h >= 1e-3 * (1.0 + largest_size(end.q));
+  }
+  /// Energies and works since the last start.
+  struct Balance {
+    double gained = 0.0, put_in = 0.0, net = 0.0;      ///< E − E₀, W, signed work [J]
+    double kinetic = 0.0, held = 0.0, released = 0.0;  ///< T₀, V₀⁺, max(0, V₀ − V) [J]
+    double rounding = 0.0;                             ///< estimated round-off of the energies [J]
+    bool known = false;                                ///< true if the model has such a balance
+    /// S [J].
+    double scale() const { return kinetic + std::max(held, released) + 2.0 * put_in; }
+  };
+  /// Balance at the state of the last evaluation.
+  template <class = void>
+  Balance balance(System& system) const;
+  /// Limit of the unexplained energy gain since a start [J].
+  double energy_limit(StepResult const& end) const {
+    // The error estimate of the work compares steps, so it is not reliable in the first steps after a start.
+    double const few = end.t - account_.began < 4.5 * end.h ? 10.0 : 1.0;
+    return few * account_.energy * account_.scale;
+  }
+  /// Refuses a step that gains half of the energy limit, or that brings the gain since the start to this half.
+  /// \param gained,doubt unexplained energy and its estimated error up to the last balance, and up to this step at
+  /// return [J] \throws NewtonConvergenceFailure if the run may halve the step
+  template <class = void>
+  void require_small_gain(System& system, StepResult const& end, double& gained, double& doubt);
   template <class = void>
   void check_step(System& system, StepResult const& end, double squares);
   template <class = void>
@@ -170,7 +241,8 @@ void PlausibilityCheck::begin(System& system, PlausibilityLimits const& limits, 
   account_.began = place.t;
   account_.fastest = squares(place.v);
   account_.judged = account_.energy < never ? 4.0 * account_.fastest : never;
-  account_.scale = account_.moved = 0.0;
+  account_.scale = account_.moved = account_.gained = account_.doubt = 0.0;
+  account_.trend = {.last = account_.fastest, .peak = account_.fastest};
   violations_.clear();
   contacts_.clear();
   if (!replaced_) earlier_ = std::move(work_);
@@ -204,12 +276,13 @@ void PlausibilityCheck::require_no_passage(System const& system, StepResult cons
     ForceLayout const& force = system.layout().forces[contact.force];
     read_frames(system, force, contact.now);
     bool const follows = std::abs(end.t - end.h - contact.t) <= 1e-3 * end.h;
-    if (follows && force.passes(force.force, contact.last, contact.now))
-      throw NewtonConvergenceFailure(
-          "step.missed_contact", {"The step of ", end.h, " s to t = ", ErrorTime{end.t}, " s jumps over the contact \"",
-                                  ErrorObject{force.name},
-                                  "\": the bodies touch during the step, but not at its ends. Take a smaller step, or "
-                                  "set max_step_halvings in the options of the run."});
+    if (!follows || !force.passes(force.force, contact.last, contact.now)) continue;
+    if (work_.counts()) work_.drop_last();
+    throw NewtonConvergenceFailure(
+        "step.missed_contact",
+        {"The step of ", end.h, " s to t = ", ErrorTime{end.t}, " s jumps over the contact \"", ErrorObject{force.name},
+         "\": the bodies touch during the step, but not at its ends. Take a smaller step, or "
+         "set max_step_halvings in the options of the run."});
   }
   for (Passing& contact : contacts_) {
     std::copy_n(contact.now, 2, contact.last);
@@ -245,38 +318,68 @@ void PlausibilityCheck::refuse_open(System const& system, double t) const {
 }
 
 template <class>
-Unexplained PlausibilityCheck::check_energy(System& system, StepResult const& end) {
+PlausibilityCheck::Balance PlausibilityCheck::balance(System& system) const {
   auto const& [entries, model] = system.entries();
   Energy const now = entries.energy(model, system.at(), system.data()), &start = account_.start;
   At<double> const& at = system.at();
   if (work_.misses_drives(system.data())) return {};
-  if (entries.energy(model, {at.q, at.v, account_.began}, system.data()).forces != now.forces) return {};
-  double const gained = now.total() - start.total(), put_in = work_.counts() ? work_.put_in() : 0.0;
-  double const held = std::max(0.0, start.strain) + std::max(0.0, start.joints) + std::max(0.0, start.forces),
-               released = std::max(0.0, start.potential() - now.potential());
-  account_.scale = std::max(account_.scale, start.kinetic + std::max(held, released) + 2.0 * put_in);
-  account_.moved = std::max(account_.moved, start.kinetic + released + 2.0 * put_in);
-  Index fastest = 0;
-  for (Index i = 1; i < end.v.size(); ++i)
-    if (std::abs(end.v[i]) > std::abs(end.v[fastest])) fastest = i;
-  double const unexplained = gained - put_in;
-  // The error estimate of the work compares steps, so it is not reliable in the first steps after a start.
-  double const few = end.t - account_.began < 4.5 * end.h ? 10.0 : 1.0;
-  // The energy of a motion that is slow relative to its coordinates is round-off and not an instability.
-  if (unexplained > few * account_.energy * account_.scale &&
-      std::abs(end.v[fastest]) * end.h >= 1e-3 * (1.0 + largest_size(end.q)))
+  bool const forced = !system.layout().forces.empty();
+  if (forced && entries.energy(model, {at.q, at.v, account_.began}, system.data()).forces != now.forces) return {};
+  Balance b{.gained = now.total() - start.total(), .kinetic = start.kinetic, .known = true};
+  b.held = std::max(0.0, start.strain) + std::max(0.0, start.joints) + std::max(0.0, start.forces);
+  b.released = std::max(0.0, start.potential() - now.potential());
+  b.rounding = 1e-9 * (std::abs(now.gravity) + std::abs(now.strain) + std::abs(now.joints));
+  if (!work_.counts()) return b;
+  b.put_in = work_.put_in();
+  b.net = work_.net();
+  return b;
+}
+
+template <class>
+void PlausibilityCheck::require_small_gain(System& system, StepResult const& end, double& gained, double& doubt) {
+  double const before = gained, doubt_before = doubt, scale_before = account_.scale;
+  auto const gains = [&] {
+    Balance const b = balance(system);
+    if (!b.known) return false;
+    gained = b.gained - b.net;
+    doubt = work_.counts() ? work_.doubt() : 0.0;
+    account_.scale = std::max(scale_before, b.scale());
+    double const gain = gained - before - 4.0 * (doubt - doubt_before) - b.rounding, limit = 0.5 * energy_limit(end);
+    return gain > 0.1 * limit && std::max(gain, gained) > limit;
+  };
+  if (!gains() || halvings == 0) return;
+  system.evaluate(end.q, end.v, end.t);
+  if (!gains() || !moves(end)) return;
+  double const limit = 0.5 * energy_limit(end);
+  account_.scale = scale_before;
+  ++account_.settled.halved;
+  if (work_.counts()) work_.drop_last();
+  throw NewtonConvergenceFailure(
+      "step.energy_jump",
+      {"The step of ", end.h, " s to t = ", ErrorTime{end.t}, " s gains ", ErrorValue{gained - before},
+       " J that no work explains, but the limit is ", limit, " J; ", ErrorObject{system.name_of(fastest_of(end.v))},
+       " moves fastest. Take a smaller step, or a smaller rho_inf."});
+}
+
+template <class>
+Unexplained PlausibilityCheck::check_energy(System& system, StepResult const& end) {
+  Balance const b = balance(system);
+  if (!b.known) return {};
+  account_.scale = std::max(account_.scale, b.scale());
+  account_.moved = std::max(account_.moved, b.kinetic + b.released + 2.0 * b.put_in);
+  double const unexplained = b.gained - b.put_in;
+  if (unexplained > energy_limit(end) && moves(end))
     throw Diverged(
         "step.energy_gain",
         {"The step to t = ", ErrorTime{end.t}, " s ends with ", ErrorValue{unexplained},
          " J more energy than the work since the last start explains; gravity, loads, drives and the energy at the "
          "last start supply at most ",
-         account_.scale, " J; ", ErrorObject{system.name_of(fastest)},
+         account_.scale, " J; ", ErrorObject{system.name_of(fastest_of(end.v))},
          " moves fastest. The integration diverges. Take a smaller step or softer joints, or raise limits.energy of "
          "the run."});
-  double const net = work_.counts() ? (work_.complete() ? work_.net() : put_in) : 0.0;
-  double const rounding = 1e-9 * (std::abs(now.gravity) + std::abs(now.strain) + std::abs(now.joints)) + 1e-3 * held;
   bool const counts = work_.counts();
-  return {gained - net, counts ? work_.doubt() : 0.0, counts ? work_.worst() : 0.0, account_.moved + rounding, true};
+  return {b.gained - (work_.complete() ? b.net : b.put_in), counts ? work_.doubt() : 0.0, counts ? work_.worst() : 0.0,
+          account_.moved + b.rounding + 1e-3 * b.held, true};
 }
 
 template <class>

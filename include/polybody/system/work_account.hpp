@@ -104,8 +104,9 @@ class WorkAccount {
   double doubt() const { return samples_[last_].doubt; }  ///< estimated error of `net` [J]
   double worst() const { return samples_[last_].worst; }  ///< largest estimated error of one step [J]
 
-  void mark() { marked_ = last_; }     ///< begins a trial step
-  void go_back() { last_ = marked_; }  ///< discards the trial step
+  void drop_last() { last_ = samples_[last_].before; }  ///< discards the last step
+  void mark() { marked_ = last_; }                      ///< begins a trial step
+  void go_back() { last_ = marked_; }                   ///< discards the trial step
 
  private:
   enum class Kind : unsigned char { force, drive, compliant };
