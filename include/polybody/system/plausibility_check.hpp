@@ -28,11 +28,9 @@ struct Unexplained {
   double energy = 0.0;  ///< gained energy, negative for a loss [J]
   double doubt = 0.0;   ///< estimated error of the work, large if a force jumps [J]
   double worst = 0.0;   ///< largest such error of one step [J]
-  /// Scale of the exchanged energy [J]: largest T₀ + max(0, V₀ − V) + 2 W so far, plus 10⁻³ V₀⁺ and an estimate of the
-  /// round-off. `PlausibilityCheck` defines the symbols.
-  double scale = 0.0;
-  bool known = false;  ///< true if an energy balance was evaluated
-  long halved = 0;     ///< number of steps that were halved for their energy gain
+  double scale = 0.0;   ///< largest S of `PlausibilityCheck` so far, with 10⁻³ V₀⁺ and the round-off [J]
+  bool known = false;   ///< true if an energy balance was evaluated
+  long halved = 0;      ///< number of steps that were halved for their energy gain
 };
 
 /// Check of the limits of a run, with a balance of the energy E = T + V since the last start. A step is refused if
