@@ -82,8 +82,7 @@ class Simulation {
   bool eliminates() const { return bool(full_); }
   void advance(bool updates);  ///< `updates`: true to update the user's state too
 
-  /// Replaces the workspace by one without data of earlier steps, ready for the next step, and restarts the energy
-  /// balance. If this fails, nothing changes.
+  /// Discards data of earlier steps, and restarts the energy balance. A failure changes nothing.
   [[gnu::cold]] void renew() {
     auto fresh = method_.template workspace<Solver>(*system_);
     State ready = stepped();  // `start` clears its history
@@ -118,8 +117,7 @@ class Simulation {
 
   /// Reduced initial state: projects the velocities, and makes the checks that require the full model.
   [[gnu::cold]] void reduced_start();
-  /// Adds warnings to the report: of an initial state at a branching point, and of a step that is too long for
-  /// compliant joints.
+  /// Warns of an initial state at a branching point, and of a step that is too long for compliant joints.
   [[gnu::cold]] void warn(ForwardDynamics<Solver>& forward, State const& x) {
     report_.add_warning(warn_of_ambiguous_branch(full(), forward, x));
     if constexpr (HasStabilityLimit<I>) report_.add_warning(warn_of_step<I>(full(), forward, x, h_));
