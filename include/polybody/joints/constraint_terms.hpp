@@ -178,15 +178,18 @@ constexpr FreeDirections free_of_list() {
 }
 }  // namespace detail
 
-/// Geometry with free directions: its member `free`, or a list whose equations prevent motions along and about axes of
-/// the joint. The axes of two free rotations move relative to each other, so that these are no free directions.
+/// Geometry with a list whose equations prevent motions along and about axes of the joint. The axes of two free
+/// rotations move relative to each other, so that these are no free directions.
 template <class G>
-concept HasFreeDirections = requires {
+concept ListsFreeDirections = !HasOwnConstraintFunction<G> && requires {
+  requires G::Equations::along_axes && detail::free_turns(detail::free_of_list<G>()) != 2;
+};
+
+/// Geometry with free directions: its member `free`, or those of its list.
+template <class G>
+concept HasFreeDirections = ListsFreeDirections<G> || requires {
   { G::free } -> std::convertible_to<FreeDirections>;
-} || (requires {
-                              requires G::Equations::along_axes;
-                              requires detail::free_turns(detail::free_of_list<G>()) != 2;
-                            } && !HasOwnConstraintFunction<G>);
+};
 
 /// Free directions of a geometry.
 template <HasFreeDirections G>
