@@ -124,7 +124,8 @@ template <int i, auto ratio>
 struct TranslationPerRotation {
   static constexpr int rows = 1;
   static constexpr bool opposite_ends = false;
-  static constexpr MarkerKind needs = MarkerKind::frame, needs_of_second = MarkerKind::frame;
+  static constexpr MarkerKind needs = MarkerKind::frame;
+  static constexpr MarkerKind needs_of_second = MarkerKind::frame;
   [[gnu::always_inline]] static void write(auto const& geometry, auto const& a, auto const& b, auto& terms, int row) {
     constraint_functions::slide_and_turn(axis_of(a, i), geometry.*ratio, a, b, terms, row);
   }

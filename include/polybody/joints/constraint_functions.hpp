@@ -198,7 +198,8 @@ template <int n>
 struct CoincidentIn {
   static constexpr int rows = n;
   static constexpr bool opposite_ends = true;
-  static constexpr MarkerKind needs = MarkerKind::point, needs_of_second = MarkerKind::point;
+  static constexpr MarkerKind needs = MarkerKind::point;
+  static constexpr MarkerKind needs_of_second = MarkerKind::point;
   static constexpr FreeDirections prevented = {true, true, n == 3};
   [[gnu::always_inline]] static void write(auto const&, auto const& a, auto const& b, auto& terms, int row) {
     constraint_functions::coincident<n>(a, b, terms, row);
@@ -224,8 +225,8 @@ struct Perpendicular {
                 "reference configuration.");
   static constexpr int rows = 1;
   static constexpr bool opposite_ends = true;
-  static constexpr MarkerKind needs = MarkerKind::frame,
-                              needs_of_second = k == 2 ? MarkerKind::axis : MarkerKind::frame;
+  static constexpr MarkerKind needs = MarkerKind::frame;
+  static constexpr MarkerKind needs_of_second = k == 2 ? MarkerKind::axis : MarkerKind::frame;
   static constexpr FreeDirections prevented = {false, false, false, i + k == 3, i + k == 2, i + k == 1};
   [[gnu::always_inline]] static void write(auto const&, auto const& a, auto const& b, auto& terms, int row) {
     constraint_functions::perpendicular(axis_of(a, i), axis_of(b, k), terms, row);
@@ -245,7 +246,8 @@ struct NoTranslation {
   static_assert(0 <= i && i < 3, "NoTranslation needs an axis from 0 to 2.");
   static constexpr int rows = 1;
   static constexpr bool opposite_ends = false;
-  static constexpr MarkerKind needs = MarkerKind::frame, needs_of_second = MarkerKind::point;
+  static constexpr MarkerKind needs = MarkerKind::frame;
+  static constexpr MarkerKind needs_of_second = MarkerKind::point;
   static constexpr FreeDirections prevented = {i == 0, i == 1, i == 2};
   [[gnu::always_inline]] static void write(auto const&, auto const& a, auto const& b, auto& terms, int row) {
     constraint_functions::no_slide(axis_of(a, i), a, b, terms, row);
@@ -264,7 +266,8 @@ template <auto length>
 struct FixedDistance {
   static constexpr int rows = 1;
   static constexpr bool opposite_ends = false;
-  static constexpr MarkerKind needs = MarkerKind::point, needs_of_second = MarkerKind::point;
+  static constexpr MarkerKind needs = MarkerKind::point;
+  static constexpr MarkerKind needs_of_second = MarkerKind::point;
   [[gnu::always_inline]] static void write(auto const& geometry, auto const& a, auto const& b, auto& terms, int row) {
     constraint_functions::distance(a, b, geometry.*length, terms, row);
   }
@@ -288,7 +291,8 @@ struct EquationList {
                 "docs/extending.md lists their members.");
   static constexpr int rows = (Es::rows + ...);
   static constexpr bool opposite_ends = (Es::opposite_ends && ...);
-  static constexpr MarkerKind needs = std::max({Es::needs...}), needs_of_second = std::max({Es::needs_of_second...});
+  static constexpr MarkerKind needs = std::max({Es::needs...});
+  static constexpr MarkerKind needs_of_second = std::max({Es::needs_of_second...});
   /// Motions that no equation prevents: translations along the axes of the joint, then rotations about them.
   static constexpr FreeDirections free = [] {
     FreeDirections out = {true, true, true, true, true, true};
@@ -299,9 +303,8 @@ struct EquationList {
     (remove(static_cast<Es const*>(nullptr)), ...);
     return out;
   }();
-  /// True if the free motions are those of `free` at every displacement. The axes of two rotations move relative to
-  /// each other, so that zero, one or three rotations must be free.
-  static constexpr bool has_free_directions = (requires { Es::prevented; } && ...) && detail::free_turns(free) != 2;
+  /// True if each equation prevents motions along or about axes of the joint.
+  static constexpr bool along_axes = (requires { Es::prevented; } && ...);
 
   /// Constraint terms at two frames.
   template <StateScalar T, class G>

@@ -165,29 +165,40 @@ constexpr bool has_opposite_ends() {
 /// them.
 using FreeDirections = std::array<bool, 6>;
 
-/// Geometry with free directions: its member `free`, or those of its list.
-template <class G>
-concept HasFreeDirections = requires {
-  { G::free } -> std::convertible_to<FreeDirections>;
-} || (requires { requires G::Equations::has_free_directions; } && !HasOwnConstraintFunction<G>);
-
-/// Free directions of a geometry. In the plane, only translations in the plane and the rotation about its normal are
-/// free.
-template <HasFreeDirections G>
-constexpr FreeDirections free_directions() {
-  if constexpr (requires { G::free; }) {
-    return G::free;
-  } else {
-    FreeDirections free = G::Equations::free;
-    if (G::world == World::plane) free[2] = free[3] = free[4] = false;
-    return free;
-  }
-}
-
 namespace detail {
 constexpr int free_slides(FreeDirections const& free) { return int(free[0]) + int(free[1]) + int(free[2]); }
 constexpr int free_turns(FreeDirections const& free) { return int(free[3]) + int(free[4]) + int(free[5]); }
+
+/// Motions that no equation of the list of G prevents. In the plane these are two translations and one rotation.
+template <class G>
+constexpr FreeDirections free_of_list() {
+  FreeDirections free = G::Equations::free;
+  if (G::world == World::plane) free[2] = free[3] = free[4] = false;
+  return free;
+}
 }  // namespace detail
+
+/// Geometry with a list whose equations prevent motions along and about axes of the joint. The axes of two free
+/// rotations move relative to each other, so that these are no free directions.
+template <class G>
+concept ListsFreeDirections = !HasOwnConstraintFunction<G> && requires {
+  requires G::Equations::along_axes && detail::free_turns(detail::free_of_list<G>()) != 2;
+};
+
+/// Geometry with free directions: its member `free`, or those of its list.
+template <class G>
+concept HasFreeDirections = ListsFreeDirections<G> || requires {
+  { G::free } -> std::convertible_to<FreeDirections>;
+};
+
+/// Free directions of a geometry.
+template <HasFreeDirections G>
+constexpr FreeDirections free_directions() {
+  if constexpr (requires { G::free; })
+    return G::free;
+  else
+    return detail::free_of_list<G>();
+}
 
 /// Marker kind that a geometry requires of its first marker: its member `needs`, or that of its list.
 template <ConstraintFunction G>

@@ -40,7 +40,8 @@ template <auto length>
 struct SquaredDistance {
   static constexpr int rows = 1;
   static constexpr bool opposite_ends = false;
-  static constexpr MarkerKind needs = MarkerKind::point, needs_of_second = MarkerKind::point;
+  static constexpr MarkerKind needs = MarkerKind::point;
+  static constexpr MarkerKind needs_of_second = MarkerKind::point;
   [[gnu::always_inline]] static void write(auto const& geometry, auto const& a, auto const& b, auto& terms, int row) {
     auto const d = (b.r - a.r).eval();
     terms.g[row] = d.dot(d) - double(geometry.*length) * (geometry.*length);
