@@ -201,10 +201,10 @@ struct Pendulum {
   }
 };
 
-// Steps of 0.6 periods would end with an energy of 283 J. Halves of 1/64 s resolve the motion.
+// Steps of 0.6 periods gain 210 J, and the run is refused. A run with halves gains no more than half of the limit.
 TEST(Halvings, APendulumAtAStepOfASecondIsHalvedOrRefused) {
   Pendulum strict, halved;
-  EXPECT_FALSE(message_of<Error>([&] {
+  EXPECT_FALSE(message_of<Diverged>([&] {
                  simulate(strict.model, strict.x, GeneralisedAlpha{},
                           {.end_time = 10.0, .step = 1.0, .max_step_halvings = 0})
                      .run();
@@ -214,8 +214,9 @@ TEST(Halvings, APendulumAtAStepOfASecondIsHalvedOrRefused) {
   for (State const& now : run) EXPECT_LT(energy(halved.model, now).total() - start, 0.5 * 4.905) << now.t;
   EXPECT_EQ(halved.x.t, 10.0);
   EXPECT_EQ(run.report().steps, 10);
-  EXPECT_GE(run.report().halved, 10);
-  EXPECT_FALSE(run.report().warnings.empty());
+  EXPECT_GT(run.report().halved, 0);
+  ASSERT_EQ(run.report().warnings.size(), 1u);
+  EXPECT_TRUE(has(run.report().warnings[0], "that no work explains")) << run.report().warnings[0];
 }
 
 // The attempts that fail at the landing are part of the costs of the step. Their number is that of the message of a run

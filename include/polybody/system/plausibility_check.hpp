@@ -176,9 +176,8 @@ class PlausibilityCheck {
     double const few = end.t - account_.began < 4.5 * end.h ? 10.0 : 1.0;
     return few * account_.energy * account_.scale;
   }
-  /// Refuses a step that gains half of the energy limit, or that brings the gain since the start to this half.
-  /// \param gained,doubt unexplained energy and its estimated error up to the last balance, and up to this step at
-  /// return [J] \throws NewtonConvergenceFailure if the run may halve the step
+  /// Refuses a step with too large a gain. \param gained,doubt unexplained energy and its estimated error up to the
+  /// last balance, and up to this step at return [J] \throws NewtonConvergenceFailure if the run may halve the step
   template <class = void>
   void require_small_gain(System& system, StepResult const& end, double& gained, double& doubt);
   template <class = void>
@@ -336,19 +335,20 @@ PlausibilityCheck::Balance PlausibilityCheck::balance(System& system) const {
 template <class>
 void PlausibilityCheck::require_small_gain(System& system, StepResult const& end, double& gained, double& doubt) {
   double const before = gained, doubt_before = doubt, scale_before = account_.scale;
+  double limit = 0.0;
   auto const gains = [&] {
     Balance const b = balance(system);
     if (!b.known) return false;
     gained = b.gained - b.net;
     doubt = work_.counts() ? work_.doubt() : 0.0;
     account_.scale = std::max(scale_before, b.scale());
-    double const gain = gained - before - 4.0 * (doubt - doubt_before) - b.rounding, limit = 0.5 * energy_limit(end);
+    limit = 0.5 * (work_.counts() ? energy_limit(end) : account_.energy * account_.scale);
+    double const gain = gained - before - 4.0 * (doubt - doubt_before) - b.rounding;
     return gain > 0.1 * limit && std::max(gain, gained) > limit;
   };
   if (!gains() || halvings == 0) return;
   system.evaluate(end.q, end.v, end.t);
   if (!gains() || !moves(end)) return;
-  double const limit = 0.5 * energy_limit(end);
   account_.scale = scale_before;
   ++account_.settled.halved;
   if (work_.counts()) work_.drop_last();
