@@ -215,7 +215,7 @@ TEST(Ffr, RefusesWhatCannotBeMeant) {
   EXPECT_TRUE(has(refusal([&] { Ffr(body.integrals(), {}).node(0); }), "integrals only"));
   FfrIntegrals bad = body.integrals();
   bad.stiffness.resize(3, 3);
-  EXPECT_TRUE(has(refusal([&] { Ffr(bad, {}); }), "but must be "));
+  EXPECT_TRUE(has(refusal([&] { Ffr(bad, {}); }), "the integral \"stiffness\" is 3×3, but must be "));
   bad = body.integrals();
   bad.mass_matrix(0, 0) = -1.0;
   EXPECT_TRUE(has(refusal([&] { Ffr(bad, {}); }), "positive definite"));

@@ -40,7 +40,7 @@ extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size
   auto const table = accepted([&] { return polybody::read_csv(file); },
                               [&](std::string const& message) {
                                 return has(message, "file \"" + file + "\", line ") ||
-                                       message == "file \"" + file + "\" is empty; a head line is needed";
+                                       message == "file \"" + file + "\" is empty, but needs a head line.";
                               });
   if (table) check(*table);
   return 0;

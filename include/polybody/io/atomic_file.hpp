@@ -31,7 +31,7 @@ class AtomicFile {
   explicit AtomicFile(std::filesystem::path const& file) : name_(file.string()) {
     namespace fs = std::filesystem;
     if (!file.has_filename())
-      throw IoError("file.name", {"file \"", ErrorObject{name_}, "\": the path has no file name"});
+      throw IoError("file.name", {"file \"", ErrorObject{name_}, "\": the path has no file name. Append one."});
     std::error_code reason;
     fs::path const full = fs::absolute(file, reason);
     if (reason) fail("its folder cannot be found", reason);
@@ -44,7 +44,7 @@ class AtomicFile {
     bool const exists = status.type() != fs::file_type::not_found;
     if (exists && !fs::is_regular_file(status))
       throw IoError("file.write",
-                    {"file \"", ErrorObject{name_}, "\" exists and is not a regular file; choose another name"});
+                    {"file \"", ErrorObject{name_}, "\" exists and is not a regular file. Choose another name."});
     file_ = detail::TemporaryFile(target);
     if (!file_.is_open()) fail("cannot be created", {errno, std::generic_category()});
     if (exists) file_.set_permissions(status.permissions());
@@ -79,7 +79,8 @@ class AtomicFile {
   /// if the file is closed.
   void write(std::string_view bytes) {
     if (!is_open())
-      throw InvalidInput("file.closed", {"file \"", ErrorObject{name_}, "\" is already closed; nothing can be added"});
+      throw InvalidInput("file.closed",
+                         {"file \"", ErrorObject{name_}, "\" is already closed, so nothing can be added."});
     errno = 0;
     if (std::fwrite(bytes.data(), 1, bytes.size(), file_.stream()) == bytes.size()) return;
     failed_ = true;

@@ -74,15 +74,15 @@ class Csv {
   static void check_heads(std::filesystem::path const& file, std::vector<std::string> const& columns) {
     if (columns.empty())
       throw InvalidInput("table.columns",
-                         {"file \"", ErrorObject{file.string()}, "\": a table needs at least one column"});
+                         {"file \"", ErrorObject{file.string()}, "\": a table needs at least one column."});
     std::set<std::string_view> seen;
     for (auto const& head : columns) {
       if (head.empty())
         throw InvalidInput("table.columns", {"file \"", ErrorObject{file.string()}, "\": the head of column ",
-                                             std::size_t(&head - columns.data()) + 1, " is empty"});
+                                             std::size_t(&head - columns.data()) + 1, " is empty."});
       if (!seen.insert(head).second)
         throw InvalidInput("table.columns",
-                           {"file \"", ErrorObject{file.string()}, "\": duplicate column \"", head, "\""});
+                           {"file \"", ErrorObject{file.string()}, "\": duplicate column \"", head, "\"."});
     }
   }
 
@@ -91,11 +91,11 @@ class Csv {
     auto const where = [&] { return "file \"" + file_.name() + "\", row " + std::to_string(rows_ + 1); };
     if (values.size() + texts != columns_.size())
       throw InvalidInput("table.row_size", {ErrorObject{where()}, ": ", values.size() + texts, " values for ",
-                                            columns_.size(), " columns"});
+                                            columns_.size(), " columns."});
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (!std::isfinite(values[i]))
         throw InvalidInput("value.not_finite", {ErrorObject{where()}, ", column \"", columns_[i + texts],
-                                                "\": the value is not finite (", ErrorValue{values[i]}, ")"});
+                                                "\": the value is not finite (", ErrorValue{values[i]}, ")."});
       detail::append_digits(line_, values[i]);
       line_ += ',';
     }

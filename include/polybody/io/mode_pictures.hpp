@@ -29,7 +29,9 @@ void require_picture(ModePictureOptions const& options) {
   double const across = options.look_from.cross(options.up).norm();
   if (!(across > 1e-6 * options.look_from.norm() * options.up.norm()))
     throw InvalidInput("film.camera",
-                       {ErrorObject{"mode pictures"}, ": look_from and up must be finite and not parallel."});
+                       {ErrorObject{"mode pictures"}, ": look_from and up must be finite and not parallel, but are (",
+                        options.look_from[0], ", ", options.look_from[1], ", ", options.look_from[2], ") and (",
+                        options.up[0], ", ", options.up[1], ", ", options.up[2], ")."});
 }
 
 /// Parts of a model in state x and their displacements in one mode.

@@ -203,11 +203,11 @@ DrawResult write_panels(std::vector<Figure> const& figures, int columns, std::fi
   std::string const name = stem.filename().string();
   if (name.empty() || std::ranges::any_of(name, [](unsigned char c) { return c < ' '; }))
     throw InvalidInput("file.name", {"figure file \"", ErrorObject{stem.string()},
-                                     "\": the name is empty or has a control character"});
+                                     "\": the name is empty or has a control character."});
   if (figures.empty() || columns < 1)
     throw InvalidInput("figure.content", {"figure file \"", ErrorObject{stem.string()},
                                           "\": at least one figure and one column are needed, but there are ",
-                                          figures.size(), " figures and ", columns, " columns"});
+                                          figures.size(), " figures and ", columns, " columns."});
   int width = 0, height = 0;
   for (auto const& figure : figures) {
     detail::check(figure);
@@ -218,7 +218,7 @@ DrawResult write_panels(std::vector<Figure> const& figures, int columns, std::fi
   int const across = std::min(columns, count), down = (count + across - 1) / across;
   if (across > 30000 / width || down > 30000 / height)
     throw InvalidInput("figure.size", {"figure file \"", ErrorObject{stem.string()},
-                                       "\": the picture is larger than 30000 pixels; use fewer panels"});
+                                       "\": the picture is larger than 30000 pixels. Use fewer panels."});
 
   std::string const size = std::to_string(across * width) + ',' + std::to_string(down * height);
   std::string script = "# gnuplot script; run it from its own folder\n";

@@ -58,7 +58,7 @@ class Progress {
         clock_(std::move(clock)) {
     if (!std::isfinite(start) || !std::isfinite(end))
       throw InvalidInput("value.not_finite", {"progress \"", ErrorObject{label_},
-                                              "\": start and end must be finite, but are ", start, " and ", end});
+                                              "\": start and end must be finite, but are ", start, " and ", end, "."});
     if (terminal_) began_ = clock_();
   }
 

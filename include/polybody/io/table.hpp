@@ -33,7 +33,7 @@ struct Table {
     if (found != 1)
       throw InvalidInput(found ? "table.columns" : "table.no_column",
                          {(found ? "duplicate column \"" : "no column \""), ErrorObject{name}, "\"; the table has ",
-                          (heads.empty() ? "none" : heads)});
+                          (heads.empty() ? "none" : heads), "."});
     std::vector<double> values;
     for (auto const& row : rows) values.push_back(row.at(place));
     return values;
@@ -149,7 +149,7 @@ inline Table read_csv(std::filesystem::path const& file) {
   Table table{reader.record(line), {}};
   for (std::string& head : table.columns) head = detail::text_of_csv(head);
   if (table.columns.empty())
-    throw IoError("file.content", {"file \"", ErrorObject{name}, "\" is empty; a head line is needed"});
+    throw IoError("file.content", {"file \"", ErrorObject{name}, "\" is empty, but needs a head line."});
   for (auto fields = reader.record(line); !fields.empty(); fields = reader.record(line)) {
     if (fields.size() != table.columns.size())
       reader.fail(line,

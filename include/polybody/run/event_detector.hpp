@@ -24,8 +24,9 @@ struct EventMotion {
   static double value(Event const& event, State const& x) {
     double const y = event.value(x);
     if (!std::isfinite(y))
-      throw NonFiniteValue("event.not_finite", {"The value of the event \"", ErrorObject{event.name},
-                                                "\" is not finite at t = ", ErrorTime{x.t}, " s."});
+      throw NonFiniteValue("event.not_finite",
+                           {"The value of the event \"", ErrorObject{event.name},
+                            "\" is not finite at t = ", ErrorTime{x.t}, " s. Check the function of the event."});
     return y;
   }
   /// Rate of the event value at x [1/s], by central differences over a tenth of the requested step.

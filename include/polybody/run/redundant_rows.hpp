@@ -225,8 +225,8 @@ class NullVectors {
     system_.acceleration_bias(gamma);
     for (Index k = 0; k < gamma.size(); ++k) gamma[k] /= rows_.of_row[k];
   }
-  /// Replaces the vectors by those of their linear combinations whose coefficients make the same combination of `left`
-  /// vanish. Uses Gram–Schmidt orthogonalisation with pivoting.
+  /// Replaces the vectors by linear combinations of them: those for which the combination of `left` with the same
+  /// coefficients is zero. Uses Gram–Schmidt orthogonalisation with pivoting.
   void keep_null(Sequence<IndexMap<double>>& left) {
     Sequence<double> sizes(vectors.size(), 0.0);
     auto const scale = [&](std::size_t k) {

@@ -161,13 +161,13 @@ class StudyRecord {
     namespace fs = std::filesystem;
     fs::path const path = kind_.file;
     if (!path.has_filename())
-      throw IoError("file.name", {"file \"", ErrorObject{kind_.file}, "\": the path has no file name"});
+      throw IoError("file.name", {"file \"", ErrorObject{kind_.file}, "\": the path has no file name. Append one."});
     std::error_code reason;
     if (path.has_parent_path()) fs::create_directories(path.parent_path(), reason);
     if (reason) fail("has a folder that cannot be created", reason.value());
     if (fs::exists(path, reason) && !fs::is_regular_file(path, reason))
       throw IoError("file.write",
-                    {"file \"", ErrorObject{kind_.file}, "\" exists and is not a regular file; choose another name"});
+                    {"file \"", ErrorObject{kind_.file}, "\" exists and is not a regular file. Choose another name."});
     existed_ = fs::exists(path, reason);
     do {
       close();
@@ -182,7 +182,7 @@ class StudyRecord {
     if (why != EWOULDBLOCK) fail("cannot be locked", why);
     throw IoError("file.locked",
                   {"file \"", ErrorObject{kind_.file},
-                   "\" is written by another run of the study. Wait until that ends, or choose another file"});
+                   "\" is written by another run of the study. Wait until that ends, or choose another file."});
   }
 
   /// Returns true if the open file still has its name. Another run removes the file that it created if it has written

@@ -139,7 +139,7 @@ class Study {
     auto const bytes = detail::content_of(file_.file);
     if (!bytes)
       throw IoError("file.open",
-                    {"file \"", ErrorObject{file_.file.string()}, "\" cannot be read; run the study first"});
+                    {"file \"", ErrorObject{file_.file.string()}, "\" cannot be read. Run the study first."});
     detail::RecordContent content = detail::record_content(kind(), *bytes);
     StudyResults so_far = results(std::move(content.outcomes), 0, content.torn);
     so_far.resumed = so_far.finished();

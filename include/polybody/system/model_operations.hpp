@@ -67,7 +67,7 @@ struct Energy {
 
 /// Powers in a state [W]. Powers that change a stored energy or the energy of gravity are not included; see `Energy`.
 struct Powers {
-  double drives = 0.0;      ///< power of prescribed motions in joints, on bodies and compliant joints [W]
+  double drives = 0.0;      ///< power of the motions prescribed in joints, compliant joints and on bodies [W]
   double loads = 0.0;       ///< power of loads, and of forces without a potential [W]
   double dissipated = 0.0;  ///< power lost in damped bodies, compliant joints, dampers and contacts, positive [W]
 };

@@ -77,7 +77,7 @@ class WorkAccount {
   template <class = void>
   void add(System const& system, StepResult const& end);
 
-  bool counts() const { return !elements_.empty(); }  ///< true if an element is counted
+  bool counts() const { return !elements_.empty(); }  ///< true if the account contains an element
   bool complete() const { return complete_; }         ///< true if no counted element can store energy
 
   /// True if a joint whose work is not counted has a prescribed rate Φ_t ≠ 0.

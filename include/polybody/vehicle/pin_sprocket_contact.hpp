@@ -54,9 +54,10 @@ struct SprocketProfile {
            ErrorValue{flank}, " rad."});
     double const foot = std::hypot(arc_centre() - valley_radius * std::cos(flank), valley_radius * std::sin(flank));
     if (!(tip_radius > foot) || !std::isfinite(tip_radius))
-      throw InvalidInput("sprocket.valley",
-                         {ErrorObject{name}, ": the tips must lie outside the arcs of the valleys, whose ends are ",
-                          ErrorValue{foot}, " m from the axle."});
+      throw InvalidInput(
+          "sprocket.valley",
+          {ErrorObject{name}, ": the radius of the tips must exceed that of the ends of the valleys' arcs, ", foot,
+           " m, but is ", ErrorValue{tip_radius}, " m."});
     Vec2 const k = corner();
     if (std::atan2(k[1], k[0]) >= std::numbers::pi / teeth)
       throw InvalidInput(

@@ -17,8 +17,8 @@ struct FfrTerms {
   bool onto_frame =
       true;  ///< the terms of `coupling` in the rows of the frame; if false, the deformation does not act on the frame
   bool deformed_inertia = true;  ///< c and J, J˙ of the deformed body instead of those at q = 0, in inertia and weight
-  bool frame_velocities = true;  ///< quadratic-velocity forces 2 Ω × ċ, Ċ q̇, J˙ Ω, Ω × H q̇, H˙ q̇ on the frame; the
-                                 ///< other ones are those of a rigid body
+  bool frame_velocities = true;  ///< quadratic-velocity forces 2 Ω × ċ, Ċ q̇, J˙ Ω, Ω × H q̇, H˙ q̇ on the frame; if
+                                 ///< false, only those of a rigid body remain
   bool coriolis = true;          ///< 2 S̃₁ q̇: Coriolis forces on the deformation
   bool centrifugal = true;       ///< S̃₂ q: centrifugal forces that are linear in the deformation, and their geometric
                                  ///< stiffening if it is selected
