@@ -55,6 +55,7 @@ class ArticulatedBodySolverOf {
     loops_.analyse(m, {});
   }
 
+  /// Begins a matrix: all its blocks are zero.
   void begin() {
     for (Node& n : nodes_) n = {};
     for (auto& row : rows_) std::fill(row.begin(), row.end(), Vec6(Vec6::Zero()));

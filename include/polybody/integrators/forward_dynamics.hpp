@@ -312,8 +312,8 @@ class ForwardDynamics {
   bool is_doubtful() const { return doubtful_ || solver_.is_doubtful(); }
   void note_doubt() { doubtful_ = true; }    ///< sets `is_doubtful` until `clear_doubt`
   void clear_doubt() { doubtful_ = false; }  ///< resets `is_doubtful`, after a new selection
-  /// Computes the null vectors of `redundant_rows` in the last factorisation; entries are numbered as equations. Empty
-  /// for solvers that compute no null vectors. See `BlockFactor::null_vectors`.
+  /// Computes the null vectors of `redundant_rows` in the last factorisation for equations of these `sizes`; entries
+  /// are numbered as equations. Empty for solvers that compute no null vectors. See `BlockFactor::null_vectors`.
   Sequence<IndexMap<double>> null_vectors(VecX const& sizes) { return solver_.null_vectors(sizes); }
   /// Names of the joints and bodies with redundant equations.
   std::vector<std::string> redundant(System const& system) const {

@@ -191,7 +191,7 @@ void make_consistent(System& system, State& x, double tolerance = 1e-8) {
   forward.accelerations(system, {fresh.q, fresh.v, fresh.t}, fresh.a, fresh.lambda);
   x = std::move(fresh);
 }
-/// Makes state x of a model consistent; see above.
+/// Makes state x of a model consistent to `tolerance` [m], [rad], like `make_consistent(system, x, tolerance)`.
 template <class M>
   requires(!std::same_as<M, System>)
 void make_consistent(M const& model, State& x, double tolerance = 1e-8) {

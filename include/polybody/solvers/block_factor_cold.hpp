@@ -63,6 +63,7 @@ bool BlockFactor<symmetry>::is_doubtful(double share) const {
 template <Symmetry symmetry>
 class BlockFactor<symmetry>::NullSpace {
  public:
+  /// Null space of the factorisation `of` of equations with these `sizes`.
   NullSpace(BlockFactor const& of, VecX const& sizes)
       : of_(of),
         nodes_(of.layout_.nodes),

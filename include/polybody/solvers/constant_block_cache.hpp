@@ -117,8 +117,8 @@ class ConstantBlockCache {
     if constexpr (requires { rest_.is_doubtful(share); }) return rest_.is_doubtful(share);
     return false;
   }
-  /// Computes the null vectors of the dropped equations: `BlockFactor::null_vectors`. Empty if `Solver` does not
-  /// provide null vectors.
+  /// Computes the null vectors of the dropped equations for equations of these `sizes`: `BlockFactor::null_vectors`.
+  /// Empty if `Solver` does not provide null vectors.
   [[gnu::cold]] Sequence<IndexMap<double>> null_vectors(VecX const& sizes) {
     if constexpr (requires { rest_.null_vectors(sizes); }) {
       if (kept_size_ == 0) return rest_.null_vectors(sizes);

@@ -82,7 +82,7 @@ class RedundancyDropping {
   }
   /// True if equations are dropped and this decision is doubtful for `share`: see `BlockFactor::is_doubtful`.
   bool is_doubtful(double share) const { return !dropped_.empty() && judge_.is_doubtful(share); }
-  /// Computes the null vectors of the dropped equations: `BlockFactor::null_vectors`.
+  /// Computes the null vectors of the dropped equations for equations of these `sizes`: `BlockFactor::null_vectors`.
   Sequence<IndexMap<double>> null_vectors(VecX const& sizes) const { return judge_.null_vectors(sizes); }
 
  private:

@@ -157,8 +157,8 @@ class TangentSolver {
     if constexpr (requires { solver_.is_doubtful(1e-3); }) return !solves_by_bodies() && solver_.is_doubtful(1e-3);
     return false;
   }
-  /// Computes the null vectors of the dropped equations (`BlockFactor::null_vectors`) in the unknowns of the linear
-  /// equations. Empty if `Solver` does not provide null vectors.
+  /// Computes the null vectors of the dropped equations for equations of these `sizes`, in the unknowns of the linear
+  /// equations (`BlockFactor::null_vectors`). Empty if `Solver` does not provide null vectors.
   [[gnu::cold]] Sequence<IndexMap<double>> null_vectors(VecX const& sizes) {
     if constexpr (requires { solver_.null_vectors(sizes); }) return solver_.null_vectors(sizes);
     return {};

@@ -104,12 +104,14 @@ BodyInState<B> body_in_state(M const& model, State const& x, Marker<B> const& ma
                                    x);
 }
 
-/// Body of a handle with its part of the state x, by the layout of its model. \throws InvalidInput as above.
+/// Body of a handle with its part of the state x, by the layout of its model. \throws InvalidInput for a handle of
+/// another model.
 template <class B>
 BodyInState<B> body_in_state(ModelLayout const& layout, State const& x, BodyHandle<B> const& handle) {
   return body_in_state<B>(layout.bodies[std::size_t(index_of(layout, handle))], x);
 }
-/// Body of a marker with its part of the state x, by the layout of its model. \throws InvalidInput as above.
+/// Body of a marker with its part of the state x, by the layout of its model. \throws InvalidInput for a marker of
+/// another model, which names `question`.
 template <class B>
 BodyInState<B> body_in_state(ModelLayout const& layout, State const& x, Marker<B> const& marker,
                              std::string const& question) {
