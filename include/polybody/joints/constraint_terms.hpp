@@ -165,10 +165,12 @@ constexpr bool has_opposite_ends() {
 /// them.
 using FreeDirections = std::array<bool, 6>;
 
-namespace detail {
+/// Number of translations in `free`.
 constexpr int free_slides(FreeDirections const& free) { return int(free[0]) + int(free[1]) + int(free[2]); }
+/// Number of rotations in `free`.
 constexpr int free_turns(FreeDirections const& free) { return int(free[3]) + int(free[4]) + int(free[5]); }
 
+namespace detail {
 /// Motions that no equation of the list of G prevents. In the plane these are two translations and one rotation.
 template <class G>
 constexpr FreeDirections free_of_list() {
@@ -179,10 +181,10 @@ constexpr FreeDirections free_of_list() {
 }  // namespace detail
 
 /// Geometry with a list whose equations prevent motions along and about axes of the joint. The axes of two free
-/// rotations move relative to each other, so that these are no free directions.
+/// rotations move relative to each other; a geometry with two has no free directions.
 template <class G>
 concept ListsFreeDirections = !HasOwnConstraintFunction<G> && requires {
-  requires G::Equations::along_axes && detail::free_turns(detail::free_of_list<G>()) != 2;
+  requires G::Equations::along_axes && free_turns(detail::free_of_list<G>()) != 2;
 };
 
 /// Geometry with free directions: its member `free`, or those of its list.

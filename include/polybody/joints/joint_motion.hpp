@@ -53,7 +53,7 @@ struct JointMotions {
 template <class G>
 concept HasMotions = requires(G const g) {
   { g.motions() } -> std::same_as<JointMotions>;
-} || (HasFreeDirections<G> && detail::free_turns(free_directions<G>()) != 2);
+} || (HasFreeDirections<G> && free_turns(free_directions<G>()) != 2);
 
 /// Motions that a geometry permits, in joint coordinates.
 template <HasMotions G>
@@ -65,7 +65,7 @@ JointMotions motions_of(G const& geometry) {
     constexpr FreeDirections free = free_directions<G>();
     for (int i = 0; i < 3; ++i)
       if (free[std::size_t(i)]) out.add({JointMotion::Kind::slide, i});
-    if (detail::free_turns(free) == 3) {
+    if (free_turns(free) == 3) {
       out.add({JointMotion::Kind::ball, 0});
     } else {
       for (int i = 0; i < 3; ++i)

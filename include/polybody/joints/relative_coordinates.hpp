@@ -163,7 +163,7 @@ struct ConstrainedCoordinates {
   static constexpr MarkerKind needs_of_second = polybody::needs_of_second<G>();
   static constexpr FreeDirections free = free_directions<G>();
   /// True if G leaves all three rotations free: then no rotation is evaluated.
-  static constexpr bool may_turn = detail::free_turns(free) == 3;
+  static constexpr bool may_turn = free_turns(free) == 3;
 
   template <StateScalar T>
   ConstraintTerms<6, T> constraint_function(Frame<T> const& a, Frame<T> const& b, double) const {

@@ -16,12 +16,12 @@ namespace polybody {
 
 /// Geometry with a joint angle: it permits one rotation about an axis of the joint, or prescribes one.
 template <class G>
-concept HasJointAngle = (HasFreeDirections<G> && detail::free_turns(free_directions<G>()) == 1) || HasRotationAxis<G> ||
+concept HasJointAngle = (HasFreeDirections<G> && free_turns(free_directions<G>()) == 1) || HasRotationAxis<G> ||
                         (!HasFreeDirections<G> && requires(G const g) { g.motions(); });
 
 /// Geometry with a joint translation: it permits one translation along an axis of the joint, or prescribes one.
 template <class G>
-concept HasJointTranslation = (HasFreeDirections<G> && detail::free_slides(free_directions<G>()) == 1) ||
+concept HasJointTranslation = (HasFreeDirections<G> && free_slides(free_directions<G>()) == 1) ||
                               (!HasFreeDirections<G> && requires(G const g) { g.motions(); }) || requires(G g) {
                                 { g.axis } -> std::same_as<JointAxis&>;
                                 g.law;

@@ -57,7 +57,7 @@ class PlausibilityCheck {
     double last = 0.0, slope = 0.0, bend = 0.0;  ///< Σ v² at the last end, its divided differences; mixed units
     double h = 0.0;                              ///< length of the last step [s]
     double peak = 0.0;                           ///< largest Σ v² since the start, mixed units
-    /// True if Σ v², `squares` after a step of length `next`, is off its extrapolation by 2 % of its largest value.
+    /// True if Σ v² = `squares` after a step of length `next` differs from its extrapolation by 2 % of its peak.
     bool breaks(double squares, double next) const {
       return std::abs(squares - last - next * (slope + (next + h) * bend)) > 0.02 * std::max(squares, peak);
     }

@@ -29,7 +29,7 @@ concept LinearPolicy = EliminatingPolicy<P> && requires { requires P::linear; };
 
 /// Geometry that linear equations can express: coincident points, alone or with an equal axis or equal frames.
 template <class G>
-concept LinearGeometry = HasFreeDirections<G> && detail::free_slides(free_directions<G>()) == 0 &&
-                         detail::free_turns(free_directions<G>()) != 2;
+concept LinearGeometry =
+    HasFreeDirections<G> && free_slides(free_directions<G>()) == 0 && free_turns(free_directions<G>()) != 2;
 
 }  // namespace polybody
