@@ -258,7 +258,8 @@ template <class Solver>
   space.keep_permanent();
   choose();
   auto const dropped = forward.redundant_rows();
-  for (Index const i : forward.left_out())  // not dropped if eliminated with a singular body
+  // An equation that shares a node with a singular body is not dropped. The choice is then void.
+  for (Index const i : forward.left_out())
     if (std::find(dropped.begin(), dropped.end(), i) == dropped.end()) {
       forward.mark_redundant({});
       break;

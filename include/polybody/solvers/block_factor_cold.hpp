@@ -78,7 +78,7 @@ void BlockFactor<symmetry>::null_vector(Index dropped, VecX& x) const {
     --n;
     with_constant(direct_[number(*n)], [&](auto size) { solution.template ascend<size>(*n); });
     if (n != &own) continue;
-    y[row] = 1.0;  // `ascend` leaves y[row] zero; y[row] changes the earlier rows of the node
+    y[row] = 1.0;  // `ascend` has left y[row] zero, so the loop adds its effect on the earlier rows
     for (int r = row - 1; r >= 0; --r) {
       if (s.inverse[r] == 0.0) continue;  // dropped
       double sum = s.u[r * stride + row];
