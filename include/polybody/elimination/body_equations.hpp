@@ -106,7 +106,8 @@ class BodyEquationsOf {
   Sequence<Index> of_, rows_that_stay_,
       carrying_rows_;  // of_: equation of each full unknown; −1 if it is distributed or omitted
   MappedBlocks mapped_;
-  std::array<ReducedSlotsOf<>, 4> slots_;  // slots of the last four solvers that received the matrix
+  // Destinations of the blocks in the last four solvers that received the matrix.
+  std::array<ReducedSlotsOf<>, 4> slots_;
   std::size_t next_slots_ = 0;
 };
 

@@ -313,8 +313,8 @@ template <class Solver>
   Sequence<Index> dropped(forward.redundant_rows().begin(), forward.redundant_rows().end());
   sort_once(dropped);
   auto const left_out = forward.left_out();
-  if (!std::includes(dropped.begin(), dropped.end(), left_out.begin(), left_out.end()))
-    forward.mark_redundant({});  // a singular body was eliminated together with an equation, which was not dropped
+  // An equation that shares a node with a singular body is not dropped. The choice is then void.
+  if (!std::includes(dropped.begin(), dropped.end(), left_out.begin(), left_out.end())) forward.mark_redundant({});
   return !std::equal(before.begin(), before.end(), forward.left_out().begin(), forward.left_out().end());
 }
 

@@ -151,7 +151,7 @@ class StaticTangent {
   System* system_;
   Index nv_;
   Solver solver_;
-  double unit_ = 1.0, factored_ = 1.0;  ///< u of the next factorisation and of the last one
+  double unit_ = 1.0, factored_ = 1.0;  ///< scale u of the next factorisation, and that of the last one
   VecX rhs_, springs_;
 };
 

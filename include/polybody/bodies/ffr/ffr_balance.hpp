@@ -20,7 +20,7 @@ struct FfrStack {
   MatX of_velocities;   ///< (4n×n) W_i (equations in ffr.hpp), damping
   MatX of_rates;        ///< (n×n) mass matrix
 
-  /// Stacks the matrices of a body.
+  /// Stack of the matrices of a body with the integrals `i`.
   template <class = void>  // compiled only if used
   static FfrStack of(FfrIntegrals const& i) {
     Index const n = i.size();
