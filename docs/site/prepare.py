@@ -163,7 +163,7 @@ def page(path, text):
     return "\n".join(out)
 
 
-LINK = re.compile(r"\[([^\]]*)\]\(([^)\s#:]*)(?:#([^)\s]*))?\)")
+LINK = re.compile(r"(?<!!)\[([^\]]*)\]\(([^)\s#:]*)(?:#([^)\s]*))?\)")
 
 
 def title(path):
