@@ -306,7 +306,7 @@ struct EquationList {
   /// True if each equation prevents motions along or about axes of the joint.
   static constexpr bool along_axes = (requires { Es::prevented; } && ...);
 
-  /// Constraint terms at two frames.
+  /// Constraint terms of a `geometry` at two frames.
   template <StateScalar T, class G>
   [[gnu::always_inline]] static ConstraintTerms<rows, T> constraint_function(G const& geometry, Frame<T> const& a,
                                                                              Frame<T> const& b) {
@@ -315,7 +315,7 @@ struct EquationList {
     ((Es::write(geometry, a, b, terms, row), row += Es::rows), ...);
     return terms;
   }
-  /// γ (rows) at two frames.
+  /// γ (rows) of a `geometry` at two frames.
   template <StateScalar T, class G>
   static Vec<T, rows> gamma(G const& geometry, Frame<T> const& a, Frame<T> const& b) {
     Vec<T, rows> gamma;
@@ -323,7 +323,7 @@ struct EquationList {
     ((Es::gamma(geometry, a, b, out), out += Es::rows), ...);
     return gamma;
   }
-  /// Wrench gradient at two frames for multipliers lambda (rows).
+  /// Wrench gradient of a `geometry` at two frames for multipliers lambda (rows).
   template <class G>
   static WrenchGradient wrench_gradient(G const& geometry, Frame<double> const& a, Frame<double> const& b,
                                         Vec<double, rows> const& lambda) {

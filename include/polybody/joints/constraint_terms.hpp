@@ -178,8 +178,8 @@ constexpr FreeDirections free_of_list() {
 }
 }  // namespace detail
 
-/// Geometry with a list whose equations prevent motions along and about axes of the joint. The axes of two free
-/// rotations move relative to each other, so that these are no free directions.
+/// Geometry with a list whose equations prevent motions along and about axes of the joint. With two free rotations
+/// there are no free directions, because the axes of these rotations move relative to each other.
 template <class G>
 concept ListsFreeDirections = !HasOwnConstraintFunction<G> && requires {
   requires G::Equations::along_axes && detail::free_turns(detail::free_of_list<G>()) != 2;
