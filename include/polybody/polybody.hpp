@@ -19,6 +19,7 @@
 // is then short.
 #include <polybody/joints/joint.hpp>
 #include <polybody/joints/relative_coordinates.hpp>
+#include <polybody/math/time_functions.hpp>
 #include <polybody/system/model.hpp>
 
 #include <polybody/integrators/system_for.hpp>
@@ -76,7 +77,6 @@
 #include <polybody/joints/standard_joints.hpp>
 #include <polybody/math/monotone_table.hpp>
 #include <polybody/math/smooth_table.hpp>
-#include <polybody/math/time_functions.hpp>
 #include <polybody/run/accelerations.hpp>
 #include <polybody/run/any_model.hpp>
 #include <polybody/run/applied_wrenches.hpp>
