@@ -259,6 +259,7 @@ class Examination {
   /// d/dt of the momentum and of the moment of momentum = weight + wrenches of the ground and of loads.
   void check_momentum(System& s, State const& x) {
     VecX const rates = rate(s, x, [&](State const& y) {
+      s.evaluate(y.q, y.v, y.t);
       Momentum const p = momentum(s, y);
       VecX all(6);
       all << p.linear, p.angular;
