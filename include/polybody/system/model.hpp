@@ -5,6 +5,8 @@
 
 #include <tuple>
 
+#include <polybody/forces/force_element.hpp>  // first: a refusal then has a short chain of includes
+
 #include <polybody/math/sequence.hpp>
 #include <polybody/math/type_list.hpp>
 #include <polybody/system/connections.hpp>
