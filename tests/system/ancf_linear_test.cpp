@@ -266,7 +266,7 @@ TEST(AncfLinear, RefusesWhatIsNotLinear) {
              b = model.add(planar::AncfCable<>::from(bar(Placement::planar(0.5, 0)), 2));
   EXPECT_TRUE(has(refusal([&] { model.connect(Pin{}, a.at(0.5, 0.01), b.at(0.0), "hinge"); }),
                   "\"hinge\": planar::AncfCable: the position of a point off the axis is not linear in the "
-                  "coordinates. Use Constraint here."));
+                  "coordinates. Use y = 0 instead of y = 0.01 m. Use Constraint here."));
   EXPECT_EQ(model.markers(), 0);  // the refused joint adds no marker
   using Clamp = Joint<Weld, AncfLinear>;
   Model<Bodies<AncfCable<>>, Joints<Clamp, Joint<Revolute, AncfLinear>>> space;
