@@ -46,7 +46,8 @@ inline T perpendicular_gamma(Vec<T, 3> const& u, Vec<T, 3> const& w, Frame<T> co
 
 /// Writes g = u·d to `row`: ġ = u·(v_b − v_a) + (u × d)·ω_a.
 template <int m, StateScalar T>
-void no_slide(Vec<T, 3> const& u, Frame<T> const& a, Frame<T> const& b, ConstraintTerms<m, T>& terms, int row) {
+[[gnu::always_inline]] inline void no_slide(Vec<T, 3> const& u, Frame<T> const& a, Frame<T> const& b,
+                                            ConstraintTerms<m, T>& terms, int row) {
   Vec<T, 3> const d = difference(b.r, a.r), c = cross(u, d);
   terms.g[row] = dot(u, d);
   for (int i = 0; i < 3; ++i) {
