@@ -95,7 +95,7 @@ class AdjointEventHandler {
       : parameters_(parameters),
         full_(make(values_of(parameters)), method),
         perturbed_(make, parameters, method, "gradient"),
-        run_(full_),
+        run_(full_, out_.run, Interruptions::handled),
         adjoint_(full_.scenario.model, full_.system, method),
         objective_(full_.scenario.model) {
     for (Parameter const& p : parameters) out_.parameters.push_back(p.name);
@@ -105,7 +105,7 @@ class AdjointEventHandler {
   GradientResult run(GradientOptions const& options) {
     full_.scenario.options.check(full_.scenario.start.t);
     require_assembled_start(full_);
-    run_.take(out_.run);
+    run_.record();
     State const& first = run_.first();
     perturbed_.require_named(first);
     begin(first);
@@ -114,7 +114,7 @@ class AdjointEventHandler {
     out_.snapshot_size = size_of_snapshot(first);
     out_.reversal = reverse_steps(
         first, run_.steps().size(), snapshots_of(options, out_.snapshot_size),
-        [&](std::size_t k, State& x) { (void)run_.take(k, x); },
+        [&](std::size_t k, State& x) { (void)run_.repeat(k, x); },
         [&](std::size_t k, State const& before, State const& after) { back(k, before, after, bar); });
     auto const start = [&](V& v, State& y, double h) { v.start_like(first, y, h); };
     for (std::size_t j = 0; j < parameters_.size(); ++j)

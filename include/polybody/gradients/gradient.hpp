@@ -55,7 +55,6 @@ class AlphaBackwardSweep {
   }
   /// Returns true if all steps must have the same length.
   static bool asks_for_equal_steps(V const& v) { return v.method.start_correction; }
-  static StepReport step(V& v, State& x, double h) { return v.step(x, h); }
 
   /// Converts the adjoint variables after a step to adjoint variables before the step, and adds the effect of the
   /// parameters to `derivatives`. Returns the relative size of the last correction.
@@ -84,7 +83,6 @@ class StageBackwardSweep {
   static State start_step(V&, State started, double) { return started; }
   static bool begin_alike(State const&, State const&) { return true; }
   static bool asks_for_equal_steps(V const&) { return false; }
-  static StepReport step(V& v, State& x, double h) { return v.step(x, h); }
 
   double backward_step(StepTaken const& step, Costate& bar, EquationDerivatives<V>& equations, VecX& derivatives) {
     return adjoint_.backward_step(step, bar, [&](EvaluationPoint<> const& place, VecX const& mu) {
@@ -132,6 +130,8 @@ class AdjointRun {
       : make_(make),
         parameters_(parameters),
         full_(make(values_of(parameters)), method),
+        run_(
+            full_, out_.run, Interruptions::refused, requires { I::adaptive_step; }),
         sweep_(full_),
         derivatives_(full_.scenario.model) {
     require_plain(full_.scenario.options, "gradient");
@@ -141,24 +141,25 @@ class AdjointRun {
   }
 
   GradientResult run(GradientOptions const& options) {
-    double const from = full_.scenario.start.t;
-    full_.scenario.options.check(from);
+    full_.scenario.options.check(full_.scenario.start.t);
     require_assembled_start(full_);
-    State x = full_.started(begin_plan(from));
-    plan(x);
+    run_.record();
+    std::vector<RecordedStep> const& steps = run_.steps();
+    require_equal_steps();
+    State x = run_.first();
     out_.value += weight(0) * term(full_.scenario.integrand, full_.scenario.model, full_.full_state(x));
-    x = W::start_step(full_, std::move(x), steps_.front().h);
+    x = W::start_step(full_, std::move(x), steps.front().h);
     EquationDerivatives<V> equations(make_, parameters_, full_);
     prepare(x, equations);
     Costate bar(x);
     bool at_end = false;
     out_.snapshot_size = size_of_snapshot(x);
     out_.reversal = reverse_steps(
-        x, steps_.size(), snapshots_of(options, out_.snapshot_size), [&](std::size_t k, State& y) { take(k, y); },
+        x, steps.size(), snapshots_of(options, out_.snapshot_size), [&](std::size_t k, State& y) { take(k, y); },
         [&](std::size_t k, State const& before, State const& after) {
           if (!at_end) begin_at_end(after, bar);
           at_end = true;
-          double const left = sweep_.backward_step({before, after, steps_[k].taken}, bar, equations, out_.derivatives);
+          double const left = sweep_.backward_step({before, after, steps[k].taken}, bar, equations, out_.derivatives);
           out_.left = std::max(out_.left, require_converged(left, after.t, "gradient"));
           if (k > 0) add_integrand(k, before, bar);
         });
@@ -168,11 +169,6 @@ class AdjointRun {
   }
 
  private:
-  struct Step {
-    double h, taken, end;  ///< requested length, actual length and end time [s]
-  };
-  static constexpr bool chooses = requires { I::adaptive_step; };
-
   /// Refuses events and breakpoints, which only the generalised-α family supports.
   static void require_still(RunOptions const& o) {
     if (!o.events.empty() || !o.breakpoints.empty())
@@ -181,55 +177,26 @@ class AdjointRun {
           {ErrorObject{"gradient"},
            ": runs with events or breakpoints need a method of the generalised-α family. Use `sensitivities`."});
   }
-  /// Begins the plan of the run at the time t. Returns the length of the first step [s].
-  double begin_plan(double t) {
-    RunOptions const& options = full_.scenario.options;
-    if (!(t < options.end_time))
-      throw InvalidInput("gradient.no_step",
-                         {ErrorObject{"gradient"}, ": the run has no step. Give an end time after the start."});
-    plan_ = StepPlan(t, options.end_time, options.step, full_.system.layout().breakpoints);
-    largest_ = options.max_step.value_or(std::numeric_limits<double>::infinity());
-    return plan_.next(t, std::min<double>(options.step, largest_)).h;
-  }
-  /// Plans all steps from x. If the integrator chooses their lengths, the steps are computed.
-  void plan(State x) {
-    RunOptions const& options = full_.scenario.options;
-    double h = std::min<double>(options.step, largest_);
-    StepRow row;
-    while (x.t < options.end_time) {
-      StepPlan::Next const next = plan_.next(x.t, h);
-      if (next.jumps)
-        throw InvalidInput(
-            "gradient.breakpoint",
-            {ErrorObject{"gradient"}, ": a drive or load has a breakpoint at t = ", ErrorTime{next.target},
-             " s, which only methods of the generalised-α family support. Use smooth functions of time, end the run "
-             "before the breakpoint, or use `sensitivities`."});
-      Step step{next.h, next.h, 0.0};
-      double const from = x.t;
-      if constexpr (chooses) {
-        StepReport const report = W::step(full_, x, next.h);
-        step.taken = report.taken;
-        bool const reached = next.lands && report.taken == next.h;
-        h = std::min(reached ? std::max(report.next, h) : report.next, largest_);
-      }
-      x.t = step.end = next.lands && step.taken == next.h ? next.target : row.after(from, step.taken);
-      if (W::asks_for_equal_steps(full_) && !steps_.empty() && std::abs(step.h - steps_.back().h) > 1e-9 * step.h)
+  /// Refuses steps of different lengths if the start correction depends on the length.
+  void require_equal_steps() const {
+    if (!W::asks_for_equal_steps(full_)) return;
+    std::vector<RecordedStep> const& steps = run_.steps();
+    for (std::size_t k = 1; k < steps.size(); ++k)
+      if (std::abs(steps[k].h - steps[k - 1].h) > 1e-9 * steps[k].h)
         throw InvalidInput("gradient.step_length",
-                           {ErrorObject{"gradient"}, ": the length of the step to t = ", ErrorTime{step.end},
+                           {ErrorObject{"gradient"}, ": the length of the step to t = ", ErrorTime{steps[k].end},
                             " s differs from the other steps. Set a step that divides the duration of the run, or set "
                             "start_correction to false."});
-      steps_.push_back(step);
-    }
   }
   /// Weight of a state in the trapezoidal rule of the integral [s].
   double weight(std::size_t state) const {
-    double const before = state > 0 ? steps_[state - 1].taken : 0.0;
-    return 0.5 * (before + (state < steps_.size() ? steps_[state].taken : 0.0));
+    std::vector<RecordedStep> const& steps = run_.steps();
+    double const before = state > 0 ? steps[state - 1].taken : 0.0;
+    return 0.5 * (before + (state < steps.size() ? steps[state].taken : 0.0));
   }
 
   void take(std::size_t k, State& x) {
-    StepReport const report = W::step(full_, x, steps_[k].h);
-    x.t = steps_[k].end;
+    StepReport const report = run_.repeat(k, x);
     if (k == furthest_) {
       out_.run.add(report);
       ++furthest_;
@@ -241,7 +208,7 @@ class AdjointRun {
     derivatives_.add(full_.scenario.end, full_.scenario.model, last, 1.0, bar);
     add_to_derivatives(
         [&](ParameterDifferences& b) { return term(b.scenario.end, b.scenario.model, b.full_state(last)); });
-    add_integrand(steps_.size(), last, bar);
+    add_integrand(run_.steps().size(), last, bar);
   }
   /// Adds the weighted integrand at state number k, x, to J, and its derivatives to `bar` and dJ/dp.
   void add_integrand(std::size_t k, State const& x, Costate& bar) {
@@ -254,7 +221,7 @@ class AdjointRun {
   }
   /// Computes the derivatives of the initial state and stores the perturbed scenarios. \param x start of the first step
   void prepare(State const& x, EquationDerivatives<V> const& equations) {
-    double const h = steps_.front().h;
+    double const h = run_.steps().front().h;
     for (std::size_t j = 0; j < parameters_.size(); ++j) {
       Parameter const& p = parameters_[j];
       State dx = zeros_like(x);
@@ -294,13 +261,11 @@ class AdjointRun {
   Make const& make_;
   std::vector<Parameter> parameters_;
   V full_;
+  RecordedRun<V> run_;
   W sweep_;
   std::vector<std::unique_ptr<ParameterDifferences>> perturbed_;  // four for each parameter
   std::vector<State> starts_;  // derivatives of the state before the first step, one for each parameter
-  StepPlan plan_;
-  double largest_ = 0.0;
-  std::vector<Step> steps_;
-  std::size_t furthest_ = 0;  // number of steps computed at least once
+  std::size_t furthest_ = 0;   // number of steps computed at least once
   ObjectiveDerivatives<M> derivatives_;
   GradientResult out_;
 };
