@@ -40,7 +40,7 @@ class StartCorrectionAdjoint {
       : spare_(&spare), x_(&x), h_(h), corrects_(corrects), decided_(V::decided(x, h, corrects)) {}
 
   /// Step length whose start correction is included in x [s]; zero after a start.
-  double shifted() const { return (*x_).history[(*x_).history.size() - 1]; }
+  double shifted() const { return StepHistory::shifted_of(*x_); }
 
   /// Replaces velocities and algorithmic accelerations of a state y of model v by their changes due to the start
   /// correction.
@@ -53,10 +53,10 @@ class StartCorrectionAdjoint {
     VecX const v = bar.at.v, own = bar.at.own;
     auto const result = [&](State& y, double length) {
       add(*spare_, y, length);
-      return v.dot(y.v) + own.dot(y.history.head(own.size()));
+      return v.dot(y.v) + own.dot(StepHistory::own_of(y));
     };
     State const& x = *x_;
-    Index const nv = v.size(), nq = x.q.size(), all = x.history.size();
+    Index const nv = v.size(), nq = x.q.size();
     double const e = 4e-3 * h_;
     if (corrects_) {
       double const of_a = x.a.template lpNorm<Eigen::Infinity>(),
@@ -64,10 +64,12 @@ class StartCorrectionAdjoint {
       add_derivatives_by({&State::q, 0, nq, x.q.template lpNorm<Eigen::Infinity>()}, x, h_, result, bar.at.q);
       add_derivatives_by({&State::v, 0, nv, of_v}, x, h_, result, bar.at.v);
       add_derivatives_by({&State::a, 0, nv, of_a}, x, h_, result, bar.at.a);
-      add_derivatives_by({&State::history, nv, 2 * nv, of_a}, x, h_, result, bar.history);
+      auto const [first, count] = StepHistory::points_of_jerk(nv);
+      add_derivatives_by({&State::history, first, count, of_a}, x, h_, result, bar.history);
       if (by_time) bar.t += slope_along(x, h_, e, [](State& y, double&, double by) { y.t += by; }, result);
     }
-    for (Index i = all - 3; i < all; ++i)
+    auto const [first, count] = StepHistory::lengths_of_correction(x.history.size());
+    for (Index i = first; i < first + count; ++i)
       if (x.history[i] > 0.0)
         bar.history[i] += slope_along(x, h_, e, [i](State& y, double&, double by) { y.history[i] += by; }, result);
     return slope_along(x, h_, e, [](State&, double& length, double by) { length += by; }, result);
@@ -126,7 +128,7 @@ class AdjointEventHandler {
 
  private:
   void begin(State const& first) {
-    still_ = {zeros_like(first), 0.0, VecX::Zero(lengths_of(first).size())};
+    still_ = {zeros_like(first), 0.0, VecX::Zero(StepHistory::lengths_of(first).size())};
     for (std::size_t j = 0; j < parameters_.size(); ++j) {
       step_slope_.push_back(perturbed_.of_number(j, [](V const& v) { return v.length(); }));
       end_time_slope_.push_back(
@@ -209,7 +211,7 @@ class AdjointEventHandler {
       corrected = before;
       corrected.v = spare.work.v0;
     }
-    VecX const own_before = spare.work.a0, own_after = x.history.head(x.v.size());
+    VecX const own_before = spare.work.a0, own_after = StepHistory::own_of(x);
     double const left =
         adjoint_.backward_step({corrects ? corrected : before, x, own_before, own_after, s.h}, bar.at, mu_);
     out_.left = std::max(out_.left, require_converged(left, x.t, "gradient"));
@@ -228,7 +230,7 @@ class AdjointEventHandler {
         State const change =
             perturbed_.of_map(j, before, still(from_breakpoint ? time_slope(j, before) : 0.0), {s.h, 0.0},
                               [&](V& of, State& y, double length) { sets_out.add(of, y, length); });
-        derivatives[Index(j)] += v.dot(change.v) + own.dot(change.history.head(own.size()));
+        derivatives[Index(j)] += v.dot(change.v) + own.dot(StepHistory::own_of(change));
       }
     }
     return of_length + sets_out.pull(bar, !from_breakpoint);

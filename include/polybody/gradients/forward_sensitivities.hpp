@@ -112,8 +112,8 @@ class ForwardSensitivities {
     for (std::size_t j = 0; j < parameters_.size(); ++j) {
       RunSensitivity& tangent = tangents_[j];
       tangent.dx = differenced(j, next.h, length_slope(j, next, tangent), map);
-      tangent.lengths = lengths_of(tangent.dx);
-      lengths_of(tangent.dx) = lengths_of(fresh);
+      tangent.lengths = StepHistory::lengths_of(tangent.dx);
+      StepHistory::lengths_of(tangent.dx) = StepHistory::lengths_of(fresh);
     }
     x_ = std::move(fresh);
   }
@@ -184,8 +184,8 @@ class ForwardSensitivities {
     x_.t = before_.t + h;  // just before a breakpoint
     set_columns([&](std::size_t j) { return s.met ? 0.0 : length_slope(j, plan, tangents_[j]); });
     if (s.met) {
-      step_length_derivative = {zeros_like(before_), 0.0, VecX::Zero(lengths_of(before_).size())};
-      lengths_of(step_length_derivative.dx) = lengths_of(before_);
+      step_length_derivative = {zeros_like(before_), 0.0, VecX::Zero(StepHistory::lengths_of(before_).size())};
+      StepHistory::lengths_of(step_length_derivative.dx) = StepHistory::lengths_of(before_);
       columns_.push_back({Variants::along_motion, &step_length_derivative, 1.0});
     }
     advance({before_, x_, h, s.met});

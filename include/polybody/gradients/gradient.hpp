@@ -51,7 +51,7 @@ class AlphaBackwardSweep {
   }
   /// Returns true if both states have a start correction or both have none.
   static bool begin_alike(State const& x, State const& y) {
-    return x.history.tail(StepHistory::lengths) == y.history.tail(StepHistory::lengths);
+    return StepHistory::lengths_of(x) == StepHistory::lengths_of(y);
   }
   /// Returns true if all steps must have the same length.
   static bool asks_for_equal_steps(V const& v) { return v.method.start_correction; }
@@ -59,8 +59,7 @@ class AlphaBackwardSweep {
   /// Converts the adjoint variables after a step to adjoint variables before the step, and adds the effect of the
   /// parameters to `derivatives`. Returns the relative size of the last correction.
   double backward_step(StepTaken const& step, Costate& bar, EquationDerivatives<V>& equations, VecX& derivatives) {
-    Index const nv = step.before.v.size();
-    VecX const own_before = step.before.history.head(nv), own_after = step.after.history.head(nv);
+    VecX const own_before = StepHistory::own_of(step.before), own_after = StepHistory::own_of(step.after);
     double const left = adjoint_.backward_step({step.before, step.after, own_before, own_after, step.h}, bar, mu_);
     equations.evaluate(step.after);
     equations.take_from(derivatives, mu_);

@@ -42,7 +42,7 @@ struct PerturbedModel {
     method.begin(system, x, h, work, corrected);
   }
   /// Starts y with the start correction if x was started with it, otherwise without.
-  void start_like(State const& x, State& y, double h) { start(y, h, x.history[x.history.size() - 2] > 0.0); }
+  void start_like(State const& x, State& y, double h) { start(y, h, StepHistory::has_earlier_point(x)); }
   /// Times of the breakpoints, unordered: first those of drives and loads, then those of the options [s].
   std::vector<double> breakpoints() const { return breakpoints_of(system, scenario.options); }
   /// Requested step length [s].
@@ -61,8 +61,7 @@ struct PerturbedModel {
     bool const corrected = method.start_step(system, x, h, work);
     if (corrected) {
       x.v = work.v0;
-      x.history.head(x.v.size()) = work.a0;
-      x.history.tail(1)[0] = h;
+      StepHistory(x).shift(work.a0, h);
     }
     return corrected;
   }
@@ -71,15 +70,14 @@ struct PerturbedModel {
   void set_out_change(State& y, double h, std::optional<bool> corrected) {
     (void)method.start_step(system, y, h, work, corrected);
     y.v = work.v0 - y.v;
-    auto own = y.history.head(y.v.size());
+    auto own = StepHistory::own_of(y);
     own = work.a0 - own;
   }
   /// Decision about the start correction in perturbed models near x: the same as in the run itself, `corrects`. Returns
   /// no decision if x already includes the correction for the step length h, because the decision then depends on the
   /// perturbed length.
   static std::optional<bool> decided(State const& x, double h, bool corrects) {
-    double const shifted = x.history[x.history.size() - 1];
-    return std::abs(h - shifted) > 1e-9 * h ? std::optional<bool>(corrects) : std::nullopt;
+    return std::abs(h - StepHistory::shifted_of(x)) > 1e-9 * h ? std::optional<bool>(corrects) : std::nullopt;
   }
   /// Computes a step of length h whose result depends on x only: with a new factorisation, in the initial elimination
   /// order.

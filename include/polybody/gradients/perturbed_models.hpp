@@ -171,7 +171,7 @@ class PerturbedModels {
     for (std::size_t k = 0; k < points; ++k) {
       double const e = FourPoints::places[k] * p.reach;
       State y = detail::displaced(x, p.along, e);
-      lengths_of(y) += e * tangent.lengths;
+      StepHistory::lengths_of(y) += e * tangent.lengths;
       y.t += e * p.dt;
       take(sum, f, {n_.itself(), std::move(y), h + e * p.dh}, FourPoints::weights[k] / p.reach);
     }

@@ -50,7 +50,7 @@ class AlphaSensitivities {
       corrected.v = spare.work.v0;
     }
     own_before_ = spare.work.a0;
-    own_after_ = after.history.head(after.v.size());
+    own_after_ = StepHistory::own_of(after);
     for (TangentColumn const& column : columns) start_step(before, h, column, corrects, perturbed);
     StepEnds const ends{corrects ? corrected : before, after, own_before_, own_after_, h};
     slope_.set(ends, searched ? nullptr : full_->factors(h));
@@ -69,7 +69,7 @@ class AlphaSensitivities {
       }
       left = std::max(left, slope_.advance(ends, std::span(directions_).first(count)));
     }
-    for (TangentColumn const& column : columns) push_length(*column.tangent, column.dh);
+    for (TangentColumn const& column : columns) StepHistory::push_length(column.tangent->lengths, column.dh);
     return left;
   }
 
@@ -78,20 +78,13 @@ class AlphaSensitivities {
   /// from x.
   static void start_step(State const& x, double h, TangentColumn const& column, bool corrects, Variants& perturbed) {
     RunSensitivity& tangent = *column.tangent;
-    double const shifted = x.history[x.history.size() - 1];
+    double const shifted = StepHistory::shifted_of(x);
     if (!corrects && (shifted == 0.0 || column.dh == tangent.lengths[StepHistory::lengths - 1])) return;
-    Index const nv = x.v.size();
     std::optional<bool> const decided = V::decided(x, h, corrects);
     State const change = perturbed.of_map(column.j, x, tangent, {h, column.dh},
                                           [&](V& v, State& y, double length) { v.set_out_change(y, length, decided); });
     tangent.dx.v += change.v;
-    tangent.dx.history.head(nv) += change.history.head(nv);
-  }
-  /// Appends the derivative of a step length, as `StepHistory::push` appends the length.
-  static void push_length(RunSensitivity& tangent, double dh) {
-    constexpr Index last = StepHistory::lengths - 1;
-    for (Index i = 0; i + 1 < last; ++i) tangent.lengths[i] = tangent.lengths[i + 1];
-    tangent.lengths[last - 1] = tangent.lengths[last] = dh;
+    StepHistory::own_of(tangent.dx) += StepHistory::own_of(change);
   }
 
   V* full_;
