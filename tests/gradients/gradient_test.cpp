@@ -197,8 +197,7 @@ TEST(GradientResult, DirectDifferentiationRefusesParametersThatTouchMoreThanThey
 TEST(GradientResult, ParametersThatTouchNothingInCommonShareTheirModels) {
   using V = detail::PerturbedModel<decltype(chain({})), GeneralisedAlpha>;
   auto const groups = [](std::vector<Parameter> const& parameters) {
-    V const model(chain(detail::values_of(parameters)), GeneralisedAlpha{}.method());
-    return detail::EquationDerivatives<V>(chain, parameters, model).groups();
+    return detail::PerturbedModels<V>(chain, parameters, GeneralisedAlpha{}.method(), "gradient").groups();
   };
   EXPECT_EQ(groups(of_chain(false)), 15u);
   // a length touches both neighbours and needs three groups; densities and stiffnesses of other bodies fill two more

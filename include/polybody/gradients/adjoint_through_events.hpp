@@ -84,19 +84,19 @@ class StartCorrectionAdjoint {
 };
 
 /// Forward run and backward sweep of a run with breakpoints or events. \tparam I integrator of the generalised-α family
-template <class Make, class I>
+template <class S, class I>
 class AdjointEventHandler {
-  using S = std::remove_cvref_t<decltype(std::declval<Make const&>()(std::declval<std::span<double const>>()))>;
   using V = PerturbedModel<S, I>;
   using M = typename V::Model;
   using Variants = PerturbedModels<V>;
 
  public:
-  [[gnu::cold]] AdjointEventHandler(Make const& make, std::vector<Parameter> const& parameters,
+  /// \param models must outlive this object
+  [[gnu::cold]] AdjointEventHandler(Variants& models, std::vector<Parameter> const& parameters,
                                     AlphaMethod const& method)
       : parameters_(parameters),
-        full_(make(values_of(parameters)), method),
-        perturbed_(make, parameters, method, "gradient"),
+        perturbed_(models),
+        full_(models.itself().shared, method),
         run_(full_, out_.run, Interruptions::handled),
         adjoint_(full_.scenario.model, full_.system, method),
         objective_(full_.scenario.model) {
@@ -217,8 +217,9 @@ class AdjointEventHandler {
     out_.left = std::max(out_.left, require_converged(left, x.t, "gradient"));
     double of_length = adjoint_.step_length_derivative();
     perturbed_.begin_step();
-    for (std::size_t j = 0; j < parameters_.size(); ++j) derivatives[Index(j)] -= of_equations(j, {x, s.h, 0.0, 0});
-    bar.t -= of_equations(Variants::along_motion, {x, s.h, 1.0, 0});
+    typename Variants::template PointInStep<State> const end{x, s.h, 0.0, 0}, later{x, s.h, 1.0, 0};
+    for (std::size_t j = 0; j < parameters_.size(); ++j) derivatives[Index(j)] -= perturbed_.product(j, end, mu_);
+    bar.t -= perturbed_.product(Variants::along_motion, later, mu_);
     of_length += bar.t + bar.pull_push(before);
     StartCorrectionAdjoint<V> const sets_out(spare, before, s.h, corrects);
     bool const free = (s.plan.lands || !s.met.empty()) && sets_out.shifted() > 0.0;  // h depends on parameters
@@ -235,12 +236,6 @@ class AdjointEventHandler {
     }
     return of_length + sets_out.pull(bar, !from_breakpoint);
   }
-  double of_equations(std::size_t j, typename Variants::template PointInStep<State> const& at) {
-    perturbed_.of_equations(j, at, by_);
-    Index const nv = by_.balance.size();
-    return mu_.head(nv).dot(by_.balance) + mu_.tail(by_.rows.size()).dot(by_.rows);
-  }
-
   /// Adds the effect on J of the time of the event that ends step k at x.
   void add_event(std::size_t k, State& before, State const& x, double of_length, RunCostate& bar) {
     RecordedStep const& s = run_.steps()[k];
@@ -330,40 +325,24 @@ class AdjointEventHandler {
   }
 
   std::vector<Parameter> parameters_;
+  Variants& perturbed_;
   V full_;
-  Variants perturbed_;
   RecordedRun<V> run_;
   AlphaStepAdjoint<> adjoint_;
   ObjectiveDerivatives<M> objective_;
   RunSensitivity still_;
   std::vector<double> step_slope_, end_time_slope_;
-  EquationDerivative by_;
   VecX mu_;
   GradientResult out_;
 };
 
-/// Returns true if the start time, the end time or the step length of a run depends on a parameter. \param chooses true
-/// if the integrator chooses the step length
-template <class Make, class S>
-bool has_moving_times(Make const& make, std::vector<Parameter> const& parameters, S const& scenario,
-                      bool chooses = false) {
-  RunOptions const& here = scenario.options;
-  for (std::size_t j = 0; j < parameters.size(); ++j) {
-    std::vector<double> p = values_of(parameters);
-    p[j] += parameters[j].distance();
-    S const near = make(p);
-    bool const same_steps = chooses || length_of_steps(near.options) == length_of_steps(here);
-    if (near.options.end_time != here.end_time || near.start.t != scenario.start.t || !same_steps) return true;
-  }
-  return false;
-}
-/// Returns true if events or breakpoints may end steps of a run. \param breakpoints times of the breakpoints, unordered
-/// [s]
-template <class S>
-bool is_interrupted(S const& scenario, std::vector<double> const& breakpoints) {
-  RunOptions const& o = scenario.options;
-  return !o.events.empty() || std::any_of(breakpoints.begin(), breakpoints.end(),
-                                          [&](double t) { return t > scenario.start.t && t <= o.end_time; });
+/// Returns true if events or breakpoints may end steps of the run of a model.
+template <class V>
+bool is_interrupted(V const& model) {
+  RunOptions const& o = model.scenario.options;
+  std::vector<double> const all = model.breakpoints();
+  return !o.events.empty() ||
+         std::any_of(all.begin(), all.end(), [&](double t) { return t > model.scenario.start.t && t <= o.end_time; });
 }
 
 }  // namespace polybody::detail

@@ -50,10 +50,10 @@ class ForwardSensitivities {
   [[gnu::cold]] ForwardSensitivities(Make const& make, std::vector<Parameter> const& parameters,
                                      MethodOf<I> const& method)
       : parameters_(parameters),
-        full_(make(values_of(parameters)), method),
+        perturbed_(make, parameters, method, "sensitivities"),
+        full_(perturbed_.itself().shared, method),
         driver_(full_.scenario.options, out_.run, chooses),
-        propagator_(full_),
-        perturbed_(make, parameters, method, "sensitivities") {
+        propagator_(full_) {
     require_plain(full_.scenario.options, "sensitivities");
   }
 
@@ -255,10 +255,10 @@ class ForwardSensitivities {
   }
 
   std::vector<Parameter> parameters_;
+  Variants perturbed_;
   V full_;
   RunDriver driver_;
   Propagator<S, I> propagator_;
-  Variants perturbed_;
   State x_, before_, far_;  // present state; state before the last part of the step; end before the search for events
   std::vector<TangentColumn> columns_;
   std::vector<RunSensitivity> tangents_;  // one for each parameter

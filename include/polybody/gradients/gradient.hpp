@@ -23,11 +23,8 @@
 
 #include <polybody/gradients/adjoint_through_events.hpp>
 #include <polybody/gradients/alpha_step_adjoint.hpp>
-#include <polybody/gradients/equation_derivatives.hpp>
 #include <polybody/gradients/gradient_result.hpp>
 #include <polybody/gradients/objective.hpp>
-#include <polybody/gradients/perturbed_model.hpp>
-#include <polybody/gradients/perturbed_stage_model.hpp>
 #include <polybody/gradients/requirements.hpp>
 
 namespace polybody::detail {
@@ -58,11 +55,10 @@ class AlphaBackwardSweep {
 
   /// Converts the adjoint variables after a step to adjoint variables before the step, and adds the effect of the
   /// parameters to `derivatives`. Returns the relative size of the last correction.
-  double backward_step(StepTaken const& step, Costate& bar, EquationDerivatives<V>& equations, VecX& derivatives) {
+  double backward_step(StepTaken const& step, Costate& bar, PerturbedModels<V>& models, VecX& derivatives) {
     VecX const own_before = StepHistory::own_of(step.before), own_after = StepHistory::own_of(step.after);
     double const left = adjoint_.backward_step({step.before, step.after, own_before, own_after, step.h}, bar, mu_);
-    equations.evaluate(step.after);
-    equations.take_from(derivatives, mu_);
+    models.take_from(derivatives, step.after, step.h, mu_);
     return left;
   }
 
@@ -83,10 +79,9 @@ class StageBackwardSweep {
   static bool begin_alike(State const&, State const&) { return true; }
   static bool asks_for_equal_steps(V const&) { return false; }
 
-  double backward_step(StepTaken const& step, Costate& bar, EquationDerivatives<V>& equations, VecX& derivatives) {
+  double backward_step(StepTaken const& step, Costate& bar, PerturbedModels<V>& models, VecX& derivatives) {
     return adjoint_.backward_step(step, bar, [&](EvaluationPoint<> const& place, VecX const& mu) {
-      equations.evaluate(place);
-      equations.take_from(derivatives, mu);
+      models.take_from(derivatives, place, step.h, mu);
     });
   }
 
@@ -111,26 +106,20 @@ namespace detail {
 
 /// Forward run and backward sweep of a run without events and breakpoints. \tparam Sweep backward sweep for the
 /// integrator's family
-template <class Make, class I, template <class, class> class Sweep>
+template <class S, class I, template <class, class> class Sweep>
 class AdjointRun {
-  using S = std::remove_cvref_t<decltype(std::declval<Make const&>()(std::declval<std::span<double const>>()))>;
   using W = Sweep<S, I>;
   using V = typename W::V;
   using M = typename V::Model;
-  /// Scenario with one perturbed parameter, and the conversion of its states to full states.
-  struct ParameterDifferences {
-    S scenario;
-    FullStates<M> full_state;
-    explicit ParameterDifferences(S of) : scenario(std::move(of)), full_state(scenario.model) {}
-  };
 
  public:
-  [[gnu::cold]] AdjointRun(Make const& make, std::vector<Parameter> const& parameters, MethodOf<I> const& method)
-      : make_(make),
-        parameters_(parameters),
-        full_(make(values_of(parameters)), method),
-        run_(
-            full_, out_.run, Interruptions::refused, requires { I::adaptive_step; }),
+  /// \param models must outlive this object
+  [[gnu::cold]] AdjointRun(PerturbedModels<V>& models, std::vector<Parameter> const& parameters,
+                           MethodOf<I> const& method)
+      : parameters_(parameters),
+        models_(models),
+        full_(models.itself().shared, method),
+        run_(full_, out_.run, Interruptions::refused, chooses),
         sweep_(full_),
         derivatives_(full_.scenario.model) {
     require_plain(full_.scenario.options, "gradient");
@@ -148,8 +137,7 @@ class AdjointRun {
     State x = run_.first();
     out_.value += weight(0) * term(full_.scenario.integrand, full_.scenario.model, full_.full_state(x));
     x = W::start_step(full_, std::move(x), steps.front().h);
-    EquationDerivatives<V> equations(make_, parameters_, full_);
-    prepare(x, equations);
+    prepare(x);
     Costate bar(x);
     bool at_end = false;
     out_.snapshot_size = size_of_snapshot(x);
@@ -158,7 +146,7 @@ class AdjointRun {
         [&](std::size_t k, State const& before, State const& after) {
           if (!at_end) begin_at_end(after, bar);
           at_end = true;
-          double const left = sweep_.backward_step({before, after, steps[k].taken}, bar, equations, out_.derivatives);
+          double const left = sweep_.backward_step({before, after, steps[k].taken}, bar, models_, out_.derivatives);
           out_.left = std::max(out_.left, require_converged(left, after.t, "gradient"));
           if (k > 0) add_integrand(k, before, bar);
         });
@@ -168,6 +156,8 @@ class AdjointRun {
   }
 
  private:
+  static constexpr bool chooses = requires { I::adaptive_step; };
+
   /// Refuses events and breakpoints, which only the generalised-α family supports.
   static void require_still(RunOptions const& o) {
     if (!o.events.empty() || !o.breakpoints.empty())
@@ -205,8 +195,7 @@ class AdjointRun {
   void begin_at_end(State const& last, Costate& bar) {
     out_.value += term(full_.scenario.end, full_.scenario.model, full_.full_state(last));
     derivatives_.add(full_.scenario.end, full_.scenario.model, last, 1.0, bar);
-    add_to_derivatives(
-        [&](ParameterDifferences& b) { return term(b.scenario.end, b.scenario.model, b.full_state(last)); });
+    add_to_derivatives([&](V& v) { return term(v.scenario.end, v.scenario.model, v.full_state(last)); });
     add_integrand(run_.steps().size(), last, bar);
   }
   /// Adds the weighted integrand at state number k, x, to J, and its derivatives to `bar` and dJ/dp.
@@ -215,22 +204,18 @@ class AdjointRun {
     double const w = weight(k);
     out_.value += w * term(full_.scenario.integrand, full_.scenario.model, full_.full_state(x));
     derivatives_.add(full_.scenario.integrand, full_.scenario.model, x, w, bar);
-    add_to_derivatives(
-        [&](ParameterDifferences& b) { return w * term(b.scenario.integrand, b.scenario.model, b.full_state(x)); });
+    add_to_derivatives([&](V& v) { return w * term(v.scenario.integrand, v.scenario.model, v.full_state(x)); });
   }
-  /// Computes the derivatives of the initial state and stores the perturbed scenarios. \param x start of the first step
-  void prepare(State const& x, EquationDerivatives<V> const& equations) {
+  /// Computes the derivatives of the initial state. \param x start of the first step
+  void prepare(State const& x) {
+    models_.require_named(x);
     double const h = run_.steps().front().h;
     for (std::size_t j = 0; j < parameters_.size(); ++j) {
       Parameter const& p = parameters_[j];
       State dx = zeros_like(x);
       double of_integrand = 0.0;
       for (std::size_t k = 0; k < FourPoints::places.size(); ++k) {
-        std::vector<double> values = values_of(parameters_);
-        values[j] += FourPoints::places[k] * p.distance();
-        V v(make_(values), full_.method);
-        require_alike(full_, v, p, "gradient");
-        if (k == 0) equations.require_named(j, full_, v, x);
+        V& v = models_.perturbed(j, k);
         double const by = FourPoints::weights[k] / p.distance();
         State y = v.started(h);
         of_integrand += by * term(v.scenario.integrand, v.scenario.model, v.full_state(y));
@@ -240,29 +225,27 @@ class AdjointRun {
                              {ErrorObject{"gradient"}, ": the start correction depends on \"", p.name,
                               "\". Set start_correction to false."});
         add(dx, y, by);
-        perturbed_.push_back(std::make_unique<ParameterDifferences>(std::move(v.scenario)));
       }
       out_.derivatives[Index(j)] += weight(0) * of_integrand;
       starts_.push_back(std::move(dx));
     }
   }
-  /// Adds the derivative of f(perturbed scenario) with respect to each parameter to dJ/dp.
+  /// Adds the derivative of f(perturbed model) with respect to each parameter to dJ/dp.
   template <class F>
   void add_to_derivatives(F&& f) {
     for (std::size_t j = 0; j < parameters_.size(); ++j) {
       double slope = 0.0;
       for (std::size_t k = 0; k < FourPoints::places.size(); ++k)
-        slope += FourPoints::weights[k] / parameters_[j].distance() * f(*perturbed_[4 * j + k]);
+        slope += FourPoints::weights[k] / parameters_[j].distance() * f(models_.perturbed(j, k));
       out_.derivatives[Index(j)] += slope;
     }
   }
 
-  Make const& make_;
   std::vector<Parameter> parameters_;
+  PerturbedModels<V>& models_;
   V full_;
   RecordedRun<V> run_;
   W sweep_;
-  std::vector<std::unique_ptr<ParameterDifferences>> perturbed_;  // four for each parameter
   std::vector<State> starts_;  // derivatives of the state before the first step, one for each parameter
   std::size_t furthest_ = 0;   // number of steps computed at least once
   ObjectiveDerivatives<M> derivatives_;
@@ -283,26 +266,26 @@ class AdjointRun {
 template <ObjectiveFactory Make, class I>
 GradientResult gradient(Make const& make, std::vector<Parameter> const& parameters, I const& integrator,
                         GradientOptions const& options = {}) {
+  using S = std::remove_cvref_t<decltype(make(std::span<double const>()))>;
   if constexpr (detail::AlphaFamilyIntegrator<I>) {
     AlphaMethod const method = detail::method_of_derivatives(parameters, integrator, "gradient");
-    auto const scenario = make(detail::values_of(parameters));
-    detail::require_plain(scenario.options, "gradient");
-    System const system = system_for<I>(scenario.model);
-    if (detail::is_interrupted(scenario, detail::breakpoints_of(system, scenario.options)) ||
-        detail::has_moving_times(make, parameters, scenario))
-      return detail::AdjointEventHandler<Make, I>(make, parameters, method).run(options);
-    return detail::AdjointRun<Make, I, detail::AlphaBackwardSweep>(make, parameters, method).run(options);
+    detail::PerturbedModels<detail::PerturbedModel<S, I>> models(make, parameters, method, "gradient");
+    detail::require_plain(models.itself().scenario.options, "gradient");
+    if (detail::is_interrupted(models.itself()) || models.has_moving_times(false))
+      return detail::AdjointEventHandler<S, I>(models, parameters, method).run(options);
+    return detail::AdjointRun<S, I, detail::AlphaBackwardSweep>(models, parameters, method).run(options);
   } else {
     static_assert(detail::HasStageAdjoints<I>,
                   "gradient supports GeneralisedAlpha, HhtAlpha, Newmark and Trapezoidal; with "
                   "<polybody/gradients/runge_kutta_step_adjoint.hpp> also RungeKutta4 and DormandPrince, with "
                   "<polybody/gradients/radau_step_adjoint.hpp> also Radau.");
     MethodOf<I> const method = detail::method_of_stages(parameters, integrator);
-    if (detail::has_moving_times(make, parameters, make(detail::values_of(parameters)), requires { I::adaptive_step; }))
+    detail::PerturbedModels<detail::PerturbedStageModel<S, I>> models(make, parameters, method, "gradient");
+    if (models.has_moving_times(requires { I::adaptive_step; }))
       throw InvalidInput("gradient.method", {ErrorObject{"gradient"},
                                              ": runs whose start, end or steps depend on a parameter need a method of "
                                              "the generalised-α family. Use `sensitivities`."});
-    return detail::AdjointRun<Make, I, detail::StageBackwardSweep>(make, parameters, method).run(options);
+    return detail::AdjointRun<S, I, detail::StageBackwardSweep>(models, parameters, method).run(options);
   }
 }
 

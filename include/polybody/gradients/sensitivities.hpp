@@ -16,9 +16,7 @@
 /// Not in polybody.hpp: few programs need derivatives of whole runs.
 
 #include <polybody/gradients/forward_sensitivities.hpp>
-#include <polybody/gradients/perturbed_model.hpp>
 #include <polybody/gradients/perturbed_models.hpp>
-#include <polybody/gradients/perturbed_stage_model.hpp>
 #include <polybody/gradients/sensitivity_step.hpp>
 
 namespace polybody::detail {
