@@ -206,6 +206,27 @@ TEST(GradientResult, ParametersThatTouchNothingInCommonShareTheirModels) {
   EXPECT_GE(groups(of_chain(true)), 5u);
 }
 
+// The factory is called once for the run and at four points of each parameter.
+TEST(GradientResult, BuildsThirteenModelsForThreeParameters) {
+  int calls = 0;
+  auto const counted = [&](P p) {
+    ++calls;
+    return oscillator(p[2], 1e-2)(p);
+  };
+  auto const of = [](double end_time) {
+    return std::vector<Parameter>{{"k [N/m]", 50.0}, {"c [N s/m]", 3.0}, {"end [s]", end_time}};
+  };
+  auto const fixed = [&](P p) { return counted(std::array{p[0], p[1], 0.1 + 0.0 * p[2]}); };
+  gradient(fixed, of(0.1), GeneralisedAlpha{});
+  EXPECT_EQ(calls, 13);
+  calls = 0;
+  gradient(counted, of(0.105), GeneralisedAlpha{});  // the end time moves
+  EXPECT_EQ(calls, 13);
+  calls = 0;
+  sensitivities(fixed, of(0.1), GeneralisedAlpha{});
+  EXPECT_EQ(calls, 13);
+}
+
 TEST(GradientResult, RefusesParametersThatTouchMoreThanTheySay) {
   auto const said = [](std::vector<std::string> affects) {
     auto parameters = of_chain(true);

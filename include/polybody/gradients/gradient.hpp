@@ -25,7 +25,9 @@
 #include <polybody/gradients/alpha_step_adjoint.hpp>
 #include <polybody/gradients/gradient_result.hpp>
 #include <polybody/gradients/objective.hpp>
+#include <polybody/gradients/radau_derivatives.hpp>
 #include <polybody/gradients/requirements.hpp>
+#include <polybody/gradients/runge_kutta_derivatives.hpp>
 
 namespace polybody::detail {
 
@@ -86,7 +88,7 @@ class StageBackwardSweep {
   }
 
  private:
-  typename StageAdjoints<I>::Type adjoint_;
+  typename I::Derivatives::template StepAdjoint<I> adjoint_;
 };
 
 }  // namespace polybody::detail
@@ -256,13 +258,12 @@ class AdjointRun {
 
 /// Runs the scenario that `make` returns for the values of the parameters, and differentiates its objective function
 /// with respect to each parameter. Newton's method iterates until corrections are below 1e-12 or at round-off. \param
-/// integrator integrator of the generalised-α family, without `stabilised`; with runge_kutta_step_adjoint.hpp also
-/// RungeKutta4 and DormandPrince, whose step lengths are constants; with radau_step_adjoint.hpp also Radau. \throws
-/// InvalidInput for invalid parameters or options; if the factory makes models of different sizes; if an event only
-/// touches zero; if two events coincide, or other times coincide so that the run is not differentiable; if the steps of
-/// a run with start correction, but without events, breakpoints and moving times, differ in length; for events,
-/// breakpoints or moving times with a Runge–Kutta method. \throws SingularMatrix in a singular configuration;
-/// NonFiniteValue; and the exceptions of `simulate`.
+/// integrator integrator of the generalised-α family, without `stabilised`; RungeKutta4; DormandPrince, whose step
+/// lengths are constants; or Radau. \throws InvalidInput for invalid parameters or options; if the factory makes models
+/// of different sizes; if an event only touches zero; if two events coincide, or other times coincide so that the run
+/// is not differentiable; if the steps of a run with start correction, but without events, breakpoints and moving
+/// times, differ in length; for events, breakpoints or moving times with a Runge–Kutta method. \throws SingularMatrix
+/// in a singular configuration; NonFiniteValue; and the exceptions of `simulate`.
 template <ObjectiveFactory Make, class I>
 GradientResult gradient(Make const& make, std::vector<Parameter> const& parameters, I const& integrator,
                         GradientOptions const& options = {}) {
@@ -275,10 +276,9 @@ GradientResult gradient(Make const& make, std::vector<Parameter> const& paramete
       return detail::AdjointEventHandler<S, I>(models, parameters, method).run(options);
     return detail::AdjointRun<S, I, detail::AlphaBackwardSweep>(models, parameters, method).run(options);
   } else {
-    static_assert(detail::HasStageAdjoints<I>,
-                  "gradient supports GeneralisedAlpha, HhtAlpha, Newmark and Trapezoidal; with "
-                  "<polybody/gradients/runge_kutta_step_adjoint.hpp> also RungeKutta4 and DormandPrince, with "
-                  "<polybody/gradients/radau_step_adjoint.hpp> also Radau.");
+    static_assert(detail::HasStageDerivatives<I>,
+                  "gradient supports GeneralisedAlpha, HhtAlpha, Newmark, Trapezoidal, RungeKutta4, DormandPrince and "
+                  "Radau.");
     MethodOf<I> const method = detail::method_of_stages(parameters, integrator);
     detail::PerturbedModels<detail::PerturbedStageModel<S, I>> models(make, parameters, method, "gradient");
     if (models.has_moving_times(requires { I::adaptive_step; }))

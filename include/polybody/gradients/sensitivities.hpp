@@ -17,6 +17,8 @@
 
 #include <polybody/gradients/forward_sensitivities.hpp>
 #include <polybody/gradients/perturbed_models.hpp>
+#include <polybody/gradients/radau_derivatives.hpp>
+#include <polybody/gradients/runge_kutta_derivatives.hpp>
 #include <polybody/gradients/sensitivity_step.hpp>
 
 namespace polybody::detail {
@@ -135,7 +137,7 @@ class StageSensitivities {
   }
 
  private:
-  using Slopes = typename StageDerivatives<I>::Type;
+  using Slopes = typename I::Derivatives::template LinearisedStep<I>;
 
   Slopes derivatives_;
   std::vector<State*> directions_;
@@ -156,13 +158,12 @@ concept ScenarioFactory = requires(F const make, std::span<double const> p) {
 };
 
 /// Runs the scenario that `make` returns for the values of the parameters, and differentiates its outputs with respect
-/// to each parameter. Newton's method converges to 1e-12 or to round-off. \param integrator of the generalised-α
-/// family, without `stabilised`; with runge_kutta_linearised_step.hpp also RungeKutta4 and DormandPrince; with
-/// radau_linearised_step.hpp also Radau. Step lengths of DormandPrince are constants, unless an event, a breakpoint or
-/// the end of the run ends the step. \throws InvalidInput for invalid parameters; if models of the factory differ in
-/// size; if an event only touches zero; if events or breakpoints coincide and a parameter separates them; if a
-/// parameter changes equations of an object outside its `affects`. \throws SingularMatrix in a singular configuration;
-/// and the exceptions of `simulate`.
+/// to each parameter. Newton's method converges to 1e-12 or to round-off. \param integrator integrator of the
+/// generalised-α family, without `stabilised`; RungeKutta4, DormandPrince or Radau. Step lengths of DormandPrince are
+/// constants, unless an event, a breakpoint or the end of the run ends the step. \throws InvalidInput for invalid
+/// parameters; if models of the factory differ in size; if an event only touches zero; if events or breakpoints
+/// coincide and a parameter separates them; if a parameter changes equations of an object outside its `affects`.
+/// \throws SingularMatrix in a singular configuration; and the exceptions of `simulate`.
 template <ScenarioFactory Make, class I>
 SensitivityResult sensitivities(Make const& make, std::vector<Parameter> const& parameters, I const& integrator) {
   if constexpr (detail::AlphaFamilyIntegrator<I>) {
@@ -170,9 +171,8 @@ SensitivityResult sensitivities(Make const& make, std::vector<Parameter> const& 
     return detail::ForwardSensitivities<Make, I, detail::AlphaSensitivities>(make, parameters, method).run();
   } else {
     static_assert(detail::HasStageDerivatives<I>,
-                  "sensitivities supports GeneralisedAlpha, HhtAlpha, Newmark and Trapezoidal; with "
-                  "<polybody/gradients/runge_kutta_linearised_step.hpp> also RungeKutta4 and DormandPrince, with "
-                  "<polybody/gradients/radau_linearised_step.hpp> also Radau.");
+                  "sensitivities supports GeneralisedAlpha, HhtAlpha, Newmark, Trapezoidal, RungeKutta4, DormandPrince "
+                  "and Radau.");
     MethodOf<I> const method = detail::method_of_stages(parameters, integrator);
     return detail::ForwardSensitivities<Make, I, detail::StageSensitivities>(make, parameters, method).run();
   }
