@@ -18,7 +18,6 @@
 ///
 /// Not in polybody.hpp: few programs need derivatives of whole runs.
 
-#include <memory>
 #include <span>
 
 #include <polybody/gradients/adjoint_through_events.hpp>

@@ -15,7 +15,7 @@ namespace polybody::detail {
 struct RecordedStep {
   StepPlan::Next plan;                   ///< planned end of the step
   double h = 0.0;                        ///< length with which the step is repeated [s]
-  double taken = 0.0;                    ///< length of the step; below `h` if the integrator took a shorter one [s]
+  double taken = 0.0;                    ///< actual length of the step, at most `h` [s]
   double end = 0.0;                      ///< time after the step [s]
   double far = 0.0, largest = 0.0;       ///< with events: length of the full step [s], largest |event value|
   std::vector<std::size_t> met, acting;  ///< indices of the events that end the step, and of those with an action
@@ -43,7 +43,7 @@ std::vector<std::size_t> acting_events(std::vector<Event> const& events, EventDe
 
 /// Recorded runs with events and breakpoints, or without.
 enum class Interruptions {
-  handled,  ///< steps of constant length end at events and breakpoints, where the integrator starts again
+  handled,  ///< steps of constant length end at events and breakpoints; the integrator starts again there
   refused   ///< breakpoints are refused; steps of known length are planned but not computed
 };
 

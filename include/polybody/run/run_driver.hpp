@@ -24,19 +24,20 @@ struct RunStep {
   bool restarts = false;       ///< true if the integrator must start again at the end of the step
 };
 
-/// Driver of a run. A run is a class with this driver as a friend. It has the member functions
-///   StepReport step(State& x, double h)    takes one step of at most h; the search for events repeats steps
-///   StepReport take(State& x, double h)    takes the step of the run, for example as `halving_step`
-///   void start(State& x, double h)         starts again at x, for steps of h; only for `halving_step`
-///   State const& full_state(State const&)  full state of an integrated state, for the values of events
-///   System& stepped_system()               integrated system
-///   bool keeps() const                     true if operations after a step may fail, so that the driver stores x
-///   void on_step(RunStep&)                 after a step, before the search for events
-///   void on_end(RunStep&)                  at the event or at the planned end of the step: actions of events
-///   bool requires_restart()                true if the integrator must start again for another reason
-///   void on_next(RunStep&)                 after breakpoints are passed: restart if `restarts` is true
-///   void on_done(RunStep&)                 after all operations of the step that change the state
-///   void on_failure()                      restores the other data of the run after a failed step
+/// Driver of a run. The class of a run has this driver as a friend, and these member functions:
+///
+///     StepReport step(State& x, double h)         // one step of at most h; the search for events repeats steps
+///     StepReport take(State& x, double h)         // the step of the run, for example `halving_step`
+///     void start(State& x, double h)              // new start at x for steps of h; only for `halving_step`
+///     State const& full_state(State const& x)     // full state of an integrated state, for the values of events
+///     System& stepped_system()                    // integrated system
+///     bool keeps() const                          // true if x must be stored, since operations after a step may fail
+///     void on_step(RunStep& s)                    // after a step, before the search for events
+///     void on_end(RunStep& s)                     // at the event or at the planned end: actions of events
+///     bool requires_restart()                     // true if the integrator must start again for another reason
+///     void on_next(RunStep& s)                    // after breakpoints are passed: restart if `restarts` is true
+///     void on_done(RunStep& s)                    // after all operations of the step that change the state
+///     void on_failure()                           // restores the other data of the run after a failed step
 class RunDriver {
  public:
   /// \param options options, must outlive the driver \param report report of the run, must outlive the driver
