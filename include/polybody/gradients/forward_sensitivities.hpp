@@ -6,7 +6,6 @@
 
 #include <polybody/gradients/perturbed_models.hpp>
 #include <polybody/gradients/recorded_run.hpp>
-#include <polybody/gradients/sensitivity_step.hpp>
 
 namespace polybody {
 
@@ -29,6 +28,22 @@ struct SensitivityResult {
 };
 
 namespace detail {
+
+/// Direction of differentiation of a step: number j of the parameter, derivative `tangent` of the run, derivative dh of
+/// the step length.
+struct TangentColumn {
+  std::size_t j;
+  RunSensitivity* tangent;
+  double dh;
+};
+
+/// Completed step of a run.
+struct SensitivityStep {
+  State& before;       ///< state at the start of the step
+  State const& after;  ///< state at the end of the step
+  double h;            ///< length of the step [s]
+  bool searched;       ///< true if an event search computed other steps after this one
+};
 
 /// Adds a warning for each parameter without effect. \param affected for each parameter: nonzero if it has an effect
 template <class = void>

@@ -19,7 +19,6 @@
 #include <polybody/gradients/perturbed_models.hpp>
 #include <polybody/gradients/radau_derivatives.hpp>
 #include <polybody/gradients/runge_kutta_derivatives.hpp>
-#include <polybody/gradients/sensitivity_step.hpp>
 
 namespace polybody::detail {
 
