@@ -1,8 +1,4 @@
 // Derivatives of runs with multi-stage methods whose joints eliminate coordinates.
-#include <polybody/gradients/radau_linearised_step.hpp>
-#include <polybody/gradients/radau_step_adjoint.hpp>
-#include <polybody/gradients/runge_kutta_linearised_step.hpp>
-#include <polybody/gradients/runge_kutta_step_adjoint.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,4 @@
 // Adjoint gradients of runs with Runge–Kutta methods and Radau against their forward sensitivities.
-#include <polybody/gradients/radau_linearised_step.hpp>
-#include <polybody/gradients/radau_step_adjoint.hpp>
-#include <polybody/gradients/runge_kutta_linearised_step.hpp>
-#include <polybody/gradients/runge_kutta_step_adjoint.hpp>
 
 #include <gtest/gtest.h>
 

@@ -197,14 +197,34 @@ TEST(GradientResult, DirectDifferentiationRefusesParametersThatTouchMoreThanThey
 TEST(GradientResult, ParametersThatTouchNothingInCommonShareTheirModels) {
   using V = detail::PerturbedModel<decltype(chain({})), GeneralisedAlpha>;
   auto const groups = [](std::vector<Parameter> const& parameters) {
-    V const model(chain(detail::values_of(parameters)), GeneralisedAlpha{}.method());
-    return detail::EquationDerivatives<V>(chain, parameters, model).groups();
+    return detail::PerturbedModels<V>(chain, parameters, GeneralisedAlpha{}.method(), "gradient").groups();
   };
   EXPECT_EQ(groups(of_chain(false)), 15u);
   // a length touches both neighbours and needs three groups; densities and stiffnesses of other bodies fill two more
   // groups
   EXPECT_LE(groups(of_chain(true)), 6u);
   EXPECT_GE(groups(of_chain(true)), 5u);
+}
+
+// The factory is called once for the run and at four points of each parameter.
+TEST(GradientResult, BuildsThirteenModelsForThreeParameters) {
+  int calls = 0;
+  auto const counted = [&](P p) {
+    ++calls;
+    return oscillator(p[2], 1e-2)(p);
+  };
+  auto const of = [](double end_time) {
+    return std::vector<Parameter>{{"k [N/m]", 50.0}, {"c [N s/m]", 3.0}, {"end [s]", end_time}};
+  };
+  auto const fixed = [&](P p) { return counted(std::array{p[0], p[1], 0.1 + 0.0 * p[2]}); };
+  gradient(fixed, of(0.1), GeneralisedAlpha{});
+  EXPECT_EQ(calls, 13);
+  calls = 0;
+  gradient(counted, of(0.105), GeneralisedAlpha{});  // the end time moves
+  EXPECT_EQ(calls, 13);
+  calls = 0;
+  sensitivities(fixed, of(0.1), GeneralisedAlpha{});
+  EXPECT_EQ(calls, 13);
 }
 
 TEST(GradientResult, RefusesParametersThatTouchMoreThanTheySay) {

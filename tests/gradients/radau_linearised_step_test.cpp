@@ -1,5 +1,5 @@
 // Derivatives of Radau steps against finite differences of the same steps.
-#include <polybody/gradients/radau_linearised_step.hpp>
+#include <polybody/gradients/radau_derivatives.hpp>
 
 #include <gtest/gtest.h>
 

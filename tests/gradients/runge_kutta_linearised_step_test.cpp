@@ -1,5 +1,5 @@
 // Derivatives of steps of explicit Runge–Kutta methods against finite differences of the same steps.
-#include <polybody/gradients/runge_kutta_linearised_step.hpp>
+#include <polybody/gradients/runge_kutta_derivatives.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,4 @@
 // Derivatives of runs with multi-stage methods, with breakpoints of driving constraints and loads, and with events.
-#include <polybody/gradients/radau_linearised_step.hpp>
-#include <polybody/gradients/runge_kutta_linearised_step.hpp>
 #include <polybody/gradients/sensitivities.hpp>
 
 #include <gtest/gtest.h>

@@ -9,8 +9,6 @@
 #include <polybody/forces/contact.hpp>
 #include <polybody/forces/point_load.hpp>
 #include <polybody/forces/user_force.hpp>
-#include <polybody/gradients/runge_kutta_linearised_step.hpp>
-#include <polybody/gradients/runge_kutta_step_adjoint.hpp>
 #include <polybody/gradients/sensitivities.hpp>
 #include <polybody/integrators/generalised_alpha.hpp>
 #include <polybody/integrators/runge_kutta.hpp>

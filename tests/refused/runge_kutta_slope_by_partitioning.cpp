@@ -1,5 +1,5 @@
 // refused: CoordinatePartitioning is not supported
-#include <polybody/gradients/runge_kutta_linearised_step.hpp>
+#include <polybody/gradients/runge_kutta_derivatives.hpp>
 #include <polybody/integrators/coordinate_partitioning.hpp>
 
 using namespace polybody;

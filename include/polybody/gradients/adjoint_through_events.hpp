@@ -36,7 +36,7 @@ class StartCorrectionAdjoint {
       : spare_(&spare), x_(&x), h_(h), corrects_(corrects), decided_(V::decided(x, h, corrects)) {}
 
   /// Step length whose start correction is included in x [s]; zero after a start.
-  double shifted() const { return (*x_).history[(*x_).history.size() - 1]; }
+  double shifted() const { return StepHistory::shifted_of(*x_); }
 
   /// Replaces velocities and algorithmic accelerations of a state y of model v by their changes due to the start
   /// correction.
@@ -49,10 +49,10 @@ class StartCorrectionAdjoint {
     VecX const v = bar.at.v, own = bar.at.own;
     auto const result = [&](State& y, double length) {
       add(*spare_, y, length);
-      return v.dot(y.v) + own.dot(y.history.head(own.size()));
+      return v.dot(y.v) + own.dot(StepHistory::own_of(y));
     };
     State const& x = *x_;
-    Index const nv = v.size(), nq = x.q.size(), all = x.history.size();
+    Index const nv = v.size(), nq = x.q.size();
     double const e = 4e-3 * h_;
     if (corrects_) {
       double const of_a = x.a.template lpNorm<Eigen::Infinity>(),
@@ -60,10 +60,12 @@ class StartCorrectionAdjoint {
       add_derivatives_by({&State::q, 0, nq, x.q.template lpNorm<Eigen::Infinity>()}, x, h_, result, bar.at.q);
       add_derivatives_by({&State::v, 0, nv, of_v}, x, h_, result, bar.at.v);
       add_derivatives_by({&State::a, 0, nv, of_a}, x, h_, result, bar.at.a);
-      add_derivatives_by({&State::history, nv, 2 * nv, of_a}, x, h_, result, bar.history);
+      auto const [first, count] = StepHistory::points_of_jerk(nv);
+      add_derivatives_by({&State::history, first, count, of_a}, x, h_, result, bar.history);
       if (by_time) bar.t += slope_along(x, h_, e, [](State& y, double&, double by) { y.t += by; }, result);
     }
-    for (Index i = all - 3; i < all; ++i)
+    auto const [first, count] = StepHistory::lengths_of_correction(x.history.size());
+    for (Index i = first; i < first + count; ++i)
       if (x.history[i] > 0.0)
         bar.history[i] += slope_along(x, h_, e, [i](State& y, double&, double by) { y.history[i] += by; }, result);
     return slope_along(x, h_, e, [](State&, double& length, double by) { length += by; }, result);
@@ -78,20 +80,20 @@ class StartCorrectionAdjoint {
 };
 
 /// Forward run and backward sweep of a run with breakpoints or events. \tparam I integrator of the generalised-α family
-template <class Make, class I>
+template <class S, class I>
 class AdjointEventHandler {
-  using S = std::remove_cvref_t<decltype(std::declval<Make const&>()(std::declval<std::span<double const>>()))>;
   using V = PerturbedModel<S, I>;
   using M = typename V::Model;
   using Variants = PerturbedModels<V>;
 
  public:
-  [[gnu::cold]] AdjointEventHandler(Make const& make, std::vector<Parameter> const& parameters,
+  /// \param models must outlive this object
+  [[gnu::cold]] AdjointEventHandler(Variants& models, std::vector<Parameter> const& parameters,
                                     AlphaMethod const& method)
       : parameters_(parameters),
-        full_(make(values_of(parameters)), method),
-        perturbed_(make, parameters, method, "gradient"),
-        run_(full_),
+        perturbed_(models),
+        full_(models.itself().shared, method),
+        run_(full_, out_.run, Interruptions::handled),
         adjoint_(full_.scenario.model, full_.system, method),
         objective_(full_.scenario.model) {
     for (Parameter const& p : parameters) out_.parameters.push_back(p.name);
@@ -101,7 +103,7 @@ class AdjointEventHandler {
   GradientResult run(GradientOptions const& options) {
     full_.scenario.options.check(full_.scenario.start.t);
     require_assembled_start(full_);
-    run_.take(out_.run);
+    run_.record();
     State const& first = run_.first();
     perturbed_.require_named(first);
     begin(first);
@@ -110,7 +112,7 @@ class AdjointEventHandler {
     out_.snapshot_size = size_of_snapshot(first);
     out_.reversal = reverse_steps(
         first, run_.steps().size(), snapshots_of(options, out_.snapshot_size),
-        [&](std::size_t k, State& x) { (void)run_.take(k, x); },
+        [&](std::size_t k, State& x) { (void)run_.repeat(k, x); },
         [&](std::size_t k, State const& before, State const& after) { back(k, before, after, bar); });
     auto const start = [&](V& v, State& y, double h) { v.start_like(first, y, h); };
     for (std::size_t j = 0; j < parameters_.size(); ++j)
@@ -122,7 +124,7 @@ class AdjointEventHandler {
 
  private:
   void begin(State const& first) {
-    still_ = {zeros_like(first), 0.0, VecX::Zero(lengths_of(first).size())};
+    still_ = {zeros_like(first), 0.0, VecX::Zero(StepHistory::lengths_of(first).size())};
     for (std::size_t j = 0; j < parameters_.size(); ++j) {
       step_slope_.push_back(perturbed_.of_number(j, [](V const& v) { return v.length(); }));
       end_time_slope_.push_back(
@@ -205,14 +207,15 @@ class AdjointEventHandler {
       corrected = before;
       corrected.v = spare.work.v0;
     }
-    VecX const own_before = spare.work.a0, own_after = x.history.head(x.v.size());
+    VecX const own_before = spare.work.a0, own_after = StepHistory::own_of(x);
     double const left =
         adjoint_.backward_step({corrects ? corrected : before, x, own_before, own_after, s.h}, bar.at, mu_);
     out_.left = std::max(out_.left, require_converged(left, x.t, "gradient"));
     double of_length = adjoint_.step_length_derivative();
     perturbed_.begin_step();
-    for (std::size_t j = 0; j < parameters_.size(); ++j) derivatives[Index(j)] -= of_equations(j, {x, s.h, 0.0, 0});
-    bar.t -= of_equations(Variants::along_motion, {x, s.h, 1.0, 0});
+    typename Variants::template PointInStep<State> const end{x, s.h, 0.0, 0}, later{x, s.h, 1.0, 0};
+    for (std::size_t j = 0; j < parameters_.size(); ++j) derivatives[Index(j)] -= perturbed_.product(j, end, mu_);
+    bar.t -= perturbed_.product(Variants::along_motion, later, mu_);
     of_length += bar.t + bar.pull_push(before);
     StartCorrectionAdjoint<V> const sets_out(spare, before, s.h, corrects);
     bool const free = (s.plan.lands || !s.met.empty()) && sets_out.shifted() > 0.0;  // h depends on parameters
@@ -224,17 +227,11 @@ class AdjointEventHandler {
         State const change =
             perturbed_.of_map(j, before, still(from_breakpoint ? time_slope(j, before) : 0.0), {s.h, 0.0},
                               [&](V& of, State& y, double length) { sets_out.add(of, y, length); });
-        derivatives[Index(j)] += v.dot(change.v) + own.dot(change.history.head(own.size()));
+        derivatives[Index(j)] += v.dot(change.v) + own.dot(StepHistory::own_of(change));
       }
     }
     return of_length + sets_out.pull(bar, !from_breakpoint);
   }
-  double of_equations(std::size_t j, typename Variants::template PointInStep<State> const& at) {
-    perturbed_.of_equations(j, at, by_);
-    Index const nv = by_.balance.size();
-    return mu_.head(nv).dot(by_.balance) + mu_.tail(by_.rows.size()).dot(by_.rows);
-  }
-
   /// Adds the effect on J of the time of the event that ends step k at x.
   void add_event(std::size_t k, State& before, State const& x, double of_length, RunCostate& bar) {
     RecordedStep const& s = run_.steps()[k];
@@ -324,40 +321,24 @@ class AdjointEventHandler {
   }
 
   std::vector<Parameter> parameters_;
+  Variants& perturbed_;
   V full_;
-  Variants perturbed_;
   RecordedRun<V> run_;
   AlphaStepAdjoint<> adjoint_;
   ObjectiveDerivatives<M> objective_;
   RunSensitivity still_;
   std::vector<double> step_slope_, end_time_slope_;
-  EquationDerivative by_;
   VecX mu_;
   GradientResult out_;
 };
 
-/// Returns true if the start time, the end time or the step length of a run depends on a parameter. \param chooses true
-/// if the integrator chooses the step length
-template <class Make, class S>
-bool has_moving_times(Make const& make, std::vector<Parameter> const& parameters, S const& scenario,
-                      bool chooses = false) {
-  RunOptions const& here = scenario.options;
-  for (std::size_t j = 0; j < parameters.size(); ++j) {
-    std::vector<double> p = values_of(parameters);
-    p[j] += parameters[j].distance();
-    S const near = make(p);
-    bool const same_steps = chooses || length_of_steps(near.options) == length_of_steps(here);
-    if (near.options.end_time != here.end_time || near.start.t != scenario.start.t || !same_steps) return true;
-  }
-  return false;
-}
-/// Returns true if events or breakpoints may end steps of a run. \param breakpoints times of the breakpoints, unordered
-/// [s]
-template <class S>
-bool is_interrupted(S const& scenario, std::vector<double> const& breakpoints) {
-  RunOptions const& o = scenario.options;
-  return !o.events.empty() || std::any_of(breakpoints.begin(), breakpoints.end(),
-                                          [&](double t) { return t > scenario.start.t && t <= o.end_time; });
+/// Returns true if events or breakpoints may end steps of the run of a model.
+template <class V>
+bool is_interrupted(V const& model) {
+  RunOptions const& o = model.scenario.options;
+  std::vector<double> const all = model.breakpoints();
+  return !o.events.empty() ||
+         std::any_of(all.begin(), all.end(), [&](double t) { return t > model.scenario.start.t && t <= o.end_time; });
 }
 
 }  // namespace polybody::detail

@@ -204,12 +204,13 @@ class AlphaLinearisedStep {
     AlphaMethod const& m = method_;
     State& dx = *along.dx;
     Index const nv = a_.size(), rows = lambda_.size();
-    y.head(nv) = dx.history.head(nv);
+    y.head(nv) = StepHistory::own_of(dx);
     y.tail(rows) = dx.lambda.head(rows);
     if (!far) return;
     multipliers_.resize(dx.lambda.size());
     StepHistory(dx).extrapolate(dx, step.h, guess_, multipliers_);
-    y.head(nv) = ((1.0 - m.alpha_f) * guess_ + m.alpha_f * dx.a - m.alpha_m * dx.history.head(nv)) / (1.0 - m.alpha_m);
+    y.head(nv) =
+        ((1.0 - m.alpha_f) * guess_ + m.alpha_f * dx.a - m.alpha_m * StepHistory::own_of(dx)) / (1.0 - m.alpha_m);
     y.tail(rows) = multipliers_.head(rows);
   }
 

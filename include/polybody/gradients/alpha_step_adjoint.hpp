@@ -34,7 +34,7 @@ struct Costate {
   /// Change of J for a change dx of the state.
   double dot(State const& dx) const {
     double const sum = q.dot(dx.q) + v.dot(dx.v) + a.dot(dx.a) + lambda.dot(dx.lambda);
-    return dx.history.size() >= own.size() ? sum + own.dot(dx.history.head(own.size())) : sum;
+    return dx.history.size() >= own.size() ? sum + own.dot(StepHistory::own_of(dx)) : sum;
   }
 };
 

@@ -134,17 +134,7 @@ class EquationDerivatives {
   using Models = std::function<std::shared_ptr<V>(std::size_t j, std::size_t k)>;
 
   /// Forms groups of parameters that affect no common equation. \param make makes a scenario for values of the
-  /// parameters, and must outlive this object
-  template <class Make>
-  [[gnu::cold]] EquationDerivatives(Make const& make, std::vector<Parameter> const& parameters, V const& model)
-      : EquationDerivatives(make, parameters, model, {}) {
-    models_ = [&make, parameters, method = model.method](std::size_t j, std::size_t k) {
-      std::vector<double> p = values_of(parameters);
-      if (j != nobody) p[j] += FourPoints::places[k] * parameters[j].distance();
-      return std::make_shared<V>(make(p), method);
-    };
-  }
-  /// Overload with existing models. \param alone returns the models in which one parameter is perturbed
+  /// parameters \param alone returns the models in which one parameter is perturbed
   template <class Make>
   [[gnu::cold]] EquationDerivatives(Make const& make, std::vector<Parameter> const& parameters, V const& model,
                                     Models alone)
@@ -169,8 +159,8 @@ class EquationDerivatives {
           for (std::size_t r = 0; r < members; ++r)
             p[group.members[r]] +=
                 FourPoints::places[order_of_member(r, of_orders)[m]] * places_[group.members[r]].distance;
-          set.models[m] =
-              members == 1 && models_ ? models_(group.members[0], m) : std::make_shared<V>(make(p), model.method);
+          set.models[m] = members == 1 ? models_(group.members[0], m)
+                                       : std::make_shared<V>(shared_scenario<V>(make, p), model.method);
         }
         for (std::size_t i = 0; i < group.equations.size(); ++i) {
           std::size_t const r = group.equations.owner(i);
@@ -188,7 +178,7 @@ class EquationDerivatives {
   void forget() {
     for (Group& group : groups_) group.known = 0;
   }
-  /// Computes the differences at x, a state or an evaluation point, for `dot` and `take_from`. \throws InvalidInput if
+  /// Computes the differences at x, a state or an evaluation point, for `dot`. \throws InvalidInput if
   /// a parameter changes an equation of objects outside its `affects`.
   template <class Place>
   void evaluate(Place const& x) {
@@ -218,11 +208,6 @@ class EquationDerivatives {
     for (Index const i : places_[j].equations) sum += mu[i] * difference[i];
     return sum / places_[j].distance;
   }
-  /// Subtracts μᵀ ∂(r, Φ)/∂p of each parameter from its entry of `derivatives`.
-  void take_from(VecX& derivatives, VecX const& mu) const {
-    for (std::size_t j = 0; j < places_.size(); ++j) derivatives[Index(j)] -= dot(j, mu);
-  }
-
   /// Checks that parameter j changes, at x, only equations of objects in its `affects`, apart from round-off.
   /// \param other model with another value of parameter j. \throws InvalidInput otherwise.
   template <class X>

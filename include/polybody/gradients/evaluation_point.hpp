@@ -84,21 +84,11 @@ concept EquationDerivativeFunction = requires(F f, EvaluationPoint<> const& x, s
   { f(x, l) } -> std::convertible_to<EquationDerivative>;
 };
 
-/// `Type` is the linearised step of the Runge–Kutta method I. The header of each linearised step specialises it.
-template <class I>
-struct StageDerivatives;
-
-/// `Type` is the adjoint of a step of the Runge–Kutta method I. The header of each adjoint specialises it.
-template <class I>
-struct StageAdjoints;
-
 namespace detail {
-/// True if the header with the adjoint of a step of integrator I is included.
+/// Integrator that names the derivatives of its steps: `I::Derivatives` has the templates LinearisedStep and
+/// StepAdjoint.
 template <class I>
-concept HasStageAdjoints = requires { typename StageAdjoints<I>::Type; };
-/// True if the header with the linearised step of integrator I is included.
-template <class I>
-concept HasStageDerivatives = requires { typename StageDerivatives<I>::Type; };
+concept HasStageDerivatives = requires { typename I::Derivatives::template LinearisedStep<I>; };
 }  // namespace detail
 
 /// Step of a run.

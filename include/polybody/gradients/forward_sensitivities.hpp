@@ -2,11 +2,8 @@
 /// \file
 /// Run with forward sensitivities, integrated step by step.
 
-#include <polybody/gradients/nondifferentiable_times.hpp>
-#include <polybody/gradients/parameter.hpp>
 #include <polybody/gradients/perturbed_models.hpp>
-#include <polybody/gradients/sensitivity_step.hpp>
-#include <polybody/run/run_options.hpp>
+#include <polybody/gradients/recorded_run.hpp>
 
 namespace polybody {
 
@@ -27,6 +24,22 @@ struct SensitivityResult {
 };
 
 namespace detail {
+
+/// Direction of differentiation of a step: number j of the parameter, derivative `tangent` of the run, derivative dh of
+/// the step length.
+struct TangentColumn {
+  std::size_t j;
+  RunSensitivity* tangent;
+  double dh;
+};
+
+/// Completed step of a run.
+struct SensitivityStep {
+  State& before;       ///< state at the start of the step
+  State const& after;  ///< state at the end of the step
+  double h;            ///< length of the step [s]
+  bool searched;       ///< true if an event search computed other steps after this one
+};
 
 /// Adds a warning for each parameter without effect. \param affected for each parameter: nonzero if it has an effect
 template <class = void>
@@ -50,9 +63,10 @@ class ForwardSensitivities {
   [[gnu::cold]] ForwardSensitivities(Make const& make, std::vector<Parameter> const& parameters,
                                      MethodOf<I> const& method)
       : parameters_(parameters),
-        full_(make(values_of(parameters)), method),
-        propagator_(full_),
-        perturbed_(make, parameters, method, "sensitivities") {
+        perturbed_(make, parameters, method, "sensitivities"),
+        full_(perturbed_.itself().shared, method),
+        driver_(full_.scenario.options, out_.run, chooses),
+        propagator_(full_) {
     require_plain(full_.scenario.options, "sensitivities");
   }
 
@@ -60,17 +74,14 @@ class ForwardSensitivities {
     options().check(full_.scenario.start.t);
     require_assembled_start(full_);
     x_ = full_.first();
-    h_ = full_.length();
-    std::vector<double> const breakpoints = full_.breakpoints();
-    plan_ =
-        StepPlan(x_.t, options().end_time, options().step, Sequence<double>(breakpoints.begin(), breakpoints.end()));
-    x_.t = plan_.pass(x_.t);
+    driver_.plan_run(x_.t, full_.system.layout().breakpoints);
+    x_.t = driver_.pass(x_.t);
     begin();
     perturbed_.require_named(x_);
     note();
-    while (!done()) {
-      step();
-      note();
+    while (!driver_.done(x_)) {
+      driver_.plan_step(x_);
+      driver_.take_step(x_, *this);
     }
     perturbed_.require_named(x_);
     warn_of_unused(parameters_, affected_, out_.run);
@@ -78,10 +89,10 @@ class ForwardSensitivities {
   }
 
  private:
+  friend class polybody::RunDriver;
   static constexpr bool chooses = requires { I::adaptive_step; };
 
   RunOptions const& options() const { return full_.scenario.options; }
-  bool done() const { return out_.run.stopped || x_.t >= options().end_time; }
 
   void begin() {
     affected_.assign(parameters_.size(), 0);
@@ -94,37 +105,30 @@ class ForwardSensitivities {
           perturbed_.of_number(j, [](V const& v) { return double(v.scenario.options.end_time); }));
     }
     start([&](std::size_t j, double h, double dh, auto const& f) { return perturbed_.of_start(j, h, dh, f); }, {});
-    if (!options().events.empty()) watch_.start(options().events, x_, motion());
+    driver_.start_events(x_, *this);
   }
   /// Starts the run and all sensitivities at x_, after the actions of the events `acting`. \param differenced
   /// differenced(parameter, length of the next step, derivative of this length, map) returns the derivative of the map
   template <class Differenced>
   void start(Differenced const& differenced, std::vector<std::size_t> const& acting) {
-    StepPlan::Next const next = done() ? StepPlan::Next{x_.t, h_, false, false} : plan_.next(x_.t, h_);
+    StepPlan::Next const next = driver_.next(x_);
     State fresh = x_;
     if (!acting.empty()) {
       fresh = full_.full_state(x_);
-      fresh = acted_state(full_, watch_, std::move(fresh));
+      fresh = acted_state(full_, driver_.events(), std::move(fresh));
     }
     full_.start(fresh, next.h);
     auto const map = [&](V& v, State& y, double h) {
-      if (!acting.empty()) y = after(v, acting, y);
+      if (!acting.empty()) y = after_actions(v, acting, y);
       v.start_like(fresh, y, h);
     };
     for (std::size_t j = 0; j < parameters_.size(); ++j) {
       RunSensitivity& tangent = tangents_[j];
       tangent.dx = differenced(j, next.h, length_slope(j, next, tangent), map);
-      tangent.lengths = lengths_of(tangent.dx);
-      lengths_of(tangent.dx) = lengths_of(fresh);
+      tangent.lengths = StepHistory::lengths_of(tangent.dx);
+      StepHistory::lengths_of(tangent.dx) = StepHistory::lengths_of(fresh);
     }
     x_ = std::move(fresh);
-  }
-  /// State of the model v after the actions of the events `acting` in the state x.
-  static State after(V& v, std::vector<std::size_t> const& acting, State const& x) {
-    State y = v.full_state(x);
-    for (std::size_t const i : acting) v.scenario.options.events[i].action(y);
-    y.t = x.t;
-    return stepped_state(v, std::move(y));
   }
   /// Derivative of the length of the next step with respect to parameter j.
   double length_slope(std::size_t j, StepPlan::Next const& next, RunSensitivity const& from) const {
@@ -132,100 +136,72 @@ class ForwardSensitivities {
     return (next.jumps ? perturbed_.times(j).slope(next.target) : end_time_slope_[j]) - from.dt;
   }
 
-  /// Takes a step to the next time of the plan, or to an event before it.
-  void step() {
-    before_ = x_;
-    StepPlan::Next next = plan_.next(x_.t, h_);
-    bool const remainder_step = next.h < 0.01 * h_;
-    StepReport const report = full_.step(x_, next.h);
-    next.lands = next.lands && report.taken == next.h;
-    x_.t = next.lands ? next.target : row_.after(before_.t, report.taken);
-    choose_step(report, next.lands);
-    lengths_.assign(1, report.taken);
-    State far;
-    if (!options().events.empty()) far = x_;
-    bool const met = !options().events.empty() && meet();
-    double const end = x_.t;
-    if (met && next.lands && end == next.target) refuse_event_at_breakpoint(x_.t, "sensitivities");
-    RunSensitivity step_length_derivative;
-    differentiate(next, met, step_length_derivative);
-    if (met) move_to_event(step_length_derivative, before_, far);
-    x_.t = end;
-    bool const at_breakpoint = next.jumps && end == next.target;
-    if (at_breakpoint) x_.t = plan_.pass(end);
-    if (at_breakpoint) require_one_end();
-    if (met || at_breakpoint || remainder_step) restart(met);
-    out_.run.add(report);
+  // operations of `RunDriver`
+  bool keeps() const { return true; }
+  System& stepped_system() { return full_.system; }
+  State const& full_state(State const& x) { return full_.full_state(x); }
+  StepReport step(State& x, double h) { return full_.step(x, h); }
+  StepReport take(State& x, double h) { return full_.step(x, h); }
+  void on_step(RunStep const&) {
+    if (!options().events.empty()) far_ = x_;
   }
-  void restart(bool met) {
+  /// Propagates the sensitivities to the end of the step.
+  void on_end(RunStep const& s) {
+    require_moving(options().events, driver_.events(), x_.t, "sensitivities");
+    double const end = x_.t;
+    if (s.met && s.reached && end == s.plan.target) refuse_event_at_breakpoint(end, "sensitivities");
+    before_ = driver_.before();
+    RunSensitivity step_length_derivative;
+    differentiate(s, step_length_derivative);
+    if (s.met) move_to_event(step_length_derivative);
+    x_.t = end;
+  }
+  bool requires_restart() const { return false; }
+  void on_next(RunStep const& s) {
+    if (s.at_breakpoint) require_one_end();
+    if (!s.restarts) return;
     State const x = x_;
-    std::vector<std::size_t> acting;
-    for (std::size_t i = 0; met && i < options().events.size(); ++i)
-      if (watch_.met(i) && options().events[i].action) acting.push_back(i);
+    auto const acting = s.met ? acting_events(options().events, driver_.events()) : std::vector<std::size_t>();
     start([&](std::size_t j, double h, double dh,
               auto const& f) { return perturbed_.of_map(j, x, tangents_[j], {h, dh}, f); },
           acting);
-    if (!acting.empty()) watch_.settle(options().events, x_, motion());
   }
+  void on_done(RunStep const& s) {
+    out_.run.add(s.report);
+    note();
+  }
+  void on_failure() {}
   /// Refuses a breakpoint at the end of the run if its time and the end time have different derivatives.
   void require_one_end() const {
     if (x_.t < options().end_time) return;
     for (std::size_t j = 0; j < parameters_.size(); ++j)
-      if (std::abs(tangents_[j].dt - end_time_slope_[j]) * parameters_[j].size() > 1e-9 * h_)
+      if (std::abs(tangents_[j].dt - end_time_slope_[j]) * parameters_[j].size() > 1e-9 * driver_.step_length())
         refuse_breakpoint_at_end(x_.t, parameters_[j].name, "sensitivities");
   }
 
-  EventMotion motion() {
-    return {full_.length(), [this](State const& x) -> State const& { return full_.full_state(x); },
-            drift_of(full_.system)};
-  }
-  void choose_step(StepReport const& report, bool landed) {
-    if constexpr (chooses)
-      h_ = std::min<double>(landed ? std::max(report.next, h_) : report.next,
-                            options().max_step.value_or(std::numeric_limits<double>::infinity()));
-  }
-  /// Ends the step to x_ at the first event within it. `lengths_` then contains the steps up to the event.
-  bool meet() {
-    struct Trial {
-      double end;
-      std::vector<double> lengths;
-    };
-    std::vector<Trial> trials;
-    EventDetector::Step const again = [&](State& x, double part) {
-      if (x.t == before_.t) trials.emplace_back();
-      double const taken = full_.step(x, part).taken;
-      trials.back().lengths.push_back(taken);
-      trials.back().end = x.t;
-      return taken;
-    };
-    double const far = x_.t;
-    bool const met = watch_.meet(options().events, {before_, lengths_.front(), again, motion()}, x_, out_.run);
-    require_moving(options().events, watch_, x_.t, "sensitivities");
-    if (met && x_.t != far)
-      lengths_ =
-          std::find_if(trials.begin(), trials.end(), [&](Trial const& trial) { return trial.end == x_.t; })->lengths;
-    return met;
-  }
-
-  /// Propagates the sensitivities over the steps of `lengths_` to x_. The length of the last step varies with the time
-  /// of its target, `next`. At an event, this length is constant, and `step_length_derivative` receives the derivative
-  /// with respect to it.
-  void differentiate(StepPlan::Next const& next, bool met, RunSensitivity& step_length_derivative) {
-    for (std::size_t i = 0; i + 1 < lengths_.size(); ++i) {  // parts before the last, if error control divided the step
+  /// Propagates the sensitivities over the parts of the step to x_. The length of the last part varies with the time of
+  /// its target. At an event, this length is constant, and `step_length_derivative` receives the derivative with
+  /// respect to it.
+  void differentiate(RunStep const& s, RunSensitivity& step_length_derivative) {
+    for (std::size_t i = 0; i + 1 < s.lengths.size();
+         ++i) {  // parts before the last, if error control divided the step
       State part = before_;
-      (void)full_.step(part, lengths_[i]);
+      (void)full_.step(part, s.lengths[i]);
       set_columns([](std::size_t) { return 0.0; });
-      advance({before_, part, lengths_[i], true});
+      advance({before_, part, s.lengths[i], true});
       before_ = std::move(part);
     }
-    x_.t = before_.t + lengths_.back();  // just before a breakpoint
-    set_columns([&](std::size_t j) { return met ? 0.0 : length_slope(j, next, tangents_[j]); });
-    if (met) {
-      step_length_derivative = {zeros_like(before_), 0.0, VecX::Zero(lengths_of(before_).size())};
-      lengths_of(step_length_derivative.dx) = lengths_of(before_);
+    double const h = s.lengths.back();
+    StepPlan::Next plan = s.plan;
+    plan.lands = s.reached;
+    x_.t = before_.t + h;  // just before a breakpoint
+    set_columns([&](std::size_t j) { return s.met ? 0.0 : length_slope(j, plan, tangents_[j]); });
+    if (s.met) {
+      step_length_derivative = {zeros_like(before_), 0.0, VecX::Zero(StepHistory::lengths_of(before_).size())};
+      StepHistory::lengths_of(step_length_derivative.dx) = StepHistory::lengths_of(before_);
       columns_.push_back({Variants::along_motion, &step_length_derivative, 1.0});
     }
-    advance({before_, x_, lengths_.back(), met});
+    advance({before_, x_, h, s.met});
   }
   template <class F>
   void set_columns(F const& dh_of) {
@@ -238,23 +214,24 @@ class ForwardSensitivities {
   }
   /// Adds the effect of the event time, at which the event value is zero, to the derivatives after a step of fixed
   /// length.
-  void move_to_event(RunSensitivity const& step_length_derivative, State const& before, State const& far) {
+  void move_to_event(RunSensitivity const& step_length_derivative) {
+    double const h = driver_.step_length();
     std::vector<double> dh(parameters_.size());
     std::string const* first = nullptr;
     perturbed_.set_state(x_);
     for (std::size_t i = 0; i < options().events.size(); ++i) {
-      if (!watch_.met(i)) continue;
+      if (!driver_.events().met(i)) continue;
       Event const& event = options().events[i];
       auto const value = [i](V& v, State const& x) {
         return VecX::Constant(1, v.scenario.options.events[i].value(v.full_state(x))).eval();
       };
-      double const rate = perturbed_.of_values(Variants::along_motion, x_, step_length_derivative, h_, value)[0],
-                   most = std::max(std::abs(event.value(full_.full_state(before))),
-                                   std::abs(event.value(full_.full_state(far))));
-      if (!(std::abs(rate) * (far.t - before.t) > 1e-6 * most)) refuse_touch(event.name, x_.t, "sensitivities");
+      double const rate = perturbed_.of_values(Variants::along_motion, x_, step_length_derivative, h, value)[0],
+                   most = std::max(std::abs(event.value(full_.full_state(before_))),
+                                   std::abs(event.value(full_.full_state(far_))));
+      if (!(std::abs(rate) * (far_.t - before_.t) > 1e-6 * most)) refuse_touch(event.name, x_.t, "sensitivities");
       for (std::size_t j = 0; j < parameters_.size(); ++j) {
-        double const own = -perturbed_.of_values(j, x_, tangents_[j], h_, value)[0] / rate;
-        if (first && std::abs(own - dh[j]) > 1e-6 * (std::abs(own) + h_ / parameters_[j].size()))
+        double const own = -perturbed_.of_values(j, x_, tangents_[j], h, value)[0] / rate;
+        if (first && std::abs(own - dh[j]) > 1e-6 * (std::abs(own) + h / parameters_[j].size()))
           throw InvalidInput("derivative.coincident_times",
                              {"sensitivities: events \"", ErrorObject{*first}, "\" and \"", event.name,
                               "\" coincide at t = ", ErrorTime{x_.t}, " s, but a change of \"", parameters_[j].name,
@@ -279,7 +256,7 @@ class ForwardSensitivities {
       RunSensitivity const& tangent = tangents_[j];
       State const& dx = tangent.dx;
       of_time[Index(j)] = tangent.dt;
-      derivatives.col(Index(j)) = perturbed_.of_values(j, x_, tangent, h_, outputs);
+      derivatives.col(Index(j)) = perturbed_.of_values(j, x_, tangent, driver_.step_length(), outputs);
       if (!affected_[j])
         affected_[j] = std::abs(tangent.dt) > 0.0 || !derivatives.col(Index(j)).isZero(0.0) ||
                        dx.q.squaredNorm() + dx.v.squaredNorm() + dx.a.squaredNorm() > 0.0;
@@ -291,18 +268,14 @@ class ForwardSensitivities {
   }
 
   std::vector<Parameter> parameters_;
-  V full_;
-  Propagator<S, I> propagator_;
   Variants perturbed_;
-  State x_, before_;             // present state, and state before the step
-  std::vector<double> lengths_;  // lengths of the steps between these states
+  V full_;
+  RunDriver driver_;
+  Propagator<S, I> propagator_;
+  State x_, before_, far_;  // present state; state before the last part of the step; end before the search for events
   std::vector<TangentColumn> columns_;
   std::vector<RunSensitivity> tangents_;  // one for each parameter
   std::vector<double> step_slope_, end_time_slope_;
-  StepPlan plan_;
-  StepRow row_;
-  EventDetector watch_;
-  double h_ = 0.0;
   std::vector<char> affected_;
   SensitivityResult out_;
 };

@@ -16,17 +16,15 @@
 /// costs of a step are independent of the number of parameters. Each step begins with a new factorisation, so that
 /// repeated steps are bitwise identical.
 
-#include <memory>
 #include <span>
 
 #include <polybody/gradients/adjoint_through_events.hpp>
 #include <polybody/gradients/alpha_step_adjoint.hpp>
-#include <polybody/gradients/equation_derivatives.hpp>
 #include <polybody/gradients/gradient_result.hpp>
 #include <polybody/gradients/objective.hpp>
-#include <polybody/gradients/perturbed_model.hpp>
-#include <polybody/gradients/perturbed_stage_model.hpp>
+#include <polybody/gradients/radau_derivatives.hpp>
 #include <polybody/gradients/requirements.hpp>
+#include <polybody/gradients/runge_kutta_derivatives.hpp>
 
 namespace polybody::detail {
 
@@ -47,20 +45,17 @@ class AlphaBackwardSweep {
   }
   /// Returns true if both states have a start correction or both have none.
   static bool begin_alike(State const& x, State const& y) {
-    return x.history.tail(StepHistory::lengths) == y.history.tail(StepHistory::lengths);
+    return StepHistory::lengths_of(x) == StepHistory::lengths_of(y);
   }
   /// Returns true if all steps must have the same length.
   static bool asks_for_equal_steps(V const& v) { return v.method.start_correction; }
-  static StepReport step(V& v, State& x, double h) { return v.step(x, h); }
 
   /// Converts the adjoint variables after a step to adjoint variables before the step, and adds the effect of the
   /// parameters to `derivatives`. Returns the relative size of the last correction.
-  double backward_step(StepTaken const& step, Costate& bar, EquationDerivatives<V>& equations, VecX& derivatives) {
-    Index const nv = step.before.v.size();
-    VecX const own_before = step.before.history.head(nv), own_after = step.after.history.head(nv);
+  double backward_step(StepTaken const& step, Costate& bar, PerturbedModels<V>& models, VecX& derivatives) {
+    VecX const own_before = StepHistory::own_of(step.before), own_after = StepHistory::own_of(step.after);
     double const left = adjoint_.backward_step({step.before, step.after, own_before, own_after, step.h}, bar, mu_);
-    equations.evaluate(step.after);
-    equations.take_from(derivatives, mu_);
+    models.take_from(derivatives, step.after, step.h, mu_);
     return left;
   }
 
@@ -80,17 +75,15 @@ class StageBackwardSweep {
   static State start_step(V&, State started, double) { return started; }
   static bool begin_alike(State const&, State const&) { return true; }
   static bool asks_for_equal_steps(V const&) { return false; }
-  static StepReport step(V& v, State& x, double h) { return v.step(x, h); }
 
-  double backward_step(StepTaken const& step, Costate& bar, EquationDerivatives<V>& equations, VecX& derivatives) {
+  double backward_step(StepTaken const& step, Costate& bar, PerturbedModels<V>& models, VecX& derivatives) {
     return adjoint_.backward_step(step, bar, [&](EvaluationPoint<> const& place, VecX const& mu) {
-      equations.evaluate(place);
-      equations.take_from(derivatives, mu);
+      models.take_from(derivatives, place, step.h, mu);
     });
   }
 
  private:
-  typename StageAdjoints<I>::Type adjoint_;
+  typename I::Derivatives::template StepAdjoint<I> adjoint_;
 };
 
 }  // namespace polybody::detail
@@ -110,24 +103,20 @@ namespace detail {
 
 /// Forward run and backward sweep of a run without events and breakpoints. \tparam Sweep backward sweep for the
 /// integrator's family
-template <class Make, class I, template <class, class> class Sweep>
+template <class S, class I, template <class, class> class Sweep>
 class AdjointRun {
-  using S = std::remove_cvref_t<decltype(std::declval<Make const&>()(std::declval<std::span<double const>>()))>;
   using W = Sweep<S, I>;
   using V = typename W::V;
   using M = typename V::Model;
-  /// Scenario with one perturbed parameter, and the conversion of its states to full states.
-  struct ParameterDifferences {
-    S scenario;
-    FullStates<M> full_state;
-    explicit ParameterDifferences(S of) : scenario(std::move(of)), full_state(scenario.model) {}
-  };
 
  public:
-  [[gnu::cold]] AdjointRun(Make const& make, std::vector<Parameter> const& parameters, MethodOf<I> const& method)
-      : make_(make),
-        parameters_(parameters),
-        full_(make(values_of(parameters)), method),
+  /// \param models must outlive this object
+  [[gnu::cold]] AdjointRun(PerturbedModels<V>& models, std::vector<Parameter> const& parameters,
+                           MethodOf<I> const& method)
+      : parameters_(parameters),
+        models_(models),
+        full_(models.itself().shared, method),
+        run_(full_, out_.run, Interruptions::refused, chooses),
         sweep_(full_),
         derivatives_(full_.scenario.model) {
     require_plain(full_.scenario.options, "gradient");
@@ -137,24 +126,24 @@ class AdjointRun {
   }
 
   GradientResult run(GradientOptions const& options) {
-    double const from = full_.scenario.start.t;
-    full_.scenario.options.check(from);
+    full_.scenario.options.check(full_.scenario.start.t);
     require_assembled_start(full_);
-    State x = full_.started(begin_plan(from));
-    plan(x);
+    run_.record();
+    std::vector<RecordedStep> const& steps = run_.steps();
+    require_equal_steps();
+    State x = run_.first();
     out_.value += weight(0) * term(full_.scenario.integrand, full_.scenario.model, full_.full_state(x));
-    x = W::start_step(full_, std::move(x), steps_.front().h);
-    EquationDerivatives<V> equations(make_, parameters_, full_);
-    prepare(x, equations);
+    x = W::start_step(full_, std::move(x), steps.front().h);
+    prepare(x);
     Costate bar(x);
     bool at_end = false;
     out_.snapshot_size = size_of_snapshot(x);
     out_.reversal = reverse_steps(
-        x, steps_.size(), snapshots_of(options, out_.snapshot_size), [&](std::size_t k, State& y) { take(k, y); },
+        x, steps.size(), snapshots_of(options, out_.snapshot_size), [&](std::size_t k, State& y) { take(k, y); },
         [&](std::size_t k, State const& before, State const& after) {
           if (!at_end) begin_at_end(after, bar);
           at_end = true;
-          double const left = sweep_.backward_step({before, after, steps_[k].taken}, bar, equations, out_.derivatives);
+          double const left = sweep_.backward_step({before, after, steps[k].taken}, bar, models_, out_.derivatives);
           out_.left = std::max(out_.left, require_converged(left, after.t, "gradient"));
           if (k > 0) add_integrand(k, before, bar);
         });
@@ -164,9 +153,6 @@ class AdjointRun {
   }
 
  private:
-  struct Step {
-    double h, taken, end;  ///< requested length, actual length and end time [s]
-  };
   static constexpr bool chooses = requires { I::adaptive_step; };
 
   /// Refuses events and breakpoints, which only the generalised-α family supports.
@@ -177,55 +163,26 @@ class AdjointRun {
           {ErrorObject{"gradient"},
            ": runs with events or breakpoints need a method of the generalised-α family. Use `sensitivities`."});
   }
-  /// Begins the plan of the run at the time t. Returns the length of the first step [s].
-  double begin_plan(double t) {
-    RunOptions const& options = full_.scenario.options;
-    if (!(t < options.end_time))
-      throw InvalidInput("gradient.no_step",
-                         {ErrorObject{"gradient"}, ": the run has no step. Give an end time after the start."});
-    plan_ = StepPlan(t, options.end_time, options.step, full_.system.layout().breakpoints);
-    largest_ = options.max_step.value_or(std::numeric_limits<double>::infinity());
-    return plan_.next(t, std::min<double>(options.step, largest_)).h;
-  }
-  /// Plans all steps from x. If the integrator chooses their lengths, the steps are computed.
-  void plan(State x) {
-    RunOptions const& options = full_.scenario.options;
-    double h = std::min<double>(options.step, largest_);
-    StepRow row;
-    while (x.t < options.end_time) {
-      StepPlan::Next const next = plan_.next(x.t, h);
-      if (next.jumps)
-        throw InvalidInput(
-            "gradient.breakpoint",
-            {ErrorObject{"gradient"}, ": a drive or load has a breakpoint at t = ", ErrorTime{next.target},
-             " s, which only methods of the generalised-α family support. Use smooth functions of time, end the run "
-             "before the breakpoint, or use `sensitivities`."});
-      Step step{next.h, next.h, 0.0};
-      double const from = x.t;
-      if constexpr (chooses) {
-        StepReport const report = W::step(full_, x, next.h);
-        step.taken = report.taken;
-        bool const reached = next.lands && report.taken == next.h;
-        h = std::min(reached ? std::max(report.next, h) : report.next, largest_);
-      }
-      x.t = step.end = next.lands && step.taken == next.h ? next.target : row.after(from, step.taken);
-      if (W::asks_for_equal_steps(full_) && !steps_.empty() && std::abs(step.h - steps_.back().h) > 1e-9 * step.h)
+  /// Refuses steps of different lengths if the start correction depends on the length.
+  void require_equal_steps() const {
+    if (!W::asks_for_equal_steps(full_)) return;
+    std::vector<RecordedStep> const& steps = run_.steps();
+    for (std::size_t k = 1; k < steps.size(); ++k)
+      if (std::abs(steps[k].h - steps[k - 1].h) > 1e-9 * steps[k].h)
         throw InvalidInput("gradient.step_length",
-                           {ErrorObject{"gradient"}, ": the length of the step to t = ", ErrorTime{step.end},
+                           {ErrorObject{"gradient"}, ": the length of the step to t = ", ErrorTime{steps[k].end},
                             " s differs from the other steps. Set a step that divides the duration of the run, or set "
                             "start_correction to false."});
-      steps_.push_back(step);
-    }
   }
   /// Weight of a state in the trapezoidal rule of the integral [s].
   double weight(std::size_t state) const {
-    double const before = state > 0 ? steps_[state - 1].taken : 0.0;
-    return 0.5 * (before + (state < steps_.size() ? steps_[state].taken : 0.0));
+    std::vector<RecordedStep> const& steps = run_.steps();
+    double const before = state > 0 ? steps[state - 1].taken : 0.0;
+    return 0.5 * (before + (state < steps.size() ? steps[state].taken : 0.0));
   }
 
   void take(std::size_t k, State& x) {
-    StepReport const report = W::step(full_, x, steps_[k].h);
-    x.t = steps_[k].end;
+    StepReport const report = run_.repeat(k, x);
     if (k == furthest_) {
       out_.run.add(report);
       ++furthest_;
@@ -235,9 +192,8 @@ class AdjointRun {
   void begin_at_end(State const& last, Costate& bar) {
     out_.value += term(full_.scenario.end, full_.scenario.model, full_.full_state(last));
     derivatives_.add(full_.scenario.end, full_.scenario.model, last, 1.0, bar);
-    add_to_derivatives(
-        [&](ParameterDifferences& b) { return term(b.scenario.end, b.scenario.model, b.full_state(last)); });
-    add_integrand(steps_.size(), last, bar);
+    add_to_derivatives([&](V& v) { return term(v.scenario.end, v.scenario.model, v.full_state(last)); });
+    add_integrand(run_.steps().size(), last, bar);
   }
   /// Adds the weighted integrand at state number k, x, to J, and its derivatives to `bar` and dJ/dp.
   void add_integrand(std::size_t k, State const& x, Costate& bar) {
@@ -245,22 +201,18 @@ class AdjointRun {
     double const w = weight(k);
     out_.value += w * term(full_.scenario.integrand, full_.scenario.model, full_.full_state(x));
     derivatives_.add(full_.scenario.integrand, full_.scenario.model, x, w, bar);
-    add_to_derivatives(
-        [&](ParameterDifferences& b) { return w * term(b.scenario.integrand, b.scenario.model, b.full_state(x)); });
+    add_to_derivatives([&](V& v) { return w * term(v.scenario.integrand, v.scenario.model, v.full_state(x)); });
   }
-  /// Computes the derivatives of the initial state and stores the perturbed scenarios. \param x start of the first step
-  void prepare(State const& x, EquationDerivatives<V> const& equations) {
-    double const h = steps_.front().h;
+  /// Computes the derivatives of the initial state. \param x start of the first step
+  void prepare(State const& x) {
+    models_.require_named(x);
+    double const h = run_.steps().front().h;
     for (std::size_t j = 0; j < parameters_.size(); ++j) {
       Parameter const& p = parameters_[j];
       State dx = zeros_like(x);
       double of_integrand = 0.0;
       for (std::size_t k = 0; k < FourPoints::places.size(); ++k) {
-        std::vector<double> values = values_of(parameters_);
-        values[j] += FourPoints::places[k] * p.distance();
-        V v(make_(values), full_.method);
-        require_alike(full_, v, p, "gradient");
-        if (k == 0) equations.require_named(j, full_, v, x);
+        V& v = models_.perturbed(j, k);
         double const by = FourPoints::weights[k] / p.distance();
         State y = v.started(h);
         of_integrand += by * term(v.scenario.integrand, v.scenario.model, v.full_state(y));
@@ -270,33 +222,29 @@ class AdjointRun {
                              {ErrorObject{"gradient"}, ": the start correction depends on \"", p.name,
                               "\". Set start_correction to false."});
         add(dx, y, by);
-        perturbed_.push_back(std::make_unique<ParameterDifferences>(std::move(v.scenario)));
       }
       out_.derivatives[Index(j)] += weight(0) * of_integrand;
       starts_.push_back(std::move(dx));
     }
   }
-  /// Adds the derivative of f(perturbed scenario) with respect to each parameter to dJ/dp.
+  /// Adds the derivative of f(perturbed model) with respect to each parameter to dJ/dp.
   template <class F>
   void add_to_derivatives(F&& f) {
     for (std::size_t j = 0; j < parameters_.size(); ++j) {
       double slope = 0.0;
       for (std::size_t k = 0; k < FourPoints::places.size(); ++k)
-        slope += FourPoints::weights[k] / parameters_[j].distance() * f(*perturbed_[4 * j + k]);
+        slope += FourPoints::weights[k] / parameters_[j].distance() * f(models_.perturbed(j, k));
       out_.derivatives[Index(j)] += slope;
     }
   }
 
-  Make const& make_;
   std::vector<Parameter> parameters_;
+  PerturbedModels<V>& models_;
   V full_;
+  RecordedRun<V> run_;
   W sweep_;
-  std::vector<std::unique_ptr<ParameterDifferences>> perturbed_;  // four for each parameter
   std::vector<State> starts_;  // derivatives of the state before the first step, one for each parameter
-  StepPlan plan_;
-  double largest_ = 0.0;
-  std::vector<Step> steps_;
-  std::size_t furthest_ = 0;  // number of steps computed at least once
+  std::size_t furthest_ = 0;   // number of steps computed at least once
   ObjectiveDerivatives<M> derivatives_;
   GradientResult out_;
 };
@@ -305,36 +253,34 @@ class AdjointRun {
 
 /// Runs the scenario that `make` returns for the values of the parameters, and differentiates its objective function
 /// with respect to each parameter. Newton's method iterates until corrections are below 1e-12 or at round-off. \param
-/// integrator integrator of the generalised-α family, without `stabilised`; with runge_kutta_step_adjoint.hpp also
-/// RungeKutta4 and DormandPrince, whose step lengths are constants; with radau_step_adjoint.hpp also Radau. \throws
-/// InvalidInput for invalid parameters or options; if the factory makes models of different sizes; if an event only
-/// touches zero; if two events coincide, or other times coincide so that the run is not differentiable; if the steps of
-/// a run with start correction, but without events, breakpoints and moving times, differ in length; for events,
-/// breakpoints or moving times with a Runge–Kutta method. \throws SingularMatrix in a singular configuration;
-/// NonFiniteValue; and the exceptions of `simulate`.
+/// integrator integrator of the generalised-α family, without `stabilised`; RungeKutta4; DormandPrince, whose step
+/// lengths are constants; or Radau. \throws InvalidInput for invalid parameters or options; if the factory makes models
+/// of different sizes; if an event only touches zero; if two events coincide, or other times coincide so that the run
+/// is not differentiable; if the steps of a run with start correction, but without events, breakpoints and moving
+/// times, differ in length; for events, breakpoints or moving times with a Runge–Kutta method. \throws SingularMatrix
+/// in a singular configuration; NonFiniteValue; and the exceptions of `simulate`.
 template <ObjectiveFactory Make, class I>
 GradientResult gradient(Make const& make, std::vector<Parameter> const& parameters, I const& integrator,
                         GradientOptions const& options = {}) {
+  using S = std::remove_cvref_t<decltype(make(std::span<double const>()))>;
   if constexpr (detail::AlphaFamilyIntegrator<I>) {
     AlphaMethod const method = detail::method_of_derivatives(parameters, integrator, "gradient");
-    auto const scenario = make(detail::values_of(parameters));
-    detail::require_plain(scenario.options, "gradient");
-    System const system = system_for<I>(scenario.model);
-    if (detail::is_interrupted(scenario, detail::breakpoints_of(system, scenario.options)) ||
-        detail::has_moving_times(make, parameters, scenario))
-      return detail::AdjointEventHandler<Make, I>(make, parameters, method).run(options);
-    return detail::AdjointRun<Make, I, detail::AlphaBackwardSweep>(make, parameters, method).run(options);
+    detail::PerturbedModels<detail::PerturbedModel<S, I>> models(make, parameters, method, "gradient");
+    detail::require_plain(models.itself().scenario.options, "gradient");
+    if (detail::is_interrupted(models.itself()) || models.has_moving_times(false))
+      return detail::AdjointEventHandler<S, I>(models, parameters, method).run(options);
+    return detail::AdjointRun<S, I, detail::AlphaBackwardSweep>(models, parameters, method).run(options);
   } else {
-    static_assert(detail::HasStageAdjoints<I>,
-                  "gradient supports GeneralisedAlpha, HhtAlpha, Newmark and Trapezoidal; with "
-                  "<polybody/gradients/runge_kutta_step_adjoint.hpp> also RungeKutta4 and DormandPrince, with "
-                  "<polybody/gradients/radau_step_adjoint.hpp> also Radau.");
+    static_assert(detail::HasStageDerivatives<I>,
+                  "gradient supports GeneralisedAlpha, HhtAlpha, Newmark, Trapezoidal, RungeKutta4, DormandPrince and "
+                  "Radau.");
     MethodOf<I> const method = detail::method_of_stages(parameters, integrator);
-    if (detail::has_moving_times(make, parameters, make(detail::values_of(parameters)), requires { I::adaptive_step; }))
+    detail::PerturbedModels<detail::PerturbedStageModel<S, I>> models(make, parameters, method, "gradient");
+    if (models.has_moving_times(requires { I::adaptive_step; }))
       throw InvalidInput("gradient.method", {ErrorObject{"gradient"},
                                              ": runs whose start, end or steps depend on a parameter need a method of "
                                              "the generalised-α family. Use `sensitivities`."});
-    return detail::AdjointRun<Make, I, detail::StageBackwardSweep>(make, parameters, method).run(options);
+    return detail::AdjointRun<S, I, detail::StageBackwardSweep>(models, parameters, method).run(options);
   }
 }
 

@@ -23,12 +23,12 @@ class NearbyModels {
   template <class Make, class Method>
   [[gnu::cold]] NearbyModels(Make const& make, std::vector<Parameter> const& parameters, Method const& method,
                              char const* who)
-      : parameters_(parameters), itself_(make(values_of(parameters)), method) {
+      : parameters_(parameters), itself_(shared_scenario<V>(make, values_of(parameters)), method) {
     for (std::size_t j = 0; j < parameters.size(); ++j)
       for (double const place : FourPoints::places) {
         std::vector<double> p = values_of(parameters);
         p[j] += place * parameters[j].distance();
-        perturbed_.push_back(std::make_shared<V>(make(p), method));
+        perturbed_.push_back(std::make_shared<V>(shared_scenario<V>(make, p), method));
         require_alike(itself_, *perturbed_.back(), parameters[j], who);
       }
     find_times(who);
@@ -114,7 +114,21 @@ class PerturbedModels {
   PerturbedModels(PerturbedModels const&) = delete;
   PerturbedModels& operator=(PerturbedModels const&) = delete;
 
-  V& itself() { return n_.itself(); }                                ///< model for the values of the parameters
+  V& itself() { return n_.itself(); }                                        ///< model for the values of the parameters
+  V& perturbed(std::size_t j, std::size_t k) { return n_.perturbed(j, k); }  ///< model at point k of parameter j
+  std::size_t groups() const { return derivatives_->groups(); }  ///< groups of parameters that are differenced together
+  /// True if the start time, the end time or the step length depends on a parameter. \param chooses true if the
+  /// integrator chooses the step length
+  bool has_moving_times(bool chooses) {
+    RunOptions const& here = itself().scenario.options;
+    for (std::size_t j = 0; j < number_.size(); ++j) {
+      auto const& near = perturbed(j, 1).scenario;
+      bool const same_steps = chooses || length_of_steps(near.options) == length_of_steps(here);
+      if (near.options.end_time != here.end_time || near.start.t != itself().scenario.start.t || !same_steps)
+        return true;
+    }
+    return false;
+  }
   TimeMap const& times(std::size_t j) const { return n_.times(j); }  ///< times of the runs with perturbed parameter j
   /// Size of parameter j, or the step length h for `along_motion`.
   double size(std::size_t j, double h) const { return j == along_motion ? h : n_.parameter(j).size(); }
@@ -167,7 +181,7 @@ class PerturbedModels {
     for (std::size_t k = 0; k < points; ++k) {
       double const e = FourPoints::places[k] * p.reach;
       State y = detail::displaced(x, p.along, e);
-      lengths_of(y) += e * tangent.lengths;
+      StepHistory::lengths_of(y) += e * tangent.lengths;
       y.t += e * p.dt;
       take(sum, f, {n_.itself(), std::move(y), h + e * p.dh}, FourPoints::weights[k] / p.reach);
     }
@@ -237,6 +251,23 @@ class PerturbedModels {
     EquationDerivative& by_time = by_time_[number];
     if (by_time.scale == 0.0) by_time = rate_of_equations(x, h);
     add(sum, by_time, later);
+  }
+  /// Subtracts μᵀ ∂(r, Φ)/∂p at x, an evaluation point of a step of length h, from the `derivatives` with respect to
+  /// all parameters. \param mu (nv + rows) multipliers of the equations of motion, then of the constraint equations
+  template <class X>
+  void take_from(VecX& derivatives, X const& x, double h, VecX const& mu) {
+    begin_step();
+    derivatives_->evaluate(x);
+    for (std::size_t i = 0; i < still_.size(); ++i) derivatives[Index(still_[i])] -= derivatives_->dot(i, mu);
+    for (std::size_t j = 0; j < number_.size(); ++j)
+      if (number_[j] == moving) derivatives[Index(j)] -= product(j, PointInStep<X>{x, h, 0.0, 0}, mu);
+  }
+  /// Product μᵀ ∂(r, Φ)/∂p of the derivatives that `of_equations` computes.
+  template <class X>
+  double product(std::size_t j, PointInStep<X> const& at, VecX const& mu) {
+    of_equations(j, at, by_);
+    Index const nv = by_.balance.size();
+    return mu.head(nv).dot(by_.balance) + mu.tail(by_.rows.size()).dot(by_.rows);
   }
   /// \throws InvalidInput if a parameter changes, at x, an equation of objects outside its `affects`.
   void require_named(State const& x) {
@@ -326,6 +357,7 @@ class PerturbedModels {
   std::optional<EquationDerivatives<V>> derivatives_;  // with respect to the parameters in `still_`
   std::vector<EquationDerivative> by_time_;  // time derivatives at each point of a step; scale 0: not yet computed
   State state_;
+  EquationDerivative by_;
 };
 
 }  // namespace polybody::detail

@@ -21,9 +21,8 @@ struct RunCostate {
   double dot(State const& dx) const { return at.dot(dx) + history.dot(dx.history); }
   /// Change of J from the state x to the state y, without round-off from their common part.
   double dot(State const& y, State const& x) const {
-    Index const nv = at.own.size();
     return at.q.dot(y.q - x.q) + at.v.dot(y.v - x.v) + at.a.dot(y.a - x.a) + at.lambda.dot(y.lambda - x.lambda) +
-           at.own.dot(y.history.head(nv) - x.history.head(nv)) + history.dot(y.history - x.history);
+           at.own.dot(StepHistory::own_of(y) - StepHistory::own_of(x)) + history.dot(y.history - x.history);
   }
   /// Adds `by` times the adjoint variables `of`.
   void add(RunCostate const& of, double by) {
@@ -37,21 +36,7 @@ struct RunCostate {
   }
   /// Backward sweep over `StepHistory::push` of a step from `before`, after the backward sweep of `at`. Returns the
   /// derivative of J with respect to the step length in the history.
-  double pull_push(State const& before) {
-    constexpr Index last = StepHistory::lengths - 1;
-    Index const nv = at.own.size();
-    auto newest = history.segment(nv, nv), change = history.segment(2 * nv, nv);
-    bool const known = lengths_of(before)[last - 1] > 0.0;  // there is an earlier point
-    at.a += newest;
-    if (known) at.a += change;
-    newest = known ? VecX(-change) : VecX(VecX::Zero(nv));
-    change.setZero();
-    auto lengths = history.tail(StepHistory::lengths);
-    double const of_length = lengths[last - 1] + lengths[last];
-    for (Index i = last; i > 0; --i) lengths[i] = i < last ? lengths[i - 1] : 0.0;
-    lengths[0] = 0.0;
-    return of_length;
-  }
+  double pull_push(State const& before) { return StepHistory::pull_push(before, history, at.a); }
 };
 
 /// Derivative of a result of a state x and a length h along a direction, by differences. `move` adds e times the

@@ -13,16 +13,6 @@ struct RunSensitivity {
   VecX lengths;     ///< derivatives of these step lengths [s]
 };
 
-/// Step lengths in the integrator history of a state or its derivative [s]; empty without a history.
-template <class = void>
-auto lengths_of(State& x) {
-  return x.history.tail(std::min<Index>(StepHistory::lengths, x.history.size()));
-}
-template <class = void>
-auto lengths_of(State const& x) {
-  return x.history.tail(std::min<Index>(StepHistory::lengths, x.history.size()));
-}
-
 template <class = void>
 void add(State& sum, State const& x, double by) {
   sum.q += by * x.q;
@@ -51,7 +41,7 @@ template <class = void>
 State displaced(State const& x, State const& dx, double e) {
   State out = x;
   add(out, dx, e);
-  lengths_of(out) = lengths_of(x);
+  StepHistory::lengths_of(out) = StepHistory::lengths_of(x);
   return out;
 }
 

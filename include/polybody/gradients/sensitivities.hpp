@@ -14,10 +14,9 @@
 /// step length.
 
 #include <polybody/gradients/forward_sensitivities.hpp>
-#include <polybody/gradients/perturbed_model.hpp>
 #include <polybody/gradients/perturbed_models.hpp>
-#include <polybody/gradients/perturbed_stage_model.hpp>
-#include <polybody/gradients/sensitivity_step.hpp>
+#include <polybody/gradients/radau_derivatives.hpp>
+#include <polybody/gradients/runge_kutta_derivatives.hpp>
 
 namespace polybody::detail {
 
@@ -46,7 +45,7 @@ class AlphaSensitivities {
       corrected.v = spare.work.v0;
     }
     own_before_ = spare.work.a0;
-    own_after_ = after.history.head(after.v.size());
+    own_after_ = StepHistory::own_of(after);
     for (TangentColumn const& column : columns) start_step(before, h, column, corrects, perturbed);
     StepEnds const ends{corrects ? corrected : before, after, own_before_, own_after_, h};
     slope_.set(ends, searched ? nullptr : full_->factors(h));
@@ -65,7 +64,7 @@ class AlphaSensitivities {
       }
       left = std::max(left, slope_.advance(ends, std::span(directions_).first(count)));
     }
-    for (TangentColumn const& column : columns) push_length(*column.tangent, column.dh);
+    for (TangentColumn const& column : columns) StepHistory::push_length(column.tangent->lengths, column.dh);
     return left;
   }
 
@@ -74,20 +73,13 @@ class AlphaSensitivities {
   /// from x.
   static void start_step(State const& x, double h, TangentColumn const& column, bool corrects, Variants& perturbed) {
     RunSensitivity& tangent = *column.tangent;
-    double const shifted = x.history[x.history.size() - 1];
+    double const shifted = StepHistory::shifted_of(x);
     if (!corrects && (shifted == 0.0 || column.dh == tangent.lengths[StepHistory::lengths - 1])) return;
-    Index const nv = x.v.size();
     std::optional<bool> const decided = V::decided(x, h, corrects);
     State const change = perturbed.of_map(column.j, x, tangent, {h, column.dh},
                                           [&](V& v, State& y, double length) { v.set_out_change(y, length, decided); });
     tangent.dx.v += change.v;
-    tangent.dx.history.head(nv) += change.history.head(nv);
-  }
-  /// Appends the derivative of a step length, as `StepHistory::push` appends the length.
-  static void push_length(RunSensitivity& tangent, double dh) {
-    constexpr Index last = StepHistory::lengths - 1;
-    for (Index i = 0; i + 1 < last; ++i) tangent.lengths[i] = tangent.lengths[i + 1];
-    tangent.lengths[last - 1] = tangent.lengths[last] = dh;
+    StepHistory::own_of(tangent.dx) += StepHistory::own_of(change);
   }
 
   V* full_;
@@ -138,7 +130,7 @@ class StageSensitivities {
   }
 
  private:
-  using Slopes = typename StageDerivatives<I>::Type;
+  using Slopes = typename I::Derivatives::template LinearisedStep<I>;
 
   Slopes derivatives_;
   std::vector<State*> directions_;
@@ -159,13 +151,12 @@ concept ScenarioFactory = requires(F const make, std::span<double const> p) {
 };
 
 /// Runs the scenario that `make` returns for the values of the parameters, and differentiates its outputs with respect
-/// to each parameter. Newton's method converges to 1e-12 or to round-off. \param integrator of the generalised-α
-/// family, without `stabilised`; with runge_kutta_linearised_step.hpp also RungeKutta4 and DormandPrince; with
-/// radau_linearised_step.hpp also Radau. Step lengths of DormandPrince are constants, unless an event, a breakpoint or
-/// the end of the run ends the step. \throws InvalidInput for invalid parameters; if models of the factory differ in
-/// size; if an event only touches zero; if events or breakpoints coincide and a parameter separates them; if a
-/// parameter changes equations of an object outside its `affects`. \throws SingularMatrix in a singular configuration;
-/// and the exceptions of `simulate`.
+/// to each parameter. Newton's method converges to 1e-12 or to round-off. \param integrator integrator of the
+/// generalised-α family, without `stabilised`; RungeKutta4, DormandPrince or Radau. Step lengths of DormandPrince are
+/// constants, unless an event, a breakpoint or the end of the run ends the step. \throws InvalidInput for invalid
+/// parameters; if models of the factory differ in size; if an event only touches zero; if events or breakpoints
+/// coincide and a parameter separates them; if a parameter changes equations of an object outside its `affects`.
+/// \throws SingularMatrix in a singular configuration; and the exceptions of `simulate`.
 template <ScenarioFactory Make, class I>
 SensitivityResult sensitivities(Make const& make, std::vector<Parameter> const& parameters, I const& integrator) {
   if constexpr (detail::AlphaFamilyIntegrator<I>) {
@@ -173,9 +164,8 @@ SensitivityResult sensitivities(Make const& make, std::vector<Parameter> const& 
     return detail::ForwardSensitivities<Make, I, detail::AlphaSensitivities>(make, parameters, method).run();
   } else {
     static_assert(detail::HasStageDerivatives<I>,
-                  "sensitivities supports GeneralisedAlpha, HhtAlpha, Newmark and Trapezoidal; with "
-                  "<polybody/gradients/runge_kutta_linearised_step.hpp> also RungeKutta4 and DormandPrince, with "
-                  "<polybody/gradients/radau_linearised_step.hpp> also Radau.");
+                  "sensitivities supports GeneralisedAlpha, HhtAlpha, Newmark, Trapezoidal, RungeKutta4, DormandPrince "
+                  "and Radau.");
     MethodOf<I> const method = detail::method_of_stages(parameters, integrator);
     return detail::ForwardSensitivities<Make, I, detail::StageSensitivities>(make, parameters, method).run();
   }

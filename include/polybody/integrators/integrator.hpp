@@ -103,6 +103,7 @@ using MethodOf = decltype(method_of(std::declval<I const&>()));
 ///   adaptive_step         selects the length of its steps                } true, or absent
 ///   needs_constant_mass   requires bodies with a constant mass matrix    }
 ///   coupled_stages        one linear system contains the model several times }
+///   Derivatives           class with the templates LinearisedStep and StepAdjoint, for `sensitivities` and `gradient`
 template <class I, class Solver = DefaultSolver>
 concept Integrator = requires(I const i) {
   { I::name } -> std::convertible_to<char const*>;

@@ -55,6 +55,8 @@ struct StageBlockSink {
 
 namespace polybody {
 
+struct RadauDerivatives;  // gradients/radau_derivatives.hpp
+
 /// Reference integrator for few, accurate steps, also of stiff models. The matrix of a step has three times the
 /// unknowns of the model. It is factorised by `AutoLu`, independent of the solver of the run. Above 64 unknowns,
 /// `AutoLu` allocates memory in a step.
@@ -64,6 +66,7 @@ struct Radau {
   static constexpr bool accepts_constraints = true;
   static constexpr Capabilities capabilities = Capabilities::tangent;
   static constexpr bool coupled_stages = true;
+  using Derivatives = RadauDerivatives;  ///< linearised step and adjoint of a step
 
   double tolerance = 1e-10;                       ///< tolerance of Newton's corrections, relative to the accelerations
   NewtonOptions newton = {.max_iterations = 50};  ///< many iterations, since the matrix neglects changes of G

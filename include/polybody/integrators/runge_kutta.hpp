@@ -109,6 +109,8 @@ struct RungeKuttaWorkspace : ExplicitStep<Solver> {
 
 }  // namespace detail
 
+struct RungeKuttaDerivatives;  // gradients/runge_kutta_derivatives.hpp
+
 /// Classical Runge–Kutta method of order four.
 template <class Stabilisation = UnconstrainedOnly>
 struct RungeKutta4 {
@@ -117,6 +119,7 @@ struct RungeKutta4 {
   static constexpr bool accepts_constraints = Stabilisation::accepts_constraints;
   static constexpr double stability_limit = 2.8284271247461901;  ///< largest stable ωh [1]
   using Tableau = detail::ClassicalTableau;                      ///< coefficients of the method
+  using Derivatives = RungeKuttaDerivatives;                     ///< linearised step and adjoint of a step
   /// Largest h with |1 + z + z²/2 + z³/6 + z⁴/24| ≤ 1 for z = hs. The number s is the faster of the roots −d/2 ± √(d²/4
   /// − ω²), with d = `rate` [1/s] and ω = `omega` [rad/s] [Hairer & Wanner 1996, §IV.2].
   static double stable_step(double omega, double rate) {
@@ -163,6 +166,7 @@ struct DormandPrince {
   static constexpr bool accepts_constraints = Stabilisation::accepts_constraints;
   static constexpr bool adaptive_step = true;
   using Tableau = detail::DormandPrinceTableau;  ///< coefficients of the method
+  using Derivatives = RungeKuttaDerivatives;     ///< linearised step and adjoint of a step
 
   /// Tolerated error of a step relative to the scale of each kind of unknown of each body. The scales are the extents
   /// of the positions and velocities of an assembly, one radian, and the angular velocity of the body

@@ -49,6 +49,72 @@ class StepHistory {
   /// after a start.
   double shifted() const { return memory_[memory_.size() - 1]; }
 
+  /// Replaces the accelerations a of the method by `own`, which are corrected for steps of h [s].
+  void shift(VecX const& own, double h) {
+    copy(own.data(), nv_, memory_.data());
+    memory_[memory_.size() - 1] = h;
+  }
+
+  // Parts of the history of a state or of its derivative, which has the same parts.
+
+  /// Accelerations a of the method (nv).
+  template <class X>
+  static auto own_of(X& x) {
+    return x.history.head(x.v.size());
+  }
+  /// Lengths h₋₅ … h₋₁ of the last steps, then the step length `shifted` [s]; empty for a state without a history.
+  template <class X>
+  static auto lengths_of(X& x) {
+    return x.history.tail(std::min<Index>(lengths, x.history.size()));
+  }
+  /// Step length `shifted` [s].
+  template <class X>
+  static double shifted_of(X const& x) {
+    return x.history[x.history.size() - 1];
+  }
+  /// True if a point before x is known: after a step, and after a start with start correction.
+  template <class X>
+  static bool has_earlier_point(X const& x) {
+    return x.history[x.history.size() - 2] > 0.0;
+  }
+
+  // Derivatives of `push` and of `jerk`. A converged step depends on the earlier points by `jerk` only.
+
+  /// Range of indices in the history.
+  struct Range {
+    Index first, count;  ///< first index; number of indices
+  };
+  /// Entries on which `jerk` depends: D₀ and D₁ of v̇.
+  static Range points_of_jerk(Index nv) { return {nv, 2 * nv}; }
+  /// Entries on which the start correction depends: the lengths of the last two steps, and `shifted`.
+  static Range lengths_of_correction(Index size) { return {size - 3, 3}; }
+  /// Appends the derivative dh of a step length to the derivatives `of_lengths` of earlier ones.
+  template <class V>
+  static void push_length(V& of_lengths, double dh) {
+    constexpr Index last = lengths - 1;
+    for (Index i = 0; i + 1 < last; ++i) of_lengths[i] = of_lengths[i + 1];
+    of_lengths[last - 1] = of_lengths[last] = dh;
+  }
+  /// Adjoint of the effect of `push` on `jerk`, for a step from `before`. \param bar adjoint variables of the history
+  /// after the step, replaced by those before it \param of_a (nv) receives the adjoint variables of v̇ before the step.
+  /// Returns the derivative with respect to the length of the step.
+  template <class X, class V>
+  static double pull_push(X const& before, V& bar, V& of_a) {
+    constexpr Index last = lengths - 1;
+    Index const nv = of_a.size();
+    auto newest = bar.segment(nv, nv), change = bar.segment(2 * nv, nv);
+    bool const known = has_earlier_point(before);
+    of_a += newest;
+    if (known) of_a += change;
+    newest = known ? V(-change) : V(V::Zero(nv));
+    change.setZero();
+    auto of_lengths = bar.tail(lengths);
+    double const of_length = of_lengths[last - 1] + of_lengths[last];
+    for (Index i = last; i > 0; --i) of_lengths[i] = i < last ? of_lengths[i - 1] : 0.0;
+    of_lengths[0] = 0.0;
+    return of_length;
+  }
+
   /// Adds a point before x, as if a step h had ended at x and v̇ had changed at the rate `jerk` during this step.
   void pretend(State const& x, VecX const& jerk, double h) {
     for (Index i = 0; i < nv_; ++i) a()[i] = x.a[i] - h * jerk[i];

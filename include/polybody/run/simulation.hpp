@@ -6,13 +6,11 @@
 #include <polybody/math/sequence.hpp>
 #include <polybody/run/axial_force_monitor.hpp>
 #include <polybody/run/branch_watch.hpp>
-#include <polybody/run/event_action.hpp>
 #include <polybody/run/minimum_norm.hpp>
 #include <polybody/run/redundancy_watch.hpp>
+#include <polybody/run/run_driver.hpp>
 #include <polybody/run/run_iterator.hpp>
-#include <polybody/run/run_snapshot.hpp>
 #include <polybody/run/stable_step.hpp>
-#include <polybody/run/step_plan.hpp>
 #include <polybody/run/step_undo.hpp>
 
 namespace polybody {
@@ -36,13 +34,13 @@ class Simulation {
   /// resumed run then continue with bitwise identical results, as does a run with snapshots at the same times.
   [[gnu::cold]] RunSnapshot snapshot();
 
-  State const& state() const { return *x_; }            ///< state at the end of the last step
-  ObservedState const& now() const { return now_; }     ///< this state with answers to questions
-  RunReport const& report() const& { return report_; }  ///< report so far
-  RunReport report() && { return std::move(report_); }  ///< the report so far, moved out
-  System& system() { return *system_; }                 ///< integrated system: the model, or its reduced system
-  System& full() { return full_ ? *full_ : *system_; }  ///< system of the full model
-  bool done() const { return report_.stopped || stepped().t >= options_.end_time; }  ///< true at the end of the run
+  State const& state() const { return *x_; }             ///< state at the end of the last step
+  ObservedState const& now() const { return now_; }      ///< this state with answers to questions
+  RunReport const& report() const& { return report_; }   ///< report so far
+  RunReport report() && { return std::move(report_); }   ///< the report so far, moved out
+  System& system() { return *system_; }                  ///< integrated system: the model, or its reduced system
+  System& full() { return full_ ? *full_ : *system_; }   ///< system of the full model
+  bool done() const { return driver_.done(stepped()); }  ///< true at the end of the run
 
   /// Takes a step to the next grid point, or to an earlier breakpoint or event. After an exception the state is
   /// unchanged. \throws InvalidInput if the model has changed since the construction of the run.
@@ -58,6 +56,8 @@ class Simulation {
   RunReport run() && { return run(), std::move(report_); }  ///< runs to the end
 
  private:
+  friend class RunDriver;
+  static constexpr bool adaptive = requires { I::adaptive_step; };
   struct Prepared {};
   [[gnu::cold]] Simulation(Prepared, RunSystems systems, State& x, I const& integrator, RunOptions options,
                            double start)
@@ -68,13 +68,13 @@ class Simulation {
         now_(x, probe_),
         method_(method_of(integrator)),
         options_(std::move(options)),
+        driver_(options_, report_, adaptive),
         workspace_(method_.template workspace<Solver>(*system_)),
         norm_(full()),
         axial_forces_(full(), start, options_.end_time),
         start_(start) {
     options_.check(start);
     if (options_.threads != 1) system_->use_threads(options_.threads);
-    h_ = requested_step();
     keeps_ = eliminates() || system_->rows() > 0 || !options_.events.empty() || bool(options_.progress) ||
              options_.minimum_norm || axial_forces_.asks();
   }
@@ -87,7 +87,7 @@ class Simulation {
     auto fresh = method_.template workspace<Solver>(*system_);
     State ready = stepped();  // `start` clears its history
     if (system_->rows() > 0) leave_out_redundant(*system_, fresh.forward, ready, &ready.lambda);
-    method_.start(*system_, ready, done() ? h_ : plan_.next(ready.t, h_).h, fresh);
+    method_.start(*system_, ready, driver_.next(ready).h, fresh);
     (void)workspace_.forward.bounds.settle(*system_, step_end());
     fresh.forward.bounds = std::move(workspace_.forward.bounds);
     workspace_ = std::move(fresh);
@@ -96,7 +96,7 @@ class Simulation {
 
   /// Applies `RunOptions::limits` to the steps from this state on.
   void bound() { workspace_.forward.bounds.begin(*system_, options_.limits, step_end()); }
-  StepResult step_end() { return {stepped().q, stepped().v, stepped().lambda, stepped().t, h_}; }
+  StepResult step_end() { return {stepped().q, stepped().v, stepped().lambda, stepped().t, driver_.step_length()}; }
   /// Evaluates the energy balance up to the present state, before a restart or an action and at the end of the run.
   /// \param halved number of halved steps that are not in the report yet
   [[gnu::cold]] void settle(int halved) {
@@ -120,73 +120,76 @@ class Simulation {
   /// Warns of an initial state at a branching point, and of a step that is too long for compliant joints.
   [[gnu::cold]] void warn(ForwardDynamics<Solver>& forward, State const& x) {
     report_.add_warning(warn_of_ambiguous_branch(full(), forward, x));
-    if constexpr (HasStabilityLimit<I>) report_.add_warning(warn_of_step<I>(full(), forward, x, h_));
-  }
-
-  /// Takes a step of length h. If the step fails with `NewtonConvergenceFailure`, takes two steps of h/2 from a new
-  /// start, each of which can be halved again. An integrator that controls its step takes only the first half. After an
-  /// exception the state is unchanged.
-  StepReport step(double h, int max_step_halvings);
-
-  double max_step() const { return options_.max_step.value_or(std::numeric_limits<double>::infinity()); }
-  double requested_step() const { return std::min<double>(options_.step, max_step()); }  // [s]
-
-  /// Breakpoints of the options, driving constraints and loads.
-  Sequence<double> breakpoints() const {
-    Sequence<double> all = system_->layout().breakpoints;
-    all.append(options_.breakpoints.begin(), options_.breakpoints.end());
-    return all;
+    if constexpr (HasStabilityLimit<I>) report_.add_warning(warn_of_step<I>(full(), forward, x, driver_.step_length()));
   }
 
   /// After a start, breakpoint or event: projects the velocities onto the constraint equations, then computes
   /// consistent accelerations. The integrator may look ahead to the end of the next step, but not across a breakpoint.
   [[gnu::cold]] void restart(bool first = false);
 
-  void choose_step(StepReport const& r, bool shortened) {
-    if constexpr (requires { I::adaptive_step; }) h_ = std::min(shortened ? std::max(r.next, h_) : r.next, max_step());
+  // operations of `RunDriver`
+  bool keeps() const { return keeps_; }
+  System& stepped_system() { return *system_; }
+  State const& full_state(State const& x) {
+    if (!eliminates()) return x;
+    expand(*system_, x, seen_, scratch_);
+    return seen_;
   }
-
-  EventMotion motion() {
-    auto const seen = [this](State const& x) -> State const& {
-      if (!eliminates()) return x;
-      expand(*system_, x, seen_, scratch_);
-      return seen_;
-    };
-    return {requested_step(), seen, drift_of(*system_)};
+  StepReport step(State& x, double h, int halvings = -1) {
+    workspace_.forward.bounds.halvings = HasStabilityLimit<I> || !options_.allowed_halvings() ? -1 : halvings;
+    return method_.step(*system_, x, h, workspace_);
   }
-  /// Ends the step of the length `taken` at the first event. Returns true if the run restarts there.
-  bool meet_events(double taken) {
-    undo_.events = true;
-    workspace_.forward.bounds.halvings = -1;  // steps to an event are not halved
-    EventDetector::Step const again = [this](State& x, double h) {
-      return method_.step(*system_, x, h, workspace_).taken;
-    };
-    return watch_.meet(options_.events, {before_, taken, again, motion()}, stepped(), report_);
+  void start(State& x, double h) {
+    workspace_.forward.project_velocities(*system_, x.q, x.v, x.t);
+    method_.start(*system_, x, h, workspace_);
   }
-  /// Operations after the end of a step that may fail: events and their actions, restarts, axial forces and progress.
-  void follow(StepReport const& report, bool at_breakpoint, bool remainder_step, bool updates);
-  [[gnu::cold]] void undo();  // restores the run after a failure in `follow`
-  [[gnu::cold]] void tell_progress(StepReport const& report, bool updates);  // counts the step, then reports progress
+  StepReport take(State& x, double h) {
+    auto const halve = [&] { return driver_.halving_step(x, h, options_.allowed_halvings(), *this); };
+    StepReport report = redundancy_.step(*system_, workspace_.forward, x, driver_.before(), halve, [&] { restart(); });
+    report.add(workspace_.forward.failed);
+    return report;
+  }
+  void on_step(RunStep const& s) {
+    if (system_->rows() > 0)
+      branches_.look(*system_, workspace_.forward, s.report, driver_.before().v, stepped(), report_.warnings);
+  }
+  void on_end(RunStep const& s) {
+    if (s.met) settle(s.report.halved);
+    if (s.acts)
+      stepped() = after_action<Solver>(driver_.events(), options_.events, full_state(stepped()),
+                                       {system_.get(), full_.get()}, options_.assembly_tolerance);
+  }
+  bool requires_restart() { return redundancy_.changes(*system_, workspace_.forward, stepped()); }
+  void on_next(RunStep const& s) {
+    if (!s.met && (done() || s.restarts)) settle(s.report.halved);
+    if (s.restarts) restart();
+  }
+  /// Multipliers of minimum norm, axial forces, the user's state and progress.
+  void on_done(RunStep const& s);
+  [[gnu::cold]] void on_failure() {
+    if (undo_.has_user) *x_ = undo_.user;
+    undo_.put_back(report_, axial_forces_);
+  }
+  [[gnu::cold]] void tell_progress(StepReport const& report);  // counts the step, then reports progress
 
   std::unique_ptr<System> system_, full_;  // workspaces contain references to them
   State* x_;
   Probe probe_;  // a separate system, so that questions do not change the run
   ObservedState now_;
-  State reduced_, seen_, before_;  // reduced and full state with eliminating policies; state before the step
+  State reduced_, seen_;  // reduced and full state with eliminating policies
   MethodOf<I> method_;
   RunOptions options_;
+  RunDriver driver_;
   decltype(std::declval<MethodOf<I> const&>().template workspace<Solver>(std::declval<System&>())) workspace_;
   MinimumNormOf<> norm_;
   AxialForceMonitor axial_forces_;
   VecX scratch_;
   BranchWatch branches_;
   StepUndo undo_;
-  StepPlan plan_;
-  StepRow row_;
-  EventDetector watch_;
   RedundancyWatch<> redundancy_;
-  bool keeps_ = false;      // every step stores its initial state
-  double h_ = 0.0, start_;  // step length and initial time [s]
+  bool keeps_ = false;    // every step stores its initial state
+  bool updates_ = false;  // the present step updates the user's state
+  double start_;          // initial time [s]
   RunReport report_;
 };
 
@@ -196,12 +199,12 @@ Simulation<I, Solver>::Simulation(RunSystems systems, State& x, I const& integra
   require_fitting(full(), x);
   require_places(full(), x);
   require_computable(full(), x);
-  plan_ = StepPlan(x.t, options_.end_time, options_.step, breakpoints());
+  driver_.plan_run(x.t, system_->layout().breakpoints);
   require_assembled(full(), x, options_.assembly_tolerance);
   if (eliminates()) reduced_start();
-  stepped().t = plan_.pass(stepped().t);
+  stepped().t = driver_.pass(stepped().t);
   restart(true);
-  if (!options_.events.empty()) watch_.start(options_.events, stepped(), motion());
+  driver_.start_events(stepped(), *this);
   if (!eliminates()) {
     if (options_.minimum_norm) norm_.apply(*system_, workspace_.forward, x);
     warn(workspace_.forward, x);
@@ -219,10 +222,8 @@ Simulation<I, Solver>::Simulation(RunSystems systems, State& x, I const& integra
   if (eliminates()) x = {};
   stepped() = from.state;
   show();
-  plan_ = StepPlan(x.t, options_.end_time, options_.step, breakpoints());
-  if constexpr (requires { I::adaptive_step; }) h_ = std::min(from.step, max_step());
-  row_ = from.row;
-  watch_ = EventDetector(from.sides);
+  driver_.plan_run(x.t, system_->layout().breakpoints);
+  driver_.resume(from);
   report_ = from.report;
   branches_.begin(*system_, workspace_.forward, stepped());
   renew();
@@ -236,36 +237,28 @@ template <Integrator I, class Solver>
 RunSnapshot Simulation<I, Solver>::snapshot() {
   system_->layout().watch.require_unchanged();
   renew();
-  watch_.forget();
-  return {identity_of(*system_), I::name, stepped(), h_, row_, watch_.sides(), report_};
+  RunSnapshot now;
+  now.model = identity_of(*system_);
+  now.integrator = I::name;
+  now.state = stepped();
+  now.report = report_;
+  driver_.store(now);
+  return now;
 }
 
 template <Integrator I, class Solver>
 void Simulation<I, Solver>::advance(bool updates) {
   system_->layout().watch.require_unchanged();
-  double const from = stepped().t, length = watch_.rests() ? std::min(h_, requested_step()) : h_;
-  auto const [target, h, lands, jumps] = plan_.next(from, length);
+  double const from = stepped().t, h = driver_.plan_step(stepped()).plan.h;
   if (!(from + h > from) || !undo_.fits(stepped())) undo_.refuse_step(stepped(), options_.end_time, h);
-  bool const remainder_step = h < 0.01 * length;  // a short step to the grid after a breakpoint or an event
-  bool const keeps = keeps_ || lands || remainder_step;
-  if (keeps) before_ = stepped();
-  undo_.begin(row_, h_, plan_, report_);
+  undo_.begin(report_);
   auto trial = workspace_.forward.attempt();
   workspace_.forward.failed = {};
-  auto const take = [&] { return step(h, options_.allowed_halvings()); };
+  updates_ = updates;
   try {
-    StepReport report = redundancy_.step(*system_, workspace_.forward, stepped(), before_, take, [&] { restart(); });
-    report.add(workspace_.forward.failed);
-    bool const reached = lands && report.taken == h;
-    stepped().t = reached ? target : row_.after(from, report.taken);
-    choose_step(report, reached);
-    follow(report, jumps && reached, remainder_step, updates);
+    driver_.take_step(stepped(), *this);
   } catch (Error& failure) {
-    if (keeps) undo();
     if (std::string const warned = report_.warned(); !warned.empty()) failure.append(warned);
-    throw;
-  } catch (...) {
-    if (keeps) undo();
     throw;
   }
   trial.keep();
@@ -273,48 +266,25 @@ void Simulation<I, Solver>::advance(bool updates) {
 }
 
 template <Integrator I, class Solver>
-void Simulation<I, Solver>::follow(StepReport const& report, bool at_breakpoint, bool remainder_step, bool updates) {
-  double const end = stepped().t;
-  if (system_->rows() > 0) branches_.look(*system_, workspace_.forward, report, before_.v, stepped(), report_.warnings);
-  bool const met = !options_.events.empty() && meet_events(report.taken);
-  if (met) settle(report.halved);
-  bool const acts = met && watch_.acts(options_.events);
-  if (acts)
-    stepped() = after_action<Solver>(watch_, options_.events, motion().seen(stepped()), {system_.get(), full_.get()},
-                                     options_.assembly_tolerance);
-  at_breakpoint = at_breakpoint && stepped().t == end;
-  if (at_breakpoint) stepped().t = plan_.pass(stepped().t);
-  bool const restarts =
-      met || at_breakpoint || remainder_step || redundancy_.changes(*system_, workspace_.forward, stepped());
-  if (!met && (done() || restarts)) settle(report.halved);
-  if (restarts) restart();
-  if (acts) watch_.settle(options_.events, stepped(), motion());
+void Simulation<I, Solver>::on_done(RunStep const& s) {
   if (!eliminates() && options_.minimum_norm) norm_.apply(*system_, workspace_.forward, *x_);
-  if (updates) {
-    if (eliminates()) make_full_state(!options_.events.empty() && !restarts);
+  if (updates_) {
+    if (eliminates()) make_full_state(!options_.events.empty() && !s.restarts);
     if (State const& x = eliminates() ? seen_ : *x_; axial_forces_.is_due(x.t, done())) {
       if (options_.progress) undo_.keep_axial(axial_forces_, report_);
       axial_forces_.look(full(), x, report_.warnings);
     }
   }
-  if (options_.progress) return tell_progress(report, updates);
-  report_.add(report);
-  if (updates && eliminates()) *x_ = seen_;
+  if (options_.progress) return tell_progress(s.report);
+  report_.add(s.report);
+  if (updates_ && eliminates()) *x_ = seen_;
 }
 
 template <Integrator I, class Solver>
-void Simulation<I, Solver>::undo() {
-  if (undo_.has_user) *x_ = undo_.user;
-  stepped() = before_;
-  if (undo_.events) watch_.put_back(report_);
-  undo_.put_back(row_, h_, plan_, report_, axial_forces_);
-}
-
-template <Integrator I, class Solver>
-void Simulation<I, Solver>::tell_progress(StepReport const& report, bool updates) {
+void Simulation<I, Solver>::tell_progress(StepReport const& report) {
   undo_.keep_counts(report_);
   report_.add(report);
-  if (updates && eliminates()) {
+  if (updates_ && eliminates()) {
     undo_.keep_user(*x_);
     *x_ = seen_;
   }
@@ -352,38 +322,11 @@ void Simulation<I, Solver>::reduced_start() {
 }
 
 template <Integrator I, class Solver>
-StepReport Simulation<I, Solver>::step(double h, int max_step_halvings) {
-  try {
-    workspace_.forward.bounds.halvings = HasStabilityLimit<I> || !options_.allowed_halvings() ? -1 : max_step_halvings;
-    return method_.step(*system_, stepped(), h, workspace_);
-  } catch (NewtonConvergenceFailure& failure) {
-    if (max_step_halvings == 0) {
-      if (int const times = options_.allowed_halvings(); times > 0)
-        failure.append(sentence_of({"The step of the run was halved ", times, times == 1 ? " time." : " times."}));
-      throw;
-    }
-  }
-  State const before = stepped();
-  try {
-    workspace_.forward.project_velocities(*system_, stepped().q, stepped().v, stepped().t);
-    method_.start(*system_, stepped(), 0.5 * h, workspace_);
-    StepReport report = step(0.5 * h, max_step_halvings - 1);
-    ++report.halved;
-    ++report.rejected;
-    if constexpr (!requires { I::adaptive_step; }) report.append(step(h - report.taken, max_step_halvings - 1));
-    return report;
-  } catch (...) {
-    stepped() = before;
-    throw;
-  }
-}
-
-template <Integrator I, class Solver>
 void Simulation<I, Solver>::restart(bool first) {
   State fresh = stepped();  // the integrated state is unchanged if the start fails
   workspace_.forward.project_velocities(*system_, fresh.q, fresh.v, fresh.t);
   redundancy_.start(*system_, workspace_.forward, fresh);
-  method_.start(*system_, fresh, done() ? h_ : plan_.next(fresh.t, h_).h, workspace_);
+  method_.start(*system_, fresh, driver_.next(fresh).h, workspace_);
   if (first && !eliminates()) require_consistent_redundancy(*system_, workspace_.forward, fresh);
   stepped() = std::move(fresh);
   bound();

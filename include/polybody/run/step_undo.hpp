@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Copies of the data of a run that a failed step must restore.
+/// Copies of the data of a run, except those of its driver, that a failed step must restore.
 
 #include <array>
 #include <optional>
@@ -9,14 +9,11 @@
 
 #include <polybody/run/axial_force_monitor.hpp>
 #include <polybody/run/run_options.hpp>
-#include <polybody/run/step_plan.hpp>
 
 namespace polybody {
 
-/// Data of a run before a step, in addition to its state and events. Every step stores the numbers; texts are stored
-/// just before they change.
+/// Report and monitors of a run before a step. Every step stores the numbers; texts are stored just before they change.
 struct StepUndo {
-  bool events = false;    ///< true if events were evaluated in this step
   bool has_user = false;  ///< true if `user` belongs to this step
   State user;             ///< user's state before its update in this step
 
@@ -37,12 +34,9 @@ struct StepUndo {
                                      " s at t = ", ErrorTime{x.t}, " s. Start the run at a time near zero."});
   }
   /// Stores the run before a step.
-  void begin(StepRow const& row, double h, StepPlan const& plan, RunReport const& report) {
-    row_ = row;
-    h_ = h;
-    passed_ = plan.passed();
+  void begin(RunReport const& report) {
     warnings_ = report.warnings.size();
-    events = has_user = counted_ = restarted_ = false;
+    has_user = counted_ = restarted_ = false;
     axial_.reset();
   }
   /// Stores the user's state before its update in this step.
@@ -67,10 +61,7 @@ struct StepUndo {
     axial_ = axial;
   }
   /// Restores the run as it was before the step.
-  [[gnu::cold]] void put_back(StepRow& row, double& h, StepPlan& plan, RunReport& report, AxialForceMonitor& axial) {
-    row = row_;
-    h = h_;
-    plan.go_back(passed_);
+  [[gnu::cold]] void put_back(RunReport& report, AxialForceMonitor& axial) {
     if (axial_) {
       axial = std::move(*axial_);
       report.warnings.swap(said_);
@@ -88,9 +79,7 @@ struct StepUndo {
   }
 
   Sizes sizes_{};  // of q, v, a, λ and the integrator history at the end of the last step
-  StepRow row_;
-  double h_ = 0.0;
-  std::size_t passed_ = 0, warnings_ = 0;
+  std::size_t warnings_ = 0;
   RunCounts counts_;
   bool counted_ = false, restarted_ = false;
   std::vector<std::string> redundant_, said_;
