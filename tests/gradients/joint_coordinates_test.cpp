@@ -36,9 +36,6 @@ TEST(JointCoordinatesUnderParameters, OfATreeInTheAugmentedSystem) {
   expect_derivatives<JointCoordinates, CarriedArm{}>();
   expect_derivatives<JointCoordinates, CarriedArm{.loop = true}>();
 }
-TEST(JointCoordinatesUnderParameters, OfATreeInTheDenseSystem) {
-  expect_derivatives<JointCoordinatesBy<joint_coordinates::DenseMatrix>, CarriedArm{.loop = true}>();
-}
 TEST(JointCoordinatesUnderParameters, OfATreeBodyByBody) {
   expect_derivatives<JointCoordinatesBy<joint_coordinates::ArticulatedBody>, CarriedArm{}>();
   expect_derivatives<JointCoordinatesBy<joint_coordinates::ArticulatedBody>, CarriedArm{.loop = true}>();

@@ -42,7 +42,7 @@ void add_multipliers_that_hold(int m, T const* map, Vec<T, 6> residual, Vec<T, 3
 /// Maps v = T u, v̇ = T u̇ + b and multiplication by Tᵀ, in the state of the last `expand`. \tparam Solution solution
 /// method of the equations of joint coordinates; void if there are only linear joints \tparam T scalar
 template <class Solution, StateScalar T = double>
-class CoordinateMaps {
+class CoordinateMaps : public StepCoordinates<T> {
   using Vector = VecXOf<T>;
 
  public:
@@ -75,55 +75,23 @@ class CoordinateMaps {
     return n;
   }
 
-  /// Sets the functions of `out` for a class C that is, or derives from, these maps.
-  template <class C>
-  static constexpr void enter(CoordinateMapOperations<T>& out) {
-    out.expand = [](void* c, Vector const& q, Vector const& v, Vector& full_q, Vector& full_v) {
-      of<C>(c).place(q, v);
-      full_q = of<C>(c).q_;
-      full_v = of<C>(c).v_;
-    };
-    out.expand_rates = [](void* c, Vector const& u, bool bias, Vector& full) { of<C>(c).expand_rates(u, bias, full); };
-    out.reduce = [](void* c, Vector& r, Vector& reduced) { of<C>(c).reduce(r, reduced); };
-    out.recover_multipliers = [](void* c, Data<T> const& data, Vector& lambda) {
-      of<C>(c).recover_multipliers(data, lambda);
-    };
-    out.plus = [](void* c, Vector const& q, Vector const& delta, Vector& sum) {
-      if constexpr (has_tree) polybody::plus(of<C>(c).reduction_.tree(), q, delta, sum);
-    };
-    out.local_rate = [](void* c, Vector const& delta, Vector const& v, Vector& rate) {
-      if constexpr (has_tree) polybody::local_rate(of<C>(c).reduction_.tree(), delta, v, rate);
-    };
+  void expand(Vector const& q, Vector const& v, Vector& full_q, Vector& full_v) override {
+    place(q, v);
+    full_q = q_;
+    full_v = v_;
   }
-
- protected:
-  static constexpr bool has_tree = !std::is_void_v<Solution>;
-
-  /// Maps at the address `c`, the first argument of the functions.
-  template <class C>
-  static CoordinateMaps& of(void* c) {
-    return *static_cast<C*>(c);
-  }
-  /// Computes q_, v_ and the state of the tree from reduced coordinates and velocities.
-  void place(Vector const& q, Vector const& v) {
-    reduction_.expand_coordinates(q, q_);
-    reduction_.expand_velocities(v, v_);
-    reduction_.linear().expand_coordinates(q_);
-    reduction_.linear().expand_rates(v_);
-    if constexpr (has_tree) reduction_.tree().expand_state(q, v, q_, v_, state_);
-  }
-  void expand_rates(Vector const& u, bool bias, Vector& out) {
+  void expand_rates(Vector const& u, bool bias, Vector& out) override {
     reduction_.expand_velocities(u, out);
     reduction_.linear().expand_rates(out);
     if constexpr (has_tree) reduction_.tree().expand_rates(state_, u, bias, out);
   }
-  void reduce(Vector& r, Vector& out) {
+  void reduce(Vector& r, Vector& out) override {
     last_r_ = r;
     reduction_.linear().reduce_forces(r);
     if constexpr (has_tree) reduction_.tree().reduce_forces(state_, r, out);
     reduction_.reduce_velocities(r, out);
   }
-  void recover_multipliers(Data<T> const& data, Vector& lambda) {
+  void recover_multipliers(Data<T> const& data, Vector& lambda) override {
     reduction_.linear().multipliers(last_r_, lambda);
     if constexpr (has_tree) {
       a_ = last_r_;
@@ -138,6 +106,24 @@ class CoordinateMaps {
         }
     }
   }
+  void plus(Vector const& q, Vector const& delta, Vector& sum) const override {
+    if constexpr (has_tree) polybody::plus(reduction_.tree(), q, delta, sum);
+  }
+  void local_rate(Vector const& delta, Vector const& v, Vector& rate) const override {
+    if constexpr (has_tree) polybody::local_rate(reduction_.tree(), delta, v, rate);
+  }
+
+ protected:
+  static constexpr bool has_tree = !std::is_void_v<Solution>;
+
+  /// Computes q_, v_ and the state of the tree from reduced coordinates and velocities.
+  void place(Vector const& q, Vector const& v) {
+    reduction_.expand_coordinates(q, q_);
+    reduction_.expand_velocities(v, v_);
+    reduction_.linear().expand_coordinates(q_);
+    reduction_.linear().expand_rates(v_);
+    if constexpr (has_tree) reduction_.tree().expand_state(q, v, q_, v_, state_);
+  }
 
   ReductionOf<T> reduction_;
   TreeStateOf<T> state_;
@@ -145,13 +131,5 @@ class CoordinateMaps {
   Vector last_r_;     // full residual of the last `reduce`
   Vector reduced_;
 };
-
-/// Table of the functions of `Maps`, for use without linear equations.
-template <class Maps, StateScalar T>
-inline constexpr CoordinateMapOperations<T> map_entries = [] {
-  CoordinateMapOperations<T> out;
-  Maps::template enter<Maps>(out);
-  return out;
-}();
 
 }  // namespace polybody::detail

@@ -336,7 +336,7 @@ class ForwardDynamics {
       residual = &residual_at_rest(system);
     }
     a.resize(system.velocities());
-    Index const bad = c.entries->accelerations(c.self.get(), at.q, at.v, system.load_factor, residual, a);
+    Index const bad = c->accelerations(at.q, at.v, system.load_factor, residual, a);
     return bad < 0 && first_not_finite(a) < 0;
   }
 

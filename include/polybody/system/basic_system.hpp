@@ -330,7 +330,7 @@ class BasicSystem {
   }
   void write_equations(BlockWriter const& write, BlockSink& sink) {
     if (coordinates_)
-      coordinates_.entries->write(coordinates_.self.get(), write, sink);
+      coordinates_->write(write, sink);
     else
       write(sink);
   }
@@ -339,7 +339,7 @@ class BasicSystem {
   void write_tangent(TangentCoefficients c, SecondOrder second, Vector const& given, BlockSink& sink);
   Vector const& full_multipliers(Vector const& lambda) {
     expand_rows(lambda, full_lambda_);
-    coordinates_.entries->recover_multipliers(coordinates_.self.get(), data_, full_lambda_);
+    coordinates_->recover_multipliers(data_, full_lambda_);
     return full_lambda_;
   }
   void clear_loads() {
