@@ -43,6 +43,7 @@ struct AlphaMethod {
   struct Workspace : AlphaVectors {
     StepTangent<StepSolver<Solver>> tangent;   ///< tangent of a step, with its solver
     ForwardDynamics<Solver> forward;           ///< [M, Gᵀ; G, 0]: accelerations at the start, μ
+    StepCheck check;                           ///< checks of the steps of a run
     ReusedFactorisation reused_factorisation;  ///< state of the reused factorisation of the tangent
     double h_factored = 0.0;                   ///< step length of the last factorisation of the tangent [s]
 
@@ -325,19 +326,19 @@ struct AlphaMethod {
         (effort < efforts(system) || (both_multiplier_sets && loses_rank(system, x, h, w)))) {
       w.tangent.include(system, w.lambda);
       w.reused_factorisation.usable = false;
-      return detail::retried(w.forward.failed, report, [&] { return advance(system, x, h, w, effort + 1); });
+      return detail::retried(w.check.failed, report, [&] { return advance(system, x, h, w, effort + 1); });
     }
     if (report.result != NewtonResult::converged && w.tangent.carries_multipliers()) {  // rhs of the message
       system.residual(w.vd, w.lambda, w.r);
       right_hand_side(h, both_multiplier_sets, system.nonholonomic_equations(), w);
     }
     StepReport const step = detail::report_of(h, report);
-    detail::count_if_failed(w.forward.failed, step, [&] {
+    detail::count_if_failed(w.check.failed, step, [&] {
       if (report.result != NewtonResult::converged)
         detail::throw_convergence_failure(name, system, x.t + h, report, {problem.bad, w.rhs, w.y});
       // q follows the last correction of dq
       system.plus(x.q, w.dq, w.q);
-      w.forward.require_end(system, {w.q, w.v, w.lambda, x.t + h, h});
+      w.check.require_end(system, {w.q, w.v, w.lambda, x.t + h, h});
     });
     if (w.solver().lost_rank() || w.tangent.end_step()) w.reused_factorisation.usable = false;
     if (w.forward.leaves_out() && w.solver().is_doubtful()) [[unlikely]]

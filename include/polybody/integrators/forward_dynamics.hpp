@@ -10,7 +10,6 @@
 #include <polybody/solvers/constant_block_cache.hpp>
 #include <polybody/solvers/default_solver.hpp>
 #include <polybody/solvers/tangent_solver.hpp>
-#include <polybody/system/plausibility_check.hpp>
 
 namespace polybody {
 
@@ -64,17 +63,6 @@ void require_finite_rows(System const& s, VecX const& x) {
         {"The motion at ", ErrorObject{s.name_of(s.velocities() + i)}, non_finite_suffix(x[i]),
          " at t = ", ErrorTime{s.at().t}, " s. Check the state before, or take a smaller step.", and_whose_force(s)});
 }
-/// Checks the end of a step. \throws NonFiniteValue naming body and time if a coordinate or velocity is NaN, infinite
-/// or too large.
-template <class = void>
-void require_finite_end(System const& s, VecX const& q, VecX const& v, double t) {
-  Index const in_v = first_not_finite(v), in_q = in_v < 0 ? first_not_finite(q) : -1;
-  if (in_v < 0 && in_q < 0) return;
-  throw NonFiniteValue("motion.not_finite",
-                       {"The motion of ", ErrorObject{in_v < 0 ? name_of_coordinate(s, in_q) : s.name_of(in_v)},
-                        non_finite_suffix(in_v < 0 ? q[in_q] : v[in_v]), " at t = ", ErrorTime{t},
-                        " s. Check its velocity and the forces on it before.", and_whose_force(s)});
-}
 /// Checks the state of the last evaluation, before the matrix at this state is reported as singular. \throws
 /// NonFiniteValue if a coordinate or velocity is NaN, infinite or too large.
 template <class = void>
@@ -121,11 +109,6 @@ Sequence<bool> constant_unknowns(System const& s) {
 
 }  // namespace detail
 
-/// Cost of attempts at a step that failed.
-struct AttemptCost {
-  int iterations = 0, factorisations = 0, evaluations = 0;  ///< as in `StepReport`
-};
-
 /// Accelerations, multipliers and projections by one factorisation of [M, Gᵀ; G, 0].
 template <LinearSolver Solver = DefaultSolver>
 class ForwardDynamics {
@@ -146,41 +129,6 @@ class ForwardDynamics {
     if (system.rows() > 0 || !has_constant_mass(system))
       solver_.linear_solver().keep(detail::constant_unknowns(system));
     solver_.analyse(system, 1, [&](BlockSink& sink) { system.masses(sink); });
-  }
-
-  PlausibilityCheck bounds;  ///< plausibility limits of the run; inactive until the run begins
-  AttemptCost failed;        ///< cost of failed attempts since the run reset this sum
-
-  /// Trial of a step. Without `keep`, its destructor restores the account of `bounds` and the elimination order of the
-  /// solver, so that a repeated step is bitwise identical.
-  class Trial {
-   public:
-    /// Stores the account of `bounds` and the elimination order.
-    explicit Trial(ForwardDynamics& of) : of_(of), bounds_(of.bounds), reorderings_(of.solver_.reorderings()) {}
-    Trial(Trial const&) = delete;
-    ~Trial() {
-      if (!kept_) of_.solver_.limit_reorderings(reorderings_);
-    }
-    /// Accepts the trial: the destructor restores nothing.
-    void keep() {
-      bounds_.keep();
-      kept_ = true;
-    }
-
-   private:
-    ForwardDynamics& of_;
-    PlausibilityCheck::Trial bounds_;
-    std::size_t reorderings_;
-    bool kept_ = false;
-  };
-  Trial attempt() { return Trial(*this); }  ///< begins the trial of a step
-
-  /// Checks the end of a step before the step is accepted. \throws NonFiniteValue, Diverged.
-  void require_end(System& system, StepResult const& end) {
-    double const of_velocities = squares(end.v);
-    if (!(of_velocities + squares(end.q) <= largest_number * largest_number))
-      detail::require_finite_end(system, end.q, end.v, end.t);  // checks each number
-    bounds.require(system, end, of_velocities);
   }
 
   /// Solves M a + Gᵀλ = f, G a = −γ − `feedback` at the coordinates, velocities and time `at`. \throws SingularMatrix,
@@ -297,6 +245,10 @@ class ForwardDynamics {
     take(system.velocities(), system.rows(), mu);
   }
 
+  /// Number of changes of the elimination order; 0 for solvers with a fixed order.
+  std::size_t reorderings() const { return solver_.reorderings(); }
+  /// Reverts all changes of the elimination order except the first `count`, for later factorisations.
+  void limit_reorderings(std::size_t count) noexcept { solver_.limit_reorderings(count); }
   /// Indices of the redundant equations of the last factorisation (see `name_of_equation`). Their multipliers are not
   /// unique and are set to zero. Empty for solvers that do not report redundant equations.
   std::span<Index const> redundant_rows() const { return solver_.dropped(); }

@@ -90,17 +90,17 @@ class Simulation {
     State ready = stepped();  // `start` clears its history
     if (system_->rows() > 0) leave_out_redundant(*system_, fresh.forward, ready, &ready.lambda);
     method_.start(*system_, ready, done() ? h_ : plan_.next(ready.t, h_).h, fresh);
-    fresh.forward.bounds = std::move(workspace_.forward.bounds);
+    fresh.check.bounds = std::move(workspace_.check.bounds);
     workspace_ = std::move(fresh);
   }
 
   /// Applies `RunOptions::limits` to the steps from this state on.
-  void bound() { workspace_.forward.bounds.begin(*system_, options_.limits, step_end()); }
+  void bound() { workspace_.check.bounds.begin(*system_, options_.limits, step_end()); }
   StepResult step_end() { return {stepped().q, stepped().v, stepped().lambda, stepped().t, h_}; }
   /// Evaluates the energy balance up to the present state, before a restart or an action and at the end of the run.
   /// \param halved number of halved steps that are not in the report yet
   [[gnu::cold]] void settle(int halved) {
-    Unexplained const found = workspace_.forward.bounds.settle(*system_, step_end());
+    Unexplained const found = workspace_.check.bounds.settle(*system_, step_end());
     if (done()) report_.warn_of_energy(found, options_.limits.warning, {start_, stepped().t, report_.halved + halved});
   }
   State& stepped() { return eliminates() ? reduced_ : *x_; }
@@ -251,12 +251,11 @@ void Simulation<I, Solver>::advance(bool updates) {
   bool const keeps = keeps_ || lands || remainder_step;
   if (keeps) before_ = stepped();
   undo_.begin(row_, h_, plan_, report_);
-  auto trial = workspace_.forward.attempt();
-  workspace_.forward.failed = {};
+  StepTrial trial(workspace_);
   auto const take = [&] { return step(h, options_.allowed_halvings()); };
   try {
     StepReport report = redundancy_.step(*system_, workspace_.forward, stepped(), before_, take, [&] { restart(); });
-    report.add(workspace_.forward.failed);
+    report.add(workspace_.check.failed);
     bool const reached = lands && report.taken == h;
     stepped().t = reached ? target : row_.after(from, report.taken);
     choose_step(report, reached);
