@@ -12,10 +12,9 @@ namespace polybody {
 // `polybody::compiled` does not compile them again.
 
 template <StateScalar T>
-BasicSystem<T>::BasicSystem(void const* model, ModelOperations<T> const& entries, ModelLayout layout, Data<T> data,
+BasicSystem<T>::BasicSystem(std::shared_ptr<ModelOperations<T> const> operations, ModelLayout layout, Data<T> data,
                             CoordinatesOf<T> coordinates)
-    : model_(model),
-      entries_(entries),
+    : operations_(std::move(operations)),
       layout_(std::move(layout)),
       coordinates_(std::move(coordinates)),
       data_(std::move(data)) {
@@ -48,14 +47,14 @@ void BasicSystem<T>::evaluate(Vector const& q, Vector const& v, double t) {
     v_ = v;
   }
   for (std::size_t i = 0; i < data_.states.size(); ++i) data_.states[i] = v_[data_.first_state + Index(i)];
-  entries_.evaluate_marker(model_, at(), data_);
-  entries_.evaluate_constraints(model_, at(), data_);
+  operations_->evaluate_marker(at(), data_);
+  operations_->evaluate_constraints(at(), data_);
 }
 
 template <StateScalar T>
 void BasicSystem<T>::use_threads(int threads) {
   workers_ = std::make_unique<Workers>(threads);
-  entries_.share_loops(model_, data_, *workers_);
+  operations_->share_loops(data_, *workers_);
 }
 
 /// Residual M a − f + Gᵀλ of the full model in the last evaluated state, for the accelerations and multipliers of a
@@ -93,7 +92,7 @@ void BasicSystem<T>::acceleration_bias(Vector& gamma) {
   for (ConstraintBlock<T> const& block : data_.rows)
     if (block.source == ConstraintSource::linear)
       for (int i = 0; i < block.rows; ++i) full[block.row + i] = T(0.0);
-  entries_.measure_gamma(model_, at(), data_, full);
+  operations_->measure_gamma(at(), data_, full);
   add_biases(data_, full);
   if (coordinates_) {  // γ + G b
     coordinates_->expand_rates(still_, true, full_a_);
@@ -127,13 +126,13 @@ void BasicSystem<T>::rows_transposed_times(Vector const& b, Vector& out) {
 template <StateScalar T>
 void BasicSystem<T>::plus(Vector const& q, Vector const& delta, Vector& out) const {
   if (coordinates_) coordinates_->plus(q, delta, out);
-  entries_.plus(model_, reduced_places(), q, delta, out);
+  operations_->plus(reduced_places(), q, delta, out);
 }
 
 template <StateScalar T>
 void BasicSystem<T>::local_rate(Vector const& delta, Vector const& v, Vector& out) const {
   if (coordinates_) coordinates_->local_rate(delta, v, out);
-  entries_.local_rate(model_, reduced_places(), delta, v, out);
+  operations_->local_rate(reduced_places(), delta, v, out);
 }
 
 template <StateScalar T>
@@ -147,7 +146,7 @@ std::string BasicSystem<T>::name_of(Index i) const {
 template <StateScalar T>
 void BasicSystem<T>::full_residual(Vector const& a, Vector const& lambda, Vector& r) {
   for (Index i = 0; i < r.size(); ++i) r[i] = T(0.0);
-  entries_.element_forces(model_, at(), a, load_factor, data_, r);
+  operations_->element_forces(at(), a, load_factor, data_, r);
   add_row_forces(data_, lambda, r);
   push_forces();
   add_actions(data_, layout_, load_factor, r);
@@ -162,12 +161,12 @@ void BasicSystem<T>::write_tangent(TangentCoefficients c, SecondOrder second, Ve
   c.full = second == SecondOrder::included;
   Vector const& lambda = c.full && coordinates_ ? full_multipliers(given) : given;
   if (c.full) clear_loads();
-  require_entry(entries_.element_tangents, "tangents")(model_, at(), c, data_, sink);
+  operations_->element_tangents(at(), c, data_, sink);
   write_rows(data_, layout_.velocities, sink);
-  entries_.compliant_tangents(model_, c, data_, sink);
-  if (c.full) require_entry(entries_.joint_stiffness, "second-order terms")(model_, at(), lambda, c, data_, sink);
-  entries_.force_tangents(model_, t_, load_factor, c, data_, sink);
-  if (c.full) entries_.load_stiffness(model_, at(), c, data_, sink);
+  operations_->compliant_tangents(c, data_, sink);
+  if (c.full) operations_->joint_stiffness(at(), lambda, c, data_, sink);
+  operations_->force_tangents(t_, load_factor, c, data_, sink);
+  if (c.full) operations_->load_stiffness(at(), c, data_, sink);
 }
 
 /// Residual M v̇ − f + Gᵀλ of the full model in the last evaluated state, at v̇ = 0 and λ = 0.
@@ -249,9 +248,7 @@ template <class = void>
 void coordinate_rates(System const& s, VecX const& q, VecX const& v, VecXOf<Dual<1>>& workspace, VecX& rate) {
   Coordinates const& c = s.step_coordinates();
   if (c) c->coordinate_rates(q, v, rate);
-  auto const& [entries, model] = s.entries();
-  require_entry(entries.coordinate_rates, "rates of coordinates")(model, c ? c.reduced->places.data() : nullptr, q, v,
-                                                                  workspace, rate);
+  s.operations().coordinate_rates(c ? c.reduced->places.data() : nullptr, q, v, workspace, rate);
 }
 
 /// Name of the body to which coordinate i of a time step belongs.
