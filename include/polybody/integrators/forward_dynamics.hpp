@@ -4,6 +4,7 @@
 /// [thesis Eq. 3.2].
 
 #include <algorithm>
+#include <memory>
 #include <span>
 
 #include <polybody/math/vectors.hpp>
@@ -126,9 +127,8 @@ class ForwardDynamics {
         next_(VecX::Zero(system.coordinates())) {
     by_tree_ = system.step_coordinates() && system.step_coordinates().reduced->solves_by_bodies && system.rows() == 0;
     if (by_tree_) only_weight_ = under_gravity_only(system);
-    if (system.rows() > 0 || !has_constant_mass(system))
-      solver_.linear_solver().keep(detail::constant_unknowns(system));
-    solver_.analyse(system, 1, [&](BlockSink& sink) { system.masses(sink); });
+    solver_ = solver_for(system);
+    solver_->analyse(system, 1, [&](BlockSink& sink) { system.masses(sink); });
   }
 
   /// Solves M a + Gᵀλ = f, G a = −γ − `feedback` at the coordinates, velocities and time `at`. \throws SingularMatrix,
@@ -246,31 +246,31 @@ class ForwardDynamics {
   }
 
   /// Number of changes of the elimination order; 0 for solvers with a fixed order.
-  std::size_t reorderings() const { return solver_.reorderings(); }
+  std::size_t reorderings() const { return solver_->reorderings(); }
   /// Reverts all changes of the elimination order except the first `count`, for later factorisations.
-  void limit_reorderings(std::size_t count) noexcept { solver_.limit_reorderings(count); }
+  void limit_reorderings(std::size_t count) noexcept { solver_->limit_reorderings(count); }
   /// Indices of the redundant equations of the last factorisation (see `name_of_equation`). Their multipliers are not
   /// unique and are set to zero. Empty for solvers that do not report redundant equations.
-  std::span<Index const> redundant_rows() const { return solver_.dropped(); }
+  std::span<Index const> redundant_rows() const { return solver_->dropped(); }
   /// Every later factorisation drops these redundant `equations` (`leave_out_redundant` selects them).
   [[gnu::cold]] void mark_redundant(Sequence<Index> equations) {
     left_out_ = std::move(equations);
-    solver_.mark_redundant(left_out());
+    solver_->mark_redundant(left_out());
   }
   bool leaves_out() const { return !left_out_.empty(); }  ///< true if equations are marked as redundant
   std::span<Index const> left_out() const { return {left_out_.data(), left_out_.size()}; }  ///< marked equations
   /// True if the selection of `mark_redundant` must be checked: the last factorisation dropped other equations or found
   /// a small pivot, or `note_doubt` was called.
-  bool is_doubtful() const { return doubtful_ || solver_.is_doubtful(); }
+  bool is_doubtful() const { return doubtful_ || solver_->is_doubtful(); }
   void note_doubt() { doubtful_ = true; }    ///< sets `is_doubtful` until `clear_doubt`
   void clear_doubt() { doubtful_ = false; }  ///< resets `is_doubtful`, after a new selection
   /// Computes the null vector `n` of the equation `dropped` in the last factorisation; entries are numbered as
   /// equations. See `BlockFactor::null_vector`.
-  bool null_vector(Index dropped, VecX& n) { return solver_.null_vector(dropped, n); }
+  bool null_vector(Index dropped, VecX& n) { return solver_->null_vector(dropped, n); }
   /// Names of the joints and bodies with redundant equations.
   std::vector<std::string> redundant(System const& system) const {
     std::vector<std::string> names;
-    for (Index const i : solver_.dropped()) {
+    for (Index const i : solver_->dropped()) {
       std::string name = name_of_equation(system, i);
       if (names.empty() || names.back() != name) names.push_back(std::move(name));
     }
@@ -292,9 +292,22 @@ class ForwardDynamics {
     return bad < 0 && first_not_finite(a) < 0;
   }
 
+  /// Solver of [M, Gᵀ; G, 0]; one that factorises constant parts of the matrix only once, if there are such parts.
+  [[gnu::cold]] static std::unique_ptr<LinearEquations> solver_for(System& system) {
+    Sequence<bool> constant = detail::constant_unknowns(system);
+    bool const changes = system.rows() > 0 || !has_constant_mass(system);
+    if (changes && std::find(constant.begin(), constant.end(), true) != constant.end()) {
+      PatternSink pattern;
+      system.masses(pattern);
+      auto parts = std::make_unique<TangentSolver<ConstantBlockCache<StepSolver<Solver>>>>();
+      if (parts->linear_solver().keep(std::move(constant), pattern.blocks) > 0) return parts;
+    }
+    return std::make_unique<TangentSolver<StepSolver<Solver>>>();
+  }
+
   void factor(System& system) {
     if (system.rows() == 0 && factored_ && has_constant_mass(system)) return;
-    Index const bad = solver_.factor([&](BlockSink& sink) { system.masses(sink); });
+    Index const bad = solver_->factor([&](BlockSink& sink) { system.masses(sink); });
     if (bad >= 0) detail::throw_unsolvable(system, {}, name_of_equation(system, bad));
     factored_ = true;
   }
@@ -304,7 +317,7 @@ class ForwardDynamics {
     Index const n = system.velocities();
     for (Index i = 0; i < n; ++i) rhs_[i] = r_scale == 0.0 ? 0.0 : r_scale * r_[i];
     for (Index i = 0; i < system.rows(); ++i) rhs_[n + i] = phi_scale * phi_[i];
-    solver_.solve(rhs_, x_);
+    solver_->solve(rhs_, x_);
     if (Index const i = first_not_finite(x_); i >= 0) detail::throw_unsolvable(system, rhs_, system.name_of(i));
   }
 
@@ -314,7 +327,7 @@ class ForwardDynamics {
     std::copy_n(x_.data() + first, n, out.data());
   }
 
-  TangentSolver<ConstantBlockCache<StepSolver<Solver>>> solver_;
+  std::unique_ptr<LinearEquations> solver_;
   bool factored_ = false;
   bool by_tree_ = false, only_weight_ = false, doubtful_ = false;
   Sequence<Index> left_out_;

@@ -21,14 +21,43 @@ template <class = void>
   return true;
 }
 
+/// Linear equations in the unknowns of a time step, for any linear solver.
+class LinearEquations {
+ public:
+  virtual ~LinearEquations() = default;
+
+  /// Allocates all memory. \param copies number of copies of the unknowns, for example one for each stage of a method
+  virtual void analyse(System& system, Index copies, BlockWriter const& write) = 0;
+  /// Writes and factorises the matrix in the state of the last evaluation of the system. Returns −1, or the equation
+  /// without a pivot (`name_of_equation`).
+  virtual Index factor(BlockWriter const& write) = 0;
+  /// Solution x for the right-hand side `rhs`, both in the unknowns of the time step.
+  virtual void solve(VecX const& rhs, VecX& x) = 0;
+
+  /// Number of changes of the elimination order; 0 for solvers with a fixed order.
+  virtual std::size_t reorderings() const = 0;
+  /// Reverts all changes of the elimination order except the first `count`, for later factorisations.
+  virtual void limit_reorderings(std::size_t count) noexcept = 0;
+  /// Redundant equations of the last factorisation; empty for solvers that do not list them.
+  virtual std::span<Index const> dropped() const = 0;
+  /// Makes every later factorisation drop these constraint equations. No effect for several copies, for the
+  /// articulated-body algorithm, and for solvers without `mark_redundant`.
+  virtual void mark_redundant(std::span<Index const> equations) = 0;
+  /// True if the last factorisation dropped more equations than `mark_redundant` lists, or has small pivots of closing
+  /// joints: see `BlockFactor::is_doubtful`.
+  virtual bool is_doubtful() const = 0;
+  /// Computes the null vector `n` of equation `dropped` (`BlockFactor::null_vector`) in the unknowns of the linear
+  /// equations. Returns false if the linear solver does not provide null vectors.
+  virtual bool null_vector(Index dropped, VecX& n) = 0;
+};
+
 /// Linear equations of an integrator in the unknowns of a time step. The system writes the matrix, and `Solver`
 /// factorises and solves. Models with `joint_coordinates::ArticulatedBody` use the articulated-body algorithm instead
 /// of `Solver`.
 template <LinearSolver Solver>
-class TangentSolver {
+class TangentSolver final : public LinearEquations {
  public:
-  /// Allocates all memory. \param copies number of copies of the unknowns, for example one for each stage of a method
-  [[gnu::cold]] void analyse(System& system, Index copies, BlockWriter const& write) {
+  [[gnu::cold]] void analyse(System& system, Index copies, BlockWriter const& write) override {
     copies_ = copies;
     coordinates_ = system.step_coordinates();
     size_ = system.size();
@@ -61,9 +90,7 @@ class TangentSolver {
     return factor([&](BlockSink& sink) { system.tangent(k, second, x.lambda, sink); });
   }
 
-  /// Writes and factorises the matrix in the state of the last evaluation of the system. Returns −1, or the equation
-  /// without a pivot (`name_of_equation`).
-  Index factor(BlockWriter const& write) {
+  Index factor(BlockWriter const& write) override {
     if (coordinates_) frozen_->freeze();
     if (solves_by_bodies()) return frozen_->factor(write);
     Index const bad = write_and_factor(solver_, write);
@@ -86,15 +113,13 @@ class TangentSolver {
   /// Linear solver that `analyse` sets up.
   Solver& linear_solver() { return solver_; }
 
-  /// Number of changes of the elimination order; 0 for solvers with a fixed order.
-  std::size_t reorderings() const {
+  std::size_t reorderings() const override {
     if constexpr (requires { solver_.reorderings(); })
       return solver_.reorderings();
     else
       return 0;
   }
-  /// Reverts all changes of the elimination order except the first `count`, for later factorisations.
-  void limit_reorderings(std::size_t count) noexcept {
+  void limit_reorderings(std::size_t count) noexcept override {
     if constexpr (requires { solver_.limit_reorderings(count); }) solver_.limit_reorderings(count);
   }
 
@@ -102,30 +127,29 @@ class TangentSolver {
   /// configuration. In other states these equations are independent, and the factorisation would not enforce them.
   bool lost_rank() const { return dropped().size() > fewest_dropped_; }
 
-  /// Makes every later factorisation drop these constraint equations. No effect for several copies, for the
-  /// articulated-body algorithm, and for solvers without `mark_redundant`.
-  [[gnu::cold]] void mark_redundant(std::span<Index const> equations) {
+  [[gnu::cold]] void mark_redundant(std::span<Index const> equations) override {
     if constexpr (requires { solver_.mark_redundant(equations); }) {
       if (solves_by_bodies() || copies_ != 1) return;
       solver_.mark_redundant(equations);
       fewest_dropped_ = std::numeric_limits<std::size_t>::max();
     }
   }
-  /// True if the last factorisation dropped more equations than `mark_redundant` lists, or has small pivots of closing
-  /// joints: see `BlockFactor::is_doubtful`.
-  [[gnu::cold]] bool is_doubtful() const {
+  [[gnu::cold]] bool is_doubtful() const override {
     if constexpr (requires { solver_.is_doubtful(1e-3); }) return !solves_by_bodies() && solver_.is_doubtful(1e-3);
     return false;
   }
-  /// Computes the null vector `n` of equation `dropped` (`BlockFactor::null_vector`) in the unknowns of the linear
-  /// equations. Returns false if `Solver` does not provide null vectors.
-  [[gnu::cold]] bool null_vector(Index dropped, VecX& n) {
-    if constexpr (requires { bool(solver_.null_vector(dropped, n)); }) return solver_.null_vector(dropped, n);
-    return false;
+  [[gnu::cold]] bool null_vector(Index dropped, VecX& n) override {
+    if constexpr (requires { bool(solver_.null_vector(dropped, n)); }) {
+      return solver_.null_vector(dropped, n);
+    } else if constexpr (requires { solver_.null_vector(dropped, n); }) {
+      solver_.null_vector(dropped, n);
+      return true;
+    } else {
+      return false;
+    }
   }
 
-  /// Solution x for the right-hand side `rhs`, both in the unknowns of the time step.
-  void solve(VecX const& rhs, VecX& x) {
+  void solve(VecX const& rhs, VecX& x) override {
     if (!coordinates_) return solver_.solve(rhs, x);
     if (solves_by_bodies()) return frozen_->solve(rhs, x);
     Index const n = size_, m = equations_;
@@ -142,8 +166,7 @@ class TangentSolver {
     }
   }
 
-  /// Redundant equations of the last factorisation; empty for solvers that do not list them.
-  std::span<Index const> dropped() const {
+  std::span<Index const> dropped() const override {
     if constexpr (requires { solver_.dropped(); })
       return solver_.dropped();
     else
