@@ -66,7 +66,7 @@ class CoordinateMap {
   using Vector = VecXOf<T>;  ///< coordinates, velocities or constraint equations
   virtual ~CoordinateMap() = default;
 
-  /// Computes full q and v from reduced q and v. The other functions refer to this state.
+  /// Computes `full_q` and `full_v` from reduced q and v. The other functions refer to this state.
   virtual void expand(Vector const& q, Vector const& v, Vector& full_q, Vector& full_v) = 0;
   /// out = T u, or T u + b if `bias` is true.
   virtual void expand_rates(Vector const& u, bool bias, Vector& out) = 0;
@@ -126,10 +126,10 @@ class StepCoordinates<double> : public CoordinateMap<double> {
   /// For `eliminated_equations`: computes the unknowns of the step from a solution of the linear system, at the state
   /// of the last `expand`. The multipliers of the eliminated equations follow them in `out`.
   virtual void correction_from_equations(VecX const& solution, VecX& out) = 0;
-  /// Articulated-body algorithm, without constraint equations: out = u̇ under gravity only, or for the residual
-  /// `residual` of the full model. Returns −1, or a velocity without inertia.
+  /// Articulated-body algorithm, without constraint equations: out = u̇ under gravity times `load_factor`, or for the
+  /// residual `residual` of the full model. Returns −1, or a velocity without inertia.
   virtual Index accelerations(VecX const& q, VecX const& v, double load_factor, VecX const* residual, VecX& out) = 0;
-  /// Articulated-body algorithm under gravity only: r = Tᵀ(M(T u̇ + b) − f) at the iterate x.
+  /// Articulated-body algorithm under gravity times `load_factor` only: r = Tᵀ(M(T u̇ + b) − f) at the iterate x.
   virtual void balance(StepPosition const& x, double load_factor, VecX& r) = 0;
 };
 
