@@ -185,7 +185,6 @@ void all_joints(benchmark::State& state) {
   for (auto _ : state) {
     using Kept = Cables<Constraint, Penalty>;
     using ByBodies = JointCoordinatesBy<joint_coordinates::ArticulatedBody>;
-    using Dense = JointCoordinatesBy<joint_coordinates::DenseMatrix>;
     Cost const rod = cost(chain(Rods{}, Constraint{}, 64, false), 64),
                cable = cost(chain(Kept{}, Constraint{}, 64, false), 64);
     Tables tables;
@@ -203,7 +202,6 @@ void all_joints(benchmark::State& state) {
     measure("rigid, JointCoordinates", Chain<Rigid<>, Revolute, JointCoordinates>{}, JointCoordinates{}, rod, tables);
     measure("rigid, JointCoordinatesBy<ArticulatedBody>", Chain<Rigid<>, Revolute, ByBodies>{}, ByBodies{}, rod,
             tables);
-    measure("rigid, JointCoordinatesBy<DenseMatrix>", Chain<Rigid<>, Revolute, Dense>{}, Dense{}, rod, tables, 128);
     measure("cables, Constraint", Kept{}, Constraint{}, cable, tables);
     measure("cables, Penalty", Kept{}, penalty, cable, tables, 64);
     measure("cables, AncfLinear", Cables<AncfLinear>{}, AncfLinear{}, cable, tables);

@@ -10,7 +10,6 @@ template class LinearEliminationOf<double>;
 template class detail::BodyEquationsOf<void>;
 template class detail::ReducedCoordinates<void>;
 template class detail::ReducedCoordinates<joint_coordinates::Augmented>;
-template class detail::ReducedCoordinates<joint_coordinates::DenseMatrix>;
 template class detail::ReducedCoordinates<joint_coordinates::ArticulatedBody>;
 template void assemble<DefaultSolver>(System&, State&, double, int);
 

@@ -95,8 +95,7 @@ struct Link {
                            }});
     }
     State start = model.reference_state();
-    system.entries().first.rigid_velocities(system.entries().second, start.q, Vec3::Zero(), {0, 0, task.turn(0.0).rate},
-                                            start.v);
+    system.operations().rigid_velocities(start.q, Vec3::Zero(), {0, 0, task.turn(0.0).rate}, start.v);
     return Scenario<M>{std::move(model), start, {.end_time = task.end_time, .step = task.step}, std::move(outputs)};
   }
 

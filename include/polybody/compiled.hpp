@@ -15,7 +15,6 @@ extern template class LinearEliminationOf<double>;
 extern template class detail::BodyEquationsOf<void>;
 extern template class detail::ReducedCoordinates<void>;
 extern template class detail::ReducedCoordinates<joint_coordinates::Augmented>;
-extern template class detail::ReducedCoordinates<joint_coordinates::DenseMatrix>;
 extern template class detail::ReducedCoordinates<joint_coordinates::ArticulatedBody>;
 extern template void assemble<DefaultSolver>(System&, State&, double, int);
 

@@ -96,10 +96,6 @@ TEST(HungGrids, ThreeToFiveLoopsOnJointCoordinatesRunThroughUnderRadau) {
       expect_runs_through(column, 2.0 * std::numbers::pi / 3.0, step, 1e-5);
     }
 }
-TEST(HungGrids, DenseEquationsOfJointCoordinatesRunThroughUnderRadau) {
-  ColumnOf<JointCoordinatesBy<joint_coordinates::DenseMatrix>> column(2);
-  expect_runs_through(column, 5.0, 2e-3, 2e-7);
-}
 // A cable on a linear pin, which has no connection with the loops, eliminates coordinates of the model.
 TEST(HungGrids, LoopsBesideACableOnALinearPinRunThroughUnderRadau) {
   using Cable = planar::AncfCable<>;

@@ -28,7 +28,6 @@ TEST(JointCoordinatesInStages, ByRungeKuttaWithProjectionOfARowThatStays) {
 }
 TEST(JointCoordinatesInStages, ByRadau) {
   expect_derivatives<JointCoordinates, CarriedArm{}>(Radau{});
-  expect_derivatives<JointCoordinatesBy<joint_coordinates::DenseMatrix>, CarriedArm{.loop = true}>(Radau{});
   expect_derivatives<JointCoordinates, CarriedArm{.loop = true}>(Radau{});
 }
 TEST(JointCoordinatesInStages, OfAThreadAndOfWhatAnEventDoes) {

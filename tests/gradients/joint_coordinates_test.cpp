@@ -35,9 +35,6 @@ TEST(JointCoordinatesUnderParameters, OfATreeInTheAugmentedSystem) {
   expect_derivatives<JointCoordinates, CarriedArm{}>();
   expect_derivatives<JointCoordinates, CarriedArm{.loop = true}>();
 }
-TEST(JointCoordinatesUnderParameters, OfATreeInTheDenseSystem) {
-  expect_derivatives<JointCoordinatesBy<joint_coordinates::DenseMatrix>, CarriedArm{.loop = true}>();
-}
 TEST(JointCoordinatesUnderParameters, OfATreeBodyByBody) {
   expect_derivatives<JointCoordinatesBy<joint_coordinates::ArticulatedBody>, CarriedArm{}>();
   expect_derivatives<JointCoordinatesBy<joint_coordinates::ArticulatedBody>, CarriedArm{.loop = true}>();
@@ -70,7 +67,7 @@ auto const in_the_plane = [](std::span<double const> p) {
   model.connect(Turn{}, second.at(Vec2(-0.2, 0.0)), first.at(Vec2(-0.3, -0.05)), "flying pin");
   State start = model.reference_state();
   System const system(model, with<Capabilities::rigid_velocities>);
-  system.entries().first.rigid_velocities(system.entries().second, start.q, Vec3::Zero(), {0, 0, p[3]}, start.v);
+  system.operations().rigid_velocities(start.q, Vec3::Zero(), {0, 0, p[3]}, start.v);
   start.v[8] += 1.0;  // velocity of the second flying body
   auto const end = [slider, second](auto const& m, auto const& x) {
     auto const a = position(m, x, slider.at(Vec2(0.05, 0.02))), b = position(m, x, second.at(Vec2(0.0, 0.1)));

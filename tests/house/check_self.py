@@ -53,6 +53,8 @@ class Check(unittest.TestCase):
     def test_words(self):
         self.assertEqual(len(self.found("words", math__so3="int a;\n# define PI 3\n")), 1)
         self.assertEqual(len(self.found("words", math__so3="struct A { virtual void f(); };")), 1)
+        self.assertEqual(self.found("words", system__coordinates="struct A { virtual void f(); };"), [])
+        self.assertEqual(len(self.found("words", system__coordinates="struct A {};")), 1)
 
     def test_length(self):
         self.assertEqual(len(self.found("length", math__so3="//\n" * 401)), 1)

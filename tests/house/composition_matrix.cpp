@@ -40,7 +40,6 @@ auto const geometries = std::tuple(
 auto const policies =
     std::tuple(Type<Constraint>{"Constraint"}, Type<Penalty>{"Penalty"}, Type<PerRow>{"PenaltyPerEquation"},
                Type<Bushing>{"Bushing"}, Type<Laws>{"NonlinearBushing"}, Type<JointCoordinates>{"JointCoordinates"},
-               Type<JointCoordinatesBy<joint_coordinates::DenseMatrix>>{"JointCoordinatesBy<DenseMatrix>"},
                Type<JointCoordinatesBy<joint_coordinates::ArticulatedBody>>{"JointCoordinatesBy<ArticulatedBody>"},
                Type<AncfLinear>{"AncfLinear"});
 

@@ -29,7 +29,7 @@ int until = 3;
 NEW = """#include <polybody/integrators/generalised_alpha.hpp>
 using Stepper = GeneralisedAlpha;  // the integrator GeneralizedAlpha
 using Beam = Lrvf<RelativeRotation, SelectiveQuadrature>;
-using Loop = Joint<Revolute, JointCoordinatesBy<joint_coordinates::DenseMatrix>>;
+using Loop = Joint<Revolute, JointCoordinatesBy<joint_coordinates::Augmented>>;
 std::string const title = "until the end, by GeneralizedAlpha";
 for (State const& now : simulate(model, x, Stepper{.rho_inf = 0.8}, {.end_time = 2.0, .step = 1e-3}))
   std::cout << constraint_violation(model, now, pin).norm() << own.gap(now) << '\\n';

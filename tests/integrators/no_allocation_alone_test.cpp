@@ -242,7 +242,7 @@ long in_steps(I const& integrator) {
   auto workspace = method.template workspace<Solver>(system);
   double const h = 1e-5;  // stable for explicit methods
   method.start(system, x, h, workspace);
-  workspace.forward.bounds.begin(system, {}, {x.q, x.v, x.lambda, x.t, 1e-3});
+  workspace.check.bounds.begin(system, {}, {x.q, x.v, x.lambda, x.t, 1e-3});
   long const before = taken;
   for (int i = 0; i < 20; ++i) method.step(system, x, h, workspace);
   for (int i = 0; i < 20; ++i) method.step(system, x, 0.25 * h, workspace);

@@ -239,12 +239,11 @@ class Examination {
   /// The force of gravity and its moment: the derivatives of its potential along rigid motions.
   Vec6 weight(System& s, State const& x) {
     Vec6 w;
-    auto const rigid = s.entries().first.rigid_velocities;
     for (int i = 0; i < 6; ++i) {
       State y = x;
       VecX velocities = VecX::Zero(s.velocities());
-      rigid(s.entries().second, x.q, i < 3 ? Vec3(Vec3::Unit(i)) : Vec3(Vec3::Zero()),
-            i < 3 ? Vec3(Vec3::Zero()) : Vec3(Vec3::Unit(i - 3)), velocities);
+      s.operations().rigid_velocities(x.q, i < 3 ? Vec3(Vec3::Unit(i)) : Vec3(Vec3::Zero()),
+                                      i < 3 ? Vec3(Vec3::Zero()) : Vec3(Vec3::Unit(i - 3)), velocities);
       auto const potential = [&](double by) {
         s.plus(x.q, by * velocities, y.q);
         s.evaluate(y.q, y.v, y.t);

@@ -42,9 +42,7 @@ struct NameOf<PlanarWeld> {
 
 template <class P>
 constexpr char const* policy_name() {
-  if constexpr (std::is_same_v<P, JointCoordinatesBy<joint_coordinates::DenseMatrix>>)
-    return "JointCoordinatesBy<DenseMatrix>";
-  else if constexpr (std::is_same_v<P, JointCoordinatesBy<joint_coordinates::ArticulatedBody>>)
+  if constexpr (std::is_same_v<P, JointCoordinatesBy<joint_coordinates::ArticulatedBody>>)
     return "JointCoordinatesBy<ArticulatedBody>";
   else
     return P::name;

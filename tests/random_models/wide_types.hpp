@@ -15,7 +15,6 @@ WideType penalties();
 WideType bushings();
 WideType policies_of_bodies();
 WideType trees_by_augmented();
-WideType trees_by_reduced();
 WideType trees_by_bodies();
 WideType linear_joints();
 WideType planar_joints();

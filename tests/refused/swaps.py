@@ -24,7 +24,7 @@ NUMBERS = {
     "NonlinearBushing": "{" + ", ".join(6 * [LAW]) + "}",
     "RungeKutta4<Baumgarte>": "{.stabilisation = {.alpha = 50.0, .beta = 50.0}}",
 }
-SCOPED = {"DenseMatrix": "joint_coordinates::DenseMatrix", "ArticulatedBody": "joint_coordinates::ArticulatedBody"}
+SCOPED = {"ArticulatedBody": "joint_coordinates::ArticulatedBody"}
 BODIES = {"AncfCable": "AncfCable<>", "Lrvf<RelativeRotation>": "Lrvf<>", "AncfBeam<Continuum>": "AncfBeam<Continuum<>>", "planar::AncfCable": "planar::AncfCable<>"}
 
 

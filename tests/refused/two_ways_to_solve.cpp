@@ -6,5 +6,5 @@
 using namespace polybody;
 
 Model<Bodies<planar::Rigid>, Joints<Joint<planar::Revolute, JointCoordinatesBy<joint_coordinates::ArticulatedBody>>,
-                                    Joint<planar::Prismatic, JointCoordinatesBy<joint_coordinates::DenseMatrix>>>>
+                                    Joint<planar::Prismatic, JointCoordinates>>>
     model;

@@ -35,7 +35,7 @@ auto hung_cables(double h = 2e-3) {
     if constexpr (held) model.connect(Rod{{.length = 0.7}, {}}, model.ground().at({p[2] + 0.5, 0.7, 0}), tip, "rod");
     State start = model.reference_state();
     System const system(model, with<Capabilities::rigid_velocities>);
-    system.entries().first.rigid_velocities(system.entries().second, start.q, Vec3::Zero(), {0, p[4], 0}, start.v);
+    system.operations().rigid_velocities(start.q, Vec3::Zero(), {0, p[4], 0}, start.v);
     auto const end = [tip](auto const& m, auto const& x) {
       auto const r = position(m, x, tip);
       auto sum = r[0] + 2.0 * r[1] - 0.5 * r[2];

@@ -55,7 +55,7 @@ struct TwoLinks {
     State start = model.reference_state();
     System const system(model, with<Capabilities::rigid_velocities>);
     VecX turn = start.v, next = start.q;
-    system.entries().first.rigid_velocities(system.entries().second, start.q, Vec3::Zero(), {0, 1, 0}, turn);
+    system.operations().rigid_velocities(start.q, Vec3::Zero(), {0, 1, 0}, turn);
     system.plus(start.q, p[5] * turn, next);
     start.q = next;
     for (Index i = 0; i < turn.size(); ++i) start.v[i] = p[4] * turn[i] + 0.3 * std::sin(1.0 + 3.0 * double(i));

@@ -22,7 +22,6 @@ auto policies() {
                                              .damping = Vec<double, rows>::Constant(1e2)},
                     Bushing{.stiffness = Bushing::diagonal(k, k), .damping = Bushing::diagonal(c, c)},
                     Laws{law, law, law, law, law, law}, JointCoordinates{},
-                    JointCoordinatesBy<joint_coordinates::DenseMatrix>{},
                     JointCoordinatesBy<joint_coordinates::ArticulatedBody>{}, AncfLinear{});
 }
 

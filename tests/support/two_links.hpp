@@ -61,7 +61,7 @@ auto const two_links = [](std::span<double const> p) {
   model.connect(pin({0, 0.8, 0.6}), first.at(0.5), second.at(0.0), "elbow");
   State start = model.reference_state();
   System const system(model, with<Capabilities::rigid_velocities>);
-  system.entries().first.rigid_velocities(system.entries().second, start.q, Vec3::Zero(), {0, p[4], 0}, start.v);
+  system.operations().rigid_velocities(start.q, Vec3::Zero(), {0, p[4], 0}, start.v);
   double const end = p[3];
   std::vector<Output<M>> outputs{
       {"tip x [m]", [second, end](M const& m, State const& x) { return position(m, x, second.at(end))[0]; }},

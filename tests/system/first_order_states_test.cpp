@@ -160,7 +160,6 @@ TEST(FirstOrderStates, AreTheSameUnderEveryPolicy) {
   Rigid<> const a = Rigid<>::from(bar_at(0.0)), b = Rigid<>::from(bar_at(0.5));
   State const x = swing(a, b, Constraint{}, Radau{}, 0.005);
   for (State const& y : {swing(a, b, JointCoordinates{}, Radau{}, 0.005),
-                         swing(a, b, JointCoordinatesBy<joint_coordinates::DenseMatrix>{}, Radau{}, 0.005),
                          swing(a, b, Constraint{}, RungeKutta4<CoordinatePartitioning>{}, 5e-4)}) {
     ASSERT_EQ(y.v.size(), x.v.size());
     EXPECT_LT((y.q - x.q).norm(), 1e-8);

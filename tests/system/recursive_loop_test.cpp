@@ -22,7 +22,6 @@ using namespace polybody;
 
 namespace recursive_loop_test {
 
-using Reduced = JointCoordinatesBy<joint_coordinates::DenseMatrix>;
 using ByBodies = JointCoordinatesBy<joint_coordinates::ArticulatedBody>;
 
 /// A planar four-bar linkage, with a separate policy for the last pin.
@@ -74,7 +73,6 @@ FourBar<Policy> run_four_bar(I integrator, double step) {
 TEST(RecursiveLoop, LoopsCloseByAnotherPolicy) {
   auto const tied = run_four_bar<Constraint>(RungeKutta4<Projection>{}, 1e-3);
   auto const open = run_four_bar<JointCoordinates>(RungeKutta4<Projection>{}, 1e-3);
-  auto const dense = run_four_bar<Reduced>(RungeKutta4<Projection>{}, 1e-3);
   auto const bodies = run_four_bar<ByBodies>(RungeKutta4<Projection>{}, 1e-3);
   EXPECT_EQ(problem_size(open.model).rows, 2);
   EXPECT_EQ(problem_size(open.model).velocities, 4);
@@ -100,7 +98,6 @@ TEST(RecursiveLoop, LoopsCloseByAnotherPolicy) {
     EXPECT_NEAR(peak_joint_force(system, other.x), most, 1e-6 * most);
   };
   expect_same("augmented", open);
-  expect_same("reduced", dense);
   expect_same("body by body", bodies);
 }
 
@@ -131,7 +128,7 @@ State run_on_lines() {
 
 TEST(RecursiveLoop, JointOfBothWorldsKeepsToThePlane) {
   State const held = run_on_lines<Constraint>();
-  for (State const& x : {run_on_lines<JointCoordinates>(), run_on_lines<Reduced>(), run_on_lines<ByBodies>()}) {
+  for (State const& x : {run_on_lines<JointCoordinates>(), run_on_lines<ByBodies>()}) {
     EXPECT_LT((held.q - x.q).norm(), 1e-8);
     EXPECT_LT((held.a - x.a).norm(), 1e-6 * held.a.norm());
     EXPECT_LT((held.lambda - x.lambda).norm(), 1e-6 * held.lambda.norm());
@@ -150,9 +147,7 @@ TEST(RecursiveLoop, ImplicitStepsHaveTheirOrder) {
   }
   EXPECT_GT(last, 1e-9);
   auto const bodies = run_four_bar<ByBodies>(GeneralisedAlpha{.rho_inf = 0.8}, 1e-3);
-  auto const dense = run_four_bar<Reduced>(GeneralisedAlpha{.rho_inf = 0.8}, 1e-3);
   EXPECT_NEAR((bodies.x.q - exact.x.q).norm(), last, 0.01 * last);
-  EXPECT_NEAR((dense.x.q - exact.x.q).norm(), last, 0.01 * last);
 }
 
 TEST(RecursiveLoop, FlexibleBodiesHangOnATreeByAnotherPolicy) {

@@ -14,7 +14,6 @@
 
 #include <polybody/elimination/floating_end.hpp>
 #include <polybody/elimination/tree_body.hpp>
-#include <polybody/elimination/tree_velocities.hpp>
 #include <polybody/math/quaternion.hpp>
 
 namespace polybody::detail {

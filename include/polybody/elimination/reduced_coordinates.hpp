@@ -7,7 +7,6 @@
 #include <polybody/elimination/articulated_body.hpp>
 #include <polybody/elimination/body_equations.hpp>
 #include <polybody/elimination/coordinate_maps.hpp>
-#include <polybody/elimination/dense_reduction.hpp>
 #include <polybody/elimination/tree_dynamics.hpp>
 #include <polybody/elimination/tree_tangent.hpp>
 #include <polybody/math/sequence.hpp>
@@ -24,68 +23,32 @@ class ReducedCoordinates : public CoordinateMaps<Solution> {
   using Maps = CoordinateMaps<Solution>;
 
  public:
-  /// True if the dense system TᵀKT is solved.
-  static constexpr bool solves_densely = std::is_same_v<Solution, joint_coordinates::DenseMatrix>;
   /// True if the articulated-body algorithm solves the equations; it receives the tangent of the full model.
   static constexpr bool solves_by_bodies = std::is_same_v<Solution, joint_coordinates::ArticulatedBody>;
   /// True if the unknowns of the linear equations are those of a time step. Otherwise the sparse equations of all
   /// bodies (`BodyEquationsOf`) are solved.
-  static constexpr bool solves_as_it_is = solves_densely || solves_by_bodies || std::is_void_v<Solution>;
+  static constexpr bool solves_as_it_is = solves_by_bodies || std::is_void_v<Solution>;
 
   /// \throws InvalidInput if joints with joint coordinates close a loop. \throws InconsistentInitialConditions if
   /// linear joints contradict each other.
   template <class M>
-  explicit ReducedCoordinates(M const& model)
-      : Maps(model),
-        unit_(VecX::Zero(reduction_.velocities())),
-        full_velocities_(model.velocities()),
-        full_rows_(model.rows()) {
+  explicit ReducedCoordinates(M const& model) : Maps(model) {
     if constexpr (solves_by_bodies) {
       dynamics_ = TreeDynamicsOf<>(reduction_.tree().bodies);
       weight_ = model.gravity().g;
+    } else {
+      equations_ = BodyEquationsOf<>(reduction_, model.linear_rows(), model.velocities(), model.rows());
     }
-    if constexpr (solves_densely)
-      prepare_dense();
-    else if constexpr (!solves_by_bodies)
-      equations_ = BodyEquationsOf<>(reduction_, model.linear_rows(), full_velocities_, full_rows_);
   }
 
   ReducedLayout reduced_layout(ModelLayout const& full) const;
 
-  static CoordinateOperations const table;
-
- private:
-  using Self = ReducedCoordinates;
-  static Self& of(void* c) { return *static_cast<Self*>(c); }
-
-  static constexpr CoordinateOperations make_table() {
-    CoordinateOperations out;
-    Maps::template enter<Self>(out);
-    out.coordinate_rates = &coordinate_rates;
-    out.reduced = &reduced;
-    out.write = &write;
-    out.make_frozen_state = &make_frozen_state;
-    out.freeze = &freeze;
-    out.to_equations = &to_equations;
-    out.from_equations = &from_equations;
-    out.balance_to_equations = &balance_to_equations;
-    out.rows_to_equations = &rows_to_equations;
-    out.correction_from_equations = &correction_from_equations;
-    out.accelerations = &accelerations;
-    out.balance = &balance;
-    out.factor_balance = &factor_balance;
-    out.factor = &factor;
-    out.solve = &solve;
-    return out;
+  void coordinate_rates(VecX const& q, VecX const& v, VecX& rate) const override {
+    polybody::coordinate_rates(reduction_.tree(), q, v, rate);
   }
 
-  static void coordinate_rates(void* c, VecX const& q, VecX const& v, VecX& rate) {
-    polybody::coordinate_rates(of(c).reduction_.tree(), q, v, rate);
-  }
-
-  static void reduced(void* c, State const& x, State& out) {
-    Self& s = of(c);
-    ReductionOf<> const& r = s.reduction_;
+  void reduce_state(State const& x, State& out) override {
+    ReductionOf<> const& r = reduction_;
     out = {VecX::Zero(r.coordinates()),
            VecX::Zero(r.velocities()),
            VecX::Zero(r.velocities()),
@@ -96,116 +59,102 @@ class ReducedCoordinates : public CoordinateMaps<Solution> {
     r.reduce_velocities(x.v, out.v);
     r.reduce_velocities(x.a, out.a);
     r.reduce_rows(x.lambda, out.lambda);
-    read_coordinates(r.tree(), x.q, x.v, s.state_, out.q);
-    s.place(out.q, out.v);
-    r.tree().reduce_rates(s.state_, x.v, false, out.v);
-    s.place(out.q, out.v);
-    r.tree().reduce_rates(s.state_, x.a, true, out.a);
+    read_coordinates(r.tree(), x.q, x.v, state_, out.q);
+    this->place(out.q, out.v);
+    r.tree().reduce_rates(state_, x.v, false, out.v);
+    this->place(out.q, out.v);
+    r.tree().reduce_rates(state_, x.a, true, out.a);
   }
 
-  static void write(void* c, BlockWriter const& write_full, BlockSink& sink) {
-    Self& s = of(c);
-    if constexpr (solves_densely) {
-      for (Index j = 0; j < s.unit_.size(); ++j) {
-        s.unit_[j] = 1.0;
-        s.expand_rates(s.unit_, false, s.a_);
-        s.dense_.set_column(j, s.a_);
-        s.unit_[j] = 0.0;
-      }
-      s.dense_.begin();
-      BlockSink dense(s.dense_);
-      write_full(dense);
-      s.dense_.write(sink);
-    } else if constexpr (solves_by_bodies) {
-      write_full(sink);
-    } else {
-      s.equations_.write(write_full, sink);
-    }
-  }
-
-  /// Factors of a tangent, and the state in which it was evaluated.
-  struct Frozen {
-    TreeState state;
-    ArticulatedBodySolverOf<> solver;
-    TreeTangentSolverOf<> tangent;
-    bool of_balance = false;  ///< true if the last factorisation is that of `tangent`
-  };
-  static FrozenState make_frozen_state(void* c) {
-    if constexpr (solves_by_bodies) {
-      auto frozen = std::make_shared<Frozen>();
-      frozen->state = of(c).state_;
-      frozen->solver.attach(of(c).reduction_, frozen->state);
-      frozen->tangent = TreeTangentSolverOf<>(of(c).reduction_.tree().bodies);
-      return frozen;
-    }
-    return std::make_shared<TreeState>(of(c).state_);
-  }
-  static void freeze(void* c, void* h) {
+  void write(BlockWriter const& write_full, BlockSink& sink) override {
     if constexpr (solves_by_bodies)
-      static_cast<Frozen*>(h)->state = of(c).state_;
-    else if constexpr (!solves_as_it_is)
-      *static_cast<TreeState*>(h) = of(c).state_;
-  }
-  static Index accelerations(void* c, VecX const& q, VecX const& v, double load_factor, VecX const* residual,
-                             VecX& out) {
-    if constexpr (solves_by_bodies) {
-      Self& s = of(c);
-      Index const body = residual ? s.dynamics_.accelerations(q, v, *residual, out)
-                                  : s.dynamics_.accelerations_under_gravity(q, v, s.weight_ * load_factor, out);
-      return body < 0 ? -1 : s.reduction_.tree().bodies[std::size_t(body)].vn;
-    }
-    return -1;
-  }
-  static void balance(void* c, StepPosition const& x, double load_factor, VecX& r) {
-    if constexpr (solves_by_bodies) of(c).dynamics_.balance(x.at.q, x.at.v, x.a, of(c).weight_ * load_factor, r);
-  }
-  static Index factor_balance(void* c, void* h, StepPosition const& x, double load_factor,
-                              TangentCoefficients const& k) {
-    if constexpr (solves_by_bodies) {
-      Frozen& frozen = *static_cast<Frozen*>(h);
-      frozen.of_balance = true;
-      return frozen.tangent.factor(x.at, x.a, of(c).weight_ * load_factor, k);
-    }
-    return -1;
-  }
-  static Index factor(void*, void* h, BlockWriter const& write_full) {
-    if constexpr (solves_by_bodies) {
-      Frozen& frozen = *static_cast<Frozen*>(h);
-      frozen.of_balance = false;
-      frozen.solver.begin();
-      BlockSink sink(frozen.solver);
       write_full(sink);
-      return frozen.solver.factor();
-    }
-    return -1;
-  }
-  static void solve(void* h, VecX const& rhs, VecX& x) {
-    if constexpr (solves_by_bodies) {
-      Frozen& frozen = *static_cast<Frozen*>(h);
-      frozen.of_balance ? frozen.tangent.solve(rhs, x) : frozen.solver.solve(rhs, x);
-    }
+    else
+      equations_.write(write_full, sink);
   }
 
-  static void to_equations(void* c, void* h, VecX const& rhs, VecX& out) {
-    if constexpr (solves_as_it_is) {
-      out = rhs;
-    } else {
-      Self& s = of(c);
-      Index const nv = s.reduction_.velocities();
-      std::copy_n(rhs.data(), nv, s.reduced_.data());
-      s.a_.setZero();
-      s.reduction_.expand_velocities(s.reduced_, s.a_);
-      s.reduction_.tree().expand_forces(*static_cast<TreeState*>(h), s.reduced_, s.a_);
-      out.setZero();
-      s.equations_.from_velocities(s.a_, 1.0, out);
-      s.equations_.from_rows(rhs.data() + nv, out);
+  std::shared_ptr<FrozenMaps> make_frozen() override {
+    if constexpr (solves_by_bodies)
+      return std::make_shared<FrozenFactors>(*this);
+    else if constexpr (!solves_as_it_is)
+      return std::make_shared<FrozenTree>(*this);
+    else
+      return std::make_shared<FrozenMaps>();
+  }
+  void balance_to_equations(VecX const& r, VecX& out) override {
+    if constexpr (!solves_as_it_is) equations_.from_velocities(r, -1.0, out);
+  }
+  void rows_to_equations(double const* rows, VecX& out) override {
+    if constexpr (!solves_as_it_is) equations_.from_rows(rows, out);
+  }
+  void correction_from_equations(VecX const& solution, VecX& out) override {
+    if constexpr (!solves_as_it_is) {
+      read_equations(state_, solution, out);
+      equations_.to_eliminated_equations(solution, out.data() + reduction_.velocities() + reduction_.rows());
     }
   }
-  static void from_equations(void* c, void* h, VecX const& solution, VecX& out) {
-    if constexpr (solves_as_it_is)
-      out = solution;
-    else
-      of(c).read_equations(*static_cast<TreeState*>(h), solution, out);
+  Index accelerations(VecX const& q, VecX const& v, double load_factor, VecX const* residual, VecX& out) override {
+    if constexpr (solves_by_bodies) {
+      Index const body = residual ? dynamics_.accelerations(q, v, *residual, out)
+                                  : dynamics_.accelerations_under_gravity(q, v, weight_ * load_factor, out);
+      return body < 0 ? -1 : reduction_.tree().bodies[std::size_t(body)].vn;
+    }
+    return -1;
+  }
+  void balance(StepPosition const& x, double load_factor, VecX& r) override {
+    if constexpr (solves_by_bodies) dynamics_.balance(x.at.q, x.at.v, x.a, weight_ * load_factor, r);
+  }
+
+ private:
+  /// State of the tree in which the equations of all bodies were written.
+  class FrozenTree final : public FrozenMaps {
+   public:
+    explicit FrozenTree(ReducedCoordinates& of) : of_(of), state_(of.state_) {}
+    void freeze() override { state_ = of_.state_; }
+    void to_equations(VecX const& rhs, VecX& out) override { of_.write_equations(state_, rhs, out); }
+    void from_equations(VecX const& solution, VecX& out) override { of_.read_equations(state_, solution, out); }
+
+   private:
+    ReducedCoordinates& of_;
+    TreeState state_;
+  };
+  /// Factors of a tangent by the articulated-body algorithm, and the state in which it was evaluated.
+  class FrozenFactors final : public FrozenMaps {
+   public:
+    explicit FrozenFactors(ReducedCoordinates& of) : of_(of), state_(of.state_), tangent_(of.reduction_.tree().bodies) {
+      solver_.attach(of.reduction_, state_);
+    }
+    void freeze() override { state_ = of_.state_; }
+    Index factor(BlockWriter const& write_full) override {
+      of_balance_ = false;
+      solver_.begin();
+      BlockSink sink(solver_);
+      write_full(sink);
+      return solver_.factor();
+    }
+    Index factor_balance(StepPosition const& x, double load_factor, TangentCoefficients const& k) override {
+      of_balance_ = true;
+      return tangent_.factor(x.at, x.a, of_.weight_ * load_factor, k);
+    }
+    void solve(VecX const& rhs, VecX& x) override { of_balance_ ? tangent_.solve(rhs, x) : solver_.solve(rhs, x); }
+
+   private:
+    ReducedCoordinates& of_;
+    TreeState state_;
+    ArticulatedBodySolverOf<> solver_;
+    TreeTangentSolverOf<> tangent_;
+    bool of_balance_ = false;  // true if the last factorisation is that of tangent_
+  };
+
+  void write_equations(TreeState& at, VecX const& rhs, VecX& out) {
+    Index const nv = reduction_.velocities();
+    std::copy_n(rhs.data(), nv, reduced_.data());
+    a_.setZero();
+    reduction_.expand_velocities(reduced_, a_);
+    reduction_.tree().expand_forces(at, reduced_, a_);
+    out.setZero();
+    equations_.from_velocities(a_, 1.0, out);
+    equations_.from_rows(rhs.data() + nv, out);
   }
   void read_equations(TreeState& at, VecX const& solution, VecX& out) {
     equations_.to_velocities(solution, a_);
@@ -215,36 +164,13 @@ class ReducedCoordinates : public CoordinateMaps<Solution> {
     std::copy_n(reduced_.data(), nv, out.data());
     equations_.to_rows(solution, out.data() + nv);
   }
-  static void balance_to_equations(void* c, VecX const& r, VecX& out) {
-    if constexpr (!solves_as_it_is) of(c).equations_.from_velocities(r, -1.0, out);
-  }
-  static void rows_to_equations(void* c, double const* rows, VecX& out) {
-    if constexpr (!solves_as_it_is) of(c).equations_.from_rows(rows, out);
-  }
-  static void correction_from_equations(void* c, VecX const& solution, VecX& out) {
-    if constexpr (!solves_as_it_is) {
-      Self& s = of(c);
-      s.read_equations(s.state_, solution, out);
-      s.equations_.to_eliminated_equations(solution, out.data() + s.reduction_.velocities() + s.reduction_.rows());
-    }
-  }
-
-  void prepare_dense() {
-    Sequence<Index> row_of(std::size_t(full_rows_), -1);
-    for (Index i = 0; i < reduction_.rows(); ++i)
-      row_of[std::size_t(reduction_.remaining_equations()[std::size_t(i)])] = i;
-    dense_ = DenseReductionOf<>(full_velocities_, reduction_.velocities(), reduction_.rows(), std::move(row_of));
-  }
 
   using Maps::a_;
   using Maps::reduced_;
   using Maps::reduction_;
   using Maps::state_;
 
-  VecX unit_;
-  Index full_velocities_, full_rows_;
   BodyEquationsOf<> equations_;
-  DenseReductionOf<> dense_;
   std::conditional_t<solves_by_bodies, TreeDynamicsOf<>, bool> dynamics_{};
   Vec3 weight_ = Vec3(0, 0, 0);
 };
@@ -261,7 +187,7 @@ ReducedLayout ReducedCoordinates<Solution>::reduced_layout(ModelLayout const& fu
   }
   n.equations = n.velocities + n.rows;
   n.equation_velocities = n.velocities;
-  if constexpr (!solves_densely && !solves_by_bodies) {
+  if constexpr (!solves_by_bodies) {
     n.equations = equations_.size();
     n.equation_velocities = equations_.velocities();
     n.full_unknown = equations_.full_unknowns();
@@ -269,9 +195,6 @@ ReducedLayout ReducedCoordinates<Solution>::reduced_layout(ModelLayout const& fu
   }
   return n;
 }
-
-template <class Solution>
-constinit CoordinateOperations const ReducedCoordinates<Solution>::table = ReducedCoordinates::make_table();
 
 }  // namespace detail
 
@@ -292,15 +215,13 @@ CoordinatesOf<T> coordinates_of(M const& model) {
                   "joint_coordinates::ArticulatedBody needs rigid bodies and forces without first-order states. Use "
                   "joint_coordinates::Augmented.");
     if constexpr (std::same_as<T, double>) {
-      using Reduced = detail::ReducedCoordinates<Solution>;
-      auto self = std::make_shared<Reduced>(model);
-      auto reduced = std::make_shared<ReducedLayout>(self->reduced_layout(layout_of(model)));
-      return {std::move(self), &Reduced::table, std::move(reduced)};
+      auto maps = std::make_shared<detail::ReducedCoordinates<Solution>>(model);
+      auto reduced = std::make_shared<ReducedLayout>(maps->reduced_layout(layout_of(model)));
+      return {std::move(maps), std::move(reduced)};
     } else {
-      using Maps = detail::CoordinateMaps<Solution, T>;
-      auto self = std::make_shared<Maps>(model);
-      auto reduced = std::make_shared<ReducedLayout>(self->reduced_layout());
-      return {std::move(self), &detail::map_entries<Maps, T>, std::move(reduced)};
+      auto maps = std::make_shared<detail::CoordinateMaps<Solution, T>>(model);
+      auto reduced = std::make_shared<ReducedLayout>(maps->reduced_layout());
+      return {std::move(maps), std::move(reduced)};
     }
   } else {
     return {};

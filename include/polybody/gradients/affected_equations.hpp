@@ -74,7 +74,7 @@ std::vector<char> affected_in_step(System const& system, std::vector<char> const
     if (i >= velocities) continue;
     force.setZero();
     force[i] = 1.0;
-    c.entries->reduce(c.self.get(), force, reduced);
+    c->reduce(force, reduced);
     for (Index k = 0; k < reduced.size(); ++k)
       if (reduced[k] != 0.0) affected[std::size_t(k)] = 1;
   }

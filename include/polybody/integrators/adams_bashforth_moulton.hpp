@@ -127,6 +127,7 @@ struct AdamsBashforthMoulton {
     VecXOf<Dual<1>> dual;                     ///< workspace of `coordinate_rates`
     VecX q_rate;                              ///< q˙ (nq)
     ForwardDynamics<Solver> forward;          ///< solver for the accelerations
+    StepCheck check;                          ///< checks of the steps of a run
     detail::ErrorNorm norm;                   ///< norm of the error
     typename Stabilisation::Scratch scratch;  ///< memory of the stabilisation
 
@@ -223,7 +224,7 @@ struct AdamsBashforthMoulton {
     report.order = k;
     report.choices = detail::choices_of(w.scratch);
     report.next = std::max(choose(e, h, k, known, rising), min_step);
-    w.forward.require_end(system, {w.q, w.v, w.lambda, x.t + h, h});
+    w.check.require_end(system, {w.q, w.v, w.lambda, x.t + h, h});
     history.push(h, w.f);
     history.order() = k;
     history.rising() = rising;

@@ -43,6 +43,7 @@ struct AlphaMethod {
   struct Workspace : AlphaVectors {
     StepTangent<StepSolver<Solver>> tangent;   ///< tangent of a step, with its solver
     ForwardDynamics<Solver> forward;           ///< [M, Gᵀ; G, 0]: accelerations at the start, μ
+    StepCheck check;                           ///< checks of the steps of a run
     ReusedFactorisation reused_factorisation;  ///< state of the reused factorisation of the tangent
     double h_factored = 0.0;                   ///< step length of the last factorisation of the tangent [s]
 
@@ -72,7 +73,7 @@ struct AlphaMethod {
     begin(system, x, h, w);
     w.tangent.mark_redundant(w.forward.left_out());
     // factorised here, so that the solver does not change its elimination order within the first step
-    w.solver().evaluate(system, {x.q, x.v, x.t});
+    w.tangent.evaluate(system, {x.q, x.v, x.t});
     (void)refactor(system, h, {{x.q, x.v, x.t}, x.a, x.lambda}, w);
   }
   /// Computes consistent v̇ and λ at x and discards the history of earlier steps. The tangent is not analysed. \param
@@ -194,7 +195,7 @@ struct AlphaMethod {
                  bool surrogate_friction = true) const {
     w.h_factored = h;
     TangentCoefficients const c{mass(), h * gamma, beta * h * h, surrogate_friction};
-    return w.solver().factor_tangent(system, x, c, w.tangent.terms());
+    return w.tangent.factor(system, x, c);
   }
 
   /// Equations of one step, as a problem of Newton's method.
@@ -212,31 +213,31 @@ struct AlphaMethod {
     bool evaluate() { return evaluate_at(w.dq); }
     bool evaluate_at(VecX const& dq) {
       system.plus(x.q, dq, w.q);
-      w.solver().evaluate(system, {w.q, w.v, x.t + h});
-      w.solver().balance(system, place(), w.r);
+      w.tangent.evaluate(system, {w.q, w.v, x.t + h});
+      w.tangent.balance(system, place(), w.r);
       if (w.phi.size() > 0) system.violation(w.phi);
       if (both_multiplier_sets) w.open = w.phi;
       if (both_multiplier_sets || !system.nonholonomic_equations().empty()) system.violation_rate(w.rate);
       method.right_hand_side(h, both_multiplier_sets, system.nonholonomic_equations(), w);
-      return all_finite(w.rhs) && w.solver().is_finite();
+      return all_finite(w.rhs) && w.tangent.is_finite();
     }
     bool refactor() {
       double const ahead = std::min(look_ahead * w.reused_factorisation.served, 4.0) * h;
       if (ahead > 0.0) {
         for (Index i = 0; i < w.v.size(); ++i) w.ahead[i] = w.dq[i] + ahead * w.v[i];
         system.plus(x.q, w.ahead, w.q);
-        w.solver().evaluate(system, {w.q, w.v, x.t + h});
+        w.tangent.evaluate(system, {w.q, w.v, x.t + h});
       }
       if (recomputes_held) w.forward.hold(system, w.q, w.v, x.t + h);
       bad = method.refactor(system, h, place(), w, surrogate_friction);
-      if (ahead > 0.0 && w.solver().carries_multipliers()) {
+      if (ahead > 0.0 && w.tangent.carries_multipliers()) {
         system.plus(x.q, w.dq, w.q);
-        w.solver().return_to({w.q, w.v, x.t + h});
+        w.tangent.return_to({w.q, w.v, x.t + h});
       }
       return bad < 0;
     }
     CorrectionSize solve() {
-      w.solver().correct(w.rhs, w.y);
+      w.tangent.correct(w.rhs, w.y);
       bool const finite = all_finite(w.y);
       if (both_multiplier_sets && finite) {
         w.phi = w.open;
@@ -319,25 +320,25 @@ struct AlphaMethod {
                             both_multiplier_sets,
                             both_multiplier_sets && careful,
                             effort != 1};
-    if (w.solver().carries_multipliers()) w.reused_factorisation.theta = std::max(w.reused_factorisation.theta, 0.3);
+    if (w.tangent.carries_multipliers()) w.reused_factorisation.theta = std::max(w.reused_factorisation.theta, 0.3);
     NewtonReport report = polybody::newton(problem, options, w.reused_factorisation);
     if (report.result != NewtonResult::converged && report.result != NewtonResult::singular &&
         (effort < efforts(system) || (both_multiplier_sets && loses_rank(system, x, h, w)))) {
       w.tangent.include(system, w.lambda);
       w.reused_factorisation.usable = false;
-      return detail::retried(w.forward.failed, report, [&] { return advance(system, x, h, w, effort + 1); });
+      return detail::retried(w.check.failed, report, [&] { return advance(system, x, h, w, effort + 1); });
     }
-    if (report.result != NewtonResult::converged && w.solver().carries_multipliers()) {  // rhs of the message
+    if (report.result != NewtonResult::converged && w.tangent.carries_multipliers()) {  // rhs of the message
       system.residual(w.vd, w.lambda, w.r);
       right_hand_side(h, both_multiplier_sets, system.nonholonomic_equations(), w);
     }
     StepReport const step = detail::report_of(h, report);
-    detail::count_if_failed(w.forward.failed, step, [&] {
+    detail::count_if_failed(w.check.failed, step, [&] {
       if (report.result != NewtonResult::converged)
         detail::throw_convergence_failure(name, system, x.t + h, report, {problem.bad, w.rhs, w.y});
       // q follows the last correction of dq
       system.plus(x.q, w.dq, w.q);
-      w.forward.require_end(system, {w.q, w.v, w.lambda, x.t + h, h});
+      w.check.require_end(system, {w.q, w.v, w.lambda, x.t + h, h});
     });
     if (w.solver().lost_rank() || w.tangent.end_step()) w.reused_factorisation.usable = false;
     if (w.forward.leaves_out() && w.solver().is_doubtful()) [[unlikely]]

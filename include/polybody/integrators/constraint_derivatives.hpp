@@ -25,7 +25,7 @@ class TreeRows {
   void analyse(System& system, Sequence<Block> const& equations) {
     coordinates_ = system.step_coordinates();
     ReducedLayout const& layout = *coordinates_.reduced;
-    frozen_ = coordinates_.entries->make_frozen_state(coordinates_.self.get());
+    frozen_ = coordinates_->make_frozen();
     unit_.setZero(system.size());
     equation_.setZero(layout.equations);
     find_bodies(system);
@@ -33,11 +33,11 @@ class TreeRows {
     Sequence<Sequence<char>> const touched = bodies_of_rows(system, equations);
     Sequence<Sequence<char>> columns(rows_.size(), Sequence<char>(bodies_.size(), 0));
     VecX u = VecX::Zero(layout.velocities), full = VecX::Zero(system.layout().velocities);
-    coordinates_.entries->freeze(coordinates_.self.get(), frozen_.get());
+    frozen_->freeze();
     for (Index j = 0; j < layout.velocities; ++j) {
       u[j] = unit_[j] = 1.0;
-      coordinates_.entries->expand_rates(coordinates_.self.get(), u, false, full);
-      coordinates_.entries->to_equations(coordinates_.self.get(), frozen_.get(), unit_, equation_);
+      coordinates_->expand_rates(u, false, full);
+      frozen_->to_equations(unit_, equation_);
       u[j] = unit_[j] = 0.0;
       for (std::size_t i = 0; i < rows_.size(); ++i) {
         bool moves = false;
@@ -58,14 +58,14 @@ class TreeRows {
   Sequence<Index> const& velocities(Index i) const { return rows_[std::size_t(i)].velocities; }
 
   /// Stores the positions of the last evaluation of the system for `write`.
-  void hold() { coordinates_.entries->freeze(coordinates_.self.get(), frozen_.get()); }
+  void hold() { frozen_->freeze(); }
   /// Adds row i with the entries `row` at `velocities(i)` to `sink`. `row0` and `col0` are the row and column of the
   /// first equation and of the first unknown in the sink.
   template <class = void>  // compiled only if used
   void write(Index i, double const* row, Index row0, Index col0, BlockSink& sink) {
     Row const& r = rows_[std::size_t(i)];
     for (std::size_t k = 0; k < r.velocities.size(); ++k) unit_[r.velocities[k]] = row[k];
-    coordinates_.entries->to_equations(coordinates_.self.get(), frozen_.get(), unit_, equation_);
+    frozen_->to_equations(unit_, equation_);
     for (Index const j : r.velocities) unit_[j] = 0.0;
     for (Part const& part : r.columns)
       sink.add(row0 + r.equation, col0 + part.first, BlockView(equation_.data() + part.first, 1, part.count, 1, 1));
@@ -117,7 +117,7 @@ class TreeRows {
   }
 
   Coordinates coordinates_;
-  FrozenState frozen_;
+  std::shared_ptr<FrozenMaps> frozen_;
   Sequence<Part> bodies_;
   Sequence<Row> rows_;
   VecX unit_, equation_;

@@ -39,6 +39,7 @@ struct ConservingStep {
     TangentSolver<StepSolver<Solver>> solver;     ///< solver of the tangent of `secants`
     TangentSolver<StepSolver<UnsymmetricSolver<Solver>>> exact;  ///< solver of the exact tangent
     ForwardDynamics<Solver> forward;                             ///< [M, Gᵀ; G, 0]: accelerations at the start
+    StepCheck check;                                             ///< checks of the steps of a run
     ReusedFactorisation reused_factorisation;                    ///< state of the reused factorisation of the tangent
     bool has_exact = false;                                      ///< true if `exact` is analysed
     double h_factored = 0.0;  ///< step length of the last factorisation of the tangent [s]
@@ -202,7 +203,7 @@ struct ConservingStep {
       w.other_vd.swap(w.vd);
       w.other_lambda.swap(w.lambda);
       w.reused_factorisation.usable = false;
-      return detail::retried(w.forward.failed, report, [&] { return advance(system, x, h, w, 2, true); });
+      return detail::retried(w.check.failed, report, [&] { return advance(system, x, h, w, 2, true); });
     }
     if (has_other && takes_other(x, h, w, report.result != NewtonResult::converged)) {
       (void)problem.evaluate();
@@ -210,16 +211,16 @@ struct ConservingStep {
     }
     if (report.result != NewtonResult::converged && effort < (system.rows() > 0 ? 2 : 1)) {
       w.reused_factorisation.usable = false;
-      return detail::retried(w.forward.failed, report, [&] { return advance(system, x, h, w, effort + 1); });
+      return detail::retried(w.check.failed, report, [&] { return advance(system, x, h, w, effort + 1); });
     }
     StepReport const step = detail::report_of(h, report);
-    detail::count_if_failed(w.forward.failed, step, [&] {
+    detail::count_if_failed(w.check.failed, step, [&] {
       if (report.result != NewtonResult::converged)
         detail::throw_convergence_failure(name, system, x.t + h, report, {problem.bad, w.rhs, w.y});
       problem.move();
       for (Index i = 0; i < w.v.size(); ++i) w.v[i] = x.v[i] + h * w.vd[i];
       system.push_forces();  // not evaluated by the discrete gradients
-      w.forward.require_end(system, {w.q, w.v, w.lambda, x.t + h, h});
+      w.check.require_end(system, {w.q, w.v, w.lambda, x.t + h, h});
     });
     if (w.solver.lost_rank() || effort == 2) w.reused_factorisation.usable = false;
     history.push(x, h, w.vd);

@@ -44,7 +44,7 @@ class AssemblyExtents {
     }
     if (full_positions_.empty()) return;
     Coordinates const& c = system.step_coordinates();
-    c.entries->expand(c.self.get(), q, v, full_q_, full_v_);
+    c->expand(q, v, full_q_, full_v_);
     add(full_positions_, full_q_, &Box::ground, &Extent::length);
     add(full_velocities_, full_v_, &Box::rest, &Extent::speed);
   }

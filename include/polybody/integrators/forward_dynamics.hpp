@@ -4,13 +4,13 @@
 /// [thesis Eq. 3.2].
 
 #include <algorithm>
+#include <memory>
 #include <span>
 
 #include <polybody/math/vectors.hpp>
 #include <polybody/solvers/constant_block_cache.hpp>
 #include <polybody/solvers/default_solver.hpp>
 #include <polybody/solvers/tangent_solver.hpp>
-#include <polybody/system/plausibility_check.hpp>
 
 namespace polybody {
 
@@ -64,17 +64,6 @@ void require_finite_rows(System const& s, VecX const& x) {
                           " at t = ", ErrorTime{s.at().t},
                           " s. Check the state before this time, or take a smaller step.", and_whose_force(s)});
 }
-/// Checks the end of a step. \throws NonFiniteValue naming body and time if a coordinate or velocity is NaN, infinite
-/// or too large.
-template <class = void>
-void require_finite_end(System const& s, VecX const& q, VecX const& v, double t) {
-  Index const in_v = first_not_finite(v), in_q = in_v < 0 ? first_not_finite(q) : -1;
-  if (in_v < 0 && in_q < 0) return;
-  throw NonFiniteValue("motion.not_finite",
-                       {"The motion of ", ErrorObject{in_v < 0 ? name_of_coordinate(s, in_q) : s.name_of(in_v)},
-                        non_finite_suffix(in_v < 0 ? q[in_q] : v[in_v]), " at t = ", ErrorTime{t},
-                        " s. Check its velocity and the forces on it before this time.", and_whose_force(s)});
-}
 /// Checks the state of the last evaluation, before the matrix at this state is reported as singular. \throws
 /// NonFiniteValue if a coordinate or velocity is NaN, infinite or too large.
 template <class = void>
@@ -121,11 +110,6 @@ Sequence<bool> constant_unknowns(System const& s) {
 
 }  // namespace detail
 
-/// Cost of attempts at a step that failed.
-struct AttemptCost {
-  int iterations = 0, factorisations = 0, evaluations = 0;  ///< as in `StepReport`
-};
-
 /// Accelerations, multipliers and projections by one factorisation of [M, Gᵀ; G, 0].
 template <LinearSolver Solver = DefaultSolver>
 class ForwardDynamics {
@@ -143,44 +127,8 @@ class ForwardDynamics {
         next_(VecX::Zero(system.coordinates())) {
     by_tree_ = system.step_coordinates() && system.step_coordinates().reduced->solves_by_bodies && system.rows() == 0;
     if (by_tree_) only_weight_ = under_gravity_only(system);
-    if (system.rows() > 0 || !has_constant_mass(system))
-      solver_.linear_solver().keep(detail::constant_unknowns(system));
-    solver_.analyse(system, 1, [&](BlockSink& sink) { system.masses(sink); });
-  }
-
-  PlausibilityCheck bounds;  ///< plausibility limits of the run; inactive until the run begins
-  AttemptCost failed;        ///< cost of failed attempts since the run reset this sum
-
-  /// Trial of a step. Without `keep`, its destructor restores the account of `bounds` and the elimination order of the
-  /// solver, so that a repeated step is bitwise identical.
-  class Trial {
-   public:
-    /// Stores the account of `bounds` and the elimination order.
-    explicit Trial(ForwardDynamics& of) : of_(of), bounds_(of.bounds), reorderings_(of.solver_.reorderings()) {}
-    Trial(Trial const&) = delete;
-    ~Trial() {
-      if (!kept_) of_.solver_.limit_reorderings(reorderings_);
-    }
-    /// Accepts the trial: the destructor restores nothing.
-    void keep() {
-      bounds_.keep();
-      kept_ = true;
-    }
-
-   private:
-    ForwardDynamics& of_;
-    PlausibilityCheck::Trial bounds_;
-    std::size_t reorderings_;
-    bool kept_ = false;
-  };
-  Trial attempt() { return Trial(*this); }  ///< begins the trial of a step
-
-  /// Checks the end of a step before the step is accepted. \throws NonFiniteValue, Diverged.
-  void require_end(System& system, StepResult const& end) {
-    double const of_velocities = squares(end.v);
-    if (!(of_velocities + squares(end.q) <= largest_number * largest_number))
-      detail::require_finite_end(system, end.q, end.v, end.t);  // checks each number
-    bounds.require(system, end, of_velocities);
+    solver_ = solver_for(system);
+    solver_->analyse(system, 1, [&](BlockSink& sink) { system.masses(sink); });
   }
 
   /// Solves M a + Gᵀλ = f, G a = −γ − `feedback` at the coordinates, velocities and time `at`. \throws SingularMatrix,
@@ -297,30 +245,34 @@ class ForwardDynamics {
     take(system.velocities(), system.rows(), mu);
   }
 
+  /// Number of changes of the elimination order; 0 for solvers with a fixed order.
+  std::size_t reorderings() const { return solver_->reorderings(); }
+  /// Reverts all changes of the elimination order except the first `count`, for later factorisations.
+  void limit_reorderings(std::size_t count) noexcept { solver_->limit_reorderings(count); }
   /// Indices of the redundant equations of the last factorisation (see `name_of_equation`). Their multipliers are not
   /// unique and are set to zero. Empty for solvers that do not report redundant equations.
-  std::span<Index const> redundant_rows() const { return solver_.dropped(); }
+  std::span<Index const> redundant_rows() const { return solver_->dropped(); }
   /// Every later factorisation drops these redundant `equations` (`leave_out_redundant` selects them).
   [[gnu::cold]] void mark_redundant(Sequence<Index> equations) {
     left_out_ = std::move(equations);
-    solver_.mark_redundant(left_out());
+    solver_->mark_redundant(left_out());
   }
   bool leaves_out() const { return !left_out_.empty(); }  ///< true if equations are marked as redundant
   std::span<Index const> left_out() const { return {left_out_.data(), left_out_.size()}; }  ///< marked equations
   /// True if the selection of `mark_redundant` must be checked: the last factorisation dropped other equations or found
   /// a small pivot, or `note_doubt` was called.
-  bool is_doubtful() const { return doubtful_ || solver_.is_doubtful(); }
+  bool is_doubtful() const { return doubtful_ || solver_->is_doubtful(); }
   void note_doubt() { doubtful_ = true; }    ///< sets `is_doubtful` until `clear_doubt`
   void clear_doubt() { doubtful_ = false; }  ///< resets `is_doubtful`, after a new selection
   /// Computes the null vectors of `redundant_rows` in the last factorisation for equations of these `sizes`; entries
   /// are numbered as equations. Empty for solvers that compute no null vectors. See `BlockFactor::null_vectors`.
-  Sequence<IndexMap<double>> null_vectors(VecX const& sizes) { return solver_.null_vectors(sizes); }
+  Sequence<IndexMap<double>> null_vectors(VecX const& sizes) { return solver_->null_vectors(sizes); }
   /// Names of the joints and bodies with redundant equations.
   std::vector<std::string> redundant(System const& system) const {
     std::vector<std::string> names;
     ModelLayout const& layout = system.layout();
     Sequence<Index> const joint_of = system.step_coordinates() ? Sequence<Index>() : layout.joint_of_rows();
-    for (Index const i : solver_.dropped()) {
+    for (Index const i : solver_->dropped()) {
       Index const row = i - system.velocities();
       Index const joint = row >= 0 && std::size_t(row) < joint_of.size() ? joint_of[std::size_t(row)] : -1;
       std::string name = joint >= 0 ? layout.joints[std::size_t(joint)].title() : name_of_equation(system, i);
@@ -340,13 +292,26 @@ class ForwardDynamics {
       residual = &residual_at_rest(system);
     }
     a.resize(system.velocities());
-    Index const bad = c.entries->accelerations(c.self.get(), at.q, at.v, system.load_factor, residual, a);
+    Index const bad = c->accelerations(at.q, at.v, system.load_factor, residual, a);
     return bad < 0 && first_not_finite(a) < 0;
+  }
+
+  /// Solver of [M, Gᵀ; G, 0]; one that factorises constant parts of the matrix only once, if there are such parts.
+  [[gnu::cold]] static std::unique_ptr<LinearEquations> solver_for(System& system) {
+    Sequence<bool> constant = detail::constant_unknowns(system);
+    bool const changes = system.rows() > 0 || !has_constant_mass(system);
+    if (changes && std::find(constant.begin(), constant.end(), true) != constant.end()) {
+      PatternSink pattern;
+      system.masses(pattern);
+      auto parts = std::make_unique<TangentSolver<ConstantBlockCache<StepSolver<Solver>>>>();
+      if (parts->linear_solver().keep(std::move(constant), pattern.blocks) > 0) return parts;
+    }
+    return std::make_unique<TangentSolver<StepSolver<Solver>>>();
   }
 
   void factor(System& system) {
     if (system.rows() == 0 && factored_ && has_constant_mass(system)) return;
-    Index const bad = solver_.factor([&](BlockSink& sink) { system.masses(sink); });
+    Index const bad = solver_->factor([&](BlockSink& sink) { system.masses(sink); });
     if (bad >= 0) detail::throw_unsolvable(system, {}, name_of_equation(system, bad));
     factored_ = true;
   }
@@ -356,7 +321,7 @@ class ForwardDynamics {
     Index const n = system.velocities();
     for (Index i = 0; i < n; ++i) rhs_[i] = r_scale == 0.0 ? 0.0 : r_scale * r_[i];
     for (Index i = 0; i < system.rows(); ++i) rhs_[n + i] = phi_scale * phi_[i];
-    solver_.solve(rhs_, x_);
+    solver_->solve(rhs_, x_);
     if (Index const i = first_not_finite(x_); i >= 0) detail::throw_unsolvable(system, rhs_, system.name_of(i));
   }
 
@@ -366,7 +331,7 @@ class ForwardDynamics {
     std::copy_n(x_.data() + first, n, out.data());
   }
 
-  TangentSolver<ConstantBlockCache<StepSolver<Solver>>> solver_;
+  std::unique_ptr<LinearEquations> solver_;
   bool factored_ = false;
   bool by_tree_ = false, only_weight_ = false, doubtful_ = false;
   Sequence<Index> left_out_;

@@ -1,10 +1,16 @@
 #pragma once
 /// \file
-/// Concept of an integrator, and the report of a step.
+/// Concept of an integrator, and the report and the checks of a step.
 
 #include <polybody/integrators/forward_dynamics.hpp>
+#include <polybody/system/plausibility_check.hpp>
 
 namespace polybody {
+
+/// Cost of attempts at a step that failed.
+struct AttemptCost {
+  int iterations = 0, factorisations = 0, evaluations = 0;  ///< as in `StepReport`
+};
 
 /// Cost of one accepted step.
 struct StepReport {
@@ -52,7 +58,59 @@ auto count_if_failed(AttemptCost& failed, StepReport const& cost, Rest&& rest) {
     throw;
   }
 }
+/// Checks the end of a step. \throws NonFiniteValue naming body and time if a coordinate or velocity is NaN, infinite
+/// or too large.
+template <class = void>
+void require_finite_end(System const& s, VecX const& q, VecX const& v, double t) {
+  Index const in_v = first_not_finite(v), in_q = in_v < 0 ? first_not_finite(q) : -1;
+  if (in_v < 0 && in_q < 0) return;
+  throw NonFiniteValue("motion.not_finite",
+                       {"The motion of ", ErrorObject{in_v < 0 ? name_of_coordinate(s, in_q) : s.name_of(in_v)},
+                        non_finite_suffix(in_v < 0 ? q[in_q] : v[in_v]), " at t = ", ErrorTime{t},
+                        " s. Check its velocity and the forces on it before this time.", and_whose_force(s)});
+}
 }  // namespace detail
+
+/// Checks of the steps of a run, and the cost of steps that failed. The run sets both.
+struct StepCheck {
+  PlausibilityCheck bounds;  ///< plausibility limits of the run; inactive until the run begins
+  AttemptCost failed;        ///< cost of failed attempts since the run reset this sum
+
+  /// Checks the end of a step before the step is accepted. \throws NonFiniteValue, Diverged.
+  template <class = void>  // compiled only if used
+  void require_end(System& system, StepResult const& end) {
+    double const of_velocities = squares(end.v);
+    if (!(of_velocities + squares(end.q) <= largest_number * largest_number))
+      detail::require_finite_end(system, end.q, end.v, end.t);  // checks each number
+    bounds.require(system, end, of_velocities);
+  }
+};
+
+/// Trial of a step with a workspace. Without `keep`, its destructor restores the account of `StepCheck::bounds` and the
+/// elimination order of `forward`, so that a repeated step is bitwise identical.
+template <class Workspace>
+class StepTrial {
+ public:
+  /// Stores the account and the elimination order, and resets the cost of failed attempts.
+  explicit StepTrial(Workspace& w) : w_(w), bounds_(w.check.bounds), reorderings_(w.forward.reorderings()) {
+    w.check.failed = {};
+  }
+  StepTrial(StepTrial const&) = delete;
+  ~StepTrial() {
+    if (!kept_) w_.forward.limit_reorderings(reorderings_);
+  }
+  /// Accepts the trial: the destructor restores nothing.
+  void keep() {
+    bounds_.keep();
+    kept_ = true;
+  }
+
+ private:
+  Workspace& w_;
+  PlausibilityCheck::Trial bounds_;
+  std::size_t reorderings_;
+  bool kept_ = false;
+};
 
 /// Largest stable step of velocity Verlet, x₁ = x₀ + h v₀ + ½h² a₀, a₁ = −ω² x₁ − d (v₀ + h a₀), v₁ = v₀ + ½h (a₀ +
 /// a₁): beyond ω²h² + 4dh = 4 an amplification factor lies below −1. \param omega ω [1/s] \param rate d [1/s]
@@ -73,13 +131,14 @@ concept HasStabilityLimit = requires(double omega, double rate) {
 ///   auto w = method.template workspace<Solver>(system);
 ///   method.start(system, x, h, w);      after a start, a jump or an event
 ///   method.step(system, x, h, w);       advances by at most h; x is unchanged after an exception
-/// The workspace has a member `forward`, a `ForwardDynamics<Solver>`.
+/// The workspace has members `forward`, a `ForwardDynamics<Solver>`, and `check`, a `StepCheck`.
 template <class Method, class Solver = DefaultSolver>
 concept StepMethod = requires(Method const m, System& system, State& x, double h,
                               decltype(m.template workspace<Solver>(system))& workspace) {
   m.start(system, x, h, workspace);
   { m.step(system, x, h, workspace) } -> std::same_as<StepReport>;
   { workspace.forward } -> std::same_as<ForwardDynamics<Solver>&>;
+  { workspace.check } -> std::same_as<StepCheck&>;
 };
 
 /// Method of an integrator: the result of its `method()`, or the integrator itself. \throws InvalidInput for options

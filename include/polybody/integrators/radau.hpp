@@ -87,6 +87,7 @@ struct Radau {
     TangentSolver<AutoLu> solver, by_stage;     ///< `by_stage` is analysed by the first step that requires it
     ConstraintDerivatives slopes;               ///< ∂Φ̈/∂q and ∂Φ̈/∂v of the constraint equations
     ForwardDynamics<Solver> forward;            ///< [M, Gᵀ; G, 0]: accelerations at the start, projections
+    StepCheck check;                            ///< checks of the steps of a run
     Projection::Scratch projected;              ///< memory of `projection`: none
     ReusedFactorisation reused_factorisation;   ///< state of the reused factorisation
     bool has_by_stage = false;                  ///< true if `by_stage` is analysed
@@ -220,12 +221,12 @@ struct Radau {
       if (report.result == NewtonResult::converged) break;
       tried = detail::with_attempt(report, tried, 3);
       if (report.result == NewtonResult::not_finite || effort >= last)
-        detail::count_if_failed(w.forward.failed, tried, [&] {
+        detail::count_if_failed(w.check.failed, tried, [&] {
           detail::throw_convergence_failure(name, system, x.t + h, report, {problem.bad, w.rhs, w.y});
         });
     }
     StepReport const step = detail::report_of(h, report, 3, tried);
-    detail::count_if_failed(w.forward.failed, step, [&] { finish(system, x, h, reach, w); });
+    detail::count_if_failed(w.check.failed, step, [&] { finish(system, x, h, reach, w); });
     return step;
   }
 
@@ -246,7 +247,7 @@ struct Radau {
       w.forward.least_change(system, w.phi, w.next);
       w.vd[2] += w.next;
     }
-    w.forward.require_end(system, {w.q, w.v[2], w.lambda[2], x.t + h, h});
+    w.check.require_end(system, {w.q, w.v[2], w.lambda[2], x.t + h, h});
     x.q.swap(w.q);
     x.v.swap(w.v[2]);
     x.a.swap(w.vd[2]);

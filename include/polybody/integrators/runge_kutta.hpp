@@ -152,7 +152,7 @@ struct RungeKutta4 {
     for (std::size_t i = 1; i < 4; ++i) w.stage(system, x, h, Tableau::c[i], Tableau::a[i], int(i));
     w.combine(x, h, Tableau::b, 4);
     StepReport report{.taken = h, .next = h, .factorisations = 4, .evaluations = 4};
-    detail::count_if_failed(w.forward.failed, report, [&] { w.accept(system, x, h, stabilisation, false); });
+    detail::count_if_failed(w.check.failed, report, [&] { w.accept(system, x, h, stabilisation, false); });
     report.choices = detail::choices_of(w.scratch);
     return report;
   }
@@ -221,7 +221,7 @@ struct DormandPrince {
       if (error <= 1.0) {
         w.combine(x, h, Tableau::b, Tableau::stages);
         report.evaluations += detail::count_if_failed(
-            w.forward.failed, {.factorisations = report.evaluations, .evaluations = report.evaluations},
+            w.check.failed, {.factorisations = report.evaluations, .evaluations = report.evaluations},
             [&] { return w.accept(system, x, h, stabilisation, true); });
         report.factorisations = report.evaluations;
         report.taken = h;

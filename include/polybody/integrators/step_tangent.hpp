@@ -1,12 +1,15 @@
 #pragma once
+/// \file
+/// Equations of an implicit step: evaluation, residual, corrections of Newton's method, and tangent.
+
 #include <polybody/solvers/tangent_solver.hpp>
 
 namespace polybody {
 
-/// Tangent of an implicit step and its solver, with or without the second-order terms ∂(Gᵀλ)/∂q, ∂(Jᵀw)/∂q. These
-/// terms cost as much as all other terms and seldom save an iteration. A step that does not converge activates them for
-/// eight steps. If another step does not converge within the same number of steps after the end of this period, the
-/// next period is twice as long. This occurs near singular configurations.
+/// Equations of an implicit step with their tangent, with or without the second-order terms ck ∂(Gᵀλ)/∂q, ∂(Jᵀw)/∂q.
+/// These terms cost as much as all other terms and seldom save an iteration. A step that does not converge activates
+/// them for eight steps. If another step does not converge within the same number of steps after the end of this
+/// period, the next period is twice as long. This occurs near singular configurations.
 template <LinearSolver Solver>
 class StepTangent {
  public:
@@ -15,6 +18,14 @@ class StepTangent {
     begins_with_ = terms == SecondOrder::included;
     has_second_ = false;
     first_.analyse(system, 1, [&](BlockSink& sink) { system.tangent({1.0, 1.0, 1.0}, terms, lambda, sink); });
+    coordinates_ = system.step_coordinates();
+    carries_multipliers_ = multipliers_of(system) > system.rows();
+    if (carries_multipliers_) {
+      balance_.setZero(coordinates_.reduced->equations);
+      solution_ = balance_;
+      full_q_.setZero(system.layout().coordinates);
+      full_v_.setZero(system.layout().velocities);
+    }
     left_out_.clear();
     forget();
   }
@@ -31,6 +42,43 @@ class StepTangent {
     left_out_ = Sequence<Index>(equations.begin(), equations.end());
     first_.mark_redundant(equations);
     if (has_second_) second_.mark_redundant(equations);
+  }
+
+  /// Evaluates the system, unless it is a tree under weight alone, whose recursions do not need the evaluation.
+  void evaluate(System& system, At<double> const& at) const {
+    if (!first_.by_recursion()) system.evaluate(at.q, at.v, at.t);
+  }
+  /// r = M a − f + Gᵀλ at x, the state of the last evaluation. If multiplier estimates are stored
+  /// (`carries_multipliers`), this object stores the residual of the full model and sets r to zero; r is then available
+  /// from `System::residual`.
+  void balance(System& system, StepPosition const& x, VecX& r) {
+    if (first_.by_recursion()) return coordinates_->balance(x, system.load_factor, r);
+    if (!carries_multipliers_) return system.residual(x.a, x.lambda, r);
+    coordinates_->balance_to_equations(residual_of_bodies(system, x.a, x.lambda), balance_);
+    r.setZero();
+  }
+  /// False if the residual that the last `balance` stored is not finite.
+  bool is_finite() const { return !carries_multipliers_ || all_finite(balance_); }
+  /// Computes the correction y of a step: accelerations and all multipliers of the system. `rhs` contains −r of the
+  /// last `balance` and the right-hand sides of the constraint equations. If multiplier estimates are stored, the
+  /// equations of all bodies are solved for the residual of the full model, and the solution is projected on the joints
+  /// of the current iterate. With −Tᵀr as right-hand side, a reused factorisation would transfer forces from body to
+  /// body with outdated moment arms, and this error would grow from joint to joint.
+  void correct(VecX const& rhs, VecX& y) {
+    if (!carries_multipliers_) return solver().solve(rhs, y);
+    coordinates_->rows_to_equations(rhs.data() + coordinates_.reduced->velocities, balance_);
+    solver().linear_solver().solve(balance_, solution_);
+    coordinates_->correction_from_equations(solution_, y);
+  }
+  /// True if multiplier estimates of eliminated joints are stored. A correction then also reduces the error of the
+  /// estimates. The size of the correction does not include this error, so that the contraction rate of another step
+  /// does not predict the next correction.
+  bool carries_multipliers() const { return carries_multipliers_; }
+  /// Returns the tree to the state `at` after a factorisation in another state. Requires `carries_multipliers()`.
+  void return_to(At<double> const& at) { coordinates_->expand(at.q, at.v, full_q_, full_v_); }
+  /// Factorises the tangent at x, the state of the last evaluation. Returns −1, or the equation without a pivot.
+  Index factor(System& system, StepPosition const& x, TangentCoefficients const& k) {
+    return solver().factor_tangent(system, x, k, terms());
   }
 
   /// Solver of the present tangent.
@@ -64,6 +112,9 @@ class StepTangent {
   static constexpr long shortest_stay = 8, longest_stay = 1L << 20;
 
   TangentSolver<Solver> first_, second_;
+  Coordinates coordinates_;
+  bool carries_multipliers_ = false;
+  VecX balance_, solution_, full_q_, full_v_;
   Sequence<Index> left_out_;
   bool begins_with_ = false, has_second_ = false, included_ = false, went_ = false;
   long stay_ = shortest_stay;  ///< length of a period with second-order terms, in steps

@@ -95,7 +95,7 @@ struct Rattle {
     if (system.rows() > 0) {
       report.factorisations = 3;
       report.iterations = detail::count_if_failed(
-          w.forward.failed, {.iterations = max_iterations, .factorisations = 1, .evaluations = max_iterations + 1},
+          w.check.failed, {.iterations = max_iterations, .factorisations = 1, .evaluations = max_iterations + 1},
           [&] { return close(system, x, h, w); });
     }
     w.dq /= h;  // v½

@@ -12,8 +12,7 @@ namespace polybody {
 /// counted. This function does not allocate memory.
 template <class = void>
 Energy energy(System const& system, State const& x) {
-  return require_entry(system.entries().first.energy, "energies")(system.entries().second, {x.q, x.v, x.t},
-                                                                  system.data());
+  return system.operations().energy({x.q, x.v, x.t}, system.data());
 }
 
 /// Linear momentum [kg m/s] and angular momentum about the world's origin [kg m²/s], world axes:
@@ -41,12 +40,11 @@ template <class = void>
 Momentum momentum(System& system, State const& x) {
   VecX mv = VecX::Zero(system.velocities()), rigid = mv;
   system.masses(detail::ProductSink{x.v, mv});
-  auto const velocities = require_entry(system.entries().first.rigid_velocities, "velocities of rigid motions");
   Momentum p;
   for (int i = 0; i < 3; ++i) {
-    velocities(system.entries().second, x.q, Vec3::Unit(i), Vec3::Zero(), rigid);
+    system.operations().rigid_velocities(x.q, Vec3::Unit(i), Vec3::Zero(), rigid);
     p.linear[i] = mv.dot(rigid);
-    velocities(system.entries().second, x.q, Vec3::Zero(), Vec3::Unit(i), rigid);
+    system.operations().rigid_velocities(x.q, Vec3::Zero(), Vec3::Unit(i), rigid);
     p.angular[i] = mv.dot(rigid);
   }
   return p;
@@ -66,10 +64,9 @@ namespace detail {
 /// In the plane w_y is zero, and so is r_z.
 template <class = void>
 CentreOfMass centre_of_mass(System& system, State const& x, Index first, Index count) {
-  auto const velocities = require_entry(system.entries().first.rigid_velocities, "velocities of rigid motions");
   VecX mv = VecX::Zero(system.velocities()), rigid = mv, u = mv;
   auto const motion = [&](Vec3 const& v0, Vec3 const& omega) {
-    velocities(system.entries().second, x.q, v0, omega, rigid);
+    system.operations().rigid_velocities(x.q, v0, omega, rigid);
     return rigid.segment(first, count);
   };
   auto const momentum_of = [&](VecX const& v) {

@@ -17,8 +17,7 @@ namespace polybody {
 template <class = void>
 Powers powers(System const& system, State const& x, VecX& backwards) {
   backwards = -x.v;
-  return require_entry(system.entries().first.powers, "energies")(system.entries().second, {x.q, x.v, x.t}, backwards,
-                                                                  x.lambda, system.load_factor, system.data());
+  return system.operations().powers({x.q, x.v, x.t}, backwards, x.lambda, system.load_factor, system.data());
 }
 /// Powers in state x; this overload allocates its workspace.
 template <class = void>

@@ -88,19 +88,19 @@ class Simulation {
     State ready = stepped();  // `start` clears its history
     if (system_->rows() > 0) leave_out_redundant(*system_, fresh.forward, ready, &ready.lambda);
     method_.start(*system_, ready, driver_.next(ready).h, fresh);
-    (void)workspace_.forward.bounds.settle(*system_, step_end());
-    fresh.forward.bounds = std::move(workspace_.forward.bounds);
+    (void)workspace_.check.bounds.settle(*system_, step_end());
+    fresh.check.bounds = std::move(workspace_.check.bounds);
     workspace_ = std::move(fresh);
     bound();
   }
 
   /// Applies `RunOptions::limits` to the steps from this state on.
-  void bound() { workspace_.forward.bounds.begin(*system_, options_.limits, step_end()); }
+  void bound() { workspace_.check.bounds.begin(*system_, options_.limits, step_end()); }
   StepResult step_end() { return {stepped().q, stepped().v, stepped().lambda, stepped().t, driver_.step_length()}; }
   /// Evaluates the energy balance up to the present state, before a restart or an action and at the end of the run.
   /// \param halved number of halved steps that are not in the report yet
   [[gnu::cold]] void settle(int halved) {
-    Unexplained const found = workspace_.forward.bounds.settle(*system_, step_end());
+    Unexplained const found = workspace_.check.bounds.settle(*system_, step_end());
     if (done()) report_.warn_of_energy(found, options_.limits.warning, {start_, stepped().t, report_.halved + halved});
   }
   State& stepped() { return eliminates() ? reduced_ : *x_; }
@@ -136,7 +136,7 @@ class Simulation {
     return seen_;
   }
   StepReport step(State& x, double h, int halvings = -1) {
-    workspace_.forward.bounds.halvings = HasStabilityLimit<I> || !options_.allowed_halvings() ? -1 : halvings;
+    workspace_.check.bounds.halvings = HasStabilityLimit<I> || !options_.allowed_halvings() ? -1 : halvings;
     return method_.step(*system_, x, h, workspace_);
   }
   void start(State& x, double h) {
@@ -146,7 +146,7 @@ class Simulation {
   StepReport take(State& x, double h) {
     auto const halve = [&] { return driver_.halving_step(x, h, options_.allowed_halvings(), *this); };
     StepReport report = redundancy_.step(*system_, workspace_.forward, x, driver_.before(), halve, [&] { restart(); });
-    report.add(workspace_.forward.failed);
+    report.add(workspace_.check.failed);
     return report;
   }
   void on_step(RunStep const& s) {
@@ -252,8 +252,7 @@ void Simulation<I, Solver>::advance(bool updates) {
   double const from = stepped().t, h = driver_.plan_step(stepped()).plan.h;
   if (!(from + h > from) || !undo_.fits(stepped())) undo_.refuse_step(stepped(), options_.end_time, h);
   undo_.begin(report_);
-  auto trial = workspace_.forward.attempt();
-  workspace_.forward.failed = {};
+  StepTrial trial(workspace_);
   updates_ = updates;
   try {
     driver_.take_step(stepped(), *this);

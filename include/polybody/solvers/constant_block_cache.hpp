@@ -17,19 +17,41 @@ namespace polybody {
 
 /// Linear solver of a matrix that consists of parts without a block between them. The first factorisation factorises
 /// the constant parts, with a separate `Solver`; later factorisations reuse these factors. A part is constant if all of
-/// its unknowns are declared constant. Another `Solver` factorises the other parts, or the whole matrix if no part or
-/// every part is constant.
+/// its unknowns are declared constant. Another `Solver` factorises the other parts. The matrix must have parts of both
+/// kinds.
 template <LinearSolver Solver>
 class ConstantBlockCache {
  public:
-  /// Declares unknowns constant. Call it before `analyse`. \param constant for each unknown: true if the blocks in its
-  /// row and column are constant
-  void keep(Sequence<bool> constant) { constant_ = std::move(constant); }
+  /// Declares unknowns constant. Call it before `analyse`. Returns the number of unknowns in constant parts, or zero if
+  /// there are not parts of both kinds. \param constant for each unknown: true if the blocks in its row and column are
+  /// constant
+  /// \param blocks blocks of the matrix
+  Index keep(Sequence<bool> const& constant, std::span<Block const> blocks) {
+    Index const size = Index(constant.size());
+    root_.clear();
+    for (Index i = 0; i < size; ++i) root_.push_back(i);
+    for (Block const& b : blocks) {
+      Index const first = root(b.row);
+      for (Index i = 0; i < b.rows; ++i) root_[std::size_t(root(b.row + i))] = root(first);
+      for (Index j = 0; j < b.cols; ++j) root_[std::size_t(root(b.col + j))] = root(first);
+    }
+    kept_.assign(std::size_t(size), true);
+    for (Index i = 0; i < size; ++i)
+      if (!constant[std::size_t(i)]) kept_[std::size_t(root(i))] = false;
+    for (Index i = 0; i < size; ++i) kept_[std::size_t(i)] = kept_[std::size_t(root(i))];
+    kept_size_ = 0;
+    place_.clear();
+    of_kept_.clear();
+    of_rest_.clear();
+    for (Index i = 0; i < size; ++i) {
+      place_.push_back(kept_[std::size_t(i)] ? kept_size_++ : i - kept_size_);
+      (kept_[std::size_t(i)] ? of_kept_ : of_rest_).push_back(i);
+    }
+    return kept_size_ == size ? 0 : kept_size_;
+  }
 
   void analyse(Index size, std::span<Block const> blocks) {
-    find_parts(size, blocks);
     kept_factored_ = false;
-    if (kept_size_ == 0) return rest_.analyse(size, blocks);
     Sequence<Block> of_kept, of_rest;
     in_kept_.clear();
     for (Block b : blocks) {
@@ -49,37 +71,27 @@ class ConstantBlockCache {
   void begin() {
     next_ = 0;
     rest_.begin();
-    if (kept_size_ == 0) return;
     to_rest_ = BlockSink(rest_);
     if (kept_factored_) return;
     kept_solver_.begin();
     to_kept_ = BlockSink(kept_solver_);
   }
-  BlockSlots slots() const {
-    if constexpr (SlottedReceiver<Solver>)
-      if (kept_size_ == 0) return rest_.slots();
-    return {};
-  }
   void add(Index row, Index col, BlockView const& b) {
-    if (kept_size_ == 0) return rest_.add(row, col, b);
     bool const kept = in_kept_[next_++];
     if (kept && kept_factored_) return;
     (kept ? to_kept_ : to_rest_).add(place_[std::size_t(row)], place_[std::size_t(col)], b);
   }
 
   /// False if the unknowns from `first` on belong to constant parts that are already factorised.
-  bool wants(Index first, Index) const { return kept_size_ == 0 || !kept_factored_ || !kept_[std::size_t(first)]; }
+  bool wants(Index first, Index) const { return !kept_factored_ || !kept_[std::size_t(first)]; }
   void skip(Index row, Index col, Index rows, Index cols) {
-    if (kept_size_ == 0) {
-      BlockSink(rest_).skip(row, col, rows, cols);
-    } else if (bool const kept = in_kept_[next_++]; !kept || !kept_factored_) {
+    if (bool const kept = in_kept_[next_++]; !kept || !kept_factored_)
       (kept ? to_kept_ : to_rest_).skip(place_[std::size_t(row)], place_[std::size_t(col)], rows, cols);
-    }
   }
 
   /// Returns −1, or the index of the unknown without a usable pivot.
   Index factor() {
-    if (kept_size_ > 0 && !kept_factored_) {
+    if (!kept_factored_) {
       if (Index const bad = kept_solver_.factor(); bad >= 0) return unknown(bad, true);
       kept_factored_ = true;
     }
@@ -89,9 +101,8 @@ class ConstantBlockCache {
       for (Index const i : rest_.dropped()) dropped_.push_back(unknown(i, false));
     return bad < 0 ? bad : unknown(bad, false);
   }
-  /// x = A⁻¹ b; b and x may be the same vector if `Solver` permits it or if there are constant parts.
+  /// x = A⁻¹ b; b and x may be the same vector.
   void solve(VecX const& b, VecX& x) {
-    if (kept_size_ == 0) return rest_.solve(b, x);
     for (std::size_t i = 0; i < place_.size(); ++i) (kept_[i] ? kept_rhs_ : rest_rhs_)[place_[i]] = b[Index(i)];
     kept_solver_.solve(kept_rhs_, kept_x_);
     rest_.solve(rest_rhs_, rest_x_);
@@ -99,8 +110,6 @@ class ConstantBlockCache {
     for (std::size_t i = 0; i < place_.size(); ++i) x[Index(i)] = (kept_[i] ? kept_x_ : rest_x_)[place_[i]];
   }
 
-  /// Number of unknowns in parts that are factorised once.
-  Index kept() const { return kept_size_; }
   std::span<Index const> dropped() const { return {dropped_.data(), dropped_.size()}; }
   /// Drops these `unknowns`, except those of constant parts, in every later factorisation
   /// (`BlockFactor::mark_redundant`).
@@ -108,7 +117,7 @@ class ConstantBlockCache {
     if constexpr (requires { rest_.mark_redundant(unknowns); }) {
       Sequence<Index> rows;
       for (Index const i : unknowns)
-        if (kept_size_ == 0 || !kept_[std::size_t(i)]) rows.push_back(kept_size_ == 0 ? i : place_[std::size_t(i)]);
+        if (!kept_[std::size_t(i)]) rows.push_back(place_[std::size_t(i)]);
       rest_.mark_redundant(std::span<Index const>(rows.data(), rows.size()));
     }
   }
@@ -121,7 +130,6 @@ class ConstantBlockCache {
   /// Empty if `Solver` does not provide null vectors.
   [[gnu::cold]] Sequence<IndexMap<double>> null_vectors(VecX const& sizes) {
     if constexpr (requires { rest_.null_vectors(sizes); }) {
-      if (kept_size_ == 0) return rest_.null_vectors(sizes);
       for (std::size_t i = 0; i < place_.size(); ++i)
         if (!kept_[i]) rest_x_[place_[i]] = sizes[Index(i)];
       Sequence<IndexMap<double>> found;
@@ -151,38 +159,14 @@ class ConstantBlockCache {
     while (root_[std::size_t(i)] != i) i = root_[std::size_t(i)] = root_[std::size_t(root_[std::size_t(i)])];
     return i;
   }
-  void find_parts(Index size, std::span<Block const> blocks) {
-    root_.clear();
-    for (Index i = 0; i < size; ++i) root_.push_back(i);
-    for (Block const& b : blocks) {
-      Index const first = root(b.row);
-      for (Index i = 0; i < b.rows; ++i) root_[std::size_t(root(b.row + i))] = root(first);
-      for (Index j = 0; j < b.cols; ++j) root_[std::size_t(root(b.col + j))] = root(first);
-    }
-    constant_.resize(std::size_t(size), false);
-    kept_.assign(std::size_t(size), true);
-    for (Index i = 0; i < size; ++i)
-      if (!constant_[std::size_t(i)]) kept_[std::size_t(root(i))] = false;
-    for (Index i = 0; i < size; ++i) kept_[std::size_t(i)] = kept_[std::size_t(root(i))];
-    kept_size_ = 0;
-    place_.clear();
-    of_kept_.clear();
-    of_rest_.clear();
-    for (Index i = 0; i < size; ++i) {
-      place_.push_back(kept_[std::size_t(i)] ? kept_size_++ : i - kept_size_);
-      (kept_[std::size_t(i)] ? of_kept_ : of_rest_).push_back(i);
-    }
-    if (kept_size_ == size) kept_size_ = 0;  // every part is constant: one solver factorises the matrix
-  }
   Index unknown(Index place, bool kept) const {
-    if (kept_size_ == 0) return place;
     return (kept ? of_kept_ : of_rest_)[std::size_t(place)];
   }
 
   Solver rest_, kept_solver_;
-  Sequence<bool> constant_, kept_, in_kept_;  // constant_, kept_: for each unknown; in_kept_: for each block
-  Sequence<Index> root_, place_, dropped_;    // root_, place_: for each unknown; place_: index in its solver
-  Sequence<Index> of_kept_, of_rest_;         // unknown at each index of both solvers
+  Sequence<bool> kept_, in_kept_;           // kept_: for each unknown; in_kept_: for each block
+  Sequence<Index> root_, place_, dropped_;  // root_, place_: for each unknown; place_: index in its solver
+  Sequence<Index> of_kept_, of_rest_;       // unknown at each index of both solvers
   Index kept_size_ = 0;
   bool kept_factored_ = false;
   std::size_t next_ = 0;

@@ -25,7 +25,6 @@ struct RigidPart {
 /// motions (three in the plane) are orthogonalised one after the other.
 template <class = void>  // compiled where it is used
 RigidPart rigid_part(System const& system, BodyLayout const& body, VecX const& z) {
-  auto const entry = require_entry(system.entries().first.rigid_velocities, "velocities of rigid motions");
   VecX all = VecX::Zero(system.layout().velocities), rest(body.velocities);
   Sequence<VecX> columns;
   Sequence<Vec6> motions;
@@ -41,8 +40,8 @@ RigidPart rigid_part(System const& system, BodyLayout const& body, VecX const& z
     if (body.planar && (k == 2 || k == 3 || k == 4)) continue;
     Vec6 motion = zeros<Vec6>();
     motion[k] = 1.0;
-    entry(system.entries().second, system.at().q, Vec3(motion[0], motion[1], motion[2]),
-          Vec3(motion[3], motion[4], motion[5]), all);
+    system.operations().rigid_velocities(system.at().q, Vec3(motion[0], motion[1], motion[2]),
+                                         Vec3(motion[3], motion[4], motion[5]), all);
     VecX column(body.velocities);
     for (Index i = 0; i < body.velocities; ++i) column[i] = all[body.v0 + i];
     double const before = std::sqrt(dot(column, column));
@@ -103,7 +102,7 @@ std::string text_of(RigidPart const& part, double reach) {
 template <class = void>
 std::string name_of_motion(System const& system, VecX const& z, Index i) {
   std::string text = system.name_of(i);
-  if (system.step_coordinates() || system.entries().first.rigid_velocities == nullptr) return text;
+  if (system.step_coordinates() || !system.operations().provides(Capabilities::rigid_velocities)) return text;
   double const reach = 1.0 + largest_size(system.at().q);
   int others = 0;
   double largest = 0.0;

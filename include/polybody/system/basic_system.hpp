@@ -182,17 +182,6 @@ struct With {};
 template <Capabilities groups>
 inline constexpr With<groups> with{};
 
-/// Returns the function `entry`. \param group name of its capability in the message \throws InvalidInput if `entry` is
-/// null: the system was constructed without this capability.
-template <class F>
-F require_entry(F entry, char const* group) {
-  if (!entry)
-    throw InvalidInput("system.missing_capability",
-                       {"This system was constructed without ", ErrorObject{group},
-                        ". Name the capability in the constructor: System(model, with<Capabilities::...>)."});
-  return entry;
-}
-
 /// Parts of the tangent that `tangent_of` evaluates separately.
 enum class TangentPart { compliant_joints, force_elements };
 
@@ -206,13 +195,13 @@ class BasicSystem {
   template <class M, Capabilities wanted = Capabilities::questions>
     requires requires { sizeof(OperationsOf<M, T, wanted>); }
   explicit BasicSystem(M const& model, With<wanted> = {}, CoordinatesOf<T> coordinates = {})
-      : BasicSystem(&model, OperationsOf<M, T, wanted>::table, layout_of(model),
+      : BasicSystem(std::make_shared<OperationsOf<M, T, wanted>>(model), layout_of(model),
                     OperationsOf<M, T, wanted>::make_data(model), std::move(coordinates)) {}
   template <class M, Capabilities wanted = Capabilities::questions>
     requires requires { sizeof(OperationsOf<M, T, wanted>); }
   explicit BasicSystem(M const&& model, With<wanted> = {}, CoordinatesOf<T> = {}) = delete;  ///< refuses a temporary
-  /// Equations from functions of any origin, which receive `model` as their first argument.
-  [[gnu::cold]] BasicSystem(void const* model, ModelOperations<T> const& entries, ModelLayout layout, Data<T> data,
+  /// Equations from functions of any origin.
+  [[gnu::cold]] BasicSystem(std::shared_ptr<ModelOperations<T> const> operations, ModelLayout layout, Data<T> data,
                             CoordinatesOf<T> coordinates);
   BasicSystem(BasicSystem&&) noexcept;  ///< invalidates references to the moved system, such as those of a workspace
   ~BasicSystem();
@@ -224,8 +213,7 @@ class BasicSystem {
   CoordinatesOf<T> const& step_coordinates() const { return coordinates_; }
   /// Arrays of the last evaluation: markers, constraint blocks, wrenches of force elements.
   Data<T> const& data() const { return data_; }
-  /// Functions of the model, and the model as their first argument.
-  std::pair<ModelOperations<T> const&, void const*> entries() const { return {entries_, model_}; }
+  ModelOperations<T> const& operations() const { return *operations_; }  ///< functions of the model
   /// Full coordinates and velocities, and time, of the last evaluation.
   At<T> at() const { return {q_, v_, t_}; }
 
@@ -255,7 +243,7 @@ class BasicSystem {
   /// r = M a − f + Gᵀλ (nv).
   void residual(Vector const& a, Vector const& lambda, Vector& r);
   /// Writes the wrenches and state rates of the force elements to `data()`. `residual` also updates them.
-  void push_forces() { entries_.push_forces(model_, t_, data_); }
+  void push_forces() { operations_->push_forces(t_, data_); }
   /// `phi` = Φ (rows), the constraint violation; zero for nonholonomic equations.
   void violation(Vector& phi);
   /// `rate` = Φ̇ = G v + Φ_t (rows).
@@ -281,7 +269,7 @@ class BasicSystem {
     with_sink(receiver, [&](BlockSink& sink) {
       write_equations(
           [&](BlockSink& full) {
-            entries_.masses(model_, at(), data_, full);
+            operations_->masses(at(), data_, full);
             write_rows(data_, layout_.velocities, full);
           },
           sink);
@@ -293,13 +281,12 @@ class BasicSystem {
   template <BlockReceiver S>
   void tangent_of(TangentPart part, TangentCoefficients c, S&& receiver, Vector const* lambda = nullptr) {
     with_sink(receiver, [&](BlockSink& sink) {
-      if (part == TangentPart::compliant_joints)
-        return require_entry(entries_.compliant_tangents, "tangents")(model_, c, data_, sink);
+      if (part == TangentPart::compliant_joints) return operations_->compliant_tangents(c, data_, sink);
       clear_loads();
       c.full = true;
-      if (lambda) require_entry(entries_.joint_stiffness, "second-order terms")(model_, at(), *lambda, c, data_, sink);
-      require_entry(entries_.force_tangents, "tangents")(model_, t_, load_factor, c, data_, sink);
-      require_entry(entries_.load_stiffness, "second-order terms")(model_, at(), c, data_, sink);
+      if (lambda) operations_->joint_stiffness(at(), *lambda, c, data_, sink);
+      operations_->force_tangents(t_, load_factor, c, data_, sink);
+      operations_->load_stiffness(at(), c, data_, sink);
     });
   }
 
@@ -330,7 +317,7 @@ class BasicSystem {
   }
   void write_equations(BlockWriter const& write, BlockSink& sink) {
     if (coordinates_)
-      coordinates_.entries->write(coordinates_.self.get(), write, sink);
+      coordinates_->write(write, sink);
     else
       write(sink);
   }
@@ -339,7 +326,7 @@ class BasicSystem {
   void write_tangent(TangentCoefficients c, SecondOrder second, Vector const& given, BlockSink& sink);
   Vector const& full_multipliers(Vector const& lambda) {
     expand_rows(lambda, full_lambda_);
-    coordinates_.entries->recover_multipliers(coordinates_.self.get(), data_, full_lambda_);
+    coordinates_->recover_multipliers(data_, full_lambda_);
     return full_lambda_;
   }
   void clear_loads() {
@@ -355,8 +342,7 @@ class BasicSystem {
   }
   void expand_rows(Vector const& reduced, Vector& full) const { coordinates_.reduced->expand_rows(reduced, full); }
 
-  void const* model_;
-  ModelOperations<T> entries_;
+  std::shared_ptr<ModelOperations<T> const> operations_;
   ModelLayout layout_;
   CoordinatesOf<T> coordinates_;
   std::unique_ptr<Workers> workers_;

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
 /// Maps between the unknowns of a time step (reduced vectors) and those of the model (full vectors) if policies
-/// eliminate unknowns: v = T u, v̇ = T u̇ + b. The maps are a table of functions; programs without these policies do
-/// not compile them.
+/// eliminate unknowns: v = T u, v̇ = T u̇ + b. The maps are abstract classes; programs without these policies do not
+/// compile an implementation.
 
 #include <polybody/math/block_sink.hpp>
 #include <polybody/math/sequence.hpp>
@@ -53,88 +53,94 @@ struct ReducedLayout {
   }
 };
 
-/// State of a tree at which a matrix was written, stored with its factorisation. For the articulated-body algorithm it
-/// also contains the solver with its factors.
-using FrozenState = std::shared_ptr<void>;
-
 /// Iterate of an implicit step.
 struct StepPosition {
   At<double> at;           ///< q, v and t, reduced
   VecX const &a, &lambda;  ///< v̇ (nv) and λ (rows), reduced
 };
 
-/// Maps between reduced and full vectors of the scalar T. The argument `c` is the object that eliminates unknowns.
+/// Maps between reduced and full vectors of the scalar T.
 template <StateScalar T>
-struct CoordinateMapOperations {
+class CoordinateMap {
+ public:
   using Vector = VecXOf<T>;  ///< coordinates, velocities or constraint equations
+  virtual ~CoordinateMap() = default;
 
-  /// Computes full q and v from reduced q and v. The other functions refer to this state.
-  void (*expand)(void* c, Vector const& q, Vector const& v, Vector& full_q, Vector& full_v) = nullptr;
+  /// Computes `full_q` and `full_v` from reduced q and v. The other functions refer to this state.
+  virtual void expand(Vector const& q, Vector const& v, Vector& full_q, Vector& full_v) = 0;
   /// out = T u, or T u + b if `bias` is true.
-  void (*expand_rates)(void* c, Vector const& u, bool bias, Vector& out) = nullptr;
+  virtual void expand_rates(Vector const& u, bool bias, Vector& out) = 0;
   /// out = Tᵀ r. Stores a copy of r for `recover_multipliers`, then overwrites r.
-  void (*reduce)(void* c, Vector& r, Vector& out) = nullptr;
+  virtual void reduce(Vector& r, Vector& out) = 0;
   /// Corrects the estimates `lambda` of the multipliers of eliminated joints, so that they balance the residual r of
   /// the last `reduce`. This residual r = M a − f + Gᵀλ must contain the same estimates.
-  void (*recover_multipliers)(void* c, Data<T> const& data, Vector& lambda) = nullptr;
+  virtual void recover_multipliers(Data<T> const& data, Vector& lambda) = 0;
   /// out = q ⊞ δ for joint coordinates only.
-  void (*plus)(void* c, Vector const& q, Vector const& delta, Vector& out) = nullptr;
+  virtual void plus(Vector const& q, Vector const& delta, Vector& out) const = 0;
   /// out = δ˙ while q ⊞ δ moves with the reduced velocities v, for joint coordinates only.
-  void (*local_rate)(void* c, Vector const& delta, Vector const& v, Vector& out) = nullptr;
+  virtual void local_rate(Vector const& delta, Vector const& v, Vector& out) const = 0;
 };
 
-/// Additional functions for reduced coordinates in doubles.
-struct CoordinateOperations : CoordinateMapOperations<double> {
+/// Stored state of the maps in which a matrix was written, with the maps to the unknowns of the linear system. This
+/// class stores nothing, for a linear system with the unknowns of a step.
+class FrozenMaps {
+ public:
+  virtual ~FrozenMaps() = default;
+
+  virtual void freeze() {}  ///< stores the state of the last `expand`
+  /// Computes the right-hand side `out` of the linear system from the right-hand side `rhs` of a step.
+  virtual void to_equations(VecX const& rhs, VecX& out) { out = rhs; }
+  /// out = unknowns of the step from a solution of the linear system.
+  virtual void from_equations(VecX const& solution, VecX& out) { out = solution; }
+  /// Articulated-body algorithm: factorises the full tangent of `write`. Returns −1, or the index of the velocity without a pivot.
+  virtual Index factor(BlockWriter const&) { return -1; }
+  /// Articulated-body algorithm: factorises the exact tangent of `StepCoordinates::balance` with the coefficients k.
+  /// Returns −1, or the index of the velocity without a pivot.
+  virtual Index factor_balance(StepPosition const&, double /*load_factor*/, TangentCoefficients const&) { return -1; }
+  /// Solves with the factors of the last `factor` or `factor_balance`, in the unknowns of a step.
+  virtual void solve(VecX const& /*rhs*/, VecX& /*x*/) {}
+};
+
+/// Reduced coordinates of a time step in the scalar T.
+template <StateScalar T>
+class StepCoordinates : public CoordinateMap<T> {};
+
+/// Reduced coordinates in doubles, with the linear system of a time step.
+template <>
+class StepCoordinates<double> : public CoordinateMap<double> {
+ public:
   /// `rate` = q˙, for joint coordinates only.
-  void (*coordinate_rates)(void* c, VecX const& q, VecX const& v, VecX& rate) = nullptr;
+  virtual void coordinate_rates(VecX const& q, VecX const& v, VecX& rate) const = 0;
   /// out = reduced state nearest to the full state x; exact if x satisfies the equations of the eliminated joints.
-  void (*reduced)(void* c, State const& x, State& out) = nullptr;
+  virtual void reduce_state(State const& x, State& out) = 0;
 
   /// Writes the full tangent of `write` into `sink`, in the unknowns of the linear system.
-  void (*write)(void* c, BlockWriter const& write, BlockSink& sink) = nullptr;
-  /// Allocates storage for `freeze`.
-  FrozenState (*make_frozen_state)(void* c) = nullptr;
-  void (*freeze)(void* c, void* frozen) = nullptr;  ///< copies the state of the last `expand` to `frozen`
-  /// Computes the right-hand side `out` of the linear system from the right-hand side `rhs` of a step, at the state
-  /// `frozen`.
-  void (*to_equations)(void* c, void* frozen, VecX const& rhs, VecX& out) = nullptr;
-  /// out = unknowns of the step from a solution of the linear system, at the state `frozen`.
-  void (*from_equations)(void* c, void* frozen, VecX const& solution, VecX& out) = nullptr;
+  virtual void write(BlockWriter const& write, BlockSink& sink) = 0;
+  /// Allocates storage for a state of the maps, which must not outlive them.
+  virtual std::shared_ptr<FrozenMaps> make_frozen() = 0;
   /// For `eliminated_equations`: writes −r of the full model to the right-hand side `out` of the linear system.
-  void (*balance_to_equations)(void* c, VecX const& r, VecX& out) = nullptr;
+  virtual void balance_to_equations(VecX const& r, VecX& out) = 0;
   /// For `eliminated_equations`: copies the right-hand sides `rows` of the constraint equations of a step to `out`, the
   /// right-hand side of the linear system.
-  void (*rows_to_equations)(void* c, double const* rows, VecX& out) = nullptr;
+  virtual void rows_to_equations(double const* rows, VecX& out) = 0;
   /// For `eliminated_equations`: computes the unknowns of the step from a solution of the linear system, at the state
   /// of the last `expand`. The multipliers of the eliminated equations follow them in `out`.
-  void (*correction_from_equations)(void* c, VecX const& solution, VecX& out) = nullptr;
-  /// Articulated-body algorithm, without constraint equations: out = u̇ under gravity only, or for the residual
-  /// `residual` of the full model. Returns −1, or the index of a velocity without inertia.
-  Index (*accelerations)(void* c, VecX const& q, VecX const& v, double load_factor, VecX const* residual,
-                         VecX& out) = nullptr;
-  /// Articulated-body algorithm under gravity only: r = Tᵀ(M(T u̇ + b) − f) at the iterate x.
-  void (*balance)(void* c, StepPosition const& x, double load_factor, VecX& r) = nullptr;
-  /// Factorises the exact tangent of `balance` with the coefficients k. Returns −1, or the index of the velocity
-  /// without a pivot.
-  Index (*factor_balance)(void* c, void* frozen, StepPosition const& x, double load_factor,
-                          TangentCoefficients const& k) = nullptr;
-  /// Articulated-body algorithm: factorises the full tangent of `write`. Returns −1, or the index of the velocity
-  /// without a pivot.
-  Index (*factor)(void* c, void* frozen, BlockWriter const& write) = nullptr;
-  /// Solves with the factors of the last `factor` or `factor_balance`, in the unknowns of a step.
-  void (*solve)(void* frozen, VecX const& rhs, VecX& x) = nullptr;
+  virtual void correction_from_equations(VecX const& solution, VecX& out) = 0;
+  /// Articulated-body algorithm, without constraint equations: out = u̇ under gravity times `load_factor`, or for the
+  /// residual `residual` of the full model. Returns −1, or the index of a velocity without inertia.
+  virtual Index accelerations(VecX const& q, VecX const& v, double load_factor, VecX const* residual, VecX& out) = 0;
+  /// Articulated-body algorithm under gravity times `load_factor` only: r = Tᵀ(M(T u̇ + b) − f) at the iterate x.
+  virtual void balance(StepPosition const& x, double load_factor, VecX& r) = 0;
 };
 
 /// Reduced coordinates of the scalar T; empty if no policy eliminates unknowns.
 template <StateScalar T>
 struct CoordinatesOf {
-  /// Type of the table of functions.
-  using Table = std::conditional_t<std::same_as<T, double>, CoordinateOperations, CoordinateMapOperations<T>>;
+  std::shared_ptr<StepCoordinates<T>> maps;      ///< maps; null if no unknowns are eliminated
+  std::shared_ptr<ReducedLayout const> reduced;  ///< sizes and positions in reduced vectors
 
-  std::shared_ptr<void> self;                                    ///< elimination, the argument `c` of the functions
-  Table const* entries = nullptr;                                ///< functions; null if no unknowns are eliminated
-  std::shared_ptr<ReducedLayout const> reduced;                  ///< sizes and positions in reduced vectors
-  explicit operator bool() const { return entries != nullptr; }  ///< true if a policy eliminates unknowns
+  StepCoordinates<T>* operator->() const { return maps.get(); }  ///< access to the maps
+  explicit operator bool() const { return maps != nullptr; }     ///< true if a policy eliminates unknowns
 };
 
 using Coordinates = CoordinatesOf<double>;  ///< reduced coordinates in doubles

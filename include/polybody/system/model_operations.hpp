@@ -1,10 +1,13 @@
 #pragma once
 /// \file
-/// Interface between a model and the layers above: a table of plain functions. It is made where the model's type is
-/// known. Each function loops over the model's pools and stores its results in `Data` or in its output arguments.
+/// Interface between a model and the layers above: an abstract class, implemented where the model's type is known. Each
+/// function loops over the model's pools and stores its results in `Data` or in its output arguments.
+
+#include <memory>
 
 #include <polybody/math/block_sink.hpp>
 #include <polybody/math/dual.hpp>
+#include <polybody/math/errors.hpp>
 #include <polybody/system/data.hpp>
 #include <polybody/system/layout.hpp>
 
@@ -31,7 +34,7 @@ struct TangentCoefficients {
 /// Newton's method contracts; statics requires them.
 enum class SecondOrder { omitted, included };
 
-/// Groups of functions in the function table of a model. An algorithm names the groups of functions that it requires;
+/// Groups of functions of a model. An algorithm names the groups of functions that it requires;
 /// other groups are not compiled.
 enum class Capabilities : unsigned {
   motion = 0,             ///< markers, constraint functions, forces, M, ⊞, energies: always included
@@ -84,7 +87,7 @@ struct ReducedPosition {
   Index q = 0, v = 0, coordinates = 0, velocities = 0;  ///< first coordinate and velocity, numbers of them
 };
 
-/// State as the table's functions receive it: q (nq), v (nv), t.
+/// State as the functions of a model receive it: q (nq), v (nv), t.
 template <StateScalar T>
 struct At {
   VecXOf<T> const& q;  ///< (nq) generalised coordinates
@@ -100,75 +103,97 @@ struct StiffnessAt {
 };
 }  // namespace detail
 
-/// Mean forces over a step (system/secant_operations.hpp).
-struct SecantOperations;
+/// Mean forces over a step (system/step_secants.hpp).
+class SecantOperations;
 
-/// Function table of a model `m`. Functions of groups that were not requested are null.
+/// Functions of a model. Functions of groups that were not requested throw `InvalidInput`.
 template <StateScalar T>
-struct ModelOperations {
+class ModelOperations {
+ public:
   using Vector = VecXOf<T>;  ///< vector of coordinates, velocities or multipliers
+  virtual ~ModelOperations() = default;
+
+  /// True if all functions of `groups` are available.
+  virtual bool provides(Capabilities groups) const { return groups == Capabilities::motion; }
+  virtual bool has_energy() const { return false; }  ///< true if `energy` is available
 
   /// Evaluates the kinematics of all markers.
-  void (*evaluate_marker)(void const* m, At<T> at, Data<T>& data) = nullptr;
+  virtual void evaluate_marker(At<T> at, Data<T>& data) const = 0;
   /// Evaluates constraint functions and their rates for all joints and bodies, and the forces of compliant joints.
   /// Requires evaluated markers.
-  void (*evaluate_constraints)(void const* m, At<T> at, Data<T>& data) = nullptr;
+  virtual void evaluate_constraints(At<T> at, Data<T>& data) const = 0;
   /// Writes γ of all constraint equations to out, without the bias accelerations of the markers.
-  void (*measure_gamma)(void const* m, At<T> at, Data<T> const& data, Vector& out) = nullptr;
+  virtual void measure_gamma(At<T> at, Data<T> const& data, Vector& out) const = 0;
   /// r += M a − f of all bodies, with gravity times `load_factor`.
-  void (*element_forces)(void const* m, At<T> at, Vector const& a, double load_factor, Data<T>& data,
-                         Vector& r) = nullptr;
+  virtual void element_forces(At<T> at, Vector const& a, double load_factor, Data<T>& data, Vector& r) const = 0;
   /// Writes the wrenches of all force elements to data.actions.
-  void (*push_forces)(void const* m, double t, Data<T>& data) = nullptr;
+  virtual void push_forces(double t, Data<T>& data) const = 0;
   /// Writes q ⊞ δ to out. The vectors are reduced vectors if `places` is not null.
-  void (*plus)(void const* m, ReducedPosition const* places, Vector const& q, Vector const& delta,
-               Vector& out) = nullptr;
+  virtual void plus(ReducedPosition const* places, Vector const& q, Vector const& delta, Vector& out) const = 0;
   /// Writes the rate δ̇ to out, for which q ⊞ δ moves with the velocities v. The vectors are reduced vectors if
   /// `places` is not null.
-  void (*local_rate)(void const* m, ReducedPosition const* places, Vector const& delta, Vector const& v,
-                     Vector& out) = nullptr;
+  virtual void local_rate(ReducedPosition const* places, Vector const& delta, Vector const& v, Vector& out) const = 0;
   /// Distributes the loops over threads from now on. The results are bitwise identical.
-  void (*share_loops)(void const* m, Data<T>& data, Workers& threads) = nullptr;
+  virtual void share_loops(Data<T>& data, Workers& threads) const = 0;
   /// Adds M to the sink, element by element.
-  void (*masses)(void const* m, At<T> at, Data<T>& data, BlockSink& sink) = nullptr;
+  virtual void masses(At<T>, Data<T>&, BlockSink&) const { missing("masses"); }
 
   /// Adds the tangent of the bodies' elements to the sink.
-  void (*element_tangents)(void const* m, At<T> at, TangentCoefficients const& c, Data<T>& data,
-                           BlockSink& sink) = nullptr;
+  virtual void element_tangents(At<T>, TangentCoefficients const&, Data<T>&, BlockSink&) const { missing("tangents"); }
   /// Adds the tangent of compliant joints, Gᵀ(ck ∂λ/∂g + cd ∂λ/∂ġ)G, to the sink, with ck, cd from c.
-  void (*compliant_tangents)(void const* m, TangentCoefficients const& c, Data<T>& data, BlockSink& sink) = nullptr;
+  virtual void compliant_tangents(TangentCoefficients const&, Data<T>&, BlockSink&) const { missing("tangents"); }
   /// Adds the tangent of force elements at t [s] to the sink, with loads times `load_factor`. If c.full is true, it
   /// also adds their wrenches to data.loads.
-  void (*force_tangents)(void const* m, double t, double load_factor, TangentCoefficients const& c, Data<T>& data,
-                         BlockSink& sink) = nullptr;
+  virtual void force_tangents(double /*t*/, double /*load_factor*/, TangentCoefficients const&, Data<T>&,
+                              BlockSink&) const {
+    missing("tangents");
+  }
 
   /// Adds ck ∂(Gᵀλ)/∂q of all joints, including compliant joints, and of the bodies' constraint equations to the sink,
   /// with ck = c.stiffness. It also adds the wrenches of joints to data.loads.
-  void (*joint_stiffness)(void const* m, At<T> at, Vector const& lambda, TangentCoefficients const& c, Data<T>& data,
-                          BlockSink& sink) = nullptr;
+  virtual void joint_stiffness(At<T>, Vector const& /*lambda*/, TangentCoefficients const&, Data<T>&,
+                               BlockSink&) const {
+    missing("second-order terms");
+  }
   /// Adds ck ∂(Jᵀw)/∂q for the wrenches w in data.loads to the sink, with ck = c.stiffness.
-  void (*load_stiffness)(void const* m, At<T> at, TangentCoefficients const& c, Data<T>& data,
-                         BlockSink& sink) = nullptr;
+  virtual void load_stiffness(At<T>, TangentCoefficients const&, Data<T>&, BlockSink&) const {
+    missing("second-order terms");
+  }
 
   /// Writes q̇ to `rate`. `workspace` has 2 nq + nv entries. The vectors are reduced vectors if `places` is not null.
-  void (*coordinate_rates)(void const* m, ReducedPosition const* places, Vector const& q, Vector const& v,
-                           VecXOf<Dual<1>>& workspace, Vector& rate) = nullptr;
+  virtual void coordinate_rates(ReducedPosition const* /*places*/, Vector const& /*q*/, Vector const& /*v*/,
+                                VecXOf<Dual<1>>& /*workspace*/, Vector& /*rate*/) const {
+    missing("rates of coordinates");
+  }
 
   /// Energies of the evaluated state [J].
-  Energy (*energy)(void const* m, At<T> at, Data<T> const& data) = nullptr;
+  virtual Energy energy(At<T>, Data<T> const&) const { missing("energies"); }
   /// Powers of the evaluated state [W]. `backwards` is −v.
-  Powers (*powers)(void const* m, At<T> at, VecX const& backwards, VecX const& lambda, double load_factor,
-                   Data<T> const& data) = nullptr;
+  virtual Powers powers(At<T>, VecX const& /*backwards*/, VecX const& /*lambda*/, double /*load_factor*/,
+                        Data<T> const&) const {
+    missing("energies");
+  }
 
   /// Writes the generalised velocities v of a rigid motion. `v0` is the velocity of the body-fixed point at the world's
   /// origin [m/s], `omega` the angular velocity [rad/s], both in world axes.
-  void (*rigid_velocities)(void const* m, Vector const& q, Vec3 const& v0, Vec3 const& omega, Vector& v) = nullptr;
+  virtual void rigid_velocities(Vector const& /*q*/, Vec3 const& /*v0*/, Vec3 const& /*omega*/, Vector& /*v*/) const {
+    missing("velocities of rigid motions");
+  }
 
-  SecantOperations const* secants = nullptr;  ///< mean forces over a step; null if not requested
+  /// Allocates the workspace for mean forces over a step.
+  virtual std::shared_ptr<SecantOperations> make_secants(Data<T> const&) const { missing("secants"); }
+
+ protected:
+  /// \throws InvalidInput, because the system was constructed without the capability `group`.
+  [[noreturn, gnu::cold]] static void missing(char const* group) {
+    throw InvalidInput("system.missing_capability",
+                       {"This system was constructed without ", ErrorObject{group},
+                        ". Name the capability in the constructor: System(model, with<Capabilities::...>)."});
+  }
 };
 
-/// Function table for a model of type M. The specialisation is in system/make_operations.hpp.
+/// Functions of a model of type M, with the groups `wanted`. The specialisation is in system/make_operations.hpp.
 template <class M, StateScalar T, Capabilities wanted>
-struct OperationsOf;
+class OperationsOf;
 
 }  // namespace polybody

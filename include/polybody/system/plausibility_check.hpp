@@ -232,9 +232,9 @@ void PlausibilityCheck::begin(System& system, PlausibilityLimits const& limits, 
       most[i] = k == 0 ? r : std::max(most[i], r);
     }
   account_.open = limits.violation * std::max({1.0, most[0] - least[0], most[1] - least[1], most[2] - least[2]});
-  auto const& [entries, model] = system.entries();
-  account_.energy = entries.energy ? limits.energy : never;
-  if (entries.energy) account_.start = entries.energy(model, system.at(), data);
+  bool const has_energy = system.operations().has_energy();
+  account_.energy = has_energy ? limits.energy : never;
+  if (has_energy) account_.start = system.operations().energy(system.at(), data);
   account_.began = place.t;
   account_.fastest = squares(place.v);
   account_.judged = account_.energy < never ? 4.0 * account_.fastest : never;
@@ -316,12 +316,12 @@ void PlausibilityCheck::refuse_open(System const& system, double t) const {
 
 template <class>
 PlausibilityCheck::Balance PlausibilityCheck::balance(System& system) const {
-  auto const& [entries, model] = system.entries();
-  Energy const now = entries.energy(model, system.at(), system.data()), &start = account_.start;
+  ModelOperations<double> const& model = system.operations();
+  Energy const now = model.energy(system.at(), system.data()), &start = account_.start;
   At<double> const& at = system.at();
   if (work_.misses_drives(system.data())) return {};
   bool const forced = !system.layout().forces.empty();
-  if (forced && entries.energy(model, {at.q, at.v, account_.began}, system.data()).forces != now.forces) return {};
+  if (forced && model.energy({at.q, at.v, account_.began}, system.data()).forces != now.forces) return {};
   Balance b{.gained = now.total() - start.total(), .kinetic = start.kinetic, .known = true};
   b.held = std::max(0.0, start.strain) + std::max(0.0, start.joints) + std::max(0.0, start.forces);
   b.released = std::max(0.0, start.potential() - now.potential());

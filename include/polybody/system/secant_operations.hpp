@@ -71,23 +71,11 @@ inline double pulled(MarkerSecant const& m, double const* by_frame, Index column
 }
 
 template <class M>
-class TypedSecants {
+class TypedSecants final : public SecantOperations {
   static_assert(HasSecants<M>,
                 "This model does not support EnergyMomentum. system_for<EnergyMomentum>(model) reports the reason.");
 
  public:
-  static constexpr SecantOperations entries() {
-    return {.make = [](void const* m, Data<double> const& data) -> std::shared_ptr<void> {
-              return std::make_shared<TypedSecants>(*static_cast<M const*>(m), data);
-            },
-            .evaluate = [](void* s, SecantStep const& step) { of(s).evaluate(step); },
-            .residual = [](void* s, Data<double> const& data, VecX const& a, VecX const& lambda,
-                           VecX& r) { of(s).residual(data, a, lambda, r); },
-            .violation = [](void* s, VecX& phi) { of(s).violation(phi); },
-            .tangent = [](void* s, double scale, BlockSink& sink) { of(s).tangent(scale, sink); }};
-  }
-  static constexpr SecantOperations table = entries();
-
   TypedSecants(M const& model, Data<double> const& data)
       : model_(model), markers_(std::size_t(model.markers())), middle_(VecX::Zero(model.coordinates())) {
     Index marker_size = 0, row_entries = 0, widest = 1;
@@ -140,7 +128,7 @@ class TypedSecants {
 
   /// Sets the step, and evaluates markers and constraint functions. Constraint functions of time are evaluated at the
   /// end of the step. Loads are evaluated at the midpoint of the step, like the data of the system.
-  void evaluate(SecantStep const& step) {
+  void evaluate(SecantStep const& step) override {
     step_ = step;
     means_ = {1.0 / step.h, step.decay};
     for (Index i = 0; i < middle_.size(); ++i) middle_[i] = 0.5 * ((*step.q0)[i] + (*step.q1)[i]);
@@ -152,7 +140,7 @@ class TypedSecants {
   }
 
   /// r = M a − f + Ḡᵀλ over the step (nv).
-  void residual(Data<double> const& data, VecX const& a, VecX const& lambda, VecX& r) {
+  void residual(Data<double> const& data, VecX const& a, VecX const& lambda, VecX& r) override {
     r.setZero();
     model_.for_each_body([&](auto const& e) {
       using B = std::decay_t<decltype(e.body)>;
@@ -185,7 +173,7 @@ class TypedSecants {
   }
 
   /// Φ(q₁).
-  void violation(VecX& phi) const {
+  void violation(VecX& phi) const override {
     for_each_joint([&](auto const& e, auto const& secant) {
       if (e.row >= 0) phi.segment(e.row, secant.to.size()) = secant.to;
     });
@@ -194,7 +182,7 @@ class TypedSecants {
   /// Adds [M + s K̄, Ḡᵀ; Ḡ, 0] to `sink`. K̄ is a symmetric approximation of −∂f/∂q₁ without the change of Ḡ, and Ḡ
   /// approximates ∂Φ/∂q₁. Their relative errors are about the fraction of a revolution that a body makes in the step.
   /// Newton's method therefore contracts.
-  void tangent(double s, BlockSink& sink) {
+  void tangent(double s, BlockSink& sink) override {
     Index const row0 = model_.velocities();
     model_.for_each_body([&](auto const& e) {
       using B = std::decay_t<decltype(e.body)>;
@@ -352,7 +340,6 @@ class TypedSecants {
     }
   }
 
-  static TypedSecants& of(void* self) { return *static_cast<TypedSecants*>(self); }
   double middle_time() const { return step_.t + 0.5 * step_.h; }
 
   M const& model_;

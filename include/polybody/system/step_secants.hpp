@@ -17,15 +17,16 @@ struct SecantStep {
   VecX const* a = nullptr;               ///< (nv) rates over the step; only those of first-order states are read
 };
 
-/// Table of a model's functions for a `SecantStep`. The argument `self` is the result of `make`.
-struct SecantOperations {
-  /// Allocates the workspace for the secants of a model.
-  std::shared_ptr<void> (*make)(void const* m, Data<double> const& data);
-  void (*evaluate)(void* self, SecantStep const& step);  ///< sets the step for the other functions
-  /// r = M a − f + Ḡᵀλ over the step.
-  void (*residual)(void* self, Data<double> const& data, VecX const& a, VecX const& lambda, VecX& r);
-  void (*violation)(void* self, VecX& phi);                    ///< writes Φ(q₁) to phi
-  void (*tangent)(void* self, double scale, BlockSink& sink);  ///< adds [M + scale K̄, Ḡᵀ; Ḡ, 0]
+/// Functions of a model for a `SecantStep`.
+class SecantOperations {
+ public:
+  virtual ~SecantOperations() = default;
+  /// Sets the step for the other functions.
+  virtual void evaluate(SecantStep const& step) = 0;
+  /// r = M a − f + Ḡᵀλ over the step (nv).
+  virtual void residual(Data<double> const& data, VecX const& a, VecX const& lambda, VecX& r) = 0;
+  virtual void violation(VecX& phi) const = 0;              ///< writes Φ(q₁) to phi
+  virtual void tangent(double scale, BlockSink& sink) = 0;  ///< adds [M + scale K̄, Ḡᵀ; Ḡ, 0]
 };
 
 /// Mean forces, constraint Jacobians and tangents over a step, for energy-conserving integration.
@@ -33,8 +34,7 @@ class StepSecants {
  public:
   /// Allocates the workspace. \throws InvalidInput for a system without `Capabilities::secants`.
   explicit StepSecants(System const& system)
-      : entries_(require_entry(system.entries().first.secants, "secants")),
-        self_(entries_->make(system.entries().second, system.data())),
+      : operations_(system.operations().make_secants(system.data())),
         middle_(VecX::Zero(system.coordinates())),
         speed_(VecX::Zero(system.velocities())) {}
 
@@ -47,19 +47,19 @@ class StepSecants {
     for (Index i = 0; i < bodies; ++i) speed_[i] = ((*step.q1)[i] - (*step.q0)[i]) / step.h;
     for (Index i = bodies; i < speed_.size(); ++i) speed_[i] = (*step.v0)[i] + 0.5 * step.h * (*step.a)[i];
     system.evaluate(middle_, speed_, step.t + 0.5 * step.h);
-    entries_->evaluate(self_.get(), step);
+    operations_->evaluate(step);
   }
   /// r = M a − f + Ḡᵀλ over the step (nv).
   void residual(System const& system, VecX const& a, VecX const& lambda, VecX& r) const {
-    entries_->residual(self_.get(), system.data(), a, lambda, r);
+    operations_->residual(system.data(), a, lambda, r);
   }
   /// `phi` = Φ(q₁).
-  void violation(VecX& phi) const { entries_->violation(self_.get(), phi); }
+  void violation(VecX& phi) const { operations_->violation(phi); }
   /// Adds [M + s K̄, Ḡᵀ; Ḡ, 0] to `sink`. K̄ is a symmetric approximation of −∂f/∂q₁ without the change of Ḡ, and Ḡ
   /// approximates ∂Φ/∂q₁. Their relative errors are about the fraction of a revolution that a body makes in the step.
   /// Newton's method therefore contracts.
   void tangent(System& system, double s, BlockSink& sink) {
-    entries_->tangent(self_.get(), s, sink);
+    operations_->tangent(s, sink);
     system.tangent_of(TangentPart::force_elements, {.damping = s / h_, .stiffness = 0.5 * s, .states = 0.5 * h_}, sink);
   }
 
@@ -70,13 +70,13 @@ class StepSecants {
     evaluate(system, step);
     Half forces{sink, system.velocities(), true}, rows{sink, system.velocities(), false};
     BlockSink to_forces(forces), to_rows(rows);
-    entries_->tangent(self_.get(), s, to_forces);
+    operations_->tangent(s, to_forces);
     system.tangent_of(TangentPart::force_elements, {.damping = s / h_, .stiffness = 0.5 * s, .states = 0.5 * h_}, sink,
                       &lambda);
     SecantStep end = step;  // step of zero length: its secants are tangents
     end.q0 = step.q1;
-    entries_->evaluate(self_.get(), end);
-    entries_->tangent(self_.get(), s, to_rows);
+    operations_->evaluate(end);
+    operations_->tangent(s, to_rows);
   }
 
  private:
@@ -90,8 +90,7 @@ class StepSecants {
     }
   };
 
-  SecantOperations const* entries_;
-  std::shared_ptr<void> self_;
+  std::shared_ptr<SecantOperations> operations_;
   double h_ = 0.0;
   VecX middle_, speed_;
 };

@@ -12,10 +12,9 @@ namespace polybody {
 // `polybody::compiled` does not compile them again.
 
 template <StateScalar T>
-BasicSystem<T>::BasicSystem(void const* model, ModelOperations<T> const& entries, ModelLayout layout, Data<T> data,
+BasicSystem<T>::BasicSystem(std::shared_ptr<ModelOperations<T> const> operations, ModelLayout layout, Data<T> data,
                             CoordinatesOf<T> coordinates)
-    : model_(model),
-      entries_(entries),
+    : operations_(std::move(operations)),
       layout_(std::move(layout)),
       coordinates_(std::move(coordinates)),
       data_(std::move(data)) {
@@ -42,27 +41,27 @@ void BasicSystem<T>::evaluate(Vector const& q, Vector const& v, double t) {
   t_ = t;
   data_.linear_rows = !coordinates_;
   if (coordinates_) {
-    coordinates_.entries->expand(coordinates_.self.get(), q, v, q_, v_);
+    coordinates_->expand(q, v, q_, v_);
   } else {
     q_ = q;
     v_ = v;
   }
   for (std::size_t i = 0; i < data_.states.size(); ++i) data_.states[i] = v_[data_.first_state + Index(i)];
-  entries_.evaluate_marker(model_, at(), data_);
-  entries_.evaluate_constraints(model_, at(), data_);
+  operations_->evaluate_marker(at(), data_);
+  operations_->evaluate_constraints(at(), data_);
 }
 
 template <StateScalar T>
 void BasicSystem<T>::use_threads(int threads) {
   workers_ = std::make_unique<Workers>(threads);
-  entries_.share_loops(model_, data_, *workers_);
+  operations_->share_loops(data_, *workers_);
 }
 
 /// Residual M a − f + Gᵀλ of the full model in the last evaluated state, for the accelerations and multipliers of a
 /// reduced step.
 template <class T>
 VecXOf<T> const& residual_of_bodies(BasicSystem<T>& s, VecXOf<T> const& a, VecXOf<T> const& lambda) {
-  s.coordinates_.entries->expand_rates(s.coordinates_.self.get(), a, true, s.full_a_);
+  s.coordinates_->expand_rates(a, true, s.full_a_);
   s.expand_rows(lambda, s.full_lambda_);
   s.full_residual(s.full_a_, s.full_lambda_, s.full_r_);
   return s.full_r_;
@@ -72,7 +71,7 @@ template <StateScalar T>
 void BasicSystem<T>::residual(Vector const& a, Vector const& lambda, Vector& r) {
   if (!coordinates_) return full_residual(a, lambda, r);
   residual_of_bodies(*this, a, lambda);
-  coordinates_.entries->reduce(coordinates_.self.get(), full_r_, r);
+  coordinates_->reduce(full_r_, r);
 }
 
 template <StateScalar T>
@@ -93,10 +92,10 @@ void BasicSystem<T>::acceleration_bias(Vector& gamma) {
   for (ConstraintBlock<T> const& block : data_.rows)
     if (block.source == ConstraintSource::linear)
       for (int i = 0; i < block.rows; ++i) full[block.row + i] = T(0.0);
-  entries_.measure_gamma(model_, at(), data_, full);
+  operations_->measure_gamma(at(), data_, full);
   add_biases(data_, full);
   if (coordinates_) {  // γ + G b
-    coordinates_.entries->expand_rates(coordinates_.self.get(), still_, true, full_a_);
+    coordinates_->expand_rates(still_, true, full_a_);
     full_lambda_ = full;
     polybody::rows_times(data_, full_a_, full);
     for (Index i = 0; i < full.size(); ++i) full[i] += full_lambda_[i];
@@ -107,7 +106,7 @@ void BasicSystem<T>::acceleration_bias(Vector& gamma) {
 template <StateScalar T>
 void BasicSystem<T>::rows_times(Vector const& b, Vector& out) {
   if (coordinates_) {
-    coordinates_.entries->expand_rates(coordinates_.self.get(), b, false, full_a_);
+    coordinates_->expand_rates(b, false, full_a_);
     polybody::rows_times(data_, full_a_, full_rows_);
     return add_constraint_rows(out);
   }
@@ -119,21 +118,21 @@ void BasicSystem<T>::rows_transposed_times(Vector const& b, Vector& out) {
   if (coordinates_) {
     expand_rows(b, full_lambda_);
     polybody::rows_transposed_times(data_, full_lambda_, full_r_);
-    return coordinates_.entries->reduce(coordinates_.self.get(), full_r_, out);
+    return coordinates_->reduce(full_r_, out);
   }
   polybody::rows_transposed_times(data_, b, out);
 }
 
 template <StateScalar T>
 void BasicSystem<T>::plus(Vector const& q, Vector const& delta, Vector& out) const {
-  if (coordinates_) coordinates_.entries->plus(coordinates_.self.get(), q, delta, out);
-  entries_.plus(model_, reduced_places(), q, delta, out);
+  if (coordinates_) coordinates_->plus(q, delta, out);
+  operations_->plus(reduced_places(), q, delta, out);
 }
 
 template <StateScalar T>
 void BasicSystem<T>::local_rate(Vector const& delta, Vector const& v, Vector& out) const {
-  if (coordinates_) coordinates_.entries->local_rate(coordinates_.self.get(), delta, v, out);
-  entries_.local_rate(model_, reduced_places(), delta, v, out);
+  if (coordinates_) coordinates_->local_rate(delta, v, out);
+  operations_->local_rate(reduced_places(), delta, v, out);
 }
 
 template <StateScalar T>
@@ -147,7 +146,7 @@ std::string BasicSystem<T>::name_of(Index i) const {
 template <StateScalar T>
 void BasicSystem<T>::full_residual(Vector const& a, Vector const& lambda, Vector& r) {
   for (Index i = 0; i < r.size(); ++i) r[i] = T(0.0);
-  entries_.element_forces(model_, at(), a, load_factor, data_, r);
+  operations_->element_forces(at(), a, load_factor, data_, r);
   add_row_forces(data_, lambda, r);
   push_forces();
   add_actions(data_, layout_, load_factor, r);
@@ -162,12 +161,12 @@ void BasicSystem<T>::write_tangent(TangentCoefficients c, SecondOrder second, Ve
   c.full = second == SecondOrder::included;
   Vector const& lambda = c.full && coordinates_ ? full_multipliers(given) : given;
   if (c.full) clear_loads();
-  require_entry(entries_.element_tangents, "tangents")(model_, at(), c, data_, sink);
+  operations_->element_tangents(at(), c, data_, sink);
   write_rows(data_, layout_.velocities, sink);
-  entries_.compliant_tangents(model_, c, data_, sink);
-  if (c.full) require_entry(entries_.joint_stiffness, "second-order terms")(model_, at(), lambda, c, data_, sink);
-  entries_.force_tangents(model_, t_, load_factor, c, data_, sink);
-  if (c.full) entries_.load_stiffness(model_, at(), c, data_, sink);
+  operations_->compliant_tangents(c, data_, sink);
+  if (c.full) operations_->joint_stiffness(at(), lambda, c, data_, sink);
+  operations_->force_tangents(t_, load_factor, c, data_, sink);
+  if (c.full) operations_->load_stiffness(at(), c, data_, sink);
 }
 
 /// Residual M v̇ − f + Gᵀλ of the full model in the last evaluated state, at v̇ = 0 and λ = 0.
@@ -188,7 +187,7 @@ using System = BasicSystem<double>;
 template <class = void>
 State reduce(System const& s, State const& x) {
   State out = x;
-  if (Coordinates const& c = s.step_coordinates()) c.entries->reduced(c.self.get(), x, out);
+  if (Coordinates const& c = s.step_coordinates()) c->reduce_state(x, out);
   return out;
 }
 /// Number of multipliers that a step can store: those of its constraint equations, and estimates for eliminated joints
@@ -211,7 +210,7 @@ void expand(BasicSystem<T>& s, StateOf<T> const& stepped, StateOf<T>& x, VecXOf<
   x.a.resize(x.v.size());
   x.lambda.resize(s.layout().rows);
   if (keeps) {
-    c.entries->expand(c.self.get(), stepped.q, stepped.v, x.q, x.v);
+    c->expand(stepped.q, stepped.v, x.q, x.v);
   } else {
     s.evaluate(stepped.q, stepped.v, stepped.t);
     x.q = s.at().q;
@@ -219,9 +218,9 @@ void expand(BasicSystem<T>& s, StateOf<T> const& stepped, StateOf<T>& x, VecXOf<
     r.resize(s.velocities());
     s.residual(stepped.a, stepped.lambda, r);
   }
-  c.entries->expand_rates(c.self.get(), stepped.a, true, x.a);
+  c->expand_rates(stepped.a, true, x.a);
   c.reduced->expand_rows(stepped.lambda, x.lambda);
-  if (!keeps) c.entries->recover_multipliers(c.self.get(), s.data(), x.lambda);
+  if (!keeps) c->recover_multipliers(s.data(), x.lambda);
   x.t = stepped.t;
   x.history = stepped.history;
 }
@@ -235,7 +234,7 @@ template <class = void>
   VecX full = VecX::Zero(s.layout().rows), r(s.velocities());
   s.evaluate(stepped.q, stepped.v, stepped.t);
   s.residual(stepped.a, stepped.lambda, r);
-  c.entries->recover_multipliers(c.self.get(), s.data(), full);
+  c->recover_multipliers(s.data(), full);
   VecX all(multipliers_of(s));
   std::copy_n(stepped.lambda.data(), s.rows(), all.data());
   Index at = s.rows();
@@ -248,10 +247,8 @@ template <class = void>
 template <class = void>
 void coordinate_rates(System const& s, VecX const& q, VecX const& v, VecXOf<Dual<1>>& workspace, VecX& rate) {
   Coordinates const& c = s.step_coordinates();
-  if (c) c.entries->coordinate_rates(c.self.get(), q, v, rate);
-  auto const& [entries, model] = s.entries();
-  require_entry(entries.coordinate_rates, "rates of coordinates")(model, c ? c.reduced->places.data() : nullptr, q, v,
-                                                                  workspace, rate);
+  if (c) c->coordinate_rates(q, v, rate);
+  s.operations().coordinate_rates(c ? c.reduced->places.data() : nullptr, q, v, workspace, rate);
 }
 
 /// Name of the body to which coordinate i of a time step belongs.

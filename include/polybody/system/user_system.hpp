@@ -60,7 +60,7 @@ concept HasConstraintEquations = requires(E const e, VecX const& x, double t, Ma
 namespace detail {
 
 template <UserEquations E>
-struct UserOperations {
+struct UserOperations final : ModelOperations<double> {
   E mechanics;
   Index n = 0, states = 0;  ///< number of velocities without first-order states; number of these states
   mutable MatX m, k, m_n;   ///< matrices of all unknowns; m_n, k_n: of the velocities only
@@ -85,19 +85,28 @@ struct UserOperations {
       rate = phi;
     }
   }
-  static UserOperations const& of(void const* self) { return *static_cast<UserOperations const*>(self); }
 
-  static void evaluate_constraints(void const* self, At<double> at, Data<double>&) {
+  bool provides(Capabilities groups) const override {
+    return contains(Capabilities::implicit_step | Capabilities::coordinate_rates, groups);
+  }
+  void evaluate_marker(At<double>, Data<double>&) const override {}
+  void push_forces(double, Data<double>&) const override {}
+  void share_loops(Data<double>&, Workers&) const override {}
+  void compliant_tangents(TangentCoefficients const&, Data<double>&, BlockSink&) const override {}
+  void force_tangents(double, double, TangentCoefficients const&, Data<double>&, BlockSink&) const override {}
+  void joint_stiffness(At<double>, VecX const&, TangentCoefficients const&, Data<double>&, BlockSink&) const override {}
+  void load_stiffness(At<double>, TangentCoefficients const&, Data<double>&, BlockSink&) const override {}
+  void evaluate_constraints(At<double> at, Data<double>&) const override {
     if constexpr (HasConstraintEquations<E>) {
-      of(self).mechanics.violation(at.q, at.t, of(self).phi);
-      of(self).mechanics.jacobian(at.q, at.t, of(self).g);
-      of(self).mechanics.rate(at.q, at.t, of(self).rate);
+      mechanics.violation(at.q, at.t, phi);
+      mechanics.jacobian(at.q, at.t, g);
+      mechanics.rate(at.q, at.t, rate);
     }
   }
-  static void measure_gamma(void const* self, At<double> at, Data<double> const&, VecX& out) {
+  void measure_gamma(At<double> at, Data<double> const&, VecX& out) const override {
     if constexpr (HasConstraintEquations<E>) {
-      of(self).v_n = at.v.head(of(self).n);
-      of(self).mechanics.gamma(at.q, of(self).v_n, at.t, out);
+      v_n = at.v.head(n);
+      mechanics.gamma(at.q, v_n, at.t, out);
     }
   }
   /// Evaluates M. The diagonal entries of first-order states are one.
@@ -120,33 +129,30 @@ struct UserOperations {
       mechanics.force(q, v, t, out);
     }
   }
-  static void element_forces(void const* self, At<double> at, VecX const& a, double, Data<double>&, VecX& r) {
-    UserOperations const& s = of(self);
-    s.find_mass(at.q);
-    s.find_force(at.q, at.v, at.t, s.f);
-    s.ma.noalias() = s.m * a;
-    r += s.ma;
-    r -= s.f;
+  void element_forces(At<double> at, VecX const& a, double, Data<double>&, VecX& r) const override {
+    find_mass(at.q);
+    find_force(at.q, at.v, at.t, f);
+    ma.noalias() = m * a;
+    r += ma;
+    r -= f;
   }
-  static void masses(void const* self, At<double> at, Data<double>&, BlockSink& sink) {
-    of(self).find_mass(at.q);
-    sink.add(0, 0, of(self).m);
+  void masses(At<double> at, Data<double>&, BlockSink& sink) const override {
+    find_mass(at.q);
+    sink.add(0, 0, m);
   }
-  static void element_tangents(void const* self, At<double> at, TangentCoefficients const& c, Data<double>&,
-                               BlockSink& sink) {
-    UserOperations const& s = of(self);
-    s.find_mass(at.q);
+  void element_tangents(At<double> at, TangentCoefficients const& c, Data<double>&, BlockSink& sink) const override {
+    find_mass(at.q);
     if constexpr (UserMechanics<E> && HasForceTangent<E>) {
-      s.mechanics.tangent(at.q, at.v, at.t, c.stiffness, c.damping, s.k_n);
-      s.k = s.k_n;
+      mechanics.tangent(at.q, at.v, at.t, c.stiffness, c.damping, k_n);
+      k = k_n;
     } else {
-      s.k.setZero();
-      s.differences(at, c.stiffness, at.q, 0, s.n);
-      s.differences(at, c.damping, at.v, 0, s.n);
-      s.differences(at, c.states, at.v, s.n, s.states);
+      k.setZero();
+      differences(at, c.stiffness, at.q, 0, n);
+      differences(at, c.damping, at.v, 0, n);
+      differences(at, c.states, at.v, n, states);
     }
-    s.k += c.mass * s.m;
-    sink.add(0, 0, s.k);
+    k += c.mass * m;
+    sink.add(0, 0, k);
   }
   /// k −= factor ∂(f, h)/∂x for `count` entries of x, which is q or v. Central differences with relative step 1e-6.
   void differences(At<double> at, double factor, VecX const& x, Index first, Index count) const {
@@ -163,34 +169,15 @@ struct UserOperations {
       x_near[j] = x[j];
     }
   }
-  static void plus(void const*, ReducedPosition const*, VecX const& q, VecX const& delta, VecX& out) {
+  void plus(ReducedPosition const*, VecX const& q, VecX const& delta, VecX& out) const override {
     out = q + delta.head(q.size());
   }
-  static void local_rate(void const* self, ReducedPosition const*, VecX const&, VecX const& v, VecX& out) {
-    out.head(of(self).n) = v.head(of(self).n);
+  void local_rate(ReducedPosition const*, VecX const&, VecX const& v, VecX& out) const override {
+    out.head(n) = v.head(n);
   }
-  static void coordinate_rates(void const*, ReducedPosition const*, VecX const&, VecX const& v, VecXOf<Dual<1>>&,
-                               VecX& rate) {
-    rate = v.head(rate.size());
-  }
-
-  static constexpr ModelOperations<double> entries() {
-    return {.evaluate_marker = [](void const*, At<double>, Data<double>&) {},
-            .evaluate_constraints = &evaluate_constraints,
-            .measure_gamma = &measure_gamma,
-            .element_forces = &element_forces,
-            .push_forces = [](void const*, double, Data<double>&) {},
-            .plus = &plus,
-            .local_rate = &local_rate,
-            .share_loops = [](void const*, Data<double>&, Workers&) {},
-            .masses = &masses,
-            .element_tangents = &element_tangents,
-            .compliant_tangents = [](void const*, TangentCoefficients const&, Data<double>&, BlockSink&) {},
-            .force_tangents = [](void const*, double, double, TangentCoefficients const&, Data<double>&, BlockSink&) {},
-            .joint_stiffness = [](void const*, At<double>, VecX const&, TangentCoefficients const&, Data<double>&,
-                                  BlockSink&) {},
-            .load_stiffness = [](void const*, At<double>, TangentCoefficients const&, Data<double>&, BlockSink&) {},
-            .coordinate_rates = &coordinate_rates};
+  void coordinate_rates(ReducedPosition const*, VecX const&, VecX const& v, VecXOf<Dual<1>>&,
+                        VecX& out) const override {
+    out = v.head(out.size());
   }
 };
 
@@ -219,8 +206,7 @@ System system_of(E mechanics, std::string name = "system", bool constant_mass = 
                          .g = self->phi.data(),
                          .rate = self->rate.data()});
   }
-  data.kept = self;
-  return System(self.get(), detail::UserOperations<E>::entries(), std::move(layout), std::move(data), {});
+  return System(std::move(self), std::move(layout), std::move(data), {});
 }
 
 }  // namespace polybody

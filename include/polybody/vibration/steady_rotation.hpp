@@ -72,8 +72,7 @@ class TurningFrame {
   /// Generalised velocities w(q) of the rotation.
   void velocities(VecX const& q, VecX& w) const {
     Vec3 const omega = share * rotation_.angular_velocity, origin = rotation_.point.cross(omega);
-    require_entry(system.entries().first.rigid_velocities, "velocities of rigid motions")(system.entries().second, q,
-                                                                                          origin, omega, w);
+    system.operations().rigid_velocities(q, origin, omega, w);
   }
   /// Computes the residual R(q, w, Γw) with the multipliers `lambda`. Afterwards the system is evaluated at (q, w, t).
   void residual(VecX const& q, VecX const& lambda, double t, VecX& r) {

@@ -31,6 +31,7 @@ struct Bathe {
     VecX q, v, a, lambda, delta, rate, known_delta, known_v, r, phi, phi_rate, rhs, y;
     TangentSolver<Solver> solver;
     ForwardDynamics<Solver> forward;
+    StepCheck check;
 
     explicit Workspace(System& s)
         : q(VecX::Zero(s.coordinates())),

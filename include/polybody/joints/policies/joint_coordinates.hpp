@@ -9,8 +9,6 @@ namespace joint_coordinates {
 /// Sparse augmented system [M, Gᵀ; G, 0] of all bodies. Its solution is projected onto the joint coordinates: T u̇ = v̇
 /// − Ṫu [thesis Eq. 3.5]. With a sparse solver the cost is linear in the number of bodies, for trees and loops.
 struct Augmented {};
-/// Dense reduced system TᵀM T u̇ = Tᵀ(f − M Ṫ u) [thesis Eq. 3.4], for about a dozen joints.
-struct DenseMatrix {};
 /// Solution of TᵀM T u̇ = … by elimination, body by body from the tips to the root [Featherstone 1983]. The cost is
 /// linear in the number of bodies of a tree. Constraint equations outside the tree are added one by one, so that they
 /// should be few.
