@@ -16,6 +16,7 @@
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 
+#include "support/doubled_joints.hpp"
 #include "support/held.hpp"
 
 namespace polybody {
@@ -218,6 +219,15 @@ TEST(Andrews, OfTheBenchmarkCarriesFWhereItIsPublished) {
     claim.what = "y of F, β(0) = −0.062 [m]";
     held(claim, 0.007 * std::sin(s.x.q[2]), w.y, 1e-10, {equals("t", w.t)});
   }
+}
+
+// Every pin twice: 20 of 40 equations are redundant.
+TEST(Andrews, MovesWithDoubledPinsAsWithSingleOnes) {
+  auto const make = [] { return Squeezer<>(start); };
+  RunOptions const options{.end_time = 5e-3, .step = 2e-5};
+  expect_same_with_doubled_joints(make, GeneralisedAlpha{.tolerance = 1e-10}, options, 1e-8);
+  expect_same_with_doubled_joints(make, Radau{}, options, 1e-8);
+  expect_same_with_doubled_joints(make, RungeKutta4<Projection>{}, options, 1e-8);
 }
 
 }  // namespace andrews_test

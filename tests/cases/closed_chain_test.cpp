@@ -14,6 +14,7 @@
 #include <polybody/run/redundancy.hpp>
 #include <polybody/run/simulate.hpp>
 
+#include "support/doubled_joints.hpp"
 #include "support/held.hpp"
 
 namespace polybody {
@@ -187,6 +188,14 @@ TEST(ClosedChain, FallsAsInThePlaneWithImplicitSteps) {
 }
 TEST(ClosedChain, FallsAsInThePlaneWithExplicitSteps) {
   expect_the_plane("64 links in space, Runge–Kutta 4", RungeKutta4<Projection>{}, 1e-3, 0.2, 1e-6, 1e-3);
+}
+
+// Every joint twice: in space, three equations are redundant without the second joints.
+TEST(ClosedChain, MovesWithDoubledJointsAsWithSingleOnes) {
+  RunOptions const options{.end_time = 0.04, .step = 2e-3};
+  expect_same_with_doubled_joints([] { return Plane(); }, GeneralisedAlpha{.tolerance = 1e-10}, options, 1e-9);
+  expect_same_with_doubled_joints([] { return Space(); }, GeneralisedAlpha{.tolerance = 1e-10}, options, 1e-9);
+  expect_same_with_doubled_joints([] { return Plane(); }, RungeKutta4<Projection>{}, options, 1e-9);
 }
 
 }  // namespace closed_chain_test

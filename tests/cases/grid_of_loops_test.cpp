@@ -8,6 +8,7 @@
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 
+#include "support/doubled_joints.hpp"
 #include "support/held.hpp"
 #include "support/linkages.hpp"
 
@@ -127,6 +128,14 @@ TEST(GridOfLoops, FallsAsFiveAnglesDo) {
 }
 TEST(GridOfLoops, FallsAsFiveAnglesDoByRadau) {
   follows<Constraint, Constraint>(Radau{}, 2e-3, 1e-8, 3e-8, "planar::Rigid, Constraint, Radau IIA, h = 2 ms");
+}
+
+// Every hinge twice.
+TEST(GridOfLoops, MovesWithDoubledHingesAsWithSingleOnes) {
+  auto const make = [] { return Grid<Constraint>(); };
+  RunOptions const options{.end_time = 0.1, .step = 2e-3};
+  expect_same_with_doubled_joints(make, GeneralisedAlpha{.tolerance = 1e-10}, options, 1e-9);
+  expect_same_with_doubled_joints(make, Radau{}, options, 1e-9);
 }
 
 }  // namespace grid_of_loops_test

@@ -65,6 +65,21 @@ TEST(SpatialElastica, BendsInAnyPlane) {
   }
 }
 
+// With EA l²/EI = 6e10 a step of 1 ms does not converge: a rotation of 1e-3 rad of an element causes an axial force of
+// 5e5 N. The corrections of 100 m/s² do not consist of round-off. The refusal names this ratio.
+TEST(SpatialCable, NamesTheAxialStiffnessIfAStepDoesNotConverge) {
+  using Stiff = AncfCable<>;
+  Model<Bodies<Stiff>, Joints<Ball>> model{Gravity{0, -9.81, 0}};
+  Bar const bar{.length = 1.0, .constants = BarConstants{.EA = 1e12, .EI = 1.0, .mass_per_length = 1.0}};
+  auto const cable = model.add(Stiff::from(bar, 4), "cable");
+  model.connect(Ball{}, model.ground().at({0, 0, 0}), cable.at(0.0));
+  State x = model.reference_state();
+  std::string const message = message_of<NewtonConvergenceFailure>(
+      [&] { simulate(model, x, GeneralisedAlpha{}, {.end_time = 0.5, .step = 1e-3, .max_step_halvings = 0}).run(); });
+  EXPECT_TRUE(has(message, "an axial stiffness EA of \"cable\" of at most 1e8 EI/l²")) << message;
+  EXPECT_TRUE(has(message, "(now 6.25e+10 EI/l²)")) << message;
+}
+
 // S3, published digits for each mesh.
 TEST(SpatialGerstmayrIrschik, GivesThePublishedDigits) {
   Bar const bar{.length = 2.0,

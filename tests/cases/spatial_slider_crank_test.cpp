@@ -14,6 +14,7 @@
 #include <polybody/run/probe.hpp>
 #include <polybody/run/simulate.hpp>
 
+#include "support/doubled_joints.hpp"
 #include "support/held.hpp"
 
 namespace polybody {
@@ -115,6 +116,16 @@ TEST(SpatialSliderCrank, MovesAsTheEnergyIntegralSays) {
   follows<Rigid<>, JointCoordinates>(Radau{}, 2e-3, 1e-6, "Rigid, joint coordinates, Radau IIA, h = 2 ms");
   follows<Rigid<>, Constraint>(DormandPrince<Projection>{.relative_tolerance = 1e-10, .absolute_tolerance = 1e-12},
                                1e-3, 3e-8, "Rigid, Constraint, Dormand–Prince, tolerance 1e-10");
+}
+
+// Every joint twice: hinge, ball, slide and universal joint.
+TEST(SpatialSliderCrank, MovesWithDoubledJointsAsWithSingleOnes) {
+  auto const make = [] { return SliderCrank<Rigid<>, Constraint>(0.04); };
+  RunOptions const options{.end_time = 0.5, .step = 2e-3};
+  expect_same_with_doubled_joints(make, GeneralisedAlpha{.tolerance = 1e-10}, options, 1e-9);
+  expect_same_with_doubled_joints(make, Radau{}, options, 1e-9);
+  expect_same_with_doubled_joints(
+      make, DormandPrince<Projection>{.relative_tolerance = 1e-10, .absolute_tolerance = 1e-12}, options, 1e-9);
 }
 
 }  // namespace spatial_slider_crank_test

@@ -48,6 +48,19 @@ template <class = void>
   return "";
 }
 
+/// Part of a message with a remedy for a bar whose elements resist stretch far more than bending. A small rotation of
+/// an element then causes a large axial force, and Newton's method follows this force instead of the motion. Empty if
+/// the model has no such bar.
+template <class = void>
+[[gnu::cold]] std::string remedy_of_stretch(System const& system) {
+  for (BodyLayout const& body : system.layout().bodies)
+    if (body.stretch_ratio > 1e8)  // strains are negligible already at 1e8
+      return sentence_of({", or an axial stiffness EA of \"", body.name,
+                          "\" of at most 1e8 EI/l², with the length l of its elements (now ", body.stretch_ratio,
+                          " EI/l²)"});
+  return "";
+}
+
 /// Throws the error of a step of `integrator` to time t in which Newton's method failed. The message names the reason
 /// and the body, joint or force element. If each equation has a pivot but the solution is not finite, the message names
 /// the body with the non-finite motion. \throws SingularMatrix, NonFiniteValue, NewtonConvergenceFailure.
@@ -76,9 +89,10 @@ template <class = void>
                                               " is not finite", " at t = ", ErrorTime{t}, " s", whose_force(system),
                                               ". Check the forces applied to it, or take a smaller step."});
   throw NewtonConvergenceFailure(
-      "newton.not_converged", {ErrorObject{integrator}, ": Newton's method did not converge", " at t = ", ErrorTime{t},
-                               " s after ", report.iterations, " iterations (contraction ", report.theta,
-                               "). Take a smaller step", remedy_of_friction(system), "; the state is unchanged."});
+      "newton.not_converged",
+      {ErrorObject{integrator}, ": Newton's method did not converge", " at t = ", ErrorTime{t}, " s after ",
+       report.iterations, " iterations (contraction ", report.theta, "). Take a smaller step",
+       remedy_of_friction(system), remedy_of_stretch(system), "; the state is unchanged."});
 }
 
 }  // namespace polybody::detail

@@ -183,10 +183,18 @@ void BodyKernels<B, T>::describe(Pool const& pool, ModelLayout& out) {
     if constexpr (requires { B::observes_at(m.point); })
       out.observes[std::size_t(m.published)] = B::observes_at(m.point);
   }
-  for (Entry const& e : pool.entries)
+  for (Entry const& e : pool.entries) {
     out.bodies.push_back({e.name, e.q0, e.body.coordinates(), e.v0, e.body.velocities(), e.row, own,
                           B::world == World::plane, B::constant_mass, &detail::type_tag<B>, index++, &e.body, nullptr,
                           units_of<B>(), e.made_in, HasRigidLayout<B>, TimeVaryingBody<B>});
+    if constexpr (requires(B const& bar) {
+                    bar.constants().EA;
+                    bar.element_length();
+                  }) {
+      double const l = e.body.element_length(), EA = e.body.constants().EA, EI = e.body.constants().EI;
+      out.bodies.back().stretch_ratio = EI > 0.0 ? EA * l * l / EI : 0.0;
+    }
+  }
   if constexpr (WithoutGeometricStiffening<B>)
     for (std::size_t i = out.bodies.size() - pool.entries.size(); i < out.bodies.size(); ++i)
       out.bodies[i].axial_share = [](void const* body, std::span<double const> q, std::span<double const> v,

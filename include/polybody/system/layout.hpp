@@ -144,6 +144,7 @@ struct BodyLayout {
   std::uint64_t made_in = 0;   ///< serial number of the model to which the body was added
   bool lossless = false;       ///< true if the body does not dissipate energy, because it is rigid
   bool changes = false;        ///< true if the mass depends on time
+  double stretch_ratio = 0.0;  ///< EA l²/EI of a bar with elements of length l [1]; 0 for other bodies
 };
 
 /// Markers of a joint, position of its constraint equations among those of the model, and its properties.
