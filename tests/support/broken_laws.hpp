@@ -10,11 +10,12 @@ namespace polybody::laws {
 
 using Names = std::vector<std::string>;
 
-/// Names of the laws of a suite that a case breaks.
+/// Names of the laws of a suite that apply to a case and that the case breaks.
 template <class Laws>
 Names broken() {
   Names names;
   for (Law<Laws> const& law : Laws::laws) {
+    if (!law.applies) continue;
     ::testing::TestPartResultArray results;
     {
       ::testing::ScopedFakeTestPartResultReporter const caught(

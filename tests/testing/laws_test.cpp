@@ -1,5 +1,7 @@
-// The law suites detect errors: a type with one mistake breaks the law that describes it.
+// The law suites detect errors: a type with one mistake breaks the law that describes it. A law without meaning for a
+// case has no test.
 #include <polybody/bodies/rigid/planar_rigid.hpp>
+#include <polybody/forces/point_load.hpp>
 #include <polybody/forces/spring_damper.hpp>
 #include <polybody/integrators/symplectic.hpp>
 #include <polybody/joints/policies/penalty.hpp>
@@ -191,6 +193,55 @@ TEST(UserSystemLaws, TellWhatIsWrong) {
   EXPECT_EQ(broken<UserSystemLaws<OnTheCircle>>(), Names{});
   EXPECT_EQ(broken<UserSystemLaws<OnTheAddingCircle>>(),
             (Names{"MassIsSymmetricAndPositive", "GammaIsTheSecondDerivativeWithoutAccelerations"}));
+}
+
+// --- laws that do not apply -----------------------------------------------------------------------------------------
+
+/// A constant force on one marker: it has no reaction and no potential.
+struct Push {
+  static PointForce<> force() { return {.force = {Vec3(3.0, -1.0, 2.0)}}; }
+};
+bool const push_obeys = obeys<Push, ForceLaws>("Push");
+bool const spring_obeys = obeys<Spring, ForceLaws>("Spring");
+
+/// A free mass without tangent and constraint equations.
+struct FreeMass {
+  Index velocities() const { return 1; }
+  void mass(VecX const&, MatX& m) const { m = MatX::Identity(1, 1); }
+  void force(VecX const& q, VecX const&, double, VecX& f) const { f = -5.0 * q; }
+};
+struct FreeMassCase {
+  static FreeMass equations() { return {}; }
+};
+bool const free_mass_obeys = obeys<FreeMassCase, UserSystemLaws>("FreeMass");
+
+/// Names of the tests of a suite in this program.
+Names tests_of(std::string const& suite) {
+  testing::UnitTest const& all = *testing::UnitTest::GetInstance();
+  Names names;
+  for (int i = 0; i < all.total_test_suite_count(); ++i) {
+    testing::TestSuite const& one = *all.GetTestSuite(i);
+    for (int j = 0; one.name() == suite && j < one.total_test_count(); ++j) names.push_back(one.GetTestInfo(j)->name());
+  }
+  return names;
+}
+/// Names of the laws of a suite, except those in `without`.
+template <class Laws>
+Names laws_of(Names const& without = {}) {
+  Names names;
+  for (Law<Laws> const& law : Laws::laws)
+    if (std::ranges::find(without, std::string(law.name)) == without.end()) names.push_back(law.name);
+  return names;
+}
+
+TEST(Laws, ThatDoNotApplyHaveNoTest) {
+  EXPECT_EQ(tests_of("BlockWithoutABar/BodyLaws"),
+            laws_of<BodyLaws<Block>>({"OwnRowsHoldAtTheReferenceAndTheirMapsAreDerivatives",
+                                      "ReferenceStandsWhereTheBarIsPlaced", "PointsOutsideTheBarAreRefused"}));
+  EXPECT_EQ(tests_of("Push/ForceLaws"), (Names{"GradientIsTheDerivativeOfTheWrenches", "AsksNoMoreThanItSays"}));
+  EXPECT_EQ(tests_of("Spring/ForceLaws"), laws_of<ForceLaws<Spring>>());
+  EXPECT_EQ(tests_of("FreeMass/UserSystemLaws"), Names{"MassIsSymmetricAndPositive"});
+  EXPECT_EQ(tests_of("PointOnACircle/UserSystemLaws"), laws_of<UserSystemLaws<OnTheCircle>>());
 }
 
 }  // namespace laws_test

@@ -304,7 +304,7 @@ struct BodyLaws {
   void plus_of_nothing_changes_nothing();
   /// If q ⊞ δ(t) moves with δ˙ = `local_rate`(δ, v), each point has the velocity that belongs to v.
   void local_rate_moves_the_body_with_its_velocities();
-  /// For v = `rigid_velocity`(q, v₀, ω) every point has ṙ = v₀ + ω × r and the angular velocity ω.
+  /// For v = `rigid_velocity`(q, v₀, ω) every point of an objective body has ṙ = v₀ + ω × r and the angular velocity ω.
   void rigid_velocity_is_the_field_of_a_rigid_motion();
   /// AᵀA = 1, det A > 0.
   void frame_is_orthonormal();
@@ -325,12 +325,12 @@ struct BodyLaws {
   void points_outside_the_bar_are_refused();
 
   static constexpr char const* suite = "BodyLaws";
-  /// All laws; the last two apply to bodies made from a bar.
-  static constexpr Law<BodyLaws> all[] = {
+  static constexpr Law<BodyLaws> laws[] = {
       {"MassIsSymmetricAndPositive", &BodyLaws::mass_is_symmetric_and_positive},
       {"KineticEnergyIsHalfVMV", &BodyLaws::kinetic_energy_is_half_v_m_v},
       {"InertiaIsMassTimesAcceleration", &BodyLaws::inertia_is_mass_times_acceleration},
-      {"ConstantMassDoesNotDependOnTheConfiguration", &BodyLaws::constant_mass_does_not_depend_on_the_configuration},
+      {"ConstantMassDoesNotDependOnTheConfiguration", &BodyLaws::constant_mass_does_not_depend_on_the_configuration,
+       B::constant_mass},
       {"TotalMassIsAsGiven", &BodyLaws::total_mass_is_as_given},
       {"WeightActsAtTheCentreOfMass", &BodyLaws::weight_acts_at_the_centre_of_mass},
       {"WeightIsTheGradientOfItsEnergy", &BodyLaws::weight_is_the_gradient_of_its_energy},
@@ -342,7 +342,7 @@ struct BodyLaws {
       {"UndampedForceGivesBackTheStrainEnergy", &BodyLaws::undamped_force_gives_back_the_strain_energy},
       {"PlusOfNothingChangesNothing", &BodyLaws::plus_of_nothing_changes_nothing},
       {"LocalRateMovesTheBodyWithItsSpeeds", &BodyLaws::local_rate_moves_the_body_with_its_velocities},
-      {"RigidVelocityIsTheFieldOfARigidMotion", &BodyLaws::rigid_velocity_is_the_field_of_a_rigid_motion},
+      {"RigidVelocityIsTheFieldOfARigidMotion", &BodyLaws::rigid_velocity_is_the_field_of_a_rigid_motion, objective},
       {"FrameIsOrthonormal", &BodyLaws::frame_is_orthonormal},
       {"TwistIsJacobianTimesSpeeds", &BodyLaws::twist_is_jacobian_times_velocities},
       {"JacobianIsTheDerivativeOfTheFrame", &BodyLaws::jacobian_is_the_derivative_of_the_frame},
@@ -350,11 +350,9 @@ struct BodyLaws {
       {"LoadStiffnessIsTheDerivativeOfThePulledWrench",
        &BodyLaws::load_stiffness_is_the_derivative_of_the_pulled_wrench},
       {"OwnRowsHoldAtTheReferenceAndTheirMapsAreDerivatives",
-       &BodyLaws::own_rows_hold_at_the_reference_and_their_maps_are_derivatives},
-      {"ReferenceStandsWhereTheBarIsPlaced", &BodyLaws::reference_stands_where_the_bar_is_placed},
-      {"PointsOutsideTheBarAreRefused", &BodyLaws::points_outside_the_bar_are_refused}};
-  /// Laws of the case: all, or all except the last two if the body is not made from a bar.
-  static constexpr std::span<Law<BodyLaws> const> laws{all, std::size(all) - (MadeFromBar<Case> ? 0 : 2)};
+       &BodyLaws::own_rows_hold_at_the_reference_and_their_maps_are_derivatives, HasOwnEquations<B>},
+      {"ReferenceStandsWhereTheBarIsPlaced", &BodyLaws::reference_stands_where_the_bar_is_placed, MadeFromBar<Case>},
+      {"PointsOutsideTheBarAreRefused", &BodyLaws::points_outside_the_bar_are_refused, MadeFromBar<Case>}};
 };
 
 }  // namespace polybody::laws
