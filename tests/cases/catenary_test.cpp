@@ -171,7 +171,7 @@ TEST(HangingChain, HasThePublishedForcesAndShape) {
 }
 
 // The tree starts at the first support and a pin at the far one closes the loop. The time steps are tested in
-// tests/system/recursive_loop_test.cpp.
+// tests/unit/elimination/recursive_loop_test.cpp.
 TEST(HangingChain, HangsAlikeOnJointCoordinates) {
   held_chain(Chain(ten, JointCoordinates{}, Constraint{}).hang(), of_ten, "10 rigid links on joint coordinates");
 }

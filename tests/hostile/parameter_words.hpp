@@ -108,7 +108,7 @@ inline constexpr auto words_of<Bushing> = words("stiffness", "damping");
 template <>
 inline constexpr auto words_of<LinearLaw> = words("stiffness", "damping");
 
-/// The constructor refuses invalid tables: tests/math/monotone_table_test.cpp.
+/// The constructor refuses invalid tables: tests/unit/math/monotone_table_test.cpp.
 inline void each_hostile(MonotoneTable&, std::string const&, Changed const&) {}
 template <>
 inline constexpr auto words_of<TabulatedLaw> = words("force", "damping");

@@ -1,6 +1,6 @@
 #pragma once
-// Mutants chosen at run time: `Site<17>{} * x` is x, unless POLYBODY_MUTANT=17:f, then f x. tests/mutants/run puts such
-// sites into a copy of the headers, in front of the terms of formulas.
+// Mutants chosen at run time: `Site<17>{} * x` is x, unless POLYBODY_MUTANT=17:f, then f x. tests/tools/mutants/run
+// puts such sites into a copy of the headers, in front of the terms of formulas.
 //   POLYBODY_MUTANT=SITE:FACTOR      the mutant of this process: factor -1, 0 or 1.01
 //   POLYBODY_MUTANT_REACHED=FILE     writes the sites that the process reached; 1: the site changes a number, 2: none
 

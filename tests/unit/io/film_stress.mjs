@@ -5,7 +5,7 @@
 // with a point of the history at its time. Exits with 77 if there is no film.
 import {existsSync, readFileSync} from 'node:fs';
 
-import {bytesOfBase64, decodeFilm} from '../../cmake/viewer/src/decode.js';
+import {bytesOfBase64, decodeFilm} from '../../../cmake/viewer/src/decode.js';
 
 const file = process.argv[2];
 if (!existsSync(file)) {

@@ -176,7 +176,7 @@ TEST(ModelChanges, OfAnEmptiedModelAreAsOfANewOne) {
   EXPECT_EQ(x.q, y.q);
 }
 
-// A temporary model is refused at compile time: tests/refused contains the messages of `simulate` and `resume`.
+// A temporary model is refused at compile time: tests/compile_fail contains the messages of `simulate` and `resume`.
 template <class M>
 concept TakesTemporaries = std::constructible_from<System, M> || std::constructible_from<EnergyAudit, M> ||
                            std::constructible_from<LoadRecorder, M> || std::constructible_from<Visual, M> ||

@@ -27,7 +27,7 @@ TEST(Joint, NeedsNoNumbersUnlessItsPolicyDoes) {
   static_assert(std::is_default_constructible_v<Joint<Revolute, Constraint>>);
 }
 
-// Types that do not form a joint do not compile (tests/refused): a geometry instead of a policy, or numbers.
+// Types that do not form a joint do not compile (tests/compile_fail): a geometry instead of a policy, or numbers.
 static_assert(JointGeometry<Revolute> && Policy<Constraint> && Policy<Penalty>);
 static_assert(!JointGeometry<Constraint> && !Policy<Revolute> && !JointGeometry<double> && !Policy<double>);
 

@@ -8,7 +8,7 @@
 #include <polybody/joints/planar/joints.hpp>
 
 #include "support/held.hpp"
-#include "system/random_tree.hpp"
+#include "support/random_tree.hpp"
 
 using namespace polybody;
 

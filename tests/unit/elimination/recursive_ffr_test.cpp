@@ -11,8 +11,8 @@
 #include <polybody/run/probe.hpp>
 
 #include "support/held.hpp"
+#include "support/random_tree.hpp"
 #include "support/refusal.hpp"
-#include "system/random_tree.hpp"
 
 using namespace polybody;
 

@@ -3,7 +3,7 @@
 // message. Prints the contents as lines for film_test.cpp:  part SCENE FRAME PART X Y Z ...   for the points of every part.
 import {readFileSync} from 'node:fs';
 
-import {bytesOfBase64, decodeFilm, FilmError, pointsOf} from '../../cmake/viewer/src/decode.js';
+import {bytesOfBase64, decodeFilm, FilmError, pointsOf} from '../../../cmake/viewer/src/decode.js';
 
 const html = readFileSync(process.argv[2], 'latin1'), begin = html.indexOf('id="film">') + 10;
 const letters = html.slice(begin, html.indexOf('</script>', begin)), bytes = bytesOfBase64(letters);

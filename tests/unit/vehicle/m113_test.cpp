@@ -1,5 +1,5 @@
 // The data of m113/data.hpp against an independent data sheet of the vehicle of Wallin 2016. The bodies and joints
-// in tests/vehicle/data are those of this data sheet without the links (positions to nine digits). Totals and
+// in tests/unit/vehicle/data are those of this data sheet without the links (positions to nine digits). Totals and
 // conventions are its own as well.
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ namespace m113_test {
 
 using m113::Side;
 
-/// The numbers of each row of a file of tests/vehicle/data after its first `names` fields, by these fields.
+/// The numbers of each row of a file of tests/unit/vehicle/data after its first `names` fields, by these fields.
 std::map<std::string, std::vector<double>> rows(char const* file, int names) {
   std::ifstream in(std::filesystem::path(__FILE__).parent_path() / "data" / file);
   std::map<std::string, std::vector<double>> found;

@@ -1,4 +1,4 @@
-"""Mutants of the formulas in the headers, and the number of them that a test detects (tests/mutants/run)."""
+"""Mutants of the formulas in the headers, and the number of them that a test detects (tests/tools/mutants/run)."""
 
 import argparse
 import os
@@ -18,12 +18,12 @@ from sites import ROOT, all_sites, put_in  # noqa: E402
 
 FACTORS = {-1.0: "sign", 0.0: "dropped", 1.01: "x 1.01"}
 BUILD = ROOT / "build" / "mutants"
-REASONS = ROOT / "tests" / "mutants" / "reasons.txt"
+REASONS = ROOT / "tests/tools/mutants/reasons.txt"
 LONGEST_TEST = 40.0  # s; longer tests are not used
 
 
 def arguments():
-    p = argparse.ArgumentParser(prog="tests/mutants/run", description=__doc__)
+    p = argparse.ArgumentParser(prog="tests/tools/mutants/run", description=__doc__)
     p.add_argument("--mutants", type=int, default=400, help="how many are drawn (400)")
     p.add_argument("--seed", type=int, default=None, help="of the drawing (by the clock)")
     p.add_argument("--only", default="", help="of headers whose path holds this")
@@ -54,7 +54,7 @@ def build(numbered, clang):
         if (ROOT / name).is_file():
             (copy / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(ROOT / name, copy / name)
-    shutil.copy2(ROOT / "tests/mutants/mutant.hpp", copy / "include/polybody/mutant.hpp")
+    shutil.copy2(ROOT / "tests/tools/mutants/mutant.hpp", copy / "include/polybody/mutant.hpp")
     put_in(copy / "include", numbered)
     log = BUILD / "build.log"
     with log.open("w") as out:
