@@ -159,9 +159,7 @@ class ConstantBlockCache {
     while (root_[std::size_t(i)] != i) i = root_[std::size_t(i)] = root_[std::size_t(root_[std::size_t(i)])];
     return i;
   }
-  Index unknown(Index place, bool kept) const {
-    return (kept ? of_kept_ : of_rest_)[std::size_t(place)];
-  }
+  Index unknown(Index place, bool kept) const { return (kept ? of_kept_ : of_rest_)[std::size_t(place)]; }
 
   Solver rest_, kept_solver_;
   Sequence<bool> kept_, in_kept_;           // kept_: for each unknown; in_kept_: for each block

@@ -187,10 +187,7 @@ void BodyKernels<B, T>::describe(Pool const& pool, ModelLayout& out) {
     out.bodies.push_back({e.name, e.q0, e.body.coordinates(), e.v0, e.body.velocities(), e.row, own,
                           B::world == World::plane, B::constant_mass, &detail::type_tag<B>, index++, &e.body, nullptr,
                           units_of<B>(), e.made_in, HasRigidLayout<B>, TimeVaryingBody<B>});
-    if constexpr (requires(B const& bar) {
-                    bar.constants().EA;
-                    bar.element_length();
-                  }) {
+    if constexpr (requires(B const& bar) { bar.constants().EA* bar.element_length(); }) {
       double const l = e.body.element_length(), EA = e.body.constants().EA, EI = e.body.constants().EI;
       out.bodies.back().stretch_ratio = EI > 0.0 ? EA * l * l / EI : 0.0;
     }

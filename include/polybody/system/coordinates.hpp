@@ -92,7 +92,8 @@ class FrozenMaps {
   virtual void to_equations(VecX const& rhs, VecX& out) { out = rhs; }
   /// out = unknowns of the step from a solution of the linear system.
   virtual void from_equations(VecX const& solution, VecX& out) { out = solution; }
-  /// Articulated-body algorithm: factorises the full tangent of `write`. Returns −1, or the index of the velocity without a pivot.
+  /// Articulated-body algorithm: factorises the full tangent of `write`. Returns −1, or the index of the velocity
+  /// without a pivot.
   virtual Index factor(BlockWriter const&) { return -1; }
   /// Articulated-body algorithm: factorises the exact tangent of `StepCoordinates::balance` with the coefficients k.
   /// Returns −1, or the index of the velocity without a pivot.

@@ -6,7 +6,7 @@
 
 #include <polybody/bodies/rigid/planar_rigid.hpp>
 #include <polybody/forces/user_force.hpp>
-#include <polybody/joints/planar/revolute.hpp>
+#include <polybody/joints/planar/joints.hpp>
 #include <polybody/joints/policies/penalty.hpp>
 #include <polybody/run/simulate.hpp>
 #include <polybody/testing/integrator_laws.hpp>
