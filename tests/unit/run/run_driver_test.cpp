@@ -44,7 +44,7 @@ struct Fall {
     }
   }
 
-  StepReport step(State& y, double h) {
+  StepReport step(State& y, double h, int = -1) {
     if (h > longest) throw NewtonConvergenceFailure("newton.not_converged", {"no solution"});
     StepReport r;
     r.taken = part * h;
